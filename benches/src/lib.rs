@@ -1,0 +1,6 @@
+//! Shared code of the benchmarks: scenes, the hand-written loop, clocks, the guard.
+
+pub mod clock;
+pub mod guard;
+pub mod hand;
+pub mod scenes;

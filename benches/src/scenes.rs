@@ -1,0 +1,139 @@
+//! Scenes with a camera each.
+
+use std::f32::consts::TAU;
+use std::path::Path;
+use std::{fs, io};
+
+use raydsl::prelude::*;
+use raydsl_examples::cloud;
+
+/// A point of a scan: 16 bytes.
+#[primitive]
+pub struct ColorSphere {
+    /// Where the point is.
+    pub center: Vec3,
+    /// How large it is drawn.
+    pub radius: Unorm8,
+    /// Its colour.
+    pub color: [Unorm8; 3],
+}
+
+#[primitive]
+impl ColorSphere {
+    const SLACK: f32 = sphere::SLACK;
+
+    /// Where a ray meets the sphere.
+    #[inline]
+    pub fn intersect(&self, ray: Ray) -> Hit {
+        sphere::intersect(ray, self.center, self.radius.to_f32())
+    }
+
+    /// The box of the sphere.
+    pub fn get_bounds(&self) -> Aabb {
+        Aabb::from_sphere(self.center, self.radius.to_f32())
+    }
+}
+
+/// Primitives and where to look at them from.
+pub struct Scene<P> {
+    /// The primitives.
+    pub prims: Vec<P>,
+    /// The camera.
+    pub camera: Pinhole,
+}
+
+/// The procedural cloud with `points` points.
+///
+/// # Panics
+///
+/// If there are too few points to make a scale of.
+pub fn scan(points: usize) -> Scene<ColorSphere> {
+    let cloud = cloud::procedural(points, 7, &mut |_| {});
+    let view = cloud::suggested_view(&cloud);
+    let scaled = cloud::scale(&cloud, None).expect("the procedural cloud can be scaled");
+    let radius = Unorm8::from_bits(scaled.radius_code);
+    let sphere = |(&c, &rgb): (&[f32; 3], &[u8; 3])| ColorSphere {
+        center: Vec3::from_array(c),
+        radius,
+        color: rgb.map(Unorm8::from_bits),
+    };
+    let prims = scaled.centers.iter().zip(&cloud.colors).map(sphere).collect();
+    let place = |p: [f64; 3]| {
+        Vec3::from_array(std::array::from_fn(|i| ((p[i] - scaled.offset[i]) * scaled.scale) as f32))
+    };
+    let up = Vec3::from_array(view.up.map(|c| c as f32));
+    let fov = view.fov_y_degrees.to_radians() as f32;
+    Scene { prims, camera: Pinhole::new(place(view.eye), place(view.target), up, fov) }
+}
+
+/// Sibenik cathedral from the folder of test data.
+///
+/// # Errors
+///
+/// If the files cannot be read or are not what they should be.
+pub fn sibenik(data: &Path) -> io::Result<Scene<Triangle>> {
+    let bytes = fs::read(data.join("sibenik.tri"))?;
+    let numbers: Vec<f32> = bytes
+        .get(4..)
+        .unwrap_or_default()
+        .chunks_exact(4)
+        .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+        .collect();
+    let prims = numbers.chunks_exact(9).map(triangle).collect();
+    let cameras: serde_json::Value = serde_json::from_slice(&fs::read(data.join("cameras.json"))?)?;
+    let camera = &cameras["sibenik"];
+    let vector = |name: &str| {
+        let number = |i: usize| camera[name][i].as_f64().unwrap_or_default() as f32;
+        vec3(number(0), number(1), number(2))
+    };
+    let fov = camera["vfov_deg"].as_f64().unwrap_or(60.0).to_radians() as f32;
+    let camera = Pinhole::new(vector("eye"), vector("center"), vector("up"), fov);
+    Ok(Scene { prims, camera })
+}
+
+fn triangle(n: &[f32]) -> Triangle {
+    Triangle { v0: vec3(n[0], n[1], n[2]), v1: vec3(n[3], n[4], n[5]), v2: vec3(n[6], n[7], n[8]) }
+}
+
+/// Two rows of fluted columns under a vault, about 80,000 triangles: a hall that needs no file.
+pub fn colonnade() -> Scene<Triangle> {
+    let mut prims = Vec::new();
+    for i in 0..12 {
+        for side in [-3.0, 3.0] {
+            let foot = vec3(side, 0.0, 3.0 * i as f32);
+            patch(&mut prims, 64, 20, |u, v| foot + column(u, v));
+        }
+    }
+    let floor = |u: f32, v: f32| vec3(12.0 * u - 6.0, 0.0, 42.0 * v - 4.0);
+    patch(&mut prims, 24, 84, floor);
+    let vault = |u: f32, v: f32| {
+        let (sin, cos) = (0.5 * TAU * u).sin_cos();
+        vec3(-6.0 * cos, 4.0 + 3.0 * sin, 42.0 * v - 4.0)
+    };
+    patch(&mut prims, 64, 84, vault);
+    for side in [-6.0, 6.0] {
+        patch(&mut prims, 24, 84, |u, v| vec3(side, 4.0 * u, 42.0 * v - 4.0));
+    }
+    patch(&mut prims, 8, 8, |u, v| vec3(12.0 * u - 6.0, 7.0 * v, 38.0));
+    let camera = Pinhole::new(vec3(0.6, 1.7, -3.0), vec3(-0.4, 2.2, 20.0), Vec3::Y, 1.05);
+    Scene { prims, camera }
+}
+
+/// A point of a column's surface: round `u`, up `v`.
+fn column(u: f32, v: f32) -> Vec3 {
+    let (sin, cos) = (TAU * u).sin_cos();
+    let flute = 0.03 * (16.0 * TAU * u).cos();
+    let swell = 0.45 - 0.1 * v + 0.25 * (1.0 - 8.0 * v).max(0.0) + 0.25 * (8.0 * v - 7.0).max(0.0);
+    vec3((swell + flute) * cos, 4.2 * v, (swell + flute) * sin)
+}
+
+/// Adds a grid of `nu` by `nv` quads over the unit square, carried into space by `at`.
+fn patch(out: &mut Vec<Triangle>, nu: u32, nv: u32, at: impl Fn(f32, f32) -> Vec3) {
+    let corner = |i: u32, j: u32| at(i as f32 / nu as f32, j as f32 / nv as f32);
+    for (i, j) in (0..nv).flat_map(|j| (0..nu).map(move |i| (i, j))) {
+        let (a, b) = (corner(i, j), corner(i + 1, j));
+        let (c, d) = (corner(i, j + 1), corner(i + 1, j + 1));
+        out.push(Triangle { v0: a, v1: b, v2: d });
+        out.push(Triangle { v0: a, v1: d, v2: c });
+    }
+}

@@ -1,0 +1,78 @@
+impl sky {
+    #[inline(always)]
+    #[allow(
+        unused,
+        clippy::all,
+        clippy::pedantic,
+        clippy::nursery,
+        non_snake_case,
+        reason = "generated code"
+    )]
+    pub(self) fn on<__M: Machine>(
+        m: &__M,
+        up: impl Coerce<__M, <f32 as Type>::On<__M>>,
+        bands: impl Coerce<__M, <u32 as Type>::On<__M>>,
+    ) -> <f32 as Type>::On<__M> {
+        use operations::*;
+        static INFO: KernelInfo = KernelInfo {
+            name: "sky",
+            file: "examples/first_kernel.rs",
+            line: 45u32,
+            params: &["up", "bands"],
+        };
+        Machine::call(
+            m,
+            &INFO,
+            (
+                Coerce::<__M, <f32 as Type>::On<__M>>::coerce(up, m),
+                Coerce::<__M, <u32 as Type>::On<__M>>::coerce(bands, m),
+            ),
+            #[inline(always)]
+            |m: &__M, (up, bands): (<f32 as Type>::On<__M>, <u32 as Type>::On<__M>)| {
+                let ret = Ret::<<f32 as Type>::On<__M>>::new(m);
+                'block_0: {
+                    let edge = Var::new(m, "edge", Varying::varying(f32(m, 1.0f32), m));
+                    {
+                        let (start, end) = range(m, 0, bands);
+                        let counter_3 = Var::new(m, "i", start);
+                        let repeat_2 = Loop::new(m);
+                        loop {
+                            if !repeat_2.test(m, less(m, counter_3.get(m), end)) {
+                                break;
+                            }
+                            {
+                                {
+                                    let right = f32(m, 0.6f32);
+                                    #[allow(unused_mut)]
+                                    let mut whole = edge.get(m);
+                                    edge.set(m, Coerce::coerce(OpMul::mul(m, whole, right), m));
+                                }
+                                let branch_5 = Branch::new(
+                                    m,
+                                    OpCompare::compare(m, Compare::Gt, up, edge.get(m)),
+                                );
+                                if branch_5.then(m) {
+                                    {
+                                        ret.give(m, Coerce::coerce(edge.get(m), m));
+                                    }
+                                }
+                                branch_5.end(m);
+                            }
+                            repeat_2.continuing(m);
+                            counter_3.set(m, increment(m, counter_3.get(m)));
+                            if !repeat_2.again(m) {
+                                break;
+                            }
+                        }
+                        repeat_2.end(m);
+                    }
+                    if !Machine::alive(m) {
+                        break 'block_0;
+                    }
+                    ret.give(m, Coerce::coerce(f32(m, 0.0f32), m));
+                }
+                ret.take()
+            },
+        )
+    }
+}

@@ -1,0 +1,85 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::Parser;
+use raydsl::kernel::{Variant, Variants};
+
+/// Render a laser scan as coloured spheres, by every variant of one kernel.
+#[derive(Debug, Parser)]
+#[command(about, after_help = "Without a FILE a landscape is made in code.")]
+pub(crate) struct Args {
+    /// The scan: .laz, .las, .ply or .xyz.
+    #[arg(value_name = "FILE")]
+    pub(crate) file: Option<PathBuf>,
+    /// Picture size.
+    #[arg(long, value_name = "WxH", default_value = "1920x1200", value_parser = size)]
+    pub(crate) size: (u32, u32),
+    /// Points of the made landscape.
+    #[arg(long, value_name = "N", default_value_t = 2_000_000)]
+    pub(crate) points: usize,
+    /// Which landscape.
+    #[arg(long, value_name = "N", default_value_t = 7)]
+    pub(crate) seed: u64,
+    /// Radius of the spheres in the file's units [default: from the spacing of the points].
+    #[arg(long, value_name = "R")]
+    pub(crate) radius: Option<f64>,
+    /// Which variants run, beside the scalar one.
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        default_value = "scalar,packet4,packet8,packet16,wgsl",
+        value_parser = variant
+    )]
+    pub(crate) variants: Vec<Variant>,
+    /// Timed rounds.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) runs: u16,
+    /// Folder of the pictures.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub(crate) out: PathBuf,
+    /// Write the figures as JSON.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
+    /// Where the camera is, in the file's units [default: a view of everything].
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub(crate) eye: Option<[f64; 3]>,
+    /// What it looks at.
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub(crate) target: Option<[f64; 3]>,
+    /// Which way is up.
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub(crate) up: Option<[f64; 3]>,
+    /// Vertical field of view in degrees.
+    #[arg(long, value_name = "DEG")]
+    pub(crate) fov: Option<f64>,
+}
+
+impl Args {
+    pub(crate) fn variants(&self) -> Variants {
+        Variants::of(&self.variants)
+    }
+}
+
+/// `1920x1200`.
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let parse = |n: &str| n.parse::<u32>().ok().filter(|n| (1..=65_535).contains(n));
+    text.split_once('x').and_then(|(w, h)| Some((parse(w)?, parse(h)?))).ok_or_else(|| {
+        "write WIDTHxHEIGHT with numbers from 1 to 65535, for example 640x480".to_owned()
+    })
+}
+
+fn variant(name: &str) -> Result<Variant, String> {
+    Variant::from_name(name).ok_or_else(|| format!("choose from {}", crate::variant_names()))
+}
+
+/// `1,2,3`.
+fn point(text: &str) -> Result<[f64; 3], String> {
+    let parts: Vec<f64> = text
+        .split(',')
+        .filter_map(|p| p.trim().parse().ok())
+        .filter(|v: &f64| v.is_finite())
+        .collect();
+    parts.try_into().map_err(|_| "write three numbers, for example 1,2,3".to_owned())
+}

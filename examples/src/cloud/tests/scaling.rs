@@ -1,0 +1,89 @@
+use super::*;
+
+fn cloud(positions: Vec<[f64; 3]>) -> PointCloud {
+    let colors = vec![[9; 3]; positions.len()];
+    PointCloud { positions, colors }
+}
+
+/// A square grid in the plane.
+fn grid(side: usize, step: f64) -> PointCloud {
+    let at = |i: usize| [(i % side) as f64 * step, (i / side) as f64 * step, 0.0];
+    cloud((0..side * side).map(at).collect())
+}
+
+fn refusal(cloud: &PointCloud, radius: Option<f64>) -> String {
+    let text = scale(cloud, radius).expect_err("an error").to_string();
+    assert!(!text.contains('\n') && text.contains(';'), "{text}");
+    text
+}
+
+#[test]
+fn a_grid_has_its_step_as_spacing() {
+    for (side, step) in [(10, 1.0), (150, 0.02), (60, 1e6)] {
+        let scaled = scale(&grid(side, step), None).expect("a scale");
+        assert!((scaled.spacing / step - 1.0).abs() < 1e-6, "{}", scaled.spacing);
+        let radius = f64::from(scaled.radius_code) / 255.0 / scaled.scale;
+        assert!((0.7..0.9).contains(&(radius / step)));
+    }
+}
+
+#[test]
+fn duplicates_and_stray_points_do_not_count() {
+    let mut twice = grid(60, 0.5);
+    let copy = twice.positions.clone();
+    twice.positions.extend(copy);
+    twice.positions.extend(vec![[3.0, 3.0, 0.0]; 5000]);
+    twice.positions.push([0.0, 0.0, 1000.0]);
+    let twice = cloud(twice.positions);
+    let spacing = scale(&twice, None).expect("a scale").spacing;
+    assert!((spacing - 0.5).abs() < 1e-6, "{spacing}");
+}
+
+#[test]
+fn few_points_have_a_spacing() {
+    let spacing = |p: &[[f64; 3]]| scale(&cloud(p.to_vec()), None).expect("a scale").spacing;
+    assert_eq!(spacing(&[[5.0, 6.0, 7.0]]), 1.0);
+    assert_eq!(spacing(&[[5.0; 3]; 100]), 1.0);
+    assert_eq!(spacing(&[[0.0; 3], [3.0, 4.0, 0.0]]), 5.0);
+    let line: Vec<_> = (0..5000).map(|i| [f64::from(i), 0.0, 0.0]).collect();
+    assert_eq!(spacing(&line), 2.0);
+}
+
+#[test]
+fn centers_map_back() {
+    // Coordinates as of a national grid, which f32 would round to half a metre.
+    let far = |i: usize| [4_400_000.0 + i as f64 * 0.01, 5_300_000.0 + (i % 7) as f64, 500.0];
+    let cloud = cloud((0..2000).map(far).collect());
+    let scaled = scale(&cloud, Some(0.01)).expect("a scale");
+    assert_eq!(scaled.radius_code, 128);
+    assert!((f64::from(scaled.radius_code) / 255.0 / scaled.scale - 0.01).abs() < 1e-12);
+    for (p, c) in cloud.positions.iter().zip(&scaled.centers) {
+        for i in 0..3 {
+            let back = f64::from(c[i]) / scaled.scale + scaled.offset[i];
+            assert!((back - p[i]).abs() < 0.01 / 16.0);
+        }
+    }
+}
+
+#[test]
+fn impossible_radii_are_refused() {
+    let cloud = grid(10, 1.0);
+    for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        refusal(&cloud, Some(radius));
+    }
+    assert!(refusal(&cloud, Some(1e-9)).contains("at least"));
+    assert!(refusal(&cloud, Some(1e9)).contains("at most"));
+    refusal(&grid(1, 1.0), Some(f64::MIN_POSITIVE / 1024.0));
+    scale(&cloud, Some(9.0 / f64::from(1 << 21))).expect("just large enough");
+    scale(&cloud, Some(9.0 * 1024.0)).expect("just small enough");
+}
+
+#[test]
+fn impossible_clouds_are_refused() {
+    refusal(&cloud(vec![]), None);
+    refusal(&cloud(vec![[f64::MAX; 3], [f64::MIN; 3]]), None);
+    refusal(&cloud(vec![[0.0; 3], [f64::MIN_POSITIVE; 3]]), None);
+    assert!(refusal(&cloud(vec![[0.0; 3], [f64::NAN; 3]]), None).contains("1 of 2"));
+    let uneven = PointCloud { positions: vec![[0.0; 3]], colors: vec![] };
+    refusal(&uneven, None);
+}

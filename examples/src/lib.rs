@@ -1,0 +1,4 @@
+//! Shared code of the example programs.
+
+pub mod cloud;
+pub mod heat_map;

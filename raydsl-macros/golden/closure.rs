@@ -1,0 +1,616 @@
+fn main() {
+    {
+        static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
+            name: "kernel",
+            file: ::core::file!(),
+            line: ::core::line!(),
+            params: &["ray"],
+        };
+        let scalar = |ray: Ray| {
+            let hit = bvh.closest_hit(ray);
+            if hit.is_hit { bvh.primitive(hit).rgb() } else { background }
+        };
+        let captures = (&bvh, &background);
+        ::raydsl::__private::Kernel::scalar(&__INFO, move |(ray,): (Ray,)| scalar(ray))
+            .lifted(
+                ::raydsl::__private::Lifted {
+                    native4: ::std::boxed::Box::new(
+                        #[allow(
+                            unused,
+                            clippy::all,
+                            clippy::pedantic,
+                            clippy::nursery,
+                            non_snake_case,
+                            reason = "generated code"
+                        )]
+                        move |
+                            m: &::raydsl::__private::Native4,
+                            (
+                                ray,
+                            ): (
+                                <Ray as ::raydsl::__private::Type>::On<
+                                    ::raydsl::__private::Native4,
+                                >,
+                            )|
+                        {
+                            use ::raydsl::__private::operations::*;
+                            ::raydsl::__private::Machine::call(
+                                m,
+                                &__INFO,
+                                (ray,),
+                                #[inline(always)]
+                                |
+                                    m: &::raydsl::__private::Native4,
+                                    (
+                                        ray,
+                                    ): (
+                                        <Ray as ::raydsl::__private::Type>::On<
+                                            ::raydsl::__private::Native4,
+                                        >,
+                                    )|
+                                {
+                                    let bvh = ::raydsl::__private::Capture::<
+                                        ::raydsl::__private::Native4,
+                                    >::capture(captures.0, m, "bvh");
+                                    let background = ::raydsl::__private::Capture::<
+                                        ::raydsl::__private::Native4,
+                                    >::capture(captures.1, m, "background");
+                                    let hit = ::raydsl::__private::Machine::named(
+                                        m,
+                                        "hit",
+                                        ::raydsl::__private::Method::<
+                                            { ::raydsl::__private::name("closest_hit") },
+                                            ::raydsl::__private::Native4,
+                                            _,
+                                        >::call(bvh, m, (ray,)),
+                                    );
+                                    {
+                                        let value_1 = ::raydsl::__private::Var::<
+                                            _,
+                                        >::declare(m, "result");
+                                        let branch_2 = ::raydsl::__private::Branch::new(
+                                            m,
+                                            hit.is_hit,
+                                        );
+                                        if branch_2.then(m) {
+                                            {
+                                                value_1
+                                                    .set(
+                                                        m,
+                                                        ::raydsl::__private::Varying::varying(
+                                                            ::raydsl::__private::Method::<
+                                                                { ::raydsl::__private::name("rgb") },
+                                                                ::raydsl::__private::Native4,
+                                                                _,
+                                                            >::call(
+                                                                ::raydsl::__private::Method::<
+                                                                    { ::raydsl::__private::name("primitive") },
+                                                                    ::raydsl::__private::Native4,
+                                                                    _,
+                                                                >::call(bvh, m, (hit,)),
+                                                                m,
+                                                                (),
+                                                            ),
+                                                            m,
+                                                        ),
+                                                    );
+                                            }
+                                        }
+                                        if branch_2.otherwise(m) {
+                                            {
+                                                value_1
+                                                    .set(
+                                                        m,
+                                                        ::raydsl::__private::Varying::varying(background, m),
+                                                    );
+                                            }
+                                        }
+                                        branch_2.end(m);
+                                        value_1.get(m)
+                                    }
+                                },
+                            )
+                        },
+                    ),
+                    native8: ::std::boxed::Box::new(
+                        #[allow(
+                            unused,
+                            clippy::all,
+                            clippy::pedantic,
+                            clippy::nursery,
+                            non_snake_case,
+                            reason = "generated code"
+                        )]
+                        move |
+                            m: &::raydsl::__private::Native8,
+                            (
+                                ray,
+                            ): (
+                                <Ray as ::raydsl::__private::Type>::On<
+                                    ::raydsl::__private::Native8,
+                                >,
+                            )|
+                        {
+                            use ::raydsl::__private::operations::*;
+                            ::raydsl::__private::Machine::call(
+                                m,
+                                &__INFO,
+                                (ray,),
+                                #[inline(always)]
+                                |
+                                    m: &::raydsl::__private::Native8,
+                                    (
+                                        ray,
+                                    ): (
+                                        <Ray as ::raydsl::__private::Type>::On<
+                                            ::raydsl::__private::Native8,
+                                        >,
+                                    )|
+                                {
+                                    let bvh = ::raydsl::__private::Capture::<
+                                        ::raydsl::__private::Native8,
+                                    >::capture(captures.0, m, "bvh");
+                                    let background = ::raydsl::__private::Capture::<
+                                        ::raydsl::__private::Native8,
+                                    >::capture(captures.1, m, "background");
+                                    let hit = ::raydsl::__private::Machine::named(
+                                        m,
+                                        "hit",
+                                        ::raydsl::__private::Method::<
+                                            { ::raydsl::__private::name("closest_hit") },
+                                            ::raydsl::__private::Native8,
+                                            _,
+                                        >::call(bvh, m, (ray,)),
+                                    );
+                                    {
+                                        let value_1 = ::raydsl::__private::Var::<
+                                            _,
+                                        >::declare(m, "result");
+                                        let branch_2 = ::raydsl::__private::Branch::new(
+                                            m,
+                                            hit.is_hit,
+                                        );
+                                        if branch_2.then(m) {
+                                            {
+                                                value_1
+                                                    .set(
+                                                        m,
+                                                        ::raydsl::__private::Varying::varying(
+                                                            ::raydsl::__private::Method::<
+                                                                { ::raydsl::__private::name("rgb") },
+                                                                ::raydsl::__private::Native8,
+                                                                _,
+                                                            >::call(
+                                                                ::raydsl::__private::Method::<
+                                                                    { ::raydsl::__private::name("primitive") },
+                                                                    ::raydsl::__private::Native8,
+                                                                    _,
+                                                                >::call(bvh, m, (hit,)),
+                                                                m,
+                                                                (),
+                                                            ),
+                                                            m,
+                                                        ),
+                                                    );
+                                            }
+                                        }
+                                        if branch_2.otherwise(m) {
+                                            {
+                                                value_1
+                                                    .set(
+                                                        m,
+                                                        ::raydsl::__private::Varying::varying(background, m),
+                                                    );
+                                            }
+                                        }
+                                        branch_2.end(m);
+                                        value_1.get(m)
+                                    }
+                                },
+                            )
+                        },
+                    ),
+                    native16: ::std::boxed::Box::new(
+                        #[allow(
+                            unused,
+                            clippy::all,
+                            clippy::pedantic,
+                            clippy::nursery,
+                            non_snake_case,
+                            reason = "generated code"
+                        )]
+                        move |
+                            m: &::raydsl::__private::Native16,
+                            (
+                                ray,
+                            ): (
+                                <Ray as ::raydsl::__private::Type>::On<
+                                    ::raydsl::__private::Native16,
+                                >,
+                            )|
+                        {
+                            use ::raydsl::__private::operations::*;
+                            ::raydsl::__private::Machine::call(
+                                m,
+                                &__INFO,
+                                (ray,),
+                                #[inline(always)]
+                                |
+                                    m: &::raydsl::__private::Native16,
+                                    (
+                                        ray,
+                                    ): (
+                                        <Ray as ::raydsl::__private::Type>::On<
+                                            ::raydsl::__private::Native16,
+                                        >,
+                                    )|
+                                {
+                                    let bvh = ::raydsl::__private::Capture::<
+                                        ::raydsl::__private::Native16,
+                                    >::capture(captures.0, m, "bvh");
+                                    let background = ::raydsl::__private::Capture::<
+                                        ::raydsl::__private::Native16,
+                                    >::capture(captures.1, m, "background");
+                                    let hit = ::raydsl::__private::Machine::named(
+                                        m,
+                                        "hit",
+                                        ::raydsl::__private::Method::<
+                                            { ::raydsl::__private::name("closest_hit") },
+                                            ::raydsl::__private::Native16,
+                                            _,
+                                        >::call(bvh, m, (ray,)),
+                                    );
+                                    {
+                                        let value_1 = ::raydsl::__private::Var::<
+                                            _,
+                                        >::declare(m, "result");
+                                        let branch_2 = ::raydsl::__private::Branch::new(
+                                            m,
+                                            hit.is_hit,
+                                        );
+                                        if branch_2.then(m) {
+                                            {
+                                                value_1
+                                                    .set(
+                                                        m,
+                                                        ::raydsl::__private::Varying::varying(
+                                                            ::raydsl::__private::Method::<
+                                                                { ::raydsl::__private::name("rgb") },
+                                                                ::raydsl::__private::Native16,
+                                                                _,
+                                                            >::call(
+                                                                ::raydsl::__private::Method::<
+                                                                    { ::raydsl::__private::name("primitive") },
+                                                                    ::raydsl::__private::Native16,
+                                                                    _,
+                                                                >::call(bvh, m, (hit,)),
+                                                                m,
+                                                                (),
+                                                            ),
+                                                            m,
+                                                        ),
+                                                    );
+                                            }
+                                        }
+                                        if branch_2.otherwise(m) {
+                                            {
+                                                value_1
+                                                    .set(
+                                                        m,
+                                                        ::raydsl::__private::Varying::varying(background, m),
+                                                    );
+                                            }
+                                        }
+                                        branch_2.end(m);
+                                        value_1.get(m)
+                                    }
+                                },
+                            )
+                        },
+                    ),
+                    native16_halves: ::std::boxed::Box::new(
+                        #[allow(
+                            unused,
+                            clippy::all,
+                            clippy::pedantic,
+                            clippy::nursery,
+                            non_snake_case,
+                            reason = "generated code"
+                        )]
+                        move |
+                            m: &::raydsl::__private::Native16Halves,
+                            (
+                                ray,
+                            ): (
+                                <Ray as ::raydsl::__private::Type>::On<
+                                    ::raydsl::__private::Native16Halves,
+                                >,
+                            )|
+                        {
+                            use ::raydsl::__private::operations::*;
+                            ::raydsl::__private::Machine::call(
+                                m,
+                                &__INFO,
+                                (ray,),
+                                #[inline(always)]
+                                |
+                                    m: &::raydsl::__private::Native16Halves,
+                                    (
+                                        ray,
+                                    ): (
+                                        <Ray as ::raydsl::__private::Type>::On<
+                                            ::raydsl::__private::Native16Halves,
+                                        >,
+                                    )|
+                                {
+                                    let bvh = ::raydsl::__private::Capture::<
+                                        ::raydsl::__private::Native16Halves,
+                                    >::capture(captures.0, m, "bvh");
+                                    let background = ::raydsl::__private::Capture::<
+                                        ::raydsl::__private::Native16Halves,
+                                    >::capture(captures.1, m, "background");
+                                    let hit = ::raydsl::__private::Machine::named(
+                                        m,
+                                        "hit",
+                                        ::raydsl::__private::Method::<
+                                            { ::raydsl::__private::name("closest_hit") },
+                                            ::raydsl::__private::Native16Halves,
+                                            _,
+                                        >::call(bvh, m, (ray,)),
+                                    );
+                                    {
+                                        let value_1 = ::raydsl::__private::Var::<
+                                            _,
+                                        >::declare(m, "result");
+                                        let branch_2 = ::raydsl::__private::Branch::new(
+                                            m,
+                                            hit.is_hit,
+                                        );
+                                        if branch_2.then(m) {
+                                            {
+                                                value_1
+                                                    .set(
+                                                        m,
+                                                        ::raydsl::__private::Varying::varying(
+                                                            ::raydsl::__private::Method::<
+                                                                { ::raydsl::__private::name("rgb") },
+                                                                ::raydsl::__private::Native16Halves,
+                                                                _,
+                                                            >::call(
+                                                                ::raydsl::__private::Method::<
+                                                                    { ::raydsl::__private::name("primitive") },
+                                                                    ::raydsl::__private::Native16Halves,
+                                                                    _,
+                                                                >::call(bvh, m, (hit,)),
+                                                                m,
+                                                                (),
+                                                            ),
+                                                            m,
+                                                        ),
+                                                    );
+                                            }
+                                        }
+                                        if branch_2.otherwise(m) {
+                                            {
+                                                value_1
+                                                    .set(
+                                                        m,
+                                                        ::raydsl::__private::Varying::varying(background, m),
+                                                    );
+                                            }
+                                        }
+                                        branch_2.end(m);
+                                        value_1.get(m)
+                                    }
+                                },
+                            )
+                        },
+                    ),
+                    portable: ::std::boxed::Box::new(
+                        #[allow(
+                            unused,
+                            clippy::all,
+                            clippy::pedantic,
+                            clippy::nursery,
+                            non_snake_case,
+                            reason = "generated code"
+                        )]
+                        move |
+                            m: &::raydsl::__private::Portable,
+                            (
+                                ray,
+                            ): (
+                                <Ray as ::raydsl::__private::Type>::On<
+                                    ::raydsl::__private::Portable,
+                                >,
+                            )|
+                        {
+                            use ::raydsl::__private::operations::*;
+                            ::raydsl::__private::Machine::call(
+                                m,
+                                &__INFO,
+                                (ray,),
+                                #[inline(always)]
+                                |
+                                    m: &::raydsl::__private::Portable,
+                                    (
+                                        ray,
+                                    ): (
+                                        <Ray as ::raydsl::__private::Type>::On<
+                                            ::raydsl::__private::Portable,
+                                        >,
+                                    )|
+                                {
+                                    let bvh = ::raydsl::__private::Capture::<
+                                        ::raydsl::__private::Portable,
+                                    >::capture(captures.0, m, "bvh");
+                                    let background = ::raydsl::__private::Capture::<
+                                        ::raydsl::__private::Portable,
+                                    >::capture(captures.1, m, "background");
+                                    let hit = ::raydsl::__private::Machine::named(
+                                        m,
+                                        "hit",
+                                        ::raydsl::__private::Method::<
+                                            { ::raydsl::__private::name("closest_hit") },
+                                            ::raydsl::__private::Portable,
+                                            _,
+                                        >::call(bvh, m, (ray,)),
+                                    );
+                                    {
+                                        let value_1 = ::raydsl::__private::Var::<
+                                            _,
+                                        >::declare(m, "result");
+                                        let branch_2 = ::raydsl::__private::Branch::new(
+                                            m,
+                                            hit.is_hit,
+                                        );
+                                        if branch_2.then(m) {
+                                            {
+                                                value_1
+                                                    .set(
+                                                        m,
+                                                        ::raydsl::__private::Varying::varying(
+                                                            ::raydsl::__private::Method::<
+                                                                { ::raydsl::__private::name("rgb") },
+                                                                ::raydsl::__private::Portable,
+                                                                _,
+                                                            >::call(
+                                                                ::raydsl::__private::Method::<
+                                                                    { ::raydsl::__private::name("primitive") },
+                                                                    ::raydsl::__private::Portable,
+                                                                    _,
+                                                                >::call(bvh, m, (hit,)),
+                                                                m,
+                                                                (),
+                                                            ),
+                                                            m,
+                                                        ),
+                                                    );
+                                            }
+                                        }
+                                        if branch_2.otherwise(m) {
+                                            {
+                                                value_1
+                                                    .set(
+                                                        m,
+                                                        ::raydsl::__private::Varying::varying(background, m),
+                                                    );
+                                            }
+                                        }
+                                        branch_2.end(m);
+                                        value_1.get(m)
+                                    }
+                                },
+                            )
+                        },
+                    ),
+                    recorder: ::std::boxed::Box::new(
+                        #[allow(
+                            unused,
+                            clippy::all,
+                            clippy::pedantic,
+                            clippy::nursery,
+                            non_snake_case,
+                            reason = "generated code"
+                        )]
+                        move |
+                            m: &::raydsl::__private::Recorder,
+                            (
+                                ray,
+                            ): (
+                                <Ray as ::raydsl::__private::Type>::On<
+                                    ::raydsl::__private::Recorder,
+                                >,
+                            )|
+                        {
+                            use ::raydsl::__private::operations::*;
+                            ::raydsl::__private::Machine::call(
+                                m,
+                                &__INFO,
+                                (ray,),
+                                #[inline(always)]
+                                |
+                                    m: &::raydsl::__private::Recorder,
+                                    (
+                                        ray,
+                                    ): (
+                                        <Ray as ::raydsl::__private::Type>::On<
+                                            ::raydsl::__private::Recorder,
+                                        >,
+                                    )|
+                                {
+                                    let bvh = ::raydsl::__private::Capture::<
+                                        ::raydsl::__private::Recorder,
+                                    >::capture(captures.0, m, "bvh");
+                                    let background = ::raydsl::__private::Capture::<
+                                        ::raydsl::__private::Recorder,
+                                    >::capture(captures.1, m, "background");
+                                    let hit = ::raydsl::__private::Machine::named(
+                                        m,
+                                        "hit",
+                                        ::raydsl::__private::Method::<
+                                            { ::raydsl::__private::name("closest_hit") },
+                                            ::raydsl::__private::Recorder,
+                                            _,
+                                        >::call(bvh, m, (ray,)),
+                                    );
+                                    {
+                                        let value_1 = ::raydsl::__private::Var::<
+                                            _,
+                                        >::declare(m, "result");
+                                        let branch_2 = ::raydsl::__private::Branch::new(
+                                            m,
+                                            hit.is_hit,
+                                        );
+                                        if branch_2.then(m) {
+                                            {
+                                                value_1
+                                                    .set(
+                                                        m,
+                                                        ::raydsl::__private::Varying::varying(
+                                                            ::raydsl::__private::Method::<
+                                                                { ::raydsl::__private::name("rgb") },
+                                                                ::raydsl::__private::Recorder,
+                                                                _,
+                                                            >::call(
+                                                                ::raydsl::__private::Method::<
+                                                                    { ::raydsl::__private::name("primitive") },
+                                                                    ::raydsl::__private::Recorder,
+                                                                    _,
+                                                                >::call(bvh, m, (hit,)),
+                                                                m,
+                                                                (),
+                                                            ),
+                                                            m,
+                                                        ),
+                                                    );
+                                            }
+                                        }
+                                        if branch_2.otherwise(m) {
+                                            {
+                                                value_1
+                                                    .set(
+                                                        m,
+                                                        ::raydsl::__private::Varying::varying(background, m),
+                                                    );
+                                            }
+                                        }
+                                        branch_2.end(m);
+                                        value_1.get(m)
+                                    }
+                                },
+                            )
+                        },
+                    ),
+                },
+                move |visit: &mut dyn FnMut(&dyn ::raydsl::__private::Resource)| {
+                    ::raydsl::__private::Capture::<
+                        ::raydsl::__private::Recorder,
+                    >::resources(captures.0, visit);
+                    ::raydsl::__private::Capture::<
+                        ::raydsl::__private::Recorder,
+                    >::resources(captures.1, visit);
+                },
+            )
+    };
+}

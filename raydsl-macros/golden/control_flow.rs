@@ -1,0 +1,360 @@
+fn walk(x: f32, n: u32) -> f32 {
+    let mut sum = 0.0;
+    'outer: for i in 0..n {
+        while sum < x {
+            sum += 1.0;
+            if sum > 10.0 {
+                break 'outer;
+            } else if x < 0.0 && 1u32 / i > 0 {
+                continue;
+            }
+            if i == 3 {
+                return sum;
+            }
+            sum *= 2.0;
+        }
+    }
+    let last;
+    if sum > x {
+        last = if x > 0.0 { x } else { -x };
+    } else {
+        last = 0.0;
+    }
+    sum + last
+}
+///The kernel of [`walk()`]: `Kernel::of::<walk>()`.
+#[allow(non_camel_case_types, reason = "it has the name of the function")]
+enum walk {}
+impl walk {
+    #[doc(hidden)]
+    #[inline(always)]
+    #[allow(
+        unused,
+        clippy::all,
+        clippy::pedantic,
+        clippy::nursery,
+        non_snake_case,
+        reason = "generated code"
+    )]
+    pub(self) fn on<__M: ::raydsl::__private::Machine>(
+        m: &__M,
+        x: impl ::raydsl::__private::Coerce<
+            __M,
+            <f32 as ::raydsl::__private::Type>::On<__M>,
+        >,
+        n: impl ::raydsl::__private::Coerce<
+            __M,
+            <u32 as ::raydsl::__private::Type>::On<__M>,
+        >,
+    ) -> <f32 as ::raydsl::__private::Type>::On<__M> {
+        use ::raydsl::__private::operations::*;
+        static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
+            name: "walk",
+            file: ::core::file!(),
+            line: ::core::line!(),
+            params: &["x", "n"],
+        };
+        ::raydsl::__private::Machine::call(
+            m,
+            &__INFO,
+            (
+                ::raydsl::__private::Coerce::<
+                    __M,
+                    <f32 as ::raydsl::__private::Type>::On<__M>,
+                >::coerce(x, m),
+                ::raydsl::__private::Coerce::<
+                    __M,
+                    <u32 as ::raydsl::__private::Type>::On<__M>,
+                >::coerce(n, m),
+            ),
+            #[inline(always)]
+            |
+                m: &__M,
+                (
+                    x,
+                    n,
+                ): (
+                    <f32 as ::raydsl::__private::Type>::On<__M>,
+                    <u32 as ::raydsl::__private::Type>::On<__M>,
+                )|
+            {
+                let ret = ::raydsl::__private::Ret::<
+                    <f32 as ::raydsl::__private::Type>::On<__M>,
+                >::new(m);
+                'block_0: {
+                    let sum = ::raydsl::__private::Var::new(
+                        m,
+                        "sum",
+                        ::raydsl::__private::Varying::varying(
+                            ::raydsl::__private::f32(m, 0.0f32),
+                            m,
+                        ),
+                    );
+                    {
+                        let (begin, end) = ::raydsl::__private::range(m, 0, n);
+                        let counter_3 = ::raydsl::__private::Var::new(m, "i", begin);
+                        let repeat_2 = ::raydsl::__private::Loop::new(m);
+                        loop {
+                            if !repeat_2
+                                .test(
+                                    m,
+                                    ::raydsl::__private::less(m, counter_3.get(m), end),
+                                )
+                            {
+                                break;
+                            }
+                            let i = counter_3.get(m);
+                            {
+                                let repeat_5 = ::raydsl::__private::Loop::new(m);
+                                loop {
+                                    if !repeat_5
+                                        .test(
+                                            m,
+                                            ::raydsl::__private::OpCompare::compare(
+                                                m,
+                                                ::raydsl::__private::Compare::Lt,
+                                                sum.get(m),
+                                                x,
+                                            ),
+                                        )
+                                    {
+                                        break;
+                                    }
+                                    'block_5: {
+                                        {
+                                            let right = ::raydsl::__private::f32(m, 1.0f32);
+                                            #[allow(unused_mut)]
+                                            let mut whole = sum.get(m);
+                                            sum.set(
+                                                m,
+                                                ::raydsl::__private::Coerce::coerce(
+                                                    ::raydsl::__private::OpAdd::add(m, whole, right),
+                                                    m,
+                                                ),
+                                            );
+                                        }
+                                        let branch_7 = ::raydsl::__private::Branch::new(
+                                            m,
+                                            ::raydsl::__private::OpCompare::compare(
+                                                m,
+                                                ::raydsl::__private::Compare::Gt,
+                                                sum.get(m),
+                                                ::raydsl::__private::f32(m, 10.0f32),
+                                            ),
+                                        );
+                                        if branch_7.then(m) {
+                                            {
+                                                repeat_2.leave(m);
+                                            }
+                                        }
+                                        if branch_7.otherwise(m) {
+                                            let branch_9 = ::raydsl::__private::Branch::new(
+                                                m,
+                                                {
+                                                    let value_10 = ::raydsl::__private::Var::<
+                                                        _,
+                                                    >::declare(m, "both");
+                                                    let branch_11 = ::raydsl::__private::Branch::new(
+                                                        m,
+                                                        ::raydsl::__private::OpCompare::compare(
+                                                            m,
+                                                            ::raydsl::__private::Compare::Lt,
+                                                            x,
+                                                            ::raydsl::__private::f32(m, 0.0f32),
+                                                        ),
+                                                    );
+                                                    if branch_11.then(m) {
+                                                        {
+                                                            value_10
+                                                                .set(
+                                                                    m,
+                                                                    ::raydsl::__private::Varying::varying(
+                                                                        ::raydsl::__private::OpCompare::compare(
+                                                                            m,
+                                                                            ::raydsl::__private::Compare::Gt,
+                                                                            ::raydsl::__private::OpDiv::div(
+                                                                                m,
+                                                                                ::raydsl::__private::u32(m, 1u32),
+                                                                                i,
+                                                                            ),
+                                                                            0,
+                                                                        ),
+                                                                        m,
+                                                                    ),
+                                                                );
+                                                        }
+                                                    }
+                                                    if branch_11.otherwise(m) {
+                                                        {
+                                                            value_10
+                                                                .set(m, ::raydsl::__private::Varying::varying(false, m));
+                                                        }
+                                                    }
+                                                    branch_11.end(m);
+                                                    value_10.get(m)
+                                                },
+                                            );
+                                            if branch_9.then(m) {
+                                                {
+                                                    repeat_5.skip(m);
+                                                }
+                                            }
+                                            branch_9.end(m);
+                                        }
+                                        branch_7.end(m);
+                                        if !::raydsl::__private::Machine::alive(m) {
+                                            break 'block_5;
+                                        }
+                                        let branch_15 = ::raydsl::__private::Branch::new(
+                                            m,
+                                            ::raydsl::__private::OpCompare::compare(
+                                                m,
+                                                ::raydsl::__private::Compare::Eq,
+                                                i,
+                                                3,
+                                            ),
+                                        );
+                                        if branch_15.then(m) {
+                                            {
+                                                ret.give(
+                                                    m,
+                                                    ::raydsl::__private::Coerce::coerce(sum.get(m), m),
+                                                );
+                                            }
+                                        }
+                                        branch_15.end(m);
+                                        if !::raydsl::__private::Machine::alive(m) {
+                                            break 'block_5;
+                                        }
+                                        {
+                                            let right = ::raydsl::__private::f32(m, 2.0f32);
+                                            #[allow(unused_mut)]
+                                            let mut whole = sum.get(m);
+                                            sum.set(
+                                                m,
+                                                ::raydsl::__private::Coerce::coerce(
+                                                    ::raydsl::__private::OpMul::mul(m, whole, right),
+                                                    m,
+                                                ),
+                                            );
+                                        }
+                                    }
+                                    repeat_5.continuing(m);
+                                    if !repeat_5.again(m) {
+                                        break;
+                                    }
+                                }
+                                repeat_5.end(m);
+                            }
+                            repeat_2.continuing(m);
+                            counter_3
+                                .set(
+                                    m,
+                                    ::raydsl::__private::increment(m, counter_3.get(m)),
+                                );
+                            if !repeat_2.again(m) {
+                                break;
+                            }
+                        }
+                        repeat_2.end(m);
+                    }
+                    if !::raydsl::__private::Machine::alive(m) {
+                        break 'block_0;
+                    }
+                    let last = ::raydsl::__private::Var::<_>::declare(m, "last");
+                    let branch_17 = ::raydsl::__private::Branch::new(
+                        m,
+                        ::raydsl::__private::OpCompare::compare(
+                            m,
+                            ::raydsl::__private::Compare::Gt,
+                            sum.get(m),
+                            x,
+                        ),
+                    );
+                    if branch_17.then(m) {
+                        {
+                            {
+                                let right = {
+                                    let value_19 = ::raydsl::__private::Var::<
+                                        _,
+                                    >::declare(m, "value");
+                                    let branch_20 = ::raydsl::__private::Branch::new(
+                                        m,
+                                        ::raydsl::__private::OpCompare::compare(
+                                            m,
+                                            ::raydsl::__private::Compare::Gt,
+                                            x,
+                                            ::raydsl::__private::f32(m, 0.0f32),
+                                        ),
+                                    );
+                                    if branch_20.then(m) {
+                                        {
+                                            value_19
+                                                .set(m, ::raydsl::__private::Varying::varying(x, m));
+                                        }
+                                    }
+                                    if branch_20.otherwise(m) {
+                                        {
+                                            value_19
+                                                .set(
+                                                    m,
+                                                    ::raydsl::__private::Varying::varying(
+                                                        ::raydsl::__private::OpNeg::neg(m, x),
+                                                        m,
+                                                    ),
+                                                );
+                                        }
+                                    }
+                                    branch_20.end(m);
+                                    value_19.get(m)
+                                };
+                                last.set(m, ::raydsl::__private::Coerce::coerce(right, m));
+                            }
+                        }
+                    }
+                    if branch_17.otherwise(m) {
+                        {
+                            {
+                                let right = ::raydsl::__private::f32(m, 0.0f32);
+                                last.set(m, ::raydsl::__private::Coerce::coerce(right, m));
+                            }
+                        }
+                    }
+                    branch_17.end(m);
+                    ret.give(
+                        m,
+                        ::raydsl::__private::Coerce::coerce(
+                            ::raydsl::__private::OpAdd::add(m, sum.get(m), last.get(m)),
+                            m,
+                        ),
+                    );
+                }
+                ret.take()
+            },
+        )
+    }
+}
+impl ::raydsl::__private::KernelFn for walk {
+    type Args = (f32, u32);
+    type Output = f32;
+    fn info() -> &'static ::raydsl::__private::KernelInfo {
+        static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
+            name: "walk",
+            file: ::core::file!(),
+            line: ::core::line!(),
+            params: &["x", "n"],
+        };
+        &__INFO
+    }
+    #[inline]
+    fn scalar(args: Self::Args) -> f32 {
+        walk(args.0, args.1)
+    }
+    #[inline(always)]
+    fn lifted<__M: ::raydsl::__private::Machine>(
+        m: &__M,
+        args: <Self::Args as ::raydsl::__private::Type>::On<__M>,
+    ) -> <f32 as ::raydsl::__private::Type>::On<__M> {
+        walk::on(m, args.0, args.1)
+    }
+}

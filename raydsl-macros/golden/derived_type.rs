@@ -1,0 +1,145 @@
+///[`Sample`] on machine `M`.
+#[allow(missing_docs, reason = "the members are those of the struct")]
+struct SampleOn<M: ::raydsl::__private::Machine> {
+    value: <f32 as ::raydsl::__private::Type>::On<M>,
+    count: <u32 as ::raydsl::__private::Type>::On<M>,
+}
+impl<M: ::raydsl::__private::Machine> Clone for SampleOn<M> {
+    #[inline(always)]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<M: ::raydsl::__private::Machine> Copy for SampleOn<M> {}
+impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Value<M> for SampleOn<M> {
+    const SCHEMA: &'static ::raydsl::__private::Schema = &::raydsl::__private::Schema::Struct {
+        name: "Sample",
+        fields: &[
+            ::raydsl::__private::Field {
+                name: "value",
+                offset: ::core::mem::offset_of!(Sample, value),
+                schema: <f32 as ::raydsl::__private::Type>::SCHEMA,
+            },
+            ::raydsl::__private::Field {
+                name: "count",
+                offset: ::core::mem::offset_of!(Sample, count),
+                schema: <u32 as ::raydsl::__private::Type>::SCHEMA,
+            },
+        ],
+        size: ::core::mem::size_of::<Sample>(),
+    };
+    #[inline(always)]
+    fn zero(m: &M) -> Self {
+        Self {
+            value: ::raydsl::__private::Value::zero(m),
+            count: ::raydsl::__private::Value::zero(m),
+        }
+    }
+    #[inline(always)]
+    fn zip(
+        m: &M,
+        a: Self,
+        b: Self,
+        f: &mut impl ::raydsl::__private::Leaves<M>,
+    ) -> Self {
+        Self {
+            value: ::raydsl::__private::Value::zip(m, a.value, b.value, f),
+            count: ::raydsl::__private::Value::zip(m, a.count, b.count, f),
+        }
+    }
+}
+impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Varying<M> for SampleOn<M> {
+    type Value = Self;
+    #[inline(always)]
+    fn varying(self, _: &M) -> Self {
+        self
+    }
+}
+impl<
+    const NAME: u64,
+    M: ::raydsl::__private::Machine,
+    A,
+> ::raydsl::__private::Method<NAME, M, A> for SampleOn<M>
+where
+    Sample: ::raydsl::__private::HostMethod<NAME, M, A>,
+{
+    type Output = <Sample as ::raydsl::__private::HostMethod<NAME, M, A>>::Output;
+    #[inline(always)]
+    fn call(self, m: &M, args: A) -> Self::Output {
+        <Sample as ::raydsl::__private::HostMethod<NAME, M, A>>::call(self, m, args)
+    }
+}
+impl ::raydsl::__private::Type for Sample {
+    type On<M: ::raydsl::__private::Machine> = SampleOn<M>;
+    const SCHEMA: &'static ::raydsl::__private::Schema = &::raydsl::__private::Schema::Struct {
+        name: "Sample",
+        fields: &[
+            ::raydsl::__private::Field {
+                name: "value",
+                offset: ::core::mem::offset_of!(Sample, value),
+                schema: <f32 as ::raydsl::__private::Type>::SCHEMA,
+            },
+            ::raydsl::__private::Field {
+                name: "count",
+                offset: ::core::mem::offset_of!(Sample, count),
+                schema: <u32 as ::raydsl::__private::Type>::SCHEMA,
+            },
+        ],
+        size: ::core::mem::size_of::<Sample>(),
+    };
+    #[inline(always)]
+    fn splat<M: ::raydsl::__private::Machine>(m: &M, v: Self) -> SampleOn<M> {
+        SampleOn {
+            value: ::raydsl::__private::Type::splat(m, v.value),
+            count: ::raydsl::__private::Type::splat(m, v.count),
+        }
+    }
+    #[inline(always)]
+    fn from_lanes<M: ::raydsl::__private::LaneMachine>(
+        m: &M,
+        f: &impl Fn(usize) -> Self,
+    ) -> SampleOn<M> {
+        SampleOn {
+            value: ::raydsl::__private::Type::from_lanes(m, &|lane| f(lane).value),
+            count: ::raydsl::__private::Type::from_lanes(m, &|lane| f(lane).count),
+        }
+    }
+    #[inline(always)]
+    fn lane<M: ::raydsl::__private::LaneMachine>(v: &SampleOn<M>, lane: usize) -> Self {
+        Self {
+            value: ::raydsl::__private::Type::lane(&v.value, lane),
+            count: ::raydsl::__private::Type::lane(&v.count, lane),
+        }
+    }
+    fn write(&self, out: &mut [u8]) {
+        ::raydsl::__private::Type::write(
+            &self.value,
+            &mut out[::core::mem::offset_of!(Sample, value)..],
+        );
+        ::raydsl::__private::Type::write(
+            &self.count,
+            &mut out[::core::mem::offset_of!(Sample, count)..],
+        );
+    }
+    fn read(bytes: &[u8]) -> Self {
+        Self {
+            value: ::raydsl::__private::Type::read(
+                &bytes[::core::mem::offset_of!(Sample, value)..],
+            ),
+            count: ::raydsl::__private::Type::read(
+                &bytes[::core::mem::offset_of!(Sample, count)..],
+            ),
+        }
+    }
+}
+impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Capture<M> for Sample {
+    type On<'c> = SampleOn<M>;
+    #[inline(always)]
+    fn capture(&self, m: &M, name: &'static str) -> SampleOn<M> {
+        ::raydsl::__private::Machine::capture(m, name, *self)
+    }
+    #[inline(always)]
+    fn constant(&self, m: &M) -> SampleOn<M> {
+        ::raydsl::__private::Type::splat(m, *self)
+    }
+}

@@ -1,0 +1,130 @@
+fn push(p: &Particle, mut by: Vec3) -> Particle {
+    let mut q = *p;
+    by.x = -by.x;
+    q.position.y += by.y;
+    q = Particle { mass: 1.0, ..q };
+    q
+}
+///The kernel of [`push()`]: `Kernel::of::<push>()`.
+#[allow(non_camel_case_types, reason = "it has the name of the function")]
+enum push {}
+impl push {
+    #[doc(hidden)]
+    #[inline(always)]
+    #[allow(
+        unused,
+        clippy::all,
+        clippy::pedantic,
+        clippy::nursery,
+        non_snake_case,
+        reason = "generated code"
+    )]
+    pub(self) fn on<__M: ::raydsl::__private::Machine>(
+        m: &__M,
+        p: impl ::raydsl::__private::Coerce<
+            __M,
+            <Particle as ::raydsl::__private::Type>::On<__M>,
+        >,
+        by: impl ::raydsl::__private::Coerce<
+            __M,
+            <Vec3 as ::raydsl::__private::Type>::On<__M>,
+        >,
+    ) -> <Particle as ::raydsl::__private::Type>::On<__M> {
+        use ::raydsl::__private::operations::*;
+        static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
+            name: "push",
+            file: ::core::file!(),
+            line: ::core::line!(),
+            params: &["p", "by"],
+        };
+        ::raydsl::__private::Machine::call(
+            m,
+            &__INFO,
+            (
+                ::raydsl::__private::Coerce::<
+                    __M,
+                    <Particle as ::raydsl::__private::Type>::On<__M>,
+                >::coerce(p, m),
+                ::raydsl::__private::Coerce::<
+                    __M,
+                    <Vec3 as ::raydsl::__private::Type>::On<__M>,
+                >::coerce(by, m),
+            ),
+            #[inline(always)]
+            |
+                m: &__M,
+                (
+                    p,
+                    by,
+                ): (
+                    <Particle as ::raydsl::__private::Type>::On<__M>,
+                    <Vec3 as ::raydsl::__private::Type>::On<__M>,
+                )|
+            {
+                let by = ::raydsl::__private::Var::new(m, "by", by);
+                let q = ::raydsl::__private::Var::new(
+                    m,
+                    "q",
+                    ::raydsl::__private::Varying::varying(p, m),
+                );
+                {
+                    let right = ::raydsl::__private::OpNeg::neg(m, by.get(m).x);
+                    #[allow(unused_mut)]
+                    let mut whole = by.get(m);
+                    whole.x = ::raydsl::__private::Coerce::coerce(right, m);
+                    by.set(m, whole);
+                }
+                {
+                    let right = by.get(m).y;
+                    #[allow(unused_mut)]
+                    let mut whole = q.get(m);
+                    whole.position.y = ::raydsl::__private::Coerce::coerce(
+                        ::raydsl::__private::OpAdd::add(m, whole.position.y, right),
+                        m,
+                    );
+                    q.set(m, whole);
+                }
+                {
+                    let right = {
+                        type __Twin<M__> = <Particle as ::raydsl::__private::Type>::On<
+                            M__,
+                        >;
+                        __Twin::<__M> {
+                            mass: ::raydsl::__private::Coerce::coerce(
+                                ::raydsl::__private::f32(m, 1.0f32),
+                                m,
+                            ),
+                            ..q.get(m)
+                        }
+                    };
+                    q.set(m, ::raydsl::__private::Coerce::coerce(right, m));
+                }
+                ::raydsl::__private::Coerce::coerce(q.get(m), m)
+            },
+        )
+    }
+}
+impl ::raydsl::__private::KernelFn for push {
+    type Args = (Particle, Vec3);
+    type Output = Particle;
+    fn info() -> &'static ::raydsl::__private::KernelInfo {
+        static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
+            name: "push",
+            file: ::core::file!(),
+            line: ::core::line!(),
+            params: &["p", "by"],
+        };
+        &__INFO
+    }
+    #[inline]
+    fn scalar(args: Self::Args) -> Particle {
+        push(&args.0, args.1)
+    }
+    #[inline(always)]
+    fn lifted<__M: ::raydsl::__private::Machine>(
+        m: &__M,
+        args: <Self::Args as ::raydsl::__private::Type>::On<__M>,
+    ) -> <Particle as ::raydsl::__private::Type>::On<__M> {
+        push::on(m, args.0, args.1)
+    }
+}

@@ -1,0 +1,127 @@
+impl ColorSphere {
+    const SLACK: f32 = sphere::SLACK;
+    fn intersect(&self, ray: Ray) -> Hit {
+        sphere::intersect(ray, self.center, self.radius.to_f32())
+    }
+    fn get_bounds(&self) -> Aabb {
+        Aabb::from_sphere(self.center, self.radius.to_f32())
+    }
+}
+impl ColorSphere {
+    #[doc(hidden)]
+    #[inline(always)]
+    #[allow(
+        unused,
+        clippy::all,
+        clippy::pedantic,
+        clippy::nursery,
+        non_snake_case,
+        reason = "generated code"
+    )]
+    fn intersect_on<__M: ::raydsl::__private::Machine>(
+        m: &__M,
+        this: impl ::raydsl::__private::Coerce<
+            __M,
+            <ColorSphere as ::raydsl::__private::Type>::On<__M>,
+        >,
+        ray: impl ::raydsl::__private::Coerce<
+            __M,
+            <Ray as ::raydsl::__private::Type>::On<__M>,
+        >,
+    ) -> <Hit as ::raydsl::__private::Type>::On<__M> {
+        use ::raydsl::__private::operations::*;
+        static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
+            name: "ColorSphere_intersect",
+            file: ::core::file!(),
+            line: ::core::line!(),
+            params: &["self", "ray"],
+        };
+        ::raydsl::__private::Machine::call(
+            m,
+            &__INFO,
+            (
+                ::raydsl::__private::Coerce::<
+                    __M,
+                    <ColorSphere as ::raydsl::__private::Type>::On<__M>,
+                >::coerce(this, m),
+                ::raydsl::__private::Coerce::<
+                    __M,
+                    <Ray as ::raydsl::__private::Type>::On<__M>,
+                >::coerce(ray, m),
+            ),
+            #[inline(always)]
+            |
+                m: &__M,
+                (
+                    this,
+                    ray,
+                ): (
+                    <ColorSphere as ::raydsl::__private::Type>::On<__M>,
+                    <Ray as ::raydsl::__private::Type>::On<__M>,
+                )|
+            {
+                ::raydsl::__private::Coerce::coerce(
+                    sphere::intersect::on(
+                        m,
+                        ray,
+                        this.center,
+                        ::raydsl::__private::Method::<
+                            { ::raydsl::__private::name("to_f32") },
+                            __M,
+                            _,
+                        >::call(this.radius, m, ()),
+                    ),
+                    m,
+                )
+            },
+        )
+    }
+}
+#[allow(
+    unused,
+    clippy::all,
+    clippy::pedantic,
+    clippy::nursery,
+    non_snake_case,
+    reason = "generated code"
+)]
+impl<
+    __M: ::raydsl::__private::Machine,
+    __A0: ::raydsl::__private::Coerce<__M, <Ray as ::raydsl::__private::Type>::On<__M>>,
+> ::raydsl::__private::HostMethod<
+    { ::raydsl::__private::name("intersect") },
+    __M,
+    (__A0,),
+> for ColorSphere {
+    type Output = <Hit as ::raydsl::__private::Type>::On<__M>;
+    #[inline(always)]
+    fn call(
+        this: <Self as ::raydsl::__private::Type>::On<__M>,
+        m: &__M,
+        (ray,): (__A0,),
+    ) -> <Self as ::raydsl::__private::HostMethod<
+        { ::raydsl::__private::name("intersect") },
+        __M,
+        (__A0,),
+    >>::Output {
+        <ColorSphere>::intersect_on(m, this, ray)
+    }
+}
+impl ::raydsl::__private::Primitive for ColorSphere {
+    const SLACK: f32 = <ColorSphere>::SLACK;
+    #[inline(always)]
+    fn intersect(&self, ray: ::raydsl::__private::Ray) -> ::raydsl::__private::Hit {
+        <ColorSphere>::intersect(self, ray)
+    }
+    fn get_bounds(&self) -> ::raydsl::__private::Aabb {
+        <ColorSphere>::get_bounds(self)
+    }
+    #[inline(always)]
+    fn intersect_on<__M: ::raydsl::__private::Machine>(
+        m: &__M,
+        prim: <Self as ::raydsl::__private::Type>::On<__M>,
+        ray: ::raydsl::__private::RayOn<__M>,
+    ) -> ::raydsl::__private::HitOn<__M> {
+        <ColorSphere>::intersect_on(m, prim, ray)
+    }
+}

@@ -1,0 +1,119 @@
+/// Documented.
+pub fn smooth(x: f32, n: u32) -> f32 {
+    let t = clamp(x, 0.0, 1.0);
+    t * t * (3.0 - 2.0 * t) + n as f32
+}
+///The kernel of [`smooth()`]: `Kernel::of::<smooth>()`.
+#[allow(non_camel_case_types, reason = "it has the name of the function")]
+pub enum smooth {}
+impl smooth {
+    #[doc(hidden)]
+    #[inline(always)]
+    #[allow(
+        unused,
+        clippy::all,
+        clippy::pedantic,
+        clippy::nursery,
+        non_snake_case,
+        reason = "generated code"
+    )]
+    pub fn on<__M: ::raydsl::__private::Machine>(
+        m: &__M,
+        x: impl ::raydsl::__private::Coerce<
+            __M,
+            <f32 as ::raydsl::__private::Type>::On<__M>,
+        >,
+        n: impl ::raydsl::__private::Coerce<
+            __M,
+            <u32 as ::raydsl::__private::Type>::On<__M>,
+        >,
+    ) -> <f32 as ::raydsl::__private::Type>::On<__M> {
+        use ::raydsl::__private::operations::*;
+        static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
+            name: "smooth",
+            file: ::core::file!(),
+            line: ::core::line!(),
+            params: &["x", "n"],
+        };
+        ::raydsl::__private::Machine::call(
+            m,
+            &__INFO,
+            (
+                ::raydsl::__private::Coerce::<
+                    __M,
+                    <f32 as ::raydsl::__private::Type>::On<__M>,
+                >::coerce(x, m),
+                ::raydsl::__private::Coerce::<
+                    __M,
+                    <u32 as ::raydsl::__private::Type>::On<__M>,
+                >::coerce(n, m),
+            ),
+            #[inline(always)]
+            |
+                m: &__M,
+                (
+                    x,
+                    n,
+                ): (
+                    <f32 as ::raydsl::__private::Type>::On<__M>,
+                    <u32 as ::raydsl::__private::Type>::On<__M>,
+                )|
+            {
+                let t = ::raydsl::__private::Machine::named(
+                    m,
+                    "t",
+                    clamp::on(
+                        m,
+                        x,
+                        ::raydsl::__private::f32(m, 0.0f32),
+                        ::raydsl::__private::f32(m, 1.0f32),
+                    ),
+                );
+                ::raydsl::__private::Coerce::coerce(
+                    ::raydsl::__private::OpAdd::add(
+                        m,
+                        ::raydsl::__private::OpMul::mul(
+                            m,
+                            ::raydsl::__private::OpMul::mul(m, t, t),
+                            ::raydsl::__private::OpSub::sub(
+                                m,
+                                ::raydsl::__private::f32(m, 3.0f32),
+                                ::raydsl::__private::OpMul::mul(
+                                    m,
+                                    ::raydsl::__private::f32(m, 2.0f32),
+                                    t,
+                                ),
+                            ),
+                        ),
+                        ::raydsl::__private::cast::<_, _, f32>(m, n),
+                    ),
+                    m,
+                )
+            },
+        )
+    }
+}
+impl ::raydsl::__private::KernelFn for smooth {
+    type Args = (f32, u32);
+    type Output = f32;
+    fn info() -> &'static ::raydsl::__private::KernelInfo {
+        static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
+            name: "smooth",
+            file: ::core::file!(),
+            line: ::core::line!(),
+            params: &["x", "n"],
+        };
+        &__INFO
+    }
+    #[inline]
+    fn scalar(args: Self::Args) -> f32 {
+        smooth(args.0, args.1)
+    }
+    #[inline(always)]
+    fn lifted<__M: ::raydsl::__private::Machine>(
+        m: &__M,
+        args: <Self::Args as ::raydsl::__private::Type>::On<__M>,
+    ) -> <f32 as ::raydsl::__private::Type>::On<__M> {
+        smooth::on(m, args.0, args.1)
+    }
+}

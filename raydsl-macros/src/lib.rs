@@ -1,0 +1,123 @@
+//! Procedural macros of `raydsl`: `#[kernel]`, `kernel!`, `#[primitive]`, `#[derive(Type)]`.
+//!
+//! `parse` turns syn's syntax into `model`, `emit` turns the model into the lifted Rust, `items`
+//! and `twin` write the items around it. `ops` is the table of what a kernel may call.
+
+mod diag;
+mod emit;
+mod items;
+mod model;
+mod ops;
+mod parse;
+#[cfg(test)]
+mod tests;
+mod twin;
+
+use proc_macro::TokenStream;
+use quote::quote;
+
+/// Lifts a function, or every function of an inherent `impl`, to all variants.
+///
+/// The function itself stays untouched: it is the scalar variant. Beside it stands a type of the
+/// same name whose `on` runs the lifted body on any machine, and which gives the whole kernel as
+/// `Kernel::of::<name>()`.
+#[proc_macro_attribute]
+pub fn kernel(args: TokenStream, item: TokenStream) -> TokenStream {
+    expand_kernel(args.into(), item.into()).into()
+}
+
+fn expand_kernel(
+    args: proc_macro2::TokenStream,
+    item: proc_macro2::TokenStream,
+) -> proc_macro2::TokenStream {
+    if !args.is_empty() {
+        let e = syn::Error::new_spanned(
+            args,
+            "`#[kernel]` takes no arguments\n  help: write `#[kernel]`",
+        );
+        let e = e.into_compile_error();
+        return quote!(#item #e);
+    }
+    if let Ok(f) = syn::parse2::<syn::ItemFn>(item.clone()) {
+        return items::kernel_fn(&f);
+    }
+    if let Ok(i) = syn::parse2::<syn::ItemImpl>(item.clone()) {
+        let mut errors = diag::Errors::default();
+        let lifted = items::kernel_impl(&i, &[], &mut errors);
+        if errors.is_empty() {
+            return quote!(#i #lifted);
+        }
+        let errors = errors.into_tokens();
+        return quote!(#i #errors);
+    }
+    let e = syn::Error::new_spanned(
+        &item,
+        "`#[kernel]` stands on a function or an impl\n  help: for a closure write `kernel!(|ray: Ray| ...)`",
+    );
+    let e = e.into_compile_error();
+    quote!(#item #e)
+}
+
+/// Makes a kernel of a closure: `kernel!(|ray: Ray| ...)`.
+///
+/// What the closure captures is borrowed; the kernel lives as long as that.
+#[proc_macro]
+pub fn kernel_closure(input: TokenStream) -> TokenStream {
+    expand_closure(input.into()).into()
+}
+
+fn expand_closure(input: proc_macro2::TokenStream) -> proc_macro2::TokenStream {
+    match syn::parse2::<syn::ExprClosure>(input) {
+        Ok(c) => items::kernel_closure(&c),
+        Err(e) => {
+            let e = syn::Error::new(
+                e.span(),
+                format!("{e}\n  help: write `kernel!(|ray: Ray| {{ ... }})`"),
+            );
+            e.into_compile_error()
+        }
+    }
+}
+
+/// Makes a primitive of a struct, or gives it `intersect` and `get_bounds` in an `impl`.
+#[proc_macro_attribute]
+pub fn primitive(args: TokenStream, item: TokenStream) -> TokenStream {
+    expand_primitive(args.into(), item.into()).into()
+}
+
+fn expand_primitive(
+    args: proc_macro2::TokenStream,
+    item: proc_macro2::TokenStream,
+) -> proc_macro2::TokenStream {
+    if !args.is_empty() {
+        let e = syn::Error::new_spanned(
+            args,
+            "`#[primitive]` takes no arguments\n  help: write `#[primitive]`",
+        );
+        let e = e.into_compile_error();
+        return quote!(#item #e);
+    }
+    if let Ok(i) = syn::parse2::<syn::ItemImpl>(item.clone()) {
+        return items::primitive_impl(&i);
+    }
+    match syn::parse2::<syn::DeriveInput>(item.clone()) {
+        Ok(s) => twin::primitive_struct(&s),
+        Err(_) => {
+            let e = syn::Error::new_spanned(
+                &item,
+                "`#[primitive]` stands on a struct and on its impl\n  help: write `#[primitive] struct Name { ... }`",
+            );
+            let e = e.into_compile_error();
+            quote!(#item #e)
+        }
+    }
+}
+
+/// Lets kernels use a struct of types that they know.
+#[proc_macro_derive(Type)]
+pub fn derive_type(input: TokenStream) -> TokenStream {
+    match syn::parse::<syn::DeriveInput>(input) {
+        Ok(item) => twin::derive(&item).into(),
+        Err(e) => e.into_compile_error().into(),
+    }
+}

@@ -1,0 +1,61 @@
+//! What a kernel may call, and what it may not: one table.
+
+use crate::model::BinaryOp;
+
+macro_rules! operators {
+    ($($name:ident = $operator:literal $method:literal $trap:literal $overflow:literal;)+) => {
+        $(
+            pub(crate) const $name: BinaryOp = BinaryOp {
+                operator: $operator,
+                method: $method,
+                may_trap: $trap,
+                may_overflow: $overflow,
+            };
+        )+
+    };
+}
+
+// The last two columns: `may_trap`, `may_overflow`. `+`, `-`, `*` and shifts are errors on overflow
+// where debug assertions are on; the packet machine masks those checks itself, so evaluating them
+// under a narrowed mask is safe. Division is not: its lanes must run.
+operators! {
+    ADD = "OpAdd" "add" false true;
+    SUB = "OpSub" "sub" false true;
+    MUL = "OpMul" "mul" false true;
+    DIV = "OpDiv" "div" true true;
+    REM = "OpRem" "rem" true true;
+    BIT_AND = "OpBitAnd" "bit_and" false false;
+    BIT_OR = "OpBitOr" "bit_or" false false;
+    BIT_XOR = "OpBitXor" "bit_xor" false false;
+    SHL = "OpShl" "shl" false true;
+    SHR = "OpShr" "shr" false true;
+}
+
+/// Elementary functions: std's differ from one machine to the next, so variants could not agree.
+const ELEMENTARY: &[&str] = &[
+    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sin_cos", "exp", "exp2", "exp_m1", "ln",
+    "ln_1p", "log", "log2", "log10", "powf", "powi", "hypot", "cbrt", "sinh", "cosh", "tanh",
+];
+
+/// Other methods that kernels cannot have, with what to write instead.
+const DENIED: &[(&str, &str)] = &[
+    ("rem_euclid", "x - y * (x / y).floor()"),
+    ("unwrap", "a value with a flag: kernels have no Option"),
+    ("expect", "a value with a flag: kernels have no Option"),
+    ("to_string", "nothing: kernels have no strings"),
+    ("clone", "the value itself: kernel types are Copy"),
+    ("iter", "a `for` over a range"),
+    ("len", "a captured `u32`"),
+];
+
+/// What is wrong with the method `name` and what to write instead, if kernels cannot have it.
+pub(crate) fn denied(name: &str) -> Option<(String, String)> {
+    if ELEMENTARY.contains(&name) {
+        return Some((
+            format!("`{name}` of std differs from one machine to the next"),
+            "compute it outside the kernel and capture the result".to_owned(),
+        ));
+    }
+    let (_, instead) = DENIED.iter().find(|d| d.0 == name)?;
+    Some((format!("a kernel has no `{name}`"), format!("write {instead}")))
+}

@@ -1,0 +1,576 @@
+//! From syn's syntax to the model. The only module that knows syn's expressions.
+
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::{ToTokens, quote};
+use syn::spanned::Spanned;
+use syn::{BinOp, Lit, Member, Pat, UnOp};
+
+use crate::diag::Errors;
+use crate::model::{BinaryOp, Block, Expr, IntType, Kernel, Kind, Let, Param, Place, Stmt};
+use crate::ops;
+
+/// A function or method; `self_ty` is the type of the `impl`.
+pub(crate) fn function(
+    sig: &syn::Signature,
+    body: &syn::Block,
+    self_ty: Option<&syn::Type>,
+    errors: &mut Errors,
+) -> Kernel {
+    for (bad, what) in [
+        (sig.asyncness.as_ref().map(Spanned::span), "async"),
+        (matches!(sig.safety, syn::Safety::Unsafe(_)).then(|| sig.safety.span()), "unsafe"),
+    ] {
+        if let Some(span) = bad {
+            errors.at(span, format!("a kernel cannot be `{what}`"), &format!("remove `{what}`"));
+        }
+    }
+    if let Some(p) = sig.generics.params.first() {
+        errors.at(
+            p.span(),
+            "a kernel cannot be generic",
+            "write a kernel for each type; `impl` methods may use `Self`",
+        );
+    }
+    let params = sig.inputs.iter().filter_map(|arg| param(arg, self_ty, errors)).collect();
+    let result = match &sig.output {
+        syn::ReturnType::Default => None,
+        syn::ReturnType::Type(_, ty) => Some(value_type(ty)),
+    };
+    Kernel { name: sig.ident.clone(), params, result, body: Parser { errors }.block(body) }
+}
+
+/// A closure literal; its parameters must have types.
+pub(crate) fn closure(c: &syn::ExprClosure, name: &str, errors: &mut Errors) -> Kernel {
+    let mut params = Vec::new();
+    for pat in &c.inputs {
+        let Pat::Type(typed) = pat else {
+            errors.at(
+                pat.span(),
+                "a parameter of a kernel needs a type",
+                "write for example `|ray: Ray|`",
+            );
+            continue;
+        };
+        params.extend(typed_param(&typed.pat, &typed.ty, errors));
+    }
+    let result = match &c.output {
+        syn::ReturnType::Default => None,
+        syn::ReturnType::Type(_, ty) => Some(value_type(ty)),
+    };
+    let body = match &*c.body {
+        syn::Expr::Block(b) if b.label.is_none() => Parser { errors }.block(&b.block),
+        e => Block { stmts: vec![], tail: Some(Box::new(Parser { errors }.expr(e))) },
+    };
+    Kernel { name: Ident::new(name, Span::call_site()), params, result, body }
+}
+
+fn param(arg: &syn::FnArg, self_ty: Option<&syn::Type>, errors: &mut Errors) -> Option<Param> {
+    match arg {
+        syn::FnArg::Receiver(r) => {
+            let by_mut = matches!(r.kind, syn::ReceiverKind::Reference(_, _, Some(_)));
+            if r.mutability.is_some() || by_mut {
+                errors.at(
+                    r.span(),
+                    "a kernel cannot change `self`",
+                    "take `&self` and return the new value",
+                );
+            }
+            let ty = self_ty.map(ToTokens::to_token_stream).unwrap_or_else(|| quote!(Self));
+            Some(Param { name: Ident::new("self", r.self_token.span), ty, mutable: false })
+        }
+        syn::FnArg::Typed(p) => typed_param(&p.pat, &p.ty, errors),
+    }
+}
+
+fn typed_param(pat: &Pat, ty: &syn::Type, errors: &mut Errors) -> Option<Param> {
+    if let syn::Type::Reference(r) = ty
+        && r.mutability.is_some()
+    {
+        errors.at(ty.span(), "a kernel has no `&mut` parameters", "return the new value");
+    }
+    match pat {
+        Pat::Ident(p) if p.by_ref.is_none() && p.subpat.is_none() => Some(Param {
+            name: p.ident.clone(),
+            ty: value_type(ty),
+            mutable: p.mutability.is_some(),
+        }),
+        _ => {
+            errors.at(
+                pat.span(),
+                "a parameter of a kernel is a single name",
+                "name the value and take its members in the body",
+            );
+            None
+        }
+    }
+}
+
+/// The type without references: values on a machine are copied.
+fn value_type(ty: &syn::Type) -> TokenStream {
+    match ty {
+        syn::Type::Reference(r) => value_type(&r.elem),
+        syn::Type::Paren(p) => value_type(&p.elem),
+        _ => ty.to_token_stream(),
+    }
+}
+
+fn label(l: &Option<syn::Label>) -> Option<String> {
+    l.as_ref().map(|l| l.name.ident.to_string())
+}
+
+fn lifetime(l: &Option<syn::Lifetime>) -> Option<String> {
+    l.as_ref().map(|l| l.ident.to_string())
+}
+
+/// Whether a path segment names a type rather than a module.
+fn is_type_name(ident: &Ident) -> bool {
+    let name = ident.to_string();
+    name.starts_with(|c: char| c.is_ascii_uppercase())
+        || matches!(name.as_str(), "f32" | "i32" | "u32" | "bool")
+}
+
+struct Parser<'a> {
+    errors: &'a mut Errors,
+}
+
+impl Parser<'_> {
+    fn error(&mut self, span: Span, what: impl core::fmt::Display, help: &str) -> Kind {
+        self.errors.at(span, what, help);
+        Kind::Error
+    }
+
+    /// The lifted code would not know of a `#[cfg]`.
+    fn no_attributes(&mut self, attrs: &[syn::Attribute]) {
+        for a in attrs.iter().filter(|a| !a.path().is_ident("allow")) {
+            self.errors.at(
+                a.span(),
+                "a kernel has no attributes on statements and expressions",
+                "remove it; to leave code out, branch on a captured `bool` or a `const`",
+            );
+        }
+    }
+
+    fn boxed(&mut self, e: &syn::Expr) -> Box<Expr> {
+        Box::new(self.expr(e))
+    }
+
+    fn exprs<'b>(&mut self, es: impl IntoIterator<Item = &'b syn::Expr>) -> Vec<Expr> {
+        es.into_iter().map(|e| self.expr(e)).collect()
+    }
+
+    fn block(&mut self, b: &syn::Block) -> Block {
+        let mut stmts = Vec::new();
+        let mut tail = None;
+        let last = b.stmts.len().wrapping_sub(1);
+        for (i, stmt) in b.stmts.iter().enumerate() {
+            match stmt {
+                syn::Stmt::Local(l) => stmts.extend(self.local(l).map(Stmt::Let)),
+                syn::Stmt::Expr(e, None) if i == last => tail = Some(self.boxed(e)),
+                syn::Stmt::Expr(e, _) => stmts.push(Stmt::Expr(self.expr(e))),
+                syn::Stmt::Item(item) => stmts.extend(self.item(item)),
+                syn::Stmt::Macro(m) => {
+                    let kind = self.macro_call(&m.mac);
+                    stmts.push(Stmt::Expr(Expr { kind, span: m.span() }));
+                }
+            }
+        }
+        Block { stmts, tail }
+    }
+
+    fn item(&mut self, item: &syn::Item) -> Option<Stmt> {
+        match item {
+            syn::Item::Const(_) | syn::Item::Use(_) => Some(Stmt::Item(item.to_token_stream())),
+            _ => {
+                self.errors.at(
+                    item.span(),
+                    "this item cannot stand inside a kernel",
+                    "move it out of the kernel",
+                );
+                None
+            }
+        }
+    }
+
+    fn local(&mut self, l: &syn::Local) -> Option<Let> {
+        self.no_attributes(&l.attrs);
+        let (pat, ty) = match &l.pat {
+            Pat::Type(t) => (&*t.pat, Some(value_type(&t.ty))),
+            pat => (pat, None),
+        };
+        let init = match &l.init {
+            Some(init) => {
+                if let Some((_, e)) = &init.diverge {
+                    self.errors.at(
+                        e.span(),
+                        "a kernel has no `let ... else`",
+                        "write an `if` that returns early",
+                    );
+                }
+                Some(self.expr(&init.expr))
+            }
+            None => None,
+        };
+        let (name, mutable) = match pat {
+            Pat::Ident(p) if p.by_ref.is_none() && p.subpat.is_none() => {
+                (Some(p.ident.clone()), p.mutability.is_some())
+            }
+            Pat::Wild(_) => (None, false),
+            _ => {
+                self.errors.at(
+                    pat.span(),
+                    "a `let` of a kernel binds a single name",
+                    "bind the value and take its members: `let x = v.0;`",
+                );
+                return None;
+            }
+        };
+        if let Some(init) = &init
+            && mutable
+            && ty.is_none()
+            && matches!(init.kind, Kind::Int { suffix: None, .. })
+        {
+            self.errors.at(
+                init.span,
+                "a mutable integer needs a type",
+                "write `let mut n: u32 = ...`, or give the number a suffix: `0u32`",
+            );
+        }
+        Some(Let { name, mutable, ty, init })
+    }
+
+    fn expr(&mut self, e: &syn::Expr) -> Expr {
+        self.no_attributes(attributes(e));
+        Expr { kind: self.kind(e), span: e.span() }
+    }
+
+    fn kind(&mut self, e: &syn::Expr) -> Kind {
+        match e {
+            syn::Expr::Lit(l) => self.literal(&l.lit),
+            syn::Expr::Path(p) => self.path(p),
+            syn::Expr::Paren(p) => self.kind(&p.expr),
+            syn::Expr::Group(g) => self.kind(&g.expr),
+            syn::Expr::Unary(u) => self.unary(u),
+            syn::Expr::Binary(b) => self.binary(b),
+            syn::Expr::Cast(c) => Kind::Cast { value: self.boxed(&c.expr), ty: value_type(&c.ty) },
+            syn::Expr::Call(c) => self.call(c),
+            syn::Expr::MethodCall(c) => self.method(c),
+            syn::Expr::Field(f) => {
+                Kind::Field { base: self.boxed(&f.base), member: f.member.to_token_stream() }
+            }
+            syn::Expr::Index(i) => self.index(i),
+            syn::Expr::Struct(s) => self.structure(s),
+            syn::Expr::Tuple(t) => Kind::Tuple(self.exprs(&t.elems)),
+            syn::Expr::If(i) => self.conditional(i),
+            syn::Expr::While(w) => Kind::While {
+                label: label(&w.label),
+                c: self.boxed(&w.cond),
+                body: self.block(&w.body),
+            },
+            syn::Expr::Loop(l) => Kind::Loop { label: label(&l.label), body: self.block(&l.body) },
+            syn::Expr::ForLoop(f) => self.for_loop(f),
+            syn::Expr::Block(b) if b.label.is_none() => Kind::Block(self.block(&b.block)),
+            syn::Expr::Break(b) => {
+                if let Some(e) = &b.expr {
+                    return self.error(
+                        e.span(),
+                        "a kernel's `break` has no value",
+                        "assign to a variable that is declared before the loop, then `break`",
+                    );
+                }
+                Kind::Break(lifetime(&b.label))
+            }
+            syn::Expr::Continue(c) => Kind::Continue(lifetime(&c.label)),
+            syn::Expr::Return(r) => Kind::Return(r.expr.as_ref().map(|e| self.boxed(e))),
+            syn::Expr::Assign(a) => match self.place(&a.left) {
+                Some(place) => Kind::Assign { place, value: self.boxed(&a.right) },
+                None => Kind::Error,
+            },
+            // Values are copied: a reference is the value, and so is what it refers to.
+            syn::Expr::Reference(r) if r.mutability.is_none() => self.kind(&r.expr),
+            syn::Expr::Macro(m) => self.macro_call(&m.mac),
+            other => self.unsupported(other),
+        }
+    }
+
+    fn unsupported(&mut self, e: &syn::Expr) -> Kind {
+        let (what, help) = match e {
+            syn::Expr::Match(_) => ("`match`", "write a chain of `if ... else if ... else`"),
+            syn::Expr::Closure(_) => ("closures", "write a `#[kernel] fn` and call it"),
+            syn::Expr::Try(_) => ("`?`", "give a value that says what happened: a miss is data"),
+            syn::Expr::Reference(_) => ("`&mut`", "return the new value and assign it"),
+            syn::Expr::Array(_) | syn::Expr::Repeat(_) => {
+                ("array expressions", "write a struct or a vector")
+            }
+            syn::Expr::Range(_) => ("ranges outside `for`", "write `for i in a..b`"),
+            syn::Expr::Let(_) => ("`if let`", "compare the value: kernels have no Option"),
+            syn::Expr::Block(_) => ("labelled blocks", "write a labelled `loop` that breaks"),
+            syn::Expr::Unsafe(_) => ("`unsafe`", "write safe code"),
+            syn::Expr::Await(_) | syn::Expr::Async(_) => ("`async`", "write plain code"),
+            _ => ("this expression", "write it with the operations of the kernel language"),
+        };
+        self.error(e.span(), format!("a kernel has no {what}"), help)
+    }
+
+    fn literal(&mut self, lit: &Lit) -> Kind {
+        match lit {
+            Lit::Float(f) if f.suffix() == "f64" => self.error(
+                f.span(),
+                "kernels compute in `f32`",
+                "write the number with the suffix `f32`, or without one",
+            ),
+            Lit::Float(f) => {
+                let digits = syn::LitFloat::new(&format!("{}f32", f.base10_digits()), f.span());
+                Kind::Float(digits.to_token_stream())
+            }
+            Lit::Int(i) => match i.suffix() {
+                "" => Kind::Int { tokens: i.to_token_stream(), suffix: None },
+                "i32" => Kind::Int { tokens: i.to_token_stream(), suffix: Some(IntType::I32) },
+                "u32" => Kind::Int { tokens: i.to_token_stream(), suffix: Some(IntType::U32) },
+                "f32" => Kind::Float(i.to_token_stream()),
+                other => self.error(
+                    i.span(),
+                    format!("kernels have no `{other}`"),
+                    "use `u32`, `i32` or `f32`",
+                ),
+            },
+            Lit::Bool(b) => Kind::Bool(b.value),
+            _ => self.error(
+                lit.span(),
+                "a kernel has numbers and truth values only",
+                "keep text outside the kernel",
+            ),
+        }
+    }
+
+    fn path(&mut self, p: &syn::ExprPath) -> Kind {
+        match p.path.get_ident() {
+            Some(ident) => Kind::Name(ident.clone()),
+            None => Kind::Path(p.to_token_stream()),
+        }
+    }
+
+    fn unary(&mut self, u: &syn::ExprUnary) -> Kind {
+        match u.op {
+            UnOp::Neg(_) => Kind::Neg(self.boxed(&u.expr)),
+            UnOp::Not(_) => Kind::Not(self.boxed(&u.expr)),
+            _ => self.kind(&u.expr),
+        }
+    }
+
+    fn binary(&mut self, b: &syn::ExprBinary) -> Kind {
+        if let Some(op) = assignment(&b.op) {
+            return match self.place(&b.left) {
+                Some(place) => Kind::OpAssign { op, place, value: self.boxed(&b.right) },
+                None => Kind::Error,
+            };
+        }
+        let (left, right) = (self.boxed(&b.left), self.boxed(&b.right));
+        let compare = match b.op {
+            BinOp::And(_) => return Kind::Logic { and: true, a: left, b: right },
+            BinOp::Or(_) => return Kind::Logic { and: false, a: left, b: right },
+            BinOp::Eq(_) => Some("Eq"),
+            BinOp::Ne(_) => Some("Ne"),
+            BinOp::Lt(_) => Some("Lt"),
+            BinOp::Le(_) => Some("Le"),
+            BinOp::Gt(_) => Some("Gt"),
+            BinOp::Ge(_) => Some("Ge"),
+            _ => None,
+        };
+        match (compare, arithmetic(&b.op)) {
+            (Some(op), _) => Kind::Compare { op, a: left, b: right },
+            (None, Some(op)) => Kind::Binary { op, a: left, b: right },
+            (None, None) => self.error(b.op.span(), "a kernel has no such operator", "rewrite it"),
+        }
+    }
+
+    fn call(&mut self, c: &syn::ExprCall) -> Kind {
+        let args = self.exprs(&c.args);
+        let syn::Expr::Path(p) = &*c.func else {
+            return self.error(c.func.span(), "only a kernel can be called", "call it by its name");
+        };
+        let segments: Vec<&syn::PathSegment> = p.path.segments.iter().collect();
+        let Some((last, init)) = segments.split_last() else { return Kind::Error };
+        match init.last() {
+            Some(owner) if is_type_name(&owner.ident) => {
+                let mut ty = p.path.clone();
+                ty.segments.pop();
+                ty.segments.pop_punct();
+                Kind::Associated { ty: ty.to_token_stream(), name: last.ident.clone(), args }
+            }
+            _ if is_type_name(&last.ident) => self.error(
+                last.span(),
+                "a kernel has no tuple structs",
+                "give the struct named members",
+            ),
+            _ => Kind::Call { path: p.to_token_stream(), args },
+        }
+    }
+
+    fn method(&mut self, c: &syn::ExprMethodCall) -> Kind {
+        if let Some((what, help)) = ops::denied(&c.method.to_string()) {
+            self.errors.at(c.method.span(), what, &help);
+        }
+        Kind::Method {
+            receiver: self.boxed(&c.receiver),
+            name: c.method.clone(),
+            args: self.exprs(&c.args),
+        }
+    }
+
+    fn index(&mut self, i: &syn::ExprIndex) -> Kind {
+        match &*i.index {
+            syn::Expr::Lit(syn::ExprLit { lit: Lit::Int(n), .. }) if n.suffix().is_empty() => {
+                Kind::Index { base: self.boxed(&i.expr), index: n.to_token_stream() }
+            }
+            index => self.error(
+                index.span(),
+                "a kernel indexes arrays by a number of the source",
+                "write for example `color[0]`; for primitives `bvh.primitive(hit)`",
+            ),
+        }
+    }
+
+    fn structure(&mut self, s: &syn::ExprStruct) -> Kind {
+        let fields =
+            s.fields.iter().map(|f| (f.member.to_token_stream(), self.expr(&f.expr))).collect();
+        let rest = s.rest.as_ref().map(|e| self.boxed(e));
+        Kind::Struct { path: s.path.to_token_stream(), fields, rest }
+    }
+
+    fn conditional(&mut self, i: &syn::ExprIf) -> Kind {
+        Kind::If {
+            c: self.boxed(&i.cond),
+            then: self.block(&i.then_branch),
+            otherwise: i.else_branch.as_ref().map(|(_, e)| self.boxed(e)),
+        }
+    }
+
+    fn for_loop(&mut self, f: &syn::ExprForLoop) -> Kind {
+        let var = match &*f.pat {
+            Pat::Ident(p) => Some(p.ident.clone()),
+            Pat::Wild(_) => None,
+            pat => {
+                return self.error(
+                    pat.span(),
+                    "a `for` counts with one name",
+                    "write `for i in a..b`",
+                );
+            }
+        };
+        let mut range = &*f.expr;
+        while let syn::Expr::Paren(p) = range {
+            range = &p.expr;
+        }
+        let syn::Expr::Range(r) = range else {
+            return self.error(
+                f.expr.span(),
+                "a kernel's `for` runs over a range",
+                "write `for i in 0u32..n`",
+            );
+        };
+        let (Some(start), Some(end), syn::RangeLimits::HalfOpen(_)) = (&r.start, &r.end, &r.limits)
+        else {
+            return self.error(r.span(), "a kernel's range is `a..b`", "write `for i in a..b`");
+        };
+        let (start, end) = (self.boxed(start), self.boxed(end));
+        let untyped = |e: &Expr| matches!(e.kind, Kind::Int { suffix: None, .. });
+        if untyped(&start) && untyped(&end) {
+            return self.error(
+                start.span,
+                "a counter needs a type",
+                "give one bound a suffix: `for i in 0u32..8`",
+            );
+        }
+        Kind::For { label: label(&f.label), var, start, end, body: self.block(&f.body) }
+    }
+
+    fn place(&mut self, e: &syn::Expr) -> Option<Place> {
+        match e {
+            syn::Expr::Path(p) if p.path.get_ident().is_some() => {
+                Some(Place { name: p.path.get_ident()?.clone(), members: vec![] })
+            }
+            syn::Expr::Field(f) => {
+                let mut place = self.place(&f.base)?;
+                place.members.push(member(&f.member));
+                Some(place)
+            }
+            syn::Expr::Paren(p) => self.place(&p.expr),
+            syn::Expr::Unary(u) if matches!(u.op, UnOp::Deref(_)) => self.place(&u.expr),
+            _ => {
+                self.errors.at(
+                    e.span(),
+                    "a kernel cannot assign to this",
+                    "assign to a variable or to a member of one",
+                );
+                None
+            }
+        }
+    }
+
+    fn macro_call(&mut self, m: &syn::Macro) -> Kind {
+        let name = m.path.segments.last().map(|s| s.ident.to_string()).unwrap_or_default();
+        let help = match name.as_str() {
+            "vec" => "kernels have no heap: use a struct or a vector",
+            "println" | "print" | "eprintln" | "dbg" => "return the value and print it outside",
+            "assert" | "debug_assert" | "panic" | "todo" | "unreachable" => {
+                "a kernel cannot stop: return a value that says what happened"
+            }
+            _ => "write out what it stands for: the macro cannot see inside another macro",
+        };
+        self.error(m.path.span(), format!("a kernel cannot call the macro `{name}!`"), help)
+    }
+}
+
+fn member(m: &Member) -> TokenStream {
+    m.to_token_stream()
+}
+
+fn attributes(e: &syn::Expr) -> &[syn::Attribute] {
+    match e {
+        syn::Expr::Assign(x) => &x.attrs,
+        syn::Expr::Binary(x) => &x.attrs,
+        syn::Expr::Break(x) => &x.attrs,
+        syn::Expr::Call(x) => &x.attrs,
+        syn::Expr::Continue(x) => &x.attrs,
+        syn::Expr::If(x) => &x.attrs,
+        syn::Expr::MethodCall(x) => &x.attrs,
+        syn::Expr::Return(x) => &x.attrs,
+        syn::Expr::While(x) => &x.attrs,
+        syn::Expr::Loop(x) => &x.attrs,
+        syn::Expr::ForLoop(x) => &x.attrs,
+        syn::Expr::Block(x) => &x.attrs,
+        _ => &[],
+    }
+}
+
+fn arithmetic(op: &BinOp) -> Option<BinaryOp> {
+    Some(match op {
+        BinOp::Add(_) => ops::ADD,
+        BinOp::Sub(_) => ops::SUB,
+        BinOp::Mul(_) => ops::MUL,
+        BinOp::Div(_) => ops::DIV,
+        BinOp::Rem(_) => ops::REM,
+        BinOp::BitAnd(_) => ops::BIT_AND,
+        BinOp::BitOr(_) => ops::BIT_OR,
+        BinOp::BitXor(_) => ops::BIT_XOR,
+        BinOp::Shl(_) => ops::SHL,
+        BinOp::Shr(_) => ops::SHR,
+        _ => return None,
+    })
+}
+
+fn assignment(op: &BinOp) -> Option<BinaryOp> {
+    Some(match op {
+        BinOp::AddAssign(_) => ops::ADD,
+        BinOp::SubAssign(_) => ops::SUB,
+        BinOp::MulAssign(_) => ops::MUL,
+        BinOp::DivAssign(_) => ops::DIV,
+        BinOp::RemAssign(_) => ops::REM,
+        BinOp::BitAndAssign(_) => ops::BIT_AND,
+        BinOp::BitOrAssign(_) => ops::BIT_OR,
+        BinOp::BitXorAssign(_) => ops::BIT_XOR,
+        BinOp::ShlAssign(_) => ops::SHL,
+        BinOp::ShrAssign(_) => ops::SHR,
+        _ => return None,
+    })
+}

@@ -1,0 +1,337 @@
+//! A mistake gives one error, which says what to write instead.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use crate::{expand_closure, expand_kernel, expand_primitive, twin};
+
+/// The texts of the `compile_error!` calls in `tokens`.
+fn errors(tokens: TokenStream) -> Vec<String> {
+    fn walk(tokens: TokenStream, found: &mut Vec<String>) {
+        let all: Vec<_> = tokens.into_iter().collect();
+        for (i, token) in all.iter().enumerate() {
+            let proc_macro2::TokenTree::Group(g) = token else { continue };
+            let before = |n: usize| i.checked_sub(n).map(|j| all[j].to_string());
+            if before(1).as_deref() == Some("!") && before(2).as_deref() == Some("compile_error") {
+                found.push(text(g.stream()));
+            } else {
+                walk(g.stream(), found);
+            }
+        }
+    }
+    let mut found = Vec::new();
+    walk(tokens, &mut found);
+    found
+}
+
+fn text(literal: TokenStream) -> String {
+    syn::parse2::<syn::LitStr>(literal).map(|l| l.value()).unwrap_or_default()
+}
+
+/// Exactly one error, with a remedy.
+#[track_caller]
+fn assert_one(tokens: TokenStream, what: &str, help: &str) {
+    let found = errors(tokens);
+    assert_eq!(found.len(), 1, "{found:#?}");
+    let (first, rest) = found[0].split_once("\n  help: ").unwrap_or((&found[0], ""));
+    assert!(first.contains(what), "{first:?} does not say {what:?}");
+    assert!(rest.contains(help), "{rest:?} does not say {help:?}");
+    assert!(!rest.is_empty() && !found[0].contains("__"), "{}", found[0]);
+}
+
+/// A mistake in the body of a kernel: `fn`, method and closure say the same.
+#[track_caller]
+fn assert_body(body: TokenStream, what: &str, help: &str) {
+    let f = quote!(fn f(x: f32, n: u32) -> f32 { #body });
+    assert_one(expand_kernel(quote!(), f), what, help);
+    let method = quote!(impl T { fn f(&self, x: f32, n: u32) -> f32 { #body } });
+    assert_one(expand_kernel(quote!(), method), what, help);
+    assert_one(expand_closure(quote!(|x: f32, n: u32| { #body })), what, help);
+}
+
+macro_rules! bodies {
+    ($($name:ident: { $($body:tt)* } $what:literal $help:literal;)+) => {
+        $(
+            #[test]
+            fn $name() {
+                assert_body(quote!($($body)*), $what, $help);
+            }
+        )+
+    };
+}
+
+bodies! {
+    double_literal: { x * 2.0f64 } "compute in `f32`" "suffix `f32`";
+    other_integer: { x * 2u64 as f32 } "no `u64`" "`u32`";
+    text_literal: { let _ = "text"; x } "numbers and truth values" "outside";
+    sine_method: { x.sin() } "`sin`" "capture the result";
+    power_method: { x.powf(2.0) } "`powf`" "capture the result";
+    unwrapped: { g(x).unwrap() } "`unwrap`" "Option";
+    heap: { let v = vec![x]; x } "`vec!`" "no heap";
+    printing: { println!("{x}"); x } "`println!`" "return the value";
+    assertion: { assert!(x > 0.0); x } "`assert!`" "cannot stop";
+    question_mark: { g(x)? } "no `?`" "a miss is data";
+    matching: { match n { 0 => x, _ => 1.0 } } "no `match`" "if ... else if";
+    if_let: { if let Some(y) = g(x) { y } else { x } } "no `if let`" "compare the value";
+    inner_closure: { let f = |y: f32| y; x } "no closures" "#[kernel] fn";
+    untyped_integer: { let mut i = 0; x } "mutable integer" "0u32";
+    untyped_range: { for i in 0..4 {} x } "counter needs a type" "0u32..8";
+    inclusive_range: { for i in 0u32..=4 {} x } "range is `a..b`" "for i in a..b";
+    no_range: { for i in list {} x } "runs over a range" "0u32..n";
+    mutable_reference: { g(&mut x) } "no `&mut`" "return the new value";
+    array: { let a = [x, x]; x } "no array expressions" "struct or a vector";
+    variable_index: { t[n] } "by a number of the source" "bvh.primitive(hit)";
+    break_with_value: { loop { break x; } } "`break` has no value" "declared before the loop";
+    labelled_block: { 'a: { break 'a; } x } "no labelled blocks" "labelled `loop`";
+    let_else: { let y = x else { return x; }; y } "no `let ... else`" "returns early";
+    tuple_pattern: { let (a, b) = g(x); a } "binds a single name" "let x = v.0;";
+    tuple_struct: { Some(x) } "no tuple structs" "named members";
+    inner_function: { fn g() {} x } "cannot stand inside a kernel" "move it out";
+    assignment_to_a_call: { g(x) = 1.0; x } "cannot assign to this" "a variable";
+    unsafe_block: { unsafe { x } } "no `unsafe`" "safe code";
+    statement_attribute: { #[cold] if x > 0.0 { } x } "attributes on statements" "remove";
+}
+
+#[track_caller]
+fn assert_kernel(item: TokenStream, what: &str, help: &str) {
+    assert_one(expand_kernel(quote!(), item), what, help);
+}
+
+#[test]
+fn signatures() {
+    assert_kernel(
+        quote!(
+            fn f<T>(x: T) -> T {
+                x
+            }
+        ),
+        "cannot be generic",
+        "for each type",
+    );
+    assert_kernel(
+        quote!(
+            fn f(x: &mut f32) {}
+        ),
+        "`&mut` parameters",
+        "return the new value",
+    );
+    assert_kernel(
+        quote!(
+            async fn f(x: f32) -> f32 {
+                x
+            }
+        ),
+        "cannot be `async`",
+        "remove",
+    );
+    assert_kernel(
+        quote!(
+            unsafe fn f(x: f32) -> f32 {
+                x
+            }
+        ),
+        "cannot be `unsafe`",
+        "remove",
+    );
+    assert_kernel(
+        quote!(
+            fn f((a, b): T) -> f32 {
+                a
+            }
+        ),
+        "a single name",
+        "take its members",
+    );
+    assert_kernel(quote!(impl T { fn f(&mut self) {} }), "cannot change `self`", "`&self`");
+    assert_kernel(quote!(impl A for T { fn f(&self) {} }), "trait impls", "inherent");
+    assert_kernel(
+        quote!(
+            struct S;
+        ),
+        "stands on a function",
+        "kernel!",
+    );
+}
+
+#[test]
+fn recursion() {
+    let f = quote!(
+        fn f(x: f32) -> f32 {
+            if x > 1.0 { f(x * 0.5) } else { x }
+        }
+    );
+    assert_kernel(f, "calls itself", "write a loop");
+}
+
+#[test]
+fn closures() {
+    let one = |c: TokenStream, what, help| assert_one(expand_closure(c), what, help);
+    one(quote!(|ray| ray.t_min), "needs a type", "|ray: Ray|");
+    one(quote!(|| 1.0), "needs a parameter", "|ray: Ray|");
+    one(quote!(|(a, b): T| a), "a single name", "take its members");
+    one(
+        quote!(|x: f32| {
+            total += x;
+            x
+        }),
+        "assign to `total`",
+        "inside the kernel",
+    );
+    one(
+        quote!(|x: f32| {
+            state.count = x;
+            x
+        }),
+        "assign to `state`",
+        "inside the kernel",
+    );
+    one(quote!(1 + 2), "", "kernel!(|ray: Ray|");
+}
+
+#[test]
+fn primitives() {
+    let one = |item: TokenStream, what, help| {
+        assert_one(expand_primitive(quote!(), item), what, help);
+    };
+    let bounds = quote!(
+        fn get_bounds(&self) -> Aabb {
+            Aabb::EMPTY
+        }
+    );
+    let intersect = quote!(
+        fn intersect(&self, ray: Ray) -> Hit {
+            Hit::miss()
+        }
+    );
+    one(quote!(impl S { #bounds }), "no `intersect`", "fn intersect(&self, ray: Ray) -> Hit");
+    one(quote!(impl S { #intersect }), "no `get_bounds`", "fn get_bounds(&self) -> Aabb");
+    one(
+        quote!(
+            struct S(f32);
+        ),
+        "named members",
+        "member: f32",
+    );
+    one(
+        quote!(
+            struct S;
+        ),
+        "named members",
+        "member: f32",
+    );
+    one(
+        quote!(
+            enum S {
+                A,
+            }
+        ),
+        "only a struct",
+        "which kind",
+    );
+    one(
+        quote!(
+            struct S<T> {
+                a: T,
+            }
+        ),
+        "cannot be generic",
+        "for each type",
+    );
+    one(
+        quote!(
+            fn f() {}
+        ),
+        "stands on a struct",
+        "#[primitive] struct",
+    );
+}
+
+#[test]
+fn derives() -> syn::Result<()> {
+    for (item, what) in [
+        (
+            quote!(
+                struct S(f32);
+            ),
+            "named members",
+        ),
+        (
+            quote!(
+                enum S {
+                    A,
+                }
+            ),
+            "only a struct",
+        ),
+        (
+            quote!(
+                struct S<T> {
+                    a: T,
+                }
+            ),
+            "cannot be generic",
+        ),
+    ] {
+        let found = errors(twin::derive(&syn::parse2(item)?));
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].contains(what) && found[0].contains("help: "), "{found:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn arguments_of_attributes() {
+    let f = quote!(
+        fn f(x: f32) -> f32 {
+            x
+        }
+    );
+    assert_one(expand_kernel(quote!(fast), f), "takes no arguments", "#[kernel]");
+    let s = quote!(
+        struct S {
+            a: f32,
+        }
+    );
+    assert_one(expand_primitive(quote!(fast), s), "takes no arguments", "#[primitive]");
+}
+
+/// All mistakes of a kernel are reported at once, each once.
+#[test]
+fn several_at_once() {
+    let f = quote! {
+        fn f(x: f32, n: &mut u32) -> f32 {
+            let mut i = 0;
+            let y = x.sin() + 2.0f64;
+            for j in 0..4 {}
+            match n { _ => y }
+        }
+    };
+    let found = errors(expand_kernel(quote!(), f));
+    assert_eq!(found.len(), 6, "{found:#?}");
+    assert!(found.iter().all(|e| e.contains("\n  help: ")), "{found:#?}");
+    let c = quote!(|a, x: f32| {
+        total = x;
+        vec![x];
+        x.cos()
+    });
+    let found = errors(expand_closure(c));
+    assert_eq!(found.len(), 4, "{found:#?}");
+    let i = quote!(impl S { fn rgb(&self) -> f32 { self.a.exp() } });
+    let found = errors(expand_primitive(quote!(), i));
+    assert_eq!(found.len(), 3, "{found:#?}");
+}
+
+/// With an error the user's item is still there, so that nothing else is reported missing.
+#[test]
+fn the_item_stays() {
+    let f = quote!(
+        fn f(x: f32) -> f32 {
+            x.sin()
+        }
+    );
+    assert!(expand_kernel(quote!(), f.clone()).to_string().starts_with(&f.to_string()));
+    let s = quote!(
+        struct S(f32);
+    );
+    assert!(expand_primitive(quote!(), s.clone()).to_string().starts_with(&s.to_string()));
+}

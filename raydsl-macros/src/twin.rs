@@ -1,0 +1,214 @@
+//! The twin of a struct: what stands for its values on a machine.
+
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+use syn::spanned::Spanned;
+
+use crate::diag::Errors;
+
+fn private() -> TokenStream {
+    quote!(::raydsl::__private)
+}
+
+/// `#[derive(Type)]`.
+pub(crate) fn derive(item: &syn::DeriveInput) -> TokenStream {
+    let mut errors = Errors::default();
+    let fields = named_fields(item, &mut errors);
+    if let Some(g) = item.generics.params.first() {
+        errors.at(
+            g.span(),
+            "a type of the kernel language cannot be generic",
+            "write a struct for each type",
+        );
+    }
+    if !errors.is_empty() {
+        return errors.into_tokens();
+    }
+    twin(item, &fields)
+}
+
+/// `#[primitive] struct`.
+pub(crate) fn primitive_struct(item: &syn::DeriveInput) -> TokenStream {
+    let mut errors = Errors::default();
+    let fields = named_fields(item, &mut errors);
+    if let Some(g) = item.generics.params.first() {
+        errors.at(g.span(), "a primitive cannot be generic", "write a struct for each type");
+    }
+    if !errors.is_empty() {
+        let errors = errors.into_tokens();
+        return quote!(#item #errors);
+    }
+    let name = &item.ident;
+    let derives = |what: &str| {
+        item.attrs.iter().any(|a| {
+            a.path().is_ident("derive")
+                && a.parse_nested_meta(|m| {
+                    if m.path.is_ident(what) { Err(m.error("found")) } else { Ok(()) }
+                })
+                .is_err()
+        })
+    };
+    let clone = (!derives("Clone")).then(|| quote!(#[derive(Clone)]));
+    let copy = (!derives("Copy")).then(|| quote!(#[derive(Copy)]));
+    let repr = (!item.attrs.iter().any(|a| a.path().is_ident("repr"))).then(|| quote!(#[repr(C)]));
+    let types = fields.iter().map(|f| &f.ty);
+    let twin = twin(item, &fields);
+    quote! {
+        #clone
+        #copy
+        #repr
+        #item
+        #twin
+        const _: () = assert!(
+            ::core::mem::size_of::<#name>() == 0 #(+ ::core::mem::size_of::<#types>())*,
+            concat!(
+                "the primitive `", stringify!(#name), "` has gaps between its members: ",
+                "order them by size, or fill the gaps with members of your own",
+            ),
+        );
+    }
+}
+
+fn named_fields(item: &syn::DeriveInput, errors: &mut Errors) -> Vec<syn::Field> {
+    match &item.data {
+        syn::Data::Struct(s) => match &s.fields {
+            syn::Fields::Named(f) if !f.named.is_empty() => f.named.iter().cloned().collect(),
+            _ => {
+                errors.at(
+                    item.ident.span(),
+                    "a type of the kernel language needs named members",
+                    "write `struct Name { member: f32 }`",
+                );
+                vec![]
+            }
+        },
+        _ => {
+            errors.at(
+                item.ident.span(),
+                "only a struct can be a type of the kernel language",
+                "write a struct with a member that says which kind it is",
+            );
+            vec![]
+        }
+    }
+}
+
+/// The twin struct and the implementations that connect it with the host's.
+fn twin(item: &syn::DeriveInput, fields: &[syn::Field]) -> TokenStream {
+    let p = private();
+    let (vis, name) = (&item.vis, &item.ident);
+    let twin = format_ident!("{name}On");
+    let text = name.to_string();
+    let names: Vec<_> = fields.iter().filter_map(|f| f.ident.as_ref()).collect();
+    let texts: Vec<String> = names.iter().map(ToString::to_string).collect();
+    let types: Vec<_> = fields.iter().map(|f| &f.ty).collect();
+    let visible: Vec<_> = fields.iter().map(|f| &f.vis).collect();
+    let doc = format!("[`{name}`] on machine `M`.");
+    let schema = quote! {
+        &#p::Schema::Struct {
+            name: #text,
+            fields: &[#(#p::Field {
+                name: #texts,
+                offset: ::core::mem::offset_of!(#name, #names),
+                schema: <#types as #p::Type>::SCHEMA,
+            }),*],
+            size: ::core::mem::size_of::<#name>(),
+        }
+    };
+    quote! {
+        #[doc = #doc]
+        #[allow(missing_docs, reason = "the members are those of the struct")]
+        #vis struct #twin<M: #p::Machine> {
+            #(#visible #names: <#types as #p::Type>::On<M>,)*
+        }
+
+        impl<M: #p::Machine> Clone for #twin<M> {
+            #[inline(always)]
+            fn clone(&self) -> Self {
+                *self
+            }
+        }
+
+        impl<M: #p::Machine> Copy for #twin<M> {}
+
+        impl<M: #p::Machine> #p::Value<M> for #twin<M> {
+            const SCHEMA: &'static #p::Schema = #schema;
+
+            #[inline(always)]
+            fn zero(m: &M) -> Self {
+                Self { #(#names: #p::Value::zero(m),)* }
+            }
+
+            #[inline(always)]
+            fn zip(m: &M, a: Self, b: Self, f: &mut impl #p::Leaves<M>) -> Self {
+                Self { #(#names: #p::Value::zip(m, a.#names, b.#names, f),)* }
+            }
+        }
+
+        impl<M: #p::Machine> #p::Varying<M> for #twin<M> {
+            type Value = Self;
+
+            #[inline(always)]
+            fn varying(self, _: &M) -> Self {
+                self
+            }
+        }
+
+        impl<const NAME: u64, M: #p::Machine, A> #p::Method<NAME, M, A> for #twin<M>
+        where
+            #name: #p::HostMethod<NAME, M, A>,
+        {
+            type Output = <#name as #p::HostMethod<NAME, M, A>>::Output;
+
+            #[inline(always)]
+            fn call(self, m: &M, args: A) -> Self::Output {
+                <#name as #p::HostMethod<NAME, M, A>>::call(self, m, args)
+            }
+        }
+
+        impl #p::Type for #name {
+            type On<M: #p::Machine> = #twin<M>;
+
+            const SCHEMA: &'static #p::Schema = #schema;
+
+            #[inline(always)]
+            fn splat<M: #p::Machine>(m: &M, v: Self) -> #twin<M> {
+                #twin { #(#names: #p::Type::splat(m, v.#names),)* }
+            }
+
+            #[inline(always)]
+            fn from_lanes<M: #p::LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> #twin<M> {
+                #twin { #(#names: #p::Type::from_lanes(m, &|lane| f(lane).#names),)* }
+            }
+
+            #[inline(always)]
+            fn lane<M: #p::LaneMachine>(v: &#twin<M>, lane: usize) -> Self {
+                Self { #(#names: #p::Type::lane(&v.#names, lane),)* }
+            }
+
+            fn write(&self, out: &mut [u8]) {
+                #(#p::Type::write(&self.#names, &mut out[::core::mem::offset_of!(#name, #names)..]);)*
+            }
+
+            fn read(bytes: &[u8]) -> Self {
+                Self {
+                    #(#names: #p::Type::read(&bytes[::core::mem::offset_of!(#name, #names)..]),)*
+                }
+            }
+        }
+
+        impl<M: #p::Machine> #p::Capture<M> for #name {
+            type On<'c> = #twin<M>;
+
+            #[inline(always)]
+            fn capture(&self, m: &M, name: &'static str) -> #twin<M> {
+                #p::Machine::capture(m, name, *self)
+            }
+
+            #[inline(always)]
+            fn constant(&self, m: &M) -> #twin<M> {
+                #p::Type::splat(m, *self)
+            }
+        }
+    }
+}

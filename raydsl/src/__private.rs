@@ -1,0 +1,92 @@
+//! The only names that generated code uses. Not for people: anything here may change.
+
+pub use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn};
+pub use crate::kernel::{Kernel, Lifted, Native4, Native8, Native16, Native16Halves, Portable};
+pub use crate::machine::{
+    Branch, Capture, Coerce, Compare, Field, HostMethod, KernelFn, KernelInfo, LaneMachine, Leaves,
+    Loop, Machine, Method, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv,
+    OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Recorder, Resource, Ret, Schema, Type,
+    Value, Var, Varying, name,
+};
+
+/// Traits of associated functions.
+pub mod operations {
+    pub use crate::machine::functions::{
+        F32Functions as _, Vec2New as _, Vec3New as _, Vec4New as _, VectorFunctions as _,
+    };
+}
+
+use crate::machine::{B, Bounds, F, I, U};
+
+/// A literal.
+#[inline(always)]
+pub fn f32<M: Machine>(m: &M, v: f32) -> F<M> {
+    F(m.f32(v))
+}
+
+/// A literal with the suffix `i32`.
+#[inline(always)]
+pub fn i32<M: Machine>(m: &M, v: i32) -> I<M> {
+    I(m.i32(v))
+}
+
+/// A literal with the suffix `u32`.
+#[inline(always)]
+pub fn u32<M: Machine>(m: &M, v: u32) -> U<M> {
+    U(m.u32(v))
+}
+
+/// `a as T`.
+#[inline(always)]
+pub fn cast<M: Machine, A: OpCast<M, T>, T: Type>(m: &M, a: A) -> T::On<M> {
+    A::cast(m, a)
+}
+
+/// The right side of `&&` or `||`, evaluated for the lanes where the left side is `when`.
+#[inline(always)]
+pub fn guarded<M: Machine, C: Coerce<M, B<M>>, R>(
+    m: &M,
+    c: C,
+    when: bool,
+    f: impl FnOnce() -> R,
+) -> R {
+    m.guarded(c.coerce(m).0, when, f)
+}
+
+/// The bounds of a `for`.
+#[inline(always)]
+pub fn range<M: Machine, S: Bounds<M, E>, E>(m: &M, start: S, end: E) -> (S::Counter, S::Counter) {
+    S::bounds(m, start, end)
+}
+
+/// Whether a counter goes on.
+#[inline(always)]
+pub fn less<M: Machine, C: OpCompare<M, C, Output = B<M>>>(m: &M, a: C, b: C) -> B<M> {
+    C::compare(m, Compare::Lt, a, b)
+}
+
+/// The next value of a counter.
+#[inline(always)]
+pub fn increment<M: Machine, C: Counter<M>>(m: &M, a: C) -> C {
+    a.next(m)
+}
+
+/// The type of a counter.
+pub trait Counter<M: Machine> {
+    /// One more; the bound stops it before it overflows.
+    fn next(self, m: &M) -> Self;
+}
+
+impl<M: Machine> Counter<M> for I<M> {
+    #[inline(always)]
+    fn next(self, m: &M) -> Self {
+        I(m.i32_binary(crate::machine::IntBinary::WrappingAdd, self.0, m.i32(1)))
+    }
+}
+
+impl<M: Machine> Counter<M> for U<M> {
+    #[inline(always)]
+    fn next(self, m: &M) -> Self {
+        U(m.u32_binary(crate::machine::IntBinary::WrappingAdd, self.0, m.u32(1)))
+    }
+}

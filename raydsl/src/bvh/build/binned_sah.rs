@@ -1,0 +1,228 @@
+//! Where to split a node: the binned surface area heuristic.
+//!
+//! After Wald 2007: the primitives are sorted into a few bins by their centroids, on all three
+//! axes in one pass; then the planes between the bins are compared by the expected cost of the
+//! two children, which is the number of primitives in each, weighted by its surface.
+
+use glam::{Vec3, Vec4, Vec4Swizzles};
+
+use super::config::{BuildConfig, MAX_BINS};
+use super::reference::{Bounds, Reference, Span};
+use super::tasks;
+
+/// Nodes at least this large are binned in pieces.
+const LARGE: usize = 1 << 16;
+/// The size of such a piece.
+const PIECE: usize = 1 << 14;
+/// From here on even and odd references have bins of their own. Neighbours tend to fall into the
+/// same bin, and then have to wait for each other's stores: two sets of bins save a tenth of a
+/// whole build.
+const TWO_SETS: usize = 1 << 10;
+
+/// `2^-100`: centroids that are closer together than this are not told apart.
+const CLOSE: f32 = f32::from_bits((127 - 100) << 23);
+
+/// `2^23`: adding it rounds a small number to an integer, which is left in the low mantissa bits.
+/// That is several times cheaper than a saturating conversion on every target.
+const ROUND: f32 = 8_388_608.0;
+
+/// The bins over the centroids of one node.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grid {
+    origin: Vec4,
+    /// Bins per unit of length; 0 on an axis along which the centroids do not differ.
+    scale: Vec4,
+    /// How many bins there are on each axis.
+    len: usize,
+    /// The unit of length for areas, see `scaling`: 1 / longest edge of the node.
+    unit: f32,
+}
+
+impl Grid {
+    /// The bins for `count` primitives within `span`; `None` when all centroids coincide.
+    pub(super) fn new(span: &Span, count: usize, bins: u32) -> Option<Self> {
+        let extent = (span.centroids.hi - span.centroids.lo).xyz();
+        if extent.max_element() < CLOSE {
+            return None;
+        }
+        let len = (bins as usize).min(4 + count / 20);
+        // Bin k is what rounds to k; the first and the last are half as wide as the others. The
+        // largest centroid falls on len - 1 up to rounding, so the index is never out of range.
+        let per_length = |extent: f32| if extent < CLOSE { 0.0 } else { (len - 1) as f32 / extent };
+        let scale = Vec3::new(per_length(extent.x), per_length(extent.y), per_length(extent.z));
+        // Where distances range over very many orders of magnitude, the smallest would underflow
+        // when scaled, and denormal results are as slow as denormal operands (see `Reference`).
+        // An origin moved a little outwards, far too little to matter to a bin, prevents that.
+        let origin = span.centroids.lo - (extent * 2e-7).extend(0.0);
+        let unit = 1.0 / (span.bounds.hi - span.bounds.lo).xyz().max_element();
+        Some(Self { origin, scale: scale.extend(0.0), len, unit })
+    }
+
+    /// The bins of a centroid, each plus [`ROUND`].
+    #[inline]
+    pub(super) fn position(&self, centroid: Vec4) -> Vec4 {
+        (centroid - self.origin) * self.scale + Vec4::splat(ROUND)
+    }
+
+    /// A measure of a box: half its area plus a little of its edge lengths.
+    ///
+    /// Boxes of points on a line have no area. With the lengths, which are otherwise too small to
+    /// matter, they are compared as lines are: without them all planes would be as good as the
+    /// first, and the tree as deep as there are points.
+    #[inline]
+    pub(super) fn measure(&self, bounds: Bounds) -> f32 {
+        let size = (bounds.hi - bounds.lo) * self.unit;
+        let terms = size * (size.yzxw() + Vec4::splat(1e-6));
+        terms.x + terms.y + terms.z
+    }
+}
+
+/// The contents of the bins.
+pub(super) struct Bins {
+    bounds: [[Bounds; MAX_BINS]; 3],
+    counts: [[u32; MAX_BINS]; 3],
+}
+
+impl Bins {
+    /// Empty ones.
+    pub(super) fn new() -> Self {
+        Self { bounds: [[Bounds::EMPTY; MAX_BINS]; 3], counts: [[0; MAX_BINS]; 3] }
+    }
+
+    /// Replaces the contents by `references`.
+    pub(super) fn fill(&mut self, references: &[Reference], grid: &Grid) {
+        if references.len() < LARGE {
+            self.fill_piece(references, grid);
+            return;
+        }
+        self.clear(grid.len);
+        let pieces = tasks::map_pieces(references, PIECE, |_, piece| {
+            let mut bins = Self::new();
+            bins.fill_piece(piece, grid);
+            bins
+        });
+        // Minima, maxima and counts: the order of the pieces does not matter.
+        for piece in &pieces {
+            self.merge(piece, grid.len);
+        }
+    }
+
+    fn clear(&mut self, len: usize) {
+        for axis in 0..3 {
+            self.bounds[axis][..len].fill(Bounds::EMPTY);
+            self.counts[axis][..len].fill(0);
+        }
+    }
+
+    fn fill_piece(&mut self, references: &[Reference], grid: &Grid) {
+        self.clear(grid.len);
+        if references.len() < TWO_SETS {
+            references.iter().for_each(|reference| self.add(reference, grid));
+            return;
+        }
+        let mut odd_bins = Self::new();
+        let (pairs, rest) = references.as_chunks::<2>();
+        for [even, odd] in pairs {
+            self.add(even, grid);
+            odd_bins.add(odd, grid);
+        }
+        rest.iter().for_each(|reference| self.add(reference, grid));
+        self.merge(&odd_bins, grid.len);
+    }
+
+    #[inline]
+    fn add(&mut self, reference: &Reference, grid: &Grid) {
+        let bounds = reference.bounds();
+        let position = grid.position(reference.centroid()).to_array();
+        for (axis, position) in position.into_iter().take(3).enumerate() {
+            // Always in range; the remainder says so to the compiler.
+            let k = position.to_bits() as usize % MAX_BINS;
+            self.bounds[axis][k] = self.bounds[axis][k].union(bounds);
+            self.counts[axis][k] += 1;
+        }
+    }
+
+    fn merge(&mut self, other: &Self, len: usize) {
+        for axis in 0..3 {
+            for k in 0..len {
+                self.bounds[axis][k] = self.bounds[axis][k].union(other.bounds[axis][k]);
+                self.counts[axis][k] += other.counts[axis][k];
+            }
+        }
+    }
+
+    /// The cheapest plane; there is one whenever there is a grid.
+    pub(super) fn best_plane(&self, grid: &Grid) -> Option<Plane> {
+        let mut best: Option<Plane> = None;
+        for axis in (0..3).filter(|&axis| grid.scale[axis] > 0.0) {
+            let right = self.costs_right_of(axis, grid);
+            let (mut bounds, mut count) = (Bounds::EMPTY, 0);
+            for (bin, right) in (0..grid.len).zip(right).skip(1) {
+                bounds = bounds.union(self.bounds[axis][bin - 1]);
+                count += self.counts[axis][bin - 1];
+                // Neither side is empty (the first and the last bin are not), so this is finite.
+                let cost = grid.measure(bounds) * count as f32 + right;
+                // In doubt the first axis and the lowest plane, always.
+                if best.is_none_or(|best| cost < best.cost) {
+                    best = Some(Plane { axis, bin, cost });
+                }
+            }
+        }
+        best
+    }
+
+    /// For each plane of an axis the cost of what is on its right.
+    fn costs_right_of(&self, axis: usize, grid: &Grid) -> [f32; MAX_BINS] {
+        let mut costs = [0.0; MAX_BINS];
+        let (mut bounds, mut count) = (Bounds::EMPTY, 0);
+        for k in (1..grid.len).rev() {
+            bounds = bounds.union(self.bounds[axis][k]);
+            count += self.counts[axis][k];
+            costs[k] = grid.measure(bounds) * count as f32;
+        }
+        costs
+    }
+
+    /// The boxes and the number of primitives on both sides of a plane.
+    pub(super) fn sides(&self, plane: &Plane, grid: &Grid) -> [(Bounds, u32); 2] {
+        let side = |range: std::ops::Range<usize>| {
+            let bounds = &self.bounds[plane.axis][range.clone()];
+            let counts = &self.counts[plane.axis][range];
+            let bounds = bounds.iter().copied().fold(Bounds::EMPTY, Bounds::union);
+            (bounds, counts.iter().sum())
+        };
+        [side(0..plane.bin), side(plane.bin..grid.len)]
+    }
+}
+
+/// A plane between two bins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plane {
+    /// The axis it is perpendicular to.
+    pub(super) axis: usize,
+    /// The first bin on its right.
+    bin: usize,
+    /// The primitives on both sides, weighted by the measure of the side.
+    cost: f32,
+}
+
+impl Plane {
+    /// Whether splitting `count` primitives within `span` here costs less than testing them all.
+    pub(super) fn pays(
+        &self,
+        span: &Span,
+        count: usize,
+        grid: &Grid,
+        config: &BuildConfig,
+    ) -> bool {
+        let BuildConfig { traversal_cost, intersection_cost, .. } = *config;
+        let measure = grid.measure(span.bounds);
+        let split = traversal_cost * measure + intersection_cost * self.cost;
+        split < intersection_cost * count as f32 * measure
+    }
+
+    /// What [`Grid::position`] is below on this axis for what is on the left.
+    pub(super) fn position(&self) -> f32 {
+        ROUND + self.bin as f32
+    }
+}

@@ -1,0 +1,53 @@
+//! Why a tree cannot be built.
+
+use thiserror::Error;
+
+/// Why a tree cannot be built, and what to do about it.
+///
+/// Of several bad primitives the one with the smallest index is reported.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// More primitives than [`MAX_PRIMITIVES`](super::MAX_PRIMITIVES).
+    #[error(
+        "{count} primitives are too many for one tree: split them into trees of at most {limit}"
+    )]
+    TooManyPrimitives {
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// A bound is not a number.
+    #[error("the bounds of primitive {index} contain NaN: repair or remove the primitive")]
+    NanBounds {
+        /// The primitive.
+        index: usize,
+    },
+    /// A bound is infinite.
+    #[error(
+        "the bounds of primitive {index} are infinite: clip the primitive to a finite box or remove it"
+    )]
+    InfiniteBounds {
+        /// The primitive.
+        index: usize,
+    },
+    /// A lower bound is above the upper one.
+    #[error(
+        "the bounds of primitive {index} are inverted (min > max): order the corners or remove the primitive"
+    )]
+    InvertedBounds {
+        /// The primitive.
+        index: usize,
+    },
+    /// A field of the configuration is out of range.
+    #[error("BuildConfig::{field} is {value}: choose a value in {range}")]
+    InvalidConfig {
+        /// The field.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+        /// The values it may have.
+        range: &'static str,
+    },
+}

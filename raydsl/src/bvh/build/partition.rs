@@ -1,0 +1,65 @@
+//! Splitting a range of references in two.
+
+use glam::Vec4;
+
+use super::binned_sah::{Grid, Plane};
+use super::reference::{Bounds, Reference, Span};
+
+/// Moves what is left of `plane` to the front; returns how much that is and the boxes around the
+/// centroids of both sides.
+///
+/// There is no branch in the loop: sides are as good as random, and half of the branches would be
+/// mispredicted. Both stores of the exchange are always done, and the boxes of both sides are
+/// always updated: the one the centroid does not belong to with an infinitely distant point that
+/// changes nothing.
+pub(super) fn by_plane(
+    references: &mut [Reference],
+    grid: &Grid,
+    plane: &Plane,
+) -> (usize, [Bounds; 2]) {
+    const DISTANCE: [Vec4; 2] = [Vec4::ZERO, Vec4::INFINITY];
+    let limit = Vec4::splat(plane.position());
+    let [mut left, mut right] = [Bounds::EMPTY; 2];
+    let mut end = 0;
+    for k in 0..references.len() {
+        let reference = references[k];
+        let centroid = reference.centroid();
+        let lanes = grid.position(centroid).cmplt(limit).bitmask();
+        let is_left = (lanes >> plane.axis & 1) as usize;
+
+        references[k] = references[end];
+        references[end] = reference;
+        end += is_left;
+
+        let (from_left, from_right) = (DISTANCE[1 - is_left], DISTANCE[is_left]);
+        left.lo = left.lo.min(centroid + from_left);
+        left.hi = left.hi.max(centroid - from_left);
+        right.lo = right.lo.min(centroid + from_right);
+        right.hi = right.hi.max(centroid - from_right);
+    }
+    (end, [left, right])
+}
+
+/// Moves the lower half along the longest axis of the centroids to the front.
+///
+/// For the rare node whose depth forbids an unbalanced split; indices break ties.
+pub(super) fn by_median(references: &mut [Reference], centroids: &Bounds) -> (usize, [Span; 2]) {
+    let axis = (centroids.hi - centroids.lo).truncate().max_position();
+    let middle = references.len() / 2;
+    references.select_nth_unstable_by(middle, |a, b| {
+        let by_centroid = a.centroid()[axis].total_cmp(&b.centroid()[axis]);
+        by_centroid.then_with(|| a.index().cmp(&b.index()))
+    });
+    (middle, spans(references, middle))
+}
+
+/// Halves the range as it is, for primitives that nothing tells apart.
+pub(super) fn by_order(references: &[Reference]) -> (usize, [Span; 2]) {
+    let middle = references.len() / 2;
+    (middle, spans(references, middle))
+}
+
+fn spans(references: &[Reference], middle: usize) -> [Span; 2] {
+    let (left, right) = references.split_at(middle);
+    [Span::of(left), Span::of(right)]
+}

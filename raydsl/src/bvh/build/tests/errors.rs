@@ -1,0 +1,61 @@
+//! Refused inputs.
+
+use glam::Vec3;
+
+use super::super::{BuildConfig, BuildError, MAX_PRIMITIVES, build};
+use super::Numbers;
+use crate::geometry::Aabb;
+
+/// The error for 40,000 random boxes (several pieces of work) with some replaced.
+fn error_with(replaced: &[(usize, Aabb)]) -> BuildError {
+    let mut boxes = Numbers::boxes(40_000, 0.1);
+    for &(index, bounds) in replaced {
+        boxes[index] = bounds;
+    }
+    build(|k| boxes[k], boxes.len(), &BuildConfig::default()).expect_err("a box is invalid")
+}
+
+#[test]
+fn invalid_boxes_are_named() {
+    let one = Aabb::new(Vec3::ZERO, Vec3::ONE);
+    let nan = Aabb { min: Vec3::new(0.0, f32::NAN, 0.0), ..one };
+    let infinite = Aabb { max: Vec3::new(1.0, 1.0, f32::INFINITY), ..one };
+    let inverted = Aabb { min: Vec3::new(2.0, 0.0, 0.0), ..one };
+    assert_eq!(error_with(&[(3, nan)]), BuildError::NanBounds { index: 3 });
+    assert_eq!(error_with(&[(39_999, infinite)]), BuildError::InfiniteBounds { index: 39_999 });
+    assert_eq!(error_with(&[(20_000, inverted)]), BuildError::InvertedBounds { index: 20_000 });
+    assert_eq!(error_with(&[(0, Aabb::EMPTY)]), BuildError::InvertedBounds { index: 0 });
+    let all = [(30_000, nan), (17_000, infinite), (17_001, inverted)];
+    assert_eq!(error_with(&all), BuildError::InfiniteBounds { index: 17_000 });
+}
+
+#[test]
+fn too_many_primitives() {
+    let none = |_| -> Aabb { unreachable!("refused before any box is read") };
+    let error = build(none, MAX_PRIMITIVES + 1, &BuildConfig::default()).expect_err("too many");
+    assert_eq!(
+        error.to_string(),
+        "1073741825 primitives are too many for one tree: split them into trees of at most 1073741824"
+    );
+}
+
+#[test]
+fn settings_out_of_range() {
+    let default = BuildConfig::default();
+    let bad = [
+        ("max_leaf_size", BuildConfig { max_leaf_size: 0, ..default }),
+        ("max_leaf_size", BuildConfig { max_leaf_size: 257, ..default }),
+        ("bins", BuildConfig { bins: 1, ..default }),
+        ("bins", BuildConfig { bins: 33, ..default }),
+        ("traversal_cost", BuildConfig { traversal_cost: -1.0, ..default }),
+        ("traversal_cost", BuildConfig { traversal_cost: f32::NAN, ..default }),
+        ("intersection_cost", BuildConfig { intersection_cost: 0.0, ..default }),
+        ("intersection_cost", BuildConfig { intersection_cost: f32::INFINITY, ..default }),
+    ];
+    for (name, config) in bad {
+        let error = build(|_| Aabb::EMPTY, 0, &config).expect_err("out of range");
+        assert!(matches!(error, BuildError::InvalidConfig { field, .. } if field == name));
+    }
+    let error = build(|_| Aabb::EMPTY, 0, &BuildConfig { bins: 1, ..default }).expect_err("bins");
+    assert_eq!(error.to_string(), "BuildConfig::bins is 1: choose a value in 2..=32");
+}

@@ -1,0 +1,240 @@
+//! Bounding volume hierarchies over any primitive.
+//!
+//! **Closest hit is a function of the ray and the primitives, not of the tree**: of all primitives
+//! whose `intersect` accepts, the one with the least `(t, id)`. Every traversal (one ray, packets,
+//! WGSL, a plain loop over a slice) returns exactly that, bit for bit. What makes it so:
+//!
+//! * `intersect` sees the ray's own range, never the best `t` so far; the traversal alone
+//!   compares, and of equal `t` keeps the smaller id.
+//! * Boxes are widened, and nodes behind the best hit are culled, with an allowance of
+//!   [`Primitive::SLACK`]: what rounding may do to a hit, it does to no visit.
+//! * Every layout runs the same arithmetic on the same members of a primitive.
+
+pub mod build;
+mod node;
+pub(crate) mod slabs;
+pub mod traverse;
+pub(crate) mod traverse_packet;
+mod view;
+
+use core::sync::atomic::{AtomicU64, Ordering};
+
+pub use build::{BuildConfig, BuildError, MAX_DEPTH};
+pub use node::Node;
+pub use traverse::Cost;
+pub(crate) use view::NODE_SCHEMA;
+pub use view::On;
+
+use crate::geometry::{Aabb, Hit, Primitive, Ray};
+use crate::machine::{Capture, Machine, Resource, Type, wgsl::BufferKey};
+
+/// A number that no other owner of scene data has.
+fn next_id() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(1);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}
+
+/// A binary tree over primitives that the application owns.
+///
+/// ```
+/// use raydsl::prelude::*;
+///
+/// let triangles = [Triangle { v0: vec3(0.0, 0.0, 1.0), v1: vec3(4.0, 0.0, 1.0), v2: vec3(0.0, 4.0, 1.0) }];
+/// let bvh = Bvh::build(&triangles)?;
+/// let hit = bvh.closest_hit(Ray::new(vec3(1.0, 1.0, 0.0), vec3(0.0, 0.0, 1.0)));
+/// assert!(hit.is_hit && hit.t == 1.0 && hit.prim_id == 0);
+/// # Ok::<(), raydsl::bvh::BuildError>(())
+/// ```
+#[derive(Debug)]
+pub struct Bvh<'a, P> {
+    prims: &'a [P],
+    nodes: Vec<Node>,
+    indices: Vec<u32>,
+    id: u64,
+}
+
+impl<'a, P: Primitive> Bvh<'a, P> {
+    /// Builds a tree with the default configuration. No primitive at all is a valid scene.
+    ///
+    /// # Errors
+    ///
+    /// A primitive whose bounds are not finite, or more primitives than 32-bit indices can name.
+    pub fn build(prims: &'a [P]) -> Result<Self, BuildError> {
+        Self::build_with(prims, &BuildConfig::default())
+    }
+
+    /// Builds a tree.
+    ///
+    /// # Errors
+    ///
+    /// As [`Bvh::build`]; also a configuration out of its ranges.
+    pub fn build_with(prims: &'a [P], config: &BuildConfig) -> Result<Self, BuildError> {
+        let tree = build::build(|i| prims[i].get_bounds(), prims.len(), config)?;
+        Ok(Self { prims, nodes: tree.nodes, indices: tree.indices, id: next_id() })
+    }
+
+    /// The least `(t, id)` hit of `ray`.
+    pub fn closest_hit(&self, ray: Ray) -> Hit {
+        traverse::closest_hit(&self.view(), ray)
+    }
+
+    /// The least `(t, id)` hit of `ray`, and what it cost to find.
+    pub fn closest_hit_with_cost(&self, ray: Ray) -> (Hit, Cost) {
+        traverse::closest_hit_with_cost(&self.view(), ray)
+    }
+
+    /// Whether `ray` hits anything.
+    pub fn any_hit(&self, ray: Ray) -> bool {
+        traverse::any_hit(&self.view(), ray)
+    }
+
+    /// The primitive that was hit; the first one for a miss, so that code need not branch.
+    ///
+    /// # Panics
+    ///
+    /// If the tree is empty.
+    pub fn primitive(&self, hit: Hit) -> P {
+        self.view().get(if hit.is_hit { hit.prim_id } else { 0 })
+    }
+
+    /// The primitives, as the application owns them.
+    pub fn primitives(&self) -> &'a [P] {
+        self.prims
+    }
+
+    /// The nodes; the root is the first, children are adjacent.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// The index list that leaves refer to.
+    pub fn indices(&self) -> &[u32] {
+        &self.indices
+    }
+
+    /// A box around everything; empty without primitives.
+    pub fn bounds(&self) -> Aabb {
+        self.nodes.first().map_or(Aabb::EMPTY, Node::bounds)
+    }
+
+    /// Bytes of the tree itself; the primitives are the application's.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..]) + size_of_val(&self.indices[..])
+    }
+
+    /// The view that kernels work on.
+    pub fn view(&self) -> On<'_, P> {
+        On::tree(self.prims, &self.nodes, &self.indices, self.id)
+    }
+}
+
+impl<M: Machine, P: Primitive> Capture<M> for Bvh<'_, P> {
+    type On<'c>
+        = On<'c, P>
+    where
+        Self: 'c;
+
+    #[inline(always)]
+    fn capture<'c>(&'c self, _: &M, name: &'static str) -> On<'c, P> {
+        self.view().named(name)
+    }
+
+    #[inline(always)]
+    fn constant<'c>(&'c self, _: &M) -> On<'c, P> {
+        self.view()
+    }
+
+    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        visit(&self.view());
+    }
+}
+
+impl<M: Machine, P: Primitive> Capture<M> for [P] {
+    type On<'c>
+        = On<'c, P>
+    where
+        Self: 'c;
+
+    #[inline(always)]
+    fn capture<'c>(&'c self, _: &M, name: &'static str) -> On<'c, P> {
+        On::slice(self).named(name)
+    }
+
+    #[inline(always)]
+    fn constant<'c>(&'c self, _: &M) -> On<'c, P> {
+        On::slice(self)
+    }
+
+    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        visit(&On::slice(self));
+    }
+}
+
+impl<M: Machine, P: Primitive> Capture<M> for Vec<P> {
+    type On<'c>
+        = On<'c, P>
+    where
+        Self: 'c;
+
+    #[inline(always)]
+    fn capture<'c>(&'c self, m: &M, name: &'static str) -> On<'c, P> {
+        self.as_slice().capture(m, name)
+    }
+
+    #[inline(always)]
+    fn constant<'c>(&'c self, m: &M) -> On<'c, P> {
+        self.as_slice().constant(m)
+    }
+
+    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        Capture::<M>::resources(self.as_slice(), visit);
+    }
+}
+
+/// What a kernel asks of a slice of primitives, without a tree: every primitive is tested.
+///
+/// With a few dozen primitives this is faster than a tree.
+pub trait Slice<P> {
+    /// The least `(t, id)` hit of `ray`.
+    fn closest_hit(&self, ray: Ray) -> Hit;
+    /// Whether `ray` hits anything.
+    fn any_hit(&self, ray: Ray) -> bool;
+    /// The primitive that was hit; the first one for a miss.
+    fn primitive(&self, hit: Hit) -> P;
+}
+
+impl<P: Primitive> Slice<P> for [P] {
+    fn closest_hit(&self, ray: Ray) -> Hit {
+        traverse::closest_hit(&On::slice(self), ray)
+    }
+
+    fn any_hit(&self, ray: Ray) -> bool {
+        traverse::any_hit(&On::slice(self), ray)
+    }
+
+    fn primitive(&self, hit: Hit) -> P {
+        On::slice(self).get(if hit.is_hit { hit.prim_id } else { 0 })
+    }
+}
+
+/// The key of a slice: the address and length of borrowed data name it while the borrow lasts.
+fn slice_key<P>(prims: &[P]) -> BufferKey {
+    let address = prims.as_ptr() as usize as u64;
+    BufferKey { id: address | 1 << 63, version: prims.len() as u32, part: size_of::<P>() as u32 }
+}
+
+/// The bytes of primitives in the host's layout.
+fn bytes_of<P: Type>(prims: &[P]) -> Vec<u8> {
+    let stride = crate::machine::stride(P::SCHEMA);
+    let mut bytes = vec![0; stride * prims.len()];
+    for (p, out) in prims.iter().zip(bytes.chunks_exact_mut(stride)) {
+        p.write(out);
+    }
+    bytes
+}
+
+/// Whether a key names a slice rather than a tree.
+#[cfg(feature = "gpu")]
+pub(crate) fn is_slice_key(key: BufferKey) -> bool {
+    key.id >> 63 == 1
+}

@@ -1,0 +1,82 @@
+//! Axis-aligned bounding boxes (host side).
+
+use glam::Vec3;
+
+/// An axis-aligned box `[min, max]`, closed on all sides.
+///
+/// [`Aabb::EMPTY`] is the neutral element of [`Aabb::union`]; a box is *valid* when `min <= max`
+/// on every axis and no bound is NaN.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// Lower corner.
+    pub min: Vec3,
+    /// Upper corner.
+    pub max: Vec3,
+}
+
+impl Aabb {
+    /// The box that contains nothing.
+    pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+
+    /// The box spanned by two corners, `min <= max`.
+    pub const fn new(min: Vec3, max: Vec3) -> Self {
+        Self { min, max }
+    }
+
+    /// The smallest box around `points`.
+    pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |b, p| Self::new(b.min.min(p), b.max.max(p)))
+    }
+
+    /// The smallest `f32` box that contains the sphere around `center`: the faces are rounded
+    /// outwards, so the box is never too small and at most one ulp too large.
+    pub fn from_sphere(center: Vec3, radius: f32) -> Self {
+        let down = |x: f32| (x - radius).next_down();
+        let up = |x: f32| (x + radius).next_up();
+        Self::new(
+            Vec3::new(down(center.x), down(center.y), down(center.z)),
+            Vec3::new(up(center.x), up(center.y), up(center.z)),
+        )
+    }
+
+    /// The smallest box around both.
+    pub fn union(self, other: Self) -> Self {
+        Self::new(self.min.min(other.min), self.max.max(other.max))
+    }
+
+    /// The common part; not valid when there is none.
+    pub fn intersection(self, other: Self) -> Self {
+        Self::new(self.min.max(other.min), self.max.min(other.max))
+    }
+
+    /// Whether `min <= max` on every axis (false when a bound is NaN).
+    pub fn is_valid(self) -> bool {
+        self.min.cmple(self.max).all()
+    }
+
+    /// Whether every bound is a finite number.
+    pub fn is_finite(self) -> bool {
+        self.min.is_finite() && self.max.is_finite()
+    }
+
+    /// Edge lengths.
+    pub fn size(self) -> Vec3 {
+        self.max - self.min
+    }
+
+    /// The middle, formed so that it does not overflow.
+    pub fn center(self) -> Vec3 {
+        self.min * 0.5 + self.max * 0.5
+    }
+
+    /// Half the surface area; 0 for a box that is not valid.
+    pub fn half_area(self) -> f32 {
+        let d = self.size().max(Vec3::ZERO);
+        d.x * d.y + d.y * d.z + d.z * d.x
+    }
+
+    /// Whether `point` lies in the closed box.
+    pub fn contains(self, point: Vec3) -> bool {
+        self.min.cmple(point).all() && point.cmple(self.max).all()
+    }
+}

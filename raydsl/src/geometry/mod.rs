@@ -1,0 +1,14 @@
+//! Rays, hits, boxes and the shapes that rays meet.
+
+mod aabb;
+mod hit;
+mod primitive;
+mod ray;
+pub mod sphere;
+pub mod triangle;
+
+pub use aabb::Aabb;
+pub use hit::{Hit, HitOn};
+pub use primitive::Primitive;
+pub use ray::{Ray, RayOn};
+pub use triangle::Triangle;

@@ -1,0 +1,218 @@
+//! The device with its caches: what an application holds.
+
+use std::fmt;
+use std::sync::Mutex;
+use std::time::Duration;
+
+use super::buffers::Uploads;
+use super::device::{Gpu, lock};
+use super::error::{GpuError, one_line};
+use super::pipeline::{Checks, Pipelines};
+use super::slot::Slot;
+use crate::machine::wgsl::{BufferKey, Limits};
+
+/// A device, the scene buffers uploaded to it and the pipelines compiled for it.
+///
+/// Make one and keep it; it may be shared between threads. Dropping a context that owns its
+/// device waits for the work still in flight.
+pub struct Context {
+    pub(super) gpu: Gpu,
+    adapter: wgpu::AdapterInfo,
+    pub(super) checks: Checks,
+    pub(super) uploads: Mutex<Uploads>,
+    pub(super) pipelines: Mutex<Pipelines>,
+    /// Buffers of finished dispatches, for the next ones.
+    pub(super) idle: Mutex<Vec<Slot>>,
+}
+
+impl Context {
+    /// Opens the fastest adapter there is, a software one if there is no other.
+    ///
+    /// The environment variables `WGPU_BACKEND` and `WGPU_VALIDATION` are heeded.
+    pub fn new() -> Result<Self, GpuError> {
+        let adapter = pollster::block_on(adapter())?;
+        let (device, queue) = pollster::block_on(device(&adapter))?;
+        let context = Self::from_wgpu(Some(adapter.get_info()), device, queue);
+        context.gpu.watch();
+        Ok(context)
+    }
+
+    /// Uses a device and a queue of the application, with that device's limits.
+    ///
+    /// Its callbacks for errors and for loss are left alone. Ask for
+    /// `Features::TIMESTAMP_QUERY` when making the device to get device times, and for the
+    /// adapter's storage limits to get large windows. Without `adapter_info` the device's
+    /// own is taken.
+    pub fn from_wgpu(
+        adapter_info: Option<wgpu::AdapterInfo>,
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+    ) -> Self {
+        let adapter = adapter_info.unwrap_or_else(|| device.adapter_info());
+        Self {
+            gpu: Gpu::new(device, queue),
+            adapter,
+            checks: Checks::Full,
+            uploads: Mutex::default(),
+            pipelines: Mutex::default(),
+            idle: Mutex::default(),
+        }
+    }
+
+    /// Makes bindings smaller than the device would allow, so that windows and tiles are
+    /// exercised by small data. Never below 256 bytes and never above the device's limit.
+    pub fn with_max_binding_bytes(mut self, bytes: u64) -> Self {
+        let caps = &mut self.gpu.caps;
+        caps.max_binding = (bytes & !3).max(256).min(caps.max_binding);
+        self
+    }
+
+    /// How long to wait for one dispatch before giving up; 60 s unless set.
+    ///
+    /// A timeout comes back as an error at once, but dropping the device afterwards still
+    /// waits for the driver: wgpu has no way to cancel work.
+    pub fn with_timeout(mut self, timeout: Duration) -> Self {
+        self.gpu.timeout = timeout;
+        self
+    }
+
+    /// Chooses the runtime checks of the shaders compiled from now on.
+    ///
+    /// # Safety
+    ///
+    /// With [`Checks::Trusted`] every module given to [`Context::run`] must keep its array
+    /// indices within bounds by itself, as the modules recorded by this crate do: they
+    /// clamp. With [`Checks::Full`] there is no condition.
+    pub unsafe fn with_checks(mut self, checks: Checks) -> Self {
+        self.checks = checks;
+        *lock(&self.pipelines) = Pipelines::default();
+        self
+    }
+
+    /// Name of the adapter, with its driver.
+    pub fn adapter_name(&self) -> String {
+        let info = &self.adapter;
+        if info.driver.is_empty() {
+            return format!("{} ({:?})", info.name, info.backend);
+        }
+        format!("{} ({:?}, {})", info.name, info.backend, info.driver)
+    }
+
+    /// What wgpu knows of the adapter.
+    pub fn adapter_info(&self) -> &wgpu::AdapterInfo {
+        &self.adapter
+    }
+
+    /// The device, for the application's own buffers.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.gpu.device
+    }
+
+    /// The queue, for the application's own buffers.
+    pub fn queue(&self) -> &wgpu::Queue {
+        &self.gpu.queue
+    }
+
+    /// The limits to record kernels with.
+    pub fn limits(&self) -> Limits {
+        Limits {
+            max_binding_bytes: self.gpu.caps.max_binding,
+            max_storage_buffers: self.gpu.caps.max_storage_buffers,
+        }
+    }
+
+    /// Bytes of scene data sent to the device so far.
+    pub fn uploaded_bytes(&self) -> u64 {
+        lock(&self.uploads).uploaded()
+    }
+
+    /// Shaders compiled so far.
+    pub fn compiled(&self) -> u64 {
+        lock(&self.pipelines).compiled()
+    }
+
+    /// Frees the scene buffers of one owner; they are uploaded again when asked for.
+    pub fn forget(&self, id: u64) {
+        lock(&self.uploads).forget(id);
+    }
+
+    /// Names a buffer of the application as the contents of `key`: `size` bytes from
+    /// `offset`. Nothing is uploaded and nothing is copied.
+    ///
+    /// The buffer must belong to this context's device. It replaces an earlier version of
+    /// the same part, and is itself dropped when a kernel asks for another version.
+    pub fn with_external(
+        &self,
+        key: BufferKey,
+        buffer: wgpu::Buffer,
+        offset: u64,
+        size: u64,
+    ) -> Result<(), GpuError> {
+        lock(&self.uploads).name_external(&self.gpu.caps, key, buffer, offset, size)
+    }
+}
+
+impl fmt::Debug for Context {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Context")
+            .field("adapter", &self.adapter_name())
+            .field("limits", &self.limits())
+            .field("checks", &self.checks)
+            .finish_non_exhaustive()
+    }
+}
+
+/// The fastest adapter; wgpu sorts software last.
+async fn adapter() -> Result<wgpu::Adapter, GpuError> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    // Indirect calls, which are never made here, cost pipelines at start and, worse, hold
+    // max_buffer_size to 4 GiB.
+    descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
+    let instance = wgpu::Instance::new(descriptor.with_env());
+    let mut options = wgpu::RequestAdapterOptions {
+        power_preference: wgpu::PowerPreference::HighPerformance,
+        ..Default::default()
+    };
+    if let Ok(adapter) = instance.request_adapter(&options).await {
+        return Ok(adapter);
+    }
+    options.force_fallback_adapter = true;
+    instance
+        .request_adapter(&options)
+        .await
+        .map_err(|error| GpuError::NoAdapter { reason: one_line(&error.to_string()) })
+}
+
+/// A device with all the storage the adapter offers.
+async fn device(adapter: &wgpu::Adapter) -> Result<(wgpu::Device, wgpu::Queue), GpuError> {
+    let request = adapter.request_device(&wgpu::DeviceDescriptor {
+        label: Some("raydsl"),
+        required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+        required_limits: wanted_limits(&adapter.limits()),
+        ..Default::default()
+    });
+    request.await.map_err(|error| GpuError::DeviceRequest {
+        adapter: adapter.get_info().name,
+        reason: one_line(&error.to_string()),
+    })
+}
+
+/// The defaults, the adapter's own values where kernels need them.
+fn wanted_limits(offered: &wgpu::Limits) -> wgpu::Limits {
+    wgpu::Limits {
+        max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
+        max_buffer_size: offered.max_buffer_size,
+        max_storage_buffers_per_shader_stage: offered.max_storage_buffers_per_shader_stage,
+        max_buffers_and_acceleration_structures_per_shader_stage: offered
+            .max_buffers_and_acceleration_structures_per_shader_stage,
+        max_uniform_buffer_binding_size: offered.max_uniform_buffer_binding_size,
+        max_bindings_per_bind_group: offered.max_bindings_per_bind_group,
+        min_storage_buffer_offset_alignment: offered.min_storage_buffer_offset_alignment,
+        max_compute_workgroups_per_dimension: offered.max_compute_workgroups_per_dimension,
+        max_compute_invocations_per_workgroup: offered.max_compute_invocations_per_workgroup,
+        max_compute_workgroup_size_x: offered.max_compute_workgroup_size_x,
+        max_compute_workgroup_size_y: offered.max_compute_workgroup_size_y,
+        max_compute_workgroup_storage_size: offered.max_compute_workgroup_storage_size,
+        ..wgpu::Limits::default().or_worse_values_from(offered)
+    }
+}

@@ -1,0 +1,173 @@
+//! What can go wrong on the device side, each with its remedy.
+
+use crate::machine::wgsl::BufferKey;
+
+/// An error of the GPU runtime.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GpuError {
+    /// No driver offers an adapter.
+    #[error(
+        "no GPU adapter: install a Vulkan driver, on Debian mesa-vulkan-drivers and libvulkan1 \
+         ({reason})"
+    )]
+    NoAdapter {
+        /// Which backends were asked, in wgpu's words.
+        reason: String,
+    },
+    /// The adapter is there but gave no device.
+    #[error(
+        "the adapter {adapter} refused to make a device ({reason}): update its driver, or pass \
+         your own device to Context::from_wgpu"
+    )]
+    DeviceRequest {
+        /// The adapter's name.
+        adapter: String,
+        /// wgpu's explanation.
+        reason: String,
+    },
+    /// The WGSL does not parse or does not validate.
+    #[error("the WGSL is invalid at line {line}, `{text}`: {message}")]
+    ShaderInvalid {
+        /// naga's message on one line.
+        message: String,
+        /// Line of the source, from 1; 0 where naga gives none.
+        line: u32,
+        /// That line of the source, trimmed.
+        text: String,
+    },
+    /// The module is valid WGSL but no pipeline could be made of it.
+    #[error("no pipeline could be made of the shader: {message}")]
+    PipelineFailed {
+        /// The message of wgpu or of the driver.
+        message: String,
+    },
+    /// One buffer would be larger than the device allows.
+    #[error(
+        "{name} needs a buffer of {bytes} bytes but max_buffer_size is {limit}: use smaller \
+         windows (Context::with_max_binding_bytes) or a device with a higher limit"
+    )]
+    BufferTooLarge {
+        /// What the buffer is for.
+        name: String,
+        /// Bytes asked for.
+        bytes: u64,
+        /// The device's limit.
+        limit: u64,
+    },
+    /// One binding would be larger than the device allows.
+    #[error(
+        "{name} needs a binding of {bytes} bytes but the limit is {limit}: record the kernel \
+         with this context's limits()"
+    )]
+    BindingTooLarge {
+        /// What is bound.
+        name: String,
+        /// Bytes asked for.
+        bytes: u64,
+        /// The limit of this context.
+        limit: u64,
+    },
+    /// More storage buffers than one shader stage may have.
+    #[error(
+        "the kernel needs {needed} storage buffers but max_storage_buffers_per_shader_stage is \
+         {limit}: use fewer scene buffers or larger windows"
+    )]
+    TooManyBuffers {
+        /// Scene windows, inputs and outputs together.
+        needed: u64,
+        /// The device's limit.
+        limit: u32,
+    },
+    /// The device has no memory left.
+    #[error(
+        "the device is out of memory while making {what}: forget scenes that are no longer \
+         used (Context::forget) or split the data"
+    )]
+    OutOfMemory {
+        /// What was being made.
+        what: String,
+    },
+    /// The device is gone.
+    #[error("the device was lost ({reason}): make a new Context and upload the scene again")]
+    DeviceLost {
+        /// The driver's reason, where it gave one.
+        reason: String,
+    },
+    /// The device did not answer in time.
+    #[error(
+        "the device did not finish within {seconds} s: give it less work per pixel or raise \
+         Context::with_timeout"
+    )]
+    Timeout {
+        /// The time allowed.
+        seconds: f64,
+    },
+    /// The caller knows no bytes for a buffer that the kernel reads.
+    #[error("there is no data for the scene buffer {name} ({key:?}): is its owner still alive?")]
+    MissingData {
+        /// The buffer's name in the kernel.
+        name: String,
+        /// The buffer's key.
+        key: BufferKey,
+    },
+    /// Bytes were given, but not as many as are needed.
+    #[error("{what} has {bytes} bytes but {needed} are needed")]
+    WrongLength {
+        /// Which bytes.
+        what: String,
+        /// How many were given.
+        bytes: u64,
+        /// How many are needed.
+        needed: u64,
+    },
+    /// A buffer of the application cannot serve as a scene buffer.
+    #[error("the application's buffer for {key:?} cannot be used: {reason}")]
+    ExternalBuffer {
+        /// The key it was given for.
+        key: BufferKey,
+        /// What to change.
+        reason: String,
+    },
+    /// The grid has more pixels than a shader can number.
+    #[error("a grid of {0} x {1} pixels has more than 2^32 - 1 of them: run it in parts", size[0], size[1])]
+    GridTooLarge {
+        /// The grid asked for.
+        size: [u32; 2],
+    },
+    /// A module that does not keep to the interface.
+    #[error("the kernel module is malformed: {reason}")]
+    BadModule {
+        /// Which rule it breaks.
+        reason: String,
+    },
+    /// wgpu refused a call; a defect of this crate or of the driver.
+    #[error("wgpu refused {what}: {message}")]
+    Rejected {
+        /// What was being done.
+        what: String,
+        /// wgpu's message on one line.
+        message: String,
+    },
+}
+
+/// A message of several lines on one.
+///
+/// wgpu nests causes by lines and naga draws the source around its message; only what says
+/// something is kept, the source line is quoted apart.
+pub(super) fn one_line(message: &str) -> String {
+    let words = message
+        .lines()
+        .map(str::trim)
+        .filter(|line| !line.is_empty() && !FRAMES.contains(line) && !is_drawing(line));
+    words.collect::<Vec<_>>().join("; ")
+}
+
+/// Lines with which wgpu introduces the causes.
+const FRAMES: [&str; 3] = ["Validation Error", "Internal Error", "Caused by:"];
+
+/// Whether a line of naga's report shows the source instead of saying something.
+fn is_drawing(line: &str) -> bool {
+    let rest = line.trim_start_matches(|c: char| c.is_ascii_digit() || c == ' ');
+    rest.starts_with(['│', '┌', '╭', '╰', '|', '·'])
+}

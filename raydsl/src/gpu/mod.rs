@@ -1,0 +1,28 @@
+//! Runs generated WGSL through wgpu.
+//!
+//! A [`Context`] owns, or borrows from the application, one device and its queue. Scene
+//! buffers are uploaded once and kept ([`BufferKey`](crate::machine::wgsl::BufferKey)),
+//! pipelines are compiled once and kept, and [`Context::run`] cuts a grid into dispatches
+//! that fit the device's limits and stay short. Whatever goes wrong comes back as a
+//! [`GpuError`]: wgpu's own default, a panic, is never left in place.
+
+mod buffers;
+mod chunks;
+mod clock;
+mod context;
+mod device;
+mod error;
+mod pipeline;
+mod run;
+mod scheduler;
+mod slot;
+mod tiles;
+
+#[cfg(test)]
+mod tests;
+
+pub use context::Context;
+pub use error::GpuError;
+pub use pipeline::Checks;
+pub use run::Timing;
+pub use scheduler::GpuScheduler;

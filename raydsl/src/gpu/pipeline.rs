@@ -1,0 +1,197 @@
+//! Compiled kernels, each compiled once.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
+
+use super::device::Gpu;
+use super::error::{GpuError, one_line};
+use super::tiles::FIRST_GOAL;
+
+/// Which runtime checks wgpu adds to a shader.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub enum Checks {
+    /// All of them: no shader can reach memory outside its buffers.
+    #[default]
+    Full,
+    /// No bounds checks: the shader keeps its indices within bounds by itself.
+    Trusted,
+}
+
+/// A compiled kernel.
+pub(super) struct Pipeline {
+    pub(super) compute: wgpu::ComputePipeline,
+    pub(super) layout: wgpu::BindGroupLayout,
+    storage: Vec<Storage>,
+    /// Invocations of one dispatch, as the last run left them: the next starts there.
+    pub(super) goal: AtomicU64,
+}
+
+/// A storage binding of a kernel.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct Storage {
+    pub(super) binding: u32,
+    pub(super) read_only: bool,
+}
+
+/// The kernels compiled so far, by their text.
+#[derive(Default)]
+pub(super) struct Pipelines {
+    /// The text nearly always fixes the bindings; where it does not, one entry for each.
+    by_source: HashMap<String, Vec<Arc<Pipeline>>>,
+    compiled: u64,
+}
+
+impl Pipelines {
+    /// Shaders compiled so far.
+    pub(super) fn compiled(&self) -> u64 {
+        self.compiled
+    }
+
+    /// The pipeline of a text, compiled if it is new.
+    pub(super) fn get(
+        &mut self,
+        gpu: &Gpu,
+        checks: Checks,
+        source: &str,
+        storage: &[Storage],
+    ) -> Result<Arc<Pipeline>, GpuError> {
+        let known = self.by_source.get(source).into_iter().flatten();
+        if let Some(pipeline) = known.into_iter().find(|known| known.storage == storage) {
+            return Ok(Arc::clone(pipeline));
+        }
+        let pipeline = Arc::new(compile(gpu, checks, source, storage)?);
+        self.compiled += 1;
+        let same_text = self.by_source.entry(source.to_owned()).or_default();
+        same_text.push(Arc::clone(&pipeline));
+        Ok(pipeline)
+    }
+}
+
+/// Makes a pipeline of a text.
+///
+/// The layout lists every binding of the module, used or not: a layout deduced from the
+/// shader would leave out what the shader happens not to read, and bind groups would differ.
+fn compile(
+    gpu: &Gpu,
+    checks: Checks,
+    source: &str,
+    storage: &[Storage],
+) -> Result<Pipeline, GpuError> {
+    let module = shader(gpu, checks, source)?;
+    let made = gpu.guarded("the pipeline", || {
+        let layout = layout(&gpu.device, storage);
+        (pipeline(&gpu.device, &module, &layout, checks), layout)
+    });
+    match made {
+        Ok((compute, layout)) => Ok(Pipeline {
+            compute,
+            layout,
+            storage: storage.to_vec(),
+            goal: AtomicU64::new(FIRST_GOAL),
+        }),
+        Err(GpuError::Rejected { message, .. }) => Err(GpuError::PipelineFailed { message }),
+        Err(error) => Err(error),
+    }
+}
+
+fn pipeline(
+    device: &wgpu::Device,
+    module: &wgpu::ShaderModule,
+    layout: &wgpu::BindGroupLayout,
+    checks: Checks,
+) -> wgpu::ComputePipeline {
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("raydsl"),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("raydsl"),
+        layout: Some(&layout),
+        module,
+        entry_point: Some("main"),
+        compilation_options: wgpu::PipelineCompilationOptions {
+            zero_initialize_workgroup_memory: checks == Checks::Full,
+            ..Default::default()
+        },
+        cache: None,
+    })
+}
+
+fn layout(device: &wgpu::Device, storage: &[Storage]) -> wgpu::BindGroupLayout {
+    let uniforms = [0, 1].map(|binding| entry(binding, wgpu::BufferBindingType::Uniform));
+    let storage = storage.iter().map(|&Storage { binding, read_only }| {
+        entry(binding, wgpu::BufferBindingType::Storage { read_only })
+    });
+    let entries: Vec<_> = uniforms.into_iter().chain(storage).collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("raydsl"),
+        entries: &entries,
+    })
+}
+
+fn entry(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        count: None,
+    }
+}
+
+/// Parses and validates a text, quoting the line at fault.
+fn shader(gpu: &Gpu, checks: Checks, source: &str) -> Result<wgpu::ShaderModule, GpuError> {
+    let mut report = None;
+    let made = gpu.guarded("the shader", || {
+        let module = shader_module(&gpu.device, checks, source);
+        report = Some(pollster::block_on(module.get_compilation_info()));
+        module
+    });
+    match made {
+        Err(GpuError::Rejected { message, .. }) => Err(invalid(source, report, message)),
+        other => other,
+    }
+}
+
+fn shader_module(device: &wgpu::Device, checks: Checks, source: &str) -> wgpu::ShaderModule {
+    let descriptor = wgpu::ShaderModuleDescriptor {
+        label: Some("raydsl"),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    };
+    match checks {
+        Checks::Full => device.create_shader_module(descriptor),
+        Checks::Trusted => {
+            let trusted = wgpu::ShaderRuntimeChecks {
+                bounds_checks: false,
+                ..wgpu::ShaderRuntimeChecks::checked()
+            };
+            // SAFETY: only the bounds checks are off, and `Context::with_checks`, the one
+            // way to `Trusted`, has its caller promise modules that stay within bounds
+            // without them; recorded kernels clamp each index of a buffer, of a stack and
+            // of an array, and leave when their pixel is outside `job.count`. Loop bounding
+            // stays on: without it a loop that never ends, which a kernel's own `while` can
+            // be for some input, lets the driver assume anything, clamps included. Integer
+            // division keeps its guards for the same reason: a kernel may divide by zero.
+            unsafe { device.create_shader_module_trusted(descriptor, trusted) }
+        }
+    }
+}
+
+/// The error for a text that naga refused.
+fn invalid(source: &str, report: Option<wgpu::CompilationInfo>, fallback: String) -> GpuError {
+    let messages = report.map(|report| report.messages).unwrap_or_default();
+    let fault = messages
+        .into_iter()
+        .find(|message| message.message_type == wgpu::CompilationMessageType::Error);
+    let Some(fault) = fault else {
+        return GpuError::ShaderInvalid { message: fallback, line: 0, text: String::new() };
+    };
+    let line = fault.location.map_or(0, |location| location.line_number);
+    let text = source.lines().nth((line as usize).wrapping_sub(1));
+    GpuError::ShaderInvalid {
+        message: one_line(&fault.message),
+        line,
+        text: text.unwrap_or_default().trim().to_owned(),
+    }
+}

@@ -1,0 +1,262 @@
+//! Runs a recorded kernel over a grid.
+
+use std::borrow::Cow;
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use super::buffers::{Bound, Source};
+use super::context::Context;
+use super::device::lock;
+use super::error::GpuError;
+use super::pipeline::{Pipeline, Storage};
+use super::slot::{Finished, InFlight, Pass, Slot};
+use super::tiles::{Tiler, next_goal};
+use crate::machine::wgsl::{BufferKey, Module};
+
+/// Dispatches on their way at once: one computes while the other's outputs come back.
+const IN_FLIGHT: usize = 2;
+/// Inputs or outputs of one dispatch at most: several dispatches overlap better with their
+/// transfers than one large one, and the buffers stay small beside the scene.
+const TILE_BYTES: u64 = 64 << 20;
+
+/// How long a run took.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Timing {
+    /// The compute passes alone, by the device's clock, where it has one.
+    pub device_ms: Option<f64>,
+    /// The whole call: uploads, compilation and readback included.
+    pub wall_ms: f64,
+    /// Number of dispatches the grid was cut into.
+    pub dispatches: u32,
+}
+
+impl Context {
+    /// Runs `module` once for each pixel of a grid of `size`, or for each element of a batch
+    /// of `size` (n, 1), and waits for the outputs.
+    ///
+    /// `data` gives the bytes of the scene buffers that are not on the device yet; it must
+    /// not call this context, whose cache is locked meanwhile.
+    ///
+    /// `inputs` and `outputs` are in row order, `input_stride` and `output_stride` bytes for
+    /// each pixel; `outputs` must have exactly that length. After an error its contents are
+    /// those of the dispatches that came through.
+    pub fn run<'a>(
+        &self,
+        module: &Module,
+        data: &dyn Fn(BufferKey) -> Option<Cow<'a, [u8]>>,
+        inputs: &[u8],
+        size: [u32; 2],
+        outputs: &mut [u8],
+    ) -> Result<Timing, GpuError> {
+        let start = Instant::now();
+        let pixels = pixels(size)?;
+        self.check_lengths(module, pixels, inputs, outputs)?;
+        if pixels == 0 {
+            return Ok(Timing::default());
+        }
+        self.gpu.check()?;
+        let max_elements = self.max_elements(module)?;
+        let pipeline = self.pipeline(module)?;
+        let pass = Pass {
+            module,
+            pipeline: &pipeline,
+            uniforms: self.uniforms(module)?,
+            scene: self.scene(module, data)?,
+            size,
+            inputs,
+        };
+        let max_groups = self.gpu.caps.max_groups;
+        let tiler = Tiler::new(size, module.workgroup, max_elements, max_groups);
+        let mut timing = self.dispatch_all(&pass, tiler, outputs)?;
+        timing.wall_ms = start.elapsed().as_secs_f64() * 1e3;
+        Ok(timing)
+    }
+
+    /// Checks the module's numbers and the caller's slices against each other.
+    fn check_lengths(
+        &self,
+        module: &Module,
+        pixels: u64,
+        inputs: &[u8],
+        outputs: &[u8],
+    ) -> Result<(), GpuError> {
+        let bad = |reason: &str| Err(GpuError::BadModule { reason: reason.to_owned() });
+        if module.output_stride == 0 {
+            return bad("it has no outputs");
+        }
+        if !(module.input_stride.is_multiple_of(4) && module.output_stride.is_multiple_of(4)) {
+            return bad("the strides of inputs and outputs must be multiples of 4");
+        }
+        if module.workgroup.contains(&0) {
+            return bad("its workgroup is empty");
+        }
+        if module.uniforms.is_empty() || !module.uniforms.len().is_multiple_of(16) {
+            return bad("its uniforms must be a positive multiple of 16 bytes");
+        }
+        expect("inputs", inputs, pixels, module.input_stride)?;
+        expect("outputs", outputs, pixels, module.output_stride)
+    }
+
+    /// Elements of the inputs and outputs that fit one dispatch.
+    fn max_elements(&self, module: &Module) -> Result<u64, GpuError> {
+        let caps = &self.gpu.caps;
+        let stride = u64::from(module.input_stride.max(module.output_stride));
+        if stride > caps.max_binding {
+            return Err(GpuError::BindingTooLarge {
+                name: "one element of the inputs or outputs".to_owned(),
+                bytes: stride,
+                limit: caps.max_binding,
+            });
+        }
+        // The staging buffer holds the timestamps too.
+        let budget = caps.max_binding.min(caps.max_buffer.saturating_sub(64));
+        Ok((budget.min(TILE_BYTES) / stride).max(1))
+    }
+
+    /// The compiled kernel.
+    fn pipeline(&self, module: &Module) -> Result<Arc<Pipeline>, GpuError> {
+        let storage = storage(module);
+        let limit = self.gpu.caps.max_storage_buffers;
+        let needed = storage.len() as u64;
+        if needed > u64::from(limit) {
+            return Err(GpuError::TooManyBuffers { needed, limit });
+        }
+        let mut pipelines = lock(&self.pipelines);
+        pipelines.get(&self.gpu, self.checks, &module.source, &storage)
+    }
+
+    /// The kernel's parameters on the device.
+    fn uniforms(&self, module: &Module) -> Result<wgpu::Buffer, GpuError> {
+        let bytes = module.uniforms.len() as u64;
+        let limit = self.gpu.caps.max_uniform;
+        if bytes > limit {
+            return Err(GpuError::BindingTooLarge {
+                name: "the kernel's parameters".to_owned(),
+                bytes,
+                limit,
+            });
+        }
+        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let buffer = self.gpu.buffer("parameters", bytes, usage)?;
+        self.gpu.guarded("the kernel's parameters", || {
+            self.gpu.queue.write_buffer(&buffer, 0, &module.uniforms);
+        })?;
+        Ok(buffer)
+    }
+
+    /// The windows of all scene buffers, uploaded where needed.
+    fn scene(&self, module: &Module, data: Source<'_, '_>) -> Result<Vec<Bound>, GpuError> {
+        let mut uploads = lock(&self.uploads);
+        let mut scene = Vec::new();
+        for buffer in &module.buffers {
+            scene.extend(uploads.bind(&self.gpu, buffer, data)?);
+        }
+        Ok(scene)
+    }
+
+    /// Sends the tiles off, a few in flight, and learns how large they should be.
+    fn dispatch_all(
+        &self,
+        pass: &Pass<'_>,
+        mut tiler: Tiler,
+        outputs: &mut [u8],
+    ) -> Result<Timing, GpuError> {
+        let mut progress = Progress::new(pass.pipeline.goal.load(Ordering::Relaxed));
+        let mut in_flight: VecDeque<InFlight> = VecDeque::with_capacity(IN_FLIGHT);
+        while let Some(tile) = tiler.next(progress.goal) {
+            if in_flight.len() == IN_FLIGHT
+                && let Some(oldest) = in_flight.pop_front()
+            {
+                self.retire(oldest, pass, outputs, &mut progress)?;
+            }
+            let kept = lock(&self.idle).pop();
+            let slot = match kept {
+                Some(slot) => slot,
+                None => Slot::new(&self.gpu)?,
+            };
+            in_flight.push_back(slot.submit(&self.gpu, pass, tile)?);
+            progress.timing.dispatches += 1;
+        }
+        for oldest in in_flight {
+            self.retire(oldest, pass, outputs, &mut progress)?;
+        }
+        pass.pipeline.goal.store(progress.goal, Ordering::Relaxed);
+        Ok(progress.timing)
+    }
+
+    /// Takes the outputs of a dispatch and puts its buffers by.
+    fn retire(
+        &self,
+        dispatch: InFlight,
+        pass: &Pass<'_>,
+        outputs: &mut [u8],
+        progress: &mut Progress,
+    ) -> Result<(), GpuError> {
+        let since = dispatch.since;
+        let finished = dispatch.finish(&self.gpu, pass, outputs)?;
+        progress.note(since, &finished);
+        lock(&self.idle).push(finished.slot);
+        Ok(())
+    }
+}
+
+/// What a run has learnt so far.
+struct Progress {
+    goal: u64,
+    last_end: Option<Instant>,
+    timing: Timing,
+}
+
+impl Progress {
+    fn new(goal: u64) -> Self {
+        Self { goal, last_end: None, timing: Timing::default() }
+    }
+
+    /// Accounts for a finished dispatch. Without timestamps it took from its submission, or
+    /// from the end of the one before it, until now.
+    fn note(&mut self, since: Instant, finished: &Finished) {
+        let now = Instant::now();
+        let begin = self.last_end.map_or(since, |end| end.max(since));
+        self.last_end = Some(now);
+        let wall_ms = (now - begin).as_secs_f64() * 1e3;
+        if let Some(ms) = finished.device_ms {
+            *self.timing.device_ms.get_or_insert(0.0) += ms;
+        }
+        let ms = finished.device_ms.unwrap_or(wall_ms);
+        self.goal = next_goal(self.goal, finished.tile.invocations(), ms);
+    }
+}
+
+/// Number of pixels, which shaders count in a u32.
+fn pixels(size: [u32; 2]) -> Result<u64, GpuError> {
+    let pixels = u64::from(size[0]) * u64::from(size[1]);
+    if pixels > u64::from(u32::MAX) {
+        return Err(GpuError::GridTooLarge { size });
+    }
+    Ok(pixels)
+}
+
+/// Checks the length of inputs or outputs.
+fn expect(what: &str, bytes: &[u8], pixels: u64, stride: u32) -> Result<(), GpuError> {
+    let needed = pixels * u64::from(stride);
+    if bytes.len() as u64 == needed {
+        return Ok(());
+    }
+    Err(GpuError::WrongLength {
+        what: format!("the slice of {what}"),
+        bytes: bytes.len() as u64,
+        needed,
+    })
+}
+
+/// The module's storage bindings: inputs, outputs, windows.
+fn storage(module: &Module) -> Vec<Storage> {
+    let windows = module.buffers.iter().flat_map(|buffer| &buffer.windows);
+    let read = windows.map(|window| window.binding);
+    let inputs = (module.input_stride > 0).then_some(2);
+    let read = inputs.into_iter().chain(read).map(|binding| Storage { binding, read_only: true });
+    let outputs = Storage { binding: 3, read_only: false };
+    std::iter::once(outputs).chain(read).collect()
+}

@@ -1,0 +1,280 @@
+//! One dispatch: its buffers, its submission and the return of its outputs.
+
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::time::Instant;
+
+use super::buffers::Bound;
+use super::clock::{Clock, STAMPS};
+use super::device::{Gpu, lost};
+use super::error::GpuError;
+use super::pipeline::Pipeline;
+use super::tiles::Tile;
+use crate::machine::wgsl::Module;
+
+/// Bytes of WGSL's `struct Job`.
+const JOB: u64 = 32;
+
+/// What all dispatches of one run share.
+pub(super) struct Pass<'a> {
+    pub(super) module: &'a Module,
+    pub(super) pipeline: &'a Pipeline,
+    pub(super) uniforms: wgpu::Buffer,
+    pub(super) scene: Vec<Bound>,
+    pub(super) size: [u32; 2],
+    pub(super) inputs: &'a [u8],
+}
+
+/// The buffers of one dispatch, kept for the next one and grown as needed.
+pub(super) struct Slot {
+    job: wgpu::Buffer,
+    inputs: Option<wgpu::Buffer>,
+    outputs: Option<wgpu::Buffer>,
+    staging: Option<wgpu::Buffer>,
+    clock: Option<Clock>,
+}
+
+/// A dispatch on its way.
+pub(super) struct InFlight {
+    slot: Slot,
+    staging: wgpu::Buffer,
+    tile: Tile,
+    index: wgpu::SubmissionIndex,
+    mapped: Receiver<bool>,
+    /// When it was submitted.
+    pub(super) since: Instant,
+}
+
+/// A dispatch that is over.
+pub(super) struct Finished {
+    pub(super) slot: Slot,
+    pub(super) tile: Tile,
+    /// Time of the compute pass, where the device tells.
+    pub(super) device_ms: Option<f64>,
+}
+
+impl Slot {
+    /// An empty slot.
+    pub(super) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let clock = gpu.caps.timestamps.then(|| Clock::new(gpu)).transpose()?;
+        Ok(Self {
+            job: gpu.buffer("job", JOB, usage)?,
+            inputs: None,
+            outputs: None,
+            staging: None,
+            clock,
+        })
+    }
+
+    /// Uploads the tile's inputs and sends its dispatch off.
+    pub(super) fn submit(
+        mut self,
+        gpu: &Gpu,
+        pass: &Pass<'_>,
+        tile: Tile,
+    ) -> Result<InFlight, GpuError> {
+        use wgpu::BufferUsages as Usage;
+        let span = tile.span(pass.size[0]);
+        let input_bytes = span * u64::from(pass.module.input_stride);
+        let output_bytes = span * u64::from(pass.module.output_stride);
+        let inputs = match input_bytes {
+            0 => None,
+            bytes => Some(room(
+                &mut self.inputs,
+                gpu,
+                "inputs",
+                bytes,
+                Usage::STORAGE | Usage::COPY_DST,
+            )?),
+        };
+        let outputs = room(
+            &mut self.outputs,
+            gpu,
+            "outputs",
+            output_bytes,
+            Usage::STORAGE | Usage::COPY_SRC,
+        )?;
+        let packed = packed_bytes(pass, tile);
+        let staging = room(
+            &mut self.staging,
+            gpu,
+            "readback",
+            packed + STAMPS,
+            Usage::MAP_READ | Usage::COPY_DST,
+        )?;
+        let (report, mapped) = sync_channel(1);
+        let index = gpu.guarded("a dispatch", || {
+            self.write(gpu, pass, tile, inputs.as_ref());
+            let group = self.bind(
+                gpu,
+                pass,
+                inputs.as_ref().map(|buffer| (buffer, input_bytes)),
+                (&outputs, output_bytes),
+            );
+            let commands = self.record(gpu, pass, tile, &group, &outputs, &staging);
+            let index = gpu.queue.submit([commands]);
+            staging.map_async(wgpu::MapMode::Read, 0..packed + STAMPS, move |result| {
+                // Nobody listens any more after an error elsewhere.
+                let _ = report.send(result.is_ok());
+            });
+            index
+        })?;
+        Ok(InFlight { slot: self, staging, tile, index, mapped, since: Instant::now() })
+    }
+
+    /// Queues the job block and the inputs, which travel with the next submission.
+    fn write(&self, gpu: &Gpu, pass: &Pass<'_>, tile: Tile, inputs: Option<&wgpu::Buffer>) {
+        let width = pass.size[0];
+        // Fits: `run` refuses grids of 2^32 pixels and more.
+        let base = tile.first[1] * width + tile.first[0];
+        let [w, h] = pass.size;
+        let ([x, y], [columns, rows]) = (tile.first, tile.count);
+        let job = [w, h, x, y, columns, rows, base, 0];
+        gpu.queue.write_buffer(&self.job, 0, bytemuck::bytes_of(&job));
+        let Some(inputs) = inputs else { return };
+        let stride = u64::from(pass.module.input_stride);
+        for (first, length) in tile.runs(width) {
+            let bytes = (first * stride) as usize..((first + length) * stride) as usize;
+            let at = (first - u64::from(base)) * stride;
+            gpu.queue.write_buffer(inputs, at, &pass.inputs[bytes]);
+        }
+    }
+
+    /// The bind group of a dispatch. Inputs and outputs are bound with their exact sizes,
+    /// so that a checked shader is checked against the tile and not against old contents.
+    fn bind(
+        &self,
+        gpu: &Gpu,
+        pass: &Pass<'_>,
+        inputs: Option<(&wgpu::Buffer, u64)>,
+        outputs: (&wgpu::Buffer, u64),
+    ) -> wgpu::BindGroup {
+        let mut entries = vec![
+            entry(0, &pass.uniforms, 0, pass.module.uniforms.len() as u64),
+            entry(1, &self.job, 0, JOB),
+            entry(3, outputs.0, 0, outputs.1),
+        ];
+        entries.extend(inputs.map(|(buffer, bytes)| entry(2, buffer, 0, bytes)));
+        let scene = pass.scene.iter();
+        entries.extend(
+            scene.map(|bound| entry(bound.binding, &bound.buffer, bound.offset, bound.size)),
+        );
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("raydsl"),
+            layout: &pass.pipeline.layout,
+            entries: &entries,
+        })
+    }
+
+    /// Dispatch, copy of the outputs to the staging buffer, timestamps behind them.
+    fn record(
+        &self,
+        gpu: &Gpu,
+        pass: &Pass<'_>,
+        tile: Tile,
+        group: &wgpu::BindGroup,
+        outputs: &wgpu::Buffer,
+        staging: &wgpu::Buffer,
+    ) -> wgpu::CommandBuffer {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        {
+            let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("raydsl"),
+                timestamp_writes: self.clock.as_ref().map(Clock::writes),
+            });
+            compute.set_pipeline(&pass.pipeline.compute);
+            compute.set_bind_group(0, group, &[]);
+            let [columns, rows] = pass.module.workgroup;
+            let groups = [tile.count[0].div_ceil(columns), tile.count[1].div_ceil(rows)];
+            compute.dispatch_workgroups(groups[0], groups[1], 1);
+        }
+        let stride = u64::from(pass.module.output_stride);
+        let mut base = None;
+        let mut at = 0;
+        for (first, length) in tile.runs(pass.size[0]) {
+            let from = (first - *base.get_or_insert(first)) * stride;
+            encoder.copy_buffer_to_buffer(outputs, from, staging, at, length * stride);
+            at += length * stride;
+        }
+        if let Some(clock) = &self.clock {
+            clock.copy(&mut encoder, staging, packed_bytes(pass, tile));
+        }
+        encoder.finish()
+    }
+}
+
+impl InFlight {
+    /// Waits for the dispatch and copies its outputs to their places in the grid.
+    pub(super) fn finish(
+        self,
+        gpu: &Gpu,
+        pass: &Pass<'_>,
+        outputs: &mut [u8],
+    ) -> Result<Finished, GpuError> {
+        gpu.wait(self.index)?;
+        // The work is done, but another thread's poll may be the one that reports it.
+        match self.mapped.recv_timeout(gpu.timeout) {
+            Ok(true) => {}
+            Ok(false) | Err(_) => {
+                gpu.check()?;
+                return Err(lost("the outputs could not be mapped"));
+            }
+        }
+        let packed = packed_bytes(pass, self.tile);
+        let view = self
+            .staging
+            .get_mapped_range(0..packed + STAMPS)
+            .map_err(|error| lost(&error.to_string()))?;
+        let stride = u64::from(pass.module.output_stride);
+        let mut rest = &view[..];
+        for (first, length) in self.tile.runs(pass.size[0]) {
+            let to = (first * stride) as usize..((first + length) * stride) as usize;
+            let (run, after) = rest.split_at(to.len());
+            outputs[to].copy_from_slice(run);
+            rest = after;
+        }
+        let stamps = &view[packed as usize..];
+        let clock = self.slot.clock.as_ref();
+        let device_ms = clock.map(|clock| clock.milliseconds(stamps));
+        drop(view);
+        self.staging.unmap();
+        Ok(Finished { slot: self.slot, tile: self.tile, device_ms })
+    }
+}
+
+/// Bytes of a tile's outputs without the gaps between its rows, to the alignment of a map.
+fn packed_bytes(pass: &Pass<'_>, tile: Tile) -> u64 {
+    let bytes = tile.invocations() * u64::from(pass.module.output_stride);
+    bytes.next_multiple_of(wgpu::MAP_ALIGNMENT)
+}
+
+/// The buffer in `kept` if it is large enough, else a new one with room to spare.
+fn room(
+    kept: &mut Option<wgpu::Buffer>,
+    gpu: &Gpu,
+    name: &str,
+    bytes: u64,
+    usage: wgpu::BufferUsages,
+) -> Result<wgpu::Buffer, GpuError> {
+    if let Some(buffer) = kept.as_ref().filter(|buffer| buffer.size() >= bytes) {
+        return Ok(buffer.clone());
+    }
+    let largest = gpu.caps.max_buffer & !3;
+    let roomy = bytes.next_power_of_two().min(largest).max(bytes);
+    // Free the small one first.
+    *kept = None;
+    let buffer = gpu.buffer(name, roomy, usage)?;
+    *kept = Some(buffer.clone());
+    Ok(buffer)
+}
+
+fn entry(binding: u32, buffer: &wgpu::Buffer, offset: u64, bytes: u64) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry {
+        binding,
+        resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer,
+            offset,
+            size: wgpu::BufferSize::new(bytes),
+        }),
+    }
+}

@@ -1,0 +1,28 @@
+//! Hand-written modules that keep to the interface, run on whatever adapter there is.
+
+mod application;
+mod failures;
+mod grid;
+mod kernels;
+mod scene;
+
+use std::io::Write;
+
+use super::{Context, GpuError};
+
+/// A context, or `None` with a loud line where the machine has no adapter.
+///
+/// `RAYDSL_REQUIRE_GPU=1` turns the skip into a failure.
+fn context() -> Option<Context> {
+    match Context::new() {
+        Ok(context) => Some(context),
+        Err(error @ GpuError::NoAdapter { .. }) => {
+            let required = std::env::var("RAYDSL_REQUIRE_GPU").is_ok_and(|value| value == "1");
+            assert!(!required, "RAYDSL_REQUIRE_GPU=1, but {error}");
+            // Not eprintln!, which the test harness swallows when a test passes.
+            let _ = writeln!(std::io::stderr(), "SKIPPED: no GPU adapter");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}

@@ -1,0 +1,397 @@
+//! A kernel with all its variants.
+
+use fearless_simd::{Fallback, Level};
+
+use crate::machine::{
+    KernelFn, KernelInfo, LaneMachine, Lanes, Packet, Portable8, Recorder, Recording, Resource,
+    Simd4, Simd8, Simd16, Type, wgsl,
+};
+
+/// The machines for which closures are lifted: the natural widths of the target's levels.
+mod native {
+    use super::{Packet, Simd4, Simd8, Simd16};
+
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    pub(super) mod level {
+        pub(in super::super) use fearless_simd::{Avx2, Avx512, Sse4_2};
+        pub(in super::super) type Narrow = Sse4_2;
+        pub(in super::super) type Middle = Avx2;
+        pub(in super::super) type Wide = Avx512;
+    }
+
+    #[cfg(target_arch = "aarch64")]
+    pub(super) mod level {
+        pub(in super::super) type Narrow = fearless_simd::Neon;
+        pub(in super::super) type Middle = fearless_simd::Neon;
+        pub(in super::super) type Wide = fearless_simd::Neon;
+    }
+
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
+    pub(super) mod level {
+        pub(in super::super) type Narrow = fearless_simd::Fallback;
+        pub(in super::super) type Middle = fearless_simd::Fallback;
+        pub(in super::super) type Wide = fearless_simd::Fallback;
+    }
+
+    /// Four lanes: SSE4.2, NEON.
+    pub type Native4 = Packet<Simd4<level::Narrow>>;
+    /// Eight lanes: AVX2, NEON.
+    pub type Native8 = Packet<Simd8<level::Middle>>;
+    /// Sixteen lanes: AVX-512, NEON.
+    pub type Native16 = Packet<Simd16<level::Wide>>;
+    /// Sixteen lanes as two halves: AVX2.
+    pub type Native16Halves = Packet<Simd16<level::Middle>>;
+}
+
+pub use native::{Native4, Native8, Native16, Native16Halves};
+
+/// Eight lanes without special instructions.
+pub type Portable = Packet<Portable8>;
+
+/// The tokens of the levels that this machine has.
+#[derive(Clone, Copy)]
+struct Levels {
+    narrow: Option<native::level::Narrow>,
+    middle: Option<native::level::Middle>,
+    wide: Option<native::level::Wide>,
+}
+
+impl Levels {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    fn detect() -> Self {
+        let level = Level::new();
+        Self { narrow: level.as_sse4_2(), middle: level.as_avx2(), wide: level.as_avx512() }
+    }
+
+    #[cfg(target_arch = "aarch64")]
+    fn detect() -> Self {
+        let level = Level::new();
+        Self { narrow: level.as_neon(), middle: level.as_neon(), wide: level.as_neon() }
+    }
+
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
+    fn detect() -> Self {
+        Self { narrow: None, middle: None, wide: None }
+    }
+}
+
+/// One way to run a kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Variant {
+    /// The user's own function.
+    Scalar,
+    /// SIMD packets of 4 rays.
+    Packet4,
+    /// SIMD packets of 8 rays.
+    Packet8,
+    /// SIMD packets of 16 rays.
+    Packet16,
+    /// WGSL on a GPU.
+    Wgsl,
+}
+
+impl Variant {
+    /// Every variant, in the order of tables.
+    pub const ALL: [Self; 5] =
+        [Self::Scalar, Self::Packet4, Self::Packet8, Self::Packet16, Self::Wgsl];
+
+    /// `scalar`, `packet4`, `packet8`, `packet16` or `wgsl`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Scalar => "scalar",
+            Self::Packet4 => "packet4",
+            Self::Packet8 => "packet8",
+            Self::Packet16 => "packet16",
+            Self::Wgsl => "wgsl",
+        }
+    }
+
+    /// The variant of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|v| v.name() == name)
+    }
+
+    /// The packets with the most lanes that one register of this machine holds.
+    pub fn widest() -> Self {
+        let levels = Levels::detect();
+        if levels.wide.is_some() {
+            Self::Packet16
+        } else if levels.middle.is_some() {
+            Self::Packet8
+        } else {
+            Self::Packet4
+        }
+    }
+
+    /// The instruction set that runs the variant on this machine, and its lanes.
+    ///
+    /// A width whose level the machine lacks runs on the portable packets of 8 lanes.
+    pub fn isa(self) -> (&'static str, usize) {
+        struct Name;
+        impl LanesTask for Name {
+            type Output = (&'static str, usize);
+            fn run<L: Lanes>(self, lanes: L) -> Self::Output {
+                (lanes.isa(), L::N)
+            }
+        }
+        match self {
+            Self::Scalar => ("scalar", 1),
+            Self::Wgsl => ("wgsl", 1),
+            packet => packet.with_lanes(Name),
+        }
+    }
+
+    fn with_lanes<T: LanesTask>(self, task: T) -> T::Output {
+        let levels = Levels::detect();
+        match self {
+            Self::Packet4 if let Some(s) = levels.narrow => task.run(Simd4(s)),
+            Self::Packet8 if let Some(s) = levels.middle => task.run(Simd8(s)),
+            Self::Packet16 if let Some(s) = levels.wide => task.run(Simd16(s)),
+            Self::Packet16 if let Some(s) = levels.middle => task.run(Simd16(s)),
+            _ => task.run(Simd8(Fallback::new())),
+        }
+    }
+}
+
+trait LanesTask {
+    type Output;
+    fn run<L: Lanes>(self, lanes: L) -> Self::Output;
+}
+
+/// A set of variants.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Variants(Vec<Variant>);
+
+impl Variants {
+    /// Every variant.
+    pub fn all() -> Self {
+        Self(Variant::ALL.to_vec())
+    }
+
+    /// The variants that run on the CPU.
+    pub fn cpu() -> Self {
+        Self(Variant::ALL.into_iter().filter(|v| *v != Variant::Wgsl).collect())
+    }
+
+    /// These variants, each once, in the order of tables. The scalar one is always among them: it
+    /// is what the others are compared with.
+    pub fn of(variants: &[Variant]) -> Self {
+        Self(
+            Variant::ALL
+                .into_iter()
+                .filter(|v| *v == Variant::Scalar || variants.contains(v))
+                .collect(),
+        )
+    }
+
+    /// The variants in the order of tables.
+    pub fn iter(&self) -> impl Iterator<Item = Variant> + '_ {
+        self.0.iter().copied()
+    }
+}
+
+/// The lifted body of a closure, for one machine.
+pub type LiftedFn<'a, M, A, R> =
+    Box<dyn Fn(&M, <A as Type>::On<M>) -> <R as Type>::On<M> + Send + Sync + 'a>;
+
+/// The lifted body of a closure, for every machine that it is lifted for.
+#[expect(missing_docs, reason = "the members are named like their machines")]
+pub struct Lifted<'a, A: Type, R: Type> {
+    pub native4: LiftedFn<'a, Native4, A, R>,
+    pub native8: LiftedFn<'a, Native8, A, R>,
+    pub native16: LiftedFn<'a, Native16, A, R>,
+    pub native16_halves: LiftedFn<'a, Native16Halves, A, R>,
+    pub portable: LiftedFn<'a, Portable, A, R>,
+    pub recorder: LiftedFn<'a, Recorder, A, R>,
+}
+
+type Resources<'a> = Box<dyn Fn(&mut dyn FnMut(&dyn Resource)) + Send + Sync + 'a>;
+
+/// A kernel from `A` (a tuple of parameters) to `R`, with all its variants.
+///
+/// It borrows what its closure captures.
+pub struct Kernel<'a, A: Type, R: Type> {
+    info: &'static KernelInfo,
+    scalar: Box<dyn Fn(A) -> R + Send + Sync + 'a>,
+    lifted: Lifted<'a, A, R>,
+    resources: Resources<'a>,
+}
+
+/// A kernel's scalar function, before its lifted copies; what `kernel!` starts with.
+#[doc(hidden)]
+pub struct ScalarKernel<'a, A, R> {
+    info: &'static KernelInfo,
+    scalar: Box<dyn Fn(A) -> R + Send + Sync + 'a>,
+}
+
+impl<'a, A: Type, R: Type> ScalarKernel<'a, A, R> {
+    /// Adds the lifted copies.
+    pub fn lifted(
+        self,
+        lifted: Lifted<'a, A, R>,
+        resources: impl Fn(&mut dyn FnMut(&dyn Resource)) + Send + Sync + 'a,
+    ) -> Kernel<'a, A, R> {
+        let Self { info, scalar } = self;
+        Kernel { info, scalar, lifted, resources: Box::new(resources) }
+    }
+}
+
+/// The lifted body for packets of one kind.
+pub type PacketKernel<'k, L, A, R> =
+    dyn Fn(&Packet<L>, <A as Type>::On<Packet<L>>) -> <R as Type>::On<Packet<L>> + Send + Sync + 'k;
+
+/// Something to do with packets of one kind; see [`Kernel::with_packets`].
+pub trait PacketTask<A: Type, R: Type> {
+    /// What it gives.
+    type Output;
+
+    /// Does it. `kernel` is the lifted body for packets of `lanes`.
+    fn run<L: Lanes>(self, lanes: L, kernel: &PacketKernel<'_, L, A, R>) -> Self::Output;
+}
+
+impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
+    /// What `kernel!` calls first.
+    #[doc(hidden)]
+    pub fn scalar(
+        info: &'static KernelInfo,
+        scalar: impl Fn(A) -> R + Send + Sync + 'a,
+    ) -> ScalarKernel<'a, A, R> {
+        ScalarKernel { info, scalar: Box::new(scalar) }
+    }
+
+    /// The kernel of a `#[kernel] fn`: `Kernel::of::<name>()`.
+    pub fn of<F: KernelFn<Args = A, Output = R>>() -> Self {
+        Self {
+            info: F::info(),
+            scalar: Box::new(F::scalar),
+            lifted: Lifted {
+                native4: Box::new(F::lifted),
+                native8: Box::new(F::lifted),
+                native16: Box::new(F::lifted),
+                native16_halves: Box::new(F::lifted),
+                portable: Box::new(F::lifted),
+                recorder: Box::new(F::lifted),
+            },
+            resources: Box::new(|_| {}),
+        }
+    }
+
+    /// Where the kernel stands in the source.
+    pub fn info(&self) -> &'static KernelInfo {
+        self.info
+    }
+
+    /// Runs the user's own function.
+    #[inline]
+    pub fn call(&self, args: A) -> R {
+        (self.scalar)(args)
+    }
+
+    /// Hands the lifted body for `variant`'s packets to `task`.
+    ///
+    /// A width whose level the machine lacks, and the variants that are no packets, run on the
+    /// portable packets.
+    pub fn with_packets<T: PacketTask<A, R>>(&self, variant: Variant, task: T) -> T::Output {
+        let levels = Levels::detect();
+        match variant {
+            Variant::Packet4 if let Some(s) = levels.narrow => {
+                task.run(Simd4(s), &*self.lifted.native4)
+            }
+            Variant::Packet8 if let Some(s) = levels.middle => {
+                task.run(Simd8(s), &*self.lifted.native8)
+            }
+            Variant::Packet16 if let Some(s) = levels.wide => {
+                task.run(Simd16(s), &*self.lifted.native16)
+            }
+            Variant::Packet16 if let Some(s) = levels.middle => {
+                task.run(Simd16(s), &*self.lifted.native16_halves)
+            }
+            _ => task.run(Simd8(Fallback::new()), &*self.lifted.portable),
+        }
+    }
+
+    /// Runs a CPU variant over `inputs`; `outputs` has the same length.
+    ///
+    /// # Panics
+    ///
+    /// If the lengths differ, or for [`Variant::Wgsl`], which needs a device.
+    pub fn run(&self, variant: Variant, inputs: &[A], outputs: &mut [R]) {
+        assert_eq!(inputs.len(), outputs.len(), "one output for each input");
+        match variant {
+            Variant::Scalar => {
+                for (a, r) in inputs.iter().zip(outputs) {
+                    *r = self.call(*a);
+                }
+            }
+            Variant::Wgsl => panic!("WGSL runs on a device: use raydsl::gpu"),
+            packet => self.with_packets(packet, Batch { inputs, outputs }),
+        }
+    }
+
+    /// The kernel as WGSL that reads its parameters from a buffer, for the limits that WebGPU
+    /// guarantees.
+    pub fn wgsl(&self) -> String {
+        self.record().module(&wgsl::Limits::default()).source
+    }
+
+    /// Records the kernel over a buffer of parameters.
+    pub fn record(&self) -> Recording {
+        Recording::batch::<A, R>(|m, args| (self.lifted.recorder)(m, args))
+    }
+
+    /// Records the kernel behind something that makes its parameters from a pixel.
+    pub fn record_grid(
+        &self,
+        args: impl FnOnce(
+            &Recorder,
+            crate::machine::U<Recorder>,
+            crate::machine::U<Recorder>,
+        ) -> A::On<Recorder>,
+    ) -> Recording {
+        Recording::grid::<R>(|m, x, y| (self.lifted.recorder)(m, args(m, x, y)))
+    }
+
+    /// Shows the buffers that the recorded kernel may read.
+    pub fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        (self.resources)(visit);
+    }
+}
+
+struct Batch<'b, A, R> {
+    inputs: &'b [A],
+    outputs: &'b mut [R],
+}
+
+impl<A: Type, R: Type> PacketTask<A, R> for Batch<'_, A, R> {
+    type Output = ();
+
+    fn run<L: Lanes>(self, lanes: L, kernel: &PacketKernel<'_, L, A, R>) {
+        run_batch(lanes, kernel, self.inputs, self.outputs);
+    }
+}
+
+/// Runs `kernel` over `inputs` in packets; the last one may be partly filled.
+pub fn run_batch<L: Lanes, A: Type, R: Type>(
+    lanes: L,
+    kernel: &(impl Fn(&Packet<L>, A::On<Packet<L>>) -> R::On<Packet<L>> + ?Sized),
+    inputs: &[A],
+    outputs: &mut [R],
+) {
+    lanes.vectorize(|| {
+        for (inputs, outputs) in inputs.chunks(L::N).zip(outputs.chunks_mut(L::N)) {
+            let m = Packet::with_count(lanes, inputs.len());
+            let args = A::from_lanes(&m, &|l| inputs[l.min(inputs.len() - 1)]);
+            let result = kernel(&m, args);
+            for (l, out) in outputs.iter_mut().enumerate() {
+                *out = R::lane(&result, l);
+            }
+        }
+    });
+}
+
+/// Runs the lifted body of a `#[kernel] fn` on packets of `lanes`, for tests of every level.
+pub fn run_fn<F: KernelFn, L: Lanes>(lanes: L, inputs: &[F::Args], outputs: &mut [F::Output]) {
+    run_batch(lanes, &|m: &Packet<L>, args| F::lifted(m, args), inputs, outputs);
+}
+
+const _: () = assert!(<Portable as LaneMachine>::LANES == 8);

@@ -1,0 +1,237 @@
+//! Variables and branches of lifted code.
+
+use core::cell::Cell;
+
+use super::{B, Machine, Value};
+
+/// A `let mut` of a kernel: reading takes a snapshot, assignment reaches the running lanes only.
+pub struct Var<V: Copy> {
+    state: Cell<V>,
+}
+
+impl<V: Copy> Var<V> {
+    /// A variable that holds `v`.
+    #[inline(always)]
+    pub fn new<M: Machine>(m: &M, name: &'static str, v: V) -> Self
+    where
+        V: Value<M>,
+    {
+        Self { state: Cell::new(m.var_new(name, v)) }
+    }
+
+    /// A variable that is assigned before it is read.
+    #[inline(always)]
+    pub fn declare<M: Machine>(m: &M, name: &'static str) -> Self
+    where
+        V: Value<M>,
+    {
+        Self { state: Cell::new(m.var_declare(name)) }
+    }
+
+    /// The value now.
+    #[inline(always)]
+    pub fn get<M: Machine>(&self, m: &M) -> V
+    where
+        V: Value<M>,
+    {
+        m.var_get(self.state.get())
+    }
+
+    /// Assigns in the running lanes.
+    #[inline(always)]
+    pub fn set<M: Machine>(&self, m: &M, v: V)
+    where
+        V: Value<M>,
+    {
+        self.state.set(m.var_set(self.state.get(), v));
+    }
+}
+
+/// The value of a function with early returns.
+pub struct Ret<V: Copy> {
+    slot: Cell<V>,
+}
+
+impl<V: Copy> Ret<V> {
+    /// No lane has returned.
+    #[inline(always)]
+    pub fn new<M: Machine>(m: &M) -> Self
+    where
+        V: Value<M>,
+    {
+        Self { slot: Cell::new(m.give_slot()) }
+    }
+
+    /// `return v` in the running lanes, which stop.
+    #[inline(always)]
+    pub fn give<M: Machine>(&self, m: &M, v: V)
+    where
+        V: Value<M>,
+    {
+        m.give(&self.slot, v);
+    }
+
+    /// What the lanes returned.
+    #[inline(always)]
+    pub fn take(self) -> V {
+        self.slot.get()
+    }
+}
+
+/// What an `if` or a `while` may ask: a truth value of the machine, or of the host.
+///
+/// A host condition is decided while the kernel is recorded: the arm not taken leaves no trace.
+#[diagnostic::on_unimplemented(message = "a condition must be a `bool`")]
+pub trait Condition<M: Machine>: Copy {
+    /// The state of an `if` over such a condition.
+    type State;
+    /// Begins an `if`.
+    fn begin(self, m: &M) -> Self::State;
+    /// Whether to run the first arm.
+    fn then(m: &M, state: &Self::State) -> bool;
+    /// Whether to run the second arm.
+    fn otherwise(m: &M, state: &Self::State) -> bool;
+    /// Joins the arms.
+    fn end(m: &M, state: Self::State);
+    /// Tests the condition of a loop.
+    fn test(self, m: &M, l: &M::Loop) -> bool;
+}
+
+impl<M: Machine> Condition<M> for B<M> {
+    type State = M::Branch;
+
+    #[inline(always)]
+    fn begin(self, m: &M) -> M::Branch {
+        m.branch(self.0)
+    }
+
+    #[inline(always)]
+    fn then(m: &M, state: &M::Branch) -> bool {
+        m.branch_then(state)
+    }
+
+    #[inline(always)]
+    fn otherwise(m: &M, state: &M::Branch) -> bool {
+        m.branch_else(state)
+    }
+
+    #[inline(always)]
+    fn end(m: &M, state: M::Branch) {
+        m.branch_end(state);
+    }
+
+    #[inline(always)]
+    fn test(self, m: &M, l: &M::Loop) -> bool {
+        m.loop_test(l, self.0)
+    }
+}
+
+impl<M: Machine> Condition<M> for bool {
+    type State = bool;
+
+    #[inline(always)]
+    fn begin(self, _: &M) -> bool {
+        self
+    }
+
+    #[inline(always)]
+    fn then(_: &M, state: &bool) -> bool {
+        *state
+    }
+
+    #[inline(always)]
+    fn otherwise(_: &M, state: &bool) -> bool {
+        !*state
+    }
+
+    #[inline(always)]
+    fn end(_: &M, _: bool) {}
+
+    #[inline(always)]
+    fn test(self, m: &M, l: &M::Loop) -> bool {
+        if !self {
+            m.loop_break(l);
+        }
+        self
+    }
+}
+
+/// An `if` of lifted code.
+pub struct Branch<M: Machine, C: Condition<M>> {
+    state: C::State,
+}
+
+impl<M: Machine, C: Condition<M>> Branch<M, C> {
+    /// Begins.
+    #[inline(always)]
+    pub fn new(m: &M, c: C) -> Self {
+        Self { state: c.begin(m) }
+    }
+
+    /// Whether to run the first arm.
+    #[inline(always)]
+    pub fn then(&self, m: &M) -> bool {
+        C::then(m, &self.state)
+    }
+
+    /// Whether to run the second arm.
+    #[inline(always)]
+    pub fn otherwise(&self, m: &M) -> bool {
+        C::otherwise(m, &self.state)
+    }
+
+    /// Joins the arms.
+    #[inline(always)]
+    pub fn end(self, m: &M) {
+        C::end(m, self.state);
+    }
+}
+
+/// A loop of lifted code.
+pub struct Loop<M: Machine> {
+    state: M::Loop,
+}
+
+impl<M: Machine> Loop<M> {
+    /// Begins.
+    #[inline(always)]
+    pub fn new(m: &M) -> Self {
+        Self { state: m.loop_begin() }
+    }
+
+    /// Tests the condition; whether any lane goes on.
+    #[inline(always)]
+    pub fn test(&self, m: &M, c: impl Condition<M>) -> bool {
+        c.test(m, &self.state)
+    }
+
+    /// `break` in the running lanes.
+    #[inline(always)]
+    pub fn leave(&self, m: &M) {
+        m.loop_break(&self.state);
+    }
+
+    /// `continue` in the running lanes.
+    #[inline(always)]
+    pub fn skip(&self, m: &M) {
+        m.loop_continue(&self.state);
+    }
+
+    /// The end of the body.
+    #[inline(always)]
+    pub fn continuing(&self, m: &M) {
+        m.loop_continuing(&self.state);
+    }
+
+    /// Whether to go round again.
+    #[inline(always)]
+    pub fn again(&self, m: &M) -> bool {
+        m.loop_again(&self.state)
+    }
+
+    /// Leaves the loop.
+    #[inline(always)]
+    pub fn end(self, m: &M) {
+        m.loop_end(self.state);
+    }
+}

@@ -1,0 +1,294 @@
+//! The machines that a lifted kernel body runs on.
+//!
+//! The `#[kernel]` macro rewrites a body *once*, into a function generic over a [`Machine`]
+//! (tagless final: Carette, Kiselyov and Shan, "Finally tagless, partially evaluated", 2009).
+//! Three implementations give the variants: [`Scalar`] (a cross-check of the rewriting; the
+//! scalar *variant* is the user's own function), [`Packet`] (SIMD with masked control flow) and
+//! [`Recorder`] (writes WGSL).
+//!
+//! A machine offers arithmetic on lanes and *control hooks*: an `if` or a loop of the source calls
+//! them, and what they return steers real Rust control flow. The scalar machine returns the
+//! condition itself, a packet whether any lane is left, the recorder always `true`.
+
+mod call;
+mod capture;
+mod control;
+pub(crate) mod functions;
+mod lanes;
+mod methods;
+mod ops;
+mod packet;
+mod record;
+mod scalar;
+mod schema;
+mod types;
+mod value;
+mod vector;
+pub mod wgsl;
+
+pub use call::{KernelFn, KernelInfo};
+pub use capture::{Capture, Resource};
+pub use control::{Branch, Condition, Loop, Ret, Var};
+pub(crate) use lanes::{Entered, fill};
+pub use lanes::{Lanes, One, Portable4, Portable8, Portable16, Simd4, Simd8, Simd16};
+pub use methods::{HostMethod, Method, name};
+pub use ops::{
+    Bounds, Coerce, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv, OpMul,
+    OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Varying,
+};
+pub use packet::Packet;
+pub(crate) use record::stride;
+pub use record::{Recorder, Recording};
+pub use scalar::Scalar;
+pub use schema::{Field, Schema};
+pub use types::{LaneMachine, Type};
+pub use value::{B, F, I, Leaves, U, Value};
+pub use vector::{V2, V3, V4};
+
+/// An operation on one `f32`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "the names are those of the operations on `f32`")]
+pub enum F32Unary {
+    Neg,
+    Abs,
+    Sqrt,
+    Floor,
+    Ceil,
+    Trunc,
+}
+
+/// An operation on two `f32`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "the names are those of the operators")]
+pub enum F32Binary {
+    Add,
+    Sub,
+    Mul,
+    Div,
+    /// `if b < a { b } else { a }`
+    Min,
+    /// `if a < b { b } else { a }`
+    Max,
+}
+
+/// An operation on two integers of one type.
+///
+/// `Add`, `Sub`, `Mul`, `Shl`, `Shr`, `Div` and `Rem` are the operators of Rust: where Rust would
+/// panic, a packet built with debug assertions panics too and names the lane. Without them every
+/// machine gives one result: sums wrap, a shift uses its amount modulo 32, `x / 0` is `x` and
+/// `x % 0` is 0 (the rules of WGSL).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "the names are those of the operators")]
+pub enum IntBinary {
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Rem,
+    And,
+    Or,
+    Xor,
+    Shl,
+    Shr,
+    WrappingAdd,
+    WrappingSub,
+    WrappingMul,
+}
+
+/// A comparison; with a NaN operand only `Ne` holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "the names are those of the operators")]
+pub enum Compare {
+    Eq,
+    Ne,
+    Lt,
+    Le,
+    Gt,
+    Ge,
+}
+
+/// An operation on two truth values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "the names are those of the operators")]
+pub enum BoolBinary {
+    And,
+    Or,
+    Xor,
+}
+
+/// What lifted kernel bodies run on: arithmetic on lanes, and hooks for control flow.
+///
+/// The associated types are the representations of one value of each scalar type: a number for
+/// [`Scalar`], a SIMD register for a [`Packet`], the handle of an expression for [`Recorder`].
+#[expect(missing_docs, reason = "arithmetic is documented at the enums of operations")]
+pub trait Machine: Sized + 'static {
+    /// One `f32` a lane.
+    type F32: Copy + 'static;
+    /// One `i32` a lane.
+    type I32: Copy + 'static;
+    /// One `u32` a lane.
+    type U32: Copy + 'static;
+    /// One `bool` a lane.
+    type Bool: Copy + 'static;
+    /// The state of an `if` under way.
+    type Branch;
+    /// The state of a loop under way.
+    type Loop;
+
+    // Constants, the same in every lane.
+    fn f32(&self, v: f32) -> Self::F32;
+    fn i32(&self, v: i32) -> Self::I32;
+    fn u32(&self, v: u32) -> Self::U32;
+    fn bool(&self, v: bool) -> Self::Bool;
+
+    // Arithmetic.
+    fn f32_unary(&self, op: F32Unary, a: Self::F32) -> Self::F32;
+    fn f32_binary(&self, op: F32Binary, a: Self::F32, b: Self::F32) -> Self::F32;
+    /// Fused: rounded once.
+    fn f32_mul_add(&self, a: Self::F32, b: Self::F32, c: Self::F32) -> Self::F32;
+    fn i32_binary(&self, op: IntBinary, a: Self::I32, b: Self::I32) -> Self::I32;
+    fn u32_binary(&self, op: IntBinary, a: Self::U32, b: Self::U32) -> Self::U32;
+    fn bool_binary(&self, op: BoolBinary, a: Self::Bool, b: Self::Bool) -> Self::Bool;
+    fn i32_neg(&self, a: Self::I32) -> Self::I32;
+    fn i32_not(&self, a: Self::I32) -> Self::I32;
+    fn u32_not(&self, a: Self::U32) -> Self::U32;
+    fn bool_not(&self, a: Self::Bool) -> Self::Bool;
+    fn f32_compare(&self, op: Compare, a: Self::F32, b: Self::F32) -> Self::Bool;
+    fn i32_compare(&self, op: Compare, a: Self::I32, b: Self::I32) -> Self::Bool;
+    fn u32_compare(&self, op: Compare, a: Self::U32, b: Self::U32) -> Self::Bool;
+
+    // `if c { a } else { b }` with both sides evaluated.
+    fn f32_select(&self, c: Self::Bool, a: Self::F32, b: Self::F32) -> Self::F32;
+    fn i32_select(&self, c: Self::Bool, a: Self::I32, b: Self::I32) -> Self::I32;
+    fn u32_select(&self, c: Self::Bool, a: Self::U32, b: Self::U32) -> Self::U32;
+    fn bool_select(&self, c: Self::Bool, a: Self::Bool, b: Self::Bool) -> Self::Bool;
+
+    // Conversions, each as Rust's `as` (floats to integers saturate, NaN gives 0).
+    fn f32_to_i32(&self, a: Self::F32) -> Self::I32;
+    fn f32_to_u32(&self, a: Self::F32) -> Self::U32;
+    fn i32_to_f32(&self, a: Self::I32) -> Self::F32;
+    fn u32_to_f32(&self, a: Self::U32) -> Self::F32;
+    fn i32_to_u32(&self, a: Self::I32) -> Self::U32;
+    fn u32_to_i32(&self, a: Self::U32) -> Self::I32;
+    fn f32_to_bits(&self, a: Self::F32) -> Self::U32;
+    fn f32_from_bits(&self, a: Self::U32) -> Self::F32;
+    fn bool_to_u32(&self, a: Self::Bool) -> Self::U32;
+
+    /// An operation on every component of two vectors; a machine may have vectors of its own.
+    #[inline(always)]
+    fn vector_binary<const N: usize>(
+        &self,
+        op: F32Binary,
+        a: [Self::F32; N],
+        b: [Self::F32; N],
+    ) -> [Self::F32; N] {
+        fill(
+            #[inline(always)]
+            |i| self.f32_binary(op, a[i], b[i]),
+        )
+    }
+
+    /// An operation on every component of a vector.
+    #[inline(always)]
+    fn vector_unary<const N: usize>(&self, op: F32Unary, a: [Self::F32; N]) -> [Self::F32; N] {
+        fill(
+            #[inline(always)]
+            |i| self.f32_unary(op, a[i]),
+        )
+    }
+
+    // Control flow. Every hook that returns `bool` says whether to run the code that follows.
+
+    /// Begins an `if`.
+    fn branch(&self, c: Self::Bool) -> Self::Branch;
+    /// Enters its first arm.
+    fn branch_then(&self, t: &Self::Branch) -> bool;
+    /// Leaves the first arm and enters the second.
+    fn branch_else(&self, t: &Self::Branch) -> bool;
+    /// Joins the arms.
+    fn branch_end(&self, t: Self::Branch);
+
+    /// Begins a loop.
+    fn loop_begin(&self) -> Self::Loop;
+    /// Tests a `while` condition: lanes where it fails leave the loop.
+    fn loop_test(&self, t: &Self::Loop, c: Self::Bool) -> bool;
+    /// `break`.
+    fn loop_break(&self, t: &Self::Loop);
+    /// `continue`.
+    fn loop_continue(&self, t: &Self::Loop);
+    /// After the body: lanes that said `continue` are back, the increment of a `for` follows.
+    fn loop_continuing(&self, t: &Self::Loop);
+    /// Whether to go round again.
+    fn loop_again(&self, t: &Self::Loop) -> bool;
+    /// Leaves the loop: lanes that left it go on behind it.
+    fn loop_end(&self, t: Self::Loop);
+
+    /// Whether any lane is running.
+    fn alive(&self) -> bool;
+    /// Whether any running lane has `c`; the recorder says yes.
+    fn any(&self, c: Self::Bool) -> bool;
+
+    /// Evaluates the right side of `&&` or `||`, which only lanes where the left side `c` is
+    /// `when` would reach: in the others, an overflow there is no error.
+    #[inline(always)]
+    fn guarded<R>(&self, _c: Self::Bool, _when: bool, f: impl FnOnce() -> R) -> R {
+        f()
+    }
+
+    // Variables. `V` is a twin; the hooks work leaf by leaf.
+
+    /// The state of a new variable that holds `v`.
+    fn var_new<V: Value<Self>>(&self, name: &'static str, v: V) -> V;
+    /// The state of a new variable without a value.
+    fn var_declare<V: Value<Self>>(&self, name: &'static str) -> V;
+    /// A snapshot of a variable's value.
+    fn var_get<V: Value<Self>>(&self, state: V) -> V;
+    /// The state after the running lanes were assigned `v`.
+    fn var_set<V: Value<Self>>(&self, state: V, v: V) -> V;
+
+    /// `return v`: stores the value for the running lanes and stops them.
+    fn give<V: Value<Self>>(&self, slot: &core::cell::Cell<V>, v: V);
+    /// The place for the value of a function with early returns.
+    fn give_slot<V: Value<Self>>(&self) -> V;
+
+    /// Runs a kernel's body on this machine. `args` is a tuple of values.
+    fn call<A: Value<Self>, R: Value<Self>>(
+        &self,
+        info: &'static KernelInfo,
+        args: A,
+        body: impl FnOnce(&Self, A) -> R,
+    ) -> R;
+
+    /// A captured number, vector or struct of the host.
+    #[inline(always)]
+    fn capture<T: Type>(&self, _name: &'static str, v: T) -> T::On<Self> {
+        T::splat(self, v)
+    }
+
+    /// Gives a value the name that it has in the source, for those who read generated code.
+    #[inline(always)]
+    fn named<V: Value<Self>>(&self, _name: &'static str, v: V) -> V {
+        v
+    }
+
+    /// The least `(t, id)` hit over a tree; see [`crate::bvh`].
+    fn closest_hit<P: crate::geometry::Primitive>(
+        &self,
+        prims: &crate::bvh::On<'_, P>,
+        ray: crate::geometry::RayOn<Self>,
+    ) -> crate::geometry::HitOn<Self>;
+
+    /// Whether anything is hit.
+    fn any_hit<P: crate::geometry::Primitive>(
+        &self,
+        prims: &crate::bvh::On<'_, P>,
+        ray: crate::geometry::RayOn<Self>,
+    ) -> B<Self>;
+
+    /// The element `index` of a slice of primitives.
+    fn fetch<P: crate::geometry::Primitive>(
+        &self,
+        prims: &crate::bvh::On<'_, P>,
+        index: U<Self>,
+    ) -> P::On<Self>;
+}

@@ -1,0 +1,417 @@
+//! The operators of lifted code.
+//!
+//! One trait an operator: the receiver, the right side and the result are looked up by rustc, so
+//! the macro needs no types. Integers that appear in the source as literals stay numbers of the
+//! host until they meet a value of the machine; `f32` literals become values at once.
+
+use super::{
+    B, BoolBinary, Compare, F, F32Binary, F32Unary, I, IntBinary, Machine, Type, U, V2, V3, V4,
+    Value,
+};
+
+macro_rules! binary_traits {
+    ($($trait:ident :: $method:ident $symbol:literal),+ $(,)?) => {
+        $(
+            #[doc = concat!("`a ", $symbol, " b` on machine `M`.")]
+            #[diagnostic::on_unimplemented(
+                message = "a kernel has no operator for these operands",
+                label = "not an operation of the kernel language"
+            )]
+            pub trait $trait<M: Machine, R> {
+                /// The type of the result.
+                type Output;
+                /// Applies the operator.
+                fn $method(m: &M, a: Self, b: R) -> Self::Output;
+            }
+        )+
+    };
+}
+
+binary_traits!(
+    OpAdd::add "+",
+    OpSub::sub "-",
+    OpMul::mul "*",
+    OpDiv::div "/",
+    OpRem::rem "%",
+    OpBitAnd::bit_and "&",
+    OpBitOr::bit_or "|",
+    OpBitXor::bit_xor "^",
+    OpShl::shl "<<",
+    OpShr::shr ">>",
+    OpAnd::and "&&",
+    OpOr::or "||",
+);
+
+/// `-a` on machine `M`.
+#[diagnostic::on_unimplemented(message = "a kernel cannot negate this value")]
+pub trait OpNeg<M: Machine> {
+    /// Applies the operator.
+    fn neg(m: &M, a: Self) -> Self;
+}
+
+/// `!a` on machine `M`.
+#[diagnostic::on_unimplemented(message = "a kernel has no `!` for this value")]
+pub trait OpNot<M: Machine> {
+    /// Applies the operator.
+    fn not(m: &M, a: Self) -> Self;
+}
+
+/// Comparisons on machine `M`.
+#[diagnostic::on_unimplemented(message = "a kernel cannot compare these two values")]
+pub trait OpCompare<M: Machine, R> {
+    /// What a comparison gives.
+    type Output;
+    /// Compares.
+    fn compare(m: &M, op: Compare, a: Self, b: R) -> Self::Output;
+}
+
+/// `a as T` on machine `M`.
+#[diagnostic::on_unimplemented(message = "a kernel has no `as {T}` for this value")]
+pub trait OpCast<M: Machine, T: Type> {
+    /// Converts as Rust's `as` does.
+    fn cast(m: &M, a: Self) -> T::On<M>;
+}
+
+/// A value of the host, or one of the machine already, where the machine's type `T` is wanted.
+#[diagnostic::on_unimplemented(message = "this value does not have the type that is wanted here")]
+pub trait Coerce<M: Machine, T> {
+    /// Converts.
+    fn coerce(self, m: &M) -> T;
+}
+
+impl<M: Machine, V: Value<M>> Coerce<M, V> for V {
+    #[inline(always)]
+    fn coerce(self, _: &M) -> V {
+        self
+    }
+}
+
+macro_rules! coerce_host {
+    ($($host:ty => $twin:ident $make:ident),+) => {
+        $(
+            impl<M: Machine> Coerce<M, $twin<M>> for $host {
+                #[inline(always)]
+                fn coerce(self, m: &M) -> $twin<M> {
+                    $twin(m.$make(self))
+                }
+            }
+        )+
+    };
+}
+
+coerce_host!(f32 => F f32, i32 => I i32, u32 => U u32, bool => B bool);
+
+/// What a variable holds: a value of the machine, whether or not the source's was one of the host.
+#[diagnostic::on_unimplemented(message = "a kernel cannot keep this value in a variable")]
+pub trait Varying<M: Machine> {
+    /// The value of the machine.
+    type Value: Value<M>;
+    /// Converts.
+    fn varying(self, m: &M) -> Self::Value;
+}
+
+macro_rules! varying {
+    ($($t:ident),+; $($host:ty => $twin:ident $make:ident),+) => {
+        $(
+            impl<M: Machine> Varying<M> for $t<M> {
+                type Value = Self;
+
+                #[inline(always)]
+                fn varying(self, _: &M) -> Self {
+                    self
+                }
+            }
+        )+
+        $(
+            impl<M: Machine> Varying<M> for $host {
+                type Value = $twin<M>;
+
+                #[inline(always)]
+                fn varying(self, m: &M) -> $twin<M> {
+                    $twin(m.$make(self))
+                }
+            }
+        )+
+    };
+}
+
+varying!(F, I, U, B, V2, V3, V4; i32 => I i32, u32 => U u32, bool => B bool);
+
+impl<M: Machine, V: Varying<M>, const N: usize> Varying<M> for [V; N] {
+    type Value = [V::Value; N];
+
+    #[inline(always)]
+    fn varying(self, m: &M) -> Self::Value {
+        self.map(|v| v.varying(m))
+    }
+}
+
+impl<M: Machine> Varying<M> for () {
+    type Value = ();
+
+    #[inline(always)]
+    fn varying(self, _: &M) {}
+}
+
+/// The two bounds of a `for`, as values of one type.
+#[diagnostic::on_unimplemented(
+    message = "the bounds of a kernel's `for` are two `u32` or two `i32`"
+)]
+pub trait Bounds<M: Machine, E> {
+    /// The counter's type.
+    type Counter: Value<M>;
+    /// Converts both.
+    fn bounds(m: &M, start: Self, end: E) -> (Self::Counter, Self::Counter);
+}
+
+macro_rules! bounds {
+    ($($t:ident $host:ty),+) => {
+        $(
+            bounds!(@one $t, $t<M>, $t<M>);
+            bounds!(@one $t, $host, $t<M>);
+            bounds!(@one $t, $t<M>, $host);
+            bounds!(@one $t, $host, $host);
+        )+
+    };
+    (@one $t:ident, $a:ty, $b:ty) => {
+        impl<M: Machine> Bounds<M, $b> for $a {
+            type Counter = $t<M>;
+
+            #[inline(always)]
+            fn bounds(m: &M, start: $a, end: $b) -> ($t<M>, $t<M>) {
+                (Coerce::coerce(start, m), Coerce::coerce(end, m))
+            }
+        }
+    };
+}
+
+bounds!(I i32, U u32);
+
+// Numbers. Each operator for (lane, lane), (lane, host), (host, lane) and (host, host).
+
+macro_rules! operator {
+    ($trait:ident :: $method:ident, $a:ty, $b:ty, $out:ty, |$m:ident, $x:ident, $y:ident| $e:expr) => {
+        impl<M: Machine> $trait<M, $b> for $a {
+            type Output = $out;
+
+            #[inline(always)]
+            fn $method($m: &M, $x: $a, $y: $b) -> $out {
+                $e
+            }
+        }
+    };
+}
+
+macro_rules! f32_operators {
+    ($($trait:ident :: $method:ident $op:ident),+) => {
+        $(
+            operator!($trait::$method, F<M>, F<M>, F<M>, |m, a, b| {
+                F(m.f32_binary(F32Binary::$op, a.0, b.0))
+            });
+            f32_operators!(@vector $trait::$method $op, V2);
+            f32_operators!(@vector $trait::$method $op, V3);
+            f32_operators!(@vector $trait::$method $op, V4);
+        )+
+    };
+    (@vector $trait:ident :: $method:ident $op:ident, $v:ident) => {
+        operator!($trait::$method, $v<M>, $v<M>, $v<M>, |m, a, b| {
+            $v::binary(m, F32Binary::$op, a, b)
+        });
+        operator!($trait::$method, $v<M>, F<M>, $v<M>, |m, a, b| {
+            $v::binary(m, F32Binary::$op, a, $v::splat(b))
+        });
+        operator!($trait::$method, F<M>, $v<M>, $v<M>, |m, a, b| {
+            $v::binary(m, F32Binary::$op, $v::splat(a), b)
+        });
+    };
+}
+
+f32_operators!(OpAdd::add Add, OpSub::sub Sub, OpMul::mul Mul, OpDiv::div Div);
+
+macro_rules! int_operators {
+    ($($trait:ident :: $method:ident $op:ident $symbol:tt),+) => {
+        $(
+            int_operators!(@one $trait::$method $op $symbol, I, i32, i32_binary, i32);
+            int_operators!(@one $trait::$method $op $symbol, U, u32, u32_binary, u32);
+        )+
+    };
+    (@one $trait:ident :: $method:ident $op:ident $symbol:tt, $t:ident, $host:ty, $f:ident, $make:ident) => {
+        operator!($trait::$method, $t<M>, $t<M>, $t<M>, |m, a, b| $t(m.$f(IntBinary::$op, a.0, b.0)));
+        operator!($trait::$method, $t<M>, $host, $t<M>, |m, a, b| {
+            $t(m.$f(IntBinary::$op, a.0, m.$make(b)))
+        });
+        operator!($trait::$method, $host, $t<M>, $t<M>, |m, a, b| {
+            $t(m.$f(IntBinary::$op, m.$make(a), b.0))
+        });
+        operator!($trait::$method, $host, $host, $host, |_m, a, b| a $symbol b);
+    };
+}
+
+int_operators!(
+    OpAdd::add Add +, OpSub::sub Sub -, OpMul::mul Mul *, OpDiv::div Div /, OpRem::rem Rem %,
+    OpBitAnd::bit_and And &, OpBitOr::bit_or Or |, OpBitXor::bit_xor Xor ^,
+    OpShl::shl Shl <<, OpShr::shr Shr >>
+);
+
+// Rust lets the amount of a shift have another integer type.
+macro_rules! mixed_shift {
+    ($($trait:ident :: $method:ident $op:ident),+) => {
+        $(
+            operator!($trait::$method, I<M>, U<M>, I<M>, |m, a, b| {
+                I(m.i32_binary(IntBinary::$op, a.0, m.u32_to_i32(b.0)))
+            });
+            operator!($trait::$method, U<M>, I<M>, U<M>, |m, a, b| {
+                U(m.u32_binary(IntBinary::$op, a.0, m.i32_to_u32(b.0)))
+            });
+        )+
+    };
+}
+
+mixed_shift!(OpShl::shl Shl, OpShr::shr Shr);
+
+// Truth values: `&&` and `&` differ only in what the macro does with the right side.
+
+macro_rules! bool_operators {
+    ($($trait:ident :: $method:ident $op:ident $symbol:tt),+) => {
+        $(
+            operator!($trait::$method, B<M>, B<M>, B<M>, |m, a, b| {
+                B(m.bool_binary(BoolBinary::$op, a.0, b.0))
+            });
+            operator!($trait::$method, B<M>, bool, B<M>, |m, a, b| {
+                B(m.bool_binary(BoolBinary::$op, a.0, m.bool(b)))
+            });
+            operator!($trait::$method, bool, B<M>, B<M>, |m, a, b| {
+                B(m.bool_binary(BoolBinary::$op, m.bool(a), b.0))
+            });
+            operator!($trait::$method, bool, bool, bool, |_m, a, b| a $symbol b);
+        )+
+    };
+}
+
+bool_operators!(
+    OpAnd::and And &&, OpOr::or Or ||,
+    OpBitAnd::bit_and And &, OpBitOr::bit_or Or |, OpBitXor::bit_xor Xor ^
+);
+
+// Unary operators.
+
+macro_rules! unary {
+    ($trait:ident :: $method:ident, $t:ty, |$m:ident, $a:ident| $e:expr) => {
+        impl<M: Machine> $trait<M> for $t {
+            #[inline(always)]
+            fn $method($m: &M, $a: Self) -> Self {
+                $e
+            }
+        }
+    };
+}
+
+unary!(OpNeg::neg, F<M>, |m, a| F(m.f32_unary(F32Unary::Neg, a.0)));
+unary!(OpNeg::neg, I<M>, |m, a| I(m.i32_neg(a.0)));
+unary!(OpNeg::neg, i32, |_m, a| -a);
+unary!(OpNeg::neg, V2<M>, |m, a| V2::unary(m, F32Unary::Neg, a));
+unary!(OpNeg::neg, V3<M>, |m, a| V3::unary(m, F32Unary::Neg, a));
+unary!(OpNeg::neg, V4<M>, |m, a| V4::unary(m, F32Unary::Neg, a));
+unary!(OpNot::not, B<M>, |m, a| B(m.bool_not(a.0)));
+unary!(OpNot::not, I<M>, |m, a| I(m.i32_not(a.0)));
+unary!(OpNot::not, U<M>, |m, a| U(m.u32_not(a.0)));
+unary!(OpNot::not, bool, |_m, a| !a);
+unary!(OpNot::not, i32, |_m, a| !a);
+unary!(OpNot::not, u32, |_m, a| !a);
+
+// Comparisons.
+
+macro_rules! compare {
+    ($a:ty, $b:ty, $out:ty, |$m:ident, $op:ident, $x:ident, $y:ident| $e:expr) => {
+        impl<M: Machine> OpCompare<M, $b> for $a {
+            type Output = $out;
+
+            #[inline(always)]
+            fn compare($m: &M, $op: Compare, $x: $a, $y: $b) -> $out {
+                $e
+            }
+        }
+    };
+}
+
+fn compare_host<T: PartialOrd>(op: Compare, a: T, b: T) -> bool {
+    match op {
+        Compare::Eq => a == b,
+        Compare::Ne => a != b,
+        Compare::Lt => a < b,
+        Compare::Le => a <= b,
+        Compare::Gt => a > b,
+        Compare::Ge => a >= b,
+    }
+}
+
+compare!(F<M>, F<M>, B<M>, |m, op, a, b| B(m.f32_compare(op, a.0, b.0)));
+
+macro_rules! compare_int {
+    ($t:ident, $host:ty, $f:ident, $make:ident) => {
+        compare!($t<M>, $t<M>, B<M>, |m, op, a, b| B(m.$f(op, a.0, b.0)));
+        compare!($t<M>, $host, B<M>, |m, op, a, b| B(m.$f(op, a.0, m.$make(b))));
+        compare!($host, $t<M>, B<M>, |m, op, a, b| B(m.$f(op, m.$make(a), b.0)));
+        compare!($host, $host, bool, |_m, op, a, b| compare_host(op, a, b));
+    };
+}
+
+compare_int!(I, i32, i32_compare, i32);
+compare_int!(U, u32, u32_compare, u32);
+
+/// `==` and `!=`; an order of truth values (`false < true`) is spelled out.
+#[inline(always)]
+fn compare_bool<M: Machine>(m: &M, op: Compare, a: M::Bool, b: M::Bool) -> B<M> {
+    let not = |x| m.bool_not(x);
+    let both = |op, x, y| m.bool_binary(op, x, y);
+    B(match op {
+        Compare::Ne => both(BoolBinary::Xor, a, b),
+        Compare::Eq => not(both(BoolBinary::Xor, a, b)),
+        Compare::Lt => both(BoolBinary::And, not(a), b),
+        Compare::Le => both(BoolBinary::Or, not(a), b),
+        Compare::Gt => both(BoolBinary::And, a, not(b)),
+        Compare::Ge => both(BoolBinary::Or, a, not(b)),
+    })
+}
+
+compare!(B<M>, B<M>, B<M>, |m, op, a, b| compare_bool(m, op, a.0, b.0));
+compare!(B<M>, bool, B<M>, |m, op, a, b| compare_bool(m, op, a.0, m.bool(b)));
+compare!(bool, B<M>, B<M>, |m, op, a, b| compare_bool(m, op, m.bool(a), b.0));
+compare!(bool, bool, bool, |_m, op, a, b| compare_host(op, a, b));
+
+// Conversions.
+
+macro_rules! cast {
+    ($($a:ty => $t:ident: |$m:ident, $x:ident| $e:expr),+ $(,)?) => {
+        $(
+            impl<M: Machine> OpCast<M, $t> for $a {
+                #[inline(always)]
+                fn cast($m: &M, $x: $a) -> <$t as Type>::On<M> {
+                    $e
+                }
+            }
+        )+
+    };
+}
+
+cast!(
+    F<M> => f32: |_m, a| a,
+    F<M> => i32: |m, a| I(m.f32_to_i32(a.0)),
+    F<M> => u32: |m, a| U(m.f32_to_u32(a.0)),
+    I<M> => f32: |m, a| F(m.i32_to_f32(a.0)),
+    I<M> => i32: |_m, a| a,
+    I<M> => u32: |m, a| U(m.i32_to_u32(a.0)),
+    U<M> => f32: |m, a| F(m.u32_to_f32(a.0)),
+    U<M> => i32: |m, a| I(m.u32_to_i32(a.0)),
+    U<M> => u32: |_m, a| a,
+    B<M> => u32: |m, a| U(m.bool_to_u32(a.0)),
+    B<M> => i32: |m, a| I(m.u32_to_i32(m.bool_to_u32(a.0))),
+    i32 => f32: |m, a| F(m.f32(a as f32)),
+    i32 => i32: |m, a| I(m.i32(a)),
+    i32 => u32: |m, a| U(m.u32(a as u32)),
+    u32 => f32: |m, a| F(m.f32(a as f32)),
+    u32 => i32: |m, a| I(m.i32(a as i32)),
+    u32 => u32: |m, a| U(m.u32(a)),
+    bool => u32: |m, a| U(m.u32(u32::from(a))),
+    bool => i32: |m, a| I(m.i32(i32::from(a))),
+);

@@ -1,0 +1,451 @@
+//! SIMD packets: one register a value, a mask of running lanes.
+
+use core::cell::Cell;
+
+use super::*;
+use crate::bvh::traverse_packet;
+use crate::geometry::{HitOn, Primitive, RayOn};
+
+/// A machine of [`Lanes::N`] lanes with masked control flow.
+///
+/// The mask algebra: an `if` holds one mask, the lanes that are not running now. `begin` splits
+/// the running lanes by the condition, `else` swaps the halves, `end` joins what is left of them.
+/// `return`, `break` and `continue` only take lanes out of `active`; loops and the end of the
+/// function put them back.
+#[derive(Clone)]
+pub struct Packet<L: Lanes> {
+    lanes: L,
+    active: Cell<L::Mask>,
+}
+
+/// The lanes that left a loop, and those that skip to its next round.
+pub struct PacketLoop<L: Lanes> {
+    exited: Cell<L::Mask>,
+    continued: Cell<L::Mask>,
+}
+
+impl<L: Lanes> Packet<L> {
+    /// All lanes running.
+    #[inline(always)]
+    pub fn new(lanes: L) -> Self {
+        Self { lanes, active: Cell::new(lanes.mask(true)) }
+    }
+
+    /// The first `count` lanes running.
+    #[inline(always)]
+    pub fn with_count(lanes: L, count: usize) -> Self {
+        let bits = if count >= 64 { u64::MAX } else { (1 << count) - 1 };
+        Self::with_bits(lanes, bits)
+    }
+
+    /// The lanes whose bits are set running.
+    #[inline(always)]
+    pub fn with_bits(lanes: L, bits: u64) -> Self {
+        let all = if L::N >= 64 { u64::MAX } else { (1 << L::N) - 1 };
+        Self { lanes, active: Cell::new(lanes.mask_from_bits(bits & all)) }
+    }
+
+    /// The lanes of `active` running.
+    #[inline(always)]
+    pub(crate) fn with_mask(lanes: L, active: L::Mask) -> Self {
+        Self { lanes, active: Cell::new(active) }
+    }
+
+    /// The lane operations.
+    #[inline(always)]
+    pub fn lanes(&self) -> L {
+        self.lanes
+    }
+
+    /// The running lanes.
+    #[inline(always)]
+    pub fn active(&self) -> L::Mask {
+        self.active.get()
+    }
+
+    /// Runs `f` with the running lanes that also have `mask`.
+    #[inline(always)]
+    pub(crate) fn with_active<R>(&self, mask: L::Mask, f: impl FnOnce() -> R) -> R {
+        let old = self.active.replace(mask);
+        let result = f();
+        self.active.set(old);
+        result
+    }
+
+    #[inline(always)]
+    fn and(&self, a: L::Mask, b: L::Mask) -> L::Mask {
+        self.lanes.mask_binary(BoolBinary::And, a, b)
+    }
+
+    #[inline(always)]
+    fn or(&self, a: L::Mask, b: L::Mask) -> L::Mask {
+        self.lanes.mask_binary(BoolBinary::Or, a, b)
+    }
+
+    /// Takes the running lanes out.
+    #[inline(always)]
+    fn stop(&self) -> L::Mask {
+        self.active.replace(self.lanes.mask(false))
+    }
+
+    /// Panics for the first running lane in which Rust would.
+    ///
+    /// Not inlined: a lane at a time at every operator, it would be most of the code.
+    #[inline(never)]
+    fn check(&self, op: IntBinary, is_error: &dyn Fn(usize) -> bool) {
+        let active = self.lanes.bits(self.active.get());
+        for lane in 0..L::N {
+            if active >> lane & 1 != 0 && is_error(lane) {
+                scalar::integer_error(op, lane);
+            }
+        }
+    }
+}
+
+/// The checks of both types of integers.
+impl<L: Lanes> Packet<L> {
+    #[inline(never)]
+    fn check_i32(&self, op: IntBinary, a: &L::I32, b: &L::I32) {
+        let fails = |l| scalar::i32_binary(op, L::i32_lane(a, l), L::i32_lane(b, l)).0.is_none();
+        self.check(op, &fails);
+    }
+
+    #[inline(never)]
+    fn check_u32(&self, op: IntBinary, a: &L::U32, b: &L::U32) {
+        let fails = |l| scalar::u32_binary(op, L::u32_lane(a, l), L::u32_lane(b, l)).0.is_none();
+        self.check(op, &fails);
+    }
+}
+
+/// Whether there are operands for which Rust panics.
+#[inline(always)]
+fn is_checked(op: IntBinary) -> bool {
+    use IntBinary::{Add, Div, Mul, Rem, Shl, Shr, Sub};
+    cfg!(debug_assertions) && matches!(op, Add | Sub | Mul | Div | Rem | Shl | Shr)
+}
+
+struct Blend<Mask>(Mask);
+
+impl<L: Lanes> Leaves<Packet<L>> for Blend<L::Mask> {
+    #[inline(always)]
+    fn f32(&mut self, m: &Packet<L>, a: L::F32, b: L::F32) -> L::F32 {
+        m.lanes.f32_select(self.0, b, a)
+    }
+    #[inline(always)]
+    fn i32(&mut self, m: &Packet<L>, a: L::I32, b: L::I32) -> L::I32 {
+        m.lanes.i32_select(self.0, b, a)
+    }
+    #[inline(always)]
+    fn u32(&mut self, m: &Packet<L>, a: L::U32, b: L::U32) -> L::U32 {
+        m.lanes.u32_select(self.0, b, a)
+    }
+    #[inline(always)]
+    fn bool(&mut self, m: &Packet<L>, a: L::Mask, b: L::Mask) -> L::Mask {
+        m.bool_select(self.0, b, a)
+    }
+}
+
+impl<L: Lanes> Machine for Packet<L> {
+    type F32 = L::F32;
+    type I32 = L::I32;
+    type U32 = L::U32;
+    type Bool = L::Mask;
+    type Branch = Cell<L::Mask>;
+    type Loop = PacketLoop<L>;
+
+    #[inline(always)]
+    fn f32(&self, v: f32) -> L::F32 {
+        self.lanes.f32(v)
+    }
+    #[inline(always)]
+    fn i32(&self, v: i32) -> L::I32 {
+        self.lanes.i32(v)
+    }
+    #[inline(always)]
+    fn u32(&self, v: u32) -> L::U32 {
+        self.lanes.u32(v)
+    }
+    #[inline(always)]
+    fn bool(&self, v: bool) -> L::Mask {
+        self.lanes.mask(v)
+    }
+    #[inline(always)]
+    fn f32_unary(&self, op: F32Unary, a: L::F32) -> L::F32 {
+        self.lanes.f32_unary(op, a)
+    }
+    #[inline(always)]
+    fn f32_binary(&self, op: F32Binary, a: L::F32, b: L::F32) -> L::F32 {
+        self.lanes.f32_binary(op, a, b)
+    }
+    #[inline(always)]
+    fn f32_mul_add(&self, a: L::F32, b: L::F32, c: L::F32) -> L::F32 {
+        self.lanes.f32_mul_add(a, b, c)
+    }
+    #[inline(always)]
+    fn i32_binary(&self, op: IntBinary, a: L::I32, b: L::I32) -> L::I32 {
+        if is_checked(op) {
+            self.check_i32(op, &a, &b);
+        }
+        self.lanes.i32_binary(op, a, b)
+    }
+    #[inline(always)]
+    fn u32_binary(&self, op: IntBinary, a: L::U32, b: L::U32) -> L::U32 {
+        if is_checked(op) {
+            self.check_u32(op, &a, &b);
+        }
+        self.lanes.u32_binary(op, a, b)
+    }
+    #[inline(always)]
+    fn bool_binary(&self, op: BoolBinary, a: L::Mask, b: L::Mask) -> L::Mask {
+        self.lanes.mask_binary(op, a, b)
+    }
+    #[inline(always)]
+    fn i32_neg(&self, a: L::I32) -> L::I32 {
+        self.i32_binary(IntBinary::Sub, self.lanes.i32(0), a)
+    }
+    #[inline(always)]
+    fn i32_not(&self, a: L::I32) -> L::I32 {
+        self.lanes.i32_binary(IntBinary::Xor, a, self.lanes.i32(-1))
+    }
+    #[inline(always)]
+    fn u32_not(&self, a: L::U32) -> L::U32 {
+        self.lanes.u32_binary(IntBinary::Xor, a, self.lanes.u32(u32::MAX))
+    }
+    #[inline(always)]
+    fn bool_not(&self, a: L::Mask) -> L::Mask {
+        self.lanes.mask_not(a)
+    }
+    #[inline(always)]
+    fn f32_compare(&self, op: Compare, a: L::F32, b: L::F32) -> L::Mask {
+        self.lanes.f32_compare(op, a, b)
+    }
+    #[inline(always)]
+    fn i32_compare(&self, op: Compare, a: L::I32, b: L::I32) -> L::Mask {
+        self.lanes.i32_compare(op, a, b)
+    }
+    #[inline(always)]
+    fn u32_compare(&self, op: Compare, a: L::U32, b: L::U32) -> L::Mask {
+        self.lanes.u32_compare(op, a, b)
+    }
+    #[inline(always)]
+    fn f32_select(&self, c: L::Mask, a: L::F32, b: L::F32) -> L::F32 {
+        self.lanes.f32_select(c, a, b)
+    }
+    #[inline(always)]
+    fn i32_select(&self, c: L::Mask, a: L::I32, b: L::I32) -> L::I32 {
+        self.lanes.i32_select(c, a, b)
+    }
+    #[inline(always)]
+    fn u32_select(&self, c: L::Mask, a: L::U32, b: L::U32) -> L::U32 {
+        self.lanes.u32_select(c, a, b)
+    }
+    #[inline(always)]
+    fn bool_select(&self, c: L::Mask, a: L::Mask, b: L::Mask) -> L::Mask {
+        self.or(self.and(c, a), self.and(self.lanes.mask_not(c), b))
+    }
+    #[inline(always)]
+    fn f32_to_i32(&self, a: L::F32) -> L::I32 {
+        self.lanes.f32_to_i32(a)
+    }
+    #[inline(always)]
+    fn f32_to_u32(&self, a: L::F32) -> L::U32 {
+        self.lanes.f32_to_u32(a)
+    }
+    #[inline(always)]
+    fn i32_to_f32(&self, a: L::I32) -> L::F32 {
+        self.lanes.i32_to_f32(a)
+    }
+    #[inline(always)]
+    fn u32_to_f32(&self, a: L::U32) -> L::F32 {
+        self.lanes.u32_to_f32(a)
+    }
+    #[inline(always)]
+    fn i32_to_u32(&self, a: L::I32) -> L::U32 {
+        self.lanes.i32_to_u32(a)
+    }
+    #[inline(always)]
+    fn u32_to_i32(&self, a: L::U32) -> L::I32 {
+        self.lanes.u32_to_i32(a)
+    }
+    #[inline(always)]
+    fn f32_to_bits(&self, a: L::F32) -> L::U32 {
+        self.lanes.f32_to_bits(a)
+    }
+    #[inline(always)]
+    fn f32_from_bits(&self, a: L::U32) -> L::F32 {
+        self.lanes.f32_from_bits(a)
+    }
+    #[inline(always)]
+    fn bool_to_u32(&self, a: L::Mask) -> L::U32 {
+        self.lanes.u32_select(a, self.lanes.u32(1), self.lanes.u32(0))
+    }
+
+    #[inline(always)]
+    fn branch(&self, c: L::Mask) -> Cell<L::Mask> {
+        let old = self.active.get();
+        self.active.set(self.and(old, c));
+        Cell::new(self.and(old, self.lanes.mask_not(c)))
+    }
+    #[inline(always)]
+    fn branch_then(&self, _: &Cell<L::Mask>) -> bool {
+        self.alive()
+    }
+    #[inline(always)]
+    fn branch_else(&self, rest: &Cell<L::Mask>) -> bool {
+        self.active.swap(rest);
+        self.alive()
+    }
+    #[inline(always)]
+    fn branch_end(&self, rest: Cell<L::Mask>) {
+        self.active.set(self.or(self.active.get(), rest.get()));
+    }
+    #[inline(always)]
+    fn loop_begin(&self) -> PacketLoop<L> {
+        let none = self.lanes.mask(false);
+        PacketLoop { exited: Cell::new(none), continued: Cell::new(none) }
+    }
+    #[inline(always)]
+    fn loop_test(&self, l: &PacketLoop<L>, c: L::Mask) -> bool {
+        let old = self.active.get();
+        self.active.set(self.and(old, c));
+        l.exited.set(self.or(l.exited.get(), self.and(old, self.lanes.mask_not(c))));
+        self.alive()
+    }
+    #[inline(always)]
+    fn loop_break(&self, l: &PacketLoop<L>) {
+        l.exited.set(self.or(l.exited.get(), self.stop()));
+    }
+    #[inline(always)]
+    fn loop_continue(&self, l: &PacketLoop<L>) {
+        l.continued.set(self.or(l.continued.get(), self.stop()));
+    }
+    #[inline(always)]
+    fn loop_continuing(&self, l: &PacketLoop<L>) {
+        let back = l.continued.replace(self.lanes.mask(false));
+        self.active.set(self.or(self.active.get(), back));
+    }
+    #[inline(always)]
+    fn loop_again(&self, _: &PacketLoop<L>) -> bool {
+        self.alive()
+    }
+    #[inline(always)]
+    fn loop_end(&self, l: PacketLoop<L>) {
+        self.active.set(l.exited.get());
+    }
+    #[inline(always)]
+    fn alive(&self) -> bool {
+        self.lanes.any(self.active.get())
+    }
+    #[inline(always)]
+    fn any(&self, c: L::Mask) -> bool {
+        self.lanes.any(self.and(self.active.get(), c))
+    }
+    #[inline(always)]
+    fn guarded<R>(&self, c: L::Mask, when: bool, f: impl FnOnce() -> R) -> R {
+        if !cfg!(debug_assertions) {
+            return f();
+        }
+        let c = if when { c } else { self.lanes.mask_not(c) };
+        self.with_active(self.and(self.active.get(), c), f)
+    }
+
+    #[inline(always)]
+    fn var_new<V: Value<Self>>(&self, _: &'static str, v: V) -> V {
+        v
+    }
+    #[inline(always)]
+    fn var_declare<V: Value<Self>>(&self, _: &'static str) -> V {
+        V::zero(self)
+    }
+    #[inline(always)]
+    fn var_get<V: Value<Self>>(&self, state: V) -> V {
+        state
+    }
+    #[inline(always)]
+    fn var_set<V: Value<Self>>(&self, state: V, v: V) -> V {
+        V::zip(self, state, v, &mut Blend(self.active.get()))
+    }
+    #[inline(always)]
+    fn give<V: Value<Self>>(&self, slot: &Cell<V>, v: V) {
+        slot.set(self.var_set(slot.get(), v));
+        self.stop();
+    }
+    #[inline(always)]
+    fn give_slot<V: Value<Self>>(&self) -> V {
+        V::zero(self)
+    }
+    #[inline(always)]
+    fn call<A: Value<Self>, R: Value<Self>>(
+        &self,
+        _: &'static KernelInfo,
+        args: A,
+        body: impl FnOnce(&Self, A) -> R,
+    ) -> R {
+        let entry = self.active.get();
+        let result = self.lanes.vectorize(
+            #[inline(always)]
+            || body(self, args),
+        );
+        self.active.set(entry);
+        result
+    }
+
+    #[inline(always)]
+    fn closest_hit<P: Primitive>(
+        &self,
+        prims: &crate::bvh::On<'_, P>,
+        ray: RayOn<Self>,
+    ) -> HitOn<Self> {
+        traverse_packet::closest_hit(self, prims, ray)
+    }
+    #[inline(always)]
+    fn any_hit<P: Primitive>(&self, prims: &crate::bvh::On<'_, P>, ray: RayOn<Self>) -> B<Self> {
+        traverse_packet::any_hit(self, prims, ray)
+    }
+    #[inline(always)]
+    fn fetch<P: Primitive>(&self, prims: &crate::bvh::On<'_, P>, index: U<Self>) -> P::On<Self> {
+        // A lane that does not run may hold any index.
+        let index = self.lanes.u32_select(self.active.get(), index.0, self.lanes.u32(0));
+        let prims: [P; 64] =
+            core::array::from_fn(|l| prims.get(if l < L::N { L::u32_lane(&index, l) } else { 0 }));
+        P::from_lanes(self, &|l| prims[l])
+    }
+}
+
+impl<L: Lanes> LaneMachine for Packet<L> {
+    const LANES: usize = L::N;
+
+    #[inline(always)]
+    fn f32_from_fn(&self, f: impl FnMut(usize) -> f32) -> L::F32 {
+        self.lanes.f32_from_fn(f)
+    }
+    #[inline(always)]
+    fn i32_from_fn(&self, f: impl FnMut(usize) -> i32) -> L::I32 {
+        self.lanes.i32_from_fn(f)
+    }
+    #[inline(always)]
+    fn u32_from_fn(&self, f: impl FnMut(usize) -> u32) -> L::U32 {
+        self.lanes.u32_from_fn(f)
+    }
+    #[inline(always)]
+    fn bool_from_fn(&self, mut f: impl FnMut(usize) -> bool) -> L::Mask {
+        let bits = (0..L::N).fold(0, |bits, l| bits | u64::from(f(l)) << l);
+        self.lanes.mask_from_bits(bits)
+    }
+    #[inline(always)]
+    fn f32_lane(v: &L::F32, lane: usize) -> f32 {
+        L::f32_lane(v, lane)
+    }
+    #[inline(always)]
+    fn i32_lane(v: &L::I32, lane: usize) -> i32 {
+        L::i32_lane(v, lane)
+    }
+    #[inline(always)]
+    fn u32_lane(v: &L::U32, lane: usize) -> u32 {
+        L::u32_lane(v, lane)
+    }
+    #[inline(always)]
+    fn bool_lane(v: &L::Mask, lane: usize) -> bool {
+        L::mask_lane(v, lane)
+    }
+}

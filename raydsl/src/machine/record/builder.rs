@@ -1,0 +1,169 @@
+//! A function while it is recorded.
+
+use super::ir::{Expr, Id, Node, Recorded, Stmt, Type, VarId, Variable};
+use super::names::unique;
+use crate::machine::KernelInfo;
+
+/// A function under way.
+pub(super) struct Builder {
+    pub(super) function: Recorded,
+    pub(super) blocks: Vec<(u32, Vec<Stmt>)>,
+    pub(super) next_block: u32,
+    pub(super) loops: Vec<LoopState>,
+    pub(super) next_loop: u32,
+    /// The variable that says which labelled loop is being left.
+    pub(super) leave: Option<VarId>,
+}
+
+pub(super) struct LoopState {
+    pub(super) number: u32,
+    /// Labelled exits that pass through this loop: the loop they are meant for, and `continue`.
+    pub(super) passing: Vec<(u32, bool)>,
+}
+
+impl Builder {
+    pub(super) fn new(info: &'static KernelInfo) -> Self {
+        Self {
+            function: Recorded {
+                source_name: info.name,
+                name: info.name.to_owned(),
+                file: info.file,
+                line: info.line,
+                params: Vec::new(),
+                result: None,
+                nodes: Vec::new(),
+                vars: Vec::new(),
+                body: Vec::new(),
+            },
+            blocks: vec![(0, Vec::new())],
+            next_block: 1,
+            loops: Vec::new(),
+            next_loop: 1,
+            leave: None,
+        }
+    }
+
+    pub(super) fn block(&self) -> u32 {
+        self.blocks.last().map_or(0, |b| b.0)
+    }
+
+    pub(super) fn push(&mut self, stmt: Stmt) {
+        if let Some((_, block)) = self.blocks.last_mut() {
+            block.push(stmt);
+        }
+    }
+
+    pub(super) fn open_block(&mut self) {
+        self.blocks.push((self.next_block, Vec::new()));
+        self.next_block += 1;
+    }
+
+    pub(super) fn close_block(&mut self) -> Vec<Stmt> {
+        self.blocks.pop().map(|b| b.1).unwrap_or_default()
+    }
+
+    pub(super) fn node(&mut self, id: Id) -> &mut Node {
+        &mut self.function.nodes[id.0 as usize]
+    }
+
+    /// Notes that `id` is used now: what it loads must not have changed, and it is only written
+    /// in place if that place is in its own block.
+    pub(super) fn used(&mut self, id: Id) -> Vec<Id> {
+        let here = self.block();
+        // A part of a value is written as the value and its member: the value must not be
+        // evaluated again in an inner block.
+        let mut whole = id;
+        while let Expr::Member(a, _) | Expr::Element(a, _) =
+            self.function.nodes[whole.0 as usize].expr
+        {
+            whole = a;
+        }
+        let node = &self.function.nodes[whole.0 as usize];
+        let is_load = matches!(node.expr, Expr::Load(_));
+        if !node.expr.is_trivial() && !is_load && node.block != here {
+            self.node(whole).pinned = true;
+        }
+        if self.function.nodes[id.0 as usize].pinned {
+            return Vec::new();
+        }
+        let loads = self.function.nodes[id.0 as usize].loads.clone();
+        let mut fresh = Vec::new();
+        for load in loads {
+            let stale = match self.function.nodes[load.0 as usize].expr {
+                Expr::Load(v) => {
+                    let recorded = self.function.nodes[load.0 as usize].version;
+                    self.function.vars[v.0 as usize].version != recorded
+                }
+                _ => false,
+            };
+            if stale {
+                self.node(load).pinned = true;
+            } else {
+                fresh.push(load);
+            }
+        }
+        fresh
+    }
+
+    pub(super) fn add(&mut self, expr: Expr, ty: Type) -> Id {
+        if expr.is_trivial()
+            && let Some(i) = self.function.nodes.iter().position(|n| n.expr == expr && n.ty == ty)
+        {
+            return Id(i as u32);
+        }
+        let mut loads = Vec::new();
+        for operand in expr.operands() {
+            for load in self.used(operand) {
+                if !loads.contains(&load) {
+                    loads.push(load);
+                }
+            }
+        }
+        let id = Id(self.function.nodes.len() as u32);
+        let version = match expr {
+            Expr::Load(v) => {
+                loads.push(id);
+                self.function.vars[v.0 as usize].version
+            }
+            _ => 0,
+        };
+        let place = !expr.is_trivial();
+        let block = self.block();
+        self.function.nodes.push(Node {
+            expr,
+            ty,
+            name: None,
+            pinned: false,
+            block,
+            loads,
+            version,
+        });
+        if place {
+            self.push(Stmt::Let(id));
+        }
+        id
+    }
+
+    pub(super) fn new_var(&mut self, name: &str, ty: Type) -> VarId {
+        let v = VarId(self.function.vars.len() as u32);
+        let taken = |n: &str| {
+            self.function.vars.iter().any(|v| v.name == n)
+                || self.function.params.iter().any(|p| p.0 == n)
+        };
+        let name = unique(name, taken);
+        self.function.vars.push(Variable { name, ty, version: 0 });
+        v
+    }
+
+    pub(super) fn store(&mut self, v: VarId, value: Id) {
+        let unchanged = matches!(self.function.nodes[value.0 as usize].expr, Expr::Load(w) if w == v)
+            && self.function.nodes[value.0 as usize].version
+                == self.function.vars[v.0 as usize].version;
+        if unchanged {
+            return;
+        }
+        self.used(value);
+        self.function.vars[v.0 as usize].version += 1;
+        self.push(Stmt::Store(v, value));
+    }
+}

@@ -1,0 +1,250 @@
+//! Expressions as text, with the parentheses that WGSL asks for.
+
+use super::function::Text;
+use super::ir::{Conversion, Expr, Id, Recorded, Type};
+use super::names::member_name;
+use super::types::Names;
+use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary};
+
+/// How tightly an expression binds; an operand that binds less is put in parentheses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Bind {
+    Or,
+    And,
+    Compare,
+    Sum,
+    Product,
+    Unary,
+    Primary,
+}
+
+/// A literal of type `f32`: without the suffix WGSL would compute with two of them in `f64`.
+fn f32_text(bits: u32) -> String {
+    let v = f32::from_bits(bits);
+    if v.abs() == f32::MAX {
+        // Its shortest decimal lies above it, and a strict reader of WGSL refuses that.
+        return format!("{v:.1}f");
+    }
+    format!("{v:?}f")
+}
+
+/// Prints the expressions of one function.
+pub(super) struct Expressions<'a> {
+    pub(super) function: &'a Recorded,
+    /// The local names of expressions that have a `let`.
+    pub(super) locals: &'a [Option<String>],
+    pub(super) text: &'a Text<'a>,
+}
+
+impl Expressions<'_> {
+    /// `id` where anything may stand.
+    pub(super) fn any(&self, id: Id, names: &mut Names) -> String {
+        self.expr(id, names).0
+    }
+
+    /// `id` in a list: comparisons and shifts there would look like a list of a template.
+    fn item(&self, id: Id, names: &mut Names) -> String {
+        self.at_least(id, Bind::Sum, names)
+    }
+
+    /// The definition of an expression that has a name.
+    pub(super) fn definition(&self, id: Id, names: &mut Names) -> String {
+        self.spell(id, names).0
+    }
+
+    fn at_least(&self, id: Id, bind: Bind, names: &mut Names) -> String {
+        let (text, own) = self.expr(id, names);
+        if own >= bind { text } else { format!("({text})") }
+    }
+
+    fn expr(&self, id: Id, names: &mut Names) -> (String, Bind) {
+        match &self.locals[id.0 as usize] {
+            Some(name) => (name.clone(), Bind::Primary),
+            None => self.spell(id, names),
+        }
+    }
+
+    fn spell(&self, id: Id, names: &mut Names) -> (String, Bind) {
+        let node = &self.function.nodes[id.0 as usize];
+        let primary = |text: String| (text, Bind::Primary);
+        match &node.expr {
+            Expr::F32(bits) if bits >> 31 == 1 => (f32_text(*bits), Bind::Unary),
+            Expr::F32(bits) => primary(f32_text(*bits)),
+            Expr::I32(i32::MIN) => primary("(-2147483647i - 1i)".to_owned()),
+            Expr::I32(v) if *v < 0 => (format!("{v}i"), Bind::Unary),
+            Expr::I32(v) => primary(format!("{v}i")),
+            Expr::U32(v) => primary(format!("{v}u")),
+            Expr::Bool(v) => primary(v.to_string()),
+            Expr::Param(i) => primary(self.text.param(self.function, *i)),
+            Expr::Uniform(i) => primary(format!("params.{}", self.text.uniform(*i))),
+            Expr::Member(a, name) => primary(format!(
+                "{}.{}",
+                self.at_least(*a, Bind::Primary, names),
+                member_name(name)
+            )),
+            Expr::Element(a, i) => {
+                primary(format!("{}[{i}]", self.at_least(*a, Bind::Primary, names)))
+            }
+            Expr::Load(v) => primary(self.text.var(self.function, *v)),
+            Expr::F32Unary(F32Unary::Neg, a) | Expr::Neg(a) => self.prefix("-", *a, names),
+            Expr::Not(a) => self.prefix("!", *a, names),
+            Expr::Complement(a) => self.prefix("~", *a, names),
+            Expr::F32Unary(op, a) => {
+                let f = match op {
+                    F32Unary::Neg => "-",
+                    F32Unary::Abs => "abs",
+                    F32Unary::Sqrt => "sqrt",
+                    F32Unary::Floor => "floor",
+                    F32Unary::Ceil => "ceil",
+                    F32Unary::Trunc => "trunc",
+                };
+                primary(format!("{f}({})", self.any(*a, names)))
+            }
+            Expr::F32Binary(op, a, b) => self.f32_binary(*op, *a, *b, names),
+            Expr::MulAdd(a, b, c) => {
+                let [a, b, c] = [a, b, c].map(|x| self.item(*x, names));
+                primary(format!("fma({a}, {b}, {c})"))
+            }
+            Expr::IntBinary(op, a, b) => self.int_binary(*op, *a, *b, names),
+            Expr::BoolBinary(op, a, b) => self.bool_binary(*op, *a, *b, names),
+            Expr::Compare(op, a, b) => {
+                let symbol = match op {
+                    Compare::Eq => "==",
+                    Compare::Ne => "!=",
+                    Compare::Lt => "<",
+                    Compare::Le => "<=",
+                    Compare::Gt => ">",
+                    Compare::Ge => ">=",
+                };
+                self.infix(symbol, Bind::Compare, (*a, Bind::Sum), (*b, Bind::Sum), names)
+            }
+            Expr::Select(c, a, b) => {
+                let [c, a, b] = [c, a, b].map(|x| self.item(*x, names));
+                primary(format!("select({b}, {a}, {c})"))
+            }
+            Expr::Convert(how, a) => primary(self.convert(*how, node.ty, *a, names)),
+            Expr::Call(f, args) => {
+                let args: Vec<String> = args.iter().map(|a| self.item(*a, names)).collect();
+                primary(format!("{}({})", self.text.function(*f), args.join(", ")))
+            }
+            Expr::Compose(parts) => {
+                let ty = names.ty(node.ty);
+                let same =
+                    parts.iter().all(|p| *p == parts[0]) && matches!(node.ty, Type::Vector(_));
+                let shown = if same { &parts[..1] } else { &parts[..] };
+                let parts: Vec<String> = shown.iter().map(|p| self.item(*p, names)).collect();
+                primary(format!("{ty}({})", parts.join(", ")))
+            }
+        }
+    }
+
+    fn prefix(&self, symbol: &str, a: Id, names: &mut Names) -> (String, Bind) {
+        (format!("{symbol}{}", self.at_least(a, Bind::Primary, names)), Bind::Unary)
+    }
+
+    fn infix(
+        &self,
+        symbol: &str,
+        bind: Bind,
+        (a, left): (Id, Bind),
+        (b, right): (Id, Bind),
+        names: &mut Names,
+    ) -> (String, Bind) {
+        let a = self.at_least(a, left, names);
+        let b = self.at_least(b, right, names);
+        (format!("{a} {symbol} {b}"), bind)
+    }
+
+    fn f32_binary(&self, op: F32Binary, a: Id, b: Id, names: &mut Names) -> (String, Bind) {
+        let sum =
+            |s, t: &mut Names| self.infix(s, Bind::Sum, (a, Bind::Sum), (b, Bind::Product), t);
+        let product = |s, t: &mut Names| {
+            self.infix(s, Bind::Product, (a, Bind::Product), (b, Bind::Unary), t)
+        };
+        let chosen = |less: bool, t: &mut Names| {
+            let (a, b) = (self.at_least(a, Bind::Sum, t), self.at_least(b, Bind::Sum, t));
+            let c = if less { format!("{b} < {a}") } else { format!("{a} < {b}") };
+            (format!("select({a}, {b}, {c})"), Bind::Primary)
+        };
+        match op {
+            F32Binary::Add => sum("+", names),
+            F32Binary::Sub => sum("-", names),
+            F32Binary::Mul => product("*", names),
+            F32Binary::Div => product("/", names),
+            F32Binary::Min => chosen(true, names),
+            F32Binary::Max => chosen(false, names),
+        }
+    }
+
+    fn int_binary(&self, op: IntBinary, a: Id, b: Id, names: &mut Names) -> (String, Bind) {
+        let sum =
+            |s, t: &mut Names| self.infix(s, Bind::Sum, (a, Bind::Sum), (b, Bind::Product), t);
+        let product = |s, t: &mut Names| {
+            self.infix(s, Bind::Product, (a, Bind::Product), (b, Bind::Unary), t)
+        };
+        // Bit operators do not mix with others without parentheses.
+        let bits = |s, t: &mut Names| {
+            let text = self.infix(s, Bind::Or, (a, Bind::Unary), (b, Bind::Unary), t).0;
+            (text, Bind::Or)
+        };
+        match op {
+            IntBinary::Add | IntBinary::WrappingAdd => sum("+", names),
+            IntBinary::Sub | IntBinary::WrappingSub => sum("-", names),
+            IntBinary::Mul | IntBinary::WrappingMul => product("*", names),
+            IntBinary::Div => product("/", names),
+            IntBinary::Rem => product("%", names),
+            IntBinary::And => bits("&", names),
+            IntBinary::Or => bits("|", names),
+            IntBinary::Xor => bits("^", names),
+            IntBinary::Shl => self.shift("<<", a, b, names),
+            IntBinary::Shr => self.shift(">>", a, b, names),
+        }
+    }
+
+    /// A shift by the amount modulo 32.
+    fn shift(&self, symbol: &str, a: Id, b: Id, names: &mut Names) -> (String, Bind) {
+        let a = self.at_least(a, Bind::Unary, names);
+        let amount = match self.function.nodes[b.0 as usize].expr {
+            Expr::U32(n) => format!("{}u", n & 31),
+            Expr::I32(n) => format!("{}u", n & 31),
+            _ => match self.function.nodes[b.0 as usize].ty {
+                Type::I32 => format!("(bitcast<u32>({}) & 31u)", self.any(b, names)),
+                _ => format!("({} & 31u)", self.at_least(b, Bind::Unary, names)),
+            },
+        };
+        (format!("{a} {symbol} {amount}"), Bind::Or)
+    }
+
+    fn bool_binary(&self, op: BoolBinary, a: Id, b: Id, names: &mut Names) -> (String, Bind) {
+        match op {
+            BoolBinary::And => {
+                self.infix("&&", Bind::And, (a, Bind::And), (b, Bind::Compare), names)
+            }
+            // `&&` inside `||` needs parentheses in WGSL.
+            BoolBinary::Or => {
+                let is_or = matches!(
+                    (&self.locals[a.0 as usize], &self.function.nodes[a.0 as usize].expr),
+                    (None, Expr::BoolBinary(BoolBinary::Or, ..))
+                );
+                let left = if is_or { Bind::Or } else { Bind::Compare };
+                self.infix("||", Bind::Or, (a, left), (b, Bind::Compare), names)
+            }
+            BoolBinary::Xor => {
+                self.infix("!=", Bind::Compare, (a, Bind::Unary), (b, Bind::Unary), names)
+            }
+        }
+    }
+
+    fn convert(&self, how: Conversion, ty: Type, a: Id, names: &mut Names) -> String {
+        let inner = self.any(a, names);
+        match how {
+            Conversion::To => format!("{}({inner})", names.ty(ty)),
+            Conversion::Bits => format!("bitcast<{}>({inner})", names.ty(ty)),
+            Conversion::Saturate => {
+                let f = if ty == Type::I32 { "saturate_i32" } else { "saturate_u32" };
+                names.helper(f);
+                format!("{f}({inner})")
+            }
+        }
+    }
+}

@@ -1,0 +1,239 @@
+//! The recorded program: functions of structured statements over a table of expressions.
+
+use crate::machine::{
+    BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Schema, wgsl::BufferKey,
+};
+
+/// An expression of the function that is being recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Id(pub(super) u32);
+
+/// A variable of the function that is being recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct VarId(pub(super) u32);
+
+/// The type of an expression.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Type {
+    F32,
+    I32,
+    U32,
+    Bool,
+    Vector(usize),
+    Of(&'static Schema),
+}
+
+impl Type {
+    pub(super) fn of(schema: &'static Schema) -> Self {
+        match schema {
+            Schema::F32 => Self::F32,
+            Schema::I32 => Self::I32,
+            Schema::U32 | Schema::Small { .. } => Self::U32,
+            Schema::Bool => Self::Bool,
+            Schema::Vector(n) => Self::Vector(*n),
+            _ => Self::Of(schema),
+        }
+    }
+}
+
+impl PartialEq for Type {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Of(a), Self::Of(b)) => a == b,
+            (Self::Vector(a), Self::Vector(b)) => a == b,
+            _ => core::mem::discriminant(self) == core::mem::discriminant(other),
+        }
+    }
+}
+
+/// How a scalar becomes another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Conversion {
+    /// `T(x)`.
+    To,
+    /// `bitcast<T>(x)`.
+    Bits,
+    /// A float to an integer: saturates, NaN gives 0, as Rust's `as`.
+    Saturate,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Expr {
+    /// The bits of an `f32`, so that equal programs compare equal.
+    F32(u32),
+    I32(i32),
+    U32(u32),
+    Bool(bool),
+    Param(usize),
+    Uniform(usize),
+    Member(Id, &'static str),
+    Element(Id, usize),
+    Load(VarId),
+    F32Unary(F32Unary, Id),
+    F32Binary(F32Binary, Id, Id),
+    MulAdd(Id, Id, Id),
+    IntBinary(IntBinary, Id, Id),
+    BoolBinary(BoolBinary, Id, Id),
+    Neg(Id),
+    Not(Id),
+    Complement(Id),
+    Compare(Compare, Id, Id),
+    Select(Id, Id, Id),
+    Convert(Conversion, Id),
+    Call(usize, Vec<Id>),
+    Compose(Vec<Id>),
+}
+
+impl Expr {
+    /// Whether it is so short that it never needs a name.
+    pub(super) fn is_trivial(&self) -> bool {
+        matches!(
+            self,
+            Self::F32(_)
+                | Self::I32(_)
+                | Self::U32(_)
+                | Self::Bool(_)
+                | Self::Param(_)
+                | Self::Uniform(_)
+                | Self::Member(..)
+                | Self::Element(..)
+        )
+    }
+
+    pub(super) fn operands(&self) -> Vec<Id> {
+        match self {
+            Self::F32(_)
+            | Self::I32(_)
+            | Self::U32(_)
+            | Self::Bool(_)
+            | Self::Param(_)
+            | Self::Uniform(_)
+            | Self::Load(_) => vec![],
+            Self::Member(a, _)
+            | Self::Element(a, _)
+            | Self::F32Unary(_, a)
+            | Self::Neg(a)
+            | Self::Not(a)
+            | Self::Complement(a)
+            | Self::Convert(_, a) => vec![*a],
+            Self::F32Binary(_, a, b)
+            | Self::IntBinary(_, a, b)
+            | Self::BoolBinary(_, a, b)
+            | Self::Compare(_, a, b) => vec![*a, *b],
+            Self::MulAdd(a, b, c) | Self::Select(a, b, c) => vec![*a, *b, *c],
+            Self::Call(_, args) | Self::Compose(args) => args.clone(),
+        }
+    }
+}
+
+/// An expression and what the printer must know of it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Node {
+    pub(super) expr: Expr,
+    pub(super) ty: Type,
+    /// The name that it has in the source.
+    pub(super) name: Option<&'static str>,
+    /// It must be evaluated where it was recorded, not where it is used.
+    pub(super) pinned: bool,
+    /// The block in which it was recorded.
+    pub(super) block: u32,
+    /// The loads under it that would be repeated if it was written where it is used.
+    pub(super) loads: Vec<Id>,
+    /// Of a load: the variable's version when it was recorded.
+    pub(super) version: u32,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Stmt {
+    /// Where an expression was recorded.
+    Let(Id),
+    Var(VarId, Option<Id>),
+    Store(VarId, Id),
+    If {
+        c: Id,
+        then: Vec<Stmt>,
+        otherwise: Vec<Stmt>,
+    },
+    Loop {
+        body: Vec<Stmt>,
+        continuing: Vec<Stmt>,
+    },
+    BreakUnless(Id),
+    Break,
+    Continue,
+    Return(Option<Id>),
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Variable {
+    pub(super) name: String,
+    pub(super) ty: Type,
+    /// Grows with every store and at the start of every loop.
+    pub(super) version: u32,
+}
+
+/// A function, recorded or written by hand.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Function {
+    Recorded(Recorded),
+    /// WGSL text, with the types it names.
+    Text {
+        name: String,
+        text: String,
+        types: Vec<&'static Schema>,
+    },
+}
+
+impl Function {
+    pub(super) fn name(&self) -> &str {
+        match self {
+            Self::Recorded(f) => &f.name,
+            Self::Text { name, .. } => name,
+        }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Recorded {
+    /// The name in the source; `name` may differ where several kernels share it.
+    pub(super) source_name: &'static str,
+    pub(super) name: String,
+    /// Where it stands in the Rust source.
+    pub(super) file: &'static str,
+    pub(super) line: u32,
+    pub(super) params: Vec<(String, Type)>,
+    pub(super) result: Option<Type>,
+    pub(super) nodes: Vec<Node>,
+    pub(super) vars: Vec<Variable>,
+    pub(super) body: Vec<Stmt>,
+}
+
+impl Recorded {
+    /// Equal but for the name.
+    pub(super) fn same_code(&self, other: &Self) -> bool {
+        self.source_name == other.source_name
+            && self.params == other.params
+            && self.result == other.result
+            && self.vars == other.vars
+            && self.body == other.body
+            && self.nodes == other.nodes
+    }
+}
+
+/// A member of the uniform block.
+#[derive(Clone, Debug)]
+pub(super) struct Uniform {
+    pub(super) name: String,
+    pub(super) ty: Type,
+    /// The four-byte words of the value.
+    pub(super) words: Vec<u32>,
+}
+
+/// A buffer of the scene.
+#[derive(Clone, Debug)]
+pub(super) struct SceneBuffer {
+    pub(super) key: BufferKey,
+    pub(super) name: String,
+    pub(super) schema: &'static Schema,
+    pub(super) len: u64,
+}

@@ -1,0 +1,544 @@
+//! The hooks of the [`Recorder`].
+
+use core::cell::Cell;
+
+use super::ir::{Conversion, Expr, Id, Stmt, Type, VarId};
+use super::{RecordedBranch, RecordedLoop, Recorder, storage};
+use crate::geometry::{HitOn, Primitive, RayOn};
+use crate::machine::scalar;
+use crate::machine::{
+    B, BoolBinary, Compare, F32Binary, F32Unary, IntBinary, KernelInfo, Machine, Schema, U, Value,
+};
+
+/// Whether dividing by `v` and multiplying by its reciprocal give the same bits.
+fn is_power_of_two(v: f32) -> bool {
+    v.is_normal() && v.to_bits() & 0x007f_ffff == 0
+}
+
+/// `lit_0_125`: the name of a literal in the uniform block.
+fn literal_name(v: f32) -> String {
+    let digits: String = format!("{v:?}")
+        .chars()
+        .map(|c| match c {
+            '-' => 'm',
+            '.' => '_',
+            c => c,
+        })
+        .collect();
+    format!("lit_{digits}")
+}
+
+impl Recorder {
+    /// Drivers fold and reorder arithmetic with constants; with a number of the uniform block they
+    /// cannot. A factor that is a power of two may stay: it is exact in any order.
+    fn opaque(&self, id: Id) -> Id {
+        match self.node(id).expr {
+            Expr::F32(bits) => {
+                let name = literal_name(f32::from_bits(bits));
+                self.uniform(&name, Type::F32, vec![bits])
+            }
+            Expr::Compose(parts) if parts.iter().all(|p| *p == parts[0]) => self.opaque(parts[0]),
+            Expr::Compose(parts) => {
+                let parts: Vec<Id> = parts.into_iter().map(|p| self.opaque(p)).collect();
+                let n = parts.len();
+                self.add(Expr::Compose(parts), Type::Vector(n))
+            }
+            _ => id,
+        }
+    }
+
+    /// The number that `id` is in the source.
+    ///
+    /// Operations on literals alone are done here: WGSL would do them in other ways, or refuse a
+    /// result that is not finite.
+    fn literal(&self, id: Id) -> Option<f32> {
+        match self.node(id).expr {
+            Expr::F32(bits) => Some(f32::from_bits(bits)),
+            _ => None,
+        }
+    }
+
+    fn is_exact_factor(&self, id: Id) -> bool {
+        matches!(self.node(id).expr, Expr::F32(bits) if is_power_of_two(f32::from_bits(bits)))
+    }
+
+    fn binary(&self, op: F32Binary, a: Id, b: Id, ty: Type) -> Id {
+        let (a, b) = match op {
+            F32Binary::Add | F32Binary::Sub => (self.opaque(a), self.opaque(b)),
+            F32Binary::Mul if self.is_exact_factor(a) || self.is_exact_factor(b) => (a, b),
+            F32Binary::Mul => (self.opaque(a), self.opaque(b)),
+            F32Binary::Div if self.is_exact_factor(b) => (a, b),
+            F32Binary::Div => (a, self.opaque(b)),
+            F32Binary::Min | F32Binary::Max => (a, b),
+        };
+        self.add(Expr::F32Binary(op, a, b), ty)
+    }
+
+    /// A vector operand: the number itself where all components are one number.
+    fn operand<const N: usize>(&self, v: [Id; N]) -> Id {
+        if v.iter().all(|x| *x == v[0]) && N > 1 { v[0] } else { self.vector(&v) }
+    }
+
+    fn is_vector(&self, id: Id) -> bool {
+        matches!(self.node(id).ty, Type::Vector(_))
+    }
+
+    fn components<const N: usize>(&self, v: Id) -> [Id; N] {
+        let names = ["x", "y", "z", "w"];
+        core::array::from_fn(|i| self.add(Expr::Member(v, names[i]), Type::F32))
+    }
+
+    /// The variable `leave`, which says what labelled loop is being left.
+    fn leave(&self) -> VarId {
+        self.builder(|b| {
+            if let Some(v) = b.leave {
+                return v;
+            }
+            let v = b.new_var("leave", Type::U32);
+            b.leave = Some(v);
+            v
+        })
+    }
+
+    /// Leaves the innermost loop on the way to loop `number`.
+    fn exit(&self, number: u32, again: bool) {
+        let innermost = self.builder(|b| b.loops.last().map(|l| l.number));
+        if innermost == Some(number) {
+            let stmt = if again { Stmt::Continue } else { Stmt::Break };
+            self.builder(|b| b.push(stmt));
+            return;
+        }
+        let leave = self.leave();
+        let code = self.add(Expr::U32(2 * number + u32::from(again)), Type::U32);
+        self.builder(|b| {
+            b.store(leave, code);
+            b.push(Stmt::Break);
+            if let Some(l) = b.loops.last_mut()
+                && !l.passing.contains(&(number, again))
+            {
+                l.passing.push((number, again));
+            }
+        });
+    }
+
+    /// Behind an inner loop: goes on leaving where a labelled exit passed through it.
+    fn pass_on(&self, passing: Vec<(u32, bool)>) {
+        for (number, again) in passing {
+            let leave = self.leave();
+            let code = self.add(Expr::U32(2 * number + u32::from(again)), Type::U32);
+            let now = self.add(Expr::Load(leave), Type::U32);
+            let c = self.add(Expr::Compare(Compare::Eq, now, code), Type::Bool);
+            let b = self.branch(c);
+            let zero = self.add(Expr::U32(0), Type::U32);
+            let arrived = self.builder(|b| b.loops.last().is_some_and(|l| l.number == number));
+            if arrived {
+                self.builder(|b| b.store(leave, zero));
+                self.exit(number, again);
+            } else {
+                self.builder(|b| {
+                    b.push(Stmt::Break);
+                    if let Some(l) = b.loops.last_mut()
+                        && !l.passing.contains(&(number, again))
+                    {
+                        l.passing.push((number, again));
+                    }
+                });
+            }
+            self.branch_end(b);
+        }
+    }
+}
+
+/// Variables: the state of one is the leaves that read its cells.
+impl Recorder {
+    fn cells<V: Value<Self>>(&self, name: &str) -> Vec<storage::Cell> {
+        let mut cells = Vec::new();
+        storage::cells(name, V::SCHEMA, &mut cells);
+        cells
+    }
+
+    /// The leaves that read `v`.
+    fn read(&self, v: VarId, ty: Type) -> Vec<Id> {
+        let load = self.add(Expr::Load(v), ty);
+        match ty {
+            Type::Vector(n) => ["x", "y", "z", "w"]
+                .into_iter()
+                .take(n)
+                .map(|c| self.add(Expr::Member(load, c), Type::F32))
+                .collect(),
+            _ => vec![load],
+        }
+    }
+
+    fn new_cells<V: Value<Self>>(&self, name: &str, value: Option<V>) -> V {
+        let mut values = value.map(|v| self.leaves_of(v).into_iter());
+        let mut state = Vec::new();
+        for cell in self.cells::<V>(name) {
+            let value = values.as_mut().map(|values| {
+                let parts: Vec<Id> = values.by_ref().take(cell.leaves).collect();
+                if parts.len() > 1 { self.vector(&parts) } else { parts[0] }
+            });
+            let v = self.builder(|b| {
+                let v = b.new_var(&super::safe_name(&cell.name), cell.ty);
+                if let Some(value) = value {
+                    b.used(value);
+                }
+                b.push(Stmt::Var(v, value));
+                v
+            });
+            state.extend(self.read(v, cell.ty));
+        }
+        self.with_leaves(value.unwrap_or_else(|| V::zero(self)), &state)
+    }
+
+    /// The variables behind a state, with their types.
+    fn vars_of<V: Value<Self>>(&self, state: V) -> Vec<(VarId, Type)> {
+        let mut leaves = self.leaves_of(state).into_iter();
+        let cells = self.cells::<V>("");
+        let vars = cells.into_iter().filter_map(|cell| {
+            let first = leaves.next()?;
+            leaves.by_ref().take(cell.leaves - 1).for_each(drop);
+            let load = match self.node(first).expr {
+                Expr::Member(load, _) => load,
+                _ => first,
+            };
+            match self.node(load).expr {
+                Expr::Load(v) => Some((v, cell.ty)),
+                _ => None,
+            }
+        });
+        vars.collect()
+    }
+}
+
+impl Machine for Recorder {
+    type F32 = Id;
+    type I32 = Id;
+    type U32 = Id;
+    type Bool = Id;
+    type Branch = RecordedBranch;
+    type Loop = RecordedLoop;
+
+    fn f32(&self, v: f32) -> Id {
+        if v.is_finite() {
+            return self.add(Expr::F32(v.to_bits()), Type::F32);
+        }
+        // WGSL has no literal for these.
+        let name = if v.is_nan() { "nan" } else { "infinity" };
+        self.uniform(name, Type::F32, vec![v.to_bits()])
+    }
+    fn i32(&self, v: i32) -> Id {
+        self.add(Expr::I32(v), Type::I32)
+    }
+    fn u32(&self, v: u32) -> Id {
+        self.add(Expr::U32(v), Type::U32)
+    }
+    fn bool(&self, v: bool) -> Id {
+        self.add(Expr::Bool(v), Type::Bool)
+    }
+    fn f32_unary(&self, op: F32Unary, a: Id) -> Id {
+        if let Some(a) = self.literal(a) {
+            return self.f32(scalar::f32_unary(op, a));
+        }
+        self.add(Expr::F32Unary(op, a), Type::F32)
+    }
+    fn f32_binary(&self, op: F32Binary, a: Id, b: Id) -> Id {
+        if let (Some(a), Some(b)) = (self.literal(a), self.literal(b)) {
+            return self.f32(scalar::f32_binary(op, a, b));
+        }
+        self.binary(op, a, b, Type::F32)
+    }
+    fn f32_mul_add(&self, a: Id, b: Id, c: Id) -> Id {
+        self.add(Expr::MulAdd(a, b, c), Type::F32)
+    }
+    fn i32_binary(&self, op: IntBinary, a: Id, b: Id) -> Id {
+        self.add(Expr::IntBinary(op, a, b), Type::I32)
+    }
+    fn u32_binary(&self, op: IntBinary, a: Id, b: Id) -> Id {
+        self.add(Expr::IntBinary(op, a, b), Type::U32)
+    }
+    fn bool_binary(&self, op: BoolBinary, a: Id, b: Id) -> Id {
+        self.add(Expr::BoolBinary(op, a, b), Type::Bool)
+    }
+    fn i32_neg(&self, a: Id) -> Id {
+        self.add(Expr::Neg(a), Type::I32)
+    }
+    fn i32_not(&self, a: Id) -> Id {
+        self.add(Expr::Complement(a), Type::I32)
+    }
+    fn u32_not(&self, a: Id) -> Id {
+        self.add(Expr::Complement(a), Type::U32)
+    }
+    fn bool_not(&self, a: Id) -> Id {
+        self.add(Expr::Not(a), Type::Bool)
+    }
+    fn f32_compare(&self, op: Compare, a: Id, b: Id) -> Id {
+        self.add(Expr::Compare(op, a, b), Type::Bool)
+    }
+    fn i32_compare(&self, op: Compare, a: Id, b: Id) -> Id {
+        self.add(Expr::Compare(op, a, b), Type::Bool)
+    }
+    fn u32_compare(&self, op: Compare, a: Id, b: Id) -> Id {
+        self.add(Expr::Compare(op, a, b), Type::Bool)
+    }
+    fn f32_select(&self, c: Id, a: Id, b: Id) -> Id {
+        self.add(Expr::Select(c, a, b), Type::F32)
+    }
+    fn i32_select(&self, c: Id, a: Id, b: Id) -> Id {
+        self.add(Expr::Select(c, a, b), Type::I32)
+    }
+    fn u32_select(&self, c: Id, a: Id, b: Id) -> Id {
+        self.add(Expr::Select(c, a, b), Type::U32)
+    }
+    fn bool_select(&self, c: Id, a: Id, b: Id) -> Id {
+        self.add(Expr::Select(c, a, b), Type::Bool)
+    }
+    fn f32_to_i32(&self, a: Id) -> Id {
+        self.add(Expr::Convert(Conversion::Saturate, a), Type::I32)
+    }
+    fn f32_to_u32(&self, a: Id) -> Id {
+        self.add(Expr::Convert(Conversion::Saturate, a), Type::U32)
+    }
+    fn i32_to_f32(&self, a: Id) -> Id {
+        self.add(Expr::Convert(Conversion::To, a), Type::F32)
+    }
+    fn u32_to_f32(&self, a: Id) -> Id {
+        self.add(Expr::Convert(Conversion::To, a), Type::F32)
+    }
+    fn i32_to_u32(&self, a: Id) -> Id {
+        self.add(Expr::Convert(Conversion::Bits, a), Type::U32)
+    }
+    fn u32_to_i32(&self, a: Id) -> Id {
+        self.add(Expr::Convert(Conversion::Bits, a), Type::I32)
+    }
+    fn f32_to_bits(&self, a: Id) -> Id {
+        self.add(Expr::Convert(Conversion::Bits, a), Type::U32)
+    }
+    fn f32_from_bits(&self, a: Id) -> Id {
+        self.add(Expr::Convert(Conversion::Bits, a), Type::F32)
+    }
+    fn bool_to_u32(&self, a: Id) -> Id {
+        self.add(Expr::Convert(Conversion::To, a), Type::U32)
+    }
+
+    fn vector_binary<const N: usize>(&self, op: F32Binary, a: [Id; N], b: [Id; N]) -> [Id; N] {
+        if a.iter().chain(&b).all(|x| self.literal(*x).is_some()) {
+            return core::array::from_fn(|i| self.f32_binary(op, a[i], b[i]));
+        }
+        let (mut x, mut y) = (self.operand(a), self.operand(b));
+        // `min` and `max` are selects by component; two splats still are a vector.
+        let selects = matches!(op, F32Binary::Min | F32Binary::Max);
+        if selects || !(self.is_vector(x) || self.is_vector(y)) {
+            (x, y) = (self.vector(&a), self.vector(&b));
+        }
+        let v = self.binary(op, x, y, Type::Vector(N));
+        self.components(v)
+    }
+    fn vector_unary<const N: usize>(&self, op: F32Unary, a: [Id; N]) -> [Id; N] {
+        if a.iter().all(|x| self.literal(*x).is_some()) {
+            return a.map(|x| self.f32_unary(op, x));
+        }
+        let v = self.vector(&a);
+        let v = self.add(Expr::F32Unary(op, v), Type::Vector(N));
+        self.components(v)
+    }
+
+    fn branch(&self, c: Id) -> RecordedBranch {
+        self.builder(|b| {
+            b.used(c);
+            b.open_block();
+        });
+        RecordedBranch { c, then: Default::default() }
+    }
+    fn branch_then(&self, _: &RecordedBranch) -> bool {
+        true
+    }
+    fn branch_else(&self, t: &RecordedBranch) -> bool {
+        let then = self.builder(|b| {
+            let then = b.close_block();
+            b.open_block();
+            then
+        });
+        t.then.replace(Some(then));
+        true
+    }
+    fn branch_end(&self, t: RecordedBranch) {
+        self.builder(|b| {
+            let last = b.close_block();
+            let stmt = match t.then.take() {
+                Some(then) => Stmt::If { c: t.c, then, otherwise: last },
+                None => Stmt::If { c: t.c, then: last, otherwise: Vec::new() },
+            };
+            b.push(stmt);
+        });
+    }
+
+    fn loop_begin(&self) -> RecordedLoop {
+        self.builder(|b| {
+            // What was loaded before the loop may have changed in its second round.
+            for v in &mut b.function.vars {
+                v.version += 1;
+            }
+            let number = b.next_loop;
+            b.next_loop += 1;
+            b.loops.push(super::LoopState { number, passing: Vec::new() });
+            b.open_block();
+            RecordedLoop { number, body: Default::default(), continuing: Default::default() }
+        })
+    }
+    fn loop_test(&self, _: &RecordedLoop, c: Id) -> bool {
+        self.builder(|b| {
+            b.used(c);
+            b.push(Stmt::BreakUnless(c));
+        });
+        true
+    }
+    fn loop_break(&self, l: &RecordedLoop) {
+        self.exit(l.number, false);
+    }
+    fn loop_continue(&self, l: &RecordedLoop) {
+        self.exit(l.number, true);
+    }
+    fn loop_continuing(&self, l: &RecordedLoop) {
+        let body = self.builder(|b| {
+            let body = b.close_block();
+            b.open_block();
+            body
+        });
+        l.body.replace(Some(body));
+    }
+    fn loop_again(&self, l: &RecordedLoop) -> bool {
+        let continuing = self.builder(|b| b.close_block());
+        l.continuing.replace(Some(continuing));
+        false
+    }
+    fn loop_end(&self, l: RecordedLoop) {
+        let passing = self.builder(|b| {
+            // A condition of the host may have left the loop in the middle of its body.
+            let body = l.body.take().unwrap_or_else(|| b.close_block());
+            let continuing = l.continuing.take().unwrap_or_default();
+            b.push(Stmt::Loop { body, continuing });
+            b.loops.pop().map(|l| l.passing).unwrap_or_default()
+        });
+        self.pass_on(passing);
+    }
+
+    fn alive(&self) -> bool {
+        true
+    }
+    fn any(&self, _: Id) -> bool {
+        true
+    }
+
+    fn var_new<V: Value<Self>>(&self, name: &'static str, v: V) -> V {
+        self.new_cells(name, Some(v))
+    }
+    fn var_declare<V: Value<Self>>(&self, name: &'static str) -> V {
+        self.new_cells(name, None)
+    }
+    fn var_get<V: Value<Self>>(&self, state: V) -> V {
+        let vars = self.vars_of(state);
+        let leaves: Vec<Id> = vars.into_iter().flat_map(|(v, ty)| self.read(v, ty)).collect();
+        self.with_leaves(state, &leaves)
+    }
+    fn var_set<V: Value<Self>>(&self, state: V, v: V) -> V {
+        let mut values = self.leaves_of(v).into_iter();
+        for (var, ty) in self.vars_of(state) {
+            let value = match ty {
+                Type::Vector(n) => {
+                    let parts: Vec<Id> = values.by_ref().take(n).collect();
+                    self.vector(&parts)
+                }
+                _ => values.next().expect("one leaf for each scalar of the schema"),
+            };
+            self.builder(|b| b.store(var, value));
+        }
+        state
+    }
+    fn give<V: Value<Self>>(&self, _: &Cell<V>, v: V) {
+        if V::SCHEMA.leaves() == 0 {
+            self.builder(|b| b.push(Stmt::Return(None)));
+        } else {
+            self.give_leaves(V::SCHEMA, self.leaves_of(v));
+        }
+    }
+    fn give_slot<V: Value<Self>>(&self) -> V {
+        V::zero(self)
+    }
+    fn call<A: Value<Self>, R: Value<Self>>(
+        &self,
+        info: &'static KernelInfo,
+        args: A,
+        body: impl FnOnce(&Self, A) -> R,
+    ) -> R {
+        let operands = self.arguments(args);
+        let params = self.begin(info, args);
+        let result = body(self, params);
+        let function = self.end(result);
+        if R::SCHEMA.leaves() == 0 {
+            return result;
+        }
+        let call = self.add(Expr::Call(function, operands), Type::of(R::SCHEMA));
+        self.take_apart(call)
+    }
+
+    fn capture<T: crate::machine::Type>(&self, name: &'static str, v: T) -> T::On<Self> {
+        let mut bytes = vec![0; size_of::<T>()];
+        v.write(&mut bytes);
+        let mut leaves = Vec::new();
+        storage::uniforms(self, name, T::SCHEMA, &bytes, &mut leaves);
+        self.of_leaves(&leaves)
+    }
+
+    fn named<V: Value<Self>>(&self, name: &'static str, v: V) -> V {
+        let leaves = self.leaves_of(v);
+        let whole = leaves.first().map(|l| self.node(*l).expr);
+        self.builder(|b| {
+            // All parts of one value: the value is what has the name.
+            let owner = match whole {
+                Some(Expr::Member(a, _) | Expr::Element(a, _)) if leaves.len() > 1 => Some(a),
+                _ if leaves.len() == 1 => Some(leaves[0]),
+                _ => None,
+            };
+            let Some(mut id) = owner else { return };
+            while let Expr::Member(a, _) | Expr::Element(a, _) = b.node(id).expr
+                && leaves.len() > 1
+            {
+                id = a;
+            }
+            let node = b.node(id);
+            if !node.expr.is_trivial() && node.name.is_none() {
+                node.name = Some(name);
+            }
+        });
+        v
+    }
+
+    fn closest_hit<P: Primitive>(
+        &self,
+        prims: &crate::bvh::On<'_, P>,
+        ray: RayOn<Self>,
+    ) -> HitOn<Self> {
+        let function = self.closest_hit_function(prims);
+        let ray = self.put_together(
+            <RayOn<Self> as Value<Self>>::SCHEMA,
+            &mut self.leaves_of(ray).into_iter(),
+        );
+        let schema: &'static Schema = <HitOn<Self> as Value<Self>>::SCHEMA;
+        let call = self.add(Expr::Call(function, vec![ray]), Type::of(schema));
+        self.take_apart(call)
+    }
+    fn any_hit<P: Primitive>(&self, prims: &crate::bvh::On<'_, P>, ray: RayOn<Self>) -> B<Self> {
+        let function = self.any_hit_function(prims);
+        let ray = self.put_together(
+            <RayOn<Self> as Value<Self>>::SCHEMA,
+            &mut self.leaves_of(ray).into_iter(),
+        );
+        B(self.add(Expr::Call(function, vec![ray]), Type::Bool))
+    }
+    fn fetch<P: Primitive>(&self, prims: &crate::bvh::On<'_, P>, index: U<Self>) -> P::On<Self> {
+        let function = self.fetch_function(prims);
+        let call = self.add(Expr::Call(function, vec![index.0]), Type::of(P::SCHEMA));
+        self.take_apart(call)
+    }
+}

@@ -1,0 +1,396 @@
+//! The machine that writes WGSL.
+//!
+//! Running a lifted body on the [`Recorder`] builds a small structured program; its values are
+//! handles of expressions. Vectors and structs fall into their scalars on the way and are put
+//! together again where all parts come from one value, so the text reads like the source.
+
+mod builder;
+mod expression;
+mod function;
+mod ir;
+mod machine;
+mod module;
+mod names;
+mod storage;
+mod traverse;
+mod types;
+
+use core::cell::RefCell;
+
+pub(crate) use storage::stride;
+
+use builder::{Builder, LoopState};
+use ir::{Expr, Function, Id, Node, SceneBuffer, Stmt, Type, Uniform};
+use names::{safe_name, unique};
+
+use super::{KernelInfo, Leaves, Schema, Value, wgsl};
+
+/// Records a kernel as WGSL.
+pub struct Recorder {
+    state: RefCell<State>,
+}
+
+#[derive(Default)]
+struct State {
+    /// The functions under way, the innermost last.
+    open: Vec<Builder>,
+    functions: Vec<Function>,
+    uniforms: Vec<Uniform>,
+    buffers: Vec<SceneBuffer>,
+}
+
+impl State {
+    /// Whether a function, a buffer, or something that belongs to a buffer has the name.
+    fn is_taken(&self, name: &str) -> bool {
+        let of_buffer = |b: &SceneBuffer| {
+            name.strip_prefix(&b.name).is_some_and(|rest| {
+                matches!(rest, "" | "_at" | "_closest_hit" | "_any_hit")
+                    || rest.starts_with("_part")
+            })
+        };
+        self.functions.iter().any(|f| f.name() == name) || self.buffers.iter().any(of_buffer)
+    }
+}
+
+/// An `if` under way.
+pub struct RecordedBranch {
+    c: Id,
+    then: RefCell<Option<Vec<Stmt>>>,
+}
+
+/// A loop under way.
+pub struct RecordedLoop {
+    number: u32,
+    body: RefCell<Option<Vec<Stmt>>>,
+    continuing: RefCell<Option<Vec<Stmt>>>,
+}
+
+impl Default for Recorder {
+    fn default() -> Self {
+        Self { state: RefCell::new(State::default()) }
+    }
+}
+
+impl Recorder {
+    fn builder<R>(&self, f: impl FnOnce(&mut Builder) -> R) -> R {
+        let mut state = self.state.borrow_mut();
+        let builder = state.open.last_mut().expect("values exist only inside a kernel");
+        f(builder)
+    }
+
+    fn add(&self, expr: Expr, ty: Type) -> Id {
+        self.builder(|b| b.add(expr, ty))
+    }
+
+    fn node(&self, id: Id) -> Node {
+        self.builder(|b| b.node(id).clone())
+    }
+
+    /// The parts of a structured expression, as leaves in order.
+    fn parts(&self, schema: &'static Schema, id: Id, out: &mut Vec<Id>) {
+        match schema {
+            Schema::Vector(n) => {
+                for c in ["x", "y", "z", "w"].into_iter().take(*n) {
+                    out.push(self.add(Expr::Member(id, c), Type::F32));
+                }
+            }
+            Schema::Array { element, count, .. } => {
+                for i in 0..*count {
+                    let e = self.add(Expr::Element(id, i), Type::of(element));
+                    self.parts(element, e, out);
+                }
+            }
+            Schema::Struct { fields, .. } => {
+                for f in fields.iter().filter(|f| f.schema.leaves() > 0) {
+                    let e = self.add(Expr::Member(id, f.name), Type::of(f.schema));
+                    self.parts(f.schema, e, out);
+                }
+            }
+            Schema::Host => {}
+            _ => out.push(id),
+        }
+    }
+
+    /// The twin whose leaves are the parts of `id`.
+    fn take_apart<V: Value<Self>>(&self, id: Id) -> V {
+        let mut leaves = Vec::with_capacity(V::SCHEMA.leaves());
+        self.parts(V::SCHEMA, id, &mut leaves);
+        self.of_leaves(&leaves)
+    }
+
+    fn of_leaves<V: Value<Self>>(&self, leaves: &[Id]) -> V {
+        self.with_leaves(V::zero(self), leaves)
+    }
+
+    fn leaves_of<V: Value<Self>>(&self, v: V) -> Vec<Id> {
+        struct Collect(Vec<Id>);
+        impl Leaves<Recorder> for Collect {
+            fn f32(&mut self, _: &Recorder, a: Id, _: Id) -> Id {
+                self.0.push(a);
+                a
+            }
+            fn i32(&mut self, _: &Recorder, a: Id, _: Id) -> Id {
+                self.0.push(a);
+                a
+            }
+            fn u32(&mut self, _: &Recorder, a: Id, _: Id) -> Id {
+                self.0.push(a);
+                a
+            }
+            fn bool(&mut self, _: &Recorder, a: Id, _: Id) -> Id {
+                self.0.push(a);
+                a
+            }
+        }
+        let mut collect = Collect(Vec::with_capacity(V::SCHEMA.leaves()));
+        V::zip(self, v, v, &mut collect);
+        collect.0
+    }
+
+    /// The expression of a whole value: the one that all its leaves are parts of, else a new one.
+    fn put_together(&self, schema: &'static Schema, leaves: &mut impl Iterator<Item = Id>) -> Id {
+        match schema {
+            Schema::Vector(n) => {
+                let parts: Vec<Id> = leaves.by_ref().take(*n).collect();
+                self.vector(&parts)
+            }
+            Schema::Array { element, count, .. } => {
+                let parts: Vec<Id> =
+                    (0..*count).map(|_| self.put_together(element, leaves)).collect();
+                let whole = |i: usize, e: &Expr| match e {
+                    Expr::Element(a, j) if *j == i => Some(*a),
+                    _ => None,
+                };
+                self.whole_or_new(Type::of(schema), parts, whole)
+            }
+            Schema::Struct { fields, .. } => {
+                let fields: Vec<_> = fields.iter().filter(|f| f.schema.leaves() > 0).collect();
+                let parts: Vec<Id> =
+                    fields.iter().map(|f| self.put_together(f.schema, leaves)).collect();
+                let whole = |i: usize, e: &Expr| match e {
+                    Expr::Member(a, name) if *name == fields[i].name => Some(*a),
+                    _ => None,
+                };
+                self.whole_or_new(Type::of(schema), parts, whole)
+            }
+            _ => leaves.next().expect("one leaf for each scalar of the schema"),
+        }
+    }
+
+    fn vector(&self, parts: &[Id]) -> Id {
+        let whole = |i: usize, e: &Expr| match e {
+            Expr::Member(a, name) if *name == ["x", "y", "z", "w"][i] => Some(*a),
+            _ => None,
+        };
+        self.whole_or_new(Type::Vector(parts.len()), parts.to_vec(), whole)
+    }
+
+    fn whole_or_new(
+        &self,
+        ty: Type,
+        parts: Vec<Id>,
+        whole: impl Fn(usize, &Expr) -> Option<Id>,
+    ) -> Id {
+        let existing = self.builder(|b| {
+            let mut candidates = parts.iter().enumerate().map(|(i, p)| whole(i, &b.node(*p).expr));
+            let first = candidates.next()??;
+            let all = candidates.all(|c| c == Some(first));
+            (all && b.node(first).ty == ty).then_some(first)
+        });
+        existing.unwrap_or_else(|| self.add(Expr::Compose(parts), ty))
+    }
+
+    /// The expressions of a tuple's elements that have any leaves.
+    fn arguments<A: Value<Self>>(&self, args: A) -> Vec<Id> {
+        let mut leaves = self.leaves_of(args).into_iter();
+        let Schema::Struct { fields, .. } = A::SCHEMA else { return Vec::new() };
+        fields
+            .iter()
+            .filter(|f| f.schema.leaves() > 0)
+            .map(|f| self.put_together(f.schema, &mut leaves))
+            .collect()
+    }
+
+    /// Begins a function whose parameters are the tuple `A`; gives the parameters.
+    fn begin<A: Value<Self>>(&self, info: &'static KernelInfo, host: A) -> A {
+        let mut state = self.state.borrow_mut();
+        let depth = state
+            .open
+            .iter()
+            .filter(|b| {
+                b.function.source_name == info.name
+                    && b.function.line == info.line
+                    && b.function.file == info.file
+            })
+            .count();
+        assert!(
+            depth < 8,
+            "the kernel `{}` ({}:{}) calls itself; WGSL has no recursion: write a loop",
+            info.name,
+            info.file,
+            info.line,
+        );
+        state.open.push(Builder::new(info));
+        drop(state);
+        let Schema::Struct { fields, .. } = A::SCHEMA else { return host };
+        let mut leaves = Vec::new();
+        for (i, f) in fields.iter().enumerate().filter(|(_, f)| f.schema.leaves() > 0) {
+            let name = info.params.get(i).copied().unwrap_or(f.name);
+            let n = self.builder(|b| {
+                let taken = |n: &str| b.function.params.iter().any(|p| p.0 == n);
+                let name = unique(name, taken);
+                b.function.params.push((name, Type::of(f.schema)));
+                b.function.params.len() - 1
+            });
+            let id = self.add(Expr::Param(n), Type::of(f.schema));
+            self.parts(f.schema, id, &mut leaves);
+        }
+        self.with_leaves(host, &leaves)
+    }
+
+    /// `host` with its leaves replaced; host values in it stay.
+    fn with_leaves<V: Value<Self>>(&self, host: V, leaves: &[Id]) -> V {
+        struct Replace<'a>(core::slice::Iter<'a, Id>);
+        impl Replace<'_> {
+            fn next(&mut self) -> Id {
+                *self.0.next().expect("one leaf for each scalar of the schema")
+            }
+        }
+        impl Leaves<Recorder> for Replace<'_> {
+            fn f32(&mut self, _: &Recorder, _: Id, _: Id) -> Id {
+                self.next()
+            }
+            fn i32(&mut self, _: &Recorder, _: Id, _: Id) -> Id {
+                self.next()
+            }
+            fn u32(&mut self, _: &Recorder, _: Id, _: Id) -> Id {
+                self.next()
+            }
+            fn bool(&mut self, _: &Recorder, _: Id, _: Id) -> Id {
+                self.next()
+            }
+        }
+        V::zip(self, host, host, &mut Replace(leaves.iter()))
+    }
+
+    /// Ends the function under way with `result` and gives its number, that of an equal one if
+    /// there is one.
+    fn end<R: Value<Self>>(&self, result: R) -> usize {
+        let returned = self
+            .builder(|b| matches!(b.blocks.last().and_then(|b| b.1.last()), Some(Stmt::Return(_))));
+        if R::SCHEMA.leaves() > 0 {
+            if !returned {
+                self.give_leaves(R::SCHEMA, self.leaves_of(result));
+            }
+            self.builder(|b| b.function.result = Some(Type::of(R::SCHEMA)));
+        }
+        let mut state = self.state.borrow_mut();
+        let mut builder = state.open.pop().expect("begin and end come in pairs");
+        builder.function.body = builder.close_block();
+        let mut function = builder.function;
+        let same = state
+            .functions
+            .iter()
+            .position(|f| matches!(f, Function::Recorded(f) if f.same_code(&function)));
+        if let Some(i) = same {
+            return i;
+        }
+        function.name = unique(&safe_name(function.source_name), |n| state.is_taken(n));
+        state.functions.push(Function::Recorded(function));
+        state.functions.len() - 1
+    }
+
+    fn give_leaves(&self, schema: &'static Schema, leaves: Vec<Id>) {
+        let id = self.put_together(schema, &mut leaves.into_iter());
+        self.builder(|b| {
+            b.used(id);
+            b.push(Stmt::Return(Some(id)));
+        });
+    }
+
+    /// A number of the uniform block.
+    fn uniform(&self, name: &str, ty: Type, words: Vec<u32>) -> Id {
+        let n = {
+            let mut state = self.state.borrow_mut();
+            let same = state
+                .uniforms
+                .iter()
+                .position(|u| u.name == name && u.ty == ty && u.words == words);
+            same.unwrap_or_else(|| {
+                let taken = |n: &str| state.uniforms.iter().any(|u| u.name == n);
+                let name = unique(&safe_name(name), taken);
+                state.uniforms.push(Uniform { name, ty, words });
+                state.uniforms.len() - 1
+            })
+        };
+        self.add(Expr::Uniform(n), ty)
+    }
+
+    /// Names a buffer of the scene; the same key is the same buffer.
+    fn buffer(
+        &self,
+        key: wgsl::BufferKey,
+        name: &str,
+        schema: &'static Schema,
+        len: u64,
+    ) -> String {
+        let mut state = self.state.borrow_mut();
+        if let Some(b) = state.buffers.iter().find(|b| b.key == key && b.schema == schema) {
+            return b.name.clone();
+        }
+        let name = unique(&safe_name(name), |n| state.is_taken(n));
+        state.buffers.push(SceneBuffer { key, name: name.clone(), schema, len });
+        name
+    }
+}
+
+/// A recorded kernel, ready to be printed for the limits of a device.
+pub struct Recording {
+    state: State,
+    entry: usize,
+    /// Structure of what an invocation reads; none for a grid of pixels.
+    input: Option<&'static Schema>,
+    output: &'static Schema,
+}
+
+impl Recording {
+    /// Records a kernel that is given each pixel's coordinates.
+    pub fn grid<R: super::Type>(
+        kernel: impl FnOnce(&Recorder, super::U<Recorder>, super::U<Recorder>) -> R::On<Recorder>,
+    ) -> Self {
+        static INFO: KernelInfo =
+            KernelInfo { name: "pixel", file: file!(), line: line!(), params: &["x", "y"] };
+        Self::record(&INFO, None, R::SCHEMA, |m, (x, y)| kernel(m, x, y))
+    }
+
+    /// Records a kernel that is given the elements of an input buffer.
+    pub fn batch<A: super::Type, R: super::Type>(
+        kernel: impl FnOnce(&Recorder, A::On<Recorder>) -> R::On<Recorder>,
+    ) -> Self {
+        static INFO: KernelInfo =
+            KernelInfo { name: "element", file: file!(), line: line!(), params: &["input"] };
+        Self::record(&INFO, Some(A::SCHEMA), R::SCHEMA, |m, (a,)| kernel(m, a))
+    }
+
+    fn record<A: Value<Recorder>, R: Value<Recorder>>(
+        info: &'static KernelInfo,
+        input: Option<&'static Schema>,
+        output: &'static Schema,
+        kernel: impl FnOnce(&Recorder, A) -> R,
+    ) -> Self {
+        let m = Recorder::default();
+        // Zeroes need a function to stand in while the parameters are made.
+        m.state.borrow_mut().open.push(Builder::new(info));
+        let zero = A::zero(&m);
+        m.state.borrow_mut().open.clear();
+        let params = m.begin(info, zero);
+        let result = kernel(&m, params);
+        let entry = m.end(result);
+        Self { state: m.state.into_inner(), entry, input, output }
+    }
+
+    /// The text, with scene buffers split into windows as `limits` asks.
+    pub fn module(&self, limits: &wgsl::Limits) -> wgsl::Module {
+        module::module(self, limits)
+    }
+}

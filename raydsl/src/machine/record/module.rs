@@ -1,0 +1,302 @@
+//! The whole module: types, bindings, functions, entry point.
+
+use core::fmt::Write;
+
+use super::function::{FunctionPrinter, Text};
+use super::ir::{Expr, Function, Type, Uniform};
+use super::storage::{self, Stored};
+use super::types::Names;
+use super::{Recording, State};
+use crate::machine::{
+    Schema,
+    wgsl::{Buffer, Limits, Module, Window},
+};
+
+/// The workgroup: a square, so that the rays of neighbouring pixels run together.
+const WORKGROUP: [u32; 2] = [8, 8];
+
+const JOB: &str = "\
+struct Job {
+    size: vec2<u32>,
+    first: vec2<u32>,
+    count: vec2<u32>,
+    base: u32,
+    pad: u32,
+}
+";
+
+const SATURATE_I32: &str = "\
+/// As Rust's `as`: out of range gives the nearest number, NaN gives 0.
+fn saturate_i32(x: f32) -> i32 {
+    if ((bitcast<u32>(x) & 0x7fffffffu) > 0x7f800000u) { return 0i; }
+    if (x >= 2147483648.0) { return 2147483647i; }
+    if (x < -2147483648.0) { return (-2147483647i - 1i); }
+    return i32(x);
+}
+";
+
+const SATURATE_U32: &str = "\
+/// As Rust's `as`: out of range gives the nearest number, NaN gives 0.
+fn saturate_u32(x: f32) -> u32 {
+    if ((bitcast<u32>(x) & 0x7fffffffu) > 0x7f800000u) { return 0u; }
+    if (x >= 4294967296.0) { return 4294967295u; }
+    if (x <= 0.0) { return 0u; }
+    return u32(x);
+}
+";
+
+/// The uniform block: its declaration and its bytes.
+fn uniform_block(uniforms: &[Uniform], names: &mut Names) -> (String, Vec<u8>) {
+    let mut text = "struct Params {\n".to_owned();
+    let mut bytes = Vec::new();
+    for u in uniforms {
+        let align = match u.ty {
+            Type::Vector(2) => 8,
+            Type::Vector(_) => 16,
+            _ => 4,
+        };
+        bytes.resize(usize::next_multiple_of(bytes.len(), align), 0);
+        bytes.extend(u.words.iter().flat_map(|w| w.to_le_bytes()));
+        let _ = writeln!(text, "    {}: {},", u.name, names.ty(u.ty));
+    }
+    if uniforms.is_empty() {
+        text += "    none: u32,\n";
+    }
+    bytes.resize(usize::next_multiple_of(bytes.len().max(1), 16), 0);
+    (text + "}\n", bytes)
+}
+
+/// Splits `len` elements into windows of at most `max` bytes.
+fn windows(len: u64, stride: u64, max: u64, first_binding: u32) -> Vec<Window> {
+    let each = (max / stride).max(1);
+    let count = len.div_ceil(each).max(1);
+    (0..count)
+        .map(|i| Window {
+            binding: first_binding + i as u32,
+            first: i * each,
+            count: each.min(len.saturating_sub(i * each)),
+        })
+        .collect()
+}
+
+/// A stored type: the name of its struct, declared here unless it is the value's own.
+fn stored_type(schema: &'static Schema, text: &mut String, names: &mut Names) -> (String, bool) {
+    let stored = Stored::new(schema);
+    match schema {
+        Schema::F32 | Schema::I32 | Schema::U32 => (names.ty(Type::of(schema)), true),
+        Schema::Struct { .. } => {
+            let value = names.ty(Type::of(schema));
+            if stored.is_value(schema) {
+                return (value, true);
+            }
+            let name = format!("Stored{value}");
+            if !text.contains(&format!("struct {name} {{")) {
+                *text += &stored.declaration(&name);
+                *text += "\n";
+            }
+            (name, false)
+        }
+        _ => {
+            let name = "StoredValue".to_owned();
+            if !text.contains("struct StoredValue {") {
+                *text += &stored.declaration(&name);
+                *text += "\n";
+            }
+            (name, false)
+        }
+    }
+}
+
+/// The bindings of a scene buffer and the accessor that hides its windows.
+fn buffer_text(buffer: &Buffer, schema: &'static Schema, names: &mut Names) -> (String, String) {
+    let mut types = String::new();
+    let (element, same) = stored_type(schema, &mut types, names);
+    let value = names.ty(Type::of(schema));
+    let name = &buffer.name;
+    let several = buffer.windows.len() > 1;
+    let window = |i: usize| if several { format!("{name}_part{i}") } else { name.clone() };
+    let mut text = String::new();
+    for (i, w) in buffer.windows.iter().enumerate() {
+        let _ = writeln!(
+            text,
+            "@group(0) @binding({}) var<storage, read> {}: array<{element}>;",
+            w.binding,
+            window(i)
+        );
+    }
+    let give = |i: usize, index: String, names: &mut Names| {
+        if same {
+            return format!("return {}[{index}];", window(i));
+        }
+        let stored = Stored::new(schema);
+        format!("let s = {}[{index}];\n    return {};", window(i), stored.load(schema, "s", names))
+    };
+    let _ = writeln!(text, "\nfn {name}_at(i: u32) -> {value} {{");
+    if several {
+        let each = buffer.windows[0].count;
+        let _ = writeln!(text, "    switch (i / {each}u) {{");
+        for (i, w) in buffer.windows.iter().enumerate().skip(1) {
+            let body = give(i, format!("i - {}u", w.first), names).replace('\n', "\n        ");
+            let _ = writeln!(
+                text,
+                "        case {i}u: {{\n            {}\n        }}",
+                body.trim_start()
+            );
+        }
+        text += "        default: {}\n    }\n";
+    }
+    let _ = writeln!(text, "    {}\n}}", give(0, "i".to_owned(), names));
+    (types, text)
+}
+
+/// The functions that the entry needs, callees first.
+fn reachable(state: &State, entry: usize) -> Vec<usize> {
+    fn visit(state: &State, i: usize, seen: &mut Vec<usize>) {
+        if seen.contains(&i) {
+            return;
+        }
+        match &state.functions[i] {
+            Function::Recorded(f) => {
+                for node in &f.nodes {
+                    if let Expr::Call(g, _) = node.expr {
+                        visit(state, g, seen);
+                    }
+                }
+            }
+            Function::Text { text, .. } => {
+                for (j, g) in state.functions.iter().enumerate() {
+                    if j != i && text.contains(&format!("{}(", g.name())) {
+                        visit(state, j, seen);
+                    }
+                }
+            }
+        }
+        seen.push(i);
+    }
+    let mut seen = Vec::new();
+    visit(state, entry, &mut seen);
+    seen
+}
+
+fn entry_text(recording: &Recording, types: &mut String, names: &mut Names) -> String {
+    let State { functions, .. } = &recording.state;
+    let kernel = functions[recording.entry].name();
+    let mut text = String::new();
+    let argument = match recording.input {
+        None => "at.x, at.y".to_owned(),
+        Some(schema) => {
+            let (element, same) = stored_type(schema, types, names);
+            let _ = writeln!(
+                text,
+                "@group(0) @binding(2) var<storage, read> inputs: array<{element}>;"
+            );
+            if same { "inputs[index]".to_owned() } else { "load_input(index)".to_owned() }
+        }
+    };
+    let (element, same) = stored_type(recording.output, types, names);
+    let _ =
+        writeln!(text, "@group(0) @binding(3) var<storage, read_write> outputs: array<{element}>;");
+    if let Some(schema) = recording.input
+        && argument.starts_with("load_input")
+    {
+        let value = names.ty(Type::of(schema));
+        let load = Stored::new(schema).load(schema, "s", names);
+        let _ = writeln!(
+            text,
+            "\nfn load_input(i: u32) -> {value} {{\n    let s = inputs[i];\n    return {load};\n}}"
+        );
+    }
+    let result = if same {
+        "result".to_owned()
+    } else {
+        Stored::new(recording.output).store(recording.output, &element, "result")
+    };
+    let _ = writeln!(
+        text,
+        "
+@compute @workgroup_size({}, {})
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
+    if (any(id.xy >= job.count)) {{ return; }}
+    let at = job.first + id.xy;
+    let index = at.y * job.size.x + at.x - job.base;
+    let result = {kernel}({argument});
+    outputs[index] = {result};
+}}",
+        WORKGROUP[0], WORKGROUP[1]
+    );
+    text
+}
+
+/// Prints the whole module.
+pub(super) fn module(recording: &Recording, limits: &Limits) -> Module {
+    let state = &recording.state;
+    let mut names = Names::new();
+    let order = reachable(state, recording.entry);
+
+    let mut functions = String::new();
+    for i in &order {
+        match &state.functions[*i] {
+            Function::Recorded(f) => {
+                functions += "\n";
+                functions += &FunctionPrinter::new(f, &Text { state }).print(&mut names);
+            }
+            Function::Text { text, types, .. } if !text.is_empty() => {
+                for ty in types {
+                    names.ty(Type::of(ty));
+                }
+                functions += "\n";
+                functions += text;
+            }
+            Function::Text { .. } => {}
+        }
+    }
+
+    let mut uniforms = state.uniforms.clone();
+    let mut buffers = Vec::new();
+    let mut buffer_types = String::new();
+    let mut bindings = String::new();
+    let mut binding = 4;
+    for b in &state.buffers {
+        let stride = storage::stride(b.schema) as u64;
+        let windows = windows(b.len, stride, limits.max_binding_bytes, binding);
+        binding += windows.len() as u32;
+        let buffer =
+            Buffer { key: b.key, name: b.name.clone(), stride: stride as u32, len: b.len, windows };
+        let length = format!("len_of_{}", b.name);
+        if functions.contains(&format!("params.{length}")) {
+            uniforms.push(Uniform { name: length, ty: Type::U32, words: vec![b.len as u32] });
+        }
+        let (types, text) = buffer_text(&buffer, b.schema, &mut names);
+        if !buffer_types.contains(&types) {
+            buffer_types += &types;
+        }
+        bindings += "\n";
+        bindings += &text;
+        buffers.push(buffer);
+    }
+    let entry = entry_text(recording, &mut buffer_types, &mut names);
+    let (params, bytes) = uniform_block(&uniforms, &mut names);
+    let mut source = names.declarations();
+    source += &buffer_types;
+    source += &params;
+    source += "\n";
+    source += JOB;
+    source += "\n@group(0) @binding(0) var<uniform> params: Params;\n";
+    source += "@group(0) @binding(1) var<uniform> job: Job;\n";
+    source += &bindings;
+    for helper in &names.helpers {
+        source += "\n";
+        source += if *helper == "saturate_i32" { SATURATE_I32 } else { SATURATE_U32 };
+    }
+    source += &functions;
+    source += "\n";
+    source += &entry;
+    Module {
+        source,
+        workgroup: WORKGROUP,
+        uniforms: bytes,
+        input_stride: recording.input.map_or(0, |s| storage::stride(s) as u32),
+        output_stride: storage::stride(recording.output) as u32,
+        buffers,
+    }
+}

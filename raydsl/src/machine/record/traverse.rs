@@ -1,0 +1,287 @@
+//! Traversal in WGSL: the text around a primitive's recorded `intersect`.
+//!
+//! The contract is that of [`crate::bvh`]: the least `(t, id)` of all primitives whose
+//! `intersect` accepts. Nodes are culled with the same robust slab test as on the CPU.
+
+use super::ir::Function;
+use super::types::zero_value;
+use super::{Builder, Recorder};
+use crate::bvh::{NODE_SCHEMA, On};
+use crate::geometry::{Hit, Primitive, Ray, RayOn};
+use crate::machine::{KernelInfo, Schema, Type as _, Value};
+
+static SCRATCH: KernelInfo =
+    KernelInfo { name: "scratch", file: file!(), line: line!(), params: &[] };
+
+/// Whether a ray may hit anything: NaN and infinities are told by their bits, since WGSL lets an
+/// implementation assume that there are none.
+const FINITE: &str = "\
+fn is_finite(v: vec3<f32>) -> bool {
+    let exponent = bitcast<vec3<u32>>(v) & vec3<u32>(0x7f800000u);
+    return all(exponent != vec3<u32>(0x7f800000u));
+}
+";
+
+/// The slab test, shared by every tree.
+const SLABS: &str = "\
+/// Where a ray meets boxes: origins moved apart by the allowance for rounding, and finite
+/// reciprocals of the direction.
+struct Slabs {
+    lower: vec3<f32>,
+    upper: vec3<f32>,
+    inverse: vec3<f32>,
+}
+
+fn finite_inverse(d: vec3<f32>) -> vec3<f32> {
+    let a = abs(d);
+    let largest = max(max(a.x, a.y), a.z);
+    let least = max(largest * 8.6736174e-19, 1.1754944e-38);
+    let safe = select(d, select(vec3<f32>(least), vec3<f32>(-least), d < vec3<f32>(0.0)), a < vec3<f32>(least));
+    return 1.0 / safe;
+}
+
+fn slabs(ray: Ray, root: Node, slack: f32) -> Slabs {
+    let reach = max(abs(root.min - ray.origin), abs(root.max - ray.origin));
+    let pad = max(slack * max(max(reach.x, reach.y), reach.z), 1.1754944e-38) + abs(ray.origin) * 1.1920929e-7;
+    return Slabs(ray.origin + pad, ray.origin - pad, finite_inverse(ray.direction));
+}
+
+/// The distances at which a ray enters and leaves a box.
+fn enter_leave(s: Slabs, node: Node, t_min: f32, t_max: f32) -> vec2<f32> {
+    let t0 = (node.min - s.lower) * s.inverse;
+    let t1 = (node.max - s.upper) * s.inverse;
+    let near = min(t0, t1);
+    let far = max(t0, t1);
+    return vec2<f32>(
+        max(max(near.x, near.y), max(near.z, t_min)),
+        min(min(far.x, far.y), min(far.z, t_max)),
+    );
+}
+";
+
+impl Recorder {
+    /// The number of the function that `call` records, without a call of it.
+    fn function_of<R: Value<Self>>(&self, call: impl FnOnce(&Self) -> R) -> usize {
+        self.state.borrow_mut().open.push(Builder::new(&SCRATCH));
+        call(self);
+        let scratch = self.state.borrow_mut().open.pop();
+        let called =
+            scratch.iter().flat_map(|b| &b.function.nodes).rev().find_map(|n| match n.expr {
+                super::Expr::Call(f, _) => Some(f),
+                _ => None,
+            });
+        called.expect("an intersection is a kernel, and a call of a kernel records a function")
+    }
+
+    fn text_function(
+        &self,
+        name: String,
+        types: Vec<&'static Schema>,
+        text: impl FnOnce(&str) -> String,
+    ) -> usize {
+        let mut state = self.state.borrow_mut();
+        if let Some(i) = state.functions.iter().position(|f| f.name() == name) {
+            return i;
+        }
+        let text = text(&name);
+        state.functions.push(Function::Text { name, text, types });
+        state.functions.len() - 1
+    }
+
+    fn function_name(&self, i: usize) -> String {
+        self.state.borrow().functions[i].name().to_owned()
+    }
+
+    /// `fn points_at(i: u32) -> ColorSphere`; the accessor itself is printed with the buffer.
+    pub(super) fn fetch_function<P: Primitive>(&self, prims: &On<'_, P>) -> usize {
+        let buffer = self.prims_buffer(prims);
+        let name = format!("{buffer}_at");
+        self.text_function(name, vec![P::SCHEMA], |_| String::new())
+    }
+
+    fn prims_buffer<P: Primitive>(&self, prims: &On<'_, P>) -> String {
+        let name = prims.name();
+        self.buffer(prims.prims_key(), name, P::SCHEMA, prims.len() as u64)
+    }
+
+    /// Records `P::intersect` and gives its name.
+    fn intersect<P: Primitive>(&self) -> String {
+        let f = self.function_of(|m| {
+            let prim = <P::On<Self>>::zero(m);
+            P::intersect_on(m, prim, RayOn::zero(m))
+        });
+        self.function_name(f)
+    }
+
+    pub(super) fn closest_hit_function<P: Primitive>(&self, prims: &On<'_, P>) -> usize {
+        let prims_name = self.prims_buffer(prims);
+        let intersect = self.intersect::<P>();
+        self.text_function("is_finite".to_owned(), vec![], |_| FINITE.to_owned());
+        let tree = self.tree::<P>(prims);
+        let miss = zero_value(Hit::SCHEMA);
+        let test = format!(
+            "let candidate = {intersect}({prims_name}_at(id), ray);\n\
+             if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max\n    \
+             && (!best.is_hit || candidate.t < best.t || (candidate.t == best.t && id < best.prim_id))) {{\n    \
+             best = candidate;\n    best.prim_id = id;\n}}",
+        );
+        self.text_function(
+            format!("{prims_name}_closest_hit"),
+            vec![Ray::SCHEMA, Hit::SCHEMA, P::SCHEMA, NODE_SCHEMA],
+            |name| match &tree {
+                None => linear(name, "Hit", &format!("var best = {miss};"), &test, "best", &prims_name),
+                Some(tree) => walk(&Walk {
+                    name,
+                    result: "Hit",
+                    declare: &format!("var best = {miss};"),
+                    limit: &format!(
+                        "select(ray.t_max, min(best.t + abs(best.t) * {:?}, ray.t_max), best.is_hit)",
+                        P::SLACK
+                    ),
+                    test: &test,
+                    give: "best",
+                    slack: P::SLACK,
+                    tree,
+                }),
+            },
+        )
+    }
+
+    pub(super) fn any_hit_function<P: Primitive>(&self, prims: &On<'_, P>) -> usize {
+        let prims_name = self.prims_buffer(prims);
+        let intersect = self.intersect::<P>();
+        self.text_function("is_finite".to_owned(), vec![], |_| FINITE.to_owned());
+        let tree = self.tree::<P>(prims);
+        let test = format!(
+            "let candidate = {intersect}({prims_name}_at(id), ray);\n\
+             if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max) {{\n    \
+             return true;\n}}",
+        );
+        self.text_function(
+            format!("{prims_name}_any_hit"),
+            vec![Ray::SCHEMA, Hit::SCHEMA, P::SCHEMA, NODE_SCHEMA],
+            |name| match &tree {
+                None => linear(name, "bool", "", &test, "false", &prims_name),
+                Some(tree) => walk(&Walk {
+                    name,
+                    result: "bool",
+                    declare: "",
+                    limit: "ray.t_max",
+                    test: &test,
+                    give: "false",
+                    slack: P::SLACK,
+                    tree,
+                }),
+            },
+        )
+    }
+
+    /// The buffers of a tree: nodes and index list. `None` for a plain slice.
+    fn tree<P: Primitive>(&self, prims: &On<'_, P>) -> Option<TreeNames> {
+        let (nodes, indices) = prims.tree_keys()?;
+        let name = prims.name();
+        let (node_count, index_count) = prims.tree_len();
+        let nodes = self.buffer(nodes, &format!("{name}_nodes"), NODE_SCHEMA, node_count);
+        let indices = self.buffer(indices, &format!("{name}_ids"), &Schema::U32, index_count);
+        self.text_function("slabs".to_owned(), vec![Ray::SCHEMA, NODE_SCHEMA], |_| {
+            SLABS.to_owned()
+        });
+        Some(TreeNames { nodes, indices })
+    }
+}
+
+struct TreeNames {
+    nodes: String,
+    indices: String,
+}
+
+fn indent(text: &str, by: usize) -> String {
+    let pad = " ".repeat(by);
+    text.lines().map(|l| format!("{pad}{l}\n")).collect()
+}
+
+fn linear(name: &str, result: &str, declare: &str, test: &str, give: &str, prims: &str) -> String {
+    let declare = indent(declare, 4);
+    let test = indent(test, 8);
+    format!(
+        "fn {name}(ray: Ray) -> {result} {{\n{declare}    \
+         if (!(is_finite(ray.origin) && is_finite(ray.direction))) {{\n        \
+         return {give};\n    }}\n    \
+         for (var id = 0u; id < params.len_of_{prims}; id = id + 1u) {{\n{test}    }}\n    \
+         return {give};\n}}\n"
+    )
+}
+
+struct Walk<'a> {
+    name: &'a str,
+    result: &'a str,
+    declare: &'a str,
+    /// No node beyond this distance is worth a visit.
+    limit: &'a str,
+    test: &'a str,
+    give: &'a str,
+    slack: f32,
+    tree: &'a TreeNames,
+}
+
+/// Depth-first, the nearer child first, the farther one on a stack with its distance.
+fn walk(w: &Walk<'_>) -> String {
+    let Walk { name, result, declare, limit, test, give, slack, tree } = w;
+    let TreeNames { nodes, indices } = tree;
+    let declare = indent(declare, 4);
+    let test = indent(test, 16);
+    format!(
+        "\
+fn {name}(ray: Ray) -> {result} {{
+{declare}    if (params.len_of_{nodes} == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {{
+        return {give};
+    }}
+    var stack: array<u32, 64>;
+    var stack_t: array<f32, 64>;
+    var top = 0u;
+    var node = {nodes}_at(0u);
+    let s = slabs(ray, node, {slack:?});
+    let root = enter_leave(s, node, ray.t_min, ray.t_max);
+    if (!(root.x <= root.y)) {{
+        return {give};
+    }}
+    loop {{
+        if (node.count > 0u) {{
+            for (var i = node.first; i < node.first + node.count; i = i + 1u) {{
+                let id = {indices}_at(i);
+{test}            }}
+        }} else {{
+            let left = {nodes}_at(node.first);
+            let right = {nodes}_at(node.first + 1u);
+            let limit = {limit};
+            let l = enter_leave(s, left, ray.t_min, limit);
+            let r = enter_leave(s, right, ray.t_min, limit);
+            let hit_left = l.x <= l.y;
+            let hit_right = r.x <= r.y;
+            if (hit_left && hit_right) {{
+                let left_first = l.x <= r.x;
+                stack[top] = select(node.first, node.first + 1u, left_first);
+                stack_t[top] = select(l.x, r.x, left_first);
+                top = top + 1u;
+                if (left_first) {{ node = left; }} else {{ node = right; }}
+                continue;
+            }}
+            if (hit_left) {{ node = left; continue; }}
+            if (hit_right) {{ node = right; continue; }}
+        }}
+        // The next node on the stack that is not behind the best hit.
+        var found = false;
+        while (top > 0u && !found) {{
+            top = top - 1u;
+            found = stack_t[top] <= {limit};
+        }}
+        if (!found) {{
+            break;
+        }}
+        node = {nodes}_at(stack[top]);
+    }}
+    return {give};
+}}
+"
+    )
+}

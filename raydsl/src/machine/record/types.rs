@@ -1,0 +1,117 @@
+//! The types of the generated text, declared as they are asked for.
+
+use core::fmt::Write;
+
+use super::ir::Type;
+use super::names::{member_name, safe_name, unique};
+use crate::bvh::NODE_SCHEMA;
+use crate::geometry::{Hit, Ray};
+use crate::machine::{Schema, Type as _};
+
+/// The names of types, declared as they are asked for.
+#[derive(Default)]
+pub(super) struct Names {
+    structs: Vec<(String, &'static Schema)>,
+    /// Those of them that the text uses.
+    used: Vec<String>,
+    pub(super) helpers: Vec<&'static str>,
+}
+
+/// The same type to a kernel, wherever its members lie in memory.
+fn same_type(a: &Schema, b: &Schema) -> bool {
+    match (a, b) {
+        (Schema::Struct { name: n, fields: f, .. }, Schema::Struct { name: m, fields: g, .. }) => {
+            n == m
+                && f.len() == g.len()
+                && f.iter().zip(*g).all(|(x, y)| x.name == y.name && same_type(x.schema, y.schema))
+        }
+        (
+            Schema::Array { element: a, count: n, .. },
+            Schema::Array { element: b, count: m, .. },
+        ) => n == m && same_type(a, b),
+        _ => a == b,
+    }
+}
+
+/// The types that hand-written text names.
+const LIBRARY: [&Schema; 3] = [Ray::SCHEMA, Hit::SCHEMA, NODE_SCHEMA];
+
+impl Names {
+    /// The library's types have their names before a user's of the same name is met.
+    pub(super) fn new() -> Self {
+        let structs = LIBRARY.into_iter().filter_map(|schema| match schema {
+            Schema::Struct { name, .. } => Some(((*name).to_owned(), schema)),
+            _ => None,
+        });
+        Self { structs: structs.collect(), ..Self::default() }
+    }
+
+    pub(super) fn helper(&mut self, name: &'static str) {
+        if !self.helpers.contains(&name) {
+            self.helpers.push(name);
+        }
+    }
+
+    /// How the type is written.
+    pub(super) fn ty(&mut self, ty: Type) -> String {
+        match ty {
+            Type::F32 => "f32".to_owned(),
+            Type::I32 => "i32".to_owned(),
+            Type::U32 => "u32".to_owned(),
+            Type::Bool => "bool".to_owned(),
+            Type::Vector(n) => format!("vec{n}<f32>"),
+            Type::Of(Schema::Array { element, count, .. }) => {
+                format!("array<{}, {count}>", self.ty(Type::of(element)))
+            }
+            Type::Of(schema) => self.struct_name(schema),
+        }
+    }
+
+    fn struct_name(&mut self, schema: &'static Schema) -> String {
+        let known = self.structs.iter().find(|(_, s)| same_type(s, schema)).map(|s| s.0.clone());
+        if let Some(name) = &known
+            && self.used.contains(name)
+        {
+            return name.clone();
+        }
+        let Schema::Struct { name, fields, .. } = schema else { return "u32".to_owned() };
+        // The members' types first: a name is given once all it needs are declared.
+        for f in fields.iter().filter(|f| f.schema.leaves() > 0) {
+            self.ty(Type::of(f.schema));
+        }
+        let name = known.unwrap_or_else(|| {
+            let taken = |n: &str| self.structs.iter().any(|(m, _)| m == n);
+            let name = unique(&safe_name(name), taken);
+            self.structs.push((name.clone(), schema));
+            name
+        });
+        self.used.push(name.clone());
+        name
+    }
+
+    pub(super) fn declarations(&mut self) -> String {
+        let mut text = String::new();
+        let schema_of =
+            |name: &String| self.structs.iter().find(|(n, _)| n == name).map(|(_, schema)| *schema);
+        let used: Vec<_> =
+            self.used.iter().filter_map(|n| Some((n.clone(), schema_of(n)?))).collect();
+        for (name, schema) in used {
+            let Schema::Struct { fields, .. } = schema else { continue };
+            let _ = writeln!(text, "struct {name} {{");
+            for f in fields.iter().filter(|f| f.schema.leaves() > 0) {
+                let _ =
+                    writeln!(text, "    {}: {},", member_name(f.name), self.ty(Type::of(f.schema)));
+            }
+            text += "}\n\n";
+        }
+        text
+    }
+}
+
+/// The zero value of a struct, as an expression.
+pub(super) fn zero_value(schema: &'static Schema) -> String {
+    match schema {
+        Schema::Struct { name, .. } => format!("{}()", safe_name(name)),
+        _ => "0".to_owned(),
+    }
+}

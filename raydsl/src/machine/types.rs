@@ -1,0 +1,213 @@
+//! Types of the host that kernels understand, and how they travel to lanes and back.
+
+use glam::{Vec2, Vec3, Vec4};
+
+use super::{B, F, Field, I, Machine, Schema, U, V2, V3, V4, Value};
+
+/// A type that kernels may use: it has a twin on every machine.
+///
+/// `#[derive(Type)]` and `#[primitive]` write this for a struct of such types.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be used in a kernel",
+    label = "not a type that kernels understand",
+    note = "derive it for a struct of such types: #[derive(Clone, Copy, raydsl::Type)]"
+)]
+pub trait Type: Copy + 'static {
+    /// The twin: what stands for a value of this type on machine `M`.
+    type On<M: Machine>: Value<M>;
+
+    /// The structure of the type.
+    const SCHEMA: &'static Schema;
+
+    /// The same value in every lane.
+    fn splat<M: Machine>(m: &M, v: Self) -> Self::On<M>;
+    /// A value for each lane.
+    fn from_lanes<M: LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> Self::On<M>;
+    /// The value of one lane.
+    fn lane<M: LaneMachine>(v: &Self::On<M>, lane: usize) -> Self;
+    /// Writes the value in the host's layout to the start of `out` (little-endian).
+    fn write(&self, out: &mut [u8]);
+    /// Reads a value in the host's layout from the start of `bytes`.
+    fn read(bytes: &[u8]) -> Self;
+}
+
+/// A machine whose lanes hold numbers: all but the recorder.
+#[expect(missing_docs, reason = "two methods a scalar type")]
+pub trait LaneMachine: Machine {
+    /// How many lanes.
+    const LANES: usize;
+    fn f32_from_fn(&self, f: impl FnMut(usize) -> f32) -> Self::F32;
+    fn i32_from_fn(&self, f: impl FnMut(usize) -> i32) -> Self::I32;
+    fn u32_from_fn(&self, f: impl FnMut(usize) -> u32) -> Self::U32;
+    fn bool_from_fn(&self, f: impl FnMut(usize) -> bool) -> Self::Bool;
+    fn f32_lane(v: &Self::F32, lane: usize) -> f32;
+    fn i32_lane(v: &Self::I32, lane: usize) -> i32;
+    fn u32_lane(v: &Self::U32, lane: usize) -> u32;
+    fn bool_lane(v: &Self::Bool, lane: usize) -> bool;
+}
+
+macro_rules! read_scalar {
+    (bool, $bytes:expr) => {
+        $bytes[0] != 0
+    };
+    ($host:ty, $bytes:expr) => {
+        bytemuck::pod_read_unaligned(&$bytes[..size_of::<$host>()])
+    };
+}
+
+macro_rules! scalar_type {
+    ($host:tt, $twin:ident, $schema:ident, $make:ident, $from:ident, $lane:ident) => {
+        impl Type for $host {
+            type On<M: Machine> = $twin<M>;
+
+            const SCHEMA: &'static Schema = &Schema::$schema;
+
+            #[inline(always)]
+            fn splat<M: Machine>(m: &M, v: Self) -> $twin<M> {
+                $twin(m.$make(v))
+            }
+
+            #[inline(always)]
+            fn from_lanes<M: LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> $twin<M> {
+                $twin(m.$from(f))
+            }
+
+            #[inline(always)]
+            fn lane<M: LaneMachine>(v: &$twin<M>, lane: usize) -> Self {
+                M::$lane(&v.0, lane)
+            }
+
+            fn write(&self, out: &mut [u8]) {
+                out[..size_of::<Self>()].copy_from_slice(bytemuck::bytes_of(self));
+            }
+
+            fn read(bytes: &[u8]) -> Self {
+                read_scalar!($host, bytes)
+            }
+        }
+    };
+}
+
+scalar_type!(f32, F, F32, f32, f32_from_fn, f32_lane);
+scalar_type!(i32, I, I32, i32, i32_from_fn, i32_lane);
+scalar_type!(u32, U, U32, u32, u32_from_fn, u32_lane);
+scalar_type!(bool, B, Bool, bool, bool_from_fn, bool_lane);
+
+macro_rules! vector_type {
+    ($host:ident, $twin:ident, $n:literal, $($c:ident),+) => {
+        impl Type for $host {
+            type On<M: Machine> = $twin<M>;
+
+            const SCHEMA: &'static Schema = &Schema::Vector($n);
+
+            #[inline(always)]
+            fn splat<M: Machine>(m: &M, v: Self) -> $twin<M> {
+                $twin { $($c: f32::splat(m, v.$c)),+ }
+            }
+
+            #[inline(always)]
+            fn from_lanes<M: LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> $twin<M> {
+                $twin { $($c: f32::from_lanes(m, &|l| f(l).$c)),+ }
+            }
+
+            #[inline(always)]
+            fn lane<M: LaneMachine>(v: &$twin<M>, lane: usize) -> Self {
+                Self::new($(f32::lane(&v.$c, lane)),+)
+            }
+
+            fn write(&self, out: &mut [u8]) {
+                out[..size_of::<Self>()].copy_from_slice(bytemuck::bytes_of(self));
+            }
+
+            fn read(bytes: &[u8]) -> Self {
+                bytemuck::pod_read_unaligned(&bytes[..size_of::<Self>()])
+            }
+        }
+    };
+}
+
+vector_type!(Vec2, V2, 2, x, y);
+vector_type!(Vec3, V3, 3, x, y, z);
+vector_type!(Vec4, V4, 4, x, y, z, w);
+
+impl<T: Type, const N: usize> Type for [T; N] {
+    type On<M: Machine> = [T::On<M>; N];
+
+    const SCHEMA: &'static Schema =
+        &Schema::Array { element: T::SCHEMA, count: N, stride: size_of::<T>() };
+
+    #[inline(always)]
+    fn splat<M: Machine>(m: &M, v: Self) -> Self::On<M> {
+        v.map(|x| T::splat(m, x))
+    }
+
+    #[inline(always)]
+    fn from_lanes<M: LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> Self::On<M> {
+        core::array::from_fn(|i| T::from_lanes(m, &|l| f(l)[i]))
+    }
+
+    #[inline(always)]
+    fn lane<M: LaneMachine>(v: &Self::On<M>, lane: usize) -> Self {
+        core::array::from_fn(|i| T::lane(&v[i], lane))
+    }
+
+    fn write(&self, out: &mut [u8]) {
+        for (x, chunk) in self.iter().zip(out.chunks_exact_mut(size_of::<T>())) {
+            x.write(chunk);
+        }
+    }
+
+    fn read(bytes: &[u8]) -> Self {
+        core::array::from_fn(|i| T::read(&bytes[i * size_of::<T>()..]))
+    }
+}
+
+macro_rules! tuple_type {
+    ($($name:ident . $index:tt),+) => {
+        impl<$($name: Type),+> Type for ($($name,)+) {
+            type On<M: Machine> = ($($name::On<M>,)+);
+
+            const SCHEMA: &'static Schema = &Schema::Struct {
+                name: "Args",
+                fields: &[$(Field {
+                    name: concat!("_", stringify!($index)),
+                    offset: core::mem::offset_of!(Self, $index),
+                    schema: $name::SCHEMA,
+                }),+],
+                size: size_of::<Self>(),
+            };
+
+            #[inline(always)]
+            fn splat<M: Machine>(m: &M, v: Self) -> Self::On<M> {
+                ($($name::splat(m, v.$index),)+)
+            }
+
+            #[inline(always)]
+            fn from_lanes<M: LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> Self::On<M> {
+                ($($name::from_lanes(m, &|l| f(l).$index),)+)
+            }
+
+            #[inline(always)]
+            fn lane<M: LaneMachine>(v: &Self::On<M>, lane: usize) -> Self {
+                ($($name::lane(&v.$index, lane),)+)
+            }
+
+            fn write(&self, out: &mut [u8]) {
+                $(self.$index.write(&mut out[core::mem::offset_of!(Self, $index)..]);)+
+            }
+
+            fn read(bytes: &[u8]) -> Self {
+                ($($name::read(&bytes[core::mem::offset_of!(Self, $index)..]),)+)
+            }
+        }
+    };
+}
+
+tuple_type!(A.0);
+tuple_type!(A.0, C.1);
+tuple_type!(A.0, C.1, D.2);
+tuple_type!(A.0, C.1, D.2, E.3);
+tuple_type!(A.0, C.1, D.2, E.3, G.4);
+tuple_type!(A.0, C.1, D.2, E.3, G.4, H.5);
+tuple_type!(A.0, C.1, D.2, E.3, G.4, H.5, J.6);
+tuple_type!(A.0, C.1, D.2, E.3, G.4, H.5, J.6, K.7);

@@ -1,0 +1,157 @@
+//! Values on a machine: the wrappers of the scalar types, and what every twin can do.
+
+use super::{Machine, Schema};
+
+macro_rules! scalar_wrapper {
+    ($(#[$doc:meta])* $name:ident($repr:ident), $leaf:ident, $schema:ident) => {
+        $(#[$doc])*
+        pub struct $name<M: Machine>(pub M::$repr);
+
+        impl<M: Machine> Clone for $name<M> {
+            #[inline(always)]
+            fn clone(&self) -> Self {
+                *self
+            }
+        }
+
+        impl<M: Machine> Copy for $name<M> {}
+
+        impl<M: Machine> Value<M> for $name<M> {
+            const SCHEMA: &'static Schema = &Schema::$schema;
+
+            #[inline(always)]
+            fn zero(m: &M) -> Self {
+                Self(m.$leaf(Default::default()))
+            }
+
+            #[inline(always)]
+            fn zip(m: &M, a: Self, b: Self, f: &mut impl Leaves<M>) -> Self {
+                Self(f.$leaf(m, a.0, b.0))
+            }
+        }
+    };
+}
+
+scalar_wrapper!(
+    /// An `f32` on machine `M`.
+    F(F32), f32, F32
+);
+scalar_wrapper!(
+    /// An `i32` on machine `M`.
+    I(I32), i32, I32
+);
+scalar_wrapper!(
+    /// A `u32` on machine `M`.
+    U(U32), u32, U32
+);
+scalar_wrapper!(
+    /// A `bool` on machine `M`.
+    B(Bool), bool, Bool
+);
+
+/// A value on machine `M`: the twin of a [`Type`](super::Type), or a host value that rides along.
+///
+/// A twin is a tree whose leaves are scalars of the machine; everything a machine does to whole
+/// values (blend, store, name) goes through [`Value::zip`].
+pub trait Value<M: Machine>: Copy {
+    /// The structure; [`Schema::Host`] if there are no leaves.
+    const SCHEMA: &'static Schema;
+
+    /// Zeroes in every leaf.
+    fn zero(m: &M) -> Self;
+
+    /// Combines two values leaf by leaf, in order of declaration.
+    fn zip(m: &M, a: Self, b: Self, f: &mut impl Leaves<M>) -> Self;
+}
+
+/// What [`Value::zip`] does at each leaf.
+#[expect(missing_docs, reason = "one method a scalar type")]
+pub trait Leaves<M: Machine> {
+    fn f32(&mut self, m: &M, a: M::F32, b: M::F32) -> M::F32;
+    fn i32(&mut self, m: &M, a: M::I32, b: M::I32) -> M::I32;
+    fn u32(&mut self, m: &M, a: M::U32, b: M::U32) -> M::U32;
+    fn bool(&mut self, m: &M, a: M::Bool, b: M::Bool) -> M::Bool;
+}
+
+impl<M: Machine> Value<M> for () {
+    const SCHEMA: &'static Schema = &Schema::Host;
+
+    #[inline(always)]
+    fn zero(_: &M) -> Self {}
+
+    #[inline(always)]
+    fn zip(_: &M, (): Self, (): Self, _: &mut impl Leaves<M>) -> Self {}
+}
+
+macro_rules! host_value {
+    ($($host:ty),+) => {
+        $(
+            /// A value of the host, known while a kernel is recorded.
+            impl<M: Machine> Value<M> for $host {
+                const SCHEMA: &'static Schema = &Schema::Host;
+
+                #[inline(always)]
+                fn zero(_: &M) -> Self {
+                    Self::default()
+                }
+
+                #[inline(always)]
+                fn zip(_: &M, a: Self, _: Self, _: &mut impl Leaves<M>) -> Self {
+                    a
+                }
+            }
+        )+
+    };
+}
+
+host_value!(bool, i32, u32);
+
+/// An array has no structure of its own here: its type describes it.
+impl<M: Machine, V: Value<M>, const N: usize> Value<M> for [V; N] {
+    const SCHEMA: &'static Schema = &Schema::Array { element: V::SCHEMA, count: N, stride: 0 };
+
+    #[inline(always)]
+    fn zero(m: &M) -> Self {
+        [V::zero(m); N]
+    }
+
+    #[inline(always)]
+    fn zip(m: &M, a: Self, b: Self, f: &mut impl Leaves<M>) -> Self {
+        core::array::from_fn(|i| V::zip(m, a[i], b[i], f))
+    }
+}
+
+macro_rules! tuple_value {
+    ($($name:ident . $index:tt),+) => {
+        impl<M: Machine, $($name: Value<M>),+> Value<M> for ($($name,)+) {
+            const SCHEMA: &'static Schema = &Schema::Struct {
+                name: "Args",
+                fields: &[$(super::Field {
+                    name: concat!("_", stringify!($index)),
+                    offset: 0,
+                    schema: $name::SCHEMA,
+                }),+],
+                size: 0,
+            };
+
+            #[inline(always)]
+            fn zero(m: &M) -> Self {
+                ($($name::zero(m),)+)
+            }
+
+            #[inline(always)]
+            fn zip(m: &M, a: Self, b: Self, f: &mut impl Leaves<M>) -> Self {
+                ($($name::zip(m, a.$index, b.$index, f),)+)
+            }
+        }
+    };
+}
+
+tuple_value!(A.0);
+tuple_value!(A.0, B.1);
+tuple_value!(A.0, B.1, C.2);
+tuple_value!(A.0, B.1, C.2, D.3);
+tuple_value!(A.0, B.1, C.2, D.3, E.4);
+tuple_value!(A.0, B.1, C.2, D.3, E.4, G.5);
+tuple_value!(A.0, B.1, C.2, D.3, E.4, G.5, H.6);
+tuple_value!(A.0, B.1, C.2, D.3, E.4, G.5, H.6, J.7);

@@ -1,0 +1,74 @@
+//! What recording a kernel produces: WGSL text and the data that it reads. Knows nothing of wgpu.
+
+/// A complete WGSL module with the entry point `main`.
+///
+/// Everything lies in bind group 0: the kernel's numbers at binding 0, the `Job` at 1, inputs at
+/// 2, outputs at 3, windows of the scene's buffers from 4 on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Module {
+    /// The text.
+    pub source: String,
+    /// Threads of a workgroup in x and y.
+    pub workgroup: [u32; 2],
+    /// Bytes of the uniform block of captured numbers; a multiple of 16, never empty.
+    pub uniforms: Vec<u8>,
+    /// Bytes that an invocation reads from the inputs; 0 if there are none.
+    pub input_stride: u32,
+    /// Bytes that an invocation writes to the outputs.
+    pub output_stride: u32,
+    /// Read-only buffers of the scene.
+    pub buffers: Vec<Buffer>,
+}
+
+/// A buffer of the scene, in as many windows as bindings of limited size need.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Buffer {
+    /// Which data.
+    pub key: BufferKey,
+    /// The name in the text.
+    pub name: String,
+    /// Bytes of an element.
+    pub stride: u32,
+    /// Number of elements.
+    pub len: u64,
+    /// The bindings that together hold it; one, with no element, for an empty buffer.
+    pub windows: Vec<Window>,
+}
+
+/// A part of a buffer that is one binding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// The binding's number.
+    pub binding: u32,
+    /// The first element.
+    pub first: u64,
+    /// How many elements.
+    pub count: u64,
+}
+
+/// Names data of the host: the same key means the same bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct BufferKey {
+    /// The owner, unique in the process.
+    pub id: u64,
+    /// Grows when the owner's data change.
+    pub version: u32,
+    /// Which of the owner's arrays.
+    pub part: u32,
+}
+
+/// How large a binding may be and how many there may be: decides the windows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Bytes of one binding.
+    pub max_binding_bytes: u64,
+    /// Storage buffers of a shader stage.
+    pub max_storage_buffers: u32,
+}
+
+impl Default for Limits {
+    /// What WebGPU guarantees: 128 MiB and 8 buffers.
+    fn default() -> Self {
+        Self { max_binding_bytes: 128 << 20, max_storage_buffers: 8 }
+    }
+}

@@ -1,0 +1,90 @@
+//! Render targets.
+
+use glam::Vec3;
+
+use crate::Type;
+use crate::machine::Type as KernelType;
+
+/// What a kernel says of a pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
+#[repr(C)]
+pub struct Shaded {
+    /// Linear or display-referred colour, 0 to 1.
+    pub color: Vec3,
+    /// Distance along the ray.
+    pub depth: f32,
+    /// What was seen: a primitive's id, or whatever the kernel means by it.
+    pub id: u32,
+}
+
+/// A grid of pixels; row 0 is the bottom one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image<R = Shaded> {
+    width: u32,
+    height: u32,
+    pixels: Vec<R>,
+}
+
+impl<R: KernelType> Image<R> {
+    /// An image of `width` by `height` pixels, all `value`.
+    pub fn filled(width: u32, height: u32, value: R) -> Self {
+        Self { width, height, pixels: vec![value; width as usize * height as usize] }
+    }
+
+    /// The number of columns.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// The number of rows.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The pixels, row by row from the bottom.
+    pub fn pixels(&self) -> &[R] {
+        &self.pixels
+    }
+
+    /// The pixels, row by row from the bottom.
+    pub fn pixels_mut(&mut self) -> &mut [R] {
+        &mut self.pixels
+    }
+}
+
+impl Image<Shaded> {
+    /// A black image.
+    pub fn new(width: u32, height: u32) -> Self {
+        Self::filled(width, height, Shaded::default())
+    }
+
+    /// The colours as 8-bit RGB, row by row from the *top*, as picture files want them. A NaN is
+    /// shown as magenta, so that it is not overlooked.
+    pub fn to_rgb8(&self) -> Vec<u8> {
+        let row = |y: u32| {
+            let start = y as usize * self.width as usize;
+            &self.pixels[start..start + self.width as usize]
+        };
+        let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+        (0..self.height)
+            .rev()
+            .flat_map(row)
+            .flat_map(
+                |p| {
+                    if p.color.is_nan() { [255, 0, 255] } else { p.color.to_array().map(byte) }
+                },
+            )
+            .collect()
+    }
+
+    /// Writes the colours as a PNG.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written.
+    #[cfg(feature = "image")]
+    pub fn write_png(&self, path: impl AsRef<std::path::Path>) -> Result<(), image::ImageError> {
+        let format = image::ExtendedColorType::Rgb8;
+        image::save_buffer(path, &self.to_rgb8(), self.width, self.height, format)
+    }
+}

@@ -1,0 +1,167 @@
+//! Two results, number by number.
+
+use crate::machine::{Schema, Type};
+
+/// Upper ends of the histogram's buckets in ulp; the last bucket holds the rest.
+pub const BUCKETS: [u32; 8] = [0, 1, 2, 4, 16, 256, 65_536, u32::MAX];
+
+/// How the results of a variant agree with those of the scalar one.
+#[must_use]
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Agreement {
+    /// Results compared.
+    pub results: u64,
+    /// Results that differ in any bit; +0 equals -0 and NaN equals NaN.
+    pub differing: u64,
+    /// The largest distance of two `f32`, in steps from one number to the next.
+    pub max_ulp: u32,
+    /// How many `f32` lie within each of [`BUCKETS`].
+    pub histogram: [u64; BUCKETS.len()],
+    /// Results in which an integer or a truth value differs (another primitive, hit for miss), or
+    /// a number is NaN in one of them only.
+    pub hit_mismatches: u64,
+    /// Mismatches that rounding does not account for. Nothing bounds the rounding error of a
+    /// kernel yet, so every mismatch counts.
+    pub unexplained: u64,
+}
+
+impl Agreement {
+    /// Compares `results` with those of the scalar variant, `expected`.
+    ///
+    /// # Panics
+    ///
+    /// If the lengths differ.
+    pub fn of<R: Type>(expected: &[R], results: &[R]) -> Self {
+        assert_eq!(expected.len(), results.len(), "the same inputs give as many results");
+        let mut agreement = Self {
+            results: results.len() as u64,
+            differing: 0,
+            max_ulp: 0,
+            histogram: [0; BUCKETS.len()],
+            hit_mismatches: 0,
+            unexplained: 0,
+        };
+        let size = R::SCHEMA.size();
+        let (mut a, mut b) = (vec![0; size], vec![0; size]);
+        for (x, y) in expected.iter().zip(results) {
+            x.write(&mut a);
+            y.write(&mut b);
+            agreement.add(Pair::of(R::SCHEMA, &a, &b));
+        }
+        agreement
+    }
+
+    /// Whether every result has the same bits.
+    pub fn is_bit_identical(&self) -> bool {
+        self.differing == 0
+    }
+
+    fn add(&mut self, pair: Pair) {
+        let moved = pair.ulps.iter().any(|u| *u > 0);
+        for ulp in pair.ulps {
+            let bucket = BUCKETS.iter().position(|end| ulp <= *end).unwrap_or(BUCKETS.len() - 1);
+            self.histogram[bucket] += 1;
+            self.max_ulp = self.max_ulp.max(ulp);
+        }
+        self.differing += u64::from(moved || pair.differs);
+        if pair.differs {
+            self.hit_mismatches += 1;
+            self.unexplained += 1;
+        }
+    }
+}
+
+/// One result in two variants.
+struct Pair {
+    /// The distance of every `f32`.
+    ulps: Vec<u32>,
+    /// Whether an integer or a truth value differs.
+    differs: bool,
+}
+
+impl Pair {
+    fn of(schema: &Schema, a: &[u8], b: &[u8]) -> Self {
+        let mut pair = Self { ulps: Vec::new(), differs: false };
+        pair.compare(schema, a, b);
+        pair
+    }
+
+    fn compare(&mut self, schema: &Schema, a: &[u8], b: &[u8]) {
+        match schema {
+            Schema::Host => {}
+            Schema::F32 => {
+                let (a, b) = (float(a), float(b));
+                self.differs |= a.is_nan() != b.is_nan();
+                self.ulps.push(ulp_distance(a, b));
+            }
+            Schema::Vector(n) => {
+                for i in 0..*n {
+                    self.compare(&Schema::F32, &a[4 * i..], &b[4 * i..]);
+                }
+            }
+            Schema::Array { element, count, stride } => {
+                for i in 0..*count {
+                    self.compare(element, &a[i * stride..], &b[i * stride..]);
+                }
+            }
+            Schema::Struct { fields, .. } => {
+                for f in *fields {
+                    self.compare(f.schema, &a[f.offset..], &b[f.offset..]);
+                }
+            }
+            integer => {
+                let n = integer.size();
+                self.differs |= a[..n] != b[..n];
+            }
+        }
+    }
+}
+
+fn float(bytes: &[u8]) -> f32 {
+    let mut b = [0; 4];
+    b.copy_from_slice(&bytes[..4]);
+    f32::from_le_bytes(b)
+}
+
+/// How many numbers lie between `a` and `b`; a NaN is as far as can be from any number.
+fn ulp_distance(a: f32, b: f32) -> u32 {
+    if a == b || (a.is_nan() && b.is_nan()) {
+        return 0;
+    }
+    if a.is_nan() || b.is_nan() {
+        return u32::MAX;
+    }
+    // The bits of a float, as an integer in the order of the numbers.
+    let ordered = |x: f32| {
+        let bits = i64::from(x.to_bits() & 0x7fff_ffff);
+        if x.is_sign_negative() { -bits } else { bits }
+    };
+    u32::try_from(ordered(a).abs_diff(ordered(b))).unwrap_or(u32::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances() {
+        assert_eq!(ulp_distance(0.0, -0.0), 0);
+        assert_eq!(ulp_distance(1.0, 1.0f32.next_up()), 1);
+        assert_eq!(ulp_distance(f32::MIN_POSITIVE, -f32::MIN_POSITIVE), 2 << 23);
+        assert_eq!(ulp_distance(f32::NAN, f32::NAN), 0);
+        assert_eq!(ulp_distance(f32::NAN, 1.0), u32::MAX);
+        assert_eq!(ulp_distance(f32::INFINITY, f32::MAX), 1);
+    }
+
+    #[test]
+    fn an_integer_that_differs_is_a_mismatch_and_a_float_is_not() {
+        let a = [(1u32, 1.0f32), (2, 2.0), (3, 3.0)];
+        let b = [(1u32, 1.0f32), (2, 2.0f32.next_up()), (4, 3.0f32.next_down())];
+        let found = Agreement::of(&a, &b);
+        assert_eq!((found.differing, found.hit_mismatches, found.unexplained), (2, 1, 1));
+        assert_eq!(found.max_ulp, 1);
+        assert_eq!(found.histogram[..2], [1, 2]);
+        assert!(!found.is_bit_identical());
+        assert!(Agreement::of(&a, &a).is_bit_identical());
+    }
+}

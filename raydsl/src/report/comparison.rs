@@ -1,0 +1,234 @@
+//! Runs every variant of a kernel, and compares.
+
+use std::time::Instant;
+
+use super::{Agreement, Times};
+use crate::camera::Camera;
+use crate::geometry::Ray;
+use crate::kernel::{Kernel, Variant, Variants};
+use crate::machine::Type;
+use crate::render::{Image, Scheduler, TiledScheduler};
+
+/// Settings of a comparison.
+///
+/// ```
+/// use raydsl::prelude::*;
+/// use raydsl::report::Compare;
+///
+/// let light = vec3(0.0, 1.0, 0.0);
+/// let sky = kernel!(|ray: Ray| {
+///     let up = ray.direction.dot(light);
+///     Shaded { color: vec3(up, up, 1.0), depth: 0.0, id: 0 }
+/// });
+/// let camera = Pinhole::new(vec3(0.0, 0.0, 5.0), Vec3::ZERO, Vec3::Y, 1.0);
+/// let found = Compare::new().size(64, 48).variants(&Variants::cpu()).run(&sky, &camera);
+/// assert!(found.agrees());
+/// ```
+pub struct Compare<'a> {
+    width: u32,
+    height: u32,
+    runs: usize,
+    tolerance: u32,
+    variants: Variants,
+    #[cfg(feature = "gpu")]
+    gpu: Option<&'a crate::gpu::GpuScheduler>,
+    progress: Box<dyn FnMut(&str) + 'a>,
+}
+
+impl Default for Compare<'_> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<'a> Compare<'a> {
+    /// Every variant, 640 by 480 pixels, 5 rounds.
+    pub fn new() -> Self {
+        Self {
+            width: 640,
+            height: 480,
+            runs: 5,
+            tolerance: 0,
+            variants: Variants::all(),
+            #[cfg(feature = "gpu")]
+            gpu: None,
+            progress: Box::new(|_| {}),
+        }
+    }
+
+    /// The film's size in pixels.
+    pub fn size(self, width: u32, height: u32) -> Self {
+        Self { width, height, ..self }
+    }
+
+    /// How many rounds are timed, after one that is not; at least 1.
+    pub fn runs(self, runs: usize) -> Self {
+        Self { runs: runs.max(1), ..self }
+    }
+
+    /// How many ulp the numbers of the WGSL variant may be off; 0 unless this is called.
+    pub fn tolerance(self, ulp: u32) -> Self {
+        Self { tolerance: ulp, ..self }
+    }
+
+    /// Which variants run; the scalar one always does.
+    pub fn variants(self, variants: &Variants) -> Self {
+        Self { variants: variants.clone(), ..self }
+    }
+
+    /// The device for the WGSL variant; without this the best of the machine.
+    #[cfg(feature = "gpu")]
+    pub fn gpu(self, gpu: &'a crate::gpu::GpuScheduler) -> Self {
+        Self { gpu: Some(gpu), ..self }
+    }
+
+    /// Calls `progress` with the name of every variant before it runs.
+    pub fn progress(self, progress: impl FnMut(&str) + 'a) -> Self {
+        Self { progress: Box::new(progress), ..self }
+    }
+
+    /// Runs the variants in turn, round by round.
+    ///
+    /// A variant that cannot run (no device, no WGSL in this build) has a row that says why.
+    pub fn run<C: Camera, R: Type + Send>(
+        mut self,
+        kernel: &Kernel<'_, (Ray,), R>,
+        camera: &C,
+    ) -> Comparison<R> {
+        #[cfg(feature = "gpu")]
+        let own = self.own_gpu();
+        #[cfg(feature = "gpu")]
+        let gpu = match (&own, self.gpu) {
+            (_, Some(gpu)) => Ok(gpu),
+            (Some(Ok(gpu)), None) => Ok(gpu),
+            (Some(Err(e)), None) => Err(e.clone()),
+            (None, None) => Err("not asked for".to_owned()),
+        };
+        let mut rows: Vec<Row<R>> = self.variants.iter().map(|v| Row::new(v, &self)).collect();
+        #[cfg(feature = "gpu")]
+        let adapter = gpu.as_ref().ok().map(|g| g.context().adapter_name());
+        #[cfg(not(feature = "gpu"))]
+        let adapter = None;
+        for round in 0..=self.runs {
+            for row in rows.iter_mut().filter(|r| r.unavailable.is_none()) {
+                (self.progress)(row.variant.name());
+                let start = Instant::now();
+                let outcome = match row.variant {
+                    #[cfg(feature = "gpu")]
+                    Variant::Wgsl => gpu.clone().and_then(|g| {
+                        let frame = g.frame(camera, kernel, &mut row.image);
+                        frame.map(drop).map_err(|e| e.to_string())
+                    }),
+                    #[cfg(not(feature = "gpu"))]
+                    Variant::Wgsl => Err("raydsl was built without the feature `gpu`".to_owned()),
+                    cpu => {
+                        TiledScheduler::new().variant(cpu).frame(camera, kernel, &mut row.image);
+                        Ok(())
+                    }
+                };
+                // The first round warms caches and compiles pipelines.
+                if round > 0 {
+                    row.times.ms.push(start.elapsed().as_secs_f64() * 1e3);
+                }
+                row.unavailable = outcome.err();
+            }
+        }
+        let mut rows = rows.into_iter();
+        let scalar = rows.next().unwrap_or_else(|| Row::new(Variant::Scalar, &self));
+        let mut all = vec![scalar];
+        for mut row in rows {
+            row.agreement = Agreement::of(all[0].image.pixels(), row.image.pixels());
+            all.push(row);
+        }
+        Comparison { rows: all, adapter, tolerance: self.tolerance }
+    }
+
+    #[cfg(feature = "gpu")]
+    fn own_gpu(&self) -> Option<Result<crate::gpu::GpuScheduler, String>> {
+        let wanted = self.variants.iter().any(|v| v == Variant::Wgsl) && self.gpu.is_none();
+        wanted.then(|| crate::gpu::GpuScheduler::new().map_err(|e| e.to_string()))
+    }
+}
+
+/// One variant's part of a comparison.
+#[derive(Clone, Debug)]
+pub struct Row<R> {
+    /// Which variant.
+    pub variant: Variant,
+    /// The instruction set that ran it; `wgsl` for the device.
+    pub isa: &'static str,
+    /// Rays that run at once.
+    pub lanes: usize,
+    /// Run times of a frame.
+    pub times: Times,
+    /// What it rendered.
+    pub image: Image<R>,
+    /// How that agrees with the scalar variant.
+    pub agreement: Agreement,
+    /// Why the variant did not run, if it did not.
+    pub unavailable: Option<String>,
+}
+
+impl<R: Type> Row<R> {
+    fn new(variant: Variant, settings: &Compare<'_>) -> Self {
+        let (isa, lanes) = variant.isa();
+        let empty = R::read(&vec![0; R::SCHEMA.size()]);
+        let image = Image::filled(settings.width, settings.height, empty);
+        let agreement = Agreement::of(image.pixels(), image.pixels());
+        Self { variant, isa, lanes, times: Times::default(), image, agreement, unavailable: None }
+    }
+
+    /// Millions of camera rays a second.
+    pub fn mrays_per_s(&self) -> f64 {
+        let rays = f64::from(self.image.width()) * f64::from(self.image.height());
+        let ms = self.times.median();
+        if ms > 0.0 { rays / ms * 1e-3 } else { 0.0 }
+    }
+}
+
+/// What [`Compare::run`] found.
+#[must_use = "a comparison that nobody reads finds nothing"]
+#[derive(Clone, Debug)]
+pub struct Comparison<R> {
+    /// A row for each variant, the scalar one first.
+    pub rows: Vec<Row<R>>,
+    /// The device that ran the WGSL variant.
+    pub adapter: Option<String>,
+    /// How many ulp the numbers of the WGSL variant may be off.
+    pub tolerance: u32,
+}
+
+impl<R: Type> Comparison<R> {
+    /// The row of the scalar variant.
+    pub fn scalar(&self) -> &Row<R> {
+        &self.rows[0]
+    }
+
+    /// Whether every variant that ran agrees: CPU variants in every bit, WGSL in every decision and
+    /// in its numbers to [`Compare::tolerance`].
+    pub fn agrees(&self) -> bool {
+        self.rows.iter().filter(|r| r.unavailable.is_none()).all(|r| match r.variant {
+            Variant::Wgsl => r.agreement.unexplained == 0 && r.agreement.max_ulp <= self.tolerance,
+            _ => r.agreement.is_bit_identical(),
+        })
+    }
+
+    /// The table, at most 100 columns wide.
+    pub fn table(&self) -> String {
+        super::table::table(self)
+    }
+
+    /// The figures with those of the scene, as JSON.
+    pub fn json(&self, scene: &super::SceneInfo) -> serde_json::Value {
+        super::json::json(self, scene)
+    }
+}
+
+/// Runs a kernel in `variants` at 640 by 480 pixels and compares; see [`Compare`] for settings.
+pub fn compare<C: Camera, R: Type + Send>(
+    kernel: &Kernel<'_, (Ray,), R>,
+    camera: &C,
+    variants: Variants,
+) -> Comparison<R> {
+    Compare::new().variants(&variants).run(kernel, camera)
+}

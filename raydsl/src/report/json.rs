@@ -1,0 +1,55 @@
+//! The figures of a comparison, for programs.
+
+use serde_json::{Value, json as value};
+
+use super::{Comparison, Row};
+use crate::machine::Type;
+
+/// What a comparison does not know of its scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SceneInfo {
+    /// A name.
+    pub scene: String,
+    /// How many primitives.
+    pub primitives: u64,
+    /// How long the tree took to build, in milliseconds.
+    pub build_ms: f64,
+    /// Bytes of the tree.
+    pub bvh_bytes: u64,
+}
+
+pub(super) fn json<R: Type>(c: &Comparison<R>, scene: &SceneInfo) -> Value {
+    let image = &c.scalar().image;
+    let (width, height) = (image.width(), image.height());
+    let variants: Vec<Value> = c.rows.iter().map(|r| row(r, c.scalar())).collect();
+    value!({
+        "scene": scene.scene,
+        "primitives": scene.primitives,
+        "width": width,
+        "height": height,
+        "rays": u64::from(width) * u64::from(height),
+        "adapter": c.adapter,
+        "build_ms": scene.build_ms,
+        "bvh_bytes": scene.bvh_bytes,
+        "variants": variants,
+    })
+}
+
+fn row<R: Type>(row: &Row<R>, scalar: &Row<R>) -> Value {
+    if let Some(reason) = &row.unavailable {
+        return value!({ "name": row.variant.name(), "not_run": reason });
+    }
+    value!({
+        "name": row.variant.name(),
+        "isa": row.isa,
+        "lanes": row.lanes,
+        "ms": row.times.median(),
+        "mrays_per_s": row.mrays_per_s(),
+        "speedup": row.times.speedup_over(&scalar.times),
+        "spread": row.times.spread(),
+        "bit_identical": row.agreement.is_bit_identical(),
+        "max_ulp": row.agreement.max_ulp,
+        "hit_mismatches": row.agreement.hit_mismatches,
+        "unexplained": row.agreement.unexplained,
+    })
+}

@@ -1,0 +1,54 @@
+struct Args {
+    _0: u32,
+    _1: u32,
+    _2: i32,
+}
+
+struct StoredArgs {
+    arg0: u32,
+    arg1: u32,
+    arg2: i32,
+}
+
+struct Params {
+    none: u32,
+}
+
+struct Job {
+    size: vec2<u32>,
+    first: vec2<u32>,
+    count: vec2<u32>,
+    base: u32,
+    pad: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> job: Job;
+
+fn bits(a: u32, b: u32, c: i32) -> u32 {
+    let x = (a & b) | (~a & 252645135u);
+    let y = (a ^ b) ^ x;
+    let z = (~c & 255i) | (c ^ -1i);
+    return y ^ bitcast<u32>(z);
+}
+
+fn element(input: Args) -> u32 {
+    return bits(input._0, input._1, input._2);
+}
+
+@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(3) var<storage, read_write> outputs: array<u32>;
+
+fn load_input(i: u32) -> Args {
+    let s = inputs[i];
+    return Args(s.arg0, s.arg1, s.arg2);
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (any(id.xy >= job.count)) { return; }
+    let at = job.first + id.xy;
+    let index = at.y * job.size.x + at.x - job.base;
+    let result = element(load_input(index));
+    outputs[index] = result;
+}

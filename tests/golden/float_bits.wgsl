@@ -1,0 +1,51 @@
+struct Args {
+    _0: f32,
+    _1: u32,
+}
+
+struct StoredArgs {
+    arg0: f32,
+    arg1: u32,
+}
+
+struct Params {
+    lit_1_0: f32,
+}
+
+struct Job {
+    size: vec2<u32>,
+    first: vec2<u32>,
+    count: vec2<u32>,
+    base: u32,
+    pad: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> job: Job;
+
+fn float_bits(x: f32, n: u32) -> u32 {
+    let exponent = (bitcast<u32>(x) >> 23u) & 255u;
+    let unit = bitcast<f32>(1065353216u | (n >> 9u)) - params.lit_1_0;
+    return exponent ^ bitcast<u32>(unit);
+}
+
+fn element(input: Args) -> u32 {
+    return float_bits(input._0, input._1);
+}
+
+@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(3) var<storage, read_write> outputs: array<u32>;
+
+fn load_input(i: u32) -> Args {
+    let s = inputs[i];
+    return Args(s.arg0, s.arg1);
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (any(id.xy >= job.count)) { return; }
+    let at = job.first + id.xy;
+    let index = at.y * job.size.x + at.x - job.base;
+    let result = element(load_input(index));
+    outputs[index] = result;
+}

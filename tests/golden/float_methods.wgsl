@@ -1,0 +1,55 @@
+struct Args {
+    _0: f32,
+    _1: f32,
+}
+
+struct StoredArgs {
+    arg0: f32,
+    arg1: f32,
+}
+
+struct StoredValue {
+    value: vec4<f32>,
+}
+
+struct Params {
+    lit_1_0: f32,
+}
+
+struct Job {
+    size: vec2<u32>,
+    first: vec2<u32>,
+    count: vec2<u32>,
+    base: u32,
+    pad: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> job: Job;
+
+fn float_methods(x: f32, y: f32) -> vec4<f32> {
+    let root = sqrt(x * x + y * y);
+    let parts = floor(x) + ceil(y) - trunc(x);
+    return vec4<f32>(root, parts, abs(x) / (abs(y) + params.lit_1_0), bitcast<f32>((bitcast<u32>(x) & 2147483647u) | (bitcast<u32>(y) & 2147483648u)) + 1.0f / y);
+}
+
+fn element(input: Args) -> vec4<f32> {
+    return float_methods(input._0, input._1);
+}
+
+@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(3) var<storage, read_write> outputs: array<StoredValue>;
+
+fn load_input(i: u32) -> Args {
+    let s = inputs[i];
+    return Args(s.arg0, s.arg1);
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (any(id.xy >= job.count)) { return; }
+    let at = job.first + id.xy;
+    let index = at.y * job.size.x + at.x - job.base;
+    let result = element(load_input(index));
+    outputs[index] = StoredValue(vec4<f32>(result.x, result.y, result.z, result.w));
+}

@@ -1,0 +1,252 @@
+struct Ray {
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+    t_min: f32,
+    t_max: f32,
+}
+
+struct Hit {
+    is_hit: bool,
+    t: f32,
+    prim_id: u32,
+    u: f32,
+    v: f32,
+}
+
+struct ColorSphere {
+    center: vec3<f32>,
+    radius: u32,
+    color: array<u32, 3>,
+}
+
+struct Node {
+    min: vec3<f32>,
+    first: u32,
+    max: vec3<f32>,
+    count: u32,
+}
+
+struct Shaded {
+    color: vec3<f32>,
+    depth: f32,
+    id: u32,
+}
+
+struct Args {
+    _0: Ray,
+}
+
+struct StoredColorSphere {
+    center: vec3<f32>,
+    radius_color_0_color_1_color_2: u32,
+}
+
+struct StoredArgs {
+    arg0_origin: vec3<f32>,
+    arg0_direction_x: f32,
+    arg0_direction_y: f32,
+    arg0_direction_z: f32,
+    arg0_t_min: f32,
+    arg0_t_max: f32,
+}
+
+struct StoredShaded {
+    color_x: f32,
+    color_y: f32,
+    color_z: f32,
+    depth: f32,
+    id: u32,
+}
+
+struct Params {
+    background: vec3<f32>,
+    lit_255_0: f32,
+    len_of_bvh: u32,
+    len_of_bvh_nodes: u32,
+}
+
+struct Job {
+    size: vec2<u32>,
+    first: vec2<u32>,
+    count: vec2<u32>,
+    base: u32,
+    pad: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> job: Job;
+
+@group(0) @binding(4) var<storage, read> bvh: array<StoredColorSphere>;
+
+fn bvh_at(i: u32) -> ColorSphere {
+    let s = bvh[i];
+    return ColorSphere(s.center, s.radius_color_0_color_1_color_2 & 0xffu, array<u32, 3>((s.radius_color_0_color_1_color_2 >> 8u) & 0xffu, (s.radius_color_0_color_1_color_2 >> 16u) & 0xffu, (s.radius_color_0_color_1_color_2 >> 24u) & 0xffu));
+}
+
+@group(0) @binding(5) var<storage, read> bvh_nodes: array<Node>;
+
+fn bvh_nodes_at(i: u32) -> Node {
+    return bvh_nodes[i];
+}
+
+@group(0) @binding(6) var<storage, read> bvh_ids: array<u32>;
+
+fn bvh_ids_at(i: u32) -> u32 {
+    return bvh_ids[i];
+}
+
+fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
+    let f = center - ray.origin;
+    let d2 = ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z;
+    let closest = (f.x * ray.direction.x + f.y * ray.direction.y + f.z * ray.direction.z) / d2;
+    let aside = f - ray.direction * closest;
+    let radicand = radius * radius - (aside.x * aside.x + aside.y * aside.y + aside.z * aside.z);
+    let half = sqrt(radicand / d2);
+    let near = closest - half;
+    let far = closest + half;
+    var t: f32;
+    if (near < ray.t_min) {
+        t = far;
+    } else {
+        t = near;
+    }
+    let is_hit = radicand >= 0.0f && radius > 0.0f && t >= ray.t_min && t <= ray.t_max;
+    return Hit(is_hit, t, 0u, 0.0f, 0.0f);
+}
+
+fn ColorSphere_intersect(self_: ColorSphere, ray: Ray) -> Hit {
+    return intersect(ray, self_.center, f32(self_.radius) / params.lit_255_0);
+}
+
+fn is_finite(v: vec3<f32>) -> bool {
+    let exponent = bitcast<vec3<u32>>(v) & vec3<u32>(0x7f800000u);
+    return all(exponent != vec3<u32>(0x7f800000u));
+}
+
+/// Where a ray meets boxes: origins moved apart by the allowance for rounding, and finite
+/// reciprocals of the direction.
+struct Slabs {
+    lower: vec3<f32>,
+    upper: vec3<f32>,
+    inverse: vec3<f32>,
+}
+
+fn finite_inverse(d: vec3<f32>) -> vec3<f32> {
+    let a = abs(d);
+    let largest = max(max(a.x, a.y), a.z);
+    let least = max(largest * 8.6736174e-19, 1.1754944e-38);
+    let safe = select(d, select(vec3<f32>(least), vec3<f32>(-least), d < vec3<f32>(0.0)), a < vec3<f32>(least));
+    return 1.0 / safe;
+}
+
+fn slabs(ray: Ray, root: Node, slack: f32) -> Slabs {
+    let reach = max(abs(root.min - ray.origin), abs(root.max - ray.origin));
+    let pad = max(slack * max(max(reach.x, reach.y), reach.z), 1.1754944e-38) + abs(ray.origin) * 1.1920929e-7;
+    return Slabs(ray.origin + pad, ray.origin - pad, finite_inverse(ray.direction));
+}
+
+/// The distances at which a ray enters and leaves a box.
+fn enter_leave(s: Slabs, node: Node, t_min: f32, t_max: f32) -> vec2<f32> {
+    let t0 = (node.min - s.lower) * s.inverse;
+    let t1 = (node.max - s.upper) * s.inverse;
+    let near = min(t0, t1);
+    let far = max(t0, t1);
+    return vec2<f32>(
+        max(max(near.x, near.y), max(near.z, t_min)),
+        min(min(far.x, far.y), min(far.z, t_max)),
+    );
+}
+
+fn bvh_closest_hit(ray: Ray) -> Hit {
+    var best = Hit();
+    if (params.len_of_bvh_nodes == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {
+        return best;
+    }
+    var stack: array<u32, 64>;
+    var stack_t: array<f32, 64>;
+    var top = 0u;
+    var node = bvh_nodes_at(0u);
+    let s = slabs(ray, node, 9.536743e-7);
+    let root = enter_leave(s, node, ray.t_min, ray.t_max);
+    if (!(root.x <= root.y)) {
+        return best;
+    }
+    loop {
+        if (node.count > 0u) {
+            for (var i = node.first; i < node.first + node.count; i = i + 1u) {
+                let id = bvh_ids_at(i);
+                let candidate = ColorSphere_intersect(bvh_at(id), ray);
+                if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max
+                    && (!best.is_hit || candidate.t < best.t || (candidate.t == best.t && id < best.prim_id))) {
+                    best = candidate;
+                    best.prim_id = id;
+                }
+            }
+        } else {
+            let left = bvh_nodes_at(node.first);
+            let right = bvh_nodes_at(node.first + 1u);
+            let limit = select(ray.t_max, min(best.t + abs(best.t) * 9.536743e-7, ray.t_max), best.is_hit);
+            let l = enter_leave(s, left, ray.t_min, limit);
+            let r = enter_leave(s, right, ray.t_min, limit);
+            let hit_left = l.x <= l.y;
+            let hit_right = r.x <= r.y;
+            if (hit_left && hit_right) {
+                let left_first = l.x <= r.x;
+                stack[top] = select(node.first, node.first + 1u, left_first);
+                stack_t[top] = select(l.x, r.x, left_first);
+                top = top + 1u;
+                if (left_first) { node = left; } else { node = right; }
+                continue;
+            }
+            if (hit_left) { node = left; continue; }
+            if (hit_right) { node = right; continue; }
+        }
+        // The next node on the stack that is not behind the best hit.
+        var found = false;
+        while (top > 0u && !found) {
+            top = top - 1u;
+            found = stack_t[top] <= select(ray.t_max, min(best.t + abs(best.t) * 9.536743e-7, ray.t_max), best.is_hit);
+        }
+        if (!found) {
+            break;
+        }
+        node = bvh_nodes_at(stack[top]);
+    }
+    return best;
+}
+
+fn ColorSphere_rgb(self_: ColorSphere) -> vec3<f32> {
+    return vec3<f32>(f32(self_.color[0]) / params.lit_255_0, f32(self_.color[1]) / params.lit_255_0, f32(self_.color[2]) / params.lit_255_0);
+}
+
+fn kernel(ray: Ray) -> Shaded {
+    let hit = bvh_closest_hit(ray);
+    var color: vec3<f32>;
+    if (hit.is_hit) {
+        color = ColorSphere_rgb(bvh_at(select(0u, hit.prim_id, hit.is_hit)));
+    } else {
+        color = params.background;
+    }
+    return Shaded(color, hit.t, hit.prim_id);
+}
+
+fn element(input: Args) -> Shaded {
+    return kernel(input._0);
+}
+
+@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(3) var<storage, read_write> outputs: array<StoredShaded>;
+
+fn load_input(i: u32) -> Args {
+    let s = inputs[i];
+    return Args(Ray(s.arg0_origin, vec3<f32>(s.arg0_direction_x, s.arg0_direction_y, s.arg0_direction_z), s.arg0_t_min, s.arg0_t_max));
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (any(id.xy >= job.count)) { return; }
+    let at = job.first + id.xy;
+    let index = at.y * job.size.x + at.x - job.base;
+    let result = element(load_input(index));
+    outputs[index] = StoredShaded(result.color.x, result.color.y, result.color.z, result.depth, result.id);
+}

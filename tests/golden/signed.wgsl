@@ -1,0 +1,66 @@
+struct Args {
+    _0: i32,
+    _1: i32,
+}
+
+struct StoredArgs {
+    arg0: i32,
+    arg1: i32,
+}
+
+struct Params {
+    none: u32,
+}
+
+struct Job {
+    size: vec2<u32>,
+    first: vec2<u32>,
+    count: vec2<u32>,
+    base: u32,
+    pad: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> job: Job;
+
+fn signed(a: i32, b: i32) -> i32 {
+    var d: i32;
+    if (b == 0i || b == -1i) {
+        d = 3i;
+    } else {
+        d = b;
+    }
+    let q = a / d;
+    let r = a % d;
+    var n: i32;
+    if (a > -1000i && a < 1000i) {
+        n = -a;
+    } else {
+        n = a;
+    }
+    let t = q + r * 31i - n;
+    let t_1 = select(t, -2000000000i, (t < -2000000000i));
+    let t_2 = b + n;
+    return select(t_1, t_2, (t_2 < t_1));
+}
+
+fn element(input: Args) -> i32 {
+    return signed(input._0, input._1);
+}
+
+@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(3) var<storage, read_write> outputs: array<i32>;
+
+fn load_input(i: u32) -> Args {
+    let s = inputs[i];
+    return Args(s.arg0, s.arg1);
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (any(id.xy >= job.count)) { return; }
+    let at = job.first + id.xy;
+    let index = at.y * job.size.x + at.x - job.base;
+    let result = element(load_input(index));
+    outputs[index] = result;
+}

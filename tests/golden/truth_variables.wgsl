@@ -1,0 +1,65 @@
+struct Args {
+    _0: f32,
+    _1: u32,
+}
+
+struct StoredArgs {
+    arg0: f32,
+    arg1: u32,
+}
+
+struct StoredValue {
+    value: u32,
+}
+
+struct Params {
+    none: u32,
+}
+
+struct Job {
+    size: vec2<u32>,
+    first: vec2<u32>,
+    count: vec2<u32>,
+    base: u32,
+    pad: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> job: Job;
+
+fn truth_variables(x: f32, n: u32) -> bool {
+    var seen: bool = false;
+    var done: bool = x < -50.0f;
+    var i: u32 = 0u;
+    for (; i < n; i = i + 1u) {
+        if (x < f32(i)) {
+            seen = true;
+        }
+        done = done || (seen && i > 6u);
+        if (done) {
+            break;
+        }
+    }
+    return seen != done;
+}
+
+fn element(input: Args) -> bool {
+    return truth_variables(input._0, input._1);
+}
+
+@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(3) var<storage, read_write> outputs: array<StoredValue>;
+
+fn load_input(i: u32) -> Args {
+    let s = inputs[i];
+    return Args(s.arg0, s.arg1);
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (any(id.xy >= job.count)) { return; }
+    let at = job.first + id.xy;
+    let index = at.y * job.size.x + at.x - job.base;
+    let result = element(load_input(index));
+    outputs[index] = StoredValue((select(0u, 1u, result)));
+}

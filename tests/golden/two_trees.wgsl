@@ -1,0 +1,431 @@
+struct Ray {
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+    t_min: f32,
+    t_max: f32,
+}
+
+struct Hit {
+    is_hit: bool,
+    t: f32,
+    prim_id: u32,
+    u: f32,
+    v: f32,
+}
+
+struct ColorSphere {
+    center: vec3<f32>,
+    radius: u32,
+    color: array<u32, 3>,
+}
+
+struct Node {
+    min: vec3<f32>,
+    first: u32,
+    max: vec3<f32>,
+    count: u32,
+}
+
+struct Triangle {
+    v0: vec3<f32>,
+    v1: vec3<f32>,
+    v2: vec3<f32>,
+}
+
+struct Args {
+    _0: Ray,
+}
+
+struct StoredColorSphere {
+    center: vec3<f32>,
+    radius_color_0_color_1_color_2: u32,
+}
+
+struct StoredTriangle {
+    v0_x: f32,
+    v0_y: f32,
+    v0_z: f32,
+    v1_x: f32,
+    v1_y: f32,
+    v1_z: f32,
+    v2_x: f32,
+    v2_y: f32,
+    v2_z: f32,
+}
+
+struct StoredArgs {
+    arg0_origin: vec3<f32>,
+    arg0_direction_x: f32,
+    arg0_direction_y: f32,
+    arg0_direction_z: f32,
+    arg0_t_min: f32,
+    arg0_t_max: f32,
+}
+
+struct StoredHit {
+    is_hit: u32,
+    t: f32,
+    prim_id: u32,
+    u: f32,
+    v: f32,
+}
+
+struct Params {
+    lit_255_0: f32,
+    len_of_points: u32,
+    len_of_points_nodes: u32,
+    len_of_walls: u32,
+    len_of_walls_nodes: u32,
+}
+
+struct Job {
+    size: vec2<u32>,
+    first: vec2<u32>,
+    count: vec2<u32>,
+    base: u32,
+    pad: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> job: Job;
+
+@group(0) @binding(4) var<storage, read> points: array<StoredColorSphere>;
+
+fn points_at(i: u32) -> ColorSphere {
+    let s = points[i];
+    return ColorSphere(s.center, s.radius_color_0_color_1_color_2 & 0xffu, array<u32, 3>((s.radius_color_0_color_1_color_2 >> 8u) & 0xffu, (s.radius_color_0_color_1_color_2 >> 16u) & 0xffu, (s.radius_color_0_color_1_color_2 >> 24u) & 0xffu));
+}
+
+@group(0) @binding(5) var<storage, read> points_nodes: array<Node>;
+
+fn points_nodes_at(i: u32) -> Node {
+    return points_nodes[i];
+}
+
+@group(0) @binding(6) var<storage, read> points_ids: array<u32>;
+
+fn points_ids_at(i: u32) -> u32 {
+    return points_ids[i];
+}
+
+@group(0) @binding(7) var<storage, read> walls: array<StoredTriangle>;
+
+fn walls_at(i: u32) -> Triangle {
+    let s = walls[i];
+    return Triangle(vec3<f32>(s.v0_x, s.v0_y, s.v0_z), vec3<f32>(s.v1_x, s.v1_y, s.v1_z), vec3<f32>(s.v2_x, s.v2_y, s.v2_z));
+}
+
+@group(0) @binding(8) var<storage, read> walls_nodes: array<Node>;
+
+fn walls_nodes_at(i: u32) -> Node {
+    return walls_nodes[i];
+}
+
+@group(0) @binding(9) var<storage, read> walls_ids: array<u32>;
+
+fn walls_ids_at(i: u32) -> u32 {
+    return walls_ids[i];
+}
+
+fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
+    let f = center - ray.origin;
+    let d2 = ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z;
+    let closest = (f.x * ray.direction.x + f.y * ray.direction.y + f.z * ray.direction.z) / d2;
+    let aside = f - ray.direction * closest;
+    let radicand = radius * radius - (aside.x * aside.x + aside.y * aside.y + aside.z * aside.z);
+    let half = sqrt(radicand / d2);
+    let near = closest - half;
+    let far = closest + half;
+    var t: f32;
+    if (near < ray.t_min) {
+        t = far;
+    } else {
+        t = near;
+    }
+    let is_hit = radicand >= 0.0f && radius > 0.0f && t >= ray.t_min && t <= ray.t_max;
+    return Hit(is_hit, t, 0u, 0.0f, 0.0f);
+}
+
+fn ColorSphere_intersect(self_: ColorSphere, ray: Ray) -> Hit {
+    return intersect(ray, self_.center, f32(self_.radius) / params.lit_255_0);
+}
+
+fn is_finite(v: vec3<f32>) -> bool {
+    let exponent = bitcast<vec3<u32>>(v) & vec3<u32>(0x7f800000u);
+    return all(exponent != vec3<u32>(0x7f800000u));
+}
+
+/// Where a ray meets boxes: origins moved apart by the allowance for rounding, and finite
+/// reciprocals of the direction.
+struct Slabs {
+    lower: vec3<f32>,
+    upper: vec3<f32>,
+    inverse: vec3<f32>,
+}
+
+fn finite_inverse(d: vec3<f32>) -> vec3<f32> {
+    let a = abs(d);
+    let largest = max(max(a.x, a.y), a.z);
+    let least = max(largest * 8.6736174e-19, 1.1754944e-38);
+    let safe = select(d, select(vec3<f32>(least), vec3<f32>(-least), d < vec3<f32>(0.0)), a < vec3<f32>(least));
+    return 1.0 / safe;
+}
+
+fn slabs(ray: Ray, root: Node, slack: f32) -> Slabs {
+    let reach = max(abs(root.min - ray.origin), abs(root.max - ray.origin));
+    let pad = max(slack * max(max(reach.x, reach.y), reach.z), 1.1754944e-38) + abs(ray.origin) * 1.1920929e-7;
+    return Slabs(ray.origin + pad, ray.origin - pad, finite_inverse(ray.direction));
+}
+
+/// The distances at which a ray enters and leaves a box.
+fn enter_leave(s: Slabs, node: Node, t_min: f32, t_max: f32) -> vec2<f32> {
+    let t0 = (node.min - s.lower) * s.inverse;
+    let t1 = (node.max - s.upper) * s.inverse;
+    let near = min(t0, t1);
+    let far = max(t0, t1);
+    return vec2<f32>(
+        max(max(near.x, near.y), max(near.z, t_min)),
+        min(min(far.x, far.y), min(far.z, t_max)),
+    );
+}
+
+fn points_closest_hit(ray: Ray) -> Hit {
+    var best = Hit();
+    if (params.len_of_points_nodes == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {
+        return best;
+    }
+    var stack: array<u32, 64>;
+    var stack_t: array<f32, 64>;
+    var top = 0u;
+    var node = points_nodes_at(0u);
+    let s = slabs(ray, node, 9.536743e-7);
+    let root = enter_leave(s, node, ray.t_min, ray.t_max);
+    if (!(root.x <= root.y)) {
+        return best;
+    }
+    loop {
+        if (node.count > 0u) {
+            for (var i = node.first; i < node.first + node.count; i = i + 1u) {
+                let id = points_ids_at(i);
+                let candidate = ColorSphere_intersect(points_at(id), ray);
+                if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max
+                    && (!best.is_hit || candidate.t < best.t || (candidate.t == best.t && id < best.prim_id))) {
+                    best = candidate;
+                    best.prim_id = id;
+                }
+            }
+        } else {
+            let left = points_nodes_at(node.first);
+            let right = points_nodes_at(node.first + 1u);
+            let limit = select(ray.t_max, min(best.t + abs(best.t) * 9.536743e-7, ray.t_max), best.is_hit);
+            let l = enter_leave(s, left, ray.t_min, limit);
+            let r = enter_leave(s, right, ray.t_min, limit);
+            let hit_left = l.x <= l.y;
+            let hit_right = r.x <= r.y;
+            if (hit_left && hit_right) {
+                let left_first = l.x <= r.x;
+                stack[top] = select(node.first, node.first + 1u, left_first);
+                stack_t[top] = select(l.x, r.x, left_first);
+                top = top + 1u;
+                if (left_first) { node = left; } else { node = right; }
+                continue;
+            }
+            if (hit_left) { node = left; continue; }
+            if (hit_right) { node = right; continue; }
+        }
+        // The next node on the stack that is not behind the best hit.
+        var found = false;
+        while (top > 0u && !found) {
+            top = top - 1u;
+            found = stack_t[top] <= select(ray.t_max, min(best.t + abs(best.t) * 9.536743e-7, ray.t_max), best.is_hit);
+        }
+        if (!found) {
+            break;
+        }
+        node = points_nodes_at(stack[top]);
+    }
+    return best;
+}
+
+fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
+    var result: vec3<f32>;
+    if (k == 0u) {
+        result = vec3<f32>(v.y, v.z, v.x);
+    } else if (k == 1u) {
+        result = vec3<f32>(v.z, v.x, v.y);
+    } else {
+        result = v;
+    }
+    return result;
+}
+
+fn Triangle_intersect(self_: Triangle, ray: Ray) -> Hit {
+    let ax = abs(ray.direction.x);
+    let ay = abs(ray.direction.y);
+    let az = abs(ray.direction.z);
+    var k: u32;
+    if (ax > ay && ax > az) {
+        k = 0u;
+    } else if (ay > az) {
+        k = 1u;
+    } else {
+        k = 2u;
+    }
+    let d = axis_last(ray.direction, k);
+    let a = axis_last(self_.v0 - ray.origin, k);
+    let b = axis_last(self_.v1 - ray.origin, k);
+    let c = axis_last(self_.v2 - ray.origin, k);
+    let sx = d.x / d.z;
+    let sy = d.y / d.z;
+    let a_x = a.x - sx * a.z;
+    let a_y = a.y - sy * a.z;
+    let b_x = b.x - sx * b.z;
+    let b_y = b.y - sy * b.z;
+    let c_x = c.x - sx * c.z;
+    let c_y = c.y - sy * c.z;
+    let u = c_x * b_y - c_y * b_x;
+    let v = a_x * c_y - a_y * c_x;
+    let w = b_x * a_y - b_y * a_x;
+    let inside = (u >= 0.0f && v >= 0.0f && w >= 0.0f) || (u <= 0.0f && v <= 0.0f && w <= 0.0f);
+    let sum = u + v + w;
+    let t_1 = select(a_x, b_x, b_x < a_x);
+    let left = select(t_1, c_x, c_x < t_1);
+    let t_2 = select(a_x, b_x, a_x < b_x);
+    let right = select(t_2, c_x, t_2 < c_x);
+    let t_3 = select(a_y, b_y, b_y < a_y);
+    let low = select(t_3, c_y, c_y < t_3);
+    let t_4 = select(a_y, b_y, a_y < b_y);
+    let high = select(t_4, c_y, t_4 < c_y);
+    let between = left <= 0.0f && right >= 0.0f && low <= 0.0f && high >= 0.0f;
+    if (!(inside && between && sum != 0.0f)) {
+        return Hit(false, 0.0f, 0u, 0.0f, 0.0f);
+    }
+    var t: f32 = u / sum * (a.z / d.z) + v / sum * (b.z / d.z) + w / sum * (c.z / d.z);
+    let t_5 = select(a.x, b.x, b.x < a.x);
+    let min_x = select(t_5, c.x, c.x < t_5);
+    let t_6 = select(a.x, b.x, a.x < b.x);
+    let max_x = select(t_6, c.x, t_6 < c.x);
+    let x = t * d.x;
+    let t_7 = min_x - x;
+    let t_8 = x - max_x;
+    if (select(t_7, t_8, t_7 < t_8) > abs(x) * 9.536743e-7f) {
+        let t_9 = select(x, min_x, x < min_x);
+        t = select(t_9, max_x, max_x < t_9) / d.x;
+    }
+    let t_10 = select(a.y, b.y, b.y < a.y);
+    let min_y = select(t_10, c.y, c.y < t_10);
+    let t_11 = select(a.y, b.y, a.y < b.y);
+    let max_y = select(t_11, c.y, t_11 < c.y);
+    let y = t * d.y;
+    let t_12 = min_y - y;
+    let t_13 = y - max_y;
+    if (select(t_12, t_13, t_12 < t_13) > abs(y) * 9.536743e-7f) {
+        let t_14 = select(y, min_y, y < min_y);
+        t = select(t_14, max_y, max_y < t_14) / d.y;
+    }
+    let is_hit = t >= ray.t_min && t <= ray.t_max;
+    return Hit(is_hit, t, 0u, v / sum, w / sum);
+}
+
+fn walls_closest_hit(ray: Ray) -> Hit {
+    var best = Hit();
+    if (params.len_of_walls_nodes == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {
+        return best;
+    }
+    var stack: array<u32, 64>;
+    var stack_t: array<f32, 64>;
+    var top = 0u;
+    var node = walls_nodes_at(0u);
+    let s = slabs(ray, node, 9.536743e-7);
+    let root = enter_leave(s, node, ray.t_min, ray.t_max);
+    if (!(root.x <= root.y)) {
+        return best;
+    }
+    loop {
+        if (node.count > 0u) {
+            for (var i = node.first; i < node.first + node.count; i = i + 1u) {
+                let id = walls_ids_at(i);
+                let candidate = Triangle_intersect(walls_at(id), ray);
+                if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max
+                    && (!best.is_hit || candidate.t < best.t || (candidate.t == best.t && id < best.prim_id))) {
+                    best = candidate;
+                    best.prim_id = id;
+                }
+            }
+        } else {
+            let left = walls_nodes_at(node.first);
+            let right = walls_nodes_at(node.first + 1u);
+            let limit = select(ray.t_max, min(best.t + abs(best.t) * 9.536743e-7, ray.t_max), best.is_hit);
+            let l = enter_leave(s, left, ray.t_min, limit);
+            let r = enter_leave(s, right, ray.t_min, limit);
+            let hit_left = l.x <= l.y;
+            let hit_right = r.x <= r.y;
+            if (hit_left && hit_right) {
+                let left_first = l.x <= r.x;
+                stack[top] = select(node.first, node.first + 1u, left_first);
+                stack_t[top] = select(l.x, r.x, left_first);
+                top = top + 1u;
+                if (left_first) { node = left; } else { node = right; }
+                continue;
+            }
+            if (hit_left) { node = left; continue; }
+            if (hit_right) { node = right; continue; }
+        }
+        // The next node on the stack that is not behind the best hit.
+        var found = false;
+        while (top > 0u && !found) {
+            top = top - 1u;
+            found = stack_t[top] <= select(ray.t_max, min(best.t + abs(best.t) * 9.536743e-7, ray.t_max), best.is_hit);
+        }
+        if (!found) {
+            break;
+        }
+        node = walls_nodes_at(stack[top]);
+    }
+    return best;
+}
+
+fn kernel(ray: Ray) -> Hit {
+    let a = points_closest_hit(ray);
+    let b = walls_closest_hit(ray);
+    var result_is_hit: bool;
+    var result_t: f32;
+    var result_prim_id: u32;
+    var result_u: f32;
+    var result_v: f32;
+    if (b.is_hit && (!a.is_hit || b.t < a.t)) {
+        result_is_hit = b.is_hit;
+        result_t = b.t;
+        result_prim_id = b.prim_id;
+        result_u = b.u;
+        result_v = b.v;
+    } else {
+        result_is_hit = a.is_hit;
+        result_t = a.t;
+        result_prim_id = a.prim_id;
+        result_u = a.u;
+        result_v = a.v;
+    }
+    return Hit(result_is_hit, result_t, result_prim_id, result_u, result_v);
+}
+
+fn element(input: Args) -> Hit {
+    return kernel(input._0);
+}
+
+@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(3) var<storage, read_write> outputs: array<StoredHit>;
+
+fn load_input(i: u32) -> Args {
+    let s = inputs[i];
+    return Args(Ray(s.arg0_origin, vec3<f32>(s.arg0_direction_x, s.arg0_direction_y, s.arg0_direction_z), s.arg0_t_min, s.arg0_t_max));
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (any(id.xy >= job.count)) { return; }
+    let at = job.first + id.xy;
+    let index = at.y * job.size.x + at.x - job.base;
+    let result = element(load_input(index));
+    outputs[index] = StoredHit((select(0u, 1u, result.is_hit)), result.t, result.prim_id, result.u, result.v);
+}

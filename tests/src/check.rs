@@ -1,0 +1,221 @@
+//! One kernel through every variant.
+
+use std::fmt::Debug;
+
+use raydsl::kernel::{Kernel, Lifted};
+use raydsl::machine::{KernelFn, KernelInfo, Lanes, Packet, Scalar, Type};
+
+use crate::gpu::gpu;
+use crate::levels::{LevelTask, each_level};
+use crate::rng::Rng;
+use crate::values::{Numbers, compare, garbage, random};
+
+/// Not a multiple of any width, so that the last packet is partly filled.
+const INPUTS: usize = 1003;
+
+/// Whether WGSL must give the CPU's bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wgsl {
+    /// The same bits.
+    Same,
+    /// The same bits for inputs whose every number is finite.
+    SameIfFinite,
+    /// WGSL does not define the operation well enough.
+    Differs,
+}
+
+/// Runs a kernel through every variant and compares with its untouched source.
+///
+/// # Panics
+///
+/// If any result of any variant differs.
+pub fn check<F: KernelFn>(name: &str, numbers: Numbers, wgsl: Wgsl)
+where
+    F::Args: Debug,
+{
+    let mut rng = Rng::of(name);
+    let inputs: Vec<F::Args> = (0..INPUTS).map(|_| random(&mut rng, numbers)).collect();
+    let expected: Vec<F::Output> = inputs.iter().map(|a| F::scalar(*a)).collect();
+    let case = Case::<F> { name, inputs, expected };
+    case.scalar_machine();
+    each_level(&mut &case);
+    match wgsl {
+        Wgsl::Same => case.wgsl(|_| true),
+        Wgsl::SameIfFinite => case.wgsl(is_finite),
+        Wgsl::Differs => {}
+    }
+}
+
+fn is_finite<T: Type>(v: &T) -> bool {
+    crate::values::words(v).iter().all(|w| f32::from_bits(*w).is_finite())
+}
+
+struct Case<'a, F: KernelFn> {
+    name: &'a str,
+    inputs: Vec<F::Args>,
+    expected: Vec<F::Output>,
+}
+
+type PacketKernel<F, L> = dyn Fn(
+    &Packet<L>,
+    <<F as KernelFn>::Args as Type>::On<Packet<L>>,
+) -> <<F as KernelFn>::Output as Type>::On<Packet<L>>;
+
+impl<F: KernelFn> Case<'_, F>
+where
+    F::Args: Debug,
+{
+    fn assert_same(&self, how: &str, found: &[F::Output]) {
+        let who = format!("{} on {how}", self.name);
+        compare(who, &self.expected, found).assert_same(|i| format!("{:?}", self.inputs[i]));
+    }
+
+    /// The lifted body with plain numbers.
+    fn scalar_machine(&self) {
+        let run = |a: &F::Args| {
+            let m = Scalar::default();
+            F::Output::lane::<Scalar>(&F::lifted(&m, F::Args::splat(&m, *a)), 0)
+        };
+        let found: Vec<F::Output> = self.inputs.iter().map(run).collect();
+        self.assert_same("the scalar machine", &found);
+    }
+
+    fn packets<L: Lanes>(&self, name: &str, lanes: L) {
+        let kernel: &PacketKernel<F, L> = &|m, args| F::lifted(m, args);
+        let run = |bits: u64, input: &dyn Fn(usize) -> F::Args, out: &mut [F::Output]| {
+            run_packet::<F, L>(lanes, kernel, bits, input, out);
+        };
+        each_pass(&run, L::N, &self.inputs, &mut |how, found: &[F::Output]| {
+            self.assert_same(&format!("{name}{how}"), found);
+        });
+    }
+
+    fn wgsl(&self, takes: impl Fn(&F::Args) -> bool) {
+        let Some(gpu) = gpu() else { return };
+        let taken: Vec<usize> =
+            (0..self.inputs.len()).filter(|i| takes(&self.inputs[*i])).collect();
+        let inputs: Vec<F::Args> = taken.iter().map(|i| self.inputs[*i]).collect();
+        let expected: Vec<F::Output> = taken.iter().map(|i| self.expected[*i]).collect();
+        let mut found = vec![garbage(); inputs.len()];
+        let kernel = recorded::<F>();
+        if let Err(error) = gpu.batch(&kernel, &inputs, &mut found) {
+            panic!("{} in WGSL: {error}\n{}", self.name, kernel.wgsl());
+        }
+        let result = compare(format!("{} in WGSL", self.name), &expected, &found);
+        if result.count() > 0 {
+            println!("{}", kernel.wgsl());
+        }
+        result.assert_same(|i| format!("{:?}", inputs[i]));
+    }
+}
+
+impl<F: KernelFn> LevelTask for &Case<'_, F>
+where
+    F::Args: Debug,
+{
+    fn run<L: Lanes>(&mut self, name: &str, lanes: L) {
+        self.packets(name, lanes);
+    }
+}
+
+/// Runs the lanes in `bits` of one packet; `out` is given the results of all.
+///
+/// One function and a `dyn` kernel, so that a kernel is compiled once a level, not once a check.
+#[inline(never)]
+fn run_packet<F: KernelFn, L: Lanes>(
+    lanes: L,
+    kernel: &PacketKernel<F, L>,
+    bits: u64,
+    input: &dyn Fn(usize) -> F::Args,
+    out: &mut [F::Output],
+) {
+    let m = Packet::with_bits(lanes, bits);
+    lanes.vectorize(|| {
+        let args = F::Args::from_lanes(&m, &|l| input(l));
+        let result = kernel(&m, args);
+        for (l, out) in out.iter_mut().enumerate() {
+            *out = F::Output::lane::<Packet<L>>(&result, l);
+        }
+    });
+}
+
+type Run<'a, A, R> = &'a dyn Fn(u64, &dyn Fn(usize) -> A, &mut [R]);
+
+/// Runs all inputs through packets of `n` lanes, in each of the ways in which lanes may meet.
+fn each_pass<A: Type, R: Type>(
+    run: Run<'_, A, R>,
+    n: usize,
+    inputs: &[A],
+    result: &mut dyn FnMut(&str, &[R]),
+) {
+    result("", &all_lanes(run, n, inputs));
+    result(", shuffled", &shuffled(run, n, inputs));
+    result(", one lane at a time", &one_lane_at_a_time(run, n, inputs));
+    result(", garbage in dead lanes", &garbage_in_dead_lanes(run, n, inputs));
+}
+
+fn all_lanes<A: Type, R: Type>(run: Run<'_, A, R>, n: usize, inputs: &[A]) -> Vec<R> {
+    let mut found = vec![garbage(); inputs.len()];
+    for (inputs, out) in inputs.chunks(n).zip(found.chunks_mut(n)) {
+        let bits = (1u64 << inputs.len()) - 1;
+        run(bits, &|l| inputs[l.min(inputs.len() - 1)], out);
+    }
+    found
+}
+
+/// Results move with the lanes.
+fn shuffled<A: Type, R: Type>(run: Run<'_, A, R>, n: usize, inputs: &[A]) -> Vec<R> {
+    let order = Rng::new(n as u64).permutation(inputs.len());
+    let moved: Vec<A> = order.iter().map(|i| inputs[*i]).collect();
+    let results = all_lanes(run, n, &moved);
+    let mut found = vec![garbage(); inputs.len()];
+    for (i, v) in order.into_iter().zip(results) {
+        found[i] = v;
+    }
+    found
+}
+
+/// The other lanes have their inputs, but do not run.
+fn one_lane_at_a_time<A: Type, R: Type>(run: Run<'_, A, R>, n: usize, inputs: &[A]) -> Vec<R> {
+    let mut out = vec![garbage(); n];
+    let one = |i: usize| {
+        let (first, lane) = (i - i % n, i % n);
+        run(1 << lane, &|l| inputs[(first + l) % inputs.len()], &mut out);
+        out[lane]
+    };
+    (0..inputs.len()).map(one).collect()
+}
+
+/// Every second lane holds NaN and integers that overflow, and does not run.
+fn garbage_in_dead_lanes<A: Type, R: Type>(run: Run<'_, A, R>, n: usize, inputs: &[A]) -> Vec<R> {
+    let mut out = vec![garbage(); n];
+    let one = |i: usize| {
+        let lane = i % n;
+        let alive = |l: usize| l % 2 == lane % 2;
+        let bits = (0..n).fold(0, |bits, l| bits | u64::from(alive(l)) << l);
+        let input = |l: usize| {
+            if alive(l) { inputs[(i + l + inputs.len() - lane) % inputs.len()] } else { garbage() }
+        };
+        run(bits, &input, &mut out);
+        out[lane]
+    };
+    (0..inputs.len()).map(one).collect()
+}
+
+/// The kernel of `F` with its recorder only: the packets of `Kernel::of` would double the time
+/// that the tests take to compile, and are the same functions.
+pub fn recorded<F: KernelFn>() -> Kernel<'static, F::Args, F::Output> {
+    static INFO: KernelInfo =
+        KernelInfo { name: "function", file: file!(), line: line!(), params: &[] };
+    Kernel::scalar(&INFO, F::scalar).lifted(
+        Lifted {
+            native4: Box::new(|_, _| unreachable!()),
+            native8: Box::new(|_, _| unreachable!()),
+            native16: Box::new(|_, _| unreachable!()),
+            native16_halves: Box::new(|_, _| unreachable!()),
+            portable: Box::new(|_, _| unreachable!()),
+            recorder: Box::new(F::lifted),
+        },
+        |_| {},
+    )
+}

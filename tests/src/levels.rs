@@ -1,0 +1,80 @@
+//! Every instruction set that this machine has, in every width.
+
+use fearless_simd::{Fallback, Level, Simd};
+use raydsl::machine::{Lanes, One, Simd4, Simd8, Simd16};
+
+/// Something to do with packets of every kind.
+pub trait LevelTask {
+    /// Does it; `name` is for messages.
+    fn run<L: Lanes>(&mut self, name: &str, lanes: L);
+}
+
+/// Does `task` with one lane, and with 4, 8 and 16 lanes of every level of this machine.
+pub fn each_level(task: &mut impl LevelTask) {
+    task.run("one lane", One);
+    widths(task, Fallback::new());
+    native(task, Level::new());
+}
+
+/// Does `task` with the widest packets that this machine has registers for.
+pub fn widest_level(task: &mut impl LevelTask) {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if let Some(s) = Level::new().as_avx512() {
+        return one_width(task, Simd16(s));
+    } else if let Some(s) = Level::new().as_avx2() {
+        return one_width(task, Simd8(s));
+    }
+    one_width(task, Simd8(Fallback::new()));
+}
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+fn native(task: &mut impl LevelTask, level: Level) {
+    match level.as_sse4_2() {
+        Some(s) => widths(task, s),
+        None => println!("SKIPPED: this machine has no SSE4.2"),
+    }
+    match level.as_avx2() {
+        Some(s) => widths(task, s),
+        None => println!("SKIPPED: this machine has no AVX2"),
+    }
+    match level.as_avx512() {
+        Some(s) => widths(task, s),
+        None => println!("SKIPPED: this machine has no AVX-512"),
+    }
+}
+
+#[cfg(target_arch = "aarch64")]
+fn native(task: &mut impl LevelTask, level: Level) {
+    match level.as_neon() {
+        Some(s) => widths(task, s),
+        None => println!("SKIPPED: this machine has no NEON"),
+    }
+}
+
+#[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
+fn native(_: &mut impl LevelTask, _: Level) {
+    println!("SKIPPED: no levels are known for this target");
+}
+
+fn widths<S: Simd>(task: &mut impl LevelTask, s: S) {
+    one_width(task, Simd4(s));
+    one_width(task, Simd8(s));
+    one_width(task, Simd16(s));
+}
+
+fn one_width<L: Lanes>(task: &mut impl LevelTask, lanes: L) {
+    task.run(&format!("{} x{}", lanes.isa(), L::N), lanes);
+}
+
+/// The names of all levels, to show that none was left out.
+pub fn level_names() -> Vec<String> {
+    struct Names(Vec<String>);
+    impl LevelTask for Names {
+        fn run<L: Lanes>(&mut self, name: &str, _: L) {
+            self.0.push(name.to_owned());
+        }
+    }
+    let mut names = Names(Vec::new());
+    each_level(&mut names);
+    names.0
+}

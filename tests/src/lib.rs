@@ -1,0 +1,45 @@
+//! What the tests of raydsl share.
+//!
+//! The tests are split by the kind of evidence that they give: `variants` (every variant of small
+//! kernels agrees with the untouched source), `rays` and `edges` (queries of scenes), `images`,
+//! `gpu`, `golden_wgsl`, `layout`, `unorm`.
+
+pub mod check;
+pub mod gpu;
+pub mod kernels;
+pub mod levels;
+pub mod queries;
+pub mod rng;
+pub mod scenes;
+pub mod values;
+
+/// How many rays a heavy test takes: `full`, or a share of it that the environment variable
+/// `RAYDSL_TEST_SHARE` names, as in `0.1`.
+pub fn scaled(full: usize) -> usize {
+    let share = std::env::var("RAYDSL_TEST_SHARE").ok();
+    let share = share.and_then(|s| s.parse::<f64>().ok()).unwrap_or(1.0);
+    ((full as f64 * share) as usize).max(64)
+}
+
+/// How many threads a heavy test may use.
+pub fn threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// Does `work` for every part of `0..count`, on all processors.
+pub fn in_parallel(count: usize, part: usize, work: impl Fn(std::ops::Range<usize>) + Sync) {
+    let next = std::sync::atomic::AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        for _ in 0..threads() {
+            scope.spawn(|| {
+                loop {
+                    let start = next.fetch_add(part, std::sync::atomic::Ordering::Relaxed);
+                    if start >= count {
+                        break;
+                    }
+                    work(start..(start + part).min(count));
+                }
+            });
+        }
+    });
+}

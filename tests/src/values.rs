@@ -1,0 +1,219 @@
+//! Random values of any kernel type, and what "the same bits" means.
+
+use raydsl::machine::{Schema, Type};
+
+use crate::rng::Rng;
+
+/// Where random numbers come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Numbers {
+    /// Special bit patterns, random bits, small numbers.
+    Any,
+    /// Small numbers: `u32` up to 20, `i32` and `f32` of either sign.
+    Tame,
+}
+
+/// Bit patterns with which arithmetic goes wrong first.
+pub const SPECIAL_F32: &[f32] = &[
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    0.5,
+    -0.5,
+    1.5,
+    -1.5,
+    2.5,
+    0.499_999_97,
+    f32::NAN,
+    -f32::NAN,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    f32::MAX,
+    f32::MIN,
+    f32::MIN_POSITIVE,
+    -f32::MIN_POSITIVE,
+    f32::EPSILON,
+    1e10,
+    -1e10,
+    1e-30,
+    16_777_215.0,
+    8_388_607.5,
+    2_147_483_520.0,
+    2_147_483_648.0,
+    -2_147_483_648.0,
+    -2_147_483_904.0,
+    4_294_967_040.0,
+    4_294_967_296.0,
+];
+
+/// Integers with which arithmetic goes wrong first.
+pub const SPECIAL_U32: &[u32] = &[
+    0,
+    1,
+    2,
+    3,
+    31,
+    32,
+    33,
+    255,
+    65_535,
+    16_777_217,
+    0x7fff_ffff,
+    0x8000_0000,
+    0x8000_0001,
+    0xffff_ff80,
+    0xffff_fffe,
+    0xffff_ffff,
+];
+
+impl Numbers {
+    fn f32(self, rng: &mut Rng) -> f32 {
+        match (self, rng.below(4)) {
+            (Self::Any, 0) => rng.pick(SPECIAL_F32),
+            (Self::Any, 1) => normal(f32::from_bits(rng.bits() as u32)),
+            (_, 2) => rng.range(-8.0, 8.0).round() * 0.5,
+            _ => rng.range(-100.0, 100.0),
+        }
+    }
+
+    fn u32(self, rng: &mut Rng) -> u32 {
+        match (self, rng.below(3)) {
+            (Self::Any, 0) => rng.pick(SPECIAL_U32),
+            (Self::Any, 1) => rng.bits() as u32,
+            _ => rng.below(21) as u32,
+        }
+    }
+
+    fn i32(self, rng: &mut Rng) -> i32 {
+        match (self, rng.below(3)) {
+            (Self::Any, 0) => rng.pick(SPECIAL_U32) as i32,
+            (Self::Any, 1) => rng.bits() as i32,
+            _ => rng.below(41) as i32 - 20,
+        }
+    }
+}
+
+/// Subnormal numbers become 0: a GPU may flush them.
+fn normal(x: f32) -> f32 {
+    if x.is_subnormal() { 0.0 } else { x }
+}
+
+/// Shows every scalar of a type with its offset in the host's memory.
+pub fn each_leaf(schema: &Schema, offset: usize, visit: &mut impl FnMut(usize, &Schema)) {
+    match schema {
+        Schema::Host => {}
+        Schema::Vector(n) => (0..*n).for_each(|i| visit(offset + 4 * i, &Schema::F32)),
+        Schema::Array { element, count, stride } => {
+            (0..*count).for_each(|i| each_leaf(element, offset + i * stride, visit));
+        }
+        Schema::Struct { fields, .. } => {
+            for f in *fields {
+                each_leaf(f.schema, offset + f.offset, visit);
+            }
+        }
+        leaf => visit(offset, leaf),
+    }
+}
+
+fn from_words<T: Type>(mut word: impl FnMut(&Schema) -> u32) -> T {
+    let mut bytes = vec![0u8; T::SCHEMA.size()];
+    each_leaf(T::SCHEMA, 0, &mut |offset, leaf| {
+        let n = leaf.size();
+        bytes[offset..offset + n].copy_from_slice(&word(leaf).to_le_bytes()[..n]);
+    });
+    T::read(&bytes)
+}
+
+/// A random value.
+pub fn random<T: Type>(rng: &mut Rng, numbers: Numbers) -> T {
+    from_words(|leaf| match leaf {
+        Schema::F32 => numbers.f32(rng).to_bits(),
+        Schema::I32 => numbers.i32(rng) as u32,
+        Schema::U32 => numbers.u32(rng),
+        Schema::Bool => rng.below(2) as u32,
+        _ => rng.bits() as u32,
+    })
+}
+
+/// A value for a lane that does not run: NaN, and integers that overflow in any operation.
+pub fn garbage<T: Type>() -> T {
+    from_words(|leaf| match leaf {
+        Schema::F32 => 0x7fe1_2345,
+        Schema::I32 => 0x8000_0000,
+        Schema::U32 => 0xffff_ffff,
+        Schema::Bool => 1,
+        _ => 0xffff,
+    })
+}
+
+/// The scalars of a value, made so that equal ones have equal words: +0 for -0, one NaN for all.
+pub fn words<T: Type>(v: &T) -> Vec<u32> {
+    let mut bytes = vec![0u8; T::SCHEMA.size()];
+    v.write(&mut bytes);
+    let mut words = Vec::new();
+    each_leaf(T::SCHEMA, 0, &mut |offset, leaf| {
+        let mut word = [0; 4];
+        let n = leaf.size();
+        word[..n].copy_from_slice(&bytes[offset..offset + n]);
+        let word = u32::from_le_bytes(word);
+        words.push(if *leaf == Schema::F32 { same_zero_and_nan(word) } else { word });
+    });
+    words
+}
+
+fn same_zero_and_nan(bits: u32) -> u32 {
+    let x = f32::from_bits(bits);
+    if x.is_nan() {
+        f32::NAN.to_bits()
+    } else if x == 0.0 {
+        0
+    } else {
+        bits
+    }
+}
+
+/// What came of comparing two lists of results.
+#[must_use = "a comparison that nobody looks at proves nothing"]
+#[derive(Debug)]
+pub struct Comparison {
+    who: String,
+    compared: usize,
+    differing: Vec<(usize, Vec<u32>, Vec<u32>)>,
+}
+
+/// Compares results; -0 equals +0, and every NaN every other.
+pub fn compare<T: Type>(who: impl Into<String>, expected: &[T], found: &[T]) -> Comparison {
+    assert_eq!(expected.len(), found.len(), "one result for each input");
+    let pairs = expected.iter().zip(found).enumerate();
+    let differing = pairs.map(|(i, (e, f))| (i, words(e), words(f))).filter(|(_, e, f)| e != f);
+    Comparison { who: who.into(), compared: expected.len(), differing: differing.collect() }
+}
+
+impl Comparison {
+    /// How many results differ.
+    pub fn count(&self) -> usize {
+        self.differing.len()
+    }
+
+    /// Panics if any result differs; `input` describes the input of a number.
+    ///
+    /// # Panics
+    ///
+    /// If any result differs, or if nothing was compared.
+    #[track_caller]
+    pub fn assert_same(self, input: impl Fn(usize) -> String) {
+        assert!(self.compared > 0, "{}: nothing was compared", self.who);
+        let Some((i, expected, found)) = self.differing.first() else { return };
+        let float = |words: &[u32]| words.iter().map(|w| f32::from_bits(*w)).collect::<Vec<_>>();
+        panic!(
+            "{}: {} of {} results differ; the first is number {i}, input {}\n expected {expected:x?} {:?}\n    found {found:x?} {:?}",
+            self.who,
+            self.differing.len(),
+            self.compared,
+            input(*i),
+            float(expected),
+            float(found),
+        );
+    }
+}

@@ -1,0 +1,183 @@
+//! The WGSL of the kernels, as text: compared with `golden/*.wgsl`, and valid for naga and tint.
+//!
+//! `RAYDSL_BLESS=1` rewrites the files; read the difference before committing it.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use raydsl::machine::wgsl::Limits;
+use raydsl::prelude::*;
+use raydsl_tests::check::recorded;
+use raydsl_tests::kernels;
+use raydsl_tests::scenes::{spheres, triangles};
+
+fn golden(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("golden").join(format!("{name}.wgsl"))
+}
+
+/// Compares with the file, or writes it.
+#[track_caller]
+fn assert_golden(name: &str, wgsl: &str) {
+    let path = golden(name);
+    if std::env::var("RAYDSL_BLESS").is_ok_and(|v| v == "1") {
+        if let Err(e) = std::fs::write(&path, wgsl) {
+            panic!("{}: {e}", path.display());
+        }
+        return;
+    }
+    let expected = match std::fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(e) => panic!("{}: {e}; RAYDSL_BLESS=1 writes it", path.display()),
+    };
+    if expected == wgsl {
+        return;
+    }
+    let differs = expected.lines().zip(wgsl.lines()).position(|(a, b)| a != b);
+    let line = differs.unwrap_or_else(|| expected.lines().count().min(wgsl.lines().count()));
+    panic!(
+        "{} differs from line {} on; RAYDSL_BLESS=1 rewrites it\n expected {:?}\n    found {:?}",
+        path.display(),
+        line + 1,
+        expected.lines().nth(line),
+        wgsl.lines().nth(line),
+    );
+}
+
+#[track_caller]
+fn assert_naga(name: &str, wgsl: &str) {
+    let module = match naga::front::wgsl::parse_str(wgsl) {
+        Ok(module) => module,
+        Err(e) => panic!("{name}: {}", e.emit_to_string(wgsl)),
+    };
+    let (flags, capabilities) = Default::default();
+    let valid = naga::valid::Validator::new(flags, capabilities).validate(&module);
+    if let Err(e) = valid {
+        panic!("{name}: {}", e.emit_to_string(wgsl));
+    }
+}
+
+#[track_caller]
+fn assert_tint(name: &str, wgsl: &str) {
+    let file = std::env::temp_dir().join(format!("raydsl-{}-{name}.wgsl", std::process::id()));
+    if let Err(e) = std::fs::write(&file, wgsl) {
+        panic!("{}: {e}", file.display());
+    }
+    let ran =
+        Command::new("tint").args(["--format", "wgsl", "-o", "/dev/null"]).arg(&file).output();
+    let _ = std::fs::remove_file(&file);
+    match ran {
+        Err(_) => eprintln!("SKIPPED: no tint on the PATH, {name} was checked by naga alone"),
+        Ok(out) => {
+            let text = String::from_utf8_lossy(&out.stderr);
+            assert!(out.status.success(), "tint rejects {name}: {text}\n{wgsl}");
+            assert!(!text.contains("warning"), "tint warns of {name}: {text}\n{wgsl}");
+        }
+    }
+}
+
+#[track_caller]
+fn assert_wgsl(name: &str, wgsl: &str) {
+    assert_golden(name, wgsl);
+    assert_naga(name, wgsl);
+    assert_tint(name, wgsl);
+}
+
+macro_rules! tests {
+    ($($kernel:ident: $numbers:ident $wgsl:ident;)+) => {
+        $(
+            #[test]
+            fn $kernel() {
+                assert_wgsl(stringify!($kernel), &recorded::<kernels::$kernel>().wgsl());
+            }
+        )+
+
+        /// No file outlives its kernel.
+        #[test]
+        fn every_file_has_a_kernel() -> std::io::Result<()> {
+            let kernels = [$(stringify!($kernel)),+];
+            for file in std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("golden"))? {
+                let path = file?.path();
+                let name = path.file_stem().and_then(|s| s.to_str()).unwrap_or_default();
+                let known = kernels.contains(&name) || SCENES.contains(&name);
+                assert!(known, "{} belongs to no kernel", path.display());
+            }
+            Ok(())
+        }
+    };
+}
+
+raydsl_tests::kernel_table!(tests);
+
+const SCENES: [&str; 6] =
+    ["primary", "primary_in_windows", "primary_plain", "shadow", "slice", "two_trees"];
+
+/// What the crate's first page shows; with the branch on a captured `bool` pruned.
+#[test]
+fn primary() -> Result<(), raydsl::bvh::BuildError> {
+    let points = spheres(50);
+    let bvh = Bvh::build(&points)?;
+    let background = vec3(0.1, 0.2, 0.3);
+    let render = |shaded: bool| {
+        let primary = kernel!(|ray: Ray| {
+            let hit = bvh.closest_hit(ray);
+            let color = if shaded {
+                if hit.is_hit { bvh.primitive(hit).rgb() } else { background }
+            } else {
+                vec3(1.0, 1.0, 1.0)
+            };
+            Shaded { color, depth: hit.t, id: hit.prim_id }
+        });
+        let windows = Limits { max_binding_bytes: 512, ..Limits::default() };
+        (primary.wgsl(), primary.record().module(&windows).source)
+    };
+    let (shaded, in_windows) = render(true);
+    let (plain, _) = render(false);
+    assert_wgsl("primary", &shaded);
+    assert_wgsl("primary_in_windows", &in_windows);
+    assert_wgsl("primary_plain", &plain);
+    let uses = |wgsl: &str| wgsl.contains("params.background");
+    assert!(uses(&shaded) && !uses(&plain), "{plain}");
+    Ok(())
+}
+
+#[test]
+fn shadow() -> Result<(), raydsl::bvh::BuildError> {
+    let soup = triangles(50);
+    let walls = Bvh::build(&soup)?;
+    let light = vec3(1.0, 5.0, 2.0);
+    let shadow = kernel!(|ray: Ray| {
+        let hit = walls.closest_hit(ray);
+        let mut lit = 0.0;
+        if hit.is_hit {
+            let at = ray.at(hit.t);
+            let to_light = Ray { origin: at, direction: light - at, t_min: 0.001, t_max: 1.0 };
+            if !walls.any_hit(to_light) {
+                lit = 1.0 / (light - at).length_squared();
+            }
+        }
+        lit
+    });
+    assert_wgsl("shadow", &shadow.wgsl());
+    Ok(())
+}
+
+#[test]
+fn slice() {
+    let few = triangles(5);
+    let kernel = kernel!(|ray: Ray| few.any_hit(ray));
+    assert_wgsl("slice", &kernel.wgsl());
+}
+
+/// Two trees over different primitives share what they can.
+#[test]
+fn two_trees() -> Result<(), raydsl::bvh::BuildError> {
+    let (balls, soup) = (spheres(20), triangles(20));
+    let (points, walls) = (Bvh::build(&balls)?, Bvh::build(&soup)?);
+    let kernel = kernel!(|ray: Ray| {
+        let a = points.closest_hit(ray);
+        let b = walls.closest_hit(ray);
+        if b.is_hit && (!a.is_hit || b.t < a.t) { b } else { a }
+    });
+    assert_wgsl("two_trees", &kernel.wgsl());
+    Ok(())
+}

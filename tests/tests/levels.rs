@@ -1,0 +1,31 @@
+//! Queries of scenes in packets of every level and width, with a tree and without.
+//!
+//! Beside `rays`, which asks the natural variants: these traversals take long to compile.
+
+use raydsl::prelude::*;
+use raydsl_tests::queries::{scalar_answers, slice_view};
+use raydsl_tests::scaled;
+use raydsl_tests::scenes::{broken_rays, random_rays};
+
+const RAYS: usize = 200_000;
+const RAYS_OF_SLICES: usize = 50_000;
+
+macro_rules! levels {
+    ($scene:ident) => {
+        #[test]
+        fn $scene() -> Result<(), raydsl::bvh::BuildError> {
+            let prims = raydsl_tests::scenes::$scene(3000);
+            let bvh = Bvh::build(&prims)?;
+            let mut rays = random_rays(41, scaled(RAYS));
+            rays.extend(broken_rays());
+            scalar_answers(bvh.view(), rays).assert_levels("tree", bvh.view());
+            let few = slice_view(&prims[..60]);
+            let rays = random_rays(43, scaled(RAYS_OF_SLICES));
+            scalar_answers(few, rays).assert_levels("slice", few);
+            Ok(())
+        }
+    };
+}
+
+levels!(spheres);
+levels!(triangles);
