@@ -406,7 +406,7 @@ fn main() {
                             )
                         },
                     ),
-                    portable: ::std::boxed::Box::new(
+                    baseline: ::std::boxed::Box::new(
                         #[allow(
                             unused,
                             clippy::all,
@@ -416,12 +416,12 @@ fn main() {
                             reason = "generated code"
                         )]
                         move |
-                            m: &::raydsl::__private::Portable,
+                            m: &::raydsl::__private::Baseline,
                             (
                                 ray,
                             ): (
                                 <Ray as ::raydsl::__private::Type>::On<
-                                    ::raydsl::__private::Portable,
+                                    ::raydsl::__private::Baseline,
                                 >,
                             )|
                         {
@@ -432,27 +432,27 @@ fn main() {
                                 (ray,),
                                 #[inline(always)]
                                 |
-                                    m: &::raydsl::__private::Portable,
+                                    m: &::raydsl::__private::Baseline,
                                     (
                                         ray,
                                     ): (
                                         <Ray as ::raydsl::__private::Type>::On<
-                                            ::raydsl::__private::Portable,
+                                            ::raydsl::__private::Baseline,
                                         >,
                                     )|
                                 {
                                     let bvh = ::raydsl::__private::Capture::<
-                                        ::raydsl::__private::Portable,
+                                        ::raydsl::__private::Baseline,
                                     >::capture(captures.0, m, "bvh");
                                     let background = ::raydsl::__private::Capture::<
-                                        ::raydsl::__private::Portable,
+                                        ::raydsl::__private::Baseline,
                                     >::capture(captures.1, m, "background");
                                     let hit = ::raydsl::__private::Machine::named(
                                         m,
                                         "hit",
                                         ::raydsl::__private::Method::<
                                             { ::raydsl::__private::name("closest_hit") },
-                                            ::raydsl::__private::Portable,
+                                            ::raydsl::__private::Baseline,
                                             _,
                                         >::call(bvh, m, (ray,)),
                                     );
@@ -472,12 +472,12 @@ fn main() {
                                                         ::raydsl::__private::Varying::varying(
                                                             ::raydsl::__private::Method::<
                                                                 { ::raydsl::__private::name("rgb") },
-                                                                ::raydsl::__private::Portable,
+                                                                ::raydsl::__private::Baseline,
                                                                 _,
                                                             >::call(
                                                                 ::raydsl::__private::Method::<
                                                                     { ::raydsl::__private::name("primitive") },
-                                                                    ::raydsl::__private::Portable,
+                                                                    ::raydsl::__private::Baseline,
                                                                     _,
                                                                 >::call(bvh, m, (hit,)),
                                                                 m,

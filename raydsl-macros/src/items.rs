@@ -16,7 +16,7 @@ const NATURAL: [(&str, &str); 6] = [
     ("Native8", "native8"),
     ("Native16", "native16"),
     ("Native16Halves", "native16_halves"),
-    ("Portable", "portable"),
+    ("Baseline", "baseline"),
     ("Recorder", "recorder"),
 ];
 

@@ -1,7 +1,7 @@
 //! The only names that generated code uses. Not for people: anything here may change.
 
 pub use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn};
-pub use crate::kernel::{Kernel, Lifted, Native4, Native8, Native16, Native16Halves, Portable};
+pub use crate::kernel::{Baseline, Kernel, Lifted, Native4, Native8, Native16, Native16Halves};
 pub use crate::machine::{
     Branch, Capture, Coerce, Compare, Field, HostMethod, KernelFn, KernelInfo, LaneMachine, Leaves,
     Loop, Machine, Method, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv,

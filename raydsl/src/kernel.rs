@@ -1,36 +1,39 @@
 //! A kernel with all its variants.
 
-use fearless_simd::{Fallback, Level};
+use fearless_simd::Level;
 
 use crate::machine::{
-    KernelFn, KernelInfo, LaneMachine, Lanes, Packet, Portable8, Recorder, Recording, Resource,
-    Simd4, Simd8, Simd16, Type, wgsl,
+    KernelFn, KernelInfo, LaneMachine, Lanes, Packet, Recorder, Recording, Resource, Simd4, Simd8,
+    Simd16, Type, wgsl,
 };
 
 /// The machines for which closures are lifted: the natural widths of the target's levels.
 mod native {
     use super::{Packet, Simd4, Simd8, Simd16};
 
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    /// The levels of 4, 8 and 16 lanes, and the one that every machine of the target has.
+    ///
+    /// The last is not `Fallback` where there is a better one: scalar code for eight lanes takes
+    /// LLVM thirty times as long as vector code.
+    #[cfg(target_arch = "x86_64")]
     pub(super) mod level {
-        pub(in super::super) use fearless_simd::{Avx2, Avx512, Sse4_2};
-        pub(in super::super) type Narrow = Sse4_2;
-        pub(in super::super) type Middle = Avx2;
-        pub(in super::super) type Wide = Avx512;
+        pub(in super::super) use fearless_simd::{
+            Avx2 as Middle, Avx512 as Wide, Sse2 as Baseline, Sse4_2 as Narrow,
+        };
     }
 
     #[cfg(target_arch = "aarch64")]
     pub(super) mod level {
-        pub(in super::super) type Narrow = fearless_simd::Neon;
-        pub(in super::super) type Middle = fearless_simd::Neon;
-        pub(in super::super) type Wide = fearless_simd::Neon;
+        pub(in super::super) use fearless_simd::{
+            Neon as Narrow, Neon as Middle, Neon as Wide, Neon as Baseline,
+        };
     }
 
-    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
     pub(super) mod level {
-        pub(in super::super) type Narrow = fearless_simd::Fallback;
-        pub(in super::super) type Middle = fearless_simd::Fallback;
-        pub(in super::super) type Wide = fearless_simd::Fallback;
+        pub(in super::super) use fearless_simd::{
+            Fallback as Narrow, Fallback as Middle, Fallback as Wide, Fallback as Baseline,
+        };
     }
 
     /// Four lanes: SSE4.2, NEON.
@@ -41,12 +44,12 @@ mod native {
     pub type Native16 = Packet<Simd16<level::Wide>>;
     /// Sixteen lanes as two halves: AVX2.
     pub type Native16Halves = Packet<Simd16<level::Middle>>;
+    /// Eight lanes of what every machine of the target has: SSE2, NEON, or no instructions of
+    /// this kind at all.
+    pub type Baseline = Packet<Simd8<level::Baseline>>;
 }
 
-pub use native::{Native4, Native8, Native16, Native16Halves};
-
-/// Eight lanes without special instructions.
-pub type Portable = Packet<Portable8>;
+pub use native::{Baseline, Native4, Native8, Native16, Native16Halves};
 
 /// The tokens of the levels that this machine has.
 #[derive(Clone, Copy)]
@@ -54,24 +57,36 @@ struct Levels {
     narrow: Option<native::level::Narrow>,
     middle: Option<native::level::Middle>,
     wide: Option<native::level::Wide>,
+    baseline: native::level::Baseline,
 }
 
 impl Levels {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    #[cfg(target_arch = "x86_64")]
     fn detect() -> Self {
         let level = Level::new();
-        Self { narrow: level.as_sse4_2(), middle: level.as_avx2(), wide: level.as_avx512() }
+        let Some(baseline) = level.as_sse2() else {
+            unreachable!("SSE2 is a part of x86-64");
+        };
+        Self {
+            narrow: level.as_sse4_2(),
+            middle: level.as_avx2(),
+            wide: level.as_avx512(),
+            baseline,
+        }
     }
 
     #[cfg(target_arch = "aarch64")]
     fn detect() -> Self {
-        let level = Level::new();
-        Self { narrow: level.as_neon(), middle: level.as_neon(), wide: level.as_neon() }
+        let Some(neon) = Level::new().as_neon() else {
+            unreachable!("NEON is a part of AArch64");
+        };
+        Self { narrow: Some(neon), middle: Some(neon), wide: Some(neon), baseline: neon }
     }
 
-    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
     fn detect() -> Self {
-        Self { narrow: None, middle: None, wide: None }
+        let baseline = fearless_simd::Fallback::new();
+        Self { narrow: None, middle: None, wide: None, baseline }
     }
 }
 
@@ -125,7 +140,8 @@ impl Variant {
 
     /// The instruction set that runs the variant on this machine, and its lanes.
     ///
-    /// A width whose level the machine lacks runs on the portable packets of 8 lanes.
+    /// A width whose level the machine lacks runs on 8 lanes of what every machine of the
+    /// target has.
     pub fn isa(self) -> (&'static str, usize) {
         struct Name;
         impl LanesTask for Name {
@@ -148,7 +164,7 @@ impl Variant {
             Self::Packet8 if let Some(s) = levels.middle => task.run(Simd8(s)),
             Self::Packet16 if let Some(s) = levels.wide => task.run(Simd16(s)),
             Self::Packet16 if let Some(s) = levels.middle => task.run(Simd16(s)),
-            _ => task.run(Simd8(Fallback::new())),
+            _ => task.run(Simd8(levels.baseline)),
         }
     }
 }
@@ -201,7 +217,7 @@ pub struct Lifted<'a, A: Type, R: Type> {
     pub native8: LiftedFn<'a, Native8, A, R>,
     pub native16: LiftedFn<'a, Native16, A, R>,
     pub native16_halves: LiftedFn<'a, Native16Halves, A, R>,
-    pub portable: LiftedFn<'a, Portable, A, R>,
+    pub baseline: LiftedFn<'a, Baseline, A, R>,
     pub recorder: LiftedFn<'a, Recorder, A, R>,
 }
 
@@ -269,7 +285,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
                 native8: Box::new(F::lifted),
                 native16: Box::new(F::lifted),
                 native16_halves: Box::new(F::lifted),
-                portable: Box::new(F::lifted),
+                baseline: Box::new(F::lifted),
                 recorder: Box::new(F::lifted),
             },
             resources: Box::new(|_| {}),
@@ -289,8 +305,8 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
 
     /// Hands the lifted body for `variant`'s packets to `task`.
     ///
-    /// A width whose level the machine lacks, and the variants that are no packets, run on the
-    /// portable packets.
+    /// A width whose level the machine lacks, and the variants that are no packets, run on 8 lanes
+    /// of what every machine of the target has.
     pub fn with_packets<T: PacketTask<A, R>>(&self, variant: Variant, task: T) -> T::Output {
         let levels = Levels::detect();
         match variant {
@@ -306,7 +322,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
             Variant::Packet16 if let Some(s) = levels.middle => {
                 task.run(Simd16(s), &*self.lifted.native16_halves)
             }
-            _ => task.run(Simd8(Fallback::new()), &*self.lifted.portable),
+            _ => task.run(Simd8(levels.baseline), &*self.lifted.baseline),
         }
     }
 
@@ -394,4 +410,4 @@ pub fn run_fn<F: KernelFn, L: Lanes>(lanes: L, inputs: &[F::Args], outputs: &mut
     run_batch(lanes, &|m: &Packet<L>, args| F::lifted(m, args), inputs, outputs);
 }
 
-const _: () = assert!(<Portable as LaneMachine>::LANES == 8);
+const _: () = assert!(<Baseline as LaneMachine>::LANES == 8);

@@ -6,7 +6,7 @@ use raydsl::kernel::{Kernel, Lifted};
 use raydsl::machine::{KernelFn, KernelInfo, Lanes, Packet, Scalar, Type};
 
 use crate::gpu::gpu;
-use crate::levels::{LevelTask, each_level};
+use crate::levels::{LevelTask, each_level, widest_level};
 use crate::rng::Rng;
 use crate::values::{Numbers, compare, garbage, random};
 
@@ -39,6 +39,7 @@ where
     let case = Case::<F> { name, inputs, expected };
     case.scalar_machine();
     each_level(&mut &case);
+    widest_level(&mut &case);
     match wgsl {
         Wgsl::Same => case.wgsl(|_| true),
         Wgsl::SameIfFinite => case.wgsl(is_finite),
@@ -213,7 +214,7 @@ pub fn recorded<F: KernelFn>() -> Kernel<'static, F::Args, F::Output> {
             native8: Box::new(|_, _| unreachable!()),
             native16: Box::new(|_, _| unreachable!()),
             native16_halves: Box::new(|_, _| unreachable!()),
-            portable: Box::new(|_, _| unreachable!()),
+            baseline: Box::new(|_, _| unreachable!()),
             recorder: Box::new(F::lifted),
         },
         |_| {},

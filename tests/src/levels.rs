@@ -3,32 +3,47 @@
 use fearless_simd::{Fallback, Level, Simd};
 use raydsl::machine::{Lanes, One, Simd4, Simd8, Simd16};
 
+use crate::run_time::RunTime;
+
 /// Something to do with packets of every kind.
 pub trait LevelTask {
     /// Does it; `name` is for messages.
     fn run<L: Lanes>(&mut self, name: &str, lanes: L);
 }
 
-/// Does `task` with one lane, and with 4, 8 and 16 lanes of every level of this machine.
+/// Does `task` with one lane, and with 4, 8 and 16 lanes of every level of this machine, whose
+/// operations are calls.
 pub fn each_level(task: &mut impl LevelTask) {
     task.run("one lane", One);
     widths(task, Fallback::new());
     native(task, Level::new());
 }
 
-/// Does `task` with the widest packets that this machine has registers for.
+/// Does `task` with the widest packets that this machine has registers for, as production has
+/// them: every operation inlined.
 pub fn widest_level(task: &mut impl LevelTask) {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    #[cfg(target_arch = "x86_64")]
     if let Some(s) = Level::new().as_avx512() {
-        return one_width(task, Simd16(s));
+        return task.run("avx512 x16, inlined", Simd16(s));
     } else if let Some(s) = Level::new().as_avx2() {
-        return one_width(task, Simd8(s));
+        return task.run("avx2 x8, inlined", Simd8(s));
+    } else if let Some(s) = Level::new().as_sse2() {
+        return task.run("sse2 x8, inlined", Simd8(s));
     }
-    one_width(task, Simd8(Fallback::new()));
+    #[cfg(target_arch = "aarch64")]
+    if let Some(s) = Level::new().as_neon() {
+        return task.run("neon x8, inlined", Simd8(s));
+    }
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    task.run("portable x8, inlined", Simd8(Fallback::new()));
 }
 
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+#[cfg(target_arch = "x86_64")]
 fn native(task: &mut impl LevelTask, level: Level) {
+    match level.as_sse2() {
+        Some(s) => widths(task, s),
+        None => unreachable!("SSE2 is a part of x86-64"),
+    }
     match level.as_sse4_2() {
         Some(s) => widths(task, s),
         None => println!("SKIPPED: this machine has no SSE4.2"),
@@ -51,15 +66,15 @@ fn native(task: &mut impl LevelTask, level: Level) {
     }
 }
 
-#[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 fn native(_: &mut impl LevelTask, _: Level) {
     println!("SKIPPED: no levels are known for this target");
 }
 
 fn widths<S: Simd>(task: &mut impl LevelTask, s: S) {
-    one_width(task, Simd4(s));
-    one_width(task, Simd8(s));
-    one_width(task, Simd16(s));
+    one_width(task, RunTime::<4>::new(Simd4(s)));
+    one_width(task, RunTime::<8>::new(Simd8(s)));
+    one_width(task, RunTime::<16>::new(Simd16(s)));
 }
 
 fn one_width<L: Lanes>(task: &mut impl LevelTask, lanes: L) {

@@ -10,6 +10,7 @@ pub mod kernels;
 pub mod levels;
 pub mod queries;
 pub mod rng;
+pub mod run_time;
 pub mod scenes;
 pub mod values;
 

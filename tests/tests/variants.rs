@@ -95,7 +95,7 @@ mod host {
             every_variant(&kernel);
             let wgsl = kernel.wgsl();
             assert_eq!(wgsl.contains("params.scale"), fast, "{wgsl}");
-            assert_eq!(wgsl.contains("123.0"), soft && !fast, "{wgsl}");
+            assert_eq!(wgsl.contains("lit_123_0"), soft && !fast, "{wgsl}");
         }
     }
 

@@ -5,9 +5,8 @@
 //! [`Lanes::vectorize`] enters it through a `#[target_feature]` function.
 
 use fearless_simd::{
-    Bytes, Fallback, Select, Simd, SimdBase, SimdCvtFloat, SimdCvtTruncate, SimdFloat, SimdMask,
-    f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8,
-    u32x16,
+    Bytes, Select, Simd, SimdBase, SimdCvtFloat, SimdCvtTruncate, SimdFloat, SimdMask, f32x4,
+    f32x8, f32x16, i32x4, i32x8, i32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
 };
 
 use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, scalar};
@@ -112,7 +111,7 @@ fn has_ordered_min(level: fearless_simd::Level) -> bool {
     #[allow(unreachable_patterns, reason = "which levels exist depends on the target")]
     match level {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Avx512(_) | Level::Avx2(_) | Level::Sse4_2(_) => true,
+        Level::Avx512(_) | Level::Avx2(_) | Level::Sse4_2(_) | Level::Sse2(_) => true,
         _ => false,
     }
 }
@@ -334,13 +333,6 @@ macro_rules! simd_lanes {
 simd_lanes!(Simd4, 4, f32x4, i32x4, u32x4, mask32x4);
 simd_lanes!(Simd8, 8, f32x8, i32x8, u32x8, mask32x8);
 simd_lanes!(Simd16, 16, f32x16, i32x16, u32x16, mask32x16);
-
-/// Four lanes without special instructions.
-pub type Portable4 = Simd4<Fallback>;
-/// Eight lanes without special instructions.
-pub type Portable8 = Simd8<Fallback>;
-/// Sixteen lanes without special instructions.
-pub type Portable16 = Simd16<Fallback>;
 
 /// One lane with masks: `Packet<One>` against the untouched source is the oracle of the lowering.
 #[derive(Clone, Copy, Debug, Default)]

@@ -30,7 +30,7 @@ pub use call::{KernelFn, KernelInfo};
 pub use capture::{Capture, Resource};
 pub use control::{Branch, Condition, Loop, Ret, Var};
 pub(crate) use lanes::{Entered, fill};
-pub use lanes::{Lanes, One, Portable4, Portable8, Portable16, Simd4, Simd8, Simd16};
+pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
 pub use methods::{HostMethod, Method, name};
 pub use ops::{
     Bounds, Coerce, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv, OpMul,

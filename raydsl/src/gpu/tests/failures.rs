@@ -213,5 +213,8 @@ fn every_message_is_one_line() {
     }
     let no_adapter = GpuError::NoAdapter { reason: String::new() };
     let text = no_adapter.to_string();
-    assert!(text.contains("apt-get install mesa-vulkan-drivers libvulkan1"));
+    assert!(
+        text.contains("install a Vulkan driver, on Debian mesa-vulkan-drivers and libvulkan1"),
+        "{text}"
+    );
 }

@@ -1,0 +1,182 @@
+//! Lanes whose instruction set is a value, not a type.
+//!
+//! A kernel is compiled once a width for them, whatever the number of levels, and runs each
+//! operation of each level as a call. Production packets inline theirs: a kernel that is compiled
+//! for every level and width takes thirteen times as long.
+
+use raydsl::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Lanes};
+
+/// `N` lanes of the level behind the reference.
+#[derive(Clone, Copy)]
+pub struct RunTime<const N: usize>(&'static dyn Table<N>);
+
+impl<const N: usize> RunTime<N> {
+    /// The operations of `lanes`.
+    pub fn new<L: Lanes>(lanes: L) -> Self {
+        assert_eq!(L::N, N);
+        Self(Box::leak(Box::new(lanes)))
+    }
+}
+
+/// A mask, one bit a lane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bits(u64);
+
+/// What a register of `L` is outside the level.
+trait Held<L: Lanes>: Sized {
+    type Register;
+    fn load(self, lanes: L) -> Self::Register;
+    fn store(register: Self::Register, lanes: L) -> Self;
+}
+
+macro_rules! held {
+    ($($scalar:ty: $register:ident $from_fn:ident $lane:ident;)+) => {
+        $(
+            impl<L: Lanes, const N: usize> Held<L> for [$scalar; N] {
+                type Register = L::$register;
+                #[inline(always)]
+                fn load(self, lanes: L) -> L::$register {
+                    lanes.$from_fn(|i| self[i])
+                }
+                #[inline(always)]
+                fn store(register: L::$register, _: L) -> Self {
+                    let mut all = [Default::default(); N];
+                    all.iter_mut().enumerate().for_each(|(i, v)| *v = L::$lane(&register, i));
+                    all
+                }
+            }
+        )+
+    };
+}
+
+held! {
+    f32: F32 f32_from_fn f32_lane;
+    i32: I32 i32_from_fn i32_lane;
+    u32: U32 u32_from_fn u32_lane;
+}
+
+impl<L: Lanes> Held<L> for Bits {
+    type Register = L::Mask;
+    #[inline(always)]
+    fn load(self, lanes: L) -> L::Mask {
+        lanes.mask_from_bits(self.0)
+    }
+    #[inline(always)]
+    fn store(register: L::Mask, lanes: L) -> Self {
+        Self(lanes.bits(register))
+    }
+}
+
+macro_rules! held_as_it_is {
+    ($($t:ty),+) => {
+        $(
+            impl<L: Lanes> Held<L> for $t {
+                type Register = Self;
+                #[inline(always)]
+                fn load(self, _: L) -> Self {
+                    self
+                }
+                #[inline(always)]
+                fn store(register: Self, _: L) -> Self {
+                    register
+                }
+            }
+        )+
+    };
+}
+
+held_as_it_is!(f32, i32, u32, u64, bool, &'static str);
+held_as_it_is!(F32Unary, F32Binary, IntBinary, BoolBinary, Compare);
+
+macro_rules! operations {
+    ($($name:ident($($a:ident: $t:ty),*) -> $r:ty;)+) => {
+        trait Table<const N: usize>: Send + Sync {
+            $(fn $name(&self, $($a: $t),*) -> $r;)+
+        }
+
+        impl<L: Lanes, const N: usize> Table<N> for L {
+            $(
+                fn $name(&self, $($a: $t),*) -> $r {
+                    let lanes = *self;
+                    lanes.vectorize(
+                        #[inline(always)]
+                        || {
+                            $(let $a = Held::<L>::load($a, lanes);)*
+                            <$r as Held<L>>::store(Lanes::$name(lanes, $($a),*), lanes)
+                        },
+                    )
+                }
+            )+
+        }
+
+        impl<const N: usize> Lanes for RunTime<N> {
+            const N: usize = N;
+            type F32 = [f32; N];
+            type I32 = [i32; N];
+            type U32 = [u32; N];
+            type Mask = Bits;
+
+            fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
+                f()
+            }
+            $(
+                fn $name(self, $($a: $t),*) -> $r {
+                    self.0.$name($($a),*)
+                }
+            )+
+            fn f32_from_fn(self, f: impl FnMut(usize) -> f32) -> [f32; N] {
+                std::array::from_fn(f)
+            }
+            fn i32_from_fn(self, f: impl FnMut(usize) -> i32) -> [i32; N] {
+                std::array::from_fn(f)
+            }
+            fn u32_from_fn(self, f: impl FnMut(usize) -> u32) -> [u32; N] {
+                std::array::from_fn(f)
+            }
+            fn f32_lane(a: &[f32; N], lane: usize) -> f32 {
+                a[lane]
+            }
+            fn i32_lane(a: &[i32; N], lane: usize) -> i32 {
+                a[lane]
+            }
+            fn u32_lane(a: &[u32; N], lane: usize) -> u32 {
+                a[lane]
+            }
+            fn mask_lane(a: &Bits, lane: usize) -> bool {
+                a.0 >> lane & 1 != 0
+            }
+        }
+    };
+}
+
+operations! {
+    isa() -> &'static str;
+    f32(v: f32) -> [f32; N];
+    i32(v: i32) -> [i32; N];
+    u32(v: u32) -> [u32; N];
+    mask(v: bool) -> Bits;
+    f32_unary(op: F32Unary, a: [f32; N]) -> [f32; N];
+    f32_binary(op: F32Binary, a: [f32; N], b: [f32; N]) -> [f32; N];
+    f32_mul_add(a: [f32; N], b: [f32; N], c: [f32; N]) -> [f32; N];
+    i32_binary(op: IntBinary, a: [i32; N], b: [i32; N]) -> [i32; N];
+    u32_binary(op: IntBinary, a: [u32; N], b: [u32; N]) -> [u32; N];
+    mask_binary(op: BoolBinary, a: Bits, b: Bits) -> Bits;
+    mask_not(a: Bits) -> Bits;
+    f32_compare(op: Compare, a: [f32; N], b: [f32; N]) -> Bits;
+    i32_compare(op: Compare, a: [i32; N], b: [i32; N]) -> Bits;
+    u32_compare(op: Compare, a: [u32; N], b: [u32; N]) -> Bits;
+    f32_select(c: Bits, a: [f32; N], b: [f32; N]) -> [f32; N];
+    i32_select(c: Bits, a: [i32; N], b: [i32; N]) -> [i32; N];
+    u32_select(c: Bits, a: [u32; N], b: [u32; N]) -> [u32; N];
+    any(a: Bits) -> bool;
+    bits(a: Bits) -> u64;
+    mask_from_bits(bits: u64) -> Bits;
+    f32_to_i32(a: [f32; N]) -> [i32; N];
+    f32_to_u32(a: [f32; N]) -> [u32; N];
+    i32_to_f32(a: [i32; N]) -> [f32; N];
+    u32_to_f32(a: [u32; N]) -> [f32; N];
+    i32_to_u32(a: [i32; N]) -> [u32; N];
+    u32_to_i32(a: [u32; N]) -> [i32; N];
+    f32_to_bits(a: [f32; N]) -> [u32; N];
+    f32_from_bits(a: [u32; N]) -> [f32; N];
+}
