@@ -59,9 +59,7 @@ struct StoredShaded {
 }
 
 struct Params {
-    background: vec3<f32>,
     lit_255_0: f32,
-    len_of_bvh: u32,
     len_of_bvh_nodes: u32,
 }
 

@@ -53,7 +53,6 @@ struct StoredArgs {
 
 struct Params {
     light: vec3<f32>,
-    len_of_walls: u32,
     len_of_walls_nodes: u32,
 }
 

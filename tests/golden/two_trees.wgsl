@@ -72,9 +72,7 @@ struct StoredHit {
 
 struct Params {
     lit_255_0: f32,
-    len_of_points: u32,
     len_of_points_nodes: u32,
-    len_of_walls: u32,
     len_of_walls_nodes: u32,
 }
 

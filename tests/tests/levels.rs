@@ -7,8 +7,8 @@ use raydsl_tests::queries::{scalar_answers, slice_view};
 use raydsl_tests::scaled;
 use raydsl_tests::scenes::{broken_rays, random_rays};
 
-const RAYS: usize = 200_000;
-const RAYS_OF_SLICES: usize = 50_000;
+const RAYS: usize = 40_000;
+const RAYS_OF_SLICES: usize = 10_000;
 
 macro_rules! levels {
     ($scene:ident) => {

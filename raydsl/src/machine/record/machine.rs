@@ -58,6 +58,14 @@ impl Recorder {
         }
     }
 
+    /// The truth value that `id` always has.
+    fn truth(&self, id: Id) -> Option<bool> {
+        match self.node(id).expr {
+            Expr::Bool(v) => Some(v),
+            _ => None,
+        }
+    }
+
     fn is_exact_factor(&self, id: Id) -> bool {
         matches!(self.node(id).expr, Expr::F32(bits) if is_power_of_two(f32::from_bits(bits)))
     }
@@ -77,6 +85,14 @@ impl Recorder {
     /// A vector operand: the number itself where all components are one number.
     fn operand<const N: usize>(&self, v: [Id; N]) -> Id {
         if v.iter().all(|x| *x == v[0]) && N > 1 { v[0] } else { self.vector(&v) }
+    }
+
+    fn select(&self, c: Id, a: Id, b: Id, ty: Type) -> Id {
+        match self.truth(c) {
+            Some(true) => a,
+            Some(false) => b,
+            None => self.add(Expr::Select(c, a, b), ty),
+        }
     }
 
     fn is_vector(&self, id: Id) -> bool {
@@ -258,6 +274,16 @@ impl Machine for Recorder {
         self.add(Expr::IntBinary(op, a, b), Type::U32)
     }
     fn bool_binary(&self, op: BoolBinary, a: Id, b: Id) -> Id {
+        // What the host decides prunes what depends on it.
+        for (known, other) in [(a, b), (b, a)] {
+            match (op, self.truth(known)) {
+                (BoolBinary::And, Some(true)) | (BoolBinary::Or, Some(false)) => return other,
+                (BoolBinary::And, Some(false)) | (BoolBinary::Or, Some(true)) => return known,
+                (BoolBinary::Xor, Some(false)) => return other,
+                (BoolBinary::Xor, Some(true)) => return self.bool_not(other),
+                (_, None) => {}
+            }
+        }
         self.add(Expr::BoolBinary(op, a, b), Type::Bool)
     }
     fn i32_neg(&self, a: Id) -> Id {
@@ -270,6 +296,9 @@ impl Machine for Recorder {
         self.add(Expr::Complement(a), Type::U32)
     }
     fn bool_not(&self, a: Id) -> Id {
+        if let Some(v) = self.truth(a) {
+            return self.bool(!v);
+        }
         self.add(Expr::Not(a), Type::Bool)
     }
     fn f32_compare(&self, op: Compare, a: Id, b: Id) -> Id {
@@ -282,16 +311,16 @@ impl Machine for Recorder {
         self.add(Expr::Compare(op, a, b), Type::Bool)
     }
     fn f32_select(&self, c: Id, a: Id, b: Id) -> Id {
-        self.add(Expr::Select(c, a, b), Type::F32)
+        self.select(c, a, b, Type::F32)
     }
     fn i32_select(&self, c: Id, a: Id, b: Id) -> Id {
-        self.add(Expr::Select(c, a, b), Type::I32)
+        self.select(c, a, b, Type::I32)
     }
     fn u32_select(&self, c: Id, a: Id, b: Id) -> Id {
-        self.add(Expr::Select(c, a, b), Type::U32)
+        self.select(c, a, b, Type::U32)
     }
     fn bool_select(&self, c: Id, a: Id, b: Id) -> Id {
-        self.add(Expr::Select(c, a, b), Type::Bool)
+        self.select(c, a, b, Type::Bool)
     }
     fn f32_to_i32(&self, a: Id) -> Id {
         self.add(Expr::Convert(Conversion::Saturate, a), Type::I32)
@@ -344,16 +373,22 @@ impl Machine for Recorder {
     }
 
     fn branch(&self, c: Id) -> RecordedBranch {
+        if self.truth(c).is_some() {
+            return RecordedBranch { c, then: Default::default() };
+        }
         self.builder(|b| {
             b.used(c);
             b.open_block();
         });
         RecordedBranch { c, then: Default::default() }
     }
-    fn branch_then(&self, _: &RecordedBranch) -> bool {
-        true
+    fn branch_then(&self, t: &RecordedBranch) -> bool {
+        self.truth(t.c) != Some(false)
     }
     fn branch_else(&self, t: &RecordedBranch) -> bool {
+        if let Some(c) = self.truth(t.c) {
+            return !c;
+        }
         let then = self.builder(|b| {
             let then = b.close_block();
             b.open_block();
@@ -363,6 +398,9 @@ impl Machine for Recorder {
         true
     }
     fn branch_end(&self, t: RecordedBranch) {
+        if self.truth(t.c).is_some() {
+            return;
+        }
         self.builder(|b| {
             let last = b.close_block();
             let stmt = match t.then.take() {
@@ -386,7 +424,15 @@ impl Machine for Recorder {
             RecordedLoop { number, body: Default::default(), continuing: Default::default() }
         })
     }
-    fn loop_test(&self, _: &RecordedLoop, c: Id) -> bool {
+    fn loop_test(&self, l: &RecordedLoop, c: Id) -> bool {
+        match self.truth(c) {
+            Some(true) => return true,
+            Some(false) => {
+                self.loop_break(l);
+                return false;
+            }
+            None => {}
+        }
         self.builder(|b| {
             b.used(c);
             b.push(Stmt::BreakUnless(c));

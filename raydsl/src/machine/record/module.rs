@@ -1,6 +1,7 @@
 //! The whole module: types, bindings, functions, entry point.
 
 use core::fmt::Write;
+use std::collections::HashSet;
 
 use super::function::{FunctionPrinter, Text};
 use super::ir::{Expr, Function, Type, Uniform};
@@ -149,26 +150,35 @@ fn buffer_text(buffer: &Buffer, schema: &'static Schema, names: &mut Names) -> (
     (types, text)
 }
 
-/// The functions that the entry needs, callees first.
+/// The identifiers of a text.
+fn identifiers(text: &str) -> HashSet<&str> {
+    text.split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(|w| !w.is_empty()).collect()
+}
+
+fn function_text(state: &State, i: usize, names: &mut Names) -> String {
+    match &state.functions[i] {
+        Function::Recorded(f) => FunctionPrinter::new(f, &Text { state }).print(names),
+        Function::Text { text, types, .. } => {
+            if !text.is_empty() {
+                types.iter().for_each(|ty| drop(names.ty(Type::of(ty))));
+            }
+            text.clone()
+        }
+    }
+}
+
+/// The functions that the entry needs, callees first. The text decides: what was recorded behind a
+/// condition of the host that never holds is not in it.
 fn reachable(state: &State, entry: usize) -> Vec<usize> {
     fn visit(state: &State, i: usize, seen: &mut Vec<usize>) {
         if seen.contains(&i) {
             return;
         }
-        match &state.functions[i] {
-            Function::Recorded(f) => {
-                for node in &f.nodes {
-                    if let Expr::Call(g, _) = node.expr {
-                        visit(state, g, seen);
-                    }
-                }
-            }
-            Function::Text { text, .. } => {
-                for (j, g) in state.functions.iter().enumerate() {
-                    if j != i && text.contains(&format!("{}(", g.name())) {
-                        visit(state, j, seen);
-                    }
-                }
+        let text = function_text(state, i, &mut Names::new());
+        let words = identifiers(&text);
+        for (j, g) in state.functions.iter().enumerate() {
+            if j != i && words.contains(g.name()) {
+                visit(state, j, seen);
             }
         }
         seen.push(i);
@@ -235,35 +245,32 @@ pub(super) fn module(recording: &Recording, limits: &Limits) -> Module {
 
     let mut functions = String::new();
     for i in &order {
-        match &state.functions[*i] {
-            Function::Recorded(f) => {
-                functions += "\n";
-                functions += &FunctionPrinter::new(f, &Text { state }).print(&mut names);
-            }
-            Function::Text { text, types, .. } if !text.is_empty() => {
-                for ty in types {
-                    names.ty(Type::of(ty));
-                }
-                functions += "\n";
-                functions += text;
-            }
-            Function::Text { .. } => {}
+        let text = function_text(state, *i, &mut names);
+        if !text.is_empty() {
+            functions += "\n";
+            functions += &text;
         }
     }
+    let words = identifiers(&functions);
 
-    let mut uniforms = state.uniforms.clone();
+    let is_used = |u: &Uniform| words.contains(u.name.as_str());
+    let mut uniforms: Vec<Uniform> =
+        state.uniforms.iter().filter(|u| is_used(u)).cloned().collect();
     let mut buffers = Vec::new();
     let mut buffer_types = String::new();
     let mut bindings = String::new();
     let mut binding = 4;
     for b in &state.buffers {
+        if !words.contains(format!("{}_at", b.name).as_str()) {
+            continue;
+        }
         let stride = storage::stride(b.schema) as u64;
         let windows = windows(b.len, stride, limits.max_binding_bytes, binding);
         binding += windows.len() as u32;
         let buffer =
             Buffer { key: b.key, name: b.name.clone(), stride: stride as u32, len: b.len, windows };
         let length = format!("len_of_{}", b.name);
-        if functions.contains(&format!("params.{length}")) {
+        if words.contains(length.as_str()) {
             uniforms.push(Uniform { name: length, ty: Type::U32, words: vec![b.len as u32] });
         }
         let (types, text) = buffer_text(&buffer, b.schema, &mut names);
