@@ -63,20 +63,20 @@ impl ByHand for ColorSphere {
 
     #[inline(always)]
     fn prepare<const AXIS: usize>(ray: &Ray) -> f32 {
-        ray.direction.dot(ray.direction)
+        1.0 / ray.direction.dot(ray.direction)
     }
 
     #[inline(always)]
-    fn meet<const AXIS: usize>(&self, ray: &Ray, d2: &f32) -> Option<(f32, f32, f32)> {
+    fn meet<const AXIS: usize>(&self, ray: &Ray, per_d2: &f32) -> Option<(f32, f32, f32)> {
         let radius = self.radius.to_f32();
         let f = self.center - ray.origin;
-        let closest = f.dot(ray.direction) / d2;
+        let closest = f.dot(ray.direction) * per_d2;
         let aside = f - ray.direction * closest;
         let radicand = radius * radius - aside.dot(aside);
         if radicand < 0.0 || radius <= 0.0 {
             return None;
         }
-        let half = (radicand / d2).sqrt();
+        let half = (radicand * per_d2).sqrt();
         let near = closest - half;
         let t = if near < ray.t_min { closest + half } else { near };
         (t >= ray.t_min && t <= ray.t_max).then_some((t, 0.0, 0.0))

@@ -61,8 +61,12 @@ struct StoredShaded {
 struct Params {
     sun: vec3<f32>,
     background: vec3<f32>,
-    divisor: f32,
-    bvh_nodes_len: u32,
+    lit_255_0: f32,
+    lit_0_001: f32,
+    lit_0_75: f32,
+    lit_0_6: f32,
+    lit_1_0: f32,
+    len_of_bvh_nodes: u32,
 }
 
 struct Job {
@@ -97,11 +101,11 @@ fn bvh_ids_at(i: u32) -> u32 {
 
 fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
     let f = center - ray.origin;
-    let d2 = ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z;
-    let closest = (f.x * ray.direction.x + f.y * ray.direction.y + f.z * ray.direction.z) / d2;
+    let per_d2 = 1.0f / (ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z);
+    let closest = (f.x * ray.direction.x + f.y * ray.direction.y + f.z * ray.direction.z) * per_d2;
     let aside = f - ray.direction * closest;
     let radicand = radius * radius - (aside.x * aside.x + aside.y * aside.y + aside.z * aside.z);
-    let half = sqrt(radicand / d2);
+    let half = sqrt(radicand * per_d2);
     let near = closest - half;
     let far = closest + half;
     var t: f32;
@@ -110,12 +114,12 @@ fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
     } else {
         t = near;
     }
-    let is_hit = radicand >= 0.0 && radius > 0.0 && t >= ray.t_min && t <= ray.t_max;
-    return Hit(is_hit, t, 0u, 0.0, 0.0);
+    let is_hit = radicand >= 0.0f && radius > 0.0f && t >= ray.t_min && t <= ray.t_max;
+    return Hit(is_hit, t, 0u, 0.0f, 0.0f);
 }
 
 fn ColorSphere_intersect(self_: ColorSphere, ray: Ray) -> Hit {
-    return intersect(ray, self_.center, f32(self_.radius) / params.divisor);
+    return intersect(ray, self_.center, f32(self_.radius) / params.lit_255_0);
 }
 
 fn is_finite(v: vec3<f32>) -> bool {
@@ -134,14 +138,14 @@ struct Slabs {
 fn finite_inverse(d: vec3<f32>) -> vec3<f32> {
     let a = abs(d);
     let largest = max(max(a.x, a.y), a.z);
-    let least = largest * 8.6736174e-19;
+    let least = max(largest * 8.6736174e-19, 1.1754944e-38);
     let safe = select(d, select(vec3<f32>(least), vec3<f32>(-least), d < vec3<f32>(0.0)), a < vec3<f32>(least));
     return 1.0 / safe;
 }
 
 fn slabs(ray: Ray, root: Node, slack: f32) -> Slabs {
     let reach = max(abs(root.min - ray.origin), abs(root.max - ray.origin));
-    let pad = max(slack * max(max(reach.x, reach.y), reach.z), 1.1754944e-38);
+    let pad = max(slack * max(max(reach.x, reach.y), reach.z), 1.1754944e-38) + abs(ray.origin) * 1.1920929e-7;
     return Slabs(ray.origin + pad, ray.origin - pad, finite_inverse(ray.direction));
 }
 
@@ -159,7 +163,7 @@ fn enter_leave(s: Slabs, node: Node, t_min: f32, t_max: f32) -> vec2<f32> {
 
 fn bvh_closest_hit(ray: Ray) -> Hit {
     var best = Hit();
-    if (params.bvh_nodes_len == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {
+    if (params.len_of_bvh_nodes == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {
         return best;
     }
     var stack: array<u32, 64>;
@@ -216,7 +220,7 @@ fn bvh_closest_hit(ray: Ray) -> Hit {
 }
 
 fn bvh_any_hit(ray: Ray) -> bool {
-    if (params.bvh_nodes_len == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {
+    if (params.len_of_bvh_nodes == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {
         return false;
     }
     var stack: array<u32, 64>;
@@ -271,19 +275,19 @@ fn bvh_any_hit(ray: Ray) -> bool {
 }
 
 fn ColorSphere_rgb(self_: ColorSphere) -> vec3<f32> {
-    return vec3<f32>(f32(self_.color[0]) / params.divisor, f32(self_.color[1]) / params.divisor, f32(self_.color[2]) / params.divisor);
+    return vec3<f32>(f32(self_.color[0]) / params.lit_255_0, f32(self_.color[1]) / params.lit_255_0, f32(self_.color[2]) / params.lit_255_0);
 }
 
 fn sky(up: f32, bands: u32) -> f32 {
-    var edge: f32 = 1.0;
+    var edge: f32 = 1.0f;
     var i: u32 = 0u;
     for (; i < bands; i = i + 1u) {
-        edge = edge * 0.6;
+        edge = edge * params.lit_0_6;
         if (up > edge) {
             return edge;
         }
     }
-    return 0.0;
+    return 0.0f;
 }
 
 fn kernel(ray: Ray) -> Shaded {
@@ -292,21 +296,21 @@ fn kernel(ray: Ray) -> Shaded {
     if (hit.is_hit) {
         let sphere = bvh_at(select(0u, hit.prim_id, hit.is_hit));
         let t = ray.origin + ray.direction * hit.t - sphere.center;
-        let normal = t * (1.0 / sqrt(t.x * t.x + t.y * t.y + t.z * t.z));
-        let shadow = ray.origin + ray.direction * hit.t + normal * 0.001;
-        var light: f32 = 0.25;
+        let normal = t * (1.0f / sqrt(t.x * t.x + t.y * t.y + t.z * t.z));
+        let shadow = ray.origin + ray.direction * hit.t + normal * params.lit_0_001;
+        var light: f32 = 0.25f;
         var both: bool;
-        if (normal.x * params.sun.x + normal.y * params.sun.y + normal.z * params.sun.z > 0.0) {
-            both = !bvh_any_hit(Ray(shadow, params.sun, 0.0, 3.4028235e38));
+        if (normal.x * params.sun.x + normal.y * params.sun.y + normal.z * params.sun.z > 0.0f) {
+            both = !bvh_any_hit(Ray(shadow, params.sun, 0.0f, 340282346638528859811704183484516925440.0f));
         } else {
             both = false;
         }
         if (both) {
-            light = light + 0.75 * (normal.x * params.sun.x + normal.y * params.sun.y + normal.z * params.sun.z);
+            light = light + params.lit_0_75 * (normal.x * params.sun.x + normal.y * params.sun.y + normal.z * params.sun.z);
         }
         color = ColorSphere_rgb(sphere) * light;
     } else {
-        color = params.background * (1.0 - sky(ray.direction.y, 8u));
+        color = params.background * (params.lit_1_0 - sky(ray.direction.y, 8u));
     }
     return Shaded(color, hit.t, hit.prim_id);
 }

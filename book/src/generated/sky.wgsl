@@ -9,7 +9,7 @@ struct StoredArgs {
 }
 
 struct Params {
-    none: u32,
+    lit_0_6: f32,
 }
 
 struct Job {
@@ -24,15 +24,15 @@ struct Job {
 @group(0) @binding(1) var<uniform> job: Job;
 
 fn sky(up: f32, bands: u32) -> f32 {
-    var edge: f32 = 1.0;
+    var edge: f32 = 1.0f;
     var i: u32 = 0u;
     for (; i < bands; i = i + 1u) {
-        edge = edge * 0.6;
+        edge = edge * params.lit_0_6;
         if (up > edge) {
             return edge;
         }
     }
-    return 0.0;
+    return 0.0f;
 }
 
 fn element(input: Args) -> f32 {

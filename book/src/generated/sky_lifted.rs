@@ -14,7 +14,7 @@ impl sky {
         bands: impl Coerce<__M, <u32 as Type>::On<__M>>,
     ) -> <f32 as Type>::On<__M> {
         use operations::*;
-        static INFO: KernelInfo = KernelInfo {
+        static __INFO: KernelInfo = KernelInfo {
             name: "sky",
             file: "examples/first_kernel.rs",
             line: 45u32,
@@ -22,7 +22,7 @@ impl sky {
         };
         Machine::call(
             m,
-            &INFO,
+            &__INFO,
             (
                 Coerce::<__M, <f32 as Type>::On<__M>>::coerce(up, m),
                 Coerce::<__M, <u32 as Type>::On<__M>>::coerce(bands, m),
@@ -33,8 +33,8 @@ impl sky {
                 'block_0: {
                     let edge = Var::new(m, "edge", Varying::varying(f32(m, 1.0f32), m));
                     {
-                        let (start, end) = range(m, 0, bands);
-                        let counter_3 = Var::new(m, "i", start);
+                        let (begin, end) = range(m, 0, bands);
+                        let counter_3 = Var::new(m, "i", begin);
                         let repeat_2 = Loop::new(m);
                         loop {
                             if !repeat_2.test(m, less(m, counter_3.get(m), end)) {

@@ -23,12 +23,13 @@ pub const SLACK: f32 = 1.0 / 1_048_576.0;
 pub fn intersect(ray: Ray, center: Vec3, radius: f32) -> Hit {
     let f = center - ray.origin;
     let d = ray.direction;
-    let d2 = d.dot(d);
+    // One division, which is the ray's alone: loops over spheres do it once.
+    let per_d2 = 1.0 / d.dot(d);
     // Along the ray to the point closest to the centre, and from there to the centre.
-    let closest = f.dot(d) / d2;
+    let closest = f.dot(d) * per_d2;
     let aside = f - d * closest;
     let radicand = radius * radius - aside.dot(aside);
-    let half = (radicand / d2).sqrt();
+    let half = (radicand * per_d2).sqrt();
     let near = closest - half;
     let far = closest + half;
     let t = if near < ray.t_min { far } else { near };

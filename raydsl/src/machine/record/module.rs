@@ -4,7 +4,7 @@ use core::fmt::Write;
 use std::collections::HashSet;
 
 use super::function::{FunctionPrinter, Text};
-use super::ir::{Expr, Function, Type, Uniform};
+use super::ir::{Function, Type, Uniform};
 use super::storage::{self, Stored};
 use super::types::Names;
 use super::{Recording, State};
