@@ -22,20 +22,36 @@ pub fn each_level(task: &mut impl LevelTask) {
 /// Does `task` with the widest packets that this machine has registers for, as production has
 /// them: every operation inlined.
 pub fn widest_level(task: &mut impl LevelTask) {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(s) = Level::new().as_avx512() {
-        return task.run("avx512 x16, inlined", Simd16(s));
-    } else if let Some(s) = Level::new().as_avx2() {
-        return task.run("avx2 x8, inlined", Simd8(s));
-    } else if let Some(s) = Level::new().as_sse2() {
-        return task.run("sse2 x8, inlined", Simd8(s));
+    struct Inlined<'a, T>(&'a mut T);
+    impl<T: LevelTask> LevelTask for Inlined<'_, T> {
+        fn run<L: Lanes>(&mut self, name: &str, lanes: L) {
+            self.0.run(&format!("{name}, inlined"), lanes);
+        }
     }
-    #[cfg(target_arch = "aarch64")]
-    if let Some(s) = Level::new().as_neon() {
-        return task.run("neon x8, inlined", Simd8(s));
+    widest(&mut Inlined(task), Level::new());
+}
+
+#[cfg(target_arch = "x86_64")]
+fn widest(task: &mut impl LevelTask, level: Level) {
+    if let Some(s) = level.as_avx512() {
+        one_width(task, Simd16(s));
+    } else if let Some(s) = level.as_avx2() {
+        one_width(task, Simd8(s));
+    } else if let Some(s) = level.as_sse2() {
+        one_width(task, Simd8(s));
     }
-    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-    task.run("portable x8, inlined", Simd8(Fallback::new()));
+}
+
+#[cfg(target_arch = "aarch64")]
+fn widest(task: &mut impl LevelTask, level: Level) {
+    if let Some(s) = level.as_neon() {
+        one_width(task, Simd8(s));
+    }
+}
+
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+fn widest(task: &mut impl LevelTask, _: Level) {
+    one_width(task, Simd8(Fallback::new()));
 }
 
 #[cfg(target_arch = "x86_64")]
