@@ -102,7 +102,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
             sphere.rgb() * light
         } else {
-            background * (1.0 - sky(ray.direction.y, 8))
+            background * (1.0 - 0.5 * sky(ray.direction.y + 0.7, 8))
         };
         Shaded { color, depth: hit.t, id: hit.prim_id }
     });

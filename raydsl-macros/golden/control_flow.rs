@@ -105,9 +105,9 @@ impl walk {
                             }
                             let i = counter_3.get(m);
                             {
-                                let repeat_5 = ::raydsl::__private::Loop::new(m);
+                                let repeat_6 = ::raydsl::__private::Loop::new(m);
                                 loop {
-                                    if !repeat_5
+                                    if !repeat_6
                                         .test(
                                             m,
                                             ::raydsl::__private::OpCompare::compare(
@@ -120,20 +120,18 @@ impl walk {
                                     {
                                         break;
                                     }
-                                    'block_5: {
+                                    'block_6: {
                                         {
                                             let right = ::raydsl::__private::f32(m, 1.0f32);
-                                            #[allow(unused_mut)]
-                                            let mut whole = sum.get(m);
                                             sum.set(
                                                 m,
                                                 ::raydsl::__private::Coerce::coerce(
-                                                    ::raydsl::__private::OpAdd::add(m, whole, right),
+                                                    ::raydsl::__private::OpAdd::add(m, sum.get(m), right),
                                                     m,
                                                 ),
                                             );
                                         }
-                                        let branch_7 = ::raydsl::__private::Branch::new(
+                                        let branch_8 = ::raydsl::__private::Branch::new(
                                             m,
                                             ::raydsl::__private::OpCompare::compare(
                                                 m,
@@ -142,19 +140,19 @@ impl walk {
                                                 ::raydsl::__private::f32(m, 10.0f32),
                                             ),
                                         );
-                                        if branch_7.then(m) {
+                                        if branch_8.then(m) {
                                             {
                                                 repeat_2.leave(m);
                                             }
                                         }
-                                        if branch_7.otherwise(m) {
-                                            let branch_9 = ::raydsl::__private::Branch::new(
+                                        if branch_8.otherwise(m) {
+                                            let branch_10 = ::raydsl::__private::Branch::new(
                                                 m,
                                                 {
-                                                    let value_10 = ::raydsl::__private::Var::<
+                                                    let value_11 = ::raydsl::__private::Var::<
                                                         _,
                                                     >::declare(m, "both");
-                                                    let branch_11 = ::raydsl::__private::Branch::new(
+                                                    let branch_12 = ::raydsl::__private::Branch::new(
                                                         m,
                                                         ::raydsl::__private::OpCompare::compare(
                                                             m,
@@ -163,9 +161,9 @@ impl walk {
                                                             ::raydsl::__private::f32(m, 0.0f32),
                                                         ),
                                                     );
-                                                    if branch_11.then(m) {
+                                                    if branch_12.then(m) {
                                                         {
-                                                            value_10
+                                                            value_11
                                                                 .set(
                                                                     m,
                                                                     ::raydsl::__private::Varying::varying(
@@ -184,28 +182,28 @@ impl walk {
                                                                 );
                                                         }
                                                     }
-                                                    if branch_11.otherwise(m) {
+                                                    if branch_12.otherwise(m) {
                                                         {
-                                                            value_10
+                                                            value_11
                                                                 .set(m, ::raydsl::__private::Varying::varying(false, m));
                                                         }
                                                     }
-                                                    branch_11.end(m);
-                                                    value_10.get(m)
+                                                    branch_12.end(m);
+                                                    value_11.get(m)
                                                 },
                                             );
-                                            if branch_9.then(m) {
+                                            if branch_10.then(m) {
                                                 {
-                                                    repeat_5.skip(m);
+                                                    repeat_6.skip(m);
                                                 }
                                             }
-                                            branch_9.end(m);
+                                            branch_10.end(m);
                                         }
-                                        branch_7.end(m);
+                                        branch_8.end(m);
                                         if !::raydsl::__private::Machine::alive(m) {
-                                            break 'block_5;
+                                            break 'block_6;
                                         }
-                                        let branch_15 = ::raydsl::__private::Branch::new(
+                                        let branch_16 = ::raydsl::__private::Branch::new(
                                             m,
                                             ::raydsl::__private::OpCompare::compare(
                                                 m,
@@ -214,7 +212,7 @@ impl walk {
                                                 3,
                                             ),
                                         );
-                                        if branch_15.then(m) {
+                                        if branch_16.then(m) {
                                             {
                                                 ret.give(
                                                     m,
@@ -222,29 +220,27 @@ impl walk {
                                                 );
                                             }
                                         }
-                                        branch_15.end(m);
+                                        branch_16.end(m);
                                         if !::raydsl::__private::Machine::alive(m) {
-                                            break 'block_5;
+                                            break 'block_6;
                                         }
                                         {
                                             let right = ::raydsl::__private::f32(m, 2.0f32);
-                                            #[allow(unused_mut)]
-                                            let mut whole = sum.get(m);
                                             sum.set(
                                                 m,
                                                 ::raydsl::__private::Coerce::coerce(
-                                                    ::raydsl::__private::OpMul::mul(m, whole, right),
+                                                    ::raydsl::__private::OpMul::mul(m, sum.get(m), right),
                                                     m,
                                                 ),
                                             );
                                         }
                                     }
-                                    repeat_5.continuing(m);
-                                    if !repeat_5.again(m) {
+                                    repeat_6.continuing(m);
+                                    if !repeat_6.again(m) {
                                         break;
                                     }
                                 }
-                                repeat_5.end(m);
+                                repeat_6.end(m);
                             }
                             repeat_2.continuing(m);
                             counter_3
@@ -262,7 +258,7 @@ impl walk {
                         break 'block_0;
                     }
                     let last = ::raydsl::__private::Var::<_>::declare(m, "last");
-                    let branch_17 = ::raydsl::__private::Branch::new(
+                    let branch_18 = ::raydsl::__private::Branch::new(
                         m,
                         ::raydsl::__private::OpCompare::compare(
                             m,
@@ -271,14 +267,14 @@ impl walk {
                             x,
                         ),
                     );
-                    if branch_17.then(m) {
+                    if branch_18.then(m) {
                         {
                             {
                                 let right = {
-                                    let value_19 = ::raydsl::__private::Var::<
+                                    let value_20 = ::raydsl::__private::Var::<
                                         _,
                                     >::declare(m, "value");
-                                    let branch_20 = ::raydsl::__private::Branch::new(
+                                    let branch_21 = ::raydsl::__private::Branch::new(
                                         m,
                                         ::raydsl::__private::OpCompare::compare(
                                             m,
@@ -287,15 +283,15 @@ impl walk {
                                             ::raydsl::__private::f32(m, 0.0f32),
                                         ),
                                     );
-                                    if branch_20.then(m) {
+                                    if branch_21.then(m) {
                                         {
-                                            value_19
+                                            value_20
                                                 .set(m, ::raydsl::__private::Varying::varying(x, m));
                                         }
                                     }
-                                    if branch_20.otherwise(m) {
+                                    if branch_21.otherwise(m) {
                                         {
-                                            value_19
+                                            value_20
                                                 .set(
                                                     m,
                                                     ::raydsl::__private::Varying::varying(
@@ -305,14 +301,14 @@ impl walk {
                                                 );
                                         }
                                     }
-                                    branch_20.end(m);
-                                    value_19.get(m)
+                                    branch_21.end(m);
+                                    value_20.get(m)
                                 };
                                 last.set(m, ::raydsl::__private::Coerce::coerce(right, m));
                             }
                         }
                     }
-                    if branch_17.otherwise(m) {
+                    if branch_18.otherwise(m) {
                         {
                             {
                                 let right = ::raydsl::__private::f32(m, 0.0f32);
@@ -320,7 +316,7 @@ impl walk {
                             }
                         }
                     }
-                    branch_17.end(m);
+                    branch_18.end(m);
                     ret.give(
                         m,
                         ::raydsl::__private::Coerce::coerce(

@@ -64,9 +64,23 @@ where
     Sample: ::raydsl::__private::HostMethod<NAME, M, A>,
 {
     type Output = <Sample as ::raydsl::__private::HostMethod<NAME, M, A>>::Output;
+    const IS_MUT: bool = <Sample as ::raydsl::__private::HostMethod<NAME, M, A>>::IS_MUT;
     #[inline(always)]
     fn call(self, m: &M, args: A) -> Self::Output {
         <Sample as ::raydsl::__private::HostMethod<NAME, M, A>>::call(self, m, args)
+    }
+    #[inline(always)]
+    fn call_at(
+        self,
+        variable: &::raydsl::__private::Var<Self>,
+        m: &M,
+        args: A,
+    ) -> Self::Output {
+        <Sample as ::raydsl::__private::HostMethod<
+            NAME,
+            M,
+            A,
+        >>::call_at(self, variable, m, args)
     }
 }
 impl ::raydsl::__private::Type for Sample {

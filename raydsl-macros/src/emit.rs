@@ -9,7 +9,9 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote, quote_spanned};
 
 use crate::diag::Errors;
-use crate::model::{BinaryOp, Block, Expr, IntType, Kernel, Kind, Let, Place, Stmt};
+use crate::model::{
+    BinaryOp, Block, Expr, IntType, Kernel, Kind, Let, Param, Place, Range, Step, Stmt,
+};
 
 /// What a name stands for.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -18,6 +20,8 @@ enum Binding {
     Value,
     /// A variable: it is read and assigned through the machine.
     Var,
+    /// A `&mut` parameter: a variable that calls are given as it is.
+    Mut,
 }
 
 /// Where the value of a control structure goes.
@@ -25,15 +29,33 @@ enum Binding {
 enum Dest {
     /// Nowhere: it is a statement.
     None,
-    /// To a variable; whether its type is written in the source.
-    Slot { var: Ident, typed: bool },
+    /// To a variable.
+    Slot { var: Ident, ty: SlotType },
     /// To the caller.
     Return,
+}
+
+/// What is known of the type of a [`Dest::Slot`].
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum SlotType {
+    /// It is written in the source.
+    Written,
+    /// Other outcomes than bare integers say it.
+    ByOthers,
+    /// Each outcome says it.
+    ByAll,
 }
 
 struct Loop {
     label: Option<String>,
     ident: Ident,
+    /// Where `break value` sends the value.
+    dest: Dest,
+}
+
+/// How a name is shown in WGSL; those that the macro makes up begin with `__`.
+fn shown(name: &Ident) -> String {
+    name.to_string().trim_start_matches("__").to_owned()
 }
 
 /// Writes the body of one kernel for one machine.
@@ -103,8 +125,12 @@ impl<'a> Emitter<'a> {
         for param in &self.kernel.params {
             let name = self.local(&param.name);
             let text = param.name.to_string();
-            let binding = if param.mutable { Binding::Var } else { Binding::Value };
-            if param.mutable {
+            let binding = match param {
+                Param { by_mut: true, .. } => Binding::Mut,
+                Param { mutable: true, .. } => Binding::Var,
+                _ => Binding::Value,
+            };
+            if binding != Binding::Value {
                 prologue.extend(quote!(let #name = #p::Var::new(#m, #text, #name);));
             }
             self.bind(&param.name, binding);
@@ -118,7 +144,17 @@ impl<'a> Emitter<'a> {
         } else {
             self.plain_body(&kernel.body)
         };
-        quote!(#prologue #body)
+        let changed: Vec<Ident> =
+            kernel.params.iter().filter(|p| p.by_mut).map(|p| self.local(&p.name)).collect();
+        if changed.is_empty() {
+            return quote!(#prologue #body);
+        }
+        let result = own("result");
+        quote! {
+            #prologue
+            let #result = { #body };
+            (#result, #(#changed.get(#m),)*)
+        }
     }
 
     /// The result type where none is written: inferred for a closure, `()` for a function.
@@ -127,20 +163,21 @@ impl<'a> Emitter<'a> {
     }
 
     fn plain_body(&mut self, block: &Block) -> TokenStream {
-        let (p, m) = (private(), own("m"));
         let result = self.kernel.result.clone();
         let mut out = TokenStream::new();
         for stmt in &block.stmts {
             out.extend(self.stmt(stmt));
         }
         let Some(tail) = &block.tail else { return out };
-        let value = match &result {
-            Some(ty) => self.value_of_type(tail, "result", ty),
-            None => self.named_value(tail, "result"),
-        };
-        match result {
-            Some(_) => quote!(#out #p::Coerce::coerce(#value, #m)),
-            None => quote!(#out #value),
+        match &result {
+            Some(ty) => {
+                let value = self.wanted(tail, "result", ty);
+                quote!(#out #value)
+            }
+            None => {
+                let value = self.named_value(tail, "result");
+                quote!(#out #value)
+            }
         }
     }
 
@@ -213,7 +250,7 @@ impl<'a> Emitter<'a> {
             let value = l.init.as_ref().map(|e| self.value(e));
             return quote!(let _ = #value;);
         };
-        let text = name.to_string();
+        let text = shown(name);
         let ty = l.ty.as_ref().map(|t| self.on(t));
         let Some(init) = &l.init else {
             self.bind(name, Binding::Var);
@@ -221,21 +258,19 @@ impl<'a> Emitter<'a> {
             return quote!(let #name = #p::Var::<#ty>::declare(#m, #text););
         };
         let value = match &l.ty {
-            Some(ty) => self.value_of_type(init, &text, ty),
+            Some(ty) => self.wanted(init, &text, ty),
             None => self.named_value(init, &text),
         };
         let binding = if l.mutable { Binding::Var } else { Binding::Value };
         self.bind(name, binding);
         match (l.mutable, ty) {
-            (true, Some(ty)) => {
-                quote!(let #name = #p::Var::<#ty>::new(#m, #text, #p::Coerce::coerce(#value, #m));)
-            }
+            (true, Some(ty)) => quote!(let #name = #p::Var::<#ty>::new(#m, #text, #value);),
             (true, None) => {
                 quote!(let #name = #p::Var::new(#m, #text, #p::Varying::varying(#value, #m));)
             }
-            (false, Some(ty)) => quote! {
-                let #name: #ty = #p::Machine::named(#m, #text, #p::Coerce::coerce(#value, #m));
-            },
+            (false, Some(ty)) => {
+                quote!(let #name: #ty = #p::Machine::named(#m, #text, #value);)
+            }
             (false, None) => quote!(let #name = #p::Machine::named(#m, #text, #value);),
         }
     }
@@ -245,13 +280,15 @@ impl<'a> Emitter<'a> {
         match &e.kind {
             Kind::If { c, then, otherwise } => self.branch(c, then, otherwise.as_deref(), dest),
             Kind::Block(b) => self.block(b, dest),
-            Kind::While { label, c, body } => self.while_loop(label.clone(), Some(c), body),
-            Kind::Loop { label, body } => self.while_loop(label.clone(), None, body),
-            Kind::For { label, var, start, end, body } => {
-                self.for_loop(label.clone(), var.as_ref(), start, end, body)
+            Kind::While { label, c, body } => {
+                self.while_loop(label.clone(), Some(c), body, &Dest::None)
             }
-            Kind::Break(label) => self.exit(label.as_deref(), "leave"),
-            Kind::Continue(label) => self.exit(label.as_deref(), "skip"),
+            Kind::Loop { label, body } => self.while_loop(label.clone(), None, body, dest),
+            Kind::For { label, var, range, body } => {
+                self.for_loop(label.clone(), var.as_ref(), range, body)
+            }
+            Kind::Break(label, value) => self.exit(label.as_deref(), "leave", value.as_deref()),
+            Kind::Continue(label) => self.exit(label.as_deref(), "skip", None),
             Kind::Return(value) => self.return_stmt(value.as_deref()),
             Kind::Assign { place, value } => self.assign(place, None, value),
             Kind::OpAssign { op, place, value } => self.assign(place, Some(*op), value),
@@ -261,24 +298,34 @@ impl<'a> Emitter<'a> {
 
     fn send(&mut self, e: &Expr, dest: &Dest) -> TokenStream {
         let (p, m) = (private(), own("m"));
-        let value = self.value(e);
         match dest {
-            Dest::None => quote!(#value;),
-            Dest::Slot { var, typed: true } => {
-                quote!(#var.set(#m, #p::Coerce::coerce(#value, #m));)
+            Dest::None => {
+                let value = self.value(e);
+                quote!(#value;)
             }
-            Dest::Slot { var, typed: false } => {
+            Dest::Slot { var, ty }
+                if *ty == SlotType::Written
+                    || *ty == SlotType::ByOthers && e.is_untyped_integer() =>
+            {
+                let value = self.coerced(e);
+                quote!(#var.set(#m, #value);)
+            }
+            Dest::Slot { var, .. } => {
+                let value = self.value(e);
                 quote!(#var.set(#m, #p::Varying::varying(#value, #m));)
             }
-            Dest::Return => self.give(value),
+            Dest::Return => self.give(e),
         }
     }
 
-    fn give(&mut self, value: TokenStream) -> TokenStream {
+    fn give(&mut self, e: &Expr) -> TokenStream {
         let (p, m, ret) = (private(), own("m"), own("ret"));
         if self.kernel.result.is_some() {
-            quote!(#ret.give(#m, #p::Coerce::coerce(#value, #m));)
-        } else if self.is_closure {
+            let value = self.coerced(e);
+            return quote!(#ret.give(#m, #value););
+        }
+        let value = self.value(e);
+        if self.is_closure {
             quote!(#ret.give(#m, #p::Varying::varying(#value, #m));)
         } else {
             quote!(#ret.give(#m, #value);)
@@ -288,7 +335,10 @@ impl<'a> Emitter<'a> {
     fn return_stmt(&mut self, value: Option<&Expr>) -> TokenStream {
         match value {
             Some(e) => self.into(e, &Dest::Return),
-            None => self.give(quote!(())),
+            None => {
+                let (m, ret) = (own("m"), own("ret"));
+                quote!(#ret.give(#m, ());)
+            }
         }
     }
 
@@ -315,14 +365,20 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    fn while_loop(&mut self, label: Option<String>, c: Option<&Expr>, body: &Block) -> TokenStream {
+    fn while_loop(
+        &mut self,
+        label: Option<String>,
+        c: Option<&Expr>,
+        body: &Block,
+        dest: &Dest,
+    ) -> TokenStream {
         let (p, m) = (private(), own("m"));
         let ident = self.fresh("repeat");
         let test = c.map(|c| {
             let c = self.value(c);
             quote!(if !#ident.test(#m, #c) { break; })
         });
-        self.loops.push(Loop { label, ident: ident.clone() });
+        self.loops.push(Loop { label, ident: ident.clone(), dest: dest.clone() });
         let body = self.block(body, &Dest::None);
         self.loops.pop();
         quote! {
@@ -341,104 +397,181 @@ impl<'a> Emitter<'a> {
         &mut self,
         label: Option<String>,
         var: Option<&Ident>,
-        start: &Expr,
-        end: &Expr,
+        range: &Range,
         body: &Block,
     ) -> TokenStream {
         let (p, m) = (private(), own("m"));
-        let (ident, counter) = (self.fresh("repeat"), self.fresh("counter"));
+        let (ident, counter, done) =
+            (self.fresh("repeat"), self.fresh("counter"), self.fresh("done"));
         let (begin, stop) = (own("begin"), own("end"));
         let text = var.map(ToString::to_string).unwrap_or_else(|| "i".to_owned());
-        let (start, end) = (self.value(start), self.value(end));
+        let (start, end) = (self.value(&range.start), self.value(&range.end));
+        let now = quote!(#counter.get(#m));
+        // `[low, high)` or `[low, high]`, upwards from `low` or downwards from `high`.
+        let (low, high) = if range.reversed {
+            (quote!(#begin), now.clone())
+        } else {
+            (now.clone(), quote!(#stop))
+        };
+        let (first, last) = if range.reversed { (&stop, &begin) } else { (&begin, &stop) };
+        let step =
+            Ident::new(if range.reversed { "decrement" } else { "increment" }, Span::call_site());
+        let one_down = range.reversed && !range.inclusive;
+        let item = if one_down { quote!(#p::decrement(#m, #now)) } else { now.clone() };
+        // The last number of an inclusive range may be the last of its type.
+        let (declare, test, note) = if range.inclusive {
+            (
+                quote!(let #done = #p::Var::new(#m, "done", #p::Varying::varying(false, #m));),
+                quote!(#p::goes_on(#m, #done.get(#m), #low, #high)),
+                quote!(#done.set(#m, #p::equal(#m, #now, #last));),
+            )
+        } else {
+            (quote!(), quote!(#p::less(#m, #low, #high)), quote!())
+        };
         self.scopes.push(HashMap::new());
         let bound = var.map(|v| {
             self.bind(v, Binding::Value);
-            quote!(let #v = #counter.get(#m);)
+            quote!(let #v = #item;)
         });
-        self.loops.push(Loop { label, ident: ident.clone() });
+        self.loops.push(Loop { label, ident: ident.clone(), dest: Dest::None });
         let body = self.block(body, &Dest::None);
         self.loops.pop();
         self.scopes.pop();
         quote! {{
             let (#begin, #stop) = #p::range(#m, #start, #end);
-            let #counter = #p::Var::new(#m, #text, #begin);
+            let #counter = #p::Var::new(#m, #text, #first);
+            #declare
             let #ident = #p::Loop::new(#m);
             loop {
-                if !#ident.test(#m, #p::less(#m, #counter.get(#m), #stop)) { break; }
+                if !#ident.test(#m, #test) { break; }
                 #bound
                 #body
                 #ident.continuing(#m);
-                #counter.set(#m, #p::increment(#m, #counter.get(#m)));
+                #note
+                #counter.set(#m, #p::#step(#m, #now));
                 if !#ident.again(#m) { break; }
             }
             #ident.end(#m);
         }}
     }
 
-    fn exit(&mut self, label: Option<&str>, how: &str) -> TokenStream {
+    fn exit(&mut self, label: Option<&str>, how: &str, value: Option<&Expr>) -> TokenStream {
+        let mut loops = self.loops.iter().rev();
         let found = match label {
-            None => self.loops.last(),
-            Some(l) => self.loops.iter().rev().find(|x| x.label.as_deref() == Some(l)),
+            None => loops.next(),
+            Some(l) => loops.find(|x| x.label.as_deref() == Some(l)),
         };
         // A label that does not exist is rustc's to report, in the user's own function.
-        let Some(Loop { ident, .. }) = found else { return TokenStream::new() };
+        let Some(Loop { ident, dest, .. }) = found else { return TokenStream::new() };
         let (m, how) = (own("m"), format_ident!("{how}"));
-        quote!(#ident.#how(#m);)
+        let (ident, dest) = (ident.clone(), dest.clone());
+        let value = value.map(|e| self.into(e, &dest));
+        quote!(#value #ident.#how(#m);)
+    }
+
+    /// A variable of the code around a closure.
+    fn not_ours(&mut self, name: &Ident) {
+        self.errors.at(
+            name.span(),
+            format!("a kernel cannot assign to `{name}`, which belongs to the code around it"),
+            "return the new value, or declare the variable inside the kernel",
+        );
     }
 
     fn assign(&mut self, place: &Place, op: Option<BinaryOp>, value: &Expr) -> TokenStream {
         let (p, m) = (private(), own("m"));
         let name = &place.name;
         match self.lookup(name) {
-            Some(Binding::Var) => {}
+            Some(Binding::Var | Binding::Mut) => {}
             // rustc reports it in the user's own function.
             Some(Binding::Value) => return TokenStream::new(),
             None => {
                 if self.is_closure {
-                    self.errors.at(
-                        name.span(),
-                        format!("a kernel cannot assign to `{name}`, which belongs to the code around it"),
-                        "return the new value, or declare the variable inside the kernel",
-                    );
+                    self.not_ours(name);
                 }
                 return TokenStream::new();
             }
         }
         // The right side first: it may read the place.
-        let value = self.value(value);
-        let members = &place.members;
-        let (whole, right) = (own("whole"), own("right"));
-        let old = quote!(#whole #(.#members)*);
-        let new = match op {
-            Some(op) => operator(op, quote!(#m), old.clone(), quote!(#right)),
-            None => quote!(#right),
-        };
-        let store = if members.is_empty() {
-            quote!(#name.set(#m, #p::Coerce::coerce(#new, #m));)
-        } else {
-            quote! {
-                #old = #p::Coerce::coerce(#new, #m);
-                #name.set(#m, #whole);
+        let right = own("right");
+        let is_list = matches!(value.kind, Kind::Tuple(_) | Kind::Array(_) | Kind::Repeat { .. });
+        let value = if op.is_none() && is_list { self.coerced(value) } else { self.value(value) };
+        let mut indices = TokenStream::new();
+        let mut steps = Vec::new();
+        for step in &place.steps {
+            steps.push(match step {
+                Step::Member(member) => Part::Plain(quote!(.#member)),
+                Step::Element(index) => Part::Plain(quote!([#index])),
+                Step::Computed(e) => {
+                    let (index, value) = (self.fresh("index"), self.value(e));
+                    indices.extend(quote!(let #index = #value;));
+                    Part::Computed(index)
+                }
+            });
+        }
+        let new = |old: TokenStream| match op {
+            Some(op) => {
+                let new = operator(op, quote!(#m), old, quote!(#right));
+                quote!(#p::Coerce::coerce(#new, #m))
             }
+            None if is_list => quote!(#right),
+            None => quote!(#p::Coerce::coerce(#right, #m)),
         };
-        let snapshot = if members.is_empty() && op.is_none() {
-            TokenStream::new()
-        } else {
-            quote!(#[allow(unused_mut)] let mut #whole = #name.get(#m);)
-        };
-        quote!({ let #right = #value; #snapshot #store })
+        let local = self.local(name);
+        if steps.is_empty() {
+            let new = new(quote!(#local.get(#m)));
+            return quote!({ let #right = #value; #local.set(#m, #new); });
+        }
+        let whole = own("whole");
+        let change = change(quote!(#whole), &steps, &new, 0);
+        quote!({
+            let #right = #value;
+            #indices
+            #[allow(unused_mut)]
+            let mut #whole = #local.get(#m);
+            #change
+            #local.set(#m, #whole);
+        })
     }
 
     // Expressions.
 
     /// A value, with a name for those who read generated code.
     fn named_value(&mut self, e: &Expr, name: &str) -> TokenStream {
-        self.structured(e, name, None).unwrap_or_else(|| self.value(e))
+        self.structured(e, name, None).unwrap_or_else(|| self.plain_value(e))
     }
 
-    /// A value whose type is written in the source.
-    fn value_of_type(&mut self, e: &Expr, name: &str, ty: &TokenStream) -> TokenStream {
-        self.structured(e, name, Some(ty)).unwrap_or_else(|| self.value(e))
+    /// A value of the type `ty`, which is written in the source.
+    fn wanted(&mut self, e: &Expr, name: &str, ty: &TokenStream) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        match self.structured(e, name, Some(ty)) {
+            Some(value) => quote!(#p::Coerce::coerce(#value, #m)),
+            None => self.coerced(e),
+        }
+    }
+
+    /// A value where its type is known. Elements of tuples and arrays become values of the machine
+    /// one by one.
+    fn coerced(&mut self, e: &Expr) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        match &e.kind {
+            Kind::Tuple(items) if !items.is_empty() => {
+                let items: Vec<_> = items.iter().map(|e| self.coerced(e)).collect();
+                quote!((#(#items,)*))
+            }
+            Kind::Array(items) => {
+                let items: Vec<_> = items.iter().map(|e| self.coerced(e)).collect();
+                quote!([#(#items,)*])
+            }
+            Kind::Repeat { value, len } => {
+                let value = self.coerced(value);
+                quote!([#value; #len])
+            }
+            _ => {
+                let value = self.value(e);
+                quote!(#p::Coerce::coerce(#value, #m))
+            }
+        }
     }
 
     /// The value of a control structure goes through a variable.
@@ -448,19 +581,18 @@ impl<'a> Emitter<'a> {
         name: &str,
         ty: Option<&TokenStream>,
     ) -> Option<TokenStream> {
-        let needs = match &e.kind {
-            Kind::If { .. } => true,
-            Kind::Block(b) => b.ends_lanes(),
-            _ => false,
-        };
-        if !needs {
+        if !e.is_structured() {
             return None;
         }
         let (p, m) = (private(), own("m"));
         let var = self.fresh("value");
-        let typed = ty.is_some();
+        let slot = match ty {
+            Some(_) => SlotType::Written,
+            None if e.has_typed_outcome() => SlotType::ByOthers,
+            None => SlotType::ByAll,
+        };
         let ty = ty.map(|t| self.on(t)).unwrap_or_else(|| quote!(_));
-        let code = self.into(e, &Dest::Slot { var: var.clone(), typed });
+        let code = self.into(e, &Dest::Slot { var: var.clone(), ty: slot });
         Some(quote!({
             let #var = #p::Var::<#ty>::declare(#m, #name);
             #code
@@ -469,6 +601,10 @@ impl<'a> Emitter<'a> {
     }
 
     fn value(&mut self, e: &Expr) -> TokenStream {
+        self.named_value(e, "value")
+    }
+
+    fn plain_value(&mut self, e: &Expr) -> TokenStream {
         let (p, m) = (private(), own("m"));
         let span = e.span;
         match &e.kind {
@@ -514,20 +650,13 @@ impl<'a> Emitter<'a> {
             Kind::Associated { ty, name, args } => {
                 let ty = self.without_self(ty);
                 let name = format_ident!("{name}_on");
-                let args = self.values(args);
-                quote_spanned!(span=> <#ty>::#name(#m, #(#args),*))
+                let args = self.arguments(args);
+                let values = &args.values;
+                args.around(quote_spanned!(span=> <#ty>::#name(#m, #(#values),*)))
             }
-            Kind::Method { receiver, name, args } => {
-                let receiver = self.value(receiver);
-                let args = self.values(args);
-                let text = name.to_string();
-                let machine = &self.machine;
-                quote_spanned!(name.span()=>
-                    #p::Method::<{ #p::name(#text) }, #machine, _>::call(
-                        #receiver, #m, (#(#args,)*)
-                    )
-                )
-            }
+            Kind::Method { receiver, name, args } => self.method(receiver, name, args),
+            Kind::Deref(a) => self.value(a),
+            Kind::RefMut(_) => quote!(::core::unreachable!()),
             Kind::Field { base, member } => {
                 let base = self.value(base);
                 quote_spanned!(span=> #base.#member)
@@ -541,9 +670,29 @@ impl<'a> Emitter<'a> {
                 let items = self.values(items);
                 quote!((#(#items,)*))
             }
-            Kind::If { .. } => self.named_value(e, "value"),
-            Kind::Block(b) if !b.ends_lanes() => self.plain_block(b),
-            Kind::Block(_) => self.named_value(e, "value"),
+            Kind::Element { base, index } => {
+                let (base, index) = (self.value(base), self.value(index));
+                quote_spanned!(span=> #p::element(#m, #base, #index))
+            }
+            Kind::Array(items) => {
+                let is_typed = items.iter().any(|e| !e.is_untyped_integer());
+                let items: Vec<_> = items
+                    .iter()
+                    .map(|e| {
+                        if is_typed && e.is_untyped_integer() {
+                            self.coerced(e)
+                        } else {
+                            self.value(e)
+                        }
+                    })
+                    .collect();
+                quote!([#(#items,)*])
+            }
+            Kind::Repeat { value, len } => {
+                let value = self.value(value);
+                quote!([#value; #len])
+            }
+            Kind::Block(b) => self.plain_block(b),
             Kind::Error => quote!(::core::unreachable!()),
             _ => {
                 let code = self.into(e, &Dest::None);
@@ -559,7 +708,7 @@ impl<'a> Emitter<'a> {
     fn name(&mut self, name: &Ident) -> TokenStream {
         let (p, m) = (private(), own("m"));
         match self.lookup(name) {
-            Some(Binding::Var) => {
+            Some(Binding::Var | Binding::Mut) => {
                 let local = self.local(name);
                 quote!(#local.get(#m))
             }
@@ -627,8 +776,111 @@ impl<'a> Emitter<'a> {
             );
             return quote!(::core::unreachable!());
         }
-        let args = self.values(args);
-        quote_spanned!(span=> #path::on(#m, #(#args),*))
+        let args = self.arguments(args);
+        let values = &args.values;
+        args.around(quote_spanned!(span=> #path::on(#m, #(#values),*)))
+    }
+
+    fn arguments(&mut self, args: &[Expr]) -> Arguments {
+        let (p, m) = (private(), own("m"));
+        let mut all = Arguments::default();
+        for arg in args {
+            let value = match &arg.kind {
+                Kind::RefMut(place) => {
+                    let local = self.local(&place.name);
+                    if self.lookup(&place.name).is_none() && self.is_closure {
+                        self.not_ours(&place.name);
+                    }
+                    let Some(steps) = plain_steps(&place.steps) else {
+                        self.errors.at(
+                            arg.span,
+                            "a kernel has no `&mut` to a computed element",
+                            "copy the element to a variable, and assign it back after the call",
+                        );
+                        continue;
+                    };
+                    if steps.is_empty() {
+                        quote!(&#local)
+                    } else {
+                        let (part, whole) = (self.fresh("part"), own("whole"));
+                        let text = shown(&place.name);
+                        all.before.extend(quote! {
+                            let #part = #p::Var::new(#m, #text, #local.get(#m) #steps);
+                        });
+                        all.after.extend(quote!({
+                            let mut #whole = #local.get(#m);
+                            #whole #steps = #part.get(#m);
+                            #local.set(#m, #whole);
+                        }));
+                        quote!(&#part)
+                    }
+                }
+                Kind::Name(name) if self.lookup(name) == Some(Binding::Mut) => {
+                    let local = self.local(name);
+                    quote!(&#local)
+                }
+                _ => self.value(arg),
+            };
+            all.values.push(value);
+        }
+        all
+    }
+
+    /// A method that takes `&mut self` changes the variable, or the part of one, that it is
+    /// called on; which methods do is for their traits to say.
+    fn method(&mut self, receiver: &Expr, name: &Ident, args: &[Expr]) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        let text = name.to_string();
+        let machine = self.machine.clone();
+        let method = quote_spanned!(name.span()=> #p::Method::<{ #p::name(#text) }, #machine, _>);
+        let variable = self.variable_under(receiver);
+        let value = self.value(receiver);
+        let args = self.arguments(args);
+        let values = &args.values;
+        let Some((local, steps)) = variable else {
+            return args
+                .around(quote_spanned!(name.span()=> #method::call(#value, #m, (#(#values,)*))));
+        };
+        if steps.is_empty() {
+            return args.around(quote_spanned!(name.span()=>
+                #method::call_at(#value, &#local, #m, (#(#values,)*))
+            ));
+        }
+        let (old, list, part, whole) = (own("old"), own("args"), own("part"), own("whole"));
+        let shown = shown(&local);
+        args.around(quote_spanned!(name.span()=> {
+            let (#old, #list) = (#value, (#(#values,)*));
+            if #p::is_mut::<{ #p::name(#text) }, #machine, _, _>(#m, &#old, &#list) {
+                let #part = #p::Var::new(#m, #shown, #old);
+                let result = #method::call_at(#old, &#part, #m, #list);
+                let mut #whole = #local.get(#m);
+                #whole #steps = #part.get(#m);
+                #local.set(#m, #whole);
+                result
+            } else {
+                #method::call(#old, #m, #list)
+            }
+        }))
+    }
+
+    /// The variable that `e` is, or is a part of, and the steps from it.
+    fn variable_under(&self, e: &Expr) -> Option<(Ident, TokenStream)> {
+        match &e.kind {
+            Kind::Name(name) => match self.lookup(name)? {
+                Binding::Var | Binding::Mut => Some((self.local(name), TokenStream::new())),
+                Binding::Value => None,
+            },
+            Kind::Deref(a) => self.variable_under(a),
+            Kind::Field { base, member } => {
+                let (local, steps) = self.variable_under(base)?;
+                Some((local, quote!(#steps.#member)))
+            }
+            Kind::Index { base, index } => {
+                let (local, steps) = self.variable_under(base)?;
+                Some((local, quote!(#steps[#index])))
+            }
+            _ => None,
+        }
     }
 
     fn structure(
@@ -637,14 +889,14 @@ impl<'a> Emitter<'a> {
         fields: &[(TokenStream, Expr)],
         rest: Option<&Expr>,
     ) -> TokenStream {
-        let (p, m) = (private(), own("m"));
+        let p = private();
         let path = self.without_self(path);
         let machine = &self.machine.clone();
         let members: Vec<TokenStream> = fields
             .iter()
             .map(|(member, e)| {
-                let value = self.value(e);
-                quote!(#member: #p::Coerce::coerce(#value, #m))
+                let value = self.coerced(e);
+                quote!(#member: #value)
             })
             .collect();
         let rest = rest.map(|e| {
@@ -666,6 +918,68 @@ impl<'a> Emitter<'a> {
         let tail = b.tail.as_ref().map(|e| self.value(e));
         self.scopes.pop();
         quote!({ #out #tail })
+    }
+}
+
+/// The arguments of a call, and what stands around it for parts of variables that go by `&mut`.
+#[derive(Default)]
+struct Arguments {
+    before: TokenStream,
+    values: Vec<TokenStream>,
+    after: TokenStream,
+}
+
+impl Arguments {
+    fn around(&self, call: TokenStream) -> TokenStream {
+        let Self { before, after, .. } = self;
+        if before.is_empty() {
+            return call;
+        }
+        let result = own("result");
+        quote!({ #before let #result = #call; #after #result })
+    }
+}
+
+/// The steps of a place none of which is computed.
+fn plain_steps(steps: &[Step]) -> Option<TokenStream> {
+    steps
+        .iter()
+        .map(|s| match s {
+            Step::Member(member) => Some(quote!(.#member)),
+            Step::Element(index) => Some(quote!([#index])),
+            Step::Computed(_) => None,
+        })
+        .collect()
+}
+
+/// A step of a place, with computed indices already evaluated.
+enum Part {
+    Plain(TokenStream),
+    Computed(Ident),
+}
+
+/// Changes the part of `place` at the end of `steps` to what `new` makes of its old value.
+fn change(
+    place: TokenStream,
+    steps: &[Part],
+    new: &dyn Fn(TokenStream) -> TokenStream,
+    depth: usize,
+) -> TokenStream {
+    let (p, m, element) = (private(), own("m"), own(&format!("element_{depth}")));
+    match steps.split_first() {
+        None => {
+            let value = new(place.clone());
+            quote!(#place = #value;)
+        }
+        Some((Part::Plain(step), rest)) => change(quote!(#place #step), rest, new, depth),
+        Some((Part::Computed(i), rest)) => {
+            let inside = change(quote!(#element), rest, new, depth + 1);
+            quote!({
+                let mut #element = #p::element(#m, #place, #i);
+                #inside
+                #place = #p::with_element(#m, #place, #i, #element);
+            })
+        }
     }
 }
 

@@ -72,6 +72,20 @@ fn lifted_function(
     let result = kernel.result.as_ref().map(|t| emitter.on(t)).unwrap_or_else(|| quote!(()));
     let info = info(kernel, wgsl_name);
     let quiet = quiet();
+    let changed: Vec<&Ident> =
+        kernel.params.iter().zip(&names).filter(|(p, _)| p.by_mut).map(|(_, n)| n).collect();
+    if !changed.is_empty() {
+        return changing_function(
+            kernel,
+            fn_name,
+            &quote!(#quiet #vis),
+            &names,
+            &types,
+            &result,
+            &info,
+            &body,
+        );
+    }
     quote! {
         #[doc(hidden)]
         #[inline(always)]
@@ -89,6 +103,53 @@ fn lifted_function(
                 #[inline(always)]
                 |#m: &__M, (#(#names,)*): (#(#types,)*)| { #body },
             )
+        }
+    }
+}
+
+/// The lifted function of a kernel with `&mut` parameters: copies go in, and what became of them
+/// comes out beside the result.
+#[expect(clippy::too_many_arguments, reason = "the parts of one function")]
+fn changing_function(
+    kernel: &Kernel,
+    fn_name: &Ident,
+    head: &TokenStream,
+    names: &[Ident],
+    types: &[TokenStream],
+    result: &TokenStream,
+    info: &TokenStream,
+    body: &TokenStream,
+) -> TokenStream {
+    let (p, m, out) = (private(), own("m"), own("out"));
+    let all = || kernel.params.iter().zip(names).zip(types);
+    let params = all().map(|((param, name), ty)| {
+        if param.by_mut {
+            quote!(#name: &#p::Var<#ty>)
+        } else {
+            quote!(#name: impl #p::Coerce<__M, #ty>)
+        }
+    });
+    let changed: Vec<_> = all().filter(|((param, _), _)| param.by_mut).collect();
+    let changed_types = changed.iter().map(|(_, ty)| ty);
+    let results = changed.iter().enumerate().map(|(i, ((_, name), _))| {
+        let i = syn::Index::from(i + 1);
+        quote!(#name.set(#m, #out.#i);)
+    });
+    quote! {
+        #[doc(hidden)]
+        #[inline(always)]
+        #head fn #fn_name<__M: #p::Machine>(#m: &__M, #(#params,)*) -> #result {
+            use #p::operations::*;
+            #info
+            let #out: (#result, #(#changed_types,)*) = #p::Machine::call(
+                #m,
+                &__INFO,
+                (#(#p::Coerce::<__M, #types>::coerce(#names, #m),)*),
+                #[inline(always)]
+                |#m: &__M, (#(#names,)*): (#(#types,)*)| { #body },
+            );
+            #(#results)*
+            #out.0
         }
     }
 }
@@ -121,7 +182,8 @@ pub(crate) fn kernel_fn(item: &syn::ItemFn) -> TokenStream {
     let refs = scalar_arguments(&item.sig, &fields);
     let doc = format!("The kernel of [`{name}()`]: `Kernel::of::<{name}>()`.");
     let info = info(&kernel, &name.to_string());
-    let entry = if types.is_empty() || kernel.result.is_none() {
+    let changes = kernel.params.iter().any(|p| p.by_mut);
+    let entry = if types.is_empty() || kernel.result.is_none() || changes {
         TokenStream::new()
     } else {
         quote! {
@@ -297,38 +359,75 @@ pub(crate) fn kernel_impl(
 
 fn method(kernel: &Kernel, self_ty: &TokenStream, name: &str, fn_name: &Ident) -> TokenStream {
     let p = private();
-    let rest = &kernel.params[1..];
+    let (receiver, rest) = kernel.params.split_first().expect("a method has a receiver");
     let names: Vec<&Ident> = rest.iter().map(|p| &p.name).collect();
-    let generics: Vec<Ident> = (0..rest.len()).map(|i| format_ident!("__A{i}")).collect();
     let resolve = |ty: &TokenStream| {
         if ty.to_string() == "Self" { self_ty.clone() } else { ty.clone() }
     };
-    let types = rest.iter().map(|q| resolve(&q.ty));
-    let result = match &kernel.result {
-        Some(ty) => {
-            let ty = resolve(ty);
-            quote!(<#ty as #p::Type>::On<__M>)
-        }
-        None => quote!(()),
+    let twin = |ty: &TokenStream| {
+        let ty = resolve(ty);
+        quote!(<#ty as #p::Type>::On<__M>)
     };
+    let mut generics = Vec::new();
+    let mut arguments = Vec::new();
+    for (i, q) in rest.iter().enumerate() {
+        let ty = twin(&q.ty);
+        if q.by_mut {
+            arguments.push(quote!(&'__a #p::Var<#ty>));
+        } else {
+            let generic = format_ident!("__A{i}");
+            generics.push(quote!(#generic: #p::Coerce<__M, #ty>));
+            arguments.push(quote!(#generic));
+        }
+    }
+    let lifetime = rest.iter().any(|q| q.by_mut).then(|| quote!('__a,));
+    let result = kernel.result.as_ref().map(twin).unwrap_or_else(|| quote!(()));
     let quiet = quiet();
-    let (m, this) = (own("m"), own("this"));
-    quote! {
-        #quiet
-        impl<
-            __M: #p::Machine,
-            #(#generics: #p::Coerce<__M, <#types as #p::Type>::On<__M>>,)*
-        > #p::HostMethod<{ #p::name(#name) }, __M, (#(#generics,)*)> for #self_ty {
-            type Output = #result;
+    let (m, this, variable) = (own("m"), own("this"), own("variable"));
+    let of = quote!(<Self as #p::HostMethod<{ #p::name(#name) }, __M, (#(#arguments,)*)>>);
+    let calls = if receiver.by_mut {
+        quote! {
+            const IS_MUT: bool = true;
 
             #[inline(always)]
             fn call(
                 #this: <Self as #p::Type>::On<__M>,
                 #m: &__M,
-                (#(#names,)*): (#(#generics,)*),
-            ) -> <Self as #p::HostMethod<{ #p::name(#name) }, __M, (#(#generics,)*)>>::Output {
+                (#(#names,)*): (#(#arguments,)*),
+            ) -> #of::Output {
+                <#self_ty>::#fn_name(#m, &#p::Var::new(#m, "self", #this), #(#names),*)
+            }
+
+            #[inline(always)]
+            fn call_at(
+                _: <Self as #p::Type>::On<__M>,
+                #variable: &#p::Var<<Self as #p::Type>::On<__M>>,
+                #m: &__M,
+                (#(#names,)*): (#(#arguments,)*),
+            ) -> #of::Output {
+                <#self_ty>::#fn_name(#m, #variable, #(#names),*)
+            }
+        }
+    } else {
+        quote! {
+            #[inline(always)]
+            fn call(
+                #this: <Self as #p::Type>::On<__M>,
+                #m: &__M,
+                (#(#names,)*): (#(#arguments,)*),
+            ) -> #of::Output {
                 <#self_ty>::#fn_name(#m, #this, #(#names),*)
             }
+        }
+    };
+    quote! {
+        #quiet
+        impl<#lifetime __M: #p::Machine, #(#generics,)*>
+            #p::HostMethod<{ #p::name(#name) }, __M, (#(#arguments,)*)> for #self_ty
+        {
+            type Output = #result;
+
+            #calls
         }
     }
 }

@@ -11,11 +11,13 @@ pub(crate) struct Kernel {
     pub(crate) body: Block,
 }
 
-/// A parameter. References are dropped: values are copied.
+/// A parameter. Shared references are dropped: values are copied.
 pub(crate) struct Param {
     pub(crate) name: Ident,
     pub(crate) ty: TokenStream,
     pub(crate) mutable: bool,
+    /// `&mut`: what the kernel makes of it goes back to the caller.
+    pub(crate) by_mut: bool,
 }
 
 #[derive(Clone)]
@@ -83,6 +85,10 @@ pub(crate) enum Kind {
         value: Box<Expr>,
         ty: TokenStream,
     },
+    /// `*x`: the value of a `&mut` parameter.
+    Deref(Box<Expr>),
+    /// `&mut place`, as an argument.
+    RefMut(Place),
     /// A call of a kernel by its path.
     Call {
         path: TokenStream,
@@ -108,6 +114,16 @@ pub(crate) enum Kind {
         base: Box<Expr>,
         index: TokenStream,
     },
+    /// An element of an array at a place that is computed.
+    Element {
+        base: Box<Expr>,
+        index: Box<Expr>,
+    },
+    Array(Vec<Expr>),
+    Repeat {
+        value: Box<Expr>,
+        len: TokenStream,
+    },
     Struct {
         path: TokenStream,
         fields: Vec<(TokenStream, Expr)>,
@@ -131,12 +147,11 @@ pub(crate) enum Kind {
     For {
         label: Option<String>,
         var: Option<Ident>,
-        start: Box<Expr>,
-        end: Box<Expr>,
+        range: Range,
         body: Block,
     },
     Block(Block),
-    Break(Option<String>),
+    Break(Option<String>, Option<Box<Expr>>),
     Continue(Option<String>),
     Return(Option<Box<Expr>>),
     Assign {
@@ -152,11 +167,31 @@ pub(crate) enum Kind {
     Error,
 }
 
-/// A variable, or a member of one.
+/// What a `for` runs over.
+#[derive(Clone)]
+pub(crate) struct Range {
+    pub(crate) start: Box<Expr>,
+    pub(crate) end: Box<Expr>,
+    pub(crate) inclusive: bool,
+    pub(crate) reversed: bool,
+}
+
+/// A variable, or a part of one.
 #[derive(Clone)]
 pub(crate) struct Place {
     pub(crate) name: Ident,
-    pub(crate) members: Vec<TokenStream>,
+    pub(crate) steps: Vec<Step>,
+}
+
+/// From a value to a part of it.
+#[derive(Clone)]
+pub(crate) enum Step {
+    /// A member of a struct or a tuple.
+    Member(TokenStream),
+    /// An element at a place that the source names.
+    Element(TokenStream),
+    /// An element at a place that is computed.
+    Computed(Expr),
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -185,20 +220,36 @@ impl Kind {
             | Self::Bool(_)
             | Self::Name(_)
             | Self::Path(_)
-            | Self::Break(_)
+            | Self::Break(_, None)
             | Self::Continue(_)
             | Self::Return(None)
             | Self::Error => vec![],
-            Self::Neg(a) | Self::Not(a) | Self::Return(Some(a)) => vec![a],
+            Self::RefMut(_) => vec![],
+            Self::Deref(a)
+            | Self::Neg(a)
+            | Self::Not(a)
+            | Self::Return(Some(a))
+            | Self::Break(_, Some(a)) => {
+                vec![a]
+            }
             Self::Cast { value, .. } => vec![value],
             Self::Field { base, .. } | Self::Index { base, .. } => vec![base],
-            Self::Assign { value, .. } | Self::OpAssign { value, .. } => vec![value],
+            Self::Element { base, index } => vec![base, index],
+            Self::Repeat { value, .. } => vec![value],
+            Self::Assign { place, value } | Self::OpAssign { place, value, .. } => {
+                let steps = place.steps.iter().filter_map(|s| match s {
+                    Step::Computed(e) => Some(e),
+                    _ => None,
+                });
+                core::iter::once(&**value).chain(steps).collect()
+            }
             Self::Binary { a, b, .. } | Self::Logic { a, b, .. } | Self::Compare { a, b, .. } => {
                 vec![a, b]
             }
-            Self::Call { args, .. } | Self::Associated { args, .. } | Self::Tuple(args) => {
-                args.iter().collect()
-            }
+            Self::Call { args, .. }
+            | Self::Associated { args, .. }
+            | Self::Tuple(args)
+            | Self::Array(args) => args.iter().collect(),
             Self::Method { receiver, args, .. } => {
                 core::iter::once(&**receiver).chain(args).collect()
             }
@@ -216,8 +267,8 @@ impl Kind {
                 all.extend(body.children());
                 all
             }
-            Self::For { start, end, body, .. } => {
-                let mut all = vec![&**start, &**end];
+            Self::For { range, body, .. } => {
+                let mut all = vec![&*range.start, &*range.end];
                 all.extend(body.children());
                 all
             }
@@ -246,7 +297,7 @@ impl Expr {
     fn ends<'a>(&'a self, inside: &mut Vec<Option<&'a str>>, loops: usize) -> bool {
         match &self.kind {
             Kind::Return(_) => true,
-            Kind::Break(label) | Kind::Continue(label) => match label {
+            Kind::Break(label, _) | Kind::Continue(label) => match label {
                 None => loops == 0,
                 Some(l) => !inside.iter().flatten().any(|x| x == l),
             },
@@ -260,9 +311,77 @@ impl Expr {
         }
     }
 
+    /// Whether its value comes out of control flow, not of an expression.
+    pub(crate) fn is_structured(&self) -> bool {
+        match &self.kind {
+            Kind::If { .. } => true,
+            Kind::Loop { label, body } => {
+                let mut values = Vec::new();
+                body.children()
+                    .iter()
+                    .for_each(|e| e.break_values(label.as_deref(), 0, &mut values));
+                !values.is_empty()
+            }
+            Kind::Block(b) => b.ends_lanes() || b.tail.as_ref().is_some_and(|e| e.is_structured()),
+            _ => false,
+        }
+    }
+
+    /// What `break` gives to the loop with `label`, `depth` loops further out.
+    fn break_values<'a>(&'a self, label: Option<&str>, depth: usize, found: &mut Vec<&'a Expr>) {
+        match &self.kind {
+            Kind::Break(None, Some(value)) if depth == 0 => found.push(value),
+            Kind::Break(Some(l), Some(value)) if Some(l.as_str()) == label => found.push(value),
+            _ => {}
+        }
+        let is_loop =
+            matches!(self.kind, Kind::While { .. } | Kind::For { .. } | Kind::Loop { .. });
+        let depth = depth + usize::from(is_loop);
+        self.kind.children().iter().for_each(|e| e.break_values(label, depth, found));
+    }
+
+    /// The expressions that may become its value.
+    fn outcomes<'a>(&'a self, found: &mut Vec<&'a Expr>) {
+        let of_block = |b: &'a Block, found: &mut Vec<&'a Expr>| {
+            b.tail.iter().for_each(|e| e.outcomes(found));
+        };
+        match &self.kind {
+            Kind::If { then, otherwise, .. } => {
+                of_block(then, found);
+                otherwise.iter().for_each(|e| e.outcomes(found));
+            }
+            Kind::Block(b) => of_block(b, found),
+            Kind::Loop { label, body } => {
+                let mut values = Vec::new();
+                body.children()
+                    .iter()
+                    .for_each(|e| e.break_values(label.as_deref(), 0, &mut values));
+                values.iter().for_each(|e| e.outcomes(found));
+            }
+            _ if self.diverges() => {}
+            _ => found.push(self),
+        }
+    }
+
+    /// Whether it is an integer of the source whose type is for others to say.
+    pub(crate) fn is_untyped_integer(&self) -> bool {
+        match &self.kind {
+            Kind::Int { suffix, .. } => suffix.is_none(),
+            Kind::Neg(a) => a.is_untyped_integer(),
+            _ => false,
+        }
+    }
+
+    /// Whether one of its outcomes says what type those have that are bare integers.
+    pub(crate) fn has_typed_outcome(&self) -> bool {
+        let mut found = Vec::new();
+        self.outcomes(&mut found);
+        found.iter().any(|e| !e.is_untyped_integer())
+    }
+
     /// Whether no lane goes on behind it.
     pub(crate) fn diverges(&self) -> bool {
-        matches!(self.kind, Kind::Return(_) | Kind::Break(_) | Kind::Continue(_))
+        matches!(self.kind, Kind::Return(_) | Kind::Break(..) | Kind::Continue(_))
     }
 
     /// Whether it may be evaluated where the source would not: it has no effect and cannot trap.
@@ -277,9 +396,10 @@ impl Expr {
             | Kind::Loop { .. }
             | Kind::For { .. }
             | Kind::Block(_)
-            | Kind::Break(_)
+            | Kind::Break(..)
             | Kind::Continue(_)
             | Kind::Return(_)
+            | Kind::Element { .. }
             | Kind::Assign { .. }
             | Kind::OpAssign { .. } => false,
             _ => true,

@@ -1,12 +1,16 @@
 //! From syn's syntax to the model. The only module that knows syn's expressions.
 
+mod pattern;
+
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{ToTokens, quote};
 use syn::spanned::Spanned;
-use syn::{BinOp, Lit, Member, Pat, UnOp};
+use syn::{BinOp, Lit, Pat, UnOp};
 
 use crate::diag::Errors;
-use crate::model::{BinaryOp, Block, Expr, IntType, Kernel, Kind, Let, Param, Place, Stmt};
+use crate::model::{
+    BinaryOp, Block, Expr, IntType, Kernel, Kind, Let, Param, Place, Range, Step, Stmt,
+};
 use crate::ops;
 
 /// A function or method; `self_ty` is the type of the `impl`.
@@ -31,78 +35,51 @@ pub(crate) fn function(
             "write a kernel for each type; `impl` methods may use `Self`",
         );
     }
-    let params = sig.inputs.iter().filter_map(|arg| param(arg, self_ty, errors)).collect();
+    let mut parser = Parser { errors, temporaries: 0 };
+    let mut prologue = Vec::new();
+    let params = sig.inputs.iter().map(|arg| parser.param(arg, self_ty, &mut prologue)).collect();
     let result = match &sig.output {
         syn::ReturnType::Default => None,
         syn::ReturnType::Type(_, ty) => Some(value_type(ty)),
     };
-    Kernel { name: sig.ident.clone(), params, result, body: Parser { errors }.block(body) }
+    let mut body = parser.block(body);
+    body.stmts.splice(0..0, prologue);
+    Kernel { name: sig.ident.clone(), params, result, body }
 }
 
 /// A closure literal; its parameters must have types.
 pub(crate) fn closure(c: &syn::ExprClosure, name: &str, errors: &mut Errors) -> Kernel {
-    let mut params = Vec::new();
+    let mut parser = Parser { errors, temporaries: 0 };
+    let (mut params, mut prologue) = (Vec::new(), Vec::new());
     for pat in &c.inputs {
         let Pat::Type(typed) = pat else {
-            errors.at(
+            parser.errors.at(
                 pat.span(),
                 "a parameter of a kernel needs a type",
                 "write for example `|ray: Ray|`",
             );
             continue;
         };
-        params.extend(typed_param(&typed.pat, &typed.ty, errors));
+        let param = parser.typed_param(&typed.pat, &typed.ty, &mut prologue);
+        if param.by_mut {
+            parser.errors.at(
+                typed.ty.span(),
+                "a closure kernel has no `&mut` parameters: nothing would see the change",
+                "return the new value",
+            );
+        }
+        params.push(param);
     }
     let result = match &c.output {
         syn::ReturnType::Default => None,
         syn::ReturnType::Type(_, ty) => Some(value_type(ty)),
     };
-    let body = match &*c.body {
-        syn::Expr::Block(b) if b.label.is_none() => Parser { errors }.block(&b.block),
-        e => Block { stmts: vec![], tail: Some(Box::new(Parser { errors }.expr(e))) },
+    let mut body = match &*c.body {
+        syn::Expr::Block(b) if b.label.is_none() => parser.block(&b.block),
+        e => Block { stmts: vec![], tail: Some(Box::new(parser.expr(e))) },
     };
+    body.stmts.splice(0..0, prologue);
     Kernel { name: Ident::new(name, Span::call_site()), params, result, body }
-}
-
-fn param(arg: &syn::FnArg, self_ty: Option<&syn::Type>, errors: &mut Errors) -> Option<Param> {
-    match arg {
-        syn::FnArg::Receiver(r) => {
-            let by_mut = matches!(r.kind, syn::ReceiverKind::Reference(_, _, Some(_)));
-            if r.mutability.is_some() || by_mut {
-                errors.at(
-                    r.span(),
-                    "a kernel cannot change `self`",
-                    "take `&self` and return the new value",
-                );
-            }
-            let ty = self_ty.map(ToTokens::to_token_stream).unwrap_or_else(|| quote!(Self));
-            Some(Param { name: Ident::new("self", r.self_token.span), ty, mutable: false })
-        }
-        syn::FnArg::Typed(p) => typed_param(&p.pat, &p.ty, errors),
-    }
-}
-
-fn typed_param(pat: &Pat, ty: &syn::Type, errors: &mut Errors) -> Option<Param> {
-    if let syn::Type::Reference(r) = ty
-        && r.mutability.is_some()
-    {
-        errors.at(ty.span(), "a kernel has no `&mut` parameters", "return the new value");
-    }
-    match pat {
-        Pat::Ident(p) if p.by_ref.is_none() && p.subpat.is_none() => Some(Param {
-            name: p.ident.clone(),
-            ty: value_type(ty),
-            mutable: p.mutability.is_some(),
-        }),
-        _ => {
-            errors.at(
-                pat.span(),
-                "a parameter of a kernel is a single name",
-                "name the value and take its members in the body",
-            );
-            None
-        }
-    }
 }
 
 /// The type without references: values on a machine are copied.
@@ -131,9 +108,47 @@ fn is_type_name(ident: &Ident) -> bool {
 
 struct Parser<'a> {
     errors: &'a mut Errors,
+    /// How many names have been made up.
+    temporaries: usize,
 }
 
 impl Parser<'_> {
+    fn param(
+        &mut self,
+        arg: &syn::FnArg,
+        self_ty: Option<&syn::Type>,
+        prologue: &mut Vec<Stmt>,
+    ) -> Param {
+        match arg {
+            syn::FnArg::Receiver(r) => {
+                let by_mut = matches!(r.kind, syn::ReceiverKind::Reference(_, _, Some(_)));
+                let ty = self_ty.map(ToTokens::to_token_stream).unwrap_or_else(|| quote!(Self));
+                let mutable = r.mutability.is_some() && !by_mut;
+                Param { name: Ident::new("self", r.self_token.span), ty, mutable, by_mut }
+            }
+            syn::FnArg::Typed(p) => self.typed_param(&p.pat, &p.ty, prologue),
+        }
+    }
+
+    fn typed_param(&mut self, pat: &Pat, ty: &syn::Type, prologue: &mut Vec<Stmt>) -> Param {
+        let by_mut = matches!(ty, syn::Type::Reference(r) if r.mutability.is_some());
+        let ty = value_type(ty);
+        match pat {
+            Pat::Ident(p) if p.by_ref.is_none() && p.subpat.is_none() => Param {
+                name: p.ident.clone(),
+                ty,
+                mutable: p.mutability.is_some() && !by_mut,
+                by_mut,
+            },
+            _ => {
+                let name = self.temporary("parts");
+                let from = Expr { kind: Kind::Name(name.clone()), span: pat.span() };
+                self.irrefutable(pat, &from, prologue);
+                Param { name, ty, mutable: false, by_mut: false }
+            }
+        }
+    }
+
     fn error(&mut self, span: Span, what: impl core::fmt::Display, help: &str) -> Kind {
         self.errors.at(span, what, help);
         Kind::Error
@@ -164,7 +179,7 @@ impl Parser<'_> {
         let last = b.stmts.len().wrapping_sub(1);
         for (i, stmt) in b.stmts.iter().enumerate() {
             match stmt {
-                syn::Stmt::Local(l) => stmts.extend(self.local(l).map(Stmt::Let)),
+                syn::Stmt::Local(l) => stmts.extend(self.local(l)),
                 syn::Stmt::Expr(e, None) if i == last => tail = Some(self.boxed(e)),
                 syn::Stmt::Expr(e, _) => stmts.push(Stmt::Expr(self.expr(e))),
                 syn::Stmt::Item(item) => stmts.extend(self.item(item)),
@@ -191,7 +206,7 @@ impl Parser<'_> {
         }
     }
 
-    fn local(&mut self, l: &syn::Local) -> Option<Let> {
+    fn local(&mut self, l: &syn::Local) -> Vec<Stmt> {
         self.no_attributes(&l.attrs);
         let (pat, ty) = match &l.pat {
             Pat::Type(t) => (&*t.pat, Some(value_type(&t.ty))),
@@ -216,26 +231,49 @@ impl Parser<'_> {
             }
             Pat::Wild(_) => (None, false),
             _ => {
-                self.errors.at(
-                    pat.span(),
-                    "a `let` of a kernel binds a single name",
-                    "bind the value and take its members: `let x = v.0;`",
-                );
-                return None;
+                let Some(init) = init else {
+                    self.errors.at(
+                        pat.span(),
+                        "a pattern of a kernel needs a value",
+                        "declare each name by itself: `let a; let b;`",
+                    );
+                    return Vec::new();
+                };
+                if ty.is_none() {
+                    self.typed_numbers(pat, &init);
+                }
+                return self.destructure(pat, init, ty);
             }
         };
         if let Some(init) = &init
             && mutable
             && ty.is_none()
-            && matches!(init.kind, Kind::Int { suffix: None, .. })
         {
+            self.typed_number(init);
+        }
+        vec![Stmt::Let(Let { name, mutable, ty, init })]
+    }
+
+    /// What a variable begins with must say which type of integer it is.
+    fn typed_number(&mut self, init: &Expr) {
+        if matches!(init.kind, Kind::Int { suffix: None, .. }) {
             self.errors.at(
                 init.span,
                 "a mutable integer needs a type",
                 "write `let mut n: u32 = ...`, or give the number a suffix: `0u32`",
             );
         }
-        Some(Let { name, mutable, ty, init })
+    }
+
+    fn typed_numbers(&mut self, pat: &Pat, init: &Expr) {
+        if let (Pat::Tuple(pats), Kind::Tuple(items)) = (pat, &init.kind) {
+            for (pat, item) in pats.elems.iter().zip(items) {
+                match pat {
+                    Pat::Ident(p) if p.mutability.is_some() => self.typed_number(item),
+                    pat => self.typed_numbers(pat, item),
+                }
+            }
+        }
     }
 
     fn expr(&mut self, e: &syn::Expr) -> Expr {
@@ -268,16 +306,18 @@ impl Parser<'_> {
             },
             syn::Expr::Loop(l) => Kind::Loop { label: label(&l.label), body: self.block(&l.body) },
             syn::Expr::ForLoop(f) => self.for_loop(f),
-            syn::Expr::Block(b) if b.label.is_none() => Kind::Block(self.block(&b.block)),
+            syn::Expr::Block(b) => match &b.label {
+                None => Kind::Block(self.block(&b.block)),
+                Some(_) => self.labelled_block(b),
+            },
             syn::Expr::Break(b) => {
-                if let Some(e) = &b.expr {
-                    return self.error(
-                        e.span(),
-                        "a kernel's `break` has no value",
-                        "assign to a variable that is declared before the loop, then `break`",
-                    );
-                }
-                Kind::Break(lifetime(&b.label))
+                let value = b.expr.as_ref().map(|e| self.boxed(e));
+                Kind::Break(lifetime(&b.label), value)
+            }
+            syn::Expr::Match(m) => self.matching(m),
+            syn::Expr::Array(a) => Kind::Array(self.exprs(&a.elems)),
+            syn::Expr::Repeat(r) => {
+                Kind::Repeat { value: self.boxed(&r.expr), len: r.len.to_token_stream() }
             }
             syn::Expr::Continue(c) => Kind::Continue(lifetime(&c.label)),
             syn::Expr::Return(r) => Kind::Return(r.expr.as_ref().map(|e| self.boxed(e))),
@@ -294,16 +334,13 @@ impl Parser<'_> {
 
     fn unsupported(&mut self, e: &syn::Expr) -> Kind {
         let (what, help) = match e {
-            syn::Expr::Match(_) => ("`match`", "write a chain of `if ... else if ... else`"),
             syn::Expr::Closure(_) => ("closures", "write a `#[kernel] fn` and call it"),
             syn::Expr::Try(_) => ("`?`", "give a value that says what happened: a miss is data"),
-            syn::Expr::Reference(_) => ("`&mut`", "return the new value and assign it"),
-            syn::Expr::Array(_) | syn::Expr::Repeat(_) => {
-                ("array expressions", "write a struct or a vector")
+            syn::Expr::Reference(_) => {
+                ("`&mut` outside the arguments of a call", "write the variable itself")
             }
             syn::Expr::Range(_) => ("ranges outside `for`", "write `for i in a..b`"),
             syn::Expr::Let(_) => ("`if let`", "compare the value: kernels have no Option"),
-            syn::Expr::Block(_) => ("labelled blocks", "write a labelled `loop` that breaks"),
             syn::Expr::Unsafe(_) => ("`unsafe`", "write safe code"),
             syn::Expr::Await(_) | syn::Expr::Async(_) => ("`async`", "write plain code"),
             _ => ("this expression", "write it with the operations of the kernel language"),
@@ -353,7 +390,7 @@ impl Parser<'_> {
         match u.op {
             UnOp::Neg(_) => Kind::Neg(self.boxed(&u.expr)),
             UnOp::Not(_) => Kind::Not(self.boxed(&u.expr)),
-            _ => self.kind(&u.expr),
+            _ => Kind::Deref(self.boxed(&u.expr)),
         }
     }
 
@@ -383,8 +420,21 @@ impl Parser<'_> {
         }
     }
 
+    /// Arguments may be `&mut`.
+    fn arguments<'b>(&mut self, args: impl IntoIterator<Item = &'b syn::Expr>) -> Vec<Expr> {
+        args.into_iter()
+            .map(|e| match e {
+                syn::Expr::Reference(r) if r.mutability.is_some() => {
+                    let kind = self.place(&r.expr).map_or(Kind::Error, Kind::RefMut);
+                    Expr { kind, span: e.span() }
+                }
+                e => self.expr(e),
+            })
+            .collect()
+    }
+
     fn call(&mut self, c: &syn::ExprCall) -> Kind {
-        let args = self.exprs(&c.args);
+        let args = self.arguments(&c.args);
         let syn::Expr::Path(p) = &*c.func else {
             return self.error(c.func.span(), "only a kernel can be called", "call it by its name");
         };
@@ -413,21 +463,49 @@ impl Parser<'_> {
         Kind::Method {
             receiver: self.boxed(&c.receiver),
             name: c.method.clone(),
-            args: self.exprs(&c.args),
+            args: self.arguments(&c.args),
         }
     }
 
     fn index(&mut self, i: &syn::ExprIndex) -> Kind {
-        match &*i.index {
-            syn::Expr::Lit(syn::ExprLit { lit: Lit::Int(n), .. }) if n.suffix().is_empty() => {
-                Kind::Index { base: self.boxed(&i.expr), index: n.to_token_stream() }
-            }
-            index => self.error(
-                index.span(),
-                "a kernel indexes arrays by a number of the source",
-                "write for example `color[0]`; for primitives `bvh.primitive(hit)`",
-            ),
+        let base = self.boxed(&i.expr);
+        match self.step(&i.index) {
+            Some(Step::Element(index)) => Kind::Index { base, index },
+            Some(Step::Computed(index)) => Kind::Element { base, index: Box::new(index) },
+            _ => Kind::Error,
         }
+    }
+
+    /// What stands between brackets: a number of the source, or `i as usize`.
+    fn step(&mut self, index: &syn::Expr) -> Option<Step> {
+        match index {
+            syn::Expr::Lit(syn::ExprLit { lit: Lit::Int(n), .. })
+                if matches!(n.suffix(), "" | "usize") =>
+            {
+                Some(Step::Element(n.to_token_stream()))
+            }
+            syn::Expr::Cast(c) if is_usize(&c.ty) => Some(Step::Computed(self.expr(&c.expr))),
+            syn::Expr::Paren(p) => self.step(&p.expr),
+            index => {
+                self.errors.at(
+                    index.span(),
+                    "a kernel indexes by a number of the source or by an integer `as usize`",
+                    "write `color[0]` or `weights[i as usize]`, with an `i` of type `u32` or `i32`",
+                );
+                None
+            }
+        }
+    }
+
+    /// A labelled block is a loop that goes round once: only its label can leave it (E0695).
+    fn labelled_block(&mut self, b: &syn::ExprBlock) -> Kind {
+        let label = label(&b.label);
+        let mut body = self.block(&b.block);
+        let span = b.span();
+        let tail = body.tail.take();
+        let exit = Expr { kind: Kind::Break(label.clone(), tail), span };
+        body.stmts.push(Stmt::Expr(exit));
+        Kind::Loop { label, body }
     }
 
     fn structure(&mut self, s: &syn::ExprStruct) -> Kind {
@@ -457,20 +535,27 @@ impl Parser<'_> {
                 );
             }
         };
-        let mut range = &*f.expr;
-        while let syn::Expr::Paren(p) = range {
-            range = &p.expr;
+        let mut range = inside_parens(&f.expr);
+        let mut reversed = false;
+        while let syn::Expr::MethodCall(c) = range
+            && c.method == "rev"
+        {
+            reversed = !reversed;
+            range = inside_parens(&c.receiver);
         }
         let syn::Expr::Range(r) = range else {
             return self.error(
                 f.expr.span(),
                 "a kernel's `for` runs over a range",
-                "write `for i in 0u32..n`",
+                "write `for i in 0u32..n` or `for i in (0u32..n).rev()`",
             );
         };
-        let (Some(start), Some(end), syn::RangeLimits::HalfOpen(_)) = (&r.start, &r.end, &r.limits)
-        else {
-            return self.error(r.span(), "a kernel's range is `a..b`", "write `for i in a..b`");
+        let (Some(start), Some(end)) = (&r.start, &r.end) else {
+            return self.error(
+                r.span(),
+                "a kernel's range has two bounds",
+                "write `for i in a..b` or `for i in a..=b`",
+            );
         };
         let (start, end) = (self.boxed(start), self.boxed(end));
         let untyped = |e: &Expr| matches!(e.kind, Kind::Int { suffix: None, .. });
@@ -481,17 +566,24 @@ impl Parser<'_> {
                 "give one bound a suffix: `for i in 0u32..8`",
             );
         }
-        Kind::For { label: label(&f.label), var, start, end, body: self.block(&f.body) }
+        let inclusive = matches!(r.limits, syn::RangeLimits::Closed(_));
+        let range = Range { start, end, inclusive, reversed };
+        Kind::For { label: label(&f.label), var, range, body: self.block(&f.body) }
     }
 
     fn place(&mut self, e: &syn::Expr) -> Option<Place> {
         match e {
             syn::Expr::Path(p) if p.path.get_ident().is_some() => {
-                Some(Place { name: p.path.get_ident()?.clone(), members: vec![] })
+                Some(Place { name: p.path.get_ident()?.clone(), steps: vec![] })
             }
             syn::Expr::Field(f) => {
                 let mut place = self.place(&f.base)?;
-                place.members.push(member(&f.member));
+                place.steps.push(Step::Member(f.member.to_token_stream()));
+                Some(place)
+            }
+            syn::Expr::Index(i) => {
+                let mut place = self.place(&i.expr)?;
+                place.steps.push(self.step(&i.index)?);
                 Some(place)
             }
             syn::Expr::Paren(p) => self.place(&p.expr),
@@ -500,7 +592,7 @@ impl Parser<'_> {
                 self.errors.at(
                     e.span(),
                     "a kernel cannot assign to this",
-                    "assign to a variable or to a member of one",
+                    "assign to a variable, or to a member or an element of one",
                 );
                 None
             }
@@ -521,8 +613,15 @@ impl Parser<'_> {
     }
 }
 
-fn member(m: &Member) -> TokenStream {
-    m.to_token_stream()
+fn is_usize(ty: &syn::Type) -> bool {
+    matches!(ty, syn::Type::Path(t) if t.path.is_ident("usize"))
+}
+
+fn inside_parens(mut e: &syn::Expr) -> &syn::Expr {
+    while let syn::Expr::Paren(p) = e {
+        e = &p.expr;
+    }
+    e
 }
 
 fn attributes(e: &syn::Expr) -> &[syn::Attribute] {

@@ -160,9 +160,16 @@ fn twin(item: &syn::DeriveInput, fields: &[syn::Field]) -> TokenStream {
         {
             type Output = <#name as #p::HostMethod<NAME, M, A>>::Output;
 
+            const IS_MUT: bool = <#name as #p::HostMethod<NAME, M, A>>::IS_MUT;
+
             #[inline(always)]
             fn call(self, m: &M, args: A) -> Self::Output {
                 <#name as #p::HostMethod<NAME, M, A>>::call(self, m, args)
+            }
+
+            #[inline(always)]
+            fn call_at(self, variable: &#p::Var<Self>, m: &M, args: A) -> Self::Output {
+                <#name as #p::HostMethod<NAME, M, A>>::call_at(self, variable, m, args)
             }
         }
 

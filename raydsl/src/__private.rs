@@ -6,7 +6,7 @@ pub use crate::machine::{
     Branch, Capture, Coerce, Compare, Field, HostMethod, KernelFn, KernelInfo, LaneMachine, Leaves,
     Loop, Machine, Method, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv,
     OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Recorder, Resource, Ret, Schema, Type,
-    Value, Var, Varying, name,
+    Value, Var, Varying, is_mut, name,
 };
 
 /// Traits of associated functions.
@@ -16,6 +16,8 @@ pub mod operations {
     };
 }
 
+pub use crate::machine::index::with_element;
+use crate::machine::index::{Index, Indexed};
 use crate::machine::{B, Bounds, F, I, U};
 
 /// A literal.
@@ -65,16 +67,49 @@ pub fn less<M: Machine, C: OpCompare<M, C, Output = B<M>>>(m: &M, a: C, b: C) ->
     C::compare(m, Compare::Lt, a, b)
 }
 
+/// Whether an inclusive range goes on: its last number has not been had, and `a <= b`.
+#[inline(always)]
+pub fn goes_on<M: Machine, C: OpCompare<M, C, Output = B<M>>>(
+    m: &M,
+    done: B<M>,
+    a: C,
+    b: C,
+) -> B<M> {
+    let within = C::compare(m, Compare::Le, a, b);
+    B(m.bool_binary(crate::machine::BoolBinary::And, m.bool_not(done.0), within.0))
+}
+
+/// Whether a counter has its last value.
+#[inline(always)]
+pub fn equal<M: Machine, C: OpCompare<M, C, Output = B<M>>>(m: &M, a: C, b: C) -> B<M> {
+    C::compare(m, Compare::Eq, a, b)
+}
+
+/// `a[i as usize]`.
+#[inline(always)]
+pub fn element<M: Machine, A: Indexed<M>>(m: &M, a: A, i: impl Index<M>) -> A::Element {
+    let i = i.index(m);
+    a.element(m, i)
+}
+
 /// The next value of a counter.
 #[inline(always)]
 pub fn increment<M: Machine, C: Counter<M>>(m: &M, a: C) -> C {
     a.next(m)
 }
 
+/// The value of a counter before this one.
+#[inline(always)]
+pub fn decrement<M: Machine, C: Counter<M>>(m: &M, a: C) -> C {
+    a.previous(m)
+}
+
 /// The type of a counter.
 pub trait Counter<M: Machine> {
     /// One more; the bound stops it before it overflows.
     fn next(self, m: &M) -> Self;
+    /// One less.
+    fn previous(self, m: &M) -> Self;
 }
 
 impl<M: Machine> Counter<M> for I<M> {
@@ -82,11 +117,19 @@ impl<M: Machine> Counter<M> for I<M> {
     fn next(self, m: &M) -> Self {
         I(m.i32_binary(crate::machine::IntBinary::WrappingAdd, self.0, m.i32(1)))
     }
+    #[inline(always)]
+    fn previous(self, m: &M) -> Self {
+        I(m.i32_binary(crate::machine::IntBinary::WrappingSub, self.0, m.i32(1)))
+    }
 }
 
 impl<M: Machine> Counter<M> for U<M> {
     #[inline(always)]
     fn next(self, m: &M) -> Self {
         U(m.u32_binary(crate::machine::IntBinary::WrappingAdd, self.0, m.u32(1)))
+    }
+    #[inline(always)]
+    fn previous(self, m: &M) -> Self {
+        U(m.u32_binary(crate::machine::IntBinary::WrappingSub, self.0, m.u32(1)))
     }
 }

@@ -3,8 +3,14 @@
 #![allow(missing_docs, reason = "the names say what each kernel is about")]
 #![allow(clippy::all, reason = "every form is wanted, the clumsy ones too")]
 
+mod changes;
+mod patterns;
+
 use raydsl::kernel;
 use raydsl::prelude::*;
+
+pub use changes::*;
+pub use patterns::*;
 
 /// Calls `$use!` with a row for each kernel: its name, the numbers that it can take, and whether
 /// WGSL gives the CPU's bits.
@@ -60,6 +66,23 @@ macro_rules! kernel_table {
             arrays: Any Same;
             newton: Tame Same;
             mandelbrot: Tame Same;
+            match_numbers: Tame Same;
+            match_signed: Tame Same;
+            match_tuples: Tame Same;
+            match_in_loops: Tame Same;
+            tuples: Tame Same;
+            tuple_result: Tame Same;
+            tuple_calls: Tame Same;
+            struct_patterns: Tame Same;
+            inclusive_ranges: Tame Same;
+            reversed_ranges: Tame Same;
+            loops_with_values: Tame Same;
+            labelled_blocks: Tame Same;
+            array_elements: Tame Same;
+            array_of_structs: Tame Same;
+            random_sum: Any Same;
+            random_walk: Tame Same;
+            changed_arguments: Tame Same;
         }
     };
 }

@@ -19,8 +19,8 @@ pub struct View {
 const SAMPLE: usize = 20_000;
 /// Share of the points on either side that may be stray.
 const STRAY: f64 = 0.003;
-/// Share of the points that must be in the picture; a few in its corners may be lost.
-const SEEN: f64 = 0.998;
+/// Share of the points that must be in the picture; stray ones may be lost.
+const SEEN: f64 = 0.9995;
 /// Leaves some air around the cloud.
 const MARGIN: f64 = 1.04;
 const FOV_Y_DEGREES: f64 = 40.0;

@@ -4,7 +4,7 @@
 //! part of the trait, so that the methods of a user's types and those of the library meet without
 //! an import.
 
-use super::{B, Coerce, F, F32Binary, F32Unary, I, IntBinary, Machine, Type, U, V2, V3, V4};
+use super::{B, Coerce, F, F32Binary, F32Unary, I, IntBinary, Machine, Type, U, V2, V3, V4, Var};
 use crate::bvh;
 use crate::geometry::{HitOn, Primitive, Ray, RayOn};
 
@@ -29,8 +29,25 @@ pub const fn name(text: &str) -> u64 {
 pub trait Method<const NAME: u64, M: Machine, A> {
     /// The result.
     type Output;
+    /// Whether it takes `&mut self`.
+    const IS_MUT: bool = false;
     /// Calls the method.
     fn call(self, m: &M, args: A) -> Self::Output;
+    /// Calls the method on a variable, whose value is `self`.
+    #[inline(always)]
+    fn call_at(self, variable: &Var<Self>, m: &M, args: A) -> Self::Output
+    where
+        Self: Copy,
+    {
+        let _ = variable;
+        self.call(m, args)
+    }
+}
+
+/// Whether a method takes `&mut self`.
+#[inline(always)]
+pub fn is_mut<const NAME: u64, M: Machine, T: Method<NAME, M, A>, A>(_: &M, _: &T, _: &A) -> bool {
+    T::IS_MUT
 }
 
 /// A method of a struct's kernels; the derived twin forwards [`Method`] to it.
@@ -42,8 +59,16 @@ pub trait Method<const NAME: u64, M: Machine, A> {
 pub trait HostMethod<const NAME: u64, M: Machine, A>: Type {
     /// The result.
     type Output;
+    /// Whether it takes `&mut self`.
+    const IS_MUT: bool = false;
     /// Calls the method.
     fn call(this: Self::On<M>, m: &M, args: A) -> Self::Output;
+    /// Calls the method on a variable, whose value is `this`.
+    #[inline(always)]
+    fn call_at(this: Self::On<M>, variable: &Var<Self::On<M>>, m: &M, args: A) -> Self::Output {
+        let _ = variable;
+        Self::call(this, m, args)
+    }
 }
 
 macro_rules! method {

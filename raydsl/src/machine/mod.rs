@@ -14,6 +14,7 @@ mod call;
 mod capture;
 mod control;
 pub(crate) mod functions;
+pub(crate) mod index;
 mod lanes;
 mod methods;
 mod ops;
@@ -31,7 +32,7 @@ pub use capture::{Capture, Resource};
 pub use control::{Branch, Condition, Loop, Ret, Var};
 pub(crate) use lanes::{Entered, fill};
 pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
-pub use methods::{HostMethod, Method, name};
+pub use methods::{HostMethod, Method, is_mut, name};
 pub use ops::{
     Bounds, Coerce, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv, OpMul,
     OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Varying,
@@ -234,6 +235,10 @@ pub trait Machine: Sized + 'static {
     fn guarded<R>(&self, _c: Self::Bool, _when: bool, f: impl FnOnce() -> R) -> R {
         f()
     }
+
+    /// With debug assertions, panics where a running lane's index is not less than `len`.
+    #[inline(always)]
+    fn check_index(&self, _index: &Self::U32, _len: u32) {}
 
     // Variables. `V` is a twin; the hooks work leaf by leaf.
 

@@ -6,7 +6,7 @@
 
 use super::{
     B, BoolBinary, Compare, F, F32Binary, F32Unary, I, IntBinary, Machine, Type, U, V2, V3, V4,
-    Value,
+    Value, Var,
 };
 
 macro_rules! binary_traits {
@@ -86,6 +86,14 @@ impl<M: Machine, V: Value<M>> Coerce<M, V> for V {
     }
 }
 
+/// A `&mut` parameter where a value is wanted.
+impl<M: Machine, V: Value<M>> Coerce<M, V> for &Var<V> {
+    #[inline(always)]
+    fn coerce(self, m: &M) -> V {
+        self.get(m)
+    }
+}
+
 macro_rules! coerce_host {
     ($($host:ty => $twin:ident $make:ident),+) => {
         $(
@@ -145,6 +153,28 @@ impl<M: Machine, V: Varying<M>, const N: usize> Varying<M> for [V; N] {
         self.map(|v| v.varying(m))
     }
 }
+
+macro_rules! varying_tuple {
+    ($($name:ident . $index:tt),+) => {
+        impl<M: Machine, $($name: Varying<M>),+> Varying<M> for ($($name,)+) {
+            type Value = ($($name::Value,)+);
+
+            #[inline(always)]
+            fn varying(self, m: &M) -> Self::Value {
+                ($(self.$index.varying(m),)+)
+            }
+        }
+    };
+}
+
+varying_tuple!(A.0);
+varying_tuple!(A.0, C.1);
+varying_tuple!(A.0, C.1, D.2);
+varying_tuple!(A.0, C.1, D.2, E.3);
+varying_tuple!(A.0, C.1, D.2, E.3, G.4);
+varying_tuple!(A.0, C.1, D.2, E.3, G.4, H.5);
+varying_tuple!(A.0, C.1, D.2, E.3, G.4, H.5, J.6);
+varying_tuple!(A.0, C.1, D.2, E.3, G.4, H.5, J.6, K.7);
 
 impl<M: Machine> Varying<M> for () {
     type Value = ();

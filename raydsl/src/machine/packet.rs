@@ -117,6 +117,19 @@ impl<L: Lanes> Packet<L> {
     }
 }
 
+impl<L: Lanes> Packet<L> {
+    #[inline(never)]
+    fn check_indices(&self, index: &L::U32, len: u32) {
+        let active = self.lanes.bits(self.active.get());
+        for lane in (0..L::N).filter(|l| active >> l & 1 != 0) {
+            let index = L::u32_lane(index, lane);
+            if index >= len {
+                scalar::index_error(index, len, lane);
+            }
+        }
+    }
+}
+
 /// Whether there are operands for which Rust panics.
 #[inline(always)]
 fn is_checked(op: IntBinary) -> bool {
@@ -340,6 +353,13 @@ impl<L: Lanes> Machine for Packet<L> {
     fn any(&self, c: L::Mask) -> bool {
         self.lanes.any(self.and(self.active.get(), c))
     }
+    #[inline(always)]
+    fn check_index(&self, index: &L::U32, len: u32) {
+        if cfg!(debug_assertions) {
+            self.check_indices(index, len);
+        }
+    }
+
     #[inline(always)]
     fn guarded<R>(&self, c: L::Mask, when: bool, f: impl FnOnce() -> R) -> R {
         if !cfg!(debug_assertions) {

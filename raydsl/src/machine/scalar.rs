@@ -116,6 +116,14 @@ pub(super) fn integer_error(op: IntBinary, lane: usize) -> ! {
     panic!("integer {what} in lane {lane} of a kernel; use wrapping_* where it is meant")
 }
 
+/// An index out of range in a running lane.
+#[cold]
+#[inline(never)]
+#[track_caller]
+pub(super) fn index_error(index: u32, len: u32, lane: usize) -> ! {
+    panic!("index {index} is out of range for {len} elements in lane {lane} of a kernel")
+}
+
 impl Machine for Scalar {
     type F32 = f32;
     type I32 = i32;
@@ -315,6 +323,13 @@ impl Machine for Scalar {
     fn any(&self, c: bool) -> bool {
         self.active.get() & c
     }
+    #[inline(always)]
+    fn check_index(&self, index: &u32, len: u32) {
+        if cfg!(debug_assertions) && self.active.get() && *index >= len {
+            index_error(*index, len, 0);
+        }
+    }
+
     #[inline(always)]
     fn guarded<R>(&self, c: bool, when: bool, f: impl FnOnce() -> R) -> R {
         let old = self.active.replace(self.active.get() & (c == when));

@@ -168,7 +168,7 @@ macro_rules! tuple_type {
             type On<M: Machine> = ($($name::On<M>,)+);
 
             const SCHEMA: &'static Schema = &Schema::Struct {
-                name: "Args",
+                name: "Tuple",
                 fields: &[$(Field {
                     name: concat!("_", stringify!($index)),
                     offset: core::mem::offset_of!(Self, $index),

@@ -125,7 +125,7 @@ macro_rules! tuple_value {
     ($($name:ident . $index:tt),+) => {
         impl<M: Machine, $($name: Value<M>),+> Value<M> for ($($name,)+) {
             const SCHEMA: &'static Schema = &Schema::Struct {
-                name: "Args",
+                name: "Tuple",
                 fields: &[$(super::Field {
                     name: concat!("_", stringify!($index)),
                     offset: 0,

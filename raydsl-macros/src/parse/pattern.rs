@@ -1,0 +1,258 @@
+//! Patterns: what they test and what they bind.
+
+use proc_macro2::{Ident, Span};
+use quote::{ToTokens, quote};
+use syn::Pat;
+use syn::spanned::Spanned;
+
+use super::Parser;
+use crate::model::{Block, Expr, Kind, Let, Stmt};
+
+/// Whether a name in a pattern is a constant, by the convention that rustc warns about.
+fn is_constant(name: &Ident) -> bool {
+    name.to_string().starts_with(|c: char| c.is_ascii_uppercase())
+}
+
+fn name(name: &Ident) -> Expr {
+    Expr { kind: Kind::Name(name.clone()), span: name.span() }
+}
+
+fn compare(op: &'static str, a: &Expr, b: Expr, span: Span) -> Expr {
+    Expr { kind: Kind::Compare { op, a: Box::new(a.clone()), b: Box::new(b) }, span }
+}
+
+fn logic(and: bool, a: Expr, b: Expr) -> Expr {
+    let span = a.span;
+    Expr { kind: Kind::Logic { and, a: Box::new(a), b: Box::new(b) }, span }
+}
+
+fn both(a: Option<Expr>, b: Option<Expr>) -> Option<Expr> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(logic(true, a, b)),
+        (a, b) => a.or(b),
+    }
+}
+
+fn bind(name: &Ident, mutable: bool, init: Expr) -> Stmt {
+    Stmt::Let(Let { name: Some(name.clone()), mutable, ty: None, init: Some(init) })
+}
+
+/// A member of `from`; that of a tuple in the source is the element itself.
+fn member(from: &Expr, member: proc_macro2::TokenStream, span: Span) -> Expr {
+    if let Kind::Tuple(items) = &from.kind
+        && let Ok(i) = member.to_string().parse::<usize>()
+        && let Some(item) = items.get(i)
+    {
+        return item.clone();
+    }
+    Expr { kind: Kind::Field { base: Box::new(from.clone()), member }, span }
+}
+
+impl Parser<'_> {
+    /// A name that the source cannot have.
+    pub(super) fn temporary(&mut self, hint: &str) -> Ident {
+        self.temporaries += 1;
+        Ident::new(&format!("__{hint}_{}", self.temporaries), Span::mixed_site())
+    }
+
+    /// The condition under which `pat` matches `from`, none if it always does; `lets` is given
+    /// what it binds.
+    fn pattern(&mut self, pat: &Pat, from: &Expr, lets: &mut Vec<Stmt>) -> Option<Expr> {
+        let span = pat.span();
+        match pat {
+            Pat::Wild(_) | Pat::Rest(_) => None,
+            Pat::Ident(p) if p.by_ref.is_some() => {
+                self.errors.at(span, "a kernel has no `ref`", "bind the value: it is copied");
+                None
+            }
+            Pat::Ident(p) if is_constant(&p.ident) => {
+                Some(compare("Eq", from, name(&p.ident), span))
+            }
+            Pat::Ident(p) => {
+                lets.push(bind(&p.ident, p.mutability.is_some(), from.clone()));
+                p.subpat.as_ref().and_then(|(_, sub)| self.pattern(sub, from, lets))
+            }
+            Pat::Path(p) => {
+                let constant = Expr { kind: Kind::Path(p.to_token_stream()), span };
+                Some(compare("Eq", from, constant, span))
+            }
+            Pat::Lit(l) => Some(match self.literal(&l.lit) {
+                Kind::Bool(true) => from.clone(),
+                Kind::Bool(false) => Expr { kind: Kind::Not(Box::new(from.clone())), span },
+                kind => compare("Eq", from, Expr { kind, span }, span),
+            }),
+            Pat::Range(r) => {
+                let start = r.start.as_ref().map(|e| self.expr(e));
+                let end = r.end.as_ref().map(|e| self.expr(e));
+                let upper =
+                    if matches!(r.limits, syn::RangeLimits::Closed(_)) { "Le" } else { "Lt" };
+                both(
+                    start.map(|e| compare("Ge", from, e, span)),
+                    end.map(|e| compare(upper, from, e, span)),
+                )
+            }
+            Pat::Or(or) => {
+                let count = lets.len();
+                let tests: Vec<_> = or.cases.iter().map(|p| self.pattern(p, from, lets)).collect();
+                if lets.len() > count {
+                    lets.truncate(count);
+                    self.errors.at(
+                        span,
+                        "a kernel's patterns joined by `|` bind no names",
+                        "write an arm for each, or bind the whole: `n @ (1 | 2)`",
+                    );
+                }
+                tests
+                    .into_iter()
+                    .collect::<Option<Vec<_>>>()?
+                    .into_iter()
+                    .reduce(|a, b| logic(false, a, b))
+            }
+            Pat::Paren(p) => self.pattern(&p.pat, from, lets),
+            Pat::Reference(r) => self.pattern(&r.pat, from, lets),
+            Pat::Type(t) => self.pattern(&t.pat, from, lets),
+            Pat::Tuple(t) => {
+                let mut test = None;
+                for (i, p) in t.elems.iter().enumerate() {
+                    if matches!(p, Pat::Rest(_)) && i + 1 < t.elems.len() {
+                        self.errors.at(
+                            p.span(),
+                            "`..` stands last in a kernel's tuple pattern",
+                            "write `_` for each element before the ones that you name",
+                        );
+                        return None;
+                    }
+                    let index = syn::Index::from(i);
+                    let item = member(from, quote!(#index), p.span());
+                    test = both(test, self.pattern(p, &item, lets));
+                }
+                test
+            }
+            Pat::Struct(s) => {
+                let mut test = None;
+                for f in &s.fields {
+                    let item = member(from, f.member.to_token_stream(), f.span());
+                    test = both(test, self.pattern(&f.pat, &item, lets));
+                }
+                test
+            }
+            Pat::Slice(s) => {
+                let mut test = None;
+                for (i, p) in s.elems.iter().enumerate() {
+                    if matches!(p, Pat::Rest(_)) {
+                        break;
+                    }
+                    let index = syn::Index::from(i);
+                    let base = Box::new(from.clone());
+                    let item = Expr { kind: Kind::Index { base, index: quote!(#index) }, span };
+                    test = both(test, self.pattern(p, &item, lets));
+                }
+                test
+            }
+            _ => {
+                self.errors.at(
+                    span,
+                    "a kernel has no such pattern",
+                    "use numbers, ranges, constants, names, tuples and structs with named members",
+                );
+                None
+            }
+        }
+    }
+
+    /// A value that a pattern reads more than once; what is not a name yet is given one.
+    fn read_often(&mut self, e: Expr, lets: &mut Vec<Stmt>) -> Expr {
+        match e.kind {
+            Kind::Name(_) => e,
+            Kind::Tuple(items) => {
+                let items = items.into_iter().map(|e| self.read_often(e, lets)).collect();
+                Expr { kind: Kind::Tuple(items), span: e.span }
+            }
+            _ => {
+                let ident = self.temporary("value");
+                let span = e.span;
+                lets.push(bind(&ident, false, e));
+                Expr { kind: Kind::Name(ident), span }
+            }
+        }
+    }
+
+    /// `let PATTERN = init`.
+    pub(super) fn destructure(
+        &mut self,
+        pat: &Pat,
+        init: Expr,
+        ty: Option<proc_macro2::TokenStream>,
+    ) -> Vec<Stmt> {
+        // Elements of a tuple are evaluated before the first name is bound, which may be theirs.
+        let mut lets = Vec::new();
+        let ident = self.temporary("parts");
+        let from = name(&ident);
+        lets.push(Stmt::Let(Let { name: Some(ident), mutable: false, ty, init: Some(init) }));
+        self.irrefutable(pat, &from, &mut lets);
+        lets
+    }
+
+    /// The names of a parameter's pattern.
+    pub(super) fn irrefutable(&mut self, pat: &Pat, from: &Expr, lets: &mut Vec<Stmt>) {
+        // A pattern that does not always match is rustc's to report, in the user's own function.
+        let _ = self.pattern(pat, from, lets);
+    }
+
+    /// `match`, as a chain of `if`.
+    pub(super) fn matching(&mut self, m: &syn::ExprMatch) -> Kind {
+        let mut stmts = Vec::new();
+        let scrutinee = self.expr(&m.expr);
+        let from = self.read_often(scrutinee, &mut stmts);
+        let mut arms = Vec::new();
+        for arm in &m.arms {
+            self.no_attributes(&arm.attrs);
+            let (pat, guard) = match &arm.pat {
+                Pat::Guard(g) => (&*g.pat, Some(&*g.guard)),
+                pat => (pat, None),
+            };
+            let mut lets = Vec::new();
+            let mut test = self.pattern(pat, &from, &mut lets);
+            if let Some(guard) = guard {
+                let span = guard.span();
+                let tail = Some(Box::new(self.expr(guard)));
+                let guard = if lets.is_empty() {
+                    *tail.expect("just made")
+                } else {
+                    Expr { kind: Kind::Block(Block { stmts: lets.clone(), tail }), span }
+                };
+                test = both(test, Some(guard));
+            }
+            let body = self.expr(&arm.body);
+            let block = match body.kind {
+                Kind::Block(b) if lets.is_empty() => b,
+                _ => Block { stmts: lets, tail: Some(Box::new(body)) },
+            };
+            let always = test.is_none();
+            arms.push((test, block, arm.span()));
+            if always {
+                break;
+            }
+        }
+        let Some((_, last, span)) = arms.pop() else {
+            return self.error(
+                m.span(),
+                "a kernel's `match` needs an arm",
+                "add one: `_ => value`",
+            );
+        };
+        // Arms are exhaustive, so the last one needs no test.
+        let chain = arms.into_iter().rfold(
+            Expr { kind: Kind::Block(last), span },
+            |otherwise, (test, then, span)| {
+                let c = Box::new(test.unwrap_or(Expr { kind: Kind::Bool(true), span }));
+                let otherwise = Some(Box::new(otherwise));
+                Expr { kind: Kind::If { c, then, otherwise }, span }
+            },
+        );
+        if stmts.is_empty() {
+            return chain.kind;
+        }
+        Kind::Block(Block { stmts, tail: Some(Box::new(chain)) })
+    }
+}

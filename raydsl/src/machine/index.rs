@@ -1,0 +1,136 @@
+//! Elements of arrays at places that are computed.
+//!
+//! An array on a machine is its elements, so an index is a choice among them: the last element
+//! whose number it reaches. An index out of range is an error of the kernel. With debug assertions
+//! it panics and names the lane; without, it means the last element, in every variant.
+
+use super::{Coerce, Compare, I, Leaves, Machine, U, Value, Varying};
+use crate::bvh::On;
+use crate::geometry::Primitive;
+
+/// An integer that indexes.
+#[diagnostic::on_unimplemented(
+    message = "a kernel cannot index by this value",
+    label = "not a `u32` or an `i32`"
+)]
+pub trait Index<M: Machine> {
+    /// The index; what is negative is out of range.
+    fn index(self, m: &M) -> U<M>;
+}
+
+impl<M: Machine> Index<M> for U<M> {
+    #[inline(always)]
+    fn index(self, _: &M) -> Self {
+        self
+    }
+}
+
+impl<M: Machine> Index<M> for I<M> {
+    #[inline(always)]
+    fn index(self, m: &M) -> U<M> {
+        U(m.i32_to_u32(self.0))
+    }
+}
+
+impl<M: Machine> Index<M> for u32 {
+    #[inline(always)]
+    fn index(self, m: &M) -> U<M> {
+        U(m.u32(self))
+    }
+}
+
+impl<M: Machine> Index<M> for i32 {
+    #[inline(always)]
+    fn index(self, m: &M) -> U<M> {
+        U(m.u32(self as u32))
+    }
+}
+
+/// What can be indexed.
+#[diagnostic::on_unimplemented(message = "a kernel cannot index this value")]
+pub trait Indexed<M: Machine> {
+    /// An element.
+    type Element;
+    /// The element at `i`.
+    fn element(self, m: &M, i: U<M>) -> Self::Element;
+}
+
+impl<M: Machine, V: Varying<M> + Copy, const N: usize> Indexed<M> for [V; N] {
+    type Element = V::Value;
+
+    #[inline(always)]
+    fn element(self, m: &M, i: U<M>) -> V::Value {
+        const { assert!(N > 0, "an array without elements cannot be indexed") };
+        m.check_index(&i.0, N as u32);
+        let all = self.map(
+            #[inline(always)]
+            |v| v.varying(m),
+        );
+        let mut found = all[0];
+        for (k, v) in all.into_iter().enumerate().skip(1) {
+            let reached = m.u32_compare(Compare::Ge, i.0, m.u32(k as u32));
+            found = choose(m, reached, v, found);
+        }
+        found
+    }
+}
+
+impl<M: Machine, P: Primitive> Indexed<M> for On<'_, P> {
+    type Element = P::On<M>;
+
+    #[inline(always)]
+    fn element(self, m: &M, i: U<M>) -> P::On<M> {
+        let len = self.len() as u32;
+        m.check_index(&i.0, len);
+        let last = m.u32(len.saturating_sub(1));
+        let past = m.u32_compare(Compare::Gt, i.0, last);
+        m.fetch(&self, U(m.u32_select(past, last, i.0)))
+    }
+}
+
+/// `array` with `v` at `i`.
+#[inline(always)]
+pub fn with_element<M: Machine, V: Value<M>, const N: usize>(
+    m: &M,
+    array: [V; N],
+    i: impl Index<M>,
+    v: impl Coerce<M, V>,
+) -> [V; N] {
+    const { assert!(N > 0, "an array without elements cannot be indexed") };
+    let (i, v) = (i.index(m), v.coerce(m));
+    m.check_index(&i.0, N as u32);
+    let mut k = 0;
+    array.map(
+        #[inline(always)]
+        |old| {
+            // The last element also stands for what is out of range.
+            let op = if k + 1 < N { Compare::Eq } else { Compare::Ge };
+            let here = m.u32_compare(op, i.0, m.u32(k as u32));
+            k += 1;
+            choose(m, here, v, old)
+        },
+    )
+}
+
+struct Choose<M: Machine>(M::Bool);
+
+macro_rules! choose {
+    ($($leaf:ident $repr:ident $select:ident),+) => {
+        impl<M: Machine> Leaves<M> for Choose<M> {
+            $(
+                #[inline(always)]
+                fn $leaf(&mut self, m: &M, a: M::$repr, b: M::$repr) -> M::$repr {
+                    m.$select(self.0, a, b)
+                }
+            )+
+        }
+    };
+}
+
+choose!(f32 F32 f32_select, i32 I32 i32_select, u32 U32 u32_select, bool Bool bool_select);
+
+/// `a` in the lanes that have `c`, else `b`.
+#[inline(always)]
+fn choose<M: Machine, V: Value<M>>(m: &M, c: M::Bool, a: V, b: V) -> V {
+    V::zip(m, a, b, &mut Choose(c))
+}
