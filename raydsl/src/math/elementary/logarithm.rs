@@ -85,7 +85,10 @@ fn log_rest(z: f32) -> f32 {
 #[inline]
 fn log_at_the_ends(x: f32) -> f32 {
     if x == 0.0 {
-        return f32::NEG_INFINITY;
+        f32::NEG_INFINITY
+    } else if x < 0.0 {
+        f32::NAN
+    } else {
+        x
     }
-    if x < 0.0 { f32::NAN } else { x }
 }

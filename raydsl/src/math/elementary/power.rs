@@ -86,5 +86,5 @@ fn pow_at_the_ends(x: f32, y: f32, is_odd: bool) -> f32 {
         return f32::NAN;
     }
     let size = if (a > 0.0) == (y > 0.0) { f32::INFINITY } else { 0.0 };
-    if is_odd { size.copysign(x) } else { size }
+    size.copysign(if is_odd { x } else { 1.0 })
 }
