@@ -32,9 +32,31 @@ operators! {
 }
 
 /// Elementary functions: std's differ from one machine to the next, so variants could not agree.
-const ELEMENTARY: &[&str] = &[
-    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sin_cos", "exp", "exp2", "exp_m1", "ln",
-    "ln_1p", "log", "log2", "log10", "powf", "powi", "hypot", "cbrt", "sinh", "cosh", "tanh",
+/// The second column is what the prelude has instead, if anything.
+const ELEMENTARY: &[(&str, &str)] = &[
+    ("sin", "sin(x)"),
+    ("cos", "cos(x)"),
+    ("tan", "tan(x)"),
+    ("asin", "asin(x)"),
+    ("acos", "acos(x)"),
+    ("atan", "atan(x)"),
+    ("atan2", "atan2(y, x)"),
+    ("sin_cos", "sincos_2pi(u)"),
+    ("exp", "exp(x)"),
+    ("exp2", "exp2(x)"),
+    ("exp_m1", "expm1(x)"),
+    ("ln", "log(x)"),
+    ("ln_1p", "log1p(x)"),
+    ("log2", "log2(x)"),
+    ("powf", "pow(x, y)"),
+    ("powi", "pow(x, y)"),
+    ("log", ""),
+    ("log10", ""),
+    ("hypot", ""),
+    ("cbrt", ""),
+    ("sinh", ""),
+    ("cosh", ""),
+    ("tanh", ""),
 ];
 
 /// Other methods that kernels cannot have, with what to write instead.
@@ -50,11 +72,13 @@ const DENIED: &[(&str, &str)] = &[
 
 /// What is wrong with the method `name` and what to write instead, if kernels cannot have it.
 pub(crate) fn denied(name: &str) -> Option<(String, String)> {
-    if ELEMENTARY.contains(&name) {
-        return Some((
-            format!("`{name}` of std differs from one machine to the next"),
-            "compute it outside the kernel and capture the result".to_owned(),
-        ));
+    if let Some((_, ours)) = ELEMENTARY.iter().find(|e| e.0 == name) {
+        let help = if ours.is_empty() {
+            "compute it outside the kernel and capture the result".to_owned()
+        } else {
+            format!("write `{ours}`, the function of raydsl's prelude")
+        };
+        return Some((format!("`{name}` of std differs from one machine to the next"), help));
     }
     let (_, instead) = DENIED.iter().find(|d| d.0 == name)?;
     Some((format!("a kernel has no `{name}`"), format!("write {instead}")))

@@ -8,7 +8,7 @@ use raydsl::machine::{KernelFn, KernelInfo, Lanes, Packet, Scalar, Type};
 use crate::gpu::gpu;
 use crate::levels::{LevelTask, each_level, widest_level};
 use crate::rng::Rng;
-use crate::values::{Numbers, compare, garbage, random};
+use crate::values::{Numbers, compare, compare_within, garbage, random};
 
 /// Not a multiple of any width, so that the last packet is partly filled.
 const INPUTS: usize = 1003;
@@ -20,6 +20,8 @@ pub enum Wgsl {
     Same,
     /// The same bits for inputs whose every number is finite.
     SameIfFinite,
+    /// Floats within this many ulp, for inputs whose every number is finite.
+    Ulps(u32),
     /// WGSL does not define the operation well enough.
     Differs,
 }
@@ -41,8 +43,9 @@ where
     each_level(&mut &case);
     widest_level(&mut &case);
     match wgsl {
-        Wgsl::Same => case.wgsl(|_| true),
-        Wgsl::SameIfFinite => case.wgsl(is_finite),
+        Wgsl::Same => case.wgsl(0, |_| true),
+        Wgsl::SameIfFinite => case.wgsl(0, is_finite),
+        Wgsl::Ulps(ulps) => case.wgsl(ulps, is_finite),
         Wgsl::Differs => {}
     }
 }
@@ -91,7 +94,7 @@ where
         });
     }
 
-    fn wgsl(&self, takes: impl Fn(&F::Args) -> bool) {
+    fn wgsl(&self, ulps: u32, takes: impl Fn(&F::Args) -> bool) {
         let Some(gpu) = gpu() else { return };
         let taken: Vec<usize> =
             (0..self.inputs.len()).filter(|i| takes(&self.inputs[*i])).collect();
@@ -102,7 +105,8 @@ where
         if let Err(error) = gpu.batch(&kernel, &inputs, &mut found) {
             panic!("{} in WGSL: {error}\n{}", self.name, kernel.wgsl());
         }
-        let result = compare(format!("{} in WGSL", self.name), &expected, &found);
+        let who = format!("{} in WGSL", self.name);
+        let result = compare_within(who, ulps, &expected, &found);
         if result.count() > 0 {
             println!("{}", kernel.wgsl());
         }

@@ -83,6 +83,8 @@ macro_rules! kernel_table {
             random_sum: Any Same;
             random_walk: Tame Same;
             changed_arguments: Tame Same;
+            angles: Any Differs;
+            growth: Any Differs;
         }
     };
 }
@@ -833,4 +835,18 @@ pub fn mandelbrot(x: f32, y: f32) -> u32 {
         zx = xx - yy + cx;
     }
     50
+}
+
+// Elementary functions; `tests/elementary.rs` looks at each of them.
+
+#[kernel]
+pub fn angles(x: f32, y: f32) -> Vec4 {
+    let turn = sincos_2pi(x * 0.01);
+    vec4(sin(x), turn.cos, atan2(y, x), acos(turn.sin))
+}
+
+#[kernel]
+pub fn growth(x: f32, y: f32) -> Vec4 {
+    let z = if x > 0.0 { log(x) } else { expm1(x) };
+    vec4(exp(y), z, pow(x, y), log2(x.abs()))
 }

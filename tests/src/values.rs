@@ -190,6 +190,38 @@ pub fn compare<T: Type>(who: impl Into<String>, expected: &[T], found: &[T]) -> 
     Comparison { who: who.into(), compared: expected.len(), differing: differing.collect() }
 }
 
+/// Compares results, of which floats may be `ulps` apart; denormals are zeros, as on many GPUs.
+pub fn compare_within<T: Type>(
+    who: impl Into<String>,
+    ulps: u32,
+    expected: &[T],
+    found: &[T],
+) -> Comparison {
+    let mut all = compare(who, expected, found);
+    all.differing.retain(|(i, e, f)| {
+        let mut leaves = Vec::new();
+        each_leaf(T::SCHEMA, 0, &mut |_, leaf| leaves.push(*leaf == Schema::F32));
+        debug_assert_eq!(leaves.len(), e.len(), "one word for each leaf of result {i}");
+        let near = |(k, is_float): (usize, &bool)| {
+            e[k] == f[k] || *is_float && distance(e[k], f[k]) <= ulps
+        };
+        !leaves.iter().enumerate().all(near)
+    });
+    all
+}
+
+/// How many floats lie from one to the other; a NaN is far from all others.
+fn distance(a: u32, b: u32) -> u32 {
+    let place = |bits: u32| {
+        let size = ((bits & 0x7fff_ffff) as i32 - 0x007f_ffff).max(0);
+        if bits >> 31 == 0 { size } else { -size }
+    };
+    if f32::from_bits(a).is_nan() || f32::from_bits(b).is_nan() {
+        return u32::MAX;
+    }
+    place(a).abs_diff(place(b))
+}
+
 impl Comparison {
     /// How many results differ.
     pub fn count(&self) -> usize {

@@ -64,8 +64,9 @@ bodies! {
     double_literal: { x * 2.0f64 } "compute in `f32`" "suffix `f32`";
     other_integer: { x * 2u64 as f32 } "no `u64`" "`u32`";
     text_literal: { let _ = "text"; x } "numbers and truth values" "outside";
-    sine_method: { x.sin() } "`sin`" "capture the result";
-    power_method: { x.powf(2.0) } "`powf`" "capture the result";
+    sine_method: { x.sin() } "`sin`" "write `sin(x)`, the function of raydsl's prelude";
+    power_method: { x.powf(2.0) } "`powf`" "write `pow(x, y)`";
+    cube_root_method: { x.cbrt() } "`cbrt`" "capture the result";
     unwrapped: { g(x).unwrap() } "`unwrap`" "Option";
     heap: { let v = vec![x]; x } "`vec!`" "no heap";
     printing: { println!("{x}"); x } "`println!`" "return the value";
