@@ -70,6 +70,8 @@ pub(crate) struct Emitter<'a> {
     loops: Vec<Loop>,
     /// Free names of a closure, in order of first use.
     pub(crate) captures: Vec<Ident>,
+    /// The `&mut` parameters.
+    changed: Vec<Ident>,
     next: usize,
     errors: &'a mut Errors,
 }
@@ -99,6 +101,7 @@ impl<'a> Emitter<'a> {
             scopes: vec![HashMap::new()],
             loops: vec![],
             captures: vec![],
+            changed: vec![],
             next: 0,
             errors,
         }
@@ -135,26 +138,44 @@ impl<'a> Emitter<'a> {
             }
             self.bind(&param.name, binding);
         }
+        // The user may bind their names anew.
+        let changing: Vec<&Param> = self.kernel.params.iter().filter(|p| p.by_mut).collect();
+        for (i, param) in changing.iter().enumerate() {
+            let (alias, name) = (own(&format!("changed_{i}")), self.local(&param.name));
+            prologue.extend(quote!(let #alias = &#name;));
+            self.changed.push(alias);
+        }
         let kernel = self.kernel;
-        let body = if kernel.body.returns() {
-            let ty = kernel.result.as_ref().map(|t| self.on(t)).unwrap_or_else(|| self.no_result());
-            let ret = own("ret");
-            let block = self.block(&kernel.body, &Dest::Return);
-            quote!(let #ret = #p::Ret::<#ty>::new(#m); #block #ret.take())
+        if !kernel.body.returns() {
+            let body = self.plain_body(&kernel.body);
+            if self.changed.is_empty() {
+                return quote!(#prologue #body);
+            }
+            let result = own("result");
+            let all = self.with_changed(quote!(#result));
+            return quote!(#prologue let #result = { #body }; #all);
+        }
+        let ty = kernel.result.as_ref().map(|t| self.on(t)).unwrap_or_else(|| self.no_result());
+        let ty = if changing.is_empty() {
+            ty
         } else {
-            self.plain_body(&kernel.body)
+            let types = changing.iter().map(|p| self.on(&p.ty));
+            quote!((#ty, #(#types,)*))
         };
-        let changed: Vec<Ident> =
-            kernel.params.iter().filter(|p| p.by_mut).map(|p| self.local(&p.name)).collect();
-        if changed.is_empty() {
-            return quote!(#prologue #body);
-        }
-        let result = own("result");
-        quote! {
-            #prologue
-            let #result = { #body };
-            (#result, #(#changed.get(#m),)*)
-        }
+        let ret = own("ret");
+        let block = self.block(&kernel.body, &Dest::Return);
+        // Lanes that come to the end without a `return` give what they changed.
+        let end = (!changing.is_empty() && kernel.result.is_none()).then(|| {
+            let all = self.with_changed(quote!(()));
+            quote!(#ret.give(#m, #all);)
+        });
+        quote!(#prologue let #ret = #p::Ret::<#ty>::new(#m); #block #end #ret.take())
+    }
+
+    /// The result, and beside it what became of the `&mut` parameters.
+    fn with_changed(&self, result: TokenStream) -> TokenStream {
+        let (m, changed) = (own("m"), &self.changed);
+        if changed.is_empty() { result } else { quote!((#result, #(#changed.get(#m),)*)) }
     }
 
     /// The result type where none is written: inferred for a closure, `()` for a function.
@@ -320,16 +341,14 @@ impl<'a> Emitter<'a> {
 
     fn give(&mut self, e: &Expr) -> TokenStream {
         let (p, m, ret) = (private(), own("m"), own("ret"));
-        if self.kernel.result.is_some() {
-            let value = self.coerced(e);
-            return quote!(#ret.give(#m, #value););
-        }
-        let value = self.value(e);
-        if self.is_closure {
-            quote!(#ret.give(#m, #p::Varying::varying(#value, #m));)
+        let value = if self.kernel.result.is_some() {
+            self.coerced(e)
         } else {
-            quote!(#ret.give(#m, #value);)
-        }
+            let value = self.value(e);
+            if self.is_closure { quote!(#p::Varying::varying(#value, #m)) } else { value }
+        };
+        let all = self.with_changed(value);
+        quote!(#ret.give(#m, #all);)
     }
 
     fn return_stmt(&mut self, value: Option<&Expr>) -> TokenStream {
@@ -337,7 +356,8 @@ impl<'a> Emitter<'a> {
             Some(e) => self.into(e, &Dest::Return),
             None => {
                 let (m, ret) = (own("m"), own("ret"));
-                quote!(#ret.give(#m, ());)
+                let all = self.with_changed(quote!(()));
+                quote!(#ret.give(#m, #all);)
             }
         }
     }

@@ -16,12 +16,12 @@ struct Reduced {
     quarters: u32,
 }
 
-struct Args {
+struct Tuple {
     _0: f32,
     _1: f32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: f32,
     arg1: f32,
 }
@@ -367,16 +367,16 @@ fn angles(x: f32, y: f32) -> vec4<f32> {
     return vec4<f32>(sin(x), turn.cos, atan2(y, x), acos(turn.sin));
 }
 
-fn element(input: Args) -> vec4<f32> {
+fn element(input: Tuple) -> vec4<f32> {
     return angles(input._0, input._1);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredValue>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0, s.arg1);
+    return Tuple(s.arg0, s.arg1);
 }
 
 @compute @workgroup_size(8, 8)

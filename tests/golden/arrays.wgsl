@@ -4,12 +4,12 @@ struct Table {
     flag: bool,
 }
 
-struct Args {
+struct Tuple {
     _0: Table,
     _1: u32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0_values_0: u32,
     arg0_values_1: u32,
     arg0_values_2: u32,
@@ -47,16 +47,16 @@ fn arrays(t: Table, n: u32) -> u32 {
     return result;
 }
 
-fn element(input: Args) -> u32 {
+fn element(input: Tuple) -> u32 {
     return arrays(input._0, input._1);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<u32>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(Table(array<u32, 4>(s.arg0_values_0, s.arg0_values_1, s.arg0_values_2, s.arg0_values_3), array<u32, 3>(s.arg0_colors_0_arg0_colors_1_arg0_colors_2_arg0_flag & 0xffu, (s.arg0_colors_0_arg0_colors_1_arg0_colors_2_arg0_flag >> 8u) & 0xffu, (s.arg0_colors_0_arg0_colors_1_arg0_colors_2_arg0_flag >> 16u) & 0xffu), ((s.arg0_colors_0_arg0_colors_1_arg0_colors_2_arg0_flag >> 24u) & 0xffu) != 0u), s.arg1);
+    return Tuple(Table(array<u32, 4>(s.arg0_values_0, s.arg0_values_1, s.arg0_values_2, s.arg0_values_3), array<u32, 3>(s.arg0_colors_0_arg0_colors_1_arg0_colors_2_arg0_flag & 0xffu, (s.arg0_colors_0_arg0_colors_1_arg0_colors_2_arg0_flag >> 8u) & 0xffu, (s.arg0_colors_0_arg0_colors_1_arg0_colors_2_arg0_flag >> 16u) & 0xffu), ((s.arg0_colors_0_arg0_colors_1_arg0_colors_2_arg0_flag >> 24u) & 0xffu) != 0u), s.arg1);
 }
 
 @compute @workgroup_size(8, 8)

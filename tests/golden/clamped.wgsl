@@ -1,10 +1,10 @@
-struct Args {
+struct Tuple {
     _0: f32,
     _1: f32,
     _2: f32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: f32,
     arg1: f32,
     arg2: f32,
@@ -37,16 +37,16 @@ fn clamped(x: f32, y: f32, z: f32) -> vec4<f32> {
     return vec4<f32>(select(t, high, high < t), select(select(x, y, y < x), y, (x != x)), select(select(z, x, z < x), x, (z != z)), select(t_1, 1.0f, 1.0f < t_1));
 }
 
-fn element(input: Args) -> vec4<f32> {
+fn element(input: Tuple) -> vec4<f32> {
     return clamped(input._0, input._1, input._2);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredValue>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0, s.arg1, s.arg2);
+    return Tuple(s.arg0, s.arg1, s.arg2);
 }
 
 @compute @workgroup_size(8, 8)

@@ -1,8 +1,8 @@
-struct Args {
+struct Tuple {
     _0: f32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: f32,
 }
 
@@ -36,16 +36,16 @@ fn constants(x: f32) -> f32 {
     return result;
 }
 
-fn element(input: Args) -> f32 {
+fn element(input: Tuple) -> f32 {
     return constants(input._0);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<f32>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0);
+    return Tuple(s.arg0);
 }
 
 @compute @workgroup_size(8, 8)

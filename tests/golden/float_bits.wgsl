@@ -1,9 +1,9 @@
-struct Args {
+struct Tuple {
     _0: f32,
     _1: u32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: f32,
     arg1: u32,
 }
@@ -29,16 +29,16 @@ fn float_bits(x: f32, n: u32) -> u32 {
     return exponent ^ bitcast<u32>(unit);
 }
 
-fn element(input: Args) -> u32 {
+fn element(input: Tuple) -> u32 {
     return float_bits(input._0, input._1);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<u32>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0, s.arg1);
+    return Tuple(s.arg0, s.arg1);
 }
 
 @compute @workgroup_size(8, 8)

@@ -1,9 +1,9 @@
-struct Args {
+struct Tuple {
     _0: f32,
     _1: f32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: f32,
     arg1: f32,
 }
@@ -33,16 +33,16 @@ fn float_methods(x: f32, y: f32) -> vec4<f32> {
     return vec4<f32>(root, parts, abs(x) / (abs(y) + params.lit_1_0), bitcast<f32>((bitcast<u32>(x) & 2147483647u) | (bitcast<u32>(y) & 2147483648u)) + 1.0f / y);
 }
 
-fn element(input: Args) -> vec4<f32> {
+fn element(input: Tuple) -> vec4<f32> {
     return float_methods(input._0, input._1);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredValue>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0, s.arg1);
+    return Tuple(s.arg0, s.arg1);
 }
 
 @compute @workgroup_size(8, 8)

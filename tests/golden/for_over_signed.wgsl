@@ -1,9 +1,9 @@
-struct Args {
+struct Tuple {
     _0: i32,
     _1: i32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: i32,
     arg1: i32,
 }
@@ -39,16 +39,16 @@ fn for_over_signed(low: i32, high: i32) -> i32 {
     return sum;
 }
 
-fn element(input: Args) -> i32 {
+fn element(input: Tuple) -> i32 {
     return for_over_signed(input._0, input._1);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<i32>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0, s.arg1);
+    return Tuple(s.arg0, s.arg1);
 }
 
 @compute @workgroup_size(8, 8)

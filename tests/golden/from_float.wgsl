@@ -5,11 +5,11 @@ struct Casts {
     wrapped: u32,
 }
 
-struct Args {
+struct Tuple {
     _0: f32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: f32,
 }
 
@@ -50,16 +50,16 @@ fn from_float(x: f32) -> Casts {
     return Casts(i, u, f32(i), bitcast<u32>(i));
 }
 
-fn element(input: Args) -> Casts {
+fn element(input: Tuple) -> Casts {
     return from_float(input._0);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<Casts>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0);
+    return Tuple(s.arg0);
 }
 
 @compute @workgroup_size(8, 8)

@@ -3,12 +3,12 @@ struct Split {
     exponent: f32,
 }
 
-struct Args {
+struct Tuple {
     _0: f32,
     _1: f32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: f32,
     arg1: f32,
 }
@@ -304,16 +304,16 @@ fn growth(x: f32, y: f32) -> vec4<f32> {
     return vec4<f32>(exp(y), z, pow_(x, y), log2(abs(x)));
 }
 
-fn element(input: Args) -> vec4<f32> {
+fn element(input: Tuple) -> vec4<f32> {
     return growth(input._0, input._1);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredValue>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0, s.arg1);
+    return Tuple(s.arg0, s.arg1);
 }
 
 @compute @workgroup_size(8, 8)

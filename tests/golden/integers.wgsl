@@ -1,9 +1,9 @@
-struct Args {
+struct Tuple {
     _0: u32,
     _1: u32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: u32,
     arg1: u32,
 }
@@ -39,16 +39,16 @@ fn integers(a: u32, b: u32) -> u32 {
     return select(t_1, 5u, (t_1 < 5u)) + (a / 7u + b % 10u);
 }
 
-fn element(input: Args) -> u32 {
+fn element(input: Tuple) -> u32 {
     return integers(input._0, input._1);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<u32>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0, s.arg1);
+    return Tuple(s.arg0, s.arg1);
 }
 
 @compute @workgroup_size(8, 8)

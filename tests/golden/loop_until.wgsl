@@ -1,8 +1,8 @@
-struct Args {
+struct Tuple {
     _0: f32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: f32,
 }
 
@@ -39,16 +39,16 @@ fn loop_until(x: f32) -> u32 {
     return n;
 }
 
-fn element(input: Args) -> u32 {
+fn element(input: Tuple) -> u32 {
     return loop_until(input._0);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<u32>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0);
+    return Tuple(s.arg0);
 }
 
 @compute @workgroup_size(8, 8)

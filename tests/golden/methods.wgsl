@@ -5,13 +5,13 @@ struct Particle {
     hits: u32,
 }
 
-struct Args {
+struct Tuple {
     _0: Particle,
     _1: Particle,
     _2: f32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0_position_x: f32,
     arg0_position_y: f32,
     arg0_position_z: f32,
@@ -98,16 +98,16 @@ fn methods(p: Particle, q: Particle, x: f32) -> Particle {
     return Particle(r_position, r_mass, r_alive, r_hits);
 }
 
-fn element(input: Args) -> Particle {
+fn element(input: Tuple) -> Particle {
     return methods(input._0, input._1, input._2);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredParticle>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(Particle(vec3<f32>(s.arg0_position_x, s.arg0_position_y, s.arg0_position_z), s.arg0_mass, (s.arg0_alive & 0xffu) != 0u, s.arg0_hits), Particle(vec3<f32>(s.arg1_position_x, s.arg1_position_y, s.arg1_position_z), s.arg1_mass, (s.arg1_alive & 0xffu) != 0u, s.arg1_hits), s.arg2);
+    return Tuple(Particle(vec3<f32>(s.arg0_position_x, s.arg0_position_y, s.arg0_position_z), s.arg0_mass, (s.arg0_alive & 0xffu) != 0u, s.arg0_hits), Particle(vec3<f32>(s.arg1_position_x, s.arg1_position_y, s.arg1_position_z), s.arg1_mass, (s.arg1_alive & 0xffu) != 0u, s.arg1_hits), s.arg2);
 }
 
 @compute @workgroup_size(8, 8)

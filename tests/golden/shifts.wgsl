@@ -1,10 +1,10 @@
-struct Args {
+struct Tuple {
     _0: u32,
     _1: u32,
     _2: i32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: u32,
     arg1: u32,
     arg2: i32,
@@ -34,16 +34,16 @@ fn shifts(a: u32, n: u32, b: i32) -> u32 {
     return ((left ^ right) ^ fixed_) ^ bitcast<u32>(arithmetic);
 }
 
-fn element(input: Args) -> u32 {
+fn element(input: Tuple) -> u32 {
     return shifts(input._0, input._1, input._2);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<u32>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0, s.arg1, s.arg2);
+    return Tuple(s.arg0, s.arg1, s.arg2);
 }
 
 @compute @workgroup_size(8, 8)

@@ -1,9 +1,9 @@
-struct Args {
+struct Tuple {
     _0: i32,
     _1: i32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: i32,
     arg1: i32,
 }
@@ -44,16 +44,16 @@ fn signed(a: i32, b: i32) -> i32 {
     return select(t_1, t_2, (t_2 < t_1));
 }
 
-fn element(input: Args) -> i32 {
+fn element(input: Tuple) -> i32 {
     return signed(input._0, input._1);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<i32>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0, s.arg1);
+    return Tuple(s.arg0, s.arg1);
 }
 
 @compute @workgroup_size(8, 8)

@@ -26,7 +26,7 @@ struct Node {
     count: u32,
 }
 
-struct Args {
+struct Tuple {
     _0: Ray,
 }
 
@@ -42,7 +42,7 @@ struct StoredTriangle {
     v2_z: f32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0_origin: vec3<f32>,
     arg0_direction_x: f32,
     arg0_direction_y: f32,
@@ -179,16 +179,16 @@ fn kernel(ray: Ray) -> bool {
     return few_any_hit(ray);
 }
 
-fn element(input: Args) -> bool {
+fn element(input: Tuple) -> bool {
     return kernel(input._0);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredValue>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(Ray(s.arg0_origin, vec3<f32>(s.arg0_direction_x, s.arg0_direction_y, s.arg0_direction_z), s.arg0_t_min, s.arg0_t_max));
+    return Tuple(Ray(s.arg0_origin, vec3<f32>(s.arg0_direction_x, s.arg0_direction_y, s.arg0_direction_z), s.arg0_t_min, s.arg0_t_max));
 }
 
 @compute @workgroup_size(8, 8)

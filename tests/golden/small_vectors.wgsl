@@ -1,10 +1,10 @@
-struct Args {
+struct Tuple {
     _0: vec2<f32>,
     _1: vec4<f32>,
     _2: f32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg1: vec4<f32>,
     arg0: vec2<f32>,
     arg2: f32,
@@ -39,16 +39,16 @@ fn small_vectors(a: vec2<f32>, b: vec4<f32>, x: f32) -> vec4<f32> {
     return e + vec4<f32>(a.x, a.y, b.z, b.w) * 0.25f;
 }
 
-fn element(input: Args) -> vec4<f32> {
+fn element(input: Tuple) -> vec4<f32> {
     return small_vectors(input._0, input._1, input._2);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredValue>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0, s.arg1, s.arg2);
+    return Tuple(s.arg0, s.arg1, s.arg2);
 }
 
 @compute @workgroup_size(8, 8)

@@ -11,12 +11,12 @@ struct Pair {
     weight: i32,
 }
 
-struct Args {
+struct Tuple {
     _0: Pair,
     _1: f32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0_weight: i32,
     arg0_first_position_x: f32,
     arg0_first_position_y: f32,
@@ -124,16 +124,16 @@ fn struct_branches(a: Pair, x: f32) -> Pair {
     return Pair(Particle(p_first_position, p_first_mass, p_first_alive, p_first_hits), Particle(p_second_position, p_second_mass, p_second_alive, p_second_hits), p_weight);
 }
 
-fn element(input: Args) -> Pair {
+fn element(input: Tuple) -> Pair {
     return struct_branches(input._0, input._1);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredPair>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(Pair(Particle(vec3<f32>(s.arg0_first_position_x, s.arg0_first_position_y, s.arg0_first_position_z), s.arg0_first_mass, (s.arg0_first_alive & 0xffu) != 0u, s.arg0_first_hits), Particle(vec3<f32>(s.arg0_second_position_x, s.arg0_second_position_y, s.arg0_second_position_z), s.arg0_second_mass, (s.arg0_second_alive & 0xffu) != 0u, s.arg0_second_hits), s.arg0_weight), s.arg1);
+    return Tuple(Pair(Particle(vec3<f32>(s.arg0_first_position_x, s.arg0_first_position_y, s.arg0_first_position_z), s.arg0_first_mass, (s.arg0_first_alive & 0xffu) != 0u, s.arg0_first_hits), Particle(vec3<f32>(s.arg0_second_position_x, s.arg0_second_position_y, s.arg0_second_position_z), s.arg0_second_mass, (s.arg0_second_alive & 0xffu) != 0u, s.arg0_second_hits), s.arg0_weight), s.arg1);
 }
 
 @compute @workgroup_size(8, 8)

@@ -5,12 +5,12 @@ struct Particle {
     hits: u32,
 }
 
-struct Args {
+struct Tuple {
     _0: Particle,
     _1: f32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0_position_x: f32,
     arg0_position_y: f32,
     arg0_position_z: f32,
@@ -69,16 +69,16 @@ fn struct_places(p: Particle, x: f32) -> Particle {
     return Particle(q_position, q_mass, q_alive, q_hits);
 }
 
-fn element(input: Args) -> Particle {
+fn element(input: Tuple) -> Particle {
     return struct_places(input._0, input._1);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredParticle>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(Particle(vec3<f32>(s.arg0_position_x, s.arg0_position_y, s.arg0_position_z), s.arg0_mass, (s.arg0_alive & 0xffu) != 0u, s.arg0_hits), s.arg1);
+    return Tuple(Particle(vec3<f32>(s.arg0_position_x, s.arg0_position_y, s.arg0_position_z), s.arg0_mass, (s.arg0_alive & 0xffu) != 0u, s.arg0_hits), s.arg1);
 }
 
 @compute @workgroup_size(8, 8)

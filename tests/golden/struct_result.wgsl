@@ -11,12 +11,12 @@ struct Pair {
     weight: i32,
 }
 
-struct Args {
+struct Tuple {
     _0: f32,
     _1: u32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: f32,
     arg1: u32,
 }
@@ -58,16 +58,16 @@ fn struct_result(x: f32, n: u32) -> Pair {
     return Pair(Particle(vec3<f32>(x, 1.0f, 2.0f), x, t, n), Particle(second, x, t, ~n), bitcast<i32>(n));
 }
 
-fn element(input: Args) -> Pair {
+fn element(input: Tuple) -> Pair {
     return struct_result(input._0, input._1);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredPair>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0, s.arg1);
+    return Tuple(s.arg0, s.arg1);
 }
 
 @compute @workgroup_size(8, 8)

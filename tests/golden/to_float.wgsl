@@ -1,9 +1,9 @@
-struct Args {
+struct Tuple {
     _0: i32,
     _1: u32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: i32,
     arg1: u32,
 }
@@ -31,16 +31,16 @@ fn to_float(a: i32, b: u32) -> vec4<f32> {
     return vec4<f32>(f32(a), f32(b), f32(bitcast<u32>(a)), f32(bitcast<i32>(b)));
 }
 
-fn element(input: Args) -> vec4<f32> {
+fn element(input: Tuple) -> vec4<f32> {
     return to_float(input._0, input._1);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredValue>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0, s.arg1);
+    return Tuple(s.arg0, s.arg1);
 }
 
 @compute @workgroup_size(8, 8)

@@ -32,7 +32,7 @@ struct Triangle {
     v2: vec3<f32>,
 }
 
-struct Args {
+struct Tuple {
     _0: Ray,
 }
 
@@ -53,7 +53,7 @@ struct StoredTriangle {
     v2_z: f32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0_origin: vec3<f32>,
     arg0_direction_x: f32,
     arg0_direction_y: f32,
@@ -407,16 +407,16 @@ fn kernel(ray: Ray) -> Hit {
     return Hit(result_is_hit, result_t, result_prim_id, result_u, result_v);
 }
 
-fn element(input: Args) -> Hit {
+fn element(input: Tuple) -> Hit {
     return kernel(input._0);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredHit>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(Ray(s.arg0_origin, vec3<f32>(s.arg0_direction_x, s.arg0_direction_y, s.arg0_direction_z), s.arg0_t_min, s.arg0_t_max));
+    return Tuple(Ray(s.arg0_origin, vec3<f32>(s.arg0_direction_x, s.arg0_direction_y, s.arg0_direction_z), s.arg0_t_min, s.arg0_t_max));
 }
 
 @compute @workgroup_size(8, 8)

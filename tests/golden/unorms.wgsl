@@ -5,11 +5,11 @@ struct Codes {
     d: u32,
 }
 
-struct Args {
+struct Tuple {
     _0: Codes,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0_d: u32,
     arg0_c_arg0_a_arg0_b: u32,
 }
@@ -38,16 +38,16 @@ fn unorms(c: Codes) -> vec4<f32> {
     return vec4<f32>(f32(c.a) / params.lit_255_0, f32(c.b) / params.lit_255_0, f32(c.c) / params.lit_65535_0, f32(c.d) / 4294967300.0f);
 }
 
-fn element(input: Args) -> vec4<f32> {
+fn element(input: Tuple) -> vec4<f32> {
     return unorms(input._0);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredValue>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(Codes((s.arg0_c_arg0_a_arg0_b >> 16u) & 0xffu, (s.arg0_c_arg0_a_arg0_b >> 24u) & 0xffu, s.arg0_c_arg0_a_arg0_b & 0xffffu, s.arg0_d));
+    return Tuple(Codes((s.arg0_c_arg0_a_arg0_b >> 16u) & 0xffu, (s.arg0_c_arg0_a_arg0_b >> 24u) & 0xffu, s.arg0_c_arg0_a_arg0_b & 0xffffu, s.arg0_d));
 }
 
 @compute @workgroup_size(8, 8)

@@ -1,9 +1,9 @@
-struct Args {
+struct Tuple {
     _0: vec3<f32>,
     _1: vec3<f32>,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0_x: f32,
     arg0_y: f32,
     arg0_z: f32,
@@ -48,16 +48,16 @@ fn vector_parts(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
     return result;
 }
 
-fn element(input: Args) -> vec3<f32> {
+fn element(input: Tuple) -> vec3<f32> {
     return vector_parts(input._0, input._1);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredValue>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(vec3<f32>(s.arg0_x, s.arg0_y, s.arg0_z), vec3<f32>(s.arg1_x, s.arg1_y, s.arg1_z));
+    return Tuple(vec3<f32>(s.arg0_x, s.arg0_y, s.arg0_z), vec3<f32>(s.arg1_x, s.arg1_y, s.arg1_z));
 }
 
 @compute @workgroup_size(8, 8)

@@ -7,13 +7,13 @@ struct Products {
     scaled: vec3<f32>,
 }
 
-struct Args {
+struct Tuple {
     _0: vec3<f32>,
     _1: vec3<f32>,
     _2: f32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0_x: f32,
     arg0_y: f32,
     arg0_z: f32,
@@ -66,16 +66,16 @@ fn vectors(a: vec3<f32>, b: vec3<f32>, x: f32) -> Products {
     return Products(vec3<f32>(a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y), shifted * (1.0f / sqrt(shifted.x * shifted.x + shifted.y * shifted.y + shifted.z * shifted.z)), a.x * b.x + a.y * b.y + a.z * b.z - (a.x * a.x + a.y * a.y + a.z * a.z), sqrt(t.x * t.x + t.y * t.y + t.z * t.z), abs(select(t_2, t_1, t_2 < t_1)), x * a - b / params.lit_3_0 + a * b - 2.0f * b);
 }
 
-fn element(input: Args) -> Products {
+fn element(input: Tuple) -> Products {
     return vectors(input._0, input._1, input._2);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredProducts>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(vec3<f32>(s.arg0_x, s.arg0_y, s.arg0_z), vec3<f32>(s.arg1_x, s.arg1_y, s.arg1_z), s.arg2);
+    return Tuple(vec3<f32>(s.arg0_x, s.arg0_y, s.arg0_z), vec3<f32>(s.arg1_x, s.arg1_y, s.arg1_z), s.arg2);
 }
 
 @compute @workgroup_size(8, 8)

@@ -116,6 +116,8 @@ macro_rules! operations {
             type U32 = [u32; N];
             type Mask = Bits;
 
+            /// A kernel that calls another does not contain it.
+            #[inline(never)]
             fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
                 f()
             }

@@ -88,6 +88,24 @@ pub fn exchange(a: &mut f32, b: &mut f32) {
     *b = old;
 }
 
+/// Leaves early, binds its parameter's name anew, and has no result.
+#[kernel]
+pub fn settle(x: &mut f32, limit: f32) {
+    for i in 0u32..4 {
+        if *x < limit {
+            return;
+        }
+        *x *= 0.5;
+        if i == 2 {
+            let x = limit * 2.0;
+            if x > 3.0 {
+                return;
+            }
+        }
+    }
+    *x -= 1.0;
+}
+
 #[kernel]
 pub fn random_sum(seed: u32, n: u32) -> f32 {
     let mut rng = Pcg::seeded(seed);
@@ -126,5 +144,7 @@ pub fn changed_arguments(x: f32, y: f32, n: u32) -> f32 {
     }
     let first = bump_twice(&mut count, 7);
     add(&mut pair.1, first as f32);
+    settle(&mut a, y);
+    settle(&mut pair.0, 1.5);
     pair.0 - pair.1 * a + count as f32
 }

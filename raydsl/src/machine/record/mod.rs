@@ -238,7 +238,7 @@ impl Recorder {
             let name = info.params.get(i).copied().unwrap_or(f.name);
             let n = self.builder(|b| {
                 let taken = |n: &str| b.function.params.iter().any(|p| p.0 == n);
-                let name = unique(name, taken);
+                let name = unique(&safe_name(name.trim_start_matches("__")), taken);
                 b.function.params.push((name, Type::of(f.schema)));
                 b.function.params.len() - 1
             });
