@@ -5,6 +5,7 @@
 //! `gpu`, `golden_wgsl`, `layout`, `unorm`.
 
 pub mod check;
+pub mod fuzz;
 pub mod gpu;
 pub mod kernels;
 pub mod levels;
