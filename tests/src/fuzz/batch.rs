@@ -84,7 +84,8 @@ impl Workshop {
                 let copy = copies.join(name);
                 fs::copy(path, &copy).expect("a library can be copied");
                 if let Some((krate, _)) = name.strip_prefix("lib").and_then(|n| n.split_once('-')) {
-                    libraries.extend(["--extern".to_owned(), format!("{krate}={}", copy.display())]);
+                    libraries
+                        .extend(["--extern".to_owned(), format!("{krate}={}", copy.display())]);
                 }
             } else if is_library && is_rlib {
                 others = path.parent().map(Path::to_owned);

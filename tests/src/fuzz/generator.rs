@@ -16,7 +16,10 @@ use super::tree::{Block, Expr, Function, Kernel, Piece, Stmt, Ty};
 use crate::rng::Rng;
 
 /// How many operations one run of a kernel may take, about.
-const WORK: usize = 12_000;
+const WORK: usize = 6_000;
+/// How many expressions the text of a function has, about: of `entry` and of others. Many small
+/// kernels find more than a few large ones, and compile as fast.
+const SIZE: [usize; 2] = [80, 25];
 
 const F32: &[&str] = &[
     "({f} + {f})",
@@ -392,6 +395,7 @@ fn function(
         work: 0,
         rounds: 1,
         limit,
+        size: SIZE[usize::from(result != Ty::Outcome)],
         nest: 0,
         counters: 0,
         plain: false,
@@ -403,7 +407,7 @@ fn function(
             *name = format!("mut {name}");
         }
     }
-    let statements = 2 + g.rng.below(6);
+    let statements = 2 + g.rng.below(5);
     let body = g.block(Some(result), statements);
     let work = g.work;
     let types = params.iter().map(|(_, ty)| *ty).collect();
@@ -440,6 +444,8 @@ struct Generator<'a> {
     /// How often what is generated now is run.
     rounds: usize,
     limit: usize,
+    /// How many more expressions the text should have.
+    size: usize,
     /// How many statements stand around.
     nest: usize,
     counters: usize,
@@ -454,10 +460,15 @@ impl Generator<'_> {
 
     // Expressions.
 
+    fn is_full(&self) -> bool {
+        self.size == 0 || self.work > self.limit
+    }
+
     fn expr(&mut self, ty: Ty, depth: usize) -> Expr {
         self.work += self.rounds;
+        self.size = self.size.saturating_sub(1);
         let is_float = matches!(ty, Ty::F32 | Ty::Vec3 | Ty::Small | Ty::Nested);
-        if depth == 0 || self.work > self.limit || is_float && !self.floats {
+        if depth == 0 || self.is_full() || is_float && !self.floats {
             return self.leaf(ty);
         }
         match self.rng.below(100) {
@@ -610,16 +621,20 @@ impl Generator<'_> {
         let scope = self.vars.len();
         let mut stmts: Vec<Stmt> = (0..statements).map(|_| self.stmt()).collect();
         // A block that leaves the function or a loop.
-        if ty.is_none() && self.chance(15) || ty.is_some() && self.nest > 0 && self.chance(5) {
+        if ty.is_none() && self.chance(15) {
             stmts.push(self.exit());
         }
-        let tail = ty.map(|ty| Box::new(self.expr(ty, 3)));
+        if self.nest == 0 {
+            // However long the statements are, the result depends on several of them.
+            self.size += 12;
+        }
+        let tail = ty.map(|ty| Box::new(self.expr(ty, if self.nest == 0 { 3 } else { 2 })));
         self.vars.truncate(scope);
         Block { stmts, tail }
     }
 
     fn stmt(&mut self) -> Stmt {
-        let may_nest = self.nest < 4 && self.work < self.limit;
+        let may_nest = self.nest < 4 && !self.is_full();
         match self.rng.below(100) {
             0..25 => self.binding(),
             25..45 => self.assignment().unwrap_or_else(|| self.binding()),
@@ -733,7 +748,13 @@ impl Generator<'_> {
         }
         if ty.is_some() || self.chance(50) {
             pieces.push(Piece::Text(" else ".to_owned()));
-            pieces.push(Piece::Block(self.inner_block(ty)));
+            // The last arm of an `if` with a value may leave instead.
+            let leaves = ty.is_some() && self.chance(15);
+            let mut block = self.inner_block(if leaves { None } else { ty });
+            if leaves {
+                block.stmts.push(Stmt { removable: false, ..self.exit() });
+            }
+            pieces.push(Piece::Block(block));
         }
     }
 
@@ -781,7 +802,8 @@ impl Generator<'_> {
             }
             1 => {
                 first.push(step(format!("{counter} += 1;")));
-                let head = format!("let mut {counter}: u32 = 0; {prefix}while {counter} < {rounds}");
+                let head =
+                    format!("let mut {counter}: u32 = 0; {prefix}while {counter} < {rounds}");
                 if self.chance(70) {
                     let condition = self.plainly(|g| g.expr(Ty::Bool, 2));
                     pieces.extend(around(format!("{head} && "), condition, " "));

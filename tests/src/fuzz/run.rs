@@ -52,13 +52,7 @@ pub struct Case {
 impl Case {
     /// The kernel `F`.
     pub fn of<F: KernelFn<Args = Args, Output = Outcome>>(name: &'static str) -> Self {
-        Self {
-            name,
-            source: F::scalar,
-            scalar: F::lifted,
-            packet: F::lifted,
-            recorder: F::lifted,
-        }
+        Self { name, source: F::scalar, scalar: F::lifted, packet: F::lifted, recorder: F::lifted }
     }
 }
 
