@@ -2,7 +2,7 @@
 //!
 //! The tests are split by the kind of evidence that they give: `variants` (every variant of small
 //! kernels agrees with the untouched source), `rays` and `edges` (queries of scenes), `images`,
-//! `gpu`, `golden_wgsl`, `layout`, `unorm`.
+//! `gpu`, `golden_wgsl`, `layout`, `unorm`, `fuzz` (random kernels).
 
 pub mod check;
 pub mod fuzz;

@@ -3,7 +3,7 @@
 //! `RAYDSL_FUZZ_KERNELS` says how many, `RAYDSL_FUZZ_SEED` which ones:
 //!
 //! ```text
-//! RAYDSL_FUZZ_KERNELS=20000 RAYDSL_FUZZ_SEED=1000000 cargo test -p raydsl-tests --test fuzz -- --nocapture
+//! RAYDSL_FUZZ_KERNELS=20000 RAYDSL_FUZZ_SEED=1000000 cargo test --workspace --test fuzz -- --nocapture
 //! ```
 
 use std::path::Path;

@@ -46,7 +46,7 @@ pub struct Report {
 }
 
 impl Workshop {
-    /// Asks cargo where the libraries of this package's test `test` lie, in `target_folder`.
+    /// Asks cargo where the libraries of the test program `test` lie, in `target_folder`.
     ///
     /// Libraries of the workspace are copied to `folder`, so that a build that happens during a
     /// long run does not change them.
@@ -57,8 +57,9 @@ impl Workshop {
     pub fn new(folder: &Path, target_folder: &Path, test: &str) -> Self {
         let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
         let mut command = Command::new(cargo);
-        let package = env!("CARGO_PKG_NAME");
-        command.args(["test", "--no-run", "--message-format", "json", "-p", package]);
+        // The features of dependencies follow from the packages that are asked for. This is what a
+        // test of the whole workspace builds, so there it builds nothing.
+        command.args(["test", "--no-run", "--message-format", "json", "--workspace"]);
         command.args(["--test", test, "--target-dir"]).arg(target_folder);
         if !cfg!(debug_assertions) {
             command.arg("--release");
@@ -122,8 +123,7 @@ impl Workshop {
         let folder = self.folder.join(format!("{name}-{:?}", std::thread::current().id()));
         fs::create_dir_all(&folder).expect("a folder of the target folder can be made");
         let mut report = Report { kernels: kernels.len(), ..Report::default() };
-        loop {
-            let Err(errors) = self.compile(&folder, &kernels) else { break };
+        while let Err(errors) = self.compile(&folder, &kernels) {
             let bad = bad_modules(&errors);
             assert!(!bad.is_empty(), "rustc fails, for none of the kernels:\n{errors}");
             let mut good = Vec::new();
@@ -163,7 +163,8 @@ impl Workshop {
         let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
         let output = Command::new(rustc)
             .args(["--edition", "2024", "--crate-name", "batch", "--cap-lints", "allow"])
-            .args(["-C", "opt-level=0", "-C", "debug-assertions=on", "-C", "debuginfo=0"])
+            .args(["-C", "opt-level=0", "-C", "overflow-checks=on", "-C", "debuginfo=0"])
+            .args(["-C", "codegen-units=2"])
             .args(&self.libraries)
             .arg(folder.join("main.rs"))
             .arg("-o")
@@ -222,17 +223,16 @@ fn program(folder: &Path) -> PathBuf {
 fn bad_modules(errors: &str) -> HashMap<usize, String> {
     let mut bad = HashMap::new();
     for message in errors.split("\n\n") {
-        let file = message.split_once("k").into_iter().flat_map(|_| {
-            message.match_indices(".rs:").filter_map(|(end, _)| {
-                let head = &message[..end];
-                let start = head.rfind(['/', '\\'])?;
-                head[start + 1..].strip_prefix('k')?.parse::<usize>().ok()
-            })
+        if !message.starts_with("error") {
+            continue;
+        }
+        let modules = message.match_indices(".rs:").filter_map(|(end, _)| {
+            let head = &message[..end];
+            let start = head.rfind(['/', '\\'])?;
+            head[start + 1..].strip_prefix('k')?.parse::<usize>().ok()
         });
-        if message.starts_with("error") {
-            for i in file {
-                bad.entry(i).or_insert_with(|| message.to_owned());
-            }
+        for i in modules {
+            bad.entry(i).or_insert_with(|| message.to_owned());
         }
     }
     bad

@@ -74,7 +74,7 @@ impl Nested {
             if v.x > v.y {
                 continue;
             }
-            v = v + by * i as f32;
+            v += by * i as f32;
         }
         Nested { v, ..*self }
     }
