@@ -144,10 +144,10 @@ fn run_packet<F: KernelFn, L: Lanes>(
     });
 }
 
-type Run<'a, A, R> = &'a dyn Fn(u64, &dyn Fn(usize) -> A, &mut [R]);
+pub(crate) type Run<'a, A, R> = &'a dyn Fn(u64, &dyn Fn(usize) -> A, &mut [R]);
 
 /// Runs all inputs through packets of `n` lanes, in each of the ways in which lanes may meet.
-fn each_pass<A: Type, R: Type>(
+pub(crate) fn each_pass<A: Type, R: Type>(
     run: Run<'_, A, R>,
     n: usize,
     inputs: &[A],

@@ -64,6 +64,8 @@ macro_rules! kernel_table {
             small_vectors: Tame Same;
             unorms: Any Same;
             arrays: Any Same;
+            constant_integers: Any Same;
+            splats: Tame Same;
             newton: Tame Same;
             mandelbrot: Tame Same;
             match_numbers: Tame Same;
@@ -805,6 +807,25 @@ pub fn arrays(t: Table, n: u32) -> u32 {
         r = r ^ t.colors[2].to_bits() as u32;
     }
     if t.flag { r } else { !r }
+}
+
+/// WGSL refuses constant expressions that overflow.
+#[kernel]
+pub fn constant_integers(n: u32, i: i32) -> u32 {
+    let a = 4294967295u32 << 3;
+    let b = (5u32 as i32) << 31;
+    let c = ((13u32 < 2) as u32 | 0xff) << 30;
+    let d = -(i32::MIN >> 1);
+    let e = f32::from_bits(0x7f80_0000) > n as f32;
+    (n | a) ^ (c >> 1) ^ ((i & b & d) as u32) ^ (e as u32)
+}
+
+/// Both sides of an operator are one number in all components, and one is a literal.
+#[kernel]
+pub fn splats(x: f32, y: f32) -> Vec3 {
+    let a = Vec3::splat(3.0) * x;
+    let b = Vec3::splat(x - y) + Vec3::splat(0.25);
+    a + y / Vec3::splat(3.0) - b
 }
 
 #[kernel]

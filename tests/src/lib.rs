@@ -2,9 +2,10 @@
 //!
 //! The tests are split by the kind of evidence that they give: `variants` (every variant of small
 //! kernels agrees with the untouched source), `rays` and `edges` (queries of scenes), `images`,
-//! `gpu`, `golden_wgsl`, `layout`, `unorm`, `elementary`.
+//! `gpu`, `golden_wgsl`, `layout`, `unorm`, `elementary`, `fuzz` (random kernels).
 
 pub mod check;
+pub mod fuzz;
 pub mod gpu;
 pub mod kernels;
 pub mod levels;

@@ -6,14 +6,15 @@
 
 use raydsl::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Lanes};
 
-/// `N` lanes of the level behind the reference.
+/// `N` lanes of the level behind the reference. It may have fewer: then the upper lanes hold
+/// nothing, and must not run.
 #[derive(Clone, Copy)]
 pub struct RunTime<const N: usize>(&'static dyn Table<N>);
 
 impl<const N: usize> RunTime<N> {
     /// The operations of `lanes`.
     pub fn new<L: Lanes>(lanes: L) -> Self {
-        assert_eq!(L::N, N);
+        assert!(L::N <= N, "{} lanes do not fit {N}", L::N);
         Self(Box::leak(Box::new(lanes)))
     }
 }
@@ -41,7 +42,7 @@ macro_rules! held {
                 #[inline(always)]
                 fn store(register: L::$register, _: L) -> Self {
                     let mut all = [Default::default(); N];
-                    all.iter_mut().enumerate().for_each(|(i, v)| *v = L::$lane(&register, i));
+                    all.iter_mut().take(L::N).enumerate().for_each(|(i, v)| *v = L::$lane(&register, i));
                     all
                 }
             }

@@ -37,7 +37,6 @@ impl Recorder {
                 let name = literal_name(f32::from_bits(bits));
                 self.uniform(&name, Type::F32, vec![bits])
             }
-            Expr::Compose(parts) if parts.iter().all(|p| *p == parts[0]) => self.opaque(parts[0]),
             Expr::Compose(parts) => {
                 let parts: Vec<Id> = parts.into_iter().map(|p| self.opaque(p)).collect();
                 let n = parts.len();
@@ -54,6 +53,22 @@ impl Recorder {
     fn literal(&self, id: Id) -> Option<f32> {
         match self.node(id).expr {
             Expr::F32(bits) => Some(f32::from_bits(bits)),
+            _ => None,
+        }
+    }
+
+    /// The integer that `id` is in the source. WGSL refuses operations on constants that overflow,
+    /// so these are done here as well.
+    fn i32_literal(&self, id: Id) -> Option<i32> {
+        match self.node(id).expr {
+            Expr::I32(v) => Some(v),
+            _ => None,
+        }
+    }
+
+    fn u32_literal(&self, id: Id) -> Option<u32> {
+        match self.node(id).expr {
+            Expr::U32(v) => Some(v),
             _ => None,
         }
     }
@@ -268,9 +283,15 @@ impl Machine for Recorder {
         self.add(Expr::MulAdd(a, b, c), Type::F32)
     }
     fn i32_binary(&self, op: IntBinary, a: Id, b: Id) -> Id {
+        if let (Some(a), Some(b)) = (self.i32_literal(a), self.i32_literal(b)) {
+            return self.i32(scalar::i32_binary(op, a, b).1);
+        }
         self.add(Expr::IntBinary(op, a, b), Type::I32)
     }
     fn u32_binary(&self, op: IntBinary, a: Id, b: Id) -> Id {
+        if let (Some(a), Some(b)) = (self.u32_literal(a), self.u32_literal(b)) {
+            return self.u32(scalar::u32_binary(op, a, b).1);
+        }
         self.add(Expr::IntBinary(op, a, b), Type::U32)
     }
     fn bool_binary(&self, op: BoolBinary, a: Id, b: Id) -> Id {
@@ -287,12 +308,21 @@ impl Machine for Recorder {
         self.add(Expr::BoolBinary(op, a, b), Type::Bool)
     }
     fn i32_neg(&self, a: Id) -> Id {
+        if let Some(a) = self.i32_literal(a) {
+            return self.i32(a.wrapping_neg());
+        }
         self.add(Expr::Neg(a), Type::I32)
     }
     fn i32_not(&self, a: Id) -> Id {
+        if let Some(a) = self.i32_literal(a) {
+            return self.i32(!a);
+        }
         self.add(Expr::Complement(a), Type::I32)
     }
     fn u32_not(&self, a: Id) -> Id {
+        if let Some(a) = self.u32_literal(a) {
+            return self.u32(!a);
+        }
         self.add(Expr::Complement(a), Type::U32)
     }
     fn bool_not(&self, a: Id) -> Id {
@@ -302,12 +332,21 @@ impl Machine for Recorder {
         self.add(Expr::Not(a), Type::Bool)
     }
     fn f32_compare(&self, op: Compare, a: Id, b: Id) -> Id {
+        if let (Some(a), Some(b)) = (self.literal(a), self.literal(b)) {
+            return self.bool(scalar::compare(op, a, b));
+        }
         self.add(Expr::Compare(op, a, b), Type::Bool)
     }
     fn i32_compare(&self, op: Compare, a: Id, b: Id) -> Id {
+        if let (Some(a), Some(b)) = (self.i32_literal(a), self.i32_literal(b)) {
+            return self.bool(scalar::compare(op, a, b));
+        }
         self.add(Expr::Compare(op, a, b), Type::Bool)
     }
     fn u32_compare(&self, op: Compare, a: Id, b: Id) -> Id {
+        if let (Some(a), Some(b)) = (self.u32_literal(a), self.u32_literal(b)) {
+            return self.bool(scalar::compare(op, a, b));
+        }
         self.add(Expr::Compare(op, a, b), Type::Bool)
     }
     fn f32_select(&self, c: Id, a: Id, b: Id) -> Id {
@@ -323,30 +362,57 @@ impl Machine for Recorder {
         self.select(c, a, b, Type::Bool)
     }
     fn f32_to_i32(&self, a: Id) -> Id {
+        if let Some(a) = self.literal(a) {
+            return self.i32(a as i32);
+        }
         self.add(Expr::Convert(Conversion::Saturate, a), Type::I32)
     }
     fn f32_to_u32(&self, a: Id) -> Id {
+        if let Some(a) = self.literal(a) {
+            return self.u32(a as u32);
+        }
         self.add(Expr::Convert(Conversion::Saturate, a), Type::U32)
     }
     fn i32_to_f32(&self, a: Id) -> Id {
+        if let Some(a) = self.i32_literal(a) {
+            return self.f32(a as f32);
+        }
         self.add(Expr::Convert(Conversion::To, a), Type::F32)
     }
     fn u32_to_f32(&self, a: Id) -> Id {
+        if let Some(a) = self.u32_literal(a) {
+            return self.f32(a as f32);
+        }
         self.add(Expr::Convert(Conversion::To, a), Type::F32)
     }
     fn i32_to_u32(&self, a: Id) -> Id {
+        if let Some(a) = self.i32_literal(a) {
+            return self.u32(a as u32);
+        }
         self.add(Expr::Convert(Conversion::Bits, a), Type::U32)
     }
     fn u32_to_i32(&self, a: Id) -> Id {
+        if let Some(a) = self.u32_literal(a) {
+            return self.i32(a as i32);
+        }
         self.add(Expr::Convert(Conversion::Bits, a), Type::I32)
     }
     fn f32_to_bits(&self, a: Id) -> Id {
+        if let Some(a) = self.literal(a) {
+            return self.u32(a.to_bits());
+        }
         self.add(Expr::Convert(Conversion::Bits, a), Type::U32)
     }
     fn f32_from_bits(&self, a: Id) -> Id {
+        if let Some(a) = self.u32_literal(a) {
+            return self.f32(f32::from_bits(a));
+        }
         self.add(Expr::Convert(Conversion::Bits, a), Type::F32)
     }
     fn bool_to_u32(&self, a: Id) -> Id {
+        if let Some(a) = self.truth(a) {
+            return self.u32(u32::from(a));
+        }
         self.add(Expr::Convert(Conversion::To, a), Type::U32)
     }
 

@@ -1,0 +1,59 @@
+struct Args {
+    _0: f32,
+    _1: f32,
+}
+
+struct StoredArgs {
+    arg0: f32,
+    arg1: f32,
+}
+
+struct StoredValue {
+    value_x: f32,
+    value_y: f32,
+    value_z: f32,
+}
+
+struct Params {
+    lit_3_0: f32,
+    lit_0_25: f32,
+}
+
+struct Job {
+    size: vec2<u32>,
+    first: vec2<u32>,
+    count: vec2<u32>,
+    base: u32,
+    pad: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> job: Job;
+
+fn splats(x: f32, y: f32) -> vec3<f32> {
+    let a = vec3<f32>(params.lit_3_0) * vec3<f32>(x);
+    let t = x - y;
+    let b = vec3<f32>(t) + vec3<f32>(params.lit_0_25);
+    return a + vec3<f32>(y) / vec3<f32>(params.lit_3_0) - b;
+}
+
+fn element(input: Args) -> vec3<f32> {
+    return splats(input._0, input._1);
+}
+
+@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(3) var<storage, read_write> outputs: array<StoredValue>;
+
+fn load_input(i: u32) -> Args {
+    let s = inputs[i];
+    return Args(s.arg0, s.arg1);
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (any(id.xy >= job.count)) { return; }
+    let at = job.first + id.xy;
+    let index = at.y * job.size.x + at.x - job.base;
+    let result = element(load_input(index));
+    outputs[index] = StoredValue(result.x, result.y, result.z);
+}
