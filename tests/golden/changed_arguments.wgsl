@@ -25,7 +25,7 @@ struct StoredTuple_3 {
 }
 
 struct Params {
-    none: u32,
+    lit_1_0: f32,
 }
 
 struct Job {
@@ -52,10 +52,10 @@ fn bump(n: u32) -> Tuple_1 {
     var n_1: u32 = n;
     if (n_1 > 5u) {
         n_1 = 0u;
-        return 100u;
+        return Tuple_1(100u, n_1);
     }
     n_1 = n_1 + 1u;
-    return n_1;
+    return Tuple_1(n_1, n_1);
 }
 
 fn bump_twice(n: u32, limit: u32) -> Tuple_1 {
@@ -79,6 +79,25 @@ fn add(x: f32, y: f32) -> Tuple_2 {
     return Tuple_2(x_1);
 }
 
+fn settle(x: f32, limit: f32) -> Tuple_2 {
+    var x_1: f32 = x;
+    var i: u32 = 0u;
+    for (; i < 4u; i = i + 1u) {
+        if (x_1 < limit) {
+            return Tuple_2(x_1);
+        }
+        x_1 = x_1 * 0.5f;
+        if (i == 2u) {
+            let x_2 = limit * 2.0f;
+            if (x_2 > 3.0f) {
+                return Tuple_2(x_1);
+            }
+        }
+    }
+    x_1 = x_1 - params.lit_1_0;
+    return Tuple_2(x_1);
+}
+
 fn changed_arguments(x: f32, y: f32, n: u32) -> f32 {
     var pair_0: f32 = x;
     var pair_1: f32 = y;
@@ -86,8 +105,8 @@ fn changed_arguments(x: f32, y: f32, n: u32) -> f32 {
     var count: u32 = n;
     if (x < y) {
         var pair: f32 = pair_0;
-        let pair_3 = pair;
-        let t = exchange(pair_3, a);
+        let pair_4 = pair;
+        let t = exchange(pair_4, a);
         pair = t._1;
         a = t._2;
         pair_0 = pair;
@@ -98,6 +117,10 @@ fn changed_arguments(x: f32, y: f32, n: u32) -> f32 {
     var pair_2: f32 = pair_1;
     pair_2 = add(pair_2, f32(t_1._0))._1;
     pair_1 = pair_2;
+    a = settle(a, y)._1;
+    var pair_3: f32 = pair_0;
+    pair_3 = settle(pair_3, 1.5f)._1;
+    pair_0 = pair_3;
     return pair_0 - pair_1 * a + f32(count);
 }
 

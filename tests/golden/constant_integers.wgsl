@@ -1,9 +1,9 @@
-struct Args {
+struct Tuple {
     _0: u32,
     _1: i32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: u32,
     arg1: i32,
 }
@@ -28,16 +28,16 @@ fn constant_integers(n: u32, i: i32) -> u32 {
     return (((n | 4294967288u) ^ 1610612736u) ^ bitcast<u32>((i & (-2147483647i - 1i)) & 1073741824i)) ^ u32(e);
 }
 
-fn element(input: Args) -> u32 {
+fn element(input: Tuple) -> u32 {
     return constant_integers(input._0, input._1);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<u32>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0, s.arg1);
+    return Tuple(s.arg0, s.arg1);
 }
 
 @compute @workgroup_size(8, 8)

@@ -51,7 +51,7 @@ fn inclusive_ranges(n: u32, i: i32) -> i32 {
             k_1 = k_1 + 1i;
         }
     }
-    var k_2: u32 = 4294967295u - 2u;
+    var k_2: u32 = 4294967293u;
     var done_2: bool = false;
     loop {
         if (!(!done_2 && k_2 <= 4294967295u)) { break; }

@@ -98,10 +98,10 @@ fn bump(n: u32) -> Tuple_3 {
     var n_1: u32 = n;
     if (n_1 > 5u) {
         n_1 = 0u;
-        return 100u;
+        return Tuple_3(100u, n_1);
     }
     n_1 = n_1 + 1u;
-    return n_1;
+    return Tuple_3(n_1, n_1);
 }
 
 fn Walk_step(self_: Walk, length_: f32) -> Tuple_4 {
@@ -116,24 +116,24 @@ fn Walk_step(self_: Walk, length_: f32) -> Tuple_4 {
     self_rng_state = this_state;
     let x = t._0 - params.lit_0_5;
     self_at = vec2<f32>(self_at.x + x * length_, self_at.y);
-    var self_: f32 = self_at.y;
+    var self__1: f32 = self_at.y;
     var this_state_1: u32 = self_rng_state;
     let this_state_1_1 = this_state_1;
     let t_1 = Pcg_unit(Pcg(this_state_1_1));
     this_state_1 = t_1._1.state;
     self_rng_state = this_state_1;
-    self_ = add(self_, t_1._0 - params.lit_0_5)._1;
-    self_at = vec2<f32>(self_at.x, self_);
-    var self__1: u32 = self_counts_0;
-    self__1 = bump(self__1)._1;
-    self_counts_0 = self__1;
+    self__1 = add(self__1, t_1._0 - params.lit_0_5)._1;
+    self_at = vec2<f32>(self_at.x, self__1);
+    var self__2: u32 = self_counts_0;
+    self__2 = bump(self__2)._1;
+    self_counts_0 = self__2;
     if (x > 0.25f) {
-        var self__2: u32 = self_counts_1;
-        self__2 = bump(self__2)._1;
-        self_counts_1 = self__2;
-        return true;
+        var self__3: u32 = self_counts_1;
+        self__3 = bump(self__3)._1;
+        self_counts_1 = self__3;
+        return Tuple_4(true, Walk(Pcg(self_rng_state), self_at, array<u32, 2>(self_counts_0, self_counts_1)));
     }
-    return false;
+    return Tuple_4(false, Walk(Pcg(self_rng_state), self_at, array<u32, 2>(self_counts_0, self_counts_1)));
 }
 
 fn Pcg_skip(self_: Pcg, n: u32) -> Tuple_5 {

@@ -1,9 +1,9 @@
-struct Args {
+struct Tuple {
     _0: f32,
     _1: f32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: f32,
     arg1: f32,
 }
@@ -37,16 +37,16 @@ fn splats(x: f32, y: f32) -> vec3<f32> {
     return a + vec3<f32>(y) / vec3<f32>(params.lit_3_0) - b;
 }
 
-fn element(input: Args) -> vec3<f32> {
+fn element(input: Tuple) -> vec3<f32> {
     return splats(input._0, input._1);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredValue>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0, s.arg1);
+    return Tuple(s.arg0, s.arg1);
 }
 
 @compute @workgroup_size(8, 8)

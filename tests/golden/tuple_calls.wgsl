@@ -41,8 +41,8 @@ fn tuple_result(x: f32, n: u32) -> Tuple {
     return Tuple(n, -x);
 }
 
-fn tuple_calls(k__parts_1: Tuple_1, scale: f32) -> f32 {
-    let parts_2 = tuple_result(k__parts_1._0 * scale, k__parts_1._1);
+fn tuple_calls(parts_1: Tuple_1, scale: f32) -> f32 {
+    let parts_2 = tuple_result(parts_1._0 * scale, parts_1._1);
     return parts_2._1 + f32(parts_2._0);
 }
 

@@ -215,12 +215,11 @@ impl Parser<'_> {
             let mut test = self.pattern(pat, &from, &mut lets);
             if let Some(guard) = guard {
                 let span = guard.span();
-                let tail = Some(Box::new(self.expr(guard)));
-                let guard = if lets.is_empty() {
-                    *tail.expect("just made")
-                } else {
-                    Expr { kind: Kind::Block(Block { stmts: lets.clone(), tail }), span }
-                };
+                let mut guard = self.expr(guard);
+                if !lets.is_empty() {
+                    let tail = Some(Box::new(guard));
+                    guard = Expr { kind: Kind::Block(Block { stmts: lets.clone(), tail }), span };
+                }
                 test = both(test, Some(guard));
             }
             let body = self.expr(&arm.body);

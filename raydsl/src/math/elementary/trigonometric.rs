@@ -14,7 +14,7 @@ const FRAC_PI_2_3: f32 = 7.5495336e-8;
 /// The rest of pi / 2.
 const FRAC_PI_2_4: f32 = 2.563344e-12;
 /// What pi / 2 is more than its upper 8 bits, which are `FRAC_PI_2_1`.
-const FRAC_PI_2_REST: f32 = 0.00048382679;
+const FRAC_PI_2_REST: f32 = 0.0004838268;
 
 /// The sine of an angle in radians.
 ///
@@ -167,7 +167,7 @@ fn reduced_large(a: f32) -> Reduced {
     let lower = (low << 2) ^ flip;
 
     // The upper 16 bits times the upper 8 of pi / 2 are exact. Factors: 2^-16, 2^-32, 2^-64.
-    let v = (upper >> 16) as f32 * 0.0000152587890625;
+    let v = (upper >> 16) as f32 * 1.5258789e-5;
     let w = (upper & 0xffff) as f32 * 2.3283064e-10 + lower as f32 * 5.421011e-20;
     let rest = v * FRAC_PI_2_1 + (v * FRAC_PI_2_REST + w * FRAC_PI_2);
     Reduced { rest: if a <= f32::MAX { turned(rest, flip) } else { f32::NAN }, tail: 0.0, quarters }
