@@ -32,7 +32,7 @@ struct Shaded {
     id: u32,
 }
 
-struct Args {
+struct Tuple {
     _0: Ray,
 }
 
@@ -41,7 +41,7 @@ struct StoredColorSphere {
     radius_color_0_color_1_color_2: u32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0_origin: vec3<f32>,
     arg0_direction_x: f32,
     arg0_direction_y: f32,
@@ -64,6 +64,7 @@ struct Params {
     lit_255_0: f32,
     lit_0_001: f32,
     lit_0_75: f32,
+    lit_0_7: f32,
     lit_0_6: f32,
     lit_1_0: f32,
     len_of_bvh_nodes: u32,
@@ -310,21 +311,21 @@ fn kernel(ray: Ray) -> Shaded {
         }
         color = ColorSphere_rgb(sphere) * light;
     } else {
-        color = params.background * (params.lit_1_0 - sky(ray.direction.y, 8u));
+        color = params.background * (params.lit_1_0 - 0.5f * sky(ray.direction.y + params.lit_0_7, 8u));
     }
     return Shaded(color, hit.t, hit.prim_id);
 }
 
-fn element(input: Args) -> Shaded {
+fn element(input: Tuple) -> Shaded {
     return kernel(input._0);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<StoredShaded>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(Ray(s.arg0_origin, vec3<f32>(s.arg0_direction_x, s.arg0_direction_y, s.arg0_direction_z), s.arg0_t_min, s.arg0_t_max));
+    return Tuple(Ray(s.arg0_origin, vec3<f32>(s.arg0_direction_x, s.arg0_direction_y, s.arg0_direction_z), s.arg0_t_min, s.arg0_t_max));
 }
 
 @compute @workgroup_size(8, 8)

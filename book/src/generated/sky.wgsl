@@ -1,9 +1,9 @@
-struct Args {
+struct Tuple {
     _0: f32,
     _1: u32,
 }
 
-struct StoredArgs {
+struct StoredTuple {
     arg0: f32,
     arg1: u32,
 }
@@ -35,16 +35,16 @@ fn sky(up: f32, bands: u32) -> f32 {
     return 0.0f;
 }
 
-fn element(input: Args) -> f32 {
+fn element(input: Tuple) -> f32 {
     return sky(input._0, input._1);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredArgs>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<f32>;
 
-fn load_input(i: u32) -> Args {
+fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
-    return Args(s.arg0, s.arg1);
+    return Tuple(s.arg0, s.arg1);
 }
 
 @compute @workgroup_size(8, 8)

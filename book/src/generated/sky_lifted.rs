@@ -43,20 +43,21 @@ impl sky {
                             {
                                 {
                                     let right = f32(m, 0.6f32);
-                                    #[allow(unused_mut)]
-                                    let mut whole = edge.get(m);
-                                    edge.set(m, Coerce::coerce(OpMul::mul(m, whole, right), m));
+                                    edge.set(
+                                        m,
+                                        Coerce::coerce(OpMul::mul(m, edge.get(m), right), m),
+                                    );
                                 }
-                                let branch_5 = Branch::new(
+                                let branch_6 = Branch::new(
                                     m,
                                     OpCompare::compare(m, Compare::Gt, up, edge.get(m)),
                                 );
-                                if branch_5.then(m) {
+                                if branch_6.then(m) {
                                     {
                                         ret.give(m, Coerce::coerce(edge.get(m), m));
                                     }
                                 }
-                                branch_5.end(m);
+                                branch_6.end(m);
                             }
                             repeat_2.continuing(m);
                             counter_3.set(m, increment(m, counter_3.get(m)));

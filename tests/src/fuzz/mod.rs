@@ -1,8 +1,8 @@
 //! Random kernels through every variant, against their own source.
 //!
-//! A seed gives a kernel ([`generator`]), which is printed as Rust ([`print`]). Kernels are compiled
-//! in batches and run by their program ([`run`]), and a kernel that fails is made smaller
-//! ([`shrink`]). The test program `fuzz` does all that ([`batch`]).
+//! A seed gives a kernel ([`generator`]), which is printed as Rust (module [`mod@print`]). Kernels
+//! are compiled in batches and run by their program ([`run`]), and a kernel that fails is made
+//! smaller ([`shrink`]). The test program `fuzz` does all that ([`batch`]).
 //!
 //! # What must agree
 //!
