@@ -335,6 +335,13 @@ pub(crate) fn kernel_impl(
             "write an inherent `impl`",
         );
     }
+    if let Some(param) = item.generics.params.first() {
+        errors.at(
+            param.span(),
+            "an impl of kernels cannot be generic",
+            "write an impl for each type",
+        );
+    }
     let mut lifted = TokenStream::new();
     let mut methods = TokenStream::new();
     for f in item.items.iter().filter_map(|i| match i {
@@ -344,6 +351,13 @@ pub(crate) fn kernel_impl(
         let name = f.sig.ident.to_string();
         if host_only.contains(&name.as_str()) {
             continue;
+        }
+        if let Some(cfg) = f.attrs.iter().find(|a| a.path().is_ident("cfg")) {
+            errors.at(
+                cfg.span(),
+                "a method of kernels has no `#[cfg]`: its lifted form would stay",
+                "put the method in an impl of its own, with the `#[cfg]` on the impl",
+            );
         }
         let kernel = parse::function(&f.sig, &f.block, Some(&item.self_ty), errors);
         let fn_name = format_ident!("{name}_on");

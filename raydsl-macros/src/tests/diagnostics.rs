@@ -130,6 +130,16 @@ fn signatures() {
         "cannot be `unsafe`",
         "remove",
     );
+    assert_kernel(
+        quote!(
+            impl<T> S<T> {
+                fn f(&self) {}
+            }
+        ),
+        "cannot be generic",
+        "each type",
+    );
+    assert_kernel(quote!(impl S { #[cfg(test)] fn f(&self) {} }), "no `#[cfg]`", "impl of its own");
     assert_kernel(quote!(impl A for T { fn f(&self) {} }), "trait impls", "inherent");
     assert_kernel(
         quote!(
