@@ -858,6 +858,13 @@ impl<'a> Emitter<'a> {
         let args = self.arguments(args);
         let values = &args.values;
         let Some((local, steps)) = variable else {
+            if is_part_of_element(receiver) {
+                return args.around(quote_spanned!(name.span()=>
+                    #p::call_on_element::<{ #p::name(#text) }, #machine, _, _>(
+                        #m, #value, (#(#values,)*)
+                    )
+                ));
+            }
             return args
                 .around(quote_spanned!(name.span()=> #method::call(#value, #m, (#(#values,)*))));
         };
@@ -957,6 +964,15 @@ impl Arguments {
         }
         let result = own("result");
         quote!({ #before let #result = #call; #after #result })
+    }
+}
+
+/// Whether it is a computed element of an array, or a part of one.
+fn is_part_of_element(e: &Expr) -> bool {
+    match &e.kind {
+        Kind::Element { .. } => true,
+        Kind::Field { base, .. } | Kind::Index { base, .. } => is_part_of_element(base),
+        _ => false,
     }
 }
 

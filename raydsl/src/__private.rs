@@ -6,7 +6,7 @@ pub use crate::machine::{
     Branch, Capture, Coerce, Compare, Field, HostMethod, KernelFn, KernelInfo, LaneMachine, Leaves,
     Loop, Machine, Method, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv,
     OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Recorder, Resource, Ret, Schema, Type,
-    Value, Var, Varying, is_mut, name,
+    Value, Var, Varying, call_on_element, is_mut, name,
 };
 
 /// Traits of associated functions.

@@ -114,7 +114,12 @@ fn array_of_structs(p: Particle, n: u32) -> f32 {
         all_1_hits = select(all_1_hits, n, t_26);
     }
     let t_27 = i >= 1u;
-    return select(all_0_mass, all_1_mass, t_27) + (select(all_0_position.x, all_1_position.x, t_27) * all_0_position.x + select(all_0_position.y, all_1_position.y, t_27) * all_0_position.y + select(all_0_position.z, all_1_position.z, t_27) * all_0_position.z) + f32(all_1_hits);
+    let t_28 = i >= 1u;
+    let t_29 = select(all_0_position.x, all_1_position.x, t_28);
+    let t_30 = select(all_0_position.y, all_1_position.y, t_28);
+    let t_31 = select(all_0_position.z, all_1_position.z, t_28);
+    let length_ = t_29 * t_29 + t_30 * t_30 + t_31 * t_31;
+    return select(all_0_mass, all_1_mass, t_27) + (select(all_0_position.x, all_1_position.x, t_27) * all_0_position.x + select(all_0_position.y, all_1_position.y, t_27) * all_0_position.y + select(all_0_position.z, all_1_position.z, t_27) * all_0_position.z) + f32(all_1_hits) + length_;
 }
 
 fn element(input: Tuple) -> f32 {

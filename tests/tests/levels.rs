@@ -1,6 +1,7 @@
 //! Queries of scenes in packets of every level and width, with a tree and without.
 //!
-//! Beside `rays`, which asks the natural variants: these traversals take long to compile.
+//! Beside `rays`, which asks the natural variants about many more rays: here each operation of a
+//! lane is a call, which is slow.
 
 use raydsl::prelude::*;
 use raydsl_tests::queries::{scalar_answers, slice_view};

@@ -50,6 +50,50 @@ pub fn is_mut<const NAME: u64, M: Machine, T: Method<NAME, M, A>, A>(_: &M, _: &
     T::IS_MUT
 }
 
+/// Calls a method on an element whose place is computed. The call has a copy of the element, so a
+/// method that changes it would change nothing.
+///
+/// ```compile_fail,E0080
+/// use raydsl::kernel;
+/// use raydsl::prelude::*;
+///
+/// #[derive(Clone, Copy, Type)]
+/// struct Counter {
+///     n: u32,
+/// }
+///
+/// #[kernel]
+/// impl Counter {
+///     fn next(&mut self) -> u32 {
+///         self.n += 1;
+///         self.n
+///     }
+/// }
+///
+/// #[kernel]
+/// fn f(i: u32) -> u32 {
+///     let mut all = [Counter { n: 0 }; 2];
+///     all[i as usize].next()
+/// }
+///
+/// Kernel::of::<f>();
+/// ```
+#[inline(always)]
+pub fn call_on_element<const NAME: u64, M: Machine, T: Method<NAME, M, A>, A>(
+    m: &M,
+    element: T,
+    args: A,
+) -> T::Output {
+    const {
+        assert!(
+            !T::IS_MUT,
+            "a kernel has no `&mut self` methods on a computed element: copy the element to a \
+             variable, and assign it back after the call"
+        );
+    }
+    element.call(m, args)
+}
+
 /// A method of a struct's kernels; the derived twin forwards [`Method`] to it.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot call this method of `{Self}` with these arguments",

@@ -32,7 +32,7 @@ pub use capture::{Capture, Resource};
 pub use control::{Branch, Condition, Loop, Ret, Var};
 pub(crate) use lanes::{Entered, fill};
 pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
-pub use methods::{HostMethod, Method, is_mut, name};
+pub use methods::{HostMethod, Method, call_on_element, is_mut, name};
 pub use ops::{
     Bounds, Coerce, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv, OpMul,
     OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Varying,

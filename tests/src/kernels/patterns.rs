@@ -223,5 +223,6 @@ pub fn array_of_structs(p: Particle, n: u32) -> f32 {
         all[(1 - i) as usize].hits = n;
     }
     let a = all[i as usize];
-    a.mass + a.position.dot(all[0].position) + all[1].hits as f32
+    let length = all[i as usize].position.length_squared();
+    a.mass + a.position.dot(all[0].position) + all[1].hits as f32 + length
 }
