@@ -69,14 +69,12 @@ impl push {
                 );
                 {
                     let right = ::raydsl::__private::OpNeg::neg(m, by.get(m).x);
-                    #[allow(unused_mut)]
                     let mut whole = by.get(m);
                     whole.x = ::raydsl::__private::Coerce::coerce(right, m);
                     by.set(m, whole);
                 }
                 {
                     let right = by.get(m).y;
-                    #[allow(unused_mut)]
                     let mut whole = q.get(m);
                     whole.position.y = ::raydsl::__private::Coerce::coerce(
                         ::raydsl::__private::OpAdd::add(m, whole.position.y, right),

@@ -547,7 +547,6 @@ impl<'a> Emitter<'a> {
         quote!({
             let #right = #value;
             #indices
-            #[allow(unused_mut)]
             let mut #whole = #local.get(#m);
             #change
             #local.set(#m, #whole);
