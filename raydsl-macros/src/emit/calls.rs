@@ -1,0 +1,168 @@
+//! Calls of kernels, associated functions and methods.
+
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::{format_ident, quote, quote_spanned};
+
+use super::places::{is_part_of_element, plain_steps};
+use super::{Binding, Emitter, own, private, shown};
+use crate::model::{Expr, Kind};
+
+impl Emitter<'_> {
+    pub(super) fn call(&mut self, path: &TokenStream, args: &[Expr], span: Span) -> TokenStream {
+        let m = own("m");
+        if self.kernel.name == path.to_string() && !self.is_closure {
+            self.errors.at(
+                span,
+                format!("the kernel `{path}` calls itself"),
+                "write a loop: a GPU has no recursion",
+            );
+            return quote!(::core::unreachable!());
+        }
+        let args = self.arguments(args);
+        let values = &args.values;
+        args.around(quote_spanned!(span=> #path::on(#m, #(#values),*)))
+    }
+
+    pub(super) fn associated(
+        &mut self,
+        ty: &TokenStream,
+        name: &Ident,
+        args: &[Expr],
+        span: Span,
+    ) -> TokenStream {
+        let m = own("m");
+        let ty = self.without_self(ty);
+        let name = format_ident!("{name}_on");
+        let args = self.arguments(args);
+        let values = &args.values;
+        args.around(quote_spanned!(span=> <#ty>::#name(#m, #(#values),*)))
+    }
+
+    fn arguments(&mut self, args: &[Expr]) -> Arguments {
+        let (p, m) = (private(), own("m"));
+        let mut all = Arguments::default();
+        for arg in args {
+            let value = match &arg.kind {
+                Kind::RefMut(place) => {
+                    let local = self.local(&place.name);
+                    if self.lookup(&place.name).is_none() && self.is_closure {
+                        self.not_ours(&place.name);
+                    }
+                    let Some(steps) = plain_steps(&place.steps) else {
+                        self.errors.at(
+                            arg.span,
+                            "a kernel has no `&mut` to a computed element",
+                            "copy the element to a variable, and assign it back after the call",
+                        );
+                        continue;
+                    };
+                    if steps.is_empty() {
+                        quote!(&#local)
+                    } else {
+                        let (part, whole) = (self.fresh("part"), own("whole"));
+                        let text = shown(&place.name);
+                        all.before.extend(quote! {
+                            let #part = #p::Var::new(#m, #text, #local.get(#m) #steps);
+                        });
+                        all.after.extend(quote!({
+                            let mut #whole = #local.get(#m);
+                            #whole #steps = #part.get(#m);
+                            #local.set(#m, #whole);
+                        }));
+                        quote!(&#part)
+                    }
+                }
+                Kind::Name(name) if self.lookup(name) == Some(Binding::Mut) => {
+                    let local = self.local(name);
+                    quote!(&#local)
+                }
+                _ => self.value(arg),
+            };
+            all.values.push(value);
+        }
+        all
+    }
+
+    /// A method that takes `&mut self` changes the variable, or the part of one, that it is
+    /// called on; which methods do is for their traits to say.
+    pub(super) fn method(&mut self, receiver: &Expr, name: &Ident, args: &[Expr]) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        let text = name.to_string();
+        let machine = self.machine.clone();
+        let method = quote_spanned!(name.span()=> #p::Method::<{ #p::name(#text) }, #machine, _>);
+        let variable = self.variable_under(receiver);
+        let value = self.value(receiver);
+        let args = self.arguments(args);
+        let values = &args.values;
+        let Some((local, steps)) = variable else {
+            if is_part_of_element(receiver) {
+                return args.around(quote_spanned!(name.span()=>
+                    #p::call_on_element::<{ #p::name(#text) }, #machine, _, _>(
+                        #m, #value, (#(#values,)*)
+                    )
+                ));
+            }
+            return args
+                .around(quote_spanned!(name.span()=> #method::call(#value, #m, (#(#values,)*))));
+        };
+        if steps.is_empty() {
+            return args.around(quote_spanned!(name.span()=>
+                #method::call_at(#value, &#local, #m, (#(#values,)*))
+            ));
+        }
+        let (old, list, part, whole) = (own("old"), own("args"), own("part"), own("whole"));
+        let shown = shown(&local);
+        args.around(quote_spanned!(name.span()=> {
+            let (#old, #list) = (#value, (#(#values,)*));
+            if #p::is_mut::<{ #p::name(#text) }, #machine, _, _>(#m, &#old, &#list) {
+                let #part = #p::Var::new(#m, #shown, #old);
+                let result = #method::call_at(#old, &#part, #m, #list);
+                let mut #whole = #local.get(#m);
+                #whole #steps = #part.get(#m);
+                #local.set(#m, #whole);
+                result
+            } else {
+                #method::call(#old, #m, #list)
+            }
+        }))
+    }
+
+    /// The variable that `e` is, or is a part of, and the steps from it.
+    pub(super) fn variable_under(&self, e: &Expr) -> Option<(Ident, TokenStream)> {
+        match &e.kind {
+            Kind::Name(name) => match self.lookup(name)? {
+                Binding::Var | Binding::Mut => Some((self.local(name), TokenStream::new())),
+                Binding::Value => None,
+            },
+            Kind::Deref(a) => self.variable_under(a),
+            Kind::Field { base, member } => {
+                let (local, steps) = self.variable_under(base)?;
+                Some((local, quote!(#steps.#member)))
+            }
+            Kind::Index { base, index } => {
+                let (local, steps) = self.variable_under(base)?;
+                Some((local, quote!(#steps[#index])))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The arguments of a call, and what stands around it for parts of variables that go by `&mut`.
+#[derive(Default)]
+struct Arguments {
+    before: TokenStream,
+    values: Vec<TokenStream>,
+    after: TokenStream,
+}
+
+impl Arguments {
+    pub(super) fn around(&self, call: TokenStream) -> TokenStream {
+        let Self { before, after, .. } = self;
+        if before.is_empty() {
+            return call;
+        }
+        let result = own("result");
+        quote!({ #before let #result = #call; #after #result })
+    }
+}

@@ -1,0 +1,278 @@
+//! Statements and control flow.
+
+use std::collections::HashMap;
+
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::{format_ident, quote};
+
+use super::{Binding, Dest, Emitter, Loop, SlotType, own, private, shown};
+use crate::model::{Block, Expr, Kind, Let, Range, Stmt};
+
+impl Emitter<'_> {
+    /// A block whose value goes to `dest`, with the checks that leave it once no lane is left.
+    pub(super) fn block(&mut self, block: &Block, dest: &Dest) -> TokenStream {
+        self.scopes.push(HashMap::new());
+        let (p, m) = (private(), own("m"));
+        let label = self.next;
+        self.next += 1;
+        let label = syn::Lifetime::new(&format!("'block_{label}"), Span::mixed_site());
+        let mut out = TokenStream::new();
+        let mut checked = false;
+        let mut ended = false;
+        for (i, stmt) in block.stmts.iter().enumerate() {
+            out.extend(self.stmt(stmt));
+            if matches!(stmt, Stmt::Expr(e) if e.diverges()) {
+                // What follows is never reached; rustc says so for the user's own function.
+                ended = true;
+                break;
+            }
+            let more = i + 1 < block.stmts.len() || block.tail.is_some();
+            if stmt.ends_lanes() && more {
+                out.extend(quote!(if !#p::Machine::alive(#m) { break #label; }));
+                checked = true;
+            }
+        }
+        if let (Some(tail), false) = (&block.tail, ended) {
+            out.extend(self.into(tail, dest));
+        }
+        self.scopes.pop();
+        if checked { quote!(#label: { #out }) } else { quote!({ #out }) }
+    }
+
+    pub(super) fn stmt(&mut self, stmt: &Stmt) -> TokenStream {
+        match stmt {
+            Stmt::Let(l) => self.let_stmt(l),
+            Stmt::Expr(e) => self.into(e, &Dest::None),
+            Stmt::Item(item) => item.clone(),
+        }
+    }
+
+    pub(super) fn let_stmt(&mut self, l: &Let) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        let Some(name) = &l.name else {
+            let value = l.init.as_ref().map(|e| self.value(e));
+            return quote!(let _ = #value;);
+        };
+        let text = shown(name);
+        let ty = l.ty.as_ref().map(|t| self.on(t));
+        let Some(init) = &l.init else {
+            self.bind(name, Binding::Var);
+            let ty = ty.unwrap_or_else(|| quote!(_));
+            return quote!(let #name = #p::Var::<#ty>::declare(#m, #text););
+        };
+        let value = match &l.ty {
+            Some(ty) => self.wanted(init, &text, ty),
+            None => self.named_value(init, &text),
+        };
+        let binding = if l.mutable { Binding::Var } else { Binding::Value };
+        self.bind(name, binding);
+        match (l.mutable, ty) {
+            (true, Some(ty)) => quote!(let #name = #p::Var::<#ty>::new(#m, #text, #value);),
+            (true, None) => {
+                quote!(let #name = #p::Var::new(#m, #text, #p::Varying::varying(#value, #m));)
+            }
+            (false, Some(ty)) => {
+                quote!(let #name: #ty = #p::Machine::named(#m, #text, #value);)
+            }
+            (false, None) => quote!(let #name = #p::Machine::named(#m, #text, #value);),
+        }
+    }
+
+    /// Evaluates `e` and sends its value to `dest`.
+    pub(super) fn into(&mut self, e: &Expr, dest: &Dest) -> TokenStream {
+        match &e.kind {
+            Kind::If { c, then, otherwise } => self.branch(c, then, otherwise.as_deref(), dest),
+            Kind::Block(b) => self.block(b, dest),
+            Kind::While { label, c, body } => {
+                self.while_loop(label.clone(), Some(c), body, &Dest::None)
+            }
+            Kind::Loop { label, body } => self.while_loop(label.clone(), None, body, dest),
+            Kind::For { label, var, range, body } => {
+                self.for_loop(label.clone(), var.as_ref(), range, body)
+            }
+            Kind::Break(label, value) => self.exit(label.as_deref(), "leave", value.as_deref()),
+            Kind::Continue(label) => self.exit(label.as_deref(), "skip", None),
+            Kind::Return(value) => self.return_stmt(value.as_deref()),
+            Kind::Assign { place, value } => self.assign(place, None, value),
+            Kind::OpAssign { op, place, value } => self.assign(place, Some(*op), value),
+            _ => self.send(e, dest),
+        }
+    }
+
+    pub(super) fn send(&mut self, e: &Expr, dest: &Dest) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        match dest {
+            Dest::None => {
+                let value = self.value(e);
+                quote!(#value;)
+            }
+            Dest::Slot { var, ty }
+                if *ty == SlotType::Written
+                    || *ty == SlotType::ByOthers && e.is_untyped_integer() =>
+            {
+                let value = self.coerced(e);
+                quote!(#var.set(#m, #value);)
+            }
+            Dest::Slot { var, .. } => {
+                let value = self.value(e);
+                quote!(#var.set(#m, #p::Varying::varying(#value, #m));)
+            }
+            Dest::Return => self.give(e),
+        }
+    }
+
+    pub(super) fn give(&mut self, e: &Expr) -> TokenStream {
+        let (p, m, ret) = (private(), own("m"), own("ret"));
+        let value = if self.kernel.result.is_some() {
+            self.coerced(e)
+        } else {
+            let value = self.value(e);
+            if self.is_closure { quote!(#p::Varying::varying(#value, #m)) } else { value }
+        };
+        let all = self.with_changed(value);
+        quote!(#ret.give(#m, #all);)
+    }
+
+    pub(super) fn return_stmt(&mut self, value: Option<&Expr>) -> TokenStream {
+        match value {
+            Some(e) => self.into(e, &Dest::Return),
+            None => {
+                let (m, ret) = (own("m"), own("ret"));
+                let all = self.with_changed(quote!(()));
+                quote!(#ret.give(#m, #all);)
+            }
+        }
+    }
+
+    pub(super) fn branch(
+        &mut self,
+        c: &Expr,
+        then: &Block,
+        otherwise: Option<&Expr>,
+        dest: &Dest,
+    ) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        let branch = self.fresh("branch");
+        let c = self.value(c);
+        let then = self.block(then, dest);
+        let other = otherwise.map(|e| {
+            let arm = self.into(e, dest);
+            quote!(if #branch.otherwise(#m) { #arm })
+        });
+        quote! {
+            let #branch = #p::Branch::new(#m, #c);
+            if #branch.then(#m) { #then }
+            #other
+            #branch.end(#m);
+        }
+    }
+
+    pub(super) fn while_loop(
+        &mut self,
+        label: Option<String>,
+        c: Option<&Expr>,
+        body: &Block,
+        dest: &Dest,
+    ) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        let ident = self.fresh("repeat");
+        let test = c.map(|c| {
+            let c = self.value(c);
+            quote!(if !#ident.test(#m, #c) { break; })
+        });
+        self.loops.push(Loop { label, ident: ident.clone(), dest: dest.clone() });
+        let body = self.block(body, &Dest::None);
+        self.loops.pop();
+        quote! {
+            let #ident = #p::Loop::new(#m);
+            loop {
+                #test
+                #body
+                #ident.continuing(#m);
+                if !#ident.again(#m) { break; }
+            }
+            #ident.end(#m);
+        }
+    }
+
+    pub(super) fn for_loop(
+        &mut self,
+        label: Option<String>,
+        var: Option<&Ident>,
+        range: &Range,
+        body: &Block,
+    ) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        let (ident, counter, done) =
+            (self.fresh("repeat"), self.fresh("counter"), self.fresh("done"));
+        let (begin, stop) = (own("begin"), own("end"));
+        let text = var.map(ToString::to_string).unwrap_or_else(|| "i".to_owned());
+        let (start, end) = (self.value(&range.start), self.value(&range.end));
+        let now = quote!(#counter.get(#m));
+        // `[low, high)` or `[low, high]`, upwards from `low` or downwards from `high`.
+        let (low, high) = if range.reversed {
+            (quote!(#begin), now.clone())
+        } else {
+            (now.clone(), quote!(#stop))
+        };
+        let (first, last) = if range.reversed { (&stop, &begin) } else { (&begin, &stop) };
+        let step =
+            Ident::new(if range.reversed { "decrement" } else { "increment" }, Span::call_site());
+        let one_down = range.reversed && !range.inclusive;
+        let item = if one_down { quote!(#p::decrement(#m, #now)) } else { now.clone() };
+        // The last number of an inclusive range may be the last of its type.
+        let (declare, test, note) = if range.inclusive {
+            (
+                quote!(let #done = #p::Var::new(#m, "done", #p::Varying::varying(false, #m));),
+                quote!(#p::goes_on(#m, #done.get(#m), #low, #high)),
+                quote!(#done.set(#m, #p::equal(#m, #now, #last));),
+            )
+        } else {
+            (quote!(), quote!(#p::less(#m, #low, #high)), quote!())
+        };
+        self.scopes.push(HashMap::new());
+        let bound = var.map(|v| {
+            self.bind(v, Binding::Value);
+            quote!(let #v = #item;)
+        });
+        self.loops.push(Loop { label, ident: ident.clone(), dest: Dest::None });
+        let body = self.block(body, &Dest::None);
+        self.loops.pop();
+        self.scopes.pop();
+        quote! {{
+            let (#begin, #stop) = #p::range(#m, #start, #end);
+            let #counter = #p::Var::new(#m, #text, #first);
+            #declare
+            let #ident = #p::Loop::new(#m);
+            loop {
+                if !#ident.test(#m, #test) { break; }
+                #bound
+                #body
+                #ident.continuing(#m);
+                #note
+                #counter.set(#m, #p::#step(#m, #now));
+                if !#ident.again(#m) { break; }
+            }
+            #ident.end(#m);
+        }}
+    }
+
+    pub(super) fn exit(
+        &mut self,
+        label: Option<&str>,
+        how: &str,
+        value: Option<&Expr>,
+    ) -> TokenStream {
+        let mut loops = self.loops.iter().rev();
+        let found = match label {
+            None => loops.next(),
+            Some(l) => loops.find(|x| x.label.as_deref() == Some(l)),
+        };
+        // A label that does not exist is rustc's to report, in the user's own function.
+        let Some(Loop { ident, dest, .. }) = found else { return TokenStream::new() };
+        let (m, how) = (own("m"), format_ident!("{how}"));
+        let (ident, dest) = (ident.clone(), dest.clone());
+        let value = value.map(|e| self.into(e, &dest));
+        quote!(#value #ident.#how(#m);)
+    }
+}

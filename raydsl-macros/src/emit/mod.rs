@@ -1,0 +1,230 @@
+//! From the model to the lifted Rust: one small function a rule.
+//!
+//! The lifted body is generic over a machine `m`. Its control flow is real Rust control flow,
+//! steered by the machine's hooks; see "How it works" in the book.
+
+mod calls;
+mod control;
+mod places;
+mod values;
+
+use std::collections::HashMap;
+
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::quote;
+
+use crate::diag::Errors;
+use crate::model::{Block, Kernel, Param};
+
+/// What a name stands for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Binding {
+    /// A value.
+    Value,
+    /// A variable: it is read and assigned through the machine.
+    Var,
+    /// A `&mut` parameter: a variable that calls are given as it is.
+    Mut,
+}
+
+/// Where the value of a control structure goes.
+#[derive(Clone)]
+enum Dest {
+    /// Nowhere: it is a statement.
+    None,
+    /// To a variable.
+    Slot { var: Ident, ty: SlotType },
+    /// To the caller.
+    Return,
+}
+
+/// What is known of the type of a [`Dest::Slot`].
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum SlotType {
+    /// It is written in the source.
+    Written,
+    /// Other outcomes than bare integers say it.
+    ByOthers,
+    /// Each outcome says it.
+    ByAll,
+}
+
+struct Loop {
+    label: Option<String>,
+    ident: Ident,
+    /// Where `break value` sends the value.
+    dest: Dest,
+}
+
+/// How a name is shown in WGSL; those that the macro makes up begin with `__`.
+fn shown(name: &Ident) -> String {
+    name.to_string().trim_start_matches("__").to_owned()
+}
+
+/// Writes the body of one kernel for one machine.
+pub(crate) struct Emitter<'a> {
+    /// The machine's type: a parameter `__M`, or a concrete one for closures.
+    machine: TokenStream,
+    /// The type that `Self` stands for.
+    self_ty: Option<TokenStream>,
+    kernel: &'a Kernel,
+    is_closure: bool,
+    scopes: Vec<HashMap<String, Binding>>,
+    loops: Vec<Loop>,
+    /// Free names of a closure, in order of first use.
+    pub(crate) captures: Vec<Ident>,
+    /// The `&mut` parameters.
+    changed: Vec<Ident>,
+    next: usize,
+    errors: &'a mut Errors,
+}
+
+fn private() -> TokenStream {
+    quote!(::raydsl::__private)
+}
+
+/// An identifier that cannot meet one of the user's.
+fn own(name: &str) -> Ident {
+    Ident::new(name, Span::mixed_site())
+}
+
+impl<'a> Emitter<'a> {
+    pub(crate) fn new(
+        kernel: &'a Kernel,
+        machine: TokenStream,
+        self_ty: Option<TokenStream>,
+        is_closure: bool,
+        errors: &'a mut Errors,
+    ) -> Self {
+        Self {
+            machine,
+            self_ty,
+            kernel,
+            is_closure,
+            scopes: vec![HashMap::new()],
+            loops: vec![],
+            captures: vec![],
+            changed: vec![],
+            next: 0,
+            errors,
+        }
+    }
+
+    /// The twin of `ty`.
+    pub(crate) fn on(&self, ty: &TokenStream) -> TokenStream {
+        let (p, machine) = (private(), &self.machine);
+        let ty = self.without_self(ty);
+        quote!(<#ty as #p::Type>::On<#machine>)
+    }
+
+    fn without_self(&self, ty: &TokenStream) -> TokenStream {
+        match &self.self_ty {
+            Some(s) if ty.to_string() == "Self" => s.clone(),
+            _ => ty.clone(),
+        }
+    }
+
+    /// The statements and the value of the body; parameters are bound already.
+    pub(crate) fn body(&mut self) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        let mut prologue = TokenStream::new();
+        for param in &self.kernel.params {
+            let name = self.local(&param.name);
+            let text = param.name.to_string();
+            let binding = match param {
+                Param { by_mut: true, .. } => Binding::Mut,
+                Param { mutable: true, .. } => Binding::Var,
+                _ => Binding::Value,
+            };
+            if binding != Binding::Value {
+                prologue.extend(quote!(let #name = #p::Var::new(#m, #text, #name);));
+            }
+            self.bind(&param.name, binding);
+        }
+        // The user may bind their names anew.
+        let changing: Vec<&Param> = self.kernel.params.iter().filter(|p| p.by_mut).collect();
+        for (i, param) in changing.iter().enumerate() {
+            let (alias, name) = (own(&format!("changed_{i}")), self.local(&param.name));
+            prologue.extend(quote!(let #alias = &#name;));
+            self.changed.push(alias);
+        }
+        let kernel = self.kernel;
+        if !kernel.body.returns() {
+            let body = self.plain_body(&kernel.body);
+            if self.changed.is_empty() {
+                return quote!(#prologue #body);
+            }
+            let result = own("result");
+            let all = self.with_changed(quote!(#result));
+            return quote!(#prologue let #result = { #body }; #all);
+        }
+        let ty = kernel.result.as_ref().map(|t| self.on(t)).unwrap_or_else(|| self.no_result());
+        let ty = if changing.is_empty() {
+            ty
+        } else {
+            let types = changing.iter().map(|p| self.on(&p.ty));
+            quote!((#ty, #(#types,)*))
+        };
+        let ret = own("ret");
+        let block = self.block(&kernel.body, &Dest::Return);
+        // Lanes that come to the end without a `return` give what they changed.
+        let end = (!changing.is_empty() && kernel.result.is_none()).then(|| {
+            let all = self.with_changed(quote!(()));
+            quote!(#ret.give(#m, #all);)
+        });
+        quote!(#prologue let #ret = #p::Ret::<#ty>::new(#m); #block #end #ret.take())
+    }
+
+    /// The result, and beside it what became of the `&mut` parameters.
+    fn with_changed(&self, result: TokenStream) -> TokenStream {
+        let (m, changed) = (own("m"), &self.changed);
+        if changed.is_empty() { result } else { quote!((#result, #(#changed.get(#m),)*)) }
+    }
+
+    /// The result type where none is written: inferred for a closure, `()` for a function.
+    fn no_result(&self) -> TokenStream {
+        if self.is_closure { quote!(_) } else { quote!(()) }
+    }
+
+    fn plain_body(&mut self, block: &Block) -> TokenStream {
+        let result = self.kernel.result.clone();
+        let mut out = TokenStream::new();
+        for stmt in &block.stmts {
+            out.extend(self.stmt(stmt));
+        }
+        let Some(tail) = &block.tail else { return out };
+        match &result {
+            Some(ty) => {
+                let value = self.wanted(tail, "result", ty);
+                quote!(#out #value)
+            }
+            None => {
+                let value = self.named_value(tail, "result");
+                quote!(#out #value)
+            }
+        }
+    }
+
+    // Scopes.
+
+    fn bind(&mut self, name: &Ident, binding: Binding) {
+        if let Some(scope) = self.scopes.last_mut() {
+            scope.insert(name.to_string(), binding);
+        }
+    }
+
+    fn lookup(&self, name: &Ident) -> Option<Binding> {
+        let name = name.to_string();
+        self.scopes.iter().rev().find_map(|s| s.get(&name).copied())
+    }
+
+    /// `self` cannot be the name of a local.
+    fn local(&self, name: &Ident) -> Ident {
+        if name == "self" { Ident::new("this", Span::mixed_site()) } else { name.clone() }
+    }
+
+    fn fresh(&mut self, name: &str) -> Ident {
+        self.next += 1;
+        own(&format!("{name}_{}", self.next))
+    }
+}

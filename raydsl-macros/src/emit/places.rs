@@ -1,0 +1,131 @@
+//! Assignment to variables and their parts.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+
+use super::values::operator;
+use super::{Binding, Emitter, own, private};
+use crate::model::{BinaryOp, Expr, Kind, Place, Step};
+
+impl Emitter<'_> {
+    /// A variable of the code around a closure.
+    pub(super) fn not_ours(&mut self, name: &Ident) {
+        self.errors.at(
+            name.span(),
+            format!("a kernel cannot assign to `{name}`, which belongs to the code around it"),
+            "return the new value, or declare the variable inside the kernel",
+        );
+    }
+
+    pub(super) fn assign(
+        &mut self,
+        place: &Place,
+        op: Option<BinaryOp>,
+        value: &Expr,
+    ) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        let name = &place.name;
+        match self.lookup(name) {
+            Some(Binding::Var | Binding::Mut) => {}
+            // rustc reports it in the user's own function.
+            Some(Binding::Value) => return TokenStream::new(),
+            None => {
+                if self.is_closure {
+                    self.not_ours(name);
+                }
+                return TokenStream::new();
+            }
+        }
+        // The right side first: it may read the place.
+        let right = own("right");
+        let is_list = matches!(value.kind, Kind::Tuple(_) | Kind::Array(_) | Kind::Repeat { .. });
+        let value = if op.is_none() && is_list { self.coerced(value) } else { self.value(value) };
+        let mut indices = TokenStream::new();
+        let mut steps = Vec::new();
+        for step in &place.steps {
+            steps.push(match step {
+                Step::Member(member) => Part::Plain(quote!(.#member)),
+                Step::Element(index) => Part::Plain(quote!([#index])),
+                Step::Computed(e) => {
+                    let (index, value) = (self.fresh("index"), self.value(e));
+                    indices.extend(quote!(let #index = #value;));
+                    Part::Computed(index)
+                }
+            });
+        }
+        let new = |old: TokenStream| match op {
+            Some(op) => {
+                let new = operator(op, quote!(#m), old, quote!(#right));
+                quote!(#p::Coerce::coerce(#new, #m))
+            }
+            None if is_list => quote!(#right),
+            None => quote!(#p::Coerce::coerce(#right, #m)),
+        };
+        let local = self.local(name);
+        if steps.is_empty() {
+            let new = new(quote!(#local.get(#m)));
+            return quote!({ let #right = #value; #local.set(#m, #new); });
+        }
+        let whole = own("whole");
+        let change = change(quote!(#whole), &steps, &new, 0);
+        quote!({
+            let #right = #value;
+            #indices
+            let mut #whole = #local.get(#m);
+            #change
+            #local.set(#m, #whole);
+        })
+    }
+}
+
+/// Whether it is a computed element of an array, or a part of one.
+pub(super) fn is_part_of_element(e: &Expr) -> bool {
+    match &e.kind {
+        Kind::Element { .. } => true,
+        Kind::Field { base, .. } | Kind::Index { base, .. } => is_part_of_element(base),
+        _ => false,
+    }
+}
+
+/// The steps of a place none of which is computed.
+pub(super) fn plain_steps(steps: &[Step]) -> Option<TokenStream> {
+    steps
+        .iter()
+        .map(|s| match s {
+            Step::Member(member) => Some(quote!(.#member)),
+            Step::Element(index) => Some(quote!([#index])),
+            Step::Computed(_) => None,
+        })
+        .collect()
+}
+
+/// A step of a place, with computed indices already evaluated.
+enum Part {
+    Plain(TokenStream),
+    Computed(Ident),
+}
+
+/// Changes the part of `place` at the end of `steps` to what `new` makes of its old value.
+pub(super) fn change(
+    place: TokenStream,
+    steps: &[Part],
+    new: &dyn Fn(TokenStream) -> TokenStream,
+    depth: usize,
+) -> TokenStream {
+    let (p, m, element) = (private(), own("m"), own(&format!("element_{depth}")));
+    match steps.split_first() {
+        None => {
+            let value = new(place.clone());
+            quote!(#place = #value;)
+        }
+        Some((Part::Plain(step), rest)) => change(quote!(#place #step), rest, new, depth),
+        Some((Part::Computed(i), rest)) => {
+            let inside = change(quote!(#element), rest, new, depth + 1);
+            quote!({
+                let mut #element = #p::element(#m, #place, #i);
+                #inside
+                #place = #p::with_element(#m, #place, #i, #element);
+            })
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! Expressions.
+
+use std::collections::HashMap;
+
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::{format_ident, quote, quote_spanned};
+
+use super::{Binding, Dest, Emitter, SlotType, own, private};
+use crate::model::{BinaryOp, Block, Expr, IntType, Kind};
+
+impl Emitter<'_> {
+    /// A value, with a name for those who read generated code.
+    pub(super) fn named_value(&mut self, e: &Expr, name: &str) -> TokenStream {
+        self.structured(e, name, None).unwrap_or_else(|| self.plain_value(e))
+    }
+
+    /// A value of the type `ty`, which is written in the source.
+    pub(super) fn wanted(&mut self, e: &Expr, name: &str, ty: &TokenStream) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        match self.structured(e, name, Some(ty)) {
+            Some(value) => quote!(#p::Coerce::coerce(#value, #m)),
+            None => self.coerced(e),
+        }
+    }
+
+    /// A value where its type is known. Elements of tuples and arrays become values of the machine
+    /// one by one.
+    pub(super) fn coerced(&mut self, e: &Expr) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        match &e.kind {
+            Kind::Tuple(items) if !items.is_empty() => {
+                let items: Vec<_> = items.iter().map(|e| self.coerced(e)).collect();
+                quote!((#(#items,)*))
+            }
+            Kind::Array(items) => {
+                let items: Vec<_> = items.iter().map(|e| self.coerced(e)).collect();
+                quote!([#(#items,)*])
+            }
+            Kind::Repeat { value, len } => {
+                let value = self.coerced(value);
+                quote!([#value; #len])
+            }
+            _ => {
+                let value = self.value(e);
+                quote!(#p::Coerce::coerce(#value, #m))
+            }
+        }
+    }
+
+    /// The value of a control structure goes through a variable.
+    pub(super) fn structured(
+        &mut self,
+        e: &Expr,
+        name: &str,
+        ty: Option<&TokenStream>,
+    ) -> Option<TokenStream> {
+        if !e.is_structured() {
+            return None;
+        }
+        let (p, m) = (private(), own("m"));
+        let var = self.fresh("value");
+        let slot = match ty {
+            Some(_) => SlotType::Written,
+            None if e.has_typed_outcome() => SlotType::ByOthers,
+            None => SlotType::ByAll,
+        };
+        let ty = ty.map(|t| self.on(t)).unwrap_or_else(|| quote!(_));
+        let code = self.into(e, &Dest::Slot { var: var.clone(), ty: slot });
+        Some(quote!({
+            let #var = #p::Var::<#ty>::declare(#m, #name);
+            #code
+            #var.get(#m)
+        }))
+    }
+
+    pub(super) fn value(&mut self, e: &Expr) -> TokenStream {
+        self.named_value(e, "value")
+    }
+
+    pub(super) fn plain_value(&mut self, e: &Expr) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        let span = e.span;
+        match &e.kind {
+            Kind::Float(lit) => quote!(#p::f32(#m, #lit)),
+            Kind::Int { tokens, suffix } => match suffix {
+                Some(IntType::I32) => quote!(#p::i32(#m, #tokens)),
+                Some(IntType::U32) => quote!(#p::u32(#m, #tokens)),
+                None => tokens.clone(),
+            },
+            Kind::Bool(b) => quote!(#b),
+            Kind::Name(name) => self.name(name),
+            Kind::Path(path) => {
+                let machine = &self.machine;
+                quote_spanned!(span=> #p::Capture::<#machine>::constant(&#path, #m))
+            }
+            Kind::Neg(a) => match &a.kind {
+                Kind::Float(lit) => quote!(#p::f32(#m, -#lit)),
+                Kind::Int { tokens, suffix: None } => quote!((-#tokens)),
+                _ => {
+                    let a = self.value(a);
+                    quote_spanned!(span=> #p::OpNeg::neg(#m, #a))
+                }
+            },
+            Kind::Not(a) => {
+                let a = self.value(a);
+                quote_spanned!(span=> #p::OpNot::not(#m, #a))
+            }
+            Kind::Binary { op, a, b } => {
+                let (a, b) = (self.value(a), self.value(b));
+                operator(*op, quote_spanned!(span=> #m), a, b)
+            }
+            Kind::Logic { and, a, b } => self.logic(*and, a, b, span),
+            Kind::Compare { op, a, b } => {
+                let op = Ident::new(op, span);
+                let (a, b) = (self.value(a), self.value(b));
+                quote_spanned!(span=> #p::OpCompare::compare(#m, #p::Compare::#op, #a, #b))
+            }
+            Kind::Cast { value, ty } => {
+                let value = self.value(value);
+                quote_spanned!(span=> #p::cast::<_, _, #ty>(#m, #value))
+            }
+            Kind::Call { path, args } => self.call(path, args, span),
+            Kind::Associated { ty, name, args } => self.associated(ty, name, args, span),
+            Kind::Method { receiver, name, args } => self.method(receiver, name, args),
+            Kind::Deref(a) => self.value(a),
+            Kind::RefMut(_) => quote!(::core::unreachable!()),
+            Kind::Field { base, member } => {
+                let base = self.value(base);
+                quote_spanned!(span=> #base.#member)
+            }
+            Kind::Index { base, index } => {
+                let base = self.value(base);
+                quote_spanned!(span=> #base[#index])
+            }
+            Kind::Struct { path, fields, rest } => self.structure(path, fields, rest.as_deref()),
+            Kind::Tuple(items) => {
+                let items = self.values(items);
+                quote!((#(#items,)*))
+            }
+            Kind::Element { base, index } => {
+                let (base, index) = (self.value(base), self.value(index));
+                quote_spanned!(span=> #p::element(#m, #base, #index))
+            }
+            Kind::Array(items) => {
+                let is_typed = items.iter().any(|e| !e.is_untyped_integer());
+                let items: Vec<_> = items
+                    .iter()
+                    .map(|e| {
+                        if is_typed && e.is_untyped_integer() {
+                            self.coerced(e)
+                        } else {
+                            self.value(e)
+                        }
+                    })
+                    .collect();
+                quote!([#(#items,)*])
+            }
+            Kind::Repeat { value, len } => {
+                let value = self.value(value);
+                quote!([#value; #len])
+            }
+            Kind::Block(b) => self.plain_block(b),
+            Kind::Error => quote!(::core::unreachable!()),
+            _ => {
+                let code = self.into(e, &Dest::None);
+                quote!({ #code })
+            }
+        }
+    }
+
+    pub(super) fn values(&mut self, es: &[Expr]) -> Vec<TokenStream> {
+        es.iter().map(|e| self.value(e)).collect()
+    }
+
+    pub(super) fn name(&mut self, name: &Ident) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        match self.lookup(name) {
+            Some(Binding::Var | Binding::Mut) => {
+                let local = self.local(name);
+                quote!(#local.get(#m))
+            }
+            Some(Binding::Value) => {
+                let local = self.local(name);
+                quote!(#local)
+            }
+            None => {
+                let machine = &self.machine;
+                let is_constant = name.to_string().starts_with(|c: char| c.is_ascii_uppercase());
+                if is_constant || !self.is_closure {
+                    return quote_spanned!(name.span()=> #p::Capture::<#machine>::constant(&#name, #m));
+                }
+                if name == "self" {
+                    self.errors.at(
+                        name.span(),
+                        "a kernel cannot capture `self`",
+                        "name what it needs before it: `let bvh = &self.bvh;`",
+                    );
+                    return quote!(::core::unreachable!());
+                }
+                if !self.captures.contains(name) {
+                    self.captures.push(name.clone());
+                }
+                quote!(#name)
+            }
+        }
+    }
+
+    /// `&&` and `||`: both sides at once where the right one is harmless, else an `if`.
+    pub(super) fn logic(&mut self, and: bool, a: &Expr, b: &Expr, span: Span) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        if b.is_total() {
+            let (operator, method) = if and { ("OpAnd", "and") } else { ("OpOr", "or") };
+            let (operator, method) = (format_ident!("{operator}"), format_ident!("{method}"));
+            let may_overflow = b.may_overflow();
+            let (a, b) = (self.value(a), self.value(b));
+            if !may_overflow {
+                return quote_spanned!(span=> #p::#operator::#method(#m, #a, #b));
+            }
+            let left = own("left");
+            return quote_spanned!(span=> {
+                let #left = #a;
+                #p::#operator::#method(#m, #left, #p::guarded(#m, #left, #and, || #b))
+            });
+        }
+        let block = |e: &Expr| Block { stmts: vec![], tail: Some(Box::new(e.clone())) };
+        let literal = Expr { kind: Kind::Bool(!and), span };
+        let (then, other) = if and { (b, &literal) } else { (&literal, b) };
+        let choice = Kind::If {
+            c: Box::new(a.clone()),
+            then: block(then),
+            otherwise: Some(Box::new(Expr { kind: Kind::Block(block(other)), span })),
+        };
+        self.named_value(&Expr { kind: choice, span }, if and { "both" } else { "either" })
+    }
+
+    pub(super) fn structure(
+        &mut self,
+        path: &TokenStream,
+        fields: &[(TokenStream, Expr)],
+        rest: Option<&Expr>,
+    ) -> TokenStream {
+        let p = private();
+        let path = self.without_self(path);
+        let machine = &self.machine.clone();
+        let members: Vec<TokenStream> = fields
+            .iter()
+            .map(|(member, e)| {
+                let value = self.coerced(e);
+                quote!(#member: #value)
+            })
+            .collect();
+        let rest = rest.map(|e| {
+            let value = self.value(e);
+            quote!(..#value)
+        });
+        quote! {{
+            type __Twin<M__> = <#path as #p::Type>::On<M__>;
+            __Twin::<#machine> { #(#members,)* #rest }
+        }}
+    }
+
+    pub(super) fn plain_block(&mut self, b: &Block) -> TokenStream {
+        self.scopes.push(HashMap::new());
+        let mut out = TokenStream::new();
+        for stmt in &b.stmts {
+            out.extend(self.stmt(stmt));
+        }
+        let tail = b.tail.as_ref().map(|e| self.value(e));
+        self.scopes.pop();
+        quote!({ #out #tail })
+    }
+}
+
+pub(super) fn operator(
+    op: BinaryOp,
+    m: TokenStream,
+    a: TokenStream,
+    b: TokenStream,
+) -> TokenStream {
+    let p = private();
+    let (operator, method) = (format_ident!("{}", op.operator), format_ident!("{}", op.method));
+    quote!(#p::#operator::#method(#m, #a, #b))
+}
