@@ -351,6 +351,6 @@ impl ::raydsl::__private::KernelFn for walk {
         m: &__M,
         args: <Self::Args as ::raydsl::__private::Type>::On<__M>,
     ) -> <f32 as ::raydsl::__private::Type>::On<__M> {
-        walk::on(m, args.0, args.1)
+        Self::on(m, args.0, args.1)
     }
 }

@@ -17,12 +17,12 @@ impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Value<M> for SampleOn
         fields: &[
             ::raydsl::__private::Field {
                 name: "value",
-                offset: ::core::mem::offset_of!(Sample, value),
+                offset: ::core::mem::offset_of!(Sample < >, value),
                 schema: <f32 as ::raydsl::__private::Type>::SCHEMA,
             },
             ::raydsl::__private::Field {
                 name: "count",
-                offset: ::core::mem::offset_of!(Sample, count),
+                offset: ::core::mem::offset_of!(Sample < >, count),
                 schema: <u32 as ::raydsl::__private::Type>::SCHEMA,
             },
         ],
@@ -48,6 +48,19 @@ impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Value<M> for SampleOn
         }
     }
 }
+impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Inferred<M> for SampleOn<M> {
+    type Host = Sample;
+    #[inline(always)]
+    fn give(self, _: &M) -> Self {
+        self
+    }
+}
+impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Twin<M> for SampleOn<M> {
+    #[inline(always)]
+    fn from_host(v: Self) -> Self {
+        v
+    }
+}
 impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Varying<M> for SampleOn<M> {
     type Value = Self;
     #[inline(always)]
@@ -61,7 +74,7 @@ impl<
     A,
 > ::raydsl::__private::Method<NAME, M, A> for SampleOn<M>
 where
-    Sample: ::raydsl::__private::HostMethod<NAME, M, A>,
+    Sample: ::raydsl::__private::HostMethod<NAME, M, A, This = Self>,
 {
     type Output = <Sample as ::raydsl::__private::HostMethod<NAME, M, A>>::Output;
     const IS_MUT: bool = <Sample as ::raydsl::__private::HostMethod<NAME, M, A>>::IS_MUT;
@@ -90,12 +103,12 @@ impl ::raydsl::__private::Type for Sample {
         fields: &[
             ::raydsl::__private::Field {
                 name: "value",
-                offset: ::core::mem::offset_of!(Sample, value),
+                offset: ::core::mem::offset_of!(Sample < >, value),
                 schema: <f32 as ::raydsl::__private::Type>::SCHEMA,
             },
             ::raydsl::__private::Field {
                 name: "count",
-                offset: ::core::mem::offset_of!(Sample, count),
+                offset: ::core::mem::offset_of!(Sample < >, count),
                 schema: <u32 as ::raydsl::__private::Type>::SCHEMA,
             },
         ],
@@ -128,20 +141,20 @@ impl ::raydsl::__private::Type for Sample {
     fn write(&self, out: &mut [u8]) {
         ::raydsl::__private::Type::write(
             &self.value,
-            &mut out[::core::mem::offset_of!(Sample, value)..],
+            &mut out[::core::mem::offset_of!(Sample < >, value)..],
         );
         ::raydsl::__private::Type::write(
             &self.count,
-            &mut out[::core::mem::offset_of!(Sample, count)..],
+            &mut out[::core::mem::offset_of!(Sample < >, count)..],
         );
     }
     fn read(bytes: &[u8]) -> Self {
         Self {
             value: ::raydsl::__private::Type::read(
-                &bytes[::core::mem::offset_of!(Sample, value)..],
+                &bytes[::core::mem::offset_of!(Sample < >, value)..],
             ),
             count: ::raydsl::__private::Type::read(
-                &bytes[::core::mem::offset_of!(Sample, count)..],
+                &bytes[::core::mem::offset_of!(Sample < >, count)..],
             ),
         }
     }

@@ -135,6 +135,7 @@ impl<
     __A0: ::raydsl::__private::Coerce<__M, <Vec3 as ::raydsl::__private::Type>::On<__M>>,
 > ::raydsl::__private::HostMethod<{ ::raydsl::__private::name("moved") }, __M, (__A0,)>
 for Particle {
+    type This = <Self as ::raydsl::__private::Type>::On<__M>;
     type Output = <Particle as ::raydsl::__private::Type>::On<__M>;
     #[inline(always)]
     fn call(

@@ -29,17 +29,17 @@ for ColorSphereOn<M> {
         fields: &[
             ::raydsl::__private::Field {
                 name: "center",
-                offset: ::core::mem::offset_of!(ColorSphere, center),
+                offset: ::core::mem::offset_of!(ColorSphere < >, center),
                 schema: <Vec3 as ::raydsl::__private::Type>::SCHEMA,
             },
             ::raydsl::__private::Field {
                 name: "radius",
-                offset: ::core::mem::offset_of!(ColorSphere, radius),
+                offset: ::core::mem::offset_of!(ColorSphere < >, radius),
                 schema: <Unorm8 as ::raydsl::__private::Type>::SCHEMA,
             },
             ::raydsl::__private::Field {
                 name: "color",
-                offset: ::core::mem::offset_of!(ColorSphere, color),
+                offset: ::core::mem::offset_of!(ColorSphere < >, color),
                 schema: <[Unorm8; 3] as ::raydsl::__private::Type>::SCHEMA,
             },
         ],
@@ -67,6 +67,20 @@ for ColorSphereOn<M> {
         }
     }
 }
+impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Inferred<M>
+for ColorSphereOn<M> {
+    type Host = ColorSphere;
+    #[inline(always)]
+    fn give(self, _: &M) -> Self {
+        self
+    }
+}
+impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Twin<M> for ColorSphereOn<M> {
+    #[inline(always)]
+    fn from_host(v: Self) -> Self {
+        v
+    }
+}
 impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Varying<M>
 for ColorSphereOn<M> {
     type Value = Self;
@@ -81,7 +95,7 @@ impl<
     A,
 > ::raydsl::__private::Method<NAME, M, A> for ColorSphereOn<M>
 where
-    ColorSphere: ::raydsl::__private::HostMethod<NAME, M, A>,
+    ColorSphere: ::raydsl::__private::HostMethod<NAME, M, A, This = Self>,
 {
     type Output = <ColorSphere as ::raydsl::__private::HostMethod<NAME, M, A>>::Output;
     const IS_MUT: bool = <ColorSphere as ::raydsl::__private::HostMethod<
@@ -114,17 +128,17 @@ impl ::raydsl::__private::Type for ColorSphere {
         fields: &[
             ::raydsl::__private::Field {
                 name: "center",
-                offset: ::core::mem::offset_of!(ColorSphere, center),
+                offset: ::core::mem::offset_of!(ColorSphere < >, center),
                 schema: <Vec3 as ::raydsl::__private::Type>::SCHEMA,
             },
             ::raydsl::__private::Field {
                 name: "radius",
-                offset: ::core::mem::offset_of!(ColorSphere, radius),
+                offset: ::core::mem::offset_of!(ColorSphere < >, radius),
                 schema: <Unorm8 as ::raydsl::__private::Type>::SCHEMA,
             },
             ::raydsl::__private::Field {
                 name: "color",
-                offset: ::core::mem::offset_of!(ColorSphere, color),
+                offset: ::core::mem::offset_of!(ColorSphere < >, color),
                 schema: <[Unorm8; 3] as ::raydsl::__private::Type>::SCHEMA,
             },
         ],
@@ -163,27 +177,27 @@ impl ::raydsl::__private::Type for ColorSphere {
     fn write(&self, out: &mut [u8]) {
         ::raydsl::__private::Type::write(
             &self.center,
-            &mut out[::core::mem::offset_of!(ColorSphere, center)..],
+            &mut out[::core::mem::offset_of!(ColorSphere < >, center)..],
         );
         ::raydsl::__private::Type::write(
             &self.radius,
-            &mut out[::core::mem::offset_of!(ColorSphere, radius)..],
+            &mut out[::core::mem::offset_of!(ColorSphere < >, radius)..],
         );
         ::raydsl::__private::Type::write(
             &self.color,
-            &mut out[::core::mem::offset_of!(ColorSphere, color)..],
+            &mut out[::core::mem::offset_of!(ColorSphere < >, color)..],
         );
     }
     fn read(bytes: &[u8]) -> Self {
         Self {
             center: ::raydsl::__private::Type::read(
-                &bytes[::core::mem::offset_of!(ColorSphere, center)..],
+                &bytes[::core::mem::offset_of!(ColorSphere < >, center)..],
             ),
             radius: ::raydsl::__private::Type::read(
-                &bytes[::core::mem::offset_of!(ColorSphere, radius)..],
+                &bytes[::core::mem::offset_of!(ColorSphere < >, radius)..],
             ),
             color: ::raydsl::__private::Type::read(
-                &bytes[::core::mem::offset_of!(ColorSphere, color)..],
+                &bytes[::core::mem::offset_of!(ColorSphere < >, color)..],
             ),
         }
     }

@@ -93,6 +93,7 @@ impl<
     __M,
     (__A0,),
 > for ColorSphere {
+    type This = <Self as ::raydsl::__private::Type>::On<__M>;
     type Output = <Hit as ::raydsl::__private::Type>::On<__M>;
     #[inline(always)]
     fn call(

@@ -114,6 +114,6 @@ impl ::raydsl::__private::KernelFn for smooth {
         m: &__M,
         args: <Self::Args as ::raydsl::__private::Type>::On<__M>,
     ) -> <f32 as ::raydsl::__private::Type>::On<__M> {
-        smooth::on(m, args.0, args.1)
+        Self::on(m, args.0, args.1)
     }
 }

@@ -5,6 +5,7 @@
 
 mod diag;
 mod emit;
+mod generics;
 mod items;
 mod model;
 mod ops;
@@ -16,7 +17,7 @@ mod twin;
 use proc_macro::TokenStream;
 use quote::quote;
 
-/// Lifts a function, or every function of an inherent `impl`, to all variants.
+/// Lifts a function, or every function of an `impl` or a trait, to all variants.
 ///
 /// The function itself stays untouched: it is the scalar variant. Beside it stands a type of the
 /// same name whose `on` runs the lifted body on any machine, and which gives the whole kernel as
@@ -45,14 +46,17 @@ fn expand_kernel(
         let mut errors = diag::Errors::default();
         let lifted = items::kernel_impl(&i, &[], &mut errors);
         if errors.is_empty() {
-            return quote!(#i #lifted);
+            return lifted;
         }
         let errors = errors.into_tokens();
         return quote!(#i #errors);
     }
+    if let Ok(t) = syn::parse2::<syn::ItemTrait>(item.clone()) {
+        return items::kernel_trait(&t);
+    }
     let e = syn::Error::new_spanned(
         &item,
-        "`#[kernel]` stands on a function or an impl\n  help: for a closure write `kernel!(|ray: Ray| ...)`",
+        "`#[kernel]` stands on a function, an impl or a trait\n  help: for a closure write `kernel!(|ray: Ray| ...)`",
     );
     let e = e.into_compile_error();
     quote!(#item #e)

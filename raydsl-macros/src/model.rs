@@ -2,9 +2,12 @@
 
 use proc_macro2::{Ident, Span, TokenStream};
 
+use crate::generics::Generics;
+
 /// A function, method or closure to lift.
 pub(crate) struct Kernel {
     pub(crate) name: Ident,
+    pub(crate) generics: Generics,
     pub(crate) params: Vec<Param>,
     /// The declared result; `None` is `()` for a function and inferred for a closure.
     pub(crate) result: Option<TokenStream>,
@@ -18,6 +21,8 @@ pub(crate) struct Param {
     pub(crate) mutable: bool,
     /// `&mut`: what the kernel makes of it goes back to the caller.
     pub(crate) by_mut: bool,
+    /// `&`: a value, or data that kernels read: a slice, a tree.
+    pub(crate) shared: bool,
 }
 
 #[derive(Clone)]
@@ -198,6 +203,7 @@ pub(crate) enum Step {
 pub(crate) enum IntType {
     I32,
     U32,
+    Usize,
 }
 
 /// The binary operators of arithmetic, by the name of their trait and method.

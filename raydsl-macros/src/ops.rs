@@ -67,7 +67,6 @@ const DENIED: &[(&str, &str)] = &[
     ("to_string", "nothing: kernels have no strings"),
     ("clone", "the value itself: kernel types are Copy"),
     ("iter", "a `for` over a range"),
-    ("len", "a captured `u32`"),
 ];
 
 /// What is wrong with the method `name` and what to write instead, if kernels cannot have it.

@@ -8,6 +8,7 @@ use syn::spanned::Spanned;
 use syn::{BinOp, Lit, Pat, UnOp};
 
 use crate::diag::Errors;
+use crate::generics::Generics;
 use crate::model::{
     BinaryOp, Block, Expr, IntType, Kernel, Kind, Let, Param, Place, Range, Step, Stmt,
 };
@@ -28,13 +29,6 @@ pub(crate) fn function(
             errors.at(span, format!("a kernel cannot be `{what}`"), &format!("remove `{what}`"));
         }
     }
-    if let Some(p) = sig.generics.params.first() {
-        errors.at(
-            p.span(),
-            "a kernel cannot be generic",
-            "write a kernel for each type; `impl` methods may use `Self`",
-        );
-    }
     let mut parser = Parser { errors, temporaries: 0 };
     let mut prologue = Vec::new();
     let params = sig.inputs.iter().map(|arg| parser.param(arg, self_ty, &mut prologue)).collect();
@@ -44,7 +38,8 @@ pub(crate) fn function(
     };
     let mut body = parser.block(body);
     body.stmts.splice(0..0, prologue);
-    Kernel { name: sig.ident.clone(), params, result, body }
+    let generics = Generics::new(&sig.generics);
+    Kernel { name: sig.ident.clone(), generics, params, result, body }
 }
 
 /// A closure literal; its parameters must have types.
@@ -79,7 +74,8 @@ pub(crate) fn closure(c: &syn::ExprClosure, name: &str, errors: &mut Errors) -> 
         e => Block { stmts: vec![], tail: Some(Box::new(parser.expr(e))) },
     };
     body.stmts.splice(0..0, prologue);
-    Kernel { name: Ident::new(name, Span::call_site()), params, result, body }
+    let name = Ident::new(name, Span::call_site());
+    Kernel { name, generics: Generics::default(), params, result, body }
 }
 
 /// The type without references: values on a machine are copied.
@@ -103,7 +99,7 @@ fn lifetime(l: &Option<syn::Lifetime>) -> Option<String> {
 fn is_type_name(ident: &Ident) -> bool {
     let name = ident.to_string();
     name.starts_with(|c: char| c.is_ascii_uppercase())
-        || matches!(name.as_str(), "f32" | "i32" | "u32" | "bool")
+        || matches!(name.as_str(), "f32" | "i32" | "u32" | "usize" | "bool")
 }
 
 struct Parser<'a> {
@@ -124,7 +120,13 @@ impl Parser<'_> {
                 let by_mut = matches!(r.kind, syn::ReceiverKind::Reference(_, _, Some(_)));
                 let ty = self_ty.map(ToTokens::to_token_stream).unwrap_or_else(|| quote!(Self));
                 let mutable = r.mutability.is_some() && !by_mut;
-                Param { name: Ident::new("self", r.self_token.span), ty, mutable, by_mut }
+                Param {
+                    name: Ident::new("self", r.self_token.span),
+                    ty,
+                    mutable,
+                    by_mut,
+                    shared: false,
+                }
             }
             syn::FnArg::Typed(p) => self.typed_param(&p.pat, &p.ty, prologue),
         }
@@ -132,6 +134,14 @@ impl Parser<'_> {
 
     fn typed_param(&mut self, pat: &Pat, ty: &syn::Type, prologue: &mut Vec<Stmt>) -> Param {
         let by_mut = matches!(ty, syn::Type::Reference(r) if r.mutability.is_some());
+        let shared = matches!(ty, syn::Type::Reference(r) if r.mutability.is_none());
+        if let syn::Type::ImplTrait(t) = ty {
+            self.errors.at(
+                t.span(),
+                "a kernel's type parameters have names",
+                "write `fn f<T: Light>(light: T)` in place of `light: impl Light`",
+            );
+        }
         let ty = value_type(ty);
         match pat {
             Pat::Ident(p) if p.by_ref.is_none() && p.subpat.is_none() => Param {
@@ -139,12 +149,13 @@ impl Parser<'_> {
                 ty,
                 mutable: p.mutability.is_some() && !by_mut,
                 by_mut,
+                shared,
             },
             _ => {
                 let name = self.temporary("parts");
                 let from = Expr { kind: Kind::Name(name.clone()), span: pat.span() };
                 self.irrefutable(pat, &from, prologue);
-                Param { name, ty, mutable: false, by_mut: false }
+                Param { name, ty, mutable: false, by_mut: false, shared: false }
             }
         }
     }
@@ -363,11 +374,12 @@ impl Parser<'_> {
                 "" => Kind::Int { tokens: i.to_token_stream(), suffix: None },
                 "i32" => Kind::Int { tokens: i.to_token_stream(), suffix: Some(IntType::I32) },
                 "u32" => Kind::Int { tokens: i.to_token_stream(), suffix: Some(IntType::U32) },
+                "usize" => Kind::Int { tokens: i.to_token_stream(), suffix: Some(IntType::Usize) },
                 "f32" => Kind::Float(i.to_token_stream()),
                 other => self.error(
                     i.span(),
                     format!("kernels have no `{other}`"),
-                    "use `u32`, `i32` or `f32`",
+                    "use `u32`, `i32`, `usize` or `f32`",
                 ),
             },
             Lit::Bool(b) => Kind::Bool(b.value),
@@ -476,7 +488,7 @@ impl Parser<'_> {
         }
     }
 
-    /// What stands between brackets: a number of the source, or `i as usize`.
+    /// What stands between brackets.
     fn step(&mut self, index: &syn::Expr) -> Option<Step> {
         match index {
             syn::Expr::Lit(syn::ExprLit { lit: Lit::Int(n), .. })
@@ -484,16 +496,16 @@ impl Parser<'_> {
             {
                 Some(Step::Element(n.to_token_stream()))
             }
-            syn::Expr::Cast(c) if is_usize(&c.ty) => Some(Step::Computed(self.expr(&c.expr))),
             syn::Expr::Paren(p) => self.step(&p.expr),
-            index => {
+            syn::Expr::Range(r) => {
                 self.errors.at(
-                    index.span(),
-                    "a kernel indexes by a number of the source or by an integer `as usize`",
-                    "write `color[0]` or `weights[i as usize]`, with an `i` of type `u32` or `i32`",
+                    r.span(),
+                    "a kernel has no slices of slices",
+                    "index the whole: `all[first + i]`",
                 );
                 None
             }
+            index => Some(Step::Computed(self.expr(index))),
         }
     }
 
@@ -611,10 +623,6 @@ impl Parser<'_> {
         };
         self.error(m.path.span(), format!("a kernel cannot call the macro `{name}!`"), help)
     }
-}
-
-fn is_usize(ty: &syn::Type) -> bool {
-    matches!(ty, syn::Type::Path(t) if t.path.is_ident("usize"))
 }
 
 fn inside_parens(mut e: &syn::Expr) -> &syn::Expr {

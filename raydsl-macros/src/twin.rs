@@ -1,10 +1,13 @@
 //! The twin of a struct: what stands for its values on a machine.
 
+mod enumeration;
+
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use syn::spanned::Spanned;
 
 use crate::diag::Errors;
+use crate::generics::Generics;
 
 fn private() -> TokenStream {
     quote!(::raydsl::__private)
@@ -13,14 +16,14 @@ fn private() -> TokenStream {
 /// `#[derive(Type)]`.
 pub(crate) fn derive(item: &syn::DeriveInput) -> TokenStream {
     let mut errors = Errors::default();
-    let fields = named_fields(item, &mut errors);
-    if let Some(g) = item.generics.params.first() {
-        errors.at(
-            g.span(),
-            "a type of the kernel language cannot be generic",
-            "write a struct for each type",
-        );
+    if let syn::Data::Enum(e) = &item.data {
+        let variants = enumeration::variants(e, &mut errors);
+        if errors.is_empty() {
+            return enumeration::twin(item, &variants);
+        }
+        return errors.into_tokens();
     }
+    let fields = named_fields(item, &mut errors);
     if !errors.is_empty() {
         return errors.into_tokens();
     }
@@ -85,8 +88,8 @@ fn named_fields(item: &syn::DeriveInput, errors: &mut Errors) -> Vec<syn::Field>
         _ => {
             errors.at(
                 item.ident.span(),
-                "only a struct can be a type of the kernel language",
-                "write a struct with a member that says which kind it is",
+                "only a struct or an enum can be a type of the kernel language",
+                "write a struct with named members",
             );
             vec![]
         }
@@ -97,6 +100,8 @@ fn named_fields(item: &syn::DeriveInput, errors: &mut Errors) -> Vec<syn::Field>
 fn twin(item: &syn::DeriveInput, fields: &[syn::Field]) -> TokenStream {
     let p = private();
     let (vis, name) = (&item.vis, &item.ident);
+    let generics = Generics::new(&item.generics);
+    let Generics { declared, used, predicates, .. } = &generics;
     let twin = format_ident!("{name}On");
     let text = name.to_string();
     let names: Vec<_> = fields.iter().filter_map(|f| f.ident.as_ref()).collect();
@@ -104,34 +109,36 @@ fn twin(item: &syn::DeriveInput, fields: &[syn::Field]) -> TokenStream {
     let types: Vec<_> = fields.iter().map(|f| &f.ty).collect();
     let visible: Vec<_> = fields.iter().map(|f| &f.vis).collect();
     let doc = format!("[`{name}`] on machine `M`.");
+    let host = quote!(#name<#used>);
     let schema = quote! {
         &#p::Schema::Struct {
             name: #text,
             fields: &[#(#p::Field {
                 name: #texts,
-                offset: ::core::mem::offset_of!(#name, #names),
+                offset: ::core::mem::offset_of!(#host, #names),
                 schema: <#types as #p::Type>::SCHEMA,
             }),*],
-            size: ::core::mem::size_of::<#name>(),
+            size: ::core::mem::size_of::<#host>(),
         }
     };
+    let methods = methods(&quote!(#twin<M, #used>), &host, &generics);
     quote! {
         #[doc = #doc]
         #[allow(missing_docs, reason = "the members are those of the struct")]
-        #vis struct #twin<M: #p::Machine> {
+        #vis struct #twin<M: #p::Machine, #declared> where #predicates {
             #(#visible #names: <#types as #p::Type>::On<M>,)*
         }
 
-        impl<M: #p::Machine> Clone for #twin<M> {
+        impl<M: #p::Machine, #declared> Clone for #twin<M, #used> where #predicates {
             #[inline(always)]
             fn clone(&self) -> Self {
                 *self
             }
         }
 
-        impl<M: #p::Machine> Copy for #twin<M> {}
+        impl<M: #p::Machine, #declared> Copy for #twin<M, #used> where #predicates {}
 
-        impl<M: #p::Machine> #p::Value<M> for #twin<M> {
+        impl<M: #p::Machine, #declared> #p::Value<M> for #twin<M, #used> where #predicates {
             const SCHEMA: &'static #p::Schema = #schema;
 
             #[inline(always)]
@@ -145,7 +152,81 @@ fn twin(item: &syn::DeriveInput, fields: &[syn::Field]) -> TokenStream {
             }
         }
 
-        impl<M: #p::Machine> #p::Varying<M> for #twin<M> {
+        #methods
+
+        impl<#declared> #p::Type for #host where #predicates {
+            type On<M: #p::Machine> = #twin<M, #used>;
+
+            const SCHEMA: &'static #p::Schema = #schema;
+
+            #[inline(always)]
+            fn splat<M: #p::Machine>(m: &M, v: Self) -> #twin<M, #used> {
+                #twin { #(#names: #p::Type::splat(m, v.#names),)* }
+            }
+
+            #[inline(always)]
+            fn from_lanes<M: #p::LaneMachine>(
+                m: &M,
+                f: &impl Fn(usize) -> Self,
+            ) -> #twin<M, #used> {
+                #twin { #(#names: #p::Type::from_lanes(m, &|lane| f(lane).#names),)* }
+            }
+
+            #[inline(always)]
+            fn lane<M: #p::LaneMachine>(v: &#twin<M, #used>, lane: usize) -> Self {
+                Self { #(#names: #p::Type::lane(&v.#names, lane),)* }
+            }
+
+            fn write(&self, out: &mut [u8]) {
+                #(#p::Type::write(&self.#names, &mut out[::core::mem::offset_of!(#host, #names)..]);)*
+            }
+
+            fn read(bytes: &[u8]) -> Self {
+                Self {
+                    #(#names: #p::Type::read(&bytes[::core::mem::offset_of!(#host, #names)..]),)*
+                }
+            }
+        }
+
+        impl<M: #p::Machine, #declared> #p::Capture<M> for #host where #predicates {
+            type On<'c> = #twin<M, #used>;
+
+            #[inline(always)]
+            fn capture(&self, m: &M, name: &'static str) -> #twin<M, #used> {
+                #p::Machine::capture(m, name, *self)
+            }
+
+            #[inline(always)]
+            fn constant(&self, m: &M) -> #twin<M, #used> {
+                #p::Type::splat(m, *self)
+            }
+        }
+    }
+}
+
+/// How a twin is kept in variables, and its methods, which are those of the host's type.
+fn methods(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> TokenStream {
+    let p = private();
+    let Generics { declared, predicates, .. } = generics;
+    let of = quote!(<#host as #p::HostMethod<NAME, M, A>>);
+    quote! {
+        impl<M: #p::Machine, #declared> #p::Inferred<M> for #twin where #predicates {
+            type Host = #host;
+
+            #[inline(always)]
+            fn give(self, _: &M) -> Self {
+                self
+            }
+        }
+
+        impl<M: #p::Machine, #declared> #p::Twin<M> for #twin where #predicates {
+            #[inline(always)]
+            fn from_host(v: Self) -> Self {
+                v
+            }
+        }
+
+        impl<M: #p::Machine, #declared> #p::Varying<M> for #twin where #predicates {
             type Value = Self;
 
             #[inline(always)]
@@ -154,67 +235,23 @@ fn twin(item: &syn::DeriveInput, fields: &[syn::Field]) -> TokenStream {
             }
         }
 
-        impl<const NAME: u64, M: #p::Machine, A> #p::Method<NAME, M, A> for #twin<M>
+        impl<const NAME: u64, M: #p::Machine, A, #declared> #p::Method<NAME, M, A> for #twin
         where
-            #name: #p::HostMethod<NAME, M, A>,
+            #host: #p::HostMethod<NAME, M, A, This = Self>,
+            #predicates
         {
-            type Output = <#name as #p::HostMethod<NAME, M, A>>::Output;
+            type Output = #of::Output;
 
-            const IS_MUT: bool = <#name as #p::HostMethod<NAME, M, A>>::IS_MUT;
+            const IS_MUT: bool = #of::IS_MUT;
 
             #[inline(always)]
             fn call(self, m: &M, args: A) -> Self::Output {
-                <#name as #p::HostMethod<NAME, M, A>>::call(self, m, args)
+                #of::call(self, m, args)
             }
 
             #[inline(always)]
             fn call_at(self, variable: &#p::Var<Self>, m: &M, args: A) -> Self::Output {
-                <#name as #p::HostMethod<NAME, M, A>>::call_at(self, variable, m, args)
-            }
-        }
-
-        impl #p::Type for #name {
-            type On<M: #p::Machine> = #twin<M>;
-
-            const SCHEMA: &'static #p::Schema = #schema;
-
-            #[inline(always)]
-            fn splat<M: #p::Machine>(m: &M, v: Self) -> #twin<M> {
-                #twin { #(#names: #p::Type::splat(m, v.#names),)* }
-            }
-
-            #[inline(always)]
-            fn from_lanes<M: #p::LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> #twin<M> {
-                #twin { #(#names: #p::Type::from_lanes(m, &|lane| f(lane).#names),)* }
-            }
-
-            #[inline(always)]
-            fn lane<M: #p::LaneMachine>(v: &#twin<M>, lane: usize) -> Self {
-                Self { #(#names: #p::Type::lane(&v.#names, lane),)* }
-            }
-
-            fn write(&self, out: &mut [u8]) {
-                #(#p::Type::write(&self.#names, &mut out[::core::mem::offset_of!(#name, #names)..]);)*
-            }
-
-            fn read(bytes: &[u8]) -> Self {
-                Self {
-                    #(#names: #p::Type::read(&bytes[::core::mem::offset_of!(#name, #names)..]),)*
-                }
-            }
-        }
-
-        impl<M: #p::Machine> #p::Capture<M> for #name {
-            type On<'c> = #twin<M>;
-
-            #[inline(always)]
-            fn capture(&self, m: &M, name: &'static str) -> #twin<M> {
-                #p::Machine::capture(m, name, *self)
-            }
-
-            #[inline(always)]
-            fn constant(&self, m: &M) -> #twin<M> {
-                #p::Type::splat(m, *self)
+                #of::call_at(self, variable, m, args)
             }
         }
     }

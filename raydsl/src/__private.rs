@@ -3,10 +3,10 @@
 pub use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn};
 pub use crate::kernel::{Baseline, Kernel, Lifted, Native4, Native8, Native16, Native16Halves};
 pub use crate::machine::{
-    Branch, Capture, Coerce, Compare, Field, HostMethod, KernelFn, KernelInfo, LaneMachine, Leaves,
-    Loop, Machine, Method, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv,
-    OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Recorder, Resource, Ret, Schema, Type,
-    Value, Var, Varying, call_on_element, is_mut, name,
+    Branch, Capture, Coerce, Compare, Field, HostMethod, Inferred, KernelFn, KernelInfo,
+    LaneMachine, Leaves, Loop, Machine, Method, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast,
+    OpCompare, OpDiv, OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Parameter, Recorder,
+    Resource, Ret, Schema, Twin, Type, Value, Var, Varying, call_on_element, is_mut, name,
 };
 
 /// Traits of associated functions.
@@ -18,7 +18,7 @@ pub mod operations {
 
 pub use crate::machine::index::with_element;
 use crate::machine::index::{Index, Indexed};
-use crate::machine::{B, Bounds, F, I, U};
+use crate::machine::{B, Bounds, F, I, U, Usize};
 
 /// A literal.
 #[inline(always)]
@@ -36,6 +36,35 @@ pub fn i32<M: Machine>(m: &M, v: i32) -> I<M> {
 #[inline(always)]
 pub fn u32<M: Machine>(m: &M, v: u32) -> U<M> {
     U(m.u32(v))
+}
+
+/// A literal with the suffix `usize`.
+#[inline(always)]
+pub fn usize<M: Machine>(m: &M, v: usize) -> Usize<M> {
+    Type::splat(m, v)
+}
+
+/// The structure of an enum of so many bytes.
+pub const fn number_schema(bytes: usize) -> &'static Schema {
+    match bytes {
+        1 => &Schema::Small { bytes: 1 },
+        2 => &Schema::Small { bytes: 2 },
+        _ => &Schema::U32,
+    }
+}
+
+/// Writes the number of a variant.
+pub fn write_number(number: u32, bytes: usize, out: &mut [u8]) {
+    let n = bytes.min(4);
+    out[..n].copy_from_slice(&number.to_le_bytes()[..n]);
+}
+
+/// Reads the number of a variant.
+pub fn read_number(size: usize, bytes: &[u8]) -> u32 {
+    let mut number = [0; 4];
+    let n = size.min(4);
+    number[..n].copy_from_slice(&bytes[..n]);
+    u32::from_le_bytes(number)
 }
 
 /// `a as T`.
@@ -92,6 +121,12 @@ pub fn element<M: Machine, A: Indexed<M>>(m: &M, a: A, i: impl Index<M>) -> A::E
     a.element(m, i)
 }
 
+/// `a[3]`.
+#[inline(always)]
+pub fn at<M: Machine, A: Indexed<M>>(m: &M, a: A, i: usize) -> A::Element {
+    a.at(m, i)
+}
+
 /// The next value of a counter.
 #[inline(always)]
 pub fn increment<M: Machine, C: Counter<M>>(m: &M, a: C) -> C {
@@ -123,13 +158,21 @@ impl<M: Machine> Counter<M> for I<M> {
     }
 }
 
-impl<M: Machine> Counter<M> for U<M> {
-    #[inline(always)]
-    fn next(self, m: &M) -> Self {
-        U(m.u32_binary(crate::machine::IntBinary::WrappingAdd, self.0, m.u32(1)))
-    }
-    #[inline(always)]
-    fn previous(self, m: &M) -> Self {
-        U(m.u32_binary(crate::machine::IntBinary::WrappingSub, self.0, m.u32(1)))
-    }
+macro_rules! unsigned_counter {
+    ($($t:ident),+) => {
+        $(
+            impl<M: Machine> Counter<M> for $t<M> {
+                #[inline(always)]
+                fn next(self, m: &M) -> Self {
+                    $t(m.u32_binary(crate::machine::IntBinary::WrappingAdd, self.0, m.u32(1)))
+                }
+                #[inline(always)]
+                fn previous(self, m: &M) -> Self {
+                    $t(m.u32_binary(crate::machine::IntBinary::WrappingSub, self.0, m.u32(1)))
+                }
+            }
+        )+
+    };
 }
+
+unsigned_counter!(U, Usize);

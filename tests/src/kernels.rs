@@ -4,12 +4,14 @@
 #![allow(clippy::all, reason = "every form is wanted, the clumsy ones too")]
 
 mod changes;
+mod generic;
 mod patterns;
 
 use raydsl::kernel;
 use raydsl::prelude::*;
 
 pub use changes::*;
+pub use generic::*;
 pub use patterns::*;
 
 /// Calls `$use!` with a row for each kernel: its name, the numbers that it can take, and whether
@@ -85,6 +87,11 @@ macro_rules! kernel_table {
             random_sum: Any Same;
             random_walk: Tame Same;
             changed_arguments: Tame Same;
+            lights: Tame Differs;
+            sources: Any Same;
+            constant_parameters: Any SameIfFinite;
+            enums: Tame Same;
+            sizes: Any Same;
             angles: Any Differs;
             growth: Any Differs;
         }

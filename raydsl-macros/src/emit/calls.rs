@@ -20,7 +20,10 @@ impl Emitter<'_> {
         }
         let args = self.arguments(args);
         let values = &args.values;
-        args.around(quote_spanned!(span=> #path::on(#m, #(#values),*)))
+        // Type parameters that are named need not be inferred.
+        let is_named = path.to_string().ends_with('>');
+        let on = format_ident!("{}", if is_named { "on_values" } else { "on" });
+        args.around(quote_spanned!(span=> #path::#on(#m, #(#values),*)))
     }
 
     pub(super) fn associated(
@@ -87,6 +90,14 @@ impl Emitter<'_> {
     /// called on; which methods do is for their traits to say.
     pub(super) fn method(&mut self, receiver: &Expr, name: &Ident, args: &[Expr]) -> TokenStream {
         let (p, m) = (private(), own("m"));
+        if let Some((generic, this)) = self.generic_receiver(receiver) {
+            let function = format_ident!("{name}_on");
+            let args = self.arguments(args);
+            let (m, values) = (own("m"), &args.values);
+            return args.around(quote_spanned!(name.span()=>
+                <#generic>::#function(#m, #this, #(#values),*)
+            ));
+        }
         let text = name.to_string();
         let machine = self.machine.clone();
         let method = quote_spanned!(name.span()=> #p::Method::<{ #p::name(#text) }, #machine, _>);
@@ -125,6 +136,26 @@ impl Emitter<'_> {
                 #method::call(#old, #m, #list)
             }
         }))
+    }
+
+    /// A receiver whose type is a type parameter: its trait has the lifted method, which takes a
+    /// variable for `&mut self` and for `&self` alike.
+    fn generic_receiver(&mut self, receiver: &Expr) -> Option<(Ident, TokenStream)> {
+        let name = match &receiver.kind {
+            Kind::Name(name) => name,
+            Kind::Deref(inner) => return self.generic_receiver(inner),
+            _ => return None,
+        };
+        let local = self.find(name)?;
+        let generic = local.generic.clone()?;
+        let ident = self.local(name);
+        Some((
+            generic,
+            match local.binding {
+                Binding::Value => quote!(#ident),
+                Binding::Var | Binding::Mut => quote!(&#ident),
+            },
+        ))
     }
 
     /// The variable that `e` is, or is a part of, and the steps from it.

@@ -56,7 +56,7 @@ impl Emitter<'_> {
         let text = shown(name);
         let ty = l.ty.as_ref().map(|t| self.on(t));
         let Some(init) = &l.init else {
-            self.bind(name, Binding::Var);
+            self.bind_typed(name, Binding::Var, l.ty.as_ref());
             let ty = ty.unwrap_or_else(|| quote!(_));
             return quote!(let #name = #p::Var::<#ty>::declare(#m, #text););
         };
@@ -65,7 +65,7 @@ impl Emitter<'_> {
             None => self.named_value(init, &text),
         };
         let binding = if l.mutable { Binding::Var } else { Binding::Value };
-        self.bind(name, binding);
+        self.bind_typed(name, binding, l.ty.as_ref());
         match (l.mutable, ty) {
             (true, Some(ty)) => quote!(let #name = #p::Var::<#ty>::new(#m, #text, #value);),
             (true, None) => {

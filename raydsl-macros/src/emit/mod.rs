@@ -14,6 +14,7 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
 use crate::diag::Errors;
+use crate::generics::Generics;
 use crate::model::{Block, Kernel, Param};
 
 /// What a name stands for.
@@ -25,6 +26,13 @@ enum Binding {
     Var,
     /// A `&mut` parameter: a variable that calls are given as it is.
     Mut,
+}
+
+/// A name in scope.
+struct Local {
+    binding: Binding,
+    /// The type parameter that is its type.
+    generic: Option<Ident>,
 }
 
 /// Where the value of a control structure goes.
@@ -69,7 +77,9 @@ pub(crate) struct Emitter<'a> {
     self_ty: Option<TokenStream>,
     kernel: &'a Kernel,
     is_closure: bool,
-    scopes: Vec<HashMap<String, Binding>>,
+    /// The type parameters in scope.
+    generics: Generics,
+    scopes: Vec<HashMap<String, Local>>,
     loops: Vec<Loop>,
     /// Free names of a closure, in order of first use.
     pub(crate) captures: Vec<Ident>,
@@ -101,6 +111,7 @@ impl<'a> Emitter<'a> {
             self_ty,
             kernel,
             is_closure,
+            generics: kernel.generics.clone(),
             scopes: vec![HashMap::new()],
             loops: vec![],
             captures: vec![],
@@ -108,6 +119,22 @@ impl<'a> Emitter<'a> {
             next: 0,
             errors,
         }
+    }
+
+    /// Adds the type parameters of the item around the kernel.
+    pub(crate) fn with_generics(mut self, around: &Generics) -> Self {
+        self.generics.extend(around);
+        self
+    }
+
+    /// The type of a parameter in lifted code.
+    pub(crate) fn param(&self, param: &Param) -> TokenStream {
+        let (p, machine) = (private(), &self.machine);
+        if !param.shared {
+            return self.on(&param.ty);
+        }
+        let ty = self.without_self(&param.ty);
+        quote!(<#ty as #p::Parameter>::On<'__a, #machine>)
     }
 
     /// The twin of `ty`.
@@ -139,7 +166,7 @@ impl<'a> Emitter<'a> {
             if binding != Binding::Value {
                 prologue.extend(quote!(let #name = #p::Var::new(#m, #text, #name);));
             }
-            self.bind(&param.name, binding);
+            self.bind_typed(&param.name, binding, Some(&param.ty));
         }
         // The user may bind their names anew.
         let changing: Vec<&Param> = self.kernel.params.iter().filter(|p| p.by_mut).collect();
@@ -208,14 +235,26 @@ impl<'a> Emitter<'a> {
     // Scopes.
 
     fn bind(&mut self, name: &Ident, binding: Binding) {
+        self.bind_typed(name, binding, None);
+    }
+
+    /// Binds a name; of its type only a type parameter matters.
+    fn bind_typed(&mut self, name: &Ident, binding: Binding, ty: Option<&TokenStream>) {
+        let ty = ty.map(ToString::to_string);
+        let generic = self.generics.types.iter().find(|g| ty.as_ref().is_some_and(|ty| *g == ty));
+        let local = Local { binding, generic: generic.cloned() };
         if let Some(scope) = self.scopes.last_mut() {
-            scope.insert(name.to_string(), binding);
+            scope.insert(name.to_string(), local);
         }
     }
 
     fn lookup(&self, name: &Ident) -> Option<Binding> {
+        self.find(name).map(|l| l.binding)
+    }
+
+    fn find(&self, name: &Ident) -> Option<&Local> {
         let name = name.to_string();
-        self.scopes.iter().rev().find_map(|s| s.get(&name).copied())
+        self.scopes.iter().rev().find_map(|s| s.get(&name))
     }
 
     /// `self` cannot be the name of a local.

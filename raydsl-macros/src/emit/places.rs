@@ -106,7 +106,7 @@ enum Part {
 }
 
 /// Changes the part of `place` at the end of `steps` to what `new` makes of its old value.
-pub(super) fn change(
+fn change(
     place: TokenStream,
     steps: &[Part],
     new: &dyn Fn(TokenStream) -> TokenStream,

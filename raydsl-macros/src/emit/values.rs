@@ -5,6 +5,8 @@ use std::collections::HashMap;
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote, quote_spanned};
 
+use crate::generics::Generics;
+
 use super::{Binding, Dest, Emitter, SlotType, own, private};
 use crate::model::{BinaryOp, Block, Expr, IntType, Kind};
 
@@ -85,6 +87,7 @@ impl Emitter<'_> {
             Kind::Int { tokens, suffix } => match suffix {
                 Some(IntType::I32) => quote!(#p::i32(#m, #tokens)),
                 Some(IntType::U32) => quote!(#p::u32(#m, #tokens)),
+                Some(IntType::Usize) => quote!(#p::usize(#m, #tokens)),
                 None => tokens.clone(),
             },
             Kind::Bool(b) => quote!(#b),
@@ -130,7 +133,7 @@ impl Emitter<'_> {
             }
             Kind::Index { base, index } => {
                 let base = self.value(base);
-                quote_spanned!(span=> #base[#index])
+                quote_spanned!(span=> #p::at(#m, #base, #index))
             }
             Kind::Struct { path, fields, rest } => self.structure(path, fields, rest.as_deref()),
             Kind::Tuple(items) => {
@@ -242,6 +245,9 @@ impl Emitter<'_> {
         let p = private();
         let path = self.without_self(path);
         let machine = &self.machine.clone();
+        // An item within a function does not see the function's parameters.
+        let mentioned = self.generics.mentioned_in(&path);
+        let Generics { bare, used, .. } = &mentioned;
         let members: Vec<TokenStream> = fields
             .iter()
             .map(|(member, e)| {
@@ -254,8 +260,8 @@ impl Emitter<'_> {
             quote!(..#value)
         });
         quote! {{
-            type __Twin<M__> = <#path as #p::Type>::On<M__>;
-            __Twin::<#machine> { #(#members,)* #rest }
+            type __Twin<M__, #bare> = <#path as #p::Type>::On<M__>;
+            __Twin::<#machine, #used> { #(#members,)* #rest }
         }}
     }
 

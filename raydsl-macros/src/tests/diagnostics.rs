@@ -79,7 +79,6 @@ bodies! {
     no_range: { for i in list {} x } "runs over a range" "0u32..n";
     mutable_reference: { let y = &mut x; *y } "`&mut` outside the arguments" "variable itself";
     mutable_element: { let mut t = [x, x]; g(&mut t[n as usize]) } "computed element" "after the call";
-    variable_index: { t[n] } "a number of the source" "i as usize";
     half_range: { for i in 0u32.. {} x } "two bounds" "a..=b";
     empty_match: { match n {} } "needs an arm" "_ => value";
     variant_pattern: { match g(x) { Some(y) => y, _ => x } } "no such pattern" "numbers, ranges";
@@ -105,12 +104,12 @@ fn assert_kernel(item: TokenStream, what: &str, help: &str) {
 fn signatures() {
     assert_kernel(
         quote!(
-            fn f<T>(x: T) -> T {
-                x
+            fn f(light: impl Light) -> f32 {
+                light.power()
             }
         ),
-        "cannot be generic",
-        "for each type",
+        "have names",
+        "fn f<T: Light>(light: T)",
     );
     assert_kernel(
         quote!(
@@ -132,15 +131,18 @@ fn signatures() {
     );
     assert_kernel(
         quote!(
-            impl<T> S<T> {
-                fn f(&self) {}
+            impl S {
+                fn f<T: Light>(&self, light: T) {}
             }
         ),
-        "cannot be generic",
-        "each type",
+        "no type parameters of its own",
+        "#[kernel] fn",
     );
     assert_kernel(quote!(impl S { #[cfg(test)] fn f(&self) {} }), "no `#[cfg]`", "impl of its own");
-    assert_kernel(quote!(impl A for T { fn f(&self) {} }), "trait impls", "inherent");
+    let f = quote!(
+        fn f<T>(&self, t: T);
+    );
+    assert_kernel(quote!(trait A { #f }), "no type parameters of its own", "#[kernel] fn");
     assert_kernel(
         quote!(
             struct S;
@@ -224,7 +226,7 @@ fn primitives() {
             }
         ),
         "only a struct",
-        "which kind",
+        "named members",
     );
     one(
         quote!(
@@ -259,15 +261,24 @@ fn derives() -> syn::Result<()> {
                     A,
                 }
             ),
-            "only a struct",
+            "two variants or more",
         ),
         (
             quote!(
-                struct S<T> {
-                    a: T,
+                enum S {
+                    A,
+                    B(f32),
                 }
             ),
-            "cannot be generic",
+            "has no fields",
+        ),
+        (
+            quote!(
+                union S {
+                    a: f32,
+                }
+            ),
+            "only a struct or an enum",
         ),
     ] {
         let found = errors(twin::derive(&syn::parse2(item)?));
@@ -297,11 +308,11 @@ fn arguments_of_attributes() {
 #[test]
 fn several_at_once() {
     let f = quote! {
-        fn f<T>(x: f32, n: u32) -> f32 {
+        fn f(x: f32, y: impl Copy) -> f32 {
             let mut i = 0;
             let y = x.sin() + 2.0f64;
             for j in 0..4 {}
-            [y][n] + y
+            [y][0..1] + y
         }
     };
     let found = errors(expand_kernel(quote!(), f));

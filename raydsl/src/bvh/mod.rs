@@ -149,7 +149,7 @@ impl<M: Machine, P: Primitive> Capture<M> for Bvh<'_, P> {
     }
 }
 
-impl<M: Machine, P: Primitive> Capture<M> for [P] {
+impl<M: Machine, P: Type> Capture<M> for [P] {
     type On<'c>
         = On<'c, P>
     where
@@ -170,7 +170,7 @@ impl<M: Machine, P: Primitive> Capture<M> for [P] {
     }
 }
 
-impl<M: Machine, P: Primitive> Capture<M> for Vec<P> {
+impl<M: Machine, P: Type> Capture<M> for Vec<P> {
     type On<'c>
         = On<'c, P>
     where

@@ -1,10 +1,9 @@
-//! The light view of primitives and tree that kernels work on.
+//! The light view of a slice, or of primitives and their tree, that kernels work on.
 
 use std::borrow::Cow;
 
 use super::{Node, bytes_of, slice_key};
-use crate::geometry::Primitive;
-use crate::machine::{Field, Leaves, Machine, Resource, Schema, Value, wgsl::BufferKey};
+use crate::machine::{Field, Leaves, Machine, Resource, Schema, Type, Value, wgsl::BufferKey};
 
 /// The structure of a [`Node`].
 pub(crate) const NODE_SCHEMA: &Schema = &Schema::Struct {
@@ -18,7 +17,7 @@ pub(crate) const NODE_SCHEMA: &Schema = &Schema::Struct {
     size: 32,
 };
 
-/// Primitives, with a tree over them or without: a value of the host on every machine.
+/// A slice, with a tree over it or without: a value of the host on every machine.
 #[derive(Debug)]
 pub struct On<'a, P> {
     pub(crate) prims: &'a [P],
@@ -38,7 +37,7 @@ impl<P> Clone for On<'_, P> {
 
 impl<P> Copy for On<'_, P> {}
 
-impl<'a, P: Primitive> On<'a, P> {
+impl<'a, P: Type> On<'a, P> {
     #[inline(always)]
     pub(crate) fn tree(prims: &'a [P], nodes: &'a [Node], indices: &'a [u32], id: u64) -> Self {
         Self { prims, nodes, indices, id, name: "bvh" }
@@ -104,7 +103,7 @@ impl<'a, P: Primitive> On<'a, P> {
     }
 }
 
-impl<P: Primitive> Resource for On<'_, P> {
+impl<P: Type> Resource for On<'_, P> {
     fn bytes(&self, key: BufferKey) -> Option<Cow<'_, [u8]>> {
         if key == self.prims_key() {
             return Some(Cow::Owned(bytes_of(self.prims)));
@@ -120,7 +119,7 @@ impl<P: Primitive> Resource for On<'_, P> {
     }
 }
 
-impl<M: Machine, P: Primitive> Value<M> for On<'_, P> {
+impl<M: Machine, P: Type> Value<M> for On<'_, P> {
     const SCHEMA: &'static Schema = &Schema::Host;
 
     #[inline(always)]

@@ -4,7 +4,10 @@ use std::borrow::Cow;
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::{F, I, Machine, Type, U, V2, V3, V4, Value, wgsl::BufferKey};
+use crate::bvh;
+use crate::geometry::Primitive;
+
+use super::{F, I, Machine, Type, U, Usize, V2, V3, V4, Value, wgsl::BufferKey};
 
 /// Data that recorded kernels read from buffers.
 pub trait Resource {
@@ -15,7 +18,7 @@ pub trait Resource {
 /// A value of the host that a kernel may capture.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot capture a `{Self}`",
-    note = "numbers, vectors, types with #[derive(Type)], trees and slices of primitives can be captured"
+    note = "numbers, vectors, types with #[derive(Type)], arrays and slices of them, and trees can be captured"
 )]
 pub trait Capture<M: Machine> {
     /// What stands for it inside the kernel.
@@ -33,6 +36,33 @@ pub trait Capture<M: Machine> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
         let _ = visit;
     }
+}
+
+/// What a kernel may take by `&`: a value, which is copied, or data that it reads in place.
+#[diagnostic::on_unimplemented(
+    message = "a kernel cannot take a `&{Self}`",
+    note = "values of the kernel language, slices of them, and trees can be parameters"
+)]
+pub trait Parameter {
+    /// What stands for it inside the kernel.
+    type On<'a, M: Machine>: Value<M>
+    where
+        Self: 'a;
+}
+
+impl<T: Type> Parameter for T {
+    type On<'a, M: Machine> = <T as Type>::On<M>;
+}
+
+impl<T: Type> Parameter for [T] {
+    type On<'a, M: Machine> = bvh::On<'a, T>;
+}
+
+impl<P: Primitive> Parameter for bvh::Bvh<'_, P> {
+    type On<'a, M: Machine>
+        = bvh::On<'a, P>
+    where
+        Self: 'a;
 }
 
 impl<M: Machine, T: Capture<M> + ?Sized> Capture<M> for &T {
@@ -76,7 +106,23 @@ macro_rules! capture_number {
     };
 }
 
-capture_number!(f32 => F, i32 => I, u32 => U, Vec2 => V2, Vec3 => V3, Vec4 => V4);
+capture_number!(f32 => F, i32 => I, u32 => U, usize => Usize, Vec2 => V2, Vec3 => V3, Vec4 => V4);
+
+/// An array is a value: its elements are numbers of the kernel, and a computed index chooses among
+/// them. A table is better captured as a slice.
+impl<M: Machine, T: Type, const N: usize> Capture<M> for [T; N] {
+    type On<'c> = [T::On<M>; N];
+
+    #[inline(always)]
+    fn capture(&self, m: &M, name: &'static str) -> [T::On<M>; N] {
+        m.capture(name, *self)
+    }
+
+    #[inline(always)]
+    fn constant(&self, m: &M) -> [T::On<M>; N] {
+        <[T; N]>::splat(m, *self)
+    }
+}
 
 /// A captured `bool` stays a value of the host: a branch on it is decided while recording.
 impl<M: Machine> Capture<M> for bool {

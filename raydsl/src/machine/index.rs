@@ -4,42 +4,27 @@
 //! whose number it reaches. An index out of range is an error of the kernel. With debug assertions
 //! it panics and names the lane; without, it means the last element, in every variant.
 
-use super::{Coerce, Compare, I, Leaves, Machine, U, Value, Varying};
+use super::{Coerce, Compare, Leaves, Machine, Type, U, Usize, Value, Varying};
 use crate::bvh::On;
-use crate::geometry::Primitive;
 
 /// An integer that indexes.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot index by this value",
-    label = "not a `u32` or an `i32`"
+    label = "not a `usize`"
 )]
 pub trait Index<M: Machine> {
-    /// The index; what is negative is out of range.
+    /// The index as 32 bits.
     fn index(self, m: &M) -> U<M>;
 }
 
-impl<M: Machine> Index<M> for U<M> {
+impl<M: Machine> Index<M> for Usize<M> {
     #[inline(always)]
-    fn index(self, _: &M) -> Self {
-        self
+    fn index(self, _: &M) -> U<M> {
+        U(self.0)
     }
 }
 
-impl<M: Machine> Index<M> for I<M> {
-    #[inline(always)]
-    fn index(self, m: &M) -> U<M> {
-        U(m.i32_to_u32(self.0))
-    }
-}
-
-impl<M: Machine> Index<M> for u32 {
-    #[inline(always)]
-    fn index(self, m: &M) -> U<M> {
-        U(m.u32(self))
-    }
-}
-
-impl<M: Machine> Index<M> for i32 {
+impl<M: Machine> Index<M> for usize {
     #[inline(always)]
     fn index(self, m: &M) -> U<M> {
         U(m.u32(self as u32))
@@ -53,6 +38,8 @@ pub trait Indexed<M: Machine> {
     type Element;
     /// The element at `i`.
     fn element(self, m: &M, i: U<M>) -> Self::Element;
+    /// The element at a place that the source names.
+    fn at(self, m: &M, i: usize) -> Self::Element;
 }
 
 impl<M: Machine, V: Varying<M> + Copy, const N: usize> Indexed<M> for [V; N] {
@@ -73,18 +60,24 @@ impl<M: Machine, V: Varying<M> + Copy, const N: usize> Indexed<M> for [V; N] {
         }
         found
     }
+
+    #[inline(always)]
+    fn at(self, m: &M, i: usize) -> V::Value {
+        self[i].varying(m)
+    }
 }
 
-impl<M: Machine, P: Primitive> Indexed<M> for On<'_, P> {
+impl<M: Machine, P: Type> Indexed<M> for On<'_, P> {
     type Element = P::On<M>;
 
     #[inline(always)]
     fn element(self, m: &M, i: U<M>) -> P::On<M> {
-        let len = self.len() as u32;
-        m.check_index(&i.0, len);
-        let last = m.u32(len.saturating_sub(1));
-        let past = m.u32_compare(Compare::Gt, i.0, last);
-        m.fetch(&self, U(m.u32_select(past, last, i.0)))
+        m.element(&self, i)
+    }
+
+    #[inline(always)]
+    fn at(self, m: &M, i: usize) -> P::On<M> {
+        self.element(m, U(m.u32(i as u32)))
     }
 }
 

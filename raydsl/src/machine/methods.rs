@@ -4,7 +4,9 @@
 //! part of the trait, so that the methods of a user's types and those of the library meet without
 //! an import.
 
-use super::{B, Coerce, F, F32Binary, F32Unary, I, IntBinary, Machine, Type, U, V2, V3, V4, Var};
+use super::{
+    B, Coerce, F, F32Binary, F32Unary, I, IntBinary, Machine, Type, U, Usize, V2, V3, V4, Var,
+};
 use crate::bvh;
 use crate::geometry::{HitOn, Primitive, Ray, RayOn};
 
@@ -100,16 +102,18 @@ pub fn call_on_element<const NAME: u64, M: Machine, T: Method<NAME, M, A>, A>(
     label = "not a kernel",
     note = "write `#[kernel]` on the impl that has the method"
 )]
-pub trait HostMethod<const NAME: u64, M: Machine, A>: Type {
+pub trait HostMethod<const NAME: u64, M: Machine, A> {
+    /// The struct's twin.
+    type This: Copy;
     /// The result.
     type Output;
     /// Whether it takes `&mut self`.
     const IS_MUT: bool = false;
     /// Calls the method.
-    fn call(this: Self::On<M>, m: &M, args: A) -> Self::Output;
+    fn call(this: Self::This, m: &M, args: A) -> Self::Output;
     /// Calls the method on a variable, whose value is `this`.
     #[inline(always)]
-    fn call_at(this: Self::On<M>, variable: &Var<Self::On<M>>, m: &M, args: A) -> Self::Output {
+    fn call_at(this: Self::This, variable: &Var<Self::This>, m: &M, args: A) -> Self::Output {
         let _ = variable;
         Self::call(this, m, args)
     }
@@ -226,7 +230,11 @@ macro_rules! int_methods {
     };
 }
 
-int_methods!(I i32_binary i32_compare i32_select, U u32_binary u32_compare u32_select);
+int_methods!(
+    I i32_binary i32_compare i32_select,
+    U u32_binary u32_compare u32_select,
+    Usize u32_binary u32_compare u32_select
+);
 
 // Vectors
 
@@ -302,6 +310,7 @@ method!(V3<M>, "extend", |_m, a, w: F<M>| -> V4<M> { V4 { x: a.x, y: a.y, z: a.z
 // Rays
 
 impl<M: Machine, A: Coerce<M, F<M>>> HostMethod<{ name("at") }, M, (A,)> for Ray {
+    type This = RayOn<M>;
     type Output = V3<M>;
 
     #[inline(always)]
@@ -311,7 +320,34 @@ impl<M: Machine, A: Coerce<M, F<M>>> HostMethod<{ name("at") }, M, (A,)> for Ray
     }
 }
 
-// Trees and slices of primitives
+// Slices, and trees over primitives
+
+impl<M: Machine, T: Type> Method<{ name("len") }, M, ()> for bvh::On<'_, T> {
+    type Output = Usize<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (): ()) -> Usize<M> {
+        Usize(m.len(&self).0)
+    }
+}
+
+impl<M: Machine, T: Type> Method<{ name("is_empty") }, M, ()> for bvh::On<'_, T> {
+    type Output = B<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (): ()) -> B<M> {
+        B(m.u32_compare(super::Compare::Eq, m.len(&self).0, m.u32(0)))
+    }
+}
+
+impl<M: Machine, V: super::Value<M>, const N: usize> Method<{ name("len") }, M, ()> for [V; N] {
+    type Output = usize;
+
+    #[inline(always)]
+    fn call(self, _: &M, (): ()) -> usize {
+        N
+    }
+}
 
 impl<M: Machine, P: Primitive> Method<{ name("closest_hit") }, M, (RayOn<M>,)> for bvh::On<'_, P> {
     type Output = HitOn<M>;

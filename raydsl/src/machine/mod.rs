@@ -22,13 +22,14 @@ mod packet;
 mod record;
 mod scalar;
 mod schema;
+mod twin;
 mod types;
 mod value;
 mod vector;
 pub mod wgsl;
 
 pub use call::{KernelFn, KernelInfo};
-pub use capture::{Capture, Resource};
+pub use capture::{Capture, Parameter, Resource};
 pub use control::{Branch, Condition, Loop, Ret, Var};
 pub(crate) use lanes::{Entered, fill};
 pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
@@ -42,8 +43,9 @@ pub(crate) use record::stride;
 pub use record::{Recorder, Recording};
 pub use scalar::Scalar;
 pub use schema::{Field, Schema};
+pub use twin::{Inferred, Twin};
 pub use types::{LaneMachine, Type};
-pub use value::{B, F, I, Leaves, U, Value};
+pub use value::{B, F, I, Leaves, U, Usize, Value};
 pub use vector::{V2, V3, V4};
 
 /// An operation on one `f32`.
@@ -290,10 +292,21 @@ pub trait Machine: Sized + 'static {
         ray: crate::geometry::RayOn<Self>,
     ) -> B<Self>;
 
-    /// The element `index` of a slice of primitives.
-    fn fetch<P: crate::geometry::Primitive>(
-        &self,
-        prims: &crate::bvh::On<'_, P>,
-        index: U<Self>,
-    ) -> P::On<Self>;
+    /// How many elements a slice has.
+    #[inline(always)]
+    fn len<T: Type>(&self, slice: &crate::bvh::On<'_, T>) -> U<Self> {
+        U(self.u32(slice.len() as u32))
+    }
+
+    /// The element `index` of a slice; the last one where there is none.
+    #[inline(always)]
+    fn element<T: Type>(&self, slice: &crate::bvh::On<'_, T>, index: U<Self>) -> T::On<Self> {
+        self.check_index(&index.0, slice.len() as u32);
+        let last = self.u32((slice.len() as u32).wrapping_sub(1));
+        let within = self.u32_compare(Compare::Le, index.0, last);
+        self.fetch(slice, U(self.u32_select(within, index.0, last)))
+    }
+
+    /// The element `index` of a slice, which has it.
+    fn fetch<P: Type>(&self, prims: &crate::bvh::On<'_, P>, index: U<Self>) -> P::On<Self>;
 }

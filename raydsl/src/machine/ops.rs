@@ -5,8 +5,8 @@
 //! host until they meet a value of the machine; `f32` literals become values at once.
 
 use super::{
-    B, BoolBinary, Compare, F, F32Binary, F32Unary, I, IntBinary, Machine, Type, U, V2, V3, V4,
-    Value, Var,
+    B, BoolBinary, Compare, F, F32Binary, F32Unary, I, IntBinary, Machine, Type, U, Usize, V2, V3,
+    V4, Value, Var,
 };
 
 macro_rules! binary_traits {
@@ -109,6 +109,13 @@ macro_rules! coerce_host {
 
 coerce_host!(f32 => F f32, i32 => I i32, u32 => U u32, bool => B bool);
 
+impl<M: Machine> Coerce<M, Usize<M>> for usize {
+    #[inline(always)]
+    fn coerce(self, m: &M) -> Usize<M> {
+        <usize as Type>::splat(m, self)
+    }
+}
+
 /// What a variable holds: a value of the machine, whether or not the source's was one of the host.
 #[diagnostic::on_unimplemented(message = "a kernel cannot keep this value in a variable")]
 pub trait Varying<M: Machine> {
@@ -143,7 +150,16 @@ macro_rules! varying {
     };
 }
 
-varying!(F, I, U, B, V2, V3, V4; i32 => I i32, u32 => U u32, bool => B bool);
+varying!(F, I, U, Usize, B, V2, V3, V4; i32 => I i32, u32 => U u32, bool => B bool);
+
+impl<M: Machine> Varying<M> for usize {
+    type Value = Usize<M>;
+
+    #[inline(always)]
+    fn varying(self, m: &M) -> Usize<M> {
+        Coerce::coerce(self, m)
+    }
+}
 
 impl<M: Machine, V: Varying<M>, const N: usize> Varying<M> for [V; N] {
     type Value = [V::Value; N];
@@ -215,7 +231,7 @@ macro_rules! bounds {
     };
 }
 
-bounds!(I i32, U u32);
+bounds!(I i32, U u32, Usize usize);
 
 // Numbers. Each operator for (lane, lane), (lane, host), (host, lane) and (host, host).
 
@@ -261,17 +277,18 @@ f32_operators!(OpAdd::add Add, OpSub::sub Sub, OpMul::mul Mul, OpDiv::div Div);
 macro_rules! int_operators {
     ($($trait:ident :: $method:ident $op:ident $symbol:tt),+) => {
         $(
-            int_operators!(@one $trait::$method $op $symbol, I, i32, i32_binary, i32);
-            int_operators!(@one $trait::$method $op $symbol, U, u32, u32_binary, u32);
+            int_operators!(@one $trait::$method $op $symbol, I, i32, i32_binary);
+            int_operators!(@one $trait::$method $op $symbol, U, u32, u32_binary);
+            int_operators!(@one $trait::$method $op $symbol, Usize, usize, u32_binary);
         )+
     };
-    (@one $trait:ident :: $method:ident $op:ident $symbol:tt, $t:ident, $host:ty, $f:ident, $make:ident) => {
+    (@one $trait:ident :: $method:ident $op:ident $symbol:tt, $t:ident, $host:ty, $f:ident) => {
         operator!($trait::$method, $t<M>, $t<M>, $t<M>, |m, a, b| $t(m.$f(IntBinary::$op, a.0, b.0)));
         operator!($trait::$method, $t<M>, $host, $t<M>, |m, a, b| {
-            $t(m.$f(IntBinary::$op, a.0, m.$make(b)))
+            $t(m.$f(IntBinary::$op, a.0, <$host as Type>::splat(m, b).0))
         });
         operator!($trait::$method, $host, $t<M>, $t<M>, |m, a, b| {
-            $t(m.$f(IntBinary::$op, m.$make(a), b.0))
+            $t(m.$f(IntBinary::$op, <$host as Type>::splat(m, a).0, b.0))
         });
         operator!($trait::$method, $host, $host, $host, |_m, a, b| a $symbol b);
     };
@@ -348,6 +365,7 @@ unary!(OpNot::not, U<M>, |m, a| U(m.u32_not(a.0)));
 unary!(OpNot::not, bool, |_m, a| !a);
 unary!(OpNot::not, i32, |_m, a| !a);
 unary!(OpNot::not, u32, |_m, a| !a);
+unary!(OpNot::not, Usize<M>, |m, a| Usize(m.u32_not(a.0)));
 
 // Comparisons.
 
@@ -378,16 +396,21 @@ fn compare_host<T: PartialOrd>(op: Compare, a: T, b: T) -> bool {
 compare!(F<M>, F<M>, B<M>, |m, op, a, b| B(m.f32_compare(op, a.0, b.0)));
 
 macro_rules! compare_int {
-    ($t:ident, $host:ty, $f:ident, $make:ident) => {
+    ($t:ident, $host:ty, $f:ident) => {
         compare!($t<M>, $t<M>, B<M>, |m, op, a, b| B(m.$f(op, a.0, b.0)));
-        compare!($t<M>, $host, B<M>, |m, op, a, b| B(m.$f(op, a.0, m.$make(b))));
-        compare!($host, $t<M>, B<M>, |m, op, a, b| B(m.$f(op, m.$make(a), b.0)));
+        compare!($t<M>, $host, B<M>, |m, op, a, b| {
+            B(m.$f(op, a.0, <$host as Type>::splat(m, b).0))
+        });
+        compare!($host, $t<M>, B<M>, |m, op, a, b| {
+            B(m.$f(op, <$host as Type>::splat(m, a).0, b.0))
+        });
         compare!($host, $host, bool, |_m, op, a, b| compare_host(op, a, b));
     };
 }
 
-compare_int!(I, i32, i32_compare, i32);
-compare_int!(U, u32, u32_compare, u32);
+compare_int!(I, i32, i32_compare);
+compare_int!(U, u32, u32_compare);
+compare_int!(Usize, usize, u32_compare);
 
 /// `==` and `!=`; an order of truth values (`false < true`) is spelled out.
 #[inline(always)]
@@ -444,4 +467,17 @@ cast!(
     u32 => u32: |m, a| U(m.u32(a)),
     bool => u32: |m, a| U(m.u32(u32::from(a))),
     bool => i32: |m, a| I(m.i32(i32::from(a))),
+    I<M> => usize: |m, a| Usize(m.i32_to_u32(a.0)),
+    U<M> => usize: |_m, a| Usize(a.0),
+    B<M> => usize: |m, a| Usize(m.bool_to_u32(a.0)),
+    Usize<M> => f32: |m, a| F(m.u32_to_f32(a.0)),
+    Usize<M> => i32: |m, a| I(m.u32_to_i32(a.0)),
+    Usize<M> => u32: |_m, a| U(a.0),
+    Usize<M> => usize: |_m, a| a,
+    i32 => usize: |m, a| Usize(m.u32(a as u32)),
+    u32 => usize: |m, a| Usize(m.u32(a)),
+    usize => f32: |m, a| F(m.f32(a as f32)),
+    usize => i32: |m, a| I(m.i32(a as i32)),
+    usize => u32: |m, a| U(m.u32(a as u32)),
+    usize => usize: |m, a| Usize(m.u32(a as u32)),
 );

@@ -423,12 +423,22 @@ impl<L: Lanes> Machine for Packet<L> {
         traverse_packet::any_hit(self, prims, ray)
     }
     #[inline(always)]
-    fn fetch<P: Primitive>(&self, prims: &crate::bvh::On<'_, P>, index: U<Self>) -> P::On<Self> {
+    fn fetch<P: Type>(&self, prims: &crate::bvh::On<'_, P>, index: U<Self>) -> P::On<Self> {
+        let active = self.active.get();
+        if !self.lanes.any(active) {
+            return P::On::zero(self);
+        }
+        let first = self.lanes.bits(active).trailing_zeros() as usize % L::N;
+        let first = L::u32_lane(&index.0, first);
+        // The counter of a loop is one number in all lanes.
+        let same = self.lanes.u32_compare(Compare::Eq, index.0, self.lanes.u32(first));
+        if !self.lanes.any(self.and(active, self.lanes.mask_not(same))) {
+            return P::splat(self, prims.get(first));
+        }
         // A lane that does not run may hold any index.
-        let index = self.lanes.u32_select(self.active.get(), index.0, self.lanes.u32(0));
-        let prims: [P; 64] =
-            core::array::from_fn(|l| prims.get(if l < L::N { L::u32_lane(&index, l) } else { 0 }));
-        P::from_lanes(self, &|l| prims[l])
+        let index = self.lanes.u32_select(active, index.0, self.lanes.u32(first));
+        let get = |l| prims.get(L::u32_lane(&index, l));
+        P::from_lanes(self, &get)
     }
 }
 

@@ -389,7 +389,7 @@ impl Machine for Scalar {
         let ray = crate::geometry::Ray::lane::<Self>(&ray, 0);
         B(traverse::any_hit(prims, ray))
     }
-    fn fetch<P: Primitive>(&self, prims: &crate::bvh::On<'_, P>, index: U<Self>) -> P::On<Self> {
+    fn fetch<P: Type>(&self, prims: &crate::bvh::On<'_, P>, index: U<Self>) -> P::On<Self> {
         P::splat(self, prims.get(index.0))
     }
 }

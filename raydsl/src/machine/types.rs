@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::{B, F, Field, I, Machine, Schema, U, V2, V3, V4, Value};
+use super::{B, F, Field, I, Machine, Schema, U, Usize, V2, V3, V4, Value};
 
 /// A type that kernels may use: it has a twin on every machine.
 ///
@@ -92,6 +92,36 @@ scalar_type!(f32, F, F32, f32, f32_from_fn, f32_lane);
 scalar_type!(i32, I, I32, i32, i32_from_fn, i32_lane);
 scalar_type!(u32, U, U32, u32, u32_from_fn, u32_lane);
 scalar_type!(bool, B, Bool, bool, bool_from_fn, bool_lane);
+
+/// A kernel counts and indexes with 32 bits; what a host's `usize` has above them is lost.
+impl Type for usize {
+    type On<M: Machine> = Usize<M>;
+
+    const SCHEMA: &'static Schema = &Schema::U32;
+
+    #[inline(always)]
+    fn splat<M: Machine>(m: &M, v: Self) -> Usize<M> {
+        Usize(m.u32(v as u32))
+    }
+
+    #[inline(always)]
+    fn from_lanes<M: LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> Usize<M> {
+        Usize(m.u32_from_fn(|l| f(l) as u32))
+    }
+
+    #[inline(always)]
+    fn lane<M: LaneMachine>(v: &Usize<M>, lane: usize) -> Self {
+        M::u32_lane(&v.0, lane) as Self
+    }
+
+    fn write(&self, out: &mut [u8]) {
+        (*self as u32).write(out);
+    }
+
+    fn read(bytes: &[u8]) -> Self {
+        u32::read(bytes) as Self
+    }
+}
 
 macro_rules! vector_type {
     ($host:ident, $twin:ident, $n:literal, $($c:ident),+) => {

@@ -45,6 +45,10 @@ scalar_wrapper!(
     U(U32), u32, U32
 );
 scalar_wrapper!(
+    /// A `usize` on machine `M`: a kernel's have 32 bits.
+    Usize(U32), u32, U32
+);
+scalar_wrapper!(
     /// A `bool` on machine `M`.
     B(Bool), bool, Bool
 );
@@ -104,7 +108,7 @@ macro_rules! host_value {
     };
 }
 
-host_value!(bool, i32, u32);
+host_value!(bool, i32, u32, usize);
 
 /// An array has no structure of its own here: its type describes it.
 impl<M: Machine, V: Value<M>, const N: usize> Value<M> for [V; N] {

@@ -648,7 +648,24 @@ impl Machine for Recorder {
         );
         B(self.add(Expr::Call(function, vec![ray]), Type::Bool))
     }
-    fn fetch<P: Primitive>(&self, prims: &crate::bvh::On<'_, P>, index: U<Self>) -> P::On<Self> {
+    fn len<T: crate::machine::Type>(&self, slice: &crate::bvh::On<'_, T>) -> U<Self> {
+        let function = self.len_function(slice);
+        U(self.add(Expr::Call(function, vec![]), Type::U32))
+    }
+    fn element<T: crate::machine::Type>(
+        &self,
+        slice: &crate::bvh::On<'_, T>,
+        index: U<Self>,
+    ) -> T::On<Self> {
+        let function = self.element_function(slice);
+        let call = self.add(Expr::Call(function, vec![index.0]), Type::of(T::SCHEMA));
+        self.take_apart(call)
+    }
+    fn fetch<P: crate::machine::Type>(
+        &self,
+        prims: &crate::bvh::On<'_, P>,
+        index: U<Self>,
+    ) -> P::On<Self> {
         let function = self.fetch_function(prims);
         let call = self.add(Expr::Call(function, vec![index.0]), Type::of(P::SCHEMA));
         self.take_apart(call)

@@ -44,7 +44,7 @@ impl State {
     fn is_taken(&self, name: &str) -> bool {
         let of_buffer = |b: &SceneBuffer| {
             name.strip_prefix(&b.name).is_some_and(|rest| {
-                matches!(rest, "" | "_at" | "_closest_hit" | "_any_hit")
+                matches!(rest, "" | "_at" | "_element" | "_len" | "_closest_hit" | "_any_hit")
                     || rest.starts_with("_part")
             })
         };

@@ -80,38 +80,29 @@ fn windows(len: u64, stride: u64, max: u64, first_binding: u32) -> Vec<Window> {
         .collect()
 }
 
-/// A stored type: the name of its struct, declared here unless it is the value's own.
-fn stored_type(schema: &'static Schema, text: &mut String, names: &mut Names) -> (String, bool) {
+/// A stored type: the name of its struct, and whether that is the value's own.
+fn stored_type(schema: &'static Schema, names: &mut Names) -> (String, bool) {
     let stored = Stored::new(schema);
-    match schema {
-        Schema::F32 | Schema::I32 | Schema::U32 => (names.ty(Type::of(schema)), true),
+    let name = match schema {
+        Schema::F32 | Schema::I32 | Schema::U32 => return (names.ty(Type::of(schema)), true),
         Schema::Struct { .. } => {
             let value = names.ty(Type::of(schema));
             if stored.is_value(schema) {
                 return (value, true);
             }
-            let name = format!("Stored{value}");
-            if !text.contains(&format!("struct {name} {{")) {
-                *text += &stored.declaration(&name);
-                *text += "\n";
-            }
-            (name, false)
+            format!("Stored{value}")
         }
-        _ => {
-            let name = "StoredValue".to_owned();
-            if !text.contains("struct StoredValue {") {
-                *text += &stored.declaration(&name);
-                *text += "\n";
-            }
-            (name, false)
-        }
-    }
+        Schema::Vector(n) => format!("StoredVec{n}"),
+        Schema::Array { .. } => "StoredArray".to_owned(),
+        Schema::Bool => "StoredBool".to_owned(),
+        Schema::Small { .. } | Schema::Host => "StoredValue".to_owned(),
+    };
+    (names.stored(&name, |name| stored.declaration(name)), false)
 }
 
 /// The bindings of a scene buffer and the accessor that hides its windows.
-fn buffer_text(buffer: &Buffer, schema: &'static Schema, names: &mut Names) -> (String, String) {
-    let mut types = String::new();
-    let (element, same) = stored_type(schema, &mut types, names);
+fn buffer_text(buffer: &Buffer, schema: &'static Schema, names: &mut Names) -> String {
+    let (element, same) = stored_type(schema, names);
     let value = names.ty(Type::of(schema));
     let name = &buffer.name;
     let several = buffer.windows.len() > 1;
@@ -147,7 +138,16 @@ fn buffer_text(buffer: &Buffer, schema: &'static Schema, names: &mut Names) -> (
         text += "        default: {}\n    }\n";
     }
     let _ = writeln!(text, "    {}\n}}", give(0, "i".to_owned(), names));
-    (types, text)
+    text
+}
+
+/// The accessor for an index that a kernel computed.
+fn element_text(name: &str, value: &str) -> String {
+    format!(
+        "\n/// The last element stands for those out of range.\n\
+         fn {name}_element(i: u32) -> {value} {{\n    \
+         return {name}_at(min(i, params.len_of_{name} - 1u));\n}}\n"
+    )
 }
 
 /// The identifiers of a text.
@@ -188,14 +188,14 @@ fn reachable(state: &State, entry: usize) -> Vec<usize> {
     seen
 }
 
-fn entry_text(recording: &Recording, types: &mut String, names: &mut Names) -> String {
+fn entry_text(recording: &Recording, names: &mut Names) -> String {
     let State { functions, .. } = &recording.state;
     let kernel = functions[recording.entry].name();
     let mut text = String::new();
     let argument = match recording.input {
         None => "at.x, at.y".to_owned(),
         Some(schema) => {
-            let (element, same) = stored_type(schema, types, names);
+            let (element, same) = stored_type(schema, names);
             let _ = writeln!(
                 text,
                 "@group(0) @binding(2) var<storage, read> inputs: array<{element}>;"
@@ -203,7 +203,7 @@ fn entry_text(recording: &Recording, types: &mut String, names: &mut Names) -> S
             if same { "inputs[index]".to_owned() } else { "load_input(index)".to_owned() }
         }
     };
-    let (element, same) = stored_type(recording.output, types, names);
+    let (element, same) = stored_type(recording.output, names);
     let _ =
         writeln!(text, "@group(0) @binding(3) var<storage, read_write> outputs: array<{element}>;");
     if let Some(schema) = recording.input
@@ -257,11 +257,11 @@ pub(super) fn module(recording: &Recording, limits: &Limits) -> Module {
     let mut uniforms: Vec<Uniform> =
         state.uniforms.iter().filter(|u| is_used(u)).cloned().collect();
     let mut buffers = Vec::new();
-    let mut buffer_types = String::new();
     let mut bindings = String::new();
     let mut binding = 4;
     for b in &state.buffers {
-        if !words.contains(format!("{}_at", b.name).as_str()) {
+        let has_elements = words.contains(format!("{}_element", b.name).as_str());
+        if !has_elements && !words.contains(format!("{}_at", b.name).as_str()) {
             continue;
         }
         let stride = storage::stride(b.schema) as u64;
@@ -270,21 +270,20 @@ pub(super) fn module(recording: &Recording, limits: &Limits) -> Module {
         let buffer =
             Buffer { key: b.key, name: b.name.clone(), stride: stride as u32, len: b.len, windows };
         let length = format!("len_of_{}", b.name);
-        if words.contains(length.as_str()) {
+        if has_elements || words.contains(length.as_str()) {
             uniforms.push(Uniform { name: length, ty: Type::U32, words: vec![b.len as u32] });
         }
-        let (types, text) = buffer_text(&buffer, b.schema, &mut names);
-        if !buffer_types.contains(&types) {
-            buffer_types += &types;
-        }
         bindings += "\n";
-        bindings += &text;
+        bindings += &buffer_text(&buffer, b.schema, &mut names);
+        if has_elements {
+            bindings += &element_text(&b.name, &names.ty(Type::of(b.schema)));
+        }
         buffers.push(buffer);
     }
-    let entry = entry_text(recording, &mut buffer_types, &mut names);
+    let entry = entry_text(recording, &mut names);
     let (params, bytes) = uniform_block(&uniforms, &mut names);
     let mut source = names.declarations();
-    source += &buffer_types;
+    source += &names.stored_declarations();
     source += &params;
     source += "\n";
     source += JOB;

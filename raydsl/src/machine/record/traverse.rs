@@ -8,7 +8,7 @@ use super::types::zero_value;
 use super::{Builder, Recorder};
 use crate::bvh::{NODE_SCHEMA, On};
 use crate::geometry::{Hit, Primitive, Ray, RayOn};
-use crate::machine::{KernelInfo, Schema, Type as _, Value};
+use crate::machine::{KernelInfo, Schema, Type, Value};
 
 static SCRATCH: KernelInfo =
     KernelInfo { name: "scratch", file: file!(), line: line!(), params: &[] };
@@ -93,13 +93,27 @@ impl Recorder {
     }
 
     /// `fn points_at(i: u32) -> ColorSphere`; the accessor itself is printed with the buffer.
-    pub(super) fn fetch_function<P: Primitive>(&self, prims: &On<'_, P>) -> usize {
+    pub(super) fn fetch_function<P: Type>(&self, prims: &On<'_, P>) -> usize {
         let buffer = self.prims_buffer(prims);
         let name = format!("{buffer}_at");
         self.text_function(name, vec![P::SCHEMA], |_| String::new())
     }
 
-    fn prims_buffer<P: Primitive>(&self, prims: &On<'_, P>) -> String {
+    /// `fn points_len() -> u32`.
+    pub(super) fn len_function<P: Type>(&self, prims: &On<'_, P>) -> usize {
+        let buffer = self.prims_buffer(prims);
+        self.text_function(format!("{buffer}_len"), vec![], |name| {
+            format!("fn {name}() -> u32 {{\n    return params.len_of_{buffer};\n}}\n")
+        })
+    }
+
+    /// `fn points_element(i: u32) -> ColorSphere`, for any `i`; it too is printed with the buffer.
+    pub(super) fn element_function<P: Type>(&self, prims: &On<'_, P>) -> usize {
+        let name = format!("{}_element", self.prims_buffer(prims));
+        self.text_function(name, vec![P::SCHEMA], |_| String::new())
+    }
+
+    fn prims_buffer<P: Type>(&self, prims: &On<'_, P>) -> String {
         let name = prims.name();
         self.buffer(prims.prims_key(), name, P::SCHEMA, prims.len() as u64)
     }

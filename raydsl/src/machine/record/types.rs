@@ -15,6 +15,8 @@ pub(super) struct Names {
     /// Those of them that the text uses.
     used: Vec<String>,
     pub(super) helpers: Vec<&'static str>,
+    /// How values lie in buffers: the name of a struct and its declaration.
+    stored: Vec<(String, String)>,
 }
 
 /// The same type to a kernel, wherever its members lie in memory.
@@ -87,6 +89,29 @@ impl Names {
         });
         self.used.push(name.clone());
         name
+    }
+
+    /// The name of a stored struct, declared once; two layouts of one type have two names.
+    pub(super) fn stored(&mut self, name: &str, declare: impl Fn(&str) -> String) -> String {
+        let mut candidate = name.to_owned();
+        let mut n = 0;
+        loop {
+            match self.stored.iter().find(|(known, _)| *known == candidate) {
+                Some((known, text)) if *text == declare(known) => return candidate,
+                Some(_) => {
+                    n += 1;
+                    candidate = format!("{name}_{n}");
+                }
+                None => break,
+            }
+        }
+        self.stored.push((candidate.clone(), declare(&candidate)));
+        candidate
+    }
+
+    /// The declarations of the stored structs.
+    pub(super) fn stored_declarations(&self) -> String {
+        self.stored.iter().map(|(_, text)| format!("{text}\n")).collect()
     }
 
     pub(super) fn declarations(&mut self) -> String {

@@ -1,0 +1,93 @@
+//! Type and constant parameters of kernels and types.
+
+use proc_macro2::{Ident, TokenStream, TokenTree};
+use quote::{ToTokens, quote};
+
+/// Generic parameters, ready to be put between angle brackets: each list ends with a comma.
+///
+/// Lifetimes are left out: values on a machine are copied.
+#[derive(Clone, Default)]
+pub(crate) struct Generics {
+    /// With their bounds: `T: Light, const N: usize,`.
+    pub(crate) declared: TokenStream,
+    /// Without bounds: `T, const N: usize,`.
+    pub(crate) bare: TokenStream,
+    /// As arguments: `T, N,`.
+    pub(crate) used: TokenStream,
+    /// The types' names.
+    pub(crate) types: Vec<Ident>,
+    /// Each parameter's name, and how it is declared without bounds.
+    names: Vec<(Ident, TokenStream)>,
+    /// The predicates of a `where` clause.
+    pub(crate) predicates: TokenStream,
+}
+
+impl Generics {
+    pub(crate) fn new(generics: &syn::Generics) -> Self {
+        let mut all = Self::default();
+        for param in &generics.params {
+            match param {
+                syn::GenericParam::Type(t) => {
+                    let (name, bounds) = (&t.ident, &t.bounds);
+                    all.declared.extend(quote!(#name: #bounds,));
+                    all.bare.extend(quote!(#name,));
+                    all.used.extend(quote!(#name,));
+                    all.types.push(name.clone());
+                    all.names.push((name.clone(), quote!(#name)));
+                }
+                syn::GenericParam::Const(c) => {
+                    let (name, ty) = (&c.ident, &c.ty);
+                    all.declared.extend(quote!(const #name: #ty,));
+                    all.bare.extend(quote!(const #name: #ty,));
+                    all.used.extend(quote!(#name,));
+                    all.names.push((name.clone(), quote!(const #name: #ty)));
+                }
+                syn::GenericParam::Lifetime(_) => {}
+            }
+        }
+        let clause = generics.where_clause.iter().flat_map(|w| &w.predicates);
+        for p in clause.filter(|p| !matches!(p, syn::WherePredicate::Lifetime(_))) {
+            let p = p.to_token_stream();
+            all.predicates.extend(quote!(#p,));
+        }
+        all
+    }
+
+    /// Adds the parameters of another item.
+    pub(crate) fn extend(&mut self, other: &Self) {
+        self.declared.extend(other.declared.clone());
+        self.bare.extend(other.bare.clone());
+        self.used.extend(other.used.clone());
+        self.types.extend_from_slice(&other.types);
+        self.names.extend_from_slice(&other.names);
+        self.predicates.extend(other.predicates.clone());
+    }
+
+    /// The parameters that `tokens` mention.
+    pub(crate) fn mentioned_in(&self, tokens: &TokenStream) -> Self {
+        let mut found = Self::default();
+        for (name, bare) in self.names.iter().filter(|(name, _)| mentions(tokens, name)) {
+            found.bare.extend(quote!(#bare,));
+            found.used.extend(quote!(#name,));
+        }
+        found
+    }
+
+    /// Whether `tokens` mention one of the types.
+    pub(crate) fn has_type_in(&self, tokens: &TokenStream) -> bool {
+        self.types.iter().any(|t| mentions(tokens, t))
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.used.is_empty()
+    }
+}
+
+/// Whether an identifier is among the tokens.
+fn mentions(tokens: &TokenStream, name: &Ident) -> bool {
+    tokens.clone().into_iter().any(|t| match t {
+        TokenTree::Ident(i) => i == *name,
+        TokenTree::Group(g) => mentions(&g.stream(), name),
+        _ => false,
+    })
+}

@@ -1,0 +1,200 @@
+//! `#[kernel] fn`.
+
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::{ToTokens, format_ident, quote};
+
+use super::{Place, info, lifted_function, own, param_ident, private, quiet};
+use crate::diag::Errors;
+use crate::generics::Generics;
+use crate::model::{Kernel, Param};
+use crate::parse;
+
+/// The function as it is, a type of the same name, and the lifted body as the type's `on`.
+pub(crate) fn kernel_fn(item: &syn::ItemFn) -> TokenStream {
+    let mut errors = Errors::default();
+    let kernel = parse::function(&item.sig, &item.block, None, &mut errors);
+    let name = &kernel.name;
+    let vis = item.vis.to_token_stream();
+    let is_generic = !kernel.generics.is_empty();
+    let fn_name = if is_generic { "on_values" } else { "on" };
+    let place = Place {
+        fn_name: &Ident::new(fn_name, Span::call_site()),
+        wgsl_name: &name.to_string(),
+        self_ty: None,
+        around: &Generics::default(),
+        vis: &visible_from_inside(&item.vis),
+    };
+    let mut lifted = lifted_function(&kernel, &place, &mut errors);
+    if is_generic {
+        lifted.extend(inferring_function(&kernel, place.vis));
+    }
+    let never = never(&kernel.generics);
+    let Generics { declared, bare, used, predicates, .. } = &kernel.generics;
+    let (declared, bare, used) = (angled(declared), angled(bare), angled(used));
+    if !errors.is_empty() {
+        let errors = errors.into_tokens();
+        let name = &item.sig.ident;
+        // The type stays, so that calls of the kernel give no second error.
+        return quote! {
+            #item
+            #[allow(non_camel_case_types, dead_code)]
+            #vis enum #name #bare { #never }
+            #errors
+        };
+    }
+    let doc = format!("The kernel of [`{name}()`]: `Kernel::of::<{name}>()`.");
+    let entry = has_entry(&kernel).then(|| entry(&kernel, &item.sig));
+    quote! {
+        #item
+        #[doc = #doc]
+        #[allow(non_camel_case_types, reason = "it has the name of the function")]
+        #vis enum #name #bare { #never }
+        impl #declared #name #used where #predicates { #lifted }
+        #entry
+    }
+}
+
+fn angled(list: &TokenStream) -> TokenStream {
+    if list.is_empty() { TokenStream::new() } else { quote!(<#list>) }
+}
+
+/// A variant that cannot be made, for type parameters must be used.
+fn never(generics: &Generics) -> TokenStream {
+    let types = &generics.types;
+    if types.is_empty() {
+        return TokenStream::new();
+    }
+    quote! {
+        #[doc(hidden)]
+        __Never(::core::convert::Infallible, ::core::marker::PhantomData<(#(fn() -> #types,)*)>)
+    }
+}
+
+/// Whether it can be run by itself: on values, for a value.
+fn has_entry(kernel: &Kernel) -> bool {
+    let is_value = |p: &Param| !(p.by_mut || p.shared && is_data(&p.ty));
+    !kernel.params.is_empty() && kernel.result.is_some() && kernel.params.iter().all(is_value)
+}
+
+/// Slices and trees are captured, or given by another kernel.
+fn is_data(ty: &TokenStream) -> bool {
+    match syn::parse2(ty.clone()) {
+        Ok(syn::Type::Slice(_)) => true,
+        Ok(syn::Type::Path(t)) => t.path.segments.last().is_some_and(|s| s.ident == "Bvh"),
+        _ => false,
+    }
+}
+
+/// `on` of a generic kernel: the types are inferred from the arguments.
+fn inferring_function(kernel: &Kernel, vis: &TokenStream) -> TokenStream {
+    let p = private();
+    let m = own("m");
+    let on = |ty: &TokenStream| quote!(<#ty as #p::Type>::On<__M>);
+    let mut before = TokenStream::new();
+    let mut after = TokenStream::new();
+    let mut params = Vec::new();
+    let mut values = Vec::new();
+    for param in &kernel.params {
+        let (name, ty) = (param_ident(&param.name), &param.ty);
+        let text = name.to_string();
+        let is_inferred = kernel.generics.has_type_in(ty) && !(param.shared && is_data(ty));
+        params.push(match (is_inferred, param) {
+            (true, Param { by_mut: true, .. }) => {
+                let copy = format_ident!("{name}_copy");
+                before.extend(quote! {
+                    let #copy = #p::Var::new(#m, #text, #p::Inferred::give(#name, #m));
+                });
+                after.extend(quote!(#name.set(#m, #p::Twin::from_host(#copy.get(#m)));));
+                values.push(quote!(&#copy));
+                quote!(#name: &#p::Var<impl #p::Twin<__M, Host = #ty>>)
+            }
+            (true, _) => {
+                values.push(quote!(#p::Inferred::give(#name, #m)));
+                quote!(#name: impl #p::Inferred<__M, Host = #ty>)
+            }
+            (false, param) => {
+                values.push(quote!(#name));
+                let ty = if param.shared {
+                    quote!(<#ty as #p::Parameter>::On<'__a, __M>)
+                } else {
+                    on(ty)
+                };
+                if param.by_mut {
+                    quote!(#name: &#p::Var<#ty>)
+                } else {
+                    quote!(#name: impl #p::Coerce<__M, #ty>)
+                }
+            }
+        });
+    }
+    let lifetime = kernel.params.iter().any(|p| p.shared).then(|| quote!('__a,));
+    let result = kernel.result.as_ref().map(on).unwrap_or_else(|| quote!(()));
+    let quiet = quiet();
+    quote! {
+        #[doc(hidden)]
+        #[inline(always)]
+        #quiet
+        #vis fn on<#lifetime __M: #p::Machine>(#m: &__M, #(#params,)*) -> #result {
+            #before
+            let result = Self::on_values(#m, #(#values,)*);
+            #after
+            result
+        }
+    }
+}
+
+fn entry(kernel: &Kernel, sig: &syn::Signature) -> TokenStream {
+    let p = private();
+    let name = &kernel.name;
+    let Generics { declared, used, predicates, .. } = &kernel.generics;
+    let (declared, used) = (angled(declared), angled(used));
+    let types: Vec<&TokenStream> = kernel.params.iter().map(|p| &p.ty).collect();
+    let fields: Vec<syn::Index> = (0..types.len()).map(syn::Index::from).collect();
+    let result = &kernel.result;
+    let refs = scalar_arguments(sig, &fields);
+    let info = info(kernel, &name.to_string());
+    let on = format_ident!("{}", if kernel.generics.is_empty() { "on" } else { "on_values" });
+    quote! {
+        impl #declared #p::KernelFn for #name #used where #predicates {
+            type Args = (#(#types,)*);
+            type Output = #result;
+
+            fn info() -> &'static #p::KernelInfo {
+                #info
+                &__INFO
+            }
+
+            #[inline]
+            fn scalar(args: Self::Args) -> #result {
+                #name(#(#refs),*)
+            }
+
+            #[inline(always)]
+            fn lifted<__M: #p::Machine>(
+                m: &__M,
+                args: <Self::Args as #p::Type>::On<__M>,
+            ) -> <#result as #p::Type>::On<__M> {
+                Self::#on(m, #(args.#fields),*)
+            }
+        }
+    }
+}
+
+/// An inherent item of a type that is private to its module is as visible as the type.
+fn visible_from_inside(vis: &syn::Visibility) -> TokenStream {
+    match vis {
+        syn::Visibility::Inherited => quote!(pub(self)),
+        v => v.to_token_stream(),
+    }
+}
+
+/// The arguments of the user's own function: references where it takes references.
+fn scalar_arguments(sig: &syn::Signature, fields: &[syn::Index]) -> Vec<TokenStream> {
+    let inputs = sig.inputs.iter().zip(fields);
+    inputs
+        .map(|(arg, i)| match arg {
+            syn::FnArg::Typed(p) if matches!(&*p.ty, syn::Type::Reference(_)) => quote!(&args.#i),
+            _ => quote!(args.#i),
+        })
+        .collect()
+}

@@ -1,0 +1,265 @@
+//! `#[kernel]` on an `impl` or a trait.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::{ToTokens, format_ident, quote};
+use syn::spanned::Spanned;
+
+use super::{Place, head, lifted_function, own, private, quiet};
+use crate::diag::Errors;
+use crate::emit::Emitter;
+use crate::generics::Generics;
+use crate::model::{Kernel, Param};
+use crate::parse;
+
+/// The lifted functions of an `impl`, and what stands beside it.
+pub(crate) fn kernel_impl(
+    item: &syn::ItemImpl,
+    host_only: &[&str],
+    errors: &mut Errors,
+) -> TokenStream {
+    let Lifted { functions, methods } = lifted_impl(item, host_only, errors);
+    let around = Generics::new(&item.generics);
+    let Generics { declared, predicates, .. } = &around;
+    let self_ty = &item.self_ty;
+    let Some((path, _)) = &item.trait_ else {
+        return quote! {
+            #item
+            impl<#declared> #self_ty where #predicates { #functions }
+            #methods
+        };
+    };
+    // The lifted functions belong to the trait too.
+    let (attrs, items) = (&item.attrs, &item.items);
+    quote! {
+        #(#attrs)*
+        impl<#declared> #path for #self_ty where #predicates {
+            #(#items)*
+            #functions
+        }
+        #methods
+    }
+}
+
+struct Lifted {
+    functions: TokenStream,
+    methods: TokenStream,
+}
+
+fn lifted_impl(item: &syn::ItemImpl, host_only: &[&str], errors: &mut Errors) -> Lifted {
+    let mut lifted = Lifted { functions: TokenStream::new(), methods: TokenStream::new() };
+    let self_ty = item.self_ty.to_token_stream();
+    let type_name = match &*item.self_ty {
+        syn::Type::Path(t) => t.path.segments.last().map(|s| s.ident.to_string()),
+        _ => None,
+    };
+    let Some(type_name) = type_name else {
+        errors.at(item.self_ty.span(), "kernels belong to a named type", "name a struct");
+        return lifted;
+    };
+    let around = Generics::new(&item.generics);
+    let owner = match &item.trait_ {
+        Some((path, _)) => quote!(<#self_ty as #path>),
+        None => quote!(<#self_ty>),
+    };
+    for f in functions(&item.items, host_only, errors) {
+        let name = f.sig.ident.to_string();
+        let kernel = parse::function(&f.sig, &f.block, Some(&item.self_ty), errors);
+        let fn_name = format_ident!("{name}_on");
+        let place = Place {
+            fn_name: &fn_name,
+            wgsl_name: &format!("{type_name}_{name}"),
+            self_ty: Some(&self_ty),
+            around: &around,
+            vis: &f.vis.to_token_stream(),
+        };
+        lifted.functions.extend(lifted_function(&kernel, &place, errors));
+        if kernel.params.first().is_some_and(|p| p.name == "self") {
+            let method = Method {
+                self_ty: &self_ty,
+                called: quote!(#owner::#fn_name),
+                name: &name,
+                around: &around,
+            };
+            lifted.methods.extend(method.implementation(&kernel));
+        }
+    }
+    lifted
+}
+
+/// The functions of an `impl` that are lifted.
+fn functions<'a>(
+    items: &'a [syn::ImplItem],
+    host_only: &[&str],
+    errors: &mut Errors,
+) -> Vec<&'a syn::ImplItemFn> {
+    let all = items.iter().filter_map(|i| match i {
+        syn::ImplItem::Fn(f) => Some(f),
+        _ => None,
+    });
+    let lifted: Vec<_> = all.filter(|f| !host_only.iter().any(|h| f.sig.ident == h)).collect();
+    for f in &lifted {
+        check(&f.sig, &f.attrs, errors);
+    }
+    lifted
+}
+
+/// What a method of kernels cannot have.
+fn check(sig: &syn::Signature, attrs: &[syn::Attribute], errors: &mut Errors) {
+    if let Some(cfg) = attrs.iter().find(|a| a.path().is_ident("cfg")) {
+        errors.at(
+            cfg.span(),
+            "a method of kernels has no `#[cfg]`: its lifted form would stay",
+            "put the method in an impl of its own, with the `#[cfg]` on the impl",
+        );
+    }
+    let own = Generics::new(&sig.generics);
+    if !own.is_empty() {
+        errors.at(
+            sig.generics.span(),
+            "a method of kernels has no type parameters of its own",
+            "give them to the impl or the trait, or write a `#[kernel] fn`",
+        );
+    }
+}
+
+/// A method, for calls that know its name only.
+struct Method<'a> {
+    self_ty: &'a TokenStream,
+    /// The path of the lifted function.
+    called: TokenStream,
+    name: &'a str,
+    around: &'a Generics,
+}
+
+impl Method<'_> {
+    fn twin(&self, ty: &TokenStream) -> TokenStream {
+        let p = private();
+        let ty = if ty.to_string() == "Self" { self.self_ty } else { ty };
+        quote!(<#ty as #p::Type>::On<__M>)
+    }
+
+    /// The type of an argument, and the generic parameter that it needs.
+    fn argument(&self, i: usize, param: &Param) -> (TokenStream, Option<TokenStream>) {
+        let p = private();
+        let ty = &param.ty;
+        if param.by_mut {
+            let ty = self.twin(ty);
+            return (quote!(&'__a #p::Var<#ty>), None);
+        }
+        let ty = if param.shared {
+            quote!(<#ty as #p::Parameter>::On<'__a, __M>)
+        } else {
+            self.twin(ty)
+        };
+        let generic = format_ident!("__A{i}");
+        (quote!(#generic), Some(quote!(#generic: #p::Coerce<__M, #ty>)))
+    }
+
+    fn implementation(&self, kernel: &Kernel) -> TokenStream {
+        let p = private();
+        let Self { self_ty, called, name, around } = self;
+        let Generics { declared, predicates, .. } = around;
+        let (receiver, rest) = kernel.params.split_first().expect("a method has a receiver");
+        let names: Vec<&Ident> = rest.iter().map(|p| &p.name).collect();
+        let (arguments, generics): (Vec<_>, Vec<_>) =
+            rest.iter().enumerate().map(|(i, param)| self.argument(i, param)).unzip();
+        let generics = generics.into_iter().flatten();
+        let lifetime = rest.iter().any(|q| q.by_mut || q.shared).then(|| quote!('__a,));
+        let result = kernel.result.as_ref().map(|ty| self.twin(ty)).unwrap_or_else(|| quote!(()));
+        let quiet = quiet();
+        let (m, this, variable) = (own("m"), own("this"), own("variable"));
+        let of = quote!(<Self as #p::HostMethod<{ #p::name(#name) }, __M, (#(#arguments,)*)>>);
+        let calls = if receiver.by_mut {
+            quote! {
+                const IS_MUT: bool = true;
+
+                #[inline(always)]
+                fn call(
+                    #this: <Self as #p::Type>::On<__M>,
+                    #m: &__M,
+                    (#(#names,)*): (#(#arguments,)*),
+                ) -> #of::Output {
+                    #called(#m, &#p::Var::new(#m, "self", #this), #(#names),*)
+                }
+
+                #[inline(always)]
+                fn call_at(
+                    _: <Self as #p::Type>::On<__M>,
+                    #variable: &#p::Var<<Self as #p::Type>::On<__M>>,
+                    #m: &__M,
+                    (#(#names,)*): (#(#arguments,)*),
+                ) -> #of::Output {
+                    #called(#m, #variable, #(#names),*)
+                }
+            }
+        } else {
+            quote! {
+                #[inline(always)]
+                fn call(
+                    #this: <Self as #p::Type>::On<__M>,
+                    #m: &__M,
+                    (#(#names,)*): (#(#arguments,)*),
+                ) -> #of::Output {
+                    #called(#m, #this, #(#names),*)
+                }
+            }
+        };
+        quote! {
+            #quiet
+            impl<#lifetime #declared __M: #p::Machine, #(#generics,)*>
+                #p::HostMethod<{ #p::name(#name) }, __M, (#(#arguments,)*)> for #self_ty
+            where
+                #predicates
+            {
+                type This = <Self as #p::Type>::On<__M>;
+                type Output = #result;
+
+                #calls
+            }
+        }
+    }
+}
+
+/// `#[kernel] trait`: every function gets a lifted one beside it.
+pub(crate) fn kernel_trait(item: &syn::ItemTrait) -> TokenStream {
+    let mut errors = Errors::default();
+    let mut around = Generics::new(&item.generics);
+    // Within the trait `Self` is a type parameter like others.
+    around.types.push(Ident::new("Self", item.ident.span()));
+    let mut functions = TokenStream::new();
+    let self_ty: syn::Type = syn::parse_quote!(Self);
+    for f in item.items.iter().filter_map(|i| match i {
+        syn::TraitItem::Fn(f) => Some(f),
+        _ => None,
+    }) {
+        check(&f.sig, &f.attrs, &mut errors);
+        let place = Place {
+            fn_name: &format_ident!("{}_on", f.sig.ident),
+            wgsl_name: &format!("{}_{}", item.ident, f.sig.ident),
+            self_ty: None,
+            around: &around,
+            vis: &TokenStream::new(),
+        };
+        match &f.default {
+            Some(body) => {
+                let kernel = parse::function(&f.sig, body, Some(&self_ty), &mut errors);
+                functions.extend(lifted_function(&kernel, &place, &mut errors));
+            }
+            None => {
+                let body = syn::parse_quote!({});
+                let kernel = parse::function(&f.sig, &body, Some(&self_ty), &mut errors);
+                let mut unused = Errors::default();
+                let emitter = Emitter::new(&kernel, quote!(__M), None, false, &mut unused);
+                let emitter = emitter.with_generics(&around);
+                let (head, quiet) = (head(&kernel, &place, &emitter), quiet());
+                functions.extend(quote!(#[doc(hidden)] #quiet #head;));
+            }
+        }
+    }
+    let errors = errors.into_tokens();
+    let p = private();
+    let mut item = item.clone();
+    item.supertraits.push(syn::parse_quote!(#p::Type));
+    item.items.push(syn::TraitItem::Verbatim(functions));
+    quote!(#item #errors)
+}

@@ -1,0 +1,134 @@
+//! The items that the macros write: kernels and primitives.
+
+mod closure;
+mod function;
+mod methods;
+mod primitive;
+
+pub(crate) use closure::kernel_closure;
+pub(crate) use function::kernel_fn;
+pub(crate) use methods::{kernel_impl, kernel_trait};
+pub(crate) use primitive::primitive_impl;
+
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::quote;
+
+use crate::diag::Errors;
+use crate::emit::Emitter;
+use crate::generics::Generics;
+use crate::model::Kernel;
+
+fn private() -> TokenStream {
+    quote!(::raydsl::__private)
+}
+
+fn own(name: &str) -> Ident {
+    Ident::new(name, Span::mixed_site())
+}
+
+/// A parameter in lifted code; `self` cannot name a local.
+fn param_ident(name: &Ident) -> Ident {
+    if name == "self" { own("this") } else { name.clone() }
+}
+
+/// The static description of a kernel.
+fn info(kernel: &Kernel, name: &str) -> TokenStream {
+    let p = private();
+    let params: Vec<String> = kernel.params.iter().map(|p| p.name.to_string()).collect();
+    quote! {
+        static __INFO: #p::KernelInfo = #p::KernelInfo {
+            name: #name,
+            file: ::core::file!(),
+            line: ::core::line!(),
+            params: &[#(#params),*],
+        };
+    }
+}
+
+fn quiet() -> TokenStream {
+    quote!(#[allow(
+        unused, clippy::all, clippy::pedantic, clippy::nursery, non_snake_case,
+        reason = "generated code"
+    )])
+}
+
+/// Where a lifted function stands.
+struct Place<'a> {
+    /// Its name.
+    fn_name: &'a Ident,
+    /// What WGSL calls it.
+    wgsl_name: &'a str,
+    /// The type of the `impl` around it.
+    self_ty: Option<&'a TokenStream>,
+    /// The generic parameters of the item around it.
+    around: &'a Generics,
+    vis: &'a TokenStream,
+}
+
+/// The generic function that runs the lifted body on any machine.
+fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> TokenStream {
+    let p = private();
+    let (m, out) = (own("m"), own("out"));
+    let emitter = Emitter::new(kernel, quote!(__M), place.self_ty.cloned(), false, errors);
+    let mut emitter = emitter.with_generics(place.around);
+    let body = emitter.body();
+    let names: Vec<Ident> = kernel.params.iter().map(|p| param_ident(&p.name)).collect();
+    let types: Vec<TokenStream> = kernel.params.iter().map(|p| emitter.param(p)).collect();
+    let head = head(kernel, place, &emitter);
+    let info = info(kernel, place.wgsl_name);
+    let quiet = quiet();
+    let call = quote! {
+        #p::Machine::call(
+            #m,
+            &__INFO,
+            (#(#p::Coerce::<__M, #types>::coerce(#names, #m),)*),
+            #[inline(always)]
+            |#m: &__M, (#(#names,)*): (#(#types,)*)| { #body },
+        )
+    };
+    let changed: Vec<_> =
+        kernel.params.iter().zip(&names).zip(&types).filter(|((p, _), _)| p.by_mut).collect();
+    let call = if changed.is_empty() {
+        call
+    } else {
+        // Copies go in; what became of them comes out beside the result.
+        let result = kernel.result.as_ref().map(|t| emitter.on(t)).unwrap_or_else(|| quote!(()));
+        let changed_types = changed.iter().map(|(_, ty)| ty);
+        let results = changed.iter().enumerate().map(|(i, ((_, name), _))| {
+            let i = syn::Index::from(i + 1);
+            quote!(#name.set(#m, #out.#i);)
+        });
+        quote! {
+            let #out: (#result, #(#changed_types,)*) = #call;
+            #(#results)*
+            #out.0
+        }
+    };
+    quote! {
+        #[doc(hidden)]
+        #[inline(always)]
+        #quiet
+        #head {
+            use #p::operations::*;
+            #info
+            #call
+        }
+    }
+}
+
+/// The signature of a lifted function.
+fn head(kernel: &Kernel, place: &Place<'_>, emitter: &Emitter<'_>) -> TokenStream {
+    let (p, m) = (private(), own("m"));
+    let Place { fn_name, vis, .. } = place;
+    let params = kernel.params.iter().map(|param| {
+        let (name, ty) = (param_ident(&param.name), emitter.param(param));
+        if param.by_mut {
+            quote!(#name: &#p::Var<#ty>)
+        } else {
+            quote!(#name: impl #p::Coerce<__M, #ty>)
+        }
+    });
+    let result = kernel.result.as_ref().map(|t| emitter.on(t)).unwrap_or_else(|| quote!(()));
+    let lifetime = kernel.params.iter().any(|p| p.shared).then(|| quote!('__a,));
+    quote!(#vis fn #fn_name<#lifetime __M: #p::Machine>(#m: &__M, #(#params,)*) -> #result)
+}

@@ -1,0 +1,120 @@
+//! From a value of a machine to the type of the host that it stands for.
+//!
+//! `<T as Type>::On<M>` leads from a type to its twin, and rustc cannot go back: the type
+//! parameters of a generic kernel are inferred from its arguments through [`Inferred`].
+
+use super::{B, F, I, Machine, Type, U, Usize, V2, V3, V4, Value, Var};
+use glam::{Vec2, Vec3, Vec4};
+
+/// An argument that says what type of the host it has.
+#[diagnostic::on_unimplemented(
+    message = "the type parameters of this kernel cannot be inferred from its arguments",
+    label = "of an unknown type",
+    note = "name them, as in `f::<L>(light)`"
+)]
+pub trait Inferred<M: Machine> {
+    /// The type.
+    type Host: Type;
+    /// The value of the machine.
+    fn give(self, m: &M) -> <Self::Host as Type>::On<M>;
+}
+
+/// A value of the machine that stands for a type of the host: `<Host as Type>::On<M>` is `Self`.
+pub trait Twin<M: Machine>: Value<M> + Inferred<M> {
+    /// The same value, given as the twin of its host.
+    fn from_host(v: <Self::Host as Type>::On<M>) -> Self;
+}
+
+impl<M: Machine, V: Twin<M>> Inferred<M> for &Var<V> {
+    type Host = V::Host;
+
+    #[inline(always)]
+    fn give(self, m: &M) -> <V::Host as Type>::On<M> {
+        self.get(m).give(m)
+    }
+}
+
+macro_rules! inferred_host {
+    ($($host:ty),+) => {
+        $(
+            impl<M: Machine> Inferred<M> for $host {
+                type Host = $host;
+
+                #[inline(always)]
+                fn give(self, m: &M) -> <$host as Type>::On<M> {
+                    <$host as Type>::splat(m, self)
+                }
+            }
+        )+
+    };
+}
+
+inferred_host!(i32, u32, usize, bool);
+
+macro_rules! twin {
+    ($($host:ty => $twin:ident),+ $(,)?) => {
+        $(
+            impl<M: Machine> Inferred<M> for $twin<M> {
+                type Host = $host;
+
+                #[inline(always)]
+                fn give(self, _: &M) -> Self {
+                    self
+                }
+            }
+
+            impl<M: Machine> Twin<M> for $twin<M> {
+                #[inline(always)]
+                fn from_host(v: Self) -> Self {
+                    v
+                }
+            }
+        )+
+    };
+}
+
+twin!(
+    f32 => F, i32 => I, u32 => U, usize => Usize, bool => B,
+    Vec2 => V2, Vec3 => V3, Vec4 => V4,
+);
+
+impl<M: Machine, V: Inferred<M>, const N: usize> Inferred<M> for [V; N] {
+    type Host = [V::Host; N];
+
+    #[inline(always)]
+    fn give(self, m: &M) -> <Self::Host as Type>::On<M> {
+        self.map(|v| v.give(m))
+    }
+}
+
+impl<M: Machine, V: Twin<M>, const N: usize> Twin<M> for [V; N] {
+    #[inline(always)]
+    fn from_host(v: <Self::Host as Type>::On<M>) -> Self {
+        v.map(V::from_host)
+    }
+}
+
+macro_rules! twin_tuple {
+    ($($name:ident . $index:tt),+) => {
+        impl<M: Machine, $($name: Inferred<M>),+> Inferred<M> for ($($name,)+) {
+            type Host = ($($name::Host,)+);
+
+            #[inline(always)]
+            fn give(self, m: &M) -> <Self::Host as Type>::On<M> {
+                ($(self.$index.give(m),)+)
+            }
+        }
+
+        impl<M: Machine, $($name: Twin<M>),+> Twin<M> for ($($name,)+) {
+            #[inline(always)]
+            fn from_host(v: <Self::Host as Type>::On<M>) -> Self {
+                ($($name::from_host(v.$index),)+)
+            }
+        }
+    };
+}
+
+twin_tuple!(A.0);
+twin_tuple!(A.0, C.1);
+twin_tuple!(A.0, C.1, D.2);
+twin_tuple!(A.0, C.1, D.2, E.3);

@@ -1,0 +1,131 @@
+//! Slices that the application owns, read by kernels in every variant.
+
+use raydsl::kernel;
+use raydsl::prelude::*;
+use raydsl_tests::gpu::gpu;
+use raydsl_tests::kernels::{Matter, Surface};
+use raydsl_tests::rng::Rng;
+use raydsl_tests::values::{Numbers, compare, random};
+
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
+struct Ball {
+    center: Vec3,
+    radius: f32,
+    id: u32,
+}
+
+/// A kernel through every natural variant.
+fn every_variant<A: Type + std::fmt::Debug, R: Type>(kernel: &Kernel<'_, A, R>, inputs: &[A]) {
+    let mut expected: Vec<R> = inputs.iter().map(|a| kernel.call(*a)).collect();
+    let same = |who: &str, found: &[R]| {
+        compare(who, &expected, found).assert_same(|i| format!("{:?}", inputs[i]));
+    };
+    let mut found = expected.clone();
+    for variant in [Variant::Packet4, Variant::Packet8, Variant::Packet16] {
+        found.fill(raydsl_tests::values::garbage());
+        kernel.run(variant, inputs, &mut found);
+        same(variant.name(), &found);
+    }
+    let Some(gpu) = gpu() else { return };
+    found.fill(raydsl_tests::values::garbage());
+    if let Err(e) = gpu.batch(kernel, inputs, &mut found) {
+        panic!("{e}\n{}", kernel.wgsl());
+    }
+    same("WGSL", &found);
+    expected.clear();
+}
+
+fn inputs<A: Type>(seed: u64) -> Vec<A> {
+    let mut rng = Rng::new(seed);
+    (0..501).map(|_| random(&mut rng, Numbers::Tame)).collect()
+}
+
+#[test]
+fn numbers() {
+    let weights: Vec<f32> = (0..37).map(|i| (i as f32 * 0.7).fract()).collect();
+    let kernel = kernel!(|x: f32, n: u32| {
+        let mut sum = weights[n as usize % weights.len()];
+        for i in 0..weights.len() {
+            if weights[i] > 0.8 {
+                continue;
+            }
+            sum += weights[i] * x;
+        }
+        sum
+    });
+    every_variant(&kernel, &inputs(1));
+}
+
+#[kernel]
+fn nearest(balls: &[Ball], at: Vec3, limit: u32) -> u32 {
+    let mut best = 1e30;
+    let mut id = 0xffff_ffffu32;
+    for i in 0..balls.len() {
+        let ball = balls[i];
+        if ball.id > limit {
+            continue;
+        }
+        let d = (ball.center - at).length() - ball.radius;
+        if d < best {
+            best = d;
+            id = ball.id;
+        }
+    }
+    id
+}
+
+#[test]
+fn structs_by_reference() {
+    let mut rng = Rng::new(3);
+    let mut number = || random::<f32>(&mut rng, Numbers::Tame);
+    let balls: Vec<Ball> = (0..23)
+        .map(|i| Ball {
+            center: vec3(number(), number(), number()),
+            radius: number().abs(),
+            id: i * 2,
+        })
+        .collect();
+    let kernel = kernel!(|x: f32, y: f32, n: u32| nearest(&balls, vec3(x, y, 0.5), n));
+    every_variant(&kernel, &inputs(2));
+    let none: &[Ball] = &[];
+    let kernel = kernel!(|x: f32, n: u32| nearest(none, vec3(x, x, x), n));
+    every_variant(&kernel, &inputs(2));
+}
+
+#[test]
+fn many_types() {
+    let points: Vec<Vec3> = (0..9).map(|i| vec3(i as f32, 0.5, -1.0)).collect();
+    let pairs: Vec<(i32, f32)> = (0..5).map(|i| (3 - i, i as f32)).collect();
+    let matters = [Matter::Glass, Matter::Matte, Matter::Mirror];
+    let surfaces: Vec<Surface> =
+        (0..4).map(|i| Surface { roughness: i as f32, matter: matters[i % 3] }).collect();
+    let (matters, flags) = (&matters[..], &[true, false, true][..]);
+    let kernel = kernel!(|x: f32, n: u32| {
+        let p = points[n as usize % points.len()];
+        let (i, f) = pairs[n as usize % 5];
+        let matter = matters[n as usize % matters.len()];
+        let mut sum = p.x * x + f + i as f32 + matters[1].albedo();
+        if matter == Matter::Glass || flags[n as usize % 3] {
+            sum += surfaces[n as usize % surfaces.len()].matter.albedo();
+        }
+        if flags.is_empty() { 0.0 } else { sum }
+    });
+    every_variant(&kernel, &inputs(4));
+}
+
+/// A captured variant decides a `match` while the kernel is recorded.
+#[test]
+fn captured_enums_prune() {
+    for matter in [Matter::Matte, Matter::Mirror, Matter::Glass] {
+        let kernel = kernel!(|x: f32, n: u32| match matter {
+            Matter::Matte => x * 123.0,
+            Matter::Mirror => x + n as f32,
+            Matter::Glass => -x,
+        });
+        every_variant(&kernel, &inputs(5));
+        let wgsl = kernel.wgsl();
+        assert_eq!(wgsl.contains("123"), matter == Matter::Matte, "{wgsl}");
+        // The one test is whether the invocation has an input.
+        assert_eq!(wgsl.matches("if (").count(), 1, "{wgsl}");
+    }
+}
