@@ -10,6 +10,7 @@ mod items;
 mod model;
 mod ops;
 mod parse;
+mod rewrite;
 #[cfg(test)]
 mod tests;
 mod twin;
@@ -60,6 +61,31 @@ fn expand_kernel(
     );
     let e = e.into_compile_error();
     quote!(#item #e)
+}
+
+/// Makes kernels of the closures marked `#[kernel]` inside a function, `impl`, trait or module.
+///
+/// An attribute macro cannot stand on an expression by itself; with `#[kernels]` around it,
+/// `#[kernel] |ray: Ray| ...` is `kernel!(|ray: Ray| ...)`.
+#[proc_macro_attribute]
+pub fn kernels(args: TokenStream, item: TokenStream) -> TokenStream {
+    expand_kernels(args.into(), item.into()).into()
+}
+
+fn expand_kernels(
+    args: proc_macro2::TokenStream,
+    item: proc_macro2::TokenStream,
+) -> proc_macro2::TokenStream {
+    let rewritten = rewrite::kernel_closures(item);
+    if args.is_empty() {
+        return rewritten;
+    }
+    let e = syn::Error::new_spanned(
+        args,
+        "`#[kernels]` takes no arguments\n  help: write `#[kernels]`",
+    );
+    let e = e.into_compile_error();
+    quote!(#rewritten #e)
 }
 
 /// Makes a kernel of a closure: `kernel!(|ray: Ray| ...)`.

@@ -5,6 +5,7 @@ use proc_macro2::{Ident, Span, TokenStream};
 use crate::generics::Generics;
 
 /// A function, method or closure to lift.
+#[derive(Clone)]
 pub(crate) struct Kernel {
     pub(crate) name: Ident,
     pub(crate) generics: Generics,
@@ -15,6 +16,7 @@ pub(crate) struct Kernel {
 }
 
 /// A parameter. Shared references are dropped: values are copied.
+#[derive(Clone)]
 pub(crate) struct Param {
     pub(crate) name: Ident,
     pub(crate) ty: TokenStream,
@@ -23,6 +25,8 @@ pub(crate) struct Param {
     pub(crate) by_mut: bool,
     /// `&`: a value, or data that kernels read: a slice, a tree.
     pub(crate) shared: bool,
+    /// `#[host]`: known before the kernel runs.
+    pub(crate) host: bool,
 }
 
 #[derive(Clone)]
@@ -41,6 +45,8 @@ pub(crate) enum Stmt {
 
 #[derive(Clone)]
 pub(crate) struct Let {
+    /// `#[host]`: known before the kernel runs.
+    pub(crate) host: bool,
     /// `None` is the pattern `_`.
     pub(crate) name: Option<Ident>,
     pub(crate) mutable: bool,
@@ -108,8 +114,14 @@ pub(crate) enum Kind {
     Method {
         receiver: Box<Expr>,
         name: Ident,
+        /// What stands behind `::`, as types.
+        turbofish: Vec<TokenStream>,
         args: Vec<Expr>,
     },
+    /// `host(x)`.
+    Host(Box<Expr>),
+    /// A closure as an argument of an operation: it runs where the operation calls it.
+    Closure(Box<Kernel>),
     Field {
         base: Box<Expr>,
         member: TokenStream,
@@ -209,6 +221,8 @@ pub(crate) enum IntType {
 /// The binary operators of arithmetic, by the name of their trait and method.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct BinaryOp {
+    /// As the source has it.
+    pub(crate) symbol: &'static str,
     pub(crate) operator: &'static str,
     pub(crate) method: &'static str,
     /// Whether dead lanes could make it trap.
@@ -230,8 +244,9 @@ impl Kind {
             | Self::Continue(_)
             | Self::Return(None)
             | Self::Error => vec![],
-            Self::RefMut(_) => vec![],
+            Self::RefMut(_) | Self::Closure(_) => vec![],
             Self::Deref(a)
+            | Self::Host(a)
             | Self::Neg(a)
             | Self::Not(a)
             | Self::Return(Some(a))
@@ -406,6 +421,7 @@ impl Expr {
             | Kind::Continue(_)
             | Kind::Return(_)
             | Kind::Element { .. }
+            | Kind::Closure(_)
             | Kind::Assign { .. }
             | Kind::OpAssign { .. } => false,
             _ => true,
@@ -439,6 +455,15 @@ impl Stmt {
 impl Block {
     pub(crate) fn ends_lanes(&self) -> bool {
         self.children().iter().any(|e| e.ends_lanes())
+    }
+
+    /// Whether something within leaves the block with this label.
+    pub(crate) fn leaves(&self, label: &str) -> bool {
+        fn leaves(e: &Expr, label: &str) -> bool {
+            matches!(&e.kind, Kind::Break(Some(l), _) if l == label)
+                || e.kind.children().into_iter().any(|e| leaves(e, label))
+        }
+        self.children().into_iter().any(|e| leaves(e, label))
     }
 
     /// Whether the function returns from within the block.

@@ -3,9 +3,10 @@
 use crate::model::BinaryOp;
 
 macro_rules! operators {
-    ($($name:ident = $operator:literal $method:literal $trap:literal $overflow:literal;)+) => {
+    ($($name:ident = $symbol:literal $operator:literal $method:literal $trap:literal $overflow:literal;)+) => {
         $(
             pub(crate) const $name: BinaryOp = BinaryOp {
+                symbol: $symbol,
                 operator: $operator,
                 method: $method,
                 may_trap: $trap,
@@ -19,16 +20,16 @@ macro_rules! operators {
 // where debug assertions are on; the packet machine masks those checks itself, so evaluating them
 // under a narrowed mask is safe. Division is not: its lanes must run.
 operators! {
-    ADD = "OpAdd" "add" false true;
-    SUB = "OpSub" "sub" false true;
-    MUL = "OpMul" "mul" false true;
-    DIV = "OpDiv" "div" true true;
-    REM = "OpRem" "rem" true true;
-    BIT_AND = "OpBitAnd" "bit_and" false false;
-    BIT_OR = "OpBitOr" "bit_or" false false;
-    BIT_XOR = "OpBitXor" "bit_xor" false false;
-    SHL = "OpShl" "shl" false true;
-    SHR = "OpShr" "shr" false true;
+    ADD = "+" "OpAdd" "add" false true;
+    SUB = "-" "OpSub" "sub" false true;
+    MUL = "*" "OpMul" "mul" false true;
+    DIV = "/" "OpDiv" "div" true true;
+    REM = "%" "OpRem" "rem" true true;
+    BIT_AND = "&" "OpBitAnd" "bit_and" false false;
+    BIT_OR = "|" "OpBitOr" "bit_or" false false;
+    BIT_XOR = "^" "OpBitXor" "bit_xor" false false;
+    SHL = "<<" "OpShl" "shl" false true;
+    SHR = ">>" "OpShr" "shr" false true;
 }
 
 /// Elementary functions: std's differ from one machine to the next, so variants could not agree.

@@ -29,7 +29,7 @@ pub(crate) fn function(
             errors.at(span, format!("a kernel cannot be `{what}`"), &format!("remove `{what}`"));
         }
     }
-    let mut parser = Parser { errors, temporaries: 0 };
+    let mut parser = Parser { errors, temporaries: 0, is_nested: false };
     let mut prologue = Vec::new();
     let params = sig.inputs.iter().map(|arg| parser.param(arg, self_ty, &mut prologue)).collect();
     let result = match &sig.output {
@@ -44,38 +44,8 @@ pub(crate) fn function(
 
 /// A closure literal; its parameters must have types.
 pub(crate) fn closure(c: &syn::ExprClosure, name: &str, errors: &mut Errors) -> Kernel {
-    let mut parser = Parser { errors, temporaries: 0 };
-    let (mut params, mut prologue) = (Vec::new(), Vec::new());
-    for pat in &c.inputs {
-        let Pat::Type(typed) = pat else {
-            parser.errors.at(
-                pat.span(),
-                "a parameter of a kernel needs a type",
-                "write for example `|ray: Ray|`",
-            );
-            continue;
-        };
-        let param = parser.typed_param(&typed.pat, &typed.ty, &mut prologue);
-        if param.by_mut {
-            parser.errors.at(
-                typed.ty.span(),
-                "a closure kernel has no `&mut` parameters: nothing would see the change",
-                "return the new value",
-            );
-        }
-        params.push(param);
-    }
-    let result = match &c.output {
-        syn::ReturnType::Default => None,
-        syn::ReturnType::Type(_, ty) => Some(value_type(ty)),
-    };
-    let mut body = match &*c.body {
-        syn::Expr::Block(b) if b.label.is_none() => parser.block(&b.block),
-        e => Block { stmts: vec![], tail: Some(Box::new(parser.expr(e))) },
-    };
-    body.stmts.splice(0..0, prologue);
-    let name = Ident::new(name, Span::call_site());
-    Kernel { name, generics: Generics::default(), params, result, body }
+    let mut parser = Parser { errors, temporaries: 0, is_nested: false };
+    parser.closure(c, name)
 }
 
 /// The type without references: values on a machine are copied.
@@ -106,7 +76,12 @@ struct Parser<'a> {
     errors: &'a mut Errors,
     /// How many names have been made up.
     temporaries: usize,
+    /// Whether a closure within the kernel is being read.
+    is_nested: bool,
 }
+
+/// The label of a nested closure: its `return` leaves the closure, not the kernel around it.
+const NESTED: &str = "__closure";
 
 impl Parser<'_> {
     fn param(
@@ -126,16 +101,19 @@ impl Parser<'_> {
                     mutable,
                     by_mut,
                     shared: false,
+                    host: false,
                 }
             }
-            syn::FnArg::Typed(p) => self.typed_param(&p.pat, &p.ty, prologue),
+            syn::FnArg::Typed(p) => self.typed_param(p, prologue),
         }
     }
 
-    fn typed_param(&mut self, pat: &Pat, ty: &syn::Type, prologue: &mut Vec<Stmt>) -> Param {
-        let by_mut = matches!(ty, syn::Type::Reference(r) if r.mutability.is_some());
-        let shared = matches!(ty, syn::Type::Reference(r) if r.mutability.is_none());
-        if let syn::Type::ImplTrait(t) = ty {
+    fn typed_param(&mut self, typed: &syn::PatType, prologue: &mut Vec<Stmt>) -> Param {
+        let syn::PatType { attrs, pat, ty, .. } = typed;
+        let by_mut = matches!(&**ty, syn::Type::Reference(r) if r.mutability.is_some());
+        let host = attrs.iter().any(is_host);
+        let shared = matches!(&**ty, syn::Type::Reference(r) if r.mutability.is_none());
+        if let syn::Type::ImplTrait(t) = &**ty {
             self.errors.at(
                 t.span(),
                 "a kernel's type parameters have names",
@@ -143,21 +121,80 @@ impl Parser<'_> {
             );
         }
         let ty = value_type(ty);
-        match pat {
+        match &**pat {
             Pat::Ident(p) if p.by_ref.is_none() && p.subpat.is_none() => Param {
                 name: p.ident.clone(),
                 ty,
                 mutable: p.mutability.is_some() && !by_mut,
                 by_mut,
                 shared,
+                host,
             },
             _ => {
                 let name = self.temporary("parts");
                 let from = Expr { kind: Kind::Name(name.clone()), span: pat.span() };
                 self.irrefutable(pat, &from, prologue);
-                Param { name, ty, mutable: false, by_mut: false, shared: false }
+                Param { name, ty, mutable: false, by_mut: false, shared: false, host: false }
             }
         }
+    }
+
+    fn closure(&mut self, c: &syn::ExprClosure, name: &str) -> Kernel {
+        let (mut params, mut prologue) = (Vec::new(), Vec::new());
+        for pat in &c.inputs {
+            let Pat::Type(typed) = pat else {
+                self.errors.at(
+                    pat.span(),
+                    "a parameter of a kernel needs a type",
+                    "write for example `|ray: Ray|`",
+                );
+                continue;
+            };
+            let param = self.typed_param(typed, &mut prologue);
+            if param.by_mut {
+                self.errors.at(
+                    typed.ty.span(),
+                    "a closure kernel has no `&mut` parameters: nothing would see the change",
+                    "return the new value",
+                );
+            }
+            params.push(param);
+        }
+        let result = match &c.output {
+            syn::ReturnType::Default => None,
+            syn::ReturnType::Type(_, ty) => Some(value_type(ty)),
+        };
+        let mut body = match &*c.body {
+            syn::Expr::Block(b) if b.label.is_none() => self.block(&b.block),
+            e => Block { stmts: vec![], tail: Some(Box::new(self.expr(e))) },
+        };
+        body.stmts.splice(0..0, prologue);
+        let name = Ident::new(name, Span::call_site());
+        Kernel { name, generics: Generics::default(), params, result, body }
+    }
+
+    /// A closure as an argument. With a `return` its body is a labelled block.
+    fn nested(&mut self, c: &syn::ExprClosure) -> Kind {
+        if self.is_nested {
+            return self.error(
+                c.span(),
+                "a kernel has no closures within closures",
+                "write the inner one as a `#[kernel] fn`",
+            );
+        }
+        self.is_nested = true;
+        let mut kernel = self.closure(c, "closure");
+        self.is_nested = false;
+        if kernel.body.leaves(NESTED) {
+            let tail = kernel.body.tail.take();
+            let span = c.span();
+            let exit = Expr { kind: Kind::Break(Some(NESTED.to_owned()), tail), span };
+            kernel.body.stmts.push(Stmt::Expr(exit));
+            let once = Kind::Loop { label: Some(NESTED.to_owned()), body: kernel.body };
+            let tail = Some(Box::new(Expr { kind: once, span }));
+            kernel.body = Block { stmts: vec![], tail };
+        }
+        Kind::Closure(Box::new(kernel))
     }
 
     fn error(&mut self, span: Span, what: impl core::fmt::Display, help: &str) -> Kind {
@@ -167,7 +204,7 @@ impl Parser<'_> {
 
     /// The lifted code would not know of a `#[cfg]`.
     fn no_attributes(&mut self, attrs: &[syn::Attribute]) {
-        for a in attrs.iter().filter(|a| !a.path().is_ident("allow")) {
+        for a in attrs.iter().filter(|a| !a.path().is_ident("allow") && !is_host(a)) {
             self.errors.at(
                 a.span(),
                 "a kernel has no attributes on statements and expressions",
@@ -259,10 +296,19 @@ impl Parser<'_> {
         if let Some(init) = &init
             && mutable
             && ty.is_none()
+            && !l.attrs.iter().any(is_host)
         {
             self.typed_number(init);
         }
-        vec![Stmt::Let(Let { name, mutable, ty, init })]
+        let host = l.attrs.iter().any(is_host);
+        if host && init.is_none() {
+            self.errors.at(
+                l.span(),
+                "a host variable needs a value",
+                "give it one: `let n = 4u32;`",
+            );
+        }
+        vec![Stmt::Let(Let { host, name, mutable, ty, init })]
     }
 
     /// What a variable begins with must say which type of integer it is.
@@ -331,7 +377,14 @@ impl Parser<'_> {
                 Kind::Repeat { value: self.boxed(&r.expr), len: r.len.to_token_stream() }
             }
             syn::Expr::Continue(c) => Kind::Continue(lifetime(&c.label)),
-            syn::Expr::Return(r) => Kind::Return(r.expr.as_ref().map(|e| self.boxed(e))),
+            syn::Expr::Return(r) => {
+                let value = r.expr.as_ref().map(|e| self.boxed(e));
+                if self.is_nested {
+                    Kind::Break(Some(NESTED.to_owned()), value)
+                } else {
+                    Kind::Return(value)
+                }
+            }
             syn::Expr::Assign(a) => match self.place(&a.left) {
                 Some(place) => Kind::Assign { place, value: self.boxed(&a.right) },
                 None => Kind::Error,
@@ -345,7 +398,9 @@ impl Parser<'_> {
 
     fn unsupported(&mut self, e: &syn::Expr) -> Kind {
         let (what, help) = match e {
-            syn::Expr::Closure(_) => ("closures", "write a `#[kernel] fn` and call it"),
+            syn::Expr::Closure(_) => {
+                ("closures but as arguments", "write a `#[kernel] fn` and call it")
+            }
             syn::Expr::Try(_) => ("`?`", "give a value that says what happened: a miss is data"),
             syn::Expr::Reference(_) => {
                 ("`&mut` outside the arguments of a call", "write the variable itself")
@@ -440,12 +495,20 @@ impl Parser<'_> {
                     let kind = self.place(&r.expr).map_or(Kind::Error, Kind::RefMut);
                     Expr { kind, span: e.span() }
                 }
+                syn::Expr::Closure(c) => Expr { kind: self.nested(c), span: e.span() },
                 e => self.expr(e),
             })
             .collect()
     }
 
     fn call(&mut self, c: &syn::ExprCall) -> Kind {
+        if let Some(closure) = c.args.iter().find(|e| matches!(e, syn::Expr::Closure(_))) {
+            return self.error(
+                closure.span(),
+                "a kernel takes no closures",
+                "give it a value of a type with a `#[kernel]` trait: `fn f<S: Shader>(s: S)`",
+            );
+        }
         let args = self.arguments(&c.args);
         let syn::Expr::Path(p) = &*c.func else {
             return self.error(c.func.span(), "only a kernel can be called", "call it by its name");
@@ -464,6 +527,9 @@ impl Parser<'_> {
                 "a kernel has no tuple structs",
                 "give the struct named members",
             ),
+            _ if last.ident == "host" && args.len() == 1 => {
+                Kind::Host(Box::new(args.into_iter().next().expect("there is one")))
+            }
             _ => Kind::Call { path: p.to_token_stream(), args },
         }
     }
@@ -472,9 +538,11 @@ impl Parser<'_> {
         if let Some((what, help)) = ops::denied(&c.method.to_string()) {
             self.errors.at(c.method.span(), what, &help);
         }
+        let generic = c.turbofish.iter().flat_map(|t| &t.args);
         Kind::Method {
             receiver: self.boxed(&c.receiver),
             name: c.method.clone(),
+            turbofish: generic.map(generic_argument).collect(),
             args: self.arguments(&c.args),
         }
     }
@@ -623,6 +691,26 @@ impl Parser<'_> {
         };
         self.error(m.path.span(), format!("a kernel cannot call the macro `{name}!`"), help)
     }
+}
+
+/// A generic argument as a type; numbers have a type of their own.
+fn generic_argument(arg: &syn::GenericArgument) -> TokenStream {
+    let constant = |n: &dyn ToTokens| quote!(::raydsl::__private::Const<{ #n }>);
+    match arg {
+        syn::GenericArgument::Const(n) => constant(n),
+        // The name of a constant parameter looks like a type.
+        syn::GenericArgument::Type(syn::Type::Path(t))
+            if t.path.get_ident().is_some_and(|i| *i == i.to_string().to_uppercase()) =>
+        {
+            constant(t)
+        }
+        arg => arg.to_token_stream(),
+    }
+}
+
+/// `#[host]`.
+fn is_host(a: &syn::Attribute) -> bool {
+    a.path().is_ident("host")
 }
 
 fn inside_parens(mut e: &syn::Expr) -> &syn::Expr {

@@ -3,7 +3,7 @@
 pub use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn};
 pub use crate::kernel::{Baseline, Kernel, Lifted, Native4, Native8, Native16, Native16Halves};
 pub use crate::machine::{
-    Branch, Capture, Coerce, Compare, Field, HostMethod, Inferred, KernelFn, KernelInfo,
+    Branch, Capture, Coerce, Compare, Const, Field, HostMethod, Inferred, KernelFn, KernelInfo,
     LaneMachine, Leaves, Loop, Machine, Method, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast,
     OpCompare, OpDiv, OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Parameter, Recorder,
     Resource, Ret, Schema, Twin, Type, Value, Var, Varying, call_on_element, is_mut, name,
@@ -16,6 +16,7 @@ pub mod operations {
     };
 }
 
+pub use crate::machine::host::{HostCapture, HostUse};
 pub use crate::machine::index::with_element;
 use crate::machine::index::{Index, Indexed};
 use crate::machine::{B, Bounds, F, I, U, Usize};

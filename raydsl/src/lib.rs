@@ -19,6 +19,6 @@ pub mod report;
 pub mod __private;
 
 pub use machine::Type;
-/// `#[kernel]` on a function or an impl; the closure macro `kernel!` is in the [`prelude`].
-pub use raydsl_macros::kernel;
 pub use raydsl_macros::{Type, primitive};
+/// `#[kernel]` on a function or an impl; the closure macro `kernel!` is in the [`prelude`].
+pub use raydsl_macros::{kernel, kernels};

@@ -9,6 +9,7 @@ pub use crate::geometry::{Aabb, Hit, Primitive, Ray, Triangle, sphere};
 pub use crate::gpu::GpuScheduler;
 pub use crate::kernel::{Kernel, Variant, Variants};
 pub use crate::machine::functions::{clamp, max, min, vec2, vec3, vec4};
+pub use crate::machine::host::host;
 pub use crate::math::elementary::{
     SinCos, acos, asin, atan, atan2, cos, exp, exp2, expm1, log, log1p, log2, pow, sin, sincos_2pi,
     tan,

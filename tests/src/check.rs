@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use raydsl::kernel::{Kernel, Lifted};
+use raydsl::kernel::{Kernel, Lifted, Variant};
 use raydsl::machine::{KernelFn, KernelInfo, Lanes, Packet, Scalar, Type};
 
 use crate::gpu::gpu;
@@ -205,6 +205,36 @@ fn garbage_in_dead_lanes<A: Type, R: Type>(run: Run<'_, A, R>, n: usize, inputs:
         out[lane]
     };
     (0..inputs.len()).map(one).collect()
+}
+
+/// A closure's kernel through its natural variants, against its untouched source.
+///
+/// # Panics
+///
+/// If any result of any variant differs.
+pub fn every_variant<A: Type + Debug, R: Type>(kernel: &Kernel<'_, A, R>, inputs: &[A]) {
+    let expected: Vec<R> = inputs.iter().map(|a| kernel.call(*a)).collect();
+    let same = |who: &str, found: &[R]| {
+        compare(who, &expected, found).assert_same(|i| format!("{:?}", inputs[i]));
+    };
+    let mut found = expected.clone();
+    for variant in [Variant::Packet4, Variant::Packet8, Variant::Packet16] {
+        found.fill(garbage());
+        kernel.run(variant, inputs, &mut found);
+        same(variant.name(), &found);
+    }
+    let Some(gpu) = gpu() else { return };
+    found.fill(garbage());
+    if let Err(e) = gpu.batch(kernel, inputs, &mut found) {
+        panic!("{e}\n{}", kernel.wgsl());
+    }
+    same("WGSL", &found);
+}
+
+/// Inputs for [`every_variant`].
+pub fn inputs<A: Type>(seed: u64) -> Vec<A> {
+    let mut rng = Rng::new(seed);
+    (0..501).map(|_| random(&mut rng, Numbers::Tame)).collect()
 }
 
 /// The kernel of `F` with its recorder only: the packets of `Kernel::of` would double the time

@@ -2,42 +2,16 @@
 
 use raydsl::kernel;
 use raydsl::prelude::*;
-use raydsl_tests::gpu::gpu;
+use raydsl_tests::check::{every_variant, inputs};
 use raydsl_tests::kernels::{Matter, Surface};
 use raydsl_tests::rng::Rng;
-use raydsl_tests::values::{Numbers, compare, random};
+use raydsl_tests::values::{Numbers, random};
 
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
 struct Ball {
     center: Vec3,
     radius: f32,
     id: u32,
-}
-
-/// A kernel through every natural variant.
-fn every_variant<A: Type + std::fmt::Debug, R: Type>(kernel: &Kernel<'_, A, R>, inputs: &[A]) {
-    let mut expected: Vec<R> = inputs.iter().map(|a| kernel.call(*a)).collect();
-    let same = |who: &str, found: &[R]| {
-        compare(who, &expected, found).assert_same(|i| format!("{:?}", inputs[i]));
-    };
-    let mut found = expected.clone();
-    for variant in [Variant::Packet4, Variant::Packet8, Variant::Packet16] {
-        found.fill(raydsl_tests::values::garbage());
-        kernel.run(variant, inputs, &mut found);
-        same(variant.name(), &found);
-    }
-    let Some(gpu) = gpu() else { return };
-    found.fill(raydsl_tests::values::garbage());
-    if let Err(e) = gpu.batch(kernel, inputs, &mut found) {
-        panic!("{e}\n{}", kernel.wgsl());
-    }
-    same("WGSL", &found);
-    expected.clear();
-}
-
-fn inputs<A: Type>(seed: u64) -> Vec<A> {
-    let mut rng = Rng::new(seed);
-    (0..501).map(|_| random(&mut rng, Numbers::Tame)).collect()
 }
 
 #[test]

@@ -46,8 +46,13 @@ impl Emitter<'_> {
         let mut all = Arguments::default();
         for arg in args {
             let value = match &arg.kind {
+                Kind::Closure(kernel) => self.closure(kernel),
                 Kind::RefMut(place) => {
                     let local = self.local(&place.name);
+                    if self.is_outer(&place.name) {
+                        self.outside(&place.name);
+                        continue;
+                    }
                     if self.lookup(&place.name).is_none() && self.is_closure {
                         self.not_ours(&place.name);
                     }
@@ -75,10 +80,15 @@ impl Emitter<'_> {
                         quote!(&#part)
                     }
                 }
-                Kind::Name(name) if self.lookup(name) == Some(Binding::Mut) => {
+                Kind::Name(name)
+                    if self.lookup(name) == Some(Binding::Mut) && !self.is_outer(name) =>
+                {
                     let local = self.local(name);
                     quote!(&#local)
                 }
+                // A number may be for a parameter of the host.
+                Kind::Int { tokens, .. } => tokens.clone(),
+                Kind::Name(name) if self.lookup(name) == Some(Binding::Host) => quote!(#name),
                 _ => self.value(arg),
             };
             all.values.push(value);
@@ -88,7 +98,13 @@ impl Emitter<'_> {
 
     /// A method that takes `&mut self` changes the variable, or the part of one, that it is
     /// called on; which methods do is for their traits to say.
-    pub(super) fn method(&mut self, receiver: &Expr, name: &Ident, args: &[Expr]) -> TokenStream {
+    pub(super) fn method(
+        &mut self,
+        receiver: &Expr,
+        name: &Ident,
+        turbofish: &[TokenStream],
+        args: &[Expr],
+    ) -> TokenStream {
         let (p, m) = (private(), own("m"));
         if let Some((generic, this)) = self.generic_receiver(receiver) {
             let function = format_ident!("{name}_on");
@@ -103,10 +119,13 @@ impl Emitter<'_> {
         let method = quote_spanned!(name.span()=> #p::Method::<{ #p::name(#text) }, #machine, _>);
         let variable = self.variable_under(receiver);
         let value = self.value(receiver);
-        let args = self.arguments(args);
+        let mut args = self.arguments(args);
+        let generic =
+            turbofish.iter().map(|ty| quote!(<#ty as ::core::default::Default>::default()));
+        args.values.splice(0..0, generic);
         let values = &args.values;
         let Some((local, steps)) = variable else {
-            if is_part_of_element(receiver) {
+            if is_part_of_element(receiver) || self.is_part_of_outer(receiver) {
                 return args.around(quote_spanned!(name.span()=>
                     #p::call_on_element::<{ #p::name(#text) }, #machine, _, _>(
                         #m, #value, (#(#values,)*)
@@ -152,18 +171,30 @@ impl Emitter<'_> {
         Some((
             generic,
             match local.binding {
-                Binding::Value => quote!(#ident),
+                Binding::Value | Binding::Host => quote!(#ident),
                 Binding::Var | Binding::Mut => quote!(&#ident),
             },
         ))
     }
 
+    /// Whether it is a variable outside of the closure, or a part of one.
+    fn is_part_of_outer(&self, e: &Expr) -> bool {
+        match &e.kind {
+            Kind::Name(name) => self.is_outer(name) && self.lookup(name) != Some(Binding::Value),
+            Kind::Deref(base) | Kind::Field { base, .. } | Kind::Index { base, .. } => {
+                self.is_part_of_outer(base)
+            }
+            _ => false,
+        }
+    }
+
     /// The variable that `e` is, or is a part of, and the steps from it.
     pub(super) fn variable_under(&self, e: &Expr) -> Option<(Ident, TokenStream)> {
         match &e.kind {
+            Kind::Name(name) if self.is_outer(name) => None,
             Kind::Name(name) => match self.lookup(name)? {
                 Binding::Var | Binding::Mut => Some((self.local(name), TokenStream::new())),
-                Binding::Value => None,
+                Binding::Value | Binding::Host => None,
             },
             Kind::Deref(a) => self.variable_under(a),
             Kind::Field { base, member } => {

@@ -49,6 +49,9 @@ impl Emitter<'_> {
 
     pub(super) fn let_stmt(&mut self, l: &Let) -> TokenStream {
         let (p, m) = (private(), own("m"));
+        if l.host {
+            return self.host_let(l);
+        }
         let Some(name) = &l.name else {
             let value = l.init.as_ref().map(|e| self.value(e));
             return quote!(let _ = #value;);
@@ -127,7 +130,7 @@ impl Emitter<'_> {
             self.coerced(e)
         } else {
             let value = self.value(e);
-            if self.is_closure { quote!(#p::Varying::varying(#value, #m)) } else { value }
+            if self.is_inferred() { quote!(#p::Varying::varying(#value, #m)) } else { value }
         };
         let all = self.with_changed(value);
         quote!(#ret.give(#m, #all);)
@@ -153,12 +156,17 @@ impl Emitter<'_> {
     ) -> TokenStream {
         let (p, m) = (private(), own("m"));
         let branch = self.fresh("branch");
-        let c = self.value(c);
+        // What the host decides is decided for all rays alike.
+        let host = self.host_value(c);
+        self.varying += usize::from(host.is_none());
+        let is_varying = host.is_none();
+        let c = host.unwrap_or_else(|| self.value(c));
         let then = self.block(then, dest);
         let other = otherwise.map(|e| {
             let arm = self.into(e, dest);
             quote!(if #branch.otherwise(#m) { #arm })
         });
+        self.varying -= usize::from(is_varying);
         quote! {
             let #branch = #p::Branch::new(#m, #c);
             if #branch.then(#m) { #then }
@@ -181,7 +189,9 @@ impl Emitter<'_> {
             quote!(if !#ident.test(#m, #c) { break; })
         });
         self.loops.push(Loop { label, ident: ident.clone(), dest: dest.clone() });
+        self.varying += 1;
         let body = self.block(body, &Dest::None);
+        self.varying -= 1;
         self.loops.pop();
         quote! {
             let #ident = #p::Loop::new(#m);
@@ -236,7 +246,9 @@ impl Emitter<'_> {
             quote!(let #v = #item;)
         });
         self.loops.push(Loop { label, ident: ident.clone(), dest: Dest::None });
+        self.varying += 1;
         let body = self.block(body, &Dest::None);
+        self.varying -= 1;
         self.loops.pop();
         self.scopes.pop();
         quote! {{

@@ -5,16 +5,19 @@
 
 mod calls;
 mod control;
+mod host;
 mod places;
 mod values;
 
-use std::collections::HashMap;
+pub(crate) use host::raw_capture;
+
+use std::collections::{BTreeSet, HashMap};
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
 use crate::diag::Errors;
-use crate::generics::Generics;
+use crate::generics::{Generics, mentions};
 use crate::model::{Block, Kernel, Param};
 
 /// What a name stands for.
@@ -26,9 +29,12 @@ enum Binding {
     Var,
     /// A `&mut` parameter: a variable that calls are given as it is.
     Mut,
+    /// A value of the host.
+    Host,
 }
 
 /// A name in scope.
+#[derive(Clone)]
 struct Local {
     binding: Binding,
     /// The type parameter that is its type.
@@ -77,12 +83,18 @@ pub(crate) struct Emitter<'a> {
     self_ty: Option<TokenStream>,
     kernel: &'a Kernel,
     is_closure: bool,
+    /// How many of the scopes lie around the closure that is being written; 0 outside of one.
+    outer: usize,
     /// The type parameters in scope.
     generics: Generics,
     scopes: Vec<HashMap<String, Local>>,
     loops: Vec<Loop>,
     /// Free names of a closure, in order of first use.
     pub(crate) captures: Vec<Ident>,
+    /// Those of them that are also wanted as the host has them.
+    pub(crate) host_captures: Vec<Ident>,
+    /// How many loops, and conditions that are not the host's, are open.
+    varying: usize,
     /// The `&mut` parameters.
     changed: Vec<Ident>,
     next: usize,
@@ -111,10 +123,13 @@ impl<'a> Emitter<'a> {
             self_ty,
             kernel,
             is_closure,
+            outer: 0,
             generics: kernel.generics.clone(),
             scopes: vec![HashMap::new()],
             loops: vec![],
             captures: vec![],
+            host_captures: vec![],
+            varying: 0,
             changed: vec![],
             next: 0,
             errors,
@@ -159,11 +174,12 @@ impl<'a> Emitter<'a> {
             let name = self.local(&param.name);
             let text = param.name.to_string();
             let binding = match param {
+                Param { host: true, .. } => Binding::Host,
                 Param { by_mut: true, .. } => Binding::Mut,
                 Param { mutable: true, .. } => Binding::Var,
                 _ => Binding::Value,
             };
-            if binding != Binding::Value {
+            if matches!(binding, Binding::Var | Binding::Mut) {
                 prologue.extend(quote!(let #name = #p::Var::new(#m, #text, #name);));
             }
             self.bind_typed(&param.name, binding, Some(&param.ty));
@@ -210,7 +226,75 @@ impl<'a> Emitter<'a> {
 
     /// The result type where none is written: inferred for a closure, `()` for a function.
     fn no_result(&self) -> TokenStream {
-        if self.is_closure { quote!(_) } else { quote!(()) }
+        if self.is_inferred() { quote!(_) } else { quote!(()) }
+    }
+
+    /// Whether a result whose type is not written is that of the body.
+    fn is_inferred(&self) -> bool {
+        self.is_closure || self.outer > 0
+    }
+
+    /// A closure as an argument. It may read what is around it.
+    fn closure(&mut self, kernel: &Kernel) -> TokenStream {
+        let m = own("m");
+        let mut inner = Emitter {
+            machine: self.machine.clone(),
+            self_ty: self.self_ty.clone(),
+            kernel,
+            is_closure: self.is_closure,
+            outer: self.scopes.len(),
+            generics: self.generics.clone(),
+            scopes: self.scopes.clone(),
+            loops: vec![],
+            captures: core::mem::take(&mut self.captures),
+            host_captures: core::mem::take(&mut self.host_captures),
+            varying: 1,
+            changed: vec![],
+            next: self.next,
+            errors: self.errors,
+        };
+        inner.scopes.push(HashMap::new());
+        let body = inner.body();
+        let types: Vec<_> = kernel.params.iter().map(|p| inner.on(&p.ty)).collect();
+        let (captures, host_captures, next) = (
+            core::mem::take(&mut inner.captures),
+            core::mem::take(&mut inner.host_captures),
+            inner.next,
+        );
+        (self.captures, self.host_captures, self.next) = (captures, host_captures, next);
+        let names = kernel.params.iter().map(|p| &p.name);
+        let machine = &self.machine;
+        let seen = self.mentioned_in(&body);
+        quote! {
+            #[inline(always)]
+            |#m: &#machine, #(#names: #types),*| {
+                // Capturing members one by one is more than rustc 1.95 can take.
+                #(let _ = &#seen;)*
+                #body
+            }
+        }
+    }
+
+    /// Notes that the closure captures `name`.
+    fn capture(&mut self, name: &Ident) {
+        if !self.captures.contains(name) {
+            self.captures.push(name.clone());
+        }
+    }
+
+    /// The locals in scope that `code` mentions.
+    fn mentioned_in(&self, code: &TokenStream) -> Vec<Ident> {
+        let names = self.scopes.iter().flat_map(HashMap::keys);
+        let names: BTreeSet<&String> = names.collect();
+        let locals = names.into_iter().map(|n| self.local(&Ident::new(n, Span::call_site())));
+        locals.filter(|l| mentions(code, l)).collect()
+    }
+
+    /// Whether a closure sees the variable, but may not change it.
+    fn is_outer(&self, name: &Ident) -> bool {
+        let name = name.to_string();
+        let found = self.scopes.iter().rposition(|s| s.contains_key(&name));
+        found.is_some_and(|at| at < self.outer)
     }
 
     fn plain_body(&mut self, block: &Block) -> TokenStream {

@@ -17,6 +17,15 @@ impl Emitter<'_> {
         );
     }
 
+    /// A variable of the kernel around a nested closure.
+    pub(super) fn outside(&mut self, name: &Ident) {
+        self.errors.at(
+            name.span(),
+            format!("a closure may read `{name}`, which lies outside of it, but not change it"),
+            "return the new value",
+        );
+    }
+
     pub(super) fn assign(
         &mut self,
         place: &Place,
@@ -25,7 +34,12 @@ impl Emitter<'_> {
     ) -> TokenStream {
         let (p, m) = (private(), own("m"));
         let name = &place.name;
+        if self.is_outer(name) {
+            self.outside(name);
+            return TokenStream::new();
+        }
         match self.lookup(name) {
+            Some(Binding::Host) => return self.host_assign(name, op.map(|op| op.symbol), value),
             Some(Binding::Var | Binding::Mut) => {}
             // rustc reports it in the user's own function.
             Some(Binding::Value) => return TokenStream::new(),

@@ -124,9 +124,12 @@ impl Emitter<'_> {
             }
             Kind::Call { path, args } => self.call(path, args, span),
             Kind::Associated { ty, name, args } => self.associated(ty, name, args, span),
-            Kind::Method { receiver, name, args } => self.method(receiver, name, args),
+            Kind::Method { receiver, name, turbofish, args } => {
+                self.method(receiver, name, turbofish, args)
+            }
             Kind::Deref(a) => self.value(a),
-            Kind::RefMut(_) => quote!(::core::unreachable!()),
+            Kind::Host(inner) => self.host_use(inner),
+            Kind::RefMut(_) | Kind::Closure(_) => quote!(::core::unreachable!()),
             Kind::Field { base, member } => {
                 let base = self.value(base);
                 quote_spanned!(span=> #base.#member)
@@ -186,6 +189,7 @@ impl Emitter<'_> {
                 let local = self.local(name);
                 quote!(#local)
             }
+            Some(Binding::Host) => quote!(#p::HostUse::value(#name, #m)),
             None => {
                 let machine = &self.machine;
                 let is_constant = name.to_string().starts_with(|c: char| c.is_ascii_uppercase());
@@ -200,9 +204,7 @@ impl Emitter<'_> {
                     );
                     return quote!(::core::unreachable!());
                 }
-                if !self.captures.contains(name) {
-                    self.captures.push(name.clone());
-                }
+                self.capture(name);
                 quote!(#name)
             }
         }

@@ -1,13 +1,14 @@
 //! `kernel!(|ray: Ray| ...)`.
 
 use proc_macro2::{Ident, TokenStream};
-use quote::{format_ident, quote};
+use quote::{ToTokens, format_ident, quote};
 use syn::spanned::Spanned;
 
 use super::{info, own, private, quiet};
 use crate::diag::Errors;
-use crate::emit::Emitter;
+use crate::emit::{Emitter, raw_capture};
 use crate::parse;
+use crate::rewrite::without_host;
 
 /// The natural machines of a closure, by the names of their aliases in the runtime and of the
 /// members of `Lifted` that hold their copies.
@@ -40,6 +41,11 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
         let mut emitter = Emitter::new(&kernel, machine.clone(), None, true, &mut seen);
         let body = emitter.body();
         captured = core::mem::take(&mut emitter.captures);
+        let raw = core::mem::take(&mut emitter.host_captures);
+        let raw_index =
+            raw.iter().filter_map(|r| captured.iter().position(|c| c == r)).map(syn::Index::from);
+        let raw_index: Vec<_> = raw_index.collect();
+        let raw: Vec<_> = raw.iter().map(raw_capture).collect();
         let on: Vec<TokenStream> = kernel.params.iter().map(|p| emitter.on(&p.ty)).collect();
         // The copies have the same mistakes.
         if copies.is_empty() {
@@ -59,6 +65,7 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
                         (#(#names,)*),
                         #[inline(always)]
                         |#m: &#machine, (#(#names,)*): (#(#on,)*)| {
+                            #(let #raw = #p::HostCapture::host(#captures.#raw_index);)*
                             #(let #list =
                                 #p::Capture::<#machine>::capture(#captures.#index, #m, #texts);)*
                             #body
@@ -71,9 +78,11 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
     if !errors.is_empty() {
         let errors = errors.into_tokens();
         // The closure itself stays, so that rustc and editors see its types.
+        let closure = without_host(closure.to_token_stream());
         return quote!({ #errors let _ = #closure; ::core::unreachable!() });
     }
     let info = info(&kernel, "kernel");
+    let closure = without_host(closure.to_token_stream());
     let scalar = own("scalar");
     let index = (0..captured.len()).map(syn::Index::from);
     quote! {{

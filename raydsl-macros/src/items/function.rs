@@ -8,6 +8,7 @@ use crate::diag::Errors;
 use crate::generics::Generics;
 use crate::model::{Kernel, Param};
 use crate::parse;
+use crate::rewrite::without_host;
 
 /// The function as it is, a type of the same name, and the lifted body as the type's `on`.
 pub(crate) fn kernel_fn(item: &syn::ItemFn) -> TokenStream {
@@ -15,6 +16,7 @@ pub(crate) fn kernel_fn(item: &syn::ItemFn) -> TokenStream {
     let kernel = parse::function(&item.sig, &item.block, None, &mut errors);
     let name = &kernel.name;
     let vis = item.vis.to_token_stream();
+    let source = without_host(item.to_token_stream());
     let is_generic = !kernel.generics.is_empty();
     let fn_name = if is_generic { "on_values" } else { "on" };
     let place = Place {
@@ -36,7 +38,7 @@ pub(crate) fn kernel_fn(item: &syn::ItemFn) -> TokenStream {
         let name = &item.sig.ident;
         // The type stays, so that calls of the kernel give no second error.
         return quote! {
-            #item
+            #source
             #[allow(non_camel_case_types, dead_code)]
             #vis enum #name #bare { #never }
             #errors
@@ -45,7 +47,7 @@ pub(crate) fn kernel_fn(item: &syn::ItemFn) -> TokenStream {
     let doc = format!("The kernel of [`{name}()`]: `Kernel::of::<{name}>()`.");
     let entry = has_entry(&kernel).then(|| entry(&kernel, &item.sig));
     quote! {
-        #item
+        #source
         #[doc = #doc]
         #[allow(non_camel_case_types, reason = "it has the name of the function")]
         #vis enum #name #bare { #never }
@@ -72,7 +74,7 @@ fn never(generics: &Generics) -> TokenStream {
 
 /// Whether it can be run by itself: on values, for a value.
 fn has_entry(kernel: &Kernel) -> bool {
-    let is_value = |p: &Param| !(p.by_mut || p.shared && is_data(&p.ty));
+    let is_value = |p: &Param| !(p.by_mut || p.host || p.shared && is_data(&p.ty));
     !kernel.params.is_empty() && kernel.result.is_some() && kernel.params.iter().all(is_value)
 }
 
@@ -99,6 +101,10 @@ fn inferring_function(kernel: &Kernel, vis: &TokenStream) -> TokenStream {
         let text = name.to_string();
         let is_inferred = kernel.generics.has_type_in(ty) && !(param.shared && is_data(ty));
         params.push(match (is_inferred, param) {
+            (_, Param { host: true, .. }) => {
+                values.push(quote!(#name));
+                quote!(#name: #ty)
+            }
             (true, Param { by_mut: true, .. }) => {
                 let copy = format_ident!("{name}_copy");
                 before.extend(quote! {

@@ -10,6 +10,7 @@ use crate::emit::Emitter;
 use crate::generics::Generics;
 use crate::model::{Kernel, Param};
 use crate::parse;
+use crate::rewrite::without_host;
 
 /// The lifted functions of an `impl`, and what stands beside it.
 pub(crate) fn kernel_impl(
@@ -22,6 +23,7 @@ pub(crate) fn kernel_impl(
     let Generics { declared, predicates, .. } = &around;
     let self_ty = &item.self_ty;
     let Some((path, _)) = &item.trait_ else {
+        let item = without_host(item.to_token_stream());
         return quote! {
             #item
             impl<#declared> #self_ty where #predicates { #functions }
@@ -29,7 +31,8 @@ pub(crate) fn kernel_impl(
         };
     };
     // The lifted functions belong to the trait too.
-    let (attrs, items) = (&item.attrs, &item.items);
+    let attrs = &item.attrs;
+    let items = item.items.iter().map(|i| without_host(i.to_token_stream()));
     quote! {
         #(#attrs)*
         impl<#declared> #path for #self_ty where #predicates {
@@ -142,6 +145,9 @@ impl Method<'_> {
     fn argument(&self, i: usize, param: &Param) -> (TokenStream, Option<TokenStream>) {
         let p = private();
         let ty = &param.ty;
+        if param.host {
+            return (quote!(#ty), None);
+        }
         if param.by_mut {
             let ty = self.twin(ty);
             return (quote!(&'__a #p::Var<#ty>), None);
@@ -261,5 +267,6 @@ pub(crate) fn kernel_trait(item: &syn::ItemTrait) -> TokenStream {
     let mut item = item.clone();
     item.supertraits.push(syn::parse_quote!(#p::Type));
     item.items.push(syn::TraitItem::Verbatim(functions));
+    let item = without_host(item.to_token_stream());
     quote!(#item #errors)
 }

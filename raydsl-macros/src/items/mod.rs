@@ -72,8 +72,10 @@ fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> T
     let emitter = Emitter::new(kernel, quote!(__M), place.self_ty.cloned(), false, errors);
     let mut emitter = emitter.with_generics(place.around);
     let body = emitter.body();
-    let names: Vec<Ident> = kernel.params.iter().map(|p| param_ident(&p.name)).collect();
-    let types: Vec<TokenStream> = kernel.params.iter().map(|p| emitter.param(p)).collect();
+    // Values of the host are no arguments on the machine: the body sees them as they are.
+    let values = || kernel.params.iter().filter(|p| !p.host);
+    let names: Vec<Ident> = values().map(|p| param_ident(&p.name)).collect();
+    let types: Vec<TokenStream> = values().map(|p| emitter.param(p)).collect();
     let head = head(kernel, place, &emitter);
     let info = info(kernel, place.wgsl_name);
     let quiet = quiet();
@@ -86,8 +88,7 @@ fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> T
             |#m: &__M, (#(#names,)*): (#(#types,)*)| { #body },
         )
     };
-    let changed: Vec<_> =
-        kernel.params.iter().zip(&names).zip(&types).filter(|((p, _), _)| p.by_mut).collect();
+    let changed: Vec<_> = values().zip(&names).zip(&types).filter(|((p, _), _)| p.by_mut).collect();
     let call = if changed.is_empty() {
         call
     } else {
@@ -122,7 +123,10 @@ fn head(kernel: &Kernel, place: &Place<'_>, emitter: &Emitter<'_>) -> TokenStrea
     let Place { fn_name, vis, .. } = place;
     let params = kernel.params.iter().map(|param| {
         let (name, ty) = (param_ident(&param.name), emitter.param(param));
-        if param.by_mut {
+        if param.host {
+            let ty = &param.ty;
+            quote!(#name: #ty)
+        } else if param.by_mut {
             quote!(#name: &#p::Var<#ty>)
         } else {
             quote!(#name: impl #p::Coerce<__M, #ty>)

@@ -34,7 +34,7 @@ fn both(a: Option<Expr>, b: Option<Expr>) -> Option<Expr> {
 }
 
 fn bind(name: &Ident, mutable: bool, init: Expr) -> Stmt {
-    Stmt::Let(Let { name: Some(name.clone()), mutable, ty: None, init: Some(init) })
+    Stmt::Let(Let { host: false, name: Some(name.clone()), mutable, ty: None, init: Some(init) })
 }
 
 /// A member of `from`; that of a tuple in the source is the element itself.
@@ -188,7 +188,13 @@ impl Parser<'_> {
         let mut lets = Vec::new();
         let ident = self.temporary("parts");
         let from = name(&ident);
-        lets.push(Stmt::Let(Let { name: Some(ident), mutable: false, ty, init: Some(init) }));
+        lets.push(Stmt::Let(Let {
+            host: false,
+            name: Some(ident),
+            mutable: false,
+            ty,
+            init: Some(init),
+        }));
         self.irrefutable(pat, &from, &mut lets);
         lets
     }

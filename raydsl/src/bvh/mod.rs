@@ -88,6 +88,37 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         traverse::any_hit(&self.view(), ray)
     }
 
+    /// The least `(t, id)` hit of each of `N` rays, `ray(0)` to `ray(N - 1)`.
+    ///
+    /// What one query sees at once it can trace better than one ray after another; the results
+    /// are those of [`Bvh::closest_hit`]. Inside a kernel `ray` is a closure of the kernel.
+    pub fn closest_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [Hit; N] {
+        core::array::from_fn(|i| self.closest_hit(ray(i as u32)))
+    }
+
+    /// Whether each of `N` rays, `ray(0)` to `ray(N - 1)`, hits anything.
+    ///
+    /// ```
+    /// use raydsl::prelude::*;
+    ///
+    /// let triangles = [Triangle { v0: vec3(0.0, 0.0, 1.0), v1: vec3(4.0, 0.0, 1.0), v2: vec3(0.0, 4.0, 1.0) }];
+    /// let bvh = Bvh::build(&triangles)?;
+    /// let up = vec3(0.0, 0.0, 1.0);
+    /// let visible = kernel!(|x: f32, y: f32| {
+    ///     let hits = bvh.any_hit_each::<4>(|i: u32| Ray::new(vec3(x + i as f32, y, 0.0), up));
+    ///     let mut count = 0u32;
+    ///     for hit in 0..4usize {
+    ///         count += hits[hit] as u32;
+    ///     }
+    ///     count
+    /// });
+    /// assert_eq!(visible.call((0.5, 0.5)), 4);
+    /// # Ok::<(), raydsl::bvh::BuildError>(())
+    /// ```
+    pub fn any_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [bool; N] {
+        core::array::from_fn(|i| self.any_hit(ray(i as u32)))
+    }
+
     /// The primitive that was hit; the first one for a miss, so that code need not branch.
     ///
     /// # Panics
@@ -199,6 +230,10 @@ pub trait Slice<P> {
     fn closest_hit(&self, ray: Ray) -> Hit;
     /// Whether `ray` hits anything.
     fn any_hit(&self, ray: Ray) -> bool;
+    /// The least `(t, id)` hit of each of `N` rays.
+    fn closest_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [Hit; N];
+    /// Whether each of `N` rays hits anything.
+    fn any_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [bool; N];
     /// The primitive that was hit; the first one for a miss.
     fn primitive(&self, hit: Hit) -> P;
 }
@@ -210,6 +245,14 @@ impl<P: Primitive> Slice<P> for [P] {
 
     fn any_hit(&self, ray: Ray) -> bool {
         traverse::any_hit(&On::slice(self), ray)
+    }
+
+    fn closest_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [Hit; N] {
+        core::array::from_fn(|i| self.closest_hit(ray(i as u32)))
+    }
+
+    fn any_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [bool; N] {
+        core::array::from_fn(|i| self.any_hit(ray(i as u32)))
     }
 
     fn primitive(&self, hit: Hit) -> P {

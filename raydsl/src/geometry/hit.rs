@@ -1,6 +1,6 @@
 //! Where a ray meets a primitive.
 
-use crate::Type;
+use crate::{Type, kernel};
 
 /// What an intersection found; a miss is data too, with `is_hit == false`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
@@ -18,6 +18,7 @@ pub struct Hit {
     pub v: f32,
 }
 
+#[kernel]
 impl Hit {
     /// A hit if `is_hit`, at distance `t`.
     pub const fn new(is_hit: bool, t: f32) -> Self {

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::Type;
+use crate::{Type, kernel};
 
 /// The half-line `origin + t * direction` for `t` in `[t_min, t_max]`.
 ///
@@ -21,6 +21,7 @@ pub struct Ray {
     pub t_max: f32,
 }
 
+#[kernel]
 impl Ray {
     /// A ray without limits in front of its origin: `t` in `[0, f32::MAX]`.
     pub const fn new(origin: Vec3, direction: Vec3) -> Self {

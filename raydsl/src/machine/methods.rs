@@ -8,7 +8,7 @@ use super::{
     B, Coerce, F, F32Binary, F32Unary, I, IntBinary, Machine, Type, U, Usize, V2, V3, V4, Var,
 };
 use crate::bvh;
-use crate::geometry::{HitOn, Primitive, Ray, RayOn};
+use crate::geometry::{HitOn, Primitive, RayOn};
 
 /// The number of a method's name (FNV-1a, 64 bits).
 pub const fn name(text: &str) -> u64 {
@@ -306,19 +306,6 @@ element!(V3: z y x);
 
 method!(V4<M>, "truncate", |_m, a| -> V3<M> { V3 { x: a.x, y: a.y, z: a.z } });
 method!(V3<M>, "extend", |_m, a, w: F<M>| -> V4<M> { V4 { x: a.x, y: a.y, z: a.z, w } });
-
-// Rays
-
-impl<M: Machine, A: Coerce<M, F<M>>> HostMethod<{ name("at") }, M, (A,)> for Ray {
-    type This = RayOn<M>;
-    type Output = V3<M>;
-
-    #[inline(always)]
-    fn call(ray: RayOn<M>, m: &M, (t,): (A,)) -> V3<M> {
-        let way = V3::binary(m, F32Binary::Mul, ray.direction, V3::splat(t.coerce(m)));
-        V3::binary(m, F32Binary::Add, ray.origin, way)
-    }
-}
 
 // Slices, and trees over primitives
 

@@ -10,10 +10,12 @@
 //! them, and what they return steers real Rust control flow. The scalar machine returns the
 //! condition itself, a packet whether any lane is left, the recorder always `true`.
 
+mod batch;
 mod call;
 mod capture;
 mod control;
 pub(crate) mod functions;
+pub mod host;
 pub(crate) mod index;
 mod lanes;
 mod methods;
@@ -28,6 +30,7 @@ mod value;
 mod vector;
 pub mod wgsl;
 
+pub use batch::Const;
 pub use call::{KernelFn, KernelInfo};
 pub use capture::{Capture, Parameter, Resource};
 pub use control::{Branch, Condition, Loop, Ret, Var};
@@ -291,6 +294,15 @@ pub trait Machine: Sized + 'static {
         prims: &crate::bvh::On<'_, P>,
         ray: crate::geometry::RayOn<Self>,
     ) -> B<Self>;
+
+    /// `[f(0), f(1), ..]`; a loop in generated code.
+    #[inline(always)]
+    fn each<V: Value<Self>, const N: usize>(&self, mut f: impl FnMut(U<Self>) -> V) -> [V; N] {
+        fill(
+            #[inline(always)]
+            |i| f(U(self.u32(i as u32))),
+        )
+    }
 
     /// How many elements a slice has.
     #[inline(always)]

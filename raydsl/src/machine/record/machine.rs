@@ -5,9 +5,11 @@ use core::cell::Cell;
 use super::ir::{Conversion, Expr, Id, Stmt, Type, VarId};
 use super::{RecordedBranch, RecordedLoop, Recorder, storage};
 use crate::geometry::{HitOn, Primitive, RayOn};
+use crate::machine::index::with_element;
 use crate::machine::scalar;
 use crate::machine::{
-    B, BoolBinary, Compare, F32Binary, F32Unary, IntBinary, KernelInfo, Machine, Schema, U, Value,
+    B, BoolBinary, Compare, F32Binary, F32Unary, IntBinary, KernelInfo, Loop, Machine, Schema, U,
+    Usize, Value, Var,
 };
 
 /// Whether dividing by `v` and multiplying by its reciprocal give the same bits.
@@ -647,6 +649,22 @@ impl Machine for Recorder {
             &mut self.leaves_of(ray).into_iter(),
         );
         B(self.add(Expr::Call(function, vec![ray]), Type::Bool))
+    }
+    fn each<V: Value<Self>, const N: usize>(&self, mut f: impl FnMut(U<Self>) -> V) -> [V; N] {
+        let all = Var::new(self, "each", [V::zero(self); N]);
+        let i = Var::new(self, "i", U(self.u32(0)));
+        let repeat = Loop::new(self);
+        let goes_on = self.u32_compare(Compare::Lt, i.get(self).0, self.u32(N as u32));
+        repeat.test(self, B(goes_on));
+        let v = f(i.get(self));
+        let index = Usize(i.get(self).0);
+        all.set(self, with_element(self, all.get(self), index, v));
+        repeat.continuing(self);
+        let next = self.u32_binary(IntBinary::WrappingAdd, i.get(self).0, self.u32(1));
+        i.set(self, U(next));
+        repeat.again(self);
+        repeat.end(self);
+        all.get(self)
     }
     fn len<T: crate::machine::Type>(&self, slice: &crate::bvh::On<'_, T>) -> U<Self> {
         let function = self.len_function(slice);

@@ -1,0 +1,73 @@
+//! Rewriting of source that stays Rust.
+
+use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
+use quote::{ToTokens, quote};
+use syn::parse::Parser as _;
+
+/// Whether `#` and what follows are the attribute `#[name]`.
+fn is_attribute(hash: &TokenTree, brackets: &TokenTree, name: &str) -> bool {
+    let TokenTree::Group(g) = brackets else { return false };
+    matches!(hash, TokenTree::Punct(p) if p.as_char() == '#')
+        && g.delimiter() == Delimiter::Bracket
+        && g.stream().to_string() == name
+}
+
+fn within_groups(token: TokenTree, f: fn(TokenStream) -> TokenStream) -> TokenTree {
+    let TokenTree::Group(g) = token else { return token };
+    let mut inside = Group::new(g.delimiter(), f(g.stream()));
+    inside.set_span(g.span());
+    TokenTree::Group(inside)
+}
+
+/// Source without the attribute `#[host]`, which only the lowering understands.
+pub(crate) fn without_host(source: TokenStream) -> TokenStream {
+    let tokens: Vec<TokenTree> = source.into_iter().collect();
+    let mut out = TokenStream::new();
+    let mut rest = &tokens[..];
+    while let Some((first, others)) = rest.split_first() {
+        rest = others;
+        if others.first().is_some_and(|second| is_attribute(first, second, "host")) {
+            rest = &others[1..];
+            continue;
+        }
+        out.extend([within_groups(first.clone(), without_host)]);
+    }
+    out
+}
+
+/// `#[kernel] |ray: Ray| ...` becomes `kernel!(|ray: Ray| ...)`, at any depth.
+pub(crate) fn kernel_closures(source: TokenStream) -> TokenStream {
+    let tokens: Vec<TokenTree> = source.into_iter().collect();
+    let mut out = TokenStream::new();
+    let mut at = 0;
+    while let Some(first) = tokens.get(at) {
+        let marked = tokens.get(at + 1).is_some_and(|second| is_attribute(first, second, "kernel"));
+        if marked && let Some((closure, rest)) = leading_closure(&tokens[at + 2..]) {
+            let closure = kernel_closures(closure);
+            out.extend(quote!(::raydsl::prelude::kernel!(#closure)));
+            at = tokens.len() - rest;
+            continue;
+        }
+        out.extend([within_groups(first.clone(), kernel_closures)]);
+        at += 1;
+    }
+    out
+}
+
+/// The closure that `tokens` begin with, and how many tokens follow it.
+fn leading_closure(tokens: &[TokenTree]) -> Option<(TokenStream, usize)> {
+    let begins = match tokens.first()? {
+        TokenTree::Punct(p) => p.as_char() == '|',
+        TokenTree::Ident(i) => i == "move",
+        _ => false,
+    };
+    if !begins {
+        return None;
+    }
+    let parse = |input: syn::parse::ParseStream<'_>| {
+        let closure: syn::ExprClosure = input.parse()?;
+        let rest: TokenStream = input.parse()?;
+        Ok((closure.to_token_stream(), rest.into_iter().count()))
+    };
+    parse.parse2(tokens.iter().cloned().collect()).ok()
+}

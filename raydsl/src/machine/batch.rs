@@ -1,0 +1,48 @@
+//! Queries of several rays at once: a closure of the kernel gives ray `i`.
+
+use super::{Coerce, Machine, Method, U, name};
+use crate::bvh;
+use crate::geometry::{HitOn, Primitive, RayOn};
+use crate::machine::B;
+
+/// A number between `::<` and `>`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Const<const N: usize>;
+
+impl<M, P, R, G, const N: usize> Method<{ name("any_hit_each") }, M, (Const<N>, G)>
+    for bvh::On<'_, P>
+where
+    M: Machine,
+    P: Primitive,
+    R: Coerce<M, RayOn<M>>,
+    G: Fn(&M, U<M>) -> R,
+{
+    type Output = [B<M>; N];
+
+    #[inline(always)]
+    fn call(self, m: &M, (_, ray): (Const<N>, G)) -> [B<M>; N] {
+        m.each(
+            #[inline(always)]
+            |i| m.any_hit(&self, ray(m, i).coerce(m)),
+        )
+    }
+}
+
+impl<M, P, R, G, const N: usize> Method<{ name("closest_hit_each") }, M, (Const<N>, G)>
+    for bvh::On<'_, P>
+where
+    M: Machine,
+    P: Primitive,
+    R: Coerce<M, RayOn<M>>,
+    G: Fn(&M, U<M>) -> R,
+{
+    type Output = [HitOn<M>; N];
+
+    #[inline(always)]
+    fn call(self, m: &M, (_, ray): (Const<N>, G)) -> [HitOn<M>; N] {
+        m.each(
+            #[inline(always)]
+            |i| m.closest_hit(&self, ray(m, i).coerce(m)),
+        )
+    }
+}

@@ -1,0 +1,104 @@
+//! Values of the host within kernels: known before the kernel runs and while it is recorded.
+
+use super::{Coerce, F, Machine};
+
+/// Marks a number as the host's: inside a kernel, what depends on it alone is decided before the
+/// kernel runs, and in generated code only what was decided for is left.
+///
+/// Its argument is a captured number, a constant, or made of such; a `let` or a parameter with
+/// `#[host]` holds such a value. A kernel recorded with another value is another kernel: numbers
+/// that change from frame to frame are better left to the machine.
+///
+/// ```
+/// use raydsl::prelude::*;
+///
+/// let samples = 3u32;
+/// let k = kernel!(|x: f32| {
+///     #[host]
+///     let twice = host(samples) * 2;
+///     let mut sum = 0.0;
+///     for i in 0..twice {
+///         sum += x * i as f32;
+///     }
+///     if host(samples) > 8 { -sum } else { sum }
+/// });
+/// assert_eq!(k.call((2.0,)), 30.0);
+/// assert!(k.wgsl().contains("i < 6u") && !k.wgsl().contains("else"));
+/// ```
+#[inline(always)]
+pub fn host<T>(x: T) -> T {
+    x
+}
+
+/// A captured value that kernels may have as the host's.
+#[diagnostic::on_unimplemented(
+    message = "`host(..)` takes numbers and truth values",
+    label = "not a number of the host"
+)]
+pub trait HostCapture {
+    /// The value.
+    type Value: Copy;
+    /// The value as the host has it.
+    fn host(&self) -> Self::Value;
+}
+
+impl<T: HostCapture + ?Sized> HostCapture for &T {
+    type Value = T::Value;
+
+    #[inline(always)]
+    fn host(&self) -> T::Value {
+        T::host(self)
+    }
+}
+
+/// A value of the host where one of the machine meets it.
+pub trait HostUse<M: Machine> {
+    /// What it is on the machine; integers stay the host's until they meet others.
+    type Used;
+    /// The value.
+    fn value(self, m: &M) -> Self::Used;
+}
+
+macro_rules! host_number {
+    ($($host:ty),+) => {
+        $(
+            impl HostCapture for $host {
+                type Value = Self;
+
+                #[inline(always)]
+                fn host(&self) -> Self {
+                    *self
+                }
+            }
+
+            impl<M: Machine> HostUse<M> for $host {
+                type Used = Self;
+
+                #[inline(always)]
+                fn value(self, _: &M) -> Self {
+                    self
+                }
+            }
+        )+
+    };
+}
+
+host_number!(i32, u32, usize, bool);
+
+impl HostCapture for f32 {
+    type Value = Self;
+
+    #[inline(always)]
+    fn host(&self) -> Self {
+        *self
+    }
+}
+
+impl<M: Machine> HostUse<M> for f32 {
+    type Used = F<M>;
+
+    #[inline(always)]
+    fn value(self, m: &M) -> F<M> {
+        Coerce::coerce(self, m)
+    }
+}
