@@ -52,8 +52,8 @@ fn uniform_block(uniforms: &[Uniform], names: &mut Names) -> (String, Vec<u8>) {
     let mut bytes = Vec::new();
     for u in uniforms {
         let align = match u.ty {
-            Type::Vector(2) => 8,
-            Type::Vector(_) => 16,
+            Type::Vector(_, 2) => 8,
+            Type::Vector(..) => 16,
             _ => 4,
         };
         bytes.resize(usize::next_multiple_of(bytes.len(), align), 0);
