@@ -12,7 +12,8 @@ pub use crate::machine::{
 /// Traits of associated functions.
 pub mod operations {
     pub use crate::machine::functions::{
-        F32Functions as _, Vec2New as _, Vec3New as _, Vec4New as _, VectorFunctions as _,
+        Affine3Functions as _, F32Functions as _, Mat3Functions as _, Mat4Functions as _,
+        Vec2New as _, Vec3New as _, Vec4New as _, VectorFunctions as _,
     };
 }
 

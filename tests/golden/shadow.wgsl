@@ -89,9 +89,9 @@ fn walls_ids_at(i: u32) -> u32 {
 fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
     var result: vec3<f32>;
     if (k == 0u) {
-        result = vec3<f32>(v.y, v.z, v.x);
+        result = v.yzx;
     } else if (k == 1u) {
-        result = vec3<f32>(v.z, v.x, v.y);
+        result = v.zxy;
     } else {
         result = v;
     }

@@ -103,7 +103,9 @@ fn normal(x: f32) -> f32 {
 pub fn each_leaf(schema: &Schema, offset: usize, visit: &mut impl FnMut(usize, &Schema)) {
     match schema {
         Schema::Host => {}
-        Schema::Vector(n) => (0..*n).for_each(|i| visit(offset + 4 * i, &Schema::F32)),
+        Schema::Vector(element, n) => {
+            (0..*n).for_each(|i| visit(offset + element.size() * i, element));
+        }
         Schema::Array { element, count, stride } => {
             (0..*count).for_each(|i| each_leaf(element, offset + i * stride, visit));
         }

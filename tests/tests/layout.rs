@@ -113,9 +113,9 @@ fn scenes() -> Result<(), raydsl::bvh::BuildError> {
     assert_type::<Shaded>(&wgsl, "outputs");
     let offset = |name, offset, schema| raydsl::machine::Field { name, offset, schema };
     let node: &'static [_] = Box::leak(Box::new([
-        offset("min", std::mem::offset_of!(Node, min), &Schema::Vector(3)),
+        offset("min", std::mem::offset_of!(Node, min), &Schema::Vector(&Schema::F32, 3)),
         offset("first", std::mem::offset_of!(Node, first), &Schema::U32),
-        offset("max", std::mem::offset_of!(Node, max), &Schema::Vector(3)),
+        offset("max", std::mem::offset_of!(Node, max), &Schema::Vector(&Schema::F32, 3)),
         offset("count", std::mem::offset_of!(Node, count), &Schema::U32),
     ]));
     let node = Schema::Struct { name: "Node", fields: node, size: size_of::<Node>() };

@@ -9,9 +9,9 @@ use crate::machine::{Field, Leaves, Machine, Resource, Schema, Type, Value, wgsl
 pub(crate) const NODE_SCHEMA: &Schema = &Schema::Struct {
     name: "Node",
     fields: &[
-        Field { name: "min", offset: 0, schema: &Schema::Vector(3) },
+        Field { name: "min", offset: 0, schema: &Schema::Vector(&Schema::F32, 3) },
         Field { name: "first", offset: 12, schema: &Schema::U32 },
-        Field { name: "max", offset: 16, schema: &Schema::Vector(3) },
+        Field { name: "max", offset: 16, schema: &Schema::Vector(&Schema::F32, 3) },
         Field { name: "count", offset: 28, schema: &Schema::U32 },
     ],
     size: 32,

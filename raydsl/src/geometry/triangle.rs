@@ -3,7 +3,8 @@
 use glam::{Vec3, vec3};
 
 use super::{Aabb, Hit, Ray};
-use crate::machine::functions::{clamp, max, min, vec3};
+use crate::machine::functions::vec3;
+use crate::machine::generic::{clamp, max, min};
 use crate::{kernel, primitive};
 
 /// What a triangle's hit may be off by, as a sphere's: the sheared vertices carry at most 6 eps of

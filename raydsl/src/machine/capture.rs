@@ -2,12 +2,15 @@
 
 use std::borrow::Cow;
 
-use glam::{Vec2, Vec3, Vec4};
+use glam::{
+    Affine3, BVec2, BVec3, BVec4, IVec2, IVec3, IVec4, Mat3, Mat4, UVec2, UVec3, UVec4, Vec2, Vec3,
+    Vec4,
+};
 
 use crate::bvh;
 use crate::geometry::Primitive;
 
-use super::{F, I, Machine, Type, U, Usize, V2, V3, V4, Value, wgsl::BufferKey};
+use super::{Machine, Type, Value, wgsl::BufferKey};
 
 /// Data that recorded kernels read from buffers.
 pub trait Resource {
@@ -87,18 +90,18 @@ impl<M: Machine, T: Capture<M> + ?Sized> Capture<M> for &T {
 }
 
 macro_rules! capture_number {
-    ($($host:ty => $twin:ident),+) => {
+    ($($host:ty),+ $(,)?) => {
         $(
             impl<M: Machine> Capture<M> for $host {
-                type On<'c> = $twin<M>;
+                type On<'c> = <$host as Type>::On<M>;
 
                 #[inline(always)]
-                fn capture(&self, m: &M, name: &'static str) -> $twin<M> {
+                fn capture(&self, m: &M, name: &'static str) -> <$host as Type>::On<M> {
                     m.capture(name, *self)
                 }
 
                 #[inline(always)]
-                fn constant(&self, m: &M) -> $twin<M> {
+                fn constant(&self, m: &M) -> <$host as Type>::On<M> {
                     <$host as Type>::splat(m, *self)
                 }
             }
@@ -106,7 +109,10 @@ macro_rules! capture_number {
     };
 }
 
-capture_number!(f32 => F, i32 => I, u32 => U, usize => Usize, Vec2 => V2, Vec3 => V3, Vec4 => V4);
+capture_number!(
+    f32, i32, u32, usize, Vec2, Vec3, Vec4, IVec2, IVec3, IVec4, UVec2, UVec3, UVec4, BVec2, BVec3,
+    BVec4, Mat3, Mat4, Affine3,
+);
 
 /// An array is a value: its elements are numbers of the kernel, and a computed index chooses among
 /// them. A table is better captured as a slice.

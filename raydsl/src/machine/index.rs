@@ -124,6 +124,6 @@ choose!(f32 F32 f32_select, i32 I32 i32_select, u32 U32 u32_select, bool Bool bo
 
 /// `a` in the lanes that have `c`, else `b`.
 #[inline(always)]
-fn choose<M: Machine, V: Value<M>>(m: &M, c: M::Bool, a: V, b: V) -> V {
+pub(crate) fn choose<M: Machine, V: Value<M>>(m: &M, c: M::Bool, a: V, b: V) -> V {
     V::zip(m, a, b, &mut Choose(c))
 }

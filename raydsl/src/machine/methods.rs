@@ -4,9 +4,7 @@
 //! part of the trait, so that the methods of a user's types and those of the library meet without
 //! an import.
 
-use super::{
-    B, Coerce, F, F32Binary, F32Unary, I, IntBinary, Machine, Type, U, Usize, V2, V3, V4, Var,
-};
+use super::{B, Coerce, Compare, IntBinary, Machine, Type, U, Usize, Var};
 use crate::bvh;
 use crate::geometry::{HitOn, Primitive, RayOn};
 
@@ -119,9 +117,10 @@ pub trait HostMethod<const NAME: u64, M: Machine, A> {
     }
 }
 
+/// `method!([generics] Type, "name", |m, self, argument: Type, ..| -> Result { .. })`.
 macro_rules! method {
-    ($t:ty, $name:literal, |$m:ident, $s:ident| -> $out:ty { $e:expr }) => {
-        impl<M: Machine> Method<{ name($name) }, M, ()> for $t {
+    ([$($g:tt)*] $t:ty, $name:literal, |$m:ident, $s:ident| -> $out:ty { $e:expr }) => {
+        impl<M: Machine, $($g)*> Method<{ name($name) }, M, ()> for $t {
             type Output = $out;
 
             #[inline(always)]
@@ -131,12 +130,15 @@ macro_rules! method {
             }
         }
     };
-    ($t:ty, $name:literal, |$m:ident, $s:ident, $a:ident: $at:ty| -> $out:ty { $e:expr }) => {
-        impl<M: Machine, A: Coerce<M, $at>> Method<{ name($name) }, M, (A,)> for $t {
+    (
+        [$($g:tt)*] $t:ty, $name:literal,
+        |$m:ident, $s:ident, $a:ident: $at:ty| -> $out:ty { $e:expr }
+    ) => {
+        impl<M: Machine, A1: Coerce<M, $at>, $($g)*> Method<{ name($name) }, M, (A1,)> for $t {
             type Output = $out;
 
             #[inline(always)]
-            fn call(self, $m: &M, ($a,): (A,)) -> $out {
+            fn call(self, $m: &M, ($a,): (A1,)) -> $out {
                 let $s = self;
                 let $a: $at = $a.coerce($m);
                 $e
@@ -144,10 +146,10 @@ macro_rules! method {
         }
     };
     (
-        $t:ty, $name:literal,
+        [$($g:tt)*] $t:ty, $name:literal,
         |$m:ident, $s:ident, $a:ident: $at:ty, $b:ident: $bt:ty| -> $out:ty { $e:expr }
     ) => {
-        impl<M: Machine, A1: Coerce<M, $at>, A2: Coerce<M, $bt>>
+        impl<M: Machine, A1: Coerce<M, $at>, A2: Coerce<M, $bt>, $($g)*>
             Method<{ name($name) }, M, (A1, A2)> for $t
         {
             type Output = $out;
@@ -163,149 +165,36 @@ macro_rules! method {
     };
 }
 
-// f32
+mod float;
+mod integer;
+mod matrix;
+mod swizzle;
+mod vector;
 
-/// std's `min` and `max`: where one operand is NaN they give the other.
-#[inline(always)]
-fn number_of<M: Machine>(m: &M, op: F32Binary, a: F<M>, b: F<M>) -> F<M> {
-    let chosen = m.f32_binary(op, a.0, b.0);
-    let a_is_nan = m.f32_compare(super::Compare::Ne, a.0, a.0);
-    F(m.f32_select(a_is_nan, b.0, chosen))
-}
+pub(crate) use matrix::{inverse, inverse_affine};
+pub(crate) use vector::{cross, dot, normalize};
 
-macro_rules! f32_unary {
-    ($($name:literal $op:ident),+) => {
-        $(
-            method!(F<M>, $name, |m, a| -> F<M> { F(m.f32_unary(F32Unary::$op, a.0)) });
-            method!(V2<M>, $name, |m, a| -> V2<M> { V2::unary(m, F32Unary::$op, a) });
-            method!(V3<M>, $name, |m, a| -> V3<M> { V3::unary(m, F32Unary::$op, a) });
-            method!(V4<M>, $name, |m, a| -> V4<M> { V4::unary(m, F32Unary::$op, a) });
-        )+
-    };
-}
+// Sizes
 
-f32_unary!("abs" Abs, "floor" Floor, "ceil" Ceil, "trunc" Trunc);
-
-method!(F<M>, "sqrt", |m, a| -> F<M> { F(m.f32_unary(F32Unary::Sqrt, a.0)) });
-method!(F<M>, "min", |m, a, b: F<M>| -> F<M> { number_of(m, F32Binary::Min, a, b) });
-method!(F<M>, "max", |m, a, b: F<M>| -> F<M> { number_of(m, F32Binary::Max, a, b) });
-method!(F<M>, "clamp", |m, a, lo: F<M>, hi: F<M>| -> F<M> {
+method!([] Usize<M>, "min", |m, a, b: Usize<M>| -> Usize<M> {
+    Usize(m.u32_select(m.u32_compare(Compare::Lt, b.0, a.0), b.0, a.0))
+});
+method!([] Usize<M>, "max", |m, a, b: Usize<M>| -> Usize<M> {
+    Usize(m.u32_select(m.u32_compare(Compare::Lt, a.0, b.0), b.0, a.0))
+});
+method!([] Usize<M>, "wrapping_add", |m, a, b: Usize<M>| -> Usize<M> {
+    Usize(m.u32_binary(IntBinary::WrappingAdd, a.0, b.0))
+});
+method!([] Usize<M>, "wrapping_sub", |m, a, b: Usize<M>| -> Usize<M> {
+    Usize(m.u32_binary(IntBinary::WrappingSub, a.0, b.0))
+});
+method!([] Usize<M>, "saturating_sub", |m, a, b: Usize<M>| -> Usize<M> {
     {
-        let raised = m.f32_binary(F32Binary::Max, a.0, lo.0);
-        F(m.f32_binary(F32Binary::Min, raised, hi.0))
+        let difference = m.u32_binary(IntBinary::WrappingSub, a.0, b.0);
+        let below = m.u32_compare(Compare::Lt, a.0, b.0);
+        Usize(m.u32_select(below, m.u32(0), difference))
     }
 });
-method!(F<M>, "mul_add", |m, a, b: F<M>, c: F<M>| -> F<M> { F(m.f32_mul_add(a.0, b.0, c.0)) });
-method!(F<M>, "to_bits", |m, a| -> U<M> { U(m.f32_to_bits(a.0)) });
-method!(F<M>, "recip", |m, a| -> F<M> { F(m.f32_binary(F32Binary::Div, m.f32(1.0), a.0)) });
-method!(F<M>, "copysign", |m, a, sign: F<M>| -> F<M> {
-    {
-        let bits = |x: M::F32, mask| m.u32_binary(IntBinary::And, m.f32_to_bits(x), m.u32(mask));
-        let (size, sign) = (bits(a.0, 0x7fff_ffff), bits(sign.0, 0x8000_0000));
-        F(m.f32_from_bits(m.u32_binary(IntBinary::Or, size, sign)))
-    }
-});
-
-// Integers
-
-macro_rules! int_methods {
-    ($($t:ident $binary:ident $compare:ident $select:ident),+) => {
-        $(
-            method!($t<M>, "wrapping_add", |m, a, b: $t<M>| -> $t<M> {
-                $t(m.$binary(IntBinary::WrappingAdd, a.0, b.0))
-            });
-            method!($t<M>, "wrapping_sub", |m, a, b: $t<M>| -> $t<M> {
-                $t(m.$binary(IntBinary::WrappingSub, a.0, b.0))
-            });
-            method!($t<M>, "wrapping_mul", |m, a, b: $t<M>| -> $t<M> {
-                $t(m.$binary(IntBinary::WrappingMul, a.0, b.0))
-            });
-            method!($t<M>, "min", |m, a, b: $t<M>| -> $t<M> {
-                $t(m.$select(m.$compare(super::Compare::Lt, b.0, a.0), b.0, a.0))
-            });
-            method!($t<M>, "max", |m, a, b: $t<M>| -> $t<M> {
-                $t(m.$select(m.$compare(super::Compare::Lt, a.0, b.0), b.0, a.0))
-            });
-        )+
-    };
-}
-
-int_methods!(
-    I i32_binary i32_compare i32_select,
-    U u32_binary u32_compare u32_select,
-    Usize u32_binary u32_compare u32_select
-);
-
-// Vectors
-
-/// The sum of products, left to right.
-#[inline(always)]
-fn dot<M: Machine, const N: usize>(m: &M, a: [M::F32; N], b: [M::F32; N]) -> M::F32 {
-    let mut sum = m.f32_binary(F32Binary::Mul, a[0], b[0]);
-    for i in 1..N {
-        sum = m.f32_binary(F32Binary::Add, sum, m.f32_binary(F32Binary::Mul, a[i], b[i]));
-    }
-    sum
-}
-
-macro_rules! vector_methods {
-    ($($v:ident),+) => {
-        $(
-            method!($v<M>, "dot", |m, a, b: $v<M>| -> F<M> { F(dot(m, a.array(), b.array())) });
-            method!($v<M>, "length_squared", |m, a| -> F<M> {
-                F(dot(m, a.array(), a.array()))
-            });
-            method!($v<M>, "length", |m, a| -> F<M> {
-                F(m.f32_unary(F32Unary::Sqrt, dot(m, a.array(), a.array())))
-            });
-            method!($v<M>, "normalize", |m, a| -> $v<M> {{
-                let length = m.f32_unary(F32Unary::Sqrt, dot(m, a.array(), a.array()));
-                let scale = m.f32_binary(F32Binary::Div, m.f32(1.0), length);
-                $v::binary(m, F32Binary::Mul, a, $v::splat(F(scale)))
-            }});
-            method!($v<M>, "min", |m, a, b: $v<M>| -> $v<M> {
-                $v::binary(m, F32Binary::Min, b, a)
-            });
-            method!($v<M>, "max", |m, a, b: $v<M>| -> $v<M> {
-                $v::binary(m, F32Binary::Max, b, a)
-            });
-        )+
-    };
-}
-
-// Not `Vec4`: glam sums its products in another order on some platforms.
-vector_methods!(V2, V3);
-
-method!(V3<M>, "cross", |m, a, b: V3<M>| -> V3<M> {
-    {
-        let mul = |x: F<M>, y: F<M>| m.f32_binary(F32Binary::Mul, x.0, y.0);
-        let minor = |x, y, z, w| F(m.f32_binary(F32Binary::Sub, mul(x, y), mul(z, w)));
-        V3 {
-            x: minor(a.y, b.z, b.y, a.z),
-            y: minor(a.z, b.x, b.z, a.x),
-            z: minor(a.x, b.y, b.x, a.y),
-        }
-    }
-});
-
-// glam's `min` and `max` of vectors give the second operand where one is NaN, and its elements are
-// compared from the last to the first.
-macro_rules! element {
-    ($v:ident: $last:ident $($c:ident)*) => {
-        method!($v<M>, "min_element", |m, a| -> F<M> {
-            [$(a.$c),*].into_iter().fold(a.$last, |x, y| F(m.f32_binary(F32Binary::Min, x.0, y.0)))
-        });
-        method!($v<M>, "max_element", |m, a| -> F<M> {
-            [$(a.$c),*].into_iter().fold(a.$last, |x, y| F(m.f32_binary(F32Binary::Max, x.0, y.0)))
-        });
-    };
-}
-
-element!(V2: y x);
-element!(V3: z y x);
-
-method!(V4<M>, "truncate", |_m, a| -> V3<M> { V3 { x: a.x, y: a.y, z: a.z } });
-method!(V3<M>, "extend", |_m, a, w: F<M>| -> V4<M> { V4 { x: a.x, y: a.y, z: a.z, w } });
 
 // Slices, and trees over primitives
 
@@ -323,7 +212,7 @@ impl<M: Machine, T: Type> Method<{ name("is_empty") }, M, ()> for bvh::On<'_, T>
 
     #[inline(always)]
     fn call(self, m: &M, (): ()) -> B<M> {
-        B(m.u32_compare(super::Compare::Eq, m.len(&self).0, m.u32(0)))
+        B(m.u32_compare(Compare::Eq, m.len(&self).0, m.u32(0)))
     }
 }
 

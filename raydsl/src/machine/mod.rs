@@ -11,13 +11,16 @@
 //! condition itself, a packet whether any lane is left, the recorder always `true`.
 
 mod batch;
+mod bits;
 mod call;
 mod capture;
 mod control;
 pub(crate) mod functions;
+pub mod generic;
 pub mod host;
 pub(crate) mod index;
 mod lanes;
+pub(crate) mod matrix;
 mod methods;
 mod ops;
 mod packet;
@@ -49,7 +52,7 @@ pub use schema::{Field, Schema};
 pub use twin::{Inferred, Twin};
 pub use types::{LaneMachine, Type};
 pub use value::{B, F, I, Leaves, U, Usize, Value};
-pub use vector::{V2, V3, V4};
+pub use vector::{V2, V3, V4, X2, X3, X4};
 
 /// An operation on one `f32`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -99,6 +102,16 @@ pub enum IntBinary {
     WrappingAdd,
     WrappingSub,
     WrappingMul,
+}
+
+/// An operation on the bits of one integer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "the names are those of the methods of `u32`")]
+pub enum U32Unary {
+    CountOnes,
+    LeadingZeros,
+    TrailingZeros,
+    ReverseBits,
 }
 
 /// A comparison; with a NaN operand only `Ne` holds.
@@ -201,6 +214,40 @@ pub trait Machine: Sized + 'static {
             #[inline(always)]
             |i| self.f32_unary(op, a[i]),
         )
+    }
+
+    /// An operation on every component of two vectors of `i32`.
+    #[inline(always)]
+    fn i32_vector_binary<const N: usize>(
+        &self,
+        op: IntBinary,
+        a: [Self::I32; N],
+        b: [Self::I32; N],
+    ) -> [Self::I32; N] {
+        fill(
+            #[inline(always)]
+            |i| self.i32_binary(op, a[i], b[i]),
+        )
+    }
+
+    /// An operation on every component of two vectors of `u32`.
+    #[inline(always)]
+    fn u32_vector_binary<const N: usize>(
+        &self,
+        op: IntBinary,
+        a: [Self::U32; N],
+        b: [Self::U32; N],
+    ) -> [Self::U32; N] {
+        fill(
+            #[inline(always)]
+            |i| self.u32_binary(op, a[i], b[i]),
+        )
+    }
+
+    /// Counts and turns bits.
+    #[inline(always)]
+    fn u32_unary(&self, op: U32Unary, a: Self::U32) -> Self::U32 {
+        bits::u32_unary(self, op, a)
     }
 
     // Control flow. Every hook that returns `bool` says whether to run the code that follows.

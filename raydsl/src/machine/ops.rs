@@ -4,9 +4,10 @@
 //! the macro needs no types. Integers that appear in the source as literals stay numbers of the
 //! host until they meet a value of the machine; `f32` literals become values at once.
 
+use super::vector::{Amounts, Arithmetic, Bits, Broadcast, Floats, Integer, IsVector, Vector};
 use super::{
-    B, BoolBinary, Compare, F, F32Binary, F32Unary, I, IntBinary, Machine, Type, U, Usize, V2, V3,
-    V4, Value, Var,
+    B, BoolBinary, Compare, F, F32Binary, F32Unary, I, IntBinary, Machine, Type, U, Usize, Value,
+    Var, X2, X3, X4,
 };
 
 macro_rules! binary_traits {
@@ -150,7 +151,7 @@ macro_rules! varying {
     };
 }
 
-varying!(F, I, U, Usize, B, V2, V3, V4; i32 => I i32, u32 => U u32, bool => B bool);
+varying!(F, I, U, Usize, B; i32 => I i32, u32 => U u32, bool => B bool);
 
 impl<M: Machine> Varying<M> for usize {
     type Value = Usize<M>;
@@ -254,25 +255,24 @@ macro_rules! f32_operators {
             operator!($trait::$method, F<M>, F<M>, F<M>, |m, a, b| {
                 F(m.f32_binary(F32Binary::$op, a.0, b.0))
             });
-            f32_operators!(@vector $trait::$method $op, V2);
-            f32_operators!(@vector $trait::$method $op, V3);
-            f32_operators!(@vector $trait::$method $op, V4);
         )+
-    };
-    (@vector $trait:ident :: $method:ident $op:ident, $v:ident) => {
-        operator!($trait::$method, $v<M>, $v<M>, $v<M>, |m, a, b| {
-            $v::binary(m, F32Binary::$op, a, b)
-        });
-        operator!($trait::$method, $v<M>, F<M>, $v<M>, |m, a, b| {
-            $v::binary(m, F32Binary::$op, a, $v::splat(b))
-        });
-        operator!($trait::$method, F<M>, $v<M>, $v<M>, |m, a, b| {
-            $v::binary(m, F32Binary::$op, $v::splat(a), b)
-        });
     };
 }
 
 f32_operators!(OpAdd::add Add, OpSub::sub Sub, OpMul::mul Mul, OpDiv::div Div);
+
+/// There is none: this says why, and what to write.
+impl<M: Machine, R> OpRem<M, R> for F<M>
+where
+    F<M>: Integer<M>,
+{
+    type Output = F<M>;
+
+    #[inline(always)]
+    fn rem(_: &M, a: F<M>, _: R) -> F<M> {
+        a
+    }
+}
 
 macro_rules! int_operators {
     ($($trait:ident :: $method:ident $op:ident $symbol:tt),+) => {
@@ -316,6 +316,75 @@ macro_rules! mixed_shift {
 
 mixed_shift!(OpShl::shl Shl, OpShr::shr Shr);
 
+// Vectors with vectors and with single numbers on either side.
+
+macro_rules! vector_operators {
+    ($bound:ident $right:ident :: $convert:ident |$m:ident, $v:ident, $op:ident, $a:ident, $b:ident| $e:expr;
+     $($trait:ident :: $method:ident $name:ident),+) => {
+        $(
+            vector_operators!(@one $bound $right::$convert |$m, $v, $op, $a, $b| $e;
+                $trait::$method $name X2);
+            vector_operators!(@one $bound $right::$convert |$m, $v, $op, $a, $b| $e;
+                $trait::$method $name X3);
+            vector_operators!(@one $bound $right::$convert |$m, $v, $op, $a, $b| $e;
+                $trait::$method $name X4);
+        )+
+    };
+    (@one $bound:ident $right:ident :: $convert:ident |$m:ident, $v:ident, $op:ident, $a:ident, $b:ident| $e:expr;
+     $trait:ident :: $method:ident $name:ident $x:ident) => {
+        impl<M: Machine, E: $bound<M>, R> $trait<M, R> for $x<E>
+        where
+            $x<E>: $right<M, R>,
+        {
+            type Output = $x<E>;
+
+            #[inline(always)]
+            fn $method($m: &M, $a: $x<E>, b: R) -> $x<E> {
+                type $v<E> = $x<E>;
+                let $op = IntBinary::$name;
+                let $b = $x::<E>::$convert($m, b);
+                $e
+            }
+        }
+    };
+}
+
+vector_operators!(Arithmetic Broadcast::broadcast |m, X, op, a, b| X::<E>::arithmetic(m, op, a, b);
+    OpAdd::add Add, OpSub::sub Sub, OpMul::mul Mul, OpDiv::div Div);
+vector_operators!(Integer Broadcast::broadcast |m, X, op, a, b| X::<E>::arithmetic(m, op, a, b);
+    OpRem::rem Rem);
+vector_operators!(Integer Amounts::amounts |m, X, op, a, b| X::<E>::arithmetic(m, op, a, b);
+    OpShl::shl Shl, OpShr::shr Shr);
+vector_operators!(Bits Broadcast::broadcast |m, X, op, a, b| {
+    X::of(E::bits_each(m, op, a.components(), b.components()))
+};
+    OpBitAnd::bit_and And, OpBitOr::bit_or Or, OpBitXor::bit_xor Xor);
+
+macro_rules! number_with_vector {
+    ($($t:ty => $component:ident: $($trait:ident :: $method:ident $op:ident),+;)+) => {
+        $($(
+            impl<M: Machine, V: IsVector + Vector<M, Component = $component<M>>> $trait<M, V>
+                for $t {
+                type Output = V;
+
+                #[inline(always)]
+                fn $method(m: &M, a: $t, b: V) -> V {
+                    let a: $component<M> = Coerce::coerce(a, m);
+                    V::arithmetic(m, IntBinary::$op, V::of_one(a), b)
+                }
+            }
+        )+)+
+    };
+}
+
+number_with_vector! {
+    F<M> => F: OpAdd::add Add, OpSub::sub Sub, OpMul::mul Mul, OpDiv::div Div;
+    I<M> => I: OpAdd::add Add, OpSub::sub Sub, OpMul::mul Mul, OpDiv::div Div, OpRem::rem Rem;
+    U<M> => U: OpAdd::add Add, OpSub::sub Sub, OpMul::mul Mul, OpDiv::div Div, OpRem::rem Rem;
+    i32 => I: OpAdd::add Add, OpSub::sub Sub, OpMul::mul Mul, OpDiv::div Div, OpRem::rem Rem;
+    u32 => U: OpAdd::add Add, OpSub::sub Sub, OpMul::mul Mul, OpDiv::div Div, OpRem::rem Rem;
+}
+
 // Truth values: `&&` and `&` differ only in what the macro does with the right side.
 
 macro_rules! bool_operators {
@@ -356,9 +425,6 @@ macro_rules! unary {
 unary!(OpNeg::neg, F<M>, |m, a| F(m.f32_unary(F32Unary::Neg, a.0)));
 unary!(OpNeg::neg, I<M>, |m, a| I(m.i32_neg(a.0)));
 unary!(OpNeg::neg, i32, |_m, a| -a);
-unary!(OpNeg::neg, V2<M>, |m, a| V2::unary(m, F32Unary::Neg, a));
-unary!(OpNeg::neg, V3<M>, |m, a| V3::unary(m, F32Unary::Neg, a));
-unary!(OpNeg::neg, V4<M>, |m, a| V4::unary(m, F32Unary::Neg, a));
 unary!(OpNot::not, B<M>, |m, a| B(m.bool_not(a.0)));
 unary!(OpNot::not, I<M>, |m, a| I(m.i32_not(a.0)));
 unary!(OpNot::not, U<M>, |m, a| U(m.u32_not(a.0)));
@@ -366,6 +432,47 @@ unary!(OpNot::not, bool, |_m, a| !a);
 unary!(OpNot::not, i32, |_m, a| !a);
 unary!(OpNot::not, u32, |_m, a| !a);
 unary!(OpNot::not, Usize<M>, |m, a| Usize(m.u32_not(a.0)));
+
+macro_rules! vector_unary {
+    ($($v:ident),+) => {
+        $(
+            impl<M: Machine> OpNeg<M> for $v<F<M>> {
+                #[inline(always)]
+                fn neg(m: &M, a: Self) -> Self {
+                    Self::unary(m, F32Unary::Neg, a)
+                }
+            }
+
+            impl<M: Machine> OpNeg<M> for $v<I<M>> {
+                #[inline(always)]
+                fn neg(m: &M, a: Self) -> Self {
+                    a.each(#[inline(always)] |c| Arithmetic::neg(m, c))
+                }
+            }
+
+            impl<M: Machine, E: Bits<M>> OpNot<M> for $v<E> {
+                #[inline(always)]
+                fn not(m: &M, a: Self) -> Self {
+                    a.each(#[inline(always)] |c| E::not(m, c))
+                }
+            }
+
+            /// `==` and `!=` of whole vectors.
+            impl<M: Machine, E: Equal<M>> OpCompare<M, $v<E>> for $v<E> {
+                type Output = B<M>;
+
+                #[inline(always)]
+                fn compare(m: &M, op: Compare, a: Self, b: Self) -> B<M> {
+                    let join = if op == Compare::Ne { BoolBinary::Or } else { BoolBinary::And };
+                    let each = a.both(b, #[inline(always)] |x, y| E::equal(m, op, x, y));
+                    each.fold(#[inline(always)] |x, y| B(m.bool_binary(join, x.0, y.0)))
+                }
+            }
+        )+
+    };
+}
+
+vector_unary!(X2, X3, X4);
 
 // Comparisons.
 
@@ -431,6 +538,27 @@ compare!(B<M>, B<M>, B<M>, |m, op, a, b| compare_bool(m, op, a.0, b.0));
 compare!(B<M>, bool, B<M>, |m, op, a, b| compare_bool(m, op, a.0, m.bool(b)));
 compare!(bool, B<M>, B<M>, |m, op, a, b| compare_bool(m, op, m.bool(a), b.0));
 compare!(bool, bool, bool, |_m, op, a, b| compare_host(op, a, b));
+
+/// What vectors of it need for `==` and `!=`.
+pub trait Equal<M: Machine>: super::vector::Component<M> {
+    /// Compares two components.
+    fn equal(m: &M, op: Compare, a: Self, b: Self) -> B<M>;
+}
+
+macro_rules! equal {
+    ($($t:ident),+) => {
+        $(
+            impl<M: Machine> Equal<M> for $t<M> {
+                #[inline(always)]
+                fn equal(m: &M, op: Compare, a: Self, b: Self) -> B<M> {
+                    OpCompare::compare(m, op, a, b)
+                }
+            }
+        )+
+    };
+}
+
+equal!(F, I, U, B);
 
 // Conversions.
 

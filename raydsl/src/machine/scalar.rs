@@ -73,6 +73,15 @@ pub(super) fn f32_binary(op: F32Binary, a: f32, b: f32) -> f32 {
     }
 }
 
+pub(super) fn u32_unary(op: U32Unary, a: u32) -> u32 {
+    match op {
+        U32Unary::CountOnes => a.count_ones(),
+        U32Unary::LeadingZeros => a.leading_zeros(),
+        U32Unary::TrailingZeros => a.trailing_zeros(),
+        U32Unary::ReverseBits => a.reverse_bits(),
+    }
+}
+
 macro_rules! int_binary {
     ($name:ident, $t:ty) => {
         /// The defined result of every operation; `None` where Rust calls it an error.

@@ -19,8 +19,8 @@ pub enum Schema {
         /// Bytes in memory: 1 or 2.
         bytes: usize,
     },
-    /// `Vec2`, `Vec3`, `Vec4`: that many `f32` without a gap.
-    Vector(usize),
+    /// A vector of glam's: that many scalars (the first part) without a gap.
+    Vector(&'static Schema, usize),
     /// `[T; N]`.
     Array {
         /// The element.
@@ -59,7 +59,7 @@ impl Schema {
     pub fn leaves(&self) -> usize {
         match self {
             Self::F32 | Self::I32 | Self::U32 | Self::Bool | Self::Small { .. } => 1,
-            Self::Vector(n) => *n,
+            Self::Vector(_, n) => *n,
             Self::Array { element, count, .. } => element.leaves() * count,
             Self::Struct { fields, .. } => fields.iter().map(|f| f.schema.leaves()).sum(),
             Self::Host => 0,
@@ -72,7 +72,7 @@ impl Schema {
             Self::F32 | Self::I32 | Self::U32 => 4,
             Self::Bool => 1,
             Self::Small { bytes } => *bytes,
-            Self::Vector(n) => 4 * n,
+            Self::Vector(element, n) => element.size() * n,
             Self::Array { count, stride, .. } => count * stride,
             Self::Struct { size, .. } => *size,
             Self::Host => 0,

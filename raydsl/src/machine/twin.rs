@@ -3,8 +3,12 @@
 //! `<T as Type>::On<M>` leads from a type to its twin, and rustc cannot go back: the type
 //! parameters of a generic kernel are inferred from its arguments through [`Inferred`].
 
-use super::{B, F, I, Machine, Type, U, Usize, V2, V3, V4, Value, Var};
-use glam::{Vec2, Vec3, Vec4};
+use glam::{
+    Affine3, BVec2, BVec3, BVec4, IVec2, IVec3, IVec4, Mat3, Mat4, UVec2, UVec3, UVec4, Vec2, Vec3,
+    Vec4,
+};
+
+use super::{Machine, Type, Value, Var};
 
 /// An argument that says what type of the host it has.
 #[diagnostic::on_unimplemented(
@@ -52,9 +56,9 @@ macro_rules! inferred_host {
 inferred_host!(i32, u32, usize, bool);
 
 macro_rules! twin {
-    ($($host:ty => $twin:ident),+ $(,)?) => {
+    ($($host:ty),+ $(,)?) => {
         $(
-            impl<M: Machine> Inferred<M> for $twin<M> {
+            impl<M: Machine> Inferred<M> for <$host as Type>::On<M> {
                 type Host = $host;
 
                 #[inline(always)]
@@ -63,7 +67,7 @@ macro_rules! twin {
                 }
             }
 
-            impl<M: Machine> Twin<M> for $twin<M> {
+            impl<M: Machine> Twin<M> for <$host as Type>::On<M> {
                 #[inline(always)]
                 fn from_host(v: Self) -> Self {
                     v
@@ -74,8 +78,8 @@ macro_rules! twin {
 }
 
 twin!(
-    f32 => F, i32 => I, u32 => U, usize => Usize, bool => B,
-    Vec2 => V2, Vec3 => V3, Vec4 => V4,
+    f32, i32, u32, usize, bool, Vec2, Vec3, Vec4, IVec2, IVec3, IVec4, UVec2, UVec3, UVec4, BVec2,
+    BVec3, BVec4, Mat3, Mat4, Affine3,
 );
 
 impl<M: Machine, V: Inferred<M>, const N: usize> Inferred<M> for [V; N] {

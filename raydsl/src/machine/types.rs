@@ -1,8 +1,8 @@
 //! Types of the host that kernels understand, and how they travel to lanes and back.
 
-use glam::{Vec2, Vec3, Vec4};
+use glam::{BVec2, BVec3, BVec4, IVec2, IVec3, IVec4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 
-use super::{B, F, Field, I, Machine, Schema, U, Usize, V2, V3, V4, Value};
+use super::{B, F, Field, I, Machine, Schema, U, Usize, Value, X2, X3, X4};
 
 /// A type that kernels may use: it has a twin on every machine.
 ///
@@ -124,41 +124,50 @@ impl Type for usize {
 }
 
 macro_rules! vector_type {
-    ($host:ident, $twin:ident, $n:literal, $($c:ident),+) => {
+    ($twin:ident $n:literal $all:tt: $($host:ident of $element:ident),+) => {
+        $(vector_type!(@one $twin $n $all $host $element);)+
+    };
+    (@one $twin:ident $n:literal ($($c:ident)+) $host:ident $element:ident) => {
         impl Type for $host {
-            type On<M: Machine> = $twin<M>;
+            type On<M: Machine> = $twin<<$element as Type>::On<M>>;
 
-            const SCHEMA: &'static Schema = &Schema::Vector($n);
+            const SCHEMA: &'static Schema = &Schema::Vector(<$element as Type>::SCHEMA, $n);
 
             #[inline(always)]
-            fn splat<M: Machine>(m: &M, v: Self) -> $twin<M> {
-                $twin { $($c: f32::splat(m, v.$c)),+ }
+            fn splat<M: Machine>(m: &M, v: Self) -> Self::On<M> {
+                $twin { $($c: <$element as Type>::splat(m, v.$c)),+ }
             }
 
             #[inline(always)]
-            fn from_lanes<M: LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> $twin<M> {
-                $twin { $($c: f32::from_lanes(m, &|l| f(l).$c)),+ }
+            fn from_lanes<M: LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> Self::On<M> {
+                $twin { $($c: <$element as Type>::from_lanes(m, &|l| f(l).$c)),+ }
             }
 
             #[inline(always)]
-            fn lane<M: LaneMachine>(v: &$twin<M>, lane: usize) -> Self {
-                Self::new($(f32::lane(&v.$c, lane)),+)
+            fn lane<M: LaneMachine>(v: &Self::On<M>, lane: usize) -> Self {
+                Self::new($(<$element as Type>::lane(&v.$c, lane)),+)
             }
 
             fn write(&self, out: &mut [u8]) {
-                out[..size_of::<Self>()].copy_from_slice(bytemuck::bytes_of(self));
+                let each = out.chunks_exact_mut(size_of::<$element>());
+                for (v, out) in [$(self.$c),+].iter().zip(each) {
+                    Type::write(v, out);
+                }
             }
 
             fn read(bytes: &[u8]) -> Self {
-                bytemuck::pod_read_unaligned(&bytes[..size_of::<Self>()])
+                let mut each = bytes.chunks_exact(size_of::<$element>()).map(<$element as Type>::read);
+                let mut next = || each.next().expect("one element for each component");
+                $(let $c = next();)+
+                Self::new($($c),+)
             }
         }
     };
 }
 
-vector_type!(Vec2, V2, 2, x, y);
-vector_type!(Vec3, V3, 3, x, y, z);
-vector_type!(Vec4, V4, 4, x, y, z, w);
+vector_type!(X2 2 (x y): Vec2 of f32, IVec2 of i32, UVec2 of u32, BVec2 of bool);
+vector_type!(X3 3 (x y z): Vec3 of f32, IVec3 of i32, UVec3 of u32, BVec3 of bool);
+vector_type!(X4 4 (x y z w): IVec4 of i32, UVec4 of u32, BVec4 of bool, Vec4 of f32);
 
 impl<T: Type, const N: usize> Type for [T; N] {
     type On<M: Machine> = [T::On<M>; N];

@@ -1,38 +1,441 @@
-//! The twins of glam's `Vec2`, `Vec3`, `Vec4`.
+//! The twins of glam's vectors, of floats, integers and truth values alike.
+//!
+//! One struct a size, generic over the component, so that what holds for every component is
+//! written once. [`Vector`] lets an operation be written once for all sizes.
 
-use super::{F, F32Binary, F32Unary, Leaves, Machine, Schema, Value};
+use super::{
+    B, Coerce, Compare, F, F32Binary, F32Unary, I, IntBinary, Leaves, Machine, OpCast, Schema, U,
+    Value, Varying, fill,
+};
 
-macro_rules! vector {
-    ($name:ident, $n:literal, $host:literal, $($c:ident $i:tt),+) => {
-        #[doc = concat!("`", $host, "` on machine `M`.")]
-        pub struct $name<M: Machine> {
-            $(#[doc = concat!("Component ", stringify!($c), ".")] pub $c: F<M>,)+
-        }
+/// `Vec2` on machine `M`.
+pub type V2<M> = X2<F<M>>;
+/// `Vec3` on machine `M`.
+pub type V3<M> = X3<F<M>>;
+/// `Vec4` on machine `M`.
+pub type V4<M> = X4<F<M>>;
 
-        impl<M: Machine> Clone for $name<M> {
+/// What a vector may consist of.
+pub trait Component<M: Machine>: Value<M> + Varying<M, Value = Self> {}
+
+impl<M: Machine> Component<M> for F<M> {}
+impl<M: Machine> Component<M> for I<M> {}
+impl<M: Machine> Component<M> for U<M> {}
+impl<M: Machine> Component<M> for B<M> {}
+
+/// A number, with arithmetic for one and for several at once.
+#[diagnostic::on_unimplemented(
+    message = "a kernel has no operator for these operands",
+    label = "not an operation of the kernel language"
+)]
+pub trait Arithmetic<M: Machine>: Component<M> {
+    /// `+`, `-`, `*`, `/`; of integers, the others too.
+    fn binary(m: &M, op: IntBinary, a: Self, b: Self) -> Self;
+    /// The same on every component.
+    fn binary_each<const N: usize>(m: &M, op: IntBinary, a: [Self; N], b: [Self; N]) -> [Self; N];
+    /// A comparison.
+    fn compare(m: &M, op: Compare, a: Self, b: Self) -> B<M>;
+    /// Component by component `if b < a { b } else { a }`, or with `max` `if a < b { b } else { a }`.
+    fn extreme_each<const N: usize>(m: &M, max: bool, a: [Self; N], b: [Self; N]) -> [Self; N];
+    /// The same for one number.
+    fn extreme(m: &M, max: bool, a: Self, b: Self) -> Self;
+    /// `-a`.
+    fn neg(m: &M, a: Self) -> Self;
+}
+
+/// The operators of integers alone.
+#[diagnostic::on_unimplemented(
+    message = "a kernel has no such operator for these operands",
+    label = "an operation of integers",
+    note = "of floats: `%` is not the same everywhere; write `x - y * (x / y).trunc()`, or with \
+            `floor` for a remainder that is never negative"
+)]
+pub trait Integer<M: Machine>: Arithmetic<M> {
+    /// Whether there are negative ones.
+    const SIGNED: bool;
+    /// The number `v`.
+    fn number(m: &M, v: i32) -> Self;
+    /// `if c { a } else { b }`.
+    fn choose(m: &M, c: B<M>, a: Self, b: Self) -> Self;
+    /// The bits.
+    fn to_u32(self, m: &M) -> U<M>;
+    /// The number of these bits.
+    fn from_u32(m: &M, bits: U<M>) -> Self;
+}
+
+/// What has `&`, `|`, `^`.
+#[diagnostic::on_unimplemented(
+    message = "a kernel has no such operator for these operands",
+    label = "an operation of integers and truth values"
+)]
+pub trait Bits<M: Machine>: Component<M> {
+    /// The operator on every component.
+    fn bits_each<const N: usize>(m: &M, op: IntBinary, a: [Self; N], b: [Self; N]) -> [Self; N];
+    /// `!` of one component.
+    fn not(m: &M, a: Self) -> Self;
+}
+
+/// The operation on floats; integers alone have the others.
+#[inline(always)]
+fn float_op(op: IntBinary) -> F32Binary {
+    match op {
+        IntBinary::Add => F32Binary::Add,
+        IntBinary::Sub => F32Binary::Sub,
+        IntBinary::Mul => F32Binary::Mul,
+        IntBinary::Div => F32Binary::Div,
+        _ => unreachable!("only integers have it"),
+    }
+}
+
+impl<M: Machine> Arithmetic<M> for F<M> {
+    #[inline(always)]
+    fn binary(m: &M, op: IntBinary, a: Self, b: Self) -> Self {
+        F(m.f32_binary(float_op(op), a.0, b.0))
+    }
+
+    #[inline(always)]
+    fn binary_each<const N: usize>(m: &M, op: IntBinary, a: [Self; N], b: [Self; N]) -> [Self; N] {
+        wrap_f32(m.vector_binary(float_op(op), unwrap_f32(a), unwrap_f32(b)))
+    }
+
+    #[inline(always)]
+    fn compare(m: &M, op: Compare, a: Self, b: Self) -> B<M> {
+        B(m.f32_compare(op, a.0, b.0))
+    }
+
+    #[inline(always)]
+    fn extreme_each<const N: usize>(m: &M, max: bool, a: [Self; N], b: [Self; N]) -> [Self; N] {
+        let op = if max { F32Binary::Max } else { F32Binary::Min };
+        wrap_f32(m.vector_binary(op, unwrap_f32(a), unwrap_f32(b)))
+    }
+
+    #[inline(always)]
+    fn extreme(m: &M, max: bool, a: Self, b: Self) -> Self {
+        let op = if max { F32Binary::Max } else { F32Binary::Min };
+        F(m.f32_binary(op, a.0, b.0))
+    }
+
+    #[inline(always)]
+    fn neg(m: &M, a: Self) -> Self {
+        F(m.f32_unary(F32Unary::Neg, a.0))
+    }
+}
+
+#[inline(always)]
+fn unwrap_f32<M: Machine, const N: usize>(a: [F<M>; N]) -> [M::F32; N] {
+    fill(
+        #[inline(always)]
+        |i| a[i].0,
+    )
+}
+
+#[inline(always)]
+fn wrap_f32<M: Machine, const N: usize>(a: [M::F32; N]) -> [F<M>; N] {
+    fill(
+        #[inline(always)]
+        |i| F(a[i]),
+    )
+}
+
+macro_rules! integer {
+    ($t:ident $signed:literal $binary:ident $each:ident $compare:ident $select:ident $not:ident;
+     |$m:ident, $a:ident| neg $neg:expr; number |$v:ident| $number:expr;
+     to $to:expr; from $from:expr) => {
+        impl<M: Machine> Arithmetic<M> for $t<M> {
             #[inline(always)]
-            fn clone(&self) -> Self {
-                *self
+            fn binary(m: &M, op: IntBinary, a: Self, b: Self) -> Self {
+                $t(m.$binary(op, a.0, b.0))
+            }
+
+            #[inline(always)]
+            fn binary_each<const N: usize>(
+                m: &M,
+                op: IntBinary,
+                a: [Self; N],
+                b: [Self; N],
+            ) -> [Self; N] {
+                let all = m.$each::<N>(
+                    op,
+                    fill(
+                        #[inline(always)]
+                        |i| a[i].0,
+                    ),
+                    fill(
+                        #[inline(always)]
+                        |i| b[i].0,
+                    ),
+                );
+                fill(
+                    #[inline(always)]
+                    |i: usize| $t(all[i]),
+                )
+            }
+
+            #[inline(always)]
+            fn compare(m: &M, op: Compare, a: Self, b: Self) -> B<M> {
+                B(m.$compare(op, a.0, b.0))
+            }
+
+            #[inline(always)]
+            fn extreme_each<const N: usize>(
+                m: &M,
+                max: bool,
+                a: [Self; N],
+                b: [Self; N],
+            ) -> [Self; N] {
+                fill(
+                    #[inline(always)]
+                    |i| Self::extreme(m, max, a[i], b[i]),
+                )
+            }
+
+            #[inline(always)]
+            fn extreme(m: &M, max: bool, a: Self, b: Self) -> Self {
+                let (x, y) = if max { (a, b) } else { (b, a) };
+                $t(m.$select(m.$compare(Compare::Lt, x.0, y.0), b.0, a.0))
+            }
+
+            #[inline(always)]
+            fn neg($m: &M, $a: Self) -> Self {
+                $neg
             }
         }
 
-        impl<M: Machine> Copy for $name<M> {}
+        impl<M: Machine> Integer<M> for $t<M> {
+            const SIGNED: bool = $signed;
 
-        impl<M: Machine> Value<M> for $name<M> {
-            const SCHEMA: &'static Schema = &Schema::Vector($n);
+            #[inline(always)]
+            fn number($m: &M, $v: i32) -> Self {
+                $number
+            }
+
+            #[inline(always)]
+            fn choose(m: &M, c: B<M>, a: Self, b: Self) -> Self {
+                $t(m.$select(c.0, a.0, b.0))
+            }
+
+            #[inline(always)]
+            fn to_u32(self, $m: &M) -> U<M> {
+                let $a = self;
+                $to
+            }
+
+            #[inline(always)]
+            fn from_u32($m: &M, $a: U<M>) -> Self {
+                $from
+            }
+        }
+
+        impl<M: Machine> Bits<M> for $t<M> {
+            #[inline(always)]
+            fn bits_each<const N: usize>(
+                m: &M,
+                op: IntBinary,
+                a: [Self; N],
+                b: [Self; N],
+            ) -> [Self; N] {
+                Self::binary_each(m, op, a, b)
+            }
+
+            #[inline(always)]
+            fn not(m: &M, a: Self) -> Self {
+                $t(m.$not(a.0))
+            }
+        }
+    };
+}
+
+integer!(I true i32_binary i32_vector_binary i32_compare i32_select i32_not;
+    |m, a| neg I(m.i32_neg(a.0)); number |v| I(m.i32(v));
+    to U(m.i32_to_u32(a.0)); from I(m.u32_to_i32(a.0)));
+// A `u32` has no `-`: nothing calls it.
+integer!(U false u32_binary u32_vector_binary u32_compare u32_select u32_not;
+    |m, a| neg U(m.u32_binary(IntBinary::WrappingSub, m.u32(0), a.0)); number |v| U(m.u32(v as u32));
+    to { let _ = m; a }; from { let _ = m; a });
+
+impl<M: Machine> Bits<M> for B<M> {
+    #[inline(always)]
+    fn bits_each<const N: usize>(m: &M, op: IntBinary, a: [Self; N], b: [Self; N]) -> [Self; N] {
+        use super::BoolBinary;
+        let op = match op {
+            IntBinary::And => BoolBinary::And,
+            IntBinary::Or => BoolBinary::Or,
+            _ => BoolBinary::Xor,
+        };
+        fill(
+            #[inline(always)]
+            |i| B(m.bool_binary(op, a[i].0, b[i].0)),
+        )
+    }
+
+    #[inline(always)]
+    fn not(m: &M, a: Self) -> Self {
+        B(m.bool_not(a.0))
+    }
+}
+
+/// A vector, whatever the machine. Without a parameter, so that rustc knows that a user's twin is
+/// none: then impls for all vectors and those of the derive do not overlap.
+pub trait IsVector {}
+
+/// A number or a truth value, of the host or a machine: no vector.
+pub trait IsScalar {}
+
+impl<M: Machine> IsScalar for F<M> {}
+impl<M: Machine> IsScalar for I<M> {}
+impl<M: Machine> IsScalar for U<M> {}
+impl<M: Machine> IsScalar for B<M> {}
+impl IsScalar for f32 {}
+impl IsScalar for i32 {}
+impl IsScalar for u32 {}
+impl IsScalar for bool {}
+
+/// A vector of any size.
+#[diagnostic::on_unimplemented(
+    message = "a kernel cannot call this method with these arguments",
+    label = "not an operation of the kernel language"
+)]
+pub trait Vector<M: Machine>: Value<M> {
+    /// What it consists of.
+    type Component: Component<M>;
+    /// A vector of the same size of something else.
+    type Of<E: Component<M>>: Vector<M, Component = E>;
+
+    /// `v` in every component.
+    fn of_one(v: Self::Component) -> Self;
+    /// `f` of every component.
+    fn each<E: Component<M>>(self, f: impl FnMut(Self::Component) -> E) -> Self::Of<E>;
+    /// `f` of every pair of components.
+    fn both<D: Component<M>, E: Component<M>>(
+        self,
+        b: Self::Of<D>,
+        f: impl FnMut(Self::Component, D) -> E,
+    ) -> Self::Of<E>;
+    /// The components put together from the first to the last.
+    fn fold(
+        self,
+        f: impl FnMut(Self::Component, Self::Component) -> Self::Component,
+    ) -> Self::Component;
+    /// The components put together from the last to the first.
+    fn fold_back(
+        self,
+        f: impl FnMut(Self::Component, Self::Component) -> Self::Component,
+    ) -> Self::Component;
+    /// Arithmetic on every component.
+    fn arithmetic(m: &M, op: IntBinary, a: Self, b: Self) -> Self
+    where
+        Self::Component: Arithmetic<M>;
+    /// [`Arithmetic::extreme_each`].
+    fn extreme(m: &M, max: bool, a: Self, b: Self) -> Self
+    where
+        Self::Component: Arithmetic<M>;
+}
+
+/// A vector of floats.
+pub trait Floats<M: Machine>: Vector<M, Component = F<M>, Of<F<M>> = Self> {
+    /// An operation on every component of two vectors.
+    fn binary(m: &M, op: F32Binary, a: Self, b: Self) -> Self;
+    /// An operation on every component.
+    fn unary(m: &M, op: F32Unary, a: Self) -> Self;
+}
+
+/// The right side of an operator as a vector: a vector, or one number for all components.
+#[diagnostic::on_unimplemented(
+    message = "a kernel has no operator for these operands",
+    label = "not an operation of the kernel language"
+)]
+pub trait Broadcast<M: Machine, R>: Sized {
+    /// Converts.
+    fn broadcast(m: &M, r: R) -> Self;
+}
+
+/// The right side of a shift, which may have another integer type, as a vector.
+#[diagnostic::on_unimplemented(message = "a kernel cannot shift this by that")]
+pub trait Amounts<M: Machine, R>: Sized {
+    /// Converts.
+    fn amounts(m: &M, r: R) -> Self;
+}
+
+/// By how much to shift a number of type `E`.
+pub trait Amount<M: Machine, E> {
+    /// Converts.
+    fn amount(self, m: &M) -> E;
+}
+
+macro_rules! amount {
+    ($($from:ty => $to:ident: |$m:ident, $a:ident| $e:expr),+ $(,)?) => {
+        $(
+            impl<M: Machine> Amount<M, $to<M>> for $from {
+                #[inline(always)]
+                fn amount(self, $m: &M) -> $to<M> {
+                    let $a = self;
+                    $e
+                }
+            }
+        )+
+    };
+}
+
+amount!(
+    I<M> => I: |_m, a| a,
+    U<M> => I: |m, a| I(m.u32_to_i32(a.0)),
+    i32 => I: |m, a| I(m.i32(a)),
+    U<M> => U: |_m, a| a,
+    I<M> => U: |m, a| U(m.i32_to_u32(a.0)),
+    u32 => U: |m, a| U(m.u32(a)),
+);
+
+macro_rules! vector {
+    ($name:ident, $n:literal, $($c:ident $i:tt),+; $first:ident $($next:ident)+; $last:ident $($before:ident)+) => {
+        #[doc = concat!("A vector of ", $n, " components on a machine.")]
+        #[derive(Clone, Copy)]
+        pub struct $name<E> {
+            $(#[doc = concat!("Component ", stringify!($c), ".")] pub $c: E,)+
+        }
+
+        impl<E> IsVector for $name<E> {}
+
+        impl<M: Machine, E: Component<M>> Value<M> for $name<E> {
+            const SCHEMA: &'static Schema = &Schema::Vector(E::SCHEMA, $n);
 
             #[inline(always)]
             fn zero(m: &M) -> Self {
-                Self { $($c: F::zero(m)),+ }
+                Self { $($c: E::zero(m)),+ }
             }
 
             #[inline(always)]
             fn zip(m: &M, a: Self, b: Self, f: &mut impl Leaves<M>) -> Self {
-                Self { $($c: F::zip(m, a.$c, b.$c, f)),+ }
+                Self { $($c: E::zip(m, a.$c, b.$c, f)),+ }
             }
         }
 
-        impl<M: Machine> $name<M> {
+        impl<M: Machine, E: Component<M>> Varying<M> for $name<E> {
+            type Value = Self;
+
+            #[inline(always)]
+            fn varying(self, _: &M) -> Self {
+                self
+            }
+        }
+
+        impl<E: Copy> $name<E> {
+            #[inline(always)]
+            pub(crate) fn components(self) -> [E; $n] {
+                [$(self.$c),+]
+            }
+
+            #[inline(always)]
+            pub(crate) fn of(a: [E; $n]) -> Self {
+                Self { $($c: a[$i]),+ }
+            }
+
+            #[inline(always)]
+            pub(crate) fn splat(v: E) -> Self {
+                Self { $($c: v),+ }
+            }
+        }
+
+        impl<M: Machine> $name<F<M>> {
             #[inline(always)]
             pub(crate) fn array(self) -> [M::F32; $n] {
                 [$(self.$c.0),+]
@@ -42,25 +445,119 @@ macro_rules! vector {
             pub(crate) fn from_array(a: [M::F32; $n]) -> Self {
                 Self { $($c: F(a[$i])),+ }
             }
+        }
 
+        impl<M: Machine> Floats<M> for $name<F<M>> {
             #[inline(always)]
-            pub(crate) fn splat(v: F<M>) -> Self {
-                Self { $($c: v),+ }
-            }
-
-            #[inline(always)]
-            pub(crate) fn binary(m: &M, op: F32Binary, a: Self, b: Self) -> Self {
+            fn binary(m: &M, op: F32Binary, a: Self, b: Self) -> Self {
                 Self::from_array(m.vector_binary(op, a.array(), b.array()))
             }
 
             #[inline(always)]
-            pub(crate) fn unary(m: &M, op: F32Unary, a: Self) -> Self {
+            fn unary(m: &M, op: F32Unary, a: Self) -> Self {
                 Self::from_array(m.vector_unary(op, a.array()))
+            }
+        }
+
+        impl<M: Machine, C: Component<M>> Vector<M> for $name<C> {
+            type Component = C;
+            type Of<E: Component<M>> = $name<E>;
+
+            #[inline(always)]
+            fn of_one(v: C) -> Self {
+                Self::splat(v)
+            }
+
+            #[inline(always)]
+            fn each<E: Component<M>>(self, mut f: impl FnMut(C) -> E) -> $name<E> {
+                $name { $($c: f(self.$c)),+ }
+            }
+
+            #[inline(always)]
+            fn both<D: Component<M>, E: Component<M>>(
+                self,
+                b: $name<D>,
+                mut f: impl FnMut(C, D) -> E,
+            ) -> $name<E> {
+                $name { $($c: f(self.$c, b.$c)),+ }
+            }
+
+            #[inline(always)]
+            fn fold(self, mut f: impl FnMut(C, C) -> C) -> C {
+                let all = self.$first;
+                $(let all = f(all, self.$next);)+
+                all
+            }
+
+            #[inline(always)]
+            fn fold_back(self, mut f: impl FnMut(C, C) -> C) -> C {
+                let all = self.$last;
+                $(let all = f(all, self.$before);)+
+                all
+            }
+
+            #[inline(always)]
+            fn arithmetic(m: &M, op: IntBinary, a: Self, b: Self) -> Self
+            where
+                C: Arithmetic<M>,
+            {
+                Self::of(C::binary_each(m, op, a.components(), b.components()))
+            }
+
+            #[inline(always)]
+            fn extreme(m: &M, max: bool, a: Self, b: Self) -> Self
+            where
+                C: Arithmetic<M>,
+            {
+                Self::of(C::extreme_each(m, max, a.components(), b.components()))
+            }
+        }
+
+        impl<M: Machine, E: Component<M>> Broadcast<M, $name<E>> for $name<E> {
+            #[inline(always)]
+            fn broadcast(_: &M, r: Self) -> Self {
+                r
+            }
+        }
+
+        impl<M: Machine, E: Component<M>, A: IsScalar + Coerce<M, E>> Broadcast<M, A> for $name<E> {
+            #[inline(always)]
+            fn broadcast(m: &M, r: A) -> Self {
+                Self::splat(r.coerce(m))
+            }
+        }
+
+        impl<M: Machine, E: Integer<M>, A: Amount<M, E>> Amounts<M, $name<A>> for $name<E> {
+            #[inline(always)]
+            fn amounts(m: &M, r: $name<A>) -> Self {
+                Self { $($c: r.$c.amount(m)),+ }
+            }
+        }
+
+        impl<M: Machine, E: Integer<M>, A: IsScalar + Amount<M, E>> Amounts<M, A> for $name<E> {
+            #[inline(always)]
+            fn amounts(m: &M, r: A) -> Self {
+                Self::splat(r.amount(m))
             }
         }
     };
 }
 
-vector!(V2, 2, "Vec2", x 0, y 1);
-vector!(V3, 3, "Vec3", x 0, y 1, z 2);
-vector!(V4, 4, "Vec4", x 0, y 1, z 2, w 3);
+vector!(X2, 2, x 0, y 1; x y; y x);
+vector!(X3, 3, x 0, y 1, z 2; x y z; z y x);
+vector!(X4, 4, x 0, y 1, z 2, w 3; x y z w; w z y x);
+
+/// `as` on every component.
+#[inline(always)]
+pub(crate) fn cast_each<M, V, T>(m: &M, v: V) -> V::Of<T::On<M>>
+where
+    M: Machine,
+    V: Vector<M>,
+    T: super::Type<On<M>: Component<M>>,
+    V::Component: OpCast<M, T>,
+{
+    v.each(
+        #[inline(always)]
+        |c| OpCast::<M, T>::cast(m, c),
+    )
+}

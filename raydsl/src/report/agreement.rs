@@ -94,9 +94,9 @@ impl Pair {
                 self.differs |= a.is_nan() != b.is_nan();
                 self.ulps.push(ulp_distance(a, b));
             }
-            Schema::Vector(n) => {
-                for i in 0..*n {
-                    self.compare(&Schema::F32, &a[4 * i..], &b[4 * i..]);
+            Schema::Vector(element, n) => {
+                for i in (0..*n).map(|i| i * element.size()) {
+                    self.compare(element, &a[i..], &b[i..]);
                 }
             }
             Schema::Array { element, count, stride } => {

@@ -4,7 +4,7 @@ use super::function::Text;
 use super::ir::{Conversion, Expr, Id, Recorded, Type};
 use super::names::member_name;
 use super::types::Names;
-use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary};
+use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, U32Unary};
 
 /// How tightly an expression binds; an operand that binds less is put in parentheses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -100,6 +100,15 @@ impl Expressions<'_> {
                 };
                 primary(format!("{f}({})", self.any(*a, names)))
             }
+            Expr::U32Unary(op, a) => {
+                let f = match op {
+                    U32Unary::CountOnes => "countOneBits",
+                    U32Unary::LeadingZeros => "countLeadingZeros",
+                    U32Unary::TrailingZeros => "countTrailingZeros",
+                    U32Unary::ReverseBits => "reverseBits",
+                };
+                primary(format!("{f}({})", self.any(*a, names)))
+            }
             Expr::F32Binary(op, a, b) => self.f32_binary(*op, *a, *b, names),
             Expr::MulAdd(a, b, c) => {
                 let [a, b, c] = [a, b, c].map(|x| self.item(*x, names));
@@ -127,15 +136,32 @@ impl Expressions<'_> {
                 let args: Vec<String> = args.iter().map(|a| self.item(*a, names)).collect();
                 primary(format!("{}({})", self.text.function(*f), args.join(", ")))
             }
+            Expr::Compose(parts) if let Some((a, swizzle)) = self.swizzle(parts, node.ty) => {
+                primary(format!("{}.{swizzle}", self.at_least(a, Bind::Primary, names)))
+            }
             Expr::Compose(parts) => {
                 let ty = names.ty(node.ty);
                 let same =
-                    parts.iter().all(|p| *p == parts[0]) && matches!(node.ty, Type::Vector(_));
+                    parts.iter().all(|p| *p == parts[0]) && matches!(node.ty, Type::Vector(..));
                 let shown = if same { &parts[..1] } else { &parts[..] };
                 let parts: Vec<String> = shown.iter().map(|p| self.item(*p, names)).collect();
                 primary(format!("{ty}({})", parts.join(", ")))
             }
         }
+    }
+
+    /// The vector that all `parts` are components of, and which ones.
+    fn swizzle(&self, parts: &[Id], ty: Type) -> Option<(Id, String)> {
+        let member = |id: &Id| match &self.function.nodes[id.0 as usize].expr {
+            Expr::Member(a, name) if self.locals[id.0 as usize].is_none() => Some((*a, *name)),
+            _ => None,
+        };
+        let (whole, _) = member(parts.first()?)?;
+        let from = self.function.nodes[whole.0 as usize].ty;
+        let are_vectors = matches!((ty, from), (Type::Vector(..), Type::Vector(..)));
+        let names: Option<String> =
+            parts.iter().map(|p| member(p).filter(|(a, _)| *a == whole).map(|(_, n)| n)).collect();
+        Some((whole, names.filter(|_| are_vectors)?))
     }
 
     fn prefix(&self, symbol: &str, a: Id, names: &mut Names) -> (String, Bind) {

@@ -1,7 +1,7 @@
 //! The recorded program: functions of structured statements over a table of expressions.
 
 use crate::machine::{
-    BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Schema, wgsl::BufferKey,
+    BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Schema, U32Unary, wgsl::BufferKey,
 };
 
 /// An expression of the function that is being recorded.
@@ -12,6 +12,26 @@ pub struct Id(pub(super) u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct VarId(pub(super) u32);
 
+/// What a vector consists of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scalar {
+    F32,
+    I32,
+    U32,
+    Bool,
+}
+
+impl Scalar {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::I32 => "i32",
+            Self::U32 => "u32",
+            Self::Bool => "bool",
+        }
+    }
+}
+
 /// The type of an expression.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Type {
@@ -19,7 +39,7 @@ pub(super) enum Type {
     I32,
     U32,
     Bool,
-    Vector(usize),
+    Vector(Scalar, usize),
     Of(&'static Schema),
 }
 
@@ -30,8 +50,29 @@ impl Type {
             Schema::I32 => Self::I32,
             Schema::U32 | Schema::Small { .. } => Self::U32,
             Schema::Bool => Self::Bool,
-            Schema::Vector(n) => Self::Vector(*n),
+            Schema::Vector(element, n) => Self::of(element).times(*n),
             _ => Self::Of(schema),
+        }
+    }
+
+    /// A vector of `n` such scalars.
+    pub(super) fn times(self, n: usize) -> Self {
+        match self {
+            Self::I32 => Self::Vector(Scalar::I32, n),
+            Self::U32 => Self::Vector(Scalar::U32, n),
+            Self::Bool => Self::Vector(Scalar::Bool, n),
+            _ => Self::Vector(Scalar::F32, n),
+        }
+    }
+
+    /// What it is a vector of.
+    pub(super) fn component(self) -> Self {
+        match self {
+            Self::Vector(Scalar::F32, _) => Self::F32,
+            Self::Vector(Scalar::I32, _) => Self::I32,
+            Self::Vector(Scalar::U32, _) => Self::U32,
+            Self::Vector(Scalar::Bool, _) => Self::Bool,
+            other => other,
         }
     }
 }
@@ -40,7 +81,7 @@ impl PartialEq for Type {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Of(a), Self::Of(b)) => a == b,
-            (Self::Vector(a), Self::Vector(b)) => a == b,
+            (Self::Vector(s, a), Self::Vector(t, b)) => s == t && a == b,
             _ => core::mem::discriminant(self) == core::mem::discriminant(other),
         }
     }
@@ -72,6 +113,7 @@ pub(super) enum Expr {
     F32Unary(F32Unary, Id),
     F32Binary(F32Binary, Id, Id),
     MulAdd(Id, Id, Id),
+    U32Unary(U32Unary, Id),
     IntBinary(IntBinary, Id, Id),
     BoolBinary(BoolBinary, Id, Id),
     Neg(Id),
@@ -112,6 +154,7 @@ impl Expr {
             Self::Member(a, _)
             | Self::Element(a, _)
             | Self::F32Unary(_, a)
+            | Self::U32Unary(_, a)
             | Self::Neg(a)
             | Self::Not(a)
             | Self::Complement(a)

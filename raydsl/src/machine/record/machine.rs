@@ -9,7 +9,7 @@ use crate::machine::index::with_element;
 use crate::machine::scalar;
 use crate::machine::{
     B, BoolBinary, Compare, F32Binary, F32Unary, IntBinary, KernelInfo, Loop, Machine, Schema, U,
-    Usize, Value, Var,
+    U32Unary, Usize, Value, Var,
 };
 
 /// Whether dividing by `v` and multiplying by its reciprocal give the same bits.
@@ -42,7 +42,7 @@ impl Recorder {
             Expr::Compose(parts) => {
                 let parts: Vec<Id> = parts.into_iter().map(|p| self.opaque(p)).collect();
                 let n = parts.len();
-                self.add(Expr::Compose(parts), Type::Vector(n))
+                self.add(Expr::Compose(parts), Type::F32.times(n))
             }
             _ => id,
         }
@@ -112,13 +112,39 @@ impl Recorder {
         }
     }
 
+    /// Arithmetic on integer vectors; a shift goes component by component, as its amount must have
+    /// another type.
+    fn int_vector<const N: usize>(
+        &self,
+        op: IntBinary,
+        ty: Type,
+        a: [Id; N],
+        b: [Id; N],
+        one: impl Fn(Id, Id) -> Id,
+    ) -> [Id; N] {
+        let is_number = |x: &Id| matches!(self.node(*x).expr, Expr::I32(_) | Expr::U32(_));
+        let is_shift = matches!(op, IntBinary::Shl | IntBinary::Shr);
+        if is_shift || a.iter().chain(&b).all(is_number) {
+            return core::array::from_fn(|i| one(a[i], b[i]));
+        }
+        let (mut x, mut y) = (self.operand(a), self.operand(b));
+        // Operators of bits want two vectors.
+        let bits = matches!(op, IntBinary::And | IntBinary::Or | IntBinary::Xor);
+        if bits || !(self.is_vector(x) || self.is_vector(y)) {
+            (x, y) = (self.vector(&a), self.vector(&b));
+        }
+        let v = self.add(Expr::IntBinary(op, x, y), ty.times(N));
+        self.components(v)
+    }
+
     fn is_vector(&self, id: Id) -> bool {
-        matches!(self.node(id).ty, Type::Vector(_))
+        matches!(self.node(id).ty, Type::Vector(..))
     }
 
     fn components<const N: usize>(&self, v: Id) -> [Id; N] {
         let names = ["x", "y", "z", "w"];
-        core::array::from_fn(|i| self.add(Expr::Member(v, names[i]), Type::F32))
+        let ty = self.node(v).ty.component();
+        core::array::from_fn(|i| self.add(Expr::Member(v, names[i]), ty))
     }
 
     /// The variable `leave`, which says what labelled loop is being left.
@@ -194,10 +220,10 @@ impl Recorder {
     fn read(&self, v: VarId, ty: Type) -> Vec<Id> {
         let load = self.add(Expr::Load(v), ty);
         match ty {
-            Type::Vector(n) => ["x", "y", "z", "w"]
+            Type::Vector(_, n) => ["x", "y", "z", "w"]
                 .into_iter()
                 .take(n)
-                .map(|c| self.add(Expr::Member(load, c), Type::F32))
+                .map(|c| self.add(Expr::Member(load, c), ty.component()))
                 .collect(),
             _ => vec![load],
         }
@@ -428,7 +454,7 @@ impl Machine for Recorder {
         if selects || !(self.is_vector(x) || self.is_vector(y)) {
             (x, y) = (self.vector(&a), self.vector(&b));
         }
-        let v = self.binary(op, x, y, Type::Vector(N));
+        let v = self.binary(op, x, y, Type::F32.times(N));
         self.components(v)
     }
     fn vector_unary<const N: usize>(&self, op: F32Unary, a: [Id; N]) -> [Id; N] {
@@ -436,8 +462,21 @@ impl Machine for Recorder {
             return a.map(|x| self.f32_unary(op, x));
         }
         let v = self.vector(&a);
-        let v = self.add(Expr::F32Unary(op, v), Type::Vector(N));
+        let v = self.add(Expr::F32Unary(op, v), Type::F32.times(N));
         self.components(v)
+    }
+
+    fn i32_vector_binary<const N: usize>(&self, op: IntBinary, a: [Id; N], b: [Id; N]) -> [Id; N] {
+        self.int_vector(op, Type::I32, a, b, |x, y| self.i32_binary(op, x, y))
+    }
+    fn u32_vector_binary<const N: usize>(&self, op: IntBinary, a: [Id; N], b: [Id; N]) -> [Id; N] {
+        self.int_vector(op, Type::U32, a, b, |x, y| self.u32_binary(op, x, y))
+    }
+    fn u32_unary(&self, op: U32Unary, a: Id) -> Id {
+        if let Some(a) = self.u32_literal(a) {
+            return self.u32(scalar::u32_unary(op, a));
+        }
+        self.add(Expr::U32Unary(op, a), Type::U32)
     }
 
     fn branch(&self, c: Id) -> RecordedBranch {
@@ -559,7 +598,7 @@ impl Machine for Recorder {
         let mut values = self.leaves_of(v).into_iter();
         for (var, ty) in self.vars_of(state) {
             let value = match ty {
-                Type::Vector(n) => {
+                Type::Vector(_, n) => {
                     let parts: Vec<Id> = values.by_ref().take(n).collect();
                     self.vector(&parts)
                 }

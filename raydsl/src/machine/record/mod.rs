@@ -89,9 +89,9 @@ impl Recorder {
     /// The parts of a structured expression, as leaves in order.
     fn parts(&self, schema: &'static Schema, id: Id, out: &mut Vec<Id>) {
         match schema {
-            Schema::Vector(n) => {
+            Schema::Vector(element, n) => {
                 for c in ["x", "y", "z", "w"].into_iter().take(*n) {
-                    out.push(self.add(Expr::Member(id, c), Type::F32));
+                    out.push(self.add(Expr::Member(id, c), Type::of(element)));
                 }
             }
             Schema::Array { element, count, .. } => {
@@ -150,7 +150,7 @@ impl Recorder {
     /// The expression of a whole value: the one that all its leaves are parts of, else a new one.
     fn put_together(&self, schema: &'static Schema, leaves: &mut impl Iterator<Item = Id>) -> Id {
         match schema {
-            Schema::Vector(n) => {
+            Schema::Vector(_, n) => {
                 let parts: Vec<Id> = leaves.by_ref().take(*n).collect();
                 self.vector(&parts)
             }
@@ -182,7 +182,8 @@ impl Recorder {
             Expr::Member(a, name) if *name == ["x", "y", "z", "w"][i] => Some(*a),
             _ => None,
         };
-        self.whole_or_new(Type::Vector(parts.len()), parts.to_vec(), whole)
+        let ty = self.node(parts[0]).ty.times(parts.len());
+        self.whole_or_new(ty, parts.to_vec(), whole)
     }
 
     fn whole_or_new(

@@ -52,8 +52,8 @@ fn uniform_block(uniforms: &[Uniform], names: &mut Names) -> (String, Vec<u8>) {
     let mut bytes = Vec::new();
     for u in uniforms {
         let align = match u.ty {
-            Type::Vector(2) => 8,
-            Type::Vector(_) => 16,
+            Type::Vector(_, 2) => 8,
+            Type::Vector(..) => 16,
             _ => 4,
         };
         bytes.resize(usize::next_multiple_of(bytes.len(), align), 0);
@@ -92,7 +92,15 @@ fn stored_type(schema: &'static Schema, names: &mut Names) -> (String, bool) {
             }
             format!("Stored{value}")
         }
-        Schema::Vector(n) => format!("StoredVec{n}"),
+        Schema::Vector(element, n) => {
+            let kind = match element {
+                Schema::I32 => "I",
+                Schema::U32 => "U",
+                Schema::Bool => "B",
+                _ => "",
+            };
+            format!("Stored{kind}Vec{n}")
+        }
         Schema::Array { .. } => "StoredArray".to_owned(),
         Schema::Bool => "StoredBool".to_owned(),
         Schema::Small { .. } | Schema::Host => "StoredValue".to_owned(),

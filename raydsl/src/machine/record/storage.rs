@@ -5,6 +5,7 @@
 //! and small members packed into a `u32`.
 
 use core::fmt::Write;
+use std::borrow::Cow;
 
 use super::Recorder;
 use super::ir::{Expr, Id, Type};
@@ -70,11 +71,16 @@ pub(super) fn uniforms(
         Schema::Small { bytes: n } => {
             leaves.push(m.uniform(name, Type::U32, vec![word(&bytes[..*n])]));
         }
-        Schema::Vector(n) => {
+        Schema::Vector(Schema::Bool, n) => {
+            for (c, byte) in COMPONENTS.into_iter().zip(bytes.chunks_exact(1)).take(*n) {
+                uniforms(m, &format!("{name}_{c}"), &Schema::Bool, byte, leaves);
+            }
+        }
+        Schema::Vector(element, n) => {
             let words = bytes.chunks_exact(4).take(*n).map(word).collect();
-            let v = m.uniform(name, Type::Vector(*n), words);
+            let v = m.uniform(name, Type::of(schema), words);
             for c in COMPONENTS.into_iter().take(*n) {
-                leaves.push(m.add(Expr::Member(v, c), Type::F32));
+                leaves.push(m.add(Expr::Member(v, c), Type::of(element)));
             }
         }
         Schema::Array { element, count, stride } => {
@@ -120,6 +126,12 @@ fn collect(name: &str, offset: usize, schema: &'static Schema, out: &mut Vec<Lea
                 collect(&join(f.name), offset + f.offset, f.schema, out);
             }
         }
+        // Bytes: they lie between others as single truth values do.
+        Schema::Vector(Schema::Bool, n) => {
+            for (i, c) in COMPONENTS.iter().enumerate().take(*n) {
+                collect(&join(c), offset + i, &Schema::Bool, out);
+            }
+        }
         _ => out.push(Leaf {
             name: if name.is_empty() { "value".to_owned() } else { name.to_owned() },
             offset,
@@ -128,11 +140,23 @@ fn collect(name: &str, offset: usize, schema: &'static Schema, out: &mut Vec<Lea
     }
 }
 
+/// How a member of whole words is written; of others, nothing.
+fn word_type(schema: &Schema) -> Cow<'static, str> {
+    match schema {
+        Schema::F32 => "f32".into(),
+        Schema::I32 => "i32".into(),
+        Schema::U32 => "u32".into(),
+        Schema::Vector(Schema::Bool, _) => "".into(),
+        Schema::Vector(element, n) => format!("vec{n}<{}>", word_type(element)).into(),
+        _ => "".into(),
+    }
+}
+
 /// A member of a stored struct.
 struct Member {
     name: String,
     offset: usize,
-    ty: &'static str,
+    ty: Cow<'static, str>,
     size: usize,
 }
 
@@ -169,18 +193,18 @@ impl Stored {
         let mut members: Vec<Member> = Vec::new();
         for leaf in &self.leaves {
             match leaf.schema {
-                Schema::Vector(n) if vectors_fit(*n, leaf.offset) => members.push(Member {
+                Schema::Vector(_, n) if vectors_fit(*n, leaf.offset) => members.push(Member {
                     name: leaf.name.clone(),
                     offset: leaf.offset,
-                    ty: ["", "", "vec2<f32>", "vec3<f32>", "vec4<f32>"][*n],
+                    ty: word_type(leaf.schema),
                     size: 4 * n,
                 }),
-                Schema::Vector(n) => {
+                Schema::Vector(element, n) => {
                     for (i, c) in COMPONENTS.iter().enumerate().take(*n) {
                         members.push(Member {
                             name: format!("{}_{c}", leaf.name),
                             offset: leaf.offset + 4 * i,
-                            ty: "f32",
+                            ty: word_type(element),
                             size: 4,
                         });
                     }
@@ -188,11 +212,7 @@ impl Stored {
                 Schema::F32 | Schema::I32 | Schema::U32 => members.push(Member {
                     name: leaf.name.clone(),
                     offset: leaf.offset,
-                    ty: match leaf.schema {
-                        Schema::F32 => "f32",
-                        Schema::I32 => "i32",
-                        _ => "u32",
-                    },
+                    ty: word_type(leaf.schema),
                     size: 4,
                 }),
                 _ => place_small(&mut members, leaf),
@@ -212,13 +232,7 @@ impl Stored {
         let Schema::Struct { fields, .. } = schema else { return false };
         fields.len() == self.members.len()
             && fields.iter().zip(&self.members).all(|(f, m)| {
-                let ty = match f.schema {
-                    Schema::F32 => "f32",
-                    Schema::I32 => "i32",
-                    Schema::U32 => "u32",
-                    Schema::Vector(n) => ["", "", "vec2<f32>", "vec3<f32>", "vec4<f32>"][*n],
-                    _ => "",
-                };
+                let ty = word_type(f.schema);
                 f.name == m.name && f.offset == m.offset && ty == m.ty
             })
     }
@@ -249,10 +263,16 @@ impl Stored {
         match schema {
             Schema::Host => String::new(),
             Schema::F32 | Schema::I32 | Schema::U32 => member(offset),
-            Schema::Vector(n) if self.member_at(offset).size == 4 * n => member(offset),
-            Schema::Vector(n) => {
-                let parts = (0..*n).map(|i| member(offset + 4 * i)).collect();
-                format!("vec{n}<f32>({})", list(parts))
+            Schema::Vector(element, n)
+                if element.size() == 4 && self.member_at(offset).size == 4 * n =>
+            {
+                member(offset)
+            }
+            Schema::Vector(element, n) => {
+                let parts = (0..*n)
+                    .map(|i| self.load_at(element, offset + element.size() * i, s, names))
+                    .collect();
+                format!("{}({})", names.ty(Type::of(schema)), list(parts))
             }
             Schema::Small { bytes } => {
                 let mask = if *bytes == 1 { "0xffu" } else { "0xffffu" };
@@ -320,7 +340,12 @@ fn place_small(members: &mut Vec<Member>, leaf: &Leaf) {
         Some(last) if last.offset == word && last.ty == "u32" => {
             last.name = format!("{}_{}", last.name, leaf.name);
         }
-        _ => members.push(Member { name: leaf.name.clone(), offset: word, ty: "u32", size: 4 }),
+        _ => members.push(Member {
+            name: leaf.name.clone(),
+            offset: word,
+            ty: "u32".into(),
+            size: 4,
+        }),
     }
 }
 
@@ -329,7 +354,12 @@ fn fill_gaps(members: Vec<Member>, stride: usize) -> Vec<Member> {
     let mut next = 0;
     let pad = |next: &mut usize, until: usize, filled: &mut Vec<Member>| {
         while *next < until {
-            filled.push(Member { name: format!("pad_{next}"), offset: *next, ty: "u32", size: 4 });
+            filled.push(Member {
+                name: format!("pad_{next}"),
+                offset: *next,
+                ty: "u32".into(),
+                size: 4,
+            });
             *next += 4;
         }
     };
@@ -354,9 +384,9 @@ fn leaf_values(
         Schema::F32 | Schema::I32 | Schema::U32 => out.push((offset, false, v.to_owned())),
         Schema::Small { .. } => out.push((offset, true, v.to_owned())),
         Schema::Bool => out.push((offset, true, format!("select(0u, 1u, {v})"))),
-        Schema::Vector(n) => {
+        Schema::Vector(element, n) => {
             for (i, c) in COMPONENTS.iter().enumerate().take(*n) {
-                out.push((offset + 4 * i, false, format!("{v}.{c}")));
+                leaf_values(element, offset + element.size() * i, &format!("{v}.{c}"), out);
             }
         }
         Schema::Array { element, count, stride } => {

@@ -61,7 +61,7 @@ impl Names {
             Type::I32 => "i32".to_owned(),
             Type::U32 => "u32".to_owned(),
             Type::Bool => "bool".to_owned(),
-            Type::Vector(n) => format!("vec{n}<f32>"),
+            Type::Vector(of, n) => format!("vec{n}<{}>", of.name()),
             Type::Of(Schema::Array { element, count, .. }) => {
                 format!("array<{}, {count}>", self.ty(Type::of(element)))
             }

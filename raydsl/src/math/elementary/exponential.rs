@@ -4,7 +4,7 @@ use core::f32::consts::LOG2_E;
 
 use super::parts::{exp2_near_zero, power_of_two, scaled};
 use crate::kernel;
-use crate::machine::functions::clamp;
+use crate::machine::generic::clamp;
 
 /// The upper 13 bits of ln 2, so that the product with an exponent is exact.
 pub(super) const LN_2_HIGH: f32 = 0.69311523;

@@ -4,7 +4,7 @@ use core::f32::consts::{FRAC_PI_2, PI};
 
 use super::parts::{is_nan, turned};
 use crate::kernel;
-use crate::machine::functions::{max, min};
+use crate::machine::generic::{max, min};
 
 /// What pi / 2 is less than `FRAC_PI_2`.
 const FRAC_PI_2_EXCESS: f32 = 4.371139e-8;

@@ -2,7 +2,7 @@
 
 use super::parts::{exp2_near_zero, head, is_nan, scaled, split};
 use crate::kernel;
-use crate::machine::functions::clamp;
+use crate::machine::generic::clamp;
 
 /// `x` to the power of `y`.
 ///
