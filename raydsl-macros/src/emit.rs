@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 
 use proc_macro2::{Ident, Span, TokenStream};
-use quote::{format_ident, quote, quote_spanned};
+use quote::{ToTokens, format_ident, quote, quote_spanned};
 
 use crate::diag::Errors;
 use crate::model::{
@@ -627,7 +627,10 @@ impl<'a> Emitter<'a> {
         let (p, m) = (private(), own("m"));
         let span = e.span;
         match &e.kind {
-            Kind::Float(lit) => quote!(#p::f32(#m, #lit)),
+            Kind::Float(lit) => {
+                let exact = in_f64(lit);
+                quote!(#p::literal(#m, #lit, #exact))
+            }
             Kind::Int { tokens, suffix } => match suffix {
                 Some(IntType::I32) => quote!(#p::i32(#m, #tokens)),
                 Some(IntType::U32) => quote!(#p::u32(#m, #tokens)),
@@ -640,7 +643,10 @@ impl<'a> Emitter<'a> {
                 quote_spanned!(span=> #p::Capture::<#machine>::constant(&#path, #m))
             }
             Kind::Neg(a) => match &a.kind {
-                Kind::Float(lit) => quote!(#p::f32(#m, -#lit)),
+                Kind::Float(lit) => {
+                    let exact = in_f64(lit);
+                    quote!(#p::literal(#m, -#lit, -#exact))
+                }
                 Kind::Int { tokens, suffix: None } => quote!((-#tokens)),
                 _ => {
                     let a = self.value(a);
@@ -1016,6 +1022,14 @@ fn change(
             })
         }
     }
+}
+
+/// A literal of `f32` with the suffix `f64`.
+fn in_f64(lit: &TokenStream) -> TokenStream {
+    let text = lit.to_string().replace('_', "");
+    let digits = text.strip_suffix("f32").unwrap_or(&text);
+    let span = lit.clone().into_iter().next().map_or_else(Span::call_site, |t| t.span());
+    syn::LitFloat::new(&format!("{digits}f64"), span).to_token_stream()
 }
 
 fn operator(op: BinaryOp, m: TokenStream, a: TokenStream, b: TokenStream) -> TokenStream {

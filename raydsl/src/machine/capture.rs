@@ -76,7 +76,21 @@ macro_rules! capture_number {
     };
 }
 
-capture_number!(f32 => F, i32 => I, u32 => U, Vec2 => V2, Vec3 => V3, Vec4 => V4);
+impl<M: Machine> Capture<M> for f32 {
+    type On<'c> = F<M>;
+
+    #[inline(always)]
+    fn capture(&self, m: &M, name: &'static str) -> F<M> {
+        m.capture(name, *self)
+    }
+
+    #[inline(always)]
+    fn constant(&self, m: &M) -> F<M> {
+        F(m.f32_constant(*self))
+    }
+}
+
+capture_number!(i32 => I, u32 => U, Vec2 => V2, Vec3 => V3, Vec4 => V4);
 
 /// A captured `bool` stays a value of the host: a branch on it is decided while recording.
 impl<M: Machine> Capture<M> for bool {

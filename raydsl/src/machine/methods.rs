@@ -194,13 +194,7 @@ method!(F<M>, "clamp", |m, a, lo: F<M>, hi: F<M>| -> F<M> {
 method!(F<M>, "mul_add", |m, a, b: F<M>, c: F<M>| -> F<M> { F(m.f32_mul_add(a.0, b.0, c.0)) });
 method!(F<M>, "to_bits", |m, a| -> U<M> { U(m.f32_to_bits(a.0)) });
 method!(F<M>, "recip", |m, a| -> F<M> { F(m.f32_binary(F32Binary::Div, m.f32(1.0), a.0)) });
-method!(F<M>, "copysign", |m, a, sign: F<M>| -> F<M> {
-    {
-        let bits = |x: M::F32, mask| m.u32_binary(IntBinary::And, m.f32_to_bits(x), m.u32(mask));
-        let (size, sign) = (bits(a.0, 0x7fff_ffff), bits(sign.0, 0x8000_0000));
-        F(m.f32_from_bits(m.u32_binary(IntBinary::Or, size, sign)))
-    }
-});
+method!(F<M>, "copysign", |m, a, sign: F<M>| -> F<M> { F(m.f32_copysign(a.0, sign.0)) });
 
 // Integers
 
