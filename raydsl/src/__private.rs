@@ -4,9 +4,9 @@ pub use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn};
 pub use crate::kernel::{Baseline, Kernel, Lifted, Native4, Native8, Native16, Native16Halves};
 pub use crate::machine::{
     Branch, Capture, Coerce, Compare, Field, HostMethod, KernelFn, KernelInfo, LaneMachine, Leaves,
-    Loop, Machine, Margin, Method, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv,
-    OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Recorder, Resource, Ret, Schema, Type,
-    Value, Var, Varying, call_on_element, is_mut, name,
+    Loop, Machine, Margin, Method, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare,
+    OpDiv, OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Recorder, Resource, Ret, Schema,
+    Type, Value, Var, Varying, call_on_element, is_mut, name,
 };
 
 /// Traits of associated functions.

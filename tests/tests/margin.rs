@@ -39,6 +39,24 @@ where
     assert!(incomplete * 2 < INPUTS as u32, "{name}: {incomplete} inputs prove nothing");
 }
 
+/// The bounds are no wider than they must be: without the rounding of sums and products they do not
+/// hold.
+#[test]
+fn bounds_without_rounding_do_not_hold() {
+    let kernel = recorded::<kernels::vectors>();
+    let mut rng = Rng::of("bounds_without_rounding_do_not_hold");
+    let misses = |rounding: Rounding, rng: &mut Rng| {
+        let outside = (0..INPUTS).filter(|_| {
+            let args = random(rng, Numbers::Tame);
+            !kernel.outcomes(args, rounding, WAYS).contains(kernels::vectors::scalar(args))
+        });
+        outside.count()
+    };
+    let none = Rounding { sum: 0.0, quotient: 0.0, root: 0.0, ..Rounding::IEEE };
+    assert!(misses(none, &mut rng) > INPUTS / 2);
+    assert_eq!(misses(Rounding::WGSL, &mut rng), 0);
+}
+
 macro_rules! tests {
     ($($kernel:ident: $numbers:ident $wgsl:ident;)+) => {
         $(

@@ -36,9 +36,13 @@ impl Agreement {
     ///
     /// If the lengths differ.
     pub fn of<R: Type>(expected: &[R], results: &[R]) -> Self {
-        Self::judged(expected, results, |_, decided| {
-            if decided { Cause::Unexplained } else { Cause::Rounding }
-        })
+        Self::judged(
+            expected,
+            results,
+            |_, decided| {
+                if decided { Cause::Unexplained } else { Cause::Rounding }
+            },
+        )
     }
 
     /// Compares `results` with those of the scalar variant, `expected`. `cause` is asked why the

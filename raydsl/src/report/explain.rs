@@ -33,7 +33,7 @@ impl Cause {
             return Self::Rounding;
         }
         if !first.is_uncertain() {
-            return if first.is_complete() { Self::Unexplained } else { Self::Undecided };
+            return Self::Unexplained;
         }
         let all = outcomes(WAYS);
         match (both(&all), all.is_complete()) {

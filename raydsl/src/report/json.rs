@@ -56,6 +56,7 @@ fn row<R: Type>(row: &Row<R>, scalar: &Row<R>) -> Value {
         "unexplained": row.agreement.unexplained,
         "max_error_ulp": row.accuracy.max_ulp,
         "mean_error_ulp": row.accuracy.mean_ulp,
+        "median_error_ulp": row.accuracy.median_ulp,
         "other_paths": row.accuracy.other_paths,
     })
 }

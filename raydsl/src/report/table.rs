@@ -8,7 +8,7 @@ use crate::machine::Type;
 const HEADER: &str = "variant    isa      lanes  ms/frame  Mrays/s  speed-up  max ulp  mismatches  \
                       explained  unexplained";
 
-const REFERENCE: &str = "variant     max error ulp   mean error  other paths";
+const REFERENCE: &str = "variant    error (ulp): median        mean         max  other paths";
 
 /// The longest line of a table.
 const WIDTH: usize = 100;
@@ -29,8 +29,12 @@ fn reference<R: Type>(c: &Comparison<R>) -> String {
     let mut text = format!("\n{REFERENCE}\n");
     for row in c.rows.iter().filter(|r| r.unavailable.is_none()) {
         let (name, a) = (row.variant.name(), &row.accuracy);
-        let (max, mean) = (a.max_ulp, a.mean_ulp);
-        let _ = writeln!(text, "{name:<10} {max:>12.3e} {mean:>12.3e} {:>12}", a.other_paths);
+        let (median, mean, max) = (a.median_ulp, a.mean_ulp, a.max_ulp);
+        let _ = writeln!(
+            text,
+            "{name:<10} {median:>19.2e} {mean:>11.2e} {max:>11.2e} {:>12}",
+            a.other_paths
+        );
     }
     let share = 100.0 * c.sample.share();
     let _ = writeln!(

@@ -44,7 +44,7 @@ impl Default for Decisions {
 pub(super) struct Explored<R> {
     /// The first one follows `f64`.
     pub(super) results: Vec<R>,
-    /// Whether the first one met a decision that was open.
+    /// Whether the first one met something that was open.
     pub(super) is_uncertain: bool,
     /// Whether these are all.
     pub(super) is_complete: bool,
@@ -109,7 +109,7 @@ impl Decisions {
             self.script.replace(Script { planned, ..Script::default() });
             results.push(f());
             let made = self.script.take().made;
-            is_uncertain |= !made.is_empty();
+            is_uncertain |= !made.is_empty() || self.lost.get();
             let chosen = |n: usize| made[..n].iter().map(|(c, _)| *c);
             for (at, (_, count)) in made.iter().enumerate().skip(first) {
                 // More could not be run.

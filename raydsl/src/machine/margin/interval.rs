@@ -153,7 +153,11 @@ impl Interval {
     /// The product with itself.
     pub(super) fn square(self) -> Self {
         let size = self.abs();
-        if size.is_nan() { size } else { Self::new(size.low * size.low, size.high * size.high, size.nan) }
+        if size.is_nan() {
+            size
+        } else {
+            Self::new(size.low * size.low, size.high * size.high, size.nan)
+        }
     }
 
     pub(super) fn div(self, b: Self) -> Self {

@@ -58,8 +58,12 @@ impl Outcomes {
         limit: usize,
         f: impl Fn(&Margin) -> V,
     ) -> Self {
+        Self::explored(rounding, limit, &|m| leaves(m, f(m)))
+    }
+
+    fn explored(rounding: Rounding, limit: usize, f: &dyn Fn(&Margin) -> Vec<Leaf>) -> Self {
         let m = Margin::new(rounding);
-        let found = m.each_way(limit.max(1), || leaves(&m, f(&m)));
+        let found = m.each_way(limit.max(1), &|| f(&m));
         Self {
             outcomes: found.results,
             is_uncertain: found.is_uncertain,
@@ -92,9 +96,7 @@ impl Outcomes {
     /// ends.
     pub fn contains<R: Type>(&self, result: R) -> bool {
         let found = result_leaves(result);
-        self.outcomes
-            .iter()
-            .any(|o| o.iter().zip(&found).all(|(may, found)| may.contains(*found)))
+        self.outcomes.iter().any(|o| o.iter().zip(&found).all(|(may, found)| may.contains(*found)))
     }
 }
 
