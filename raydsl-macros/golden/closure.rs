@@ -602,6 +602,104 @@ fn main() {
                             )
                         },
                     ),
+                    margin: ::std::boxed::Box::new(
+                        #[allow(
+                            unused,
+                            clippy::all,
+                            clippy::pedantic,
+                            clippy::nursery,
+                            non_snake_case,
+                            reason = "generated code"
+                        )]
+                        move |
+                            m: &::raydsl::__private::Margin,
+                            (
+                                ray,
+                            ): (
+                                <Ray as ::raydsl::__private::Type>::On<
+                                    ::raydsl::__private::Margin,
+                                >,
+                            )|
+                        {
+                            use ::raydsl::__private::operations::*;
+                            ::raydsl::__private::Machine::call(
+                                m,
+                                &__INFO,
+                                (ray,),
+                                #[inline(always)]
+                                |
+                                    m: &::raydsl::__private::Margin,
+                                    (
+                                        ray,
+                                    ): (
+                                        <Ray as ::raydsl::__private::Type>::On<
+                                            ::raydsl::__private::Margin,
+                                        >,
+                                    )|
+                                {
+                                    let bvh = ::raydsl::__private::Capture::<
+                                        ::raydsl::__private::Margin,
+                                    >::capture(captures.0, m, "bvh");
+                                    let background = ::raydsl::__private::Capture::<
+                                        ::raydsl::__private::Margin,
+                                    >::capture(captures.1, m, "background");
+                                    let hit = ::raydsl::__private::Machine::named(
+                                        m,
+                                        "hit",
+                                        ::raydsl::__private::Method::<
+                                            { ::raydsl::__private::name("closest_hit") },
+                                            ::raydsl::__private::Margin,
+                                            _,
+                                        >::call(bvh, m, (ray,)),
+                                    );
+                                    {
+                                        let value_1 = ::raydsl::__private::Var::<
+                                            _,
+                                        >::declare(m, "result");
+                                        let branch_2 = ::raydsl::__private::Branch::new(
+                                            m,
+                                            hit.is_hit,
+                                        );
+                                        if branch_2.then(m) {
+                                            {
+                                                value_1
+                                                    .set(
+                                                        m,
+                                                        ::raydsl::__private::Varying::varying(
+                                                            ::raydsl::__private::Method::<
+                                                                { ::raydsl::__private::name("rgb") },
+                                                                ::raydsl::__private::Margin,
+                                                                _,
+                                                            >::call(
+                                                                ::raydsl::__private::Method::<
+                                                                    { ::raydsl::__private::name("primitive") },
+                                                                    ::raydsl::__private::Margin,
+                                                                    _,
+                                                                >::call(bvh, m, (hit,)),
+                                                                m,
+                                                                (),
+                                                            ),
+                                                            m,
+                                                        ),
+                                                    );
+                                            }
+                                        }
+                                        if branch_2.otherwise(m) {
+                                            {
+                                                value_1
+                                                    .set(
+                                                        m,
+                                                        ::raydsl::__private::Varying::varying(background, m),
+                                                    );
+                                            }
+                                        }
+                                        branch_2.end(m);
+                                        value_1.get(m)
+                                    }
+                                },
+                            )
+                        },
+                    ),
                 },
                 move |visit: &mut dyn FnMut(&dyn ::raydsl::__private::Resource)| {
                     ::raydsl::__private::Capture::<

@@ -86,7 +86,7 @@ impl walk {
                         m,
                         "sum",
                         ::raydsl::__private::Varying::varying(
-                            ::raydsl::__private::f32(m, 0.0f32),
+                            ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
                             m,
                         ),
                     );
@@ -122,7 +122,7 @@ impl walk {
                                     }
                                     'block_6: {
                                         {
-                                            let right = ::raydsl::__private::f32(m, 1.0f32);
+                                            let right = ::raydsl::__private::literal(m, 1.0f32, 1.0f64);
                                             sum.set(
                                                 m,
                                                 ::raydsl::__private::Coerce::coerce(
@@ -137,7 +137,7 @@ impl walk {
                                                 m,
                                                 ::raydsl::__private::Compare::Gt,
                                                 sum.get(m),
-                                                ::raydsl::__private::f32(m, 10.0f32),
+                                                ::raydsl::__private::literal(m, 10.0f32, 10.0f64),
                                             ),
                                         );
                                         if branch_8.then(m) {
@@ -158,7 +158,7 @@ impl walk {
                                                             m,
                                                             ::raydsl::__private::Compare::Lt,
                                                             x,
-                                                            ::raydsl::__private::f32(m, 0.0f32),
+                                                            ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
                                                         ),
                                                     );
                                                     if branch_12.then(m) {
@@ -225,7 +225,7 @@ impl walk {
                                             break 'block_6;
                                         }
                                         {
-                                            let right = ::raydsl::__private::f32(m, 2.0f32);
+                                            let right = ::raydsl::__private::literal(m, 2.0f32, 2.0f64);
                                             sum.set(
                                                 m,
                                                 ::raydsl::__private::Coerce::coerce(
@@ -280,7 +280,7 @@ impl walk {
                                             m,
                                             ::raydsl::__private::Compare::Gt,
                                             x,
-                                            ::raydsl::__private::f32(m, 0.0f32),
+                                            ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
                                         ),
                                     );
                                     if branch_21.then(m) {
@@ -311,7 +311,7 @@ impl walk {
                     if branch_18.otherwise(m) {
                         {
                             {
-                                let right = ::raydsl::__private::f32(m, 0.0f32);
+                                let right = ::raydsl::__private::literal(m, 0.0f32, 0.0f64);
                                 last.set(m, ::raydsl::__private::Coerce::coerce(right, m));
                             }
                         }

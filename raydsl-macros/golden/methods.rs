@@ -112,7 +112,10 @@ impl Particle {
                         __M,
                         _,
                     >::call(
-                        <Particle>::new_on(m, ::raydsl::__private::f32(m, 0.0f32)),
+                        <Particle>::new_on(
+                            m,
+                            ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
+                        ),
                         m,
                         (::raydsl::__private::Capture::<__M>::constant(&Vec3::ZERO, m),),
                     ),

@@ -89,7 +89,7 @@ impl push {
                         >;
                         __Twin::<__M> {
                             mass: ::raydsl::__private::Coerce::coerce(
-                                ::raydsl::__private::f32(m, 1.0f32),
+                                ::raydsl::__private::literal(m, 1.0f32, 1.0f64),
                                 m,
                             ),
                             ..q.get(m)

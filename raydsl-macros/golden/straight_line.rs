@@ -65,8 +65,8 @@ impl smooth {
                     clamp::on(
                         m,
                         x,
-                        ::raydsl::__private::f32(m, 0.0f32),
-                        ::raydsl::__private::f32(m, 1.0f32),
+                        ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
+                        ::raydsl::__private::literal(m, 1.0f32, 1.0f64),
                     ),
                 );
                 ::raydsl::__private::Coerce::coerce(
@@ -77,10 +77,10 @@ impl smooth {
                             ::raydsl::__private::OpMul::mul(m, t, t),
                             ::raydsl::__private::OpSub::sub(
                                 m,
-                                ::raydsl::__private::f32(m, 3.0f32),
+                                ::raydsl::__private::literal(m, 3.0f32, 3.0f64),
                                 ::raydsl::__private::OpMul::mul(
                                     m,
-                                    ::raydsl::__private::f32(m, 2.0f32),
+                                    ::raydsl::__private::literal(m, 2.0f32, 2.0f64),
                                     t,
                                 ),
                             ),

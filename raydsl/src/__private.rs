@@ -4,9 +4,10 @@ pub use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn};
 pub use crate::kernel::{Baseline, Kernel, Lifted, Native4, Native8, Native16, Native16Halves};
 pub use crate::machine::{
     Branch, Capture, Coerce, Compare, Const, Field, HostMethod, Inferred, KernelFn, KernelInfo,
-    LaneMachine, Leaves, Loop, Machine, Method, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast,
-    OpCompare, OpDiv, OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Parameter, Recorder,
-    Resource, Ret, Schema, Twin, Type, Value, Var, Varying, call_on_element, is_mut, name,
+    LaneMachine, Leaves, Loop, Machine, Margin, Method, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor,
+    OpCast, OpCompare, OpDiv, OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Parameter,
+    Recorder, Resource, Ret, Schema, Twin, Type, Value, Var, Varying, call_on_element, is_mut,
+    name,
 };
 
 /// Traits of associated functions.
@@ -22,10 +23,10 @@ pub use crate::machine::index::with_element;
 use crate::machine::index::{Index, Indexed};
 use crate::machine::{B, Bounds, F, I, U, Usize};
 
-/// A literal.
+/// A literal, as the two numbers nearest to its text.
 #[inline(always)]
-pub fn f32<M: Machine>(m: &M, v: f32) -> F<M> {
-    F(m.f32(v))
+pub fn literal<M: Machine>(m: &M, v: f32, exact: f64) -> F<M> {
+    F(m.f32_literal(v, exact))
 }
 
 /// A literal with the suffix `i32`.

@@ -3,8 +3,8 @@
 use fearless_simd::Level;
 
 use crate::machine::{
-    KernelFn, KernelInfo, LaneMachine, Lanes, Packet, Recorder, Recording, Resource, Simd4, Simd8,
-    Simd16, Type, wgsl,
+    KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet, Recorder, Recording,
+    Resource, Rounding, Simd4, Simd8, Simd16, Type, wgsl,
 };
 
 /// The machines for which closures are lifted: the natural widths of the target's levels.
@@ -219,6 +219,7 @@ pub struct Lifted<'a, A: Type, R: Type> {
     pub native16_halves: LiftedFn<'a, Native16Halves, A, R>,
     pub baseline: LiftedFn<'a, Baseline, A, R>,
     pub recorder: LiftedFn<'a, Recorder, A, R>,
+    pub margin: LiftedFn<'a, Margin, A, R>,
 }
 
 type Resources<'a> = Box<dyn Fn(&mut dyn FnMut(&dyn Resource)) + Send + Sync + 'a>;
@@ -287,6 +288,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
                 native16_halves: Box::new(F::lifted),
                 baseline: Box::new(F::lifted),
                 recorder: Box::new(F::lifted),
+                margin: Box::new(F::lifted),
             },
             resources: Box::new(|_| {}),
         }
@@ -342,6 +344,31 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
             Variant::Wgsl => panic!("WGSL runs on a device: use raydsl::gpu"),
             packet => self.with_packets(packet, Batch { inputs, outputs }),
         }
+    }
+
+    /// The result in `f64`: every scalar of `R` in order of declaration, integers and truth values
+    /// as the numbers that they are.
+    ///
+    /// Floats of `args` and of the scene widen exactly. Literals mean their decimal text, and what
+    /// has the value of a constant of [`core::f32::consts`] means that constant; other constants
+    /// widen. Elementary functions are std's of `f64`. `to_bits` acts on the value rounded to
+    /// `f32`, so generators of random numbers give the same ones.
+    ///
+    /// A loop that does not end within 4 million rounds in `f64` is left.
+    pub fn reference(&self, args: A) -> Vec<f64> {
+        let outcomes = self.outcomes(args, Rounding::IEEE, 1);
+        outcomes.reference().iter().copied().map(Leaf::value).collect()
+    }
+
+    /// What the variants may give, whatever rounding does; see [`Outcomes`]. At most `limit` ways
+    /// are followed in which decisions may go.
+    pub fn outcomes(&self, args: A, rounding: Rounding, limit: usize) -> Outcomes {
+        Outcomes::of(rounding, limit, |m| self.on_margin(m, A::splat(m, args)))
+    }
+
+    /// The lifted body on the machine of the reference.
+    pub(crate) fn on_margin(&self, m: &Margin, args: A::On<Margin>) -> R::On<Margin> {
+        (self.lifted.margin)(m, args)
     }
 
     /// The kernel as WGSL that reads its parameters from a buffer, for the limits that WebGPU

@@ -250,6 +250,7 @@ pub fn recorded<F: KernelFn>() -> Kernel<'static, F::Args, F::Output> {
             native16_halves: Box::new(|_, _| unreachable!()),
             baseline: Box::new(|_, _| unreachable!()),
             recorder: Box::new(F::lifted),
+            margin: Box::new(F::lifted),
         },
         |_| {},
     )

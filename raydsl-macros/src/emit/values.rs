@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use proc_macro2::{Ident, Span, TokenStream};
-use quote::{format_ident, quote, quote_spanned};
+use quote::{ToTokens, format_ident, quote, quote_spanned};
 
 use crate::generics::Generics;
 
@@ -83,7 +83,10 @@ impl Emitter<'_> {
         let (p, m) = (private(), own("m"));
         let span = e.span;
         match &e.kind {
-            Kind::Float(lit) => quote!(#p::f32(#m, #lit)),
+            Kind::Float(lit) => {
+                let exact = in_f64(lit);
+                quote!(#p::literal(#m, #lit, #exact))
+            }
             Kind::Int { tokens, suffix } => match suffix {
                 Some(IntType::I32) => quote!(#p::i32(#m, #tokens)),
                 Some(IntType::U32) => quote!(#p::u32(#m, #tokens)),
@@ -97,7 +100,10 @@ impl Emitter<'_> {
                 quote_spanned!(span=> #p::Capture::<#machine>::constant(&#path, #m))
             }
             Kind::Neg(a) => match &a.kind {
-                Kind::Float(lit) => quote!(#p::f32(#m, -#lit)),
+                Kind::Float(lit) => {
+                    let exact = in_f64(lit);
+                    quote!(#p::literal(#m, -#lit, -#exact))
+                }
                 Kind::Int { tokens, suffix: None } => quote!((-#tokens)),
                 _ => {
                     let a = self.value(a);
@@ -288,4 +294,12 @@ pub(super) fn operator(
     let p = private();
     let (operator, method) = (format_ident!("{}", op.operator), format_ident!("{}", op.method));
     quote!(#p::#operator::#method(#m, #a, #b))
+}
+
+/// A literal of `f32` with the suffix `f64`.
+fn in_f64(lit: &TokenStream) -> TokenStream {
+    let text = lit.to_string().replace('_', "");
+    let digits = text.strip_suffix("f32").unwrap_or(&text);
+    let span = lit.clone().into_iter().next().map_or_else(Span::call_site, |t| t.span());
+    syn::LitFloat::new(&format!("{digits}f64"), span).to_token_stream()
 }

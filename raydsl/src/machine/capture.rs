@@ -10,7 +10,7 @@ use glam::{
 use crate::bvh;
 use crate::geometry::Primitive;
 
-use super::{Machine, Type, Value, wgsl::BufferKey};
+use super::{F, Machine, Type, Value, wgsl::BufferKey};
 
 /// Data that recorded kernels read from buffers.
 pub trait Resource {
@@ -109,8 +109,23 @@ macro_rules! capture_number {
     };
 }
 
+/// A constant is told from a captured number: it may have more digits than an `f32`.
+impl<M: Machine> Capture<M> for f32 {
+    type On<'c> = F<M>;
+
+    #[inline(always)]
+    fn capture(&self, m: &M, name: &'static str) -> F<M> {
+        m.capture(name, *self)
+    }
+
+    #[inline(always)]
+    fn constant(&self, m: &M) -> F<M> {
+        F(m.f32_constant(*self))
+    }
+}
+
 capture_number!(
-    f32, i32, u32, usize, Vec2, Vec3, Vec4, IVec2, IVec3, IVec4, UVec2, UVec3, UVec4, BVec2, BVec3,
+    i32, u32, usize, Vec2, Vec3, Vec4, IVec2, IVec3, IVec4, UVec2, UVec3, UVec4, BVec2, BVec3,
     BVec4, Mat3, Mat4, Affine3,
 );
 

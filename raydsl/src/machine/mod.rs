@@ -4,7 +4,8 @@
 //! (tagless final: Carette, Kiselyov and Shan, "Finally tagless, partially evaluated", 2009).
 //! Three implementations give the variants: [`Scalar`] (a cross-check of the rewriting; the
 //! scalar *variant* is the user's own function), [`Packet`] (SIMD with masked control flow) and
-//! [`Recorder`] (writes WGSL).
+//! [`Recorder`] (writes WGSL). A fourth, [`Margin`], computes the reference in `f64` and bounds what
+//! rounding may do to the variants.
 //!
 //! A machine offers arithmetic on lanes and *control hooks*: an `if` or a loop of the source calls
 //! them, and what they return steers real Rust control flow. The scalar machine returns the
@@ -20,6 +21,7 @@ pub mod generic;
 pub mod host;
 pub(crate) mod index;
 mod lanes;
+mod margin;
 pub(crate) mod matrix;
 mod methods;
 mod ops;
@@ -39,6 +41,8 @@ pub use capture::{Capture, Parameter, Resource};
 pub use control::{Branch, Condition, Loop, Ret, Var};
 pub(crate) use lanes::{Entered, fill};
 pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
+pub(crate) use margin::result_leaves;
+pub use margin::{Leaf, Margin, Outcomes, Rounding};
 pub use methods::{HostMethod, Method, call_on_element, is_mut, name};
 pub use ops::{
     Bounds, Coerce, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv, OpMul,
@@ -160,6 +164,18 @@ pub trait Machine: Sized + 'static {
     fn u32(&self, v: u32) -> Self::U32;
     fn bool(&self, v: bool) -> Self::Bool;
 
+    /// A literal: the `f32` and the `f64` nearest to its decimal text.
+    #[inline(always)]
+    fn f32_literal(&self, v: f32, _exact: f64) -> Self::F32 {
+        self.f32(v)
+    }
+
+    /// A constant of the source that is named by a path.
+    #[inline(always)]
+    fn f32_constant(&self, v: f32) -> Self::F32 {
+        self.f32(v)
+    }
+
     // Arithmetic.
     fn f32_unary(&self, op: F32Unary, a: Self::F32) -> Self::F32;
     fn f32_binary(&self, op: F32Binary, a: Self::F32, b: Self::F32) -> Self::F32;
@@ -192,6 +208,14 @@ pub trait Machine: Sized + 'static {
     fn f32_to_bits(&self, a: Self::F32) -> Self::U32;
     fn f32_from_bits(&self, a: Self::U32) -> Self::F32;
     fn bool_to_u32(&self, a: Self::Bool) -> Self::U32;
+
+    /// The number `a` with the sign of `sign`.
+    #[inline(always)]
+    fn f32_copysign(&self, a: Self::F32, sign: Self::F32) -> Self::F32 {
+        let bits = |x, mask| self.u32_binary(IntBinary::And, self.f32_to_bits(x), self.u32(mask));
+        let (size, sign) = (bits(a, 0x7fff_ffff), bits(sign, 0x8000_0000));
+        self.f32_from_bits(self.u32_binary(IntBinary::Or, size, sign))
+    }
 
     /// An operation on every component of two vectors; a machine may have vectors of its own.
     #[inline(always)]

@@ -12,7 +12,7 @@ use crate::geometry::{HitOn, Primitive, RayOn};
 /// and must agree with it.
 #[derive(Clone, Debug)]
 pub struct Scalar {
-    active: Cell<bool>,
+    pub(super) active: Cell<bool>,
 }
 
 impl Default for Scalar {

@@ -1,5 +1,6 @@
 //! Two results, number by number.
 
+use super::Cause;
 use crate::machine::{Schema, Type};
 
 /// Upper ends of the histogram's buckets in ulp; the last bucket holds the rest.
@@ -17,36 +18,58 @@ pub struct Agreement {
     pub max_ulp: u32,
     /// How many `f32` lie within each of [`BUCKETS`].
     pub histogram: [u64; BUCKETS.len()],
-    /// Results in which an integer or a truth value differs (another primitive, hit for miss), or
-    /// a number is NaN in one of them only.
-    pub hit_mismatches: u64,
-    /// Mismatches that rounding does not account for. Nothing bounds the rounding error of a
-    /// kernel yet, so every mismatch counts.
+    /// Results in which an integer or a truth value differs (another primitive, hit for miss), a
+    /// number is NaN in one of them only, or numbers differ by more than rounding does.
+    pub mismatches: u64,
+    /// Mismatches that come of an uncertain decision. Their numbers count in neither
+    /// [`Self::max_ulp`] nor [`Self::histogram`].
+    pub explained: u64,
+    /// The other mismatches.
     pub unexplained: u64,
 }
 
 impl Agreement {
-    /// Compares `results` with those of the scalar variant, `expected`.
+    /// Compares `results` with those of the scalar variant, `expected`. Where integers agree,
+    /// numbers may differ; nothing is explained.
     ///
     /// # Panics
     ///
     /// If the lengths differ.
     pub fn of<R: Type>(expected: &[R], results: &[R]) -> Self {
+        Self::judged(
+            expected,
+            results,
+            |_, decided| {
+                if decided { Cause::Unexplained } else { Cause::Rounding }
+            },
+        )
+    }
+
+    /// Compares `results` with those of the scalar variant, `expected`. `cause` is asked why the
+    /// results of an index differ; it is also told whether an integer does.
+    pub(super) fn judged<R: Type>(
+        expected: &[R],
+        results: &[R],
+        cause: impl Fn(usize, bool) -> Cause,
+    ) -> Self {
         assert_eq!(expected.len(), results.len(), "the same inputs give as many results");
         let mut agreement = Self {
             results: results.len() as u64,
             differing: 0,
             max_ulp: 0,
             histogram: [0; BUCKETS.len()],
-            hit_mismatches: 0,
+            mismatches: 0,
+            explained: 0,
             unexplained: 0,
         };
         let size = R::SCHEMA.size();
         let (mut a, mut b) = (vec![0; size], vec![0; size]);
-        for (x, y) in expected.iter().zip(results) {
+        for (i, (x, y)) in expected.iter().zip(results).enumerate() {
             x.write(&mut a);
             y.write(&mut b);
-            agreement.add(Pair::of(R::SCHEMA, &a, &b));
+            let pair = Pair::of(R::SCHEMA, &a, &b);
+            let cause = if pair.is_same() { Cause::Same } else { cause(i, pair.differs) };
+            agreement.add(pair, cause);
         }
         agreement
     }
@@ -56,19 +79,39 @@ impl Agreement {
         self.differing == 0
     }
 
-    fn add(&mut self, pair: Pair) {
-        let moved = pair.ulps.iter().any(|u| *u > 0);
+    fn add(&mut self, pair: Pair, cause: Cause) {
+        self.differing += u64::from(cause != Cause::Same);
+        match cause {
+            Cause::Same | Cause::Rounding => {}
+            Cause::Decision => {
+                self.mismatches += 1;
+                self.explained += 1;
+                return;
+            }
+            Cause::Undecided | Cause::Unexplained => {
+                self.mismatches += 1;
+                self.unexplained += 1;
+            }
+        }
         for ulp in pair.ulps {
             let bucket = BUCKETS.iter().position(|end| ulp <= *end).unwrap_or(BUCKETS.len() - 1);
             self.histogram[bucket] += 1;
             self.max_ulp = self.max_ulp.max(ulp);
         }
-        self.differing += u64::from(moved || pair.differs);
-        if pair.differs {
-            self.hit_mismatches += 1;
-            self.unexplained += 1;
-        }
     }
+}
+
+/// The indices at which two lists of results differ in any bit.
+pub(super) fn differing<R: Type>(expected: &[R], results: &[R]) -> Vec<usize> {
+    let size = R::SCHEMA.size();
+    let (mut a, mut b) = (vec![0; size], vec![0; size]);
+    let mut differs = |x: &R, y: &R| {
+        x.write(&mut a);
+        y.write(&mut b);
+        !Pair::of(R::SCHEMA, &a, &b).is_same()
+    };
+    let pairs = expected.iter().zip(results).enumerate();
+    pairs.filter(|(_, (x, y))| differs(x, y)).map(|(i, _)| i).collect()
 }
 
 /// One result in two variants.
@@ -84,6 +127,10 @@ impl Pair {
         let mut pair = Self { ulps: Vec::new(), differs: false };
         pair.compare(schema, a, b);
         pair
+    }
+
+    fn is_same(&self) -> bool {
+        !self.differs && self.ulps.iter().all(|u| *u == 0)
     }
 
     fn compare(&mut self, schema: &Schema, a: &[u8], b: &[u8]) {
@@ -158,7 +205,7 @@ mod tests {
         let a = [(1u32, 1.0f32), (2, 2.0), (3, 3.0)];
         let b = [(1u32, 1.0f32), (2, 2.0f32.next_up()), (4, 3.0f32.next_down())];
         let found = Agreement::of(&a, &b);
-        assert_eq!((found.differing, found.hit_mismatches, found.unexplained), (2, 1, 1));
+        assert_eq!((found.differing, found.mismatches, found.unexplained), (2, 1, 1));
         assert_eq!(found.max_ulp, 1);
         assert_eq!(found.histogram[..2], [1, 2]);
         assert!(!found.is_bit_identical());

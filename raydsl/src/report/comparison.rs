@@ -2,11 +2,12 @@
 
 use std::time::Instant;
 
-use super::{Agreement, Times};
-use crate::camera::Camera;
+use super::explain::{causes, each, spread};
+use super::{Accuracy, Agreement, Cause, SAMPLES, Sample, Times};
+use crate::camera::{Camera, CameraRays};
 use crate::geometry::Ray;
 use crate::kernel::{Kernel, Variant, Variants};
-use crate::machine::Type;
+use crate::machine::{F, Machine, Outcomes, Rounding, Type};
 use crate::render::{Image, Scheduler, TiledScheduler};
 
 /// Settings of a comparison.
@@ -29,6 +30,8 @@ pub struct Compare<'a> {
     height: u32,
     runs: usize,
     tolerance: u32,
+    samples: usize,
+    rounding: Rounding,
     variants: Variants,
     #[cfg(feature = "gpu")]
     gpu: Option<&'a crate::gpu::GpuScheduler>,
@@ -49,6 +52,8 @@ impl<'a> Compare<'a> {
             height: 480,
             runs: 5,
             tolerance: 0,
+            samples: SAMPLES,
+            rounding: Rounding::IEEE,
             variants: Variants::all(),
             #[cfg(feature = "gpu")]
             gpu: None,
@@ -71,6 +76,18 @@ impl<'a> Compare<'a> {
         Self { tolerance: ulp, ..self }
     }
 
+    /// How many pixels are computed in `f64`, spread evenly over the film: they give the share of
+    /// uncertain ones and the error of every variant. 4096 unless this is called; a pixel takes
+    /// some hundred times as long as in the scalar variant.
+    pub fn samples(self, samples: usize) -> Self {
+        Self { samples, ..self }
+    }
+
+    /// How the device rounds: [`Rounding::IEEE`] unless this is called.
+    pub fn rounding(self, rounding: Rounding) -> Self {
+        Self { rounding, ..self }
+    }
+
     /// Which variants run; the scalar one always does.
     pub fn variants(self, variants: &Variants) -> Self {
         Self { variants: variants.clone(), ..self }
@@ -90,7 +107,7 @@ impl<'a> Compare<'a> {
     /// Runs the variants in turn, round by round.
     ///
     /// A variant that cannot run (no device, no WGSL in this build) has a row that says why.
-    pub fn run<C: Camera, R: Type + Send>(
+    pub fn run<C: Camera, R: Type + Send + Sync>(
         mut self,
         kernel: &Kernel<'_, (Ray,), R>,
         camera: &C,
@@ -133,14 +150,31 @@ impl<'a> Compare<'a> {
                 row.unavailable = outcome.err();
             }
         }
-        let mut rows = rows.into_iter();
-        let scalar = rows.next().unwrap_or_else(|| Row::new(Variant::Scalar, &self));
-        let mut all = vec![scalar];
-        for mut row in rows {
-            row.agreement = Agreement::of(all[0].image.pixels(), row.image.pixels());
-            all.push(row);
+        let rays = camera.begin_frame(self.width, self.height);
+        let (width, rounding) = (self.width, self.rounding);
+        let pixel = |i: usize, limit| {
+            let (x, y) = (i as u32 % width, i as u32 / width);
+            Outcomes::of(rounding, limit, |m| {
+                let [x, y] = [x, y].map(|c| F(m.f32(c as f32 + 0.5)));
+                let ray = C::Rays::primary_ray_on(m, rays.on(m), x, y);
+                kernel.on_margin(m, (ray,))
+            })
+        };
+        if let Some((scalar, others)) = rows.split_first_mut() {
+            for row in others.iter_mut().filter(|r| r.unavailable.is_none()) {
+                row.agreement = row.agreement_with(scalar, pixel);
+            }
         }
-        Comparison { rows: all, adapter, tolerance: self.tolerance }
+        let indices = spread(self.width as usize * self.height as usize, self.samples);
+        let sampled = each(&indices, |i| pixel(i, 1));
+        for row in &mut rows {
+            row.accuracy = row.accuracy_at(&indices, &sampled);
+        }
+        let sample = Sample {
+            inputs: indices.len() as u64,
+            uncertain: sampled.iter().filter(|o| o.is_uncertain()).count() as u64,
+        };
+        Comparison { rows, adapter, tolerance: self.tolerance, sample }
     }
 
     #[cfg(feature = "gpu")]
@@ -165,6 +199,8 @@ pub struct Row<R> {
     pub image: Image<R>,
     /// How that agrees with the scalar variant.
     pub agreement: Agreement,
+    /// How far it is from the reference in `f64`, at the sampled pixels.
+    pub accuracy: Accuracy,
     /// Why the variant did not run, if it did not.
     pub unavailable: Option<String>,
 }
@@ -175,7 +211,40 @@ impl<R: Type> Row<R> {
         let empty = R::read(&vec![0; R::SCHEMA.size()]);
         let image = Image::filled(settings.width, settings.height, empty);
         let agreement = Agreement::of(image.pixels(), image.pixels());
-        Self { variant, isa, lanes, times: Times::default(), image, agreement, unavailable: None }
+        Self {
+            variant,
+            isa,
+            lanes,
+            times: Times::default(),
+            image,
+            agreement,
+            accuracy: Accuracy::default(),
+            unavailable: None,
+        }
+    }
+
+    /// The CPU's variants must have the same bits, so there nothing is explained.
+    fn agreement_with(
+        &self,
+        scalar: &Self,
+        outcomes: impl Fn(usize, usize) -> Outcomes + Sync,
+    ) -> Agreement
+    where
+        R: Sync,
+    {
+        let (expected, found) = (scalar.image.pixels(), self.image.pixels());
+        if self.variant != Variant::Wgsl {
+            return Agreement::judged(expected, found, |_, _| Cause::Unexplained);
+        }
+        let causes = causes(expected, found, outcomes);
+        let cause = |i: usize| causes.binary_search_by_key(&i, |(at, _)| *at);
+        Agreement::judged(expected, found, |i, _| cause(i).map_or(Cause::Same, |at| causes[at].1))
+    }
+
+    fn accuracy_at(&self, indices: &[usize], sampled: &[Outcomes]) -> Accuracy {
+        let pixel = |i: &usize| self.image.pixels()[*i];
+        let references = sampled.iter().map(Outcomes::reference);
+        Accuracy::of(indices.iter().map(pixel).zip(references))
     }
 
     /// Millions of camera rays a second.
@@ -196,6 +265,21 @@ pub struct Comparison<R> {
     pub adapter: Option<String>,
     /// How many ulp the numbers of the WGSL variant may be off.
     pub tolerance: u32,
+    /// How many pixels were uncertain, of those computed in `f64`.
+    pub sample: Sample,
+}
+
+/// What a comparison comes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Verdict {
+    /// CPU variants have the same bits; WGSL makes the same decisions but for those that rounding
+    /// leaves open, and its numbers are within [`Compare::tolerance`].
+    Agree,
+    /// They do not.
+    Differ,
+    /// They agree thanks to explanations, but more than 1 % of the pixels are uncertain: with so
+    /// much open, explanations mean little.
+    NotMeaningful,
 }
 
 impl<R: Type> Comparison<R> {
@@ -204,13 +288,25 @@ impl<R: Type> Comparison<R> {
         &self.rows[0]
     }
 
-    /// Whether every variant that ran agrees: CPU variants in every bit, WGSL in every decision and
-    /// in its numbers to [`Compare::tolerance`].
+    /// Whether every variant that ran agrees: CPU variants in every bit, WGSL in every decision
+    /// that rounding does not leave open, and in its numbers to [`Compare::tolerance`].
     pub fn agrees(&self) -> bool {
-        self.rows.iter().filter(|r| r.unavailable.is_none()).all(|r| match r.variant {
+        self.verdict() == Verdict::Agree
+    }
+
+    /// What the comparison comes to.
+    pub fn verdict(&self) -> Verdict {
+        let ran = || self.rows.iter().filter(|r| r.unavailable.is_none());
+        let agree = ran().all(|r| match r.variant {
             Variant::Wgsl => r.agreement.unexplained == 0 && r.agreement.max_ulp <= self.tolerance,
             _ => r.agreement.is_bit_identical(),
-        })
+        });
+        let explained = ran().any(|r| r.agreement.explained > 0);
+        match agree {
+            false => Verdict::Differ,
+            true if explained && !self.sample.is_meaningful() => Verdict::NotMeaningful,
+            true => Verdict::Agree,
+        }
     }
 
     /// The table, at most 100 columns wide.
@@ -225,7 +321,7 @@ impl<R: Type> Comparison<R> {
 }
 
 /// Runs a kernel in `variants` at 640 by 480 pixels and compares; see [`Compare`] for settings.
-pub fn compare<C: Camera, R: Type + Send>(
+pub fn compare<C: Camera, R: Type + Send + Sync>(
     kernel: &Kernel<'_, (Ray,), R>,
     camera: &C,
     variants: Variants,

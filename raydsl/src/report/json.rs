@@ -31,6 +31,8 @@ pub(super) fn json<R: Type>(c: &Comparison<R>, scene: &SceneInfo) -> Value {
         "adapter": c.adapter,
         "build_ms": scene.build_ms,
         "bvh_bytes": scene.bvh_bytes,
+        "sampled": c.sample.inputs,
+        "uncertain_share": c.sample.share(),
         "variants": variants,
     })
 }
@@ -49,7 +51,12 @@ fn row<R: Type>(row: &Row<R>, scalar: &Row<R>) -> Value {
         "spread": row.times.spread(),
         "bit_identical": row.agreement.is_bit_identical(),
         "max_ulp": row.agreement.max_ulp,
-        "hit_mismatches": row.agreement.hit_mismatches,
+        "mismatches": row.agreement.mismatches,
+        "explained": row.agreement.explained,
         "unexplained": row.agreement.unexplained,
+        "max_error_ulp": row.accuracy.max_ulp,
+        "mean_error_ulp": row.accuracy.mean_ulp,
+        "median_error_ulp": row.accuracy.median_ulp,
+        "other_paths": row.accuracy.other_paths,
     })
 }

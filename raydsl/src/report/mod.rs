@@ -1,19 +1,26 @@
 //! Do the variants agree, and what does each cost?
 //!
-//! [`compare`] runs a kernel in any set of variants and says where they differ from the scalar
+//! [`explain`] says which differences rounding accounts for. [`compare`] runs a kernel in any set of variants and says where they differ from the scalar
 //! one, in bits: the yardstick is the user's own function.
 
+mod accuracy;
 mod agreement;
 mod comparison;
+mod explain;
 mod json;
 #[cfg(feature = "image")]
 mod pictures;
 mod table;
 mod timing;
 
+pub use accuracy::Accuracy;
 pub use agreement::{Agreement, BUCKETS};
-pub use comparison::{Compare, Comparison, Row, compare};
+pub use comparison::{Compare, Comparison, Row, Verdict, compare};
+pub use explain::{Cause, Explanation, Sample, explain};
 pub use json::SceneInfo;
 #[cfg(feature = "image")]
 pub use pictures::WriteError;
 pub use timing::Times;
+
+/// How many inputs a sample has, unless it is told otherwise.
+const SAMPLES: usize = 4096;

@@ -2,11 +2,13 @@
 
 use core::fmt::Write;
 
-use super::{Comparison, Row};
+use super::{Comparison, Row, Verdict};
 use crate::machine::Type;
 
 const HEADER: &str = "variant    isa      lanes  ms/frame  Mrays/s  speed-up  max ulp  mismatches  \
-                      unexplained";
+                      explained  unexplained";
+
+const REFERENCE: &str = "variant    error (ulp): median        mean         max  other paths";
 
 /// The longest line of a table.
 const WIDTH: usize = 100;
@@ -16,7 +18,36 @@ pub(super) fn table<R: Type>(c: &Comparison<R>) -> String {
     for row in &c.rows {
         text += &line(row, c.scalar());
     }
+    if c.sample.inputs > 0 {
+        text += &reference(c);
+    }
     text
+}
+
+/// How far each variant is from the reference, and what is uncertain.
+fn reference<R: Type>(c: &Comparison<R>) -> String {
+    let mut text = format!("\n{REFERENCE}\n");
+    for row in c.rows.iter().filter(|r| r.unavailable.is_none()) {
+        let (name, a) = (row.variant.name(), &row.accuracy);
+        let (median, mean, max) = (a.median_ulp, a.mean_ulp, a.max_ulp);
+        let _ = writeln!(
+            text,
+            "{name:<10} {median:>19.2e} {mean:>11.2e} {max:>11.2e} {:>12}",
+            a.other_paths
+        );
+    }
+    let share = 100.0 * c.sample.share();
+    let _ = writeln!(
+        text,
+        "of {} pixels in f64, {share:.2} % met a decision that rounding leaves open",
+        c.sample.inputs
+    );
+    let verdict = match c.verdict() {
+        Verdict::Agree => "the variants agree",
+        Verdict::Differ => "the variants differ",
+        Verdict::NotMeaningful => "not meaningful: more than 1 % is open",
+    };
+    text + verdict + "\n"
 }
 
 fn line<R: Type>(row: &Row<R>, scalar: &Row<R>) -> String {
@@ -31,13 +62,14 @@ fn line<R: Type>(row: &Row<R>, scalar: &Row<R>) -> String {
     let ulp = if a.max_ulp == u32::MAX { "NaN".to_owned() } else { a.max_ulp.to_string() };
     let _ = writeln!(
         text,
-        "{name:<10} {:<8} {:>5} {:>9.2} {:>8.2} {:>9} {ulp:>8} {:>11} {:>12}",
+        "{name:<10} {:<8} {:>5} {:>9.2} {:>8.2} {:>9} {ulp:>8} {:>11} {:>10} {:>12}",
         row.isa,
         row.lanes,
         row.times.median(),
         row.mrays_per_s(),
         format!("{:.2}x", row.times.speedup_over(&scalar.times)),
-        a.hit_mismatches,
+        a.mismatches,
+        a.explained,
         a.unexplained,
     );
     text

@@ -196,6 +196,7 @@ impl Case {
                 native16_halves: Box::new(|_, _| unreachable!()),
                 baseline: Box::new(|_, _| unreachable!()),
                 recorder: Box::new(self.recorder),
+                margin: Box::new(|_, _| unreachable!()),
             },
             |_| {},
         )

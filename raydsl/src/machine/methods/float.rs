@@ -61,9 +61,7 @@ pub(super) fn clamp<M: Machine>(m: &M, a: F<M>, low: F<M>, high: F<M>) -> F<M> {
 
 #[inline(always)]
 pub(super) fn copysign<M: Machine>(m: &M, a: F<M>, sign: F<M>) -> F<M> {
-    let bits = |x: M::F32, mask| m.u32_binary(IntBinary::And, m.f32_to_bits(x), m.u32(mask));
-    let (size, sign) = (bits(a.0, 0x7fff_ffff), bits(sign.0, 0x8000_0000));
-    F(m.f32_from_bits(m.u32_binary(IntBinary::Or, size, sign)))
+    F(m.f32_copysign(a.0, sign.0))
 }
 
 /// The bits without the sign compared with those of infinity. Unlike `a != a` that also holds for

@@ -1,0 +1,151 @@
+//! The arithmetic of the machine.
+
+use super::interval::{Interval, Rounded};
+use super::{Bounded, Margin, rounding};
+use crate::machine::F32Binary;
+
+/// How many integers an open conversion may give before the run is given up.
+const ALTERNATIVES: usize = 16;
+
+impl Margin {
+    /// One of some integers, the first of which is that of `f64`.
+    pub(super) fn one_of<T: Copy>(&self, alternatives: &[T]) -> T {
+        match alternatives {
+            [only] => *only,
+            all if self.is_running() => all[self.decisions.choose(all.len())],
+            all => all[0],
+        }
+    }
+
+    /// A conversion to integers that rises: each integer that is possible. `order` and `back` count
+    /// them.
+    pub(super) fn integer<T: Copy + PartialEq>(
+        &self,
+        a: Bounded,
+        of: impl Fn(f64) -> T,
+        order: impl Fn(T) -> i64,
+        back: impl Fn(i64) -> T,
+    ) -> T {
+        let value = of(a.value);
+        let mut possible = Vec::new();
+        if !a.range.is_nan() {
+            let (first, last) = (order(of(a.range.low)), order(of(a.range.high)));
+            if last - first >= ALTERNATIVES as i64 {
+                if self.is_running() {
+                    self.decisions.lose();
+                }
+                return value;
+            }
+            possible.extend((first..=last).map(back));
+        }
+        if a.range.nan && !possible.contains(&of(f64::NAN)) {
+            possible.push(of(f64::NAN));
+        }
+        // The integer of `f64` first; a path that `f64` does not take may lack it.
+        if let Some(at) = possible.iter().position(|v| *v == value) {
+            possible.swap(0, at);
+        }
+        self.one_of(&possible)
+    }
+
+    /// A function in steps that rises: a decision where few steps are possible.
+    pub(super) fn stepped(&self, a: Bounded, f: impl Fn(f64) -> f64) -> Bounded {
+        let value = f(a.value);
+        if a.range.is_nan() {
+            return self.point(f64::NAN);
+        }
+        let (first, last) = (f(a.range.low), f(a.range.high));
+        if first == last && !a.range.nan {
+            return self.point(first);
+        }
+        if a.range.nan || last - first > 3.0 || !(first..=last).contains(&value) {
+            return self.bounded(value, Interval::new(first, last, a.range.nan));
+        }
+        let mut all = vec![value];
+        let steps = (0..=(last - first) as u32).map(|k| first + f64::from(k));
+        all.extend(steps.filter(|v| *v != value));
+        self.point(self.one_of(&all))
+    }
+
+    /// A float that is `value` in `f64` and a rounded one of `range` in `f32`.
+    pub(super) fn rounded(&self, value: f64, range: Interval, by: Rounded) -> Bounded {
+        self.bounded(value, range.rounded(by))
+    }
+
+    /// `a op b`.
+    pub(super) fn binary(&self, op: F32Binary, a: Bounded, b: Bounded) -> Bounded {
+        let (x, y) = (a.value, b.value);
+        if let (Some(x), Some(y)) = (a.range.as_point(), b.range.as_point())
+            && let Some(exact) = rounding::exact(op, x, y)
+        {
+            return self.point(exact);
+        }
+        let is_zero = |v: Bounded| v.range.as_point() == Some(0.0);
+        let same = a.id == b.id;
+        let sum = self.rounding.sum();
+        match op {
+            F32Binary::Add | F32Binary::Sub if is_zero(b) => a,
+            F32Binary::Add if is_zero(a) => b,
+            F32Binary::Add => self.rounded(x + y, a.range.add(b.range), sum),
+            F32Binary::Sub if same && !a.range.may_break() => self.point(0.0),
+            F32Binary::Sub => self.rounded(x - y, a.range.sub(b.range), sum),
+            F32Binary::Mul => {
+                let range = if same { a.range.square() } else { a.range.mul(b.range) };
+                self.rounded(x * y, range, self.rounding.product(a.range, b.range))
+            }
+            F32Binary::Div => {
+                self.rounded(x / y, a.range.div(b.range), self.rounding.quotient(b.range))
+            }
+            F32Binary::Min => self.least(a, b, if y < x { y } else { x }, a.range.min(b.range)),
+            F32Binary::Max => self.least(a, b, if x < y { y } else { x }, a.range.max(b.range)),
+        }
+    }
+
+    /// The smaller or the larger of two, which needs no decision: it is near either's ends.
+    fn least(&self, a: Bounded, b: Bounded, value: f64, range: Interval) -> Bounded {
+        // The operand itself, where it is certain which one it is.
+        match range {
+            r if a.range.overlaps(b.range) || r.nan => self.bounded(value, r),
+            r if r == a.range => Bounded { value, ..a },
+            r if r == b.range => Bounded { value, ..b },
+            r => self.bounded(value, r),
+        }
+    }
+
+    /// An integer as a float.
+    pub(super) fn converted(&self, value: f64, short: f32) -> Bounded {
+        if f64::from(short) == value {
+            return self.point(value);
+        }
+        self.rounded(value, Interval::point(value), self.rounding.sum())
+    }
+}
+
+/// The `f64` number that a constant of [`core::f32::consts`] stands for.
+///
+/// It is told by its value, so that it may come by any path. A constant of the user's that has the
+/// same bits by chance (18 numbers among four thousand million) would be taken for it, which moves
+/// the reference by less than the rounding of that constant.
+pub(super) fn constant(v: f32) -> f64 {
+    use core::{f32::consts as short, f64::consts as long};
+    macro_rules! table {
+        ($($name:ident)+) => {
+            [$((short::$name, long::$name)),+]
+        };
+    }
+    let known = table!(
+        E FRAC_1_PI FRAC_1_SQRT_2 FRAC_2_PI FRAC_2_SQRT_PI FRAC_PI_2 FRAC_PI_3 FRAC_PI_4 FRAC_PI_6
+        FRAC_PI_8 LN_10 LN_2 LOG10_2 LOG10_E LOG2_10 LOG2_E PI SQRT_2 TAU
+    );
+    known.into_iter().find_map(|(s, l)| (s == v).then_some(l)).unwrap_or(f64::from(v))
+}
+
+/// The bits of a float, as an integer in the order of the numbers; -0 comes before +0.
+pub(super) fn ordered(bits: u32) -> i64 {
+    if bits >> 31 == 0 { i64::from(bits) } else { -i64::from(bits & 0x7fff_ffff) - 1 }
+}
+
+/// The float's bits that [`ordered`] makes `ordered`.
+pub(super) fn bits_of(ordered: i64) -> u32 {
+    if ordered >= 0 { ordered as u32 } else { (-ordered - 1) as u32 | 0x8000_0000 }
+}

@@ -1,0 +1,73 @@
+//! The box test for a ray that rounding makes wide.
+
+use super::Margin;
+use super::interval::Interval;
+use crate::bvh::Node;
+use crate::geometry::RayOn;
+
+/// A ray as wide as rounding makes it.
+pub(super) struct Beam {
+    /// Where it may start, moved apart by the allowance.
+    origin: [Interval; 3],
+    direction: [f64; 3],
+    t_min: f64,
+}
+
+impl Beam {
+    /// `ray`, for the boxes of a tree whose primitives have this `SLACK`.
+    pub(super) fn new(ray: RayOn<Margin>, root: &Node, slack: f64) -> Self {
+        let origin = [ray.origin.x, ray.origin.y, ray.origin.z].map(|c| c.0.range);
+        let direction = [ray.direction.x, ray.direction.y, ray.direction.z].map(|c| c.0.range);
+        let (low, high) = (root.min.as_dvec3().to_array(), root.max.as_dvec3().to_array());
+        let mut reach = 0f64;
+        for axis in 0..3 {
+            let (near, far) = (low[axis] - origin[axis].high, high[axis] - origin[axis].low);
+            reach = reach.max(near.abs()).max(far.abs());
+        }
+        // How far the ray may lie aside at the far end of the scene.
+        let width = direction.iter().map(|d| d.high - d.low).fold(0.0, f64::max);
+        let length = direction.iter().map(|d| d.abs().low).fold(0.0, f64::max);
+        let aside = width * 2.0 * reach / length;
+        let ulp = f64::from(f32::EPSILON);
+        let widest = origin.map(|o| {
+            let pad = 2.0 * slack * reach + o.abs().high * 2.0 * ulp + aside;
+            // Without a direction, or with one that is not known, everything is met.
+            let pad = if pad.is_nan() { f64::INFINITY } else { pad };
+            Interval::new(o.low - pad, o.high + pad, false)
+        });
+        let middle = direction.map(|d| 0.5 * (d.low + d.high));
+        Self { origin: widest, direction: middle, t_min: ray.t_min.0.range.low }
+    }
+
+    /// Where the beam enters and leaves a box.
+    fn slab(&self, node: &Node) -> (f64, f64) {
+        let (low, high) = (node.min.as_dvec3().to_array(), node.max.as_dvec3().to_array());
+        let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
+        for axis in 0..3 {
+            let (o, d) = (self.origin[axis], self.direction[axis]);
+            let (first, last) = (low[axis] - o.high, high[axis] - o.low);
+            // Across the axis, within the allowance, or without a limit: this axis says nothing.
+            if d == 0.0 || !(first / d).is_finite() || !(last / d).is_finite() {
+                if first > 0.0 || last < 0.0 {
+                    return (f64::INFINITY, f64::NEG_INFINITY);
+                }
+                continue;
+            }
+            near = near.max((first / d).min(last / d));
+            far = far.min((first / d).max(last / d));
+        }
+        (near, far)
+    }
+
+    /// Where it enters a box.
+    pub(super) fn enters(&self, node: &Node) -> f64 {
+        self.slab(node).0
+    }
+
+    /// Whether it meets a box at or before `limit`.
+    pub(super) fn meets(&self, node: &Node, limit: f64) -> bool {
+        let (near, far) = self.slab(node);
+        // So written that a NaN means a visit.
+        !(near > far || far < self.t_min || near > limit)
+    }
+}

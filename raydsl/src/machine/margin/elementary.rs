@@ -1,0 +1,240 @@
+//! Elementary functions in `f64`, by std, instead of their polynomials.
+
+use core::f64::consts::{PI, TAU};
+
+use super::interval::Interval;
+use super::{Bounded, Margin, Truth};
+use crate::machine::{KernelFn, KernelInfo, Leaves, Value};
+use crate::math::elementary as host;
+
+/// A kernel of [`crate::math::elementary`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Function {
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Atan2,
+    Exp,
+    Exp2,
+    Expm1,
+    Log,
+    Log2,
+    Log1p,
+    Pow,
+    SinCos2Pi,
+}
+
+/// The elementary function that a kernel is. A kernel of a user may have the same name, but stands
+/// elsewhere.
+pub(super) fn function(info: &KernelInfo) -> Option<Function> {
+    macro_rules! find {
+        ($($name:ident $function:ident)+) => {
+            match info.name {
+                $(stringify!($name) => (Function::$function, <host::$name as KernelFn>::info()),)+
+                _ => return None,
+            }
+        };
+    }
+    let (function, own) = find!(
+        sin Sin cos Cos tan Tan asin Asin acos Acos atan Atan atan2 Atan2 exp Exp exp2 Exp2
+        expm1 Expm1 log Log log2 Log2 log1p Log1p pow Pow sincos_2pi SinCos2Pi
+    );
+    (info.file == own.file && info.line == own.line).then_some(function)
+}
+
+impl Margin {
+    /// Runs an elementary function on the floats of `args`.
+    pub(super) fn elementary<A: Value<Self>, R: Value<Self>>(
+        &self,
+        function: Function,
+        args: A,
+    ) -> R {
+        let mut floats = Take(Vec::new());
+        A::zip(self, args, args, &mut floats);
+        let results = match (function, &floats.0[..]) {
+            (Function::SinCos2Pi, [u]) => {
+                let waves = [
+                    (turn_sin as fn(f64) -> f64, u.range.map_wave(TAU, turn_sin)),
+                    (turn_cos, u.range.map_wave(TAU, turn_cos)),
+                ];
+                waves.map(|(f, range)| self.result(f(u.value), range)).to_vec()
+            }
+            (Function::Atan2, [y, x]) => {
+                let range = self.angle(*y, *x);
+                vec![self.result(y.value.atan2(x.value), range)]
+            }
+            (Function::Pow, [x, y]) => {
+                vec![self.result(x.value.powf(y.value), power(x.range, y.range))]
+            }
+            (function, [x]) => {
+                let (value, range) = of_one(function, x.value, x.range);
+                vec![self.result(value, range)]
+            }
+            _ => Vec::new(),
+        };
+        R::zip(self, R::zero(self), R::zero(self), &mut Give(results.into_iter()))
+    }
+
+    /// Where a function of exact arguments is 0, infinite or NaN, it is so in every variant.
+    fn result(&self, value: f64, range: Interval) -> Bounded {
+        if range.is_nan() || range.as_point().is_some_and(|v| v == 0.0 || v.is_infinite()) {
+            return self.bounded(value, range);
+        }
+        self.rounded(value, range, self.rounding.function())
+    }
+
+    /// The angles of the points of a rectangle. Across the negative axis of x they jump: on which
+    /// side the point is, is a decision.
+    fn angle(&self, y: Bounded, x: Bounded) -> Interval {
+        let (up, across) = (y.range, x.range);
+        if up.is_nan() || across.is_nan() {
+            return Interval::NAN;
+        }
+        let nan = up.nan || across.nan;
+        let crosses = up.low < 0.0 && up.high >= 0.0 && across.low < 0.0;
+        if crosses && across.high >= 0.0 {
+            return Interval::new(-PI, PI, nan);
+        }
+        let mut ends = [up.low, up.high];
+        if crosses {
+            let upper = y.value.is_sign_positive();
+            let is_other = self.is_running() && self.decisions.choose(2) == 1;
+            ends = if upper ^ is_other { [0.0, up.high] } else { [up.low, -0.0] };
+        }
+        let corner = |y: f64| [y.atan2(across.low), y.atan2(across.high)];
+        Interval::around([corner(ends[0]), corner(ends[1])].concat(), nan)
+    }
+}
+
+/// The value, and the interval of values that an interval gives.
+fn of_one(function: Function, v: f64, x: Interval) -> (f64, Interval) {
+    let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
+    let steady = |domain: (f64, f64), f: fn(f64) -> f64| (f(v), x.monotone(domain, f));
+    match function {
+        Function::Sin => (v.sin(), x.map_wave(1.0, f64::sin)),
+        Function::Cos => (v.cos(), x.map_wave(1.0, f64::cos)),
+        Function::Tan => (v.tan(), tangent(x)),
+        Function::Asin => steady((-1.0, 1.0), f64::asin),
+        Function::Acos => steady((-1.0, 1.0), f64::acos),
+        Function::Atan => steady(everywhere, f64::atan),
+        Function::Exp => steady(everywhere, f64::exp),
+        Function::Exp2 => steady(everywhere, f64::exp2),
+        Function::Expm1 => steady(everywhere, f64::exp_m1),
+        Function::Log => steady((0.0, f64::INFINITY), f64::ln),
+        Function::Log2 => steady((0.0, f64::INFINITY), f64::log2),
+        Function::Log1p => steady((-1.0, f64::INFINITY), f64::ln_1p),
+        Function::Atan2 | Function::Pow | Function::SinCos2Pi => (f64::NAN, Interval::ALL),
+    }
+}
+
+impl Interval {
+    /// A function from -1 to 1 whose slope is at most `slope`; NaN at the infinities.
+    fn map_wave(self, slope: f64, f: fn(f64) -> f64) -> Self {
+        if self.is_nan() || self.as_point().is_some_and(f64::is_infinite) {
+            return Self::NAN;
+        }
+        let (middle, half) = (0.5 * (self.low + self.high), 0.5 * (self.high - self.low));
+        let infinite = self.low.is_infinite() || self.high.is_infinite();
+        let (v, reach) = (f(middle), half * slope);
+        if infinite || reach >= 2.0 {
+            return Self::new(-1.0, 1.0, self.nan || infinite);
+        }
+        Self::new((v - reach).max(-1.0), (v + reach).min(1.0), self.nan)
+    }
+}
+
+fn tangent(x: Interval) -> Interval {
+    if x.as_point().is_some() {
+        return Interval::point(x.low.tan());
+    }
+    // Which branch between two poles.
+    let branch = |v: f64| (v / PI + 0.5).floor();
+    if x.is_nan() {
+        Interval::NAN
+    } else if !x.may_break() && branch(x.low) == branch(x.high) && x.low.tan() <= x.high.tan() {
+        Interval::new(x.low.tan(), x.high.tan(), false)
+    } else {
+        Interval { nan: x.may_break(), ..Interval::ALL }
+    }
+}
+
+/// Powers of positive numbers rise or fall in each argument, so corners are extreme; so do whole
+/// powers of negative ones.
+fn power(x: Interval, y: Interval) -> Interval {
+    if let (Some(x), Some(y)) = (x.as_point(), y.as_point()) {
+        return Interval::point(x.powf(y));
+    }
+    // `pow(x, 0)` and `pow(1, y)` are 1, even for a NaN.
+    if x.is_nan() || y.is_nan() {
+        return Interval { nan: true, ..Interval::around([1.0], true) };
+    }
+    let whole = y.as_point().filter(|n| n.trunc() == *n);
+    let is_fine = x.low > 0.0 || whole.is_some_and(|n| n > 0.0 || x.high < 0.0);
+    if x.may_break() || y.may_break() || !is_fine {
+        return Interval::ALL;
+    }
+    let mut corners = vec![x.low.powf(y.low), x.low.powf(y.high)];
+    corners.extend([x.high.powf(y.low), x.high.powf(y.high)]);
+    if x.contains(0.0) {
+        corners.push(0.0);
+    }
+    Interval::around(corners, false)
+}
+
+/// The sine of an angle in turns, exact at quarters.
+fn turn_sin(u: f64) -> f64 {
+    let r = u - u.round();
+    match 4.0 * r {
+        q if q == 0.0 || q.abs() == 2.0 => 0.0f64.copysign(u),
+        q if q.abs() == 1.0 => q,
+        _ => (r * TAU).sin(),
+    }
+}
+
+/// The cosine of an angle in turns, exact at quarters.
+fn turn_cos(u: f64) -> f64 {
+    let r = u - u.round();
+    match (4.0 * r).abs() {
+        0.0 => 1.0,
+        1.0 => 0.0,
+        2.0 => -1.0,
+        _ => (r * TAU).cos(),
+    }
+}
+
+/// Takes the floats of a value.
+struct Take(Vec<Bounded>);
+
+/// Gives a value floats.
+struct Give(std::vec::IntoIter<Bounded>);
+
+macro_rules! leaves {
+    ($name:ident, |$self:ident, $m:ident, $a:ident| $float:expr) => {
+        impl Leaves<Margin> for $name {
+            fn f32(&mut $self, $m: &Margin, $a: Bounded, _: Bounded) -> Bounded {
+                $float
+            }
+
+            fn i32(&mut self, _: &Margin, a: i32, _: i32) -> i32 {
+                a
+            }
+
+            fn u32(&mut self, _: &Margin, a: u32, _: u32) -> u32 {
+                a
+            }
+
+            fn bool(&mut self, _: &Margin, a: Truth, _: Truth) -> Truth {
+                a
+            }
+        }
+    };
+}
+
+leaves!(Take, |self, _m, a| {
+    self.0.push(a);
+    a
+});
+leaves!(Give, |self, m, a| self.0.next().unwrap_or_else(|| m.bounded(a.value, Interval::ALL)));

@@ -1,0 +1,252 @@
+//! Intervals that contain a result, whatever rounding did.
+//!
+//! Moore, Kearfott and Cloud, "Introduction to Interval Analysis" (2009), with NaN kept apart: an
+//! interval says which numbers a result may be, and whether it may be none.
+
+/// Every number from `low` to `high` (infinities included) may be the result, and NaN if `nan`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Interval {
+    pub(super) low: f64,
+    pub(super) high: f64,
+    pub(super) nan: bool,
+}
+
+/// How far a rounded result may lie from the exact one: this part of it, and this much.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Rounded {
+    pub(super) relative: f64,
+    pub(super) absolute: f64,
+}
+
+impl Interval {
+    /// NaN, and nothing else.
+    pub(super) const NAN: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, nan: true };
+    /// Nothing is known.
+    pub(super) const ALL: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY, nan: true };
+
+    /// This number alone.
+    pub(super) fn point(v: f64) -> Self {
+        if v.is_nan() { Self::NAN } else { Self { low: v, high: v, nan: false } }
+    }
+
+    /// From `low` to `high`; an end that is NaN is no limit.
+    pub(super) fn new(low: f64, high: f64, nan: bool) -> Self {
+        Self {
+            low: if low.is_nan() { f64::NEG_INFINITY } else { low },
+            high: if high.is_nan() { f64::INFINITY } else { high },
+            nan,
+        }
+    }
+
+    /// The smallest interval around some numbers; a NaN among them is no limit.
+    pub(super) fn around(numbers: impl IntoIterator<Item = f64>, nan: bool) -> Self {
+        let mut all = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, nan };
+        for v in numbers {
+            if v.is_nan() {
+                return Self { nan, ..Self::ALL };
+            }
+            all = Self { low: all.low.min(v), high: all.high.max(v), nan };
+        }
+        all
+    }
+
+    /// Whether it is NaN for certain.
+    pub(super) fn is_nan(self) -> bool {
+        self.low > self.high
+    }
+
+    /// The number, if only one is possible.
+    pub(super) fn as_point(self) -> Option<f64> {
+        (self.low == self.high && !self.nan).then_some(self.low)
+    }
+
+    pub(super) fn contains(self, v: f64) -> bool {
+        if v.is_nan() { self.nan } else { self.low <= v && v <= self.high }
+    }
+
+    /// Whether infinity or NaN is possible.
+    pub(super) fn may_break(self) -> bool {
+        self.nan || !self.low.is_finite() || !self.high.is_finite()
+    }
+
+    pub(super) fn overlaps(self, other: Self) -> bool {
+        self.low <= other.high && other.low <= self.high
+    }
+
+    /// The smallest interval that contains both.
+    pub(super) fn hull(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+            nan: self.nan || other.nan,
+        }
+    }
+
+    /// What may become of it when it is rounded to `f32`, which overflows.
+    pub(super) fn rounded(self, by: Rounded) -> Self {
+        if self.is_nan() {
+            return self;
+        }
+        let error = |v: f64| v.abs() * by.relative + by.absolute;
+        // Rounding changes no sign.
+        let low = if self.low >= 0.0 { 0.0 } else { f64::NEG_INFINITY };
+        let high = if self.high <= 0.0 { 0.0 } else { f64::INFINITY };
+        let low = (self.low - error(self.low)).max(low);
+        let high = (self.high + error(self.high)).min(high);
+        let limit = f64::from(f32::MAX);
+        let (down, up) = (f64::NEG_INFINITY, f64::INFINITY);
+        Self {
+            low: if low < -limit { down } else { low.min(limit) },
+            high: if high > limit { up } else { high.max(-limit) },
+            nan: self.nan,
+        }
+    }
+
+    pub(super) fn neg(self) -> Self {
+        if self.is_nan() { self } else { Self { low: -self.high, high: -self.low, nan: self.nan } }
+    }
+
+    pub(super) fn abs(self) -> Self {
+        if self.is_nan() || self.low >= 0.0 {
+            self
+        } else if self.high <= 0.0 {
+            self.neg()
+        } else {
+            Self { low: 0.0, high: self.high.max(-self.low), nan: self.nan }
+        }
+    }
+
+    pub(super) fn add(self, b: Self) -> Self {
+        if self.is_nan() || b.is_nan() {
+            return Self::NAN;
+        }
+        let (up, down) = (f64::INFINITY, f64::NEG_INFINITY);
+        let opposite = self.high == up && b.low == down || self.low == down && b.high == up;
+        Self::new(self.low + b.low, self.high + b.high, self.nan || b.nan || opposite)
+    }
+
+    pub(super) fn sub(self, b: Self) -> Self {
+        self.add(b.neg())
+    }
+
+    /// Whether 0 and an infinity are possible: their product and quotients are NaN.
+    fn zero_meets_infinity(self, b: Self) -> bool {
+        let infinite = |x: Self| x.low.is_infinite() || x.high.is_infinite();
+        self.contains(0.0) && infinite(b) || b.contains(0.0) && infinite(self)
+    }
+
+    pub(super) fn mul(self, b: Self) -> Self {
+        if self.is_nan() || b.is_nan() {
+            return Self::NAN;
+        }
+        // A number next to 0 times one without limit is next to 0 or without limit.
+        let product = |x: f64, y: f64| if x == 0.0 || y == 0.0 { 0.0 } else { x * y };
+        let corners = [
+            product(self.low, b.low),
+            product(self.low, b.high),
+            product(self.high, b.low),
+            product(self.high, b.high),
+        ];
+        Self::around(corners, self.nan || b.nan || self.zero_meets_infinity(b))
+    }
+
+    /// The product with itself.
+    pub(super) fn square(self) -> Self {
+        let size = self.abs();
+        if size.is_nan() {
+            size
+        } else {
+            Self::new(size.low * size.low, size.high * size.high, size.nan)
+        }
+    }
+
+    pub(super) fn div(self, b: Self) -> Self {
+        if self.is_nan() || b.is_nan() {
+            return Self::NAN;
+        }
+        let infinite = |x: Self| x.low.is_infinite() || x.high.is_infinite();
+        let nan = self.nan || b.nan || infinite(self) && infinite(b);
+        if b.contains(0.0) {
+            return Self { nan: nan || self.contains(0.0), ..Self::ALL };
+        }
+        let corners = [self.low / b.low, self.low / b.high, self.high / b.low, self.high / b.high];
+        Self::around(corners, nan)
+    }
+
+    pub(super) fn sqrt(self) -> Self {
+        if self.is_nan() || self.high < 0.0 {
+            return Self::NAN;
+        }
+        // A product keeps the sign of a zero.
+        let low = if self.low < 0.0 { 0.0 } else { self.low };
+        Self { low: low.sqrt(), high: self.high.max(0.0).sqrt(), nan: self.nan || self.low < 0.0 }
+    }
+
+    /// `if b < a { b } else { a }`, so a NaN `b` gives `a`.
+    pub(super) fn min(self, b: Self) -> Self {
+        if self.is_nan() || b.is_nan() {
+            return self;
+        }
+        let high = if b.nan { self.high } else { self.high.min(b.high) };
+        // With a NaN in `self` the comparison fails, and the NaN stays.
+        Self { low: self.low.min(b.low), high, nan: self.nan }
+    }
+
+    /// `if a < b { b } else { a }`.
+    pub(super) fn max(self, b: Self) -> Self {
+        self.neg().min(b.neg()).neg()
+    }
+
+    /// `f` of it, for a function that rises or falls everywhere in `domain` and is NaN outside.
+    pub(super) fn monotone(self, domain: (f64, f64), f: impl Fn(f64) -> f64) -> Self {
+        if self.is_nan() || self.high < domain.0 || self.low > domain.1 {
+            return Self::NAN;
+        }
+        let outside = self.low < domain.0 || self.high > domain.1;
+        let ends = [self.low.max(domain.0), self.high.min(domain.1)].map(f);
+        Self::around(ends, self.nan || outside)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn from(low: f64, high: f64) -> Interval {
+        Interval::new(low, high, false)
+    }
+
+    #[test]
+    fn products_and_quotients_take_the_farthest_corners() {
+        assert_eq!(from(-2.0, 3.0).mul(from(-5.0, 1.0)), from(-15.0, 10.0));
+        assert_eq!(from(1.0, 2.0).div(from(4.0, 8.0)), from(0.125, 0.5));
+        assert_eq!(from(-3.0, 2.0).square(), from(0.0, 9.0));
+        assert_eq!(from(1.0, 2.0).div(from(-1.0, 8.0)), Interval { nan: false, ..Interval::ALL });
+        assert!(from(-1.0, 2.0).div(from(-1.0, 8.0)).nan);
+        assert!(from(0.0, 1.0).mul(from(1.0, f64::INFINITY)).nan);
+    }
+
+    #[test]
+    fn roots_of_negative_numbers_are_none() {
+        assert!(from(-2.0, -1.0).sqrt().is_nan());
+        assert_eq!(from(-2.0, 4.0).sqrt(), Interval::new(0.0, 2.0, true));
+    }
+
+    #[test]
+    fn minimum_passes_over_a_nan_on_the_right() {
+        let either = Interval::new(0.0, 1.0, true);
+        assert_eq!(from(3.0, 4.0).min(either), from(0.0, 4.0));
+        assert_eq!(from(3.0, 4.0).min(Interval::NAN), from(3.0, 4.0));
+        assert_eq!(either.min(from(3.0, 4.0)), either);
+        assert_eq!(from(3.0, 4.0).max(from(1.0, 5.0)), from(3.0, 5.0));
+    }
+
+    #[test]
+    fn rounding_overflows() {
+        let by = Rounded { relative: 2f64.powi(-24), absolute: 2f64.powi(-150) };
+        assert_eq!(from(1e39, 1e39).rounded(by), from(f64::from(f32::MAX), f64::INFINITY));
+        assert_eq!(from(0.0, 0.0).rounded(by), from(0.0, 0.0));
+        let third = Interval::point(1.0 / 3.0).rounded(by);
+        assert!(third.contains(f64::from(1.0f32 / 3.0)) && third.high - third.low < 1e-7);
+    }
+}

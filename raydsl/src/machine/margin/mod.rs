@@ -1,0 +1,426 @@
+//! The machine that computes in `f64` and knows what `f32` may make of it.
+//!
+//! Each float is the `f64` result, which is the *reference*, together with an interval that holds
+//! the `f32` result of every variant: the running error analysis of Higham, "Accuracy and
+//! Stability of Numerical Algorithms" (2002), section 3.3, with the bound on either side of the
+//! value kept apart. Integers and truth values are what they are.
+//!
+//! A comparison is *open* when its sides overlap. Truth values are those of Kleene's three-valued
+//! logic until an `if`, a loop, a selection or a result needs to know: that is a **decision**. A
+//! run follows `f64`; [`Outcomes`] come of further runs with decisions turned.
+
+mod arithmetic;
+mod beam;
+mod decisions;
+mod elementary;
+mod interval;
+mod outcome;
+mod rounding;
+mod traverse;
+
+use core::cell::Cell;
+
+use super::scalar::{self, ScalarLoop, compare};
+use super::*;
+use crate::geometry::{HitOn, Primitive, RayOn};
+use arithmetic::{bits_of, constant, ordered};
+use decisions::{Decisions, Explored};
+use interval::Interval;
+
+pub(crate) use outcome::result_leaves;
+pub use outcome::{Leaf, Outcomes};
+pub use rounding::Rounding;
+
+/// A float on [`Margin`]: its `f64` value, and where the `f32` one lies.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounded {
+    value: f64,
+    range: Interval,
+    /// Values of one number are the same value.
+    id: u64,
+}
+
+/// A truth value on [`Margin`].
+#[derive(Clone, Copy, Debug)]
+pub struct Truth {
+    value: bool,
+    /// The number of the open truth value that this one depends on; 0 if it is certain.
+    open: u64,
+}
+
+impl Truth {
+    fn certain(value: bool) -> Self {
+        Self { value, open: 0 }
+    }
+
+    fn is(self, value: bool) -> bool {
+        self.open == 0 && self.value == value
+    }
+}
+
+/// The machine of one lane that computes in `f64` with a bound of the rounding error of `f32`.
+#[derive(Debug)]
+pub struct Margin {
+    lane: Scalar,
+    rounding: Rounding,
+    decisions: Decisions,
+}
+
+impl Margin {
+    /// A machine for variants that round like this.
+    pub fn new(rounding: Rounding) -> Self {
+        Self { lane: Scalar::default(), rounding, decisions: Decisions::default() }
+    }
+
+    /// A float with a number of its own.
+    fn bounded(&self, value: f64, range: Interval) -> Bounded {
+        Bounded { value, range, id: self.decisions.fresh() }
+    }
+
+    fn point(&self, v: f64) -> Bounded {
+        self.bounded(v, Interval::point(v))
+    }
+
+    fn is_running(&self) -> bool {
+        self.lane.active.get()
+    }
+
+    /// Runs `f` for each way in which its decisions may go, up to `limit`.
+    fn each_way<R>(&self, limit: usize, f: &dyn Fn() -> R) -> Explored<R> {
+        let active = self.lane.active.replace(true);
+        let explored = self.decisions.explore(limit, || {
+            self.lane.active.set(true);
+            f()
+        });
+        self.lane.active.set(active);
+        explored
+    }
+
+    /// A truth value that the sides of a comparison leave open, if they do.
+    fn truth(&self, value: bool, may_be_true: bool, may_be_false: bool) -> Truth {
+        match (may_be_true, may_be_false) {
+            (true, true) => Truth { value, open: self.decisions.fresh() },
+            (certain, _) => Truth::certain(certain),
+        }
+    }
+
+    /// Decides.
+    fn decided(&self, t: Truth) -> bool {
+        if t.open == 0 || !self.is_running() {
+            return t.value;
+        }
+        t.value ^ self.decisions.flip(t.open)
+    }
+
+    /// What is known of a truth value by now.
+    fn known(&self, t: Truth) -> Truth {
+        match self.decisions.known(t.open) {
+            Some(flip) if t.open != 0 => Truth::certain(t.value ^ flip),
+            _ => t,
+        }
+    }
+}
+
+impl Machine for Margin {
+    type F32 = Bounded;
+    type I32 = i32;
+    type U32 = u32;
+    type Bool = Truth;
+    type Branch = Cell<bool>;
+    type Loop = ScalarLoop;
+
+    fn f32(&self, v: f32) -> Bounded {
+        self.point(f64::from(v))
+    }
+
+    fn f32_literal(&self, v: f32, exact: f64) -> Bounded {
+        self.bounded(exact, Interval::around([f64::from(v), exact], false))
+    }
+
+    fn f32_constant(&self, v: f32) -> Bounded {
+        if v.is_finite() { self.f32_literal(v, constant(v)) } else { self.f32(v) }
+    }
+
+    fn i32(&self, v: i32) -> i32 {
+        v
+    }
+
+    fn u32(&self, v: u32) -> u32 {
+        v
+    }
+
+    fn bool(&self, v: bool) -> Truth {
+        Truth::certain(v)
+    }
+
+    fn f32_unary(&self, op: F32Unary, a: Bounded) -> Bounded {
+        match op {
+            F32Unary::Neg => self.bounded(-a.value, a.range.neg()),
+            F32Unary::Abs if a.range.low >= 0.0 && !a.range.is_nan() => a,
+            F32Unary::Abs => self.bounded(a.value.abs(), a.range.abs()),
+            F32Unary::Sqrt => match a.range.as_point().and_then(rounding::exact_root) {
+                Some(exact) => self.point(exact),
+                None => self.rounded(a.value.sqrt(), a.range.sqrt(), self.rounding.root()),
+            },
+            F32Unary::Floor => self.stepped(a, f64::floor),
+            F32Unary::Ceil => self.stepped(a, f64::ceil),
+            F32Unary::Trunc => self.stepped(a, f64::trunc),
+        }
+    }
+
+    fn f32_binary(&self, op: F32Binary, a: Bounded, b: Bounded) -> Bounded {
+        self.binary(op, a, b)
+    }
+
+    fn f32_mul_add(&self, a: Bounded, b: Bounded, c: Bounded) -> Bounded {
+        // As two operations, since a device need not fuse them; `f64` does.
+        let product = self.binary(F32Binary::Mul, a, b);
+        let sum = self.binary(F32Binary::Add, product, c);
+        self.bounded(a.value.mul_add(b.value, c.value), sum.range)
+    }
+
+    fn i32_binary(&self, op: IntBinary, a: i32, b: i32) -> i32 {
+        scalar::i32_binary(op, a, b).1
+    }
+
+    fn u32_binary(&self, op: IntBinary, a: u32, b: u32) -> u32 {
+        scalar::u32_binary(op, a, b).1
+    }
+
+    fn bool_binary(&self, op: BoolBinary, a: Truth, b: Truth) -> Truth {
+        let (a, b) = (self.known(a), self.known(b));
+        let value = self.lane.bool_binary(op, a.value, b.value);
+        match op {
+            BoolBinary::And if a.is(false) || b.is(false) => Truth::certain(false),
+            BoolBinary::Or if a.is(true) || b.is(true) => Truth::certain(true),
+            _ if a.open == 0 && b.open == 0 => Truth::certain(value),
+            // The other one decides: it, or its opposite.
+            _ if a.open == 0 => Truth { value, open: b.open },
+            _ if b.open == 0 => Truth { value, open: a.open },
+            _ => self.truth(value, true, true),
+        }
+    }
+
+    fn i32_neg(&self, a: i32) -> i32 {
+        a.wrapping_neg()
+    }
+
+    fn i32_not(&self, a: i32) -> i32 {
+        !a
+    }
+
+    fn u32_not(&self, a: u32) -> u32 {
+        !a
+    }
+
+    fn bool_not(&self, a: Truth) -> Truth {
+        Truth { value: !a.value, ..a }
+    }
+
+    fn f32_compare(&self, op: Compare, a: Bounded, b: Bounded) -> Truth {
+        let value = compare(op, a.value, b.value);
+        let (x, y) = (a.range, b.range);
+        let numbers = !x.is_nan() && !y.is_nan();
+        let same = a.id == b.id;
+        let less = numbers && !same && x.low < y.high;
+        let more = numbers && !same && x.high > y.low;
+        let equal = numbers && x.overlaps(y);
+        let unordered = x.nan || y.nan;
+        let (is_true, is_false) = match op {
+            Compare::Eq => (equal, less || more || unordered),
+            Compare::Ne => (less || more || unordered, equal),
+            Compare::Lt => (less, equal || more || unordered),
+            Compare::Le => (less || equal, more || unordered),
+            Compare::Gt => (more, less || equal || unordered),
+            Compare::Ge => (more || equal, less || unordered),
+        };
+        self.truth(value, is_true, is_false)
+    }
+
+    fn i32_compare(&self, op: Compare, a: i32, b: i32) -> Truth {
+        Truth::certain(compare(op, a, b))
+    }
+
+    fn u32_compare(&self, op: Compare, a: u32, b: u32) -> Truth {
+        Truth::certain(compare(op, a, b))
+    }
+
+    fn f32_select(&self, c: Truth, a: Bounded, b: Bounded) -> Bounded {
+        if self.decided(c) { a } else { b }
+    }
+
+    fn i32_select(&self, c: Truth, a: i32, b: i32) -> i32 {
+        if self.decided(c) { a } else { b }
+    }
+
+    fn u32_select(&self, c: Truth, a: u32, b: u32) -> u32 {
+        if self.decided(c) { a } else { b }
+    }
+
+    fn bool_select(&self, c: Truth, a: Truth, b: Truth) -> Truth {
+        if self.decided(c) { a } else { b }
+    }
+
+    fn f32_to_i32(&self, a: Bounded) -> i32 {
+        self.integer(a, |v| v as i32, i64::from, |v| v as i32)
+    }
+
+    fn f32_to_u32(&self, a: Bounded) -> u32 {
+        self.integer(a, |v| v as u32, i64::from, |v| v as u32)
+    }
+
+    fn i32_to_f32(&self, a: i32) -> Bounded {
+        self.converted(f64::from(a), a as f32)
+    }
+
+    fn u32_to_f32(&self, a: u32) -> Bounded {
+        self.converted(f64::from(a), a as f32)
+    }
+
+    fn i32_to_u32(&self, a: i32) -> u32 {
+        a as u32
+    }
+
+    fn u32_to_i32(&self, a: u32) -> i32 {
+        a as i32
+    }
+
+    fn f32_to_bits(&self, a: Bounded) -> u32 {
+        self.integer(a, |v| (v as f32).to_bits(), ordered, bits_of)
+    }
+
+    fn f32_from_bits(&self, a: u32) -> Bounded {
+        self.f32(f32::from_bits(a))
+    }
+
+    fn f32_copysign(&self, a: Bounded, sign: Bounded) -> Bounded {
+        let size = self.f32_unary(F32Unary::Abs, a);
+        let is_negative = if sign.range.as_point().is_some() || sign.range.is_nan() {
+            Truth::certain(sign.value.is_sign_negative())
+        } else {
+            let may_be = sign.range.low < 0.0 || sign.range.nan;
+            self.truth(sign.value.is_sign_negative(), may_be, sign.range.high >= 0.0)
+        };
+        if self.decided(is_negative) { self.f32_unary(F32Unary::Neg, size) } else { size }
+    }
+
+    fn bool_to_u32(&self, a: Truth) -> u32 {
+        u32::from(self.decided(a))
+    }
+
+    fn branch(&self, c: Truth) -> Cell<bool> {
+        self.lane.branch(self.decided(c))
+    }
+
+    fn branch_then(&self, t: &Cell<bool>) -> bool {
+        self.lane.branch_then(t)
+    }
+
+    fn branch_else(&self, t: &Cell<bool>) -> bool {
+        self.lane.branch_else(t)
+    }
+
+    fn branch_end(&self, t: Cell<bool>) {
+        self.lane.branch_end(t);
+    }
+
+    fn loop_begin(&self) -> ScalarLoop {
+        self.lane.loop_begin()
+    }
+
+    fn loop_test(&self, l: &ScalarLoop, c: Truth) -> bool {
+        self.lane.loop_test(l, self.decided(c))
+    }
+
+    fn loop_break(&self, l: &ScalarLoop) {
+        self.lane.loop_break(l);
+    }
+
+    fn loop_continue(&self, l: &ScalarLoop) {
+        self.lane.loop_continue(l);
+    }
+
+    fn loop_continuing(&self, l: &ScalarLoop) {
+        self.lane.loop_continuing(l);
+    }
+
+    fn loop_again(&self, l: &ScalarLoop) -> bool {
+        if self.is_running() && !self.decisions.round() {
+            self.lane.loop_break(l);
+        }
+        self.lane.loop_again(l)
+    }
+
+    fn loop_end(&self, l: ScalarLoop) {
+        self.lane.loop_end(l);
+    }
+
+    fn alive(&self) -> bool {
+        self.lane.alive()
+    }
+
+    fn any(&self, c: Truth) -> bool {
+        self.lane.any(self.decided(c))
+    }
+
+    fn var_new<V: Value<Self>>(&self, _: &'static str, v: V) -> V {
+        v
+    }
+
+    fn var_declare<V: Value<Self>>(&self, _: &'static str) -> V {
+        V::zero(self)
+    }
+
+    fn var_get<V: Value<Self>>(&self, state: V) -> V {
+        state
+    }
+
+    fn var_set<V: Value<Self>>(&self, state: V, v: V) -> V {
+        if self.is_running() { v } else { state }
+    }
+
+    fn give<V: Value<Self>>(&self, slot: &Cell<V>, v: V) {
+        if self.lane.active.replace(false) {
+            slot.set(v);
+        }
+    }
+
+    fn give_slot<V: Value<Self>>(&self) -> V {
+        V::zero(self)
+    }
+
+    fn call<A: Value<Self>, R: Value<Self>>(
+        &self,
+        info: &'static KernelInfo,
+        args: A,
+        body: impl FnOnce(&Self, A) -> R,
+    ) -> R {
+        if let Some(function) = elementary::function(info) {
+            return self.elementary(function, args);
+        }
+        let entry = self.is_running();
+        let result = body(self, args);
+        self.lane.active.set(entry);
+        result
+    }
+
+    fn closest_hit<P: Primitive>(
+        &self,
+        prims: &crate::bvh::On<'_, P>,
+        ray: RayOn<Self>,
+    ) -> HitOn<Self> {
+        traverse::query(self, prims, ray, traverse::closest_hit)
+    }
+
+    fn any_hit<P: Primitive>(&self, prims: &crate::bvh::On<'_, P>, ray: RayOn<Self>) -> B<Self> {
+        B(traverse::query(self, prims, ray, traverse::any_hit))
+    }
+
+    fn fetch<P: crate::machine::Type>(
+        &self,
+        prims: &crate::bvh::On<'_, P>,
+        index: U<Self>,
+    ) -> P::On<Self> {
+        P::splat(self, prims.get(index.0))
+    }
+}

@@ -1,0 +1,247 @@
+//! Queries of trees, where rounding leaves open what is hit.
+//!
+//! Every primitive is asked in all ways in which its own decisions may go. Those that some variant
+//! may find the closest are the alternatives of one decision.
+//!
+//! All but the asking is the same for every type of primitives, and compiled once.
+
+use core::cell::Cell;
+
+use super::beam::Beam;
+use super::decisions::Explored;
+use super::interval::Interval;
+use super::{Bounded, Margin, Truth};
+use crate::bvh::{Node, On};
+use crate::geometry::{HitOn, Primitive, RayOn};
+use crate::machine::{B, BoolBinary, Compare, F, Machine, U};
+
+/// In how many ways one primitive is asked.
+const WAYS: usize = 64;
+
+/// Primitives of any type, a tree over them if there is one, and a ray.
+pub(super) struct Scene<'a> {
+    ray: RayOn<Margin>,
+    len: u32,
+    /// The nodes and the index list.
+    tree: Option<(&'a [Node], &'a [u32])>,
+    slack: f64,
+    /// Where the ray meets a primitive.
+    intersect: &'a dyn Fn(u32) -> HitOn<Margin>,
+    /// The bytes of a primitive.
+    bytes: &'a dyn Fn(u32) -> Vec<u8>,
+}
+
+/// Does `query` with `prims` of any type.
+pub(super) fn query<P: Primitive, R>(
+    m: &Margin,
+    prims: &On<'_, P>,
+    ray: RayOn<Margin>,
+    query: fn(&Margin, &Scene<'_>) -> R,
+) -> R {
+    let bytes = |id| {
+        let mut bytes = vec![0; P::SCHEMA.size()];
+        prims.get(id).write(&mut bytes);
+        bytes
+    };
+    let scene = Scene {
+        ray,
+        len: prims.len() as u32,
+        tree: prims.has_tree().then_some((prims.nodes, prims.indices)),
+        slack: f64::from(P::SLACK),
+        intersect: &|id| P::intersect_on(m, P::splat(m, prims.get(id)), ray),
+        bytes: &bytes,
+    };
+    query(m, &scene)
+}
+
+/// How a primitive may be hit.
+#[derive(Clone, Copy)]
+struct Found {
+    id: u32,
+    t: Bounded,
+    u: Bounded,
+    v: Bounded,
+    /// Whether it is hit in every way.
+    is_certain: bool,
+    /// Whether `f64` hits it.
+    is_reference: bool,
+}
+
+/// The least `(t, id)` hit.
+pub(super) fn closest_hit(m: &Margin, scene: &Scene<'_>) -> HitOn<Margin> {
+    let mut found = Vec::new();
+    let fate = fate(scene.ray);
+    if fate != Fate::Misses {
+        let limit = Cell::new(scene.ray.t_max.0.range.high);
+        scene.walk(&limit, &mut |id| {
+            let hits = scene.ask(m, id);
+            for hit in hits.iter().filter(|h| h.is_certain) {
+                limit.set(limit.get().min(hit.t.range.high));
+            }
+            found.extend(hits);
+            false
+        });
+    }
+    let may_miss = fate != Fate::Runs || !found.iter().any(|h| h.is_certain);
+    let candidates = scene.candidates(found);
+    let by_t = |a: &&Found, b: &&Found| a.t.value.total_cmp(&b.t.value).then(a.id.cmp(&b.id));
+    let reference = candidates.iter().filter(|h| h.is_reference).min_by(by_t).map(|h| h.id);
+    let mut hits: Vec<Option<Found>> = candidates.into_iter().map(Some).collect();
+    if may_miss {
+        hits.push(None);
+    }
+    let is_first = |h: &Option<Found>| match h {
+        Some(h) => h.is_reference && Some(h.id) == reference,
+        None => reference.is_none(),
+    };
+    if let Some(at) = hits.iter().position(is_first) {
+        hits.swap(0, at);
+    }
+    hit_on(m, m.one_of(&hits))
+}
+
+/// Whether anything is hit.
+pub(super) fn any_hit(m: &Margin, scene: &Scene<'_>) -> Truth {
+    let fate = fate(scene.ray);
+    if fate == Fate::Misses {
+        return Truth::certain(false);
+    }
+    let (mut may_be, mut is_certain, mut is_reference) = (false, false, false);
+    let limit = Cell::new(scene.ray.t_max.0.range.high);
+    scene.walk(&limit, &mut |id| {
+        for hit in scene.ask(m, id) {
+            may_be = true;
+            is_certain |= hit.is_certain && fate == Fate::Runs;
+            is_reference |= hit.is_reference;
+        }
+        is_certain
+    });
+    m.truth(is_reference, may_be, !is_certain)
+}
+
+fn hit_on(m: &Margin, found: Option<Found>) -> HitOn<Margin> {
+    let number = |v: Option<Bounded>| F(v.unwrap_or_else(|| m.f32(0.0)));
+    HitOn {
+        is_hit: B(m.bool(found.is_some())),
+        t: number(found.map(|h| h.t)),
+        prim_id: U(found.map_or(0, |h| h.id)),
+        u: number(found.map(|h| h.u)),
+        v: number(found.map(|h| h.v)),
+    }
+}
+
+/// What becomes of a ray, which misses everything if a component is no finite number.
+#[derive(Clone, Copy, PartialEq)]
+enum Fate {
+    Runs,
+    MayMiss,
+    Misses,
+}
+
+fn fate(ray: RayOn<Margin>) -> Fate {
+    let (o, d) = (ray.origin, ray.direction);
+    let all = [o.x, o.y, o.z, d.x, d.y, d.z].map(|c| c.0.range);
+    let no_number = |r: &Interval| r.is_nan() || r.low == f64::INFINITY || r.high == -f64::INFINITY;
+    if all.iter().any(no_number) {
+        Fate::Misses
+    } else if all.iter().any(|r| r.may_break()) {
+        Fate::MayMiss
+    } else {
+        Fate::Runs
+    }
+}
+
+impl Scene<'_> {
+    /// Every way in which one primitive is hit.
+    fn ways(&self, m: &Margin, id: u32) -> Explored<Option<[Bounded; 3]>> {
+        let ray = self.ray;
+        m.each_way(WAYS, &|| {
+            let hit = (self.intersect)(id);
+            let late = m.f32_compare(Compare::Ge, hit.t.0, ray.t_min.0);
+            let early = m.f32_compare(Compare::Le, hit.t.0, ray.t_max.0);
+            let inside = m.bool_binary(BoolBinary::And, late, early);
+            let accepted = m.decided(m.bool_binary(BoolBinary::And, hit.is_hit.0, inside));
+            accepted.then_some([hit.t.0, hit.u.0, hit.v.0])
+        })
+    }
+
+    /// The hits of one primitive; ways that rounding cannot tell apart are one.
+    fn ask(&self, m: &Margin, id: u32) -> Vec<Found> {
+        let ways = self.ways(m, id);
+        if !ways.is_complete && m.is_running() {
+            m.decisions.lose();
+        }
+        let is_certain = ways.is_complete && ways.results.iter().all(Option::is_some);
+        let mut found: Vec<Found> = Vec::new();
+        for (way, result) in ways.results.into_iter().enumerate() {
+            let Some([t, u, v]) = result else { continue };
+            // What was accepted is a number between the ends of the ray.
+            let first = self.ray.t_min.0.range.low.max(t.range.low);
+            let last = self.ray.t_max.0.range.high.min(t.range.high);
+            let t = m.bounded(t.value, Interval::new(first, last, false));
+            let near = found.iter_mut().find(|f| {
+                [(f.t, t), (f.u, u), (f.v, v)].iter().all(|(a, b)| a.range.overlaps(b.range))
+            });
+            match near {
+                Some(f) => {
+                    let join = |a: Bounded, b: Bounded| m.bounded(a.value, a.range.hull(b.range));
+                    (f.t, f.u, f.v) = (join(f.t, t), join(f.u, u), join(f.v, v));
+                }
+                None => {
+                    found.push(Found { id, t, u, v, is_certain: false, is_reference: way == 0 });
+                }
+            }
+        }
+        // Of several hits that differ none is certain.
+        if let ([only], true) = (&mut found[..], is_certain) {
+            only.is_certain = true;
+        }
+        found
+    }
+
+    /// The hits that may be the closest.
+    fn candidates(&self, found: Vec<Found>) -> Vec<Found> {
+        let certain: Vec<Found> = found.iter().copied().filter(|h| h.is_certain).collect();
+        let loses = |h: &Found, to: &Found| {
+            to.t.range.high < h.t.range.low || to.id < h.id && to.t.range.high <= h.t.range.low
+        };
+        let near: Vec<Found> =
+            found.into_iter().filter(|h| !certain.iter().any(|c| loses(h, c))).collect();
+        if near.len() < 2 {
+            return near;
+        }
+        // Copies of a primitive are hit alike, and the first one wins.
+        let bytes: Vec<Vec<u8>> = near.iter().map(|h| (self.bytes)(h.id)).collect();
+        let is_copy = |(h, own): &(&Found, &Vec<u8>)| {
+            near.iter().zip(&bytes).any(|(other, b)| other.id < h.id && b == *own)
+        };
+        near.iter().zip(&bytes).filter(|h| !is_copy(h)).map(|(h, _)| *h).collect()
+    }
+
+    /// Visits the primitives that some variant may hit at or before `limit`, until `visit` returns
+    /// true.
+    fn walk(&self, limit: &Cell<f64>, visit: &mut dyn FnMut(u32) -> bool) {
+        let Some((nodes, indices)) = self.tree else {
+            let _ = (0..self.len).any(visit);
+            return;
+        };
+        let Some(root) = nodes.first() else { return };
+        let beam = Beam::new(self.ray, root, self.slack);
+        let mut stack = vec![root];
+        while let Some(node) = stack.pop() {
+            if !beam.meets(node, limit.get()) {
+                continue;
+            }
+            let (first, count) = (node.first as usize, node.count as usize);
+            if !node.is_leaf() {
+                let children = &nodes[first..first + 2];
+                // The nearer one comes off the stack first.
+                let is_left_near = beam.enters(&children[0]) <= beam.enters(&children[1]);
+                let order = if is_left_near { [1, 0] } else { [0, 1] };
+                stack.extend(order.map(|i| &children[i]));
+            } else if indices[first..first + count].iter().any(|id| visit(*id)) {
+                return;
+            }
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! Which mismatches rounding accounts for: none of a wrong variant's, all of a right one's.
+
+use std::error::Error;
+use std::f32::consts::FRAC_PI_3;
+
+use raydsl::kernel;
+use raydsl::machine::{KernelFn, Rounding};
+use raydsl::prelude::*;
+use raydsl::report::{Cause, Compare, Explanation, Sample, Verdict, explain};
+use raydsl_tests::check::recorded;
+use raydsl_tests::gpu::gpu;
+use raydsl_tests::kernels;
+use raydsl_tests::rng::Rng;
+use raydsl_tests::scenes::{ColorSphere, random_rays, spheres, triangles};
+use raydsl_tests::values::{Numbers, random, words};
+
+macro_rules! primary {
+    ($bvh:ident) => {
+        kernel!(|ray: Ray| {
+            let hit = $bvh.closest_hit(ray);
+            let color = if hit.is_hit { $bvh.primitive(hit).rgb() } else { vec3(0.1, 0.2, 0.3) };
+            Shaded { color, depth: hit.t, id: hit.prim_id }
+        })
+    };
+}
+
+fn camera() -> Pinhole {
+    Pinhole::new(vec3(1.0, 2.0, -14.0), vec3(0.2, 0.0, 0.0), vec3(0.0, 1.0, 0.0), 0.9)
+}
+
+/// The rays of a film.
+fn rays(size: u32) -> Vec<Ray> {
+    use raydsl::camera::Camera;
+    let rays = camera().begin_frame(size, size);
+    let pixel = |i: u32| rays.primary_ray((i % size) as f32 + 0.5, (i / size) as f32 + 0.5);
+    (0..size * size).map(pixel).collect()
+}
+
+fn show(who: &str, found: &Explanation) {
+    println!(
+        "{who}: {} differ, {} by rounding, {} explained, {} unexplained; {:.3} % uncertain",
+        found.causes.len(),
+        found.count(Cause::Rounding),
+        found.count(Cause::Decision),
+        found.unexplained(),
+        100.0 * found.sample.share()
+    );
+}
+
+// Wrong variants.
+
+#[test]
+fn a_scaled_distance_is_a_mistake() -> Result<(), Box<dyn Error>> {
+    let points = spheres(800);
+    let bvh = Bvh::build(&points)?;
+    let primary = primary!(bvh);
+    let inputs: Vec<(Ray,)> = rays(96).into_iter().map(|r| (r,)).collect();
+    let mut outputs: Vec<Shaded> = inputs.iter().map(|a| primary.call(*a)).collect();
+    outputs.iter_mut().for_each(|o| o.depth *= 1.0 + 1e-5);
+    let hits = outputs.iter().filter(|o| o.depth > 0.0).count();
+    let found = explain(&primary, &inputs, &outputs, Rounding::IEEE);
+    show("scaled", &found);
+    assert!(hits > 500 && found.unexplained() * 10 > hits * 9, "{} of {hits}", found.unexplained());
+    Ok(())
+}
+
+#[test]
+fn a_neighbours_id_is_a_mistake() -> Result<(), Box<dyn Error>> {
+    let points = spheres(800);
+    let bvh = Bvh::build(&points)?;
+    let primary = primary!(bvh);
+    let inputs: Vec<(Ray,)> = rays(200).into_iter().map(|r| (r,)).collect();
+    let mut outputs: Vec<Shaded> = inputs.iter().map(|a| primary.call(*a)).collect();
+    outputs.iter_mut().skip(5).step_by(10_000).for_each(|o| o.id += 1);
+    let found = explain(&primary, &inputs, &outputs, Rounding::IEEE);
+    show("wrong ids", &found);
+    assert_eq!((found.causes.len(), found.unexplained()), (4, 4));
+    Ok(())
+}
+
+/// Rays that end exactly where they hit: the range is closed.
+#[test]
+fn an_open_range_is_a_mistake() -> Result<(), Box<dyn Error>> {
+    let corner = |x, y| vec3(x, y, 3.0);
+    let wall = [Triangle { v0: corner(0.0, 0.0), v1: corner(4.0, 0.0), v2: corner(0.0, 4.0) }];
+    let bvh = Bvh::build(&wall)?;
+    let occluded = kernel!(|ray: Ray| bvh.any_hit(ray));
+    let ray = |i: u32| {
+        let (x, y) = (0.25 * (i % 4 + 1) as f32, 0.25 * (i / 4 + 1) as f32);
+        let t_max = if i.is_multiple_of(2) { 3.0 } else { 4.0 };
+        Ray::new(vec3(x, y, 0.0), Vec3::Z).with_range(0.0, t_max)
+    };
+    let inputs: Vec<(Ray,)> = (0..16).map(|i| (ray(i),)).collect();
+    let right: Vec<bool> = inputs.iter().map(|a| occluded.call(*a)).collect();
+    assert!(right.iter().all(|hit| *hit));
+    let open = |(ray,): &(Ray,)| {
+        let hit = wall[0].intersect(*ray);
+        hit.is_hit && hit.t >= ray.t_min && hit.t < ray.t_max
+    };
+    let outputs: Vec<bool> = inputs.iter().map(open).collect();
+    let found = explain(&occluded, &inputs, &outputs, Rounding::IEEE);
+    show("open range", &found);
+    assert_eq!((found.causes.len(), found.unexplained()), (8, 8));
+    Ok(())
+}
+
+// Right variants.
+
+/// The least (t, id) of spheres in `f64`, rounded in the end.
+fn in_f64(prims: &[ColorSphere], ray: Ray) -> Shaded {
+    let wide = |v: Vec3| v.as_dvec3();
+    let (o, d) = (wide(ray.origin), wide(ray.direction));
+    let mut best: Option<(f64, usize)> = None;
+    for (id, p) in prims.iter().enumerate() {
+        let f = wide(p.center) - o;
+        let r = f64::from(p.radius.to_bits()) / 255.0;
+        let closest = f.dot(d) / d.dot(d);
+        let aside = f - d * closest;
+        let half = ((r * r - aside.dot(aside)) / d.dot(d)).sqrt();
+        let t = if closest - half < ray.t_min.into() { closest + half } else { closest - half };
+        let hits = r > 0.0 && t >= ray.t_min.into() && t <= ray.t_max.into();
+        if hits && best.is_none_or(|b| t < b.0) {
+            best = Some((t, id));
+        }
+    }
+    match best {
+        Some((t, id)) => Shaded { color: prims[id].rgb(), depth: t as f32, id: id as u32 },
+        None => Shaded { color: vec3(0.1, 0.2, 0.3), depth: 0.0, id: 0 },
+    }
+}
+
+#[test]
+fn a_variant_in_f64_is_right() -> Result<(), Box<dyn Error>> {
+    let points = spheres(800);
+    let bvh = Bvh::build(&points)?;
+    let primary = primary!(bvh);
+    let mut inputs: Vec<(Ray,)> = rays(64).into_iter().map(|r| (r,)).collect();
+    inputs.extend(random_rays(21, 4000).into_iter().map(|r| (r,)));
+    // Rays that graze a sphere, for which rounding decides.
+    let mut rng = Rng::new(5);
+    inputs.extend((0..4000).map(|i| {
+        let p = points[i % points.len()];
+        let origin = rng.point(12.0);
+        let way = (p.center - origin).normalize();
+        let aside = way.cross(rng.direction()).normalize() * p.radius.to_f32();
+        (Ray::new(origin, p.center + aside - origin),)
+    }));
+    let outputs: Vec<Shaded> = inputs.iter().map(|(ray,)| in_f64(&points, *ray)).collect();
+    let found = explain(&primary, &inputs, &outputs, Rounding::IEEE);
+    show("f64", &found);
+    assert_eq!(found.unexplained(), 0);
+    assert!(found.count(Cause::Rounding) > 1000 && found.count(Cause::Decision) > 10);
+    Ok(())
+}
+
+/// The kernels for which a device need not give the CPU's bits.
+#[test]
+fn elementary_functions_on_a_device_are_right() {
+    fn check<F: KernelFn>(name: &str) -> usize
+    where
+        F::Args: Sync,
+        F::Output: Sync,
+    {
+        let Some(gpu) = gpu() else { return 0 };
+        let (kernel, mut rng) = (recorded::<F>(), Rng::of(name));
+        let is_finite = |a: &F::Args| words(a).iter().all(|w| f32::from_bits(*w).is_finite());
+        let all = (0..20_000).map(|_| random::<F::Args>(&mut rng, Numbers::Any));
+        let inputs: Vec<F::Args> = all.filter(is_finite).collect();
+        let mut outputs: Vec<F::Output> = inputs.iter().map(|a| kernel.call(*a)).collect();
+        if let Err(e) = gpu.batch(&kernel, &inputs, &mut outputs) {
+            panic!("{name}: {e}");
+        }
+        let found = explain(&kernel, &inputs, &outputs, Rounding::IEEE);
+        show(name, &found);
+        let worst = found.causes.iter().find(|(_, c)| *c == Cause::Unexplained);
+        assert_eq!(found.unexplained(), 0, "{name}: input {worst:?}");
+        found.causes.len()
+    }
+    let differing = check::<kernels::angles>("angles")
+        + check::<kernels::growth>("growth")
+        + check::<kernels::fused>("fused")
+        + check::<kernels::vectors>("vectors");
+    println!("{differing} results differ from the CPU's");
+}
+
+fn agrees<R: raydsl::Type + Send + Sync>(
+    who: &str,
+    kernel: &Kernel<'_, (Ray,), R>,
+    camera: &Pinhole,
+) -> Sample {
+    let found = Compare::new().size(320, 240).runs(1).run(kernel, camera);
+    println!("{who}\n{}", found.table());
+    assert!(found.table().lines().all(|l| l.chars().count() <= 100));
+    assert_eq!(found.verdict(), Verdict::Agree);
+    assert!(found.rows.iter().all(|r| r.agreement.unexplained == 0));
+    assert!(found.sample.inputs > 4000);
+    found.sample
+}
+
+#[test]
+fn every_variant_of_the_scenes_agrees() -> Result<(), Box<dyn Error>> {
+    let points = spheres(800);
+    let bvh = Bvh::build(&points)?;
+    assert!(agrees("spheres", &primary!(bvh), &camera()).is_meaningful());
+    let soup = triangles(2000);
+    let mesh = Bvh::build(&soup)?;
+    let faces = kernel!(|ray: Ray| {
+        let hit = mesh.closest_hit(ray);
+        Shaded { color: vec3(hit.u, hit.v, 0.0), depth: hit.t, id: hit.prim_id }
+    });
+    assert!(agrees("triangles", &faces, &camera()).is_meaningful());
+    // Edges of shadows, and a point in the air between triangles that cross.
+    let shadows = kernel!(|ray: Ray| {
+        let hit = mesh.closest_hit(ray);
+        let lit = !mesh.any_hit(Ray {
+            origin: ray.at(hit.t * 0.999),
+            direction: vec3(0.3, 1.0, -0.2),
+            t_min: 0.0,
+            t_max: 100.0,
+        });
+        Shaded { color: vec3(hit.u, hit.v, lit as u32 as f32), depth: hit.t, id: hit.prim_id }
+    });
+    agrees("shadows of triangles", &shadows, &camera());
+    Ok(())
+}
+
+#[test]
+fn every_variant_of_sibenik_agrees() -> Result<(), Box<dyn Error>> {
+    let Some(folder) = std::env::var_os("RAYDSL_DATA") else {
+        eprintln!("SKIPPED: RAYDSL_DATA does not name the folder with sibenik.tri");
+        return Ok(());
+    };
+    let bytes = std::fs::read(std::path::Path::new(&folder).join("sibenik.tri"))?;
+    let numbers: Vec<f32> =
+        bytes[4..].chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+    let point = |n: &[f32]| vec3(n[0], n[1], n[2]);
+    let face = |n: &[f32]| Triangle { v0: point(n), v1: point(&n[3..]), v2: point(&n[6..]) };
+    let faces: Vec<Triangle> = numbers.chunks_exact(9).map(face).collect();
+    let bvh = Bvh::build(&faces)?;
+    let kernel = kernel!(|ray: Ray| {
+        let hit = bvh.closest_hit(ray);
+        Shaded { color: vec3(hit.u, hit.v, 0.0), depth: hit.t, id: hit.prim_id }
+    });
+    let camera = Pinhole::new(vec3(-17.5, -9.0, 0.5), vec3(5.0, -10.0, -0.5), Vec3::Y, FRAC_PI_3);
+    // Some walls of the model are there twice, in two triangulations: they stay open.
+    agrees("sibenik", &kernel, &camera);
+    Ok(())
+}
