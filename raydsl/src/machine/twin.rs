@@ -8,7 +8,8 @@ use glam::{
     Vec4,
 };
 
-use super::{Machine, Type, Value, Var};
+use super::matrix::{A3, M3, M4};
+use super::{B, F, I, Machine, Type, U, Usize, Value, Var, X2, X3, X4};
 
 /// An argument that says what type of the host it has.
 #[diagnostic::on_unimplemented(
@@ -56,9 +57,9 @@ macro_rules! inferred_host {
 inferred_host!(i32, u32, usize, bool);
 
 macro_rules! twin {
-    ($($host:ty),+ $(,)?) => {
+    ($($host:ty => $twin:ty),+ $(,)?) => {
         $(
-            impl<M: Machine> Inferred<M> for <$host as Type>::On<M> {
+            impl<M: Machine> Inferred<M> for $twin {
                 type Host = $host;
 
                 #[inline(always)]
@@ -67,7 +68,7 @@ macro_rules! twin {
                 }
             }
 
-            impl<M: Machine> Twin<M> for <$host as Type>::On<M> {
+            impl<M: Machine> Twin<M> for $twin {
                 #[inline(always)]
                 fn from_host(v: Self) -> Self {
                     v
@@ -78,8 +79,12 @@ macro_rules! twin {
 }
 
 twin!(
-    f32, i32, u32, usize, bool, Vec2, Vec3, Vec4, IVec2, IVec3, IVec4, UVec2, UVec3, UVec4, BVec2,
-    BVec3, BVec4, Mat3, Mat4, Affine3,
+    f32 => F<M>, i32 => I<M>, u32 => U<M>, usize => Usize<M>, bool => B<M>,
+    Vec2 => X2<F<M>>, Vec3 => X3<F<M>>, Vec4 => X4<F<M>>,
+    IVec2 => X2<I<M>>, IVec3 => X3<I<M>>, IVec4 => X4<I<M>>,
+    UVec2 => X2<U<M>>, UVec3 => X3<U<M>>, UVec4 => X4<U<M>>,
+    BVec2 => X2<B<M>>, BVec3 => X3<B<M>>, BVec4 => X4<B<M>>,
+    Mat3 => M3<M>, Mat4 => M4<M>, Affine3 => A3<M>,
 );
 
 impl<M: Machine, V: Inferred<M>, const N: usize> Inferred<M> for [V; N] {
