@@ -56,6 +56,9 @@ pub(super) fn query<P: Primitive, R>(
     query(m, &scene)
 }
 
+/// A value that outlives the forms of its run, with its own.
+type Kept = (Bounded, Option<Rc<Form>>);
+
 /// How a primitive may be hit.
 #[derive(Clone, Copy)]
 struct Found {
@@ -155,7 +158,7 @@ fn fate(ray: RayOn<Margin>) -> Fate {
 
 impl Scene<'_> {
     /// Every way in which one primitive is hit. Forms are kept for the results alone.
-    fn ways(&self, m: &Margin, id: u32) -> Explored<Option<[(Bounded, Option<Rc<Form>>); 3]>> {
+    fn ways(&self, m: &Margin, id: u32) -> Explored<Option<[Kept; 3]>> {
         let ray = self.ray;
         m.each_way(WAYS, &|| {
             let mark = m.forms.len();
