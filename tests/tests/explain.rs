@@ -220,7 +220,7 @@ fn every_variant_of_the_scenes_agrees() -> Result<(), Box<dyn Error>> {
         });
         Shaded { color: vec3(hit.u, hit.v, lit as u32 as f32), depth: hit.t, id: hit.prim_id }
     });
-    agrees("shadows of triangles", &shadows, &camera());
+    assert!(agrees("shadows of triangles", &shadows, &camera()).is_meaningful());
     Ok(())
 }
 
@@ -243,6 +243,6 @@ fn every_variant_of_sibenik_agrees() -> Result<(), Box<dyn Error>> {
     });
     let camera = Pinhole::new(vec3(-17.5, -9.0, 0.5), vec3(5.0, -10.0, -0.5), Vec3::Y, FRAC_PI_3);
     // Some walls of the model are there twice, in two triangulations: they stay open.
-    agrees("sibenik", &kernel, &camera);
+    assert!(agrees("sibenik", &kernel, &camera).is_meaningful());
     Ok(())
 }

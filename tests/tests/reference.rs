@@ -172,7 +172,7 @@ fn trees_change_nothing() -> Result<(), raydsl::bvh::BuildError> {
         (a.is_hit, a.prim_id, a.t, b.is_hit, b.prim_id, b.t, all.any_hit(ray), faces.any_hit(ray))
     });
     let (mut hits, mut uncertain) = (0, 0);
-    for ray in random_rays(7, 1500) {
+    for ray in random_rays(7, 600) {
         let found = by_tree.outcomes((ray,), Rounding::IEEE, 64);
         let reference: Vec<f64> = found.reference().iter().copied().map(Leaf::value).collect();
         assert_eq!(reference, by_all.reference((ray,)), "{ray:?}");
@@ -180,8 +180,8 @@ fn trees_change_nothing() -> Result<(), raydsl::bvh::BuildError> {
         uncertain += u32::from(found.is_uncertain());
         assert!(found.is_complete() && found.contains(by_tree.call((ray,))), "{ray:?} {found:#?}");
     }
-    assert!(hits > 500, "{hits} hits");
-    println!("{hits} hits, {uncertain} of 1500 rays uncertain");
+    assert!(hits > 200, "{hits} hits");
+    println!("{hits} hits, {uncertain} of 600 rays uncertain");
     Ok(())
 }
 

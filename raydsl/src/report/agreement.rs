@@ -20,7 +20,7 @@ pub struct Agreement {
     pub histogram: [u64; BUCKETS.len()],
     /// Results in which an integer or a truth value differs (another primitive, hit for miss), a
     /// number is NaN in one of them only, or numbers differ by more than rounding does.
-    pub mismatches: u64,
+    pub hit_mismatches: u64,
     /// Mismatches that come of an uncertain decision. Their numbers count in neither
     /// [`Self::max_ulp`] nor [`Self::histogram`].
     pub explained: u64,
@@ -58,7 +58,7 @@ impl Agreement {
             differing: 0,
             max_ulp: 0,
             histogram: [0; BUCKETS.len()],
-            mismatches: 0,
+            hit_mismatches: 0,
             explained: 0,
             unexplained: 0,
         };
@@ -84,12 +84,12 @@ impl Agreement {
         match cause {
             Cause::Same | Cause::Rounding => {}
             Cause::Decision => {
-                self.mismatches += 1;
+                self.hit_mismatches += 1;
                 self.explained += 1;
                 return;
             }
             Cause::Undecided | Cause::Unexplained => {
-                self.mismatches += 1;
+                self.hit_mismatches += 1;
                 self.unexplained += 1;
             }
         }
@@ -205,7 +205,7 @@ mod tests {
         let a = [(1u32, 1.0f32), (2, 2.0), (3, 3.0)];
         let b = [(1u32, 1.0f32), (2, 2.0f32.next_up()), (4, 3.0f32.next_down())];
         let found = Agreement::of(&a, &b);
-        assert_eq!((found.differing, found.mismatches, found.unexplained), (2, 1, 1));
+        assert_eq!((found.differing, found.hit_mismatches, found.unexplained), (2, 1, 1));
         assert_eq!(found.max_ulp, 1);
         assert_eq!(found.histogram[..2], [1, 2]);
         assert!(!found.is_bit_identical());

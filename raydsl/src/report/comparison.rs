@@ -78,7 +78,7 @@ impl<'a> Compare<'a> {
 
     /// How many pixels are computed in `f64`, spread evenly over the film: they give the share of
     /// uncertain ones and the error of every variant. 4096 unless this is called; a pixel takes
-    /// some hundred times as long as in the scalar variant.
+    /// some two hundred times as long as in the scalar variant.
     pub fn samples(self, samples: usize) -> Self {
         Self { samples, ..self }
     }

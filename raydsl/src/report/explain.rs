@@ -126,7 +126,7 @@ impl Explanation {
 /// of the kernel's scalar variant are what they are compared with.
 ///
 /// The kernel runs in `f64` with a bound of the rounding error; see the chapter "What the numbers
-/// promise" of the book. That takes some hundred times as long as a run, for every differing
+/// promise" of the book. That takes some two hundred times as long as a run, for every differing
 /// result and for a sample of 4096 inputs; a differing one whose decisions are open up to 64 times
 /// as long again.
 ///

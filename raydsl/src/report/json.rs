@@ -51,7 +51,7 @@ fn row<R: Type>(row: &Row<R>, scalar: &Row<R>) -> Value {
         "spread": row.times.spread(),
         "bit_identical": row.agreement.is_bit_identical(),
         "max_ulp": row.agreement.max_ulp,
-        "mismatches": row.agreement.mismatches,
+        "hit_mismatches": row.agreement.hit_mismatches,
         "explained": row.agreement.explained,
         "unexplained": row.agreement.unexplained,
         "max_error_ulp": row.accuracy.max_ulp,

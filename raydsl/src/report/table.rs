@@ -68,7 +68,7 @@ fn line<R: Type>(row: &Row<R>, scalar: &Row<R>) -> String {
         row.times.median(),
         row.mrays_per_s(),
         format!("{:.2}x", row.times.speedup_over(&scalar.times)),
-        a.mismatches,
+        a.hit_mismatches,
         a.explained,
         a.unexplained,
     );

@@ -1,5 +1,8 @@
 //! The arithmetic of the machine.
 
+use std::rc::Rc;
+
+use super::affine::{Form, Handle};
 use super::interval::{Interval, Rounded};
 use super::{Bounded, Margin, rounding};
 use crate::machine::F32Binary;
@@ -67,9 +70,48 @@ impl Margin {
         self.point(self.one_of(&all))
     }
 
-    /// A float that is `value` in `f64` and a rounded one of `range` in `f32`.
+    /// A float that is `value` in `f64`, and a rounded one of `range` in `f32`.
     pub(super) fn rounded(&self, value: f64, range: Interval, by: Rounded) -> Bounded {
-        self.bounded(value, range.rounded(by))
+        self.computed(value, range, None, by)
+    }
+
+    /// A float that is `value` in `f64`, and in `f32` what `range` and `form` say, rounded.
+    fn computed(&self, value: f64, range: Interval, form: Option<Form>, by: Rounded) -> Bounded {
+        let form = form.filter(|_| !range.is_nan());
+        let range = form.as_ref().map_or(range, |f| range.narrowed(f.range()));
+        let rounded = self.bounded(value, range.rounded(by));
+        if rounded.range.may_break() {
+            return rounded;
+        }
+        let form = form.or_else(|| self.forms.get(Handle::NONE, range).map(Rc::unwrap_or_clone));
+        let size = range.low.abs().max(range.high.abs());
+        let error = size * by.relative + by.absolute;
+        Bounded { form: self.forms.put_rounded(form, error), ..rounded }
+    }
+
+    /// What an operation makes of two forms, if both are known.
+    pub(super) fn both(
+        &self,
+        a: Bounded,
+        b: Bounded,
+        f: impl Fn(&Form, &Form) -> Form,
+    ) -> Option<Form> {
+        Some(f(&*self.forms.get(a.form, a.range)?, &*self.forms.get(b.form, b.range)?))
+    }
+
+    /// `-a`.
+    pub(super) fn negated(&self, a: Bounded) -> Bounded {
+        let form = self.forms.get(a.form, a.range).map(|f| Rc::new(f.neg()));
+        Bounded { form: self.forms.put(form), ..self.bounded(-a.value, a.range.neg()) }
+    }
+
+    /// The square root.
+    pub(super) fn root(&self, a: Bounded) -> Bounded {
+        if let Some(exact) = a.range.as_point().and_then(rounding::exact_root) {
+            return self.point(exact);
+        }
+        let form = self.forms.get(a.form, a.range).and_then(|f| f.sqrt());
+        self.computed(a.value.sqrt(), a.range.sqrt(), form, self.rounding.root())
     }
 
     /// `a op b`.
@@ -86,15 +128,22 @@ impl Margin {
         match op {
             F32Binary::Add | F32Binary::Sub if is_zero(b) => a,
             F32Binary::Add if is_zero(a) => b,
-            F32Binary::Add => self.rounded(x + y, a.range.add(b.range), sum),
+            F32Binary::Add => {
+                self.computed(x + y, a.range.add(b.range), self.both(a, b, Form::add), sum)
+            }
             F32Binary::Sub if same && !a.range.may_break() => self.point(0.0),
-            F32Binary::Sub => self.rounded(x - y, a.range.sub(b.range), sum),
+            F32Binary::Sub => {
+                self.computed(x - y, a.range.sub(b.range), self.both(a, b, Form::sub), sum)
+            }
             F32Binary::Mul => {
                 let range = if same { a.range.square() } else { a.range.mul(b.range) };
-                self.rounded(x * y, range, self.rounding.product(a.range, b.range))
+                let by = self.rounding.product(a.range, b.range);
+                self.computed(x * y, range, self.both(a, b, Form::mul), by)
             }
             F32Binary::Div => {
-                self.rounded(x / y, a.range.div(b.range), self.rounding.quotient(b.range))
+                let get = |v: Bounded| self.forms.get(v.form, v.range);
+                let form = get(a).zip(get(b)).and_then(|(a, b)| a.div(&b));
+                self.computed(x / y, a.range.div(b.range), form, self.rounding.quotient(b.range))
             }
             F32Binary::Min => self.least(a, b, if y < x { y } else { x }, a.range.min(b.range)),
             F32Binary::Max => self.least(a, b, if x < y { y } else { x }, a.range.max(b.range)),

@@ -73,6 +73,11 @@ impl Interval {
         self.low <= other.high && other.low <= self.high
     }
 
+    /// The numbers that lie in both.
+    pub(super) fn narrowed(self, to: Self) -> Self {
+        Self { low: self.low.max(to.low), high: self.high.min(to.high), nan: self.nan }
+    }
+
     /// The smallest interval that contains both.
     pub(super) fn hull(self, other: Self) -> Self {
         Self {

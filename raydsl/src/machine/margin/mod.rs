@@ -3,12 +3,14 @@
 //! Each float is the `f64` result, which is the *reference*, together with an interval that holds
 //! the `f32` result of every variant: the running error analysis of Higham, "Accuracy and
 //! Stability of Numerical Algorithms" (2002), section 3.3, with the bound on either side of the
-//! value kept apart. Integers and truth values are what they are.
+//! value kept apart, and affine forms where errors cancel. Integers and truth values are what they
+//! are.
 //!
 //! A comparison is *open* when its sides overlap. Truth values are those of Kleene's three-valued
 //! logic until an `if`, a loop, a selection or a result needs to know: that is a **decision**. A
 //! run follows `f64`; [`Outcomes`] come of further runs with decisions turned.
 
+mod affine;
 mod arithmetic;
 mod beam;
 mod decisions;
@@ -23,6 +25,7 @@ use core::cell::Cell;
 use super::scalar::{self, ScalarLoop, compare};
 use super::*;
 use crate::geometry::{HitOn, Primitive, RayOn};
+use affine::{Forms, Handle};
 use arithmetic::{bits_of, constant, ordered};
 use decisions::{Decisions, Explored};
 use interval::Interval;
@@ -38,6 +41,8 @@ pub struct Bounded {
     range: Interval,
     /// Values of one number are the same value.
     id: u64,
+    /// Which errors it carries.
+    form: Handle,
 }
 
 /// A truth value on [`Margin`].
@@ -64,17 +69,23 @@ pub struct Margin {
     lane: Scalar,
     rounding: Rounding,
     decisions: Decisions,
+    forms: Forms,
 }
 
 impl Margin {
     /// A machine for variants that round like this.
     pub fn new(rounding: Rounding) -> Self {
-        Self { lane: Scalar::default(), rounding, decisions: Decisions::default() }
+        Self {
+            lane: Scalar::default(),
+            rounding,
+            decisions: Decisions::default(),
+            forms: Forms::default(),
+        }
     }
 
     /// A float with a number of its own.
     fn bounded(&self, value: f64, range: Interval) -> Bounded {
-        Bounded { value, range, id: self.decisions.fresh() }
+        Bounded { value, range, id: self.decisions.fresh(), form: Handle::NONE }
     }
 
     fn point(&self, v: f64) -> Bounded {
@@ -155,13 +166,12 @@ impl Machine for Margin {
 
     fn f32_unary(&self, op: F32Unary, a: Bounded) -> Bounded {
         match op {
-            F32Unary::Neg => self.bounded(-a.value, a.range.neg()),
-            F32Unary::Abs if a.range.low >= 0.0 && !a.range.is_nan() => a,
+            F32Unary::Neg => self.negated(a),
+            F32Unary::Abs if a.range.is_nan() => a,
+            F32Unary::Abs if a.range.low >= 0.0 => a,
+            F32Unary::Abs if a.range.high <= 0.0 => self.negated(a),
             F32Unary::Abs => self.bounded(a.value.abs(), a.range.abs()),
-            F32Unary::Sqrt => match a.range.as_point().and_then(rounding::exact_root) {
-                Some(exact) => self.point(exact),
-                None => self.rounded(a.value.sqrt(), a.range.sqrt(), self.rounding.root()),
-            },
+            F32Unary::Sqrt => self.root(a),
             F32Unary::Floor => self.stepped(a, f64::floor),
             F32Unary::Ceil => self.stepped(a, f64::ceil),
             F32Unary::Trunc => self.stepped(a, f64::trunc),
@@ -222,9 +232,18 @@ impl Machine for Margin {
         let (x, y) = (a.range, b.range);
         let numbers = !x.is_nan() && !y.is_nan();
         let same = a.id == b.id;
-        let less = numbers && !same && x.low < y.high;
-        let more = numbers && !same && x.high > y.low;
-        let equal = numbers && x.overlaps(y);
+        let mut less = numbers && !same && x.low < y.high;
+        let mut more = numbers && !same && x.high > y.low;
+        let mut equal = numbers && x.overlaps(y);
+        if less
+            && more
+            && let Some(difference) = self.both(a, b, affine::Form::sub)
+        {
+            let difference = difference.range();
+            less = difference.low < 0.0;
+            more = difference.high > 0.0;
+            equal = difference.contains(0.0);
+        }
         let unordered = x.nan || y.nan;
         let (is_true, is_false) = match op {
             Compare::Eq => (equal, less || more || unordered),

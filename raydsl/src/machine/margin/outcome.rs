@@ -63,7 +63,10 @@ impl Outcomes {
 
     fn explored(rounding: Rounding, limit: usize, f: &dyn Fn(&Margin) -> Vec<Leaf>) -> Self {
         let m = Margin::new(rounding);
-        let found = m.each_way(limit.max(1), &|| f(&m));
+        let found = m.each_way(limit.max(1), &|| {
+            m.forms.truncate(0);
+            f(&m)
+        });
         Self {
             outcomes: found.results,
             is_uncertain: found.is_uncertain,

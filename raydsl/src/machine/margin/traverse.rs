@@ -6,7 +6,9 @@
 //! All but the asking is the same for every type of primitives, and compiled once.
 
 use core::cell::Cell;
+use std::rc::Rc;
 
+use super::affine::Form;
 use super::beam::Beam;
 use super::decisions::Explored;
 use super::interval::Interval;
@@ -53,6 +55,9 @@ pub(super) fn query<P: Primitive, R>(
     };
     query(m, &scene)
 }
+
+/// A value that outlives the forms of its run, with its own.
+type Kept = (Bounded, Option<Rc<Form>>);
 
 /// How a primitive may be hit.
 #[derive(Clone, Copy)]
@@ -152,21 +157,29 @@ fn fate(ray: RayOn<Margin>) -> Fate {
 }
 
 impl Scene<'_> {
-    /// Every way in which one primitive is hit.
-    fn ways(&self, m: &Margin, id: u32) -> Explored<Option<[Bounded; 3]>> {
+    /// Every way in which one primitive is hit. Forms are kept for the results alone.
+    fn ways(&self, m: &Margin, id: u32) -> Explored<Option<[Kept; 3]>> {
         let ray = self.ray;
         m.each_way(WAYS, &|| {
+            let mark = m.forms.len();
             let hit = (self.intersect)(id);
             let late = m.f32_compare(Compare::Ge, hit.t.0, ray.t_min.0);
             let early = m.f32_compare(Compare::Le, hit.t.0, ray.t_max.0);
             let inside = m.bool_binary(BoolBinary::And, late, early);
             let accepted = m.decided(m.bool_binary(BoolBinary::And, hit.is_hit.0, inside));
-            accepted.then_some([hit.t.0, hit.u.0, hit.v.0])
+            let results = [hit.t.0, hit.u.0, hit.v.0].map(|v| (v, m.forms.get(v.form, v.range)));
+            m.forms.truncate(mark);
+            accepted.then_some(results)
         })
     }
 
     /// The hits of one primitive; ways that rounding cannot tell apart are one.
     fn ask(&self, m: &Margin, id: u32) -> Vec<Found> {
+        // Most are missed for certain, which intervals can tell.
+        let quick = m.forms.without(|| self.ways(m, id));
+        if quick.is_complete && quick.results.iter().all(Option::is_none) {
+            return Vec::new();
+        }
         let ways = self.ways(m, id);
         if !ways.is_complete && m.is_running() {
             m.decisions.lose();
@@ -174,11 +187,12 @@ impl Scene<'_> {
         let is_certain = ways.is_complete && ways.results.iter().all(Option::is_some);
         let mut found: Vec<Found> = Vec::new();
         for (way, result) in ways.results.into_iter().enumerate() {
-            let Some([t, u, v]) = result else { continue };
+            let Some(results) = result else { continue };
+            let [t, u, v] = results.map(|(v, form)| Bounded { form: m.forms.put(form), ..v });
             // What was accepted is a number between the ends of the ray.
             let first = self.ray.t_min.0.range.low.max(t.range.low);
             let last = self.ray.t_max.0.range.high.min(t.range.high);
-            let t = m.bounded(t.value, Interval::new(first, last, false));
+            let t = Bounded { range: Interval::new(first, last, false), ..t };
             let near = found.iter_mut().find(|f| {
                 [(f.t, t), (f.u, u), (f.v, v)].iter().all(|(a, b)| a.range.overlaps(b.range))
             });
