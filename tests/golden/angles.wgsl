@@ -26,7 +26,7 @@ struct StoredTuple {
     arg1: f32,
 }
 
-struct StoredValue {
+struct StoredVec4 {
     value: vec4<f32>,
 }
 
@@ -372,7 +372,7 @@ fn element(input: Tuple) -> vec4<f32> {
 }
 
 @group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
-@group(0) @binding(3) var<storage, read_write> outputs: array<StoredValue>;
+@group(0) @binding(3) var<storage, read_write> outputs: array<StoredVec4>;
 
 fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
@@ -385,5 +385,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let at = job.first + id.xy;
     let index = at.y * job.size.x + at.x - job.base;
     let result = element(load_input(index));
-    outputs[index] = StoredValue(vec4<f32>(result.x, result.y, result.z, result.w));
+    outputs[index] = StoredVec4(vec4<f32>(result.x, result.y, result.z, result.w));
 }

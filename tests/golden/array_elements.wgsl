@@ -45,26 +45,25 @@ fn array_elements(x: f32, n: u32, i: i32) -> f32 {
     var table_1_0: f32 = 1.0f;
     var table_1_1: f32 = 2.0f;
     let t_2 = n & 1u;
-    let t_3 = i & 1i;
+    let t_3 = bitcast<u32>(i & 1i);
     let table_0_0_1 = table_0_0;
     let table_0_1_1 = table_0_1;
     let table_1_0_1 = table_1_0;
     let t_4 = t_2 >= 1u;
     let t_5 = select(table_0_0_1, table_1_0_1, t_4);
     let t_6 = select(table_0_1_1, table_1_1, t_4);
-    let t_7 = select(t_5, t_6, (bitcast<u32>(t_3) >= 1u)) * params.lit_3_0;
-    let t_8 = bitcast<u32>(t_3);
-    let t_9 = select(t_5, t_7, (t_8 == 0u));
-    let t_10 = select(t_6, t_7, (t_8 >= 1u));
-    let t_11 = t_2 == 0u;
-    let t_12 = t_2 >= 1u;
-    table_0_0 = select(table_0_0_1, t_9, t_11);
-    table_0_1 = select(table_0_1_1, t_10, t_11);
-    table_1_0 = select(table_1_0_1, t_9, t_12);
-    table_1_1 = select(table_1_1, t_10, t_12);
-    let t_13 = n % 4u;
-    let t_14 = bitcast<u32>(i & 1i);
-    return select(select(select(0.25f, x, (t_13 >= 1u)), 1.5f, (t_13 >= 2u)), -2.0f, (t_13 >= 3u)) + f32(select(select(counts_0, counts_1, (t_14 >= 1u)), counts_2, (t_14 >= 2u))) + table_1_0 - table_0_1 + f32(n);
+    let t_7 = select(t_5, t_6, (t_3 >= 1u)) * params.lit_3_0;
+    let t_8 = select(t_5, t_7, (t_3 == 0u));
+    let t_9 = select(t_6, t_7, (t_3 >= 1u));
+    let t_10 = t_2 == 0u;
+    let t_11 = t_2 >= 1u;
+    table_0_0 = select(table_0_0_1, t_8, t_10);
+    table_0_1 = select(table_0_1_1, t_9, t_10);
+    table_1_0 = select(table_1_0_1, t_8, t_11);
+    table_1_1 = select(table_1_1, t_9, t_11);
+    let t_12 = n % 4u;
+    let t_13 = bitcast<u32>(i & 1i);
+    return select(select(select(0.25f, x, (t_12 >= 1u)), 1.5f, (t_12 >= 2u)), -2.0f, (t_12 >= 3u)) + f32(select(select(counts_0, counts_1, (t_13 >= 1u)), counts_2, (t_13 >= 2u))) + table_1_0 - table_0_1 + f32(n);
 }
 
 fn element(input: Tuple) -> f32 {

@@ -263,6 +263,10 @@ fn walls_closest_hit(ray: Ray) -> Hit {
     return best;
 }
 
+fn Ray_at(self_: Ray, t: f32) -> vec3<f32> {
+    return self_.origin + self_.direction * t;
+}
+
 fn walls_any_hit(ray: Ray) -> bool {
     if (params.len_of_walls_nodes == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {
         return false;
@@ -322,7 +326,7 @@ fn kernel(ray: Ray) -> f32 {
     let hit = walls_closest_hit(ray);
     var lit: f32 = 0.0f;
     if (hit.is_hit) {
-        let at = ray.origin + ray.direction * hit.t;
+        let at = Ray_at(ray, hit.t);
         if (!walls_any_hit(Ray(at, params.light - at, 0.001f, 1.0f))) {
             let t = params.light - at;
             lit = 1.0f / (t.x * t.x + t.y * t.y + t.z * t.z);

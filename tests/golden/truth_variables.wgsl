@@ -8,7 +8,7 @@ struct StoredTuple {
     arg1: u32,
 }
 
-struct StoredValue {
+struct StoredBool {
     value: u32,
 }
 
@@ -48,7 +48,7 @@ fn element(input: Tuple) -> bool {
 }
 
 @group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
-@group(0) @binding(3) var<storage, read_write> outputs: array<StoredValue>;
+@group(0) @binding(3) var<storage, read_write> outputs: array<StoredBool>;
 
 fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
@@ -61,5 +61,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let at = job.first + id.xy;
     let index = at.y * job.size.x + at.x - job.base;
     let result = element(load_input(index));
-    outputs[index] = StoredValue((select(0u, 1u, result)));
+    outputs[index] = StoredBool((select(0u, 1u, result)));
 }
