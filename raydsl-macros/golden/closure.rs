@@ -96,7 +96,7 @@ fn main() {
                                                     );
                                             }
                                         }
-                                        if branch_2.otherwise(m) {
+                                        if branch_2.otherwise_small(m) {
                                             {
                                                 value_1
                                                     .set(
@@ -194,7 +194,7 @@ fn main() {
                                                     );
                                             }
                                         }
-                                        if branch_2.otherwise(m) {
+                                        if branch_2.otherwise_small(m) {
                                             {
                                                 value_1
                                                     .set(
@@ -292,7 +292,7 @@ fn main() {
                                                     );
                                             }
                                         }
-                                        if branch_2.otherwise(m) {
+                                        if branch_2.otherwise_small(m) {
                                             {
                                                 value_1
                                                     .set(
@@ -390,7 +390,7 @@ fn main() {
                                                     );
                                             }
                                         }
-                                        if branch_2.otherwise(m) {
+                                        if branch_2.otherwise_small(m) {
                                             {
                                                 value_1
                                                     .set(
@@ -488,7 +488,7 @@ fn main() {
                                                     );
                                             }
                                         }
-                                        if branch_2.otherwise(m) {
+                                        if branch_2.otherwise_small(m) {
                                             {
                                                 value_1
                                                     .set(
@@ -586,7 +586,7 @@ fn main() {
                                                     );
                                             }
                                         }
-                                        if branch_2.otherwise(m) {
+                                        if branch_2.otherwise_small(m) {
                                             {
                                                 value_1
                                                     .set(
@@ -684,7 +684,7 @@ fn main() {
                                                     );
                                             }
                                         }
-                                        if branch_2.otherwise(m) {
+                                        if branch_2.otherwise_small(m) {
                                             {
                                                 value_1
                                                     .set(

@@ -140,7 +140,7 @@ impl walk {
                                                 ::raydsl::__private::literal(m, 10.0f32, 10.0f64),
                                             ),
                                         );
-                                        if branch_8.then(m) {
+                                        if branch_8.then_small(m) {
                                             {
                                                 repeat_2.leave(m);
                                             }
@@ -192,7 +192,7 @@ impl walk {
                                                     value_11.get(m)
                                                 },
                                             );
-                                            if branch_10.then(m) {
+                                            if branch_10.then_small(m) {
                                                 {
                                                     repeat_6.skip(m);
                                                 }
@@ -212,7 +212,7 @@ impl walk {
                                                 3,
                                             ),
                                         );
-                                        if branch_16.then(m) {
+                                        if branch_16.then_small(m) {
                                             {
                                                 ret.give(
                                                     m,
@@ -267,48 +267,40 @@ impl walk {
                             x,
                         ),
                     );
-                    if branch_18.then(m) {
+                    if branch_18.then_small(m) {
                         {
                             {
-                                let right = {
-                                    let value_20 = ::raydsl::__private::Var::<
-                                        _,
-                                    >::declare(m, "value");
-                                    let branch_21 = ::raydsl::__private::Branch::new(
+                                let right = ::raydsl::__private::choose::<
+                                    _,
+                                    _,
+                                    _,
+                                >(
+                                    m,
+                                    ::raydsl::__private::OpCompare::compare(
                                         m,
-                                        ::raydsl::__private::OpCompare::compare(
+                                        ::raydsl::__private::Compare::Gt,
+                                        x,
+                                        ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
+                                    ),
+                                    #[inline(always)]
+                                    || {
+                                        let _ = &x;
+                                        ::raydsl::__private::Varying::varying(x, m)
+                                    },
+                                    #[inline(always)]
+                                    || {
+                                        let _ = &x;
+                                        ::raydsl::__private::Varying::varying(
+                                            ::raydsl::__private::OpNeg::neg(m, x),
                                             m,
-                                            ::raydsl::__private::Compare::Gt,
-                                            x,
-                                            ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
-                                        ),
-                                    );
-                                    if branch_21.then(m) {
-                                        {
-                                            value_20
-                                                .set(m, ::raydsl::__private::Varying::varying(x, m));
-                                        }
-                                    }
-                                    if branch_21.otherwise(m) {
-                                        {
-                                            value_20
-                                                .set(
-                                                    m,
-                                                    ::raydsl::__private::Varying::varying(
-                                                        ::raydsl::__private::OpNeg::neg(m, x),
-                                                        m,
-                                                    ),
-                                                );
-                                        }
-                                    }
-                                    branch_21.end(m);
-                                    value_20.get(m)
-                                };
+                                        )
+                                    },
+                                );
                                 last.set(m, ::raydsl::__private::Coerce::coerce(right, m));
                             }
                         }
                     }
-                    if branch_18.otherwise(m) {
+                    if branch_18.otherwise_small(m) {
                         {
                             {
                                 let right = ::raydsl::__private::literal(m, 0.0f32, 0.0f64);

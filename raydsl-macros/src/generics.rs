@@ -84,10 +84,19 @@ impl Generics {
 }
 
 /// Whether an identifier is among the tokens.
-pub(crate) fn mentions(tokens: &TokenStream, name: &Ident) -> bool {
-    tokens.clone().into_iter().any(|t| match t {
-        TokenTree::Ident(i) => i == *name,
-        TokenTree::Group(g) => mentions(&g.stream(), name),
-        _ => false,
-    })
+fn mentions(tokens: &TokenStream, name: &Ident) -> bool {
+    let mut found = false;
+    identifiers(tokens, &mut |i| found |= i == *name);
+    found
+}
+
+/// Shows every identifier among the tokens.
+pub(crate) fn identifiers(tokens: &TokenStream, visit: &mut dyn FnMut(Ident)) {
+    for token in tokens.clone() {
+        match token {
+            TokenTree::Ident(i) => visit(i),
+            TokenTree::Group(g) => identifiers(&g.stream(), visit),
+            _ => {}
+        }
+    }
 }

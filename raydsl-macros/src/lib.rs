@@ -3,6 +3,7 @@
 //! `parse` turns syn's syntax into `model`, `emit` turns the model into the lifted Rust, `items`
 //! and `twin` write the items around it. `ops` is the table of what a kernel may call.
 
+mod cost;
 mod diag;
 mod emit;
 mod generics;

@@ -148,6 +148,8 @@ pub(crate) enum Kind {
     },
     Tuple(Vec<Expr>),
     If {
+        /// `#[coherent]`: the rays mostly agree, so its arms are tested.
+        coherent: bool,
         c: Box<Expr>,
         then: Block,
         otherwise: Option<Box<Expr>>,
@@ -277,7 +279,7 @@ impl Kind {
             Self::Struct { fields, rest, .. } => {
                 fields.iter().map(|f| &f.1).chain(rest.as_deref()).collect()
             }
-            Self::If { c, then, otherwise } => {
+            Self::If { c, then, otherwise, .. } => {
                 let mut all = vec![&**c];
                 all.extend(then.children());
                 all.extend(otherwise.as_deref());

@@ -83,3 +83,37 @@ pub(crate) fn denied(name: &str) -> Option<(String, String)> {
     let (_, instead) = DENIED.iter().find(|d| d.0 == name)?;
     Some((format!("a kernel has no `{name}`"), format!("write {instead}")))
 }
+
+/// Functions of the prelude that packets run in a few operations, and in how many.
+const CHEAP_FUNCTIONS: &[(&str, u32)] =
+    &[("min", 2), ("max", 2), ("clamp", 4), ("select", 1), ("vec2", 0), ("vec3", 0), ("vec4", 0)];
+
+/// Methods of numbers and vectors that packets run in a few operations, and in how many.
+const CHEAP_METHODS: &[(&str, u32)] = &[
+    ("abs", 1),
+    ("sqrt", 5),
+    ("floor", 1),
+    ("ceil", 1),
+    ("trunc", 1),
+    ("min", 3),
+    ("max", 3),
+    ("clamp", 4),
+    ("copysign", 3),
+    ("to_bits", 0),
+    ("mul_add", 1),
+    ("dot", 5),
+    ("length_squared", 5),
+    ("wrapping_add", 1),
+    ("wrapping_sub", 1),
+    ("wrapping_mul", 2),
+];
+
+/// What a call of a function of the prelude costs, if little.
+pub(crate) fn cheap_function(name: &str) -> Option<u32> {
+    CHEAP_FUNCTIONS.iter().find(|f| f.0 == name).map(|f| f.1)
+}
+
+/// What a method costs, if little.
+pub(crate) fn cheap_method(name: &str) -> Option<u32> {
+    CHEAP_METHODS.iter().find(|f| f.0 == name).map(|f| f.1)
+}

@@ -16,6 +16,7 @@ use crate::ops;
 
 /// A function or method; `self_ty` is the type of the `impl`.
 pub(crate) fn function(
+    attrs: &[syn::Attribute],
     sig: &syn::Signature,
     body: &syn::Block,
     self_ty: Option<&syn::Type>,
@@ -29,7 +30,12 @@ pub(crate) fn function(
             errors.at(span, format!("a kernel cannot be `{what}`"), &format!("remove `{what}`"));
         }
     }
-    let mut parser = Parser { errors, temporaries: 0, is_nested: false };
+    let mut parser = Parser {
+        errors,
+        temporaries: 0,
+        is_nested: false,
+        is_coherent: attrs.iter().any(is_coherent),
+    };
     let mut prologue = Vec::new();
     let params = sig.inputs.iter().map(|arg| parser.param(arg, self_ty, &mut prologue)).collect();
     let result = match &sig.output {
@@ -44,7 +50,8 @@ pub(crate) fn function(
 
 /// A closure literal; its parameters must have types.
 pub(crate) fn closure(c: &syn::ExprClosure, name: &str, errors: &mut Errors) -> Kernel {
-    let mut parser = Parser { errors, temporaries: 0, is_nested: false };
+    let is_coherent = c.attrs.iter().any(is_coherent);
+    let mut parser = Parser { errors, temporaries: 0, is_nested: false, is_coherent };
     parser.closure(c, name)
 }
 
@@ -78,6 +85,8 @@ struct Parser<'a> {
     temporaries: usize,
     /// Whether a closure within the kernel is being read.
     is_nested: bool,
+    /// Whether the whole kernel is `#[coherent]`.
+    is_coherent: bool,
 }
 
 /// The label of a nested closure: its `return` leaves the closure, not the kernel around it.
@@ -204,7 +213,9 @@ impl Parser<'_> {
 
     /// The lifted code would not know of a `#[cfg]`.
     fn no_attributes(&mut self, attrs: &[syn::Attribute]) {
-        for a in attrs.iter().filter(|a| !a.path().is_ident("allow") && !is_host(a)) {
+        for a in
+            attrs.iter().filter(|a| !a.path().is_ident("allow") && !is_host(a) && !is_coherent(a))
+        {
             self.errors.at(
                 a.span(),
                 "a kernel has no attributes on statements and expressions",
@@ -597,6 +608,7 @@ impl Parser<'_> {
 
     fn conditional(&mut self, i: &syn::ExprIf) -> Kind {
         Kind::If {
+            coherent: self.is_coherent || i.attrs.iter().any(is_coherent),
             c: self.boxed(&i.cond),
             then: self.block(&i.then_branch),
             otherwise: i.else_branch.as_ref().map(|(_, e)| self.boxed(e)),
@@ -711,6 +723,11 @@ fn generic_argument(arg: &syn::GenericArgument) -> TokenStream {
 /// `#[host]`.
 fn is_host(a: &syn::Attribute) -> bool {
     a.path().is_ident("host")
+}
+
+/// `#[coherent]`.
+fn is_coherent(a: &syn::Attribute) -> bool {
+    a.path().is_ident("coherent")
 }
 
 fn inside_parens(mut e: &syn::Expr) -> &syn::Expr {

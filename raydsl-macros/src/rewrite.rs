@@ -19,18 +19,20 @@ fn within_groups(token: TokenTree, f: fn(TokenStream) -> TokenStream) -> TokenTr
     TokenTree::Group(inside)
 }
 
-/// Source without the attribute `#[host]`, which only the lowering understands.
-pub(crate) fn without_host(source: TokenStream) -> TokenStream {
+/// Source without the attributes `#[host]` and `#[coherent]`, which only the lowering understands.
+pub(crate) fn without_markers(source: TokenStream) -> TokenStream {
     let tokens: Vec<TokenTree> = source.into_iter().collect();
     let mut out = TokenStream::new();
     let mut rest = &tokens[..];
     while let Some((first, others)) = rest.split_first() {
         rest = others;
-        if others.first().is_some_and(|second| is_attribute(first, second, "host")) {
+        let is_marker =
+            |second| is_attribute(first, second, "host") || is_attribute(first, second, "coherent");
+        if others.first().is_some_and(is_marker) {
             rest = &others[1..];
             continue;
         }
-        out.extend([within_groups(first.clone(), without_host)]);
+        out.extend([within_groups(first.clone(), without_markers)]);
     }
     out
 }

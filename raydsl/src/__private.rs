@@ -21,7 +21,7 @@ pub mod operations {
 pub use crate::machine::host::{HostCapture, HostUse};
 pub use crate::machine::index::with_element;
 use crate::machine::index::{Index, Indexed};
-use crate::machine::{B, Bounds, F, I, U, Usize};
+use crate::machine::{B, Bounds, Condition, F, I, U, Usize};
 
 /// A literal, as the two numbers nearest to its text.
 #[inline(always)]
@@ -85,6 +85,17 @@ pub fn guarded<M: Machine, C: Coerce<M, B<M>>, R>(
     f: impl FnOnce() -> R,
 ) -> R {
     m.guarded(c.coerce(m).0, when, f)
+}
+
+/// One of two values, by a condition of the machine or of the host.
+#[inline(always)]
+pub fn choose<M: Machine, V: Value<M>, C: Condition<M>>(
+    m: &M,
+    c: C,
+    a: impl FnOnce() -> V,
+    b: impl FnOnce() -> V,
+) -> V {
+    c.choose(m, a, b)
 }
 
 /// The bounds of a `for`.

@@ -84,7 +84,12 @@ impl Emitter<'_> {
     /// Evaluates `e` and sends its value to `dest`.
     pub(super) fn into(&mut self, e: &Expr, dest: &Dest) -> TokenStream {
         match &e.kind {
-            Kind::If { c, then, otherwise } => self.branch(c, then, otherwise.as_deref(), dest),
+            Kind::If { .. } if !matches!(dest, Dest::None) && e.is_selection() => {
+                self.send(e, dest)
+            }
+            Kind::If { coherent, c, then, otherwise } => {
+                self.branch(*coherent, c, then, otherwise.as_deref(), dest)
+            }
             Kind::Block(b) => self.block(b, dest),
             Kind::While { label, c, body } => {
                 self.while_loop(label.clone(), Some(c), body, &Dest::None)
@@ -149,6 +154,7 @@ impl Emitter<'_> {
 
     pub(super) fn branch(
         &mut self,
+        coherent: bool,
         c: &Expr,
         then: &Block,
         otherwise: Option<&Expr>,
@@ -161,15 +167,23 @@ impl Emitter<'_> {
         self.varying += usize::from(host.is_none());
         let is_varying = host.is_none();
         let c = host.unwrap_or_else(|| self.value(c));
+        // Small arms run untested.
+        let hook = |name: &str, is_small: bool| {
+            let name =
+                if !coherent && is_small { format!("{name}_small") } else { name.to_owned() };
+            Ident::new(&name, Span::call_site())
+        };
+        let enter = hook("then", then.is_small());
         let then = self.block(then, dest);
         let other = otherwise.map(|e| {
+            let enter = hook("otherwise", e.is_small());
             let arm = self.into(e, dest);
-            quote!(if #branch.otherwise(#m) { #arm })
+            quote!(if #branch.#enter(#m) { #arm })
         });
         self.varying -= usize::from(is_varying);
         quote! {
             let #branch = #p::Branch::new(#m, #c);
-            if #branch.then(#m) { #then }
+            if #branch.#enter(#m) { #then }
             #other
             #branch.end(#m);
         }

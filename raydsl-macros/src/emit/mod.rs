@@ -17,7 +17,7 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
 use crate::diag::Errors;
-use crate::generics::{Generics, mentions};
+use crate::generics::{Generics, identifiers};
 use crate::model::{Block, Kernel, Param};
 
 /// What a name stands for.
@@ -268,7 +268,6 @@ impl<'a> Emitter<'a> {
         quote! {
             #[inline(always)]
             |#m: &#machine, #(#names: #types),*| {
-                // Capturing members one by one is more than rustc 1.95 can take.
                 #(let _ = &#seen;)*
                 #body
             }
@@ -282,12 +281,22 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// The locals in scope that `code` mentions.
+    /// The locals in scope that `code` mentions. A closure refers to each as a whole: rustc 1.95
+    /// cannot see that members captured one by one are `Copy`.
     fn mentioned_in(&self, code: &TokenStream) -> Vec<Ident> {
         let names = self.scopes.iter().flat_map(HashMap::keys);
-        let names: BTreeSet<&String> = names.collect();
-        let locals = names.into_iter().map(|n| self.local(&Ident::new(n, Span::call_site())));
-        locals.filter(|l| mentions(code, l)).collect()
+        let mut names: BTreeSet<&str> = names.map(String::as_str).collect();
+        if names.remove("self") {
+            names.insert("this");
+        }
+        let mut found: Vec<Ident> = Vec::new();
+        identifiers(code, &mut |ident| {
+            // The tokens of the source: a name made anew would not have their hygiene.
+            if names.remove(ident.to_string().as_str()) {
+                found.push(ident);
+            }
+        });
+        found
     }
 
     /// Whether a closure sees the variable, but may not change it.

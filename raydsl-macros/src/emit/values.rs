@@ -60,19 +60,57 @@ impl Emitter<'_> {
             return None;
         }
         let (p, m) = (private(), own("m"));
-        let var = self.fresh("value");
         let slot = match ty {
             Some(_) => SlotType::Written,
             None if e.has_typed_outcome() => SlotType::ByOthers,
             None => SlotType::ByAll,
         };
         let ty = ty.map(|t| self.on(t)).unwrap_or_else(|| quote!(_));
+        if e.is_selection() {
+            return Some(self.selection(e, &ty, slot));
+        }
+        let var = self.fresh("value");
         let code = self.into(e, &Dest::Slot { var: var.clone(), ty: slot });
         Some(quote!({
             let #var = #p::Var::<#ty>::declare(#m, #name);
             #code
             #var.get(#m)
         }))
+    }
+
+    /// An `if` that only chooses between small values: both are there, one is taken.
+    fn selection(&mut self, e: &Expr, ty: &TokenStream, slot: SlotType) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        let inner = match &e.kind {
+            Kind::If { c, then, otherwise: Some(other), .. } => {
+                then.free_value().map(|then| (&**c, then, &**other))
+            }
+            Kind::Block(b) => match b.free_value() {
+                Some(inner) => return self.selection(inner, ty, slot),
+                None => None,
+            },
+            _ => None,
+        };
+        let Some((c, then, other)) = inner else {
+            let wanted =
+                slot == SlotType::Written || slot == SlotType::ByOthers && e.is_untyped_integer();
+            if wanted {
+                return self.coerced(e);
+            }
+            let value = self.value(e);
+            return quote!(#p::Varying::varying(#value, #m));
+        };
+        let c = self.host_value(c).unwrap_or_else(|| self.value(c));
+        let (then, other) = (self.selection(then, ty, slot), self.selection(other, ty, slot));
+        let (seen, others) = (self.mentioned_in(&then), self.mentioned_in(&other));
+        quote! {
+            #p::choose::<_, #ty, _>(
+                #m,
+                #c,
+                #[inline(always)] || { #(let _ = &#seen;)* #then },
+                #[inline(always)] || { #(let _ = &#others;)* #other },
+            )
+        }
     }
 
     pub(super) fn value(&mut self, e: &Expr) -> TokenStream {
@@ -237,6 +275,7 @@ impl Emitter<'_> {
         let literal = Expr { kind: Kind::Bool(!and), span };
         let (then, other) = if and { (b, &literal) } else { (&literal, b) };
         let choice = Kind::If {
+            coherent: true,
             c: Box::new(a.clone()),
             then: block(then),
             otherwise: Some(Box::new(Expr { kind: Kind::Block(block(other)), span })),

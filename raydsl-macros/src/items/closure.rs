@@ -8,7 +8,7 @@ use super::{info, own, private, quiet};
 use crate::diag::Errors;
 use crate::emit::{Emitter, raw_capture};
 use crate::parse;
-use crate::rewrite::without_host;
+use crate::rewrite::without_markers;
 
 /// The natural machines of a closure, by the names of their aliases in the runtime and of the
 /// members of `Lifted` that hold their copies.
@@ -79,11 +79,11 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
     if !errors.is_empty() {
         let errors = errors.into_tokens();
         // The closure itself stays, so that rustc and editors see its types.
-        let closure = without_host(closure.to_token_stream());
+        let closure = without_markers(closure.to_token_stream());
         return quote!({ #errors let _ = #closure; ::core::unreachable!() });
     }
     let info = info(&kernel, "kernel");
-    let closure = without_host(closure.to_token_stream());
+    let closure = without_markers(closure.to_token_stream());
     let scalar = own("scalar");
     let index = (0..captured.len()).map(syn::Index::from);
     quote! {{

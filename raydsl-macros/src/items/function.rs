@@ -8,15 +8,15 @@ use crate::diag::Errors;
 use crate::generics::Generics;
 use crate::model::{Kernel, Param};
 use crate::parse;
-use crate::rewrite::without_host;
+use crate::rewrite::without_markers;
 
 /// The function as it is, a type of the same name, and the lifted body as the type's `on`.
 pub(crate) fn kernel_fn(item: &syn::ItemFn) -> TokenStream {
     let mut errors = Errors::default();
-    let kernel = parse::function(&item.sig, &item.block, None, &mut errors);
+    let kernel = parse::function(&item.attrs, &item.sig, &item.block, None, &mut errors);
     let name = &kernel.name;
     let vis = item.vis.to_token_stream();
-    let source = without_host(item.to_token_stream());
+    let source = without_markers(item.to_token_stream());
     let is_generic = !kernel.generics.is_empty();
     let fn_name = if is_generic { "on_values" } else { "on" };
     let place = Place {

@@ -10,7 +10,7 @@ use crate::emit::Emitter;
 use crate::generics::Generics;
 use crate::model::{Kernel, Param};
 use crate::parse;
-use crate::rewrite::without_host;
+use crate::rewrite::without_markers;
 
 /// The lifted functions of an `impl`, and what stands beside it.
 pub(crate) fn kernel_impl(
@@ -23,7 +23,7 @@ pub(crate) fn kernel_impl(
     let Generics { declared, predicates, .. } = &around;
     let self_ty = &item.self_ty;
     let Some((path, _)) = &item.trait_ else {
-        let item = without_host(item.to_token_stream());
+        let item = without_markers(item.to_token_stream());
         return quote! {
             #item
             impl<#declared> #self_ty where #predicates { #functions }
@@ -32,7 +32,7 @@ pub(crate) fn kernel_impl(
     };
     // The lifted functions belong to the trait too.
     let attrs = &item.attrs;
-    let items = item.items.iter().map(|i| without_host(i.to_token_stream()));
+    let items = item.items.iter().map(|i| without_markers(i.to_token_stream()));
     quote! {
         #(#attrs)*
         impl<#declared> #path for #self_ty where #predicates {
@@ -66,7 +66,7 @@ fn lifted_impl(item: &syn::ItemImpl, host_only: &[&str], errors: &mut Errors) ->
     };
     for f in functions(&item.items, host_only, errors) {
         let name = f.sig.ident.to_string();
-        let kernel = parse::function(&f.sig, &f.block, Some(&item.self_ty), errors);
+        let kernel = parse::function(&f.attrs, &f.sig, &f.block, Some(&item.self_ty), errors);
         let fn_name = format_ident!("{name}_on");
         let place = Place {
             fn_name: &fn_name,
@@ -248,12 +248,12 @@ pub(crate) fn kernel_trait(item: &syn::ItemTrait) -> TokenStream {
         };
         match &f.default {
             Some(body) => {
-                let kernel = parse::function(&f.sig, body, Some(&self_ty), &mut errors);
+                let kernel = parse::function(&f.attrs, &f.sig, body, Some(&self_ty), &mut errors);
                 functions.extend(lifted_function(&kernel, &place, &mut errors));
             }
             None => {
                 let body = syn::parse_quote!({});
-                let kernel = parse::function(&f.sig, &body, Some(&self_ty), &mut errors);
+                let kernel = parse::function(&f.attrs, &f.sig, &body, Some(&self_ty), &mut errors);
                 let mut unused = Errors::default();
                 let emitter = Emitter::new(&kernel, quote!(__M), None, false, &mut unused);
                 let emitter = emitter.with_generics(&around);
@@ -267,6 +267,6 @@ pub(crate) fn kernel_trait(item: &syn::ItemTrait) -> TokenStream {
     let mut item = item.clone();
     item.supertraits.push(syn::parse_quote!(#p::Type));
     item.items.push(syn::TraitItem::Verbatim(functions));
-    let item = without_host(item.to_token_stream());
+    let item = without_markers(item.to_token_stream());
     quote!(#item #errors)
 }

@@ -207,6 +207,7 @@ impl Parser<'_> {
 
     /// `match`, as a chain of `if`.
     pub(super) fn matching(&mut self, m: &syn::ExprMatch) -> Kind {
+        let coherent = self.is_coherent || m.attrs.iter().any(super::is_coherent);
         let mut stmts = Vec::new();
         let scrutinee = self.expr(&m.expr);
         let from = self.read_often(scrutinee, &mut stmts);
@@ -252,7 +253,7 @@ impl Parser<'_> {
             |otherwise, (test, then, span)| {
                 let c = Box::new(test.unwrap_or(Expr { kind: Kind::Bool(true), span }));
                 let otherwise = Some(Box::new(otherwise));
-                Expr { kind: Kind::If { c, then, otherwise }, span }
+                Expr { kind: Kind::If { coherent, c, then, otherwise }, span }
             },
         );
         if stmts.is_empty() {

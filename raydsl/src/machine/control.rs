@@ -91,8 +91,14 @@ pub trait Condition<M: Machine>: Copy {
     fn then(m: &M, state: &Self::State) -> bool;
     /// Whether to run the second arm.
     fn otherwise(m: &M, state: &Self::State) -> bool;
+    /// As `then`, for an arm that is cheaper than the question whether any lane takes it.
+    fn then_small(m: &M, state: &Self::State) -> bool;
+    /// As `otherwise`, for such an arm.
+    fn otherwise_small(m: &M, state: &Self::State) -> bool;
     /// Joins the arms.
     fn end(m: &M, state: Self::State);
+    /// One of two values, neither of which has an effect.
+    fn choose<V: Value<M>>(self, m: &M, a: impl FnOnce() -> V, b: impl FnOnce() -> V) -> V;
     /// Tests the condition of a loop.
     fn test(self, m: &M, l: &M::Loop) -> bool;
 }
@@ -116,8 +122,23 @@ impl<M: Machine> Condition<M> for B<M> {
     }
 
     #[inline(always)]
+    fn then_small(m: &M, state: &M::Branch) -> bool {
+        m.branch_then_small(state)
+    }
+
+    #[inline(always)]
+    fn otherwise_small(m: &M, state: &M::Branch) -> bool {
+        m.branch_else_small(state)
+    }
+
+    #[inline(always)]
     fn end(m: &M, state: M::Branch) {
         m.branch_end(state);
+    }
+
+    #[inline(always)]
+    fn choose<V: Value<M>>(self, m: &M, a: impl FnOnce() -> V, b: impl FnOnce() -> V) -> V {
+        m.choose(self, a, b)
     }
 
     #[inline(always)]
@@ -145,7 +166,22 @@ impl<M: Machine> Condition<M> for bool {
     }
 
     #[inline(always)]
+    fn then_small(_: &M, state: &bool) -> bool {
+        *state
+    }
+
+    #[inline(always)]
+    fn otherwise_small(_: &M, state: &bool) -> bool {
+        !*state
+    }
+
+    #[inline(always)]
     fn end(_: &M, _: bool) {}
+
+    #[inline(always)]
+    fn choose<V: Value<M>>(self, _: &M, a: impl FnOnce() -> V, b: impl FnOnce() -> V) -> V {
+        if self { a() } else { b() }
+    }
 
     #[inline(always)]
     fn test(self, m: &M, l: &M::Loop) -> bool {
@@ -178,6 +214,18 @@ impl<M: Machine, C: Condition<M>> Branch<M, C> {
     #[inline(always)]
     pub fn otherwise(&self, m: &M) -> bool {
         C::otherwise(m, &self.state)
+    }
+
+    /// As [`Branch::then`], for an arm that costs less than a test.
+    #[inline(always)]
+    pub fn then_small(&self, m: &M) -> bool {
+        C::then_small(m, &self.state)
+    }
+
+    /// As [`Branch::otherwise`], for an arm that costs less than a test.
+    #[inline(always)]
+    pub fn otherwise_small(&self, m: &M) -> bool {
+        C::otherwise_small(m, &self.state)
     }
 
     /// Joins the arms.

@@ -282,8 +282,30 @@ pub trait Machine: Sized + 'static {
     fn branch_then(&self, t: &Self::Branch) -> bool;
     /// Leaves the first arm and enters the second.
     fn branch_else(&self, t: &Self::Branch) -> bool;
+    /// Enters the first arm, which is cheap: a packet need not ask whether any lane takes it.
+    #[inline(always)]
+    fn branch_then_small(&self, t: &Self::Branch) -> bool {
+        self.branch_then(t)
+    }
+    /// Leaves the first arm and enters the second, which is cheap.
+    #[inline(always)]
+    fn branch_else_small(&self, t: &Self::Branch) -> bool {
+        self.branch_else(t)
+    }
     /// Joins the arms.
     fn branch_end(&self, t: Self::Branch);
+
+    /// `a()` in the lanes that have `c`, `b()` in the others; neither has an effect.
+    #[inline(always)]
+    fn choose<V: Value<Self>>(
+        &self,
+        c: B<Self>,
+        a: impl FnOnce() -> V,
+        b: impl FnOnce() -> V,
+    ) -> V {
+        let (a, b) = (self.guarded(c.0, true, a), self.guarded(c.0, false, b));
+        index::choose(self, c.0, a, b)
+    }
 
     /// Begins a loop.
     fn loop_begin(&self) -> Self::Loop;

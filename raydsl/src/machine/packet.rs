@@ -309,6 +309,15 @@ impl<L: Lanes> Machine for Packet<L> {
         self.alive()
     }
     #[inline(always)]
+    fn branch_then_small(&self, _: &Cell<L::Mask>) -> bool {
+        true
+    }
+    #[inline(always)]
+    fn branch_else_small(&self, rest: &Cell<L::Mask>) -> bool {
+        self.active.swap(rest);
+        true
+    }
+    #[inline(always)]
     fn branch_end(&self, rest: Cell<L::Mask>) {
         self.active.set(self.or(self.active.get(), rest.get()));
     }

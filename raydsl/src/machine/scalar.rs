@@ -290,6 +290,15 @@ impl Machine for Scalar {
         self.active.get()
     }
     #[inline(always)]
+    fn choose<V: Value<Self>>(
+        &self,
+        c: B<Self>,
+        a: impl FnOnce() -> V,
+        b: impl FnOnce() -> V,
+    ) -> V {
+        if c.0 { a() } else { b() }
+    }
+    #[inline(always)]
     fn branch_end(&self, rest: Cell<bool>) {
         self.active.set(self.active.get() | rest.get());
     }

@@ -5,11 +5,11 @@ use core::cell::Cell;
 use super::ir::{Conversion, Expr, Id, Stmt, Type, VarId};
 use super::{RecordedBranch, RecordedLoop, Recorder, storage};
 use crate::geometry::{HitOn, Primitive, RayOn};
-use crate::machine::index::with_element;
+use crate::machine::index::{choose, with_element};
 use crate::machine::scalar;
 use crate::machine::{
-    B, BoolBinary, Compare, F32Binary, F32Unary, IntBinary, KernelInfo, Loop, Machine, Schema, U,
-    U32Unary, Usize, Value, Var,
+    B, BoolBinary, Branch, Compare, F32Binary, F32Unary, IntBinary, KernelInfo, Loop, Machine,
+    Schema, U, U32Unary, Usize, Value, Var,
 };
 
 /// Whether dividing by `v` and multiplying by its reciprocal give the same bits.
@@ -503,6 +503,39 @@ impl Machine for Recorder {
         });
         t.then.replace(Some(then));
         true
+    }
+    fn choose<V: Value<Self>>(
+        &self,
+        c: B<Self>,
+        a: impl FnOnce() -> V,
+        b: impl FnOnce() -> V,
+    ) -> V {
+        match (self.truth(c.0), V::SCHEMA) {
+            (Some(true), _) => a(),
+            (Some(false), _) => b(),
+            // As a statement a struct reads better than as a selection of each member.
+            (None, Schema::Struct { .. } | Schema::Array { .. }) => {
+                let value = Var::declare(self, "value");
+                let branch = Branch::new(self, c);
+                branch.then(self);
+                value.set(self, a());
+                branch.otherwise(self);
+                value.set(self, b());
+                branch.end(self);
+                value.get(self)
+            }
+            (None, Schema::Vector(..)) => {
+                let (a, b) = (self.leaves_of(a()), self.leaves_of(b()));
+                let (a, b) = (self.vector(&a), self.vector(&b));
+                let ty = self.node(a).ty;
+                let selected = self.add(Expr::Select(c.0, a, b), ty);
+                self.take_apart(selected)
+            }
+            (None, _) => {
+                let (a, b) = (a(), b());
+                choose(self, c.0, a, b)
+            }
+        }
     }
     fn branch_end(&self, t: RecordedBranch) {
         if self.truth(t.c).is_some() {

@@ -1,0 +1,120 @@
+//! What code costs, as far as its syntax says: the branch policy of packets.
+//!
+//! An `if` of a packet can test whether any ray takes an arm and skip it, or run the arm under a
+//! mask without asking. The test costs about as much as a few operations, and a misprediction when
+//! rays disagree; so arms that are *small* are not tested, and an `if` that only chooses between
+//! small values is a selection.
+
+use crate::model::{Block, Expr, Kind, Step};
+use crate::ops;
+
+/// An arm that costs no more runs untested.
+const SMALL: u32 = 10;
+
+/// An integer division, a call, a loop: never small.
+const LARGE: u32 = 1000;
+
+impl Expr {
+    /// Whether it costs less than asking whether it is needed.
+    pub(crate) fn is_small(&self) -> bool {
+        self.cost() <= SMALL
+    }
+
+    fn cost(&self) -> u32 {
+        let own = match &self.kind {
+            Kind::Float(_)
+            | Kind::Int { .. }
+            | Kind::Bool(_)
+            | Kind::Name(_)
+            | Kind::Path(_)
+            | Kind::Deref(_)
+            | Kind::Host(_)
+            | Kind::Field { .. }
+            | Kind::Index { .. }
+            | Kind::Tuple(_)
+            | Kind::Array(_)
+            | Kind::Struct { .. }
+            | Kind::Block(_) => 0,
+            Kind::Neg(_) | Kind::Not(_) | Kind::Compare { .. } | Kind::Logic { .. } => 1,
+            Kind::Binary { op, a, b } => division(op.may_trap, a, b),
+            Kind::Cast { .. } => 3,
+            Kind::If { .. } | Kind::Break(..) | Kind::Continue(_) | Kind::Return(_) => 2,
+            Kind::Call { path, .. } => ops::cheap_function(&path.to_string()).unwrap_or(LARGE),
+            Kind::Method { name, .. } => ops::cheap_method(&name.to_string()).unwrap_or(LARGE),
+            Kind::Assign { place, .. } => assignment(&place.steps),
+            Kind::OpAssign { op, place, value } => {
+                assignment(&place.steps) + division(op.may_trap, value, value)
+            }
+            _ => LARGE,
+        };
+        self.kind.children().into_iter().fold(own, |sum, e| sum.saturating_add(e.cost()))
+    }
+
+    /// Whether it is small and has no effect, so that it may be evaluated where another value is
+    /// wanted.
+    pub(crate) fn is_free(&self) -> bool {
+        self.is_small() && self.has_no_effect()
+    }
+
+    fn has_no_effect(&self) -> bool {
+        let own = match &self.kind {
+            Kind::If { then, otherwise: Some(_), .. } => then.is_value(),
+            Kind::Block(b) => b.is_value(),
+            Kind::If { .. }
+            | Kind::Break(..)
+            | Kind::Continue(_)
+            | Kind::Return(_)
+            | Kind::Assign { .. }
+            | Kind::OpAssign { .. } => false,
+            Kind::Binary { op, .. } => !op.may_trap,
+            _ => true,
+        };
+        own && self.kind.children().into_iter().all(Expr::has_no_effect)
+    }
+}
+
+/// The kind of numbers is not known: a literal with a point says that no integers are divided.
+fn division(may_trap: bool, a: &Expr, b: &Expr) -> u32 {
+    let is_float = |e: &Expr| matches!(e.kind, Kind::Float(_));
+    match may_trap {
+        false => 1,
+        true if is_float(a) || is_float(b) => 5,
+        true => LARGE,
+    }
+}
+
+fn assignment(steps: &[Step]) -> u32 {
+    if steps.iter().any(|s| matches!(s, Step::Computed(_))) { LARGE } else { 1 }
+}
+
+impl Expr {
+    /// Whether it is an `if` that only chooses between small values.
+    pub(crate) fn is_selection(&self) -> bool {
+        match &self.kind {
+            Kind::If { coherent: false, c, then, otherwise: Some(other) } => {
+                let arm = |e: &Expr| e.is_selection() || e.is_free();
+                c.has_no_effect() && then.free_value().is_some() && arm(other)
+            }
+            Kind::Block(b) => b.free_value().is_some_and(Self::is_selection),
+            _ => false,
+        }
+    }
+}
+
+impl Block {
+    /// Whether it costs less than asking whether it is needed.
+    pub(crate) fn is_small(&self) -> bool {
+        let cost = self.children().into_iter().fold(0u32, |sum, e| sum.saturating_add(e.cost()));
+        cost <= SMALL
+    }
+
+    /// Whether it is nothing but a value.
+    fn is_value(&self) -> bool {
+        self.stmts.is_empty() && self.tail.is_some()
+    }
+
+    /// The value, if it is nothing else, small, and has no effect.
+    pub(crate) fn free_value(&self) -> Option<&Expr> {
+        self.tail.as_deref().filter(|e| self.stmts.is_empty() && e.is_free())
+    }
+}
