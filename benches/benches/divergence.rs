@@ -111,14 +111,17 @@ fn sphere_rows(args: &Args) -> Vec<Row> {
     let balls: Vec<spheres::Ball> = (0..64)
         .map(|_| spheres::Ball {
             center: vec3(number(), number(), number()) * 8.0 - 4.0,
-            radius: 0.2 + 0.6 * number(),
+            radius: 0.1 + 0.3 * number(),
         })
         .collect();
     let inputs: Vec<(Vec3, Vec3, u32)> = (0..args.count)
         .map(|_| {
-            let origin = vec3(number(), number(), number()) * 2.0 - 1.0;
-            let target = vec3(number(), number(), number()) * 8.0 - 4.0;
-            let o = origin.normalize() * 8.0;
+            let mut vector = || vec3(number(), number(), number()) * 2.0 - 1.0;
+            let o = vector().normalize() * 8.0;
+            let aim = vector();
+            // Every ray meets a ball, so that all of them shade.
+            let ball = balls[(number() * 63.99) as usize];
+            let target = ball.center + aim * (0.5 * ball.radius);
             (o, (target - o).normalize(), (number() * 1e9) as u32)
         })
         .collect();

@@ -93,6 +93,7 @@ impl walk {
                     {
                         let (begin, end) = ::raydsl::__private::range(m, 0, n);
                         let counter_3 = ::raydsl::__private::Var::new(m, "i", begin);
+                        let step_5 = ::core::cell::Cell::new(0 as u32);
                         let repeat_2 = ::raydsl::__private::Loop::new(m);
                         loop {
                             if !repeat_2
@@ -105,9 +106,9 @@ impl walk {
                             }
                             let i = counter_3.get(m);
                             {
-                                let repeat_6 = ::raydsl::__private::Loop::new(m);
+                                let repeat_7 = ::raydsl::__private::Loop::new(m);
                                 loop {
-                                    if !repeat_6
+                                    if !repeat_7
                                         .test(
                                             m,
                                             ::raydsl::__private::OpCompare::compare(
@@ -120,7 +121,7 @@ impl walk {
                                     {
                                         break;
                                     }
-                                    'block_6: {
+                                    'block_7: {
                                         {
                                             let right = ::raydsl::__private::literal(m, 1.0f32, 1.0f64);
                                             sum.set(
@@ -131,7 +132,7 @@ impl walk {
                                                 ),
                                             );
                                         }
-                                        let branch_8 = ::raydsl::__private::Branch::new(
+                                        let branch_9 = ::raydsl::__private::Branch::new(
                                             m,
                                             ::raydsl::__private::OpCompare::compare(
                                                 m,
@@ -140,19 +141,19 @@ impl walk {
                                                 ::raydsl::__private::literal(m, 10.0f32, 10.0f64),
                                             ),
                                         );
-                                        if branch_8.then_small(m) {
+                                        if branch_9.then_small(m) {
                                             {
                                                 repeat_2.leave(m);
                                             }
                                         }
-                                        if branch_8.otherwise(m) {
-                                            let branch_10 = ::raydsl::__private::Branch::new(
+                                        if branch_9.otherwise(m) {
+                                            let branch_11 = ::raydsl::__private::Branch::new(
                                                 m,
                                                 {
-                                                    let value_11 = ::raydsl::__private::Var::<
+                                                    let value_12 = ::raydsl::__private::Var::<
                                                         _,
                                                     >::declare(m, "both");
-                                                    let branch_12 = ::raydsl::__private::Branch::new(
+                                                    let branch_13 = ::raydsl::__private::Branch::new(
                                                         m,
                                                         ::raydsl::__private::OpCompare::compare(
                                                             m,
@@ -161,9 +162,9 @@ impl walk {
                                                             ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
                                                         ),
                                                     );
-                                                    if branch_12.then(m) {
+                                                    if branch_13.then(m) {
                                                         {
-                                                            value_11
+                                                            value_12
                                                                 .set(
                                                                     m,
                                                                     ::raydsl::__private::Varying::varying(
@@ -182,28 +183,28 @@ impl walk {
                                                                 );
                                                         }
                                                     }
-                                                    if branch_12.otherwise(m) {
+                                                    if branch_13.otherwise(m) {
                                                         {
-                                                            value_11
+                                                            value_12
                                                                 .set(m, ::raydsl::__private::Varying::varying(false, m));
                                                         }
                                                     }
-                                                    branch_12.end(m);
-                                                    value_11.get(m)
+                                                    branch_13.end(m);
+                                                    value_12.get(m)
                                                 },
                                             );
-                                            if branch_10.then_small(m) {
+                                            if branch_11.then_small(m) {
                                                 {
-                                                    repeat_6.skip(m);
+                                                    repeat_7.skip(m);
                                                 }
                                             }
-                                            branch_10.end(m);
+                                            branch_11.end(m);
                                         }
-                                        branch_8.end(m);
+                                        branch_9.end(m);
                                         if !::raydsl::__private::Machine::alive(m) {
-                                            break 'block_6;
+                                            break 'block_7;
                                         }
-                                        let branch_16 = ::raydsl::__private::Branch::new(
+                                        let branch_17 = ::raydsl::__private::Branch::new(
                                             m,
                                             ::raydsl::__private::OpCompare::compare(
                                                 m,
@@ -212,7 +213,7 @@ impl walk {
                                                 3,
                                             ),
                                         );
-                                        if branch_16.then_small(m) {
+                                        if branch_17.then_small(m) {
                                             {
                                                 ret.give(
                                                     m,
@@ -220,9 +221,9 @@ impl walk {
                                                 );
                                             }
                                         }
-                                        branch_16.end(m);
+                                        branch_17.end(m);
                                         if !::raydsl::__private::Machine::alive(m) {
-                                            break 'block_6;
+                                            break 'block_7;
                                         }
                                         {
                                             let right = ::raydsl::__private::literal(m, 2.0f32, 2.0f64);
@@ -235,12 +236,12 @@ impl walk {
                                             );
                                         }
                                     }
-                                    repeat_6.continuing(m);
-                                    if !repeat_6.again(m) {
+                                    repeat_7.continuing(m);
+                                    if !repeat_7.again(m) {
                                         break;
                                     }
                                 }
-                                repeat_6.end(m);
+                                repeat_7.end(m);
                             }
                             repeat_2.continuing(m);
                             counter_3
@@ -248,6 +249,7 @@ impl walk {
                                     m,
                                     ::raydsl::__private::increment(m, counter_3.get(m)),
                                 );
+                            step_5.set(step_5.get().wrapping_add(1));
                             if !repeat_2.again(m) {
                                 break;
                             }
@@ -258,7 +260,7 @@ impl walk {
                         break 'block_0;
                     }
                     let last = ::raydsl::__private::Var::<_>::declare(m, "last");
-                    let branch_18 = ::raydsl::__private::Branch::new(
+                    let branch_19 = ::raydsl::__private::Branch::new(
                         m,
                         ::raydsl::__private::OpCompare::compare(
                             m,
@@ -267,7 +269,7 @@ impl walk {
                             x,
                         ),
                     );
-                    if branch_18.then_small(m) {
+                    if branch_19.then_small(m) {
                         {
                             {
                                 let right = ::raydsl::__private::choose::<
@@ -300,7 +302,7 @@ impl walk {
                             }
                         }
                     }
-                    if branch_18.otherwise_small(m) {
+                    if branch_19.otherwise_small(m) {
                         {
                             {
                                 let right = ::raydsl::__private::literal(m, 0.0f32, 0.0f64);
@@ -308,7 +310,7 @@ impl walk {
                             }
                         }
                     }
-                    branch_18.end(m);
+                    branch_19.end(m);
                     ret.give(
                         m,
                         ::raydsl::__private::Coerce::coerce(

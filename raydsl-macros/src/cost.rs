@@ -8,8 +8,11 @@
 use crate::model::{Block, Expr, Kind, Step};
 use crate::ops;
 
-/// An arm that costs no more runs untested.
-const SMALL: u32 = 10;
+/// An arm of statements that costs no more runs untested.
+const SMALL_ARM: u32 = 5;
+
+/// A value that costs no more is there whether or not it is taken.
+const SMALL_VALUE: u32 = 9;
 
 /// An integer division, a call, a loop: never small.
 const LARGE: u32 = 1000;
@@ -17,7 +20,7 @@ const LARGE: u32 = 1000;
 impl Expr {
     /// Whether it costs less than asking whether it is needed.
     pub(crate) fn is_small(&self) -> bool {
-        self.cost() <= SMALL
+        self.cost() <= SMALL_ARM
     }
 
     fn cost(&self) -> u32 {
@@ -53,7 +56,7 @@ impl Expr {
     /// Whether it is small and has no effect, so that it may be evaluated where another value is
     /// wanted.
     pub(crate) fn is_free(&self) -> bool {
-        self.is_small() && self.has_no_effect()
+        self.cost() <= SMALL_VALUE && self.has_no_effect()
     }
 
     fn has_no_effect(&self) -> bool {
@@ -78,7 +81,7 @@ fn division(may_trap: bool, a: &Expr, b: &Expr) -> u32 {
     let is_float = |e: &Expr| matches!(e.kind, Kind::Float(_));
     match may_trap {
         false => 1,
-        true if is_float(a) || is_float(b) => 5,
+        true if is_float(a) || is_float(b) => 8,
         true => LARGE,
     }
 }
@@ -105,7 +108,7 @@ impl Block {
     /// Whether it costs less than asking whether it is needed.
     pub(crate) fn is_small(&self) -> bool {
         let cost = self.children().into_iter().fold(0u32, |sum, e| sum.saturating_add(e.cost()));
-        cost <= SMALL
+        cost <= SMALL_ARM
     }
 
     /// Whether it is nothing but a value.

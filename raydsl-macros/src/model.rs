@@ -234,6 +234,14 @@ pub(crate) struct BinaryOp {
 }
 
 impl Kind {
+    /// The tokens of an integer of the source.
+    pub(crate) fn int_tokens(&self) -> Option<&TokenStream> {
+        match self {
+            Self::Int { tokens, .. } => Some(tokens),
+            _ => None,
+        }
+    }
+
     /// Every expression directly under this one.
     pub(crate) fn children(&self) -> Vec<&Expr> {
         match self {

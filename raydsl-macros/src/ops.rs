@@ -91,7 +91,7 @@ const CHEAP_FUNCTIONS: &[(&str, u32)] =
 /// Methods of numbers and vectors that packets run in a few operations, and in how many.
 const CHEAP_METHODS: &[(&str, u32)] = &[
     ("abs", 1),
-    ("sqrt", 5),
+    ("sqrt", 12),
     ("floor", 1),
     ("ceil", 1),
     ("trunc", 1),

@@ -135,6 +135,18 @@ pub fn element<M: Machine, A: Indexed<M>>(m: &M, a: A, i: impl Index<M>) -> A::E
     a.element(m, i)
 }
 
+/// `a[i]` where `i` is the same for all running lanes; `index` is the value that a recorded loop
+/// has for it.
+#[inline(always)]
+pub fn element_in_step<M: Machine, A: Indexed<M>, I: Index<M>>(
+    m: &M,
+    a: A,
+    step: u32,
+    index: impl FnOnce() -> I,
+) -> A::Element {
+    if M::RUNS { a.in_step(m, step) } else { a.element(m, index().index(m)) }
+}
+
 /// `a[3]`.
 #[inline(always)]
 pub fn at<M: Machine, A: Indexed<M>>(m: &M, a: A, i: usize) -> A::Element {

@@ -19,25 +19,42 @@ pub struct Found {
 }
 
 #[kernel]
-fn distance_to(ball: Ball, o: Vec3, d: Vec3) -> f32 {
-    let f = o - ball.center;
-    let b = f.dot(d);
-    let l = f - d * b;
-    let h = ball.radius * ball.radius - l.dot(l);
-    if h < 0.0 { -1.0 } else { -b - h.sqrt() }
-}
-
-#[kernel]
 pub fn closest(balls: &[Ball], o: Vec3, d: Vec3) -> Found {
     let mut best = Found { t: 1e30, id: 0xffff_ffff };
     for i in 0..balls.len() {
-        let t = distance_to(balls[i], o, d);
-        if t < 1e-3 || t >= best.t {
+        let f = o - balls[i].center;
+        let b = f.dot(d);
+        let l = f - d * b;
+        let h = balls[i].radius * balls[i].radius - l.dot(l);
+        if h < 0.0 {
             continue;
         }
-        best = Found { t, id: i as u32 };
+        let t = -b - h.sqrt();
+        if t > 1e-3 && t < best.t {
+            best = Found { t, id: i as u32 };
+        }
     }
     best
+}
+
+#[kernel]
+fn is_blocked(balls: &[Ball], o: Vec3, d: Vec3) -> bool {
+    for i in 0..balls.len() {
+        let f = o - balls[i].center;
+        let b = f.dot(d);
+        let l = f - d * b;
+        let h = balls[i].radius * balls[i].radius - l.dot(l);
+        if h >= 0.0 && -b - h.sqrt() > 1e-3 {
+            return true;
+        }
+    }
+    false
+}
+
+#[kernel]
+fn random(state: &mut u32) -> f32 {
+    *state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+    (*state >> 8) as f32 / 16_777_216.0
 }
 
 #[kernel]
@@ -51,20 +68,13 @@ pub fn occluded(balls: &[Ball], o: Vec3, d: Vec3, seed: u32) -> f32 {
     let mut state = seed;
     let mut open = 0.0;
     for _ in 0u32..8 {
-        state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
-        let around = sincos_2pi((state >> 8) as f32 / 16_777_216.0);
-        state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
-        let z = 1.0 - 2.0 * ((state >> 8) as f32 / 16_777_216.0);
+        let around = sincos_2pi(random(&mut state));
+        let z = 1.0 - 2.0 * random(&mut state);
         let r = max(1.0 - z * z, 0.0).sqrt();
         let way = (n + vec3(r * around.cos, r * around.sin, z)).normalize();
-        let mut free = 1.0;
-        for i in 0..balls.len() {
-            if distance_to(balls[i], p, way) > 1e-3 {
-                free = 0.0;
-                break;
-            }
+        if !is_blocked(balls, p, way) {
+            open += 0.125;
         }
-        open += free;
     }
-    open * 0.125
+    open
 }

@@ -240,7 +240,7 @@ impl Emitter<'_> {
             (now.clone(), quote!(#stop))
         };
         let (first, last) = if range.reversed { (&stop, &begin) } else { (&begin, &stop) };
-        let step =
+        let next =
             Ident::new(if range.reversed { "decrement" } else { "increment" }, Span::call_site());
         let one_down = range.reversed && !range.inclusive;
         let item = if one_down { quote!(#p::decrement(#m, #now)) } else { now.clone() };
@@ -255,8 +255,20 @@ impl Emitter<'_> {
             (quote!(), quote!(#p::less(#m, #low, #high)), quote!())
         };
         self.scopes.push(HashMap::new());
+        // All rays in the loop have the same counter if they began with the same number.
+        let in_step = matches!(range.start.kind, Kind::Int { .. }) && !range.reversed;
+        let step = self.fresh("step");
+        let (count, round) = if in_step {
+            let from = range.start.kind.int_tokens();
+            (
+                quote!(let #step = ::core::cell::Cell::new(#from as u32);),
+                quote!(#step.set(#step.get().wrapping_add(1));),
+            )
+        } else {
+            (quote!(), quote!())
+        };
         let bound = var.map(|v| {
-            self.bind(v, Binding::Value);
+            self.bind_counter(v, in_step.then_some(step));
             quote!(let #v = #item;)
         });
         self.loops.push(Loop { label, ident: ident.clone(), dest: Dest::None });
@@ -269,6 +281,7 @@ impl Emitter<'_> {
             let (#begin, #stop) = #p::range(#m, #start, #end);
             let #counter = #p::Var::new(#m, #text, #first);
             #declare
+            #count
             let #ident = #p::Loop::new(#m);
             loop {
                 if !#ident.test(#m, #test) { break; }
@@ -276,7 +289,8 @@ impl Emitter<'_> {
                 #body
                 #ident.continuing(#m);
                 #note
-                #counter.set(#m, #p::#step(#m, #now));
+                #counter.set(#m, #p::#next(#m, #now));
+                #round
                 if !#ident.again(#m) { break; }
             }
             #ident.end(#m);

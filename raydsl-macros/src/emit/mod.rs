@@ -39,6 +39,8 @@ struct Local {
     binding: Binding,
     /// The type parameter that is its type.
     generic: Option<Ident>,
+    /// For a counter that all rays have in step: where its value as one number is.
+    step: Option<Ident>,
 }
 
 /// Where the value of a control structure goes.
@@ -335,7 +337,15 @@ impl<'a> Emitter<'a> {
     fn bind_typed(&mut self, name: &Ident, binding: Binding, ty: Option<&TokenStream>) {
         let ty = ty.map(ToString::to_string);
         let generic = self.generics.types.iter().find(|g| ty.as_ref().is_some_and(|ty| *g == ty));
-        let local = Local { binding, generic: generic.cloned() };
+        let local = Local { binding, generic: generic.cloned(), step: None };
+        if let Some(scope) = self.scopes.last_mut() {
+            scope.insert(name.to_string(), local);
+        }
+    }
+
+    /// Binds a counter that all rays have in step.
+    fn bind_counter(&mut self, name: &Ident, step: Option<Ident>) {
+        let local = Local { binding: Binding::Value, generic: None, step };
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name.to_string(), local);
         }

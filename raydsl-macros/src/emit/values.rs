@@ -188,7 +188,17 @@ impl Emitter<'_> {
                 quote!((#(#items,)*))
             }
             Kind::Element { base, index } => {
+                let step = self.in_step(index);
                 let (base, index) = (self.value(base), self.value(index));
+                if let Some(step) = step {
+                    let seen = self.mentioned_in(&index);
+                    return quote_spanned!(span=> #p::element_in_step(
+                        #m,
+                        #base,
+                        #step,
+                        #[inline(always)] || { #(let _ = &#seen;)* #index },
+                    ));
+                }
                 quote_spanned!(span=> #p::element(#m, #base, #index))
             }
             Kind::Array(items) => {
@@ -215,6 +225,29 @@ impl Emitter<'_> {
                 let code = self.into(e, &Dest::None);
                 quote!({ #code })
             }
+        }
+    }
+
+    /// An index that is the same for all rays, as one number: counters in step, and sums and
+    /// products of them.
+    fn in_step(&self, e: &Expr) -> Option<TokenStream> {
+        let number = |e: &Expr| e.kind.int_tokens().map(|n| quote!((#n as u32)));
+        match &e.kind {
+            Kind::Name(name) => {
+                let step = self.find(name)?.step.as_ref()?;
+                Some(quote!(#step.get()))
+            }
+            Kind::Cast { value, .. } => self.in_step(value),
+            Kind::Binary { op, a, b } if matches!(op.symbol, "+" | "*") => {
+                let (x, y) = (self.in_step(a), self.in_step(b));
+                let (x, y) = match (x, y) {
+                    (None, None) => return None,
+                    (x, y) => (x.or_else(|| number(a))?, y.or_else(|| number(b))?),
+                };
+                let method = format_ident!("wrapping_{}", op.method);
+                Some(quote!(u32::#method(#x, #y)))
+            }
+            _ => None,
         }
     }
 

@@ -40,6 +40,8 @@ pub trait Indexed<M: Machine> {
     fn element(self, m: &M, i: U<M>) -> Self::Element;
     /// The element at a place that the source names.
     fn at(self, m: &M, i: usize) -> Self::Element;
+    /// The element at a place that is the same for all running lanes.
+    fn in_step(self, m: &M, i: u32) -> Self::Element;
 }
 
 impl<M: Machine, V: Varying<M> + Copy, const N: usize> Indexed<M> for [V; N] {
@@ -65,6 +67,13 @@ impl<M: Machine, V: Varying<M> + Copy, const N: usize> Indexed<M> for [V; N] {
     fn at(self, m: &M, i: usize) -> V::Value {
         self[i].varying(m)
     }
+
+    #[inline(always)]
+    fn in_step(self, m: &M, i: u32) -> V::Value {
+        const { assert!(N > 0, "an array without elements cannot be indexed") };
+        m.check_index(&m.u32(i), N as u32);
+        self[(i as usize).min(N - 1)].varying(m)
+    }
 }
 
 impl<M: Machine, P: Type> Indexed<M> for On<'_, P> {
@@ -78,6 +87,13 @@ impl<M: Machine, P: Type> Indexed<M> for On<'_, P> {
     #[inline(always)]
     fn at(self, m: &M, i: usize) -> P::On<M> {
         self.element(m, U(m.u32(i as u32)))
+    }
+
+    #[inline(always)]
+    fn in_step(self, m: &M, i: u32) -> P::On<M> {
+        let len = self.len() as u32;
+        m.check_index(&m.u32(i), len);
+        P::splat(m, self.get(i.min(len.wrapping_sub(1))))
     }
 }
 

@@ -157,6 +157,8 @@ pub trait Machine: Sized + 'static {
     type Branch;
     /// The state of a loop under way.
     type Loop;
+    /// Whether lifted code runs round by round: then a counter is one number in all lanes.
+    const RUNS: bool = true;
 
     // Constants, the same in every lane.
     fn f32(&self, v: f32) -> Self::F32;

@@ -277,6 +277,7 @@ impl Machine for Recorder {
     type Bool = Id;
     type Branch = RecordedBranch;
     type Loop = RecordedLoop;
+    const RUNS: bool = false;
 
     fn f32(&self, v: f32) -> Id {
         if v.is_finite() {
