@@ -232,6 +232,7 @@ pub struct Kernel<'a, A: Type, R: Type> {
     scalar: Box<dyn Fn(A) -> R + Send + Sync + 'a>,
     lifted: Lifted<'a, A, R>,
     resources: Resources<'a>,
+    arithmetic: wgsl::Arithmetic,
 }
 
 /// A kernel's scalar function, before its lifted copies; what `kernel!` starts with.
@@ -249,7 +250,8 @@ impl<'a, A: Type, R: Type> ScalarKernel<'a, A, R> {
         resources: impl Fn(&mut dyn FnMut(&dyn Resource)) + Send + Sync + 'a,
     ) -> Kernel<'a, A, R> {
         let Self { info, scalar } = self;
-        Kernel { info, scalar, lifted, resources: Box::new(resources) }
+        let (resources, arithmetic) = (Box::new(resources), wgsl::Arithmetic::Strict);
+        Kernel { info, scalar, lifted, resources, arithmetic }
     }
 }
 
@@ -291,7 +293,23 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
                 margin: Box::new(F::lifted),
             },
             resources: Box::new(|_| {}),
+            arithmetic: wgsl::Arithmetic::Strict,
         }
+    }
+
+    /// The same kernel with another arithmetic of its WGSL variant; the others stay as they are.
+    ///
+    /// ```
+    /// use raydsl::prelude::*;
+    ///
+    /// let k = kernel!(|x: f32| sin(x) * 1.7);
+    /// assert!(k.wgsl().contains("lit_1_7"));
+    /// let fast = k.arithmetic(Arithmetic::Fast);
+    /// assert!(fast.wgsl().contains("sin(x) * 1.7f"));
+    /// ```
+    #[must_use]
+    pub fn arithmetic(self, arithmetic: wgsl::Arithmetic) -> Self {
+        Self { arithmetic, ..self }
     }
 
     /// Where the kernel stands in the source.
@@ -379,7 +397,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
 
     /// Records the kernel over a buffer of parameters.
     pub fn record(&self) -> Recording {
-        Recording::batch::<A, R>(|m, args| (self.lifted.recorder)(m, args))
+        Recording::batch::<A, R>(self.arithmetic, |m, args| (self.lifted.recorder)(m, args))
     }
 
     /// Records the kernel behind something that makes its parameters from a pixel.
@@ -391,7 +409,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
             crate::machine::U<Recorder>,
         ) -> A::On<Recorder>,
     ) -> Recording {
-        Recording::grid::<R>(|m, x, y| (self.lifted.recorder)(m, args(m, x, y)))
+        Recording::grid::<R>(self.arithmetic, |m, x, y| (self.lifted.recorder)(m, args(m, x, y)))
     }
 
     /// Shows the buffers that the recorded kernel may read.

@@ -20,6 +20,7 @@ pub use crate::machine::generic::{
     transform_point, transform_vector,
 };
 pub use crate::machine::host::host;
+pub use crate::machine::wgsl::Arithmetic;
 pub use crate::math::elementary::{
     SinCos, acos, asin, atan, atan2, cos, exp, exp2, expm1, log, log1p, log2, pow, sin, sincos_2pi,
     tan,

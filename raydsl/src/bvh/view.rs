@@ -128,7 +128,16 @@ impl<M: Machine, P: Type> Value<M> for On<'_, P> {
     }
 
     #[inline(always)]
-    fn zip(_: &M, a: Self, _: Self, _: &mut impl Leaves<M>) -> Self {
+    fn zip(_: &M, a: Self, b: Self, _: &mut impl Leaves<M>) -> Self {
+        // Nothing yet: a variable that has been declared.
+        if a.prims.is_empty() {
+            return b;
+        }
+        assert!(
+            b.prims.is_empty() || (core::ptr::eq(a.prims, b.prims) && a.id == b.id),
+            "a kernel cannot choose between two slices or trees by a value of its rays: choose \
+             between what it reads from them, or by a captured `bool`"
+        );
         a
     }
 }

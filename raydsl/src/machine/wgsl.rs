@@ -1,5 +1,19 @@
 //! What recording a kernel produces: WGSL text and the data that it reads. Knows nothing of wgpu.
 
+/// How generated code computes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Arithmetic {
+    /// As the other variants do: elementary functions are the library's, and the numbers of the
+    /// source stand in the uniform block, where no driver can fold them into others.
+    #[default]
+    Strict,
+    /// As the device likes it best: `sin`, `cos`, `tan`, `asin`, `acos`, `atan`, `atan2`, `exp`,
+    /// `exp2`, `log`, `log2`, `pow` and `sincos_2pi` are those of WGSL, whose errors are the
+    /// driver's (WGSL asks of `sin` no more than an absolute error of 2^-11 in [-pi, pi]), and
+    /// numbers are written where they stand.
+    Fast,
+}
+
 /// A complete WGSL module with the entry point `main`.
 ///
 /// Everything lies in bind group 0: the kernel's numbers at binding 0, the `Job` at 1, inputs at

@@ -4,46 +4,8 @@ use core::f64::consts::{PI, TAU};
 
 use super::interval::Interval;
 use super::{Bounded, Margin, Truth};
-use crate::machine::{KernelFn, KernelInfo, Leaves, Value};
-use crate::math::elementary as host;
-
-/// A kernel of [`crate::math::elementary`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Function {
-    Sin,
-    Cos,
-    Tan,
-    Asin,
-    Acos,
-    Atan,
-    Atan2,
-    Exp,
-    Exp2,
-    Expm1,
-    Log,
-    Log2,
-    Log1p,
-    Pow,
-    SinCos2Pi,
-}
-
-/// The elementary function that a kernel is. A kernel of a user may have the same name, but stands
-/// elsewhere.
-pub(super) fn function(info: &KernelInfo) -> Option<Function> {
-    macro_rules! find {
-        ($($name:ident $function:ident)+) => {
-            match info.name {
-                $(stringify!($name) => (Function::$function, <host::$name as KernelFn>::info()),)+
-                _ => return None,
-            }
-        };
-    }
-    let (function, own) = find!(
-        sin Sin cos Cos tan Tan asin Asin acos Acos atan Atan atan2 Atan2 exp Exp exp2 Exp2
-        expm1 Expm1 log Log log2 Log2 log1p Log1p pow Pow sincos_2pi SinCos2Pi
-    );
-    (info.file == own.file && info.line == own.line).then_some(function)
-}
+use crate::machine::{Leaves, Value};
+use crate::math::elementary::Function;
 
 impl Margin {
     /// Runs an elementary function on the floats of `args`.

@@ -414,7 +414,7 @@ impl Machine for Margin {
         args: A,
         body: impl FnOnce(&Self, A) -> R,
     ) -> R {
-        if let Some(function) = elementary::function(info) {
+        if let Some(function) = crate::math::elementary::function(info) {
             return self.elementary(function, args);
         }
         let entry = self.is_running();

@@ -132,6 +132,10 @@ impl Expressions<'_> {
                 primary(format!("select({b}, {a}, {c})"))
             }
             Expr::Convert(how, a) => primary(self.convert(*how, node.ty, *a, names)),
+            Expr::Builtin(name, args) => {
+                let args: Vec<String> = args.iter().map(|a| self.any(*a, names)).collect();
+                primary(format!("{name}({})", args.join(", ")))
+            }
             Expr::Call(f, args) => {
                 let args: Vec<String> = args.iter().map(|a| self.item(*a, names)).collect();
                 primary(format!("{}({})", self.text.function(*f), args.join(", ")))

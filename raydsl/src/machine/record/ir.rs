@@ -123,6 +123,8 @@ pub(super) enum Expr {
     Select(Id, Id, Id),
     Convert(Conversion, Id),
     Call(usize, Vec<Id>),
+    /// A function of WGSL.
+    Builtin(&'static str, Vec<Id>),
     Compose(Vec<Id>),
 }
 
@@ -164,7 +166,7 @@ impl Expr {
             | Self::BoolBinary(_, a, b)
             | Self::Compare(_, a, b) => vec![*a, *b],
             Self::MulAdd(a, b, c) | Self::Select(a, b, c) => vec![*a, *b, *c],
-            Self::Call(_, args) | Self::Compose(args) => args.clone(),
+            Self::Call(_, args) | Self::Builtin(_, args) | Self::Compose(args) => args.clone(),
         }
     }
 }

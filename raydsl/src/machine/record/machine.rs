@@ -7,10 +7,12 @@ use super::{RecordedBranch, RecordedLoop, Recorder, storage};
 use crate::geometry::{HitOn, Primitive, RayOn};
 use crate::machine::index::{choose, with_element};
 use crate::machine::scalar;
+use crate::machine::wgsl;
 use crate::machine::{
     B, BoolBinary, Branch, Compare, F32Binary, F32Unary, IntBinary, KernelInfo, Loop, Machine,
     Schema, U, U32Unary, Usize, Value, Var,
 };
+use crate::math::elementary::{Function, function};
 
 /// Whether dividing by `v` and multiplying by its reciprocal give the same bits.
 fn is_power_of_two(v: f32) -> bool {
@@ -34,6 +36,9 @@ impl Recorder {
     /// Drivers fold and reorder arithmetic with constants; with a number of the uniform block they
     /// cannot. A factor that is a power of two may stay: it is exact in any order.
     fn opaque(&self, id: Id) -> Id {
+        if self.arithmetic == wgsl::Arithmetic::Fast {
+            return id;
+        }
         match self.node(id).expr {
             Expr::F32(bits) => {
                 let name = literal_name(f32::from_bits(bits));
@@ -46,6 +51,37 @@ impl Recorder {
             }
             _ => id,
         }
+    }
+
+    /// What WGSL's own function gives, if the kernel is an elementary function that it has.
+    fn builtin<A: Value<Self>, R: Value<Self>>(
+        &self,
+        info: &'static KernelInfo,
+        args: A,
+    ) -> Option<R> {
+        let name = match function(info)? {
+            Function::Sin => "sin",
+            Function::Cos => "cos",
+            Function::Tan => "tan",
+            Function::Asin => "asin",
+            Function::Acos => "acos",
+            Function::Atan => "atan",
+            Function::Atan2 => "atan2",
+            Function::Exp => "exp",
+            Function::Exp2 => "exp2",
+            Function::Log => "log",
+            Function::Log2 => "log2",
+            Function::Pow => "pow",
+            Function::SinCos2Pi => {
+                let turn = self.f32(core::f32::consts::TAU);
+                let angle = self.f32_binary(F32Binary::Mul, self.leaves_of(args)[0], turn);
+                let of = |name| self.add(Expr::Builtin(name, vec![angle]), Type::F32);
+                return Some(self.of_leaves(&[of("sin"), of("cos")]));
+            }
+            Function::Expm1 | Function::Log1p => return None,
+        };
+        let result = self.add(Expr::Builtin(name, self.leaves_of(args)), Type::F32);
+        Some(self.of_leaves(&[result]))
     }
 
     /// The number that `id` is in the source.
@@ -658,6 +694,11 @@ impl Machine for Recorder {
         args: A,
         body: impl FnOnce(&Self, A) -> R,
     ) -> R {
+        if self.arithmetic == wgsl::Arithmetic::Fast
+            && let Some(result) = self.builtin(info, args)
+        {
+            return result;
+        }
         let operands = self.arguments(args);
         let params = self.begin(info, args);
         let result = body(self, params);

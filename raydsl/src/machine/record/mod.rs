@@ -27,6 +27,7 @@ use super::{KernelInfo, Leaves, Schema, Value, wgsl};
 
 /// Records a kernel as WGSL.
 pub struct Recorder {
+    arithmetic: wgsl::Arithmetic,
     state: RefCell<State>,
 }
 
@@ -67,7 +68,7 @@ pub struct RecordedLoop {
 
 impl Default for Recorder {
     fn default() -> Self {
-        Self { state: RefCell::new(State::default()) }
+        Self { arithmetic: wgsl::Arithmetic::Strict, state: RefCell::new(State::default()) }
     }
 }
 
@@ -357,29 +358,32 @@ pub struct Recording {
 impl Recording {
     /// Records a kernel that is given each pixel's coordinates.
     pub fn grid<R: super::Type>(
+        arithmetic: wgsl::Arithmetic,
         kernel: impl FnOnce(&Recorder, super::U<Recorder>, super::U<Recorder>) -> R::On<Recorder>,
     ) -> Self {
         static INFO: KernelInfo =
             KernelInfo { name: "pixel", file: file!(), line: line!(), params: &["x", "y"] };
-        Self::record(&INFO, None, R::SCHEMA, |m, (x, y)| kernel(m, x, y))
+        Self::record(arithmetic, &INFO, None, R::SCHEMA, |m, (x, y)| kernel(m, x, y))
     }
 
     /// Records a kernel that is given the elements of an input buffer.
     pub fn batch<A: super::Type, R: super::Type>(
+        arithmetic: wgsl::Arithmetic,
         kernel: impl FnOnce(&Recorder, A::On<Recorder>) -> R::On<Recorder>,
     ) -> Self {
         static INFO: KernelInfo =
             KernelInfo { name: "element", file: file!(), line: line!(), params: &["input"] };
-        Self::record(&INFO, Some(A::SCHEMA), R::SCHEMA, |m, (a,)| kernel(m, a))
+        Self::record(arithmetic, &INFO, Some(A::SCHEMA), R::SCHEMA, |m, (a,)| kernel(m, a))
     }
 
     fn record<A: Value<Recorder>, R: Value<Recorder>>(
+        arithmetic: wgsl::Arithmetic,
         info: &'static KernelInfo,
         input: Option<&'static Schema>,
         output: &'static Schema,
         kernel: impl FnOnce(&Recorder, A) -> R,
     ) -> Self {
-        let m = Recorder::default();
+        let m = Recorder { arithmetic, ..Recorder::default() };
         // Zeroes need a function to stand in while the parameters are made.
         m.state.borrow_mut().open.push(Builder::new(info));
         let zero = A::zero(&m);

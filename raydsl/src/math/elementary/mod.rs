@@ -19,11 +19,14 @@
 //! after the other, with a new fit of the rest after each.
 
 mod exponential;
+mod function;
 mod inverse;
 mod logarithm;
 mod parts;
 mod power;
 mod trigonometric;
+
+pub(crate) use function::{Function, function};
 
 pub use exponential::{exp, exp2, expm1};
 pub use inverse::{acos, asin, atan, atan2};
