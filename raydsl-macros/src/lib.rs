@@ -47,11 +47,8 @@ fn expand_kernel(
     if let Ok(i) = syn::parse2::<syn::ItemImpl>(item.clone()) {
         let mut errors = diag::Errors::default();
         let lifted = items::kernel_impl(&i, &[], &mut errors);
-        if errors.is_empty() {
-            return lifted;
-        }
         let errors = errors.into_tokens();
-        return quote!(#i #errors);
+        return quote!(#lifted #errors);
     }
     if let Ok(t) = syn::parse2::<syn::ItemTrait>(item.clone()) {
         return items::kernel_trait(&t);

@@ -616,7 +616,11 @@ impl Parser<'_> {
     }
 
     fn for_loop(&mut self, f: &syn::ExprForLoop) -> Kind {
-        let var = match &*f.pat {
+        let mut pat = &*f.pat;
+        while let Pat::Paren(p) = pat {
+            pat = &p.pat;
+        }
+        let var = match pat {
             Pat::Ident(p) => Some(p.ident.clone()),
             Pat::Wild(_) => None,
             pat => {

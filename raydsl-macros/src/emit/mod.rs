@@ -138,6 +138,11 @@ impl<'a> Emitter<'a> {
         }
     }
 
+    /// Whether mistakes were found.
+    pub(crate) fn has_errors(&self) -> bool {
+        !self.errors.is_empty()
+    }
+
     /// Adds the type parameters of the item around the kernel.
     pub(crate) fn with_generics(mut self, around: &Generics) -> Self {
         self.generics.extend(around);

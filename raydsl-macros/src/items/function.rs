@@ -33,17 +33,7 @@ pub(crate) fn kernel_fn(item: &syn::ItemFn) -> TokenStream {
     let never = never(&kernel.generics);
     let Generics { declared, bare, used, predicates, .. } = &kernel.generics;
     let (declared, bare, used) = (angled(declared), angled(bare), angled(used));
-    if !errors.is_empty() {
-        let errors = errors.into_tokens();
-        let name = &item.sig.ident;
-        // The type stays, so that calls of the kernel give no second error.
-        return quote! {
-            #source
-            #[allow(non_camel_case_types, dead_code)]
-            #vis enum #name #bare { #never }
-            #errors
-        };
-    }
+    let errors = errors.into_tokens();
     let doc = format!("The kernel of [`{name}()`]: `Kernel::of::<{name}>()`.");
     let entry = has_entry(&kernel).then(|| entry(&kernel, &item.sig));
     quote! {
@@ -53,6 +43,7 @@ pub(crate) fn kernel_fn(item: &syn::ItemFn) -> TokenStream {
         #vis enum #name #bare { #never }
         impl #declared #name #used where #predicates { #lifted }
         #entry
+        #errors
     }
 }
 

@@ -69,9 +69,14 @@ struct Place<'a> {
 fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> TokenStream {
     let p = private();
     let (m, out) = (own("m"), own("out"));
-    let emitter = Emitter::new(kernel, quote!(__M), place.self_ty.cloned(), false, errors);
+    let mut seen = Errors::default();
+    let emitter = Emitter::new(kernel, quote!(__M), place.self_ty.cloned(), false, &mut seen);
     let mut emitter = emitter.with_generics(place.around);
-    let body = emitter.body();
+    let mut body = emitter.body();
+    // With a mistake in it the function is still there, so that its calls give no second error.
+    if emitter.has_errors() || !errors.is_empty() {
+        body = quote!(::core::unreachable!());
+    }
     // Values of the host are no arguments on the machine: the body sees them as they are.
     let values = || kernel.params.iter().filter(|p| !p.host);
     let names: Vec<Ident> = values().map(|p| param_ident(&p.name)).collect();
@@ -105,6 +110,7 @@ fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> T
             #out.0
         }
     };
+    errors.append(seen);
     quote! {
         #[doc(hidden)]
         #[inline(always)]
