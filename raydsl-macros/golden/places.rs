@@ -19,11 +19,11 @@ impl push {
         non_snake_case,
         reason = "generated code"
     )]
-    pub(self) fn on<'__a, __M: ::raydsl::__private::Machine>(
+    pub(self) fn on<__M: ::raydsl::__private::Machine>(
         m: &__M,
         p: impl ::raydsl::__private::Coerce<
             __M,
-            <Particle as ::raydsl::__private::Parameter>::On<'__a, __M>,
+            <Particle as ::raydsl::__private::Type>::On<__M>,
         >,
         by: impl ::raydsl::__private::Coerce<
             __M,
@@ -43,7 +43,7 @@ impl push {
             (
                 ::raydsl::__private::Coerce::<
                     __M,
-                    <Particle as ::raydsl::__private::Parameter>::On<'__a, __M>,
+                    <Particle as ::raydsl::__private::Type>::On<__M>,
                 >::coerce(p, m),
                 ::raydsl::__private::Coerce::<
                     __M,
@@ -57,7 +57,7 @@ impl push {
                     p,
                     by,
                 ): (
-                    <Particle as ::raydsl::__private::Parameter>::On<'__a, __M>,
+                    <Particle as ::raydsl::__private::Type>::On<__M>,
                     <Vec3 as ::raydsl::__private::Type>::On<__M>,
                 )|
             {

@@ -23,8 +23,8 @@ pub(crate) struct Param {
     pub(crate) mutable: bool,
     /// `&mut`: what the kernel makes of it goes back to the caller.
     pub(crate) by_mut: bool,
-    /// `&`: a value, or data that kernels read: a slice, a tree.
-    pub(crate) shared: bool,
+    /// A slice or a tree, which kernels read in place.
+    pub(crate) data: bool,
     /// `#[host]`: known before the kernel runs.
     pub(crate) host: bool,
 }

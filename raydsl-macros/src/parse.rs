@@ -64,6 +64,16 @@ fn value_type(ty: &syn::Type) -> TokenStream {
     }
 }
 
+/// Slices and trees are not copied.
+fn is_data(ty: &syn::Type) -> bool {
+    match ty {
+        syn::Type::Reference(r) => is_data(&r.elem),
+        syn::Type::Slice(_) => true,
+        syn::Type::Path(t) => t.path.segments.last().is_some_and(|s| s.ident == "Bvh"),
+        _ => false,
+    }
+}
+
 fn label(l: &Option<syn::Label>) -> Option<String> {
     l.as_ref().map(|l| l.name.ident.to_string())
 }
@@ -109,7 +119,7 @@ impl Parser<'_> {
                     ty,
                     mutable,
                     by_mut,
-                    shared: false,
+                    data: false,
                     host: false,
                 }
             }
@@ -129,21 +139,21 @@ impl Parser<'_> {
                 "write `fn f<T: Light>(light: T)` in place of `light: impl Light`",
             );
         }
-        let ty = value_type(ty);
+        let (written, ty) = (ty, value_type(ty));
         match &**pat {
             Pat::Ident(p) if p.by_ref.is_none() && p.subpat.is_none() => Param {
                 name: p.ident.clone(),
                 ty,
                 mutable: p.mutability.is_some() && !by_mut,
                 by_mut,
-                shared,
+                data: shared && is_data(written),
                 host,
             },
             _ => {
                 let name = self.temporary("parts");
                 let from = Expr { kind: Kind::Name(name.clone()), span: pat.span() };
                 self.irrefutable(pat, &from, prologue);
-                Param { name, ty, mutable: false, by_mut: false, shared: false, host: false }
+                Param { name, ty, mutable: false, by_mut: false, data: false, host: false }
             }
         }
     }

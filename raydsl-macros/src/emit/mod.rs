@@ -152,7 +152,7 @@ impl<'a> Emitter<'a> {
     /// The type of a parameter in lifted code.
     pub(crate) fn param(&self, param: &Param) -> TokenStream {
         let (p, machine) = (private(), &self.machine);
-        if !param.shared {
+        if !param.data {
             return self.on(&param.ty);
         }
         let ty = self.without_self(&param.ty);

@@ -65,17 +65,8 @@ fn never(generics: &Generics) -> TokenStream {
 
 /// Whether it can be run by itself: on values, for a value.
 fn has_entry(kernel: &Kernel) -> bool {
-    let is_value = |p: &Param| !(p.by_mut || p.host || p.shared && is_data(&p.ty));
+    let is_value = |p: &Param| !(p.by_mut || p.host || p.data);
     !kernel.params.is_empty() && kernel.result.is_some() && kernel.params.iter().all(is_value)
-}
-
-/// Slices and trees are captured, or given by another kernel.
-fn is_data(ty: &TokenStream) -> bool {
-    match syn::parse2(ty.clone()) {
-        Ok(syn::Type::Slice(_)) => true,
-        Ok(syn::Type::Path(t)) => t.path.segments.last().is_some_and(|s| s.ident == "Bvh"),
-        _ => false,
-    }
 }
 
 /// `on` of a generic kernel: the types are inferred from the arguments.
@@ -90,7 +81,7 @@ fn inferring_function(kernel: &Kernel, vis: &TokenStream) -> TokenStream {
     for param in &kernel.params {
         let (name, ty) = (param_ident(&param.name), &param.ty);
         let text = name.to_string();
-        let is_inferred = kernel.generics.has_type_in(ty) && !(param.shared && is_data(ty));
+        let is_inferred = kernel.generics.has_type_in(ty) && !param.data;
         params.push(match (is_inferred, param) {
             (_, Param { host: true, .. }) => {
                 values.push(quote!(#name));
@@ -111,12 +102,11 @@ fn inferring_function(kernel: &Kernel, vis: &TokenStream) -> TokenStream {
             }
             (false, param) => {
                 values.push(quote!(#name));
-                let ty = if param.shared {
-                    quote!(<#ty as #p::Parameter>::On<'__a, __M>)
-                } else {
-                    on(ty)
-                };
-                if param.by_mut {
+                let ty =
+                    if param.data { quote!(<#ty as #p::Parameter>::On<'__a, __M>) } else { on(ty) };
+                if param.data {
+                    quote!(#name: #ty)
+                } else if param.by_mut {
                     quote!(#name: &#p::Var<#ty>)
                 } else {
                     quote!(#name: impl #p::Coerce<__M, #ty>)
@@ -124,7 +114,7 @@ fn inferring_function(kernel: &Kernel, vis: &TokenStream) -> TokenStream {
             }
         });
     }
-    let lifetime = kernel.params.iter().any(|p| p.shared).then(|| quote!('__a,));
+    let lifetime = kernel.params.iter().any(|p| p.data).then(|| quote!('__a,));
     let result = kernel.result.as_ref().map(on).unwrap_or_else(|| quote!(()));
     let quiet = quiet();
     quote! {

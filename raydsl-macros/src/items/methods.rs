@@ -152,11 +152,10 @@ impl Method<'_> {
             let ty = self.twin(ty);
             return (quote!(&'__a #p::Var<#ty>), None);
         }
-        let ty = if param.shared {
-            quote!(<#ty as #p::Parameter>::On<'__a, __M>)
-        } else {
-            self.twin(ty)
-        };
+        if param.data {
+            return (quote!(<#ty as #p::Parameter>::On<'__a, __M>), None);
+        }
+        let ty = self.twin(ty);
         let generic = format_ident!("__A{i}");
         (quote!(#generic), Some(quote!(#generic: #p::Coerce<__M, #ty>)))
     }
@@ -170,7 +169,7 @@ impl Method<'_> {
         let (arguments, generics): (Vec<_>, Vec<_>) =
             rest.iter().enumerate().map(|(i, param)| self.argument(i, param)).unzip();
         let generics = generics.into_iter().flatten();
-        let lifetime = rest.iter().any(|q| q.by_mut || q.shared).then(|| quote!('__a,));
+        let lifetime = rest.iter().any(|q| q.by_mut || q.data).then(|| quote!('__a,));
         let result = kernel.result.as_ref().map(|ty| self.twin(ty)).unwrap_or_else(|| quote!(()));
         let quiet = quiet();
         let (m, this, variable) = (own("m"), own("this"), own("variable"));

@@ -132,6 +132,8 @@ fn head(kernel: &Kernel, place: &Place<'_>, emitter: &Emitter<'_>) -> TokenStrea
         if param.host {
             let ty = &param.ty;
             quote!(#name: #ty)
+        } else if param.data {
+            quote!(#name: #ty)
         } else if param.by_mut {
             quote!(#name: &#p::Var<#ty>)
         } else {
@@ -139,6 +141,6 @@ fn head(kernel: &Kernel, place: &Place<'_>, emitter: &Emitter<'_>) -> TokenStrea
         }
     });
     let result = kernel.result.as_ref().map(|t| emitter.on(t)).unwrap_or_else(|| quote!(()));
-    let lifetime = kernel.params.iter().any(|p| p.shared).then(|| quote!('__a,));
+    let lifetime = kernel.params.iter().any(|p| p.data).then(|| quote!('__a,));
     quote!(#vis fn #fn_name<#lifetime __M: #p::Machine>(#m: &__M, #(#params,)*) -> #result)
 }

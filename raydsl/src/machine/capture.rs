@@ -48,9 +48,7 @@ pub trait Capture<M: Machine> {
 )]
 pub trait Parameter {
     /// What stands for it inside the kernel.
-    type On<'a, M: Machine>: Value<M>
-    where
-        Self: 'a;
+    type On<'a, M: Machine>: Value<M>;
 }
 
 impl<T: Type> Parameter for T {
@@ -62,10 +60,7 @@ impl<T: Type> Parameter for [T] {
 }
 
 impl<P: Primitive> Parameter for bvh::Bvh<'_, P> {
-    type On<'a, M: Machine>
-        = bvh::On<'a, P>
-    where
-        Self: 'a;
+    type On<'a, M: Machine> = bvh::On<'a, P>;
 }
 
 impl<M: Machine, T: Capture<M> + ?Sized> Capture<M> for &T {
