@@ -67,7 +67,7 @@ const DENIED: &[(&str, &str)] = &[
     ("expect", "a value with a flag: kernels have no Option"),
     ("to_string", "nothing: kernels have no strings"),
     ("clone", "the value itself: kernel types are Copy"),
-    ("iter", "a `for` over a range"),
+    ("iter", "`for x in list.iter()`, or a `for` over a range"),
 ];
 
 /// What is wrong with the method `name` and what to write instead, if kernels cannot have it.

@@ -1,5 +1,6 @@
 //! From syn's syntax to the model. The only module that knows syn's expressions.
 
+mod iteration;
 mod pattern;
 
 use proc_macro2::{Ident, Span, TokenStream};
@@ -9,9 +10,7 @@ use syn::{BinOp, Lit, Pat, UnOp};
 
 use crate::diag::Errors;
 use crate::generics::Generics;
-use crate::model::{
-    BinaryOp, Block, Expr, IntType, Kernel, Kind, Let, Param, Place, Range, Step, Stmt,
-};
+use crate::model::{BinaryOp, Block, Expr, IntType, Kernel, Kind, Let, Param, Place, Step, Stmt};
 use crate::ops;
 
 /// A function or method; `self_ty` is the type of the `impl`.
@@ -623,58 +622,6 @@ impl Parser<'_> {
             then: self.block(&i.then_branch),
             otherwise: i.else_branch.as_ref().map(|(_, e)| self.boxed(e)),
         }
-    }
-
-    fn for_loop(&mut self, f: &syn::ExprForLoop) -> Kind {
-        let mut pat = &*f.pat;
-        while let Pat::Paren(p) = pat {
-            pat = &p.pat;
-        }
-        let var = match pat {
-            Pat::Ident(p) => Some(p.ident.clone()),
-            Pat::Wild(_) => None,
-            pat => {
-                return self.error(
-                    pat.span(),
-                    "a `for` counts with one name",
-                    "write `for i in a..b`",
-                );
-            }
-        };
-        let mut range = inside_parens(&f.expr);
-        let mut reversed = false;
-        while let syn::Expr::MethodCall(c) = range
-            && c.method == "rev"
-        {
-            reversed = !reversed;
-            range = inside_parens(&c.receiver);
-        }
-        let syn::Expr::Range(r) = range else {
-            return self.error(
-                f.expr.span(),
-                "a kernel's `for` runs over a range",
-                "write `for i in 0u32..n` or `for i in (0u32..n).rev()`",
-            );
-        };
-        let (Some(start), Some(end)) = (&r.start, &r.end) else {
-            return self.error(
-                r.span(),
-                "a kernel's range has two bounds",
-                "write `for i in a..b` or `for i in a..=b`",
-            );
-        };
-        let (start, end) = (self.boxed(start), self.boxed(end));
-        let untyped = |e: &Expr| matches!(e.kind, Kind::Int { suffix: None, .. });
-        if untyped(&start) && untyped(&end) {
-            return self.error(
-                start.span,
-                "a counter needs a type",
-                "give one bound a suffix: `for i in 0u32..8`",
-            );
-        }
-        let inclusive = matches!(r.limits, syn::RangeLimits::Closed(_));
-        let range = Range { start, end, inclusive, reversed };
-        Kind::For { label: label(&f.label), var, range, body: self.block(&f.body) }
     }
 
     fn place(&mut self, e: &syn::Expr) -> Option<Place> {

@@ -103,3 +103,52 @@ fn captured_enums_prune() {
         assert_eq!(wgsl.matches("if (").count(), 1, "{wgsl}");
     }
 }
+
+/// Every way to go through the elements.
+#[test]
+fn loops_over_elements() {
+    let balls: Vec<Ball> = (0..11)
+        .map(|i| Ball { center: vec3(i as f32 - 5.0, 0.5, 1.0), radius: 0.25, id: i * 3 })
+        .collect();
+    let weights = [0.5, -1.5, 2.0];
+    let kernel = kernel!(|x: f32, n: u32| {
+        let mut sum = 0.0;
+        for ball in balls.iter() {
+            if ball.center.x > x {
+                continue;
+            }
+            sum += ball.radius;
+        }
+        for (i, ball) in balls.iter().enumerate() {
+            if i as u32 > n {
+                break;
+            }
+            sum += (ball.id + i as u32) as f32;
+        }
+        let table = [x, 2.0, n as f32];
+        for (i, t) in table.iter().enumerate() {
+            sum += t * weights[i];
+        }
+        for &Ball { radius, id, .. } in &balls {
+            if id == 9 {
+                sum -= radius;
+            }
+        }
+        for w in weights {
+            sum += w * w;
+        }
+        'outer: for a in &balls {
+            for w in weights.iter() {
+                if a.center.x * w > x {
+                    continue 'outer;
+                }
+                if a.id > n {
+                    break 'outer;
+                }
+                sum += 1.0;
+            }
+        }
+        sum
+    });
+    every_variant(&kernel, &inputs(8));
+}

@@ -76,7 +76,7 @@ bodies! {
     inner_closure: { let f = |y: f32| y; x } "no closures" "#[kernel] fn";
     untyped_integer: { let mut i = 0; x } "mutable integer" "0u32";
     untyped_range: { for i in 0..4 {} x } "counter needs a type" "0u32..8";
-    no_range: { for i in list {} x } "runs over a range" "0u32..n";
+    no_range: { for i in list() {} x } "runs over a range" "list.iter()";
     mutable_reference: { let y = &mut x; *y } "`&mut` outside the arguments" "variable itself";
     mutable_element: { let mut t = [x, x]; g(&mut t[n as usize]) } "computed element" "after the call";
     half_range: { for i in 0u32.. {} x } "two bounds" "a..=b";

@@ -1,0 +1,133 @@
+//! `for`.
+
+use quote::quote;
+use syn::Pat;
+use syn::spanned::Spanned;
+
+use super::{Parser, inside_parens, label};
+use crate::model::{Block, Expr, Kind, Let, Range, Stmt};
+
+/// The slice or array that a `for` goes through, and whether it counts.
+struct Items<'a> {
+    list: &'a syn::Expr,
+    enumerated: bool,
+}
+
+/// `list.iter()`, `&list` and `list`, and `list.iter().enumerate()`.
+fn items(e: &syn::Expr) -> Option<Items<'_>> {
+    match inside_parens(e) {
+        syn::Expr::MethodCall(c) if c.method == "iter" && c.args.is_empty() => {
+            Some(Items { list: &c.receiver, enumerated: false })
+        }
+        syn::Expr::MethodCall(c) if c.method == "enumerate" && c.args.is_empty() => {
+            let inner = items(&c.receiver)?;
+            (!inner.enumerated).then_some(Items { enumerated: true, ..inner })
+        }
+        syn::Expr::Reference(r) if r.mutability.is_none() => {
+            Some(Items { list: inside_parens(&r.expr), enumerated: false })
+        }
+        list @ (syn::Expr::Path(_) | syn::Expr::Field(_) | syn::Expr::Array(_)) => {
+            Some(Items { list, enumerated: false })
+        }
+        _ => None,
+    }
+}
+
+impl Parser<'_> {
+    pub(super) fn for_loop(&mut self, f: &syn::ExprForLoop) -> Kind {
+        if let Some(items) = items(&f.expr) {
+            return self.for_each(f, items);
+        }
+        let mut pat = &*f.pat;
+        while let Pat::Paren(p) = pat {
+            pat = &p.pat;
+        }
+        let var = match pat {
+            Pat::Ident(p) => Some(p.ident.clone()),
+            Pat::Wild(_) => None,
+            pat => {
+                return self.error(
+                    pat.span(),
+                    "a `for` counts with one name",
+                    "write `for i in a..b`",
+                );
+            }
+        };
+        let mut range = inside_parens(&f.expr);
+        let mut reversed = false;
+        while let syn::Expr::MethodCall(c) = range
+            && c.method == "rev"
+        {
+            reversed = !reversed;
+            range = inside_parens(&c.receiver);
+        }
+        let syn::Expr::Range(r) = range else {
+            return self.error(
+                f.expr.span(),
+                "a kernel's `for` runs over a range, or over the elements of a slice or an array",
+                "write `for i in 0u32..n`, `for x in list.iter()` or an index: `list[i]`",
+            );
+        };
+        let (Some(start), Some(end)) = (&r.start, &r.end) else {
+            return self.error(
+                r.span(),
+                "a kernel's range has two bounds",
+                "write `for i in a..b` or `for i in a..=b`",
+            );
+        };
+        let (start, end) = (self.boxed(start), self.boxed(end));
+        let untyped = |e: &Expr| matches!(e.kind, Kind::Int { suffix: None, .. });
+        if untyped(&start) && untyped(&end) {
+            return self.error(
+                start.span,
+                "a counter needs a type",
+                "give one bound a suffix: `for i in 0u32..8`",
+            );
+        }
+        let inclusive = matches!(r.limits, syn::RangeLimits::Closed(_));
+        let range = Range { start, end, inclusive, reversed };
+        Kind::For { label: label(&f.label), var, range, body: self.block(&f.body) }
+    }
+
+    /// A loop over the elements: `for x in list` is `for i in 0..list.len() { let x = list[i]; .. }`.
+    fn for_each(&mut self, f: &syn::ExprForLoop, items: Items<'_>) -> Kind {
+        let span = f.expr.span();
+        let boxed = |kind| Box::new(Expr { kind, span });
+        let (list, index) = (self.boxed(items.list), self.temporary("i"));
+        let name = || Expr { kind: Kind::Name(index.clone()), span };
+        let element = Kind::Element { base: list.clone(), index: Box::new(name()) };
+        let element = Expr { kind: element, span };
+        let item = if items.enumerated {
+            Expr { kind: Kind::Tuple(vec![name(), element]), span }
+        } else {
+            element
+        };
+        let mut stmts = self.bind_item(&f.pat, item);
+        let Block { stmts: body, tail } = self.block(&f.body);
+        stmts.extend(body);
+        let len = Kind::Method {
+            receiver: list,
+            name: syn::Ident::new("len", span),
+            turbofish: vec![],
+            args: vec![],
+        };
+        let zero = Kind::Int { tokens: quote!(0), suffix: None };
+        let range =
+            Range { start: boxed(zero), end: boxed(len), inclusive: false, reversed: false };
+        let body = Block { stmts, tail };
+        Kind::For { label: label(&f.label), var: Some(index), range, body }
+    }
+
+    /// What the pattern of a loop over elements binds.
+    fn bind_item(&mut self, pat: &Pat, item: Expr) -> Vec<Stmt> {
+        match pat {
+            Pat::Ident(p) if p.by_ref.is_none() && p.subpat.is_none() => {
+                let (name, mutable) = (Some(p.ident.clone()), p.mutability.is_some());
+                vec![Stmt::Let(Let { host: false, name, mutable, ty: None, init: Some(item) })]
+            }
+            Pat::Paren(p) => self.bind_item(&p.pat, item),
+            Pat::Reference(r) => self.bind_item(&r.pat, item),
+            pat => self.destructure(pat, item, None),
+        }
+    }
+}
