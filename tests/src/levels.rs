@@ -31,6 +31,48 @@ pub fn widest_level(task: &mut impl LevelTask) {
     widest(&mut Inlined(task), Level::new());
 }
 
+/// Does `task` with the widths for which closures are lifted, each on its level: one machine for
+/// all, whose operations are calls.
+pub fn natural_levels(task: &mut impl LevelTask) {
+    natural(task, Level::new());
+}
+
+/// As `L`, in a register of 16 lanes of which the upper ones may hold nothing.
+fn padded<L: Lanes>(task: &mut impl LevelTask, lanes: L) {
+    task.run(&format!("{} x{}", lanes.isa(), L::N), RunTime::<16>::new(lanes));
+}
+
+#[cfg(target_arch = "x86_64")]
+fn natural(task: &mut impl LevelTask, level: Level) {
+    if let Some(s) = level.as_sse2() {
+        padded(task, Simd8(s));
+    }
+    if let Some(s) = level.as_sse4_2() {
+        padded(task, Simd4(s));
+    }
+    if let Some(s) = level.as_avx2() {
+        padded(task, Simd8(s));
+        padded(task, Simd16(s));
+    }
+    if let Some(s) = level.as_avx512() {
+        padded(task, Simd16(s));
+    }
+}
+
+#[cfg(target_arch = "aarch64")]
+fn natural(task: &mut impl LevelTask, level: Level) {
+    if let Some(s) = level.as_neon() {
+        padded(task, Simd4(s));
+        padded(task, Simd8(s));
+        padded(task, Simd16(s));
+    }
+}
+
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+fn natural(task: &mut impl LevelTask, _: Level) {
+    padded(task, Simd8(Fallback::new()));
+}
+
 #[cfg(target_arch = "x86_64")]
 fn widest(task: &mut impl LevelTask, level: Level) {
     if let Some(s) = level.as_avx512() {

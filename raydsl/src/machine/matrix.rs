@@ -8,7 +8,7 @@ use glam::{Affine3, Mat3, Mat4, Vec3, Vec4};
 
 use super::vector::Floats;
 use super::{
-    F, Field, F32Binary, LaneMachine, Leaves, Machine, OpAdd, OpDiv, OpMul, OpNeg, OpSub, Schema,
+    F, F32Binary, Field, LaneMachine, Leaves, Machine, OpAdd, OpDiv, OpMul, OpNeg, OpSub, Schema,
     Type, V3, V4, Value, Varying,
 };
 

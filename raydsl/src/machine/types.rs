@@ -1,8 +1,6 @@
 //! Types of the host that kernels understand, and how they travel to lanes and back.
 
-use glam::{
-    BVec2, BVec3, BVec4, IVec2, IVec3, IVec4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4,
-};
+use glam::{BVec2, BVec3, BVec4, IVec2, IVec3, IVec4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 
 use super::{B, F, Field, I, Machine, Schema, U, Value, X2, X3, X4};
 

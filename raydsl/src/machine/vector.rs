@@ -32,21 +32,11 @@ pub trait Arithmetic<M: Machine>: Component<M> {
     /// `+`, `-`, `*`, `/`; of integers, the others too.
     fn binary(m: &M, op: IntBinary, a: Self, b: Self) -> Self;
     /// The same on every component.
-    fn binary_each<const N: usize>(
-        m: &M,
-        op: IntBinary,
-        a: [Self; N],
-        b: [Self; N],
-    ) -> [Self; N];
+    fn binary_each<const N: usize>(m: &M, op: IntBinary, a: [Self; N], b: [Self; N]) -> [Self; N];
     /// A comparison.
     fn compare(m: &M, op: Compare, a: Self, b: Self) -> B<M>;
     /// Component by component `if b < a { b } else { a }`, or with `max` `if a < b { b } else { a }`.
-    fn extreme_each<const N: usize>(
-        m: &M,
-        max: bool,
-        a: [Self; N],
-        b: [Self; N],
-    ) -> [Self; N];
+    fn extreme_each<const N: usize>(m: &M, max: bool, a: [Self; N], b: [Self; N]) -> [Self; N];
     /// The same for one number.
     fn extreme(m: &M, max: bool, a: Self, b: Self) -> Self;
     /// `-a`.
@@ -80,12 +70,7 @@ pub trait Integer<M: Machine>: Arithmetic<M> {
 )]
 pub trait Bits<M: Machine>: Component<M> {
     /// The operator on every component.
-    fn bits_each<const N: usize>(
-        m: &M,
-        op: IntBinary,
-        a: [Self; N],
-        b: [Self; N],
-    ) -> [Self; N];
+    fn bits_each<const N: usize>(m: &M, op: IntBinary, a: [Self; N], b: [Self; N]) -> [Self; N];
     /// `!` of one component.
     fn not(m: &M, a: Self) -> Self;
 }
@@ -171,10 +156,19 @@ macro_rules! integer {
             ) -> [Self; N] {
                 let all = m.$each::<N>(
                     op,
-                    fill(#[inline(always)] |i| a[i].0),
-                    fill(#[inline(always)] |i| b[i].0),
+                    fill(
+                        #[inline(always)]
+                        |i| a[i].0,
+                    ),
+                    fill(
+                        #[inline(always)]
+                        |i| b[i].0,
+                    ),
                 );
-                fill(#[inline(always)] |i: usize| $t(all[i]))
+                fill(
+                    #[inline(always)]
+                    |i: usize| $t(all[i]),
+                )
             }
 
             #[inline(always)]
@@ -189,7 +183,10 @@ macro_rules! integer {
                 a: [Self; N],
                 b: [Self; N],
             ) -> [Self; N] {
-                fill(#[inline(always)] |i| Self::extreme(m, max, a[i], b[i]))
+                fill(
+                    #[inline(always)]
+                    |i| Self::extreme(m, max, a[i], b[i]),
+                )
             }
 
             #[inline(always)]
@@ -315,8 +312,10 @@ pub trait Vector<M: Machine>: Value<M> {
         f: impl FnMut(Self::Component, D) -> E,
     ) -> Self::Of<E>;
     /// The components put together from the first to the last.
-    fn fold(self, f: impl FnMut(Self::Component, Self::Component) -> Self::Component)
-    -> Self::Component;
+    fn fold(
+        self,
+        f: impl FnMut(Self::Component, Self::Component) -> Self::Component,
+    ) -> Self::Component;
     /// The components put together from the last to the first.
     fn fold_back(
         self,

@@ -1,7 +1,8 @@
 //! Methods of `f32`: std's, and those of glam's `FloatExt`.
 
 use super::super::{
-    B, Coerce, Compare, F, F32Binary, F32Unary, I, IntBinary, Machine, U, vector::Arithmetic,
+    B, Coerce, Compare, F, F32Binary, F32Unary, I, IntBinary, Machine, U,
+    vector::{Arithmetic, Integer},
 };
 use super::{Method, name};
 
@@ -159,6 +160,27 @@ of_f32! {
         mul(m, mul(m, t, t), sub(m, number(m, 3.0), mul(m, number(m, 2.0), t)))
     }};
 }
+
+macro_rules! denied {
+    ($($name:literal)+) => {
+        $(
+            /// There is none: the bound says why, and what to write.
+            impl<M: Machine, A> Method<{ name($name) }, M, A> for F<M>
+            where
+                F<M>: Integer<M>,
+            {
+                type Output = F<M>;
+
+                #[inline(always)]
+                fn call(self, _: &M, _: A) -> F<M> {
+                    self
+                }
+            }
+        )+
+    };
+}
+
+denied!("rem_euclid" "div_euclid");
 
 /// The sign of a number, of whatever kind.
 pub(crate) trait Signed<M: Machine>: Arithmetic<M> {

@@ -1,7 +1,10 @@
 //! Methods of glam's matrices.
 
 use super::super::matrix::{A3, M3, M4};
-use super::super::{Coerce, F, IntBinary, Machine, V3, V4, vector::{Arithmetic, Vector}};
+use super::super::{
+    Coerce, F, IntBinary, Machine, V3, V4,
+    vector::{Arithmetic, Vector},
+};
 use super::float::{div, number};
 use super::vector::{cross, dot};
 use super::{Method, name};
@@ -44,17 +47,23 @@ pub(crate) fn inverse<M: Machine>(m: &M, a: M3<M>) -> M3<M> {
 pub(crate) fn inverse_affine<M: Machine>(m: &M, a: A3<M>) -> A3<M> {
     let matrix3 = inverse(m, a.matrix3);
     let moved = matrix3.times(m, a.translation);
-    A3 { matrix3, translation: moved.each(#[inline(always)] |c| Arithmetic::neg(m, c)) }
+    A3 {
+        matrix3,
+        translation: moved.each(
+            #[inline(always)]
+            |c| Arithmetic::neg(m, c),
+        ),
+    }
 }
 
 macro_rules! denied {
     ($trait:ident $what:literal $write:literal $name:literal) => {
         /// Never implemented: its message is the error.
         #[diagnostic::on_unimplemented(
-            message = $what,
-            label = "not the same on every machine",
-            note = $write
-        )]
+                    message = $what,
+                    label = "not the same on every machine",
+                    note = $write
+                )]
         pub trait $trait {}
 
         impl<M: Machine, A> Method<{ name($name) }, M, A> for M4<M>

@@ -10,8 +10,8 @@ use super::super::{
     vector::{Arithmetic, Component, Floats, IsVector, Vector, cast_each},
 };
 use super::float::{
-    Signed, add, beside_infinity, compare, copysign, div, mul, number, round,
-    select, sign_bit, sub, unary,
+    Signed, add, beside_infinity, compare, copysign, div, mul, number, round, select, sign_bit,
+    sub, unary,
 };
 use super::{Method, name};
 
@@ -321,11 +321,7 @@ method!([] V2<M>, "perp_dot", |m, a, b: V2<M>| -> F<M> {
 pub(crate) fn cross<M: Machine, E: Arithmetic<M>>(m: &M, a: X3<E>, b: X3<E>) -> X3<E> {
     let mul = |x, y| E::binary(m, IntBinary::Mul, x, y);
     let minor = |x, y, z, w| E::binary(m, IntBinary::Sub, mul(x, y), mul(z, w));
-    X3 {
-        x: minor(a.y, b.z, b.y, a.z),
-        y: minor(a.z, b.x, b.z, a.x),
-        z: minor(a.x, b.y, b.x, a.y),
-    }
+    X3 { x: minor(a.y, b.z, b.y, a.z), y: minor(a.z, b.x, b.z, a.x), z: minor(a.x, b.y, b.x, a.y) }
 }
 
 method!([E: Arithmetic<M>] X3<E>, "cross", |m, a, b: X3<E>| -> X3<E> { cross(m, a, b) });
@@ -348,11 +344,7 @@ fn orthonormal_pair<M: Machine>(m: &M, v: V3<M>) -> (V3<M>, V3<M>) {
     let along = mul(m, mul(m, mul(m, sign, v.x), v.x), a);
     let across = mul(m, mul(m, v.y, v.y), a);
     (
-        V3 {
-            x: add(m, number(m, 1.0), along),
-            y: mul(m, sign, b),
-            z: mul(m, neg(sign), v.x),
-        },
+        V3 { x: add(m, number(m, 1.0), along), y: mul(m, sign, b), z: mul(m, neg(sign), v.x) },
         V3 { x: b, y: add(m, sign, across), z: neg(v.y) },
     )
 }

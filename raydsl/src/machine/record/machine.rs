@@ -7,8 +7,8 @@ use super::{RecordedBranch, RecordedLoop, Recorder, storage};
 use crate::geometry::{HitOn, Primitive, RayOn};
 use crate::machine::scalar;
 use crate::machine::{
-    B, BoolBinary, Compare, F32Binary, F32Unary, IntBinary, KernelInfo, Machine, Schema, U, U32Unary,
-    Value,
+    B, BoolBinary, Compare, F32Binary, F32Unary, IntBinary, KernelInfo, Machine, Schema, U,
+    U32Unary, Value,
 };
 
 /// Whether dividing by `v` and multiplying by its reciprocal give the same bits.

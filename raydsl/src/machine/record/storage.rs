@@ -340,7 +340,12 @@ fn place_small(members: &mut Vec<Member>, leaf: &Leaf) {
         Some(last) if last.offset == word && last.ty == "u32" => {
             last.name = format!("{}_{}", last.name, leaf.name);
         }
-        _ => members.push(Member { name: leaf.name.clone(), offset: word, ty: "u32".into(), size: 4 }),
+        _ => members.push(Member {
+            name: leaf.name.clone(),
+            offset: word,
+            ty: "u32".into(),
+            size: 4,
+        }),
     }
 }
 
@@ -349,7 +354,12 @@ fn fill_gaps(members: Vec<Member>, stride: usize) -> Vec<Member> {
     let mut next = 0;
     let pad = |next: &mut usize, until: usize, filled: &mut Vec<Member>| {
         while *next < until {
-            filled.push(Member { name: format!("pad_{next}"), offset: *next, ty: "u32".into(), size: 4 });
+            filled.push(Member {
+                name: format!("pad_{next}"),
+                offset: *next,
+                ty: "u32".into(),
+                size: 4,
+            });
             *next += 4;
         }
     };
