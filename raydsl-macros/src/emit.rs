@@ -851,7 +851,9 @@ impl<'a> Emitter<'a> {
         let (p, m) = (private(), own("m"));
         let text = name.to_string();
         let machine = self.machine.clone();
-        let method = quote_spanned!(name.span()=> #p::Method::<{ #p::name(#text) }, #machine, _>);
+        // What is wrong with the call is shown at its name.
+        let at = quote_spanned!(name.span()=> ::raydsl::__private);
+        let method = quote_spanned!(name.span()=> #at::Method::<{ #at::name(#text) }, #machine, _>);
         let variable = self.variable_under(receiver);
         let value = self.value(receiver);
         let args = self.arguments(args);

@@ -42,7 +42,7 @@ where
     case.scalar_machine();
     each_level(&mut &case);
     widest_level(&mut &case);
-    wgsl_agrees::<F>(name, &case.inputs, &case.expected, wgsl);
+    wgsl_agrees(name, &recorded::<F>(), &case.inputs, &case.expected, wgsl);
 }
 
 /// Runs a kernel in WGSL, if there is a device, and compares with what is `expected` of its source.
@@ -50,10 +50,13 @@ where
 /// # Panics
 ///
 /// If any result differs by more than `wgsl` allows.
-pub fn wgsl_agrees<F: KernelFn>(name: &str, inputs: &[F::Args], expected: &[F::Output], wgsl: Wgsl)
-where
-    F::Args: Debug,
-{
+pub fn wgsl_agrees<A: Type + Debug, R: Type>(
+    name: &str,
+    kernel: &Kernel<'_, A, R>,
+    inputs: &[A],
+    expected: &[R],
+    wgsl: Wgsl,
+) {
     let (ulps, all) = match wgsl {
         Wgsl::Same => (0, true),
         Wgsl::SameIfFinite => (0, false),
@@ -62,10 +65,9 @@ where
     };
     let Some(gpu) = gpu() else { return };
     let taken = inputs.iter().zip(expected).filter(|(a, _)| all || is_finite(*a));
-    let (inputs, expected): (Vec<F::Args>, Vec<F::Output>) = taken.unzip();
+    let (inputs, expected): (Vec<A>, Vec<R>) = taken.unzip();
     let mut found = vec![garbage(); inputs.len()];
-    let kernel = recorded::<F>();
-    if let Err(error) = gpu.batch(&kernel, &inputs, &mut found) {
+    if let Err(error) = gpu.batch(kernel, &inputs, &mut found) {
         panic!("{name} in WGSL: {error}\n{}", kernel.wgsl());
     }
     let result = compare_within(format!("{name} in WGSL"), ulps, &expected, &found);

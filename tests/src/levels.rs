@@ -3,7 +3,7 @@
 use fearless_simd::{Fallback, Level, Simd};
 use raydsl::machine::{Lanes, One, Simd4, Simd8, Simd16};
 
-use crate::run_time::RunTime;
+use crate::run_time::{Numbered, RunTime};
 
 /// Something to do with packets of every kind.
 pub trait LevelTask {
@@ -31,19 +31,18 @@ pub fn widest_level(task: &mut impl LevelTask) {
     widest(&mut Inlined(task), Level::new());
 }
 
-/// Does `task` with the widths for which closures are lifted, each on its level: one machine for
-/// all, whose operations are calls.
-pub fn natural_levels(task: &mut impl LevelTask) {
+/// Does something with the widths for which closures are lifted, each on its level: in one kind of
+/// 16 lanes for all, of which the upper ones may hold nothing, and whose operations are calls.
+pub fn natural_levels(task: &mut dyn FnMut(&str, Numbered)) {
     natural(task, Level::new());
 }
 
-/// As `L`, in a register of 16 lanes of which the upper ones may hold nothing.
-fn padded<L: Lanes>(task: &mut impl LevelTask, lanes: L) {
-    task.run(&format!("{} x{}", lanes.isa(), L::N), RunTime::<16>::new(lanes));
+fn padded<L: Lanes>(task: &mut dyn FnMut(&str, Numbered), lanes: L) {
+    task(&format!("{} x{}", lanes.isa(), L::N), Numbered::new(lanes));
 }
 
 #[cfg(target_arch = "x86_64")]
-fn natural(task: &mut impl LevelTask, level: Level) {
+fn natural(task: &mut dyn FnMut(&str, Numbered), level: Level) {
     if let Some(s) = level.as_sse2() {
         padded(task, Simd8(s));
     }
@@ -60,7 +59,7 @@ fn natural(task: &mut impl LevelTask, level: Level) {
 }
 
 #[cfg(target_arch = "aarch64")]
-fn natural(task: &mut impl LevelTask, level: Level) {
+fn natural(task: &mut dyn FnMut(&str, Numbered), level: Level) {
     if let Some(s) = level.as_neon() {
         padded(task, Simd4(s));
         padded(task, Simd8(s));
@@ -69,7 +68,7 @@ fn natural(task: &mut impl LevelTask, level: Level) {
 }
 
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-fn natural(task: &mut impl LevelTask, _: Level) {
+fn natural(task: &mut dyn FnMut(&str, Numbered), _: Level) {
     padded(task, Simd8(Fallback::new()));
 }
 

@@ -290,3 +290,16 @@ impl Comparison {
         );
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::compare;
+
+    #[test]
+    fn zeros_and_nans_are_equal_and_nothing_else_is() {
+        let a = [0.0f32, f32::NAN, 1.0, 2.0, f32::NAN];
+        let b = [-0.0f32, -f32::NAN, 1.0, 2.000_000_2, 3.0];
+        assert_eq!(compare("floats", &a, &b).count(), 2);
+        assert_eq!(compare("integers", &[0u32, 7], &[0x8000_0000, 7]).count(), 1);
+    }
+}

@@ -1,8 +1,7 @@
 //! Methods of `f32`: std's, and those of glam's `FloatExt`.
 
 use super::super::{
-    B, Coerce, Compare, F, F32Binary, F32Unary, I, IntBinary, Machine, U,
-    vector::{Arithmetic, Integer},
+    B, Coerce, Compare, F, F32Binary, F32Unary, I, IntBinary, Machine, U, vector::Arithmetic,
 };
 use super::{Method, name};
 
@@ -161,26 +160,14 @@ of_f32! {
     }};
 }
 
-macro_rules! denied {
-    ($($name:literal)+) => {
-        $(
-            /// There is none: the bound says why, and what to write.
-            impl<M: Machine, A> Method<{ name($name) }, M, A> for F<M>
-            where
-                F<M>: Integer<M>,
-            {
-                type Output = F<M>;
-
-                #[inline(always)]
-                fn call(self, _: &M, _: A) -> F<M> {
-                    self
-                }
-            }
-        )+
-    };
+denied! { F<M>:
+    RemainderOfFloats "a kernel has no remainder of floats: an exact one takes hundreds of steps"
+        "write `x - y * (x / y).floor()`, which is never negative for a positive `y`"
+        "rem_euclid" -> F<M>;
+    QuotientOfFloats "a kernel has no `div_euclid` of floats"
+        "write `(x / y).floor()` for a positive `y`"
+        "div_euclid" -> F<M>;
 }
-
-denied!("rem_euclid" "div_euclid");
 
 /// The sign of a number, of whatever kind.
 pub(crate) trait Signed<M: Machine>: Arithmetic<M> {
