@@ -62,7 +62,6 @@ const ELEMENTARY: &[(&str, &str)] = &[
 
 /// Other methods that kernels cannot have, with what to write instead.
 const DENIED: &[(&str, &str)] = &[
-    ("rem_euclid", "x - y * (x / y).floor()"),
     ("unwrap", "a value with a flag: kernels have no Option"),
     ("expect", "a value with a flag: kernels have no Option"),
     ("to_string", "nothing: kernels have no strings"),

@@ -42,12 +42,39 @@ where
     case.scalar_machine();
     each_level(&mut &case);
     widest_level(&mut &case);
-    match wgsl {
-        Wgsl::Same => case.wgsl(0, |_| true),
-        Wgsl::SameIfFinite => case.wgsl(0, is_finite),
-        Wgsl::Ulps(ulps) => case.wgsl(ulps, is_finite),
-        Wgsl::Differs => {}
+    wgsl_agrees(name, &recorded::<F>(), &case.inputs, &case.expected, wgsl);
+}
+
+/// Runs a kernel in WGSL, if there is a device, and compares with what is `expected` of its source.
+///
+/// # Panics
+///
+/// If any result differs by more than `wgsl` allows.
+pub fn wgsl_agrees<A: Type + Debug, R: Type>(
+    name: &str,
+    kernel: &Kernel<'_, A, R>,
+    inputs: &[A],
+    expected: &[R],
+    wgsl: Wgsl,
+) {
+    let (ulps, all) = match wgsl {
+        Wgsl::Same => (0, true),
+        Wgsl::SameIfFinite => (0, false),
+        Wgsl::Ulps(ulps) => (ulps, false),
+        Wgsl::Differs => return,
+    };
+    let Some(gpu) = gpu() else { return };
+    let taken = inputs.iter().zip(expected).filter(|(a, _)| all || is_finite(*a));
+    let (inputs, expected): (Vec<A>, Vec<R>) = taken.unzip();
+    let mut found = vec![garbage(); inputs.len()];
+    if let Err(error) = gpu.batch(kernel, &inputs, &mut found) {
+        panic!("{name} in WGSL: {error}\n{}", kernel.wgsl());
     }
+    let result = compare_within(format!("{name} in WGSL"), ulps, &expected, &found);
+    if result.count() > 0 {
+        println!("{}", kernel.wgsl());
+    }
+    result.assert_same(|i| format!("{:?}", inputs[i]));
 }
 
 fn is_finite<T: Type>(v: &T) -> bool {
@@ -92,25 +119,6 @@ where
         each_pass(&run, L::N, &self.inputs, &mut |how, found: &[F::Output]| {
             self.assert_same(&format!("{name}{how}"), found);
         });
-    }
-
-    fn wgsl(&self, ulps: u32, takes: impl Fn(&F::Args) -> bool) {
-        let Some(gpu) = gpu() else { return };
-        let taken: Vec<usize> =
-            (0..self.inputs.len()).filter(|i| takes(&self.inputs[*i])).collect();
-        let inputs: Vec<F::Args> = taken.iter().map(|i| self.inputs[*i]).collect();
-        let expected: Vec<F::Output> = taken.iter().map(|i| self.expected[*i]).collect();
-        let mut found = vec![garbage(); inputs.len()];
-        let kernel = recorded::<F>();
-        if let Err(error) = gpu.batch(&kernel, &inputs, &mut found) {
-            panic!("{} in WGSL: {error}\n{}", self.name, kernel.wgsl());
-        }
-        let who = format!("{} in WGSL", self.name);
-        let result = compare_within(who, ulps, &expected, &found);
-        if result.count() > 0 {
-            println!("{}", kernel.wgsl());
-        }
-        result.assert_same(|i| format!("{:?}", inputs[i]));
     }
 }
 

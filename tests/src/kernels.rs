@@ -63,6 +63,8 @@ macro_rules! kernel_table {
             constants: Any SameIfFinite;
             vectors: Tame Same;
             vector_parts: Any SameIfFinite;
+            cells_in_turn: Any SameIfFinite;
+            transforms: Any SameIfFinite;
             small_vectors: Tame Same;
             unorms: Any Same;
             arrays: Any Same;
@@ -777,6 +779,44 @@ pub fn vector_parts(a: Vec3, b: Vec3) -> Vec3 {
     let v = a.floor() + b.ceil() - a.trunc();
     let w = vec3(a.min_element(), b.max_element(), v.z);
     if w.x > w.y { -w } else { w.extend(1.0).truncate() + b.abs() }
+}
+
+/// A cell of a grid that repeats in all directions.
+#[derive(Clone, Copy, Debug, Type)]
+#[repr(C)]
+pub struct Cell {
+    pub at: IVec3,
+    pub inside: BVec3,
+    pub seed: UVec2,
+}
+
+/// Integer vectors and masks as variables, members, arguments of a loop and of a branch.
+#[kernel]
+pub fn cells_in_turn(p: Vec3, cell: Cell, n: u32) -> Cell {
+    let mut at = p.clamp(Vec3::splat(-1e6), Vec3::splat(1e6)).floor().as_ivec3() & 0xfff;
+    let mut seed = cell.seed ^ uvec2(n, 0x9e37);
+    for i in 0..(n & 3) {
+        seed = seed.wrapping_mul(UVec2::splat(747_796_405)).yx();
+        at.z += (seed.x >> 28) as i32;
+        if any(at.cmpgt(ivec3(300, 200, 100))) {
+            at = at.zxy() % 100 - i as i32;
+        }
+    }
+    let inside = cell.inside & at.cmplt(IVec3::splat(64));
+    let at = IVec3::select(inside, at, -at / 2);
+    Cell { at: select(all(inside), at, at + IVec3::ONE), inside, seed }
+}
+
+/// Matrices as arguments and variables, their columns as members.
+#[kernel]
+pub fn transforms(m: Mat4, n: Mat3, p: Vec3) -> Vec3 {
+    let mut turned = n * n.transpose();
+    turned.x_axis += p.zyx();
+    if determinant(turned) < 0.0 {
+        turned = turned * 0.5;
+    }
+    let v = m * p.extend(1.0);
+    turned * transform_point(m, p) + select(v.w > 0.0, v.xyz() / v.w, v.zyx())
 }
 
 #[kernel]

@@ -3,7 +3,7 @@
 use fearless_simd::{Fallback, Level, Simd};
 use raydsl::machine::{Lanes, One, Simd4, Simd8, Simd16};
 
-use crate::run_time::RunTime;
+use crate::run_time::{Numbered, RunTime};
 
 /// Something to do with packets of every kind.
 pub trait LevelTask {
@@ -29,6 +29,47 @@ pub fn widest_level(task: &mut impl LevelTask) {
         }
     }
     widest(&mut Inlined(task), Level::new());
+}
+
+/// Does something with the widths for which closures are lifted, each on its level: in one kind of
+/// 16 lanes for all, of which the upper ones may hold nothing, and whose operations are calls.
+pub fn natural_levels(task: &mut dyn FnMut(&str, Numbered)) {
+    natural(task, Level::new());
+}
+
+fn padded<L: Lanes>(task: &mut dyn FnMut(&str, Numbered), lanes: L) {
+    task(&format!("{} x{}", lanes.isa(), L::N), Numbered::new(lanes));
+}
+
+#[cfg(target_arch = "x86_64")]
+fn natural(task: &mut dyn FnMut(&str, Numbered), level: Level) {
+    if let Some(s) = level.as_sse2() {
+        padded(task, Simd8(s));
+    }
+    if let Some(s) = level.as_sse4_2() {
+        padded(task, Simd4(s));
+    }
+    if let Some(s) = level.as_avx2() {
+        padded(task, Simd8(s));
+        padded(task, Simd16(s));
+    }
+    if let Some(s) = level.as_avx512() {
+        padded(task, Simd16(s));
+    }
+}
+
+#[cfg(target_arch = "aarch64")]
+fn natural(task: &mut dyn FnMut(&str, Numbered), level: Level) {
+    if let Some(s) = level.as_neon() {
+        padded(task, Simd4(s));
+        padded(task, Simd8(s));
+        padded(task, Simd16(s));
+    }
+}
+
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+fn natural(task: &mut dyn FnMut(&str, Numbered), _: Level) {
+    padded(task, Simd8(Fallback::new()));
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -1,7 +1,7 @@
 //! What the tests of raydsl share.
 //!
 //! The tests are split by the kind of evidence that they give: `variants` (every variant of small
-//! kernels agrees with the untouched source), `rays` and `edges` (queries of scenes), `images`,
+//! kernels agrees with the untouched source), `glam` (so does every operation), `rays` and `edges` (queries of scenes), `images`,
 //! `gpu`, `golden_wgsl`, `layout`, `unorm`, `elementary`, `fuzz` (random kernels).
 
 pub mod check;
@@ -9,6 +9,7 @@ pub mod fuzz;
 pub mod gpu;
 pub mod kernels;
 pub mod levels;
+pub mod operations;
 pub mod queries;
 pub mod rng;
 pub mod run_time;

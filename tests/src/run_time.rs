@@ -19,6 +19,66 @@ impl<const N: usize> RunTime<N> {
     }
 }
 
+/// As `RunTime<16>`, with its registers in a table of the thread: what a kernel holds are their
+/// numbers. It runs slower, and a kernel takes a third of the time to compile.
+#[derive(Clone, Copy)]
+pub struct Numbered(RunTime<16>);
+
+impl Numbered {
+    /// The operations of `lanes`.
+    pub fn new<L: Lanes>(lanes: L) -> Self {
+        Self(RunTime::new(lanes))
+    }
+
+    /// Forgets all registers: those that a kernel still holds must not be used.
+    pub fn forget() {
+        REGISTERS.with_borrow_mut(Vec::clear);
+    }
+}
+
+/// A register of a [`Numbered`] machine.
+#[derive(Clone, Copy, Debug)]
+pub struct Register(u32);
+
+thread_local! {
+    static REGISTERS: std::cell::RefCell<Vec<[u32; 16]>> = const { std::cell::RefCell::new(Vec::new()) };
+}
+
+/// What a [`Numbered`] machine has in place of a value.
+pub trait Kept: Sized {
+    /// The number of a register, or the value itself.
+    type Place;
+    /// Puts it into a register.
+    fn keep(self) -> Self::Place;
+    /// Takes it out again.
+    fn find(place: Self::Place) -> Self;
+}
+
+macro_rules! kept {
+    ($($scalar:ty: |$a:ident| $to:expr, |$b:ident| $from:expr;)+) => {
+        $(
+            impl Kept for [$scalar; 16] {
+                type Place = Register;
+                fn keep(self) -> Register {
+                    REGISTERS.with_borrow_mut(|all| {
+                        all.push(self.map(|$a| $to));
+                        Register(all.len() as u32 - 1)
+                    })
+                }
+                fn find(place: Register) -> Self {
+                    REGISTERS.with_borrow(|all| all[place.0 as usize].map(|$b| $from))
+                }
+            }
+        )+
+    };
+}
+
+kept! {
+    f32: |a| a.to_bits(), |b| f32::from_bits(b);
+    i32: |a| a as u32, |b| b as i32;
+    u32: |a| a, |b| b;
+}
+
 /// A mask, one bit a lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bits(u64);
@@ -56,6 +116,16 @@ held! {
     u32: U32 u32_from_fn u32_lane;
 }
 
+impl Kept for Bits {
+    type Place = Self;
+    fn keep(self) -> Self {
+        self
+    }
+    fn find(place: Self) -> Self {
+        place
+    }
+}
+
 impl<L: Lanes> Held<L> for Bits {
     type Register = L::Mask;
     #[inline(always)]
@@ -80,6 +150,16 @@ macro_rules! held_as_it_is {
                 #[inline(always)]
                 fn store(register: Self, _: L) -> Self {
                     register
+                }
+            }
+
+            impl Kept for $t {
+                type Place = Self;
+                fn keep(self) -> Self {
+                    self
+                }
+                fn find(place: Self) -> Self {
+                    place
                 }
             }
         )+
@@ -149,6 +229,52 @@ macro_rules! operations {
                 a.0 >> lane & 1 != 0
             }
         }
+
+        const _: () = {
+            const N: usize = 16;
+
+            impl Lanes for Numbered {
+                const N: usize = N;
+                type F32 = Register;
+                type I32 = Register;
+                type U32 = Register;
+                type Mask = Bits;
+
+                #[inline(never)]
+                fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
+                    f()
+                }
+                $(
+                    #[inline(never)]
+                    fn $name(self, $($a: <$t as Kept>::Place),*) -> <$r as Kept>::Place {
+                        $(let $a = <$t as Kept>::find($a);)*
+                        Kept::keep(self.0.$name($($a),*))
+                    }
+                )+
+                fn f32_from_fn(self, f: impl FnMut(usize) -> f32) -> Register {
+                    std::array::from_fn::<f32, N, _>(f).keep()
+                }
+                fn i32_from_fn(self, f: impl FnMut(usize) -> i32) -> Register {
+                    std::array::from_fn::<i32, N, _>(f).keep()
+                }
+                fn u32_from_fn(self, f: impl FnMut(usize) -> u32) -> Register {
+                    std::array::from_fn::<u32, N, _>(f).keep()
+                }
+                fn f32_lane(a: &Register, lane: usize) -> f32 {
+                    f32::from_bits(Self::u32_lane(a, lane))
+                }
+                fn i32_lane(a: &Register, lane: usize) -> i32 {
+                    Self::u32_lane(a, lane) as i32
+                }
+                #[inline(never)]
+                fn u32_lane(a: &Register, lane: usize) -> u32 {
+                    REGISTERS.with_borrow(|all| all[a.0 as usize][lane])
+                }
+                fn mask_lane(a: &Bits, lane: usize) -> bool {
+                    a.0 >> lane & 1 != 0
+                }
+            }
+        };
     };
 }
 

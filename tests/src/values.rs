@@ -127,6 +127,37 @@ fn from_words<T: Type>(mut word: impl FnMut(&Schema) -> u32) -> T {
     T::read(&bytes)
 }
 
+/// Numbers next to the ends of the range of `f32`, beside [`SPECIAL_F32`].
+const DENORMAL: &[f32] = &[1e-45, -1e-45, 1.175_494_2e-38, -1e-40];
+
+/// Operands number `i` of an operation: first every special value with every other, then random
+/// ones of all kinds. Unlike [`random`] it knows denormal numbers.
+pub fn operands<T: Type>(rng: &mut Rng, numbers: Numbers, i: usize) -> T {
+    let special = SPECIAL_F32.len() + DENORMAL.len();
+    let float = |k: usize| *SPECIAL_F32.iter().chain(DENORMAL).nth(k).unwrap_or(&0.0);
+    let kind = if i < special * special { 0 } else { rng.below(4) };
+    let mut place = i;
+    from_words(|leaf| {
+        let mut next = |n: usize| {
+            let k = if i < special * special { place % special } else { rng.below(n) };
+            place /= special;
+            k
+        };
+        match (numbers, kind, leaf) {
+            (Numbers::Any, 0, Schema::F32) => float(next(special)).to_bits(),
+            (Numbers::Any, 0, Schema::I32 | Schema::U32) => {
+                SPECIAL_U32[next(SPECIAL_U32.len()) % SPECIAL_U32.len()]
+            }
+            (Numbers::Any, 1, Schema::F32 | Schema::I32 | Schema::U32) => rng.bits() as u32,
+            (_, _, Schema::F32) => numbers.f32(rng).to_bits(),
+            (_, _, Schema::I32) => numbers.i32(rng) as u32,
+            (_, _, Schema::U32) => numbers.u32(rng),
+            (_, _, Schema::Bool) => rng.below(2) as u32,
+            _ => rng.bits() as u32,
+        }
+    })
+}
+
 /// A random value.
 pub fn random<T: Type>(rng: &mut Rng, numbers: Numbers) -> T {
     from_words(|leaf| match leaf {
@@ -187,7 +218,15 @@ pub struct Comparison {
 /// Compares results; -0 equals +0, and every NaN every other.
 pub fn compare<T: Type>(who: impl Into<String>, expected: &[T], found: &[T]) -> Comparison {
     assert_eq!(expected.len(), found.len(), "one result for each input");
-    let pairs = expected.iter().zip(found).enumerate();
+    let size = T::SCHEMA.size();
+    let (mut a, mut b) = (vec![0u8; size], vec![0u8; size]);
+    // Most results are equal byte by byte: those need no second look.
+    let mut differ = |(_, (e, f)): &(usize, (&T, &T))| {
+        e.write(&mut a);
+        f.write(&mut b);
+        a != b
+    };
+    let pairs = expected.iter().zip(found).enumerate().filter(|p| differ(p));
     let differing = pairs.map(|(i, (e, f))| (i, words(e), words(f))).filter(|(_, e, f)| e != f);
     Comparison { who: who.into(), compared: expected.len(), differing: differing.collect() }
 }
@@ -249,5 +288,18 @@ impl Comparison {
             float(expected),
             float(found),
         );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::compare;
+
+    #[test]
+    fn zeros_and_nans_are_equal_and_nothing_else_is() {
+        let a = [0.0f32, f32::NAN, 1.0, 2.0, f32::NAN];
+        let b = [-0.0f32, -f32::NAN, 1.0, 2.000_000_2, 3.0];
+        assert_eq!(compare("floats", &a, &b).count(), 2);
+        assert_eq!(compare("integers", &[0u32, 7], &[0x8000_0000, 7]).count(), 1);
     }
 }

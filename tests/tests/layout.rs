@@ -164,6 +164,34 @@ fn aligned(a: Aligned) -> Aligned {
     Aligned { b: a.b + 1, ..a }
 }
 
+/// Vectors of integers and truth values between others, and matrices.
+#[derive(Clone, Copy, Debug, Type)]
+#[repr(C)]
+struct Voxel {
+    at: UVec3,
+    color: u32,
+    offset: IVec2,
+    faces: BVec3,
+    open: BVec4,
+    flag: bool,
+    corner: IVec4,
+    size: UVec2,
+    frame: Affine3,
+    to_world: Mat4,
+    edge: BVec2,
+}
+
+#[raydsl::kernel]
+fn voxel(v: Voxel, n: u32, m: Mat3) -> Voxel {
+    let mut v = v;
+    v.at += UVec3::splat(n);
+    v.offset = v.offset.yx();
+    v.faces = !v.faces;
+    v.frame.matrix3 = m;
+    v.to_world.y_axis.w = m.x_axis.y;
+    v
+}
+
 #[test]
 fn structs() {
     let wgsl = recorded::<mixed>().wgsl();
@@ -172,6 +200,9 @@ fn structs() {
     let wgsl = recorded::<aligned>().wgsl();
     assert_type::<(Aligned,)>(&wgsl, "inputs");
     assert_type::<Aligned>(&wgsl, "outputs");
+    let wgsl = recorded::<voxel>().wgsl();
+    assert_type::<(Voxel, u32, Mat3)>(&wgsl, "inputs");
+    assert_type::<Voxel>(&wgsl, "outputs");
     let wgsl = recorded::<kernels::arrays>().wgsl();
     assert_type::<(kernels::Table, u32)>(&wgsl, "inputs");
     let wgsl = recorded::<kernels::unorms>().wgsl();
@@ -187,4 +218,27 @@ fn structs_survive_the_device() {
     use raydsl_tests::values::Numbers;
     check::<mixed>("mixed", Numbers::Tame, Wgsl::Same);
     check::<aligned>("aligned", Numbers::Tame, Wgsl::Same);
+    check::<voxel>("voxel", Numbers::Tame, Wgsl::Same);
+}
+
+/// Captured values of every kind of vector lie in the uniform block.
+#[test]
+fn captures_arrive() {
+    let (low, high) = (uvec3(3, 5, 7), ivec2(-4, 9));
+    let (mask, frame) = (bvec3(true, false, true), Affine3::from_translation(vec3(1.0, 2.0, 3.0)));
+    let kernel = kernel!(|p: Vec3, n: u32| {
+        let cell = UVec3::select(mask, low + n, low * 2);
+        frame.transform_point3(p) + cell.as_vec3() + high.as_vec2().extend(0.5)
+    });
+    let inputs: Vec<_> = (0..64).map(|i| (Vec3::splat(i as f32), i as u32)).collect();
+    let expected: Vec<Vec3> = inputs.iter().map(|(p, n)| kernel.call((*p, *n))).collect();
+    let mut found = vec![Vec3::ZERO; inputs.len()];
+    kernel.run(raydsl::kernel::Variant::Packet8, &inputs, &mut found);
+    assert_eq!(expected, found);
+    let Some(gpu) = raydsl_tests::gpu::gpu() else { return };
+    let mut found = vec![Vec3::ZERO; inputs.len()];
+    if let Err(e) = gpu.batch(&kernel, &inputs, &mut found) {
+        panic!("{e}\n{}", kernel.wgsl());
+    }
+    assert_eq!(expected, found);
 }

@@ -116,7 +116,9 @@ impl Emitter<'_> {
         }
         let text = name.to_string();
         let machine = self.machine.clone();
-        let method = quote_spanned!(name.span()=> #p::Method::<{ #p::name(#text) }, #machine, _>);
+        // What is wrong with the call is shown at its name.
+        let at = quote_spanned!(name.span()=> ::raydsl::__private);
+        let method = quote_spanned!(name.span()=> #at::Method::<{ #at::name(#text) }, #machine, _>);
         let variable = self.variable_under(receiver);
         let value = self.value(receiver);
         let mut args = self.arguments(args);

@@ -165,6 +165,39 @@ macro_rules! method {
     };
 }
 
+/// Methods that a type of glam's or std's has, but not with one result on every machine. The impl
+/// asks for a bound that never holds, whose message is the error: it names the remedy.
+macro_rules! denied {
+    ($t:ty: $($marker:ident $what:literal $write:literal $($name:literal)+ -> $out:ty;)+) => {
+        $(
+            #[doc = $what]
+            pub struct $marker<M>(core::marker::PhantomData<M>);
+
+            const _: () = {
+                #[diagnostic::on_unimplemented(
+                    message = $what,
+                    label = "not the same on every machine",
+                    note = $write
+                )]
+                pub trait SameOnEveryMachine {}
+
+                $(
+                    impl<M: Machine, A> Method<{ name($name) }, M, A> for $t
+                    where
+                        $marker<M>: SameOnEveryMachine,
+                    {
+                        type Output = $out;
+
+                        fn call(self, _: &M, _: A) -> $out {
+                            unreachable!()
+                        }
+                    }
+                )+
+            };
+        )+
+    };
+}
+
 mod float;
 mod integer;
 mod matrix;

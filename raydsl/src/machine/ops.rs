@@ -261,18 +261,29 @@ macro_rules! f32_operators {
 
 f32_operators!(OpAdd::add Add, OpSub::sub Sub, OpMul::mul Mul, OpDiv::div Div);
 
-/// There is none: this says why, and what to write.
-impl<M: Machine, R> OpRem<M, R> for F<M>
-where
-    F<M>: Integer<M>,
-{
-    type Output = F<M>;
+/// What the error of `%` of floats is about.
+pub struct RemainderOfFloats<M>(core::marker::PhantomData<M>);
 
-    #[inline(always)]
-    fn rem(_: &M, a: F<M>, _: R) -> F<M> {
-        a
+const _: () = {
+    #[diagnostic::on_unimplemented(
+        message = "a kernel has no `%` of floats: an exact one takes hundreds of steps",
+        label = "not in the kernel language",
+        note = "write `x - y * (x / y).trunc()`, or with `floor` for a remainder that is never \
+                negative"
+    )]
+    pub trait IsShort {}
+
+    impl<M: Machine, R> OpRem<M, R> for F<M>
+    where
+        RemainderOfFloats<M>: IsShort,
+    {
+        type Output = F<M>;
+
+        fn rem(_: &M, _: F<M>, _: R) -> F<M> {
+            unreachable!()
+        }
     }
-}
+};
 
 macro_rules! int_operators {
     ($($trait:ident :: $method:ident $op:ident $symbol:tt),+) => {

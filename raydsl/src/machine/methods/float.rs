@@ -158,6 +158,15 @@ of_f32! {
     }};
 }
 
+denied! { F<M>:
+    RemainderOfFloats "a kernel has no remainder of floats: an exact one takes hundreds of steps"
+        "write `x - y * (x / y).floor()`, which is never negative for a positive `y`"
+        "rem_euclid" -> F<M>;
+    QuotientOfFloats "a kernel has no `div_euclid` of floats"
+        "write `(x / y).floor()` for a positive `y`"
+        "div_euclid" -> F<M>;
+}
+
 /// The sign of a number, of whatever kind.
 pub(crate) trait Signed<M: Machine>: Arithmetic<M> {
     fn abs(m: &M, a: Self) -> Self;

@@ -56,31 +56,11 @@ pub(crate) fn inverse_affine<M: Machine>(m: &M, a: A3<M>) -> A3<M> {
     }
 }
 
-macro_rules! denied {
-    ($trait:ident $what:literal $write:literal $name:literal) => {
-        /// Never implemented: its message is the error.
-        #[diagnostic::on_unimplemented(
-                                                            message = $what,
-                                                            label = "not the same on every machine",
-                                                            note = $write
-                                                        )]
-        pub trait $trait {}
-
-        impl<M: Machine, A> Method<{ name($name) }, M, A> for M4<M>
-        where
-            M4<M>: $trait,
-        {
-            type Output = M4<M>;
-
-            #[inline(always)]
-            fn call(self, _: &M, _: A) -> M4<M> {
-                self
-            }
-        }
-    };
+denied! { M4<M>:
+    InverseInOrder "`Mat4::inverse` has other results on other machines"
+        "write `inverse(m)`, the function of raydsl's prelude"
+        "inverse" -> M4<M>;
+    DeterminantInOrder "`Mat4::determinant` has other results on other machines"
+        "write `determinant(m)`, the function of raydsl's prelude"
+        "determinant" -> F<M>;
 }
-
-denied!(InverseInOrder "`Mat4::inverse` has other results on other machines"
-    "write `inverse(m)`, the function of raydsl's prelude" "inverse");
-denied!(DeterminantInOrder "`Mat4::determinant` has other results on other machines"
-    "write `determinant(m)`, the function of raydsl's prelude" "determinant");

@@ -440,56 +440,37 @@ conversions! {
 
 // What `Vec4` has another result for on another machine.
 
-macro_rules! denied {
-    ($($trait:ident $what:literal $write:literal: $($name:literal)+;)+) => {
-        $(
-            /// Never implemented: its message is the error.
-            #[diagnostic::on_unimplemented(
-                message = $what,
-                label = "not the same on every machine",
-                note = $write
-            )]
-            pub trait $trait {}
-
-            $(
-                impl<M: Machine, A> Method<{ name($name) }, M, A> for V4<M>
-                where
-                    V4<M>: $trait,
-                {
-                    type Output = V4<M>;
-
-                    #[inline(always)]
-                    fn call(self, _: &M, _: A) -> V4<M> {
-                        self
-                    }
-                }
-            )+
-        )+
-    };
-}
-
-denied! {
+denied! { V4<M>:
     DotInOrder "`Vec4::dot` adds in another order on other machines"
-        "write `dot(a, b)`, the function of raydsl's prelude, which adds left to right":
-        "dot";
+        "write `dot(a, b)`, the function of raydsl's prelude, which adds left to right"
+        "dot" -> F<M>;
     LengthInOrder "the length of a `Vec4` is another on other machines"
-        "write `length(v)`, the function of raydsl's prelude; its square is `dot(v, v)`":
-        "length" "length_squared" "length_recip" "distance" "distance_squared" "is_normalized"
-        "clamp_length" "clamp_length_min" "clamp_length_max" "move_towards";
+        "write `length(v)` or `distance(a, b)`, the functions of raydsl's prelude; the square of \
+         a length is `dot(v, v)`"
+        "length" "length_squared" "length_recip" "distance" "distance_squared" -> F<M>;
+    LengthLimits "the length of a `Vec4` is another on other machines"
+        "spell it out with `length(v)`, the function of raydsl's prelude"
+        "clamp_length" "clamp_length_min" "clamp_length_max" "move_towards" -> V4<M>;
     NormalizeInOrder "`Vec4::normalize` has other results on other machines"
-        "write `normalize(v)`, the function of raydsl's prelude":
-        "normalize" "normalize_or" "normalize_or_zero";
+        "write `normalize(v)`, the function of raydsl's prelude"
+        "normalize" "normalize_or" "normalize_or_zero" -> V4<M>;
+    NormalizedInOrder "the length of a `Vec4` is another on other machines"
+        "write `(dot(v, v) - 1.0).abs() <= 2e-4`, with `dot` of raydsl's prelude"
+        "is_normalized" -> B<M>;
     ProjectInOrder "this method of `Vec4` adds in another order on other machines"
-        "spell it out with `dot(a, b)`, the function of raydsl's prelude":
+        "spell it out with `dot(a, b)`, the function of raydsl's prelude"
         "project_onto" "project_onto_normalized" "reject_from" "reject_from_normalized" "reflect"
-        "refract";
+        "refract" -> V4<M>;
     SumInOrder "this method of `Vec4` takes the components in another order on other machines"
-        "write `v.x + v.y + v.z + v.w`, or the like with `*`":
-        "element_sum" "element_product";
+        "write `v.x + v.y + v.z + v.w`, or the like with `*`"
+        "element_sum" "element_product" -> F<M>;
     ExtremeOfNumbers "`min` and `max` of `Vec4` have other results for NaN on other machines"
-        "write `min(a, b)`, `max(a, b)` or `clamp(v, low, high)`, the functions of raydsl's prelude":
-        "min" "max" "clamp" "saturate" "smoothstep" "min_element" "max_element";
+        "write `min(a, b)`, `max(a, b)` or `clamp(v, low, high)`, the functions of raydsl's prelude"
+        "min" "max" "clamp" "saturate" "smoothstep" -> V4<M>;
+    ExtremeElement "the least element of a `Vec4` is another for NaN on other machines"
+        "write `min(min(v.x, v.y), min(v.z, v.w))`, or `max`, of raydsl's prelude"
+        "min_element" "max_element" -> F<M>;
     Unfused "`Vec4::lerp_monotonic` is fused on some machines"
-        "write `a + (b - a) * s`":
-        "lerp_monotonic";
+        "write `a + (b - a) * s`"
+        "lerp_monotonic" -> V4<M>;
 }
