@@ -6,7 +6,7 @@ use raydsl::kernel::{Kernel, Lifted, Variant};
 use raydsl::machine::{KernelFn, KernelInfo, Lanes, Packet, Scalar, Type};
 
 use crate::gpu::gpu;
-use crate::levels::{LevelTask, each_level, widest_level};
+use crate::levels::{LevelTask, each_level, gangs, widest_level};
 use crate::rng::Rng;
 use crate::values::{Numbers, compare, compare_within, garbage, random};
 
@@ -42,6 +42,9 @@ where
     case.scalar_machine();
     each_level(&mut &case);
     widest_level(&mut &case);
+    for gang in gangs() {
+        case.packets(&gang.name, gang.lanes, gang.width);
+    }
     match wgsl {
         Wgsl::Same => case.wgsl(0, |_| true),
         Wgsl::SameIfFinite => case.wgsl(0, is_finite),
@@ -84,12 +87,12 @@ where
         self.assert_same("the scalar machine", &found);
     }
 
-    fn packets<L: Lanes>(&self, name: &str, lanes: L) {
+    fn packets<L: Lanes>(&self, name: &str, lanes: L, width: usize) {
         let kernel: &PacketKernel<F, L> = &|m, args| F::lifted(m, args);
         let run = |bits: u64, input: &dyn Fn(usize) -> F::Args, out: &mut [F::Output]| {
             run_packet::<F, L>(lanes, kernel, bits, input, out);
         };
-        each_pass(&run, L::N, &self.inputs, &mut |how, found: &[F::Output]| {
+        each_pass(&run, width, &self.inputs, &mut |how, found: &[F::Output]| {
             self.assert_same(&format!("{name}{how}"), found);
         });
     }
@@ -119,7 +122,7 @@ where
     F::Args: Debug,
 {
     fn run<L: Lanes>(&mut self, name: &str, lanes: L) {
-        self.packets(name, lanes);
+        self.packets(name, lanes, L::N);
     }
 }
 
@@ -162,7 +165,7 @@ pub(crate) fn each_pass<A: Type, R: Type>(
 fn all_lanes<A: Type, R: Type>(run: Run<'_, A, R>, n: usize, inputs: &[A]) -> Vec<R> {
     let mut found = vec![garbage(); inputs.len()];
     for (inputs, out) in inputs.chunks(n).zip(found.chunks_mut(n)) {
-        let bits = (1u64 << inputs.len()) - 1;
+        let bits = u64::MAX >> (64 - inputs.len());
         run(bits, &|l| inputs[l.min(inputs.len() - 1)], out);
     }
     found

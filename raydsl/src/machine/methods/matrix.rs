@@ -60,10 +60,10 @@ macro_rules! denied {
     ($trait:ident $what:literal $write:literal $name:literal) => {
         /// Never implemented: its message is the error.
         #[diagnostic::on_unimplemented(
-                                            message = $what,
-                                            label = "not the same on every machine",
-                                            note = $write
-                                        )]
+                                                            message = $what,
+                                                            label = "not the same on every machine",
+                                                            note = $write
+                                                        )]
         pub trait $trait {}
 
         impl<M: Machine, A> Method<{ name($name) }, M, A> for M4<M>
