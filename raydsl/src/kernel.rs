@@ -157,6 +157,19 @@ impl Variant {
         }
     }
 
+    /// Whether this machine has registers for the variant. Packets that it lacks run on what every
+    /// machine of the target has; for WGSL the answer is no.
+    pub fn is_native(self) -> bool {
+        let levels = Levels::detect();
+        match self {
+            Self::Scalar => true,
+            Self::Packet4 => levels.narrow.is_some(),
+            Self::Packet8 => levels.middle.is_some(),
+            Self::Packet16 => levels.wide.is_some() || levels.middle.is_some(),
+            Self::Wgsl => false,
+        }
+    }
+
     fn with_lanes<T: LanesTask>(self, task: T) -> T::Output {
         let levels = Levels::detect();
         match self {

@@ -14,6 +14,7 @@ mod table;
 mod timing;
 
 pub use accuracy::Accuracy;
+pub(crate) use agreement::differing;
 pub use agreement::{Agreement, BUCKETS};
 pub use comparison::{Compare, Comparison, Row, Verdict, compare};
 pub use explain::{Cause, Explanation, Sample, explain};
