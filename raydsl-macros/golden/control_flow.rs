@@ -103,6 +103,12 @@ impl walk {
                             {
                                 break;
                             }
+                            ::raydsl::__private::here(
+                                m,
+                                "loop",
+                                ::core::file!(),
+                                ::core::line!(),
+                            );
                             let i = counter_3.get(m);
                             {
                                 let repeat_6 = ::raydsl::__private::Loop::new(m);
@@ -120,6 +126,12 @@ impl walk {
                                     {
                                         break;
                                     }
+                                    ::raydsl::__private::here(
+                                        m,
+                                        "loop",
+                                        ::core::file!(),
+                                        ::core::line!(),
+                                    );
                                     'block_6: {
                                         {
                                             let right = ::raydsl::__private::literal(m, 1.0f32, 1.0f64);
@@ -141,11 +153,23 @@ impl walk {
                                             ),
                                         );
                                         if branch_8.then(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "if",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 repeat_2.leave(m);
                                             }
                                         }
                                         if branch_8.otherwise(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "else",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             let branch_10 = ::raydsl::__private::Branch::new(
                                                 m,
                                                 {
@@ -162,6 +186,12 @@ impl walk {
                                                         ),
                                                     );
                                                     if branch_12.then(m) {
+                                                        ::raydsl::__private::here(
+                                                            m,
+                                                            "if",
+                                                            ::core::file!(),
+                                                            ::core::line!(),
+                                                        );
                                                         {
                                                             value_11
                                                                 .set(
@@ -183,6 +213,12 @@ impl walk {
                                                         }
                                                     }
                                                     if branch_12.otherwise(m) {
+                                                        ::raydsl::__private::here(
+                                                            m,
+                                                            "else",
+                                                            ::core::file!(),
+                                                            ::core::line!(),
+                                                        );
                                                         {
                                                             value_11
                                                                 .set(m, ::raydsl::__private::Varying::varying(false, m));
@@ -193,6 +229,12 @@ impl walk {
                                                 },
                                             );
                                             if branch_10.then(m) {
+                                                ::raydsl::__private::here(
+                                                    m,
+                                                    "if",
+                                                    ::core::file!(),
+                                                    ::core::line!(),
+                                                );
                                                 {
                                                     repeat_6.skip(m);
                                                 }
@@ -213,6 +255,12 @@ impl walk {
                                             ),
                                         );
                                         if branch_16.then(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "if",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 ret.give(
                                                     m,
@@ -268,6 +316,12 @@ impl walk {
                         ),
                     );
                     if branch_18.then(m) {
+                        ::raydsl::__private::here(
+                            m,
+                            "if",
+                            ::core::file!(),
+                            ::core::line!(),
+                        );
                         {
                             {
                                 let right = {
@@ -284,12 +338,24 @@ impl walk {
                                         ),
                                     );
                                     if branch_21.then(m) {
+                                        ::raydsl::__private::here(
+                                            m,
+                                            "if",
+                                            ::core::file!(),
+                                            ::core::line!(),
+                                        );
                                         {
                                             value_20
                                                 .set(m, ::raydsl::__private::Varying::varying(x, m));
                                         }
                                     }
                                     if branch_21.otherwise(m) {
+                                        ::raydsl::__private::here(
+                                            m,
+                                            "else",
+                                            ::core::file!(),
+                                            ::core::line!(),
+                                        );
                                         {
                                             value_20
                                                 .set(
@@ -309,6 +375,12 @@ impl walk {
                         }
                     }
                     if branch_18.otherwise(m) {
+                        ::raydsl::__private::here(
+                            m,
+                            "else",
+                            ::core::file!(),
+                            ::core::line!(),
+                        );
                         {
                             {
                                 let right = ::raydsl::__private::literal(m, 0.0f32, 0.0f64);

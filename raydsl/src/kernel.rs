@@ -3,13 +3,13 @@
 use fearless_simd::Level;
 
 use crate::machine::{
-    KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet, Recorder, Recording,
-    Resource, Rounding, Simd4, Simd8, Simd16, Type, wgsl,
+    Counted, KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet, Recorder,
+    Recording, Resource, Rounding, Simd4, Simd8, Simd16, Type, wgsl,
 };
 
 /// The machines for which closures are lifted: the natural widths of the target's levels.
 mod native {
-    use super::{Packet, Simd4, Simd8, Simd16};
+    use super::{Counted, Packet, Simd4, Simd8, Simd16};
 
     /// The levels of 4, 8 and 16 lanes, and the one that every machine of the target has.
     ///
@@ -46,7 +46,10 @@ mod native {
     pub type Native16Halves = Packet<Simd16<level::Middle>>;
     /// Eight lanes of what every machine of the target has: SSE2, NEON, or no instructions of
     /// this kind at all.
-    pub type Baseline = Packet<Simd8<level::Baseline>>;
+    ///
+    /// It is also the copy that counts where its lanes are, when it is asked: the others have
+    /// nothing to do with that.
+    pub type Baseline = Packet<Counted<Simd8<level::Baseline>>>;
 }
 
 pub use native::{Baseline, Native4, Native8, Native16, Native16Halves};
@@ -337,8 +340,14 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
             Variant::Packet16 if let Some(s) = levels.middle => {
                 task.run(Simd16(s), &*self.lifted.native16_halves)
             }
-            _ => task.run(Simd8(levels.baseline), &*self.lifted.baseline),
+            _ => task.run(Counted(Simd8(levels.baseline)), &*self.lifted.baseline),
         }
+    }
+
+    /// Runs packets of 8 lanes, of what every machine of the target has: the ones that count.
+    pub(crate) fn run_counted(&self, inputs: &[A], outputs: &mut [R]) {
+        let lanes = Counted(Simd8(Levels::detect().baseline));
+        run_batch(lanes, &*self.lifted.baseline, inputs, outputs);
     }
 
     /// Runs a CPU variant over `inputs`; `outputs` has the same length.

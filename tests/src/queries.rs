@@ -203,9 +203,14 @@ impl Answers {
         each_level(&mut Ask { who, view, answers: self });
     }
 
-    /// Asks gangs of 32 and 64 lanes.
+    /// Asks gangs of 32 and 64 lanes about every fourth ray.
     pub fn assert_gangs<P: Primitive>(&self, who: &str, view: On<'_, P>) {
-        let ask = Ask { who, view, answers: self };
+        let answers = &Self {
+            rays: self.rays.iter().step_by(4).copied().collect(),
+            closest: self.closest.iter().step_by(4).copied().collect(),
+            any: self.any.iter().step_by(4).copied().collect(),
+        };
+        let ask = Ask { who, view, answers };
         for gang in gangs() {
             ask.packets(&gang.name, gang.lanes, gang.width);
         }

@@ -12,6 +12,7 @@ mod json;
 mod pictures;
 mod table;
 mod timing;
+mod utilisation;
 
 pub use accuracy::Accuracy;
 pub(crate) use agreement::differing;
@@ -22,6 +23,7 @@ pub use json::SceneInfo;
 #[cfg(feature = "image")]
 pub use pictures::WriteError;
 pub use timing::Times;
+pub use utilisation::{LineCount, Utilisation, utilisation};
 
 /// How many inputs a sample has, unless it is told otherwise.
 const SAMPLES: usize = 4096;
