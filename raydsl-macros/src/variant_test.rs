@@ -89,9 +89,9 @@ fn test(
     let name = format_ident!("{function}_{end}");
     let variant = format_ident!("{variant}");
     let skipped = match (expected_panic(attributes), output) {
-        (Some(expected), _) => quote!(::core::panic!("{}", #expected)),
-        (None, syn::ReturnType::Default) => quote!(()),
-        (None, syn::ReturnType::Type(..)) => quote!(::core::result::Result::Ok(())),
+        (Some(expected), _) => quote!(else { ::core::panic!("{}", #expected) }),
+        (None, syn::ReturnType::Default) => quote!(),
+        (None, syn::ReturnType::Type(..)) => quote!(else { ::core::result::Result::Ok(()) }),
     };
     quote! {
         #(#attributes)*
@@ -100,9 +100,8 @@ fn test(
             let variant = ::raydsl::kernel::Variant::#variant;
             if ::raydsl::testing::can_run(variant, ::core::stringify!(#name)) {
                 #function(variant)
-            } else {
-                #skipped
             }
+            #skipped
         }
     }
 }

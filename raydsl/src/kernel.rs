@@ -1,7 +1,5 @@
 //! A kernel with all its variants.
 
-use fearless_simd::Level;
-
 use crate::machine::{
     Counted, KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet, Recorder,
     Recording, Resource, Rounding, Simd4, Simd8, Simd16, Type, wgsl,
@@ -66,7 +64,7 @@ struct Levels {
 impl Levels {
     #[cfg(target_arch = "x86_64")]
     fn detect() -> Self {
-        let level = Level::new();
+        let level = fearless_simd::Level::new();
         let Some(baseline) = level.as_sse2() else {
             unreachable!("SSE2 is a part of x86-64");
         };
@@ -80,7 +78,7 @@ impl Levels {
 
     #[cfg(target_arch = "aarch64")]
     fn detect() -> Self {
-        let Some(neon) = Level::new().as_neon() else {
+        let Some(neon) = fearless_simd::Level::new().as_neon() else {
             unreachable!("NEON is a part of AArch64");
         };
         Self { narrow: Some(neon), middle: Some(neon), wide: Some(neon), baseline: neon }

@@ -8,9 +8,10 @@ use raydsl::machine::{KernelFn, KernelInfo, Lanes, Packet, Scalar, Type};
 use crate::gpu::gpu;
 use crate::levels::{LevelTask, each_level, gangs, widest_level};
 use crate::rng::Rng;
+use crate::scaled;
 use crate::values::{Numbers, compare, compare_within, garbage, random};
 
-/// Not a multiple of any width, so that the last packet is partly filled.
+/// How many inputs a kernel is given, at full scale.
 const INPUTS: usize = 1003;
 
 /// Whether WGSL must give the CPU's bits.
@@ -36,7 +37,9 @@ where
     F::Args: Debug,
 {
     let mut rng = Rng::of(name);
-    let inputs: Vec<F::Args> = (0..INPUTS).map(|_| random(&mut rng, numbers)).collect();
+    // Not a multiple of any width, so that the last packet is partly filled.
+    let count = scaled(INPUTS) | 1;
+    let inputs: Vec<F::Args> = (0..count).map(|_| random(&mut rng, numbers)).collect();
     let expected: Vec<F::Output> = inputs.iter().map(|a| F::scalar(*a)).collect();
     let case = Case::<F> { name, inputs, expected };
     case.scalar_machine();

@@ -1,5 +1,7 @@
 //! How many lanes run where: counted against what the source does.
 
+#![allow(clippy::manual_is_multiple_of, reason = "what kernels are written in")]
+
 use raydsl::prelude::*;
 use raydsl::report::{Utilisation, utilisation};
 

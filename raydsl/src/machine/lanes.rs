@@ -88,21 +88,20 @@ pub(crate) fn fill<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T
 
 /// The name of a level, as reports print it.
 fn isa_name(level: fearless_simd::Level) -> &'static str {
-    use fearless_simd::Level;
     #[allow(unreachable_patterns, reason = "which levels exist depends on the target")]
     match level {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Avx512(_) => "avx512",
+        fearless_simd::Level::Avx512(_) => "avx512",
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Avx2(_) => "avx2",
+        fearless_simd::Level::Avx2(_) => "avx2",
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Sse4_2(_) => "sse4.2",
+        fearless_simd::Level::Sse4_2(_) => "sse4.2",
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Sse2(_) => "sse2",
+        fearless_simd::Level::Sse2(_) => "sse2",
         #[cfg(target_arch = "aarch64")]
-        Level::Neon(_) => "neon",
+        fearless_simd::Level::Neon(_) => "neon",
         #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-        Level::WasmSimd128(_) => "simd128",
+        fearless_simd::Level::WasmSimd128(_) => "simd128",
         _ => "portable",
     }
 }
