@@ -61,7 +61,7 @@ impl Utilisation {
 /// use raydsl::report::utilisation;
 ///
 /// let kernel = kernel!(|n: u32| {
-///     let mut sum = 0;
+///     let mut sum = 0u32;
 ///     for i in 0..n {
 ///         sum += i;
 ///     }
