@@ -73,6 +73,12 @@ fn main() {
                                             hit.is_hit,
                                         );
                                         if branch_2.then(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "if",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 value_1
                                                     .set(
@@ -97,6 +103,12 @@ fn main() {
                                             }
                                         }
                                         if branch_2.otherwise_small(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "else",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 value_1
                                                     .set(
@@ -171,6 +183,12 @@ fn main() {
                                             hit.is_hit,
                                         );
                                         if branch_2.then(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "if",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 value_1
                                                     .set(
@@ -195,6 +213,12 @@ fn main() {
                                             }
                                         }
                                         if branch_2.otherwise_small(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "else",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 value_1
                                                     .set(
@@ -269,6 +293,12 @@ fn main() {
                                             hit.is_hit,
                                         );
                                         if branch_2.then(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "if",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 value_1
                                                     .set(
@@ -293,6 +323,12 @@ fn main() {
                                             }
                                         }
                                         if branch_2.otherwise_small(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "else",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 value_1
                                                     .set(
@@ -367,6 +403,12 @@ fn main() {
                                             hit.is_hit,
                                         );
                                         if branch_2.then(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "if",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 value_1
                                                     .set(
@@ -391,6 +433,12 @@ fn main() {
                                             }
                                         }
                                         if branch_2.otherwise_small(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "else",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 value_1
                                                     .set(
@@ -465,6 +513,12 @@ fn main() {
                                             hit.is_hit,
                                         );
                                         if branch_2.then(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "if",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 value_1
                                                     .set(
@@ -489,6 +543,12 @@ fn main() {
                                             }
                                         }
                                         if branch_2.otherwise_small(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "else",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 value_1
                                                     .set(
@@ -563,6 +623,12 @@ fn main() {
                                             hit.is_hit,
                                         );
                                         if branch_2.then(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "if",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 value_1
                                                     .set(
@@ -587,6 +653,12 @@ fn main() {
                                             }
                                         }
                                         if branch_2.otherwise_small(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "else",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 value_1
                                                     .set(
@@ -661,6 +733,12 @@ fn main() {
                                             hit.is_hit,
                                         );
                                         if branch_2.then(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "if",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 value_1
                                                     .set(
@@ -685,6 +763,12 @@ fn main() {
                                             }
                                         }
                                         if branch_2.otherwise_small(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "else",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 value_1
                                                     .set(

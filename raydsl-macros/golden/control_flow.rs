@@ -104,6 +104,12 @@ impl walk {
                             {
                                 break;
                             }
+                            ::raydsl::__private::here(
+                                m,
+                                "loop",
+                                ::core::file!(),
+                                ::core::line!(),
+                            );
                             let i = counter_3.get(m);
                             {
                                 let repeat_7 = ::raydsl::__private::Loop::new(m);
@@ -121,6 +127,12 @@ impl walk {
                                     {
                                         break;
                                     }
+                                    ::raydsl::__private::here(
+                                        m,
+                                        "loop",
+                                        ::core::file!(),
+                                        ::core::line!(),
+                                    );
                                     'block_7: {
                                         {
                                             let right = ::raydsl::__private::literal(m, 1.0f32, 1.0f64);
@@ -142,11 +154,23 @@ impl walk {
                                             ),
                                         );
                                         if branch_9.then_small(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "if",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 repeat_2.leave(m);
                                             }
                                         }
                                         if branch_9.otherwise(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "else",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             let branch_11 = ::raydsl::__private::Branch::new(
                                                 m,
                                                 {
@@ -163,6 +187,12 @@ impl walk {
                                                         ),
                                                     );
                                                     if branch_13.then(m) {
+                                                        ::raydsl::__private::here(
+                                                            m,
+                                                            "if",
+                                                            ::core::file!(),
+                                                            ::core::line!(),
+                                                        );
                                                         {
                                                             value_12
                                                                 .set(
@@ -184,6 +214,12 @@ impl walk {
                                                         }
                                                     }
                                                     if branch_13.otherwise(m) {
+                                                        ::raydsl::__private::here(
+                                                            m,
+                                                            "else",
+                                                            ::core::file!(),
+                                                            ::core::line!(),
+                                                        );
                                                         {
                                                             value_12
                                                                 .set(m, ::raydsl::__private::Varying::varying(false, m));
@@ -194,6 +230,12 @@ impl walk {
                                                 },
                                             );
                                             if branch_11.then_small(m) {
+                                                ::raydsl::__private::here(
+                                                    m,
+                                                    "if",
+                                                    ::core::file!(),
+                                                    ::core::line!(),
+                                                );
                                                 {
                                                     repeat_7.skip(m);
                                                 }
@@ -214,6 +256,12 @@ impl walk {
                                             ),
                                         );
                                         if branch_17.then_small(m) {
+                                            ::raydsl::__private::here(
+                                                m,
+                                                "if",
+                                                ::core::file!(),
+                                                ::core::line!(),
+                                            );
                                             {
                                                 ret.give(
                                                     m,
@@ -270,6 +318,12 @@ impl walk {
                         ),
                     );
                     if branch_19.then_small(m) {
+                        ::raydsl::__private::here(
+                            m,
+                            "if",
+                            ::core::file!(),
+                            ::core::line!(),
+                        );
                         {
                             {
                                 let right = ::raydsl::__private::choose::<
@@ -303,6 +357,12 @@ impl walk {
                         }
                     }
                     if branch_19.otherwise_small(m) {
+                        ::raydsl::__private::here(
+                            m,
+                            "else",
+                            ::core::file!(),
+                            ::core::line!(),
+                        );
                         {
                             {
                                 let right = ::raydsl::__private::literal(m, 0.0f32, 0.0f64);

@@ -15,6 +15,7 @@ mod rewrite;
 #[cfg(test)]
 mod tests;
 mod twin;
+mod variant_test;
 
 use proc_macro::TokenStream;
 use quote::quote;
@@ -148,4 +149,22 @@ pub fn derive_type(input: TokenStream) -> TokenStream {
         Ok(item) => twin::derive(&item).into(),
         Err(e) => e.into_compile_error().into(),
     }
+}
+
+/// Makes a `#[test]` of each variant from one function of a `Variant`.
+///
+/// `fn agrees(variant: Variant)` gives `agrees_scalar`, `agrees_packet4`, `agrees_packet8`,
+/// `agrees_packet16` and `agrees_wgsl`. A variant that the machine lacks is skipped and says so;
+/// with `RAYDSL_REQUIRE_GPU=1` in the environment a missing device is an error. `#[ignore]` and
+/// `#[should_panic]` go to the tests. The function may give a `Result<(), E>`.
+#[proc_macro_attribute]
+pub fn variant_test(args: TokenStream, item: TokenStream) -> TokenStream {
+    variant_test::variant_test(&args.into(), item.into()).into()
+}
+
+/// Makes a `#[test]` that the WGSL of a `#[kernel] fn` is valid: `wgsl_test!(sky)` gives
+/// `sky_has_valid_wgsl`. It needs no device, but raydsl's feature `validate` or `gpu`.
+#[proc_macro]
+pub fn wgsl_test(input: TokenStream) -> TokenStream {
+    variant_test::wgsl_test(input.into()).into()
 }

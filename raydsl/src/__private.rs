@@ -70,6 +70,12 @@ pub fn read_number(size: usize, bytes: &[u8]) -> u32 {
     u32::from_le_bytes(number)
 }
 
+/// What runs next, for [`report::utilisation`](crate::report::utilisation).
+#[inline(always)]
+pub fn here<M: Machine>(m: &M, what: &'static str, file: &'static str, line: u32) {
+    m.at(crate::machine::Place { what, file, line });
+}
+
 /// `a as T`.
 #[inline(always)]
 pub fn cast<M: Machine, A: OpCast<M, T>, T: Type>(m: &M, a: A) -> T::On<M> {

@@ -1,15 +1,13 @@
 //! A kernel with all its variants.
 
-use fearless_simd::Level;
-
 use crate::machine::{
-    KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet, Recorder, Recording,
-    Resource, Rounding, Simd4, Simd8, Simd16, Type, wgsl,
+    Counted, KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet, Recorder,
+    Recording, Resource, Rounding, Simd4, Simd8, Simd16, Type, wgsl,
 };
 
 /// The machines for which closures are lifted: the natural widths of the target's levels.
 mod native {
-    use super::{Packet, Simd4, Simd8, Simd16};
+    use super::{Counted, Packet, Simd4, Simd8, Simd16};
 
     /// The levels of 4, 8 and 16 lanes, and the one that every machine of the target has.
     ///
@@ -46,7 +44,10 @@ mod native {
     pub type Native16Halves = Packet<Simd16<level::Middle>>;
     /// Eight lanes of what every machine of the target has: SSE2, NEON, or no instructions of
     /// this kind at all.
-    pub type Baseline = Packet<Simd8<level::Baseline>>;
+    ///
+    /// It is also the copy that counts where its lanes are, when it is asked: the others have
+    /// nothing to do with that.
+    pub type Baseline = Packet<Counted<Simd8<level::Baseline>>>;
 }
 
 pub use native::{Baseline, Native4, Native8, Native16, Native16Halves};
@@ -63,7 +64,7 @@ struct Levels {
 impl Levels {
     #[cfg(target_arch = "x86_64")]
     fn detect() -> Self {
-        let level = Level::new();
+        let level = fearless_simd::Level::new();
         let Some(baseline) = level.as_sse2() else {
             unreachable!("SSE2 is a part of x86-64");
         };
@@ -77,7 +78,7 @@ impl Levels {
 
     #[cfg(target_arch = "aarch64")]
     fn detect() -> Self {
-        let Some(neon) = Level::new().as_neon() else {
+        let Some(neon) = fearless_simd::Level::new().as_neon() else {
             unreachable!("NEON is a part of AArch64");
         };
         Self { narrow: Some(neon), middle: Some(neon), wide: Some(neon), baseline: neon }
@@ -154,6 +155,19 @@ impl Variant {
             Self::Scalar => ("scalar", 1),
             Self::Wgsl => ("wgsl", 1),
             packet => packet.with_lanes(Name),
+        }
+    }
+
+    /// Whether this machine has registers for the variant. Packets that it lacks run on what every
+    /// machine of the target has; for WGSL the answer is no.
+    pub fn is_native(self) -> bool {
+        let levels = Levels::detect();
+        match self {
+            Self::Scalar => true,
+            Self::Packet4 => levels.narrow.is_some(),
+            Self::Packet8 => levels.middle.is_some(),
+            Self::Packet16 => levels.wide.is_some() || levels.middle.is_some(),
+            Self::Wgsl => false,
         }
     }
 
@@ -342,8 +356,14 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
             Variant::Packet16 if let Some(s) = levels.middle => {
                 task.run(Simd16(s), &*self.lifted.native16_halves)
             }
-            _ => task.run(Simd8(levels.baseline), &*self.lifted.baseline),
+            _ => task.run(Counted(Simd8(levels.baseline)), &*self.lifted.baseline),
         }
+    }
+
+    /// Runs packets of 8 lanes, of what every machine of the target has: the ones that count.
+    pub(crate) fn run_counted(&self, inputs: &[A], outputs: &mut [R]) {
+        let lanes = Counted(Simd8(Levels::detect().baseline));
+        run_batch(lanes, &*self.lifted.baseline, inputs, outputs);
     }
 
     /// Runs a CPU variant over `inputs`; `outputs` has the same length.

@@ -6,11 +6,12 @@ use raydsl::kernel::{Kernel, Lifted, Variant};
 use raydsl::machine::{KernelFn, KernelInfo, Lanes, Packet, Scalar, Type};
 
 use crate::gpu::gpu;
-use crate::levels::{LevelTask, each_level, widest_level};
+use crate::levels::{LevelTask, each_level, gangs, widest_level};
 use crate::rng::Rng;
+use crate::scaled;
 use crate::values::{Numbers, compare, compare_within, garbage, random};
 
-/// Not a multiple of any width, so that the last packet is partly filled.
+/// How many inputs a kernel is given, at full scale.
 const INPUTS: usize = 1003;
 
 /// Whether WGSL must give the CPU's bits.
@@ -36,12 +37,17 @@ where
     F::Args: Debug,
 {
     let mut rng = Rng::of(name);
-    let inputs: Vec<F::Args> = (0..INPUTS).map(|_| random(&mut rng, numbers)).collect();
+    // Not a multiple of any width, so that the last packet is partly filled.
+    let count = scaled(INPUTS) | 1;
+    let inputs: Vec<F::Args> = (0..count).map(|_| random(&mut rng, numbers)).collect();
     let expected: Vec<F::Output> = inputs.iter().map(|a| F::scalar(*a)).collect();
     let case = Case::<F> { name, inputs, expected };
     case.scalar_machine();
     each_level(&mut &case);
     widest_level(&mut &case);
+    for gang in gangs() {
+        case.packets(&gang.name, gang.lanes, gang.width);
+    }
     wgsl_agrees(name, &recorded::<F>(), &case.inputs, &case.expected, wgsl);
 }
 
@@ -111,12 +117,12 @@ where
         self.assert_same("the scalar machine", &found);
     }
 
-    fn packets<L: Lanes>(&self, name: &str, lanes: L) {
+    fn packets<L: Lanes>(&self, name: &str, lanes: L, width: usize) {
         let kernel: &PacketKernel<F, L> = &|m, args| F::lifted(m, args);
         let run = |bits: u64, input: &dyn Fn(usize) -> F::Args, out: &mut [F::Output]| {
             run_packet::<F, L>(lanes, kernel, bits, input, out);
         };
-        each_pass(&run, L::N, &self.inputs, &mut |how, found: &[F::Output]| {
+        each_pass(&run, width, &self.inputs, &mut |how, found: &[F::Output]| {
             self.assert_same(&format!("{name}{how}"), found);
         });
     }
@@ -127,7 +133,7 @@ where
     F::Args: Debug,
 {
     fn run<L: Lanes>(&mut self, name: &str, lanes: L) {
-        self.packets(name, lanes);
+        self.packets(name, lanes, L::N);
     }
 }
 
@@ -170,7 +176,7 @@ pub(crate) fn each_pass<A: Type, R: Type>(
 fn all_lanes<A: Type, R: Type>(run: Run<'_, A, R>, n: usize, inputs: &[A]) -> Vec<R> {
     let mut found = vec![garbage(); inputs.len()];
     for (inputs, out) in inputs.chunks(n).zip(found.chunks_mut(n)) {
-        let bits = (1u64 << inputs.len()) - 1;
+        let bits = u64::MAX >> (64 - inputs.len());
         run(bits, &|l| inputs[l.min(inputs.len() - 1)], out);
     }
     found

@@ -1,28 +1,71 @@
 //! The device of the tests.
 
-use std::sync::OnceLock;
+#[cfg(feature = "gpu")]
+pub use device::gpu;
+#[cfg(not(feature = "gpu"))]
+pub use none::gpu;
 
-use raydsl::gpu::GpuScheduler;
+#[cfg(feature = "gpu")]
+mod device {
+    use std::sync::OnceLock;
 
-/// The scheduler of this machine's adapter, or `None` after saying so loudly.
-///
-/// # Panics
-///
-/// If there is no adapter and `RAYDSL_REQUIRE_GPU` is `1`.
-#[must_use = "a test that needs a device must return without one"]
-pub fn gpu() -> Option<&'static GpuScheduler> {
-    static GPU: OnceLock<Option<GpuScheduler>> = OnceLock::new();
-    GPU.get_or_init(|| match GpuScheduler::new() {
-        Ok(gpu) => {
-            eprintln!("GPU adapter: {}", gpu.context().adapter_name());
-            Some(gpu)
+    use raydsl::gpu::GpuScheduler;
+
+    /// The scheduler of this machine's adapter, or `None` after saying so loudly.
+    ///
+    /// # Panics
+    ///
+    /// If there is no adapter and `RAYDSL_REQUIRE_GPU` is `1`.
+    #[must_use = "a test that needs a device must return without one"]
+    pub fn gpu() -> Option<&'static GpuScheduler> {
+        static GPU: OnceLock<Option<GpuScheduler>> = OnceLock::new();
+        GPU.get_or_init(|| match GpuScheduler::new() {
+            Ok(gpu) => {
+                eprintln!("GPU adapter: {}", gpu.context().adapter_name());
+                Some(gpu)
+            }
+            Err(error) => {
+                let required = std::env::var("RAYDSL_REQUIRE_GPU").is_ok_and(|v| v == "1");
+                assert!(!required, "RAYDSL_REQUIRE_GPU=1, but: {error}");
+                eprintln!("SKIPPED: no GPU adapter ({error})");
+                None
+            }
+        })
+        .as_ref()
+    }
+}
+
+/// Tests of the CPU alone are built without wgpu.
+#[cfg(not(feature = "gpu"))]
+mod none {
+    use raydsl::kernel::Kernel;
+    use raydsl::machine::Type;
+
+    /// There is none.
+    #[derive(Debug)]
+    pub enum Device {}
+
+    impl Device {
+        /// Never called.
+        ///
+        /// # Errors
+        ///
+        /// None.
+        pub fn batch<A: Type, R: Type>(
+            &self,
+            _: &Kernel<'_, A, R>,
+            _: &[A],
+            _: &mut [R],
+        ) -> Result<(), String> {
+            match *self {}
         }
-        Err(error) => {
-            let required = std::env::var("RAYDSL_REQUIRE_GPU").is_ok_and(|v| v == "1");
-            assert!(!required, "RAYDSL_REQUIRE_GPU=1, but: {error}");
-            eprintln!("SKIPPED: no GPU adapter ({error})");
-            None
-        }
-    })
-    .as_ref()
+    }
+
+    /// No device, said loudly once.
+    #[must_use = "a test that needs a device must return without one"]
+    pub fn gpu() -> Option<&'static Device> {
+        static SAID: std::sync::Once = std::sync::Once::new();
+        SAID.call_once(|| eprintln!("SKIPPED: these tests were built without the feature `gpu`"));
+        None
+    }
 }

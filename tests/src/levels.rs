@@ -1,7 +1,7 @@
 //! Every instruction set that this machine has, in every width.
 
 use fearless_simd::{Fallback, Level, Simd};
-use raydsl::machine::{Lanes, One, Simd4, Simd8, Simd16};
+use raydsl::machine::{Gang, Lanes, One, Simd4, Simd8, Simd16};
 
 use crate::run_time::{Numbered, RunTime};
 
@@ -93,6 +93,60 @@ fn widest(task: &mut impl LevelTask, level: Level) {
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 fn widest(task: &mut impl LevelTask, _: Level) {
     one_width(task, Simd8(Fallback::new()));
+}
+
+/// Several registers a value, at the widest level of this machine: 32 and 64 lanes.
+///
+/// Both are of one type, so that a kernel is compiled once for them.
+pub fn gangs() -> Vec<AnyGang> {
+    struct Gangs(Vec<AnyGang>);
+    impl LevelTask for Gangs {
+        fn run<L: Lanes>(&mut self, name: &str, lanes: L) {
+            let gang = |width, lanes| {
+                let name = format!("{name} in a gang of {width}");
+                AnyGang { name, width, lanes }
+            };
+            self.0.push(gang(32, RunTime::new(Gang::<L, 2>(lanes))));
+            self.0.push(gang(64, RunTime::new(Gang::<Gang<L, 2>, 2>(Gang(lanes)))));
+        }
+    }
+    let mut all = Gangs(Vec::new());
+    widest_of_16(&mut all, Level::new());
+    all.0
+}
+
+/// Sixteen lanes of the widest level, which may hold them in several registers itself.
+#[cfg(target_arch = "x86_64")]
+fn widest_of_16(task: &mut impl LevelTask, level: Level) {
+    if let Some(s) = level.as_avx512() {
+        one_width(task, Simd16(s));
+    } else if let Some(s) = level.as_avx2() {
+        one_width(task, Simd16(s));
+    } else if let Some(s) = level.as_sse2() {
+        one_width(task, Simd16(s));
+    }
+}
+
+#[cfg(target_arch = "aarch64")]
+fn widest_of_16(task: &mut impl LevelTask, level: Level) {
+    if let Some(s) = level.as_neon() {
+        one_width(task, Simd16(s));
+    }
+}
+
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+fn widest_of_16(task: &mut impl LevelTask, _: Level) {
+    one_width(task, Simd16(Fallback::new()));
+}
+
+/// A gang of up to 64 lanes.
+pub struct AnyGang {
+    /// For messages.
+    pub name: String,
+    /// How many lanes there are; those above hold nothing.
+    pub width: usize,
+    /// The operations.
+    pub lanes: RunTime<64>,
 }
 
 #[cfg(target_arch = "x86_64")]

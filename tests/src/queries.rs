@@ -4,7 +4,7 @@ use raydsl::bvh::On;
 use raydsl::machine::{Capture, Lanes, Machine, Packet, Scalar, Type};
 use raydsl::prelude::{Bvh, Hit, Kernel, Primitive, Ray, Slice, Triangle, Variant, kernel};
 
-use crate::levels::{LevelTask, each_level, widest_level};
+use crate::levels::{LevelTask, each_level, gangs, widest_level};
 use crate::scenes::ColorSphere;
 use crate::{in_parallel, scaled};
 
@@ -184,7 +184,7 @@ macro_rules! checks {
             struct Widest<'a>(On<'a, $prim>, &'a [Ray], Vec<Hit>);
             impl LevelTask for Widest<'_> {
                 fn run<L: Lanes>(&mut self, _: &str, lanes: L) {
-                    self.2 = closest_hits(lanes, &self.0, self.1);
+                    self.2 = closest_hits(lanes, L::N, &self.0, self.1);
                 }
             }
             let mut task = Widest(view, rays, Vec::new());
@@ -202,6 +202,19 @@ impl Answers {
     pub fn assert_levels<P: Primitive>(&self, who: &str, view: On<'_, P>) {
         each_level(&mut Ask { who, view, answers: self });
     }
+
+    /// Asks gangs of 32 and 64 lanes about every fourth ray.
+    pub fn assert_gangs<P: Primitive>(&self, who: &str, view: On<'_, P>) {
+        let answers = &Self {
+            rays: self.rays.iter().step_by(4).copied().collect(),
+            closest: self.closest.iter().step_by(4).copied().collect(),
+            any: self.any.iter().step_by(4).copied().collect(),
+        };
+        let ask = Ask { who, view, answers };
+        for gang in gangs() {
+            ask.packets(&gang.name, gang.lanes, gang.width);
+        }
+    }
 }
 
 struct Ask<'a, P> {
@@ -212,18 +225,29 @@ struct Ask<'a, P> {
 
 impl<P: Primitive> LevelTask for Ask<'_, P> {
     fn run<L: Lanes>(&mut self, name: &str, lanes: L) {
+        self.packets(name, lanes, L::N);
+    }
+}
+
+impl<P: Primitive> Ask<'_, P> {
+    fn packets<L: Lanes>(&self, name: &str, lanes: L, width: usize) {
         let who = format!("{}, {name}", self.who);
         let rays = &self.answers.rays;
-        self.answers.assert_closest(&who, &closest_hits(lanes, &self.view, rays));
-        self.answers.assert_any(&who, &any_hits(lanes, &self.view, rays));
+        self.answers.assert_closest(&who, &closest_hits(lanes, width, &self.view, rays));
+        self.answers.assert_any(&who, &any_hits(lanes, width, &self.view, rays));
     }
 }
 
 #[inline(never)]
-fn closest_hits<L: Lanes, P: Primitive>(lanes: L, view: &On<'_, P>, rays: &[Ray]) -> Vec<Hit> {
+fn closest_hits<L: Lanes, P: Primitive>(
+    lanes: L,
+    width: usize,
+    view: &On<'_, P>,
+    rays: &[Ray],
+) -> Vec<Hit> {
     let mut found = vec![Hit::miss(); rays.len()];
     fill(&mut found, |first, out| {
-        packets(lanes, &rays[first..], out, |m, ray| {
+        packets(lanes, width, &rays[first..], out, |m, ray| {
             let hit = m.closest_hit(view, Ray::from_lanes(m, &|l| ray(l)));
             move |l| Hit::lane::<Packet<L>>(&hit, l)
         });
@@ -232,10 +256,15 @@ fn closest_hits<L: Lanes, P: Primitive>(lanes: L, view: &On<'_, P>, rays: &[Ray]
 }
 
 #[inline(never)]
-fn any_hits<L: Lanes, P: Primitive>(lanes: L, view: &On<'_, P>, rays: &[Ray]) -> Vec<bool> {
+fn any_hits<L: Lanes, P: Primitive>(
+    lanes: L,
+    width: usize,
+    view: &On<'_, P>,
+    rays: &[Ray],
+) -> Vec<bool> {
     let mut found = vec![false; rays.len()];
     fill(&mut found, |first, out| {
-        packets(lanes, &rays[first..], out, |m, ray| {
+        packets(lanes, width, &rays[first..], out, |m, ray| {
             let hit = m.any_hit(view, Ray::from_lanes(m, &|l| ray(l)));
             move |l| bool::lane::<Packet<L>>(&hit, l)
         });
@@ -243,16 +272,17 @@ fn any_hits<L: Lanes, P: Primitive>(lanes: L, view: &On<'_, P>, rays: &[Ray]) ->
     found
 }
 
-/// Asks `query` for `out`, a packet at a time.
+/// Asks `query` for `out`, a packet of `width` at a time.
 #[inline(always)]
 fn packets<L: Lanes, T, F: Fn(usize) -> T>(
     lanes: L,
+    width: usize,
     rays: &[Ray],
     out: &mut [T],
     query: impl Fn(&Packet<L>, &dyn Fn(usize) -> Ray) -> F,
 ) {
     lanes.vectorize(|| {
-        for (rays, out) in rays.chunks(L::N).zip(out.chunks_mut(L::N)) {
+        for (rays, out) in rays.chunks(width).zip(out.chunks_mut(width)) {
             let m = Packet::with_count(lanes, out.len());
             let lane = query(&m, &|l| rays[l.min(rays.len() - 1)]);
             out.iter_mut().enumerate().for_each(|(l, out)| *out = lane(l));

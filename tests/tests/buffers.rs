@@ -1,5 +1,7 @@
 //! Slices that the application owns, read by kernels in every variant.
 
+#![allow(clippy::needless_range_loop, reason = "what kernels are written in")]
+
 use raydsl::kernel;
 use raydsl::prelude::*;
 use raydsl_tests::check::{every_variant, inputs};

@@ -1,5 +1,11 @@
 //! Closures: as arguments of operations, marked inside `#[kernels]`, with values of the host.
 
+#![allow(
+    clippy::manual_is_multiple_of,
+    clippy::needless_range_loop,
+    reason = "what kernels are written in"
+)]
+
 use raydsl::prelude::*;
 use raydsl::{kernel, kernels};
 use raydsl_tests::check::{every_variant, inputs};

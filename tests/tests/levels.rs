@@ -19,10 +19,14 @@ macro_rules! levels {
             let bvh = Bvh::build(&prims)?;
             let mut rays = random_rays(41, scaled(RAYS));
             rays.extend(broken_rays());
-            scalar_answers(bvh.view(), rays).assert_levels("tree", bvh.view());
+            let answers = scalar_answers(bvh.view(), rays);
+            answers.assert_levels("tree", bvh.view());
+            answers.assert_gangs("tree", bvh.view());
             let few = slice_view(&prims[..60]);
             let rays = random_rays(43, scaled(RAYS_OF_SLICES));
-            scalar_answers(few, rays).assert_levels("slice", few);
+            let answers = scalar_answers(few, rays);
+            answers.assert_levels("slice", few);
+            answers.assert_gangs("slice", few);
             Ok(())
         }
     };

@@ -25,6 +25,33 @@ fn levels_are_named() {
     assert!(names.len() >= 4, "one lane and three portable widths are everywhere");
 }
 
+/// Gangs with every operation inlined, as a program would have them.
+#[test]
+fn inlined_gangs() {
+    use raydsl::kernel::run_fn;
+    use raydsl::machine::{Gang, Lanes};
+    use raydsl_tests::levels::{LevelTask, widest_level};
+
+    type Inputs = Vec<(f32, u32)>;
+    struct Gangs(Inputs, Vec<f32>);
+    impl LevelTask for Gangs {
+        fn run<L: Lanes>(&mut self, name: &str, lanes: L) {
+            self.gang(name, Gang::<L, 2>(lanes));
+            self.gang(name, Gang::<L, 4>(lanes));
+        }
+    }
+    impl Gangs {
+        fn gang<L: Lanes>(&self, name: &str, lanes: L) {
+            let mut found = vec![f32::NAN; self.0.len()];
+            run_fn::<kernels::labelled, _>(lanes, &self.0, &mut found);
+            assert_eq!(found, self.1, "{} lanes of {name}", L::N);
+        }
+    }
+    let inputs: Inputs = (0..999).map(|i| (i as f32 * 0.11, i % 19)).collect();
+    let expected = inputs.iter().map(|(x, n)| kernels::labelled(*x, *n)).collect();
+    widest_level(&mut Gangs(inputs, expected));
+}
+
 /// `run_fn` and `Kernel::of` are the public ways to the same results.
 #[test]
 fn public_entry_points() {

@@ -40,6 +40,7 @@ impl sky {
                             if !repeat_2.test(m, less(m, counter_3.get(m), end)) {
                                 break;
                             }
+                            here(m, "loop", "examples/first_kernel.rs", 48u32);
                             {
                                 {
                                     let right = f32(m, 0.6f32);
@@ -53,6 +54,7 @@ impl sky {
                                     OpCompare::compare(m, Compare::Gt, up, edge.get(m)),
                                 );
                                 if branch_6.then(m) {
+                                    here(m, "if", "examples/first_kernel.rs", 50u32);
                                     {
                                         ret.give(m, Coerce::coerce(edge.get(m), m));
                                     }

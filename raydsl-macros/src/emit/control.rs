@@ -3,10 +3,17 @@
 use std::collections::HashMap;
 
 use proc_macro2::{Ident, Span, TokenStream};
-use quote::{format_ident, quote};
+use quote::{format_ident, quote, quote_spanned};
 
 use super::{Binding, Dest, Emitter, Loop, SlotType, own, private, shown};
 use crate::model::{Block, Expr, Kind, Let, Range, Stmt};
+
+/// Tells the machine where its lanes are.
+fn place(what: &str, span: Span) -> TokenStream {
+    let (p, m) = (private(), own("m"));
+    let line = quote_spanned!(span=> ::core::file!(), ::core::line!());
+    quote!(#p::here(#m, #what, #line);)
+}
 
 impl Emitter<'_> {
     /// A block whose value goes to `dest`, with the checks that leave it once no lane is left.
@@ -92,11 +99,11 @@ impl Emitter<'_> {
             }
             Kind::Block(b) => self.block(b, dest),
             Kind::While { label, c, body } => {
-                self.while_loop(label.clone(), Some(c), body, &Dest::None)
+                self.while_loop(label.clone(), Some(c), body, &Dest::None, e.span)
             }
-            Kind::Loop { label, body } => self.while_loop(label.clone(), None, body, dest),
+            Kind::Loop { label, body } => self.while_loop(label.clone(), None, body, dest, e.span),
             Kind::For { label, var, range, body } => {
-                self.for_loop(label.clone(), var.as_ref(), range, body)
+                self.for_loop(label.clone(), var.as_ref(), range, body, e.span)
             }
             Kind::Break(label, value) => self.exit(label.as_deref(), "leave", value.as_deref()),
             Kind::Continue(label) => self.exit(label.as_deref(), "skip", None),
@@ -166,6 +173,7 @@ impl Emitter<'_> {
         let host = self.host_value(c);
         self.varying += usize::from(host.is_none());
         let is_varying = host.is_none();
+        let here = place("if", c.span);
         let c = host.unwrap_or_else(|| self.value(c));
         // Small arms run untested.
         let hook = |name: &str, is_small: bool| {
@@ -178,12 +186,13 @@ impl Emitter<'_> {
         let other = otherwise.map(|e| {
             let enter = hook("otherwise", e.is_small());
             let arm = self.into(e, dest);
-            quote!(if #branch.#enter(#m) { #arm })
+            let here = place("else", e.span);
+            quote!(if #branch.#enter(#m) { #here #arm })
         });
         self.varying -= usize::from(is_varying);
         quote! {
             let #branch = #p::Branch::new(#m, #c);
-            if #branch.#enter(#m) { #then }
+            if #branch.#enter(#m) { #here #then }
             #other
             #branch.end(#m);
         }
@@ -195,8 +204,10 @@ impl Emitter<'_> {
         c: Option<&Expr>,
         body: &Block,
         dest: &Dest,
+        span: Span,
     ) -> TokenStream {
         let (p, m) = (private(), own("m"));
+        let here = place("loop", span);
         let ident = self.fresh("repeat");
         let test = c.map(|c| {
             let c = self.value(c);
@@ -211,6 +222,7 @@ impl Emitter<'_> {
             let #ident = #p::Loop::new(#m);
             loop {
                 #test
+                #here
                 #body
                 #ident.continuing(#m);
                 if !#ident.again(#m) { break; }
@@ -225,8 +237,10 @@ impl Emitter<'_> {
         var: Option<&Ident>,
         range: &Range,
         body: &Block,
+        span: Span,
     ) -> TokenStream {
         let (p, m) = (private(), own("m"));
+        let here = place("loop", span);
         let (ident, counter, done) =
             (self.fresh("repeat"), self.fresh("counter"), self.fresh("done"));
         let (begin, stop) = (own("begin"), own("end"));
@@ -285,6 +299,7 @@ impl Emitter<'_> {
             let #ident = #p::Loop::new(#m);
             loop {
                 if !#ident.test(#m, #test) { break; }
+                #here
                 #bound
                 #body
                 #ident.continuing(#m);

@@ -344,3 +344,46 @@ fn the_item_stays() {
     );
     assert!(expand_primitive(quote!(), s.clone()).to_string().starts_with(&s.to_string()));
 }
+
+#[test]
+fn tests_of_variants_take_a_variant() {
+    use crate::variant_test::{variant_test, wgsl_test};
+    let of = |f| variant_test(&quote!(), f);
+    let help = "fn agrees(variant: Variant)";
+    assert_one(
+        of(quote!(
+            fn f() {}
+        )),
+        "takes one parameter",
+        help,
+    );
+    assert_one(
+        of(quote!(
+            fn f<T>(variant: T) {}
+        )),
+        "cannot be generic",
+        help,
+    );
+    assert_one(
+        of(quote!(
+            async fn f(variant: Variant) {}
+        )),
+        "cannot be `async`",
+        help,
+    );
+    assert_one(
+        of(quote!(
+            struct S;
+        )),
+        "stands on a function",
+        help,
+    );
+    let with_arguments = variant_test(
+        &quote!(packets),
+        quote!(
+            fn f(variant: Variant) {}
+        ),
+    );
+    assert_one(with_arguments, "takes no arguments", "#[variant_test]");
+    assert_one(wgsl_test(quote!(1 + 1)), "expected identifier", "#[kernel] fn");
+}

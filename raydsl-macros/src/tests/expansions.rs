@@ -168,3 +168,24 @@ fn the_source_stays() {
     let text = expand_kernel(quote!(), f.clone()).to_string();
     assert!(text.starts_with(&f.to_string()), "{text}");
 }
+
+#[test]
+fn variant_test() {
+    let f = quote! {
+        /// Kernels agree.
+        #[ignore = "slow"]
+        fn agrees(variant: Variant) -> Result<(), Error> {
+            check(variant)
+        }
+    };
+    let tests = crate::variant_test::variant_test(&quote!(), f);
+    let f = quote! {
+        #[should_panic(expected = "too far")]
+        fn panics(variant: Variant) {
+            check(variant);
+        }
+    };
+    let panics = crate::variant_test::variant_test(&quote!(), f);
+    let valid = crate::variant_test::wgsl_test(quote!(scene::sky));
+    assert_golden("variant_test", quote!(#tests #panics #valid));
+}

@@ -5,7 +5,7 @@ use super::traverse::Stack;
 use super::{Node, On};
 use crate::geometry::{HitOn, Primitive, RayOn};
 use crate::machine::{
-    B, BoolBinary, Compare, Entered, F, F32Binary, F32Unary, Lanes, Packet, U, V3, fill,
+    B, BoolBinary, Compare, Entered, F, F32Binary, F32Unary, Lanes, Packet, Place, U, V3, fill,
 };
 
 /// The machine of the loops: its kernels are inlined, so that nothing travels through memory.
@@ -347,6 +347,10 @@ fn any_hit_inside<L: Lanes, P: Primitive>(
     B(found)
 }
 
+/// What counters show for a walk; it has no place in the user's source.
+const NODES: Place = Place { what: "nodes of trees", file: "", line: 0 };
+const PRIMITIVES: Place = Place { what: "primitives in leaves", file: "", line: 0 };
+
 /// Visits primitives that any running lane may meet. `visit` is given the lanes concerned, may
 /// lower their limits, and returns those that stay interested; the walk ends when none is.
 #[inline(always)]
@@ -381,9 +385,11 @@ fn walk<L: Lanes, P: Primitive>(
         return;
     }
     loop {
+        l.at(NODES, mask);
         if node.is_leaf() {
             let (first, count) = (node.first as usize, node.count as usize);
             for &id in &prims.indices[first..first + count] {
+                l.at(PRIMITIVES, mask);
                 let stay = visit(mask, id, &mut limit);
                 // A lane that lost interest leaves the walk.
                 alive = without(l, alive, without(l, mask, stay));

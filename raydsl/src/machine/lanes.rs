@@ -9,7 +9,8 @@ use fearless_simd::{
     f32x8, f32x16, i32x4, i32x8, i32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
 };
 
-use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, scalar};
+use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Place, counted, scalar};
+use crate::machine::Counted;
 
 /// Registers of one width, and what can be done with them. `self` is the proof of the level.
 #[expect(missing_docs, reason = "the operations are documented at their enums")]
@@ -25,6 +26,9 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn isa(self) -> &'static str;
     /// Runs `f` compiled for the instruction set.
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R;
+    /// The lanes of `active` are at a place of the source. Only [`Counted`](super::Counted) listens.
+    #[inline(always)]
+    fn at(self, _place: Place, _active: Self::Mask) {}
 
     fn f32(self, v: f32) -> Self::F32;
     fn i32(self, v: i32) -> Self::I32;
@@ -84,21 +88,20 @@ pub(crate) fn fill<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T
 
 /// The name of a level, as reports print it.
 fn isa_name(level: fearless_simd::Level) -> &'static str {
-    use fearless_simd::Level;
     #[allow(unreachable_patterns, reason = "which levels exist depends on the target")]
     match level {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Avx512(_) => "avx512",
+        fearless_simd::Level::Avx512(_) => "avx512",
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Avx2(_) => "avx2",
+        fearless_simd::Level::Avx2(_) => "avx2",
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Sse4_2(_) => "sse4.2",
+        fearless_simd::Level::Sse4_2(_) => "sse4.2",
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Sse2(_) => "sse2",
+        fearless_simd::Level::Sse2(_) => "sse2",
         #[cfg(target_arch = "aarch64")]
-        Level::Neon(_) => "neon",
+        fearless_simd::Level::Neon(_) => "neon",
         #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-        Level::WasmSimd128(_) => "simd128",
+        fearless_simd::Level::WasmSimd128(_) => "simd128",
         _ => "portable",
     }
 }
@@ -107,11 +110,12 @@ fn isa_name(level: fearless_simd::Level) -> &'static str {
 /// on x86, and `max` likewise.
 #[inline(always)]
 fn has_ordered_min(level: fearless_simd::Level) -> bool {
-    use fearless_simd::Level;
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    use fearless_simd::Level::{Avx2, Avx512, Sse2, Sse4_2};
     #[allow(unreachable_patterns, reason = "which levels exist depends on the target")]
     match level {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Avx512(_) | Level::Avx2(_) | Level::Sse4_2(_) | Level::Sse2(_) => true,
+        Avx512(_) | Avx2(_) | Sse4_2(_) | Sse2(_) => true,
         _ => false,
     }
 }
@@ -516,67 +520,93 @@ macro_rules! delegate {
     };
 }
 
-impl<L: Lanes> Lanes for Entered<L> {
-    const N: usize = L::N;
-    type F32 = L::F32;
-    type I32 = L::I32;
-    type U32 = L::U32;
-    type Mask = L::Mask;
+/// Lanes around others: what is not given here is theirs.
+macro_rules! lanes_around {
+    ($name:ident { $($own:tt)* }) => {
+        impl<L: Lanes> Lanes for $name<L> {
+            const N: usize = L::N;
+            type F32 = L::F32;
+            type I32 = L::I32;
+            type U32 = L::U32;
+            type Mask = L::Mask;
 
+        $($own)*
+
+            delegate! {
+                isa() -> &'static str;
+                f32(v: f32) -> L::F32;
+                i32(v: i32) -> L::I32;
+                u32(v: u32) -> L::U32;
+                mask(v: bool) -> L::Mask;
+                f32_unary(op: F32Unary, a: L::F32) -> L::F32;
+                f32_binary(op: F32Binary, a: L::F32, b: L::F32) -> L::F32;
+                f32_mul_add(a: L::F32, b: L::F32, c: L::F32) -> L::F32;
+                i32_binary(op: IntBinary, a: L::I32, b: L::I32) -> L::I32;
+                u32_binary(op: IntBinary, a: L::U32, b: L::U32) -> L::U32;
+                mask_binary(op: BoolBinary, a: L::Mask, b: L::Mask) -> L::Mask;
+                mask_not(a: L::Mask) -> L::Mask;
+                f32_compare(op: Compare, a: L::F32, b: L::F32) -> L::Mask;
+                i32_compare(op: Compare, a: L::I32, b: L::I32) -> L::Mask;
+                u32_compare(op: Compare, a: L::U32, b: L::U32) -> L::Mask;
+                f32_select(c: L::Mask, a: L::F32, b: L::F32) -> L::F32;
+                i32_select(c: L::Mask, a: L::I32, b: L::I32) -> L::I32;
+                u32_select(c: L::Mask, a: L::U32, b: L::U32) -> L::U32;
+                any(a: L::Mask) -> bool;
+                bits(a: L::Mask) -> u64;
+                mask_from_bits(bits: u64) -> L::Mask;
+                f32_to_i32(a: L::F32) -> L::I32;
+                f32_to_u32(a: L::F32) -> L::U32;
+                i32_to_f32(a: L::I32) -> L::F32;
+                u32_to_f32(a: L::U32) -> L::F32;
+                i32_to_u32(a: L::I32) -> L::U32;
+                u32_to_i32(a: L::U32) -> L::I32;
+                f32_to_bits(a: L::F32) -> L::U32;
+                f32_from_bits(a: L::U32) -> L::F32;
+                f32_from_fn(f: impl FnMut(usize) -> f32) -> L::F32;
+                i32_from_fn(f: impl FnMut(usize) -> i32) -> L::I32;
+                u32_from_fn(f: impl FnMut(usize) -> u32) -> L::U32;
+            }
+
+            #[inline(always)]
+            fn f32_lane(a: &L::F32, lane: usize) -> f32 {
+                L::f32_lane(a, lane)
+            }
+            #[inline(always)]
+            fn i32_lane(a: &L::I32, lane: usize) -> i32 {
+                L::i32_lane(a, lane)
+            }
+            #[inline(always)]
+            fn u32_lane(a: &L::U32, lane: usize) -> u32 {
+                L::u32_lane(a, lane)
+            }
+            #[inline(always)]
+            fn mask_lane(a: &L::Mask, lane: usize) -> bool {
+                L::mask_lane(a, lane)
+            }
+        }
+    };
+}
+
+lanes_around!(Entered {
     #[inline(always)]
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
         f()
     }
+    #[inline(always)]
+    fn at(self, place: Place, active: L::Mask) {
+        self.0.at(place, active);
+    }
+});
 
-    delegate! {
-        isa() -> &'static str;
-        f32(v: f32) -> L::F32;
-        i32(v: i32) -> L::I32;
-        u32(v: u32) -> L::U32;
-        mask(v: bool) -> L::Mask;
-        f32_unary(op: F32Unary, a: L::F32) -> L::F32;
-        f32_binary(op: F32Binary, a: L::F32, b: L::F32) -> L::F32;
-        f32_mul_add(a: L::F32, b: L::F32, c: L::F32) -> L::F32;
-        i32_binary(op: IntBinary, a: L::I32, b: L::I32) -> L::I32;
-        u32_binary(op: IntBinary, a: L::U32, b: L::U32) -> L::U32;
-        mask_binary(op: BoolBinary, a: L::Mask, b: L::Mask) -> L::Mask;
-        mask_not(a: L::Mask) -> L::Mask;
-        f32_compare(op: Compare, a: L::F32, b: L::F32) -> L::Mask;
-        i32_compare(op: Compare, a: L::I32, b: L::I32) -> L::Mask;
-        u32_compare(op: Compare, a: L::U32, b: L::U32) -> L::Mask;
-        f32_select(c: L::Mask, a: L::F32, b: L::F32) -> L::F32;
-        i32_select(c: L::Mask, a: L::I32, b: L::I32) -> L::I32;
-        u32_select(c: L::Mask, a: L::U32, b: L::U32) -> L::U32;
-        any(a: L::Mask) -> bool;
-        bits(a: L::Mask) -> u64;
-        mask_from_bits(bits: u64) -> L::Mask;
-        f32_to_i32(a: L::F32) -> L::I32;
-        f32_to_u32(a: L::F32) -> L::U32;
-        i32_to_f32(a: L::I32) -> L::F32;
-        u32_to_f32(a: L::U32) -> L::F32;
-        i32_to_u32(a: L::I32) -> L::U32;
-        u32_to_i32(a: L::U32) -> L::I32;
-        f32_to_bits(a: L::F32) -> L::U32;
-        f32_from_bits(a: L::U32) -> L::F32;
-        f32_from_fn(f: impl FnMut(usize) -> f32) -> L::F32;
-        i32_from_fn(f: impl FnMut(usize) -> i32) -> L::I32;
-        u32_from_fn(f: impl FnMut(usize) -> u32) -> L::U32;
-    }
-
+lanes_around!(Counted {
     #[inline(always)]
-    fn f32_lane(a: &L::F32, lane: usize) -> f32 {
-        L::f32_lane(a, lane)
+    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
+        self.0.vectorize(f)
     }
     #[inline(always)]
-    fn i32_lane(a: &L::I32, lane: usize) -> i32 {
-        L::i32_lane(a, lane)
+    fn at(self, place: Place, active: L::Mask) {
+        if counted::is_counting() {
+            counted::add(place, self.0.bits(active));
+        }
     }
-    #[inline(always)]
-    fn u32_lane(a: &L::U32, lane: usize) -> u32 {
-        L::u32_lane(a, lane)
-    }
-    #[inline(always)]
-    fn mask_lane(a: &L::Mask, lane: usize) -> bool {
-        L::mask_lane(a, lane)
-    }
-}
+});

@@ -16,7 +16,9 @@ mod bits;
 mod call;
 mod capture;
 mod control;
+mod counted;
 pub(crate) mod functions;
+mod gang;
 pub mod generic;
 pub mod host;
 pub(crate) mod index;
@@ -39,6 +41,9 @@ pub use batch::Const;
 pub use call::{KernelFn, KernelInfo};
 pub use capture::{Capture, Parameter, Resource};
 pub use control::{Branch, Condition, Loop, Ret, Var};
+pub(crate) use counted::{Count, count};
+pub use counted::{Counted, Place};
+pub use gang::Gang;
 pub(crate) use lanes::{Entered, fill};
 pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
 pub(crate) use margin::result_leaves;
@@ -328,6 +333,10 @@ pub trait Machine: Sized + 'static {
     fn alive(&self) -> bool;
     /// Whether any running lane has `c`; the recorder says yes.
     fn any(&self, c: Self::Bool) -> bool;
+
+    /// Says where in the source the running lanes are: in an arm of an `if`, in a round of a loop.
+    #[inline(always)]
+    fn at(&self, _place: Place) {}
 
     /// Evaluates the right side of `&&` or `||`, which only lanes where the left side `c` is
     /// `when` would reach: in the others, an overflow there is no error.

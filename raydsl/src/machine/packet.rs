@@ -370,6 +370,11 @@ impl<L: Lanes> Machine for Packet<L> {
     }
 
     #[inline(always)]
+    fn at(&self, place: Place) {
+        self.lanes.at(place, self.active.get());
+    }
+
+    #[inline(always)]
     fn guarded<R>(&self, c: L::Mask, when: bool, f: impl FnOnce() -> R) -> R {
         if !cfg!(debug_assertions) {
             return f();

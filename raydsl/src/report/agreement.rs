@@ -102,7 +102,7 @@ impl Agreement {
 }
 
 /// The indices at which two lists of results differ in any bit.
-pub(super) fn differing<R: Type>(expected: &[R], results: &[R]) -> Vec<usize> {
+pub(crate) fn differing<R: Type>(expected: &[R], results: &[R]) -> Vec<usize> {
     let size = R::SCHEMA.size();
     let (mut a, mut b) = (vec![0; size], vec![0; size]);
     let mut differs = |x: &R, y: &R| {

@@ -12,8 +12,10 @@ mod json;
 mod pictures;
 mod table;
 mod timing;
+mod utilisation;
 
 pub use accuracy::Accuracy;
+pub(crate) use agreement::differing;
 pub use agreement::{Agreement, BUCKETS};
 pub use comparison::{Compare, Comparison, Row, Verdict, compare};
 pub use explain::{Cause, Explanation, Sample, explain};
@@ -21,6 +23,7 @@ pub use json::SceneInfo;
 #[cfg(feature = "image")]
 pub use pictures::WriteError;
 pub use timing::Times;
+pub use utilisation::{LineCount, Utilisation, utilisation};
 
 /// How many inputs a sample has, unless it is told otherwise.
 const SAMPLES: usize = 4096;

@@ -1,0 +1,148 @@
+//! Tests of kernels: one line runs every variant and compares.
+//!
+//! * [`assert_variants_agree!`](crate::assert_variants_agree) runs a kernel over inputs in every
+//!   variant.
+//! * [`#[variant_test]`](crate::variant_test) makes a `#[test]` of each variant from one body.
+//! * [`wgsl_test!`](crate::wgsl_test) makes a `#[test]` that a kernel's WGSL is valid. It needs no
+//!   device.
+//!
+//! What a machine lacks is skipped, and says so on standard error. With `RAYDSL_REQUIRE_GPU=1` in
+//! the environment a missing device is an error: for runs that must have one.
+
+mod agree;
+mod leaves;
+mod wgsl;
+
+use crate::kernel::{Kernel, Variant};
+use crate::machine::Type;
+
+pub use agree::{Disagreement, variants_agree};
+pub use wgsl::{InvalidWgsl, assert_valid_wgsl, validate};
+
+/// Whether `variant` runs on this machine; `test` is named where it does not.
+///
+/// # Panics
+///
+/// If `variant` is WGSL, there is no device, and `RAYDSL_REQUIRE_GPU` is `1`.
+pub fn can_run(variant: Variant, test: &str) -> bool {
+    if variant == Variant::Wgsl {
+        return device(test);
+    }
+    let has = variant.is_native();
+    if !has {
+        eprintln!("SKIPPED: {test}: this machine has no registers for {}", variant.name());
+    }
+    has
+}
+
+#[cfg(feature = "gpu")]
+fn device(test: &str) -> bool {
+    match shared() {
+        Ok(_) => true,
+        Err(error) => missing_device(test, error),
+    }
+}
+
+#[cfg(not(feature = "gpu"))]
+fn device(test: &str) -> bool {
+    missing_device(test, "raydsl was built without the feature `gpu`")
+}
+
+/// Skips loudly, or fails where a device is required.
+fn missing_device(test: &str, error: &str) -> bool {
+    let required = std::env::var("RAYDSL_REQUIRE_GPU").is_ok_and(|v| v == "1");
+    assert!(!required, "RAYDSL_REQUIRE_GPU=1, but {test} has no device: {error}");
+    eprintln!("SKIPPED: {test}: no device for WGSL ({error})");
+    false
+}
+
+/// The device of this process' tests, or why there is none.
+#[cfg(feature = "gpu")]
+fn shared() -> Result<&'static crate::gpu::GpuScheduler, &'static str> {
+    use crate::gpu::GpuScheduler;
+    static GPU: std::sync::OnceLock<Result<GpuScheduler, String>> = std::sync::OnceLock::new();
+    let gpu = GPU.get_or_init(|| GpuScheduler::new().map_err(|e| e.to_string()));
+    gpu.as_ref().map_err(String::as_str)
+}
+
+/// The results of any variant that [`can_run`].
+///
+/// # Panics
+///
+/// If the device refuses, or there is none.
+pub fn run<A: Type, R: Type>(kernel: &Kernel<'_, A, R>, variant: Variant, inputs: &[A]) -> Vec<R> {
+    match try_run(kernel, variant, inputs) {
+        Ok(found) => found,
+        Err(error) => panic!("{}: {error}", variant.name()),
+    }
+}
+
+fn try_run<A: Type, R: Type>(
+    kernel: &Kernel<'_, A, R>,
+    variant: Variant,
+    inputs: &[A],
+) -> Result<Vec<R>, String> {
+    let mut found = vec![R::read(&vec![0; R::SCHEMA.size()]); inputs.len()];
+    if variant == Variant::Wgsl {
+        on_device(kernel, inputs, &mut found)?;
+    } else {
+        kernel.run(variant, inputs, &mut found);
+    }
+    Ok(found)
+}
+
+#[cfg(feature = "gpu")]
+fn on_device<A: Type, R: Type>(
+    kernel: &Kernel<'_, A, R>,
+    inputs: &[A],
+    found: &mut [R],
+) -> Result<(), String> {
+    shared()?.batch(kernel, inputs, found).map(|_| ()).map_err(|e| e.to_string())
+}
+
+#[cfg(not(feature = "gpu"))]
+fn on_device<A: Type, R: Type>(_: &Kernel<'_, A, R>, _: &[A], _: &mut [R]) -> Result<(), String> {
+    Err("raydsl was built without the feature `gpu`".to_owned())
+}
+
+/// Panics unless every variant of a kernel agrees with the scalar one.
+///
+/// The first argument is a reference to a [`Kernel`], or the name of a `#[kernel] fn`; the second a
+/// slice of its parameters, as tuples.
+///
+/// * Packets must give the bits of the scalar function; +0 equals -0, and NaN equals NaN.
+/// * The WGSL must be valid. Where there is a device its results may differ by rounding, and in
+///   decisions that rounding leaves open, as [`report::explain`](crate::report::explain) tells.
+///
+/// The panic shows up to ten results that differ: variant, index, the first number that differs,
+/// what was expected and found as a value and in bits, and the input.
+///
+/// ```
+/// use raydsl::prelude::*;
+/// use raydsl::{assert_variants_agree, kernel};
+///
+/// #[kernel]
+/// fn falloff(distance: f32) -> f32 {
+///     if distance < 1.0 { 1.0 } else { 1.0 / (distance * distance) }
+/// }
+///
+/// let inputs: Vec<(f32,)> = (0..1000).map(|i| (i as f32 * 0.01,)).collect();
+/// assert_variants_agree!(falloff, &inputs);
+///
+/// let gain = 2.0;
+/// let louder = kernel!(|distance: f32| gain * falloff(distance));
+/// assert_variants_agree!(&louder, &inputs);
+/// ```
+///
+/// [`Kernel`]: crate::kernel::Kernel
+#[macro_export]
+macro_rules! assert_variants_agree {
+    (& $kernel:expr, $inputs:expr $(,)?) => {
+        if let ::core::result::Result::Err(e) = $crate::testing::variants_agree(&$kernel, $inputs) {
+            ::core::panic!("{e}");
+        }
+    };
+    ($kernel:path, $inputs:expr $(,)?) => {
+        $crate::assert_variants_agree!(&$crate::kernel::Kernel::of::<$kernel>(), $inputs)
+    };
+}

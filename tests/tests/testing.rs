@@ -1,0 +1,127 @@
+//! What `raydsl::testing` offers to users: it passes where variants agree, and says where not.
+
+use raydsl::kernel::{Lifted, Variant};
+use raydsl::machine::{KernelFn, KernelInfo};
+use raydsl::prelude::*;
+use raydsl::testing::{run, variants_agree};
+use raydsl::{assert_variants_agree, kernel, variant_test, wgsl_test};
+
+// ANCHOR: agree
+#[kernel]
+fn falloff(distance: f32, radius: f32) -> f32 {
+    let x = distance / radius;
+    if x < 1.0 {
+        let y = 1.0 - x * x;
+        return y * y;
+    }
+    0.0
+}
+
+#[test]
+fn falloff_agrees() {
+    let inputs: Vec<(f32, f32)> = (0..1000).map(|i| (i as f32 * 0.003, 2.0)).collect();
+    assert_variants_agree!(falloff, &inputs);
+
+    let gain = 0.25;
+    let light = kernel!(|distance: f32| gain * falloff(distance, 1.5));
+    let inputs: Vec<(f32,)> = inputs.iter().map(|(distance, _)| (*distance,)).collect();
+    assert_variants_agree!(&light, &inputs);
+}
+// ANCHOR_END: agree
+
+// ANCHOR: variants
+#[variant_test]
+fn light_ends_at_the_radius(variant: Variant) {
+    let inputs = [(0.0, 2.0), (1.999, 2.0), (2.0, 2.0), (1e30, 2.0)];
+    let found = run(&Kernel::of::<falloff>(), variant, &inputs);
+    assert_eq!(found[0], 1.0);
+    assert!(found[1] > 0.0);
+    assert_eq!(found[2..], [0.0, 0.0]);
+}
+
+wgsl_test!(falloff);
+// ANCHOR_END: variants
+
+#[variant_test]
+fn results_are_passed_on(variant: Variant) -> Result<(), String> {
+    let found = run(&Kernel::of::<falloff>(), variant, &[(0.0, 1.0)]);
+    if found == [1.0] { Ok(()) } else { Err(format!("{found:?}")) }
+}
+
+#[variant_test]
+#[should_panic(expected = "it fails")]
+fn attributes_go_to_the_tests(_: Variant) {
+    panic!("it fails");
+}
+
+#[kernel]
+fn mistaken(distance: f32, radius: f32) -> f32 {
+    if distance > 2.0 { 0.125 } else { falloff(distance, radius) }
+}
+
+/// A kernel whose packets of 8 lanes, or whose WGSL, are another's.
+fn broken(packet: bool, wgsl: bool) -> Kernel<'static, (f32, f32), f32> {
+    static INFO: KernelInfo = KernelInfo { name: "broken", file: "f.rs", line: 7, params: &[] };
+    Kernel::scalar(&INFO, falloff::scalar).lifted(
+        Lifted {
+            native4: Box::new(falloff::lifted),
+            native8: if packet { Box::new(mistaken::lifted) } else { Box::new(falloff::lifted) },
+            native16: Box::new(falloff::lifted),
+            native16_halves: Box::new(falloff::lifted),
+            baseline: Box::new(falloff::lifted),
+            recorder: if wgsl { Box::new(mistaken::lifted) } else { Box::new(falloff::lifted) },
+            margin: Box::new(falloff::lifted),
+        },
+        |_| {},
+    )
+}
+
+fn inputs() -> Vec<(f32, f32)> {
+    (0..1000).map(|i| (i as f32 * 0.003, 2.0)).collect()
+}
+
+#[test]
+fn a_wrong_packet_is_shown() -> Result<(), String> {
+    if !Variant::Packet8.is_native() {
+        eprintln!("SKIPPED: this machine has no packets of 8 lanes");
+        return Ok(());
+    }
+    let error = variants_agree(&broken(true, false), &inputs()).err().ok_or("it agrees")?;
+    let table = error.to_string();
+    println!("{table}");
+    assert!(table.contains("`broken` (f.rs:7)"), "{table}");
+    assert!(table.contains("333 of 1000 results have other bits"), "{table}");
+    let rows: Vec<&str> = table.lines().filter(|l| l.starts_with("packet8 ")).collect();
+    assert_eq!(rows.len(), 10, "{table}");
+    let cells: Vec<&str> = rows[0].split_whitespace().collect();
+    let expected = ["packet8", "667", "result", "0.0", "(0x00000000)", "0.125"];
+    assert_eq!(cells[..6], expected, "{table}");
+    assert!(rows[0].ends_with("(2.001, 2.0)"), "{table}");
+    Ok(())
+}
+
+#[test]
+fn wrong_wgsl_is_shown() -> Result<(), String> {
+    if !raydsl::testing::can_run(Variant::Wgsl, "wrong_wgsl_is_shown") {
+        return Ok(());
+    }
+    let error = variants_agree(&broken(false, true), &inputs()).err().ok_or("it agrees")?;
+    let table = error.to_string();
+    println!("{table}");
+    assert!(table.contains("rounding does not account for 333 of 1000"), "{table}");
+    assert_eq!(table.lines().filter(|l| l.starts_with("wgsl ")).count(), 10, "{table}");
+    Ok(())
+}
+
+/// Both share the ten rows.
+#[test]
+#[should_panic(expected = "the variants of `broken` (f.rs:7) disagree")]
+fn the_macro_panics() {
+    assert_variants_agree!(&broken(true, true), &inputs());
+}
+
+#[test]
+#[should_panic(expected = "without inputs nothing is compared")]
+fn no_inputs_are_no_test() {
+    assert_variants_agree!(falloff, &[]);
+}
