@@ -34,7 +34,7 @@ struct StoredTuple {
     arg2_z: f32,
 }
 
-struct StoredValue {
+struct StoredVec3 {
     value_x: f32,
     value_y: f32,
     value_z: f32,
@@ -77,7 +77,7 @@ fn element(input: Tuple) -> vec3<f32> {
 }
 
 @group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
-@group(0) @binding(3) var<storage, read_write> outputs: array<StoredValue>;
+@group(0) @binding(3) var<storage, read_write> outputs: array<StoredVec3>;
 
 fn load_input(i: u32) -> Tuple {
     let s = inputs[i];
@@ -90,5 +90,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let at = job.first + id.xy;
     let index = at.y * job.size.x + at.x - job.base;
     let result = element(load_input(index));
-    outputs[index] = StoredValue(result.x, result.y, result.z);
+    outputs[index] = StoredVec3(result.x, result.y, result.z);
 }
