@@ -332,6 +332,7 @@ impl walk {
                                     _,
                                 >(
                                     m,
+                                    false,
                                     ::raydsl::__private::OpCompare::compare(
                                         m,
                                         ::raydsl::__private::Compare::Gt,

@@ -33,7 +33,6 @@ impl Expr {
             | Kind::Deref(_)
             | Kind::Host(_)
             | Kind::Field { .. }
-            | Kind::Index { .. }
             | Kind::Tuple(_)
             | Kind::Array(_)
             | Kind::Struct { .. }

@@ -84,7 +84,7 @@ impl Generics {
 }
 
 /// Whether an identifier is among the tokens.
-fn mentions(tokens: &TokenStream, name: &Ident) -> bool {
+pub(crate) fn mentions(tokens: &TokenStream, name: &Ident) -> bool {
     let mut found = false;
     identifiers(tokens, &mut |i| found |= i == *name);
     found

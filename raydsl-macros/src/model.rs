@@ -403,11 +403,19 @@ impl Expr {
         }
     }
 
+    /// Whether it is, or lists, an integer of the source whose type is for others to say.
+    fn has_untyped_integer(&self) -> bool {
+        match &self.kind {
+            Kind::Tuple(items) | Kind::Array(items) => items.iter().any(Self::has_untyped_integer),
+            _ => self.is_untyped_integer(),
+        }
+    }
+
     /// Whether one of its outcomes says what type those have that are bare integers.
     pub(crate) fn has_typed_outcome(&self) -> bool {
         let mut found = Vec::new();
         self.outcomes(&mut found);
-        found.iter().any(|e| !e.is_untyped_integer())
+        found.iter().any(|e| !e.has_untyped_integer())
     }
 
     /// Whether no lane goes on behind it.
@@ -431,6 +439,7 @@ impl Expr {
             | Kind::Continue(_)
             | Kind::Return(_)
             | Kind::Element { .. }
+            | Kind::Index { .. }
             | Kind::Closure(_)
             | Kind::Assign { .. }
             | Kind::OpAssign { .. } => false,
@@ -441,6 +450,19 @@ impl Expr {
 }
 
 impl Expr {
+    /// Whether it calls or assigns something, so that its place in the order of things matters.
+    pub(crate) fn may_act(&self) -> bool {
+        let this = matches!(
+            self.kind,
+            Kind::Call { .. }
+                | Kind::Associated { .. }
+                | Kind::Method { .. }
+                | Kind::Assign { .. }
+                | Kind::OpAssign { .. }
+        );
+        this || self.kind.children().iter().any(|e| e.may_act())
+    }
+
     /// Whether it has arithmetic that is an error where an integer overflows.
     pub(crate) fn may_overflow(&self) -> bool {
         let this = match &self.kind {

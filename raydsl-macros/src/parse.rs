@@ -39,6 +39,7 @@ pub(crate) fn function(
     let params = sig.inputs.iter().map(|arg| parser.param(arg, self_ty, &mut prologue)).collect();
     let result = match &sig.output {
         syn::ReturnType::Default => None,
+        syn::ReturnType::Type(_, ty) if is_unit(ty) => None,
         syn::ReturnType::Type(_, ty) => Some(value_type(ty)),
     };
     let mut body = parser.block(body);
@@ -61,6 +62,10 @@ fn value_type(ty: &syn::Type) -> TokenStream {
         syn::Type::Paren(p) => value_type(&p.elem),
         _ => ty.to_token_stream(),
     }
+}
+
+fn is_unit(ty: &syn::Type) -> bool {
+    matches!(ty, syn::Type::Tuple(t) if t.elems.is_empty())
 }
 
 /// Slices and trees are not copied.
@@ -128,6 +133,7 @@ impl Parser<'_> {
 
     fn typed_param(&mut self, typed: &syn::PatType, prologue: &mut Vec<Stmt>) -> Param {
         let syn::PatType { attrs, pat, ty, .. } = typed;
+        self.no_attributes(attrs);
         let by_mut = matches!(&**ty, syn::Type::Reference(r) if r.mutability.is_some());
         let host = attrs.iter().any(is_host);
         let shared = matches!(&**ty, syn::Type::Reference(r) if r.mutability.is_none());
@@ -149,6 +155,13 @@ impl Parser<'_> {
                 host,
             },
             _ => {
+                if by_mut {
+                    self.errors.at(
+                        pat.span(),
+                        "a `&mut` parameter of a kernel has one name",
+                        "write `s: &mut S`, and `s.x` in the kernel",
+                    );
+                }
                 let name = self.temporary("parts");
                 let from = Expr { kind: Kind::Name(name.clone()), span: pat.span() };
                 self.irrefutable(pat, &from, prologue);
@@ -180,6 +193,7 @@ impl Parser<'_> {
         }
         let result = match &c.output {
             syn::ReturnType::Default => None,
+            syn::ReturnType::Type(_, ty) if is_unit(ty) => None,
             syn::ReturnType::Type(_, ty) => Some(value_type(ty)),
         };
         let mut body = match &*c.body {
@@ -252,6 +266,7 @@ impl Parser<'_> {
                 syn::Stmt::Expr(e, _) => stmts.push(Stmt::Expr(self.expr(e))),
                 syn::Stmt::Item(item) => stmts.extend(self.item(item)),
                 syn::Stmt::Macro(m) => {
+                    self.no_attributes(&m.attrs);
                     let kind = self.macro_call(&m.mac);
                     stmts.push(Stmt::Expr(Expr { kind, span: m.span() }));
                 }
@@ -333,7 +348,13 @@ impl Parser<'_> {
 
     /// What a variable begins with must say which type of integer it is.
     fn typed_number(&mut self, init: &Expr) {
-        if matches!(init.kind, Kind::Int { suffix: None, .. }) {
+        let is_untyped = match &init.kind {
+            Kind::Repeat { value, .. } => value.is_untyped_integer(),
+            Kind::Array(items) => !items.is_empty() && items.iter().all(Expr::is_untyped_integer),
+            Kind::Binary { a, b, .. } => a.is_untyped_integer() && b.is_untyped_integer(),
+            _ => init.is_untyped_integer(),
+        };
+        if is_untyped {
             self.errors.at(
                 init.span,
                 "a mutable integer needs a type",
@@ -405,6 +426,9 @@ impl Parser<'_> {
                     Kind::Return(value)
                 }
             }
+            syn::Expr::Assign(a) if matches!(&*a.left, syn::Expr::Tuple(_)) => {
+                self.assign_tuple(&a.left, &a.right)
+            }
             syn::Expr::Assign(a) => match self.place(&a.left) {
                 Some(place) => Kind::Assign { place, value: self.boxed(&a.right) },
                 None => Kind::Error,
@@ -414,6 +438,27 @@ impl Parser<'_> {
             syn::Expr::Macro(m) => self.macro_call(&m.mac),
             other => self.unsupported(other),
         }
+    }
+
+    /// `(a, b) = (b, a)`: all of the right side comes first.
+    fn assign_tuple(&mut self, left: &syn::Expr, right: &syn::Expr) -> Kind {
+        let syn::Expr::Tuple(left) = left else { return Kind::Error };
+        let (span, parts) = (right.span(), self.temporary("parts"));
+        let init = Some(self.expr(right));
+        let name = Some(parts.clone());
+        let mut stmts = vec![Stmt::Let(Let { host: false, name, mutable: false, ty: None, init })];
+        for (i, e) in left.elems.iter().enumerate() {
+            if matches!(e, syn::Expr::Infer(_)) {
+                continue;
+            }
+            let Some(place) = self.place(e) else { return Kind::Error };
+            let base = Box::new(Expr { kind: Kind::Name(parts.clone()), span });
+            let index = syn::Index::from(i);
+            let part = Kind::Field { base, member: index.to_token_stream() };
+            let value = Box::new(Expr { kind: part, span });
+            stmts.push(Stmt::Expr(Expr { kind: Kind::Assign { place, value }, span }));
+        }
+        Kind::Block(Block { stmts, tail: None })
     }
 
     fn unsupported(&mut self, e: &syn::Expr) -> Kind {
@@ -442,7 +487,10 @@ impl Parser<'_> {
                 "write the number with the suffix `f32`, or without one",
             ),
             Lit::Float(f) => {
-                let digits = syn::LitFloat::new(&format!("{}f32", f.base10_digits()), f.span());
+                let digits = syn::LitFloat::new(
+                    &format!("{}f32", f.base10_digits().trim_end_matches('.')),
+                    f.span(),
+                );
                 Kind::Float(digits.to_token_stream())
             }
             Lit::Int(i) => match i.suffix() {
@@ -483,10 +531,17 @@ impl Parser<'_> {
 
     fn binary(&mut self, b: &syn::ExprBinary) -> Kind {
         if let Some(op) = assignment(&b.op) {
-            return match self.place(&b.left) {
-                Some(place) => Kind::OpAssign { op, place, value: self.boxed(&b.right) },
-                None => Kind::Error,
-            };
+            let Some(place) = self.place(&b.left) else { return Kind::Error };
+            let value = self.boxed(&b.right);
+            let acts = |s: &Step| matches!(s, Step::Computed(e) if e.may_act());
+            if place.steps.iter().any(acts) && value.may_act() {
+                return self.error(
+                    b.left.span(),
+                    "which of the index and the value comes first depends on their types",
+                    "bind the index first: `let i = ...;`",
+                );
+            }
+            return Kind::OpAssign { op, place, value };
         }
         let (left, right) = (self.boxed(&b.left), self.boxed(&b.right));
         let compare = match b.op {
@@ -533,6 +588,14 @@ impl Parser<'_> {
         let syn::Expr::Path(p) = &*c.func else {
             return self.error(c.func.span(), "only a kernel can be called", "call it by its name");
         };
+        if let Some(q) = &p.qself {
+            let mut path = p.path.clone();
+            let Some(last) = path.segments.pop() else { return Kind::Error };
+            path.segments.pop_punct();
+            let (name, ty) = (last.ident, &q.ty);
+            let ty = if path.segments.is_empty() { quote!(#ty) } else { quote!(#ty as #path) };
+            return Kind::Associated { ty, name, args };
+        }
         let segments: Vec<&syn::PathSegment> = p.path.segments.iter().collect();
         let Some((last, init)) = segments.split_last() else { return Kind::Error };
         match init.last() {
@@ -547,7 +610,7 @@ impl Parser<'_> {
                 "a kernel has no tuple structs",
                 "give the struct named members",
             ),
-            _ if last.ident == "host" && args.len() == 1 => {
+            _ if segments.len() == 1 && last.ident == "host" && args.len() == 1 => {
                 Kind::Host(Box::new(args.into_iter().next().expect("there is one")))
             }
             _ => Kind::Call { path: p.to_token_stream(), args },
@@ -609,6 +672,7 @@ impl Parser<'_> {
     }
 
     fn structure(&mut self, s: &syn::ExprStruct) -> Kind {
+        s.fields.iter().for_each(|f| self.no_attributes(&f.attrs));
         let fields =
             s.fields.iter().map(|f| (f.member.to_token_stream(), self.expr(&f.expr))).collect();
         let rest = s.rest.as_ref().map(|e| self.boxed(e));
@@ -699,21 +763,17 @@ fn inside_parens(mut e: &syn::Expr) -> &syn::Expr {
 }
 
 fn attributes(e: &syn::Expr) -> &[syn::Attribute] {
-    match e {
-        syn::Expr::Assign(x) => &x.attrs,
-        syn::Expr::Binary(x) => &x.attrs,
-        syn::Expr::Break(x) => &x.attrs,
-        syn::Expr::Call(x) => &x.attrs,
-        syn::Expr::Continue(x) => &x.attrs,
-        syn::Expr::If(x) => &x.attrs,
-        syn::Expr::MethodCall(x) => &x.attrs,
-        syn::Expr::Return(x) => &x.attrs,
-        syn::Expr::While(x) => &x.attrs,
-        syn::Expr::Loop(x) => &x.attrs,
-        syn::Expr::ForLoop(x) => &x.attrs,
-        syn::Expr::Block(x) => &x.attrs,
-        _ => &[],
+    macro_rules! all {
+        ($($kind:ident)+) => {
+            match e {
+                $(syn::Expr::$kind(x) => &x.attrs,)+
+                _ => &[],
+            }
+        };
     }
+    all!(
+        Array Assign Async Await Binary Block Break Call Cast Closure Const Continue Field ForLoop Group If Index Infer Let Lit Loop Macro Match MethodCall Paren Path Range Reference Repeat Return Struct Try TryBlock Tuple Unary Unsafe While Yield
+    )
 }
 
 fn arithmetic(op: &BinOp) -> Option<BinaryOp> {

@@ -97,11 +97,12 @@ pub fn guarded<M: Machine, C: Coerce<M, B<M>>, R>(
 #[inline(always)]
 pub fn choose<M: Machine, V: Value<M>, C: Condition<M>>(
     m: &M,
+    calls: bool,
     c: C,
     a: impl FnOnce() -> V,
     b: impl FnOnce() -> V,
 ) -> V {
-    c.choose(m, a, b)
+    c.choose(m, calls, a, b)
 }
 
 /// The bounds of a `for`.

@@ -5,6 +5,7 @@
 
 mod changes;
 mod generic;
+mod kept;
 mod patterns;
 
 use raydsl::kernel;
@@ -12,6 +13,7 @@ use raydsl::prelude::*;
 
 pub use changes::*;
 pub use generic::*;
+pub use kept::*;
 pub use patterns::*;
 
 /// Calls `$use!` with a row for each kernel: its name, the numbers that it can take, and whether
@@ -94,6 +96,15 @@ macro_rules! kernel_table {
             constant_parameters: Any SameIfFinite;
             enums: Tame Same;
             sizes: Any Same;
+            permuted_names: Tame Differs;
+            swapped_by_assignment: Any Differs;
+            changed_counters: Any Same;
+            arguments_in_order: Tame Differs;
+            effects_in_arms: Tame Differs;
+            bare_integers: Tame Same;
+            trailing_points: Any SameIfFinite;
+            names_of_generated_code: Tame Differs;
+            named_type_parameters: Any SameIfFinite;
             angles: Any Differs;
             growth: Any Differs;
         }

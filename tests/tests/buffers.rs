@@ -154,3 +154,27 @@ fn loops_over_elements() {
     });
     every_variant(&kernel, &inputs(8));
 }
+
+/// What a condition guards is not read.
+#[test]
+fn guarded_elements() {
+    let none: &[f32] = &[];
+    let one = &[3.0f32][..];
+    let has = false;
+    let kernel = kernel!(|x: f32, n: u32| {
+        let mut sum = x;
+        if none.len() > 3 && none[3] > 1.0 {
+            sum = 2.0;
+        }
+        if one.len() > 3 && one[3] > 1.0 {
+            sum += 2.0;
+        }
+        if host(has) && none[0] > 1.0 {
+            sum = 4.0;
+        }
+        let k = if none.len() > n as usize { none[n as usize] } else { x };
+        let last = if one.len() > 2 { one[2] } else { one[0] };
+        sum + k + last
+    });
+    every_variant(&kernel, &inputs(9));
+}

@@ -10,7 +10,8 @@ use crate::model::{Expr, Kind};
 impl Emitter<'_> {
     pub(super) fn call(&mut self, path: &TokenStream, args: &[Expr], span: Span) -> TokenStream {
         let m = own("m");
-        if self.kernel.name == path.to_string() && !self.is_closure {
+        let is_method = self.kernel.params.first().is_some_and(|p| p.name == "self");
+        if self.kernel.name == path.to_string() && !self.is_closure && !is_method {
             self.errors.at(
                 span,
                 format!("the kernel `{path}` calls itself"),
@@ -44,6 +45,9 @@ impl Emitter<'_> {
     fn arguments(&mut self, args: &[Expr]) -> Arguments {
         let (p, m) = (private(), own("m"));
         let mut all = Arguments::default();
+        // What is read before a call is read in order.
+        let is_part = |e: &Expr| matches!(&e.kind, Kind::RefMut(p) if !p.steps.is_empty());
+        let in_order = args.iter().any(is_part);
         for arg in args {
             let value = match &arg.kind {
                 Kind::Closure(kernel) => self.closure(kernel),
@@ -89,7 +93,19 @@ impl Emitter<'_> {
                 // A number may be for a parameter of the host.
                 Kind::Int { tokens, .. } => tokens.clone(),
                 Kind::Name(name) if self.lookup(name) == Some(Binding::Host) => quote!(#name),
-                _ => self.value(arg),
+                Kind::Host(_) if self.host_value(arg).is_some() => {
+                    self.host_value(arg).unwrap_or_default()
+                }
+                _ => {
+                    let value = self.value(arg);
+                    if in_order {
+                        let ident = self.fresh("argument");
+                        all.before.extend(quote!(let #ident = #value;));
+                        quote!(#ident)
+                    } else {
+                        value
+                    }
+                }
             };
             all.values.push(value);
         }
@@ -120,14 +136,22 @@ impl Emitter<'_> {
         let at = quote_spanned!(name.span()=> ::raydsl::__private);
         let method = quote_spanned!(name.span()=> #at::Method::<{ #at::name(#text) }, #machine, _>);
         let variable = self.variable_under(receiver);
-        let value = self.value(receiver);
+        let mut value = self.value(receiver);
         let mut args = self.arguments(args);
+        if !args.before.is_empty() {
+            let (first, before) = (self.fresh("receiver"), &args.before);
+            args.before = quote!(let #first = #value; #before);
+            value = quote!(#first);
+        }
         let generic =
             turbofish.iter().map(|ty| quote!(<#ty as ::core::default::Default>::default()));
         args.values.splice(0..0, generic);
         let values = &args.values;
         let Some((local, steps)) = variable else {
-            if is_part_of_element(receiver) || self.is_part_of_outer(receiver) {
+            if is_part_of_element(receiver)
+                || self.is_part_of_outer(receiver)
+                || self.is_alias(receiver)
+            {
                 return args.around(quote_spanned!(name.span()=>
                     #p::call_on_element::<{ #p::name(#text) }, #machine, _, _>(
                         #m, #value, (#(#values,)*)
@@ -143,16 +167,17 @@ impl Emitter<'_> {
             ));
         }
         let (old, list, part, whole) = (own("old"), own("args"), own("part"), own("whole"));
+        let result = own("result");
         let shown = shown(&local);
         args.around(quote_spanned!(name.span()=> {
             let (#old, #list) = (#value, (#(#values,)*));
             if #p::is_mut::<{ #p::name(#text) }, #machine, _, _>(#m, &#old, &#list) {
                 let #part = #p::Var::new(#m, #shown, #old);
-                let result = #method::call_at(#old, &#part, #m, #list);
+                let #result = #method::call_at(#old, &#part, #m, #list);
                 let mut #whole = #local.get(#m);
                 #whole #steps = #part.get(#m);
                 #local.set(#m, #whole);
-                result
+                #result
             } else {
                 #method::call(#old, #m, #list)
             }

@@ -75,7 +75,18 @@ impl Emitter<'_> {
             None => self.named_value(init, &text),
         };
         let binding = if l.mutable { Binding::Var } else { Binding::Value };
+        let is_alias = self.is_alias(init);
+        if is_alias && l.mutable && matches!(&init.kind, Kind::Name(_)) {
+            self.errors.at(
+                init.span,
+                "a kernel has no second name for a `&mut`",
+                "write `*x` to copy the value, or go on with the first name",
+            );
+        }
         self.bind_typed(name, binding, l.ty.as_ref());
+        if is_alias && !l.mutable {
+            self.note_alias(name);
+        }
         match (l.mutable, ty) {
             (true, Some(ty)) => quote!(let #name = #p::Var::<#ty>::new(#m, #text, #value);),
             (true, None) => {
@@ -123,7 +134,7 @@ impl Emitter<'_> {
             }
             Dest::Slot { var, ty }
                 if *ty == SlotType::Written
-                    || *ty == SlotType::ByOthers && e.is_untyped_integer() =>
+                    || *ty == SlotType::ByOthers && !e.has_typed_outcome() =>
             {
                 let value = self.coerced(e);
                 quote!(#var.set(#m, #value);)

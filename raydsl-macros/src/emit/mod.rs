@@ -18,7 +18,7 @@ use quote::quote;
 
 use crate::diag::Errors;
 use crate::generics::{Generics, identifiers};
-use crate::model::{Block, Kernel, Param};
+use crate::model::{Block, Expr, Kernel, Kind, Param};
 
 /// What a name stands for.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -39,6 +39,8 @@ struct Local {
     binding: Binding,
     /// The type parameter that is its type.
     generic: Option<Ident>,
+    /// Whether it is a `&mut` of the source, or a part of one, under another name.
+    alias: bool,
     /// For a counter that all rays have in step: where its value as one number is.
     step: Option<Ident>,
 }
@@ -342,15 +344,33 @@ impl<'a> Emitter<'a> {
     fn bind_typed(&mut self, name: &Ident, binding: Binding, ty: Option<&TokenStream>) {
         let ty = ty.map(ToString::to_string);
         let generic = self.generics.types.iter().find(|g| ty.as_ref().is_some_and(|ty| *g == ty));
-        let local = Local { binding, generic: generic.cloned(), step: None };
+        let local = Local { binding, generic: generic.cloned(), alias: false, step: None };
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name.to_string(), local);
         }
     }
 
+    /// Notes that a name stands for a `&mut` of the source, or for a part of one.
+    fn note_alias(&mut self, name: &Ident) {
+        if let Some(local) = self.scopes.last_mut().and_then(|s| s.get_mut(&name.to_string())) {
+            local.alias = true;
+        }
+    }
+
+    /// Whether it is a `&mut` parameter, another name of one, or a part of one.
+    fn is_alias(&self, e: &Expr) -> bool {
+        match &e.kind {
+            Kind::Name(name) => {
+                self.find(name).is_some_and(|l| l.alias || l.binding == Binding::Mut)
+            }
+            Kind::Field { base, .. } | Kind::Index { base, .. } => self.is_alias(base),
+            _ => false,
+        }
+    }
+
     /// Binds a counter that all rays have in step.
     fn bind_counter(&mut self, name: &Ident, step: Option<Ident>) {
-        let local = Local { binding: Binding::Value, generic: None, step };
+        let local = Local { binding: Binding::Value, generic: None, alias: false, step };
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name.to_string(), local);
         }

@@ -41,8 +41,17 @@ impl Emitter<'_> {
         match self.lookup(name) {
             Some(Binding::Host) => return self.host_assign(name, op.map(|op| op.symbol), value),
             Some(Binding::Var | Binding::Mut) => {}
-            // rustc reports it in the user's own function.
-            Some(Binding::Value) => return TokenStream::new(),
+            Some(Binding::Value) => {
+                // Of the others rustc says so, in the user's own function.
+                if self.find(name).is_some_and(|l| l.alias) {
+                    self.errors.at(
+                        name.span(),
+                        format!("a kernel cannot assign through `{name}`, a second name"),
+                        "assign to the `&mut` parameter itself: `s.x = ...`",
+                    );
+                }
+                return TokenStream::new();
+            }
             None => {
                 if self.is_closure {
                     self.not_ours(name);

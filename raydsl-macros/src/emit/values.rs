@@ -42,6 +42,7 @@ impl Emitter<'_> {
                 let value = self.coerced(value);
                 quote!([#value; #len])
             }
+            _ if e.is_structured() => self.in_slot(e, "value", &quote!(_), SlotType::Written),
             _ => {
                 let value = self.value(e);
                 quote!(#p::Coerce::coerce(#value, #m))
@@ -59,23 +60,28 @@ impl Emitter<'_> {
         if !e.is_structured() {
             return None;
         }
-        let (p, m) = (private(), own("m"));
         let slot = match ty {
             Some(_) => SlotType::Written,
             None if e.has_typed_outcome() => SlotType::ByOthers,
             None => SlotType::ByAll,
         };
         let ty = ty.map(|t| self.on(t)).unwrap_or_else(|| quote!(_));
+        Some(self.in_slot(e, name, &ty, slot))
+    }
+
+    /// The value of a control structure of the type `ty`, which may be `_`.
+    fn in_slot(&mut self, e: &Expr, name: &str, ty: &TokenStream, slot: SlotType) -> TokenStream {
+        let (p, m) = (private(), own("m"));
         if e.is_selection() {
-            return Some(self.selection(e, &ty, slot));
+            return self.selection(e, ty, slot);
         }
         let var = self.fresh("value");
         let code = self.into(e, &Dest::Slot { var: var.clone(), ty: slot });
-        Some(quote!({
+        quote!({
             let #var = #p::Var::<#ty>::declare(#m, #name);
             #code
             #var.get(#m)
-        }))
+        })
     }
 
     /// An `if` that only chooses between small values: both are there, one is taken.
@@ -93,19 +99,22 @@ impl Emitter<'_> {
         };
         let Some((c, then, other)) = inner else {
             let wanted =
-                slot == SlotType::Written || slot == SlotType::ByOthers && e.is_untyped_integer();
+                slot == SlotType::Written || slot == SlotType::ByOthers && !e.has_typed_outcome();
             if wanted {
                 return self.coerced(e);
             }
             let value = self.value(e);
             return quote!(#p::Varying::varying(#value, #m));
         };
+        let has_calls = then.may_act() || other.may_act();
         let c = self.host_value(c).unwrap_or_else(|| self.value(c));
         let (then, other) = (self.selection(then, ty, slot), self.selection(other, ty, slot));
+        let calls = has_calls;
         let (seen, others) = (self.mentioned_in(&then), self.mentioned_in(&other));
         quote! {
             #p::choose::<_, #ty, _>(
                 #m,
+                #calls,
                 #c,
                 #[inline(always)] || { #(let _ = &#seen;)* #then },
                 #[inline(always)] || { #(let _ = &#others;)* #other },
@@ -202,11 +211,11 @@ impl Emitter<'_> {
                 quote_spanned!(span=> #p::element(#m, #base, #index))
             }
             Kind::Array(items) => {
-                let is_typed = items.iter().any(|e| !e.is_untyped_integer());
+                let is_typed = items.iter().any(Expr::has_typed_outcome);
                 let items: Vec<_> = items
                     .iter()
                     .map(|e| {
-                        if is_typed && e.is_untyped_integer() {
+                        if is_typed && !e.has_typed_outcome() {
                             self.coerced(e)
                         } else {
                             self.value(e)

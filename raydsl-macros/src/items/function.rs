@@ -25,6 +25,7 @@ pub(crate) fn kernel_fn(item: &syn::ItemFn) -> TokenStream {
         self_ty: None,
         around: &Generics::default(),
         vis: &visible_from_inside(&item.vis),
+        is_method: false,
     };
     let mut lifted = lifted_function(&kernel, &place, &mut errors);
     if is_generic {
@@ -35,7 +36,7 @@ pub(crate) fn kernel_fn(item: &syn::ItemFn) -> TokenStream {
     let (declared, bare, used) = (angled(declared), angled(bare), angled(used));
     let errors = errors.into_tokens();
     let doc = format!("The kernel of [`{name}()`]: `Kernel::of::<{name}>()`.");
-    let entry = has_entry(&kernel).then(|| entry(&kernel, &item.sig));
+    let entry = has_entry(&kernel, &item.sig).then(|| entry(&kernel, &item.sig));
     quote! {
         #source
         #[doc = #doc]
@@ -64,7 +65,11 @@ fn never(generics: &Generics) -> TokenStream {
 }
 
 /// Whether it can be run by itself: on values, for a value.
-fn has_entry(kernel: &Kernel) -> bool {
+fn has_entry(kernel: &Kernel, sig: &syn::Signature) -> bool {
+    if matches!(&sig.output, syn::ReturnType::Type(_, ty) if matches!(**ty, syn::Type::Reference(_)))
+    {
+        return false;
+    }
     let is_value = |p: &Param| !(p.by_mut || p.host || p.data);
     !kernel.params.is_empty() && kernel.result.is_some() && kernel.params.iter().all(is_value)
 }
@@ -72,7 +77,7 @@ fn has_entry(kernel: &Kernel) -> bool {
 /// `on` of a generic kernel: the types are inferred from the arguments.
 fn inferring_function(kernel: &Kernel, vis: &TokenStream) -> TokenStream {
     let p = private();
-    let m = own("m");
+    let (m, out) = (own("m"), own("out"));
     let on = |ty: &TokenStream| quote!(<#ty as #p::Type>::On<__M>);
     let mut before = TokenStream::new();
     let mut after = TokenStream::new();
@@ -123,9 +128,9 @@ fn inferring_function(kernel: &Kernel, vis: &TokenStream) -> TokenStream {
         #quiet
         #vis fn on<#lifetime __M: #p::Machine>(#m: &__M, #(#params,)*) -> #result {
             #before
-            let result = Self::on_values(#m, #(#values,)*);
+            let #out = Self::on_values(#m, #(#values,)*);
             #after
-            result
+            #out
         }
     }
 }
@@ -140,6 +145,9 @@ fn entry(kernel: &Kernel, sig: &syn::Signature) -> TokenStream {
     let result = &kernel.result;
     let refs = scalar_arguments(sig, &fields);
     let info = info(kernel, &name.to_string());
+    let arguments = &kernel.generics.used;
+    let called =
+        if kernel.generics.is_empty() { quote!(#name) } else { quote!(#name::<#arguments>) };
     let on = format_ident!("{}", if kernel.generics.is_empty() { "on" } else { "on_values" });
     quote! {
         impl #declared #p::KernelFn for #name #used where #predicates {
@@ -153,7 +161,7 @@ fn entry(kernel: &Kernel, sig: &syn::Signature) -> TokenStream {
 
             #[inline]
             fn scalar(args: Self::Args) -> #result {
-                #name(#(#refs),*)
+                #called(#(#refs),*)
             }
 
             #[inline(always)]

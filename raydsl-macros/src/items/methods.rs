@@ -74,6 +74,7 @@ fn lifted_impl(item: &syn::ItemImpl, host_only: &[&str], errors: &mut Errors) ->
             self_ty: Some(&self_ty),
             around: &around,
             vis: &f.vis.to_token_stream(),
+            is_method: true,
         };
         lifted.functions.extend(lifted_function(&kernel, &place, errors));
         if kernel.params.first().is_some_and(|p| p.name == "self") {
@@ -244,6 +245,7 @@ pub(crate) fn kernel_trait(item: &syn::ItemTrait) -> TokenStream {
             self_ty: None,
             around: &around,
             vis: &TokenStream::new(),
+            is_method: true,
         };
         match &f.default {
             Some(body) => {

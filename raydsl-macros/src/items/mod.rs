@@ -63,6 +63,8 @@ struct Place<'a> {
     /// The generic parameters of the item around it.
     around: &'a Generics,
     vis: &'a TokenStream,
+    /// Whether a `where` clause of its own belongs to it; that of a free kernel is the type's.
+    is_method: bool,
 }
 
 /// The generic function that runs the lifted body on any machine.
@@ -142,5 +144,10 @@ fn head(kernel: &Kernel, place: &Place<'_>, emitter: &Emitter<'_>) -> TokenStrea
     });
     let result = kernel.result.as_ref().map(|t| emitter.on(t)).unwrap_or_else(|| quote!(()));
     let lifetime = kernel.params.iter().any(|p| p.data).then(|| quote!('__a,));
-    quote!(#vis fn #fn_name<#lifetime __M: #p::Machine>(#m: &__M, #(#params,)*) -> #result)
+    let predicates = &kernel.generics.predicates;
+    let clause = place.is_method.then(|| quote!(where #predicates));
+    quote! {
+        #vis fn #fn_name<#lifetime __M: #p::Machine>(#m: &__M, #(#params,)*) -> #result
+        #clause
+    }
 }

@@ -42,7 +42,17 @@ impl Parser<'_> {
         while let Pat::Paren(p) = pat {
             pat = &p.pat;
         }
+        // A counter that the body changes is a variable of the body.
+        let mut changed = None;
         let var = match pat {
+            Pat::Ident(p) if p.mutability.is_some() => {
+                let counter = self.temporary("i");
+                let init = Expr { kind: Kind::Name(counter.clone()), span: p.span() };
+                let name = Some(p.ident.clone());
+                changed =
+                    Some(Let { host: false, name, mutable: true, ty: None, init: Some(init) });
+                Some(counter)
+            }
             Pat::Ident(p) => Some(p.ident.clone()),
             Pat::Wild(_) => None,
             pat => {
@@ -86,7 +96,9 @@ impl Parser<'_> {
         }
         let inclusive = matches!(r.limits, syn::RangeLimits::Closed(_));
         let range = Range { start, end, inclusive, reversed };
-        Kind::For { label: label(&f.label), var, range, body: self.block(&f.body) }
+        let mut body = self.block(&f.body);
+        body.stmts.splice(0..0, changed.map(Stmt::Let));
+        Kind::For { label: label(&f.label), var, range, body }
     }
 
     /// A loop over the elements: `for x in list` is `for i in 0..list.len() { let x = list[i]; .. }`.

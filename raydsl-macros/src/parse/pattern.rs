@@ -1,11 +1,12 @@
 //! Patterns: what they test and what they bind.
 
-use proc_macro2::{Ident, Span};
+use proc_macro2::{Ident, Span, TokenStream};
 use quote::{ToTokens, quote};
 use syn::Pat;
 use syn::spanned::Spanned;
 
 use super::Parser;
+use crate::generics::mentions;
 use crate::model::{Block, Expr, Kind, Let, Stmt};
 
 /// Whether a name in a pattern is a constant, by the convention that rustc warns about.
@@ -35,6 +36,15 @@ fn both(a: Option<Expr>, b: Option<Expr>) -> Option<Expr> {
 
 fn bind(name: &Ident, mutable: bool, init: Expr) -> Stmt {
     Stmt::Let(Let { host: false, name: Some(name.clone()), mutable, ty: None, init: Some(init) })
+}
+
+/// `..` and `name @ ..`.
+fn is_rest(p: &Pat) -> bool {
+    match p {
+        Pat::Rest(_) => true,
+        Pat::Ident(p) => p.subpat.as_ref().is_some_and(|(_, sub)| is_rest(sub)),
+        _ => false,
+    }
 }
 
 /// A member of `from`; that of a tuple in the source is the element itself.
@@ -139,8 +149,17 @@ impl Parser<'_> {
             Pat::Slice(s) => {
                 let mut test = None;
                 for (i, p) in s.elems.iter().enumerate() {
-                    if matches!(p, Pat::Rest(_)) {
+                    let mut after = s.elems.iter().skip(i + 1);
+                    if matches!(p, Pat::Rest(_)) && after.all(|p| matches!(p, Pat::Wild(_))) {
                         break;
+                    }
+                    if is_rest(p) {
+                        self.errors.at(
+                            p.span(),
+                            "`..` stands last in a kernel's slice pattern, and without a name",
+                            "write `_` for each element before the ones that you name",
+                        );
+                        return None;
                     }
                     let index = syn::Index::from(i);
                     let base = Box::new(from.clone());
@@ -160,12 +179,13 @@ impl Parser<'_> {
         }
     }
 
-    /// A value that a pattern reads more than once; what is not a name yet is given one.
-    fn read_often(&mut self, e: Expr, lets: &mut Vec<Stmt>) -> Expr {
+    /// A value that patterns read more than once; what is not a name yet is given one, and so is
+    /// a name that a pattern binds anew.
+    fn read_often(&mut self, e: Expr, bound: &TokenStream, lets: &mut Vec<Stmt>) -> Expr {
         match e.kind {
-            Kind::Name(_) => e,
+            Kind::Name(ref name) if !mentions(bound, name) => e,
             Kind::Tuple(items) => {
-                let items = items.into_iter().map(|e| self.read_often(e, lets)).collect();
+                let items = items.into_iter().map(|e| self.read_often(e, bound, lets)).collect();
                 Expr { kind: Kind::Tuple(items), span: e.span }
             }
             _ => {
@@ -210,7 +230,8 @@ impl Parser<'_> {
         let coherent = self.is_coherent || m.attrs.iter().any(super::is_coherent);
         let mut stmts = Vec::new();
         let scrutinee = self.expr(&m.expr);
-        let from = self.read_often(scrutinee, &mut stmts);
+        let bound: TokenStream = m.arms.iter().map(|arm| arm.pat.to_token_stream()).collect();
+        let from = self.read_often(scrutinee, &bound, &mut stmts);
         let mut arms = Vec::new();
         for arm in &m.arms {
             self.no_attributes(&arm.attrs);

@@ -76,6 +76,9 @@ bodies! {
     inner_closure: { let f = |y: f32| y; x } "no closures" "#[kernel] fn";
     untyped_integer: { let mut i = 0; x } "mutable integer" "0u32";
     untyped_range: { for i in 0..4 {} x } "counter needs a type" "0u32..8";
+    rest_in_the_middle: { let [a, .., b] = [x, x, x]; a + b } "stands last" "write `_`";
+    named_rest: { let [a, b @ ..] = [x, x, x]; a } "without a name" "write `_`";
+    order_of_index: { let mut v = [x, x]; v[g(n)] += h(x); x } "comes first" "bind the index";
     no_range: { for i in list() {} x } "runs over a range" "list.iter()";
     mutable_reference: { let y = &mut x; *y } "`&mut` outside the arguments" "variable itself";
     mutable_element: { let mut t = [x, x]; g(&mut t[n as usize]) } "computed element" "after the call";
@@ -150,6 +153,38 @@ fn signatures() {
         "stands on a function",
         "kernel!",
     );
+}
+
+/// Nothing may change through a second name of a `&mut` parameter.
+#[test]
+fn second_names() {
+    let f = quote!(
+        fn f(s: &mut S) {
+            let r = s;
+            r.x += 1.0;
+        }
+    );
+    assert_kernel(f, "cannot assign through `r`", "parameter itself");
+    let f = quote!(
+        fn f(s: &mut S) {
+            let S { x, y } = s;
+            *x += *y;
+        }
+    );
+    assert_kernel(f, "cannot assign through `x`", "parameter itself");
+    let f = quote!(
+        fn f(s: &mut S) {
+            let mut r = s;
+            r.x += 1.0;
+        }
+    );
+    assert_kernel(f, "no second name", "copy the value");
+    let f = quote!(
+        fn f((x, y): &mut (f32, f32)) {
+            *x += *y;
+        }
+    );
+    assert_kernel(f, "has one name", "s: &mut S");
 }
 
 #[test]

@@ -45,6 +45,16 @@ pub(super) fn twin(item: &syn::DeriveInput, variants: &[Ident]) -> TokenStream {
         }
     });
     quote! {
+        const _: () = {
+            #(assert!(
+                #name::#variants as i128 >= 0 && #name::#variants as i128 <= u32::MAX as i128,
+                concat!(
+                    "the variant `", stringify!(#variants), "` of `", stringify!(#name),
+                    "` has a number that a kernel's `u32` does not have",
+                ),
+            );)*
+        };
+
         #[doc = #doc]
         #vis struct #twin<M: #p::Machine> {
             number: <u32 as #p::Type>::On<M>,

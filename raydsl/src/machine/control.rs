@@ -97,8 +97,14 @@ pub trait Condition<M: Machine>: Copy {
     fn otherwise_small(m: &M, state: &Self::State) -> bool;
     /// Joins the arms.
     fn end(m: &M, state: Self::State);
-    /// One of two values, neither of which has an effect.
-    fn choose<V: Value<M>>(self, m: &M, a: impl FnOnce() -> V, b: impl FnOnce() -> V) -> V;
+    /// One of two values; `calls` says that functions are called for them, whatever those do.
+    fn choose<V: Value<M>>(
+        self,
+        m: &M,
+        calls: bool,
+        a: impl FnOnce() -> V,
+        b: impl FnOnce() -> V,
+    ) -> V;
     /// Tests the condition of a loop.
     fn test(self, m: &M, l: &M::Loop) -> bool;
 }
@@ -137,8 +143,14 @@ impl<M: Machine> Condition<M> for B<M> {
     }
 
     #[inline(always)]
-    fn choose<V: Value<M>>(self, m: &M, a: impl FnOnce() -> V, b: impl FnOnce() -> V) -> V {
-        m.choose(self, a, b)
+    fn choose<V: Value<M>>(
+        self,
+        m: &M,
+        calls: bool,
+        a: impl FnOnce() -> V,
+        b: impl FnOnce() -> V,
+    ) -> V {
+        m.choose(calls, self, a, b)
     }
 
     #[inline(always)]
@@ -179,7 +191,13 @@ impl<M: Machine> Condition<M> for bool {
     fn end(_: &M, _: bool) {}
 
     #[inline(always)]
-    fn choose<V: Value<M>>(self, _: &M, a: impl FnOnce() -> V, b: impl FnOnce() -> V) -> V {
+    fn choose<V: Value<M>>(
+        self,
+        _: &M,
+        _: bool,
+        a: impl FnOnce() -> V,
+        b: impl FnOnce() -> V,
+    ) -> V {
         if self { a() } else { b() }
     }
 

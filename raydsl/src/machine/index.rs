@@ -93,7 +93,11 @@ impl<M: Machine, P: Type> Indexed<M> for On<'_, P> {
     fn in_step(self, m: &M, i: u32) -> P::On<M> {
         let len = self.len() as u32;
         m.check_index(&m.u32(i), len);
-        P::splat(m, self.get(i.min(len.wrapping_sub(1))))
+        // A slice without elements has none to stand for one.
+        if len == 0 {
+            return P::On::zero(m);
+        }
+        P::splat(m, self.get(i.min(len - 1)))
     }
 }
 

@@ -302,10 +302,12 @@ pub trait Machine: Sized + 'static {
     /// Joins the arms.
     fn branch_end(&self, t: Self::Branch);
 
-    /// `a()` in the lanes that have `c`, `b()` in the others; neither has an effect.
+    /// `a()` in the lanes that have `c`, `b()` in the others. Without `calls` neither has an
+    /// effect; with them each is evaluated for its lanes only.
     #[inline(always)]
     fn choose<V: Value<Self>>(
         &self,
+        _calls: bool,
         c: B<Self>,
         a: impl FnOnce() -> V,
         b: impl FnOnce() -> V,

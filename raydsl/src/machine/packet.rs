@@ -309,6 +309,23 @@ impl<L: Lanes> Machine for Packet<L> {
         self.alive()
     }
     #[inline(always)]
+    fn choose<V: Value<Self>>(
+        &self,
+        calls: bool,
+        c: B<Self>,
+        a: impl FnOnce() -> V,
+        b: impl FnOnce() -> V,
+    ) -> V {
+        let (a, b) = if calls {
+            let active = self.active.get();
+            let others = self.and(active, self.lanes.mask_not(c.0));
+            (self.with_active(self.and(active, c.0), a), self.with_active(others, b))
+        } else {
+            (self.guarded(c.0, true, a), self.guarded(c.0, false, b))
+        };
+        index::choose(self, c.0, a, b)
+    }
+    #[inline(always)]
     fn branch_then_small(&self, _: &Cell<L::Mask>) -> bool {
         true
     }
@@ -438,6 +455,9 @@ impl<L: Lanes> Machine for Packet<L> {
     }
     #[inline(always)]
     fn fetch<P: Type>(&self, prims: &crate::bvh::On<'_, P>, index: U<Self>) -> P::On<Self> {
+        if prims.is_empty() {
+            return P::On::zero(self);
+        }
         let active = self.active.get();
         if !self.lanes.any(active) {
             return P::On::zero(self);

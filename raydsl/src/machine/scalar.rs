@@ -292,6 +292,7 @@ impl Machine for Scalar {
     #[inline(always)]
     fn choose<V: Value<Self>>(
         &self,
+        _: bool,
         c: B<Self>,
         a: impl FnOnce() -> V,
         b: impl FnOnce() -> V,
@@ -408,6 +409,9 @@ impl Machine for Scalar {
         B(traverse::any_hit(prims, ray))
     }
     fn fetch<P: Type>(&self, prims: &crate::bvh::On<'_, P>, index: U<Self>) -> P::On<Self> {
+        if prims.is_empty() {
+            return P::On::zero(self);
+        }
         P::splat(self, prims.get(index.0))
     }
 }

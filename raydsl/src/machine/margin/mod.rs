@@ -440,6 +440,9 @@ impl Machine for Margin {
         prims: &crate::bvh::On<'_, P>,
         index: U<Self>,
     ) -> P::On<Self> {
+        if prims.is_empty() {
+            return P::On::zero(self);
+        }
         P::splat(self, prims.get(index.0))
     }
 }

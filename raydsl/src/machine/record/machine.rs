@@ -543,6 +543,7 @@ impl Machine for Recorder {
     }
     fn choose<V: Value<Self>>(
         &self,
+        calls: bool,
         c: B<Self>,
         a: impl FnOnce() -> V,
         b: impl FnOnce() -> V,
@@ -550,8 +551,11 @@ impl Machine for Recorder {
         match (self.truth(c.0), V::SCHEMA) {
             (Some(true), _) => a(),
             (Some(false), _) => b(),
-            // As a statement a struct reads better than as a selection of each member.
-            (None, Schema::Struct { .. } | Schema::Array { .. }) => {
+            // As a statement a struct reads better than as a selection of each member, and what is
+            // called is called where it is wanted.
+            (None, schema)
+                if calls || matches!(schema, Schema::Struct { .. } | Schema::Array { .. }) =>
+            {
                 let value = Var::declare(self, "value");
                 let branch = Branch::new(self, c);
                 branch.then(self);
