@@ -171,7 +171,17 @@ dot! {
 }
 
 /// The sum of products, added from `x` to the last component. For `Vec2` and `Vec3` it is glam's;
-/// `Vec4::dot` adds in another order on some machines.
+/// `Vec4::dot` adds in another order on some machines, so kernels do not have it:
+///
+/// ```compile_fail,E0277
+/// use raydsl::kernel;
+/// use raydsl::prelude::*;
+///
+/// #[kernel]
+/// fn f(a: Vec4, b: Vec4) -> f32 {
+///     a.dot(b) // note: write `dot(a, b)`
+/// }
+/// ```
 #[inline(always)]
 pub fn dot<V: Dot>(a: V, b: V) -> V::Component {
     a.dot_in_order(b)
