@@ -91,7 +91,7 @@ impl walk {
                         ),
                     );
                     {
-                        let (begin, end) = ::raydsl::__private::range(m, 0, n);
+                        let (begin, end) = ::raydsl::__private::range(m, { 0 }, { n });
                         let counter_3 = ::raydsl::__private::Var::new(m, "i", begin);
                         let step_5 = ::core::cell::Cell::new(0 as u32);
                         let repeat_2 = ::raydsl::__private::Loop::new(m);
@@ -114,8 +114,8 @@ impl walk {
                                             ::raydsl::__private::OpCompare::compare(
                                                 m,
                                                 ::raydsl::__private::Compare::Lt,
-                                                sum.get(m),
-                                                x,
+                                                { sum.get(m) },
+                                                { x },
                                             ),
                                         )
                                     {
@@ -127,7 +127,11 @@ impl walk {
                                             sum.set(
                                                 m,
                                                 ::raydsl::__private::Coerce::coerce(
-                                                    ::raydsl::__private::OpAdd::add(m, sum.get(m), right),
+                                                    ::raydsl::__private::OpAdd::add(
+                                                        m,
+                                                        { sum.get(m) },
+                                                        { right },
+                                                    ),
                                                     m,
                                                 ),
                                             );
@@ -137,8 +141,8 @@ impl walk {
                                             ::raydsl::__private::OpCompare::compare(
                                                 m,
                                                 ::raydsl::__private::Compare::Gt,
-                                                sum.get(m),
-                                                ::raydsl::__private::literal(m, 10.0f32, 10.0f64),
+                                                { sum.get(m) },
+                                                { ::raydsl::__private::literal(m, 10.0f32, 10.0f64) },
                                             ),
                                         );
                                         if branch_9.then_small(m) {
@@ -158,8 +162,8 @@ impl walk {
                                                         ::raydsl::__private::OpCompare::compare(
                                                             m,
                                                             ::raydsl::__private::Compare::Lt,
-                                                            x,
-                                                            ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
+                                                            { x },
+                                                            { ::raydsl::__private::literal(m, 0.0f32, 0.0f64) },
                                                         ),
                                                     );
                                                     if branch_13.then(m) {
@@ -171,12 +175,14 @@ impl walk {
                                                                         ::raydsl::__private::OpCompare::compare(
                                                                             m,
                                                                             ::raydsl::__private::Compare::Gt,
-                                                                            ::raydsl::__private::OpDiv::div(
-                                                                                m,
-                                                                                ::raydsl::__private::u32(m, 1u32),
-                                                                                i,
-                                                                            ),
-                                                                            0,
+                                                                            {
+                                                                                ::raydsl::__private::OpDiv::div(
+                                                                                    m,
+                                                                                    { ::raydsl::__private::u32(m, 1u32) },
+                                                                                    { i },
+                                                                                )
+                                                                            },
+                                                                            { 0 },
                                                                         ),
                                                                         m,
                                                                     ),
@@ -209,8 +215,8 @@ impl walk {
                                             ::raydsl::__private::OpCompare::compare(
                                                 m,
                                                 ::raydsl::__private::Compare::Eq,
-                                                i,
-                                                3,
+                                                { i },
+                                                { 3 },
                                             ),
                                         );
                                         if branch_17.then_small(m) {
@@ -230,7 +236,11 @@ impl walk {
                                             sum.set(
                                                 m,
                                                 ::raydsl::__private::Coerce::coerce(
-                                                    ::raydsl::__private::OpMul::mul(m, sum.get(m), right),
+                                                    ::raydsl::__private::OpMul::mul(
+                                                        m,
+                                                        { sum.get(m) },
+                                                        { right },
+                                                    ),
                                                     m,
                                                 ),
                                             );
@@ -265,8 +275,8 @@ impl walk {
                         ::raydsl::__private::OpCompare::compare(
                             m,
                             ::raydsl::__private::Compare::Gt,
-                            sum.get(m),
-                            x,
+                            { sum.get(m) },
+                            { x },
                         ),
                     );
                     if branch_19.then_small(m) {
@@ -281,8 +291,8 @@ impl walk {
                                     ::raydsl::__private::OpCompare::compare(
                                         m,
                                         ::raydsl::__private::Compare::Gt,
-                                        x,
-                                        ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
+                                        { x },
+                                        { ::raydsl::__private::literal(m, 0.0f32, 0.0f64) },
                                     ),
                                     #[inline(always)]
                                     || {
@@ -314,7 +324,11 @@ impl walk {
                     ret.give(
                         m,
                         ::raydsl::__private::Coerce::coerce(
-                            ::raydsl::__private::OpAdd::add(m, sum.get(m), last.get(m)),
+                            ::raydsl::__private::OpAdd::add(
+                                m,
+                                { sum.get(m) },
+                                { last.get(m) },
+                            ),
                             m,
                         ),
                     );

@@ -7,6 +7,7 @@ mod cost;
 mod diag;
 mod emit;
 mod generics;
+mod here;
 mod items;
 mod model;
 mod ops;
@@ -26,7 +27,7 @@ use quote::quote;
 /// `Kernel::of::<name>()`.
 #[proc_macro_attribute]
 pub fn kernel(args: TokenStream, item: TokenStream) -> TokenStream {
-    expand_kernel(args.into(), item.into()).into()
+    rewrite::with_readable_names(expand_kernel(args.into(), item.into())).into()
 }
 
 fn expand_kernel(
@@ -94,7 +95,7 @@ fn expand_kernels(
 /// What the closure captures is borrowed; the kernel lives as long as that.
 #[proc_macro]
 pub fn kernel_closure(input: TokenStream) -> TokenStream {
-    expand_closure(input.into()).into()
+    rewrite::with_readable_names(expand_closure(input.into())).into()
 }
 
 fn expand_closure(input: proc_macro2::TokenStream) -> proc_macro2::TokenStream {
@@ -113,7 +114,7 @@ fn expand_closure(input: proc_macro2::TokenStream) -> proc_macro2::TokenStream {
 /// Makes a primitive of a struct, or gives it `intersect` and `get_bounds` in an `impl`.
 #[proc_macro_attribute]
 pub fn primitive(args: TokenStream, item: TokenStream) -> TokenStream {
-    expand_primitive(args.into(), item.into()).into()
+    rewrite::with_readable_names(expand_primitive(args.into(), item.into())).into()
 }
 
 fn expand_primitive(
@@ -148,7 +149,7 @@ fn expand_primitive(
 #[proc_macro_derive(Type)]
 pub fn derive_type(input: TokenStream) -> TokenStream {
     match syn::parse::<syn::DeriveInput>(input) {
-        Ok(item) => twin::derive(&item).into(),
+        Ok(item) => rewrite::with_readable_names(twin::derive(&item)).into(),
         Err(e) => e.into_compile_error().into(),
     }
 }

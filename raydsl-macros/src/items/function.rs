@@ -6,6 +6,7 @@ use quote::{ToTokens, format_ident, quote};
 use super::{Place, info, lifted_function, own, param_ident, private, quiet};
 use crate::diag::Errors;
 use crate::generics::Generics;
+use crate::here::{of_type, quote_here};
 use crate::model::{Kernel, Param};
 use crate::parse;
 use crate::rewrite::without_markers;
@@ -150,17 +151,20 @@ fn inferring_function(kernel: &Kernel, vis: &TokenStream) -> TokenStream {
 }
 
 fn entry(kernel: &Kernel, sig: &syn::Signature) -> TokenStream {
-    let p = private();
     let name = &kernel.name;
     let Generics { declared, used, predicates, .. } = &kernel.generics;
     let (declared, used) = (angled(declared), angled(used));
     let types: Vec<&TokenStream> = kernel.params.iter().map(|p| &p.ty).collect();
+    let _at = types.first().map(|ty| of_type(ty));
+    let p = quote_here!(::raydsl::__private);
     let fields: Vec<syn::Index> = (0..types.len()).map(syn::Index::from).collect();
     let result = &kernel.result;
     let refs = scalar_arguments(sig, &fields);
     let info = info(kernel, &name.to_string());
+    // Not all of them need be in the arguments.
+    let named = (!kernel.generics.is_empty()).then(|| quote!(::#used));
     let on = format_ident!("{}", if kernel.generics.is_empty() { "on" } else { "on_values" });
-    quote! {
+    quote_here! {
         impl #declared #p::KernelFn for #name #used where #predicates {
             type Args = (#(#types,)*);
             type Output = #result;
@@ -172,7 +176,7 @@ fn entry(kernel: &Kernel, sig: &syn::Signature) -> TokenStream {
 
             #[inline]
             fn scalar(args: Self::Args) -> #result {
-                #name(#(#refs),*)
+                #name #named(#(#refs),*)
             }
 
             #[inline(always)]

@@ -57,7 +57,7 @@ pub(crate) fn inverse_affine<M: Machine>(m: &M, a: A3<M>) -> A3<M> {
 }
 
 macro_rules! denied {
-    ($trait:ident $what:literal $write:literal $name:literal) => {
+    ($trait:ident $what:tt $write:tt $name:literal) => {
         /// Never implemented: its message is the error.
         #[diagnostic::on_unimplemented(
                                                             message = $what,

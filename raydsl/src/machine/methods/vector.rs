@@ -418,6 +418,7 @@ parts! {
 macro_rules! conversions {
     ($($v:ident: $($name:literal $to:ident $host:ty),+;)+) => {
         $($(
+            #[diagnostic::do_not_recommend]
             impl<M: Machine, E: Component<M> + super::super::OpCast<M, $host>>
                 Method<{ name($name) }, M, ()> for $v<E>
             {
@@ -441,7 +442,7 @@ conversions! {
 // What `Vec4` has another result for on another machine.
 
 macro_rules! denied {
-    ($($trait:ident $what:literal $write:literal: $($name:literal)+;)+) => {
+    ($($trait:ident $what:tt $write:tt: $($name:literal)+;)+) => {
         $(
             /// Never implemented: its message is the error.
             #[diagnostic::on_unimplemented(
