@@ -57,6 +57,16 @@ fn expand_kernel(
     if let Ok(t) = syn::parse2::<syn::ItemTrait>(item.clone()) {
         return items::kernel_trait(&t);
     }
+    if let Ok(closure) = syn::parse2::<syn::ExprClosure>(item.clone()) {
+        let e = syn::Error::new_spanned(
+            &closure.or1_token,
+            "stable Rust has no `#[kernel]` on a closure\n  help: write `kernel!(|ray: Ray| ...)`, \
+             or `#[kernels]` on the function around it",
+        );
+        let e = e.into_compile_error();
+        // For rustc's sake a kernel all the same: what is done with it is right.
+        return quote!({ #e ::raydsl::prelude::kernel!(#item) });
+    }
     let e = syn::Error::new_spanned(
         &item,
         "`#[kernel]` stands on a function, an impl or a trait\n  help: for a closure write `kernel!(|ray: Ray| ...)`",
