@@ -19,6 +19,7 @@ mod twin;
 
 use proc_macro::TokenStream;
 use quote::quote;
+use syn::spanned::Spanned;
 
 /// Lifts a function, or every function of an `impl` or a trait, to all variants.
 ///
@@ -58,8 +59,8 @@ fn expand_kernel(
         return items::kernel_trait(&t);
     }
     if let Ok(closure) = syn::parse2::<syn::ExprClosure>(item.clone()) {
-        let e = syn::Error::new_spanned(
-            &closure.or1_token,
+        let e = syn::Error::new(
+            closure.span(),
             "stable Rust has no `#[kernel]` on a closure\n  help: write `kernel!(|ray: Ray| ...)`, \
              or `#[kernels]` on the function around it",
         );
