@@ -91,7 +91,7 @@ impl walk {
                         ),
                     );
                     {
-                        let (begin, end) = ::raydsl::__private::range(m, 0, n);
+                        let (begin, end) = ::raydsl::__private::range(m, { 0 }, { n });
                         let counter_3 = ::raydsl::__private::Var::new(m, "i", begin);
                         let step_5 = ::core::cell::Cell::new(0 as u32);
                         let repeat_2 = ::raydsl::__private::Loop::new(m);
@@ -120,8 +120,8 @@ impl walk {
                                             ::raydsl::__private::OpCompare::compare(
                                                 m,
                                                 ::raydsl::__private::Compare::Lt,
-                                                sum.get(m),
-                                                x,
+                                                { sum.get(m) },
+                                                { x },
                                             ),
                                         )
                                     {
@@ -139,7 +139,11 @@ impl walk {
                                             sum.set(
                                                 m,
                                                 ::raydsl::__private::Coerce::coerce(
-                                                    ::raydsl::__private::OpAdd::add(m, sum.get(m), right),
+                                                    ::raydsl::__private::OpAdd::add(
+                                                        m,
+                                                        { sum.get(m) },
+                                                        { right },
+                                                    ),
                                                     m,
                                                 ),
                                             );
@@ -149,8 +153,8 @@ impl walk {
                                             ::raydsl::__private::OpCompare::compare(
                                                 m,
                                                 ::raydsl::__private::Compare::Gt,
-                                                sum.get(m),
-                                                ::raydsl::__private::literal(m, 10.0f32, 10.0f64),
+                                                { sum.get(m) },
+                                                { ::raydsl::__private::literal(m, 10.0f32, 10.0f64) },
                                             ),
                                         );
                                         if branch_9.then_small(m) {
@@ -182,8 +186,8 @@ impl walk {
                                                         ::raydsl::__private::OpCompare::compare(
                                                             m,
                                                             ::raydsl::__private::Compare::Lt,
-                                                            x,
-                                                            ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
+                                                            { x },
+                                                            { ::raydsl::__private::literal(m, 0.0f32, 0.0f64) },
                                                         ),
                                                     );
                                                     if branch_13.then(m) {
@@ -201,12 +205,14 @@ impl walk {
                                                                         ::raydsl::__private::OpCompare::compare(
                                                                             m,
                                                                             ::raydsl::__private::Compare::Gt,
-                                                                            ::raydsl::__private::OpDiv::div(
-                                                                                m,
-                                                                                ::raydsl::__private::u32(m, 1u32),
-                                                                                i,
-                                                                            ),
-                                                                            0,
+                                                                            {
+                                                                                ::raydsl::__private::OpDiv::div(
+                                                                                    m,
+                                                                                    { ::raydsl::__private::u32(m, 1u32) },
+                                                                                    { i },
+                                                                                )
+                                                                            },
+                                                                            { 0 },
                                                                         ),
                                                                         m,
                                                                     ),
@@ -251,8 +257,8 @@ impl walk {
                                             ::raydsl::__private::OpCompare::compare(
                                                 m,
                                                 ::raydsl::__private::Compare::Eq,
-                                                i,
-                                                3,
+                                                { i },
+                                                { 3 },
                                             ),
                                         );
                                         if branch_17.then_small(m) {
@@ -278,7 +284,11 @@ impl walk {
                                             sum.set(
                                                 m,
                                                 ::raydsl::__private::Coerce::coerce(
-                                                    ::raydsl::__private::OpMul::mul(m, sum.get(m), right),
+                                                    ::raydsl::__private::OpMul::mul(
+                                                        m,
+                                                        { sum.get(m) },
+                                                        { right },
+                                                    ),
                                                     m,
                                                 ),
                                             );
@@ -313,8 +323,8 @@ impl walk {
                         ::raydsl::__private::OpCompare::compare(
                             m,
                             ::raydsl::__private::Compare::Gt,
-                            sum.get(m),
-                            x,
+                            { sum.get(m) },
+                            { x },
                         ),
                     );
                     if branch_19.then_small(m) {
@@ -336,8 +346,8 @@ impl walk {
                                     ::raydsl::__private::OpCompare::compare(
                                         m,
                                         ::raydsl::__private::Compare::Gt,
-                                        x,
-                                        ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
+                                        { x },
+                                        { ::raydsl::__private::literal(m, 0.0f32, 0.0f64) },
                                     ),
                                     #[inline(always)]
                                     || {
@@ -375,7 +385,11 @@ impl walk {
                     ret.give(
                         m,
                         ::raydsl::__private::Coerce::coerce(
-                            ::raydsl::__private::OpAdd::add(m, sum.get(m), last.get(m)),
+                            ::raydsl::__private::OpAdd::add(
+                                m,
+                                { sum.get(m) },
+                                { last.get(m) },
+                            ),
                             m,
                         ),
                     );

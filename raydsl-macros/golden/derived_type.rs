@@ -48,6 +48,7 @@ impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Value<M> for SampleOn
         }
     }
 }
+#[diagnostic::do_not_recommend]
 impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Inferred<M> for SampleOn<M> {
     type Host = Sample;
     #[inline(always)]
@@ -61,6 +62,7 @@ impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Twin<M> for SampleOn<
         v
     }
 }
+#[diagnostic::do_not_recommend]
 impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Varying<M> for SampleOn<M> {
     type Value = Self;
     #[inline(always)]
@@ -96,6 +98,7 @@ where
         >>::call_at(self, variable, m, args)
     }
 }
+#[diagnostic::do_not_recommend]
 impl ::raydsl::__private::Type for Sample {
     type On<M: ::raydsl::__private::Machine> = SampleOn<M>;
     const SCHEMA: &'static ::raydsl::__private::Schema = &::raydsl::__private::Schema::Struct {
@@ -159,6 +162,7 @@ impl ::raydsl::__private::Type for Sample {
         }
     }
 }
+#[diagnostic::do_not_recommend]
 impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Capture<M> for Sample {
     type On<'c> = SampleOn<M>;
     #[inline(always)]

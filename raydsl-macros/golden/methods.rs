@@ -69,7 +69,11 @@ impl Particle {
                         >;
                         __Twin::<__M> {
                             position: ::raydsl::__private::Coerce::coerce(
-                                ::raydsl::__private::OpAdd::add(m, this.position, by),
+                                ::raydsl::__private::OpAdd::add(
+                                    m,
+                                    { this.position },
+                                    { by },
+                                ),
                                 m,
                             ),
                             ..this
@@ -112,12 +116,20 @@ impl Particle {
                         __M,
                         _,
                     >::call(
-                        <Particle>::new_on(
-                            m,
-                            ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
-                        ),
+                        {
+                            <Particle>::new_on(
+                                m,
+                                ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
+                            )
+                        },
                         m,
-                        (::raydsl::__private::Capture::<__M>::constant(&Vec3::ZERO, m),),
+                        (
+                            {
+                                ::raydsl::__private::Capture::<
+                                    __M,
+                                >::constant(&Vec3::ZERO, m)
+                            },
+                        ),
                     ),
                     m,
                 )
@@ -133,6 +145,7 @@ impl Particle {
     non_snake_case,
     reason = "generated code"
 )]
+#[diagnostic::do_not_recommend]
 impl<
     __M: ::raydsl::__private::Machine,
     __A0: ::raydsl::__private::Coerce<__M, <Vec3 as ::raydsl::__private::Type>::On<__M>>,

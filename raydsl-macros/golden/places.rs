@@ -77,7 +77,11 @@ impl push {
                     let right = by.get(m).y;
                     let mut whole = q.get(m);
                     whole.position.y = ::raydsl::__private::Coerce::coerce(
-                        ::raydsl::__private::OpAdd::add(m, whole.position.y, right),
+                        ::raydsl::__private::OpAdd::add(
+                            m,
+                            { whole.position.y },
+                            { right },
+                        ),
                         m,
                     );
                     q.set(m, whole);

@@ -67,6 +67,7 @@ for ColorSphereOn<M> {
         }
     }
 }
+#[diagnostic::do_not_recommend]
 impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Inferred<M>
 for ColorSphereOn<M> {
     type Host = ColorSphere;
@@ -81,6 +82,7 @@ impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Twin<M> for ColorSphe
         v
     }
 }
+#[diagnostic::do_not_recommend]
 impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Varying<M>
 for ColorSphereOn<M> {
     type Value = Self;
@@ -121,6 +123,7 @@ where
         >>::call_at(self, variable, m, args)
     }
 }
+#[diagnostic::do_not_recommend]
 impl ::raydsl::__private::Type for ColorSphere {
     type On<M: ::raydsl::__private::Machine> = ColorSphereOn<M>;
     const SCHEMA: &'static ::raydsl::__private::Schema = &::raydsl::__private::Schema::Struct {
@@ -202,6 +205,7 @@ impl ::raydsl::__private::Type for ColorSphere {
         }
     }
 }
+#[diagnostic::do_not_recommend]
 impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Capture<M> for ColorSphere {
     type On<'c> = ColorSphereOn<M>;
     #[inline(always)]

@@ -69,7 +69,7 @@ impl ColorSphere {
                             { ::raydsl::__private::name("to_f32") },
                             __M,
                             _,
-                        >::call(this.radius, m, ()),
+                        >::call({ this.radius }, m, ()),
                     ),
                     m,
                 )
@@ -85,6 +85,7 @@ impl ColorSphere {
     non_snake_case,
     reason = "generated code"
 )]
+#[diagnostic::do_not_recommend]
 impl<
     __M: ::raydsl::__private::Machine,
     __A0: ::raydsl::__private::Coerce<__M, <Ray as ::raydsl::__private::Type>::On<__M>>,

@@ -72,20 +72,26 @@ impl smooth {
                 ::raydsl::__private::Coerce::coerce(
                     ::raydsl::__private::OpAdd::add(
                         m,
-                        ::raydsl::__private::OpMul::mul(
-                            m,
-                            ::raydsl::__private::OpMul::mul(m, t, t),
-                            ::raydsl::__private::OpSub::sub(
+                        {
+                            ::raydsl::__private::OpMul::mul(
                                 m,
-                                ::raydsl::__private::literal(m, 3.0f32, 3.0f64),
-                                ::raydsl::__private::OpMul::mul(
-                                    m,
-                                    ::raydsl::__private::literal(m, 2.0f32, 2.0f64),
-                                    t,
-                                ),
-                            ),
-                        ),
-                        ::raydsl::__private::cast::<_, _, f32>(m, n),
+                                { ::raydsl::__private::OpMul::mul(m, { t }, { t }) },
+                                {
+                                    ::raydsl::__private::OpSub::sub(
+                                        m,
+                                        { ::raydsl::__private::literal(m, 3.0f32, 3.0f64) },
+                                        {
+                                            ::raydsl::__private::OpMul::mul(
+                                                m,
+                                                { ::raydsl::__private::literal(m, 2.0f32, 2.0f64) },
+                                                { t },
+                                            )
+                                        },
+                                    )
+                                },
+                            )
+                        },
+                        { ::raydsl::__private::cast::<_, _, f32>(m, n) },
                     ),
                     m,
                 )

@@ -7,6 +7,7 @@ mod cost;
 mod diag;
 mod emit;
 mod generics;
+mod here;
 mod items;
 mod model;
 mod ops;
@@ -19,6 +20,7 @@ mod variant_test;
 
 use proc_macro::TokenStream;
 use quote::quote;
+use syn::spanned::Spanned;
 
 /// Lifts a function, or every function of an `impl` or a trait, to all variants.
 ///
@@ -27,7 +29,7 @@ use quote::quote;
 /// `Kernel::of::<name>()`.
 #[proc_macro_attribute]
 pub fn kernel(args: TokenStream, item: TokenStream) -> TokenStream {
-    expand_kernel(args.into(), item.into()).into()
+    rewrite::with_readable_names(expand_kernel(args.into(), item.into())).into()
 }
 
 fn expand_kernel(
@@ -53,6 +55,16 @@ fn expand_kernel(
     }
     if let Ok(t) = syn::parse2::<syn::ItemTrait>(item.clone()) {
         return items::kernel_trait(&t);
+    }
+    if let Ok(closure) = syn::parse2::<syn::ExprClosure>(item.clone()) {
+        let e = syn::Error::new(
+            closure.span(),
+            "stable Rust has no `#[kernel]` on a closure\n  help: write `kernel!(|ray: Ray| ...)`, \
+             or `#[kernels]` on the function around it",
+        );
+        let e = e.into_compile_error();
+        // For rustc's sake a kernel all the same: what is done with it is right.
+        return quote!({ #e ::raydsl::prelude::kernel!(#item) });
     }
     let e = syn::Error::new_spanned(
         &item,
@@ -92,7 +104,7 @@ fn expand_kernels(
 /// What the closure captures is borrowed; the kernel lives as long as that.
 #[proc_macro]
 pub fn kernel_closure(input: TokenStream) -> TokenStream {
-    expand_closure(input.into()).into()
+    rewrite::with_readable_names(expand_closure(input.into())).into()
 }
 
 fn expand_closure(input: proc_macro2::TokenStream) -> proc_macro2::TokenStream {
@@ -111,7 +123,7 @@ fn expand_closure(input: proc_macro2::TokenStream) -> proc_macro2::TokenStream {
 /// Makes a primitive of a struct, or gives it `intersect` and `get_bounds` in an `impl`.
 #[proc_macro_attribute]
 pub fn primitive(args: TokenStream, item: TokenStream) -> TokenStream {
-    expand_primitive(args.into(), item.into()).into()
+    rewrite::with_readable_names(expand_primitive(args.into(), item.into())).into()
 }
 
 fn expand_primitive(
@@ -146,7 +158,7 @@ fn expand_primitive(
 #[proc_macro_derive(Type)]
 pub fn derive_type(input: TokenStream) -> TokenStream {
     match syn::parse::<syn::DeriveInput>(input) {
-        Ok(item) => twin::derive(&item).into(),
+        Ok(item) => rewrite::with_readable_names(twin::derive(&item)).into(),
         Err(e) => e.into_compile_error().into(),
     }
 }

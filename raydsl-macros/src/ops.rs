@@ -69,6 +69,24 @@ const DENIED: &[(&str, &str)] = &[
     ("iter", "`for x in list.iter()`, or a `for` over a range"),
 ];
 
+/// Types of Rust that no kernel has, with what to write instead.
+const REFUSED_TYPES: &[(&[&str], &str)] = &[
+    (&["f64"], "compute in `f32`; `Kernel::reference` gives the result in `f64`"),
+    (
+        &["u8", "i8", "u16", "i16", "u64", "i64", "u128", "i128", "isize"],
+        "use `u32`, `i32` or `usize`, which has 32 bits in a kernel; for small members of structs \
+         there are `Unorm8` and `Unorm16`",
+    ),
+    (&["Option", "Result"], "give a value that says what happened, as `Hit` has `is_hit`"),
+    (&["String", "str", "char"], "keep text outside the kernel"),
+    (&["Vec", "Box", "HashMap"], "capture a slice or take one as `&[f32]`: kernels have no heap"),
+];
+
+/// What to write in place of the type `name`, if no kernel has it.
+pub(crate) fn refused_type(name: &str) -> Option<&'static str> {
+    REFUSED_TYPES.iter().find(|r| r.0.contains(&name)).map(|r| r.1)
+}
+
 /// What is wrong with the method `name` and what to write instead, if kernels cannot have it.
 pub(crate) fn denied(name: &str) -> Option<(String, String)> {
     if let Some((_, ours)) = ELEMENTARY.iter().find(|e| e.0 == name) {

@@ -40,7 +40,7 @@ pub(crate) fn function(
     let result = match &sig.output {
         syn::ReturnType::Default => None,
         syn::ReturnType::Type(_, ty) if is_unit(ty) => None,
-        syn::ReturnType::Type(_, ty) => Some(value_type(ty)),
+        syn::ReturnType::Type(_, ty) => Some(parser.ty(ty)),
     };
     let mut body = parser.block(body);
     body.stmts.splice(0..0, prologue);
@@ -78,12 +78,47 @@ fn is_data(ty: &syn::Type) -> bool {
     }
 }
 
+/// A type that no kernel can have: where it is, what it is, and what to write instead.
+pub(crate) fn refused_type(ty: &syn::Type) -> Option<(Span, String, &'static str)> {
+    match ty {
+        syn::Type::Reference(r) => refused_type(&r.elem),
+        syn::Type::Paren(p) => refused_type(&p.elem),
+        syn::Type::Slice(s) => refused_type(&s.elem),
+        syn::Type::Array(a) => refused_type(&a.elem),
+        syn::Type::Tuple(t) => t.elems.iter().find_map(refused_type),
+        syn::Type::TraitObject(t) => Some((
+            t.span(),
+            "trait objects".to_owned(),
+            "give the trait `#[kernel]` and write `fn f<T: Light>(light: T)`",
+        )),
+        syn::Type::Ptr(t) => Some((t.span(), "pointers".to_owned(), "take the value or a slice")),
+        syn::Type::Path(t) => {
+            let name = &t.path.segments.last()?.ident;
+            let help = ops::refused_type(&name.to_string())?;
+            Some((name.span(), format!("`{name}`"), help))
+        }
+        _ => None,
+    }
+}
+
 fn label(l: &Option<syn::Label>) -> Option<String> {
     l.as_ref().map(|l| l.name.ident.to_string())
 }
 
 fn lifetime(l: &Option<syn::Lifetime>) -> Option<String> {
     l.as_ref().map(|l| l.ident.to_string())
+}
+
+/// Where a mistake in `e` is shown: at the operator or the name, which is where rustc shows it.
+fn place(e: &syn::Expr) -> Span {
+    match e {
+        syn::Expr::Binary(b) => b.op.span(),
+        syn::Expr::MethodCall(c) => c.method.span(),
+        syn::Expr::Field(f) => f.member.span(),
+        syn::Expr::Cast(c) => c.ty.span(),
+        syn::Expr::Paren(p) => place(&p.expr),
+        _ => e.span(),
+    }
 }
 
 /// Whether a path segment names a type rather than a module.
@@ -144,7 +179,7 @@ impl Parser<'_> {
                 "write `fn f<T: Light>(light: T)` in place of `light: impl Light`",
             );
         }
-        let (written, ty) = (ty, value_type(ty));
+        let (written, ty) = (ty, self.ty(ty));
         match &**pat {
             Pat::Ident(p) if p.by_ref.is_none() && p.subpat.is_none() => Param {
                 name: p.ident.clone(),
@@ -194,7 +229,7 @@ impl Parser<'_> {
         let result = match &c.output {
             syn::ReturnType::Default => None,
             syn::ReturnType::Type(_, ty) if is_unit(ty) => None,
-            syn::ReturnType::Type(_, ty) => Some(value_type(ty)),
+            syn::ReturnType::Type(_, ty) => Some(self.ty(ty)),
         };
         let mut body = match &*c.body {
             syn::Expr::Block(b) if b.label.is_none() => self.block(&b.block),
@@ -227,6 +262,14 @@ impl Parser<'_> {
             kernel.body = Block { stmts: vec![], tail };
         }
         Kind::Closure(Box::new(kernel))
+    }
+
+    /// The type without references; some are known to be none of kernels.
+    fn ty(&mut self, ty: &syn::Type) -> TokenStream {
+        if let Some((span, what, help)) = refused_type(ty) {
+            self.errors.at(span, format!("a kernel has no {what}"), help);
+        }
+        value_type(ty)
     }
 
     fn error(&mut self, span: Span, what: impl core::fmt::Display, help: &str) -> Kind {
@@ -292,7 +335,7 @@ impl Parser<'_> {
     fn local(&mut self, l: &syn::Local) -> Vec<Stmt> {
         self.no_attributes(&l.attrs);
         let (pat, ty) = match &l.pat {
-            Pat::Type(t) => (&*t.pat, Some(value_type(&t.ty))),
+            Pat::Type(t) => (&*t.pat, Some(self.ty(&t.ty))),
             pat => (pat, None),
         };
         let init = match &l.init {
@@ -303,6 +346,7 @@ impl Parser<'_> {
                         "a kernel has no `let ... else`",
                         "write an `if` that returns early",
                     );
+                    return Vec::new();
                 }
                 Some(self.expr(&init.expr))
             }
@@ -376,7 +420,7 @@ impl Parser<'_> {
 
     fn expr(&mut self, e: &syn::Expr) -> Expr {
         self.no_attributes(attributes(e));
-        Expr { kind: self.kind(e), span: e.span() }
+        Expr { kind: self.kind(e), span: place(e) }
     }
 
     fn kind(&mut self, e: &syn::Expr) -> Kind {
@@ -387,7 +431,7 @@ impl Parser<'_> {
             syn::Expr::Group(g) => self.kind(&g.expr),
             syn::Expr::Unary(u) => self.unary(u),
             syn::Expr::Binary(b) => self.binary(b),
-            syn::Expr::Cast(c) => Kind::Cast { value: self.boxed(&c.expr), ty: value_type(&c.ty) },
+            syn::Expr::Cast(c) => Kind::Cast { value: self.boxed(&c.expr), ty: self.ty(&c.ty) },
             syn::Expr::Call(c) => self.call(c),
             syn::Expr::MethodCall(c) => self.method(c),
             syn::Expr::Field(f) => {
@@ -471,7 +515,9 @@ impl Parser<'_> {
                 ("`&mut` outside the arguments of a call", "write the variable itself")
             }
             syn::Expr::Range(_) => ("ranges outside `for`", "write `for i in a..b`"),
-            syn::Expr::Let(_) => ("`if let`", "compare the value: kernels have no Option"),
+            syn::Expr::Let(_) => {
+                ("`if let` and `while let`", "compare the value: kernels have no Option")
+            }
             syn::Expr::Unsafe(_) => ("`unsafe`", "write safe code"),
             syn::Expr::Await(_) | syn::Expr::Async(_) => ("`async`", "write plain code"),
             _ => ("this expression", "write it with the operations of the kernel language"),

@@ -1,6 +1,6 @@
 //! Rewriting of source that stays Rust.
 
-use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
 use quote::{ToTokens, quote};
 use syn::parse::Parser as _;
 
@@ -35,6 +35,27 @@ pub(crate) fn without_markers(source: TokenStream) -> TokenStream {
         out.extend([within_groups(first.clone(), without_markers)]);
     }
     out
+}
+
+/// Generated code whose type parameters have names that read well in rustc's messages; while it is
+/// made, they begin with `__`, as do other names of ours.
+pub(crate) fn with_readable_names(generated: TokenStream) -> TokenStream {
+    let token = |token| match token {
+        TokenTree::Ident(i) => TokenTree::Ident(readable_name(i)),
+        token => within_groups(token, with_readable_names),
+    };
+    generated.into_iter().map(token).collect()
+}
+
+fn readable_name(ident: Ident) -> Ident {
+    let text = ident.to_string();
+    if text == "__M" {
+        return Ident::new("AnyMachine", ident.span());
+    }
+    match text.strip_prefix("__A").map(str::parse::<u32>) {
+        Some(Ok(i)) => Ident::new(&format!("Argument{i}"), ident.span()),
+        _ => ident,
+    }
 }
 
 /// `#[kernel] |ray: Ray| ...` becomes `kernel!(|ray: Ray| ...)`, at any depth.

@@ -8,6 +8,7 @@ use syn::spanned::Spanned;
 
 use crate::diag::Errors;
 use crate::generics::Generics;
+use crate::parse;
 
 fn private() -> TokenStream {
     quote!(::raydsl::__private)
@@ -24,6 +25,7 @@ pub(crate) fn derive(item: &syn::DeriveInput) -> TokenStream {
         return errors.into_tokens();
     }
     let fields = named_fields(item, &mut errors);
+    check_types(&fields, &mut errors);
     if !errors.is_empty() {
         return errors.into_tokens();
     }
@@ -34,6 +36,7 @@ pub(crate) fn derive(item: &syn::DeriveInput) -> TokenStream {
 pub(crate) fn primitive_struct(item: &syn::DeriveInput) -> TokenStream {
     let mut errors = Errors::default();
     let fields = named_fields(item, &mut errors);
+    check_types(&fields, &mut errors);
     if let Some(g) = item.generics.params.first() {
         errors.at(g.span(), "a primitive cannot be generic", "write a struct for each type");
     }
@@ -69,6 +72,13 @@ pub(crate) fn primitive_struct(item: &syn::DeriveInput) -> TokenStream {
                 "order them by size, or fill the gaps with members of your own",
             ),
         );
+    }
+}
+
+/// Members of types that no kernel has.
+fn check_types(fields: &[syn::Field], errors: &mut Errors) {
+    for (span, what, help) in fields.iter().filter_map(|f| parse::refused_type(&f.ty)) {
+        errors.at(span, format!("a type of the kernel language has no {what}"), help);
     }
 }
 
@@ -154,6 +164,7 @@ fn twin(item: &syn::DeriveInput, fields: &[syn::Field]) -> TokenStream {
 
         #methods
 
+        #[diagnostic::do_not_recommend]
         impl<#declared> #p::Type for #host where #predicates {
             type On<M: #p::Machine> = #twin<M, #used>;
 
@@ -188,6 +199,7 @@ fn twin(item: &syn::DeriveInput, fields: &[syn::Field]) -> TokenStream {
             }
         }
 
+        #[diagnostic::do_not_recommend]
         impl<M: #p::Machine, #declared> #p::Capture<M> for #host where #predicates {
             type On<'c> = #twin<M, #used>;
 
@@ -210,6 +222,7 @@ fn methods(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> Token
     let Generics { declared, predicates, .. } = generics;
     let of = quote!(<#host as #p::HostMethod<NAME, M, A>>);
     quote! {
+        #[diagnostic::do_not_recommend]
         impl<M: #p::Machine, #declared> #p::Inferred<M> for #twin where #predicates {
             type Host = #host;
 
@@ -226,6 +239,7 @@ fn methods(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> Token
             }
         }
 
+        #[diagnostic::do_not_recommend]
         impl<M: #p::Machine, #declared> #p::Varying<M> for #twin where #predicates {
             type Value = Self;
 

@@ -1,10 +1,10 @@
 //! Calls of kernels, associated functions and methods.
 
 use proc_macro2::{Ident, Span, TokenStream};
-use quote::{format_ident, quote, quote_spanned};
 
 use super::places::{is_part_of_element, plain_steps};
 use super::{Binding, Emitter, own, private, shown};
+use crate::here::{At, quote_here as quote, word};
 use crate::model::{Expr, Kind};
 
 impl Emitter<'_> {
@@ -23,8 +23,8 @@ impl Emitter<'_> {
         let values = &args.values;
         // Type parameters that are named need not be inferred.
         let is_named = path.to_string().ends_with('>');
-        let on = format_ident!("{}", if is_named { "on_values" } else { "on" });
-        args.around(quote_spanned!(span=> #path::#on(#m, #(#values),*)))
+        let on = word(if is_named { "on_values" } else { "on" });
+        args.around(quote!(#path::#on(#m, #(#values),*)))
     }
 
     pub(super) fn associated(
@@ -32,14 +32,14 @@ impl Emitter<'_> {
         ty: &TokenStream,
         name: &Ident,
         args: &[Expr],
-        span: Span,
     ) -> TokenStream {
+        let _at = At::new(name.span());
         let m = own("m");
         let ty = self.without_self(ty);
-        let name = format_ident!("{name}_on");
+        let name = word(&format!("{name}_on"));
         let args = self.arguments(args);
         let values = &args.values;
-        args.around(quote_spanned!(span=> <#ty>::#name(#m, #(#values),*)))
+        args.around(quote!(<#ty>::#name(#m, #(#values),*)))
     }
 
     fn arguments(&mut self, args: &[Expr]) -> Arguments {
@@ -123,18 +123,15 @@ impl Emitter<'_> {
     ) -> TokenStream {
         let (p, m) = (private(), own("m"));
         if let Some((generic, this)) = self.generic_receiver(receiver) {
-            let function = format_ident!("{name}_on");
+            let function = word(&format!("{name}_on"));
             let args = self.arguments(args);
             let (m, values) = (own("m"), &args.values);
-            return args.around(quote_spanned!(name.span()=>
-                <#generic>::#function(#m, #this, #(#values),*)
+            return args.around(quote!(<#generic>::#function(#m, #this, #(#values),*)
             ));
         }
         let text = name.to_string();
         let machine = self.machine.clone();
-        // What is wrong with the call is shown at its name.
-        let at = quote_spanned!(name.span()=> ::raydsl::__private);
-        let method = quote_spanned!(name.span()=> #at::Method::<{ #at::name(#text) }, #machine, _>);
+        let method = quote!(#p::Method::<{ #p::name(#text) }, #machine, _>);
         let variable = self.variable_under(receiver);
         let mut value = self.value(receiver);
         let mut args = self.arguments(args);
@@ -152,24 +149,24 @@ impl Emitter<'_> {
                 || self.is_part_of_outer(receiver)
                 || self.is_alias(receiver)
             {
-                return args.around(quote_spanned!(name.span()=>
-                    #p::call_on_element::<{ #p::name(#text) }, #machine, _, _>(
-                        #m, #value, (#(#values,)*)
-                    )
-                ));
+                return args.around(
+                    quote!(#p::call_on_element::<{ #p::name(#text) }, #machine, _, _>(
+                            #m, #value, (#(#values,)*)
+                        )
+                    ),
+                );
             }
-            return args
-                .around(quote_spanned!(name.span()=> #method::call(#value, #m, (#(#values,)*))));
+            return args.around(quote!(#method::call({ #value }, #m, (#({ #values },)*))));
         };
         if steps.is_empty() {
-            return args.around(quote_spanned!(name.span()=>
-                #method::call_at(#value, &#local, #m, (#(#values,)*))
-            ));
+            return args
+                .around(quote!(#method::call_at({ #value }, &#local, #m, (#({ #values },)*))
+                ));
         }
         let (old, list, part, whole) = (own("old"), own("args"), own("part"), own("whole"));
         let result = own("result");
         let shown = shown(&local);
-        args.around(quote_spanned!(name.span()=> {
+        args.around(quote!({
             let (#old, #list) = (#value, (#(#values,)*));
             if #p::is_mut::<{ #p::name(#text) }, #machine, _, _>(#m, &#old, &#list) {
                 let #part = #p::Var::new(#m, #shown, #old);

@@ -3,9 +3,10 @@
 use std::collections::HashMap;
 
 use proc_macro2::{Ident, Span, TokenStream};
-use quote::{format_ident, quote, quote_spanned};
+use quote::{format_ident, quote_spanned};
 
 use super::{Binding, Dest, Emitter, Loop, SlotType, own, private, shown};
+use crate::here::{At, quote_here as quote, word};
 use crate::model::{Block, Expr, Kind, Let, Range, Stmt};
 
 /// Tells the machine where its lanes are.
@@ -101,6 +102,7 @@ impl Emitter<'_> {
 
     /// Evaluates `e` and sends its value to `dest`.
     pub(super) fn into(&mut self, e: &Expr, dest: &Dest) -> TokenStream {
+        let _at = At::new(e.span);
         match &e.kind {
             Kind::If { .. } if !matches!(dest, Dest::None) && e.is_selection() => {
                 self.send(e, dest)
@@ -190,7 +192,7 @@ impl Emitter<'_> {
         let hook = |name: &str, is_small: bool| {
             let name =
                 if !coherent && is_small { format!("{name}_small") } else { name.to_owned() };
-            Ident::new(&name, Span::call_site())
+            word(&name)
         };
         let enter = hook("then", then.is_small());
         let then = self.block(then, dest);
@@ -265,8 +267,7 @@ impl Emitter<'_> {
             (now.clone(), quote!(#stop))
         };
         let (first, last) = if range.reversed { (&stop, &begin) } else { (&begin, &stop) };
-        let next =
-            Ident::new(if range.reversed { "decrement" } else { "increment" }, Span::call_site());
+        let next = word(if range.reversed { "decrement" } else { "increment" });
         let one_down = range.reversed && !range.inclusive;
         let item = if one_down { quote!(#p::decrement(#m, #now)) } else { now.clone() };
         // The last number of an inclusive range may be the last of its type.
@@ -302,8 +303,13 @@ impl Emitter<'_> {
         self.varying -= 1;
         self.loops.pop();
         self.scopes.pop();
+        let bounds = {
+            let _at = At::new(range.start.span);
+            let (p, m) = (private(), own("m"));
+            quote!(#p::range(#m, { #start }, { #end }))
+        };
         quote! {{
-            let (#begin, #stop) = #p::range(#m, #start, #end);
+            let (#begin, #stop) = #bounds;
             let #counter = #p::Var::new(#m, #text, #first);
             #declare
             #count

@@ -1,9 +1,10 @@
 //! Values of the host: known before a kernel runs, and while it is recorded.
 
 use proc_macro2::{Ident, TokenStream};
-use quote::{format_ident, quote};
+use quote::format_ident;
 
 use super::{Binding, Emitter, own, private};
+use crate::here::quote_here as quote;
 use crate::model::{Expr, Kind, Let};
 
 /// The local that holds a captured number as the host has it.

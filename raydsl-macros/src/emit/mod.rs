@@ -13,11 +13,11 @@ pub(crate) use host::raw_capture;
 
 use std::collections::{BTreeSet, HashMap};
 
-use proc_macro2::{Ident, Span, TokenStream};
-use quote::quote;
+use proc_macro2::{Ident, TokenStream};
 
 use crate::diag::Errors;
 use crate::generics::{Generics, identifiers};
+use crate::here::{At, here_own, in_one_place, of_type, quote_here as quote};
 use crate::model::{Block, Expr, Kernel, Kind, Param};
 
 /// What a name stands for.
@@ -111,7 +111,7 @@ fn private() -> TokenStream {
 
 /// An identifier that cannot meet one of the user's.
 fn own(name: &str) -> Ident {
-    Ident::new(name, Span::mixed_site())
+    Ident::new(name, here_own())
 }
 
 impl<'a> Emitter<'a> {
@@ -153,18 +153,20 @@ impl<'a> Emitter<'a> {
 
     /// The type of a parameter in lifted code.
     pub(crate) fn param(&self, param: &Param) -> TokenStream {
-        let (p, machine) = (private(), &self.machine);
         if !param.data {
             return self.on(&param.ty);
         }
-        let ty = self.without_self(&param.ty);
+        let _at = of_type(&param.ty);
+        let (p, machine) = (private(), &self.machine);
+        let ty = in_one_place(self.without_self(&param.ty));
         quote!(<#ty as #p::Parameter>::On<'__a, #machine>)
     }
 
     /// The twin of `ty`.
     pub(crate) fn on(&self, ty: &TokenStream) -> TokenStream {
+        let _at = of_type(ty);
         let (p, machine) = (private(), &self.machine);
-        let ty = self.without_self(ty);
+        let ty = in_one_place(self.without_self(ty));
         quote!(<#ty as #p::Type>::On<#machine>)
     }
 
@@ -180,6 +182,7 @@ impl<'a> Emitter<'a> {
         let (p, m) = (private(), own("m"));
         let mut prologue = TokenStream::new();
         for param in &self.kernel.params {
+            let _at = At::new(param.name.span());
             let name = self.local(&param.name);
             let text = param.name.to_string();
             let binding = match param {
@@ -387,7 +390,7 @@ impl<'a> Emitter<'a> {
 
     /// `self` cannot be the name of a local.
     fn local(&self, name: &Ident) -> Ident {
-        if name == "self" { Ident::new("this", Span::mixed_site()) } else { name.clone() }
+        if name == "self" { own("this") } else { name.clone() }
     }
 
     fn fresh(&mut self, name: &str) -> Ident {

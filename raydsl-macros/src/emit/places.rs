@@ -1,10 +1,10 @@
 //! Assignment to variables and their parts.
 
 use proc_macro2::{Ident, TokenStream};
-use quote::quote;
 
 use super::values::operator;
 use super::{Binding, Emitter, own, private};
+use crate::here::quote_here as quote;
 use crate::model::{BinaryOp, Expr, Kind, Place, Step};
 
 impl Emitter<'_> {

@@ -3,9 +3,10 @@
 use std::collections::HashMap;
 
 use proc_macro2::{Ident, Span, TokenStream};
-use quote::{ToTokens, format_ident, quote, quote_spanned};
+use quote::{ToTokens, format_ident};
 
 use crate::generics::Generics;
+use crate::here::{At, quote_here as quote, word};
 
 use super::{Binding, Dest, Emitter, SlotType, own, private};
 use crate::model::{BinaryOp, Block, Expr, IntType, Kind};
@@ -13,11 +14,13 @@ use crate::model::{BinaryOp, Block, Expr, IntType, Kind};
 impl Emitter<'_> {
     /// A value, with a name for those who read generated code.
     pub(super) fn named_value(&mut self, e: &Expr, name: &str) -> TokenStream {
+        let _at = At::new(e.span);
         self.structured(e, name, None).unwrap_or_else(|| self.plain_value(e))
     }
 
     /// A value of the type `ty`, which is written in the source.
     pub(super) fn wanted(&mut self, e: &Expr, name: &str, ty: &TokenStream) -> TokenStream {
+        let _at = At::new(e.span);
         let (p, m) = (private(), own("m"));
         match self.structured(e, name, Some(ty)) {
             Some(value) => quote!(#p::Coerce::coerce(#value, #m)),
@@ -28,6 +31,7 @@ impl Emitter<'_> {
     /// A value where its type is known. Elements of tuples and arrays become values of the machine
     /// one by one.
     pub(super) fn coerced(&mut self, e: &Expr) -> TokenStream {
+        let _at = At::new(e.span);
         let (p, m) = (private(), own("m"));
         match &e.kind {
             Kind::Tuple(items) if !items.is_empty() => {
@@ -144,7 +148,7 @@ impl Emitter<'_> {
             Kind::Name(name) => self.name(name),
             Kind::Path(path) => {
                 let machine = &self.machine;
-                quote_spanned!(span=> #p::Capture::<#machine>::constant(&#path, #m))
+                quote!(#p::Capture::<#machine>::constant(&#path, #m))
             }
             Kind::Neg(a) => match &a.kind {
                 Kind::Float(lit) => {
@@ -154,29 +158,29 @@ impl Emitter<'_> {
                 Kind::Int { tokens, suffix: None } => quote!((-#tokens)),
                 _ => {
                     let a = self.value(a);
-                    quote_spanned!(span=> #p::OpNeg::neg(#m, #a))
+                    quote!(#p::OpNeg::neg(#m, #a))
                 }
             },
             Kind::Not(a) => {
                 let a = self.value(a);
-                quote_spanned!(span=> #p::OpNot::not(#m, #a))
+                quote!(#p::OpNot::not(#m, #a))
             }
             Kind::Binary { op, a, b } => {
                 let (a, b) = (self.value(a), self.value(b));
-                operator(*op, quote_spanned!(span=> #m), a, b)
+                operator(*op, quote!(#m), a, b)
             }
             Kind::Logic { and, a, b } => self.logic(*and, a, b, span),
             Kind::Compare { op, a, b } => {
-                let op = Ident::new(op, span);
+                let op = word(op);
                 let (a, b) = (self.value(a), self.value(b));
-                quote_spanned!(span=> #p::OpCompare::compare(#m, #p::Compare::#op, #a, #b))
+                quote!(#p::OpCompare::compare(#m, #p::Compare::#op, { #a }, { #b }))
             }
             Kind::Cast { value, ty } => {
                 let value = self.value(value);
-                quote_spanned!(span=> #p::cast::<_, _, #ty>(#m, #value))
+                quote!(#p::cast::<_, _, #ty>(#m, #value))
             }
             Kind::Call { path, args } => self.call(path, args, span),
-            Kind::Associated { ty, name, args } => self.associated(ty, name, args, span),
+            Kind::Associated { ty, name, args } => self.associated(ty, name, args),
             Kind::Method { receiver, name, turbofish, args } => {
                 self.method(receiver, name, turbofish, args)
             }
@@ -185,11 +189,11 @@ impl Emitter<'_> {
             Kind::RefMut(_) | Kind::Closure(_) => quote!(::core::unreachable!()),
             Kind::Field { base, member } => {
                 let base = self.value(base);
-                quote_spanned!(span=> #base.#member)
+                quote!(#base.#member)
             }
             Kind::Index { base, index } => {
                 let base = self.value(base);
-                quote_spanned!(span=> #p::at(#m, #base, #index))
+                quote!(#p::at(#m, #base, #index))
             }
             Kind::Struct { path, fields, rest } => self.structure(path, fields, rest.as_deref()),
             Kind::Tuple(items) => {
@@ -201,14 +205,14 @@ impl Emitter<'_> {
                 let (base, index) = (self.value(base), self.value(index));
                 if let Some(step) = step {
                     let seen = self.mentioned_in(&index);
-                    return quote_spanned!(span=> #p::element_in_step(
+                    return quote!(#p::element_in_step(
                         #m,
                         #base,
                         #step,
                         #[inline(always)] || { #(let _ = &#seen;)* #index },
                     ));
                 }
-                quote_spanned!(span=> #p::element(#m, #base, #index))
+                quote!(#p::element(#m, #base, #index))
             }
             Kind::Array(items) => {
                 let is_typed = items.iter().any(Expr::has_typed_outcome);
@@ -280,7 +284,7 @@ impl Emitter<'_> {
                 let machine = &self.machine;
                 let is_constant = name.to_string().starts_with(|c: char| c.is_ascii_uppercase());
                 if is_constant || !self.is_closure {
-                    return quote_spanned!(name.span()=> #p::Capture::<#machine>::constant(&#name, #m));
+                    return quote!(#p::Capture::<#machine>::constant(&#name, #m));
                 }
                 if name == "self" {
                     self.errors.at(
@@ -301,14 +305,14 @@ impl Emitter<'_> {
         let (p, m) = (private(), own("m"));
         if b.is_total() {
             let (operator, method) = if and { ("OpAnd", "and") } else { ("OpOr", "or") };
-            let (operator, method) = (format_ident!("{operator}"), format_ident!("{method}"));
+            let (operator, method) = (word(operator), word(method));
             let may_overflow = b.may_overflow();
             let (a, b) = (self.value(a), self.value(b));
             if !may_overflow {
-                return quote_spanned!(span=> #p::#operator::#method(#m, #a, #b));
+                return quote!(#p::#operator::#method(#m, #a, #b));
             }
             let left = own("left");
-            return quote_spanned!(span=> {
+            return quote!({
                 let #left = #a;
                 #p::#operator::#method(#m, #left, #p::guarded(#m, #left, #and, || #b))
             });
@@ -373,8 +377,8 @@ pub(super) fn operator(
     b: TokenStream,
 ) -> TokenStream {
     let p = private();
-    let (operator, method) = (format_ident!("{}", op.operator), format_ident!("{}", op.method));
-    quote!(#p::#operator::#method(#m, #a, #b))
+    let (operator, method) = (word(op.operator), word(op.method));
+    quote!(#p::#operator::#method(#m, { #a }, { #b }))
 }
 
 /// A literal of `f32` with the suffix `f64`.

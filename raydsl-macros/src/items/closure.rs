@@ -7,6 +7,7 @@ use syn::spanned::Spanned;
 use super::{info, own, private, quiet};
 use crate::diag::Errors;
 use crate::emit::{Emitter, raw_capture};
+use crate::here::{At, quote_here};
 use crate::parse;
 use crate::rewrite::without_markers;
 
@@ -36,29 +37,39 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
     let mut captured = Vec::new();
     let mut copies = Vec::new();
     for (alias, member) in NATURAL {
-        let (alias, member) = (format_ident!("{alias}"), format_ident!("{member}"));
-        let machine = quote!(#p::#alias);
+        let (alias, member) = (format_ident!("{alias}"), own(member));
+        // The machine of the first copy is inferred, from a cast. Casts come after all else, so the
+        // errors of a copy for any machine imply those of the others, and rustc leaves these out.
+        let machine = if copies.is_empty() { quote!(_) } else { quote!(#p::#alias) };
         let mut seen = Errors::default();
         let mut emitter = Emitter::new(&kernel, machine.clone(), None, true, &mut seen);
         let body = emitter.body();
         captured = core::mem::take(&mut emitter.captures);
         let raw = core::mem::take(&mut emitter.host_captures);
-        let raw_index =
-            raw.iter().filter_map(|r| captured.iter().position(|c| c == r)).map(syn::Index::from);
-        let raw_index: Vec<_> = raw_index.collect();
-        let raw: Vec<_> = raw.iter().map(raw_capture).collect();
+        let raw_index = raw.iter().filter_map(|r| captured.iter().position(|c| c == r));
+        let raw = raw.iter().zip(raw_index).map(|(name, i)| {
+            let _at = At::new(name.span());
+            let (p, captures) = (quote_here!(::raydsl::__private), own("captures"));
+            let (i, raw) = (syn::Index::from(i), raw_capture(name));
+            quote_here!(let #raw = #p::HostCapture::host({ #captures.#i });)
+        });
         let on: Vec<TokenStream> = kernel.params.iter().map(|p| emitter.on(&p.ty)).collect();
         // The copies have the same mistakes.
         if copies.is_empty() {
             errors.append(seen);
         }
-        let index = (0..captured.len()).map(syn::Index::from);
-        let texts = captured.iter().map(ToString::to_string);
-        let list = &captured;
+        let brought = captured.iter().enumerate().map(|(i, name)| {
+            let _at = At::new(name.span());
+            let p = quote_here!(::raydsl::__private);
+            let (captures, m, i) = (own("captures"), own("m"), syn::Index::from(i));
+            let text = name.to_string();
+            quote_here!(
+                let #name = #p::Capture::<#machine>::capture({ #captures.#i }, #m, #text);
+            )
+        });
         copies.push(quote! {
-            #member: ::std::boxed::Box::new(
-                #quiet
-                move |#m: &#machine, (#(#names,)*): (#(#on,)*)| {
+            #quiet
+            let #member = move |#m: &#machine, (#(#names,)*): (#(#on,)*)| {
                     use #p::operations::*;
                     #p::Machine::call(
                         #m,
@@ -66,14 +77,12 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
                         (#(#names,)*),
                         #[inline(always)]
                         |#m: &#machine, (#(#names,)*): (#(#on,)*)| {
-                            #(let #raw = #p::HostCapture::host(#captures.#raw_index);)*
-                            #(let #list =
-                                #p::Capture::<#machine>::capture(#captures.#index, #m, #texts);)*
+                            #(#raw)*
+                            #(#brought)*
                             #body
                         },
                     )
-                }
-            )
+                };
         });
     }
     if !errors.is_empty() {
@@ -85,7 +94,14 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
     let info = info(&kernel, "kernel");
     let closure = without_markers(closure.to_token_stream());
     let scalar = own("scalar");
-    let index = (0..captured.len()).map(syn::Index::from);
+    let mut others: Vec<Ident> = NATURAL.iter().map(|n| own(n.1)).collect();
+    let (first, first_machine) = (others.remove(0), format_ident!("{}", NATURAL[0].0));
+    let resources = captured.iter().enumerate().map(|(i, name)| {
+        let _at = At::new(name.span());
+        let p = quote_here!(::raydsl::__private);
+        let (captures, i) = (own("captures"), syn::Index::from(i));
+        quote_here!(#p::Capture::<#p::Recorder>::resources({ #captures.#i }, visit);)
+    });
     quote! {{
         #info
         let #scalar = #closure;
@@ -95,9 +111,16 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
             move |(#(#names,)*): (#(#types,)*)| #scalar(#(#names),*),
         )
         .lifted(
-            #p::Lifted { #(#copies,)* },
+            {
+                #(#copies)*
+                #p::Lifted {
+                    #(#others: ::std::boxed::Box::new(#others),)*
+                    #first: ::std::boxed::Box::new(#first)
+                        as ::std::boxed::Box<dyn Fn(&#p::#first_machine, _) -> _ + Send + Sync>,
+                }
+            },
             move |visit: &mut dyn FnMut(&dyn #p::Resource)| {
-                #(#p::Capture::<#p::Recorder>::resources(#captures.#index, visit);)*
+                #(#resources)*
             },
         )
     }}

@@ -6,6 +6,7 @@ use quote::{ToTokens, format_ident, quote};
 use super::{Place, info, lifted_function, own, param_ident, private, quiet};
 use crate::diag::Errors;
 use crate::generics::Generics;
+use crate::here::{of_type, quote_here};
 use crate::model::{Kernel, Param};
 use crate::parse;
 use crate::rewrite::without_markers;
@@ -136,11 +137,12 @@ fn inferring_function(kernel: &Kernel, vis: &TokenStream) -> TokenStream {
 }
 
 fn entry(kernel: &Kernel, sig: &syn::Signature) -> TokenStream {
-    let p = private();
     let name = &kernel.name;
     let Generics { declared, used, predicates, .. } = &kernel.generics;
     let (declared, used) = (angled(declared), angled(used));
     let types: Vec<&TokenStream> = kernel.params.iter().map(|p| &p.ty).collect();
+    let _at = types.first().map(|ty| of_type(ty));
+    let p = quote_here!(::raydsl::__private);
     let fields: Vec<syn::Index> = (0..types.len()).map(syn::Index::from).collect();
     let result = &kernel.result;
     let refs = scalar_arguments(sig, &fields);
@@ -149,7 +151,7 @@ fn entry(kernel: &Kernel, sig: &syn::Signature) -> TokenStream {
     let called =
         if kernel.generics.is_empty() { quote!(#name) } else { quote!(#name::<#arguments>) };
     let on = format_ident!("{}", if kernel.generics.is_empty() { "on" } else { "on_values" });
-    quote! {
+    quote_here! {
         impl #declared #p::KernelFn for #name #used where #predicates {
             type Args = (#(#types,)*);
             type Output = #result;

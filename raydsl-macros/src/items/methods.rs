@@ -212,6 +212,7 @@ impl Method<'_> {
         };
         quote! {
             #quiet
+            #[diagnostic::do_not_recommend]
             impl<#lifetime #declared __M: #p::Machine, #(#generics,)*>
                 #p::HostMethod<{ #p::name(#name) }, __M, (#(#arguments,)*)> for #self_ty
             where

@@ -10,12 +10,13 @@ pub(crate) use function::kernel_fn;
 pub(crate) use methods::{kernel_impl, kernel_trait};
 pub(crate) use primitive::primitive_impl;
 
-use proc_macro2::{Ident, Span, TokenStream};
+use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 use crate::diag::Errors;
 use crate::emit::Emitter;
 use crate::generics::Generics;
+use crate::here::{here_own, of_type, quote_here};
 use crate::model::Kernel;
 
 fn private() -> TokenStream {
@@ -23,7 +24,7 @@ fn private() -> TokenStream {
 }
 
 fn own(name: &str) -> Ident {
-    Ident::new(name, Span::mixed_site())
+    Ident::new(name, here_own())
 }
 
 /// A parameter in lifted code; `self` cannot name a local.
@@ -86,11 +87,16 @@ fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> T
     let head = head(kernel, place, &emitter);
     let info = info(kernel, place.wgsl_name);
     let quiet = quiet();
+    let arguments = values().zip(&names).zip(&types).map(|((param, name), ty)| {
+        let _at = of_type(&param.ty);
+        let (p, m) = (quote_here!(::raydsl::__private), own("m"));
+        quote_here!(#p::Coerce::<__M, #ty>::coerce(#name, #m))
+    });
     let call = quote! {
         #p::Machine::call(
             #m,
             &__INFO,
-            (#(#p::Coerce::<__M, #types>::coerce(#names, #m),)*),
+            (#(#arguments,)*),
             #[inline(always)]
             |#m: &__M, (#(#names,)*): (#(#types,)*)| { #body },
         )

@@ -1,7 +1,7 @@
 //! Patterns: what they test and what they bind.
 
 use proc_macro2::{Ident, Span, TokenStream};
-use quote::{ToTokens, quote};
+use quote::{ToTokens as _, quote};
 use syn::Pat;
 use syn::spanned::Spanned;
 
@@ -167,6 +167,15 @@ impl Parser<'_> {
                     test = both(test, self.pattern(p, &item, lets));
                 }
                 test
+            }
+            Pat::TupleStruct(t) => {
+                self.errors.at(
+                    t.span(),
+                    format!("a kernel has no `{}`", t.path.to_token_stream()),
+                    "match on numbers and enums without fields; a value that may be missing is a \
+                     struct with a flag, as `Hit` has `is_hit`",
+                );
+                None
             }
             _ => {
                 self.errors.at(

@@ -84,7 +84,7 @@ bodies! {
     mutable_element: { let mut t = [x, x]; g(&mut t[n as usize]) } "computed element" "after the call";
     half_range: { for i in 0u32.. {} x } "two bounds" "a..=b";
     empty_match: { match n {} } "needs an arm" "_ => value";
-    variant_pattern: { match g(x) { Some(y) => y, _ => x } } "no such pattern" "numbers, ranges";
+    variant_pattern: { match g(x) { Some(y) => y, _ => x } } "no `Some`" "a struct with a flag";
     names_in_alternatives: { match n { m | m => x } } "bind no names" "an arm for each";
     pattern_without_value: { let (a, b); x } "needs a value" "each name by itself";
     untyped_in_tuple: { let (mut i, y) = (0, x); y } "mutable integer" "0u32";

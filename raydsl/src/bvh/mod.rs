@@ -159,6 +159,7 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     }
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, P: Primitive> Capture<M> for Bvh<'_, P> {
     type On<'c>
         = On<'c, P>
@@ -180,6 +181,7 @@ impl<M: Machine, P: Primitive> Capture<M> for Bvh<'_, P> {
     }
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, P: Type> Capture<M> for [P] {
     type On<'c>
         = On<'c, P>
@@ -201,6 +203,7 @@ impl<M: Machine, P: Type> Capture<M> for [P] {
     }
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, P: Type> Capture<M> for Vec<P> {
     type On<'c>
         = On<'c, P>

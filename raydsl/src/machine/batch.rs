@@ -9,6 +9,7 @@ use crate::machine::B;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Const<const N: usize>;
 
+#[diagnostic::do_not_recommend]
 impl<M, P, R, G, const N: usize> Method<{ name("any_hit_each") }, M, (Const<N>, G)>
     for bvh::On<'_, P>
 where
@@ -28,6 +29,7 @@ where
     }
 }
 
+#[diagnostic::do_not_recommend]
 impl<M, P, R, G, const N: usize> Method<{ name("closest_hit_each") }, M, (Const<N>, G)>
     for bvh::On<'_, P>
 where

@@ -63,6 +63,7 @@ impl<P: Primitive> Parameter for bvh::Bvh<'_, P> {
     type On<'a, M: Machine> = bvh::On<'a, P>;
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, T: Capture<M> + ?Sized> Capture<M> for &T {
     type On<'c>
         = T::On<'c>
@@ -87,6 +88,7 @@ impl<M: Machine, T: Capture<M> + ?Sized> Capture<M> for &T {
 macro_rules! capture_number {
     ($($host:ty),+ $(,)?) => {
         $(
+            #[diagnostic::do_not_recommend]
             impl<M: Machine> Capture<M> for $host {
                 type On<'c> = <$host as Type>::On<M>;
 
@@ -105,6 +107,7 @@ macro_rules! capture_number {
 }
 
 /// A constant is told from a captured number: it may have more digits than an `f32`.
+#[diagnostic::do_not_recommend]
 impl<M: Machine> Capture<M> for f32 {
     type On<'c> = F<M>;
 
@@ -126,6 +129,7 @@ capture_number!(
 
 /// An array is a value: its elements are numbers of the kernel, and a computed index chooses among
 /// them. A table is better captured as a slice.
+#[diagnostic::do_not_recommend]
 impl<M: Machine, T: Type, const N: usize> Capture<M> for [T; N] {
     type On<'c> = [T::On<M>; N];
 
@@ -141,6 +145,7 @@ impl<M: Machine, T: Type, const N: usize> Capture<M> for [T; N] {
 }
 
 /// A captured `bool` stays a value of the host: a branch on it is decided while recording.
+#[diagnostic::do_not_recommend]
 impl<M: Machine> Capture<M> for bool {
     type On<'c> = bool;
 

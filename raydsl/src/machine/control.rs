@@ -81,7 +81,11 @@ impl<V: Copy> Ret<V> {
 /// What an `if` or a `while` may ask: a truth value of the machine, or of the host.
 ///
 /// A host condition is decided while the kernel is recorded: the arm not taken leaves no trace.
-#[diagnostic::on_unimplemented(message = "a condition must be a `bool`")]
+#[diagnostic::on_unimplemented(
+    message = "a condition must be a `bool`",
+    label = "not a truth value",
+    note = "compare it, as in `n != 0`"
+)]
 pub trait Condition<M: Machine>: Copy {
     /// The state of an `if` over such a condition.
     type State;
@@ -109,6 +113,7 @@ pub trait Condition<M: Machine>: Copy {
     fn test(self, m: &M, l: &M::Loop) -> bool;
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine> Condition<M> for B<M> {
     type State = M::Branch;
 
@@ -159,6 +164,7 @@ impl<M: Machine> Condition<M> for B<M> {
     }
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine> Condition<M> for bool {
     type State = bool;
 

@@ -313,7 +313,8 @@ pub fn transform_vector<T: Transform>(t: T, v: Vec3) -> Vec3 {
 /// Two arguments of one type, either of which may be a number of the source.
 #[diagnostic::on_unimplemented(
     message = "these two values do not have one type",
-    label = "another type than the value beside it"
+    label = "another type than the value beside it",
+    note = "convert a number with `as`, as in `max(x, n as f32)`"
 )]
 pub trait Alike<M: Machine, R> {
     /// The type on the machine.
@@ -322,6 +323,7 @@ pub trait Alike<M: Machine, R> {
     fn alike(self, m: &M, r: R) -> (Self::Value, Self::Value);
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, V: Varying<M>> Alike<M, V> for V {
     type Value = V::Value;
 
@@ -339,6 +341,7 @@ macro_rules! alike {
         )+
     };
     (@one $a:ty, $b:ty, $twin:ident) => {
+        #[diagnostic::do_not_recommend]
         impl<M: Machine> Alike<M, $b> for $a {
             type Value = $twin<M>;
 
@@ -365,6 +368,7 @@ pub trait OrderedOn<M: Machine>: Value<M> {
 macro_rules! ordered_on {
     ($($t:ident),+; $($v:ident),+) => {
         $(
+            #[diagnostic::do_not_recommend]
             impl<M: Machine> OrderedOn<M> for $t<M> {
                 #[inline(always)]
                 fn extreme(m: &M, max: bool, a: Self, b: Self) -> Self {
@@ -373,6 +377,7 @@ macro_rules! ordered_on {
             }
         )+
         $(
+            #[diagnostic::do_not_recommend]
             impl<M: Machine, E: Arithmetic<M>> OrderedOn<M> for $v<E> {
                 #[inline(always)]
                 fn extreme(m: &M, max: bool, a: Self, b: Self) -> Self {

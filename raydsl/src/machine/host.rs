@@ -42,6 +42,7 @@ pub trait HostCapture {
     fn host(&self) -> Self::Value;
 }
 
+#[diagnostic::do_not_recommend]
 impl<T: HostCapture + ?Sized> HostCapture for &T {
     type Value = T::Value;
 
@@ -71,6 +72,7 @@ macro_rules! host_number {
                 }
             }
 
+            #[diagnostic::do_not_recommend]
             impl<M: Machine> HostUse<M> for $host {
                 type Used = Self;
 
@@ -85,6 +87,7 @@ macro_rules! host_number {
 
 host_number!(i32, u32, usize, bool);
 
+#[diagnostic::do_not_recommend]
 impl HostCapture for f32 {
     type Value = Self;
 
@@ -94,6 +97,7 @@ impl HostCapture for f32 {
     }
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine> HostUse<M> for f32 {
     type Used = F<M>;
 

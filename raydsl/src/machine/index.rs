@@ -10,13 +10,15 @@ use crate::bvh::On;
 /// An integer that indexes.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot index by this value",
-    label = "not a `usize`"
+    label = "not a `usize`",
+    note = "write `a[i as usize]`"
 )]
 pub trait Index<M: Machine> {
     /// The index as 32 bits.
     fn index(self, m: &M) -> U<M>;
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine> Index<M> for Usize<M> {
     #[inline(always)]
     fn index(self, _: &M) -> U<M> {
@@ -24,6 +26,7 @@ impl<M: Machine> Index<M> for Usize<M> {
     }
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine> Index<M> for usize {
     #[inline(always)]
     fn index(self, m: &M) -> U<M> {
@@ -32,7 +35,10 @@ impl<M: Machine> Index<M> for usize {
 }
 
 /// What can be indexed.
-#[diagnostic::on_unimplemented(message = "a kernel cannot index this value")]
+#[diagnostic::on_unimplemented(
+    message = "a kernel cannot index this value",
+    label = "neither an array nor a slice of types that kernels understand"
+)]
 pub trait Indexed<M: Machine> {
     /// An element.
     type Element;
@@ -44,6 +50,7 @@ pub trait Indexed<M: Machine> {
     fn in_step(self, m: &M, i: u32) -> Self::Element;
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, V: Varying<M> + Copy, const N: usize> Indexed<M> for [V; N] {
     type Element = V::Value;
 
@@ -76,6 +83,7 @@ impl<M: Machine, V: Varying<M> + Copy, const N: usize> Indexed<M> for [V; N] {
     }
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, P: Type> Indexed<M> for On<'_, P> {
     type Element = P::On<M>;
 

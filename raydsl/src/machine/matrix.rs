@@ -43,6 +43,7 @@ macro_rules! columns {
             }
         }
 
+        #[diagnostic::do_not_recommend]
         impl<M: Machine> Varying<M> for $twin<M> {
             type Value = Self;
 
@@ -220,6 +221,7 @@ impl<M: Machine> A3<M> {
 
 macro_rules! operator {
     ($trait:ident :: $method:ident, $a:ty, $b:ty => $out:ty, |$m:ident, $x:ident, $y:ident| $e:expr) => {
+        #[diagnostic::do_not_recommend]
         impl<M: Machine> $trait<M, $b> for $a {
             type Output = $out;
 
@@ -251,6 +253,7 @@ macro_rules! matrix_operators {
             a.both(b, #[inline(always)] |x, y| $v::binary(m, F32Binary::Sub, x, y))
         });
 
+        #[diagnostic::do_not_recommend]
         impl<M: Machine> OpNeg<M> for $t<M> {
             #[inline(always)]
             fn neg(m: &M, a: Self) -> Self {

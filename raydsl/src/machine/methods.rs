@@ -24,7 +24,8 @@ pub const fn name(text: &str) -> u64 {
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot call this method with these arguments",
     label = "not an operation of the kernel language",
-    note = "a method of your own needs `#[kernel]` on its impl; the book lists the others"
+    note = "a method of your own needs `#[kernel]` on its impl; the chapter \"The language\" of the \
+            book lists those that are there"
 )]
 pub trait Method<const NAME: u64, M: Machine, A> {
     /// The result.
@@ -120,6 +121,7 @@ pub trait HostMethod<const NAME: u64, M: Machine, A> {
 /// `method!([generics] Type, "name", |m, self, argument: Type, ..| -> Result { .. })`.
 macro_rules! method {
     ([$($g:tt)*] $t:ty, $name:literal, |$m:ident, $s:ident| -> $out:ty { $e:expr }) => {
+        #[diagnostic::do_not_recommend]
         impl<M: Machine, $($g)*> Method<{ name($name) }, M, ()> for $t {
             type Output = $out;
 
@@ -134,6 +136,7 @@ macro_rules! method {
         [$($g:tt)*] $t:ty, $name:literal,
         |$m:ident, $s:ident, $a:ident: $at:ty| -> $out:ty { $e:expr }
     ) => {
+        #[diagnostic::do_not_recommend]
         impl<M: Machine, A1: Coerce<M, $at>, $($g)*> Method<{ name($name) }, M, (A1,)> for $t {
             type Output = $out;
 
@@ -149,6 +152,7 @@ macro_rules! method {
         [$($g:tt)*] $t:ty, $name:literal,
         |$m:ident, $s:ident, $a:ident: $at:ty, $b:ident: $bt:ty| -> $out:ty { $e:expr }
     ) => {
+        #[diagnostic::do_not_recommend]
         impl<M: Machine, A1: Coerce<M, $at>, A2: Coerce<M, $bt>, $($g)*>
             Method<{ name($name) }, M, (A1, A2)> for $t
         {
@@ -231,6 +235,7 @@ method!([] Usize<M>, "saturating_sub", |m, a, b: Usize<M>| -> Usize<M> {
 
 // Slices, and trees over primitives
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, T: Type> Method<{ name("len") }, M, ()> for bvh::On<'_, T> {
     type Output = Usize<M>;
 
@@ -240,6 +245,7 @@ impl<M: Machine, T: Type> Method<{ name("len") }, M, ()> for bvh::On<'_, T> {
     }
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, T: Type> Method<{ name("is_empty") }, M, ()> for bvh::On<'_, T> {
     type Output = B<M>;
 
@@ -249,6 +255,7 @@ impl<M: Machine, T: Type> Method<{ name("is_empty") }, M, ()> for bvh::On<'_, T>
     }
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, V: super::Value<M>, const N: usize> Method<{ name("len") }, M, ()> for [V; N] {
     type Output = usize;
 
@@ -258,6 +265,7 @@ impl<M: Machine, V: super::Value<M>, const N: usize> Method<{ name("len") }, M, 
     }
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, P: Primitive> Method<{ name("closest_hit") }, M, (RayOn<M>,)> for bvh::On<'_, P> {
     type Output = HitOn<M>;
 
@@ -267,6 +275,7 @@ impl<M: Machine, P: Primitive> Method<{ name("closest_hit") }, M, (RayOn<M>,)> f
     }
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, P: Primitive> Method<{ name("any_hit") }, M, (RayOn<M>,)> for bvh::On<'_, P> {
     type Output = B<M>;
 
@@ -276,6 +285,7 @@ impl<M: Machine, P: Primitive> Method<{ name("any_hit") }, M, (RayOn<M>,)> for b
     }
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, P: Primitive> Method<{ name("primitive") }, M, (HitOn<M>,)> for bvh::On<'_, P> {
     type Output = P::On<M>;
 

@@ -23,6 +23,7 @@ pub mod generic;
 pub mod host;
 pub(crate) mod index;
 mod lanes;
+pub mod lowered;
 mod margin;
 pub(crate) mod matrix;
 mod methods;

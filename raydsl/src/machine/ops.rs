@@ -4,7 +4,7 @@
 //! the macro needs no types. Integers that appear in the source as literals stay numbers of the
 //! host until they meet a value of the machine; `f32` literals become values at once.
 
-use super::vector::{Amounts, Arithmetic, Bits, Broadcast, Floats, Integer, IsVector, Vector};
+use super::vector::{Amounts, Arithmetic, Bits, Broadcast, Floats, Integer, Vector};
 use super::{
     B, BoolBinary, Compare, F, F32Binary, F32Unary, I, IntBinary, Machine, Type, U, Usize, Value,
     Var, X2, X3, X4,
@@ -16,7 +16,9 @@ macro_rules! binary_traits {
             #[doc = concat!("`a ", $symbol, " b` on machine `M`.")]
             #[diagnostic::on_unimplemented(
                 message = "a kernel has no operator for these operands",
-                label = "not an operation of the kernel language"
+                label = "not an operation of the kernel language",
+                note = "there are: two values of one type, and a vector with a number of its \
+                        components' type; convert with `as`, as in `x * n as f32`"
             )]
             pub trait $trait<M: Machine, R> {
                 /// The type of the result.
@@ -44,21 +46,32 @@ binary_traits!(
 );
 
 /// `-a` on machine `M`.
-#[diagnostic::on_unimplemented(message = "a kernel cannot negate this value")]
+#[diagnostic::on_unimplemented(
+    message = "a kernel cannot negate this value",
+    label = "no number with a sign, and no vector of such",
+    note = "of a `u32`, write `n.wrapping_neg()` or convert it: `-(n as i32)`"
+)]
 pub trait OpNeg<M: Machine> {
     /// Applies the operator.
     fn neg(m: &M, a: Self) -> Self;
 }
 
 /// `!a` on machine `M`.
-#[diagnostic::on_unimplemented(message = "a kernel has no `!` for this value")]
+#[diagnostic::on_unimplemented(
+    message = "a kernel has no `!` for this value",
+    label = "neither a truth value nor an integer, nor a vector of such"
+)]
 pub trait OpNot<M: Machine> {
     /// Applies the operator.
     fn not(m: &M, a: Self) -> Self;
 }
 
 /// Comparisons on machine `M`.
-#[diagnostic::on_unimplemented(message = "a kernel cannot compare these two values")]
+#[diagnostic::on_unimplemented(
+    message = "a kernel cannot compare these two values",
+    label = "not two numbers of one type",
+    note = "convert one with `as`, as in `x < n as f32`; compare the members of a struct one by one"
+)]
 pub trait OpCompare<M: Machine, R> {
     /// What a comparison gives.
     type Output;
@@ -67,19 +80,28 @@ pub trait OpCompare<M: Machine, R> {
 }
 
 /// `a as T` on machine `M`.
-#[diagnostic::on_unimplemented(message = "a kernel has no `as {T}` for this value")]
+#[diagnostic::on_unimplemented(
+    message = "a kernel has no `as {T}` for this value",
+    label = "not a number that becomes a `{T}`",
+    note = "`as` is for `f32`, `i32`, `u32`, `usize`, and from `bool` and enums to integers"
+)]
 pub trait OpCast<M: Machine, T: Type> {
     /// Converts as Rust's `as` does.
     fn cast(m: &M, a: Self) -> T::On<M>;
 }
 
 /// A value of the host, or one of the machine already, where the machine's type `T` is wanted.
-#[diagnostic::on_unimplemented(message = "this value does not have the type that is wanted here")]
+#[diagnostic::on_unimplemented(
+    message = "this value does not have the type that is wanted here",
+    label = "a value of another type",
+    note = "convert a number with `as`, as in `n as f32`"
+)]
 pub trait Coerce<M: Machine, T> {
     /// Converts.
     fn coerce(self, m: &M) -> T;
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, V: Value<M>> Coerce<M, V> for V {
     #[inline(always)]
     fn coerce(self, _: &M) -> V {
@@ -88,6 +110,7 @@ impl<M: Machine, V: Value<M>> Coerce<M, V> for V {
 }
 
 /// A `&mut` parameter where a value is wanted.
+#[diagnostic::do_not_recommend]
 impl<M: Machine, V: Value<M>> Coerce<M, V> for &Var<V> {
     #[inline(always)]
     fn coerce(self, m: &M) -> V {
@@ -98,6 +121,7 @@ impl<M: Machine, V: Value<M>> Coerce<M, V> for &Var<V> {
 macro_rules! coerce_host {
     ($($host:ty => $twin:ident $make:ident),+) => {
         $(
+            #[diagnostic::do_not_recommend]
             impl<M: Machine> Coerce<M, $twin<M>> for $host {
                 #[inline(always)]
                 fn coerce(self, m: &M) -> $twin<M> {
@@ -110,6 +134,7 @@ macro_rules! coerce_host {
 
 coerce_host!(f32 => F f32, i32 => I i32, u32 => U u32, bool => B bool);
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine> Coerce<M, Usize<M>> for usize {
     #[inline(always)]
     fn coerce(self, m: &M) -> Usize<M> {
@@ -118,7 +143,11 @@ impl<M: Machine> Coerce<M, Usize<M>> for usize {
 }
 
 /// What a variable holds: a value of the machine, whether or not the source's was one of the host.
-#[diagnostic::on_unimplemented(message = "a kernel cannot keep this value in a variable")]
+#[diagnostic::on_unimplemented(
+    message = "a kernel cannot keep this value in a variable",
+    label = "neither a number nor a value made of numbers",
+    note = "name data that kernels read where it is used: `points[i]`, `bvh.closest_hit(ray)`"
+)]
 pub trait Varying<M: Machine> {
     /// The value of the machine.
     type Value: Value<M>;
@@ -129,6 +158,7 @@ pub trait Varying<M: Machine> {
 macro_rules! varying {
     ($($t:ident),+; $($host:ty => $twin:ident $make:ident),+) => {
         $(
+            #[diagnostic::do_not_recommend]
             impl<M: Machine> Varying<M> for $t<M> {
                 type Value = Self;
 
@@ -139,6 +169,7 @@ macro_rules! varying {
             }
         )+
         $(
+            #[diagnostic::do_not_recommend]
             impl<M: Machine> Varying<M> for $host {
                 type Value = $twin<M>;
 
@@ -153,6 +184,7 @@ macro_rules! varying {
 
 varying!(F, I, U, Usize, B; i32 => I i32, u32 => U u32, bool => B bool);
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine> Varying<M> for usize {
     type Value = Usize<M>;
 
@@ -162,6 +194,7 @@ impl<M: Machine> Varying<M> for usize {
     }
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, V: Varying<M>, const N: usize> Varying<M> for [V; N] {
     type Value = [V::Value; N];
 
@@ -173,6 +206,7 @@ impl<M: Machine, V: Varying<M>, const N: usize> Varying<M> for [V; N] {
 
 macro_rules! varying_tuple {
     ($($name:ident . $index:tt),+) => {
+        #[diagnostic::do_not_recommend]
         impl<M: Machine, $($name: Varying<M>),+> Varying<M> for ($($name,)+) {
             type Value = ($($name::Value,)+);
 
@@ -193,6 +227,7 @@ varying_tuple!(A.0, C.1, D.2, E.3, G.4, H.5);
 varying_tuple!(A.0, C.1, D.2, E.3, G.4, H.5, J.6);
 varying_tuple!(A.0, C.1, D.2, E.3, G.4, H.5, J.6, K.7);
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine> Varying<M> for () {
     type Value = ();
 
@@ -202,7 +237,9 @@ impl<M: Machine> Varying<M> for () {
 
 /// The two bounds of a `for`, as values of one type.
 #[diagnostic::on_unimplemented(
-    message = "the bounds of a kernel's `for` are two `u32` or two `i32`"
+    message = "the bounds of a kernel's `for` are two integers of one type",
+    label = "not an integer of the other bound's type",
+    note = "write for example `for i in 0..n` with a `u32`, `i32` or `usize`"
 )]
 pub trait Bounds<M: Machine, E> {
     /// The counter's type.
@@ -221,6 +258,7 @@ macro_rules! bounds {
         )+
     };
     (@one $t:ident, $a:ty, $b:ty) => {
+        #[diagnostic::do_not_recommend]
         impl<M: Machine> Bounds<M, $b> for $a {
             type Counter = $t<M>;
 
@@ -238,6 +276,7 @@ bounds!(I i32, U u32, Usize usize);
 
 macro_rules! operator {
     ($trait:ident :: $method:ident, $a:ty, $b:ty, $out:ty, |$m:ident, $x:ident, $y:ident| $e:expr) => {
+        #[diagnostic::do_not_recommend]
         impl<M: Machine> $trait<M, $b> for $a {
             type Output = $out;
 
@@ -343,6 +382,7 @@ macro_rules! vector_operators {
     };
     (@one $bound:ident $right:ident :: $convert:ident |$m:ident, $v:ident, $op:ident, $a:ident, $b:ident| $e:expr;
      $trait:ident :: $method:ident $name:ident $x:ident) => {
+        #[diagnostic::do_not_recommend]
         impl<M: Machine, E: $bound<M>, R> $trait<M, R> for $x<E>
         where
             $x<E>: $right<M, R>,
@@ -374,17 +414,23 @@ vector_operators!(Bits Broadcast::broadcast |m, X, op, a, b| {
 macro_rules! number_with_vector {
     ($($t:ty => $component:ident: $($trait:ident :: $method:ident $op:ident),+;)+) => {
         $($(
-            impl<M: Machine, V: IsVector + Vector<M, Component = $component<M>>> $trait<M, V>
-                for $t {
-                type Output = V;
-
-                #[inline(always)]
-                fn $method(m: &M, a: $t, b: V) -> V {
-                    let a: $component<M> = Coerce::coerce(a, m);
-                    V::arithmetic(m, IntBinary::$op, V::of_one(a), b)
-                }
-            }
+            number_with_vector!(@one $t, $component, $trait $method $op, X2);
+            number_with_vector!(@one $t, $component, $trait $method $op, X3);
+            number_with_vector!(@one $t, $component, $trait $method $op, X4);
         )+)+
+    };
+    // Each vector by itself: an impl for all of them would claim what is none, and give it a result.
+    (@one $t:ty, $component:ident, $trait:ident $method:ident $op:ident, $vector:ident) => {
+        #[diagnostic::do_not_recommend]
+        impl<M: Machine> $trait<M, $vector<$component<M>>> for $t {
+            type Output = $vector<$component<M>>;
+
+            #[inline(always)]
+            fn $method(m: &M, a: $t, b: $vector<$component<M>>) -> $vector<$component<M>> {
+                let a: $component<M> = Coerce::coerce(a, m);
+                Vector::arithmetic(m, IntBinary::$op, Vector::of_one(a), b)
+            }
+        }
     };
 }
 
@@ -424,6 +470,7 @@ bool_operators!(
 
 macro_rules! unary {
     ($trait:ident :: $method:ident, $t:ty, |$m:ident, $a:ident| $e:expr) => {
+        #[diagnostic::do_not_recommend]
         impl<M: Machine> $trait<M> for $t {
             #[inline(always)]
             fn $method($m: &M, $a: Self) -> Self {
@@ -447,6 +494,7 @@ unary!(OpNot::not, Usize<M>, |m, a| Usize(m.u32_not(a.0)));
 macro_rules! vector_unary {
     ($($v:ident),+) => {
         $(
+            #[diagnostic::do_not_recommend]
             impl<M: Machine> OpNeg<M> for $v<F<M>> {
                 #[inline(always)]
                 fn neg(m: &M, a: Self) -> Self {
@@ -454,6 +502,7 @@ macro_rules! vector_unary {
                 }
             }
 
+            #[diagnostic::do_not_recommend]
             impl<M: Machine> OpNeg<M> for $v<I<M>> {
                 #[inline(always)]
                 fn neg(m: &M, a: Self) -> Self {
@@ -461,6 +510,7 @@ macro_rules! vector_unary {
                 }
             }
 
+            #[diagnostic::do_not_recommend]
             impl<M: Machine, E: Bits<M>> OpNot<M> for $v<E> {
                 #[inline(always)]
                 fn not(m: &M, a: Self) -> Self {
@@ -469,6 +519,7 @@ macro_rules! vector_unary {
             }
 
             /// `==` and `!=` of whole vectors.
+            #[diagnostic::do_not_recommend]
             impl<M: Machine, E: Equal<M>> OpCompare<M, $v<E>> for $v<E> {
                 type Output = B<M>;
 
@@ -489,6 +540,7 @@ vector_unary!(X2, X3, X4);
 
 macro_rules! compare {
     ($a:ty, $b:ty, $out:ty, |$m:ident, $op:ident, $x:ident, $y:ident| $e:expr) => {
+        #[diagnostic::do_not_recommend]
         impl<M: Machine> OpCompare<M, $b> for $a {
             type Output = $out;
 
@@ -576,6 +628,7 @@ equal!(F, I, U, B);
 macro_rules! cast {
     ($($a:ty => $t:ident: |$m:ident, $x:ident| $e:expr),+ $(,)?) => {
         $(
+            #[diagnostic::do_not_recommend]
             impl<M: Machine> OpCast<M, $t> for $a {
                 #[inline(always)]
                 fn cast($m: &M, $x: $a) -> <$t as Type>::On<M> {

@@ -30,6 +30,7 @@ pub trait Twin<M: Machine>: Value<M> + Inferred<M> {
     fn from_host(v: <Self::Host as Type>::On<M>) -> Self;
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, V: Twin<M>> Inferred<M> for &Var<V> {
     type Host = V::Host;
 
@@ -42,6 +43,7 @@ impl<M: Machine, V: Twin<M>> Inferred<M> for &Var<V> {
 macro_rules! inferred_host {
     ($($host:ty),+) => {
         $(
+            #[diagnostic::do_not_recommend]
             impl<M: Machine> Inferred<M> for $host {
                 type Host = $host;
 
@@ -59,6 +61,7 @@ inferred_host!(i32, u32, usize, bool);
 macro_rules! twin {
     ($($host:ty => $twin:ty),+ $(,)?) => {
         $(
+            #[diagnostic::do_not_recommend]
             impl<M: Machine> Inferred<M> for $twin {
                 type Host = $host;
 
@@ -87,6 +90,7 @@ twin!(
     Mat3 => M3<M>, Mat4 => M4<M>, Affine3 => A3<M>,
 );
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, V: Inferred<M>, const N: usize> Inferred<M> for [V; N] {
     type Host = [V::Host; N];
 
@@ -105,6 +109,7 @@ impl<M: Machine, V: Twin<M>, const N: usize> Twin<M> for [V; N] {
 
 macro_rules! twin_tuple {
     ($($name:ident . $index:tt),+) => {
+        #[diagnostic::do_not_recommend]
         impl<M: Machine, $($name: Inferred<M>),+> Inferred<M> for ($($name,)+) {
             type Host = ($($name::Host,)+);
 

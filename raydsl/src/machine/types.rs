@@ -57,6 +57,7 @@ macro_rules! read_scalar {
 
 macro_rules! scalar_type {
     ($host:tt, $twin:ident, $schema:ident, $make:ident, $from:ident, $lane:ident) => {
+        #[diagnostic::do_not_recommend]
         impl Type for $host {
             type On<M: Machine> = $twin<M>;
 
@@ -94,6 +95,7 @@ scalar_type!(u32, U, U32, u32, u32_from_fn, u32_lane);
 scalar_type!(bool, B, Bool, bool, bool_from_fn, bool_lane);
 
 /// A kernel counts and indexes with 32 bits; what a host's `usize` has above them is lost.
+#[diagnostic::do_not_recommend]
 impl Type for usize {
     type On<M: Machine> = Usize<M>;
 
@@ -128,6 +130,7 @@ macro_rules! vector_type {
         $(vector_type!(@one $twin $n $all $host $element);)+
     };
     (@one $twin:ident $n:literal ($($c:ident)+) $host:ident $element:ident) => {
+        #[diagnostic::do_not_recommend]
         impl Type for $host {
             type On<M: Machine> = $twin<<$element as Type>::On<M>>;
 

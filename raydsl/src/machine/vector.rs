@@ -18,9 +18,13 @@ pub type V4<M> = X4<F<M>>;
 /// What a vector may consist of.
 pub trait Component<M: Machine>: Value<M> + Varying<M, Value = Self> {}
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine> Component<M> for F<M> {}
+#[diagnostic::do_not_recommend]
 impl<M: Machine> Component<M> for I<M> {}
+#[diagnostic::do_not_recommend]
 impl<M: Machine> Component<M> for U<M> {}
+#[diagnostic::do_not_recommend]
 impl<M: Machine> Component<M> for B<M> {}
 
 /// A number, with arithmetic for one and for several at once.
@@ -87,6 +91,7 @@ fn float_op(op: IntBinary) -> F32Binary {
     }
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine> Arithmetic<M> for F<M> {
     #[inline(always)]
     fn binary(m: &M, op: IntBinary, a: Self, b: Self) -> Self {
@@ -141,6 +146,7 @@ macro_rules! integer {
     ($t:ident $signed:literal $binary:ident $each:ident $compare:ident $select:ident $not:ident;
      |$m:ident, $a:ident| neg $neg:expr; number |$v:ident| $number:expr;
      to $to:expr; from $from:expr) => {
+        #[diagnostic::do_not_recommend]
         impl<M: Machine> Arithmetic<M> for $t<M> {
             #[inline(always)]
             fn binary(m: &M, op: IntBinary, a: Self, b: Self) -> Self {
@@ -226,6 +232,7 @@ macro_rules! integer {
             }
         }
 
+        #[diagnostic::do_not_recommend]
         impl<M: Machine> Bits<M> for $t<M> {
             #[inline(always)]
             fn bits_each<const N: usize>(
@@ -253,6 +260,7 @@ integer!(U false u32_binary u32_vector_binary u32_compare u32_select u32_not;
     |m, a| neg U(m.u32_binary(IntBinary::WrappingSub, m.u32(0), a.0)); number |v| U(m.u32(v as u32));
     to { let _ = m; a }; from { let _ = m; a });
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine> Bits<M> for B<M> {
     #[inline(always)]
     fn bits_each<const N: usize>(m: &M, op: IntBinary, a: [Self; N], b: [Self; N]) -> [Self; N] {
@@ -393,6 +401,7 @@ macro_rules! vector {
             $(#[doc = concat!("Component ", stringify!($c), ".")] pub $c: E,)+
         }
 
+        #[diagnostic::do_not_recommend]
         impl<E> IsVector for $name<E> {}
 
         impl<M: Machine, E: Component<M>> Value<M> for $name<E> {
@@ -409,6 +418,7 @@ macro_rules! vector {
             }
         }
 
+        #[diagnostic::do_not_recommend]
         impl<M: Machine, E: Component<M>> Varying<M> for $name<E> {
             type Value = Self;
 
@@ -459,6 +469,7 @@ macro_rules! vector {
             }
         }
 
+        #[diagnostic::do_not_recommend]
         impl<M: Machine, C: Component<M>> Vector<M> for $name<C> {
             type Component = C;
             type Of<E: Component<M>> = $name<E>;
@@ -513,6 +524,7 @@ macro_rules! vector {
             }
         }
 
+        #[diagnostic::do_not_recommend]
         impl<M: Machine, E: Component<M>> Broadcast<M, $name<E>> for $name<E> {
             #[inline(always)]
             fn broadcast(_: &M, r: Self) -> Self {
@@ -520,6 +532,7 @@ macro_rules! vector {
             }
         }
 
+        #[diagnostic::do_not_recommend]
         impl<M: Machine, E: Component<M>, A: IsScalar + Coerce<M, E>> Broadcast<M, A> for $name<E> {
             #[inline(always)]
             fn broadcast(m: &M, r: A) -> Self {

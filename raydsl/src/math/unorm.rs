@@ -89,6 +89,7 @@ macro_rules! unorm {
             }
         }
 
+        #[diagnostic::do_not_recommend]
         impl<M: Machine> Varying<M> for $twin<M> {
             type Value = Self;
 
@@ -127,6 +128,7 @@ macro_rules! unorm {
             }
         }
 
+        #[diagnostic::do_not_recommend]
         impl<M: Machine> Capture<M> for $name {
             type On<'c> = $twin<M>;
 
@@ -141,6 +143,7 @@ macro_rules! unorm {
             }
         }
 
+        #[diagnostic::do_not_recommend]
         impl<M: Machine> Method<{ name("to_f32") }, M, ()> for $twin<M> {
             type Output = F<M>;
 
@@ -151,6 +154,7 @@ macro_rules! unorm {
             }
         }
 
+        #[diagnostic::do_not_recommend]
         impl<M: Machine> Method<{ name("to_bits") }, M, ()> for $twin<M> {
             type Output = U<M>;
 

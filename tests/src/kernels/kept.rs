@@ -4,13 +4,13 @@ use raydsl::kernel;
 use raydsl::prelude::*;
 
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
-pub struct Pair {
+pub struct Couple {
     pub x: f32,
     pub y: f32,
 }
 
 #[kernel]
-impl Pair {
+impl Couple {
     pub fn step(&mut self) -> f32 {
         self.x += 1.0;
         self.x
@@ -40,10 +40,10 @@ pub fn permuted_names(a: f32, b: f32, n: u32) -> f32 {
         ((u, t), 0) => u * 10 + t,
         ((u, t), _) => u + t * 10,
     };
-    let p = Pair { x: a, y: b };
+    let p = Couple { x: a, y: b };
     let third = match p {
-        Pair { x: p, y } if p > y => p,
-        Pair { x, .. } => x * 0.5,
+        Couple { x: p, y } if p > y => p,
+        Couple { x, .. } => x * 0.5,
     };
     first + second as f32 + third
 }
@@ -51,7 +51,7 @@ pub fn permuted_names(a: f32, b: f32, n: u32) -> f32 {
 #[kernel]
 pub fn swapped_by_assignment(a: f32, b: f32) -> f32 {
     let (mut x, mut y) = (a, b);
-    let mut p = Pair { x: 1.0, y: 2.0 };
+    let mut p = Couple { x: 1.0, y: 2.0 };
     (x, y) = (y, x);
     (p.x, _, p.y) = (x, 0.0, p.x);
     x * 2.0 - y + p.x + p.y
@@ -79,9 +79,9 @@ pub fn add_to(x: f32, to: &mut f32) -> f32 {
 /// What stands before a part that goes by `&mut` is evaluated before it.
 #[kernel]
 pub fn arguments_in_order(a: f32, b: f32) -> f32 {
-    let mut s = Pair { x: a, y: b };
+    let mut s = Couple { x: a, y: b };
     let r = add_to(s.step(), &mut s.x);
-    let mut t = Pair { x: b, y: a };
+    let mut t = Couple { x: b, y: a };
     let q = add_to(t.step() + s.step(), &mut t.y);
     r + q + s.x * 3.0 + t.y
 }
@@ -105,7 +105,7 @@ pub mod own {
 #[kernel]
 pub fn effects_in_arms(a: f32, n: u32) -> f32 {
     use own::clamp;
-    let mut s = Pair { x: a, y: 1.0 };
+    let mut s = Couple { x: a, y: 1.0 };
     let r = if a > 2.0 { s.dot() } else { 0.0 };
     let steps = if n % 50 > 0 { clamp(n % 50) } else { 0 };
     let mut sum = r + s.x + steps as f32 + s.length();
@@ -146,7 +146,7 @@ pub fn trailing_points(a: f32) -> f32 {
 /// Variables with the names of the generated code's.
 #[kernel]
 pub fn names_of_generated_code(a: f32, b: f32) -> f32 {
-    let mut result = Pair { x: a, y: b };
+    let mut result = Couple { x: a, y: b };
     let x = result.step();
     let mut part = [x, b];
     let old = add_to(1.0, &mut part[1]);
@@ -163,7 +163,7 @@ pub trait Lucky {
 }
 
 #[kernel]
-impl Lucky for Pair {
+impl Lucky for Couple {
     fn number() -> f32 {
         7.0
     }
@@ -177,5 +177,5 @@ pub fn lucky<T: Lucky>(x: f32) -> f32 {
 
 #[kernel]
 pub fn named_type_parameters(x: f32) -> f32 {
-    lucky::<Pair>(x) + <Pair as Lucky>::number()
+    lucky::<Couple>(x) + <Couple as Lucky>::number()
 }

@@ -18,7 +18,7 @@ impl Beam {
     pub(super) fn new(ray: RayOn<Margin>, root: &Node, slack: f64) -> Self {
         let origin = [ray.origin.x, ray.origin.y, ray.origin.z].map(|c| c.0.range);
         let direction = [ray.direction.x, ray.direction.y, ray.direction.z].map(|c| c.0.range);
-        let (low, high) = (root.min.as_dvec3().to_array(), root.max.as_dvec3().to_array());
+        let (low, high) = (root.min.to_array().map(f64::from), root.max.to_array().map(f64::from));
         let mut reach = 0f64;
         for axis in 0..3 {
             let (near, far) = (low[axis] - origin[axis].high, high[axis] - origin[axis].low);
@@ -41,7 +41,7 @@ impl Beam {
 
     /// Where the beam enters and leaves a box.
     fn slab(&self, node: &Node) -> (f64, f64) {
-        let (low, high) = (node.min.as_dvec3().to_array(), node.max.as_dvec3().to_array());
+        let (low, high) = (node.min.to_array().map(f64::from), node.max.to_array().map(f64::from));
         let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
         for axis in 0..3 {
             let (o, d) = (self.origin[axis], self.direction[axis]);

@@ -5,6 +5,7 @@ use super::{Method, name};
 
 macro_rules! swizzle {
     (@one $from:ident $to:ident $name:expr; $($c:ident $of:ident)+) => {
+        #[diagnostic::do_not_recommend]
         impl<M: Machine, E: Component<M>> Method<{ name($name) }, M, ()> for $from<E> {
             type Output = $to<E>;
 

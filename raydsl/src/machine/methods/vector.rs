@@ -418,6 +418,7 @@ parts! {
 macro_rules! conversions {
     ($($v:ident: $($name:literal $to:ident $host:ty),+;)+) => {
         $($(
+            #[diagnostic::do_not_recommend]
             impl<M: Machine, E: Component<M> + super::super::OpCast<M, $host>>
                 Method<{ name($name) }, M, ()> for $v<E>
             {

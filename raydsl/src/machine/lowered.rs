@@ -1,0 +1,197 @@
+//! What lifted code calls for the parts of Rust that are no methods: literals, casts, elements,
+//! counters.
+
+use super::index::{Index, Indexed};
+use super::{
+    B, Bounds, Coerce, Compare, Condition, F, I, Machine, OpCast, OpCompare, Schema, Type, U,
+    Usize, Value,
+};
+
+/// A literal, as the two numbers nearest to its text.
+#[inline(always)]
+pub fn literal<M: Machine>(m: &M, v: f32, exact: f64) -> F<M> {
+    F(m.f32_literal(v, exact))
+}
+
+/// A literal with the suffix `i32`.
+#[inline(always)]
+pub fn i32<M: Machine>(m: &M, v: i32) -> I<M> {
+    I(m.i32(v))
+}
+
+/// A literal with the suffix `u32`.
+#[inline(always)]
+pub fn u32<M: Machine>(m: &M, v: u32) -> U<M> {
+    U(m.u32(v))
+}
+
+/// A literal with the suffix `usize`.
+#[inline(always)]
+pub fn usize<M: Machine>(m: &M, v: usize) -> Usize<M> {
+    Type::splat(m, v)
+}
+
+/// The structure of an enum of so many bytes.
+pub const fn number_schema(bytes: usize) -> &'static Schema {
+    match bytes {
+        1 => &Schema::Small { bytes: 1 },
+        2 => &Schema::Small { bytes: 2 },
+        _ => &Schema::U32,
+    }
+}
+
+/// Writes the number of a variant.
+pub fn write_number(number: u32, bytes: usize, out: &mut [u8]) {
+    let n = bytes.min(4);
+    out[..n].copy_from_slice(&number.to_le_bytes()[..n]);
+}
+
+/// Reads the number of a variant.
+pub fn read_number(size: usize, bytes: &[u8]) -> u32 {
+    let mut number = [0; 4];
+    let n = size.min(4);
+    number[..n].copy_from_slice(&bytes[..n]);
+    u32::from_le_bytes(number)
+}
+
+/// What runs next, for [`report::utilisation`](crate::report::utilisation).
+#[inline(always)]
+pub fn here<M: Machine>(m: &M, what: &'static str, file: &'static str, line: u32) {
+    m.at(super::Place { what, file, line });
+}
+
+/// `a as T`.
+#[inline(always)]
+pub fn cast<M: Machine, A: OpCast<M, T>, T: Type>(m: &M, a: A) -> T::On<M> {
+    A::cast(m, a)
+}
+
+/// The right side of `&&` or `||`, evaluated for the lanes where the left side is `when`.
+#[inline(always)]
+pub fn guarded<M: Machine, C: Coerce<M, B<M>>, R>(
+    m: &M,
+    c: C,
+    when: bool,
+    f: impl FnOnce() -> R,
+) -> R {
+    m.guarded(c.coerce(m).0, when, f)
+}
+
+/// One of two values, by a condition of the machine or of the host.
+#[inline(always)]
+pub fn choose<M: Machine, V: Value<M>, C: Condition<M>>(
+    m: &M,
+    calls: bool,
+    c: C,
+    a: impl FnOnce() -> V,
+    b: impl FnOnce() -> V,
+) -> V {
+    c.choose(m, calls, a, b)
+}
+
+/// The bounds of a `for`.
+#[inline(always)]
+pub fn range<M: Machine, S: Bounds<M, E>, E>(m: &M, start: S, end: E) -> (S::Counter, S::Counter) {
+    S::bounds(m, start, end)
+}
+
+/// Whether a counter goes on.
+#[inline(always)]
+pub fn less<M: Machine, C: OpCompare<M, C, Output = B<M>>>(m: &M, a: C, b: C) -> B<M> {
+    C::compare(m, Compare::Lt, a, b)
+}
+
+/// Whether an inclusive range goes on: its last number has not been had, and `a <= b`.
+#[inline(always)]
+pub fn goes_on<M: Machine, C: OpCompare<M, C, Output = B<M>>>(
+    m: &M,
+    done: B<M>,
+    a: C,
+    b: C,
+) -> B<M> {
+    let within = C::compare(m, Compare::Le, a, b);
+    B(m.bool_binary(super::BoolBinary::And, m.bool_not(done.0), within.0))
+}
+
+/// Whether a counter has its last value.
+#[inline(always)]
+pub fn equal<M: Machine, C: OpCompare<M, C, Output = B<M>>>(m: &M, a: C, b: C) -> B<M> {
+    C::compare(m, Compare::Eq, a, b)
+}
+
+/// `a[i as usize]`.
+#[inline(always)]
+pub fn element<M: Machine, A: Indexed<M>>(m: &M, a: A, i: impl Index<M>) -> A::Element {
+    let i = i.index(m);
+    a.element(m, i)
+}
+
+/// `a[i]` where `i` is the same for all running lanes; `index` is the value that a recorded loop
+/// has for it.
+#[inline(always)]
+pub fn element_in_step<M: Machine, A: Indexed<M>, I: Index<M>>(
+    m: &M,
+    a: A,
+    step: u32,
+    index: impl FnOnce() -> I,
+) -> A::Element {
+    if M::RUNS { a.in_step(m, step) } else { a.element(m, index().index(m)) }
+}
+
+/// `a[3]`.
+#[inline(always)]
+pub fn at<M: Machine, A: Indexed<M>>(m: &M, a: A, i: usize) -> A::Element {
+    a.at(m, i)
+}
+
+/// The next value of a counter.
+#[inline(always)]
+pub fn increment<M: Machine, C: Counter<M>>(m: &M, a: C) -> C {
+    a.next(m)
+}
+
+/// The value of a counter before this one.
+#[inline(always)]
+pub fn decrement<M: Machine, C: Counter<M>>(m: &M, a: C) -> C {
+    a.previous(m)
+}
+
+/// The type of a counter.
+pub trait Counter<M: Machine> {
+    /// One more; the bound stops it before it overflows.
+    fn next(self, m: &M) -> Self;
+    /// One less.
+    fn previous(self, m: &M) -> Self;
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine> Counter<M> for I<M> {
+    #[inline(always)]
+    fn next(self, m: &M) -> Self {
+        I(m.i32_binary(super::IntBinary::WrappingAdd, self.0, m.i32(1)))
+    }
+    #[inline(always)]
+    fn previous(self, m: &M) -> Self {
+        I(m.i32_binary(super::IntBinary::WrappingSub, self.0, m.i32(1)))
+    }
+}
+
+macro_rules! unsigned_counter {
+    ($($t:ident),+) => {
+        $(
+            #[diagnostic::do_not_recommend]
+            impl<M: Machine> Counter<M> for $t<M> {
+                #[inline(always)]
+                fn next(self, m: &M) -> Self {
+                    $t(m.u32_binary(super::IntBinary::WrappingAdd, self.0, m.u32(1)))
+                }
+                #[inline(always)]
+                fn previous(self, m: &M) -> Self {
+                    $t(m.u32_binary(super::IntBinary::WrappingSub, self.0, m.u32(1)))
+                }
+            }
+        )+
+    };
+}
+
+unsigned_counter!(U, Usize);

@@ -1,0 +1,9 @@
+use raydsl::kernel;
+use raydsl::prelude::*;
+
+#[kernel]
+fn shade(x: f32, n: u32) -> f32 {
+    if x < n { 1.0 } else { 0.0 } //~ rustc 2
+}
+
+fn main() {}

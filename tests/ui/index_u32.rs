@@ -1,0 +1,10 @@
+use raydsl::kernel;
+use raydsl::prelude::*;
+
+#[kernel]
+fn shade(x: f32, n: u32) -> f32 {
+    let t = [x, 1.0];
+    t[n] //~ rustc 2
+}
+
+fn main() {}

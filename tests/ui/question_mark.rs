@@ -1,0 +1,14 @@
+use raydsl::kernel;
+use raydsl::prelude::*;
+
+fn maybe(x: f32) -> Option<f32> {
+    Some(x)
+}
+
+#[kernel]
+fn shade(x: f32) -> Option<f32> { //~ macro
+    let y = maybe(x)?; //~ macro
+    maybe(y)
+}
+
+fn main() {}

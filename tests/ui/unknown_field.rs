@@ -1,0 +1,9 @@
+use raydsl::kernel;
+use raydsl::prelude::*;
+
+#[kernel]
+fn shade(ray: Ray) -> f32 {
+    ray.start.x //~ rustc 3
+}
+
+fn main() {}

@@ -1,0 +1,13 @@
+use raydsl::kernel;
+use raydsl::prelude::*;
+
+fn find(x: f32) -> Option<f32> {
+    Some(x)
+}
+
+#[kernel]
+fn shade(x: f32, n: u32) -> f32 {
+    find(x).unwrap() //~ macro
+}
+
+fn main() {}
