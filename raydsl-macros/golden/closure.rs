@@ -704,10 +704,10 @@ fn main() {
                 move |visit: &mut dyn FnMut(&dyn ::raydsl::__private::Resource)| {
                     ::raydsl::__private::Capture::<
                         ::raydsl::__private::Recorder,
-                    >::resources(captures.0, visit);
+                    >::resources({ captures.0 }, visit);
                     ::raydsl::__private::Capture::<
                         ::raydsl::__private::Recorder,
-                    >::resources(captures.1, visit);
+                    >::resources({ captures.1 }, visit);
                 },
             )
     };

@@ -19,6 +19,7 @@ mod twin;
 
 use proc_macro::TokenStream;
 use quote::quote;
+use syn::spanned::Spanned;
 
 /// Lifts a function, or every function of an `impl` or a trait, to all variants.
 ///
@@ -56,6 +57,16 @@ fn expand_kernel(
     }
     if let Ok(t) = syn::parse2::<syn::ItemTrait>(item.clone()) {
         return items::kernel_trait(&t);
+    }
+    if let Ok(closure) = syn::parse2::<syn::ExprClosure>(item.clone()) {
+        let e = syn::Error::new(
+            closure.span(),
+            "stable Rust has no `#[kernel]` on a closure\n  help: write `kernel!(|ray: Ray| ...)`, \
+             or `#[kernels]` on the function around it",
+        );
+        let e = e.into_compile_error();
+        // For rustc's sake a kernel all the same: what is done with it is right.
+        return quote!({ #e ::raydsl::prelude::kernel!(#item) });
     }
     let e = syn::Error::new_spanned(
         &item,

@@ -3,7 +3,7 @@ use raydsl::prelude::*;
 fn main() {
     let name = String::from("wall");
     let k = kernel!(|x: f32| {
-        x * name.len() as f32 //~ lifted 2
+        x * name.len() as f32 //~ lifted
     });
     k.wgsl();
 }

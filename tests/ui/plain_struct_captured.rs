@@ -7,6 +7,6 @@ struct Cone {
 
 fn main() {
     let cone = Cone { slope: 2.0 };
-    let k = kernel!(|x: f32| x * cone.slope); //~ lifted 2
+    let k = kernel!(|x: f32| x * cone.slope); //~ lifted
     k.wgsl();
 }

@@ -96,7 +96,12 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
     let scalar = own("scalar");
     let mut others: Vec<Ident> = NATURAL.iter().map(|n| own(n.1)).collect();
     let (first, first_machine) = (others.remove(0), format_ident!("{}", NATURAL[0].0));
-    let index = (0..captured.len()).map(syn::Index::from);
+    let resources = captured.iter().enumerate().map(|(i, name)| {
+        let _at = At::new(name.span());
+        let p = quote_here!(::raydsl::__private);
+        let (captures, i) = (own("captures"), syn::Index::from(i));
+        quote_here!(#p::Capture::<#p::Recorder>::resources({ #captures.#i }, visit);)
+    });
     quote! {{
         #info
         let #scalar = #closure;
@@ -115,7 +120,7 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
                 }
             },
             move |visit: &mut dyn FnMut(&dyn #p::Resource)| {
-                #(#p::Capture::<#p::Recorder>::resources(#captures.#index, visit);)*
+                #(#resources)*
             },
         )
     }}
