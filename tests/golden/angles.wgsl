@@ -108,55 +108,75 @@ fn sincos_2pi(u: f32) -> SinCos {
     let c = params.lit_1_0 + z * (params.lit_m19_739208 + z * (params.lit_64_93914 + z * (params.lit_m85_42312 + z * params.lit_58_561153)));
     let quarters = saturate_u32(n);
     let is_odd = (quarters & 1u) != 0u;
-    var sin_: f32;
-    if (is_odd) {
-        sin_ = c;
-    } else {
-        sin_ = s;
-    }
-    var cos: f32;
-    if (is_odd) {
-        cos = s;
-    } else {
-        cos = c;
-    }
+    let sin_ = select(s, c, is_odd);
+    let cos = select(c, s, is_odd);
     let sin__1 = turned(sin_, (quarters << 30u)) + params.lit_0_0;
     let cos_1 = turned(cos, ((quarters + 1u) << 30u)) + params.lit_0_0;
     return SinCos(turned(sin__1, bitcast<u32>(u)), cos_1);
 }
 
 fn two_over_pi(i: u32) -> Words {
-    var result_a: u32;
-    var result_b: u32;
-    var result_c: u32;
-    var result_d: u32;
+    var value_a: u32;
+    var value_b: u32;
+    var value_c: u32;
+    var value_d: u32;
     if (i == 0u) {
-        result_a = 0u;
-        result_b = 2734261102u;
-        result_c = 1313084713u;
-        result_d = 4230436817u;
-    } else if (i == 1u) {
-        result_a = 2734261102u;
-        result_b = 1313084713u;
-        result_c = 4230436817u;
-        result_d = 4113882560u;
-    } else if (i == 2u) {
-        result_a = 1313084713u;
-        result_b = 4230436817u;
-        result_c = 4113882560u;
-        result_d = 3680671129u;
-    } else if (i == 3u) {
-        result_a = 4230436817u;
-        result_b = 4113882560u;
-        result_c = 3680671129u;
-        result_d = 1011060801u;
+        value_a = 0u;
+        value_b = 2734261102u;
+        value_c = 1313084713u;
+        value_d = 4230436817u;
     } else {
-        result_a = 4113882560u;
-        result_b = 3680671129u;
-        result_c = 1011060801u;
-        result_d = 4266746795u;
+        var value_a_1: u32;
+        var value_b_1: u32;
+        var value_c_1: u32;
+        var value_d_1: u32;
+        if (i == 1u) {
+            value_a_1 = 2734261102u;
+            value_b_1 = 1313084713u;
+            value_c_1 = 4230436817u;
+            value_d_1 = 4113882560u;
+        } else {
+            var value_a_2: u32;
+            var value_b_2: u32;
+            var value_c_2: u32;
+            var value_d_2: u32;
+            if (i == 2u) {
+                value_a_2 = 1313084713u;
+                value_b_2 = 4230436817u;
+                value_c_2 = 4113882560u;
+                value_d_2 = 3680671129u;
+            } else {
+                var value_a_3: u32;
+                var value_b_3: u32;
+                var value_c_3: u32;
+                var value_d_3: u32;
+                if (i == 3u) {
+                    value_a_3 = 4230436817u;
+                    value_b_3 = 4113882560u;
+                    value_c_3 = 3680671129u;
+                    value_d_3 = 1011060801u;
+                } else {
+                    value_a_3 = 4113882560u;
+                    value_b_3 = 3680671129u;
+                    value_c_3 = 1011060801u;
+                    value_d_3 = 4266746795u;
+                }
+                value_a_2 = value_a_3;
+                value_b_2 = value_b_3;
+                value_c_2 = value_c_3;
+                value_d_2 = value_d_3;
+            }
+            value_a_1 = value_a_2;
+            value_b_1 = value_b_2;
+            value_c_1 = value_c_2;
+            value_d_1 = value_d_2;
+        }
+        value_a = value_a_1;
+        value_b = value_b_1;
+        value_c = value_c_1;
+        value_d = value_d_1;
     }
-    return Words(result_a, result_b, result_c, result_d);
+    return Words(value_a, value_b, value_c, value_d);
 }
 
 fn upper_half(m: u32, w: u32) -> u32 {
@@ -225,12 +245,7 @@ fn wave(angle: Reduced, quarters: u32) -> f32 {
     let sin_ = angle.rest + (sin_series - angle.tail);
     let cos_series = z * z * (params.lit_0_041666646 + z * (params.lit_m0_001388731 + z * params.lit_2_4432327em5));
     let cos = params.lit_1_0 - (0.5f * z - (cos_series + angle.rest * angle.tail));
-    var v: f32;
-    if ((quarters & 1u) == 0u) {
-        v = sin_;
-    } else {
-        v = cos;
-    }
+    let v = select(cos, sin_, ((quarters & 1u) == 0u));
     return turned(v, (quarters << 30u));
 }
 
@@ -256,67 +271,30 @@ fn atan2(y: f32, x: f32) -> f32 {
     var long: f32 = select(width, height, width < height);
     var short: f32 = select(width, height, height < width);
     if (long > 340282346638528859811704183484516925440.0f || long == 0.0f) {
-        var value: f32;
-        if (short > 340282346638528859811704183484516925440.0f) {
-            value = 1.0f;
-        } else {
-            value = 0.0f;
-        }
-        short = value;
+        short = select(0.0f, 1.0f, (short > 340282346638528859811704183484516925440.0f));
         long = 1.0f;
     }
-    var scale: f32;
-    if (long > 1e19f) {
-        scale = 0.25f;
-    } else {
-        scale = 1.0f;
-    }
+    let scale = select(1.0f, 0.25f, (long > 1e19f));
     let long_1 = long * scale;
     let short_1 = short * scale;
     let is_middle = short_1 > params.lit_0_41421357 * long_1;
-    var above: f32;
-    if (is_middle) {
-        above = short_1 - long_1;
-    } else {
-        above = short_1;
-    }
-    var below: f32;
-    if (is_middle) {
-        below = short_1 + long_1;
-    } else {
-        below = long_1;
-    }
+    let above = select(short_1, short_1 - long_1, is_middle);
+    let below = select(long_1, short_1 + long_1, is_middle);
     let q = above / below;
-    let k_2 = u32(is_middle);
+    let k = u32(is_middle);
     let is_high = height > width;
-    var k: u32;
-    if (is_high) {
-        k = 2u - k_2;
-    } else {
-        k = k_2;
-    }
+    let k_1 = select(k, 2u - k, is_high);
     let is_left = (bitcast<u32>(x) >> 31u) != 0u;
-    var k_1: u32;
-    if (is_left) {
-        k_1 = 4u - k;
-    } else {
-        k_1 = k;
-    }
+    let k_2 = select(k_1, 4u - k_1, is_left);
     let mirrored = (u32(is_high) ^ u32(is_left)) << 31u;
-    let angle = atan_of_parts(f32(k_1), turned(q, mirrored));
-    var result: f32;
+    let angle = atan_of_parts(f32(k_2), turned(q, mirrored));
     var either: bool;
     if (is_nan(x)) {
         either = true;
     } else {
         either = is_nan(y);
     }
-    if (either) {
-        result = params.nan;
-    } else {
-        result = bitcast<f32>((bitcast<u32>(angle) & 2147483647u) | (bitcast<u32>(y) & 2147483648u));
-    }
-    return result;
+    return select(bitcast<f32>((bitcast<u32>(angle) & 2147483647u) | (bitcast<u32>(y) & 2147483648u)), params.nan, either);
 }
 
 fn asin_series(s: f32, z: f32) -> f32 {
@@ -327,12 +305,7 @@ fn asin_series(s: f32, z: f32) -> f32 {
 fn acos(x: f32) -> f32 {
     let a = abs(x);
     let is_far = a > 0.5f;
-    var z: f32;
-    if (is_far) {
-        z = (params.lit_1_0 - a) * 0.5f;
-    } else {
-        z = a * a;
-    }
+    let z = select(a * a, (params.lit_1_0 - a) * 0.5f, is_far);
     var s: f32;
     if (is_far) {
         s = sqrt(z);
@@ -341,25 +314,9 @@ fn acos(x: f32) -> f32 {
     }
     let p = asin_series(s, z);
     let near = params.lit_1_5707964 - (bitcast<f32>((bitcast<u32>(p) & 2147483647u) | (bitcast<u32>(x) & 2147483648u)) + params.lit_4_371139em8);
-    var far: f32;
-    if (x > 0.0f) {
-        far = 2.0f * p;
-    } else {
-        far = params.lit_3_1415927 - (2.0f * p + params.lit_8_742278em8);
-    }
-    var v: f32;
-    if (is_far) {
-        v = far;
-    } else {
-        v = near;
-    }
-    var result: f32;
-    if (a <= 1.0f) {
-        result = v;
-    } else {
-        result = params.nan;
-    }
-    return result;
+    let far = select(params.lit_3_1415927 - (2.0f * p + params.lit_8_742278em8), 2.0f * p, (x > 0.0f));
+    let v = select(near, far, is_far);
+    return select(params.nan, v, (a <= 1.0f));
 }
 
 fn angles(x: f32, y: f32) -> vec4<f32> {

@@ -38,13 +38,7 @@ fn arrays(t: Table, n: u32) -> u32 {
     if (n > t.values[1]) {
         r = r ^ t.colors[2];
     }
-    var result: u32;
-    if (t.flag) {
-        result = r;
-    } else {
-        result = ~r;
-    }
-    return result;
+    return select(~r, r, t.flag);
 }
 
 fn element(input: Tuple) -> u32 {

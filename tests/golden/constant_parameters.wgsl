@@ -29,8 +29,7 @@ fn sum_of(values: array<f32, 3>, scale: f32) -> f32 {
     for (; i < 3u; i = i + 1u) {
         sum = sum + select(select(values[0], values[1], (i >= 1u)), values[2], (i >= 2u));
     }
-    let result = sum * scale;
-    return result;
+    return sum * scale;
 }
 
 fn sum_of_1(values: array<f32, 2>, scale: f32) -> f32 {
@@ -39,8 +38,7 @@ fn sum_of_1(values: array<f32, 2>, scale: f32) -> f32 {
     for (; i < 2u; i = i + 1u) {
         sum = sum + select(values[0], values[1], (i >= 1u));
     }
-    let result = sum - params.lit_2_0;
-    return result;
+    return sum - params.lit_2_0;
 }
 
 fn constant_parameters(x: f32, y: f32) -> f32 {

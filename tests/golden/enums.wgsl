@@ -34,28 +34,13 @@ struct Job {
 @group(0) @binding(1) var<uniform> job: Job;
 
 fn Matter_of(n: u32) -> u32 {
-    var result: u32;
     let value_1 = n % 3u;
-    if (value_1 == 0u) {
-        result = 0u;
-    } else if (value_1 == 1u) {
-        result = 4u;
-    } else {
-        result = 5u;
-    }
+    let result = select(select(5u, 4u, (value_1 == 1u)), 0u, (value_1 == 0u));
     return result;
 }
 
 fn Matter_albedo(self_: u32) -> f32 {
-    var result: f32;
-    if (self_ == 0u) {
-        result = 0.5f;
-    } else if (self_ == 4u) {
-        result = 0.9f;
-    } else {
-        result = 0.0f;
-    }
-    return result;
+    return select(select(0.0f, 0.9f, (self_ == 4u)), 0.5f, (self_ == 0u));
 }
 
 fn enums(x: f32, n: u32) -> Surface {

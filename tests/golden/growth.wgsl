@@ -79,18 +79,8 @@ fn saturate_i32(x: f32) -> i32 {
 
 fn split(x: f32) -> Split {
     let is_denormal = x < 1.1754944e-38f;
-    var normal: f32;
-    if (is_denormal) {
-        normal = x * 33554432.0f;
-    } else {
-        normal = x;
-    }
-    var shift: f32;
-    if (is_denormal) {
-        shift = 25.0f;
-    } else {
-        shift = 0.0f;
-    }
+    let normal = select(x, x * 33554432.0f, is_denormal);
+    let shift = select(0.0f, 25.0f, is_denormal);
     let above = bitcast<u32>(normal) - 1060439283u;
     let mantissa = bitcast<f32>((above & 8388607u) + 1060439283u);
     return Split(mantissa, f32(bitcast<i32>(above) >> 23u) - shift);
@@ -108,15 +98,7 @@ fn log_of_parts(f: f32, k: f32) -> f32 {
 }
 
 fn log_at_the_ends(x: f32) -> f32 {
-    var result: f32;
-    if (x == 0.0f) {
-        result = params.infinity;
-    } else if (x < 0.0f) {
-        result = params.nan;
-    } else {
-        result = x;
-    }
-    return result;
+    return select(select(x, params.nan, (x < 0.0f)), params.infinity, (x == 0.0f));
 }
 
 fn log(x: f32) -> f32 {
@@ -192,28 +174,13 @@ fn pow_at_the_ends(x: f32, y: f32, is_odd: bool) -> f32 {
         if (a == 1.0f) {
             return 1.0f;
         }
-        if (!((a > 1.0f) != (y > 0.0f))) {
-            return params.infinity_1;
-        } else {
-            return 0.0f;
-        }
+        return select(0.0f, params.infinity_1, !((a > 1.0f) != (y > 0.0f)));
     }
     if (a > 0.0f && a <= 340282346638528859811704183484516925440.0f) {
         return params.nan;
     }
-    var size: f32;
-    if (!((a > 0.0f) != (y > 0.0f))) {
-        size = params.infinity_2;
-    } else {
-        size = 0.0f;
-    }
-    var value: f32;
-    if (is_odd) {
-        value = x;
-    } else {
-        value = 1.0f;
-    }
-    return bitcast<f32>((bitcast<u32>(size) & 2147483647u) | (bitcast<u32>(value) & 2147483648u));
+    let size = select(0.0f, params.infinity_2, !((a > 0.0f) != (y > 0.0f)));
+    return bitcast<f32>((bitcast<u32>(size) & 2147483647u) | (bitcast<u32>(select(1.0f, x, is_odd)) & 2147483648u));
 }
 
 fn pow_(x: f32, y: f32) -> f32 {
@@ -260,12 +227,7 @@ fn pow_(x: f32, y: f32) -> f32 {
     let t_4 = select(t_3, -1.0f, t_3 < -1.0f);
     let r = select(t_4, 1.0f, 1.0f < t_4);
     let size = scaled(exp2_near_zero(r), saturate_i32(n));
-    var power: f32;
-    if (both) {
-        power = bitcast<f32>((bitcast<u32>(size) & 2147483647u) | (bitcast<u32>(x) & 2147483648u));
-    } else {
-        power = size;
-    }
+    let power = select(size, bitcast<f32>((bitcast<u32>(size) & 2147483647u) | (bitcast<u32>(x) & 2147483648u)), both);
     let is_usual = a > 0.0f && a <= 340282346638528859811704183484516925440.0f && b <= 340282346638528859811704183484516925440.0f && (x > 0.0f || is_whole);
     var result: f32;
     if (is_usual) {

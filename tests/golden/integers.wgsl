@@ -26,12 +26,7 @@ struct Job {
 fn integers(a: u32, b: u32) -> u32 {
     let sum = a + b - 17u;
     let product = sum * 2654435761u;
-    var d: u32;
-    if (b == 0u) {
-        d = 1u;
-    } else {
-        d = b;
-    }
+    let d = select(b, 1u, (b == 0u));
     let q = product / d;
     let r = product % d;
     let t = r * 3u;

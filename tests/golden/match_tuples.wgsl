@@ -56,13 +56,7 @@ fn match_tuples(a: u32, b: u32, c: bool) -> u32 {
             }
         }
     }
-    var result: u32;
-    if (c) {
-        result = found;
-    } else {
-        result = found + 100u;
-    }
-    return result;
+    return select(found + 100u, found, c);
 }
 
 fn element(input: Tuple) -> u32 {

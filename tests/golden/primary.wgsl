@@ -103,12 +103,7 @@ fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
     let half = sqrt(radicand * per_d2);
     let near = closest - half;
     let far = closest + half;
-    var t: f32;
-    if (near < ray.t_min) {
-        t = far;
-    } else {
-        t = near;
-    }
+    let t = select(near, far, (near < ray.t_min));
     let is_hit = radicand >= 0.0f && radius > 0.0f && t >= ray.t_min && t <= ray.t_max;
     return Hit(is_hit, t, 0u, 0.0f, 0.0f);
 }

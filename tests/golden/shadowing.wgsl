@@ -25,26 +25,21 @@ struct Job {
 @group(0) @binding(1) var<uniform> job: Job;
 
 fn shadowing(x: f32, y: f32) -> f32 {
-    let x_2 = x + params.lit_1_0;
-    var y_1: f32 = y * x_2;
-    if (x_2 > 3.0f) {
-        let x_3 = y_1 - params.lit_1_0;
-        var y_2: f32 = x_3 * 0.5f;
+    let x_1 = x + params.lit_1_0;
+    var y_1: f32 = y * x_1;
+    if (x_1 > 3.0f) {
+        let x_2 = y_1 - params.lit_1_0;
+        var y_2: f32 = x_2 * 0.5f;
         y_2 = y_2 + params.lit_1_0;
-        if (y_2 > x_3) {
+        if (y_2 > x_2) {
             y_2 = y_2 * 2.0f;
         }
-        return y_2 + x_3;
+        return y_2 + x_2;
     }
-    y_1 = y_1 + x_2;
+    y_1 = y_1 + x_1;
     let y_3 = y_1 - params.lit_0_5;
-    var x_1: f32;
-    if (y_3 > 0.0f) {
-        x_1 = x_2;
-    } else {
-        x_1 = -x_2;
-    }
-    return x_1 * y_3;
+    let x_3 = select(-x_1, x_1, (y_3 > 0.0f));
+    return x_3 * y_3;
 }
 
 fn element(input: Tuple) -> f32 {

@@ -24,20 +24,10 @@ struct Job {
 @group(0) @binding(1) var<uniform> job: Job;
 
 fn signed(a: i32, b: i32) -> i32 {
-    var d: i32;
-    if (b == 0i || b == -1i) {
-        d = 3i;
-    } else {
-        d = b;
-    }
+    let d = select(b, 3i, (b == 0i || b == -1i));
     let q = a / d;
     let r = a % d;
-    var n: i32;
-    if (a > -1000i && a < 1000i) {
-        n = -a;
-    } else {
-        n = a;
-    }
+    let n = select(a, -a, (a > -1000i && a < 1000i));
     let t = q + r * 31i - n;
     let t_1 = select(t, -2000000000i, (t < -2000000000i));
     let t_2 = b + n;

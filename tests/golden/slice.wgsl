@@ -78,29 +78,14 @@ fn few_at(i: u32) -> Triangle {
 }
 
 fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
-    var result: vec3<f32>;
-    if (k == 0u) {
-        result = v.yzx;
-    } else if (k == 1u) {
-        result = v.zxy;
-    } else {
-        result = v;
-    }
-    return result;
+    return select(select(v, v.zxy, (k == 1u)), v.yzx, (k == 0u));
 }
 
 fn Triangle_intersect(self_: Triangle, ray: Ray) -> Hit {
     let ax = abs(ray.direction.x);
     let ay = abs(ray.direction.y);
     let az = abs(ray.direction.z);
-    var k: u32;
-    if (ax > ay && ax > az) {
-        k = 0u;
-    } else if (ay > az) {
-        k = 1u;
-    } else {
-        k = 2u;
-    }
+    let k = select(select(2u, 1u, (ay > az)), 0u, (ax > ay && ax > az));
     let d = axis_last(ray.direction, k);
     let a = axis_last(self_.v0 - ray.origin, k);
     let b = axis_last(self_.v1 - ray.origin, k);

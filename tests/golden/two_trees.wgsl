@@ -134,12 +134,7 @@ fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
     let half = sqrt(radicand * per_d2);
     let near = closest - half;
     let far = closest + half;
-    var t: f32;
-    if (near < ray.t_min) {
-        t = far;
-    } else {
-        t = near;
-    }
+    let t = select(near, far, (near < ray.t_min));
     let is_hit = radicand >= 0.0f && radius > 0.0f && t >= ray.t_min && t <= ray.t_max;
     return Hit(is_hit, t, 0u, 0.0f, 0.0f);
 }
@@ -246,29 +241,14 @@ fn points_closest_hit(ray: Ray) -> Hit {
 }
 
 fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
-    var result: vec3<f32>;
-    if (k == 0u) {
-        result = v.yzx;
-    } else if (k == 1u) {
-        result = v.zxy;
-    } else {
-        result = v;
-    }
-    return result;
+    return select(select(v, v.zxy, (k == 1u)), v.yzx, (k == 0u));
 }
 
 fn Triangle_intersect(self_: Triangle, ray: Ray) -> Hit {
     let ax = abs(ray.direction.x);
     let ay = abs(ray.direction.y);
     let az = abs(ray.direction.z);
-    var k: u32;
-    if (ax > ay && ax > az) {
-        k = 0u;
-    } else if (ay > az) {
-        k = 1u;
-    } else {
-        k = 2u;
-    }
+    let k = select(select(2u, 1u, (ay > az)), 0u, (ax > ay && ax > az));
     let d = axis_last(ray.direction, k);
     let a = axis_last(self_.v0 - ray.origin, k);
     let b = axis_last(self_.v1 - ray.origin, k);
@@ -386,25 +366,25 @@ fn walls_closest_hit(ray: Ray) -> Hit {
 fn kernel(ray: Ray) -> Hit {
     let a = points_closest_hit(ray);
     let b = walls_closest_hit(ray);
-    var result_is_hit: bool;
-    var result_t: f32;
-    var result_prim_id: u32;
-    var result_u: f32;
-    var result_v: f32;
+    var value_is_hit: bool;
+    var value_t: f32;
+    var value_prim_id: u32;
+    var value_u: f32;
+    var value_v: f32;
     if (b.is_hit && (!a.is_hit || b.t < a.t)) {
-        result_is_hit = b.is_hit;
-        result_t = b.t;
-        result_prim_id = b.prim_id;
-        result_u = b.u;
-        result_v = b.v;
+        value_is_hit = b.is_hit;
+        value_t = b.t;
+        value_prim_id = b.prim_id;
+        value_u = b.u;
+        value_v = b.v;
     } else {
-        result_is_hit = a.is_hit;
-        result_t = a.t;
-        result_prim_id = a.prim_id;
-        result_u = a.u;
-        result_v = a.v;
+        value_is_hit = a.is_hit;
+        value_t = a.t;
+        value_prim_id = a.prim_id;
+        value_u = a.u;
+        value_v = a.v;
     }
-    return Hit(result_is_hit, result_t, result_prim_id, result_u, result_v);
+    return Hit(value_is_hit, value_t, value_prim_id, value_u, value_v);
 }
 
 fn element(input: Tuple) -> Hit {

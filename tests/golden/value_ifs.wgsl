@@ -26,36 +26,13 @@ struct Job {
 fn value_ifs(x: f32, y: f32) -> f32 {
     var a: f32;
     if (x > 0.0f) {
-        var b: f32;
-        if (y > 0.0f) {
-            b = x + y;
-        } else {
-            b = x - y;
-        }
+        let b = select(x - y, x + y, (y > 0.0f));
         a = b * 2.0f;
-    } else if (y > 10.0f) {
-        if (x < -50.0f) {
-            a = 3.0f;
-        } else {
-            a = y;
-        }
     } else {
-        a = x * y;
+        a = select(x * y, select(y, 3.0f, (x < -50.0f)), (y > 10.0f));
     }
-    var value: f32;
-    if (a > 5.0f) {
-        value = a;
-    } else {
-        value = -a;
-    }
-    let c = params.lit_1_0 + value;
-    var value_1: f32;
-    if (x == y) {
-        value_1 = 1.0f;
-    } else {
-        value_1 = 0.5f;
-    }
-    return c - value_1;
+    let c = params.lit_1_0 + select(-a, a, (a > 5.0f));
+    return c - select(0.5f, 1.0f, (x == y));
 }
 
 fn element(input: Tuple) -> f32 {
