@@ -130,7 +130,7 @@ fn sphere_rows(args: &Args) -> Vec<Row> {
     if is_wanted(args, "spheres") {
         let kernel = kernel!(|o: Vec3, d: Vec3, seed: u32| {
             let hit = spheres::closest(balls, o, d);
-            hit.t + ((seed & 0) + hit.id) as f32
+            hit.t + (hit.id ^ seed) as f32
         });
         all.extend(rows(args, "spheres", &kernel, None, &inputs));
     }

@@ -49,7 +49,7 @@ both! {
         let mut largest = k;
         while k != 1 && steps < 200 {
             if k & 1 == 0 {
-                k = k >> 1;
+                k >>= 1;
             } else {
                 k = 3 * k + 1;
             }
@@ -145,7 +145,7 @@ both! {
             let c = cos.abs();
             let k = 1.0 - eta * eta * (1.0 - c * c);
             if k < 0.0 {
-                direction = direction + facing * (2.0 * c);
+                direction += facing * (2.0 * c);
                 continue;
             }
             let t = k.sqrt();
@@ -154,7 +154,7 @@ both! {
             let reflected = 0.5 * (parallel * parallel + vertical * vertical);
             if reflected > 0.2 {
                 weight *= reflected;
-                direction = direction + facing * (2.0 * c);
+                direction += facing * (2.0 * c);
             } else {
                 weight *= 1.0 - reflected;
                 direction = direction * eta + facing * (eta * c - t);

@@ -21,11 +21,11 @@ pub struct Found {
 #[kernel]
 pub fn closest(balls: &[Ball], o: Vec3, d: Vec3) -> Found {
     let mut best = Found { t: 1e30, id: 0xffff_ffff };
-    for i in 0..balls.len() {
-        let f = o - balls[i].center;
+    for (i, ball) in balls.iter().enumerate() {
+        let f = o - ball.center;
         let b = f.dot(d);
         let l = f - d * b;
-        let h = balls[i].radius * balls[i].radius - l.dot(l);
+        let h = ball.radius * ball.radius - l.dot(l);
         if h < 0.0 {
             continue;
         }
@@ -39,11 +39,11 @@ pub fn closest(balls: &[Ball], o: Vec3, d: Vec3) -> Found {
 
 #[kernel]
 fn is_blocked(balls: &[Ball], o: Vec3, d: Vec3) -> bool {
-    for i in 0..balls.len() {
-        let f = o - balls[i].center;
+    for ball in balls {
+        let f = o - ball.center;
         let b = f.dot(d);
         let l = f - d * b;
-        let h = balls[i].radius * balls[i].radius - l.dot(l);
+        let h = ball.radius * ball.radius - l.dot(l);
         if h >= 0.0 && -b - h.sqrt() > 1e-3 {
             return true;
         }
