@@ -294,7 +294,13 @@ fn atan2(y: f32, x: f32) -> f32 {
     } else {
         either = is_nan(y);
     }
-    return select(bitcast<f32>((bitcast<u32>(angle) & 2147483647u) | (bitcast<u32>(y) & 2147483648u)), params.nan, either);
+    var value: f32;
+    if (either) {
+        value = params.nan;
+    } else {
+        value = bitcast<f32>((bitcast<u32>(angle) & 2147483647u) | (bitcast<u32>(y) & 2147483648u));
+    }
+    return value;
 }
 
 fn asin_series(s: f32, z: f32) -> f32 {

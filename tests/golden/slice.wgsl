@@ -78,7 +78,19 @@ fn few_at(i: u32) -> Triangle {
 }
 
 fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
-    return select(select(v, v.zxy, (k == 1u)), v.yzx, (k == 0u));
+    var value: vec3<f32>;
+    if (k == 0u) {
+        value = v.yzx;
+    } else {
+        var value_1: vec3<f32>;
+        if (k == 1u) {
+            value_1 = v.zxy;
+        } else {
+            value_1 = v;
+        }
+        value = value_1;
+    }
+    return value;
 }
 
 fn Triangle_intersect(self_: Triangle, ray: Ray) -> Hit {

@@ -135,7 +135,12 @@ pub fn bare_integers(a: f32, n: u32) -> u32 {
         };
     }
     let counts = [if n > 9 { 1 } else { 2 }, k];
-    if a > 1.0 { if a > 3.0 { 1 } else { inner } } else { counts[(x.abs() * 0.01) as usize % 2] }
+    let last: u32 = if a > 1.0 {
+        if a > 3.0 { 1 } else { inner }
+    } else {
+        counts[(x.abs() * 0.01) as usize % 2]
+    };
+    last
 }
 
 #[kernel]
