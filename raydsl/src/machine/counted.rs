@@ -15,7 +15,7 @@ pub struct Place {
     pub what: &'static str,
 }
 
-/// The lanes of `L`, whose running ones are counted while [`count`] is under way.
+/// The lanes of `L`, whose running ones are counted while `count` is under way.
 #[derive(Clone, Copy, Debug)]
 pub struct Counted<L>(pub L);
 
