@@ -6,6 +6,7 @@ use proc_macro2::{Span, TokenStream};
 #[derive(Default)]
 pub(crate) struct Errors {
     first: Option<syn::Error>,
+    count: usize,
 }
 
 impl Errors {
@@ -15,6 +16,7 @@ impl Errors {
     }
 
     pub(crate) fn push(&mut self, e: syn::Error) {
+        self.count += 1;
         match &mut self.first {
             Some(first) => first.combine(e),
             None => self.first = Some(e),
@@ -26,6 +28,11 @@ impl Errors {
         if let Some(e) = other.first {
             self.push(e);
         }
+    }
+
+    /// How many there are.
+    pub(crate) fn count(&self) -> usize {
+        self.count
     }
 
     pub(crate) fn is_empty(&self) -> bool {

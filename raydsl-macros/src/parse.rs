@@ -21,6 +21,7 @@ pub(crate) fn function(
     self_ty: Option<&syn::Type>,
     errors: &mut Errors,
 ) -> Kernel {
+    let before = errors.count();
     for (bad, what) in [
         (sig.asyncness.as_ref().map(Spanned::span), "async"),
         (matches!(sig.safety, syn::Safety::Unsafe(_)).then(|| sig.safety.span()), "unsafe"),
@@ -42,10 +43,11 @@ pub(crate) fn function(
         syn::ReturnType::Type(_, ty) if is_unit(ty) => None,
         syn::ReturnType::Type(_, ty) => Some(parser.ty(ty)),
     };
+    let is_broken = parser.errors.count() > before;
     let mut body = parser.block(body);
     body.stmts.splice(0..0, prologue);
     let generics = Generics::new(&sig.generics);
-    Kernel { name: sig.ident.clone(), generics, params, result, body }
+    Kernel { name: sig.ident.clone(), generics, params, result, body, is_broken }
 }
 
 /// A closure literal; its parameters must have types.
@@ -237,7 +239,7 @@ impl Parser<'_> {
         };
         body.stmts.splice(0..0, prologue);
         let name = Ident::new(name, Span::call_site());
-        Kernel { name, generics: Generics::default(), params, result, body }
+        Kernel { name, generics: Generics::default(), params, result, body, is_broken: false }
     }
 
     /// A closure as an argument. With a `return` its body is a labelled block.

@@ -3,7 +3,7 @@ use raydsl::prelude::*;
 
 #[kernel]
 fn shade(v: Vec4) -> f32 {
-    v.dot(v) //~ lifted 2
+    v.dot(v) //~ lifted
 }
 
 fn main() {}

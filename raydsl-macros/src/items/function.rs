@@ -36,6 +36,15 @@ pub(crate) fn kernel_fn(item: &syn::ItemFn) -> TokenStream {
     let Generics { declared, bare, used, predicates, .. } = &kernel.generics;
     let (declared, bare, used) = (angled(declared), angled(bare), angled(used));
     let errors = errors.into_tokens();
+    if kernel.is_broken {
+        // The type stays, so that there is something to call.
+        return quote! {
+            #source
+            #[allow(non_camel_case_types, dead_code)]
+            #vis enum #name #bare { #never }
+            #errors
+        };
+    }
     let doc = format!("The kernel of [`{name}()`]: `Kernel::of::<{name}>()`.");
     let entry = has_entry(&kernel, &item.sig).then(|| entry(&kernel, &item.sig));
     quote! {

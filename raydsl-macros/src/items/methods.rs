@@ -76,7 +76,11 @@ fn lifted_impl(item: &syn::ItemImpl, host_only: &[&str], errors: &mut Errors) ->
             vis: &f.vis.to_token_stream(),
             is_method: true,
         };
-        lifted.functions.extend(lifted_function(&kernel, &place, errors));
+        let function = lifted_function(&kernel, &place, errors);
+        if kernel.is_broken {
+            continue;
+        }
+        lifted.functions.extend(function);
         if kernel.params.first().is_some_and(|p| p.name == "self") {
             let method = Method {
                 self_ty: &self_ty,

@@ -308,11 +308,23 @@ pub trait Machine: Sized + 'static {
     #[inline(always)]
     fn choose<V: Value<Self>>(
         &self,
-        _calls: bool,
+        calls: bool,
         c: B<Self>,
         a: impl FnOnce() -> V,
         b: impl FnOnce() -> V,
     ) -> V {
+        if calls {
+            let value = Var::declare(self, "value");
+            let branch = Branch::new(self, c);
+            if branch.then(self) {
+                value.set(self, a());
+            }
+            if branch.otherwise(self) {
+                value.set(self, b());
+            }
+            branch.end(self);
+            return value.get(self);
+        }
         let (a, b) = (self.guarded(c.0, true, a), self.guarded(c.0, false, b));
         index::choose(self, c.0, a, b)
     }
