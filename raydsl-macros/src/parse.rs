@@ -41,7 +41,16 @@ pub(crate) fn function(
     let result = match &sig.output {
         syn::ReturnType::Default => None,
         syn::ReturnType::Type(_, ty) if is_unit(ty) => None,
-        syn::ReturnType::Type(_, ty) => Some(parser.ty(ty)),
+        syn::ReturnType::Type(_, ty) => {
+            if matches!(&**ty, syn::Type::Reference(r) if r.mutability.is_some()) {
+                parser.errors.at(
+                    ty.span(),
+                    "a kernel gives no `&mut`: what it gives is a copy",
+                    "give the value, or nothing, and go on with the variable that was changed",
+                );
+            }
+            Some(parser.ty(ty))
+        }
     };
     let is_broken = parser.errors.count() > before;
     let mut body = parser.block(body);

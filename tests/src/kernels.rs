@@ -104,6 +104,7 @@ macro_rules! kernel_table {
             bare_integers: Tame Same;
             trailing_points: Any SameIfFinite;
             names_of_generated_code: Tame Differs;
+            changed_while_read: Tame Differs;
             named_type_parameters: Any SameIfFinite;
             angles: Any Differs;
             growth: Any Differs;

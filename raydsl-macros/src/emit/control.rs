@@ -257,7 +257,7 @@ impl Emitter<'_> {
         let (ident, counter, done) =
             (self.fresh("repeat"), self.fresh("counter"), self.fresh("done"));
         let (begin, stop) = (own("begin"), own("end"));
-        let text = var.map(ToString::to_string).unwrap_or_else(|| "i".to_owned());
+        let text = var.map(shown).unwrap_or_else(|| "i".to_owned());
         let (start, end) = (self.value(&range.start), self.value(&range.end));
         let now = quote!(#counter.get(#m));
         // `[low, high)` or `[low, high]`, upwards from `low` or downwards from `high`.

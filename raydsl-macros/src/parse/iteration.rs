@@ -11,23 +11,25 @@ use crate::model::{Block, Expr, Kind, Let, Range, Stmt};
 struct Items<'a> {
     list: &'a syn::Expr,
     enumerated: bool,
+    /// The list itself, not a reference to it: the loop runs over a copy.
+    by_value: bool,
 }
 
 /// `list.iter()`, `&list` and `list`, and `list.iter().enumerate()`.
 fn items(e: &syn::Expr) -> Option<Items<'_>> {
     match inside_parens(e) {
         syn::Expr::MethodCall(c) if c.method == "iter" && c.args.is_empty() => {
-            Some(Items { list: &c.receiver, enumerated: false })
+            Some(Items { list: &c.receiver, enumerated: false, by_value: false })
         }
         syn::Expr::MethodCall(c) if c.method == "enumerate" && c.args.is_empty() => {
             let inner = items(&c.receiver)?;
             (!inner.enumerated).then_some(Items { enumerated: true, ..inner })
         }
         syn::Expr::Reference(r) if r.mutability.is_none() => {
-            Some(Items { list: inside_parens(&r.expr), enumerated: false })
+            Some(Items { list: inside_parens(&r.expr), enumerated: false, by_value: false })
         }
         list @ (syn::Expr::Path(_) | syn::Expr::Field(_) | syn::Expr::Array(_)) => {
-            Some(Items { list, enumerated: false })
+            Some(Items { list, enumerated: false, by_value: true })
         }
         _ => None,
     }
@@ -105,7 +107,20 @@ impl Parser<'_> {
     fn for_each(&mut self, f: &syn::ExprForLoop, items: Items<'_>) -> Kind {
         let span = f.expr.span();
         let boxed = |kind| Box::new(Expr { kind, span });
-        let (list, index) = (self.boxed(items.list), self.temporary("i"));
+        let (mut list, index) = (self.boxed(items.list), self.temporary("i"));
+        let mut copy = Vec::new();
+        if items.by_value {
+            let (ident, init) = (self.temporary("items"), *list);
+            let name = Some(ident.clone());
+            copy.push(Stmt::Let(Let {
+                host: false,
+                name,
+                mutable: false,
+                ty: None,
+                init: Some(init),
+            }));
+            list = boxed(Kind::Name(ident));
+        }
         let name = || Expr { kind: Kind::Name(index.clone()), span };
         let element = Kind::Element { base: list.clone(), index: Box::new(name()) };
         let element = Expr { kind: element, span };
@@ -127,7 +142,12 @@ impl Parser<'_> {
         let range =
             Range { start: boxed(zero), end: boxed(len), inclusive: false, reversed: false };
         let body = Block { stmts, tail };
-        Kind::For { label: label(&f.label), var: Some(index), range, body }
+        let repeat = Kind::For { label: label(&f.label), var: Some(index), range, body };
+        if copy.is_empty() {
+            return repeat;
+        }
+        copy.push(Stmt::Expr(Expr { kind: repeat, span }));
+        Kind::Block(Block { stmts: copy, tail: None })
     }
 
     /// What the pattern of a loop over elements binds.

@@ -114,6 +114,12 @@ fn signatures() {
         "have names",
         "fn f<T: Light>(light: T)",
     );
+    let f = quote!(
+        fn f(s: &mut S) -> &mut S {
+            s
+        }
+    );
+    assert_kernel(f, "gives no `&mut`", "give the value");
     assert_kernel(
         quote!(
             async fn f(x: f32) -> f32 {

@@ -184,3 +184,23 @@ pub fn lucky<T: Lucky>(x: f32) -> f32 {
 pub fn named_type_parameters(x: f32) -> f32 {
     lucky::<Couple>(x) + <Couple as Lucky>::number()
 }
+
+/// A loop over an array runs over a copy of it.
+#[kernel]
+pub fn changed_while_read(a: f32, n: u32) -> f32 {
+    let mut list = [a, 1.0, 2.0, 3.0];
+    let mut sum = 0.0;
+    for v in list {
+        sum += v;
+        list[(n % 4) as usize] = sum;
+    }
+    'outer: for v in [a, sum] {
+        for w in list {
+            if w > v {
+                continue 'outer;
+            }
+            sum += 1.0;
+        }
+    }
+    sum
+}
