@@ -26,9 +26,9 @@ struct Job {
 fn changed_counters(a: f32, n: u32) -> u32 {
     var sum: u32 = 0u;
     let t = n % 20u;
-    var k__i_1: u32 = 0u;
-    for (; k__i_1 < t; k__i_1 = k__i_1 + 1u) {
-        var i: u32 = k__i_1;
+    var i_1: u32 = 0u;
+    for (; i_1 < t; i_1 = i_1 + 1u) {
+        var i: u32 = i_1;
         i = i * 3u;
         if (a > 0.0f) {
             i = i + 1u;

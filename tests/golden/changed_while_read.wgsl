@@ -34,9 +34,9 @@ fn changed_while_read(a: f32, n: u32) -> f32 {
     let list_1_1 = list_1;
     let list_2_1 = list_2;
     let list_3_1 = list_3;
-    var k__i_1: u32 = 0u;
-    for (; k__i_1 < 4u; k__i_1 = k__i_1 + 1u) {
-        let v = select(select(select(list_0_1, list_1_1, (k__i_1 >= 1u)), list_2_1, (k__i_1 >= 2u)), list_3_1, (k__i_1 >= 3u));
+    var i_1: u32 = 0u;
+    for (; i_1 < 4u; i_1 = i_1 + 1u) {
+        let v = select(select(select(list_0_1, list_1_1, (i_1 >= 1u)), list_2_1, (i_1 >= 2u)), list_3_1, (i_1 >= 3u));
         sum = sum + v;
         let t = n % 4u;
         list_0 = select(list_0, sum, (t == 0u));
@@ -45,16 +45,16 @@ fn changed_while_read(a: f32, n: u32) -> f32 {
         list_3 = select(list_3, sum, (t >= 3u));
     }
     let sum_1 = sum;
-    var k__i_3: u32 = 0u;
-    for (; k__i_3 < 2u; k__i_3 = k__i_3 + 1u) {
-        let v_1 = select(a, sum_1, (k__i_3 >= 1u));
+    var i_3: u32 = 0u;
+    for (; i_3 < 2u; i_3 = i_3 + 1u) {
+        let v_1 = select(a, sum_1, (i_3 >= 1u));
         let list_0_2 = list_0;
         let list_1_2 = list_1;
         let list_2_2 = list_2;
         let list_3_2 = list_3;
-        var k__i_5: u32 = 0u;
-        for (; k__i_5 < 4u; k__i_5 = k__i_5 + 1u) {
-            let w = select(select(select(list_0_2, list_1_2, (k__i_5 >= 1u)), list_2_2, (k__i_5 >= 2u)), list_3_2, (k__i_5 >= 3u));
+        var i_5: u32 = 0u;
+        for (; i_5 < 4u; i_5 = i_5 + 1u) {
+            let w = select(select(select(list_0_2, list_1_2, (i_5 >= 1u)), list_2_2, (i_5 >= 2u)), list_3_2, (i_5 >= 3u));
             if (w > v_1) {
                 leave = 5u;
                 break;
