@@ -5,7 +5,7 @@
 //! rays disagree; so arms that are *small* are not tested, and an `if` that only chooses between
 //! small values is a selection.
 
-use crate::model::{Block, Expr, Kind, Step};
+use crate::model::{BinaryOp, Block, Expr, Kind, Step};
 use crate::ops;
 
 /// An arm of statements that costs no more runs untested.
@@ -38,15 +38,13 @@ impl Expr {
             | Kind::Struct { .. }
             | Kind::Block(_) => 0,
             Kind::Neg(_) | Kind::Not(_) | Kind::Compare { .. } | Kind::Logic { .. } => 1,
-            Kind::Binary { op, a, b } => division(op.may_trap, a, b),
+            Kind::Binary { op, .. } => operator(*op),
             Kind::Cast { .. } => 3,
             Kind::If { .. } | Kind::Break(..) | Kind::Continue(_) | Kind::Return(_) => 2,
             Kind::Call { path, .. } => ops::cheap_function(&path.to_string()).unwrap_or(LARGE),
             Kind::Method { name, .. } => ops::cheap_method(&name.to_string()).unwrap_or(LARGE),
             Kind::Assign { place, .. } => assignment(&place.steps),
-            Kind::OpAssign { op, place, value } => {
-                assignment(&place.steps) + division(op.may_trap, value, value)
-            }
+            Kind::OpAssign { op, place, .. } => assignment(&place.steps) + operator(*op),
             _ => LARGE,
         };
         self.kind.children().into_iter().fold(own, |sum, e| sum.saturating_add(e.cost()))
@@ -56,6 +54,18 @@ impl Expr {
     /// wanted.
     pub(crate) fn is_free(&self) -> bool {
         self.cost() <= SMALL_VALUE && self.has_no_effect()
+    }
+
+    /// Whether it is an `if` that only chooses between small values.
+    pub(crate) fn is_selection(&self) -> bool {
+        match &self.kind {
+            Kind::If { coherent: false, c, then, otherwise: Some(other) } => {
+                let arm = |e: &Expr| e.is_selection() || e.is_free();
+                c.has_no_effect() && then.free_value().is_some() && arm(other)
+            }
+            Kind::Block(b) => b.free_value().is_some_and(Self::is_selection),
+            _ => false,
+        }
     }
 
     fn has_no_effect(&self) -> bool {
@@ -75,32 +85,13 @@ impl Expr {
     }
 }
 
-/// The kind of numbers is not known: a literal with a point says that no integers are divided.
-fn division(may_trap: bool, a: &Expr, b: &Expr) -> u32 {
-    let is_float = |e: &Expr| matches!(e.kind, Kind::Float(_));
-    match may_trap {
-        false => 1,
-        true if is_float(a) || is_float(b) => 8,
-        true => LARGE,
-    }
+/// A division may be one of integers, which is done lane by lane.
+fn operator(op: BinaryOp) -> u32 {
+    if op.may_trap { LARGE } else { 1 }
 }
 
 fn assignment(steps: &[Step]) -> u32 {
     if steps.iter().any(|s| matches!(s, Step::Computed(_))) { LARGE } else { 1 }
-}
-
-impl Expr {
-    /// Whether it is an `if` that only chooses between small values.
-    pub(crate) fn is_selection(&self) -> bool {
-        match &self.kind {
-            Kind::If { coherent: false, c, then, otherwise: Some(other) } => {
-                let arm = |e: &Expr| e.is_selection() || e.is_free();
-                c.has_no_effect() && then.free_value().is_some() && arm(other)
-            }
-            Kind::Block(b) => b.free_value().is_some_and(Self::is_selection),
-            _ => false,
-        }
-    }
 }
 
 impl Block {

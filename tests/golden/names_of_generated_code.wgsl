@@ -44,7 +44,7 @@ fn Couple_step(self_: Couple) -> Tuple {
 fn add_to(x: f32, to: f32) -> Tuple_1 {
     var to_1: f32 = to;
     to_1 = to_1 + x;
-    return Tuple_1(to_1 * 2.0f, to_1);
+    return Tuple_1(select(select(to_1, x, to_1 < x), x, (to_1 != to_1)), to_1);
 }
 
 fn names_of_generated_code(a: f32, b: f32) -> f32 {

@@ -3,7 +3,8 @@
 use std::fmt::Debug;
 
 use raydsl::kernel::{Kernel, Lifted, Variant};
-use raydsl::machine::{KernelFn, KernelInfo, Lanes, Packet, Scalar, Type};
+use raydsl::machine::{KernelFn, KernelInfo, Lanes, Packet, Rounding, Scalar, Type};
+use raydsl::report::{Cause, explain};
 
 use crate::gpu::gpu;
 use crate::levels::{LevelTask, each_level, gangs, widest_level};
@@ -23,8 +24,9 @@ pub enum Wgsl {
     SameIfFinite,
     /// Floats within this many ulp, for inputs whose every number is finite.
     Ulps(u32),
-    /// WGSL does not define the operation well enough.
-    Differs,
+    /// What rounding as WGSL allows it explains, for inputs whose every number is finite: a device
+    /// may reorder sums and products, and fuse or not fuse.
+    Explained,
 }
 
 /// Runs a kernel through every variant and compares with its untouched source.
@@ -34,7 +36,8 @@ pub enum Wgsl {
 /// If any result of any variant differs.
 pub fn check<F: KernelFn>(name: &str, numbers: Numbers, wgsl: Wgsl)
 where
-    F::Args: Debug,
+    F::Args: Debug + Sync,
+    F::Output: Sync,
 {
     let mut rng = Rng::of(name);
     // Not a multiple of any width, so that the last packet is partly filled.
@@ -56,31 +59,45 @@ where
 /// # Panics
 ///
 /// If any result differs by more than `wgsl` allows.
-pub fn wgsl_agrees<A: Type + Debug, R: Type>(
+pub fn wgsl_agrees<A: Type + Debug + Sync, R: Type + Sync>(
     name: &str,
     kernel: &Kernel<'_, A, R>,
     inputs: &[A],
     expected: &[R],
     wgsl: Wgsl,
 ) {
-    let (ulps, all) = match wgsl {
-        Wgsl::Same => (0, true),
-        Wgsl::SameIfFinite => (0, false),
-        Wgsl::Ulps(ulps) => (ulps, false),
-        Wgsl::Differs => return,
-    };
     let Some(gpu) = gpu() else { return };
-    let taken = inputs.iter().zip(expected).filter(|(a, _)| all || is_finite(*a));
+    let taken = inputs.iter().zip(expected).filter(|(a, _)| wgsl == Wgsl::Same || is_finite(*a));
     let (inputs, expected): (Vec<A>, Vec<R>) = taken.unzip();
     let mut found = vec![garbage(); inputs.len()];
     if let Err(error) = gpu.batch(kernel, &inputs, &mut found) {
         panic!("{name} in WGSL: {error}\n{}", kernel.wgsl());
     }
+    let ulps = match wgsl {
+        Wgsl::Same | Wgsl::SameIfFinite => 0,
+        Wgsl::Ulps(ulps) => ulps,
+        Wgsl::Explained => return assert_explained(name, kernel, &inputs, &found),
+    };
     let result = compare_within(format!("{name} in WGSL"), ulps, &expected, &found);
     if result.count() > 0 {
         println!("{}", kernel.wgsl());
     }
     result.assert_same(|i| format!("{:?}", inputs[i]));
+}
+
+fn assert_explained<A: Type + Debug + Sync, R: Type + Sync>(
+    name: &str,
+    kernel: &Kernel<'_, A, R>,
+    inputs: &[A],
+    found: &[R],
+) {
+    let explanation = explain(kernel, inputs, found, Rounding::WGSL);
+    let open = explanation.causes.iter().find(|(_, cause)| *cause == Cause::Unexplained);
+    if let Some((i, _)) = open {
+        println!("{}", kernel.wgsl());
+        compare(format!("{name} in WGSL"), &[kernel.call(inputs[*i])], &found[*i..=*i])
+            .assert_same(|_| format!("{:?}", inputs[*i]));
+    }
 }
 
 fn is_finite<T: Type>(v: &T) -> bool {

@@ -61,7 +61,7 @@ macro_rules! kernel_table {
             clamped: Any SameIfFinite;
             float_methods: Any SameIfFinite;
             float_bits: Any Same;
-            fused: Any Differs;
+            fused: Any Explained;
             constants: Any SameIfFinite;
             vectors: Tame Same;
             vector_parts: Any SameIfFinite;
@@ -91,23 +91,23 @@ macro_rules! kernel_table {
             random_sum: Any Same;
             random_walk: Tame Same;
             changed_arguments: Tame Same;
-            lights: Tame Differs;
+            lights: Tame Explained;
             sources: Any Same;
             constant_parameters: Any SameIfFinite;
             enums: Tame Same;
             sizes: Any Same;
-            permuted_names: Tame Differs;
-            swapped_by_assignment: Any Differs;
+            permuted_names: Tame Explained;
+            swapped_by_assignment: Any Explained;
             changed_counters: Any Same;
-            arguments_in_order: Tame Differs;
-            effects_in_arms: Tame Differs;
+            arguments_in_order: Tame Explained;
+            effects_in_arms: Tame Explained;
             bare_integers: Tame Same;
             trailing_points: Any SameIfFinite;
-            names_of_generated_code: Tame Differs;
-            changed_while_read: Tame Differs;
+            names_of_generated_code: Tame Explained;
+            changed_while_read: Tame Explained;
             named_type_parameters: Any SameIfFinite;
-            angles: Any Differs;
-            growth: Any Differs;
+            angles: Any Explained;
+            growth: Any Explained;
         }
     };
 }

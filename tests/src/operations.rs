@@ -32,14 +32,15 @@ const IN_WGSL: usize = 500;
 /// If any result differs.
 pub fn operation<F: KernelFn>(name: &str, numbers: Numbers, wgsl: Wgsl)
 where
-    F::Args: Debug,
+    F::Args: Debug + Sync,
+    F::Output: Sync,
 {
     let operation = Operation::<F::Args, F::Output> {
         name,
         scalar: F::scalar,
         scalar_machine: F::lifted,
         packets: F::lifted,
-        wgsl: (wgsl != Wgsl::Differs).then(recorded::<F>),
+        wgsl: recorded::<F>(),
     };
     operation.check(numbers, wgsl);
 }
@@ -52,10 +53,10 @@ struct Operation<'a, A: Type, R: Type> {
     scalar: fn(A) -> R,
     scalar_machine: fn(&Scalar, A::On<Scalar>) -> R::On<Scalar>,
     packets: fn(&Wide, A::On<Wide>) -> R::On<Wide>,
-    wgsl: Option<Kernel<'static, A, R>>,
+    wgsl: Kernel<'static, A, R>,
 }
 
-impl<A: Type + Debug, R: Type> Operation<'_, A, R> {
+impl<A: Type + Debug + Sync, R: Type + Sync> Operation<'_, A, R> {
     fn check(&self, numbers: Numbers, wgsl: Wgsl) {
         let mut rng = Rng::of(self.name);
         let count = (scaled(NUMBERS) / A::SCHEMA.leaves()).max(ON_EACH_LEVEL);
@@ -72,9 +73,7 @@ impl<A: Type + Debug, R: Type> Operation<'_, A, R> {
         }
         let inputs: Vec<A> = (0..IN_WGSL).map(|_| random(&mut rng, numbers)).collect();
         let expected: Vec<R> = inputs.iter().map(|a| (self.scalar)(*a)).collect();
-        if let Some(kernel) = &self.wgsl {
-            wgsl_agrees(self.name, kernel, &inputs, &expected, wgsl);
-        }
+        wgsl_agrees(self.name, &self.wgsl, &inputs, &expected, wgsl);
     }
 
     fn assert_same(&self, how: &str, inputs: &[A], expected: &[R], found: &[R]) {

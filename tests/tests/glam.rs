@@ -68,7 +68,7 @@ operations! { of_float: Any SameIfFinite;
     select_function(c: bool, a: f32, b: f32) -> f32 { select(c, a, b) }
 }
 
-operations! { of_fused: Any Differs;
+operations! { of_fused: Any Explained;
     mul_add(a: f32, b: f32, c: f32) -> f32 { a.mul_add(b, c) }
     vec3(a: Vec3, b: Vec3, c: Vec3) -> Vec3 { a.mul_add(b, c) }
     vec4(a: Vec4, b: Vec4, c: Vec4) -> Vec4 { a.mul_add(b, c) }

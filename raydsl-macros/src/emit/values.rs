@@ -110,10 +110,9 @@ impl Emitter<'_> {
             let value = self.value(e);
             return quote!(#p::Varying::varying(#value, #m));
         };
-        let has_calls = then.may_act() || other.may_act();
+        let calls = then.may_act() || other.may_act();
         let c = self.host_value(c).unwrap_or_else(|| self.value(c));
         let (then, other) = (self.selection(then, ty, slot), self.selection(other, ty, slot));
-        let calls = has_calls;
         let (seen, others) = (self.mentioned_in(&then), self.mentioned_in(&other));
         quote! {
             #p::choose::<_, #ty, _>(
@@ -250,7 +249,8 @@ impl Emitter<'_> {
                 let step = self.find(name)?.step.as_ref()?;
                 Some(quote!(#step.get()))
             }
-            Kind::Cast { value, .. } => self.in_step(value),
+            // By way of a float the number might be another.
+            Kind::Cast { value, ty } if ty.to_string() != "f32" => self.in_step(value),
             Kind::Binary { op, a, b } if matches!(op.symbol, "+" | "*") => {
                 let (x, y) = (self.in_step(a), self.in_step(b));
                 let (x, y) = match (x, y) {
