@@ -92,16 +92,16 @@ impl walk {
                     );
                     {
                         let (begin, end) = ::raydsl::__private::range(m, { 0 }, { n });
-                        let counter_3 = ::raydsl::__private::Var::new(m, "i", begin);
-                        let step_5 = ::core::cell::Cell::new(0 as u32);
+                        let counter_3 = ::raydsl::__private::Steps::new(
+                            m,
+                            "i",
+                            begin,
+                            0 as u32,
+                        );
+                        let end = ::raydsl::__private::Stop::new(m, end);
                         let repeat_2 = ::raydsl::__private::Loop::new(m);
                         loop {
-                            if !repeat_2
-                                .test(
-                                    m,
-                                    ::raydsl::__private::less(m, counter_3.get(m), end),
-                                )
-                            {
+                            if !end.is_after(m, &repeat_2, &counter_3) {
                                 break;
                             }
                             ::raydsl::__private::here(
@@ -112,9 +112,9 @@ impl walk {
                             );
                             let i = counter_3.get(m);
                             {
-                                let repeat_7 = ::raydsl::__private::Loop::new(m);
+                                let repeat_6 = ::raydsl::__private::Loop::new(m);
                                 loop {
-                                    if !repeat_7
+                                    if !repeat_6
                                         .test(
                                             m,
                                             ::raydsl::__private::OpCompare::compare(
@@ -133,7 +133,7 @@ impl walk {
                                         ::core::file!(),
                                         ::core::line!(),
                                     );
-                                    'block_7: {
+                                    'block_6: {
                                         {
                                             let right = ::raydsl::__private::literal(m, 1.0f32, 1.0f64);
                                             sum.set(
@@ -148,7 +148,7 @@ impl walk {
                                                 ),
                                             );
                                         }
-                                        let branch_9 = ::raydsl::__private::Branch::new(
+                                        let branch_8 = ::raydsl::__private::Branch::new(
                                             m,
                                             ::raydsl::__private::OpCompare::compare(
                                                 m,
@@ -157,7 +157,7 @@ impl walk {
                                                 { ::raydsl::__private::literal(m, 10.0f32, 10.0f64) },
                                             ),
                                         );
-                                        if branch_9.then_small(m) {
+                                        if branch_8.then_small(m) {
                                             ::raydsl::__private::here(
                                                 m,
                                                 "if",
@@ -168,20 +168,20 @@ impl walk {
                                                 repeat_2.leave(m);
                                             }
                                         }
-                                        if branch_9.otherwise(m) {
+                                        if branch_8.otherwise(m) {
                                             ::raydsl::__private::here(
                                                 m,
                                                 "else",
                                                 ::core::file!(),
                                                 ::core::line!(),
                                             );
-                                            let branch_11 = ::raydsl::__private::Branch::new(
+                                            let branch_10 = ::raydsl::__private::Branch::new(
                                                 m,
                                                 {
-                                                    let value_12 = ::raydsl::__private::Var::<
+                                                    let value_11 = ::raydsl::__private::Var::<
                                                         _,
                                                     >::declare(m, "both");
-                                                    let branch_13 = ::raydsl::__private::Branch::new(
+                                                    let branch_12 = ::raydsl::__private::Branch::new(
                                                         m,
                                                         ::raydsl::__private::OpCompare::compare(
                                                             m,
@@ -190,7 +190,7 @@ impl walk {
                                                             { ::raydsl::__private::literal(m, 0.0f32, 0.0f64) },
                                                         ),
                                                     );
-                                                    if branch_13.then(m) {
+                                                    if branch_12.then(m) {
                                                         ::raydsl::__private::here(
                                                             m,
                                                             "if",
@@ -198,7 +198,7 @@ impl walk {
                                                             ::core::line!(),
                                                         );
                                                         {
-                                                            value_12
+                                                            value_11
                                                                 .set(
                                                                     m,
                                                                     ::raydsl::__private::Varying::varying(
@@ -219,7 +219,7 @@ impl walk {
                                                                 );
                                                         }
                                                     }
-                                                    if branch_13.otherwise(m) {
+                                                    if branch_12.otherwise_small(m) {
                                                         ::raydsl::__private::here(
                                                             m,
                                                             "else",
@@ -227,15 +227,15 @@ impl walk {
                                                             ::core::line!(),
                                                         );
                                                         {
-                                                            value_12
+                                                            value_11
                                                                 .set(m, ::raydsl::__private::Varying::varying(false, m));
                                                         }
                                                     }
-                                                    branch_13.end(m);
-                                                    value_12.get(m)
+                                                    branch_12.end(m);
+                                                    value_11.get(m)
                                                 },
                                             );
-                                            if branch_11.then_small(m) {
+                                            if branch_10.then_small(m) {
                                                 ::raydsl::__private::here(
                                                     m,
                                                     "if",
@@ -243,16 +243,16 @@ impl walk {
                                                     ::core::line!(),
                                                 );
                                                 {
-                                                    repeat_7.skip(m);
+                                                    repeat_6.skip(m);
                                                 }
                                             }
-                                            branch_11.end(m);
+                                            branch_10.end(m);
                                         }
-                                        branch_9.end(m);
+                                        branch_8.end(m);
                                         if !::raydsl::__private::Machine::alive(m) {
-                                            break 'block_7;
+                                            break 'block_6;
                                         }
-                                        let branch_17 = ::raydsl::__private::Branch::new(
+                                        let branch_16 = ::raydsl::__private::Branch::new(
                                             m,
                                             ::raydsl::__private::OpCompare::compare(
                                                 m,
@@ -261,7 +261,7 @@ impl walk {
                                                 { 3 },
                                             ),
                                         );
-                                        if branch_17.then_small(m) {
+                                        if branch_16.then_small(m) {
                                             ::raydsl::__private::here(
                                                 m,
                                                 "if",
@@ -275,9 +275,9 @@ impl walk {
                                                 );
                                             }
                                         }
-                                        branch_17.end(m);
+                                        branch_16.end(m);
                                         if !::raydsl::__private::Machine::alive(m) {
-                                            break 'block_7;
+                                            break 'block_6;
                                         }
                                         {
                                             let right = ::raydsl::__private::literal(m, 2.0f32, 2.0f64);
@@ -294,20 +294,15 @@ impl walk {
                                             );
                                         }
                                     }
-                                    repeat_7.continuing(m);
-                                    if !repeat_7.again(m) {
+                                    repeat_6.continuing(m);
+                                    if !repeat_6.again(m) {
                                         break;
                                     }
                                 }
-                                repeat_7.end(m);
+                                repeat_6.end(m);
                             }
                             repeat_2.continuing(m);
-                            counter_3
-                                .set(
-                                    m,
-                                    ::raydsl::__private::increment(m, counter_3.get(m)),
-                                );
-                            step_5.set(step_5.get().wrapping_add(1));
+                            counter_3.advance(m);
                             if !repeat_2.again(m) {
                                 break;
                             }
@@ -318,7 +313,7 @@ impl walk {
                         break 'block_0;
                     }
                     let last = ::raydsl::__private::Var::<_>::declare(m, "last");
-                    let branch_19 = ::raydsl::__private::Branch::new(
+                    let branch_18 = ::raydsl::__private::Branch::new(
                         m,
                         ::raydsl::__private::OpCompare::compare(
                             m,
@@ -327,7 +322,7 @@ impl walk {
                             { x },
                         ),
                     );
-                    if branch_19.then_small(m) {
+                    if branch_18.then_small(m) {
                         ::raydsl::__private::here(
                             m,
                             "if",
@@ -342,6 +337,7 @@ impl walk {
                                     _,
                                 >(
                                     m,
+                                    "value",
                                     false,
                                     ::raydsl::__private::OpCompare::compare(
                                         m,
@@ -367,7 +363,7 @@ impl walk {
                             }
                         }
                     }
-                    if branch_19.otherwise_small(m) {
+                    if branch_18.otherwise_small(m) {
                         ::raydsl::__private::here(
                             m,
                             "else",
@@ -381,7 +377,7 @@ impl walk {
                             }
                         }
                     }
-                    branch_19.end(m);
+                    branch_18.end(m);
                     ret.give(
                         m,
                         ::raydsl::__private::Coerce::coerce(

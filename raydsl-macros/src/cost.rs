@@ -12,7 +12,7 @@ use crate::ops;
 const SMALL_ARM: u32 = 5;
 
 /// A value that costs no more is there whether or not it is taken.
-const SMALL_VALUE: u32 = 9;
+const SMALL_VALUE: u32 = 16;
 
 /// An integer division, a call, a loop: never small.
 const LARGE: u32 = 1000;

@@ -6,8 +6,8 @@ pub use crate::machine::{
     Branch, Capture, Coerce, Compare, Const, Field, HostMethod, Inferred, KernelFn, KernelInfo,
     LaneMachine, Leaves, Loop, Machine, Margin, Method, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor,
     OpCast, OpCompare, OpDiv, OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Parameter,
-    Recorder, Resource, Ret, Schema, Twin, Type, Value, Var, Varying, call_on_element, is_mut,
-    name,
+    Recorder, Resource, Ret, Schema, Steps, Stop, Twin, Type, Value, Var, Varying, call_on_element,
+    decrement, increment, is_mut, name,
 };
 
 /// Traits of associated functions.

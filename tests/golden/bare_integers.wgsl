@@ -34,21 +34,21 @@ fn saturate_u32(x: f32) -> u32 {
 fn bare_integers(a: f32, n: u32) -> u32 {
     var inner: u32;
     if (a > 0.0f) {
-        let value_1_1 = n % 4u;
-        inner = select(select(3u, 2u, (value_1_1 == 1u)), 1u, (value_1_1 == 0u));
+        let value_1 = n % 4u;
+        inner = select(select(3u, 2u, (value_1 == 1u)), 1u, (value_1 == 0u));
     } else {
         inner = n / 3u;
     }
-    var value_0: f32;
-    var value_1: u32;
+    var parts_2_0: f32;
+    var parts_2_1: u32;
     if (a > 1.0f) {
-        value_0 = a;
-        value_1 = 1u;
+        parts_2_0 = a;
+        parts_2_1 = 1u;
     } else {
-        value_0 = -a;
-        value_1 = 2u;
+        parts_2_0 = -a;
+        parts_2_1 = 2u;
     }
-    if (value_0 > 50.0f) {
+    if (parts_2_0 > 50.0f) {
         return select(8u, 7u, (n == 0u));
     }
     let t = select(2u, 1u, (n > 9u));
@@ -56,7 +56,7 @@ fn bare_integers(a: f32, n: u32) -> u32 {
     if (a > 1.0f) {
         last = select(inner, 1u, (a > 3.0f));
     } else {
-        last = select(t, value_1, (saturate_u32(abs(value_0) * params.lit_0_01) % 2u >= 1u));
+        last = select(t, parts_2_1, (saturate_u32(abs(parts_2_0) * params.lit_0_01) % 2u >= 1u));
     }
     return last;
 }

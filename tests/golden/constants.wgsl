@@ -27,13 +27,13 @@ struct Job {
 
 fn constants(x: f32) -> f32 {
     let v = vec3<f32>(x, params.lit_0_625, params.lit_3_5) + vec3<f32>(params.lit_1_0, params.lit_0_0, params.lit_0_0);
-    var value: f32;
+    var result: f32;
     if (x > 3.5f) {
-        value = v.x * params.lit_0_625;
+        result = v.x * params.lit_0_625;
     } else {
-        value = select(x, 340282346638528859811704183484516925440.0f, 340282346638528859811704183484516925440.0f < x) + v.z * params.lit_3_1415927;
+        result = select(x, 340282346638528859811704183484516925440.0f, 340282346638528859811704183484516925440.0f < x) + v.z * params.lit_3_1415927;
     }
-    return value;
+    return result;
 }
 
 fn element(input: Tuple) -> f32 {

@@ -63,16 +63,16 @@ fn Couple_length(self_: Couple) -> f32 {
 fn effects_in_arms(a: f32, n: u32) -> f32 {
     var s_x: f32 = a;
     var s_y: f32 = 1.0f;
-    var value: f32;
+    var r: f32;
     if (a > 2.0f) {
         let s_x_1 = s_x;
         let s_y_1 = s_y;
         let t = Couple_dot(Couple(s_x_1, s_y_1));
         s_x = t._1.x;
         s_y = t._1.y;
-        value = t._0;
+        r = t._0;
     } else {
-        value = 0.0f;
+        r = 0.0f;
     }
     var steps: u32;
     if (n % 50u > 0u) {
@@ -80,7 +80,7 @@ fn effects_in_arms(a: f32, n: u32) -> f32 {
     } else {
         steps = 0u;
     }
-    var sum: f32 = value + s_x + f32(steps) + Couple_length(Couple(s_x, s_y));
+    var sum: f32 = r + s_x + f32(steps) + Couple_length(Couple(s_x, s_y));
     if (a < 0.0f) {
         let s_x_2 = s_x;
         let s_y_2 = s_y;

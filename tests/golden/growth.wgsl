@@ -227,16 +227,16 @@ fn pow_(x: f32, y: f32) -> f32 {
     let t_4 = select(t_3, -1.0f, t_3 < -1.0f);
     let r = select(t_4, 1.0f, 1.0f < t_4);
     let size = scaled(exp2_near_zero(r), saturate_i32(n));
-    var value: f32;
+    var power: f32;
     if (both) {
-        value = bitcast<f32>((bitcast<u32>(size) & 2147483647u) | (bitcast<u32>(x) & 2147483648u));
+        power = bitcast<f32>((bitcast<u32>(size) & 2147483647u) | (bitcast<u32>(x) & 2147483648u));
     } else {
-        value = size;
+        power = size;
     }
     let is_usual = a > 0.0f && a <= 340282346638528859811704183484516925440.0f && b <= 340282346638528859811704183484516925440.0f && (x > 0.0f || is_whole);
     var result: f32;
     if (is_usual) {
-        result = value;
+        result = power;
     } else {
         result = pow_at_the_ends(x, y, both);
     }

@@ -78,19 +78,19 @@ fn few_at(i: u32) -> Triangle {
 }
 
 fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
-    var value: vec3<f32>;
+    var result: vec3<f32>;
     if (k == 0u) {
-        value = v.yzx;
+        result = v.yzx;
     } else {
-        var value_1: vec3<f32>;
+        var result_1: vec3<f32>;
         if (k == 1u) {
-            value_1 = v.zxy;
+            result_1 = v.zxy;
         } else {
-            value_1 = v;
+            result_1 = v;
         }
-        value = value_1;
+        result = result_1;
     }
-    return value;
+    return result;
 }
 
 fn Triangle_intersect(self_: Triangle, ray: Ray) -> Hit {

@@ -80,23 +80,23 @@ fn struct_branches(a: Pair, x: f32) -> Pair {
     var p_weight: i32 = a.weight;
     var i: u32 = 0u;
     for (; i < 3u; i = i + 1u) {
-        var value_position: vec3<f32>;
-        var value_mass: f32;
-        var value_alive: bool;
-        var value_hits: u32;
+        var chosen_position: vec3<f32>;
+        var chosen_mass: f32;
+        var chosen_alive: bool;
+        var chosen_hits: u32;
         if (x > f32(i)) {
-            value_position = p_first_position;
-            value_mass = p_first_mass;
-            value_alive = p_first_alive;
-            value_hits = p_first_hits;
+            chosen_position = p_first_position;
+            chosen_mass = p_first_mass;
+            chosen_alive = p_first_alive;
+            chosen_hits = p_first_hits;
         } else {
-            value_position = p_second_position;
-            value_mass = p_second_mass;
-            value_alive = p_second_alive;
-            value_hits = p_second_hits;
+            chosen_position = p_second_position;
+            chosen_mass = p_second_mass;
+            chosen_alive = p_second_alive;
+            chosen_hits = p_second_hits;
         }
-        if (value_mass > 5.0f) {
-            let t = Particle_moved(Particle(value_position, value_mass, value_alive, value_hits), vec3<f32>(1.0f, 1.0f, x));
+        if (chosen_mass > 5.0f) {
+            let t = Particle_moved(Particle(chosen_position, chosen_mass, chosen_alive, chosen_hits), vec3<f32>(1.0f, 1.0f, x));
             p_second_position = t.position;
             p_second_mass = t.mass;
             p_second_alive = t.alive;

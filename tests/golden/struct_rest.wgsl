@@ -46,22 +46,22 @@ struct Job {
 
 fn struct_rest(p: Particle, x: f32) -> Particle {
     let t = p.hits | 1u;
-    var value_position: vec3<f32>;
-    var value_mass: f32;
-    var value_alive: bool;
-    var value_hits: u32;
+    var result_position: vec3<f32>;
+    var result_mass: f32;
+    var result_alive: bool;
+    var result_hits: u32;
     if (x > 0.0f) {
-        value_position = p.position * x;
-        value_mass = x;
-        value_alive = false;
-        value_hits = t;
+        result_position = p.position * x;
+        result_mass = x;
+        result_alive = false;
+        result_hits = t;
     } else {
-        value_position = p.position;
-        value_mass = x;
-        value_alive = false;
-        value_hits = t;
+        result_position = p.position;
+        result_mass = x;
+        result_alive = false;
+        result_hits = t;
     }
-    return Particle(value_position, value_mass, value_alive, value_hits);
+    return Particle(result_position, result_mass, result_alive, result_hits);
 }
 
 fn element(input: Tuple) -> Particle {

@@ -28,17 +28,17 @@ fn tuples(x: f32, n: u32) -> f32 {
     let b = n + 1u;
     let d = f32(b);
     var c: f32 = a - params.lit_1_0;
-    var value_0: f32;
-    var value_1: u32;
+    var pair_0: f32;
+    var pair_1: u32;
     if (x > 0.0f) {
-        value_0 = c;
-        value_1 = 1u;
+        pair_0 = c;
+        pair_1 = 1u;
     } else {
-        value_0 = d;
-        value_1 = 2u;
+        pair_0 = d;
+        pair_1 = 2u;
     }
-    var swapped_0: u32 = value_1;
-    var swapped_1: f32 = value_0;
+    var swapped_0: u32 = pair_1;
+    var swapped_1: f32 = pair_0;
     swapped_0 = swapped_0 + b;
     c = c + swapped_1;
     return c * a + f32(swapped_0);

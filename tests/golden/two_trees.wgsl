@@ -241,19 +241,19 @@ fn points_closest_hit(ray: Ray) -> Hit {
 }
 
 fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
-    var value: vec3<f32>;
+    var result: vec3<f32>;
     if (k == 0u) {
-        value = v.yzx;
+        result = v.yzx;
     } else {
-        var value_1: vec3<f32>;
+        var result_1: vec3<f32>;
         if (k == 1u) {
-            value_1 = v.zxy;
+            result_1 = v.zxy;
         } else {
-            value_1 = v;
+            result_1 = v;
         }
-        value = value_1;
+        result = result_1;
     }
-    return value;
+    return result;
 }
 
 fn Triangle_intersect(self_: Triangle, ray: Ray) -> Hit {
@@ -378,25 +378,25 @@ fn walls_closest_hit(ray: Ray) -> Hit {
 fn kernel(ray: Ray) -> Hit {
     let a = points_closest_hit(ray);
     let b = walls_closest_hit(ray);
-    var value_is_hit: bool;
-    var value_t: f32;
-    var value_prim_id: u32;
-    var value_u: f32;
-    var value_v: f32;
+    var result_is_hit: bool;
+    var result_t: f32;
+    var result_prim_id: u32;
+    var result_u: f32;
+    var result_v: f32;
     if (b.is_hit && (!a.is_hit || b.t < a.t)) {
-        value_is_hit = b.is_hit;
-        value_t = b.t;
-        value_prim_id = b.prim_id;
-        value_u = b.u;
-        value_v = b.v;
+        result_is_hit = b.is_hit;
+        result_t = b.t;
+        result_prim_id = b.prim_id;
+        result_u = b.u;
+        result_v = b.v;
     } else {
-        value_is_hit = a.is_hit;
-        value_t = a.t;
-        value_prim_id = a.prim_id;
-        value_u = a.u;
-        value_v = a.v;
+        result_is_hit = a.is_hit;
+        result_t = a.t;
+        result_prim_id = a.prim_id;
+        result_u = a.u;
+        result_v = a.v;
     }
-    return Hit(value_is_hit, value_t, value_prim_id, value_u, value_v);
+    return Hit(result_is_hit, result_t, result_prim_id, result_u, result_v);
 }
 
 fn element(input: Tuple) -> Hit {

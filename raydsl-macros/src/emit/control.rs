@@ -267,34 +267,36 @@ impl Emitter<'_> {
             (now.clone(), quote!(#stop))
         };
         let (first, last) = if range.reversed { (&stop, &begin) } else { (&begin, &stop) };
-        let next = word(if range.reversed { "decrement" } else { "increment" });
         let one_down = range.reversed && !range.inclusive;
         let item = if one_down { quote!(#p::decrement(#m, #now)) } else { now.clone() };
-        // The last number of an inclusive range may be the last of its type.
+        // All rays in the loop have the same counter if they began with the same number.
+        let from = range.start.kind.int_tokens().filter(|_| !range.reversed);
+        let is_in_step = from.is_some();
+        let (count, advance) = if is_in_step {
+            (quote!(#p::Steps::new(#m, #text, #first, #from as u32)), quote!(#counter.advance(#m)))
+        } else {
+            let next = word(if range.reversed { "decrement" } else { "increment" });
+            (quote!(#p::Var::new(#m, #text, #first)), quote!(#counter.set(#m, #p::#next(#m, #now))))
+        };
         let (declare, test, note) = if range.inclusive {
+            // The last number may be the last of its type.
             (
                 quote!(let #done = #p::Var::new(#m, "done", #p::Varying::varying(false, #m));),
-                quote!(#p::goes_on(#m, #done.get(#m), #low, #high)),
+                quote!(#ident.test(#m, #p::goes_on(#m, #done.get(#m), #low, #high))),
                 quote!(#done.set(#m, #p::equal(#m, #now, #last));),
             )
-        } else {
-            (quote!(), quote!(#p::less(#m, #low, #high)), quote!())
-        };
-        self.scopes.push(HashMap::new());
-        // All rays in the loop have the same counter if they began with the same number.
-        let in_step = matches!(range.start.kind, Kind::Int { .. }) && !range.reversed;
-        let step = self.fresh("step");
-        let (count, round) = if in_step {
-            let from = range.start.kind.int_tokens();
+        } else if is_in_step {
             (
-                quote!(let #step = ::core::cell::Cell::new(#from as u32);),
-                quote!(#step.set(#step.get().wrapping_add(1));),
+                quote!(let #stop = #p::Stop::new(#m, #stop);),
+                quote!(#stop.is_after(#m, &#ident, &#counter)),
+                quote!(),
             )
         } else {
-            (quote!(), quote!())
+            (quote!(), quote!(#ident.test(#m, #p::less(#m, #low, #high))), quote!())
         };
+        self.scopes.push(HashMap::new());
         let bound = var.map(|v| {
-            self.bind_counter(v, in_step.then_some(step));
+            self.bind_counter(v, is_in_step.then(|| counter.clone()));
             quote!(let #v = #item;)
         });
         self.loops.push(Loop { label, ident: ident.clone(), dest: Dest::None });
@@ -310,19 +312,17 @@ impl Emitter<'_> {
         };
         quote! {{
             let (#begin, #stop) = #bounds;
-            let #counter = #p::Var::new(#m, #text, #first);
+            let #counter = #count;
             #declare
-            #count
             let #ident = #p::Loop::new(#m);
             loop {
-                if !#ident.test(#m, #test) { break; }
+                if !#test { break; }
                 #here
                 #bound
                 #body
                 #ident.continuing(#m);
                 #note
-                #counter.set(#m, #p::#next(#m, #now));
-                #round
+                #advance;
                 if !#ident.again(#m) { break; }
             }
             #ident.end(#m);

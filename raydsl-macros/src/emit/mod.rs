@@ -41,7 +41,7 @@ struct Local {
     generic: Option<Ident>,
     /// Whether it is a `&mut` of the source, or a part of one, under another name.
     alias: bool,
-    /// For a counter that all rays have in step: where its value as one number is.
+    /// For a counter that all rays have in step: the one that it is a value of.
     step: Option<Ident>,
 }
 

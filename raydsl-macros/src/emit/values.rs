@@ -77,7 +77,7 @@ impl Emitter<'_> {
     fn in_slot(&mut self, e: &Expr, name: &str, ty: &TokenStream, slot: SlotType) -> TokenStream {
         let (p, m) = (private(), own("m"));
         if e.is_selection() {
-            return self.selection(e, ty, slot);
+            return self.selection(e, name, ty, slot);
         }
         let var = self.fresh("value");
         let code = self.into(e, &Dest::Slot { var: var.clone(), ty: slot });
@@ -89,14 +89,14 @@ impl Emitter<'_> {
     }
 
     /// An `if` that only chooses between small values: both are there, one is taken.
-    fn selection(&mut self, e: &Expr, ty: &TokenStream, slot: SlotType) -> TokenStream {
+    fn selection(&mut self, e: &Expr, name: &str, ty: &TokenStream, slot: SlotType) -> TokenStream {
         let (p, m) = (private(), own("m"));
         let inner = match &e.kind {
             Kind::If { c, then, otherwise: Some(other), .. } => {
                 then.free_value().map(|then| (&**c, then, &**other))
             }
             Kind::Block(b) => match b.free_value() {
-                Some(inner) => return self.selection(inner, ty, slot),
+                Some(inner) => return self.selection(inner, name, ty, slot),
                 None => None,
             },
             _ => None,
@@ -112,11 +112,13 @@ impl Emitter<'_> {
         };
         let calls = then.may_act() || other.may_act();
         let c = self.host_value(c).unwrap_or_else(|| self.value(c));
-        let (then, other) = (self.selection(then, ty, slot), self.selection(other, ty, slot));
+        let (then, other) =
+            (self.selection(then, name, ty, slot), self.selection(other, name, ty, slot));
         let (seen, others) = (self.mentioned_in(&then), self.mentioned_in(&other));
         quote! {
             #p::choose::<_, #ty, _>(
                 #m,
+                #name,
                 #calls,
                 #c,
                 #[inline(always)] || { #(let _ = &#seen;)* #then },
@@ -247,7 +249,7 @@ impl Emitter<'_> {
         match &e.kind {
             Kind::Name(name) => {
                 let step = self.find(name)?.step.as_ref()?;
-                Some(quote!(#step.get()))
+                Some(quote!(#step.bits()))
             }
             // By way of a float the number might be another.
             Kind::Cast { value, ty } if ty.to_string() != "f32" => self.in_step(value),
@@ -321,7 +323,7 @@ impl Emitter<'_> {
         let literal = Expr { kind: Kind::Bool(!and), span };
         let (then, other) = if and { (b, &literal) } else { (&literal, b) };
         let choice = Kind::If {
-            coherent: true,
+            coherent: false,
             c: Box::new(a.clone()),
             then: block(then),
             otherwise: Some(Box::new(Expr { kind: Kind::Block(block(other)), span })),

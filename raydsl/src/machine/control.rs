@@ -101,10 +101,12 @@ pub trait Condition<M: Machine>: Copy {
     fn otherwise_small(m: &M, state: &Self::State) -> bool;
     /// Joins the arms.
     fn end(m: &M, state: Self::State);
-    /// One of two values; `calls` says that functions are called for them, whatever those do.
+    /// One of two values, for a variable of that name; `calls` says that functions are called for
+    /// them, whatever those do.
     fn choose<V: Value<M>>(
         self,
         m: &M,
+        name: &'static str,
         calls: bool,
         a: impl FnOnce() -> V,
         b: impl FnOnce() -> V,
@@ -151,11 +153,12 @@ impl<M: Machine> Condition<M> for B<M> {
     fn choose<V: Value<M>>(
         self,
         m: &M,
+        name: &'static str,
         calls: bool,
         a: impl FnOnce() -> V,
         b: impl FnOnce() -> V,
     ) -> V {
-        m.choose(calls, self, a, b)
+        m.choose(name, calls, self, a, b)
     }
 
     #[inline(always)]
@@ -200,6 +203,7 @@ impl<M: Machine> Condition<M> for bool {
     fn choose<V: Value<M>>(
         self,
         _: &M,
+        _: &'static str,
         _: bool,
         a: impl FnOnce() -> V,
         b: impl FnOnce() -> V,

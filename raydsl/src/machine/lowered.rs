@@ -81,12 +81,13 @@ pub fn guarded<M: Machine, C: Coerce<M, B<M>>, R>(
 #[inline(always)]
 pub fn choose<M: Machine, V: Value<M>, C: Condition<M>>(
     m: &M,
+    name: &'static str,
     calls: bool,
     c: C,
     a: impl FnOnce() -> V,
     b: impl FnOnce() -> V,
 ) -> V {
-    c.choose(m, calls, a, b)
+    c.choose(m, name, calls, a, b)
 }
 
 /// The bounds of a `for`.
@@ -143,55 +144,3 @@ pub fn element_in_step<M: Machine, A: Indexed<M>, I: Index<M>>(
 pub fn at<M: Machine, A: Indexed<M>>(m: &M, a: A, i: usize) -> A::Element {
     a.at(m, i)
 }
-
-/// The next value of a counter.
-#[inline(always)]
-pub fn increment<M: Machine, C: Counter<M>>(m: &M, a: C) -> C {
-    a.next(m)
-}
-
-/// The value of a counter before this one.
-#[inline(always)]
-pub fn decrement<M: Machine, C: Counter<M>>(m: &M, a: C) -> C {
-    a.previous(m)
-}
-
-/// The type of a counter.
-pub trait Counter<M: Machine> {
-    /// One more; the bound stops it before it overflows.
-    fn next(self, m: &M) -> Self;
-    /// One less.
-    fn previous(self, m: &M) -> Self;
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine> Counter<M> for I<M> {
-    #[inline(always)]
-    fn next(self, m: &M) -> Self {
-        I(m.i32_binary(super::IntBinary::WrappingAdd, self.0, m.i32(1)))
-    }
-    #[inline(always)]
-    fn previous(self, m: &M) -> Self {
-        I(m.i32_binary(super::IntBinary::WrappingSub, self.0, m.i32(1)))
-    }
-}
-
-macro_rules! unsigned_counter {
-    ($($t:ident),+) => {
-        $(
-            #[diagnostic::do_not_recommend]
-            impl<M: Machine> Counter<M> for $t<M> {
-                #[inline(always)]
-                fn next(self, m: &M) -> Self {
-                    $t(m.u32_binary(super::IntBinary::WrappingAdd, self.0, m.u32(1)))
-                }
-                #[inline(always)]
-                fn previous(self, m: &M) -> Self {
-                    $t(m.u32_binary(super::IntBinary::WrappingSub, self.0, m.u32(1)))
-                }
-            }
-        )+
-    };
-}
-
-unsigned_counter!(U, Usize);

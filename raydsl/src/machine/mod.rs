@@ -17,6 +17,7 @@ mod call;
 mod capture;
 mod control;
 mod counted;
+mod counter;
 pub(crate) mod functions;
 mod gang;
 pub mod generic;
@@ -44,6 +45,7 @@ pub use capture::{Capture, Parameter, Resource};
 pub use control::{Branch, Condition, Loop, Ret, Var};
 pub(crate) use counted::{Count, count};
 pub use counted::{Counted, Place};
+pub use counter::{Counter, Steps, Stop, decrement, increment};
 pub use gang::Gang;
 pub(crate) use lanes::{Entered, fill};
 pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
@@ -304,17 +306,19 @@ pub trait Machine: Sized + 'static {
     fn branch_end(&self, t: Self::Branch);
 
     /// `a()` in the lanes that have `c`, `b()` in the others. Without `calls` neither has an
-    /// effect; with them each is evaluated for its lanes only.
+    /// effect; with them each is evaluated for its lanes only, into a variable
+    /// of that name.
     #[inline(always)]
     fn choose<V: Value<Self>>(
         &self,
+        name: &'static str,
         calls: bool,
         c: B<Self>,
         a: impl FnOnce() -> V,
         b: impl FnOnce() -> V,
     ) -> V {
         if calls {
-            let value = Var::declare(self, "value");
+            let value = Var::declare(self, name);
             let branch = Branch::new(self, c);
             if branch.then(self) {
                 value.set(self, a());
@@ -348,6 +352,11 @@ pub trait Machine: Sized + 'static {
     fn alive(&self) -> bool;
     /// Whether any running lane has `c`; the recorder says yes.
     fn any(&self, c: Self::Bool) -> bool;
+    /// The number that all lanes have, if it is quickly found.
+    #[inline(always)]
+    fn u32_same(&self, _a: &Self::U32) -> Option<u32> {
+        None
+    }
 
     /// Says where in the source the running lanes are: in an arm of an `if`, in a round of a loop.
     #[inline(always)]

@@ -311,6 +311,7 @@ impl<L: Lanes> Machine for Packet<L> {
     #[inline(always)]
     fn choose<V: Value<Self>>(
         &self,
+        _: &'static str,
         calls: bool,
         c: B<Self>,
         a: impl FnOnce() -> V,
@@ -378,6 +379,12 @@ impl<L: Lanes> Machine for Packet<L> {
     #[inline(always)]
     fn any(&self, c: L::Mask) -> bool {
         self.lanes.any(self.and(self.active.get(), c))
+    }
+    #[inline(always)]
+    fn u32_same(&self, a: &L::U32) -> Option<u32> {
+        let first = L::u32_lane(a, 0);
+        let other = self.lanes.u32_compare(Compare::Ne, *a, self.lanes.u32(first));
+        (!self.lanes.any(other)).then_some(first)
     }
     #[inline(always)]
     fn check_index(&self, index: &L::U32, len: u32) {

@@ -292,6 +292,7 @@ impl Machine for Scalar {
     #[inline(always)]
     fn choose<V: Value<Self>>(
         &self,
+        _: &'static str,
         _: bool,
         c: B<Self>,
         a: impl FnOnce() -> V,

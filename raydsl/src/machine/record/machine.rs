@@ -543,6 +543,7 @@ impl Machine for Recorder {
     }
     fn choose<V: Value<Self>>(
         &self,
+        name: &'static str,
         calls: bool,
         c: B<Self>,
         a: impl FnOnce() -> V,
@@ -556,7 +557,7 @@ impl Machine for Recorder {
             (None, schema)
                 if calls || matches!(schema, Schema::Struct { .. } | Schema::Array { .. }) =>
             {
-                let value = Var::declare(self, "value");
+                let value = Var::declare(self, name);
                 let branch = Branch::new(self, c);
                 branch.then(self);
                 value.set(self, a());
