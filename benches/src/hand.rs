@@ -10,7 +10,7 @@ use raydsl::prelude::*;
 use crate::scenes::ColorSphere;
 
 /// A primitive with a test written by hand.
-pub trait ByHand: Primitive {
+pub trait ByHand: Primitive<Hit = Hit> {
     /// What depends on the ray alone.
     type Prepared;
     /// Computes it.

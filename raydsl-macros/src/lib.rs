@@ -163,6 +163,15 @@ pub fn derive_type(input: TokenStream) -> TokenStream {
     }
 }
 
+/// Lets `intersect` of a primitive give a struct with a `Hit` in it.
+#[proc_macro_derive(HitRecord)]
+pub fn derive_hit_record(input: TokenStream) -> TokenStream {
+    match syn::parse::<syn::DeriveInput>(input) {
+        Ok(item) => twin::hit_record(&item).into(),
+        Err(e) => e.into_compile_error().into(),
+    }
+}
+
 /// Makes a `#[test]` of each variant from one function of a `Variant`.
 ///
 /// `fn agrees(variant: Variant)` gives `agrees_scalar`, `agrees_packet4`, `agrees_packet8`,

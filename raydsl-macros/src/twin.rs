@@ -1,6 +1,7 @@
 //! The twin of a struct: what stands for its values on a machine.
 
 mod enumeration;
+mod record;
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -9,6 +10,8 @@ use syn::spanned::Spanned;
 use crate::diag::Errors;
 use crate::generics::Generics;
 use crate::parse;
+
+pub(crate) use record::hit_record;
 
 fn private() -> TokenStream {
     quote!(::raydsl::__private)

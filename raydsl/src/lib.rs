@@ -19,6 +19,7 @@ pub mod testing;
 #[doc(hidden)]
 pub mod __private;
 
+pub use geometry::HitRecord;
 pub use machine::Type;
 /// One body, a test for each variant.
 ///
@@ -53,6 +54,6 @@ pub use raydsl_macros::variant_test;
 /// # raydsl::testing::assert_valid_wgsl::<twice>();
 /// ```
 pub use raydsl_macros::wgsl_test;
-pub use raydsl_macros::{Type, primitive};
+pub use raydsl_macros::{HitRecord, Type, primitive};
 /// `#[kernel]` on a function or an impl; the closure macro `kernel!` is in the [`prelude`].
 pub use raydsl_macros::{kernel, kernels};

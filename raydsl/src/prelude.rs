@@ -28,5 +28,5 @@ pub use crate::math::elementary::{
 pub use crate::math::{Unorm8, Unorm16, Unorm32};
 pub use crate::render::{Image, Scheduler, Shaded, SimpleScheduler, TiledScheduler};
 pub use crate::report::compare;
-pub use crate::{Type, primitive};
+pub use crate::{HitRecord, Type, primitive};
 pub use raydsl_macros::kernel_closure as kernel;

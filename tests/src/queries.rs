@@ -2,7 +2,9 @@
 
 use raydsl::bvh::On;
 use raydsl::machine::{Capture, Lanes, Machine, Packet, Scalar, Type};
-use raydsl::prelude::{Bvh, Hit, Kernel, Primitive, Ray, Slice, Triangle, Variant, kernel};
+use raydsl::prelude::{
+    Bvh, Hit, HitRecord, Kernel, Primitive, Ray, Slice, Triangle, Variant, kernel,
+};
 
 use crate::levels::{LevelTask, each_level, gangs, widest_level};
 use crate::scenes::ColorSphere;
@@ -51,7 +53,7 @@ pub fn scalar_answers<P: Primitive>(view: On<'_, P>, rays: Vec<Ray>) -> Answers 
     use raydsl::bvh::traverse::{any_hit, closest_hit};
     let mut closest = vec![Hit::miss(); rays.len()];
     fill(&mut closest, |first, part| {
-        part.iter_mut().zip(&rays[first..]).for_each(|(h, r)| *h = closest_hit(&view, *r));
+        part.iter_mut().zip(&rays[first..]).for_each(|(h, r)| *h = closest_hit(&view, *r).hit());
     });
     let mut any = vec![false; rays.len()];
     fill(&mut any, |first, part| {

@@ -7,40 +7,40 @@ use syn::spanned::Spanned;
 use super::{kernel_impl, private};
 use crate::diag::Errors;
 
+/// What runs on the host alone, when a tree is built.
+const ON_HOST: [&str; 2] = ["get_bounds", "split_primitive"];
+
+const INTERSECT: &str = "fn intersect(&self, ray: Ray) -> Hit";
+const GET_BOUNDS: &str = "fn get_bounds(&self) -> Aabb";
+const SPLIT_PRIMITIVE: &str = "fn split_primitive(&self, axis: usize, at: f32) -> (Aabb, Aabb)";
+
 pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
     let mut errors = Errors::default();
-    let lifted = kernel_impl(item, &["get_bounds", "split_primitive"], &mut errors);
-    let p = private();
-    let self_ty = &item.self_ty;
-    let has = |name: &str| {
-        item.items.iter().any(|i| matches!(i, syn::ImplItem::Fn(f) if f.sig.ident == name))
-    };
-    for (name, signature) in [
-        ("intersect", "fn intersect(&self, ray: Ray) -> Hit"),
-        ("get_bounds", "fn get_bounds(&self) -> Aabb"),
-    ] {
-        if !has(name) {
-            errors.at(
-                self_ty.span(),
-                format!("the primitive has no `{name}`"),
-                &format!("add `{signature}` to this impl"),
-            );
-        }
-    }
-    let slack =
-        item.items.iter().any(|i| matches!(i, syn::ImplItem::Const(c) if c.ident == "SLACK"));
-    let slack = slack.then(|| quote!(const SLACK: f32 = <#self_ty>::SLACK;));
+    let parts = Parts::of(item, &mut errors);
+    let lifted = kernel_impl(item, &ON_HOST, &mut errors);
     if !errors.is_empty() {
         let errors = errors.into_tokens();
         return quote!(#item #errors);
     }
+    let p = private();
+    let self_ty = &item.self_ty;
+    let slack = parts.has_slack.then(|| quote!(const SLACK: f32 = <#self_ty>::SLACK;));
+    let record = parts.record.map_or_else(|| quote!(#p::Hit), |ty| quote!(#ty));
+    let split = parts.splits.then(|| {
+        quote! {
+            fn split_primitive(&self, axis: usize, at: f32) -> (#p::Aabb, #p::Aabb) {
+                <#self_ty>::split_primitive(self, axis, at)
+            }
+        }
+    });
     quote! {
         #lifted
         impl #p::Primitive for #self_ty {
+            type Hit = #record;
             #slack
 
             #[inline(always)]
-            fn intersect(&self, ray: #p::Ray) -> #p::Hit {
+            fn intersect(&self, ray: #p::Ray) -> #record {
                 <#self_ty>::intersect(self, ray)
             }
 
@@ -48,14 +48,100 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
                 <#self_ty>::get_bounds(self)
             }
 
+            #split
+
             #[inline(always)]
             fn intersect_on<__M: #p::Machine>(
                 m: &__M,
                 prim: <Self as #p::Type>::On<__M>,
                 ray: #p::RayOn<__M>,
-            ) -> #p::HitOn<__M> {
+            ) -> <#record as #p::Type>::On<__M> {
                 <#self_ty>::intersect_on(m, prim, ray)
             }
         }
+    }
+}
+
+/// What an `impl` says of a primitive.
+struct Parts<'a> {
+    /// What `intersect` gives.
+    record: Option<&'a syn::Type>,
+    splits: bool,
+    has_slack: bool,
+}
+
+impl<'a> Parts<'a> {
+    /// One error for each thing that is missing or of another form.
+    fn of(item: &'a syn::ItemImpl, errors: &mut Errors) -> Self {
+        check_head(item, errors);
+        let find = |name: &str| {
+            item.items.iter().find_map(|i| match i {
+                syn::ImplItem::Fn(f) if f.sig.ident == name => Some(&f.sig),
+                _ => None,
+            })
+        };
+        let required = |name: &str, signature: &str, errors: &mut Errors| {
+            let found = find(name);
+            if found.is_none() {
+                errors.at(
+                    item.self_ty.span(),
+                    format!("the primitive has no `{name}`"),
+                    &format!("add `{signature}` to this impl"),
+                );
+            }
+            found
+        };
+        let intersect = required("intersect", INTERSECT, errors);
+        let get_bounds = required("get_bounds", GET_BOUNDS, errors);
+        let split = find("split_primitive");
+        for (sig, parameters, signature) in
+            [(intersect, 1, INTERSECT), (get_bounds, 0, GET_BOUNDS), (split, 2, SPLIT_PRIMITIVE)]
+        {
+            if let Some(sig) = sig {
+                check_signature(sig, parameters, signature, errors);
+            }
+        }
+        let has_slack =
+            item.items.iter().any(|i| matches!(i, syn::ImplItem::Const(c) if c.ident == "SLACK"));
+        let record = intersect.and_then(|sig| match &sig.output {
+            syn::ReturnType::Type(_, ty) => Some(&**ty),
+            syn::ReturnType::Default => None,
+        });
+        Self { record, splits: split.is_some(), has_slack }
+    }
+}
+
+/// A primitive is a struct without parameters, in an impl of its own.
+fn check_head(item: &syn::ItemImpl, errors: &mut Errors) {
+    if let Some((path, _)) = &item.trait_ {
+        errors.at(
+            path.span(),
+            "`#[primitive]` stands on an impl of the struct, not of a trait",
+            "write `#[primitive] impl Name { .. }`; on the trait's impl write `#[kernel]`",
+        );
+    }
+    if let Some(g) = item.generics.params.first() {
+        errors.at(g.span(), "a primitive cannot be generic", "write a struct for each type");
+    }
+}
+
+/// `&self`, so many parameters more, and a result; rustc tells the types.
+fn check_signature(sig: &syn::Signature, parameters: usize, signature: &str, errors: &mut Errors) {
+    let is_ref =
+        matches!(sig.receiver().map(|r| &r.kind), Some(syn::ReceiverKind::Reference(_, _, None)));
+    let has_result = matches!(sig.output, syn::ReturnType::Type(..));
+    if !is_ref || sig.inputs.len() != parameters + 1 || !has_result {
+        errors.at(
+            sig.ident.span(),
+            format!("`{}` of a primitive has another signature", sig.ident),
+            &format!("write `{signature}`"),
+        );
+    }
+    if let Some(g) = sig.generics.params.first() {
+        errors.at(
+            g.span(),
+            format!("`{}` of a primitive cannot be generic", sig.ident),
+            &format!("write `{signature}`"),
+        );
     }
 }

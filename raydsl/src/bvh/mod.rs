@@ -24,6 +24,7 @@ pub use node::Node;
 pub use traverse::Cost;
 pub(crate) use view::NODE_SCHEMA;
 pub use view::On;
+pub(crate) use view::closest_on;
 
 use crate::geometry::{Aabb, Hit, Primitive, Ray};
 use crate::machine::{Capture, Machine, Resource, Type, wgsl::BufferKey};
@@ -74,12 +75,12 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     }
 
     /// The least `(t, id)` hit of `ray`.
-    pub fn closest_hit(&self, ray: Ray) -> Hit {
+    pub fn closest_hit(&self, ray: Ray) -> P::Hit {
         traverse::closest_hit(&self.view(), ray)
     }
 
     /// The least `(t, id)` hit of `ray`, and what it cost to find.
-    pub fn closest_hit_with_cost(&self, ray: Ray) -> (Hit, Cost) {
+    pub fn closest_hit_with_cost(&self, ray: Ray) -> (P::Hit, Cost) {
         traverse::closest_hit_with_cost(&self.view(), ray)
     }
 
@@ -92,7 +93,7 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     ///
     /// What one query sees at once it can trace better than one ray after another; the results
     /// are those of [`Bvh::closest_hit`]. Inside a kernel `ray` is a closure of the kernel.
-    pub fn closest_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [Hit; N] {
+    pub fn closest_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [P::Hit; N] {
         core::array::from_fn(|i| self.closest_hit(ray(i as u32)))
     }
 
@@ -228,13 +229,13 @@ impl<M: Machine, P: Type> Capture<M> for Vec<P> {
 /// What a kernel asks of a slice of primitives, without a tree: every primitive is tested.
 ///
 /// With a few dozen primitives this is faster than a tree.
-pub trait Slice<P> {
+pub trait Slice<P: Primitive> {
     /// The least `(t, id)` hit of `ray`.
-    fn closest_hit(&self, ray: Ray) -> Hit;
+    fn closest_hit(&self, ray: Ray) -> P::Hit;
     /// Whether `ray` hits anything.
     fn any_hit(&self, ray: Ray) -> bool;
     /// The least `(t, id)` hit of each of `N` rays.
-    fn closest_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [Hit; N];
+    fn closest_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [P::Hit; N];
     /// Whether each of `N` rays hits anything.
     fn any_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [bool; N];
     /// The primitive that was hit; the first one for a miss.
@@ -242,7 +243,7 @@ pub trait Slice<P> {
 }
 
 impl<P: Primitive> Slice<P> for [P] {
-    fn closest_hit(&self, ray: Ray) -> Hit {
+    fn closest_hit(&self, ray: Ray) -> P::Hit {
         traverse::closest_hit(&On::slice(self), ray)
     }
 
@@ -250,7 +251,7 @@ impl<P: Primitive> Slice<P> for [P] {
         traverse::any_hit(&On::slice(self), ray)
     }
 
-    fn closest_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [Hit; N] {
+    fn closest_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [P::Hit; N] {
         core::array::from_fn(|i| self.closest_hit(ray(i as u32)))
     }
 

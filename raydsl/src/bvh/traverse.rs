@@ -4,7 +4,7 @@ use core::mem::MaybeUninit;
 
 use super::slabs::Slabs;
 use super::{MAX_DEPTH, Node, On};
-use crate::geometry::{Hit, Primitive, Ray};
+use crate::geometry::{Hit, HitRecord, Primitive, Ray};
 
 /// Entries of a traversal's stack: one a level.
 pub(crate) const STACK: usize = MAX_DEPTH + 2;
@@ -85,15 +85,27 @@ impl Count for Cost {
 }
 
 /// The least `(t, id)` hit of `ray` among `prims`.
-pub fn closest_hit<P: Primitive>(prims: &On<'_, P>, ray: Ray) -> Hit {
+pub fn closest_hit<P: Primitive>(prims: &On<'_, P>, ray: Ray) -> P::Hit {
+    complete(prims, ray, nearest(prims, ray))
+}
+
+/// [`closest_hit`] without the rest of the record.
+#[inline(always)]
+pub(crate) fn nearest<P: Primitive>(prims: &On<'_, P>, ray: Ray) -> Hit {
     closest(prims, ray, &mut Uncounted)
 }
 
+/// The record of a hit: traversal carries the hit alone.
+#[inline(always)]
+fn complete<P: Primitive>(prims: &On<'_, P>, ray: Ray, hit: Hit) -> P::Hit {
+    P::Hit::complete(hit, || prims.get(hit.prim_id).intersect(ray))
+}
+
 /// [`closest_hit`], and what it cost.
-pub fn closest_hit_with_cost<P: Primitive>(prims: &On<'_, P>, ray: Ray) -> (Hit, Cost) {
+pub fn closest_hit_with_cost<P: Primitive>(prims: &On<'_, P>, ray: Ray) -> (P::Hit, Cost) {
     let mut cost = Cost::default();
     let hit = closest(prims, ray, &mut cost);
-    (hit, cost)
+    (complete(prims, ray, hit), cost)
 }
 
 #[inline(always)]
@@ -105,7 +117,7 @@ fn closest<P: Primitive>(prims: &On<'_, P>, ray: Ray, count: &mut impl Count) ->
     if !prims.has_tree() {
         for (id, p) in prims.prims.iter().enumerate() {
             count.primitive();
-            let (hit, id) = (p.intersect(ray), id as u32);
+            let (hit, id) = (p.intersect(ray).hit(), id as u32);
             if is_closer(&hit, id, &best, &ray) {
                 best = Hit { prim_id: id, ..hit };
             }
@@ -113,7 +125,7 @@ fn closest<P: Primitive>(prims: &On<'_, P>, ray: Ray, count: &mut impl Count) ->
         return best;
     }
     walk(prims, ray, P::SLACK, count, |id, limit| {
-        let hit = prims.prims[id as usize].intersect(ray);
+        let hit = prims.prims[id as usize].intersect(ray).hit();
         if is_closer(&hit, id, &best, &ray) {
             best = Hit { prim_id: id, ..hit };
             *limit = hit.t + hit.t.abs() * P::SLACK;
@@ -126,7 +138,7 @@ fn closest<P: Primitive>(prims: &On<'_, P>, ray: Ray, count: &mut impl Count) ->
 /// Whether `ray` hits any of `prims`.
 pub fn any_hit<P: Primitive>(prims: &On<'_, P>, ray: Ray) -> bool {
     let accepts = |p: &P| {
-        let hit = p.intersect(ray);
+        let hit = p.intersect(ray).hit();
         hit.is_hit && hit.t >= ray.t_min && hit.t <= ray.t_max
     };
     if !is_finite(&ray) {

@@ -3,7 +3,7 @@
 use super::slabs::{LEAST, ULP};
 use super::traverse::Stack;
 use super::{Node, On};
-use crate::geometry::{HitOn, Primitive, RayOn};
+use crate::geometry::{HitOn, HitRecord, Primitive, RayOn};
 use crate::machine::{
     B, BoolBinary, Compare, Entered, F, F32Binary, F32Unary, Lanes, Packet, Place, U, V3, fill,
 };
@@ -277,7 +277,7 @@ fn meet<L: Lanes, P: Primitive>(
     let hit = m.with_active(
         mask,
         #[inline(always)]
-        || P::intersect_on(m, P::splat(m, prim), *ray),
+        || P::Hit::hit_on(P::intersect_on(m, P::splat(m, prim), *ray)),
     );
     let t = hit.t.0;
     let near = l.f32_compare(Compare::Le, t, best.t);
@@ -338,7 +338,7 @@ fn any_hit_inside<L: Lanes, P: Primitive>(
             let hit = m.with_active(
                 mask,
                 #[inline(always)]
-                || P::intersect_on(m, prim, ray),
+                || P::Hit::hit_on(P::intersect_on(m, prim, ray)),
             );
             found = or(l, found, and(l, mask, accepts(l, &hit, &ray)));
             without(l, mask, found)

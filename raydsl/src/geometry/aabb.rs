@@ -49,6 +49,15 @@ impl Aabb {
         Self::new(self.min.max(other.min), self.max.min(other.max))
     }
 
+    /// The parts below and above the plane `axis = at`, both closed; a part that is not there is
+    /// not valid. A NaN in `at` gives the whole box twice. `axis` is 0, 1 or 2.
+    pub fn split(self, axis: usize, at: f32) -> (Self, Self) {
+        let (mut below, mut above) = (self, self);
+        below.max[axis] = if at < self.max[axis] { at } else { self.max[axis] };
+        above.min[axis] = if at > self.min[axis] { at } else { self.min[axis] };
+        (below, above)
+    }
+
     /// Whether `min <= max` on every axis (false when a bound is NaN).
     pub fn is_valid(self) -> bool {
         self.min.cmple(self.max).all()

@@ -1,5 +1,6 @@
 //! Where a ray meets a primitive.
 
+use crate::machine::{Branch, Machine, Scalar, Value, Var};
 use crate::{Type, kernel};
 
 /// What an intersection found; a miss is data too, with `is_hit == false`.
@@ -28,5 +29,132 @@ impl Hit {
     /// No hit.
     pub const fn miss() -> Self {
         Self::new(false, 0.0)
+    }
+}
+
+/// What `intersect` of a primitive gives: [`Hit`], or a struct of your own that has a `Hit` in it.
+///
+/// `#[derive(HitRecord)]` writes this for a struct with one member of the type `Hit`. Traversal
+/// compares the hits alone; the rest is computed once, for the closest one.
+///
+/// ```
+/// use raydsl::prelude::*;
+///
+/// #[derive(Clone, Copy, Type, HitRecord)]
+/// struct ColorHit {
+///     hit: Hit,
+///     color: Vec3,
+/// }
+///
+/// #[primitive]
+/// struct Ball {
+///     center: Vec3,
+///     radius: f32,
+/// }
+///
+/// #[primitive]
+/// impl Ball {
+///     fn intersect(&self, ray: Ray) -> ColorHit {
+///         let hit = sphere::intersect(ray, self.center, self.radius);
+///         ColorHit { hit, color: vec3(0.5, hit.t, 0.5) }
+///     }
+///     fn get_bounds(&self) -> Aabb {
+///         Aabb::from_sphere(self.center, self.radius)
+///     }
+/// }
+///
+/// let balls = [Ball { center: vec3(0.0, 0.0, 5.0), radius: 1.0 }];
+/// let bvh = Bvh::build(&balls)?;
+/// let found = bvh.closest_hit(Ray::new(Vec3::ZERO, Vec3::Z));
+/// assert!(found.hit.is_hit && found.color == vec3(0.5, 4.0, 0.5));
+/// # Ok::<(), raydsl::bvh::BuildError>(())
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a hit record",
+    label = "`intersect` gives a `Hit`, or a struct that has one in it",
+    note = "write `#[derive(Clone, Copy, Type, HitRecord)]` on a struct with a member `hit: Hit`"
+)]
+pub trait HitRecord: Type {
+    /// The members on the way to the hit, as WGSL names them.
+    #[doc(hidden)]
+    const PATH: &'static [&'static str];
+
+    /// The hit in it.
+    fn hit(&self) -> Hit;
+
+    /// The same record with another hit in it.
+    fn with_hit(self, hit: Hit) -> Self;
+
+    /// The record of `hit`; `again` intersects once more.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn complete(hit: Hit, again: impl FnOnce() -> Self) -> Self {
+        if hit.is_hit { again().with_hit(hit) } else { nothing::<Self>().with_hit(hit) }
+    }
+
+    /// `hit`, lifted.
+    #[doc(hidden)]
+    fn hit_on<M: Machine>(record: Self::On<M>) -> HitOn<M>;
+
+    /// `with_hit`, lifted.
+    #[doc(hidden)]
+    fn with_hit_on<M: Machine>(record: Self::On<M>, hit: HitOn<M>) -> Self::On<M>;
+
+    /// `complete`, lifted.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn complete_on<M: Machine>(
+        m: &M,
+        hit: HitOn<M>,
+        again: impl FnOnce() -> Self::On<M>,
+    ) -> Self::On<M> {
+        let missed = Self::with_hit_on(Value::zero(m), hit);
+        let record = Var::<Self::On<M>>::new(m, "found", missed);
+        let branch = Branch::new(m, hit.is_hit);
+        if branch.then(m) {
+            record.set(m, Self::with_hit_on(again(), hit));
+        }
+        branch.end(m);
+        record.get(m)
+    }
+}
+
+/// A record whose every member is 0.
+fn nothing<R: Type>() -> R {
+    let m = Scalar::default();
+    R::lane::<Scalar>(&Value::zero(&m), 0)
+}
+
+impl HitRecord for Hit {
+    const PATH: &'static [&'static str] = &[];
+
+    #[inline(always)]
+    fn hit(&self) -> Hit {
+        *self
+    }
+
+    #[inline(always)]
+    fn with_hit(self, hit: Hit) -> Self {
+        hit
+    }
+
+    #[inline(always)]
+    fn complete(hit: Hit, _: impl FnOnce() -> Self) -> Self {
+        hit
+    }
+
+    #[inline(always)]
+    fn hit_on<M: Machine>(record: HitOn<M>) -> HitOn<M> {
+        record
+    }
+
+    #[inline(always)]
+    fn with_hit_on<M: Machine>(_: HitOn<M>, hit: HitOn<M>) -> HitOn<M> {
+        hit
+    }
+
+    #[inline(always)]
+    fn complete_on<M: Machine>(_: &M, hit: HitOn<M>, _: impl FnOnce() -> HitOn<M>) -> HitOn<M> {
+        hit
     }
 }

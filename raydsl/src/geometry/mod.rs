@@ -8,7 +8,7 @@ pub mod sphere;
 pub mod triangle;
 
 pub use aabb::Aabb;
-pub use hit::{Hit, HitOn};
+pub use hit::{Hit, HitOn, HitRecord};
 pub use primitive::Primitive;
 pub use ray::{Ray, RayOn};
 pub use triangle::Triangle;

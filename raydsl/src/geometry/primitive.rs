@@ -1,6 +1,6 @@
 //! What makes a type a primitive.
 
-use super::{Aabb, Hit, HitOn, Ray, RayOn};
+use super::{Aabb, HitRecord, Ray, RayOn};
 use crate::machine::{Machine, Type};
 
 /// Something that rays meet; `#[primitive]` writes this from one definition of `intersect`.
@@ -9,6 +9,9 @@ use crate::machine::{Machine, Type};
     note = "write `#[primitive]` on the struct, and on an impl with `intersect` and `get_bounds`"
 )]
 pub trait Primitive: Type + Send + Sync {
+    /// What `intersect` gives: [`Hit`](super::Hit), or a struct of your own with a `Hit` in it.
+    type Hit: HitRecord;
+
     /// How far an accepted hit may lie from the exact one, relative to the distance between the
     /// ray's origin and the farthest corner of the scene: the error of `t`, and by how much the
     /// ray may pass beside [`Primitive::get_bounds`].
@@ -19,12 +22,25 @@ pub trait Primitive: Type + Send + Sync {
 
     /// Where `ray` meets the primitive. It sees the ray's own `t_min` and `t_max` and need not
     /// heed them: traversal compares.
-    fn intersect(&self, ray: Ray) -> Hit;
+    fn intersect(&self, ray: Ray) -> Self::Hit;
 
     /// A box around the whole primitive.
     fn get_bounds(&self) -> Aabb;
 
+    /// Boxes around the parts of the primitive below and above the plane `axis = at`; a box that
+    /// is not valid says that there is no such part. `axis` is 0, 1 or 2.
+    ///
+    /// Builders with spatial splits ask for it. Together the boxes hold the whole primitive. The
+    /// default cuts its bounds, which is right for every shape and tight for boxes.
+    fn split_primitive(&self, axis: usize, at: f32) -> (Aabb, Aabb) {
+        self.get_bounds().split(axis, at)
+    }
+
     /// `intersect`, lifted.
     #[doc(hidden)]
-    fn intersect_on<M: Machine>(m: &M, prim: Self::On<M>, ray: RayOn<M>) -> HitOn<M>;
+    fn intersect_on<M: Machine>(
+        m: &M,
+        prim: Self::On<M>,
+        ray: RayOn<M>,
+    ) -> <Self::Hit as Type>::On<M>;
 }

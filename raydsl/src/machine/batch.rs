@@ -1,8 +1,8 @@
 //! Queries of several rays at once: a closure of the kernel gives ray `i`.
 
-use super::{Coerce, Machine, Method, U, name};
+use super::{Coerce, Machine, Method, Type, U, name};
 use crate::bvh;
-use crate::geometry::{HitOn, Primitive, RayOn};
+use crate::geometry::{Primitive, RayOn};
 use crate::machine::B;
 
 /// A number between `::<` and `>`.
@@ -38,13 +38,13 @@ where
     R: Coerce<M, RayOn<M>>,
     G: Fn(&M, U<M>) -> R,
 {
-    type Output = [HitOn<M>; N];
+    type Output = [<P::Hit as Type>::On<M>; N];
 
     #[inline(always)]
-    fn call(self, m: &M, (_, ray): (Const<N>, G)) -> [HitOn<M>; N] {
+    fn call(self, m: &M, (_, ray): (Const<N>, G)) -> Self::Output {
         m.each(
             #[inline(always)]
-            |i| m.closest_hit(&self, ray(m, i).coerce(m)),
+            |i| bvh::closest_on(m, &self, ray(m, i).coerce(m)),
         )
     }
 }

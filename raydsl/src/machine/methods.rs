@@ -267,11 +267,11 @@ impl<M: Machine, V: super::Value<M>, const N: usize> Method<{ name("len") }, M, 
 
 #[diagnostic::do_not_recommend]
 impl<M: Machine, P: Primitive> Method<{ name("closest_hit") }, M, (RayOn<M>,)> for bvh::On<'_, P> {
-    type Output = HitOn<M>;
+    type Output = <P::Hit as Type>::On<M>;
 
     #[inline(always)]
-    fn call(self, m: &M, (ray,): (RayOn<M>,)) -> HitOn<M> {
-        m.closest_hit(&self, ray)
+    fn call(self, m: &M, (ray,): (RayOn<M>,)) -> Self::Output {
+        bvh::closest_on(m, &self, ray)
     }
 }
 

@@ -403,7 +403,7 @@ impl Machine for Scalar {
         ray: RayOn<Self>,
     ) -> HitOn<Self> {
         let ray = crate::geometry::Ray::lane::<Self>(&ray, 0);
-        crate::geometry::Hit::splat(self, traverse::closest_hit(prims, ray))
+        crate::geometry::Hit::splat(self, traverse::nearest(prims, ray))
     }
     fn any_hit<P: Primitive>(&self, prims: &crate::bvh::On<'_, P>, ray: RayOn<Self>) -> B<Self> {
         let ray = crate::geometry::Ray::lane::<Self>(&ray, 0);

@@ -14,7 +14,7 @@ use super::decisions::Explored;
 use super::interval::Interval;
 use super::{Bounded, Margin, Truth};
 use crate::bvh::{Node, On};
-use crate::geometry::{HitOn, Primitive, RayOn};
+use crate::geometry::{HitOn, HitRecord, Primitive, RayOn};
 use crate::machine::{B, BoolBinary, Compare, F, Machine, U};
 
 /// In how many ways one primitive is asked.
@@ -50,7 +50,7 @@ pub(super) fn query<P: Primitive, R>(
         len: prims.len() as u32,
         tree: prims.has_tree().then_some((prims.nodes, prims.indices)),
         slack: f64::from(P::SLACK),
-        intersect: &|id| P::intersect_on(m, P::splat(m, prims.get(id)), ray),
+        intersect: &|id| P::Hit::hit_on(P::intersect_on(m, P::splat(m, prims.get(id)), ray)),
         bytes: &bytes,
     };
     query(m, &scene)

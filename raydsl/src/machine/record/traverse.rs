@@ -4,10 +4,11 @@
 //! `intersect` accepts. Nodes are culled with the same robust slab test as on the CPU.
 
 use super::ir::Function;
+use super::names::member_name;
 use super::types::zero_value;
 use super::{Builder, Recorder};
 use crate::bvh::{NODE_SCHEMA, On};
-use crate::geometry::{Hit, Primitive, Ray, RayOn};
+use crate::geometry::{Hit, HitRecord, Primitive, Ray, RayOn};
 use crate::machine::{KernelInfo, Schema, Type, Value};
 
 static SCRATCH: KernelInfo =
@@ -118,23 +119,24 @@ impl Recorder {
         self.buffer(prims.prims_key(), name, P::SCHEMA, prims.len() as u64)
     }
 
-    /// Records `P::intersect` and gives its name.
-    fn intersect<P: Primitive>(&self) -> String {
+    /// Records `P::intersect`: the text before and behind its arguments, which gives a `Hit`.
+    fn intersect<P: Primitive>(&self) -> (String, String) {
         let f = self.function_of(|m| {
             let prim = <P::On<Self>>::zero(m);
             P::intersect_on(m, prim, RayOn::zero(m))
         });
-        self.function_name(f)
+        let path = P::Hit::PATH.iter().map(|p| format!(".{}", member_name(p))).collect();
+        (self.function_name(f), path)
     }
 
     pub(super) fn closest_hit_function<P: Primitive>(&self, prims: &On<'_, P>) -> usize {
         let prims_name = self.prims_buffer(prims);
-        let intersect = self.intersect::<P>();
+        let (intersect, path) = self.intersect::<P>();
         self.text_function("is_finite".to_owned(), vec![], |_| FINITE.to_owned());
         let tree = self.tree::<P>(prims);
         let miss = zero_value(Hit::SCHEMA);
         let test = format!(
-            "let candidate = {intersect}({prims_name}_at(id), ray);\n\
+            "let candidate = {intersect}({prims_name}_at(id), ray){path};\n\
              if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max\n    \
              && (!best.is_hit || candidate.t < best.t || (candidate.t == best.t && id < best.prim_id))) {{\n    \
              best = candidate;\n    best.prim_id = id;\n}}",
@@ -163,11 +165,11 @@ impl Recorder {
 
     pub(super) fn any_hit_function<P: Primitive>(&self, prims: &On<'_, P>) -> usize {
         let prims_name = self.prims_buffer(prims);
-        let intersect = self.intersect::<P>();
+        let (intersect, path) = self.intersect::<P>();
         self.text_function("is_finite".to_owned(), vec![], |_| FINITE.to_owned());
         let tree = self.tree::<P>(prims);
         let test = format!(
-            "let candidate = {intersect}({prims_name}_at(id), ray);\n\
+            "let candidate = {intersect}({prims_name}_at(id), ray){path};\n\
              if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max) {{\n    \
              return true;\n}}",
         );
