@@ -130,28 +130,34 @@ fn expand_primitive(
     args: proc_macro2::TokenStream,
     item: proc_macro2::TokenStream,
 ) -> proc_macro2::TokenStream {
-    if !args.is_empty() {
+    if let Ok(i) = syn::parse2::<syn::ItemImpl>(item.clone()) {
+        if args.is_empty() {
+            return items::primitive_impl(&i);
+        }
+        let mut errors = diag::Errors::default();
+        let help =
+            "write `#[primitive]` here, or `#[primitive(sphere(center, radius))]` on the struct";
+        errors.at(args.span(), "`#[primitive]` on an impl takes no arguments", help);
+        let errors = errors.into_tokens();
+        return quote!(#item #errors);
+    }
+    let Ok(s) = syn::parse2::<syn::DeriveInput>(item.clone()) else {
         let e = syn::Error::new_spanned(
-            args,
-            "`#[primitive]` takes no arguments\n  help: write `#[primitive]`",
+            &item,
+            "`#[primitive]` stands on a struct and on its impl\n  help: write `#[primitive] struct Name { ... }`",
         );
         let e = e.into_compile_error();
         return quote!(#item #e);
+    };
+    let twin = twin::primitive_struct(&s);
+    if args.is_empty() {
+        return twin;
     }
-    if let Ok(i) = syn::parse2::<syn::ItemImpl>(item.clone()) {
-        return items::primitive_impl(&i);
-    }
-    match syn::parse2::<syn::DeriveInput>(item.clone()) {
-        Ok(s) => twin::primitive_struct(&s),
-        Err(_) => {
-            let e = syn::Error::new_spanned(
-                &item,
-                "`#[primitive]` stands on a struct and on its impl\n  help: write `#[primitive] struct Name { ... }`",
-            );
-            let e = e.into_compile_error();
-            quote!(#item #e)
-        }
-    }
+    let mut errors = diag::Errors::default();
+    let shape = items::Shape::of(args, &mut errors);
+    let shape = shape.map(|shape| items::with_shape(&shape, &s));
+    let errors = errors.into_tokens();
+    quote!(#twin #shape #errors)
 }
 
 /// Lets kernels use a struct of types that they know.

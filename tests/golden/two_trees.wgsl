@@ -256,15 +256,15 @@ fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
     return result;
 }
 
-fn Triangle_intersect(self_: Triangle, ray: Ray) -> Hit {
+fn intersect_1(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
     let ax = abs(ray.direction.x);
     let ay = abs(ray.direction.y);
     let az = abs(ray.direction.z);
     let k = select(select(2u, 1u, (ay > az)), 0u, (ax > ay && ax > az));
     let d = axis_last(ray.direction, k);
-    let a = axis_last(self_.v0 - ray.origin, k);
-    let b = axis_last(self_.v1 - ray.origin, k);
-    let c = axis_last(self_.v2 - ray.origin, k);
+    let a = axis_last(v0 - ray.origin, k);
+    let b = axis_last(v1 - ray.origin, k);
+    let c = axis_last(v2 - ray.origin, k);
     let sx = d.x / d.z;
     let sy = d.y / d.z;
     let a_x = a.x - sx * a.z;
@@ -315,6 +315,10 @@ fn Triangle_intersect(self_: Triangle, ray: Ray) -> Hit {
     }
     let is_hit = t >= ray.t_min && t <= ray.t_max;
     return Hit(is_hit, t, 0u, v / sum, w / sum);
+}
+
+fn Triangle_intersect(self_: Triangle, ray: Ray) -> Hit {
+    return intersect_1(ray, self_.v0, self_.v1, self_.v2);
 }
 
 fn walls_closest_hit(ray: Ray) -> Hit {

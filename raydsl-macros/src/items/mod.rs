@@ -4,11 +4,13 @@ mod closure;
 mod function;
 mod methods;
 mod primitive;
+mod shape;
 
 pub(crate) use closure::kernel_closure;
 pub(crate) use function::kernel_fn;
 pub(crate) use methods::{kernel_impl, kernel_trait};
 pub(crate) use primitive::primitive_impl;
+pub(crate) use shape::{Shape, with_shape};
 
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;

@@ -5,10 +5,12 @@ mod hit;
 mod primitive;
 mod ray;
 pub mod sphere;
+mod surface;
 pub mod triangle;
 
 pub use aabb::Aabb;
 pub use hit::{Hit, HitOn, HitRecord};
 pub use primitive::Primitive;
 pub use ray::{Ray, RayOn};
+pub use surface::{SurfacePoint, SurfacePointOn};
 pub use triangle::Triangle;

@@ -1,9 +1,14 @@
-//! The sphere test that every sphere-like primitive shares.
+//! Spheres, of a centre and a radius.
 
-use glam::Vec3;
+use core::f32::consts::{PI, TAU};
 
-use super::{Hit, Ray};
+use glam::{Vec2, Vec3, vec2, vec3};
+
+use super::{Aabb, Hit, Ray, SurfacePoint};
 use crate::kernel;
+use crate::machine::functions::{vec2, vec3};
+use crate::machine::generic::max;
+use crate::math::elementary::{acos, atan2, sincos_2pi};
 
 /// What a sphere's hit may be off by, relative to the distance from the ray's origin; see
 /// [`Primitive::SLACK`](super::Primitive::SLACK).
@@ -35,4 +40,74 @@ pub fn intersect(ray: Ray, center: Vec3, radius: f32) -> Hit {
     let t = if near < ray.t_min { far } else { near };
     let is_hit = radicand >= 0.0 && radius > 0.0 && t >= ray.t_min && t <= ray.t_max;
     Hit { is_hit, t, prim_id: 0, u: 0.0, v: 0.0 }
+}
+
+/// The normal where `ray` hits the sphere.
+///
+/// It is formed from the offset to the centre, not from the point at `hit.t`, whose error is that
+/// of the distance: for a small sphere far away, larger than the sphere.
+#[kernel]
+#[inline]
+pub fn normal(ray: Ray, _hit: Hit, center: Vec3, radius: f32) -> Vec3 {
+    let f = center - ray.origin;
+    let d = ray.direction;
+    let per_d2 = 1.0 / d.dot(d);
+    let closest = f.dot(d) * per_d2;
+    let aside = f - d * closest;
+    let half = (max(radius * radius - aside.dot(aside), 0.0) * per_d2).sqrt();
+    // The intersection that `intersect` took.
+    let along = if closest - half < ray.t_min { half } else { -half };
+    (d * along - aside) / radius
+}
+
+/// Longitude and latitude of the point that `ray` hits, from 0 to 1: the axis is z, and `v` is 0 at
+/// its positive end.
+#[kernel]
+#[inline]
+pub fn uv(ray: Ray, hit: Hit, center: Vec3, radius: f32) -> Vec2 {
+    let n = normal(ray, hit, center, radius);
+    let turn = atan2(n.y, n.x) / TAU;
+    vec2(if turn < 0.0 { turn + 1.0 } else { turn }, acos(n.z) / PI)
+}
+
+/// The area of the surface.
+#[kernel]
+#[inline]
+pub fn area(_center: Vec3, radius: f32) -> f32 {
+    4.0 * PI * radius * radius
+}
+
+/// A point of the surface; a uniform `u` in the unit square gives a uniform one (Archimedes: equal
+/// heights have equal areas).
+#[kernel]
+#[inline]
+pub fn sample(u: Vec2, center: Vec3, radius: f32) -> SurfacePoint {
+    let z = 1.0 - 2.0 * u.x;
+    let r = max(1.0 - z * z, 0.0).sqrt();
+    let around = sincos_2pi(u.y);
+    let normal = vec3(r * around.cos, r * around.sin, z);
+    SurfacePoint { position: center + normal * radius, normal }
+}
+
+/// The smallest box around the sphere, at most one ulp too large.
+pub fn get_bounds(center: Vec3, radius: f32) -> Aabb {
+    Aabb::from_sphere(center, radius)
+}
+
+/// Boxes around the parts of the sphere below and above the plane `axis = at`.
+///
+/// A part that does not hold the centre is as wide as the circle in the plane. That is computed in
+/// `f64` and rounded outwards.
+pub fn split_primitive(axis: usize, at: f32, center: Vec3, radius: f32) -> (Aabb, Aabb) {
+    let whole = get_bounds(center, radius);
+    let (below, above) = whole.split(axis, at);
+    let aside = f64::from(at) - f64::from(center[axis]);
+    let square = f64::from(radius).powi(2) - aside * aside;
+    let circle = Aabb::from_sphere(center, (square.max(0.0).sqrt() as f32).next_up());
+    let narrowed = |part: Aabb| {
+        let mut narrow = circle.intersection(whole);
+        (narrow.min[axis], narrow.max[axis]) = (part.min[axis], part.max[axis]);
+        narrow
+    };
+    if aside > 0.0 { (below, narrowed(above)) } else { (narrowed(below), above) }
 }

@@ -1,21 +1,21 @@
-//! Triangles.
+//! Triangles, of three vertices.
 
-use glam::{Vec3, vec3};
+use glam::{Vec2, Vec3, vec2, vec3};
 
-use super::{Aabb, Hit, Ray};
-use crate::machine::functions::vec3;
+use super::{Aabb, Hit, Ray, SurfacePoint};
+use crate::machine::functions::{vec2, vec3};
 use crate::machine::generic::{clamp, max, min};
 use crate::{kernel, primitive};
 
 /// What a triangle's hit may be off by, as a sphere's: the sheared vertices carry at most 6 eps of
 /// the farthest coordinate.
-const SLACK: f32 = super::sphere::SLACK;
+pub const SLACK: f32 = super::sphere::SLACK;
 
 /// A triangle of three vertices, 36 bytes.
 ///
 /// Vertices rather than edges are stored: neighbours share them bit for bit, which watertightness
 /// needs.
-#[primitive]
+#[primitive(triangle(v0, v1, v2))]
 #[derive(Debug, PartialEq)]
 pub struct Triangle {
     /// First vertex.
@@ -39,84 +39,153 @@ fn axis_last(v: Vec3, k: u32) -> Vec3 {
     }
 }
 
-#[primitive]
-impl Triangle {
-    const SLACK: f32 = SLACK;
-
-    /// Where a ray meets the triangle: both sides, edges and vertices included.
-    ///
-    /// The watertight test of Woop, Benthin and Wald ("Watertight Ray/Triangle Intersection",
-    /// JCGT 2013), divided by the determinant before it is scaled, so that it holds
-    /// for coordinates from 1e-18 to 1e18 and directions of any usual length.
-    #[inline]
-    pub fn intersect(&self, ray: Ray) -> Hit {
-        // The axis along which the ray runs fastest becomes z.
-        let ax = ray.direction.x.abs();
-        let ay = ray.direction.y.abs();
-        let az = ray.direction.z.abs();
-        let k = if ax > ay && ax > az {
-            0u32
-        } else if ay > az {
-            1u32
-        } else {
-            2u32
-        };
-        let d = axis_last(ray.direction, k);
-        let a = axis_last(self.v0 - ray.origin, k);
-        let b = axis_last(self.v1 - ray.origin, k);
-        let c = axis_last(self.v2 - ray.origin, k);
-        // Shear the ray onto the z axis.
-        let sx = d.x / d.z;
-        let sy = d.y / d.z;
-        let a_x = a.x - sx * a.z;
-        let a_y = a.y - sy * a.z;
-        let b_x = b.x - sx * b.z;
-        let b_y = b.y - sy * b.z;
-        let c_x = c.x - sx * c.z;
-        let c_y = c.y - sy * c.z;
-        // On which side of each edge the ray passes. Rounding keeps the order of two products or
-        // makes them equal, so a sign is right or zero, and zero counts as inside.
-        let u = c_x * b_y - c_y * b_x;
-        let v = a_x * c_y - a_y * c_x;
-        let w = b_x * a_y - b_y * a_x;
-        let inside = (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
-        let sum = u + v + w;
-        // Seen edge-on the signs are those of rounding errors: the ray must pass between the
-        // vertices all the same.
-        let left = min(min(a_x, b_x), c_x);
-        let right = max(max(a_x, b_x), c_x);
-        let low = min(min(a_y, b_y), c_y);
-        let high = max(max(a_y, b_y), c_y);
-        let between = left <= 0.0 && right >= 0.0 && low <= 0.0 && high >= 0.0;
-        if !(inside && between && sum != 0.0) {
-            return Hit { is_hit: false, t: 0.0, prim_id: 0, u: 0.0, v: 0.0 };
-        }
-        // A mean of the vertices' distances: it lies between them.
-        let mut t = (u / sum) * (a.z / d.z) + (v / sum) * (b.z / d.z) + (w / sum) * (c.z / d.z);
-        // Edge-on the weights mean little: the point goes back into the box of the vertices.
-        let min_x = min(min(a.x, b.x), c.x);
-        let max_x = max(max(a.x, b.x), c.x);
-        let x = t * d.x;
-        if max(min_x - x, x - max_x) > x.abs() * SLACK {
-            t = clamp(x, min_x, max_x) / d.x;
-        }
-        let min_y = min(min(a.y, b.y), c.y);
-        let max_y = max(max(a.y, b.y), c.y);
-        let y = t * d.y;
-        if max(min_y - y, y - max_y) > y.abs() * SLACK {
-            t = clamp(y, min_y, max_y) / d.y;
-        }
-        let is_hit = t >= ray.t_min && t <= ray.t_max;
-        Hit { is_hit, t, prim_id: 0, u: v / sum, v: w / sum }
+/// Where a ray meets the triangle: both sides, edges and vertices included.
+///
+/// The watertight test of Woop, Benthin and Wald ("Watertight Ray/Triangle Intersection",
+/// JCGT 2013), divided by the determinant before it is scaled, so that it holds
+/// for coordinates from 1e-18 to 1e18 and directions of any usual length.
+#[kernel]
+#[inline]
+pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
+    // The axis along which the ray runs fastest becomes z.
+    let ax = ray.direction.x.abs();
+    let ay = ray.direction.y.abs();
+    let az = ray.direction.z.abs();
+    let k = if ax > ay && ax > az {
+        0u32
+    } else if ay > az {
+        1u32
+    } else {
+        2u32
+    };
+    let d = axis_last(ray.direction, k);
+    let a = axis_last(v0 - ray.origin, k);
+    let b = axis_last(v1 - ray.origin, k);
+    let c = axis_last(v2 - ray.origin, k);
+    // Shear the ray onto the z axis.
+    let sx = d.x / d.z;
+    let sy = d.y / d.z;
+    let a_x = a.x - sx * a.z;
+    let a_y = a.y - sy * a.z;
+    let b_x = b.x - sx * b.z;
+    let b_y = b.y - sy * b.z;
+    let c_x = c.x - sx * c.z;
+    let c_y = c.y - sy * c.z;
+    // On which side of each edge the ray passes. Rounding keeps the order of two products or
+    // makes them equal, so a sign is right or zero, and zero counts as inside.
+    let u = c_x * b_y - c_y * b_x;
+    let v = a_x * c_y - a_y * c_x;
+    let w = b_x * a_y - b_y * a_x;
+    let inside = (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
+    let sum = u + v + w;
+    // Seen edge-on the signs are those of rounding errors: the ray must pass between the
+    // vertices all the same.
+    let left = min(min(a_x, b_x), c_x);
+    let right = max(max(a_x, b_x), c_x);
+    let low = min(min(a_y, b_y), c_y);
+    let high = max(max(a_y, b_y), c_y);
+    let between = left <= 0.0 && right >= 0.0 && low <= 0.0 && high >= 0.0;
+    if !(inside && between && sum != 0.0) {
+        return Hit { is_hit: false, t: 0.0, prim_id: 0, u: 0.0, v: 0.0 };
     }
-
-    /// The box of the vertices.
-    pub fn get_bounds(&self) -> Aabb {
-        Aabb::from_points([self.v0, self.v1, self.v2])
+    // A mean of the vertices' distances: it lies between them.
+    let mut t = (u / sum) * (a.z / d.z) + (v / sum) * (b.z / d.z) + (w / sum) * (c.z / d.z);
+    // Edge-on the weights mean little: the point goes back into the box of the vertices.
+    let min_x = min(min(a.x, b.x), c.x);
+    let max_x = max(max(a.x, b.x), c.x);
+    let x = t * d.x;
+    if max(min_x - x, x - max_x) > x.abs() * SLACK {
+        t = clamp(x, min_x, max_x) / d.x;
     }
-
-    /// The side from which the vertices run anticlockwise, with unit length.
-    pub fn normal(&self) -> Vec3 {
-        (self.v1 - self.v0).cross(self.v2 - self.v0).normalize()
+    let min_y = min(min(a.y, b.y), c.y);
+    let max_y = max(max(a.y, b.y), c.y);
+    let y = t * d.y;
+    if max(min_y - y, y - max_y) > y.abs() * SLACK {
+        t = clamp(y, min_y, max_y) / d.y;
     }
+    let is_hit = t >= ray.t_min && t <= ray.t_max;
+    Hit { is_hit, t, prim_id: 0, u: v / sum, v: w / sum }
+}
+
+/// The side from which the vertices run anticlockwise, with unit length; whichever side `ray` hits.
+#[kernel]
+#[inline]
+pub fn normal(_ray: Ray, _hit: Hit, v0: Vec3, v1: Vec3, v2: Vec3) -> Vec3 {
+    (v1 - v0).cross(v2 - v0).normalize()
+}
+
+/// The barycentric weights of the second and the third vertex.
+#[kernel]
+#[inline]
+pub fn uv(_ray: Ray, hit: Hit, _v0: Vec3, _v1: Vec3, _v2: Vec3) -> Vec2 {
+    vec2(hit.u, hit.v)
+}
+
+/// The area of one side.
+#[kernel]
+#[inline]
+pub fn area(v0: Vec3, v1: Vec3, v2: Vec3) -> f32 {
+    let n = (v1 - v0).cross(v2 - v0);
+    0.5 * n.dot(n).sqrt()
+}
+
+/// A point of the triangle; a uniform `u` in the unit square gives a uniform one. (Heitz, "A
+/// Low-Distortion Map Between Triangle and Square", 2019.)
+#[kernel]
+#[inline]
+pub fn sample(u: Vec2, v0: Vec3, v1: Vec3, v2: Vec3) -> SurfacePoint {
+    let is_low = u.y < u.x;
+    let least = 0.5 * if is_low { u.y } else { u.x };
+    let b1 = if is_low { u.x - least } else { least };
+    let b2 = if is_low { least } else { u.y - least };
+    let (e1, e2) = (v1 - v0, v2 - v0);
+    SurfacePoint { position: v0 + e1 * b1 + e2 * b2, normal: e1.cross(e2).normalize() }
+}
+
+/// The box of the vertices.
+pub fn get_bounds(v0: Vec3, v1: Vec3, v2: Vec3) -> Aabb {
+    Aabb::from_points([v0, v1, v2])
+}
+
+/// Boxes around the parts of the triangle below and above the plane `axis = at`. Where edges cross
+/// the plane is computed in `f64` and rounded outwards.
+pub fn split_primitive(axis: usize, at: f32, v0: Vec3, v1: Vec3, v2: Vec3) -> (Aabb, Aabb) {
+    split_polygon(axis, at, &[v0, v1, v2])
+}
+
+/// [`split_primitive`] of any flat polygon.
+pub(super) fn split_polygon(axis: usize, at: f32, vertices: &[Vec3]) -> (Aabb, Aabb) {
+    let whole = Aabb::from_points(vertices.iter().copied());
+    let (mut below, mut above) = (Aabb::EMPTY, Aabb::EMPTY);
+    for (i, &a) in vertices.iter().enumerate() {
+        let b = vertices[(i + 1) % vertices.len()];
+        if a[axis] <= at {
+            below = below.union(Aabb::new(a, a));
+        }
+        if a[axis] >= at {
+            above = above.union(Aabb::new(a, a));
+        }
+        if (a[axis] < at && b[axis] > at) || (a[axis] > at && b[axis] < at) {
+            let crossing = crossing(axis, at, a, b);
+            below = below.union(crossing);
+            above = above.union(crossing);
+        }
+    }
+    (below.intersection(whole), above.intersection(whole))
+}
+
+/// A box around the point of the edge in the plane.
+fn crossing(axis: usize, at: f32, a: Vec3, b: Vec3) -> Aabb {
+    let (a, b) = (a.to_array().map(f64::from), b.to_array().map(f64::from));
+    let s = (f64::from(at) - a[axis]) / (b[axis] - a[axis]);
+    let bounds = |sign: f64, step: fn(f32) -> f32| {
+        let mut bound = core::array::from_fn(|i| {
+            // What `f64` may be off by, next to 0 more than a step of `f32`.
+            let error = (a[i].abs() + b[i].abs()) * f64::EPSILON * 4.0;
+            step((a[i] + (b[i] - a[i]) * s + sign * error) as f32)
+        });
+        bound[axis] = at;
+        Vec3::from_array(bound)
+    };
+    Aabb::new(bounds(-1.0, f32::next_down), bounds(1.0, f32::next_up))
 }

@@ -1,0 +1,164 @@
+//! `#[primitive(sphere(center, radius))] struct T`: a primitive of a shape of the library.
+
+use proc_macro2::{Group, Ident, TokenStream, TokenTree};
+use quote::{ToTokens, quote};
+use syn::parse::{Parse, ParseStream};
+use syn::punctuated::Punctuated;
+
+use crate::diag::Errors;
+
+/// The shapes and what each is made of. Each is a module of `raydsl::geometry`.
+const SHAPES: &[(&str, &[&str])] =
+    &[("sphere", &["center", "radius"]), ("triangle", &["v0", "v1", "v2"])];
+
+/// `sphere(center, radius.to_f32())`.
+pub(crate) struct Shape {
+    name: Ident,
+    arguments: Punctuated<syn::Expr, syn::Token![,]>,
+}
+
+impl Parse for Shape {
+    fn parse(input: ParseStream<'_>) -> syn::Result<Self> {
+        let name = input.parse()?;
+        let inner;
+        syn::parenthesized!(inner in input);
+        let arguments = Punctuated::parse_terminated(&inner)?;
+        if input.is_empty() { Ok(Self { name, arguments }) } else { Err(input.error("one shape")) }
+    }
+}
+
+impl Shape {
+    /// The shape in the parentheses of the attribute.
+    pub(crate) fn of(args: TokenStream, errors: &mut Errors) -> Option<Self> {
+        let help = "write for example `#[primitive(sphere(center, radius))]`, or `#[primitive]` and \
+                    an impl of your own";
+        match syn::parse2::<Self>(args) {
+            Ok(shape) => shape.checked(errors),
+            Err(e) => {
+                errors.at(e.span(), "`#[primitive]` takes a shape, or nothing", help);
+                None
+            }
+        }
+    }
+
+    fn checked(self, errors: &mut Errors) -> Option<Self> {
+        let Some((name, parts)) = SHAPES.iter().find(|s| self.name == s.0) else {
+            let names: Vec<String> = SHAPES.iter().map(|s| format!("`{}`", s.0)).collect();
+            errors.at(
+                self.name.span(),
+                format!("no shape is called `{}`", self.name),
+                &format!("write {}, or an impl of your own", names.join(", ")),
+            );
+            return None;
+        };
+        if self.arguments.len() != parts.len() {
+            errors.at(
+                self.name.span(),
+                format!("a {name} is made of {} parts", parts.len()),
+                &format!("write `{name}({})`, with members of the struct", parts.join(", ")),
+            );
+            return None;
+        }
+        Some(self)
+    }
+
+    /// The `impl` that a user would write.
+    pub(crate) fn implementation(&self, ty: &Ident, members: &[&Ident]) -> syn::ItemImpl {
+        let shape = &self.name;
+        let shape = quote!(::raydsl::geometry::#shape);
+        let arguments = of_self(self.arguments.to_token_stream(), members);
+        syn::parse_quote! {
+            impl #ty {
+                const SLACK: f32 = #shape::SLACK;
+
+                #[doc = "Where `ray` meets it."]
+                #[inline]
+                pub fn intersect(&self, ray: ::raydsl::geometry::Ray) -> ::raydsl::geometry::Hit {
+                    #shape::intersect(ray, #arguments)
+                }
+
+                #[doc = "The normal where `ray` hits it, with unit length."]
+                #[allow(dead_code, reason = "a part of the shape")]
+                pub fn normal(
+                    &self,
+                    ray: ::raydsl::geometry::Ray,
+                    hit: ::raydsl::geometry::Hit,
+                ) -> ::raydsl::prelude::Vec3 {
+                    #shape::normal(ray, hit, #arguments)
+                }
+
+                #[doc = "Surface coordinates where `ray` hits it, from 0 to 1."]
+                #[allow(dead_code, reason = "a part of the shape")]
+                pub fn uv(
+                    &self,
+                    ray: ::raydsl::geometry::Ray,
+                    hit: ::raydsl::geometry::Hit,
+                ) -> ::raydsl::prelude::Vec2 {
+                    #shape::uv(ray, hit, #arguments)
+                }
+
+                #[doc = "The area of its surface."]
+                #[allow(dead_code, reason = "a part of the shape")]
+                pub fn area(&self) -> f32 {
+                    #shape::area(#arguments)
+                }
+
+                #[doc = "A point of its surface; a uniform `u` in the unit square gives a uniform one."]
+                #[allow(dead_code, reason = "a part of the shape")]
+                pub fn sample(&self, u: ::raydsl::prelude::Vec2) -> ::raydsl::geometry::SurfacePoint {
+                    #shape::sample(u, #arguments)
+                }
+
+                #[doc = "A box around it."]
+                pub fn get_bounds(&self) -> ::raydsl::geometry::Aabb {
+                    #shape::get_bounds(#arguments)
+                }
+
+                #[doc = "Boxes around its parts below and above a plane."]
+                pub fn split_primitive(
+                    &self,
+                    axis: usize,
+                    at: f32,
+                ) -> (::raydsl::geometry::Aabb, ::raydsl::geometry::Aabb) {
+                    #shape::split_primitive(axis, at, #arguments)
+                }
+            }
+        }
+    }
+}
+
+/// `self.radius` in place of the member `radius`.
+fn of_self(tokens: TokenStream, members: &[&Ident]) -> TokenStream {
+    let mut out = TokenStream::new();
+    let mut is_member = false;
+    for token in tokens {
+        match token {
+            TokenTree::Ident(name) if !is_member && members.contains(&&name) => {
+                out.extend(quote!(self.#name));
+                is_member = false;
+                continue;
+            }
+            TokenTree::Group(g) => {
+                let mut inner = Group::new(g.delimiter(), of_self(g.stream(), members));
+                inner.set_span(g.span());
+                out.extend([TokenTree::Group(inner)]);
+                is_member = false;
+                continue;
+            }
+            _ => {}
+        }
+        is_member = matches!(&token, TokenTree::Punct(p) if matches!(p.as_char(), '.' | ':'));
+        out.extend([token]);
+    }
+    out
+}
+
+/// The struct of a primitive of this shape, with all that it needs.
+pub(crate) fn with_shape(shape: &Shape, item: &syn::DeriveInput) -> TokenStream {
+    let members: Vec<&Ident> = match &item.data {
+        syn::Data::Struct(s) => s.fields.iter().filter_map(|f| f.ident.as_ref()).collect(),
+        _ => Vec::new(),
+    };
+    let implementation = shape.implementation(&item.ident, &members);
+    super::primitive_impl(&implementation)
+}
