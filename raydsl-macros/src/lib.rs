@@ -149,7 +149,7 @@ fn expand_primitive(
         let e = e.into_compile_error();
         return quote!(#item #e);
     };
-    let twin = twin::primitive_struct(&s);
+    let twin = twin::primitive_item(&s);
     if args.is_empty() {
         return twin;
     }

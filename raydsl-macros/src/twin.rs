@@ -1,5 +1,6 @@
 //! The twin of a struct: what stands for its values on a machine.
 
+mod choice;
 mod enumeration;
 mod record;
 
@@ -35,9 +36,12 @@ pub(crate) fn derive(item: &syn::DeriveInput) -> TokenStream {
     twin(item, &fields)
 }
 
-/// `#[primitive] struct`.
-pub(crate) fn primitive_struct(item: &syn::DeriveInput) -> TokenStream {
+/// `#[primitive] struct`, or `enum` of primitives.
+pub(crate) fn primitive_item(item: &syn::DeriveInput) -> TokenStream {
     let mut errors = Errors::default();
+    if let syn::Data::Enum(e) = &item.data {
+        return choice::choice(item, e);
+    }
     let fields = named_fields(item, &mut errors);
     check_types(&fields, &mut errors);
     if let Some(g) = item.generics.params.first() {
@@ -48,15 +52,7 @@ pub(crate) fn primitive_struct(item: &syn::DeriveInput) -> TokenStream {
         return quote!(#item #errors);
     }
     let name = &item.ident;
-    let derives = |what: &str| {
-        item.attrs.iter().any(|a| {
-            a.path().is_ident("derive")
-                && a.parse_nested_meta(|m| {
-                    if m.path.is_ident(what) { Err(m.error("found")) } else { Ok(()) }
-                })
-                .is_err()
-        })
-    };
+    let derives = |what| derives(item, what);
     let clone = (!derives("Clone")).then(|| quote!(#[derive(Clone)]));
     let copy = (!derives("Copy")).then(|| quote!(#[derive(Copy)]));
     let repr = (!item.attrs.iter().any(|a| a.path().is_ident("repr"))).then(|| quote!(#[repr(C)]));
@@ -76,6 +72,17 @@ pub(crate) fn primitive_struct(item: &syn::DeriveInput) -> TokenStream {
             ),
         );
     }
+}
+
+/// Whether the user derives a trait.
+fn derives(item: &syn::DeriveInput, what: &str) -> bool {
+    let found = |a: &syn::Attribute| {
+        let check = |m: syn::meta::ParseNestedMeta<'_>| {
+            if m.path.is_ident(what) { Err(m.error("found")) } else { Ok(()) }
+        };
+        a.path().is_ident("derive") && a.parse_nested_meta(check).is_err()
+    };
+    item.attrs.iter().any(found)
 }
 
 /// Members of types that no kernel has.
@@ -111,6 +118,13 @@ fn named_fields(item: &syn::DeriveInput, errors: &mut Errors) -> Vec<syn::Field>
 
 /// The twin struct and the implementations that connect it with the host's.
 fn twin(item: &syn::DeriveInput, fields: &[syn::Field]) -> TokenStream {
+    let (name, generics) = (&item.ident, Generics::new(&item.generics));
+    let used = &generics.used;
+    twin_of(item, fields, &quote!(#name<#used>))
+}
+
+/// [`twin`], with the methods of `owner`.
+fn twin_of(item: &syn::DeriveInput, fields: &[syn::Field], owner: &TokenStream) -> TokenStream {
     let p = private();
     let (vis, name) = (&item.vis, &item.ident);
     let generics = Generics::new(&item.generics);
@@ -134,7 +148,7 @@ fn twin(item: &syn::DeriveInput, fields: &[syn::Field]) -> TokenStream {
             size: ::core::mem::size_of::<#host>(),
         }
     };
-    let methods = methods(&quote!(#twin<M, #used>), &host, &generics);
+    let methods = methods(&quote!(#twin<M, #used>), owner, &generics);
     quote! {
         #[doc = #doc]
         #[allow(missing_docs, reason = "the members are those of the struct")]

@@ -1,13 +1,13 @@
 //! The only names that generated code uses. Not for people: anything here may change.
 
-pub use crate::geometry::{Aabb, Hit, HitOn, HitRecord, Primitive, Ray, RayOn};
+pub use crate::geometry::{Aabb, Hit, HitOn, HitRecord, Kinds, Primitive, Ray, RayOn};
 pub use crate::kernel::{Baseline, Kernel, Lifted, Native4, Native8, Native16, Native16Halves};
 pub use crate::machine::{
     Branch, Capture, Coerce, Compare, Const, Field, HostMethod, Inferred, KernelFn, KernelInfo,
     LaneMachine, Leaves, Loop, Machine, Margin, Method, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor,
     OpCast, OpCompare, OpDiv, OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Parameter,
     Recorder, Resource, Ret, Schema, Steps, Stop, Twin, Type, Value, Var, Varying, call_on_element,
-    decrement, increment, is_mut, name,
+    decrement, host_of_words, increment, is_mut, name, of_kind, of_words, to_words,
 };
 
 /// Traits of associated functions.

@@ -38,6 +38,7 @@ impl PaintedBall {
 
 /// 16 bytes, as its members lie.
 #[primitive(sphere(center, radius.to_f32()))]
+#[derive(Debug)]
 struct ColorSphere {
     center: Vec3,
     radius: Unorm8,
@@ -268,4 +269,105 @@ fn points_of_surfaces() {
     assert!((on_sphere - center).length() < 5.0 * radius / (count as f32).sqrt());
     assert_eq!(triangle::area(Vec3::ZERO, Vec3::X * 3.0, Vec3::Y * 4.0), 6.0);
     assert!((sphere::area(center, 1.0) - 12.566_371).abs() < 1e-5);
+}
+
+/// Any of three kinds.
+#[primitive]
+#[derive(Debug)]
+enum Shape {
+    Ball(Ball),
+    Facet(Triangle),
+    Color(ColorSphere),
+}
+
+#[primitive(sphere(center, radius))]
+#[derive(Debug)]
+struct Ball {
+    radius: f32,
+    center: Vec3,
+}
+
+fn shapes(rng: &mut Rng, kinds: &[usize]) -> Vec<Shape> {
+    (0..90)
+        .map(|i| match kinds[i % kinds.len()] {
+            0 => Shape::Ball(Ball { center: rng.point(3.0), radius: rng.range(0.1, 0.6) }),
+            1 => {
+                let [v0, v1, v2] = [(); 3].map(|()| rng.point(3.0));
+                Shape::Facet(Triangle { v0, v1, v2 })
+            }
+            _ => Shape::Color(ColorSphere {
+                center: rng.point(3.0),
+                radius: Unorm8::new(rng.range(0.1, 1.0)),
+                color: [0.25; 3].map(Unorm8::new),
+            }),
+        })
+        .collect()
+}
+
+#[test]
+fn an_enum_of_primitives_is_a_primitive() {
+    let mut rng = Rng::of("enum");
+    let all = shapes(&mut rng, &[0, 1, 2]);
+    let bvh = Bvh::build(&all).expect("finite bounds");
+    let rays = rays(&mut rng, 4000);
+    let mut hits = [0; 3];
+    for (ray,) in &rays {
+        let hit = bvh.closest_hit(*ray);
+        let mut best = Hit::miss();
+        for (id, shape) in all.iter().enumerate() {
+            let own = match shape {
+                Shape::Ball(b) => b.intersect(*ray),
+                Shape::Facet(t) => t.intersect(*ray),
+                Shape::Color(s) => s.intersect(*ray),
+            };
+            if own.is_hit && (!best.is_hit || own.t < best.t) {
+                best = Hit { prim_id: id as u32, ..own };
+            }
+        }
+        assert_eq!(hit, best);
+        if hit.is_hit {
+            hits[hit.prim_id as usize % 3] += 1;
+        }
+    }
+    assert!(hits.iter().all(|n| *n > 100), "{hits:?}");
+    let tree = kernel!(|ray: Ray| {
+        let hit = bvh.closest_hit(ray);
+        (hit.is_hit, hit.t * hit.is_hit as u32 as f32, hit.prim_id, bvh.any_hit(ray))
+    });
+    assert_variants_agree!(&tree, &rays);
+    let few = &all[..12];
+    let slice = kernel!(|ray: Ray| {
+        let hit = few.closest_hit(ray);
+        if hit.is_hit { hit.prim_id + few.any_hit(ray) as u32 } else { 1000u32 }
+    });
+    assert_variants_agree!(&slice, &rays);
+}
+
+/// The WGSL of a scene has the kinds that are in it.
+#[test]
+fn the_text_has_no_other_kind() {
+    let mut rng = Rng::of("kinds");
+    let text = |kinds: &[usize], rng: &mut Rng| {
+        let shapes = shapes(rng, kinds);
+        let bvh = Bvh::build(&shapes).expect("finite bounds");
+        kernel!(|ray: Ray| bvh.closest_hit(ray)).wgsl()
+    };
+    let (spheres, triangles) = (text(&[0], &mut rng), text(&[1], &mut rng));
+    let both = text(&[0, 1], &mut rng);
+    assert!(spheres.contains("per_d2") && !spheres.contains("axis_last"), "{spheres}");
+    assert!(!triangles.contains("per_d2") && triangles.contains("axis_last"), "{triangles}");
+    assert!(both.contains("per_d2") && both.contains("axis_last"));
+    // With one kind there is nothing to ask.
+    assert!(!spheres.contains(".kind =="), "{spheres}");
+    assert!(both.contains(".kind =="), "{both}");
+}
+
+#[test]
+fn words_come_back() {
+    let mut rng = Rng::of("words");
+    for shape in shapes(&mut rng, &[0, 1, 2]) {
+        let mut bytes = vec![0; Shape::SCHEMA.size()];
+        shape.write(&mut bytes);
+        assert_eq!(format!("{shape:?}"), format!("{:?}", Shape::read(&bytes)));
+    }
 }

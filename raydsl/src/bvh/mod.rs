@@ -26,7 +26,7 @@ pub(crate) use view::NODE_SCHEMA;
 pub use view::On;
 pub(crate) use view::closest_on;
 
-use crate::geometry::{Aabb, Hit, Primitive, Ray};
+use crate::geometry::{Aabb, Hit, Kinds, Primitive, Ray};
 use crate::machine::{Capture, Machine, Resource, Type, wgsl::BufferKey};
 
 /// A number that no other owner of scene data has.
@@ -52,6 +52,7 @@ pub struct Bvh<'a, P> {
     nodes: Vec<Node>,
     indices: Vec<u32>,
     id: u64,
+    kinds: Kinds,
 }
 
 impl<'a, P: Primitive> Bvh<'a, P> {
@@ -71,7 +72,8 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     /// As [`Bvh::build`]; also a configuration out of its ranges.
     pub fn build_with(prims: &'a [P], config: &BuildConfig) -> Result<Self, BuildError> {
         let tree = build::build(|i| prims[i].get_bounds(), prims.len(), config)?;
-        Ok(Self { prims, nodes: tree.nodes, indices: tree.indices, id: next_id() })
+        let kinds = Kinds::of(prims);
+        Ok(Self { prims, nodes: tree.nodes, indices: tree.indices, id: next_id(), kinds })
     }
 
     /// The least `(t, id)` hit of `ray`.
@@ -156,7 +158,7 @@ impl<'a, P: Primitive> Bvh<'a, P> {
 
     /// The view that kernels work on.
     pub fn view(&self) -> On<'_, P> {
-        On::tree(self.prims, &self.nodes, &self.indices, self.id)
+        On::tree(self.prims, &self.nodes, &self.indices, self.id, self.kinds)
     }
 }
 

@@ -249,7 +249,7 @@ fn closest_hit_inside<L: Lanes, P: Primitive>(
         &ray,
         #[inline(always)]
         |mask, id, limit| {
-            meet(m, prims.prims[id as usize], &ray, mask, id, &mut best);
+            meet(m, &prims.prims[id as usize], &ray, mask, id, &mut best);
             *limit = best.limit;
             mask
         },
@@ -267,7 +267,7 @@ fn closest_hit_inside<L: Lanes, P: Primitive>(
 #[inline(always)]
 fn meet<L: Lanes, P: Primitive>(
     m: &Packet<L>,
-    prim: P,
+    prim: &P,
     ray: &RayOn<Packet<L>>,
     mask: L::Mask,
     id: u32,
@@ -277,7 +277,7 @@ fn meet<L: Lanes, P: Primitive>(
     let hit = m.with_active(
         mask,
         #[inline(always)]
-        || P::Hit::hit_on(P::intersect_on(m, P::splat(m, prim), *ray)),
+        || P::Hit::hit_on(P::intersect_one_on(m, prim, *ray)),
     );
     let t = hit.t.0;
     let near = l.f32_compare(Compare::Le, t, best.t);
@@ -334,11 +334,11 @@ fn any_hit_inside<L: Lanes, P: Primitive>(
         &ray,
         #[inline(always)]
         |mask, id, _| {
-            let prim = P::splat(m, prims.prims[id as usize]);
+            let prim = &prims.prims[id as usize];
             let hit = m.with_active(
                 mask,
                 #[inline(always)]
-                || P::Hit::hit_on(P::intersect_on(m, prim, ray)),
+                || P::Hit::hit_on(P::intersect_one_on(m, prim, ray)),
             );
             found = or(l, found, and(l, mask, accepts(l, &hit, &ray)));
             without(l, mask, found)

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::{Node, bytes_of, slice_key};
-use crate::geometry::{HitRecord, Primitive, RayOn};
+use crate::geometry::{HitRecord, Kinds, Primitive, RayOn};
 use crate::machine::{Field, Leaves, Machine, Resource, Schema, Type, U, Value, wgsl::BufferKey};
 
 /// The structure of a [`Node`].
@@ -27,6 +27,8 @@ pub struct On<'a, P> {
     /// The tree's number; 0 for a plain slice.
     id: u64,
     name: &'static str,
+    /// The kinds of primitives under the tree.
+    kinds: Kinds,
 }
 
 impl<P> Clone for On<'_, P> {
@@ -40,13 +42,19 @@ impl<P> Copy for On<'_, P> {}
 
 impl<'a, P: Type> On<'a, P> {
     #[inline(always)]
-    pub(crate) fn tree(prims: &'a [P], nodes: &'a [Node], indices: &'a [u32], id: u64) -> Self {
-        Self { prims, nodes, indices, id, name: "bvh" }
+    pub(crate) fn tree(
+        prims: &'a [P],
+        nodes: &'a [Node],
+        indices: &'a [u32],
+        id: u64,
+        kinds: Kinds,
+    ) -> Self {
+        Self { prims, nodes, indices, id, name: "bvh", kinds }
     }
 
     #[inline(always)]
     pub(crate) fn slice(prims: &'a [P]) -> Self {
-        Self { prims, nodes: &[], indices: &[], id: 0, name: "prims" }
+        Self { prims, nodes: &[], indices: &[], id: 0, name: "prims", kinds: Kinds::ALL }
     }
 
     /// The view under the name that it has in the source.
@@ -101,6 +109,13 @@ impl<'a, P: Type> On<'a, P> {
 
     pub(crate) fn tree_len(&self) -> (u64, u64) {
         (self.nodes.len() as u64, self.indices.len() as u64)
+    }
+}
+
+impl<P: Primitive> On<'_, P> {
+    /// The kinds of its primitives.
+    pub(crate) fn kinds(&self) -> Kinds {
+        if self.has_tree() { self.kinds } else { Kinds::of(self.prims) }
     }
 }
 

@@ -10,7 +10,7 @@ pub mod triangle;
 
 pub use aabb::Aabb;
 pub use hit::{Hit, HitOn, HitRecord};
-pub use primitive::Primitive;
+pub use primitive::{Kinds, Primitive};
 pub use ray::{Ray, RayOn};
 pub use surface::{SurfacePoint, SurfacePointOn};
 pub use triangle::Triangle;

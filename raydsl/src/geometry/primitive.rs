@@ -3,6 +3,33 @@
 use super::{Aabb, HitRecord, Ray, RayOn};
 use crate::machine::{Machine, Type};
 
+/// The kinds of an enum of primitives that a scene has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kinds(u64);
+
+impl Kinds {
+    /// Every kind.
+    pub const ALL: Self = Self(u64::MAX);
+
+    /// Those of these primitives.
+    pub fn of<P: Primitive>(prims: &[P]) -> Self {
+        if P::KINDS == 1 {
+            return Self::ALL;
+        }
+        Self(prims.iter().fold(0, |all, p| all | 1 << p.kind()))
+    }
+
+    /// Whether `kind` is among them.
+    pub const fn has(self, kind: u32) -> bool {
+        self.0 >> kind & 1 == 1
+    }
+
+    /// Whether there is no other than `kind`.
+    pub const fn is_only(self, kind: u32) -> bool {
+        self.0 == 1 << kind
+    }
+}
+
 /// Something that rays meet; `#[primitive]` writes this from one definition of `intersect`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a primitive",
@@ -43,4 +70,38 @@ pub trait Primitive: Type + Send + Sync {
         prim: Self::On<M>,
         ray: RayOn<M>,
     ) -> <Self::Hit as Type>::On<M>;
+
+    /// How many kinds the type has: more than one for an enum.
+    #[doc(hidden)]
+    const KINDS: u32 = 1;
+
+    /// Which kind this one is.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn kind(&self) -> u32 {
+        0
+    }
+
+    /// `intersect` of one primitive for all lanes, lifted.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn intersect_one_on<M: Machine>(
+        m: &M,
+        prim: &Self,
+        ray: RayOn<M>,
+    ) -> <Self::Hit as Type>::On<M> {
+        Self::intersect_on(m, Self::splat(m, *prim), ray)
+    }
+
+    /// `intersect`, lifted, for primitives of these kinds alone.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn intersect_among_on<M: Machine>(
+        m: &M,
+        _kinds: Kinds,
+        prim: Self::On<M>,
+        ray: RayOn<M>,
+    ) -> <Self::Hit as Type>::On<M> {
+        Self::intersect_on(m, prim, ray)
+    }
 }

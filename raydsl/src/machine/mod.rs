@@ -38,6 +38,7 @@ mod types;
 mod value;
 mod vector;
 pub mod wgsl;
+mod words;
 
 pub use batch::Const;
 pub use call::{KernelFn, KernelInfo};
@@ -65,6 +66,7 @@ pub use twin::{Inferred, Twin};
 pub use types::{LaneMachine, Type};
 pub use value::{B, F, I, Leaves, U, Usize, Value};
 pub use vector::{V2, V3, V4, X2, X3, X4};
+pub use words::{host_of_words, of_kind, of_words, to_words};
 
 /// An operation on one `f32`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

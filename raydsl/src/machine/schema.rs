@@ -56,12 +56,19 @@ pub struct Field {
 
 impl Schema {
     /// How many scalars a value has.
-    pub fn leaves(&self) -> usize {
+    pub const fn leaves(&self) -> usize {
         match self {
             Self::F32 | Self::I32 | Self::U32 | Self::Bool | Self::Small { .. } => 1,
             Self::Vector(_, n) => *n,
-            Self::Array { element, count, .. } => element.leaves() * count,
-            Self::Struct { fields, .. } => fields.iter().map(|f| f.schema.leaves()).sum(),
+            Self::Array { element, count, .. } => element.leaves() * *count,
+            Self::Struct { fields, .. } => {
+                let (mut sum, mut i) = (0, 0);
+                while i < fields.len() {
+                    sum += fields[i].schema.leaves();
+                    i += 1;
+                }
+                sum
+            }
             Self::Host => 0,
         }
     }

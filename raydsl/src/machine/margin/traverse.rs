@@ -50,7 +50,7 @@ pub(super) fn query<P: Primitive, R>(
         len: prims.len() as u32,
         tree: prims.has_tree().then_some((prims.nodes, prims.indices)),
         slack: f64::from(P::SLACK),
-        intersect: &|id| P::Hit::hit_on(P::intersect_on(m, P::splat(m, prims.get(id)), ray)),
+        intersect: &|id| P::Hit::hit_on(P::intersect_one_on(m, &prims.get(id), ray)),
         bytes: &bytes,
     };
     query(m, &scene)

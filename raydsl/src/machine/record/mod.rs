@@ -21,7 +21,7 @@ pub(crate) use storage::stride;
 
 use builder::{Builder, LoopState};
 use ir::{Expr, Function, Id, Node, SceneBuffer, Stmt, Type, Uniform};
-use names::{safe_name, unique};
+use names::{qualified, safe_name, unique};
 
 use super::{KernelInfo, Leaves, Schema, Value, wgsl};
 
@@ -297,7 +297,12 @@ impl Recorder {
         if let Some(i) = same {
             return i;
         }
-        function.name = unique(&safe_name(function.source_name), |n| state.is_taken(n));
+        let plain = safe_name(function.source_name);
+        function.name = if state.is_taken(&plain) {
+            unique(&qualified(&plain, function.file), |n| state.is_taken(n))
+        } else {
+            plain
+        };
         state.functions.push(Function::Recorded(function));
         state.functions.len() - 1
     }

@@ -278,6 +278,12 @@ pub(super) fn unique(name: &str, taken: impl Fn(&str) -> bool) -> String {
     (1..).map(|n| format!("{name}_{n}")).find(|n| !taken(n)).unwrap_or_default()
 }
 
+/// The name of a function with its file's: there is another of that name.
+pub(super) fn qualified(name: &str, file: &str) -> String {
+    let stem = std::path::Path::new(file).file_stem().and_then(|s| s.to_str()).unwrap_or_default();
+    if stem.is_empty() { name.to_owned() } else { safe_name(&format!("{stem}_{name}")) }
+}
+
 /// The name of a member: only reserved words are not allowed there.
 pub(super) fn member_name(name: &str) -> String {
     if RESERVED.contains(&name) { format!("{name}_") } else { name.to_owned() }

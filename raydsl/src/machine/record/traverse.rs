@@ -120,10 +120,10 @@ impl Recorder {
     }
 
     /// Records `P::intersect`: the text before and behind its arguments, which gives a `Hit`.
-    fn intersect<P: Primitive>(&self) -> (String, String) {
+    fn intersect<P: Primitive>(&self, prims: &On<'_, P>) -> (String, String) {
         let f = self.function_of(|m| {
             let prim = <P::On<Self>>::zero(m);
-            P::intersect_on(m, prim, RayOn::zero(m))
+            P::intersect_among_on(m, prims.kinds(), prim, RayOn::zero(m))
         });
         let path = P::Hit::PATH.iter().map(|p| format!(".{}", member_name(p))).collect();
         (self.function_name(f), path)
@@ -131,7 +131,7 @@ impl Recorder {
 
     pub(super) fn closest_hit_function<P: Primitive>(&self, prims: &On<'_, P>) -> usize {
         let prims_name = self.prims_buffer(prims);
-        let (intersect, path) = self.intersect::<P>();
+        let (intersect, path) = self.intersect(prims);
         self.text_function("is_finite".to_owned(), vec![], |_| FINITE.to_owned());
         let tree = self.tree::<P>(prims);
         let miss = zero_value(Hit::SCHEMA);
@@ -165,7 +165,7 @@ impl Recorder {
 
     pub(super) fn any_hit_function<P: Primitive>(&self, prims: &On<'_, P>) -> usize {
         let prims_name = self.prims_buffer(prims);
-        let (intersect, path) = self.intersect::<P>();
+        let (intersect, path) = self.intersect(prims);
         self.text_function("is_finite".to_owned(), vec![], |_| FINITE.to_owned());
         let tree = self.tree::<P>(prims);
         let test = format!(

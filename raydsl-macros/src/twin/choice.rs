@@ -1,0 +1,327 @@
+//! `#[primitive] enum`: one of several kinds of primitives, without virtual calls.
+//!
+//! The twin is the number of the kind and the scalars of its primitive, a word each.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+use syn::spanned::Spanned;
+
+use super::{private, twin_of};
+use crate::diag::Errors;
+
+/// The bits of the set of kinds that a scene has.
+const MOST_KINDS: usize = 64;
+
+/// The enum, its twin, and its implementation of `Primitive`.
+pub(super) fn choice(item: &syn::DeriveInput, e: &syn::DataEnum) -> TokenStream {
+    let mut errors = Errors::default();
+    let kinds = kinds(item, e, &mut errors);
+    if !errors.is_empty() {
+        let errors = errors.into_tokens();
+        return quote!(#item #errors);
+    }
+    let choice = Choice { item, data: format_ident!("{}Data", item.ident), kinds };
+    let (derives, twin) = (derives(item), choice.twin());
+    let (r#type, primitive) = (choice.type_impl(), choice.primitive_impl());
+    quote! {
+        #derives
+        #item
+        #twin
+        #r#type
+        #primitive
+    }
+}
+
+/// What a primitive derives, where the user has not written it.
+fn derives(item: &syn::DeriveInput) -> TokenStream {
+    let has = |what| super::derives(item, what);
+    let clone = (!has("Clone")).then(|| quote!(#[derive(Clone)]));
+    let copy = (!has("Copy")).then(|| quote!(#[derive(Copy)]));
+    quote!(#clone #copy)
+}
+
+struct Kind {
+    name: Ident,
+    ty: syn::Type,
+}
+
+/// Each variant has one field, its primitive.
+fn kinds(item: &syn::DeriveInput, e: &syn::DataEnum, errors: &mut Errors) -> Vec<Kind> {
+    if let Some(g) = item.generics.params.first() {
+        errors.at(g.span(), "a primitive cannot be generic", "write an enum for each type");
+    }
+    if e.variants.is_empty() || e.variants.len() > MOST_KINDS {
+        errors.at(
+            item.ident.span(),
+            format!("an enum of primitives has from 1 to {MOST_KINDS} variants"),
+            "put some kinds into an enum of their own, which is a primitive too",
+        );
+    }
+    let mut kinds = Vec::new();
+    for v in &e.variants {
+        let ty = match &v.fields {
+            syn::Fields::Unnamed(f) if f.unnamed.len() == 1 => &f.unnamed[0].ty,
+            _ => {
+                errors.at(
+                    v.span(),
+                    "a variant of a primitive holds one primitive",
+                    &format!("write `{}(Sphere)` with a type that is a primitive", v.ident),
+                );
+                continue;
+            }
+        };
+        kinds.push(Kind { name: v.ident.clone(), ty: ty.clone() });
+    }
+    kinds
+}
+
+struct Choice<'a> {
+    item: &'a syn::DeriveInput,
+    /// The struct that stands for the enum where its layout matters.
+    data: Ident,
+    kinds: Vec<Kind>,
+}
+
+impl Choice<'_> {
+    fn names(&self) -> Vec<&Ident> {
+        self.kinds.iter().map(|k| &k.name).collect()
+    }
+
+    fn types(&self) -> Vec<&syn::Type> {
+        self.kinds.iter().map(|k| &k.ty).collect()
+    }
+
+    fn numbers(&self) -> Vec<u32> {
+        (0..self.kinds.len() as u32).collect()
+    }
+
+    /// How many words the largest kind has.
+    fn words(&self) -> TokenStream {
+        let (p, types) = (private(), self.types());
+        quote!({
+            let mut most = 1;
+            #(
+                let words = <#types as #p::Type>::SCHEMA.leaves();
+                if words > most {
+                    most = words;
+                }
+            )*
+            most
+        })
+    }
+
+    /// The struct of the kind's number and its words, and its twin.
+    fn twin(&self) -> TokenStream {
+        let (vis, data, name) = (&self.item.vis, &self.data, &self.item.ident);
+        let doc = format!("A [`{name}`] as its kind's number and a word for each scalar.");
+        let words = self.words();
+        let data: syn::DeriveInput = syn::parse_quote! {
+            #[doc = #doc]
+            #[derive(Clone, Copy)]
+            #[repr(C)]
+            #vis struct #data {
+                kind: u32,
+                words: [u32; #words],
+            }
+        };
+        let fields: Vec<syn::Field> = match &data.data {
+            syn::Data::Struct(s) => s.fields.iter().cloned().collect(),
+            _ => Vec::new(),
+        };
+        let twin = twin_of(&data, &fields, &quote!(#name));
+        quote!(#data #twin)
+    }
+
+    fn type_impl(&self) -> TokenStream {
+        let (p, name, data) = (private(), &self.item.ident, &self.data);
+        let (names, types, numbers) = (self.names(), self.types(), self.numbers());
+        let twin = format_ident!("{data}On");
+        let (first, first_ty) = (&self.kinds[0].name, &self.kinds[0].ty);
+        quote! {
+            impl #name {
+                #[inline(always)]
+                fn __data(self) -> #data {
+                    match self {
+                        #(Self::#names(v) => #data { kind: #numbers, words: #p::to_words(v) },)*
+                    }
+                }
+
+                /// The first kind for a number that no kind has.
+                fn __of_data(data: #data) -> Self {
+                    match data.kind {
+                        #(#numbers => Self::#names(#p::host_of_words::<#types, _>(data.words)),)*
+                        _ => Self::#first(#p::host_of_words::<#first_ty, _>(data.words)),
+                    }
+                }
+            }
+
+            #[diagnostic::do_not_recommend]
+            impl #p::Type for #name {
+                type On<M: #p::Machine> = #twin<M>;
+
+                const SCHEMA: &'static #p::Schema = <#data as #p::Type>::SCHEMA;
+
+                #[inline(always)]
+                fn splat<M: #p::Machine>(m: &M, v: Self) -> #twin<M> {
+                    #p::Type::splat(m, v.__data())
+                }
+
+                #[inline(always)]
+                fn from_lanes<M: #p::LaneMachine>(
+                    m: &M,
+                    f: &impl Fn(usize) -> Self,
+                ) -> #twin<M> {
+                    #p::Type::from_lanes(m, &|lane| f(lane).__data())
+                }
+
+                #[inline(always)]
+                fn lane<M: #p::LaneMachine>(v: &#twin<M>, lane: usize) -> Self {
+                    Self::__of_data(#p::Type::lane(v, lane))
+                }
+
+                fn write(&self, out: &mut [u8]) {
+                    #p::Type::write(&self.__data(), out);
+                }
+
+                fn read(bytes: &[u8]) -> Self {
+                    Self::__of_data(#p::Type::read(bytes))
+                }
+            }
+
+            #[diagnostic::do_not_recommend]
+            impl<M: #p::Machine> #p::Capture<M> for #name {
+                type On<'c> = #twin<M>;
+
+                #[inline(always)]
+                fn capture(&self, m: &M, name: &'static str) -> #twin<M> {
+                    #p::Machine::capture(m, name, *self)
+                }
+
+                #[inline(always)]
+                fn constant(&self, m: &M) -> #twin<M> {
+                    #p::Type::splat(m, *self)
+                }
+            }
+        }
+    }
+
+    fn primitive_impl(&self) -> TokenStream {
+        let (p, name, data) = (private(), &self.item.ident, &self.data);
+        let (names, types, numbers) = (self.names(), self.types(), self.numbers());
+        let twin = format_ident!("{data}On");
+        let first = &self.kinds[0].ty;
+        let count = self.kinds.len() as u32;
+        let wgsl_name = format!("{name}_intersect");
+        let record = quote!(<#first as #p::Primitive>::Hit);
+        quote! {
+            impl #p::Primitive for #name {
+                type Hit = #record;
+
+                const KINDS: u32 = #count;
+
+                /// The largest of all kinds.
+                const SLACK: f32 = {
+                    let mut most = 0.0;
+                    #(
+                        if <#types as #p::Primitive>::SLACK > most {
+                            most = <#types as #p::Primitive>::SLACK;
+                        }
+                    )*
+                    most
+                };
+
+                #[inline(always)]
+                fn intersect(&self, ray: #p::Ray) -> #record {
+                    match self {
+                        #(Self::#names(v) => <#types as #p::Primitive>::intersect(v, ray),)*
+                    }
+                }
+
+                fn get_bounds(&self) -> #p::Aabb {
+                    match self {
+                        #(Self::#names(v) => <#types as #p::Primitive>::get_bounds(v),)*
+                    }
+                }
+
+                fn split_primitive(&self, axis: usize, at: f32) -> (#p::Aabb, #p::Aabb) {
+                    match self {
+                        #(
+                            Self::#names(v) => {
+                                <#types as #p::Primitive>::split_primitive(v, axis, at)
+                            }
+                        )*
+                    }
+                }
+
+                #[inline(always)]
+                fn kind(&self) -> u32 {
+                    match self {
+                        #(Self::#names(_) => #numbers,)*
+                    }
+                }
+
+                #[inline(always)]
+                fn intersect_on<__M: #p::Machine>(
+                    m: &__M,
+                    prim: #twin<__M>,
+                    ray: #p::RayOn<__M>,
+                ) -> <#record as #p::Type>::On<__M> {
+                    Self::intersect_among_on(m, #p::Kinds::ALL, prim, ray)
+                }
+
+                #[inline(always)]
+                fn intersect_one_on<__M: #p::Machine>(
+                    m: &__M,
+                    prim: &Self,
+                    ray: #p::RayOn<__M>,
+                ) -> <#record as #p::Type>::On<__M> {
+                    match prim {
+                        #(
+                            Self::#names(v) => {
+                                <#types as #p::Primitive>::intersect_one_on(m, v, ray)
+                            }
+                        )*
+                    }
+                }
+
+                #[inline(always)]
+                fn intersect_among_on<__M: #p::Machine>(
+                    m: &__M,
+                    kinds: #p::Kinds,
+                    prim: #twin<__M>,
+                    ray: #p::RayOn<__M>,
+                ) -> <#record as #p::Type>::On<__M> {
+                    static __INFO: #p::KernelInfo = #p::KernelInfo {
+                        name: #wgsl_name,
+                        file: ::core::file!(),
+                        line: ::core::line!(),
+                        params: &["self", "ray"],
+                    };
+                    #p::Machine::call(
+                        m,
+                        &__INFO,
+                        (prim, ray),
+                        #[inline(always)]
+                        |m, (prim, ray)| {
+                            let found = #p::Var::new(m, "found", #p::Value::zero(m));
+                            #(
+                                #p::of_kind(
+                                    m,
+                                    kinds,
+                                    prim.kind,
+                                    #numbers,
+                                    #[inline(always)]
+                                    || {
+                                        let prim = #p::of_words::<_, #types, _>(m, prim.words);
+                                        found.set(m, <#types as #p::Primitive>::intersect_on(m, prim, ray));
+                                    },
+                                );
+                            )*
+                            found.get(m)
+                        },
+                    )
+                }
+            }
+        }
+    }
+}
