@@ -12,6 +12,7 @@
 
 pub mod build;
 mod node;
+mod query;
 pub(crate) mod slabs;
 pub mod traverse;
 pub(crate) mod traverse_packet;
@@ -21,10 +22,10 @@ use core::sync::atomic::{AtomicU64, Ordering};
 
 pub use build::{BuildConfig, BuildError, MAX_DEPTH};
 pub use node::Node;
+pub(crate) use query::closest_on;
 pub use traverse::Cost;
 pub(crate) use view::NODE_SCHEMA;
 pub use view::On;
-pub(crate) use view::closest_on;
 
 use crate::geometry::{Aabb, Hit, Kinds, Primitive, Ray};
 use crate::machine::{Capture, Machine, Resource, Type, wgsl::BufferKey};
@@ -120,6 +121,47 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     /// ```
     pub fn any_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [bool; N] {
         core::array::from_fn(|i| self.any_hit(ray(i as u32)))
+    }
+
+    /// The least `(t, id)` hit of `ray` that `accept` accepts: leaves with holes, sides that are not
+    /// seen. `accept` is asked about some of the hits, in any order. Inside a kernel it is a closure of
+    /// the kernel, which may read what stands around it.
+    pub fn closest_hit_where(&self, ray: Ray, accept: impl Fn(Hit) -> bool) -> P::Hit {
+        traverse::closest_hit_where(&self.view(), ray, accept)
+    }
+
+    /// Whether `ray` has a hit that `accept` accepts.
+    pub fn any_hit_where(&self, ray: Ray, accept: impl Fn(Hit) -> bool) -> bool {
+        traverse::any_hit_where(&self.view(), ray, accept)
+    }
+
+    /// The `N` least `(t, id)` hits of `ray`, in order, with misses behind them. Each primitive gives
+    /// the hit of its `intersect`, so a sphere is there once.
+    ///
+    /// ```
+    /// use raydsl::prelude::*;
+    ///
+    /// let v = |x, y, z| vec3(x, y, z);
+    /// let slabs = [3.0, 1.0, 2.0].map(|z| Triangle { v0: v(0.0, 0.0, z), v1: v(4.0, 0.0, z), v2: v(0.0, 4.0, z) });
+    /// let bvh = Bvh::build(&slabs)?;
+    /// let depths = kernel!(|ray: Ray| {
+    ///     let hits = bvh.multi_hit::<2>(ray);
+    ///     (hits[0].t, hits[1].t, hits[1].prim_id)
+    /// });
+    /// assert_eq!(depths.call((Ray::new(v(1.0, 1.0, 0.0), Vec3::Z),)), (1.0, 2.0, 2));
+    /// # Ok::<(), raydsl::bvh::BuildError>(())
+    /// ```
+    pub fn multi_hit<const N: usize>(&self, ray: Ray) -> [Hit; N] {
+        self.multi_hit_where(ray, |_| true)
+    }
+
+    /// The `N` least `(t, id)` hits of `ray` that `accept` accepts, in order.
+    pub fn multi_hit_where<const N: usize>(
+        &self,
+        ray: Ray,
+        accept: impl Fn(Hit) -> bool,
+    ) -> [Hit; N] {
+        traverse::multi_hit_where(&self.view(), ray, accept)
     }
 
     /// The primitive that was hit; the first one for a miss, so that code need not branch.
@@ -240,6 +282,14 @@ pub trait Slice<P: Primitive> {
     fn closest_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [P::Hit; N];
     /// Whether each of `N` rays hits anything.
     fn any_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [bool; N];
+    /// The least `(t, id)` hit of `ray` that `accept` accepts.
+    fn closest_hit_where(&self, ray: Ray, accept: impl Fn(Hit) -> bool) -> P::Hit;
+    /// Whether `ray` has a hit that `accept` accepts.
+    fn any_hit_where(&self, ray: Ray, accept: impl Fn(Hit) -> bool) -> bool;
+    /// The `N` least `(t, id)` hits of `ray`, in order, with misses behind them.
+    fn multi_hit<const N: usize>(&self, ray: Ray) -> [Hit; N];
+    /// Those that `accept` accepts.
+    fn multi_hit_where<const N: usize>(&self, ray: Ray, accept: impl Fn(Hit) -> bool) -> [Hit; N];
     /// The primitive that was hit; the first one for a miss.
     fn primitive(&self, hit: Hit) -> P;
 }
@@ -259,6 +309,22 @@ impl<P: Primitive> Slice<P> for [P] {
 
     fn any_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [bool; N] {
         core::array::from_fn(|i| self.any_hit(ray(i as u32)))
+    }
+
+    fn closest_hit_where(&self, ray: Ray, accept: impl Fn(Hit) -> bool) -> P::Hit {
+        traverse::closest_hit_where(&On::slice(self), ray, accept)
+    }
+
+    fn any_hit_where(&self, ray: Ray, accept: impl Fn(Hit) -> bool) -> bool {
+        traverse::any_hit_where(&On::slice(self), ray, accept)
+    }
+
+    fn multi_hit<const N: usize>(&self, ray: Ray) -> [Hit; N] {
+        self.multi_hit_where(ray, |_| true)
+    }
+
+    fn multi_hit_where<const N: usize>(&self, ray: Ray, accept: impl Fn(Hit) -> bool) -> [Hit; N] {
+        traverse::multi_hit_where(&On::slice(self), ray, accept)
     }
 
     fn primitive(&self, hit: Hit) -> P {

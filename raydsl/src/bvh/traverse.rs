@@ -155,6 +155,93 @@ pub fn any_hit<P: Primitive>(prims: &On<'_, P>, ray: Ray) -> bool {
     found
 }
 
+/// Calls `meet` for every hit within the ray's range until it returns false. It may lower the limit
+/// of the distance. Farther hits may come before nearer ones.
+pub(crate) fn visit<P: Primitive>(
+    prims: &On<'_, P>,
+    ray: Ray,
+    mut meet: impl FnMut(Hit, &mut f32) -> bool,
+) {
+    if !is_finite(&ray) {
+        return;
+    }
+    let mut stops = |id: u32, limit: &mut f32| {
+        let hit = prims.prims[id as usize].intersect(ray).hit();
+        let is_met = hit.is_hit && hit.t >= ray.t_min && hit.t <= ray.t_max;
+        is_met && !meet(Hit { prim_id: id, ..hit }, limit)
+    };
+    if prims.has_tree() {
+        return walk(prims, ray, P::SLACK, &mut Uncounted, stops);
+    }
+    let mut limit = ray.t_max;
+    let _ = (0..prims.prims.len() as u32).any(|id| stops(id, &mut limit));
+}
+
+/// The least `(t, id)` hit of those that `accept` accepts.
+pub fn closest_hit_where<P: Primitive>(
+    prims: &On<'_, P>,
+    ray: Ray,
+    accept: impl Fn(Hit) -> bool,
+) -> P::Hit {
+    let mut best = Hit::miss();
+    visit(prims, ray, |hit, limit| {
+        if is_before(&hit, &best) && accept(hit) {
+            best = hit;
+            *limit = beyond::<P>(&hit, &ray);
+        }
+        true
+    });
+    complete(prims, ray, best)
+}
+
+/// Whether there is a hit that `accept` accepts.
+pub fn any_hit_where<P: Primitive>(
+    prims: &On<'_, P>,
+    ray: Ray,
+    accept: impl Fn(Hit) -> bool,
+) -> bool {
+    let mut found = false;
+    visit(prims, ray, |hit, _| {
+        found = accept(hit);
+        !found
+    });
+    found
+}
+
+/// The `N` least `(t, id)` hits of those that `accept` accepts, in order; misses behind them.
+pub fn multi_hit_where<P: Primitive, const N: usize>(
+    prims: &On<'_, P>,
+    ray: Ray,
+    accept: impl Fn(Hit) -> bool,
+) -> [Hit; N] {
+    const { assert!(N > 0, "a query of no hits has no result") };
+    let mut hits = [Hit::miss(); N];
+    visit(prims, ray, |hit, limit| {
+        // A tree with spatial splits holds a primitive more than once.
+        let is_there = hits.iter().any(|h| h.is_hit && h.prim_id == hit.prim_id);
+        if is_before(&hit, &hits[N - 1]) && !is_there && accept(hit) {
+            let at = hits.iter().position(|h| is_before(&hit, h)).unwrap_or(N - 1);
+            hits[at..].rotate_right(1);
+            hits[at] = hit;
+            if hits[N - 1].is_hit {
+                *limit = beyond::<P>(&hits[N - 1], &ray);
+            }
+        }
+        true
+    });
+    hits
+}
+
+/// Whether `a` comes before `b` in the order of `(t, id)`; any hit comes before a miss.
+fn is_before(a: &Hit, b: &Hit) -> bool {
+    !b.is_hit || a.t < b.t || (a.t == b.t && a.prim_id < b.prim_id)
+}
+
+/// No node beyond this distance can hold a hit before `hit`.
+fn beyond<P: Primitive>(hit: &Hit, ray: &Ray) -> f32 {
+    (hit.t + hit.t.abs() * P::SLACK).min(ray.t_max)
+}
+
 /// Visits the primitives of every leaf that the ray may meet, nearer ones first, until `visit`
 /// returns true. `visit` may lower the limit of the distance.
 #[inline(always)]

@@ -347,6 +347,44 @@ fn any_hit_inside<L: Lanes, P: Primitive>(
     B(found)
 }
 
+/// Calls `meet` for every hit within each lane's range, in the lanes that have it, until it returns
+/// false there.
+#[inline(always)]
+pub(crate) fn visit<L: Lanes, P: Primitive>(
+    m: &Packet<L>,
+    prims: &On<'_, P>,
+    ray: RayOn<Packet<L>>,
+    limit: impl Fn() -> F<Packet<L>>,
+    meet: impl Fn(HitOn<Packet<L>>) -> B<Packet<L>>,
+) {
+    let l = m.lanes();
+    walk(
+        m,
+        prims,
+        &ray,
+        #[inline(always)]
+        |mask, id, end| {
+            let hit = m.with_active(
+                mask,
+                #[inline(always)]
+                || P::Hit::hit_on(P::intersect_one_on(m, &prims.prims[id as usize], ray)),
+            );
+            let met = and(l, mask, accepts(l, &hit, &ray));
+            if !l.any(met) {
+                return mask;
+            }
+            let hit = HitOn { prim_id: U(l.u32(id)), ..hit };
+            let goes_on = m.with_active(
+                met,
+                #[inline(always)]
+                || meet(hit).0,
+            );
+            *end = limit().0;
+            without(l, mask, without(l, met, goes_on))
+        },
+    );
+}
+
 /// What counters show for a walk; it has no place in the user's source.
 const NODES: Place = Place { what: "nodes of trees", file: "", line: 0 };
 const PRIMITIVES: Place = Place { what: "primitives in leaves", file: "", line: 0 };

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 use super::{Node, bytes_of, slice_key};
-use crate::geometry::{HitRecord, Kinds, Primitive, RayOn};
-use crate::machine::{Field, Leaves, Machine, Resource, Schema, Type, U, Value, wgsl::BufferKey};
+use crate::geometry::{Kinds, Primitive};
+use crate::machine::{Field, Leaves, Machine, Resource, Schema, Type, Value, wgsl::BufferKey};
 
 /// The structure of a [`Node`].
 pub(crate) const NODE_SCHEMA: &Schema = &Schema::Struct {
@@ -156,21 +156,4 @@ impl<M: Machine, P: Type> Value<M> for On<'_, P> {
         );
         a
     }
-}
-
-/// The record of the least `(t, id)` hit: traversal carries the hit alone, and the rest is computed
-/// once more for the primitive that was hit.
-#[inline(always)]
-pub(crate) fn closest_on<M: Machine, P: Primitive>(
-    m: &M,
-    prims: &On<'_, P>,
-    ray: RayOn<M>,
-) -> <P::Hit as Type>::On<M> {
-    let hit = m.closest_hit(prims, ray);
-    P::Hit::complete_on(
-        m,
-        hit,
-        #[inline(always)]
-        || P::intersect_on(m, m.fetch(prims, U(hit.prim_id.0)), ray),
-    )
 }

@@ -6,7 +6,7 @@
 
 use super::{B, Coerce, Compare, IntBinary, Machine, Type, U, Usize, Var};
 use crate::bvh;
-use crate::geometry::{HitOn, Primitive, RayOn};
+use crate::geometry::{HitOn, Primitive};
 
 /// The number of a method's name (FNV-1a, 64 bits).
 pub const fn name(text: &str) -> u64 {
@@ -262,26 +262,6 @@ impl<M: Machine, V: super::Value<M>, const N: usize> Method<{ name("len") }, M, 
     #[inline(always)]
     fn call(self, _: &M, (): ()) -> usize {
         N
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("closest_hit") }, M, (RayOn<M>,)> for bvh::On<'_, P> {
-    type Output = <P::Hit as Type>::On<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (ray,): (RayOn<M>,)) -> Self::Output {
-        bvh::closest_on(m, &self, ray)
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("any_hit") }, M, (RayOn<M>,)> for bvh::On<'_, P> {
-    type Output = B<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (ray,): (RayOn<M>,)) -> B<M> {
-        m.any_hit(&self, ray)
     }
 }
 

@@ -425,6 +425,16 @@ pub trait Machine: Sized + 'static {
         ray: crate::geometry::RayOn<Self>,
     ) -> B<Self>;
 
+    /// Asks `meet` about every hit within the ray's range, in the lanes that have it: whether the
+    /// lane goes on. Nodes beyond `limit` are left out. The hit has its primitive's number.
+    fn visit<P: crate::geometry::Primitive>(
+        &self,
+        prims: &crate::bvh::On<'_, P>,
+        ray: crate::geometry::RayOn<Self>,
+        limit: impl Fn() -> F<Self>,
+        meet: impl Fn(crate::geometry::HitOn<Self>) -> B<Self>,
+    );
+
     /// `[f(0), f(1), ..]`; a loop in generated code.
     #[inline(always)]
     fn each<V: Value<Self>, const N: usize>(&self, mut f: impl FnMut(U<Self>) -> V) -> [V; N] {

@@ -461,6 +461,16 @@ impl<L: Lanes> Machine for Packet<L> {
         traverse_packet::any_hit(self, prims, ray)
     }
     #[inline(always)]
+    fn visit<P: Primitive>(
+        &self,
+        prims: &crate::bvh::On<'_, P>,
+        ray: RayOn<Self>,
+        limit: impl Fn() -> F<Self>,
+        meet: impl Fn(HitOn<Self>) -> B<Self>,
+    ) {
+        traverse_packet::visit(self, prims, ray, limit, meet);
+    }
+    #[inline(always)]
     fn fetch<P: Type>(&self, prims: &crate::bvh::On<'_, P>, index: U<Self>) -> P::On<Self> {
         if prims.is_empty() {
             return P::On::zero(self);

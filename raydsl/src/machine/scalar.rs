@@ -409,6 +409,23 @@ impl Machine for Scalar {
         let ray = crate::geometry::Ray::lane::<Self>(&ray, 0);
         B(traverse::any_hit(prims, ray))
     }
+    fn visit<P: Primitive>(
+        &self,
+        prims: &crate::bvh::On<'_, P>,
+        ray: RayOn<Self>,
+        limit: impl Fn() -> F<Self>,
+        meet: impl Fn(HitOn<Self>) -> B<Self>,
+    ) {
+        if !self.alive() {
+            return;
+        }
+        let ray = crate::geometry::Ray::lane::<Self>(&ray, 0);
+        traverse::visit(prims, ray, |hit, end| {
+            let goes_on = meet(crate::geometry::Hit::splat(self, hit)).0;
+            *end = limit().0;
+            goes_on
+        });
+    }
     fn fetch<P: Type>(&self, prims: &crate::bvh::On<'_, P>, index: U<Self>) -> P::On<Self> {
         if prims.is_empty() {
             return P::On::zero(self);

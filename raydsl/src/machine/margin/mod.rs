@@ -435,6 +435,20 @@ impl Machine for Margin {
         B(traverse::query(self, prims, ray, traverse::any_hit))
     }
 
+    fn visit<P: Primitive>(
+        &self,
+        prims: &crate::bvh::On<'_, P>,
+        ray: RayOn<Self>,
+        limit: impl Fn() -> F<Self>,
+        meet: impl Fn(HitOn<Self>) -> B<Self>,
+    ) {
+        if self.is_running() {
+            traverse::visit(self, prims, ray, &|| limit().0.range.high, &|hit| {
+                self.decided(meet(hit).0)
+            });
+        }
+    }
+
     fn fetch<P: crate::machine::Type>(
         &self,
         prims: &crate::bvh::On<'_, P>,

@@ -124,6 +124,46 @@ pub(super) fn any_hit(m: &Margin, scene: &Scene<'_>) -> Truth {
     m.truth(is_reference, may_be, !is_certain)
 }
 
+/// Calls `meet` for every hit of the way that is followed, until it returns false.
+pub(super) fn visit<P: Primitive>(
+    m: &Margin,
+    prims: &On<'_, P>,
+    ray: RayOn<Margin>,
+    limit: &dyn Fn() -> f64,
+    meet: &dyn Fn(HitOn<Margin>) -> bool,
+) {
+    let bytes = |_| Vec::new();
+    let scene = Scene {
+        ray,
+        len: prims.len() as u32,
+        tree: prims.has_tree().then_some((prims.nodes, prims.indices)),
+        slack: f64::from(P::SLACK),
+        intersect: &|id| P::Hit::hit_on(P::intersect_one_on(m, &prims.get(id), ray)),
+        bytes: &bytes,
+    };
+    let runs = match fate(ray) {
+        Fate::Misses => false,
+        Fate::Runs => true,
+        Fate::MayMiss => m.decided(m.truth(true, true, true)),
+    };
+    if !runs {
+        return;
+    }
+    let end = Cell::new(ray.t_max.0.range.high);
+    scene.walk(&end, &mut |id| {
+        let hit = (scene.intersect)(id);
+        let late = m.f32_compare(Compare::Ge, hit.t.0, ray.t_min.0);
+        let early = m.f32_compare(Compare::Le, hit.t.0, ray.t_max.0);
+        let inside = m.bool_binary(BoolBinary::And, late, early);
+        if !m.decided(m.bool_binary(BoolBinary::And, hit.is_hit.0, inside)) {
+            return false;
+        }
+        let goes_on = meet(HitOn { prim_id: U(id), ..hit });
+        end.set(limit());
+        !goes_on
+    });
+}
+
 fn hit_on(m: &Margin, found: Option<Found>) -> HitOn<Margin> {
     let number = |v: Option<Bounded>| F(v.unwrap_or_else(|| m.f32(0.0)));
     HitOn {

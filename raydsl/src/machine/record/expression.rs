@@ -86,6 +86,7 @@ impl Expressions<'_> {
                 primary(format!("{}[{i}]", self.at_least(*a, Bind::Primary, names)))
             }
             Expr::Load(v) => primary(self.text.var(self.function, *v)),
+            Expr::Address(v) => (format!("&{}", self.text.var(self.function, *v)), Bind::Unary),
             Expr::F32Unary(F32Unary::Neg, a) | Expr::Neg(a) => self.prefix("-", *a, names),
             Expr::Not(a) => self.prefix("!", *a, names),
             Expr::Complement(a) => self.prefix("~", *a, names),

@@ -110,6 +110,8 @@ pub(super) enum Expr {
     Member(Id, &'static str),
     Element(Id, usize),
     Load(VarId),
+    /// A pointer to a variable, for functions that change it.
+    Address(VarId),
     F32Unary(F32Unary, Id),
     F32Binary(F32Binary, Id, Id),
     MulAdd(Id, Id, Id),
@@ -139,6 +141,7 @@ impl Expr {
                 | Self::Bool(_)
                 | Self::Param(_)
                 | Self::Uniform(_)
+                | Self::Address(_)
                 | Self::Member(..)
                 | Self::Element(..)
         )
@@ -152,6 +155,7 @@ impl Expr {
             | Self::Bool(_)
             | Self::Param(_)
             | Self::Uniform(_)
+            | Self::Address(_)
             | Self::Load(_) => vec![],
             Self::Member(a, _)
             | Self::Element(a, _)

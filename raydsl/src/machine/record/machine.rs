@@ -769,6 +769,15 @@ impl Machine for Recorder {
         );
         B(self.add(Expr::Call(function, vec![ray]), Type::Bool))
     }
+    fn visit<P: Primitive>(
+        &self,
+        prims: &crate::bvh::On<'_, P>,
+        ray: RayOn<Self>,
+        limit: impl Fn() -> crate::machine::F<Self>,
+        meet: impl Fn(HitOn<Self>) -> B<Self>,
+    ) {
+        self.visit_hits(prims, ray, &limit, &meet);
+    }
     fn each<V: Value<Self>, const N: usize>(&self, mut f: impl FnMut(U<Self>) -> V) -> [V; N] {
         let all = Var::new(self, "each", [V::zero(self); N]);
         let i = Var::new(self, "i", U(self.u32(0)));

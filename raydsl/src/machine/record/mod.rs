@@ -14,6 +14,7 @@ mod names;
 mod storage;
 mod traverse;
 mod types;
+mod visit;
 
 use core::cell::RefCell;
 
@@ -45,8 +46,16 @@ impl State {
     fn is_taken(&self, name: &str) -> bool {
         let of_buffer = |b: &SceneBuffer| {
             name.strip_prefix(&b.name).is_some_and(|rest| {
-                matches!(rest, "" | "_at" | "_element" | "_len" | "_closest_hit" | "_any_hit")
-                    || rest.starts_with("_part")
+                matches!(
+                    rest,
+                    "" | "_at"
+                        | "_element"
+                        | "_len"
+                        | "_closest_hit"
+                        | "_any_hit"
+                        | "_walk"
+                        | "_next"
+                ) || rest.starts_with("_part")
             })
         };
         self.functions.iter().any(|f| f.name() == name) || self.buffers.iter().any(of_buffer)

@@ -74,7 +74,7 @@ impl Recorder {
         called.expect("an intersection is a kernel, and a call of a kernel records a function")
     }
 
-    fn text_function(
+    pub(super) fn text_function(
         &self,
         name: String,
         types: Vec<&'static Schema>,
@@ -114,7 +114,12 @@ impl Recorder {
         self.text_function(name, vec![P::SCHEMA], |_| String::new())
     }
 
-    fn prims_buffer<P: Type>(&self, prims: &On<'_, P>) -> String {
+    /// `fn is_finite(v: vec3<f32>) -> bool`.
+    pub(super) fn finite_function(&self) -> usize {
+        self.text_function("is_finite".to_owned(), vec![], |_| FINITE.to_owned())
+    }
+
+    pub(super) fn prims_buffer<P: Type>(&self, prims: &On<'_, P>) -> String {
         let name = prims.name();
         self.buffer(prims.prims_key(), name, P::SCHEMA, prims.len() as u64)
     }
@@ -132,7 +137,7 @@ impl Recorder {
     pub(super) fn closest_hit_function<P: Primitive>(&self, prims: &On<'_, P>) -> usize {
         let prims_name = self.prims_buffer(prims);
         let (intersect, path) = self.intersect(prims);
-        self.text_function("is_finite".to_owned(), vec![], |_| FINITE.to_owned());
+        self.finite_function();
         let tree = self.tree::<P>(prims);
         let miss = zero_value(Hit::SCHEMA);
         let test = format!(
@@ -166,7 +171,7 @@ impl Recorder {
     pub(super) fn any_hit_function<P: Primitive>(&self, prims: &On<'_, P>) -> usize {
         let prims_name = self.prims_buffer(prims);
         let (intersect, path) = self.intersect(prims);
-        self.text_function("is_finite".to_owned(), vec![], |_| FINITE.to_owned());
+        self.finite_function();
         let tree = self.tree::<P>(prims);
         let test = format!(
             "let candidate = {intersect}({prims_name}_at(id), ray){path};\n\
@@ -193,7 +198,7 @@ impl Recorder {
     }
 
     /// The buffers of a tree: nodes and index list. `None` for a plain slice.
-    fn tree<P: Primitive>(&self, prims: &On<'_, P>) -> Option<TreeNames> {
+    pub(super) fn tree<P: Primitive>(&self, prims: &On<'_, P>) -> Option<TreeNames> {
         let (nodes, indices) = prims.tree_keys()?;
         let name = prims.name();
         let (node_count, index_count) = prims.tree_len();
@@ -206,9 +211,10 @@ impl Recorder {
     }
 }
 
-struct TreeNames {
-    nodes: String,
-    indices: String,
+/// The names of a tree's buffers.
+pub(super) struct TreeNames {
+    pub(super) nodes: String,
+    pub(super) indices: String,
 }
 
 fn indent(text: &str, by: usize) -> String {

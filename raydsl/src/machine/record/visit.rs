@@ -1,0 +1,216 @@
+//! Queries whose hits the kernel sees one by one: the traversal is a struct that gives the next
+//! primitive, so that what is done with a hit stands in the kernel's own function.
+
+use super::Recorder;
+use super::ir::{Expr, Id, Stmt, Type};
+use crate::bvh::{NODE_SCHEMA, On};
+use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn};
+use crate::machine::{
+    B, BoolBinary, Branch, Compare, F, Field, IntBinary, Loop, Machine, Schema, U, Value, Var,
+};
+
+/// As deep as a tree may be, and one more.
+const STACK: usize = 64;
+
+/// No primitive is left.
+const NONE: u32 = u32::MAX;
+
+/// A traversal under way.
+const WALK: &Schema = &Schema::Struct {
+    name: "Walk",
+    fields: &[
+        Field { name: "lower", offset: 0, schema: &Schema::Vector(&Schema::F32, 3) },
+        Field { name: "upper", offset: 16, schema: &Schema::Vector(&Schema::F32, 3) },
+        Field { name: "inverse", offset: 32, schema: &Schema::Vector(&Schema::F32, 3) },
+        Field { name: "top", offset: 48, schema: &Schema::U32 },
+        Field { name: "next", offset: 52, schema: &Schema::U32 },
+        Field { name: "last", offset: 56, schema: &Schema::U32 },
+        Field {
+            name: "nodes",
+            offset: 60,
+            schema: &Schema::Array { element: &Schema::U32, count: STACK, stride: 4 },
+        },
+        Field {
+            name: "enters",
+            offset: 60 + 4 * STACK,
+            schema: &Schema::Array { element: &Schema::F32, count: STACK, stride: 4 },
+        },
+    ],
+    size: 60 + 8 * STACK,
+};
+
+impl Recorder {
+    /// Records a loop over the hits of `prims`.
+    pub(super) fn visit_hits<P: Primitive>(
+        &self,
+        prims: &On<'_, P>,
+        ray: RayOn<Self>,
+        limit: &impl Fn() -> F<Self>,
+        meet: &impl Fn(HitOn<Self>) -> B<Self>,
+    ) {
+        if prims.has_tree() {
+            return self.visit_tree(prims, ray, limit, meet);
+        }
+        let id = Var::new(self, "id", U(self.u32(0)));
+        let repeat = Loop::new(self);
+        let finite = self.is_finite(ray);
+        let within = self.u32_compare(Compare::Lt, id.get(self).0, self.len(prims).0);
+        repeat.test(self, B(self.bool_binary(BoolBinary::And, finite, within)));
+        self.ask(prims, ray, id.get(self), meet, &repeat);
+        repeat.continuing(self);
+        let next = self.u32_binary(IntBinary::WrappingAdd, id.get(self).0, self.u32(1));
+        id.set(self, U(next));
+        repeat.again(self);
+        repeat.end(self);
+    }
+
+    fn visit_tree<P: Primitive>(
+        &self,
+        prims: &On<'_, P>,
+        ray: RayOn<Self>,
+        limit: &impl Fn() -> F<Self>,
+        meet: &impl Fn(HitOn<Self>) -> B<Self>,
+    ) {
+        let (start, next) = self.walk_functions(prims);
+        let start = self.add(Expr::Call(start, vec![self.whole(ray)]), Type::Of(WALK));
+        let walk = self.builder(|b| {
+            let walk = b.new_var("walk", Type::Of(WALK));
+            b.used(start);
+            b.push(Stmt::Var(walk, Some(start)));
+            walk
+        });
+        let repeat = Loop::new(self);
+        let arguments = vec![self.add(Expr::Address(walk), Type::Of(WALK)), ray.t_min.0, limit().0];
+        let id = self.add(Expr::Call(next, arguments), Type::U32);
+        self.builder(|b| {
+            let node = b.node(id);
+            (node.pinned, node.name) = (true, Some("id"));
+        });
+        repeat.test(self, B(self.u32_compare(Compare::Ne, id, self.u32(NONE))));
+        self.ask(prims, ray, U(id), meet, &repeat);
+        repeat.continuing(self);
+        repeat.again(self);
+        repeat.end(self);
+    }
+
+    /// Intersects one primitive, and asks about the hit.
+    fn ask<P: Primitive>(
+        &self,
+        prims: &On<'_, P>,
+        ray: RayOn<Self>,
+        id: U<Self>,
+        meet: &impl Fn(HitOn<Self>) -> B<Self>,
+        repeat: &Loop<Self>,
+    ) {
+        let prim = self.fetch(prims, id);
+        let found = P::intersect_among_on(self, prims.kinds(), prim, ray);
+        let hit = HitOn { prim_id: id, ..P::Hit::hit_on(found) };
+        let late = self.f32_compare(Compare::Ge, hit.t.0, ray.t_min.0);
+        let early = self.f32_compare(Compare::Le, hit.t.0, ray.t_max.0);
+        let inside = self.bool_binary(BoolBinary::And, late, early);
+        let is_met = Branch::new(self, B(self.bool_binary(BoolBinary::And, hit.is_hit.0, inside)));
+        if is_met.then(self) {
+            let stops = Branch::new(self, B(self.bool_not(meet(hit).0)));
+            if stops.then(self) {
+                repeat.leave(self);
+            }
+            stops.end(self);
+        }
+        is_met.end(self);
+    }
+
+    fn whole<V: Value<Self>>(&self, v: V) -> Id {
+        self.put_together(V::SCHEMA, &mut self.leaves_of(v).into_iter())
+    }
+
+    fn is_finite(&self, ray: RayOn<Self>) -> Id {
+        let function = self.finite_function();
+        let of = |v: crate::machine::V3<Self>| {
+            self.add(Expr::Call(function, vec![self.whole(v)]), Type::Bool)
+        };
+        self.bool_binary(BoolBinary::And, of(ray.origin), of(ray.direction))
+    }
+
+    /// `fn bvh_walk(ray: Ray) -> Walk` and `fn bvh_next(..) -> u32`.
+    fn walk_functions<P: Primitive>(&self, prims: &On<'_, P>) -> (usize, usize) {
+        let name = self.prims_buffer(prims);
+        self.finite_function();
+        let Some(tree) = self.tree(prims) else { unreachable!("only trees are walked") };
+        let (nodes, ids, slack) = (&tree.nodes, &tree.indices, P::SLACK);
+        let start = self.text_function(
+            format!("{name}_walk"),
+            vec![<Ray as crate::machine::Type>::SCHEMA, WALK, NODE_SCHEMA],
+            |name| {
+                format!(
+                    "\
+/// A traversal that has yet to begin.
+fn {name}(ray: Ray) -> Walk {{
+    var w = Walk();
+    if (params.len_of_{nodes} == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {{
+        return w;
+    }}
+    let root = {nodes}_at(0u);
+    let s = slabs(ray, root, {slack:?});
+    w.lower = s.lower;
+    w.upper = s.upper;
+    w.inverse = s.inverse;
+    let enter = enter_leave(s, root, ray.t_min, ray.t_max);
+    w.enters[0] = enter.x;
+    w.top = select(0u, 1u, enter.x <= enter.y);
+    return w;
+}}
+"
+                )
+            },
+        );
+        let next = self.text_function(format!("{name}_next"), vec![WALK, NODE_SCHEMA], |name| {
+            format!(
+                "\
+/// The next primitive that the ray may meet at or before `limit`; {NONE}u when none is left.
+fn {name}(w: ptr<function, Walk>, t_min: f32, limit: f32) -> u32 {{
+    loop {{
+        if ((*w).next < (*w).last) {{
+            (*w).next = (*w).next + 1u;
+            return {ids}_at((*w).next - 1u);
+        }}
+        // The next node on the stack that is not beyond the limit.
+        var found = false;
+        while ((*w).top > 0u && !found) {{
+            (*w).top = (*w).top - 1u;
+            found = (*w).enters[(*w).top] <= limit;
+        }}
+        if (!found) {{
+            return {NONE}u;
+        }}
+        var node = {nodes}_at((*w).nodes[(*w).top]);
+        let s = Slabs((*w).lower, (*w).upper, (*w).inverse);
+        // Down to a leaf, the nearer child first.
+        while (node.count == 0u) {{
+            let left = {nodes}_at(node.first);
+            let right = {nodes}_at(node.first + 1u);
+            let l = enter_leave(s, left, t_min, limit);
+            let r = enter_leave(s, right, t_min, limit);
+            let hit_left = l.x <= l.y;
+            let hit_right = r.x <= r.y;
+            if (!hit_left && !hit_right) {{
+                break;
+            }}
+            let left_first = hit_left && (!hit_right || l.x <= r.x);
+            if (hit_left && hit_right) {{
+                (*w).nodes[(*w).top] = select(node.first, node.first + 1u, left_first);
+                (*w).enters[(*w).top] = select(l.x, r.x, left_first);
+                (*w).top = (*w).top + 1u;
+            }}
+            if (left_first) {{ node = left; }} else {{ node = right; }}
+        }}
+        (*w).next = node.first;
+        (*w).last = node.first + node.count;
+    }}
+    return {NONE}u;
+}}
+"
+            )
+        });
+        (start, next)
+    }
+}

@@ -1,0 +1,150 @@
+//! Queries that ask the kernel about hits, and queries of several hits, in every variant.
+
+use raydsl::assert_variants_agree;
+use raydsl::geometry::sphere;
+use raydsl::prelude::*;
+use raydsl_tests::rng::Rng;
+
+#[primitive(sphere(center, radius))]
+#[derive(Debug)]
+struct Ball {
+    center: Vec3,
+    radius: f32,
+}
+
+fn balls(rng: &mut Rng, count: usize) -> Vec<Ball> {
+    let mut balls: Vec<Ball> = (0..count)
+        .map(|_| Ball { center: rng.point(3.0), radius: rng.range(0.2, 0.9) })
+        .collect();
+    // Copies: of equal distances the smaller number comes first.
+    balls.extend_from_within(..count / 4);
+    balls
+}
+
+fn rays(rng: &mut Rng) -> Vec<(Ray,)> {
+    let mut all: Vec<(Ray,)> =
+        (0..3000).map(|_| (Ray::new(rng.point(4.0), rng.point(1.0)),)).collect();
+    // Ranges that hold no hit, or a few.
+    for (i, (ray,)) in all.iter_mut().enumerate() {
+        match i % 5 {
+            0 => ray.t_max = 2.0,
+            1 => ray.t_min = 1.0,
+            _ => {}
+        }
+    }
+    all[7].0.origin.x = f32::NAN;
+    all[8].0.direction.z = f32::INFINITY;
+    all
+}
+
+/// All hits in order, by looking at every ball.
+fn in_order(balls: &[Ball], ray: Ray, accept: impl Fn(Hit) -> bool) -> Vec<Hit> {
+    let is_number = ray.origin.is_finite() && ray.direction.is_finite();
+    let hit = |(id, b): (usize, &Ball)| Hit {
+        prim_id: id as u32,
+        ..sphere::intersect(ray, b.center, b.radius)
+    };
+    let mut all: Vec<Hit> = balls.iter().enumerate().map(hit).collect();
+    all.retain(|h| is_number && h.is_hit && accept(*h));
+    all.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.prim_id.cmp(&b.prim_id)));
+    all
+}
+
+/// Two balls of three, and only beyond a distance.
+fn is_kept(hit: Hit) -> bool {
+    hit.prim_id % 3 != 1 && hit.t > 0.5
+}
+
+#[test]
+fn several_hits_are_in_order() {
+    let mut rng = Rng::of("several");
+    let balls = balls(&mut rng, 60);
+    let bvh = Bvh::build(&balls).expect("finite bounds");
+    let (rays, slice) = (rays(&mut rng), &balls[..]);
+    let mut most = 0;
+    for (ray,) in &rays {
+        let mut expected = in_order(&balls, *ray, |_| true);
+        most = most.max(expected.len());
+        expected.resize(4, Hit::miss());
+        assert_eq!(bvh.multi_hit::<4>(*ray)[..], expected);
+        assert_eq!(slice.multi_hit::<4>(*ray)[..], expected);
+        let mut kept = in_order(&balls, *ray, is_kept);
+        kept.resize(2, Hit::miss());
+        assert_eq!(bvh.multi_hit_where::<2>(*ray, is_kept)[..], kept);
+    }
+    assert!(most > 6, "no ray meets more than {most} balls");
+    let tree = kernel!(|ray: Ray| {
+        let hits = bvh.multi_hit::<4>(ray);
+        (hits[0], hits[1], hits[2], hits[3])
+    });
+    assert_variants_agree!(&tree, &rays);
+    let some = kernel!(|ray: Ray| {
+        let hits =
+            slice.multi_hit_where::<2>(ray, |hit: Hit| hit.prim_id % 3 != 1 && hit.t > 0.5);
+        (hits[0], hits[1])
+    });
+    assert_variants_agree!(&some, &rays);
+}
+
+#[test]
+fn conditions_choose_among_hits() {
+    let mut rng = Rng::of("conditions");
+    let balls = balls(&mut rng, 60);
+    let bvh = Bvh::build(&balls).expect("finite bounds");
+    let (rays, slice) = (rays(&mut rng), &balls[..]);
+    let mut left_out = 0;
+    for (ray,) in &rays {
+        let kept = in_order(&balls, *ray, is_kept);
+        let expected = kept.first().copied().unwrap_or(Hit::miss());
+        assert_eq!(bvh.closest_hit_where(*ray, is_kept), expected);
+        assert_eq!(slice.closest_hit_where(*ray, is_kept), expected);
+        assert_eq!(bvh.any_hit_where(*ray, is_kept), expected.is_hit);
+        assert_eq!(slice.any_hit_where(*ray, is_kept), expected.is_hit);
+        left_out += usize::from(bvh.closest_hit(*ray) != expected);
+    }
+    assert!(left_out > 100, "the condition chose {left_out} times");
+    // The condition reads what stands around it, and the primitive itself.
+    let least = 0.5;
+    let of_tree = kernel!(|ray: Ray| {
+        let hit = bvh.closest_hit_where(ray, |hit: Hit| {
+            let big = bvh.primitive(hit).radius > 0.3;
+            hit.prim_id % 3 != 1 && hit.t > least && big
+        });
+        let any = bvh.any_hit_where(ray, |hit: Hit| hit.t > least + ray.t_min);
+        (hit, any)
+    });
+    assert_variants_agree!(&of_tree, &rays);
+    let of_slice = kernel!(|ray: Ray| {
+        let hit = slice.closest_hit_where(ray, |hit: Hit| hit.prim_id % 3 != 1);
+        let any = slice.any_hit_where(ray, |hit: Hit| hit.prim_id > 50 && hit.t > least);
+        (hit, any)
+    });
+    assert_variants_agree!(&of_slice, &rays);
+}
+
+/// Where packets run a query under a mask, and in a loop.
+#[test]
+fn queries_within_control_flow() {
+    let mut rng = Rng::of("within");
+    let balls = balls(&mut rng, 40);
+    let bvh = Bvh::build(&balls).expect("finite bounds");
+    let rays = rays(&mut rng);
+    let walk = kernel!(|ray: Ray| {
+        let mut sum = 0.0;
+        let mut start = ray.t_min;
+        for i in 0u32..3 {
+            if ray.direction.x > 0.1 * i as f32 {
+                let hit = bvh.closest_hit_where(ray.with_range(start, ray.t_max), |hit: Hit| {
+                    hit.prim_id & 1 == i & 1
+                });
+                if !hit.is_hit {
+                    break;
+                }
+                sum += hit.t;
+                start = hit.t + 0.01;
+            }
+        }
+        sum
+    });
+    assert_variants_agree!(&walk, &rays);
+}
