@@ -1,10 +1,14 @@
 //! What `raydsl::testing` offers to users: it passes where variants agree, and says where not.
 
-use raydsl::kernel::{Lifted, Variant};
+use raydsl::kernel::Lifted;
 use raydsl::machine::{KernelFn, KernelInfo};
+use raydsl::testing::variants_agree;
+
+// ANCHOR: imports
 use raydsl::prelude::*;
-use raydsl::testing::{run, variants_agree};
+use raydsl::testing::run;
 use raydsl::{assert_variants_agree, kernel, variant_test, wgsl_test};
+// ANCHOR_END: imports
 
 // ANCHOR: agree
 #[kernel]
