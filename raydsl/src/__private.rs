@@ -3,11 +3,12 @@
 pub use crate::geometry::{Aabb, Hit, HitOn, HitRecord, Kinds, Primitive, Ray, RayOn};
 pub use crate::kernel::{Baseline, Kernel, Lifted, Native4, Native8, Native16, Native16Halves};
 pub use crate::machine::{
-    Branch, Capture, Coerce, Compare, Const, Field, HostMethod, Inferred, KernelFn, KernelInfo,
+    B, Branch, Capture, Coerce, Compare, Const, Field, HostMethod, Inferred, KernelFn, KernelInfo,
     LaneMachine, Leaves, Loop, Machine, Margin, Method, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor,
     OpCast, OpCompare, OpDiv, OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Parameter,
     Recorder, Resource, Ret, Schema, Steps, Stop, Twin, Type, Value, Var, Varying, call_on_element,
-    decrement, host_of_words, increment, is_mut, name, of_kind, of_words, to_words,
+    decrement, host_of_words, increment, is_kind, is_mut, name, of_kind, of_words, to_words,
+    to_words_on,
 };
 
 /// Traits of associated functions.

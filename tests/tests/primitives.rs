@@ -371,3 +371,35 @@ fn words_come_back() {
         assert_eq!(format!("{shape:?}"), format!("{:?}", Shape::read(&bytes)));
     }
 }
+
+/// What a kernel does with a kind is chosen by `match`.
+#[kernel]
+fn paint(shape: Shape, ray: Ray, hit: Hit) -> Vec3 {
+    match shape {
+        Shape::Ball(ball) => ball.normal(ray, hit).abs(),
+        Shape::Facet(facet) => vec3(hit.u, hit.v, facet.area()),
+        Shape::Color(sphere) => sphere.rgb(),
+    }
+}
+
+#[test]
+fn kinds_are_matched() {
+    let mut rng = Rng::of("kinds are matched");
+    let all = shapes(&mut rng, &[0, 1, 2]);
+    let bvh = Bvh::build(&all).expect("finite bounds");
+    let rays = rays(&mut rng, 3000);
+    let painted = kernel!(|ray: Ray| {
+        let hit = bvh.closest_hit(ray);
+        if hit.is_hit { paint(bvh.primitive(hit), ray, hit) } else { Vec3::ZERO }
+    });
+    for (ray,) in &rays {
+        let hit = bvh.closest_hit(*ray);
+        if hit.is_hit && hit.prim_id % 3 == 2 {
+            assert_eq!(
+                painted.call((*ray,)),
+                vec3(0.25, 0.25, 0.25).map(|x| Unorm8::new(x).to_f32())
+            );
+        }
+    }
+    assert_variants_agree!(&painted, &rays);
+}

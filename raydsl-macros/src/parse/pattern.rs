@@ -38,6 +38,14 @@ fn bind(name: &Ident, mutable: bool, init: Expr) -> Stmt {
     Stmt::Let(Let { host: false, name: Some(name.clone()), mutable, ty: None, init: Some(init) })
 }
 
+/// The enum that a variant's path names.
+fn enum_of(path: &syn::Path) -> Option<TokenStream> {
+    let mut ty = path.clone();
+    ty.segments.pop();
+    ty.segments.pop_punct();
+    (!ty.segments.is_empty()).then(|| ty.to_token_stream())
+}
+
 /// `..` and `name @ ..`.
 fn is_rest(p: &Pat) -> bool {
     match p {
@@ -168,12 +176,13 @@ impl Parser<'_> {
                 }
                 test
             }
+            Pat::TupleStruct(t) if t.path.segments.len() > 1 => self.variant(t, from, lets),
             Pat::TupleStruct(t) => {
                 self.errors.at(
                     t.span(),
                     format!("a kernel has no `{}`", t.path.to_token_stream()),
-                    "match on numbers and enums without fields; a value that may be missing is a \
-                     struct with a flag, as `Hit` has `is_hit`",
+                    "a value that may be missing is a struct with a flag, as `Hit` has `is_hit`; a kind \
+                     of an enum of primitives is written `Shape::Ball(ball)`",
                 );
                 None
             }
@@ -186,6 +195,29 @@ impl Parser<'_> {
                 None
             }
         }
+    }
+
+    /// `Shape::Ball(ball)`: a kind of an enum of primitives.
+    fn variant(
+        &mut self,
+        pat: &syn::PatTupleStruct,
+        from: &Expr,
+        lets: &mut Vec<Stmt>,
+    ) -> Option<Expr> {
+        let span = pat.span();
+        let (Some(kind), Some(ty)) = (pat.path.segments.last(), enum_of(&pat.path)) else {
+            return None;
+        };
+        let ask = |what: &str| {
+            let name = Ident::new(&format!("__{what}_{}", kind.ident), kind.ident.span());
+            let (ty, args) = (ty.clone(), vec![from.clone()]);
+            Expr { kind: Kind::Associated { ty, name, args }, span }
+        };
+        if let Some(prim) = pat.elems.first() {
+            let prim_test = self.pattern(prim, &ask("as"), lets);
+            return both(Some(ask("is")), prim_test);
+        }
+        Some(ask("is"))
     }
 
     /// A value that patterns read more than once; what is not a name yet is given one, and so is

@@ -23,12 +23,14 @@ pub(super) fn choice(item: &syn::DeriveInput, e: &syn::DataEnum) -> TokenStream 
     let choice = Choice { item, data: format_ident!("{}Data", item.ident), kinds };
     let (derives, twin) = (derives(item), choice.twin());
     let (r#type, primitive) = (choice.type_impl(), choice.primitive_impl());
+    let variants = choice.lifted_variants();
     quote! {
         #derives
         #item
         #twin
         #r#type
         #primitive
+        #variants
     }
 }
 
@@ -130,6 +132,47 @@ impl Choice<'_> {
         };
         let twin = twin_of(&data, &fields, &quote!(#name));
         quote!(#data #twin)
+    }
+
+    /// What patterns and expressions of kernels say of a variant.
+    fn lifted_variants(&self) -> TokenStream {
+        let (p, name, data) = (private(), &self.item.ident, &self.data);
+        let (names, types, numbers) = (self.names(), self.types(), self.numbers());
+        let twin = format_ident!("{data}On");
+        let asks: Vec<Ident> = names.iter().map(|n| format_ident!("__is_{n}_on")).collect();
+        let takes: Vec<Ident> = names.iter().map(|n| format_ident!("__as_{n}_on")).collect();
+        let makes: Vec<Ident> = names.iter().map(|n| format_ident!("{n}_on")).collect();
+        quote! {
+            #[doc(hidden)]
+            #[allow(non_snake_case, dead_code, reason = "named as the variants")]
+            impl #name {
+                #(
+                    #[inline(always)]
+                    pub fn #asks<M: #p::Machine>(m: &M, prim: #twin<M>) -> #p::B<M> {
+                        #p::is_kind(m, prim.kind, #numbers)
+                    }
+
+                    #[inline(always)]
+                    pub fn #takes<M: #p::Machine>(
+                        m: &M,
+                        prim: #twin<M>,
+                    ) -> <#types as #p::Type>::On<M> {
+                        #p::of_words::<_, #types, _>(m, prim.words)
+                    }
+
+                    #[inline(always)]
+                    pub fn #makes<M: #p::Machine>(
+                        m: &M,
+                        prim: <#types as #p::Type>::On<M>,
+                    ) -> #twin<M> {
+                        #twin {
+                            kind: #p::u32(m, #numbers),
+                            words: #p::to_words_on::<_, #types, _>(m, prim),
+                        }
+                    }
+                )*
+            }
+        }
     }
 
     fn type_impl(&self) -> TokenStream {

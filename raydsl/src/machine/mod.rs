@@ -66,7 +66,7 @@ pub use twin::{Inferred, Twin};
 pub use types::{LaneMachine, Type};
 pub use value::{B, F, I, Leaves, U, Usize, Value};
 pub use vector::{V2, V3, V4, X2, X3, X4};
-pub use words::{host_of_words, of_kind, of_words, to_words};
+pub use words::{host_of_words, is_kind, of_kind, of_words, to_words, to_words_on};
 
 /// An operation on one `f32`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

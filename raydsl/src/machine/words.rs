@@ -7,9 +7,14 @@ use crate::geometry::Kinds;
 #[inline(always)]
 pub fn to_words<T: Type, const N: usize>(v: T) -> [u32; N] {
     let m = Scalar::default();
-    let on = T::splat(&m, v);
-    let mut writer = Writer { words: [0; N], next: 0 };
-    T::On::zip(&m, on, on, &mut writer);
+    to_words_on::<Scalar, T, N>(&m, T::splat(&m, v)).map(|w| w.0)
+}
+
+/// [`to_words`] on any machine.
+#[inline(always)]
+pub fn to_words_on<M: Machine, T: Type, const N: usize>(m: &M, v: T::On<M>) -> [U<M>; N] {
+    let mut writer = Writer { words: [U(m.u32(0)); N], next: 0 };
+    T::On::zip(m, v, v, &mut writer);
     writer.words
 }
 
@@ -25,6 +30,12 @@ pub fn host_of_words<T: Type, const N: usize>(words: [u32; N]) -> T {
     T::lane::<Scalar>(&of_words::<Scalar, T, N>(&Scalar::default(), words.map(U)), 0)
 }
 
+/// Where the kind is `number`.
+#[inline(always)]
+pub fn is_kind<M: Machine>(m: &M, kind: U<M>, number: u32) -> B<M> {
+    B(m.u32_compare(Compare::Eq, kind.0, m.u32(number)))
+}
+
 /// Runs `then` where the kind is `number`; not at all if no primitive of the scene is of that kind,
 /// and unasked if all are.
 #[inline(always)]
@@ -35,45 +46,45 @@ pub fn of_kind<M: Machine>(m: &M, kinds: Kinds, kind: U<M>, number: u32, then: i
     if kinds.is_only(number) {
         return then();
     }
-    let branch = Branch::new(m, B(m.u32_compare(Compare::Eq, kind.0, m.u32(number))));
+    let branch = Branch::new(m, is_kind(m, kind, number));
     if branch.then(m) {
         then();
     }
     branch.end(m);
 }
 
-struct Writer<const N: usize> {
-    words: [u32; N],
+struct Writer<M: Machine, const N: usize> {
+    words: [U<M>; N],
     next: usize,
 }
 
-impl<const N: usize> Writer<N> {
+impl<M: Machine, const N: usize> Writer<M, N> {
     #[inline(always)]
-    fn put(&mut self, word: u32) {
-        self.words[self.next] = word;
+    fn put(&mut self, word: M::U32) {
+        self.words[self.next] = U(word);
         self.next += 1;
     }
 }
 
-impl<const N: usize> Leaves<Scalar> for Writer<N> {
+impl<M: Machine, const N: usize> Leaves<M> for Writer<M, N> {
     #[inline(always)]
-    fn f32(&mut self, _: &Scalar, a: f32, _: f32) -> f32 {
-        self.put(a.to_bits());
+    fn f32(&mut self, m: &M, a: M::F32, _: M::F32) -> M::F32 {
+        self.put(m.f32_to_bits(a));
         a
     }
     #[inline(always)]
-    fn i32(&mut self, _: &Scalar, a: i32, _: i32) -> i32 {
-        self.put(a as u32);
+    fn i32(&mut self, m: &M, a: M::I32, _: M::I32) -> M::I32 {
+        self.put(m.i32_to_u32(a));
         a
     }
     #[inline(always)]
-    fn u32(&mut self, _: &Scalar, a: u32, _: u32) -> u32 {
+    fn u32(&mut self, _: &M, a: M::U32, _: M::U32) -> M::U32 {
         self.put(a);
         a
     }
     #[inline(always)]
-    fn bool(&mut self, _: &Scalar, a: bool, _: bool) -> bool {
-        self.put(u32::from(a));
+    fn bool(&mut self, m: &M, a: M::Bool, _: M::Bool) -> M::Bool {
+        self.put(m.bool_to_u32(a));
         a
     }
 }
