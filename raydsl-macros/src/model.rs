@@ -420,6 +420,13 @@ impl Expr {
         found.iter().any(|e| !e.has_untyped_integer())
     }
 
+    /// Whether no way through it gives a value.
+    pub(crate) fn has_no_outcome(&self) -> bool {
+        let mut found = Vec::new();
+        self.outcomes(&mut found);
+        found.is_empty()
+    }
+
     /// Whether no lane goes on behind it.
     pub(crate) fn diverges(&self) -> bool {
         matches!(self.kind, Kind::Return(_) | Kind::Break(..) | Kind::Continue(_))

@@ -3,11 +3,11 @@
 pub use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn};
 pub use crate::kernel::{Baseline, Kernel, Lifted, Native4, Native8, Native16, Native16Halves};
 pub use crate::machine::{
-    Branch, Capture, Coerce, Compare, Const, Field, HostMethod, Inferred, KernelFn, KernelInfo,
-    LaneMachine, Leaves, Loop, Machine, Margin, Method, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor,
-    OpCast, OpCompare, OpDiv, OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Parameter,
-    Recorder, Resource, Ret, Schema, Twin, Type, Value, Var, Varying, call_on_element, is_mut,
-    name,
+    Assigned, Branch, Capture, Coerce, Compare, Const, Field, HostMethod, Inferred, KernelFn,
+    KernelInfo, LaneMachine, Leaves, Loop, Machine, Margin, Method, OpAdd, OpAnd, OpBitAnd,
+    OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv, OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr,
+    OpSub, Parameter, Recorder, Resource, Ret, RightOperand, Schema, Through, Twin, Type, Value,
+    Var, Varying, call_on_element, is_mut, name,
 };
 
 /// Traits of associated functions.

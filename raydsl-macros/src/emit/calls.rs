@@ -122,6 +122,7 @@ impl Emitter<'_> {
         args: &[Expr],
     ) -> TokenStream {
         let (p, m) = (private(), own("m"));
+        self.refuse(receiver, name);
         if let Some((generic, this)) = self.generic_receiver(receiver) {
             let function = word(&format!("{name}_on"));
             let args = self.arguments(args);
@@ -131,7 +132,7 @@ impl Emitter<'_> {
         }
         let text = name.to_string();
         let machine = self.machine.clone();
-        let method = quote!(#p::Method::<{ #p::name(#text) }, #machine, _>);
+        let method = quote!(#p::Method::<{ #p::name(#text) }, #machine, _, _>);
         let variable = self.variable_under(receiver);
         let mut value = self.value(receiver);
         let mut args = self.arguments(args);
@@ -150,7 +151,7 @@ impl Emitter<'_> {
                 || self.is_alias(receiver)
             {
                 return args.around(
-                    quote!(#p::call_on_element::<{ #p::name(#text) }, #machine, _, _>(
+                    quote!(#p::call_on_element::<{ #p::name(#text) }, #machine, _, _, _>(
                             #m, #value, (#(#values,)*)
                         )
                     ),
@@ -168,7 +169,7 @@ impl Emitter<'_> {
         let shown = shown(&local);
         args.around(quote!({
             let (#old, #list) = (#value, (#(#values,)*));
-            if #p::is_mut::<{ #p::name(#text) }, #machine, _, _>(#m, &#old, &#list) {
+            if #p::is_mut::<{ #p::name(#text) }, #machine, _, _, _>(#m, &#old, &#list) {
                 let #part = #p::Var::new(#m, #shown, #old);
                 let #result = #method::call_at(#old, &#part, #m, #list);
                 let mut #whole = #local.get(#m);

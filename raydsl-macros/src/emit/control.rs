@@ -31,6 +31,7 @@ impl Emitter<'_> {
             out.extend(self.stmt(stmt));
             if matches!(stmt, Stmt::Expr(e) if e.diverges()) {
                 // What follows is never reached; rustc says so for the user's own function.
+                out.extend(self.unreached(&block.stmts[i + 1..], block.tail.as_deref(), dest));
                 ended = true;
                 break;
             }
@@ -45,6 +46,14 @@ impl Emitter<'_> {
         }
         self.scopes.pop();
         if checked { quote!(#label: { #out }) } else { quote!({ #out }) }
+    }
+
+    /// What stands behind an exit: it never runs, but it says what type the block has.
+    fn unreached(&mut self, stmts: &[Stmt], tail: Option<&Expr>, dest: &Dest) -> TokenStream {
+        let (Some(tail), Dest::Slot { .. }) = (tail, dest) else { return TokenStream::new() };
+        let stmts: Vec<_> = stmts.iter().map(|s| self.stmt(s)).collect();
+        let tail = self.into(tail, dest);
+        quote!(if false { #(#stmts)* #tail })
     }
 
     pub(super) fn stmt(&mut self, stmt: &Stmt) -> TokenStream {
@@ -76,7 +85,7 @@ impl Emitter<'_> {
             None => self.named_value(init, &text),
         };
         let binding = if l.mutable { Binding::Var } else { Binding::Value };
-        let is_alias = self.is_alias(init);
+        let (is_alias, owner) = (self.is_alias(init), self.owner(init));
         if is_alias && l.mutable && matches!(&init.kind, Kind::Name(_)) {
             self.errors.at(
                 init.span,
@@ -85,6 +94,9 @@ impl Emitter<'_> {
             );
         }
         self.bind_typed(name, binding, l.ty.as_ref());
+        if l.ty.is_none() {
+            self.note_owner(name, owner);
+        }
         if is_alias && !l.mutable {
             self.note_alias(name);
         }

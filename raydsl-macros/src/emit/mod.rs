@@ -6,6 +6,7 @@
 mod calls;
 mod control;
 mod host;
+mod owner;
 mod places;
 mod values;
 
@@ -19,6 +20,7 @@ use crate::diag::Errors;
 use crate::generics::{Generics, identifiers};
 use crate::here::{At, here_own, in_one_place, of_type, quote_here as quote};
 use crate::model::{Block, Expr, Kernel, Kind, Param};
+use owner::Owner;
 
 /// What a name stands for.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -43,6 +45,8 @@ struct Local {
     alias: bool,
     /// For a counter that all rays have in step: where its value as one number is.
     step: Option<Ident>,
+    /// Whose methods it has.
+    owner: Owner,
 }
 
 /// Where the value of a control structure goes.
@@ -345,9 +349,11 @@ impl<'a> Emitter<'a> {
 
     /// Binds a name; of its type only a type parameter matters.
     fn bind_typed(&mut self, name: &Ident, binding: Binding, ty: Option<&TokenStream>) {
+        let owner = ty.map_or(Owner::Unknown, Owner::of_type);
         let ty = ty.map(ToString::to_string);
         let generic = self.generics.types.iter().find(|g| ty.as_ref().is_some_and(|ty| *g == ty));
-        let local = Local { binding, generic: generic.cloned(), alias: false, step: None };
+        let generic = generic.cloned();
+        let local = Local { binding, generic, alias: false, step: None, owner };
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name.to_string(), local);
         }
@@ -373,7 +379,8 @@ impl<'a> Emitter<'a> {
 
     /// Binds a counter that all rays have in step.
     fn bind_counter(&mut self, name: &Ident, step: Option<Ident>) {
-        let local = Local { binding: Binding::Value, generic: None, alias: false, step };
+        let binding = Binding::Value;
+        let local = Local { binding, generic: None, alias: false, step, owner: Owner::Library };
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name.to_string(), local);
         }
