@@ -16,8 +16,9 @@ pub mod operations {
         Affine3Functions as _, F32Functions as _, Mat3Functions as _, Mat4Functions as _,
         Vec2New as _, Vec3New as _, Vec4New as _, VectorFunctions as _,
     };
+    pub use crate::machine::host::GiveConstant as _;
 }
 
-pub use crate::machine::host::{HostCapture, HostUse};
+pub use crate::machine::host::{Constant, HostCapture, HostUse};
 pub use crate::machine::index::with_element;
 pub use crate::machine::lowered::*;

@@ -115,6 +115,9 @@ macro_rules! kernel_table {
             names_of_two_traits: Tame Explained;
             exits_in_values: Tame Same;
             arms_that_return: Tame Same;
+            generic_elements: Tame Explained;
+            constant_arguments: Tame Explained;
+            ranges_with_steps: Any Same;
         }
     };
 }

@@ -90,8 +90,11 @@ impl Emitter<'_> {
                     let local = self.local(name);
                     quote!(&#local)
                 }
-                // A number may be for a parameter of the host.
+                // A number may be for a parameter of the host, and so may a constant.
                 Kind::Int { tokens, .. } => tokens.clone(),
+                Kind::Name(name) if self.is_constant(name) => {
+                    quote!(#p::Constant(&#name).give(#m))
+                }
                 Kind::Name(name) if self.lookup(name) == Some(Binding::Host) => quote!(#name),
                 Kind::Host(_) if self.host_value(arg).is_some() => {
                     self.host_value(arg).unwrap_or_default()
@@ -188,6 +191,10 @@ impl Emitter<'_> {
         let name = match &receiver.kind {
             Kind::Name(name) => name,
             Kind::Deref(inner) => return self.generic_receiver(inner),
+            Kind::Element { .. } | Kind::Index { .. } => {
+                let generic = self.generic_of(receiver).0?;
+                return Some((generic, self.value(receiver)));
+            }
             _ => return None,
         };
         let local = self.find(name)?;
@@ -200,6 +207,12 @@ impl Emitter<'_> {
                 Binding::Var | Binding::Mut => quote!(&#ident),
             },
         ))
+    }
+
+    /// Whether it is a constant of the source, by the convention that rustc warns about.
+    fn is_constant(&self, name: &Ident) -> bool {
+        let is_capital = name.to_string().starts_with(|c: char| c.is_ascii_uppercase());
+        is_capital && self.lookup(name).is_none()
     }
 
     /// Whether it is a variable outside of the closure, or a part of one.

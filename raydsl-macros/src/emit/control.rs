@@ -86,6 +86,7 @@ impl Emitter<'_> {
         };
         let binding = if l.mutable { Binding::Var } else { Binding::Value };
         let (is_alias, owner) = (self.is_alias(init), self.owner(init));
+        let generic = self.generic_of(init);
         if is_alias && l.mutable && matches!(&init.kind, Kind::Name(_)) {
             self.errors.at(
                 init.span,
@@ -96,6 +97,7 @@ impl Emitter<'_> {
         self.bind_typed(name, binding, l.ty.as_ref());
         if l.ty.is_none() {
             self.note_owner(name, owner);
+            self.note_generic(name, generic);
         }
         if is_alias && !l.mutable {
             self.note_alias(name);
@@ -268,10 +270,14 @@ impl Emitter<'_> {
         let here = place("loop", span);
         let (ident, counter, done) =
             (self.fresh("repeat"), self.fresh("counter"), self.fresh("done"));
-        let (begin, stop) = (own("begin"), own("end"));
+        let (begin, stop, by) = (own("begin"), own("end"), own("by"));
         let text = var.map(shown).unwrap_or_else(|| "i".to_owned());
         let (start, end) = (self.value(&range.start), self.value(&range.end));
         let now = quote!(#counter.get(#m));
+        let steps = range.step.as_ref().map(|e| {
+            let value = self.value(e);
+            quote!(let #by = #p::step(#m, #value);)
+        });
         // `[low, high)` or `[low, high]`, upwards from `low` or downwards from `high`.
         let (low, high) = if range.reversed {
             (quote!(#begin), now.clone())
@@ -282,8 +288,19 @@ impl Emitter<'_> {
         let next = word(if range.reversed { "decrement" } else { "increment" });
         let one_down = range.reversed && !range.inclusive;
         let item = if one_down { quote!(#p::decrement(#m, #now)) } else { now.clone() };
-        // The last number of an inclusive range may be the last of its type.
-        let (declare, test, note) = if range.inclusive {
+        let advance = match &range.step {
+            Some(_) => quote!(#p::advance(#m, #now, #by)),
+            None => quote!(#p::#next(#m, #now)),
+        };
+        // The last number of a range that is inclusive or has steps may be the last of its type.
+        let (declare, test, note) = if range.step.is_some() {
+            let inclusive = range.inclusive;
+            (
+                quote!(let #done = #p::Var::new(#m, "done", #p::Varying::varying(false, #m));),
+                quote!(#p::goes_on_to(#m, #done.get(#m), #low, #high, #inclusive)),
+                quote!(#done.set(#m, #p::is_last(#m, #now, #last, #by, #inclusive));),
+            )
+        } else if range.inclusive {
             (
                 quote!(let #done = #p::Var::new(#m, "done", #p::Varying::varying(false, #m));),
                 quote!(#p::goes_on(#m, #done.get(#m), #low, #high)),
@@ -294,7 +311,8 @@ impl Emitter<'_> {
         };
         self.scopes.push(HashMap::new());
         // All rays in the loop have the same counter if they began with the same number.
-        let in_step = matches!(range.start.kind, Kind::Int { .. }) && !range.reversed;
+        let in_step =
+            matches!(range.start.kind, Kind::Int { .. }) && !range.reversed && range.step.is_none();
         let step = self.fresh("step");
         let (count, round) = if in_step {
             let from = range.start.kind.int_tokens();
@@ -322,6 +340,7 @@ impl Emitter<'_> {
         };
         quote! {{
             let (#begin, #stop) = #bounds;
+            #steps
             let #counter = #p::Var::new(#m, #text, #first);
             #declare
             #count
@@ -333,7 +352,7 @@ impl Emitter<'_> {
                 #body
                 #ident.continuing(#m);
                 #note
-                #counter.set(#m, #p::#next(#m, #now));
+                #counter.set(#m, #advance);
                 #round
                 if !#ident.again(#m) { break; }
             }

@@ -75,6 +75,26 @@ impl Emitter<'_> {
         }
     }
 
+    /// The type parameter that is the type of `e`, and that of its elements.
+    pub(super) fn generic_of(&self, e: &Expr) -> (Option<Ident>, Option<Ident>) {
+        match &e.kind {
+            Kind::Name(name) => self
+                .find(name)
+                .map_or((None, None), |local| (local.generic.clone(), local.elements.clone())),
+            Kind::Deref(a) => self.generic_of(a),
+            Kind::Element { base, .. } | Kind::Index { base, .. } => {
+                (self.generic_of(base).1, None)
+            }
+            _ => (None, None),
+        }
+    }
+
+    pub(super) fn note_generic(&mut self, name: &Ident, generic: (Option<Ident>, Option<Ident>)) {
+        if let Some(local) = self.scopes.last_mut().and_then(|s| s.get_mut(&name.to_string())) {
+            (local.generic, local.elements) = generic;
+        }
+    }
+
     pub(super) fn note_owner(&mut self, name: &Ident, owner: Owner) {
         if let Some(local) = self.scopes.last_mut().and_then(|s| s.get_mut(&name.to_string())) {
             local.owner = owner;

@@ -113,6 +113,42 @@ pub fn goes_on<M: Machine, C: OpCompare<M, C, Output = B<M>>>(
     B(m.bool_binary(super::BoolBinary::And, m.bool_not(done.0), within.0))
 }
 
+/// The steps of `.step_by(n)`. Rust panics for none; here one is taken, so that the loop ends.
+#[inline(always)]
+pub fn step<M: Machine>(m: &M, n: impl Coerce<M, Usize<M>>) -> U<M> {
+    let n = n.coerce(m).0;
+    let none = m.u32_compare(Compare::Eq, n, m.u32(0));
+    U(m.u32_select(none, m.u32(1), n))
+}
+
+/// Whether a range with steps goes on: its last number has not been had.
+#[inline(always)]
+pub fn goes_on_to<M: Machine, C: OpCompare<M, C, Output = B<M>>>(
+    m: &M,
+    done: B<M>,
+    a: C,
+    b: C,
+    inclusive: bool,
+) -> B<M> {
+    let op = if inclusive { Compare::Le } else { Compare::Lt };
+    let within = C::compare(m, op, a, b);
+    B(m.bool_binary(super::BoolBinary::And, m.bool_not(done.0), within.0))
+}
+
+/// Whether no step is left before the end, which `a` has not passed: so nothing overflows.
+#[inline(always)]
+pub fn is_last<M: Machine, C: Counter<M>>(m: &M, a: C, end: C, by: U<M>, inclusive: bool) -> B<M> {
+    let left = m.u32_binary(super::IntBinary::WrappingSub, end.bits(m), a.bits(m));
+    let op = if inclusive { Compare::Lt } else { Compare::Le };
+    B(m.u32_compare(op, left, by.0))
+}
+
+/// The value of a counter some steps on.
+#[inline(always)]
+pub fn advance<M: Machine, C: Counter<M>>(m: &M, a: C, by: U<M>) -> C {
+    C::of_bits(m, m.u32_binary(super::IntBinary::WrappingAdd, a.bits(m), by.0))
+}
+
 /// Whether a counter has its last value.
 #[inline(always)]
 pub fn equal<M: Machine, C: OpCompare<M, C, Output = B<M>>>(m: &M, a: C, b: C) -> B<M> {
@@ -162,6 +198,10 @@ pub trait Counter<M: Machine> {
     fn next(self, m: &M) -> Self;
     /// One less.
     fn previous(self, m: &M) -> Self;
+    /// Its 32 bits.
+    fn bits(self, m: &M) -> M::U32;
+    /// The counter with these bits.
+    fn of_bits(m: &M, bits: M::U32) -> Self;
 }
 
 #[diagnostic::do_not_recommend]
@@ -173,6 +213,14 @@ impl<M: Machine> Counter<M> for I<M> {
     #[inline(always)]
     fn previous(self, m: &M) -> Self {
         I(m.i32_binary(super::IntBinary::WrappingSub, self.0, m.i32(1)))
+    }
+    #[inline(always)]
+    fn bits(self, m: &M) -> M::U32 {
+        m.i32_to_u32(self.0)
+    }
+    #[inline(always)]
+    fn of_bits(m: &M, bits: M::U32) -> Self {
+        I(m.u32_to_i32(bits))
     }
 }
 
@@ -188,6 +236,14 @@ macro_rules! unsigned_counter {
                 #[inline(always)]
                 fn previous(self, m: &M) -> Self {
                     $t(m.u32_binary(super::IntBinary::WrappingSub, self.0, m.u32(1)))
+                }
+                #[inline(always)]
+                fn bits(self, _: &M) -> M::U32 {
+                    self.0
+                }
+                #[inline(always)]
+                fn of_bits(_: &M, bits: M::U32) -> Self {
+                    $t(bits)
                 }
             }
         )+

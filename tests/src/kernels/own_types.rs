@@ -274,3 +274,72 @@ pub fn arms_that_return(a: f32, n: u32) -> f32 {
         a - 1.0
     }
 }
+
+#[kernel]
+fn last_part<F: Far>(all: [F; 3], n: u32) -> f32 {
+    let mut sum = all[1].part(0.5);
+    for one in all {
+        sum += one.part(2.0);
+    }
+    let one = all[n as usize % 3];
+    sum + one.part(1.0)
+}
+
+#[kernel]
+pub fn generic_elements(a: f32, n: u32) -> f32 {
+    let s = Dual { x: a, dx: a * 0.5 };
+    last_part([s, Dual { x: 1.0, dx: 2.0 }, Dual { x: a, dx: 4.0 }], n)
+}
+
+const ROUNDS: u32 = 3;
+const RATIO: f32 = 1.625;
+
+#[kernel]
+fn powers(x: f32, #[host] n: u32) -> f32 {
+    let mut product = 1.0;
+    for _ in 0..n {
+        product *= x;
+    }
+    product
+}
+
+#[kernel]
+fn weighed(x: f32, n: u32) -> f32 {
+    x * n as f32
+}
+
+/// A constant where a number of the host is wanted, and where it is not.
+#[kernel]
+pub fn constant_arguments(a: f32, n: u32) -> f32 {
+    powers(a, ROUNDS) + weighed(RATIO, ROUNDS) + weighed(a, max(n % 16, ROUNDS))
+}
+
+#[kernel]
+pub fn ranges_with_steps(a: f32, n: u32) -> u32 {
+    let k = n % 40;
+    let mut sum = 0u32;
+    for i in (1..k).step_by(3) {
+        if i == 7 && a > 0.0 {
+            continue;
+        }
+        sum = sum.wrapping_mul(3).wrapping_add(i);
+    }
+    for i in (0..=k).step_by(2) {
+        sum = sum.wrapping_mul(3).wrapping_add(i);
+    }
+    // The last steps would go beyond the type.
+    for i in (4_294_967_290u32..=4_294_967_295).step_by(3) {
+        sum = sum.wrapping_mul(3).wrapping_add(i);
+    }
+    for i in (4_294_967_290 - k..4_294_967_295).step_by(k as usize + 4) {
+        sum = sum.wrapping_mul(5).wrapping_add(i);
+    }
+    for mut i in (-5..k as i32).step_by(2) {
+        i *= 2;
+        sum = sum.wrapping_mul(3).wrapping_add(i as u32);
+    }
+    for x in [1.0, 2.5, 4.0].into_iter() {
+        sum = sum.wrapping_add(x as u32);
+    }
+    sum
+}
