@@ -12,7 +12,7 @@ use crate::ops;
 use crate::parse;
 use crate::rewrite::without_markers;
 
-/// An operator's trait, the function that it has, and the name that lifted code knows it by.
+/// The function of an operator's trait, and the name that lifted code knows it by.
 struct Operator {
     function: &'static str,
     symbol: String,
@@ -51,25 +51,13 @@ fn lifted_operator(item: &syn::ItemImpl, errors: &mut Errors) -> Option<TokenStr
     let (path, _) = item.trait_.as_ref()?;
     let operator = operator(path)?;
     let right = right_operand(path);
-    let references = [Some(&*item.self_ty), right.as_ref()];
-    let references: Vec<_> = references
-        .into_iter()
-        .flatten()
-        .filter(|ty| matches!(ty, syn::Type::Reference(_)))
-        .collect();
-    for ty in &references {
-        errors.at(
-            ty.span(),
-            "an operator of kernels takes values: the types of kernels are copied",
-            "implement it for the type itself: `impl Add for Spectrum`, and write `a + b`",
-        );
-    }
+    let are_values = check_operands(&item.self_ty, right.as_ref(), errors);
     // Without the function rustc's own error is the one to read.
     let f = item.items.iter().find_map(|i| match i {
         syn::ImplItem::Fn(f) if f.sig.ident == operator.function => Some(f),
         _ => None,
     })?;
-    if !references.is_empty() {
+    if !are_values {
         return None;
     }
     let around = Generics::new(&item.generics);
@@ -115,6 +103,21 @@ fn lifted_operator(item: &syn::ItemImpl, errors: &mut Errors) -> Option<TokenStr
         impl<#declared> #owner where #predicates { #function }
         #found
     })
+}
+
+/// Whether the operands are values: lifted code has no references to tell from them.
+fn check_operands(left: &syn::Type, right: Option<&syn::Type>, errors: &mut Errors) -> bool {
+    let is_reference = |ty: &&syn::Type| matches!(ty, syn::Type::Reference(_));
+    let references: Vec<_> =
+        [Some(left), right].into_iter().flatten().filter(is_reference).collect();
+    for ty in &references {
+        errors.at(
+            ty.span(),
+            "an operator of kernels takes values: the types of kernels are copied",
+            "implement it for the type itself: `impl Add for Spectrum`, and write `a + b`",
+        );
+    }
+    references.is_empty()
 }
 
 /// `f32 * Spectrum`, as a method of `Spectrum`.

@@ -23,7 +23,7 @@ fn items(e: &syn::Expr) -> Option<Items<'_>> {
         }
         syn::Expr::MethodCall(c) if c.method == "into_iter" && c.args.is_empty() => {
             let is_range = matches!(inside_parens(&c.receiver), syn::Expr::Range(_));
-            (!is_range).then(|| Items { list: &c.receiver, enumerated: false, by_value: true })
+            (!is_range).then_some(Items { list: &c.receiver, enumerated: false, by_value: true })
         }
         syn::Expr::MethodCall(c) if c.method == "enumerate" && c.args.is_empty() => {
             let inner = items(&c.receiver)?;
