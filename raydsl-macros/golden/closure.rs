@@ -49,6 +49,7 @@ fn main() {
                                         { ::raydsl::__private::name("closest_hit") },
                                         _,
                                         _,
+                                        _,
                                     >::call({ bvh }, m, ({ ray },)),
                                 );
                                 {
@@ -75,10 +76,12 @@ fn main() {
                                                             { ::raydsl::__private::name("rgb") },
                                                             _,
                                                             _,
+                                                            _,
                                                         >::call(
                                                             {
                                                                 ::raydsl::__private::Method::<
                                                                     { ::raydsl::__private::name("primitive") },
+                                                                    _,
                                                                     _,
                                                                     _,
                                                                 >::call({ bvh }, m, ({ hit },))
@@ -159,6 +162,7 @@ fn main() {
                                         { ::raydsl::__private::name("closest_hit") },
                                         ::raydsl::__private::Native8,
                                         _,
+                                        _,
                                     >::call({ bvh }, m, ({ ray },)),
                                 );
                                 {
@@ -185,11 +189,13 @@ fn main() {
                                                             { ::raydsl::__private::name("rgb") },
                                                             ::raydsl::__private::Native8,
                                                             _,
+                                                            _,
                                                         >::call(
                                                             {
                                                                 ::raydsl::__private::Method::<
                                                                     { ::raydsl::__private::name("primitive") },
                                                                     ::raydsl::__private::Native8,
+                                                                    _,
                                                                     _,
                                                                 >::call({ bvh }, m, ({ hit },))
                                                             },
@@ -269,6 +275,7 @@ fn main() {
                                         { ::raydsl::__private::name("closest_hit") },
                                         ::raydsl::__private::Native16,
                                         _,
+                                        _,
                                     >::call({ bvh }, m, ({ ray },)),
                                 );
                                 {
@@ -295,11 +302,13 @@ fn main() {
                                                             { ::raydsl::__private::name("rgb") },
                                                             ::raydsl::__private::Native16,
                                                             _,
+                                                            _,
                                                         >::call(
                                                             {
                                                                 ::raydsl::__private::Method::<
                                                                     { ::raydsl::__private::name("primitive") },
                                                                     ::raydsl::__private::Native16,
+                                                                    _,
                                                                     _,
                                                                 >::call({ bvh }, m, ({ hit },))
                                                             },
@@ -379,6 +388,7 @@ fn main() {
                                         { ::raydsl::__private::name("closest_hit") },
                                         ::raydsl::__private::Native16Halves,
                                         _,
+                                        _,
                                     >::call({ bvh }, m, ({ ray },)),
                                 );
                                 {
@@ -405,11 +415,13 @@ fn main() {
                                                             { ::raydsl::__private::name("rgb") },
                                                             ::raydsl::__private::Native16Halves,
                                                             _,
+                                                            _,
                                                         >::call(
                                                             {
                                                                 ::raydsl::__private::Method::<
                                                                     { ::raydsl::__private::name("primitive") },
                                                                     ::raydsl::__private::Native16Halves,
+                                                                    _,
                                                                     _,
                                                                 >::call({ bvh }, m, ({ hit },))
                                                             },
@@ -489,6 +501,7 @@ fn main() {
                                         { ::raydsl::__private::name("closest_hit") },
                                         ::raydsl::__private::Baseline,
                                         _,
+                                        _,
                                     >::call({ bvh }, m, ({ ray },)),
                                 );
                                 {
@@ -515,11 +528,13 @@ fn main() {
                                                             { ::raydsl::__private::name("rgb") },
                                                             ::raydsl::__private::Baseline,
                                                             _,
+                                                            _,
                                                         >::call(
                                                             {
                                                                 ::raydsl::__private::Method::<
                                                                     { ::raydsl::__private::name("primitive") },
                                                                     ::raydsl::__private::Baseline,
+                                                                    _,
                                                                     _,
                                                                 >::call({ bvh }, m, ({ hit },))
                                                             },
@@ -599,6 +614,7 @@ fn main() {
                                         { ::raydsl::__private::name("closest_hit") },
                                         ::raydsl::__private::Recorder,
                                         _,
+                                        _,
                                     >::call({ bvh }, m, ({ ray },)),
                                 );
                                 {
@@ -625,11 +641,13 @@ fn main() {
                                                             { ::raydsl::__private::name("rgb") },
                                                             ::raydsl::__private::Recorder,
                                                             _,
+                                                            _,
                                                         >::call(
                                                             {
                                                                 ::raydsl::__private::Method::<
                                                                     { ::raydsl::__private::name("primitive") },
                                                                     ::raydsl::__private::Recorder,
+                                                                    _,
                                                                     _,
                                                                 >::call({ bvh }, m, ({ hit },))
                                                             },
@@ -709,6 +727,7 @@ fn main() {
                                         { ::raydsl::__private::name("closest_hit") },
                                         ::raydsl::__private::Margin,
                                         _,
+                                        _,
                                     >::call({ bvh }, m, ({ ray },)),
                                 );
                                 {
@@ -735,11 +754,13 @@ fn main() {
                                                             { ::raydsl::__private::name("rgb") },
                                                             ::raydsl::__private::Margin,
                                                             _,
+                                                            _,
                                                         >::call(
                                                             {
                                                                 ::raydsl::__private::Method::<
                                                                     { ::raydsl::__private::name("primitive") },
                                                                     ::raydsl::__private::Margin,
+                                                                    _,
                                                                     _,
                                                                 >::call({ bvh }, m, ({ hit },))
                                                             },

@@ -138,14 +138,12 @@ impl walk {
                                             let right = ::raydsl::__private::literal(m, 1.0f32, 1.0f64);
                                             sum.set(
                                                 m,
-                                                ::raydsl::__private::Coerce::coerce(
-                                                    ::raydsl::__private::OpAdd::add(
-                                                        m,
-                                                        { sum.get(m) },
-                                                        { right },
-                                                    ),
-                                                    m,
-                                                ),
+                                                ::raydsl::__private::Assigned::<
+                                                    { ::raydsl::__private::name("+=") },
+                                                    _,
+                                                    _,
+                                                    _,
+                                                >::assigned(m, sum.get(m), right),
                                             );
                                         }
                                         let branch_8 = ::raydsl::__private::Branch::new(
@@ -283,14 +281,12 @@ impl walk {
                                             let right = ::raydsl::__private::literal(m, 2.0f32, 2.0f64);
                                             sum.set(
                                                 m,
-                                                ::raydsl::__private::Coerce::coerce(
-                                                    ::raydsl::__private::OpMul::mul(
-                                                        m,
-                                                        { sum.get(m) },
-                                                        { right },
-                                                    ),
-                                                    m,
-                                                ),
+                                                ::raydsl::__private::Assigned::<
+                                                    { ::raydsl::__private::name("*=") },
+                                                    _,
+                                                    _,
+                                                    _,
+                                                >::assigned(m, sum.get(m), right),
                                             );
                                         }
                                     }

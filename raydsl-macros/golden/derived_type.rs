@@ -49,6 +49,198 @@ impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Value<M> for SampleOn
     }
 }
 #[diagnostic::do_not_recommend]
+impl<M: ::raydsl::__private::Machine, R, Via> ::raydsl::__private::OpAdd<M, R, Via>
+for SampleOn<M>
+where
+    Sample: ::raydsl::__private::HostMethod<
+        { ::raydsl::__private::name("+") },
+        M,
+        (R,),
+        Via,
+        This = Self,
+    >,
+{
+    type Output = <Sample as ::raydsl::__private::HostMethod<
+        { ::raydsl::__private::name("+") },
+        M,
+        (R,),
+        Via,
+    >>::Output;
+    #[inline(always)]
+    fn add(m: &M, a: Self, b: R) -> Self::Output {
+        <Sample as ::raydsl::__private::HostMethod<
+            { ::raydsl::__private::name("+") },
+            M,
+            (R,),
+            Via,
+        >>::call(a, m, (b,))
+    }
+}
+#[diagnostic::do_not_recommend]
+impl<M: ::raydsl::__private::Machine, R, Via> ::raydsl::__private::OpSub<M, R, Via>
+for SampleOn<M>
+where
+    Sample: ::raydsl::__private::HostMethod<
+        { ::raydsl::__private::name("-") },
+        M,
+        (R,),
+        Via,
+        This = Self,
+    >,
+{
+    type Output = <Sample as ::raydsl::__private::HostMethod<
+        { ::raydsl::__private::name("-") },
+        M,
+        (R,),
+        Via,
+    >>::Output;
+    #[inline(always)]
+    fn sub(m: &M, a: Self, b: R) -> Self::Output {
+        <Sample as ::raydsl::__private::HostMethod<
+            { ::raydsl::__private::name("-") },
+            M,
+            (R,),
+            Via,
+        >>::call(a, m, (b,))
+    }
+}
+#[diagnostic::do_not_recommend]
+impl<M: ::raydsl::__private::Machine, R, Via> ::raydsl::__private::OpMul<M, R, Via>
+for SampleOn<M>
+where
+    Sample: ::raydsl::__private::HostMethod<
+        { ::raydsl::__private::name("*") },
+        M,
+        (R,),
+        Via,
+        This = Self,
+    >,
+{
+    type Output = <Sample as ::raydsl::__private::HostMethod<
+        { ::raydsl::__private::name("*") },
+        M,
+        (R,),
+        Via,
+    >>::Output;
+    #[inline(always)]
+    fn mul(m: &M, a: Self, b: R) -> Self::Output {
+        <Sample as ::raydsl::__private::HostMethod<
+            { ::raydsl::__private::name("*") },
+            M,
+            (R,),
+            Via,
+        >>::call(a, m, (b,))
+    }
+}
+#[diagnostic::do_not_recommend]
+impl<M: ::raydsl::__private::Machine, R, Via> ::raydsl::__private::OpDiv<M, R, Via>
+for SampleOn<M>
+where
+    Sample: ::raydsl::__private::HostMethod<
+        { ::raydsl::__private::name("/") },
+        M,
+        (R,),
+        Via,
+        This = Self,
+    >,
+{
+    type Output = <Sample as ::raydsl::__private::HostMethod<
+        { ::raydsl::__private::name("/") },
+        M,
+        (R,),
+        Via,
+    >>::Output;
+    #[inline(always)]
+    fn div(m: &M, a: Self, b: R) -> Self::Output {
+        <Sample as ::raydsl::__private::HostMethod<
+            { ::raydsl::__private::name("/") },
+            M,
+            (R,),
+            Via,
+        >>::call(a, m, (b,))
+    }
+}
+#[diagnostic::do_not_recommend]
+impl<M: ::raydsl::__private::Machine, R, Via> ::raydsl::__private::OpRem<M, R, Via>
+for SampleOn<M>
+where
+    Sample: ::raydsl::__private::HostMethod<
+        { ::raydsl::__private::name("%") },
+        M,
+        (R,),
+        Via,
+        This = Self,
+    >,
+{
+    type Output = <Sample as ::raydsl::__private::HostMethod<
+        { ::raydsl::__private::name("%") },
+        M,
+        (R,),
+        Via,
+    >>::Output;
+    #[inline(always)]
+    fn rem(m: &M, a: Self, b: R) -> Self::Output {
+        <Sample as ::raydsl::__private::HostMethod<
+            { ::raydsl::__private::name("%") },
+            M,
+            (R,),
+            Via,
+        >>::call(a, m, (b,))
+    }
+}
+#[diagnostic::do_not_recommend]
+impl<M: ::raydsl::__private::Machine> ::raydsl::__private::OpNeg<M> for SampleOn<M>
+where
+    Sample: ::raydsl::__private::HostMethod<
+        { ::raydsl::__private::name("-x") },
+        M,
+        (),
+        This = Self,
+        Output = Self,
+    >,
+{
+    #[inline(always)]
+    fn neg(m: &M, a: Self) -> Self {
+        <Sample as ::raydsl::__private::HostMethod<
+            { ::raydsl::__private::name("-x") },
+            M,
+            (),
+        >>::call(a, m, ())
+    }
+}
+#[diagnostic::do_not_recommend]
+impl<
+    const NAME: u64,
+    M: ::raydsl::__private::Machine,
+    R,
+    Via,
+> ::raydsl::__private::Assigned<NAME, M, R, Via> for SampleOn<M>
+where
+    Sample: ::raydsl::__private::HostMethod<
+        NAME,
+        M,
+        (R,),
+        Via,
+        This = Self,
+        Output = (),
+    >,
+{
+    #[inline(always)]
+    fn assigned(m: &M, a: Self, b: R) -> Self {
+        let variable = ::raydsl::__private::Var::new(m, "self", a);
+        <Sample as ::raydsl::__private::HostMethod<
+            NAME,
+            M,
+            (R,),
+            Via,
+        >>::call_at(a, &variable, m, (b,));
+        variable.get(m)
+    }
+}
+impl<M: ::raydsl::__private::Machine> ::raydsl::__private::RightOperand for SampleOn<M> {
+    type Host = Sample;
+}
+#[diagnostic::do_not_recommend]
 impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Inferred<M> for SampleOn<M> {
     type Host = Sample;
     #[inline(always)]
@@ -74,15 +266,21 @@ impl<
     const NAME: u64,
     M: ::raydsl::__private::Machine,
     A,
-> ::raydsl::__private::Method<NAME, M, A> for SampleOn<M>
+    Via,
+> ::raydsl::__private::Method<NAME, M, A, Via> for SampleOn<M>
 where
-    Sample: ::raydsl::__private::HostMethod<NAME, M, A, This = Self>,
+    Sample: ::raydsl::__private::HostMethod<NAME, M, A, Via, This = Self>,
 {
-    type Output = <Sample as ::raydsl::__private::HostMethod<NAME, M, A>>::Output;
-    const IS_MUT: bool = <Sample as ::raydsl::__private::HostMethod<NAME, M, A>>::IS_MUT;
+    type Output = <Sample as ::raydsl::__private::HostMethod<NAME, M, A, Via>>::Output;
+    const IS_MUT: bool = <Sample as ::raydsl::__private::HostMethod<
+        NAME,
+        M,
+        A,
+        Via,
+    >>::IS_MUT;
     #[inline(always)]
     fn call(self, m: &M, args: A) -> Self::Output {
-        <Sample as ::raydsl::__private::HostMethod<NAME, M, A>>::call(self, m, args)
+        <Sample as ::raydsl::__private::HostMethod<NAME, M, A, Via>>::call(self, m, args)
     }
     #[inline(always)]
     fn call_at(
@@ -95,6 +293,7 @@ where
             NAME,
             M,
             A,
+            Via,
         >>::call_at(self, variable, m, args)
     }
 }

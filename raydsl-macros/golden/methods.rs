@@ -115,6 +115,7 @@ impl Particle {
                         { ::raydsl::__private::name("moved") },
                         __M,
                         _,
+                        _,
                     >::call(
                         {
                             <Particle>::new_on(
@@ -149,8 +150,12 @@ impl Particle {
 impl<
     __M: ::raydsl::__private::Machine,
     __A0: ::raydsl::__private::Coerce<__M, <Vec3 as ::raydsl::__private::Type>::On<__M>>,
-> ::raydsl::__private::HostMethod<{ ::raydsl::__private::name("moved") }, __M, (__A0,)>
-for Particle {
+> ::raydsl::__private::HostMethod<
+    { ::raydsl::__private::name("moved") },
+    __M,
+    (__A0,),
+    (),
+> for Particle {
     type This = <Self as ::raydsl::__private::Type>::On<__M>;
     type Output = <Particle as ::raydsl::__private::Type>::On<__M>;
     #[inline(always)]
@@ -162,6 +167,7 @@ for Particle {
         { ::raydsl::__private::name("moved") },
         __M,
         (__A0,),
+        (),
     >>::Output {
         <Particle>::moved_on(m, this, by)
     }

@@ -76,14 +76,12 @@ impl push {
                 {
                     let right = by.get(m).y;
                     let mut whole = q.get(m);
-                    whole.position.y = ::raydsl::__private::Coerce::coerce(
-                        ::raydsl::__private::OpAdd::add(
-                            m,
-                            { whole.position.y },
-                            { right },
-                        ),
-                        m,
-                    );
+                    whole.position.y = ::raydsl::__private::Assigned::<
+                        { ::raydsl::__private::name("+=") },
+                        _,
+                        _,
+                        _,
+                    >::assigned(m, whole.position.y, right);
                     q.set(m, whole);
                 }
                 {

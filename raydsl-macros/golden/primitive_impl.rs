@@ -69,6 +69,7 @@ impl ColorSphere {
                             { ::raydsl::__private::name("to_f32") },
                             __M,
                             _,
+                            _,
                         >::call({ this.radius }, m, ()),
                     ),
                     m,
@@ -93,6 +94,7 @@ impl<
     { ::raydsl::__private::name("intersect") },
     __M,
     (__A0,),
+    (),
 > for ColorSphere {
     type This = <Self as ::raydsl::__private::Type>::On<__M>;
     type Output = <Hit as ::raydsl::__private::Type>::On<__M>;
@@ -105,6 +107,7 @@ impl<
         { ::raydsl::__private::name("intersect") },
         __M,
         (__A0,),
+        (),
     >>::Output {
         <ColorSphere>::intersect_on(m, this, ray)
     }

@@ -195,6 +195,8 @@ pub(crate) struct Range {
     pub(crate) end: Box<Expr>,
     pub(crate) inclusive: bool,
     pub(crate) reversed: bool,
+    /// `.step_by(n)`: a `usize`.
+    pub(crate) step: Option<Box<Expr>>,
 }
 
 /// A variable, or a part of one.
@@ -302,6 +304,7 @@ impl Kind {
             }
             Self::For { range, body, .. } => {
                 let mut all = vec![&*range.start, &*range.end];
+                all.extend(range.step.as_deref());
                 all.extend(body.children());
                 all
             }
@@ -418,6 +421,13 @@ impl Expr {
         let mut found = Vec::new();
         self.outcomes(&mut found);
         found.iter().any(|e| !e.has_untyped_integer())
+    }
+
+    /// Whether no way through it gives a value.
+    pub(crate) fn has_no_outcome(&self) -> bool {
+        let mut found = Vec::new();
+        self.outcomes(&mut found);
+        found.is_empty()
     }
 
     /// Whether no lane goes on behind it.

@@ -32,6 +32,37 @@ operators! {
     SHR = ">>" "OpShr" "shr" false true;
 }
 
+/// An operator that a type of the user's may have.
+pub(crate) struct Overloaded {
+    /// Its trait in the runtime; without `Op` it is that of std.
+    pub(crate) operator: &'static str,
+    pub(crate) method: &'static str,
+    /// The function of the trait `AddAssign` and its like.
+    pub(crate) assigning: &'static str,
+    pub(crate) symbol: &'static str,
+}
+
+macro_rules! overloaded {
+    ($($op:ident $assigning:literal),+) => {
+        &[$(Overloaded {
+            operator: $op.operator,
+            method: $op.method,
+            assigning: $assigning,
+            symbol: $op.symbol,
+        }),+]
+    };
+}
+
+pub(crate) const OVERLOADED: &[Overloaded] = overloaded![
+    ADD "add_assign", SUB "sub_assign", MUL "mul_assign", DIV "div_assign", REM "rem_assign"
+];
+
+/// The number of a text (FNV-1a, 64 bits), to make a name of it.
+pub(crate) fn hash(text: &str) -> u64 {
+    let step = |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, step)
+}
+
 /// Elementary functions: std's differ from one machine to the next, so variants could not agree.
 /// The second column is what the prelude has instead, if anything.
 const ELEMENTARY: &[(&str, &str)] = &[
@@ -87,18 +118,28 @@ pub(crate) fn refused_type(name: &str) -> Option<&'static str> {
     REFUSED_TYPES.iter().find(|r| r.0.contains(&name)).map(|r| r.1)
 }
 
+/// A method that kernels cannot have of a type of the library's.
+pub(crate) struct Denied {
+    pub(crate) what: String,
+    pub(crate) help: String,
+    /// Whether rustc refuses it where the macro does not know the receiver's type.
+    pub(crate) seen_by_type: bool,
+}
+
 /// What is wrong with the method `name` and what to write instead, if kernels cannot have it.
-pub(crate) fn denied(name: &str) -> Option<(String, String)> {
+pub(crate) fn denied(name: &str) -> Option<Denied> {
     if let Some((_, ours)) = ELEMENTARY.iter().find(|e| e.0 == name) {
         let help = if ours.is_empty() {
             "compute it outside the kernel and capture the result".to_owned()
         } else {
             format!("write `{ours}`, the function of raydsl's prelude")
         };
-        return Some((format!("`{name}` of std differs from one machine to the next"), help));
+        let what = format!("`{name}` of std differs from one machine to the next");
+        return Some(Denied { what, help, seen_by_type: true });
     }
     let (_, instead) = DENIED.iter().find(|d| d.0 == name)?;
-    Some((format!("a kernel has no `{name}`"), format!("write {instead}")))
+    let what = format!("a kernel has no `{name}`");
+    Some(Denied { what, help: format!("write {instead}"), seen_by_type: false })
 }
 
 /// Functions of the prelude that packets run in a few operations, and in how many.

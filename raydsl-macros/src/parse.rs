@@ -75,6 +75,21 @@ fn value_type(ty: &syn::Type) -> TokenStream {
     }
 }
 
+fn without_references(mut ty: &syn::Type) -> &syn::Type {
+    while let syn::Type::Reference(r) = ty {
+        ty = &r.elem;
+    }
+    ty
+}
+
+/// The last name of a type that is a path.
+pub(crate) fn type_name(ty: &syn::Type) -> Option<String> {
+    match ty {
+        syn::Type::Path(t) => t.path.segments.last().map(|s| s.ident.to_string()),
+        _ => None,
+    }
+}
+
 fn is_unit(ty: &syn::Type) -> bool {
     matches!(ty, syn::Type::Tuple(t) if t.elems.is_empty())
 }
@@ -183,7 +198,7 @@ impl Parser<'_> {
         let by_mut = matches!(&**ty, syn::Type::Reference(r) if r.mutability.is_some());
         let host = attrs.iter().any(is_host);
         let shared = matches!(&**ty, syn::Type::Reference(r) if r.mutability.is_none());
-        if let syn::Type::ImplTrait(t) = &**ty {
+        if let syn::Type::ImplTrait(t) = without_references(ty) {
             self.errors.at(
                 t.span(),
                 "a kernel's type parameters have names",
@@ -675,9 +690,6 @@ impl Parser<'_> {
     }
 
     fn method(&mut self, c: &syn::ExprMethodCall) -> Kind {
-        if let Some((what, help)) = ops::denied(&c.method.to_string()) {
-            self.errors.at(c.method.span(), what, &help);
-        }
         let generic = c.turbofish.iter().flat_map(|t| &t.args);
         Kind::Method {
             receiver: self.boxed(&c.receiver),

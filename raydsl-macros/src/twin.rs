@@ -2,6 +2,7 @@
 
 mod choice;
 mod enumeration;
+mod operators;
 mod record;
 
 use proc_macro2::TokenStream;
@@ -99,7 +100,7 @@ fn named_fields(item: &syn::DeriveInput, errors: &mut Errors) -> Vec<syn::Field>
             _ => {
                 errors.at(
                     item.ident.span(),
-                    "a type of the kernel language needs named members",
+                    "a type of the kernel language has at least one named member",
                     "write `struct Name { member: f32 }`",
                 );
                 vec![]
@@ -237,8 +238,11 @@ fn twin_of(item: &syn::DeriveInput, fields: &[syn::Field], owner: &TokenStream) 
 fn methods(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> TokenStream {
     let p = private();
     let Generics { declared, predicates, .. } = generics;
-    let of = quote!(<#host as #p::HostMethod<NAME, M, A>>);
+    let of = quote!(<#host as #p::HostMethod<NAME, M, A, Via>>);
+    let operators = operators::operators(twin, host, generics);
     quote! {
+        #operators
+
         #[diagnostic::do_not_recommend]
         impl<M: #p::Machine, #declared> #p::Inferred<M> for #twin where #predicates {
             type Host = #host;
@@ -266,9 +270,10 @@ fn methods(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> Token
             }
         }
 
-        impl<const NAME: u64, M: #p::Machine, A, #declared> #p::Method<NAME, M, A> for #twin
+        impl<const NAME: u64, M: #p::Machine, A, Via, #declared> #p::Method<NAME, M, A, Via>
+            for #twin
         where
-            #host: #p::HostMethod<NAME, M, A, This = Self>,
+            #host: #p::HostMethod<NAME, M, A, Via, This = Self>,
             #predicates
         {
             type Output = #of::Output;

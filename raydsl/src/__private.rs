@@ -3,12 +3,12 @@
 pub use crate::geometry::{Aabb, Hit, HitOn, HitRecord, Kinds, Primitive, Ray, RayOn};
 pub use crate::kernel::{Baseline, Kernel, Lifted, Native4, Native8, Native16, Native16Halves};
 pub use crate::machine::{
-    B, Branch, Capture, Coerce, Compare, Const, Field, HostMethod, Inferred, KernelFn, KernelInfo,
-    LaneMachine, Leaves, Loop, Machine, Margin, Method, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor,
-    OpCast, OpCompare, OpDiv, OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Parameter,
-    Recorder, Resource, Ret, Schema, Steps, Stop, Twin, Type, Value, Var, Varying, call_on_element,
-    decrement, host_of_words, increment, is_kind, is_mut, name, of_kind, of_words, to_words,
-    to_words_on,
+    Assigned, B, Branch, Capture, Coerce, Compare, Const, Field, HostMethod, Inferred, KernelFn,
+    KernelInfo, LaneMachine, Leaves, Loop, Machine, Margin, Method, OpAdd, OpAnd, OpBitAnd,
+    OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv, OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr,
+    OpSub, Parameter, Recorder, Resource, Ret, RightOperand, Schema, Steps, Stop, Through, Twin,
+    Type, Value, Var, Varying, call_on_element, decrement, host_of_words, increment, is_kind,
+    is_mut, name, of_kind, of_words, to_words, to_words_on,
 };
 
 /// Traits of associated functions.
@@ -17,8 +17,9 @@ pub mod operations {
         Affine3Functions as _, F32Functions as _, Mat3Functions as _, Mat4Functions as _,
         Vec2New as _, Vec3New as _, Vec4New as _, VectorFunctions as _,
     };
+    pub use crate::machine::host::GiveConstant as _;
 }
 
-pub use crate::machine::host::{HostCapture, HostUse};
+pub use crate::machine::host::{Constant, HostCapture, HostUse};
 pub use crate::machine::index::with_element;
 pub use crate::machine::lowered::*;

@@ -6,6 +6,7 @@
 mod changes;
 mod generic;
 mod kept;
+mod own_types;
 mod patterns;
 
 use raydsl::kernel;
@@ -14,6 +15,7 @@ use raydsl::prelude::*;
 pub use changes::*;
 pub use generic::*;
 pub use kept::*;
+pub use own_types::*;
 pub use patterns::*;
 
 /// Calls `$use!` with a row for each kernel: its name, the numbers that it can take, and whether
@@ -108,6 +110,14 @@ macro_rules! kernel_table {
             named_type_parameters: Any SameIfFinite;
             angles: Any Explained;
             growth: Any Explained;
+            own_operators: Tame Explained;
+            own_names: Tame Explained;
+            names_of_two_traits: Tame Explained;
+            exits_in_values: Tame Same;
+            arms_that_return: Tame Same;
+            generic_elements: Tame Explained;
+            constant_arguments: Tame Explained;
+            ranges_with_steps: Any Same;
         }
     };
 }

@@ -97,6 +97,18 @@ mod host {
         same("WGSL", &found);
     }
 
+    /// WGSL refuses a literal 0 as a divisor, even where no ray comes.
+    #[test]
+    fn zero_as_a_divisor() {
+        let (none, nothing) = (0u32, 0i32);
+        every_variant(&kernel!(|x: f32, n: u32| {
+            if n < 100_000 {
+                return x;
+            }
+            (n / host(none) + n % host(none)) as f32 + (n as i32 / host(nothing)) as f32
+        }));
+    }
+
     #[test]
     fn conditions_prune() {
         for (soft, fast) in [(false, false), (false, true), (true, false), (true, true)] {

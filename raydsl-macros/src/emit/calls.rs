@@ -90,8 +90,11 @@ impl Emitter<'_> {
                     let local = self.local(name);
                     quote!(&#local)
                 }
-                // A number may be for a parameter of the host.
+                // A number may be for a parameter of the host, and so may a constant.
                 Kind::Int { tokens, .. } => tokens.clone(),
+                Kind::Name(name) if self.is_constant(name) => {
+                    quote!(#p::Constant(&#name).give(#m))
+                }
                 Kind::Name(name) if self.lookup(name) == Some(Binding::Host) => quote!(#name),
                 Kind::Host(_) if self.host_value(arg).is_some() => {
                     self.host_value(arg).unwrap_or_default()
@@ -122,6 +125,7 @@ impl Emitter<'_> {
         args: &[Expr],
     ) -> TokenStream {
         let (p, m) = (private(), own("m"));
+        self.refuse(receiver, name);
         if let Some((generic, this)) = self.generic_receiver(receiver) {
             let function = word(&format!("{name}_on"));
             let args = self.arguments(args);
@@ -131,7 +135,7 @@ impl Emitter<'_> {
         }
         let text = name.to_string();
         let machine = self.machine.clone();
-        let method = quote!(#p::Method::<{ #p::name(#text) }, #machine, _>);
+        let method = quote!(#p::Method::<{ #p::name(#text) }, #machine, _, _>);
         let variable = self.variable_under(receiver);
         let mut value = self.value(receiver);
         let mut args = self.arguments(args);
@@ -150,7 +154,7 @@ impl Emitter<'_> {
                 || self.is_alias(receiver)
             {
                 return args.around(
-                    quote!(#p::call_on_element::<{ #p::name(#text) }, #machine, _, _>(
+                    quote!(#p::call_on_element::<{ #p::name(#text) }, #machine, _, _, _>(
                             #m, #value, (#(#values,)*)
                         )
                     ),
@@ -168,7 +172,7 @@ impl Emitter<'_> {
         let shown = shown(&local);
         args.around(quote!({
             let (#old, #list) = (#value, (#(#values,)*));
-            if #p::is_mut::<{ #p::name(#text) }, #machine, _, _>(#m, &#old, &#list) {
+            if #p::is_mut::<{ #p::name(#text) }, #machine, _, _, _>(#m, &#old, &#list) {
                 let #part = #p::Var::new(#m, #shown, #old);
                 let #result = #method::call_at(#old, &#part, #m, #list);
                 let mut #whole = #local.get(#m);
@@ -187,6 +191,10 @@ impl Emitter<'_> {
         let name = match &receiver.kind {
             Kind::Name(name) => name,
             Kind::Deref(inner) => return self.generic_receiver(inner),
+            Kind::Element { .. } | Kind::Index { .. } => {
+                let generic = self.generic_of(receiver).0?;
+                return Some((generic, self.value(receiver)));
+            }
             _ => return None,
         };
         let local = self.find(name)?;
@@ -199,6 +207,12 @@ impl Emitter<'_> {
                 Binding::Var | Binding::Mut => quote!(&#ident),
             },
         ))
+    }
+
+    /// Whether it is a constant of the source, by the convention that rustc warns about.
+    fn is_constant(&self, name: &Ident) -> bool {
+        let is_capital = name.to_string().starts_with(|c: char| c.is_ascii_uppercase());
+        is_capital && self.lookup(name).is_none()
     }
 
     /// Whether it is a variable outside of the closure, or a part of one.

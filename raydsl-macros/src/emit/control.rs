@@ -31,6 +31,7 @@ impl Emitter<'_> {
             out.extend(self.stmt(stmt));
             if matches!(stmt, Stmt::Expr(e) if e.diverges()) {
                 // What follows is never reached; rustc says so for the user's own function.
+                out.extend(self.unreached(&block.stmts[i + 1..], block.tail.as_deref(), dest));
                 ended = true;
                 break;
             }
@@ -45,6 +46,14 @@ impl Emitter<'_> {
         }
         self.scopes.pop();
         if checked { quote!(#label: { #out }) } else { quote!({ #out }) }
+    }
+
+    /// What stands behind an exit: it never runs, but it says what type the block has.
+    fn unreached(&mut self, stmts: &[Stmt], tail: Option<&Expr>, dest: &Dest) -> TokenStream {
+        let (Some(tail), Dest::Slot { .. }) = (tail, dest) else { return TokenStream::new() };
+        let stmts: Vec<_> = stmts.iter().map(|s| self.stmt(s)).collect();
+        let tail = self.into(tail, dest);
+        quote!(if false { #(#stmts)* #tail })
     }
 
     pub(super) fn stmt(&mut self, stmt: &Stmt) -> TokenStream {
@@ -76,7 +85,8 @@ impl Emitter<'_> {
             None => self.named_value(init, &text),
         };
         let binding = if l.mutable { Binding::Var } else { Binding::Value };
-        let is_alias = self.is_alias(init);
+        let (is_alias, owner) = (self.is_alias(init), self.owner(init));
+        let generic = self.generic_of(init);
         if is_alias && l.mutable && matches!(&init.kind, Kind::Name(_)) {
             self.errors.at(
                 init.span,
@@ -85,6 +95,10 @@ impl Emitter<'_> {
             );
         }
         self.bind_typed(name, binding, l.ty.as_ref());
+        if l.ty.is_none() {
+            self.note_owner(name, owner);
+            self.note_generic(name, generic);
+        }
         if is_alias && !l.mutable {
             self.note_alias(name);
         }
@@ -256,10 +270,14 @@ impl Emitter<'_> {
         let here = place("loop", span);
         let (ident, counter, done) =
             (self.fresh("repeat"), self.fresh("counter"), self.fresh("done"));
-        let (begin, stop) = (own("begin"), own("end"));
+        let (begin, stop, by) = (own("begin"), own("end"), own("by"));
         let text = var.map(shown).unwrap_or_else(|| "i".to_owned());
         let (start, end) = (self.value(&range.start), self.value(&range.end));
         let now = quote!(#counter.get(#m));
+        let steps = range.step.as_ref().map(|e| {
+            let value = self.value(e);
+            quote!(let #by = #p::step(#m, #value);)
+        });
         // `[low, high)` or `[low, high]`, upwards from `low` or downwards from `high`.
         let (low, high) = if range.reversed {
             (quote!(#begin), now.clone())
@@ -270,20 +288,37 @@ impl Emitter<'_> {
         let one_down = range.reversed && !range.inclusive;
         let item = if one_down { quote!(#p::decrement(#m, #now)) } else { now.clone() };
         // All rays in the loop have the same counter if they began with the same number.
-        let from = range.start.kind.int_tokens().filter(|_| !range.reversed);
+        let plain = !range.reversed && range.step.is_none();
+        let from = range.start.kind.int_tokens().filter(|_| plain);
         let is_in_step = from.is_some();
         let (count, advance) = if is_in_step {
             (quote!(#p::Steps::new(#m, #text, #first, #from as u32)), quote!(#counter.advance(#m)))
         } else {
             let next = word(if range.reversed { "decrement" } else { "increment" });
-            (quote!(#p::Var::new(#m, #text, #first)), quote!(#counter.set(#m, #p::#next(#m, #now))))
+            let next = match &range.step {
+                Some(_) => quote!(#p::advance(#m, #now, #by)),
+                None => quote!(#p::#next(#m, #now)),
+            };
+            (quote!(#p::Var::new(#m, #text, #first)), quote!(#counter.set(#m, #next)))
         };
-        let (declare, test, note) = if range.inclusive {
-            // The last number may be the last of its type.
+        // The last number of a range that is inclusive or has steps may be the last of its type.
+        let until_done = |test: TokenStream, is_last: TokenStream| {
             (
                 quote!(let #done = #p::Var::new(#m, "done", #p::Varying::varying(false, #m));),
-                quote!(#ident.test(#m, #p::goes_on(#m, #done.get(#m), #low, #high))),
-                quote!(#done.set(#m, #p::equal(#m, #now, #last));),
+                quote!(#ident.test(#m, #test)),
+                quote!(#done.set(#m, #is_last);),
+            )
+        };
+        let inclusive = range.inclusive;
+        let (declare, test, note) = if range.step.is_some() {
+            until_done(
+                quote!(#p::goes_on_to(#m, #done.get(#m), #low, #high, #inclusive)),
+                quote!(#p::is_last(#m, #now, #last, #by, #inclusive)),
+            )
+        } else if inclusive {
+            until_done(
+                quote!(#p::goes_on(#m, #done.get(#m), #low, #high)),
+                quote!(#p::equal(#m, #now, #last)),
             )
         } else if is_in_step {
             (
@@ -312,6 +347,7 @@ impl Emitter<'_> {
         };
         quote! {{
             let (#begin, #stop) = #bounds;
+            #steps
             let #counter = #count;
             #declare
             let #ident = #p::Loop::new(#m);

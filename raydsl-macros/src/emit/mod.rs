@@ -6,6 +6,7 @@
 mod calls;
 mod control;
 mod host;
+mod owner;
 mod places;
 mod values;
 
@@ -13,12 +14,13 @@ pub(crate) use host::raw_capture;
 
 use std::collections::{BTreeSet, HashMap};
 
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 
 use crate::diag::Errors;
 use crate::generics::{Generics, identifiers};
 use crate::here::{At, here_own, in_one_place, of_type, quote_here as quote};
 use crate::model::{Block, Expr, Kernel, Kind, Param};
+use owner::Owner;
 
 /// What a name stands for.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -39,10 +41,14 @@ struct Local {
     binding: Binding,
     /// The type parameter that is its type.
     generic: Option<Ident>,
+    /// The type parameter that is the type of its elements.
+    elements: Option<Ident>,
     /// Whether it is a `&mut` of the source, or a part of one, under another name.
     alias: bool,
     /// For a counter that all rays have in step: the one that it is a value of.
     step: Option<Ident>,
+    /// Whose methods it has.
+    owner: Owner,
 }
 
 /// Where the value of a control structure goes.
@@ -103,6 +109,14 @@ pub(crate) struct Emitter<'a> {
     changed: Vec<Ident>,
     next: usize,
     errors: &'a mut Errors,
+}
+
+/// `L` of `[L]` and `[L; N]`.
+fn element_type(ty: &TokenStream) -> Option<TokenStream> {
+    let Some(TokenTree::Group(g)) = ty.clone().into_iter().next() else { return None };
+    let is_semicolon = |t: &TokenTree| matches!(t, TokenTree::Punct(p) if p.as_char() == ';');
+    let inside = g.stream().into_iter().take_while(|t| !is_semicolon(t)).collect();
+    (g.delimiter() == Delimiter::Bracket).then_some(inside)
 }
 
 fn private() -> TokenStream {
@@ -345,9 +359,14 @@ impl<'a> Emitter<'a> {
 
     /// Binds a name; of its type only a type parameter matters.
     fn bind_typed(&mut self, name: &Ident, binding: Binding, ty: Option<&TokenStream>) {
-        let ty = ty.map(ToString::to_string);
-        let generic = self.generics.types.iter().find(|g| ty.as_ref().is_some_and(|ty| *g == ty));
-        let local = Local { binding, generic: generic.cloned(), alias: false, step: None };
+        let owner = ty.map_or(Owner::Unknown, Owner::of_type);
+        let parameter = |ty: &TokenStream| {
+            let ty = ty.to_string();
+            self.generics.types.iter().find(|g| **g == ty).cloned()
+        };
+        let generic = ty.and_then(parameter);
+        let elements = ty.and_then(element_type).and_then(|ty| parameter(&ty));
+        let local = Local { binding, generic, elements, alias: false, step: None, owner };
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name.to_string(), local);
         }
@@ -373,7 +392,15 @@ impl<'a> Emitter<'a> {
 
     /// Binds a counter that all rays have in step.
     fn bind_counter(&mut self, name: &Ident, step: Option<Ident>) {
-        let local = Local { binding: Binding::Value, generic: None, alias: false, step };
+        let binding = Binding::Value;
+        let local = Local {
+            binding,
+            generic: None,
+            elements: None,
+            alias: false,
+            step,
+            owner: Owner::Library,
+        };
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name.to_string(), local);
         }

@@ -2,7 +2,6 @@
 
 use proc_macro2::{Ident, TokenStream};
 
-use super::values::operator;
 use super::{Binding, Emitter, own, private};
 use crate::here::quote_here as quote;
 use crate::model::{BinaryOp, Expr, Kind, Place, Step};
@@ -78,8 +77,8 @@ impl Emitter<'_> {
         }
         let new = |old: TokenStream| match op {
             Some(op) => {
-                let new = operator(op, quote!(#m), old, quote!(#right));
-                quote!(#p::Coerce::coerce(#new, #m))
+                let name = format!("{}=", op.symbol);
+                quote!(#p::Assigned::<{ #p::name(#name) }, _, _, _>::assigned(#m, #old, #right))
             }
             None if is_list => quote!(#right),
             None => quote!(#p::Coerce::coerce(#right, #m)),

@@ -80,6 +80,9 @@ impl Emitter<'_> {
             return self.selection(e, name, ty, slot);
         }
         let var = self.fresh("value");
+        // What never has a value may be of any type.
+        let nothing = quote!(());
+        let ty = if slot == SlotType::ByAll && e.has_no_outcome() { &nothing } else { ty };
         let code = self.into(e, &Dest::Slot { var: var.clone(), ty: slot });
         quote!({
             let #var = #p::Var::<#ty>::declare(#m, #name);
@@ -372,12 +375,7 @@ impl Emitter<'_> {
     }
 }
 
-pub(super) fn operator(
-    op: BinaryOp,
-    m: TokenStream,
-    a: TokenStream,
-    b: TokenStream,
-) -> TokenStream {
+fn operator(op: BinaryOp, m: TokenStream, a: TokenStream, b: TokenStream) -> TokenStream {
     let p = private();
     let (operator, method) = (word(op.operator), word(op.method));
     quote!(#p::#operator::#method(#m, { #a }, { #b }))

@@ -4,7 +4,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use syn::spanned::Spanned;
 
-use super::{Place, head, lifted_function, own, private, quiet};
+use super::{Place, head, lifted_function, operators, own, private, quiet};
 use crate::diag::Errors;
 use crate::emit::Emitter;
 use crate::generics::Generics;
@@ -18,6 +18,9 @@ pub(crate) fn kernel_impl(
     host_only: &[&str],
     errors: &mut Errors,
 ) -> TokenStream {
+    if operators::is_operator(item) {
+        return operators::operator_impl(item, errors);
+    }
     let Lifted { functions, methods } = lifted_impl(item, host_only, errors);
     let around = Generics::new(&item.generics);
     let Generics { declared, predicates, .. } = &around;
@@ -51,11 +54,7 @@ struct Lifted {
 fn lifted_impl(item: &syn::ItemImpl, host_only: &[&str], errors: &mut Errors) -> Lifted {
     let mut lifted = Lifted { functions: TokenStream::new(), methods: TokenStream::new() };
     let self_ty = item.self_ty.to_token_stream();
-    let type_name = match &*item.self_ty {
-        syn::Type::Path(t) => t.path.segments.last().map(|s| s.ident.to_string()),
-        _ => None,
-    };
-    let Some(type_name) = type_name else {
+    let Some(type_name) = parse::type_name(&item.self_ty) else {
         errors.at(item.self_ty.span(), "kernels belong to a named type", "name a struct");
         return lifted;
     };
@@ -87,6 +86,7 @@ fn lifted_impl(item: &syn::ItemImpl, host_only: &[&str], errors: &mut Errors) ->
                 called: quote!(#owner::#fn_name),
                 name: &name,
                 around: &around,
+                through: item.trait_.as_ref().map(|(path, _)| path),
             };
             lifted.methods.extend(method.implementation(&kernel));
         }
@@ -131,12 +131,14 @@ fn check(sig: &syn::Signature, attrs: &[syn::Attribute], errors: &mut Errors) {
 }
 
 /// A method, for calls that know its name only.
-struct Method<'a> {
-    self_ty: &'a TokenStream,
+pub(super) struct Method<'a> {
+    pub(super) self_ty: &'a TokenStream,
     /// The path of the lifted function.
-    called: TokenStream,
-    name: &'a str,
-    around: &'a Generics,
+    pub(super) called: TokenStream,
+    pub(super) name: &'a str,
+    pub(super) around: &'a Generics,
+    /// The trait that has it.
+    pub(super) through: Option<&'a syn::Path>,
 }
 
 impl Method<'_> {
@@ -165,9 +167,18 @@ impl Method<'_> {
         (quote!(#generic), Some(quote!(#generic: #p::Coerce<__M, #ty>)))
     }
 
-    fn implementation(&self, kernel: &Kernel) -> TokenStream {
+    /// Keeps the methods of two traits apart. Traits of one name may stand in two modules.
+    fn via(&self) -> TokenStream {
         let p = private();
-        let Self { self_ty, called, name, around } = self;
+        let Some(path) = self.through else { return quote!(()) };
+        let text = path.to_token_stream().to_string();
+        quote!(#p::Through<{ #p::name(concat!(module_path!(), " ", #text)) }>)
+    }
+
+    pub(super) fn implementation(&self, kernel: &Kernel) -> TokenStream {
+        let p = private();
+        let Self { self_ty, called, name, around, .. } = self;
+        let via = self.via();
         let Generics { declared, predicates, .. } = around;
         let (receiver, rest) = kernel.params.split_first().expect("a method has a receiver");
         let names: Vec<&Ident> = rest.iter().map(|p| &p.name).collect();
@@ -178,7 +189,8 @@ impl Method<'_> {
         let result = kernel.result.as_ref().map(|ty| self.twin(ty)).unwrap_or_else(|| quote!(()));
         let quiet = quiet();
         let (m, this, variable) = (own("m"), own("this"), own("variable"));
-        let of = quote!(<Self as #p::HostMethod<{ #p::name(#name) }, __M, (#(#arguments,)*)>>);
+        let of =
+            quote!(<Self as #p::HostMethod<{ #p::name(#name) }, __M, (#(#arguments,)*), #via>>);
         let calls = if receiver.by_mut {
             quote! {
                 const IS_MUT: bool = true;
@@ -218,7 +230,7 @@ impl Method<'_> {
             #quiet
             #[diagnostic::do_not_recommend]
             impl<#lifetime #declared __M: #p::Machine, #(#generics,)*>
-                #p::HostMethod<{ #p::name(#name) }, __M, (#(#arguments,)*)> for #self_ty
+                #p::HostMethod<{ #p::name(#name) }, __M, (#(#arguments,)*), #via> for #self_ty
             where
                 #predicates
             {

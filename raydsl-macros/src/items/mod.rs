@@ -3,6 +3,7 @@
 mod closure;
 mod function;
 mod methods;
+mod operators;
 mod primitive;
 mod shape;
 

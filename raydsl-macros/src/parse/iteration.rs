@@ -15,11 +15,15 @@ struct Items<'a> {
     by_value: bool,
 }
 
-/// `list.iter()`, `&list` and `list`, and `list.iter().enumerate()`.
+/// `list.iter()`, `&list`, `list.into_iter()` and `list`, and each with `.enumerate()`.
 fn items(e: &syn::Expr) -> Option<Items<'_>> {
     match inside_parens(e) {
         syn::Expr::MethodCall(c) if c.method == "iter" && c.args.is_empty() => {
             Some(Items { list: &c.receiver, enumerated: false, by_value: false })
+        }
+        syn::Expr::MethodCall(c) if c.method == "into_iter" && c.args.is_empty() => {
+            let is_range = matches!(inside_parens(&c.receiver), syn::Expr::Range(_));
+            (!is_range).then_some(Items { list: &c.receiver, enumerated: false, by_value: true })
         }
         syn::Expr::MethodCall(c) if c.method == "enumerate" && c.args.is_empty() => {
             let inner = items(&c.receiver)?;
@@ -66,6 +70,23 @@ impl Parser<'_> {
             }
         };
         let mut range = inside_parens(&f.expr);
+        let mut step = None;
+        if let syn::Expr::MethodCall(c) = range
+            && c.method == "step_by"
+            && let Some(by) = c.args.first()
+        {
+            step = Some(self.boxed(by));
+            range = inside_parens(&c.receiver);
+            if let syn::Expr::MethodCall(c) = range
+                && c.method == "rev"
+            {
+                return self.error(
+                    c.method.span(),
+                    "a kernel's range with steps counts upwards",
+                    "count from 0, and calculate: `for k in 0..n { let i = last - 2 * k; }`",
+                );
+            }
+        }
         let mut reversed = false;
         while let syn::Expr::MethodCall(c) = range
             && c.method == "rev"
@@ -97,7 +118,7 @@ impl Parser<'_> {
             );
         }
         let inclusive = matches!(r.limits, syn::RangeLimits::Closed(_));
-        let range = Range { start, end, inclusive, reversed };
+        let range = Range { start, end, inclusive, reversed, step };
         let mut body = self.block(&f.body);
         body.stmts.splice(0..0, changed.map(Stmt::Let));
         Kind::For { label: label(&f.label), var, range, body }
@@ -139,8 +160,8 @@ impl Parser<'_> {
             args: vec![],
         };
         let zero = Kind::Int { tokens: quote!(0), suffix: None };
-        let range =
-            Range { start: boxed(zero), end: boxed(len), inclusive: false, reversed: false };
+        let (start, end) = (boxed(zero), boxed(len));
+        let range = Range { start, end, inclusive: false, reversed: false, step: None };
         let body = Block { stmts, tail };
         let repeat = Kind::For { label: label(&f.label), var: Some(index), range, body };
         if copy.is_empty() {

@@ -91,7 +91,7 @@ bodies! {
     by_reference: { let (ref a, b) = g(x); b } "no `ref`" "copied";
     rest_in_front: { let (.., a) = g(x); a } "stands last" "write `_`";
     let_else: { let y = x else { return x; }; y } "no `let ... else`" "returns early";
-    tuple_struct: { Some(x) } "no tuple structs" "named members";
+    tuple_struct: { Some(x) } "no tuple structs" "named member";
     inner_function: { fn g() {} x } "cannot stand inside a kernel" "move it out";
     assignment_to_a_call: { g(x) = 1.0; x } "cannot assign to this" "a variable";
     unsafe_block: { unsafe { x } } "no `unsafe`" "safe code";
@@ -250,14 +250,14 @@ fn primitives() {
         quote!(
             struct S(f32);
         ),
-        "named members",
+        "named member",
         "member: f32",
     );
     one(
         quote!(
             struct S;
         ),
-        "named members",
+        "named member",
         "member: f32",
     );
     one(
@@ -267,7 +267,7 @@ fn primitives() {
             }
         ),
         "only a struct",
-        "named members",
+        "named member",
     );
     one(
         quote!(
@@ -294,7 +294,7 @@ fn derives() -> syn::Result<()> {
             quote!(
                 struct S(f32);
             ),
-            "named members",
+            "named member",
         ),
         (
             quote!(
@@ -345,6 +345,52 @@ fn arguments_of_attributes() {
     assert_one(expand_primitive(quote!(fast), s), "takes no arguments", "#[primitive]");
 }
 
+/// Names that only types of the user's may have.
+#[test]
+fn names_of_methods() {
+    for own in [
+        quote!(
+            fn f(s: Spectrum) -> f32 {
+                s.exp() + s.clone().len() + Spectrum::iter(&s)
+            }
+        ),
+        quote!(
+            fn f(x: f32) -> f32 {
+                let s = Spectrum { a: x };
+                s.iter() + s.unwrap()
+            }
+        ),
+    ] {
+        assert!(errors(expand_kernel(quote!(), own)).is_empty());
+    }
+    let unknown = quote!(
+        fn f(s: Holder) -> f32 {
+            s.list.iter()
+        }
+    );
+    assert_one(expand_kernel(quote!(), unknown), "no `iter`", "`Type::iter(&x)`");
+    let local = quote!(
+        fn f(v: Vec3) -> f32 {
+            let a = v.x * 2.0;
+            a.abs().exp()
+        }
+    );
+    assert_one(expand_kernel(quote!(), local), "`exp`", "write `exp(x)`");
+}
+
+#[test]
+fn operators_of_references() {
+    let i = quote!(
+        impl Add<&S> for S {
+            type Output = S;
+            fn add(self, o: &S) -> S {
+                o
+            }
+        }
+    );
+    assert_one(expand_kernel(quote!(), i), "takes values", "`impl Add for Spectrum`");
+}
+
 /// All mistakes of a kernel are reported at once, each once.
 #[test]
 fn several_at_once() {
@@ -366,7 +412,7 @@ fn several_at_once() {
     });
     let found = errors(expand_closure(c));
     assert_eq!(found.len(), 4, "{found:#?}");
-    let i = quote!(impl S { fn rgb(&self) -> f32 { self.a.exp() } });
+    let i = quote!(impl S { fn rgb(&self, x: f32) -> f32 { x.exp() } });
     let found = errors(expand_primitive(quote!(), i));
     assert_eq!(found.len(), 3, "{found:#?}");
 }

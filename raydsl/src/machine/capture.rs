@@ -21,7 +21,8 @@ pub trait Resource {
 /// A value of the host that a kernel may capture.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot capture a `{Self}`",
-    note = "numbers, vectors, types with #[derive(Type)], arrays and slices of them, and trees can be captured"
+    note = "numbers, vectors, types with #[derive(Type)], arrays and slices of them, and trees can be captured",
+    note = "a member of a struct that is no such type is captured by a name: `let spans = &scene.spans;`"
 )]
 pub trait Capture<M: Machine> {
     /// What stands for it inside the kernel.

@@ -6,10 +6,10 @@ use super::{B, Compare, I, IntBinary, Loop, Machine, OpCompare, U, Usize, Value,
 
 /// The type of a counter.
 pub trait Counter<M: Machine>: Value<M> + OpCompare<M, Self, Output = B<M>> {
-    /// The counter of a round, as its bits.
-    fn of_bits(m: &M, bits: u32) -> Self;
-    /// The bits that all lanes have, if the machine finds it cheaply.
-    fn same_bits(self, m: &M) -> Option<u32>;
+    /// Its 32 bits.
+    fn bits(self, m: &M) -> M::U32;
+    /// The counter with these bits.
+    fn of_bits(m: &M, bits: M::U32) -> Self;
     /// Whether `a < b`, as numbers of this type.
     fn is_less(a: u32, b: u32) -> bool;
     /// One more; the bound stops it before it overflows.
@@ -21,12 +21,12 @@ pub trait Counter<M: Machine>: Value<M> + OpCompare<M, Self, Output = B<M>> {
 #[diagnostic::do_not_recommend]
 impl<M: Machine> Counter<M> for I<M> {
     #[inline(always)]
-    fn of_bits(m: &M, bits: u32) -> Self {
-        I(m.i32(bits as i32))
+    fn bits(self, m: &M) -> M::U32 {
+        m.i32_to_u32(self.0)
     }
     #[inline(always)]
-    fn same_bits(self, m: &M) -> Option<u32> {
-        m.u32_same(&m.i32_to_u32(self.0))
+    fn of_bits(m: &M, bits: M::U32) -> Self {
+        I(m.u32_to_i32(bits))
     }
     #[inline(always)]
     fn is_less(a: u32, b: u32) -> bool {
@@ -48,12 +48,12 @@ macro_rules! unsigned_counter {
             #[diagnostic::do_not_recommend]
             impl<M: Machine> Counter<M> for $t<M> {
                 #[inline(always)]
-                fn of_bits(m: &M, bits: u32) -> Self {
-                    $t(m.u32(bits))
+                fn bits(self, _: &M) -> M::U32 {
+                    self.0
                 }
                 #[inline(always)]
-                fn same_bits(self, m: &M) -> Option<u32> {
-                    m.u32_same(&self.0)
+                fn of_bits(_: &M, bits: M::U32) -> Self {
+                    $t(bits)
                 }
                 #[inline(always)]
                 fn is_less(a: u32, b: u32) -> bool {
@@ -112,7 +112,7 @@ impl<C: Copy> Steps<C> {
     {
         match &self.recorded {
             Some(var) => var.get(m),
-            None => C::of_bits(m, self.now.get()),
+            None => C::of_bits(m, m.u32(self.now.get())),
         }
     }
 
@@ -148,7 +148,7 @@ impl<C: Copy> Stop<C> {
     where
         C: Counter<M>,
     {
-        Self { value, bits: value.same_bits(m) }
+        Self { value, bits: m.u32_same(&value.bits(m)) }
     }
 
     /// Tests whether a counter in step goes on; whether any lane does.

@@ -1,6 +1,6 @@
 //! Values of the host within kernels: known before the kernel runs and while it is recorded.
 
-use super::{Coerce, F, Machine};
+use super::{Capture, Coerce, F, Machine};
 
 /// Marks a number as the host's: inside a kernel, what depends on it alone is decided before the
 /// kernel runs, and in generated code only what was decided for is left.
@@ -104,5 +104,42 @@ impl<M: Machine> HostUse<M> for f32 {
     #[inline(always)]
     fn value(self, m: &M) -> F<M> {
         Coerce::coerce(self, m)
+    }
+}
+
+/// A constant of the source as an argument. An integer stays the host's: the parameter may be.
+pub struct Constant<'c, T>(pub &'c T);
+
+macro_rules! constant_of_the_host {
+    ($($host:ty),+) => {
+        $(
+            impl Constant<'_, $host> {
+                /// The constant; this comes before [`GiveConstant::give`].
+                #[inline(always)]
+                pub fn give<M: Machine>(self, _: &M) -> $host {
+                    *self.0
+                }
+            }
+        )+
+    };
+}
+
+constant_of_the_host!(i32, u32, usize, bool);
+
+/// Constants of other types become values of the machine.
+pub trait GiveConstant<M: Machine> {
+    /// The value.
+    type Given;
+    /// Converts.
+    fn give(self, m: &M) -> Self::Given;
+}
+
+#[diagnostic::do_not_recommend]
+impl<'c, M: Machine, T: Capture<M>> GiveConstant<M> for Constant<'c, T> {
+    type Given = T::On<'c>;
+
+    #[inline(always)]
+    fn give(self, m: &M) -> T::On<'c> {
+        self.0.constant(m)
     }
 }

@@ -25,9 +25,11 @@ pub const fn name(text: &str) -> u64 {
     message = "a kernel cannot call this method with these arguments",
     label = "not an operation of the kernel language",
     note = "a method of your own needs `#[kernel]` on its impl; the chapter \"The language\" of the \
-            book lists those that are there"
+            book lists those that are there",
+    note = "a method of a trait on a member or an element of a generic type needs a variable with \
+            the type: `let light: L = self.light;`"
 )]
-pub trait Method<const NAME: u64, M: Machine, A> {
+pub trait Method<const NAME: u64, M: Machine, A, Via = ()> {
     /// The result.
     type Output;
     /// Whether it takes `&mut self`.
@@ -47,7 +49,11 @@ pub trait Method<const NAME: u64, M: Machine, A> {
 
 /// Whether a method takes `&mut self`.
 #[inline(always)]
-pub fn is_mut<const NAME: u64, M: Machine, T: Method<NAME, M, A>, A>(_: &M, _: &T, _: &A) -> bool {
+pub fn is_mut<const NAME: u64, M: Machine, T: Method<NAME, M, A, Via>, A, Via>(
+    _: &M,
+    _: &T,
+    _: &A,
+) -> bool {
     T::IS_MUT
 }
 
@@ -80,7 +86,7 @@ pub fn is_mut<const NAME: u64, M: Machine, T: Method<NAME, M, A>, A>(_: &M, _: &
 /// Kernel::of::<f>();
 /// ```
 #[inline(always)]
-pub fn call_on_element<const NAME: u64, M: Machine, T: Method<NAME, M, A>, A>(
+pub fn call_on_element<const NAME: u64, M: Machine, T: Method<NAME, M, A, Via>, A, Via>(
     m: &M,
     element: T,
     args: A,
@@ -96,12 +102,16 @@ pub fn call_on_element<const NAME: u64, M: Machine, T: Method<NAME, M, A>, A>(
 }
 
 /// A method of a struct's kernels; the derived twin forwards [`Method`] to it.
+///
+/// `Via` is [`Through`] the trait that has the method: two traits of one type may have methods of
+/// one name. Calls do not name it; where one impl alone fits, rustc finds it.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot call this method of `{Self}` with these arguments",
     label = "not a kernel",
-    note = "write `#[kernel]` on the impl that has the method"
+    note = "write `#[kernel]` on the impl that has the method; a method that a trait provides is \
+            called by its path: `P::twice(&p)`"
 )]
-pub trait HostMethod<const NAME: u64, M: Machine, A> {
+pub trait HostMethod<const NAME: u64, M: Machine, A, Via = ()> {
     /// The struct's twin.
     type This: Copy;
     /// The result.
@@ -117,6 +127,9 @@ pub trait HostMethod<const NAME: u64, M: Machine, A> {
         Self::call(this, m, args)
     }
 }
+
+/// An `impl` of a trait, by the number of its name, which has a method.
+pub struct Through<const TRAIT: u64>;
 
 /// `method!([generics] Type, "name", |m, self, argument: Type, ..| -> Result { .. })`.
 macro_rules! method {

@@ -28,6 +28,7 @@ pub mod lowered;
 mod margin;
 pub(crate) mod matrix;
 mod methods;
+mod operand;
 mod ops;
 mod packet;
 mod record;
@@ -52,7 +53,8 @@ pub(crate) use lanes::{Entered, fill};
 pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
 pub(crate) use margin::result_leaves;
 pub use margin::{Leaf, Margin, Outcomes, Rounding};
-pub use methods::{HostMethod, Method, call_on_element, is_mut, name};
+pub use methods::{HostMethod, Method, Through, call_on_element, is_mut, name};
+pub use operand::{Assigned, RightOperand};
 pub use ops::{
     Bounds, Coerce, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv, OpMul,
     OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Varying,

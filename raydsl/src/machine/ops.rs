@@ -18,9 +18,11 @@ macro_rules! binary_traits {
                 message = "a kernel has no operator for these operands",
                 label = "not an operation of the kernel language",
                 note = "there are: two values of one type, and a vector with a number of its \
-                        components' type; convert with `as`, as in `x * n as f32`"
+                        components' type; convert with `as`, as in `x * n as f32`",
+                note = "an operator of a type of your own needs `#[kernel]` on its impl: \
+                        `#[kernel] impl Add for Spectrum`"
             )]
-            pub trait $trait<M: Machine, R> {
+            pub trait $trait<M: Machine, R, Via = ()> {
                 /// The type of the result.
                 type Output;
                 /// Applies the operator.

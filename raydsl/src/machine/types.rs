@@ -2,7 +2,7 @@
 
 use glam::{BVec2, BVec3, BVec4, IVec2, IVec3, IVec4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 
-use super::{B, F, Field, I, Machine, Schema, U, Usize, Value, X2, X3, X4};
+use super::{B, F, Field, I, Machine, Schema, U, Usize, Value, Varying, X2, X3, X4};
 
 /// A type that kernels may use: it has a twin on every machine.
 ///
@@ -14,7 +14,7 @@ use super::{B, F, Field, I, Machine, Schema, U, Usize, Value, X2, X3, X4};
 )]
 pub trait Type: Copy + 'static {
     /// The twin: what stands for a value of this type on machine `M`.
-    type On<M: Machine>: Value<M>;
+    type On<M: Machine>: Value<M> + Varying<M, Value = Self::On<M>>;
 
     /// The structure of the type.
     const SCHEMA: &'static Schema;

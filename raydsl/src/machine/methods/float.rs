@@ -167,6 +167,79 @@ denied! { F<M>:
         "div_euclid" -> F<M>;
 }
 
+// The macro refuses these where it sees that the receiver is a number.
+denied! { F<M>:
+    StdSin "`sin` of std differs from one machine to the next"
+        "write `sin(x)`, the function of raydsl's prelude"
+        "sin" -> F<M>;
+    StdCos "`cos` of std differs from one machine to the next"
+        "write `cos(x)`, the function of raydsl's prelude"
+        "cos" -> F<M>;
+    StdTan "`tan` of std differs from one machine to the next"
+        "write `tan(x)`, the function of raydsl's prelude"
+        "tan" -> F<M>;
+    StdAsin "`asin` of std differs from one machine to the next"
+        "write `asin(x)`, the function of raydsl's prelude"
+        "asin" -> F<M>;
+    StdAcos "`acos` of std differs from one machine to the next"
+        "write `acos(x)`, the function of raydsl's prelude"
+        "acos" -> F<M>;
+    StdAtan "`atan` of std differs from one machine to the next"
+        "write `atan(x)`, the function of raydsl's prelude"
+        "atan" -> F<M>;
+    StdAtan2 "`atan2` of std differs from one machine to the next"
+        "write `atan2(y, x)`, the function of raydsl's prelude"
+        "atan2" -> F<M>;
+    StdSinCos "`sin_cos` of std differs from one machine to the next"
+        "write `sincos_2pi(u)`, the function of raydsl's prelude"
+        "sin_cos" -> F<M>;
+    StdExp "`exp` of std differs from one machine to the next"
+        "write `exp(x)`, the function of raydsl's prelude"
+        "exp" -> F<M>;
+    StdExp2 "`exp2` of std differs from one machine to the next"
+        "write `exp2(x)`, the function of raydsl's prelude"
+        "exp2" -> F<M>;
+    StdExpM1 "`exp_m1` of std differs from one machine to the next"
+        "write `expm1(x)`, the function of raydsl's prelude"
+        "exp_m1" -> F<M>;
+    StdLn "`ln` of std differs from one machine to the next"
+        "write `log(x)`, the function of raydsl's prelude"
+        "ln" -> F<M>;
+    StdLn1p "`ln_1p` of std differs from one machine to the next"
+        "write `log1p(x)`, the function of raydsl's prelude"
+        "ln_1p" -> F<M>;
+    StdLog2 "`log2` of std differs from one machine to the next"
+        "write `log2(x)`, the function of raydsl's prelude"
+        "log2" -> F<M>;
+    StdPowf "`powf` of std differs from one machine to the next"
+        "write `pow(x, y)`, the function of raydsl's prelude"
+        "powf" -> F<M>;
+    StdPowi "`powi` of std differs from one machine to the next"
+        "write `pow(x, y)`, the function of raydsl's prelude"
+        "powi" -> F<M>;
+    StdLog "`log` of std differs from one machine to the next"
+        "compute it outside the kernel and capture the result"
+        "log" -> F<M>;
+    StdLog10 "`log10` of std differs from one machine to the next"
+        "compute it outside the kernel and capture the result"
+        "log10" -> F<M>;
+    StdHypot "`hypot` of std differs from one machine to the next"
+        "compute it outside the kernel and capture the result"
+        "hypot" -> F<M>;
+    StdCbrt "`cbrt` of std differs from one machine to the next"
+        "compute it outside the kernel and capture the result"
+        "cbrt" -> F<M>;
+    StdSinh "`sinh` of std differs from one machine to the next"
+        "compute it outside the kernel and capture the result"
+        "sinh" -> F<M>;
+    StdCosh "`cosh` of std differs from one machine to the next"
+        "compute it outside the kernel and capture the result"
+        "cosh" -> F<M>;
+    StdTanh "`tanh` of std differs from one machine to the next"
+        "compute it outside the kernel and capture the result"
+        "tanh" -> F<M>;
+}
+
 /// The sign of a number, of whatever kind.
 pub(crate) trait Signed<M: Machine>: Arithmetic<M> {
     fn abs(m: &M, a: Self) -> Self;

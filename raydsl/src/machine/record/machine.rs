@@ -351,11 +351,22 @@ impl Machine for Recorder {
         if let (Some(a), Some(b)) = (self.i32_literal(a), self.i32_literal(b)) {
             return self.i32(scalar::i32_binary(op, a, b).1);
         }
+        // WGSL refuses a literal 0 there, even in code that never runs.
+        match (op, self.i32_literal(b)) {
+            (IntBinary::Div, Some(0)) => return a,
+            (IntBinary::Rem, Some(0)) => return self.i32(0),
+            _ => {}
+        }
         self.add(Expr::IntBinary(op, a, b), Type::I32)
     }
     fn u32_binary(&self, op: IntBinary, a: Id, b: Id) -> Id {
         if let (Some(a), Some(b)) = (self.u32_literal(a), self.u32_literal(b)) {
             return self.u32(scalar::u32_binary(op, a, b).1);
+        }
+        match (op, self.u32_literal(b)) {
+            (IntBinary::Div, Some(0)) => return a,
+            (IntBinary::Rem, Some(0)) => return self.u32(0),
+            _ => {}
         }
         self.add(Expr::IntBinary(op, a, b), Type::U32)
     }

@@ -287,8 +287,7 @@ impl Recorder {
     /// Ends the function under way with `result` and gives its number, that of an equal one if
     /// there is one.
     fn end<R: Value<Self>>(&self, result: R) -> usize {
-        let returned = self
-            .builder(|b| matches!(b.blocks.last().and_then(|b| b.1.last()), Some(Stmt::Return(_))));
+        let returned = self.builder(|b| b.blocks.last().is_some_and(|b| always_returns(&b.1)));
         if R::SCHEMA.leaves() > 0 {
             if !returned {
                 self.give_leaves(R::SCHEMA, self.leaves_of(result));
@@ -411,5 +410,14 @@ impl Recording {
     /// The text, with scene buffers split into windows as `limits` asks.
     pub fn module(&self, limits: &wgsl::Limits) -> wgsl::Module {
         module::module(self, limits)
+    }
+}
+
+/// Whether nothing behind the statements is reached: what would be returned there is not said.
+fn always_returns(block: &[Stmt]) -> bool {
+    match block.last() {
+        Some(Stmt::Return(_)) => true,
+        Some(Stmt::If { then, otherwise, .. }) => always_returns(then) && always_returns(otherwise),
+        _ => false,
     }
 }

@@ -1,0 +1,124 @@
+//! Whose methods a value has, as far as the syntax says.
+//!
+//! A kernel refuses `x.exp()` of a number, while a user's own type may have a method of that name.
+
+use proc_macro2::{Ident, TokenStream, TokenTree};
+
+use super::Emitter;
+use crate::model::{Expr, Kind};
+use crate::ops;
+
+/// Who made the type of a value.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Owner {
+    /// It is a number, a vector or the like.
+    Library,
+    /// It is written out, and none of the library's.
+    User,
+    Unknown,
+}
+
+/// Types whose methods are all in the kernel language.
+const LIBRARY: &[&str] = &[
+    "f32", "i32", "u32", "usize", "bool", "Vec2", "Vec3", "Vec4", "IVec2", "IVec3", "IVec4",
+    "UVec2", "UVec3", "UVec4", "BVec2", "BVec3", "BVec4", "Mat3", "Mat4", "Affine3", "Ray", "Hit",
+];
+
+impl Owner {
+    pub(super) fn of_type(ty: &TokenStream) -> Self {
+        let mut name = None;
+        for token in ty.clone() {
+            match token {
+                TokenTree::Ident(i) => name = Some(i.to_string()),
+                TokenTree::Punct(p) if p.as_char() == '<' => break,
+                TokenTree::Punct(_) => {}
+                // An array, a slice or a tuple.
+                _ => return Self::Library,
+            }
+        }
+        match name {
+            Some(name) if LIBRARY.contains(&name.as_str()) => Self::Library,
+            Some(name) if name != "Bvh" => Self::User,
+            _ => Self::Unknown,
+        }
+    }
+}
+
+impl Emitter<'_> {
+    pub(super) fn owner(&self, e: &Expr) -> Owner {
+        let if_library = |owner| if owner == Owner::Library { owner } else { Owner::Unknown };
+        match &e.kind {
+            Kind::Float(_)
+            | Kind::Int { .. }
+            | Kind::Bool(_)
+            | Kind::Compare { .. }
+            | Kind::Logic { .. }
+            | Kind::Cast { .. }
+            | Kind::Tuple(_)
+            | Kind::Array(_)
+            | Kind::Repeat { .. } => Owner::Library,
+            Kind::Struct { .. } => Owner::User,
+            Kind::Name(name) => self.find(name).map_or(Owner::Unknown, |local| local.owner),
+            Kind::Deref(a) | Kind::Neg(a) | Kind::Not(a) => self.owner(a),
+            Kind::Binary { a, b, .. } => match (self.owner(a), self.owner(b)) {
+                (Owner::Library, Owner::Library) => Owner::Library,
+                _ => Owner::Unknown,
+            },
+            Kind::Associated { ty, .. } => Owner::of_type(ty),
+            Kind::Field { base, member } if is_component(member) => if_library(self.owner(base)),
+            Kind::Method { receiver, name, .. }
+                if ops::cheap_method(&name.to_string()).is_some() =>
+            {
+                if_library(self.owner(receiver))
+            }
+            _ => Owner::Unknown,
+        }
+    }
+
+    /// The type parameter that is the type of `e`, and that of its elements.
+    pub(super) fn generic_of(&self, e: &Expr) -> (Option<Ident>, Option<Ident>) {
+        match &e.kind {
+            Kind::Name(name) => self
+                .find(name)
+                .map_or((None, None), |local| (local.generic.clone(), local.elements.clone())),
+            Kind::Deref(a) => self.generic_of(a),
+            Kind::Element { base, .. } | Kind::Index { base, .. } => {
+                (self.generic_of(base).1, None)
+            }
+            _ => (None, None),
+        }
+    }
+
+    pub(super) fn note_generic(&mut self, name: &Ident, generic: (Option<Ident>, Option<Ident>)) {
+        if let Some(local) = self.scopes.last_mut().and_then(|s| s.get_mut(&name.to_string())) {
+            (local.generic, local.elements) = generic;
+        }
+    }
+
+    pub(super) fn note_owner(&mut self, name: &Ident, owner: Owner) {
+        if let Some(local) = self.scopes.last_mut().and_then(|s| s.get_mut(&name.to_string())) {
+            local.owner = owner;
+        }
+    }
+
+    /// Refuses a method that kernels do not have, where the receiver is no type of the user's.
+    pub(super) fn refuse(&mut self, receiver: &Expr, name: &Ident) {
+        let Some(denied) = ops::denied(&name.to_string()) else { return };
+        let (what, mut help) = (denied.what, denied.help);
+        match self.owner(receiver) {
+            Owner::User => return,
+            Owner::Library => {}
+            Owner::Unknown if denied.seen_by_type => return,
+            Owner::Unknown => {
+                help +=
+                    &format!("; a method of a type of your own is called by `Type::{name}(&x)`");
+            }
+        }
+        self.errors.at(name.span(), what, &help);
+    }
+}
+
+/// A component of a vector: members of tuples and of `Ray` may be anything.
+fn is_component(member: &TokenStream) -> bool {
+    matches!(member.to_string().as_str(), "x" | "y" | "z" | "w")
+}

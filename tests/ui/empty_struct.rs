@@ -1,0 +1,6 @@
+use raydsl::prelude::*;
+
+#[derive(Clone, Copy, Type)]
+struct Diffuse {} //~ macro
+
+fn main() {}
