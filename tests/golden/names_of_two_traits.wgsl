@@ -32,26 +32,26 @@ fn Dual_part(self_: Dual, k: f32) -> f32 {
     return self_.x + k;
 }
 
-fn Dual_part_1(self_: Dual, k: f32) -> f32 {
+fn own_types_Dual_part(self_: Dual, k: f32) -> f32 {
     return self_.dx - k;
 }
 
 fn own_far(f: Dual, k: f32) -> f32 {
-    return Dual_part_1(f, k);
+    return own_types_Dual_part(f, k);
 }
 
 fn Dual_blend(self_: Dual, with_: f32) -> f32 {
     return self_.x - with_;
 }
 
-fn Dual_blend_1(self_: Dual, with_: u32) -> f32 {
+fn own_types_Dual_blend(self_: Dual, with_: u32) -> f32 {
     return self_.dx + f32(with_);
 }
 
 fn names_of_two_traits(a: f32, n: u32) -> f32 {
     let t = a - params.lit_2_0;
-    let parts = Dual_part(Dual(a, t), 2.0f) + Dual_part_1(Dual(a, t), 1.0f);
-    return parts + own_far(Dual(a, t), a) + Dual_blend(Dual(a, t), a * 0.5f) + Dual_blend_1(Dual(a, t), n % 8u);
+    let parts = Dual_part(Dual(a, t), 2.0f) + own_types_Dual_part(Dual(a, t), 1.0f);
+    return parts + own_far(Dual(a, t), a) + Dual_blend(Dual(a, t), a * 0.5f) + own_types_Dual_blend(Dual(a, t), n % 8u);
 }
 
 fn element(input: Tuple) -> f32 {

@@ -113,67 +113,67 @@ fn turned(x: f32, sign_: u32) -> f32 {
 }
 
 fn two_over_pi(i: u32) -> Words {
-    var value_a: u32;
-    var value_b: u32;
-    var value_c: u32;
-    var value_d: u32;
+    var result_a: u32;
+    var result_b: u32;
+    var result_c: u32;
+    var result_d: u32;
     if (i == 0u) {
-        value_a = 0u;
-        value_b = 2734261102u;
-        value_c = 1313084713u;
-        value_d = 4230436817u;
+        result_a = 0u;
+        result_b = 2734261102u;
+        result_c = 1313084713u;
+        result_d = 4230436817u;
     } else {
-        var value_a_1: u32;
-        var value_b_1: u32;
-        var value_c_1: u32;
-        var value_d_1: u32;
+        var result_a_1: u32;
+        var result_b_1: u32;
+        var result_c_1: u32;
+        var result_d_1: u32;
         if (i == 1u) {
-            value_a_1 = 2734261102u;
-            value_b_1 = 1313084713u;
-            value_c_1 = 4230436817u;
-            value_d_1 = 4113882560u;
+            result_a_1 = 2734261102u;
+            result_b_1 = 1313084713u;
+            result_c_1 = 4230436817u;
+            result_d_1 = 4113882560u;
         } else {
-            var value_a_2: u32;
-            var value_b_2: u32;
-            var value_c_2: u32;
-            var value_d_2: u32;
+            var result_a_2: u32;
+            var result_b_2: u32;
+            var result_c_2: u32;
+            var result_d_2: u32;
             if (i == 2u) {
-                value_a_2 = 1313084713u;
-                value_b_2 = 4230436817u;
-                value_c_2 = 4113882560u;
-                value_d_2 = 3680671129u;
+                result_a_2 = 1313084713u;
+                result_b_2 = 4230436817u;
+                result_c_2 = 4113882560u;
+                result_d_2 = 3680671129u;
             } else {
-                var value_a_3: u32;
-                var value_b_3: u32;
-                var value_c_3: u32;
-                var value_d_3: u32;
+                var result_a_3: u32;
+                var result_b_3: u32;
+                var result_c_3: u32;
+                var result_d_3: u32;
                 if (i == 3u) {
-                    value_a_3 = 4230436817u;
-                    value_b_3 = 4113882560u;
-                    value_c_3 = 3680671129u;
-                    value_d_3 = 1011060801u;
+                    result_a_3 = 4230436817u;
+                    result_b_3 = 4113882560u;
+                    result_c_3 = 3680671129u;
+                    result_d_3 = 1011060801u;
                 } else {
-                    value_a_3 = 4113882560u;
-                    value_b_3 = 3680671129u;
-                    value_c_3 = 1011060801u;
-                    value_d_3 = 4266746795u;
+                    result_a_3 = 4113882560u;
+                    result_b_3 = 3680671129u;
+                    result_c_3 = 1011060801u;
+                    result_d_3 = 4266746795u;
                 }
-                value_a_2 = value_a_3;
-                value_b_2 = value_b_3;
-                value_c_2 = value_c_3;
-                value_d_2 = value_d_3;
+                result_a_2 = result_a_3;
+                result_b_2 = result_b_3;
+                result_c_2 = result_c_3;
+                result_d_2 = result_d_3;
             }
-            value_a_1 = value_a_2;
-            value_b_1 = value_b_2;
-            value_c_1 = value_c_2;
-            value_d_1 = value_d_2;
+            result_a_1 = result_a_2;
+            result_b_1 = result_b_2;
+            result_c_1 = result_c_2;
+            result_d_1 = result_d_2;
         }
-        value_a = value_a_1;
-        value_b = value_b_1;
-        value_c = value_c_1;
-        value_d = value_d_1;
+        result_a = result_a_1;
+        result_b = result_b_1;
+        result_c = result_c_1;
+        result_d = result_d_1;
     }
-    return Words(value_a, value_b, value_c, value_d);
+    return Words(result_a, result_b, result_c, result_d);
 }
 
 fn upper_half(m: u32, w: u32) -> u32 {

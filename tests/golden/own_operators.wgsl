@@ -44,7 +44,7 @@ fn Dual_mul(self_: Dual, o: Dual) -> Dual {
     return Dual(self_.x * o.x, self_.x * o.dx);
 }
 
-fn Dual_mul_1(self_: Dual, k: f32) -> Dual {
+fn own_types_Dual_mul(self_: Dual, k: f32) -> Dual {
     return Dual(self_.x * k, self_.dx * k);
 }
 
@@ -61,7 +61,7 @@ fn Dual_sub(self_: Dual, o: Dual) -> Dual {
 }
 
 fn f32_mul(self_: f32, o: Dual) -> Dual {
-    return Dual_mul_1(o, self_);
+    return own_types_Dual_mul(o, self_);
 }
 
 fn Dual_add_assign(self_: Dual, o: Dual) -> Tuple {
@@ -76,7 +76,7 @@ fn Dual_mul_assign(self_: Dual, k: f32) -> Tuple {
     var self_x: f32 = self_.x;
     var self_dx: f32 = self_.dx;
     let self_x_1 = self_x;
-    let t = Dual_mul_1(Dual(self_x_1, self_dx), k);
+    let t = own_types_Dual_mul(Dual(self_x_1, self_dx), k);
     self_x = t.x;
     self_dx = t.dx;
     return Tuple(Dual(self_x, self_dx));
@@ -90,12 +90,12 @@ fn Dual_add(self_: Dual, o: Dual) -> Dual {
     return Dual(self_.x + o.x, self_.dx + o.dx);
 }
 
-fn Dual_mul_2(self_: Dual, k: u32) -> f32 {
+fn own_types_Dual_mul_1(self_: Dual, k: u32) -> f32 {
     return self_.x * f32(k);
 }
 
 fn own_operators(a: f32, b: f32) -> f32 {
-    let t = Dual_sub(Dual_mul_1(Dual_mul(Dual(a, 1.0f), Dual(a, 1.0f)), 2.0f), Dual_div(Dual_neg(Dual(a, 1.0f)), 4.0f));
+    let t = Dual_sub(own_types_Dual_mul(Dual_mul(Dual(a, 1.0f), Dual(a, 1.0f)), 2.0f), Dual_div(Dual_neg(Dual(a, 1.0f)), 4.0f));
     let t_1 = f32_mul(0.5f, t);
     var sum_x: f32 = t_1.x;
     var sum_dx: f32 = t_1.dx;
@@ -144,18 +144,18 @@ fn own_operators(a: f32, b: f32) -> f32 {
     list_1_x = select(list_1_x, self_x_3, t_9);
     list_1_dx = select(list_1_dx, self_dx_3, t_9);
     let pair = Pair_add(Pair(Dual(a, 1.0f), a), Pair(t, b));
-    var value_x: f32;
-    var value_dx: f32;
+    var chosen_x: f32;
+    var chosen_dx: f32;
     if (a < b) {
         let t_10 = Dual_add(Dual(sum_x, sum_dx), t);
-        value_x = t_10.x;
-        value_dx = t_10.dx;
+        chosen_x = t_10.x;
+        chosen_dx = t_10.dx;
     } else {
         let t_11 = Dual_sub(t, Dual(a, 1.0f));
-        value_x = t_11.x;
-        value_dx = t_11.dx;
+        chosen_x = t_11.x;
+        chosen_dx = t_11.dx;
     }
-    return sum_x + sum_dx + list_1_dx + list_0_x + pair.first.dx + pair.second + value_x + Dual_mul_2(t, 2u);
+    return sum_x + sum_dx + list_1_dx + list_0_x + pair.first.dx + pair.second + chosen_x + own_types_Dual_mul_1(t, 2u);
 }
 
 fn element(input: Tuple_1) -> f32 {

@@ -256,7 +256,7 @@ fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
     return result;
 }
 
-fn intersect_1(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
+fn triangle_intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
     let ax = abs(ray.direction.x);
     let ay = abs(ray.direction.y);
     let az = abs(ray.direction.z);
@@ -318,7 +318,7 @@ fn intersect_1(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
 }
 
 fn Triangle_intersect(self_: Triangle, ray: Ray) -> Hit {
-    return intersect_1(ray, self_.v0, self_.v1, self_.v2);
+    return triangle_intersect(ray, self_.v0, self_.v1, self_.v2);
 }
 
 fn walls_closest_hit(ray: Ray) -> Hit {

@@ -107,6 +107,7 @@ macro_rules! kernel_table {
             trailing_points: Any SameIfFinite;
             names_of_generated_code: Tame Explained;
             changed_while_read: Tame Explained;
+            known_truths: Any SameIfFinite;
             named_type_parameters: Any SameIfFinite;
             angles: Any Explained;
             growth: Any Explained;

@@ -178,3 +178,203 @@ fn guarded_elements() {
     });
     every_variant(&kernel, &inputs(9));
 }
+
+/// Of one slice only the length is read, of another nothing.
+#[test]
+fn lengths_alone() {
+    let balls = [1.0f32; 5];
+    let (balls, others) = (&balls[..], &[2.0f32; 3][..]);
+    let kernel = kernel!(|x: f32, n: u32| {
+        let mut sum = x;
+        for _ in balls.iter() {
+            sum += 1.0;
+        }
+        for i in 0..others.len() {
+            sum -= i as f32;
+        }
+        if n as usize > balls.len() { sum } else { -sum }
+    });
+    every_variant(&kernel, &inputs(10));
+    let wgsl = kernel.wgsl();
+    assert!(wgsl.contains("len_of_balls") && !wgsl.contains("balls_at"), "{wgsl}");
+}
+
+/// Slices that live in the application's own buffers.
+#[cfg(feature = "gpu")]
+mod windows {
+    use raydsl::gpu::{Context, GpuError, GpuScheduler, GpuWindow, WindowError};
+    use raydsl::prelude::*;
+    use wgpu::BufferUsages as Usage;
+
+    use super::{Ball, inputs, nearest};
+
+    /// A device of its own: its counter of uploads counts for one test.
+    fn own_device() -> Option<GpuScheduler> {
+        raydsl_tests::gpu::gpu()?;
+        Some(GpuScheduler::new().expect("there is one device already"))
+    }
+
+    fn balls() -> Vec<Ball> {
+        let center = |i: u32| vec3(i as f32 - 4.0, 0.5, (i % 3) as f32);
+        (0..13).map(|i| Ball { center: center(i), radius: 0.25, id: i * 2 }).collect()
+    }
+
+    fn bytes(balls: &[Ball]) -> Vec<u8> {
+        let floats = |b: &Ball| [b.center.x, b.center.y, b.center.z, b.radius].map(f32::to_bits);
+        let words = balls.iter().flat_map(|b| floats(b).into_iter().chain([b.id]));
+        words.flat_map(u32::to_le_bytes).collect()
+    }
+
+    fn buffer(gpu: &GpuScheduler, size: u64, usage: Usage) -> wgpu::Buffer {
+        gpu.context().device().create_buffer(&wgpu::BufferDescriptor {
+            label: Some("the application's"),
+            size,
+            usage: usage | Usage::COPY_DST,
+            mapped_at_creation: false,
+        })
+    }
+
+    fn filled(gpu: &GpuScheduler, balls: &[Ball], offset: u64) -> GpuWindow {
+        let bytes = bytes(balls);
+        let size = bytes.len() as u64;
+        let buffer = buffer(gpu, offset + size + 64, Usage::STORAGE);
+        gpu.context().queue().write_buffer(&buffer, offset, &bytes);
+        GpuWindow { buffer, offset, size }
+    }
+
+    fn found(gpu: &GpuScheduler, kernel: &Kernel<'_, (f32, u32), u32>) -> Vec<u32> {
+        let inputs = inputs(11);
+        let mut found = vec![0; inputs.len()];
+        gpu.batch(kernel, &inputs, &mut found).expect("the device runs it");
+        let mut expected = vec![0; inputs.len()];
+        kernel.run(Variant::Scalar, &inputs, &mut expected);
+        assert_eq!(found, expected);
+        found
+    }
+
+    #[test]
+    fn nothing_is_uploaded() -> Result<(), GpuError> {
+        let Some(gpu) = own_device() else { return Ok(()) };
+        let all = balls();
+        // As a captured slice, and as an argument.
+        let kernel = kernel!(|x: f32, n: u32| {
+            let near = nearest(&all, vec3(x, 0.0, 1.0), 100);
+            near * 100 + all[n as usize % all.len()].id
+        });
+        {
+            let _window = gpu.with_gpu(&all, filled(&gpu, &all, 256))?;
+            found(&gpu, &kernel);
+            found(&gpu, &kernel);
+            assert_eq!(gpu.context().uploaded_bytes(), 0);
+            // A part has the address of the whole, and is another slice.
+            let part = &all[..5];
+            let of_part =
+                kernel!(|x: f32, n: u32| part[n as usize % part.len()].id + (x > 0.0) as u32);
+            found(&gpu, &of_part);
+            assert_eq!(gpu.context().uploaded_bytes(), 5 * 20);
+            found(&gpu, &kernel);
+            assert_eq!(gpu.context().uploaded_bytes(), 5 * 20);
+        }
+        found(&gpu, &kernel);
+        assert_eq!(gpu.context().uploaded_bytes(), 18 * 20);
+        Ok(())
+    }
+
+    /// It is the window that is read.
+    #[test]
+    fn the_window_counts() -> Result<(), GpuError> {
+        let Some(gpu) = own_device() else { return Ok(()) };
+        let all = balls();
+        let others: Vec<Ball> = all.iter().map(|b| Ball { id: b.id + 7, ..*b }).collect();
+        let kernel = kernel!(|n: u32| all[n as usize % 13].id);
+        let _window = gpu.with_gpu(&all, filled(&gpu, &others, 0))?;
+        let inputs: Vec<(u32,)> = (0..20).map(|n| (n,)).collect();
+        let mut found = vec![0; inputs.len()];
+        gpu.batch(&kernel, &inputs, &mut found)?;
+        let expected: Vec<u32> = (0..20).map(|n| n % 13 * 2 + 7).collect();
+        assert_eq!(found, expected);
+        Ok(())
+    }
+
+    fn problem(gpu: &GpuScheduler, slice: &[Ball], window: GpuWindow) -> WindowError {
+        let error = gpu.with_gpu(slice, window).expect_err("the window is wrong");
+        assert!(error.to_string().contains("Ball"), "{error}");
+        match error {
+            GpuError::Window { problem, .. } => problem,
+            other => panic!("{other}"),
+        }
+    }
+
+    #[test]
+    fn wrong_windows_are_refused() -> Result<(), GpuError> {
+        let Some(gpu) = own_device() else { return Ok(()) };
+        let all = balls();
+        let right = filled(&gpu, &all, 0);
+        let limit = u64::from(gpu.context().device().limits().min_storage_buffer_offset_alignment);
+        let offset = limit / 2;
+        let unaligned = problem(&gpu, &all, GpuWindow { offset, ..right.clone() });
+        assert_eq!(unaligned, WindowError::Unaligned { offset, limit });
+        assert!(unaligned.to_string().contains("min_storage_buffer_offset_alignment"));
+        // Too small, and with the padding that WGSL's own structs would have.
+        for size in [12 * 20, 13 * 32] {
+            let wrong = problem(&gpu, &all, GpuWindow { size, ..right.clone() });
+            assert_eq!(wrong, WindowError::WrongSize { size, len: 13, stride: 20, needed: 260 });
+        }
+        let end = right.buffer.size();
+        for offset in [limit * 8, u64::MAX - limit + 1] {
+            let past = problem(&gpu, &all, GpuWindow { offset, ..right.clone() });
+            assert_eq!(past, WindowError::PastEnd { offset, size: 260, limit: end });
+        }
+        let no_storage = GpuWindow { buffer: buffer(&gpu, 260, Usage::VERTEX), ..right.clone() };
+        assert_eq!(problem(&gpu, &all, no_storage), WindowError::NotStorage);
+        assert_eq!(problem(&gpu, &[], right.clone()), WindowError::Empty);
+        let taken = gpu.with_gpu(&all, right.clone())?;
+        assert_eq!(problem(&gpu, &all, right.clone()), WindowError::Taken);
+        drop(taken);
+        // Whatever was refused has left nothing behind.
+        drop(gpu.with_gpu(&all, right)?);
+        Ok(())
+    }
+
+    /// Two devices of one instance, as an application may have.
+    fn two_devices() -> Option<[GpuScheduler; 2]> {
+        raydsl_tests::gpu::gpu()?;
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        let adapter = pollster::block_on(instance.request_adapter(&Default::default()));
+        let adapter = adapter.expect("there is an adapter");
+        Some([(); 2].map(|()| {
+            let made = pollster::block_on(adapter.request_device(&Default::default()));
+            let (device, queue) = made.expect("the adapter gives devices");
+            GpuScheduler::with_context(Context::from_wgpu(None, device, queue))
+        }))
+    }
+
+    #[test]
+    fn buffers_of_another_device_are_refused() {
+        let Some([gpu, other]) = two_devices() else { return };
+        let all = balls();
+        // Neither number may be the other's.
+        let (_, foreign) = (filled(&other, &all, 0), filled(&other, &all, 0));
+        let refused = problem(&gpu, &all, foreign);
+        assert!(matches!(refused, WindowError::Foreign { .. }), "{refused}");
+    }
+
+    #[test]
+    fn foreign_and_destroyed_buffers_are_refused() {
+        let (Some(gpu), Some(other)) = (own_device(), own_device()) else { return };
+        let all = balls();
+        let foreign = problem(&gpu, &all, filled(&other, &all, 0));
+        assert!(matches!(foreign, WindowError::Foreign { .. }), "{foreign}");
+        assert!(foreign.to_string().contains("Context::device()"), "{foreign}");
+        let destroyed = filled(&gpu, &all, 0);
+        destroyed.buffer.destroy();
+        let kernel = kernel!(|n: u32| all[n as usize % 13].id);
+        let mut found = [0];
+        let outcome = gpu.with_gpu(&all, destroyed).and_then(|window| {
+            let outcome = gpu.batch(&kernel, &[(1,)], &mut found);
+            drop(window);
+            outcome
+        });
+        assert!(outcome.is_err(), "{outcome:?}");
+    }
+}

@@ -1,18 +1,17 @@
 //! Random kernels agree with their source in every variant; `raydsl_tests::fuzz` says how.
 //!
-//! `RAYDSL_FUZZ_KERNELS` says how many, `RAYDSL_FUZZ_SEED` which ones:
+//! `RAYDSL_FUZZ_KERNELS` says how many, `RAYDSL_FUZZ_SEED` which ones, `RAYDSL_FUZZ_RESUME=1` that
+//! a run which was ended goes on, and `RAYDSL_FUZZ_SHRUNK` how many failing kernels are made smaller:
 //!
 //! ```text
-//! RAYDSL_FUZZ_KERNELS=20000 RAYDSL_FUZZ_SEED=1000000 cargo test --workspace --test fuzz -- --nocapture
+//! RAYDSL_FUZZ_KERNELS=20000 RAYDSL_FUZZ_RESUME=1 cargo test --workspace --test fuzz -- --nocapture
 //! ```
 
 use std::path::Path;
+use std::time::Instant;
 
 use raydsl_tests::fuzz::batch::Workshop;
 use raydsl_tests::fuzz::{generator, print, shrink};
-
-/// How many failing kernels are made smaller.
-const SHRUNK: usize = 3;
 
 fn number(name: &str, default: u64) -> u64 {
     match std::env::var(name) {
@@ -25,19 +24,25 @@ fn number(name: &str, default: u64) -> u64 {
 fn random_kernels_agree() {
     let seed = number("RAYDSL_FUZZ_SEED", 1);
     let count = number("RAYDSL_FUZZ_KERNELS", 300) as usize;
+    let shrunk = number("RAYDSL_FUZZ_SHRUNK", 3) as usize;
     let scratch = Path::new(env!("CARGO_TARGET_TMPDIR"));
     let target = scratch.parent().expect("the scratch folder lies in the target folder");
     let workshop = Workshop::new(&scratch.join("fuzz"), target, "fuzz");
-    let mut report = workshop.run_seeds(seed, count);
+    let resume = number("RAYDSL_FUZZ_RESUME", 0) == 1;
+    let start = Instant::now();
+    let mut report = workshop.run_seeds(seed, count, resume);
     println!(
-        "{} kernels from seed {seed} on; WGSL compared for {} of them, {} inputs",
-        report.kernels, report.on_wgsl, report.wgsl_inputs
+        "{} kernels from seed {seed} on in {:.0} s; WGSL compared for {} of them, {} inputs",
+        report.kernels,
+        start.elapsed().as_secs_f64(),
+        report.on_wgsl,
+        report.wgsl_inputs
     );
     let failed = report.failures.len();
     report.failures.sort_by_key(|(kernel, _)| kernel.seed);
     for (i, (kernel, text)) in report.failures.iter().enumerate() {
         println!("seed {}: {text}", kernel.seed);
-        if i < SHRUNK {
+        if i < shrunk {
             let (small, text) = workshop.shrunk(kernel, text);
             println!("made smaller:\n{}\nwhich fails with: {text}\n", print::kernel(&small));
         }

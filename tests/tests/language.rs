@@ -58,6 +58,7 @@ fn owner(receiver: &str) -> Option<&'static str> {
         ("[V; N]", "arrays"),
         ("bvh::On<'_, T>", "slices and trees"),
         ("bvh::On<'_, P>", "slices and trees of primitives"),
+        ("On<'_, P>", "slices and trees of primitives"),
         ("$twin<M>", "`Unorm8` and its like"),
         ("V", "`BVec2`, `BVec3`, `BVec4`"),
     ];
@@ -93,6 +94,7 @@ fn methods() -> io::Result<BTreeMap<&'static str, BTreeSet<String>>> {
         "methods/matrix.rs",
         "methods/vector.rs",
         "batch.rs",
+        "../bvh/query.rs",
         "../math/unorm.rs",
     ] {
         let text = read(&format!("raydsl/src/machine/{file}"))?;

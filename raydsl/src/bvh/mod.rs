@@ -333,7 +333,7 @@ impl<P: Primitive> Slice<P> for [P] {
 }
 
 /// The key of a slice: the address and length of borrowed data name it while the borrow lasts.
-fn slice_key<P>(prims: &[P]) -> BufferKey {
+pub(crate) fn slice_key<P>(prims: &[P]) -> BufferKey {
     let address = prims.as_ptr() as usize as u64;
     BufferKey { id: address | 1 << 63, version: prims.len() as u32, part: size_of::<P>() as u32 }
 }

@@ -6,6 +6,7 @@ use std::collections::HashMap;
 use super::chunks::{Span, plan};
 use super::device::{Caps, Gpu};
 use super::error::GpuError;
+use super::window::{GpuWindow, WindowError};
 use crate::machine::wgsl::{Buffer, BufferKey, Window};
 
 /// Bytes of one transfer: wgpu stages each in a buffer of its own, so this, twice, bounds
@@ -42,6 +43,9 @@ struct Upload {
 #[derive(Default)]
 pub(super) struct Uploads {
     parts: HashMap<(u64, u32), Upload>,
+    /// Slices that live in the application's buffers. A part of such a slice may have its address,
+    /// so they are kept by the whole key.
+    windows: HashMap<BufferKey, Upload>,
     uploaded: u64,
 }
 
@@ -68,6 +72,11 @@ impl Uploads {
     ) -> Result<Vec<Bound>, GpuError> {
         let spans = spans(buffer, gpu.caps.max_binding)?;
         let alignment = gpu.caps.alignment;
+        if let Some(window) = self.windows.get(&buffer.key) {
+            return window
+                .bound(buffer, &spans, alignment)
+                .ok_or_else(|| too_small_or_crooked(buffer, alignment));
+        }
         let upload = self.current(buffer.key);
         let missing: Vec<Span> = spans
             .iter()
@@ -84,18 +93,30 @@ impl Uploads {
             self.uploaded += sent;
         }
         let upload = self.current(buffer.key);
-        let bound = buffer.windows.iter().zip(spans).map(|(window, span)| {
-            let found = upload.locate(span, alignment);
-            found.map(|(chunk, offset)| Bound {
-                binding: window.binding,
-                buffer: chunk.buffer.clone(),
-                offset,
-                size: binding_bytes(span, buffer.stride),
-            })
-        });
-        bound.collect::<Option<Vec<_>>>().ok_or_else(|| GpuError::BadModule {
+        upload.bound(buffer, &spans, alignment).ok_or_else(|| GpuError::BadModule {
             reason: format!("the windows of {} cannot be bound", buffer.name),
         })
+    }
+
+    /// Reads the slice of `key` from a window, which has been checked.
+    pub(super) fn enter_window(
+        &mut self,
+        key: BufferKey,
+        window: GpuWindow,
+    ) -> Result<(), WindowError> {
+        if self.windows.contains_key(&key) {
+            return Err(WindowError::Taken);
+        }
+        let GpuWindow { buffer, offset, size } = window;
+        let chunk = Chunk { span: Span { start: 0, end: size }, buffer, offset };
+        let upload = Upload { version: key.version, external: true, chunks: vec![chunk] };
+        self.windows.insert(key, upload);
+        Ok(())
+    }
+
+    /// Reads the slice of `key` from an upload again.
+    pub(super) fn leave_window(&mut self, key: BufferKey) {
+        self.windows.remove(&key);
     }
 
     /// The entry for a key; another version is dropped first, to free its memory for this.
@@ -132,6 +153,20 @@ impl Uploads {
 }
 
 impl Upload {
+    /// A binding for each window of `buffer`, if there are chunks that hold them.
+    fn bound(&self, buffer: &Buffer, spans: &[Span], alignment: u64) -> Option<Vec<Bound>> {
+        let bound = buffer.windows.iter().zip(spans).map(|(window, &span)| {
+            let (chunk, offset) = self.locate(span, alignment)?;
+            Some(Bound {
+                binding: window.binding,
+                buffer: chunk.buffer.clone(),
+                offset,
+                size: binding_bytes(span, buffer.stride),
+            })
+        });
+        bound.collect()
+    }
+
     /// The chunk that holds a span, and where in its buffer the span starts.
     fn locate(&self, span: Span, alignment: u64) -> Option<(&Chunk, u64)> {
         self.chunks.iter().find_map(|chunk| {

@@ -1,5 +1,6 @@
 //! What can go wrong on the device side, each with its remedy.
 
+use super::window::WindowError;
 use crate::machine::wgsl::BufferKey;
 
 /// An error of the GPU runtime.
@@ -128,6 +129,15 @@ pub enum GpuError {
         key: BufferKey,
         /// What to change.
         reason: String,
+    },
+    /// A window of the application's buffer cannot stand for a slice.
+    #[error("the window for a slice of {element} cannot be used: {problem}")]
+    Window {
+        /// The type of the slice's elements.
+        element: &'static str,
+        /// What is wrong, and what to change.
+        #[source]
+        problem: WindowError,
     },
     /// The grid has more pixels than a shader can number.
     #[error("a grid of {0} x {1} pixels has more than 2^32 - 1 of them: run it in parts", size[0], size[1])]

@@ -17,6 +17,7 @@ mod run;
 mod scheduler;
 mod slot;
 mod tiles;
+mod window;
 
 #[cfg(test)]
 mod tests;
@@ -26,3 +27,4 @@ pub use error::GpuError;
 pub use pipeline::Checks;
 pub use run::Timing;
 pub use scheduler::GpuScheduler;
+pub use window::{GpuWindow, OnGpu, WindowError};

@@ -661,6 +661,7 @@ cast!(
     u32 => u32: |m, a| U(m.u32(a)),
     bool => u32: |m, a| U(m.u32(u32::from(a))),
     bool => i32: |m, a| I(m.i32(i32::from(a))),
+    bool => usize: |m, a| Usize(m.u32(u32::from(a))),
     F<M> => usize: |m, a| Usize(m.f32_to_u32(a.0)),
     I<M> => usize: |m, a| Usize(m.i32_to_u32(a.0)),
     U<M> => usize: |_m, a| Usize(a.0),

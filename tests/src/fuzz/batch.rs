@@ -8,9 +8,10 @@ use std::collections::HashMap;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
+use super::progress::Progress;
 use super::run::{DONE, END, FAILED, RUNS};
 use super::tree::Kernel;
 use super::{generator, print, shrink};
@@ -98,13 +99,23 @@ impl Workshop {
     }
 
     /// Runs the kernels of `count` seeds from `first` on, on all processors.
-    pub fn run_seeds(&self, first: u64, count: usize) -> Report {
+    ///
+    /// With `resume`, batches that an earlier run has found right are not run again; a run that was
+    /// ended goes on. The disk holds one program for each processor.
+    pub fn run_seeds(&self, first: u64, count: usize, resume: bool) -> Report {
         let all = Mutex::new(Report::default());
+        let progress = Mutex::new(Progress::open(&self.folder.join("progress"), resume));
         in_parallel(count, BATCH, |part| {
+            let start = first.wrapping_add(part.start as u64);
+            let known = lock(&progress).find(start, part.len());
             let name = format!("batch-{}", part.start / BATCH % crate::threads());
             let seeds = part.clone().map(|i| first.wrapping_add(i as u64));
-            let report = self.run(&name, seeds.map(generator::kernel).collect());
-            let mut all = all.lock().unwrap_or_else(|e| e.into_inner());
+            let report = known.unwrap_or_else(|| {
+                let report = self.run(&name, seeds.map(generator::kernel).collect());
+                lock(&progress).note(start, &report);
+                report
+            });
+            let mut all = lock(&all);
             all.kernels += report.kernels;
             all.on_wgsl += report.on_wgsl;
             all.wgsl_inputs += report.wgsl_inputs;
@@ -154,7 +165,7 @@ impl Workshop {
         for (i, kernel) in kernels.iter().enumerate() {
             write(&format!("k{i}.rs"), &print::kernel(kernel));
             modules += &format!("mod k{i};\n");
-            cases += &format!("        Case::of::<k{i}::entry>(\"k{i}\"),\n");
+            cases += &case(i, kernel);
         }
         let main = format!(
             "use raydsl_tests::fuzz::run::{{Case, main as run}};\n\n{modules}\nfn main() {{\n    run(&[\n{cases}    ]);\n}}\n"
@@ -207,12 +218,27 @@ impl Workshop {
     }
 }
 
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(|e| e.into_inner())
+}
+
 /// What failures are grouped by: compiling, panicking, WGSL, or any other variant.
 fn kind(text: &str) -> &'static str {
     let starts = ["does not compile", "the program"];
     let words = ["on WGSL: ", "on WGSL", "the source: ", "panic"];
     let start = starts.into_iter().find(|s| text.starts_with(s));
     start.or_else(|| words.into_iter().find(|w| text.contains(w))).unwrap_or("differs")
+}
+
+/// What runs the kernel of module `i`.
+fn case(i: usize, kernel: &Kernel) -> String {
+    let entry = if kernel.scene.is_some() { "Entry" } else { "entry" };
+    let closure = if kernel.scene.is_some_and(|s| s.closure) {
+        format!(".with(k{i}::closure)")
+    } else {
+        String::new()
+    };
+    format!("        Case::of::<k{i}::{entry}>(\"k{i}\"){closure},\n")
 }
 
 fn program(folder: &Path) -> PathBuf {

@@ -19,6 +19,7 @@
 pub mod batch;
 pub mod generator;
 pub mod print;
+pub mod progress;
 pub mod run;
 pub mod shrink;
 pub mod tree;

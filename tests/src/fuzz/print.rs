@@ -1,16 +1,92 @@
 //! Generated kernels as Rust source text.
 
-use super::tree::{Block, Expr, Function, Kernel, Piece, Stmt};
+use super::tree::{Block, Expr, Function, Head, Kernel, Mode, Param, Piece, Scene, Stmt};
+
+/// The struct that some modules have, so that methods and traits are implemented for a type of
+/// another crate too.
+const OWN: &str = "
+#[derive(Clone, Copy, Debug, Type)]
+pub struct Own {
+    pub a: f32,
+    pub k: u32,
+    pub p: Vec2,
+    pub kind: Kind,
+}
+
+#[kernel]
+impl Own {
+    pub fn of(n: u32) -> Self {
+        Own { a: (n & 7) as f32 * 0.25, k: n, p: vec2(1.0, (n & 3) as f32), kind: Kind::of(n) }
+    }
+
+    pub fn is_over(&self, x: f32) -> bool {
+        self.a > x && self.kind != Kind::Red
+    }
+
+    pub fn raise(&mut self, n: u32) {
+        self.k |= n;
+        if self.k > 99 {
+            return;
+        }
+        self.kind = self.kind.next(n);
+    }
+}
+";
+
+/// What `impl Weigh for Own` has beside the generated method.
+const WEIGH: &str = "
+    const FLOOR: f32 = 1.0;
+
+    fn turned(self, n: u32) -> Self {
+        Own { k: self.k ^ n, ..self }
+    }
+
+    fn made(n: u32) -> Self {
+        Own::of(n)
+    }
+
+    fn push(&mut self, by: f32) {
+        self.p.y = by;
+    }
+
+";
+
+/// What functions take that read the scene.
+const SLICES: [&str; 3] = ["floats: &[f32]", "words: &[u32]", "smalls: &[Small]"];
 
 /// The module of a kernel.
 pub fn kernel(k: &Kernel) -> String {
     let mut p = Printer::default();
     p.text("use raydsl::kernel;\nuse raydsl::prelude::*;\n");
     p.text("use raydsl_tests::fuzz::types::*;\n");
+    if k.own {
+        p.text(OWN);
+    }
     for f in &k.functions {
         p.function(f);
     }
+    if let Some(scene) = k.scene {
+        p.text(&format!("\nraydsl_tests::scene_entry!({}, {});\n", scene.len, scene.count));
+        if let (true, Some(entry)) = (scene.closure, k.functions.last()) {
+            p.closure(entry, scene);
+        }
+    }
     p.out
+}
+
+fn param(p: &Param) -> String {
+    let (name, ty) = (&p.name, p.ty.name());
+    match (p.mode, name == "self") {
+        (Mode::Value, true) => "self".to_owned(),
+        (Mode::Mutable, true) => "mut self".to_owned(),
+        (Mode::Shared, true) => "&self".to_owned(),
+        (Mode::Changed, true) => "&mut self".to_owned(),
+        (Mode::Value, false) => format!("{name}: {ty}"),
+        (Mode::Mutable, false) => format!("mut {name}: {ty}"),
+        (Mode::Shared, false) => format!("{name}: &{ty}"),
+        (Mode::Changed, false) => format!("{name}: &mut {ty}"),
+        (Mode::Host, _) => format!("#[host] {name}: {ty}"),
+    }
 }
 
 #[derive(Default)]
@@ -30,12 +106,50 @@ impl Printer {
     }
 
     fn function(&mut self, f: &Function) {
-        let params: Vec<String> =
-            f.params.iter().map(|(name, ty)| format!("{name}: {}", ty.name())).collect();
-        let (params, result) = (params.join(", "), f.result.name());
-        self.text(&format!("\n#[kernel]\npub fn {}({params}) -> {result} ", f.name));
+        let mut params: Vec<String> = f.params.iter().map(param).collect();
+        if f.sliced {
+            params.extend(SLICES.map(str::to_owned));
+        }
+        if f.sliced && f.name == "entry" {
+            params.extend(["scale: f32".to_owned(), "#[host] count: u32".to_owned()]);
+        }
+        let (name, params, result) = (&f.name, params.join(", "), f.result.name());
+        let coherent = if f.coherent { "#[coherent]\n" } else { "" };
+        let generics = match f.head {
+            Head::OfType => "<T: Weigh>",
+            Head::OfCount => "<const N: usize>",
+            Head::Plain | Head::Method | Head::Weight => "",
+        };
+        match f.head {
+            Head::Plain | Head::OfType | Head::OfCount => {
+                self.text(&format!("\n#[kernel]\n{coherent}pub "));
+            }
+            Head::Method => self.text("\n#[kernel]\nimpl Own {\n    pub "),
+            Head::Weight => self.text(&format!("\n#[kernel]\nimpl Weigh for Own {{{WEIGH}    ")),
+        }
+        let in_impl = matches!(f.head, Head::Method | Head::Weight);
+        self.indent = usize::from(in_impl);
+        self.text(&format!("fn {name}{generics}({params}) -> {result} "));
         self.block(&f.body);
-        self.text("\n");
+        self.indent = 0;
+        self.text(if in_impl { "\n}\n" } else { "\n" });
+    }
+
+    /// The same body as a closure that captures the scene.
+    fn closure(&mut self, entry: &Function, scene: Scene) {
+        let Scene { len, count, .. } = scene;
+        self.text("\npub fn closure(run: raydsl_tests::fuzz::run::Use<'_>) {\n");
+        self.text(&format!(
+            "    let (floats, words) = (first(&FLOATS, {len}), first(&WORDS, {len}));\n"
+        ));
+        self.text(&format!("    let smalls = first(&SMALLS, {len});\n"));
+        self.text(&format!("    let (scale, count) = (SCALE, {count}u32);\n"));
+        let params: Vec<String> = entry.params.iter().map(param).collect();
+        self.text(&format!("    let kernel = kernel!(|{}| -> Outcome ", params.join(", ")));
+        self.indent = 1;
+        self.block(&entry.body);
+        self.indent = 0;
+        self.text(");\n    run(&kernel);\n}\n");
     }
 
     fn block(&mut self, b: &Block) {

@@ -6,11 +6,11 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use raydsl::kernel::{Kernel, Lifted};
-use raydsl::machine::{KernelFn, KernelInfo, Lanes, Packet, Recorder, Scalar, Type};
+use raydsl::kernel::{Kernel, Lifted, Variant};
+use raydsl::machine::{KernelFn, Lanes, Packet, Recorder, Scalar, Type};
 use raydsl::prelude::Vec3;
 
-use super::types::{Outcome, Small};
+use super::types::{INFO, Outcome, Small, resources};
 use super::watch::{Watch, is_loose};
 use crate::check::each_pass;
 use crate::gpu::gpu;
@@ -26,6 +26,9 @@ pub type Args = (f32, Vec3, u32, Small);
 type Any = RunTime<16>;
 type On<T, M> = <T as Type>::On<M>;
 type LiftedTo<M> = fn(&M, On<Args, M>) -> On<Outcome, M>;
+
+/// What is to be done with a kernel that borrows.
+pub type Use<'a> = &'a mut dyn FnMut(&Kernel<'_, Args, Outcome>);
 
 /// How many inputs a kernel is given; not a multiple of any width.
 const INPUTS: usize = 77;
@@ -47,12 +50,26 @@ pub struct Case {
     scalar: LiftedTo<Scalar>,
     packet: LiftedTo<Packet<Any>>,
     recorder: LiftedTo<Recorder>,
+    closure: Option<fn(Use<'_>)>,
 }
 
 impl Case {
     /// The kernel `F`.
     pub fn of<F: KernelFn<Args = Args, Output = Outcome>>(name: &'static str) -> Self {
-        Self { name, source: F::scalar, scalar: F::lifted, packet: F::lifted, recorder: F::lifted }
+        Self {
+            name,
+            source: F::scalar,
+            scalar: F::lifted,
+            packet: F::lifted,
+            recorder: F::lifted,
+            closure: None,
+        }
+    }
+
+    /// With the same body as a closure.
+    #[must_use]
+    pub fn with(self, closure: fn(Use<'_>)) -> Self {
+        Self { closure: Some(closure), ..self }
     }
 }
 
@@ -134,7 +151,31 @@ impl Case {
                 });
             });
         }
-        self.wgsl(&inputs, &expected)
+        let strict = self.strict(&inputs);
+        self.closure(&inputs, &expected, &strict);
+        self.wgsl(&self.recorded(), &inputs, &expected, &strict)
+    }
+
+    /// The closure's own variants.
+    fn closure(&self, inputs: &[Args], expected: &[Outcome], strict: &[usize]) {
+        let Some(closure) = self.closure else { return };
+        closure(&mut |kernel| self.variants(kernel, inputs, expected, strict));
+    }
+
+    fn variants(
+        &self,
+        kernel: &Kernel<'_, Args, Outcome>,
+        inputs: &[Args],
+        expected: &[Outcome],
+        strict: &[usize],
+    ) {
+        for variant in [Variant::Scalar, Variant::Packet4, Variant::Packet8, Variant::Packet16] {
+            let who = format!("the closure's {}", variant.name());
+            let mut found = vec![garbage(); inputs.len()];
+            naming(&who, || kernel.run(variant, inputs, &mut found));
+            self.assert_same(&who, inputs, expected, &found);
+        }
+        self.wgsl(kernel, inputs, expected, strict);
     }
 
     fn packet(
@@ -158,18 +199,27 @@ impl Case {
             .assert_same(|i| format!("{:?}", inputs[i]));
     }
 
-    /// Compares WGSL for the inputs for which it leaves nothing open, and says how many these are.
-    fn wgsl(&self, inputs: &[Args], expected: &[Outcome]) -> usize {
-        let Some(gpu) = gpu() else { return 0 };
+    /// The inputs for which WGSL leaves nothing open.
+    fn strict(&self, inputs: &[Args]) -> Vec<usize> {
         let watch = Any::new(Watch);
         let is_strict = |i: &usize| {
             let mut out = [garbage()];
             !is_loose(|| self.packet(watch, 1, 1, &|_| inputs[*i], &mut out))
         };
-        let strict: Vec<usize> = (0..inputs.len()).filter(is_strict).collect();
-        let kernel = self.recorded();
+        (0..inputs.len()).filter(is_strict).collect()
+    }
+
+    /// Compares WGSL for the inputs in `strict`, and says how many these are.
+    fn wgsl(
+        &self,
+        kernel: &Kernel<'_, Args, Outcome>,
+        inputs: &[Args],
+        expected: &[Outcome],
+        strict: &[usize],
+    ) -> usize {
+        let Some(gpu) = gpu() else { return 0 };
         let mut found = vec![garbage(); inputs.len()];
-        if let Err(error) = gpu.batch(&kernel, inputs, &mut found) {
+        if let Err(error) = gpu.batch(kernel, inputs, &mut found) {
             panic!("{} on WGSL: {error}\n{}", self.name, kernel.wgsl());
         }
         if strict.is_empty() {
@@ -186,8 +236,6 @@ impl Case {
     }
 
     fn recorded(&self) -> Kernel<'static, Args, Outcome> {
-        static INFO: KernelInfo =
-            KernelInfo { name: "function", file: file!(), line: line!(), params: &[] };
         Kernel::scalar(&INFO, self.source).lifted(
             Lifted {
                 native4: Box::new(|_, _| unreachable!()),
@@ -198,7 +246,7 @@ impl Case {
                 recorder: Box::new(self.recorder),
                 margin: Box::new(|_, _| unreachable!()),
             },
-            |_| {},
+            resources,
         )
     }
 }

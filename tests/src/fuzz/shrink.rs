@@ -1,6 +1,6 @@
 //! Smaller kernels from one that fails.
 
-use super::tree::{Block, Expr, Function, Kernel, Piece};
+use super::tree::{Block, Expr, Function, Head, Kernel, Piece, Ty};
 
 /// Kernels that are each smaller than `kernel` by one cut: a statement gone, an expression that
 /// is one of its parts or plain, a function that nothing calls gone. They all compile.
@@ -35,11 +35,22 @@ impl Cutter {
 
     fn kernel(&mut self, k: &mut Kernel) -> bool {
         for i in 0..k.functions.len().saturating_sub(1) {
-            let call = format!("{}(", k.functions[i].name);
-            if !k.functions.iter().any(|f| calls(&f.body, &call)) && self.here() {
+            let name = &k.functions[i].name;
+            if !k.functions.iter().any(|f| calls(&f.body, name)) && self.here() {
                 k.functions.remove(i);
                 return true;
             }
+        }
+        if k.own && !needs_own(k) && self.here() {
+            k.own = false;
+            return true;
+        }
+        if let Some(scene) = &mut k.scene
+            && scene.closure
+            && self.here()
+        {
+            scene.closure = false;
+            return true;
         }
         k.functions.iter_mut().rev().any(|f: &mut Function| self.block(&mut f.body))
     }
@@ -86,15 +97,24 @@ impl Cutter {
     }
 }
 
-fn calls(b: &Block, call: &str) -> bool {
-    let in_tail = b.tail.as_ref().is_some_and(|e| calls_in(&e.pieces, call));
-    in_tail || b.stmts.iter().any(|s| calls_in(&s.pieces, call))
+/// Whether the text of a block has a word of a function's name in it.
+fn calls(b: &Block, name: &str) -> bool {
+    let in_tail = b.tail.as_ref().is_some_and(|e| calls_in(&e.pieces, name));
+    in_tail || b.stmts.iter().any(|s| calls_in(&s.pieces, name))
 }
 
-fn calls_in(pieces: &[Piece], call: &str) -> bool {
+fn calls_in(pieces: &[Piece], name: &str) -> bool {
     pieces.iter().any(|p| match p {
-        Piece::Text(text) => text == call,
-        Piece::Expr(e) => calls_in(&e.pieces, call),
-        Piece::Block(b) => calls(b, call),
+        Piece::Text(text) => text.contains(name),
+        Piece::Expr(e) => calls_in(&e.pieces, name),
+        Piece::Block(b) => calls(b, name),
+    })
+}
+
+/// Whether the struct `Own` is in use; its own methods are a use.
+fn needs_own(k: &Kernel) -> bool {
+    k.functions.iter().any(|f| {
+        let of_own = f.result == Ty::Own || f.params.iter().any(|p| p.ty == Ty::Own);
+        of_own || matches!(f.head, Head::Method | Head::Weight) || calls(&f.body, "Own")
     })
 }

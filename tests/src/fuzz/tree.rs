@@ -12,9 +12,31 @@ pub enum Ty {
     U32,
     I32,
     Bool,
+    /// `usize`.
+    Size,
+    Vec2,
     Vec3,
+    Vec4,
+    IVec3,
+    UVec2,
+    BVec3,
+    Kind,
+    /// `(f32, u32)`.
+    Pair,
+    /// `[f32; 4]`.
+    Row,
+    /// `[u32; 3]`.
+    Counts,
+    /// `[Small; 2]`.
+    Both,
     Small,
     Nested,
+    /// A struct of the module.
+    Own,
+    /// A type parameter.
+    Any,
+    /// `[f32; N]` with a constant parameter.
+    List,
     Outcome,
 }
 
@@ -26,9 +48,23 @@ impl Ty {
             Self::U32 => "u32",
             Self::I32 => "i32",
             Self::Bool => "bool",
+            Self::Size => "usize",
+            Self::Vec2 => "Vec2",
             Self::Vec3 => "Vec3",
+            Self::Vec4 => "Vec4",
+            Self::IVec3 => "IVec3",
+            Self::UVec2 => "UVec2",
+            Self::BVec3 => "BVec3",
+            Self::Kind => "Kind",
+            Self::Pair => "(f32, u32)",
+            Self::Row => "[f32; 4]",
+            Self::Counts => "[u32; 3]",
+            Self::Both => "[Small; 2]",
             Self::Small => "Small",
             Self::Nested => "Nested",
+            Self::Own => "Own",
+            Self::Any => "T",
+            Self::List => "[f32; N]",
             Self::Outcome => "Outcome",
         }
     }
@@ -40,11 +76,41 @@ impl Ty {
             Self::U32 => "1u32",
             Self::I32 => "1i32",
             Self::Bool => "true",
+            Self::Size => "1usize",
+            Self::Vec2 => "Vec2::X",
             Self::Vec3 => "Vec3::X",
+            Self::Vec4 => "Vec4::X",
+            Self::IVec3 => "IVec3::X",
+            Self::UVec2 => "UVec2::X",
+            Self::BVec3 => "BVec3::splat(true)",
+            Self::Kind => "Kind::Red",
+            Self::Pair => "(1.0f32, 1u32)",
+            Self::Row => "[1.0f32; 4]",
+            Self::Counts => "[1u32; 3]",
+            Self::Both => "[Small::of(1u32); 2]",
             Self::Small => "Small::of(1u32)",
             Self::Nested => "Nested::of(1u32)",
+            Self::Own => "Own::of(1u32)",
+            Self::Any => "T::made(1u32)",
+            Self::List => "[1.0f32; N]",
             Self::Outcome => "Outcome::of(1u32)",
         }
+    }
+
+    /// Whether there are floats in it.
+    pub const fn has_floats(self) -> bool {
+        !matches!(
+            self,
+            Self::U32
+                | Self::I32
+                | Self::Bool
+                | Self::Size
+                | Self::IVec3
+                | Self::UVec2
+                | Self::BVec3
+                | Self::Kind
+                | Self::Counts
+        )
     }
 }
 
@@ -93,17 +159,75 @@ pub struct Block {
     pub tail: Option<Box<Expr>>,
 }
 
+/// How a parameter is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// `p: T`.
+    Value,
+    /// `mut p: T`.
+    Mutable,
+    /// `p: &T`.
+    Shared,
+    /// `p: &mut T`.
+    Changed,
+    /// `#[host] p: T`.
+    Host,
+}
+
+/// A parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Param {
+    /// Its name; `self` is a receiver.
+    pub name: String,
+    /// Its type.
+    pub ty: Ty,
+    /// How it is taken.
+    pub mode: Mode,
+}
+
+/// What kind of function it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Head {
+    /// `fn f(..)`.
+    Plain,
+    /// `fn f<T: Weigh>(..)`.
+    OfType,
+    /// `fn f<const N: usize>(..)`.
+    OfCount,
+    /// A method of `Own`.
+    Method,
+    /// The method `weight` of `impl Weigh for Own`.
+    Weight,
+}
+
 /// A `#[kernel] fn`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Function {
     /// Its name.
     pub name: String,
-    /// The names and types of its parameters; some are `mut`.
-    pub params: Vec<(String, Ty)>,
+    /// What kind it is.
+    pub head: Head,
+    /// Whether it is `#[coherent]`.
+    pub coherent: bool,
+    /// Whether it takes the slices of the scene too.
+    pub sliced: bool,
+    /// Its parameters.
+    pub params: Vec<Param>,
     /// The type of its result.
     pub result: Ty,
     /// Its body.
     pub body: Block,
+}
+
+/// The slices and numbers that a kernel reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Scene {
+    /// Elements of the slices, at most.
+    pub len: usize,
+    /// A number of the host.
+    pub count: u32,
+    /// Whether there is a closure too that captures them.
+    pub closure: bool,
 }
 
 /// A kernel: the function `entry`, which comes last, and those that it may call.
@@ -111,6 +235,10 @@ pub struct Function {
 pub struct Kernel {
     /// The seed that gave it.
     pub seed: u64,
+    /// Whether it has the struct `Own`.
+    pub own: bool,
+    /// What else it reads.
+    pub scene: Option<Scene>,
     /// Each calls only earlier ones.
     pub functions: Vec<Function>,
 }

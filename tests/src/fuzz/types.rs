@@ -1,6 +1,7 @@
-//! The structs of generated kernels, and methods that they may call.
+//! The types of generated kernels, methods that they may call, and slices that they may read.
 
 use raydsl::kernel;
+use raydsl::machine::{Capture, KernelInfo, Machine, Recorder, Resource, Type};
 use raydsl::prelude::*;
 
 /// One member of each scalar type.
@@ -27,6 +28,17 @@ pub struct Nested {
     pub k: u32,
 }
 
+/// An enum without fields.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Type)]
+pub enum Kind {
+    /// 0.
+    Red,
+    /// 4.
+    Green = 4,
+    /// 5.
+    Blue,
+}
+
 /// What a generated kernel gives.
 #[derive(Clone, Copy, Debug, Type)]
 pub struct Outcome {
@@ -36,6 +48,12 @@ pub struct Outcome {
     pub x: f32,
     /// A truth value.
     pub t: bool,
+    /// An enum.
+    pub e: Kind,
+    /// An array.
+    pub c: [u32; 3],
+    /// A vector of integers.
+    pub j: IVec3,
 }
 
 #[kernel]
@@ -56,6 +74,31 @@ impl Small {
     /// A truth value of two.
     pub fn is_more(self, other: Small) -> bool {
         self.m > other.m || self.t && self.i < other.i
+    }
+
+    /// A tuple, early or late.
+    pub fn parts(&self, n: u32) -> (f32, u32) {
+        if self.t {
+            return (self.y, n);
+        }
+        (0.5, self.m ^ n)
+    }
+
+    /// Changes one of two members.
+    pub fn rise(&mut self, x: f32) {
+        if self.y < x {
+            self.y = x;
+            return;
+        }
+        self.i = self.i.wrapping_add(1);
+    }
+
+    /// Changes a member and gives another value.
+    pub fn fall(&mut self, n: u32) -> u32 {
+        let old = self.m;
+        self.m >>= 1;
+        self.t = !self.t;
+        old ^ n
     }
 }
 
@@ -81,9 +124,221 @@ impl Nested {
 }
 
 #[kernel]
+impl Kind {
+    /// One for each number.
+    pub fn of(n: u32) -> Self {
+        match n % 3 {
+            0 => Self::Red,
+            1 => Kind::Green,
+            _ => Self::Blue,
+        }
+    }
+
+    /// Another one, or itself.
+    pub fn next(self, n: u32) -> Self {
+        match (self, n & 1 == 0) {
+            (Kind::Red, true) => Kind::Green,
+            (Self::Green, _) => Kind::Blue,
+            (k, true) if n > 9 => k,
+            _ => Kind::Red,
+        }
+    }
+
+    /// A number for each.
+    pub fn share(self) -> f32 {
+        match self {
+            Kind::Red => 0.5,
+            Kind::Green => -2.0,
+            Kind::Blue => 8.0,
+        }
+    }
+}
+
+#[kernel]
 impl Outcome {
     /// One for each number.
     pub fn of(n: u32) -> Self {
-        Self { n: Nested::of(n), x: n as f32, t: n > 3 }
+        let c = [n, 1, n >> 3];
+        Self {
+            n: Nested::of(n),
+            x: n as f32,
+            t: n > 3,
+            e: Kind::of(n),
+            c,
+            j: ivec3(n as i32, -1, 0),
+        }
     }
+}
+
+/// A trait with constants, a method with a body, and a function without a receiver.
+#[kernel]
+pub trait Weigh {
+    /// The least weight.
+    const FLOOR: f32;
+
+    /// How much it weighs.
+    fn weight(&self, by: f32) -> f32;
+
+    /// Another one.
+    fn turned(self, n: u32) -> Self;
+
+    /// One for each number.
+    fn made(n: u32) -> Self;
+
+    /// Changes it.
+    fn push(&mut self, by: f32);
+
+    /// Written with what the trait has.
+    fn twice(&self, by: f32) -> f32 {
+        let once = self.weight(by);
+        if once < Self::FLOOR {
+            return Self::FLOOR;
+        }
+        once + self.weight(once)
+    }
+}
+
+#[kernel]
+impl Weigh for Small {
+    const FLOOR: f32 = 0.5;
+
+    fn weight(&self, by: f32) -> f32 {
+        if self.t { self.y - by } else { by }
+    }
+
+    fn turned(self, n: u32) -> Self {
+        Self { m: self.m ^ n, ..self }
+    }
+
+    fn made(n: u32) -> Self {
+        Small::of(n)
+    }
+
+    fn push(&mut self, by: f32) {
+        self.rise(by);
+    }
+}
+
+#[kernel]
+impl Weigh for Nested {
+    const FLOOR: f32 = -4.0;
+
+    fn weight(&self, by: f32) -> f32 {
+        let mut sum = by;
+        for i in 0..self.k & 3 {
+            sum += self.v.y * i as f32;
+        }
+        sum
+    }
+
+    fn turned(self, n: u32) -> Self {
+        Nested { v: self.v.zxy(), k: n, ..self }
+    }
+
+    fn made(n: u32) -> Self {
+        Nested::of(n)
+    }
+
+    fn push(&mut self, by: f32) {
+        self.v.x = by;
+        self.s.rise(by);
+    }
+
+    fn twice(&self, by: f32) -> f32 {
+        self.v.x - by
+    }
+}
+
+/// The other way round, with another number.
+#[kernel]
+pub fn swapped((x, n): (f32, u32), y: f32) -> (f32, u32) {
+    let (a, b) = (x as u32, n as f32);
+    if b > y {
+        return (b, a);
+    }
+    (y, n)
+}
+
+/// Adds, and gives the old value.
+#[kernel]
+pub fn add_to(n: u32, to: &mut u32) -> u32 {
+    let old = *to;
+    *to = old.wrapping_add(n);
+    old
+}
+
+/// A slice of numbers.
+pub static FLOATS: [f32; 9] = [0.5, -1.0, 2.0, 8.25, -0.125, 3.0, 1.0, 1e6, -7.5];
+/// A slice of integers.
+pub static WORDS: [u32; 7] = [3, 0, 0xffff_ffff, 17, 8, 0x8000_0000, 1];
+/// A slice of structs.
+pub static SMALLS: [Small; 3] = [
+    Small { i: -3, t: true, y: 1.5, m: 2 },
+    Small { i: 9, t: false, y: -0.5, m: 0xffff_0000 },
+    Small { i: 0, t: true, y: 4.0, m: 12 },
+];
+/// A number of the scene.
+pub const SCALE: f32 = 0.75;
+
+/// The first `len` elements, or all.
+pub fn first<T>(list: &'static [T], len: usize) -> &'static [T] {
+    &list[..len.min(list.len())]
+}
+
+/// Shows the slices of scenes of every length.
+pub fn resources(visit: &mut dyn FnMut(&dyn Resource)) {
+    for len in 1..=FLOATS.len() {
+        Capture::<Recorder>::resources(first(&FLOATS, len), visit);
+        Capture::<Recorder>::resources(first(&WORDS, len), visit);
+        Capture::<Recorder>::resources(first(&SMALLS, len), visit);
+    }
+}
+
+/// What stands for a slice on a machine.
+pub fn on<'a, M: Machine, T: Type>(
+    m: &M,
+    list: &'a [T],
+    name: &'static str,
+) -> <[T] as Capture<M>>::On<'a>
+where
+    [T]: Capture<M>,
+{
+    <[T] as Capture<M>>::capture(list, m, name)
+}
+
+/// Of kernels that are not named.
+pub static INFO: KernelInfo =
+    KernelInfo { name: "function", file: file!(), line: line!(), params: &[] };
+
+/// `Entry`: the kernel `entry` of the module with the slices of a scene, as a function of the rest.
+#[macro_export]
+macro_rules! scene_entry {
+    ($len:literal, $count:literal) => {
+        pub enum Entry {}
+
+        impl raydsl::machine::KernelFn for Entry {
+            type Args = $crate::fuzz::run::Args;
+            type Output = Outcome;
+
+            fn info() -> &'static raydsl::machine::KernelInfo {
+                &INFO
+            }
+
+            fn scalar((x, v, n, s): Self::Args) -> Outcome {
+                let (floats, words) = (first(&FLOATS, $len), first(&WORDS, $len));
+                entry(x, v, n, s, floats, words, first(&SMALLS, $len), SCALE, $count)
+            }
+
+            fn lifted<M: raydsl::machine::Machine>(
+                m: &M,
+                (x, v, n, s): <Self::Args as Type>::On<M>,
+            ) -> <Outcome as Type>::On<M> {
+                let floats = on(m, first(&FLOATS, $len), "floats");
+                let words = on(m, first(&WORDS, $len), "words");
+                let smalls = on(m, first(&SMALLS, $len), "smalls");
+                let scale = raydsl::machine::Capture::<M>::capture(&SCALE, m, "scale");
+                entry::on(m, x, v, n, s, floats, words, smalls, scale, $count)
+            }
+        }
+    };
 }

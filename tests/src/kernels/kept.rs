@@ -205,3 +205,10 @@ pub fn changed_while_read(a: f32, n: u32) -> f32 {
     }
     sum
 }
+
+/// A truth value that is known before the kernel runs, as an index.
+#[kernel]
+pub fn known_truths(a: f32, n: u32) -> f32 {
+    let weights = [a, 2.0, 3.0];
+    weights[true as usize + (n > 3) as usize] + weights[false as usize]
+}

@@ -269,6 +269,11 @@ pub(super) fn module(recording: &Recording, limits: &Limits) -> Module {
     let mut binding = 4;
     for b in &state.buffers {
         let has_elements = words.contains(format!("{}_element", b.name).as_str());
+        // A kernel may ask for the length and for no element.
+        let length = format!("len_of_{}", b.name);
+        if has_elements || words.contains(length.as_str()) {
+            uniforms.push(Uniform { name: length, ty: Type::U32, words: vec![b.len as u32] });
+        }
         if !has_elements && !words.contains(format!("{}_at", b.name).as_str()) {
             continue;
         }
@@ -277,10 +282,6 @@ pub(super) fn module(recording: &Recording, limits: &Limits) -> Module {
         binding += windows.len() as u32;
         let buffer =
             Buffer { key: b.key, name: b.name.clone(), stride: stride as u32, len: b.len, windows };
-        let length = format!("len_of_{}", b.name);
-        if has_elements || words.contains(length.as_str()) {
-            uniforms.push(Uniform { name: length, ty: Type::U32, words: vec![b.len as u32] });
-        }
         bindings += "\n";
         bindings += &buffer_text(&buffer, b.schema, &mut names);
         if has_elements {

@@ -1,0 +1,204 @@
+//! Slices that live in the application's own buffers.
+
+use std::fmt;
+use std::marker::PhantomData;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use super::device::{Gpu, lock};
+use super::error::GpuError;
+use super::{Context, GpuScheduler};
+use crate::bvh::slice_key;
+use crate::machine::wgsl::BufferKey;
+use crate::machine::{Type, stride};
+
+/// Part of a buffer of the application: `size` bytes from `offset`.
+#[derive(Clone, Debug)]
+pub struct GpuWindow {
+    /// A buffer of the context's device, made with `BufferUsages::STORAGE`.
+    pub buffer: wgpu::Buffer,
+    /// Where the first element lies: a multiple of `min_storage_buffer_offset_alignment`.
+    pub offset: u64,
+    /// Bytes of all elements: one behind the other, as they lie in the slice.
+    pub size: u64,
+}
+
+/// Why a window cannot stand for a slice.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum WindowError {
+    /// The buffer cannot be read by kernels.
+    #[error("the buffer has no BufferUsages::STORAGE: create it with that")]
+    NotStorage,
+    /// The window begins where no binding may.
+    #[error(
+        "its offset {offset} is no multiple of {limit}, the device's \
+         min_storage_buffer_offset_alignment: put the first element at a multiple of that"
+    )]
+    Unaligned {
+        /// The window's offset.
+        offset: u64,
+        /// What it must be a multiple of.
+        limit: u64,
+    },
+    /// The window ends behind its buffer.
+    #[error("{size} bytes from {offset} on run past the buffer's end at {limit}: make it larger")]
+    PastEnd {
+        /// The window's offset.
+        offset: u64,
+        /// The window's size.
+        size: u64,
+        /// The buffer's size.
+        limit: u64,
+    },
+    /// The window has not the size of the slice.
+    #[error(
+        "it has {size} bytes, but the slice is {len} elements of {stride} bytes, together {needed}: \
+         give a window of that size, with the elements as they lie in the slice"
+    )]
+    WrongSize {
+        /// The window's size.
+        size: u64,
+        /// Elements of the slice.
+        len: u64,
+        /// Bytes from one element to the next.
+        stride: u64,
+        /// Bytes of them all.
+        needed: u64,
+    },
+    /// A slice without elements needs no buffer, and has no address of its own.
+    #[error("the slice is empty: kernels read nothing of it, leave the window out")]
+    Empty,
+    /// The slice has a window already.
+    #[error("the slice has a window already: drop that one first")]
+    Taken,
+    /// The device does not take the buffer.
+    #[error(
+        "the device does not take the buffer ({message}): create it with Context::device(), and do \
+         not destroy it"
+    )]
+    Foreign {
+        /// What wgpu says.
+        message: String,
+    },
+}
+
+/// While it lives, kernels read the slice from the application's buffer; see
+/// [`GpuScheduler::with_gpu`].
+#[must_use = "the window is in use while this lives"]
+pub struct OnGpu<'a> {
+    context: &'a Context,
+    key: BufferKey,
+    slice: PhantomData<&'a ()>,
+}
+
+impl Drop for OnGpu<'_> {
+    fn drop(&mut self) {
+        lock(&self.context.uploads).leave_window(self.key);
+    }
+}
+
+impl fmt::Debug for OnGpu<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("OnGpu").field("key", &self.key).finish_non_exhaustive()
+    }
+}
+
+impl GpuScheduler {
+    /// Lets kernels that read `slice` read `window` instead, as long as the result lives. Nothing
+    /// of the slice is uploaded.
+    ///
+    /// The window must hold what the slice holds, as it lies in memory; this is not checked.
+    /// The variants of the CPU go on to read the slice. Another slice of the same elements, a part
+    /// for instance, is not meant and is uploaded as ever.
+    ///
+    /// Make the buffer with [`Context::device`]. A buffer of another device of the same
+    /// `wgpu::Instance` is always refused. Instances number their buffers on their own, so a buffer
+    /// of another instance is refused only where its number is not in use.
+    ///
+    /// # Errors
+    ///
+    /// [`GpuError::Window`] if the window cannot be bound, has another size, or the buffer belongs
+    /// to another device.
+    pub fn with_gpu<'a, T: Type>(
+        &'a self,
+        slice: &'a [T],
+        window: GpuWindow,
+    ) -> Result<OnGpu<'a>, GpuError> {
+        let context = self.context();
+        let key = slice_key(slice);
+        check(&context.gpu, slice.len() as u64, stride(T::SCHEMA) as u64, &window)
+            .and_then(|()| lock(&context.uploads).enter_window(key, window))
+            .map_err(|problem| GpuError::Window {
+                element: core::any::type_name::<T>(),
+                problem,
+            })?;
+        Ok(OnGpu { context, key, slice: PhantomData })
+    }
+}
+
+/// Whether the window can stand for `len` elements of `stride` bytes.
+fn check(gpu: &Gpu, len: u64, stride: u64, window: &GpuWindow) -> Result<(), WindowError> {
+    let GpuWindow { buffer, offset, size } = window;
+    let (offset, size, limit) = (*offset, *size, gpu.caps.alignment);
+    let needed = len.saturating_mul(stride);
+    if len == 0 {
+        return Err(WindowError::Empty);
+    }
+    if !buffer.usage().contains(wgpu::BufferUsages::STORAGE) {
+        return Err(WindowError::NotStorage);
+    }
+    if !offset.is_multiple_of(limit) {
+        return Err(WindowError::Unaligned { offset, limit });
+    }
+    if size != needed {
+        return Err(WindowError::WrongSize { size, len, stride, needed });
+    }
+    if offset.checked_add(size).is_none_or(|end| end > buffer.size()) {
+        return Err(WindowError::PastEnd { offset, size, limit: buffer.size() });
+    }
+    try_binding(gpu, buffer, offset, size.min(gpu.caps.max_binding & !3))
+}
+
+/// Binds the window once: wgpu alone knows whose the buffer is, and whether it still is there.
+fn try_binding(
+    gpu: &Gpu,
+    buffer: &wgpu::Buffer,
+    offset: u64,
+    size: u64,
+) -> Result<(), WindowError> {
+    let bound = gpu.guarded("a window", || {
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("a window"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Storage { read_only: true },
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            }],
+        });
+        let resource = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer,
+            offset,
+            size: wgpu::BufferSize::new(size),
+        });
+        // A number that the device's instance of wgpu does not know makes wgpu panic.
+        catch_unwind(AssertUnwindSafe(|| {
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("a window"),
+                layout: &layout,
+                entries: &[wgpu::BindGroupEntry { binding: 0, resource }],
+            })
+        }))
+    });
+    let foreign = "it belongs to another instance of wgpu";
+    match bound {
+        Ok(Ok(_)) => Ok(()),
+        Ok(Err(_)) => Err(WindowError::Foreign { message: foreign.to_owned() }),
+        Err(GpuError::Rejected { message, .. }) => Err(WindowError::Foreign { message }),
+        Err(error) => Err(WindowError::Foreign { message: error.to_string() }),
+    }
+}

@@ -1,0 +1,50 @@
+struct Tuple {
+    _0: f32,
+    _1: u32,
+}
+
+struct StoredTuple {
+    arg0: f32,
+    arg1: u32,
+}
+
+struct Params {
+    none: u32,
+}
+
+struct Job {
+    size: vec2<u32>,
+    first: vec2<u32>,
+    count: vec2<u32>,
+    base: u32,
+    pad: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> job: Job;
+
+fn known_truths(a: f32, n: u32) -> f32 {
+    let t = 1u + u32(n > 3u);
+    return select(select(a, 2.0f, (t >= 1u)), 3.0f, (t >= 2u)) + a;
+}
+
+fn element(input: Tuple) -> f32 {
+    return known_truths(input._0, input._1);
+}
+
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple>;
+@group(0) @binding(3) var<storage, read_write> outputs: array<f32>;
+
+fn load_input(i: u32) -> Tuple {
+    let s = inputs[i];
+    return Tuple(s.arg0, s.arg1);
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (any(id.xy >= job.count)) { return; }
+    let at = job.first + id.xy;
+    let index = at.y * job.size.x + at.x - job.base;
+    let result = element(load_input(index));
+    outputs[index] = result;
+}
