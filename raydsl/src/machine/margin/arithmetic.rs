@@ -11,23 +11,29 @@ use crate::machine::F32Binary;
 const ALTERNATIVES: usize = 16;
 
 impl Margin {
-    /// One of some integers, the first of which is that of `f64`.
-    pub(super) fn one_of<T: Copy>(&self, alternatives: &[T]) -> T {
-        match alternatives {
-            [only] => *only,
-            all if self.is_running() => all[self.decisions.choose(all.len())],
-            all => all[0],
-        }
+    /// One of some alternatives, the first of which is that of `f64`. Without any the run is lost,
+    /// and `value` stands in.
+    pub(super) fn one_of<T: Copy>(&self, value: T, alternatives: &[T]) -> T {
+        let chosen = match alternatives {
+            [first, _, ..] if !self.is_running() => Some(first),
+            [_, _, ..] => alternatives.get(self.decisions.choose(alternatives.len())),
+            few => few.first(),
+        };
+        chosen.copied().unwrap_or_else(|| {
+            self.decisions.lose();
+            value
+        })
     }
 
     /// A conversion to integers that rises: each integer that is possible. `order` and `back` count
-    /// them.
+    /// them; `nans` are those that a NaN may give.
     pub(super) fn integer<T: Copy + PartialEq>(
         &self,
         a: Bounded,
         of: impl Fn(f64) -> T,
         order: impl Fn(T) -> i64,
         back: impl Fn(i64) -> T,
+        nans: &[T],
     ) -> T {
         let value = of(a.value);
         let mut possible = Vec::new();
@@ -41,14 +47,15 @@ impl Margin {
             }
             possible.extend((first..=last).map(back));
         }
-        if a.range.nan && !possible.contains(&of(f64::NAN)) {
-            possible.push(of(f64::NAN));
+        if a.range.nan {
+            let more: Vec<T> = nans.iter().copied().filter(|n| !possible.contains(n)).collect();
+            possible.extend(more);
         }
         // The integer of `f64` first; a path that `f64` does not take may lack it.
         if let Some(at) = possible.iter().position(|v| *v == value) {
             possible.swap(0, at);
         }
-        self.one_of(&possible)
+        self.one_of(value, &possible)
     }
 
     /// A function in steps that rises: a decision where few steps are possible.
@@ -59,7 +66,7 @@ impl Margin {
         }
         let (first, last) = (f(a.range.low), f(a.range.high));
         if first == last && !a.range.nan {
-            return self.point(first);
+            return self.bounded(value, Interval::new(first, last, false));
         }
         if a.range.nan || last - first > 3.0 || !(first..=last).contains(&value) {
             return self.bounded(value, Interval::new(first, last, a.range.nan));
@@ -67,7 +74,29 @@ impl Margin {
         let mut all = vec![value];
         let steps = (0..=(last - first) as u32).map(|k| first + f64::from(k));
         all.extend(steps.filter(|v| *v != value));
-        self.point(self.one_of(&all))
+        let step = self.one_of(value, &all);
+        // A zero within is of either sign, one at an end of that end's.
+        let [low, high] = [(first, -0.0), (last, 0.0)].map(|(end, zero)| {
+            if step != 0.0 {
+                step
+            } else if end == 0.0 {
+                end
+            } else {
+                zero
+            }
+        });
+        self.bounded(step, Interval::new(low, high, false))
+    }
+
+    /// `|a|`.
+    pub(super) fn size(&self, a: Bounded) -> Bounded {
+        let size = match a.range {
+            // The same number, whatever the signs of zeros.
+            r if r.low >= 0.0 && !r.is_nan() => a,
+            r if r.high <= 0.0 && !r.is_nan() => self.negated(a),
+            _ => self.bounded(a.value, a.range),
+        };
+        Bounded { value: a.value.abs(), range: a.range.abs(), ..size }
     }
 
     /// A float that is `value` in `f64`, and a rounded one of `range` in `f32`.
@@ -80,7 +109,7 @@ impl Margin {
         let form = form.filter(|_| !range.is_nan());
         let range = form.as_ref().map_or(range, |f| range.narrowed(f.range()));
         let rounded = self.bounded(value, range.rounded(by));
-        if rounded.range.may_break() {
+        if rounded.range.may_break() || rounded.range.is_zero() {
             return rounded;
         }
         let form = form.or_else(|| self.forms.get(Handle::NONE, range).map(Rc::unwrap_or_clone));
@@ -122,12 +151,14 @@ impl Margin {
         {
             return self.point(exact);
         }
-        let is_zero = |v: Bounded| v.range.as_point() == Some(0.0);
         let same = a.id == b.id;
         let sum = self.rounding.sum();
+        // The same number, but for the sign of a zero.
+        let kept = |v: Bounded, value| Bounded { value, range: v.range.with_any_zero(), ..v };
         match op {
-            F32Binary::Add | F32Binary::Sub if is_zero(b) => a,
-            F32Binary::Add if is_zero(a) => b,
+            F32Binary::Add if b.range.is_zero() => kept(a, x + y),
+            F32Binary::Sub if b.range.is_zero() => kept(a, x - y),
+            F32Binary::Add if a.range.is_zero() => kept(b, x + y),
             F32Binary::Add => {
                 self.computed(x + y, a.range.add(b.range), self.both(a, b, Form::add), sum)
             }

@@ -13,8 +13,12 @@
 mod affine;
 mod arithmetic;
 mod beam;
+#[cfg(test)]
+mod cases;
 mod decisions;
 mod elementary;
+#[cfg(test)]
+mod fuzz;
 mod interval;
 mod outcome;
 mod rounding;
@@ -123,6 +127,14 @@ impl Margin {
         t.value ^ self.decisions.flip(t.open)
     }
 
+    /// Whether the sign is `-`.
+    fn is_negative(&self, a: Bounded) -> Truth {
+        match a.range.is_negative() {
+            Some(known) => Truth::certain(known),
+            None => self.truth(a.value.is_sign_negative(), true, true),
+        }
+    }
+
     /// What is known of a truth value by now.
     fn known(&self, t: Truth) -> Truth {
         match self.decisions.known(t.open) {
@@ -167,10 +179,7 @@ impl Machine for Margin {
     fn f32_unary(&self, op: F32Unary, a: Bounded) -> Bounded {
         match op {
             F32Unary::Neg => self.negated(a),
-            F32Unary::Abs if a.range.is_nan() => a,
-            F32Unary::Abs if a.range.low >= 0.0 => a,
-            F32Unary::Abs if a.range.high <= 0.0 => self.negated(a),
-            F32Unary::Abs => self.bounded(a.value.abs(), a.range.abs()),
+            F32Unary::Abs => self.size(a),
             F32Unary::Sqrt => self.root(a),
             F32Unary::Floor => self.stepped(a, f64::floor),
             F32Unary::Ceil => self.stepped(a, f64::ceil),
@@ -281,11 +290,11 @@ impl Machine for Margin {
     }
 
     fn f32_to_i32(&self, a: Bounded) -> i32 {
-        self.integer(a, |v| v as i32, i64::from, |v| v as i32)
+        self.integer(a, |v| v as i32, i64::from, |v| v as i32, &[0])
     }
 
     fn f32_to_u32(&self, a: Bounded) -> u32 {
-        self.integer(a, |v| v as u32, i64::from, |v| v as u32)
+        self.integer(a, |v| v as u32, i64::from, |v| v as u32, &[0])
     }
 
     fn i32_to_f32(&self, a: i32) -> Bounded {
@@ -305,22 +314,48 @@ impl Machine for Margin {
     }
 
     fn f32_to_bits(&self, a: Bounded) -> u32 {
-        self.integer(a, |v| (v as f32).to_bits(), ordered, bits_of)
+        // The sign of a NaN is the processor's, and its other bits tell where it came from.
+        if a.range.nan && self.is_running() {
+            self.decisions.lose();
+        }
+        let nan = f32::NAN.to_bits();
+        let nans = [nan, nan | 1 << 31];
+        self.integer(a, |v| (v as f32).to_bits(), ordered, bits_of, &nans)
     }
 
     fn f32_from_bits(&self, a: u32) -> Bounded {
         self.f32(f32::from_bits(a))
     }
 
+    fn f32_beside_infinity(&self, op: Compare, a: Bounded) -> Truth {
+        let Interval { low, high, nan } = a.range;
+        let is_number = !a.range.is_nan();
+        let may_be_infinite = is_number && (low.is_infinite() || high.is_infinite());
+        let may_be_finite = is_number && low < f64::INFINITY && high > f64::NEG_INFINITY;
+        let size = a.value.abs();
+        match op {
+            Compare::Gt => self.truth(size.is_nan(), nan, is_number),
+            Compare::Eq => self.truth(size.is_infinite(), may_be_infinite, nan || may_be_finite),
+            Compare::Lt => self.truth(size.is_finite(), may_be_finite, nan || may_be_infinite),
+            // The opposites.
+            Compare::Le => self.bool_not(self.f32_beside_infinity(Compare::Gt, a)),
+            Compare::Ne => self.bool_not(self.f32_beside_infinity(Compare::Eq, a)),
+            Compare::Ge => self.bool_not(self.f32_beside_infinity(Compare::Lt, a)),
+        }
+    }
+
+    fn f32_sign_bit(&self, op: Compare, a: Bounded) -> Truth {
+        let is_negative = self.is_negative(a);
+        if op == Compare::Lt { is_negative } else { self.bool_not(is_negative) }
+    }
+
     fn f32_copysign(&self, a: Bounded, sign: Bounded) -> Bounded {
         let size = self.f32_unary(F32Unary::Abs, a);
-        let is_negative = if sign.range.as_point().is_some() || sign.range.is_nan() {
-            Truth::certain(sign.value.is_sign_negative())
+        if self.decided(self.is_negative(sign)) {
+            self.f32_unary(F32Unary::Neg, size)
         } else {
-            let may_be = sign.range.low < 0.0 || sign.range.nan;
-            self.truth(sign.value.is_sign_negative(), may_be, sign.range.high >= 0.0)
-        };
-        if self.decided(is_negative) { self.f32_unary(F32Unary::Neg, size) } else { size }
+            size
+        }
     }
 
     fn bool_to_u32(&self, a: Truth) -> u32 {

@@ -102,7 +102,7 @@ pub(super) fn closest_hit(m: &Margin, scene: &Scene<'_>) -> HitOn<Margin> {
     if let Some(at) = hits.iter().position(is_first) {
         hits.swap(0, at);
     }
-    hit_on(m, m.one_of(&hits))
+    hit_on(m, m.one_of(None, &hits))
 }
 
 /// Whether anything is hit.
