@@ -4,6 +4,7 @@ use std::rc::Rc;
 
 use super::affine::{Form, Handle};
 use super::interval::{Interval, Rounded};
+use super::sums::Parts;
 use super::{Bounded, Margin, rounding};
 use crate::machine::F32Binary;
 
@@ -106,15 +107,29 @@ impl Margin {
 
     /// A float that is `value` in `f64`, and in `f32` what `range` and `form` say, rounded.
     fn computed(&self, value: f64, range: Interval, form: Option<Form>, by: Rounded) -> Bounded {
+        self.computed_within(value, range, form, by, 0.0)
+    }
+
+    /// The same, with a further error of up to `extra`.
+    pub(super) fn computed_within(
+        &self,
+        value: f64,
+        range: Interval,
+        form: Option<Form>,
+        by: Rounded,
+        extra: f64,
+    ) -> Bounded {
         let form = form.filter(|_| !range.is_nan());
         let range = form.as_ref().map_or(range, |f| range.narrowed(f.range()));
-        let rounded = self.bounded(value, range.rounded(by));
+        let result = range.widened(extra).rounded(by);
+        // Devices may ignore the sign of a zero.
+        let strict = self.rounding.is_strict;
+        let rounded = self.bounded(value, if strict { result } else { result.with_any_zero() });
         if rounded.range.may_break() || rounded.range.is_zero() {
             return rounded;
         }
         let form = form.or_else(|| self.forms.get(Handle::NONE, range).map(Rc::unwrap_or_clone));
-        let size = range.low.abs().max(range.high.abs());
-        let error = size * by.relative + by.absolute;
+        let error = range.magnitude() * by.relative + by.absolute + extra;
         Bounded { form: self.forms.put_rounded(form, error), ..rounded }
     }
 
@@ -130,13 +145,17 @@ impl Margin {
 
     /// `-a`.
     pub(super) fn negated(&self, a: Bounded) -> Bounded {
-        let form = self.forms.get(a.form, a.range).map(|f| Rc::new(f.neg()));
-        Bounded { form: self.forms.put(form), ..self.bounded(-a.value, a.range.neg()) }
+        let negated =
+            |form| self.forms.put(self.forms.get(form, a.range).map(|f| Rc::new(f.neg())));
+        let parts = a.parts.map(|p| Parts { form: negated(p.form), ..p });
+        Bounded { form: negated(a.form), parts, ..self.bounded(-a.value, a.range.neg()) }
     }
 
     /// The square root.
     pub(super) fn root(&self, a: Bounded) -> Bounded {
-        if let Some(exact) = a.range.as_point().and_then(rounding::exact_root) {
+        if self.rounding.is_strict
+            && let Some(exact) = a.range.as_point().and_then(rounding::exact_root)
+        {
             return self.point(exact);
         }
         let form = self.forms.get(a.form, a.range).and_then(|f| f.sqrt());
@@ -146,30 +165,38 @@ impl Margin {
     /// `a op b`.
     pub(super) fn binary(&self, op: F32Binary, a: Bounded, b: Bounded) -> Bounded {
         let (x, y) = (a.value, b.value);
-        if let (Some(x), Some(y)) = (a.range.as_point(), b.range.as_point())
-            && let Some(exact) = rounding::exact(op, x, y)
-        {
+        if let Some(exact) = self.exact(op, a, b) {
             return self.point(exact);
         }
         let same = a.id == b.id;
         let sum = self.rounding.sum();
-        // The same number, but for the sign of a zero.
+        // The same number, but for the sign of a zero. A sum that cancels may not in another order.
+        let is_zero = |v: Bounded| v.range.is_zero() && v.parts.is_none();
         let kept = |v: Bounded, value| Bounded { value, range: v.range.with_any_zero(), ..v };
         match op {
-            F32Binary::Add if b.range.is_zero() => kept(a, x + y),
-            F32Binary::Sub if b.range.is_zero() => kept(a, x - y),
-            F32Binary::Add if a.range.is_zero() => kept(b, x + y),
+            F32Binary::Add if is_zero(b) => kept(a, x + y),
+            F32Binary::Sub if is_zero(b) => kept(a, x - y),
+            F32Binary::Add if is_zero(a) => kept(b, x + y),
+            F32Binary::Sub if same && a.parts.is_none() && !a.range.may_break() => self.point(0.0),
+            F32Binary::Add | F32Binary::Sub if !self.rounding.is_strict => {
+                self.sum_in_any_order(op, a, b)
+            }
             F32Binary::Add => {
                 self.computed(x + y, a.range.add(b.range), self.both(a, b, Form::add), sum)
             }
-            F32Binary::Sub if same && !a.range.may_break() => self.point(0.0),
             F32Binary::Sub => {
                 self.computed(x - y, a.range.sub(b.range), self.both(a, b, Form::sub), sum)
             }
             F32Binary::Mul => {
                 let range = if same { a.range.square() } else { a.range.mul(b.range) };
                 let by = self.rounding.product(a.range, b.range);
-                self.computed(x * y, range, self.both(a, b, Form::mul), by)
+                let form = self.both(a, b, Form::mul);
+                let product = self.computed(x * y, range, form.clone(), by);
+                Bounded { parts: self.parts_of_product(product.range, form, by), ..product }
+            }
+            F32Binary::Div if !self.rounding.divides(b.range) => {
+                let anything = a.range.div(Interval::new(-1.0, 1.0, b.range.nan));
+                self.bounded(x / y, anything)
             }
             F32Binary::Div => {
                 let get = |v: Bounded| self.forms.get(v.form, v.range);
@@ -179,6 +206,19 @@ impl Margin {
             F32Binary::Min => self.least(a, b, if y < x { y } else { x }, a.range.min(b.range)),
             F32Binary::Max => self.least(a, b, if x < y { y } else { x }, a.range.max(b.range)),
         }
+    }
+
+    /// The result of an operation that no variant rounds.
+    fn exact(&self, op: F32Binary, a: Bounded, b: Bounded) -> Option<f64> {
+        let (x, y) = (a.range.as_point()?, b.range.as_point()?);
+        let result = rounding::exact(op, x, y)?;
+        let is_safe = match op {
+            _ if self.rounding.is_strict => true,
+            // Sums know of their parts, and quotients may be products.
+            F32Binary::Add | F32Binary::Sub | F32Binary::Div => false,
+            _ => !(result as f32).is_subnormal(),
+        };
+        is_safe.then_some(result)
     }
 
     /// The smaller or the larger of two, which needs no decision: it is near either's ends.

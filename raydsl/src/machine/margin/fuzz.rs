@@ -199,6 +199,60 @@ fn is_within(outcomes: &Outcomes, result: f32) -> bool {
     })
 }
 
+/// Sums in the order of the source, used twice, against another order in `f32` with products that
+/// are fused or not.
+#[test]
+fn sums_in_any_order_stay_within_their_outcomes() {
+    let mut r = Random(11);
+    let mut wrong = 0;
+    for _ in 0..PROGRAMS / 10 {
+        let terms: Vec<[f32; 2]> = (0..2 + r.below(6))
+            .map(|_| [r.number(), if r.below(2) == 0 { 1.0 } else { r.number() }])
+            .filter(|t| t.iter().all(|v| v.abs() < 1e9 && (*v == 0.0 || v.abs() > 1e-9)))
+            .collect();
+        let sum = |m: &Margin| {
+            let term = |[a, b]: [f32; 2]| {
+                let (a, is_product) = (m.f32(a), b != 1.0);
+                if is_product { m.f32_binary(F32Binary::Mul, a, m.f32(b)) } else { a }
+            };
+            let add = |a, b| m.f32_binary(F32Binary::Add, a, b);
+            let first = terms.iter().map(|t| term(*t)).reduce(add);
+            let first = first.unwrap_or_else(|| m.f32(0.0));
+            let all = add(first, m.f32(0.3));
+            F::<Margin>(m.f32_binary(F32Binary::Sub, all, first))
+        };
+        let outcomes = Outcomes::of(Rounding::WGSL, 64, sum);
+        let first = added(&mut r, &terms);
+        let last = [0.3, 1.0];
+        let all = added(&mut r, &[&terms[..], &[last]].concat());
+        if !outcomes.contains(all - first) {
+            wrong += 1;
+            println!("{terms:?}: {all} - {first} not in {outcomes:?}");
+        }
+    }
+    assert_eq!(wrong, 0);
+}
+
+/// The sum of products in any order.
+fn added(r: &mut Random, terms: &[[f32; 2]]) -> f32 {
+    match terms {
+        [] => 0.0,
+        [[a, b]] => a * b,
+        _ => {
+            let mut terms = terms.to_vec();
+            for i in 0..terms.len() {
+                let j = r.below(terms.len());
+                terms.swap(i, j);
+            }
+            let (left, right) = terms.split_at(1 + r.below(terms.len() - 1));
+            match (left, r.below(2)) {
+                ([[a, b]], 0) => a.mul_add(*b, added(r, right)),
+                _ => added(r, left) + added(r, right),
+            }
+        }
+    }
+}
+
 #[test]
 fn random_programs_stay_within_their_outcomes() {
     let programs = std::env::var("RAYDSL_MARGIN_FUZZ").ok().and_then(|n| n.parse().ok());
@@ -215,6 +269,11 @@ fn random_programs_stay_within_their_outcomes() {
         let result = values[values.len() - 1];
         if !outcomes.is_complete() {
             continue;
+        }
+        let device = Outcomes::of(Rounding::WGSL, 64, last);
+        if device.is_complete() && !device.contains(result) {
+            wrong += 1;
+            println!("{inputs:?} {program:?}\n gives {values:?}, on a device {device:?}\n");
         }
         complete += 1;
         narrow += u32::from(outcomes.iter().all(|o| {

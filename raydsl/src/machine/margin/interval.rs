@@ -83,6 +83,19 @@ impl Interval {
         }
     }
 
+    /// The same with each end moved apart by `by`.
+    pub(super) fn widened(self, by: f64) -> Self {
+        if self.is_nan() || by == 0.0 {
+            return self;
+        }
+        Self::new(self.low - by, self.high + by, self.nan)
+    }
+
+    /// The largest size of a number in it.
+    pub(super) fn magnitude(self) -> f64 {
+        if self.is_nan() { 0.0 } else { self.low.abs().max(self.high.abs()) }
+    }
+
     pub(super) fn contains(self, v: f64) -> bool {
         if v.is_nan() { self.nan } else { self.low <= v && v <= self.high }
     }

@@ -22,6 +22,7 @@ mod fuzz;
 mod interval;
 mod outcome;
 mod rounding;
+mod sums;
 mod traverse;
 
 use core::cell::Cell;
@@ -33,6 +34,7 @@ use affine::{Forms, Handle};
 use arithmetic::{bits_of, constant, ordered};
 use decisions::{Decisions, Explored};
 use interval::Interval;
+use sums::Parts;
 
 pub(crate) use outcome::result_leaves;
 pub use outcome::{Leaf, Outcomes};
@@ -47,6 +49,8 @@ pub struct Bounded {
     id: u64,
     /// Which errors it carries.
     form: Handle,
+    /// What a device that reorders sums may take it apart into, if it is a sum or a product.
+    parts: Option<Parts>,
 }
 
 /// A truth value on [`Margin`].
@@ -89,7 +93,7 @@ impl Margin {
 
     /// A float with a number of its own.
     fn bounded(&self, value: f64, range: Interval) -> Bounded {
-        Bounded { value, range, id: self.decisions.fresh(), form: Handle::NONE }
+        Bounded { value, range, id: self.decisions.fresh(), form: Handle::NONE, parts: None }
     }
 
     fn point(&self, v: f64) -> Bounded {
@@ -153,11 +157,11 @@ impl Machine for Margin {
     type Loop = ScalarLoop;
 
     fn f32(&self, v: f32) -> Bounded {
-        self.point(f64::from(v))
+        self.bounded(f64::from(v), self.rounding.taken(v))
     }
 
     fn f32_literal(&self, v: f32, exact: f64) -> Bounded {
-        self.bounded(exact, Interval::around([f64::from(v), exact], false))
+        self.bounded(exact, self.rounding.taken(v).hull(Interval::point(exact)))
     }
 
     fn f32_constant(&self, v: f32) -> Bounded {
