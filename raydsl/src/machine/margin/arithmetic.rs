@@ -195,8 +195,8 @@ impl Margin {
                 Bounded { parts: self.parts_of_product(product.range, form, by), ..product }
             }
             F32Binary::Div if !self.rounding.divides(b.range) => {
-                let anything = a.range.div(Interval::new(-1.0, 1.0, b.range.nan));
-                self.bounded(x / y, anything)
+                let is_nan = a.range.is_nan() || b.range.is_nan();
+                self.bounded(x / y, if is_nan { Interval::NAN } else { Interval::ALL })
             }
             F32Binary::Div => {
                 let get = |v: Bounded| self.forms.get(v.form, v.range);

@@ -66,10 +66,13 @@ impl Margin {
         let extra = if is_pair { 0.0 } else { any_order };
         let range = if is_sum { a.range.add(b.range) } else { a.range.sub(b.range) };
         // In another order they may overflow.
-        let range = if !is_pair && bulk > f64::from(f32::MAX) { Interval::ALL } else { range };
+        let overflows = !is_pair && bulk > f64::from(f32::MAX);
+        let range = if overflows && !range.is_nan() { Interval::ALL } else { range };
+        // The form does not know that an addend may be infinite.
         let form = self
             .forms
             .get(p.form, a.range)
+            .filter(|_| !range.may_break())
             .zip(self.forms.get(q.form, b.range))
             .map(|(a, b)| if is_sum { a.add(&b) } else { a.sub(&b) });
         let sum = self.computed_within(value, range, form.clone(), by, extra);
