@@ -99,9 +99,11 @@ fn assert_explained<A: Type + Debug + Sync, R: Type + Sync>(
         compare(format!("{name} in WGSL"), &[kernel.call(inputs[*i])], &found[*i..=*i])
             .assert_same(|_| format!("{:?}", inputs[*i]));
     }
-    // Bounds that hold nearly anything would hold mistakes.
-    let sample = why.sample;
-    assert!(why.causes.is_empty() || sample.is_meaningful(), "{name} in WGSL: {sample:?}");
+    // Where much is open, other paths mean little. Inputs at the ends of the range of `f32` have no
+    // bound, but then no difference of theirs is explained either.
+    let (decided, sample) = (why.count(Cause::Decision), why.sample);
+    assert!(decided == 0 || sample.is_meaningful(), "{name} in WGSL: {decided} of {sample:?}");
+    assert!(sample.median_width_ulp < 1000.0, "{name} in WGSL: {sample:?}");
 }
 
 fn is_finite<T: Type>(v: &T) -> bool {
