@@ -69,6 +69,12 @@ fn check_signature(sig: &syn::Signature, errors: &mut Errors) {
 /// What `#[should_panic]` expects, if it stands there.
 fn expected_panic(attributes: &[syn::Attribute]) -> Option<String> {
     let attribute = attributes.iter().find(|a| a.path().is_ident("should_panic"))?;
+    // `#[should_panic = "text"]`
+    if let syn::Meta::NameValue(pair) = &attribute.meta
+        && let syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Str(text), .. }) = &pair.value
+    {
+        return Some(text.value());
+    }
     let mut expected = String::new();
     // A mistake in the attribute is rustc's to report.
     let _ = attribute.parse_nested_meta(|meta| {
@@ -117,10 +123,5 @@ pub(crate) fn wgsl_test(input: TokenStream) -> TokenStream {
     };
     let Some(last) = kernel.segments.last() else { return TokenStream::new() };
     let name = format_ident!("{}_has_valid_wgsl", last.ident);
-    quote! {
-        #[test]
-        fn #name() {
-            ::raydsl::testing::assert_valid_wgsl::<#kernel>();
-        }
-    }
+    quote!(::raydsl::__wgsl_test!(#name, #kernel);)
 }

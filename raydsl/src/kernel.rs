@@ -392,7 +392,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
     /// widen. Elementary functions are std's of `f64`. `to_bits` acts on the value rounded to
     /// `f32`, so generators of random numbers give the same ones.
     ///
-    /// A loop that does not end within 4 million rounds in `f64` is left.
+    /// A loop that does not end within 260 thousand rounds in `f64` is left.
     pub fn reference(&self, args: A) -> Vec<f64> {
         let outcomes = self.outcomes(args, Rounding::IEEE, 1);
         outcomes.reference().iter().copied().map(Leaf::value).collect()

@@ -275,8 +275,9 @@ fn atan2(y: f32, x: f32) -> f32 {
         long = 1.0f;
     }
     let scale = select(1.0f, 0.25f, (long > 1e19f));
-    let long_1 = long * scale;
-    let short_1 = short * scale;
+    let scale_1 = select(scale, 16777216.0f, (long < 7.888609e-31f));
+    let long_1 = long * scale_1;
+    let short_1 = short * scale_1;
     let is_middle = short_1 > params.lit_0_41421357 * long_1;
     let above = select(short_1, short_1 - long_1, is_middle);
     let below = select(long_1, short_1 + long_1, is_middle);

@@ -195,6 +195,14 @@ pub fn words<T: Type>(v: &T) -> Vec<u32> {
     words
 }
 
+/// The floats among the scalars of a value.
+pub fn floats<T: Type>(v: &T) -> Vec<f32> {
+    let mut is_float = Vec::new();
+    each_leaf(T::SCHEMA, 0, &mut |_, leaf| is_float.push(*leaf == Schema::F32));
+    let words = words(v).into_iter().zip(is_float);
+    words.filter(|(_, is_float)| *is_float).map(|(w, _)| f32::from_bits(w)).collect()
+}
+
 fn same_zero_and_nan(bits: u32) -> u32 {
     let x = f32::from_bits(bits);
     if x.is_nan() {
@@ -293,7 +301,13 @@ impl Comparison {
 
 #[cfg(test)]
 mod tests {
-    use super::compare;
+    use super::{compare, floats};
+
+    /// The bits of -1 are those of a NaN, but it is no float.
+    #[test]
+    fn integers_are_no_floats() {
+        assert_eq!(floats(&(-1i32, 1.5f32, u32::MAX)), [1.5]);
+    }
 
     #[test]
     fn zeros_and_nans_are_equal_and_nothing_else_is() {

@@ -175,6 +175,10 @@ mod error {
             let (x, _) = any_pair(rng);
             (x * rng.range(-2.0, 2.0), x)
         });
+        scan_pairs("atan2 of denormals", raydsl::prelude::atan2, f64::atan2, |rng| {
+            let denormal = |n: usize| f32::from_bits(n as u32);
+            (denormal(rng.below(400)), denormal(rng.below(400)))
+        });
     }
 
     #[test]

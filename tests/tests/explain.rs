@@ -6,13 +6,13 @@ use std::f32::consts::FRAC_PI_3;
 use raydsl::kernel;
 use raydsl::machine::{KernelFn, Rounding};
 use raydsl::prelude::*;
-use raydsl::report::{Cause, Compare, Explanation, Sample, Verdict, explain};
+use raydsl::report::{Cause, Compare, Explanation, Missing, Sample, Verdict, explain};
 use raydsl_tests::check::recorded;
 use raydsl_tests::gpu::gpu;
 use raydsl_tests::kernels;
 use raydsl_tests::rng::Rng;
 use raydsl_tests::scenes::{ColorSphere, random_rays, spheres, triangles};
-use raydsl_tests::values::{Numbers, random, words};
+use raydsl_tests::values::{Numbers, floats, random};
 
 macro_rules! primary {
     ($bvh:ident) => {
@@ -104,7 +104,86 @@ fn an_open_range_is_a_mistake() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// Where the bounds hold everything, they hold mistakes.
+#[test]
+fn bounds_without_a_limit_explain_nothing() {
+    let chaos = kernel!(|start: f32| {
+        let mut x = start;
+        for _ in 0..80u32 {
+            x = 3.9 * x * (1.0 - x);
+        }
+        x
+    });
+    let inputs: Vec<(f32,)> = (1..1000).map(|i| (i as f32 * 0.001,)).collect();
+    let outputs = vec![-1234.5; inputs.len()];
+    let found = explain(&chaos, &inputs, &outputs, Rounding::IEEE);
+    show("chaos", &found);
+    assert_eq!(found.count(Cause::Rounding) + found.count(Cause::Decision), 0);
+    assert_eq!(found.unexplained(), inputs.len());
+    assert!(!found.sample.is_meaningful());
+    // A NaN is no rounding error.
+    let root = kernel!(|x: f32| {
+        let d = x * x - 1.21;
+        if d >= 0.0 { d.sqrt() } else { 0.0 }
+    });
+    let inputs = [(1.1f32,)];
+    let found = explain(&root, &inputs, &[f32::NAN], Rounding::IEEE);
+    assert_eq!((found.causes.len(), found.unexplained()), (1, 1));
+}
+
+/// A kernel that wants more buffers than the device has.
+#[test]
+fn a_device_that_refuses_does_not_agree() {
+    if gpu().is_none() {
+        return;
+    }
+    let all: Vec<Vec<f32>> = (0..12).map(|i| vec![i as f32; 4]).collect();
+    let [a, b, c, d, e, f, g, h, i, j, k, l] = std::array::from_fn(|n| &all[n][..]);
+    let sum = kernel!(|ray: Ray| {
+        let n = (ray.direction.x > 0.0) as usize;
+        let s = a[n] + b[n] + c[n] + d[n] + e[n] + f[n] + g[n] + h[n] + i[n] + j[n] + k[n] + l[n];
+        Shaded { color: vec3(s, s, s), depth: s, id: 0 }
+    });
+    let found = Compare::new().size(32, 32).runs(1).run(&sum, &camera());
+    println!("{}", found.table());
+    assert!(found.table().contains("refused: "));
+    assert_eq!(found.verdict(), Verdict::Differ);
+    let wgsl = found.rows.iter().find(|r| r.variant == Variant::Wgsl);
+    assert!(wgsl.is_some_and(|r| matches!(r.unavailable, Some(Missing::Refused(_)))));
+}
+
+#[test]
+fn nothing_compared_is_no_agreement() {
+    let sky = kernel!(|ray: Ray| Shaded { color: ray.direction, depth: 0.0, id: 0 });
+    let empty = Compare::new().size(0, 0).runs(1).variants(&Variants::cpu());
+    assert_eq!(empty.run(&sky, &camera()).verdict(), Verdict::NothingCompared);
+    let alone = Compare::new().size(8, 8).runs(1).variants(&Variants::of(&[Variant::Scalar]));
+    assert_eq!(alone.run(&sky, &camera()).verdict(), Verdict::NothingCompared);
+}
+
 // Right variants.
+
+/// A cancelling sum that drivers reorder: rounding accounts for all of it, however many ulp it is.
+#[test]
+fn a_picture_of_reordered_sums_agrees() {
+    if gpu().is_none() {
+        return;
+    }
+    let rings = kernel!(|ray: Ray| {
+        let (x, y) = (ray.direction.x, ray.direction.y);
+        let d = (x * x + y * y) - 0.05;
+        Shaded { color: vec3(d, d, d), depth: d, id: 0 }
+    });
+    let compare = || Compare::new().size(160, 120).runs(1);
+    let found = compare().run(&rings, &camera());
+    println!("{}", found.table());
+    assert_eq!(found.verdict(), Verdict::Agree);
+    assert!(found.sample.median_width_ulp < 500.0);
+    // Only where somebody asks for it, numbers have to be near in ulp too.
+    let strict = compare().tolerance(0).run(&rings, &camera());
+    let off = strict.rows.iter().any(|r| r.agreement.max_ulp > 0);
+    assert_eq!(strict.verdict(), if off { Verdict::Differ } else { Verdict::Agree });
+}
 
 /// The least (t, id) of spheres in `f64`, rounded in the end.
 fn in_f64(prims: &[ColorSphere], ray: Ray) -> Shaded {
@@ -163,7 +242,7 @@ fn elementary_functions_on_a_device_are_right() {
     {
         let Some(gpu) = gpu() else { return 0 };
         let (kernel, mut rng) = (recorded::<F>(), Rng::of(name));
-        let is_finite = |a: &F::Args| words(a).iter().all(|w| f32::from_bits(*w).is_finite());
+        let is_finite = |a: &F::Args| floats(a).into_iter().all(f32::is_finite);
         let all = (0..20_000).map(|_| random::<F::Args>(&mut rng, Numbers::Any));
         let inputs: Vec<F::Args> = all.filter(is_finite).collect();
         let mut outputs: Vec<F::Output> = inputs.iter().map(|a| kernel.call(*a)).collect();

@@ -1,7 +1,7 @@
 //! What `raydsl::testing` offers to users: it passes where variants agree, and says where not.
 
 use raydsl::kernel::Lifted;
-use raydsl::machine::{KernelFn, KernelInfo};
+use raydsl::machine::{KernelFn, KernelInfo, Rounding};
 use raydsl::testing::variants_agree;
 
 // ANCHOR: imports
@@ -58,6 +58,70 @@ fn attributes_go_to_the_tests(_: Variant) {
     panic!("it fails");
 }
 
+#[variant_test]
+#[should_panic = "it fails"]
+fn the_short_form_of_should_panic(_: Variant) {
+    panic!("it fails");
+}
+
+/// A sum that devices may reorder, beside an integer.
+#[kernel]
+fn sum_and_side(x: f32, y: f32, z: f32) -> (f32, u32) {
+    ((x * x + y * z) - 0.05, (x > 3.0) as u32)
+}
+
+#[kernel]
+fn other_side(x: f32, y: f32, z: f32) -> (f32, u32) {
+    ((x * x + y * z) - 0.05, (x > 3.1) as u32)
+}
+
+/// The device may round as WGSL allows, or as a test says.
+#[test]
+fn reordered_sums_agree() {
+    let number = |i: i32| i as f32 * 0.125;
+    let inputs: Vec<(f32, f32, f32)> =
+        (1..2000).map(|i| (number(i), 0.9 * number(i), -number(i))).collect();
+    assert_variants_agree!(sum_and_side, &inputs, Rounding::WGSL);
+    assert_variants_agree!(sum_and_side, &inputs);
+}
+
+/// The table shows the number that rounding does not account for, not one before it that is merely
+/// rounded, and what is allowed there.
+#[test]
+fn the_wrong_number_is_shown() -> Result<(), String> {
+    if !raydsl::testing::can_run(Variant::Wgsl, "the_wrong_number_is_shown") {
+        return Ok(());
+    }
+    static INFO: KernelInfo = KernelInfo { name: "side", file: "f.rs", line: 7, params: &[] };
+    let kernel = Kernel::scalar(&INFO, sum_and_side::scalar).lifted(
+        Lifted {
+            native4: Box::new(sum_and_side::lifted),
+            native8: Box::new(sum_and_side::lifted),
+            native16: Box::new(sum_and_side::lifted),
+            native16_halves: Box::new(sum_and_side::lifted),
+            baseline: Box::new(sum_and_side::lifted),
+            recorder: Box::new(other_side::lifted),
+            margin: Box::new(sum_and_side::lifted),
+        },
+        |_| {},
+    );
+    let inputs: Vec<(f32, f32, f32)> =
+        (0..1000).map(|i| (2.0 + i as f32 * 0.0021, 0.9, 0.9)).collect();
+    let table = variants_agree(&kernel, &inputs, Rounding::WGSL).err().ok_or("it agrees")?;
+    let table = table.to_string();
+    println!("{table}");
+    let rows: Vec<Vec<&str>> = table
+        .lines()
+        .filter(|l| l.starts_with("wgsl "))
+        .map(|l| l.split_whitespace().collect())
+        .collect();
+    assert_eq!(rows.len(), 10, "{table}");
+    for row in rows {
+        assert_eq!(row[2..8], ["1", "1", "(0x00000001)", "0", "(0x00000000)", "1"], "{table}");
+    }
+    Ok(())
+}
+
 #[kernel]
 fn mistaken(distance: f32, radius: f32) -> f32 {
     if distance > 2.0 { 0.125 } else { falloff(distance, radius) }
@@ -90,7 +154,8 @@ fn a_wrong_packet_is_shown() -> Result<(), String> {
         eprintln!("SKIPPED: this machine has no packets of 8 lanes");
         return Ok(());
     }
-    let error = variants_agree(&broken(true, false), &inputs()).err().ok_or("it agrees")?;
+    let error =
+        variants_agree(&broken(true, false), &inputs(), Rounding::WGSL).err().ok_or("it agrees")?;
     let table = error.to_string();
     println!("{table}");
     assert!(table.contains("`broken` (f.rs:7)"), "{table}");
@@ -109,7 +174,8 @@ fn wrong_wgsl_is_shown() -> Result<(), String> {
     if !raydsl::testing::can_run(Variant::Wgsl, "wrong_wgsl_is_shown") {
         return Ok(());
     }
-    let error = variants_agree(&broken(false, true), &inputs()).err().ok_or("it agrees")?;
+    let error =
+        variants_agree(&broken(false, true), &inputs(), Rounding::WGSL).err().ok_or("it agrees")?;
     let table = error.to_string();
     println!("{table}");
     assert!(table.contains("rounding does not account for 333 of 1000"), "{table}");

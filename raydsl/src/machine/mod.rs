@@ -223,6 +223,21 @@ pub trait Machine: Sized + 'static {
     fn f32_from_bits(&self, a: Self::U32) -> Self::F32;
     fn bool_to_u32(&self, a: Self::Bool) -> Self::U32;
 
+    /// The size of `a` compared with infinity, by its bits. Unlike `a != a` that also holds for
+    /// GPUs, which may take NaN for granted not to be.
+    #[inline(always)]
+    fn f32_beside_infinity(&self, op: Compare, a: Self::F32) -> Self::Bool {
+        let bits = self.u32_to_i32(self.f32_to_bits(a));
+        let size = self.i32_binary(IntBinary::And, bits, self.i32(0x7fff_ffff));
+        self.i32_compare(op, size, self.i32(0x7f80_0000))
+    }
+
+    /// Whether the sign is `-`, of zeros and NaN too; with [`Compare::Ge`] whether it is not.
+    #[inline(always)]
+    fn f32_sign_bit(&self, op: Compare, a: Self::F32) -> Self::Bool {
+        self.i32_compare(op, self.u32_to_i32(self.f32_to_bits(a)), self.i32(0))
+    }
+
     /// The number `a` with the sign of `sign`.
     #[inline(always)]
     fn f32_copysign(&self, a: Self::F32, sign: Self::F32) -> Self::F32 {

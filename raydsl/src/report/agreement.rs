@@ -18,8 +18,9 @@ pub struct Agreement {
     pub max_ulp: u32,
     /// How many `f32` lie within each of [`BUCKETS`].
     pub histogram: [u64; BUCKETS.len()],
-    /// Results in which an integer or a truth value differs (another primitive, hit for miss), a
-    /// number is NaN in one of them only, or numbers differ by more than rounding does.
+    /// Results that differ by more than rounding: those of [`Self::explained`] and those of
+    /// [`Self::unexplained`]. In [`Self::of`], which knows no bounds, those in which an integer or a
+    /// truth value differs (another primitive, hit for miss) or a number is NaN in one only.
     pub hit_mismatches: u64,
     /// Mismatches that come of an uncertain decision. Their numbers count in neither
     /// [`Self::max_ulp`] nor [`Self::histogram`].

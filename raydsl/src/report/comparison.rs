@@ -29,7 +29,7 @@ pub struct Compare<'a> {
     width: u32,
     height: u32,
     runs: usize,
-    tolerance: u32,
+    tolerance: Option<u32>,
     samples: usize,
     rounding: Rounding,
     variants: Variants,
@@ -51,9 +51,9 @@ impl<'a> Compare<'a> {
             width: 640,
             height: 480,
             runs: 5,
-            tolerance: 0,
+            tolerance: None,
             samples: SAMPLES,
-            rounding: Rounding::IEEE,
+            rounding: Rounding::WGSL,
             variants: Variants::all(),
             #[cfg(feature = "gpu")]
             gpu: None,
@@ -71,9 +71,10 @@ impl<'a> Compare<'a> {
         Self { runs: runs.max(1), ..self }
     }
 
-    /// How many ulp the numbers of the WGSL variant may be off; 0 unless this is called.
+    /// How many ulp the numbers of the WGSL variant may be off besides: unless this is called,
+    /// whatever rounding accounts for is fine.
     pub fn tolerance(self, ulp: u32) -> Self {
-        Self { tolerance: ulp, ..self }
+        Self { tolerance: Some(ulp), ..self }
     }
 
     /// How many pixels are computed in `f64`, spread evenly over the film: they give the share of
@@ -83,7 +84,7 @@ impl<'a> Compare<'a> {
         Self { samples, ..self }
     }
 
-    /// How the device rounds: [`Rounding::IEEE`] unless this is called.
+    /// How the device rounds: [`Rounding::WGSL`] unless this is called.
     pub fn rounding(self, rounding: Rounding) -> Self {
         Self { rounding, ..self }
     }
@@ -118,8 +119,8 @@ impl<'a> Compare<'a> {
         let gpu = match (&own, self.gpu) {
             (_, Some(gpu)) => Ok(gpu),
             (Some(Ok(gpu)), None) => Ok(gpu),
-            (Some(Err(e)), None) => Err(e.clone()),
-            (None, None) => Err("not asked for".to_owned()),
+            (Some(Err(e)), None) => Err(Missing::NoDevice(e.clone())),
+            (None, None) => Err(Missing::NoDevice("not asked for".to_owned())),
         };
         let mut rows: Vec<Row<R>> = self.variants.iter().map(|v| Row::new(v, &self)).collect();
         #[cfg(feature = "gpu")]
@@ -134,10 +135,12 @@ impl<'a> Compare<'a> {
                     #[cfg(feature = "gpu")]
                     Variant::Wgsl => gpu.clone().and_then(|g| {
                         let frame = g.frame(camera, kernel, &mut row.image);
-                        frame.map(drop).map_err(|e| e.to_string())
+                        frame.map(drop).map_err(|e| Missing::Refused(e.to_string()))
                     }),
                     #[cfg(not(feature = "gpu"))]
-                    Variant::Wgsl => Err("raydsl was built without the feature `gpu`".to_owned()),
+                    Variant::Wgsl => Err(Missing::NoDevice(
+                        "raydsl was built without the feature `gpu`".to_owned(),
+                    )),
                     cpu => {
                         TiledScheduler::new().variant(cpu).frame(camera, kernel, &mut row.image);
                         Ok(())
@@ -170,11 +173,8 @@ impl<'a> Compare<'a> {
         for row in &mut rows {
             row.accuracy = row.accuracy_at(&indices, &sampled);
         }
-        let sample = Sample {
-            inputs: indices.len() as u64,
-            uncertain: sampled.iter().filter(|o| o.is_uncertain()).count() as u64,
-        };
-        Comparison { rows, adapter, tolerance: self.tolerance, sample }
+        let sample = Sample::of(&sampled);
+        Comparison { rows, adapter, tolerance: self.tolerance, rounding, sample }
     }
 
     #[cfg(feature = "gpu")]
@@ -202,7 +202,23 @@ pub struct Row<R> {
     /// How far it is from the reference in `f64`, at the sampled pixels.
     pub accuracy: Accuracy,
     /// Why the variant did not run, if it did not.
-    pub unavailable: Option<String>,
+    pub unavailable: Option<Missing>,
+}
+
+/// Why a variant did not run.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Missing {
+    /// There is nothing to run it on: no device, or none in this build.
+    NoDevice(String),
+    /// The device refuses the kernel, or was lost. The comparison fails.
+    Refused(String),
+}
+
+impl core::fmt::Display for Missing {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let (Self::NoDevice(why) | Self::Refused(why)) = self;
+        f.write_str(why)
+    }
 }
 
 impl<R: Type> Row<R> {
@@ -263,8 +279,11 @@ pub struct Comparison<R> {
     pub rows: Vec<Row<R>>,
     /// The device that ran the WGSL variant.
     pub adapter: Option<String>,
-    /// How many ulp the numbers of the WGSL variant may be off.
-    pub tolerance: u32,
+    /// How many ulp the numbers of the WGSL variant may be off, if there is a limit besides
+    /// rounding's.
+    pub tolerance: Option<u32>,
+    /// How the device rounds.
+    pub rounding: Rounding,
     /// How many pixels were uncertain, of those computed in `f64`.
     pub sample: Sample,
 }
@@ -272,14 +291,16 @@ pub struct Comparison<R> {
 /// What a comparison comes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Verdict {
-    /// CPU variants have the same bits; WGSL makes the same decisions but for those that rounding
-    /// leaves open, and its numbers are within [`Compare::tolerance`].
+    /// CPU variants have the same bits. Rounding accounts for every difference of WGSL, and numbers
+    /// are within [`Compare::tolerance`] if that was called.
     Agree,
-    /// They do not.
+    /// They do not, or the device refuses the kernel.
     Differ,
-    /// They agree thanks to explanations, but more than 1 % of the pixels are uncertain: with so
-    /// much open, explanations mean little.
+    /// Rounding accounts for the differences, but more than 1 % of the sampled pixels are uncertain
+    /// or none was sampled: with so much open, that means little.
     NotMeaningful,
+    /// No variant but the scalar one ran, or the film has no pixels.
+    NothingCompared,
 }
 
 impl<R: Type> Comparison<R> {
@@ -288,24 +309,35 @@ impl<R: Type> Comparison<R> {
         &self.rows[0]
     }
 
-    /// Whether every variant that ran agrees: CPU variants in every bit, WGSL in every decision
-    /// that rounding does not leave open, and in its numbers to [`Compare::tolerance`].
+    /// Whether the verdict is [`Verdict::Agree`]. A variant for which there is no device does not
+    /// count.
     pub fn agrees(&self) -> bool {
         self.verdict() == Verdict::Agree
     }
 
     /// What the comparison comes to.
     pub fn verdict(&self) -> Verdict {
+        let is_refused = |r: &Row<R>| matches!(r.unavailable, Some(Missing::Refused(_)));
         let ran = || self.rows.iter().filter(|r| r.unavailable.is_none());
-        let agree = ran().all(|r| match r.variant {
-            Variant::Wgsl => r.agreement.unexplained == 0 && r.agreement.max_ulp <= self.tolerance,
-            _ => r.agreement.is_bit_identical(),
-        });
-        let explained = ran().any(|r| r.agreement.explained > 0);
-        match agree {
-            false => Verdict::Differ,
-            true if explained && !self.sample.is_meaningful() => Verdict::NotMeaningful,
-            true => Verdict::Agree,
+        if self.rows.iter().any(is_refused) || !ran().all(|r| self.is_fine(r)) {
+            return Verdict::Differ;
+        }
+        let forgiven = ran().any(|r| !r.agreement.is_bit_identical());
+        match ran().count() {
+            0 | 1 => Verdict::NothingCompared,
+            _ if self.scalar().image.pixels().is_empty() => Verdict::NothingCompared,
+            _ if forgiven && !self.sample.is_meaningful() => Verdict::NotMeaningful,
+            _ => Verdict::Agree,
+        }
+    }
+
+    /// Whether a variant that ran is as it should be.
+    fn is_fine(&self, row: &Row<R>) -> bool {
+        let found = &row.agreement;
+        let within = self.tolerance.is_none_or(|most| found.max_ulp <= most);
+        match row.variant {
+            Variant::Wgsl => found.unexplained == 0 && within,
+            _ => found.is_bit_identical(),
         }
     }
 

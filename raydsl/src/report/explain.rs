@@ -1,8 +1,9 @@
 //! Why results differ: rounding, a decision that rounding leaves open, or a mistake.
 
+use super::accuracy::ulp;
 use super::agreement::differing;
 use crate::kernel::Kernel;
-use crate::machine::{Outcomes, Rounding, Type};
+use crate::machine::{Leaf, Outcomes, Rounding, Type, result_leaves};
 
 /// In how many ways the decisions of one input are turned.
 const WAYS: usize = 64;
@@ -17,8 +18,8 @@ pub enum Cause {
     /// The path met a decision whose sides lie within the rounding error of each other, and both
     /// results are within the bounds of one of its outcomes: the mismatch is *explained*.
     Decision,
-    /// More ways were open than are followed, and those that were do not explain it. It counts as
-    /// unexplained.
+    /// More ways were open than are followed, and those that were do not explain it; or the bounds
+    /// say nothing, since a number that differs may be infinite or NaN. It counts as unexplained.
     Undecided,
     /// Rounding does not account for it.
     Unexplained,
@@ -30,7 +31,8 @@ impl Cause {
         let both = |all: &Outcomes| all.contains(expected) && all.contains(found);
         let first = outcomes(1);
         if both(&first) {
-            return Self::Rounding;
+            let limited = is_limited(first.reference(), expected, found);
+            return if limited { Self::Rounding } else { Self::Undecided };
         }
         if !first.is_uncertain() {
             return Self::Unexplained;
@@ -44,13 +46,27 @@ impl Cause {
     }
 }
 
+/// Whether the bounds limit every number that differs: an interval that ends in infinity holds
+/// mistakes too, and so does one that may be NaN.
+fn is_limited<R: Type>(bounds: &[Leaf], expected: R, found: R) -> bool {
+    let (expected, found) = (result_leaves(expected), result_leaves(found));
+    let differs = |a: f64, b: f64| a != b && !(a.is_nan() && b.is_nan());
+    bounds
+        .iter()
+        .zip(expected.iter().zip(&found))
+        .all(|(bound, (a, b))| bound.width() < f64::INFINITY || !differs(a.value(), b.value()))
+}
+
 /// Some inputs, spread evenly, and how many of them are uncertain.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
     /// How many inputs were looked at.
     pub inputs: u64,
-    /// Those whose path in `f64` met a decision whose sides lie within the rounding error.
+    /// Those whose path in `f64` met a decision whose sides lie within the rounding error, or whose
+    /// bounds hold nearly anything: see [`Outcomes::is_vague`].
     pub uncertain: u64,
+    /// How wide the bounds are: the width in ulp that half of the floats do not exceed.
+    pub median_width_ulp: f64,
 }
 
 impl Sample {
@@ -59,10 +75,26 @@ impl Sample {
         self.uncertain as f64 / self.inputs.max(1) as f64
     }
 
-    /// Whether explanations mean something: at most 1 % is uncertain. Where much is uncertain, much
-    /// could be explained.
+    /// Whether explanations mean something: inputs were looked at, and at most 1 % is uncertain.
+    /// Where much is uncertain, much could be explained.
     pub fn is_meaningful(&self) -> bool {
-        self.share() <= 0.01
+        self.inputs > 0 && self.share() <= 0.01
+    }
+
+    /// What the outcomes of a sample's inputs come to.
+    pub(super) fn of(sampled: &[Outcomes]) -> Self {
+        let uncertain = sampled.iter().filter(|o| o.is_uncertain() || o.is_vague()).count();
+        let floats = sampled.iter().flat_map(|o| o.reference());
+        let mut widths: Vec<f64> = floats
+            .filter(|leaf| matches!(leaf, Leaf::Float { .. }))
+            .map(|leaf| leaf.width() / ulp(leaf.value()))
+            .collect();
+        widths.sort_by(f64::total_cmp);
+        Self {
+            inputs: sampled.len() as u64,
+            uncertain: uncertain as u64,
+            median_width_ulp: widths.get(widths.len() / 2).copied().unwrap_or_default(),
+        }
     }
 }
 
@@ -102,11 +134,11 @@ pub(super) fn causes<R: Type + Sync>(
 
 /// How results differ from the scalar variant's, and why.
 #[must_use = "an explanation that nobody reads explains nothing"]
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Explanation {
     /// The inputs at which results differ in any bit, in order, and the causes.
     pub causes: Vec<(usize, Cause)>,
-    /// How many inputs are uncertain, of at most 4096.
+    /// How many inputs are uncertain, of at most 4096. Explanations mean little where many are.
     pub sample: Sample,
 }
 
@@ -158,16 +190,7 @@ pub fn explain<A: Type + Sync, R: Type + Sync>(
     let outcomes = |i: usize, limit| kernel.outcomes(inputs[i], rounding, limit);
     Explanation {
         causes: causes(&expected, outputs, outcomes),
-        sample: sample(&spread(inputs.len(), super::SAMPLES), |i| outcomes(i, 1)),
-    }
-}
-
-/// How many of `indices` are uncertain.
-fn sample(indices: &[usize], outcomes: impl Fn(usize) -> Outcomes + Sync) -> Sample {
-    let uncertain = each(indices, |i| outcomes(i).is_uncertain());
-    Sample {
-        inputs: indices.len() as u64,
-        uncertain: uncertain.into_iter().filter(|u| *u).count() as u64,
+        sample: Sample::of(&each(&spread(inputs.len(), super::SAMPLES), |i| outcomes(i, 1))),
     }
 }
 
@@ -184,8 +207,10 @@ mod tests {
 
     #[test]
     fn one_per_cent_is_the_limit() {
-        assert!(Sample { inputs: 1000, uncertain: 10 }.is_meaningful());
-        assert!(!Sample { inputs: 1000, uncertain: 11 }.is_meaningful());
-        assert!(Sample::default().is_meaningful());
+        let sample = |inputs, uncertain| Sample { inputs, uncertain, ..Sample::default() };
+        assert!(sample(1000, 10).is_meaningful());
+        assert!(!sample(1000, 11).is_meaningful());
+        // Nothing was looked at.
+        assert!(!Sample::default().is_meaningful());
     }
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json as value};
 
-use super::{Comparison, Row};
+use super::{Comparison, Missing, Row, Verdict};
 use crate::machine::Type;
 
 /// What a comparison does not know of its scene.
@@ -31,15 +31,36 @@ pub(super) fn json<R: Type>(c: &Comparison<R>, scene: &SceneInfo) -> Value {
         "adapter": c.adapter,
         "build_ms": scene.build_ms,
         "bvh_bytes": scene.bvh_bytes,
+        "verdict": match c.verdict() {
+            Verdict::Agree => "agree",
+            Verdict::Differ => "differ",
+            Verdict::NotMeaningful => "not meaningful",
+            Verdict::NothingCompared => "nothing compared",
+        },
+        "tolerance_ulp": c.tolerance,
+        "rounding": {
+            "sum_ulp": c.rounding.sum / f64::from(f32::EPSILON),
+            "quotient_ulp": c.rounding.quotient / f64::from(f32::EPSILON),
+            "root_ulp": c.rounding.root / f64::from(f32::EPSILON),
+            "elementary_ulp": c.rounding.elementary / f64::from(f32::EPSILON),
+        },
         "sampled": c.sample.inputs,
         "uncertain_share": c.sample.share(),
+        "median_width_ulp": number(c.sample.median_width_ulp),
         "variants": variants,
     })
 }
 
+/// A number; JSON knows no infinity, so that is a string.
+fn number(v: f64) -> Value {
+    if v.is_finite() { v.into() } else { v.to_string().into() }
+}
+
 fn row<R: Type>(row: &Row<R>, scalar: &Row<R>) -> Value {
     if let Some(reason) = &row.unavailable {
-        return value!({ "name": row.variant.name(), "not_run": reason });
+        let refused = matches!(reason, Missing::Refused(_));
+        let name = row.variant.name();
+        return value!({ "name": name, "not_run": reason.to_string(), "refused": refused });
     }
     value!({
         "name": row.variant.name(),
@@ -54,9 +75,9 @@ fn row<R: Type>(row: &Row<R>, scalar: &Row<R>) -> Value {
         "hit_mismatches": row.agreement.hit_mismatches,
         "explained": row.agreement.explained,
         "unexplained": row.agreement.unexplained,
-        "max_error_ulp": row.accuracy.max_ulp,
-        "mean_error_ulp": row.accuracy.mean_ulp,
-        "median_error_ulp": row.accuracy.median_ulp,
+        "max_error_ulp": number(row.accuracy.max_ulp),
+        "mean_error_ulp": number(row.accuracy.mean_ulp),
+        "median_error_ulp": number(row.accuracy.median_ulp),
         "other_paths": row.accuracy.other_paths,
     })
 }

@@ -1,7 +1,8 @@
 //! Do the variants agree, and what does each cost?
 //!
-//! [`explain`] says which differences rounding accounts for. [`compare`] runs a kernel in any set of variants and says where they differ from the scalar
-//! one, in bits: the yardstick is the user's own function.
+//! [`explain`] says which differences rounding accounts for. [`compare`] runs a kernel in any set of
+//! variants and says where they differ from the scalar one, in bits: the yardstick is the user's own
+//! function.
 
 mod accuracy;
 mod agreement;
@@ -17,7 +18,7 @@ mod utilisation;
 pub use accuracy::Accuracy;
 pub(crate) use agreement::differing;
 pub use agreement::{Agreement, BUCKETS};
-pub use comparison::{Compare, Comparison, Row, Verdict, compare};
+pub use comparison::{Compare, Comparison, Missing, Row, Verdict, compare};
 pub use explain::{Cause, Explanation, Sample, explain};
 pub use json::SceneInfo;
 #[cfg(feature = "image")]

@@ -2,7 +2,7 @@
 
 use core::fmt::Write;
 
-use super::{Comparison, Row, Verdict};
+use super::{Comparison, Missing, Row, Verdict};
 use crate::machine::Type;
 
 const HEADER: &str = "variant    isa      lanes  ms/frame  Mrays/s  speed-up  max ulp  mismatches  \
@@ -21,7 +21,16 @@ pub(super) fn table<R: Type>(c: &Comparison<R>) -> String {
     if c.sample.inputs > 0 {
         text += &reference(c);
     }
-    text
+    text + verdict(c.verdict()) + "\n"
+}
+
+fn verdict(v: Verdict) -> &'static str {
+    match v {
+        Verdict::Agree => "the variants agree",
+        Verdict::Differ => "the variants differ",
+        Verdict::NotMeaningful => "not meaningful: more than 1 % is open, or nothing was sampled",
+        Verdict::NothingCompared => "nothing was compared",
+    }
 }
 
 /// How far each variant is from the reference, and what is uncertain.
@@ -39,22 +48,19 @@ fn reference<R: Type>(c: &Comparison<R>) -> String {
     let share = 100.0 * c.sample.share();
     let _ = writeln!(
         text,
-        "of {} pixels in f64, {share:.2} % met a decision that rounding leaves open",
-        c.sample.inputs
+        "of {} pixels in f64, rounding leaves {share:.2} % open; half of the bounds are within {:.1} ulp",
+        c.sample.inputs, c.sample.median_width_ulp
     );
-    let verdict = match c.verdict() {
-        Verdict::Agree => "the variants agree",
-        Verdict::Differ => "the variants differ",
-        Verdict::NotMeaningful => "not meaningful: more than 1 % is open",
-    };
-    text + verdict + "\n"
+    text
 }
 
 fn line<R: Type>(row: &Row<R>, scalar: &Row<R>) -> String {
     let name = row.variant.name();
     if let Some(reason) = &row.unavailable {
+        let what = if matches!(reason, Missing::Refused(_)) { "refused" } else { "not run" };
+        let reason = reason.to_string();
         let reason = reason.lines().next().unwrap_or_default();
-        let line: String = format!("{name:<10} not run: {reason}").chars().take(WIDTH).collect();
+        let line: String = format!("{name:<10} {what}: {reason}").chars().take(WIDTH).collect();
         return line + "\n";
     }
     let a = &row.agreement;

@@ -3,10 +3,13 @@
 use core::fmt;
 
 use super::leaves::{leaves, one_line};
-use super::{can_run, try_run, validate};
+use super::{can_run, try_run, unwritten, validate};
 use crate::kernel::{Kernel, Variant};
-use crate::machine::{Rounding, Type};
+use crate::machine::{Leaf, Rounding, Type, result_leaves};
 use crate::report::{Cause, differing, explain};
+
+/// In how many ways the decisions of a result that is shown are turned.
+const WAYS: usize = 64;
 
 /// How many results the table shows.
 const ROWS: usize = 10;
@@ -26,10 +29,12 @@ pub struct Disagreement {
 struct Row {
     variant: &'static str,
     index: usize,
-    /// The first number that differs.
+    /// The first number that is wrong.
     place: String,
     expected: String,
     found: String,
+    /// What rounding allows there, if that is known.
+    allowed: String,
     input: String,
 }
 
@@ -45,18 +50,24 @@ impl fmt::Display for Disagreement {
             return Ok(());
         }
         let width = |of: fn(&Row) -> usize, least| self.rows.iter().map(of).fold(least, usize::max);
-        let (place, expected, found) = (
+        let (place, expected, found, allowed) = (
             width(|r| r.place.chars().count(), 5),
             width(|r| r.expected.len(), 8),
             width(|r| r.found.len(), 5),
+            width(|r| r.allowed.len(), 0),
         );
-        let mut line = |[a, b, c, d, e, g]: [&str; 6]| {
-            writeln!(f, "{a:8} {b:>7}  {c:place$}  {d:expected$}  {e:found$}  {g}")
+        let mut line = |[a, b, c, d, e, g, h]: [&str; 7]| {
+            write!(f, "{a:8} {b:>7}  {c:place$}  {d:expected$}  {e:found$}  ")?;
+            // Packets have no bounds.
+            if allowed > 0 {
+                write!(f, "{g:allowed$}  ")?;
+            }
+            writeln!(f, "{h}")
         };
-        line(["variant", "index", "where", "expected", "found", "input"])?;
+        line(["variant", "index", "where", "expected", "found", "allowed", "input"])?;
         for r in &self.rows {
             let index = r.index.to_string();
-            line([r.variant, &index, &r.place, &r.expected, &r.found, &r.input])?;
+            line([r.variant, &index, &r.place, &r.expected, &r.found, &r.allowed, &r.input])?;
         }
         Ok(())
     }
@@ -72,7 +83,8 @@ struct Wrong<R> {
 }
 
 /// Runs a kernel over `inputs` in every variant; what
-/// [`assert_variants_agree!`](crate::assert_variants_agree) does.
+/// [`assert_variants_agree!`](crate::assert_variants_agree) does. The device may round as
+/// `rounding` says.
 ///
 /// # Errors
 ///
@@ -84,23 +96,27 @@ struct Wrong<R> {
 pub fn variants_agree<A: Type + Sync, R: Type + Sync>(
     kernel: &Kernel<'_, A, R>,
     inputs: &[A],
+    rounding: Rounding,
 ) -> Result<(), Disagreement> {
     assert!(!inputs.is_empty(), "without inputs nothing is compared");
     let expected: Vec<R> = inputs.iter().map(|a| kernel.call(*a)).collect();
     let packets = [Variant::Packet4, Variant::Packet8, Variant::Packet16];
     let mut wrong: Vec<Wrong<R>> =
         packets.into_iter().filter_map(|v| packet(kernel, v, inputs, &expected)).collect();
-    wrong.extend(wgsl(kernel, inputs));
+    wrong.extend(wgsl(kernel, inputs, rounding));
     if wrong.is_empty() {
         return Ok(());
     }
     let info = kernel.info();
     let each = ROWS / wrong.len();
     let rows = wrong.iter().flat_map(|w| {
-        w.indices
-            .iter()
-            .take(each)
-            .map(|i| row(w.variant, *i, &inputs[*i], expected[*i], w.found[*i]))
+        w.indices.iter().take(each).map(|i| {
+            let results = [expected[*i], w.found[*i]];
+            let outside = (w.variant == Variant::Wgsl)
+                .then(|| kernel.outcomes(inputs[*i], rounding, WAYS))
+                .and_then(|all| all.outside(&result_leaves(results[1])));
+            row(w.variant, *i, &inputs[*i], results, outside)
+        })
     });
     Err(Disagreement {
         kernel: format!("`{}` ({}:{})", info.name, info.file, info.line),
@@ -116,8 +132,7 @@ fn packet<A: Type, R: Type>(
     inputs: &[A],
     expected: &[R],
 ) -> Option<Wrong<R>> {
-    let mut found = expected.to_vec();
-    found.fill(R::read(&vec![0; R::SCHEMA.size()]));
+    let mut found = vec![unwritten(); inputs.len()];
     kernel.run(variant, inputs, &mut found);
     let indices = differing(expected, &found);
     let (name, (isa, lanes)) = (variant.name(), variant.isa());
@@ -132,6 +147,7 @@ fn packet<A: Type, R: Type>(
 fn wgsl<A: Type + Sync, R: Type + Sync>(
     kernel: &Kernel<'_, A, R>,
     inputs: &[A],
+    rounding: Rounding,
 ) -> Option<Wrong<R>> {
     let variant = Variant::Wgsl;
     let failed = |summary| Wrong { variant, summary, found: Vec::new(), indices: Vec::new() };
@@ -145,31 +161,39 @@ fn wgsl<A: Type + Sync, R: Type + Sync>(
         Ok(found) => found,
         Err(e) => return Some(failed(format!("wgsl: {e}"))),
     };
-    let why = explain(kernel, inputs, &found, Rounding::IEEE);
-    if why.count(Cause::Decision) > 0 && !why.sample.is_meaningful() {
-        return Some(failed(format!(
-            "wgsl: {} results follow another path, which uncertain decisions would explain; but {} \
-             of {} inputs are uncertain, so that means little",
-            why.count(Cause::Decision),
-            why.sample.uncertain,
-            why.sample.inputs,
-        )));
-    }
+    let why = explain(kernel, inputs, &found, rounding);
     let is_wrong = |cause| matches!(cause, Cause::Unexplained | Cause::Undecided);
     let wrong = why.causes.iter().filter(|(_, cause)| is_wrong(*cause));
     let indices: Vec<usize> = wrong.map(|(i, _)| *i).collect();
-    let summary = format!(
-        "wgsl: rounding does not account for {} of {} results",
-        indices.len(),
-        inputs.len()
-    );
-    (!indices.is_empty()).then_some(Wrong { variant, summary, found, indices })
+    let mut found_out = Vec::new();
+    if !indices.is_empty() {
+        let (wrong, all) = (indices.len(), inputs.len());
+        found_out.push(format!("wgsl: rounding does not account for {wrong} of {all} results"));
+    }
+    let forgiven = why.causes.len() - indices.len();
+    if forgiven > 0 && !why.sample.is_meaningful() {
+        let (uncertain, all) = (why.sample.uncertain, why.sample.inputs);
+        found_out.push(format!(
+            "wgsl: rounding would account for {forgiven} results that differ; but {uncertain} of \
+             {all} inputs are uncertain, so that means little"
+        ));
+    }
+    let summary = found_out.join("\n  ");
+    (!summary.is_empty()).then_some(Wrong { variant, summary, found, indices })
 }
 
-fn row<A: Type, R: Type>(variant: Variant, index: usize, input: &A, expected: R, found: R) -> Row {
-    let (expected, found) = (leaves(&expected), leaves(&found));
-    let at = expected.iter().zip(&found).position(|(a, b)| !a.number.is_same(b.number));
-    let at = at.unwrap_or_default();
+/// `outside` is the leaf that rounding does not account for, and what it allows there.
+fn row<A: Type, R: Type>(
+    variant: Variant,
+    index: usize,
+    input: &A,
+    results: [R; 2],
+    outside: Option<(usize, Leaf)>,
+) -> Row {
+    let [expected, found] = results.map(|r| leaves(&r));
+    let differs = expected.iter().zip(&found).position(|(a, b)| !a.number.is_same(b.number));
+    let outside = outside.filter(|(at, _)| *at < expected.len());
+    let at = outside.map(|(at, _)| at).or(differs).unwrap_or_default();
     let place = &expected[at].path;
     Row {
         variant: variant.name(),
@@ -177,6 +201,19 @@ fn row<A: Type, R: Type>(variant: Variant, index: usize, input: &A, expected: R,
         place: if place.is_empty() { "result".to_owned() } else { place.clone() },
         expected: expected[at].number.with_bits(),
         found: found[at].number.with_bits(),
+        allowed: outside.map(|(_, leaf)| allowed(leaf)).unwrap_or_default(),
         input: one_line(input),
+    }
+}
+
+/// What rounding allows a number to be.
+fn allowed(leaf: Leaf) -> String {
+    match leaf {
+        Leaf::Whole(v) => v.to_string(),
+        Leaf::Float { low, high, .. } if low > high => "NaN".to_owned(),
+        Leaf::Float { low, high, may_be_nan, .. } => {
+            let or_nan = if may_be_nan { " or NaN" } else { "" };
+            format!("[{low:.9e}, {high:.9e}]{or_nan}")
+        }
     }
 }

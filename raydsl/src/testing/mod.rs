@@ -77,12 +77,19 @@ pub fn run<A: Type, R: Type>(kernel: &Kernel<'_, A, R>, variant: Variant, inputs
     }
 }
 
+/// A value that a result is not by chance: its bytes are a pattern.
+fn unwritten<R: Type>() -> R {
+    let pattern = (0..R::SCHEMA.size()).map(|i| if i % 4 == 3 { 0x5a } else { 0xa5 });
+    R::read(&pattern.collect::<Vec<u8>>())
+}
+
 fn try_run<A: Type, R: Type>(
     kernel: &Kernel<'_, A, R>,
     variant: Variant,
     inputs: &[A],
 ) -> Result<Vec<R>, String> {
-    let mut found = vec![R::read(&vec![0; R::SCHEMA.size()]); inputs.len()];
+    // No variant must leave a result out, so they are no zeros before.
+    let mut found = vec![unwritten(); inputs.len()];
     if variant == Variant::Wgsl {
         on_device(kernel, inputs, &mut found)?;
     } else {
@@ -112,10 +119,12 @@ fn on_device<A: Type, R: Type>(_: &Kernel<'_, A, R>, _: &[A], _: &mut [R]) -> Re
 ///
 /// * Packets must give the bits of the scalar function; +0 equals -0, and NaN equals NaN.
 /// * The WGSL must be valid. Where there is a device its results may differ by rounding, and in
-///   decisions that rounding leaves open, as [`report::explain`](crate::report::explain) tells.
+///   decisions that rounding leaves open, as [`report::explain`](crate::report::explain) tells. How
+///   it rounds is what WGSL allows, [`Rounding::WGSL`](crate::machine::Rounding::WGSL), unless a
+///   third argument says something else.
 ///
-/// The panic shows up to ten results that differ: variant, index, the first number that differs,
-/// what was expected and found as a value and in bits, and the input.
+/// The panic shows up to ten results that differ: variant, index, the first number that is wrong,
+/// what was expected and found as a value and in bits, what rounding allows, and the input.
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -138,11 +147,17 @@ fn on_device<A: Type, R: Type>(_: &Kernel<'_, A, R>, _: &[A], _: &mut [R]) -> Re
 #[macro_export]
 macro_rules! assert_variants_agree {
     (& $kernel:expr, $inputs:expr $(,)?) => {
-        if let ::core::result::Result::Err(e) = $crate::testing::variants_agree(&$kernel, $inputs) {
+        $crate::assert_variants_agree!(&$kernel, $inputs, $crate::machine::Rounding::WGSL)
+    };
+    (& $kernel:expr, $inputs:expr, $rounding:expr $(,)?) => {
+        let found = $crate::testing::variants_agree(&$kernel, $inputs, $rounding);
+        if let ::core::result::Result::Err(e) = found {
             ::core::panic!("{e}");
         }
     };
-    ($kernel:path, $inputs:expr $(,)?) => {
-        $crate::assert_variants_agree!(&$crate::kernel::Kernel::of::<$kernel>(), $inputs)
+    ($kernel:path, $inputs:expr $(, $rounding:expr)? $(,)?) => {
+        $crate::assert_variants_agree!(
+            &$crate::kernel::Kernel::of::<$kernel>(), $inputs $(, $rounding)?
+        )
     };
 }

@@ -54,6 +54,33 @@ pub fn assert_valid_wgsl<F: KernelFn>() {
     }
 }
 
+/// The test of `wgsl_test!`. Which features raydsl has is known here, not where the macro is called.
+#[cfg(feature = "validate")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __wgsl_test {
+    ($name:ident, $kernel:path) => {
+        #[test]
+        fn $name() {
+            $crate::testing::assert_valid_wgsl::<$kernel>();
+        }
+    };
+}
+
+/// Without naga nothing would be tested, so the test says that it is ignored.
+#[cfg(not(feature = "validate"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __wgsl_test {
+    ($name:ident, $kernel:path) => {
+        #[test]
+        #[ignore = "raydsl was built without the feature `validate`"]
+        fn $name() {
+            $crate::testing::assert_valid_wgsl::<$kernel>();
+        }
+    };
+}
+
 #[cfg(all(test, feature = "validate"))]
 mod tests {
     use super::check;

@@ -41,7 +41,8 @@ impl Form {
     /// Where the value lies.
     pub(super) fn range(&self) -> Interval {
         let radius = self.radius() + self.slop();
-        Interval::new(self.center - radius, self.center + radius, false)
+        // A sum says nothing of the sign of a zero.
+        Interval::new(self.center - radius, self.center + radius, false).with_any_zero()
     }
 
     /// `a * self + b * other`.

@@ -4,6 +4,7 @@ use std::rc::Rc;
 
 use super::affine::{Form, Handle};
 use super::interval::{Interval, Rounded};
+use super::sums::Parts;
 use super::{Bounded, Margin, rounding};
 use crate::machine::F32Binary;
 
@@ -11,23 +12,29 @@ use crate::machine::F32Binary;
 const ALTERNATIVES: usize = 16;
 
 impl Margin {
-    /// One of some integers, the first of which is that of `f64`.
-    pub(super) fn one_of<T: Copy>(&self, alternatives: &[T]) -> T {
-        match alternatives {
-            [only] => *only,
-            all if self.is_running() => all[self.decisions.choose(all.len())],
-            all => all[0],
-        }
+    /// One of some alternatives, the first of which is that of `f64`. Without any the run is lost,
+    /// and `value` stands in.
+    pub(super) fn one_of<T: Copy>(&self, value: T, alternatives: &[T]) -> T {
+        let chosen = match alternatives {
+            [first, _, ..] if !self.is_running() => Some(first),
+            [_, _, ..] => alternatives.get(self.decisions.choose(alternatives.len())),
+            few => few.first(),
+        };
+        chosen.copied().unwrap_or_else(|| {
+            self.decisions.lose();
+            value
+        })
     }
 
     /// A conversion to integers that rises: each integer that is possible. `order` and `back` count
-    /// them.
+    /// them; `nans` are those that a NaN may give.
     pub(super) fn integer<T: Copy + PartialEq>(
         &self,
         a: Bounded,
         of: impl Fn(f64) -> T,
         order: impl Fn(T) -> i64,
         back: impl Fn(i64) -> T,
+        nans: &[T],
     ) -> T {
         let value = of(a.value);
         let mut possible = Vec::new();
@@ -41,14 +48,15 @@ impl Margin {
             }
             possible.extend((first..=last).map(back));
         }
-        if a.range.nan && !possible.contains(&of(f64::NAN)) {
-            possible.push(of(f64::NAN));
+        if a.range.nan {
+            let more: Vec<T> = nans.iter().copied().filter(|n| !possible.contains(n)).collect();
+            possible.extend(more);
         }
         // The integer of `f64` first; a path that `f64` does not take may lack it.
         if let Some(at) = possible.iter().position(|v| *v == value) {
             possible.swap(0, at);
         }
-        self.one_of(&possible)
+        self.one_of(value, &possible)
     }
 
     /// A function in steps that rises: a decision where few steps are possible.
@@ -59,7 +67,7 @@ impl Margin {
         }
         let (first, last) = (f(a.range.low), f(a.range.high));
         if first == last && !a.range.nan {
-            return self.point(first);
+            return self.bounded(value, Interval::new(first, last, false));
         }
         if a.range.nan || last - first > 3.0 || !(first..=last).contains(&value) {
             return self.bounded(value, Interval::new(first, last, a.range.nan));
@@ -67,7 +75,29 @@ impl Margin {
         let mut all = vec![value];
         let steps = (0..=(last - first) as u32).map(|k| first + f64::from(k));
         all.extend(steps.filter(|v| *v != value));
-        self.point(self.one_of(&all))
+        let step = self.one_of(value, &all);
+        // A zero within is of either sign, one at an end of that end's.
+        let [low, high] = [(first, -0.0), (last, 0.0)].map(|(end, zero)| {
+            if step != 0.0 {
+                step
+            } else if end == 0.0 {
+                end
+            } else {
+                zero
+            }
+        });
+        self.bounded(step, Interval::new(low, high, false))
+    }
+
+    /// `|a|`.
+    pub(super) fn size(&self, a: Bounded) -> Bounded {
+        let size = match a.range {
+            // The same number, whatever the signs of zeros.
+            r if r.low >= 0.0 && !r.is_nan() => a,
+            r if r.high <= 0.0 && !r.is_nan() => self.negated(a),
+            _ => self.bounded(a.value, a.range),
+        };
+        Bounded { value: a.value.abs(), range: a.range.abs(), ..size }
     }
 
     /// A float that is `value` in `f64`, and a rounded one of `range` in `f32`.
@@ -77,15 +107,29 @@ impl Margin {
 
     /// A float that is `value` in `f64`, and in `f32` what `range` and `form` say, rounded.
     fn computed(&self, value: f64, range: Interval, form: Option<Form>, by: Rounded) -> Bounded {
+        self.computed_within(value, range, form, by, 0.0)
+    }
+
+    /// The same, with a further error of up to `extra`.
+    pub(super) fn computed_within(
+        &self,
+        value: f64,
+        range: Interval,
+        form: Option<Form>,
+        by: Rounded,
+        extra: f64,
+    ) -> Bounded {
         let form = form.filter(|_| !range.is_nan());
         let range = form.as_ref().map_or(range, |f| range.narrowed(f.range()));
-        let rounded = self.bounded(value, range.rounded(by));
-        if rounded.range.may_break() {
+        let result = range.widened(extra).rounded(by);
+        // Devices may ignore the sign of a zero.
+        let strict = self.rounding.is_strict;
+        let rounded = self.bounded(value, if strict { result } else { result.with_any_zero() });
+        if rounded.range.may_break() || rounded.range.is_zero() {
             return rounded;
         }
         let form = form.or_else(|| self.forms.get(Handle::NONE, range).map(Rc::unwrap_or_clone));
-        let size = range.low.abs().max(range.high.abs());
-        let error = size * by.relative + by.absolute;
+        let error = range.magnitude() * by.relative + by.absolute + extra;
         Bounded { form: self.forms.put_rounded(form, error), ..rounded }
     }
 
@@ -101,13 +145,17 @@ impl Margin {
 
     /// `-a`.
     pub(super) fn negated(&self, a: Bounded) -> Bounded {
-        let form = self.forms.get(a.form, a.range).map(|f| Rc::new(f.neg()));
-        Bounded { form: self.forms.put(form), ..self.bounded(-a.value, a.range.neg()) }
+        let negated =
+            |form| self.forms.put(self.forms.get(form, a.range).map(|f| Rc::new(f.neg())));
+        let parts = a.parts.map(|p| Parts { form: negated(p.form), ..p });
+        Bounded { form: negated(a.form), parts, ..self.bounded(-a.value, a.range.neg()) }
     }
 
     /// The square root.
     pub(super) fn root(&self, a: Bounded) -> Bounded {
-        if let Some(exact) = a.range.as_point().and_then(rounding::exact_root) {
+        if self.rounding.is_strict
+            && let Some(exact) = a.range.as_point().and_then(rounding::exact_root)
+        {
             return self.point(exact);
         }
         let form = self.forms.get(a.form, a.range).and_then(|f| f.sqrt());
@@ -117,28 +165,38 @@ impl Margin {
     /// `a op b`.
     pub(super) fn binary(&self, op: F32Binary, a: Bounded, b: Bounded) -> Bounded {
         let (x, y) = (a.value, b.value);
-        if let (Some(x), Some(y)) = (a.range.as_point(), b.range.as_point())
-            && let Some(exact) = rounding::exact(op, x, y)
-        {
+        if let Some(exact) = self.exact(op, a, b) {
             return self.point(exact);
         }
-        let is_zero = |v: Bounded| v.range.as_point() == Some(0.0);
         let same = a.id == b.id;
         let sum = self.rounding.sum();
+        // The same number, but for the sign of a zero. A sum that cancels may not in another order.
+        let is_zero = |v: Bounded| v.range.is_zero() && v.parts.is_none();
+        let kept = |v: Bounded, value| Bounded { value, range: v.range.with_any_zero(), ..v };
         match op {
-            F32Binary::Add | F32Binary::Sub if is_zero(b) => a,
-            F32Binary::Add if is_zero(a) => b,
+            F32Binary::Add if is_zero(b) => kept(a, x + y),
+            F32Binary::Sub if is_zero(b) => kept(a, x - y),
+            F32Binary::Add if is_zero(a) => kept(b, x + y),
+            F32Binary::Sub if same && a.parts.is_none() && !a.range.may_break() => self.point(0.0),
+            F32Binary::Add | F32Binary::Sub if !self.rounding.is_strict => {
+                self.sum_in_any_order(op, a, b)
+            }
             F32Binary::Add => {
                 self.computed(x + y, a.range.add(b.range), self.both(a, b, Form::add), sum)
             }
-            F32Binary::Sub if same && !a.range.may_break() => self.point(0.0),
             F32Binary::Sub => {
                 self.computed(x - y, a.range.sub(b.range), self.both(a, b, Form::sub), sum)
             }
             F32Binary::Mul => {
                 let range = if same { a.range.square() } else { a.range.mul(b.range) };
                 let by = self.rounding.product(a.range, b.range);
-                self.computed(x * y, range, self.both(a, b, Form::mul), by)
+                let form = self.both(a, b, Form::mul);
+                let product = self.computed(x * y, range, form.clone(), by);
+                Bounded { parts: self.parts_of_product(product.range, form, by), ..product }
+            }
+            F32Binary::Div if !self.rounding.divides(b.range) => {
+                let is_nan = a.range.is_nan() || b.range.is_nan();
+                self.bounded(x / y, if is_nan { Interval::NAN } else { Interval::ALL })
             }
             F32Binary::Div => {
                 let get = |v: Bounded| self.forms.get(v.form, v.range);
@@ -148,6 +206,19 @@ impl Margin {
             F32Binary::Min => self.least(a, b, if y < x { y } else { x }, a.range.min(b.range)),
             F32Binary::Max => self.least(a, b, if x < y { y } else { x }, a.range.max(b.range)),
         }
+    }
+
+    /// The result of an operation that no variant rounds.
+    fn exact(&self, op: F32Binary, a: Bounded, b: Bounded) -> Option<f64> {
+        let (x, y) = (a.range.as_point()?, b.range.as_point()?);
+        let result = rounding::exact(op, x, y)?;
+        let is_safe = match op {
+            _ if self.rounding.is_strict => true,
+            // Sums know of their parts, and quotients may be products.
+            F32Binary::Add | F32Binary::Sub | F32Binary::Div => false,
+            _ => !(result as f32).is_subnormal(),
+        };
+        is_safe.then_some(result)
     }
 
     /// The smaller or the larger of two, which needs no decision: it is near either's ends.

@@ -3,8 +3,10 @@
 use core::cell::{Cell, RefCell};
 use std::collections::{HashMap, VecDeque};
 
-/// Rounds of loops in all runs of one exploration, before it is given up.
-const ROUNDS: u64 = 1 << 22;
+/// Rounds of loops in all runs of one input, before it is given up.
+const ROUNDS: u64 = 1 << 18;
+/// Rounds of loops in all runs but the first: a way that `f64` does not take may never end.
+const ROUNDS_ASIDE: u64 = 1 << 16;
 
 /// The decisions of one run, numbered in the order in which it meets them.
 #[derive(Debug, Default)]
@@ -82,6 +84,11 @@ impl Decisions {
     /// Whether the truth value `id` was decided, and how.
     pub(super) fn known(&self, id: u64) -> Option<bool> {
         self.script.borrow().flips.get(&id).copied()
+    }
+
+    /// The path of `f64` is done; the others have fewer rounds.
+    pub(super) fn turn_aside(&self) {
+        self.rounds.set(self.rounds.get().min(ROUNDS_ASIDE));
     }
 
     /// A round of a loop; false when there have been too many.

@@ -56,7 +56,7 @@ impl Margin {
             return Interval::NAN;
         }
         let nan = up.nan || across.nan;
-        let crosses = up.low < 0.0 && up.high >= 0.0 && across.low < 0.0;
+        let crosses = up.is_negative().is_none() && across.low.is_sign_negative();
         if crosses && across.high >= 0.0 {
             return Interval::new(-PI, PI, nan);
         }
@@ -100,7 +100,12 @@ impl Interval {
         }
         let (middle, half) = (0.5 * (self.low + self.high), 0.5 * (self.high - self.low));
         let infinite = self.low.is_infinite() || self.high.is_infinite();
-        let (v, reach) = (f(middle), half * slope);
+        // The middle, and `f` of it, are rounded themselves.
+        let slop = 2f64.powi(-50) * (1.0 + slope * middle.abs());
+        let (v, reach) = (f(middle), half * slope * (1.0 + 2f64.powi(-48)) + slop);
+        if let Some(exact) = self.as_point() {
+            return Self::point(f(exact));
+        }
         if infinite || reach >= 2.0 {
             return Self::new(-1.0, 1.0, self.nan || infinite);
         }

@@ -4,6 +4,9 @@
 //! interval says which numbers a result may be, and whether it may be none.
 
 /// Every number from `low` to `high` (infinities included) may be the result, and NaN if `nan`.
+///
+/// The ends are those of a total order in which -0 comes before +0: an interval that ends in a zero
+/// says of which sign, since a quotient by it is an infinity of that sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Interval {
     pub(super) low: f64,
@@ -45,7 +48,7 @@ impl Interval {
             if v.is_nan() {
                 return Self { nan, ..Self::ALL };
             }
-            all = Self { low: all.low.min(v), high: all.high.max(v), nan };
+            all = Self { low: least(all.low, v), high: greatest(all.high, v), nan };
         }
         all
     }
@@ -55,9 +58,42 @@ impl Interval {
         self.low > self.high
     }
 
-    /// The number, if only one is possible.
+    /// The number, if only one is possible. Zeros of either sign are two.
     pub(super) fn as_point(self) -> Option<f64> {
-        (self.low == self.high && !self.nan).then_some(self.low)
+        (self.low.to_bits() == self.high.to_bits() && !self.nan).then_some(self.low)
+    }
+
+    /// Whether it is 0 for certain, of whatever sign.
+    pub(super) fn is_zero(self) -> bool {
+        self.low == 0.0 && self.high == 0.0 && !self.nan
+    }
+
+    /// Whether its sign is known, and which: true for `-`. A NaN may have either.
+    pub(super) fn is_negative(self) -> Option<bool> {
+        let (low, high) = (self.low.is_sign_negative(), self.high.is_sign_negative());
+        (low == high && !self.nan).then_some(low)
+    }
+
+    /// The same, where the sign of a zero at an end is not known.
+    pub(super) fn with_any_zero(self) -> Self {
+        Self {
+            low: if self.low == 0.0 { -0.0 } else { self.low },
+            high: if self.high == 0.0 { 0.0 } else { self.high },
+            nan: self.nan,
+        }
+    }
+
+    /// The same with each end moved apart by `by`.
+    pub(super) fn widened(self, by: f64) -> Self {
+        if self.is_nan() || by == 0.0 {
+            return self;
+        }
+        Self::new(self.low - by, self.high + by, self.nan)
+    }
+
+    /// The largest size of a number in it.
+    pub(super) fn magnitude(self) -> f64 {
+        if self.is_nan() { 0.0 } else { self.low.abs().max(self.high.abs()) }
     }
 
     pub(super) fn contains(self, v: f64) -> bool {
@@ -75,14 +111,14 @@ impl Interval {
 
     /// The numbers that lie in both.
     pub(super) fn narrowed(self, to: Self) -> Self {
-        Self { low: self.low.max(to.low), high: self.high.min(to.high), nan: self.nan }
+        Self { low: greatest(self.low, to.low), high: least(self.high, to.high), nan: self.nan }
     }
 
     /// The smallest interval that contains both.
     pub(super) fn hull(self, other: Self) -> Self {
         Self {
-            low: self.low.min(other.low),
-            high: self.high.max(other.high),
+            low: least(self.low, other.low),
+            high: greatest(self.high, other.high),
             nan: self.nan || other.nan,
         }
     }
@@ -92,12 +128,15 @@ impl Interval {
         if self.is_nan() {
             return self;
         }
-        let error = |v: f64| v.abs() * by.relative + by.absolute;
-        // Rounding changes no sign.
-        let low = if self.low >= 0.0 { 0.0 } else { f64::NEG_INFINITY };
-        let high = if self.high <= 0.0 { 0.0 } else { f64::INFINITY };
-        let low = (self.low - error(self.low)).max(low);
-        let high = (self.high + error(self.high)).min(high);
+        // Infinity times a relative error of 0 would be NaN.
+        let error = |v: f64| {
+            if v.is_infinite() { 0.0 } else { v.abs() * by.relative + by.absolute }
+        };
+        // Rounding changes no sign, not even that of a zero.
+        let low = if self.low >= 0.0 { 0f64.copysign(self.low) } else { f64::NEG_INFINITY };
+        let high = if self.high <= 0.0 { 0f64.copysign(self.high) } else { f64::INFINITY };
+        let low = greatest(self.low - error(self.low), low);
+        let high = least(self.high + error(self.high), high);
         let limit = f64::from(f32::MAX);
         let (down, up) = (f64::NEG_INFINITY, f64::INFINITY);
         Self {
@@ -112,12 +151,12 @@ impl Interval {
     }
 
     pub(super) fn abs(self) -> Self {
-        if self.is_nan() || self.low >= 0.0 {
+        if self.is_nan() || self.low.is_sign_positive() {
             self
-        } else if self.high <= 0.0 {
+        } else if self.high.is_sign_negative() {
             self.neg()
         } else {
-            Self { low: 0.0, high: self.high.max(-self.low), nan: self.nan }
+            Self { low: 0.0, high: self.high.max(-self.low).abs(), nan: self.nan }
         }
     }
 
@@ -145,7 +184,10 @@ impl Interval {
             return Self::NAN;
         }
         // A number next to 0 times one without limit is next to 0 or without limit.
-        let product = |x: f64, y: f64| if x == 0.0 || y == 0.0 { 0.0 } else { x * y };
+        let product = |x: f64, y: f64| {
+            let sign = if x.is_sign_negative() == y.is_sign_negative() { 0.0 } else { -0.0 };
+            if x == 0.0 || y == 0.0 { sign } else { x * y }
+        };
         let corners = [
             product(self.low, b.low),
             product(self.low, b.high),
@@ -182,9 +224,9 @@ impl Interval {
         if self.is_nan() || self.high < 0.0 {
             return Self::NAN;
         }
-        // A product keeps the sign of a zero.
-        let low = if self.low < 0.0 { 0.0 } else { self.low };
-        Self { low: low.sqrt(), high: self.high.max(0.0).sqrt(), nan: self.nan || self.low < 0.0 }
+        // The root of -0 is -0.
+        let low = if self.low < 0.0 { -0.0 } else { self.low };
+        Self { low: low.sqrt(), high: self.high.sqrt(), nan: self.nan || self.low < 0.0 }
     }
 
     /// `if b < a { b } else { a }`, so a NaN `b` gives `a`.
@@ -192,9 +234,12 @@ impl Interval {
         if self.is_nan() || b.is_nan() {
             return self;
         }
-        let high = if b.nan { self.high } else { self.high.min(b.high) };
+        let high = if b.nan { self.high } else { least(self.high, b.high) };
+        // -0 is not less than +0, which stays then.
+        let has_zero = self.low.total_cmp(&0.0).is_le() && self.high.total_cmp(&0.0).is_ge();
+        let high = if high == 0.0 && has_zero { 0.0 } else { high };
         // With a NaN in `self` the comparison fails, and the NaN stays.
-        Self { low: self.low.min(b.low), high, nan: self.nan }
+        Self { low: least(self.low, b.low), high, nan: self.nan }
     }
 
     /// `if a < b { b } else { a }`.
@@ -211,6 +256,16 @@ impl Interval {
         let ends = [self.low.max(domain.0), self.high.min(domain.1)].map(f);
         Self::around(ends, self.nan || outside)
     }
+}
+
+/// The smaller of two numbers, of which -0 is smaller than +0.
+fn least(a: f64, b: f64) -> f64 {
+    if a.total_cmp(&b).is_le() { a } else { b }
+}
+
+/// The larger of two numbers, of which -0 is smaller than +0.
+fn greatest(a: f64, b: f64) -> f64 {
+    if a.total_cmp(&b).is_ge() { a } else { b }
 }
 
 #[cfg(test)]
@@ -244,6 +299,25 @@ mod tests {
         assert_eq!(from(3.0, 4.0).min(Interval::NAN), from(3.0, 4.0));
         assert_eq!(either.min(from(3.0, 4.0)), either);
         assert_eq!(from(3.0, 4.0).max(from(1.0, 5.0)), from(3.0, 5.0));
+    }
+
+    #[test]
+    fn zeros_have_signs() {
+        let signs = |x: Interval| (x.low.is_sign_negative(), x.high.is_sign_negative());
+        let (negative, positive) = (from(-0.0, -0.0), from(0.0, 0.0));
+        assert_eq!(signs(negative.mul(from(1.0, 2.0))), (true, true));
+        assert_eq!(signs(positive.mul(from(-2.0, -1.0))), (true, true));
+        assert_eq!(signs(negative.abs()), (false, false));
+        assert_eq!(signs(negative.hull(positive)), (true, false));
+        assert_eq!(signs(Interval::around([0.0, -0.0], false)), (true, false));
+        assert_eq!(negative.hull(positive).as_point(), None);
+        // `if b < a { b } else { a }`: -0 is not less than +0.
+        assert_eq!(signs(positive.min(negative)), (true, false));
+        assert_eq!(signs(from(1.0, 2.0).min(negative)), (true, true));
+        assert_eq!(signs(from(-1.0, 4.0).sqrt()), (true, false));
+        let by = Rounded { relative: 0.0, absolute: 2f64.powi(-150) };
+        assert_eq!(signs(from(-1e-50, -0.0).rounded(by)), (true, true));
+        assert_eq!(signs(from(0.0, 1e-50).rounded(by)), (false, false));
     }
 
     #[test]

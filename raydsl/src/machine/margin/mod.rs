@@ -13,11 +13,16 @@
 mod affine;
 mod arithmetic;
 mod beam;
+#[cfg(test)]
+mod cases;
 mod decisions;
 mod elementary;
+#[cfg(test)]
+mod fuzz;
 mod interval;
 mod outcome;
 mod rounding;
+mod sums;
 mod traverse;
 
 use core::cell::Cell;
@@ -29,6 +34,7 @@ use affine::{Forms, Handle};
 use arithmetic::{bits_of, constant, ordered};
 use decisions::{Decisions, Explored};
 use interval::Interval;
+use sums::Parts;
 
 pub(crate) use outcome::result_leaves;
 pub use outcome::{Leaf, Outcomes};
@@ -43,6 +49,8 @@ pub struct Bounded {
     id: u64,
     /// Which errors it carries.
     form: Handle,
+    /// What a device that reorders sums may take it apart into, if it is a sum or a product.
+    parts: Option<Parts>,
 }
 
 /// A truth value on [`Margin`].
@@ -85,7 +93,7 @@ impl Margin {
 
     /// A float with a number of its own.
     fn bounded(&self, value: f64, range: Interval) -> Bounded {
-        Bounded { value, range, id: self.decisions.fresh(), form: Handle::NONE }
+        Bounded { value, range, id: self.decisions.fresh(), form: Handle::NONE, parts: None }
     }
 
     fn point(&self, v: f64) -> Bounded {
@@ -123,6 +131,14 @@ impl Margin {
         t.value ^ self.decisions.flip(t.open)
     }
 
+    /// Whether the sign is `-`.
+    fn is_negative(&self, a: Bounded) -> Truth {
+        match a.range.is_negative() {
+            Some(known) => Truth::certain(known),
+            None => self.truth(a.value.is_sign_negative(), true, true),
+        }
+    }
+
     /// What is known of a truth value by now.
     fn known(&self, t: Truth) -> Truth {
         match self.decisions.known(t.open) {
@@ -141,11 +157,11 @@ impl Machine for Margin {
     type Loop = ScalarLoop;
 
     fn f32(&self, v: f32) -> Bounded {
-        self.point(f64::from(v))
+        self.bounded(f64::from(v), self.rounding.taken(v))
     }
 
     fn f32_literal(&self, v: f32, exact: f64) -> Bounded {
-        self.bounded(exact, Interval::around([f64::from(v), exact], false))
+        self.bounded(exact, self.rounding.taken(v).hull(Interval::point(exact)))
     }
 
     fn f32_constant(&self, v: f32) -> Bounded {
@@ -167,10 +183,7 @@ impl Machine for Margin {
     fn f32_unary(&self, op: F32Unary, a: Bounded) -> Bounded {
         match op {
             F32Unary::Neg => self.negated(a),
-            F32Unary::Abs if a.range.is_nan() => a,
-            F32Unary::Abs if a.range.low >= 0.0 => a,
-            F32Unary::Abs if a.range.high <= 0.0 => self.negated(a),
-            F32Unary::Abs => self.bounded(a.value.abs(), a.range.abs()),
+            F32Unary::Abs => self.size(a),
             F32Unary::Sqrt => self.root(a),
             F32Unary::Floor => self.stepped(a, f64::floor),
             F32Unary::Ceil => self.stepped(a, f64::ceil),
@@ -281,11 +294,11 @@ impl Machine for Margin {
     }
 
     fn f32_to_i32(&self, a: Bounded) -> i32 {
-        self.integer(a, |v| v as i32, i64::from, |v| v as i32)
+        self.integer(a, |v| v as i32, i64::from, |v| v as i32, &[0])
     }
 
     fn f32_to_u32(&self, a: Bounded) -> u32 {
-        self.integer(a, |v| v as u32, i64::from, |v| v as u32)
+        self.integer(a, |v| v as u32, i64::from, |v| v as u32, &[0])
     }
 
     fn i32_to_f32(&self, a: i32) -> Bounded {
@@ -305,22 +318,48 @@ impl Machine for Margin {
     }
 
     fn f32_to_bits(&self, a: Bounded) -> u32 {
-        self.integer(a, |v| (v as f32).to_bits(), ordered, bits_of)
+        // The sign of a NaN is the processor's, and its other bits tell where it came from.
+        if a.range.nan && self.is_running() {
+            self.decisions.lose();
+        }
+        let nan = f32::NAN.to_bits();
+        let nans = [nan, nan | 1 << 31];
+        self.integer(a, |v| (v as f32).to_bits(), ordered, bits_of, &nans)
     }
 
     fn f32_from_bits(&self, a: u32) -> Bounded {
         self.f32(f32::from_bits(a))
     }
 
+    fn f32_beside_infinity(&self, op: Compare, a: Bounded) -> Truth {
+        let Interval { low, high, nan } = a.range;
+        let is_number = !a.range.is_nan();
+        let may_be_infinite = is_number && (low.is_infinite() || high.is_infinite());
+        let may_be_finite = is_number && low < f64::INFINITY && high > f64::NEG_INFINITY;
+        let size = a.value.abs();
+        match op {
+            Compare::Gt => self.truth(size.is_nan(), nan, is_number),
+            Compare::Eq => self.truth(size.is_infinite(), may_be_infinite, nan || may_be_finite),
+            Compare::Lt => self.truth(size.is_finite(), may_be_finite, nan || may_be_infinite),
+            // The opposites.
+            Compare::Le => self.bool_not(self.f32_beside_infinity(Compare::Gt, a)),
+            Compare::Ne => self.bool_not(self.f32_beside_infinity(Compare::Eq, a)),
+            Compare::Ge => self.bool_not(self.f32_beside_infinity(Compare::Lt, a)),
+        }
+    }
+
+    fn f32_sign_bit(&self, op: Compare, a: Bounded) -> Truth {
+        let is_negative = self.is_negative(a);
+        if op == Compare::Lt { is_negative } else { self.bool_not(is_negative) }
+    }
+
     fn f32_copysign(&self, a: Bounded, sign: Bounded) -> Bounded {
         let size = self.f32_unary(F32Unary::Abs, a);
-        let is_negative = if sign.range.as_point().is_some() || sign.range.is_nan() {
-            Truth::certain(sign.value.is_sign_negative())
+        if self.decided(self.is_negative(sign)) {
+            self.f32_unary(F32Unary::Neg, size)
         } else {
-            let may_be = sign.range.low < 0.0 || sign.range.nan;
-            self.truth(sign.value.is_sign_negative(), may_be, sign.range.high >= 0.0)
-        };
-        if self.decided(is_negative) { self.f32_unary(F32Unary::Neg, size) } else { size }
+            size
+        }
     }
 
     fn bool_to_u32(&self, a: Truth) -> u32 {

@@ -1,5 +1,7 @@
 //! What a kernel may give, rounding considered.
 
+use core::cell::Cell;
+
 use super::{Bounded, Margin, Rounding, Truth};
 use crate::machine::{Leaves, Type, Value};
 
@@ -30,8 +32,26 @@ impl Leaf {
         }
     }
 
+    /// How far apart the results are that rounding may lead to; 0 for integers and where it is NaN
+    /// for certain, infinity where there is no limit or NaN is one of them.
+    pub fn width(self) -> f64 {
+        match self {
+            Self::Float { low, high, may_be_nan, .. } if low <= high => {
+                let is_open = may_be_nan || low != high && !(high - low).is_finite();
+                if is_open {
+                    f64::INFINITY
+                } else if low == high {
+                    0.0
+                } else {
+                    high - low
+                }
+            }
+            _ => 0.0,
+        }
+    }
+
     /// Whether `result`, a leaf without an error, may come of it.
-    fn contains(self, result: Self) -> bool {
+    pub(crate) fn contains(self, result: Self) -> bool {
         match self {
             Self::Float { low, high, may_be_nan, .. } => {
                 let v = result.value();
@@ -63,7 +83,11 @@ impl Outcomes {
 
     fn explored(rounding: Rounding, limit: usize, f: &dyn Fn(&Margin) -> Vec<Leaf>) -> Self {
         let m = Margin::new(rounding);
+        let is_first = Cell::new(true);
         let found = m.each_way(limit.max(1), &|| {
+            if !is_first.replace(false) {
+                m.decisions.turn_aside();
+            }
             m.forms.truncate(0);
             f(&m)
         });
@@ -88,6 +112,35 @@ impl Outcomes {
     /// many ways.
     pub fn is_complete(&self) -> bool {
         self.is_complete
+    }
+
+    /// Whether a result may be nearly anything on the path that `f64` takes: a float has no limit,
+    /// may be NaN, or its interval is wider than 2^-10 of the result's largest number. Then most
+    /// mistakes are within the bounds too.
+    pub fn is_vague(&self) -> bool {
+        let sizes = self.reference().iter().map(|leaf| match leaf {
+            Leaf::Float { low, high, .. } if low <= high => low.abs().max(high.abs()),
+            _ => 0.0,
+        });
+        // Next to 0, where denormals may be flushed, every rounding is wide.
+        let least = 16.0 * f64::from(f32::MIN_POSITIVE);
+        let limit = (sizes.fold(0.0, f64::max) / 1024.0).max(least);
+        self.reference().iter().any(|leaf| {
+            let width = leaf.width();
+            width == f64::INFINITY || width > limit
+        })
+    }
+
+    /// The number of the first leaf of `result` that lies outside of the outcome that is nearest to
+    /// it, the one with the fewest such leaves, and what was allowed there.
+    pub(crate) fn outside(&self, result: &[Leaf]) -> Option<(usize, Leaf)> {
+        let outside = |o: &&Vec<Leaf>| -> Vec<usize> {
+            let pairs = o.iter().zip(result).enumerate();
+            pairs.filter(|(_, (may, found))| !may.contains(**found)).map(|(i, _)| i).collect()
+        };
+        let nearest = self.outcomes.iter().min_by_key(|o| outside(o).len())?;
+        let first = *outside(&nearest).first()?;
+        Some((first, nearest[first]))
     }
 
     /// The outcomes that were followed, the reference's first.

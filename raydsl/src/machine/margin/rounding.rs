@@ -4,8 +4,6 @@ use super::F32Binary;
 use super::interval::{Interval, Rounded};
 
 /// How far the operations of a variant may be off, each relative to its exact result.
-///
-/// A result that `f32` holds exactly is exact in `+ - * /` and `sqrt` under every rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounding {
     /// `+ - *` and conversions of integers.
@@ -18,6 +16,10 @@ pub struct Rounding {
     pub elementary: f64,
     /// What any of them may be off besides, next to 0.
     pub least: f64,
+    /// Whether the operations are those of the source, one by one, and a result that `f32` holds is
+    /// exact. If not, sums may be added in any order, a product in a sum may be fused into it, a
+    /// quotient or a root of whole numbers may be off like any other, and denormals may be 0.
+    pub is_strict: bool,
 }
 
 /// One ulp of a number, relative to it: 2^-23.
@@ -32,17 +34,20 @@ impl Rounding {
         root: 0.5 * ULP,
         elementary: 4.0 * ULP,
         least: 1.0 / (1u128 << 126) as f64 / (1 << 24) as f64,
+        is_strict: true,
     };
 
-    /// What WGSL asks of a device: either neighbour of a sum or product, 2.5 ulp of a quotient,
-    /// `sqrt` as `1 / inverseSqrt`, denormals as 0. For elementary functions, which are chains of
-    /// these, 16 ulp are an estimate.
+    /// What WGSL asks of a device: either neighbour of a sum or product, 2.5 ulp of a quotient whose
+    /// divisor is between 2^-126 and 2^126, `sqrt` as `1 / inverseSqrt`, denormals as 0, sums in any
+    /// order. For elementary functions, which are chains of these, 16 ulp are an estimate. Not in it:
+    /// products whose other order would overflow.
     pub const WGSL: Self = Self {
         sum: ULP,
         quotient: 2.5 * ULP,
         root: 5.0 * ULP,
         elementary: 16.0 * ULP,
         least: f32::MIN_POSITIVE as f64,
+        is_strict: false,
     };
 
     /// The interval's own ends are rounded in `f64`, and so is the reference.
@@ -61,7 +66,20 @@ impl Rounding {
     }
 
     pub(super) fn quotient(self, by: Interval) -> Rounded {
-        self.rounded(if is_power_of_two(by) { 0.0 } else { self.quotient })
+        self.rounded(if self.is_strict && is_power_of_two(by) { 0.0 } else { self.quotient })
+    }
+
+    /// Whether a quotient by this has a bound.
+    pub(super) fn divides(self, by: Interval) -> bool {
+        let (size, limit) = (by.abs(), 1.0 / f64::from(f32::MIN_POSITIVE));
+        self.is_strict || size.low >= 1.0 / limit && size.high <= limit
+    }
+
+    /// Where a number of the input or of the scene may lie.
+    pub(super) fn taken(self, v: f32) -> Interval {
+        let number = Interval::point(f64::from(v));
+        let flushed = !self.is_strict && v.is_subnormal();
+        if flushed { number.hull(Interval::point(0f64.copysign(v.into()))) } else { number }
     }
 
     pub(super) fn root(self) -> Rounded {

@@ -76,8 +76,8 @@ struct Found {
 pub(super) fn closest_hit(m: &Margin, scene: &Scene<'_>) -> HitOn<Margin> {
     let mut found = Vec::new();
     let fate = fate(scene.ray);
+    let limit = Cell::new(scene.ray.t_max.0.range.high);
     if fate != Fate::Misses {
-        let limit = Cell::new(scene.ray.t_max.0.range.high);
         scene.walk(&limit, &mut |id| {
             let hits = scene.ask(m, id);
             for hit in hits.iter().filter(|h| h.is_certain) {
@@ -102,7 +102,10 @@ pub(super) fn closest_hit(m: &Margin, scene: &Scene<'_>) -> HitOn<Margin> {
     if let Some(at) = hits.iter().position(is_first) {
         hits.swap(0, at);
     }
-    hit_on(m, m.one_of(&hits))
+    // The closest hit is no farther than any that is certain.
+    let near = Interval::new(f64::NEG_INFINITY, limit.get(), false);
+    let cut = |h: Found| Found { t: Bounded { range: h.t.range.narrowed(near), ..h.t }, ..h };
+    hit_on(m, m.one_of(None, &hits).map(cut))
 }
 
 /// Whether anything is hit.
@@ -228,7 +231,8 @@ impl Scene<'_> {
         let mut found: Vec<Found> = Vec::new();
         for (way, result) in ways.results.into_iter().enumerate() {
             let Some(results) = result else { continue };
-            let [t, u, v] = results.map(|(v, form)| Bounded { form: m.forms.put(form), ..v });
+            let [t, u, v] =
+                results.map(|(v, form)| Bounded { form: m.forms.put(form), parts: None, ..v });
             // What was accepted is a number between the ends of the ray.
             let first = self.ray.t_min.0.range.low.max(t.range.low);
             let last = self.ray.t_max.0.range.high.min(t.range.high);

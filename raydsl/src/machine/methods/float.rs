@@ -64,19 +64,14 @@ pub(super) fn copysign<M: Machine>(m: &M, a: F<M>, sign: F<M>) -> F<M> {
     F(m.f32_copysign(a.0, sign.0))
 }
 
-/// The bits without the sign compared with those of infinity. Unlike `a != a` that also holds for
-/// GPUs, which may take NaN for granted not to be.
 #[inline(always)]
 pub(super) fn beside_infinity<M: Machine>(m: &M, op: Compare, a: F<M>) -> B<M> {
-    let bits = m.u32_to_i32(m.f32_to_bits(a.0));
-    let size = m.i32_binary(IntBinary::And, bits, m.i32(0x7fff_ffff));
-    B(m.i32_compare(op, size, m.i32(0x7f80_0000)))
+    B(m.f32_beside_infinity(op, a.0))
 }
 
-/// Whether the sign is `-`, of zeros and NaN too; with [`Compare::Ge`] whether it is not.
 #[inline(always)]
 pub(super) fn sign_bit<M: Machine>(m: &M, op: Compare, a: F<M>) -> B<M> {
-    B(m.i32_compare(op, m.u32_to_i32(m.f32_to_bits(a.0)), m.i32(0)))
+    B(m.f32_sign_bit(op, a.0))
 }
 
 #[inline(always)]

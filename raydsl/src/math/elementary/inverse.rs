@@ -98,8 +98,9 @@ pub fn atan2(y: f32, x: f32) -> f32 {
         short = if short > f32::MAX { 1.0 } else { 0.0 };
         long = 1.0;
     }
-    // The sum of two large numbers would overflow.
+    // The sum of two large numbers would overflow, the quotient of two denormals is coarse.
     let scale = if long > 1e19 { 0.25 } else { 1.0 };
+    let scale = if long < 7.888609e-31 { 16777216.0 } else { scale };
     let long = long * scale;
     let short = short * scale;
     let is_middle = short > 0.41421357 * long;

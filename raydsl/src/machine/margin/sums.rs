@@ -1,0 +1,81 @@
+//! Sums that a device may add in another order, with products that it may fuse.
+//!
+//! Whatever the order, a sum of `n` addends is off by at most `n - 1` times the rounding of the sum
+//! of their sizes (Higham, "Accuracy and Stability of Numerical Algorithms", 2002, section 4.2). So
+//! a sum carries the form of its addends without the roundings between them. What uses it may have
+//! added in another order than the next use, so their errors are not the same one.
+
+use std::rc::Rc;
+
+use super::affine::{Form, Handle};
+use super::interval::{Interval, Rounded};
+use super::{Bounded, Margin, rounding};
+use crate::machine::F32Binary;
+
+/// What a value is the sum of.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Parts {
+    /// How many addends.
+    pub(super) count: f64,
+    /// The sum of their sizes.
+    pub(super) bulk: f64,
+    /// What the products among them were rounded by: those that are fused are not.
+    pub(super) error: f64,
+    /// What they sum to if nothing is rounded.
+    pub(super) form: Handle,
+}
+
+impl Margin {
+    fn parts(&self, v: Bounded) -> Parts {
+        let one = Parts { count: 1.0, bulk: v.range.magnitude(), error: 0.0, form: v.form };
+        v.parts.unwrap_or(one)
+    }
+
+    /// The parts of a product, where devices may fuse it.
+    pub(super) fn parts_of_product(
+        &self,
+        range: Interval,
+        form: Option<Form>,
+        by: Rounded,
+    ) -> Option<Parts> {
+        if self.rounding.is_strict {
+            return None;
+        }
+        let bulk = range.magnitude();
+        let error = bulk * by.relative + by.absolute;
+        Some(Parts { count: 1.0, bulk, error, form: self.forms.put(form.map(Rc::new)) })
+    }
+
+    /// `a + b` or `a - b`, whatever the order of all their addends.
+    pub(super) fn sum_in_any_order(&self, op: F32Binary, a: Bounded, b: Bounded) -> Bounded {
+        let (p, q) = (self.parts(a), self.parts(b));
+        let (count, bulk, error) = (p.count + q.count, p.bulk + q.bulk, p.error + q.error);
+        let is_sum = op == F32Binary::Add;
+        let (x, y) = (a.value, b.value);
+        let value = if is_sum { x + y } else { x - y };
+        let with_parts = |form, v| Bounded { parts: Some(Parts { count, bulk, error, form }), ..v };
+        let is_pair = count == 2.0 && error == 0.0;
+        if is_pair
+            && let (Some(x), Some(y)) = (a.range.as_point(), b.range.as_point())
+            && let Some(exact) = rounding::exact(op, x, y).filter(|v| !(*v as f32).is_subnormal())
+        {
+            return with_parts(Handle::NONE, self.point(exact));
+        }
+        let by = self.rounding.sum();
+        let any_order = (count - 1.0) * (by.relative * bulk + by.absolute) + error;
+        let extra = if is_pair { 0.0 } else { any_order };
+        let range = if is_sum { a.range.add(b.range) } else { a.range.sub(b.range) };
+        // In another order they may overflow.
+        let overflows = !is_pair && bulk > f64::from(f32::MAX);
+        let range = if overflows && !range.is_nan() { Interval::ALL } else { range };
+        // The form does not know that an addend may be infinite.
+        let form = self
+            .forms
+            .get(p.form, a.range)
+            .filter(|_| !range.may_break())
+            .zip(self.forms.get(q.form, b.range))
+            .map(|(a, b)| if is_sum { a.add(&b) } else { a.sub(&b) });
+        let sum = self.computed_within(value, range, form.clone(), by, extra);
+        with_parts(self.forms.put(form.map(Rc::new)), sum)
+    }
+}
