@@ -83,7 +83,7 @@ fn walks_of_trees_are_counted() -> Result<(), Box<dyn std::error::Error>> {
     let bvh = Bvh::build(&prims)?;
     let kernel = kernel!(|ray: Ray| {
         let hit = bvh.closest_hit(ray);
-        if hit.is_hit { hit.t.sqrt() } else { -1.0 }
+        if hit.is_hit { 1.0 / (1.0 + hit.t) } else { -1.0 }
     });
     let rays: Vec<(Ray,)> =
         raydsl_tests::scenes::random_rays(3, 1000).into_iter().map(|r| (r,)).collect();
