@@ -104,6 +104,7 @@ impl Recorder {
     ) {
         let prim = self.fetch(prims, id);
         let found = P::intersect_among_on(self, prims.kinds(), prim, ray);
+        let found = self.named("candidate", found);
         let hit = HitOn { prim_id: id, ..P::Hit::hit_on(found) };
         let late = self.f32_compare(Compare::Ge, hit.t.0, ray.t_min.0);
         let early = self.f32_compare(Compare::Le, hit.t.0, ray.t_max.0);

@@ -1,0 +1,103 @@
+//! Primitives, materials and lights of several kinds in one scene, without virtual calls.
+
+use raydsl::kernel;
+use raydsl::prelude::*;
+
+/// A ball and what it is made of.
+#[primitive(sphere(center, radius))]
+#[derive(Debug)]
+pub struct Ball {
+    /// Its centre.
+    pub center: Vec3,
+    /// Its radius.
+    pub radius: f32,
+}
+
+// ANCHOR: enum
+/// What a scene is made of; its WGSL has the kinds that are there.
+#[primitive]
+#[derive(Debug)]
+pub enum Shape {
+    /// A sphere.
+    Ball(Ball),
+    /// A triangle.
+    Facet(Triangle),
+}
+// ANCHOR_END: enum
+
+/// What a surface does with light.
+#[kernel]
+pub trait Material {
+    /// The share of light that goes on, under this cosine.
+    fn shade(&self, cos: f32) -> Vec3;
+}
+
+/// The same in all directions.
+#[derive(Clone, Copy, Debug, Type)]
+pub struct Matte {
+    /// Its colour.
+    pub color: Vec3,
+}
+
+#[kernel]
+impl Material for Matte {
+    fn shade(&self, cos: f32) -> Vec3 {
+        self.color * max(cos, 0.0)
+    }
+}
+
+/// With a highlight.
+#[derive(Clone, Copy, Debug, Type)]
+pub struct Plastic {
+    /// Its colour.
+    pub color: Vec3,
+    /// How narrow the highlight is.
+    pub exponent: f32,
+}
+
+#[kernel]
+impl Material for Plastic {
+    fn shade(&self, cos: f32) -> Vec3 {
+        let c = max(cos, 0.0);
+        self.color * c + 0.4 * pow(c, self.exponent)
+    }
+}
+
+/// Where light comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
+pub enum Light {
+    /// From above.
+    Sky,
+    /// From a lamp at the origin.
+    Lamp,
+}
+
+#[kernel]
+fn toward(light: Light, at: Vec3) -> Vec3 {
+    match light {
+        Light::Sky => Vec3::Y,
+        Light::Lamp => (-at).normalize(),
+    }
+}
+
+/// Colour of what a ray meets: the shape's kind chooses the normal, the material's type the shade.
+#[kernel]
+pub fn radiance<A: Material, B: Material>(
+    scene: &Bvh<Shape>,
+    balls: A,
+    facets: B,
+    light: Light,
+    ray: Ray,
+) -> Vec3 {
+    let hit = scene.closest_hit(ray);
+    if !hit.is_hit {
+        return Vec3::ZERO;
+    }
+    let way = toward(light, ray.at(hit.t));
+    // ANCHOR: match
+    match scene.primitive(hit) {
+        Shape::Ball(ball) => balls.shade(ball.normal(ray, hit).dot(way)),
+        Shape::Facet(facet) => facets.shade(facet.normal(ray, hit).dot(way).abs()),
+    }
+    // ANCHOR_END: match
+}
