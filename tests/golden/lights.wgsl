@@ -99,7 +99,7 @@ fn Sun_dimmed(self_: Sun, by: f32) -> Sun {
     return Sun(self_.direction * by);
 }
 
-fn lit_1(light: Sun, at: vec3<f32>, steps: u32) -> f32 {
+fn generic_lit(light: Sun, at: vec3<f32>, steps: u32) -> f32 {
     var sum: f32 = 0.0f;
     var now_direction: vec3<f32> = light.direction;
     var i: u32 = 0u;
@@ -118,7 +118,7 @@ fn Filtered_shine(self_: Filtered, at: vec3<f32>) -> f32 {
     return select(t, self_.share, self_.share < t);
 }
 
-fn Light_twice_1(self_: Filtered, at: vec3<f32>) -> f32 {
+fn generic_Light_twice(self_: Filtered, at: vec3<f32>) -> f32 {
     let one = Filtered_shine(self_, at);
     if (one < 0.5f) {
         return 0.5f;
@@ -130,7 +130,7 @@ fn Filtered_dimmed(self_: Filtered, by: f32) -> Filtered {
     return Filtered(self_.light, self_.share * by);
 }
 
-fn lit_2(light: Filtered, at: vec3<f32>, steps: u32) -> f32 {
+fn generic_lit_1(light: Filtered, at: vec3<f32>, steps: u32) -> f32 {
     var sum: f32 = 0.0f;
     var now_light_at: vec3<f32> = light.light.at;
     var now_light_power: f32 = light.light.power;
@@ -140,7 +140,7 @@ fn lit_2(light: Filtered, at: vec3<f32>, steps: u32) -> f32 {
         if (i == 3u) {
             continue;
         }
-        sum = sum + Light_twice_1(Filtered(Spot(now_light_at, now_light_power), now_share), at * f32(i));
+        sum = sum + generic_Light_twice(Filtered(Spot(now_light_at, now_light_power), now_share), at * f32(i));
         let now_light_at_1 = now_light_at;
         let now_light_power_1 = now_light_power;
         let t = Filtered_dimmed(Filtered(Spot(now_light_at_1, now_light_power_1), now_share), 0.5f);
@@ -156,7 +156,7 @@ fn Filtered_open(self_: Filtered) -> Spot {
 }
 
 fn lights(x: f32, y: f32, n: u32) -> f32 {
-    var sum: f32 = lit(Spot(vec3<f32>(x, 1.0f, 0.0f), 4.0f), vec3<f32>(y, x, 1.0f), n % 6u) + lit_1(Sun(vec3<f32>(0.0f, 0.5f, y)), vec3<f32>(y, x, 1.0f), n % 3u) + lit_2(Filtered(Spot(vec3<f32>(x, 1.0f, 0.0f), 4.0f), 0.75f), vec3<f32>(y, x, 1.0f), 2u);
+    var sum: f32 = lit(Spot(vec3<f32>(x, 1.0f, 0.0f), 4.0f), vec3<f32>(y, x, 1.0f), n % 6u) + generic_lit(Sun(vec3<f32>(0.0f, 0.5f, y)), vec3<f32>(y, x, 1.0f), n % 3u) + generic_lit_1(Filtered(Spot(vec3<f32>(x, 1.0f, 0.0f), 4.0f), 0.75f), vec3<f32>(y, x, 1.0f), 2u);
     if (x > y) {
         sum = sum + (Filtered_shine(Filtered(Spot(vec3<f32>(x, 1.0f, 0.0f), 4.0f), 0.75f), vec3<f32>(y, x, 1.0f)) + Spot_shine(Filtered_open(Filtered(Spot(vec3<f32>(x, 1.0f, 0.0f), 4.0f), 0.75f)), vec3<f32>(y, x, 1.0f)) + Light_dark());
     }
