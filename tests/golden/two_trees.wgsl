@@ -130,7 +130,8 @@ fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
     let per_d2 = 1.0f / (ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z);
     let closest = (f.x * ray.direction.x + f.y * ray.direction.y + f.z * ray.direction.z) * per_d2;
     let aside = f - ray.direction * closest;
-    let radicand = radius * radius - (aside.x * aside.x + aside.y * aside.y + aside.z * aside.z);
+    let distance = sqrt(aside.x * aside.x + aside.y * aside.y + aside.z * aside.z);
+    let radicand = (radius - distance) * (radius + distance);
     let half = sqrt(radicand * per_d2);
     let near = closest - half;
     let far = closest + half;
@@ -256,7 +257,7 @@ fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
     return result;
 }
 
-fn intersect_1(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
+fn triangle_intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
     let ax = abs(ray.direction.x);
     let ay = abs(ray.direction.y);
     let az = abs(ray.direction.z);
@@ -318,7 +319,7 @@ fn intersect_1(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
 }
 
 fn Triangle_intersect(self_: Triangle, ray: Ray) -> Hit {
-    return intersect_1(ray, self_.v0, self_.v1, self_.v2);
+    return triangle_intersect(ray, self_.v0, self_.v1, self_.v2);
 }
 
 fn walls_closest_hit(ray: Ray) -> Hit {
