@@ -13,9 +13,8 @@ struct Ball {
 }
 
 fn balls(rng: &mut Rng, count: usize) -> Vec<Ball> {
-    let mut balls: Vec<Ball> = (0..count)
-        .map(|_| Ball { center: rng.point(3.0), radius: rng.range(0.2, 0.9) })
-        .collect();
+    let mut balls: Vec<Ball> =
+        (0..count).map(|_| Ball { center: rng.point(3.0), radius: rng.range(0.2, 0.9) }).collect();
     // Copies: of equal distances the smaller number comes first.
     balls.extend_from_within(..count / 4);
     balls
@@ -79,8 +78,7 @@ fn several_hits_are_in_order() {
     });
     assert_variants_agree!(&tree, &rays);
     let some = kernel!(|ray: Ray| {
-        let hits =
-            slice.multi_hit_where::<2>(ray, |hit: Hit| hit.prim_id % 3 != 1 && hit.t > 0.5);
+        let hits = slice.multi_hit_where::<2>(ray, |hit: Hit| hit.prim_id % 3 != 1 && hit.t > 0.5);
         (hits[0], hits[1])
     });
     assert_variants_agree!(&some, &rays);
