@@ -121,6 +121,10 @@ fn expand_closure(input: proc_macro2::TokenStream) -> proc_macro2::TokenStream {
 }
 
 /// Makes a primitive of a struct, or gives it `intersect` and `get_bounds` in an `impl`.
+///
+/// `#[primitive(disk(center, normal, radius))]` on a struct is all that is needed for a shape of the
+/// library: `sphere`, `triangle`, `quad`, `rectangle`, `disk`, `plane`, `cylinder`, `tube`, `cone`
+/// or `cuboid`. Each is a module of `raydsl::geometry`.
 #[proc_macro_attribute]
 pub fn primitive(args: TokenStream, item: TokenStream) -> TokenStream {
     rewrite::with_readable_names(expand_primitive(args.into(), item.into())).into()

@@ -8,7 +8,10 @@ pub use glam::{
 
 pub use crate::bvh::{Bvh, Slice};
 pub use crate::camera::Pinhole;
-pub use crate::geometry::{Aabb, Hit, Primitive, Ray, Triangle, sphere};
+pub use crate::geometry::{
+    Aabb, Hit, Primitive, Ray, Triangle, cone, cuboid, cylinder, disk, plane, quad, rectangle,
+    sphere, triangle, tube,
+};
 #[cfg(feature = "gpu")]
 pub use crate::gpu::GpuScheduler;
 pub use crate::kernel::{Kernel, Variant, Variants};

@@ -130,7 +130,8 @@ fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
     let per_d2 = 1.0f / (ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z);
     let closest = (f.x * ray.direction.x + f.y * ray.direction.y + f.z * ray.direction.z) * per_d2;
     let aside = f - ray.direction * closest;
-    let radicand = radius * radius - (aside.x * aside.x + aside.y * aside.y + aside.z * aside.z);
+    let distance = sqrt(aside.x * aside.x + aside.y * aside.y + aside.z * aside.z);
+    let radicand = (radius - distance) * (radius + distance);
     let half = sqrt(radicand * per_d2);
     let near = closest - half;
     let far = closest + half;

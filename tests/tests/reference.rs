@@ -54,7 +54,8 @@ fn a_sphere_by_hand() {
         let aside = minus(f, d.map(|c| c * closest));
         // The literal means its decimal text.
         let r = f64::from(radius) * 1.1;
-        let radicand = r * r - dot(aside, aside);
+        let distance = dot(aside, aside).sqrt();
+        let radicand = (r - distance) * (r + distance);
         let half = (radicand * per_d2).sqrt();
         let (t_min, t_max) = (f64::from(ray.t_min), f64::from(ray.t_max));
         let near = closest - half;

@@ -8,8 +8,18 @@ use syn::punctuated::Punctuated;
 use crate::diag::Errors;
 
 /// The shapes and what each is made of. Each is a module of `raydsl::geometry`.
-const SHAPES: &[(&str, &[&str])] =
-    &[("sphere", &["center", "radius"]), ("triangle", &["v0", "v1", "v2"])];
+const SHAPES: &[(&str, &[&str])] = &[
+    ("sphere", &["center", "radius"]),
+    ("triangle", &["v0", "v1", "v2"]),
+    ("quad", &["v0", "v1", "v2", "v3"]),
+    ("rectangle", &["corner", "u_edge", "v_edge"]),
+    ("disk", &["center", "normal", "radius"]),
+    ("plane", &["normal", "offset"]),
+    ("cylinder", &["p0", "p1", "radius"]),
+    ("tube", &["p0", "p1", "radius"]),
+    ("cone", &["base", "apex", "radius"]),
+    ("cuboid", &["min", "max"]),
+];
 
 /// `sphere(center, radius.to_f32())`.
 pub(crate) struct Shape {

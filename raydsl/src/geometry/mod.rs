@@ -1,12 +1,24 @@
 //! Rays, hits, boxes and the shapes that rays meet.
 
 mod aabb;
+mod axial;
+pub mod cone;
+pub mod cuboid;
+pub mod cylinder;
+pub mod disk;
+mod edges;
 mod hit;
+mod near;
+mod outwards;
+pub mod plane;
 mod primitive;
+pub mod quad;
 mod ray;
+pub mod rectangle;
 pub mod sphere;
 mod surface;
 pub mod triangle;
+pub mod tube;
 
 pub use aabb::Aabb;
 pub use hit::{Hit, HitOn, HitRecord};

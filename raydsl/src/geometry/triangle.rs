@@ -2,6 +2,8 @@
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
+use super::edges::{across, spanned};
+use super::outwards::{around, wide};
 use super::{Aabb, Hit, Ray, SurfacePoint};
 use crate::machine::functions::{vec2, vec3};
 use crate::machine::generic::{clamp, max, min};
@@ -111,7 +113,7 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
 #[kernel]
 #[inline]
 pub fn normal(_ray: Ray, _hit: Hit, v0: Vec3, v1: Vec3, v2: Vec3) -> Vec3 {
-    (v1 - v0).cross(v2 - v0).normalize()
+    across(v1 - v0, v2 - v0)
 }
 
 /// The barycentric weights of the second and the third vertex.
@@ -125,8 +127,7 @@ pub fn uv(_ray: Ray, hit: Hit, _v0: Vec3, _v1: Vec3, _v2: Vec3) -> Vec2 {
 #[kernel]
 #[inline]
 pub fn area(v0: Vec3, v1: Vec3, v2: Vec3) -> f32 {
-    let n = (v1 - v0).cross(v2 - v0);
-    0.5 * n.dot(n).sqrt()
+    0.5 * spanned(v1 - v0, v2 - v0)
 }
 
 /// A point of the triangle; a uniform `u` in the unit square gives a uniform one. (Heitz, "A
@@ -139,7 +140,7 @@ pub fn sample(u: Vec2, v0: Vec3, v1: Vec3, v2: Vec3) -> SurfacePoint {
     let b1 = if is_low { u.x - least } else { least };
     let b2 = if is_low { least } else { u.y - least };
     let (e1, e2) = (v1 - v0, v2 - v0);
-    SurfacePoint { position: v0 + e1 * b1 + e2 * b2, normal: e1.cross(e2).normalize() }
+    SurfacePoint { position: v0 + e1 * b1 + e2 * b2, normal: across(e1, e2) }
 }
 
 /// The box of the vertices.
@@ -150,38 +151,44 @@ pub fn get_bounds(v0: Vec3, v1: Vec3, v2: Vec3) -> Aabb {
 /// Boxes around the parts of the triangle below and above the plane `axis = at`. Where edges cross
 /// the plane is computed in `f64` and rounded outwards.
 pub fn split_primitive(axis: usize, at: f32, v0: Vec3, v1: Vec3, v2: Vec3) -> (Aabb, Aabb) {
-    split_polygon(axis, at, &[v0, v1, v2])
+    split_polygon(axis, at, get_bounds(v0, v1, v2), &[v0, v1, v2].map(wide), 0.0)
 }
 
-/// [`split_primitive`] of any flat polygon.
-pub(super) fn split_polygon(axis: usize, at: f32, vertices: &[Vec3]) -> (Aabb, Aabb) {
-    let whole = Aabb::from_points(vertices.iter().copied());
+/// [`split_primitive`] of any flat polygon in the box `whole`, whose vertices may be off by `error`.
+pub(super) fn split_polygon(
+    axis: usize,
+    at: f32,
+    whole: Aabb,
+    vertices: &[[f64; 3]],
+    error: f64,
+) -> (Aabb, Aabb) {
     let (mut below, mut above) = (Aabb::EMPTY, Aabb::EMPTY);
+    let plane = f64::from(at);
     for (i, &a) in vertices.iter().enumerate() {
         let b = vertices[(i + 1) % vertices.len()];
-        if a[axis] <= at {
-            below = below.union(Aabb::new(a, a));
+        if a[axis] - error <= plane {
+            below = below.union(around(a, error));
         }
-        if a[axis] >= at {
-            above = above.union(Aabb::new(a, a));
+        if a[axis] + error >= plane {
+            above = above.union(around(a, error));
         }
-        if (a[axis] < at && b[axis] > at) || (a[axis] > at && b[axis] < at) {
-            let crossing = crossing(axis, at, a, b);
+        if (a[axis] < plane && b[axis] > plane) || (a[axis] > plane && b[axis] < plane) {
+            let crossing = crossing(axis, at, a, b, error);
             below = below.union(crossing);
             above = above.union(crossing);
         }
     }
-    (below.intersection(whole), above.intersection(whole))
+    // What an error has moved across the plane goes back to it.
+    (whole.split(axis, at).0.intersection(below), whole.split(axis, at).1.intersection(above))
 }
 
 /// A box around the point of the edge in the plane.
-fn crossing(axis: usize, at: f32, a: Vec3, b: Vec3) -> Aabb {
-    let (a, b) = (a.to_array().map(f64::from), b.to_array().map(f64::from));
+fn crossing(axis: usize, at: f32, a: [f64; 3], b: [f64; 3], error: f64) -> Aabb {
     let s = (f64::from(at) - a[axis]) / (b[axis] - a[axis]);
     let bounds = |sign: f64, step: fn(f32) -> f32| {
         let mut bound = core::array::from_fn(|i| {
             // What `f64` may be off by, next to 0 more than a step of `f32`.
-            let error = (a[i].abs() + b[i].abs()) * f64::EPSILON * 4.0;
+            let error = error + (a[i].abs() + b[i].abs()) * f64::EPSILON * 4.0;
             step((a[i] + (b[i] - a[i]) * s + sign * error) as f32)
         });
         bound[axis] = at;

@@ -1,0 +1,164 @@
+//! Boxes whose faces are perpendicular to the axes, of their lower and their upper corner.
+
+use glam::{Vec2, Vec3, vec2, vec3};
+
+use super::near::{Near, Span, both, end_of, is_leaving, largest, slab};
+use super::{Aabb, Hit, Ray, SurfacePoint};
+use crate::machine::functions::{vec2, vec3};
+use crate::machine::generic::clamp;
+use crate::{Type, kernel};
+
+/// What a box's hit may be off by: each face is met at a distance of four roundings, which are at
+/// most 4 eps of the distance to it.
+pub const SLACK: f32 = 1.0 / 2_097_152.0;
+
+/// A ray and what it meets of a box.
+#[derive(Clone, Copy, Debug, Type)]
+struct Meeting {
+    line: Near,
+    x: Span,
+    y: Span,
+    z: Span,
+    inside: Span,
+}
+
+#[kernel]
+#[inline]
+fn meet(ray: Ray, min: Vec3, max: Vec3) -> Meeting {
+    let scale = largest(ray.direction);
+    let direction = ray.direction / scale;
+    let line = Near { direction, offset: vec3(0.0, 0.0, 0.0), distance: 0.0, scale };
+    let (low, high) = (min - ray.origin, max - ray.origin);
+    let x = slab(0.0, direction.x, low.x, high.x);
+    let y = slab(0.0, direction.y, low.y, high.y);
+    let z = slab(0.0, direction.z, low.z, high.z);
+    Meeting { line, x, y, z, inside: both(both(x, y), z) }
+}
+
+/// Where a ray meets the box: where it enters it or, from inside, where it leaves it.
+///
+/// A flat box is hit as the rectangle that it is. A box with `min > max` on an axis is never hit.
+#[kernel]
+#[inline]
+pub fn intersect(ray: Ray, min: Vec3, max: Vec3) -> Hit {
+    let m = meet(ray, min, max);
+    end_of(ray, m.line, m.inside)
+}
+
+/// The axis that the face is perpendicular to through which the ray enters or leaves.
+#[kernel]
+#[inline]
+fn face(m: Meeting, is_leaving: bool) -> u32 {
+    let (end, x, y) = if is_leaving {
+        (m.inside.leave, m.x.leave, m.y.leave)
+    } else {
+        (m.inside.enter, m.x.enter, m.y.enter)
+    };
+    if x == end {
+        0u32
+    } else if y == end {
+        1u32
+    } else {
+        2u32
+    }
+}
+
+/// The normal of the face that `ray` hits, outwards.
+#[kernel]
+#[inline]
+pub fn normal(ray: Ray, _hit: Hit, min: Vec3, max: Vec3) -> Vec3 {
+    let m = meet(ray, min, max);
+    let is_leaving = is_leaving(ray, m.line, m.inside);
+    let face = face(m, is_leaving);
+    let d = m.line.direction;
+    let along = if face == 0 {
+        d.x
+    } else if face == 1 {
+        d.y
+    } else {
+        d.z
+    };
+    let sign = if (along > 0.0) == is_leaving { 1.0 } else { -1.0 };
+    if face == 0 {
+        vec3(sign, 0.0, 0.0)
+    } else if face == 1 {
+        vec3(0.0, sign, 0.0)
+    } else {
+        vec3(0.0, 0.0, sign)
+    }
+}
+
+/// Which share of the length `size` is `x`.
+#[kernel]
+#[inline]
+fn share(x: f32, size: f32) -> f32 {
+    if size > 0.0 { clamp(x / size, 0.0, 1.0) } else { 0.0 }
+}
+
+/// Where in its face `ray` hits, from 0 at `min` to 1 at `max`: along y and z in a face across x,
+/// along z and x in one across y, along x and y in one across z.
+#[kernel]
+#[inline]
+pub fn uv(ray: Ray, _hit: Hit, min: Vec3, max: Vec3) -> Vec2 {
+    let m = meet(ray, min, max);
+    let is_leaving = is_leaving(ray, m.line, m.inside);
+    let s = if is_leaving { m.inside.leave } else { m.inside.enter };
+    let at = m.line.direction * s - (min - ray.origin);
+    let size = max - min;
+    let (x, y, z) = (share(at.x, size.x), share(at.y, size.y), share(at.z, size.z));
+    let face = face(m, is_leaving);
+    if face == 0 {
+        vec2(y, z)
+    } else if face == 1 {
+        vec2(z, x)
+    } else {
+        vec2(x, y)
+    }
+}
+
+/// The area of the six faces.
+#[kernel]
+#[inline]
+pub fn area(min: Vec3, max: Vec3) -> f32 {
+    let size = max - min;
+    2.0 * (size.x * size.y + size.y * size.z + size.z * size.x)
+}
+
+/// A point of a face; a uniform `u` in the unit square gives a uniform one.
+#[kernel]
+#[inline]
+pub fn sample(u: Vec2, min: Vec3, max: Vec3) -> SurfacePoint {
+    let size = max - min;
+    // Two faces each.
+    let (of_x, of_y, of_z) = (size.y * size.z, size.z * size.x, size.x * size.y);
+    let at = u.x * (of_x + of_y + of_z);
+    let is_x = at < of_x;
+    let is_y = !is_x && at < of_x + of_y;
+    let in_pair = if is_x {
+        at / of_x
+    } else if is_y {
+        (at - of_x) / of_y
+    } else {
+        (at - of_x - of_y) / of_z
+    };
+    let is_upper = in_pair >= 0.5;
+    let v = clamp(if is_upper { 2.0 * in_pair - 1.0 } else { 2.0 * in_pair }, 0.0, 1.0);
+    let (end, sign) = if is_upper { (1.0, 1.0) } else { (0.0, -1.0) };
+    if is_x {
+        SurfacePoint { position: min + size * vec3(end, u.y, v), normal: vec3(sign, 0.0, 0.0) }
+    } else if is_y {
+        SurfacePoint { position: min + size * vec3(v, end, u.y), normal: vec3(0.0, sign, 0.0) }
+    } else {
+        SurfacePoint { position: min + size * vec3(u.y, v, end), normal: vec3(0.0, 0.0, sign) }
+    }
+}
+
+/// The box itself.
+pub fn get_bounds(min: Vec3, max: Vec3) -> Aabb {
+    Aabb::new(min, max)
+}
+
+/// The parts of the box below and above the plane `axis = at`, exactly.
+pub fn split_primitive(axis: usize, at: f32, min: Vec3, max: Vec3) -> (Aabb, Aabb) {
+    get_bounds(min, max).split(axis, at)
+}

@@ -1,0 +1,87 @@
+//! Planes, of a normal of any length and an offset: where `normal · p = offset`.
+//!
+//! A plane has no finite box, so there is no tree over planes: `Bvh::build` gives
+//! [`BuildError::InfiniteBounds`](crate::bvh::BuildError::InfiniteBounds). Slices of them have
+//! every query.
+
+use glam::{Vec2, Vec3, vec2};
+
+use super::near::largest;
+use super::outwards::{above, below};
+use super::{Aabb, Hit, Ray, SurfacePoint};
+use crate::kernel;
+use crate::machine::functions::vec2;
+
+/// What a plane's hit may be off by, relative to the distances of the plane and of the hit from the
+/// world's origin and from the ray's: the two products are off by 3 eps each (eps = 2^-24).
+pub const SLACK: f32 = 1.0 / 2_097_152.0;
+
+/// Where a ray meets the plane, from either side. A ray within the plane misses it, and so does
+/// every ray if the normal is 0.
+#[kernel]
+#[inline]
+pub fn intersect(ray: Ray, normal: Vec3, offset: f32) -> Hit {
+    // With the length 1 of the largest component, so that the products neither over- nor underflow.
+    let scale = largest(ray.direction);
+    let approach = (ray.direction / scale).dot(normal);
+    let t = (offset - ray.origin.dot(normal)) / approach / scale;
+    let is_hit = approach != 0.0 && t >= ray.t_min && t <= ray.t_max;
+    Hit { is_hit, t, prim_id: 0, u: 0.0, v: 0.0 }
+}
+
+/// The normal with unit length, whichever side `ray` hits.
+#[kernel]
+#[inline]
+pub fn normal(_ray: Ray, _hit: Hit, normal: Vec3, _offset: f32) -> Vec3 {
+    normal.normalize()
+}
+
+/// Where in the plane `ray` hits: coordinates along the two vectors of
+/// `normal.normalize().any_orthonormal_pair()`, from the point that is closest to the world's origin. They are
+/// lengths and not shares, since a plane has no end: `fract()` of them makes tiles of size 1.
+#[kernel]
+#[inline]
+pub fn uv(ray: Ray, hit: Hit, normal: Vec3, _offset: f32) -> Vec2 {
+    let (x, y) = normal.normalize().any_orthonormal_pair();
+    let p = ray.origin + ray.direction * hit.t;
+    vec2(p.dot(x), p.dot(y))
+}
+
+/// Infinite, whatever the plane.
+#[kernel]
+#[inline]
+pub fn area(_normal: Vec3, _offset: f32) -> f32 {
+    f32::INFINITY
+}
+
+/// A point of the square of size 1 around the plane's point that is closest to the world's origin:
+/// uniform there for a uniform `u`, since nothing is uniform in all of a plane.
+#[kernel]
+#[inline]
+pub fn sample(u: Vec2, normal: Vec3, offset: f32) -> SurfacePoint {
+    let unit = normal.normalize();
+    let (x, y) = unit.any_orthonormal_pair();
+    let foot = unit * (offset / normal.length());
+    SurfacePoint { position: foot + x * (u.x - 0.5) + y * (u.y - 0.5), normal: unit }
+}
+
+/// The infinite box; that of a plane across an axis is flat there.
+pub fn get_bounds(normal: Vec3, offset: f32) -> Aabb {
+    let mut bounds = Aabb::new(Vec3::NEG_INFINITY, Vec3::INFINITY);
+    for i in 0..3 {
+        let is_across =
+            normal[i] != 0.0 && normal[(i + 1) % 3] == 0.0 && normal[(i + 2) % 3] == 0.0;
+        if is_across {
+            let (n, offset) = (f64::from(normal[i]), f64::from(offset));
+            let at = offset / n;
+            let error = if at * n == offset { 0.0 } else { at.abs() * f64::EPSILON };
+            (bounds.min[i], bounds.max[i]) = (below(at, -error), above(at, error));
+        }
+    }
+    bounds
+}
+
+/// The parts of the plane's box below and above the plane `axis = at`.
+pub fn split_primitive(axis: usize, at: f32, normal: Vec3, offset: f32) -> (Aabb, Aabb) {
+    get_bounds(normal, offset).split(axis, at)
+}

@@ -1,0 +1,92 @@
+//! Rectangles, of a corner and the two edges from it; parallelograms if those are not perpendicular.
+
+use glam::{Vec2, Vec3, vec2, vec3};
+
+use super::edges::{across, spanned};
+use super::outwards::{around, sum, wide};
+use super::{Aabb, Hit, Ray, SurfacePoint, quad, triangle};
+use crate::kernel;
+use crate::machine::functions::{vec2, vec3};
+
+/// What a rectangle's hit may be off by: a quad's, and two more roundings of each corner, which
+/// twice a quad's has room for.
+pub const SLACK: f32 = 2.0 * quad::SLACK;
+
+/// Where a ray meets the rectangle: both sides, edges and corners included. `hit.u` runs along
+/// `u_edge` and `hit.v` along `v_edge`.
+///
+/// It is a quad whose corners are added up relative to the ray's origin, so they are rounded to the
+/// size of the rectangle and its distance, wherever in the world it is.
+#[kernel]
+#[inline]
+pub fn intersect(ray: Ray, corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> Hit {
+    let v0 = corner - ray.origin;
+    let (v1, v3) = (v0 + u_edge, v0 + v_edge);
+    let from_origin = Ray { origin: vec3(0.0, 0.0, 0.0), ..ray };
+    quad::intersect(from_origin, v0, v1, v1 + v_edge, v3)
+}
+
+/// The normal `u_edge × v_edge` with unit length, whichever side `ray` hits.
+#[kernel]
+#[inline]
+pub fn normal(_ray: Ray, _hit: Hit, _corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> Vec3 {
+    across(u_edge, v_edge)
+}
+
+/// Which shares of the two edges lead from the corner to the hit.
+#[kernel]
+#[inline]
+pub fn uv(_ray: Ray, hit: Hit, _corner: Vec3, _u_edge: Vec3, _v_edge: Vec3) -> Vec2 {
+    vec2(hit.u, hit.v)
+}
+
+/// The area of one side.
+#[kernel]
+#[inline]
+pub fn area(_corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> f32 {
+    spanned(u_edge, v_edge)
+}
+
+/// The point at the shares `u` of the edges; a uniform `u` in the unit square gives a uniform one.
+#[kernel]
+#[inline]
+pub fn sample(u: Vec2, corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> SurfacePoint {
+    let position = corner + u_edge * u.x + v_edge * u.y;
+    SurfacePoint { position, normal: across(u_edge, v_edge) }
+}
+
+/// The four corners in order, and what each coordinate may be off by: 0, unless the corner and the
+/// edges differ so much in size that `f64` cannot hold their sum.
+fn corners(corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> ([[f64; 3]; 4], f64) {
+    let (corner, u, v) = (wide(corner), wide(u_edge), wide(v_edge));
+    let mut worst = 0.0_f64;
+    let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(a, b)| {
+        core::array::from_fn(|i| {
+            let (along_u, first) = sum(corner[i], a * u[i]);
+            let (at, second) = sum(along_u, b * v[i]);
+            worst = worst.max(first + second);
+            at
+        })
+    });
+    (corners, worst)
+}
+
+/// The smallest box around the rectangle, at most two ulp too large.
+pub fn get_bounds(corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> Aabb {
+    let (corners, error) = corners(corner, u_edge, v_edge);
+    corners.into_iter().map(|c| around(c, error)).fold(Aabb::EMPTY, Aabb::union)
+}
+
+/// Boxes around the parts of the rectangle below and above the plane `axis = at`. Where edges cross
+/// the plane is computed in `f64` and rounded outwards.
+pub fn split_primitive(
+    axis: usize,
+    at: f32,
+    corner: Vec3,
+    u_edge: Vec3,
+    v_edge: Vec3,
+) -> (Aabb, Aabb) {
+    let whole = get_bounds(corner, u_edge, v_edge);
+    let (corners, error) = corners(corner, u_edge, v_edge);
+    triangle::split_polygon(axis, at, whole, &corners, error)
+}

@@ -1,0 +1,108 @@
+//! Tubes: cylinders that are open at both ends, of the two ends of the axis and a radius.
+
+use core::f32::consts::PI;
+
+use glam::{Vec2, Vec3, vec2};
+
+use super::axial::{Axial, Round, at_turn, axial, round, turn};
+use super::near::{Near, distance_of, near};
+use super::{Aabb, Hit, Ray, SurfacePoint, cylinder};
+use crate::machine::functions::vec2;
+use crate::machine::generic::clamp;
+use crate::{Type, kernel};
+
+/// What a tube's hit may be off by: it is formed as a cylinder's.
+pub const SLACK: f32 = cylinder::SLACK;
+
+/// A ray and where it meets a tube.
+#[derive(Clone, Copy, Debug, Type)]
+struct Meeting {
+    line: Near,
+    view: Axial,
+    round: Round,
+    /// Whether it is the far side that the ray meets.
+    is_leaving: bool,
+    is_met: bool,
+    /// The point, along the line.
+    s: f32,
+}
+
+/// Whether the point at `s` lies between the ends, and in the ray's range.
+#[kernel]
+#[inline]
+fn is_on(ray: Ray, line: Near, view: Axial, s: f32) -> bool {
+    let height = (view.along + view.step_along * s).abs();
+    let t = distance_of(line, s);
+    height <= 0.5 * view.length && t >= ray.t_min && t <= ray.t_max
+}
+
+#[kernel]
+#[inline]
+fn meet(ray: Ray, p0: Vec3, p1: Vec3, radius: f32) -> Meeting {
+    let axis = p1 - p0;
+    let line = near(ray, (p0 - ray.origin) + axis * 0.5);
+    let view = axial(line, line.offset, axis);
+    let round = round(view, radius);
+    let is_leaving = !is_on(ray, line, view, round.span.enter);
+    let s = if is_leaving { round.span.leave } else { round.span.enter };
+    let is_some = round.span.is_met && radius > 0.0 && view.length > 0.0;
+    // A ray along the axis passes within or without.
+    let is_met = is_some && round.half < f32::MAX && is_on(ray, line, view, s);
+    Meeting { line, view, round, is_leaving, is_met, s }
+}
+
+/// Where a ray meets the tube, from outside or inside: the nearer of its intersections that lies in
+/// the ray's range.
+///
+/// A tube whose radius is 0, or whose ends are one point, is never hit.
+#[kernel]
+#[inline]
+pub fn intersect(ray: Ray, p0: Vec3, p1: Vec3, radius: f32) -> Hit {
+    let m = meet(ray, p0, p1, radius);
+    Hit { is_hit: m.is_met, t: distance_of(m.line, m.s), prim_id: 0, u: 0.0, v: 0.0 }
+}
+
+/// The normal where `ray` hits the tube, away from the axis; as precise as a cylinder's.
+#[kernel]
+#[inline]
+pub fn normal(ray: Ray, _hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec3 {
+    let m = meet(ray, p0, p1, radius);
+    let half = if m.is_leaving { m.round.half } else { -m.round.half };
+    (m.round.aside + m.view.step_across * half).normalize()
+}
+
+/// Where `ray` hits: the share of a turn around the axis, and the height from 0 at `p0` to 1 at
+/// `p1`. The turn begins at `axis.any_orthonormal_pair().0`.
+#[kernel]
+#[inline]
+pub fn uv(ray: Ray, _hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec2 {
+    let m = meet(ray, p0, p1, radius);
+    let height = (m.view.along + m.view.step_along * m.s) / m.view.length + 0.5;
+    vec2(turn(m.view.axis, m.view.across + m.view.step_across * m.s), clamp(height, 0.0, 1.0))
+}
+
+/// The area of the outer side.
+#[kernel]
+#[inline]
+pub fn area(p0: Vec3, p1: Vec3, radius: f32) -> f32 {
+    2.0 * PI * radius * (p1 - p0).length()
+}
+
+/// A point of the tube; a uniform `u` in the unit square gives a uniform one.
+#[kernel]
+#[inline]
+pub fn sample(u: Vec2, p0: Vec3, p1: Vec3, radius: f32) -> SurfacePoint {
+    let axis = p1 - p0;
+    let across = at_turn(axis.normalize(), u.y);
+    SurfacePoint { position: p0 + axis * u.x + across * radius, normal: across }
+}
+
+/// The smallest box around the tube, which is a cylinder's.
+pub fn get_bounds(p0: Vec3, p1: Vec3, radius: f32) -> Aabb {
+    cylinder::get_bounds(p0, p1, radius)
+}
+
+/// The parts of the tube's box below and above the plane `axis = at`.
+pub fn split_primitive(axis: usize, at: f32, p0: Vec3, p1: Vec3, radius: f32) -> (Aabb, Aabb) {
+    get_bounds(p0, p1, radius).split(axis, at)
+}
