@@ -76,7 +76,7 @@ fn kinds_share_a_scene() {
     let plastic = variants::Plastic { color: vec3(0.8, 0.2, 0.1), exponent: 40.0 };
     let matte = variants::Matte { color: vec3(0.3, 0.6, 0.8) };
     let mut rng = Rng::of("kinds");
-    let rays = rays(&mut rng, vec3(0.0, 0.0, -1.0), 3.0);
+    let rays = rays(&mut rng, vec3(0.0, 0.3, 8.0), 3.0);
     for light in [variants::Light::Sky, variants::Light::Lamp] {
         let shaded = kernel!(|ray: Ray| variants::radiance(&scene, plastic, matte, light, ray));
         let bright = rays.iter().filter(|(r,)| shaded.call((*r,)) != Vec3::ZERO).count();
