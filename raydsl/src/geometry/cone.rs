@@ -13,7 +13,8 @@ use crate::machine::generic::{clamp, max, min};
 use crate::{Type, kernel};
 
 /// What a cone's hit may be off by, as a cylinder's: the ray is taken apart at the axis in the same
-/// way, and the quadratic has no cancellation but that in its data.
+/// way, and the quadratic has no cancellation but that in its data, which is as small as the ray's
+/// distance from the apex.
 pub const SLACK: f32 = super::cylinder::SLACK;
 
 /// A leading coefficient below this is none; it belongs to a ray along the surface.
@@ -76,8 +77,9 @@ fn within(line: Axial, slope: f32) -> Span {
 #[inline]
 fn meet(ray: Ray, base: Vec3, apex: Vec3, radius: f32) -> Meeting {
     let axis = base - apex;
-    let line = near(ray, (apex - ray.origin) + axis * 0.5);
-    let view = axial(line, line.offset + axis * 0.5, axis);
+    // Next to the apex the two roots are close to each other, and so they are to this point.
+    let line = near(ray, apex - ray.origin);
+    let view = axial(line, line.offset, axis);
     let slope = radius / view.length;
     let side = within(view, slope);
     let between = slab(view.along, view.step_along, 0.0, view.length);

@@ -24,13 +24,12 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3) -> Hit {
     let second = triangle::intersect(ray, v2, v3, v1);
     // A vertex that is no number is one of the whole quad, though each half has only three.
     let diagonal = v2 - v0;
-    if !(diagonal.dot(diagonal) >= 0.0) {
-        return Hit { is_hit: false, ..first };
-    }
+    let is_whole = diagonal.dot(diagonal) >= 0.0;
     if second.is_hit && !(first.is_hit && first.t <= second.t) {
-        Hit { is_hit: true, t: second.t, prim_id: 0, u: 1.0 - second.u, v: 1.0 - second.v }
+        let (u, v) = (1.0 - second.u, 1.0 - second.v);
+        Hit { is_hit: is_whole, t: second.t, prim_id: 0, u, v }
     } else {
-        first
+        Hit { is_hit: first.is_hit && is_whole, ..first }
     }
 }
 

@@ -22,7 +22,7 @@ fn a_sphere_as_large_as_a_planet() {
     let ray = Ray::new(Vec3::ZERO, Vec3::X);
     let hit = sphere::intersect(ray, center, radius);
     assert!(hit.is_hit);
-    assert_near(hit.t, 1000.001_624_998_679_7, 2e-6);
+    assert_near(hit.t, 1_000.001_624_998_679_7, 2e-6);
     let kernel =
         kernel!(|ray: Ray, center: Vec3, radius: f32| { sphere::intersect(ray, center, radius).t });
     assert_variants_agree!(&kernel, &[(ray, center, radius)]);
