@@ -72,7 +72,8 @@ impl ByHand for ColorSphere {
         let f = self.center - ray.origin;
         let closest = f.dot(ray.direction) * per_d2;
         let aside = f - ray.direction * closest;
-        let radicand = radius * radius - aside.dot(aside);
+        let distance = aside.length();
+        let radicand = (radius - distance) * (radius + distance);
         if radicand < 0.0 || radius <= 0.0 {
             return None;
         }
