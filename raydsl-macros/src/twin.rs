@@ -136,7 +136,7 @@ fn twin_of(item: &syn::DeriveInput, fields: &[syn::Field], owner: &TokenStream) 
     let texts: Vec<String> = names.iter().map(ToString::to_string).collect();
     let types: Vec<_> = fields.iter().map(|f| &f.ty).collect();
     let visible: Vec<_> = fields.iter().map(|f| &f.vis).collect();
-    let doc = format!("[`{name}`] on machine `M`.");
+    let doc = format!("[`{name}`] on a machine.");
     let host = quote!(#name<#used>);
     let schema = quote! {
         &#p::Schema::Struct {
@@ -149,33 +149,33 @@ fn twin_of(item: &syn::DeriveInput, fields: &[syn::Field], owner: &TokenStream) 
             size: ::core::mem::size_of::<#host>(),
         }
     };
-    let methods = methods(&quote!(#twin<M, #used>), owner, &generics);
+    let methods = methods(&quote!(#twin<__M, #used>), owner, &generics);
     quote! {
         #[doc = #doc]
         #[allow(missing_docs, reason = "the members are those of the struct")]
-        #vis struct #twin<M: #p::Machine, #declared> where #predicates {
-            #(#visible #names: <#types as #p::Type>::On<M>,)*
+        #vis struct #twin<__M: #p::Machine, #declared> where #predicates {
+            #(#visible #names: <#types as #p::Type>::On<__M>,)*
         }
 
-        impl<M: #p::Machine, #declared> Clone for #twin<M, #used> where #predicates {
+        impl<__M: #p::Machine, #declared> Clone for #twin<__M, #used> where #predicates {
             #[inline(always)]
             fn clone(&self) -> Self {
                 *self
             }
         }
 
-        impl<M: #p::Machine, #declared> Copy for #twin<M, #used> where #predicates {}
+        impl<__M: #p::Machine, #declared> Copy for #twin<__M, #used> where #predicates {}
 
-        impl<M: #p::Machine, #declared> #p::Value<M> for #twin<M, #used> where #predicates {
+        impl<__M: #p::Machine, #declared> #p::Value<__M> for #twin<__M, #used> where #predicates {
             const SCHEMA: &'static #p::Schema = #schema;
 
             #[inline(always)]
-            fn zero(m: &M) -> Self {
+            fn zero(m: &__M) -> Self {
                 Self { #(#names: #p::Value::zero(m),)* }
             }
 
             #[inline(always)]
-            fn zip(m: &M, a: Self, b: Self, f: &mut impl #p::Leaves<M>) -> Self {
+            fn zip(m: &__M, a: Self, b: Self, f: &mut impl #p::Leaves<__M>) -> Self {
                 Self { #(#names: #p::Value::zip(m, a.#names, b.#names, f),)* }
             }
         }
@@ -184,25 +184,25 @@ fn twin_of(item: &syn::DeriveInput, fields: &[syn::Field], owner: &TokenStream) 
 
         #[diagnostic::do_not_recommend]
         impl<#declared> #p::Type for #host where #predicates {
-            type On<M: #p::Machine> = #twin<M, #used>;
+            type On<__M: #p::Machine> = #twin<__M, #used>;
 
             const SCHEMA: &'static #p::Schema = #schema;
 
             #[inline(always)]
-            fn splat<M: #p::Machine>(m: &M, v: Self) -> #twin<M, #used> {
+            fn splat<__M: #p::Machine>(m: &__M, v: Self) -> #twin<__M, #used> {
                 #twin { #(#names: #p::Type::splat(m, v.#names),)* }
             }
 
             #[inline(always)]
-            fn from_lanes<M: #p::LaneMachine>(
-                m: &M,
+            fn from_lanes<__M: #p::LaneMachine>(
+                m: &__M,
                 f: &impl Fn(usize) -> Self,
-            ) -> #twin<M, #used> {
+            ) -> #twin<__M, #used> {
                 #twin { #(#names: #p::Type::from_lanes(m, &|lane| f(lane).#names),)* }
             }
 
             #[inline(always)]
-            fn lane<M: #p::LaneMachine>(v: &#twin<M, #used>, lane: usize) -> Self {
+            fn lane<__M: #p::LaneMachine>(v: &#twin<__M, #used>, lane: usize) -> Self {
                 Self { #(#names: #p::Type::lane(&v.#names, lane),)* }
             }
 
@@ -218,16 +218,16 @@ fn twin_of(item: &syn::DeriveInput, fields: &[syn::Field], owner: &TokenStream) 
         }
 
         #[diagnostic::do_not_recommend]
-        impl<M: #p::Machine, #declared> #p::Capture<M> for #host where #predicates {
-            type On<'c> = #twin<M, #used>;
+        impl<__M: #p::Machine, #declared> #p::Capture<__M> for #host where #predicates {
+            type On<'c> = #twin<__M, #used>;
 
             #[inline(always)]
-            fn capture(&self, m: &M, name: &'static str) -> #twin<M, #used> {
+            fn capture(&self, m: &__M, name: &'static str) -> #twin<__M, #used> {
                 #p::Machine::capture(m, name, *self)
             }
 
             #[inline(always)]
-            fn constant(&self, m: &M) -> #twin<M, #used> {
+            fn constant(&self, m: &__M) -> #twin<__M, #used> {
                 #p::Type::splat(m, *self)
             }
         }
@@ -238,22 +238,22 @@ fn twin_of(item: &syn::DeriveInput, fields: &[syn::Field], owner: &TokenStream) 
 fn methods(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> TokenStream {
     let p = private();
     let Generics { declared, predicates, .. } = generics;
-    let of = quote!(<#host as #p::HostMethod<NAME, M, A, Via>>);
+    let of = quote!(<#host as #p::HostMethod<__NAME, __M, __Args, __Via>>);
     let operators = operators::operators(twin, host, generics);
     quote! {
         #operators
 
         #[diagnostic::do_not_recommend]
-        impl<M: #p::Machine, #declared> #p::Inferred<M> for #twin where #predicates {
+        impl<__M: #p::Machine, #declared> #p::Inferred<__M> for #twin where #predicates {
             type Host = #host;
 
             #[inline(always)]
-            fn give(self, _: &M) -> Self {
+            fn give(self, _: &__M) -> Self {
                 self
             }
         }
 
-        impl<M: #p::Machine, #declared> #p::Twin<M> for #twin where #predicates {
+        impl<__M: #p::Machine, #declared> #p::Twin<__M> for #twin where #predicates {
             #[inline(always)]
             fn from_host(v: Self) -> Self {
                 v
@@ -261,19 +261,19 @@ fn methods(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> Token
         }
 
         #[diagnostic::do_not_recommend]
-        impl<M: #p::Machine, #declared> #p::Varying<M> for #twin where #predicates {
+        impl<__M: #p::Machine, #declared> #p::Varying<__M> for #twin where #predicates {
             type Value = Self;
 
             #[inline(always)]
-            fn varying(self, _: &M) -> Self {
+            fn varying(self, _: &__M) -> Self {
                 self
             }
         }
 
-        impl<const NAME: u64, M: #p::Machine, A, Via, #declared> #p::Method<NAME, M, A, Via>
+        impl<const __NAME: u64, __M: #p::Machine, __Args, __Via, #declared> #p::Method<__NAME, __M, __Args, __Via>
             for #twin
         where
-            #host: #p::HostMethod<NAME, M, A, Via, This = Self>,
+            #host: #p::HostMethod<__NAME, __M, __Args, __Via, This = Self>,
             #predicates
         {
             type Output = #of::Output;
@@ -281,12 +281,12 @@ fn methods(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> Token
             const IS_MUT: bool = #of::IS_MUT;
 
             #[inline(always)]
-            fn call(self, m: &M, args: A) -> Self::Output {
+            fn call(self, m: &__M, args: __Args) -> Self::Output {
                 #of::call(self, m, args)
             }
 
             #[inline(always)]
-            fn call_at(self, variable: &#p::Var<Self>, m: &M, args: A) -> Self::Output {
+            fn call_at(self, variable: &#p::Var<Self>, m: &__M, args: __Args) -> Self::Output {
                 #of::call_at(self, variable, m, args)
             }
         }
