@@ -396,6 +396,9 @@ impl Parser<'_> {
                 if ty.is_none() {
                     self.typed_numbers(pat, &init);
                 }
+                if matches!(pat, Pat::Tuple(_)) && refused::gives_struct(&init.kind) {
+                    self.errors.leave_to_rustc();
+                }
                 return self.destructure(pat, init, ty);
             }
         };
@@ -527,7 +530,7 @@ impl Parser<'_> {
             }
             let Some(place) = self.place(e) else { return Kind::Error };
             let base = Box::new(Expr { kind: Kind::Name(parts.clone()), span });
-            let index = syn::Index::from(i);
+            let index = syn::Index { index: i as u32, span: e.span() };
             let part = Kind::Field { base, member: index.to_token_stream() };
             let value = Box::new(Expr { kind: part, span });
             stmts.push(Stmt::Expr(Expr { kind: Kind::Assign { place, value }, span }));
@@ -591,8 +594,10 @@ impl Parser<'_> {
     }
 
     fn path(&mut self, p: &syn::ExprPath) -> Kind {
+        if let Some(last) = p.path.segments.last().filter(|s| refused::is_absent(&s.ident)) {
+            return self.absent(&last.ident);
+        }
         match p.path.get_ident() {
-            Some(ident) if refused::is_absent(ident) => self.absent(ident),
             Some(ident) => Kind::Name(ident.clone()),
             None => Kind::Path(p.to_token_stream()),
         }

@@ -6,11 +6,11 @@ mod operators;
 mod record;
 
 use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
+use quote::{ToTokens, format_ident, quote, quote_spanned};
 use syn::spanned::Spanned;
 
 use crate::diag::Errors;
-use crate::generics::Generics;
+use crate::generics::{Generics, mentions};
 use crate::parse;
 
 pub(crate) use record::hit_record;
@@ -34,7 +34,52 @@ pub(crate) fn derive(item: &syn::DeriveInput) -> TokenStream {
     if !errors.is_empty() {
         return errors.into_tokens();
     }
-    twin(item, &fields)
+    let mut item = item.clone();
+    bound_parameters(&mut item.generics, &fields, &mut errors);
+    let twin = twin(&item, &fields);
+    let errors = errors.into_tokens();
+    quote!(#twin #errors)
+}
+
+/// Bounds that say nothing of kernels.
+const OTHER_BOUNDS: &[&str] = &[
+    "Clone",
+    "Copy",
+    "Debug",
+    "Default",
+    "Eq",
+    "Hash",
+    "Ord",
+    "PartialEq",
+    "PartialOrd",
+    "Send",
+    "Sized",
+    "Sync",
+];
+
+/// A type parameter that is a member's type must be a type of kernels. Where nothing says so, the
+/// twin has the bound all the same, so that there is one error.
+fn bound_parameters(generics: &mut syn::Generics, fields: &[syn::Field], errors: &mut Errors) {
+    let says_nothing = |b: &syn::TypeParamBound| match b {
+        syn::TypeParamBound::Trait(t) => {
+            t.path.segments.last().is_some_and(|s| OTHER_BOUNDS.iter().any(|o| s.ident == o))
+        }
+        _ => true,
+    };
+    let clause = generics.where_clause.to_token_stream();
+    for param in generics.params.iter_mut() {
+        let syn::GenericParam::Type(t) = param else { continue };
+        let is_member = fields.iter().any(|f| mentions(&f.ty.to_token_stream(), &t.ident));
+        if !is_member || mentions(&clause, &t.ident) || !t.bounds.iter().all(says_nothing) {
+            continue;
+        }
+        errors.at(
+            t.ident.span(),
+            format!("`{}` may be a type that kernels do not have", t.ident),
+            &format!("write `{0}: Type`, or `{0}: Light` with a `#[kernel]` trait", t.ident),
+        );
+        t.bounds.push(syn::parse_quote!(::raydsl::__private::Type));
+    }
 }
 
 /// `#[primitive] struct`, or `enum` of primitives.
@@ -59,19 +104,22 @@ pub(crate) fn primitive_item(item: &syn::DeriveInput) -> TokenStream {
     let repr = (!item.attrs.iter().any(|a| a.path().is_ident("repr"))).then(|| quote!(#[repr(C)]));
     let types = fields.iter().map(|f| &f.ty);
     let twin = twin(item, &fields);
+    let dense = quote_spanned! {name.span()=>
+        const _: () = assert!(
+            ::core::mem::size_of::<#name>() == 0 #(+ ::core::mem::size_of::<#types>())*,
+            concat!(
+                "the primitive `", stringify!(#name), "` has gaps between its members\n",
+                "  help: order them by size, or fill the gaps with members of your own",
+            ),
+        );
+    };
     quote! {
         #clone
         #copy
         #repr
         #item
         #twin
-        const _: () = assert!(
-            ::core::mem::size_of::<#name>() == 0 #(+ ::core::mem::size_of::<#types>())*,
-            concat!(
-                "the primitive `", stringify!(#name), "` has gaps between its members: ",
-                "order them by size, or fill the gaps with members of your own",
-            ),
-        );
+        #dense
     }
 }
 

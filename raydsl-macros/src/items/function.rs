@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 
-use super::{Place, info, lifted_function, own, param_ident, private, quiet};
+use super::{Place, asserted, info, lifted_function, own, param_ident, private, quiet};
 use crate::diag::Errors;
 use crate::generics::Generics;
 use crate::here::{of_type, quote_here};
@@ -159,9 +159,11 @@ fn entry(kernel: &Kernel, sig: &syn::Signature) -> TokenStream {
     let arguments = &kernel.generics.used;
     let called =
         if kernel.generics.is_empty() { quote!(#name) } else { quote!(#name::<#arguments>) };
+    let asserted = asserted(kernel);
     let on = format_ident!("{}", if kernel.generics.is_empty() { "on" } else { "on_values" });
     quote_here! {
-        impl #declared #p::KernelFn for #name #used where #predicates {
+        #[diagnostic::do_not_recommend]
+        impl #declared #p::KernelFn for #name #used where #predicates #asserted {
             type Args = (#(#types,)*);
             type Output = #result;
 

@@ -63,6 +63,11 @@ fn is_iterator(e: &syn::Expr) -> bool {
     }
 }
 
+/// Whether it is a function of the prelude that gives a struct where readers of std expect a tuple.
+pub(super) fn gives_struct(value: &Kind) -> bool {
+    matches!(value, Kind::Call { path, .. } if path.to_string() == "sincos_2pi")
+}
+
 fn is_of_iterators(method: &Ident) -> bool {
     OF_ITERATORS.iter().any(|n| method == n)
 }
