@@ -54,6 +54,14 @@ impl Errors {
         self.first.map(|e| e.into_compile_error()).unwrap_or_default()
     }
 
+    /// The errors as items and a type. The type has a mistake in it, so that rustc asks nothing more
+    /// of what is made of it; a `compile_error!` in its place would be a `()`.
+    pub(crate) fn into_type(self) -> (TokenStream, TokenStream) {
+        let mut all = self.first.into_iter().flatten().map(syn::Error::into_compile_error);
+        let first = all.next();
+        (all.collect(), quote!([f32; #first]))
+    }
+
     /// The errors as an expression: one of them stands for its value, of whatever type, so that
     /// rustc asks nothing more of it.
     pub(crate) fn into_expression(self) -> TokenStream {

@@ -2,6 +2,7 @@
 
 mod choice;
 mod enumeration;
+mod mistaken;
 mod operators;
 mod record;
 
@@ -27,12 +28,12 @@ pub(crate) fn derive(item: &syn::DeriveInput) -> TokenStream {
         if errors.is_empty() {
             return enumeration::twin(item, &variants);
         }
-        return errors.into_tokens();
+        return mistaken::mistaken(item, errors);
     }
     let fields = named_fields(item, &mut errors);
     check_types(&fields, &mut errors);
     if !errors.is_empty() {
-        return errors.into_tokens();
+        return mistaken::mistaken(item, errors);
     }
     let mut item = item.clone();
     bound_parameters(&mut item.generics, &fields, &mut errors);
@@ -93,14 +94,15 @@ pub(crate) fn primitive_item(item: &syn::DeriveInput) -> TokenStream {
     if let Some(g) = item.generics.params.first() {
         errors.at(g.span(), "a primitive cannot be generic", "write a struct for each type");
     }
-    if !errors.is_empty() {
-        let errors = errors.into_tokens();
-        return quote!(#item #errors);
-    }
     let name = &item.ident;
     let derives = |what| derives(item, what);
     let clone = (!derives("Clone")).then(|| quote!(#[derive(Clone)]));
     let copy = (!derives("Copy")).then(|| quote!(#[derive(Copy)]));
+    if !errors.is_empty() {
+        let derives = mistaken::can_have_twin(item).then(|| quote!(#clone #copy));
+        let mistaken = mistaken::mistaken(item, errors);
+        return quote!(#derives #item #mistaken);
+    }
     let repr = (!item.attrs.iter().any(|a| a.path().is_ident("repr"))).then(|| quote!(#[repr(C)]));
     let types = fields.iter().map(|f| &f.ty);
     let twin = twin(item, &fields);

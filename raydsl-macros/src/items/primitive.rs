@@ -21,8 +21,8 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
     let parts = Parts::of(item, &mut errors);
     let lifted = kernel_impl(item, &ON_HOST, &mut errors);
     if !errors.is_empty() {
-        let errors = errors.into_tokens();
-        return quote!(#item #errors);
+        let (stub, errors) = (mistaken(item, &parts), errors.into_tokens());
+        return quote!(#lifted #stub #errors);
     }
     let p = private();
     let self_ty = &item.self_ty;
@@ -59,6 +59,37 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
                 ray: #p::RayOn<__M>,
             ) -> <#record as #p::Type>::On<__M> {
                 <#self_ty>::intersect_on(m, prim, ray)
+            }
+        }
+    }
+}
+
+/// A primitive with mistakes is one all the same, so that its trees give no second error.
+fn mistaken(item: &syn::ItemImpl, parts: &Parts<'_>) -> TokenStream {
+    if item.trait_.is_some() || !item.generics.params.is_empty() {
+        return TokenStream::new();
+    }
+    let (p, self_ty) = (private(), &item.self_ty);
+    let is_record = |ty: &&syn::Type| type_name(ty).is_some_and(|name| !ops::is_of_library(&name));
+    let record = parts.record.filter(is_record).map_or_else(|| quote!(#p::Hit), |ty| quote!(#ty));
+    quote! {
+        impl #p::Primitive for #self_ty {
+            type Hit = #record;
+
+            fn intersect(&self, _: #p::Ray) -> #record {
+                ::core::unreachable!()
+            }
+
+            fn get_bounds(&self) -> #p::Aabb {
+                ::core::unreachable!()
+            }
+
+            fn intersect_on<__M: #p::Machine>(
+                _: &__M,
+                _: <Self as #p::Type>::On<__M>,
+                _: #p::RayOn<__M>,
+            ) -> <#record as #p::Type>::On<__M> {
+                ::core::unreachable!()
             }
         }
     }

@@ -438,7 +438,7 @@ fn the_item_stays() {
     let s = quote!(
         struct S(f32);
     );
-    assert!(expand_primitive(quote!(), s.clone()).to_string().starts_with(&s.to_string()));
+    assert!(expand_primitive(quote!(), s.clone()).to_string().contains(&s.to_string()));
 }
 
 #[test]
