@@ -391,6 +391,7 @@ impl walk {
         )
     }
 }
+#[diagnostic::do_not_recommend]
 impl ::raydsl::__private::KernelFn for walk {
     type Args = (f32, u32);
     type Output = f32;

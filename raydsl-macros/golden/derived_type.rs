@@ -1,17 +1,18 @@
-///[`Sample`] on machine `M`.
+///[`Sample`] on a machine.
 #[allow(missing_docs, reason = "the members are those of the struct")]
-struct SampleOn<M: ::raydsl::__private::Machine> {
-    value: <f32 as ::raydsl::__private::Type>::On<M>,
-    count: <u32 as ::raydsl::__private::Type>::On<M>,
+struct SampleOn<__M: ::raydsl::__private::Machine> {
+    value: <f32 as ::raydsl::__private::Type>::On<__M>,
+    count: <u32 as ::raydsl::__private::Type>::On<__M>,
 }
-impl<M: ::raydsl::__private::Machine> Clone for SampleOn<M> {
+impl<__M: ::raydsl::__private::Machine> Clone for SampleOn<__M> {
     #[inline(always)]
     fn clone(&self) -> Self {
         *self
     }
 }
-impl<M: ::raydsl::__private::Machine> Copy for SampleOn<M> {}
-impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Value<M> for SampleOn<M> {
+impl<__M: ::raydsl::__private::Machine> Copy for SampleOn<__M> {}
+impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::Value<__M>
+for SampleOn<__M> {
     const SCHEMA: &'static ::raydsl::__private::Schema = &::raydsl::__private::Schema::Struct {
         name: "Sample",
         fields: &[
@@ -29,7 +30,7 @@ impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Value<M> for SampleOn
         size: ::core::mem::size_of::<Sample>(),
     };
     #[inline(always)]
-    fn zero(m: &M) -> Self {
+    fn zero(m: &__M) -> Self {
         Self {
             value: ::raydsl::__private::Value::zero(m),
             count: ::raydsl::__private::Value::zero(m),
@@ -37,10 +38,10 @@ impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Value<M> for SampleOn
     }
     #[inline(always)]
     fn zip(
-        m: &M,
+        m: &__M,
         a: Self,
         b: Self,
-        f: &mut impl ::raydsl::__private::Leaves<M>,
+        f: &mut impl ::raydsl::__private::Leaves<__M>,
     ) -> Self {
         Self {
             value: ::raydsl::__private::Value::zip(m, a.value, b.value, f),
@@ -49,257 +50,286 @@ impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Value<M> for SampleOn
     }
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine, R, Via> ::raydsl::__private::OpAdd<M, R, Via>
-for SampleOn<M>
+impl<
+    __M: ::raydsl::__private::Machine,
+    __Right,
+    __Via,
+> ::raydsl::__private::OpAdd<__M, __Right, __Via> for SampleOn<__M>
 where
     Sample: ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("+") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
         This = Self,
     >,
 {
     type Output = <Sample as ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("+") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
     >>::Output;
     #[inline(always)]
-    fn add(m: &M, a: Self, b: R) -> Self::Output {
+    fn add(m: &__M, a: Self, b: __Right) -> Self::Output {
         <Sample as ::raydsl::__private::HostMethod<
             { ::raydsl::__private::name("+") },
-            M,
-            (R,),
-            Via,
+            __M,
+            (__Right,),
+            __Via,
         >>::call(a, m, (b,))
     }
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine, R, Via> ::raydsl::__private::OpSub<M, R, Via>
-for SampleOn<M>
+impl<
+    __M: ::raydsl::__private::Machine,
+    __Right,
+    __Via,
+> ::raydsl::__private::OpSub<__M, __Right, __Via> for SampleOn<__M>
 where
     Sample: ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("-") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
         This = Self,
     >,
 {
     type Output = <Sample as ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("-") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
     >>::Output;
     #[inline(always)]
-    fn sub(m: &M, a: Self, b: R) -> Self::Output {
+    fn sub(m: &__M, a: Self, b: __Right) -> Self::Output {
         <Sample as ::raydsl::__private::HostMethod<
             { ::raydsl::__private::name("-") },
-            M,
-            (R,),
-            Via,
+            __M,
+            (__Right,),
+            __Via,
         >>::call(a, m, (b,))
     }
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine, R, Via> ::raydsl::__private::OpMul<M, R, Via>
-for SampleOn<M>
+impl<
+    __M: ::raydsl::__private::Machine,
+    __Right,
+    __Via,
+> ::raydsl::__private::OpMul<__M, __Right, __Via> for SampleOn<__M>
 where
     Sample: ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("*") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
         This = Self,
     >,
 {
     type Output = <Sample as ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("*") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
     >>::Output;
     #[inline(always)]
-    fn mul(m: &M, a: Self, b: R) -> Self::Output {
+    fn mul(m: &__M, a: Self, b: __Right) -> Self::Output {
         <Sample as ::raydsl::__private::HostMethod<
             { ::raydsl::__private::name("*") },
-            M,
-            (R,),
-            Via,
+            __M,
+            (__Right,),
+            __Via,
         >>::call(a, m, (b,))
     }
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine, R, Via> ::raydsl::__private::OpDiv<M, R, Via>
-for SampleOn<M>
+impl<
+    __M: ::raydsl::__private::Machine,
+    __Right,
+    __Via,
+> ::raydsl::__private::OpDiv<__M, __Right, __Via> for SampleOn<__M>
 where
     Sample: ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("/") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
         This = Self,
     >,
 {
     type Output = <Sample as ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("/") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
     >>::Output;
     #[inline(always)]
-    fn div(m: &M, a: Self, b: R) -> Self::Output {
+    fn div(m: &__M, a: Self, b: __Right) -> Self::Output {
         <Sample as ::raydsl::__private::HostMethod<
             { ::raydsl::__private::name("/") },
-            M,
-            (R,),
-            Via,
+            __M,
+            (__Right,),
+            __Via,
         >>::call(a, m, (b,))
     }
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine, R, Via> ::raydsl::__private::OpRem<M, R, Via>
-for SampleOn<M>
+impl<
+    __M: ::raydsl::__private::Machine,
+    __Right,
+    __Via,
+> ::raydsl::__private::OpRem<__M, __Right, __Via> for SampleOn<__M>
 where
     Sample: ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("%") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
         This = Self,
     >,
 {
     type Output = <Sample as ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("%") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
     >>::Output;
     #[inline(always)]
-    fn rem(m: &M, a: Self, b: R) -> Self::Output {
+    fn rem(m: &__M, a: Self, b: __Right) -> Self::Output {
         <Sample as ::raydsl::__private::HostMethod<
             { ::raydsl::__private::name("%") },
-            M,
-            (R,),
-            Via,
+            __M,
+            (__Right,),
+            __Via,
         >>::call(a, m, (b,))
     }
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine> ::raydsl::__private::OpNeg<M> for SampleOn<M>
+impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::OpNeg<__M> for SampleOn<__M>
 where
     Sample: ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("-x") },
-        M,
+        __M,
         (),
         This = Self,
         Output = Self,
     >,
 {
     #[inline(always)]
-    fn neg(m: &M, a: Self) -> Self {
+    fn neg(m: &__M, a: Self) -> Self {
         <Sample as ::raydsl::__private::HostMethod<
             { ::raydsl::__private::name("-x") },
-            M,
+            __M,
             (),
         >>::call(a, m, ())
     }
 }
 #[diagnostic::do_not_recommend]
 impl<
-    const NAME: u64,
-    M: ::raydsl::__private::Machine,
-    R,
-    Via,
-> ::raydsl::__private::Assigned<NAME, M, R, Via> for SampleOn<M>
+    const __NAME: u64,
+    __M: ::raydsl::__private::Machine,
+    __Right,
+    __Via,
+> ::raydsl::__private::Assigned<__NAME, __M, __Right, __Via> for SampleOn<__M>
 where
     Sample: ::raydsl::__private::HostMethod<
-        NAME,
-        M,
-        (R,),
-        Via,
+        __NAME,
+        __M,
+        (__Right,),
+        __Via,
         This = Self,
         Output = (),
     >,
 {
     #[inline(always)]
-    fn assigned(m: &M, a: Self, b: R) -> Self {
+    fn assigned(m: &__M, a: Self, b: __Right) -> Self {
         let variable = ::raydsl::__private::Var::new(m, "self", a);
         <Sample as ::raydsl::__private::HostMethod<
-            NAME,
-            M,
-            (R,),
-            Via,
+            __NAME,
+            __M,
+            (__Right,),
+            __Via,
         >>::call_at(a, &variable, m, (b,));
         variable.get(m)
     }
 }
-impl<M: ::raydsl::__private::Machine> ::raydsl::__private::RightOperand for SampleOn<M> {
+impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::RightOperand
+for SampleOn<__M> {
     type Host = Sample;
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Inferred<M> for SampleOn<M> {
+impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::Inferred<__M>
+for SampleOn<__M> {
     type Host = Sample;
     #[inline(always)]
-    fn give(self, _: &M) -> Self {
+    fn give(self, _: &__M) -> Self {
         self
     }
 }
-impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Twin<M> for SampleOn<M> {
+impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::Twin<__M>
+for SampleOn<__M> {
     #[inline(always)]
     fn from_host(v: Self) -> Self {
         v
     }
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Varying<M> for SampleOn<M> {
+impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::Varying<__M>
+for SampleOn<__M> {
     type Value = Self;
     #[inline(always)]
-    fn varying(self, _: &M) -> Self {
+    fn varying(self, _: &__M) -> Self {
         self
     }
 }
 impl<
-    const NAME: u64,
-    M: ::raydsl::__private::Machine,
-    A,
-    Via,
-> ::raydsl::__private::Method<NAME, M, A, Via> for SampleOn<M>
+    const __NAME: u64,
+    __M: ::raydsl::__private::Machine,
+    __Args,
+    __Via,
+> ::raydsl::__private::Method<__NAME, __M, __Args, __Via> for SampleOn<__M>
 where
-    Sample: ::raydsl::__private::HostMethod<NAME, M, A, Via, This = Self>,
+    Sample: ::raydsl::__private::HostMethod<__NAME, __M, __Args, __Via, This = Self>,
 {
-    type Output = <Sample as ::raydsl::__private::HostMethod<NAME, M, A, Via>>::Output;
+    type Output = <Sample as ::raydsl::__private::HostMethod<
+        __NAME,
+        __M,
+        __Args,
+        __Via,
+    >>::Output;
     const IS_MUT: bool = <Sample as ::raydsl::__private::HostMethod<
-        NAME,
-        M,
-        A,
-        Via,
+        __NAME,
+        __M,
+        __Args,
+        __Via,
     >>::IS_MUT;
     #[inline(always)]
-    fn call(self, m: &M, args: A) -> Self::Output {
-        <Sample as ::raydsl::__private::HostMethod<NAME, M, A, Via>>::call(self, m, args)
+    fn call(self, m: &__M, args: __Args) -> Self::Output {
+        <Sample as ::raydsl::__private::HostMethod<
+            __NAME,
+            __M,
+            __Args,
+            __Via,
+        >>::call(self, m, args)
     }
     #[inline(always)]
     fn call_at(
         self,
         variable: &::raydsl::__private::Var<Self>,
-        m: &M,
-        args: A,
+        m: &__M,
+        args: __Args,
     ) -> Self::Output {
         <Sample as ::raydsl::__private::HostMethod<
-            NAME,
-            M,
-            A,
-            Via,
+            __NAME,
+            __M,
+            __Args,
+            __Via,
         >>::call_at(self, variable, m, args)
     }
 }
 #[diagnostic::do_not_recommend]
 impl ::raydsl::__private::Type for Sample {
-    type On<M: ::raydsl::__private::Machine> = SampleOn<M>;
+    type On<__M: ::raydsl::__private::Machine> = SampleOn<__M>;
     const SCHEMA: &'static ::raydsl::__private::Schema = &::raydsl::__private::Schema::Struct {
         name: "Sample",
         fields: &[
@@ -317,24 +347,27 @@ impl ::raydsl::__private::Type for Sample {
         size: ::core::mem::size_of::<Sample>(),
     };
     #[inline(always)]
-    fn splat<M: ::raydsl::__private::Machine>(m: &M, v: Self) -> SampleOn<M> {
+    fn splat<__M: ::raydsl::__private::Machine>(m: &__M, v: Self) -> SampleOn<__M> {
         SampleOn {
             value: ::raydsl::__private::Type::splat(m, v.value),
             count: ::raydsl::__private::Type::splat(m, v.count),
         }
     }
     #[inline(always)]
-    fn from_lanes<M: ::raydsl::__private::LaneMachine>(
-        m: &M,
+    fn from_lanes<__M: ::raydsl::__private::LaneMachine>(
+        m: &__M,
         f: &impl Fn(usize) -> Self,
-    ) -> SampleOn<M> {
+    ) -> SampleOn<__M> {
         SampleOn {
             value: ::raydsl::__private::Type::from_lanes(m, &|lane| f(lane).value),
             count: ::raydsl::__private::Type::from_lanes(m, &|lane| f(lane).count),
         }
     }
     #[inline(always)]
-    fn lane<M: ::raydsl::__private::LaneMachine>(v: &SampleOn<M>, lane: usize) -> Self {
+    fn lane<__M: ::raydsl::__private::LaneMachine>(
+        v: &SampleOn<__M>,
+        lane: usize,
+    ) -> Self {
         Self {
             value: ::raydsl::__private::Type::lane(&v.value, lane),
             count: ::raydsl::__private::Type::lane(&v.count, lane),
@@ -362,14 +395,14 @@ impl ::raydsl::__private::Type for Sample {
     }
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Capture<M> for Sample {
-    type On<'c> = SampleOn<M>;
+impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::Capture<__M> for Sample {
+    type On<'c> = SampleOn<__M>;
     #[inline(always)]
-    fn capture(&self, m: &M, name: &'static str) -> SampleOn<M> {
+    fn capture(&self, m: &__M, name: &'static str) -> SampleOn<__M> {
         ::raydsl::__private::Machine::capture(m, name, *self)
     }
     #[inline(always)]
-    fn constant(&self, m: &M) -> SampleOn<M> {
+    fn constant(&self, m: &__M) -> SampleOn<__M> {
         ::raydsl::__private::Type::splat(m, *self)
     }
 }

@@ -29,7 +29,10 @@ impl push {
             __M,
             <Vec3 as ::raydsl::__private::Type>::On<__M>,
         >,
-    ) -> <Particle as ::raydsl::__private::Type>::On<__M> {
+    ) -> <Particle as ::raydsl::__private::Type>::On<__M>
+    where
+        Particle: ::raydsl::__private::Type,
+    {
         use ::raydsl::__private::operations::*;
         static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
             name: "push",
@@ -104,7 +107,11 @@ impl push {
         )
     }
 }
-impl ::raydsl::__private::KernelFn for push {
+#[diagnostic::do_not_recommend]
+impl ::raydsl::__private::KernelFn for push
+where
+    Particle: ::raydsl::__private::Type,
+{
     type Args = (Particle, Vec3);
     type Output = Particle;
     fn info() -> &'static ::raydsl::__private::KernelInfo {

@@ -8,22 +8,22 @@ pub struct ColorSphere {
     radius: Unorm8,
     color: [Unorm8; 3],
 }
-///[`ColorSphere`] on machine `M`.
+///[`ColorSphere`] on a machine.
 #[allow(missing_docs, reason = "the members are those of the struct")]
-pub struct ColorSphereOn<M: ::raydsl::__private::Machine> {
-    pub center: <Vec3 as ::raydsl::__private::Type>::On<M>,
-    radius: <Unorm8 as ::raydsl::__private::Type>::On<M>,
-    color: <[Unorm8; 3] as ::raydsl::__private::Type>::On<M>,
+pub struct ColorSphereOn<__M: ::raydsl::__private::Machine> {
+    pub center: <Vec3 as ::raydsl::__private::Type>::On<__M>,
+    radius: <Unorm8 as ::raydsl::__private::Type>::On<__M>,
+    color: <[Unorm8; 3] as ::raydsl::__private::Type>::On<__M>,
 }
-impl<M: ::raydsl::__private::Machine> Clone for ColorSphereOn<M> {
+impl<__M: ::raydsl::__private::Machine> Clone for ColorSphereOn<__M> {
     #[inline(always)]
     fn clone(&self) -> Self {
         *self
     }
 }
-impl<M: ::raydsl::__private::Machine> Copy for ColorSphereOn<M> {}
-impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Value<M>
-for ColorSphereOn<M> {
+impl<__M: ::raydsl::__private::Machine> Copy for ColorSphereOn<__M> {}
+impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::Value<__M>
+for ColorSphereOn<__M> {
     const SCHEMA: &'static ::raydsl::__private::Schema = &::raydsl::__private::Schema::Struct {
         name: "ColorSphere",
         fields: &[
@@ -46,7 +46,7 @@ for ColorSphereOn<M> {
         size: ::core::mem::size_of::<ColorSphere>(),
     };
     #[inline(always)]
-    fn zero(m: &M) -> Self {
+    fn zero(m: &__M) -> Self {
         Self {
             center: ::raydsl::__private::Value::zero(m),
             radius: ::raydsl::__private::Value::zero(m),
@@ -55,10 +55,10 @@ for ColorSphereOn<M> {
     }
     #[inline(always)]
     fn zip(
-        m: &M,
+        m: &__M,
         a: Self,
         b: Self,
-        f: &mut impl ::raydsl::__private::Leaves<M>,
+        f: &mut impl ::raydsl::__private::Leaves<__M>,
     ) -> Self {
         Self {
             center: ::raydsl::__private::Value::zip(m, a.center, b.center, f),
@@ -68,270 +68,293 @@ for ColorSphereOn<M> {
     }
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine, R, Via> ::raydsl::__private::OpAdd<M, R, Via>
-for ColorSphereOn<M>
+impl<
+    __M: ::raydsl::__private::Machine,
+    __Right,
+    __Via,
+> ::raydsl::__private::OpAdd<__M, __Right, __Via> for ColorSphereOn<__M>
 where
     ColorSphere: ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("+") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
         This = Self,
     >,
 {
     type Output = <ColorSphere as ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("+") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
     >>::Output;
     #[inline(always)]
-    fn add(m: &M, a: Self, b: R) -> Self::Output {
+    fn add(m: &__M, a: Self, b: __Right) -> Self::Output {
         <ColorSphere as ::raydsl::__private::HostMethod<
             { ::raydsl::__private::name("+") },
-            M,
-            (R,),
-            Via,
+            __M,
+            (__Right,),
+            __Via,
         >>::call(a, m, (b,))
     }
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine, R, Via> ::raydsl::__private::OpSub<M, R, Via>
-for ColorSphereOn<M>
+impl<
+    __M: ::raydsl::__private::Machine,
+    __Right,
+    __Via,
+> ::raydsl::__private::OpSub<__M, __Right, __Via> for ColorSphereOn<__M>
 where
     ColorSphere: ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("-") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
         This = Self,
     >,
 {
     type Output = <ColorSphere as ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("-") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
     >>::Output;
     #[inline(always)]
-    fn sub(m: &M, a: Self, b: R) -> Self::Output {
+    fn sub(m: &__M, a: Self, b: __Right) -> Self::Output {
         <ColorSphere as ::raydsl::__private::HostMethod<
             { ::raydsl::__private::name("-") },
-            M,
-            (R,),
-            Via,
+            __M,
+            (__Right,),
+            __Via,
         >>::call(a, m, (b,))
     }
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine, R, Via> ::raydsl::__private::OpMul<M, R, Via>
-for ColorSphereOn<M>
+impl<
+    __M: ::raydsl::__private::Machine,
+    __Right,
+    __Via,
+> ::raydsl::__private::OpMul<__M, __Right, __Via> for ColorSphereOn<__M>
 where
     ColorSphere: ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("*") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
         This = Self,
     >,
 {
     type Output = <ColorSphere as ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("*") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
     >>::Output;
     #[inline(always)]
-    fn mul(m: &M, a: Self, b: R) -> Self::Output {
+    fn mul(m: &__M, a: Self, b: __Right) -> Self::Output {
         <ColorSphere as ::raydsl::__private::HostMethod<
             { ::raydsl::__private::name("*") },
-            M,
-            (R,),
-            Via,
+            __M,
+            (__Right,),
+            __Via,
         >>::call(a, m, (b,))
     }
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine, R, Via> ::raydsl::__private::OpDiv<M, R, Via>
-for ColorSphereOn<M>
+impl<
+    __M: ::raydsl::__private::Machine,
+    __Right,
+    __Via,
+> ::raydsl::__private::OpDiv<__M, __Right, __Via> for ColorSphereOn<__M>
 where
     ColorSphere: ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("/") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
         This = Self,
     >,
 {
     type Output = <ColorSphere as ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("/") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
     >>::Output;
     #[inline(always)]
-    fn div(m: &M, a: Self, b: R) -> Self::Output {
+    fn div(m: &__M, a: Self, b: __Right) -> Self::Output {
         <ColorSphere as ::raydsl::__private::HostMethod<
             { ::raydsl::__private::name("/") },
-            M,
-            (R,),
-            Via,
+            __M,
+            (__Right,),
+            __Via,
         >>::call(a, m, (b,))
     }
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine, R, Via> ::raydsl::__private::OpRem<M, R, Via>
-for ColorSphereOn<M>
+impl<
+    __M: ::raydsl::__private::Machine,
+    __Right,
+    __Via,
+> ::raydsl::__private::OpRem<__M, __Right, __Via> for ColorSphereOn<__M>
 where
     ColorSphere: ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("%") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
         This = Self,
     >,
 {
     type Output = <ColorSphere as ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("%") },
-        M,
-        (R,),
-        Via,
+        __M,
+        (__Right,),
+        __Via,
     >>::Output;
     #[inline(always)]
-    fn rem(m: &M, a: Self, b: R) -> Self::Output {
+    fn rem(m: &__M, a: Self, b: __Right) -> Self::Output {
         <ColorSphere as ::raydsl::__private::HostMethod<
             { ::raydsl::__private::name("%") },
-            M,
-            (R,),
-            Via,
+            __M,
+            (__Right,),
+            __Via,
         >>::call(a, m, (b,))
     }
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine> ::raydsl::__private::OpNeg<M> for ColorSphereOn<M>
+impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::OpNeg<__M>
+for ColorSphereOn<__M>
 where
     ColorSphere: ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("-x") },
-        M,
+        __M,
         (),
         This = Self,
         Output = Self,
     >,
 {
     #[inline(always)]
-    fn neg(m: &M, a: Self) -> Self {
+    fn neg(m: &__M, a: Self) -> Self {
         <ColorSphere as ::raydsl::__private::HostMethod<
             { ::raydsl::__private::name("-x") },
-            M,
+            __M,
             (),
         >>::call(a, m, ())
     }
 }
 #[diagnostic::do_not_recommend]
 impl<
-    const NAME: u64,
-    M: ::raydsl::__private::Machine,
-    R,
-    Via,
-> ::raydsl::__private::Assigned<NAME, M, R, Via> for ColorSphereOn<M>
+    const __NAME: u64,
+    __M: ::raydsl::__private::Machine,
+    __Right,
+    __Via,
+> ::raydsl::__private::Assigned<__NAME, __M, __Right, __Via> for ColorSphereOn<__M>
 where
     ColorSphere: ::raydsl::__private::HostMethod<
-        NAME,
-        M,
-        (R,),
-        Via,
+        __NAME,
+        __M,
+        (__Right,),
+        __Via,
         This = Self,
         Output = (),
     >,
 {
     #[inline(always)]
-    fn assigned(m: &M, a: Self, b: R) -> Self {
+    fn assigned(m: &__M, a: Self, b: __Right) -> Self {
         let variable = ::raydsl::__private::Var::new(m, "self", a);
         <ColorSphere as ::raydsl::__private::HostMethod<
-            NAME,
-            M,
-            (R,),
-            Via,
+            __NAME,
+            __M,
+            (__Right,),
+            __Via,
         >>::call_at(a, &variable, m, (b,));
         variable.get(m)
     }
 }
-impl<M: ::raydsl::__private::Machine> ::raydsl::__private::RightOperand
-for ColorSphereOn<M> {
+impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::RightOperand
+for ColorSphereOn<__M> {
     type Host = ColorSphere;
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Inferred<M>
-for ColorSphereOn<M> {
+impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::Inferred<__M>
+for ColorSphereOn<__M> {
     type Host = ColorSphere;
     #[inline(always)]
-    fn give(self, _: &M) -> Self {
+    fn give(self, _: &__M) -> Self {
         self
     }
 }
-impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Twin<M> for ColorSphereOn<M> {
+impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::Twin<__M>
+for ColorSphereOn<__M> {
     #[inline(always)]
     fn from_host(v: Self) -> Self {
         v
     }
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Varying<M>
-for ColorSphereOn<M> {
+impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::Varying<__M>
+for ColorSphereOn<__M> {
     type Value = Self;
     #[inline(always)]
-    fn varying(self, _: &M) -> Self {
+    fn varying(self, _: &__M) -> Self {
         self
     }
 }
 impl<
-    const NAME: u64,
-    M: ::raydsl::__private::Machine,
-    A,
-    Via,
-> ::raydsl::__private::Method<NAME, M, A, Via> for ColorSphereOn<M>
+    const __NAME: u64,
+    __M: ::raydsl::__private::Machine,
+    __Args,
+    __Via,
+> ::raydsl::__private::Method<__NAME, __M, __Args, __Via> for ColorSphereOn<__M>
 where
-    ColorSphere: ::raydsl::__private::HostMethod<NAME, M, A, Via, This = Self>,
+    ColorSphere: ::raydsl::__private::HostMethod<
+        __NAME,
+        __M,
+        __Args,
+        __Via,
+        This = Self,
+    >,
 {
     type Output = <ColorSphere as ::raydsl::__private::HostMethod<
-        NAME,
-        M,
-        A,
-        Via,
+        __NAME,
+        __M,
+        __Args,
+        __Via,
     >>::Output;
     const IS_MUT: bool = <ColorSphere as ::raydsl::__private::HostMethod<
-        NAME,
-        M,
-        A,
-        Via,
+        __NAME,
+        __M,
+        __Args,
+        __Via,
     >>::IS_MUT;
     #[inline(always)]
-    fn call(self, m: &M, args: A) -> Self::Output {
+    fn call(self, m: &__M, args: __Args) -> Self::Output {
         <ColorSphere as ::raydsl::__private::HostMethod<
-            NAME,
-            M,
-            A,
-            Via,
+            __NAME,
+            __M,
+            __Args,
+            __Via,
         >>::call(self, m, args)
     }
     #[inline(always)]
     fn call_at(
         self,
         variable: &::raydsl::__private::Var<Self>,
-        m: &M,
-        args: A,
+        m: &__M,
+        args: __Args,
     ) -> Self::Output {
         <ColorSphere as ::raydsl::__private::HostMethod<
-            NAME,
-            M,
-            A,
-            Via,
+            __NAME,
+            __M,
+            __Args,
+            __Via,
         >>::call_at(self, variable, m, args)
     }
 }
 #[diagnostic::do_not_recommend]
 impl ::raydsl::__private::Type for ColorSphere {
-    type On<M: ::raydsl::__private::Machine> = ColorSphereOn<M>;
+    type On<__M: ::raydsl::__private::Machine> = ColorSphereOn<__M>;
     const SCHEMA: &'static ::raydsl::__private::Schema = &::raydsl::__private::Schema::Struct {
         name: "ColorSphere",
         fields: &[
@@ -354,7 +377,7 @@ impl ::raydsl::__private::Type for ColorSphere {
         size: ::core::mem::size_of::<ColorSphere>(),
     };
     #[inline(always)]
-    fn splat<M: ::raydsl::__private::Machine>(m: &M, v: Self) -> ColorSphereOn<M> {
+    fn splat<__M: ::raydsl::__private::Machine>(m: &__M, v: Self) -> ColorSphereOn<__M> {
         ColorSphereOn {
             center: ::raydsl::__private::Type::splat(m, v.center),
             radius: ::raydsl::__private::Type::splat(m, v.radius),
@@ -362,10 +385,10 @@ impl ::raydsl::__private::Type for ColorSphere {
         }
     }
     #[inline(always)]
-    fn from_lanes<M: ::raydsl::__private::LaneMachine>(
-        m: &M,
+    fn from_lanes<__M: ::raydsl::__private::LaneMachine>(
+        m: &__M,
         f: &impl Fn(usize) -> Self,
-    ) -> ColorSphereOn<M> {
+    ) -> ColorSphereOn<__M> {
         ColorSphereOn {
             center: ::raydsl::__private::Type::from_lanes(m, &|lane| f(lane).center),
             radius: ::raydsl::__private::Type::from_lanes(m, &|lane| f(lane).radius),
@@ -373,8 +396,8 @@ impl ::raydsl::__private::Type for ColorSphere {
         }
     }
     #[inline(always)]
-    fn lane<M: ::raydsl::__private::LaneMachine>(
-        v: &ColorSphereOn<M>,
+    fn lane<__M: ::raydsl::__private::LaneMachine>(
+        v: &ColorSphereOn<__M>,
         lane: usize,
     ) -> Self {
         Self {
@@ -412,14 +435,15 @@ impl ::raydsl::__private::Type for ColorSphere {
     }
 }
 #[diagnostic::do_not_recommend]
-impl<M: ::raydsl::__private::Machine> ::raydsl::__private::Capture<M> for ColorSphere {
-    type On<'c> = ColorSphereOn<M>;
+impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::Capture<__M>
+for ColorSphere {
+    type On<'c> = ColorSphereOn<__M>;
     #[inline(always)]
-    fn capture(&self, m: &M, name: &'static str) -> ColorSphereOn<M> {
+    fn capture(&self, m: &__M, name: &'static str) -> ColorSphereOn<__M> {
         ::raydsl::__private::Machine::capture(m, name, *self)
     }
     #[inline(always)]
-    fn constant(&self, m: &M) -> ColorSphereOn<M> {
+    fn constant(&self, m: &__M) -> ColorSphereOn<__M> {
         ::raydsl::__private::Type::splat(m, *self)
     }
 }
@@ -427,6 +451,6 @@ const _: () = assert!(
     ::core::mem::size_of:: < ColorSphere > () == 0 + ::core::mem::size_of:: < Vec3 > () +
     ::core::mem::size_of:: < Unorm8 > () + ::core::mem::size_of:: < [Unorm8; 3] > (),
     concat!("the primitive `", stringify!(ColorSphere),
-    "` has gaps between its members: ",
-    "order them by size, or fill the gaps with members of your own",),
+    "` has gaps between its members\n",
+    "  help: order them by size, or fill the gaps with members of your own",),
 );

@@ -113,9 +113,10 @@ impl<
     }
 }
 impl ::raydsl::__private::Primitive for ColorSphere {
+    type Hit = Hit;
     const SLACK: f32 = <ColorSphere>::SLACK;
     #[inline(always)]
-    fn intersect(&self, ray: ::raydsl::__private::Ray) -> ::raydsl::__private::Hit {
+    fn intersect(&self, ray: ::raydsl::__private::Ray) -> Hit {
         <ColorSphere>::intersect(self, ray)
     }
     fn get_bounds(&self) -> ::raydsl::__private::Aabb {
@@ -126,7 +127,7 @@ impl ::raydsl::__private::Primitive for ColorSphere {
         m: &__M,
         prim: <Self as ::raydsl::__private::Type>::On<__M>,
         ray: ::raydsl::__private::RayOn<__M>,
-    ) -> ::raydsl::__private::HitOn<__M> {
+    ) -> <Hit as ::raydsl::__private::Type>::On<__M> {
         <ColorSphere>::intersect_on(m, prim, ray)
     }
 }

@@ -99,6 +99,7 @@ impl smooth {
         )
     }
 }
+#[diagnostic::do_not_recommend]
 impl ::raydsl::__private::KernelFn for smooth {
     type Args = (f32, u32);
     type Output = f32;

@@ -177,7 +177,7 @@ pub fn derive_type(input: TokenStream) -> TokenStream {
 #[proc_macro_derive(HitRecord)]
 pub fn derive_hit_record(input: TokenStream) -> TokenStream {
     match syn::parse::<syn::DeriveInput>(input) {
-        Ok(item) => twin::hit_record(&item).into(),
+        Ok(item) => rewrite::with_readable_names(twin::hit_record(&item)).into(),
         Err(e) => e.into_compile_error().into(),
     }
 }

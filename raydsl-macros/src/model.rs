@@ -510,6 +510,22 @@ impl Block {
         self.children().into_iter().any(|e| leaves(e, label))
     }
 
+    /// The calls of a method of this name on `self`.
+    pub(crate) fn calls_on_self(&self, method: &Ident) -> Vec<Span> {
+        fn find(e: &Expr, method: &Ident, found: &mut Vec<Span>) {
+            if let Kind::Method { receiver, name, .. } = &e.kind
+                && matches!(&receiver.kind, Kind::Name(r) if r == "self")
+                && name == method
+            {
+                found.push(name.span());
+            }
+            e.kind.children().into_iter().for_each(|e| find(e, method, found));
+        }
+        let mut found = Vec::new();
+        self.children().into_iter().for_each(|e| find(e, method, &mut found));
+        found
+    }
+
     /// Whether the function returns from within the block.
     pub(crate) fn returns(&self) -> bool {
         fn returns(e: &Expr) -> bool {

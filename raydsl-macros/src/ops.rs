@@ -142,6 +142,80 @@ pub(crate) fn denied(name: &str) -> Option<Denied> {
     Some(Denied { what, help: format!("write {instead}"), seen_by_type: false })
 }
 
+/// Types of Rust's and glam's that kernels have.
+pub(crate) const LIBRARY: &[&str] = &[
+    "f32", "i32", "u32", "usize", "bool", "Vec2", "Vec3", "Vec4", "IVec2", "IVec3", "IVec4",
+    "UVec2", "UVec3", "UVec4", "BVec2", "BVec3", "BVec4", "Mat3", "Mat4", "Affine3", "Ray", "Hit",
+];
+
+/// Whether the type is one of Rust's or glam's.
+pub(crate) fn is_of_library(name: &str) -> bool {
+    LIBRARY.contains(&name)
+}
+
+/// Methods of Rust's and glam's types that take a second value.
+const OF_TWO: &[&str] = &[
+    "min",
+    "max",
+    "copysign",
+    "rem_euclid",
+    "wrapping_add",
+    "wrapping_sub",
+    "wrapping_mul",
+    "saturating_sub",
+    "dot",
+    "cross",
+    "distance",
+];
+
+/// Methods of Rust's and glam's types that take the value alone.
+const OF_ONE: &[&str] = &[
+    "abs",
+    "sqrt",
+    "floor",
+    "ceil",
+    "trunc",
+    "round",
+    "fract",
+    "signum",
+    "recip",
+    "to_bits",
+    "to_radians",
+    "to_degrees",
+    "is_nan",
+    "is_finite",
+    "count_ones",
+    "leading_zeros",
+    "length",
+    "length_squared",
+    "normalize",
+];
+
+/// What to write in place of `f32::name(..)`, if `name` is a method.
+pub(crate) fn method_of_library(name: &str) -> Option<String> {
+    if let Some((_, ours)) = ELEMENTARY.iter().find(|e| e.0 == name && !e.1.is_empty()) {
+        return Some(format!("write `{ours}`, the function of raydsl's prelude"));
+    }
+    let call = match name {
+        "clamp" => "x.clamp(low, high)".to_owned(),
+        "mul_add" => "x.mul_add(a, b)".to_owned(),
+        _ if OF_TWO.contains(&name) => format!("a.{name}(b)"),
+        _ if OF_ONE.contains(&name) => format!("x.{name}()"),
+        _ => return None,
+    };
+    Some(format!("write `{call}`"))
+}
+
+/// What to write in place of a function of std.
+pub(crate) fn instead_of_std(name: &str) -> String {
+    match name {
+        "min" | "max" => format!("write `{name}(a, b)`, the function of raydsl's prelude"),
+        "swap" => "write `(a, b) = (b, a)`".to_owned(),
+        "replace" | "take" => "copy the value to a variable, and assign the new one".to_owned(),
+        _ => "write it with the functions of raydsl's prelude, or as a `#[kernel] fn`".to_owned(),
+    }
+}
+
 /// Functions of the prelude that packets run in a few operations, and in how many.
 const CHEAP_FUNCTIONS: &[(&str, u32)] =
     &[("min", 2), ("max", 2), ("clamp", 4), ("select", 1), ("vec2", 0), ("vec3", 0), ("vec4", 0)];

@@ -2,6 +2,7 @@
 
 mod iteration;
 mod pattern;
+mod refused;
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{ToTokens, quote};
@@ -395,6 +396,9 @@ impl Parser<'_> {
                 if ty.is_none() {
                     self.typed_numbers(pat, &init);
                 }
+                if matches!(pat, Pat::Tuple(_)) && refused::gives_struct(&init.kind) {
+                    self.errors.leave_to_rustc();
+                }
                 return self.destructure(pat, init, ty);
             }
         };
@@ -499,10 +503,13 @@ impl Parser<'_> {
             syn::Expr::Assign(a) if matches!(&*a.left, syn::Expr::Tuple(_)) => {
                 self.assign_tuple(&a.left, &a.right)
             }
-            syn::Expr::Assign(a) => match self.place(&a.left) {
-                Some(place) => Kind::Assign { place, value: self.boxed(&a.right) },
-                None => Kind::Error,
-            },
+            syn::Expr::Assign(a) => {
+                let (place, value) = (self.place(&a.left), self.boxed(&a.right));
+                match place {
+                    Some(place) => Kind::Assign { place, value },
+                    None => value.kind,
+                }
+            }
             // Values are copied: a reference is the value, and so is what it refers to.
             syn::Expr::Reference(r) if r.mutability.is_none() => self.kind(&r.expr),
             syn::Expr::Macro(m) => self.macro_call(&m.mac),
@@ -523,7 +530,7 @@ impl Parser<'_> {
             }
             let Some(place) = self.place(e) else { return Kind::Error };
             let base = Box::new(Expr { kind: Kind::Name(parts.clone()), span });
-            let index = syn::Index::from(i);
+            let index = syn::Index { index: i as u32, span: e.span() };
             let part = Kind::Field { base, member: index.to_token_stream() };
             let value = Box::new(Expr { kind: part, span });
             stmts.push(Stmt::Expr(Expr { kind: Kind::Assign { place, value }, span }));
@@ -587,6 +594,9 @@ impl Parser<'_> {
     }
 
     fn path(&mut self, p: &syn::ExprPath) -> Kind {
+        if let Some(last) = p.path.segments.last().filter(|s| refused::is_absent(&s.ident)) {
+            return self.absent(&last.ident);
+        }
         match p.path.get_ident() {
             Some(ident) => Kind::Name(ident.clone()),
             None => Kind::Path(p.to_token_stream()),
@@ -603,8 +613,8 @@ impl Parser<'_> {
 
     fn binary(&mut self, b: &syn::ExprBinary) -> Kind {
         if let Some(op) = assignment(&b.op) {
-            let Some(place) = self.place(&b.left) else { return Kind::Error };
-            let value = self.boxed(&b.right);
+            let (place, value) = (self.place(&b.left), self.boxed(&b.right));
+            let Some(place) = place else { return value.kind };
             let acts = |s: &Step| matches!(s, Step::Computed(e) if e.may_act());
             if place.steps.iter().any(acts) && value.may_act() {
                 return self.error(
@@ -649,12 +659,8 @@ impl Parser<'_> {
     }
 
     fn call(&mut self, c: &syn::ExprCall) -> Kind {
-        if let Some(closure) = c.args.iter().find(|e| matches!(e, syn::Expr::Closure(_))) {
-            return self.error(
-                closure.span(),
-                "a kernel takes no closures",
-                "give it a value of a type with a `#[kernel]` trait: `fn f<S: Shader>(s: S)`",
-            );
+        if let Some(refused) = self.refused_call(c) {
+            return refused;
         }
         let args = self.arguments(&c.args);
         let syn::Expr::Path(p) = &*c.func else {
@@ -677,6 +683,7 @@ impl Parser<'_> {
                 ty.segments.pop_punct();
                 Kind::Associated { ty: ty.to_token_stream(), name: last.ident.clone(), args }
             }
+            _ if refused::is_absent(&last.ident) => self.absent(&last.ident),
             _ if is_type_name(&last.ident) => self.error(
                 last.span(),
                 "a kernel has no tuple structs",
@@ -690,6 +697,9 @@ impl Parser<'_> {
     }
 
     fn method(&mut self, c: &syn::ExprMethodCall) -> Kind {
+        if let Some(refused) = self.refused_iteration(c) {
+            return refused;
+        }
         let generic = c.turbofish.iter().flat_map(|t| &t.args);
         Kind::Method {
             receiver: self.boxed(&c.receiver),

@@ -37,6 +37,16 @@ pub(crate) fn without_markers(source: TokenStream) -> TokenStream {
     out
 }
 
+/// The names of our type parameters, and what messages call them. The user's own, of whatever name,
+/// stand beside them.
+const READABLE: [(&str, &str); 5] = [
+    ("__M", "AnyMachine"),
+    ("__Args", "AnyArguments"),
+    ("__Right", "AnyOperand"),
+    ("__Via", "AnyTrait"),
+    ("__NAME", "ANY_NAME"),
+];
+
 /// Generated code whose type parameters have names that read well in rustc's messages; while it is
 /// made, they begin with `__`, as do other names of ours.
 pub(crate) fn with_readable_names(generated: TokenStream) -> TokenStream {
@@ -49,8 +59,8 @@ pub(crate) fn with_readable_names(generated: TokenStream) -> TokenStream {
 
 fn readable_name(ident: Ident) -> Ident {
     let text = ident.to_string();
-    if text == "__M" {
-        return Ident::new("AnyMachine", ident.span());
+    if let Some((_, readable)) = READABLE.iter().find(|(name, _)| *name == text) {
+        return Ident::new(readable, ident.span());
     }
     match text.strip_prefix("__A").map(str::parse::<u32>) {
         Some(Ok(i)) => Ident::new(&format!("Argument{i}"), ident.span()),

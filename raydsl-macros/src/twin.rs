@@ -2,15 +2,16 @@
 
 mod choice;
 mod enumeration;
+mod mistaken;
 mod operators;
 mod record;
 
 use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
+use quote::{ToTokens, format_ident, quote, quote_spanned};
 use syn::spanned::Spanned;
 
 use crate::diag::Errors;
-use crate::generics::Generics;
+use crate::generics::{Generics, mentions};
 use crate::parse;
 
 pub(crate) use record::hit_record;
@@ -27,14 +28,59 @@ pub(crate) fn derive(item: &syn::DeriveInput) -> TokenStream {
         if errors.is_empty() {
             return enumeration::twin(item, &variants);
         }
-        return errors.into_tokens();
+        return mistaken::mistaken(item, errors);
     }
     let fields = named_fields(item, &mut errors);
     check_types(&fields, &mut errors);
     if !errors.is_empty() {
-        return errors.into_tokens();
+        return mistaken::mistaken(item, errors);
     }
-    twin(item, &fields)
+    let mut item = item.clone();
+    bound_parameters(&mut item.generics, &fields, &mut errors);
+    let twin = twin(&item, &fields);
+    let errors = errors.into_tokens();
+    quote!(#twin #errors)
+}
+
+/// Bounds that say nothing of kernels.
+const OTHER_BOUNDS: &[&str] = &[
+    "Clone",
+    "Copy",
+    "Debug",
+    "Default",
+    "Eq",
+    "Hash",
+    "Ord",
+    "PartialEq",
+    "PartialOrd",
+    "Send",
+    "Sized",
+    "Sync",
+];
+
+/// A type parameter that is a member's type must be a type of kernels. Where nothing says so, the
+/// twin has the bound all the same, so that there is one error.
+fn bound_parameters(generics: &mut syn::Generics, fields: &[syn::Field], errors: &mut Errors) {
+    let says_nothing = |b: &syn::TypeParamBound| match b {
+        syn::TypeParamBound::Trait(t) => {
+            t.path.segments.last().is_some_and(|s| OTHER_BOUNDS.iter().any(|o| s.ident == o))
+        }
+        _ => true,
+    };
+    let clause = generics.where_clause.to_token_stream();
+    for param in generics.params.iter_mut() {
+        let syn::GenericParam::Type(t) = param else { continue };
+        let is_member = fields.iter().any(|f| mentions(&f.ty.to_token_stream(), &t.ident));
+        if !is_member || mentions(&clause, &t.ident) || !t.bounds.iter().all(says_nothing) {
+            continue;
+        }
+        errors.at(
+            t.ident.span(),
+            format!("`{}` may be a type that kernels do not have", t.ident),
+            &format!("write `{0}: Type`, or `{0}: Light` with a `#[kernel]` trait", t.ident),
+        );
+        t.bounds.push(syn::parse_quote!(::raydsl::__private::Type));
+    }
 }
 
 /// `#[primitive] struct`, or `enum` of primitives.
@@ -48,30 +94,34 @@ pub(crate) fn primitive_item(item: &syn::DeriveInput) -> TokenStream {
     if let Some(g) = item.generics.params.first() {
         errors.at(g.span(), "a primitive cannot be generic", "write a struct for each type");
     }
-    if !errors.is_empty() {
-        let errors = errors.into_tokens();
-        return quote!(#item #errors);
-    }
     let name = &item.ident;
     let derives = |what| derives(item, what);
     let clone = (!derives("Clone")).then(|| quote!(#[derive(Clone)]));
     let copy = (!derives("Copy")).then(|| quote!(#[derive(Copy)]));
+    if !errors.is_empty() {
+        let derives = mistaken::can_have_twin(item).then(|| quote!(#clone #copy));
+        let mistaken = mistaken::mistaken(item, errors);
+        return quote!(#derives #item #mistaken);
+    }
     let repr = (!item.attrs.iter().any(|a| a.path().is_ident("repr"))).then(|| quote!(#[repr(C)]));
     let types = fields.iter().map(|f| &f.ty);
     let twin = twin(item, &fields);
+    let dense = quote_spanned! {name.span()=>
+        const _: () = assert!(
+            ::core::mem::size_of::<#name>() == 0 #(+ ::core::mem::size_of::<#types>())*,
+            concat!(
+                "the primitive `", stringify!(#name), "` has gaps between its members\n",
+                "  help: order them by size, or fill the gaps with members of your own",
+            ),
+        );
+    };
     quote! {
         #clone
         #copy
         #repr
         #item
         #twin
-        const _: () = assert!(
-            ::core::mem::size_of::<#name>() == 0 #(+ ::core::mem::size_of::<#types>())*,
-            concat!(
-                "the primitive `", stringify!(#name), "` has gaps between its members: ",
-                "order them by size, or fill the gaps with members of your own",
-            ),
-        );
+        #dense
     }
 }
 
@@ -136,7 +186,7 @@ fn twin_of(item: &syn::DeriveInput, fields: &[syn::Field], owner: &TokenStream) 
     let texts: Vec<String> = names.iter().map(ToString::to_string).collect();
     let types: Vec<_> = fields.iter().map(|f| &f.ty).collect();
     let visible: Vec<_> = fields.iter().map(|f| &f.vis).collect();
-    let doc = format!("[`{name}`] on machine `M`.");
+    let doc = format!("[`{name}`] on a machine.");
     let host = quote!(#name<#used>);
     let schema = quote! {
         &#p::Schema::Struct {
@@ -149,33 +199,33 @@ fn twin_of(item: &syn::DeriveInput, fields: &[syn::Field], owner: &TokenStream) 
             size: ::core::mem::size_of::<#host>(),
         }
     };
-    let methods = methods(&quote!(#twin<M, #used>), owner, &generics);
+    let methods = methods(&quote!(#twin<__M, #used>), owner, &generics);
     quote! {
         #[doc = #doc]
         #[allow(missing_docs, reason = "the members are those of the struct")]
-        #vis struct #twin<M: #p::Machine, #declared> where #predicates {
-            #(#visible #names: <#types as #p::Type>::On<M>,)*
+        #vis struct #twin<__M: #p::Machine, #declared> where #predicates {
+            #(#visible #names: <#types as #p::Type>::On<__M>,)*
         }
 
-        impl<M: #p::Machine, #declared> Clone for #twin<M, #used> where #predicates {
+        impl<__M: #p::Machine, #declared> Clone for #twin<__M, #used> where #predicates {
             #[inline(always)]
             fn clone(&self) -> Self {
                 *self
             }
         }
 
-        impl<M: #p::Machine, #declared> Copy for #twin<M, #used> where #predicates {}
+        impl<__M: #p::Machine, #declared> Copy for #twin<__M, #used> where #predicates {}
 
-        impl<M: #p::Machine, #declared> #p::Value<M> for #twin<M, #used> where #predicates {
+        impl<__M: #p::Machine, #declared> #p::Value<__M> for #twin<__M, #used> where #predicates {
             const SCHEMA: &'static #p::Schema = #schema;
 
             #[inline(always)]
-            fn zero(m: &M) -> Self {
+            fn zero(m: &__M) -> Self {
                 Self { #(#names: #p::Value::zero(m),)* }
             }
 
             #[inline(always)]
-            fn zip(m: &M, a: Self, b: Self, f: &mut impl #p::Leaves<M>) -> Self {
+            fn zip(m: &__M, a: Self, b: Self, f: &mut impl #p::Leaves<__M>) -> Self {
                 Self { #(#names: #p::Value::zip(m, a.#names, b.#names, f),)* }
             }
         }
@@ -184,25 +234,25 @@ fn twin_of(item: &syn::DeriveInput, fields: &[syn::Field], owner: &TokenStream) 
 
         #[diagnostic::do_not_recommend]
         impl<#declared> #p::Type for #host where #predicates {
-            type On<M: #p::Machine> = #twin<M, #used>;
+            type On<__M: #p::Machine> = #twin<__M, #used>;
 
             const SCHEMA: &'static #p::Schema = #schema;
 
             #[inline(always)]
-            fn splat<M: #p::Machine>(m: &M, v: Self) -> #twin<M, #used> {
+            fn splat<__M: #p::Machine>(m: &__M, v: Self) -> #twin<__M, #used> {
                 #twin { #(#names: #p::Type::splat(m, v.#names),)* }
             }
 
             #[inline(always)]
-            fn from_lanes<M: #p::LaneMachine>(
-                m: &M,
+            fn from_lanes<__M: #p::LaneMachine>(
+                m: &__M,
                 f: &impl Fn(usize) -> Self,
-            ) -> #twin<M, #used> {
+            ) -> #twin<__M, #used> {
                 #twin { #(#names: #p::Type::from_lanes(m, &|lane| f(lane).#names),)* }
             }
 
             #[inline(always)]
-            fn lane<M: #p::LaneMachine>(v: &#twin<M, #used>, lane: usize) -> Self {
+            fn lane<__M: #p::LaneMachine>(v: &#twin<__M, #used>, lane: usize) -> Self {
                 Self { #(#names: #p::Type::lane(&v.#names, lane),)* }
             }
 
@@ -218,16 +268,16 @@ fn twin_of(item: &syn::DeriveInput, fields: &[syn::Field], owner: &TokenStream) 
         }
 
         #[diagnostic::do_not_recommend]
-        impl<M: #p::Machine, #declared> #p::Capture<M> for #host where #predicates {
-            type On<'c> = #twin<M, #used>;
+        impl<__M: #p::Machine, #declared> #p::Capture<__M> for #host where #predicates {
+            type On<'c> = #twin<__M, #used>;
 
             #[inline(always)]
-            fn capture(&self, m: &M, name: &'static str) -> #twin<M, #used> {
+            fn capture(&self, m: &__M, name: &'static str) -> #twin<__M, #used> {
                 #p::Machine::capture(m, name, *self)
             }
 
             #[inline(always)]
-            fn constant(&self, m: &M) -> #twin<M, #used> {
+            fn constant(&self, m: &__M) -> #twin<__M, #used> {
                 #p::Type::splat(m, *self)
             }
         }
@@ -238,22 +288,22 @@ fn twin_of(item: &syn::DeriveInput, fields: &[syn::Field], owner: &TokenStream) 
 fn methods(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> TokenStream {
     let p = private();
     let Generics { declared, predicates, .. } = generics;
-    let of = quote!(<#host as #p::HostMethod<NAME, M, A, Via>>);
+    let of = quote!(<#host as #p::HostMethod<__NAME, __M, __Args, __Via>>);
     let operators = operators::operators(twin, host, generics);
     quote! {
         #operators
 
         #[diagnostic::do_not_recommend]
-        impl<M: #p::Machine, #declared> #p::Inferred<M> for #twin where #predicates {
+        impl<__M: #p::Machine, #declared> #p::Inferred<__M> for #twin where #predicates {
             type Host = #host;
 
             #[inline(always)]
-            fn give(self, _: &M) -> Self {
+            fn give(self, _: &__M) -> Self {
                 self
             }
         }
 
-        impl<M: #p::Machine, #declared> #p::Twin<M> for #twin where #predicates {
+        impl<__M: #p::Machine, #declared> #p::Twin<__M> for #twin where #predicates {
             #[inline(always)]
             fn from_host(v: Self) -> Self {
                 v
@@ -261,19 +311,19 @@ fn methods(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> Token
         }
 
         #[diagnostic::do_not_recommend]
-        impl<M: #p::Machine, #declared> #p::Varying<M> for #twin where #predicates {
+        impl<__M: #p::Machine, #declared> #p::Varying<__M> for #twin where #predicates {
             type Value = Self;
 
             #[inline(always)]
-            fn varying(self, _: &M) -> Self {
+            fn varying(self, _: &__M) -> Self {
                 self
             }
         }
 
-        impl<const NAME: u64, M: #p::Machine, A, Via, #declared> #p::Method<NAME, M, A, Via>
+        impl<const __NAME: u64, __M: #p::Machine, __Args, __Via, #declared> #p::Method<__NAME, __M, __Args, __Via>
             for #twin
         where
-            #host: #p::HostMethod<NAME, M, A, Via, This = Self>,
+            #host: #p::HostMethod<__NAME, __M, __Args, __Via, This = Self>,
             #predicates
         {
             type Output = #of::Output;
@@ -281,12 +331,12 @@ fn methods(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> Token
             const IS_MUT: bool = #of::IS_MUT;
 
             #[inline(always)]
-            fn call(self, m: &M, args: A) -> Self::Output {
+            fn call(self, m: &__M, args: __Args) -> Self::Output {
                 #of::call(self, m, args)
             }
 
             #[inline(always)]
-            fn call_at(self, variable: &#p::Var<Self>, m: &M, args: A) -> Self::Output {
+            fn call_at(self, variable: &#p::Var<Self>, m: &__M, args: __Args) -> Self::Output {
                 #of::call_at(self, variable, m, args)
             }
         }

@@ -103,7 +103,8 @@ fn normalised(said: &str) -> String {
     for line in said.lines() {
         let is_about_this_machine = line.contains("the full name for the type has been written to")
             || line.contains("consider using `--verbose` to print")
-            || line.contains("= note: see issue #");
+            || line.contains("= note: see issue #")
+            || line.contains("= help: see issue #");
         if is_about_this_machine {
             continue;
         }

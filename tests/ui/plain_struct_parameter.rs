@@ -7,7 +7,7 @@ struct Cone {
 }
 
 #[kernel]
-fn shade(cone: Cone) -> f32 { //~ lifted 7
+fn shade(cone: Cone) -> f32 { //~ lifted 3
     cone.slope
 }
 

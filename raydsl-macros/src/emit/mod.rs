@@ -338,7 +338,11 @@ impl<'a> Emitter<'a> {
         for stmt in &block.stmts {
             out.extend(self.stmt(stmt));
         }
-        let Some(tail) = &block.tail else { return out };
+        let Some(tail) = &block.tail else {
+            // That nothing gives the result is rustc's to report, in the user's own function.
+            let end = result.map(|_| quote!(::core::unreachable!()));
+            return quote!(#out #end);
+        };
         match &result {
             Some(ty) => {
                 let value = self.wanted(tail, "result", ty);

@@ -18,12 +18,6 @@ pub(super) enum Owner {
     Unknown,
 }
 
-/// Types whose methods are all in the kernel language.
-const LIBRARY: &[&str] = &[
-    "f32", "i32", "u32", "usize", "bool", "Vec2", "Vec3", "Vec4", "IVec2", "IVec3", "IVec4",
-    "UVec2", "UVec3", "UVec4", "BVec2", "BVec3", "BVec4", "Mat3", "Mat4", "Affine3", "Ray", "Hit",
-];
-
 impl Owner {
     pub(super) fn of_type(ty: &TokenStream) -> Self {
         let mut name = None;
@@ -37,7 +31,7 @@ impl Owner {
             }
         }
         match name {
-            Some(name) if LIBRARY.contains(&name.as_str()) => Self::Library,
+            Some(name) if ops::is_of_library(&name) => Self::Library,
             Some(name) if name != "Bvh" => Self::User,
             _ => Self::Unknown,
         }

@@ -86,10 +86,10 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
         });
     }
     if !errors.is_empty() {
-        let errors = errors.into_tokens();
+        let errors = errors.into_expression();
         // The closure itself stays, so that rustc and editors see its types.
         let closure = without_markers(closure.to_token_stream());
-        return quote!({ #errors let _ = #closure; ::core::unreachable!() });
+        return quote!({ let _ = #closure; #errors });
     }
     let info = info(&kernel, "kernel");
     let closure = without_markers(closure.to_token_stream());

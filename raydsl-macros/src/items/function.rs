@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 
-use super::{Place, info, lifted_function, own, param_ident, private, quiet};
+use super::{Place, asserted, info, lifted_function, own, param_ident, private, quiet};
 use crate::diag::Errors;
 use crate::generics::Generics;
 use crate::here::{of_type, quote_here};
@@ -35,16 +35,17 @@ pub(crate) fn kernel_fn(item: &syn::ItemFn) -> TokenStream {
     let never = never(&kernel.generics);
     let Generics { declared, bare, used, predicates, .. } = &kernel.generics;
     let (declared, bare, used) = (angled(declared), angled(bare), angled(used));
-    let errors = errors.into_tokens();
     if kernel.is_broken {
         // The type stays, so that there is something to call.
+        let mistaken = mistaken(&kernel, errors);
         return quote! {
             #source
             #[allow(non_camel_case_types, dead_code)]
             #vis enum #name #bare { #never }
-            #errors
+            #mistaken
         };
     }
+    let errors = errors.into_tokens();
     let doc = format!("The kernel of [`{name}()`]: `Kernel::of::<{name}>()`.");
     let entry = has_entry(&kernel, &item.sig).then(|| entry(&kernel, &item.sig));
     quote! {
@@ -55,6 +56,51 @@ pub(crate) fn kernel_fn(item: &syn::ItemFn) -> TokenStream {
         impl #declared #name #used where #predicates { #lifted }
         #entry
         #errors
+    }
+}
+
+/// A kernel whose signature has mistakes: what it gives is of a type that rustc asks nothing of.
+fn mistaken(kernel: &Kernel, errors: Errors) -> TokenStream {
+    let (p, name) = (private(), &kernel.name);
+    let Generics { declared, used, predicates, .. } = &kernel.generics;
+    let (declared, used) = (angled(declared), angled(used));
+    let (others, mistaken) = errors.into_type();
+    let types: Vec<Ident> = (0..kernel.params.len()).map(|i| format_ident!("__A{i}")).collect();
+    let ons = ["on", "on_values"].map(|on| {
+        let on = Ident::new(on, Span::call_site());
+        quote! {
+            pub fn #on<__M: #p::Machine, #(#types),*>(_: &__M, #(_: #types),*) -> Mistaken {
+                ::core::unreachable!()
+            }
+        }
+    });
+    quote! {
+        const _: () = {
+            type Mistaken = #mistaken;
+
+            #[allow(dead_code, reason = "generated code")]
+            impl #declared #name #used where #predicates {
+                #(#ons)*
+            }
+
+            impl #declared #p::KernelFn for #name #used where #predicates {
+                type Args = Mistaken;
+                type Output = Mistaken;
+
+                fn info() -> &'static #p::KernelInfo {
+                    ::core::unreachable!()
+                }
+
+                fn scalar(_: Mistaken) -> Mistaken {
+                    ::core::unreachable!()
+                }
+
+                fn lifted<__M: #p::Machine>(_: &__M, _: Mistaken) -> Mistaken {
+                    ::core::unreachable!()
+                }
+            }
+        };
+        #others
     }
 }
 
@@ -159,9 +205,11 @@ fn entry(kernel: &Kernel, sig: &syn::Signature) -> TokenStream {
     let arguments = &kernel.generics.used;
     let called =
         if kernel.generics.is_empty() { quote!(#name) } else { quote!(#name::<#arguments>) };
+    let asserted = asserted(kernel);
     let on = format_ident!("{}", if kernel.generics.is_empty() { "on" } else { "on_values" });
     quote_here! {
-        impl #declared #p::KernelFn for #name #used where #predicates {
+        #[diagnostic::do_not_recommend]
+        impl #declared #p::KernelFn for #name #used where #predicates #asserted {
             type Args = (#(#types,)*);
             type Output = #result;
 

@@ -66,6 +66,9 @@ fn lifted_impl(item: &syn::ItemImpl, host_only: &[&str], errors: &mut Errors) ->
     for f in functions(&item.items, host_only, errors) {
         let name = f.sig.ident.to_string();
         let kernel = parse::function(&f.attrs, &f.sig, &f.block, Some(&item.self_ty), errors);
+        if item.trait_.is_none() {
+            check_recursion(&kernel, errors);
+        }
         let fn_name = format_ident!("{name}_on");
         let place = Place {
             fn_name: &fn_name,
@@ -126,6 +129,17 @@ fn check(sig: &syn::Signature, attrs: &[syn::Attribute], errors: &mut Errors) {
             sig.generics.span(),
             "a method of kernels has no type parameters of its own",
             "give them to the impl or the trait, or write a `#[kernel] fn`",
+        );
+    }
+}
+
+/// In a trait's impl the call may be of the type's own method of that name.
+fn check_recursion(kernel: &Kernel, errors: &mut Errors) {
+    for span in kernel.body.calls_on_self(&kernel.name) {
+        errors.at(
+            span,
+            format!("the method `{}` calls itself", kernel.name),
+            "write a loop: a GPU has no recursion",
         );
     }
 }

@@ -19,8 +19,9 @@ use quote::quote;
 use crate::diag::Errors;
 use crate::emit::Emitter;
 use crate::generics::Generics;
-use crate::here::{here_own, of_type, quote_here};
+use crate::here::{here_own, in_one_place, of_type, quote_here};
 use crate::model::Kernel;
+use crate::ops;
 
 fn private() -> TokenStream {
     quote!(::raydsl::__private)
@@ -134,6 +135,33 @@ fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> T
     }
 }
 
+/// That the user's own types in a signature are types of kernels. Where one is not, this is the
+/// error, and the code that takes it for one has no others.
+fn asserted(kernel: &Kernel) -> TokenStream {
+    let values = kernel.params.iter().filter(|p| !(p.data || p.host)).map(|p| &p.ty);
+    let mut asserted = TokenStream::new();
+    let mut seen = Vec::new();
+    for ty in values.chain(&kernel.result) {
+        let text = ty.to_string();
+        if is_users_own(ty) && !kernel.generics.has_type_in(ty) && !seen.contains(&text) {
+            let _at = of_type(ty);
+            let (p, ty) = (quote_here!(::raydsl::__private), in_one_place(ty.clone()));
+            asserted.extend(quote_here!(#ty: #p::Type,));
+            seen.push(text);
+        }
+    }
+    asserted
+}
+
+/// A path without parameters that names none of the library's types.
+fn is_users_own(ty: &TokenStream) -> bool {
+    let parsed = syn::parse2::<syn::TypePath>(ty.clone());
+    let Some(last) = parsed.ok().and_then(|t| t.path.segments.last().cloned()) else {
+        return false;
+    };
+    last.arguments.is_none() && last.ident != "Self" && !ops::is_of_library(&last.ident.to_string())
+}
+
 /// The signature of a lifted function.
 fn head(kernel: &Kernel, place: &Place<'_>, emitter: &Emitter<'_>) -> TokenStream {
     let (p, m) = (private(), own("m"));
@@ -154,7 +182,8 @@ fn head(kernel: &Kernel, place: &Place<'_>, emitter: &Emitter<'_>) -> TokenStrea
     let result = kernel.result.as_ref().map(|t| emitter.on(t)).unwrap_or_else(|| quote!(()));
     let lifetime = kernel.params.iter().any(|p| p.data).then(|| quote!('__a,));
     let predicates = &kernel.generics.predicates;
-    let clause = place.is_method.then(|| quote!(where #predicates));
+    let asserted = asserted(kernel);
+    let clause = if place.is_method { quote!(where #predicates) } else { quote!(where #asserted) };
     quote! {
         #vis fn #fn_name<#lifetime __M: #p::Machine>(#m: &__M, #(#params,)*) -> #result
         #clause

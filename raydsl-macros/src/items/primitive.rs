@@ -6,6 +6,8 @@ use syn::spanned::Spanned;
 
 use super::{kernel_impl, private};
 use crate::diag::Errors;
+use crate::ops;
+use crate::parse::type_name;
 
 /// What runs on the host alone, when a tree is built.
 const ON_HOST: [&str; 2] = ["get_bounds", "split_primitive"];
@@ -19,8 +21,8 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
     let parts = Parts::of(item, &mut errors);
     let lifted = kernel_impl(item, &ON_HOST, &mut errors);
     if !errors.is_empty() {
-        let errors = errors.into_tokens();
-        return quote!(#item #errors);
+        let (stub, errors) = (mistaken(item, &parts), errors.into_tokens());
+        return quote!(#lifted #stub #errors);
     }
     let p = private();
     let self_ty = &item.self_ty;
@@ -62,6 +64,37 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
     }
 }
 
+/// A primitive with mistakes is one all the same, so that its trees give no second error.
+fn mistaken(item: &syn::ItemImpl, parts: &Parts<'_>) -> TokenStream {
+    if item.trait_.is_some() || !item.generics.params.is_empty() {
+        return TokenStream::new();
+    }
+    let (p, self_ty) = (private(), &item.self_ty);
+    let is_record = |ty: &&syn::Type| type_name(ty).is_some_and(|name| !ops::is_of_library(&name));
+    let record = parts.record.filter(is_record).map_or_else(|| quote!(#p::Hit), |ty| quote!(#ty));
+    quote! {
+        impl #p::Primitive for #self_ty {
+            type Hit = #record;
+
+            fn intersect(&self, _: #p::Ray) -> #record {
+                ::core::unreachable!()
+            }
+
+            fn get_bounds(&self) -> #p::Aabb {
+                ::core::unreachable!()
+            }
+
+            fn intersect_on<__M: #p::Machine>(
+                _: &__M,
+                _: <Self as #p::Type>::On<__M>,
+                _: #p::RayOn<__M>,
+            ) -> <#record as #p::Type>::On<__M> {
+                ::core::unreachable!()
+            }
+        }
+    }
+}
+
 /// What an `impl` says of a primitive.
 struct Parts<'a> {
     /// What `intersect` gives.
@@ -94,11 +127,11 @@ impl<'a> Parts<'a> {
         let intersect = required("intersect", INTERSECT, errors);
         let get_bounds = required("get_bounds", GET_BOUNDS, errors);
         let split = find("split_primitive");
-        for (sig, parameters, signature) in
-            [(intersect, 1, INTERSECT), (get_bounds, 0, GET_BOUNDS), (split, 2, SPLIT_PRIMITIVE)]
+        for (sig, wanted) in
+            [(intersect, INTERSECT), (get_bounds, GET_BOUNDS), (split, SPLIT_PRIMITIVE)]
         {
             if let Some(sig) = sig {
-                check_signature(sig, parameters, signature, errors);
+                check_signature(sig, wanted, errors);
             }
         }
         let has_slack =
@@ -125,12 +158,11 @@ fn check_head(item: &syn::ItemImpl, errors: &mut Errors) {
     }
 }
 
-/// `&self`, so many parameters more, and a result; rustc tells the types.
-fn check_signature(sig: &syn::Signature, parameters: usize, signature: &str, errors: &mut Errors) {
+/// `&self`, the types of the parameters, and that of the result.
+fn check_signature(sig: &syn::Signature, signature: &str, errors: &mut Errors) {
     let is_ref =
         matches!(sig.receiver().map(|r| &r.kind), Some(syn::ReceiverKind::Reference(_, _, None)));
-    let has_result = matches!(sig.output, syn::ReturnType::Type(..));
-    if !is_ref || sig.inputs.len() != parameters + 1 || !has_result {
+    if !is_ref || !has_types(sig, signature) {
         errors.at(
             sig.ident.span(),
             format!("`{}` of a primitive has another signature", sig.ident),
@@ -143,5 +175,40 @@ fn check_signature(sig: &syn::Signature, parameters: usize, signature: &str, err
             format!("`{}` of a primitive cannot be generic", sig.ident),
             &format!("write `{signature}`"),
         );
+    }
+}
+
+/// Whether the types may be those of `signature`. Names that are not known may be aliases, or a
+/// record of the user's.
+fn has_types(sig: &syn::Signature, signature: &str) -> bool {
+    let wanted = syn::parse_str::<syn::Signature>(signature).expect("a signature");
+    let types = |sig: &syn::Signature| -> Vec<syn::Type> {
+        let parameters = sig.inputs.iter().filter_map(|arg| match arg {
+            syn::FnArg::Typed(p) => Some((*p.ty).clone()),
+            syn::FnArg::Receiver(_) => None,
+        });
+        let result = match &sig.output {
+            syn::ReturnType::Type(_, ty) => Some((**ty).clone()),
+            syn::ReturnType::Default => None,
+        };
+        parameters.chain(result).collect()
+    };
+    let (written, wanted) = (types(sig), types(&wanted));
+    written.len() == wanted.len() && written.iter().zip(&wanted).all(|(a, b)| may_be(a, b))
+}
+
+fn may_be(written: &syn::Type, wanted: &syn::Type) -> bool {
+    match (written, wanted) {
+        (syn::Type::Paren(p), _) => may_be(&p.elem, wanted),
+        (syn::Type::Tuple(a), syn::Type::Tuple(b)) => {
+            a.elems.len() == b.elems.len()
+                && a.elems.iter().zip(&b.elems).all(|(a, b)| may_be(a, b))
+        }
+        (syn::Type::Path(_), _) => {
+            let name = type_name(written).unwrap_or_default();
+            type_name(wanted).is_some_and(|w| w == name)
+                || !(ops::is_of_library(&name) || name == "Aabb")
+        }
+        _ => false,
     }
 }

@@ -44,32 +44,52 @@ impl Parser<'_> {
         if let Some(items) = items(&f.expr) {
             return self.for_each(f, items);
         }
-        let mut pat = &*f.pat;
+        let counter = self.counter(&f.pat);
+        let range = self.range(&f.expr);
+        let (Some((var, changed)), Some(range)) = (counter, range) else {
+            return self.body_alone(f);
+        };
+        let mut body = self.block(&f.body);
+        body.stmts.splice(0..0, changed.map(Stmt::Let));
+        Kind::For { label: label(&f.label), var, range, body }
+    }
+
+    /// A loop with a mistake in its head: the body may have some too.
+    fn body_alone(&mut self, f: &syn::ExprForLoop) -> Kind {
+        let item = Expr { kind: Kind::Error, span: f.pat.span() };
+        let mut stmts = self.bind_item(&f.pat, item);
+        let mut body = self.block(&f.body);
+        stmts.append(&mut body.stmts);
+        Kind::Loop { label: label(&f.label), body: Block { stmts, ..body } }
+    }
+
+    /// The name that a loop counts with, and what the body makes of it.
+    fn counter(&mut self, mut pat: &Pat) -> Option<(Option<syn::Ident>, Option<Let>)> {
         while let Pat::Paren(p) = pat {
             pat = &p.pat;
         }
-        // A counter that the body changes is a variable of the body.
-        let mut changed = None;
-        let var = match pat {
+        match pat {
+            // A counter that the body changes is a variable of the body.
             Pat::Ident(p) if p.mutability.is_some() => {
                 let counter = self.temporary("i");
                 let init = Expr { kind: Kind::Name(counter.clone()), span: p.span() };
                 let name = Some(p.ident.clone());
-                changed =
-                    Some(Let { host: false, name, mutable: true, ty: None, init: Some(init) });
-                Some(counter)
+                let changed = Let { host: false, name, mutable: true, ty: None, init: Some(init) };
+                Some((Some(counter), Some(changed)))
             }
-            Pat::Ident(p) => Some(p.ident.clone()),
-            Pat::Wild(_) => None,
+            Pat::Ident(p) => Some((Some(p.ident.clone()), None)),
+            Pat::Wild(_) => Some((None, None)),
             pat => {
-                return self.error(
-                    pat.span(),
-                    "a `for` counts with one name",
-                    "write `for i in a..b`",
-                );
+                let help = "write `for i in a..b`";
+                self.errors.at(pat.span(), "a `for` counts with one name", help);
+                None
             }
-        };
-        let mut range = inside_parens(&f.expr);
+        }
+    }
+
+    /// `a..b`, `a..=b`, and each with `.rev()` or `.step_by(n)`.
+    fn range(&mut self, e: &syn::Expr) -> Option<Range> {
+        let mut range = inside_parens(e);
         let mut step = None;
         if let syn::Expr::MethodCall(c) = range
             && c.method == "step_by"
@@ -80,11 +100,12 @@ impl Parser<'_> {
             if let syn::Expr::MethodCall(c) = range
                 && c.method == "rev"
             {
-                return self.error(
+                self.errors.at(
                     c.method.span(),
                     "a kernel's range with steps counts upwards",
                     "count from 0, and calculate: `for k in 0..n { let i = last - 2 * k; }`",
                 );
+                return None;
             }
         }
         let mut reversed = false;
@@ -95,33 +116,33 @@ impl Parser<'_> {
             range = inside_parens(&c.receiver);
         }
         let syn::Expr::Range(r) = range else {
-            return self.error(
-                f.expr.span(),
+            self.errors.at(
+                e.span(),
                 "a kernel's `for` runs over a range, or over the elements of a slice or an array",
                 "write `for i in 0u32..n`, `for x in list.iter()` or an index: `list[i]`",
             );
+            return None;
         };
         let (Some(start), Some(end)) = (&r.start, &r.end) else {
-            return self.error(
+            self.errors.at(
                 r.span(),
                 "a kernel's range has two bounds",
                 "write `for i in a..b` or `for i in a..=b`",
             );
+            return None;
         };
         let (start, end) = (self.boxed(start), self.boxed(end));
         let untyped = |e: &Expr| matches!(e.kind, Kind::Int { suffix: None, .. });
         if untyped(&start) && untyped(&end) {
-            return self.error(
+            self.errors.at(
                 start.span,
                 "a counter needs a type",
                 "give one bound a suffix: `for i in 0u32..8`",
             );
+            return None;
         }
         let inclusive = matches!(r.limits, syn::RangeLimits::Closed(_));
-        let range = Range { start, end, inclusive, reversed, step };
-        let mut body = self.block(&f.body);
-        body.stmts.splice(0..0, changed.map(Stmt::Let));
-        Kind::For { label: label(&f.label), var, range, body }
+        Some(Range { start, end, inclusive, reversed, step })
     }
 
     /// A loop over the elements: `for x in list` is `for i in 0..list.len() { let x = list[i]; .. }`.

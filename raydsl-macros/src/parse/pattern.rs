@@ -140,7 +140,7 @@ impl Parser<'_> {
                         );
                         return None;
                     }
-                    let index = syn::Index::from(i);
+                    let index = syn::Index { index: i as u32, span: p.span() };
                     let item = member(from, quote!(#index), p.span());
                     test = both(test, self.pattern(p, &item, lets));
                 }

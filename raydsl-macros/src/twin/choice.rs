@@ -148,23 +148,23 @@ impl Choice<'_> {
             impl #name {
                 #(
                     #[inline(always)]
-                    pub fn #asks<M: #p::Machine>(m: &M, prim: #twin<M>) -> #p::B<M> {
+                    pub fn #asks<__M: #p::Machine>(m: &__M, prim: #twin<__M>) -> #p::B<__M> {
                         #p::is_kind(m, prim.kind, #numbers)
                     }
 
                     #[inline(always)]
-                    pub fn #takes<M: #p::Machine>(
-                        m: &M,
-                        prim: #twin<M>,
-                    ) -> <#types as #p::Type>::On<M> {
+                    pub fn #takes<__M: #p::Machine>(
+                        m: &__M,
+                        prim: #twin<__M>,
+                    ) -> <#types as #p::Type>::On<__M> {
                         #p::of_words::<_, #types, _>(m, prim.words)
                     }
 
                     #[inline(always)]
-                    pub fn #makes<M: #p::Machine>(
-                        m: &M,
-                        prim: <#types as #p::Type>::On<M>,
-                    ) -> #twin<M> {
+                    pub fn #makes<__M: #p::Machine>(
+                        m: &__M,
+                        prim: <#types as #p::Type>::On<__M>,
+                    ) -> #twin<__M> {
                         #twin {
                             kind: #p::u32(m, #numbers),
                             words: #p::to_words_on::<_, #types, _>(m, prim),
@@ -200,25 +200,25 @@ impl Choice<'_> {
 
             #[diagnostic::do_not_recommend]
             impl #p::Type for #name {
-                type On<M: #p::Machine> = #twin<M>;
+                type On<__M: #p::Machine> = #twin<__M>;
 
                 const SCHEMA: &'static #p::Schema = <#data as #p::Type>::SCHEMA;
 
                 #[inline(always)]
-                fn splat<M: #p::Machine>(m: &M, v: Self) -> #twin<M> {
+                fn splat<__M: #p::Machine>(m: &__M, v: Self) -> #twin<__M> {
                     #p::Type::splat(m, v.__data())
                 }
 
                 #[inline(always)]
-                fn from_lanes<M: #p::LaneMachine>(
-                    m: &M,
+                fn from_lanes<__M: #p::LaneMachine>(
+                    m: &__M,
                     f: &impl Fn(usize) -> Self,
-                ) -> #twin<M> {
+                ) -> #twin<__M> {
                     #p::Type::from_lanes(m, &|lane| f(lane).__data())
                 }
 
                 #[inline(always)]
-                fn lane<M: #p::LaneMachine>(v: &#twin<M>, lane: usize) -> Self {
+                fn lane<__M: #p::LaneMachine>(v: &#twin<__M>, lane: usize) -> Self {
                     Self::__of_data(#p::Type::lane(v, lane))
                 }
 
@@ -232,16 +232,16 @@ impl Choice<'_> {
             }
 
             #[diagnostic::do_not_recommend]
-            impl<M: #p::Machine> #p::Capture<M> for #name {
-                type On<'c> = #twin<M>;
+            impl<__M: #p::Machine> #p::Capture<__M> for #name {
+                type On<'c> = #twin<__M>;
 
                 #[inline(always)]
-                fn capture(&self, m: &M, name: &'static str) -> #twin<M> {
+                fn capture(&self, m: &__M, name: &'static str) -> #twin<__M> {
                     #p::Machine::capture(m, name, *self)
                 }
 
                 #[inline(always)]
-                fn constant(&self, m: &M) -> #twin<M> {
+                fn constant(&self, m: &__M) -> #twin<__M> {
                     #p::Type::splat(m, *self)
                 }
             }

@@ -31,14 +31,14 @@ pub(super) fn twin(item: &syn::DeriveInput, variants: &[Ident]) -> TokenStream {
     let p = private();
     let (vis, name) = (&item.vis, &item.ident);
     let twin = format_ident!("{name}On");
-    let doc = format!("[`{name}`] on machine `M`: the number of its variant.");
-    let methods = methods(&quote!(#twin<M>), &quote!(#name), &Generics::default());
+    let doc = format!("[`{name}`] on a machine: the number of its variant.");
+    let methods = methods(&quote!(#twin<__M>), &quote!(#name), &Generics::default());
     let (first, others) = variants.split_first().expect("there is a variant");
     let casts = [quote!(u32), quote!(i32), quote!(usize)].map(|to| {
         quote! {
-            impl<M: #p::Machine> #p::OpCast<M, #to> for #twin<M> {
+            impl<__M: #p::Machine> #p::OpCast<__M, #to> for #twin<__M> {
                 #[inline(always)]
-                fn cast(m: &M, a: Self) -> <#to as #p::Type>::On<M> {
+                fn cast(m: &__M, a: Self) -> <#to as #p::Type>::On<__M> {
                     #p::cast::<_, _, #to>(m, a.number)
                 }
             }
@@ -56,18 +56,18 @@ pub(super) fn twin(item: &syn::DeriveInput, variants: &[Ident]) -> TokenStream {
         };
 
         #[doc = #doc]
-        #vis struct #twin<M: #p::Machine> {
-            number: <u32 as #p::Type>::On<M>,
+        #vis struct #twin<__M: #p::Machine> {
+            number: <u32 as #p::Type>::On<__M>,
         }
 
-        impl<M: #p::Machine> Clone for #twin<M> {
+        impl<__M: #p::Machine> Clone for #twin<__M> {
             #[inline(always)]
             fn clone(&self) -> Self {
                 *self
             }
         }
 
-        impl<M: #p::Machine> Copy for #twin<M> {}
+        impl<__M: #p::Machine> Copy for #twin<__M> {}
 
         impl #name {
             /// The variant of a number; the first one for numbers that no variant has.
@@ -77,27 +77,27 @@ pub(super) fn twin(item: &syn::DeriveInput, variants: &[Ident]) -> TokenStream {
             }
         }
 
-        impl<M: #p::Machine> #p::Value<M> for #twin<M> {
+        impl<__M: #p::Machine> #p::Value<__M> for #twin<__M> {
             const SCHEMA: &'static #p::Schema = <#name as #p::Type>::SCHEMA;
 
             #[inline(always)]
-            fn zero(m: &M) -> Self {
+            fn zero(m: &__M) -> Self {
                 #p::Type::splat(m, #name::#first)
             }
 
             #[inline(always)]
-            fn zip(m: &M, a: Self, b: Self, f: &mut impl #p::Leaves<M>) -> Self {
+            fn zip(m: &__M, a: Self, b: Self, f: &mut impl #p::Leaves<__M>) -> Self {
                 Self { number: #p::Value::zip(m, a.number, b.number, f) }
             }
         }
 
         #methods
 
-        impl<M: #p::Machine> #p::OpCompare<M, Self> for #twin<M> {
-            type Output = <bool as #p::Type>::On<M>;
+        impl<__M: #p::Machine> #p::OpCompare<__M, Self> for #twin<__M> {
+            type Output = <bool as #p::Type>::On<__M>;
 
             #[inline(always)]
-            fn compare(m: &M, op: #p::Compare, a: Self, b: Self) -> Self::Output {
+            fn compare(m: &__M, op: #p::Compare, a: Self, b: Self) -> Self::Output {
                 #p::OpCompare::compare(m, op, a.number, b.number)
             }
         }
@@ -105,22 +105,22 @@ pub(super) fn twin(item: &syn::DeriveInput, variants: &[Ident]) -> TokenStream {
         #(#casts)*
 
         impl #p::Type for #name {
-            type On<M: #p::Machine> = #twin<M>;
+            type On<__M: #p::Machine> = #twin<__M>;
 
             const SCHEMA: &'static #p::Schema = #p::number_schema(::core::mem::size_of::<Self>());
 
             #[inline(always)]
-            fn splat<M: #p::Machine>(m: &M, v: Self) -> #twin<M> {
+            fn splat<__M: #p::Machine>(m: &__M, v: Self) -> #twin<__M> {
                 #twin { number: <u32 as #p::Type>::splat(m, v as u32) }
             }
 
             #[inline(always)]
-            fn from_lanes<M: #p::LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> #twin<M> {
+            fn from_lanes<__M: #p::LaneMachine>(m: &__M, f: &impl Fn(usize) -> Self) -> #twin<__M> {
                 #twin { number: <u32 as #p::Type>::from_lanes(m, &|lane| f(lane) as u32) }
             }
 
             #[inline(always)]
-            fn lane<M: #p::LaneMachine>(v: &#twin<M>, lane: usize) -> Self {
+            fn lane<__M: #p::LaneMachine>(v: &#twin<__M>, lane: usize) -> Self {
                 Self::__of_number(<u32 as #p::Type>::lane(&v.number, lane))
             }
 
@@ -134,16 +134,16 @@ pub(super) fn twin(item: &syn::DeriveInput, variants: &[Ident]) -> TokenStream {
         }
 
         /// A captured variant is known while the kernel is recorded: a `match` on it is decided.
-        impl<M: #p::Machine> #p::Capture<M> for #name {
-            type On<'c> = #twin<M>;
+        impl<__M: #p::Machine> #p::Capture<__M> for #name {
+            type On<'c> = #twin<__M>;
 
             #[inline(always)]
-            fn capture(&self, m: &M, _: &'static str) -> #twin<M> {
+            fn capture(&self, m: &__M, _: &'static str) -> #twin<__M> {
                 #p::Type::splat(m, *self)
             }
 
             #[inline(always)]
-            fn constant(&self, m: &M) -> #twin<M> {
+            fn constant(&self, m: &__M) -> #twin<__M> {
                 #p::Type::splat(m, *self)
             }
         }

@@ -18,56 +18,56 @@ pub(super) fn operators(
     let binary = ops::OVERLOADED.iter().map(|op| {
         let (operator, method) = (format_ident!("{}", op.operator), format_ident!("{}", op.method));
         let symbol = op.symbol;
-        let of = quote!(<#host as #p::HostMethod<{ #p::name(#symbol) }, M, (R,), Via>>);
+        let of = quote!(<#host as #p::HostMethod<{ #p::name(#symbol) }, __M, (__Right,), __Via>>);
         quote! {
             #[diagnostic::do_not_recommend]
-            impl<M: #p::Machine, R, Via, #declared> #p::#operator<M, R, Via> for #twin
+            impl<__M: #p::Machine, __Right, __Via, #declared> #p::#operator<__M, __Right, __Via> for #twin
             where
-                #host: #p::HostMethod<{ #p::name(#symbol) }, M, (R,), Via, This = Self>,
+                #host: #p::HostMethod<{ #p::name(#symbol) }, __M, (__Right,), __Via, This = Self>,
                 #predicates
             {
                 type Output = #of::Output;
 
                 #[inline(always)]
-                fn #method(m: &M, a: Self, b: R) -> Self::Output {
+                fn #method(m: &__M, a: Self, b: __Right) -> Self::Output {
                     #of::call(a, m, (b,))
                 }
             }
         }
     });
-    let negated = quote!(<#host as #p::HostMethod<{ #p::name("-x") }, M, ()>>);
-    let assigned = quote!(<#host as #p::HostMethod<NAME, M, (R,), Via>>);
+    let negated = quote!(<#host as #p::HostMethod<{ #p::name("-x") }, __M, ()>>);
+    let assigned = quote!(<#host as #p::HostMethod<__NAME, __M, (__Right,), __Via>>);
     quote! {
         #(#binary)*
 
         #[diagnostic::do_not_recommend]
-        impl<M: #p::Machine, #declared> #p::OpNeg<M> for #twin
+        impl<__M: #p::Machine, #declared> #p::OpNeg<__M> for #twin
         where
-            #host: #p::HostMethod<{ #p::name("-x") }, M, (), This = Self, Output = Self>,
+            #host: #p::HostMethod<{ #p::name("-x") }, __M, (), This = Self, Output = Self>,
             #predicates
         {
             #[inline(always)]
-            fn neg(m: &M, a: Self) -> Self {
+            fn neg(m: &__M, a: Self) -> Self {
                 #negated::call(a, m, ())
             }
         }
 
         #[diagnostic::do_not_recommend]
-        impl<const NAME: u64, M: #p::Machine, R, Via, #declared> #p::Assigned<NAME, M, R, Via>
+        impl<const __NAME: u64, __M: #p::Machine, __Right, __Via, #declared> #p::Assigned<__NAME, __M, __Right, __Via>
             for #twin
         where
-            #host: #p::HostMethod<NAME, M, (R,), Via, This = Self, Output = ()>,
+            #host: #p::HostMethod<__NAME, __M, (__Right,), __Via, This = Self, Output = ()>,
             #predicates
         {
             #[inline(always)]
-            fn assigned(m: &M, a: Self, b: R) -> Self {
+            fn assigned(m: &__M, a: Self, b: __Right) -> Self {
                 let variable = #p::Var::new(m, "self", a);
                 #assigned::call_at(a, &variable, m, (b,));
                 variable.get(m)
             }
         }
 
-        impl<M: #p::Machine, #declared> #p::RightOperand for #twin where #predicates {
+        impl<__M: #p::Machine, #declared> #p::RightOperand for #twin where #predicates {
             type Host = #host;
         }
     }

@@ -16,6 +16,11 @@ pub struct KernelInfo {
 }
 
 /// A `#[kernel] fn`: its scalar source and its lifted body.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no kernel that runs by itself",
+    label = "other kernels can call it",
+    note = "a kernel that runs by itself is a `#[kernel] fn` with one parameter or more, none of them `&mut`, `#[host]`, a slice or a tree, and gives a value"
+)]
 pub trait KernelFn: 'static {
     /// The parameters, as a tuple.
     type Args: Type;

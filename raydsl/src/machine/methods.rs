@@ -278,6 +278,44 @@ impl<M: Machine, V: super::Value<M>, const N: usize> Method<{ name("len") }, M, 
     }
 }
 
+/// Queries of a captured array, which is a value of the kernel: rays meet primitives in memory.
+pub struct PrimitivesOfValue<M>(core::marker::PhantomData<M>);
+
+const _: () = {
+    #[diagnostic::on_unimplemented(
+        message = "rays do not meet the primitives of a captured array",
+        label = "an array is a value of the kernel, and a slice lies in memory",
+        note = "capture a slice of it: `let shapes = &shapes[..];` before the kernel"
+    )]
+    pub trait InMemory {}
+
+    macro_rules! queries {
+        ($($name:literal -> $out:ty;)+) => {
+            $(
+                impl<M: Machine, A, V: super::Value<M>, const N: usize>
+                    Method<{ name($name) }, M, A> for [V; N]
+                where
+                    PrimitivesOfValue<M>: InMemory,
+                {
+                    type Output = $out;
+
+                    fn call(self, _: &M, _: A) -> $out {
+                        unreachable!()
+                    }
+                }
+            )+
+        };
+    }
+
+    queries! {
+        "closest_hit" -> HitOn<M>;
+        "closest_hit_where" -> HitOn<M>;
+        "any_hit" -> B<M>;
+        "any_hit_where" -> B<M>;
+        "primitive" -> V;
+    }
+};
+
 #[diagnostic::do_not_recommend]
 impl<M: Machine, P: Primitive> Method<{ name("primitive") }, M, (HitOn<M>,)> for bvh::On<'_, P> {
     type Output = P::On<M>;

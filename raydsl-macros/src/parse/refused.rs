@@ -1,0 +1,133 @@
+//! Calls that no kernel has, and which the source alone tells from others.
+
+use proc_macro2::Ident;
+use quote::ToTokens;
+use syn::spanned::Spanned;
+
+use super::{Parser, inside_parens};
+use crate::model::Kind;
+use crate::ops;
+
+/// Methods of iterators, and of arrays with closures.
+const OF_ITERATORS: &[&str] = &[
+    "all",
+    "any",
+    "chain",
+    "cloned",
+    "collect",
+    "copied",
+    "count",
+    "enumerate",
+    "filter",
+    "filter_map",
+    "find",
+    "flat_map",
+    "fold",
+    "for_each",
+    "iter",
+    "last",
+    "map",
+    "max",
+    "max_by",
+    "min",
+    "min_by",
+    "nth",
+    "position",
+    "product",
+    "reduce",
+    "rev",
+    "scan",
+    "skip",
+    "step_by",
+    "sum",
+    "take",
+    "take_while",
+    "windows",
+    "zip",
+];
+
+/// A variant of `Option` or of `Result`.
+pub(super) fn is_absent(name: &Ident) -> bool {
+    ["Some", "None", "Ok", "Err"].iter().any(|n| name == n)
+}
+
+/// Whether `e` is made by methods of iterators: `list.iter()`, `(0..n).map(..)`.
+fn is_iterator(e: &syn::Expr) -> bool {
+    match inside_parens(e) {
+        syn::Expr::Range(_) => true,
+        syn::Expr::MethodCall(c) => {
+            let begins = ["iter", "iter_mut", "into_iter"].iter().any(|n| c.method == n);
+            begins && c.args.is_empty() || is_of_iterators(&c.method) && is_iterator(&c.receiver)
+        }
+        _ => false,
+    }
+}
+
+/// Whether it is a function of the prelude that gives a struct where readers of std expect a tuple.
+pub(super) fn gives_struct(value: &Kind) -> bool {
+    matches!(value, Kind::Call { path, .. } if path.to_string() == "sincos_2pi")
+}
+
+fn is_of_iterators(method: &Ident) -> bool {
+    OF_ITERATORS.iter().any(|n| method == n)
+}
+
+fn is_closure(e: &syn::Expr) -> bool {
+    matches!(e, syn::Expr::Closure(_))
+}
+
+impl Parser<'_> {
+    /// `Some(x)`, `None` and their like.
+    pub(super) fn absent(&mut self, name: &Ident) -> Kind {
+        let ty = if name == "Some" || name == "None" { "Option" } else { "Result" };
+        let help = ops::refused_type(ty).unwrap_or_default();
+        self.error(name.span(), format!("a kernel has no `{ty}`"), help)
+    }
+
+    /// `values.iter().sum()` and `values.map(|x| ..)`: what is wrong is not in the arguments.
+    pub(super) fn refused_iteration(&mut self, c: &syn::ExprMethodCall) -> Option<Kind> {
+        let takes_closure = c.args.iter().any(is_closure);
+        if !is_of_iterators(&c.method) || !(takes_closure || is_iterator(&c.receiver)) {
+            return None;
+        }
+        let what = format!("a kernel has no `{}` of iterators and arrays", c.method);
+        let help = match c.method.to_string().as_str() {
+            "sum" => "write a `for`: `let mut sum = 0.0; for x in list.iter() { sum += x; }`",
+            "map" => {
+                "write a `for` that assigns each element: `for i in 0..a.len() { a[i] = b[i] * 2.0; }`"
+            }
+            _ => "write a `for` with a variable: `for x in list.iter() { best = best.max(*x); }`",
+        };
+        Some(self.error(c.method.span(), what, help))
+    }
+
+    /// A function of std, or one that is given a closure.
+    pub(super) fn refused_call(&mut self, c: &syn::ExprCall) -> Option<Kind> {
+        if let Some(closure) = c.args.iter().find(|e| is_closure(e)) {
+            let help =
+                "give it a value of a type with a `#[kernel]` trait: `fn f<S: Shader>(s: S)`";
+            let refused = self.error(closure.span(), "a kernel takes no closures", help);
+            c.args.iter().filter(|e| !is_closure(e)).for_each(|e| drop(self.expr(e)));
+            return Some(refused);
+        }
+        let syn::Expr::Path(path) = &*c.func else { return None };
+        if path.qself.is_some() {
+            return None;
+        }
+        let segments: Vec<&Ident> = path.path.segments.iter().map(|s| &s.ident).collect();
+        let (last, init) = segments.split_last()?;
+        let (what, help) = match init {
+            [.., owner] if ops::is_of_library(&owner.to_string()) => {
+                let help = ops::method_of_library(&last.to_string())?;
+                (format!("a kernel calls `{last}` of `{owner}` as a method or a function"), help)
+            }
+            [first, ..] if *first == "std" || *first == "core" => {
+                let path = path.to_token_stream().to_string().replace(' ', "");
+                (format!("a kernel has no `{path}`"), ops::instead_of_std(&last.to_string()))
+            }
+            _ => return None,
+        };
+        c.args.iter().for_each(|e| drop(self.expr(e)));
+        Some(self.error(last.span(), what, &help))
+    }
+}

@@ -1,0 +1,154 @@
+//! Names of the user's beside those of generated code: none of them meet.
+
+use raydsl::prelude::*;
+use raydsl::{assert_variants_agree, kernel};
+
+#[kernel]
+trait Brdf {
+    fn weight(&self, x: f32) -> f32;
+}
+
+#[derive(Clone, Copy, Type)]
+struct Scaled {
+    by: f32,
+}
+
+#[kernel]
+impl Brdf for Scaled {
+    fn weight(&self, x: f32) -> f32 {
+        x * self.by
+    }
+}
+
+/// Operators with type parameters, and a method, for a struct whose parameters have short names.
+macro_rules! named {
+    ($($test:ident $pair:ident $make:ident $a:ident $b:ident;)+) => {
+        $(
+            #[derive(Clone, Copy, Type)]
+            struct $pair<$a: Brdf, $b: Brdf> {
+                first: $a,
+                second: $b,
+            }
+
+            #[kernel]
+            impl<$a: Brdf, $b: Brdf> $pair<$a, $b> {
+                fn both(&self, x: f32) -> f32 {
+                    let first: $a = self.first;
+                    let second: $b = self.second;
+                    first.weight(x) + second.weight(x)
+                }
+            }
+
+            #[kernel]
+            fn $make<$a: Brdf, $b: Brdf>(first: $a, second: $b, x: f32) -> f32 {
+                $pair::<$a, $b> { first, second }.both(x)
+            }
+
+            #[test]
+            fn $test() {
+                #[kernel]
+                fn whole(x: f32) -> f32 {
+                    $make(Scaled { by: 2.0 }, Scaled { by: 0.5 }, x)
+                }
+                assert_variants_agree!(whole, &[(1.0,), (-3.5,)]);
+            }
+        )+
+    };
+}
+
+named! {
+    a_and_m PairAM of_a_m A M;
+    n_and_p PairNP of_n_p N P;
+    r_and_v PairRV of_r_v R V;
+    f_and_t PairFT of_f_t F T;
+    c_and_d PairCD of_c_d C D;
+    e_and_g PairEG of_e_g E G;
+    via_and_name PairVia of_via Via NAME;
+}
+
+#[derive(Clone, Copy, Type)]
+struct M {
+    r: f32,
+}
+
+#[kernel]
+impl core::ops::Add for M {
+    type Output = M;
+
+    fn add(self, right: M) -> M {
+        M { r: self.r + right.r }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Type)]
+enum A {
+    R,
+    Via,
+}
+
+#[derive(Clone, Copy, Type)]
+struct Few<const N: usize, const NAME: usize> {
+    first: [f32; N],
+    second: [f32; NAME],
+}
+
+#[kernel]
+fn few<const N: usize, const NAME: usize>(few: Few<N, NAME>) -> f32 {
+    few.first[0] + few.second[NAME - 1]
+}
+
+#[test]
+fn types_and_constants_have_short_names() {
+    #[kernel]
+    fn whole(x: f32) -> f32 {
+        let m = M { r: x } + M { r: 1.0 };
+        let a = if x > 0.0 { A::R } else { A::Via };
+        let parts = Few::<2, 3> { first: [x; 2], second: [m.r; 3] };
+        if a == A::R { m.r + few(parts) } else { x }
+    }
+    assert_variants_agree!(whole, &[(1.0,), (-3.5,)]);
+}
+
+#[primitive]
+struct R {
+    center: Vec3,
+    radius: f32,
+}
+
+#[primitive]
+impl R {
+    fn intersect(&self, ray: Ray) -> Hit {
+        let ball = self.center;
+        let t = dot(ball - ray.origin, ray.direction);
+        Hit::new(t > ray.t_min && t < ray.t_max, t)
+    }
+
+    fn get_bounds(&self) -> Aabb {
+        Aabb { min: self.center - self.radius, max: self.center + self.radius }
+    }
+}
+
+#[primitive(sphere(center, radius))]
+struct M2 {
+    center: Vec3,
+    radius: f32,
+}
+
+#[primitive]
+enum P {
+    A(R),
+    M(M2),
+}
+
+#[test]
+fn primitives_have_short_names() {
+    let ball = R { center: vec3(0.0, 0.0, 4.0), radius: 1.0 };
+    let sphere = M2 { center: vec3(0.0, 3.0, 4.0), radius: 1.0 };
+    let all = [P::A(ball), P::M(sphere)];
+    let bvh = Bvh::build(&all).expect("finite bounds");
+    let k = kernel!(|y: f32| {
+        let ray = Ray::new(vec3(0.0, y, 0.0), Vec3::Z);
+        bvh.closest_hit(ray).t
+    });
+    assert_variants_agree!(&k, &[(0.0,), (3.0,), (9.0,)]);
+}

@@ -1,0 +1,7 @@
+use raydsl::kernel;
+use raydsl::prelude::*;
+
+#[primitive]
+struct Disk; //~ macro
+
+fn main() {}

@@ -1,0 +1,17 @@
+use raydsl::kernel;
+use raydsl::prelude::*;
+
+#[primitive]
+struct Disk {
+    center: Vec3,
+    radius: f32,
+}
+
+#[primitive]
+impl Disk { //~ macro
+    fn intersect(&self, ray: Ray) -> Hit {
+        Hit::new(ray.t_min < self.radius, self.radius)
+    }
+}
+
+fn main() {}
