@@ -5,23 +5,23 @@ use raydsl::prelude::*;
 /// A point with a colour, as it lies in memory and on a GPU.
 #[primitive]
 #[derive(Debug)]
-pub struct ColorSphere {
+pub(crate) struct ColorSphere {
     /// Where it is.
-    pub center: Vec3,
+    pub(crate) center: Vec3,
     /// How large.
-    pub radius: Unorm8,
+    pub(crate) radius: Unorm8,
     /// Red, green and blue.
-    pub color: [Unorm8; 3],
+    pub(crate) color: [Unorm8; 3],
 }
 
 // ANCHOR: record
 /// What a ray finds.
 #[derive(Clone, Copy, Debug, PartialEq, Type, HitRecord)]
-pub struct ColorHit {
+pub(crate) struct ColorHit {
     /// Where.
-    pub hit: Hit,
+    pub(crate) hit: Hit,
     /// In which colour.
-    pub color: Vec3,
+    pub(crate) color: Vec3,
 }
 // ANCHOR_END: record
 
@@ -47,7 +47,7 @@ impl ColorSphere {
 // ANCHOR_END: impl
 
 /// Points on a spiral.
-pub fn spiral(count: u32) -> Vec<ColorSphere> {
+pub(crate) fn spiral(count: u32) -> Vec<ColorSphere> {
     let point = |i: u32| {
         let share = i as f32 / count as f32;
         let (sin, cos) = (40.0 * share).sin_cos();

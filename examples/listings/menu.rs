@@ -6,7 +6,7 @@ use raydsl::prelude::*;
 /// A button: its corners, anticlockwise.
 #[primitive(quad(v0, v1, v2, v3))]
 #[derive(Debug)]
-pub struct Button {
+pub(crate) struct Button {
     v0: Vec3,
     v1: Vec3,
     v2: Vec3,
@@ -15,7 +15,7 @@ pub struct Button {
 // ANCHOR_END: button
 
 /// Buttons below each other, on a panel two units ahead.
-pub fn menu(count: u32) -> Vec<Button> {
+pub(crate) fn menu(count: u32) -> Vec<Button> {
     let at = |x: f32, y: f32| vec3(x, y, 2.0);
     let button = |i: u32| {
         let top = 1.0 - 0.3 * i as f32;
@@ -27,7 +27,7 @@ pub fn menu(count: u32) -> Vec<Button> {
 
 // ANCHOR: pick
 /// The button that the wand points at.
-pub fn picked(menu: &[Button], wand: Ray) -> Option<u32> {
+pub(crate) fn picked(menu: &[Button], wand: Ray) -> Option<u32> {
     let hit = menu.closest_hit(wand);
     hit.is_hit.then_some(hit.prim_id)
 }

@@ -5,16 +5,16 @@ use raydsl::prelude::*;
 
 /// How the texels lie; they themselves are a slice of the application's.
 #[derive(Clone, Copy, Debug, Type)]
-pub struct Grid {
+pub(crate) struct Grid {
     /// Texels in a row.
-    pub width: u32,
+    pub(crate) width: u32,
     /// Rows.
-    pub height: u32,
+    pub(crate) height: u32,
 }
 
 /// The nearest texel: `uv` from 0 to 1, repeated outside.
 #[kernel]
-pub fn tex2(texels: &[Vec3], grid: Grid, uv: Vec2) -> Vec3 {
+pub(crate) fn tex2(texels: &[Vec3], grid: Grid, uv: Vec2) -> Vec3 {
     let (u, v) = (uv.x - uv.x.floor(), uv.y - uv.y.floor());
     let x = min((u * grid.width as f32) as u32, grid.width - 1);
     let y = min((v * grid.height as f32) as u32, grid.height - 1);
@@ -23,7 +23,7 @@ pub fn tex2(texels: &[Vec3], grid: Grid, uv: Vec2) -> Vec3 {
 
 /// A floor with the texture on it, seen along each ray.
 #[kernel]
-pub fn floor(texels: &[Vec3], grid: Grid, ray: Ray) -> Vec3 {
+pub(crate) fn floor(texels: &[Vec3], grid: Grid, ray: Ray) -> Vec3 {
     let t = -ray.origin.y / ray.direction.y;
     let p = ray.at(t);
     let sky = vec3(0.6, 0.7, 0.9);
@@ -31,7 +31,7 @@ pub fn floor(texels: &[Vec3], grid: Grid, ray: Ray) -> Vec3 {
 }
 
 /// Tiles of two colours.
-pub fn tiles() -> (Vec<Vec3>, Grid) {
+pub(crate) fn tiles() -> (Vec<Vec3>, Grid) {
     let grid = Grid { width: 8, height: 8 };
     let tile = |i: u32| match (i % 8 / 4 + i / 8 / 4) % 2 {
         0 => vec3(0.9, 0.9, 0.8),

@@ -6,18 +6,18 @@ use raydsl::prelude::*;
 /// A ball and what it is made of.
 #[primitive(sphere(center, radius))]
 #[derive(Debug)]
-pub struct Ball {
+pub(crate) struct Ball {
     /// Its centre.
-    pub center: Vec3,
+    pub(crate) center: Vec3,
     /// Its radius.
-    pub radius: f32,
+    pub(crate) radius: f32,
 }
 
 // ANCHOR: enum
 /// What a scene is made of; its WGSL has the kinds that are there.
 #[primitive]
 #[derive(Debug)]
-pub enum Shape {
+pub(crate) enum Shape {
     /// A sphere.
     Ball(Ball),
     /// A triangle.
@@ -27,16 +27,16 @@ pub enum Shape {
 
 /// What a surface does with light.
 #[kernel]
-pub trait Material {
+pub(crate) trait Material {
     /// The share of light that goes on, under this cosine.
     fn shade(&self, cos: f32) -> Vec3;
 }
 
 /// The same in all directions.
 #[derive(Clone, Copy, Debug, Type)]
-pub struct Matte {
+pub(crate) struct Matte {
     /// Its colour.
-    pub color: Vec3,
+    pub(crate) color: Vec3,
 }
 
 #[kernel]
@@ -48,11 +48,11 @@ impl Material for Matte {
 
 /// With a highlight.
 #[derive(Clone, Copy, Debug, Type)]
-pub struct Plastic {
+pub(crate) struct Plastic {
     /// Its colour.
-    pub color: Vec3,
+    pub(crate) color: Vec3,
     /// How narrow the highlight is.
-    pub exponent: f32,
+    pub(crate) exponent: f32,
 }
 
 #[kernel]
@@ -65,7 +65,7 @@ impl Material for Plastic {
 
 /// Where light comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
-pub enum Light {
+pub(crate) enum Light {
     /// From above.
     Sky,
     /// From a lamp at the origin.
@@ -82,7 +82,7 @@ fn toward(light: Light, at: Vec3) -> Vec3 {
 
 /// Colour of what a ray meets: the shape's kind chooses the normal, the material's type the shade.
 #[kernel]
-pub fn radiance<A: Material, B: Material>(
+pub(crate) fn radiance<A: Material, B: Material>(
     scene: &Bvh<Shape>,
     balls: A,
     facets: B,

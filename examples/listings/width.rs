@@ -5,7 +5,7 @@ use raydsl::prelude::*;
 
 /// Rays that miss a unit sphere leave early; the others get its depth along the ray.
 #[kernel]
-pub fn thickness(ray: Ray) -> f32 {
+pub(crate) fn thickness(ray: Ray) -> f32 {
     let d = ray.direction.normalize();
     let along = ray.origin.dot(d);
     let aside = ray.origin - d * along;
@@ -17,7 +17,7 @@ pub fn thickness(ray: Ray) -> f32 {
 }
 
 /// The mean, by packets of a width that the caller chooses, and by the function itself.
-pub fn means(variant: Variant, rays: &[(Ray,)]) -> (f32, f32) {
+pub(crate) fn means(variant: Variant, rays: &[(Ray,)]) -> (f32, f32) {
     let mut found = vec![0.0; rays.len()];
     Kernel::of::<thickness>().run(variant, rays, &mut found);
     let scalar: f32 = rays.iter().map(|(ray,)| thickness(*ray)).sum();

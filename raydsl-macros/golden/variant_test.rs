@@ -107,7 +107,4 @@ fn panics_wgsl() {
         ::core::panic!("{}", "too far")
     }
 }
-#[test]
-fn sky_has_valid_wgsl() {
-    ::raydsl::testing::assert_valid_wgsl::<scene::sky>();
-}
+::raydsl::__wgsl_test!(sky_has_valid_wgsl, scene::sky);
