@@ -108,7 +108,7 @@ pub(crate) fn primitive_item(item: &syn::DeriveInput) -> TokenStream {
     let twin = twin(item, &fields);
     let dense = quote_spanned! {name.span()=>
         const _: () = assert!(
-            ::core::mem::size_of::<#name>() == 0 #(+ ::core::mem::size_of::<#types>())*,
+            ::core::mem::size_of::<#name>() == #(::core::mem::size_of::<#types>())+*,
             concat!(
                 "the primitive `", stringify!(#name), "` has gaps between its members\n",
                 "  help: order them by size, or fill the gaps with members of your own",
