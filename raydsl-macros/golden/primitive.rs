@@ -448,7 +448,7 @@ for ColorSphere {
     }
 }
 const _: () = assert!(
-    ::core::mem::size_of:: < ColorSphere > () == 0 + ::core::mem::size_of:: < Vec3 > () +
+    ::core::mem::size_of:: < ColorSphere > () == ::core::mem::size_of:: < Vec3 > () +
     ::core::mem::size_of:: < Unorm8 > () + ::core::mem::size_of:: < [Unorm8; 3] > (),
     concat!("the primitive `", stringify!(ColorSphere),
     "` has gaps between its members\n",
