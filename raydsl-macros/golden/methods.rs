@@ -9,7 +9,10 @@ impl Particle {
         Particle::new(0.0).moved(Vec3::ZERO)
     }
 }
-impl Particle {
+impl Particle
+where
+    Particle: ::raydsl::__private::Type,
+{
     #[doc(hidden)]
     #[inline(always)]
     #[allow(
@@ -155,7 +158,10 @@ impl<
     __M,
     (__A0,),
     (),
-> for Particle {
+> for Particle
+where
+    Particle: ::raydsl::__private::Type,
+{
     type This = <Self as ::raydsl::__private::Type>::On<__M>;
     type Output = <Particle as ::raydsl::__private::Type>::On<__M>;
     #[inline(always)]

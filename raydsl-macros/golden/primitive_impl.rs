@@ -7,7 +7,10 @@ impl ColorSphere {
         Aabb::from_sphere(self.center, self.radius.to_f32())
     }
 }
-impl ColorSphere {
+impl ColorSphere
+where
+    ColorSphere: ::raydsl::__private::Type,
+{
     #[doc(hidden)]
     #[inline(always)]
     #[allow(
@@ -95,7 +98,10 @@ impl<
     __M,
     (__A0,),
     (),
-> for ColorSphere {
+> for ColorSphere
+where
+    ColorSphere: ::raydsl::__private::Type,
+{
     type This = <Self as ::raydsl::__private::Type>::On<__M>;
     type Output = <Hit as ::raydsl::__private::Type>::On<__M>;
     #[inline(always)]

@@ -4,7 +4,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use syn::spanned::Spanned;
 
-use super::{Place, head, lifted_function, operators, own, private, quiet};
+use super::{Place, asserted_type, head, lifted_function, operators, own, private, quiet};
 use crate::diag::Errors;
 use crate::emit::Emitter;
 use crate::generics::Generics;
@@ -26,10 +26,11 @@ pub(crate) fn kernel_impl(
     let Generics { declared, predicates, .. } = &around;
     let self_ty = &item.self_ty;
     let Some((path, _)) = &item.trait_ else {
+        let asserted = asserted_type(&self_ty.to_token_stream(), &around);
         let item = without_markers(item.to_token_stream());
         return quote! {
             #item
-            impl<#declared> #self_ty where #predicates { #functions }
+            impl<#declared> #self_ty where #predicates #asserted { #functions }
             #methods
         };
     };
@@ -199,6 +200,7 @@ impl Method<'_> {
         let (arguments, generics): (Vec<_>, Vec<_>) =
             rest.iter().enumerate().map(|(i, param)| self.argument(i, param)).unzip();
         let generics = generics.into_iter().flatten();
+        let asserted = asserted_type(self_ty, around);
         let lifetime = rest.iter().any(|q| q.by_mut || q.data).then(|| quote!('__a,));
         let result = kernel.result.as_ref().map(|ty| self.twin(ty)).unwrap_or_else(|| quote!(()));
         let quiet = quiet();
@@ -247,6 +249,7 @@ impl Method<'_> {
                 #p::HostMethod<{ #p::name(#name) }, __M, (#(#arguments,)*), #via> for #self_ty
             where
                 #predicates
+                #asserted
             {
                 type This = <Self as #p::Type>::On<__M>;
                 type Output = #result;

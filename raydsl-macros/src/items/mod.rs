@@ -139,18 +139,24 @@ fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> T
 /// error, and the code that takes it for one has no others.
 fn asserted(kernel: &Kernel) -> TokenStream {
     let values = kernel.params.iter().filter(|p| !(p.data || p.host)).map(|p| &p.ty);
-    let mut asserted = TokenStream::new();
     let mut seen = Vec::new();
-    for ty in values.chain(&kernel.result) {
+    let asserted = values.chain(&kernel.result).filter_map(|ty| {
         let text = ty.to_string();
-        if is_users_own(ty) && !kernel.generics.has_type_in(ty) && !seen.contains(&text) {
-            let _at = of_type(ty);
-            let (p, ty) = (quote_here!(::raydsl::__private), in_one_place(ty.clone()));
-            asserted.extend(quote_here!(#ty: #p::Type,));
-            seen.push(text);
-        }
+        let is_new = !seen.contains(&text);
+        seen.push(text);
+        is_new.then(|| asserted_type(ty, &kernel.generics))
+    });
+    asserted.collect()
+}
+
+/// That a type of the user's own is one of kernels.
+fn asserted_type(ty: &TokenStream, generics: &Generics) -> TokenStream {
+    if !is_users_own(ty) || generics.has_type_in(ty) {
+        return TokenStream::new();
     }
-    asserted
+    let _at = of_type(ty);
+    let (p, ty) = (quote_here!(::raydsl::__private), in_one_place(ty.clone()));
+    quote_here!(#ty: #p::Type,)
 }
 
 /// A path without parameters that names none of the library's types.
