@@ -362,6 +362,43 @@ fn the_text_has_no_other_kind() {
     assert!(both.contains(".kind =="), "{both}");
 }
 
+/// So has that of a scene whose primitives give a record.
+#[primitive]
+enum Painted {
+    Ball(PaintedBall),
+    Facet(PaintedFacet),
+}
+
+#[primitive]
+struct PaintedFacet {
+    facet: [Vec3; 3],
+}
+
+#[primitive]
+impl PaintedFacet {
+    fn intersect(&self, ray: Ray) -> PaintedHit {
+        let [v0, v1, v2] = self.facet;
+        PaintedHit { color: v0, hit: triangle::intersect(ray, v0, v1, v2), facing: 1.0 }
+    }
+
+    fn get_bounds(&self) -> Aabb {
+        triangle::get_bounds(self.facet[0], self.facet[1], self.facet[2])
+    }
+}
+
+#[test]
+fn the_text_of_records_has_no_other_kind() {
+    let mut rng = Rng::of("kinds of records");
+    let mut all: Vec<Painted> = balls(&mut rng).into_iter().map(Painted::Ball).collect();
+    let text = |all: &[Painted]| {
+        let bvh = Bvh::build(all).expect("finite bounds");
+        kernel!(|ray: Ray| bvh.closest_hit(ray).color).wgsl()
+    };
+    assert!(!text(&all).contains("axis_last"));
+    all.push(Painted::Facet(PaintedFacet { facet: [Vec3::X, Vec3::Y, Vec3::Z] }));
+    assert!(text(&all).contains("axis_last"));
+}
+
 #[test]
 fn words_come_back() {
     let mut rng = Rng::of("words");

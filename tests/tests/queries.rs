@@ -2,6 +2,7 @@
 
 use raydsl::assert_variants_agree;
 use raydsl::geometry::sphere;
+use raydsl::kernel;
 use raydsl::prelude::*;
 use raydsl_tests::rng::Rng;
 
@@ -145,4 +146,100 @@ fn queries_within_control_flow() {
         sum
     });
     assert_variants_agree!(&walk, &rays);
+}
+
+/// Names of generated code on types and functions of a user's.
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
+struct Walk {
+    way: f32,
+}
+
+#[kernel]
+fn bvh_next(walk: Walk) -> f32 {
+    walk.way * 2.0
+}
+
+#[test]
+fn names_of_generated_code_are_the_users_too() {
+    let mut rng = Rng::of("names");
+    let balls = balls(&mut rng, 20);
+    let bvh = Bvh::build(&balls).expect("finite bounds");
+    let kernel = kernel!(|ray: Ray| {
+        let far = bvh_next(Walk { way: ray.direction.x });
+        let any = bvh.any_hit_where(ray, |hit: Hit| hit.t > far);
+        if any { far } else { -1.0 }
+    });
+    assert_variants_agree!(&kernel, &rays(&mut rng));
+}
+
+/// A clock that never ends to turn if its period is 0.
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
+struct Clock {
+    at: u32,
+    period: u32,
+}
+
+#[kernel]
+impl core::ops::Add for Clock {
+    type Output = Clock;
+
+    fn add(self, other: Clock) -> Clock {
+        let mut at = self.at + other.at;
+        while at >= self.period {
+            at -= self.period;
+        }
+        Clock { at, period: self.period }
+    }
+}
+
+/// The right side of `&&` is evaluated for the lanes that ask for it, whatever it calls.
+#[test]
+fn operators_run_where_they_are_asked() {
+    let inputs: Vec<(Clock,)> = (0..64).map(|i| (Clock { at: i, period: i % 5 },)).collect();
+    let kernel = kernel!(|c: Clock| c.period > 0 && (c + c).at == 0);
+    for variant in [Variant::Packet4, Variant::Packet8, Variant::Packet16] {
+        let mut found = vec![false; inputs.len()];
+        kernel.run(variant, &inputs, &mut found);
+        assert!(inputs.iter().zip(&found).all(|(i, f)| kernel.call(*i) == *f));
+    }
+}
+
+/// A shape whose distance may be infinite, in a tree that allows for no rounding.
+#[primitive]
+#[derive(Debug)]
+struct Horizon {
+    low: Vec3,
+    high: Vec3,
+    t: f32,
+}
+
+#[primitive]
+impl Horizon {
+    const SLACK: f32 = 0.0;
+
+    fn intersect(&self, ray: Ray) -> Hit {
+        Hit::new(ray.direction.z > 0.0, self.t)
+    }
+
+    fn get_bounds(&self) -> Aabb {
+        Aabb::new(self.low, self.high)
+    }
+}
+
+#[test]
+fn infinite_distances_hide_nothing() {
+    let slab = |z: f32, t: f32| Horizon { low: vec3(-1.0, -1.0, z), high: vec3(1.0, 1.0, z), t };
+    let prims: Vec<Horizon> = (0..40)
+        .map(|i| slab(1.0 + i as f32, if i < 30 { f32::INFINITY } else { i as f32 }))
+        .collect();
+    let bvh = Bvh::build(&prims).expect("finite bounds");
+    let ray = Ray::new(Vec3::ZERO, Vec3::Z).with_range(0.0, f32::INFINITY);
+    let slice = prims[..].closest_hit(ray);
+    assert_eq!((slice.t, slice.prim_id), (30.0, 30));
+    assert_eq!(bvh.closest_hit(ray), slice);
+    assert_eq!(bvh.multi_hit::<2>(ray)[0], slice);
+    let kernel = kernel!(|ray: Ray| bvh.closest_hit(ray));
+    let mut found = [Hit::miss(); 20];
+    kernel.run(Variant::Packet8, &[(ray,); 20], &mut found);
+    assert!(found.iter().all(|h| *h == slice));
 }

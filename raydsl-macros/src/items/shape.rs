@@ -1,6 +1,6 @@
 //! `#[primitive(sphere(center, radius))] struct T`: a primitive of a shape of the library.
 
-use proc_macro2::{Group, Ident, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
 use quote::{ToTokens, quote};
 use syn::parse::{Parse, ParseStream};
 use syn::punctuated::Punctuated;
@@ -141,9 +141,16 @@ impl Shape {
 fn of_self(tokens: TokenStream, members: &[&Ident]) -> TokenStream {
     let mut out = TokenStream::new();
     let mut is_member = false;
-    for token in tokens {
+    let mut tokens = tokens.into_iter().peekable();
+    while let Some(token) = tokens.next() {
+        // A name before parentheses or `::` is a function's or a type's.
+        let is_called = match tokens.peek() {
+            Some(TokenTree::Group(g)) => g.delimiter() == Delimiter::Parenthesis,
+            Some(TokenTree::Punct(p)) => p.as_char() == ':',
+            _ => false,
+        };
         match token {
-            TokenTree::Ident(name) if !is_member && members.contains(&&name) => {
+            TokenTree::Ident(name) if !is_member && !is_called && members.contains(&&name) => {
                 out.extend(quote!(self.#name));
                 is_member = false;
                 continue;

@@ -3,7 +3,7 @@
 //! The machine visits the primitives; what is kept of them is said here once, for all machines.
 
 use super::On;
-use crate::geometry::{Hit, HitOn, HitRecord, Primitive, RayOn};
+use crate::geometry::{Hit, HitOn, HitRecord, Kinds, Primitive, RayOn};
 use crate::machine::{
     B, BoolBinary, Branch, Coerce, Compare, Const, F, F32Binary, F32Unary, Machine, Method, Type,
     U, Var, name,
@@ -32,7 +32,11 @@ fn record_on<M: Machine, P: Primitive>(
         m,
         hit,
         #[inline(always)]
-        || P::intersect_on(m, m.fetch(prims, U(hit.prim_id.0)), ray),
+        || {
+            // A recorder leaves out the kinds that the scene does not have.
+            let kinds = if M::RUNS { Kinds::ALL } else { prims.kinds() };
+            P::intersect_among_on(m, kinds, m.fetch(prims, U(hit.prim_id.0)), ray)
+        },
     )
 }
 
@@ -53,7 +57,8 @@ fn limit_of<M: Machine, P: Primitive>(m: &M, worst: HitOn<M>, ray: RayOn<M>) -> 
     let slack = m.f32_unary(F32Unary::Abs, worst.t.0);
     let slack = m.f32_binary(F32Binary::Mul, slack, m.f32(P::SLACK));
     let limit = m.f32_binary(F32Binary::Add, worst.t.0, slack);
-    let limit = m.f32_binary(F32Binary::Min, limit, ray.t_max.0);
+    // In this order what is no number becomes the ray's end.
+    let limit = m.f32_binary(F32Binary::Min, ray.t_max.0, limit);
     F(m.f32_select(worst.is_hit.0, limit, ray.t_max.0))
 }
 

@@ -128,7 +128,7 @@ fn closest<P: Primitive>(prims: &On<'_, P>, ray: Ray, count: &mut impl Count) ->
         let hit = prims.prims[id as usize].intersect(ray).hit();
         if is_closer(&hit, id, &best, &ray) {
             best = Hit { prim_id: id, ..hit };
-            *limit = hit.t + hit.t.abs() * P::SLACK;
+            *limit = beyond::<P>(&hit, &ray);
         }
         false
     });
@@ -237,7 +237,7 @@ fn is_before(a: &Hit, b: &Hit) -> bool {
     !b.is_hit || a.t < b.t || (a.t == b.t && a.prim_id < b.prim_id)
 }
 
-/// No node beyond this distance can hold a hit before `hit`.
+/// No node beyond this distance can hold a hit before `hit`; the ray's end if that is no number.
 fn beyond<P: Primitive>(hit: &Hit, ray: &Ray) -> f32 {
     (hit.t + hit.t.abs() * P::SLACK).min(ray.t_max)
 }

@@ -172,7 +172,14 @@ pub fn element_in_step<M: Machine, A: Indexed<M>, I: Index<M>>(
     step: u32,
     index: impl FnOnce() -> I,
 ) -> A::Element {
-    if M::RUNS { a.in_step(m, step) } else { a.element(m, index().index(m)) }
+    if !M::RUNS {
+        return a.element(m, index().index(m));
+    }
+    if cfg!(debug_assertions) {
+        // What Rust would refuse on the way to the index is refused here too.
+        let _ = index();
+    }
+    a.in_step(m, step)
 }
 
 /// `a[3]`.

@@ -400,9 +400,6 @@ impl<L: Lanes> Machine for Packet<L> {
 
     #[inline(always)]
     fn guarded<R>(&self, c: L::Mask, when: bool, f: impl FnOnce() -> R) -> R {
-        if !cfg!(debug_assertions) {
-            return f();
-        }
         let c = if when { c } else { self.lanes.mask_not(c) };
         self.with_active(self.and(self.active.get(), c), f)
     }

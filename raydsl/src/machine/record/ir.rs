@@ -234,6 +234,11 @@ pub(super) enum Function {
 }
 
 impl Function {
+    /// Whether it is the library's text; a user's function may have any name.
+    pub(super) fn is_text(&self) -> bool {
+        matches!(self, Self::Text { .. })
+    }
+
     pub(super) fn name(&self) -> &str {
         match self {
             Self::Recorded(f) => &f.name,

@@ -44,22 +44,23 @@ struct State {
 impl State {
     /// Whether a function, a buffer, or something that belongs to a buffer has the name.
     fn is_taken(&self, name: &str) -> bool {
-        let of_buffer = |b: &SceneBuffer| {
-            name.strip_prefix(&b.name).is_some_and(|rest| {
-                matches!(
-                    rest,
-                    "" | "_at"
-                        | "_element"
-                        | "_len"
-                        | "_closest_hit"
-                        | "_any_hit"
-                        | "_walk"
-                        | "_next"
-                ) || rest.starts_with("_part")
-            })
-        };
-        self.functions.iter().any(|f| f.name() == name) || self.buffers.iter().any(of_buffer)
+        self.functions.iter().any(|f| f.name() == name)
+            || self.buffers.iter().any(|b| belongs_to(name, &b.name))
     }
+
+    /// Whether a buffer cannot have the name: something has it, or a name that goes with it.
+    fn is_taken_for_buffer(&self, name: &str) -> bool {
+        self.is_taken(name) || self.functions.iter().any(|f| belongs_to(f.name(), name))
+    }
+}
+
+/// Whether `name` is a buffer's, or that of a function that goes with it.
+fn belongs_to(name: &str, buffer: &str) -> bool {
+    const FUNCTIONS: [&str; 7] =
+        ["_at", "_element", "_len", "_closest_hit", "_any_hit", "_walk", "_next"];
+    name.strip_prefix(buffer).is_some_and(|rest| {
+        rest.is_empty() || FUNCTIONS.contains(&rest) || rest.starts_with("_part")
+    })
 }
 
 /// An `if` under way.
@@ -353,7 +354,7 @@ impl Recorder {
         if let Some(b) = state.buffers.iter().find(|b| b.key == key && b.schema == schema) {
             return b.name.clone();
         }
-        let name = unique(&safe_name(name), |n| state.is_taken(n));
+        let name = unique(&safe_name(name), |n| state.is_taken_for_buffer(n));
         state.buffers.push(SceneBuffer { key, name: name.clone(), schema, len });
         name
     }

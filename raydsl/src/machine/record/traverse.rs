@@ -81,7 +81,7 @@ impl Recorder {
         text: impl FnOnce(&str) -> String,
     ) -> usize {
         let mut state = self.state.borrow_mut();
-        if let Some(i) = state.functions.iter().position(|f| f.name() == name) {
+        if let Some(i) = state.functions.iter().position(|f| f.is_text() && f.name() == name) {
             return i;
         }
         let text = text(&name);

@@ -16,7 +16,7 @@ const STACK: usize = 64;
 const NONE: u32 = u32::MAX;
 
 /// A traversal under way.
-const WALK: &Schema = &Schema::Struct {
+pub(super) const WALK: &Schema = &Schema::Struct {
     name: "Walk",
     fields: &[
         Field { name: "lower", offset: 0, schema: &Schema::Vector(&Schema::F32, 3) },
