@@ -1,8 +1,8 @@
 //! Random well-typed kernels that terminate and do not panic.
 //!
-//! The grammar is tables of templates ([`numbers`], [`composites`], [`changes`]) and a function for
+//! The grammar is tables of templates (`numbers`, `composites`, `changes`) and a function for
 //! each form of statement. In a template, a small letter in braces is any expression of a type,
-//! as [`vocabulary::of_letter`] says: `{f}` is an `f32`, `{v}` a `Vec3`. A capital letter is a name
+//! as `vocabulary::of_letter` says: `{f}` is an `f32`, `{v}` a `Vec3`. A capital letter is a name
 //! that nothing assigns, or a member of one, the same wherever it stands in the template: guards
 //! such as `{U} != 0 && a / {U} > b` need that. `{H}` is a value of the host, `{G}` a variable of a
 //! type parameter's type. An exclamation mark in front says that no part may have an effect, for
