@@ -95,11 +95,9 @@ pub(crate) fn primitive_item(item: &syn::DeriveInput) -> TokenStream {
         errors.at(g.span(), "a primitive cannot be generic", "write a struct for each type");
     }
     let name = &item.ident;
-    let derives = |what| derives(item, what);
-    let clone = (!derives("Clone")).then(|| quote!(#[derive(Clone)]));
-    let copy = (!derives("Copy")).then(|| quote!(#[derive(Copy)]));
+    let copies = copies(item);
     if !errors.is_empty() {
-        let derives = mistaken::can_have_twin(item).then(|| quote!(#clone #copy));
+        let derives = mistaken::can_have_twin(item).then_some(&copies);
         let mistaken = mistaken::mistaken(item, errors);
         return quote!(#derives #item #mistaken);
     }
@@ -116,13 +114,19 @@ pub(crate) fn primitive_item(item: &syn::DeriveInput) -> TokenStream {
         );
     };
     quote! {
-        #clone
-        #copy
+        #copies
         #repr
         #item
         #twin
         #dense
     }
+}
+
+/// That a primitive is copied, where the user has not written it.
+fn copies(item: &syn::DeriveInput) -> TokenStream {
+    let clone = (!derives(item, "Clone")).then(|| quote!(#[derive(Clone)]));
+    let copy = (!derives(item, "Copy")).then(|| quote!(#[derive(Copy)]));
+    quote!(#clone #copy)
 }
 
 /// Whether the user derives a trait.
@@ -200,6 +204,7 @@ fn twin_of(item: &syn::DeriveInput, fields: &[syn::Field], owner: &TokenStream) 
         }
     };
     let methods = methods(&quote!(#twin<__M, #used>), owner, &generics);
+    let capture = capture(&quote!(#twin<__M, #used>), &host, &generics);
     quote! {
         #[doc = #doc]
         #[allow(missing_docs, reason = "the members are those of the struct")]
@@ -267,20 +272,7 @@ fn twin_of(item: &syn::DeriveInput, fields: &[syn::Field], owner: &TokenStream) 
             }
         }
 
-        #[diagnostic::do_not_recommend]
-        impl<__M: #p::Machine, #declared> #p::Capture<__M> for #host where #predicates {
-            type On<'c> = #twin<__M, #used>;
-
-            #[inline(always)]
-            fn capture(&self, m: &__M, name: &'static str) -> #twin<__M, #used> {
-                #p::Machine::capture(m, name, *self)
-            }
-
-            #[inline(always)]
-            fn constant(&self, m: &__M) -> #twin<__M, #used> {
-                #p::Type::splat(m, *self)
-            }
-        }
+        #capture
     }
 }
 
@@ -338,6 +330,28 @@ fn methods(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> Token
             #[inline(always)]
             fn call_at(self, variable: &#p::Var<Self>, m: &__M, args: __Args) -> Self::Output {
                 #of::call_at(self, variable, m, args)
+            }
+        }
+    }
+}
+
+/// How kernels capture a value of the host, and read it where it is a constant.
+fn capture(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> TokenStream {
+    let p = private();
+    let Generics { declared, predicates, .. } = generics;
+    quote! {
+        #[diagnostic::do_not_recommend]
+        impl<__M: #p::Machine, #declared> #p::Capture<__M> for #host where #predicates {
+            type On<'c> = #twin;
+
+            #[inline(always)]
+            fn capture(&self, m: &__M, name: &'static str) -> #twin {
+                #p::Machine::capture(m, name, *self)
+            }
+
+            #[inline(always)]
+            fn constant(&self, m: &__M) -> #twin {
+                #p::Type::splat(m, *self)
             }
         }
     }

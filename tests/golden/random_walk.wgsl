@@ -21,7 +21,7 @@ struct Tuple_3 {
     _1: u32,
 }
 
-struct Walk_1 {
+struct Walk {
     rng: Pcg,
     at: vec2<f32>,
     counts: array<u32, 2>,
@@ -29,7 +29,7 @@ struct Walk_1 {
 
 struct Tuple_4 {
     _0: bool,
-    _1: Walk_1,
+    _1: Walk,
 }
 
 struct Tuple_5 {
@@ -37,7 +37,7 @@ struct Tuple_5 {
 }
 
 struct Tuple_6 {
-    _0: Walk_1,
+    _0: Walk,
     _1: u32,
 }
 
@@ -49,7 +49,7 @@ struct StoredTuple_6 {
     arg1: u32,
 }
 
-struct StoredWalk_1 {
+struct StoredWalk {
     at_x: f32,
     at_y: f32,
     counts_0: u32,
@@ -104,7 +104,7 @@ fn bump(n: u32) -> Tuple_3 {
     return Tuple_3(n_1, n_1);
 }
 
-fn Walk_step(self_: Walk_1, length_: f32) -> Tuple_4 {
+fn Walk_step(self_: Walk, length_: f32) -> Tuple_4 {
     var self_rng_state: u32 = self_.rng.state;
     var self_at: vec2<f32> = self_.at;
     var self_counts_0: u32 = self_.counts[0];
@@ -131,9 +131,9 @@ fn Walk_step(self_: Walk_1, length_: f32) -> Tuple_4 {
         var self__3: u32 = self_counts_1;
         self__3 = bump(self__3)._1;
         self_counts_1 = self__3;
-        return Tuple_4(true, Walk_1(Pcg(self_rng_state), self_at, array<u32, 2>(self_counts_0, self_counts_1)));
+        return Tuple_4(true, Walk(Pcg(self_rng_state), self_at, array<u32, 2>(self_counts_0, self_counts_1)));
     }
-    return Tuple_4(false, Walk_1(Pcg(self_rng_state), self_at, array<u32, 2>(self_counts_0, self_counts_1)));
+    return Tuple_4(false, Walk(Pcg(self_rng_state), self_at, array<u32, 2>(self_counts_0, self_counts_1)));
 }
 
 fn Pcg_skip(self_: Pcg, n: u32) -> Tuple_5 {
@@ -145,7 +145,7 @@ fn Pcg_skip(self_: Pcg, n: u32) -> Tuple_5 {
     return Tuple_5(Pcg(self_state));
 }
 
-fn random_walk(walk: Walk_1, n: u32) -> Walk_1 {
+fn random_walk(walk: Walk, n: u32) -> Walk {
     var w_rng_state: u32 = walk.rng.state;
     var w_at: vec2<f32> = walk.at;
     var w_counts_0: u32 = walk.counts[0];
@@ -156,7 +156,7 @@ fn random_walk(walk: Walk_1, n: u32) -> Walk_1 {
         let w_at_1 = w_at;
         let w_counts_0_1 = w_counts_0;
         let w_counts_1_1 = w_counts_1;
-        let t = Walk_step(Walk_1(Pcg(w_rng_state_1), w_at_1, array<u32, 2>(w_counts_0_1, w_counts_1_1)), 2.0f);
+        let t = Walk_step(Walk(Pcg(w_rng_state_1), w_at_1, array<u32, 2>(w_counts_0_1, w_counts_1_1)), 2.0f);
         w_rng_state = t._1.rng.state;
         w_at = t._1.at;
         w_counts_0 = t._1.counts[0];
@@ -173,19 +173,19 @@ fn random_walk(walk: Walk_1, n: u32) -> Walk_1 {
     w_state_1 = t_1._1.state;
     w_rng_state = w_state_1;
     w_counts_1 = w_counts_1 + (t_1._0 & 3u);
-    return Walk_1(Pcg(w_rng_state), w_at, array<u32, 2>(w_counts_0, w_counts_1));
+    return Walk(Pcg(w_rng_state), w_at, array<u32, 2>(w_counts_0, w_counts_1));
 }
 
-fn element(input: Tuple_6) -> Walk_1 {
+fn element(input: Tuple_6) -> Walk {
     return random_walk(input._0, input._1);
 }
 
 @group(0) @binding(2) var<storage, read> inputs: array<StoredTuple_6>;
-@group(0) @binding(3) var<storage, read_write> outputs: array<StoredWalk_1>;
+@group(0) @binding(3) var<storage, read_write> outputs: array<StoredWalk>;
 
 fn load_input(i: u32) -> Tuple_6 {
     let s = inputs[i];
-    return Tuple_6(Walk_1(Pcg(s.arg0_rng_state), s.arg0_at, array<u32, 2>(s.arg0_counts_0, s.arg0_counts_1)), s.arg1);
+    return Tuple_6(Walk(Pcg(s.arg0_rng_state), s.arg0_at, array<u32, 2>(s.arg0_counts_0, s.arg0_counts_1)), s.arg1);
 }
 
 @compute @workgroup_size(8, 8)
@@ -194,5 +194,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let at = job.first + id.xy;
     let index = at.y * job.size.x + at.x - job.base;
     let result = element(load_input(index));
-    outputs[index] = StoredWalk_1(result.at.x, result.at.y, result.counts[0], result.counts[1], result.rng.state);
+    outputs[index] = StoredWalk(result.at.x, result.at.y, result.counts[0], result.counts[1], result.rng.state);
 }

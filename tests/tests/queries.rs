@@ -150,12 +150,12 @@ fn queries_within_control_flow() {
 
 /// Names of generated code on types and functions of a user's.
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
-struct Walk {
+struct Traversal {
     way: f32,
 }
 
 #[kernel]
-fn bvh_next(walk: Walk) -> f32 {
+fn bvh_next(walk: Traversal) -> f32 {
     walk.way * 2.0
 }
 
@@ -165,7 +165,7 @@ fn names_of_generated_code_are_the_users_too() {
     let balls = balls(&mut rng, 20);
     let bvh = Bvh::build(&balls).expect("finite bounds");
     let kernel = kernel!(|ray: Ray| {
-        let far = bvh_next(Walk { way: ray.direction.x });
+        let far = bvh_next(Traversal { way: ray.direction.x });
         let any = bvh.any_hit_where(ray, |hit: Hit| hit.t > far);
         if any { far } else { -1.0 }
     });

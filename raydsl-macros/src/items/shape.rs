@@ -78,6 +78,7 @@ impl Shape {
         let shape = quote!(::raydsl::geometry::#shape);
         let arguments = of_self(self.arguments.to_token_stream(), members);
         syn::parse_quote! {
+            #[allow(dead_code, reason = "not every program asks all of a shape")]
             impl #ty {
                 const SLACK: f32 = #shape::SLACK;
 
@@ -88,7 +89,6 @@ impl Shape {
                 }
 
                 #[doc = "The normal where `ray` hits it, with unit length."]
-                #[allow(dead_code, reason = "a part of the shape")]
                 pub fn normal(
                     &self,
                     ray: ::raydsl::geometry::Ray,
@@ -98,7 +98,6 @@ impl Shape {
                 }
 
                 #[doc = "Surface coordinates where `ray` hits it, from 0 to 1."]
-                #[allow(dead_code, reason = "a part of the shape")]
                 pub fn uv(
                     &self,
                     ray: ::raydsl::geometry::Ray,
@@ -108,13 +107,11 @@ impl Shape {
                 }
 
                 #[doc = "The area of its surface."]
-                #[allow(dead_code, reason = "a part of the shape")]
                 pub fn area(&self) -> f32 {
                     #shape::area(#arguments)
                 }
 
                 #[doc = "A point of its surface; a uniform `u` in the unit square gives a uniform one."]
-                #[allow(dead_code, reason = "a part of the shape")]
                 pub fn sample(&self, u: ::raydsl::prelude::Vec2) -> ::raydsl::geometry::SurfacePoint {
                     #shape::sample(u, #arguments)
                 }

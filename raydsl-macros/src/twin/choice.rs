@@ -6,8 +6,9 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 use syn::spanned::Spanned;
 
-use super::{private, twin_of};
+use super::{capture, copies, private, twin_of};
 use crate::diag::Errors;
+use crate::generics::Generics;
 
 /// The bits of the set of kinds that a scene has.
 const MOST_KINDS: usize = 64;
@@ -21,25 +22,17 @@ pub(super) fn choice(item: &syn::DeriveInput, e: &syn::DataEnum) -> TokenStream 
         return quote!(#item #errors);
     }
     let choice = Choice { item, data: format_ident!("{}Data", item.ident), kinds };
-    let (derives, twin) = (derives(item), choice.twin());
+    let (copies, twin) = (copies(item), choice.twin());
     let (r#type, primitive) = (choice.type_impl(), choice.primitive_impl());
     let variants = choice.lifted_variants();
     quote! {
-        #derives
+        #copies
         #item
         #twin
         #r#type
         #primitive
         #variants
     }
-}
-
-/// What a primitive derives, where the user has not written it.
-fn derives(item: &syn::DeriveInput) -> TokenStream {
-    let has = |what| super::derives(item, what);
-    let clone = (!has("Clone")).then(|| quote!(#[derive(Clone)]));
-    let copy = (!has("Copy")).then(|| quote!(#[derive(Copy)]));
-    quote!(#clone #copy)
 }
 
 struct Kind {
@@ -179,6 +172,7 @@ impl Choice<'_> {
         let (p, name, data) = (private(), &self.item.ident, &self.data);
         let (names, types, numbers) = (self.names(), self.types(), self.numbers());
         let twin = format_ident!("{data}On");
+        let capture = capture(&quote!(#twin<__M>), &quote!(#name), &Generics::default());
         let (first, first_ty) = (&self.kinds[0].name, &self.kinds[0].ty);
         quote! {
             impl #name {
@@ -231,20 +225,7 @@ impl Choice<'_> {
                 }
             }
 
-            #[diagnostic::do_not_recommend]
-            impl<__M: #p::Machine> #p::Capture<__M> for #name {
-                type On<'c> = #twin<__M>;
-
-                #[inline(always)]
-                fn capture(&self, m: &__M, name: &'static str) -> #twin<__M> {
-                    #p::Machine::capture(m, name, *self)
-                }
-
-                #[inline(always)]
-                fn constant(&self, m: &__M) -> #twin<__M> {
-                    #p::Type::splat(m, *self)
-                }
-            }
+            #capture
         }
     }
 

@@ -46,13 +46,17 @@ fn is_finite(ray: &Ray) -> bool {
     ray.origin.is_finite() && ray.direction.is_finite()
 }
 
-/// Whether `hit`, of the primitive `id`, comes before `best` in the order of `(t, id)`.
+/// Whether there is a hit, within the ray's range.
 #[inline(always)]
-fn is_closer(hit: &Hit, id: u32, best: &Hit, ray: &Ray) -> bool {
-    hit.is_hit
-        && hit.t >= ray.t_min
-        && hit.t <= ray.t_max
-        && (!best.is_hit || hit.t < best.t || (hit.t == best.t && id < best.prim_id))
+fn is_met(hit: &Hit, ray: &Ray) -> bool {
+    hit.is_hit && hit.t >= ray.t_min && hit.t <= ray.t_max
+}
+
+/// Whether a hit at `t` of the primitive `id` comes before `best` in the order of `(t, id)`; any hit
+/// comes before a miss.
+#[inline(always)]
+fn is_before(t: f32, id: u32, best: &Hit) -> bool {
+    !best.is_hit || t < best.t || (t == best.t && id < best.prim_id)
 }
 
 /// What a traversal did.
@@ -118,7 +122,7 @@ fn closest<P: Primitive>(prims: &On<'_, P>, ray: Ray, count: &mut impl Count) ->
         for (id, p) in prims.prims.iter().enumerate() {
             count.primitive();
             let (hit, id) = (p.intersect(ray).hit(), id as u32);
-            if is_closer(&hit, id, &best, &ray) {
+            if is_met(&hit, &ray) && is_before(hit.t, id, &best) {
                 best = Hit { prim_id: id, ..hit };
             }
         }
@@ -126,7 +130,7 @@ fn closest<P: Primitive>(prims: &On<'_, P>, ray: Ray, count: &mut impl Count) ->
     }
     walk(prims, ray, P::SLACK, count, |id, limit| {
         let hit = prims.prims[id as usize].intersect(ray).hit();
-        if is_closer(&hit, id, &best, &ray) {
+        if is_met(&hit, &ray) && is_before(hit.t, id, &best) {
             best = Hit { prim_id: id, ..hit };
             *limit = beyond::<P>(&hit, &ray);
         }
@@ -137,10 +141,7 @@ fn closest<P: Primitive>(prims: &On<'_, P>, ray: Ray, count: &mut impl Count) ->
 
 /// Whether `ray` hits any of `prims`.
 pub fn any_hit<P: Primitive>(prims: &On<'_, P>, ray: Ray) -> bool {
-    let accepts = |p: &P| {
-        let hit = p.intersect(ray).hit();
-        hit.is_hit && hit.t >= ray.t_min && hit.t <= ray.t_max
-    };
+    let accepts = |p: &P| is_met(&p.intersect(ray).hit(), &ray);
     if !is_finite(&ray) {
         return false;
     }
@@ -167,8 +168,7 @@ pub(crate) fn visit<P: Primitive>(
     }
     let mut stops = |id: u32, limit: &mut f32| {
         let hit = prims.prims[id as usize].intersect(ray).hit();
-        let is_met = hit.is_hit && hit.t >= ray.t_min && hit.t <= ray.t_max;
-        is_met && !meet(Hit { prim_id: id, ..hit }, limit)
+        is_met(&hit, &ray) && !meet(Hit { prim_id: id, ..hit }, limit)
     };
     if prims.has_tree() {
         return walk(prims, ray, P::SLACK, &mut Uncounted, stops);
@@ -185,7 +185,7 @@ pub fn closest_hit_where<P: Primitive>(
 ) -> P::Hit {
     let mut best = Hit::miss();
     visit(prims, ray, |hit, limit| {
-        if is_before(&hit, &best) && accept(hit) {
+        if is_before(hit.t, hit.prim_id, &best) && accept(hit) {
             best = hit;
             *limit = beyond::<P>(&hit, &ray);
         }
@@ -219,8 +219,9 @@ pub fn multi_hit_where<P: Primitive, const N: usize>(
     visit(prims, ray, |hit, limit| {
         // A tree with spatial splits holds a primitive more than once.
         let is_there = hits.iter().any(|h| h.is_hit && h.prim_id == hit.prim_id);
-        if is_before(&hit, &hits[N - 1]) && !is_there && accept(hit) {
-            let at = hits.iter().position(|h| is_before(&hit, h)).unwrap_or(N - 1);
+        if is_before(hit.t, hit.prim_id, &hits[N - 1]) && !is_there && accept(hit) {
+            let is_place = |h: &Hit| is_before(hit.t, hit.prim_id, h);
+            let at = hits.iter().position(is_place).unwrap_or(N - 1);
             hits[at..].rotate_right(1);
             hits[at] = hit;
             if hits[N - 1].is_hit {
@@ -230,11 +231,6 @@ pub fn multi_hit_where<P: Primitive, const N: usize>(
         true
     });
     hits
-}
-
-/// Whether `a` comes before `b` in the order of `(t, id)`; any hit comes before a miss.
-fn is_before(a: &Hit, b: &Hit) -> bool {
-    !b.is_hit || a.t < b.t || (a.t == b.t && a.prim_id < b.prim_id)
 }
 
 /// No node beyond this distance can hold a hit before `hit`; the ray's end if that is no number.

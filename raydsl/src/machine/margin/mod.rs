@@ -482,8 +482,9 @@ impl Machine for Margin {
         meet: impl Fn(HitOn<Self>) -> B<Self>,
     ) {
         if self.is_running() {
-            traverse::visit(self, prims, ray, &|| limit().0.range.high, &|hit| {
-                self.decided(meet(hit).0)
+            traverse::query(self, prims, ray, |m, scene| {
+                let meets = |hit| m.decided(meet(hit).0);
+                traverse::visit(m, scene, &|| limit().0.range.high, &meets);
             });
         }
     }

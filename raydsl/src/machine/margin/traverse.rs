@@ -38,7 +38,7 @@ pub(super) fn query<P: Primitive, R>(
     m: &Margin,
     prims: &On<'_, P>,
     ray: RayOn<Margin>,
-    query: fn(&Margin, &Scene<'_>) -> R,
+    query: impl FnOnce(&Margin, &Scene<'_>) -> R,
 ) -> R {
     let bytes = |id| {
         let mut bytes = vec![0; P::SCHEMA.size()];
@@ -128,23 +128,13 @@ pub(super) fn any_hit(m: &Margin, scene: &Scene<'_>) -> Truth {
 }
 
 /// Calls `meet` for every hit of the way that is followed, until it returns false.
-pub(super) fn visit<P: Primitive>(
+pub(super) fn visit(
     m: &Margin,
-    prims: &On<'_, P>,
-    ray: RayOn<Margin>,
+    scene: &Scene<'_>,
     limit: &dyn Fn() -> f64,
     meet: &dyn Fn(HitOn<Margin>) -> bool,
 ) {
-    let bytes = |_| Vec::new();
-    let scene = Scene {
-        ray,
-        len: prims.len() as u32,
-        tree: prims.has_tree().then_some((prims.nodes, prims.indices)),
-        slack: f64::from(P::SLACK),
-        intersect: &|id| P::Hit::hit_on(P::intersect_one_on(m, &prims.get(id), ray)),
-        bytes: &bytes,
-    };
-    let runs = match fate(ray) {
+    let runs = match fate(scene.ray) {
         Fate::Misses => false,
         Fate::Runs => true,
         Fate::MayMiss => m.decided(m.truth(true, true, true)),
@@ -152,13 +142,12 @@ pub(super) fn visit<P: Primitive>(
     if !runs {
         return;
     }
-    let end = Cell::new(ray.t_max.0.range.high);
+    let end = Cell::new(scene.ray.t_max.0.range.high);
     scene.walk(&end, &mut |id| {
+        let mark = m.forms.len();
         let hit = (scene.intersect)(id);
-        let late = m.f32_compare(Compare::Ge, hit.t.0, ray.t_min.0);
-        let early = m.f32_compare(Compare::Le, hit.t.0, ray.t_max.0);
-        let inside = m.bool_binary(BoolBinary::And, late, early);
-        if !m.decided(m.bool_binary(BoolBinary::And, hit.is_hit.0, inside)) {
+        if !m.decided(scene.accepts(m, &hit)) {
+            m.forms.truncate(mark);
             return false;
         }
         let goes_on = meet(HitOn { prim_id: U(id), ..hit });
@@ -200,16 +189,20 @@ fn fate(ray: RayOn<Margin>) -> Fate {
 }
 
 impl Scene<'_> {
+    /// Whether there is a hit, within the ray's range.
+    fn accepts(&self, m: &Margin, hit: &HitOn<Margin>) -> Truth {
+        let late = m.f32_compare(Compare::Ge, hit.t.0, self.ray.t_min.0);
+        let early = m.f32_compare(Compare::Le, hit.t.0, self.ray.t_max.0);
+        let inside = m.bool_binary(BoolBinary::And, late, early);
+        m.bool_binary(BoolBinary::And, hit.is_hit.0, inside)
+    }
+
     /// Every way in which one primitive is hit. Forms are kept for the results alone.
     fn ways(&self, m: &Margin, id: u32) -> Explored<Option<[Kept; 3]>> {
-        let ray = self.ray;
         m.each_way(WAYS, &|| {
             let mark = m.forms.len();
             let hit = (self.intersect)(id);
-            let late = m.f32_compare(Compare::Ge, hit.t.0, ray.t_min.0);
-            let early = m.f32_compare(Compare::Le, hit.t.0, ray.t_max.0);
-            let inside = m.bool_binary(BoolBinary::And, late, early);
-            let accepted = m.decided(m.bool_binary(BoolBinary::And, hit.is_hit.0, inside));
+            let accepted = m.decided(self.accepts(m, &hit));
             let results = [hit.t.0, hit.u.0, hit.v.0].map(|v| (v, m.forms.get(v.form, v.range)));
             m.forms.truncate(mark);
             accepted.then_some(results)

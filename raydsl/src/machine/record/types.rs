@@ -4,7 +4,7 @@ use core::fmt::Write;
 
 use super::ir::Type;
 use super::names::{member_name, safe_name, unique};
-use super::visit::WALK;
+use super::visit::TRAVERSAL;
 use crate::bvh::NODE_SCHEMA;
 use crate::geometry::{Hit, Ray};
 use crate::machine::{Schema, Type as _};
@@ -37,7 +37,7 @@ fn same_type(a: &Schema, b: &Schema) -> bool {
 }
 
 /// The types that hand-written text names.
-const LIBRARY: [&Schema; 4] = [Ray::SCHEMA, Hit::SCHEMA, NODE_SCHEMA, WALK];
+const LIBRARY: [&Schema; 4] = [Ray::SCHEMA, Hit::SCHEMA, NODE_SCHEMA, TRAVERSAL];
 
 impl Names {
     /// The library's types have their names before a user's of the same name is met.

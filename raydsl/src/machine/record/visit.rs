@@ -16,8 +16,8 @@ const STACK: usize = 64;
 const NONE: u32 = u32::MAX;
 
 /// A traversal under way.
-pub(super) const WALK: &Schema = &Schema::Struct {
-    name: "Walk",
+pub(super) const TRAVERSAL: &Schema = &Schema::Struct {
+    name: "Traversal",
     fields: &[
         Field { name: "lower", offset: 0, schema: &Schema::Vector(&Schema::F32, 3) },
         Field { name: "upper", offset: 16, schema: &Schema::Vector(&Schema::F32, 3) },
@@ -72,15 +72,16 @@ impl Recorder {
         meet: &impl Fn(HitOn<Self>) -> B<Self>,
     ) {
         let (start, next) = self.walk_functions(prims);
-        let start = self.add(Expr::Call(start, vec![self.whole(ray)]), Type::Of(WALK));
+        let start = self.add(Expr::Call(start, vec![self.whole(ray)]), Type::Of(TRAVERSAL));
         let walk = self.builder(|b| {
-            let walk = b.new_var("walk", Type::Of(WALK));
+            let walk = b.new_var("walk", Type::Of(TRAVERSAL));
             b.used(start);
             b.push(Stmt::Var(walk, Some(start)));
             walk
         });
         let repeat = Loop::new(self);
-        let arguments = vec![self.add(Expr::Address(walk), Type::Of(WALK)), ray.t_min.0, limit().0];
+        let arguments =
+            vec![self.add(Expr::Address(walk), Type::Of(TRAVERSAL)), ray.t_min.0, limit().0];
         let id = self.add(Expr::Call(next, arguments), Type::U32);
         self.builder(|b| {
             let node = b.node(id);
@@ -132,7 +133,7 @@ impl Recorder {
         self.bool_binary(BoolBinary::And, of(ray.origin), of(ray.direction))
     }
 
-    /// `fn bvh_walk(ray: Ray) -> Walk` and `fn bvh_next(..) -> u32`.
+    /// `fn bvh_walk(ray: Ray) -> Traversal` and `fn bvh_next(..) -> u32`.
     fn walk_functions<P: Primitive>(&self, prims: &On<'_, P>) -> (usize, usize) {
         let name = self.prims_buffer(prims);
         self.finite_function();
@@ -140,13 +141,13 @@ impl Recorder {
         let (nodes, ids, slack) = (&tree.nodes, &tree.indices, P::SLACK);
         let start = self.text_function(
             format!("{name}_walk"),
-            vec![<Ray as crate::machine::Type>::SCHEMA, WALK, NODE_SCHEMA],
+            vec![<Ray as crate::machine::Type>::SCHEMA, TRAVERSAL, NODE_SCHEMA],
             |name| {
                 format!(
                     "\
 /// A traversal that has yet to begin.
-fn {name}(ray: Ray) -> Walk {{
-    var w = Walk();
+fn {name}(ray: Ray) -> Traversal {{
+    var w = Traversal();
     if (params.len_of_{nodes} == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {{
         return w;
     }}
@@ -164,11 +165,12 @@ fn {name}(ray: Ray) -> Walk {{
                 )
             },
         );
-        let next = self.text_function(format!("{name}_next"), vec![WALK, NODE_SCHEMA], |name| {
-            format!(
-                "\
+        let next =
+            self.text_function(format!("{name}_next"), vec![TRAVERSAL, NODE_SCHEMA], |name| {
+                format!(
+                    "\
 /// The next primitive that the ray may meet at or before `limit`; {NONE}u when none is left.
-fn {name}(w: ptr<function, Walk>, t_min: f32, limit: f32) -> u32 {{
+fn {name}(w: ptr<function, Traversal>, t_min: f32, limit: f32) -> u32 {{
     loop {{
         if ((*w).next < (*w).last) {{
             (*w).next = (*w).next + 1u;
@@ -210,8 +212,8 @@ fn {name}(w: ptr<function, Walk>, t_min: f32, limit: f32) -> u32 {{
     return {NONE}u;
 }}
 "
-            )
-        });
+                )
+            });
         (start, next)
     }
 }
