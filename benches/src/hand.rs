@@ -10,7 +10,7 @@ use raydsl::prelude::*;
 use crate::scenes::ColorSphere;
 
 /// A primitive with a test written by hand.
-pub trait ByHand: Primitive<Hit = Hit> {
+pub trait ByHand: Primitive<Hit = Hit, Shared = ()> {
     /// What depends on the ray alone.
     type Prepared;
     /// Computes it.

@@ -120,12 +120,13 @@ where
 }
 impl ::raydsl::__private::Primitive for ColorSphere {
     type Hit = Hit;
+    type Shared = ();
     const SLACK: f32 = <ColorSphere>::SLACK;
     #[inline(always)]
-    fn intersect(&self, ray: ::raydsl::__private::Ray) -> Hit {
+    fn intersect(&self, ray: ::raydsl::__private::Ray, shared: &[()]) -> Hit {
         <ColorSphere>::intersect(self, ray)
     }
-    fn get_bounds(&self) -> ::raydsl::__private::Aabb {
+    fn get_bounds(&self, shared: &[()]) -> ::raydsl::__private::Aabb {
         <ColorSphere>::get_bounds(self)
     }
     #[inline(always)]
@@ -133,6 +134,7 @@ impl ::raydsl::__private::Primitive for ColorSphere {
         m: &__M,
         prim: <Self as ::raydsl::__private::Type>::On<__M>,
         ray: ::raydsl::__private::RayOn<__M>,
+        shared: ::raydsl::__private::View<'_, ()>,
     ) -> <Hit as ::raydsl::__private::Type>::On<__M> {
         <ColorSphere>::intersect_on(m, prim, ray)
     }

@@ -153,6 +153,11 @@ pub(crate) fn is_of_library(name: &str) -> bool {
     LIBRARY.contains(&name)
 }
 
+/// Whether the type is a tree, or a list of trees, which kernels read in place.
+pub(crate) fn is_tree(name: &str) -> bool {
+    ["Bvh", "BvhList"].contains(&name)
+}
+
 /// Methods of Rust's and glam's types that take a second value.
 const OF_TWO: &[&str] = &[
     "min",

@@ -100,7 +100,7 @@ fn is_data(ty: &syn::Type) -> bool {
     match ty {
         syn::Type::Reference(r) => is_data(&r.elem),
         syn::Type::Slice(_) => true,
-        syn::Type::Path(t) => t.path.segments.last().is_some_and(|s| s.ident == "Bvh"),
+        syn::Type::Path(_) => type_name(ty).is_some_and(|name| ops::is_tree(&name)),
         _ => false,
     }
 }

@@ -1,5 +1,6 @@
 //! The only names that generated code uses. Not for people: anything here may change.
 
+pub use crate::bvh::View;
 pub use crate::geometry::{Aabb, Hit, HitOn, HitRecord, Kinds, Primitive, Ray, RayOn};
 pub use crate::kernel::{Baseline, Kernel, Lifted, Native4, Native8, Native16, Native16Halves};
 pub use crate::machine::{

@@ -1,9 +1,9 @@
 //! Queries of scenes in every variant of the CPU.
 
-use raydsl::bvh::On;
+use raydsl::bvh::SceneView;
 use raydsl::machine::{Capture, Lanes, Machine, Packet, Scalar, Type};
 use raydsl::prelude::{
-    Bvh, Hit, HitRecord, Kernel, Primitive, Ray, Slice, Triangle, Variant, kernel,
+    Bvh, Hit, HitRecord, Kernel, Primitive, Ray, RayQuery, Triangle, Variant, kernel,
 };
 
 use crate::levels::{LevelTask, each_level, gangs, widest_level};
@@ -44,12 +44,12 @@ pub fn fill<T: Send>(out: &mut [T], work: impl Fn(usize, &mut [T]) + Sync) {
 }
 
 /// Primitives without a tree, as kernels see them.
-pub fn slice_view<P: Primitive>(prims: &[P]) -> On<'_, P> {
+pub fn slice_view<P: Primitive<Shared = ()>>(prims: &[P]) -> SceneView<'_, P> {
     Capture::<Scalar>::constant(prims, &Scalar::default())
 }
 
 /// The scalar answers.
-pub fn scalar_answers<P: Primitive>(view: On<'_, P>, rays: Vec<Ray>) -> Answers {
+pub fn scalar_answers<P: Primitive>(view: SceneView<'_, P>, rays: Vec<Ray>) -> Answers {
     use raydsl::bvh::traverse::{any_hit, closest_hit};
     let mut closest = vec![Hit::miss(); rays.len()];
     fill(&mut closest, |first, part| {
@@ -182,8 +182,8 @@ macro_rules! checks {
         }
 
         /// The closest hits, by the widest packets of this machine.
-        pub fn $fast(view: On<'_, $prim>, rays: &[Ray]) -> Vec<Hit> {
-            struct Widest<'a>(On<'a, $prim>, &'a [Ray], Vec<Hit>);
+        pub fn $fast(view: SceneView<'_, $prim>, rays: &[Ray]) -> Vec<Hit> {
+            struct Widest<'a>(SceneView<'a, $prim>, &'a [Ray], Vec<Hit>);
             impl LevelTask for Widest<'_> {
                 fn run<L: Lanes>(&mut self, _: &str, lanes: L) {
                     self.2 = closest_hits(lanes, L::N, &self.0, self.1);
@@ -201,12 +201,12 @@ checks!(Triangle: triangle_tree triangle_slice closest_triangles);
 
 impl Answers {
     /// Asks packets of every level and width. Many traversals: one test program alone does it.
-    pub fn assert_levels<P: Primitive>(&self, who: &str, view: On<'_, P>) {
+    pub fn assert_levels<P: Primitive>(&self, who: &str, view: SceneView<'_, P>) {
         each_level(&mut Ask { who, view, answers: self });
     }
 
     /// Asks gangs of 32 and 64 lanes about every fourth ray.
-    pub fn assert_gangs<P: Primitive>(&self, who: &str, view: On<'_, P>) {
+    pub fn assert_gangs<P: Primitive>(&self, who: &str, view: SceneView<'_, P>) {
         let answers = &Self {
             rays: self.rays.iter().step_by(4).copied().collect(),
             closest: self.closest.iter().step_by(4).copied().collect(),
@@ -219,9 +219,9 @@ impl Answers {
     }
 }
 
-struct Ask<'a, P> {
+struct Ask<'a, P: Primitive> {
     who: &'a str,
-    view: On<'a, P>,
+    view: SceneView<'a, P>,
     answers: &'a Answers,
 }
 
@@ -244,7 +244,7 @@ impl<P: Primitive> Ask<'_, P> {
 fn closest_hits<L: Lanes, P: Primitive>(
     lanes: L,
     width: usize,
-    view: &On<'_, P>,
+    view: &SceneView<'_, P>,
     rays: &[Ray],
 ) -> Vec<Hit> {
     let mut found = vec![Hit::miss(); rays.len()];
@@ -261,7 +261,7 @@ fn closest_hits<L: Lanes, P: Primitive>(
 fn any_hits<L: Lanes, P: Primitive>(
     lanes: L,
     width: usize,
-    view: &On<'_, P>,
+    view: &SceneView<'_, P>,
     rays: &[Ray],
 ) -> Vec<bool> {
     let mut found = vec![false; rays.len()];

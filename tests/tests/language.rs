@@ -56,9 +56,9 @@ fn owner(receiver: &str) -> Option<&'static str> {
         ("M4", "`Mat4`"),
         ("A3", "`Affine3`"),
         ("[V; N]", "arrays"),
-        ("bvh::On<'_, T>", "slices and trees"),
-        ("bvh::On<'_, P>", "slices and trees of primitives"),
-        ("On<'_, P>", "slices and trees of primitives"),
+        ("View<'_, T, S>", "slices and trees"),
+        ("SceneView<'_, P>", "slices and trees of primitives"),
+        ("SceneView<'a, P>", "slices and trees of primitives"),
         ("$twin<M>", "`Unorm8` and its like"),
         ("V", "`BVec2`, `BVec3`, `BVec4`"),
     ];
@@ -75,7 +75,7 @@ fn receiver(line: &str) -> Option<&str> {
     }
     if line.contains("Const<N>") {
         // How many rays stands in front; what has the method, on the next line.
-        return Some("bvh::On<'_, P>");
+        return Some("SceneView<'_, P>");
     }
     if let Some((_, after)) = line.split_once(" for ") {
         return Some(after.trim_end_matches(" {"));

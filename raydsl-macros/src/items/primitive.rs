@@ -27,11 +27,21 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
     let p = private();
     let self_ty = &item.self_ty;
     let slack = parts.has_slack.then(|| quote!(const SLACK: f32 = <#self_ty>::SLACK;));
-    let record = parts.record.map_or_else(|| quote!(#p::Hit), |ty| quote!(#ty));
-    let split = parts.splits.then(|| {
+    let (record, shared) = (parts.record(), parts.shared());
+    // What a function does not ask for it is not given.
+    let given =
+        |f: Option<&Function<'_>>| f.is_some_and(|f| f.shared.is_some()).then(|| quote!(, shared));
+    let (met, bounded) = (given(parts.intersect.as_ref()), given(parts.get_bounds.as_ref()));
+    let split = parts.split.as_ref().map(|f| {
+        let cut = given(Some(f));
         quote! {
-            fn split_primitive(&self, axis: usize, at: f32) -> (#p::Aabb, #p::Aabb) {
-                <#self_ty>::split_primitive(self, axis, at)
+            fn split_primitive(
+                &self,
+                axis: usize,
+                at: f32,
+                shared: &[#shared],
+            ) -> (#p::Aabb, #p::Aabb) {
+                <#self_ty>::split_primitive(self, axis, at #cut)
             }
         }
     });
@@ -39,15 +49,16 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
         #lifted
         impl #p::Primitive for #self_ty {
             type Hit = #record;
+            type Shared = #shared;
             #slack
 
             #[inline(always)]
-            fn intersect(&self, ray: #p::Ray) -> #record {
-                <#self_ty>::intersect(self, ray)
+            fn intersect(&self, ray: #p::Ray, shared: &[#shared]) -> #record {
+                <#self_ty>::intersect(self, ray #met)
             }
 
-            fn get_bounds(&self) -> #p::Aabb {
-                <#self_ty>::get_bounds(self)
+            fn get_bounds(&self, shared: &[#shared]) -> #p::Aabb {
+                <#self_ty>::get_bounds(self #bounded)
             }
 
             #split
@@ -57,8 +68,9 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
                 m: &__M,
                 prim: <Self as #p::Type>::On<__M>,
                 ray: #p::RayOn<__M>,
+                shared: #p::View<'_, #shared>,
             ) -> <#record as #p::Type>::On<__M> {
-                <#self_ty>::intersect_on(m, prim, ray)
+                <#self_ty>::intersect_on(m, prim, ray #met)
             }
         }
     }
@@ -71,16 +83,19 @@ fn mistaken(item: &syn::ItemImpl, parts: &Parts<'_>) -> TokenStream {
     }
     let (p, self_ty) = (private(), &item.self_ty);
     let is_record = |ty: &&syn::Type| type_name(ty).is_some_and(|name| !ops::is_of_library(&name));
-    let record = parts.record.filter(is_record).map_or_else(|| quote!(#p::Hit), |ty| quote!(#ty));
+    let record = parts.intersect.as_ref().and_then(|f| f.result).filter(is_record);
+    let record = record.map_or_else(|| quote!(#p::Hit), |ty| quote!(#ty));
+    let shared = parts.shared();
     quote! {
         impl #p::Primitive for #self_ty {
             type Hit = #record;
+            type Shared = #shared;
 
-            fn intersect(&self, _: #p::Ray) -> #record {
+            fn intersect(&self, _: #p::Ray, _: &[#shared]) -> #record {
                 ::core::unreachable!()
             }
 
-            fn get_bounds(&self) -> #p::Aabb {
+            fn get_bounds(&self, _: &[#shared]) -> #p::Aabb {
                 ::core::unreachable!()
             }
 
@@ -88,6 +103,7 @@ fn mistaken(item: &syn::ItemImpl, parts: &Parts<'_>) -> TokenStream {
                 _: &__M,
                 _: <Self as #p::Type>::On<__M>,
                 _: #p::RayOn<__M>,
+                _: #p::View<'_, #shared>,
             ) -> <#record as #p::Type>::On<__M> {
                 ::core::unreachable!()
             }
@@ -97,10 +113,52 @@ fn mistaken(item: &syn::ItemImpl, parts: &Parts<'_>) -> TokenStream {
 
 /// What an `impl` says of a primitive.
 struct Parts<'a> {
-    /// What `intersect` gives.
-    record: Option<&'a syn::Type>,
-    splits: bool,
+    intersect: Option<Function<'a>>,
+    get_bounds: Option<Function<'a>>,
+    split: Option<Function<'a>>,
     has_slack: bool,
+}
+
+/// One of a primitive's functions.
+struct Function<'a> {
+    sig: &'a syn::Signature,
+    result: Option<&'a syn::Type>,
+    /// `T` of a last parameter `shared: &[T]`.
+    shared: Option<&'a syn::Type>,
+}
+
+impl<'a> Function<'a> {
+    fn of(sig: &'a syn::Signature) -> Self {
+        let result = match &sig.output {
+            syn::ReturnType::Type(_, ty) => Some(&**ty),
+            syn::ReturnType::Default => None,
+        };
+        let shared = match sig.inputs.last() {
+            Some(syn::FnArg::Typed(last)) => slice_of(&last.ty),
+            _ => None,
+        };
+        Self { sig, result, shared }
+    }
+
+    /// The types of the parameters but that of what is shared, and that of the result.
+    fn types(&self) -> Vec<&'a syn::Type> {
+        let parameters = self.sig.inputs.iter().filter_map(|arg| match arg {
+            syn::FnArg::Typed(p) => Some(&*p.ty),
+            syn::FnArg::Receiver(_) => None,
+        });
+        parameters.filter(|ty| slice_of(ty).is_none()).chain(self.result).collect()
+    }
+}
+
+/// `T` of `&[T]`.
+fn slice_of(ty: &syn::Type) -> Option<&syn::Type> {
+    match ty {
+        syn::Type::Reference(r) => match &*r.elem {
+            syn::Type::Slice(slice) => Some(&slice.elem),
+            _ => None,
+        },
+        _ => None,
+    }
 }
 
 impl<'a> Parts<'a> {
@@ -109,7 +167,7 @@ impl<'a> Parts<'a> {
         check_head(item, errors);
         let find = |name: &str| {
             item.items.iter().find_map(|i| match i {
-                syn::ImplItem::Fn(f) if f.sig.ident == name => Some(&f.sig),
+                syn::ImplItem::Fn(f) if f.sig.ident == name => Some(Function::of(&f.sig)),
                 _ => None,
             })
         };
@@ -127,20 +185,49 @@ impl<'a> Parts<'a> {
         let intersect = required("intersect", INTERSECT, errors);
         let get_bounds = required("get_bounds", GET_BOUNDS, errors);
         let split = find("split_primitive");
-        for (sig, wanted) in
-            [(intersect, INTERSECT), (get_bounds, GET_BOUNDS), (split, SPLIT_PRIMITIVE)]
+        for (function, wanted) in
+            [(&intersect, INTERSECT), (&get_bounds, GET_BOUNDS), (&split, SPLIT_PRIMITIVE)]
         {
-            if let Some(sig) = sig {
-                check_signature(sig, wanted, errors);
+            if let Some(function) = function {
+                check_signature(function, wanted, errors);
             }
         }
         let has_slack =
             item.items.iter().any(|i| matches!(i, syn::ImplItem::Const(c) if c.ident == "SLACK"));
-        let record = intersect.and_then(|sig| match &sig.output {
-            syn::ReturnType::Type(_, ty) => Some(&**ty),
-            syn::ReturnType::Default => None,
-        });
-        Self { record, splits: split.is_some(), has_slack }
+        let parts = Self { intersect, get_bounds, split, has_slack };
+        parts.check_shared(errors);
+        parts
+    }
+
+    fn functions(&self) -> impl Iterator<Item = &Function<'a>> {
+        [&self.intersect, &self.get_bounds, &self.split].into_iter().flatten()
+    }
+
+    /// The type of the record that `intersect` gives.
+    fn record(&self) -> TokenStream {
+        let p = private();
+        let record = self.intersect.as_ref().and_then(|f| f.result);
+        record.map_or_else(|| quote!(#p::Hit), |ty| quote!(#ty))
+    }
+
+    /// The type of what the primitives of a scene share.
+    fn shared(&self) -> TokenStream {
+        let shared = self.functions().find_map(|f| f.shared);
+        shared.map_or_else(|| quote!(()), |ty| quote!(#ty))
+    }
+
+    /// All functions are given the same slice.
+    fn check_shared(&self, errors: &mut Errors) {
+        let mut types = self.functions().filter_map(|f| f.shared);
+        let Some(first) = types.next() else { return };
+        let text = |ty: &syn::Type| quote!(#ty).to_string();
+        for other in types.filter(|ty| text(ty) != text(first)) {
+            errors.at(
+                other.span(),
+                "the functions of a primitive share one slice",
+                &format!("write `&[{}]` here too", quote!(#first)),
+            );
+        }
     }
 }
 
@@ -159,10 +246,11 @@ fn check_head(item: &syn::ItemImpl, errors: &mut Errors) {
 }
 
 /// `&self`, the types of the parameters, and that of the result.
-fn check_signature(sig: &syn::Signature, signature: &str, errors: &mut Errors) {
+fn check_signature(function: &Function<'_>, signature: &str, errors: &mut Errors) {
+    let sig = function.sig;
     let is_ref =
         matches!(sig.receiver().map(|r| &r.kind), Some(syn::ReceiverKind::Reference(_, _, None)));
-    if !is_ref || !has_types(sig, signature) {
+    if !is_ref || !has_types(function, signature) {
         errors.at(
             sig.ident.span(),
             format!("`{}` of a primitive has another signature", sig.ident),
@@ -180,20 +268,9 @@ fn check_signature(sig: &syn::Signature, signature: &str, errors: &mut Errors) {
 
 /// Whether the types may be those of `signature`. Names that are not known may be aliases, or a
 /// record of the user's.
-fn has_types(sig: &syn::Signature, signature: &str) -> bool {
+fn has_types(function: &Function<'_>, signature: &str) -> bool {
     let wanted = syn::parse_str::<syn::Signature>(signature).expect("a signature");
-    let types = |sig: &syn::Signature| -> Vec<syn::Type> {
-        let parameters = sig.inputs.iter().filter_map(|arg| match arg {
-            syn::FnArg::Typed(p) => Some((*p.ty).clone()),
-            syn::FnArg::Receiver(_) => None,
-        });
-        let result = match &sig.output {
-            syn::ReturnType::Type(_, ty) => Some((**ty).clone()),
-            syn::ReturnType::Default => None,
-        };
-        parameters.chain(result).collect()
-    };
-    let (written, wanted) = (types(sig), types(&wanted));
+    let (written, wanted) = (function.types(), Function::of(&wanted).types());
     written.len() == wanted.len() && written.iter().zip(&wanted).all(|(a, b)| may_be(a, b))
 }
 

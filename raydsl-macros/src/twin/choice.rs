@@ -237,9 +237,11 @@ impl Choice<'_> {
         let count = self.kinds.len() as u32;
         let wgsl_name = format!("{name}_intersect");
         let record = quote!(<#first as #p::Primitive>::Hit);
+        let shared = quote!(<#first as #p::Primitive>::Shared);
         quote! {
             impl #p::Primitive for #name {
                 type Hit = #record;
+                type Shared = #shared;
 
                 const KINDS: u32 = #count;
 
@@ -255,23 +257,28 @@ impl Choice<'_> {
                 };
 
                 #[inline(always)]
-                fn intersect(&self, ray: #p::Ray) -> #record {
+                fn intersect(&self, ray: #p::Ray, shared: &[#shared]) -> #record {
                     match self {
-                        #(Self::#names(v) => <#types as #p::Primitive>::intersect(v, ray),)*
+                        #(Self::#names(v) => <#types as #p::Primitive>::intersect(v, ray, shared),)*
                     }
                 }
 
-                fn get_bounds(&self) -> #p::Aabb {
+                fn get_bounds(&self, shared: &[#shared]) -> #p::Aabb {
                     match self {
-                        #(Self::#names(v) => <#types as #p::Primitive>::get_bounds(v),)*
+                        #(Self::#names(v) => <#types as #p::Primitive>::get_bounds(v, shared),)*
                     }
                 }
 
-                fn split_primitive(&self, axis: usize, at: f32) -> (#p::Aabb, #p::Aabb) {
+                fn split_primitive(
+                    &self,
+                    axis: usize,
+                    at: f32,
+                    shared: &[#shared],
+                ) -> (#p::Aabb, #p::Aabb) {
                     match self {
                         #(
                             Self::#names(v) => {
-                                <#types as #p::Primitive>::split_primitive(v, axis, at)
+                                <#types as #p::Primitive>::split_primitive(v, axis, at, shared)
                             }
                         )*
                     }
@@ -289,8 +296,9 @@ impl Choice<'_> {
                     m: &__M,
                     prim: #twin<__M>,
                     ray: #p::RayOn<__M>,
+                    shared: #p::View<'_, #shared>,
                 ) -> <#record as #p::Type>::On<__M> {
-                    Self::intersect_among_on(m, #p::Kinds::ALL, prim, ray)
+                    Self::intersect_among_on(m, #p::Kinds::ALL, prim, ray, shared)
                 }
 
                 #[inline(always)]
@@ -298,11 +306,12 @@ impl Choice<'_> {
                     m: &__M,
                     prim: &Self,
                     ray: #p::RayOn<__M>,
+                    shared: #p::View<'_, #shared>,
                 ) -> <#record as #p::Type>::On<__M> {
                     match prim {
                         #(
                             Self::#names(v) => {
-                                <#types as #p::Primitive>::intersect_one_on(m, v, ray)
+                                <#types as #p::Primitive>::intersect_one_on(m, v, ray, shared)
                             }
                         )*
                     }
@@ -314,19 +323,20 @@ impl Choice<'_> {
                     kinds: #p::Kinds,
                     prim: #twin<__M>,
                     ray: #p::RayOn<__M>,
+                    shared: #p::View<'_, #shared>,
                 ) -> <#record as #p::Type>::On<__M> {
                     static __INFO: #p::KernelInfo = #p::KernelInfo {
                         name: #wgsl_name,
                         file: ::core::file!(),
                         line: ::core::line!(),
-                        params: &["self", "ray"],
+                        params: &["self", "ray", "shared"],
                     };
                     #p::Machine::call(
                         m,
                         &__INFO,
-                        (prim, ray),
+                        (prim, ray, shared),
                         #[inline(always)]
-                        |m, (prim, ray)| {
+                        |m, (prim, ray, shared)| {
                             let found = #p::Var::new(m, "found", #p::Value::zero(m));
                             #(
                                 #p::of_kind(
@@ -337,7 +347,7 @@ impl Choice<'_> {
                                     #[inline(always)]
                                     || {
                                         let prim = #p::of_words::<_, #types, _>(m, prim.words);
-                                        found.set(m, <#types as #p::Primitive>::intersect_on(m, prim, ray));
+                                        found.set(m, <#types as #p::Primitive>::intersect_on(m, prim, ray, shared));
                                     },
                                 );
                             )*

@@ -11,8 +11,10 @@
 //! * Every layout runs the same arithmetic on the same members of a primitive.
 
 pub mod build;
+mod list;
 mod node;
 mod query;
+mod ray_query;
 pub(crate) mod slabs;
 pub mod traverse;
 pub(crate) mod traverse_packet;
@@ -21,13 +23,15 @@ mod view;
 use core::sync::atomic::{AtomicU64, Ordering};
 
 pub use build::{BuildConfig, BuildError, MAX_DEPTH};
+pub use list::{BvhList, ListError};
 pub use node::Node;
-pub(crate) use query::closest_on;
+pub(crate) use query::{RecordOn, closest_on};
+pub use ray_query::RayQuery;
 pub use traverse::Cost;
-pub(crate) use view::NODE_SCHEMA;
-pub use view::On;
+pub(crate) use view::{Branches, NODE_SCHEMA, Part, buffers};
+pub use view::{SceneView, View};
 
-use crate::geometry::{Aabb, Hit, Kinds, Primitive, Ray};
+use crate::geometry::{Aabb, Kinds, Primitive, Ray};
 use crate::machine::{Capture, Machine, Resource, Type, wgsl::BufferKey};
 
 /// A number that no other owner of scene data has.
@@ -37,6 +41,8 @@ fn next_id() -> u64 {
 }
 
 /// A binary tree over primitives that the application owns.
+///
+/// What rays may ask of it is in [`RayQuery`].
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -48,15 +54,16 @@ fn next_id() -> u64 {
 /// # Ok::<(), raydsl::bvh::BuildError>(())
 /// ```
 #[derive(Debug)]
-pub struct Bvh<'a, P> {
+pub struct Bvh<'a, P: Primitive> {
     prims: &'a [P],
+    shared: &'a [P::Shared],
     nodes: Vec<Node>,
     indices: Vec<u32>,
     id: u64,
     kinds: Kinds,
 }
 
-impl<'a, P: Primitive> Bvh<'a, P> {
+impl<'a, P: Primitive<Shared = ()>> Bvh<'a, P> {
     /// Builds a tree with the default configuration. No primitive at all is a valid scene.
     ///
     /// # Errors
@@ -72,14 +79,36 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     ///
     /// As [`Bvh::build`]; also a configuration out of its ranges.
     pub fn build_with(prims: &'a [P], config: &BuildConfig) -> Result<Self, BuildError> {
-        let tree = build::build(|i| prims[i].get_bounds(), prims.len(), config)?;
-        let kinds = Kinds::of(prims);
-        Ok(Self { prims, nodes: tree.nodes, indices: tree.indices, id: next_id(), kinds })
+        Self::build_sharing(prims, &[], config)
     }
+}
 
-    /// The least `(t, id)` hit of `ray`.
-    pub fn closest_hit(&self, ray: Ray) -> P::Hit {
-        traverse::closest_hit(&self.view(), ray)
+impl<'a, P: Primitive> Bvh<'a, P> {
+    /// Builds a tree over primitives that share data: indexed triangles and their vertices.
+    ///
+    /// ```
+    /// use raydsl::prelude::*;
+    ///
+    /// let vertices = [vec3(0.0, 0.0, 1.0), vec3(4.0, 0.0, 1.0), vec3(4.0, 4.0, 1.0), vec3(0.0, 4.0, 1.0)];
+    /// let triangles = [[0, 1, 2], [2, 3, 0]].map(|vertices| IndexedTriangle { vertices });
+    /// let bvh = Bvh::build_sharing(&triangles, &vertices, &BuildConfig::default())?;
+    /// let hit = bvh.closest_hit(Ray::new(vec3(1.0, 3.0, 0.0), Vec3::Z));
+    /// assert!(hit.is_hit && hit.prim_id == 1);
+    /// # Ok::<(), raydsl::bvh::BuildError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`Bvh::build_with`]. An index that has no vertex makes bounds that are not finite.
+    pub fn build_sharing(
+        prims: &'a [P],
+        shared: &'a [P::Shared],
+        config: &BuildConfig,
+    ) -> Result<Self, BuildError> {
+        let tree = build::build(|i| prims[i].get_bounds(shared), prims.len(), config)?;
+        let kinds = Kinds::of(prims);
+        let (nodes, indices) = (tree.nodes, tree.indices);
+        Ok(Self { prims, shared, nodes, indices, id: next_id(), kinds })
     }
 
     /// The least `(t, id)` hit of `ray`, and what it cost to find.
@@ -87,95 +116,14 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         traverse::closest_hit_with_cost(&self.view(), ray)
     }
 
-    /// Whether `ray` hits anything.
-    pub fn any_hit(&self, ray: Ray) -> bool {
-        traverse::any_hit(&self.view(), ray)
-    }
-
-    /// The least `(t, id)` hit of each of `N` rays, `ray(0)` to `ray(N - 1)`.
-    ///
-    /// What one query sees at once it can trace better than one ray after another; the results
-    /// are those of [`Bvh::closest_hit`]. Inside a kernel `ray` is a closure of the kernel.
-    pub fn closest_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [P::Hit; N] {
-        core::array::from_fn(|i| self.closest_hit(ray(i as u32)))
-    }
-
-    /// Whether each of `N` rays, `ray(0)` to `ray(N - 1)`, hits anything.
-    ///
-    /// ```
-    /// use raydsl::prelude::*;
-    ///
-    /// let triangles = [Triangle { v0: vec3(0.0, 0.0, 1.0), v1: vec3(4.0, 0.0, 1.0), v2: vec3(0.0, 4.0, 1.0) }];
-    /// let bvh = Bvh::build(&triangles)?;
-    /// let up = vec3(0.0, 0.0, 1.0);
-    /// let visible = kernel!(|x: f32, y: f32| {
-    ///     let hits = bvh.any_hit_each::<4>(|i: u32| Ray::new(vec3(x + i as f32, y, 0.0), up));
-    ///     let mut count = 0u32;
-    ///     for hit in 0..4usize {
-    ///         count += hits[hit] as u32;
-    ///     }
-    ///     count
-    /// });
-    /// assert_eq!(visible.call((0.5, 0.5)), 4);
-    /// # Ok::<(), raydsl::bvh::BuildError>(())
-    /// ```
-    pub fn any_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [bool; N] {
-        core::array::from_fn(|i| self.any_hit(ray(i as u32)))
-    }
-
-    /// The least `(t, id)` hit of `ray` that `accept` accepts: leaves with holes, sides that are not
-    /// seen. `accept` is asked about some of the hits, in any order. Inside a kernel it is a closure of
-    /// the kernel, which may read what stands around it.
-    pub fn closest_hit_where(&self, ray: Ray, accept: impl Fn(Hit) -> bool) -> P::Hit {
-        traverse::closest_hit_where(&self.view(), ray, accept)
-    }
-
-    /// Whether `ray` has a hit that `accept` accepts.
-    pub fn any_hit_where(&self, ray: Ray, accept: impl Fn(Hit) -> bool) -> bool {
-        traverse::any_hit_where(&self.view(), ray, accept)
-    }
-
-    /// The `N` least `(t, id)` hits of `ray`, in order, with misses behind them. Each primitive gives
-    /// the hit of its `intersect`, so a sphere is there once.
-    ///
-    /// ```
-    /// use raydsl::prelude::*;
-    ///
-    /// let v = |x, y, z| vec3(x, y, z);
-    /// let slabs = [3.0, 1.0, 2.0].map(|z| Triangle { v0: v(0.0, 0.0, z), v1: v(4.0, 0.0, z), v2: v(0.0, 4.0, z) });
-    /// let bvh = Bvh::build(&slabs)?;
-    /// let depths = kernel!(|ray: Ray| {
-    ///     let hits = bvh.multi_hit::<2>(ray);
-    ///     (hits[0].t, hits[1].t, hits[1].prim_id)
-    /// });
-    /// assert_eq!(depths.call((Ray::new(v(1.0, 1.0, 0.0), Vec3::Z),)), (1.0, 2.0, 2));
-    /// # Ok::<(), raydsl::bvh::BuildError>(())
-    /// ```
-    pub fn multi_hit<const N: usize>(&self, ray: Ray) -> [Hit; N] {
-        self.multi_hit_where(ray, |_| true)
-    }
-
-    /// The `N` least `(t, id)` hits of `ray` that `accept` accepts, in order.
-    pub fn multi_hit_where<const N: usize>(
-        &self,
-        ray: Ray,
-        accept: impl Fn(Hit) -> bool,
-    ) -> [Hit; N] {
-        traverse::multi_hit_where(&self.view(), ray, accept)
-    }
-
-    /// The primitive that was hit; the first one for a miss, so that code need not branch.
-    ///
-    /// # Panics
-    ///
-    /// If the tree is empty.
-    pub fn primitive(&self, hit: Hit) -> P {
-        self.view().get(if hit.is_hit { hit.prim_id } else { 0 })
-    }
-
     /// The primitives, as the application owns them.
     pub fn primitives(&self) -> &'a [P] {
         self.prims
+    }
+
+    /// What the primitives share, as the application owns it.
+    pub fn shared(&self) -> &'a [P::Shared] {
+        self.shared
     }
 
     /// The nodes; the root is the first, children are adjacent.
@@ -198,26 +146,31 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         size_of_val(&self.nodes[..]) + size_of_val(&self.indices[..])
     }
 
+    fn part(&self) -> Part<'_, P, P::Shared> {
+        let tree = Some(Branches { nodes: &self.nodes, indices: &self.indices });
+        Part { prims: self.prims, shared: self.shared, tree, first: 0 }
+    }
+
     /// The view that kernels work on.
-    pub fn view(&self) -> On<'_, P> {
-        On::tree(self.prims, &self.nodes, &self.indices, self.id, self.kinds)
+    pub fn view(&self) -> SceneView<'_, P> {
+        View::tree(self.part(), self.id, self.kinds)
     }
 }
 
 #[diagnostic::do_not_recommend]
 impl<M: Machine, P: Primitive> Capture<M> for Bvh<'_, P> {
     type On<'c>
-        = On<'c, P>
+        = SceneView<'c, P>
     where
         Self: 'c;
 
     #[inline(always)]
-    fn capture<'c>(&'c self, _: &M, name: &'static str) -> On<'c, P> {
+    fn capture<'c>(&'c self, _: &M, name: &'static str) -> SceneView<'c, P> {
         self.view().named(name)
     }
 
     #[inline(always)]
-    fn constant<'c>(&'c self, _: &M) -> On<'c, P> {
+    fn constant<'c>(&'c self, _: &M) -> SceneView<'c, P> {
         self.view()
     }
 
@@ -227,108 +180,46 @@ impl<M: Machine, P: Primitive> Capture<M> for Bvh<'_, P> {
 }
 
 #[diagnostic::do_not_recommend]
-impl<M: Machine, P: Type> Capture<M> for [P] {
+impl<M: Machine, T: Type> Capture<M> for [T] {
     type On<'c>
-        = On<'c, P>
+        = View<'c, T>
     where
         Self: 'c;
 
     #[inline(always)]
-    fn capture<'c>(&'c self, _: &M, name: &'static str) -> On<'c, P> {
-        On::slice(self).named(name)
+    fn capture<'c>(&'c self, _: &M, name: &'static str) -> View<'c, T> {
+        View::slice(self).named(name)
     }
 
     #[inline(always)]
-    fn constant<'c>(&'c self, _: &M) -> On<'c, P> {
-        On::slice(self)
+    fn constant<'c>(&'c self, _: &M) -> View<'c, T> {
+        View::slice(self)
     }
 
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        visit(&On::slice(self));
+        visit(&View::<T>::slice(self));
     }
 }
 
 #[diagnostic::do_not_recommend]
-impl<M: Machine, P: Type> Capture<M> for Vec<P> {
+impl<M: Machine, T: Type> Capture<M> for Vec<T> {
     type On<'c>
-        = On<'c, P>
+        = View<'c, T>
     where
         Self: 'c;
 
     #[inline(always)]
-    fn capture<'c>(&'c self, m: &M, name: &'static str) -> On<'c, P> {
+    fn capture<'c>(&'c self, m: &M, name: &'static str) -> View<'c, T> {
         self.as_slice().capture(m, name)
     }
 
     #[inline(always)]
-    fn constant<'c>(&'c self, m: &M) -> On<'c, P> {
+    fn constant<'c>(&'c self, m: &M) -> View<'c, T> {
         self.as_slice().constant(m)
     }
 
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
         Capture::<M>::resources(self.as_slice(), visit);
-    }
-}
-
-/// What a kernel asks of a slice of primitives, without a tree: every primitive is tested.
-///
-/// With a few dozen primitives this is faster than a tree.
-pub trait Slice<P: Primitive> {
-    /// The least `(t, id)` hit of `ray`.
-    fn closest_hit(&self, ray: Ray) -> P::Hit;
-    /// Whether `ray` hits anything.
-    fn any_hit(&self, ray: Ray) -> bool;
-    /// The least `(t, id)` hit of each of `N` rays.
-    fn closest_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [P::Hit; N];
-    /// Whether each of `N` rays hits anything.
-    fn any_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [bool; N];
-    /// The least `(t, id)` hit of `ray` that `accept` accepts.
-    fn closest_hit_where(&self, ray: Ray, accept: impl Fn(Hit) -> bool) -> P::Hit;
-    /// Whether `ray` has a hit that `accept` accepts.
-    fn any_hit_where(&self, ray: Ray, accept: impl Fn(Hit) -> bool) -> bool;
-    /// The `N` least `(t, id)` hits of `ray`, in order, with misses behind them.
-    fn multi_hit<const N: usize>(&self, ray: Ray) -> [Hit; N];
-    /// Those that `accept` accepts.
-    fn multi_hit_where<const N: usize>(&self, ray: Ray, accept: impl Fn(Hit) -> bool) -> [Hit; N];
-    /// The primitive that was hit; the first one for a miss.
-    fn primitive(&self, hit: Hit) -> P;
-}
-
-impl<P: Primitive> Slice<P> for [P] {
-    fn closest_hit(&self, ray: Ray) -> P::Hit {
-        traverse::closest_hit(&On::slice(self), ray)
-    }
-
-    fn any_hit(&self, ray: Ray) -> bool {
-        traverse::any_hit(&On::slice(self), ray)
-    }
-
-    fn closest_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [P::Hit; N] {
-        core::array::from_fn(|i| self.closest_hit(ray(i as u32)))
-    }
-
-    fn any_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [bool; N] {
-        core::array::from_fn(|i| self.any_hit(ray(i as u32)))
-    }
-
-    fn closest_hit_where(&self, ray: Ray, accept: impl Fn(Hit) -> bool) -> P::Hit {
-        traverse::closest_hit_where(&On::slice(self), ray, accept)
-    }
-
-    fn any_hit_where(&self, ray: Ray, accept: impl Fn(Hit) -> bool) -> bool {
-        traverse::any_hit_where(&On::slice(self), ray, accept)
-    }
-
-    fn multi_hit<const N: usize>(&self, ray: Ray) -> [Hit; N] {
-        self.multi_hit_where(ray, |_| true)
-    }
-
-    fn multi_hit_where<const N: usize>(&self, ray: Ray, accept: impl Fn(Hit) -> bool) -> [Hit; N] {
-        traverse::multi_hit_where(&On::slice(self), ray, accept)
-    }
-
-    fn primitive(&self, hit: Hit) -> P {
-        On::slice(self).get(if hit.is_hit { hit.prim_id } else { 0 })
     }
 }
 

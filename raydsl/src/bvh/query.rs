@@ -2,21 +2,24 @@
 //!
 //! The machine visits the primitives; what is kept of them is said here once, for all machines.
 
-use super::On;
+use super::SceneView;
 use crate::geometry::{Hit, HitOn, HitRecord, Kinds, Primitive, RayOn};
 use crate::machine::{
     B, BoolBinary, Branch, Coerce, Compare, Const, F, F32Binary, F32Unary, Machine, Method, Type,
     U, Var, name,
 };
 
+/// What `intersect` of a primitive gives, lifted.
+pub(crate) type RecordOn<M, P> = <<P as Primitive>::Hit as Type>::On<M>;
+
 /// The record of the least `(t, id)` hit: traversal carries the hit alone, and the rest is computed
 /// once more for the primitive that was hit.
 #[inline(always)]
 pub(crate) fn closest_on<M: Machine, P: Primitive>(
     m: &M,
-    prims: &On<'_, P>,
+    prims: &SceneView<'_, P>,
     ray: RayOn<M>,
-) -> <P::Hit as Type>::On<M> {
+) -> RecordOn<M, P> {
     let hit = m.closest_hit(prims, ray);
     record_on(m, prims, ray, hit)
 }
@@ -24,10 +27,10 @@ pub(crate) fn closest_on<M: Machine, P: Primitive>(
 #[inline(always)]
 fn record_on<M: Machine, P: Primitive>(
     m: &M,
-    prims: &On<'_, P>,
+    prims: &SceneView<'_, P>,
     ray: RayOn<M>,
     hit: HitOn<M>,
-) -> <P::Hit as Type>::On<M> {
+) -> RecordOn<M, P> {
     P::Hit::complete_on(
         m,
         hit,
@@ -35,7 +38,8 @@ fn record_on<M: Machine, P: Primitive>(
         || {
             // A recorder leaves out the kinds that the scene does not have.
             let kinds = if M::RUNS { Kinds::ALL } else { prims.kinds() };
-            P::intersect_among_on(m, kinds, m.fetch(prims, U(hit.prim_id.0)), ray)
+            let prim = m.fetch(prims, U(hit.prim_id.0));
+            P::intersect_among_on(m, kinds, prim, ray, prims.shared())
         },
     )
 }
@@ -66,21 +70,21 @@ fn limit_of<M: Machine, P: Primitive>(m: &M, worst: HitOn<M>, ray: RayOn<M>) -> 
 #[inline(always)]
 fn closest_where<M: Machine, P: Primitive>(
     m: &M,
-    prims: &On<'_, P>,
+    prims: &SceneView<'_, P>,
     ray: RayOn<M>,
-    accept: &impl Fn(HitOn<M>) -> B<M>,
+    accept: &impl Fn(RecordOn<M, P>) -> B<M>,
 ) -> HitOn<M> {
     let best = Var::<HitOn<M>>::new(m, "best", Hit::splat(m, Hit::miss()));
-    m.visit(
+    m.visit::<P>(
         prims,
         ray,
         #[inline(always)]
         || limit_of::<M, P>(m, best.get(m), ray),
         #[inline(always)]
-        |hit| {
+        |hit, record| {
             let is_closer = Branch::new(m, is_before(m, hit, best.get(m)));
             if is_closer.then(m) {
-                let accepted = Branch::new(m, accept(hit));
+                let accepted = Branch::new(m, accept(record));
                 if accepted.then(m) {
                     best.set(m, hit);
                 }
@@ -97,19 +101,19 @@ fn closest_where<M: Machine, P: Primitive>(
 #[inline(always)]
 fn any_where<M: Machine, P: Primitive>(
     m: &M,
-    prims: &On<'_, P>,
+    prims: &SceneView<'_, P>,
     ray: RayOn<M>,
-    accept: &impl Fn(HitOn<M>) -> B<M>,
+    accept: &impl Fn(RecordOn<M, P>) -> B<M>,
 ) -> B<M> {
     let found = Var::<B<M>>::new(m, "found", B(m.bool(false)));
-    m.visit(
+    m.visit::<P>(
         prims,
         ray,
         #[inline(always)]
         || ray.t_max,
         #[inline(always)]
-        |hit| {
-            let accepted = accept(hit);
+        |_, record| {
+            let accepted = accept(record);
             found.set(m, accepted);
             B(m.bool_not(accepted.0))
         },
@@ -121,30 +125,93 @@ fn any_where<M: Machine, P: Primitive>(
 #[inline(always)]
 fn multi_where<M: Machine, P: Primitive, const N: usize>(
     m: &M,
-    prims: &On<'_, P>,
+    prims: &SceneView<'_, P>,
     ray: RayOn<M>,
-    accept: &impl Fn(HitOn<M>) -> B<M>,
-) -> [HitOn<M>; N] {
-    const { assert!(N > 0, "a query of no hits has no result") };
-    let all = Var::<[HitOn<M>; N]>::new(m, "hits", [Hit::splat(m, Hit::miss()); N]);
-    m.visit(
+    accept: &impl Fn(RecordOn<M, P>) -> B<M>,
+) -> [RecordOn<M, P>; N] {
+    first_hits(
+        m,
         prims,
         ray,
         #[inline(always)]
-        || limit_of::<M, P>(m, all.get(m)[N - 1], ray),
+        |last| limit_of::<M, P>(m, last, ray),
         #[inline(always)]
-        |hit| {
+        |a, b| is_before(m, a, b),
+        accept,
+    )
+}
+
+/// The first `N` hits in the order of `is_closer`.
+#[inline(always)]
+fn multi_by<M: Machine, P: Primitive, const N: usize>(
+    m: &M,
+    prims: &SceneView<'_, P>,
+    ray: RayOn<M>,
+    is_closer: &impl Fn(HitOn<M>, HitOn<M>) -> B<M>,
+) -> [RecordOn<M, P>; N] {
+    first_hits(
+        m,
+        prims,
+        ray,
+        #[inline(always)]
+        |_| ray.t_max,
+        #[inline(always)]
+        |a, b| is_before_by(m, is_closer, a, b),
+        &|_| B(m.bool(true)),
+    )
+}
+
+/// Whether `a` comes before `b` in the order of `is_closer`, then of `(t, id)`. What stands for a miss
+/// is not asked about.
+#[inline(always)]
+fn is_before_by<M: Machine>(
+    m: &M,
+    is_closer: &impl Fn(HitOn<M>, HitOn<M>) -> B<M>,
+    a: HitOn<M>,
+    b: HitOn<M>,
+) -> B<M> {
+    let first = Var::<B<M>>::new(m, "is_first", B(m.bool(true)));
+    let both = Branch::new(m, b.is_hit);
+    if both.then(m) {
+        let (closer, farther) = (is_closer(a, b), is_closer(b, a));
+        let tie = m.bool_binary(BoolBinary::And, m.bool_not(farther.0), is_before(m, a, b).0);
+        first.set(m, B(m.bool_binary(BoolBinary::Or, closer.0, tie)));
+    }
+    both.end(m);
+    first.get(m)
+}
+
+/// The first `N` hits in some order of those that `accept` accepts. Nodes beyond `limit` of the last
+/// of them are left out.
+#[inline(always)]
+fn first_hits<M: Machine, P: Primitive, const N: usize>(
+    m: &M,
+    prims: &SceneView<'_, P>,
+    ray: RayOn<M>,
+    limit: impl Fn(HitOn<M>) -> F<M>,
+    is_before: impl Fn(HitOn<M>, HitOn<M>) -> B<M>,
+    accept: &impl Fn(RecordOn<M, P>) -> B<M>,
+) -> [RecordOn<M, P>; N] {
+    const { assert!(N > 0, "a query of no hits has no result") };
+    let all = Var::<[HitOn<M>; N]>::new(m, "hits", [Hit::splat(m, Hit::miss()); N]);
+    m.visit::<P>(
+        prims,
+        ray,
+        #[inline(always)]
+        || limit(all.get(m)[N - 1]),
+        #[inline(always)]
+        |hit, record| {
             let hits = all.get(m);
             let fits = m.bool_binary(
                 BoolBinary::And,
-                is_before(m, hit, hits[N - 1]).0,
+                is_before(hit, hits[N - 1]).0,
                 m.bool_not(is_among(m, hit, &hits)),
             );
             let fits = Branch::new(m, B(fits));
             if fits.then(m) {
-                let accepted = Branch::new(m, accept(hit));
+                let accepted = Branch::new(m, accept(record));
                 if accepted.then(m) {
-                    all.set(m, inserted(m, hit, hits));
+                    all.set(m, inserted(m, &is_before, hit, hits));
                 }
                 accepted.end(m);
             }
@@ -152,7 +219,10 @@ fn multi_where<M: Machine, P: Primitive, const N: usize>(
             B(m.bool(true))
         },
     );
-    all.get(m)
+    all.get(m).map(
+        #[inline(always)]
+        |hit| record_on(m, prims, ray, hit),
+    )
 }
 
 /// Whether the hit is there already: a tree with spatial splits holds a primitive more than once.
@@ -169,14 +239,18 @@ fn is_among<M: Machine, const N: usize>(m: &M, hit: HitOn<M>, hits: &[HitOn<M>; 
 #[inline(always)]
 fn inserted<M: Machine, const N: usize>(
     m: &M,
+    is_before: &impl Fn(HitOn<M>, HitOn<M>) -> B<M>,
     hit: HitOn<M>,
     mut hits: [HitOn<M>; N],
 ) -> [HitOn<M>; N] {
+    // Behind the first hit that comes later all do.
     let mut carried = hit;
+    let mut found = B(m.bool(false));
     for slot in &mut hits {
-        let takes = is_before(m, carried, *slot);
-        let here = select(m, takes, carried, *slot);
-        carried = select(m, takes, *slot, carried);
+        let before = is_before(hit, *slot);
+        found = B(m.bool_binary(BoolBinary::Or, found.0, before.0));
+        let here = select(m, found, carried, *slot);
+        carried = select(m, found, *slot, carried);
         *slot = here;
     }
     hits
@@ -193,19 +267,11 @@ fn select<M: Machine>(m: &M, c: B<M>, a: HitOn<M>, b: HitOn<M>) -> HitOn<M> {
     }
 }
 
-/// `accept`, a closure of the kernel, as a condition of the machine.
-#[inline(always)]
-fn condition<M: Machine, R: Coerce<M, B<M>>>(
-    m: &M,
-    accept: &impl Fn(&M, HitOn<M>) -> R,
-    hit: HitOn<M>,
-) -> B<M> {
-    accept(m, hit).coerce(m)
-}
-
 #[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("closest_hit") }, M, (RayOn<M>,)> for On<'_, P> {
-    type Output = <P::Hit as Type>::On<M>;
+impl<M: Machine, P: Primitive> Method<{ name("closest_hit") }, M, (RayOn<M>,)>
+    for SceneView<'_, P>
+{
+    type Output = RecordOn<M, P>;
 
     #[inline(always)]
     fn call(self, m: &M, (ray,): (RayOn<M>,)) -> Self::Output {
@@ -214,7 +280,7 @@ impl<M: Machine, P: Primitive> Method<{ name("closest_hit") }, M, (RayOn<M>,)> f
 }
 
 #[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("any_hit") }, M, (RayOn<M>,)> for On<'_, P> {
+impl<M: Machine, P: Primitive> Method<{ name("any_hit") }, M, (RayOn<M>,)> for SceneView<'_, P> {
     type Output = B<M>;
 
     #[inline(always)]
@@ -225,62 +291,79 @@ impl<M: Machine, P: Primitive> Method<{ name("any_hit") }, M, (RayOn<M>,)> for O
 
 #[diagnostic::do_not_recommend]
 impl<M: Machine, P: Primitive, const N: usize>
-    Method<{ name("multi_hit") }, M, (Const<N>, RayOn<M>)> for On<'_, P>
+    Method<{ name("multi_hit") }, M, (Const<N>, RayOn<M>)> for SceneView<'_, P>
 {
-    type Output = [HitOn<M>; N];
+    type Output = [RecordOn<M, P>; N];
 
     #[inline(always)]
-    fn call(self, m: &M, (_, ray): (Const<N>, RayOn<M>)) -> [HitOn<M>; N] {
+    fn call(self, m: &M, (_, ray): (Const<N>, RayOn<M>)) -> [RecordOn<M, P>; N] {
         multi_where(m, &self, ray, &|_| B(m.bool(true)))
     }
 }
 
 #[diagnostic::do_not_recommend]
-impl<M, P, R, G> Method<{ name("closest_hit_where") }, M, (RayOn<M>, G)> for On<'_, P>
+impl<M, P, R, G> Method<{ name("closest_hit_where") }, M, (RayOn<M>, G)> for SceneView<'_, P>
 where
     M: Machine,
     P: Primitive,
     R: Coerce<M, B<M>>,
-    G: Fn(&M, HitOn<M>) -> R,
+    G: Fn(&M, RecordOn<M, P>) -> R,
 {
-    type Output = <P::Hit as Type>::On<M>;
+    type Output = RecordOn<M, P>;
 
     #[inline(always)]
     fn call(self, m: &M, (ray, accept): (RayOn<M>, G)) -> Self::Output {
-        let hit = closest_where(m, &self, ray, &|hit| condition(m, &accept, hit));
+        let hit = closest_where(m, &self, ray, &|record| accept(m, record).coerce(m));
         record_on(m, &self, ray, hit)
     }
 }
 
 #[diagnostic::do_not_recommend]
-impl<M, P, R, G> Method<{ name("any_hit_where") }, M, (RayOn<M>, G)> for On<'_, P>
+impl<M, P, R, G> Method<{ name("any_hit_where") }, M, (RayOn<M>, G)> for SceneView<'_, P>
 where
     M: Machine,
     P: Primitive,
     R: Coerce<M, B<M>>,
-    G: Fn(&M, HitOn<M>) -> R,
+    G: Fn(&M, RecordOn<M, P>) -> R,
 {
     type Output = B<M>;
 
     #[inline(always)]
     fn call(self, m: &M, (ray, accept): (RayOn<M>, G)) -> B<M> {
-        any_where(m, &self, ray, &|hit| condition(m, &accept, hit))
+        any_where(m, &self, ray, &|record| accept(m, record).coerce(m))
     }
 }
 
 #[diagnostic::do_not_recommend]
 impl<M, P, R, G, const N: usize> Method<{ name("multi_hit_where") }, M, (Const<N>, RayOn<M>, G)>
-    for On<'_, P>
+    for SceneView<'_, P>
 where
     M: Machine,
     P: Primitive,
     R: Coerce<M, B<M>>,
-    G: Fn(&M, HitOn<M>) -> R,
+    G: Fn(&M, RecordOn<M, P>) -> R,
 {
-    type Output = [HitOn<M>; N];
+    type Output = [RecordOn<M, P>; N];
 
     #[inline(always)]
-    fn call(self, m: &M, (_, ray, accept): (Const<N>, RayOn<M>, G)) -> [HitOn<M>; N] {
-        multi_where(m, &self, ray, &|hit| condition(m, &accept, hit))
+    fn call(self, m: &M, (_, ray, accept): (Const<N>, RayOn<M>, G)) -> [RecordOn<M, P>; N] {
+        multi_where(m, &self, ray, &|record| accept(m, record).coerce(m))
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M, P, R, G, const N: usize> Method<{ name("multi_hit_by") }, M, (Const<N>, RayOn<M>, G)>
+    for SceneView<'_, P>
+where
+    M: Machine,
+    P: Primitive,
+    R: Coerce<M, B<M>>,
+    G: Fn(&M, HitOn<M>, HitOn<M>) -> R,
+{
+    type Output = [RecordOn<M, P>; N];
+
+    #[inline(always)]
+    fn call(self, m: &M, (_, ray, is_closer): (Const<N>, RayOn<M>, G)) -> [RecordOn<M, P>; N] {
+        multi_by(m, &self, ray, &|a, b| is_closer(m, a, b).coerce(m))
     }
 }

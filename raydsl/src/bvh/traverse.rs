@@ -3,7 +3,7 @@
 use core::mem::MaybeUninit;
 
 use super::slabs::Slabs;
-use super::{MAX_DEPTH, Node, On};
+use super::{MAX_DEPTH, Node, Part, SceneView};
 use crate::geometry::{Hit, HitRecord, Primitive, Ray};
 
 /// Entries of a traversal's stack: one a level.
@@ -89,47 +89,36 @@ impl Count for Cost {
 }
 
 /// The least `(t, id)` hit of `ray` among `prims`.
-pub fn closest_hit<P: Primitive>(prims: &On<'_, P>, ray: Ray) -> P::Hit {
+pub fn closest_hit<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> P::Hit {
     complete(prims, ray, nearest(prims, ray))
 }
 
 /// [`closest_hit`] without the rest of the record.
 #[inline(always)]
-pub(crate) fn nearest<P: Primitive>(prims: &On<'_, P>, ray: Ray) -> Hit {
+pub(crate) fn nearest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> Hit {
     closest(prims, ray, &mut Uncounted)
 }
 
 /// The record of a hit: traversal carries the hit alone.
 #[inline(always)]
-fn complete<P: Primitive>(prims: &On<'_, P>, ray: Ray, hit: Hit) -> P::Hit {
-    P::Hit::complete(hit, || prims.get(hit.prim_id).intersect(ray))
+fn complete<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, hit: Hit) -> P::Hit {
+    let again = || prims.get(hit.prim_id).intersect(ray, prims.shared().elements());
+    P::Hit::complete(hit, again)
 }
 
 /// [`closest_hit`], and what it cost.
-pub fn closest_hit_with_cost<P: Primitive>(prims: &On<'_, P>, ray: Ray) -> (P::Hit, Cost) {
+pub fn closest_hit_with_cost<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> (P::Hit, Cost) {
     let mut cost = Cost::default();
     let hit = closest(prims, ray, &mut cost);
     (complete(prims, ray, hit), cost)
 }
 
 #[inline(always)]
-fn closest<P: Primitive>(prims: &On<'_, P>, ray: Ray, count: &mut impl Count) -> Hit {
+fn closest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Count) -> Hit {
     let mut best = Hit::miss();
-    if !is_finite(&ray) {
-        return best;
-    }
-    if !prims.has_tree() {
-        for (id, p) in prims.prims.iter().enumerate() {
-            count.primitive();
-            let (hit, id) = (p.intersect(ray).hit(), id as u32);
-            if is_met(&hit, &ray) && is_before(hit.t, id, &best) {
-                best = Hit { prim_id: id, ..hit };
-            }
-        }
-        return best;
-    }
-    walk(prims, ray, P::SLACK, count, |id, limit| {
-        let hit = prims.prims[id as usize].intersect(ray).hit();
+    walk_all(prims, ray, count, |part, id, limit| {
+        let hit = part.prims[id as usize].intersect(ray, part.shared).hit();
+        let id = part.first + id;
         if is_met(&hit, &ray) && is_before(hit.t, id, &best) {
             best = Hit { prim_id: id, ..hit };
             *limit = beyond::<P>(&hit, &ray);
@@ -140,52 +129,36 @@ fn closest<P: Primitive>(prims: &On<'_, P>, ray: Ray, count: &mut impl Count) ->
 }
 
 /// Whether `ray` hits any of `prims`.
-pub fn any_hit<P: Primitive>(prims: &On<'_, P>, ray: Ray) -> bool {
-    let accepts = |p: &P| is_met(&p.intersect(ray).hit(), &ray);
-    if !is_finite(&ray) {
-        return false;
-    }
-    if !prims.has_tree() {
-        return prims.prims.iter().any(accepts);
-    }
-    let mut found = false;
-    walk(prims, ray, P::SLACK, &mut Uncounted, |id, _| {
-        found = accepts(&prims.prims[id as usize]);
-        found
-    });
-    found
+pub fn any_hit<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> bool {
+    walk_all(prims, ray, &mut Uncounted, |part, id, _| {
+        is_met(&part.prims[id as usize].intersect(ray, part.shared).hit(), &ray)
+    })
 }
 
 /// Calls `meet` for every hit within the ray's range until it returns false. It may lower the limit
 /// of the distance. Farther hits may come before nearer ones.
+#[inline(always)]
 pub(crate) fn visit<P: Primitive>(
-    prims: &On<'_, P>,
+    prims: &SceneView<'_, P>,
     ray: Ray,
-    mut meet: impl FnMut(Hit, &mut f32) -> bool,
-) {
-    if !is_finite(&ray) {
-        return;
-    }
-    let mut stops = |id: u32, limit: &mut f32| {
-        let hit = prims.prims[id as usize].intersect(ray).hit();
-        is_met(&hit, &ray) && !meet(Hit { prim_id: id, ..hit }, limit)
-    };
-    if prims.has_tree() {
-        return walk(prims, ray, P::SLACK, &mut Uncounted, stops);
-    }
-    let mut limit = ray.t_max;
-    let _ = (0..prims.prims.len() as u32).any(|id| stops(id, &mut limit));
+    mut meet: impl FnMut(Hit, P::Hit, &mut f32) -> bool,
+) -> bool {
+    !walk_all(prims, ray, &mut Uncounted, |part, id, limit| {
+        let record = part.prims[id as usize].intersect(ray, part.shared);
+        let hit = Hit { prim_id: part.first + id, ..record.hit() };
+        is_met(&hit, &ray) && !meet(hit, record.with_hit(hit), limit)
+    })
 }
 
 /// The least `(t, id)` hit of those that `accept` accepts.
 pub fn closest_hit_where<P: Primitive>(
-    prims: &On<'_, P>,
+    prims: &SceneView<'_, P>,
     ray: Ray,
-    accept: impl Fn(Hit) -> bool,
+    accept: impl Fn(P::Hit) -> bool,
 ) -> P::Hit {
     let mut best = Hit::miss();
-    visit(prims, ray, |hit, limit| {
-        if is_before(hit.t, hit.prim_id, &best) && accept(hit) {
+    visit::<P>(prims, ray, |hit, record, limit| {
+        if is_before(hit.t, hit.prim_id, &best) && accept(record) {
             best = hit;
             *limit = beyond::<P>(&hit, &ray);
         }
@@ -196,41 +169,83 @@ pub fn closest_hit_where<P: Primitive>(
 
 /// Whether there is a hit that `accept` accepts.
 pub fn any_hit_where<P: Primitive>(
-    prims: &On<'_, P>,
+    prims: &SceneView<'_, P>,
     ray: Ray,
-    accept: impl Fn(Hit) -> bool,
+    accept: impl Fn(P::Hit) -> bool,
 ) -> bool {
-    let mut found = false;
-    visit(prims, ray, |hit, _| {
-        found = accept(hit);
-        !found
-    });
-    found
+    !visit::<P>(prims, ray, |_, record, _| !accept(record))
 }
 
 /// The `N` least `(t, id)` hits of those that `accept` accepts, in order; misses behind them.
 pub fn multi_hit_where<P: Primitive, const N: usize>(
-    prims: &On<'_, P>,
+    prims: &SceneView<'_, P>,
     ray: Ray,
-    accept: impl Fn(Hit) -> bool,
-) -> [Hit; N] {
-    const { assert!(N > 0, "a query of no hits has no result") };
-    let mut hits = [Hit::miss(); N];
-    visit(prims, ray, |hit, limit| {
-        // A tree with spatial splits holds a primitive more than once.
-        let is_there = hits.iter().any(|h| h.is_hit && h.prim_id == hit.prim_id);
-        if is_before(hit.t, hit.prim_id, &hits[N - 1]) && !is_there && accept(hit) {
-            let is_place = |h: &Hit| is_before(hit.t, hit.prim_id, h);
-            let at = hits.iter().position(is_place).unwrap_or(N - 1);
-            hits[at..].rotate_right(1);
-            hits[at] = hit;
-            if hits[N - 1].is_hit {
-                *limit = beyond::<P>(&hits[N - 1], &ray);
+    accept: impl Fn(P::Hit) -> bool,
+) -> [P::Hit; N] {
+    let mut hits = FirstHits::<N>::new();
+    visit::<P>(prims, ray, |hit, record, limit| {
+        let place = hits.place(hit, |h| is_before(hit.t, hit.prim_id, h));
+        if let Some(place) = place
+            && accept(record)
+        {
+            hits.insert(place, hit);
+            if hits.last().is_hit {
+                *limit = beyond::<P>(hits.last(), &ray);
             }
         }
         true
     });
-    hits
+    hits.0.map(|hit| complete(prims, ray, hit))
+}
+
+/// The first `N` hits in the order of `is_closer`; misses behind them.
+pub fn multi_hit_by<P: Primitive, const N: usize>(
+    prims: &SceneView<'_, P>,
+    ray: Ray,
+    is_closer: impl Fn(Hit, Hit) -> bool,
+) -> [P::Hit; N] {
+    let mut hits = FirstHits::<N>::new();
+    visit::<P>(prims, ray, |hit, _, _| {
+        let is_first = |h: &Hit| {
+            !h.is_hit
+                || is_closer(hit, *h)
+                || (!is_closer(*h, hit) && is_before(hit.t, hit.prim_id, h))
+        };
+        if let Some(place) = hits.place(hit, is_first) {
+            hits.insert(place, hit);
+        }
+        true
+    });
+    hits.0.map(|hit| complete(prims, ray, hit))
+}
+
+/// The first hits in some order, with misses behind them.
+struct FirstHits<const N: usize>([Hit; N]);
+
+impl<const N: usize> FirstHits<N> {
+    fn new() -> Self {
+        const { assert!(N > 0, "a query of no hits has no result") };
+        Self([Hit::miss(); N])
+    }
+
+    /// Where a hit belongs, if it is among the first. `is_first` says whether it comes before one.
+    fn place(&self, hit: Hit, is_first: impl Fn(&Hit) -> bool) -> Option<usize> {
+        // A tree with spatial splits holds a primitive more than once.
+        let is_there = || self.0.iter().any(|h| h.is_hit && h.prim_id == hit.prim_id);
+        if !is_first(self.last()) || is_there() {
+            return None;
+        }
+        self.0.iter().position(is_first)
+    }
+
+    fn insert(&mut self, place: usize, hit: Hit) {
+        self.0[place..].rotate_right(1);
+        self.0[place] = hit;
+    }
+
+    fn last(&self) -> &Hit {
+        &self.0[N - 1]
+    }
 }
 
 /// No node beyond this distance can hold a hit before `hit`; the ray's end if that is no number.
@@ -238,39 +253,60 @@ fn beyond<P: Primitive>(hit: &Hit, ray: &Ray) -> f32 {
     (hit.t + hit.t.abs() * P::SLACK).min(ray.t_max)
 }
 
-/// Visits the primitives of every leaf that the ray may meet, nearer ones first, until `visit`
-/// returns true. `visit` may lower the limit of the distance.
+/// [`walk`] through one part after another. A ray with a component that is no finite number meets
+/// nothing.
 #[inline(always)]
-fn walk<P: Primitive>(
-    prims: &On<'_, P>,
+fn walk_all<P: Primitive>(
+    prims: &SceneView<'_, P>,
     ray: Ray,
-    slack: f32,
     count: &mut impl Count,
-    mut visit: impl FnMut(u32, &mut f32) -> bool,
-) {
-    let Some(root) = prims.nodes.first() else { return };
-    let slabs = Slabs::new(&ray, root, slack);
+    mut visit: impl FnMut(&Part<'_, P, P::Shared>, u32, &mut f32) -> bool,
+) -> bool {
+    if !is_finite(&ray) {
+        return false;
+    }
     // No node beyond this distance is worth a visit.
     let mut limit = ray.t_max;
+    prims.parts().iter().any(|part| walk(part, ray, &mut limit, count, &mut visit))
+}
+
+/// Visits the primitives that the ray may meet, those of nearer leaves first, until `visit` returns
+/// true; whether it did. `visit` may lower the limit of the distance.
+#[inline(always)]
+fn walk<P: Primitive>(
+    part: &Part<'_, P, P::Shared>,
+    ray: Ray,
+    limit: &mut f32,
+    count: &mut impl Count,
+    visit: &mut impl FnMut(&Part<'_, P, P::Shared>, u32, &mut f32) -> bool,
+) -> bool {
+    let Some(tree) = part.tree else {
+        return (0..part.prims.len() as u32).any(|id| {
+            count.primitive();
+            visit(part, id, limit)
+        });
+    };
+    let Some(root) = tree.nodes.first() else { return false };
+    let slabs = Slabs::new(&ray, root, P::SLACK);
     count.nodes(1);
-    if slabs.enter(root, limit).is_none() {
-        return;
+    if slabs.enter(root, *limit).is_none() {
+        return false;
     }
     let mut stack = Stack::new();
     let mut node: &Node = root;
     loop {
         if node.is_leaf() {
             let (first, len) = (node.first as usize, node.count as usize);
-            for &id in &prims.indices[first..first + len] {
+            for &id in &tree.indices[first..first + len] {
                 count.primitive();
-                if visit(id, &mut limit) {
-                    return;
+                if visit(part, id, limit) {
+                    return true;
                 }
             }
         } else {
-            let children = &prims.nodes[node.first as usize..node.first as usize + 2];
+            let children = &tree.nodes[node.first as usize..node.first as usize + 2];
             count.nodes(2);
-            match (slabs.enter(&children[0], limit), slabs.enter(&children[1], limit)) {
+            match (slabs.enter(&children[0], *limit), slabs.enter(&children[1], *limit)) {
                 (Some(left), Some(right)) => {
                     let near = usize::from(right < left);
                     stack.push(node.first + 1 - near as u32, left.max(right));
@@ -289,9 +325,9 @@ fn walk<P: Primitive>(
             }
         }
         node = loop {
-            let Some((index, enter)) = stack.pop() else { return };
-            if enter <= limit {
-                break &prims.nodes[index as usize];
+            let Some((index, enter)) = stack.pop() else { return false };
+            if enter <= *limit {
+                break &tree.nodes[index as usize];
             }
         };
     }

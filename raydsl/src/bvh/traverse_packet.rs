@@ -2,7 +2,7 @@
 
 use super::slabs::{LEAST, ULP};
 use super::traverse::Stack;
-use super::{Node, On};
+use super::{Node, Part, RecordOn, SceneView, View};
 use crate::geometry::{HitOn, HitRecord, Primitive, RayOn};
 use crate::machine::{
     B, BoolBinary, Compare, Entered, F, F32Binary, F32Unary, Lanes, Packet, Place, U, V3, fill,
@@ -208,7 +208,7 @@ struct Best<L: Lanes> {
 #[inline(never)]
 pub(crate) fn closest_hit<L: Lanes, P: Primitive>(
     m: &Packet<L>,
-    prims: &On<'_, P>,
+    prims: &SceneView<'_, P>,
     ray: RayOn<Packet<L>>,
 ) -> HitOn<Packet<L>> {
     m.lanes().vectorize(
@@ -230,7 +230,7 @@ pub(crate) fn closest_hit<L: Lanes, P: Primitive>(
 #[inline(always)]
 fn closest_hit_inside<L: Lanes, P: Primitive>(
     m: &Packet<L>,
-    prims: &On<'_, P>,
+    prims: &SceneView<'_, P>,
     ray: RayOn<Packet<L>>,
 ) -> HitOn<Packet<L>> {
     let l = m.lanes();
@@ -243,13 +243,15 @@ fn closest_hit_inside<L: Lanes, P: Primitive>(
         found: l.mask(false),
         limit: ray.t_max.0,
     };
-    walk(
+    let shared = prims.shared();
+    walk_all(
         m,
         prims,
         &ray,
         #[inline(always)]
-        |mask, id, limit| {
-            meet(m, &prims.prims[id as usize], &ray, mask, id, &mut best);
+        |part, mask, id, limit| {
+            let prim = &part.prims[id as usize];
+            meet(m, prim, shared, &ray, mask, part.first + id, &mut best);
             *limit = best.limit;
             mask
         },
@@ -268,6 +270,7 @@ fn closest_hit_inside<L: Lanes, P: Primitive>(
 fn meet<L: Lanes, P: Primitive>(
     m: &Packet<L>,
     prim: &P,
+    shared: View<'_, P::Shared>,
     ray: &RayOn<Packet<L>>,
     mask: L::Mask,
     id: u32,
@@ -277,7 +280,7 @@ fn meet<L: Lanes, P: Primitive>(
     let hit = m.with_active(
         mask,
         #[inline(always)]
-        || P::Hit::hit_on(P::intersect_one_on(m, prim, *ray)),
+        || P::Hit::hit_on(P::intersect_one_on(m, prim, *ray, shared)),
     );
     let t = hit.t.0;
     let near = l.f32_compare(Compare::Le, t, best.t);
@@ -308,7 +311,7 @@ fn accepts<L: Lanes>(l: L, hit: &HitOn<Packet<L>>, ray: &RayOn<Packet<L>>) -> L:
 #[inline(never)]
 pub(crate) fn any_hit<L: Lanes, P: Primitive>(
     m: &Packet<L>,
-    prims: &On<'_, P>,
+    prims: &SceneView<'_, P>,
     ray: RayOn<Packet<L>>,
 ) -> B<Packet<L>> {
     m.lanes().vectorize(
@@ -323,22 +326,23 @@ pub(crate) fn any_hit<L: Lanes, P: Primitive>(
 #[inline(always)]
 fn any_hit_inside<L: Lanes, P: Primitive>(
     m: &Packet<L>,
-    prims: &On<'_, P>,
+    prims: &SceneView<'_, P>,
     ray: RayOn<Packet<L>>,
 ) -> B<Packet<L>> {
     let l = m.lanes();
     let mut found = l.mask(false);
-    walk(
+    let shared = prims.shared();
+    walk_all(
         m,
         prims,
         &ray,
         #[inline(always)]
-        |mask, id, _| {
-            let prim = &prims.prims[id as usize];
+        |part, mask, id, _| {
+            let prim = &part.prims[id as usize];
             let hit = m.with_active(
                 mask,
                 #[inline(always)]
-                || P::Hit::hit_on(P::intersect_one_on(m, prim, ray)),
+                || P::Hit::hit_on(P::intersect_one_on(m, prim, ray, shared)),
             );
             found = or(l, found, and(l, mask, accepts(l, &hit, &ray)));
             without(l, mask, found)
@@ -352,32 +356,34 @@ fn any_hit_inside<L: Lanes, P: Primitive>(
 #[inline(always)]
 pub(crate) fn visit<L: Lanes, P: Primitive>(
     m: &Packet<L>,
-    prims: &On<'_, P>,
+    prims: &SceneView<'_, P>,
     ray: RayOn<Packet<L>>,
     limit: impl Fn() -> F<Packet<L>>,
-    meet: impl Fn(HitOn<Packet<L>>) -> B<Packet<L>>,
+    meet: impl Fn(HitOn<Packet<L>>, RecordOn<Packet<L>, P>) -> B<Packet<L>>,
 ) {
     let l = m.lanes();
-    walk(
+    let shared = prims.shared();
+    walk_all(
         m,
         prims,
         &ray,
         #[inline(always)]
-        |mask, id, end| {
-            let hit = m.with_active(
+        |part, mask, id, end| {
+            let record = m.with_active(
                 mask,
                 #[inline(always)]
-                || P::Hit::hit_on(P::intersect_one_on(m, &prims.prims[id as usize], ray)),
+                || P::intersect_one_on(m, &part.prims[id as usize], ray, shared),
             );
+            let hit = P::Hit::hit_on(record);
             let met = and(l, mask, accepts(l, &hit, &ray));
             if !l.any(met) {
                 return mask;
             }
-            let hit = HitOn { prim_id: U(l.u32(id)), ..hit };
+            let hit = HitOn { prim_id: U(l.u32(part.first + id)), ..hit };
             let goes_on = m.with_active(
                 met,
                 #[inline(always)]
-                || meet(hit).0,
+                || meet(hit, P::Hit::with_hit_on(record, hit)).0,
             );
             *end = limit().0;
             without(l, mask, without(l, met, goes_on))
@@ -389,36 +395,61 @@ pub(crate) fn visit<L: Lanes, P: Primitive>(
 const NODES: Place = Place { what: "nodes of trees", file: "", line: 0 };
 const PRIMITIVES: Place = Place { what: "primitives in leaves", file: "", line: 0 };
 
-/// Visits primitives that any running lane may meet. `visit` is given the lanes concerned, may
-/// lower their limits, and returns those that stay interested; the walk ends when none is.
+/// [`walk`] through one part after another, by the rays whose components are finite.
 #[inline(always)]
-fn walk<L: Lanes, P: Primitive>(
+fn walk_all<L: Lanes, P: Primitive>(
     m: &Packet<L>,
-    prims: &On<'_, P>,
+    prims: &SceneView<'_, P>,
     ray: &RayOn<Packet<L>>,
-    mut visit: impl FnMut(L::Mask, u32, &mut L::F32) -> L::Mask,
+    mut visit: impl FnMut(&Part<'_, P, P::Shared>, L::Mask, u32, &mut L::F32) -> L::Mask,
 ) {
     let l = m.lanes();
     let mut limit = ray.t_max.0;
     let mut alive = and(l, m.active(), finite(l, ray));
-    if !l.any(alive) {
-        return;
+    for part in prims.parts() {
+        if !l.any(alive) {
+            return;
+        }
+        let part = *part;
+        walk(
+            m,
+            &part,
+            ray,
+            &mut alive,
+            &mut limit,
+            #[inline(always)]
+            |mask, id, limit| visit(&part, mask, id, limit),
+        );
     }
-    if !prims.has_tree() {
-        for id in 0..prims.prims.len() as u32 {
-            alive = visit(alive, id, &mut limit);
-            if !l.any(alive) {
+}
+
+/// Visits primitives that any lane of `alive` may meet. `visit` is given the lanes concerned, may
+/// lower their limits, and returns those that stay interested; the walk ends when none is.
+#[inline(always)]
+fn walk<L: Lanes, P: Primitive>(
+    m: &Packet<L>,
+    part: &Part<'_, P, P::Shared>,
+    ray: &RayOn<Packet<L>>,
+    alive: &mut L::Mask,
+    limit: &mut L::F32,
+    mut visit: impl FnMut(L::Mask, u32, &mut L::F32) -> L::Mask,
+) {
+    let l = m.lanes();
+    let Some(tree) = part.tree else {
+        for id in 0..part.prims.len() as u32 {
+            *alive = visit(*alive, id, limit);
+            if !l.any(*alive) {
                 return;
             }
         }
         return;
-    }
-    let Some(root) = prims.nodes.first() else { return };
-    let slabs = PacketSlabs::new(l, ray, alive, root, P::SLACK);
+    };
+    let Some(root) = tree.nodes.first() else { return };
+    let slabs = PacketSlabs::new(l, ray, *alive, root, P::SLACK);
     // Where a lane does not enter, it has infinity.
     let mut stack = Stack::<L::F32>::new();
     let mut node = root;
-    let mut mask = and(l, alive, slabs.enter(l, root, limit).1);
+    let mut mask = and(l, *alive, slabs.enter(l, root, *limit).1);
     if !l.any(mask) {
         return;
     }
@@ -426,20 +457,20 @@ fn walk<L: Lanes, P: Primitive>(
         l.at(NODES, mask);
         if node.is_leaf() {
             let (first, count) = (node.first as usize, node.count as usize);
-            for &id in &prims.indices[first..first + count] {
+            for &id in &tree.indices[first..first + count] {
                 l.at(PRIMITIVES, mask);
-                let stay = visit(mask, id, &mut limit);
+                let stay = visit(mask, id, limit);
                 // A lane that lost interest leaves the walk.
-                alive = without(l, alive, without(l, mask, stay));
+                *alive = without(l, *alive, without(l, mask, stay));
                 mask = stay;
             }
-            if !l.any(alive) {
+            if !l.any(*alive) {
                 return;
             }
         } else {
-            let children = &prims.nodes[node.first as usize..node.first as usize + 2];
-            let (t0, hit0) = slabs.enter(l, &children[0], limit);
-            let (t1, hit1) = slabs.enter(l, &children[1], limit);
+            let children = &tree.nodes[node.first as usize..node.first as usize + 2];
+            let (t0, hit0) = slabs.enter(l, &children[0], *limit);
+            let (t1, hit1) = slabs.enter(l, &children[1], *limit);
             let (hit0, hit1) = (and(l, mask, hit0), and(l, mask, hit1));
             match (l.any(hit0), l.any(hit1)) {
                 (true, true) => {
@@ -469,9 +500,9 @@ fn walk<L: Lanes, P: Primitive>(
         // Back to the last subtree that some lane enters before its best hit.
         loop {
             let Some((index, enter)) = stack.pop() else { return };
-            mask = and(l, alive, l.f32_compare(Compare::Le, enter, limit));
+            mask = and(l, *alive, l.f32_compare(Compare::Le, enter, *limit));
             if l.any(mask) {
-                node = &prims.nodes[index as usize];
+                node = &tree.nodes[index as usize];
                 break;
             }
         }

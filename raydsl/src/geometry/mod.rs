@@ -25,4 +25,4 @@ pub use hit::{Hit, HitOn, HitRecord};
 pub use primitive::{Kinds, Primitive};
 pub use ray::{Ray, RayOn};
 pub use surface::{SurfacePoint, SurfacePointOn};
-pub use triangle::Triangle;
+pub use triangle::{IndexedTriangle, Triangle};

@@ -1,6 +1,7 @@
 //! What makes a type a primitive.
 
 use super::{Aabb, HitRecord, Ray, RayOn};
+use crate::bvh::View;
 use crate::machine::{Machine, Type};
 
 /// The kinds of an enum of primitives that a scene has.
@@ -17,6 +18,15 @@ impl Kinds {
             return Self::ALL;
         }
         Self(prims.iter().fold(0, |all, p| all | 1 << p.kind()))
+    }
+
+    /// No kind.
+    pub const NONE: Self = Self(0);
+
+    /// Those of both.
+    #[must_use]
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
     }
 
     /// Whether `kind` is among them.
@@ -39,6 +49,10 @@ pub trait Primitive: Type + Send + Sync {
     /// What `intersect` gives: [`Hit`](super::Hit), or a struct of your own with a `Hit` in it.
     type Hit: HitRecord;
 
+    /// What all primitives of a scene share: the elements of one slice beside theirs, such as the
+    /// vertices of indexed triangles. `()` if they stand alone.
+    type Shared: Type + Send + Sync;
+
     /// How far an accepted hit may lie from the exact one, relative to the distance between the
     /// ray's origin and the farthest corner of the scene: the error of `t`, and by how much the
     /// ray may pass beside [`Primitive::get_bounds`].
@@ -49,18 +63,18 @@ pub trait Primitive: Type + Send + Sync {
 
     /// Where `ray` meets the primitive. It sees the ray's own `t_min` and `t_max` and need not
     /// heed them: traversal compares.
-    fn intersect(&self, ray: Ray) -> Self::Hit;
+    fn intersect(&self, ray: Ray, shared: &[Self::Shared]) -> Self::Hit;
 
     /// A box around the whole primitive.
-    fn get_bounds(&self) -> Aabb;
+    fn get_bounds(&self, shared: &[Self::Shared]) -> Aabb;
 
     /// Boxes around the parts of the primitive below and above the plane `axis = at`; a box that
     /// is not valid says that there is no such part. `axis` is 0, 1 or 2.
     ///
     /// Builders with spatial splits ask for it. Together the boxes hold the whole primitive. The
     /// default cuts its bounds, which is right for every shape and tight for boxes.
-    fn split_primitive(&self, axis: usize, at: f32) -> (Aabb, Aabb) {
-        self.get_bounds().split(axis, at)
+    fn split_primitive(&self, axis: usize, at: f32, shared: &[Self::Shared]) -> (Aabb, Aabb) {
+        self.get_bounds(shared).split(axis, at)
     }
 
     /// `intersect`, lifted.
@@ -69,6 +83,7 @@ pub trait Primitive: Type + Send + Sync {
         m: &M,
         prim: Self::On<M>,
         ray: RayOn<M>,
+        shared: View<'_, Self::Shared>,
     ) -> <Self::Hit as Type>::On<M>;
 
     /// How many kinds the type has: more than one for an enum.
@@ -89,8 +104,9 @@ pub trait Primitive: Type + Send + Sync {
         m: &M,
         prim: &Self,
         ray: RayOn<M>,
+        shared: View<'_, Self::Shared>,
     ) -> <Self::Hit as Type>::On<M> {
-        Self::intersect_on(m, Self::splat(m, *prim), ray)
+        Self::intersect_on(m, Self::splat(m, *prim), ray, shared)
     }
 
     /// `intersect`, lifted, for primitives of these kinds alone.
@@ -101,7 +117,8 @@ pub trait Primitive: Type + Send + Sync {
         _kinds: Kinds,
         prim: Self::On<M>,
         ray: RayOn<M>,
+        shared: View<'_, Self::Shared>,
     ) -> <Self::Hit as Type>::On<M> {
-        Self::intersect_on(m, prim, ray)
+        Self::intersect_on(m, prim, ray, shared)
     }
 }

@@ -28,6 +28,53 @@ pub struct Triangle {
     pub v2: Vec3,
 }
 
+/// A triangle of three vertices that lie elsewhere, as in an index buffer: 12 bytes.
+///
+/// The vertices are what the triangles of a tree share; see [`Bvh::build_sharing`](crate::bvh::Bvh::build_sharing).
+#[primitive]
+#[derive(Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct IndexedTriangle {
+    /// The numbers of the vertices.
+    pub vertices: [u32; 3],
+}
+
+#[primitive]
+impl IndexedTriangle {
+    const SLACK: f32 = SLACK;
+
+    /// Where `ray` meets it.
+    #[inline]
+    pub fn intersect(&self, ray: Ray, vertices: &[Vec3]) -> Hit {
+        let [v0, v1, v2] = self.vertices;
+        intersect(ray, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
+    }
+
+    /// The normal where `ray` hits it, with unit length; see [`normal`].
+    #[inline]
+    pub fn normal(&self, ray: Ray, hit: Hit, vertices: &[Vec3]) -> Vec3 {
+        let [v0, v1, v2] = self.vertices;
+        normal(ray, hit, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
+    }
+
+    /// The box of its vertices; not finite if one of them is not there.
+    pub fn get_bounds(&self, vertices: &[Vec3]) -> Aabb {
+        self.on(vertices).map_or(Aabb::new(Vec3::NAN, Vec3::NAN), |t| t.get_bounds())
+    }
+
+    /// Boxes around its parts below and above a plane.
+    pub fn split_primitive(&self, axis: usize, at: f32, vertices: &[Vec3]) -> (Aabb, Aabb) {
+        self.on(vertices).map_or((Aabb::EMPTY, Aabb::EMPTY), |t| t.split_primitive(axis, at))
+    }
+}
+
+impl IndexedTriangle {
+    /// The triangle with its vertices, if they are there.
+    pub fn on(&self, vertices: &[Vec3]) -> Option<Triangle> {
+        let [v0, v1, v2] = self.vertices.map(|i| vertices.get(i as usize).copied());
+        Some(Triangle { v0: v0?, v1: v1?, v2: v2? })
+    }
+}
+
 /// The components of `v`, rotated so that the axis `k` (0, 1 or 2) comes last.
 #[kernel]
 #[inline]

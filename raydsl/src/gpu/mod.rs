@@ -27,4 +27,4 @@ pub use error::GpuError;
 pub use pipeline::Checks;
 pub use run::Timing;
 pub use scheduler::GpuScheduler;
-pub use window::{GpuWindow, OnGpu, WindowError};
+pub use window::{GpuWindow, OnGpu, OnHost, WindowError};

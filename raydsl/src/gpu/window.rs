@@ -1,4 +1,4 @@
-//! Slices that live in the application's own buffers.
+//! Slices and primitives that live in the application's own buffers.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -7,7 +7,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use super::device::{Gpu, lock};
 use super::error::GpuError;
 use super::{Context, GpuScheduler};
-use crate::bvh::slice_key;
+use crate::bvh::{Bvh, BvhList, View};
+use crate::geometry::Primitive;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{Type, stride};
 
@@ -20,6 +21,65 @@ pub struct GpuWindow {
     pub offset: u64,
     /// Bytes of all elements: one behind the other, as they lie in the slice.
     pub size: u64,
+}
+
+/// Data of the application that a [`GpuWindow`] may stand for: a slice, the primitives of a tree or of
+/// a list of trees (those of the first tree first), or what primitives share, as in
+/// `bvh.view().shared()`.
+pub trait OnHost {
+    /// One element.
+    type Element: Type;
+
+    #[doc(hidden)]
+    fn buffer(&self) -> (BufferKey, usize);
+}
+
+impl<T: Type> OnHost for [T] {
+    type Element = T;
+
+    fn buffer(&self) -> (BufferKey, usize) {
+        View::<T>::slice(self).buffer()
+    }
+}
+
+impl<T: Type> OnHost for Vec<T> {
+    type Element = T;
+
+    fn buffer(&self) -> (BufferKey, usize) {
+        self.as_slice().buffer()
+    }
+}
+
+impl<T: Type, const N: usize> OnHost for [T; N] {
+    type Element = T;
+
+    fn buffer(&self) -> (BufferKey, usize) {
+        self.as_slice().buffer()
+    }
+}
+
+impl<T: Type, S: Type> OnHost for View<'_, T, S> {
+    type Element = T;
+
+    fn buffer(&self) -> (BufferKey, usize) {
+        (self.key(), self.len())
+    }
+}
+
+impl<P: Primitive> OnHost for Bvh<'_, P> {
+    type Element = P;
+
+    fn buffer(&self) -> (BufferKey, usize) {
+        self.view().buffer()
+    }
+}
+
+impl<P: Primitive> OnHost for BvhList<'_, P> {
+    type Element = P;
+
+    fn buffer(&self) -> (BufferKey, usize) {
+        self.view().buffer()
+    }
 }
 
 /// Why a window cannot stand for a slice.
@@ -88,7 +148,7 @@ pub enum WindowError {
 pub struct OnGpu<'a> {
     context: &'a Context,
     key: BufferKey,
-    slice: PhantomData<&'a ()>,
+    data: PhantomData<&'a ()>,
 }
 
 impl Drop for OnGpu<'_> {
@@ -104,12 +164,13 @@ impl fmt::Debug for OnGpu<'_> {
 }
 
 impl GpuScheduler {
-    /// Lets kernels that read `slice` read `window` instead, as long as the result lives. Nothing
-    /// of the slice is uploaded.
+    /// Lets kernels that read `data` read `window` instead, as long as the result lives. Nothing
+    /// of the data is uploaded; of a tree, its nodes and indices are.
     ///
-    /// The window must hold what the slice holds, as it lies in memory; this is not checked.
-    /// The variants of the CPU go on to read the slice. Another slice of the same elements, a part
-    /// for instance, is not meant and is uploaded as ever.
+    /// The window must hold what the data holds, as it lies in memory; this is not checked.
+    /// The variants of the CPU go on to read the data. Another slice of the same elements, a part
+    /// for instance, is not meant and is uploaded as ever, and so is a slice that a tree stands over
+    /// where a kernel captures it for itself.
     ///
     /// Make the buffer with [`Context::device`]. A buffer of another device of the same
     /// `wgpu::Instance` is always refused. Instances number their buffers on their own, so a buffer
@@ -119,20 +180,20 @@ impl GpuScheduler {
     ///
     /// [`GpuError::Window`] if the window cannot be bound, has another size, or the buffer belongs
     /// to another device.
-    pub fn with_gpu<'a, T: Type>(
+    pub fn with_gpu<'a, D: OnHost + ?Sized>(
         &'a self,
-        slice: &'a [T],
+        data: &'a D,
         window: GpuWindow,
     ) -> Result<OnGpu<'a>, GpuError> {
         let context = self.context();
-        let key = slice_key(slice);
-        check(&context.gpu, slice.len() as u64, stride(T::SCHEMA) as u64, &window)
+        let (key, len) = data.buffer();
+        check(&context.gpu, len as u64, stride(D::Element::SCHEMA) as u64, &window)
             .and_then(|()| lock(&context.uploads).enter_window(key, window))
             .map_err(|problem| GpuError::Window {
-                element: core::any::type_name::<T>(),
+                element: core::any::type_name::<D::Element>(),
                 problem,
             })?;
-        Ok(OnGpu { context, key, slice: PhantomData })
+        Ok(OnGpu { context, key, data: PhantomData })
     }
 }
 

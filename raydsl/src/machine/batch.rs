@@ -1,7 +1,7 @@
 //! Queries of several rays at once: a closure of the kernel gives ray `i`.
 
-use super::{Coerce, Machine, Method, Type, U, name};
-use crate::bvh;
+use super::{Coerce, Machine, Method, U, name};
+use crate::bvh::{self, SceneView};
 use crate::geometry::{Primitive, RayOn};
 use crate::machine::B;
 
@@ -11,7 +11,7 @@ pub struct Const<const N: usize>;
 
 #[diagnostic::do_not_recommend]
 impl<M, P, R, G, const N: usize> Method<{ name("any_hit_each") }, M, (Const<N>, G)>
-    for bvh::On<'_, P>
+    for SceneView<'_, P>
 where
     M: Machine,
     P: Primitive,
@@ -31,14 +31,14 @@ where
 
 #[diagnostic::do_not_recommend]
 impl<M, P, R, G, const N: usize> Method<{ name("closest_hit_each") }, M, (Const<N>, G)>
-    for bvh::On<'_, P>
+    for SceneView<'_, P>
 where
     M: Machine,
     P: Primitive,
     R: Coerce<M, RayOn<M>>,
     G: Fn(&M, U<M>) -> R,
 {
-    type Output = [<P::Hit as Type>::On<M>; N];
+    type Output = [bvh::RecordOn<M, P>; N];
 
     #[inline(always)]
     fn call(self, m: &M, (_, ray): (Const<N>, G)) -> Self::Output {

@@ -57,11 +57,11 @@ impl<T: Type> Parameter for T {
 }
 
 impl<T: Type> Parameter for [T] {
-    type On<'a, M: Machine> = bvh::On<'a, T>;
+    type On<'a, M: Machine> = bvh::View<'a, T>;
 }
 
 impl<P: Primitive> Parameter for bvh::Bvh<'_, P> {
-    type On<'a, M: Machine> = bvh::On<'a, P>;
+    type On<'a, M: Machine> = bvh::SceneView<'a, P>;
 }
 
 #[diagnostic::do_not_recommend]

@@ -5,7 +5,7 @@
 //! it panics and names the lane; without, it means the last element, in every variant.
 
 use super::{Coerce, Compare, Leaves, Machine, Type, U, Usize, Value, Varying};
-use crate::bvh::On;
+use crate::bvh::View;
 
 /// An integer that indexes.
 #[diagnostic::on_unimplemented(
@@ -84,7 +84,7 @@ impl<M: Machine, V: Varying<M> + Copy, const N: usize> Indexed<M> for [V; N] {
 }
 
 #[diagnostic::do_not_recommend]
-impl<M: Machine, P: Type> Indexed<M> for On<'_, P> {
+impl<M: Machine, P: Type, S: Type> Indexed<M> for View<'_, P, S> {
     type Element = P::On<M>;
 
     #[inline(always)]

@@ -5,7 +5,7 @@
 //! an import.
 
 use super::{B, Coerce, Compare, IntBinary, Machine, Type, U, Usize, Var};
-use crate::bvh;
+use crate::bvh::{SceneView, View};
 use crate::geometry::{HitOn, Primitive};
 
 /// The number of a method's name (FNV-1a, 64 bits).
@@ -249,7 +249,7 @@ method!([] Usize<M>, "saturating_sub", |m, a, b: Usize<M>| -> Usize<M> {
 // Slices, and trees over primitives
 
 #[diagnostic::do_not_recommend]
-impl<M: Machine, T: Type> Method<{ name("len") }, M, ()> for bvh::On<'_, T> {
+impl<M: Machine, T: Type, S: Type> Method<{ name("len") }, M, ()> for View<'_, T, S> {
     type Output = Usize<M>;
 
     #[inline(always)]
@@ -259,7 +259,7 @@ impl<M: Machine, T: Type> Method<{ name("len") }, M, ()> for bvh::On<'_, T> {
 }
 
 #[diagnostic::do_not_recommend]
-impl<M: Machine, T: Type> Method<{ name("is_empty") }, M, ()> for bvh::On<'_, T> {
+impl<M: Machine, T: Type, S: Type> Method<{ name("is_empty") }, M, ()> for View<'_, T, S> {
     type Output = B<M>;
 
     #[inline(always)]
@@ -309,20 +309,35 @@ const _: () = {
 
     queries! {
         "closest_hit" -> HitOn<M>;
+        "closest_hit_each" -> [HitOn<M>; 1];
         "closest_hit_where" -> HitOn<M>;
         "any_hit" -> B<M>;
+        "any_hit_each" -> [B<M>; 1];
         "any_hit_where" -> B<M>;
+        "multi_hit" -> [HitOn<M>; 1];
+        "multi_hit_by" -> [HitOn<M>; 1];
+        "multi_hit_where" -> [HitOn<M>; 1];
         "primitive" -> V;
     }
 };
 
 #[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("primitive") }, M, (HitOn<M>,)> for bvh::On<'_, P> {
+impl<M: Machine, P: Primitive> Method<{ name("primitive") }, M, (HitOn<M>,)> for SceneView<'_, P> {
     type Output = P::On<M>;
 
     #[inline(always)]
     fn call(self, m: &M, (hit,): (HitOn<M>,)) -> P::On<M> {
         let id = m.u32_select(hit.is_hit.0, hit.prim_id.0, m.u32(0));
         m.fetch(&self, U(id))
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<'a, M: Machine, P: Primitive> Method<{ name("shared") }, M, ()> for SceneView<'a, P> {
+    type Output = View<'a, P::Shared>;
+
+    #[inline(always)]
+    fn call(self, _: &M, (): ()) -> View<'a, P::Shared> {
+        View::shared(&self)
     }
 }

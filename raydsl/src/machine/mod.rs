@@ -431,25 +431,26 @@ pub trait Machine: Sized + 'static {
     /// The least `(t, id)` hit over a tree; see [`crate::bvh`].
     fn closest_hit<P: crate::geometry::Primitive>(
         &self,
-        prims: &crate::bvh::On<'_, P>,
+        prims: &crate::bvh::SceneView<'_, P>,
         ray: crate::geometry::RayOn<Self>,
     ) -> crate::geometry::HitOn<Self>;
 
     /// Whether anything is hit.
     fn any_hit<P: crate::geometry::Primitive>(
         &self,
-        prims: &crate::bvh::On<'_, P>,
+        prims: &crate::bvh::SceneView<'_, P>,
         ray: crate::geometry::RayOn<Self>,
     ) -> B<Self>;
 
     /// Asks `meet` about every hit within the ray's range, in the lanes that have it: whether the
-    /// lane goes on. Nodes beyond `limit` are left out. The hit has its primitive's number.
+    /// lane goes on. Nodes beyond `limit` are left out. The hit, and the record that has it, has its
+    /// primitive's number.
     fn visit<P: crate::geometry::Primitive>(
         &self,
-        prims: &crate::bvh::On<'_, P>,
+        prims: &crate::bvh::SceneView<'_, P>,
         ray: crate::geometry::RayOn<Self>,
         limit: impl Fn() -> F<Self>,
-        meet: impl Fn(crate::geometry::HitOn<Self>) -> B<Self>,
+        meet: impl Fn(crate::geometry::HitOn<Self>, crate::bvh::RecordOn<Self, P>) -> B<Self>,
     );
 
     /// `[f(0), f(1), ..]`; a loop in generated code.
@@ -463,13 +464,17 @@ pub trait Machine: Sized + 'static {
 
     /// How many elements a slice has.
     #[inline(always)]
-    fn len<T: Type>(&self, slice: &crate::bvh::On<'_, T>) -> U<Self> {
+    fn len<T: Type, S: Type>(&self, slice: &crate::bvh::View<'_, T, S>) -> U<Self> {
         U(self.u32(slice.len() as u32))
     }
 
     /// The element `index` of a slice; the last one where there is none.
     #[inline(always)]
-    fn element<T: Type>(&self, slice: &crate::bvh::On<'_, T>, index: U<Self>) -> T::On<Self> {
+    fn element<T: Type, S: Type>(
+        &self,
+        slice: &crate::bvh::View<'_, T, S>,
+        index: U<Self>,
+    ) -> T::On<Self> {
         self.check_index(&index.0, slice.len() as u32);
         let last = self.u32((slice.len() as u32).wrapping_sub(1));
         let within = self.u32_compare(Compare::Le, index.0, last);
@@ -477,5 +482,9 @@ pub trait Machine: Sized + 'static {
     }
 
     /// The element `index` of a slice, which has it.
-    fn fetch<P: Type>(&self, prims: &crate::bvh::On<'_, P>, index: U<Self>) -> P::On<Self>;
+    fn fetch<T: Type, S: Type>(
+        &self,
+        slice: &crate::bvh::View<'_, T, S>,
+        index: U<Self>,
+    ) -> T::On<Self>;
 }

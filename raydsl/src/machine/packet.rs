@@ -3,7 +3,7 @@
 use core::cell::Cell;
 
 use super::*;
-use crate::bvh::traverse_packet;
+use crate::bvh::{RecordOn, traverse_packet};
 use crate::geometry::{HitOn, Primitive, RayOn};
 
 /// A machine of [`Lanes::N`] lanes with masked control flow.
@@ -448,27 +448,35 @@ impl<L: Lanes> Machine for Packet<L> {
     #[inline(always)]
     fn closest_hit<P: Primitive>(
         &self,
-        prims: &crate::bvh::On<'_, P>,
+        prims: &crate::bvh::SceneView<'_, P>,
         ray: RayOn<Self>,
     ) -> HitOn<Self> {
         traverse_packet::closest_hit(self, prims, ray)
     }
     #[inline(always)]
-    fn any_hit<P: Primitive>(&self, prims: &crate::bvh::On<'_, P>, ray: RayOn<Self>) -> B<Self> {
+    fn any_hit<P: Primitive>(
+        &self,
+        prims: &crate::bvh::SceneView<'_, P>,
+        ray: RayOn<Self>,
+    ) -> B<Self> {
         traverse_packet::any_hit(self, prims, ray)
     }
     #[inline(always)]
     fn visit<P: Primitive>(
         &self,
-        prims: &crate::bvh::On<'_, P>,
+        prims: &crate::bvh::SceneView<'_, P>,
         ray: RayOn<Self>,
         limit: impl Fn() -> F<Self>,
-        meet: impl Fn(HitOn<Self>) -> B<Self>,
+        meet: impl Fn(HitOn<Self>, RecordOn<Self, P>) -> B<Self>,
     ) {
         traverse_packet::visit(self, prims, ray, limit, meet);
     }
     #[inline(always)]
-    fn fetch<P: Type>(&self, prims: &crate::bvh::On<'_, P>, index: U<Self>) -> P::On<Self> {
+    fn fetch<P: Type, S: Type>(
+        &self,
+        prims: &crate::bvh::View<'_, P, S>,
+        index: U<Self>,
+    ) -> P::On<Self> {
         if prims.is_empty() {
             return P::On::zero(self);
         }

@@ -3,7 +3,7 @@
 use core::cell::Cell;
 
 use super::*;
-use crate::bvh::traverse;
+use crate::bvh::{RecordOn, traverse};
 use crate::geometry::{HitOn, Primitive, RayOn};
 
 /// One lane, plain Rust numbers: a cross-check of the lowering.
@@ -399,34 +399,43 @@ impl Machine for Scalar {
 
     fn closest_hit<P: Primitive>(
         &self,
-        prims: &crate::bvh::On<'_, P>,
+        prims: &crate::bvh::SceneView<'_, P>,
         ray: RayOn<Self>,
     ) -> HitOn<Self> {
         let ray = crate::geometry::Ray::lane::<Self>(&ray, 0);
         crate::geometry::Hit::splat(self, traverse::nearest(prims, ray))
     }
-    fn any_hit<P: Primitive>(&self, prims: &crate::bvh::On<'_, P>, ray: RayOn<Self>) -> B<Self> {
+    fn any_hit<P: Primitive>(
+        &self,
+        prims: &crate::bvh::SceneView<'_, P>,
+        ray: RayOn<Self>,
+    ) -> B<Self> {
         let ray = crate::geometry::Ray::lane::<Self>(&ray, 0);
         B(traverse::any_hit(prims, ray))
     }
     fn visit<P: Primitive>(
         &self,
-        prims: &crate::bvh::On<'_, P>,
+        prims: &crate::bvh::SceneView<'_, P>,
         ray: RayOn<Self>,
         limit: impl Fn() -> F<Self>,
-        meet: impl Fn(HitOn<Self>) -> B<Self>,
+        meet: impl Fn(HitOn<Self>, RecordOn<Self, P>) -> B<Self>,
     ) {
         if !self.alive() {
             return;
         }
         let ray = crate::geometry::Ray::lane::<Self>(&ray, 0);
-        traverse::visit(prims, ray, |hit, end| {
-            let goes_on = meet(crate::geometry::Hit::splat(self, hit)).0;
+        traverse::visit::<P>(prims, ray, |hit, record, end| {
+            let record = P::Hit::splat(self, record);
+            let goes_on = meet(crate::geometry::Hit::splat(self, hit), record).0;
             *end = limit().0;
             goes_on
         });
     }
-    fn fetch<P: Type>(&self, prims: &crate::bvh::On<'_, P>, index: U<Self>) -> P::On<Self> {
+    fn fetch<P: Type, S: Type>(
+        &self,
+        prims: &crate::bvh::View<'_, P, S>,
+        index: U<Self>,
+    ) -> P::On<Self> {
         if prims.is_empty() {
             return P::On::zero(self);
         }

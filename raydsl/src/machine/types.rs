@@ -204,6 +204,27 @@ impl<T: Type, const N: usize> Type for [T; N] {
     }
 }
 
+/// Nothing.
+#[diagnostic::do_not_recommend]
+impl Type for () {
+    type On<M: Machine> = ();
+
+    const SCHEMA: &'static Schema = &Schema::Host;
+
+    #[inline(always)]
+    fn splat<M: Machine>(_: &M, (): Self) {}
+
+    #[inline(always)]
+    fn from_lanes<M: LaneMachine>(_: &M, _: &impl Fn(usize) -> Self) {}
+
+    #[inline(always)]
+    fn lane<M: LaneMachine>((): &(), _: usize) {}
+
+    fn write(&self, _: &mut [u8]) {}
+
+    fn read(_: &[u8]) {}
+}
+
 macro_rules! tuple_type {
     ($($name:ident . $index:tt),+) => {
         impl<$($name: Type),+> Type for ($($name,)+) {

@@ -89,7 +89,7 @@ pub(crate) struct Tally {
 /// The hit is that of a ray that passes within `ring`, so `t` and the normal are those of such rays.
 fn judge<P: Subject>(prim: &P, ray: Ray, ring: f64, tally: &mut Tally) {
     let exact = prim.exact();
-    let hit = prim.intersect(ray);
+    let hit = prim.intersect(ray, &[]);
     let near = nearby(&exact, ray, ring);
     let hits: Vec<Meeting> = near.iter().flatten().copied().collect();
     let mut wrong = |what: String| tally.wrong.push(format!("{what}: {prim:?} {ray:?} {hit:?}"));
@@ -157,7 +157,7 @@ pub(crate) fn tally<P: Subject>(name: &str, share: f64) -> Tally {
         let exact = prim.exact();
         let range = [ray.t_min.into(), ray.t_max.into()];
         let t = exact.nearest(o, d, range).map_or(0.0, |m| m.0.abs());
-        let hit = prim.intersect(ray);
+        let hit = prim.intersect(ray, &[]);
         let t = if hit.is_hit { t.max(hit.t.abs().into()) } else { t };
         judge(&prim, ray, share * f64::from(P::SLACK) * reach(&exact, o, d, t), &mut tally);
     }
@@ -190,7 +190,7 @@ pub(crate) fn bounds_are_tight<P: Subject>(name: &str) {
         let size = 10f32.powi(rng.below(13) as i32 - 6);
         let offset = rng.point(size) * rng.pick(&[0.0, 3.0, 1e4]);
         let prim = P::random(&mut rng, size, offset);
-        let (whole, exact) = (prim.get_bounds(), prim.exact());
+        let (whole, exact) = (prim.get_bounds(&[]), prim.exact());
         let ulp = ulp(whole);
         for axis in 0..3 {
             let [low, high] = exact.extent(axis);
@@ -203,7 +203,7 @@ pub(crate) fn bounds_are_tight<P: Subject>(name: &str) {
         let axis = rng.below(3);
         let (min, max) = (whole.min[axis], whole.max[axis]);
         let planes = [rng.range(min, max), min, max, min - size, max + size];
-        let parts = planes.map(|at| (at, prim.split_primitive(axis, at)));
+        let parts = planes.map(|at| (at, prim.split_primitive(axis, at, &[])));
         for (at, (below, above)) in parts {
             for part in [below, above] {
                 assert!(!part.is_valid() || part == part.intersection(whole), "{prim:?}: {part:?}");
@@ -295,7 +295,7 @@ pub(crate) fn nothing_is_missed<P: Subject>(name: &str) {
         for i in 0..2000 {
             let p = if i % 2 == 0 { rng.point(1.0) } else { Vec3::X * rng.range(0.0, 1.0) };
             let d = if i % 8 == 0 { Vec3::X } else { rng.direction() };
-            let hit = prim.intersect(Ray::new(p - d * 2.0, d));
+            let hit = prim.intersect(Ray::new(p - d * 2.0, d), &[]);
             assert!(!hit.is_hit, "{prim:?}: {hit:?}");
         }
     }
@@ -310,7 +310,7 @@ pub(crate) fn nothing_is_missed<P: Subject>(name: &str) {
             prim.write(&mut bytes);
             bytes[word * 4..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
             let broken = P::read(&bytes);
-            assert!(!broken.intersect(ray).is_hit, "{broken:?}");
+            assert!(!broken.intersect(ray, &[]).is_hit, "{broken:?}");
         }
         for i in 0..8 {
             let mut broken = ray;
@@ -320,9 +320,9 @@ pub(crate) fn nothing_is_missed<P: Subject>(name: &str) {
                 6 => broken.t_min = f32::NAN,
                 _ => broken.t_max = f32::NAN,
             }
-            assert!(!prim.intersect(broken).is_hit, "{prim:?}: {broken:?}");
+            assert!(!prim.intersect(broken, &[]).is_hit, "{prim:?}: {broken:?}");
         }
         let still = Ray { direction: Vec3::ZERO, ..ray };
-        assert!(!prim.intersect(still).is_hit, "{prim:?}");
+        assert!(!prim.intersect(still, &[]).is_hit, "{prim:?}");
     }
 }

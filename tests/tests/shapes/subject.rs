@@ -7,7 +7,7 @@ use raydsl_tests::rng::Rng;
 use super::exact::{D3, Exact, along, minus};
 
 /// A primitive of a shape of the library.
-pub(crate) trait Subject: Primitive<Hit = Hit> + std::fmt::Debug {
+pub(crate) trait Subject: Primitive<Hit = Hit, Shared = ()> + std::fmt::Debug {
     /// One of about this size, near `offset`.
     fn random(rng: &mut Rng, size: f32, offset: Vec3) -> Self;
     /// The same shape in `f64`.

@@ -29,7 +29,8 @@ use core::cell::Cell;
 
 use super::scalar::{self, ScalarLoop, compare};
 use super::*;
-use crate::geometry::{HitOn, Primitive, RayOn};
+use crate::bvh::RecordOn;
+use crate::geometry::{HitOn, HitRecord, Primitive, RayOn};
 use affine::{Forms, Handle};
 use arithmetic::{bits_of, constant, ordered};
 use decisions::{Decisions, Explored};
@@ -464,34 +465,43 @@ impl Machine for Margin {
 
     fn closest_hit<P: Primitive>(
         &self,
-        prims: &crate::bvh::On<'_, P>,
+        prims: &crate::bvh::SceneView<'_, P>,
         ray: RayOn<Self>,
     ) -> HitOn<Self> {
-        traverse::query(self, prims, ray, traverse::closest_hit)
+        traverse::query(self, prims, ray, |_| {}, traverse::closest_hit)
     }
 
-    fn any_hit<P: Primitive>(&self, prims: &crate::bvh::On<'_, P>, ray: RayOn<Self>) -> B<Self> {
-        B(traverse::query(self, prims, ray, traverse::any_hit))
+    fn any_hit<P: Primitive>(
+        &self,
+        prims: &crate::bvh::SceneView<'_, P>,
+        ray: RayOn<Self>,
+    ) -> B<Self> {
+        B(traverse::query(self, prims, ray, |_| {}, traverse::any_hit))
     }
 
     fn visit<P: Primitive>(
         &self,
-        prims: &crate::bvh::On<'_, P>,
+        prims: &crate::bvh::SceneView<'_, P>,
         ray: RayOn<Self>,
         limit: impl Fn() -> F<Self>,
-        meet: impl Fn(HitOn<Self>) -> B<Self>,
+        meet: impl Fn(HitOn<Self>, RecordOn<Self, P>) -> B<Self>,
     ) {
         if self.is_running() {
-            traverse::query(self, prims, ray, |m, scene| {
-                let meets = |hit| m.decided(meet(hit).0);
+            let found = Cell::new(None);
+            let keep = |record| found.set(Some(record));
+            traverse::query(self, prims, ray, keep, |m, scene| {
+                let meets = |hit| {
+                    let record = found.get().unwrap_or_else(|| Value::zero(m));
+                    m.decided(meet(hit, P::Hit::with_hit_on(record, hit)).0)
+                };
                 traverse::visit(m, scene, &|| limit().0.range.high, &meets);
             });
         }
     }
 
-    fn fetch<P: crate::machine::Type>(
+    fn fetch<P: crate::machine::Type, S: crate::machine::Type>(
         &self,
-        prims: &crate::bvh::On<'_, P>,
+        prims: &crate::bvh::View<'_, P, S>,
         index: U<Self>,
     ) -> P::On<Self> {
         if prims.is_empty() {

@@ -13,19 +13,17 @@ use super::beam::Beam;
 use super::decisions::Explored;
 use super::interval::Interval;
 use super::{Bounded, Margin, Truth};
-use crate::bvh::{Node, On};
+use crate::bvh::{Branches, RecordOn, SceneView};
 use crate::geometry::{HitOn, HitRecord, Primitive, RayOn};
 use crate::machine::{B, BoolBinary, Compare, F, Machine, U};
 
 /// In how many ways one primitive is asked.
 const WAYS: usize = 64;
 
-/// Primitives of any type, a tree over them if there is one, and a ray.
+/// Primitives of any type, the trees over them if there are any, and a ray.
 pub(super) struct Scene<'a> {
     ray: RayOn<Margin>,
-    len: u32,
-    /// The nodes and the index list.
-    tree: Option<(&'a [Node], &'a [u32])>,
+    parts: Vec<Part<'a>>,
     slack: f64,
     /// Where the ray meets a primitive.
     intersect: &'a dyn Fn(u32) -> HitOn<Margin>,
@@ -33,11 +31,19 @@ pub(super) struct Scene<'a> {
     bytes: &'a dyn Fn(u32) -> Vec<u8>,
 }
 
-/// Does `query` with `prims` of any type.
+/// Some of the primitives, and the tree over them if there is one.
+struct Part<'a> {
+    first: u32,
+    len: u32,
+    tree: Option<Branches<'a>>,
+}
+
+/// Does `query` with `prims` of any type. `found` is shown what the last primitive gave.
 pub(super) fn query<P: Primitive, R>(
     m: &Margin,
-    prims: &On<'_, P>,
+    prims: &SceneView<'_, P>,
     ray: RayOn<Margin>,
+    found: impl Fn(RecordOn<Margin, P>),
     query: impl FnOnce(&Margin, &Scene<'_>) -> R,
 ) -> R {
     let bytes = |id| {
@@ -45,12 +51,19 @@ pub(super) fn query<P: Primitive, R>(
         prims.get(id).write(&mut bytes);
         bytes
     };
+    let intersect = |id| {
+        let record = P::intersect_one_on(m, &prims.get(id), ray, prims.shared());
+        found(record);
+        P::Hit::hit_on(record)
+    };
+    let parts = prims.parts().iter();
     let scene = Scene {
         ray,
-        len: prims.len() as u32,
-        tree: prims.has_tree().then_some((prims.nodes, prims.indices)),
+        parts: parts
+            .map(|p| Part { first: p.first, len: p.prims.len() as u32, tree: p.tree })
+            .collect(),
         slack: f64::from(P::SLACK),
-        intersect: &|id| P::Hit::hit_on(P::intersect_one_on(m, &prims.get(id), ray)),
+        intersect: &intersect,
         bytes: &bytes,
     };
     query(m, &scene)
@@ -272,11 +285,19 @@ impl Scene<'_> {
     /// Visits the primitives that some variant may hit at or before `limit`, until `visit` returns
     /// true.
     fn walk(&self, limit: &Cell<f64>, visit: &mut dyn FnMut(u32) -> bool) {
-        let Some((nodes, indices)) = self.tree else {
-            let _ = (0..self.len).any(visit);
-            return;
+        let _ = self.parts.iter().any(|part| self.walk_part(part, limit, visit));
+    }
+
+    fn walk_part(
+        &self,
+        part: &Part<'_>,
+        limit: &Cell<f64>,
+        visit: &mut dyn FnMut(u32) -> bool,
+    ) -> bool {
+        let Some(tree) = part.tree else {
+            return (part.first..part.first + part.len).any(visit);
         };
-        let Some(root) = nodes.first() else { return };
+        let Some(root) = tree.nodes.first() else { return false };
         let beam = Beam::new(self.ray, root, self.slack);
         let mut stack = vec![root];
         while let Some(node) = stack.pop() {
@@ -285,14 +306,17 @@ impl Scene<'_> {
             }
             let (first, count) = (node.first as usize, node.count as usize);
             if !node.is_leaf() {
-                let children = &nodes[first..first + 2];
+                let children = &tree.nodes[first..first + 2];
                 // The nearer one comes off the stack first.
                 let is_left_near = beam.enters(&children[0]) <= beam.enters(&children[1]);
                 let order = if is_left_near { [1, 0] } else { [0, 1] };
                 stack.extend(order.map(|i| &children[i]));
-            } else if indices[first..first + count].iter().any(|id| visit(*id)) {
-                return;
+                continue;
+            }
+            if tree.indices[first..first + count].iter().any(|id| visit(part.first + id)) {
+                return true;
             }
         }
+        false
     }
 }

@@ -4,6 +4,7 @@ use core::cell::Cell;
 
 use super::ir::{Conversion, Expr, Id, Stmt, Type, VarId};
 use super::{RecordedBranch, RecordedLoop, Recorder, storage};
+use crate::bvh::RecordOn;
 use crate::geometry::{HitOn, Primitive, RayOn};
 use crate::machine::index::{choose, with_element};
 use crate::machine::scalar;
@@ -760,7 +761,7 @@ impl Machine for Recorder {
 
     fn closest_hit<P: Primitive>(
         &self,
-        prims: &crate::bvh::On<'_, P>,
+        prims: &crate::bvh::SceneView<'_, P>,
         ray: RayOn<Self>,
     ) -> HitOn<Self> {
         let function = self.closest_hit_function(prims);
@@ -772,7 +773,11 @@ impl Machine for Recorder {
         let call = self.add(Expr::Call(function, vec![ray]), Type::of(schema));
         self.take_apart(call)
     }
-    fn any_hit<P: Primitive>(&self, prims: &crate::bvh::On<'_, P>, ray: RayOn<Self>) -> B<Self> {
+    fn any_hit<P: Primitive>(
+        &self,
+        prims: &crate::bvh::SceneView<'_, P>,
+        ray: RayOn<Self>,
+    ) -> B<Self> {
         let function = self.any_hit_function(prims);
         let ray = self.put_together(
             <RayOn<Self> as Value<Self>>::SCHEMA,
@@ -782,10 +787,10 @@ impl Machine for Recorder {
     }
     fn visit<P: Primitive>(
         &self,
-        prims: &crate::bvh::On<'_, P>,
+        prims: &crate::bvh::SceneView<'_, P>,
         ray: RayOn<Self>,
         limit: impl Fn() -> crate::machine::F<Self>,
-        meet: impl Fn(HitOn<Self>) -> B<Self>,
+        meet: impl Fn(HitOn<Self>, RecordOn<Self, P>) -> B<Self>,
     ) {
         self.visit_hits(prims, ray, &limit, &meet);
     }
@@ -805,22 +810,25 @@ impl Machine for Recorder {
         repeat.end(self);
         all.get(self)
     }
-    fn len<T: crate::machine::Type>(&self, slice: &crate::bvh::On<'_, T>) -> U<Self> {
+    fn len<T: crate::machine::Type, S: crate::machine::Type>(
+        &self,
+        slice: &crate::bvh::View<'_, T, S>,
+    ) -> U<Self> {
         let function = self.len_function(slice);
         U(self.add(Expr::Call(function, vec![]), Type::U32))
     }
-    fn element<T: crate::machine::Type>(
+    fn element<T: crate::machine::Type, S: crate::machine::Type>(
         &self,
-        slice: &crate::bvh::On<'_, T>,
+        slice: &crate::bvh::View<'_, T, S>,
         index: U<Self>,
     ) -> T::On<Self> {
         let function = self.element_function(slice);
         let call = self.add(Expr::Call(function, vec![index.0]), Type::of(T::SCHEMA));
         self.take_apart(call)
     }
-    fn fetch<P: crate::machine::Type>(
+    fn fetch<P: crate::machine::Type, S: crate::machine::Type>(
         &self,
-        prims: &crate::bvh::On<'_, P>,
+        prims: &crate::bvh::View<'_, P, S>,
         index: U<Self>,
     ) -> P::On<Self> {
         let function = self.fetch_function(prims);

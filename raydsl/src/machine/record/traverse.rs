@@ -7,7 +7,7 @@ use super::ir::Function;
 use super::names::member_name;
 use super::types::zero_value;
 use super::{Builder, Recorder};
-use crate::bvh::{NODE_SCHEMA, On};
+use crate::bvh::{NODE_SCHEMA, SceneView, View, buffers};
 use crate::geometry::{Hit, HitRecord, Primitive, Ray, RayOn};
 use crate::machine::{KernelInfo, Schema, Type, Value};
 
@@ -94,22 +94,27 @@ impl Recorder {
     }
 
     /// `fn points_at(i: u32) -> ColorSphere`; the accessor itself is printed with the buffer.
-    pub(super) fn fetch_function<P: Type>(&self, prims: &On<'_, P>) -> usize {
-        let buffer = self.prims_buffer(prims);
-        let name = format!("{buffer}_at");
-        self.text_function(name, vec![P::SCHEMA], |_| String::new())
+    pub(super) fn fetch_function<P: Type, S: Type>(&self, prims: &View<'_, P, S>) -> usize {
+        self.at_function(&self.prims_buffer(prims), P::SCHEMA)
+    }
+
+    pub(super) fn at_function(&self, buffer: &str, schema: &'static Schema) -> usize {
+        self.text_function(format!("{buffer}_at"), vec![schema], |_| String::new())
     }
 
     /// `fn points_len() -> u32`.
-    pub(super) fn len_function<P: Type>(&self, prims: &On<'_, P>) -> usize {
-        let buffer = self.prims_buffer(prims);
+    pub(super) fn len_function<P: Type, S: Type>(&self, prims: &View<'_, P, S>) -> usize {
+        self.len_of_buffer(&self.prims_buffer(prims))
+    }
+
+    pub(super) fn len_of_buffer(&self, buffer: &str) -> usize {
         self.text_function(format!("{buffer}_len"), vec![], |name| {
             format!("fn {name}() -> u32 {{\n    return params.len_of_{buffer};\n}}\n")
         })
     }
 
     /// `fn points_element(i: u32) -> ColorSphere`, for any `i`; it too is printed with the buffer.
-    pub(super) fn element_function<P: Type>(&self, prims: &On<'_, P>) -> usize {
+    pub(super) fn element_function<P: Type, S: Type>(&self, prims: &View<'_, P, S>) -> usize {
         let name = format!("{}_element", self.prims_buffer(prims));
         self.text_function(name, vec![P::SCHEMA], |_| String::new())
     }
@@ -119,26 +124,24 @@ impl Recorder {
         self.text_function("is_finite".to_owned(), vec![], |_| FINITE.to_owned())
     }
 
-    pub(super) fn prims_buffer<P: Type>(&self, prims: &On<'_, P>) -> String {
-        let name = prims.name();
-        self.buffer(prims.prims_key(), name, P::SCHEMA, prims.len() as u64)
+    pub(super) fn prims_buffer<P: Type, S: Type>(&self, prims: &View<'_, P, S>) -> String {
+        self.buffer(prims.key(), &prims.name(), P::SCHEMA, prims.len() as u64)
     }
 
     /// Records `P::intersect`: the text before and behind its arguments, which gives a `Hit`.
-    fn intersect<P: Primitive>(&self, prims: &On<'_, P>) -> (String, String) {
+    fn intersect<P: Primitive>(&self, prims: &SceneView<'_, P>) -> (String, String) {
         let f = self.function_of(|m| {
             let prim = <P::On<Self>>::zero(m);
-            P::intersect_among_on(m, prims.kinds(), prim, RayOn::zero(m))
+            P::intersect_among_on(m, prims.kinds(), prim, RayOn::zero(m), prims.shared())
         });
         let path = P::Hit::PATH.iter().map(|p| format!(".{}", member_name(p))).collect();
         (self.function_name(f), path)
     }
 
-    pub(super) fn closest_hit_function<P: Primitive>(&self, prims: &On<'_, P>) -> usize {
+    pub(super) fn closest_hit_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
         let prims_name = self.prims_buffer(prims);
         let (intersect, path) = self.intersect(prims);
         self.finite_function();
-        let tree = self.tree::<P>(prims);
         let miss = zero_value(Hit::SCHEMA);
         let test = format!(
             "let candidate = {intersect}({prims_name}_at(id), ray){path};\n\
@@ -146,62 +149,122 @@ impl Recorder {
              && (!best.is_hit || candidate.t < best.t || (candidate.t == best.t && id < best.prim_id))) {{\n    \
              best = candidate;\n    best.prim_id = id;\n}}",
         );
-        self.text_function(
-            format!("{prims_name}_closest_hit"),
-            vec![Ray::SCHEMA, Hit::SCHEMA, P::SCHEMA, NODE_SCHEMA],
-            |name| match &tree {
-                None => linear(name, "Hit", &format!("var best = {miss};"), &test, "best", &prims_name),
-                Some(tree) => walk(&Walk {
-                    name,
-                    result: "Hit",
-                    declare: &format!("var best = {miss};"),
-                    limit: &format!(
-                        "select(ray.t_max, min(best.t + abs(best.t) * {:?}, ray.t_max), best.is_hit)",
-                        P::SLACK
-                    ),
-                    test: &test,
-                    give: "best",
-                    slack: P::SLACK,
-                    tree,
-                }),
-            },
-        )
+        let limit = format!(
+            "select(ray.t_max, min(best.t + abs(best.t) * {:?}, ray.t_max), best.is_hit)",
+            P::SLACK
+        );
+        let query = Query {
+            result: "Hit",
+            declare: &format!("var best = {miss};"),
+            limit: &limit,
+            test: &test,
+            give: "best",
+            slack: P::SLACK,
+        };
+        if !prims.is_list() {
+            return self.query_function(prims, format!("{prims_name}_closest_hit"), &query);
+        }
+        // One tree after another, each with the best hit so far.
+        let each = Query { declare: "var best = before;", ..query };
+        let each =
+            self.tree_function(prims, format!("{prims_name}_closer_hit"), ", before: Hit", &each);
+        self.list_function(prims, format!("{prims_name}_closest_hit"), "Hit", |roots| {
+            format!(
+                "    var best = {miss};\n    \
+                 for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
+                 best = {each}(ray, {roots}_at(i), best);\n    }}\n    return best;\n"
+            )
+        })
     }
 
-    pub(super) fn any_hit_function<P: Primitive>(&self, prims: &On<'_, P>) -> usize {
+    pub(super) fn any_hit_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
         let prims_name = self.prims_buffer(prims);
         let (intersect, path) = self.intersect(prims);
         self.finite_function();
-        let tree = self.tree::<P>(prims);
         let test = format!(
             "let candidate = {intersect}({prims_name}_at(id), ray){path};\n\
              if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max) {{\n    \
              return true;\n}}",
         );
-        self.text_function(
-            format!("{prims_name}_any_hit"),
-            vec![Ray::SCHEMA, Hit::SCHEMA, P::SCHEMA, NODE_SCHEMA],
-            |name| match &tree {
-                None => linear(name, "bool", "", &test, "false", &prims_name),
-                Some(tree) => walk(&Walk {
-                    name,
-                    result: "bool",
-                    declare: "",
-                    limit: "ray.t_max",
-                    test: &test,
-                    give: "false",
-                    slack: P::SLACK,
-                    tree,
-                }),
-            },
-        )
+        let query = Query {
+            result: "bool",
+            declare: "",
+            limit: "ray.t_max",
+            test: &test,
+            give: "false",
+            slack: P::SLACK,
+        };
+        if !prims.is_list() {
+            return self.query_function(prims, format!("{prims_name}_any_hit"), &query);
+        }
+        let each = self.tree_function(prims, format!("{prims_name}_any_hit_in"), "", &query);
+        self.list_function(prims, format!("{prims_name}_any_hit"), "bool", |roots| {
+            format!(
+                "    for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
+                 if ({each}(ray, {roots}_at(i))) {{\n            return true;\n        }}\n    }}\n    \
+                 return false;\n"
+            )
+        })
     }
 
-    /// The buffers of a tree: nodes and index list. `None` for a plain slice.
-    pub(super) fn tree<P: Primitive>(&self, prims: &On<'_, P>) -> Option<TreeNames> {
-        let (nodes, indices) = prims.tree_keys()?;
+    /// The function of a query of a slice, or of one tree.
+    fn query_function<P: Primitive>(
+        &self,
+        prims: &SceneView<'_, P>,
+        name: String,
+        query: &Query<'_>,
+    ) -> usize {
+        let (prims_name, tree) = (self.prims_buffer(prims), self.tree(prims));
+        self.text_function(name, types_of::<P>(), |name| match &tree {
+            None => linear(name, query, &prims_name),
+            Some(tree) => walk(name, "ray: Ray", "0u", query, tree),
+        })
+    }
+
+    /// The function of a query of the tree at one of the roots: its name.
+    fn tree_function<P: Primitive>(
+        &self,
+        prims: &SceneView<'_, P>,
+        name: String,
+        more: &str,
+        query: &Query<'_>,
+    ) -> String {
+        let Some(tree) = self.tree(prims) else { unreachable!("a list has trees") };
+        let parameters = format!("ray: Ray, first: u32{more}");
+        let function = self.text_function(name, types_of::<P>(), |name| {
+            walk(name, &parameters, "first", query, &tree)
+        });
+        self.function_name(function)
+    }
+
+    /// The function of a query of a list, which asks one tree after another.
+    fn list_function<P: Primitive>(
+        &self,
+        prims: &SceneView<'_, P>,
+        name: String,
+        result: &str,
+        body: impl FnOnce(&str) -> String,
+    ) -> usize {
+        let roots = self.roots_buffer(prims);
+        self.text_function(name, types_of::<P>(), |name| {
+            format!("fn {name}(ray: Ray) -> {result} {{\n{}}}\n", body(&roots))
+        })
+    }
+
+    /// Where the roots of a list are among its nodes.
+    pub(super) fn roots_buffer<P: Primitive>(&self, prims: &SceneView<'_, P>) -> String {
+        let name = format!("{}_roots", prims.name());
+        self.buffer(prims.key_of(buffers::ROOTS), &name, &Schema::U32, prims.root_len())
+    }
+
+    /// The buffers of a tree, or of all trees of a list: nodes and index list. `None` for a slice.
+    pub(super) fn tree<P: Primitive>(&self, prims: &SceneView<'_, P>) -> Option<TreeNames> {
+        if !prims.has_tree() {
+            return None;
+        }
         let name = prims.name();
         let (node_count, index_count) = prims.tree_len();
+        let (nodes, indices) = (prims.key_of(buffers::NODES), prims.key_of(buffers::INDICES));
         let nodes = self.buffer(nodes, &format!("{name}_nodes"), NODE_SCHEMA, node_count);
         let indices = self.buffer(indices, &format!("{name}_ids"), &Schema::U32, index_count);
         self.text_function("slabs".to_owned(), vec![Ray::SCHEMA, NODE_SCHEMA], |_| {
@@ -209,6 +272,11 @@ impl Recorder {
         });
         Some(TreeNames { nodes, indices })
     }
+}
+
+/// The types that the text of a query names.
+fn types_of<P: Primitive>() -> Vec<&'static Schema> {
+    vec![Ray::SCHEMA, Hit::SCHEMA, P::SCHEMA, NODE_SCHEMA]
 }
 
 /// The names of a tree's buffers.
@@ -222,7 +290,20 @@ fn indent(text: &str, by: usize) -> String {
     text.lines().map(|l| format!("{pad}{l}\n")).collect()
 }
 
-fn linear(name: &str, result: &str, declare: &str, test: &str, give: &str, prims: &str) -> String {
+/// What a query does with the primitives that it meets.
+#[derive(Clone, Copy)]
+struct Query<'a> {
+    result: &'a str,
+    declare: &'a str,
+    /// No node beyond this distance is worth a visit.
+    limit: &'a str,
+    test: &'a str,
+    give: &'a str,
+    slack: f32,
+}
+
+fn linear(name: &str, query: &Query<'_>, prims: &str) -> String {
+    let Query { result, declare, test, give, .. } = query;
     let declare = indent(declare, 4);
     let test = indent(test, 8);
     format!(
@@ -234,34 +315,23 @@ fn linear(name: &str, result: &str, declare: &str, test: &str, give: &str, prims
     )
 }
 
-struct Walk<'a> {
-    name: &'a str,
-    result: &'a str,
-    declare: &'a str,
-    /// No node beyond this distance is worth a visit.
-    limit: &'a str,
-    test: &'a str,
-    give: &'a str,
-    slack: f32,
-    tree: &'a TreeNames,
-}
-
-/// Depth-first, the nearer child first, the farther one on a stack with its distance.
-fn walk(w: &Walk<'_>) -> String {
-    let Walk { name, result, declare, limit, test, give, slack, tree } = w;
+/// Depth-first from the node `first`, the nearer child first, the farther one on a stack with its
+/// distance.
+fn walk(name: &str, parameters: &str, first: &str, query: &Query<'_>, tree: &TreeNames) -> String {
+    let Query { result, declare, limit, test, give, slack } = query;
     let TreeNames { nodes, indices } = tree;
     let declare = indent(declare, 4);
     let test = indent(test, 16);
     format!(
         "\
-fn {name}(ray: Ray) -> {result} {{
+fn {name}({parameters}) -> {result} {{
 {declare}    if (params.len_of_{nodes} == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {{
         return {give};
     }}
     var stack: array<u32, 64>;
     var stack_t: array<f32, 64>;
     var top = 0u;
-    var node = {nodes}_at(0u);
+    var node = {nodes}_at({first});
     let s = slabs(ray, node, {slack:?});
     let root = enter_leave(s, node, ray.t_min, ray.t_max);
     if (!(root.x <= root.y)) {{

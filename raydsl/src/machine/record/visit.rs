@@ -3,7 +3,7 @@
 
 use super::Recorder;
 use super::ir::{Expr, Id, Stmt, Type};
-use crate::bvh::{NODE_SCHEMA, On};
+use crate::bvh::{NODE_SCHEMA, RecordOn, SceneView};
 use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn};
 use crate::machine::{
     B, BoolBinary, Branch, Compare, F, Field, IntBinary, Loop, Machine, Schema, U, Value, Var,
@@ -43,36 +43,64 @@ impl Recorder {
     /// Records a loop over the hits of `prims`.
     pub(super) fn visit_hits<P: Primitive>(
         &self,
-        prims: &On<'_, P>,
+        prims: &SceneView<'_, P>,
         ray: RayOn<Self>,
         limit: &impl Fn() -> F<Self>,
-        meet: &impl Fn(HitOn<Self>) -> B<Self>,
+        meet: &impl Fn(HitOn<Self>, RecordOn<Self, P>) -> B<Self>,
     ) {
-        if prims.has_tree() {
-            return self.visit_tree(prims, ray, limit, meet);
+        if prims.is_list() {
+            let roots = self.roots_buffer(prims);
+            let call = |function, arguments| self.add(Expr::Call(function, arguments), Type::U32);
+            let len = || call(self.len_of_buffer(&roots), vec![]);
+            self.count(
+                "tree",
+                |tree| self.u32_compare(Compare::Lt, tree, len()),
+                |tree, trees| {
+                    let root = call(self.at_function(&roots, &Schema::U32), vec![tree]);
+                    self.visit_tree(prims, Some((root, trees)), ray, limit, meet);
+                },
+            );
+        } else if prims.has_tree() {
+            self.visit_tree(prims, None, ray, limit, meet);
+        } else {
+            let goes_on = |id| {
+                let within = self.u32_compare(Compare::Lt, id, self.len(prims).0);
+                self.bool_binary(BoolBinary::And, self.is_finite(ray), within)
+            };
+            self.count("id", goes_on, |id, ids| self.ask(prims, ray, U(id), meet, ids));
         }
-        let id = Var::new(self, "id", U(self.u32(0)));
+    }
+
+    /// Records a loop that counts from 0.
+    fn count(
+        &self,
+        name: &'static str,
+        goes_on: impl Fn(Id) -> Id,
+        body: impl Fn(Id, &Loop<Self>),
+    ) {
+        let counter = Var::new(self, name, U(self.u32(0)));
         let repeat = Loop::new(self);
-        let finite = self.is_finite(ray);
-        let within = self.u32_compare(Compare::Lt, id.get(self).0, self.len(prims).0);
-        repeat.test(self, B(self.bool_binary(BoolBinary::And, finite, within)));
-        self.ask(prims, ray, id.get(self), meet, &repeat);
+        repeat.test(self, B(goes_on(counter.get(self).0)));
+        body(counter.get(self).0, &repeat);
         repeat.continuing(self);
-        let next = self.u32_binary(IntBinary::WrappingAdd, id.get(self).0, self.u32(1));
-        id.set(self, U(next));
+        let next = self.u32_binary(IntBinary::WrappingAdd, counter.get(self).0, self.u32(1));
+        counter.set(self, U(next));
         repeat.again(self);
         repeat.end(self);
     }
 
+    /// Records a loop over the hits of a tree: of one at `root`, in a loop over all, or of the only one.
     fn visit_tree<P: Primitive>(
         &self,
-        prims: &On<'_, P>,
+        prims: &SceneView<'_, P>,
+        root: Option<(Id, &Loop<Self>)>,
         ray: RayOn<Self>,
         limit: &impl Fn() -> F<Self>,
-        meet: &impl Fn(HitOn<Self>) -> B<Self>,
+        meet: &impl Fn(HitOn<Self>, RecordOn<Self, P>) -> B<Self>,
     ) {
         let (start, next) = self.walk_functions(prims);
-        let start = self.add(Expr::Call(start, vec![self.whole(ray)]), Type::Of(TRAVERSAL));
+        let arguments = [self.whole(ray)].into_iter().chain(root.map(|r| r.0)).collect();
+        let start = self.add(Expr::Call(start, arguments), Type::Of(TRAVERSAL));
         let walk = self.builder(|b| {
             let walk = b.new_var("walk", Type::Of(TRAVERSAL));
             b.used(start);
@@ -88,7 +116,7 @@ impl Recorder {
             (node.pinned, node.name) = (true, Some("id"));
         });
         repeat.test(self, B(self.u32_compare(Compare::Ne, id, self.u32(NONE))));
-        self.ask(prims, ray, U(id), meet, &repeat);
+        self.ask(prims, ray, U(id), meet, root.map_or(&repeat, |r| r.1));
         repeat.continuing(self);
         repeat.again(self);
         repeat.end(self);
@@ -97,14 +125,14 @@ impl Recorder {
     /// Intersects one primitive, and asks about the hit.
     fn ask<P: Primitive>(
         &self,
-        prims: &On<'_, P>,
+        prims: &SceneView<'_, P>,
         ray: RayOn<Self>,
         id: U<Self>,
-        meet: &impl Fn(HitOn<Self>) -> B<Self>,
+        meet: &impl Fn(HitOn<Self>, RecordOn<Self, P>) -> B<Self>,
         repeat: &Loop<Self>,
     ) {
         let prim = self.fetch(prims, id);
-        let found = P::intersect_among_on(self, prims.kinds(), prim, ray);
+        let found = P::intersect_among_on(self, prims.kinds(), prim, ray, prims.shared());
         let found = self.named("candidate", found);
         let hit = HitOn { prim_id: id, ..P::Hit::hit_on(found) };
         let late = self.f32_compare(Compare::Ge, hit.t.0, ray.t_min.0);
@@ -112,7 +140,8 @@ impl Recorder {
         let inside = self.bool_binary(BoolBinary::And, late, early);
         let is_met = Branch::new(self, B(self.bool_binary(BoolBinary::And, hit.is_hit.0, inside)));
         if is_met.then(self) {
-            let stops = Branch::new(self, B(self.bool_not(meet(hit).0)));
+            let stops =
+                Branch::new(self, B(self.bool_not(meet(hit, P::Hit::with_hit_on(found, hit)).0)));
             if stops.then(self) {
                 repeat.leave(self);
             }
@@ -133,12 +162,14 @@ impl Recorder {
         self.bool_binary(BoolBinary::And, of(ray.origin), of(ray.direction))
     }
 
-    /// `fn bvh_walk(ray: Ray) -> Traversal` and `fn bvh_next(..) -> u32`.
-    fn walk_functions<P: Primitive>(&self, prims: &On<'_, P>) -> (usize, usize) {
+    /// `fn bvh_walk(ray: Ray, ..) -> Traversal` and `fn bvh_next(..) -> u32`.
+    fn walk_functions<P: Primitive>(&self, prims: &SceneView<'_, P>) -> (usize, usize) {
         let name = self.prims_buffer(prims);
         self.finite_function();
         let Some(tree) = self.tree(prims) else { unreachable!("only trees are walked") };
         let (nodes, ids, slack) = (&tree.nodes, &tree.indices, P::SLACK);
+        let (parameter, first) =
+            if prims.is_list() { (", first: u32", "first") } else { ("", "0u") };
         let start = self.text_function(
             format!("{name}_walk"),
             vec![<Ray as crate::machine::Type>::SCHEMA, TRAVERSAL, NODE_SCHEMA],
@@ -146,17 +177,18 @@ impl Recorder {
                 format!(
                     "\
 /// A traversal that has yet to begin.
-fn {name}(ray: Ray) -> Traversal {{
+fn {name}(ray: Ray{parameter}) -> Traversal {{
     var w = Traversal();
     if (params.len_of_{nodes} == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {{
         return w;
     }}
-    let root = {nodes}_at(0u);
-    let s = slabs(ray, root, {slack:?});
+    let node = {nodes}_at({first});
+    let s = slabs(ray, node, {slack:?});
     w.lower = s.lower;
     w.upper = s.upper;
     w.inverse = s.inverse;
-    let enter = enter_leave(s, root, ray.t_min, ray.t_max);
+    let enter = enter_leave(s, node, ray.t_min, ray.t_max);
+    w.nodes[0] = {first};
     w.enters[0] = enter.x;
     w.top = select(0u, 1u, enter.x <= enter.y);
     return w;

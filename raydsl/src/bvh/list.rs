@@ -1,0 +1,202 @@
+//! Lists of trees that are asked as one.
+
+use std::borrow::Cow;
+
+use bytemuck::cast_slice;
+use thiserror::Error;
+
+use super::build::MAX_PRIMITIVES;
+use super::view::{Branches, Part};
+use super::{Bvh, Node, SceneView, View, next_id};
+use crate::geometry::{Hit, Kinds, Primitive};
+use crate::machine::{Capture, Machine, Parameter, Resource};
+
+/// Trees over primitives of one type that are asked as one: what moves and what stands still,
+/// the parts of a model.
+///
+/// A query answers as one tree over all primitives would, with those of the first tree first, those
+/// of the second behind them, and so on: [`Hit::prim_id`] counts through the list. Rays are tested
+/// against every tree's box, so a list is for a few trees; on a GPU its trees lie in one buffer each
+/// for primitives, nodes and indices.
+///
+/// ```
+/// use raydsl::prelude::*;
+///
+/// #[primitive(sphere(center, radius))]
+/// struct Ball {
+///     center: Vec3,
+///     radius: f32,
+/// }
+///
+/// let ball = |z| Ball { center: vec3(0.0, 0.0, z), radius: 1.0 };
+/// let (fixed, moved) = ([ball(9.0), ball(6.0)], [ball(3.0)]);
+/// let trees = [Bvh::build(&fixed)?, Bvh::build(&moved)?];
+/// let scene = BvhList::new(&trees)?;
+/// let hit = scene.closest_hit(Ray::new(Vec3::ZERO, Vec3::Z));
+/// assert_eq!((hit.prim_id, scene.tree_of(hit)), (2, 1));
+/// assert_eq!(scene.primitive(hit).center.z, 3.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct BvhList<'a, P: Primitive> {
+    parts: Vec<Part<'a, P, P::Shared>>,
+    id: u64,
+    kinds: Kinds,
+}
+
+/// Why trees cannot be asked as one, and what to do about it.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ListError {
+    /// More primitives than [`MAX_PRIMITIVES`] in all.
+    #[error("{count} primitives are too many for one list of trees: {limit} can be numbered")]
+    TooManyPrimitives {
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// The primitives of one tree share another slice than those of the first.
+    #[error(
+        "tree {tree} shares another slice than tree 0: put what the primitives of all trees share \
+         into one"
+    )]
+    SharesAnother {
+        /// The tree.
+        tree: usize,
+    },
+}
+
+impl<'a, P: Primitive> BvhList<'a, P> {
+    /// A list of these trees. No tree at all is a valid scene.
+    ///
+    /// # Errors
+    ///
+    /// More primitives than 32-bit numbers can name, or trees whose primitives share different
+    /// slices.
+    pub fn new(trees: &'a [Bvh<'a, P>]) -> Result<Self, ListError> {
+        let count: usize = trees.iter().map(|tree| tree.primitives().len()).sum();
+        if count > MAX_PRIMITIVES {
+            return Err(ListError::TooManyPrimitives { count, limit: MAX_PRIMITIVES });
+        }
+        let shares = |a: &Bvh<'_, P>, b: &Bvh<'_, P>| {
+            let (a, b) = (a.shared(), b.shared());
+            core::ptr::eq(a, b) || a.is_empty() && b.is_empty()
+        };
+        if let Some(tree) = trees.iter().position(|tree| !shares(tree, &trees[0])) {
+            return Err(ListError::SharesAnother { tree });
+        }
+        let mut first = 0;
+        let part = |tree: &'a Bvh<'a, P>| {
+            let part = Part { first, ..tree.part() };
+            first += part.prims.len() as u32;
+            part
+        };
+        let parts = trees.iter().map(part).collect();
+        let kinds = trees.iter().fold(Kinds::NONE, |all, tree| all.union(tree.kinds));
+        Ok(Self { parts, id: next_id(), kinds })
+    }
+
+    /// Which tree holds the primitive that was hit, by its place in the list; 0 for a miss.
+    pub fn tree_of(&self, hit: Hit) -> usize {
+        tree_of(&self.parts, if hit.is_hit { hit.prim_id } else { 0 })
+    }
+
+    /// The number that the first primitive of a tree has.
+    ///
+    /// # Panics
+    ///
+    /// If the list has no such tree.
+    pub fn first_of(&self, tree: usize) -> u32 {
+        self.parts[tree].first
+    }
+
+    /// How many trees.
+    pub fn tree_count(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// What the primitives of all trees share.
+    pub fn shared(&self) -> &'a [P::Shared] {
+        self.parts.first().map_or(&[], |part| part.shared)
+    }
+
+    /// The view that kernels work on.
+    pub fn view(&self) -> SceneView<'_, P> {
+        View::list(&self.parts, self.id, self.kinds)
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine, P: Primitive> Capture<M> for BvhList<'_, P> {
+    type On<'c>
+        = SceneView<'c, P>
+    where
+        Self: 'c;
+
+    #[inline(always)]
+    fn capture<'c>(&'c self, _: &M, name: &'static str) -> SceneView<'c, P> {
+        self.view().named(name)
+    }
+
+    #[inline(always)]
+    fn constant<'c>(&'c self, _: &M) -> SceneView<'c, P> {
+        self.view()
+    }
+
+    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        visit(&self.view());
+    }
+}
+
+impl<P: Primitive> Parameter for BvhList<'_, P> {
+    type On<'a, M: Machine> = SceneView<'a, P>;
+}
+
+/// Which part holds the primitive `index`; the first one where there is none.
+#[inline(always)]
+pub(super) fn tree_of<T, S>(parts: &[Part<'_, T, S>], index: u32) -> usize {
+    parts.partition_point(|part| part.first <= index).saturating_sub(1)
+}
+
+/// The trees of a list, and how many nodes and indices stand before each.
+fn trees<'p, 'a, T, S>(
+    parts: &'p [Part<'a, T, S>],
+) -> impl Iterator<Item = (&'p Part<'a, T, S>, Branches<'a>, [u32; 2])> {
+    let mut before = [0; 2];
+    parts.iter().filter_map(move |part| {
+        let tree = part.tree?;
+        let here = before;
+        before = [here[0] + tree.nodes.len() as u32, here[1] + tree.indices.len() as u32];
+        Some((part, tree, here))
+    })
+}
+
+/// Where the roots are among the nodes of all trees.
+pub(super) fn roots<T, S>(parts: &[Part<'_, T, S>]) -> impl Iterator<Item = u32> {
+    trees(parts).filter(|(_, tree, _)| !tree.nodes.is_empty()).map(|(_, _, [root, _])| root)
+}
+
+/// The nodes of all trees in one array.
+pub(super) fn nodes<'a, T, S>(parts: &[Part<'a, T, S>]) -> Cow<'a, [u8]> {
+    if let [Part { tree: Some(tree), .. }] = parts {
+        return Cow::Borrowed(cast_slice(tree.nodes));
+    }
+    let moved = trees(parts).flat_map(|(_, tree, [nodes, indices])| {
+        tree.nodes.iter().map(move |node| {
+            let by = if node.is_leaf() { indices } else { nodes };
+            Node { first: node.first + by, ..*node }
+        })
+    });
+    Cow::Owned(cast_slice(&moved.collect::<Vec<Node>>()).to_vec())
+}
+
+/// The index lists of all trees in one array, of numbers that count through the list.
+pub(super) fn indices<'a, T, S>(parts: &[Part<'a, T, S>]) -> Cow<'a, [u8]> {
+    if let [Part { tree: Some(tree), first: 0, .. }] = parts {
+        return Cow::Borrowed(cast_slice(tree.indices));
+    }
+    let moved = trees(parts)
+        .flat_map(|(part, tree, _)| tree.indices.iter().map(|index| index + part.first));
+    Cow::Owned(cast_slice(&moved.collect::<Vec<u32>>()).to_vec())
+}
