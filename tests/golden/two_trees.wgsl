@@ -314,7 +314,10 @@ fn triangle_intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> 
         let t_14 = select(y, min_y, y < min_y);
         t = select(t_14, max_y, max_y < t_14) / d.y;
     }
-    let is_hit = t >= ray.t_min && t <= ray.t_max;
+    let t_15 = v1 - v0;
+    let t_16 = v2 - v0;
+    let has_area = t_15.y * t_16.z - t_16.y * t_15.z != 0.0f || t_15.z * t_16.x - t_16.z * t_15.x != 0.0f || t_15.x * t_16.y - t_16.x * t_15.y != 0.0f;
+    let is_hit = has_area && t >= ray.t_min && t <= ray.t_max;
     return Hit(is_hit, t, 0u, v / sum, w / sum);
 }
 

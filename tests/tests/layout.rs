@@ -127,6 +127,33 @@ fn scenes() -> Result<(), raydsl::bvh::BuildError> {
     Ok(())
 }
 
+/// A primitive of two kinds, of different sizes.
+#[primitive]
+enum Shape {
+    Ball(ColorSphere),
+    Face(Triangle),
+}
+
+#[test]
+fn kinds_and_indices() -> Result<(), Box<dyn std::error::Error>> {
+    let balls = spheres(3).into_iter().map(Shape::Ball);
+    let shapes: Vec<Shape> = balls.chain(triangles(3).into_iter().map(Shape::Face)).collect();
+    let kernel = kernel!(|ray: Ray| shapes.closest_hit(ray));
+    // The number of the kind, and a word for each of a triangle's nine.
+    assert_eq!(Shape::SCHEMA.size(), 40);
+    assert_layout(&kernel.wgsl(), "shapes", Shape::SCHEMA, 40);
+    let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    let mesh = [IndexedTriangle { vertices: [0, 1, 2] }];
+    let bvh = Bvh::build_sharing(&mesh, &vertices, &BuildConfig::default())?;
+    let trees = [bvh];
+    let list = BvhList::new(&trees)?;
+    let wgsl = kernel!(|ray: Ray| list.closest_hit(ray)).wgsl();
+    assert_type::<IndexedTriangle>(&wgsl, "list");
+    assert_type::<Vec3>(&wgsl, "list_shared");
+    assert_type::<u32>(&wgsl, "list_roots");
+    Ok(())
+}
+
 /// Bools, bytes and halves between words, in nested structs.
 #[derive(Clone, Copy, Debug, Type)]
 #[repr(C)]

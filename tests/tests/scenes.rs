@@ -152,7 +152,7 @@ fn indexed_triangles_are_triangles() {
         let mut corner = normal;
         if hit.is_hit {
             let triangle = tree.primitive(hit);
-            normal = triangle.normal(ray, hit, &vertices);
+            normal = triangle.normal(ray, hit, vertices);
             corner = vertices[triangle.vertices[2] as usize];
         }
         let any = tree.any_hit_where(ray, |hit: Hit| hit.u > 0.5);

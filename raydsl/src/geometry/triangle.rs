@@ -88,7 +88,8 @@ fn axis_last(v: Vec3, k: u32) -> Vec3 {
     }
 }
 
-/// Where a ray meets the triangle: both sides, edges and vertices included.
+/// Where a ray meets the triangle: both sides, edges and vertices included. One without an area is
+/// never met.
 ///
 /// The watertight test of Woop, Benthin and Wald ("Watertight Ray/Triangle Intersection",
 /// JCGT 2013), divided by the determinant before it is scaled, so that it holds
@@ -152,7 +153,10 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
     if max(min_y - y, y - max_y) > y.abs() * SLACK {
         t = clamp(y, min_y, max_y) / d.y;
     }
-    let is_hit = t >= ray.t_min && t <= ray.t_max;
+    // Vertices on one line have no inside: the signs are those of rounding errors.
+    let n = (v1 - v0).cross(v2 - v0);
+    let has_area = n.x != 0.0 || n.y != 0.0 || n.z != 0.0;
+    let is_hit = has_area && t >= ray.t_min && t <= ray.t_max;
     Hit { is_hit, t, prim_id: 0, u: v / sum, v: w / sum }
 }
 

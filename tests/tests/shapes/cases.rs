@@ -2,13 +2,14 @@
 
 use raydsl::assert_variants_agree;
 use raydsl::bvh::BuildError;
+use raydsl::camera::Camera;
 use raydsl::geometry::{quad, triangle};
 use raydsl::prelude::*;
 use raydsl_tests::rng::Rng;
 use raydsl_tests::scaled;
 
 use super::exact::{along, length, minus};
-use super::subject::{Disk, Leaf, Panel, Plane, Rod, Subject, wide};
+use super::subject::{Ball, Disk, Leaf, Panel, Plane, Rod, Subject, wide};
 
 fn assert_near(found: f32, expected: f64, tolerance: f64) {
     let error = (f64::from(found) - expected).abs();
@@ -36,6 +37,71 @@ fn a_sphere_and_a_direction_that_is_not_unit() {
     assert_near(sphere::intersect(ray, center, radius).t, t0, 2e-6);
     let from_inside = ray.with_range(4.0, f32::MAX);
     assert_near(sphere::intersect(from_inside, center, radius).t, t1, 2e-6);
+}
+
+/// A ball of a thousandth, 65,536 away: its normal is formed from the offset of the centre.
+#[test]
+fn a_sphere_far_away() {
+    let ray = Ray::new(Vec3::ZERO, Vec3::Z);
+    let (center, radius) = (vec3(3.0 / 4096.0, 0.0, 65536.0), 1.0 / 1024.0);
+    let hit = sphere::intersect(ray, center, radius);
+    assert!(hit.is_hit);
+    assert_near(hit.t, 65536.0 - 0.000_645_935_378_677_878_6, 2.0_f64.powi(-24));
+    let n = sphere::normal(ray, hit, center, radius);
+    let error = (n - vec3(-0.75, 0.0, -0.661_437_83)).length();
+    assert!(error < 1e-5, "{n}: {error:e}");
+    let kernel = kernel!(|ray: Ray, center: Vec3, radius: f32| {
+        let hit = sphere::intersect(ray, center, radius);
+        (hit.is_hit, hit.t, sphere::normal(ray, hit, center, radius))
+    });
+    assert_variants_agree!(&kernel, &[(ray, center, radius)]);
+}
+
+/// The share of a square film that a ball covers, by the camera's rays.
+#[test]
+fn a_sphere_on_a_film() {
+    let size = 1024u32;
+    let camera = Pinhole::new(vec3(0.0, 0.0, 3.0), Vec3::ZERO, Vec3::Y, 60f32.to_radians());
+    let rays = camera.begin_frame(size, size);
+    let center = |i: u32| i as f32 + 0.5;
+    let hits = (0..size * size).filter(|i| {
+        let ray = rays.primary_ray(center(i % size), center(i / size));
+        sphere::intersect(ray, Vec3::ZERO, 1.0).is_hit
+    });
+    let share = hits.count() as f64 / f64::from(size).powi(2);
+    // Pixels on the edge count as whole or not at all.
+    assert!((share - 0.294_524_311_274_043_12).abs() < 1e-4, "{share}");
+}
+
+/// How much of the light a cloud of balls stops: `1 - (1 - pi r²)^n`.
+#[test]
+fn the_coverage_of_clouds() {
+    let mut rng = Rng::of("coverage");
+    let count = scaled(1_000_000);
+    // So that the share does not depend on how many there are.
+    let radius = 0.5 / (count as f32).sqrt();
+    let share = |rng: &mut Rng| {
+        let ball = |_| Ball { center: vec3(rng.unit(), rng.unit(), rng.unit()), radius };
+        let balls: Vec<Ball> = (0..count).map(ball).collect();
+        let bvh = Bvh::build(&balls).expect("finite bounds");
+        // Away from the faces, beyond which there are no balls.
+        let hits = (0..10_000).filter(|_| {
+            let at = vec3(rng.range(0.1, 0.9), rng.range(0.1, 0.9), -1.0);
+            bvh.any_hit(Ray::new(at, Vec3::Z))
+        });
+        hits.count() as f64 / 10_000.0
+    };
+    let shares: Vec<f64> = (0..16).map(|_| share(&mut rng)).collect();
+    let mean = shares.iter().sum::<f64>() / 16.0;
+    let scatter = shares.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / 15.0;
+    let r = f64::from(radius);
+    let expected = 1.0 - (1.0 - std::f64::consts::PI * r * r).powf(count as f64);
+    assert!((expected - 0.544_062_012_856_835_47).abs() < 1e-3, "{expected}");
+    let error = (mean - expected).abs();
+    assert!(
+        error < 4.5 * (scatter / 16.0).sqrt(),
+        "{mean} for {expected}, {error:e} of {scatter:e}"
+    );
 }
 
 #[test]

@@ -38,6 +38,7 @@ pub(crate) fn unit(a: D3) -> D3 {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Exact {
     Sphere { center: D3, radius: f64 },
+    Triangle([D3; 3]),
     Quad([D3; 4]),
     Disk { center: D3, normal: D3, radius: f64 },
     Plane { normal: D3, offset: f64 },
@@ -79,6 +80,22 @@ fn triangle(o: D3, d: D3, v: [D3; 3]) -> Option<Meeting> {
     let (u, v) = (dot(cross(w, e2), d) / -det, dot(cross(e1, w), d) / -det);
     let t = dot(w, n) / det;
     (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t.is_finite()).then(|| (t, unit(n)))
+}
+
+/// How far `p` is from the triangle, to within a factor of 2.
+fn off_triangle(p: D3, v: [D3; 3]) -> f64 {
+    let n = normal_of(v);
+    let beside = (0..3).map(|i| {
+        let edge = minus(v[(i + 1) % 3], v[i]);
+        dot(minus(p, v[i]), unit(cross(edge, n)))
+    });
+    beside.fold(dot(minus(p, v[0]), n).abs(), f64::max)
+}
+
+/// The area of a triangle, and its centre of gravity.
+fn area_of(v: [D3; 3]) -> (f64, D3) {
+    let area = 0.5 * length(cross(minus(v[1], v[0]), minus(v[2], v[0])));
+    (area, along(along(v[0], v[1], 1.0), v[2], 1.0).map(|x| x / 3.0))
 }
 
 fn disk(o: D3, d: D3, center: D3, normal: D3, radius: f64) -> Option<Meeting> {
@@ -145,6 +162,7 @@ impl Exact {
                 let found = roots(dot(d, d), dot(f, d), dot(f, f) - radius * radius);
                 found.into_iter().map(|t| (t, unit(along(f, d, t)))).collect()
             }
+            Self::Triangle(v) => triangle(o, d, v).into_iter().collect(),
             Self::Quad([a, b, c, e]) => {
                 let halves = [triangle(o, d, [a, b, e]), triangle(o, d, [c, e, b])];
                 halves.into_iter().flatten().collect()
@@ -198,17 +216,8 @@ impl Exact {
         };
         match *self {
             Self::Sphere { center, radius } => (length(minus(p, center)) - radius).abs(),
-            Self::Quad([a, b, c, e]) => {
-                let on = |v: [D3; 3]| {
-                    let n = normal_of(v);
-                    let beside = (0..3).map(|i| {
-                        let edge = minus(v[(i + 1) % 3], v[i]);
-                        dot(minus(p, v[i]), unit(cross(edge, n)))
-                    });
-                    beside.fold(dot(minus(p, v[0]), n).abs(), f64::max)
-                };
-                on([a, b, e]).min(on([c, e, b]))
-            }
+            Self::Triangle(v) => off_triangle(p, v),
+            Self::Quad([a, b, c, e]) => off_triangle(p, [a, b, e]).min(off_triangle(p, [c, e, b])),
             Self::Disk { center, normal, radius } => on_disk(center, normal, radius),
             Self::Plane { normal, offset } => (dot(p, normal) - offset).abs() / length(normal),
             Self::Cylinder { p0, p1, radius, has_caps } => {
@@ -238,13 +247,8 @@ impl Exact {
     pub(crate) fn area(&self) -> (f64, D3) {
         match *self {
             Self::Sphere { center, radius } => (4.0 * PI * radius * radius, center),
-            Self::Quad([a, b, c, e]) => {
-                let half = |v: [D3; 3]| {
-                    let area = 0.5 * length(cross(minus(v[1], v[0]), minus(v[2], v[0])));
-                    (area, along(along(v[0], v[1], 1.0), v[2], 1.0).map(|x| x / 3.0))
-                };
-                weighted(&[half([a, b, e]), half([c, e, b])])
-            }
+            Self::Triangle(v) => area_of(v),
+            Self::Quad([a, b, c, e]) => weighted(&[area_of([a, b, e]), area_of([c, e, b])]),
             Self::Disk { center, radius, .. } => (PI * radius * radius, center),
             // Its samples lie around the foot of the world's origin.
             Self::Plane { normal, offset } => {
@@ -284,6 +288,7 @@ impl Exact {
         let joined = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
         match *self {
             Self::Sphere { center, radius } => [center[axis] - radius, center[axis] + radius],
+            Self::Triangle(v) => span(&v),
             Self::Quad(v) => span(&v),
             Self::Disk { center, normal, radius } => of_disk(center, normal, radius),
             Self::Plane { .. } => [f64::NEG_INFINITY, f64::INFINITY],

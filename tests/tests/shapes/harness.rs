@@ -1,6 +1,9 @@
 //! What holds for every shape.
 
+use raydsl::machine::{Lanes, Packet, Type as _};
 use raydsl::prelude::*;
+use raydsl_tests::levels::{LevelTask, each_level};
+use raydsl_tests::queries::hit_words;
 use raydsl_tests::rng::Rng;
 use raydsl_tests::scaled;
 
@@ -58,19 +61,21 @@ fn nearby(exact: &Exact, ray: Ray, ring: f64) -> Vec<Option<Meeting>> {
 }
 
 /// A ray along a flat surface meets it for a shift so small that the others all miss it: the point
-/// that it gives tells. A quad that is seen edge-on gives a point of its box.
+/// that it gives tells. A triangle or quad that is seen edge-on gives a point of its box.
 fn is_along(exact: &Exact, ray: Ray, hit: Hit, ring: f64) -> bool {
     let d = wide(ray.direction);
     let at = along(wide(ray.origin), d, hit.t.into());
-    let Exact::Quad([a, b, c, e]) = *exact else {
-        return exact.distance(at) <= ring;
+    let halves = match *exact {
+        Exact::Triangle(v) => vec![v],
+        Exact::Quad([a, b, c, e]) => vec![[a, b, e], [c, e, b]],
+        _ => return exact.distance(at) <= ring,
     };
-    let is_edge_on = |v: [D3; 3]| dot(normal_of(v), unit(d)).abs() < 2e-6;
+    let is_edge_on = |v: &[D3; 3]| dot(normal_of(*v), unit(d)).abs() < 2e-6;
     let is_in = |i: usize| {
         let [low, high] = exact.extent(i);
         low - ring <= at[i] && at[i] <= high + ring
     };
-    (is_edge_on([a, b, e]) || is_edge_on([c, e, b])) && (0..3).all(is_in)
+    halves.iter().any(is_edge_on) && (0..3).all(is_in)
 }
 
 /// How the rays fared.
@@ -128,8 +133,9 @@ fn judge<P: Subject>(prim: &P, ray: Ray, ring: f64, tally: &mut Tally) {
     if spread < 0.1 {
         tally.normals += 1;
         let error = apart(n).fold(f64::INFINITY, f64::min);
-        // That of a quad is as good as the angle between its edges.
-        let own = if matches!(exact, Exact::Quad(_)) { 2e-5 } else { 1e-6 };
+        // That of a triangle is as good as the angle between its edges.
+        let is_flat = matches!(exact, Exact::Triangle(_) | Exact::Quad(_));
+        let own = if is_flat { 2e-5 } else { 1e-6 };
         if (dot(n, n).sqrt() - 1.0).abs() > 1e-6 || error > spread + own {
             wrong(format!("the normal {n:?} is {error:e} off, of {spread:e}"));
         }
@@ -285,6 +291,54 @@ pub(crate) fn trees_change_nothing<P: Subject>(name: &str) {
             hits += usize::from(hit.is_hit);
         }
         assert!(hits * 3 > scaled(2000), "{hits} hits");
+    }
+}
+
+/// Another primitive and another ray in every lane, at every level; then several primitives and one
+/// ray.
+pub(crate) fn lanes_agree<P: Subject>(name: &str) {
+    let mut rng = Rng::of(name);
+    let mut task = Lanewise { prims: Vec::new(), rays: Vec::new() };
+    for i in 0..scaled(8000) {
+        let prim = P::random(&mut rng, 1.0, Vec3::ZERO);
+        let ray = match task.rays.last() {
+            Some(ray) if i % 32 > 16 => *ray,
+            _ => ray_at(&mut rng, &prim, 1.0, 100.0),
+        };
+        task.prims.push(prim);
+        task.rays.push(ray);
+    }
+    task.prims.extend(P::degenerate());
+    task.rays.resize(task.prims.len(), Ray::new(Vec3::NEG_ONE, Vec3::ONE));
+    each_level(&mut task);
+}
+
+struct Lanewise<P> {
+    prims: Vec<P>,
+    rays: Vec<Ray>,
+}
+
+impl<P: Subject> LevelTask for Lanewise<P> {
+    fn run<L: Lanes>(&mut self, name: &str, lanes: L) {
+        let mut hits = 0;
+        lanes.vectorize(|| {
+            for (prims, rays) in self.prims.chunks(L::N).zip(self.rays.chunks(L::N)) {
+                let m = Packet::with_count(lanes, rays.len());
+                let last = rays.len() - 1;
+                let prim = P::from_lanes(&m, &|l| prims[l.min(last)]);
+                let ray = Ray::from_lanes(&m, &|l| rays[l.min(last)]);
+                let found = P::intersect_on(&m, prim, ray, prims.view().shared());
+                for (l, (prim, ray)) in prims.iter().zip(rays).enumerate() {
+                    let hit = Hit::lane::<Packet<L>>(&found, l);
+                    let expected = prim.intersect(*ray, &[]);
+                    let same = hit.is_hit == expected.is_hit
+                        && (!hit.is_hit || hit_words(&hit) == hit_words(&expected));
+                    assert!(same, "{name}: {prim:?} {ray:?}: {hit:?} for {expected:?}");
+                    hits += usize::from(hit.is_hit);
+                }
+            }
+        });
+        assert!(hits * 8 > self.rays.len(), "{hits} hits of {}", self.rays.len());
     }
 }
 

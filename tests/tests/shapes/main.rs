@@ -1,5 +1,6 @@
 //! The shapes of the library: against closed forms in `f64`, in every variant, in trees, cut.
 
+mod all;
 mod cases;
 mod exact;
 mod harness;
@@ -12,7 +13,7 @@ use raydsl_tests::rng::Rng;
 use raydsl_tests::scaled;
 
 use harness::square;
-use subject::{Ball, Cone, Crate, Disk, Leaf, Panel, Plane, Rod, Subject, Tube};
+use subject::{Ball, Cone, Crate, Disk, Face, Leaf, Panel, Plane, Rod, Subject, Tube};
 
 /// Some primitives, and rays at them.
 fn scene<P: Subject>(name: &str) -> (Vec<P>, Vec<(Ray,)>) {
@@ -53,6 +54,11 @@ macro_rules! shape {
             #[test]
             fn degenerate() {
                 harness::nothing_is_missed::<$prim>(stringify!($module));
+            }
+
+            #[test]
+            fn levels() {
+                harness::lanes_agree::<$prim>(stringify!($module));
             }
 
             #[test]
@@ -102,6 +108,7 @@ macro_rules! bounded {
 }
 
 shape!(spheres: Ball);
+shape!(triangles: Face);
 shape!(quads: Leaf);
 shape!(rectangles: Panel);
 shape!(disks: Disk);
@@ -112,6 +119,7 @@ shape!(cones: Cone);
 shape!(cuboids: Crate);
 
 bounded!(sphere_bounds: Ball);
+bounded!(triangle_bounds: Face);
 bounded!(quad_bounds: Leaf);
 bounded!(rectangle_bounds: Panel);
 bounded!(disk_bounds: Disk);

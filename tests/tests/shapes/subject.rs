@@ -71,6 +71,14 @@ subject!(Ball = sphere(center: Vec3, radius: f32);
     Exact::Sphere { center: wide(center), radius: radius.into() };
     [(O, 0.0), (O, -1.0)]);
 
+subject!(Face = triangle(v0: Vec3, v1: Vec3, v2: Vec3);
+    rng size offset => {
+        let v0 = offset + rng.point(size);
+        (v0, v0 + rng.direction() * size, v0 + rng.direction() * size)
+    };
+    Exact::Triangle([v0, v1, v2].map(wide));
+    [(O, O, O), (O, X, X), (O, X, 2.0 * X)]);
+
 subject!(Leaf = quad(v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3);
     rng size offset => {
         // A parallelogram, and in every other case a corner of it moved.
