@@ -108,8 +108,15 @@ macro_rules! tests {
 
 raydsl_tests::kernel_table!(tests);
 
-const SCENES: [&str; 6] =
-    ["primary", "primary_in_windows", "primary_plain", "shadow", "slice", "two_trees"];
+const SCENES: [&str; 7] = [
+    "list_of_meshes",
+    "primary",
+    "primary_in_windows",
+    "primary_plain",
+    "shadow",
+    "slice",
+    "two_trees",
+];
 
 /// What the crate's first page shows; with the branch on a captured `bool` pruned.
 #[test]
@@ -179,5 +186,23 @@ fn two_trees() -> Result<(), raydsl::bvh::BuildError> {
         if b.is_hit && (!a.is_hit || b.t < a.t) { b } else { a }
     });
     assert_wgsl("two_trees", &kernel.wgsl());
+    Ok(())
+}
+
+#[test]
+fn list_of_meshes() -> Result<(), Box<dyn std::error::Error>> {
+    let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1]].map(|vertices| IndexedTriangle { vertices });
+    let (front, back) = faces.split_at(1);
+    let config = BuildConfig::default();
+    let tree = |faces| Bvh::build_sharing(faces, &vertices, &config);
+    let trees = [tree(front)?, tree(back)?];
+    let meshes = BvhList::new(&trees)?;
+    let kernel = kernel!(|ray: Ray| {
+        let near = meshes.closest_hit(ray);
+        let far = meshes.multi_hit_by::<1>(ray, |a: Hit, b: Hit| a.t > b.t);
+        (near.t, far[0].t, meshes.any_hit(ray))
+    });
+    assert_wgsl("list_of_meshes", &kernel.wgsl());
     Ok(())
 }

@@ -243,16 +243,21 @@ fn inserted<M: Machine, const N: usize>(
     hit: HitOn<M>,
     mut hits: [HitOn<M>; N],
 ) -> [HitOn<M>; N] {
-    // Behind the first hit that comes later all do.
+    // Behind the first hit that comes later all do; the last one does, or nothing were inserted.
     let mut carried = hit;
     let mut found = B(m.bool(false));
-    for slot in &mut hits {
+    let (last, others) = match hits.split_last_mut() {
+        Some(parts) => parts,
+        None => return hits,
+    };
+    for slot in others {
         let before = is_before(hit, *slot);
         found = B(m.bool_binary(BoolBinary::Or, found.0, before.0));
         let here = select(m, found, carried, *slot);
         carried = select(m, found, *slot, carried);
         *slot = here;
     }
+    *last = carried;
     hits
 }
 

@@ -217,7 +217,7 @@ impl Recorder {
         let (prims_name, tree) = (self.prims_buffer(prims), self.tree(prims));
         self.text_function(name, types_of::<P>(), |name| match &tree {
             None => linear(name, query, &prims_name),
-            Some(tree) => walk(name, "ray: Ray", "0u", query, tree),
+            Some(tree) => walk(name, "ray: Ray", ["0u", "ray.t_max"], query, tree),
         })
     }
 
@@ -232,7 +232,7 @@ impl Recorder {
         let Some(tree) = self.tree(prims) else { unreachable!("a list has trees") };
         let parameters = format!("ray: Ray, first: u32{more}");
         let function = self.text_function(name, types_of::<P>(), |name| {
-            walk(name, &parameters, "first", query, &tree)
+            walk(name, &parameters, ["first", query.limit], query, &tree)
         });
         self.function_name(function)
     }
@@ -315,9 +315,15 @@ fn linear(name: &str, query: &Query<'_>, prims: &str) -> String {
     )
 }
 
-/// Depth-first from the node `first`, the nearer child first, the farther one on a stack with its
-/// distance.
-fn walk(name: &str, parameters: &str, first: &str, query: &Query<'_>, tree: &TreeNames) -> String {
+/// Depth-first from the node `first`, which the ray must enter before `end`; the nearer child first,
+/// the farther one on a stack with its distance.
+fn walk(
+    name: &str,
+    parameters: &str,
+    [first, end]: [&str; 2],
+    query: &Query<'_>,
+    tree: &TreeNames,
+) -> String {
     let Query { result, declare, limit, test, give, slack } = query;
     let TreeNames { nodes, indices } = tree;
     let declare = indent(declare, 4);
@@ -333,7 +339,7 @@ fn {name}({parameters}) -> {result} {{
     var top = 0u;
     var node = {nodes}_at({first});
     let s = slabs(ray, node, {slack:?});
-    let root = enter_leave(s, node, ray.t_min, ray.t_max);
+    let root = enter_leave(s, node, ray.t_min, {end});
     if (!(root.x <= root.y)) {{
         return {give};
     }}

@@ -215,7 +215,7 @@ fn {name}(w: ptr<function, Traversal>, t_min: f32, limit: f32) -> u32 {{
             found = (*w).enters[(*w).top] <= limit;
         }}
         if (!found) {{
-            return {NONE}u;
+            break;
         }}
         var node = {nodes}_at((*w).nodes[(*w).top]);
         let s = Slabs((*w).lower, (*w).upper, (*w).inverse);

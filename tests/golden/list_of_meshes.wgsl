@@ -1,0 +1,498 @@
+struct Ray {
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+    t_min: f32,
+    t_max: f32,
+}
+
+struct Hit {
+    is_hit: bool,
+    t: f32,
+    prim_id: u32,
+    u: f32,
+    v: f32,
+}
+
+struct IndexedTriangle {
+    vertices: array<u32, 3>,
+}
+
+struct Node {
+    min: vec3<f32>,
+    first: u32,
+    max: vec3<f32>,
+    count: u32,
+}
+
+struct Traversal {
+    lower: vec3<f32>,
+    upper: vec3<f32>,
+    inverse: vec3<f32>,
+    top: u32,
+    next: u32,
+    last: u32,
+    nodes: array<u32, 64>,
+    enters: array<f32, 64>,
+}
+
+struct Tuple {
+    _0: f32,
+    _1: f32,
+    _2: bool,
+}
+
+struct Tuple_1 {
+    _0: Ray,
+}
+
+struct StoredIndexedTriangle {
+    vertices_0: u32,
+    vertices_1: u32,
+    vertices_2: u32,
+}
+
+struct StoredVec3 {
+    value_x: f32,
+    value_y: f32,
+    value_z: f32,
+}
+
+struct StoredTuple_1 {
+    arg0_origin: vec3<f32>,
+    arg0_direction_x: f32,
+    arg0_direction_y: f32,
+    arg0_direction_z: f32,
+    arg0_t_min: f32,
+    arg0_t_max: f32,
+}
+
+struct StoredTuple {
+    arg0: f32,
+    arg1: f32,
+    arg2: u32,
+}
+
+struct Params {
+    len_of_meshes_shared: u32,
+    len_of_meshes_nodes: u32,
+    len_of_meshes_roots: u32,
+}
+
+struct Job {
+    size: vec2<u32>,
+    first: vec2<u32>,
+    count: vec2<u32>,
+    base: u32,
+    pad: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> job: Job;
+
+@group(0) @binding(4) var<storage, read> meshes: array<StoredIndexedTriangle>;
+
+fn meshes_at(i: u32) -> IndexedTriangle {
+    let s = meshes[i];
+    return IndexedTriangle(array<u32, 3>(s.vertices_0, s.vertices_1, s.vertices_2));
+}
+
+@group(0) @binding(5) var<storage, read> meshes_shared: array<StoredVec3>;
+
+fn meshes_shared_at(i: u32) -> vec3<f32> {
+    let s = meshes_shared[i];
+    return vec3<f32>(s.value_x, s.value_y, s.value_z);
+}
+
+/// The last element stands for those out of range.
+fn meshes_shared_element(i: u32) -> vec3<f32> {
+    return meshes_shared_at(min(i, params.len_of_meshes_shared - 1u));
+}
+
+@group(0) @binding(6) var<storage, read> meshes_nodes: array<Node>;
+
+fn meshes_nodes_at(i: u32) -> Node {
+    return meshes_nodes[i];
+}
+
+@group(0) @binding(7) var<storage, read> meshes_ids: array<u32>;
+
+fn meshes_ids_at(i: u32) -> u32 {
+    return meshes_ids[i];
+}
+
+@group(0) @binding(8) var<storage, read> meshes_roots: array<u32>;
+
+fn meshes_roots_at(i: u32) -> u32 {
+    return meshes_roots[i];
+}
+
+fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
+    var result: vec3<f32>;
+    if (k == 0u) {
+        result = v.yzx;
+    } else {
+        var result_1: vec3<f32>;
+        if (k == 1u) {
+            result_1 = v.zxy;
+        } else {
+            result_1 = v;
+        }
+        result = result_1;
+    }
+    return result;
+}
+
+fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
+    let ax = abs(ray.direction.x);
+    let ay = abs(ray.direction.y);
+    let az = abs(ray.direction.z);
+    let k = select(select(2u, 1u, (ay > az)), 0u, (ax > ay && ax > az));
+    let d = axis_last(ray.direction, k);
+    let a = axis_last(v0 - ray.origin, k);
+    let b = axis_last(v1 - ray.origin, k);
+    let c = axis_last(v2 - ray.origin, k);
+    let sx = d.x / d.z;
+    let sy = d.y / d.z;
+    let a_x = a.x - sx * a.z;
+    let a_y = a.y - sy * a.z;
+    let b_x = b.x - sx * b.z;
+    let b_y = b.y - sy * b.z;
+    let c_x = c.x - sx * c.z;
+    let c_y = c.y - sy * c.z;
+    let u = c_x * b_y - c_y * b_x;
+    let v = a_x * c_y - a_y * c_x;
+    let w = b_x * a_y - b_y * a_x;
+    let inside = (u >= 0.0f && v >= 0.0f && w >= 0.0f) || (u <= 0.0f && v <= 0.0f && w <= 0.0f);
+    let sum = u + v + w;
+    let t_1 = select(a_x, b_x, b_x < a_x);
+    let left = select(t_1, c_x, c_x < t_1);
+    let t_2 = select(a_x, b_x, a_x < b_x);
+    let right = select(t_2, c_x, t_2 < c_x);
+    let t_3 = select(a_y, b_y, b_y < a_y);
+    let low = select(t_3, c_y, c_y < t_3);
+    let t_4 = select(a_y, b_y, a_y < b_y);
+    let high = select(t_4, c_y, t_4 < c_y);
+    let between = left <= 0.0f && right >= 0.0f && low <= 0.0f && high >= 0.0f;
+    if (!(inside && between && sum != 0.0f)) {
+        return Hit(false, 0.0f, 0u, 0.0f, 0.0f);
+    }
+    var t: f32 = u / sum * (a.z / d.z) + v / sum * (b.z / d.z) + w / sum * (c.z / d.z);
+    let t_5 = select(a.x, b.x, b.x < a.x);
+    let min_x = select(t_5, c.x, c.x < t_5);
+    let t_6 = select(a.x, b.x, a.x < b.x);
+    let max_x = select(t_6, c.x, t_6 < c.x);
+    let x = t * d.x;
+    let t_7 = min_x - x;
+    let t_8 = x - max_x;
+    if (select(t_7, t_8, t_7 < t_8) > abs(x) * 9.536743e-7f) {
+        let t_9 = select(x, min_x, x < min_x);
+        t = select(t_9, max_x, max_x < t_9) / d.x;
+    }
+    let t_10 = select(a.y, b.y, b.y < a.y);
+    let min_y = select(t_10, c.y, c.y < t_10);
+    let t_11 = select(a.y, b.y, a.y < b.y);
+    let max_y = select(t_11, c.y, t_11 < c.y);
+    let y = t * d.y;
+    let t_12 = min_y - y;
+    let t_13 = y - max_y;
+    if (select(t_12, t_13, t_12 < t_13) > abs(y) * 9.536743e-7f) {
+        let t_14 = select(y, min_y, y < min_y);
+        t = select(t_14, max_y, max_y < t_14) / d.y;
+    }
+    let t_15 = v1 - v0;
+    let t_16 = v2 - v0;
+    let has_area = t_15.y * t_16.z - t_16.y * t_15.z != 0.0f || t_15.z * t_16.x - t_16.z * t_15.x != 0.0f || t_15.x * t_16.y - t_16.x * t_15.y != 0.0f;
+    let is_hit = has_area && t >= ray.t_min && t <= ray.t_max;
+    return Hit(is_hit, t, 0u, v / sum, w / sum);
+}
+
+fn IndexedTriangle_intersect(self_: IndexedTriangle, ray: Ray) -> Hit {
+    return intersect(ray, meshes_shared_element(self_.vertices[0]), meshes_shared_element(self_.vertices[1]), meshes_shared_element(self_.vertices[2]));
+}
+
+fn is_finite(v: vec3<f32>) -> bool {
+    let exponent = bitcast<vec3<u32>>(v) & vec3<u32>(0x7f800000u);
+    return all(exponent != vec3<u32>(0x7f800000u));
+}
+
+/// Where a ray meets boxes: origins moved apart by the allowance for rounding, and finite
+/// reciprocals of the direction.
+struct Slabs {
+    lower: vec3<f32>,
+    upper: vec3<f32>,
+    inverse: vec3<f32>,
+}
+
+fn finite_inverse(d: vec3<f32>) -> vec3<f32> {
+    let a = abs(d);
+    let largest = max(max(a.x, a.y), a.z);
+    let least = max(largest * 8.6736174e-19, 1.1754944e-38);
+    let safe = select(d, select(vec3<f32>(least), vec3<f32>(-least), d < vec3<f32>(0.0)), a < vec3<f32>(least));
+    return 1.0 / safe;
+}
+
+fn slabs(ray: Ray, root: Node, slack: f32) -> Slabs {
+    let reach = max(abs(root.min - ray.origin), abs(root.max - ray.origin));
+    let pad = max(slack * max(max(reach.x, reach.y), reach.z), 1.1754944e-38) + abs(ray.origin) * 1.1920929e-7;
+    return Slabs(ray.origin + pad, ray.origin - pad, finite_inverse(ray.direction));
+}
+
+/// The distances at which a ray enters and leaves a box.
+fn enter_leave(s: Slabs, node: Node, t_min: f32, t_max: f32) -> vec2<f32> {
+    let t0 = (node.min - s.lower) * s.inverse;
+    let t1 = (node.max - s.upper) * s.inverse;
+    let near = min(t0, t1);
+    let far = max(t0, t1);
+    return vec2<f32>(
+        max(max(near.x, near.y), max(near.z, t_min)),
+        min(min(far.x, far.y), min(far.z, t_max)),
+    );
+}
+
+fn meshes_closer_hit(ray: Ray, first: u32, before: Hit) -> Hit {
+    var best = before;
+    if (params.len_of_meshes_nodes == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {
+        return best;
+    }
+    var stack: array<u32, 64>;
+    var stack_t: array<f32, 64>;
+    var top = 0u;
+    var node = meshes_nodes_at(first);
+    let s = slabs(ray, node, 9.536743e-7);
+    let root = enter_leave(s, node, ray.t_min, select(ray.t_max, min(best.t + abs(best.t) * 9.536743e-7, ray.t_max), best.is_hit));
+    if (!(root.x <= root.y)) {
+        return best;
+    }
+    loop {
+        if (node.count > 0u) {
+            for (var i = node.first; i < node.first + node.count; i = i + 1u) {
+                let id = meshes_ids_at(i);
+                let candidate = IndexedTriangle_intersect(meshes_at(id), ray);
+                if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max
+                    && (!best.is_hit || candidate.t < best.t || (candidate.t == best.t && id < best.prim_id))) {
+                    best = candidate;
+                    best.prim_id = id;
+                }
+            }
+        } else {
+            let left = meshes_nodes_at(node.first);
+            let right = meshes_nodes_at(node.first + 1u);
+            let limit = select(ray.t_max, min(best.t + abs(best.t) * 9.536743e-7, ray.t_max), best.is_hit);
+            let l = enter_leave(s, left, ray.t_min, limit);
+            let r = enter_leave(s, right, ray.t_min, limit);
+            let hit_left = l.x <= l.y;
+            let hit_right = r.x <= r.y;
+            if (hit_left && hit_right) {
+                let left_first = l.x <= r.x;
+                stack[top] = select(node.first, node.first + 1u, left_first);
+                stack_t[top] = select(l.x, r.x, left_first);
+                top = top + 1u;
+                if (left_first) { node = left; } else { node = right; }
+                continue;
+            }
+            if (hit_left) { node = left; continue; }
+            if (hit_right) { node = right; continue; }
+        }
+        // The next node on the stack that is not behind the best hit.
+        var found = false;
+        while (top > 0u && !found) {
+            top = top - 1u;
+            found = stack_t[top] <= select(ray.t_max, min(best.t + abs(best.t) * 9.536743e-7, ray.t_max), best.is_hit);
+        }
+        if (!found) {
+            break;
+        }
+        node = meshes_nodes_at(stack[top]);
+    }
+    return best;
+}
+
+fn meshes_closest_hit(ray: Ray) -> Hit {
+    var best = Hit();
+    for (var i = 0u; i < params.len_of_meshes_roots; i = i + 1u) {
+        best = meshes_closer_hit(ray, meshes_roots_at(i), best);
+    }
+    return best;
+}
+
+fn meshes_roots_len() -> u32 {
+    return params.len_of_meshes_roots;
+}
+
+/// A traversal that has yet to begin.
+fn meshes_walk(ray: Ray, first: u32) -> Traversal {
+    var w = Traversal();
+    if (params.len_of_meshes_nodes == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {
+        return w;
+    }
+    let node = meshes_nodes_at(first);
+    let s = slabs(ray, node, 9.536743e-7);
+    w.lower = s.lower;
+    w.upper = s.upper;
+    w.inverse = s.inverse;
+    let enter = enter_leave(s, node, ray.t_min, ray.t_max);
+    w.nodes[0] = first;
+    w.enters[0] = enter.x;
+    w.top = select(0u, 1u, enter.x <= enter.y);
+    return w;
+}
+
+/// The next primitive that the ray may meet at or before `limit`; 4294967295u when none is left.
+fn meshes_next(w: ptr<function, Traversal>, t_min: f32, limit: f32) -> u32 {
+    loop {
+        if ((*w).next < (*w).last) {
+            (*w).next = (*w).next + 1u;
+            return meshes_ids_at((*w).next - 1u);
+        }
+        // The next node on the stack that is not beyond the limit.
+        var found = false;
+        while ((*w).top > 0u && !found) {
+            (*w).top = (*w).top - 1u;
+            found = (*w).enters[(*w).top] <= limit;
+        }
+        if (!found) {
+            break;
+        }
+        var node = meshes_nodes_at((*w).nodes[(*w).top]);
+        let s = Slabs((*w).lower, (*w).upper, (*w).inverse);
+        // Down to a leaf, the nearer child first.
+        while (node.count == 0u) {
+            let left = meshes_nodes_at(node.first);
+            let right = meshes_nodes_at(node.first + 1u);
+            let l = enter_leave(s, left, t_min, limit);
+            let r = enter_leave(s, right, t_min, limit);
+            let hit_left = l.x <= l.y;
+            let hit_right = r.x <= r.y;
+            if (!hit_left && !hit_right) {
+                break;
+            }
+            let left_first = hit_left && (!hit_right || l.x <= r.x);
+            if (hit_left && hit_right) {
+                (*w).nodes[(*w).top] = select(node.first, node.first + 1u, left_first);
+                (*w).enters[(*w).top] = select(l.x, r.x, left_first);
+                (*w).top = (*w).top + 1u;
+            }
+            if (left_first) { node = left; } else { node = right; }
+        }
+        (*w).next = node.first;
+        (*w).last = node.first + node.count;
+    }
+    return 4294967295u;
+}
+
+fn meshes_any_hit_in(ray: Ray, first: u32) -> bool {
+    if (params.len_of_meshes_nodes == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {
+        return false;
+    }
+    var stack: array<u32, 64>;
+    var stack_t: array<f32, 64>;
+    var top = 0u;
+    var node = meshes_nodes_at(first);
+    let s = slabs(ray, node, 9.536743e-7);
+    let root = enter_leave(s, node, ray.t_min, ray.t_max);
+    if (!(root.x <= root.y)) {
+        return false;
+    }
+    loop {
+        if (node.count > 0u) {
+            for (var i = node.first; i < node.first + node.count; i = i + 1u) {
+                let id = meshes_ids_at(i);
+                let candidate = IndexedTriangle_intersect(meshes_at(id), ray);
+                if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max) {
+                    return true;
+                }
+            }
+        } else {
+            let left = meshes_nodes_at(node.first);
+            let right = meshes_nodes_at(node.first + 1u);
+            let limit = ray.t_max;
+            let l = enter_leave(s, left, ray.t_min, limit);
+            let r = enter_leave(s, right, ray.t_min, limit);
+            let hit_left = l.x <= l.y;
+            let hit_right = r.x <= r.y;
+            if (hit_left && hit_right) {
+                let left_first = l.x <= r.x;
+                stack[top] = select(node.first, node.first + 1u, left_first);
+                stack_t[top] = select(l.x, r.x, left_first);
+                top = top + 1u;
+                if (left_first) { node = left; } else { node = right; }
+                continue;
+            }
+            if (hit_left) { node = left; continue; }
+            if (hit_right) { node = right; continue; }
+        }
+        // The next node on the stack that is not behind the best hit.
+        var found = false;
+        while (top > 0u && !found) {
+            top = top - 1u;
+            found = stack_t[top] <= ray.t_max;
+        }
+        if (!found) {
+            break;
+        }
+        node = meshes_nodes_at(stack[top]);
+    }
+    return false;
+}
+
+fn meshes_any_hit(ray: Ray) -> bool {
+    for (var i = 0u; i < params.len_of_meshes_roots; i = i + 1u) {
+        if (meshes_any_hit_in(ray, meshes_roots_at(i))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+fn kernel(ray: Ray) -> Tuple {
+    let near = meshes_closest_hit(ray);
+    var hits_0_is_hit: bool = false;
+    var hits_0_t: f32 = 0.0f;
+    var hits_0_prim_id: u32 = 0u;
+    var hits_0_u: f32 = 0.0f;
+    var hits_0_v: f32 = 0.0f;
+    var tree: u32 = 0u;
+    for (; tree < meshes_roots_len(); tree = tree + 1u) {
+        var walk: Traversal = meshes_walk(ray, meshes_roots_at(tree));
+        loop {
+            let id = meshes_next(&walk, ray.t_min, ray.t_max);
+            if (!(id != 4294967295u)) { break; }
+            let candidate = IndexedTriangle_intersect(meshes_at(id), ray);
+            if (candidate.is_hit && (candidate.t >= ray.t_min && candidate.t <= ray.t_max)) {
+                var is_first: bool = true;
+                if (hits_0_is_hit) {
+                    is_first = candidate.t > hits_0_t || (!(hits_0_t > candidate.t) && (!hits_0_is_hit || (candidate.t < hits_0_t || (candidate.t == hits_0_t && id < hits_0_prim_id))));
+                }
+                if (is_first && !(hits_0_prim_id == id && hits_0_is_hit)) {
+                    hits_0_is_hit = candidate.is_hit;
+                    hits_0_t = candidate.t;
+                    hits_0_prim_id = id;
+                    hits_0_u = candidate.u;
+                    hits_0_v = candidate.v;
+                }
+            }
+        }
+    }
+    return Tuple(near.t, hits_0_t, meshes_any_hit(ray));
+}
+
+fn element(input: Tuple_1) -> Tuple {
+    return kernel(input._0);
+}
+
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple_1>;
+@group(0) @binding(3) var<storage, read_write> outputs: array<StoredTuple>;
+
+fn load_input(i: u32) -> Tuple_1 {
+    let s = inputs[i];
+    return Tuple_1(Ray(s.arg0_origin, vec3<f32>(s.arg0_direction_x, s.arg0_direction_y, s.arg0_direction_z), s.arg0_t_min, s.arg0_t_max));
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (any(id.xy >= job.count)) { return; }
+    let at = job.first + id.xy;
+    let index = at.y * job.size.x + at.x - job.base;
+    let result = element(load_input(index));
+    outputs[index] = StoredTuple(result._0, result._1, (select(0u, 1u, result._2)));
+}
