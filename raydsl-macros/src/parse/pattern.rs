@@ -99,83 +99,17 @@ impl Parser<'_> {
                 Kind::Bool(false) => Expr { kind: Kind::Not(Box::new(from.clone())), span },
                 kind => compare("Eq", from, Expr { kind, span }, span),
             }),
-            Pat::Range(r) => {
-                let start = r.start.as_ref().map(|e| self.expr(e));
-                let end = r.end.as_ref().map(|e| self.expr(e));
-                let upper =
-                    if matches!(r.limits, syn::RangeLimits::Closed(_)) { "Le" } else { "Lt" };
-                both(
-                    start.map(|e| compare("Ge", from, e, span)),
-                    end.map(|e| compare(upper, from, e, span)),
-                )
-            }
-            Pat::Or(or) => {
-                let count = lets.len();
-                let tests: Vec<_> = or.cases.iter().map(|p| self.pattern(p, from, lets)).collect();
-                if lets.len() > count {
-                    lets.truncate(count);
-                    self.errors.at(
-                        span,
-                        "a kernel's patterns joined by `|` bind no names",
-                        "write an arm for each, or bind the whole: `n @ (1 | 2)`",
-                    );
-                }
-                tests
-                    .into_iter()
-                    .collect::<Option<Vec<_>>>()?
-                    .into_iter()
-                    .reduce(|a, b| logic(false, a, b))
-            }
+            Pat::Range(r) => self.range_pattern(r, from),
+            Pat::Or(or) => self.or_pattern(or, from, lets),
             Pat::Paren(p) => self.pattern(&p.pat, from, lets),
             Pat::Reference(r) => self.pattern(&r.pat, from, lets),
             Pat::Type(t) => self.pattern(&t.pat, from, lets),
-            Pat::Tuple(t) => {
-                let mut test = None;
-                for (i, p) in t.elems.iter().enumerate() {
-                    if matches!(p, Pat::Rest(_)) && i + 1 < t.elems.len() {
-                        self.errors.at(
-                            p.span(),
-                            "`..` stands last in a kernel's tuple pattern",
-                            "write `_` for each element before the ones that you name",
-                        );
-                        return None;
-                    }
-                    let index = syn::Index { index: i as u32, span: p.span() };
-                    let item = member(from, quote!(#index), p.span());
-                    test = both(test, self.pattern(p, &item, lets));
-                }
-                test
-            }
-            Pat::Struct(s) => {
-                let mut test = None;
-                for f in &s.fields {
-                    let item = member(from, f.member.to_token_stream(), f.span());
-                    test = both(test, self.pattern(&f.pat, &item, lets));
-                }
-                test
-            }
-            Pat::Slice(s) => {
-                let mut test = None;
-                for (i, p) in s.elems.iter().enumerate() {
-                    let mut after = s.elems.iter().skip(i + 1);
-                    if matches!(p, Pat::Rest(_)) && after.all(|p| matches!(p, Pat::Wild(_))) {
-                        break;
-                    }
-                    if is_rest(p) {
-                        self.errors.at(
-                            p.span(),
-                            "`..` stands last in a kernel's slice pattern, and without a name",
-                            "write `_` for each element before the ones that you name",
-                        );
-                        return None;
-                    }
-                    let index = syn::Index::from(i);
-                    let base = Box::new(from.clone());
-                    let item = Expr { kind: Kind::Index { base, index: quote!(#index) }, span };
-                    test = both(test, self.pattern(p, &item, lets));
-                }
-                test
-            }
+            Pat::Tuple(t) => self.tuple_pattern(t, from, lets),
+            Pat::Struct(s) => s.fields.iter().fold(None, |test, f| {
+                let item = member(from, f.member.to_token_stream(), f.span());
+                both(test, self.pattern(&f.pat, &item, lets))
+            }),
+            Pat::Slice(s) => self.slice_pattern(s, from, lets),
             Pat::TupleStruct(t) if t.path.segments.len() > 1 => self.variant(t, from, lets),
             Pat::TupleStruct(t) => {
                 self.errors.at(
@@ -195,6 +129,88 @@ impl Parser<'_> {
                 None
             }
         }
+    }
+
+    /// `1..=3`
+    fn range_pattern(&mut self, r: &syn::PatRange, from: &Expr) -> Option<Expr> {
+        let span = r.span();
+        let start = r.start.as_ref().map(|e| self.expr(e));
+        let end = r.end.as_ref().map(|e| self.expr(e));
+        let upper = if matches!(r.limits, syn::RangeLimits::Closed(_)) { "Le" } else { "Lt" };
+        both(
+            start.map(|e| compare("Ge", from, e, span)),
+            end.map(|e| compare(upper, from, e, span)),
+        )
+    }
+
+    /// `1 | 2`
+    fn or_pattern(&mut self, or: &syn::PatOr, from: &Expr, lets: &mut Vec<Stmt>) -> Option<Expr> {
+        let count = lets.len();
+        let tests: Vec<_> = or.cases.iter().map(|p| self.pattern(p, from, lets)).collect();
+        if lets.len() > count {
+            lets.truncate(count);
+            self.errors.at(
+                or.span(),
+                "a kernel's patterns joined by `|` bind no names",
+                "write an arm for each, or bind the whole: `n @ (1 | 2)`",
+            );
+        }
+        let tests = tests.into_iter().collect::<Option<Vec<_>>>()?;
+        tests.into_iter().reduce(|a, b| logic(false, a, b))
+    }
+
+    /// `(a, _, ..)`
+    fn tuple_pattern(
+        &mut self,
+        t: &syn::PatTuple,
+        from: &Expr,
+        lets: &mut Vec<Stmt>,
+    ) -> Option<Expr> {
+        let mut test = None;
+        for (i, p) in t.elems.iter().enumerate() {
+            if matches!(p, Pat::Rest(_)) && i + 1 < t.elems.len() {
+                self.errors.at(
+                    p.span(),
+                    "`..` stands last in a kernel's tuple pattern",
+                    "write `_` for each element before the ones that you name",
+                );
+                return None;
+            }
+            let index = syn::Index { index: i as u32, span: p.span() };
+            let item = member(from, quote!(#index), p.span());
+            test = both(test, self.pattern(p, &item, lets));
+        }
+        test
+    }
+
+    /// `[a, _, ..]`
+    fn slice_pattern(
+        &mut self,
+        s: &syn::PatSlice,
+        from: &Expr,
+        lets: &mut Vec<Stmt>,
+    ) -> Option<Expr> {
+        let mut test = None;
+        for (i, p) in s.elems.iter().enumerate() {
+            let mut after = s.elems.iter().skip(i + 1);
+            if matches!(p, Pat::Rest(_)) && after.all(|p| matches!(p, Pat::Wild(_))) {
+                break;
+            }
+            if is_rest(p) {
+                self.errors.at(
+                    p.span(),
+                    "`..` stands last in a kernel's slice pattern, and without a name",
+                    "write `_` for each element before the ones that you name",
+                );
+                return None;
+            }
+            let index = syn::Index::from(i);
+            let base = Box::new(from.clone());
+            let kind = Kind::Index { base, index: quote!(#index) };
+            let item = Expr { kind, span: s.span() };
+            test = both(test, self.pattern(p, &item, lets));
+        }
+        test
     }
 
     /// `Shape::Ball(ball)`: a kind of an enum of primitives.
