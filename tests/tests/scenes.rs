@@ -43,8 +43,10 @@ fn models(rng: &mut Rng) -> [Vec<Ball>; 4] {
 fn a_list_answers_as_one_tree() {
     let mut rng = Rng::of("a list");
     let models = models(&mut rng);
+    // ANCHOR: list
     let trees = models.each_ref().map(|m| Bvh::build(m).expect("finite bounds"));
     let list = BvhList::new(&trees).expect("few primitives");
+    // ANCHOR_END: list
     let all = models.concat();
     let one = Bvh::build(&all).expect("finite bounds");
     let rays = rays(&mut rng, 3000);
@@ -134,8 +136,10 @@ fn indexed_triangles_are_triangles() {
     let (vertices, indexed) = mesh(24);
     assert_eq!(size_of::<IndexedTriangle>(), 12);
     let inline: Vec<Triangle> = indexed.iter().filter_map(|t| t.on(&vertices)).collect();
+    // ANCHOR: indexed
     let config = BuildConfig::default();
     let tree = Bvh::build_sharing(&indexed, &vertices, &config).expect("finite bounds");
+    // ANCHOR_END: indexed
     let plain = Bvh::build(&inline).expect("finite bounds");
     assert_eq!((tree.nodes(), tree.indices()), (plain.nodes(), plain.indices()));
     assert!(core::ptr::eq(tree.primitives(), &indexed[..]));
@@ -145,6 +149,7 @@ fn indexed_triangles_are_triangles() {
         assert_eq!(tree.closest_hit(*ray), plain.closest_hit(*ray));
         assert_eq!(tree.multi_hit::<3>(*ray), inline[..].multi_hit::<3>(*ray));
     }
+    // ANCHOR: shading
     let kernel = kernel!(|ray: Ray| {
         let hit = tree.closest_hit(ray);
         let vertices = tree.shared();
@@ -158,6 +163,7 @@ fn indexed_triangles_are_triangles() {
         let any = tree.any_hit_where(ray, |hit: Hit| hit.u > 0.5);
         (hit, normal, corner, any)
     });
+    // ANCHOR_END: shading
     assert_variants_agree!(&kernel, &rays);
 }
 
@@ -213,6 +219,7 @@ struct Landing {
     height: f32,
 }
 
+// ANCHOR: step
 #[primitive]
 impl Step {
     fn intersect(&self, ray: Ray, kinds: &[Kind]) -> Landing {
@@ -228,6 +235,7 @@ impl Step {
         Aabb::new(low, low + kinds[self.kind as usize].size)
     }
 }
+// ANCHOR_END: step
 
 #[test]
 fn any_primitive_may_share() {
@@ -318,11 +326,13 @@ fn a_tree_over_a_mapped_file() -> std::io::Result<()> {
     let points = points(500);
     let path = std::env::temp_dir().join(format!("raydsl-points-{}", std::process::id()));
     std::fs::write(&path, bytemuck::cast_slice(&points))?;
+    // ANCHOR: mapped
     let file = std::fs::File::open(&path)?;
     // SAFETY: the file is this test's own, and nobody writes to it while it is mapped.
     let map = unsafe { memmap2::Mmap::map(&file)? };
     let mapped: &[Point] = bytemuck::try_cast_slice(&map).expect("whole points");
     let bvh = Bvh::build(mapped).expect("finite bounds");
+    // ANCHOR_END: mapped
     assert!(core::ptr::eq(bvh.primitives().as_ptr().cast(), map.as_ptr()));
     let rays = rays(&mut Rng::of("mapped"), 1000);
     let slice = &points[..];
@@ -388,7 +398,9 @@ mod on_a_gpu {
         let any = kernel!(|ray: Ray| bvh.any_hit(ray));
         let gpu = GpuScheduler::new()?;
         {
+            // ANCHOR: window
             let _window = gpu.with_gpu(&bvh, filled(&gpu, bytemuck::cast_slice(&points)))?;
+            // ANCHOR_END: window
             assert_eq!(sent(&gpu, &closest, &rays)?, own);
             assert_eq!(sent(&gpu, &any, &rays)?, 0);
         }
