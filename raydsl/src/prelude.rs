@@ -6,7 +6,7 @@ pub use glam::{
     bvec4, ivec2, ivec3, ivec4, mat3, mat4, uvec2, uvec3, uvec4, vec2, vec3, vec4,
 };
 
-pub use crate::bvh::{BuildConfig, Bvh, BvhList, RayQuery};
+pub use crate::bvh::{BuildConfig, BuildQuality, Bvh, BvhList, RayQuery};
 pub use crate::camera::Pinhole;
 pub use crate::geometry::{
     Aabb, Hit, IndexedTriangle, Primitive, Ray, Triangle, cone, cuboid, cylinder, disk, plane,

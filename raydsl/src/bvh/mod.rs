@@ -15,19 +15,28 @@ mod list;
 mod node;
 mod query;
 mod ray_query;
+mod refit;
 pub(crate) mod slabs;
+mod stats;
 pub mod traverse;
 pub(crate) mod traverse_packet;
+mod validate;
 mod view;
+
+#[cfg(test)]
+mod tests;
 
 use core::sync::atomic::{AtomicU64, Ordering};
 
-pub use build::{BuildConfig, BuildError, MAX_DEPTH};
+pub use build::{BuildConfig, BuildError, BuildQuality, MAX_DEPTH};
 pub use list::{BvhList, ListError};
 pub use node::Node;
 pub(crate) use query::{RecordOn, closest_on};
 pub use ray_query::RayQuery;
+pub use refit::{DetachedBvh, RefitError};
+pub use stats::Statistics;
 pub use traverse::Cost;
+pub use validate::{TreeFault, validate};
 pub(crate) use view::{Branches, NODE_SCHEMA, Part, buffers};
 pub use view::{SceneView, View};
 
@@ -57,10 +66,21 @@ fn next_id() -> u64 {
 pub struct Bvh<'a, P: Primitive> {
     prims: &'a [P],
     shared: &'a [P::Shared],
+    own: Owned,
+    kinds: Kinds,
+}
+
+/// What is a tree's own, and outlives the borrow of its primitives.
+#[derive(Debug)]
+struct Owned {
     nodes: Vec<Node>,
     indices: Vec<u32>,
+    config: BuildConfig,
     id: u64,
-    kinds: Kinds,
+    /// How often it has been refitted.
+    version: u32,
+    /// Its cost when it was built, if it has been refitted.
+    built_cost: Option<f64>,
 }
 
 impl<'a, P: Primitive<Shared = ()>> Bvh<'a, P> {
@@ -106,9 +126,15 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         config: &BuildConfig,
     ) -> Result<Self, BuildError> {
         let tree = build::build(|i| prims[i].get_bounds(shared), prims.len(), config)?;
-        let kinds = Kinds::of(prims);
-        let (nodes, indices) = (tree.nodes, tree.indices);
-        Ok(Self { prims, shared, nodes, indices, id: next_id(), kinds })
+        let own = Owned {
+            nodes: tree.nodes,
+            indices: tree.indices,
+            config: *config,
+            id: next_id(),
+            version: 0,
+            built_cost: None,
+        };
+        Ok(Self { prims, shared, own, kinds: Kinds::of(prims) })
     }
 
     /// The least `(t, id)` hit of `ray`, and what it cost to find.
@@ -128,32 +154,37 @@ impl<'a, P: Primitive> Bvh<'a, P> {
 
     /// The nodes; the root is the first, children are adjacent.
     pub fn nodes(&self) -> &[Node] {
-        &self.nodes
+        &self.own.nodes
     }
 
     /// The index list that leaves refer to.
     pub fn indices(&self) -> &[u32] {
-        &self.indices
+        &self.own.indices
+    }
+
+    /// What the tree was built with.
+    pub fn config(&self) -> &BuildConfig {
+        &self.own.config
     }
 
     /// A box around everything; empty without primitives.
     pub fn bounds(&self) -> Aabb {
-        self.nodes.first().map_or(Aabb::EMPTY, Node::bounds)
+        self.own.nodes.first().map_or(Aabb::EMPTY, Node::bounds)
     }
 
     /// Bytes of the tree itself; the primitives are the application's.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.nodes[..]) + size_of_val(&self.indices[..])
+        size_of_val(&self.own.nodes[..]) + size_of_val(&self.own.indices[..])
     }
 
     fn part(&self) -> Part<'_, P, P::Shared> {
-        let tree = Some(Branches { nodes: &self.nodes, indices: &self.indices });
+        let tree = Some(Branches { nodes: &self.own.nodes, indices: &self.own.indices });
         Part { prims: self.prims, shared: self.shared, tree, first: 0 }
     }
 
     /// The view that kernels work on.
     pub fn view(&self) -> SceneView<'_, P> {
-        View::tree(self.part(), self.id, self.kinds)
+        View::tree(self.part(), self.own.id, self.own.version, self.kinds)
     }
 }
 

@@ -65,6 +65,8 @@ pub struct View<'a, T, S = ()> {
     list: Option<&'a [Part<'a, T, S>]>,
     /// The number of the tree or list; 0 for a plain slice.
     owner: u64,
+    /// How often the tree has been refitted.
+    version: u32,
     /// Which of the owner's buffers.
     buffer: u32,
     name: &'static str,
@@ -89,12 +91,12 @@ impl<'a, T, S> View<'a, T, S> {
     pub(crate) fn slice(prims: &'a [T]) -> Self {
         let own = Part { prims, shared: &[], tree: None, first: 0 };
         let buffer = buffers::PRIMITIVES;
-        Self { own, list: None, owner: 0, buffer, name: "prims", kinds: Kinds::ALL }
+        Self { own, list: None, owner: 0, version: 0, buffer, name: "prims", kinds: Kinds::ALL }
     }
 
     #[inline(always)]
-    pub(crate) fn tree(own: Part<'a, T, S>, owner: u64, kinds: Kinds) -> Self {
-        Self { own, list: None, owner, buffer: buffers::PRIMITIVES, name: "bvh", kinds }
+    pub(crate) fn tree(own: Part<'a, T, S>, owner: u64, version: u32, kinds: Kinds) -> Self {
+        Self { own, list: None, owner, version, buffer: buffers::PRIMITIVES, name: "bvh", kinds }
     }
 
     #[inline(always)]
@@ -121,7 +123,8 @@ impl<'a, T, S> View<'a, T, S> {
         let part = self.list.map_or(Some(&self.own), |list| list.first());
         let shared = part.map_or(&[][..], |part| part.shared);
         let view = View::slice(shared);
-        View { owner: self.owner, buffer: buffers::SHARED, name: self.name, ..view }
+        let (owner, version) = (self.owner, self.version);
+        View { owner, version, buffer: buffers::SHARED, name: self.name, ..view }
     }
 
     /// The elements of a slice.
@@ -167,7 +170,9 @@ impl<'a, T, S> View<'a, T, S> {
 
     /// The key of another buffer of the same scene.
     pub(crate) fn key_of(&self, part: u32) -> BufferKey {
-        BufferKey { id: self.owner, version: 0, part }
+        // Refitting leaves the order of the primitives as it is.
+        let version = if part == buffers::INDICES { 0 } else { self.version };
+        BufferKey { id: self.owner, version, part }
     }
 
     /// How many nodes and how many indices.
@@ -216,7 +221,7 @@ impl<T: Type, S: Type> Resource for View<'_, T, S> {
                 _ => parts.iter().map(|part| bytes_of(part.prims)).collect::<Vec<_>>().concat(),
             }));
         }
-        if key.id != self.owner {
+        if key != self.key_of(key.part) {
             return None;
         }
         match key.part {

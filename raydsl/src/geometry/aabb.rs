@@ -84,6 +84,17 @@ impl Aabb {
         d.x * d.y + d.y * d.z + d.z * d.x
     }
 
+    /// [`Aabb::half_area`] of a valid box in `f64`, in which that of no finite box is infinite.
+    pub(crate) fn half_area_f64(self) -> f64 {
+        let [x, y, z] = self.edges_f64();
+        x * y + y * z + z * x
+    }
+
+    /// [`Aabb::size`] in `f64`.
+    pub(crate) fn edges_f64(self) -> [f64; 3] {
+        core::array::from_fn(|axis| f64::from(self.max[axis]) - f64::from(self.min[axis]))
+    }
+
     /// Whether `point` lies in the closed box.
     pub fn contains(self, point: Vec3) -> bool {
         self.min.cmple(point).all() && point.cmple(self.max).all()

@@ -20,7 +20,7 @@ const PIECE: usize = 1 << 14;
 const TWO_SETS: usize = 1 << 10;
 
 /// `2^-100`: centroids that are closer together than this are not told apart.
-const CLOSE: f32 = f32::from_bits((127 - 100) << 23);
+pub(super) const CLOSE: f32 = f32::from_bits((127 - 100) << 23);
 
 /// `2^23`: adding it rounds a small number to an integer, which is left in the low mantissa bits.
 /// That is several times cheaper than a saturating conversion on every target.

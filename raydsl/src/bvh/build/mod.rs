@@ -1,15 +1,19 @@
 //! Building the binary tree.
 //!
-//! [`build`] makes a [`Tree`] over any primitives that have boxes, by the binned surface area
-//! heuristic of Ingo Wald, *On fast construction of SAH-based bounding volume hierarchies*
-//! (IEEE Symposium on Interactive Ray Tracing, 2007). One idea a file:
+//! [`build`] makes a [`Tree`] over any primitives that have boxes, in one of two ways
+//! ([`BuildQuality`]): by the binned surface area heuristic of Ingo Wald, *On fast construction of
+//! SAH-based bounding volume hierarchies* (IEEE Symposium on Interactive Ray Tracing, 2007), or
+//! from a sort by Morton codes as of Lauterbach et al., *Fast BVH construction on GPUs* (Computer
+//! Graphics Forum, 2009). One idea a file:
 //!
 //! * `reference`: the 32-byte copy of a primitive's box that is moved about while building, and
 //!   the checks on the input;
 //! * `scaling`: what keeps `f32` areas from overflowing and denormals out of the inner loops;
-//! * `binned_sah`: where to split;
-//! * `partition`: splitting;
-//! * `subtree`: the recursion, its depth bound and its parallel form;
+//! * `binned_sah`, `partition`, `subtree`: where the heuristic splits, splitting, the recursion;
+//! * `morton`, `linear`: the codes and the sort, the recursion;
+//! * `depth`: how deep a tree may be;
+//! * `part`: pieces of a tree, and how they are put together;
+//! * `refit`: boxes from primitives that have moved;
 //! * `tasks`: threads, or their absence.
 //!
 //! The tree is a function of the boxes and the configuration alone: the number of threads, and
@@ -17,9 +21,14 @@
 
 mod binned_sah;
 mod config;
+mod depth;
 mod error;
+mod linear;
+mod morton;
+mod part;
 mod partition;
 mod reference;
+mod refit;
 mod scaling;
 mod subtree;
 mod tasks;
@@ -27,8 +36,9 @@ mod tasks;
 #[cfg(test)]
 mod tests;
 
-pub use config::BuildConfig;
+pub use config::{BuildConfig, BuildQuality};
 pub use error::BuildError;
+pub(super) use refit::refit;
 
 use super::Node;
 use crate::geometry::Aabb;
@@ -36,7 +46,7 @@ use reference::Reference;
 
 /// The largest depth of a leaf; the root has depth 0.
 ///
-/// Holds for every input by construction (the proof is in `subtree`), so a traversal that pushes
+/// Holds for every input by construction (the proof is in `depth`), so a traversal that pushes
 /// at most one entry a level never has more than this many on its stack.
 pub const MAX_DEPTH: usize = 62;
 
@@ -70,6 +80,7 @@ pub struct Tree {
 /// while building, then 4 a primitive and up to 64 a node while the nodes are put together. With
 /// the default configuration a mesh has about 0.9 nodes a triangle (65 bytes a primitive at the
 /// peak), a cloud of small separate boxes 1.8 to 2 (measured: 120 bytes); never more than 132.
+/// [`BuildQuality::Fast`] needs 16 bytes a primitive more while building.
 ///
 /// # Errors
 ///
@@ -89,14 +100,19 @@ pub fn build(
         return Ok(Tree::default());
     }
     let scaled = scaling::normalise(&mut references, &mut span);
-    let part = subtree::grow(&mut references, span, config);
-    let indices = references.iter().map(Reference::index).collect();
+    let (part, indices) = match config.quality {
+        BuildQuality::Fast => linear::grow(&references, &span, config),
+        BuildQuality::Balanced => {
+            let part = subtree::grow(&mut references, span, config);
+            (part, references.iter().map(Reference::index).collect())
+        }
+    };
     // The nodes are copied into one array next; the references are not needed for that, and
     // giving them back first keeps the copy from raising the peak.
     drop(references);
     let mut tree = Tree { nodes: part.assemble(), indices };
     if scaled {
-        scaling::refit(&mut tree, &bounds);
+        refit::refit_checked(&mut tree.nodes, &tree.indices, &bounds);
     }
     Ok(tree)
 }

@@ -37,6 +37,11 @@ impl Bounds {
         Self { lo: self.lo.min(point), hi: self.hi.max(point) }
     }
 
+    /// A box as the rest of the crate knows it.
+    pub(super) fn from_aabb(bounds: Aabb) -> Self {
+        Self { lo: bounds.min.extend(0.0), hi: bounds.max.extend(0.0) }
+    }
+
     /// The box as the rest of the crate knows it.
     pub(super) fn to_aabb(self) -> Aabb {
         Aabb::new(self.lo.truncate(), self.hi.truncate())
@@ -144,7 +149,7 @@ pub(super) fn collect(
 }
 
 /// The box itself when a tree can hold it.
-fn checked(bounds: Aabb, index: usize) -> Result<Aabb, BuildError> {
+pub(super) fn checked(bounds: Aabb, index: usize) -> Result<Aabb, BuildError> {
     // One test for nearly all boxes; the rest is sorted out below.
     if bounds.is_valid() && bounds.is_finite() {
         return Ok(bounds);

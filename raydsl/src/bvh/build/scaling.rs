@@ -14,8 +14,7 @@
 //! the binning itself, and would not help with sums that overflow or with denormals.
 
 use super::reference::{Reference, Span};
-use super::{Tree, tasks};
-use crate::bvh::Node;
+use super::tasks;
 use crate::geometry::Aabb;
 
 /// `2^120`: sums and differences of twice this are finite.
@@ -45,22 +44,4 @@ pub(super) fn normalise(references: &mut [Reference], span: &mut Span) -> bool {
     });
     *span = spans.into_iter().fold(Span::EMPTY, Span::union);
     true
-}
-
-/// Sets the boxes of all nodes from the primitives.
-pub(super) fn refit(tree: &mut Tree, bounds: &impl Fn(usize) -> Aabb) {
-    // Children come after their parents.
-    for k in (0..tree.nodes.len()).rev() {
-        let Node { first, count, .. } = tree.nodes[k];
-        let first = first as usize;
-        let bounds = if count > 0 {
-            let leaf = &tree.indices[first..first + count as usize];
-            leaf.iter().map(|&index| bounds(index as usize)).fold(Aabb::EMPTY, Aabb::union)
-        } else {
-            tree.nodes[first].bounds().union(tree.nodes[first + 1].bounds())
-        };
-        // As for references: only one zero.
-        tree.nodes[k].min = bounds.min + glam::Vec3::ZERO;
-        tree.nodes[k].max = bounds.max + glam::Vec3::ZERO;
-    }
 }

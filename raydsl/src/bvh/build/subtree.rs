@@ -1,51 +1,15 @@
-//! The recursion: from a range of references to nodes.
-//!
-//! # Depth
-//!
-//! A node's *budget* is the number of levels that may follow below it. The root of `n` references
-//! has `2 ceil(log2 n) + 8` or [`MAX_DEPTH`], whichever is less. That is well above what any
-//! ordinary scene needs (about `1.6 log2 n`), and since a level takes time proportional to the
-//! number of references in it, it bounds the time for hostile inputs as well as the depth.
-//!
-//! Every node of `n` references has `ceil(log2 n) <= budget`:
-//!
-//! * the root, as `n <= 2^30` and `30 <= 62`;
-//! * both children of a split of which the larger half `m` has `ceil(log2 m) <= budget - 1`; a
-//!   split by a plane is only made when that holds;
-//! * otherwise the range is halved, and `ceil(log2 ceil(n / 2)) = ceil(log2 n) - 1 <= budget - 1`
-//!   for every `n >= 2`.
-//!
-//! A node with budget 0 thus has one reference and is a leaf. Hence no leaf is deeper than the
-//! root's budget, and neither is the recursion.
-//!
-//! # Order
-//!
-//! Subtrees are built independently of each other into arrays of their own, in which indices of
-//! nodes are relative to the array's beginning, and put together when all are done. Below a
-//! certain size a subtree is one piece of work and one array; that size changes who does the work
-//! but not the result.
+//! The recursion of the surface area heuristic: from a range of references to nodes.
 
 use super::binned_sah::{Bins, Grid};
 use super::config::BuildConfig;
-use super::partition;
-use super::reference::{Bounds, Reference, Span};
-use super::{MAX_DEPTH, tasks};
+use super::part::{PIECE, Part};
+use super::reference::{Reference, Span};
+use super::{depth, partition, tasks};
 use crate::bvh::Node;
-
-/// Subtrees of at most this many references are one piece of work.
-const PIECE: usize = 1 << 12;
-
-/// A part of the finished tree.
-pub(super) enum Part {
-    /// A whole subtree: its root and the nodes below, relative to their own beginning.
-    Whole { root: Node, below: Vec<Node> },
-    /// An inner node and its children.
-    Fork { bounds: Bounds, children: Box<[Part; 2]> },
-}
 
 /// Builds the tree over all `references`, which are put in the order of the leaves.
 pub(super) fn grow(references: &mut [Reference], span: Span, config: &BuildConfig) -> Part {
-    let budget = (2 * levels(references.len() as u32) + 8).min(MAX_DEPTH as u32);
+    let budget = depth::budget(references.len());
     grow_part(Range { references, first: 0, span, budget }, config)
 }
 
@@ -147,7 +111,7 @@ fn divide(
         return None;
     }
     let [(left, left_count), (right, right_count)] = bins.sides(&plane, &grid);
-    if levels(left_count.max(right_count)) >= budget {
+    if !depth::allows(budget, left_count as usize, right_count as usize) {
         return Some(partition::by_median(references, &span.centroids));
     }
     let (middle, [left_centroids, right_centroids]) =
@@ -156,56 +120,4 @@ fn divide(
     let left = Span { bounds: left, centroids: left_centroids };
     let right = Span { bounds: right, centroids: right_centroids };
     Some((middle, [left, right]))
-}
-
-/// `ceil(log2 count)`: the levels below a node of `count > 0` references that is halved until
-/// there is one in each leaf.
-fn levels(count: u32) -> u32 {
-    u32::BITS - (count - 1).leading_zeros()
-}
-
-impl Part {
-    /// All nodes in one array, the root first.
-    pub(super) fn assemble(self) -> Vec<Node> {
-        let mut nodes = Vec::with_capacity(1 + self.len_below());
-        let blank = Node { min: glam::Vec3::ZERO, first: 0, max: glam::Vec3::ZERO, count: 0 };
-        nodes.push(blank);
-        self.place(0, &mut nodes);
-        nodes
-    }
-
-    /// How many nodes there are below the part's root.
-    fn len_below(&self) -> usize {
-        match self {
-            Self::Whole { below, .. } => below.len(),
-            Self::Fork { children, .. } => children.iter().map(|child| 1 + child.len_below()).sum(),
-        }
-    }
-
-    /// Writes the part's root to `nodes[slot]` and appends the rest; frees the part on the way.
-    fn place(self, slot: usize, nodes: &mut Vec<Node>) {
-        let base = nodes.len() as u32;
-        match self {
-            Self::Whole { root, below } => {
-                nodes[slot] = rebased(root, base);
-                nodes.extend(below.into_iter().map(|node| rebased(node, base)));
-            }
-            Self::Fork { bounds, children } => {
-                let bounds = bounds.to_aabb();
-                nodes[slot] = Node::inner(bounds, base);
-                nodes.extend([Node::inner(bounds, 0); 2]);
-                for (slot, child) in (base as usize..).zip(*children) {
-                    child.place(slot, nodes);
-                }
-            }
-        }
-    }
-}
-
-/// The node with the indices of its children counted from `base`.
-fn rebased(mut node: Node, base: u32) -> Node {
-    if !node.is_leaf() {
-        node.first += base;
-    }
-    node
 }

@@ -51,3 +51,11 @@ pub(super) fn map_pieces_mut<T: Send, R: Send>(
     #[cfg(not(feature = "parallel"))]
     items.chunks_mut(size).enumerate().map(|(k, piece)| f(k * size, piece)).collect()
 }
+
+/// Sorts; equal items are the same, so that their order is of no account.
+pub(super) fn sort<T: Ord + Send>(items: &mut [T]) {
+    #[cfg(feature = "parallel")]
+    rayon::slice::ParallelSliceMut::par_sort_unstable(items);
+    #[cfg(not(feature = "parallel"))]
+    items.sort_unstable();
+}

@@ -1,23 +1,21 @@
-//! What is true of every tree.
+//! What is true of every tree that was built, beyond what `validate` asks of all trees.
 
 use super::super::{BuildConfig, MAX_DEPTH, Tree};
-use crate::bvh::Node;
+use crate::bvh::validate;
 use crate::geometry::Aabb;
 
 /// Panics when `tree` is not a tree over `boxes` as documented.
 pub(super) fn check(tree: &Tree, boxes: &[Aabb], config: &BuildConfig) {
-    let mut seen = vec![false; boxes.len()];
-    for &index in &tree.indices {
-        assert!(!std::mem::replace(&mut seen[index as usize], true), "{index} occurs twice");
-    }
-    assert_eq!(tree.indices.len(), boxes.len(), "not every primitive is in the tree");
+    let Tree { nodes, indices } = tree;
+    validate::check(nodes, indices, boxes.len(), |k| boxes[k]).expect("the tree is sound");
+    // All of them are in leaves.
+    assert_eq!(indices.len(), boxes.len(), "a primitive occurs twice");
     if boxes.is_empty() {
-        assert_eq!(tree.nodes.len(), 0);
+        assert_eq!(nodes.len(), 0);
         return;
     }
     let mut walk = Walk { tree, boxes, config, next_node: 1, next_index: 0 };
     walk.node(0, 0);
-    assert_eq!(walk.next_node, tree.nodes.len(), "there are nodes outside the tree");
     assert_eq!(walk.next_index, boxes.len(), "there are indices outside the leaves");
 }
 
@@ -34,14 +32,17 @@ struct Walk<'a> {
 
 impl Walk<'_> {
     fn node(&mut self, k: usize, depth: usize) {
-        // The work bound documented in `subtree` is stricter than the promise.
+        // The bound documented in `depth` is stricter than the promise.
         let levels = self.boxes.len().next_power_of_two().ilog2() as usize;
         assert!(depth <= MAX_DEPTH.min(2 * levels + 8), "node {k} is too deep");
         let node = self.tree.nodes[k];
         let first = node.first as usize;
         let below = if node.is_leaf() {
             assert_eq!(first, self.next_index, "leaf {k} is out of order");
-            self.leaf(&node)
+            assert!(node.count <= self.config.max_leaf_size);
+            self.next_index += node.count as usize;
+            let indices = self.tree.indices[first..self.next_index].iter();
+            indices.map(|&index| self.boxes[index as usize]).fold(Aabb::EMPTY, Aabb::union)
         } else {
             assert_eq!(first, self.next_node, "the children of {k} are out of order");
             self.next_node += 2;
@@ -50,13 +51,5 @@ impl Walk<'_> {
             self.tree.nodes[first].bounds().union(self.tree.nodes[first + 1].bounds())
         };
         assert_eq!(node.bounds(), below, "the box of node {k} is not that of what is below");
-    }
-
-    fn leaf(&mut self, node: &Node) -> Aabb {
-        assert!(node.count <= self.config.max_leaf_size);
-        let range = self.next_index..self.next_index + node.count as usize;
-        self.next_index = range.end;
-        let indices = self.tree.indices[range].iter();
-        indices.map(|&index| self.boxes[index as usize]).fold(Aabb::EMPTY, Aabb::union)
     }
 }

@@ -6,10 +6,11 @@ mod errors;
 mod random;
 #[cfg(feature = "parallel")]
 mod threads;
+mod timing;
 
 use glam::Vec3;
 
-use super::{BuildConfig, Tree, build};
+use super::{BuildConfig, BuildQuality, Tree, build};
 use crate::geometry::Aabb;
 
 /// A reproducible sequence of numbers in `0..1` (xorshift).
@@ -42,14 +43,20 @@ impl Numbers {
     }
 }
 
-/// The checked tree over `boxes` with the default configuration.
-fn tree(boxes: &[Aabb]) -> Tree {
-    tree_with(boxes, &BuildConfig::default())
+/// Every way to build a tree.
+const QUALITIES: [BuildQuality; 2] = [BuildQuality::Fast, BuildQuality::Balanced];
+
+/// The checked trees over `boxes` with the default configuration, one of each quality.
+fn trees(boxes: &[Aabb]) -> [Tree; 2] {
+    trees_with(boxes, &BuildConfig::default())
 }
 
-/// The checked tree over `boxes`.
-fn tree_with(boxes: &[Aabb], config: &BuildConfig) -> Tree {
-    let tree = build(|k| boxes[k], boxes.len(), config).expect("the boxes are valid");
-    check::check(&tree, boxes, config);
-    tree
+/// The checked trees over `boxes`, one of each quality.
+fn trees_with(boxes: &[Aabb], config: &BuildConfig) -> [Tree; 2] {
+    QUALITIES.map(|quality| {
+        let config = BuildConfig { quality, ..*config };
+        let tree = build(|k| boxes[k], boxes.len(), &config).expect("the boxes are valid");
+        check::check(&tree, boxes, &config);
+        tree
+    })
 }

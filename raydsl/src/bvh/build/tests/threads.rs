@@ -1,13 +1,13 @@
 //! The number of threads changes nothing.
 
 use super::super::Tree;
-use super::{Numbers, tree};
+use super::{Numbers, trees};
 use crate::geometry::Aabb;
 
-/// The tree built by a pool of `threads`.
-fn tree_by(threads: usize, boxes: &[Aabb]) -> Tree {
+/// The trees built by a pool of `threads`.
+fn trees_by(threads: usize, boxes: &[Aabb]) -> [Tree; 2] {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.expect("threads can be started").install(|| tree(boxes))
+    pool.expect("threads can be started").install(|| trees(boxes))
 }
 
 #[test]
@@ -20,13 +20,14 @@ fn any_number_of_threads_builds_the_same_bits() {
         Aabb::new(min, min + (b.size() * 200.0).round())
     };
     let snapped: Vec<_> = smooth.iter().map(snap).collect();
+    let bits = |tree: &Tree| bytemuck::cast_slice::<_, u32>(&tree.nodes).to_vec();
     for boxes in [smooth, snapped] {
-        let expected = tree_by(1, &boxes);
+        let expected = trees_by(1, &boxes);
         for threads in [2, 7] {
-            let tree = tree_by(threads, &boxes);
-            assert!(tree.indices == expected.indices, "{threads} threads");
-            let bits = |tree: &Tree| bytemuck::cast_slice::<_, u32>(&tree.nodes).to_vec();
-            assert!(bits(&tree) == bits(&expected), "{threads} threads");
+            for (tree, expected) in trees_by(threads, &boxes).iter().zip(&expected) {
+                assert!(tree.indices == expected.indices, "{threads} threads");
+                assert!(bits(tree) == bits(expected), "{threads} threads");
+            }
         }
     }
 }

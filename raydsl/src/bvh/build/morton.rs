@@ -1,0 +1,141 @@
+//! Morton codes: primitives in the order of a curve that fills space.
+//!
+//! The cube around all centroids is cut into `2^21` cells an axis. The code of a cell is its three
+//! numbers with their bits interleaved, `z` above `y` above `x`, so that the highest bit says in
+//! which half of the cube the cell lies, the next one in which half of that half, and so on. It is
+//! a cube even where the scene is flat: then the bits of the flat axis are alike, and the others
+//! still cut where the scene is longest.
+
+use glam::{Vec4, Vec4Swizzles};
+
+use super::binned_sah::CLOSE;
+use super::reference::{Bounds, Reference};
+use super::tasks;
+
+/// Bits of a cell's number along one axis: three times as many fit in a `u64`.
+const BITS: u32 = 21;
+/// The largest number of a cell along one axis.
+const LAST: u32 = (1 << BITS) - 1;
+/// `2^23`: adding it rounds a small number to an integer, which is left in the low mantissa bits.
+const ROUND: f32 = 8_388_608.0;
+/// Keys that are made in one piece of work.
+const PIECE: usize = 1 << 14;
+
+/// Where a primitive stands in the order: by its code, then by its index.
+///
+/// No two are equal, so any sort is a stable one and gives one result.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Key {
+    /// The code of its centroid's cell.
+    pub(super) code: u64,
+    /// The primitive.
+    pub(super) index: u32,
+}
+
+/// The keys of all `references`, in order.
+pub(super) fn keys(references: &[Reference], centroids: &Bounds) -> Vec<Key> {
+    let mut keys = vec![Key::default(); references.len()];
+    tasks::map_pieces_mut(&mut keys, PIECE, |start, piece| {
+        for (index, key) in (start as u32..).zip(piece) {
+            key.index = index;
+        }
+    });
+    order(&mut keys, references, centroids);
+    keys
+}
+
+/// Codes some of the primitives within the cube around their own centroids and sorts them. If
+/// nothing tells these apart, all codes are 0.
+pub(super) fn order(keys: &mut [Key], references: &[Reference], centroids: &Bounds) {
+    let cube = Cube::around(centroids);
+    tasks::map_pieces_mut(keys, PIECE, |_, piece| {
+        for key in piece {
+            let centroid = references[key.index as usize].centroid();
+            key.code = cube.map_or(0, |cube| cube.code(centroid));
+        }
+    });
+    tasks::sort(keys);
+}
+
+/// The cells.
+#[derive(Clone, Copy, Debug)]
+struct Cube {
+    origin: Vec4,
+    /// Cells per unit of length.
+    scale: Vec4,
+}
+
+impl Cube {
+    /// The cube over the lowest corner of `centroids`; `None` when all centroids coincide.
+    fn around(centroids: &Bounds) -> Option<Self> {
+        let extent = (centroids.hi - centroids.lo).xyz().max_element();
+        if extent < CLOSE {
+            return None;
+        }
+        // As for bins: an origin that is moved by less than half a cell prevents products that are
+        // denormal, which are slow.
+        let origin = centroids.lo - Vec4::splat(extent * 2e-7);
+        Some(Self { origin, scale: Vec4::splat(LAST as f32 / extent) })
+    }
+
+    /// The code of the cell that holds a centroid of the cube.
+    #[inline]
+    fn code(&self, centroid: Vec4) -> u64 {
+        let cell = ((centroid - self.origin) * self.scale).min(Vec4::splat(LAST as f32));
+        let [x, y, z] = (cell + Vec4::splat(ROUND)).xyz().to_array().map(|n| n.to_bits() & LAST);
+        interleaved([x, y, z])
+    }
+}
+
+/// The low [`BITS`] bits of three numbers in turn, beginning with the lowest of the first.
+#[inline]
+fn interleaved([x, y, z]: [u32; 3]) -> u64 {
+    spread(x) | spread(y) << 1 | spread(z) << 2
+}
+
+/// The low [`BITS`] bits of a number, two zeros between any two: each step moves the upper half of
+/// every group that is left.
+#[inline]
+fn spread(n: u32) -> u64 {
+    let mut n = u64::from(n & LAST);
+    for (shift, mask) in [
+        (32, 0x001F_0000_0000_FFFF),
+        (16, 0x001F_0000_FF00_00FF),
+        (8, 0x100F_00F0_0F00_F00F),
+        (4, 0x10C3_0C30_C30C_30C3),
+        (2, 0x1249_2492_4924_9249),
+    ] {
+        n = (n | n << shift) & mask;
+    }
+    n
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    #[test]
+    fn bits_in_turn() {
+        let of = |x, y, z| interleaved([x, y, z]);
+        assert_eq!([of(1, 0, 1), of(0, 1, 1), of(1, 1, 1)], [5, 6, 7]);
+        for k in 0..BITS {
+            assert_eq!(of(1 << k, 0, 0), 1 << (3 * k));
+            assert_eq!(of(1 << k, 1 << k, 1 << k), 7 << (3 * k));
+        }
+        assert_eq!(of(LAST, LAST, LAST), u64::MAX >> 1);
+    }
+
+    #[test]
+    fn the_corners_of_the_cube() {
+        for (lo, size) in [(-3.0f32, 7.0f32), (1e20, 1e30), (0.0, 1e-20), (1.0, f32::EPSILON)] {
+            let [lo, hi] = [lo, lo + size].map(|x| Vec3::splat(x).extend(f32::NAN));
+            let cube = Cube::around(&Bounds { lo, hi }).expect("it has an extent");
+            assert_eq!(cube.code(lo), 0);
+            assert_eq!(cube.code(hi), u64::MAX >> 1);
+        }
+        let point = Vec4::splat(2.0);
+        assert!(Cube::around(&Bounds { lo: point, hi: point }).is_none());
+    }
+}

@@ -1,0 +1,164 @@
+//! Trees over primitives that move.
+//!
+//! A [`Bvh`] borrows its primitives, so nothing can move them while it lives. [`Bvh::detach`] ends
+//! the borrow and keeps the tree; [`DetachedBvh::refit`] gives it back over the primitives as they
+//! then are.
+
+use core::marker::PhantomData;
+
+use thiserror::Error;
+
+use super::{BuildError, Bvh, Owned, build, stats};
+use crate::geometry::{Kinds, Primitive};
+
+/// A tree without its primitives, which the application may change meanwhile.
+///
+/// It cannot be asked anything before [`DetachedBvh::refit`] has taken the boxes from the
+/// primitives again.
+///
+/// ```
+/// use raydsl::prelude::*;
+///
+/// #[primitive(sphere(center, radius))]
+/// struct Ball {
+///     center: Vec3,
+///     radius: f32,
+/// }
+///
+/// let mut balls = vec![Ball { center: vec3(0.0, 0.0, 5.0), radius: 1.0 }; 3];
+/// let mut bvh = Bvh::build(&balls)?;
+/// for frame in 0..10 {
+///     let tree = bvh.detach();
+///     balls[1].center.z -= 0.25;
+///     bvh = tree.refit(&balls)?;
+///     let hit = bvh.closest_hit(Ray::new(Vec3::ZERO, Vec3::Z));
+///     assert_eq!((hit.prim_id, hit.t), (1, 3.75 - 0.25 * frame as f32));
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+#[must_use = "without `refit` the tree is lost"]
+pub struct DetachedBvh<P: Primitive> {
+    own: Owned,
+    /// How many primitives there were.
+    count: usize,
+    primitives: PhantomData<fn() -> P>,
+}
+
+/// Why a tree cannot be refitted, and what to do about it. The tree is lost: build one.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum RefitError {
+    /// There are more primitives than before, or fewer.
+    #[error("the tree is over {before} primitives, these are {now}: build a tree over them")]
+    CountChanged {
+        /// How many primitives the tree was built over.
+        before: usize,
+        /// How many are given.
+        now: usize,
+    },
+    /// The bounds of a primitive are NaN, infinite or inverted; never another error.
+    #[error(transparent)]
+    Bounds(#[from] BuildError),
+}
+
+impl<P: Primitive> Bvh<'_, P> {
+    /// The tree without its primitives, so that they may be changed.
+    pub fn detach(self) -> DetachedBvh<P> {
+        DetachedBvh { count: self.prims.len(), own: self.own, primitives: PhantomData }
+    }
+
+    /// The tree over other primitives: [`Bvh::detach`] and [`DetachedBvh::refit`], for primitives
+    /// that are written to another place when they move.
+    ///
+    /// # Errors
+    ///
+    /// As [`DetachedBvh::refit`].
+    pub fn refit(self, prims: &[P]) -> Result<Bvh<'_, P>, RefitError>
+    where
+        P: Primitive<Shared = ()>,
+    {
+        self.detach().refit(prims)
+    }
+
+    /// [`Bvh::refit`] for primitives that share data.
+    ///
+    /// # Errors
+    ///
+    /// As [`DetachedBvh::refit`].
+    pub fn refit_sharing<'b>(
+        self,
+        prims: &'b [P],
+        shared: &'b [P::Shared],
+    ) -> Result<Bvh<'b, P>, RefitError> {
+        self.detach().refit_sharing(prims, shared)
+    }
+
+    /// How much dearer rays have become since the tree was built:
+    /// [`Statistics::sah_cost`](super::Statistics::sah_cost) now, divided by what it was then.
+    /// 1 if the tree has never been refitted, infinite if rays cost nothing then.
+    ///
+    /// Time to build anew is when what rays lose exceeds what building costs, often at 1.5 to 2. The
+    /// cost is that of rays that meet the box of the tree: a single primitive that leaves all others
+    /// far behind enlarges that box, and lowers it. Takes one pass over the nodes.
+    pub fn cost_growth(&self) -> f64 {
+        let now = stats::sah_cost(&self.own.nodes, &self.own.config);
+        match self.own.built_cost {
+            Some(built) if built != now => now / built,
+            _ => 1.0,
+        }
+    }
+}
+
+impl<P: Primitive<Shared = ()>> DetachedBvh<P> {
+    /// The tree over its primitives as they are now: all boxes are taken from them again, and
+    /// nothing else changes. `prims` holds them in the order in which the tree was built, be it
+    /// the same memory or not.
+    ///
+    /// Takes a fraction of the time of building. Hits are those that a new tree would give, but rays
+    /// take longer the more primitives have left their neighbours: see [`Bvh::cost_growth`]. After
+    /// Wald, Boulos and Shirley, *Ray tracing deformable scenes using dynamic bounding volume
+    /// hierarchies* (ACM Transactions on Graphics 26(1), 2007), section 3.2. A device that has the tree gets its
+    /// primitives, what they share and the nodes anew, but not the index list.
+    ///
+    /// # Errors
+    ///
+    /// Another number of primitives than the tree was built over, or one whose bounds are not
+    /// finite.
+    pub fn refit(self, prims: &[P]) -> Result<Bvh<'_, P>, RefitError> {
+        self.refit_sharing(prims, &[])
+    }
+}
+
+impl<P: Primitive> DetachedBvh<P> {
+    /// [`DetachedBvh::refit`] for primitives that share data, either or both of which have
+    /// changed. What is shared may have become longer or shorter.
+    ///
+    /// # Errors
+    ///
+    /// As [`DetachedBvh::refit`].
+    pub fn refit_sharing<'b>(
+        self,
+        prims: &'b [P],
+        shared: &'b [P::Shared],
+    ) -> Result<Bvh<'b, P>, RefitError> {
+        let Self { mut own, count: before, .. } = self;
+        if prims.len() != before {
+            return Err(RefitError::CountChanged { before, now: prims.len() });
+        }
+        own.built_cost.get_or_insert_with(|| stats::sah_cost(&own.nodes, &own.config));
+        build::refit(&mut own.nodes, &own.indices, before, |k| prims[k].get_bounds(shared))?;
+        own.version = own.version.wrapping_add(1);
+        Ok(Bvh { prims, shared, own, kinds: Kinds::of(prims) })
+    }
+
+    /// How many primitives the tree is over.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether the tree is over nothing.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+}

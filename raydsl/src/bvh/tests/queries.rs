@@ -1,0 +1,51 @@
+//! What rays meet does not depend on how the tree was built.
+
+use super::*;
+
+#[test]
+fn every_quality_answers_as_brute_force() {
+    let mut numbers = Numbers::of(1);
+    for count in [0, 1, 2, 5, 64, 1000] {
+        let balls = numbers.balls(count);
+        for quality in QUALITIES {
+            let bvh = Bvh::build_with(&balls, &config(quality)).expect("finite bounds");
+            assert_eq!(bvh.config().quality, quality);
+            let hits = assert_as_brute_force(&bvh, &balls);
+            assert!(count < 1000 || hits > 200, "{hits} hits");
+        }
+    }
+}
+
+/// Balls that are hard for builders: each three times, so that the least index must win.
+fn hostile() -> Vec<Vec<Ball>> {
+    let mut numbers = Numbers::of(2);
+    let balls = numbers.balls(200);
+    let changed = |change: &dyn Fn(usize, Ball) -> Ball| {
+        let changed = balls.iter().enumerate().map(|(k, &ball)| change(k, ball));
+        let once: Vec<_> = changed.collect();
+        [&once[..], &once, &once].concat()
+    };
+    let scaled =
+        |s: f32| changed(&|_, ball| Ball { center: ball.center * s, radius: ball.radius * s });
+    let with = |one: Ball| changed(&|k, ball| if k == 77 { one } else { ball });
+    vec![
+        changed(&|_, _| Ball { center: Vec3::ONE, radius: 0.5 }),
+        changed(&|_, ball| Ball { center: Vec3::ZERO, ..ball }),
+        changed(&|_, ball| Ball { center: ball.center * Vec3::X, ..ball }),
+        changed(&|k, ball| Ball { center: Vec3::X * 1.1f32.powi(k as i32), ..ball }),
+        with(Ball { center: Vec3::ZERO, radius: 100.0 }),
+        with(Ball { center: Vec3::splat(1e6), radius: 1.0 }),
+        scaled(1e-6),
+        scaled(1e6),
+    ]
+}
+
+#[test]
+fn every_quality_answers_as_brute_force_on_hostile_scenes() {
+    for balls in hostile() {
+        for quality in QUALITIES {
+            let bvh = Bvh::build_with(&balls, &config(quality)).expect("finite bounds");
+            assert_as_brute_force(&bvh, &balls);
+        }
+    }
+}
