@@ -59,9 +59,9 @@ fn a_list_answers_as_one_tree() {
         assert_eq!(list.any_hit(*ray), hit.is_hit);
         assert_eq!(list.multi_hit::<4>(*ray), one.multi_hit::<4>(*ray));
         assert_eq!(list.primitive(hit), one.primitive(hit));
-        let tree = list.tree_of(hit);
-        last = last.max(tree);
-        if hit.is_hit {
+        assert_eq!(list.tree_of(hit).is_some(), hit.is_hit);
+        if let Some(tree) = list.tree_of(hit) {
+            last = last.max(tree);
             let own = (hit.prim_id - list.first_of(tree)) as usize;
             assert_eq!(models[tree][own], all[hit.prim_id as usize]);
         }
@@ -184,7 +184,7 @@ fn trees_of_a_list_share_one_slice() {
         |prims, vertices| Bvh::build_sharing(prims, vertices, &config).expect("finite bounds");
     let apart = [tree(front, &vertices), tree(back, &here)];
     let error = BvhList::new(&apart).err();
-    assert_eq!(error, Some(ListError::SharesAnother { tree: 1 }));
+    assert_eq!(error, Some(ListError::SharesAnother { first: 0, tree: 1 }));
     let trees = [tree(front, &vertices), tree(back, &vertices)];
     let list = BvhList::new(&trees).expect("one slice of vertices");
     let whole = tree(&indexed, &vertices);
@@ -419,10 +419,9 @@ mod on_a_gpu {
         let bvh = Bvh::build_sharing(&indexed, &vertices, &config).expect("finite bounds");
         let kernel = kernel!(|ray: Ray| bvh.closest_hit(ray));
         let gpu = GpuScheduler::new()?;
-        let (view, triangles) = (bvh.view(), filled(&gpu, bytemuck::cast_slice(&indexed)));
-        let shared = view.shared();
-        let _triangles = gpu.with_gpu(&view, triangles)?;
-        let _vertices = gpu.with_gpu(&shared, filled(&gpu, bytemuck::cast_slice(&vertices)))?;
+        let _triangles = gpu.with_gpu(&bvh, filled(&gpu, bytemuck::cast_slice(&indexed)))?;
+        let own = filled(&gpu, bytemuck::cast_slice(&vertices));
+        let _vertices = gpu.with_gpu(bvh.view().shared(), own)?;
         assert_eq!(sent(&gpu, &kernel, &rays)?, bvh.bytes() as u64);
         Ok(())
     }

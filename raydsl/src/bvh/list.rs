@@ -6,8 +6,9 @@ use bytemuck::cast_slice;
 use thiserror::Error;
 
 use super::build::MAX_PRIMITIVES;
-use super::view::{Branches, Part};
-use super::{Bvh, Node, SceneView, View, next_id};
+use super::owner::Owner;
+use super::view::{Branches, Part, Trees};
+use super::{Bvh, Node, SceneView, View};
 use crate::geometry::{Hit, Kinds, Primitive};
 use crate::machine::{Capture, Machine, Parameter, Resource};
 
@@ -33,15 +34,13 @@ use crate::machine::{Capture, Machine, Parameter, Resource};
 /// let trees = [Bvh::build(&fixed)?, Bvh::build(&moved)?];
 /// let scene = BvhList::new(&trees)?;
 /// let hit = scene.closest_hit(Ray::new(Vec3::ZERO, Vec3::Z));
-/// assert_eq!((hit.prim_id, scene.tree_of(hit)), (2, 1));
+/// assert_eq!((hit.prim_id, scene.tree_of(hit)), (2, Some(1)));
 /// assert_eq!(scene.primitive(hit).center.z, 3.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
 pub struct BvhList<'a, P: Primitive> {
-    parts: Vec<Part<'a, P, P::Shared>>,
-    id: u64,
-    kinds: Kinds,
+    trees: Trees<'a, P, P::Shared>,
 }
 
 /// Why trees cannot be asked as one, and what to do about it.
@@ -56,13 +55,15 @@ pub enum ListError {
         /// How many there may be.
         limit: usize,
     },
-    /// The primitives of one tree share another slice than those of the first.
+    /// The primitives of two trees share different slices.
     #[error(
-        "tree {tree} shares another slice than tree 0: put what the primitives of all trees share \
-         into one"
+        "tree {tree} shares another slice than tree {first}: put what the primitives of all trees \
+         share into one"
     )]
     SharesAnother {
-        /// The tree.
+        /// The first tree that shares anything.
+        first: usize,
+        /// The other tree.
         tree: usize,
     },
 }
@@ -79,27 +80,21 @@ impl<'a, P: Primitive> BvhList<'a, P> {
         if count > MAX_PRIMITIVES {
             return Err(ListError::TooManyPrimitives { count, limit: MAX_PRIMITIVES });
         }
-        let shares = |a: &Bvh<'_, P>, b: &Bvh<'_, P>| {
-            let (a, b) = (a.shared(), b.shared());
-            core::ptr::eq(a, b) || a.is_empty() && b.is_empty()
-        };
-        if let Some(tree) = trees.iter().position(|tree| !shares(tree, &trees[0])) {
-            return Err(ListError::SharesAnother { tree });
-        }
+        let shared = shared_by_all(trees)?;
         let mut first = 0;
         let part = |tree: &'a Bvh<'a, P>| {
-            let part = Part { first, ..tree.part() };
+            let part = Part { first, ..tree.tree.part() };
             first += part.prims.len() as u32;
             part
         };
         let parts = trees.iter().map(part).collect();
-        let kinds = trees.iter().fold(Kinds::NONE, |all, tree| all.union(tree.kinds));
-        Ok(Self { parts, id: next_id(), kinds })
+        let kinds = trees.iter().fold(Kinds::NONE, |all, tree| all.union(tree.tree.kinds));
+        Ok(Self { trees: Trees { parts, shared, owner: Owner::new(), kinds } })
     }
 
-    /// Which tree holds the primitive that was hit, by its place in the list; 0 for a miss.
-    pub fn tree_of(&self, hit: Hit) -> usize {
-        tree_of(&self.parts, if hit.is_hit { hit.prim_id } else { 0 })
+    /// Which tree holds the primitive that was hit, by its place in the list; none for a miss.
+    pub fn tree_of(&self, hit: Hit) -> Option<usize> {
+        hit.is_hit.then(|| tree_of(&self.trees.parts, hit.prim_id))
     }
 
     /// The number that the first primitive of a tree has.
@@ -108,22 +103,22 @@ impl<'a, P: Primitive> BvhList<'a, P> {
     ///
     /// If the list has no such tree.
     pub fn first_of(&self, tree: usize) -> u32 {
-        self.parts[tree].first
+        self.trees.parts[tree].first
     }
 
     /// How many trees.
     pub fn tree_count(&self) -> usize {
-        self.parts.len()
+        self.trees.parts.len()
     }
 
     /// What the primitives of all trees share.
     pub fn shared(&self) -> &'a [P::Shared] {
-        self.parts.first().map_or(&[], |part| part.shared)
+        self.trees.shared
     }
 
     /// The view that kernels work on.
     pub fn view(&self) -> SceneView<'_, P> {
-        View::list(&self.parts, self.id, self.kinds)
+        View::list(&self.trees)
     }
 }
 
@@ -151,6 +146,20 @@ impl<M: Machine, P: Primitive> Capture<M> for BvhList<'_, P> {
 
 impl<P: Primitive> Parameter for BvhList<'_, P> {
     type On<'a, M: Machine> = SceneView<'a, P>;
+}
+
+/// What the primitives of these trees share; empty trees share anything.
+fn shared_by_all<'a, P: Primitive>(trees: &[Bvh<'a, P>]) -> Result<&'a [P::Shared], ListError> {
+    let mut found: Option<(usize, &'a [P::Shared])> = None;
+    for (tree, bvh) in trees.iter().enumerate().filter(|(_, bvh)| !bvh.primitives().is_empty()) {
+        let shared = bvh.shared();
+        let (first, slice) = *found.get_or_insert((tree, shared));
+        let is_same = core::ptr::eq(slice, shared) || slice.is_empty() && shared.is_empty();
+        if !is_same {
+            return Err(ListError::SharesAnother { first, tree });
+        }
+    }
+    Ok(found.map_or(&[], |(_, slice)| slice))
 }
 
 /// Which part holds the primitive `index`; the first one where there is none.

@@ -13,6 +13,7 @@
 pub mod build;
 mod list;
 mod node;
+pub(crate) mod owner;
 mod query;
 mod ray_query;
 mod refit;
@@ -26,28 +27,22 @@ mod view;
 #[cfg(test)]
 mod tests;
 
-use core::sync::atomic::{AtomicU64, Ordering};
-
 pub use build::{BuildConfig, BuildError, BuildQuality, MAX_DEPTH};
 pub use list::{BvhList, ListError};
 pub use node::Node;
+use owner::Owner;
 pub(crate) use query::{RecordOn, closest_on};
 pub use ray_query::RayQuery;
 pub use refit::{DetachedBvh, RefitError};
 pub use stats::Statistics;
 pub use traverse::Cost;
 pub use validate::{TreeFault, validate};
+use view::Tree;
 pub(crate) use view::{Branches, NODE_SCHEMA, Part, buffers};
 pub use view::{SceneView, View};
 
 use crate::geometry::{Aabb, Kinds, Primitive, Ray};
 use crate::machine::{Capture, Machine, Resource, Type, wgsl::BufferKey};
-
-/// A number that no other owner of scene data has.
-fn next_id() -> u64 {
-    static NEXT: AtomicU64 = AtomicU64::new(1);
-    NEXT.fetch_add(1, Ordering::Relaxed)
-}
 
 /// A binary tree over primitives that the application owns.
 ///
@@ -64,10 +59,7 @@ fn next_id() -> u64 {
 /// ```
 #[derive(Debug)]
 pub struct Bvh<'a, P: Primitive> {
-    prims: &'a [P],
-    shared: &'a [P::Shared],
-    own: Owned,
-    kinds: Kinds,
+    tree: Tree<'a, P, P::Shared>,
 }
 
 /// What is a tree's own, and outlives the borrow of its primitives.
@@ -76,7 +68,7 @@ struct Owned {
     nodes: Vec<Node>,
     indices: Vec<u32>,
     config: BuildConfig,
-    id: u64,
+    owner: Owner,
     /// How often it has been refitted.
     version: u32,
     /// Its cost when it was built, if it has been refitted.
@@ -125,16 +117,22 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         shared: &'a [P::Shared],
         config: &BuildConfig,
     ) -> Result<Self, BuildError> {
+        const {
+            assert!(
+                P::SLACK >= 0.0 && P::SLACK < 1.0,
+                "SLACK of a primitive is a number from 0 to 1"
+            );
+        }
         let tree = build::build(|i| prims[i].get_bounds(shared), prims.len(), config)?;
         let own = Owned {
             nodes: tree.nodes,
             indices: tree.indices,
             config: *config,
-            id: next_id(),
+            owner: Owner::new(),
             version: 0,
             built_cost: None,
         };
-        Ok(Self { prims, shared, own, kinds: Kinds::of(prims) })
+        Ok(Self { tree: Tree { prims, shared, own, kinds: Kinds::of(prims) } })
     }
 
     /// The least `(t, id)` hit of `ray`, and what it cost to find.
@@ -144,47 +142,42 @@ impl<'a, P: Primitive> Bvh<'a, P> {
 
     /// The primitives, as the application owns them.
     pub fn primitives(&self) -> &'a [P] {
-        self.prims
+        self.tree.prims
     }
 
     /// What the primitives share, as the application owns it.
     pub fn shared(&self) -> &'a [P::Shared] {
-        self.shared
+        self.tree.shared
     }
 
     /// The nodes; the root is the first, children are adjacent.
     pub fn nodes(&self) -> &[Node] {
-        &self.own.nodes
+        &self.tree.own.nodes
     }
 
     /// The index list that leaves refer to.
     pub fn indices(&self) -> &[u32] {
-        &self.own.indices
+        &self.tree.own.indices
     }
 
     /// What the tree was built with.
     pub fn config(&self) -> &BuildConfig {
-        &self.own.config
+        &self.tree.own.config
     }
 
     /// A box around everything; empty without primitives.
     pub fn bounds(&self) -> Aabb {
-        self.own.nodes.first().map_or(Aabb::EMPTY, Node::bounds)
+        self.tree.own.nodes.first().map_or(Aabb::EMPTY, Node::bounds)
     }
 
     /// Bytes of the tree itself; the primitives are the application's.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.own.nodes[..]) + size_of_val(&self.own.indices[..])
-    }
-
-    fn part(&self) -> Part<'_, P, P::Shared> {
-        let tree = Some(Branches { nodes: &self.own.nodes, indices: &self.own.indices });
-        Part { prims: self.prims, shared: self.shared, tree, first: 0 }
+        size_of_val(&self.tree.own.nodes[..]) + size_of_val(&self.tree.own.indices[..])
     }
 
     /// The view that kernels work on.
     pub fn view(&self) -> SceneView<'_, P> {
-        View::tree(self.part(), self.own.id, self.own.version, self.kinds)
+        View::tree(&self.tree)
     }
 }
 

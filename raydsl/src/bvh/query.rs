@@ -173,9 +173,10 @@ fn is_before_by<M: Machine>(
     let first = Var::<B<M>>::new(m, "is_first", B(m.bool(true)));
     let both = Branch::new(m, b.is_hit);
     if both.then(m) {
-        let (closer, farther) = (is_closer(a, b), is_closer(b, a));
-        let tie = m.bool_binary(BoolBinary::And, m.bool_not(farther.0), is_before(m, a, b).0);
-        first.set(m, B(m.bool_binary(BoolBinary::Or, closer.0, tie)));
+        // Where both hold, as with `<=`, or neither, it is a tie.
+        let (closer, farther) = (is_closer(a, b).0, is_closer(b, a).0);
+        let differ = m.bool_binary(BoolBinary::Xor, closer, farther);
+        first.set(m, B(m.bool_select(differ, closer, is_before(m, a, b).0)));
     }
     both.end(m);
     first.get(m)

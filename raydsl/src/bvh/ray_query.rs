@@ -108,8 +108,9 @@ pub trait RayQuery {
     }
 
     /// The first `N` hits of `ray` in an order of your own, with misses behind them: `is_closer` says
-    /// whether its first hit comes before its second, and of hits that come before neither the least
-    /// `(t, id)` does. It must be a strict weak order. Every hit within the ray's range is looked at.
+    /// whether its first hit comes before its second; of two where both or neither does, the least
+    /// `(t, id)` comes first. An order that runs in a circle has a result that depends on the tree.
+    /// Every hit within the ray's range is looked at.
     ///
     /// ```
     /// use raydsl::prelude::*;

@@ -8,6 +8,7 @@ use core::marker::PhantomData;
 
 use thiserror::Error;
 
+use super::view::Tree;
 use super::{BuildError, Bvh, Owned, build, stats};
 use crate::geometry::{Kinds, Primitive};
 
@@ -65,7 +66,7 @@ pub enum RefitError {
 impl<P: Primitive> Bvh<'_, P> {
     /// The tree without its primitives, so that they may be changed.
     pub fn detach(self) -> DetachedBvh<P> {
-        DetachedBvh { count: self.prims.len(), own: self.own, primitives: PhantomData }
+        DetachedBvh { count: self.tree.prims.len(), own: self.tree.own, primitives: PhantomData }
     }
 
     /// The tree over other primitives: [`Bvh::detach`] and [`DetachedBvh::refit`], for primitives
@@ -102,8 +103,8 @@ impl<P: Primitive> Bvh<'_, P> {
     /// cost is that of rays that meet the box of the tree: a single primitive that leaves all others
     /// far behind enlarges that box, and lowers it. Takes one pass over the nodes.
     pub fn cost_growth(&self) -> f64 {
-        let now = stats::sah_cost(&self.own.nodes, &self.own.config);
-        match self.own.built_cost {
+        let now = stats::sah_cost(&self.tree.own.nodes, &self.tree.own.config);
+        match self.tree.own.built_cost {
             Some(built) if built != now => now / built,
             _ => 1.0,
         }
@@ -149,7 +150,7 @@ impl<P: Primitive> DetachedBvh<P> {
         own.built_cost.get_or_insert_with(|| stats::sah_cost(&own.nodes, &own.config));
         build::refit(&mut own.nodes, &own.indices, before, |k| prims[k].get_bounds(shared))?;
         own.version = own.version.wrapping_add(1);
-        Ok(Bvh { prims, shared, own, kinds: Kinds::of(prims) })
+        Ok(Bvh { tree: Tree { prims, shared, own, kinds: Kinds::of(prims) } })
     }
 
     /// How many primitives the tree is over.

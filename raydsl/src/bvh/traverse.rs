@@ -207,9 +207,12 @@ pub fn multi_hit_by<P: Primitive, const N: usize>(
     let mut hits = FirstHits::<N>::new();
     visit::<P>(prims, ray, |hit, _, _| {
         let is_first = |h: &Hit| {
-            !h.is_hit
-                || is_closer(hit, *h)
-                || (!is_closer(*h, hit) && is_before(hit.t, hit.prim_id, h))
+            if !h.is_hit {
+                return true;
+            }
+            // Where both hold, as with `<=`, or neither, it is a tie.
+            let (closer, farther) = (is_closer(hit, *h), is_closer(*h, hit));
+            if closer != farther { closer } else { is_before(hit.t, hit.prim_id, h) }
         };
         if let Some(place) = hits.place(hit, is_first) {
             hits.insert(place, hit);
@@ -267,7 +270,7 @@ fn walk_all<P: Primitive>(
     }
     // No node beyond this distance is worth a visit.
     let mut limit = ray.t_max;
-    prims.parts().iter().any(|part| walk(part, ray, &mut limit, count, &mut visit))
+    prims.parts().any(|part| walk(&part, ray, &mut limit, count, &mut visit))
 }
 
 /// Visits the primitives that the ray may meet, those of nearer leaves first, until `visit` returns

@@ -410,7 +410,6 @@ fn walk_all<L: Lanes, P: Primitive>(
         if !l.any(alive) {
             return;
         }
-        let part = *part;
         walk(
             m,
             &part,
@@ -463,6 +462,9 @@ fn walk<L: Lanes, P: Primitive>(
                 // A lane that lost interest leaves the walk.
                 *alive = without(l, *alive, without(l, mask, stay));
                 mask = stay;
+                if !l.any(mask) {
+                    break;
+                }
             }
             if !l.any(*alive) {
                 return;

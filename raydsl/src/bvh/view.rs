@@ -1,10 +1,9 @@
 //! The light view of a slice, a tree or a list of trees, that kernels work on.
 
-use core::slice;
 use std::borrow::Cow;
 
-use super::list;
-use super::{Node, bytes_of, slice_key};
+use super::owner::Owner;
+use super::{Node, Owned, bytes_of, list, slice_key};
 use crate::geometry::{Kinds, Primitive};
 use crate::machine::{Field, Leaves, Machine, Resource, Schema, Type, Value, wgsl::BufferKey};
 
@@ -55,27 +54,62 @@ impl<T, S> Clone for Part<'_, T, S> {
 
 impl<T, S> Copy for Part<'_, T, S> {}
 
+/// A tree: its primitives, what they share, and what is its own.
+#[derive(Debug)]
+pub(crate) struct Tree<'a, T, S> {
+    pub(crate) prims: &'a [T],
+    pub(crate) shared: &'a [S],
+    pub(super) own: Owned,
+    pub(super) kinds: Kinds,
+}
+
+impl<T, S> Tree<'_, T, S> {
+    #[inline(always)]
+    pub(super) fn part(&self) -> Part<'_, T, S> {
+        let tree = Some(Branches { nodes: &self.own.nodes, indices: &self.own.indices });
+        Part { prims: self.prims, shared: self.shared, tree, first: 0 }
+    }
+}
+
+/// The trees of a list.
+#[derive(Debug)]
+pub(crate) struct Trees<'a, T, S> {
+    pub(super) parts: Vec<Part<'a, T, S>>,
+    pub(super) shared: &'a [S],
+    pub(super) owner: Owner,
+    pub(super) kinds: Kinds,
+}
+
+/// What a view is of. Small, since kernels hand views to each other.
+#[derive(Debug)]
+enum Scene<'a, T, S> {
+    Slice(&'a [T]),
+    Tree(&'a Tree<'a, T, S>),
+    List(&'a Trees<'a, T, S>),
+}
+
 /// A slice, a tree over one, or a list of trees: a value of the host on every machine.
 ///
 /// `S` is the type of what the primitives share; see [`Primitive::Shared`].
 #[derive(Debug)]
 pub struct View<'a, T, S = ()> {
-    own: Part<'a, T, S>,
-    /// The trees of a list.
-    list: Option<&'a [Part<'a, T, S>]>,
-    /// The number of the tree or list; 0 for a plain slice.
-    owner: u64,
-    /// How often the tree has been refitted.
-    version: u32,
-    /// Which of the owner's buffers.
-    buffer: u32,
+    scene: Scene<'a, T, S>,
+    /// Of what primitives share, the name that a device has for it.
+    key: Option<BufferKey>,
     name: &'static str,
-    /// The kinds of primitives under the tree.
-    kinds: Kinds,
 }
 
 /// The view of primitives and of what they share.
 pub type SceneView<'a, P> = View<'a, P, <P as Primitive>::Shared>;
+
+impl<T, S> Clone for Scene<'_, T, S> {
+    #[inline(always)]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T, S> Copy for Scene<'_, T, S> {}
 
 impl<T, S> Clone for View<'_, T, S> {
     #[inline(always)]
@@ -89,19 +123,17 @@ impl<T, S> Copy for View<'_, T, S> {}
 impl<'a, T, S> View<'a, T, S> {
     #[inline(always)]
     pub(crate) fn slice(prims: &'a [T]) -> Self {
-        let own = Part { prims, shared: &[], tree: None, first: 0 };
-        let buffer = buffers::PRIMITIVES;
-        Self { own, list: None, owner: 0, version: 0, buffer, name: "prims", kinds: Kinds::ALL }
+        Self { scene: Scene::Slice(prims), key: None, name: "prims" }
     }
 
     #[inline(always)]
-    pub(crate) fn tree(own: Part<'a, T, S>, owner: u64, version: u32, kinds: Kinds) -> Self {
-        Self { own, list: None, owner, version, buffer: buffers::PRIMITIVES, name: "bvh", kinds }
+    pub(super) fn tree(tree: &'a Tree<'a, T, S>) -> Self {
+        Self { scene: Scene::Tree(tree), key: None, name: "bvh" }
     }
 
     #[inline(always)]
-    pub(crate) fn list(list: &'a [Part<'a, T, S>], owner: u64, kinds: Kinds) -> Self {
-        Self { list: Some(list), owner, name: "trees", kinds, ..Self::slice(&[]) }
+    pub(super) fn list(trees: &'a Trees<'a, T, S>) -> Self {
+        Self { scene: Scene::List(trees), key: None, name: "trees" }
     }
 
     /// The view under the name that it has in the source.
@@ -112,31 +144,51 @@ impl<'a, T, S> View<'a, T, S> {
 
     /// What a query looks through, one after another.
     #[inline(always)]
-    pub(crate) fn parts(&self) -> &[Part<'a, T, S>] {
-        self.list.unwrap_or(slice::from_ref(&self.own))
+    pub(crate) fn parts(&self) -> impl Iterator<Item = Part<'a, T, S>> + use<'a, T, S> {
+        let scene = self.scene;
+        let count = match scene {
+            Scene::Slice(_) | Scene::Tree(_) => 1,
+            Scene::List(trees) => trees.parts.len(),
+        };
+        (0..count).map(
+            #[inline(always)]
+            move |i| match scene {
+                Scene::Slice(prims) => Part { prims, shared: &[], tree: None, first: 0 },
+                Scene::Tree(tree) => tree.part(),
+                Scene::List(trees) => trees.parts[i],
+            },
+        )
     }
 
     /// What the primitives share.
     #[inline(always)]
     pub fn shared(&self) -> View<'a, S> {
-        // The trees of a list share the same.
-        let part = self.list.map_or(Some(&self.own), |list| list.first());
-        let shared = part.map_or(&[][..], |part| part.shared);
-        let view = View::slice(shared);
-        let (owner, version) = (self.owner, self.version);
-        View { owner, version, buffer: buffers::SHARED, name: self.name, ..view }
+        let shared = match self.scene {
+            Scene::Slice(_) => &[],
+            Scene::Tree(tree) => tree.shared,
+            Scene::List(trees) => trees.shared,
+        };
+        let key = (!self.is_slice()).then(|| self.key_of(buffers::SHARED));
+        View { key, name: self.name, ..View::slice(shared) }
     }
 
-    /// The elements of a slice.
+    /// The elements of a slice, or of the slice under a tree.
     #[inline(always)]
     pub(crate) fn elements(&self) -> &'a [T] {
-        self.own.prims
+        match self.scene {
+            Scene::Slice(prims) => prims,
+            Scene::Tree(tree) => tree.prims,
+            Scene::List(_) => &[],
+        }
     }
 
     /// How many primitives.
     #[inline(always)]
     pub fn len(&self) -> usize {
-        self.list.map_or(self.own.prims.len(), |list| list.iter().map(|p| p.prims.len()).sum())
+        match self.scene {
+            Scene::List(trees) => trees.parts.iter().map(|part| part.prims.len()).sum(),
+            _ => self.elements().len(),
+        }
     }
 
     /// Whether there are none.
@@ -145,45 +197,58 @@ impl<'a, T, S> View<'a, T, S> {
         self.len() == 0
     }
 
+    fn is_slice(&self) -> bool {
+        matches!(self.scene, Scene::Slice(_))
+    }
+
     /// Whether trees stand over the primitives.
-    #[inline(always)]
     pub(crate) fn has_tree(&self) -> bool {
-        self.is_list() || self.own.tree.is_some()
+        !self.is_slice()
     }
 
     /// Whether it is a list of trees.
-    #[inline(always)]
     pub(crate) fn is_list(&self) -> bool {
-        self.list.is_some()
+        matches!(self.scene, Scene::List(_))
     }
 
     pub(crate) fn name(&self) -> Cow<'static, str> {
-        match self.buffer {
-            buffers::SHARED => format!("{}_shared", self.name).into(),
-            _ => self.name.into(),
+        match self.key {
+            Some(_) => format!("{}_shared", self.name).into(),
+            None => self.name.into(),
         }
     }
 
+    /// The key of the primitives, or of what they share.
     pub(crate) fn key(&self) -> BufferKey {
-        if self.owner == 0 { slice_key(self.own.prims) } else { self.key_of(self.buffer) }
+        match (self.key, self.scene) {
+            (Some(key), _) => key,
+            (None, Scene::Slice(prims)) => slice_key(prims),
+            (None, _) => self.key_of(buffers::PRIMITIVES),
+        }
     }
 
     /// The key of another buffer of the same scene.
     pub(crate) fn key_of(&self, part: u32) -> BufferKey {
+        let (id, version) = match self.scene {
+            Scene::Slice(_) => (0, 0),
+            Scene::Tree(tree) => (tree.own.owner.id(), tree.own.version),
+            Scene::List(trees) => (trees.owner.id(), 0),
+        };
         // Refitting leaves the order of the primitives as it is.
-        let version = if part == buffers::INDICES { 0 } else { self.version };
-        BufferKey { id: self.owner, version, part }
+        let version = if part == buffers::INDICES { 0 } else { version };
+        BufferKey { id, version, part }
     }
 
     /// How many nodes and how many indices.
     pub(crate) fn tree_len(&self) -> (u64, u64) {
-        let trees = self.parts().iter().filter_map(|p| p.tree);
+        let trees = self.parts().filter_map(|part| part.tree);
         trees.fold((0, 0), |(n, i), t| (n + t.nodes.len() as u64, i + t.indices.len() as u64))
     }
 
     /// How many trees have a root.
     pub(crate) fn root_len(&self) -> u64 {
-        list::roots(self.parts()).count() as u64
+        let parts: Vec<_> = self.parts().collect();
+        list::roots(&parts).count() as u64
     }
 }
 
@@ -195,12 +260,12 @@ impl<T: Copy, S> View<'_, T, S> {
     /// If there is no such primitive.
     #[inline(always)]
     pub fn get(&self, index: u32) -> T {
-        match self.list {
-            None => self.own.prims[index as usize],
-            Some(list) => {
-                let part = &list[list::tree_of(list, index)];
+        match self.scene {
+            Scene::List(trees) => {
+                let part = &trees.parts[list::tree_of(&trees.parts, index)];
                 part.prims[(index - part.first) as usize]
             }
+            _ => self.elements()[index as usize],
         }
     }
 }
@@ -208,28 +273,32 @@ impl<T: Copy, S> View<'_, T, S> {
 impl<P: Primitive> SceneView<'_, P> {
     /// The kinds of its primitives.
     pub(crate) fn kinds(&self) -> Kinds {
-        if self.has_tree() { self.kinds } else { Kinds::of(self.elements()) }
+        match self.scene {
+            Scene::Slice(prims) => Kinds::of(prims),
+            Scene::Tree(tree) => tree.kinds,
+            Scene::List(trees) => trees.kinds,
+        }
     }
 }
 
 impl<T: Type, S: Type> Resource for View<'_, T, S> {
     fn bytes(&self, key: BufferKey) -> Option<Cow<'_, [u8]>> {
-        let parts = self.parts();
+        let parts: Vec<_> = self.parts().collect();
         if key == self.key() {
-            return Some(Cow::Owned(match parts {
+            return Some(Cow::Owned(match &parts[..] {
                 [part] => bytes_of(part.prims),
                 _ => parts.iter().map(|part| bytes_of(part.prims)).collect::<Vec<_>>().concat(),
             }));
         }
-        if key != self.key_of(key.part) {
+        if self.is_slice() || key != self.key_of(key.part) {
             return None;
         }
         match key.part {
-            buffers::NODES => Some(list::nodes(parts)),
-            buffers::INDICES => Some(list::indices(parts)),
+            buffers::NODES => Some(list::nodes(&parts)),
+            buffers::INDICES => Some(list::indices(&parts)),
             buffers::SHARED => Some(Cow::Owned(bytes_of(self.shared().elements()))),
             buffers::ROOTS => {
-                let roots: Vec<u32> = list::roots(parts).collect();
+                let roots: Vec<u32> = list::roots(&parts).collect();
                 Some(Cow::Owned(bytemuck::cast_slice(&roots).to_vec()))
             }
             _ => None,
@@ -248,12 +317,18 @@ impl<M: Machine, T, S> Value<M> for View<'_, T, S> {
     #[inline(always)]
     fn zip(_: &M, a: Self, b: Self, _: &mut impl Leaves<M>) -> Self {
         // Nothing yet: a variable that has been declared.
-        let is_nothing = |v: &Self| v.owner == 0 && v.own.prims.is_empty();
+        let is_nothing = |v: &Self| v.is_slice() && v.elements().is_empty();
         if is_nothing(&a) {
             return b;
         }
+        let is_same = || match (a.scene, b.scene) {
+            (Scene::Slice(a), Scene::Slice(b)) => core::ptr::eq(a, b),
+            (Scene::Tree(a), Scene::Tree(b)) => core::ptr::eq(a, b),
+            (Scene::List(a), Scene::List(b)) => core::ptr::eq(a, b),
+            _ => false,
+        };
         assert!(
-            is_nothing(&b) || (core::ptr::eq(a.own.prims, b.own.prims) && a.owner == b.owner),
+            is_nothing(&b) || is_same(),
             "a kernel cannot choose between two slices or trees by a value of its rays: choose \
              between what it reads from them, or by a captured `bool`"
         );

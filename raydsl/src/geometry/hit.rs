@@ -11,7 +11,8 @@ pub struct Hit {
     pub is_hit: bool,
     /// Distance along the ray in lengths of its direction.
     pub t: f32,
-    /// Which primitive: its index in the application's array. Traversal sets it.
+    /// Which primitive: its index in the application's array, counted through all arrays of a list.
+    /// Traversal sets it.
     pub prim_id: u32,
     /// First surface coordinate: the barycentric weight of a triangle's second vertex.
     pub u: f32,

@@ -49,11 +49,32 @@ impl IndexedTriangle {
         intersect(ray, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
     }
 
-    /// The normal where `ray` hits it, with unit length; see [`normal`].
+    /// The normal where `ray` hits it, with unit length; see [`triangle::normal`](normal).
     #[inline]
     pub fn normal(&self, ray: Ray, hit: Hit, vertices: &[Vec3]) -> Vec3 {
         let [v0, v1, v2] = self.vertices;
         normal(ray, hit, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
+    }
+
+    /// Surface coordinates where `ray` hits it; see [`uv`].
+    #[inline]
+    pub fn uv(&self, ray: Ray, hit: Hit, vertices: &[Vec3]) -> Vec2 {
+        let [v0, v1, v2] = self.vertices;
+        uv(ray, hit, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
+    }
+
+    /// The area of one side.
+    #[inline]
+    pub fn area(&self, vertices: &[Vec3]) -> f32 {
+        let [v0, v1, v2] = self.vertices;
+        area(vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
+    }
+
+    /// A point of it; see [`sample`].
+    #[inline]
+    pub fn sample(&self, u: Vec2, vertices: &[Vec3]) -> SurfacePoint {
+        let [v0, v1, v2] = self.vertices;
+        sample(u, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
     }
 
     /// The box of its vertices; not finite if one of them is not there.
@@ -88,8 +109,42 @@ fn axis_last(v: Vec3, k: u32) -> Vec3 {
     }
 }
 
-/// Where a ray meets the triangle: both sides, edges and vertices included. One without an area is
-/// never met.
+/// What `a - b` lost by rounding (Knuth, TAOCP 2, 4.2.2, theorem B).
+#[kernel]
+#[inline]
+fn lost_by_difference(a: Vec3, b: Vec3) -> Vec3 {
+    let difference = a - b;
+    let part = a - difference;
+    let rest = difference + part;
+    (a - rest) + (part - b)
+}
+
+/// What `a * b` lost by rounding (Dekker, 1971).
+#[kernel]
+#[inline]
+fn lost_by_product(a: f32, b: f32) -> f32 {
+    let (a_wide, b_wide) = (a * 4097.0, b * 4097.0);
+    let (a_high, b_high) = (a_wide - (a_wide - a), b_wide - (b_wide - b));
+    let (a_low, b_low) = (a - a_high, b - b_high);
+    ((a_high * b_high - a * b) + a_high * b_low + a_low * b_high) + a_low * b_low
+}
+
+/// Whether three points whose edges have a cross product of 0, as rounded, lie on one line exactly.
+/// Where the edges themselves are rounded, nothing is known and the answer is no.
+#[kernel]
+#[inline]
+fn is_line(v0: Vec3, v1: Vec3, v2: Vec3) -> bool {
+    let (a, b) = (v1 - v0, v2 - v0);
+    let (lost_a, lost_b) = (lost_by_difference(v1, v0), lost_by_difference(v2, v0));
+    let are_exact = lost_a.dot(lost_a) == 0.0 && lost_b.dot(lost_b) == 0.0;
+    are_exact
+        && lost_by_product(a.y, b.z) == lost_by_product(b.y, a.z)
+        && lost_by_product(a.z, b.x) == lost_by_product(b.z, a.x)
+        && lost_by_product(a.x, b.y) == lost_by_product(b.x, a.y)
+}
+
+/// Where a ray meets the triangle: both sides, edges and vertices included. One whose
+/// vertices lie on one line is never met.
 ///
 /// The watertight test of Woop, Benthin and Wald ("Watertight Ray/Triangle Intersection",
 /// JCGT 2013), divided by the determinant before it is scaled, so that it holds
@@ -153,10 +208,12 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
     if max(min_y - y, y - max_y) > y.abs() * SLACK {
         t = clamp(y, min_y, max_y) / d.y;
     }
-    // Vertices on one line have no inside: the signs are those of rounding errors.
+    // Vertices on one line have no inside: the signs are those of rounding errors. The area of a
+    // sliver may be rounded to nothing, and it closes a gap all the same.
     let n = (v1 - v0).cross(v2 - v0);
-    let has_area = n.x != 0.0 || n.y != 0.0 || n.z != 0.0;
-    let is_hit = has_area && t >= ray.t_min && t <= ray.t_max;
+    let is_flat = n.x == 0.0 && n.y == 0.0 && n.z == 0.0;
+    let is_surface = !(is_flat && is_line(v0, v1, v2));
+    let is_hit = is_surface && t >= ray.t_min && t <= ray.t_max;
     Hit { is_hit, t, prim_id: 0, u: v / sum, v: w / sum }
 }
 

@@ -7,6 +7,7 @@ use super::chunks::{Span, plan};
 use super::device::{Caps, Gpu};
 use super::error::GpuError;
 use super::window::{GpuWindow, WindowError};
+use crate::bvh::owner;
 use crate::machine::wgsl::{Buffer, BufferKey, Window};
 
 /// Bytes of one transfer: wgpu stages each in a buffer of its own, so this, twice, bounds
@@ -53,6 +54,13 @@ impl Uploads {
     /// Bytes sent so far.
     pub(super) fn uploaded(&self) -> u64 {
         self.uploaded
+    }
+
+    /// Drops what belongs to trees and lists that are no more.
+    pub(super) fn forget_gone(&mut self) {
+        let own = self.parts.iter().filter(|(_, upload)| !upload.external);
+        let gone = owner::gone(own.map(|((id, _), _)| *id));
+        self.parts.retain(|(id, _), upload| upload.external || !gone.contains(id));
     }
 
     /// Drops all parts of one owner.

@@ -136,6 +136,11 @@ impl Context {
         lock(&self.uploads).forget(id);
     }
 
+    /// Frees the scene buffers of trees that are no more.
+    pub(super) fn forget_gone(&self) {
+        lock(&self.uploads).forget_gone();
+    }
+
     /// Names a buffer of the application as the contents of `key`: `size` bytes from
     /// `offset`. Nothing is uploaded and nothing is copied.
     ///

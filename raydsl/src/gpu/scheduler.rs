@@ -93,6 +93,7 @@ impl GpuScheduler {
         size: [u32; 2],
         outputs: &mut [R],
     ) -> Result<Timing, GpuError> {
+        self.context.forget_gone();
         let each = stride(R::SCHEMA);
         let mut bytes = vec![0; each * outputs.len()];
         let timing = self.context.run(

@@ -34,6 +34,14 @@ pub trait OnHost {
     fn buffer(&self) -> (BufferKey, usize);
 }
 
+impl<D: OnHost + ?Sized> OnHost for &D {
+    type Element = D::Element;
+
+    fn buffer(&self) -> (BufferKey, usize) {
+        D::buffer(self)
+    }
+}
+
 impl<T: Type> OnHost for [T] {
     type Element = T;
 
@@ -112,8 +120,8 @@ pub enum WindowError {
     },
     /// The window has not the size of the slice.
     #[error(
-        "it has {size} bytes, but the slice is {len} elements of {stride} bytes, together {needed}: \
-         give a window of that size, with the elements as they lie in the slice"
+        "it has {size} bytes, but the data is {len} elements of {stride} bytes, together {needed}: \
+         give a window of that size, with the elements as they lie in memory"
     )]
     WrongSize {
         /// The window's size.
@@ -126,10 +134,10 @@ pub enum WindowError {
         needed: u64,
     },
     /// A slice without elements needs no buffer, and has no address of its own.
-    #[error("the slice is empty: kernels read nothing of it, leave the window out")]
+    #[error("the data is empty: kernels read nothing of it, leave the window out")]
     Empty,
     /// The slice has a window already.
-    #[error("the slice has a window already: drop that one first")]
+    #[error("the data has a window already: drop that one first")]
     Taken,
     /// The device does not take the buffer.
     #[error(
@@ -180,9 +188,9 @@ impl GpuScheduler {
     ///
     /// [`GpuError::Window`] if the window cannot be bound, has another size, or the buffer belongs
     /// to another device.
-    pub fn with_gpu<'a, D: OnHost + ?Sized>(
+    pub fn with_gpu<'a, D: OnHost + 'a>(
         &'a self,
-        data: &'a D,
+        data: D,
         window: GpuWindow,
     ) -> Result<OnGpu<'a>, GpuError> {
         let context = self.context();

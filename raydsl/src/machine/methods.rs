@@ -328,7 +328,8 @@ impl<M: Machine, P: Primitive> Method<{ name("primitive") }, M, (HitOn<M>,)> for
     #[inline(always)]
     fn call(self, m: &M, (hit,): (HitOn<M>,)) -> P::On<M> {
         let id = m.u32_select(hit.is_hit.0, hit.prim_id.0, m.u32(0));
-        m.fetch(&self, U(id))
+        // The hit may be that of another scene.
+        m.element(&self, U(id))
     }
 }
 

@@ -19,7 +19,10 @@ pub enum BuildError {
         limit: usize,
     },
     /// A bound is not a number.
-    #[error("the bounds of primitive {index} contain NaN: repair or remove the primitive")]
+    #[error(
+        "the bounds of primitive {index} contain NaN: repair or remove the primitive (an indexed \
+         triangle has such bounds if a vertex is not there)"
+    )]
     NanBounds {
         /// The primitive.
         index: usize,

@@ -56,7 +56,7 @@ pub(super) fn query<P: Primitive, R>(
         found(record);
         P::Hit::hit_on(record)
     };
-    let parts = prims.parts().iter();
+    let parts = prims.parts();
     let scene = Scene {
         ray,
         parts: parts

@@ -50,14 +50,26 @@ impl State {
 
     /// Whether a buffer cannot have the name: something has it, or a name that goes with it.
     fn is_taken_for_buffer(&self, name: &str) -> bool {
-        self.is_taken(name) || self.functions.iter().any(|f| belongs_to(f.name(), name))
+        // The parameter of a buffer's functions would hide a buffer of its name.
+        name == "i"
+            || self.is_taken(name)
+            || self.functions.iter().any(|f| belongs_to(f.name(), name))
     }
 }
 
 /// Whether `name` is a buffer's, or that of a function that goes with it.
 fn belongs_to(name: &str, buffer: &str) -> bool {
-    const FUNCTIONS: [&str; 7] =
-        ["_at", "_element", "_len", "_closest_hit", "_any_hit", "_walk", "_next"];
+    const FUNCTIONS: [&str; 9] = [
+        "_at",
+        "_element",
+        "_len",
+        "_closest_hit",
+        "_closer_hit",
+        "_any_hit",
+        "_any_hit_in",
+        "_walk",
+        "_next",
+    ];
     name.strip_prefix(buffer).is_some_and(|rest| {
         rest.is_empty() || FUNCTIONS.contains(&rest) || rest.starts_with("_part")
     })
@@ -334,7 +346,9 @@ impl Recorder {
                 .position(|u| u.name == name && u.ty == ty && u.words == words);
             same.unwrap_or_else(|| {
                 let taken = |n: &str| state.uniforms.iter().any(|u| u.name == n);
-                let name = unique(&safe_name(name), taken);
+                // The lengths of buffers are in the same block.
+                let prefix = if name.starts_with("len_of_") { "captured_" } else { "" };
+                let name = unique(&safe_name(&format!("{prefix}{name}")), taken);
                 state.uniforms.push(Uniform { name, ty, words });
                 state.uniforms.len() - 1
             })

@@ -154,7 +154,7 @@ fn element_text(name: &str, value: &str) -> String {
     format!(
         "\n/// The last element stands for those out of range.\n\
          fn {name}_element(i: u32) -> {value} {{\n    \
-         return {name}_at(min(i, params.len_of_{name} - 1u));\n}}\n"
+         return {name}_at(min(i, max(params.len_of_{name}, 1u) - 1u));\n}}\n"
     )
 }
 
@@ -178,21 +178,23 @@ fn function_text(state: &State, i: usize, names: &mut Names) -> String {
 /// The functions that the entry needs, callees first. The text decides: what was recorded behind a
 /// condition of the host that never holds is not in it.
 fn reachable(state: &State, entry: usize) -> Vec<usize> {
-    fn visit(state: &State, i: usize, seen: &mut Vec<usize>) {
-        if seen.contains(&i) {
+    fn visit(state: &State, i: usize, seen: &mut Vec<usize>, under_way: &mut Vec<usize>) {
+        if seen.contains(&i) || under_way.contains(&i) {
             return;
         }
+        under_way.push(i);
         let text = function_text(state, i, &mut Names::new());
         let words = identifiers(&text);
         for (j, g) in state.functions.iter().enumerate() {
             if j != i && words.contains(g.name()) {
-                visit(state, j, seen);
+                visit(state, j, seen, under_way);
             }
         }
+        under_way.pop();
         seen.push(i);
     }
     let mut seen = Vec::new();
-    visit(state, entry, &mut seen);
+    visit(state, entry, &mut seen, &mut Vec::new());
     seen
 }
 
