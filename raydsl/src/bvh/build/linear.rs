@@ -38,7 +38,7 @@ pub(super) fn grow(
     let budget = depth::budget(references.len());
     let range = Range { keys: &mut keys, first: 0, budget, is_recoded: false };
     let part = grow_part(range, references, config);
-    (part, keys.into_iter().map(|key| key.index).collect())
+    (part, keys.into_iter().map(Key::index).collect())
 }
 
 /// What becomes a subtree.
@@ -53,15 +53,45 @@ struct Range<'a> {
     is_recoded: bool,
 }
 
-fn grow_part(range: Range, references: &[Reference], config: &BuildConfig) -> Part {
+impl Range<'_> {
+    /// Gives primitives of one code codes within their own cube; returns whether it did, and so may
+    /// have moved them.
+    fn tell_apart(&mut self, references: &[Reference], config: &BuildConfig) -> bool {
+        let is_needed = !self.is_recoded
+            && self.keys.len() > config.max_leaf_size as usize
+            && first_of_upper_half(self.keys).is_none();
+        if is_needed {
+            morton::order_again(self.keys, references);
+            self.is_recoded = true;
+        }
+        is_needed
+    }
+
+    /// The two children of a range of at least two.
+    fn split(self) -> [Self; 2] {
+        let Self { keys, first, budget, is_recoded } = self;
+        let count = keys.len();
+        let middle = first_of_upper_half(keys)
+            .filter(|&middle| depth::allows(budget, middle, count - middle))
+            .unwrap_or(count / 2);
+        let (before, after) = keys.split_at_mut(middle);
+        let budget = budget - 1;
+        [
+            Self { keys: before, first, budget, is_recoded },
+            Self { keys: after, first: first + middle as u32, budget, is_recoded },
+        ]
+    }
+}
+
+fn grow_part(mut range: Range, references: &[Reference], config: &BuildConfig) -> Part {
     if range.keys.len() <= PIECE {
-        let nodes = Vec::with_capacity(2 * range.keys.len());
-        let mut subtree = Subtree { references, config, nodes };
+        let mut subtree = Subtree::new(&range, references, config);
         let root = subtree.grow(range).node;
         subtree.nodes.shrink_to_fit();
         return Part::Whole { root, below: subtree.nodes };
     }
-    let [left, right] = split(range, references, config);
+    range.tell_apart(references, config);
+    let [left, right] = range.split();
     let (left, right) = tasks::join(
         || grow_part(left, references, config),
         || grow_part(right, references, config),
@@ -73,6 +103,11 @@ fn grow_part(range: Range, references: &[Reference], config: &BuildConfig) -> Pa
 struct Subtree<'a> {
     references: &'a [Reference],
     config: &'a BuildConfig,
+    /// The position of its first key among all.
+    first: u32,
+    /// The boxes of its primitives, in the order of the keys. They may be anywhere in memory: one
+    /// loop that gets them all waits for several at a time, the recursion for one after another.
+    boxes: Vec<Bounds>,
     nodes: Vec<Node>,
 }
 
@@ -84,36 +119,54 @@ struct Grown {
     cost: f64,
 }
 
-impl Subtree<'_> {
-    /// Appends the nodes below the range's own, which is returned.
-    fn grow(&mut self, range: Range) -> Grown {
-        let (first, count) = (range.first, range.keys.len() as u32);
-        if let [key] = range.keys {
-            let bounds = self.references[key.index as usize].bounds();
-            return self.leaf(bounds, first, count);
+impl<'a> Subtree<'a> {
+    fn new(range: &Range, references: &'a [Reference], config: &'a BuildConfig) -> Self {
+        let count = range.keys.len();
+        let boxes = vec![Bounds::EMPTY; count];
+        let nodes = Vec::with_capacity(2 * count);
+        let mut subtree = Self { references, config, first: range.first, boxes, nodes };
+        subtree.gather(range);
+        subtree
+    }
+
+    /// Gets the boxes of a range.
+    fn gather(&mut self, range: &Range) {
+        let boxes = &mut self.boxes[(range.first - self.first) as usize..];
+        for (bounds, key) in boxes.iter_mut().zip(&*range.keys) {
+            *bounds = self.references[key.index() as usize].bounds();
         }
-        let children = split(range, self.references, self.config);
+    }
+
+    /// Appends the nodes below the range's own, which is returned.
+    fn grow(&mut self, mut range: Range) -> Grown {
+        let (first, count) = (range.first, range.keys.len() as u32);
+        if count == 1 {
+            let bounds = self.boxes[(first - self.first) as usize];
+            let cost = self.leaf_cost(count, area(bounds));
+            return Grown { node: Node::leaf(bounds.to_aabb(), first, count), bounds, cost };
+        }
+        if range.tell_apart(self.references, self.config) {
+            self.gather(&range);
+        }
         let below = self.nodes.len();
         // Room for the children: what is below them comes after both.
         self.nodes.extend([Node::inner(Bounds::EMPTY.to_aabb(), 0); 2]);
-        let [left, right] = children.map(|child| self.grow(child));
+        let [left, right] = range.split().map(|child| self.grow(child));
         let bounds = left.bounds.union(right.bounds);
-        let cost = f64::from(self.config.traversal_cost) * area(bounds) + left.cost + right.cost;
-        if count <= self.config.max_leaf_size {
-            let leaf = self.leaf(bounds, first, count);
-            if leaf.cost <= cost {
-                self.nodes.truncate(below);
-                return leaf;
-            }
+        let area = area(bounds);
+        let split_cost = f64::from(self.config.traversal_cost) * area + left.cost + right.cost;
+        let cost = self.leaf_cost(count, area);
+        if count <= self.config.max_leaf_size && cost <= split_cost {
+            self.nodes.truncate(below);
+            return Grown { node: Node::leaf(bounds.to_aabb(), first, count), bounds, cost };
         }
         self.nodes[below] = left.node;
         self.nodes[below + 1] = right.node;
-        Grown { node: Node::inner(bounds.to_aabb(), below as u32), bounds, cost }
+        Grown { node: Node::inner(bounds.to_aabb(), below as u32), bounds, cost: split_cost }
     }
 
-    fn leaf(&self, bounds: Bounds, first: u32, count: u32) -> Grown {
-        let cost = f64::from(self.config.intersection_cost) * f64::from(count) * area(bounds);
-        Grown { node: Node::leaf(bounds.to_aabb(), first, count), bounds, cost }
+    fn leaf_cost(&self, count: u32, area: f64) -> f64 {
+        f64::from(self.config.intersection_cost) * f64::from(count) * area
     }
 }
 
@@ -122,35 +175,9 @@ fn area(bounds: Bounds) -> f64 {
     bounds.to_aabb().half_area_f64()
 }
 
-/// The two children of a range of at least two.
-fn split<'a>(range: Range<'a>, references: &[Reference], config: &BuildConfig) -> [Range<'a>; 2] {
-    let Range { keys, first, budget, mut is_recoded } = range;
-    let count = keys.len();
-    let mut middle = first_of_upper_half(keys);
-    if middle.is_none() && !is_recoded && count > config.max_leaf_size as usize {
-        morton::order(keys, references, &centroids(keys, references));
-        is_recoded = true;
-        middle = first_of_upper_half(keys);
-    }
-    let middle =
-        middle.filter(|&middle| depth::allows(budget, middle, count - middle)).unwrap_or(count / 2);
-    let (before, after) = keys.split_at_mut(middle);
-    let budget = budget - 1;
-    [
-        Range { keys: before, first, budget, is_recoded },
-        Range { keys: after, first: first + middle as u32, budget, is_recoded },
-    ]
-}
-
 /// The first key that has the highest bit in which codes differ; `None` if they are all the same.
 fn first_of_upper_half(keys: &[Key]) -> Option<usize> {
     let [first, .., last] = keys else { return None };
-    let bit = (first.code ^ last.code).checked_ilog2()?;
-    Some(keys.partition_point(|key| key.code >> bit & 1 == 0))
-}
-
-/// The box around the centroids.
-fn centroids(keys: &[Key], references: &[Reference]) -> Bounds {
-    let centroid = |key: &Key| references[key.index as usize].centroid();
-    keys.iter().map(centroid).fold(Bounds::EMPTY, Bounds::with)
+    let bit = (first.code() ^ last.code()).checked_ilog2()?;
+    Some(keys.partition_point(|key| key.code() >> bit & 1 == 0))
 }

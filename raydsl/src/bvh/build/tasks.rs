@@ -52,6 +52,24 @@ pub(super) fn map_pieces_mut<T: Send, R: Send>(
     items.chunks_mut(size).enumerate().map(|(k, piece)| f(k * size, piece)).collect()
 }
 
+/// Maps all items, in pieces of at least `size` of them.
+pub(super) fn map<T: Sync, R: Send>(
+    items: &[T],
+    size: usize,
+    f: impl Fn(&T) -> R + Sync + Send,
+) -> Vec<R> {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        items.par_iter().with_min_len(size).map(f).collect()
+    }
+    #[cfg(not(feature = "parallel"))]
+    {
+        let _ = size;
+        items.iter().map(f).collect()
+    }
+}
+
 /// Sorts; equal items are the same, so that their order is of no account.
 pub(super) fn sort<T: Ord + Send>(items: &mut [T]) {
     #[cfg(feature = "parallel")]
