@@ -4,7 +4,7 @@ use raydsl::kernel;
 use raydsl::prelude::*;
 
 // ANCHOR: struct
-/// A ring: all that is no farther than `minor` from a circle.
+/// A ring: all that is no farther than `minor` from a circle. One that has no hole is never hit.
 #[primitive]
 #[derive(Debug)]
 pub(crate) struct Torus {
@@ -14,30 +14,33 @@ pub(crate) struct Torus {
     pub(crate) major: f32,
     /// What the circle turns around, of length 1.
     pub(crate) axis: Vec3,
-    /// The radius of the tube.
+    /// The radius of the tube, less than that of the circle.
     pub(crate) minor: f32,
 }
 // ANCHOR_END: struct
 
 // ANCHOR: line
 /// A line seen from a ring: its point at `s` is at the height `height.x + height.y * s` above the
-/// circle's plane, and at `aside + step * s` in it.
+/// circle's plane, and at `aside + step * s` in it. It is closest to the
+/// middle at 0.
 #[derive(Clone, Copy, Debug, Type)]
 struct Line {
     height: Vec2,
     aside: Vec3,
     step: Vec3,
+    moment: f32,
 }
 
-/// The square of the distance from the circle, less that of the tube's radius; and how it grows.
+/// The square of the distance from the circle, less that of the tube's radius; its derivative; and
+/// the distance from the axis.
 #[kernel]
-fn gap(line: Line, major: f32, minor: f32, s: f32) -> Vec2 {
+fn gap(line: Line, major: f32, minor: f32, s: f32) -> Vec3 {
     let aside = line.aside + line.step * s;
-    let radius = aside.length();
+    let radius = max(aside.length(), 1e-12);
     let (x, y) = (radius - major, line.height.x + line.height.y * s);
     let distance = (x * x + y * y).sqrt();
-    let growth = s - major * aside.dot(line.step) / max(radius, 1e-12);
-    vec2((distance - minor) * (distance + minor), 2.0 * growth)
+    let growth = s - major * aside.dot(line.step) / radius;
+    vec3((distance - minor) * (distance + minor), 2.0 * growth, radius)
 }
 // ANCHOR_END: line
 
@@ -76,15 +79,19 @@ fn root(
         if s < low - 4e-6 || s > high + 4e-6 {
             break;
         }
-        if step * step < 1e-3 * minor * g.y.abs() {
+        // Half the second derivative, which is about the same where the step leads to.
+        let bend = 1.0 + line.moment / (g.z * g.z * g.z);
+        if step * step * bend < 1e-3 * minor * g.y.abs() && step.abs() < 0.1 * g.z {
             is_met = true;
             break;
         }
     }
-    // What is left is at most a thousandth of the tube; one more step squares that.
+    // What is left is about a thousandth of the tube, and each step more squares that.
     if is_met {
-        let g = gap(line, major, minor, s);
-        s -= clamp(g.x / g.y, -1e-3 * minor, 1e-3 * minor);
+        for _ in 0..2u32 {
+            let g = gap(line, major, minor, s);
+            s -= clamp(g.x / g.y, -1e-3 * minor, 1e-3 * minor);
+        }
     }
     Root { is_met, s }
 }
@@ -95,40 +102,43 @@ impl Torus {
     // ANCHOR: slack
     /// With u = 2^-24: on the way to its point next to the centre the ray is moved by at most 16 u
     /// of the distance. From there on everything has the size of the ring: the gap is known to
-    /// within 8 u, a root to within 16 u, and what comes as close as 3.4e-6 of the tube (57 u) may be
-    /// taken for one. That makes 97 u; 128 are allowed.
-    const SLACK: f32 = 1.0 / 131_072.0;
+    /// within 8 u, a root to within 4 u, and what comes as close as 3.4e-6 of the tube, which is
+    /// less than half of the ring, may be taken for one: 28 u. That makes 56 u; 64 are allowed.
+    const SLACK: f32 = 1.0 / 262_144.0;
     // ANCHOR_END: slack
 
     // ANCHOR: intersect
     fn intersect(&self, ray: Ray) -> Hit {
         // From the ray's point next to the centre, in units of the ring's size: nothing cancels,
-        // overflows or underflows, wherever the ray comes from.
+        // overflows or underflows, wherever the ray comes from. From far away it takes two steps.
         let reach = self.major + self.minor;
         let scale = ray.direction.abs().max_element();
         let length = (ray.direction / scale).length();
         let d = ray.direction / scale / length;
         let offset = ray.origin - self.center;
-        let along = -offset.dot(d);
-        let near = (offset + d * along) / reach;
+        let first = -offset.dot(d);
+        let rest = -(offset + d * first).dot(d);
+        let near = (offset + d * first + d * rest) / reach;
+        let along = first + rest;
         let square = 1.00001 - near.dot(near);
-        if !(square >= 0.0 && self.minor > 0.0 && self.major >= 0.0) {
+        if !(square >= 0.0 && self.minor > 0.0 && self.minor < self.major) {
             return Hit::miss();
         }
         let half = square.sqrt();
         let (major, minor) = (self.major / reach, self.minor / reach);
         let height = vec2(near.dot(self.axis), d.dot(self.axis));
         let (aside, step) = (near - self.axis * height.x, d - self.axis * height.y);
-        let line = Line { height, aside, step };
+        let turn = aside.cross(step).length_squared();
+        let moment = major * turn;
+        let line = Line { height, aside, step, moment };
 
         // The gap is convex, but for a part in the middle, next to the axis, where it is concave.
         let (mut from, mut to) = (half, half);
         let slant = step.dot(step);
         if slant > 1e-6 {
-            let moment = aside.cross(step).length_squared();
             let middle = -aside.dot(step) / slant;
-            let bend = pow(major * moment, 2.0 / 3.0) - moment / slant;
-            let width = (max(bend, 0.0) / slant).sqrt();
+            let bend = pow(moment, 2.0 / 3.0) - turn / slant;
+            let width = max((max(bend, 0.0) / slant).sqrt(), 1e-4);
             (from, to) = (middle - width, middle + width);
         }
 
