@@ -127,7 +127,8 @@ impl Torus {
         let half = square.sqrt();
         let (major, minor) = (self.major / reach, self.minor / reach);
         let height = vec2(near.dot(self.axis), d.dot(self.axis));
-        let (aside, step) = (near - self.axis * height.x, d - self.axis * height.y);
+        let aside = near - self.axis * height.x;
+        let step = d - self.axis * height.y;
         let turn = aside.cross(step).length_squared();
         let moment = major * turn;
         let line = Line { height, aside, step, moment };

@@ -2,12 +2,15 @@
 //!
 //! `RAYDSL_BLESS=1` rewrites `book/src/generated/torus.wgsl`.
 
+use hair::Hair;
 use raydsl::prelude::*;
 use raydsl_tests::check::every_variant;
 use raydsl_tests::rng::Rng;
 use raydsl_tests::scaled;
 use torus::Torus;
 
+#[path = "../../examples/hair/shape.rs"]
+mod hair;
 #[path = "../../examples/torus/shape.rs"]
 mod torus;
 
@@ -305,6 +308,203 @@ fn rings_agree() {
         let normal = if hit.is_hit { bvh.primitive(hit).normal(ray, hit) } else { Vec3::ZERO };
         (hit, normal, bvh.any_hit(ray))
     });
+    every_variant(&kernel, &rays);
+}
+
+/// The curve at `u`.
+fn curve(hair: &Hair, u: f64) -> D3 {
+    let mut p = hair.control.map(wide);
+    for k in 0..3 {
+        for j in 0..3 - k {
+            p[j] = std::array::from_fn(|i| p[j][i] + (p[j + 1][i] - p[j][i]) * u);
+        }
+    }
+    p[0]
+}
+
+fn radius(hair: &Hair, u: f64) -> f64 {
+    f64::from(hair.root) * (1.0 - u) + f64::from(hair.tip) * u
+}
+
+/// The `u` of the least `f`: of many, and then closer and closer around that.
+fn least(f: impl Fn(f64) -> f64) -> (f64, f64) {
+    let (mut best, mut width) = ((0.5, f(0.5)), 0.5);
+    for count in [2000, 40, 40, 40] {
+        let middle = best.0;
+        for i in 0..=count {
+            let u = middle + width * (2.0 * f64::from(i) / f64::from(count) - 1.0);
+            if (0.0..=1.0).contains(&u) && f(u) < best.1 {
+                best = (u, f(u));
+            }
+        }
+        width *= 3.0 / f64::from(count);
+    }
+    best
+}
+
+/// A hair that turns by up to about `bend` radians on its way.
+fn random_hair(rng: &mut Rng, size: f32, bend: f32) -> Hair {
+    let mut direction = rng.direction().normalize();
+    let mut at = rng.point(size);
+    let mut control = [at; 4];
+    for p in &mut control[1..] {
+        at += direction * (size * rng.range(0.3, 0.5));
+        direction = (direction + rng.direction().normalize() * (0.5 * bend)).normalize();
+        *p = at;
+    }
+    let root = size * rng.pick(&[0.002, 0.01, 0.03]);
+    Hair { control, root, tip: root * rng.pick(&[0.1, 0.5, 1.0]) }
+}
+
+/// How a hair's answers compare with the least of all distances at which the ray enters a ball of
+/// those along the curve.
+#[derive(Debug, Default)]
+struct Tally {
+    hits: u32,
+    /// Hits that are not there, or not on the hair, or beside its ends.
+    wrong: u32,
+    /// Rays that pass far through the hair, between its ends, without a hit.
+    lost: u32,
+    /// Hits behind the first place where the ray enters.
+    late: u32,
+}
+
+fn tally(rng: &mut Rng, count: usize, bend: f32) -> Tally {
+    let mut tally = Tally::default();
+    for _ in 0..count {
+        let size = 10f32.powi(rng.pick(&[-6, -2, 0, 0, 2, 6]));
+        let hair = random_hair(rng, size, bend);
+        let far = size * rng.pick(&[2.0, 20.0, 500.0]);
+        let at = curve(&hair, f64::from(rng.range(0.02, 0.98))).map(|x| x as f32);
+        let origin = Vec3::from(at) + rng.direction().normalize() * far;
+        let aim = Vec3::from(at) + rng.point(1.2 * hair.root);
+        let ray = Ray::new(origin, (aim - origin) * rng.pick(&[1e-3, 1.0, 50.0]));
+        let (line, slack) =
+            (Wide::new(ray), f64::from(Hair::SLACK) * farthest(ray, hair.get_bounds()));
+        let beside = |u: f64| {
+            let p = plus(curve(&hair, u), line.origin, -1.0);
+            length(plus(p, line.direction, -dot(p, line.direction))) - radius(&hair, u)
+        };
+        let (_, depth) = least(beside);
+        let entry = |u: f64| {
+            let p = plus(curve(&hair, u), line.origin, -1.0);
+            let z = dot(p, line.direction);
+            let aside = length(plus(p, line.direction, -z));
+            let square = radius(&hair, u).powi(2) - aside * aside;
+            if square > 0.0 { z - square.sqrt() } else { f64::INFINITY }
+        };
+        let (u, z) = least(entry);
+        let thick = f64::from(hair.root.min(hair.tip));
+        let hit = hair.intersect(ray);
+        if hit.hit.is_hit {
+            tally.hits += 1;
+            let found = f64::from(hit.hit.t) * line.scale;
+            let p = line.at(found);
+            let on = |u: f64| length(plus(p, curve(&hair, u), -1.0)) - radius(&hair, u);
+            let distance = on(f64::from(hit.share)).abs();
+            // A disc across the curve is not a ball where the hair gets thinner.
+            let off = slack + 0.02 * f64::from(hair.root);
+            tally.wrong += u32::from(distance > off || least(on).1.abs() > off || depth > slack);
+            let is_clear = depth < -0.1 * thick - slack && (0.02..0.98).contains(&u);
+            tally.late +=
+                u32::from(is_clear && found > z + 2.0 * f64::from(hair.root) + 20.0 * slack);
+        } else {
+            let is_through = depth < -0.1 * thick - slack && (0.02..0.98).contains(&u);
+            tally.lost += u32::from(is_through && z.is_finite());
+        }
+    }
+    tally
+}
+
+/// Of hairs that bend gently hardly a hit is lost, of hairs that are curled a few are.
+#[test]
+fn a_hair_is_hit_where_f64_says() {
+    let mut rng = Rng::of("hairs in f64");
+    let count = scaled(4000);
+    for (bend, lost) in [(0.1, 0.0005), (0.5, 0.0005), (1.0, 0.001), (2.0, 0.01)] {
+        let tally = tally(&mut rng, count, bend);
+        println!("bend {bend}: {tally:?} of {count}");
+        assert!(tally.hits > count as u32 / 4 && tally.wrong == 0, "{tally:?}");
+        assert!(f64::from(tally.lost + tally.late) < lost * count as f64 + 1.5, "{tally:?}");
+    }
+}
+
+#[test]
+fn hairs_that_are_none() {
+    let points = [0.0, 1.0, 2.0, 3.0].map(|x| vec3(x, 0.0, 0.0));
+    let hair = Hair { control: points, root: 0.1, tip: 0.1 };
+    let across = Ray::new(vec3(1.5, 0.0, 2.0), -Vec3::Z);
+    let hit = hair.intersect(across);
+    assert!(hit.hit.is_hit && (hit.hit.t - 1.9).abs() < 1e-6 && (hit.share - 0.5).abs() < 1e-4);
+    assert_eq!(hit.tangent, Vec3::X);
+    // Behind the ray, before its range, and around its origin.
+    assert!(!hair.intersect(Ray::new(vec3(1.5, 0.0, -2.0), -Vec3::Z)).hit.is_hit);
+    assert!(!hair.intersect(across.with_range(1.95, 9.0)).hit.is_hit);
+    assert!(!hair.intersect(Ray::new(vec3(1.5, 0.05, 0.0), -Vec3::Z)).hit.is_hit);
+    // Along the axis: its ends are open.
+    for y in [0.0, 0.05, 0.2] {
+        assert!(!hair.intersect(Ray::new(vec3(-2.0, y, 0.0), Vec3::X)).hit.is_hit);
+    }
+    // But a hair that gets thicker is seen from its thin end.
+    let horn = Hair { root: 0.01, ..hair };
+    let hit = horn.intersect(Ray::new(vec3(-2.0, 0.055, 0.0), Vec3::X)).hit;
+    assert!(hit.is_hit && (hit.t - 3.5).abs() < 1e-3, "{hit:?}");
+    let none = [
+        Hair { root: 0.0, tip: 0.0, ..hair },
+        Hair { control: [points[1]; 4], ..hair },
+        Hair { root: -1.0, tip: -1.0, ..hair },
+        Hair { root: f32::NAN, tip: f32::NAN, ..hair },
+        Hair { control: [Vec3::splat(f32::NAN); 4], ..hair },
+    ];
+    for hair in none {
+        let ray = Ray::new(vec3(1.0, 0.0, 2.0), -Vec3::Z);
+        assert!(!hair.intersect(ray).hit.is_hit, "{hair:?}");
+    }
+}
+
+#[test]
+fn hairs_are_in_their_boxes() {
+    let mut rng = Rng::of("hairs in boxes");
+    for _ in 0..scaled(500) {
+        let size = 10f32.powi(rng.below(8) as i32 - 4);
+        let hair = random_hair(&mut rng, size, 1.0);
+        let whole = hair.get_bounds();
+        let axis = rng.below(3);
+        let at = rng.range(whole.min[axis], whole.max[axis]);
+        let (below, above) = hair.split_primitive(axis, at);
+        let holds = |b: Aabb, p: D3| {
+            (0..3).all(|i| f64::from(b.min[i]) <= p[i] && p[i] <= f64::from(b.max[i]))
+        };
+        let mut seen = Aabb::EMPTY;
+        for i in 0..=400 {
+            let u = f64::from(i) / 400.0;
+            let (c, r) = (curve(&hair, u), radius(&hair, u) * (1.0 - 1e-12));
+            for side in 0..6 {
+                let mut p = c;
+                p[side / 2] += if side % 2 == 0 { r } else { -r };
+                assert!(holds(whole, p), "{p:?} is not in {whole:?}");
+                let part = if p[axis] <= f64::from(at) { below } else { above };
+                assert!(holds(part, p), "{p:?} is not in {part:?}, cut at {at}");
+                let p = Vec3::from(p.map(|x| x as f32));
+                seen = seen.union(Aabb::new(p, p));
+            }
+        }
+        // They are tight.
+        let spare = (whole.size() - seen.size()).max_element();
+        assert!(spare < 0.02 * size, "{spare} of {size}");
+        assert!(below.max[axis] <= at && above.min[axis] >= at);
+    }
+}
+
+#[test]
+fn hairs_agree() {
+    let mut rng = Rng::of("hairs agree");
+    let hairs: Vec<Hair> = (0..300).map(|_| random_hair(&mut rng, 1.0, 1.0)).collect();
+    let rays = rays(&mut rng, scaled(4000), 2.0);
+    let hits = assert_queries(&hairs, &rays);
+    assert!(hits > rays.len() / 10, "{hits} hits");
+    let bvh = Bvh::build(&hairs).expect("finite bounds");
+    let kernel = kernel!(|ray: Ray| (bvh.closest_hit(ray), bvh.any_hit(ray)));
     every_variant(&kernel, &rays);
 }
 

@@ -74,18 +74,18 @@ fn Torus_intersect(self_: Torus, ray: Ray) -> Hit {
     let minor = self_.minor / reach;
     let t_4 = near.x * self_.axis.x + near.y * self_.axis.y + near.z * self_.axis.z;
     let t_5 = d.x * self_.axis.x + d.y * self_.axis.y + d.z * self_.axis.z;
-    let parts_2 = near - self_.axis * t_4;
+    let aside = near - self_.axis * t_4;
     let step_ = d - self_.axis * t_5;
-    let t_6 = parts_2.y * step_.z - step_.y * parts_2.z;
-    let t_7 = parts_2.z * step_.x - step_.z * parts_2.x;
-    let t_8 = parts_2.x * step_.y - step_.x * parts_2.y;
+    let t_6 = aside.y * step_.z - step_.y * aside.z;
+    let t_7 = aside.z * step_.x - step_.z * aside.x;
+    let t_8 = aside.x * step_.y - step_.x * aside.y;
     let turn = t_6 * t_6 + t_7 * t_7 + t_8 * t_8;
     let moment = major * turn;
     var from_: f32 = half;
     var to: f32 = half;
     let slant = step_.x * step_.x + step_.y * step_.y + step_.z * step_.z;
     if (slant > 1e-6f) {
-        let middle = -(parts_2.x * step_.x + parts_2.y * step_.y + parts_2.z * step_.z) / slant;
+        let middle = -(aside.x * step_.x + aside.y * step_.y + aside.z * step_.z) / slant;
         let bend = pow_(moment, 0.6666667f) - turn / slant;
         let t_9 = sqrt(select(bend, 0.0f, bend < 0.0f) / slant);
         let width = select(t_9, 0.0001f, t_9 < 0.0001f);
@@ -103,7 +103,7 @@ fn Torus_intersect(self_: Torus, ray: Ray) -> Hit {
         let sign__1 = sign_;
         let is_convex = (part == 1u) != (sign__1 > 0.0f);
         let sign__2 = sign_;
-        let root_ = root(Line(vec2<f32>(t_4, t_5), parts_2, step_, moment), major, minor, s, end, sign__2, is_convex);
+        let root_ = root(Line(vec2<f32>(t_4, t_5), aside, step_, moment), major, minor, s, end, sign__2, is_convex);
         let t_11 = (along + root_.s * reach) / length_ / scale;
         if (root_.is_met && t_11 >= ray.t_min) {
             return Hit_new(true, t_11);
