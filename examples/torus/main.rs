@@ -1,0 +1,127 @@
+//! A primitive of one's own, from the struct to the picture: rings, woven into mail.
+//!
+//! `cargo run --release --example torus -- FOLDER` writes `torus.png` to FOLDER (`out` if none is
+//! given) and says how the variants agree; with `--wgsl` instead it prints the kernel's WGSL.
+
+mod shape;
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::{env, fs};
+
+use raydsl::kernel;
+use raydsl::prelude::*;
+use raydsl::report::Compare;
+use shape::Torus;
+
+// ANCHOR: scene
+/// Rows of rings that lean left and right in turn: each holds two of the row before and two of the
+/// row behind. They lie on a floor, over something round.
+fn mail(columns: i32, rows: i32) -> Vec<Torus> {
+    let cloth = |x: f32, y: f32| {
+        let fold = 0.5 * (0.35 * x + 0.2 * y).sin() * (0.3 * y - 0.1 * x).cos();
+        let hill = 3.2 * (-(x * x + y * y) / 24.0).exp();
+        vec3(x, 1.4 + hill + fold, -y)
+    };
+    let ring = |column: i32, row: i32| {
+        let lean: f32 = if row % 2 == 0 { 0.64 } else { -0.64 };
+        let x = 1.2 * (column as f32 - 0.5 * columns as f32 + 0.5) + 0.3 * lean.signum();
+        let y = 1.2 * (row as f32 - 0.5 * rows as f32 + 0.5);
+        let right = (cloth(x + 0.1, y) - cloth(x - 0.1, y)).normalize();
+        let away = (cloth(x, y + 0.1) - cloth(x, y - 0.1)).normalize();
+        let axis = (right.cross(away) * (1.0 - lean * lean).sqrt() + right * lean).normalize();
+        Torus { center: cloth(x, y), major: 1.0, axis, minor: 0.19 }
+    };
+    (0..rows).flat_map(|row| (0..columns).map(move |column| ring(column, row))).collect()
+}
+// ANCHOR_END: scene
+
+/// What is around: a dark room with a window on the left and a lamp above.
+#[kernel]
+fn room(d: Vec3) -> Vec3 {
+    let window = smooth(0.25, 0.1, (d.x + 0.7).abs()) * smooth(0.35, 0.15, (d.y - 0.5).abs());
+    let lamp = smooth(0.75, 0.95, d.y);
+    let floor = vec3(0.10, 0.09, 0.10);
+    let wall = vec3(0.16, 0.19, 0.25);
+    let around = floor + (wall - floor) * smooth(-0.4, 0.6, d.y);
+    max(around, max(vec3(1.3, 1.43, 1.69) * window, vec3(1.17, 0.99, 0.81) * lamp))
+}
+
+/// 0 at `a` and 1 at `b`, without a kink.
+#[kernel]
+fn smooth(a: f32, b: f32, x: f32) -> f32 {
+    let share = clamp((x - a) / (b - a), 0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}
+
+/// The picture at half its size: each pixel is the mean of four.
+fn halved(image: &Image) -> Image {
+    let mut small = Image::new(image.width() / 2, image.height() / 2);
+    let width = small.width() as usize;
+    for (i, pixel) in small.pixels_mut().iter_mut().enumerate() {
+        let first = 4 * width * (i / width) + 2 * (i % width);
+        let four = [first, first + 1, first + 2 * width, first + 2 * width + 1];
+        pixel.color =
+            four.map(|j| image.pixels()[j].color.min(Vec3::ONE)).iter().sum::<Vec3>() / 4.0;
+    }
+    small
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let argument = env::args().nth(1).unwrap_or_else(|| "out".to_owned());
+
+    // ANCHOR: kernel
+    let (columns, rows) = (15u32, 12u32);
+    let rings = mail(columns as i32, rows as i32);
+    let bvh = Bvh::build(&rings)?;
+    let sun = vec3(-0.5, 0.75, 0.45).normalize();
+    let primary = kernel!(|ray: Ray| {
+        let hit = bvh.closest_hit(ray);
+        if !hit.is_hit {
+            let t = -ray.origin.y / ray.direction.y;
+            let at = ray.at(t);
+            let is_dark = bvh.any_hit(Ray::new(at, sun));
+            let far = (at.x * at.x + at.z * at.z) / 900.0;
+            let light = (if is_dark { 0.25 } else { 1.0 }) / (1.0 + far);
+            return Shaded { color: vec3(0.42, 0.36, 0.31) * light, depth: t, id: 0xffff_ffffu32 };
+        }
+        let normal = bvh.primitive(hit).normal(ray, hit);
+        let at = ray.at(hit.t) + normal * 0.002;
+        let (column, row) = (hit.prim_id % columns, hit.prim_id / columns);
+        let edge = min(min(column, columns - 1 - column), min(row, rows - 1 - row));
+        let metal = if edge < 2 { vec3(0.95, 0.68, 0.3) } else { vec3(0.7, 0.71, 0.74) };
+        let mirrored = ray.direction.reflect(normal);
+        let mut light = vec3(0.03, 0.03, 0.04);
+        if !bvh.any_hit(Ray::new(at, mirrored)) {
+            light += room(mirrored);
+        }
+        if normal.dot(sun) > 0.0 && !bvh.any_hit(Ray::new(at, sun)) {
+            light += 0.45 * normal.dot(sun);
+            light = max(light, Vec3::splat(2.0 * pow(max(mirrored.dot(sun), 0.0), 60.0)));
+        }
+        Shaded { color: metal * light, depth: hit.t, id: hit.prim_id }
+    });
+    // ANCHOR_END: kernel
+
+    // ANCHOR: wgsl
+    if argument == "--wgsl" {
+        println!("{}", primary.wgsl());
+        return Ok(());
+    }
+    // ANCHOR_END: wgsl
+
+    // ANCHOR: picture
+    let folder = PathBuf::from(argument);
+    fs::create_dir_all(&folder)?;
+    let camera = Pinhole::new(vec3(-8.0, 18.0, 24.0), vec3(0.3, 0.9, 0.2), Vec3::Y, 0.5);
+    let mut image = Image::new(1120, 700);
+    TiledScheduler::new().frame(&camera, &primary, &mut image);
+    halved(&image).write_png(folder.join("torus.png"))?;
+    // ANCHOR_END: picture
+
+    // ANCHOR: compare
+    let found = Compare::new().size(320, 200).runs(3).samples(16).run(&primary, &camera);
+    println!("{}", found.table());
+    // ANCHOR_END: compare
+    Ok(())
+}
