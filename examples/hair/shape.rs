@@ -88,7 +88,7 @@ impl Hair {
     /// hair at `u` says where to look next. From either end, since a ray may enter twice.
     ///
     /// The hair is seen from outside: a ray that starts in it does not meet its far side.
-    fn intersect(&self, ray: Ray) -> HairHit {
+    pub(crate) fn intersect(&self, ray: Ray) -> HairHit {
         let scale = ray.direction.abs().max_element();
         let length = (ray.direction / scale).length();
         let forward = ray.direction / scale / length;
@@ -160,12 +160,12 @@ impl Hair {
     }
 
     // ANCHOR: bounds
-    fn get_bounds(&self) -> Aabb {
+    pub(crate) fn get_bounds(&self) -> Aabb {
         pieces(self).fold(Aabb::EMPTY, Aabb::union)
     }
 
     /// Each piece of the curve is cut.
-    fn split_primitive(&self, axis: usize, at: f32) -> (Aabb, Aabb) {
+    pub(crate) fn split_primitive(&self, axis: usize, at: f32) -> (Aabb, Aabb) {
         let cut = |sides: (Aabb, Aabb), piece: Aabb| {
             let parts = piece.split(axis, at);
             let join = |a: Aabb, b: Aabb| if b.is_valid() { a.union(b) } else { a };

@@ -108,7 +108,7 @@ impl Torus {
     // ANCHOR_END: slack
 
     // ANCHOR: intersect
-    fn intersect(&self, ray: Ray) -> Hit {
+    pub(crate) fn intersect(&self, ray: Ray) -> Hit {
         // From the ray's point next to the centre, in units of the ring's size: nothing cancels,
         // overflows or underflows, wherever the ray comes from. From far away it takes two steps.
         let reach = self.major + self.minor;
@@ -176,7 +176,7 @@ impl Torus {
     // ANCHOR_END: intersect
 
     // ANCHOR: bounds
-    fn get_bounds(&self) -> Aabb {
+    pub(crate) fn get_bounds(&self) -> Aabb {
         let axis = self.axis.to_array().map(f64::from);
         let square = axis.iter().map(|a| a * a).sum::<f64>().max(f64::MIN_POSITIVE);
         let size = |i: usize| {

@@ -73,6 +73,7 @@ struct StoredTuple {
 }
 
 struct Params {
+    lit_4097_0: f32,
     len_of_meshes_shared: u32,
     len_of_meshes_nodes: u32,
     len_of_meshes_roots: u32,
@@ -105,7 +106,7 @@ fn meshes_shared_at(i: u32) -> vec3<f32> {
 
 /// The last element stands for those out of range.
 fn meshes_shared_element(i: u32) -> vec3<f32> {
-    return meshes_shared_at(min(i, params.len_of_meshes_shared - 1u));
+    return meshes_shared_at(min(i, max(params.len_of_meshes_shared, 1u) - 1u));
 }
 
 @group(0) @binding(6) var<storage, read> meshes_nodes: array<Node>;
@@ -140,6 +141,34 @@ fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
         result = result_1;
     }
     return result;
+}
+
+fn lost_by_product(a: f32, b: f32) -> f32 {
+    let a_wide = a * params.lit_4097_0;
+    let b_wide = b * params.lit_4097_0;
+    let a_high = a_wide - (a_wide - a);
+    let b_high = b_wide - (b_wide - b);
+    let a_low = a - a_high;
+    let b_low = b - b_high;
+    return a_high * b_high - a * b + a_high * b_low + a_low * b_high + a_low * b_low;
+}
+
+fn lost_by_difference(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
+    let difference = a - b;
+    let part = a - difference;
+    let rest = difference + part;
+    return a - rest + (part - b);
+}
+
+fn is_line(v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> bool {
+    let a = v1 - v0;
+    let b = v2 - v0;
+    let x = lost_by_product(a.y, b.z) - lost_by_product(b.y, a.z);
+    let y = lost_by_product(a.z, b.x) - lost_by_product(b.z, a.x);
+    let z = lost_by_product(a.x, b.y) - lost_by_product(b.x, a.y);
+    let lost_by_edges = abs(lost_by_difference(v1, v0)) + abs(lost_by_difference(v2, v0));
+    let lost = lost_by_edges + abs(vec3<f32>(x, y, z));
+    return lost.x + lost.y + lost.z == 0.0f;
 }
 
 fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
@@ -201,8 +230,15 @@ fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
     }
     let t_15 = v1 - v0;
     let t_16 = v2 - v0;
-    let has_area = t_15.y * t_16.z - t_16.y * t_15.z != 0.0f || t_15.z * t_16.x - t_16.z * t_15.x != 0.0f || t_15.x * t_16.y - t_16.x * t_15.y != 0.0f;
-    let is_hit = has_area && t >= ray.t_min && t <= ray.t_max;
+    let is_flat = t_15.y * t_16.z - t_16.y * t_15.z == 0.0f && t_15.z * t_16.x - t_16.z * t_15.x == 0.0f && t_15.x * t_16.y - t_16.x * t_15.y == 0.0f;
+    var both: bool;
+    if (is_flat) {
+        both = is_line(v0, v1, v2);
+    } else {
+        both = false;
+    }
+    let is_surface = !both;
+    let is_hit = is_surface && t >= ray.t_min && t <= ray.t_max;
     return Hit(is_hit, t, 0u, v / sum, w / sum);
 }
 
@@ -461,7 +497,8 @@ fn kernel(ray: Ray) -> Tuple {
             if (candidate.is_hit && (candidate.t >= ray.t_min && candidate.t <= ray.t_max)) {
                 var is_first: bool = true;
                 if (hits_0_is_hit) {
-                    is_first = candidate.t > hits_0_t || (!(hits_0_t > candidate.t) && (!hits_0_is_hit || (candidate.t < hits_0_t || (candidate.t == hits_0_t && id < hits_0_prim_id))));
+                    let t = candidate.t > hits_0_t;
+                    is_first = select((!hits_0_is_hit || (candidate.t < hits_0_t || (candidate.t == hits_0_t && id < hits_0_prim_id))), t, (t != (hits_0_t > candidate.t)));
                 }
                 if (is_first && !(hits_0_prim_id == id && hits_0_is_hit)) {
                     hits_0_is_hit = candidate.is_hit;

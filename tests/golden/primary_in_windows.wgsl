@@ -61,6 +61,7 @@ struct StoredShaded {
 struct Params {
     background: vec3<f32>,
     lit_255_0: f32,
+    len_of_bvh: u32,
     len_of_bvh_nodes: u32,
 }
 
@@ -88,6 +89,11 @@ fn bvh_at(i: u32) -> ColorSphere {
     }
     let s = bvh_part0[i];
     return ColorSphere(s.center, s.radius_color_0_color_1_color_2 & 0xffu, array<u32, 3>((s.radius_color_0_color_1_color_2 >> 8u) & 0xffu, (s.radius_color_0_color_1_color_2 >> 16u) & 0xffu, (s.radius_color_0_color_1_color_2 >> 24u) & 0xffu));
+}
+
+/// The last element stands for those out of range.
+fn bvh_element(i: u32) -> ColorSphere {
+    return bvh_at(min(i, max(params.len_of_bvh, 1u) - 1u));
 }
 
 @group(0) @binding(6) var<storage, read> bvh_nodes_part0: array<Node>;
@@ -253,7 +259,7 @@ fn kernel(ray: Ray) -> Shaded {
     let hit = bvh_closest_hit(ray);
     var color: vec3<f32>;
     if (hit.is_hit) {
-        color = ColorSphere_rgb(bvh_at(select(0u, hit.prim_id, hit.is_hit)));
+        color = ColorSphere_rgb(bvh_element(select(0u, hit.prim_id, hit.is_hit)));
     } else {
         color = params.background;
     }

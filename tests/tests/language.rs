@@ -73,8 +73,8 @@ fn receiver(line: &str) -> Option<&str> {
         // A vector of anything with a bound: only the truth values have methods of this form.
         return (receiver != "V" || generics.contains("Component = B<M>")).then_some(receiver);
     }
-    if line.contains("Const<N>") {
-        // How many rays stands in front; what has the method, on the next line.
+    if line.contains("Method<{") && !line.contains(" for ") {
+        // What has the method stands on the next line.
         return Some("SceneView<'_, P>");
     }
     if let Some((_, after)) = line.split_once(" for ") {

@@ -271,13 +271,13 @@ fn rays(rng: &mut Rng, count: usize, size: f32) -> Vec<(Ray,)> {
 }
 
 /// The tree, the slice and a plain loop give one hit; `hit` is that of a primitive's record.
-fn assert_queries<P: Primitive>(prims: &[P], rays: &[(Ray,)]) -> usize {
+fn assert_queries<P: Primitive<Shared = ()>>(prims: &[P], rays: &[(Ray,)]) -> usize {
     let bvh = Bvh::build(prims).expect("finite bounds");
     let mut hits = 0;
     for (ray,) in rays {
         let mut best = Hit::miss();
         for (id, prim) in prims.iter().enumerate() {
-            let hit = raydsl::geometry::HitRecord::hit(&prim.intersect(*ray));
+            let hit = raydsl::geometry::HitRecord::hit(&prim.intersect(*ray, &[]));
             let is_better = !best.is_hit || hit.t < best.t;
             if hit.is_hit && hit.t >= ray.t_min && hit.t <= ray.t_max && is_better {
                 best = Hit { prim_id: id as u32, ..hit };

@@ -113,6 +113,89 @@ fn lists_of_no_tree_and_of_one() {
     assert_variants_agree!(&kernel, &rays);
 }
 
+/// A hit may be that of another scene: the last primitive stands for what is not there. Plain Rust
+/// has no such hit.
+#[test]
+fn hits_of_another_scene() {
+    let mut rng = Rng::of("another scene");
+    let balls = balls(&mut rng, 5);
+    let bvh = Bvh::build(&balls).expect("finite bounds");
+    let kernel =
+        kernel!(|id: u32| bvh.primitive(Hit { prim_id: id, ..Hit::new(true, 1.0) }).radius);
+    let inputs: Vec<(u32,)> = (0..5).map(|i| (i,)).collect();
+    assert_variants_agree!(&kernel, &inputs);
+    assert!(kernel.wgsl().contains("bvh_element("), "{}", kernel.wgsl());
+}
+
+#[kernel]
+fn list_closer_hit(x: f32) -> f32 {
+    x * 2.0
+}
+
+#[kernel]
+fn list_any_hit_in(x: f32) -> f32 {
+    x + 2.0
+}
+
+/// Names that the library gives to what belongs to buffers may be a user's.
+#[test]
+fn names_of_generated_code() {
+    let mut rng = Rng::of("names");
+    let (balls, rays) = (balls(&mut rng, 9), rays(&mut rng, 64));
+    let trees = [Bvh::build(&balls).expect("finite bounds")];
+    let list = BvhList::new(&trees).expect("few primitives");
+    let len_of_list_roots = 2.0;
+    let kernel = kernel!(|ray: Ray| {
+        let own = list_closer_hit(ray.t_min) + list_any_hit_in(len_of_list_roots);
+        (own, list.closest_hit(ray), list.any_hit(ray))
+    });
+    assert_variants_agree!(&kernel, &rays);
+    let (i, len_of_i) = (&balls[..], 3.0);
+    let kernel = kernel!(|ray: Ray| (i.closest_hit(ray), i[2].radius + len_of_i, i.len() as u32));
+    assert_variants_agree!(&kernel, &rays);
+}
+
+/// Trees without primitives share anything, and no miss belongs to a tree.
+#[test]
+fn empty_trees_in_lists() {
+    let (vertices, indexed) = mesh(6);
+    let config = BuildConfig::default();
+    let empty = || Bvh::<IndexedTriangle>::build_sharing(&[], &[], &config).expect("nothing");
+    let full = Bvh::build_sharing(&indexed, &vertices, &config).expect("finite bounds");
+    let trees = [empty(), full, empty()];
+    let list = BvhList::new(&trees).expect("one slice of vertices");
+    assert!(core::ptr::eq(list.shared(), &vertices[..]));
+    let rays = rays(&mut Rng::of("empty trees"), 300);
+    for (ray,) in &rays {
+        let hit = list.closest_hit(*ray);
+        assert_eq!(list.tree_of(hit), hit.is_hit.then_some(1));
+    }
+    let kernel = kernel!(|ray: Ray| (list.closest_hit(ray), list.multi_hit::<2>(ray)[1].t));
+    assert_variants_agree!(&kernel, &rays);
+}
+
+/// A list in a loop of the kernel's own, a list beside one of its trees, and a list of an enum.
+#[test]
+fn lists_within_control_flow() {
+    let mut rng = Rng::of("lists in loops");
+    let models = models(&mut rng);
+    let trees = models.each_ref().map(|m| Bvh::build(m).expect("finite bounds"));
+    let list = BvhList::new(&trees).expect("few primitives");
+    let (first, rays) = (&trees[0], rays(&mut rng, 500));
+    let kernel = kernel!(|ray: Ray| {
+        let mut sum = 0.0;
+        'steps: for i in 0u32..3 {
+            let start = ray.with_range(ray.t_min + 0.3 * i as f32, ray.t_max);
+            if list.any_hit_where(start, |hit: Hit| hit.prim_id % 5 == i) {
+                break 'steps;
+            }
+            sum += first.closest_hit(start).t + list.closest_hit(start).t;
+        }
+        sum
+    });
+    assert_variants_agree!(&kernel, &rays);
+}
+
 /// A closed mesh: a ball of triangles, as an index buffer has it.
 fn mesh(segments: u32) -> (Vec<Vec3>, Vec<IndexedTriangle>) {
     let at = |i: u32, k: u32| {
@@ -287,6 +370,9 @@ fn hits_in_an_order_of_ones_own() {
         all.resize(3, Hit::miss());
         let closer = |a: Hit, b: Hit| step(a.prim_id) > step(b.prim_id);
         assert_eq!(bvh.multi_hit_by::<3>(*ray, closer)[..], all);
+        // An order that is not strict means the same.
+        let as_close = |a: Hit, b: Hit| step(a.prim_id) >= step(b.prim_id);
+        assert_eq!(bvh.multi_hit_by::<3>(*ray, as_close)[..], all);
         assert_eq!(slice.multi_hit_by::<3>(*ray, closer)[..], all);
     }
     let kernel = kernel!(|ray: Ray| {
@@ -294,7 +380,8 @@ fn hits_in_an_order_of_ones_own() {
             let (one, other) = (bvh.primitive(a).radius * 8.0, bvh.primitive(b).radius * 8.0);
             one as u32 > other as u32
         });
-        let of_slice = slice.multi_hit_by::<2>(ray, |a: Hit, b: Hit| a.prim_id & 7 > b.prim_id & 7);
+        let of_slice =
+            slice.multi_hit_by::<2>(ray, |a: Hit, b: Hit| a.prim_id & 7 >= b.prim_id & 7);
         (of_tree[0], of_tree[2], of_slice[0], of_slice[1])
     });
     assert_variants_agree!(&kernel, &rays);
@@ -423,6 +510,46 @@ mod on_a_gpu {
         let own = filled(&gpu, bytemuck::cast_slice(&vertices));
         let _vertices = gpu.with_gpu(bvh.view().shared(), own)?;
         assert_eq!(sent(&gpu, &kernel, &rays)?, bvh.bytes() as u64);
+        Ok(())
+    }
+
+    /// What belongs to trees that are no more is freed, so that a scene built for each frame fits.
+    #[test]
+    fn trees_that_are_no_more_are_freed() -> Result<(), GpuError> {
+        if raydsl_tests::gpu::gpu().is_none() {
+            return Ok(());
+        }
+        let (points, rays) = (points(100), rays(&mut Rng::of("freed"), 64));
+        let gpu = GpuScheduler::new()?;
+        for _ in 0..4 {
+            let bvh = Bvh::build(&points).expect("finite bounds");
+            let kernel = kernel!(|ray: Ray| bvh.closest_hit(ray));
+            let whole = bvh.bytes() as u64 + 1600;
+            assert_eq!(sent(&gpu, &kernel, &rays)?, whole);
+            assert_eq!(gpu.context().scene_bytes(), whole);
+        }
+        Ok(())
+    }
+
+    /// A refitted tree sends what has changed.
+    #[test]
+    fn refitted_trees_send_no_indices() -> Result<(), GpuError> {
+        if raydsl_tests::gpu::gpu().is_none() {
+            return Ok(());
+        }
+        let (mut points, rays) = (points(100), rays(&mut Rng::of("refitted"), 64));
+        let gpu = GpuScheduler::new()?;
+        let bvh = Bvh::build(&points).expect("finite bounds");
+        let kernel = kernel!(|ray: Ray| bvh.closest_hit(ray));
+        sent(&gpu, &kernel, &rays)?;
+        drop(kernel);
+        let tree = bvh.detach();
+        points.iter_mut().for_each(|p| p.center.x += 0.5);
+        let bvh = tree.refit(&points).expect("finite bounds");
+        let kernel = kernel!(|ray: Ray| bvh.closest_hit(ray));
+        let nodes = size_of_val(bvh.nodes()) as u64;
+        assert_eq!(sent(&gpu, &kernel, &rays)?, 1600 + nodes);
+        assert_eq!(gpu.context().scene_bytes(), bvh.bytes() as u64 + 1600);
         Ok(())
     }
 

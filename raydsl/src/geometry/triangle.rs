@@ -123,9 +123,12 @@ fn lost_by_difference(a: Vec3, b: Vec3) -> Vec3 {
 #[kernel]
 #[inline]
 fn lost_by_product(a: f32, b: f32) -> f32 {
-    let (a_wide, b_wide) = (a * 4097.0, b * 4097.0);
-    let (a_high, b_high) = (a_wide - (a_wide - a), b_wide - (b_wide - b));
-    let (a_low, b_low) = (a - a_high, b - b_high);
+    let a_wide = a * 4097.0;
+    let b_wide = b * 4097.0;
+    let a_high = a_wide - (a_wide - a);
+    let b_high = b_wide - (b_wide - b);
+    let a_low = a - a_high;
+    let b_low = b - b_high;
     ((a_high * b_high - a * b) + a_high * b_low + a_low * b_high) + a_low * b_low
 }
 
@@ -134,13 +137,14 @@ fn lost_by_product(a: f32, b: f32) -> f32 {
 #[kernel]
 #[inline]
 fn is_line(v0: Vec3, v1: Vec3, v2: Vec3) -> bool {
-    let (a, b) = (v1 - v0, v2 - v0);
-    let (lost_a, lost_b) = (lost_by_difference(v1, v0), lost_by_difference(v2, v0));
-    let are_exact = lost_a.dot(lost_a) == 0.0 && lost_b.dot(lost_b) == 0.0;
-    are_exact
-        && lost_by_product(a.y, b.z) == lost_by_product(b.y, a.z)
-        && lost_by_product(a.z, b.x) == lost_by_product(b.z, a.x)
-        && lost_by_product(a.x, b.y) == lost_by_product(b.x, a.y)
+    let a = v1 - v0;
+    let b = v2 - v0;
+    let x = lost_by_product(a.y, b.z) - lost_by_product(b.y, a.z);
+    let y = lost_by_product(a.z, b.x) - lost_by_product(b.z, a.x);
+    let z = lost_by_product(a.x, b.y) - lost_by_product(b.x, a.y);
+    let lost_by_edges = lost_by_difference(v1, v0).abs() + lost_by_difference(v2, v0).abs();
+    let lost = lost_by_edges + vec3(x, y, z).abs();
+    lost.x + lost.y + lost.z == 0.0
 }
 
 /// Where a ray meets the triangle: both sides, edges and vertices included. One whose

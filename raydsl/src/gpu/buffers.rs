@@ -56,6 +56,12 @@ impl Uploads {
         self.uploaded
     }
 
+    /// Bytes of what was sent and is still here.
+    pub(super) fn kept(&self) -> u64 {
+        let own = self.parts.values().filter(|upload| !upload.external);
+        own.flat_map(|upload| &upload.chunks).map(|chunk| chunk.span.len()).sum()
+    }
+
     /// Drops what belongs to trees and lists that are no more.
     pub(super) fn forget_gone(&mut self) {
         let own = self.parts.iter().filter(|(_, upload)| !upload.external);

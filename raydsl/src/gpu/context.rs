@@ -126,6 +126,11 @@ impl Context {
         lock(&self.uploads).uploaded()
     }
 
+    /// Bytes of scene data that the device keeps: what was sent and belongs to trees that still are.
+    pub fn scene_bytes(&self) -> u64 {
+        lock(&self.uploads).kept()
+    }
+
     /// Shaders compiled so far.
     pub fn compiled(&self) -> u64 {
         lock(&self.pipelines).compiled()

@@ -125,6 +125,36 @@ fn tiny_triangles_have_normals() {
     assert_near(triangle::area(v0, v1, v2), 1e-24, 1e-6);
 }
 
+/// A thin triangle between neighbours that do not share a vertex: its area, as rounded, is often 0.
+#[test]
+fn slivers_close_gaps() {
+    let mut rng = Rng::of("slivers");
+    let (mut leaks, mut flat) = (0, 0);
+    for _ in 0..scaled(200_000) {
+        let (a, b) = (rng.point(1.0), rng.point(1.0));
+        let m = a.lerp(b, rng.range(0.2, 0.8));
+        let (p, q) = (rng.point(1.0), rng.point(1.0));
+        // Three vertices exactly on a line fill nothing.
+        let wide = |v: Vec3| v.as_dvec3();
+        let area = (wide(m) - wide(a)).cross(wide(b) - wide(a)).length();
+        if area == 0.0 || triangle::area(a, b, p) < 0.01 || triangle::area(a, b, q) < 0.01 {
+            continue;
+        }
+        flat += usize::from((m - a).cross(b - a) == Vec3::ZERO);
+        // Seen from the side where the two lie on either side of the edge.
+        let d = (p - a).cross(b - a).normalize() + (b - a).cross(q - a).normalize();
+        if d.length() < 0.5 || (p - m).normalize().dot((q - m).normalize()) > 0.0 {
+            continue;
+        }
+        let target = a.lerp(b, rng.range(0.01, 0.99));
+        let ray = Ray::new(target - d * 2.0, d);
+        let is_met = |v: [Vec3; 3]| triangle::intersect(ray, v[0], v[1], v[2]).is_hit;
+        leaks += usize::from(![[a, b, p], [a, m, q], [m, b, q], [a, m, b]].into_iter().any(is_met));
+    }
+    assert!(flat > scaled(200_000) / 100, "{flat} areas are rounded to nothing");
+    assert_eq!(leaks, 0);
+}
+
 /// No ray passes between quads that share their vertices: eight corners, six skew faces.
 #[test]
 fn quads_are_watertight() {
