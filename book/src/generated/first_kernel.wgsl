@@ -67,6 +67,7 @@ struct Params {
     lit_0_7: f32,
     lit_0_6: f32,
     lit_1_0: f32,
+    len_of_bvh: u32,
     len_of_bvh_nodes: u32,
 }
 
@@ -86,6 +87,11 @@ struct Job {
 fn bvh_at(i: u32) -> ColorSphere {
     let s = bvh[i];
     return ColorSphere(s.center, s.radius_color_0_color_1_color_2 & 0xffu, array<u32, 3>((s.radius_color_0_color_1_color_2 >> 8u) & 0xffu, (s.radius_color_0_color_1_color_2 >> 16u) & 0xffu, (s.radius_color_0_color_1_color_2 >> 24u) & 0xffu));
+}
+
+/// The last element stands for those out of range.
+fn bvh_element(i: u32) -> ColorSphere {
+    return bvh_at(min(i, max(params.len_of_bvh, 1u) - 1u));
 }
 
 @group(0) @binding(5) var<storage, read> bvh_nodes: array<Node>;
@@ -110,12 +116,7 @@ fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
     let half = sqrt(radicand * per_d2);
     let near = closest - half;
     let far = closest + half;
-    var t: f32;
-    if (near < ray.t_min) {
-        t = far;
-    } else {
-        t = near;
-    }
+    let t = select(near, far, (near < ray.t_min));
     let is_hit = radicand >= 0.0f && radius > 0.0f && t >= ray.t_min && t <= ray.t_max;
     return Hit(is_hit, t, 0u, 0.0f, 0.0f);
 }
@@ -221,6 +222,10 @@ fn bvh_closest_hit(ray: Ray) -> Hit {
     return best;
 }
 
+fn Ray_at(self_: Ray, t: f32) -> vec3<f32> {
+    return self_.origin + self_.direction * t;
+}
+
 fn bvh_any_hit(ray: Ray) -> bool {
     if (params.len_of_bvh_nodes == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {
         return false;
@@ -296,10 +301,10 @@ fn kernel(ray: Ray) -> Shaded {
     let hit = bvh_closest_hit(ray);
     var color: vec3<f32>;
     if (hit.is_hit) {
-        let sphere = bvh_at(select(0u, hit.prim_id, hit.is_hit));
-        let t = ray.origin + ray.direction * hit.t - sphere.center;
+        let sphere = bvh_element(select(0u, hit.prim_id, hit.is_hit));
+        let t = Ray_at(ray, hit.t) - sphere.center;
         let normal = t * (1.0f / sqrt(t.x * t.x + t.y * t.y + t.z * t.z));
-        let shadow = ray.origin + ray.direction * hit.t + normal * params.lit_0_001;
+        let shadow = Ray_at(ray, hit.t) + normal * params.lit_0_001;
         var light: f32 = 0.25f;
         var both: bool;
         if (normal.x * params.sun.x + normal.y * params.sun.y + normal.z * params.sun.z > 0.0f) {

@@ -34,11 +34,11 @@ impl sky {
                     let edge = Var::new(m, "edge", Varying::varying(literal(m, 1.0f32, 1.0f64), m));
                     {
                         let (begin, end) = range(m, { 0 }, { bands });
-                        let counter_3 = Var::new(m, "i", begin);
-                        let step_5 = ::core::cell::Cell::new(0 as u32);
+                        let counter_3 = Steps::new(m, "i", begin, 0 as u32);
+                        let end = Stop::new(m, end);
                         let repeat_2 = Loop::new(m);
                         loop {
-                            if !repeat_2.test(m, less(m, counter_3.get(m), end)) {
+                            if !end.is_after(m, &repeat_2, &counter_3) {
                                 break;
                             }
                             here(m, "loop", "examples/first_kernel.rs", 48u32);
@@ -47,27 +47,27 @@ impl sky {
                                     let right = literal(m, 0.6f32, 0.6f64);
                                     edge.set(
                                         m,
-                                        Coerce::coerce(
-                                            OpMul::mul(m, { edge.get(m) }, { right }),
+                                        Assigned::<{ name("*=") }, _, _, _>::assigned(
                                             m,
+                                            edge.get(m),
+                                            right,
                                         ),
                                     );
                                 }
-                                let branch_7 = Branch::new(
+                                let branch_6 = Branch::new(
                                     m,
                                     OpCompare::compare(m, Compare::Gt, { up }, { edge.get(m) }),
                                 );
-                                if branch_6.then(m) {
+                                if branch_6.then_small(m) {
                                     here(m, "if", "examples/first_kernel.rs", 50u32);
                                     {
                                         ret.give(m, Coerce::coerce(edge.get(m), m));
                                     }
                                 }
-                                branch_7.end(m);
+                                branch_6.end(m);
                             }
                             repeat_2.continuing(m);
-                            counter_3.set(m, increment(m, counter_3.get(m)));
-                            step_5.set(step_5.get().wrapping_add(1));
+                            counter_3.advance(m);
                             if !repeat_2.again(m) {
                                 break;
                             }

@@ -49,14 +49,14 @@ impl IndexedTriangle {
         intersect(ray, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
     }
 
-    /// The normal where `ray` hits it, with unit length; see [`triangle::normal`](normal).
+    /// The normal where `ray` hits it, with unit length; see [`normal()`].
     #[inline]
     pub fn normal(&self, ray: Ray, hit: Hit, vertices: &[Vec3]) -> Vec3 {
         let [v0, v1, v2] = self.vertices;
         normal(ray, hit, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
     }
 
-    /// Surface coordinates where `ray` hits it; see [`uv`].
+    /// Surface coordinates where `ray` hits it; see [`uv()`].
     #[inline]
     pub fn uv(&self, ray: Ray, hit: Hit, vertices: &[Vec3]) -> Vec2 {
         let [v0, v1, v2] = self.vertices;
@@ -70,7 +70,7 @@ impl IndexedTriangle {
         area(vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
     }
 
-    /// A point of it; see [`sample`].
+    /// A point of it; see [`sample()`].
     #[inline]
     pub fn sample(&self, u: Vec2, vertices: &[Vec3]) -> SurfacePoint {
         let [v0, v1, v2] = self.vertices;
