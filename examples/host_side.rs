@@ -14,6 +14,7 @@ use raydsl::prelude::*;
 use raydsl::report::Compare;
 use raydsl::{assert_variants_agree, kernel};
 // ANCHOR_END: imports
+use raydsl_examples::picture::reduced;
 
 const TAU: f32 = std::f32::consts::TAU;
 
@@ -82,18 +83,6 @@ fn knot(u: f32, v: f32) -> (Vec3, Vec3) {
 }
 
 const SKY: Vec3 = vec3(0.2, 0.24, 0.34);
-
-/// The picture at half its size: each pixel is the mean of four.
-fn halved(image: &Image) -> Image {
-    let mut small = Image::new(image.width() / 2, image.height() / 2);
-    let width = small.width() as usize;
-    for (i, pixel) in small.pixels_mut().iter_mut().enumerate() {
-        let first = 4 * width * (i / width) + 2 * (i % width);
-        let four = [first, first + 1, first + 2 * width, first + 2 * width + 1];
-        pixel.color = four.map(|j| image.pixels()[j].color).iter().sum::<Vec3>() / 4.0;
-    }
-    small
-}
 
 // ANCHOR: direction
 /// The `i`-th of `n` directions around `normal`, spread by the cosine.
@@ -203,7 +192,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let camera = Pinhole::new(vec3(0.0, 5.2, 5.6), vec3(0.0, 0.9, 0.1), Vec3::Y, 0.6);
     let mut image = Image::new(1280, 800);
     TiledScheduler::new().frame(&camera, &primary, &mut image);
-    halved(&image).write_png(folder.join("host_side.png"))?;
+    reduced(&image, 2).write_png(folder.join("host_side.png"))?;
     // ANCHOR_END: frame
 
     // ANCHOR: other_result
@@ -224,9 +213,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // ANCHOR: pixels
     let jittered = kernel!(|x: u32, y: u32| {
-        let hash = (x.wrapping_mul(0x9E37_79B9) ^ y).wrapping_mul(0x85EB_CA6B);
-        let u = (hash >> 8) as f32 / 16_777_216.0;
-        let hit = bvh.closest_hit(rays.primary_ray(x as f32 + u, y as f32 + 0.5));
+        let mut rng = Rng::new(uvec2(x, y), 0, 1);
+        let u = rng.next_2d();
+        let hit = bvh.closest_hit(rays.primary_ray(x as f32 + u.x, y as f32 + u.y));
         hit.is_hit && hit.prim_id < knot_faces
     });
     let pixels: Vec<(u32, u32)> = (0..320 * 200).map(|i| (i % 320, i / 320)).collect();

@@ -51,6 +51,15 @@ pub fn seconds(f: impl FnOnce()) -> f64 {
     (thread_time() - start).as_secs_f64()
 }
 
+/// What `f` gives, and the seconds that it takes: of one thread those that it was running, of
+/// several those of the day.
+pub fn seconds_on<T>(threads: usize, f: impl FnOnce() -> T) -> (T, f64) {
+    let (start, begun) = (thread_time(), std::time::Instant::now());
+    let result = f();
+    let seconds = if threads == 1 { thread_time() - start } else { begun.elapsed() };
+    (result, seconds.as_secs_f64())
+}
+
 /// The value below which the share `q` of `values` lies; 0 for none.
 pub fn quantile(values: &[f64], q: f64) -> f64 {
     let mut sorted = values.to_vec();

@@ -150,7 +150,7 @@ fn walk<P: ByHand, const AXIS: usize>(bvh: &Bvh<'_, P>, ray: &Ray) -> Hit {
                 if let Some((t, u, v)) = prims[id as usize].meet::<AXIS>(ray, &prepared)
                     && (!best.is_hit || t < best.t || (t == best.t && id < best.prim_id))
                 {
-                    best = Hit { is_hit: true, t, prim_id: id, u, v };
+                    best = Hit { prim_id: id, u, v, ..Hit::new(true, t) };
                     limit = t + t.abs() * P::SLACK;
                 }
             }

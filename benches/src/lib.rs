@@ -1,7 +1,9 @@
-//! Shared code of the benchmarks: scenes, the hand-written loop, clocks, the guard.
+//! Shared code of the benchmarks: scenes, the hand-written loop, clocks, the guard, visits of
+//! nodes.
 
 pub mod clock;
 pub mod divergent;
 pub mod guard;
 pub mod hand;
 pub mod scenes;
+pub mod visits;

@@ -66,13 +66,25 @@ pub fn scan(points: usize) -> Scene<ColorSphere> {
     Scene { prims, camera: Pinhole::new(place(view.eye), place(view.target), up, fov) }
 }
 
+/// Scenes of triangles in the folder of test data.
+pub const FILES: [&str; 3] = ["sibenik", "sponza", "conference"];
+
 /// Sibenik cathedral from the folder of test data.
 ///
 /// # Errors
 ///
-/// If the files cannot be read or are not what they should be.
+/// As [`file()`].
 pub fn sibenik(data: &Path) -> io::Result<Scene<Triangle>> {
-    let bytes = fs::read(data.join("sibenik.tri"))?;
+    file(data, "sibenik")
+}
+
+/// One of [`FILES`] from the folder of test data.
+///
+/// # Errors
+///
+/// If the files cannot be read or are not what they should be.
+pub fn file(data: &Path, name: &str) -> io::Result<Scene<Triangle>> {
+    let bytes = fs::read(data.join(format!("{name}.tri")))?;
     let numbers: Vec<f32> = bytes
         .get(4..)
         .unwrap_or_default()
@@ -81,9 +93,9 @@ pub fn sibenik(data: &Path) -> io::Result<Scene<Triangle>> {
         .collect();
     let prims = numbers.chunks_exact(9).map(triangle).collect();
     let cameras: serde_json::Value = serde_json::from_slice(&fs::read(data.join("cameras.json"))?)?;
-    let camera = &cameras["sibenik"];
-    let vector = |name: &str| {
-        let number = |i: usize| camera[name][i].as_f64().unwrap_or_default() as f32;
+    let camera = &cameras[name];
+    let vector = |part: &str| {
+        let number = |i: usize| camera[part][i].as_f64().unwrap_or_default() as f32;
         vec3(number(0), number(1), number(2))
     };
     let fov = camera["vfov_deg"].as_f64().unwrap_or(60.0).to_radians() as f32;
@@ -136,4 +148,28 @@ fn patch(out: &mut Vec<Triangle>, nu: u32, nv: u32, at: impl Fn(f32, f32) -> Vec
         out.push(Triangle { v0: a, v1: b, v2: d });
         out.push(Triangle { v0: a, v1: d, v2: c });
     }
+}
+
+/// Small triangles in clusters of every density, a few large ones among them: nothing is a surface.
+pub fn scatter(count: usize) -> Vec<Triangle> {
+    let mut state = 1u32;
+    let mut unit = move || {
+        // (Marsaglia, "Xorshift RNGs", 2003.)
+        state ^= state << 13;
+        state ^= state >> 17;
+        state ^= state << 5;
+        (state >> 8) as f32 / 16_777_216.0
+    };
+    let mut prims = Vec::with_capacity(count);
+    let mut middle = Vec3::ZERO;
+    for i in 0..count {
+        let mut point = |size: f32| (vec3(unit(), unit(), unit()) - 0.5) * size;
+        if i % 1000 == 0 {
+            middle = point(100.0);
+        }
+        let size = if i % 997 == 0 { 10.0 } else { 0.2 };
+        let v0 = middle + point(1.0 + (i / 1000 % 20) as f32);
+        prims.push(Triangle { v0, v1: v0 + point(size), v2: v0 + point(size) });
+    }
+    prims
 }

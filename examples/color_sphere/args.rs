@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use raydsl::kernel::{Variant, Variants};
+use raydsl_examples::args::{point, size, variant};
 
 /// Render a laser scan as coloured spheres, by every variant of one kernel.
 #[derive(Debug, Parser)]
@@ -60,26 +61,4 @@ impl Args {
     pub(crate) fn variants(&self) -> Variants {
         Variants::of(&self.variants)
     }
-}
-
-/// `1920x1200`.
-fn size(text: &str) -> Result<(u32, u32), String> {
-    let parse = |n: &str| n.parse::<u32>().ok().filter(|n| (1..=65_535).contains(n));
-    text.split_once('x').and_then(|(w, h)| Some((parse(w)?, parse(h)?))).ok_or_else(|| {
-        "write WIDTHxHEIGHT with numbers from 1 to 65535, for example 640x480".to_owned()
-    })
-}
-
-fn variant(name: &str) -> Result<Variant, String> {
-    Variant::from_name(name).ok_or_else(|| format!("choose from {}", crate::variant_names()))
-}
-
-/// `1,2,3`.
-fn point(text: &str) -> Result<[f64; 3], String> {
-    let parts: Vec<f64> = text
-        .split(',')
-        .filter_map(|p| p.trim().parse().ok())
-        .filter(|v: &f64| v.is_finite())
-        .collect();
-    parts.try_into().map_err(|_| "write three numbers, for example 1,2,3".to_owned())
 }

@@ -15,7 +15,7 @@ use args::Args;
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 use raydsl::bvh::BuildError;
-use raydsl::kernel::{Kernel, Variant};
+use raydsl::kernel::Kernel;
 use raydsl::prelude::*;
 use raydsl::report::{Compare, Comparison, SceneInfo};
 use raydsl_examples::heat_map::HeatMap;
@@ -176,9 +176,4 @@ fn bar(length: u64, message: &'static str) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg:28} {wide_bar} {percent:>3} %")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(length).with_style(style).with_message(message)
-}
-
-/// The variants' names, for the help text.
-fn variant_names() -> String {
-    Variant::ALL.map(Variant::name).join(",")
 }

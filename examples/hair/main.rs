@@ -12,6 +12,7 @@ use std::{env, fs};
 use raydsl::kernel;
 use raydsl::prelude::*;
 use raydsl::report::Compare;
+use raydsl_examples::picture::reduced;
 use shape::Hair;
 
 /// Three numbers from 0 to 1 that look random.
@@ -57,19 +58,6 @@ fn strand(tangent: Vec3, lamp: Vec3, eye: Vec3) -> Vec2 {
 }
 // ANCHOR_END: shade
 
-/// The picture at a third of its size: each pixel is the mean of nine.
-fn reduced(image: &Image) -> Image {
-    let (width, height) = (image.width() / 3, image.height() / 3);
-    let mut small = Image::new(width, height);
-    for (i, pixel) in small.pixels_mut().iter_mut().enumerate() {
-        let (x, y) = (i % width as usize, i / width as usize);
-        let at = |k: usize| (3 * y + k / 3) * image.width() as usize + 3 * x + k % 3;
-        pixel.color =
-            (0..9).map(|k| image.pixels()[at(k)].color.min(Vec3::ONE)).sum::<Vec3>() / 9.0;
-    }
-    small
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
     let argument = env::args().nth(1).unwrap_or_else(|| "out".to_owned());
 
@@ -110,7 +98,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let camera = Pinhole::new(vec3(0.0, 0.5, 4.6), vec3(0.02, -0.07, 0.0), Vec3::Y, 0.61);
     let mut image = Image::new(1350, 1005);
     TiledScheduler::new().frame(&camera, &primary, &mut image);
-    reduced(&image).write_png(folder.join("hair.png"))?;
+    reduced(&image, 3).write_png(folder.join("hair.png"))?;
 
     // Hundreds of curves for a ray are too many for a look at some pixels in `f64`.
     let found = Compare::new().size(320, 200).runs(3).samples(0).run(&primary, &camera);

@@ -79,8 +79,8 @@ fn enter(middle: Vec3, along: Vec3, radius: f32, growth: f32) -> Entry {
 
 #[primitive]
 impl Hair {
-    /// The curve is moved by at most 8 u of the distance (u = 2^-24), and a point of a cone within a
-    /// twenty thousandth of its curve is as close to the hair.
+    /// The curve is moved by at most 8 u of the distance (u = 2^-24), and a point of a cone within
+    /// a twenty thousandth of its curve is as close to the hair.
     const SLACK: f32 = 1.0 / 262_144.0;
 
     // ANCHOR: intersect
@@ -128,7 +128,7 @@ impl Hair {
                 if entry.is_met && entry.share.abs() < 5e-5 {
                     let t = (origin.z + (middle.z + entry.z)) / length / scale;
                     if t >= ray.t_min && !(best.is_hit && best.t <= t) {
-                        best = Hit { is_hit: true, t, prim_id: 0, u, v: 0.0 };
+                        best = Hit { u, ..Hit::new(true, t) };
                     }
                     break;
                 }

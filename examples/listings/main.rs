@@ -1,6 +1,6 @@
 //! Five small programs, from a pick without a picture to a point cloud: what a user of Visionaray
-//! (Zellmann, Wickeroth and Lang, "Visionaray: A Cross-Platform Ray Tracing Template Library", 2017)
-//! knows from its listings.
+//! (Zellmann, Wickeroth and Lang, "Visionaray: A Cross-Platform Ray Tracing Template Library",
+//! 2017) knows from its listings.
 //!
 //! `cargo run --release --example listings -- FOLDER` writes `texture.png`, `variants.png` and
 //! `cloud.png` to FOLDER (`out` if none is given).

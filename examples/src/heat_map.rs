@@ -9,6 +9,8 @@ const BAR_WIDTH: u32 = 24;
 const MARGIN: u32 = 16;
 /// Room for the labels beside the bar.
 const LABELS: u32 = 88;
+/// Room for a title above a map.
+const TITLE: u32 = 32;
 
 /// A grid of numbers, shown with the colour map "turbo"; row 0 is the bottom one.
 #[derive(Clone, Debug)]
@@ -42,16 +44,26 @@ impl HeatMap {
     /// The picture, the legend at its right.
     pub fn to_image(&self) -> RgbImage {
         let top = self.top();
-        let mut image = RgbImage::from_pixel(
-            self.width + MARGIN + BAR_WIDTH + LABELS,
-            self.height.max(64),
-            Rgb([18, 18, 22]),
-        );
-        for (i, v) in self.values.iter().enumerate() {
-            let (x, y) = (i as u32 % self.width, i as u32 / self.width);
-            image.put_pixel(x, self.height - 1 - y, color(*v / top));
+        let mut image = canvas(self.width + MARGIN + BAR_WIDTH + LABELS, self.height.max(64));
+        self.paint(&mut image, (0, 0), top);
+        legend(&mut image, self.width + MARGIN, top);
+        write(&mut image, self.width + MARGIN, MARGIN / 2, &self.title);
+        image
+    }
+
+    /// Several maps under their titles, on one scale; the legend is at the right.
+    pub fn side_by_side(maps: &[Self]) -> RgbImage {
+        let top = maps.iter().map(Self::top).fold(1.0, f32::max);
+        let height = maps.iter().map(|map| map.height).max().unwrap_or(0).max(64);
+        let width: u32 = maps.iter().map(|map| map.width + MARGIN).sum();
+        let mut image = canvas(width + BAR_WIDTH + LABELS, height + TITLE);
+        let mut left = 0;
+        for map in maps {
+            map.paint(&mut image, (left, TITLE), top);
+            write(&mut image, left + 8, TITLE / 2 - 4, &map.title);
+            left += map.width + MARGIN;
         }
-        self.legend(&mut image, top);
+        legend(&mut image, left, top);
         image
     }
 
@@ -64,22 +76,34 @@ impl HeatMap {
         self.to_image().save(path)
     }
 
-    fn legend(&self, image: &mut RgbImage, top: f32) {
-        let (left, height) = (self.width + MARGIN, image.height());
-        let (first, last) = (2 * MARGIN, height - MARGIN);
-        for y in first..last {
-            let v = (last - 1 - y) as f32 / (last - first).max(2) as f32;
-            for x in left..left + BAR_WIDTH {
-                image.put_pixel(x, y, color(v));
-            }
+    /// The map alone, its upper left corner at (`x`, `y`).
+    fn paint(&self, image: &mut RgbImage, (x, y): (u32, u32), top: f32) {
+        for (i, v) in self.values.iter().enumerate() {
+            let (column, row) = (i as u32 % self.width, i as u32 / self.width);
+            image.put_pixel(x + column, y + self.height - 1 - row, color(*v / top));
         }
-        write(image, left, MARGIN / 2, &self.title);
-        for i in 0..=4u32 {
-            let y = first + (last - first - 1) * (4 - i) / 4;
-            let label = format!("{:.0}", top * i as f32 / 4.0);
-            let label = if i == 4 { format!("{label}+") } else { label };
-            write(image, left + BAR_WIDTH + 6, y.saturating_sub(4).min(height - 9), &label);
+    }
+}
+
+fn canvas(width: u32, height: u32) -> RgbImage {
+    RgbImage::from_pixel(width, height, Rgb([18, 18, 22]))
+}
+
+/// The scale at `left`, over the whole height.
+fn legend(image: &mut RgbImage, left: u32, top: f32) {
+    let height = image.height();
+    let (first, last) = (2 * MARGIN, height - MARGIN);
+    for y in first..last {
+        let v = (last - 1 - y) as f32 / (last - first).max(2) as f32;
+        for x in left..left + BAR_WIDTH {
+            image.put_pixel(x, y, color(v));
         }
+    }
+    for i in 0..=4u32 {
+        let y = first + (last - first - 1) * (4 - i) / 4;
+        let label = format!("{:.0}", top * i as f32 / 4.0);
+        let label = if i == 4 { format!("{label}+") } else { label };
+        write(image, left + BAR_WIDTH + 6, y.saturating_sub(4).min(height - 9), &label);
     }
 }
 
@@ -106,6 +130,21 @@ fn write(image: &mut RgbImage, x: u32, y: u32, text: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn maps_beside_each_other_have_one_scale() {
+        let map = |v: f32, width| HeatMap {
+            title: "a".to_owned(),
+            width,
+            height: 70,
+            values: vec![v; 70 * width as usize],
+        };
+        let image = HeatMap::side_by_side(&[map(5.0, 30), map(10.0, 40)]);
+        assert_eq!(image.height(), 70 + TITLE);
+        assert_eq!(*image.get_pixel(0, TITLE), color(0.5));
+        assert_eq!(*image.get_pixel(30 + MARGIN, TITLE), color(1.0));
+        assert!(HeatMap::side_by_side(&[]).height() > 64);
+    }
 
     #[test]
     fn extremes_saturate_and_the_legend_stands_beside_the_picture() {

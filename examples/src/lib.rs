@@ -1,4 +1,8 @@
 //! Shared code of the example programs.
 
+pub mod args;
 pub mod cloud;
 pub mod heat_map;
+pub mod mesh;
+pub mod picture;
+pub mod raster;

@@ -12,6 +12,7 @@ use std::{env, fs};
 use raydsl::kernel;
 use raydsl::prelude::*;
 use raydsl::report::Compare;
+use raydsl_examples::picture::reduced;
 use shape::Torus;
 
 // ANCHOR: scene
@@ -52,19 +53,6 @@ fn room(d: Vec3) -> Vec3 {
 fn smooth(a: f32, b: f32, x: f32) -> f32 {
     let share = clamp((x - a) / (b - a), 0.0, 1.0);
     share * share * (3.0 - 2.0 * share)
-}
-
-/// The picture at half its size: each pixel is the mean of four.
-fn halved(image: &Image) -> Image {
-    let mut small = Image::new(image.width() / 2, image.height() / 2);
-    let width = small.width() as usize;
-    for (i, pixel) in small.pixels_mut().iter_mut().enumerate() {
-        let first = 4 * width * (i / width) + 2 * (i % width);
-        let four = [first, first + 1, first + 2 * width, first + 2 * width + 1];
-        pixel.color =
-            four.map(|j| image.pixels()[j].color.min(Vec3::ONE)).iter().sum::<Vec3>() / 4.0;
-    }
-    small
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -116,7 +104,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let camera = Pinhole::new(vec3(-8.0, 18.0, 24.0), vec3(0.3, 0.9, 0.2), Vec3::Y, 0.5);
     let mut image = Image::new(1120, 700);
     TiledScheduler::new().frame(&camera, &primary, &mut image);
-    halved(&image).write_png(folder.join("torus.png"))?;
+    reduced(&image, 2).write_png(folder.join("torus.png"))?;
     // ANCHOR_END: picture
 
     // ANCHOR: compare

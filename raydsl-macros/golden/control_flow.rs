@@ -119,7 +119,7 @@ impl walk {
                                             m,
                                             ::raydsl::__private::OpCompare::compare(
                                                 m,
-                                                ::raydsl::__private::Compare::Lt,
+                                                ::raydsl::__private::op::Lt,
                                                 { sum.get(m) },
                                                 { x },
                                             ),
@@ -150,7 +150,7 @@ impl walk {
                                             m,
                                             ::raydsl::__private::OpCompare::compare(
                                                 m,
-                                                ::raydsl::__private::Compare::Gt,
+                                                ::raydsl::__private::op::Gt,
                                                 { sum.get(m) },
                                                 { ::raydsl::__private::literal(m, 10.0f32, 10.0f64) },
                                             ),
@@ -183,7 +183,7 @@ impl walk {
                                                         m,
                                                         ::raydsl::__private::OpCompare::compare(
                                                             m,
-                                                            ::raydsl::__private::Compare::Lt,
+                                                            ::raydsl::__private::op::Lt,
                                                             { x },
                                                             { ::raydsl::__private::literal(m, 0.0f32, 0.0f64) },
                                                         ),
@@ -202,7 +202,7 @@ impl walk {
                                                                     ::raydsl::__private::Varying::varying(
                                                                         ::raydsl::__private::OpCompare::compare(
                                                                             m,
-                                                                            ::raydsl::__private::Compare::Gt,
+                                                                            ::raydsl::__private::op::Gt,
                                                                             {
                                                                                 ::raydsl::__private::OpDiv::div(
                                                                                     m,
@@ -254,7 +254,7 @@ impl walk {
                                             m,
                                             ::raydsl::__private::OpCompare::compare(
                                                 m,
-                                                ::raydsl::__private::Compare::Eq,
+                                                ::raydsl::__private::op::Eq,
                                                 { i },
                                                 { 3 },
                                             ),
@@ -313,7 +313,7 @@ impl walk {
                         m,
                         ::raydsl::__private::OpCompare::compare(
                             m,
-                            ::raydsl::__private::Compare::Gt,
+                            ::raydsl::__private::op::Gt,
                             { sum.get(m) },
                             { x },
                         ),
@@ -337,7 +337,7 @@ impl walk {
                                     false,
                                     ::raydsl::__private::OpCompare::compare(
                                         m,
-                                        ::raydsl::__private::Compare::Gt,
+                                        ::raydsl::__private::op::Gt,
                                         { x },
                                         { ::raydsl::__private::literal(m, 0.0f32, 0.0f64) },
                                     ),

@@ -54,8 +54,8 @@ impl Errors {
         self.first.map(|e| e.into_compile_error()).unwrap_or_default()
     }
 
-    /// The errors as items and a type. The type has a mistake in it, so that rustc asks nothing more
-    /// of what is made of it; a `compile_error!` in its place would be a `()`.
+    /// The errors as items and a type. The type has a mistake in it, so that rustc asks nothing
+    /// more of what is made of it; a `compile_error!` in its place would be a `()`.
     pub(crate) fn into_type(self) -> (TokenStream, TokenStream) {
         let mut all = self.first.into_iter().flatten().map(syn::Error::into_compile_error);
         let first = all.next();

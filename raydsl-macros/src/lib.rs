@@ -27,6 +27,9 @@ use syn::spanned::Spanned;
 /// The function itself stays untouched: it is the scalar variant. Beside it stands a type of the
 /// same name whose `on` runs the lifted body on any machine, and which gives the whole kernel as
 /// `Kernel::of::<name>()`.
+///
+/// Packets inline kernels into the traversal that calls them. One that says `#[inline(never)]`
+/// stays a function of its own, compiled once for each width: for what is long and seldom reached.
 #[proc_macro_attribute]
 pub fn kernel(args: TokenStream, item: TokenStream) -> TokenStream {
     rewrite::with_readable_names(expand_kernel(args.into(), item.into())).into()
@@ -122,9 +125,9 @@ fn expand_closure(input: proc_macro2::TokenStream) -> proc_macro2::TokenStream {
 
 /// Makes a primitive of a struct, or gives it `intersect` and `get_bounds` in an `impl`.
 ///
-/// `#[primitive(disk(center, normal, radius))]` on a struct is all that is needed for a shape of the
-/// library: `sphere`, `triangle`, `quad`, `rectangle`, `disk`, `plane`, `cylinder`, `tube`, `cone`
-/// or `cuboid`. Each is a module of `raydsl::geometry`.
+/// `#[primitive(disk(center, normal, radius))]` on a struct is all that is needed for a shape of
+/// the library: `sphere`, `triangle`, `quad`, `rectangle`, `disk`, `plane`, `cylinder`, `tube`,
+/// `cone` or `cuboid`. Each is a module of `raydsl::geometry`.
 #[proc_macro_attribute]
 pub fn primitive(args: TokenStream, item: TokenStream) -> TokenStream {
     rewrite::with_readable_names(expand_primitive(args.into(), item.into())).into()

@@ -13,6 +13,8 @@ pub(crate) struct Kernel {
     /// The declared result; `None` is `()` for a function and inferred for a closure.
     pub(crate) result: Option<TokenStream>,
     pub(crate) body: Block,
+    /// Whether it says `#[inline(never)]`.
+    pub(crate) is_apart: bool,
     /// Whether there is a mistake in its signature: then nothing can be made of it.
     pub(crate) is_broken: bool,
 }

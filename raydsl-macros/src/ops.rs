@@ -153,9 +153,26 @@ pub(crate) fn is_of_library(name: &str) -> bool {
     LIBRARY.contains(&name)
 }
 
-/// Whether the type is a tree, or a list of trees, which kernels read in place.
-pub(crate) fn is_tree(name: &str) -> bool {
-    ["Bvh", "BvhList"].contains(&name)
+/// Types whose data kernels read in place: trees, lists of trees, textures.
+const DATA: &[&str] = &[
+    "Bvh",
+    "BvhList",
+    "Instances",
+    "Accelerated",
+    "Texture",
+    "Texture1",
+    "Texture2",
+    "Texture3",
+    "TextureRef",
+    "TextureRef1",
+    "TextureRef2",
+    "TextureRef3",
+    "Texels",
+];
+
+/// Whether kernels read the type's data in place.
+pub(crate) fn is_data(name: &str) -> bool {
+    DATA.contains(&name)
 }
 
 /// Methods of Rust's and glam's types that take a second value.

@@ -57,7 +57,8 @@ pub(crate) fn function(
     let mut body = parser.block(body);
     body.stmts.splice(0..0, prologue);
     let generics = Generics::new(&sig.generics);
-    Kernel { name: sig.ident.clone(), generics, params, result, body, is_broken }
+    let is_apart = attrs.iter().any(is_never_inlined);
+    Kernel { name: sig.ident.clone(), generics, params, result, body, is_apart, is_broken }
 }
 
 /// A closure literal; its parameters must have types.
@@ -95,12 +96,12 @@ fn is_unit(ty: &syn::Type) -> bool {
     matches!(ty, syn::Type::Tuple(t) if t.elems.is_empty())
 }
 
-/// Slices and trees are not copied.
+/// Slices, trees and textures are not copied.
 fn is_data(ty: &syn::Type) -> bool {
     match ty {
         syn::Type::Reference(r) => is_data(&r.elem),
         syn::Type::Slice(_) => true,
-        syn::Type::Path(_) => type_name(ty).is_some_and(|name| ops::is_tree(&name)),
+        syn::Type::Path(_) => type_name(ty).is_some_and(|name| ops::is_data(&name)),
         _ => false,
     }
 }
@@ -264,7 +265,8 @@ impl Parser<'_> {
         };
         body.stmts.splice(0..0, prologue);
         let name = Ident::new(name, Span::call_site());
-        Kernel { name, generics: Generics::default(), params, result, body, is_broken: false }
+        let (generics, is_apart, is_broken) = (Generics::default(), false, false);
+        Kernel { name, generics, params, result, body, is_apart, is_broken }
     }
 
     /// A closure as an argument. With a `return` its body is a labelled block.
@@ -827,6 +829,11 @@ fn generic_argument(arg: &syn::GenericArgument) -> TokenStream {
 /// `#[host]`.
 fn is_host(a: &syn::Attribute) -> bool {
     a.path().is_ident("host")
+}
+
+/// `#[inline(never)]`.
+fn is_never_inlined(a: &syn::Attribute) -> bool {
+    a.path().is_ident("inline") && a.parse_args::<Ident>().is_ok_and(|how| how == "never")
 }
 
 /// `#[coherent]`.

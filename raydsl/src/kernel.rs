@@ -2,7 +2,7 @@
 
 use crate::machine::{
     Counted, KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet, Recorder,
-    Recording, Resource, Rounding, Simd4, Simd8, Simd16, Type, wgsl,
+    Recording, Resource, Rounding, Simd4, Simd8, Simd16, Type, U, wgsl,
 };
 
 /// The machines for which closures are lifted: the natural widths of the target's levels.
@@ -420,16 +420,18 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
         Recording::batch::<A, R>(self.arithmetic, |m, args| (self.lifted.recorder)(m, args))
     }
 
-    /// Records the kernel behind something that makes its parameters from a pixel.
-    pub fn record_grid(
+    /// Records what is done for each pixel of a film: `pixel` is given its coordinates and the
+    /// lifted body.
+    pub fn record_grid<O: Type>(
         &self,
-        args: impl FnOnce(
+        pixel: impl FnOnce(
             &Recorder,
-            crate::machine::U<Recorder>,
-            crate::machine::U<Recorder>,
-        ) -> A::On<Recorder>,
+            U<Recorder>,
+            U<Recorder>,
+            &LiftedFn<'a, Recorder, A, R>,
+        ) -> O::On<Recorder>,
     ) -> Recording {
-        Recording::grid::<R>(self.arithmetic, |m, x, y| (self.lifted.recorder)(m, args(m, x, y)))
+        Recording::grid::<O>(self.arithmetic, |m, x, y| pixel(m, x, y, &self.lifted.recorder))
     }
 
     /// Shows the buffers that the recorded kernel may read.

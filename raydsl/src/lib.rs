@@ -9,12 +9,15 @@ pub mod geometry;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod kernel;
+pub mod kernels;
 pub mod machine;
 pub mod math;
 pub mod prelude;
 pub mod render;
 pub mod report;
+pub mod sampling;
 pub mod testing;
+pub mod texture;
 
 #[doc(hidden)]
 pub mod __private;

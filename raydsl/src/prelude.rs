@@ -6,11 +6,13 @@ pub use glam::{
     bvec4, ivec2, ivec3, ivec4, mat3, mat4, uvec2, uvec3, uvec4, vec2, vec3, vec4,
 };
 
-pub use crate::bvh::{BuildConfig, BuildQuality, Bvh, BvhList, RayQuery};
-pub use crate::camera::Pinhole;
+pub use crate::bvh::{BuildConfig, BuildQuality, Bvh, BvhList, Instance, Instances, RayQuery};
+pub use crate::camera::{
+    Camera, CameraRays, DepthRange, Matrix, Orthographic, Pinhole, Stereo, ThinLens,
+};
 pub use crate::geometry::{
-    Aabb, Hit, IndexedTriangle, Primitive, Ray, Triangle, cone, cuboid, cylinder, disk, plane,
-    quad, rectangle, sphere, triangle, tube,
+    Aabb, Hit, IndexedTriangle, Primitive, Ray, SurfacePoint, Triangle, cone, cuboid, cylinder,
+    disk, offset_origin, plane, quad, rectangle, sphere, transform_ray, triangle, tube,
 };
 #[cfg(feature = "gpu")]
 pub use crate::gpu::GpuScheduler;
@@ -28,8 +30,23 @@ pub use crate::math::elementary::{
     SinCos, acos, asin, atan, atan2, cos, exp, exp2, expm1, log, log1p, log2, pow, sin, sincos_2pi,
     tan,
 };
-pub use crate::math::{Unorm8, Unorm16, Unorm32};
-pub use crate::render::{Image, Scheduler, Shaded, SimpleScheduler, TiledScheduler};
+pub use crate::math::{F16, Unorm8, Unorm16, Unorm32};
+pub use crate::render::{
+    Film, Image, PixelSampler, Radiance, Sampling, Scheduler, Shaded, SimpleScheduler,
+    TiledScheduler,
+};
 pub use crate::report::compare;
+pub use crate::sampling::{
+    Distribution1d, Distribution2d, Frame, Rng, SampleMethod, Sampler, balance_heuristic,
+    bilinear_pdf, cone_pdf, cosine_hemisphere_pdf, one_minus_cos, power_cosine_pdf,
+    power_heuristic, quad_pdf, sample_bilinear, sample_concentric_disk, sample_cone,
+    sample_cosine_hemisphere, sample_power_cosine, sample_table, sample_table_2d, sample_triangle,
+    sample_uniform_hemisphere, sample_uniform_sphere, solid_angle_pdf, table_2d_pdf, table_pdf,
+    triangle_pdf,
+};
+pub use crate::texture::{
+    Texture1, Texture2, Texture3, TextureConfig, TextureRef1, TextureRef2, TextureRef3,
+    linear_to_srgb, srgb_to_linear, tex1, tex1_level, tex2, tex2_level, tex3, tex3_level,
+};
 pub use crate::{HitRecord, Type, primitive};
 pub use raydsl_macros::kernel_closure as kernel;

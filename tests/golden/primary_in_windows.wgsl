@@ -1,16 +1,17 @@
+struct Hit {
+    is_hit: bool,
+    t: f32,
+    prim_id: u32,
+    inst_id: u32,
+    u: f32,
+    v: f32,
+}
+
 struct Ray {
     origin: vec3<f32>,
     direction: vec3<f32>,
     t_min: f32,
     t_max: f32,
-}
-
-struct Hit {
-    is_hit: bool,
-    t: f32,
-    prim_id: u32,
-    u: f32,
-    v: f32,
 }
 
 struct ColorSphere {
@@ -135,6 +136,10 @@ fn bvh_ids_at(i: u32) -> u32 {
     return bvh_ids[i];
 }
 
+fn Hit_new(is_hit: bool, t: f32) -> Hit {
+    return Hit(is_hit, t, 0u, 0u, 0.0f, 0.0f);
+}
+
 fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
     let f = center - ray.origin;
     let per_d2 = 1.0f / (ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z);
@@ -147,7 +152,7 @@ fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
     let far = closest + half;
     let t = select(near, far, (near < ray.t_min));
     let is_hit = radicand >= 0.0f && radius > 0.0f && t >= ray.t_min && t <= ray.t_max;
-    return Hit(is_hit, t, 0u, 0.0f, 0.0f);
+    return Hit_new(is_hit, t);
 }
 
 fn ColorSphere_intersect(self_: ColorSphere, ray: Ray) -> Hit {

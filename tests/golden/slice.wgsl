@@ -1,16 +1,22 @@
+struct Hit {
+    is_hit: bool,
+    t: f32,
+    prim_id: u32,
+    inst_id: u32,
+    u: f32,
+    v: f32,
+}
+
+struct Lost {
+    most: vec3<f32>,
+    rest: vec3<f32>,
+}
+
 struct Ray {
     origin: vec3<f32>,
     direction: vec3<f32>,
     t_min: f32,
     t_max: f32,
-}
-
-struct Hit {
-    is_hit: bool,
-    t: f32,
-    prim_id: u32,
-    u: f32,
-    v: f32,
 }
 
 struct Triangle {
@@ -94,32 +100,58 @@ fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
     return result;
 }
 
-fn lost_by_product(a: f32, b: f32) -> f32 {
-    let a_wide = a * params.lit_4097_0;
-    let b_wide = b * params.lit_4097_0;
-    let a_high = a_wide - (a_wide - a);
-    let b_high = b_wide - (b_wide - b);
+fn is_inside(sides: vec3<f32>) -> bool {
+    return (sides.x >= 0.0f && sides.y >= 0.0f && sides.z >= 0.0f) || (sides.x <= 0.0f && sides.y <= 0.0f && sides.z <= 0.0f);
+}
+
+fn Hit_new(is_hit: bool, t: f32) -> Hit {
+    return Hit(is_hit, t, 0u, 0u, 0.0f, 0.0f);
+}
+
+fn Hit_miss() -> Hit {
+    return Hit_new(false, 0.0f);
+}
+
+fn kept(a: vec3<f32>) -> vec3<f32> {
+    let t = vec3<f32>(340282346638528859811704183484516925440.0f);
+    return select(a, t, t < a);
+}
+
+fn upper_half(a: vec3<f32>) -> vec3<f32> {
+    let wide = a * params.lit_4097_0;
+    return wide - kept(wide - a);
+}
+
+fn lost_by_product(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
+    let a_high = upper_half(a);
+    let b_high = upper_half(b);
     let a_low = a - a_high;
     let b_low = b - b_high;
     return a_high * b_high - a * b + a_high * b_low + a_low * b_high + a_low * b_low;
 }
 
 fn lost_by_difference(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
-    let difference = a - b;
-    let part = a - difference;
+    let difference = kept(a - b);
+    let part = kept(a - difference);
     let rest = difference + part;
     return a - rest + (part - b);
 }
 
+fn lost_by_cross(a: vec3<f32>, b: vec3<f32>) -> Lost {
+    let lost = lost_by_product(a.yzx, b.zxy);
+    let lost_too = lost_by_product(a.zxy, b.yzx);
+    return Lost(lost - lost_too, lost_by_difference(lost, lost_too));
+}
+
+fn exact_cross(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
+    let lost = lost_by_cross(a, b);
+    return kept(kept(vec3<f32>(a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y)) + lost.most) + lost.rest;
+}
+
 fn is_line(v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> bool {
-    let a = v1 - v0;
-    let b = v2 - v0;
-    let x = lost_by_product(a.y, b.z) - lost_by_product(b.y, a.z);
-    let y = lost_by_product(a.z, b.x) - lost_by_product(b.z, a.x);
-    let z = lost_by_product(a.x, b.y) - lost_by_product(b.x, a.y);
-    let lost_by_edges = abs(lost_by_difference(v1, v0)) + abs(lost_by_difference(v2, v0));
-    let lost = lost_by_edges + abs(vec3<f32>(x, y, z));
-    return lost.x + lost.y + lost.z == 0.0f;
+    let lost = abs(lost_by_difference(v1, v0)) + abs(lost_by_difference(v2, v0));
+    let lost_1 = lost + abs(exact_cross(v1 - v0, v2 - v0));
+    return lost_1.x + lost_1.y + lost_1.z == 0.0f;
 }
 
 fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
@@ -139,49 +171,47 @@ fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
     let b_y = b.y - sy * b.z;
     let c_x = c.x - sx * c.z;
     let c_y = c.y - sy * c.z;
-    let u = c_x * b_y - c_y * b_x;
-    let v = a_x * c_y - a_y * c_x;
-    let w = b_x * a_y - b_y * a_x;
-    let inside = (u >= 0.0f && v >= 0.0f && w >= 0.0f) || (u <= 0.0f && v <= 0.0f && w <= 0.0f);
-    let sum = u + v + w;
-    let t_1 = select(a_x, b_x, b_x < a_x);
-    let left = select(t_1, c_x, c_x < t_1);
-    let t_2 = select(a_x, b_x, a_x < b_x);
-    let right = select(t_2, c_x, t_2 < c_x);
-    let t_3 = select(a_y, b_y, b_y < a_y);
-    let low = select(t_3, c_y, c_y < t_3);
-    let t_4 = select(a_y, b_y, a_y < b_y);
-    let high = select(t_4, c_y, t_4 < c_y);
+    var sides: vec3<f32> = vec3<f32>(b_y * c_x - b_x * c_y, c_y * a_x - c_x * a_y, a_y * b_x - a_x * b_y);
+    let t = select(a_x, b_x, b_x < a_x);
+    let left = select(t, c_x, c_x < t);
+    let t_1 = select(a_x, b_x, a_x < b_x);
+    let right = select(t_1, c_x, t_1 < c_x);
+    let t_2 = select(a_y, b_y, b_y < a_y);
+    let low = select(t_2, c_y, c_y < t_2);
+    let t_3 = select(a_y, b_y, a_y < b_y);
+    let high = select(t_3, c_y, t_3 < c_y);
     let between = left <= 0.0f && right >= 0.0f && low <= 0.0f && high >= 0.0f;
-    if (!(inside && between && sum != 0.0f)) {
-        return Hit(false, 0.0f, 0u, 0.0f, 0.0f);
+    var sum: f32 = sides.x + sides.y + sides.z;
+    if (!(is_inside(sides) && between)) {
+        return Hit_miss();
     }
-    var t: f32 = u / sum * (a.z / d.z) + v / sum * (b.z / d.z) + w / sum * (c.z / d.z);
-    let t_5 = select(a.x, b.x, b.x < a.x);
-    let min_x = select(t_5, c.x, c.x < t_5);
-    let t_6 = select(a.x, b.x, a.x < b.x);
-    let max_x = select(t_6, c.x, t_6 < c.x);
-    let x = t * d.x;
-    let t_7 = min_x - x;
-    let t_8 = x - max_x;
-    if (select(t_7, t_8, t_7 < t_8) > abs(x) * 9.536743e-7f) {
-        let t_9 = select(x, min_x, x < min_x);
-        t = select(t_9, max_x, max_x < t_9) / d.x;
+    let t_4 = select(a.z, b.z, b.z < a.z);
+    let near = select(t_4, c.z, c.z < t_4);
+    let t_5 = select(a.z, b.z, a.z < b.z);
+    let far = select(t_5, c.z, t_5 < c.z);
+    let products = abs(c_x * b_y) + abs(a_x * c_y) + abs(b_x * a_y);
+    let t_6 = abs(near);
+    let t_7 = abs(far);
+    if (2.0f * abs(sum) <= products * ((far - near) / select(t_6, t_7, t_6 < t_7))) {
+        var scale: f32;
+        if (products < 8.6736174e-19f) {
+            scale = 1.1529215e18f;
+        } else {
+            scale = 1.0f;
+        }
+        sides = exact_cross(vec3<f32>(a_y, b_y, c_y) * scale, vec3<f32>(a_x, b_x, c_x) * scale);
+        sum = select(0.0f, sides.x + sides.y + sides.z, is_inside(sides));
     }
-    let t_10 = select(a.y, b.y, b.y < a.y);
-    let min_y = select(t_10, c.y, c.y < t_10);
-    let t_11 = select(a.y, b.y, a.y < b.y);
-    let max_y = select(t_11, c.y, t_11 < c.y);
-    let y = t * d.y;
-    let t_12 = min_y - y;
-    let t_13 = y - max_y;
-    if (select(t_12, t_13, t_12 < t_13) > abs(y) * 9.536743e-7f) {
-        let t_14 = select(y, min_y, y < min_y);
-        t = select(t_14, max_y, max_y < t_14) / d.y;
+    if (sum == 0.0f) {
+        return Hit_miss();
     }
-    let t_15 = v1 - v0;
-    let t_16 = v2 - v0;
-    let is_flat = t_15.y * t_16.z - t_16.y * t_15.z == 0.0f && t_15.z * t_16.x - t_16.z * t_15.x == 0.0f && t_15.x * t_16.y - t_16.x * t_15.y == 0.0f;
+    let u = sides.x / sum;
+    let v = sides.y / sum;
+    let w = sides.z / sum;
+    let t_8 = u * (a.z / d.z) + v * (b.z / d.z) + w * (c.z / d.z);
+    let t_9 = v1 - v0;
+    let t_10 = v2 - v0;
+    let is_flat = t_9.y * t_10.z - t_10.y * t_9.z == 0.0f && t_9.z * t_10.x - t_10.z * t_9.x == 0.0f && t_9.x * t_10.y - t_10.x * t_9.y == 0.0f;
     var both: bool;
     if (is_flat) {
         both = is_line(v0, v1, v2);
@@ -189,8 +219,9 @@ fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
         both = false;
     }
     let is_surface = !both;
-    let is_hit = is_surface && t >= ray.t_min && t <= ray.t_max;
-    return Hit(is_hit, t, 0u, v / sum, w / sum);
+    let is_hit = is_surface && t_8 >= ray.t_min && t_8 <= ray.t_max;
+    let t_11 = Hit_new(is_hit, t_8);
+    return Hit(t_11.is_hit, t_11.t, t_11.prim_id, t_11.inst_id, v, w);
 }
 
 fn Triangle_intersect(self_: Triangle, ray: Ray) -> Hit {

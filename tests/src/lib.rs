@@ -1,15 +1,19 @@
 //! What the tests of raydsl share.
 //!
 //! The tests are split by the kind of evidence that they give: `variants` (every variant of small
-//! kernels agrees with the untouched source), `glam` (so does every operation), `rays` and `edges` (queries of scenes), `images`,
-//! `gpu`, `golden_wgsl`, `layout`, `unorm`, `elementary`, `fuzz` (random kernels).
+//! kernels agrees with the untouched source), `glam` (so does every operation), `rays` and `edges`
+//! (queries of scenes), `images`, `gpu`, `golden_wgsl`, `layout`, `unorm`, `elementary`, `fuzz`
+//! (random kernels), `robustness` (many rays at what is hard), `adversary` (scenes made of bytes).
 
+pub mod adversary;
+pub mod campaigns;
 pub mod check;
 pub mod fuzz;
 pub mod gpu;
 pub mod kernels;
 pub mod levels;
 pub mod operations;
+pub mod placed;
 pub mod queries;
 pub mod rng;
 pub mod run_time;

@@ -18,8 +18,8 @@ use crate::values::{Numbers, compare, garbage, operands, random};
 
 /// How many numbers an operation is given on the scalar machine, all its operands together.
 const NUMBERS: usize = 1_000_000;
-/// How many operands of them on every kind of packets. Their operations are calls: with all of them inlined
-/// these tests would take ten minutes to compile.
+/// How many operands of them on every kind of packets. Their operations are calls: with all of them
+/// inlined these tests would take ten minutes to compile.
 const ON_EACH_LEVEL: usize = 8_192;
 /// How many operands in WGSL.
 const IN_WGSL: usize = 500;

@@ -4,7 +4,8 @@
 //! operation of each level as a call. Production packets inline theirs: a kernel that is compiled
 //! for every level and width takes thirteen times as long.
 
-use raydsl::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Lanes};
+use raydsl::__at_run_time as at_run_time;
+use raydsl::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Lanes, Op};
 
 /// `N` lanes of the level behind the reference. It may have fewer: then the upper lanes hold
 /// nothing, and must not run.
@@ -167,12 +168,15 @@ macro_rules! held_as_it_is {
 }
 
 held_as_it_is!(f32, i32, u32, u64, bool, &'static str);
-held_as_it_is!(F32Unary, F32Binary, IntBinary, BoolBinary, Compare);
 
 macro_rules! operations {
-    ($($name:ident($($a:ident: $t:ty),*) -> $r:ty;)+) => {
+    (
+        $($name:ident($($a:ident: $t:ty),*) -> $r:ty;)+
+        $(@$kind:ident: $op_name:ident($($b:ident: $op_t:ty),*) -> $op_r:ty;)+
+    ) => {
         trait Table<const N: usize>: Send + Sync {
             $(fn $name(&self, $($a: $t),*) -> $r;)+
+            $(fn $op_name(&self, op: $kind, $($b: $op_t),*) -> $op_r;)+
         }
 
         impl<L: Lanes, const N: usize> Table<N> for L {
@@ -184,6 +188,21 @@ macro_rules! operations {
                         || {
                             $(let $a = Held::<L>::load($a, lanes);)*
                             <$r as Held<L>>::store(Lanes::$name(lanes, $($a),*), lanes)
+                        },
+                    )
+                }
+            )+
+            $(
+                fn $op_name(&self, op: $kind, $($b: $op_t),*) -> $op_r {
+                    let lanes = *self;
+                    lanes.vectorize(
+                        #[inline(always)]
+                        || {
+                            $(let $b = Held::<L>::load($b, lanes);)*
+                            let all = at_run_time!($kind op, |op| {
+                                Lanes::$op_name(lanes, op, $($b),*)
+                            });
+                            <$op_r as Held<L>>::store(all, lanes)
                         },
                     )
                 }
@@ -205,6 +224,11 @@ macro_rules! operations {
             $(
                 fn $name(self, $($a: $t),*) -> $r {
                     self.0.$name($($a),*)
+                }
+            )+
+            $(
+                fn $op_name<O: Op<$kind>>(self, _: O, $($b: $op_t),*) -> $op_r {
+                    self.0.$op_name(O::OP, $($b),*)
                 }
             )+
             fn f32_from_fn(self, f: impl FnMut(usize) -> f32) -> [f32; N] {
@@ -251,6 +275,17 @@ macro_rules! operations {
                         Kept::keep(self.0.$name($($a),*))
                     }
                 )+
+                $(
+                    #[inline(never)]
+                    fn $op_name<O: Op<$kind>>(
+                        self,
+                        op: O,
+                        $($b: <$op_t as Kept>::Place),*
+                    ) -> <$op_r as Kept>::Place {
+                        $(let $b = <$op_t as Kept>::find($b);)*
+                        Kept::keep(self.0.$op_name(op, $($b),*))
+                    }
+                )+
                 fn f32_from_fn(self, f: impl FnMut(usize) -> f32) -> Register {
                     std::array::from_fn::<f32, N, _>(f).keep()
                 }
@@ -284,16 +319,8 @@ operations! {
     i32(v: i32) -> [i32; N];
     u32(v: u32) -> [u32; N];
     mask(v: bool) -> Bits;
-    f32_unary(op: F32Unary, a: [f32; N]) -> [f32; N];
-    f32_binary(op: F32Binary, a: [f32; N], b: [f32; N]) -> [f32; N];
     f32_mul_add(a: [f32; N], b: [f32; N], c: [f32; N]) -> [f32; N];
-    i32_binary(op: IntBinary, a: [i32; N], b: [i32; N]) -> [i32; N];
-    u32_binary(op: IntBinary, a: [u32; N], b: [u32; N]) -> [u32; N];
-    mask_binary(op: BoolBinary, a: Bits, b: Bits) -> Bits;
     mask_not(a: Bits) -> Bits;
-    f32_compare(op: Compare, a: [f32; N], b: [f32; N]) -> Bits;
-    i32_compare(op: Compare, a: [i32; N], b: [i32; N]) -> Bits;
-    u32_compare(op: Compare, a: [u32; N], b: [u32; N]) -> Bits;
     f32_select(c: Bits, a: [f32; N], b: [f32; N]) -> [f32; N];
     i32_select(c: Bits, a: [i32; N], b: [i32; N]) -> [i32; N];
     u32_select(c: Bits, a: [u32; N], b: [u32; N]) -> [u32; N];
@@ -308,4 +335,12 @@ operations! {
     u32_to_i32(a: [u32; N]) -> [i32; N];
     f32_to_bits(a: [f32; N]) -> [u32; N];
     f32_from_bits(a: [u32; N]) -> [f32; N];
+    @F32Unary: f32_unary(a: [f32; N]) -> [f32; N];
+    @F32Binary: f32_binary(a: [f32; N], b: [f32; N]) -> [f32; N];
+    @IntBinary: i32_binary(a: [i32; N], b: [i32; N]) -> [i32; N];
+    @IntBinary: u32_binary(a: [u32; N], b: [u32; N]) -> [u32; N];
+    @BoolBinary: mask_binary(a: Bits, b: Bits) -> Bits;
+    @Compare: f32_compare(a: [f32; N], b: [f32; N]) -> Bits;
+    @Compare: i32_compare(a: [i32; N], b: [i32; N]) -> Bits;
+    @Compare: u32_compare(a: [u32; N], b: [u32; N]) -> Bits;
 }

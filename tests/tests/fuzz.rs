@@ -1,7 +1,8 @@
 //! Random kernels agree with their source in every variant; `raydsl_tests::fuzz` says how.
 //!
 //! `RAYDSL_FUZZ_KERNELS` says how many, `RAYDSL_FUZZ_SEED` which ones, `RAYDSL_FUZZ_RESUME=1` that
-//! a run which was ended goes on, and `RAYDSL_FUZZ_SHRUNK` how many failing kernels are made smaller:
+//! a run which was ended goes on, and `RAYDSL_FUZZ_SHRUNK` how many failing kernels are made
+//! smaller:
 //!
 //! ```text
 //! RAYDSL_FUZZ_KERNELS=20000 RAYDSL_FUZZ_RESUME=1 cargo test --workspace --test fuzz -- --nocapture

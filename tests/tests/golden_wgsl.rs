@@ -108,13 +108,16 @@ macro_rules! tests {
 
 raydsl_tests::kernel_table!(tests);
 
-const SCENES: [&str; 7] = [
+const SCENES: [&str; 10] = [
+    "instances",
     "list_of_meshes",
     "primary",
     "primary_in_windows",
     "primary_plain",
     "shadow",
     "slice",
+    "texture_levels",
+    "texture_linear",
     "two_trees",
 ];
 
@@ -189,6 +192,29 @@ fn two_trees() -> Result<(), raydsl::bvh::BuildError> {
     Ok(())
 }
 
+/// The same whatever the transforms are: they are data.
+#[test]
+fn instances() -> Result<(), Box<dyn std::error::Error>> {
+    let soup = triangles(20);
+    let trees = [Bvh::build(&soup)?];
+    let texts = [1.0, 2.0].map(|scale| -> Result<String, Box<dyn std::error::Error>> {
+        let map = Affine3::from_scale(vec3(scale, 1.0, 1.0));
+        let scene = Instances::build(&trees, &[Instance::new(0, map)])?;
+        let kernel = kernel!(|ray: Ray| {
+            let hit = scene.closest_hit(ray);
+            let normal = scene.primitive(hit).normal(scene.local_ray(ray, hit), hit);
+            let normal = scene.normal_in_scene(hit, normal);
+            (hit.inst_id, normal, scene.any_hit(ray))
+        });
+        Ok(kernel.wgsl())
+    });
+    let [one, other] = texts;
+    let one = one?;
+    assert_wgsl("instances", &one);
+    assert_eq!(one, other?);
+    Ok(())
+}
+
 #[test]
 fn list_of_meshes() -> Result<(), Box<dyn std::error::Error>> {
     let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
@@ -204,5 +230,40 @@ fn list_of_meshes() -> Result<(), Box<dyn std::error::Error>> {
         (near.t, far[0].t, meshes.any_hit(ray))
     });
     assert_wgsl("list_of_meshes", &kernel.wgsl());
+    Ok(())
+}
+
+/// A texture has the code of its filter and modes alone; sizes and the border are data.
+#[test]
+fn texture_linear() -> Result<(), raydsl::texture::TextureError> {
+    use raydsl::texture::Address;
+    let texels = [[Unorm8::ONE; 4]; 12];
+    let texts = [([4, 3], 0.5), ([6, 2], 0.25)].map(|(size, border)| {
+        let config = TextureConfig::new().border(Vec4::splat(border));
+        let config = config.addresses([Address::Wrap, Address::Border]);
+        let tiles = Texture2::new(&texels, size, config)?;
+        let kernel = kernel!(|uv: Vec2| tex2(&tiles, uv));
+        Ok(kernel.wgsl())
+    });
+    let [one, other] = texts;
+    let one = one?;
+    assert_wgsl("texture_linear", &one);
+    assert_eq!(one, other?);
+    for trace in ["four", "cubic", "pow", "level", "reduced_"] {
+        assert!(!one.contains(trace), "{trace} in {one}");
+    }
+    Ok(())
+}
+
+/// Trilinear filtering of colours in sRGB.
+#[test]
+fn texture_levels() -> Result<(), raydsl::texture::TextureError> {
+    use raydsl::texture::{ColorSpace, LevelFilter};
+    let texels = [[Unorm8::ONE; 3]; 32];
+    let config = TextureConfig::new().color_space(ColorSpace::Srgb);
+    let config = config.level_filter(LevelFilter::Linear);
+    let floor = Texture2::new(&texels, [8, 4], config)?.with_levels()?;
+    let kernel = kernel!(|uv: Vec2, level: f32| tex2_level(&floor, uv, level));
+    assert_wgsl("texture_levels", &kernel.wgsl());
     Ok(())
 }

@@ -76,6 +76,70 @@ fn the_applications_device_works() -> Result<(), Error> {
     Ok(())
 }
 
+/// A frame in a buffer of the application has the bits of one that comes back, in tiles as well.
+#[test]
+fn frames_stay_on_the_device() -> Result<(), Error> {
+    use raydsl::gpu::{GpuError, GpuWindow, WindowError};
+    use wgpu::BufferUsages as Usage;
+    if gpu().is_none() {
+        return Ok(());
+    }
+    let (device, queue) = application_device()?;
+    let context = Context::from_wgpu(None, device.clone(), queue.clone());
+    let gpu = GpuScheduler::with_context(context.with_max_binding_bytes(4096));
+    let camera = Pinhole::new(vec3(1.0, 2.0, 9.0), vec3(0.0, 0.0, 0.0), Vec3::Y, 0.9);
+    let kernel = kernel!(|ray: Ray, pixel: UVec2| {
+        Shaded { color: ray.direction, depth: ray.direction.y, id: pixel.x + pixel.y }
+    });
+    let (width, height) = (67u32, 35u32);
+    let mut expected = Image::new(width, height);
+    gpu.frame(&camera, &kernel, &mut expected)?;
+    let size = u64::from(width * height) * size_of::<Shaded>() as u64;
+    let buffer = |usage| {
+        device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: size + 512,
+            usage,
+            mapped_at_creation: false,
+        })
+    };
+    let usage = Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
+    let window = GpuWindow { buffer: buffer(usage), offset: 256, size };
+    let timing = gpu.frame_into(&camera, &kernel, (width, height), &window)?;
+    assert!(timing.dispatches > 1, "{timing:?}");
+    // What the application submits afterwards finds it there.
+    let readback = buffer(Usage::MAP_READ | Usage::COPY_DST);
+    let mut encoder = device.create_command_encoder(&Default::default());
+    encoder.copy_buffer_to_buffer(&window.buffer, 0, &readback, 0, size + 512);
+    queue.submit([encoder.finish()]);
+    readback.map_async(wgpu::MapMode::Read, .., |_| ());
+    device.poll(wgpu::PollType::wait_indefinitely())?;
+    let bytes = readback.get_mapped_range(..)?.to_vec();
+    let (before, rest) = bytes.split_at(256);
+    let (frame, after) = rest.split_at(size as usize);
+    assert!(before.iter().chain(after).all(|b| *b == 0), "only the window is written to");
+    let words = frame.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    let expected = expected.pixels().iter().flat_map(|p| {
+        let [r, g, b] = p.color.to_array().map(f32::to_bits);
+        [r, g, b, p.depth.to_bits(), p.id]
+    });
+    assert!(words.eq(expected));
+
+    let refused = |window: GpuWindow| match gpu.frame_into(&camera, &kernel, (67, 35), &window) {
+        Err(GpuError::Window { problem, .. }) => Some(problem),
+        _ => None,
+    };
+    let read_only = GpuWindow { buffer: buffer(Usage::STORAGE), ..window.clone() };
+    assert_eq!(refused(read_only), Some(WindowError::NotCopyDst));
+    let odd = GpuWindow { offset: 4, ..window.clone() };
+    assert!(matches!(refused(odd), Some(WindowError::Unaligned { offset: 4, .. })));
+    let small = GpuWindow { size: size - 20, ..window.clone() };
+    assert!(matches!(refused(small), Some(WindowError::WrongSize { len: 2345, .. })));
+    let late = GpuWindow { offset: 768, ..window };
+    assert!(matches!(refused(late), Some(WindowError::PastEnd { .. })));
+    Ok(())
+}
+
 #[test]
 fn numbers_compile_nothing_and_trees_are_kept() -> Result<(), Error> {
     let Some(gpu) = own_scheduler()? else { return Ok(()) };
@@ -132,5 +196,64 @@ fn slices_are_sent_every_time() -> Result<(), Error> {
         gpu.batch(&kernel, &args, &mut found)?;
         compare("slice", &expected, &found).assert_same(|i| format!("{:?}", args[i]));
     }
+    Ok(())
+}
+
+/// A tree for each time step, the active one switched by reference.
+#[test]
+fn steps_of_time_are_sent_once_and_compile_nothing() -> Result<(), Error> {
+    let Some(gpu) = own_scheduler()? else { return Ok(()) };
+    let context = gpu.context();
+    let steps = [200, 300, 250].map(spheres);
+    let trees = [Bvh::build(&steps[0])?, Bvh::build(&steps[1])?, Bvh::build(&steps[2])?];
+    let args: Vec<(Ray,)> = random_rays(41, 2000).into_iter().map(|r| (r,)).collect();
+    let mut uploaded = Vec::new();
+    for step in [0, 1, 2, 1, 0, 2] {
+        let active = &trees[step];
+        let kernel = kernel!(|ray: Ray| active.closest_hit(ray));
+        let mut expected = vec![Hit::miss(); args.len()];
+        kernel.run(Variant::Scalar, &args, &mut expected);
+        let mut found = vec![Hit::miss(); args.len()];
+        gpu.batch(&kernel, &args, &mut found)?;
+        compare("a step", &expected, &found).assert_same(|i| format!("{:?}", args[i]));
+        uploaded.push(context.uploaded_bytes());
+    }
+    assert_eq!(context.compiled(), 1, "another tree compiled something");
+    assert!(uploaded[0] < uploaded[1] && uploaded[1] < uploaded[2]);
+    assert!(uploaded[3..].iter().all(|bytes| *bytes == uploaded[2]), "a tree was sent again");
+    Ok(())
+}
+
+#[test]
+fn instances_that_move_send_no_primitives() -> Result<(), Error> {
+    let Some(gpu) = own_scheduler()? else { return Ok(()) };
+    let windowed = GpuScheduler::with_context(Context::new()?.with_max_binding_bytes(1 << 17));
+    let context = gpu.context();
+    let points = spheres(20_000);
+    let trees = [Bvh::build(&points)?];
+    let at = |x: f32| Instance::new(0, Affine3::from_translation(vec3(x, 0.0, 0.0)));
+    let mut scene = Instances::new(&trees)?;
+    let group = scene.group(&[at(0.0), at(2.0)])?;
+    let args: Vec<(Ray,)> = random_rays(43, 2000).into_iter().map(|r| (r,)).collect();
+    let mut sent = Vec::new();
+    for frame in 0..4 {
+        scene.set_group(group, &[at(0.0), at(2.0 - 0.3 * frame as f32)])?;
+        let kernel = kernel!(|ray: Ray| scene.closest_hit(ray));
+        let mut expected = vec![Hit::miss(); args.len()];
+        kernel.run(Variant::Scalar, &args, &mut expected);
+        for gpu in [&gpu, &windowed] {
+            let mut found = vec![Hit::miss(); args.len()];
+            gpu.batch(&kernel, &args, &mut found)?;
+            compare("a frame", &expected, &found).assert_same(|i| format!("{:?}", args[i]));
+        }
+        sent.push(context.uploaded_bytes());
+    }
+    let prims = size_of_val(&points[..]) as u64;
+    let tree = (trees[0].bytes() + scene.bytes()) as u64;
+    assert!(sent[0] >= prims + trees[0].bytes() as u64);
+    for pair in sent.windows(2) {
+        assert!(pair[1] - pair[0] <= tree, "{} bytes of {prims} + {tree}", pair[1] - pair[0]);
+    }
+    assert_eq!(context.compiled(), 1, "another transform compiled something");
     Ok(())
 }

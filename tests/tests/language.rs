@@ -60,6 +60,7 @@ fn owner(receiver: &str) -> Option<&'static str> {
         ("SceneView<'_, P>", "slices and trees of primitives"),
         ("SceneView<'a, P>", "slices and trees of primitives"),
         ("$twin<M>", "`Unorm8` and its like"),
+        ("F16On<M>", "`Unorm8` and its like"),
         ("V", "`BVec2`, `BVec3`, `BVec4`"),
     ];
     RECEIVERS.iter().find(|r| r.0 == receiver).map(|r| r.1)
@@ -95,6 +96,8 @@ fn methods() -> io::Result<BTreeMap<&'static str, BTreeSet<String>>> {
         "methods/vector.rs",
         "batch.rs",
         "../bvh/query.rs",
+        "../math/code.rs",
+        "../math/half.rs",
         "../math/unorm.rs",
     ] {
         let text = read(&format!("raydsl/src/machine/{file}"))?;

@@ -117,6 +117,6 @@ fn a_plain_kernel_carries_no_rays() {
         assert!(!text.contains(word), "{word}\n{text}");
     }
     let scene = &small::wgsl()[0];
-    assert!(!scene.contains("sin") && scene.contains("palette_element"), "{scene}");
+    assert!(!scene.contains("sin(") && scene.contains("palette_element"), "{scene}");
     assert!(scene.contains("fn Material_shade"), "{scene}");
 }

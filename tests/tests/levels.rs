@@ -4,12 +4,15 @@
 //! lane is a call, which is slow.
 
 use raydsl::prelude::*;
+use raydsl_tests::campaigns::slabs;
 use raydsl_tests::queries::{scalar_answers, slice_view};
 use raydsl_tests::scaled;
 use raydsl_tests::scenes::{broken_rays, random_rays};
 
 const RAYS: usize = 40_000;
 const RAYS_OF_SLICES: usize = 10_000;
+/// Of each row and size.
+const RAYS_OF_BOXES: usize = 4000;
 
 macro_rules! levels {
     ($scene:ident) => {
@@ -30,6 +33,19 @@ macro_rules! levels {
             Ok(())
         }
     };
+}
+
+/// Rays at boxes where a box test is easily wrong.
+#[test]
+fn boxes() -> Result<(), raydsl::bvh::BuildError> {
+    for row in &slabs::ROWS {
+        for (marks, answers) in slabs::answers(row, scaled(RAYS_OF_BOXES)) {
+            let bvh = Bvh::build(&marks)?;
+            answers.assert_levels(row.name, bvh.view());
+            answers.assert_gangs(row.name, bvh.view());
+        }
+    }
+    Ok(())
 }
 
 levels!(spheres);

@@ -62,7 +62,7 @@ fn a_sphere_by_hand() {
         let t = if near < t_min { closest + half } else { near };
         let is_hit = radicand >= 0.0 && t >= t_min && t <= t_max;
         hits += u32::from(is_hit);
-        let expected = [f64::from(is_hit), t, 0.0, 0.0, 0.0];
+        let expected = [f64::from(is_hit), t, 0.0, 0.0, 0.0, 0.0];
         assert_near(&kernel.reference((ray, center, radius)), &expected, (ray, center, radius));
     }
     assert!(hits > 100, "{hits} hits");

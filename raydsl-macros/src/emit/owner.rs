@@ -32,7 +32,7 @@ impl Owner {
         }
         match name {
             Some(name) if ops::is_of_library(&name) => Self::Library,
-            Some(name) if !ops::is_tree(&name) => Self::User,
+            Some(name) if !ops::is_data(&name) => Self::User,
             _ => Self::Unknown,
         }
     }

@@ -177,7 +177,7 @@ impl Emitter<'_> {
             Kind::Compare { op, a, b } => {
                 let op = word(op);
                 let (a, b) = (self.value(a), self.value(b));
-                quote!(#p::OpCompare::compare(#m, #p::Compare::#op, { #a }, { #b }))
+                quote!(#p::OpCompare::compare(#m, #p::op::#op, { #a }, { #b }))
             }
             Kind::Cast { value, ty } => {
                 let value = self.value(value);

@@ -39,7 +39,9 @@ fn param_ident(name: &Ident) -> Ident {
 /// The static description of a kernel.
 fn info(kernel: &Kernel, name: &str) -> TokenStream {
     let p = private();
-    let params: Vec<String> = kernel.params.iter().map(|p| p.name.to_string()).collect();
+    // Values of the host are no arguments on a machine.
+    let values = kernel.params.iter().filter(|p| !p.host);
+    let params: Vec<String> = values.map(|p| p.name.to_string()).collect();
     quote! {
         static __INFO: #p::KernelInfo = #p::KernelInfo {
             name: #name,
@@ -96,8 +98,9 @@ fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> T
         let (p, m) = (quote_here!(::raydsl::__private), own("m"));
         quote_here!(#p::Coerce::<__M, #ty>::coerce(#name, #m))
     });
+    let call_it = if kernel.is_apart { quote!(call_apart) } else { quote!(call) };
     let call = quote! {
-        #p::Machine::call(
+        #p::Machine::#call_it(
             #m,
             &__INFO,
             (#(#arguments,)*),

@@ -106,6 +106,15 @@ impl Shape {
                     #shape::uv(ray, hit, #arguments)
                 }
 
+                #[doc = "The point that `ray` hits, for rays that begin there."]
+                pub fn surface_point(
+                    &self,
+                    ray: ::raydsl::geometry::Ray,
+                    hit: ::raydsl::geometry::Hit,
+                ) -> ::raydsl::geometry::SurfacePoint {
+                    #shape::surface_point(ray, hit, #arguments)
+                }
+
                 #[doc = "The area of its surface."]
                 pub fn area(&self) -> f32 {
                     #shape::area(#arguments)

@@ -145,7 +145,8 @@ impl Parser<'_> {
         Some(Range { start, end, inclusive, reversed, step })
     }
 
-    /// A loop over the elements: `for x in list` is `for i in 0..list.len() { let x = list[i]; .. }`.
+    /// A loop over the elements: `for x in list` is `for i in 0..list.len() { let x = list[i]; ..
+    /// }`.
     fn for_each(&mut self, f: &syn::ExprForLoop, items: Items<'_>) -> Kind {
         let span = f.expr.span();
         let boxed = |kind| Box::new(Expr { kind, span });

@@ -97,7 +97,7 @@ pub(super) fn twin(item: &syn::DeriveInput, variants: &[Ident]) -> TokenStream {
             type Output = <bool as #p::Type>::On<__M>;
 
             #[inline(always)]
-            fn compare(m: &__M, op: #p::Compare, a: Self, b: Self) -> Self::Output {
+            fn compare<__O: #p::Op<#p::Compare>>(m: &__M, op: __O, a: Self, b: Self) -> Self::Output {
                 #p::OpCompare::compare(m, op, a.number, b.number)
             }
         }

@@ -17,8 +17,8 @@ use crate::machine::{Capture, Machine, Parameter, Resource};
 ///
 /// A query answers as one tree over all primitives would, with those of the first tree first, those
 /// of the second behind them, and so on: [`Hit::prim_id`] counts through the list. Rays are tested
-/// against every tree's box, so a list is for a few trees; on a GPU its trees lie in one buffer each
-/// for primitives, nodes and indices.
+/// against every tree's box, so a list is for a few trees; on a GPU its trees lie in one buffer
+/// each for primitives, nodes and indices.
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -114,6 +114,10 @@ impl<'a, P: Primitive> BvhList<'a, P> {
     /// What the primitives of all trees share.
     pub fn shared(&self) -> &'a [P::Shared] {
         self.trees.shared
+    }
+
+    pub(super) fn into_trees(self) -> Trees<'a, P, P::Shared> {
+        self.trees
     }
 
     /// The view that kernels work on.

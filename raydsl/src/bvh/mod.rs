@@ -10,10 +10,14 @@
 //!   [`Primitive::SLACK`]: what rounding may do to a hit, it does to no visit.
 //! * Every layout runs the same arithmetic on the same members of a primitive.
 
+mod accelerator;
 pub mod build;
+mod coverage;
+mod instances;
 mod list;
 mod node;
 pub(crate) mod owner;
+mod packet_slabs;
 mod query;
 mod ray_query;
 mod refit;
@@ -27,21 +31,30 @@ mod view;
 #[cfg(test)]
 mod tests;
 
+use core::ops::ControlFlow;
+
+pub use accelerator::{Accelerated, Accelerator};
 pub use build::{BuildConfig, BuildError, BuildQuality, MAX_DEPTH};
+pub use instances::{Group, Instance, InstanceError, Instances, MAX_CONDITION, MAX_LEVELS, Object};
+pub(crate) use instances::{IS_INSTANCE, PLACE_SCHEMA, Placed, Placing, STACK, Target};
 pub use list::{BvhList, ListError};
 pub use node::Node;
 use owner::Owner;
-pub(crate) use query::{RecordOn, closest_on};
+pub(crate) use query::{RecordOn, any_where, closest_on, closest_where};
 pub use ray_query::RayQuery;
 pub use refit::{DetachedBvh, RefitError};
+pub(crate) use slabs::Allowance;
 pub use stats::Statistics;
 pub use traverse::Cost;
+pub(crate) use traverse::nearest_counted;
+#[doc(hidden)]
+pub use traverse::{CountedHit, CountedHitOn};
 pub use validate::{TreeFault, validate};
 use view::Tree;
 pub(crate) use view::{Branches, NODE_SCHEMA, Part, buffers};
 pub use view::{SceneView, View};
 
-use crate::geometry::{Aabb, Kinds, Primitive, Ray};
+use crate::geometry::{Aabb, Kinds, Primitive};
 use crate::machine::{Capture, Machine, Resource, Type, wgsl::BufferKey};
 
 /// A binary tree over primitives that the application owns.
@@ -117,13 +130,61 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         shared: &'a [P::Shared],
         config: &BuildConfig,
     ) -> Result<Self, BuildError> {
+        Self::build_told(prims, shared, config, None)
+    }
+
+    /// [`Bvh::build_sharing`], of which `observer` is told how much is done, from 0 to 1, and says
+    /// whether to go on. A scene without shared data passes `&[]`.
+    ///
+    /// It is told 0 before anything is done, never less than the last time, at most 200 steps
+    /// between, and 1 at the end. The calls come from any of the threads that build, one at a time.
+    /// The tree is the same as without an observer.
+    ///
+    /// ```
+    /// use raydsl::prelude::*;
+    /// use core::ops::ControlFlow;
+    ///
+    /// let triangle = |z| Triangle { v0: vec3(0.0, 0.0, z), v1: vec3(4.0, 0.0, z), v2: vec3(0.0, 4.0, z) };
+    /// let triangles: Vec<_> = (0..1000).map(|z| triangle(z as f32)).collect();
+    /// let mut percent = 0.0;
+    /// let bvh = Bvh::build_observed(&triangles, &[], &BuildConfig::default(), |done| {
+    ///     percent = 100.0 * done;
+    ///     ControlFlow::Continue(())
+    /// })?;
+    /// assert_eq!(bvh.primitives().len(), 1000);
+    /// assert_eq!(percent, 100.0);
+    ///
+    /// let stopped = Bvh::build_observed(&triangles, &[], &BuildConfig::default(), |_| ControlFlow::Break(()));
+    /// assert!(matches!(stopped, Err(raydsl::bvh::BuildError::Cancelled)));
+    /// # Ok::<(), raydsl::bvh::BuildError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`Bvh::build_sharing`], and [`BuildError::Cancelled`] if the observer breaks off.
+    pub fn build_observed(
+        prims: &'a [P],
+        shared: &'a [P::Shared],
+        config: &BuildConfig,
+        mut observer: impl FnMut(f64) -> ControlFlow<()> + Send,
+    ) -> Result<Self, BuildError> {
+        Self::build_told(prims, shared, config, Some(&mut observer))
+    }
+
+    fn build_told(
+        prims: &'a [P],
+        shared: &'a [P::Shared],
+        config: &BuildConfig,
+        observer: Option<&mut build::Observer>,
+    ) -> Result<Self, BuildError> {
         const {
             assert!(
                 P::SLACK >= 0.0 && P::SLACK < 1.0,
                 "SLACK of a primitive is a number from 0 to 1"
             );
         }
-        let tree = build::build(|i| prims[i].get_bounds(shared), prims.len(), config)?;
+        let source = build::Primitives { prims, shared };
+        let tree = build::build_watched(&source, prims.len(), config, observer)?;
         let own = Owned {
             nodes: tree.nodes,
             indices: tree.indices,
@@ -133,11 +194,6 @@ impl<'a, P: Primitive> Bvh<'a, P> {
             built_cost: None,
         };
         Ok(Self { tree: Tree { prims, shared, own, kinds: Kinds::of(prims) } })
-    }
-
-    /// The least `(t, id)` hit of `ray`, and what it cost to find.
-    pub fn closest_hit_with_cost(&self, ray: Ray) -> (P::Hit, Cost) {
-        traverse::closest_hit_with_cost(&self.view(), ray)
     }
 
     /// The primitives, as the application owns them.

@@ -18,14 +18,14 @@ fn living() -> MutexGuard<'static, Option<HashSet<u64>>> {
 pub(crate) struct Owner(u64);
 
 impl Owner {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let id = NEXT.fetch_add(1, Ordering::Relaxed);
         living().get_or_insert_default().insert(id);
         Self(id)
     }
 
     #[inline(always)]
-    pub(super) fn id(&self) -> u64 {
+    pub(crate) fn id(&self) -> u64 {
         self.0
     }
 }

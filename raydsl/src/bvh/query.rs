@@ -3,11 +3,9 @@
 //! The machine visits the primitives; what is kept of them is said here once, for all machines.
 
 use super::SceneView;
+use super::traverse::CostOn;
 use crate::geometry::{Hit, HitOn, HitRecord, Kinds, Primitive, RayOn};
-use crate::machine::{
-    B, BoolBinary, Branch, Coerce, Compare, Const, F, F32Binary, F32Unary, Machine, Method, Type,
-    U, Var, name,
-};
+use crate::machine::{B, Branch, Coerce, Const, F, Machine, Method, Type, U, Var, name, op};
 
 /// What `intersect` of a primitive gives, lifted.
 pub(crate) type RecordOn<M, P> = <<P as Primitive>::Hit as Type>::On<M>;
@@ -22,6 +20,17 @@ pub(crate) fn closest_on<M: Machine, P: Primitive>(
 ) -> RecordOn<M, P> {
     let hit = m.closest_hit(prims, ray);
     record_on(m, prims, ray, hit)
+}
+
+/// [`closest_on`], and what it cost: of each ray as if it were alone.
+#[inline(always)]
+fn closest_with_cost_on<M: Machine, P: Primitive>(
+    m: &M,
+    prims: &SceneView<'_, P>,
+    ray: RayOn<M>,
+) -> (RecordOn<M, P>, CostOn<M>) {
+    let counted = m.closest_hit_with_cost(prims, ray);
+    (record_on(m, prims, ray, counted.hit), counted.cost)
 }
 
 #[inline(always)]
@@ -39,36 +48,65 @@ fn record_on<M: Machine, P: Primitive>(
             // A recorder leaves out the kinds that the scene does not have.
             let kinds = if M::RUNS { Kinds::ALL } else { prims.kinds() };
             let prim = m.fetch(prims, U(hit.prim_id.0));
+            let ray = match prims.placed() {
+                Some(_) => m.local_ray(prims, hit.inst_id, ray),
+                None => ray,
+            };
             P::intersect_among_on(m, kinds, prim, ray, prims.shared())
         },
     )
 }
 
-/// Whether `a` comes before `b` in the order of `(t, id)`; any hit comes before a miss.
+/// Whether the hits of a scene have numbers of instances.
+#[derive(Clone, Copy, PartialEq)]
+enum Placing {
+    Once,
+    Instances,
+}
+
+impl Placing {
+    #[inline(always)]
+    fn of<P: Primitive>(prims: &SceneView<'_, P>) -> Self {
+        if prims.placed().is_some() { Self::Instances } else { Self::Once }
+    }
+}
+
+/// Whether `a` comes before `b` in the order of `(t, inst_id, prim_id)`; any hit comes before a
+/// miss.
 #[inline(always)]
-fn is_before<M: Machine>(m: &M, a: HitOn<M>, b: HitOn<M>) -> B<M> {
-    let and = |x, y| m.bool_binary(BoolBinary::And, x, y);
-    let or = |x, y| m.bool_binary(BoolBinary::Or, x, y);
-    let nearer = m.f32_compare(Compare::Lt, a.t.0, b.t.0);
-    let equal = m.f32_compare(Compare::Eq, a.t.0, b.t.0);
-    let first = m.u32_compare(Compare::Lt, a.prim_id.0, b.prim_id.0);
+fn is_before<M: Machine>(m: &M, placing: Placing, a: HitOn<M>, b: HitOn<M>) -> B<M> {
+    let and = |x, y| m.bool_binary(op::And, x, y);
+    let or = |x, y| m.bool_binary(op::Or, x, y);
+    let nearer = m.f32_compare(op::Lt, a.t.0, b.t.0);
+    let equal = m.f32_compare(op::Eq, a.t.0, b.t.0);
+    let mut first = m.u32_compare(op::Lt, a.prim_id.0, b.prim_id.0);
+    if placing == Placing::Instances {
+        let earlier = m.u32_compare(op::Lt, a.inst_id.0, b.inst_id.0);
+        let same = m.u32_compare(op::Eq, a.inst_id.0, b.inst_id.0);
+        first = or(earlier, and(same, first));
+    }
     B(or(m.bool_not(b.is_hit.0), or(nearer, and(equal, first))))
 }
 
 /// No node beyond this distance can hold a hit before `worst`; the ray's end if there is none.
 #[inline(always)]
-fn limit_of<M: Machine, P: Primitive>(m: &M, worst: HitOn<M>, ray: RayOn<M>) -> F<M> {
-    let slack = m.f32_unary(F32Unary::Abs, worst.t.0);
-    let slack = m.f32_binary(F32Binary::Mul, slack, m.f32(P::SLACK));
-    let limit = m.f32_binary(F32Binary::Add, worst.t.0, slack);
+fn limit_of<M: Machine, P: Primitive>(
+    m: &M,
+    prims: &SceneView<'_, P>,
+    worst: HitOn<M>,
+    ray: RayOn<M>,
+) -> F<M> {
+    let slack = m.f32_unary(op::Abs, worst.t.0);
+    let slack = m.f32_binary(op::Mul, slack, m.slack(prims).0);
+    let limit = m.f32_binary(op::Add, worst.t.0, slack);
     // In this order what is no number becomes the ray's end.
-    let limit = m.f32_binary(F32Binary::Min, ray.t_max.0, limit);
+    let limit = m.f32_binary(op::Min, ray.t_max.0, limit);
     F(m.f32_select(worst.is_hit.0, limit, ray.t_max.0))
 }
 
 /// The least `(t, id)` hit of those that `accept` accepts.
 #[inline(always)]
-fn closest_where<M: Machine, P: Primitive>(
+pub(crate) fn closest_where<M: Machine, P: Primitive>(
     m: &M,
     prims: &SceneView<'_, P>,
     ray: RayOn<M>,
@@ -79,10 +117,10 @@ fn closest_where<M: Machine, P: Primitive>(
         prims,
         ray,
         #[inline(always)]
-        || limit_of::<M, P>(m, best.get(m), ray),
+        || limit_of(m, prims, best.get(m), ray),
         #[inline(always)]
         |hit, record| {
-            let is_closer = Branch::new(m, is_before(m, hit, best.get(m)));
+            let is_closer = Branch::new(m, is_before(m, Placing::of(prims), hit, best.get(m)));
             if is_closer.then(m) {
                 let accepted = Branch::new(m, accept(record));
                 if accepted.then(m) {
@@ -99,7 +137,7 @@ fn closest_where<M: Machine, P: Primitive>(
 
 /// Whether there is a hit that `accept` accepts.
 #[inline(always)]
-fn any_where<M: Machine, P: Primitive>(
+pub(crate) fn any_where<M: Machine, P: Primitive>(
     m: &M,
     prims: &SceneView<'_, P>,
     ray: RayOn<M>,
@@ -134,9 +172,9 @@ fn multi_where<M: Machine, P: Primitive, const N: usize>(
         prims,
         ray,
         #[inline(always)]
-        |last| limit_of::<M, P>(m, last, ray),
+        |last| limit_of(m, prims, last, ray),
         #[inline(always)]
-        |a, b| is_before(m, a, b),
+        |a, b| is_before(m, Placing::of(prims), a, b),
         accept,
     )
 }
@@ -156,16 +194,17 @@ fn multi_by<M: Machine, P: Primitive, const N: usize>(
         #[inline(always)]
         |_| ray.t_max,
         #[inline(always)]
-        |a, b| is_before_by(m, is_closer, a, b),
+        |a, b| is_before_by(m, Placing::of(prims), is_closer, a, b),
         &|_| B(m.bool(true)),
     )
 }
 
-/// Whether `a` comes before `b` in the order of `is_closer`, then of `(t, id)`. What stands for a miss
-/// is not asked about.
+/// Whether `a` comes before `b` in the order of `is_closer`, then of `(t, inst_id, prim_id)`. What
+/// stands for a miss is not asked about.
 #[inline(always)]
 fn is_before_by<M: Machine>(
     m: &M,
+    placing: Placing,
     is_closer: &impl Fn(HitOn<M>, HitOn<M>) -> B<M>,
     a: HitOn<M>,
     b: HitOn<M>,
@@ -175,15 +214,15 @@ fn is_before_by<M: Machine>(
     if both.then(m) {
         // Where both hold, as with `<=`, or neither, it is a tie.
         let (closer, farther) = (is_closer(a, b).0, is_closer(b, a).0);
-        let differ = m.bool_binary(BoolBinary::Xor, closer, farther);
-        first.set(m, B(m.bool_select(differ, closer, is_before(m, a, b).0)));
+        let differ = m.bool_binary(op::Xor, closer, farther);
+        first.set(m, B(m.bool_select(differ, closer, is_before(m, placing, a, b).0)));
     }
     both.end(m);
     first.get(m)
 }
 
-/// The first `N` hits in some order of those that `accept` accepts. Nodes beyond `limit` of the last
-/// of them are left out.
+/// The first `N` hits in some order of those that `accept` accepts. Nodes beyond `limit` of the
+/// last of them are left out.
 #[inline(always)]
 fn first_hits<M: Machine, P: Primitive, const N: usize>(
     m: &M,
@@ -204,9 +243,9 @@ fn first_hits<M: Machine, P: Primitive, const N: usize>(
         |hit, record| {
             let hits = all.get(m);
             let fits = m.bool_binary(
-                BoolBinary::And,
+                op::And,
                 is_before(hit, hits[N - 1]).0,
-                m.bool_not(is_among(m, hit, &hits)),
+                m.bool_not(is_among(m, Placing::of(prims), hit, &hits)),
             );
             let fits = Branch::new(m, B(fits));
             if fits.then(m) {
@@ -228,11 +267,19 @@ fn first_hits<M: Machine, P: Primitive, const N: usize>(
 
 /// Whether the hit is there already: a tree with spatial splits holds a primitive more than once.
 #[inline(always)]
-fn is_among<M: Machine, const N: usize>(m: &M, hit: HitOn<M>, hits: &[HitOn<M>; N]) -> M::Bool {
+fn is_among<M: Machine, const N: usize>(
+    m: &M,
+    placing: Placing,
+    hit: HitOn<M>,
+    hits: &[HitOn<M>; N],
+) -> M::Bool {
+    let and = |x, y| m.bool_binary(op::And, x, y);
     hits.iter().fold(m.bool(false), |any, h| {
-        let same = m.u32_compare(Compare::Eq, h.prim_id.0, hit.prim_id.0);
-        let same = m.bool_binary(BoolBinary::And, same, h.is_hit.0);
-        m.bool_binary(BoolBinary::Or, any, same)
+        let mut same = m.u32_compare(op::Eq, h.prim_id.0, hit.prim_id.0);
+        if placing == Placing::Instances {
+            same = and(same, m.u32_compare(op::Eq, h.inst_id.0, hit.inst_id.0));
+        }
+        m.bool_binary(op::Or, any, and(same, h.is_hit.0))
     })
 }
 
@@ -253,7 +300,7 @@ fn inserted<M: Machine, const N: usize>(
     };
     for slot in others {
         let before = is_before(hit, *slot);
-        found = B(m.bool_binary(BoolBinary::Or, found.0, before.0));
+        found = B(m.bool_binary(op::Or, found.0, before.0));
         let here = select(m, found, carried, *slot);
         carried = select(m, found, *slot, carried);
         *slot = here;
@@ -268,6 +315,7 @@ fn select<M: Machine>(m: &M, c: B<M>, a: HitOn<M>, b: HitOn<M>) -> HitOn<M> {
         is_hit: B(m.bool_select(c.0, a.is_hit.0, b.is_hit.0)),
         t: F(m.f32_select(c.0, a.t.0, b.t.0)),
         prim_id: U(m.u32_select(c.0, a.prim_id.0, b.prim_id.0)),
+        inst_id: U(m.u32_select(c.0, a.inst_id.0, b.inst_id.0)),
         u: F(m.f32_select(c.0, a.u.0, b.u.0)),
         v: F(m.f32_select(c.0, a.v.0, b.v.0)),
     }
@@ -282,6 +330,18 @@ impl<M: Machine, P: Primitive> Method<{ name("closest_hit") }, M, (RayOn<M>,)>
     #[inline(always)]
     fn call(self, m: &M, (ray,): (RayOn<M>,)) -> Self::Output {
         closest_on(m, &self, ray)
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine, P: Primitive> Method<{ name("closest_hit_with_cost") }, M, (RayOn<M>,)>
+    for SceneView<'_, P>
+{
+    type Output = (RecordOn<M, P>, CostOn<M>);
+
+    #[inline(always)]
+    fn call(self, m: &M, (ray,): (RayOn<M>,)) -> Self::Output {
+        closest_with_cost_on(m, &self, ray)
     }
 }
 

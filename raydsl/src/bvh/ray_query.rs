@@ -1,9 +1,13 @@
 //! What rays may ask, on the host.
 
-use super::{Bvh, BvhList, SceneView, View, traverse};
-use crate::geometry::{Hit, Primitive, Ray};
+use glam::{Affine3, Vec3};
 
-/// What rays may ask of primitives: of a slice, a tree ([`Bvh`]) or a list of trees ([`BvhList`]).
+use super::{Accelerated, Bvh, BvhList, Cost, Instances, SceneView, View, traverse};
+use crate::geometry::{Hit, Primitive, Ray, transform_normal_back};
+
+/// What rays may ask of primitives: of a slice, a tree ([`Bvh`]), a list of trees ([`BvhList`]),
+/// trees that are placed many times ([`Instances`]), or under a structure of one's own
+/// ([`Accelerated`]).
 ///
 /// A query of a slice tests every primitive, which with a few dozen of them is faster than a tree.
 /// All answer alike, and as kernels do that ask the same.
@@ -58,9 +62,9 @@ pub trait RayQuery {
         core::array::from_fn(|i| self.any_hit(ray(i as u32)))
     }
 
-    /// The least `(t, id)` hit of `ray` that `accept` accepts: leaves with holes, sides that are not
-    /// seen. `accept` is asked about some of the hits, in any order. Inside a kernel it is a closure of
-    /// the kernel, which may read what stands around it.
+    /// The least `(t, id)` hit of `ray` that `accept` accepts: leaves with holes, sides that are
+    /// not seen. `accept` is asked about some of the hits, in any order. Inside a kernel it is a
+    /// closure of the kernel, which may read what stands around it.
     fn closest_hit_where(
         &self,
         ray: Ray,
@@ -78,8 +82,8 @@ pub trait RayQuery {
         traverse::any_hit_where(&self.view(), ray, accept)
     }
 
-    /// The `N` least `(t, id)` hits of `ray`, in order, with misses behind them. Each primitive gives
-    /// the hit of its `intersect`, so a sphere is there once.
+    /// The `N` least `(t, id)` hits of `ray`, in order, with misses behind them. Each primitive
+    /// gives the hit of its `intersect`, so a sphere is there once.
     ///
     /// ```
     /// use raydsl::prelude::*;
@@ -107,10 +111,10 @@ pub trait RayQuery {
         traverse::multi_hit_where(&self.view(), ray, accept)
     }
 
-    /// The first `N` hits of `ray` in an order of your own, with misses behind them: `is_closer` says
-    /// whether its first hit comes before its second; of two where both or neither does, the least
-    /// `(t, id)` comes first. An order that runs in a circle has a result that depends on the tree.
-    /// Every hit within the ray's range is looked at.
+    /// The first `N` hits of `ray` in an order of your own, with misses behind them: `is_closer`
+    /// says whether its first hit comes before its second; of two where both or neither does, the
+    /// least `(t, id)` comes first. An order that runs in a circle has a result that depends on the
+    /// tree. Every hit within the ray's range is looked at.
     ///
     /// ```
     /// use raydsl::prelude::*;
@@ -131,6 +135,53 @@ pub trait RayQuery {
         is_closer: impl Fn(Hit, Hit) -> bool,
     ) -> [<Self::Primitive as Primitive>::Hit; N] {
         traverse::multi_hit_by(&self.view(), ray, is_closer)
+    }
+
+    /// The ray as the object sees it that was hit: the ray itself where nothing is
+    /// [placed](Instances). Primitives, and what they say of a hit, are in the object's space. `t`
+    /// is the same in both.
+    fn local_ray(&self, ray: Ray, hit: Hit) -> Ray {
+        self.view().local_ray(hit.inst_id, ray)
+    }
+
+    /// From the space of the scene to that of the object that was hit; the identity where nothing
+    /// is placed. For rays, [`RayQuery::local_ray`] is what the object was asked about, bit for
+    /// bit.
+    fn to_object(&self, hit: Hit) -> Affine3 {
+        self.view().to_object(hit.inst_id)
+    }
+
+    /// The unit normal in the scene of a surface that was hit, from one in the space of its object.
+    ///
+    /// ```
+    /// use raydsl::prelude::*;
+    ///
+    /// let triangles = [Triangle { v0: Vec3::ZERO, v1: vec3(4.0, 0.0, 4.0), v2: vec3(0.0, 4.0, 0.0) }];
+    /// let trees = [Bvh::build(&triangles)?];
+    /// let flat = Affine3::from_scale(vec3(1.0, 1.0, 0.5));
+    /// let scene = Instances::build(&trees, &[Instance::new(0, flat)])?;
+    /// let ray = Ray::new(vec3(1.0, 1.0, 9.0), vec3(0.0, 0.0, -1.0));
+    /// let hit = scene.closest_hit(ray);
+    /// let normal = scene.primitive(hit).normal(scene.local_ray(ray, hit), hit);
+    /// let normal = scene.normal_in_scene(hit, normal);
+    /// // The slope is half of what it was: 1 in 2.
+    /// assert!((normal - vec3(-1.0, 0.0, 2.0).normalize()).length() < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn normal_in_scene(&self, hit: Hit, normal: Vec3) -> Vec3 {
+        transform_normal_back(normal, self.to_object(hit))
+    }
+
+    /// The least `(t, id)` hit of `ray`, and what it cost to find. In kernels too: all variants
+    /// count what the ray visits if it is alone, and a device tests every primitive of an
+    /// [`Accelerated`].
+    fn closest_hit_with_cost(&self, ray: Ray) -> (<Self::Primitive as Primitive>::Hit, Cost) {
+        traverse::closest_hit_with_cost(&self.view(), ray)
+    }
+
+    /// Whether `ray` hits anything, and what it cost to find out. On the host only.
+    fn any_hit_with_cost(&self, ray: Ray) -> (bool, Cost) {
+        traverse::any_hit_with_cost(&self.view(), ray)
     }
 
     /// The primitive that was hit; the first one for a miss, so that code need not branch.
@@ -156,6 +207,22 @@ impl<P: Primitive> RayQuery for Bvh<'_, P> {
 
     fn view(&self) -> SceneView<'_, P> {
         Bvh::view(self)
+    }
+}
+
+impl<P: Primitive> RayQuery for Accelerated<'_, P> {
+    type Primitive = P;
+
+    fn view(&self) -> SceneView<'_, P> {
+        Accelerated::view(self)
+    }
+}
+
+impl<P: Primitive> RayQuery for Instances<'_, P> {
+    type Primitive = P;
+
+    fn view(&self) -> SceneView<'_, P> {
+        Instances::view(self)
     }
 }
 

@@ -99,9 +99,9 @@ impl<P: Primitive> Bvh<'_, P> {
     /// [`Statistics::sah_cost`](super::Statistics::sah_cost) now, divided by what it was then.
     /// 1 if the tree has never been refitted, infinite if rays cost nothing then.
     ///
-    /// Time to build anew is when what rays lose exceeds what building costs, often at 1.5 to 2. The
-    /// cost is that of rays that meet the box of the tree: a single primitive that leaves all others
-    /// far behind enlarges that box, and lowers it. Takes one pass over the nodes.
+    /// Time to build anew is when what rays lose exceeds what building costs, often at 1.5 to 2.
+    /// The cost is that of rays that meet the box of the tree: a single primitive that leaves all
+    /// others far behind enlarges that box, and lowers it. Takes one pass over the nodes.
     pub fn cost_growth(&self) -> f64 {
         let now = stats::sah_cost(&self.tree.own.nodes, &self.tree.own.config);
         match self.tree.own.built_cost {
@@ -116,11 +116,11 @@ impl<P: Primitive<Shared = ()>> DetachedBvh<P> {
     /// nothing else changes. `prims` holds them in the order in which the tree was built, be it
     /// the same memory or not.
     ///
-    /// Takes a fraction of the time of building. Hits are those that a new tree would give, but rays
-    /// take longer the more primitives have left their neighbours: see [`Bvh::cost_growth`]. After
-    /// Wald, Boulos and Shirley, *Ray tracing deformable scenes using dynamic bounding volume
-    /// hierarchies* (ACM Transactions on Graphics 26(1), 2007), section 3.2. A device that has the tree gets its
-    /// primitives, what they share and the nodes anew, but not the index list.
+    /// Takes a fraction of the time of building. Hits are those that a new tree would give, but
+    /// rays take longer the more primitives have left their neighbours: see [`Bvh::cost_growth`].
+    /// After Wald, Boulos and Shirley, *Ray tracing deformable scenes using dynamic bounding volume
+    /// hierarchies* (ACM Transactions on Graphics 26(1), 2007), section 3.2. A device that has the
+    /// tree gets its primitives, what they share and the nodes anew, but not the index list.
     ///
     /// # Errors
     ///

@@ -11,7 +11,25 @@
 use glam::Vec3;
 
 use super::Node;
-use crate::geometry::Ray;
+use crate::geometry::{Primitive, Ray};
+
+/// By how much boxes are widened, so that they hold what rounding makes of the primitives in them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Allowance {
+    /// Relative to the distance from the ray's origin to the farthest corner of the scene: see
+    /// [`Primitive::SLACK`].
+    pub(crate) slack: f32,
+    /// Relative to the coordinates of the ray's origin.
+    pub(crate) origin: f32,
+}
+
+impl Allowance {
+    /// That of a tree over these primitives.
+    #[inline(always)]
+    pub(crate) const fn of<P: Primitive>() -> Self {
+        Self { slack: P::SLACK, origin: 0.0 }
+    }
+}
 
 /// A ray, prepared for box tests.
 #[derive(Clone, Copy, Debug)]
@@ -41,10 +59,13 @@ fn finite_inverse(d: Vec3) -> Vec3 {
 impl Slabs {
     /// Prepares `ray` for the tree under `root`.
     #[inline(always)]
-    pub(crate) fn new(ray: &Ray, root: &Node, slack: f32) -> Self {
+    pub(crate) fn new(ray: &Ray, root: &Node, allowance: Allowance) -> Self {
         let reach = (root.min - ray.origin).abs().max((root.max - ray.origin).abs());
         // Where the origin is large against the scene the allowance must still move it.
-        let pad = (slack * reach.max_element()).max(f32::MIN_POSITIVE) + ray.origin.abs() * ULP;
+        let distant = ray.origin.abs();
+        let pad = (allowance.slack * reach.max_element()).max(f32::MIN_POSITIVE)
+            + distant.max_element() * allowance.origin;
+        let pad = distant * ULP + pad;
         Self {
             lower: ray.origin + pad,
             upper: ray.origin - pad,

@@ -99,7 +99,7 @@ fn measure(root: Aabb) -> fn(Aabb) -> f64 {
 }
 
 /// [`Statistics::depth`].
-fn depth(nodes: &[Node]) -> usize {
+pub(super) fn depth(nodes: &[Node]) -> usize {
     let mut depths = vec![0u8; nodes.len()];
     // Children come after their parents.
     for (k, node) in nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {

@@ -2,8 +2,11 @@
 
 use core::mem::MaybeUninit;
 
-use super::slabs::Slabs;
-use super::{MAX_DEPTH, Node, Part, SceneView};
+use super::instances::Descent;
+use super::slabs::{Allowance, Slabs};
+use super::view::Branches;
+use super::{Accelerator, MAX_DEPTH, Node, Part, Placed, SceneView};
+use crate::Type;
 use crate::geometry::{Hit, HitRecord, Primitive, Ray};
 
 /// Entries of a traversal's stack: one a level.
@@ -12,16 +15,16 @@ pub(crate) const STACK: usize = MAX_DEPTH + 2;
 /// Subtrees yet to be visited, and where the rays enter them.
 ///
 /// Left uninitialised: its kilobytes would cost a packet as much as a dozen nodes.
-pub(super) struct Stack<E> {
+pub(super) struct Stack<E, const SIZE: usize = STACK> {
     top: usize,
-    nodes: [MaybeUninit<u32>; STACK],
-    enters: [MaybeUninit<E>; STACK],
+    nodes: [MaybeUninit<u32>; SIZE],
+    enters: [MaybeUninit<E>; SIZE],
 }
 
-impl<E: Copy> Stack<E> {
+impl<E: Copy, const SIZE: usize> Stack<E, SIZE> {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        let (nodes, enters) = ([MaybeUninit::uninit(); STACK], [MaybeUninit::uninit(); STACK]);
+        let (nodes, enters) = ([MaybeUninit::uninit(); SIZE], [MaybeUninit::uninit(); SIZE]);
         Self { top: 0, nodes, enters }
     }
 
@@ -30,6 +33,12 @@ impl<E: Copy> Stack<E> {
         self.nodes[self.top].write(node);
         self.enters[self.top].write(enter);
         self.top += 1;
+    }
+
+    /// How many entries there are.
+    #[inline(always)]
+    pub(super) fn len(&self) -> usize {
+        self.top
     }
 
     #[inline(always)]
@@ -42,7 +51,7 @@ impl<E: Copy> Stack<E> {
 
 /// A ray with a NaN or an infinite component misses everything.
 #[inline(always)]
-fn is_finite(ray: &Ray) -> bool {
+pub(super) fn is_finite(ray: &Ray) -> bool {
     ray.origin.is_finite() && ray.direction.is_finite()
 }
 
@@ -52,20 +61,54 @@ fn is_met(hit: &Hit, ray: &Ray) -> bool {
     hit.is_hit && hit.t >= ray.t_min && hit.t <= ray.t_max
 }
 
-/// Whether a hit at `t` of the primitive `id` comes before `best` in the order of `(t, id)`; any hit
-/// comes before a miss.
+/// Whether a hit comes before `best` in the order of `(t, inst_id, prim_id)`; any hit comes before
+/// a miss.
 #[inline(always)]
-fn is_before(t: f32, id: u32, best: &Hit) -> bool {
-    !best.is_hit || t < best.t || (t == best.t && id < best.prim_id)
+fn is_before(hit: &Hit, best: &Hit) -> bool {
+    let is_first = || (hit.inst_id, hit.prim_id) < (best.inst_id, best.prim_id);
+    !best.is_hit || hit.t < best.t || (hit.t == best.t && is_first())
+}
+
+/// A primitive that a ray may meet, and the ray as its tree is asked about it.
+struct Candidate<'c, 'a, P: Primitive> {
+    part: &'c Part<'a, P, P::Shared>,
+    ray: &'c Ray,
+    inst: u32,
+    /// Its place in its part.
+    id: u32,
+}
+
+impl<P: Primitive> Candidate<'_, '_, P> {
+    #[inline(always)]
+    fn intersect(&self) -> P::Hit {
+        self.part.prims[self.id as usize].intersect(*self.ray, self.part.shared)
+    }
+
+    /// The hit under its primitive's number.
+    #[inline(always)]
+    fn numbered(&self, hit: Hit) -> Hit {
+        Hit { prim_id: self.part.first + self.id, inst_id: self.inst, ..hit }
+    }
 }
 
 /// What a traversal did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Type)]
+#[repr(C)]
 pub struct Cost {
     /// Nodes whose box was tested.
     pub nodes: u32,
     /// Primitives that were intersected.
     pub primitives: u32,
+}
+
+/// A hit, and what it cost to find.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
+#[repr(C)]
+pub struct CountedHit {
+    /// The hit.
+    pub hit: Hit,
+    /// What it cost.
+    pub cost: Cost,
 }
 
 /// Counts what a traversal does, or does not: [`Uncounted`] leaves no trace in the code.
@@ -102,26 +145,39 @@ pub(crate) fn nearest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> Hit {
 /// The record of a hit: traversal carries the hit alone.
 #[inline(always)]
 fn complete<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, hit: Hit) -> P::Hit {
-    let again = || prims.get(hit.prim_id).intersect(ray, prims.shared().elements());
+    let again = || {
+        let ray = prims.local_ray(hit.inst_id, ray);
+        prims.get(hit.prim_id).intersect(ray, prims.shared().elements())
+    };
     P::Hit::complete(hit, again)
 }
 
 /// [`closest_hit`], and what it cost.
 pub fn closest_hit_with_cost<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> (P::Hit, Cost) {
+    let CountedHit { hit, cost } = nearest_counted(prims, ray);
+    (complete(prims, ray, hit), cost)
+}
+
+/// [`closest_hit_with_cost`] without the rest of the record.
+pub(crate) fn nearest_counted<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> CountedHit {
     let mut cost = Cost::default();
     let hit = closest(prims, ray, &mut cost);
-    (complete(prims, ray, hit), cost)
+    CountedHit { hit, cost }
 }
 
 #[inline(always)]
 fn closest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Count) -> Hit {
     let mut best = Hit::miss();
-    walk_all(prims, ray, count, |part, id, limit| {
-        let hit = part.prims[id as usize].intersect(ray, part.shared).hit();
-        let id = part.first + id;
-        if is_met(&hit, &ray) && is_before(hit.t, id, &best) {
-            best = Hit { prim_id: id, ..hit };
-            *limit = beyond::<P>(&hit, &ray);
+    let slack = prims.allowance().slack;
+    walk_all(prims, ray, count, |candidate, limit| {
+        let hit = candidate.intersect().hit();
+        // Most are no hits: their numbers wait.
+        if is_met(&hit, &ray) {
+            let hit = candidate.numbered(hit);
+            if is_before(&hit, &best) {
+                best = hit;
+                *limit = beyond(&hit, &ray, slack);
+            }
         }
         false
     });
@@ -130,9 +186,19 @@ fn closest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Co
 
 /// Whether `ray` hits any of `prims`.
 pub fn any_hit<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> bool {
-    walk_all(prims, ray, &mut Uncounted, |part, id, _| {
-        is_met(&part.prims[id as usize].intersect(ray, part.shared).hit(), &ray)
-    })
+    any(prims, ray, &mut Uncounted)
+}
+
+/// [`any_hit`], and what it cost.
+pub fn any_hit_with_cost<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> (bool, Cost) {
+    let mut cost = Cost::default();
+    let found = any(prims, ray, &mut cost);
+    (found, cost)
+}
+
+#[inline(always)]
+fn any<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Count) -> bool {
+    walk_all(prims, ray, count, |candidate, _| is_met(&candidate.intersect().hit(), &ray))
 }
 
 /// Calls `meet` for every hit within the ray's range until it returns false. It may lower the limit
@@ -143,9 +209,9 @@ pub(crate) fn visit<P: Primitive>(
     ray: Ray,
     mut meet: impl FnMut(Hit, P::Hit, &mut f32) -> bool,
 ) -> bool {
-    !walk_all(prims, ray, &mut Uncounted, |part, id, limit| {
-        let record = part.prims[id as usize].intersect(ray, part.shared);
-        let hit = Hit { prim_id: part.first + id, ..record.hit() };
+    !walk_all(prims, ray, &mut Uncounted, |candidate, limit| {
+        let record = candidate.intersect();
+        let hit = candidate.numbered(record.hit());
         is_met(&hit, &ray) && !meet(hit, record.with_hit(hit), limit)
     })
 }
@@ -157,10 +223,11 @@ pub fn closest_hit_where<P: Primitive>(
     accept: impl Fn(P::Hit) -> bool,
 ) -> P::Hit {
     let mut best = Hit::miss();
+    let slack = prims.allowance().slack;
     visit::<P>(prims, ray, |hit, record, limit| {
-        if is_before(hit.t, hit.prim_id, &best) && accept(record) {
+        if is_before(&hit, &best) && accept(record) {
             best = hit;
-            *limit = beyond::<P>(&hit, &ray);
+            *limit = beyond(&hit, &ray, slack);
         }
         true
     });
@@ -183,14 +250,15 @@ pub fn multi_hit_where<P: Primitive, const N: usize>(
     accept: impl Fn(P::Hit) -> bool,
 ) -> [P::Hit; N] {
     let mut hits = FirstHits::<N>::new();
+    let slack = prims.allowance().slack;
     visit::<P>(prims, ray, |hit, record, limit| {
-        let place = hits.place(hit, |h| is_before(hit.t, hit.prim_id, h));
+        let place = hits.place(hit, |h| is_before(&hit, h));
         if let Some(place) = place
             && accept(record)
         {
             hits.insert(place, hit);
             if hits.last().is_hit {
-                *limit = beyond::<P>(hits.last(), &ray);
+                *limit = beyond(hits.last(), &ray, slack);
             }
         }
         true
@@ -212,7 +280,7 @@ pub fn multi_hit_by<P: Primitive, const N: usize>(
             }
             // Where both hold, as with `<=`, or neither, it is a tie.
             let (closer, farther) = (is_closer(hit, *h), is_closer(*h, hit));
-            if closer != farther { closer } else { is_before(hit.t, hit.prim_id, h) }
+            if closer != farther { closer } else { is_before(&hit, h) }
         };
         if let Some(place) = hits.place(hit, is_first) {
             hits.insert(place, hit);
@@ -234,7 +302,8 @@ impl<const N: usize> FirstHits<N> {
     /// Where a hit belongs, if it is among the first. `is_first` says whether it comes before one.
     fn place(&self, hit: Hit, is_first: impl Fn(&Hit) -> bool) -> Option<usize> {
         // A tree with spatial splits holds a primitive more than once.
-        let is_there = || self.0.iter().any(|h| h.is_hit && h.prim_id == hit.prim_id);
+        let is_same = |h: &Hit| (h.inst_id, h.prim_id) == (hit.inst_id, hit.prim_id);
+        let is_there = || self.0.iter().any(|h| h.is_hit && is_same(h));
         if !is_first(self.last()) || is_there() {
             return None;
         }
@@ -252,57 +321,139 @@ impl<const N: usize> FirstHits<N> {
 }
 
 /// No node beyond this distance can hold a hit before `hit`; the ray's end if that is no number.
-fn beyond<P: Primitive>(hit: &Hit, ray: &Ray) -> f32 {
-    (hit.t + hit.t.abs() * P::SLACK).min(ray.t_max)
+fn beyond(hit: &Hit, ray: &Ray, slack: f32) -> f32 {
+    (hit.t + hit.t.abs() * slack).min(ray.t_max)
 }
 
-/// [`walk`] through one part after another. A ray with a component that is no finite number meets
-/// nothing.
+/// Visits the primitives of a scene that the ray may meet, until `visit` returns true; whether it
+/// did. `visit` may lower the limit of the distance. A ray with a component that is no finite
+/// number meets nothing.
 #[inline(always)]
-fn walk_all<P: Primitive>(
+fn walk_all<P: Primitive, C: Count>(
     prims: &SceneView<'_, P>,
     ray: Ray,
-    count: &mut impl Count,
-    mut visit: impl FnMut(&Part<'_, P, P::Shared>, u32, &mut f32) -> bool,
+    count: &mut C,
+    mut visit: impl FnMut(&Candidate<'_, '_, P>, &mut f32) -> bool,
 ) -> bool {
-    if !is_finite(&ray) {
-        return false;
-    }
     // No node beyond this distance is worth a visit.
     let mut limit = ray.t_max;
-    prims.parts().any(|part| walk(&part, ray, &mut limit, count, &mut visit))
+    let mut places = Places::new(prims, ray);
+    while let Some((part, inst, ray)) = places.next(limit, count) {
+        if walk_part(&part, inst, &ray, &mut limit, count, &mut visit) {
+            return true;
+        }
+    }
+    false
 }
 
-/// Visits the primitives that the ray may meet, those of nearer leaves first, until `visit` returns
-/// true; whether it did. `visit` may lower the limit of the distance.
+/// The parts of a scene, one after another: each with the number of its instance, and the ray as it
+/// sees it.
+enum Places<'a, P: Primitive> {
+    Parts { scene: SceneView<'a, P>, next: usize, ray: Ray },
+    Instances { placed: &'a Placed<'a, P, P::Shared>, descent: Box<Descent<'a>> },
+}
+
+impl<'a, P: Primitive> Places<'a, P> {
+    #[inline(always)]
+    fn new(scene: &SceneView<'a, P>, ray: Ray) -> Self {
+        match scene.placed() {
+            Some(placed) => Self::Instances { placed, descent: Descent::new(&placed.groups, ray) },
+            None => {
+                // Behind the last part.
+                let next = if is_finite(&ray) { 0 } else { usize::MAX };
+                Self::Parts { scene: *scene, next, ray }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn next(
+        &mut self,
+        limit: f32,
+        count: &mut impl Count,
+    ) -> Option<(Part<'a, P, P::Shared>, u32, Ray)> {
+        match self {
+            Self::Parts { scene, next, ray } => {
+                let part = scene.part(*next)?;
+                *next += 1;
+                Some((part, 0, *ray))
+            }
+            Self::Instances { placed, descent } => {
+                let place = descent.next(limit);
+                count.nodes(core::mem::take(&mut descent.nodes));
+                let place = place?;
+                Some((placed.trees.parts[place.tree as usize], place.inst, place.ray))
+            }
+        }
+    }
+}
+
+/// [`walk_all`] in one part.
 #[inline(always)]
-fn walk<P: Primitive>(
+fn walk_part<P: Primitive, C: Count>(
     part: &Part<'_, P, P::Shared>,
-    ray: Ray,
+    inst: u32,
+    ray: &Ray,
     limit: &mut f32,
-    count: &mut impl Count,
-    visit: &mut impl FnMut(&Part<'_, P, P::Shared>, u32, &mut f32) -> bool,
+    count: &mut C,
+    visit: &mut impl FnMut(&Candidate<'_, '_, P>, &mut f32) -> bool,
 ) -> bool {
-    let Some(tree) = part.tree else {
-        return (0..part.prims.len() as u32).any(|id| {
-            count.primitive();
-            visit(part, id, limit)
-        });
+    let mut visit = |id, limit: &mut f32, count: &mut C| {
+        count.primitive();
+        visit(&Candidate { part, ray, inst, id }, limit)
     };
+    match (part.tree, part.accelerator) {
+        (Some(tree), _) => walk(tree, ray, Allowance::of::<P>(), limit, count, visit),
+        (None, Some(accelerator)) => find(accelerator, part.prims.len(), ray, limit, count, visit),
+        (None, None) => (0..part.prims.len() as u32).any(|id| visit(id, limit, count)),
+    }
+}
+
+/// Visits what an accelerator names of `len` primitives, until `visit` returns true; whether it
+/// did.
+fn find<C: Count>(
+    accelerator: &dyn Accelerator,
+    len: usize,
+    ray: &Ray,
+    limit: &mut f32,
+    count: &mut C,
+    mut visit: impl FnMut(u32, &mut f32, &mut C) -> bool,
+) -> bool {
+    let mut stopped = false;
+    accelerator.candidates(ray, *limit, &mut |id| {
+        // It may go on after all, or name what is not there.
+        if !stopped && (id as usize) < len {
+            stopped = visit(id, limit, count);
+        }
+        if stopped { f32::NEG_INFINITY } else { *limit }
+    });
+    stopped
+}
+
+/// Visits what is in the leaves that the ray may meet, the nearer leaves first, until `visit`
+/// returns true; whether it did.
+#[inline(always)]
+fn walk<C: Count>(
+    tree: Branches<'_>,
+    ray: &Ray,
+    allowance: Allowance,
+    limit: &mut f32,
+    count: &mut C,
+    mut visit: impl FnMut(u32, &mut f32, &mut C) -> bool,
+) -> bool {
     let Some(root) = tree.nodes.first() else { return false };
-    let slabs = Slabs::new(&ray, root, P::SLACK);
+    let slabs = Slabs::new(ray, root, allowance);
     count.nodes(1);
     if slabs.enter(root, *limit).is_none() {
         return false;
     }
-    let mut stack = Stack::new();
+    let mut stack = Stack::<f32>::new();
     let mut node: &Node = root;
     loop {
         if node.is_leaf() {
             let (first, len) = (node.first as usize, node.count as usize);
             for &id in &tree.indices[first..first + len] {
-                count.primitive();
-                if visit(part, id, limit) {
+                if visit(id, limit, count) {
                     return true;
                 }
             }

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use super::build::{Primitives, Source};
+use super::coverage::is_covered;
 use super::{Bvh, MAX_DEPTH, Node};
 use crate::geometry::{Aabb, Primitive};
 
@@ -96,6 +98,22 @@ pub enum TreeFault {
         /// How many primitives there are.
         primitives: usize,
     },
+    /// A primitive is in a leaf twice: rays would be tested twice.
+    #[error("node {node}: primitive {primitive} is in it twice")]
+    Repeated {
+        /// The leaf.
+        node: usize,
+        /// The primitive.
+        primitive: usize,
+    },
+    /// A primitive is in several leaves, as parts, and a part is in none.
+    #[error(
+        "the boxes of the leaves that hold parts of primitive {primitive} leave out some of it"
+    )]
+    PartMissing {
+        /// The primitive.
+        primitive: usize,
+    },
     /// A primitive is in no leaf: no ray would meet it.
     #[error("primitive {primitive} is in no leaf")]
     Missing {
@@ -105,9 +123,13 @@ pub enum TreeFault {
 }
 
 /// Checks that a tree is one, for tests and for tracking down a fault: that every primitive is in a
-/// leaf, every index in its range, every node but the root the child of one that comes before it, no
-/// leaf deeper than [`MAX_DEPTH`], and that every box holds the boxes below it and those of its
-/// primitives.
+/// leaf, every index in its range, every node but the root the child of one that comes before it,
+/// no leaf deeper than [`MAX_DEPTH`], no primitive twice in a leaf, and that every box holds the
+/// boxes below it and those of its primitives.
+///
+/// Where a primitive is in several leaves ([`BuildQuality::Best`](super::BuildQuality::Best)), each
+/// may hold a part of it. Then it is checked along each axis that no part is left out, as far as
+/// [`Primitive::split_primitive`] tells.
 ///
 /// Takes one pass over the nodes, two bytes a node, and asks for the bounds of all primitives.
 ///
@@ -122,25 +144,27 @@ pub enum TreeFault {
 ///
 /// # Errors
 ///
-/// The first fault, in the order of the nodes.
+/// The first fault, in the order of the nodes; primitives that are not, or not all, in leaves come
+/// last.
 pub fn validate<P: Primitive>(bvh: &Bvh<'_, P>) -> Result<(), TreeFault> {
-    let (prims, shared) = (bvh.primitives(), bvh.shared());
-    check(bvh.nodes(), bvh.indices(), prims.len(), |k| prims[k].get_bounds(shared))
+    let source = Primitives { prims: bvh.primitives(), shared: bvh.shared() };
+    check(bvh.nodes(), bvh.indices(), bvh.primitives().len(), &source)
 }
 
-/// [`validate`], for the parts of a tree over `count` primitives with these bounds.
+/// [`validate`], for the parts of a tree over `count` primitives.
 pub(super) fn check(
     nodes: &[Node],
     indices: &[u32],
     count: usize,
-    bounds: impl Fn(usize) -> Aabb,
+    source: &impl Source,
 ) -> Result<(), TreeFault> {
     let mut walk = Walk {
         nodes,
         indices,
-        bounds,
+        source,
         depths: vec![None; nodes.len()],
-        is_in_leaf: vec![false; count],
+        found: vec![Found::default(); count],
+        parts: Vec::new(),
     };
     if let Some(root) = walk.depths.first_mut() {
         *root = Some(0);
@@ -149,23 +173,36 @@ pub(super) fn check(
     for node in 0..nodes.len() {
         walk.visit(node)?;
     }
-    match walk.is_in_leaf.iter().position(|is_in_leaf| !is_in_leaf) {
-        Some(primitive) => Err(TreeFault::Missing { primitive }),
-        None => Ok(()),
+    if let Some(primitive) = walk.found.iter().position(|found| found.leaf.is_none()) {
+        return Err(TreeFault::Missing { primitive });
     }
+    walk.visit_parts()
+}
+
+/// Where a primitive was found.
+#[derive(Clone, Copy, Default)]
+struct Found {
+    /// The last leaf that has it.
+    leaf: Option<u32>,
+    /// Whether another one has it, too.
+    is_in_others: bool,
+    /// Whether a leaf's box holds all of it.
+    is_whole: bool,
 }
 
 /// A walk over all nodes, one after another.
-struct Walk<'a, B> {
+struct Walk<'a, S> {
     nodes: &'a [Node],
     indices: &'a [u32],
-    bounds: B,
+    source: &'a S,
     /// How deep those nodes are of which a parent has been visited.
     depths: Vec<Option<u8>>,
-    is_in_leaf: Vec<bool>,
+    found: Vec<Found>,
+    /// Primitives, and leaves that do not hold all of them.
+    parts: Vec<(u32, u32)>,
 }
 
-impl<B: Fn(usize) -> Aabb> Walk<'_, B> {
+impl<S: Source> Walk<'_, S> {
     fn visit(&mut self, node: usize) -> Result<(), TreeFault> {
         let depth = self.depths[node].ok_or(TreeFault::Unreachable { node })?;
         if usize::from(depth) > MAX_DEPTH {
@@ -204,17 +241,46 @@ impl<B: Fn(usize) -> Aabb> Walk<'_, B> {
     fn visit_primitives(&mut self, node: usize) -> Result<(), TreeFault> {
         let Node { first, count, .. } = self.nodes[node];
         let (first, count) = (first as usize, count as usize);
-        let (entries, primitives) = (self.indices.len(), self.is_in_leaf.len());
+        let (entries, primitives) = (self.indices.len(), self.found.len());
         let Some(leaf) = self.indices.get(first..).and_then(|rest| rest.get(..count)) else {
             return Err(TreeFault::EntryOutOfRange { node, first, count, entries });
         };
-        for primitive in leaf.iter().map(|&index| index as usize) {
+        for &index in leaf {
+            let primitive = index as usize;
             if primitive >= primitives {
                 return Err(TreeFault::NoSuchPrimitive { node, primitive, primitives });
             }
-            self.is_in_leaf[primitive] = true;
-            if !holds(&self.nodes[node], (self.bounds)(primitive)) {
+            let found = &mut self.found[primitive];
+            let before = found.leaf.replace(node as u32);
+            if before == found.leaf {
+                return Err(TreeFault::Repeated { node, primitive });
+            }
+            found.is_in_others |= before.is_some();
+            if holds(&self.nodes[node], self.source.bounds(primitive)) {
+                found.is_whole = true;
+            } else {
+                self.parts.push((index, node as u32));
+            }
+        }
+        Ok(())
+    }
+
+    /// Looks at the primitives of which a leaf does not hold all. With one leaf alone that is a
+    /// fault; several may have a part each.
+    fn visit_parts(&mut self) -> Result<(), TreeFault> {
+        self.parts.sort_unstable();
+        for parts in self.parts.chunk_by(|a, b| a.0 == b.0) {
+            let (primitive, node) = (parts[0].0 as usize, parts[0].1 as usize);
+            let found = self.found[primitive];
+            if found.is_whole {
+                continue;
+            }
+            if !found.is_in_others || !self.source.bounds(primitive).is_finite() {
                 return Err(TreeFault::PrimitiveOutside { node, primitive });
+            }
+            let boxes = parts.iter().map(|part| self.nodes[part.1 as usize].bounds());
+            if !is_covered(self.source, primitive, &mut boxes.collect::<Vec<_>>()) {
+                return Err(TreeFault::PartMissing { primitive });
             }
         }
         Ok(())

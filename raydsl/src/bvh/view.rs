@@ -2,9 +2,13 @@
 
 use std::borrow::Cow;
 
+use glam::Affine3;
+
+use super::instances::Placed;
 use super::owner::Owner;
-use super::{Node, Owned, bytes_of, list, slice_key};
-use crate::geometry::{Kinds, Primitive};
+use super::slabs::Allowance;
+use super::{Accelerator, Node, Owned, bytes_of, list, slice_key};
+use crate::geometry::{Kinds, Primitive, Ray};
 use crate::machine::{Field, Leaves, Machine, Resource, Schema, Type, Value, wgsl::BufferKey};
 
 /// The structure of a [`Node`].
@@ -26,6 +30,8 @@ pub(crate) mod buffers {
     pub(crate) const INDICES: u32 = 2;
     pub(crate) const SHARED: u32 = 3;
     pub(crate) const ROOTS: u32 = 4;
+    pub(crate) const PLACES: u32 = 5;
+    pub(crate) const TEXELS: u32 = 6;
 }
 
 /// The nodes of a tree and its index list.
@@ -35,14 +41,22 @@ pub(crate) struct Branches<'a> {
     pub(crate) indices: &'a [u32],
 }
 
-/// Primitives, what they share, and the tree over them if there is one.
-#[derive(Debug)]
+/// Primitives, what they share, and what finds them if there is anything.
 pub(crate) struct Part<'a, T, S> {
     pub(crate) prims: &'a [T],
     pub(crate) shared: &'a [S],
     pub(crate) tree: Option<Branches<'a>>,
+    /// What finds the primitives where there is no tree; without it all are asked.
+    pub(crate) accelerator: Option<&'a dyn Accelerator>,
     /// The number of its first primitive, among those of a list.
     pub(crate) first: u32,
+}
+
+impl<T, S> core::fmt::Debug for Part<'_, T, S> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let primitives = self.prims.len();
+        f.debug_struct("Part").field("primitives", &primitives).finish_non_exhaustive()
+    }
 }
 
 impl<T, S> Clone for Part<'_, T, S> {
@@ -67,7 +81,7 @@ impl<T, S> Tree<'_, T, S> {
     #[inline(always)]
     pub(super) fn part(&self) -> Part<'_, T, S> {
         let tree = Some(Branches { nodes: &self.own.nodes, indices: &self.own.indices });
-        Part { prims: self.prims, shared: self.shared, tree, first: 0 }
+        Part { prims: self.prims, shared: self.shared, tree, accelerator: None, first: 0 }
     }
 }
 
@@ -80,21 +94,39 @@ pub(crate) struct Trees<'a, T, S> {
     pub(super) kinds: Kinds,
 }
 
+/// Primitives under a structure of the application's own.
+pub(crate) struct Standing<'a, T, S> {
+    pub(super) prims: &'a [T],
+    pub(super) shared: &'a [S],
+    pub(super) accelerator: Box<dyn Accelerator + 'a>,
+    pub(super) owner: Owner,
+    pub(super) kinds: Kinds,
+}
+
+impl<T, S> Standing<'_, T, S> {
+    #[inline(always)]
+    fn part(&self) -> Part<'_, T, S> {
+        let (prims, shared) = (self.prims, self.shared);
+        Part { prims, shared, tree: None, accelerator: Some(&*self.accelerator), first: 0 }
+    }
+}
+
 /// What a view is of. Small, since kernels hand views to each other.
-#[derive(Debug)]
 enum Scene<'a, T, S> {
     Slice(&'a [T]),
     Tree(&'a Tree<'a, T, S>),
     List(&'a Trees<'a, T, S>),
+    Instances(&'a Placed<'a, T, S>),
+    Standing(&'a Standing<'a, T, S>),
 }
 
 /// A slice, a tree over one, or a list of trees: a value of the host on every machine.
 ///
 /// `S` is the type of what the primitives share; see [`Primitive::Shared`].
-#[derive(Debug)]
 pub struct View<'a, T, S = ()> {
     scene: Scene<'a, T, S>,
-    /// Of what primitives share, the name that a device has for it.
+    /// The name that a device has for a slice whose owner is known: for what primitives share, and
+    /// for texels.
     key: Option<BufferKey>,
     name: &'static str,
 }
@@ -111,6 +143,12 @@ impl<T, S> Clone for Scene<'_, T, S> {
 
 impl<T, S> Copy for Scene<'_, T, S> {}
 
+impl<T, S> core::fmt::Debug for View<'_, T, S> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("View").field("name", &self.name).field("len", &self.len()).finish()
+    }
+}
+
 impl<T, S> Clone for View<'_, T, S> {
     #[inline(always)]
     fn clone(&self) -> Self {
@@ -126,6 +164,12 @@ impl<'a, T, S> View<'a, T, S> {
         Self { scene: Scene::Slice(prims), key: None, name: "prims" }
     }
 
+    /// A slice that a device is sent once, for it belongs to an owner.
+    #[inline(always)]
+    pub(crate) fn owned_slice(prims: &'a [T], key: Option<BufferKey>) -> Self {
+        Self { key, ..Self::slice(prims) }
+    }
+
     #[inline(always)]
     pub(super) fn tree(tree: &'a Tree<'a, T, S>) -> Self {
         Self { scene: Scene::Tree(tree), key: None, name: "bvh" }
@@ -136,28 +180,74 @@ impl<'a, T, S> View<'a, T, S> {
         Self { scene: Scene::List(trees), key: None, name: "trees" }
     }
 
+    #[inline(always)]
+    pub(super) fn instances(placed: &'a Placed<'a, T, S>) -> Self {
+        Self { scene: Scene::Instances(placed), key: None, name: "scene" }
+    }
+
+    #[inline(always)]
+    pub(super) fn standing(standing: &'a Standing<'a, T, S>) -> Self {
+        Self { scene: Scene::Standing(standing), key: None, name: "prims" }
+    }
+
+    /// Whether the host's own structure finds the primitives.
+    #[inline(always)]
+    pub(crate) fn is_standing(&self) -> bool {
+        matches!(self.scene, Scene::Standing(_))
+    }
+
     /// The view under the name that it has in the source.
     #[inline(always)]
     pub(crate) fn named(self, name: &'static str) -> Self {
         Self { name, ..self }
     }
 
-    /// What a query looks through, one after another.
+    /// The trees of a list, or of a scene of instances.
+    #[inline(always)]
+    fn trees(&self) -> Option<&'a Trees<'a, T, S>> {
+        match self.scene {
+            Scene::Slice(_) | Scene::Tree(_) | Scene::Standing(_) => None,
+            Scene::List(trees) => Some(trees),
+            Scene::Instances(placed) => Some(&placed.trees),
+        }
+    }
+
+    /// The instances, if it is a scene of them: rays meet its parts where they are placed.
+    #[inline(always)]
+    pub(crate) fn placed(&self) -> Option<&'a Placed<'a, T, S>> {
+        match self.scene {
+            Scene::Instances(placed) => Some(placed),
+            _ => None,
+        }
+    }
+
+    /// The parts of the scene; of one without instances, what a query looks through, one after
+    /// another.
     #[inline(always)]
     pub(crate) fn parts(&self) -> impl Iterator<Item = Part<'a, T, S>> + use<'a, T, S> {
-        let scene = self.scene;
-        let count = match scene {
-            Scene::Slice(_) | Scene::Tree(_) => 1,
-            Scene::List(trees) => trees.parts.len(),
-        };
-        (0..count).map(
+        let view = *self;
+        (0..).map_while(
             #[inline(always)]
-            move |i| match scene {
-                Scene::Slice(prims) => Part { prims, shared: &[], tree: None, first: 0 },
-                Scene::Tree(tree) => tree.part(),
-                Scene::List(trees) => trees.parts[i],
-            },
+            move |i| view.part(i),
         )
+    }
+
+    /// The part `i` of the scene.
+    #[inline(always)]
+    pub(crate) fn part(&self, i: usize) -> Option<Part<'a, T, S>> {
+        match self.scene {
+            Scene::Slice(prims) => (i == 0).then_some(Part {
+                prims,
+                shared: &[],
+                tree: None,
+                accelerator: None,
+                first: 0,
+            }),
+            Scene::Standing(standing) => (i == 0).then(|| standing.part()),
+            Scene::Tree(tree) => (i == 0).then(|| tree.part()),
+            Scene::List(trees) => trees.parts.get(i).copied(),
+            Scene::Instances(placed) => placed.trees.parts.get(i).copied(),
+        }
     }
 
     /// What the primitives share.
@@ -167,6 +257,8 @@ impl<'a, T, S> View<'a, T, S> {
             Scene::Slice(_) => &[],
             Scene::Tree(tree) => tree.shared,
             Scene::List(trees) => trees.shared,
+            Scene::Instances(placed) => placed.trees.shared,
+            Scene::Standing(standing) => standing.shared,
         };
         let key = (!self.is_slice()).then(|| self.key_of(buffers::SHARED));
         View { key, name: self.name, ..View::slice(shared) }
@@ -178,16 +270,17 @@ impl<'a, T, S> View<'a, T, S> {
         match self.scene {
             Scene::Slice(prims) => prims,
             Scene::Tree(tree) => tree.prims,
-            Scene::List(_) => &[],
+            Scene::Standing(standing) => standing.prims,
+            Scene::List(_) | Scene::Instances(_) => &[],
         }
     }
 
     /// How many primitives.
     #[inline(always)]
     pub fn len(&self) -> usize {
-        match self.scene {
-            Scene::List(trees) => trees.parts.iter().map(|part| part.prims.len()).sum(),
-            _ => self.elements().len(),
+        match self.trees() {
+            Some(trees) => trees.parts.iter().map(|part| part.prims.len()).sum(),
+            None => self.elements().len(),
         }
     }
 
@@ -203,7 +296,7 @@ impl<'a, T, S> View<'a, T, S> {
 
     /// Whether trees stand over the primitives.
     pub(crate) fn has_tree(&self) -> bool {
-        !self.is_slice()
+        !self.is_slice() && !self.is_standing()
     }
 
     /// Whether it is a list of trees.
@@ -213,8 +306,8 @@ impl<'a, T, S> View<'a, T, S> {
 
     pub(crate) fn name(&self) -> Cow<'static, str> {
         match self.key {
-            Some(_) => format!("{}_shared", self.name).into(),
-            None => self.name.into(),
+            Some(key) if key.part == buffers::SHARED => format!("{}_shared", self.name).into(),
+            _ => self.name.into(),
         }
     }
 
@@ -223,6 +316,7 @@ impl<'a, T, S> View<'a, T, S> {
         match (self.key, self.scene) {
             (Some(key), _) => key,
             (None, Scene::Slice(prims)) => slice_key(prims),
+            (None, Scene::Standing(standing)) => slice_key(standing.prims),
             (None, _) => self.key_of(buffers::PRIMITIVES),
         }
     }
@@ -233,16 +327,33 @@ impl<'a, T, S> View<'a, T, S> {
             Scene::Slice(_) => (0, 0),
             Scene::Tree(tree) => (tree.own.owner.id(), tree.own.version),
             Scene::List(trees) => (trees.owner.id(), 0),
+            Scene::Instances(placed) => (placed.trees.owner.id(), placed.version),
+            Scene::Standing(standing) => (standing.owner.id(), 0),
         };
-        // Refitting leaves the order of the primitives as it is.
-        let version = if part == buffers::INDICES { 0 } else { version };
+        // Refitting leaves the order of the primitives as it is, moved instances the primitives.
+        let stays = match self.scene {
+            Scene::Instances(_) => part == buffers::PRIMITIVES || part == buffers::SHARED,
+            _ => part == buffers::INDICES,
+        };
+        let version = if stays { 0 } else { version };
         BufferKey { id, version, part }
+    }
+
+    /// The ray as the tree of an instance is asked about it; the ray itself where there are none.
+    pub(crate) fn local_ray(&self, inst: u32, ray: Ray) -> Ray {
+        self.placed().map_or(ray, |placed| placed.local_ray(inst, ray))
+    }
+
+    /// From the space of the scene to that of an instance's tree.
+    pub(crate) fn to_object(self, inst: u32) -> Affine3 {
+        self.placed().map_or(Affine3::IDENTITY, |placed| placed.to_object(inst))
     }
 
     /// How many nodes and how many indices.
     pub(crate) fn tree_len(&self) -> (u64, u64) {
         let trees = self.parts().filter_map(|part| part.tree);
-        trees.fold((0, 0), |(n, i), t| (n + t.nodes.len() as u64, i + t.indices.len() as u64))
+        let groups = self.placed().map_or((0, 0), Placed::group_len);
+        trees.fold(groups, |(n, i), t| (n + t.nodes.len() as u64, i + t.indices.len() as u64))
     }
 
     /// How many trees have a root.
@@ -260,12 +371,12 @@ impl<T: Copy, S> View<'_, T, S> {
     /// If there is no such primitive.
     #[inline(always)]
     pub fn get(&self, index: u32) -> T {
-        match self.scene {
-            Scene::List(trees) => {
+        match self.trees() {
+            Some(trees) => {
                 let part = &trees.parts[list::tree_of(&trees.parts, index)];
                 part.prims[(index - part.first) as usize]
             }
-            _ => self.elements()[index as usize],
+            None => self.elements()[index as usize],
         }
     }
 }
@@ -277,7 +388,16 @@ impl<P: Primitive> SceneView<'_, P> {
             Scene::Slice(prims) => Kinds::of(prims),
             Scene::Tree(tree) => tree.kinds,
             Scene::List(trees) => trees.kinds,
+            Scene::Instances(placed) => placed.trees.kinds,
+            Scene::Standing(standing) => standing.kinds,
         }
+    }
+
+    /// By how much boxes are widened, and how far behind a hit nodes are still visited.
+    #[inline(always)]
+    pub(crate) fn allowance(&self) -> Allowance {
+        let top = self.placed().and_then(Placed::top);
+        top.map_or(Allowance::of::<P>(), |top| top.allowance)
     }
 }
 
@@ -294,8 +414,15 @@ impl<T: Type, S: Type> Resource for View<'_, T, S> {
             return None;
         }
         match key.part {
-            buffers::NODES => Some(list::nodes(&parts)),
-            buffers::INDICES => Some(list::indices(&parts)),
+            buffers::NODES => Some(match self.placed() {
+                Some(placed) => placed.node_bytes(),
+                None => list::nodes(&parts),
+            }),
+            buffers::INDICES => Some(match self.placed() {
+                Some(placed) => placed.index_bytes(),
+                None => list::indices(&parts),
+            }),
+            buffers::PLACES => self.placed().map(Placed::place_bytes),
             buffers::SHARED => Some(Cow::Owned(bytes_of(self.shared().elements()))),
             buffers::ROOTS => {
                 let roots: Vec<u32> = list::roots(&parts).collect();
@@ -325,6 +452,8 @@ impl<M: Machine, T, S> Value<M> for View<'_, T, S> {
             (Scene::Slice(a), Scene::Slice(b)) => core::ptr::eq(a, b),
             (Scene::Tree(a), Scene::Tree(b)) => core::ptr::eq(a, b),
             (Scene::List(a), Scene::List(b)) => core::ptr::eq(a, b),
+            (Scene::Instances(a), Scene::Instances(b)) => core::ptr::eq(a, b),
+            (Scene::Standing(a), Scene::Standing(b)) => core::ptr::eq(a, b),
             _ => false,
         };
         assert!(

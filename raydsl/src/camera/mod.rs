@@ -1,11 +1,35 @@
 //! Cameras: from a point of the film to a ray.
+//!
+//! | camera | what it is |
+//! |---|---|
+//! | [`Pinhole`] | everything is sharp |
+//! | [`ThinLens`] | what is at one distance is sharp |
+//! | [`Orthographic`] | rays are parallel |
+//! | [`Matrix`] | that of a rasteriser, given by its matrices |
+//! | [`Stereo`] | two pinholes, one for each eye |
+//!
+//! Input that makes no camera has a defined result. Where `eye` and `center` are the same, the view
+//! is along -z; where `up` runs along the view, some direction perpendicular to it is up. Fields of
+//! view are clamped to the range from 1e-6 to pi - 1e-6; those of nearly half a turn work. A film
+//! may have any size.
 
+mod basis;
+mod matrix;
+mod orthographic;
 mod pinhole;
+mod stereo;
+mod thin_lens;
 
+pub use matrix::{CameraError, DepthRange, Matrix, MatrixRays, MatrixRaysOn};
+pub use orthographic::{Orthographic, OrthographicRays, OrthographicRaysOn};
 pub use pinhole::{Pinhole, PinholeRays, PinholeRaysOn};
+pub use stereo::{Eye, Stereo};
+pub use thin_lens::{ThinLens, ThinLensRays, ThinLensRaysOn};
 
-use crate::geometry::{Ray, RayOn};
-use crate::machine::{F, Machine, Type};
+use glam::Vec2;
+
+use crate::geometry::Ray;
+use crate::kernel;
 
 /// Makes rays for the pixels of a film.
 ///
@@ -20,17 +44,22 @@ pub trait Camera {
 }
 
 /// A camera prepared for a film: a kernel from a point to a ray.
-pub trait CameraRays: Type + Send + Sync {
-    /// The ray through the point (`x`, `y`) of the film.
+///
+/// Kernels may capture one, and make rays of their own. A camera of your own is a struct with
+/// `#[derive(Type)]` and a `#[kernel] impl CameraRays`.
+#[kernel]
+pub trait CameraRays: Send + Sync {
+    /// Whether [`lens_ray`](Self::lens_ray) asks for the point of the lens. Where it does not, none
+    /// need be made.
+    const HAS_LENS: bool = false;
+
+    /// The ray through the point (`x`, `y`) of the film; through the middle of the lens, if there
+    /// is one.
     fn primary_ray(&self, x: f32, y: f32) -> Ray;
 
-    /// `primary_ray`, lifted.
-    #[doc(hidden)]
-    fn primary_ray_on<M: Machine>(m: &M, this: Self::On<M>, x: F<M>, y: F<M>) -> RayOn<M>;
-
-    /// Brings the camera to the machine.
-    #[doc(hidden)]
-    fn on<M: Machine>(&self, m: &M) -> Self::On<M> {
-        m.capture("camera", *self)
+    /// The ray through the point (`x`, `y`) of the film and the point of the lens that a uniform
+    /// `u` in the unit square stands for. Of a camera without a lens it is the primary ray.
+    fn lens_ray(&self, x: f32, y: f32, _u: Vec2) -> Ray {
+        self.primary_ray(x, y)
     }
 }

@@ -7,6 +7,7 @@ use glam::{Vec2, Vec3, vec2};
 use super::axial::{Axial, at_turn, axial, choose, turn};
 use super::near::{Near, Span, both, end_of, is_leaving, near, slab};
 use super::outwards::{around_disk, difference};
+use super::surface::{point_on_ray, rounded_point};
 use super::{Aabb, Hit, Ray, SurfacePoint};
 use crate::machine::functions::vec2;
 use crate::machine::generic::{clamp, max, min};
@@ -167,14 +168,24 @@ pub fn sample(u: Vec2, base: Vec3, apex: Vec3, radius: f32) -> SurfacePoint {
     let across = at_turn(unit, u.y);
     let slant = slant(height, radius);
     let part = choose(u.x, slant / (slant + radius));
-    // Of the side and of the base alike, a share `r` of the radius holds the share `r²` of the area.
+    // Of the side and of the base alike, a share `r` of the radius holds the share `r²` of the
+    // area.
     let share = part.x.sqrt();
+    let own_error = (height + radius) * SLACK;
     if part.y == 0.0 {
         let position = apex + (axis + across * radius) * share;
-        SurfacePoint { position, normal: (across * height - unit * radius) / slant }
+        rounded_point(position, (across * height - unit * radius) / slant, own_error)
     } else {
-        SurfacePoint { position: base + across * (radius * share), normal: unit }
+        rounded_point(base + across * (radius * share), unit, own_error)
     }
+}
+
+/// The point that `ray` hits.
+#[kernel]
+#[inline]
+pub fn surface_point(ray: Ray, hit: Hit, base: Vec3, apex: Vec3, radius: f32) -> SurfacePoint {
+    let size = (base - apex).length() + radius;
+    point_on_ray(ray, hit, normal(ray, hit, base, apex, radius), size, SLACK)
 }
 
 /// The smallest box around the cone, which is that of its base and its apex; at most two ulp too

@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3, vec2, vec3};
 
 use super::near::{Near, Span, both, end_of, is_leaving, largest, slab};
+use super::surface::{point_on_ray, rounded_point};
 use super::{Aabb, Hit, Ray, SurfacePoint};
 use crate::machine::functions::{vec2, vec3};
 use crate::machine::generic::clamp;
@@ -143,14 +144,22 @@ pub fn sample(u: Vec2, min: Vec3, max: Vec3) -> SurfacePoint {
     };
     let is_upper = in_pair >= 0.5;
     let v = clamp(if is_upper { 2.0 * in_pair - 1.0 } else { 2.0 * in_pair }, 0.0, 1.0);
+    let own_error = largest(size) * SLACK;
     let (end, sign) = if is_upper { (1.0, 1.0) } else { (0.0, -1.0) };
     if is_x {
-        SurfacePoint { position: min + size * vec3(end, u.y, v), normal: vec3(sign, 0.0, 0.0) }
+        rounded_point(min + size * vec3(end, u.y, v), vec3(sign, 0.0, 0.0), own_error)
     } else if is_y {
-        SurfacePoint { position: min + size * vec3(v, end, u.y), normal: vec3(0.0, sign, 0.0) }
+        rounded_point(min + size * vec3(v, end, u.y), vec3(0.0, sign, 0.0), own_error)
     } else {
-        SurfacePoint { position: min + size * vec3(u.y, v, end), normal: vec3(0.0, 0.0, sign) }
+        rounded_point(min + size * vec3(u.y, v, end), vec3(0.0, 0.0, sign), own_error)
     }
+}
+
+/// The point that `ray` hits.
+#[kernel]
+#[inline]
+pub fn surface_point(ray: Ray, hit: Hit, min: Vec3, max: Vec3) -> SurfacePoint {
+    point_on_ray(ray, hit, normal(ray, hit, min, max), largest(max - min), SLACK)
 }
 
 /// The box itself.

@@ -7,6 +7,7 @@ use glam::{Vec2, Vec3, vec2};
 use super::axial::{Axial, Round, at_turn, axial, choose, round, turn};
 use super::near::{Near, Span, both, end_of, is_leaving, near, slab};
 use super::outwards::{around_disk, difference};
+use super::surface::{point_on_ray, rounded_point};
 use super::{Aabb, Hit, Ray, SurfacePoint};
 use crate::machine::functions::vec2;
 use crate::machine::generic::clamp;
@@ -46,7 +47,8 @@ fn meet(ray: Ray, p0: Vec3, p1: Vec3, radius: f32) -> Meeting {
     Meeting { line, view, round, caps, inside: Span { is_met, ..meeting } }
 }
 
-/// Where a ray meets the cylinder: the nearer of its two intersections that lies in the ray's range.
+/// Where a ray meets the cylinder: the nearer of its two intersections that lies in the ray's
+/// range.
 ///
 /// A cylinder whose radius is 0, or whose ends are one point, is never hit.
 #[kernel]
@@ -105,17 +107,26 @@ pub fn sample(u: Vec2, p0: Vec3, p1: Vec3, radius: f32) -> SurfacePoint {
     let length = axis.length();
     let unit = axis / length;
     let across = at_turn(unit, u.y);
+    let own_error = (length + radius) * SLACK;
     let part = choose(u.x, length / (length + radius));
     if part.y == 0.0 {
-        return SurfacePoint { position: p0 + axis * part.x + across * radius, normal: across };
+        return rounded_point(p0 + (axis * part.x + across * radius), across, own_error);
     }
     let cap = choose(part.x, 0.5);
     let in_cap = across * (radius * cap.x.sqrt());
     if cap.y == 0.0 {
-        SurfacePoint { position: p0 + in_cap, normal: -unit }
+        rounded_point(p0 + in_cap, -unit, own_error)
     } else {
-        SurfacePoint { position: p1 + in_cap, normal: unit }
+        rounded_point(p1 + in_cap, unit, own_error)
     }
+}
+
+/// The point that `ray` hits.
+#[kernel]
+#[inline]
+pub fn surface_point(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> SurfacePoint {
+    let size = (p1 - p0).length() + radius;
+    point_on_ray(ray, hit, normal(ray, hit, p0, p1, radius), size, SLACK)
 }
 
 /// The smallest box around the cylinder, which is that of its caps; at most two ulp too large.

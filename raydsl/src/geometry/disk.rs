@@ -7,6 +7,7 @@ use glam::{Vec2, Vec3, vec2};
 use super::axial::{at_turn, turn};
 use super::near::{Near, distance_of, near};
 use super::outwards::{around_disk, wide};
+use super::surface::{point_on_ray, rounded_point};
 use super::{Aabb, Hit, Ray, SurfacePoint};
 use crate::kernel;
 use crate::machine::functions::vec2;
@@ -43,7 +44,7 @@ pub fn intersect(ray: Ray, center: Vec3, normal: Vec3, radius: f32) -> Hit {
     let is_crossing = line.direction.dot(normal) != 0.0;
     let is_met = is_crossing && radius > 0.0 && from_center <= radius;
     let is_hit = is_met && t >= ray.t_min && t <= ray.t_max;
-    Hit { is_hit, t, prim_id: 0, u: from_center / radius, v: 0.0 }
+    Hit { u: from_center / radius, ..Hit::new(is_hit, t) }
 }
 
 /// The normal with unit length, whichever side `ray` hits.
@@ -75,7 +76,15 @@ pub fn area(_center: Vec3, _normal: Vec3, radius: f32) -> f32 {
 #[inline]
 pub fn sample(u: Vec2, center: Vec3, normal: Vec3, radius: f32) -> SurfacePoint {
     let unit = normal.normalize();
-    SurfacePoint { position: center + at_turn(unit, u.y) * (radius * u.x.sqrt()), normal: unit }
+    let from_center = at_turn(unit, u.y) * (radius * u.x.sqrt());
+    rounded_point(center + from_center, unit, radius * SLACK)
+}
+
+/// The point that `ray` hits.
+#[kernel]
+#[inline]
+pub fn surface_point(ray: Ray, hit: Hit, _center: Vec3, normal: Vec3, radius: f32) -> SurfacePoint {
+    point_on_ray(ray, hit, normal.normalize(), radius, SLACK)
 }
 
 /// The smallest box around the disk, at most two ulp too large.

@@ -14,6 +14,9 @@ pub struct Hit {
     /// Which primitive: its index in the application's array, counted through all arrays of a list.
     /// Traversal sets it.
     pub prim_id: u32,
+    /// Which instance of it, see [`Instances`](crate::bvh::Instances); 0 where there are none.
+    /// Traversal sets it.
+    pub inst_id: u32,
     /// First surface coordinate: the barycentric weight of a triangle's second vertex.
     pub u: f32,
     /// Second surface coordinate: the barycentric weight of a triangle's third vertex.
@@ -24,7 +27,7 @@ pub struct Hit {
 impl Hit {
     /// A hit if `is_hit`, at distance `t`.
     pub const fn new(is_hit: bool, t: f32) -> Self {
-        Self { is_hit, t, prim_id: 0, u: 0.0, v: 0.0 }
+        Self { is_hit, t, prim_id: 0, inst_id: 0, u: 0.0, v: 0.0 }
     }
 
     /// No hit.

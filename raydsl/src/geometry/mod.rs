@@ -1,14 +1,17 @@
 //! Rays, hits, boxes and the shapes that rays meet.
 
 mod aabb;
+pub(crate) mod affine;
 mod axial;
 pub mod cone;
 pub mod cuboid;
 pub mod cylinder;
 pub mod disk;
 mod edges;
+pub(crate) mod exact;
 mod hit;
 mod near;
+mod origin;
 mod outwards;
 pub mod plane;
 mod primitive;
@@ -21,7 +24,10 @@ pub mod triangle;
 pub mod tube;
 
 pub use aabb::Aabb;
+pub(crate) use affine::transform_normal_back;
+pub use affine::transform_ray;
 pub use hit::{Hit, HitOn, HitRecord};
+pub use origin::offset_origin;
 pub use primitive::{Kinds, Primitive};
 pub use ray::{Ray, RayOn};
 pub use surface::{SurfacePoint, SurfacePointOn};

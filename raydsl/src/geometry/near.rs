@@ -82,7 +82,8 @@ pub(super) fn distance_of(line: Near, s: f32) -> f32 {
     (line.distance + s) / line.scale
 }
 
-/// Whether it is the end of the span where the ray meets the solid: its beginning is before `t_min`.
+/// Whether it is the end of the span where the ray meets the solid: its beginning is before
+/// `t_min`.
 #[kernel]
 #[inline]
 pub(super) fn is_leaving(ray: Ray, line: Near, span: Span) -> bool {
@@ -96,5 +97,5 @@ pub(super) fn is_leaving(ray: Ray, line: Near, span: Span) -> bool {
 pub(super) fn end_of(ray: Ray, line: Near, span: Span) -> Hit {
     let s = if is_leaving(ray, line, span) { span.leave } else { span.enter };
     let t = distance_of(line, s);
-    Hit { is_hit: span.is_met && t >= ray.t_min && t <= ray.t_max, t, prim_id: 0, u: 0.0, v: 0.0 }
+    Hit::new(span.is_met && t >= ray.t_min && t <= ray.t_max, t)
 }

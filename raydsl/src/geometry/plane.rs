@@ -8,6 +8,7 @@ use glam::{Vec2, Vec3, vec2};
 
 use super::near::largest;
 use super::outwards::{above, below};
+use super::surface::{point_on_ray, rounded_point};
 use super::{Aabb, Hit, Ray, SurfacePoint};
 use crate::kernel;
 use crate::machine::functions::vec2;
@@ -26,7 +27,7 @@ pub fn intersect(ray: Ray, normal: Vec3, offset: f32) -> Hit {
     let approach = (ray.direction / scale).dot(normal);
     let t = (offset - ray.origin.dot(normal)) / approach / scale;
     let is_hit = approach != 0.0 && t >= ray.t_min && t <= ray.t_max;
-    Hit { is_hit, t, prim_id: 0, u: 0.0, v: 0.0 }
+    Hit::new(is_hit, t)
 }
 
 /// The normal with unit length, whichever side `ray` hits.
@@ -37,8 +38,9 @@ pub fn normal(_ray: Ray, _hit: Hit, normal: Vec3, _offset: f32) -> Vec3 {
 }
 
 /// Where in the plane `ray` hits: coordinates along the two vectors of
-/// `normal.normalize().any_orthonormal_pair()`, from the point that is closest to the world's origin. They are
-/// lengths and not shares, since a plane has no end: `fract()` of them makes tiles of size 1.
+/// `normal.normalize().any_orthonormal_pair()`, from the point that is closest to the world's
+/// origin. They are lengths and not shares, since a plane has no end: `fract()` of them makes tiles
+/// of size 1.
 #[kernel]
 #[inline]
 pub fn uv(ray: Ray, hit: Hit, normal: Vec3, _offset: f32) -> Vec2 {
@@ -62,7 +64,18 @@ pub fn sample(u: Vec2, normal: Vec3, offset: f32) -> SurfacePoint {
     let unit = normal.normalize();
     let (x, y) = unit.any_orthonormal_pair();
     let foot = unit * (offset / normal.length());
-    SurfacePoint { position: foot + x * (u.x - 0.5) + y * (u.y - 0.5), normal: unit }
+    let position = foot + (x * (u.x - 0.5) + y * (u.y - 0.5));
+    rounded_point(position, unit, (foot.length() + position.length()) * SLACK)
+}
+
+/// The point that `ray` hits. It is as uncertain as it and the plane are far from the world's
+/// origin.
+#[kernel]
+#[inline]
+pub fn surface_point(ray: Ray, hit: Hit, normal: Vec3, offset: f32) -> SurfacePoint {
+    let of_plane = (offset / normal.length()).abs();
+    let size = of_plane + ray.origin.length() + (ray.direction * hit.t).length();
+    point_on_ray(ray, hit, normal.normalize(), size, SLACK)
 }
 
 /// The infinite box; that of a plane across an axis is flat there.

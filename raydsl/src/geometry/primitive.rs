@@ -71,8 +71,11 @@ pub trait Primitive: Type + Send + Sync {
     /// Boxes around the parts of the primitive below and above the plane `axis = at`; a box that
     /// is not valid says that there is no such part. `axis` is 0, 1 or 2.
     ///
-    /// Builders with spatial splits ask for it. Together the boxes hold the whole primitive. The
-    /// default cuts its bounds, which is right for every shape and tight for boxes.
+    /// [`BuildQuality::Best`](crate::bvh::BuildQuality::Best) asks for it. Together the boxes hold
+    /// the whole primitive, rounded outwards, and a hit that `intersect` accepts lies within
+    /// [`Primitive::SLACK`] of one of them: of the primitive itself, that is, where the boxes are
+    /// tight. It must be a pure function. The default cuts the bounds, which is right for every
+    /// shape and tight for boxes.
     fn split_primitive(&self, axis: usize, at: f32, shared: &[Self::Shared]) -> (Aabb, Aabb) {
         self.get_bounds(shared).split(axis, at)
     }

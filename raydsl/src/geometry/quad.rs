@@ -16,7 +16,8 @@ pub const SLACK: f32 = triangle::SLACK;
 /// It is the two triangles `v0 v1 v3` and `v2 v3 v1`, as Embree splits quads, so it need not be
 /// flat, and no ray passes between neighbours that share two vertices, nor between the two halves.
 /// `hit.u` runs from `v0` to `v1` and from `v3` to `v2`, `hit.v` from `v0` to `v3` and from `v1` to
-/// `v2`, without a step at the diagonal. A ray along the surface hits it somewhere in its box.
+/// `v2`, without a step at the diagonal. A ray along the surface hits it somewhere between the
+/// edges that it passes.
 #[kernel]
 #[inline]
 pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3) -> Hit {
@@ -27,7 +28,7 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3) -> Hit {
     let is_whole = diagonal.dot(diagonal) >= 0.0;
     if second.is_hit && !(first.is_hit && first.t <= second.t) {
         let (u, v) = (1.0 - second.u, 1.0 - second.v);
-        Hit { is_hit: is_whole, t: second.t, prim_id: 0, u, v }
+        Hit { u, v, ..Hit::new(is_whole, second.t) }
     } else {
         Hit { is_hit: first.is_hit && is_whole, ..first }
     }
@@ -60,11 +61,26 @@ pub fn area(v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3) -> f32 {
 pub fn sample(u: Vec2, v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3) -> SurfacePoint {
     let first = triangle::area(v0, v1, v3);
     let half = choose(u.x, first / (first + triangle::area(v2, v3, v1)));
-    if half.y == 0.0 {
+    let point = if half.y == 0.0 {
         triangle::sample(vec2(half.x, u.y), v0, v1, v3)
     } else {
         triangle::sample(vec2(half.x, u.y), v2, v3, v1)
-    }
+    };
+    SurfacePoint { error: 2.0 * point.error, ..point }
+}
+
+/// The point that `ray` hits, from the weights of the vertices of the half that it is in. The other
+/// half reaches twice as far.
+#[kernel]
+#[inline]
+pub fn surface_point(ray: Ray, hit: Hit, v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3) -> SurfacePoint {
+    let half = if hit.u + hit.v <= 1.0 {
+        triangle::surface_point(ray, hit, v0, v1, v3)
+    } else {
+        let opposite = Hit { u: 1.0 - hit.u, v: 1.0 - hit.v, ..hit };
+        triangle::surface_point(ray, opposite, v2, v3, v1)
+    };
+    SurfacePoint { error: 2.0 * half.error, ..half }
 }
 
 /// The box of the vertices.

@@ -1,9 +1,12 @@
-//! Rectangles, of a corner and the two edges from it; parallelograms if those are not perpendicular.
+//! Rectangles, of a corner and the two edges from it; parallelograms if those are not
+//! perpendicular.
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
 use super::edges::{across, spanned};
+use super::near::largest;
 use super::outwards::{around, sum, wide};
+use super::surface::rounded_point;
 use super::{Aabb, Hit, Ray, SurfacePoint, quad, triangle};
 use crate::kernel;
 use crate::machine::functions::{vec2, vec3};
@@ -51,8 +54,28 @@ pub fn area(_corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> f32 {
 #[kernel]
 #[inline]
 pub fn sample(u: Vec2, corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> SurfacePoint {
-    let position = corner + u_edge * u.x + v_edge * u.y;
-    SurfacePoint { position, normal: across(u_edge, v_edge) }
+    at_shares(u.x, u.y, corner, u_edge, v_edge)
+}
+
+/// The point that `ray` hits, from the shares of the edges.
+#[kernel]
+#[inline]
+pub fn surface_point(
+    _ray: Ray,
+    hit: Hit,
+    corner: Vec3,
+    u_edge: Vec3,
+    v_edge: Vec3,
+) -> SurfacePoint {
+    at_shares(hit.u, hit.v, corner, u_edge, v_edge)
+}
+
+/// The point at these shares of the edges.
+#[kernel]
+#[inline]
+fn at_shares(u: f32, v: f32, corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> SurfacePoint {
+    let own_error = (largest(u_edge) + largest(v_edge)) * SLACK;
+    rounded_point(corner + u_edge * u + v_edge * v, across(u_edge, v_edge), own_error)
 }
 
 /// The four corners in order, and what each coordinate may be off by: 0, unless the corner and the

@@ -4,6 +4,7 @@ use core::f32::consts::{PI, TAU};
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
+use super::surface::rounded_point;
 use super::{Aabb, Hit, Ray, SurfacePoint};
 use crate::kernel;
 use crate::machine::functions::{vec2, vec3};
@@ -41,14 +42,14 @@ pub fn intersect(ray: Ray, center: Vec3, radius: f32) -> Hit {
     let far = closest + half;
     let t = if near < ray.t_min { far } else { near };
     let is_hit = radicand >= 0.0 && radius > 0.0 && t >= ray.t_min && t <= ray.t_max;
-    Hit { is_hit, t, prim_id: 0, u: 0.0, v: 0.0 }
+    Hit::new(is_hit, t)
 }
 
 /// The normal where `ray` hits the sphere.
 ///
 /// It is formed from the offset to the centre, not from the point at `hit.t`, whose error is that
-/// of the distance: for a small sphere far away, larger than the sphere. It is off by at most 8 eps of
-/// what the radius is to the distance (eps = 2^-24).
+/// of the distance: for a small sphere far away, larger than the sphere. It is off by at most 8 eps
+/// of what the radius is to the distance (eps = 2^-24).
 #[kernel]
 #[inline]
 pub fn normal(ray: Ray, _hit: Hit, center: Vec3, radius: f32) -> Vec3 {
@@ -91,7 +92,23 @@ pub fn sample(u: Vec2, center: Vec3, radius: f32) -> SurfacePoint {
     let r = max(1.0 - z * z, 0.0).sqrt();
     let around = sincos_2pi(u.y);
     let normal = vec3(r * around.cos, r * around.sin, z);
-    SurfacePoint { position: center + normal * radius, normal }
+    of_normal(normal, center, radius)
+}
+
+/// The point that `ray` hits: the one whose normal the hit has, so that it lies on the sphere
+/// however far the ray came from.
+#[kernel]
+#[inline]
+pub fn surface_point(ray: Ray, hit: Hit, center: Vec3, radius: f32) -> SurfacePoint {
+    of_normal(normal(ray, hit, center, radius), center, radius)
+}
+
+/// The point with this normal. The normal is off by 3 eps, and the perpendicular of a ray from
+/// there by 4 of the radius (eps = 2^-24); twice that is allowed.
+#[kernel]
+#[inline]
+fn of_normal(normal: Vec3, center: Vec3, radius: f32) -> SurfacePoint {
+    rounded_point(center + normal * radius, normal, radius * SLACK)
 }
 
 /// The smallest box around the sphere, at most one ulp too large.

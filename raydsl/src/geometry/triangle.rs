@@ -3,15 +3,25 @@
 use glam::{Vec2, Vec3, vec2, vec3};
 
 use super::edges::{across, spanned};
+use super::exact::{exact_cross, lost_by_difference};
+use super::near::largest;
 use super::outwards::{around, wide};
+use super::surface::rounded_point;
 use super::{Aabb, Hit, Ray, SurfacePoint};
 use crate::machine::functions::{vec2, vec3};
-use crate::machine::generic::{clamp, max, min};
+use crate::machine::generic::{max, min};
 use crate::{kernel, primitive};
 
 /// What a triangle's hit may be off by, as a sphere's: the sheared vertices carry at most 6 eps of
 /// the farthest coordinate.
 pub const SLACK: f32 = super::sphere::SLACK;
+
+/// 8 eps (eps = 2^-24): what a point is off by, and `intersect` from there, relative to the longest
+/// edge. Weighted edges lose 3 eps, sheared vertices 4.
+const NEARBY: f32 = 1.0 / 2_097_152.0;
+
+/// 2^-60: products below which the bits that they lose are no numbers themselves, or nearly.
+const SMALL: f32 = 1.0 / 1_152_921_504_606_846_976.0;
 
 /// A triangle of three vertices, 36 bytes.
 ///
@@ -30,7 +40,8 @@ pub struct Triangle {
 
 /// A triangle of three vertices that lie elsewhere, as in an index buffer: 12 bytes.
 ///
-/// The vertices are what the triangles of a tree share; see [`Bvh::build_sharing`](crate::bvh::Bvh::build_sharing).
+/// The vertices are what the triangles of a tree share; see
+/// [`Bvh::build_sharing`](crate::bvh::Bvh::build_sharing).
 #[primitive]
 #[derive(Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct IndexedTriangle {
@@ -61,6 +72,13 @@ impl IndexedTriangle {
     pub fn uv(&self, ray: Ray, hit: Hit, vertices: &[Vec3]) -> Vec2 {
         let [v0, v1, v2] = self.vertices;
         uv(ray, hit, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
+    }
+
+    /// The point that `ray` hits; see [`surface_point()`].
+    #[inline]
+    pub fn surface_point(&self, ray: Ray, hit: Hit, vertices: &[Vec3]) -> SurfacePoint {
+        let [v0, v1, v2] = self.vertices;
+        surface_point(ray, hit, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
     }
 
     /// The area of one side.
@@ -109,46 +127,30 @@ fn axis_last(v: Vec3, k: u32) -> Vec3 {
     }
 }
 
-/// What `a - b` lost by rounding (Knuth, TAOCP 2, 4.2.2, theorem B).
-#[kernel]
-#[inline]
-fn lost_by_difference(a: Vec3, b: Vec3) -> Vec3 {
-    let difference = a - b;
-    let part = a - difference;
-    let rest = difference + part;
-    (a - rest) + (part - b)
-}
-
-/// What `a * b` lost by rounding (Dekker, 1971).
-#[kernel]
-#[inline]
-fn lost_by_product(a: f32, b: f32) -> f32 {
-    let a_wide = a * 4097.0;
-    let b_wide = b * 4097.0;
-    let a_high = a_wide - (a_wide - a);
-    let b_high = b_wide - (b_wide - b);
-    let a_low = a - a_high;
-    let b_low = b - b_high;
-    ((a_high * b_high - a * b) + a_high * b_low + a_low * b_high) + a_low * b_low
-}
-
 /// Whether three points whose edges have a cross product of 0, as rounded, lie on one line exactly.
 /// Where the edges themselves are rounded, nothing is known and the answer is no.
 #[kernel]
 #[inline]
 fn is_line(v0: Vec3, v1: Vec3, v2: Vec3) -> bool {
-    let a = v1 - v0;
-    let b = v2 - v0;
-    let x = lost_by_product(a.y, b.z) - lost_by_product(b.y, a.z);
-    let y = lost_by_product(a.z, b.x) - lost_by_product(b.z, a.x);
-    let z = lost_by_product(a.x, b.y) - lost_by_product(b.x, a.y);
-    let lost_by_edges = lost_by_difference(v1, v0).abs() + lost_by_difference(v2, v0).abs();
-    let lost = lost_by_edges + vec3(x, y, z).abs();
+    let lost = lost_by_difference(v1, v0).abs() + lost_by_difference(v2, v0).abs();
+    let lost = lost + exact_cross(v1 - v0, v2 - v0).abs();
     lost.x + lost.y + lost.z == 0.0
+}
+
+/// Whether a ray passes on one side of all edges, or through one.
+#[kernel]
+#[inline]
+fn is_inside(sides: Vec3) -> bool {
+    (sides.x >= 0.0 && sides.y >= 0.0 && sides.z >= 0.0)
+        || (sides.x <= 0.0 && sides.y <= 0.0 && sides.z <= 0.0)
 }
 
 /// Where a ray meets the triangle: both sides, edges and vertices included. One whose
 /// vertices lie on one line is never met.
+///
+/// The point at `t` lies on the triangle, to within [`SLACK`] of the farthest coordinate, also
+/// where the ray runs along it. So it lies in the box of one of the parts into which
+/// [`split_primitive`] cuts the triangle, which trees with spatial splits rely on.
 ///
 /// The watertight test of Woop, Benthin and Wald ("Watertight Ray/Triangle Intersection",
 /// JCGT 2013), divided by the determinant before it is scaled, so that it holds
@@ -182,11 +184,9 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
     let c_y = c.y - sy * c.z;
     // On which side of each edge the ray passes. Rounding keeps the order of two products or
     // makes them equal, so a sign is right or zero, and zero counts as inside.
-    let u = c_x * b_y - c_y * b_x;
-    let v = a_x * c_y - a_y * c_x;
-    let w = b_x * a_y - b_y * a_x;
-    let inside = (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
-    let sum = u + v + w;
+    let xs = vec3(a_x, b_x, c_x);
+    let ys = vec3(a_y, b_y, c_y);
+    let mut sides = ys.cross(xs);
     // Seen edge-on the signs are those of rounding errors: the ray must pass between the
     // vertices all the same.
     let left = min(min(a_x, b_x), c_x);
@@ -194,31 +194,36 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
     let low = min(min(a_y, b_y), c_y);
     let high = max(max(a_y, b_y), c_y);
     let between = left <= 0.0 && right >= 0.0 && low <= 0.0 && high >= 0.0;
-    if !(inside && between && sum != 0.0) {
-        return Hit { is_hit: false, t: 0.0, prim_id: 0, u: 0.0, v: 0.0 };
+    let mut sum = sides.x + sides.y + sides.z;
+    if !(is_inside(sides) && between) {
+        return Hit::miss();
     }
+    // A product loses eps of its size, and where products cancel that may say more about the
+    // depth than the vertices do: in a thin triangle whose plane the ray runs along. Then nothing
+    // may be lost. Signs stay right or zero, so no ray passes between a triangle whose signs are
+    // these and one whose signs are those above; a sum of 0 alone would say nothing.
+    let near = min(min(a.z, b.z), c.z);
+    let far = max(max(a.z, b.z), c.z);
+    let products = (c_x * b_y).abs() + (a_x * c_y).abs() + (b_x * a_y).abs();
+    if 2.0 * sum.abs() <= products * ((far - near) / max(near.abs(), far.abs())) {
+        // Exact; what a product loses is itself too small below.
+        let scale = if products < SMALL { 1.0 / SMALL } else { 1.0 };
+        sides = exact_cross(ys * scale, xs * scale);
+        sum = if is_inside(sides) { sides.x + sides.y + sides.z } else { 0.0 };
+    }
+    if sum == 0.0 {
+        return Hit::miss();
+    }
+    let (u, v, w) = (sides.x / sum, sides.y / sum, sides.z / sum);
     // A mean of the vertices' distances: it lies between them.
-    let mut t = (u / sum) * (a.z / d.z) + (v / sum) * (b.z / d.z) + (w / sum) * (c.z / d.z);
-    // Edge-on the weights mean little: the point goes back into the box of the vertices.
-    let min_x = min(min(a.x, b.x), c.x);
-    let max_x = max(max(a.x, b.x), c.x);
-    let x = t * d.x;
-    if max(min_x - x, x - max_x) > x.abs() * SLACK {
-        t = clamp(x, min_x, max_x) / d.x;
-    }
-    let min_y = min(min(a.y, b.y), c.y);
-    let max_y = max(max(a.y, b.y), c.y);
-    let y = t * d.y;
-    if max(min_y - y, y - max_y) > y.abs() * SLACK {
-        t = clamp(y, min_y, max_y) / d.y;
-    }
+    let t = u * (a.z / d.z) + v * (b.z / d.z) + w * (c.z / d.z);
     // Vertices on one line have no inside: the signs are those of rounding errors. The area of a
     // sliver may be rounded to nothing, and it closes a gap all the same.
     let n = (v1 - v0).cross(v2 - v0);
     let is_flat = n.x == 0.0 && n.y == 0.0 && n.z == 0.0;
     let is_surface = !(is_flat && is_line(v0, v1, v2));
     let is_hit = is_surface && t >= ray.t_min && t <= ray.t_max;
-    Hit { is_hit, t, prim_id: 0, u: v / sum, v: w / sum }
+    Hit { u: v, v: w, ..Hit::new(is_hit, t) }
 }
 
 /// The side from which the vertices run anticlockwise, with unit length; whichever side `ray` hits.
@@ -247,12 +252,39 @@ pub fn area(v0: Vec3, v1: Vec3, v2: Vec3) -> f32 {
 #[kernel]
 #[inline]
 pub fn sample(u: Vec2, v0: Vec3, v1: Vec3, v2: Vec3) -> SurfacePoint {
+    let weights = sample_weights(u);
+    weighted(weights.x, weights.y, v0, v1, v2)
+}
+
+/// The weights of the second and the third vertex of such a point.
+#[kernel]
+#[inline]
+pub fn sample_weights(u: Vec2) -> Vec2 {
     let is_low = u.y < u.x;
     let least = 0.5 * if is_low { u.y } else { u.x };
     let b1 = if is_low { u.x - least } else { least };
     let b2 = if is_low { least } else { u.y - least };
+    vec2(b1, b2)
+}
+
+/// The point that `ray` hits, from its barycentric weights.
+///
+/// Its error does not grow with the distance from the ray's origin. In all the origin of a ray from
+/// here is moved by at most 4 ulp of the position and 8 eps of the longest edge (eps = 2^-24).
+#[kernel]
+#[inline]
+pub fn surface_point(_ray: Ray, hit: Hit, v0: Vec3, v1: Vec3, v2: Vec3) -> SurfacePoint {
+    weighted(hit.u, hit.v, v0, v1, v2)
+}
+
+/// The point with the weights `b1` and `b2` of the second and the third vertex. The edges are added
+/// up first, so that their sum meets the larger coordinates of the world once.
+#[kernel]
+#[inline]
+fn weighted(b1: f32, b2: f32, v0: Vec3, v1: Vec3, v2: Vec3) -> SurfacePoint {
     let (e1, e2) = (v1 - v0, v2 - v0);
-    SurfacePoint { position: v0 + e1 * b1 + e2 * b2, normal: across(e1, e2) }
+    let size = max(max(largest(e1), largest(e2)), largest(e2 - e1));
+    rounded_point(v0 + (e1 * b1 + e2 * b2), across(e1, e2), size * NEARBY)
 }
 
 /// The box of the vertices.

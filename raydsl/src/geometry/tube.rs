@@ -6,6 +6,7 @@ use glam::{Vec2, Vec3, vec2};
 
 use super::axial::{Axial, Round, at_turn, axial, round, turn};
 use super::near::{Near, distance_of, near};
+use super::surface::{point_on_ray, rounded_point};
 use super::{Aabb, Hit, Ray, SurfacePoint, cylinder};
 use crate::machine::functions::vec2;
 use crate::machine::generic::clamp;
@@ -59,7 +60,7 @@ fn meet(ray: Ray, p0: Vec3, p1: Vec3, radius: f32) -> Meeting {
 #[inline]
 pub fn intersect(ray: Ray, p0: Vec3, p1: Vec3, radius: f32) -> Hit {
     let m = meet(ray, p0, p1, radius);
-    Hit { is_hit: m.is_met, t: distance_of(m.line, m.s), prim_id: 0, u: 0.0, v: 0.0 }
+    Hit::new(m.is_met, distance_of(m.line, m.s))
 }
 
 /// The normal where `ray` hits the tube, away from the axis; as precise as a cylinder's.
@@ -94,7 +95,16 @@ pub fn area(p0: Vec3, p1: Vec3, radius: f32) -> f32 {
 pub fn sample(u: Vec2, p0: Vec3, p1: Vec3, radius: f32) -> SurfacePoint {
     let axis = p1 - p0;
     let across = at_turn(axis.normalize(), u.y);
-    SurfacePoint { position: p0 + axis * u.x + across * radius, normal: across }
+    let own_error = (axis.length() + radius) * SLACK;
+    rounded_point(p0 + (axis * u.x + across * radius), across, own_error)
+}
+
+/// The point that `ray` hits.
+#[kernel]
+#[inline]
+pub fn surface_point(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> SurfacePoint {
+    let size = (p1 - p0).length() + radius;
+    point_on_ray(ray, hit, normal(ray, hit, p0, p1, radius), size, SLACK)
 }
 
 /// The smallest box around the tube, which is a cylinder's.

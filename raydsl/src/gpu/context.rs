@@ -126,7 +126,8 @@ impl Context {
         lock(&self.uploads).uploaded()
     }
 
-    /// Bytes of scene data that the device keeps: what was sent and belongs to trees that still are.
+    /// Bytes of scene data that the device keeps: what was sent and belongs to trees that still
+    /// are.
     pub fn scene_bytes(&self) -> u64 {
         lock(&self.uploads).kept()
     }

@@ -151,6 +151,9 @@ pub enum GpuError {
         /// Which rule it breaks.
         reason: String,
     },
+    /// An error that cannot be asked for.
+    #[error(transparent)]
+    Until(#[from] crate::render::UntilError),
     /// wgpu refused a call; a defect of this crate or of the driver.
     #[error("wgpu refused {what}: {message}")]
     Rejected {

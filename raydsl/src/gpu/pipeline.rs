@@ -166,13 +166,14 @@ fn shader_module(device: &wgpu::Device, checks: Checks, source: &str) -> wgpu::S
                 bounds_checks: false,
                 ..wgpu::ShaderRuntimeChecks::checked()
             };
-            // SAFETY: only the bounds checks are off, and `Context::with_checks`, the one
-            // way to `Trusted`, has its caller promise modules that stay within bounds
-            // without them; recorded kernels clamp each index of a buffer, of a stack and
-            // of an array, and leave when their pixel is outside `job.count`. Loop bounding
-            // stays on: without it a loop that never ends, which a kernel's own `while` can
-            // be for some input, lets the driver assume anything, clamps included. Integer
-            // division keeps its guards for the same reason: a kernel may divide by zero.
+            // SAFETY: only the bounds checks are off, and `Context::with_checks`, the one way to
+            // `Trusted`, has its caller promise modules that stay within bounds without them;
+            // recorded kernels clamp each index of a buffer and of an array, their stacks have a
+            // place for every level that a tree may have, and they leave when their pixel is
+            // outside `job.count`. Loop bounding stays on: without it a loop that never ends, which
+            // a kernel's own `while` can be for some input, lets the driver assume anything, clamps
+            // included. Integer division keeps its guards for the same reason: a kernel may divide
+            // by zero.
             unsafe { device.create_shader_module_trusted(descriptor, trusted) }
         }
     }

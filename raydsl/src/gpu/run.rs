@@ -13,6 +13,7 @@ use super::error::GpuError;
 use super::pipeline::{Pipeline, Storage};
 use super::slot::{Finished, InFlight, Pass, Slot};
 use super::tiles::{Tiler, next_goal};
+use super::window::GpuWindow;
 use crate::machine::wgsl::{BufferKey, Module};
 
 /// Dispatches on their way at once: one computes while the other's outputs come back.
@@ -20,6 +21,14 @@ const IN_FLIGHT: usize = 2;
 /// Inputs or outputs of one dispatch at most: several dispatches overlap better with their
 /// transfers than one large one, and the buffers stay small beside the scene.
 const TILE_BYTES: u64 = 64 << 20;
+
+/// Where the outputs of a run go.
+pub(super) enum Outputs<'a> {
+    /// To the host, `output_stride` bytes for each pixel.
+    Host(&'a mut [u8]),
+    /// To a checked window of the application; nothing comes back.
+    Device(&'a GpuWindow),
+}
 
 /// How long a run took.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -30,6 +39,17 @@ pub struct Timing {
     pub wall_ms: f64,
     /// Number of dispatches the grid was cut into.
     pub dispatches: u32,
+}
+
+impl core::ops::AddAssign for Timing {
+    fn add_assign(&mut self, other: Self) {
+        self.device_ms = match (self.device_ms, other.device_ms) {
+            (Some(a), Some(b)) => Some(a + b),
+            (a, b) => a.or(b),
+        };
+        self.wall_ms += other.wall_ms;
+        self.dispatches += other.dispatches;
+    }
 }
 
 impl Context {
@@ -50,17 +70,37 @@ impl Context {
         size: [u32; 2],
         outputs: &mut [u8],
     ) -> Result<Timing, GpuError> {
+        self.run_to(module, data, inputs, size, Outputs::Host(outputs))
+    }
+
+    /// [`Context::run`], with the outputs where the caller wants them.
+    pub(super) fn run_to<'a>(
+        &self,
+        module: &Module,
+        data: &dyn Fn(BufferKey) -> Option<Cow<'a, [u8]>>,
+        inputs: &[u8],
+        size: [u32; 2],
+        outputs: Outputs<'_>,
+    ) -> Result<Timing, GpuError> {
         let start = Instant::now();
         let pixels = pixels(size)?;
-        self.check_lengths(module, pixels, inputs, outputs)?;
+        self.check_lengths(module, pixels, inputs)?;
+        if let Outputs::Host(bytes) = &outputs {
+            expect("outputs", bytes, pixels, module.output_stride)?;
+        }
         if pixels == 0 {
             return Ok(Timing::default());
         }
         self.gpu.check()?;
         let max_elements = self.max_elements(module)?;
         let pipeline = self.pipeline(module)?;
+        let (target, outputs) = match outputs {
+            Outputs::Host(bytes) => (None, bytes),
+            Outputs::Device(window) => (Some(window), &mut [][..]),
+        };
         let pass = Pass {
             module,
+            target,
             pipeline: &pipeline,
             uniforms: self.uniforms(module)?,
             scene: self.scene(module, data)?,
@@ -75,13 +115,7 @@ impl Context {
     }
 
     /// Checks the module's numbers and the caller's slices against each other.
-    fn check_lengths(
-        &self,
-        module: &Module,
-        pixels: u64,
-        inputs: &[u8],
-        outputs: &[u8],
-    ) -> Result<(), GpuError> {
+    fn check_lengths(&self, module: &Module, pixels: u64, inputs: &[u8]) -> Result<(), GpuError> {
         let bad = |reason: &str| Err(GpuError::BadModule { reason: reason.to_owned() });
         if module.output_stride == 0 {
             return bad("it has no outputs");
@@ -95,8 +129,7 @@ impl Context {
         if module.uniforms.is_empty() || !module.uniforms.len().is_multiple_of(16) {
             return bad("its uniforms must be a positive multiple of 16 bytes");
         }
-        expect("inputs", inputs, pixels, module.input_stride)?;
-        expect("outputs", outputs, pixels, module.output_stride)
+        expect("inputs", inputs, pixels, module.input_stride)
     }
 
     /// Elements of the inputs and outputs that fit one dispatch.

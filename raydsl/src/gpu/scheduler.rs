@@ -1,14 +1,20 @@
 //! Runs kernels on a device.
 
 use std::borrow::Cow;
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
 
-use super::{Context, GpuError, Timing};
-use crate::camera::{Camera, CameraRays};
-use crate::geometry::Ray;
+use super::run::Outputs;
+use super::window::check_target;
+use super::{Context, GpuError, GpuWindow, Timing};
+use crate::camera::Camera;
 use crate::kernel::Kernel;
 use crate::machine::wgsl::{BufferKey, Module};
-use crate::machine::{F, F32Binary, Machine, Recorder, Type, U, stride};
-use crate::render::Image;
+use crate::machine::{Type, X2, stride};
+use crate::render::{
+    Film, FilmArgs, Frame, Image, Moments, Observer, Pass, ProgressObserver, Radiance, Reached,
+    Renderer, Sampling, Shot, Until, passes, run_until,
+};
 
 /// Runs the WGSL variant of kernels: pictures and batches.
 ///
@@ -39,28 +45,137 @@ impl GpuScheduler {
         &self.context
     }
 
-    /// Renders a frame: `image`'s size is the film's.
+    /// Renders a frame: `image`'s size is the film's, and one ray goes through the middle of each
+    /// pixel.
     ///
     /// # Errors
     ///
-    /// If the device refuses or is lost; what came through before is in `image`.
-    pub fn frame<C: Camera, R: Type>(
+    /// If the device refuses or is lost; `image` is then what it was.
+    pub fn frame<C: Camera, A: FilmArgs, R: Type + Send>(
         &self,
         camera: &C,
-        kernel: &Kernel<'_, (Ray,), R>,
+        kernel: &Kernel<'_, A, R>,
         image: &mut Image<R>,
     ) -> Result<Timing, GpuError> {
-        let size = [image.width(), image.height()];
-        let rays = camera.begin_frame(size[0], size[1]);
-        let recording = kernel.record_grid(|m, x, y| {
-            let centre = |n: U<Recorder>| {
-                let n = m.u32_to_f32(n.0);
-                F(m.f32_binary(F32Binary::Add, n, m.f32(0.5)))
-            };
-            (C::Rays::primary_ray_on(m, rays.on(m), centre(x), centre(y)),)
+        let rays = camera.begin_frame(image.width(), image.height());
+        self.shoot(&Frame { rays, kernel }, image)
+    }
+
+    /// Renders a frame of `width` by `height` pixels into the application's buffer: row by row from
+    /// the bottom, each result as it lies in memory. Nothing comes back to the host, and what is
+    /// submitted to the queue afterwards finds it there.
+    ///
+    /// ```no_run
+    /// # use raydsl::prelude::*;
+    /// # use raydsl::gpu::{GpuError, GpuWindow};
+    /// # fn show(
+    /// #     gpu: &GpuScheduler, camera: &Pinhole, buffer: &wgpu::Buffer,
+    /// # ) -> Result<(), GpuError> {
+    /// let sky = kernel!(|ray: Ray| vec4(ray.direction.y, 0.5, 1.0, 1.0));
+    /// let window = GpuWindow { buffer: buffer.clone(), offset: 0, size: 640 * 480 * 16 };
+    /// gpu.frame_into(camera, &sky, (640, 480), &window)?;
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`GpuError::Window`] if the window has another size than the results, or its buffer has not
+    /// `STORAGE` and `COPY_DST` or is another device's; or if the device refuses or is lost.
+    pub fn frame_into<C: Camera, A: FilmArgs, R: Type + Send>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        (width, height): (u32, u32),
+        window: &GpuWindow,
+    ) -> Result<Timing, GpuError> {
+        let pixels = u64::from(width) * u64::from(height);
+        check_target::<R>(&self.context.gpu, pixels, window)?;
+        let rays = camera.begin_frame(width, height);
+        let module = self.module(&Frame { rays, kernel });
+        self.run_to(kernel, &module, &[], [width, height], Outputs::Device(window))
+    }
+
+    /// Adds `samples` samples to every pixel of `film`, as [`Scheduler::accumulate`] does. Those of
+    /// a pass, 64 at most, are added up on the device.
+    ///
+    /// [`Scheduler::accumulate`]: crate::render::Scheduler::accumulate
+    ///
+    /// # Errors
+    ///
+    /// If the device refuses or is lost; `film` then has the passes that came through.
+    pub fn accumulate<C: Camera, A: FilmArgs, R: Radiance + Send>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        sampling: &Sampling,
+        film: &mut Film,
+        samples: u32,
+    ) -> Result<Timing, GpuError> {
+        let mut image = Image::filled(film.width(), film.height(), Moments::none());
+        let mut timing = Timing::default();
+        for count in passes(samples) {
+            let rays = camera.begin_frame(film.width(), film.height());
+            let pass = Pass { rays, kernel, sampling: *sampling, first: film.samples(), count };
+            timing += self.shoot(&pass, &mut image)?;
+            film.join(&image, count);
+        }
+        Ok(timing)
+    }
+
+    /// Renders until an error is reached, or a budget is spent, as [`Scheduler::render_until`]
+    /// does. The clock is looked at after each pass over the film, which has so many samples that
+    /// it takes about a fiftieth of the time, but one at least.
+    ///
+    /// [`Scheduler::render_until`]: crate::render::Scheduler::render_until
+    ///
+    /// # Errors
+    ///
+    /// What cannot be asked for, or if the device refuses or is lost; `film` then has the best
+    /// picture so far.
+    pub fn render_until<C: Camera, A: FilmArgs, R: Radiance + Send>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        sampling: &Sampling,
+        film: &mut Film,
+        until: &Until,
+    ) -> Result<Reached, GpuError> {
+        let go_on: ProgressObserver<'_> = &mut |_| ControlFlow::Continue(());
+        self.render_until_observed(camera, kernel, sampling, film, until, go_on)
+    }
+
+    /// [`GpuScheduler::render_until`], telling `observer` how far it is. It may break off.
+    ///
+    /// # Errors
+    ///
+    /// As there.
+    pub fn render_until_observed<C: Camera, A: FilmArgs, R: Radiance + Send>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        sampling: &Sampling,
+        film: &mut Film,
+        until: &Until,
+        observer: ProgressObserver<'_>,
+    ) -> Result<Reached, GpuError> {
+        until.check(film)?;
+        let slice = until.budget.time / PASSES_OF_A_BUDGET;
+        let mut renderer = OnDevice { scheduler: self, camera, kernel, pass: 1, slice };
+        run_until(until, sampling, film, observer, &mut renderer)
+    }
+
+    fn module<S: Shot>(&self, shot: &S) -> Module {
+        let recording = shot.kernel().record_grid::<S::Output>(|m, x, y, body| {
+            shot.pixel_on(m, X2 { x, y }, &|m, args| body(m, args))
         });
-        let module = recording.module(&self.context.limits());
-        self.run(kernel, &module, &[], size, image.pixels_mut())
+        recording.module(&self.context.limits())
+    }
+
+    fn shoot<S: Shot>(&self, shot: &S, image: &mut Image<S::Output>) -> Result<Timing, GpuError> {
+        let module = self.module(shot);
+        let size = [image.width(), image.height()];
+        self.run(shot.kernel(), &module, &[], size, image.pixels_mut())
     }
 
     /// Runs a kernel over `inputs`; `outputs` has the same length.
@@ -85,32 +200,89 @@ impl GpuScheduler {
         self.run(kernel, &module, &bytes, [count, 1], outputs)
     }
 
-    fn run<A: Type, R: Type>(
+    fn run<A: Type, R: Type, O: Type>(
         &self,
         kernel: &Kernel<'_, A, R>,
         module: &Module,
         inputs: &[u8],
         size: [u32; 2],
-        outputs: &mut [R],
+        outputs: &mut [O],
+    ) -> Result<Timing, GpuError> {
+        let each = stride(O::SCHEMA);
+        let mut bytes = vec![0; each * outputs.len()];
+        let timing = self.run_to(kernel, module, inputs, size, Outputs::Host(&mut bytes))?;
+        for (out, bytes) in outputs.iter_mut().zip(bytes.chunks_exact(each)) {
+            *out = O::read(bytes);
+        }
+        Ok(timing)
+    }
+
+    fn run_to<A: Type, R: Type>(
+        &self,
+        kernel: &Kernel<'_, A, R>,
+        module: &Module,
+        inputs: &[u8],
+        size: [u32; 2],
+        outputs: Outputs<'_>,
     ) -> Result<Timing, GpuError> {
         self.context.forget_gone();
-        let each = stride(R::SCHEMA);
-        let mut bytes = vec![0; each * outputs.len()];
-        let timing = self.context.run(
-            module,
-            &|key| bytes_of(kernel, key).map(Cow::Owned),
-            inputs,
-            size,
-            &mut bytes,
-        );
+        let data = |key| bytes_of(kernel, key).map(Cow::Owned);
+        let timing = self.context.run_to(module, &data, inputs, size, outputs);
         // The address of a slice names its data only while it is borrowed.
         for b in module.buffers.iter().filter(|b| crate::bvh::is_slice_key(b.key)) {
             self.context.forget(b.key.id);
         }
-        for (out, bytes) in outputs.iter_mut().zip(bytes.chunks_exact(each)) {
-            *out = R::read(bytes);
-        }
         timing
+    }
+}
+
+/// A pass takes about this share of the time of a budget.
+const PASSES_OF_A_BUDGET: u32 = 50;
+/// The samples of a pixel that one pass takes at most.
+const LARGEST_PASS: u32 = 64;
+
+/// A device with what it is to render.
+struct OnDevice<'a, C, A: Type, R: Type> {
+    scheduler: &'a GpuScheduler,
+    camera: &'a C,
+    kernel: &'a Kernel<'a, A, R>,
+    /// Samples of the next pass.
+    pass: u32,
+    /// How long a pass should take at most.
+    slice: Duration,
+}
+
+impl<C: Camera, A: FilmArgs, R: Radiance + Send> Renderer for OnDevice<'_, C, A, R> {
+    type Error = GpuError;
+
+    fn render(
+        &mut self,
+        sampling: &Sampling,
+        film: &mut Film,
+        samples: u32,
+        observer: Observer<'_>,
+    ) -> Result<ControlFlow<()>, GpuError> {
+        while film.samples() < samples {
+            if observer(f64::from(film.samples()) / f64::from(samples)).is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+            let count = self.pass.min(samples - film.samples());
+            let begin = Instant::now();
+            self.scheduler.accumulate(self.camera, self.kernel, sampling, film, count)?;
+            self.learn(begin.elapsed());
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+}
+
+impl<C, A: Type, R: Type> OnDevice<'_, C, A, R> {
+    /// Makes the next passes shorter where one took long, and longer where there is room.
+    fn learn(&mut self, took: Duration) {
+        if took > self.slice {
+            self.pass = (self.pass / 2).max(1);
+        } else if took < self.slice / 4 {
+            self.pass = (self.pass * 2).min(LARGEST_PASS);
+        }
     }
 }
 

@@ -9,6 +9,7 @@ use super::device::{Gpu, lost};
 use super::error::GpuError;
 use super::pipeline::Pipeline;
 use super::tiles::Tile;
+use super::window::GpuWindow;
 use crate::machine::wgsl::Module;
 
 /// Bytes of WGSL's `struct Job`.
@@ -17,6 +18,8 @@ const JOB: u64 = 32;
 /// What all dispatches of one run share.
 pub(super) struct Pass<'a> {
     pub(super) module: &'a Module,
+    /// Where the outputs go, if they stay on the device.
+    pub(super) target: Option<&'a GpuWindow>,
     pub(super) pipeline: &'a Pipeline,
     pub(super) uniforms: wgpu::Buffer,
     pub(super) scene: Vec<Bound>,
@@ -166,7 +169,8 @@ impl Slot {
         })
     }
 
-    /// Dispatch, copy of the outputs to the staging buffer, timestamps behind them.
+    /// Dispatch, copy of the outputs to the staging buffer or the application's, timestamps behind
+    /// them.
     fn record(
         &self,
         gpu: &Gpu,
@@ -193,7 +197,11 @@ impl Slot {
         let mut at = 0;
         for (first, length) in tile.runs(pass.size[0]) {
             let from = (first - *base.get_or_insert(first)) * stride;
-            encoder.copy_buffer_to_buffer(outputs, from, staging, at, length * stride);
+            let (to, place) = match pass.target {
+                Some(window) => (&window.buffer, window.offset + first * stride),
+                None => (staging, at),
+            };
+            encoder.copy_buffer_to_buffer(outputs, from, to, place, length * stride);
             at += length * stride;
         }
         if let Some(clock) = &self.clock {
@@ -227,7 +235,8 @@ impl InFlight {
             .map_err(|error| lost(&error.to_string()))?;
         let stride = u64::from(pass.module.output_stride);
         let mut rest = &view[..];
-        for (first, length) in self.tile.runs(pass.size[0]) {
+        let is_back = pass.target.is_none();
+        for (first, length) in self.tile.runs(pass.size[0]).filter(|_| is_back) {
             let to = (first * stride) as usize..((first + length) * stride) as usize;
             let (run, after) = rest.split_at(to.len());
             outputs[to].copy_from_slice(run);
@@ -242,8 +251,12 @@ impl InFlight {
     }
 }
 
-/// Bytes of a tile's outputs without the gaps between its rows, to the alignment of a map.
+/// Bytes of a tile's outputs that come back, without the gaps between its rows, to the alignment of
+/// a map.
 fn packed_bytes(pass: &Pass<'_>, tile: Tile) -> u64 {
+    if pass.target.is_some() {
+        return 0;
+    }
     let bytes = tile.invocations() * u64::from(pass.module.output_stride);
     bytes.next_multiple_of(wgpu::MAP_ALIGNMENT)
 }

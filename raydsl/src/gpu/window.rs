@@ -7,7 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use super::device::{Gpu, lock};
 use super::error::GpuError;
 use super::{Context, GpuScheduler};
-use crate::bvh::{Bvh, BvhList, View};
+use crate::bvh::{Bvh, BvhList, Instances, View};
 use crate::geometry::Primitive;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{Type, stride};
@@ -23,9 +23,9 @@ pub struct GpuWindow {
     pub size: u64,
 }
 
-/// Data of the application that a [`GpuWindow`] may stand for: a slice, the primitives of a tree or of
-/// a list of trees (those of the first tree first), or what primitives share, as in
-/// `bvh.view().shared()`.
+/// Data of the application that a [`GpuWindow`] may stand for: a slice, the primitives of a tree,
+/// or of the trees of a list or a scene of instances (those of the first tree first), or what
+/// primitives share, as in `bvh.view().shared()`.
 pub trait OnHost {
     /// One element.
     type Element: Type;
@@ -90,6 +90,14 @@ impl<P: Primitive> OnHost for BvhList<'_, P> {
     }
 }
 
+impl<P: Primitive> OnHost for Instances<'_, P> {
+    type Element = P;
+
+    fn buffer(&self) -> (BufferKey, usize) {
+        self.view().buffer()
+    }
+}
+
 /// Why a window cannot stand for a slice.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -97,6 +105,9 @@ pub enum WindowError {
     /// The buffer cannot be read by kernels.
     #[error("the buffer has no BufferUsages::STORAGE: create it with that")]
     NotStorage,
+    /// The buffer cannot be written to.
+    #[error("the buffer has no BufferUsages::COPY_DST: create it with that, and with STORAGE")]
+    NotCopyDst,
     /// The window begins where no binding may.
     #[error(
         "its offset {offset} is no multiple of {limit}, the device's \
@@ -175,9 +186,9 @@ impl GpuScheduler {
     /// Lets kernels that read `data` read `window` instead, as long as the result lives. Nothing
     /// of the data is uploaded; of a tree, its nodes and indices are.
     ///
-    /// The window must hold what the data holds, as it lies in memory; this is not checked.
-    /// The variants of the CPU go on to read the data. Another slice of the same elements, a part
-    /// for instance, is not meant and is uploaded as ever, and so is a slice that a tree stands over
+    /// The window must hold what the data holds, as it lies in memory; this is not checked. The
+    /// variants of the CPU go on to read the data. Another slice of the same elements, a part for
+    /// instance, is not meant and is uploaded as ever, and so is a slice that a tree stands over
     /// where a kernel captures it for itself.
     ///
     /// Make the buffer with [`Context::device`]. A buffer of another device of the same
@@ -203,6 +214,19 @@ impl GpuScheduler {
             })?;
         Ok(OnGpu { context, key, data: PhantomData })
     }
+}
+
+/// Whether `len` elements of `T` can be written to the window.
+pub(super) fn check_target<T: Type>(
+    gpu: &Gpu,
+    len: u64,
+    window: &GpuWindow,
+) -> Result<(), GpuError> {
+    let is_writable = window.buffer.usage().contains(wgpu::BufferUsages::COPY_DST);
+    let can_hold = is_writable.then_some(()).ok_or(WindowError::NotCopyDst);
+    can_hold
+        .and_then(|()| check(gpu, len, stride(T::SCHEMA) as u64, window))
+        .map_err(|problem| GpuError::Window { element: core::any::type_name::<T>(), problem })
 }
 
 /// Whether the window can stand for `len` elements of `stride` bytes.

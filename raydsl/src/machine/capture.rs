@@ -21,7 +21,7 @@ pub trait Resource {
 /// A value of the host that a kernel may capture.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot capture a `{Self}`",
-    note = "numbers, vectors, types with #[derive(Type)], arrays and slices of them, and trees can be captured",
+    note = "numbers, vectors, types with #[derive(Type)], arrays and slices of them, trees and textures can be captured",
     note = "a member of a struct that is no such type is captured by a name: `let spans = &scene.spans;`"
 )]
 pub trait Capture<M: Machine> {
@@ -45,7 +45,7 @@ pub trait Capture<M: Machine> {
 /// What a kernel may take by `&`: a value, which is copied, or data that it reads in place.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot take a `&{Self}`",
-    note = "values of the kernel language, slices of them, and trees can be parameters"
+    note = "values of the kernel language, slices of them, trees and textures can be parameters"
 )]
 pub trait Parameter {
     /// What stands for it inside the kernel.

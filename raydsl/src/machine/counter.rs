@@ -2,7 +2,7 @@
 
 use core::cell::Cell;
 
-use super::{B, Compare, I, IntBinary, Loop, Machine, OpCompare, U, Usize, Value, Var};
+use super::{B, I, Loop, Machine, OpCompare, U, Usize, Value, Var, op};
 
 /// The type of a counter.
 pub trait Counter<M: Machine>: Value<M> + OpCompare<M, Self, Output = B<M>> {
@@ -34,11 +34,11 @@ impl<M: Machine> Counter<M> for I<M> {
     }
     #[inline(always)]
     fn next(self, m: &M) -> Self {
-        I(m.i32_binary(IntBinary::WrappingAdd, self.0, m.i32(1)))
+        I(m.i32_binary(op::WrappingAdd, self.0, m.i32(1)))
     }
     #[inline(always)]
     fn previous(self, m: &M) -> Self {
-        I(m.i32_binary(IntBinary::WrappingSub, self.0, m.i32(1)))
+        I(m.i32_binary(op::WrappingSub, self.0, m.i32(1)))
     }
 }
 
@@ -61,11 +61,11 @@ macro_rules! unsigned_counter {
                 }
                 #[inline(always)]
                 fn next(self, m: &M) -> Self {
-                    $t(m.u32_binary(IntBinary::WrappingAdd, self.0, m.u32(1)))
+                    $t(m.u32_binary(op::WrappingAdd, self.0, m.u32(1)))
                 }
                 #[inline(always)]
                 fn previous(self, m: &M) -> Self {
-                    $t(m.u32_binary(IntBinary::WrappingSub, self.0, m.u32(1)))
+                    $t(m.u32_binary(op::WrappingSub, self.0, m.u32(1)))
                 }
             }
         )+
@@ -165,7 +165,7 @@ impl<C: Copy> Stop<C> {
                 }
                 goes_on
             }
-            None => repeat.test(m, C::compare(m, Compare::Lt, steps.get(m), self.value)),
+            None => repeat.test(m, C::compare(m, op::Lt, steps.get(m), self.value)),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Packets wider than a register: several registers a value.
 
-use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Lanes, fill};
+use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Lanes, Op, fill, op};
 
 /// `K` registers of `L`: `K` times as many lanes of the same level, at most 64.
 ///
@@ -13,7 +13,7 @@ use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Lanes, fill};
 ///
 /// let gang = Gang::<One, 32>(One);
 /// let odd = gang.u32_from_fn(|lane| lane as u32 % 2);
-/// let is_odd = gang.u32_compare(raydsl::machine::Compare::Eq, odd, gang.u32(1));
+/// let is_odd = gang.u32_compare(raydsl::machine::op::Eq, odd, gang.u32(1));
 /// assert_eq!(gang.bits(is_odd), 0xaaaa_aaaa);
 /// ```
 #[derive(Clone, Copy, Debug)]
@@ -21,13 +21,24 @@ pub struct Gang<L, const K: usize>(pub L);
 
 /// The operations that act on each register alone.
 macro_rules! each_register {
-    ($($name:ident($($op:ident: $t:ty)?; $($a:ident: $register:ident),+) -> $result:ident;)+) => {
+    ($($name:ident($($a:ident: $register:ident),+) -> $result:ident;)+) => {
         $(
             #[inline(always)]
-            fn $name(self, $($op: $t,)? $($a: Self::$register),+) -> Self::$result {
+            fn $name(self, $($a: Self::$register),+) -> Self::$result {
                 fill(
                     #[inline(always)]
-                    |i| self.0.$name($($op,)? $($a[i]),+),
+                    |i| self.0.$name($($a[i]),+),
+                )
+            }
+        )+
+    };
+    (operations $($name:ident: $kind:ident($($a:ident: $register:ident),+) -> $result:ident;)+) => {
+        $(
+            #[inline(always)]
+            fn $name<O: Op<$kind>>(self, op: O, $($a: Self::$register),+) -> Self::$result {
+                fill(
+                    #[inline(always)]
+                    |i| self.0.$name(op, $($a[i]),+),
                 )
             }
         )+
@@ -85,27 +96,31 @@ impl<L: Lanes, const K: usize> Lanes for Gang<L, K> {
     }
 
     each_register! {
-        f32_unary(op: F32Unary; a: F32) -> F32;
-        f32_binary(op: F32Binary; a: F32, b: F32) -> F32;
-        f32_mul_add(; a: F32, b: F32, c: F32) -> F32;
-        i32_binary(op: IntBinary; a: I32, b: I32) -> I32;
-        u32_binary(op: IntBinary; a: U32, b: U32) -> U32;
-        mask_binary(op: BoolBinary; a: Mask, b: Mask) -> Mask;
-        mask_not(; a: Mask) -> Mask;
-        f32_compare(op: Compare; a: F32, b: F32) -> Mask;
-        i32_compare(op: Compare; a: I32, b: I32) -> Mask;
-        u32_compare(op: Compare; a: U32, b: U32) -> Mask;
-        f32_select(; c: Mask, a: F32, b: F32) -> F32;
-        i32_select(; c: Mask, a: I32, b: I32) -> I32;
-        u32_select(; c: Mask, a: U32, b: U32) -> U32;
-        f32_to_i32(; a: F32) -> I32;
-        f32_to_u32(; a: F32) -> U32;
-        i32_to_f32(; a: I32) -> F32;
-        u32_to_f32(; a: U32) -> F32;
-        i32_to_u32(; a: I32) -> U32;
-        u32_to_i32(; a: U32) -> I32;
-        f32_to_bits(; a: F32) -> U32;
-        f32_from_bits(; a: U32) -> F32;
+        operations
+        f32_unary: F32Unary(a: F32) -> F32;
+        f32_binary: F32Binary(a: F32, b: F32) -> F32;
+        i32_binary: IntBinary(a: I32, b: I32) -> I32;
+        u32_binary: IntBinary(a: U32, b: U32) -> U32;
+        mask_binary: BoolBinary(a: Mask, b: Mask) -> Mask;
+        f32_compare: Compare(a: F32, b: F32) -> Mask;
+        i32_compare: Compare(a: I32, b: I32) -> Mask;
+        u32_compare: Compare(a: U32, b: U32) -> Mask;
+    }
+
+    each_register! {
+        f32_mul_add(a: F32, b: F32, c: F32) -> F32;
+        mask_not(a: Mask) -> Mask;
+        f32_select(c: Mask, a: F32, b: F32) -> F32;
+        i32_select(c: Mask, a: I32, b: I32) -> I32;
+        u32_select(c: Mask, a: U32, b: U32) -> U32;
+        f32_to_i32(a: F32) -> I32;
+        f32_to_u32(a: F32) -> U32;
+        i32_to_f32(a: I32) -> F32;
+        u32_to_f32(a: U32) -> F32;
+        i32_to_u32(a: I32) -> U32;
+        u32_to_i32(a: U32) -> I32;
+        f32_to_bits(a: F32) -> U32;
+        f32_from_bits(a: U32) -> F32;
     }
 
     #[inline(always)]
@@ -117,7 +132,7 @@ impl<L: Lanes, const K: usize> Lanes for Gang<L, K> {
         let mut all = a[0];
         let mut i = 1;
         while i < K {
-            all = self.0.mask_binary(BoolBinary::Or, all, a[i]);
+            all = self.0.mask_binary(op::Or, all, a[i]);
             i += 1;
         }
         self.0.any(all)

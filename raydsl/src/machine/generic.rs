@@ -17,7 +17,7 @@ use super::matrix::{A3, M3, M4};
 use super::methods as lifted;
 use super::vector::{Arithmetic, Floats, Vector};
 use super::{
-    B, BoolBinary, Coerce, F, F32Unary, I, IntBinary, Machine, U, V3, Value, Varying, X2, X3, X4,
+    B, BoolBinary, Coerce, F, F32Binary, I, Machine, Op, U, V3, Value, Varying, X2, X3, X4, op,
 };
 use crate::math::matrix;
 
@@ -362,7 +362,7 @@ alike!(i32 I, u32 U, bool B);
 )]
 pub trait OrderedOn<M: Machine>: Value<M> {
     /// `min`, or `max`.
-    fn extreme(m: &M, max: bool, a: Self, b: Self) -> Self;
+    fn extreme<O: Op<F32Binary>>(m: &M, op: O, a: Self, b: Self) -> Self;
 }
 
 macro_rules! ordered_on {
@@ -371,8 +371,8 @@ macro_rules! ordered_on {
             #[diagnostic::do_not_recommend]
             impl<M: Machine> OrderedOn<M> for $t<M> {
                 #[inline(always)]
-                fn extreme(m: &M, max: bool, a: Self, b: Self) -> Self {
-                    Arithmetic::extreme(m, max, a, b)
+                fn extreme<O: Op<F32Binary>>(m: &M, op: O, a: Self, b: Self) -> Self {
+                    Arithmetic::extreme(m, op, a, b)
                 }
             }
         )+
@@ -380,8 +380,8 @@ macro_rules! ordered_on {
             #[diagnostic::do_not_recommend]
             impl<M: Machine, E: Arithmetic<M>> OrderedOn<M> for $v<E> {
                 #[inline(always)]
-                fn extreme(m: &M, max: bool, a: Self, b: Self) -> Self {
-                    Vector::extreme(m, max, a, b)
+                fn extreme<O: Op<F32Binary>>(m: &M, op: O, a: Self, b: Self) -> Self {
+                    Vector::extreme(m, op, a, b)
                 }
             }
         )+
@@ -484,7 +484,7 @@ macro_rules! lifted {
 }
 
 #[inline(always)]
-fn join<M: Machine, V: Vector<M, Component = B<M>>>(m: &M, op: BoolBinary, v: V) -> B<M> {
+fn join<M: Machine, V: Vector<M, Component = B<M>>>(m: &M, op: impl Op<BoolBinary>, v: V) -> B<M> {
     v.fold(
         #[inline(always)]
         |x, y| B(m.bool_binary(op, x.0, y.0)),
@@ -494,32 +494,32 @@ fn join<M: Machine, V: Vector<M, Component = B<M>>>(m: &M, op: BoolBinary, v: V)
 lifted! {
     min[A: Alike<M, R, Value: OrderedOn<M>>, R](m, a: A, b: R) -> A::Value {{
         let (a, b) = a.alike(m, b);
-        OrderedOn::extreme(m, false, a, b)
+        OrderedOn::extreme(m, op::Min, a, b)
     }}
     max[A: Alike<M, R, Value: OrderedOn<M>>, R](m, a: A, b: R) -> A::Value {{
         let (a, b) = a.alike(m, b);
-        OrderedOn::extreme(m, true, a, b)
+        OrderedOn::extreme(m, op::Max, a, b)
     }}
     clamp[A: Alike<M, R, Value: OrderedOn<M>>, R](
         m, x: A, low: R, high: impl Coerce<M, A::Value>
     ) -> A::Value {{
         let (x, low) = x.alike(m, low);
-        OrderedOn::extreme(m, false, OrderedOn::extreme(m, true, x, low), high.coerce(m))
+        OrderedOn::extreme(m, op::Min, OrderedOn::extreme(m, op::Max, x, low), high.coerce(m))
     }}
     select[A: Alike<M, R>, R](m, c: impl Coerce<M, B<M>>, a: A, b: R) -> A::Value {{
         let (a, b) = a.alike(m, b);
         choose(m, c.coerce(m).0, a, b)
     }}
-    any[V: Vector<M, Component = B<M>>](m, mask: V) -> B<M> { join(m, BoolBinary::Or, mask) }
-    all[V: Vector<M, Component = B<M>>](m, mask: V) -> B<M> { join(m, BoolBinary::And, mask) }
+    any[V: Vector<M, Component = B<M>>](m, mask: V) -> B<M> { join(m, op::Or, mask) }
+    all[V: Vector<M, Component = B<M>>](m, mask: V) -> B<M> { join(m, op::And, mask) }
     dot[C: Arithmetic<M>, V: Vector<M, Component = C, Of<C> = V>](m, a: V, b: V) -> C {
         lifted::dot(m, a, b)
     }
     length[V: Floats<M>](m, v: V) -> F<M> {
-        F(m.f32_unary(F32Unary::Sqrt, lifted::dot(m, v, v).0))
+        F(m.f32_unary(op::Sqrt, lifted::dot(m, v, v).0))
     }
     distance[V: Floats<M>](m, a: V, b: V) -> F<M> {
-        length::on(m, V::arithmetic(m, IntBinary::Sub, a, b))
+        length::on(m, V::arithmetic(m, op::Sub, a, b))
     }
     normalize[V: Floats<M>](m, v: V) -> V { lifted::normalize(m, v) }
     inverse[T: InvertibleOn<M>](m, a: T) -> T { T::inverted(m, a) }

@@ -4,7 +4,7 @@
 //! whose number it reaches. An index out of range is an error of the kernel. With debug assertions
 //! it panics and names the lane; without, it means the last element, in every variant.
 
-use super::{Coerce, Compare, Leaves, Machine, Type, U, Usize, Value, Varying};
+use super::{Coerce, Leaves, Machine, Type, U, Usize, Value, Varying, op};
 use crate::bvh::View;
 
 /// An integer that indexes.
@@ -64,7 +64,7 @@ impl<M: Machine, V: Varying<M> + Copy, const N: usize> Indexed<M> for [V; N] {
         );
         let mut found = all[0];
         for (k, v) in all.into_iter().enumerate().skip(1) {
-            let reached = m.u32_compare(Compare::Ge, i.0, m.u32(k as u32));
+            let reached = m.u32_compare(op::Ge, i.0, m.u32(k as u32));
             found = choose(m, reached, v, found);
         }
         found
@@ -125,9 +125,13 @@ pub fn with_element<M: Machine, V: Value<M>, const N: usize>(
         #[inline(always)]
         |old| {
             // The last element also stands for what is out of range.
-            let op = if k + 1 < N { Compare::Eq } else { Compare::Ge };
-            let here = m.u32_compare(op, i.0, m.u32(k as u32));
+            let number = m.u32(k as u32);
             k += 1;
+            let here = if k < N {
+                m.u32_compare(op::Eq, i.0, number)
+            } else {
+                m.u32_compare(op::Ge, i.0, number)
+            };
             choose(m, here, v, old)
         },
     )

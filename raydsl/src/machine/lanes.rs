@@ -4,12 +4,15 @@
 //! `fearless_simd`: a token is proof that the machine has the instruction set, and
 //! [`Lanes::vectorize`] enters it through a `#[target_feature]` function.
 
+use core::mem::MaybeUninit;
+
 use fearless_simd::{
     Bytes, Select, Simd, SimdBase, SimdCvtFloat, SimdCvtTruncate, SimdFloat, SimdMask, f32x4,
     f32x8, f32x16, i32x4, i32x8, i32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
 };
 
-use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Place, counted, scalar};
+use super::op::known;
+use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Op, Place, counted, scalar};
 use crate::machine::Counted;
 
 /// Registers of one width, and what can be done with them. `self` is the proof of the level.
@@ -26,7 +29,13 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn isa(self) -> &'static str;
     /// Runs `f` compiled for the instruction set.
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R;
-    /// The lanes of `active` are at a place of the source. Only [`Counted`](super::Counted) listens.
+    /// The same for a function of its own that is called from code that runs so already.
+    #[inline(always)]
+    fn enter_again<R>(self, f: impl FnOnce() -> R) -> R {
+        self.vectorize(f)
+    }
+    /// The lanes of `active` are at a place of the source. Only [`Counted`](super::Counted)
+    /// listens.
     #[inline(always)]
     fn at(self, _place: Place, _active: Self::Mask) {}
 
@@ -35,17 +44,17 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn u32(self, v: u32) -> Self::U32;
     fn mask(self, v: bool) -> Self::Mask;
 
-    fn f32_unary(self, op: F32Unary, a: Self::F32) -> Self::F32;
-    fn f32_binary(self, op: F32Binary, a: Self::F32, b: Self::F32) -> Self::F32;
+    fn f32_unary<O: Op<F32Unary>>(self, op: O, a: Self::F32) -> Self::F32;
+    fn f32_binary<O: Op<F32Binary>>(self, op: O, a: Self::F32, b: Self::F32) -> Self::F32;
     fn f32_mul_add(self, a: Self::F32, b: Self::F32, c: Self::F32) -> Self::F32;
     /// Sums, products, bits, shifts; the rest is done lane by lane.
-    fn i32_binary(self, op: IntBinary, a: Self::I32, b: Self::I32) -> Self::I32;
-    fn u32_binary(self, op: IntBinary, a: Self::U32, b: Self::U32) -> Self::U32;
-    fn mask_binary(self, op: BoolBinary, a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    fn i32_binary<O: Op<IntBinary>>(self, op: O, a: Self::I32, b: Self::I32) -> Self::I32;
+    fn u32_binary<O: Op<IntBinary>>(self, op: O, a: Self::U32, b: Self::U32) -> Self::U32;
+    fn mask_binary<O: Op<BoolBinary>>(self, op: O, a: Self::Mask, b: Self::Mask) -> Self::Mask;
     fn mask_not(self, a: Self::Mask) -> Self::Mask;
-    fn f32_compare(self, op: Compare, a: Self::F32, b: Self::F32) -> Self::Mask;
-    fn i32_compare(self, op: Compare, a: Self::I32, b: Self::I32) -> Self::Mask;
-    fn u32_compare(self, op: Compare, a: Self::U32, b: Self::U32) -> Self::Mask;
+    fn f32_compare<O: Op<Compare>>(self, op: O, a: Self::F32, b: Self::F32) -> Self::Mask;
+    fn i32_compare<O: Op<Compare>>(self, op: O, a: Self::I32, b: Self::I32) -> Self::Mask;
+    fn u32_compare<O: Op<Compare>>(self, op: O, a: Self::U32, b: Self::U32) -> Self::Mask;
     fn f32_select(self, c: Self::Mask, a: Self::F32, b: Self::F32) -> Self::F32;
     fn i32_select(self, c: Self::Mask, a: Self::I32, b: Self::I32) -> Self::I32;
     fn u32_select(self, c: Self::Mask, a: Self::U32, b: Self::U32) -> Self::U32;
@@ -73,17 +82,27 @@ pub trait Lanes: Copy + Send + Sync + 'static {
 }
 
 /// `[f(0), f(1), ..]`. Unlike the array functions of `core` it is always inlined: what is not
-/// inlined is not compiled for the level, and there every operation is a call.
+/// inlined is not compiled for the level, and there every operation is a call. Up to four elements,
+/// as vectors have, it is no loop that an optimiser must unroll.
 #[inline(always)]
 pub(crate) fn fill<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T; N] {
-    const { assert!(N > 0) };
-    let mut all = [f(0); N];
-    let mut i = 1;
-    while i < N {
-        all[i] = f(i);
-        i += 1;
+    let mut all = [const { MaybeUninit::uninit() }; N];
+    macro_rules! element {
+        ($($i:literal)+) => {
+            $(if const { $i < N } {
+                all[$i].write(f($i));
+            })+
+        };
     }
-    all
+    element!(0 1 2 3);
+    if const { N > 4 } {
+        for (i, v) in all.iter_mut().enumerate().skip(4) {
+            v.write(f(i));
+        }
+    }
+    // SAFETY: each of the `N` elements has been written, and `MaybeUninit<T>` has the layout of
+    // `T`.
+    unsafe { core::mem::transmute_copy::<[MaybeUninit<T>; N], [T; N]>(&all) }
 }
 
 /// The name of a level, as reports print it.
@@ -122,7 +141,7 @@ fn has_ordered_min(level: fearless_simd::Level) -> bool {
 
 macro_rules! int_vector_op {
     ($self:ident, $v:ident, $op:ident, $a:ident, $b:ident, $bits:ident, $lane:path) => {
-        match $op {
+        known!($op::OP;
             IntBinary::Add | IntBinary::WrappingAdd => $a + $b,
             IntBinary::Sub | IntBinary::WrappingSub => $a - $b,
             IntBinary::Mul | IntBinary::WrappingMul => $a * $b,
@@ -131,21 +150,22 @@ macro_rules! int_vector_op {
             IntBinary::Xor => $a ^ $b,
             IntBinary::Shl => $a << ($b & $v::splat($self.0, 31)),
             IntBinary::Shr => $a >> ($b & $v::splat($self.0, 31)),
-            IntBinary::Div | IntBinary::Rem => $v::from_fn($self.0, |l| $lane($op, $a[l], $b[l]).1),
-        }
+            // Division and remainder.
+            _ => $v::from_fn($self.0, |l| $lane($op::OP, $a[l], $b[l]).1),
+        )
     };
 }
 
 macro_rules! compare_op {
     ($op:ident, $a:ident, $b:ident) => {
-        match $op {
+        known!($op::OP;
             Compare::Eq => $a.simd_eq($b),
             Compare::Ne => !$a.simd_eq($b),
             Compare::Lt => $a.simd_lt($b),
             Compare::Le => $a.simd_le($b),
             Compare::Gt => $a.simd_gt($b),
             Compare::Ge => $a.simd_ge($b),
-        }
+        )
     };
 }
 
@@ -186,65 +206,64 @@ macro_rules! simd_lanes {
                 $m::splat(self.0, v)
             }
             #[inline(always)]
-            fn f32_unary(self, op: F32Unary, a: $f<S>) -> $f<S> {
-                match op {
+            fn f32_unary<O: Op<F32Unary>>(self, _: O, a: $f<S>) -> $f<S> {
+                known!(O::OP;
                     F32Unary::Neg => -a,
                     F32Unary::Abs => a.abs(),
                     F32Unary::Sqrt => a.sqrt(),
                     F32Unary::Floor => a.floor(),
                     F32Unary::Ceil => a.ceil(),
                     F32Unary::Trunc => a.trunc(),
-                }
+                )
             }
             #[inline(always)]
-            fn f32_binary(self, op: F32Binary, a: $f<S>, b: $f<S>) -> $f<S> {
-                match op {
+            fn f32_binary<O: Op<F32Binary>>(self, _: O, a: $f<S>, b: $f<S>) -> $f<S> {
+                // Where the instruction is `if b < a { b } else { a }`, NaN and zeros included.
+                let is_ordered = || has_ordered_min(self.0.level());
+                known!(O::OP;
                     F32Binary::Add => a + b,
                     F32Binary::Sub => a - b,
                     F32Binary::Mul => a * b,
                     F32Binary::Div => a / b,
-                    // Where the instruction is `if b < a { b } else { a }`, NaN and zeros included.
-                    F32Binary::Min if has_ordered_min(self.0.level()) => b.min(a),
-                    F32Binary::Max if has_ordered_min(self.0.level()) => b.max(a),
-                    F32Binary::Min => b.simd_lt(a).select(b, a),
-                    F32Binary::Max => a.simd_lt(b).select(b, a),
-                }
+                    F32Binary::Min => if is_ordered() { b.min(a) } else { b.simd_lt(a).select(b, a) },
+                    F32Binary::Max => if is_ordered() { b.max(a) } else { a.simd_lt(b).select(b, a) },
+                )
             }
             #[inline(always)]
             fn f32_mul_add(self, a: $f<S>, b: $f<S>, c: $f<S>) -> $f<S> {
                 a.mul_add_precise(b, c)
             }
             #[inline(always)]
-            fn i32_binary(self, op: IntBinary, a: $i<S>, b: $i<S>) -> $i<S> {
-                int_vector_op!(self, $i, op, a, b, i32, scalar::i32_binary)
+            fn i32_binary<O: Op<IntBinary>>(self, _: O, a: $i<S>, b: $i<S>) -> $i<S> {
+                int_vector_op!(self, $i, O, a, b, i32, scalar::i32_binary)
             }
             #[inline(always)]
-            fn u32_binary(self, op: IntBinary, a: $u<S>, b: $u<S>) -> $u<S> {
-                int_vector_op!(self, $u, op, a, b, u32, scalar::u32_binary)
+            fn u32_binary<O: Op<IntBinary>>(self, _: O, a: $u<S>, b: $u<S>) -> $u<S> {
+                int_vector_op!(self, $u, O, a, b, u32, scalar::u32_binary)
             }
             #[inline(always)]
-            fn mask_binary(self, op: BoolBinary, a: $m<S>, b: $m<S>) -> $m<S> {
-                match op {
+            fn mask_binary<O: Op<BoolBinary>>(self, _: O, a: $m<S>, b: $m<S>) -> $m<S> {
+                known!(O::OP;
                     BoolBinary::And => a & b,
                     BoolBinary::Or => a | b,
                     BoolBinary::Xor => a ^ b,
-                }
+                )
             }
             #[inline(always)]
             fn mask_not(self, a: $m<S>) -> $m<S> {
                 !a
             }
             #[inline(always)]
-            fn f32_compare(self, op: Compare, a: $f<S>, b: $f<S>) -> $m<S> {
-                compare_op!(op, a, b)
+            fn f32_compare<O: Op<Compare>>(self, _: O, a: $f<S>, b: $f<S>) -> $m<S> {
+                compare_op!(O, a, b)
             }
             #[inline(always)]
-            fn i32_compare(self, op: Compare, a: $i<S>, b: $i<S>) -> $m<S> {
-                compare_op!(op, a, b)
+            fn i32_compare<O: Op<Compare>>(self, _: O, a: $i<S>, b: $i<S>) -> $m<S> {
+                compare_op!(O, a, b)
             }
             #[inline(always)]
-            fn u32_compare(self, op: Compare, a: $u<S>, b: $u<S>) -> $m<S> {
-                compare_op!(op, a, b)
+            fn u32_compare<O: Op<Compare>>(self, _: O, a: $u<S>, b: $u<S>) -> $m<S> {
+                compare_op!(O, a, b)
             }
             #[inline(always)]
             fn f32_select(self, c: $m<S>, a: $f<S>, b: $f<S>) -> $f<S> {
@@ -373,48 +392,44 @@ impl Lanes for One {
         v
     }
     #[inline(always)]
-    fn f32_unary(self, op: F32Unary, a: f32) -> f32 {
-        scalar::f32_unary(op, a)
+    fn f32_unary<O: Op<F32Unary>>(self, _: O, a: f32) -> f32 {
+        scalar::f32_unary(O::OP, a)
     }
     #[inline(always)]
-    fn f32_binary(self, op: F32Binary, a: f32, b: f32) -> f32 {
-        scalar::f32_binary(op, a, b)
+    fn f32_binary<O: Op<F32Binary>>(self, _: O, a: f32, b: f32) -> f32 {
+        scalar::f32_binary(O::OP, a, b)
     }
     #[inline(always)]
     fn f32_mul_add(self, a: f32, b: f32, c: f32) -> f32 {
         a.mul_add(b, c)
     }
     #[inline(always)]
-    fn i32_binary(self, op: IntBinary, a: i32, b: i32) -> i32 {
-        scalar::i32_binary(op, a, b).1
+    fn i32_binary<O: Op<IntBinary>>(self, _: O, a: i32, b: i32) -> i32 {
+        scalar::i32_binary(O::OP, a, b).1
     }
     #[inline(always)]
-    fn u32_binary(self, op: IntBinary, a: u32, b: u32) -> u32 {
-        scalar::u32_binary(op, a, b).1
+    fn u32_binary<O: Op<IntBinary>>(self, _: O, a: u32, b: u32) -> u32 {
+        scalar::u32_binary(O::OP, a, b).1
     }
     #[inline(always)]
-    fn mask_binary(self, op: BoolBinary, a: bool, b: bool) -> bool {
-        match op {
-            BoolBinary::And => a & b,
-            BoolBinary::Or => a | b,
-            BoolBinary::Xor => a ^ b,
-        }
+    fn mask_binary<O: Op<BoolBinary>>(self, _: O, a: bool, b: bool) -> bool {
+        scalar::bool_binary(O::OP, a, b)
     }
     #[inline(always)]
     fn mask_not(self, a: bool) -> bool {
         !a
     }
     #[inline(always)]
-    fn f32_compare(self, op: Compare, a: f32, b: f32) -> bool {
-        scalar::compare(op, a, b)
+    fn f32_compare<O: Op<Compare>>(self, _: O, a: f32, b: f32) -> bool {
+        scalar::compare(O::OP, a, b)
     }
     #[inline(always)]
-    fn i32_compare(self, op: Compare, a: i32, b: i32) -> bool {
-        scalar::compare(op, a, b)
+    fn i32_compare<O: Op<Compare>>(self, _: O, a: i32, b: i32) -> bool {
+        scalar::compare(O::OP, a, b)
     }
     #[inline(always)]
-    fn u32_compare(self, op: Compare, a: u32, b: u32) -> bool {
-        scalar::compare(op, a, b)
+    fn u32_compare<O: Op<Compare>>(self, _: O, a: u32, b: u32) -> bool {
+        scalar::compare(O::OP, a, b)
     }
     #[inline(always)]
     fn f32_select(self, c: bool, a: f32, b: f32) -> f32 {
@@ -518,6 +533,14 @@ macro_rules! delegate {
             }
         )+
     };
+    (operations $($name:ident: $kind:ident($($a:ident: $t:ty),*) -> $result:ty;)+) => {
+        $(
+            #[inline(always)]
+            fn $name<O: Op<$kind>>(self, op: O, $($a: $t),*) -> $result {
+                self.0.$name(op, $($a),*)
+            }
+        )+
+    };
 }
 
 /// Lanes around others: what is not given here is theirs.
@@ -533,21 +556,24 @@ macro_rules! lanes_around {
         $($own)*
 
             delegate! {
+                operations
+                f32_unary: F32Unary(a: L::F32) -> L::F32;
+                f32_binary: F32Binary(a: L::F32, b: L::F32) -> L::F32;
+                i32_binary: IntBinary(a: L::I32, b: L::I32) -> L::I32;
+                u32_binary: IntBinary(a: L::U32, b: L::U32) -> L::U32;
+                mask_binary: BoolBinary(a: L::Mask, b: L::Mask) -> L::Mask;
+                f32_compare: Compare(a: L::F32, b: L::F32) -> L::Mask;
+                i32_compare: Compare(a: L::I32, b: L::I32) -> L::Mask;
+                u32_compare: Compare(a: L::U32, b: L::U32) -> L::Mask;
+            }
+            delegate! {
                 isa() -> &'static str;
                 f32(v: f32) -> L::F32;
                 i32(v: i32) -> L::I32;
                 u32(v: u32) -> L::U32;
                 mask(v: bool) -> L::Mask;
-                f32_unary(op: F32Unary, a: L::F32) -> L::F32;
-                f32_binary(op: F32Binary, a: L::F32, b: L::F32) -> L::F32;
                 f32_mul_add(a: L::F32, b: L::F32, c: L::F32) -> L::F32;
-                i32_binary(op: IntBinary, a: L::I32, b: L::I32) -> L::I32;
-                u32_binary(op: IntBinary, a: L::U32, b: L::U32) -> L::U32;
-                mask_binary(op: BoolBinary, a: L::Mask, b: L::Mask) -> L::Mask;
                 mask_not(a: L::Mask) -> L::Mask;
-                f32_compare(op: Compare, a: L::F32, b: L::F32) -> L::Mask;
-                i32_compare(op: Compare, a: L::I32, b: L::I32) -> L::Mask;
-                u32_compare(op: Compare, a: L::U32, b: L::U32) -> L::Mask;
                 f32_select(c: L::Mask, a: L::F32, b: L::F32) -> L::F32;
                 i32_select(c: L::Mask, a: L::I32, b: L::I32) -> L::I32;
                 u32_select(c: L::Mask, a: L::U32, b: L::U32) -> L::U32;
@@ -591,6 +617,10 @@ lanes_around!(Entered {
     #[inline(always)]
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
         f()
+    }
+    #[inline(always)]
+    fn enter_again<R>(self, f: impl FnOnce() -> R) -> R {
+        self.0.vectorize(f)
     }
     #[inline(always)]
     fn at(self, place: Place, active: L::Mask) {

@@ -3,8 +3,8 @@
 
 use super::index::{Index, Indexed};
 use super::{
-    B, Bounds, Coerce, Compare, Condition, Counter, F, I, Machine, OpCast, OpCompare, Schema, Type,
-    U, Usize, Value,
+    B, Bounds, Coerce, Condition, Counter, F, I, Machine, OpCast, OpCompare, Schema, Type, U,
+    Usize, Value, op,
 };
 
 /// A literal, as the two numbers nearest to its text.
@@ -99,7 +99,7 @@ pub fn range<M: Machine, S: Bounds<M, E>, E>(m: &M, start: S, end: E) -> (S::Cou
 /// Whether a counter goes on.
 #[inline(always)]
 pub fn less<M: Machine, C: OpCompare<M, C, Output = B<M>>>(m: &M, a: C, b: C) -> B<M> {
-    C::compare(m, Compare::Lt, a, b)
+    C::compare(m, op::Lt, a, b)
 }
 
 /// Whether an inclusive range goes on: its last number has not been had, and `a <= b`.
@@ -110,15 +110,15 @@ pub fn goes_on<M: Machine, C: OpCompare<M, C, Output = B<M>>>(
     a: C,
     b: C,
 ) -> B<M> {
-    let within = C::compare(m, Compare::Le, a, b);
-    B(m.bool_binary(super::BoolBinary::And, m.bool_not(done.0), within.0))
+    let within = C::compare(m, op::Le, a, b);
+    B(m.bool_binary(op::And, m.bool_not(done.0), within.0))
 }
 
 /// The steps of `.step_by(n)`. Rust panics for none; here one is taken, so that the loop ends.
 #[inline(always)]
 pub fn step<M: Machine>(m: &M, n: impl Coerce<M, Usize<M>>) -> U<M> {
     let n = n.coerce(m).0;
-    let none = m.u32_compare(Compare::Eq, n, m.u32(0));
+    let none = m.u32_compare(op::Eq, n, m.u32(0));
     U(m.u32_select(none, m.u32(1), n))
 }
 
@@ -131,29 +131,27 @@ pub fn goes_on_to<M: Machine, C: OpCompare<M, C, Output = B<M>>>(
     b: C,
     inclusive: bool,
 ) -> B<M> {
-    let op = if inclusive { Compare::Le } else { Compare::Lt };
-    let within = C::compare(m, op, a, b);
-    B(m.bool_binary(super::BoolBinary::And, m.bool_not(done.0), within.0))
+    let within = if inclusive { C::compare(m, op::Le, a, b) } else { C::compare(m, op::Lt, a, b) };
+    B(m.bool_binary(op::And, m.bool_not(done.0), within.0))
 }
 
 /// Whether no step is left before the end, which `a` has not passed: so nothing overflows.
 #[inline(always)]
 pub fn is_last<M: Machine, C: Counter<M>>(m: &M, a: C, end: C, by: U<M>, inclusive: bool) -> B<M> {
-    let left = m.u32_binary(super::IntBinary::WrappingSub, end.bits(m), a.bits(m));
-    let op = if inclusive { Compare::Lt } else { Compare::Le };
-    B(m.u32_compare(op, left, by.0))
+    let left = m.u32_binary(op::WrappingSub, end.bits(m), a.bits(m));
+    B(if inclusive { m.u32_compare(op::Lt, left, by.0) } else { m.u32_compare(op::Le, left, by.0) })
 }
 
 /// The value of a counter some steps on.
 #[inline(always)]
 pub fn advance<M: Machine, C: Counter<M>>(m: &M, a: C, by: U<M>) -> C {
-    C::of_bits(m, m.u32_binary(super::IntBinary::WrappingAdd, a.bits(m), by.0))
+    C::of_bits(m, m.u32_binary(op::WrappingAdd, a.bits(m), by.0))
 }
 
 /// Whether a counter has its last value.
 #[inline(always)]
 pub fn equal<M: Machine, C: OpCompare<M, C, Output = B<M>>>(m: &M, a: C, b: C) -> B<M> {
-    C::compare(m, Compare::Eq, a, b)
+    C::compare(m, op::Eq, a, b)
 }
 
 /// `a[i as usize]`.

@@ -8,8 +8,8 @@ use glam::{Affine3, Mat3, Mat4, Vec3, Vec4};
 
 use super::vector::Floats;
 use super::{
-    F, F32Binary, Field, LaneMachine, Leaves, Machine, OpAdd, OpDiv, OpMul, OpNeg, OpSub, Schema,
-    Type, V3, V4, Value, Varying,
+    F, Field, LaneMachine, Leaves, Machine, OpAdd, OpDiv, OpMul, OpNeg, OpSub, Schema, Type, V3,
+    V4, Value, Varying, op,
 };
 
 macro_rules! columns {
@@ -99,10 +99,10 @@ columns!(Affine3 => A3 { matrix3: Mat3, translation: Vec3 });
 /// `column * v + sum`, or the first of the sum.
 macro_rules! sum_of_columns {
     ($m:ident: $v:ident; $first:expr, $s:expr $(; $next:expr, $t:expr)*) => {{
-        let sum = $v::binary($m, F32Binary::Mul, $first, $v::splat($s));
+        let sum = $v::binary($m, op::Mul, $first, $v::splat($s));
         $(
-            let part = $v::binary($m, F32Binary::Mul, $next, $v::splat($t));
-            let sum = $v::binary($m, F32Binary::Add, sum, part);
+            let part = $v::binary($m, op::Mul, $next, $v::splat($t));
+            let sum = $v::binary($m, op::Add, sum, part);
         )*
         sum
     }};
@@ -191,14 +191,14 @@ impl<M: Machine> M4<M> {
 
     #[inline(always)]
     pub(super) fn transform_point(self, m: &M, p: V3<M>) -> V3<M> {
-        V3::binary(m, F32Binary::Add, xyz(self.w_axis), self.upper(m, p))
+        V3::binary(m, op::Add, xyz(self.w_axis), self.upper(m, p))
     }
 
     #[inline(always)]
     pub(super) fn project_point(self, m: &M, p: V3<M>) -> V3<M> {
         let sum = sum_of_columns!(m: V4; self.x_axis, p.x; self.y_axis, p.y; self.z_axis, p.z);
-        let sum = V4::binary(m, F32Binary::Add, self.w_axis, sum);
-        xyz(V4::binary(m, F32Binary::Div, sum, V4::splat(sum.w)))
+        let sum = V4::binary(m, op::Add, self.w_axis, sum);
+        xyz(V4::binary(m, op::Div, sum, V4::splat(sum.w)))
     }
 }
 
@@ -215,7 +215,7 @@ impl<M: Machine> A3<M> {
 
     #[inline(always)]
     pub(super) fn transform_point(self, m: &M, p: V3<M>) -> V3<M> {
-        V3::binary(m, F32Binary::Add, self.matrix3.times(m, p), self.translation)
+        V3::binary(m, op::Add, self.matrix3.times(m, p), self.translation)
     }
 }
 
@@ -240,17 +240,17 @@ macro_rules! matrix_operators {
             b.each(#[inline(always)] |column| a.times(m, column))
         });
         operator!(OpMul::mul, $t<M>, F<M> => $t<M>, |m, a, b| {
-            a.each(#[inline(always)] |column| $v::binary(m, F32Binary::Mul, column, $v::splat(b)))
+            a.each(#[inline(always)] |column| $v::binary(m, op::Mul, column, $v::splat(b)))
         });
         operator!(OpMul::mul, F<M>, $t<M> => $t<M>, |m, a, b| OpMul::mul(m, b, a));
         operator!(OpDiv::div, $t<M>, F<M> => $t<M>, |m, a, b| {
-            a.each(#[inline(always)] |column| $v::binary(m, F32Binary::Div, column, $v::splat(b)))
+            a.each(#[inline(always)] |column| $v::binary(m, op::Div, column, $v::splat(b)))
         });
         operator!(OpAdd::add, $t<M>, $t<M> => $t<M>, |m, a, b| {
-            a.both(b, #[inline(always)] |x, y| $v::binary(m, F32Binary::Add, x, y))
+            a.both(b, #[inline(always)] |x, y| $v::binary(m, op::Add, x, y))
         });
         operator!(OpSub::sub, $t<M>, $t<M> => $t<M>, |m, a, b| {
-            a.both(b, #[inline(always)] |x, y| $v::binary(m, F32Binary::Sub, x, y))
+            a.both(b, #[inline(always)] |x, y| $v::binary(m, op::Sub, x, y))
         });
 
         #[diagnostic::do_not_recommend]

@@ -4,9 +4,11 @@
 //! part of the trait, so that the methods of a user's types and those of the library meet without
 //! an import.
 
-use super::{B, Coerce, Compare, IntBinary, Machine, Type, U, Usize, Var};
+use glam::Affine3;
+
+use super::{A3, B, Coerce, Machine, Type, U, Usize, V3, Var, op};
 use crate::bvh::{SceneView, View};
-use crate::geometry::{HitOn, Primitive};
+use crate::geometry::{HitOn, Primitive, RayOn, transform_normal_back};
 
 /// The number of a method's name (FNV-1a, 64 bits).
 pub const fn name(text: &str) -> u64 {
@@ -227,21 +229,21 @@ pub(crate) use vector::{cross, dot, normalize};
 // Sizes
 
 method!([] Usize<M>, "min", |m, a, b: Usize<M>| -> Usize<M> {
-    Usize(m.u32_select(m.u32_compare(Compare::Lt, b.0, a.0), b.0, a.0))
+    Usize(m.u32_select(m.u32_compare(op::Lt, b.0, a.0), b.0, a.0))
 });
 method!([] Usize<M>, "max", |m, a, b: Usize<M>| -> Usize<M> {
-    Usize(m.u32_select(m.u32_compare(Compare::Lt, a.0, b.0), b.0, a.0))
+    Usize(m.u32_select(m.u32_compare(op::Lt, a.0, b.0), b.0, a.0))
 });
 method!([] Usize<M>, "wrapping_add", |m, a, b: Usize<M>| -> Usize<M> {
-    Usize(m.u32_binary(IntBinary::WrappingAdd, a.0, b.0))
+    Usize(m.u32_binary(op::WrappingAdd, a.0, b.0))
 });
 method!([] Usize<M>, "wrapping_sub", |m, a, b: Usize<M>| -> Usize<M> {
-    Usize(m.u32_binary(IntBinary::WrappingSub, a.0, b.0))
+    Usize(m.u32_binary(op::WrappingSub, a.0, b.0))
 });
 method!([] Usize<M>, "saturating_sub", |m, a, b: Usize<M>| -> Usize<M> {
     {
-        let difference = m.u32_binary(IntBinary::WrappingSub, a.0, b.0);
-        let below = m.u32_compare(Compare::Lt, a.0, b.0);
+        let difference = m.u32_binary(op::WrappingSub, a.0, b.0);
+        let below = m.u32_compare(op::Lt, a.0, b.0);
         Usize(m.u32_select(below, m.u32(0), difference))
     }
 });
@@ -264,7 +266,7 @@ impl<M: Machine, T: Type, S: Type> Method<{ name("is_empty") }, M, ()> for View<
 
     #[inline(always)]
     fn call(self, m: &M, (): ()) -> B<M> {
-        B(m.u32_compare(Compare::Eq, m.len(&self).0, m.u32(0)))
+        B(m.u32_compare(op::Eq, m.len(&self).0, m.u32(0)))
     }
 }
 
@@ -318,6 +320,9 @@ const _: () = {
         "multi_hit_by" -> [HitOn<M>; 1];
         "multi_hit_where" -> [HitOn<M>; 1];
         "primitive" -> V;
+        "to_object" -> A3<M>;
+        "local_ray" -> RayOn<M>;
+        "normal_in_scene" -> V3<M>;
     }
 };
 
@@ -330,6 +335,47 @@ impl<M: Machine, P: Primitive> Method<{ name("primitive") }, M, (HitOn<M>,)> for
         let id = m.u32_select(hit.is_hit.0, hit.prim_id.0, m.u32(0));
         // The hit may be that of another scene.
         m.element(&self, U(id))
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine, P: Primitive> Method<{ name("to_object") }, M, (HitOn<M>,)> for SceneView<'_, P> {
+    type Output = A3<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (hit,): (HitOn<M>,)) -> A3<M> {
+        match self.placed() {
+            Some(_) => m.to_object(&self, hit.inst_id),
+            None => Affine3::splat(m, Affine3::IDENTITY),
+        }
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine, P: Primitive> Method<{ name("local_ray") }, M, (RayOn<M>, HitOn<M>)>
+    for SceneView<'_, P>
+{
+    type Output = RayOn<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (ray, hit): (RayOn<M>, HitOn<M>)) -> RayOn<M> {
+        match self.placed() {
+            Some(_) => m.local_ray(&self, hit.inst_id, ray),
+            None => ray,
+        }
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine, P: Primitive> Method<{ name("normal_in_scene") }, M, (HitOn<M>, V3<M>)>
+    for SceneView<'_, P>
+{
+    type Output = V3<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (hit, normal): (HitOn<M>, V3<M>)) -> V3<M> {
+        let map = Method::<{ name("to_object") }, M, (HitOn<M>,)>::call(self, m, (hit,));
+        transform_normal_back::on(m, normal, map)
     }
 }
 

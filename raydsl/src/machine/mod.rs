@@ -28,6 +28,7 @@ pub mod lowered;
 mod margin;
 pub(crate) mod matrix;
 mod methods;
+pub mod op;
 mod operand;
 mod ops;
 mod packet;
@@ -53,7 +54,9 @@ pub(crate) use lanes::{Entered, fill};
 pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
 pub(crate) use margin::result_leaves;
 pub use margin::{Leaf, Margin, Outcomes, Rounding};
+pub(crate) use matrix::A3;
 pub use methods::{HostMethod, Method, Through, call_on_element, is_mut, name};
+pub use op::Op;
 pub use operand::{Assigned, RightOperand};
 pub use ops::{
     Bounds, Coerce, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv, OpMul,
@@ -191,20 +194,20 @@ pub trait Machine: Sized + 'static {
     }
 
     // Arithmetic.
-    fn f32_unary(&self, op: F32Unary, a: Self::F32) -> Self::F32;
-    fn f32_binary(&self, op: F32Binary, a: Self::F32, b: Self::F32) -> Self::F32;
+    fn f32_unary<O: Op<F32Unary>>(&self, op: O, a: Self::F32) -> Self::F32;
+    fn f32_binary<O: Op<F32Binary>>(&self, op: O, a: Self::F32, b: Self::F32) -> Self::F32;
     /// Fused: rounded once.
     fn f32_mul_add(&self, a: Self::F32, b: Self::F32, c: Self::F32) -> Self::F32;
-    fn i32_binary(&self, op: IntBinary, a: Self::I32, b: Self::I32) -> Self::I32;
-    fn u32_binary(&self, op: IntBinary, a: Self::U32, b: Self::U32) -> Self::U32;
-    fn bool_binary(&self, op: BoolBinary, a: Self::Bool, b: Self::Bool) -> Self::Bool;
+    fn i32_binary<O: Op<IntBinary>>(&self, op: O, a: Self::I32, b: Self::I32) -> Self::I32;
+    fn u32_binary<O: Op<IntBinary>>(&self, op: O, a: Self::U32, b: Self::U32) -> Self::U32;
+    fn bool_binary<O: Op<BoolBinary>>(&self, op: O, a: Self::Bool, b: Self::Bool) -> Self::Bool;
     fn i32_neg(&self, a: Self::I32) -> Self::I32;
     fn i32_not(&self, a: Self::I32) -> Self::I32;
     fn u32_not(&self, a: Self::U32) -> Self::U32;
     fn bool_not(&self, a: Self::Bool) -> Self::Bool;
-    fn f32_compare(&self, op: Compare, a: Self::F32, b: Self::F32) -> Self::Bool;
-    fn i32_compare(&self, op: Compare, a: Self::I32, b: Self::I32) -> Self::Bool;
-    fn u32_compare(&self, op: Compare, a: Self::U32, b: Self::U32) -> Self::Bool;
+    fn f32_compare<O: Op<Compare>>(&self, op: O, a: Self::F32, b: Self::F32) -> Self::Bool;
+    fn i32_compare<O: Op<Compare>>(&self, op: O, a: Self::I32, b: Self::I32) -> Self::Bool;
+    fn u32_compare<O: Op<Compare>>(&self, op: O, a: Self::U32, b: Self::U32) -> Self::Bool;
 
     // `if c { a } else { b }` with both sides evaluated.
     fn f32_select(&self, c: Self::Bool, a: Self::F32, b: Self::F32) -> Self::F32;
@@ -226,31 +229,31 @@ pub trait Machine: Sized + 'static {
     /// The size of `a` compared with infinity, by its bits. Unlike `a != a` that also holds for
     /// GPUs, which may take NaN for granted not to be.
     #[inline(always)]
-    fn f32_beside_infinity(&self, op: Compare, a: Self::F32) -> Self::Bool {
+    fn f32_beside_infinity<O: Op<Compare>>(&self, op: O, a: Self::F32) -> Self::Bool {
         let bits = self.u32_to_i32(self.f32_to_bits(a));
-        let size = self.i32_binary(IntBinary::And, bits, self.i32(0x7fff_ffff));
+        let size = self.i32_binary(op::And, bits, self.i32(0x7fff_ffff));
         self.i32_compare(op, size, self.i32(0x7f80_0000))
     }
 
-    /// Whether the sign is `-`, of zeros and NaN too; with [`Compare::Ge`] whether it is not.
+    /// Whether the sign is `-`, of zeros and NaN too; with [`op::Ge`] whether it is not.
     #[inline(always)]
-    fn f32_sign_bit(&self, op: Compare, a: Self::F32) -> Self::Bool {
+    fn f32_sign_bit<O: Op<Compare>>(&self, op: O, a: Self::F32) -> Self::Bool {
         self.i32_compare(op, self.u32_to_i32(self.f32_to_bits(a)), self.i32(0))
     }
 
     /// The number `a` with the sign of `sign`.
     #[inline(always)]
     fn f32_copysign(&self, a: Self::F32, sign: Self::F32) -> Self::F32 {
-        let bits = |x, mask| self.u32_binary(IntBinary::And, self.f32_to_bits(x), self.u32(mask));
+        let bits = |x, mask| self.u32_binary(op::And, self.f32_to_bits(x), self.u32(mask));
         let (size, sign) = (bits(a, 0x7fff_ffff), bits(sign, 0x8000_0000));
-        self.f32_from_bits(self.u32_binary(IntBinary::Or, size, sign))
+        self.f32_from_bits(self.u32_binary(op::Or, size, sign))
     }
 
     /// An operation on every component of two vectors; a machine may have vectors of its own.
     #[inline(always)]
-    fn vector_binary<const N: usize>(
+    fn vector_binary<O: Op<F32Binary>, const N: usize>(
         &self,
-        op: F32Binary,
+        op: O,
         a: [Self::F32; N],
         b: [Self::F32; N],
     ) -> [Self::F32; N] {
@@ -262,7 +265,11 @@ pub trait Machine: Sized + 'static {
 
     /// An operation on every component of a vector.
     #[inline(always)]
-    fn vector_unary<const N: usize>(&self, op: F32Unary, a: [Self::F32; N]) -> [Self::F32; N] {
+    fn vector_unary<O: Op<F32Unary>, const N: usize>(
+        &self,
+        op: O,
+        a: [Self::F32; N],
+    ) -> [Self::F32; N] {
         fill(
             #[inline(always)]
             |i| self.f32_unary(op, a[i]),
@@ -271,9 +278,9 @@ pub trait Machine: Sized + 'static {
 
     /// An operation on every component of two vectors of `i32`.
     #[inline(always)]
-    fn i32_vector_binary<const N: usize>(
+    fn i32_vector_binary<O: Op<IntBinary>, const N: usize>(
         &self,
-        op: IntBinary,
+        op: O,
         a: [Self::I32; N],
         b: [Self::I32; N],
     ) -> [Self::I32; N] {
@@ -285,9 +292,9 @@ pub trait Machine: Sized + 'static {
 
     /// An operation on every component of two vectors of `u32`.
     #[inline(always)]
-    fn u32_vector_binary<const N: usize>(
+    fn u32_vector_binary<O: Op<IntBinary>, const N: usize>(
         &self,
-        op: IntBinary,
+        op: O,
         a: [Self::U32; N],
         b: [Self::U32; N],
     ) -> [Self::U32; N] {
@@ -299,7 +306,7 @@ pub trait Machine: Sized + 'static {
 
     /// Counts and turns bits.
     #[inline(always)]
-    fn u32_unary(&self, op: U32Unary, a: Self::U32) -> Self::U32 {
+    fn u32_unary<O: Op<U32Unary>>(&self, op: O, a: Self::U32) -> Self::U32 {
         bits::u32_unary(self, op, a)
     }
 
@@ -416,6 +423,18 @@ pub trait Machine: Sized + 'static {
         body: impl FnOnce(&Self, A) -> R,
     ) -> R;
 
+    /// [`call`](Self::call) of a kernel that says `#[inline(never)]`: packets inline others where they
+    /// are called from a traversal.
+    #[inline(always)]
+    fn call_apart<A: Value<Self>, R: Value<Self>>(
+        &self,
+        info: &'static KernelInfo,
+        args: A,
+        body: impl FnOnce(&Self, A) -> R,
+    ) -> R {
+        self.call(info, args, body)
+    }
+
     /// A captured number, vector or struct of the host.
     #[inline(always)]
     fn capture<T: Type>(&self, _name: &'static str, v: T) -> T::On<Self> {
@@ -435,6 +454,13 @@ pub trait Machine: Sized + 'static {
         ray: crate::geometry::RayOn<Self>,
     ) -> crate::geometry::HitOn<Self>;
 
+    /// [`Machine::closest_hit`], and what it costs each ray, were it alone.
+    fn closest_hit_with_cost<P: crate::geometry::Primitive>(
+        &self,
+        prims: &crate::bvh::SceneView<'_, P>,
+        ray: crate::geometry::RayOn<Self>,
+    ) -> crate::bvh::CountedHitOn<Self>;
+
     /// Whether anything is hit.
     fn any_hit<P: crate::geometry::Primitive>(
         &self,
@@ -443,8 +469,8 @@ pub trait Machine: Sized + 'static {
     ) -> B<Self>;
 
     /// Asks `meet` about every hit within the ray's range, in the lanes that have it: whether the
-    /// lane goes on. Nodes beyond `limit` are left out. The hit, and the record that has it, has its
-    /// primitive's number.
+    /// lane goes on. Nodes beyond `limit` are left out. The hit, and the record that has it, has
+    /// its primitive's number.
     fn visit<P: crate::geometry::Primitive>(
         &self,
         prims: &crate::bvh::SceneView<'_, P>,
@@ -452,6 +478,30 @@ pub trait Machine: Sized + 'static {
         limit: impl Fn() -> F<Self>,
         meet: impl Fn(crate::geometry::HitOn<Self>, crate::bvh::RecordOn<Self, P>) -> B<Self>,
     );
+
+    /// The ray as the tree of an instance is asked about it. A scene of instances has one.
+    fn local_ray<T: Type, S: Type>(
+        &self,
+        scene: &crate::bvh::View<'_, T, S>,
+        inst: U<Self>,
+        ray: crate::geometry::RayOn<Self>,
+    ) -> crate::geometry::RayOn<Self>;
+
+    /// From the space of the scene to that of an instance's tree.
+    fn to_object<T: Type, S: Type>(
+        &self,
+        scene: &crate::bvh::View<'_, T, S>,
+        inst: U<Self>,
+    ) -> A3<Self>;
+
+    /// How far behind a hit nodes are still visited, relative to its distance.
+    #[inline(always)]
+    fn slack<P: crate::geometry::Primitive>(
+        &self,
+        prims: &crate::bvh::SceneView<'_, P>,
+    ) -> F<Self> {
+        F(self.f32(prims.allowance().slack))
+    }
 
     /// `[f(0), f(1), ..]`; a loop in generated code.
     #[inline(always)]
@@ -477,7 +527,7 @@ pub trait Machine: Sized + 'static {
     ) -> T::On<Self> {
         self.check_index(&index.0, slice.len() as u32);
         let last = self.u32((slice.len() as u32).wrapping_sub(1));
-        let within = self.u32_compare(Compare::Le, index.0, last);
+        let within = self.u32_compare(op::Le, index.0, last);
         self.fetch(slice, U(self.u32_select(within, index.0, last)))
     }
 

@@ -5,10 +5,8 @@
 //! host until they meet a value of the machine; `f32` literals become values at once.
 
 use super::vector::{Amounts, Arithmetic, Bits, Broadcast, Floats, Integer, Vector};
-use super::{
-    B, BoolBinary, Compare, F, F32Binary, F32Unary, I, IntBinary, Machine, Type, U, Usize, Value,
-    Var, X2, X3, X4,
-};
+use super::{B, Compare, F, I, Machine, Op, Type, U, Usize, Value, Var, X2, X3, X4, op, scalar};
+use crate::machine::op::known;
 
 macro_rules! binary_traits {
     ($($trait:ident :: $method:ident $symbol:literal),+ $(,)?) => {
@@ -78,7 +76,7 @@ pub trait OpCompare<M: Machine, R> {
     /// What a comparison gives.
     type Output;
     /// Compares.
-    fn compare(m: &M, op: Compare, a: Self, b: R) -> Self::Output;
+    fn compare<O: Op<Compare>>(m: &M, op: O, a: Self, b: R) -> Self::Output;
 }
 
 /// `a as T` on machine `M`.
@@ -294,7 +292,7 @@ macro_rules! f32_operators {
     ($($trait:ident :: $method:ident $op:ident),+) => {
         $(
             operator!($trait::$method, F<M>, F<M>, F<M>, |m, a, b| {
-                F(m.f32_binary(F32Binary::$op, a.0, b.0))
+                F(m.f32_binary(op::$op, a.0, b.0))
             });
         )+
     };
@@ -335,12 +333,12 @@ macro_rules! int_operators {
         )+
     };
     (@one $trait:ident :: $method:ident $op:ident $symbol:tt, $t:ident, $host:ty, $f:ident) => {
-        operator!($trait::$method, $t<M>, $t<M>, $t<M>, |m, a, b| $t(m.$f(IntBinary::$op, a.0, b.0)));
+        operator!($trait::$method, $t<M>, $t<M>, $t<M>, |m, a, b| $t(m.$f(op::$op, a.0, b.0)));
         operator!($trait::$method, $t<M>, $host, $t<M>, |m, a, b| {
-            $t(m.$f(IntBinary::$op, a.0, <$host as Type>::splat(m, b).0))
+            $t(m.$f(op::$op, a.0, <$host as Type>::splat(m, b).0))
         });
         operator!($trait::$method, $host, $t<M>, $t<M>, |m, a, b| {
-            $t(m.$f(IntBinary::$op, <$host as Type>::splat(m, a).0, b.0))
+            $t(m.$f(op::$op, <$host as Type>::splat(m, a).0, b.0))
         });
         operator!($trait::$method, $host, $host, $host, |_m, a, b| a $symbol b);
     };
@@ -357,10 +355,10 @@ macro_rules! mixed_shift {
     ($($trait:ident :: $method:ident $op:ident),+) => {
         $(
             operator!($trait::$method, I<M>, U<M>, I<M>, |m, a, b| {
-                I(m.i32_binary(IntBinary::$op, a.0, m.u32_to_i32(b.0)))
+                I(m.i32_binary(op::$op, a.0, m.u32_to_i32(b.0)))
             });
             operator!($trait::$method, U<M>, I<M>, U<M>, |m, a, b| {
-                U(m.u32_binary(IntBinary::$op, a.0, m.i32_to_u32(b.0)))
+                U(m.u32_binary(op::$op, a.0, m.i32_to_u32(b.0)))
             });
         )+
     };
@@ -394,7 +392,7 @@ macro_rules! vector_operators {
             #[inline(always)]
             fn $method($m: &M, $a: $x<E>, b: R) -> $x<E> {
                 type $v<E> = $x<E>;
-                let $op = IntBinary::$name;
+                let $op = op::$name;
                 let $b = $x::<E>::$convert($m, b);
                 $e
             }
@@ -421,7 +419,8 @@ macro_rules! number_with_vector {
             number_with_vector!(@one $t, $component, $trait $method $op, X4);
         )+)+
     };
-    // Each vector by itself: an impl for all of them would claim what is none, and give it a result.
+    // Each vector by itself: an impl for all of them would claim what is none, and give it a
+    // result.
     (@one $t:ty, $component:ident, $trait:ident $method:ident $op:ident, $vector:ident) => {
         #[diagnostic::do_not_recommend]
         impl<M: Machine> $trait<M, $vector<$component<M>>> for $t {
@@ -430,7 +429,7 @@ macro_rules! number_with_vector {
             #[inline(always)]
             fn $method(m: &M, a: $t, b: $vector<$component<M>>) -> $vector<$component<M>> {
                 let a: $component<M> = Coerce::coerce(a, m);
-                Vector::arithmetic(m, IntBinary::$op, Vector::of_one(a), b)
+                Vector::arithmetic(m, op::$op, Vector::of_one(a), b)
             }
         }
     };
@@ -450,13 +449,13 @@ macro_rules! bool_operators {
     ($($trait:ident :: $method:ident $op:ident $symbol:tt),+) => {
         $(
             operator!($trait::$method, B<M>, B<M>, B<M>, |m, a, b| {
-                B(m.bool_binary(BoolBinary::$op, a.0, b.0))
+                B(m.bool_binary(op::$op, a.0, b.0))
             });
             operator!($trait::$method, B<M>, bool, B<M>, |m, a, b| {
-                B(m.bool_binary(BoolBinary::$op, a.0, m.bool(b)))
+                B(m.bool_binary(op::$op, a.0, m.bool(b)))
             });
             operator!($trait::$method, bool, B<M>, B<M>, |m, a, b| {
-                B(m.bool_binary(BoolBinary::$op, m.bool(a), b.0))
+                B(m.bool_binary(op::$op, m.bool(a), b.0))
             });
             operator!($trait::$method, bool, bool, bool, |_m, a, b| a $symbol b);
         )+
@@ -482,7 +481,7 @@ macro_rules! unary {
     };
 }
 
-unary!(OpNeg::neg, F<M>, |m, a| F(m.f32_unary(F32Unary::Neg, a.0)));
+unary!(OpNeg::neg, F<M>, |m, a| F(m.f32_unary(op::Neg, a.0)));
 unary!(OpNeg::neg, I<M>, |m, a| I(m.i32_neg(a.0)));
 unary!(OpNeg::neg, i32, |_m, a| -a);
 unary!(OpNot::not, B<M>, |m, a| B(m.bool_not(a.0)));
@@ -500,7 +499,7 @@ macro_rules! vector_unary {
             impl<M: Machine> OpNeg<M> for $v<F<M>> {
                 #[inline(always)]
                 fn neg(m: &M, a: Self) -> Self {
-                    Self::unary(m, F32Unary::Neg, a)
+                    Self::unary(m, op::Neg, a)
                 }
             }
 
@@ -526,10 +525,14 @@ macro_rules! vector_unary {
                 type Output = B<M>;
 
                 #[inline(always)]
-                fn compare(m: &M, op: Compare, a: Self, b: Self) -> B<M> {
-                    let join = if op == Compare::Ne { BoolBinary::Or } else { BoolBinary::And };
+                fn compare<O: Op<Compare>>(m: &M, op: O, a: Self, b: Self) -> B<M> {
                     let each = a.both(b, #[inline(always)] |x, y| E::equal(m, op, x, y));
-                    each.fold(#[inline(always)] |x, y| B(m.bool_binary(join, x.0, y.0)))
+                    known!(O::OP;
+                        Compare::Ne => {
+                            each.fold(#[inline(always)] |x, y| B(m.bool_binary(op::Or, x.0, y.0)))
+                        },
+                        _ => each.fold(#[inline(always)] |x, y| B(m.bool_binary(op::And, x.0, y.0))),
+                    )
                 }
             }
         )+
@@ -547,22 +550,15 @@ macro_rules! compare {
             type Output = $out;
 
             #[inline(always)]
-            fn compare($m: &M, $op: Compare, $x: $a, $y: $b) -> $out {
+            fn compare<O: Op<Compare>>($m: &M, $op: O, $x: $a, $y: $b) -> $out {
                 $e
             }
         }
     };
 }
 
-fn compare_host<T: PartialOrd>(op: Compare, a: T, b: T) -> bool {
-    match op {
-        Compare::Eq => a == b,
-        Compare::Ne => a != b,
-        Compare::Lt => a < b,
-        Compare::Le => a <= b,
-        Compare::Gt => a > b,
-        Compare::Ge => a >= b,
-    }
+fn compare_host<T: PartialOrd, O: Op<Compare>>(_: O, a: T, b: T) -> bool {
+    scalar::compare(O::OP, a, b)
 }
 
 compare!(F<M>, F<M>, B<M>, |m, op, a, b| B(m.f32_compare(op, a.0, b.0)));
@@ -586,17 +582,16 @@ compare_int!(Usize, usize, u32_compare);
 
 /// `==` and `!=`; an order of truth values (`false < true`) is spelled out.
 #[inline(always)]
-fn compare_bool<M: Machine>(m: &M, op: Compare, a: M::Bool, b: M::Bool) -> B<M> {
+fn compare_bool<M: Machine, O: Op<Compare>>(m: &M, _: O, a: M::Bool, b: M::Bool) -> B<M> {
     let not = |x| m.bool_not(x);
-    let both = |op, x, y| m.bool_binary(op, x, y);
-    B(match op {
-        Compare::Ne => both(BoolBinary::Xor, a, b),
-        Compare::Eq => not(both(BoolBinary::Xor, a, b)),
-        Compare::Lt => both(BoolBinary::And, not(a), b),
-        Compare::Le => both(BoolBinary::Or, not(a), b),
-        Compare::Gt => both(BoolBinary::And, a, not(b)),
-        Compare::Ge => both(BoolBinary::Or, a, not(b)),
-    })
+    B(known!(O::OP;
+        Compare::Ne => m.bool_binary(op::Xor, a, b),
+        Compare::Eq => not(m.bool_binary(op::Xor, a, b)),
+        Compare::Lt => m.bool_binary(op::And, not(a), b),
+        Compare::Le => m.bool_binary(op::Or, not(a), b),
+        Compare::Gt => m.bool_binary(op::And, a, not(b)),
+        Compare::Ge => m.bool_binary(op::Or, a, not(b)),
+    ))
 }
 
 compare!(B<M>, B<M>, B<M>, |m, op, a, b| compare_bool(m, op, a.0, b.0));
@@ -607,7 +602,7 @@ compare!(bool, bool, bool, |_m, op, a, b| compare_host(op, a, b));
 /// What vectors of it need for `==` and `!=`.
 pub trait Equal<M: Machine>: super::vector::Component<M> {
     /// Compares two components.
-    fn equal(m: &M, op: Compare, a: Self, b: Self) -> B<M>;
+    fn equal<O: Op<Compare>>(m: &M, op: O, a: Self, b: Self) -> B<M>;
 }
 
 macro_rules! equal {
@@ -615,7 +610,7 @@ macro_rules! equal {
         $(
             impl<M: Machine> Equal<M> for $t<M> {
                 #[inline(always)]
-                fn equal(m: &M, op: Compare, a: Self, b: Self) -> B<M> {
+                fn equal<O: Op<Compare>>(m: &M, op: O, a: Self, b: Self) -> B<M> {
                     OpCompare::compare(m, op, a, b)
                 }
             }

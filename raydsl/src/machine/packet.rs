@@ -2,6 +2,8 @@
 
 use core::cell::Cell;
 
+use glam::{Affine3, Vec3};
+
 use super::*;
 use crate::bvh::{RecordOn, traverse_packet};
 use crate::geometry::{HitOn, Primitive, RayOn};
@@ -74,12 +76,30 @@ impl<L: Lanes> Packet<L> {
 
     #[inline(always)]
     fn and(&self, a: L::Mask, b: L::Mask) -> L::Mask {
-        self.lanes.mask_binary(BoolBinary::And, a, b)
+        self.lanes.mask_binary(op::And, a, b)
     }
 
     #[inline(always)]
     fn or(&self, a: L::Mask, b: L::Mask) -> L::Mask {
-        self.lanes.mask_binary(BoolBinary::Or, a, b)
+        self.lanes.mask_binary(op::Or, a, b)
+    }
+
+    /// What `of_lane` gives for each running lane; `other` in those that do not run.
+    #[inline(always)]
+    pub(crate) fn of_running<T: Type>(
+        &self,
+        other: T,
+        of_lane: impl Fn(usize) -> T,
+    ) -> T::On<Self> {
+        const { assert!(L::N <= 64) };
+        let active = self.lanes.bits(self.active.get());
+        let mut all = [other; 64];
+        for (lane, value) in all.iter_mut().enumerate().take(L::N) {
+            if active >> lane & 1 != 0 {
+                *value = of_lane(lane);
+            }
+        }
+        T::from_lanes(self, &|lane| all[lane % 64])
     }
 
     /// Takes the running lanes out.
@@ -131,10 +151,18 @@ impl<L: Lanes> Packet<L> {
 }
 
 /// Whether there are operands for which Rust panics.
-#[inline(always)]
-fn is_checked(op: IntBinary) -> bool {
+const fn is_checked(op: IntBinary) -> bool {
     use IntBinary::{Add, Div, Mul, Rem, Shl, Shr, Sub};
     cfg!(debug_assertions) && matches!(op, Add | Sub | Mul | Div | Rem | Shl | Shr)
+}
+
+/// A kernel's body as a function of its own, compiled for the level once for all of its calls.
+#[inline(never)]
+fn apart<L: Lanes, A, R>(m: &Packet<L>, args: A, body: impl FnOnce(&Packet<L>, A) -> R) -> R {
+    m.lanes.enter_again(
+        #[inline(always)]
+        || body(m, args),
+    )
 }
 
 struct Blend<Mask>(Mask);
@@ -183,11 +211,11 @@ impl<L: Lanes> Machine for Packet<L> {
         self.lanes.mask(v)
     }
     #[inline(always)]
-    fn f32_unary(&self, op: F32Unary, a: L::F32) -> L::F32 {
+    fn f32_unary<O: Op<F32Unary>>(&self, op: O, a: L::F32) -> L::F32 {
         self.lanes.f32_unary(op, a)
     }
     #[inline(always)]
-    fn f32_binary(&self, op: F32Binary, a: L::F32, b: L::F32) -> L::F32 {
+    fn f32_binary<O: Op<F32Binary>>(&self, op: O, a: L::F32, b: L::F32) -> L::F32 {
         self.lanes.f32_binary(op, a, b)
     }
     #[inline(always)]
@@ -195,49 +223,49 @@ impl<L: Lanes> Machine for Packet<L> {
         self.lanes.f32_mul_add(a, b, c)
     }
     #[inline(always)]
-    fn i32_binary(&self, op: IntBinary, a: L::I32, b: L::I32) -> L::I32 {
-        if is_checked(op) {
-            self.check_i32(op, &a, &b);
+    fn i32_binary<O: Op<IntBinary>>(&self, op: O, a: L::I32, b: L::I32) -> L::I32 {
+        if const { is_checked(O::OP) } {
+            self.check_i32(O::OP, &a, &b);
         }
         self.lanes.i32_binary(op, a, b)
     }
     #[inline(always)]
-    fn u32_binary(&self, op: IntBinary, a: L::U32, b: L::U32) -> L::U32 {
-        if is_checked(op) {
-            self.check_u32(op, &a, &b);
+    fn u32_binary<O: Op<IntBinary>>(&self, op: O, a: L::U32, b: L::U32) -> L::U32 {
+        if const { is_checked(O::OP) } {
+            self.check_u32(O::OP, &a, &b);
         }
         self.lanes.u32_binary(op, a, b)
     }
     #[inline(always)]
-    fn bool_binary(&self, op: BoolBinary, a: L::Mask, b: L::Mask) -> L::Mask {
+    fn bool_binary<O: Op<BoolBinary>>(&self, op: O, a: L::Mask, b: L::Mask) -> L::Mask {
         self.lanes.mask_binary(op, a, b)
     }
     #[inline(always)]
     fn i32_neg(&self, a: L::I32) -> L::I32 {
-        self.i32_binary(IntBinary::Sub, self.lanes.i32(0), a)
+        self.i32_binary(op::Sub, self.lanes.i32(0), a)
     }
     #[inline(always)]
     fn i32_not(&self, a: L::I32) -> L::I32 {
-        self.lanes.i32_binary(IntBinary::Xor, a, self.lanes.i32(-1))
+        self.lanes.i32_binary(op::Xor, a, self.lanes.i32(-1))
     }
     #[inline(always)]
     fn u32_not(&self, a: L::U32) -> L::U32 {
-        self.lanes.u32_binary(IntBinary::Xor, a, self.lanes.u32(u32::MAX))
+        self.lanes.u32_binary(op::Xor, a, self.lanes.u32(u32::MAX))
     }
     #[inline(always)]
     fn bool_not(&self, a: L::Mask) -> L::Mask {
         self.lanes.mask_not(a)
     }
     #[inline(always)]
-    fn f32_compare(&self, op: Compare, a: L::F32, b: L::F32) -> L::Mask {
+    fn f32_compare<O: Op<Compare>>(&self, op: O, a: L::F32, b: L::F32) -> L::Mask {
         self.lanes.f32_compare(op, a, b)
     }
     #[inline(always)]
-    fn i32_compare(&self, op: Compare, a: L::I32, b: L::I32) -> L::Mask {
+    fn i32_compare<O: Op<Compare>>(&self, op: O, a: L::I32, b: L::I32) -> L::Mask {
         self.lanes.i32_compare(op, a, b)
     }
     #[inline(always)]
-    fn u32_compare(&self, op: Compare, a: L::U32, b: L::U32) -> L::Mask {
+    fn u32_compare<O: Op<Compare>>(&self, op: O, a: L::U32, b: L::U32) -> L::Mask {
         self.lanes.u32_compare(op, a, b)
     }
     #[inline(always)]
@@ -383,7 +411,7 @@ impl<L: Lanes> Machine for Packet<L> {
     #[inline(always)]
     fn u32_same(&self, a: &L::U32) -> Option<u32> {
         let first = L::u32_lane(a, 0);
-        let other = self.lanes.u32_compare(Compare::Ne, *a, self.lanes.u32(first));
+        let other = self.lanes.u32_compare(op::Ne, *a, self.lanes.u32(first));
         (!self.lanes.any(other)).then_some(first)
     }
     #[inline(always)]
@@ -446,12 +474,33 @@ impl<L: Lanes> Machine for Packet<L> {
     }
 
     #[inline(always)]
+    fn call_apart<A: Value<Self>, R: Value<Self>>(
+        &self,
+        _: &'static KernelInfo,
+        args: A,
+        body: impl FnOnce(&Self, A) -> R,
+    ) -> R {
+        let entry = self.active.get();
+        let result = apart(self, args, body);
+        self.active.set(entry);
+        result
+    }
+
+    #[inline(always)]
     fn closest_hit<P: Primitive>(
         &self,
         prims: &crate::bvh::SceneView<'_, P>,
         ray: RayOn<Self>,
     ) -> HitOn<Self> {
         traverse_packet::closest_hit(self, prims, ray)
+    }
+    #[inline(always)]
+    fn closest_hit_with_cost<P: Primitive>(
+        &self,
+        prims: &crate::bvh::SceneView<'_, P>,
+        ray: RayOn<Self>,
+    ) -> crate::bvh::CountedHitOn<Self> {
+        traverse_packet::closest_hit_with_cost(self, prims, ray)
     }
     #[inline(always)]
     fn any_hit<P: Primitive>(
@@ -472,6 +521,27 @@ impl<L: Lanes> Machine for Packet<L> {
         traverse_packet::visit(self, prims, ray, limit, meet);
     }
     #[inline(always)]
+    fn local_ray<T: Type, S: Type>(
+        &self,
+        scene: &crate::bvh::View<'_, T, S>,
+        inst: U<Self>,
+        ray: RayOn<Self>,
+    ) -> RayOn<Self> {
+        let of_lane = |l| {
+            let ray = crate::geometry::Ray::lane::<Self>(&ray, l);
+            scene.local_ray(L::u32_lane(&inst.0, l), ray)
+        };
+        self.of_running(crate::geometry::Ray::new(Vec3::ZERO, Vec3::ZERO), of_lane)
+    }
+    #[inline(always)]
+    fn to_object<T: Type, S: Type>(
+        &self,
+        scene: &crate::bvh::View<'_, T, S>,
+        inst: U<Self>,
+    ) -> A3<Self> {
+        self.of_running(Affine3::IDENTITY, |l| scene.to_object(L::u32_lane(&inst.0, l)))
+    }
+    #[inline(always)]
     fn fetch<P: Type, S: Type>(
         &self,
         prims: &crate::bvh::View<'_, P, S>,
@@ -487,7 +557,7 @@ impl<L: Lanes> Machine for Packet<L> {
         let first = self.lanes.bits(active).trailing_zeros() as usize % L::N;
         let first = L::u32_lane(&index.0, first);
         // The counter of a loop is one number in all lanes.
-        let same = self.lanes.u32_compare(Compare::Eq, index.0, self.lanes.u32(first));
+        let same = self.lanes.u32_compare(op::Eq, index.0, self.lanes.u32(first));
         if !self.lanes.any(self.and(active, self.lanes.mask_not(same))) {
             return P::splat(self, prims.get(first));
         }

@@ -2,6 +2,8 @@
 
 use core::cell::Cell;
 
+use glam::Affine3;
+
 use super::*;
 use crate::bvh::{RecordOn, traverse};
 use crate::geometry::{HitOn, Primitive, RayOn};
@@ -70,6 +72,14 @@ pub(super) fn f32_binary(op: F32Binary, a: f32, b: f32) -> f32 {
                 a
             }
         }
+    }
+}
+
+pub(super) fn bool_binary(op: BoolBinary, a: bool, b: bool) -> bool {
+    match op {
+        BoolBinary::And => a & b,
+        BoolBinary::Or => a | b,
+        BoolBinary::Xor => a ^ b,
     }
 }
 
@@ -158,44 +168,40 @@ impl Machine for Scalar {
         v
     }
     #[inline(always)]
-    fn f32_unary(&self, op: F32Unary, a: f32) -> f32 {
-        f32_unary(op, a)
+    fn f32_unary<O: Op<F32Unary>>(&self, _: O, a: f32) -> f32 {
+        f32_unary(O::OP, a)
     }
     #[inline(always)]
-    fn f32_binary(&self, op: F32Binary, a: f32, b: f32) -> f32 {
-        f32_binary(op, a, b)
+    fn f32_binary<O: Op<F32Binary>>(&self, _: O, a: f32, b: f32) -> f32 {
+        f32_binary(O::OP, a, b)
     }
     #[inline(always)]
     fn f32_mul_add(&self, a: f32, b: f32, c: f32) -> f32 {
         a.mul_add(b, c)
     }
     #[inline(always)]
-    fn i32_binary(&self, op: IntBinary, a: i32, b: i32) -> i32 {
-        let (checked, defined) = i32_binary(op, a, b);
+    fn i32_binary<O: Op<IntBinary>>(&self, _: O, a: i32, b: i32) -> i32 {
+        let (checked, defined) = i32_binary(O::OP, a, b);
         if cfg!(debug_assertions) && checked.is_none() && self.active.get() {
-            integer_error(op, 0);
+            integer_error(O::OP, 0);
         }
         defined
     }
     #[inline(always)]
-    fn u32_binary(&self, op: IntBinary, a: u32, b: u32) -> u32 {
-        let (checked, defined) = u32_binary(op, a, b);
+    fn u32_binary<O: Op<IntBinary>>(&self, _: O, a: u32, b: u32) -> u32 {
+        let (checked, defined) = u32_binary(O::OP, a, b);
         if cfg!(debug_assertions) && checked.is_none() && self.active.get() {
-            integer_error(op, 0);
+            integer_error(O::OP, 0);
         }
         defined
     }
     #[inline(always)]
-    fn bool_binary(&self, op: BoolBinary, a: bool, b: bool) -> bool {
-        match op {
-            BoolBinary::And => a & b,
-            BoolBinary::Or => a | b,
-            BoolBinary::Xor => a ^ b,
-        }
+    fn bool_binary<O: Op<BoolBinary>>(&self, _: O, a: bool, b: bool) -> bool {
+        bool_binary(O::OP, a, b)
     }
     #[inline(always)]
     fn i32_neg(&self, a: i32) -> i32 {
-        self.i32_binary(IntBinary::Sub, 0, a)
+        self.i32_binary(op::Sub, 0, a)
     }
     #[inline(always)]
     fn i32_not(&self, a: i32) -> i32 {
@@ -210,16 +216,16 @@ impl Machine for Scalar {
         !a
     }
     #[inline(always)]
-    fn f32_compare(&self, op: Compare, a: f32, b: f32) -> bool {
-        compare(op, a, b)
+    fn f32_compare<O: Op<Compare>>(&self, _: O, a: f32, b: f32) -> bool {
+        compare(O::OP, a, b)
     }
     #[inline(always)]
-    fn i32_compare(&self, op: Compare, a: i32, b: i32) -> bool {
-        compare(op, a, b)
+    fn i32_compare<O: Op<Compare>>(&self, _: O, a: i32, b: i32) -> bool {
+        compare(O::OP, a, b)
     }
     #[inline(always)]
-    fn u32_compare(&self, op: Compare, a: u32, b: u32) -> bool {
-        compare(op, a, b)
+    fn u32_compare<O: Op<Compare>>(&self, _: O, a: u32, b: u32) -> bool {
+        compare(O::OP, a, b)
     }
     #[inline(always)]
     fn f32_select(&self, c: bool, a: f32, b: f32) -> f32 {
@@ -405,6 +411,14 @@ impl Machine for Scalar {
         let ray = crate::geometry::Ray::lane::<Self>(&ray, 0);
         crate::geometry::Hit::splat(self, traverse::nearest(prims, ray))
     }
+    fn closest_hit_with_cost<P: Primitive>(
+        &self,
+        prims: &crate::bvh::SceneView<'_, P>,
+        ray: RayOn<Self>,
+    ) -> crate::bvh::CountedHitOn<Self> {
+        let ray = crate::geometry::Ray::lane::<Self>(&ray, 0);
+        crate::bvh::CountedHit::splat(self, traverse::nearest_counted(prims, ray))
+    }
     fn any_hit<P: Primitive>(
         &self,
         prims: &crate::bvh::SceneView<'_, P>,
@@ -430,6 +444,22 @@ impl Machine for Scalar {
             *end = limit().0;
             goes_on
         });
+    }
+    fn local_ray<T: Type, S: Type>(
+        &self,
+        scene: &crate::bvh::View<'_, T, S>,
+        inst: U<Self>,
+        ray: RayOn<Self>,
+    ) -> RayOn<Self> {
+        let ray = crate::geometry::Ray::lane::<Self>(&ray, 0);
+        crate::geometry::Ray::splat(self, scene.local_ray(inst.0, ray))
+    }
+    fn to_object<T: Type, S: Type>(
+        &self,
+        scene: &crate::bvh::View<'_, T, S>,
+        inst: U<Self>,
+    ) -> A3<Self> {
+        Affine3::splat(self, scene.to_object(inst.0))
     }
     fn fetch<P: Type, S: Type>(
         &self,

@@ -3,9 +3,10 @@
 //! One struct a size, generic over the component, so that what holds for every component is
 //! written once. [`Vector`] lets an operation be written once for all sizes.
 
+use super::op::known;
 use super::{
-    B, Coerce, Compare, F, F32Binary, F32Unary, I, IntBinary, Leaves, Machine, OpCast, Schema, U,
-    Value, Varying, fill,
+    B, BoolBinary, Coerce, Compare, F, F32Binary, F32Unary, I, IntBinary, Leaves, Machine, Op,
+    OpCast, Schema, U, Value, Varying, fill, op,
 };
 
 /// `Vec2` on machine `M`.
@@ -34,15 +35,25 @@ impl<M: Machine> Component<M> for B<M> {}
 )]
 pub trait Arithmetic<M: Machine>: Component<M> {
     /// `+`, `-`, `*`, `/`; of integers, the others too.
-    fn binary(m: &M, op: IntBinary, a: Self, b: Self) -> Self;
+    fn binary<O: Op<IntBinary>>(m: &M, op: O, a: Self, b: Self) -> Self;
     /// The same on every component.
-    fn binary_each<const N: usize>(m: &M, op: IntBinary, a: [Self; N], b: [Self; N]) -> [Self; N];
+    fn binary_each<O: Op<IntBinary>, const N: usize>(
+        m: &M,
+        op: O,
+        a: [Self; N],
+        b: [Self; N],
+    ) -> [Self; N];
     /// A comparison.
-    fn compare(m: &M, op: Compare, a: Self, b: Self) -> B<M>;
-    /// Component by component `if b < a { b } else { a }`, or with `max` `if a < b { b } else { a }`.
-    fn extreme_each<const N: usize>(m: &M, max: bool, a: [Self; N], b: [Self; N]) -> [Self; N];
+    fn compare<O: Op<Compare>>(m: &M, op: O, a: Self, b: Self) -> B<M>;
+    /// Component by component the lesser or the greater: [`op::Min`] or [`op::Max`].
+    fn extreme_each<O: Op<F32Binary>, const N: usize>(
+        m: &M,
+        op: O,
+        a: [Self; N],
+        b: [Self; N],
+    ) -> [Self; N];
     /// The same for one number.
-    fn extreme(m: &M, max: bool, a: Self, b: Self) -> Self;
+    fn extreme<O: Op<F32Binary>>(m: &M, op: O, a: Self, b: Self) -> Self;
     /// `-a`.
     fn neg(m: &M, a: Self) -> Self;
 }
@@ -74,55 +85,83 @@ pub trait Integer<M: Machine>: Arithmetic<M> {
 )]
 pub trait Bits<M: Machine>: Component<M> {
     /// The operator on every component.
-    fn bits_each<const N: usize>(m: &M, op: IntBinary, a: [Self; N], b: [Self; N]) -> [Self; N];
+    fn bits_each<O: Op<IntBinary>, const N: usize>(
+        m: &M,
+        op: O,
+        a: [Self; N],
+        b: [Self; N],
+    ) -> [Self; N];
     /// `!` of one component.
     fn not(m: &M, a: Self) -> Self;
 }
 
 /// The operation on floats; integers alone have the others.
-#[inline(always)]
-fn float_op(op: IntBinary) -> F32Binary {
-    match op {
+#[derive(Clone, Copy)]
+struct OfFloats<O>(O);
+
+impl<O: Op<IntBinary>> Op<F32Binary> for OfFloats<O> {
+    const OP: F32Binary = match O::OP {
         IntBinary::Add => F32Binary::Add,
         IntBinary::Sub => F32Binary::Sub,
         IntBinary::Mul => F32Binary::Mul,
         IntBinary::Div => F32Binary::Div,
-        _ => unreachable!("only integers have it"),
-    }
+        _ => panic!("only integers have it"),
+    };
+}
+
+/// The operation on truth values.
+#[derive(Clone, Copy)]
+struct OfTruths<O>(O);
+
+impl<O: Op<IntBinary>> Op<BoolBinary> for OfTruths<O> {
+    const OP: BoolBinary = match O::OP {
+        IntBinary::And => BoolBinary::And,
+        IntBinary::Or => BoolBinary::Or,
+        IntBinary::Xor => BoolBinary::Xor,
+        _ => panic!("only integers have it"),
+    };
 }
 
 #[diagnostic::do_not_recommend]
 impl<M: Machine> Arithmetic<M> for F<M> {
     #[inline(always)]
-    fn binary(m: &M, op: IntBinary, a: Self, b: Self) -> Self {
-        F(m.f32_binary(float_op(op), a.0, b.0))
+    fn binary<O: Op<IntBinary>>(m: &M, op: O, a: Self, b: Self) -> Self {
+        F(m.f32_binary(OfFloats(op), a.0, b.0))
     }
 
     #[inline(always)]
-    fn binary_each<const N: usize>(m: &M, op: IntBinary, a: [Self; N], b: [Self; N]) -> [Self; N] {
-        wrap_f32(m.vector_binary(float_op(op), unwrap_f32(a), unwrap_f32(b)))
+    fn binary_each<O: Op<IntBinary>, const N: usize>(
+        m: &M,
+        op: O,
+        a: [Self; N],
+        b: [Self; N],
+    ) -> [Self; N] {
+        wrap_f32(m.vector_binary(OfFloats(op), unwrap_f32(a), unwrap_f32(b)))
     }
 
     #[inline(always)]
-    fn compare(m: &M, op: Compare, a: Self, b: Self) -> B<M> {
+    fn compare<O: Op<Compare>>(m: &M, op: O, a: Self, b: Self) -> B<M> {
         B(m.f32_compare(op, a.0, b.0))
     }
 
     #[inline(always)]
-    fn extreme_each<const N: usize>(m: &M, max: bool, a: [Self; N], b: [Self; N]) -> [Self; N] {
-        let op = if max { F32Binary::Max } else { F32Binary::Min };
+    fn extreme_each<O: Op<F32Binary>, const N: usize>(
+        m: &M,
+        op: O,
+        a: [Self; N],
+        b: [Self; N],
+    ) -> [Self; N] {
         wrap_f32(m.vector_binary(op, unwrap_f32(a), unwrap_f32(b)))
     }
 
     #[inline(always)]
-    fn extreme(m: &M, max: bool, a: Self, b: Self) -> Self {
-        let op = if max { F32Binary::Max } else { F32Binary::Min };
+    fn extreme<O: Op<F32Binary>>(m: &M, op: O, a: Self, b: Self) -> Self {
         F(m.f32_binary(op, a.0, b.0))
     }
 
     #[inline(always)]
     fn neg(m: &M, a: Self) -> Self {
-        F(m.f32_unary(F32Unary::Neg, a.0))
+        F(m.f32_unary(op::Neg, a.0))
     }
 }
 
@@ -149,18 +188,18 @@ macro_rules! integer {
         #[diagnostic::do_not_recommend]
         impl<M: Machine> Arithmetic<M> for $t<M> {
             #[inline(always)]
-            fn binary(m: &M, op: IntBinary, a: Self, b: Self) -> Self {
+            fn binary<O: Op<IntBinary>>(m: &M, op: O, a: Self, b: Self) -> Self {
                 $t(m.$binary(op, a.0, b.0))
             }
 
             #[inline(always)]
-            fn binary_each<const N: usize>(
+            fn binary_each<O: Op<IntBinary>, const N: usize>(
                 m: &M,
-                op: IntBinary,
+                op: O,
                 a: [Self; N],
                 b: [Self; N],
             ) -> [Self; N] {
-                let all = m.$each::<N>(
+                let all = m.$each::<_, N>(
                     op,
                     fill(
                         #[inline(always)]
@@ -178,27 +217,28 @@ macro_rules! integer {
             }
 
             #[inline(always)]
-            fn compare(m: &M, op: Compare, a: Self, b: Self) -> B<M> {
+            fn compare<O: Op<Compare>>(m: &M, op: O, a: Self, b: Self) -> B<M> {
                 B(m.$compare(op, a.0, b.0))
             }
 
             #[inline(always)]
-            fn extreme_each<const N: usize>(
+            fn extreme_each<O: Op<F32Binary>, const N: usize>(
                 m: &M,
-                max: bool,
+                op: O,
                 a: [Self; N],
                 b: [Self; N],
             ) -> [Self; N] {
                 fill(
                     #[inline(always)]
-                    |i| Self::extreme(m, max, a[i], b[i]),
+                    |i| Self::extreme(m, op, a[i], b[i]),
                 )
             }
 
             #[inline(always)]
-            fn extreme(m: &M, max: bool, a: Self, b: Self) -> Self {
-                let (x, y) = if max { (a, b) } else { (b, a) };
-                $t(m.$select(m.$compare(Compare::Lt, x.0, y.0), b.0, a.0))
+            fn extreme<O: Op<F32Binary>>(m: &M, op: O, a: Self, b: Self) -> Self {
+                let _ = op;
+                let (x, y) = known!(O::OP; F32Binary::Max => (a, b), _ => (b, a),);
+                $t(m.$select(m.$compare(op::Lt, x.0, y.0), b.0, a.0))
             }
 
             #[inline(always)]
@@ -235,9 +275,9 @@ macro_rules! integer {
         #[diagnostic::do_not_recommend]
         impl<M: Machine> Bits<M> for $t<M> {
             #[inline(always)]
-            fn bits_each<const N: usize>(
+            fn bits_each<O: Op<IntBinary>, const N: usize>(
                 m: &M,
-                op: IntBinary,
+                op: O,
                 a: [Self; N],
                 b: [Self; N],
             ) -> [Self; N] {
@@ -257,22 +297,21 @@ integer!(I true i32_binary i32_vector_binary i32_compare i32_select i32_not;
     to U(m.i32_to_u32(a.0)); from I(m.u32_to_i32(a.0)));
 // A `u32` has no `-`: nothing calls it.
 integer!(U false u32_binary u32_vector_binary u32_compare u32_select u32_not;
-    |m, a| neg U(m.u32_binary(IntBinary::WrappingSub, m.u32(0), a.0)); number |v| U(m.u32(v as u32));
+    |m, a| neg U(m.u32_binary(op::WrappingSub, m.u32(0), a.0)); number |v| U(m.u32(v as u32));
     to { let _ = m; a }; from { let _ = m; a });
 
 #[diagnostic::do_not_recommend]
 impl<M: Machine> Bits<M> for B<M> {
     #[inline(always)]
-    fn bits_each<const N: usize>(m: &M, op: IntBinary, a: [Self; N], b: [Self; N]) -> [Self; N] {
-        use super::BoolBinary;
-        let op = match op {
-            IntBinary::And => BoolBinary::And,
-            IntBinary::Or => BoolBinary::Or,
-            _ => BoolBinary::Xor,
-        };
+    fn bits_each<O: Op<IntBinary>, const N: usize>(
+        m: &M,
+        op: O,
+        a: [Self; N],
+        b: [Self; N],
+    ) -> [Self; N] {
         fill(
             #[inline(always)]
-            |i| B(m.bool_binary(op, a[i].0, b[i].0)),
+            |i| B(m.bool_binary(OfTruths(op), a[i].0, b[i].0)),
         )
     }
 
@@ -330,11 +369,11 @@ pub trait Vector<M: Machine>: Value<M> {
         f: impl FnMut(Self::Component, Self::Component) -> Self::Component,
     ) -> Self::Component;
     /// Arithmetic on every component.
-    fn arithmetic(m: &M, op: IntBinary, a: Self, b: Self) -> Self
+    fn arithmetic<O: Op<IntBinary>>(m: &M, op: O, a: Self, b: Self) -> Self
     where
         Self::Component: Arithmetic<M>;
     /// [`Arithmetic::extreme_each`].
-    fn extreme(m: &M, max: bool, a: Self, b: Self) -> Self
+    fn extreme<O: Op<F32Binary>>(m: &M, op: O, a: Self, b: Self) -> Self
     where
         Self::Component: Arithmetic<M>;
 }
@@ -342,9 +381,9 @@ pub trait Vector<M: Machine>: Value<M> {
 /// A vector of floats.
 pub trait Floats<M: Machine>: Vector<M, Component = F<M>, Of<F<M>> = Self> {
     /// An operation on every component of two vectors.
-    fn binary(m: &M, op: F32Binary, a: Self, b: Self) -> Self;
+    fn binary<O: Op<F32Binary>>(m: &M, op: O, a: Self, b: Self) -> Self;
     /// An operation on every component.
-    fn unary(m: &M, op: F32Unary, a: Self) -> Self;
+    fn unary<O: Op<F32Unary>>(m: &M, op: O, a: Self) -> Self;
 }
 
 /// The right side of an operator as a vector: a vector, or one number for all components.
@@ -459,12 +498,12 @@ macro_rules! vector {
 
         impl<M: Machine> Floats<M> for $name<F<M>> {
             #[inline(always)]
-            fn binary(m: &M, op: F32Binary, a: Self, b: Self) -> Self {
+            fn binary<O: Op<F32Binary>>(m: &M, op: O, a: Self, b: Self) -> Self {
                 Self::from_array(m.vector_binary(op, a.array(), b.array()))
             }
 
             #[inline(always)]
-            fn unary(m: &M, op: F32Unary, a: Self) -> Self {
+            fn unary<O: Op<F32Unary>>(m: &M, op: O, a: Self) -> Self {
                 Self::from_array(m.vector_unary(op, a.array()))
             }
         }
@@ -508,7 +547,7 @@ macro_rules! vector {
             }
 
             #[inline(always)]
-            fn arithmetic(m: &M, op: IntBinary, a: Self, b: Self) -> Self
+            fn arithmetic<O: Op<IntBinary>>(m: &M, op: O, a: Self, b: Self) -> Self
             where
                 C: Arithmetic<M>,
             {
@@ -516,11 +555,11 @@ macro_rules! vector {
             }
 
             #[inline(always)]
-            fn extreme(m: &M, max: bool, a: Self, b: Self) -> Self
+            fn extreme<O: Op<F32Binary>>(m: &M, op: O, a: Self, b: Self) -> Self
             where
                 C: Arithmetic<M>,
             {
-                Self::of(C::extreme_each(m, max, a.components(), b.components()))
+                Self::of(C::extreme_each(m, op, a.components(), b.components()))
             }
         }
 

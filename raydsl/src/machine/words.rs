@@ -1,6 +1,6 @@
 //! Values as words of 32 bits, one a scalar: how an enum of primitives keeps its kinds.
 
-use super::{B, Branch, Compare, Leaves, Machine, Scalar, Type, U, Value};
+use super::{B, Branch, Leaves, Machine, Scalar, Type, U, Value, op};
 use crate::geometry::Kinds;
 
 /// The words of a value; those beyond its scalars are 0.
@@ -33,7 +33,7 @@ pub fn host_of_words<T: Type, const N: usize>(words: [u32; N]) -> T {
 /// Where the kind is `number`.
 #[inline(always)]
 pub fn is_kind<M: Machine>(m: &M, kind: U<M>, number: u32) -> B<M> {
-    B(m.u32_compare(Compare::Eq, kind.0, m.u32(number)))
+    B(m.u32_compare(op::Eq, kind.0, m.u32(number)))
 }
 
 /// Runs `then` where the kind is `number`; not at all if no primitive of the scene is of that kind,
@@ -117,6 +117,6 @@ impl<M: Machine, const N: usize> Leaves<M> for Reader<M, N> {
     }
     #[inline(always)]
     fn bool(&mut self, m: &M, _: M::Bool, _: M::Bool) -> M::Bool {
-        m.u32_compare(Compare::Ne, self.take(), m.u32(0))
+        m.u32_compare(op::Ne, self.take(), m.u32(0))
     }
 }

@@ -1,7 +1,10 @@
 //! Numbers with few bits, elementary functions, and what glam's matrices lack.
 
+mod code;
 pub mod elementary;
+mod half;
 pub(crate) mod matrix;
 mod unorm;
 
+pub use half::{F16, F16On};
 pub use unorm::{Unorm8, Unorm8On, Unorm16, Unorm16On, Unorm32, Unorm32On};

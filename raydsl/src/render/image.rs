@@ -31,6 +31,29 @@ impl<R: KernelType> Image<R> {
         Self { width, height, pixels: vec![value; width as usize * height as usize] }
     }
 
+    /// An image of `width` by `height` pixels: `pixel` is given the column and the row.
+    pub fn from_fn(width: u32, height: u32, mut pixel: impl FnMut(u32, u32) -> R) -> Self {
+        let rows = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        Self { width, height, pixels: rows.map(|(x, y)| pixel(x, y)).collect() }
+    }
+
+    /// An image of the same size: what `pixel` makes of each pixel. One channel of a record, say.
+    pub fn map<S: KernelType>(&self, pixel: impl FnMut(&R) -> S) -> Image<S> {
+        let (width, height) = (self.width, self.height);
+        Image { width, height, pixels: self.pixels.iter().map(pixel).collect() }
+    }
+
+    /// The pixel of a column and a row, if it is there.
+    pub fn get(&self, x: u32, y: u32) -> Option<&R> {
+        let index = y as usize * self.width as usize + x as usize;
+        (x < self.width).then(|| self.pixels.get(index)).flatten()
+    }
+
+    /// The rows, from the bottom.
+    pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[R]> {
+        self.pixels.chunks(self.width.max(1) as usize)
+    }
+
     /// The number of columns.
     pub fn width(&self) -> u32 {
         self.width

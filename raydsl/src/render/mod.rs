@@ -1,26 +1,49 @@
 //! From kernels to pictures.
+//!
+//! A [`Scheduler`] makes a frame (one ray through the middle of each pixel) or a pass (some samples
+//! of each pixel, added to a [`Film`]); a camera gives the rays.
 
+mod display;
+mod files;
+mod film;
+mod film_args;
+mod fragment;
 mod image;
+mod moments;
+mod pixel_sampler;
+mod radiance;
+mod scheduler;
+mod shot;
 mod simple;
 mod tile;
 mod tiled;
+mod until;
+mod watch;
 
+pub use display::{Display, ToneMap, Transfer, filmic, reinhard};
+pub use film::Film;
+pub use film_args::FilmArgs;
+pub use fragment::{Fragment, FragmentOn, composite, over};
 pub use image::{Image, Shaded, ShadedOn};
+pub use moments::{Moments, MomentsOn};
+pub use pixel_sampler::{PixelSampler, Sampling};
+pub use radiance::Radiance;
+pub use scheduler::Scheduler;
+#[cfg(feature = "gpu")]
+pub(crate) use scheduler::passes;
+#[doc(hidden)]
+pub use shot::Body;
+#[cfg(feature = "gpu")]
+pub(crate) use shot::Frame;
+pub(crate) use shot::Pass;
+pub use shot::Shot;
 pub use simple::SimpleScheduler;
+pub use tile::Tile;
 pub use tiled::TiledScheduler;
-
-use crate::camera::Camera;
-use crate::geometry::Ray;
-use crate::kernel::Kernel;
-use crate::machine::Type;
-
-/// Runs a kernel for every pixel of a film.
-pub trait Scheduler {
-    /// Renders a frame: `image`'s size is the film's.
-    fn frame<C: Camera, R: Type + Send>(
-        &self,
-        camera: &C,
-        kernel: &Kernel<'_, (Ray,), R>,
-        image: &mut Image<R>,
-    );
-}
+pub use until::{
+    Budget, Estimate, Metric, Outcome, Progress, ProgressObserver, REPLICATIONS, Reached, Target,
+    Until, UntilError,
+};
+#[cfg(feature = "gpu")]
+pub(crate) use until::{Renderer, run as run_until};
+pub use watch::{Observer, Watch};

@@ -1,9 +1,8 @@
 //! One pixel, or one packet, after the other.
 
-use super::tile::{Rect, render};
-use super::{Image, Scheduler};
-use crate::camera::Camera;
-use crate::geometry::Ray;
+use super::tile::TILE;
+use super::watch::Watch;
+use super::{Image, Scheduler, Shot};
 use crate::kernel::{Kernel, Variant};
 use crate::machine::Type;
 
@@ -32,18 +31,22 @@ impl SimpleScheduler {
 }
 
 impl Scheduler for SimpleScheduler {
-    fn frame<C: Camera, R: Type + Send>(
-        &self,
-        camera: &C,
-        kernel: &Kernel<'_, (Ray,), R>,
-        image: &mut Image<R>,
-    ) {
-        let (width, height) = (image.width(), image.height());
-        if width == 0 || height == 0 {
-            return;
+    fn run<S: Shot>(&self, shot: &S, image: &mut Image<S::Output>, watch: &Watch<'_>) {
+        for mut tile in image.tiles(TILE) {
+            if watch.is_stopped() {
+                return;
+            }
+            tile.render(shot, self.variant);
+            watch.advance(tile.area());
         }
-        let rays = camera.begin_frame(width, height);
-        let mut rows: Vec<&mut [R]> = image.pixels_mut().chunks_mut(width as usize).collect();
-        render(&rays, kernel, self.variant, Rect { x: 0, y: 0, width, height }, &mut rows);
+    }
+
+    fn batch<A: Type + Sync, R: Type + Send>(
+        &self,
+        kernel: &Kernel<'_, A, R>,
+        inputs: &[A],
+        outputs: &mut [R],
+    ) {
+        kernel.run(self.variant, inputs, outputs);
     }
 }

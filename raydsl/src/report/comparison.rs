@@ -159,7 +159,7 @@ impl<'a> Compare<'a> {
             let (x, y) = (i as u32 % width, i as u32 / width);
             Outcomes::of(rounding, limit, |m| {
                 let [x, y] = [x, y].map(|c| F(m.f32(c as f32 + 0.5)));
-                let ray = C::Rays::primary_ray_on(m, rays.on(m), x, y);
+                let ray = C::Rays::primary_ray_on(m, m.capture("camera", rays), x, y);
                 kernel.on_margin(m, (ray,))
             })
         };

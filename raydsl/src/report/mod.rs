@@ -1,8 +1,10 @@
 //! Do the variants agree, and what does each cost?
 //!
 //! [`explain`] says which differences rounding accounts for. [`compare`] runs a kernel in any set of
-//! variants and says where they differ from the scalar one, in bits: the yardstick is the user's own
-//! function.
+//! variants and says where they differ from the scalar one, in bits: the yardstick is the user's
+//! own function.
+//!
+//! [`work_precision`] measures error against run time of any computation by several methods.
 
 mod accuracy;
 mod agreement;
@@ -14,6 +16,7 @@ mod pictures;
 mod table;
 mod timing;
 mod utilisation;
+pub mod work_precision;
 
 pub use accuracy::Accuracy;
 pub(crate) use agreement::differing;

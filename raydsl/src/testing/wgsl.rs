@@ -54,7 +54,8 @@ pub fn assert_valid_wgsl<F: KernelFn>() {
     }
 }
 
-/// The test of `wgsl_test!`. Which features raydsl has is known here, not where the macro is called.
+/// The test of `wgsl_test!`. Which features raydsl has is known here, not where the macro is
+/// called.
 #[cfg(feature = "validate")]
 #[doc(hidden)]
 #[macro_export]

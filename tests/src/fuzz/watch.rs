@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use raydsl::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Lanes, One};
+use raydsl::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Lanes, One, Op};
 
 thread_local! {
     static LOOSE: Cell<bool> = const { Cell::new(false) };
@@ -45,6 +45,13 @@ fn is_exact_sum(a: f64, b: f64) -> bool {
 }
 
 macro_rules! as_one {
+    (operations $($name:ident: $kind:ident($($a:ident: $t:ty),*) -> $r:ty;)+) => {
+        $(
+            fn $name<O: Op<$kind>>(self, op: O, $($a: $t),*) -> $r {
+                One.$name(op, $($a),*)
+            }
+        )+
+    };
     ($($name:ident($($a:ident: $t:ty),*) -> $r:ty;)+) => {
         $(
             fn $name(self, $($a: $t),*) -> $r {
@@ -65,19 +72,19 @@ impl Lanes for Watch {
         f()
     }
 
-    fn f32_unary(self, op: F32Unary, a: f32) -> f32 {
+    fn f32_unary<O: Op<F32Unary>>(self, op: O, a: f32) -> f32 {
         let found = One.f32_unary(op, see(a));
-        match op {
+        match O::OP {
             F32Unary::Sqrt => see_exact(found * found, f64::from(a), true),
             _ => found,
         };
         see(found)
     }
 
-    fn f32_binary(self, op: F32Binary, a: f32, b: f32) -> f32 {
+    fn f32_binary<O: Op<F32Binary>>(self, op: O, a: f32, b: f32) -> f32 {
         let found = One.f32_binary(op, see(a), see(b));
         let (x, y) = (f64::from(a), f64::from(b));
-        match op {
+        match O::OP {
             F32Binary::Add => see_exact(found, x + y, is_exact_sum(x, y)),
             F32Binary::Sub => see_exact(found, x - y, is_exact_sum(x, -y)),
             F32Binary::Mul => see_exact(found, x * y, true),
@@ -94,7 +101,7 @@ impl Lanes for Watch {
         One.f32_mul_add(a, b, c)
     }
 
-    fn f32_compare(self, op: Compare, a: f32, b: f32) -> bool {
+    fn f32_compare<O: Op<Compare>>(self, op: O, a: f32, b: f32) -> bool {
         One.f32_compare(op, see(a), see(b))
     }
 
@@ -115,17 +122,21 @@ impl Lanes for Watch {
     }
 
     as_one! {
+        operations
+        i32_binary: IntBinary(a: i32, b: i32) -> i32;
+        u32_binary: IntBinary(a: u32, b: u32) -> u32;
+        mask_binary: BoolBinary(a: bool, b: bool) -> bool;
+        i32_compare: Compare(a: i32, b: i32) -> bool;
+        u32_compare: Compare(a: u32, b: u32) -> bool;
+    }
+
+    as_one! {
         isa() -> &'static str;
         f32(v: f32) -> f32;
         i32(v: i32) -> i32;
         u32(v: u32) -> u32;
         mask(v: bool) -> bool;
-        i32_binary(op: IntBinary, a: i32, b: i32) -> i32;
-        u32_binary(op: IntBinary, a: u32, b: u32) -> u32;
-        mask_binary(op: BoolBinary, a: bool, b: bool) -> bool;
         mask_not(a: bool) -> bool;
-        i32_compare(op: Compare, a: i32, b: i32) -> bool;
-        u32_compare(op: Compare, a: u32, b: u32) -> bool;
         f32_select(c: bool, a: f32, b: f32) -> f32;
         i32_select(c: bool, a: i32, b: i32) -> i32;
         u32_select(c: bool, a: u32, b: u32) -> u32;

@@ -1,4 +1,5 @@
-//! Types of the user's own: operators, methods with names that numbers have, traits that share names.
+//! Types of the user's own: operators, methods with names that numbers have, traits that share
+//! names.
 
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub};
 

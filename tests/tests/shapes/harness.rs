@@ -2,6 +2,7 @@
 
 use raydsl::machine::{Lanes, Packet, Type as _};
 use raydsl::prelude::*;
+use raydsl_tests::campaigns::bounces::{from_frame, local};
 use raydsl_tests::levels::{LevelTask, each_level};
 use raydsl_tests::queries::hit_words;
 use raydsl_tests::rng::Rng;
@@ -91,7 +92,8 @@ pub(crate) struct Tally {
     pub(crate) wrong: Vec<String>,
 }
 
-/// The hit is that of a ray that passes within `ring`, so `t` and the normal are those of such rays.
+/// The hit is that of a ray that passes within `ring`, so `t` and the normal are those of such
+/// rays.
 fn judge<P: Subject>(prim: &P, ray: Ray, ring: f64, tally: &mut Tally) {
     let exact = prim.exact();
     let hit = prim.intersect(ray, &[]);
@@ -168,6 +170,50 @@ pub(crate) fn tally<P: Subject>(name: &str, share: f64) -> Tally {
         judge(&prim, ray, share * f64::from(P::SLACK) * reach(&exact, o, d, t), &mut tally);
     }
     tally
+}
+
+/// Whether a point of one face may be within rounding of another one: rays inwards may begin beyond
+/// that.
+fn has_rims(exact: &Exact) -> bool {
+    matches!(
+        exact,
+        Exact::Cylinder { has_caps: true, .. } | Exact::Cone { .. } | Exact::Cuboid { .. }
+    )
+}
+
+/// A ray that leaves the point of a hit or of the surface does not hit at once: what it hits is
+/// there in the closed form too.
+pub(crate) fn bounces_leave<P: Subject>(name: &str) {
+    let mut rng = Rng::of(name);
+    let mut bounces = 0;
+    for i in 0..scaled(60_000) {
+        let size = 10f32.powi(rng.below(13) as i32 - 6);
+        let far_off = rng.pick(&[0.0, 3.0, 1000.0]);
+        let offset = rng.point(size) * far_off;
+        let prim = P::random(&mut rng, size, offset);
+        let ray = ray_at(&mut rng, &prim, size, 100.0);
+        let hit = prim.intersect(ray, &[]);
+        let point = match (i % 2, hit.is_hit) {
+            (0, _) => prim.point(square(&mut rng)),
+            (_, true) => prim.point_at(ray, hit),
+            _ => continue,
+        };
+        bounces += 1;
+        let mut to = local(&mut rng);
+        if has_rims(&prim.exact()) {
+            to.z = to.z.abs();
+        }
+        let next = point.ray(from_frame(point.normal, to));
+        let again = prim.intersect(next, &[]);
+        let (o, d) = (wide(next.origin), wide(next.direction));
+        let exact = prim.exact().nearest(o, d, [0.0, f64::INFINITY]);
+        let is_there = |t: f64| f64::from(again.t) >= 0.5 * t;
+        assert!(
+            !again.is_hit || exact.is_some_and(|m| is_there(m.0)),
+            "{prim:?} {point:?} {next:?} {again:?} {exact:?}"
+        );
+    }
+    assert!(bounces * 10 > scaled(60_000), "{bounces} bounces");
 }
 
 /// The hits are those of the closed form, but for rounding.

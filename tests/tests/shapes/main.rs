@@ -57,6 +57,11 @@ macro_rules! shape {
             }
 
             #[test]
+            fn bounces() {
+                harness::bounces_leave::<$prim>(stringify!($module));
+            }
+
+            #[test]
             fn levels() {
                 harness::lanes_agree::<$prim>(stringify!($module));
             }

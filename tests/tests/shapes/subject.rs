@@ -19,6 +19,7 @@ pub(crate) trait Subject: Primitive<Hit = Hit, Shared = ()> + std::fmt::Debug {
     fn uv_at(&self, ray: Ray, hit: Hit) -> Vec2;
     fn whole_area(&self) -> f32;
     fn point(&self, u: Vec2) -> SurfacePoint;
+    fn point_at(&self, ray: Ray, hit: Hit) -> SurfacePoint;
 }
 
 pub(crate) fn wide(v: Vec3) -> D3 {
@@ -58,6 +59,9 @@ macro_rules! subject {
             }
             fn point(&self, u: Vec2) -> SurfacePoint {
                 self.sample(u)
+            }
+            fn point_at(&self, ray: Ray, hit: Hit) -> SurfacePoint {
+                self.surface_point(ray, hit)
             }
         }
     };

@@ -75,6 +75,15 @@ impl Grid {
         let terms = size * (size.yzxw() + Vec4::splat(1e-6));
         terms.x + terms.y + terms.z
     }
+
+    /// Whether splitting `count` primitives within `span` costs less than testing them all, where
+    /// `cost` is that of both sides: their primitives, weighted by their measures.
+    pub(super) fn pays(&self, cost: f32, span: &Span, count: usize, config: &BuildConfig) -> bool {
+        let BuildConfig { traversal_cost, intersection_cost, .. } = *config;
+        let measure = self.measure(span.bounds);
+        let split = traversal_cost * measure + intersection_cost * cost;
+        split < intersection_cost * count as f32 * measure
+    }
 }
 
 /// The contents of the bins.
@@ -207,18 +216,9 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// Whether splitting `count` primitives within `span` here costs less than testing them all.
-    pub(super) fn pays(
-        &self,
-        span: &Span,
-        count: usize,
-        grid: &Grid,
-        config: &BuildConfig,
-    ) -> bool {
-        let BuildConfig { traversal_cost, intersection_cost, .. } = *config;
-        let measure = grid.measure(span.bounds);
-        let split = traversal_cost * measure + intersection_cost * self.cost;
-        split < intersection_cost * count as f32 * measure
+    /// The primitives on both sides, weighted by the measure of the side.
+    pub(super) fn cost(&self) -> f32 {
+        self.cost
     }
 
     /// What [`Grid::position`] is below on this axis for what is on the left.

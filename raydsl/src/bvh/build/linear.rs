@@ -25,6 +25,7 @@ use super::config::BuildConfig;
 use super::morton::{self, Key};
 use super::part::{PIECE, Part};
 use super::reference::{Bounds, Reference, Span};
+use super::watch::Watch;
 use super::{depth, tasks};
 use crate::bvh::Node;
 
@@ -33,11 +34,12 @@ pub(super) fn grow(
     references: &[Reference],
     span: &Span,
     config: &BuildConfig,
+    watch: &Watch,
 ) -> (Part, Vec<u32>) {
     let mut keys = morton::keys(references, &span.centroids);
     let budget = depth::budget(references.len());
     let range = Range { keys: &mut keys, first: 0, budget, is_recoded: false };
-    let part = grow_part(range, references, config);
+    let part = grow_part(range, references, config, watch);
     (part, keys.into_iter().map(Key::index).collect())
 }
 
@@ -83,18 +85,29 @@ impl Range<'_> {
     }
 }
 
-fn grow_part(mut range: Range, references: &[Reference], config: &BuildConfig) -> Part {
-    if range.keys.len() <= PIECE {
+fn grow_part(
+    mut range: Range,
+    references: &[Reference],
+    config: &BuildConfig,
+    watch: &Watch,
+) -> Part {
+    let count = range.keys.len();
+    if watch.is_stopped() {
+        let root = Node::leaf(Bounds::EMPTY.to_aabb(), range.first, count as u32);
+        return Part::Whole { root, below: Vec::new() };
+    }
+    if count <= PIECE {
         let mut subtree = Subtree::new(&range, references, config);
         let root = subtree.grow(range).node;
         subtree.nodes.shrink_to_fit();
+        watch.advance(count);
         return Part::Whole { root, below: subtree.nodes };
     }
     range.tell_apart(references, config);
     let [left, right] = range.split();
     let (left, right) = tasks::join(
-        || grow_part(left, references, config),
-        || grow_part(right, references, config),
+        || grow_part(left, references, config, watch),
+        || grow_part(right, references, config, watch),
     );
     Part::Fork { bounds: left.bounds().union(right.bounds()), children: Box::new([left, right]) }
 }

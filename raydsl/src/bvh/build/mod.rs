@@ -1,25 +1,32 @@
 //! Building the binary tree.
 //!
-//! [`build`] makes a [`Tree`] over any primitives that have boxes, in one of two ways
+//! [`build`] makes a [`Tree`] over any primitives that have boxes, in one of three ways
 //! ([`BuildQuality`]): by the binned surface area heuristic of Ingo Wald, *On fast construction of
-//! SAH-based bounding volume hierarchies* (IEEE Symposium on Interactive Ray Tracing, 2007), or
-//! from a sort by Morton codes as of Lauterbach et al., *Fast BVH construction on GPUs* (Computer
-//! Graphics Forum, 2009). One idea a file:
+//! SAH-based bounding volume hierarchies* (IEEE Symposium on Interactive Ray Tracing, 2007); by
+//! the same and cuts through primitives, Stich et al., *Spatial splits in bounding volume
+//! hierarchies* (High Performance Graphics, 2009); or from a sort by Morton codes as of Lauterbach
+//! et al., *Fast BVH construction on GPUs* (Computer Graphics Forum, 2009). One idea a file:
 //!
+//! * `source`: what the builder asks of primitives;
 //! * `reference`: the 32-byte copy of a primitive's box that is moved about while building, and
 //!   the checks on the input;
 //! * `scaling`: what keeps `f32` areas from overflowing and denormals out of the inner loops;
 //! * `binned_sah`, `partition`, `subtree`: where the heuristic splits, splitting, the recursion;
+//! * `chop`, `spatial_bins`, `spatial`, `compact`: cutting a reference and why no hit is lost by it,
+//!   where to cut, the recursion, the list without gaps;
 //! * `morton`, `linear`: the codes and the sort, the recursion;
 //! * `depth`: how deep a tree may be;
 //! * `part`: pieces of a tree, and how they are put together;
 //! * `refit`: boxes from primitives that have moved;
-//! * `tasks`: threads, or their absence.
+//! * `tasks`: threads, or their absence;
+//! * `watch`: telling how far a build is, and stopping it.
 //!
-//! The tree is a function of the boxes and the configuration alone: the number of threads, and
-//! whether there are any, does not change a bit of it.
+//! The tree is a function of the boxes, the cuts and the configuration alone: the number of
+//! threads, and whether there are any, or an observer, does not change a bit of it.
 
 mod binned_sah;
+mod chop;
+mod compact;
 mod config;
 mod depth;
 mod error;
@@ -30,8 +37,12 @@ mod partition;
 mod reference;
 mod refit;
 mod scaling;
+mod source;
+mod spatial;
+mod spatial_bins;
 mod subtree;
 mod tasks;
+mod watch;
 
 #[cfg(test)]
 mod tests;
@@ -39,10 +50,17 @@ mod tests;
 pub use config::{BuildConfig, BuildQuality};
 pub use error::BuildError;
 pub(super) use refit::refit;
+#[cfg(test)]
+pub(super) use source::Boxes;
+pub(super) use source::{Primitives, Source};
+
+use core::ops::ControlFlow;
 
 use super::Node;
 use crate::geometry::Aabb;
+use chop::Chopper;
 use reference::Reference;
+use watch::Watch;
 
 /// The largest depth of a leaf; the root has depth 0.
 ///
@@ -65,22 +83,25 @@ pub const MAX_PRIMITIVES: usize = 1 << 30;
 pub struct Tree {
     /// The nodes, the root first; empty when there are no primitives.
     pub nodes: Vec<Node>,
-    /// The primitives in the order of the leaves: a permutation of `0 .. n`.
+    /// The primitives in the order of the leaves: a permutation of `0 .. n`. With
+    /// [`BuildQuality::Best`] some may be there more than once, never twice in a leaf.
     pub indices: Vec<u32>,
 }
 
 /// Builds the tree over `count` primitives with the boxes `bounds(0)`, ..., `bounds(count - 1)`.
 ///
-/// Boxes may be flat, points, coincident and of any finite size; the box of every node is the
-/// exact union of those below it, except that `-0.0` becomes `0.0`. `bounds` must be a pure
-/// function; it is called once or twice for each primitive, in any order and from several threads.
-/// No primitives make an empty tree.
+/// Boxes may be flat, points, coincident and of any finite size; the box of every node is the exact
+/// union of those below it, except that `-0.0` becomes `0.0`. With [`BuildQuality::Best`] what is
+/// cut is the boxes, and those of the leaves are around parts. `bounds` must be a pure function; it
+/// is called once or twice for each primitive (with cuts more often), in any order and from several
+/// threads. No primitives make an empty tree.
 ///
 /// Takes `O(n log n)` time. Memory, the result included: 36 bytes a primitive and 32 a node
 /// while building, then 4 a primitive and up to 64 a node while the nodes are put together. With
 /// the default configuration a mesh has about 0.9 nodes a triangle (65 bytes a primitive at the
 /// peak), a cloud of small separate boxes 1.8 to 2 (measured: 120 bytes); never more than 132.
-/// [`BuildQuality::Fast`] needs 16 bytes a primitive more while building.
+/// [`BuildQuality::Fast`] needs 16 bytes a primitive more while building, [`BuildQuality::Best`] 32
+/// times `max_duplication`, and 36 and the nodes for each entry that it adds.
 ///
 /// # Errors
 ///
@@ -91,28 +112,73 @@ pub fn build(
     count: usize,
     config: &BuildConfig,
 ) -> Result<Tree, BuildError> {
+    build_watched(&source::Boxes(bounds), count, config, None)
+}
+
+/// Told how much of a build is done, from 0 to 1; answers whether to go on.
+pub(super) type Observer<'a> = dyn FnMut(f64) -> ControlFlow<()> + Send + 'a;
+
+/// [`build`] of primitives that can be cut, with an observer.
+pub(super) fn build_watched(
+    source: &impl Source,
+    count: usize,
+    config: &BuildConfig,
+    observer: Option<&mut Observer>,
+) -> Result<Tree, BuildError> {
     config.check()?;
     if count > MAX_PRIMITIVES {
         return Err(BuildError::TooManyPrimitives { count, limit: MAX_PRIMITIVES });
     }
-    let (mut references, mut span) = reference::collect(&bounds, count)?;
-    if references.is_empty() {
+    let spare = match config.quality {
+        BuildQuality::Best => spatial::spare(count, config),
+        BuildQuality::Fast | BuildQuality::Balanced => 0,
+    };
+    let watch = match observer {
+        // Each box is read, and each place is left to a subtree.
+        Some(tell) => Watch::begin(tell, 2 * count + spare),
+        None => Watch::nobody(),
+    };
+    watch.check()?;
+    let tree = grow(source, count, spare, config, &watch)?;
+    watch.finish()?;
+    Ok(tree)
+}
+
+fn grow(
+    source: &impl Source,
+    count: usize,
+    spare: usize,
+    config: &BuildConfig,
+    watch: &Watch,
+) -> Result<Tree, BuildError> {
+    let (mut references, mut span) = reference::collect(source, count, spare, watch)?;
+    if count == 0 {
         return Ok(Tree::default());
     }
-    let scaled = scaling::normalise(&mut references, &mut span);
+    let scale = scaling::normalise(&mut references[..count], &mut span);
+    if config.quality == BuildQuality::Best {
+        let chopper = Chopper { source, scale };
+        let part = spatial::grow(&mut references, count, span, chopper, (config, watch));
+        watch.check()?;
+        let mut nodes = part.assemble();
+        let indices = compact::compact(&mut nodes, &references, scale);
+        return Ok(Tree { nodes, indices });
+    }
     let (part, indices) = match config.quality {
-        BuildQuality::Fast => linear::grow(&references, &span, config),
-        BuildQuality::Balanced => {
-            let part = subtree::grow(&mut references, span, config);
+        BuildQuality::Fast => linear::grow(&references, &span, config, watch),
+        _ => {
+            let part = subtree::grow(&mut references, span, config, watch);
+            watch.check()?;
             (part, references.iter().map(Reference::index).collect())
         }
     };
+    watch.check()?;
     // The nodes are copied into one array next; the references are not needed for that, and
     // giving them back first keeps the copy from raising the peak.
     drop(references);
     let mut tree = Tree { nodes: part.assemble(), indices };
-    if scaled {
-        refit::refit_checked(&mut tree.nodes, &tree.indices, &bounds);
+    if !scale.is_one() {
+        refit::refit_checked(&mut tree.nodes, &tree.indices, &|index| source.bounds(index));
     }
     Ok(tree)
 }

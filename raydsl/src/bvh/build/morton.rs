@@ -23,8 +23,8 @@ const PIECE: usize = 1 << 14;
 
 /// Where a primitive stands in the order: by its code, then by its index.
 ///
-/// No two are equal, so any sort is a stable one and gives one result. The index is in the lowest 32
-/// bits, and the code above it: one number is compared faster than two.
+/// No two are equal, so any sort is a stable one and gives one result. The index is in the lowest
+/// 32 bits, and the code above it: one number is compared faster than two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Key(u128);
 

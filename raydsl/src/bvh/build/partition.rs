@@ -4,6 +4,10 @@ use glam::Vec4;
 
 use super::binned_sah::{Grid, Plane};
 use super::reference::{Bounds, Reference, Span};
+use super::watch::Watch;
+
+/// How often a long loop asks whether it is still wanted.
+const PIECE: usize = 1 << 16;
 
 /// Moves what is left of `plane` to the front; returns how much that is and the boxes around the
 /// centroids of both sides.
@@ -16,26 +20,32 @@ pub(super) fn by_plane(
     references: &mut [Reference],
     grid: &Grid,
     plane: &Plane,
+    watch: &Watch,
 ) -> (usize, [Bounds; 2]) {
     const DISTANCE: [Vec4; 2] = [Vec4::ZERO, Vec4::INFINITY];
     let limit = Vec4::splat(plane.position());
     let [mut left, mut right] = [Bounds::EMPTY; 2];
     let mut end = 0;
-    for k in 0..references.len() {
-        let reference = references[k];
-        let centroid = reference.centroid();
-        let lanes = grid.position(centroid).cmplt(limit).bitmask();
-        let is_left = (lanes >> plane.axis & 1) as usize;
+    for start in (0..references.len()).step_by(PIECE) {
+        if watch.is_stopped() {
+            break;
+        }
+        for k in start..references.len().min(start + PIECE) {
+            let reference = references[k];
+            let centroid = reference.centroid();
+            let lanes = grid.position(centroid).cmplt(limit).bitmask();
+            let is_left = (lanes >> plane.axis & 1) as usize;
 
-        references[k] = references[end];
-        references[end] = reference;
-        end += is_left;
+            references[k] = references[end];
+            references[end] = reference;
+            end += is_left;
 
-        let (from_left, from_right) = (DISTANCE[1 - is_left], DISTANCE[is_left]);
-        left.lo = left.lo.min(centroid + from_left);
-        left.hi = left.hi.max(centroid - from_left);
-        right.lo = right.lo.min(centroid + from_right);
-        right.hi = right.hi.max(centroid - from_right);
+            let (from_left, from_right) = (DISTANCE[1 - is_left], DISTANCE[is_left]);
+            left.lo = left.lo.min(centroid + from_left);
+            left.hi = left.hi.max(centroid - from_left);
+            right.lo = right.lo.min(centroid + from_right);
+            right.hi = right.hi.max(centroid - from_right);
+        }
     }
     (end, [left, right])
 }

@@ -3,7 +3,9 @@
 use glam::{Vec3, Vec4};
 
 use super::error::BuildError;
+use super::source::Source;
 use super::tasks;
+use super::watch::Watch;
 use crate::geometry::Aabb;
 
 /// Set in every stored index, see [`Reference`]; the indices are below it.
@@ -29,6 +31,11 @@ impl Bounds {
     #[inline]
     pub(super) fn union(self, other: Self) -> Self {
         Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
+    }
+
+    /// The common part; not valid when there is none.
+    pub(super) fn intersection(self, other: Self) -> Self {
+        Self { lo: self.lo.max(other.lo), hi: self.hi.min(other.hi) }
     }
 
     /// The smallest box around this one and a point.
@@ -61,8 +68,9 @@ pub(super) struct Reference {
 }
 
 impl Reference {
-    /// A reference to primitive `index`, which is below [`MAX_PRIMITIVES`](super::MAX_PRIMITIVES).
-    fn new(bounds: Aabb, index: usize) -> Self {
+    /// A reference to primitive `index` in a box. The index is below
+    /// [`MAX_PRIMITIVES`](super::MAX_PRIMITIVES).
+    pub(super) fn new(bounds: Aabb, index: usize) -> Self {
         let tag = f32::from_bits(TAG | index as u32);
         // Adding zero turns -0.0 into 0.0. The minimum of the two zeros depends on the order of
         // the operands, and so on how the work was cut; with one zero only it does not.
@@ -128,17 +136,21 @@ impl Span {
     }
 }
 
-/// Reads and checks all boxes.
+/// Reads and checks all boxes, with room for `spare` more references behind them.
 pub(super) fn collect(
-    bounds: &(impl Fn(usize) -> Aabb + Sync),
+    source: &impl Source,
     count: usize,
+    spare: usize,
+    watch: &Watch,
 ) -> Result<(Vec<Reference>, Span), BuildError> {
     let blank = Reference { bounds: Bounds { lo: Vec4::ZERO, hi: Vec4::ZERO } };
-    let mut references = vec![blank; count];
-    let pieces = tasks::map_pieces_mut(&mut references, PIECE, |start, piece| {
+    let mut references = vec![blank; count + spare];
+    let pieces = tasks::map_pieces_mut(&mut references[..count], PIECE, |start, piece| {
+        watch.check()?;
         for (index, slot) in (start..).zip(piece.iter_mut()) {
-            *slot = Reference::new(checked(bounds(index), index)?, index);
+            *slot = Reference::new(checked(source.bounds(index), index)?, index);
         }
+        watch.advance(piece.len());
         Ok(Span::of(piece))
     });
     // The pieces are in order: the first error is the one of the smallest index.

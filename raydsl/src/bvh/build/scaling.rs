@@ -8,10 +8,13 @@
 //!   with nodes of any size between `2^-100` and `2^121` at the cost of one multiplication.
 //! * What is outside that range, which no ordinary scene is, is multiplied here by a power of two
 //!   beforehand, and the boxes of the finished tree are taken from the primitives again, since
-//!   scaling down may have rounded.
+//!   scaling down may have rounded. Where primitives are cut there is nothing to take them from,
+//!   and the boxes are scaled back, outwards.
 //!
 //! Areas in `f64` would do instead of the first, at half the SIMD width in the hottest code after
 //! the binning itself, and would not help with sums that overflow or with denormals.
+
+use glam::Vec3;
 
 use super::reference::{Reference, Span};
 use super::tasks;
@@ -29,19 +32,59 @@ const UP: f32 = f32::from_bits((127 + 100) << 23);
 /// Pieces of references that are scaled at once.
 const PIECE: usize = 1 << 14;
 
-/// Scales everything where it is needed; returns whether it was.
-pub(super) fn normalise(references: &mut [Reference], span: &mut Span) -> bool {
+/// What lengths are multiplied by while building: a power of two.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Scale(f32);
+
+impl Scale {
+    /// Whether lengths are what they were.
+    pub(super) fn is_one(self) -> bool {
+        self.0 == 1.0
+    }
+
+    /// A scaled coordinate as the application knows it.
+    pub(super) fn outside(self, x: f32) -> f32 {
+        x / self.0
+    }
+
+    /// A box of the application's, scaled. Numbers next to 0 may be rounded towards or away from
+    /// it.
+    pub(super) fn inside(self, bounds: Aabb) -> Aabb {
+        Aabb::new(bounds.min * self.0, bounds.max * self.0)
+    }
+
+    /// The plane next to a scaled coordinate that is a number outside, too.
+    pub(super) fn plane(self, at: f32) -> f32 {
+        self.outside(at) * self.0
+    }
+
+    /// A scaled box as the application knows it, or the next larger one: what was rounded when it
+    /// was scaled down is given back on both sides.
+    pub(super) fn back(self, bounds: Aabb) -> Aabb {
+        let lost = f32::MIN_POSITIVE * f32::EPSILON;
+        let wider = |x: f32, by: f32| {
+            let was_exact = self.0 >= 1.0 || x.abs() > f32::MIN_POSITIVE;
+            self.outside(if was_exact { x } else { x + by })
+        };
+        let min = bounds.min.to_array().map(|x| wider(x, -lost));
+        let max = bounds.max.to_array().map(|x| wider(x, lost));
+        Aabb::new(Vec3::from_array(min), Vec3::from_array(max))
+    }
+}
+
+/// Scales everything where it is needed; returns by how much.
+pub(super) fn normalise(references: &mut [Reference], span: &mut Span) -> Scale {
     let Aabb { min, max } = span.bounds.to_aabb();
     let largest = min.abs().max(max.abs()).max_element();
     let factor = match largest {
         x if x > LARGE => DOWN,
         x if x < SMALL && x > 0.0 => UP,
-        _ => return false,
+        _ => return Scale(1.0),
     };
     let spans = tasks::map_pieces_mut(references, PIECE, |_, piece| {
         piece.iter_mut().for_each(|reference| reference.scale(factor));
         Span::of(piece)
     });
     *span = spans.into_iter().fold(Span::EMPTY, Span::union);
-    true
+    Scale(factor)
 }

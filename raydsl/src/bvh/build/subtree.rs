@@ -4,13 +4,19 @@ use super::binned_sah::{Bins, Grid};
 use super::config::BuildConfig;
 use super::part::{PIECE, Part};
 use super::reference::{Reference, Span};
+use super::watch::Watch;
 use super::{depth, partition, tasks};
 use crate::bvh::Node;
 
 /// Builds the tree over all `references`, which are put in the order of the leaves.
-pub(super) fn grow(references: &mut [Reference], span: Span, config: &BuildConfig) -> Part {
+pub(super) fn grow(
+    references: &mut [Reference],
+    span: Span,
+    config: &BuildConfig,
+    watch: &Watch,
+) -> Part {
     let budget = depth::budget(references.len());
-    grow_part(Range { references, first: 0, span, budget }, config)
+    grow_part(Range { references, first: 0, span, budget }, config, watch)
 }
 
 /// What becomes a subtree.
@@ -23,19 +29,25 @@ struct Range<'a> {
     budget: u32,
 }
 
-fn grow_part(range: Range, config: &BuildConfig) -> Part {
-    if range.references.len() <= PIECE {
-        let mut subtree = Subtree { config, bins: Bins::new(), nodes: Vec::new() };
-        subtree.nodes.reserve_exact(2 * range.references.len());
+fn grow_part(range: Range, config: &BuildConfig, watch: &Watch) -> Part {
+    let count = range.references.len();
+    if watch.is_stopped() {
+        let root = Node::leaf(range.span.bounds.to_aabb(), range.first, count as u32);
+        return Part::Whole { root, below: Vec::new() };
+    }
+    if count <= PIECE {
+        let mut subtree = Subtree { config, watch, bins: Bins::new(), nodes: Vec::new() };
+        subtree.nodes.reserve_exact(2 * count);
         let root = subtree.grow(range);
         subtree.nodes.shrink_to_fit();
+        watch.advance(count);
         return Part::Whole { root, below: subtree.nodes };
     }
     let bounds = range.span.bounds;
-    match split(range, &mut Bins::new(), config) {
+    match split(range, &mut Bins::new(), config, watch) {
         Ok([left, right]) => {
             let (left, right) =
-                tasks::join(|| grow_part(left, config), || grow_part(right, config));
+                tasks::join(|| grow_part(left, config, watch), || grow_part(right, config, watch));
             Part::Fork { bounds, children: Box::new([left, right]) }
         }
         Err(leaf) => Part::Whole { root: leaf, below: Vec::new() },
@@ -43,17 +55,18 @@ fn grow_part(range: Range, config: &BuildConfig) -> Part {
 }
 
 /// A subtree in the making.
-struct Subtree<'a> {
+struct Subtree<'a, 'w> {
     config: &'a BuildConfig,
+    watch: &'a Watch<'w>,
     bins: Bins,
     nodes: Vec<Node>,
 }
 
-impl Subtree<'_> {
+impl Subtree<'_, '_> {
     /// Appends the nodes below the range's own, which is returned.
     fn grow(&mut self, range: Range) -> Node {
         let bounds = range.span.bounds.to_aabb();
-        match split(range, &mut self.bins, self.config) {
+        match split(range, &mut self.bins, self.config, self.watch) {
             Ok(children) => {
                 let first = self.nodes.len();
                 // Room for the children: what is below them comes after both.
@@ -73,9 +86,11 @@ fn split<'a>(
     range: Range<'a>,
     bins: &mut Bins,
     config: &BuildConfig,
+    watch: &Watch,
 ) -> Result<[Range<'a>; 2], Node> {
     let Range { references, first, span, budget } = range;
-    let Some((middle, [left, right])) = divide(references, &span, budget, bins, config) else {
+    let Some((middle, [left, right])) = divide(references, &span, budget, bins, (config, watch))
+    else {
         return Err(Node::leaf(span.bounds.to_aabb(), first, references.len() as u32));
     };
     let (before, after) = references.split_at_mut(middle);
@@ -93,7 +108,7 @@ fn divide(
     span: &Span,
     budget: u32,
     bins: &mut Bins,
-    config: &BuildConfig,
+    (config, watch): (&BuildConfig, &Watch),
 ) -> Option<(usize, [Span; 2])> {
     let count = references.len();
     if count == 1 {
@@ -107,7 +122,7 @@ fn divide(
     let Some(plane) = bins.best_plane(&grid) else {
         return Some(partition::by_order(references));
     };
-    if may_be_leaf && !plane.pays(span, count, &grid, config) {
+    if may_be_leaf && !grid.pays(plane.cost(), span, count, config) {
         return None;
     }
     let [(left, left_count), (right, right_count)] = bins.sides(&plane, &grid);
@@ -115,8 +130,11 @@ fn divide(
         return Some(partition::by_median(references, &span.centroids));
     }
     let (middle, [left_centroids, right_centroids]) =
-        partition::by_plane(references, &grid, &plane);
-    debug_assert_eq!(middle, left_count as usize);
+        partition::by_plane(references, &grid, &plane, watch);
+    if middle != left_count as usize {
+        // Stopped in the middle: all of it is thrown away.
+        return None;
+    }
     let left = Span { bounds: left, centroids: left_centroids };
     let right = Span { bounds: right, centroids: right_centroids };
     Some((middle, [left, right]))

@@ -1,7 +1,7 @@
 //! Trees that are none.
 
 use super::*;
-use crate::bvh::{MAX_DEPTH, Node, TreeFault, validate::check};
+use crate::bvh::{MAX_DEPTH, Node, TreeFault, build::Boxes, validate::check};
 
 /// A tree of four leaves over eight balls, or what becomes of it.
 struct Planted {
@@ -21,7 +21,8 @@ impl Planted {
 
     fn fault(&self) -> TreeFault {
         let Self { nodes, indices, balls } = self;
-        check(nodes, indices, balls.len(), |k| balls[k].get_bounds()).expect_err("a fault")
+        check(nodes, indices, balls.len(), &Boxes(|k: usize| balls[k].get_bounds()))
+            .expect_err("a fault")
     }
 }
 
@@ -29,7 +30,7 @@ impl Planted {
 fn fault(change: impl FnOnce(&mut Planted)) -> TreeFault {
     let mut planted = Planted::new();
     let Planted { nodes, indices, balls } = &planted;
-    assert_eq!(check(nodes, indices, 8, |k| balls[k].get_bounds()), Ok(()));
+    assert_eq!(check(nodes, indices, 8, &Boxes(|k: usize| balls[k].get_bounds())), Ok(()));
     // A root, its children at 1 and 2, theirs at 3 and 4, 5 and 6.
     let firsts = [0, 1, 2].map(|k| nodes[k].first);
     assert_eq!((nodes.len(), firsts), (7, [1, 3, 5]));
@@ -87,9 +88,11 @@ fn leaves() {
     assert_eq!(fault(|p| p.nodes[5].first = u32::MAX), far);
     let none = TreeFault::NoSuchPrimitive { node: 5, primitive: 8, primitives: 8 };
     assert_eq!(fault(|p| p.indices[first] = 8), none);
-    let lost = Planted::new().indices[first] as usize;
+    let [lost, kept] = [first, first + 1].map(|k| Planted::new().indices[k] as usize);
     let twice = |p: &mut Planted| p.indices[first] = p.indices[first + 1];
-    assert_eq!(fault(twice), TreeFault::Missing { primitive: lost });
+    assert_eq!(fault(twice), TreeFault::Repeated { node: 5, primitive: kept });
+    let left_out = |p: &mut Planted| (p.nodes[5].first, p.nodes[5].count) = (first as u32 + 1, 1);
+    assert_eq!(fault(left_out), TreeFault::Missing { primitive: lost });
     let nothing = |p: &mut Planted| p.nodes.clear();
     assert_eq!(fault(nothing), TreeFault::Missing { primitive: 0 });
     assert_eq!(fault(nothing).to_string(), "primitive 0 is in no leaf");
@@ -106,7 +109,7 @@ fn depth() {
             nodes[inner] = Node::inner(bounds, first);
             inner = first as usize + 1;
         }
-        check(&nodes, &[0], 1, |_| bounds)
+        check(&nodes, &[0], 1, &Boxes(|_| bounds))
     };
     assert_eq!(chain(MAX_DEPTH), Ok(()));
     let depth = MAX_DEPTH + 1;

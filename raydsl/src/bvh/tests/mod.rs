@@ -2,6 +2,8 @@
 
 mod faults;
 mod moving;
+mod observers;
+mod parts;
 mod queries;
 mod statistics;
 
@@ -39,14 +41,6 @@ impl Numbers {
         let mut one = || Ball { center: self.point(), radius: 0.1 + 0.05 * self.next() };
         (0..count).map(|_| one()).collect()
     }
-}
-
-/// Every way to build a tree.
-const QUALITIES: [BuildQuality; 2] = [BuildQuality::Fast, BuildQuality::Balanced];
-
-/// The default configuration with another quality.
-fn config(quality: BuildQuality) -> BuildConfig {
-    BuildConfig { quality, ..BuildConfig::default() }
 }
 
 /// Panics where a ray meets something else in the tree than among `all`, which are its primitives;

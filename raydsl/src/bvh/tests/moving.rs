@@ -6,10 +6,10 @@ use crate::machine::Resource;
 
 #[test]
 fn refitted_trees_answer_as_brute_force() {
-    for quality in QUALITIES {
+    for quality in BuildQuality::ALL {
         let mut numbers = Numbers::of(5);
         let mut balls = numbers.balls(500);
-        let mut bvh = Bvh::build_with(&balls, &config(quality)).expect("finite bounds");
+        let mut bvh = Bvh::build_with(&balls, &quality.into()).expect("finite bounds");
         assert_eq!(bvh.cost_growth(), 1.0);
         for _ in 0..6 {
             let tree = bvh.detach();
@@ -26,9 +26,9 @@ fn refitted_trees_answer_as_brute_force() {
 
 #[test]
 fn a_tree_over_primitives_that_did_not_move_is_the_same() {
-    for quality in QUALITIES {
+    for quality in BuildQuality::ALL {
         let balls = Numbers::of(6).balls(300);
-        let bvh = Bvh::build_with(&balls, &config(quality)).expect("finite bounds");
+        let bvh = Bvh::build_with(&balls, &quality.into()).expect("finite bounds");
         let nodes = bvh.nodes().to_vec();
         let copy = balls.clone();
         let bvh = bvh.refit(&copy).expect("finite bounds");

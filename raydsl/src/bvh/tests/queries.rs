@@ -7,8 +7,8 @@ fn every_quality_answers_as_brute_force() {
     let mut numbers = Numbers::of(1);
     for count in [0, 1, 2, 5, 64, 1000] {
         let balls = numbers.balls(count);
-        for quality in QUALITIES {
-            let bvh = Bvh::build_with(&balls, &config(quality)).expect("finite bounds");
+        for quality in BuildQuality::ALL {
+            let bvh = Bvh::build_with(&balls, &quality.into()).expect("finite bounds");
             assert_eq!(bvh.config().quality, quality);
             let hits = assert_as_brute_force(&bvh, &balls);
             assert!(count < 1000 || hits > 200, "{hits} hits");
@@ -43,8 +43,8 @@ fn hostile() -> Vec<Vec<Ball>> {
 #[test]
 fn every_quality_answers_as_brute_force_on_hostile_scenes() {
     for balls in hostile() {
-        for quality in QUALITIES {
-            let bvh = Bvh::build_with(&balls, &config(quality)).expect("finite bounds");
+        for quality in BuildQuality::ALL {
+            let bvh = Bvh::build_with(&balls, &quality.into()).expect("finite bounds");
             assert_as_brute_force(&bvh, &balls);
         }
     }

@@ -35,8 +35,8 @@ fn trees_without_an_area() {
         ((0..8).map(|k| point((k % 2) as f32)).collect::<Vec<_>>(), 1.0),
         (vec![point(3.0); 4], 4.0),
     ] {
-        for quality in QUALITIES {
-            let bvh = Bvh::build_with(&triangles, &config(quality)).expect("finite bounds");
+        for quality in BuildQuality::ALL {
+            let bvh = Bvh::build_with(&triangles, &quality.into()).expect("finite bounds");
             assert_eq!(bvh.statistics().sah_cost, cost);
         }
     }
@@ -45,8 +45,8 @@ fn trees_without_an_area() {
 #[test]
 fn fast_trees_are_not_much_dearer() {
     let balls = Numbers::of(12).balls(5000);
-    let [fast, balanced] = QUALITIES.map(|quality| {
-        let bvh = Bvh::build_with(&balls, &config(quality)).expect("finite bounds");
+    let [fast, balanced] = [BuildQuality::Fast, BuildQuality::Balanced].map(|quality| {
+        let bvh = Bvh::build_with(&balls, &quality.into()).expect("finite bounds");
         let statistics = bvh.statistics();
         assert_eq!(statistics.nodes, 2 * statistics.leaves - 1);
         assert_eq!(statistics.bytes, bvh.bytes());

@@ -2,7 +2,7 @@
 
 use super::Margin;
 use super::interval::Interval;
-use crate::bvh::Node;
+use crate::bvh::{Allowance, Node};
 use crate::geometry::RayOn;
 
 /// A ray as wide as rounding makes it.
@@ -14,8 +14,8 @@ pub(super) struct Beam {
 }
 
 impl Beam {
-    /// `ray`, for the boxes of a tree whose primitives have this `SLACK`.
-    pub(super) fn new(ray: RayOn<Margin>, root: &Node, slack: f64) -> Self {
+    /// `ray`, for boxes that are widened by this allowance.
+    pub(super) fn new(ray: RayOn<Margin>, root: &Node, allowance: Allowance) -> Self {
         let origin = [ray.origin.x, ray.origin.y, ray.origin.z].map(|c| c.0.range);
         let direction = [ray.direction.x, ray.direction.y, ray.direction.z].map(|c| c.0.range);
         let (low, high) = (root.min.to_array().map(f64::from), root.max.to_array().map(f64::from));
@@ -28,6 +28,9 @@ impl Beam {
         let width = direction.iter().map(|d| d.high - d.low).fold(0.0, f64::max);
         let length = direction.iter().map(|d| d.abs().low).fold(0.0, f64::max);
         let aside = width * 2.0 * reach / length;
+        let slack = f64::from(allowance.slack);
+        let farthest = origin.iter().map(|o| o.abs().high).fold(0.0, f64::max);
+        let aside = aside + 2.0 * farthest * f64::from(allowance.origin);
         let ulp = f64::from(f32::EPSILON);
         let widest = origin.map(|o| {
             let pad = 2.0 * slack * reach + o.abs().high * 2.0 * ulp + aside;

@@ -173,10 +173,10 @@ fn turn_cos(u: f64) -> f64 {
 }
 
 /// Takes the floats of a value.
-struct Take(Vec<Bounded>);
+pub(super) struct Take(pub(super) Vec<Bounded>);
 
 /// Gives a value floats.
-struct Give(std::vec::IntoIter<Bounded>);
+pub(super) struct Give(pub(super) std::vec::IntoIter<Bounded>);
 
 macro_rules! leaves {
     ($name:ident, |$self:ident, $m:ident, $a:ident| $float:expr) => {

@@ -1,6 +1,8 @@
 //! Random programs of the machine's operations: what `f32` gives lies within an outcome.
 
 use super::*;
+use crate::__at_run_time as at_run_time;
+use crate::geometry::exact::lost_by_cross;
 use crate::math::elementary as math;
 
 /// How many programs run, unless `RAYDSL_MARGIN_FUZZ` says otherwise.
@@ -108,13 +110,15 @@ enum Op {
     Bits(usize, u32),
     CopySign([usize; 2]),
     Elementary(usize, [usize; 2]),
+    /// What a cross product of vectors of one number each loses.
+    LostByCross([usize; 4]),
 }
 
 impl Op {
     /// An operation on some of `len` values.
     fn random(r: &mut Random, len: usize) -> Self {
         let [a, b, c, d] = core::array::from_fn(|_| r.below(len));
-        match r.below(21) {
+        match r.below(22) {
             0 => Self::Number(r.number()),
             1..=3 => Self::Unary(r.pick(&UNARY), a),
             4..=10 => Self::Binary(r.pick(&BINARY), [a, b]),
@@ -126,6 +130,7 @@ impl Op {
             16 => Self::Bits(a, (r.below(5) as u32).wrapping_sub(2)),
             17 => Self::CopySign([a, b]),
             18 => Self::Beside(r.pick(&COMPARE), a),
+            19 => Self::LostByCross([a, b, c, d]),
             _ => Self::Elementary(r.below(15), [a, b]),
         }
     }
@@ -133,26 +138,39 @@ impl Op {
     fn run<M: Machine>(self, m: &M, v: &[M::F32]) -> M::F32 {
         match self {
             Self::Number(n) => m.f32(n),
-            Self::Unary(op, a) => m.f32_unary(op, v[a]),
-            Self::Binary(op, [a, b]) => m.f32_binary(op, v[a], v[b]),
+            Self::Unary(op, a) => at_run_time!(F32Unary op, |op| m.f32_unary(op, v[a])),
+            Self::Binary(op, [a, b]) => {
+                at_run_time!(F32Binary op, |op| m.f32_binary(op, v[a], v[b]))
+            }
             Self::MulAdd([a, b, c]) => m.f32_mul_add(v[a], v[b], v[c]),
             Self::Select(op, [a, b, c, d]) => {
-                m.f32_select(m.f32_compare(op, v[a], v[b]), v[c], v[d])
+                let chosen = at_run_time!(Compare op, |op| m.f32_compare(op, v[a], v[b]));
+                m.f32_select(chosen, v[c], v[d])
             }
             Self::SelectBoth(op, [a, b, c, d]) => {
-                let less = m.f32_compare(Compare::Lt, v[a], v[b]);
-                let more = m.f32_compare(Compare::Ge, v[c], v[d]);
-                m.f32_select(m.bool_binary(op, less, more), v[a], v[c])
+                let less = m.f32_compare(op::Lt, v[a], v[b]);
+                let more = m.f32_compare(op::Ge, v[c], v[d]);
+                let both = at_run_time!(BoolBinary op, |op| m.bool_binary(op, less, more));
+                m.f32_select(both, v[a], v[c])
             }
             Self::ToI32(a) => m.i32_to_f32(m.f32_to_i32(v[a])),
             Self::ToU32(a) => m.u32_to_f32(m.f32_to_u32(v[a])),
-            Self::Beside(op, a) => m.u32_to_f32(m.bool_to_u32(m.f32_beside_infinity(op, v[a]))),
+            Self::Beside(op, a) => {
+                let beside = at_run_time!(Compare op, |op| m.f32_beside_infinity(op, v[a]));
+                m.u32_to_f32(m.bool_to_u32(beside))
+            }
             Self::Bits(a, steps) => {
                 let bits = m.f32_to_bits(v[a]);
-                m.f32_from_bits(m.u32_binary(IntBinary::WrappingAdd, bits, m.u32(steps)))
+                m.f32_from_bits(m.u32_binary(op::WrappingAdd, bits, m.u32(steps)))
             }
             Self::CopySign([a, b]) => m.f32_copysign(v[a], v[b]),
             Self::Elementary(k, [a, b]) => elementary(m, k, F(v[a]), F(v[b])).0,
+            Self::LostByCross([a, b, c, d]) => {
+                let [a, b, c, d] = [a, b, c, d].map(|i| F(v[i]));
+                let (left, right) = (X3 { x: a, y: b, z: c }, X3 { x: d, y: a, z: b });
+                let lost = lost_by_cross::on(m, left, right);
+                m.f32_binary(op::Add, lost.most.x.0, lost.rest.y.0)
+            }
         }
     }
 }
@@ -213,13 +231,13 @@ fn sums_in_any_order_stay_within_their_outcomes() {
         let sum = |m: &Margin| {
             let term = |[a, b]: [f32; 2]| {
                 let (a, is_product) = (m.f32(a), b != 1.0);
-                if is_product { m.f32_binary(F32Binary::Mul, a, m.f32(b)) } else { a }
+                if is_product { m.f32_binary(op::Mul, a, m.f32(b)) } else { a }
             };
-            let add = |a, b| m.f32_binary(F32Binary::Add, a, b);
+            let add = |a, b| m.f32_binary(op::Add, a, b);
             let first = terms.iter().map(|t| term(*t)).reduce(add);
             let first = first.unwrap_or_else(|| m.f32(0.0));
             let all = add(first, m.f32(0.3));
-            F::<Margin>(m.f32_binary(F32Binary::Sub, all, first))
+            F::<Margin>(m.f32_binary(op::Sub, all, first))
         };
         let outcomes = Outcomes::of(Rounding::WGSL, 64, sum);
         let first = added(&mut r, &terms);

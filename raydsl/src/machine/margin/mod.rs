@@ -17,6 +17,7 @@ mod beam;
 mod cases;
 mod decisions;
 mod elementary;
+mod exact;
 #[cfg(test)]
 mod fuzz;
 mod interval;
@@ -181,8 +182,8 @@ impl Machine for Margin {
         Truth::certain(v)
     }
 
-    fn f32_unary(&self, op: F32Unary, a: Bounded) -> Bounded {
-        match op {
+    fn f32_unary<O: Op<F32Unary>>(&self, _: O, a: Bounded) -> Bounded {
+        match O::OP {
             F32Unary::Neg => self.negated(a),
             F32Unary::Abs => self.size(a),
             F32Unary::Sqrt => self.root(a),
@@ -192,8 +193,8 @@ impl Machine for Margin {
         }
     }
 
-    fn f32_binary(&self, op: F32Binary, a: Bounded, b: Bounded) -> Bounded {
-        self.binary(op, a, b)
+    fn f32_binary<O: Op<F32Binary>>(&self, _: O, a: Bounded, b: Bounded) -> Bounded {
+        self.binary(O::OP, a, b)
     }
 
     fn f32_mul_add(&self, a: Bounded, b: Bounded, c: Bounded) -> Bounded {
@@ -203,18 +204,18 @@ impl Machine for Margin {
         self.bounded(a.value.mul_add(b.value, c.value), sum.range)
     }
 
-    fn i32_binary(&self, op: IntBinary, a: i32, b: i32) -> i32 {
-        scalar::i32_binary(op, a, b).1
+    fn i32_binary<O: Op<IntBinary>>(&self, _: O, a: i32, b: i32) -> i32 {
+        scalar::i32_binary(O::OP, a, b).1
     }
 
-    fn u32_binary(&self, op: IntBinary, a: u32, b: u32) -> u32 {
-        scalar::u32_binary(op, a, b).1
+    fn u32_binary<O: Op<IntBinary>>(&self, _: O, a: u32, b: u32) -> u32 {
+        scalar::u32_binary(O::OP, a, b).1
     }
 
-    fn bool_binary(&self, op: BoolBinary, a: Truth, b: Truth) -> Truth {
+    fn bool_binary<O: Op<BoolBinary>>(&self, _: O, a: Truth, b: Truth) -> Truth {
         let (a, b) = (self.known(a), self.known(b));
-        let value = self.lane.bool_binary(op, a.value, b.value);
-        match op {
+        let value = scalar::bool_binary(O::OP, a.value, b.value);
+        match O::OP {
             BoolBinary::And if a.is(false) || b.is(false) => Truth::certain(false),
             BoolBinary::Or if a.is(true) || b.is(true) => Truth::certain(true),
             _ if a.open == 0 && b.open == 0 => Truth::certain(value),
@@ -241,8 +242,8 @@ impl Machine for Margin {
         Truth { value: !a.value, ..a }
     }
 
-    fn f32_compare(&self, op: Compare, a: Bounded, b: Bounded) -> Truth {
-        let value = compare(op, a.value, b.value);
+    fn f32_compare<O: Op<Compare>>(&self, _: O, a: Bounded, b: Bounded) -> Truth {
+        let value = compare(O::OP, a.value, b.value);
         let (x, y) = (a.range, b.range);
         let numbers = !x.is_nan() && !y.is_nan();
         let same = a.id == b.id;
@@ -259,7 +260,7 @@ impl Machine for Margin {
             equal = difference.contains(0.0);
         }
         let unordered = x.nan || y.nan;
-        let (is_true, is_false) = match op {
+        let (is_true, is_false) = match O::OP {
             Compare::Eq => (equal, less || more || unordered),
             Compare::Ne => (less || more || unordered, equal),
             Compare::Lt => (less, equal || more || unordered),
@@ -270,12 +271,12 @@ impl Machine for Margin {
         self.truth(value, is_true, is_false)
     }
 
-    fn i32_compare(&self, op: Compare, a: i32, b: i32) -> Truth {
-        Truth::certain(compare(op, a, b))
+    fn i32_compare<O: Op<Compare>>(&self, _: O, a: i32, b: i32) -> Truth {
+        Truth::certain(compare(O::OP, a, b))
     }
 
-    fn u32_compare(&self, op: Compare, a: u32, b: u32) -> Truth {
-        Truth::certain(compare(op, a, b))
+    fn u32_compare<O: Op<Compare>>(&self, _: O, a: u32, b: u32) -> Truth {
+        Truth::certain(compare(O::OP, a, b))
     }
 
     fn f32_select(&self, c: Truth, a: Bounded, b: Bounded) -> Bounded {
@@ -332,35 +333,31 @@ impl Machine for Margin {
         self.f32(f32::from_bits(a))
     }
 
-    fn f32_beside_infinity(&self, op: Compare, a: Bounded) -> Truth {
+    fn f32_beside_infinity<O: Op<Compare>>(&self, _: O, a: Bounded) -> Truth {
         let Interval { low, high, nan } = a.range;
         let is_number = !a.range.is_nan();
         let may_be_infinite = is_number && (low.is_infinite() || high.is_infinite());
         let may_be_finite = is_number && low < f64::INFINITY && high > f64::NEG_INFINITY;
         let size = a.value.abs();
-        match op {
+        match O::OP {
             Compare::Gt => self.truth(size.is_nan(), nan, is_number),
             Compare::Eq => self.truth(size.is_infinite(), may_be_infinite, nan || may_be_finite),
             Compare::Lt => self.truth(size.is_finite(), may_be_finite, nan || may_be_infinite),
             // The opposites.
-            Compare::Le => self.bool_not(self.f32_beside_infinity(Compare::Gt, a)),
-            Compare::Ne => self.bool_not(self.f32_beside_infinity(Compare::Eq, a)),
-            Compare::Ge => self.bool_not(self.f32_beside_infinity(Compare::Lt, a)),
+            Compare::Le => self.bool_not(self.f32_beside_infinity(op::Gt, a)),
+            Compare::Ne => self.bool_not(self.f32_beside_infinity(op::Eq, a)),
+            Compare::Ge => self.bool_not(self.f32_beside_infinity(op::Lt, a)),
         }
     }
 
-    fn f32_sign_bit(&self, op: Compare, a: Bounded) -> Truth {
+    fn f32_sign_bit<O: Op<Compare>>(&self, _: O, a: Bounded) -> Truth {
         let is_negative = self.is_negative(a);
-        if op == Compare::Lt { is_negative } else { self.bool_not(is_negative) }
+        if O::OP == Compare::Lt { is_negative } else { self.bool_not(is_negative) }
     }
 
     fn f32_copysign(&self, a: Bounded, sign: Bounded) -> Bounded {
-        let size = self.f32_unary(F32Unary::Abs, a);
-        if self.decided(self.is_negative(sign)) {
-            self.f32_unary(F32Unary::Neg, size)
-        } else {
-            size
-        }
+        let size = self.f32_unary(op::Abs, a);
+        if self.decided(self.is_negative(sign)) { self.f32_unary(op::Neg, size) } else { size }
     }
 
     fn bool_to_u32(&self, a: Truth) -> u32 {
@@ -457,6 +454,9 @@ impl Machine for Margin {
         if let Some(function) = crate::math::elementary::function(info) {
             return self.elementary(function, args);
         }
+        if crate::geometry::exact::is_lost_by_cross(info) {
+            return self.lost_by_cross(args);
+        }
         let entry = self.is_running();
         let result = body(self, args);
         self.lane.active.set(entry);
@@ -471,12 +471,43 @@ impl Machine for Margin {
         traverse::query(self, prims, ray, |_| {}, traverse::closest_hit)
     }
 
+    fn closest_hit_with_cost<P: Primitive>(
+        &self,
+        prims: &crate::bvh::SceneView<'_, P>,
+        ray: RayOn<Self>,
+    ) -> crate::bvh::CountedHitOn<Self> {
+        let hit = self.closest_hit(prims, ray);
+        // Boxes are tested in `f32`, and each test may go another way on a device.
+        if self.is_running() {
+            self.decisions.lose();
+        }
+        let cost = crate::bvh::nearest_counted(prims, traverse::rounded(ray)).cost;
+        crate::bvh::CountedHitOn { hit, cost: crate::machine::Type::splat(self, cost) }
+    }
+
     fn any_hit<P: Primitive>(
         &self,
         prims: &crate::bvh::SceneView<'_, P>,
         ray: RayOn<Self>,
     ) -> B<Self> {
         B(traverse::query(self, prims, ray, |_| {}, traverse::any_hit))
+    }
+
+    fn local_ray<T: crate::machine::Type, S: crate::machine::Type>(
+        &self,
+        scene: &crate::bvh::View<'_, T, S>,
+        inst: U<Self>,
+        ray: RayOn<Self>,
+    ) -> RayOn<Self> {
+        traverse::local_ray(self, scene, inst.0, ray)
+    }
+
+    fn to_object<T: crate::machine::Type, S: crate::machine::Type>(
+        &self,
+        scene: &crate::bvh::View<'_, T, S>,
+        inst: U<Self>,
+    ) -> A3<Self> {
+        crate::machine::Type::splat(self, scene.to_object(inst.0))
     }
 
     fn visit<P: Primitive>(

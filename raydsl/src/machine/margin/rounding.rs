@@ -37,10 +37,10 @@ impl Rounding {
         is_strict: true,
     };
 
-    /// What WGSL asks of a device: either neighbour of a sum or product, 2.5 ulp of a quotient whose
-    /// divisor is between 2^-126 and 2^126, `sqrt` as `1 / inverseSqrt`, denormals as 0, sums in any
-    /// order. For elementary functions, which are chains of these, 16 ulp are an estimate. Not in it:
-    /// products whose other order would overflow.
+    /// What WGSL asks of a device: either neighbour of a sum or product, 2.5 ulp of a quotient
+    /// whose divisor is between 2^-126 and 2^126, `sqrt` as `1 / inverseSqrt`, denormals as 0, sums
+    /// in any order. For elementary functions, which are chains of these, 16 ulp are an estimate.
+    /// Not in it: products whose other order would overflow.
     pub const WGSL: Self = Self {
         sum: ULP,
         quotient: 2.5 * ULP,

@@ -8,14 +8,16 @@
 use core::cell::Cell;
 use std::rc::Rc;
 
+use glam::Vec3;
+
 use super::affine::Form;
 use super::beam::Beam;
 use super::decisions::Explored;
 use super::interval::Interval;
 use super::{Bounded, Margin, Truth};
-use crate::bvh::{Branches, RecordOn, SceneView};
-use crate::geometry::{HitOn, HitRecord, Primitive, RayOn};
-use crate::machine::{B, BoolBinary, Compare, F, Machine, U};
+use crate::bvh::{Allowance, Branches, Placing, RecordOn, SceneView, Target, View};
+use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn, transform_ray};
+use crate::machine::{B, F, Machine, Type, U, V3, op};
 
 /// In how many ways one primitive is asked.
 const WAYS: usize = 64;
@@ -24,11 +26,21 @@ const WAYS: usize = 64;
 pub(super) struct Scene<'a> {
     ray: RayOn<Margin>,
     parts: Vec<Part<'a>>,
-    slack: f64,
+    /// The groups in which the parts are placed, if they are.
+    groups: Option<&'a [Placing]>,
+    /// Of the trees that are parts.
+    allowance: Allowance,
     /// Where the ray meets a primitive.
-    intersect: &'a dyn Fn(u32) -> HitOn<Margin>,
-    /// The bytes of a primitive.
-    bytes: &'a dyn Fn(u32) -> Vec<u8>,
+    intersect: &'a dyn Fn(Name) -> HitOn<Margin>,
+    /// What tells a primitive from others: its bytes, and where it is placed.
+    bytes: &'a dyn Fn(Name) -> Vec<u8>,
+}
+
+/// A primitive of a scene. The order is that of hits at one distance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Name {
+    inst: u32,
+    prim: u32,
 }
 
 /// Some of the primitives, and the tree over them if there is one.
@@ -46,13 +58,20 @@ pub(super) fn query<P: Primitive, R>(
     found: impl Fn(RecordOn<Margin, P>),
     query: impl FnOnce(&Margin, &Scene<'_>) -> R,
 ) -> R {
-    let bytes = |id| {
+    let bytes = |name: Name| {
         let mut bytes = vec![0; P::SCHEMA.size()];
-        prims.get(id).write(&mut bytes);
+        prims.get(name.prim).write(&mut bytes);
+        if let Some(placed) = prims.placed() {
+            // On every level: maps that differ may have one product.
+            placed.each_level(name.inst, |_, item| {
+                bytes.extend(item.to_object.to_cols_array().into_iter().flat_map(f32::to_le_bytes));
+            });
+        }
         bytes
     };
-    let intersect = |id| {
-        let record = P::intersect_one_on(m, &prims.get(id), ray, prims.shared());
+    let intersect = |name: Name| {
+        let ray = local_ray(m, prims, name.inst, ray);
+        let record = P::intersect_one_on(m, &prims.get(name.prim), ray, prims.shared());
         found(record);
         P::Hit::hit_on(record)
     };
@@ -62,11 +81,28 @@ pub(super) fn query<P: Primitive, R>(
         parts: parts
             .map(|p| Part { first: p.first, len: p.prims.len() as u32, tree: p.tree })
             .collect(),
-        slack: f64::from(P::SLACK),
+        groups: prims.placed().map(|placed| &placed.groups[..]),
+        allowance: Allowance::of::<P>(),
         intersect: &intersect,
         bytes: &bytes,
     };
     query(m, &scene)
+}
+
+/// The ray as the tree of an instance is asked about it.
+pub(super) fn local_ray<T, S>(
+    m: &Margin,
+    scene: &View<'_, T, S>,
+    inst: u32,
+    ray: RayOn<Margin>,
+) -> RayOn<Margin> {
+    let mut ray = ray;
+    if let Some(placed) = scene.placed() {
+        placed.each_level(inst, |_, item| {
+            ray = transform_ray::on(m, ray, Type::splat(m, item.to_object));
+        });
+    }
+    ray
 }
 
 /// A value that outlives the forms of its run, with its own.
@@ -75,7 +111,7 @@ type Kept = (Bounded, Option<Rc<Form>>);
 /// How a primitive may be hit.
 #[derive(Clone, Copy)]
 struct Found {
-    id: u32,
+    name: Name,
     t: Bounded,
     u: Bounded,
     v: Bounded,
@@ -85,14 +121,26 @@ struct Found {
     is_reference: bool,
 }
 
+/// The ray as it is if nothing but itself is rounded.
+pub(super) fn rounded(ray: RayOn<Margin>) -> Ray {
+    let number = |v: F<Margin>| v.0.value as f32;
+    let vector = |v: V3<Margin>| Vec3::new(number(v.x), number(v.y), number(v.z));
+    Ray {
+        origin: vector(ray.origin),
+        direction: vector(ray.direction),
+        t_min: number(ray.t_min),
+        t_max: number(ray.t_max),
+    }
+}
+
 /// The least `(t, id)` hit.
 pub(super) fn closest_hit(m: &Margin, scene: &Scene<'_>) -> HitOn<Margin> {
     let mut found = Vec::new();
     let fate = fate(scene.ray);
     let limit = Cell::new(scene.ray.t_max.0.range.high);
     if fate != Fate::Misses {
-        scene.walk(&limit, &mut |id| {
-            let hits = scene.ask(m, id);
+        scene.walk(m, &limit, &mut |name| {
+            let hits = scene.ask(m, name);
             for hit in hits.iter().filter(|h| h.is_certain) {
                 limit.set(limit.get().min(hit.t.range.high));
             }
@@ -102,14 +150,14 @@ pub(super) fn closest_hit(m: &Margin, scene: &Scene<'_>) -> HitOn<Margin> {
     }
     let may_miss = fate != Fate::Runs || !found.iter().any(|h| h.is_certain);
     let candidates = scene.candidates(found);
-    let by_t = |a: &&Found, b: &&Found| a.t.value.total_cmp(&b.t.value).then(a.id.cmp(&b.id));
-    let reference = candidates.iter().filter(|h| h.is_reference).min_by(by_t).map(|h| h.id);
+    let by_t = |a: &&Found, b: &&Found| a.t.value.total_cmp(&b.t.value).then(a.name.cmp(&b.name));
+    let reference = candidates.iter().filter(|h| h.is_reference).min_by(by_t).map(|h| h.name);
     let mut hits: Vec<Option<Found>> = candidates.into_iter().map(Some).collect();
     if may_miss {
         hits.push(None);
     }
     let is_first = |h: &Option<Found>| match h {
-        Some(h) => h.is_reference && Some(h.id) == reference,
+        Some(h) => h.is_reference && Some(h.name) == reference,
         None => reference.is_none(),
     };
     if let Some(at) = hits.iter().position(is_first) {
@@ -129,8 +177,8 @@ pub(super) fn any_hit(m: &Margin, scene: &Scene<'_>) -> Truth {
     }
     let (mut may_be, mut is_certain, mut is_reference) = (false, false, false);
     let limit = Cell::new(scene.ray.t_max.0.range.high);
-    scene.walk(&limit, &mut |id| {
-        for hit in scene.ask(m, id) {
+    scene.walk(m, &limit, &mut |name| {
+        for hit in scene.ask(m, name) {
             may_be = true;
             is_certain |= hit.is_certain && fate == Fate::Runs;
             is_reference |= hit.is_reference;
@@ -156,14 +204,14 @@ pub(super) fn visit(
         return;
     }
     let end = Cell::new(scene.ray.t_max.0.range.high);
-    scene.walk(&end, &mut |id| {
+    scene.walk(m, &end, &mut |name| {
         let mark = m.forms.len();
-        let hit = (scene.intersect)(id);
+        let hit = (scene.intersect)(name);
         if !m.decided(scene.accepts(m, &hit)) {
             m.forms.truncate(mark);
             return false;
         }
-        let goes_on = meet(HitOn { prim_id: U(id), ..hit });
+        let goes_on = meet(HitOn { prim_id: U(name.prim), inst_id: U(name.inst), ..hit });
         end.set(limit());
         !goes_on
     });
@@ -174,7 +222,8 @@ fn hit_on(m: &Margin, found: Option<Found>) -> HitOn<Margin> {
     HitOn {
         is_hit: B(m.bool(found.is_some())),
         t: number(found.map(|h| h.t)),
-        prim_id: U(found.map_or(0, |h| h.id)),
+        prim_id: U(found.map_or(0, |h| h.name.prim)),
+        inst_id: U(found.map_or(0, |h| h.name.inst)),
         u: number(found.map(|h| h.u)),
         v: number(found.map(|h| h.v)),
     }
@@ -204,17 +253,17 @@ fn fate(ray: RayOn<Margin>) -> Fate {
 impl Scene<'_> {
     /// Whether there is a hit, within the ray's range.
     fn accepts(&self, m: &Margin, hit: &HitOn<Margin>) -> Truth {
-        let late = m.f32_compare(Compare::Ge, hit.t.0, self.ray.t_min.0);
-        let early = m.f32_compare(Compare::Le, hit.t.0, self.ray.t_max.0);
-        let inside = m.bool_binary(BoolBinary::And, late, early);
-        m.bool_binary(BoolBinary::And, hit.is_hit.0, inside)
+        let late = m.f32_compare(op::Ge, hit.t.0, self.ray.t_min.0);
+        let early = m.f32_compare(op::Le, hit.t.0, self.ray.t_max.0);
+        let inside = m.bool_binary(op::And, late, early);
+        m.bool_binary(op::And, hit.is_hit.0, inside)
     }
 
     /// Every way in which one primitive is hit. Forms are kept for the results alone.
-    fn ways(&self, m: &Margin, id: u32) -> Explored<Option<[Kept; 3]>> {
+    fn ways(&self, m: &Margin, name: Name) -> Explored<Option<[Kept; 3]>> {
         m.each_way(WAYS, &|| {
             let mark = m.forms.len();
-            let hit = (self.intersect)(id);
+            let hit = (self.intersect)(name);
             let accepted = m.decided(self.accepts(m, &hit));
             let results = [hit.t.0, hit.u.0, hit.v.0].map(|v| (v, m.forms.get(v.form, v.range)));
             m.forms.truncate(mark);
@@ -223,13 +272,13 @@ impl Scene<'_> {
     }
 
     /// The hits of one primitive; ways that rounding cannot tell apart are one.
-    fn ask(&self, m: &Margin, id: u32) -> Vec<Found> {
+    fn ask(&self, m: &Margin, name: Name) -> Vec<Found> {
         // Most are missed for certain, which intervals can tell.
-        let quick = m.forms.without(|| self.ways(m, id));
+        let quick = m.forms.without(|| self.ways(m, name));
         if quick.is_complete && quick.results.iter().all(Option::is_none) {
             return Vec::new();
         }
-        let ways = self.ways(m, id);
+        let ways = self.ways(m, name);
         if !ways.is_complete && m.is_running() {
             m.decisions.lose();
         }
@@ -252,7 +301,7 @@ impl Scene<'_> {
                     (f.t, f.u, f.v) = (join(f.t, t), join(f.u, u), join(f.v, v));
                 }
                 None => {
-                    found.push(Found { id, t, u, v, is_certain: false, is_reference: way == 0 });
+                    found.push(Found { name, t, u, v, is_certain: false, is_reference: way == 0 });
                 }
             }
         }
@@ -267,7 +316,8 @@ impl Scene<'_> {
     fn candidates(&self, found: Vec<Found>) -> Vec<Found> {
         let certain: Vec<Found> = found.iter().copied().filter(|h| h.is_certain).collect();
         let loses = |h: &Found, to: &Found| {
-            to.t.range.high < h.t.range.low || to.id < h.id && to.t.range.high <= h.t.range.low
+            let is_first = to.name < h.name;
+            to.t.range.high < h.t.range.low || is_first && to.t.range.high <= h.t.range.low
         };
         let near: Vec<Found> =
             found.into_iter().filter(|h| !certain.iter().any(|c| loses(h, c))).collect();
@@ -275,48 +325,104 @@ impl Scene<'_> {
             return near;
         }
         // Copies of a primitive are hit alike, and the first one wins.
-        let bytes: Vec<Vec<u8>> = near.iter().map(|h| (self.bytes)(h.id)).collect();
+        let bytes: Vec<Vec<u8>> = near.iter().map(|h| (self.bytes)(h.name)).collect();
         let is_copy = |(h, own): &(&Found, &Vec<u8>)| {
-            near.iter().zip(&bytes).any(|(other, b)| other.id < h.id && b == *own)
+            near.iter().zip(&bytes).any(|(other, b)| other.name < h.name && b == *own)
         };
         near.iter().zip(&bytes).filter(|h| !is_copy(h)).map(|(h, _)| *h).collect()
     }
 
     /// Visits the primitives that some variant may hit at or before `limit`, until `visit` returns
     /// true.
-    fn walk(&self, limit: &Cell<f64>, visit: &mut dyn FnMut(u32) -> bool) {
-        let _ = self.parts.iter().any(|part| self.walk_part(part, limit, visit));
+    fn walk(&self, m: &Margin, limit: &Cell<f64>, visit: &mut dyn FnMut(Name) -> bool) {
+        match self.groups {
+            None => {
+                let each = |part| self.walk_part(part, 0, self.ray, limit, visit);
+                let _ = self.parts.iter().any(each);
+            }
+            Some(groups) => {
+                if let Some(top) = groups.last() {
+                    self.walk_group(m, top, 0, self.ray, limit, visit);
+                }
+            }
+        }
+    }
+
+    /// [`Scene::walk`] in a group whose first tree has the number `first`.
+    fn walk_group(
+        &self,
+        m: &Margin,
+        group: &Placing,
+        first: u32,
+        ray: RayOn<Margin>,
+        limit: &Cell<f64>,
+        visit: &mut dyn FnMut(Name) -> bool,
+    ) -> bool {
+        if fate(ray) == Fate::Misses {
+            return false;
+        }
+        walk_tree(group.branches(), ray, group.allowance, limit, &mut |index| {
+            let item = &group.items[index as usize];
+            let first = first + item.first;
+            let ray = transform_ray::on(m, ray, Type::splat(m, item.to_object));
+            match item.target {
+                // Coordinates that overflow on the way miss.
+                Target::Tree(_) if fate(ray) == Fate::Misses => false,
+                Target::Tree(tree) => {
+                    self.walk_part(&self.parts[tree as usize], first, ray, limit, visit)
+                }
+                Target::Group(group) => {
+                    let groups = self.groups.unwrap_or(&[]);
+                    self.walk_group(m, &groups[group as usize], first, ray, limit, visit)
+                }
+            }
+        })
     }
 
     fn walk_part(
         &self,
         part: &Part<'_>,
+        inst: u32,
+        ray: RayOn<Margin>,
         limit: &Cell<f64>,
-        visit: &mut dyn FnMut(u32) -> bool,
+        visit: &mut dyn FnMut(Name) -> bool,
     ) -> bool {
-        let Some(tree) = part.tree else {
-            return (part.first..part.first + part.len).any(visit);
-        };
-        let Some(root) = tree.nodes.first() else { return false };
-        let beam = Beam::new(self.ray, root, self.slack);
-        let mut stack = vec![root];
-        while let Some(node) = stack.pop() {
-            if !beam.meets(node, limit.get()) {
-                continue;
-            }
-            let (first, count) = (node.first as usize, node.count as usize);
-            if !node.is_leaf() {
-                let children = &tree.nodes[first..first + 2];
-                // The nearer one comes off the stack first.
-                let is_left_near = beam.enters(&children[0]) <= beam.enters(&children[1]);
-                let order = if is_left_near { [1, 0] } else { [0, 1] };
-                stack.extend(order.map(|i| &children[i]));
-                continue;
-            }
-            if tree.indices[first..first + count].iter().any(|id| visit(part.first + id)) {
-                return true;
-            }
+        let mut visit = |id| visit(Name { inst, prim: part.first + id });
+        match part.tree {
+            Some(tree) => walk_tree(tree, ray, self.allowance, limit, &mut visit),
+            None => (0..part.len).any(visit),
         }
-        false
     }
+}
+
+/// Visits what is in the leaves that the ray may meet at or before `limit`, until `visit` returns
+/// true.
+fn walk_tree(
+    tree: Branches<'_>,
+    ray: RayOn<Margin>,
+    allowance: Allowance,
+    limit: &Cell<f64>,
+    visit: &mut dyn FnMut(u32) -> bool,
+) -> bool {
+    let Some(root) = tree.nodes.first() else { return false };
+    let beam = Beam::new(ray, root, allowance);
+    let mut stack = vec![root];
+    while let Some(node) = stack.pop() {
+        if !beam.meets(node, limit.get()) {
+            continue;
+        }
+        let (first, count) = (node.first as usize, node.count as usize);
+        if !node.is_leaf() {
+            let children = &tree.nodes[first..first + 2];
+            // The nearer one comes off the stack first.
+            let is_left_near = beam.enters(&children[0]) <= beam.enters(&children[1]);
+            let order = if is_left_near { [1, 0] } else { [0, 1] };
+            stack.extend(order.map(|i| &children[i]));
+            continue;
+        }
+        if tree.indices[first..first + count].iter().any(|id| visit(*id)) {
+            return true;
+        }
+    }
+    false
 }

@@ -1,40 +1,40 @@
 //! Methods of `f32`: std's, and those of glam's `FloatExt`.
 
 use super::super::{
-    B, Coerce, Compare, F, F32Binary, F32Unary, I, IntBinary, Machine, U, vector::Arithmetic,
+    B, Coerce, Compare, F, F32Binary, F32Unary, I, Machine, Op, U, op, vector::Arithmetic,
 };
 use super::{Method, name};
 
 /// std's `min` and `max`: where one operand is NaN they give the other.
 #[inline(always)]
-fn number_of<M: Machine>(m: &M, op: F32Binary, a: F<M>, b: F<M>) -> F<M> {
+fn number_of<M: Machine, O: Op<F32Binary>>(m: &M, op: O, a: F<M>, b: F<M>) -> F<M> {
     let chosen = m.f32_binary(op, a.0, b.0);
-    let a_is_nan = m.f32_compare(Compare::Ne, a.0, a.0);
+    let a_is_nan = m.f32_compare(op::Ne, a.0, a.0);
     F(m.f32_select(a_is_nan, b.0, chosen))
 }
 
 #[inline(always)]
 pub(super) fn add<M: Machine>(m: &M, a: F<M>, b: F<M>) -> F<M> {
-    F(m.f32_binary(F32Binary::Add, a.0, b.0))
+    F(m.f32_binary(op::Add, a.0, b.0))
 }
 
 #[inline(always)]
 pub(super) fn sub<M: Machine>(m: &M, a: F<M>, b: F<M>) -> F<M> {
-    F(m.f32_binary(F32Binary::Sub, a.0, b.0))
+    F(m.f32_binary(op::Sub, a.0, b.0))
 }
 
 #[inline(always)]
 pub(super) fn mul<M: Machine>(m: &M, a: F<M>, b: F<M>) -> F<M> {
-    F(m.f32_binary(F32Binary::Mul, a.0, b.0))
+    F(m.f32_binary(op::Mul, a.0, b.0))
 }
 
 #[inline(always)]
 pub(super) fn div<M: Machine>(m: &M, a: F<M>, b: F<M>) -> F<M> {
-    F(m.f32_binary(F32Binary::Div, a.0, b.0))
+    F(m.f32_binary(op::Div, a.0, b.0))
 }
 
 #[inline(always)]
-pub(super) fn unary<M: Machine>(m: &M, op: F32Unary, a: F<M>) -> F<M> {
+pub(super) fn unary<M: Machine, O: Op<F32Unary>>(m: &M, op: O, a: F<M>) -> F<M> {
     F(m.f32_unary(op, a.0))
 }
 
@@ -49,14 +49,14 @@ pub(super) fn select<M: Machine>(m: &M, c: B<M>, a: F<M>, b: F<M>) -> F<M> {
 }
 
 #[inline(always)]
-pub(super) fn compare<M: Machine>(m: &M, op: Compare, a: F<M>, b: F<M>) -> B<M> {
+pub(super) fn compare<M: Machine, O: Op<Compare>>(m: &M, op: O, a: F<M>, b: F<M>) -> B<M> {
     B(m.f32_compare(op, a.0, b.0))
 }
 
 #[inline(always)]
 pub(super) fn clamp<M: Machine>(m: &M, a: F<M>, low: F<M>, high: F<M>) -> F<M> {
-    let raised = m.f32_binary(F32Binary::Max, a.0, low.0);
-    F(m.f32_binary(F32Binary::Min, raised, high.0))
+    let raised = m.f32_binary(op::Max, a.0, low.0);
+    F(m.f32_binary(op::Min, raised, high.0))
 }
 
 #[inline(always)]
@@ -65,19 +65,19 @@ pub(super) fn copysign<M: Machine>(m: &M, a: F<M>, sign: F<M>) -> F<M> {
 }
 
 #[inline(always)]
-pub(super) fn beside_infinity<M: Machine>(m: &M, op: Compare, a: F<M>) -> B<M> {
+pub(super) fn beside_infinity<M: Machine, O: Op<Compare>>(m: &M, op: O, a: F<M>) -> B<M> {
     B(m.f32_beside_infinity(op, a.0))
 }
 
 #[inline(always)]
-pub(super) fn sign_bit<M: Machine>(m: &M, op: Compare, a: F<M>) -> B<M> {
+pub(super) fn sign_bit<M: Machine, O: Op<Compare>>(m: &M, op: O, a: F<M>) -> B<M> {
     B(m.f32_sign_bit(op, a.0))
 }
 
 #[inline(always)]
 pub(super) fn signum<M: Machine>(m: &M, a: F<M>) -> F<M> {
     let one = copysign(m, number(m, 1.0), a);
-    select(m, beside_infinity(m, Compare::Gt, a), a, one)
+    select(m, beside_infinity(m, op::Gt, a), a, one)
 }
 
 /// To the nearest whole number, halves away from zero.
@@ -85,20 +85,20 @@ pub(super) fn signum<M: Machine>(m: &M, a: F<M>) -> F<M> {
 /// What `trunc` takes away is exact, and 0 from 2^23 on. WGSL's `round` would give the even number.
 #[inline(always)]
 pub(super) fn round<M: Machine>(m: &M, a: F<M>) -> F<M> {
-    let whole = unary(m, F32Unary::Trunc, a);
-    let rest = unary(m, F32Unary::Abs, sub(m, a, whole));
+    let whole = unary(m, op::Trunc, a);
+    let rest = unary(m, op::Abs, sub(m, a, whole));
     let away = add(m, whole, copysign(m, number(m, 1.0), a));
-    select(m, compare(m, Compare::Ge, rest, number(m, 0.5)), away, whole)
+    select(m, compare(m, op::Ge, rest, number(m, 0.5)), away, whole)
 }
 
 #[inline(always)]
 pub(super) fn fract<M: Machine>(m: &M, a: F<M>) -> F<M> {
-    sub(m, a, unary(m, F32Unary::Trunc, a))
+    sub(m, a, unary(m, op::Trunc, a))
 }
 
 #[inline(always)]
 pub(super) fn fract_gl<M: Machine>(m: &M, a: F<M>) -> F<M> {
-    sub(m, a, unary(m, F32Unary::Floor, a))
+    sub(m, a, unary(m, op::Floor, a))
 }
 
 /// `a (1 - s) + b s`.
@@ -114,28 +114,28 @@ macro_rules! of_f32 {
 }
 
 of_f32! {
-    "abs", |m, a| -> F<M> { unary(m, F32Unary::Abs, a) };
-    "floor", |m, a| -> F<M> { unary(m, F32Unary::Floor, a) };
-    "ceil", |m, a| -> F<M> { unary(m, F32Unary::Ceil, a) };
-    "trunc", |m, a| -> F<M> { unary(m, F32Unary::Trunc, a) };
+    "abs", |m, a| -> F<M> { unary(m, op::Abs, a) };
+    "floor", |m, a| -> F<M> { unary(m, op::Floor, a) };
+    "ceil", |m, a| -> F<M> { unary(m, op::Ceil, a) };
+    "trunc", |m, a| -> F<M> { unary(m, op::Trunc, a) };
     "round", |m, a| -> F<M> { round(m, a) };
     "fract", |m, a| -> F<M> { fract(m, a) };
-    "sqrt", |m, a| -> F<M> { unary(m, F32Unary::Sqrt, a) };
+    "sqrt", |m, a| -> F<M> { unary(m, op::Sqrt, a) };
     "recip", |m, a| -> F<M> { div(m, number(m, 1.0), a) };
     "signum", |m, a| -> F<M> { signum(m, a) };
     "copysign", |m, a, sign: F<M>| -> F<M> { copysign(m, a, sign) };
-    "min", |m, a, b: F<M>| -> F<M> { number_of(m, F32Binary::Min, a, b) };
-    "max", |m, a, b: F<M>| -> F<M> { number_of(m, F32Binary::Max, a, b) };
+    "min", |m, a, b: F<M>| -> F<M> { number_of(m, op::Min, a, b) };
+    "max", |m, a, b: F<M>| -> F<M> { number_of(m, op::Max, a, b) };
     "clamp", |m, a, low: F<M>, high: F<M>| -> F<M> { clamp(m, a, low, high) };
     "mul_add", |m, a, b: F<M>, c: F<M>| -> F<M> { F(m.f32_mul_add(a.0, b.0, c.0)) };
     "to_bits", |m, a| -> U<M> { U(m.f32_to_bits(a.0)) };
     "to_radians", |m, a| -> F<M> { mul(m, a, number(m, core::f32::consts::PI / 180.0)) };
     "to_degrees", |m, a| -> F<M> { mul(m, a, number(m, 57.295_78)) };
-    "is_nan", |m, a| -> B<M> { beside_infinity(m, Compare::Gt, a) };
-    "is_infinite", |m, a| -> B<M> { beside_infinity(m, Compare::Eq, a) };
-    "is_finite", |m, a| -> B<M> { beside_infinity(m, Compare::Lt, a) };
-    "is_sign_negative", |m, a| -> B<M> { sign_bit(m, Compare::Lt, a) };
-    "is_sign_positive", |m, a| -> B<M> { sign_bit(m, Compare::Ge, a) };
+    "is_nan", |m, a| -> B<M> { beside_infinity(m, op::Gt, a) };
+    "is_infinite", |m, a| -> B<M> { beside_infinity(m, op::Eq, a) };
+    "is_finite", |m, a| -> B<M> { beside_infinity(m, op::Lt, a) };
+    "is_sign_negative", |m, a| -> B<M> { sign_bit(m, op::Lt, a) };
+    "is_sign_positive", |m, a| -> B<M> { sign_bit(m, op::Ge, a) };
     // glam's `FloatExt`
     "lerp", |m, a, b: F<M>, s: F<M>| -> F<M> { lerp(m, a, b, s) };
     "lerp_monotonic", |m, a, b: F<M>, s: F<M>| -> F<M> {
@@ -143,7 +143,7 @@ of_f32! {
     };
     "fract_gl", |m, a| -> F<M> { fract_gl(m, a) };
     "step", |m, edge, a: F<M>| -> F<M> {
-        select(m, compare(m, Compare::Lt, a, edge), number(m, 0.0), number(m, 1.0))
+        select(m, compare(m, op::Lt, a, edge), number(m, 0.0), number(m, 1.0))
     };
     "saturate", |m, a| -> F<M> { clamp(m, a, number(m, 0.0), number(m, 1.0)) };
     "smoothstep", |m, a, edge0: F<M>, edge1: F<M>| -> F<M> {{
@@ -244,7 +244,7 @@ pub(crate) trait Signed<M: Machine>: Arithmetic<M> {
 impl<M: Machine> Signed<M> for F<M> {
     #[inline(always)]
     fn abs(m: &M, a: Self) -> Self {
-        unary(m, F32Unary::Abs, a)
+        unary(m, op::Abs, a)
     }
 
     #[inline(always)]
@@ -257,14 +257,14 @@ impl<M: Machine> Signed<M> for I<M> {
     /// The number without a positive counterpart is an error, as in Rust.
     #[inline(always)]
     fn abs(m: &M, a: Self) -> Self {
-        let negative = m.i32_compare(Compare::Lt, a.0, m.i32(0));
+        let negative = m.i32_compare(op::Lt, a.0, m.i32(0));
         I(m.i32_select(negative, m.i32_neg(a.0), a.0))
     }
 
     #[inline(always)]
     fn signum(m: &M, a: Self) -> Self {
-        let positive = m.i32_compare(Compare::Gt, a.0, m.i32(0));
-        let sign = m.i32_binary(IntBinary::Shr, a.0, m.i32(31));
+        let positive = m.i32_compare(op::Gt, a.0, m.i32(0));
+        let sign = m.i32_binary(op::Shr, a.0, m.i32(31));
         I(m.i32_select(positive, m.i32(1), sign))
     }
 }

@@ -2,12 +2,12 @@
 
 use super::super::matrix::{A3, M3, M4};
 use super::super::{
-    Coerce, F, IntBinary, Machine, V3, V4,
+    Coerce, F, Machine, V3, V4,
     vector::{Arithmetic, Vector},
 };
 use super::float::{div, number};
 use super::vector::{cross, dot};
-use super::{Method, name};
+use super::{Method, name, op};
 
 macro_rules! of_matrices {
     ($($t:ident $name:literal, |$m:ident, $s:ident $(, $a:ident: $at:ty)*| -> $out:ty { $e:expr };)+) => {
@@ -39,7 +39,7 @@ pub(crate) fn inverse<M: Machine>(m: &M, a: M3<M>) -> M3<M> {
     let zx = cross(m, a.z_axis, a.x_axis);
     let xy = cross(m, a.x_axis, a.y_axis);
     let scale = V3::splat(div(m, number(m, 1.0), dot(m, a.x_axis, yz)));
-    let scaled = |v| Vector::arithmetic(m, IntBinary::Mul, v, scale);
+    let scaled = |v| Vector::arithmetic(m, op::Mul, v, scale);
     M3 { x_axis: scaled(yz), y_axis: scaled(zx), z_axis: scaled(xy) }.transpose()
 }
 

@@ -6,7 +6,7 @@
 //! prelude has instead.
 
 use super::super::{
-    B, BoolBinary, Coerce, Compare, F, F32Unary, I, IntBinary, Machine, U, V2, V3, V4, X2, X3, X4,
+    B, BoolBinary, Coerce, Compare, F, I, Machine, Op, U, V2, V3, V4, X2, X3, X4, op,
     vector::{Arithmetic, Component, Floats, IsVector, Vector, cast_each},
 };
 use super::float::{
@@ -26,7 +26,7 @@ where
     let products = a.both(
         b,
         #[inline(always)]
-        |x: C, y: C| C::binary(m, IntBinary::Mul, x, y),
+        |x: C, y: C| C::binary(m, op::Mul, x, y),
     );
     sum(m, products)
 }
@@ -38,13 +38,13 @@ where
 {
     a.fold(
         #[inline(always)]
-        |x, y| V::Component::binary(m, IntBinary::Add, x, y),
+        |x, y| V::Component::binary(m, op::Add, x, y),
     )
 }
 
 #[inline(always)]
 fn length<M: Machine, V: Floats<M>>(m: &M, a: V) -> F<M> {
-    unary(m, F32Unary::Sqrt, dot(m, a, a))
+    unary(m, op::Sqrt, dot(m, a, a))
 }
 
 #[inline(always)]
@@ -59,17 +59,17 @@ pub(crate) fn normalize<M: Machine, V: Floats<M>>(m: &M, a: V) -> V {
 
 #[inline(always)]
 fn scaled<M: Machine, V: Floats<M>>(m: &M, a: V, s: F<M>) -> V {
-    V::arithmetic(m, IntBinary::Mul, a, V::of_one(s))
+    V::arithmetic(m, op::Mul, a, V::of_one(s))
 }
 
 #[inline(always)]
 fn plus<M: Machine, V: Floats<M>>(m: &M, a: V, b: V) -> V {
-    V::arithmetic(m, IntBinary::Add, a, b)
+    V::arithmetic(m, op::Add, a, b)
 }
 
 #[inline(always)]
 fn minus<M: Machine, V: Vector<M, Component: Arithmetic<M>>>(m: &M, a: V, b: V) -> V {
-    V::arithmetic(m, IntBinary::Sub, a, b)
+    V::arithmetic(m, op::Sub, a, b)
 }
 
 #[inline(always)]
@@ -90,9 +90,9 @@ fn normalize_or<M: Machine, V: Floats<M>>(m: &M, a: V, fallback: V) -> V {
 /// Whether it is the reciprocal of a length that is neither 0 nor infinite.
 #[inline(always)]
 fn is_usable<M: Machine>(m: &M, scale: F<M>) -> B<M> {
-    let finite = beside_infinity(m, Compare::Lt, scale);
-    let positive = compare(m, Compare::Gt, scale, number(m, 0.0));
-    B(m.bool_binary(BoolBinary::And, finite.0, positive.0))
+    let finite = beside_infinity(m, op::Lt, scale);
+    let positive = compare(m, op::Gt, scale, number(m, 0.0));
+    B(m.bool_binary(op::And, finite.0, positive.0))
 }
 
 #[inline(always)]
@@ -107,27 +107,33 @@ fn refract<M: Machine, V: Floats<M>>(m: &M, a: V, normal: V, eta: F<M>) -> V {
     let one = number(m, 1.0);
     let k = mul(m, mul(m, eta, eta), sub(m, one, mul(m, cosine, cosine)));
     let k = sub(m, one, k);
-    let along = add(m, mul(m, eta, cosine), unary(m, F32Unary::Sqrt, k));
+    let along = add(m, mul(m, eta, cosine), unary(m, op::Sqrt, k));
     let bent = minus(m, scaled(m, a, eta), scaled(m, normal, along));
-    choose(m, compare(m, Compare::Ge, k, number(m, 0.0)), bent, V::zero(m))
+    choose(m, compare(m, op::Ge, k, number(m, 0.0)), bent, V::zero(m))
 }
 
 /// `limit * (a / length)` where the comparison of the squares holds.
 #[inline(always)]
-fn limit_length<M: Machine, V: Floats<M>>(m: &M, op: Compare, a: V, limit: F<M>, other: V) -> V {
+fn limit_length<M: Machine, V: Floats<M>, O: Op<Compare>>(
+    m: &M,
+    op: O,
+    a: V,
+    limit: F<M>,
+    other: V,
+) -> V {
     let square = dot(m, a, a);
-    let unit = V::arithmetic(m, IntBinary::Div, a, V::of_one(unary(m, F32Unary::Sqrt, square)));
+    let unit = V::arithmetic(m, op::Div, a, V::of_one(unary(m, op::Sqrt, square)));
     let beyond = compare(m, op, square, mul(m, limit, limit));
     choose(m, beyond, scaled(m, unit, limit), other)
 }
 
 #[inline(always)]
 fn clamp<M: Machine, V: Vector<M, Component: Arithmetic<M>>>(m: &M, a: V, low: V, high: V) -> V {
-    V::extreme(m, false, high, V::extreme(m, true, low, a))
+    V::extreme(m, op::Min, high, V::extreme(m, op::Max, low, a))
 }
 
 #[inline(always)]
-fn join<M: Machine, V: Vector<M, Component = B<M>>>(m: &M, op: BoolBinary, a: V) -> B<M> {
+fn join<M: Machine, V: Vector<M, Component = B<M>>>(m: &M, op: impl Op<BoolBinary>, a: V) -> B<M> {
     a.fold(
         #[inline(always)]
         |x, y| B(m.bool_binary(op, x.0, y.0)),
@@ -151,12 +157,12 @@ macro_rules! each {
 }
 
 each! {
-    "cmpeq" Arithmetic |m, x, y| -> mask { C::compare(m, Compare::Eq, x, y) };
-    "cmpne" Arithmetic |m, x, y| -> mask { C::compare(m, Compare::Ne, x, y) };
-    "cmplt" Arithmetic |m, x, y| -> mask { C::compare(m, Compare::Lt, x, y) };
-    "cmple" Arithmetic |m, x, y| -> mask { C::compare(m, Compare::Le, x, y) };
-    "cmpgt" Arithmetic |m, x, y| -> mask { C::compare(m, Compare::Gt, x, y) };
-    "cmpge" Arithmetic |m, x, y| -> mask { C::compare(m, Compare::Ge, x, y) };
+    "cmpeq" Arithmetic |m, x, y| -> mask { C::compare(m, op::Eq, x, y) };
+    "cmpne" Arithmetic |m, x, y| -> mask { C::compare(m, op::Ne, x, y) };
+    "cmplt" Arithmetic |m, x, y| -> mask { C::compare(m, op::Lt, x, y) };
+    "cmple" Arithmetic |m, x, y| -> mask { C::compare(m, op::Le, x, y) };
+    "cmpgt" Arithmetic |m, x, y| -> mask { C::compare(m, op::Gt, x, y) };
+    "cmpge" Arithmetic |m, x, y| -> mask { C::compare(m, op::Ge, x, y) };
     "signum" Signed |m, x| -> same { C::signum(m, x) };
 }
 
@@ -168,15 +174,15 @@ macro_rules! floats {
 }
 
 floats! {
-    "floor", |m, a| -> V { V::unary(m, F32Unary::Floor, a) };
-    "ceil", |m, a| -> V { V::unary(m, F32Unary::Ceil, a) };
-    "trunc", |m, a| -> V { V::unary(m, F32Unary::Trunc, a) };
-    "sqrt", |m, a| -> V { V::unary(m, F32Unary::Sqrt, a) };
+    "floor", |m, a| -> V { V::unary(m, op::Floor, a) };
+    "ceil", |m, a| -> V { V::unary(m, op::Ceil, a) };
+    "trunc", |m, a| -> V { V::unary(m, op::Trunc, a) };
+    "sqrt", |m, a| -> V { V::unary(m, op::Sqrt, a) };
     "round", |m, a| -> V { a.each(#[inline(always)] |x| round(m, x)) };
-    "fract", |m, a| -> V { minus(m, a, V::unary(m, F32Unary::Trunc, a)) };
-    "fract_gl", |m, a| -> V { minus(m, a, V::unary(m, F32Unary::Floor, a)) };
+    "fract", |m, a| -> V { minus(m, a, V::unary(m, op::Trunc, a)) };
+    "fract_gl", |m, a| -> V { minus(m, a, V::unary(m, op::Floor, a)) };
     "recip", |m, a| -> V {
-        V::arithmetic(m, IntBinary::Div, V::of_one(number(m, 1.0)), a)
+        V::arithmetic(m, op::Div, V::of_one(number(m, 1.0)), a)
     };
     "copysign", |m, a, b: V| -> V { a.both(b, #[inline(always)] |x, y| copysign(m, x, y)) };
     "lerp", |m, a, b: V, s: F<M>| -> V {
@@ -185,28 +191,28 @@ floats! {
     "midpoint", |m, a, b: V| -> V { scaled(m, plus(m, a, b), number(m, 0.5)) };
     "step", |m, edge, a: V| -> V {
         edge.both(a, #[inline(always)] |edge, a| {
-            select(m, compare(m, Compare::Lt, a, edge), number(m, 0.0), number(m, 1.0))
+            select(m, compare(m, op::Lt, a, edge), number(m, 0.0), number(m, 1.0))
         })
     };
     "is_nan_mask", |m, a| -> V::Of<B<M>> {
-        a.each(#[inline(always)] |x| beside_infinity(m, Compare::Gt, x))
+        a.each(#[inline(always)] |x| beside_infinity(m, op::Gt, x))
     };
     "is_finite_mask", |m, a| -> V::Of<B<M>> {
-        a.each(#[inline(always)] |x| beside_infinity(m, Compare::Lt, x))
+        a.each(#[inline(always)] |x| beside_infinity(m, op::Lt, x))
     };
     "is_negative_mask", |m, a| -> V::Of<B<M>> {
-        a.each(#[inline(always)] |x| sign_bit(m, Compare::Lt, x))
+        a.each(#[inline(always)] |x| sign_bit(m, op::Lt, x))
     };
     "is_nan", |m, a| -> B<M> {
-        join(m, BoolBinary::Or, a.each(#[inline(always)] |x| beside_infinity(m, Compare::Gt, x)))
+        join(m, op::Or, a.each(#[inline(always)] |x| beside_infinity(m, op::Gt, x)))
     };
     "is_finite", |m, a| -> B<M> {
-        join(m, BoolBinary::And, a.each(#[inline(always)] |x| beside_infinity(m, Compare::Lt, x)))
+        join(m, op::And, a.each(#[inline(always)] |x| beside_infinity(m, op::Lt, x)))
     };
     "abs_diff_eq", |m, a, b: V, most: F<M>| -> B<M> {
-        join(m, BoolBinary::And, V::unary(m, F32Unary::Abs, minus(m, a, b)).each(
+        join(m, op::And, V::unary(m, op::Abs, minus(m, a, b)).each(
             #[inline(always)]
-            |x| compare(m, Compare::Le, x, most),
+            |x| compare(m, op::Le, x, most),
         ))
     };
 }
@@ -223,18 +229,18 @@ macro_rules! in_order {
             }});
             method!([$($g)*] $v, "element_sum", |m, a| -> $c { sum(m, a) });
             method!([$($g)*] $v, "element_product", |m, a| -> $c {
-                a.fold(#[inline(always)] |x, y| <$c>::binary(m, IntBinary::Mul, x, y))
+                a.fold(#[inline(always)] |x, y| <$c>::binary(m, op::Mul, x, y))
             });
-            method!([$($g)*] $v, "min", |m, a, b: $v| -> $v { Vector::extreme(m, false, b, a) });
-            method!([$($g)*] $v, "max", |m, a, b: $v| -> $v { Vector::extreme(m, true, b, a) });
+            method!([$($g)*] $v, "min", |m, a, b: $v| -> $v { Vector::extreme(m, op::Min, b, a) });
+            method!([$($g)*] $v, "max", |m, a, b: $v| -> $v { Vector::extreme(m, op::Max, b, a) });
             method!([$($g)*] $v, "clamp", |m, a, low: $v, high: $v| -> $v {
                 clamp(m, a, low, high)
             });
             method!([$($g)*] $v, "min_element", |m, a| -> $c {
-                a.fold_back(#[inline(always)] |x, y| Arithmetic::extreme(m, false, x, y))
+                a.fold_back(#[inline(always)] |x, y| Arithmetic::extreme(m, op::Min, x, y))
             });
             method!([$($g)*] $v, "max_element", |m, a| -> $c {
-                a.fold_back(#[inline(always)] |x, y| Arithmetic::extreme(m, true, x, y))
+                a.fold_back(#[inline(always)] |x, y| Arithmetic::extreme(m, op::Max, x, y))
             });
         )+
     };
@@ -264,7 +270,7 @@ macro_rules! floats_in_order {
                 };
                 "is_normalized", |m, a| -> B<M> {{
                     let off = sub(m, dot(m, a, a), number(m, 1.0));
-                    compare(m, Compare::Le, unary(m, F32Unary::Abs, off), number(m, 2e-4))
+                    compare(m, op::Le, unary(m, op::Abs, off), number(m, 2e-4))
                 }};
                 "project_onto", |m, a, b: $v<M>| -> $v<M> { project_onto(m, a, b) };
                 "reject_from", |m, a, b: $v<M>| -> $v<M> { minus(m, a, project_onto(m, a, b)) };
@@ -290,20 +296,20 @@ macro_rules! floats_in_order {
                 "smoothstep", |m, a, edge0: $v<M>, edge1: $v<M>| -> $v<M> {{
                     let of = |v| $v::splat(number(m, v));
                     let t = Vector::arithmetic(
-                        m, IntBinary::Div, minus(m, a, edge0), minus(m, edge1, edge0),
+                        m, op::Div, minus(m, a, edge0), minus(m, edge1, edge0),
                     );
                     let t = clamp(m, t, of(0.0), of(1.0));
-                    let times = |a, b| Vector::arithmetic(m, IntBinary::Mul, a, b);
+                    let times = |a, b| Vector::arithmetic(m, op::Mul, a, b);
                     times(times(t, t), minus(m, of(3.0), times(of(2.0), t)))
                 }};
                 "clamp_length_max", |m, a, most: F<M>| -> $v<M> {
-                    limit_length(m, Compare::Gt, a, most, a)
+                    limit_length(m, op::Gt, a, most, a)
                 };
                 "clamp_length_min", |m, a, least: F<M>| -> $v<M> {
-                    limit_length(m, Compare::Lt, a, least, a)
+                    limit_length(m, op::Lt, a, least, a)
                 };
                 "clamp_length", |m, a, least: F<M>, most: F<M>| -> $v<M> {
-                    limit_length(m, Compare::Lt, a, least, limit_length(m, Compare::Gt, a, most, a))
+                    limit_length(m, op::Lt, a, least, limit_length(m, op::Gt, a, most, a))
                 };
             }
         )+
@@ -319,16 +325,16 @@ method!([] V2<M>, "perp_dot", |m, a, b: V2<M>| -> F<M> {
 
 #[inline(always)]
 pub(crate) fn cross<M: Machine, E: Arithmetic<M>>(m: &M, a: X3<E>, b: X3<E>) -> X3<E> {
-    let mul = |x, y| E::binary(m, IntBinary::Mul, x, y);
-    let minor = |x, y, z, w| E::binary(m, IntBinary::Sub, mul(x, y), mul(z, w));
+    let mul = |x, y| E::binary(m, op::Mul, x, y);
+    let minor = |x, y, z, w| E::binary(m, op::Sub, mul(x, y), mul(z, w));
     X3 { x: minor(a.y, b.z, b.y, a.z), y: minor(a.z, b.x, b.z, a.x), z: minor(a.x, b.y, b.x, a.y) }
 }
 
 method!([E: Arithmetic<M>] X3<E>, "cross", |m, a, b: X3<E>| -> X3<E> { cross(m, a, b) });
 method!([] V3<M>, "any_orthogonal_vector", |m, a| -> V3<M> {{
-    let size = |x| unary(m, F32Unary::Abs, x);
+    let size = |x| unary(m, op::Abs, x);
     let (zero, neg) = (number(m, 0.0), |x| Arithmetic::neg(m, x));
-    let c = compare(m, Compare::Gt, size(a.x), size(a.y));
+    let c = compare(m, op::Gt, size(a.x), size(a.y));
     choose(m, c, V3 { x: neg(a.z), y: zero, z: a.x }, V3 { x: zero, y: a.z, z: neg(a.y) })
 }});
 method!([] V3<M>, "any_orthonormal_vector", |m, a| -> V3<M> { orthonormal_pair(m, a).1 });
@@ -353,7 +359,7 @@ macro_rules! absolute {
     ($($v:ident),+) => {
         $(
             method!([] $v<F<M>>, "abs", |m, a| -> $v<F<M>> {
-                Floats::unary(m, F32Unary::Abs, a)
+                Floats::unary(m, op::Abs, a)
             });
             method!([] $v<I<M>>, "abs", |m, a| -> $v<I<M>> {
                 a.each(#[inline(always)] |x| Signed::abs(m, x))
@@ -376,15 +382,15 @@ fused!(V2: x y; V3: x y z; V4: x y z w;);
 
 // Masks
 
-method!([V: IsVector + Vector<M, Component = B<M>>] V, "any", |m, a| -> B<M> { join(m, BoolBinary::Or, a) });
-method!([V: IsVector + Vector<M, Component = B<M>>] V, "all", |m, a| -> B<M> { join(m, BoolBinary::And, a) });
+method!([V: IsVector + Vector<M, Component = B<M>>] V, "any", |m, a| -> B<M> { join(m, op::Or, a) });
+method!([V: IsVector + Vector<M, Component = B<M>>] V, "all", |m, a| -> B<M> { join(m, op::And, a) });
 method!([V: IsVector + Vector<M, Component = B<M>>] V, "bitmask", |m, a| -> U<M> {{
     let mut place = 0;
     let bits = a.each(#[inline(always)] |c| {
         place += 1;
-        U(m.u32_binary(IntBinary::Shl, m.bool_to_u32(c.0), m.u32(place - 1)))
+        U(m.u32_binary(op::Shl, m.bool_to_u32(c.0), m.u32(place - 1)))
     });
-    bits.fold(#[inline(always)] |x, y| U(m.u32_binary(IntBinary::Or, x.0, y.0)))
+    bits.fold(#[inline(always)] |x, y| U(m.u32_binary(op::Or, x.0, y.0)))
 }});
 
 // Sizes and parts

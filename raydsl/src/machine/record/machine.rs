@@ -7,18 +7,12 @@ use super::{RecordedBranch, RecordedLoop, Recorder, storage};
 use crate::bvh::RecordOn;
 use crate::geometry::{HitOn, Primitive, RayOn};
 use crate::machine::index::{choose, with_element};
-use crate::machine::scalar;
 use crate::machine::wgsl;
 use crate::machine::{
-    B, BoolBinary, Branch, Compare, F32Binary, F32Unary, IntBinary, KernelInfo, Loop, Machine,
-    Schema, U, U32Unary, Usize, Value, Var,
+    B, BoolBinary, Branch, Compare, F32Binary, F32Unary, IntBinary, KernelInfo, Loop, Machine, Op,
+    Schema, U, U32Unary, Usize, Value, Var, op,
 };
 use crate::math::elementary::{Function, function};
-
-/// Whether dividing by `v` and multiplying by its reciprocal give the same bits.
-fn is_power_of_two(v: f32) -> bool {
-    v.is_normal() && v.to_bits() & 0x007f_ffff == 0
-}
 
 /// `lit_0_125`: the name of a literal in the uniform block.
 fn literal_name(v: f32) -> String {
@@ -36,7 +30,7 @@ fn literal_name(v: f32) -> String {
 impl Recorder {
     /// Drivers fold and reorder arithmetic with constants; with a number of the uniform block they
     /// cannot. A factor that is a power of two may stay: it is exact in any order.
-    fn opaque(&self, id: Id) -> Id {
+    pub(super) fn opaque(&self, id: Id) -> Id {
         if self.arithmetic == wgsl::Arithmetic::Fast {
             return id;
         }
@@ -75,7 +69,7 @@ impl Recorder {
             Function::Pow => "pow",
             Function::SinCos2Pi => {
                 let turn = self.f32(core::f32::consts::TAU);
-                let angle = self.f32_binary(F32Binary::Mul, self.leaves_of(args)[0], turn);
+                let angle = self.f32_binary(op::Mul, self.leaves_of(args)[0], turn);
                 let of = |name| self.add(Expr::Builtin(name, vec![angle]), Type::F32);
                 return Some(self.of_leaves(&[of("sin"), of("cos")]));
             }
@@ -89,7 +83,7 @@ impl Recorder {
     ///
     /// Operations on literals alone are done here: WGSL would do them in other ways, or refuse a
     /// result that is not finite.
-    fn literal(&self, id: Id) -> Option<f32> {
+    pub(super) fn literal(&self, id: Id) -> Option<f32> {
         match self.node(id).expr {
             Expr::F32(bits) => Some(f32::from_bits(bits)),
             _ => None,
@@ -98,14 +92,14 @@ impl Recorder {
 
     /// The integer that `id` is in the source. WGSL refuses operations on constants that overflow,
     /// so these are done here as well.
-    fn i32_literal(&self, id: Id) -> Option<i32> {
+    pub(super) fn i32_literal(&self, id: Id) -> Option<i32> {
         match self.node(id).expr {
             Expr::I32(v) => Some(v),
             _ => None,
         }
     }
 
-    fn u32_literal(&self, id: Id) -> Option<u32> {
+    pub(super) fn u32_literal(&self, id: Id) -> Option<u32> {
         match self.node(id).expr {
             Expr::U32(v) => Some(v),
             _ => None,
@@ -113,32 +107,11 @@ impl Recorder {
     }
 
     /// The truth value that `id` always has.
-    fn truth(&self, id: Id) -> Option<bool> {
+    pub(super) fn truth(&self, id: Id) -> Option<bool> {
         match self.node(id).expr {
             Expr::Bool(v) => Some(v),
             _ => None,
         }
-    }
-
-    fn is_exact_factor(&self, id: Id) -> bool {
-        matches!(self.node(id).expr, Expr::F32(bits) if is_power_of_two(f32::from_bits(bits)))
-    }
-
-    fn binary(&self, op: F32Binary, a: Id, b: Id, ty: Type) -> Id {
-        let (a, b) = match op {
-            F32Binary::Add | F32Binary::Sub => (self.opaque(a), self.opaque(b)),
-            F32Binary::Mul if self.is_exact_factor(a) || self.is_exact_factor(b) => (a, b),
-            F32Binary::Mul => (self.opaque(a), self.opaque(b)),
-            F32Binary::Div if self.is_exact_factor(b) => (a, b),
-            F32Binary::Div => (a, self.opaque(b)),
-            F32Binary::Min | F32Binary::Max => (a, b),
-        };
-        self.add(Expr::F32Binary(op, a, b), ty)
-    }
-
-    /// A vector operand: the number itself where all components are one number.
-    fn operand<const N: usize>(&self, v: [Id; N]) -> Id {
-        if v.iter().all(|x| *x == v[0]) && N > 1 { v[0] } else { self.vector(&v) }
     }
 
     fn select(&self, c: Id, a: Id, b: Id, ty: Type) -> Id {
@@ -147,41 +120,6 @@ impl Recorder {
             Some(false) => b,
             None => self.add(Expr::Select(c, a, b), ty),
         }
-    }
-
-    /// Arithmetic on integer vectors; a shift goes component by component, as its amount must have
-    /// another type.
-    fn int_vector<const N: usize>(
-        &self,
-        op: IntBinary,
-        ty: Type,
-        a: [Id; N],
-        b: [Id; N],
-        one: impl Fn(Id, Id) -> Id,
-    ) -> [Id; N] {
-        let is_number = |x: &Id| matches!(self.node(*x).expr, Expr::I32(_) | Expr::U32(_));
-        let is_shift = matches!(op, IntBinary::Shl | IntBinary::Shr);
-        if is_shift || a.iter().chain(&b).all(is_number) {
-            return core::array::from_fn(|i| one(a[i], b[i]));
-        }
-        let (mut x, mut y) = (self.operand(a), self.operand(b));
-        // Operators of bits want two vectors.
-        let bits = matches!(op, IntBinary::And | IntBinary::Or | IntBinary::Xor);
-        if bits || !(self.is_vector(x) || self.is_vector(y)) {
-            (x, y) = (self.vector(&a), self.vector(&b));
-        }
-        let v = self.add(Expr::IntBinary(op, x, y), ty.times(N));
-        self.components(v)
-    }
-
-    fn is_vector(&self, id: Id) -> bool {
-        matches!(self.node(id).ty, Type::Vector(..))
-    }
-
-    fn components<const N: usize>(&self, v: Id) -> [Id; N] {
-        let names = ["x", "y", "z", "w"];
-        let ty = self.node(v).ty.component();
-        core::array::from_fn(|i| self.add(Expr::Member(v, names[i]), ty))
     }
 
     /// The variable `leave`, which says what labelled loop is being left.
@@ -333,56 +271,23 @@ impl Machine for Recorder {
     fn bool(&self, v: bool) -> Id {
         self.add(Expr::Bool(v), Type::Bool)
     }
-    fn f32_unary(&self, op: F32Unary, a: Id) -> Id {
-        if let Some(a) = self.literal(a) {
-            return self.f32(scalar::f32_unary(op, a));
-        }
-        self.add(Expr::F32Unary(op, a), Type::F32)
+    fn f32_unary<O: Op<F32Unary>>(&self, _: O, a: Id) -> Id {
+        self.float_unary(O::OP, a)
     }
-    fn f32_binary(&self, op: F32Binary, a: Id, b: Id) -> Id {
-        if let (Some(a), Some(b)) = (self.literal(a), self.literal(b)) {
-            return self.f32(scalar::f32_binary(op, a, b));
-        }
-        self.binary(op, a, b, Type::F32)
+    fn f32_binary<O: Op<F32Binary>>(&self, _: O, a: Id, b: Id) -> Id {
+        self.float_binary(O::OP, a, b)
     }
     fn f32_mul_add(&self, a: Id, b: Id, c: Id) -> Id {
         self.add(Expr::MulAdd(a, b, c), Type::F32)
     }
-    fn i32_binary(&self, op: IntBinary, a: Id, b: Id) -> Id {
-        if let (Some(a), Some(b)) = (self.i32_literal(a), self.i32_literal(b)) {
-            return self.i32(scalar::i32_binary(op, a, b).1);
-        }
-        // WGSL refuses a literal 0 there, even in code that never runs.
-        match (op, self.i32_literal(b)) {
-            (IntBinary::Div, Some(0)) => return a,
-            (IntBinary::Rem, Some(0)) => return self.i32(0),
-            _ => {}
-        }
-        self.add(Expr::IntBinary(op, a, b), Type::I32)
+    fn i32_binary<O: Op<IntBinary>>(&self, _: O, a: Id, b: Id) -> Id {
+        self.signed_binary(O::OP, a, b)
     }
-    fn u32_binary(&self, op: IntBinary, a: Id, b: Id) -> Id {
-        if let (Some(a), Some(b)) = (self.u32_literal(a), self.u32_literal(b)) {
-            return self.u32(scalar::u32_binary(op, a, b).1);
-        }
-        match (op, self.u32_literal(b)) {
-            (IntBinary::Div, Some(0)) => return a,
-            (IntBinary::Rem, Some(0)) => return self.u32(0),
-            _ => {}
-        }
-        self.add(Expr::IntBinary(op, a, b), Type::U32)
+    fn u32_binary<O: Op<IntBinary>>(&self, _: O, a: Id, b: Id) -> Id {
+        self.unsigned_binary(O::OP, a, b)
     }
-    fn bool_binary(&self, op: BoolBinary, a: Id, b: Id) -> Id {
-        // What the host decides prunes what depends on it.
-        for (known, other) in [(a, b), (b, a)] {
-            match (op, self.truth(known)) {
-                (BoolBinary::And, Some(true)) | (BoolBinary::Or, Some(false)) => return other,
-                (BoolBinary::And, Some(false)) | (BoolBinary::Or, Some(true)) => return known,
-                (BoolBinary::Xor, Some(false)) => return other,
-                (BoolBinary::Xor, Some(true)) => return self.bool_not(other),
-                (_, None) => {}
-            }
-        }
-        self.add(Expr::BoolBinary(op, a, b), Type::Bool)
+    fn bool_binary<O: Op<BoolBinary>>(&self, _: O, a: Id, b: Id) -> Id {
+        self.truth_binary(O::OP, a, b)
     }
     fn i32_neg(&self, a: Id) -> Id {
         if let Some(a) = self.i32_literal(a) {
@@ -408,23 +313,14 @@ impl Machine for Recorder {
         }
         self.add(Expr::Not(a), Type::Bool)
     }
-    fn f32_compare(&self, op: Compare, a: Id, b: Id) -> Id {
-        if let (Some(a), Some(b)) = (self.literal(a), self.literal(b)) {
-            return self.bool(scalar::compare(op, a, b));
-        }
-        self.add(Expr::Compare(op, a, b), Type::Bool)
+    fn f32_compare<O: Op<Compare>>(&self, _: O, a: Id, b: Id) -> Id {
+        self.float_compare(O::OP, a, b)
     }
-    fn i32_compare(&self, op: Compare, a: Id, b: Id) -> Id {
-        if let (Some(a), Some(b)) = (self.i32_literal(a), self.i32_literal(b)) {
-            return self.bool(scalar::compare(op, a, b));
-        }
-        self.add(Expr::Compare(op, a, b), Type::Bool)
+    fn i32_compare<O: Op<Compare>>(&self, _: O, a: Id, b: Id) -> Id {
+        self.signed_compare(O::OP, a, b)
     }
-    fn u32_compare(&self, op: Compare, a: Id, b: Id) -> Id {
-        if let (Some(a), Some(b)) = (self.u32_literal(a), self.u32_literal(b)) {
-            return self.bool(scalar::compare(op, a, b));
-        }
-        self.add(Expr::Compare(op, a, b), Type::Bool)
+    fn u32_compare<O: Op<Compare>>(&self, _: O, a: Id, b: Id) -> Id {
+        self.unsigned_compare(O::OP, a, b)
     }
     fn f32_select(&self, c: Id, a: Id, b: Id) -> Id {
         self.select(c, a, b, Type::F32)
@@ -493,39 +389,36 @@ impl Machine for Recorder {
         self.add(Expr::Convert(Conversion::To, a), Type::U32)
     }
 
-    fn vector_binary<const N: usize>(&self, op: F32Binary, a: [Id; N], b: [Id; N]) -> [Id; N] {
-        if a.iter().chain(&b).all(|x| self.literal(*x).is_some()) {
-            return core::array::from_fn(|i| self.f32_binary(op, a[i], b[i]));
-        }
-        let (mut x, mut y) = (self.operand(a), self.operand(b));
-        // `min` and `max` are selects by component; two splats still are a vector.
-        let selects = matches!(op, F32Binary::Min | F32Binary::Max);
-        if selects || !(self.is_vector(x) || self.is_vector(y)) {
-            (x, y) = (self.vector(&a), self.vector(&b));
-        }
-        let v = self.binary(op, x, y, Type::F32.times(N));
-        self.components(v)
+    fn vector_binary<O: Op<F32Binary>, const N: usize>(
+        &self,
+        _: O,
+        a: [Id; N],
+        b: [Id; N],
+    ) -> [Id; N] {
+        self.float_vectors(O::OP, a, b)
     }
-    fn vector_unary<const N: usize>(&self, op: F32Unary, a: [Id; N]) -> [Id; N] {
-        if a.iter().all(|x| self.literal(*x).is_some()) {
-            return a.map(|x| self.f32_unary(op, x));
-        }
-        let v = self.vector(&a);
-        let v = self.add(Expr::F32Unary(op, v), Type::F32.times(N));
-        self.components(v)
+    fn vector_unary<O: Op<F32Unary>, const N: usize>(&self, _: O, a: [Id; N]) -> [Id; N] {
+        self.float_vector(O::OP, a)
     }
 
-    fn i32_vector_binary<const N: usize>(&self, op: IntBinary, a: [Id; N], b: [Id; N]) -> [Id; N] {
-        self.int_vector(op, Type::I32, a, b, |x, y| self.i32_binary(op, x, y))
+    fn i32_vector_binary<O: Op<IntBinary>, const N: usize>(
+        &self,
+        _: O,
+        a: [Id; N],
+        b: [Id; N],
+    ) -> [Id; N] {
+        self.int_vectors(O::OP, Type::I32, a, b)
     }
-    fn u32_vector_binary<const N: usize>(&self, op: IntBinary, a: [Id; N], b: [Id; N]) -> [Id; N] {
-        self.int_vector(op, Type::U32, a, b, |x, y| self.u32_binary(op, x, y))
+    fn u32_vector_binary<O: Op<IntBinary>, const N: usize>(
+        &self,
+        _: O,
+        a: [Id; N],
+        b: [Id; N],
+    ) -> [Id; N] {
+        self.int_vectors(O::OP, Type::U32, a, b)
     }
-    fn u32_unary(&self, op: U32Unary, a: Id) -> Id {
-        if let Some(a) = self.u32_literal(a) {
-            return self.u32(scalar::u32_unary(op, a));
-        }
-        self.add(Expr::U32Unary(op, a), Type::U32)
+    fn u32_unary<O: Op<U32Unary>>(&self, _: O, a: Id) -> Id {
+        self.bits_unary(O::OP, a)
     }
 
     fn branch(&self, c: Id) -> RecordedBranch {
@@ -764,6 +657,9 @@ impl Machine for Recorder {
         prims: &crate::bvh::SceneView<'_, P>,
         ray: RayOn<Self>,
     ) -> HitOn<Self> {
+        if prims.placed().is_some() {
+            return self.closest_placed_hit(prims, ray);
+        }
         let function = self.closest_hit_function(prims);
         let ray = self.put_together(
             <RayOn<Self> as Value<Self>>::SCHEMA,
@@ -773,17 +669,54 @@ impl Machine for Recorder {
         let call = self.add(Expr::Call(function, vec![ray]), Type::of(schema));
         self.take_apart(call)
     }
+    fn closest_hit_with_cost<P: Primitive>(
+        &self,
+        prims: &crate::bvh::SceneView<'_, P>,
+        ray: RayOn<Self>,
+    ) -> crate::bvh::CountedHitOn<Self> {
+        let function = match prims.placed() {
+            Some(_) => self.closest_placed_hit_with_cost(prims),
+            None => self.closest_hit_with_cost_function(prims),
+        };
+        let schema: &'static Schema = <crate::bvh::CountedHitOn<Self> as Value<Self>>::SCHEMA;
+        let call = self.add(Expr::Call(function, vec![self.whole(ray)]), Type::of(schema));
+        self.take_apart(call)
+    }
     fn any_hit<P: Primitive>(
         &self,
         prims: &crate::bvh::SceneView<'_, P>,
         ray: RayOn<Self>,
     ) -> B<Self> {
+        if prims.placed().is_some() {
+            return self.any_placed_hit(prims, ray);
+        }
         let function = self.any_hit_function(prims);
         let ray = self.put_together(
             <RayOn<Self> as Value<Self>>::SCHEMA,
             &mut self.leaves_of(ray).into_iter(),
         );
         B(self.add(Expr::Call(function, vec![ray]), Type::Bool))
+    }
+    fn slack<P: Primitive>(&self, prims: &crate::bvh::SceneView<'_, P>) -> crate::machine::F<Self> {
+        match prims.placed() {
+            Some(_) => self.slack_of_places(prims),
+            None => crate::machine::F(self.f32(P::SLACK)),
+        }
+    }
+    fn local_ray<T: crate::machine::Type, S: crate::machine::Type>(
+        &self,
+        scene: &crate::bvh::View<'_, T, S>,
+        inst: U<Self>,
+        ray: RayOn<Self>,
+    ) -> RayOn<Self> {
+        self.local_ray_of(scene, inst, ray)
+    }
+    fn to_object<T: crate::machine::Type, S: crate::machine::Type>(
+        &self,
+        scene: &crate::bvh::View<'_, T, S>,
+        inst: U<Self>,
+    ) -> crate::machine::A3<Self> {
+        self.to_object_of(scene, inst)
     }
     fn visit<P: Primitive>(
         &self,
@@ -798,13 +731,13 @@ impl Machine for Recorder {
         let all = Var::new(self, "each", [V::zero(self); N]);
         let i = Var::new(self, "i", U(self.u32(0)));
         let repeat = Loop::new(self);
-        let goes_on = self.u32_compare(Compare::Lt, i.get(self).0, self.u32(N as u32));
+        let goes_on = self.u32_compare(op::Lt, i.get(self).0, self.u32(N as u32));
         repeat.test(self, B(goes_on));
         let v = f(i.get(self));
         let index = Usize(i.get(self).0);
         all.set(self, with_element(self, all.get(self), index, v));
         repeat.continuing(self);
-        let next = self.u32_binary(IntBinary::WrappingAdd, i.get(self).0, self.u32(1));
+        let next = self.u32_binary(op::WrappingAdd, i.get(self).0, self.u32(1));
         i.set(self, U(next));
         repeat.again(self);
         repeat.end(self);

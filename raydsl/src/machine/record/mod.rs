@@ -4,9 +4,11 @@
 //! handles of expressions. Vectors and structs fall into their scalars on the way and are put
 //! together again where all parts come from one value, so the text reads like the source.
 
+mod arithmetic;
 mod builder;
 mod expression;
 mod function;
+mod instances;
 mod ir;
 mod machine;
 mod module;
@@ -59,7 +61,7 @@ impl State {
 
 /// Whether `name` is a buffer's, or that of a function that goes with it.
 fn belongs_to(name: &str, buffer: &str) -> bool {
-    const FUNCTIONS: [&str; 9] = [
+    const FUNCTIONS: [&str; 12] = [
         "_at",
         "_element",
         "_len",
@@ -69,6 +71,9 @@ fn belongs_to(name: &str, buffer: &str) -> bool {
         "_any_hit_in",
         "_walk",
         "_next",
+        "_enter",
+        "_local_ray",
+        "_to_object",
     ];
     name.strip_prefix(buffer).is_some_and(|rest| {
         rest.is_empty() || FUNCTIONS.contains(&rest) || rest.starts_with("_part")

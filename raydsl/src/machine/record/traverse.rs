@@ -7,7 +7,7 @@ use super::ir::Function;
 use super::names::member_name;
 use super::types::zero_value;
 use super::{Builder, Recorder};
-use crate::bvh::{NODE_SCHEMA, SceneView, View, buffers};
+use crate::bvh::{Cost, CountedHit, NODE_SCHEMA, SceneView, View, buffers};
 use crate::geometry::{Hit, HitRecord, Primitive, Ray, RayOn};
 use crate::machine::{KernelInfo, Schema, Type, Value};
 
@@ -62,7 +62,7 @@ fn enter_leave(s: Slabs, node: Node, t_min: f32, t_max: f32) -> vec2<f32> {
 
 impl Recorder {
     /// The number of the function that `call` records, without a call of it.
-    fn function_of<R: Value<Self>>(&self, call: impl FnOnce(&Self) -> R) -> usize {
+    pub(super) fn function_of<R: Value<Self>>(&self, call: impl FnOnce(&Self) -> R) -> usize {
         self.state.borrow_mut().open.push(Builder::new(&SCRATCH));
         call(self);
         let scratch = self.state.borrow_mut().open.pop();
@@ -89,7 +89,7 @@ impl Recorder {
         state.functions.len() - 1
     }
 
-    fn function_name(&self, i: usize) -> String {
+    pub(super) fn function_name(&self, i: usize) -> String {
         self.state.borrow().functions[i].name().to_owned()
     }
 
@@ -129,7 +129,7 @@ impl Recorder {
     }
 
     /// Records `P::intersect`: the text before and behind its arguments, which gives a `Hit`.
-    fn intersect<P: Primitive>(&self, prims: &SceneView<'_, P>) -> (String, String) {
+    pub(super) fn intersect<P: Primitive>(&self, prims: &SceneView<'_, P>) -> (String, String) {
         let f = self.function_of(|m| {
             let prim = <P::On<Self>>::zero(m);
             P::intersect_among_on(m, prims.kinds(), prim, RayOn::zero(m), prims.shared())
@@ -138,11 +138,12 @@ impl Recorder {
         (self.function_name(f), path)
     }
 
-    pub(super) fn closest_hit_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
+    /// What the least `(t, id)` hit does with a primitive, and the distance beyond which there is
+    /// none.
+    fn closest_text<P: Primitive>(&self, prims: &SceneView<'_, P>) -> (String, String) {
         let prims_name = self.prims_buffer(prims);
         let (intersect, path) = self.intersect(prims);
         self.finite_function();
-        let miss = zero_value(Hit::SCHEMA);
         let test = format!(
             "let candidate = {intersect}({prims_name}_at(id), ray){path};\n\
              if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max\n    \
@@ -153,6 +154,13 @@ impl Recorder {
             "select(ray.t_max, min(best.t + abs(best.t) * {:?}, ray.t_max), best.is_hit)",
             P::SLACK
         );
+        (test, limit)
+    }
+
+    pub(super) fn closest_hit_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
+        let prims_name = self.prims_buffer(prims);
+        let (test, limit) = self.closest_text(prims);
+        let miss = zero_value(Hit::SCHEMA);
         let query = Query {
             result: "Hit",
             declare: &format!("var best = {miss};"),
@@ -160,6 +168,7 @@ impl Recorder {
             test: &test,
             give: "best",
             slack: P::SLACK,
+            counts: false,
         };
         if !prims.is_list() {
             return self.query_function(prims, format!("{prims_name}_closest_hit"), &query);
@@ -171,6 +180,42 @@ impl Recorder {
         self.list_function(prims, format!("{prims_name}_closest_hit"), "Hit", |roots| {
             format!(
                 "    var best = {miss};\n    \
+                 for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
+                 best = {each}(ray, {roots}_at(i), best);\n    }}\n    return best;\n"
+            )
+        })
+    }
+
+    /// The least `(t, id)` hit, with the nodes and primitives that are tested for it.
+    pub(super) fn closest_hit_with_cost_function<P: Primitive>(
+        &self,
+        prims: &SceneView<'_, P>,
+    ) -> usize {
+        let prims_name = self.prims_buffer(prims);
+        let (test, limit) = self.closest_text(prims);
+        let test = format!("cost.primitives = cost.primitives + 1u;\n{test}");
+        let before = zero_value(CountedHit::SCHEMA);
+        let declare = |before: &str| format!("var best = {before}.hit;\nvar cost = {before}.cost;");
+        let query = Query {
+            result: "CountedHit",
+            declare: &declare(&before),
+            limit: &limit,
+            test: &test,
+            give: "CountedHit(best, cost)",
+            slack: P::SLACK,
+            counts: true,
+        };
+        let name = format!("{prims_name}_closest_hit_with_cost");
+        if !prims.is_list() {
+            return self.query_function(prims, name, &query);
+        }
+        // One tree after another, each with the best hit so far, and with what that cost.
+        let each = Query { declare: &declare("before"), ..query };
+        let each_name = format!("{prims_name}_closer_hit_with_cost");
+        let each = self.tree_function(prims, each_name, ", before: CountedHit", &each);
+        self.list_function(prims, name, "CountedHit", |roots| {
+            format!(
+                "    var best = {before};\n    \
                  for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
                  best = {each}(ray, {roots}_at(i), best);\n    }}\n    return best;\n"
             )
@@ -193,6 +238,7 @@ impl Recorder {
             test: &test,
             give: "false",
             slack: P::SLACK,
+            counts: false,
         };
         if !prims.is_list() {
             return self.query_function(prims, format!("{prims_name}_any_hit"), &query);
@@ -215,7 +261,7 @@ impl Recorder {
         query: &Query<'_>,
     ) -> usize {
         let (prims_name, tree) = (self.prims_buffer(prims), self.tree(prims));
-        self.text_function(name, types_of::<P>(), |name| match &tree {
+        self.text_function(name, types_of_query::<P>(query), |name| match &tree {
             None => linear(name, query, &prims_name),
             Some(tree) => walk(name, "ray: Ray", ["0u", "ray.t_max"], query, tree),
         })
@@ -231,7 +277,7 @@ impl Recorder {
     ) -> String {
         let Some(tree) = self.tree(prims) else { unreachable!("a list has trees") };
         let parameters = format!("ray: Ray, first: u32{more}");
-        let function = self.text_function(name, types_of::<P>(), |name| {
+        let function = self.text_function(name, types_of_query::<P>(query), |name| {
             walk(name, &parameters, ["first", query.limit], query, &tree)
         });
         self.function_name(function)
@@ -279,6 +325,12 @@ fn types_of<P: Primitive>() -> Vec<&'static Schema> {
     vec![Ray::SCHEMA, Hit::SCHEMA, P::SCHEMA, NODE_SCHEMA]
 }
 
+/// The same, of a query.
+fn types_of_query<P: Primitive>(query: &Query<'_>) -> Vec<&'static Schema> {
+    let counted = query.counts.then_some([Cost::SCHEMA, CountedHit::SCHEMA]);
+    types_of::<P>().into_iter().chain(counted.into_iter().flatten()).collect()
+}
+
 /// The names of a tree's buffers.
 pub(super) struct TreeNames {
     pub(super) nodes: String,
@@ -300,6 +352,18 @@ struct Query<'a> {
     test: &'a str,
     give: &'a str,
     slack: f32,
+    /// Whether the tests of nodes are counted, in `cost.nodes`.
+    counts: bool,
+}
+
+impl Query<'_> {
+    /// The line that counts `n` tests of nodes.
+    fn count(&self, n: u32, indent: usize) -> String {
+        if !self.counts {
+            return String::new();
+        }
+        format!("{:indent$}cost.nodes = cost.nodes + {n}u;\n", "")
+    }
 }
 
 fn linear(name: &str, query: &Query<'_>, prims: &str) -> String {
@@ -315,8 +379,8 @@ fn linear(name: &str, query: &Query<'_>, prims: &str) -> String {
     )
 }
 
-/// Depth-first from the node `first`, which the ray must enter before `end`; the nearer child first,
-/// the farther one on a stack with its distance.
+/// Depth-first from the node `first`, which the ray must enter before `end`; the nearer child
+/// first, the farther one on a stack with its distance.
 fn walk(
     name: &str,
     parameters: &str,
@@ -324,7 +388,8 @@ fn walk(
     query: &Query<'_>,
     tree: &TreeNames,
 ) -> String {
-    let Query { result, declare, limit, test, give, slack } = query;
+    let Query { result, declare, limit, test, give, slack, .. } = query;
+    let (root_count, child_count) = (query.count(1, 4), query.count(2, 12));
     let TreeNames { nodes, indices } = tree;
     let declare = indent(declare, 4);
     let test = indent(test, 16);
@@ -339,7 +404,7 @@ fn {name}({parameters}) -> {result} {{
     var top = 0u;
     var node = {nodes}_at({first});
     let s = slabs(ray, node, {slack:?});
-    let root = enter_leave(s, node, ray.t_min, {end});
+{root_count}    let root = enter_leave(s, node, ray.t_min, {end});
     if (!(root.x <= root.y)) {{
         return {give};
     }}
@@ -352,7 +417,7 @@ fn {name}({parameters}) -> {result} {{
             let left = {nodes}_at(node.first);
             let right = {nodes}_at(node.first + 1u);
             let limit = {limit};
-            let l = enter_leave(s, left, ray.t_min, limit);
+{child_count}            let l = enter_leave(s, left, ray.t_min, limit);
             let r = enter_leave(s, right, ray.t_min, limit);
             let hit_left = l.x <= l.y;
             let hit_right = r.x <= r.y;

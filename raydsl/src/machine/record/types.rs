@@ -2,12 +2,13 @@
 
 use core::fmt::Write;
 
+use super::instances::{CANDIDATE, DESCENT, LEVEL};
 use super::ir::Type;
 use super::names::{member_name, safe_name, unique};
 use super::visit::TRAVERSAL;
-use crate::bvh::NODE_SCHEMA;
+use crate::bvh::{NODE_SCHEMA, PLACE_SCHEMA};
 use crate::geometry::{Hit, Ray};
-use crate::machine::{Schema, Type as _};
+use crate::machine::{Schema, Type as HostType};
 
 /// The names of types, declared as they are asked for.
 #[derive(Default)]
@@ -37,7 +38,17 @@ fn same_type(a: &Schema, b: &Schema) -> bool {
 }
 
 /// The types that hand-written text names.
-const LIBRARY: [&Schema; 4] = [Ray::SCHEMA, Hit::SCHEMA, NODE_SCHEMA, TRAVERSAL];
+const LIBRARY: [&Schema; 9] = [
+    Ray::SCHEMA,
+    Hit::SCHEMA,
+    NODE_SCHEMA,
+    TRAVERSAL,
+    PLACE_SCHEMA,
+    LEVEL,
+    DESCENT,
+    CANDIDATE,
+    <glam::Affine3 as HostType>::SCHEMA,
+];
 
 impl Names {
     /// The library's types have their names before a user's of the same name is met.

@@ -5,15 +5,13 @@ use super::Recorder;
 use super::ir::{Expr, Id, Stmt, Type};
 use crate::bvh::{NODE_SCHEMA, RecordOn, SceneView};
 use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn};
-use crate::machine::{
-    B, BoolBinary, Branch, Compare, F, Field, IntBinary, Loop, Machine, Schema, U, Value, Var,
-};
+use crate::machine::{B, Branch, F, Field, Loop, Machine, Schema, U, Value, Var, op};
 
 /// As deep as a tree may be, and one more.
 const STACK: usize = 64;
 
 /// No primitive is left.
-const NONE: u32 = u32::MAX;
+pub(super) const NONE: u32 = u32::MAX;
 
 /// A traversal under way.
 pub(super) const TRAVERSAL: &Schema = &Schema::Struct {
@@ -48,13 +46,15 @@ impl Recorder {
         limit: &impl Fn() -> F<Self>,
         meet: &impl Fn(HitOn<Self>, RecordOn<Self, P>) -> B<Self>,
     ) {
-        if prims.is_list() {
+        if prims.placed().is_some() {
+            self.visit_placed(prims, ray, limit, meet);
+        } else if prims.is_list() {
             let roots = self.roots_buffer(prims);
             let call = |function, arguments| self.add(Expr::Call(function, arguments), Type::U32);
             let len = || call(self.len_of_buffer(&roots), vec![]);
             self.count(
                 "tree",
-                |tree| self.u32_compare(Compare::Lt, tree, len()),
+                |tree| self.u32_compare(op::Lt, tree, len()),
                 |tree, trees| {
                     let root = call(self.at_function(&roots, &Schema::U32), vec![tree]);
                     self.visit_tree(prims, Some((root, trees)), ray, limit, meet);
@@ -64,10 +64,12 @@ impl Recorder {
             self.visit_tree(prims, None, ray, limit, meet);
         } else {
             let goes_on = |id| {
-                let within = self.u32_compare(Compare::Lt, id, self.len(prims).0);
-                self.bool_binary(BoolBinary::And, self.is_finite(ray), within)
+                let within = self.u32_compare(op::Lt, id, self.len(prims).0);
+                self.bool_binary(op::And, self.is_finite(ray), within)
             };
-            self.count("id", goes_on, |id, ids| self.ask(prims, ray, U(id), meet, ids));
+            self.count("id", goes_on, |id, ids| {
+                self.ask(prims, ray, [U(id), U(self.u32(0))], meet, ids);
+            });
         }
     }
 
@@ -83,13 +85,14 @@ impl Recorder {
         repeat.test(self, B(goes_on(counter.get(self).0)));
         body(counter.get(self).0, &repeat);
         repeat.continuing(self);
-        let next = self.u32_binary(IntBinary::WrappingAdd, counter.get(self).0, self.u32(1));
+        let next = self.u32_binary(op::WrappingAdd, counter.get(self).0, self.u32(1));
         counter.set(self, U(next));
         repeat.again(self);
         repeat.end(self);
     }
 
-    /// Records a loop over the hits of a tree: of one at `root`, in a loop over all, or of the only one.
+    /// Records a loop over the hits of a tree: of one at `root`, in a loop over all, or of the only
+    /// one.
     fn visit_tree<P: Primitive>(
         &self,
         prims: &SceneView<'_, P>,
@@ -115,30 +118,31 @@ impl Recorder {
             let node = b.node(id);
             (node.pinned, node.name) = (true, Some("id"));
         });
-        repeat.test(self, B(self.u32_compare(Compare::Ne, id, self.u32(NONE))));
-        self.ask(prims, ray, U(id), meet, root.map_or(&repeat, |r| r.1));
+        repeat.test(self, B(self.u32_compare(op::Ne, id, self.u32(NONE))));
+        let names = [U(id), U(self.u32(0))];
+        self.ask(prims, ray, names, meet, root.map_or(&repeat, |r| r.1));
         repeat.continuing(self);
         repeat.again(self);
         repeat.end(self);
     }
 
-    /// Intersects one primitive, and asks about the hit.
-    fn ask<P: Primitive>(
+    /// Intersects one primitive, of an instance, and asks about the hit.
+    pub(super) fn ask<P: Primitive>(
         &self,
         prims: &SceneView<'_, P>,
         ray: RayOn<Self>,
-        id: U<Self>,
+        [id, inst]: [U<Self>; 2],
         meet: &impl Fn(HitOn<Self>, RecordOn<Self, P>) -> B<Self>,
         repeat: &Loop<Self>,
     ) {
         let prim = self.fetch(prims, id);
         let found = P::intersect_among_on(self, prims.kinds(), prim, ray, prims.shared());
         let found = self.named("candidate", found);
-        let hit = HitOn { prim_id: id, ..P::Hit::hit_on(found) };
-        let late = self.f32_compare(Compare::Ge, hit.t.0, ray.t_min.0);
-        let early = self.f32_compare(Compare::Le, hit.t.0, ray.t_max.0);
-        let inside = self.bool_binary(BoolBinary::And, late, early);
-        let is_met = Branch::new(self, B(self.bool_binary(BoolBinary::And, hit.is_hit.0, inside)));
+        let hit = HitOn { prim_id: id, inst_id: inst, ..P::Hit::hit_on(found) };
+        let late = self.f32_compare(op::Ge, hit.t.0, ray.t_min.0);
+        let early = self.f32_compare(op::Le, hit.t.0, ray.t_max.0);
+        let inside = self.bool_binary(op::And, late, early);
+        let is_met = Branch::new(self, B(self.bool_binary(op::And, hit.is_hit.0, inside)));
         if is_met.then(self) {
             let stops =
                 Branch::new(self, B(self.bool_not(meet(hit, P::Hit::with_hit_on(found, hit)).0)));
@@ -150,7 +154,7 @@ impl Recorder {
         is_met.end(self);
     }
 
-    fn whole<V: Value<Self>>(&self, v: V) -> Id {
+    pub(super) fn whole<V: Value<Self>>(&self, v: V) -> Id {
         self.put_together(V::SCHEMA, &mut self.leaves_of(v).into_iter())
     }
 
@@ -159,7 +163,7 @@ impl Recorder {
         let of = |v: crate::machine::V3<Self>| {
             self.add(Expr::Call(function, vec![self.whole(v)]), Type::Bool)
         };
-        self.bool_binary(BoolBinary::And, of(ray.origin), of(ray.direction))
+        self.bool_binary(op::And, of(ray.origin), of(ray.direction))
     }
 
     /// `fn bvh_walk(ray: Ray, ..) -> Traversal` and `fn bvh_next(..) -> u32`.

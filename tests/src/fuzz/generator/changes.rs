@@ -2,8 +2,8 @@
 
 use crate::fuzz::tree::Ty;
 
-/// `place op= value` and what else changes a place, `{p}`. None of them may contain a block: it could
-/// assign to the place.
+/// `place op= value` and what else changes a place, `{p}`. None of them may contain a block: it
+/// could assign to the place.
 pub(super) const fn compound(ty: Ty) -> &'static [&'static str] {
     match ty {
         Ty::F32 => &["{p} += {f};", "{p} -= {f};", "{p} *= {f};", "{p} /= {f};", "{p} *= 0.5;"],

@@ -1,22 +1,26 @@
 //! What is true of every tree that was built, beyond what `validate` asks of all trees.
 
-use super::super::{BuildConfig, MAX_DEPTH, Tree};
+use super::super::source::Boxes;
+use super::super::{BuildConfig, BuildQuality, MAX_DEPTH, Tree};
 use crate::bvh::validate;
 use crate::geometry::Aabb;
 
 /// Panics when `tree` is not a tree over `boxes` as documented.
 pub(super) fn check(tree: &Tree, boxes: &[Aabb], config: &BuildConfig) {
     let Tree { nodes, indices } = tree;
-    validate::check(nodes, indices, boxes.len(), |k| boxes[k]).expect("the tree is sound");
-    // All of them are in leaves.
-    assert_eq!(indices.len(), boxes.len(), "a primitive occurs twice");
+    validate::check(nodes, indices, boxes.len(), &Boxes(|k: usize| boxes[k]))
+        .expect("the tree is sound");
+    // All of them are in leaves, and those that were cut in several.
+    let is_cut = config.quality == BuildQuality::Best;
+    let spare = if is_cut { (boxes.len() as f32 * config.max_duplication) as usize } else { 0 };
+    assert!(indices.len() <= boxes.len() + spare, "{} of {}", indices.len(), boxes.len());
     if boxes.is_empty() {
         assert_eq!(nodes.len(), 0);
         return;
     }
     let mut walk = Walk { tree, boxes, config, next_node: 1, next_index: 0 };
     walk.node(0, 0);
-    assert_eq!(walk.next_index, boxes.len(), "there are indices outside the leaves");
+    assert_eq!(walk.next_index, indices.len(), "there are indices outside the leaves");
 }
 
 /// A depth-first walk.
@@ -42,7 +46,10 @@ impl Walk<'_> {
             assert!(node.count <= self.config.max_leaf_size);
             self.next_index += node.count as usize;
             let indices = self.tree.indices[first..self.next_index].iter();
-            indices.map(|&index| self.boxes[index as usize]).fold(Aabb::EMPTY, Aabb::union)
+            let whole = indices.map(|&index| self.boxes[index as usize]);
+            let whole = whole.fold(Aabb::EMPTY, Aabb::union);
+            // Parts of primitives need less.
+            if self.config.quality == BuildQuality::Best { node.bounds() } else { whole }
         } else {
             assert_eq!(first, self.next_node, "the children of {k} are out of order");
             self.next_node += 2;

@@ -51,6 +51,9 @@ fn settings_out_of_range() {
         ("traversal_cost", BuildConfig { traversal_cost: f32::NAN, ..default }),
         ("intersection_cost", BuildConfig { intersection_cost: 0.0, ..default }),
         ("intersection_cost", BuildConfig { intersection_cost: f32::INFINITY, ..default }),
+        ("max_duplication", BuildConfig { max_duplication: -0.1, ..default }),
+        ("max_duplication", BuildConfig { max_duplication: f32::NAN, ..default }),
+        ("min_overlap", BuildConfig { min_overlap: 1.5, ..default }),
     ];
     for (name, config) in bad {
         let error = build(|_| Aabb::EMPTY, 0, &config).expect_err("out of range");

@@ -43,17 +43,14 @@ impl Numbers {
     }
 }
 
-/// Every way to build a tree.
-const QUALITIES: [BuildQuality; 2] = [BuildQuality::Fast, BuildQuality::Balanced];
-
 /// The checked trees over `boxes` with the default configuration, one of each quality.
-fn trees(boxes: &[Aabb]) -> [Tree; 2] {
+fn trees(boxes: &[Aabb]) -> [Tree; 3] {
     trees_with(boxes, &BuildConfig::default())
 }
 
 /// The checked trees over `boxes`, one of each quality.
-fn trees_with(boxes: &[Aabb], config: &BuildConfig) -> [Tree; 2] {
-    QUALITIES.map(|quality| {
+fn trees_with(boxes: &[Aabb], config: &BuildConfig) -> [Tree; 3] {
+    BuildQuality::ALL.map(|quality| {
         let config = BuildConfig { quality, ..*config };
         let tree = build(|k| boxes[k], boxes.len(), &config).expect("the boxes are valid");
         check::check(&tree, boxes, &config);

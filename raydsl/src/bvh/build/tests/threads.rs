@@ -5,7 +5,7 @@ use super::{Numbers, trees};
 use crate::geometry::Aabb;
 
 /// The trees built by a pool of `threads`.
-fn trees_by(threads: usize, boxes: &[Aabb]) -> [Tree; 2] {
+fn trees_by(threads: usize, boxes: &[Aabb]) -> [Tree; 3] {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("threads can be started").install(|| trees(boxes))
 }

@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use super::super::super::stats;
 use super::super::{BuildConfig, Tree, build, refit};
-use super::{Numbers, QUALITIES};
+use super::{BuildQuality, Numbers};
 use crate::geometry::Aabb;
 
 const COUNT: usize = 1_000_000;
@@ -78,8 +78,8 @@ fn hostile(spheres: &[Aabb]) -> Vec<(&'static str, Vec<Aabb>)> {
 #[ignore = "takes a minute, and wants a quiet machine"]
 fn hostile_inputs_take_three_times_as_long_at_most() {
     let spheres = spheres();
-    for quality in QUALITIES {
-        let config = BuildConfig { quality, ..BuildConfig::default() };
+    for quality in BuildQuality::ALL {
+        let config = BuildConfig::from(quality);
         let report = |name: &str, boxes: &[Aabb]| {
             let (seconds, mut tree) = timed(boxes, &config);
             let cost = stats::sah_cost(&tree.nodes, &config);

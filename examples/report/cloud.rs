@@ -1,0 +1,65 @@
+//! The shade below a cloud of balls: no closed form, so two halves of a reference.
+
+use raydsl::kernel;
+use raydsl::prelude::*;
+use raydsl::report::Missing;
+use raydsl::report::work_precision::{Backend, Case, Estimates, Method, Order, Reference, Run};
+
+use crate::visibility::Ball;
+
+/// The film's edge in pixels: the reference has as many numbers.
+pub(crate) const EDGE: u32 = 16;
+/// Samples of each pixel of each half.
+const HALF: u32 = 16_384;
+
+/// Balls above the unit square.
+fn balls() -> Vec<Ball> {
+    let ball = |i: u32| {
+        let u = Sampler::new(uvec2(i, 1), 0, 0, 1).next_2d(SampleMethod::Random);
+        let v = Sampler::new(uvec2(i, 2), 0, 0, 1).next_2d(SampleMethod::Random);
+        Ball {
+            center: vec3(2.0 * u.x - 1.0, 2.0 * u.y - 1.0, 0.3 + v.x),
+            radius: 0.03 + 0.05 * v.y,
+        }
+    };
+    (0..300).map(ball).collect()
+}
+
+/// The sky that is seen from below where a camera's ray begins.
+#[kernel]
+pub(crate) fn shade(
+    cloud: &Bvh<'_, Ball>,
+    #[host] method: SampleMethod,
+    ray: Ray,
+    sampler: Sampler,
+) -> f32 {
+    let mut sampler = sampler;
+    let direction = sample_cosine_hemisphere(sampler.next_2d(method));
+    let origin = vec3(ray.origin.x, ray.origin.y, 0.0);
+    if cloud.any_hit(Ray::new(origin, direction)) { 0.0 } else { 1.0 }
+}
+
+fn estimate(cloud: &Bvh<'_, Ball>, run: &Run<'_>) -> Result<Estimates, Missing> {
+    let camera = Orthographic::new(vec3(0.0, 0.0, 4.0), Vec3::ZERO, Vec3::Y, 2.0);
+    let method = run.method().sampling();
+    let kernel = kernel!(|ray: Ray, sampler: Sampler| shade(cloud, host(method), ray, sampler));
+    Ok(run.film(&camera, &kernel)?.rays_per_sample(1))
+}
+
+/// The case; its reference takes a second or two.
+pub(crate) fn case() -> Result<Case<'static>, Box<dyn core::error::Error>> {
+    let balls: &'static [Ball] = balls().leak();
+    let cloud = Bvh::build(balls)?;
+    let (method, backend) =
+        (Method::from(SampleMethod::Sobol), Backend::Variant(Variant::widest()));
+    let half = |seed| {
+        let run = Run::new(&method, backend, HALF).sized(EDGE, EDGE).seeded(seed);
+        estimate(&cloud, &run).map(|e| e.values).map_err(|missing| missing.to_string())
+    };
+    let reference = Reference::halves(half(1001)?, half(1002)?);
+    // Edges in four dimensions, two of them the pixel's: theory says nothing of their constants.
+    Ok(Case::new("cloud", reference, move |run| estimate(&cloud, run))
+        .method(SampleMethod::Random, Some(Order::RANDOM))
+        .method(SampleMethod::Stratified, None)
+        .method(SampleMethod::Sobol, None))
+}

@@ -1,0 +1,62 @@
+//! Error against run time of random, stratified and Sobol samples, by every variant, on integrals
+//! whose results are known. Learn here how to measure a kernel of your own so.
+//!
+//! `cargo run --release --example report -- P-AO2` writes `work_precision.svg` and `.png`,
+//! `points.csv`, `report.json`, `table.txt` and `omissions.md` to `out/report`; `all` measures
+//! every case, `list` names them.
+
+mod args;
+mod cloud;
+mod light;
+mod visibility;
+
+use std::error::Error;
+use std::process::ExitCode;
+
+use args::Args;
+use clap::Parser;
+use raydsl::report::work_precision::{Case, WorkPrecision};
+use raydsl_examples::raster::raster;
+
+fn main() -> ExitCode {
+    match run(&Args::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(e) => {
+            eprintln!("report: {e}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(args: &Args) -> Result<(), Box<dyn Error>> {
+    let mut cases: Vec<Case<'_>> = visibility::cases().into_iter().chain(light::cases()).collect();
+    if args.case == "list" {
+        let names: Vec<&str> = cases.iter().map(Case::name).chain(["cloud"]).collect();
+        println!("cases: all, {}", names.join(", "));
+        return Ok(());
+    }
+    cases.retain(|c| args.case == "all" || c.name() == args.case);
+    if args.case == "all" || args.case == "cloud" {
+        cases.push(cloud::case()?);
+    }
+    if cases.is_empty() {
+        return Err(format!("there is no case `{}`; `list` names them", args.case).into());
+    }
+    let methods: Vec<&str> = args.methods.iter().map(String::as_str).collect();
+    let report = WorkPrecision::new()
+        .knobs(&args.knob)
+        .methods(&methods)
+        .backends(&args.variants)
+        .repetitions(args.repetitions)
+        .time(args.time)
+        .size(cloud::EDGE, cloud::EDGE)
+        .progress(|what| eprintln!("{what}"))
+        .run(&cases)?;
+    let plots = report.write(&args.out)?;
+    for (path, case) in plots.iter().zip(&report.cases) {
+        raster(&case.plot(), 2).save(path.with_extension("png"))?;
+    }
+    println!("{}", report.table());
+    println!("{}", args.out.display());
+    Ok(())
+}

@@ -1,0 +1,131 @@
+//! Other structures than the tree.
+
+use super::owner::Owner;
+use super::view::Standing;
+use super::{SceneView, View};
+use crate::geometry::{Kinds, Primitive, Ray};
+use crate::machine::{Capture, Machine, Parameter, Resource};
+
+/// What finds the primitives that a ray may meet: a grid, the tree of another library, a closure.
+///
+/// It stands in for the tree of a [`Bvh`](super::Bvh) in an [`Accelerated`] scene, whose queries
+/// answer as ever: what is hit is a function of the ray and the primitives, and the structure only
+/// says which of them need not be asked.
+pub trait Accelerator: Send + Sync {
+    /// Calls `meet` with the number of every primitive that `ray` may meet at or before the
+    /// distance `limit`; one may be named more than once, in any order, but nearer ones first makes
+    /// for fewer calls. `meet` returns the limit from then on, which becomes smaller where a hit is
+    /// found, and is negative infinity when nothing is sought any more.
+    ///
+    /// A primitive that is not named is not hit. What is named need not be near; numbers beyond the
+    /// last primitive are passed over. The ray is finite; its range is `t_min` to `t_max`.
+    fn candidates(&self, ray: &Ray, limit: f32, meet: &mut dyn FnMut(u32) -> f32);
+}
+
+impl<F: Fn(&Ray, f32, &mut dyn FnMut(u32) -> f32) + Send + Sync> Accelerator for F {
+    fn candidates(&self, ray: &Ray, limit: f32, meet: &mut dyn FnMut(u32) -> f32) {
+        self(ray, limit, meet);
+    }
+}
+
+/// Primitives under an [`Accelerator`] of one's own, which kernels take as they take a
+/// [`Bvh`](super::Bvh).
+///
+/// Packets ask it for one lane after another. A GPU has no use for what runs on the host: there
+/// every primitive is tested, with the same results.
+///
+/// ```
+/// use raydsl::bvh::Accelerated;
+/// use raydsl::prelude::*;
+///
+/// #[primitive(sphere(center, radius))]
+/// struct Ball {
+///     center: Vec3,
+///     radius: f32,
+/// }
+///
+/// // A row along x with one ball in each cell: the cells that the ray passes, nearer ones first.
+/// let row: Vec<_> = (0..100).map(|x| Ball { center: vec3(x as f32, 0.0, 0.0), radius: 0.4 }).collect();
+/// let cells = |ray: &Ray, mut limit: f32, meet: &mut dyn FnMut(u32) -> f32| {
+///     let (o, d) = (ray.origin.x, ray.direction.x);
+///     let mut cell = o.round().clamp(0.0, 99.0);
+///     while (0.0..100.0).contains(&cell) && (d == 0.0 || (cell - 0.5 * d.signum() - o) / d <= limit) {
+///         limit = meet(cell as u32);
+///         cell += if d > 0.0 { 1.0 } else { -1.0 };
+///     }
+/// };
+/// // It takes rays to begin in the row, and to ask for what is ahead.
+/// let scene = Accelerated::new(&row, cells);
+/// let hit = scene.closest_hit(Ray::new(vec3(9.5, 0.0, 0.0), Vec3::X));
+/// assert!((hit.prim_id, scene.any_hit(Ray::new(Vec3::Y, Vec3::X))) == (10, false));
+/// ```
+pub struct Accelerated<'a, P: Primitive> {
+    standing: Standing<'a, P, P::Shared>,
+}
+
+impl<'a, P: Primitive<Shared = ()>> Accelerated<'a, P> {
+    /// Primitives and what finds them.
+    pub fn new(prims: &'a [P], accelerator: impl Accelerator + 'a) -> Self {
+        Self::sharing(prims, &[], accelerator)
+    }
+}
+
+impl<'a, P: Primitive> Accelerated<'a, P> {
+    /// Primitives that share data, and what finds them.
+    pub fn sharing(
+        prims: &'a [P],
+        shared: &'a [P::Shared],
+        accelerator: impl Accelerator + 'a,
+    ) -> Self {
+        let (accelerator, owner) = (Box::new(accelerator), Owner::new());
+        Self { standing: Standing { prims, shared, accelerator, owner, kinds: Kinds::of(prims) } }
+    }
+
+    /// The primitives, as the application owns them.
+    pub fn primitives(&self) -> &'a [P] {
+        self.standing.prims
+    }
+
+    /// What the primitives share, as the application owns it.
+    pub fn shared(&self) -> &'a [P::Shared] {
+        self.standing.shared
+    }
+
+    /// The view that kernels work on.
+    pub fn view(&self) -> SceneView<'_, P> {
+        View::standing(&self.standing)
+    }
+}
+
+impl<P: Primitive> core::fmt::Debug for Accelerated<'_, P> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let primitives = self.standing.prims.len();
+        f.debug_struct("Accelerated").field("primitives", &primitives).finish_non_exhaustive()
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine, P: Primitive> Capture<M> for Accelerated<'_, P> {
+    type On<'c>
+        = SceneView<'c, P>
+    where
+        Self: 'c;
+
+    #[inline(always)]
+    fn capture<'c>(&'c self, _: &M, name: &'static str) -> SceneView<'c, P> {
+        self.view().named(name)
+    }
+
+    #[inline(always)]
+    fn constant<'c>(&'c self, _: &M) -> SceneView<'c, P> {
+        self.view()
+    }
+
+    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        visit(&self.view());
+    }
+}
+
+impl<P: Primitive> Parameter for Accelerated<'_, P> {
+    type On<'a, M: Machine> = SceneView<'a, P>;
+}

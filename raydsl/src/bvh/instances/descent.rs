@@ -1,0 +1,117 @@
+//! From instance to instance, for one ray.
+
+use super::placed::{Placing, STACK, Target};
+use crate::bvh::slabs::Slabs;
+use crate::bvh::traverse::{Stack, is_finite};
+use crate::geometry::{Ray, transform_ray};
+
+/// A walk through the groups of a scene, which stops at every tree that the ray may meet.
+///
+/// The groups' trees have leaves of one instance each. The stack is one for all levels: a level
+/// ends where it is as short as it was when the level was entered.
+pub(crate) struct Descent<'a> {
+    groups: &'a [Placing],
+    levels: Vec<Level<'a>>,
+    stack: Stack<f32, STACK>,
+    /// Nodes whose box was tested.
+    pub(crate) nodes: u32,
+}
+
+/// A group on the way.
+struct Level<'a> {
+    group: &'a Placing,
+    /// The number of the first tree in it.
+    first: u32,
+    /// The ray as the group sees it.
+    ray: Ray,
+    slabs: Slabs,
+    /// How long the stack was.
+    bottom: usize,
+}
+
+/// A tree in its place.
+pub(crate) struct Place {
+    pub(crate) tree: u32,
+    pub(crate) inst: u32,
+    /// The ray as the tree sees it.
+    pub(crate) ray: Ray,
+}
+
+impl<'a> Descent<'a> {
+    /// A walk through the last group.
+    pub(crate) fn new(groups: &'a [Placing], ray: Ray) -> Box<Self> {
+        let levels = Vec::with_capacity(1);
+        let mut descent = Box::new(Self { groups, levels, stack: Stack::new(), nodes: 0 });
+        if let Some(top) = groups.last() {
+            descent.enter(top, 0, ray, ray.t_max);
+        }
+        descent
+    }
+
+    /// Goes into a group if the ray may meet it.
+    fn enter(&mut self, group: &'a Placing, first: u32, ray: Ray, limit: f32) {
+        let Some(root) = group.branches().nodes.first() else { return };
+        if !is_finite(&ray) {
+            return;
+        }
+        let slabs = Slabs::new(&ray, root, group.allowance);
+        self.nodes += 1;
+        if let Some(enter) = slabs.enter(root, limit) {
+            self.levels.push(Level { group, first, ray, slabs, bottom: self.stack.len() });
+            self.stack.push(0, enter);
+        }
+    }
+
+    /// The next tree that the ray may meet at or before `limit`.
+    pub(crate) fn next(&mut self, limit: f32) -> Option<Place> {
+        while let Some(level) = self.levels.last() {
+            let (group, first, ray) = (level.group, level.first, level.ray);
+            let Some(index) = self.next_item(limit) else {
+                self.levels.pop();
+                continue;
+            };
+            let item = &group.items[index as usize];
+            let (inst, ray) = (first + item.first, transform_ray(ray, item.to_object));
+            match item.target {
+                Target::Tree(tree) if is_finite(&ray) => return Some(Place { tree, inst, ray }),
+                Target::Tree(_) => {}
+                Target::Group(group) => self.enter(&self.groups[group as usize], inst, ray, limit),
+            }
+        }
+        None
+    }
+
+    /// The next instance of the innermost group that the ray may meet.
+    fn next_item(&mut self, limit: f32) -> Option<u32> {
+        let level = self.levels.last()?;
+        let tree = level.group.branches();
+        while self.stack.len() > level.bottom {
+            let (index, enter) = self.stack.pop()?;
+            if enter > limit {
+                continue;
+            }
+            let mut node = &tree.nodes[index as usize];
+            // Down to a leaf, the nearer child first.
+            while !node.is_leaf() {
+                let children = &tree.nodes[node.first as usize..node.first as usize + 2];
+                self.nodes += 2;
+                let enters =
+                    [&children[0], &children[1]].map(|child| level.slabs.enter(child, limit));
+                node = match enters {
+                    [Some(left), Some(right)] => {
+                        let near = usize::from(right < left);
+                        self.stack.push(node.first + 1 - near as u32, left.max(right));
+                        &children[near]
+                    }
+                    [Some(_), None] => &children[0],
+                    [None, Some(_)] => &children[1],
+                    [None, None] => break,
+                };
+            }
+            if node.is_leaf() {
+                return Some(tree.indices[node.first as usize]);
+            }
+        }
+        None
+    }
+}

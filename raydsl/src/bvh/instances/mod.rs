@@ -1,0 +1,400 @@
+//! Trees that stand in a scene many times.
+
+mod buffers;
+mod descent;
+mod packet_descent;
+mod placed;
+
+use glam::Affine3;
+use thiserror::Error;
+
+use super::slabs::Allowance;
+use super::{Bvh, BvhList, ListError, SceneView, View};
+pub(crate) use buffers::{IS_INSTANCE, PLACE_SCHEMA};
+pub(crate) use descent::Descent;
+pub(crate) use packet_descent::PacketDescent;
+pub(crate) use placed::{Placed, Placing, STACK, Target};
+
+use crate::geometry::{Aabb, Hit, Primitive};
+use crate::machine::{Capture, Machine, Parameter, Resource};
+
+/// The most levels of instances: a group of groups of trees has two.
+pub const MAX_LEVELS: usize = 8;
+
+/// The largest condition number of a transform.
+pub const MAX_CONDITION: f64 = 1e7;
+
+/// Trees over primitives of one type, placed in a scene as often as one likes, turned, scaled and
+/// sheared. What is placed may itself be a [`Group`] of placed trees.
+///
+/// A ray is taken to the space of each object whose box it meets, so that a tree is in memory once
+/// however often it is placed. The direction is not made unit length there: `t` means the same
+/// everywhere. A query answers as one of all copies would: the least `(t, inst_id, prim_id)`.
+/// [`Hit::inst_id`] counts the placed trees, those of the first instance of the outermost group
+/// first; [`Hit::prim_id`] counts through the trees as in a [`BvhList`].
+///
+/// ```
+/// use raydsl::prelude::*;
+///
+/// #[primitive(sphere(center, radius))]
+/// struct Ball {
+///     center: Vec3,
+///     radius: f32,
+/// }
+///
+/// let pearls = [0.0, 1.0, 2.0].map(|x| Ball { center: vec3(x, 0.0, 0.0), radius: 0.5 });
+/// let trees = [Bvh::build(&pearls)?];
+/// let place = |z, scale| Affine3 { translation: vec3(0.0, 0.0, z), ..Affine3::from_scale(Vec3::splat(scale)) };
+/// let scene = Instances::build(&trees, &[Instance::new(0, place(9.0, 1.0)), Instance::new(0, place(5.0, 2.0))])?;
+/// let hit = scene.closest_hit(Ray::new(vec3(2.0, 0.0, 0.0), Vec3::Z));
+/// assert_eq!((hit.inst_id, hit.prim_id, hit.t), (1, 1, 4.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Rounding
+///
+/// Where a transform stretches directions by different amounts, rounding in the object is that much
+/// larger in the scene: [`Instances::amplification`] says how much. Boxes are widened by as much,
+/// so that hits do not depend on the tree over the instances.
+#[derive(Debug)]
+pub struct Instances<'a, P: Primitive> {
+    placed: Placed<'a, P, P::Shared>,
+    /// What each group was made of.
+    groups: Vec<Vec<Instance>>,
+}
+
+/// An object in its place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instance {
+    /// What is placed.
+    pub object: Object,
+    /// From the space of the object to that in which it is placed.
+    pub to_outer: Affine3,
+}
+
+/// What an [`Instance`] places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Object {
+    /// A tree, by its place among the trees of the scene.
+    Tree(usize),
+    /// All instances of a group.
+    Group(Group),
+}
+
+/// Instances that can be placed as one, see [`Instances::group`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Group {
+    /// The scene that has it.
+    scene: u64,
+    index: u32,
+}
+
+impl Instance {
+    /// An object in its place: a tree by its number, or a [`Group`].
+    pub fn new(object: impl Into<Object>, to_outer: Affine3) -> Self {
+        Self { object: object.into(), to_outer }
+    }
+}
+
+impl core::fmt::Display for Object {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Tree(tree) => write!(f, "tree {tree}"),
+            Self::Group(group) => write!(f, "group {}", group.index),
+        }
+    }
+}
+
+impl From<usize> for Object {
+    fn from(tree: usize) -> Self {
+        Self::Tree(tree)
+    }
+}
+
+impl From<Group> for Object {
+    fn from(group: Group) -> Self {
+        Self::Group(group)
+    }
+}
+
+/// Why instances cannot be placed, and what to do about it.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum InstanceError {
+    /// The trees cannot be asked as one.
+    #[error(transparent)]
+    Trees(#[from] ListError),
+    /// A tree or a group that is not there.
+    #[error("instance {instance} places {object}, which the scene does not have before it")]
+    NoSuchObject {
+        /// Which instance of the group.
+        instance: usize,
+        /// What it places.
+        object: Object,
+    },
+    /// A group to be replaced that another scene has.
+    #[error("the group belongs to another scene: keep what `group` of this one gave")]
+    ForeignGroup,
+    /// A transform that is not finite or flattens its object.
+    #[error(
+        "the transform of instance {instance} is not finite or flattens the object: give one with \
+         an inverse"
+    )]
+    NoInverse {
+        /// Which instance of the group.
+        instance: usize,
+    },
+    /// A transform that stretches one direction far more than another.
+    #[error(
+        "the transform of instance {instance} stretches one direction {condition:.3e} times as much \
+         as another: {limit:e} times is the most that `f32` can tell apart"
+    )]
+    IllConditioned {
+        /// Which instance of the group.
+        instance: usize,
+        /// The condition number.
+        condition: f64,
+        /// The largest condition number.
+        limit: f64,
+    },
+    /// An instance so large or so far away that its box is not finite.
+    #[error("instance {instance} reaches beyond the largest `f32`: make it smaller")]
+    TooLarge {
+        /// Which instance of the group.
+        instance: usize,
+    },
+    /// More placed trees than 32-bit numbers can name.
+    #[error("the trees are placed {count} times in all: {limit} can be numbered")]
+    TooMany {
+        /// How many there are.
+        count: u64,
+        /// How many there may be.
+        limit: u64,
+    },
+    /// More levels than [`MAX_LEVELS`], or trees too deep for them.
+    #[error(
+        "the group has {levels} levels of instances and {depth} of nodes: {level_limit} and \
+         {depth_limit} are the most; place the trees in fewer groups"
+    )]
+    TooDeep {
+        /// Levels of instances.
+        levels: usize,
+        /// Levels of nodes in all of them.
+        depth: usize,
+        /// The most levels of instances.
+        level_limit: usize,
+        /// The most levels of nodes.
+        depth_limit: usize,
+    },
+}
+
+impl<'a, P: Primitive> Instances<'a, P> {
+    /// The scene of these instances of trees.
+    ///
+    /// # Errors
+    ///
+    /// As [`Instances::new`] and [`Instances::group`].
+    pub fn build(trees: &'a [Bvh<'a, P>], instances: &[Instance]) -> Result<Self, InstanceError> {
+        let mut scene = Self::new(trees)?;
+        scene.group(instances)?;
+        Ok(scene)
+    }
+
+    /// A scene in which these trees can be placed, and nothing is yet.
+    ///
+    /// # Errors
+    ///
+    /// Trees that [`BvhList::new`] would not take.
+    pub fn new(trees: &'a [Bvh<'a, P>]) -> Result<Self, InstanceError> {
+        let trees = BvhList::new(trees)?.into_trees();
+        Ok(Self { placed: Placed::new(trees, Allowance::of::<P>()), groups: Vec::new() })
+    }
+
+    /// Adds a group of instances of trees and of earlier groups. Rays meet the group that was added
+    /// last, with all that is in it.
+    ///
+    /// ```
+    /// # use raydsl::prelude::*;
+    /// # #[primitive(sphere(center, radius))]
+    /// # struct Ball { center: Vec3, radius: f32 }
+    /// # let leaves = [Ball { center: Vec3::ZERO, radius: 1.0 }];
+    /// let trees = [Bvh::build(&leaves)?];
+    /// let mut scene = Instances::new(&trees)?;
+    /// let at = |x: f32, y: f32| Affine3::from_translation(vec3(x, y, 0.0));
+    /// let row: Vec<_> = (0..100).map(|i| Instance::new(0, at(3.0 * i as f32, 0.0))).collect();
+    /// let row = scene.group(&row)?;
+    /// let field: Vec<_> = (0..100).map(|i| Instance::new(row, at(0.0, 3.0 * i as f32))).collect();
+    /// scene.group(&field)?;
+    /// assert_eq!(scene.count(), 10_000);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// An object that is not there; a transform without an inverse, or with a condition number
+    /// above
+    /// [`MAX_CONDITION`]; boxes beyond `f32`; more instances, or levels of them, than can be
+    /// numbered. The scene is then as it was.
+    pub fn group(&mut self, instances: &[Instance]) -> Result<Group, InstanceError> {
+        let group = self.make(instances, self.groups.len())?;
+        self.placed.groups.push(group);
+        self.placed.version += 1;
+        self.groups.push(instances.to_vec());
+        Ok(Group { scene: self.id(), index: self.groups.len() as u32 - 1 })
+    }
+
+    /// Replaces the instances of a group: they move, come and go. The groups that were added later
+    /// are built anew, since they may contain this one. Nothing of the trees is touched; a device
+    /// keeps their primitives, and is sent nodes, indices and places.
+    ///
+    /// # Errors
+    ///
+    /// As [`Instances::group`]; also a group of another scene. The scene is then as it was.
+    pub fn set_group(&mut self, group: Group, instances: &[Instance]) -> Result<(), InstanceError> {
+        let at = group.index as usize;
+        if group.scene != self.id() {
+            return Err(InstanceError::ForeignGroup);
+        }
+        let later = self.placed.groups.split_off(at);
+        let changed = core::mem::replace(&mut self.groups[at], instances.to_vec());
+        for k in at..self.groups.len() {
+            match self.make(&self.groups[k], k) {
+                Ok(made) => self.placed.groups.push(made),
+                Err(error) => {
+                    self.placed.groups.truncate(at);
+                    self.placed.groups.extend(later);
+                    self.groups[at] = changed;
+                    return Err(error);
+                }
+            }
+        }
+        self.placed.version += 1;
+        Ok(())
+    }
+
+    /// The number that no other scene has.
+    fn id(&self) -> u64 {
+        self.placed.trees.owner.id()
+    }
+
+    /// The tree over a group, which may contain those before it.
+    fn make(&self, instances: &[Instance], groups: usize) -> Result<Placing, InstanceError> {
+        let items =
+            instances.iter().enumerate().map(|(instance, &Instance { object, to_outer })| {
+                let target = match object {
+                    Object::Tree(tree) if tree < self.placed.trees.parts.len() => {
+                        Target::Tree(tree as u32)
+                    }
+                    Object::Group(Group { scene, index })
+                        if scene == self.id() && (index as usize) < groups =>
+                    {
+                        Target::Group(index)
+                    }
+                    _ => return Err(InstanceError::NoSuchObject { instance, object }),
+                };
+                placed::Placement::new(instance, target, to_outer)
+            });
+        Placing::build(&self.placed, &items.collect::<Result<Vec<_>, _>>()?)
+    }
+
+    /// How many trees are placed in the scene, each as often as it is: one more than the largest
+    /// [`Hit::inst_id`].
+    pub fn count(&self) -> u32 {
+        self.placed.top().map_or(0, |top| top.size)
+    }
+
+    /// How many groups there are.
+    pub fn group_count(&self) -> usize {
+        self.groups.len()
+    }
+
+    /// The instances of a group.
+    ///
+    /// # Panics
+    ///
+    /// If it is a group of another scene.
+    pub fn instances_of(&self, group: Group) -> &[Instance] {
+        assert_eq!(group.scene, self.id(), "the group belongs to another scene");
+        &self.groups[group.index as usize]
+    }
+
+    /// Which instance was hit, on every level: its place in the outermost group, then its place in
+    /// the group that is placed there, and so on. Empty for a miss.
+    pub fn path_of(&self, hit: Hit) -> Vec<usize> {
+        let mut path = Vec::new();
+        if hit.is_hit {
+            self.placed.each_level(hit.inst_id, |index, _| path.push(index));
+        }
+        path
+    }
+
+    /// Which tree holds the primitive that was hit, by its place among the trees; none for a miss.
+    pub fn tree_of(&self, hit: Hit) -> Option<usize> {
+        hit.is_hit.then(|| super::list::tree_of(&self.placed.trees.parts, hit.prim_id))
+    }
+
+    /// The number that the first primitive of a tree has.
+    ///
+    /// # Panics
+    ///
+    /// If the scene has no such tree.
+    pub fn first_of(&self, tree: usize) -> u32 {
+        self.placed.trees.parts[tree].first
+    }
+
+    /// How much larger rounding in an object may be in the scene, at most: the largest product of
+    /// the transforms' condition numbers on a way to a tree. 1 where they turn, move and scale
+    /// evenly.
+    pub fn amplification(&self) -> f64 {
+        self.placed.top().map_or(1.0, |top| top.condition)
+    }
+
+    /// A box around everything; empty without primitives. Wider than need be by what rounding may
+    /// do.
+    pub fn bounds(&self) -> Aabb {
+        self.placed.top().map_or(Aabb::EMPTY, Placing::bounds)
+    }
+
+    /// Bytes of the instances and of the trees over them; the trees and the primitives are the
+    /// application's.
+    pub fn bytes(&self) -> usize {
+        let groups = self.groups.iter().map(|group| size_of_val(&group[..]));
+        groups.chain(self.placed.groups.iter().map(Placing::bytes)).sum()
+    }
+
+    /// What the primitives of all trees share.
+    pub fn shared(&self) -> &'a [P::Shared] {
+        self.placed.trees.shared
+    }
+
+    /// The view that kernels work on.
+    pub fn view(&self) -> SceneView<'_, P> {
+        View::instances(&self.placed)
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine, P: Primitive> Capture<M> for Instances<'_, P> {
+    type On<'c>
+        = SceneView<'c, P>
+    where
+        Self: 'c;
+
+    #[inline(always)]
+    fn capture<'c>(&'c self, _: &M, name: &'static str) -> SceneView<'c, P> {
+        self.view().named(name)
+    }
+
+    #[inline(always)]
+    fn constant<'c>(&'c self, _: &M) -> SceneView<'c, P> {
+        self.view()
+    }
+
+    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        visit(&self.view());
+    }
+}
+
+impl<P: Primitive> Parameter for Instances<'_, P> {
+    type On<'a, M: Machine> = SceneView<'a, P>;
+}

@@ -1,0 +1,279 @@
+//! Where the instances of a scene are: what traversal sees of [`Instances`](super::Instances).
+
+use glam::Affine3;
+
+use super::{InstanceError, MAX_CONDITION, MAX_LEVELS};
+use crate::bvh::build::{self, BuildConfig, MAX_PRIMITIVES};
+use crate::bvh::slabs::{Allowance, ULP};
+use crate::bvh::view::{Branches, Trees};
+use crate::bvh::{Node, stats};
+use crate::geometry::affine::{self, Inverted};
+use crate::geometry::{Aabb, Ray, transform_ray};
+
+/// The most nodes that one ray may have to come back to, on all levels of instances together.
+pub(crate) const STACK: usize = 128;
+
+/// An allowance with which every box is met.
+const EVERYTHING: f64 = 16.0;
+
+/// Trees and the groups in which they are placed. Rays meet the last group.
+#[derive(Debug)]
+pub(crate) struct Placed<'a, T, S> {
+    pub(crate) trees: Trees<'a, T, S>,
+    /// By how much boxes are widened in the trees.
+    pub(crate) allowance: Allowance,
+    /// The depth of each tree.
+    depths: Vec<usize>,
+    pub(crate) groups: Vec<Placing>,
+    /// How often the groups have changed.
+    pub(crate) version: u32,
+}
+
+/// The tree over the instances of a group.
+#[derive(Debug)]
+pub(crate) struct Placing {
+    pub(crate) items: Vec<Item>,
+    nodes: Vec<Node>,
+    /// One entry a leaf.
+    indices: Vec<u32>,
+    pub(crate) allowance: Allowance,
+    /// How many trees are placed in it, each as often as it is.
+    pub(super) size: u32,
+    /// Levels of instances.
+    levels: usize,
+    /// Entries of a stack that reaches down to the leaves of the trees.
+    depth: usize,
+    /// See [`Instances::amplification`](super::Instances::amplification).
+    pub(super) condition: f64,
+}
+
+/// An instance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Item {
+    pub(crate) to_object: Affine3,
+    pub(crate) target: Target,
+    /// The number of the first tree that is placed in it, among those of its group.
+    pub(crate) first: u32,
+}
+
+/// What an instance places, by its number.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Target {
+    Tree(u32),
+    Group(u32),
+}
+
+/// An instance, and what its box is made of.
+pub(crate) struct Placement {
+    target: Target,
+    map: Inverted,
+}
+
+impl Placement {
+    pub(super) fn new(
+        instance: usize,
+        target: Target,
+        to_outer: Affine3,
+    ) -> Result<Self, InstanceError> {
+        let map = affine::inverted(to_outer).ok_or(InstanceError::NoInverse { instance })?;
+        if map.condition > MAX_CONDITION {
+            let (condition, limit) = (map.condition, MAX_CONDITION);
+            return Err(InstanceError::IllConditioned { instance, condition, limit });
+        }
+        Ok(Self { target, map })
+    }
+}
+
+/// What is placed, as the group sees it in which it is.
+struct Seen {
+    bounds: Aabb,
+    allowance: Allowance,
+    size: u32,
+    levels: usize,
+    depth: usize,
+    condition: f64,
+}
+
+impl Placing {
+    /// The tree over these instances.
+    pub(super) fn build<T, S>(
+        placed: &Placed<'_, T, S>,
+        instances: &[Placement],
+    ) -> Result<Self, InstanceError> {
+        let mut group = Self {
+            items: Vec::with_capacity(instances.len()),
+            nodes: Vec::new(),
+            indices: Vec::new(),
+            allowance: placed.allowance,
+            size: 0,
+            levels: 1,
+            depth: 0,
+            condition: 1.0,
+        };
+        let size = instances.iter().map(|placing| u64::from(placed.see(placing.target).size)).sum();
+        let (limit, most) = (u64::from(u32::MAX), MAX_PRIMITIVES as u64);
+        if size > limit {
+            return Err(InstanceError::TooMany { count: size, limit });
+        } else if instances.len() as u64 > most {
+            return Err(InstanceError::TooMany { count: instances.len() as u64, limit: most });
+        }
+        // Those that hold anything, and their boxes.
+        let (mut full, mut boxes) = (Vec::new(), Vec::new());
+        for (instance, &Placement { target, map }) in instances.iter().enumerate() {
+            let (seen, first) = (placed.see(target), group.size);
+            if seen.bounds.is_valid() {
+                boxes.push(group.include(instance, &map, &seen)?);
+                full.push(instance as u32);
+            }
+            group.items.push(Item { to_object: map.to_object, target, first });
+            group.size += seen.size;
+        }
+        let config = BuildConfig { max_leaf_size: 1, ..BuildConfig::default() };
+        let tree = build::build(|i| boxes[i], boxes.len(), &config);
+        let tree = tree.unwrap_or_else(|error| unreachable!("boxes have been checked: {error}"));
+        group.depth += stats::depth(&tree.nodes) + 2;
+        group.nodes = tree.nodes;
+        group.indices = tree.indices.into_iter().map(|i| full[i as usize]).collect();
+        group.check_depth()?;
+        Ok(group)
+    }
+
+    /// Takes an instance into account; its box.
+    ///
+    /// Within the object a hit may lie beside its box by `slack` times the reach, along each axis:
+    /// by `sqrt(3)` times that in any direction. The reach, a distance along an axis too, is at
+    /// most `sqrt(3)` times the one in the group. Seen from there both are larger by at most the
+    /// largest stretch of the map, and of its inverse: together by the condition number, so that
+    /// the group needs `3 condition * slack`.
+    ///
+    /// Taking a ray to the object rounds: of the origin, by a few units in the last place of the
+    /// sum `|M| |o| + |b|` of matrix and translation; of the direction likewise. That, and what is
+    /// relative to the origin within the object, divides into a part relative to the distance, one
+    /// relative to the ray's origin, and one that is known beforehand and widens the box.
+    fn include(
+        &mut self,
+        instance: usize,
+        map: &Inverted,
+        seen: &Seen,
+    ) -> Result<Aabb, InstanceError> {
+        let inner = seen.allowance;
+        let rounding = 16.0 * ULP;
+        // More than all is no use, and must stay a number.
+        let larger = |x: f32| {
+            let larger = 3.0 * map.condition * f64::from(x + rounding) * (1.0 + 1e-6);
+            larger.min(EVERYTHING) as f32
+        };
+        self.allowance.slack = self.allowance.slack.max(larger(inner.slack));
+        self.allowance.origin = self.allowance.origin.max(larger(inner.origin));
+        self.condition = self.condition.max(map.condition * seen.condition);
+        self.levels = self.levels.max(1 + seen.levels);
+        self.depth = self.depth.max(seen.depth);
+        let shift = f64::from(map.to_object.translation.abs().element_sum());
+        let margin = 2.0 * map.stretch * shift * f64::from(rounding + inner.origin);
+        let bounds = affine::image(seen.bounds, &map.to_outer, margin);
+        if bounds.is_finite() { Ok(bounds) } else { Err(InstanceError::TooLarge { instance }) }
+    }
+
+    fn check_depth(&self) -> Result<(), InstanceError> {
+        if self.levels <= MAX_LEVELS && self.depth < STACK {
+            return Ok(());
+        }
+        Err(InstanceError::TooDeep {
+            levels: self.levels,
+            depth: self.depth,
+            level_limit: MAX_LEVELS,
+            depth_limit: STACK - 1,
+        })
+    }
+
+    pub(super) fn bounds(&self) -> Aabb {
+        self.nodes.first().map_or(Aabb::EMPTY, Node::bounds)
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.items[..]) + size_of_val(&self.nodes[..]) + size_of_val(&self.indices[..])
+    }
+
+    /// The tree over the instances, whose leaves hold one each.
+    #[inline(always)]
+    pub(crate) fn branches(&self) -> Branches<'_> {
+        Branches { nodes: &self.nodes, indices: &self.indices }
+    }
+}
+
+impl<'a, T, S> Placed<'a, T, S> {
+    pub(super) fn new(trees: Trees<'a, T, S>, allowance: Allowance) -> Self {
+        let nodes = trees.parts.iter().map(|part| part.tree.map_or(&[][..], |tree| tree.nodes));
+        let depths = nodes.map(stats::depth).collect();
+        Self { trees, allowance, depths, groups: Vec::new(), version: 0 }
+    }
+
+    /// The group that rays meet.
+    #[inline(always)]
+    pub(crate) fn top(&self) -> Option<&Placing> {
+        self.groups.last()
+    }
+
+    /// Calls `visit` for every level of an instance, the outermost first, with its place in its
+    /// group. Where there is no such instance, the last one stands for it.
+    #[inline(always)]
+    pub(crate) fn each_level(&self, inst: u32, mut visit: impl FnMut(usize, &Item)) {
+        let (mut group, mut inst) = (self.top(), inst);
+        while let Some(Placing { items, .. }) = group {
+            let Some(index) = items.partition_point(|item| item.first <= inst).checked_sub(1)
+            else {
+                return;
+            };
+            let item = &items[index];
+            visit(index, item);
+            inst -= item.first;
+            group = match item.target {
+                Target::Tree(_) => None,
+                Target::Group(group) => Some(&self.groups[group as usize]),
+            };
+        }
+    }
+
+    /// From the space of the scene to that of an instance's tree.
+    pub(crate) fn to_object(&self, inst: u32) -> Affine3 {
+        let mut map = Affine3::IDENTITY;
+        self.each_level(inst, |_, item| map = item.to_object * map);
+        map
+    }
+
+    /// The ray as an instance's tree is asked about it.
+    pub(crate) fn local_ray(&self, inst: u32, ray: Ray) -> Ray {
+        let mut ray = ray;
+        self.each_level(inst, |_, item| ray = transform_ray(ray, item.to_object));
+        ray
+    }
+}
+
+impl<T, S> Placed<'_, T, S> {
+    fn see(&self, target: Target) -> Seen {
+        match target {
+            Target::Tree(tree) => {
+                let nodes = self.trees.parts[tree as usize].tree.map_or(&[][..], |t| t.nodes);
+                Seen {
+                    bounds: nodes.first().map_or(Aabb::EMPTY, Node::bounds),
+                    allowance: self.allowance,
+                    size: 1,
+                    levels: 0,
+                    depth: self.depths[tree as usize] + 2,
+                    condition: 1.0,
+                }
+            }
+            Target::Group(group) => {
+                let group = &self.groups[group as usize];
+                Seen {
+                    bounds: group.bounds(),
+                    allowance: group.allowance,
+                    size: group.size,
+                    levels: group.levels,
+                    depth: group.depth,
+                    condition: group.condition,
+                }
+            }
+        }
+    }
+}

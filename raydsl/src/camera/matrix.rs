@@ -1,0 +1,181 @@
+//! The camera of a rasteriser.
+
+use glam::{DMat4, DVec3, DVec4, Mat4, Vec2, Vec3, Vec4};
+
+use super::{Camera, CameraRays};
+use crate::geometry::Ray;
+use crate::machine::generic::min;
+use crate::{Type, kernel};
+
+/// Where the near and the far plane are in normalised device coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DepthRange {
+    /// The near plane's.
+    pub near: f32,
+    /// The far plane's.
+    pub far: f32,
+}
+
+impl DepthRange {
+    /// From 0 to 1: WebGPU, Direct3D, Metal and Vulkan; glam's `camera::rh::proj::directx`.
+    pub const ZERO_TO_ONE: Self = Self { near: 0.0, far: 1.0 };
+    /// From -1 to 1: OpenGL; glam's `camera::rh::proj::opengl`.
+    pub const MINUS_ONE_TO_ONE: Self = Self { near: -1.0, far: 1.0 };
+    /// From 1 to 0, with the near plane at 1; glam's `perspective_infinite_reverse`.
+    pub const REVERSED: Self = Self { near: 1.0, far: 0.0 };
+}
+
+/// Why matrices make no camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CameraError {
+    /// The product of projection and view cannot be inverted, or a number of it is not finite.
+    #[error("the product of projection and view has no inverse")]
+    Singular,
+    /// The near and the far plane have the same depth.
+    #[error("the near and the far plane have the same depth")]
+    NoDepth,
+}
+
+/// A camera that is given by the matrices of a rasteriser, so that both kinds of pictures can be
+/// joined: rays go from the near plane to the far one, and [`MatrixRays::window_depth`] of what
+/// they hit is what the rasteriser writes into its depth buffer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Matrix {
+    clip: DMat4,
+    world: DMat4,
+    depth: DepthRange,
+}
+
+impl Matrix {
+    /// A camera of the matrices from the world to the view, and from there to clip space. The near
+    /// plane must lie in front of the eye.
+    ///
+    /// # Errors
+    ///
+    /// If the product has no inverse, or the depths of the planes are equal.
+    pub fn new(view: Mat4, proj: Mat4, depth: DepthRange) -> Result<Self, CameraError> {
+        let clip = proj.as_dmat4() * view.as_dmat4();
+        let world = clip.inverse();
+        // The inverse of a singular matrix is not finite, or none.
+        let rest = (clip * world - DMat4::IDENTITY).to_cols_array();
+        // A NaN is not below, either.
+        let is_inverse = rest.iter().all(|v| v.abs() < 1e-3);
+        if clip.determinant() == 0.0 || !is_inverse {
+            return Err(CameraError::Singular);
+        }
+        if !(depth.near - depth.far).is_normal() {
+            return Err(CameraError::NoDepth);
+        }
+        Ok(Self { clip, world, depth })
+    }
+}
+
+/// A [`Matrix`] camera prepared for a film.
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
+#[repr(C)]
+pub struct MatrixRays {
+    /// The point of the near plane behind the film's corner (0, 0), homogeneous.
+    pub near_corner: Vec4,
+    /// What a pixel to the right adds to it.
+    pub near_right: Vec4,
+    /// What a pixel up adds to it.
+    pub near_up: Vec4,
+    /// From there to the far plane, in another length.
+    pub way_corner: Vec3,
+    /// What a pixel to the right adds to it.
+    pub way_right: Vec3,
+    /// What a pixel up adds to it.
+    pub way_up: Vec3,
+    /// The last coordinate of the point of the far plane, and what pixels to the right and up add
+    /// to it.
+    pub far_w: Vec3,
+    /// The eye, or the middle of the near plane where rays are parallel.
+    pub eye: Vec3,
+    /// From a point, as seen from there, to its depth in the window, times the last coordinate.
+    pub depth: Vec4,
+    /// From a point, as seen from there, to the last coordinate in clip space.
+    pub clip_w: Vec4,
+}
+
+/// A function of the film that is linear: at the corner, and what pixels to the right and up add.
+fn over_film<T: core::ops::Mul<f64, Output = T> + core::ops::Sub<Output = T> + Copy>(
+    [middle, right, up]: [T; 3],
+    width: u32,
+    height: u32,
+) -> [T; 3] {
+    let pixel = |n: u32| 2.0 / f64::from(n.max(1));
+    [middle - right - up, right * pixel(width), up * pixel(height)]
+}
+
+impl Camera for Matrix {
+    type Rays = MatrixRays;
+
+    fn begin_frame(&self, width: u32, height: u32) -> MatrixRays {
+        let DepthRange { near, far } = self.depth;
+        let (near, far) = (f64::from(near), f64::from(far));
+        let plane = |z: f64| self.world.z_axis * z + self.world.w_axis;
+        // All lines of sight have this point: the eye, or the direction of parallel ones.
+        let eye = self.world.z_axis * (far - near);
+        let seen_from = |h: DVec4| (h.truncate() / h.w).as_vec3();
+        let position = Some(seen_from(eye)).filter(|p| p.is_finite());
+        let position = position.unwrap_or_else(|| seen_from(plane(near)));
+        let axes = [plane(near), self.world.x_axis, self.world.y_axis];
+        // From `near` to `near + eye`: the difference of the points times both last coordinates,
+        // where the products of the coordinates of `near` cancel. So it is as linear as `near` is.
+        let way = axes.map(|n: DVec4| eye.truncate() * n.w - n.truncate() * eye.w);
+        let far_w = [plane(far).w, self.world.x_axis.w, self.world.y_axis.w];
+        let [near_corner, near_right, near_up] =
+            over_film(axes, width, height).map(|v| v.as_vec4());
+        let [way_corner, way_right, way_up] = over_film(way, width, height).map(|v| v.as_vec3());
+        let (lowest, span) = (near.min(far), (near - far).abs());
+        let depth = (self.clip.row(2) - self.clip.row(3) * lowest) / span;
+        // What a row gives for a point, as a function of the way there.
+        let from_there =
+            |row: DVec4| row.truncate().extend(row.dot(position.as_dvec3().extend(1.0))).as_vec4();
+        MatrixRays {
+            near_corner,
+            near_right,
+            near_up,
+            way_corner,
+            way_right,
+            way_up,
+            far_w: DVec3::from_array(over_film(far_w, width, height)).as_vec3(),
+            eye: position,
+            depth: from_there(depth),
+            clip_w: from_there(self.clip.row(3)),
+        }
+    }
+}
+
+#[kernel]
+impl CameraRays for MatrixRays {
+    /// The ray from the near plane to the far one; its direction has unit length.
+    fn primary_ray(&self, x: f32, y: f32) -> Ray {
+        let near = self.near_corner + self.near_right * x + self.near_up * y;
+        let way = self.way_corner + self.way_right * x + self.way_up * y;
+        let far_w = self.far_w.x + self.far_w.y * x + self.far_w.z * y;
+        let length = way.length();
+        // A far plane at infinity has a last coordinate of 0.
+        let t_max = if far_w > 0.0 { min(length / (near.w * far_w), f32::MAX) } else { f32::MAX };
+        Ray { origin: near.truncate() / near.w, direction: way / length, t_min: 0.0, t_max }
+    }
+
+    /// The primary ray: there is no lens.
+    fn lens_ray(&self, x: f32, y: f32, _u: Vec2) -> Ray {
+        self.primary_ray(x, y)
+    }
+}
+
+#[kernel]
+impl MatrixRays {
+    /// The depth of a point in the window, from 0 to 1: what a rasteriser writes, with the usual
+    /// depth range of its viewport. For a hit it is `window_depth(ray.at(hit.t))`.
+    #[inline]
+    pub fn window_depth(&self, point: Vec3) -> f32 {
+        // Large coordinates cancel here, where the difference is exact.
+        let way = point - self.eye;
+        let depth = self.depth.truncate().dot(way) + self.depth.w;
+        depth / (self.clip_w.truncate().dot(way) + self.clip_w.w)
+    }
+}

@@ -1,0 +1,42 @@
+//! Kernels that are ready to render with, each as short as one would write it oneself.
+//!
+//! | kernel | what a ray sees |
+//! |---|---|
+//! | [`direct_light()`] | matt surfaces under lamps and suns, with shadows or without |
+//! | [`ambient_occlusion()`] | how much of its surroundings a point sees |
+//! | [`bvh_cost()`], [`bvh_cost_color()`] | what the ray costs in its tree, as numbers or as a colour |
+//!
+//! They are kernels like any other: call them in a [`kernel!`](crate::prelude::kernel) of yours,
+//! from a kernel of yours, or on the host. What they meet is a tree of any primitive that is a
+//! [`Surface`]. For a scene of another kind, or other light, take the source: it is a page each.
+//!
+//! ```
+//! use raydsl::kernels::{DirectionalLight, direct_light};
+//! use raydsl::prelude::*;
+//!
+//! let v = |x, y| vec3(x, y, 0.0);
+//! let triangles = [Triangle { v0: v(-1.0, -1.0), v1: v(3.0, -1.0), v2: v(-1.0, 3.0) }];
+//! let scene = Bvh::build(&triangles)?;
+//! let suns = [DirectionalLight { direction: Vec3::Z, irradiance: Vec3::ONE }];
+//! let (lamps, shadows) = (&[][..], true);
+//! let suns = &suns[..];
+//! let kernel = kernel!(|ray: Ray| direct_light(&scene, lamps, suns, host(shadows), ray));
+//! let camera = Pinhole::new(vec3(0.0, 0.0, 2.0), Vec3::ZERO, Vec3::Y, 0.5);
+//! let mut image = Image::filled(16, 16, Vec4::ZERO);
+//! TiledScheduler::new().frame(&camera, &kernel, &mut image);
+//! // 0.8 of the light comes back, evenly over the hemisphere.
+//! assert!((image.pixels()[0].x - 0.8 / core::f32::consts::PI).abs() < 1e-6);
+//! # Ok::<(), raydsl::bvh::BuildError>(())
+//! ```
+
+mod cost;
+mod direct;
+mod lights;
+mod occlusion;
+mod surface;
+
+pub use cost::{bvh_cost, bvh_cost_color, heat_color};
+pub use direct::{direct_light, irradiance};
+pub use lights::{DirectionalLight, Light, PointLight};
+pub use occlusion::{ambient_occlusion, is_open};
+pub use surface::{Surface, facing};

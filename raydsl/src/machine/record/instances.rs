@@ -1,0 +1,496 @@
+//! Scenes of instances in WGSL.
+//!
+//! One walk goes through groups and trees alike: the nodes of all lie in one buffer, and what a
+//! leaf names is a primitive, or a place in the table of places. It gives the next primitive, as
+//! the walk through a tree does, and with it the ray as its tree sees it.
+
+use super::Recorder;
+use super::ir::{Expr, Stmt, Type};
+use super::types::zero_value;
+use super::visit::NONE;
+use crate::bvh::{
+    Cost, CountedHit, IS_INSTANCE, MAX_LEVELS, NODE_SCHEMA, PLACE_SCHEMA, RecordOn, STACK,
+    SceneView,
+};
+use crate::bvh::{View, any_where, buffers, closest_where};
+use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn, transform_ray};
+use crate::machine::{
+    A3, B, F, Field, KernelInfo, Loop, Machine, Schema, Type as HostType, U, Value, op,
+};
+
+static CLOSEST: KernelInfo =
+    KernelInfo { name: "closest_hit", file: file!(), line: line!(), params: &["ray"] };
+static ANY: KernelInfo =
+    KernelInfo { name: "any_hit", file: file!(), line: line!(), params: &["ray"] };
+
+/// What is kept of the levels around: the groups, and what is around the outermost.
+const LEVELS: usize = MAX_LEVELS + 1;
+
+/// A walk under way, on one level.
+pub(super) const LEVEL: &Schema = &Schema::Struct {
+    name: "WalkLevel",
+    fields: &[
+        Field { name: "ray", offset: 0, schema: Ray::SCHEMA },
+        Field { name: "place", offset: 32, schema: &Schema::U32 },
+        Field { name: "first", offset: 36, schema: &Schema::U32 },
+        Field { name: "bottom", offset: 40, schema: &Schema::U32 },
+    ],
+    size: 44,
+};
+
+/// The members of a walk under way.
+const WALK: [Field; 11] = [
+    Field { name: "here", offset: 0, schema: LEVEL },
+    Field { name: "lower", offset: 44, schema: &Schema::Vector(&Schema::F32, 3) },
+    Field { name: "upper", offset: 56, schema: &Schema::Vector(&Schema::F32, 3) },
+    Field { name: "inverse", offset: 68, schema: &Schema::Vector(&Schema::F32, 3) },
+    Field { name: "next", offset: 80, schema: &Schema::U32 },
+    Field { name: "last", offset: 84, schema: &Schema::U32 },
+    Field { name: "top", offset: 88, schema: &Schema::U32 },
+    Field { name: "level", offset: 92, schema: &Schema::U32 },
+    Field {
+        name: "levels",
+        offset: 96,
+        schema: &Schema::Array { element: LEVEL, count: LEVELS, stride: 44 },
+    },
+    Field {
+        name: "nodes",
+        offset: 96 + 44 * LEVELS,
+        schema: &Schema::Array { element: &Schema::U32, count: STACK, stride: 4 },
+    },
+    Field {
+        name: "enters",
+        offset: 96 + 44 * LEVELS + 4 * STACK,
+        schema: &Schema::Array { element: &Schema::F32, count: STACK, stride: 4 },
+    },
+];
+const WALK_SIZE: usize = 96 + 44 * LEVELS + 8 * STACK;
+
+/// A walk under way.
+pub(super) const DESCENT: &Schema =
+    &Schema::Struct { name: "InstanceWalk", fields: &WALK, size: WALK_SIZE };
+
+/// A walk that counts the nodes that it tests.
+const COUNTED_DESCENT: &Schema = &Schema::Struct {
+    name: "CountedInstanceWalk",
+    fields: &{
+        let [a, b, c, d, e, f, g, h, i, j, k] = WALK;
+        let tested = Field { name: "tested", offset: WALK_SIZE, schema: &Schema::U32 };
+        [a, b, c, d, e, f, g, h, i, j, k, tested]
+    },
+    size: WALK_SIZE + 4,
+};
+
+/// Whether a walk counts.
+#[derive(Clone, Copy, PartialEq)]
+enum Walk {
+    Plain,
+    Counted,
+}
+
+impl Walk {
+    /// Its type.
+    fn schema(self) -> &'static Schema {
+        match self {
+            Self::Plain => DESCENT,
+            Self::Counted => COUNTED_DESCENT,
+        }
+    }
+
+    /// The name of its type, and the end of the names of its functions.
+    fn names(self) -> [&'static str; 2] {
+        match self {
+            Self::Plain => ["InstanceWalk", ""],
+            Self::Counted => ["CountedInstanceWalk", "_with_cost"],
+        }
+    }
+
+    /// The line that counts `n` tests of nodes.
+    fn count(self, n: u32, indent: usize) -> String {
+        match self {
+            Self::Plain => String::new(),
+            Self::Counted => format!("{:indent$}(*w).tested = (*w).tested + {n}u;\n", ""),
+        }
+    }
+}
+
+/// A primitive that the ray may meet.
+pub(super) const CANDIDATE: &Schema = &Schema::Struct {
+    name: "NextPrimitive",
+    fields: &[
+        Field { name: "ray", offset: 0, schema: Ray::SCHEMA },
+        Field { name: "id", offset: 32, schema: &Schema::U32 },
+        Field { name: "inst", offset: 36, schema: &Schema::U32 },
+    ],
+    size: 40,
+};
+
+impl Recorder {
+    /// The least `(t, inst_id, prim_id)` hit: a function of its own.
+    pub(super) fn closest_placed_hit<P: Primitive>(
+        &self,
+        prims: &SceneView<'_, P>,
+        ray: RayOn<Self>,
+    ) -> HitOn<Self> {
+        self.call(&CLOSEST, (ray,), |m, (ray,)| closest_where(m, prims, ray, &|_| B(m.bool(true))))
+    }
+
+    /// Whether there is a hit: a function of its own.
+    pub(super) fn any_placed_hit<P: Primitive>(
+        &self,
+        prims: &SceneView<'_, P>,
+        ray: RayOn<Self>,
+    ) -> B<Self> {
+        self.call(&ANY, (ray,), |m, (ray,)| any_where(m, prims, ray, &|_| B(m.bool(true))))
+    }
+
+    /// The least `(t, inst_id, prim_id)` hit, with the nodes and primitives that are tested for it.
+    pub(super) fn closest_placed_hit_with_cost<P: Primitive>(
+        &self,
+        prims: &SceneView<'_, P>,
+    ) -> usize {
+        let prims_name = self.prims_buffer(prims);
+        let (intersect, path) = self.intersect(prims);
+        let (start, next) = self.descent_functions(prims, Walk::Counted);
+        let (start, next) = (self.function_name(start), self.function_name(next));
+        let (_, places) = self.places(prims);
+        let zero = zero_value(CountedHit::SCHEMA);
+        let types = vec![Ray::SCHEMA, Hit::SCHEMA, Cost::SCHEMA, CountedHit::SCHEMA, P::SCHEMA];
+        self.text_function(format!("{prims_name}_closest_hit_with_cost"), types, |name| {
+            format!(
+                "\
+fn {name}(ray: Ray) -> CountedHit {{
+    let slack = {places}_at(0u).slack;
+    var best = {zero}.hit;
+    var primitives = 0u;
+    var limit = ray.t_max;
+    var w = {start}(ray);
+    loop {{
+        let next = {next}(&w, limit);
+        if (next.id == {NONE}u) {{
+            break;
+        }}
+        primitives = primitives + 1u;
+        let candidate = {intersect}({prims_name}_at(next.id), next.ray){path};
+        let is_first = next.inst < best.inst_id || (next.inst == best.inst_id && next.id < best.prim_id);
+        if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max
+            && (!best.is_hit || candidate.t < best.t || (candidate.t == best.t && is_first))) {{
+            best = candidate;
+            best.prim_id = next.id;
+            best.inst_id = next.inst;
+            limit = min(best.t + abs(best.t) * slack, ray.t_max);
+        }}
+    }}
+    return CountedHit(best, Cost(w.tested, primitives));
+}}
+"
+            )
+        })
+    }
+
+    /// Records a loop over the hits of a scene of instances.
+    pub(super) fn visit_placed<P: Primitive>(
+        &self,
+        prims: &SceneView<'_, P>,
+        ray: RayOn<Self>,
+        limit: &impl Fn() -> F<Self>,
+        meet: &impl Fn(HitOn<Self>, RecordOn<Self, P>) -> B<Self>,
+    ) {
+        let (start, next) = self.descent_functions(prims, Walk::Plain);
+        let start = self.add(Expr::Call(start, vec![self.whole(ray)]), Type::Of(DESCENT));
+        let walk = self.builder(|b| {
+            let walk = b.new_var("walk", Type::Of(DESCENT));
+            b.used(start);
+            b.push(Stmt::Var(walk, Some(start)));
+            walk
+        });
+        let repeat = Loop::new(self);
+        let walk = self.add(Expr::Address(walk), Type::Of(DESCENT));
+        let found = self.add(Expr::Call(next, vec![walk, limit().0]), Type::Of(CANDIDATE));
+        self.builder(|b| {
+            let node = b.node(found);
+            (node.pinned, node.name) = (true, Some("next"));
+        });
+        let member = |name, ty| self.add(Expr::Member(found, name), ty);
+        let (id, inst) = (member("id", Type::U32), member("inst", Type::U32));
+        repeat.test(self, B(self.u32_compare(op::Ne, id, self.u32(NONE))));
+        let local: RayOn<Self> = self.take_apart(member("ray", Type::of(Ray::SCHEMA)));
+        self.ask(prims, local, [U(id), U(inst)], meet, &repeat);
+        repeat.continuing(self);
+        repeat.again(self);
+        repeat.end(self);
+    }
+
+    /// `fn scene_places_at(i: u32) -> Place`, and the name of its buffer.
+    fn places<T: HostType, S: HostType>(&self, scene: &View<'_, T, S>) -> (usize, String) {
+        let name = format!("{}_places", scene.name());
+        let len = scene.placed().map_or(0, |placed| placed.place_count());
+        let buffer = self.buffer(scene.key_of(buffers::PLACES), &name, PLACE_SCHEMA, len);
+        (self.at_function(&buffer, PLACE_SCHEMA), buffer)
+    }
+
+    /// The allowance of the whole scene, which is data: it changes when instances move.
+    pub(super) fn slack_of_places<P: Primitive>(&self, prims: &SceneView<'_, P>) -> F<Self> {
+        let (at, _) = self.places(prims);
+        let scene = self.add(Expr::Call(at, vec![self.u32(0)]), Type::Of(PLACE_SCHEMA));
+        F(self.add(Expr::Member(scene, "slack"), Type::F32))
+    }
+
+    /// The function that takes a ray to an object: its name.
+    fn transform_function(&self) -> String {
+        let function = self.function_of(|m| {
+            transform_ray::on(m, RayOn::zero(m), <A3<Self> as Value<Self>>::zero(m))
+        });
+        self.function_name(function)
+    }
+
+    /// The ray as the tree of an instance is asked about it.
+    pub(super) fn local_ray_of<T: HostType, S: HostType>(
+        &self,
+        scene: &View<'_, T, S>,
+        inst: U<Self>,
+        ray: RayOn<Self>,
+    ) -> RayOn<Self> {
+        let transform = self.transform_function();
+        let body = format!("ray = {transform}(ray, place.to_object);");
+        let ray = self.whole(ray);
+        let text = LevelsText {
+            parameters: "inst: u32, of_scene: Ray",
+            result: "Ray",
+            variable: "ray",
+            from: "of_scene",
+            body: &body,
+        };
+        let function = self.levels_function(scene, "_local_ray", Ray::SCHEMA, &text);
+        self.take_apart(self.add(Expr::Call(function, vec![inst.0, ray]), Type::of(Ray::SCHEMA)))
+    }
+
+    /// From the space of the scene to that of an instance's tree.
+    pub(super) fn to_object_of<T: HostType, S: HostType>(
+        &self,
+        scene: &View<'_, T, S>,
+        inst: U<Self>,
+    ) -> A3<Self> {
+        let schema: &'static Schema = <A3<Self> as Value<Self>>::SCHEMA;
+        let product = self.function_of(|m| {
+            let zero = <A3<Self> as Value<Self>>::zero(m);
+            product::on(m, zero, zero)
+        });
+        let product = self.function_name(product);
+        let body = format!("map = {product}(place.to_object, map);");
+        let text = LevelsText {
+            parameters: "inst: u32",
+            result: "Affine3",
+            variable: "map",
+            from: "place.to_object",
+            body: &body,
+        };
+        let function = self.levels_function(scene, "_to_object", schema, &text);
+        self.take_apart(self.add(Expr::Call(function, vec![inst.0]), Type::of(schema)))
+    }
+
+    /// A function that goes down to an instance and does `body` with the `place` on each level.
+    fn levels_function<T: HostType, S: HostType>(
+        &self,
+        scene: &View<'_, T, S>,
+        suffix: &str,
+        result: &'static Schema,
+        text: &LevelsText<'_>,
+    ) -> usize {
+        let LevelsText { parameters, result: name_of_result, variable, from, body } = text;
+        let (_, places) = self.places(scene);
+        let name = format!("{}{suffix}", self.prims_buffer(scene));
+        let types = vec![PLACE_SCHEMA, result];
+        self.text_function(name, types, |name| {
+            format!(
+                "\
+fn {name}({parameters}) -> {name_of_result} {{
+    var place = {places}_at(0u);
+    var {variable} = {from};
+    var rest = inst;
+    while (place.count > 0u) {{
+        // The last of its instances that begins at or before the one that is sought.
+        var low = place.items;
+        var high = place.items + place.count;
+        while (high - low > 1u) {{
+            let middle = (low + high) / 2u;
+            if ({places}_at(middle).first <= rest) {{ low = middle; }} else {{ high = middle; }}
+        }}
+        place = {places}_at(low);
+        rest = rest - place.first;
+        {body}
+    }}
+    return {variable};
+}}
+"
+            )
+        })
+    }
+
+    /// `fn scene_walk(ray: Ray) -> InstanceWalk` and `fn scene_next(..) -> NextPrimitive`.
+    fn descent_functions<P: Primitive>(
+        &self,
+        prims: &SceneView<'_, P>,
+        walk: Walk,
+    ) -> (usize, usize) {
+        let name = self.prims_buffer(prims);
+        let (_, places) = self.places(prims);
+        self.finite_function();
+        let Some(tree) = self.tree(prims) else { unreachable!("instances are of trees") };
+        let transform = self.transform_function();
+        let [walk_type, suffix] = walk.names();
+        let types =
+            || vec![Ray::SCHEMA, LEVEL, walk.schema(), CANDIDATE, PLACE_SCHEMA, NODE_SCHEMA];
+        self.text_function("slabs_of_place".to_owned(), types(), |_| SLABS.to_owned());
+        let enter = self.text_function(format!("{name}_enter{suffix}"), types(), |name| {
+            enter_text(name, &places, &tree.nodes, walk)
+        });
+        let enter = self.function_name(enter);
+        let start = self.text_function(format!("{name}_walk{suffix}"), types(), |name| {
+            format!(
+                "\
+/// A walk that has yet to begin.
+fn {name}(ray: Ray) -> {walk_type} {{
+    var w = {walk_type}();
+    {enter}(&w, 0u, ray, ray.t_max);
+    return w;
+}}
+"
+            )
+        });
+        let next = self.text_function(format!("{name}_next{suffix}"), types(), |name| {
+            next_text(name, [&places, &tree.nodes, &tree.indices], [&enter, &transform], walk)
+        });
+        (start, next)
+    }
+}
+
+/// A function that follows the levels of an instance.
+struct LevelsText<'a> {
+    parameters: &'a str,
+    result: &'a str,
+    /// What it gives, and what that is at first.
+    variable: &'a str,
+    from: &'a str,
+    /// What is done with the `place` on each level.
+    body: &'a str,
+}
+
+const SLABS: &str = "\
+/// The slab test for the boxes in a place.
+fn slabs_of_place(ray: Ray, root: Node, place: Place) -> Slabs {
+    let s = slabs(ray, root, place.slack);
+    let a = abs(ray.origin);
+    let pad = max(max(a.x, a.y), a.z) * place.origin;
+    return Slabs(s.lower + pad, s.upper - pad, s.inverse);
+}
+";
+
+fn enter_text(name: &str, places: &str, nodes: &str, walk: Walk) -> String {
+    let ([walk_type, _], root_count) = (walk.names(), walk.count(1, 4));
+    format!(
+        "\
+/// Goes into what is placed if the ray, as it is seen there, may meet it.
+fn {name}(w: ptr<function, {walk_type}>, index: u32, ray: Ray, limit: f32) {{
+    let place = {places}_at(index);
+    if (place.root == {NONE}u || !(is_finite(ray.origin) && is_finite(ray.direction))) {{
+        return;
+    }}
+    let root = {nodes}_at(place.root);
+    let s = slabs_of_place(ray, root, place);
+{root_count}    let enter = enter_leave(s, root, ray.t_min, limit);
+    if (!(enter.x <= enter.y)) {{
+        return;
+    }}
+    (*w).levels[(*w).level] = (*w).here;
+    (*w).level = (*w).level + 1u;
+    (*w).here = WalkLevel(ray, index, (*w).here.first + place.first, (*w).top);
+    (*w).lower = s.lower;
+    (*w).upper = s.upper;
+    (*w).inverse = s.inverse;
+    (*w).nodes[(*w).top] = place.root;
+    (*w).enters[(*w).top] = enter.x;
+    (*w).top = (*w).top + 1u;
+}}
+"
+    )
+}
+
+fn next_text(
+    name: &str,
+    [places, nodes, ids]: [&str; 3],
+    [enter, transform]: [&str; 2],
+    walk: Walk,
+) -> String {
+    let number = !IS_INSTANCE;
+    let ([walk_type, _], child_count) = (walk.names(), walk.count(2, 12));
+    format!(
+        "\
+/// The next primitive that the ray may meet at or before `limit`; {NONE}u when none is left.
+fn {name}(w: ptr<function, {walk_type}>, limit: f32) -> NextPrimitive {{
+    loop {{
+        if ((*w).next < (*w).last) {{
+            let id = {ids}_at((*w).next);
+            (*w).next = (*w).next + 1u;
+            if (id < {IS_INSTANCE}u) {{
+                return NextPrimitive((*w).here.ray, id, (*w).here.first);
+            }}
+            let index = id & {number}u;
+            let ray = {transform}((*w).here.ray, {places}_at(index).to_object);
+            {enter}(w, index, ray, limit);
+        }}
+        // The next node on the stack that is not beyond the limit.
+        var found = false;
+        while ((*w).top > (*w).here.bottom && !found) {{
+            (*w).top = (*w).top - 1u;
+            found = (*w).enters[(*w).top] <= limit;
+        }}
+        if (!found) {{
+            if ((*w).level <= 1u) {{
+                break;
+            }}
+            // Back to the group around.
+            (*w).level = (*w).level - 1u;
+            (*w).here = (*w).levels[(*w).level];
+            let place = {places}_at((*w).here.place);
+            let s = slabs_of_place((*w).here.ray, {nodes}_at(place.root), place);
+            (*w).lower = s.lower;
+            (*w).upper = s.upper;
+            (*w).inverse = s.inverse;
+            continue;
+        }}
+        var node = {nodes}_at((*w).nodes[(*w).top]);
+        let s = Slabs((*w).lower, (*w).upper, (*w).inverse);
+        // Down to a leaf, the nearer child first.
+        while (node.count == 0u) {{
+            let left = {nodes}_at(node.first);
+            let right = {nodes}_at(node.first + 1u);
+{child_count}            let l = enter_leave(s, left, (*w).here.ray.t_min, limit);
+            let r = enter_leave(s, right, (*w).here.ray.t_min, limit);
+            let hit_left = l.x <= l.y;
+            let hit_right = r.x <= r.y;
+            if (!hit_left && !hit_right) {{
+                break;
+            }}
+            let left_first = hit_left && (!hit_right || l.x <= r.x);
+            if (hit_left && hit_right) {{
+                (*w).nodes[(*w).top] = select(node.first, node.first + 1u, left_first);
+                (*w).enters[(*w).top] = select(l.x, r.x, left_first);
+                (*w).top = (*w).top + 1u;
+            }}
+            if (left_first) {{ node = left; }} else {{ node = right; }}
+        }}
+        (*w).next = node.first;
+        (*w).last = node.first + node.count;
+    }}
+    return NextPrimitive((*w).here.ray, {NONE}u, 0u);
+}}
+"
+    )
+}
+
+/// `a` after `b`.
+#[crate::kernel]
+fn product(a: glam::Affine3, b: glam::Affine3) -> glam::Affine3 {
+    a * b
+}

@@ -1,0 +1,118 @@
+//! Mean and variance of colours that come one after the other.
+
+use glam::{DVec4, Vec4, vec4};
+
+use crate::machine::functions::vec4;
+use crate::{Type, kernel};
+
+/// What is known of a pixel after some samples: how many, their mean, and the sum of the squared
+/// distances from it, for each of red, green, blue and alpha.
+///
+/// A pass over a film gives one for each pixel. Passes are joined in `f64` by a
+/// [`Film`](super::Film), so that a million samples of a pixel count as much as the first ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
+#[repr(C)]
+pub struct Moments {
+    /// Number of samples.
+    pub count: u32,
+    /// Their mean.
+    pub mean: Vec4,
+    /// The sum of their squared distances from the mean.
+    pub m2: Vec4,
+}
+
+#[kernel]
+impl Moments {
+    /// Of no samples.
+    #[inline]
+    pub fn none() -> Self {
+        let zero = vec4(0.0, 0.0, 0.0, 0.0);
+        Self { count: 0, mean: zero, m2: zero }
+    }
+
+    /// Adds a sample. (Welford, "Note on a Method for Calculating Corrected Sums of Squares and
+    /// Products", Technometrics 1962.)
+    #[inline]
+    pub fn add(&mut self, color: Vec4) {
+        self.count = self.count.wrapping_add(1);
+        let from_mean = color - self.mean;
+        self.mean += from_mean / self.count as f32;
+        self.m2 += from_mean * (color - self.mean);
+    }
+}
+
+/// The moments of a pixel over all passes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Sums {
+    pub(super) count: u64,
+    pub(super) mean: DVec4,
+    pub(super) m2: DVec4,
+}
+
+impl Sums {
+    /// Adds a pass.
+    pub(super) fn join(&mut self, pass: &Moments) {
+        let (mean, m2) = (pass.mean.as_dvec4(), pass.m2.as_dvec4());
+        self.merge(&Self { count: u64::from(pass.count), mean, m2 });
+    }
+
+    /// Adds other samples. (Chan, Golub and LeVeque, "Updating Formulae and a Pairwise Algorithm
+    /// for Computing Sample Variances", 1979, formula 2.1.)
+    pub(super) fn merge(&mut self, other: &Self) {
+        if other.count == 0 {
+            return;
+        }
+        let (n, k) = (self.count as f64, other.count as f64);
+        let apart = other.mean - self.mean;
+        self.count += other.count;
+        self.mean += apart * (k / (n + k));
+        self.m2 += other.m2 + apart * apart * (n * k / (n + k));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sum of squares less the square of the sum would give 509.75 for this.
+    #[test]
+    fn a_small_variance_around_a_large_mean() {
+        // Evenly from 999.5 to 1000.5.
+        let values: Vec<f32> =
+            (0..65_536).map(|i| (999.5 + (f64::from(i) * 0.618_034).fract()) as f32).collect();
+        let mut sums = Sums::default();
+        for pass in values.chunks(64) {
+            let mut moments = Moments::none();
+            pass.iter().for_each(|&v| moments.add(Vec4::splat(v)));
+            sums.join(&moments);
+        }
+        let count = values.len() as f64;
+        let mean = values.iter().copied().map(f64::from).sum::<f64>() / count;
+        let variance =
+            values.iter().map(|&v| (f64::from(v) - mean).powi(2)).sum::<f64>() / (count - 1.0);
+        assert!((variance * 12.0 - 1.0).abs() < 1e-3, "{variance}");
+        assert_eq!(sums.count, values.len() as u64);
+        assert!((sums.m2.x / (count - 1.0) / variance - 1.0).abs() < 2e-3, "{}", sums.m2.x);
+        assert!((sums.mean.x - mean).abs() < 1e-4, "{} {mean}", sums.mean.x);
+    }
+
+    #[test]
+    fn passes_of_any_size_are_joined() {
+        let value = |i: u32| Vec4::new(i as f32, 1.0, 0.0, (i % 3) as f32);
+        let expected: f64 = (0..1000).map(f64::from).sum::<f64>() / 1000.0;
+        for size in [1, 7, 100, 1000] {
+            let mut sums = Sums::default();
+            for first in (0..1000).step_by(size) {
+                let mut moments = Moments::none();
+                (first..(first + size as u32).min(1000)).for_each(|i| moments.add(value(i)));
+                sums.join(&moments);
+            }
+            sums.join(&Moments::none());
+            assert!((sums.mean.x - expected).abs() < 1e-4 * expected, "{size}: {sums:?}");
+            assert_eq!((sums.mean.y, sums.m2.y, sums.mean.z), (1.0, 0.0, 0.0));
+            // The variance of 0 ..= 999 is (n^2 - 1) / 12.
+            let variance = sums.m2.x / 1000.0;
+            assert!((variance / 83_333.25 - 1.0).abs() < 1e-5, "{size}: {variance}");
+        }
+    }
+}

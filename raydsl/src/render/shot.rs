@@ -1,0 +1,204 @@
+//! What is done for each pixel of a film.
+
+use glam::{UVec2, Vec2, vec2};
+
+use super::film_args::FilmArgs;
+use super::pixel_sampler::pixel_place;
+use super::{Moments, MomentsOn, PixelSampler, Radiance, Sampling};
+use crate::camera::CameraRays;
+use crate::kernel;
+use crate::kernel::Kernel;
+use crate::machine::functions::vec2;
+use crate::machine::{Loop, Machine, Steps, Stop, Type, U, Var, X2};
+use crate::sampling::{SampleMethod, Sampler};
+
+/// What is done for each pixel of a film, by every variant: a frame's ray, or the samples of a
+/// pass.
+///
+/// A scheduler runs it; see [`Scheduler::run`](super::Scheduler::run). It is made by the
+/// scheduler's methods.
+pub trait Shot: Sync {
+    /// What the kernel takes.
+    type Args: FilmArgs;
+    /// What the kernel gives.
+    type Result: Type;
+    /// What there is for each pixel.
+    type Output: Type + Send;
+
+    /// The kernel.
+    fn kernel(&self) -> &Kernel<'_, Self::Args, Self::Result>;
+
+    /// Runs it for a pixel by the user's own function.
+    fn pixel(&self, pixel: UVec2) -> Self::Output;
+
+    /// Runs it on a machine, where `body` is the lifted body of the kernel.
+    #[doc(hidden)]
+    fn pixel_on<M: Machine>(
+        &self,
+        m: &M,
+        pixel: X2<U<M>>,
+        body: &Body<'_, M, Self>,
+    ) -> <Self::Output as Type>::On<M>;
+}
+
+/// The lifted body of a shot's kernel.
+pub type Body<'k, M, S> =
+    dyn Fn(&M, <<S as Shot>::Args as Type>::On<M>) -> <<S as Shot>::Result as Type>::On<M> + 'k;
+
+/// Where on the film and on the lens a sample is, and the sampler after it.
+#[kernel]
+#[inline]
+fn places(
+    pixel: UVec2,
+    seed: u32,
+    index: u32,
+    planned: u32,
+    #[host] pixels: PixelSampler,
+    #[host] method: SampleMethod,
+    #[host] has_lens: bool,
+) -> (Vec2, Vec2, Sampler) {
+    let mut sampler = Sampler::new(pixel, seed, index, planned);
+    let place = pixel_place(&mut sampler, pixels, method);
+    let lens = if has_lens { sampler.next_2d(method) } else { vec2(0.5, 0.5) };
+    (pixel.as_vec2() + place, lens, sampler)
+}
+
+/// One ray through the middle of each pixel; for what asks for numbers, the first sample of one.
+pub(crate) struct Frame<'a, C, A: Type, R: Type> {
+    pub(crate) rays: C,
+    pub(crate) kernel: &'a Kernel<'a, A, R>,
+}
+
+impl<C: CameraRays, A: FilmArgs, R: Type + Send> Shot for Frame<'_, C, A, R> {
+    type Args = A;
+    type Result = R;
+    type Output = R;
+
+    fn kernel(&self) -> &Kernel<'_, A, R> {
+        self.kernel
+    }
+
+    fn pixel(&self, pixel: UVec2) -> R {
+        let at = pixel_centre(pixel);
+        let ray = self.rays.primary_ray(at.x, at.y);
+        self.kernel.call(A::of(ray, pixel, || Sampler::new(pixel, 0, 0, 1)))
+    }
+
+    #[inline(always)]
+    fn pixel_on<M: Machine>(&self, m: &M, pixel: X2<U<M>>, body: &Body<'_, M, Self>) -> R::On<M> {
+        let at = pixel_centre::on(m, pixel);
+        let ray = C::primary_ray_on(m, m.capture("camera", self.rays), at.x, at.y);
+        body(m, A::on_film(ray, pixel, || Sampler::new_on(m, pixel, 0u32, 0u32, 1u32)))
+    }
+}
+
+/// The middle of a pixel.
+#[kernel]
+#[inline]
+fn pixel_centre(pixel: UVec2) -> Vec2 {
+    pixel.as_vec2() + 0.5
+}
+
+/// Some samples of each pixel.
+pub(crate) struct Pass<'a, C, A: Type, R: Type> {
+    pub(crate) rays: C,
+    pub(crate) kernel: &'a Kernel<'a, A, R>,
+    pub(crate) sampling: Sampling,
+    /// The number of the first sample.
+    pub(crate) first: u32,
+    /// How many.
+    pub(crate) count: u32,
+}
+
+impl<C: CameraRays, A: FilmArgs, R: Radiance + Send> Shot for Pass<'_, C, A, R> {
+    type Args = A;
+    type Result = R;
+    type Output = Moments;
+
+    fn kernel(&self) -> &Kernel<'_, A, R> {
+        self.kernel
+    }
+
+    fn pixel(&self, pixel: UVec2) -> Moments {
+        let Sampling { pixels, method, seed, planned } = self.sampling;
+        let mut moments = Moments::none();
+        for index in self.first..self.first + self.count {
+            let (at, lens, sampler) =
+                places(pixel, seed, index, planned, pixels, method, C::HAS_LENS);
+            let ray = self.rays.lens_ray(at.x, at.y, lens);
+            moments.add(self.kernel.call(A::of(ray, pixel, || sampler)).rgba());
+        }
+        moments
+    }
+
+    #[inline(always)]
+    fn pixel_on<M: Machine>(
+        &self,
+        m: &M,
+        pixel: X2<U<M>>,
+        body: &Body<'_, M, Self>,
+    ) -> MomentsOn<M> {
+        let Sampling { pixels, method, seed, planned } = self.sampling;
+        let rays = m.capture("camera", self.rays);
+        let (seed, planned) = (m.capture("seed", seed), m.capture("planned", planned));
+        let first = m.capture("first_sample", self.first);
+        let end = Stop::new(m, m.capture("end_of_samples", self.first + self.count));
+        let moments = Var::new(m, "moments", Moments::none_on(m));
+        let index = Steps::new(m, "sample", first, self.first);
+        let samples = Loop::new(m);
+        while end.is_after(m, &samples, &index) {
+            let index_now = index.get(m);
+            let (at, lens, sampler) =
+                places::on(m, pixel, seed, index_now, planned, pixels, method, C::HAS_LENS);
+            let ray = C::lens_ray_on(m, rays, at.x, at.y, lens);
+            let result = body(m, A::on_film(ray, pixel, || sampler));
+            Moments::add_on(m, &moments, R::rgba_on(m, result));
+            samples.continuing(m);
+            index.advance(m);
+            if !samples.again(m) {
+                break;
+            }
+        }
+        samples.end(m);
+        moments.get(m)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::{Camera, Pinhole, ThinLens};
+    use crate::machine::wgsl::Limits;
+    use crate::prelude::{Ray, Vec3, kernel};
+
+    fn wgsl<S: Shot>(shot: &S) -> String {
+        let recording = shot.kernel().record_grid::<S::Output>(|m, x, y, body| {
+            shot.pixel_on(m, X2 { x, y }, &|m, args| body(m, args))
+        });
+        recording.module(&Limits::default()).source
+    }
+
+    #[test]
+    fn what_is_not_asked_for_leaves_no_trace() {
+        let pinhole = Pinhole::new(Vec3::Z, Vec3::ZERO, Vec3::Y, 1.0);
+        let lens = ThinLens::new(pinhole, 0.1, 3.0);
+        let kernel = kernel!(|ray: Ray| ray.direction.y);
+        let frame = wgsl(&Frame { rays: pinhole.begin_frame(4, 4), kernel: &kernel });
+        for word in ["Sampler", "pcg4d", "sobol", "lens", "loop"] {
+            assert!(!frame.contains(word), "{word}\n{frame}");
+        }
+        let sampling = Sampling::new(16);
+        let stratified = sampling.method(SampleMethod::Stratified);
+        let centred = sampling.pixels(PixelSampler::Center);
+        let pass = |sampling| {
+            let rays = pinhole.begin_frame(4, 4);
+            wgsl(&Pass { rays, kernel: &kernel, sampling, first: 0, count: 8 })
+        };
+        assert!(pass(sampling).contains("sobol") && !pass(sampling).contains("permuted"));
+        assert!(pass(stratified).contains("permuted") && !pass(stratified).contains("sobol"));
+        assert!(!pass(centred).contains("sobol") && !pass(centred).contains("disk"));
+        let rays = lens.begin_frame(4, 4);
+        let blurred = wgsl(&Pass { rays, kernel: &kernel, sampling: centred, first: 0, count: 8 });
+        assert!(blurred.contains("sobol") && blurred.contains("disk"), "{blurred}");
+    }
+}

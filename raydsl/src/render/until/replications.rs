@@ -1,0 +1,171 @@
+//! Independent estimates of one picture, and what their spread says of their mean.
+
+use glam::DVec3;
+
+use super::quantile::f_quantile;
+use super::{Estimate, Film, Metric, REPLICATIONS};
+
+/// What rounding leaves of a number: half an ulp where it is made, half an ulp where it is
+/// averaged.
+const ROUNDING: f64 = 1.0 / (1 << 23) as f64;
+
+/// Added to the square of a value that an error is put in relation to.
+const RELATIVE_EPSILON: f64 = 1e-2;
+
+/// Replications of a film, of `each` samples a pixel.
+pub(super) struct Replications {
+    /// The samples of all.
+    pub(super) film: Film,
+    /// Samples a pixel of each.
+    pub(super) each: u32,
+    /// How many there are.
+    pub(super) count: u32,
+    /// Of each pixel, the sum of the squared distances of their means from the mean.
+    apart: Vec<DVec3>,
+    /// The mean of the whole picture, by each.
+    means: Vec<f64>,
+}
+
+/// A mean squared error as it is expected, and over how many independent pixels it is.
+struct Spread {
+    mean_square: f64,
+    pixels: f64,
+    /// What rounding leaves, as a root of a mean square.
+    floor: f64,
+}
+
+impl Replications {
+    /// None yet.
+    pub(super) fn none(width: u32, height: u32, each: u32) -> Self {
+        let film = Film::new(width, height);
+        let apart = vec![DVec3::ZERO; film.sums().len()];
+        Self { film, each, count: 0, apart, means: Vec::new() }
+    }
+
+    /// Adds one. (Welford's step, for the mean of each pixel.)
+    pub(super) fn join(&mut self, one: &Film) {
+        let before: Vec<DVec3> = self.film.sums().iter().map(|s| s.mean.truncate()).collect();
+        self.film.merge(one);
+        let pixels = self.film.sums().iter().zip(one.sums());
+        for ((apart, before), (all, one)) in self.apart.iter_mut().zip(before).zip(pixels) {
+            let value = one.mean.truncate();
+            *apart += (value - before) * (value - all.mean.truncate());
+        }
+        let finite = one.sums().iter().map(|s| s.mean.truncate()).filter(|m| m.is_finite());
+        let (sum, count) = finite.fold((0.0, 0u64), |(s, n), m| (s + m.element_sum() / 3.0, n + 1));
+        self.means.push(if count == 0 { f64::NAN } else { sum / count as f64 });
+        self.count += 1;
+    }
+
+    /// Samples a pixel in all.
+    pub(super) fn samples(&self) -> u32 {
+        self.film.samples()
+    }
+
+    /// How much the error is worth before it is known: the squared quantile, over the samples.
+    pub(super) fn expected(&self, confidence: f64) -> f64 {
+        match self.count {
+            0 => f64::INFINITY,
+            1 => f64::MAX / f64::from(self.each),
+            n => f_quantile(confidence, 1.0, f64::from(n - 1)) / f64::from(self.samples()),
+        }
+    }
+
+    /// The error of the mean of all, as a root of a mean square, and what rounding leaves of it.
+    /// The number of independent pixels makes the squared error in units of the estimated one a
+    /// variable of F.
+    pub(super) fn estimate(&self, metric: Metric, confidence: f64) -> (Estimate, f64) {
+        let spread = self.spread(metric);
+        if self.count < 2 {
+            return (Estimate::UNKNOWN, spread.floor);
+        }
+        let Spread { mean_square, pixels, floor } = spread;
+        let degrees = pixels * f64::from(self.count - 1);
+        let root = |p: f64| (f_quantile(p, pixels, degrees) * mean_square).sqrt();
+        let estimate = Estimate {
+            error: mean_square.sqrt().max(floor),
+            low: root(1.0 - confidence),
+            high: root(confidence) + floor,
+        };
+        (estimate, floor)
+    }
+
+    fn spread(&self, metric: Metric) -> Spread {
+        match metric {
+            Metric::Mean => self.spread_of_mean(),
+            Metric::Rmse => self.spread_of_pixels(|square, _| square),
+            Metric::RelMse => {
+                self.spread_of_pixels(|square, value| square / (value * value + RELATIVE_EPSILON))
+            }
+        }
+    }
+
+    /// The variance of the mean of all replications.
+    fn of_means(&self, sum_of_squares: f64) -> f64 {
+        let n = f64::from(self.count);
+        if self.count < 2 { 0.0 } else { sum_of_squares / (n * (n - 1.0)) }
+    }
+
+    fn spread_of_mean(&self) -> Spread {
+        let mean = self.means.iter().sum::<f64>() / self.means.len() as f64;
+        let squares = self.means.iter().map(|m| (m - mean) * (m - mean)).sum();
+        let floor = if mean.is_nan() { f64::INFINITY } else { ROUNDING * mean.abs() };
+        Spread { mean_square: self.of_means(squares), pixels: 1.0, floor }
+    }
+
+    /// `weigh` puts a square in relation to a value. The channels of a pixel may go together, so a
+    /// pixel counts once. Pixels with more variance than others count for fewer (Satterthwaite, "An
+    /// Approximate Distribution of Estimates of Variance Components", 1946).
+    fn spread_of_pixels(&self, weigh: impl Fn(f64, f64) -> f64) -> Spread {
+        let (mut pixels, mut sum, mut squares, mut rounding) = (0u64, 0.0, 0.0, 0.0);
+        let mean_of =
+            |v: DVec3, values: DVec3| (0..3).map(|i| weigh(v[i], values[i])).sum::<f64>() / 3.0;
+        for (apart, sums) in self.apart.iter().zip(self.film.sums()) {
+            let value = sums.mean.truncate();
+            if !(apart.is_finite() && value.is_finite()) {
+                continue;
+            }
+            let variance = self.of_means(mean_of(*apart, value));
+            pixels += 1;
+            sum += variance;
+            squares += variance * variance;
+            rounding += mean_of((value * ROUNDING) * (value * ROUNDING), value);
+        }
+        if pixels == 0 {
+            return Spread { mean_square: 0.0, pixels: 1.0, floor: f64::INFINITY };
+        }
+        let n = pixels as f64;
+        let floor = (rounding / n).sqrt();
+        let independent = independent(sum, squares, f64::from(self.count)).clamp(1.0, n);
+        Spread { mean_square: sum / n, pixels: independent, floor }
+    }
+}
+
+/// How many equal ones a sum of variances amounts to: `(sum v)^2 / sum v^2` of the true variances,
+/// from their estimates by `n` values each. Without the correction, the scatter of the estimates
+/// would count too.
+fn independent(sum: f64, squares: f64, n: f64) -> f64 {
+    let true_squares = squares * (n - 1.0) / (n + 1.0);
+    let true_sum = sum * sum - 2.0 * squares / (n + 1.0);
+    if true_squares > 0.0 { true_sum / true_squares } else { 1.0 }
+}
+
+/// Whether all replications are there.
+pub(super) fn is_complete(stage: &Replications) -> bool {
+    stage.count == REPLICATIONS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_pixel_is_one_and_equal_ones_are_all() {
+        let v: f64 = 3.0;
+        assert!((independent(v, v * v, 8.0) - 1.0).abs() < 1e-12);
+        // A hundred estimates of one variance by 8 values scatter by 2 / 7 of its square.
+        let squares = 100.0 * v * v * (1.0 + 2.0 / 7.0);
+        assert!((independent(100.0 * v, squares, 8.0) / 100.0 - 1.0).abs() < 0.01);
+        assert_eq!(independent(0.0, 0.0, 8.0), 1.0);
+    }
+}

@@ -1,0 +1,239 @@
+//! Pilots, and fresh samples whose number they choose.
+
+use core::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use glam::UVec4;
+
+use super::replications::{Replications, is_complete};
+use super::{Estimate, Outcome, Progress, ProgressObserver, REPLICATIONS, Reached, Until};
+use crate::render::watch::Observer;
+use crate::render::{Film, Sampling};
+use crate::sampling::pcg4d;
+
+/// The first stage has a sample a replication, so that there is a picture soon; up to the pilot
+/// each has this many times those of the one before.
+const RAMP: u32 = 8;
+/// Fresh samples are at most this many times those of the stage before: how fast errors fall beyond
+/// is not known from it.
+const GROWTH: f64 = 4.0;
+/// The share of the tolerance that is aimed at.
+const AIM: f64 = 0.8;
+/// The share of the doubt that the first stage that may end it has; each further one has half of
+/// the rest.
+const FIRST_SHARE: f64 = 0.8;
+
+/// Adds samples to an empty film, as a scheduler does. The observer may break off.
+pub(crate) trait Renderer {
+    /// What may go wrong.
+    type Error;
+
+    /// Adds `samples` samples to each pixel.
+    fn render(
+        &mut self,
+        sampling: &Sampling,
+        film: &mut Film,
+        samples: u32,
+        observer: Observer<'_>,
+    ) -> Result<ControlFlow<()>, Self::Error>;
+}
+
+/// A stage: replications of samples that no other stage has.
+#[derive(Clone, Copy)]
+struct Plan {
+    /// Samples of a replication.
+    each: u32,
+    /// The share of the doubt that its error may use, if it may end the run.
+    doubt: Option<f64>,
+}
+
+/// What became of a stage.
+struct Stage {
+    /// All its replications are there, and it is the best so far.
+    is_best: bool,
+    /// What ended the run, if something did.
+    cut: Option<Outcome>,
+}
+
+/// Renders into `film` until it is good enough. `until` has been checked.
+pub(crate) fn run<R: Renderer>(
+    until: &Until,
+    sampling: &Sampling,
+    film: &mut Film,
+    observer: ProgressObserver<'_>,
+    renderer: &mut R,
+) -> Result<Reached, R::Error> {
+    let (width, height) = (film.width(), film.height());
+    let begin = Instant::now();
+    let best = Replications::none(width, height, 0);
+    let mut run = Run { until, sampling, begin, observer, best, spent: 0, stages: 0 };
+    let end = run.stages(renderer);
+    // Whatever went wrong, the best picture so far is kept.
+    film.clone_from(&run.best.film);
+    let (outcome, estimate) = end?;
+    Ok(Reached {
+        outcome,
+        estimate,
+        samples: run.best.samples(),
+        spent: run.spent,
+        elapsed: begin.elapsed(),
+        nan_pixels: film.nan_pixels(),
+    })
+}
+
+struct Run<'a> {
+    until: &'a Until,
+    sampling: &'a Sampling,
+    begin: Instant,
+    observer: ProgressObserver<'a>,
+    /// The stage whose error is expected to be the smallest.
+    best: Replications,
+    /// Samples a pixel.
+    spent: u32,
+    stages: u32,
+}
+
+impl Run<'_> {
+    fn stages<R: Renderer>(&mut self, renderer: &mut R) -> Result<(Outcome, Estimate), R::Error> {
+        let pilot = self.until.target.pilot.div_ceil(REPLICATIONS);
+        let mut plan = Plan { each: pilot.min(1), doubt: None };
+        let mut left = 1.0;
+        loop {
+            let Stage { is_best, cut } = self.stage(plan, renderer)?;
+            let doubt = plan.doubt.filter(|_| is_best);
+            let (error, floor) = self.estimate(doubt);
+            if self.best.each >= pilot && self.tolerance() < 2.0 * floor {
+                let floor = self.until.target.metric.of_root(floor);
+                return Ok((Outcome::Unresolvable { floor }, self.reported(error)));
+            }
+            if doubt.is_some() && error.high <= self.tolerance() {
+                return Ok((Outcome::Converged, self.reported(error)));
+            }
+            if let Some(outcome) = cut {
+                return Ok((outcome, self.reported(error)));
+            }
+            plan = self.next(plan, pilot, error.high - floor, floor, &mut left);
+        }
+    }
+
+    /// The tolerance, as a root of a mean square.
+    fn tolerance(&self) -> f64 {
+        let target = self.until.target;
+        target.metric.root(target.tolerance)
+    }
+
+    /// The error of the best picture; with the doubt that is left for it, if that counts.
+    fn estimate(&self, doubt: Option<f64>) -> (Estimate, f64) {
+        let target = self.until.target;
+        let share = doubt.unwrap_or(1.0);
+        self.best.estimate(target.metric, 1.0 - (1.0 - target.confidence) * share)
+    }
+
+    /// In the metric's unit.
+    fn reported(&self, root: Estimate) -> Estimate {
+        let of = |v: f64| self.until.target.metric.of_root(v);
+        Estimate { error: of(root.error), low: of(root.low), high: of(root.high) }
+    }
+
+    /// What follows a stage whose error is at most `high`. Its own samples chose this, so they do
+    /// not count for what follows.
+    fn next(&self, last: Plan, pilot: u32, high: f64, floor: f64, left: &mut f64) -> Plan {
+        if last.each < pilot {
+            return Plan { each: last.each.saturating_mul(RAMP).min(pilot), doubt: None };
+        }
+        let ratio = high / (AIM * (self.tolerance() - floor));
+        // Errors of independent samples fall with the root of their number; others fall faster.
+        let need = ratio * ratio;
+        // Where the last ones were to be enough and were not, more are needed.
+        let least = if last.doubt.is_some() { 2.0 } else { 1.0 };
+        let times = need.ceil().clamp(least, GROWTH) as u32;
+        let doubt = (need <= GROWTH).then(|| {
+            let share = if *left == 1.0 { FIRST_SHARE } else { 0.5 };
+            let doubt = *left * share;
+            *left -= doubt;
+            doubt
+        });
+        Plan { each: last.each.saturating_mul(times), doubt }
+    }
+
+    /// Renders the replications of a stage, as far as the budget goes.
+    fn stage<R: Renderer>(&mut self, plan: Plan, renderer: &mut R) -> Result<Stage, R::Error> {
+        let affordable = (self.until.budget.samples - self.spent) / REPLICATIONS;
+        if affordable == 0 {
+            return Ok(Stage { is_best: false, cut: Some(Outcome::OutOfSamples) });
+        }
+        let each = plan.each.min(affordable);
+        let (width, height) = (self.best.film.width(), self.best.film.height());
+        let mut stage = Replications::none(width, height, each);
+        let mut cut = None;
+        let mut end = Ok(());
+        for replication in 0..REPLICATIONS {
+            let mut one = Film::new(width, height);
+            let sampling = self.sampling_of(replication, each);
+            match self.replication(&sampling, &mut one, each, &stage, renderer) {
+                Ok(None) => stage.join(&one),
+                Ok(Some(outcome)) => cut = Some(outcome),
+                Err(error) => end = Err(error),
+            }
+            self.spent += one.samples();
+            if cut.is_some() || end.is_err() {
+                break;
+            }
+        }
+        self.stages += 1;
+        let (is_short, is_complete) = (each < plan.each, is_complete(&stage));
+        let is_better = self.is_better(&stage) || is_complete && !is_short;
+        if is_better {
+            self.best = stage;
+        }
+        end?;
+        let cut = cut.or_else(|| is_short.then_some(Outcome::OutOfSamples));
+        Ok(Stage { is_best: is_better && is_complete, cut })
+    }
+
+    /// Whether the error of a stage is expected to be smaller than that of the best one. How large
+    /// it seems to be is not asked: that would choose what is flattered.
+    fn is_better(&self, stage: &Replications) -> bool {
+        let confidence = self.until.target.confidence;
+        stage.expected(confidence) < self.best.expected(confidence)
+    }
+
+    /// Samples of their own for each replication of each stage.
+    fn sampling_of(&self, replication: u32, planned: u32) -> Sampling {
+        let key = UVec4::new(self.sampling.seed, self.stages, replication, 0x0075_6e74);
+        Sampling { seed: pcg4d(key).x, planned, ..*self.sampling }
+    }
+
+    /// Renders one replication, looking at the clock and asking the observer meanwhile.
+    fn replication<R: Renderer>(
+        &mut self,
+        sampling: &Sampling,
+        film: &mut Film,
+        samples: u32,
+        stage: &Replications,
+        renderer: &mut R,
+    ) -> Result<Option<Outcome>, R::Error> {
+        let shown = if self.is_better(stage) { stage } else { &self.best };
+        let target = self.until.target;
+        let (estimate, _) = shown.estimate(target.metric, target.confidence);
+        let (best, spent) = (shown.samples(), self.spent);
+        let estimate = self.reported(estimate);
+        let (begin, time) = (self.begin, self.until.budget.time);
+        let mut cut = None;
+        let mut watch = |share: f64| {
+            let elapsed = begin.elapsed();
+            let time_left = time.saturating_sub(elapsed);
+            let spent = spent + (share * f64::from(samples)) as u32;
+            let progress = Progress { estimate, samples: best, spent, elapsed, time_left };
+            if time_left == Duration::ZERO {
+                cut = Some(Outcome::OutOfTime);
+            } else if (self.observer)(&progress).is_break() {
+                cut = Some(Outcome::Stopped);
+            }
+            if cut.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        // What is there when the observer breaks off at the end counts all the same.
+        let end = renderer.render(sampling, film, samples, &mut watch)?;
+        Ok(if end.is_break() { cut } else { None })
+    }
+}

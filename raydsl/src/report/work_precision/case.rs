@@ -1,0 +1,201 @@
+//! What is measured.
+
+use super::reference::Reference;
+use super::run::{Estimates, Run};
+use crate::kernel::Variant;
+use crate::report::Missing;
+use crate::sampling::SampleMethod;
+
+/// What runs a kernel: a [`Variant`], or the reference machine in `f64`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Backend {
+    /// A variant.
+    Variant(Variant),
+    /// The same kernel in `f64`, one sample after the other: some two hundred times as slow as the
+    /// scalar variant.
+    F64,
+}
+
+impl Backend {
+    /// `scalar`, `packet4`, `packet8`, `packet16`, `wgsl`, `f64`.
+    pub const ALL: [Self; 6] = [
+        Self::Variant(Variant::Scalar),
+        Self::Variant(Variant::Packet4),
+        Self::Variant(Variant::Packet8),
+        Self::Variant(Variant::Packet16),
+        Self::Variant(Variant::Wgsl),
+        Self::F64,
+    ];
+
+    /// The variant's name, or `f64`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Variant(variant) => variant.name(),
+            Self::F64 => "f64",
+        }
+    }
+
+    /// The one of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|b| b.name() == name)
+    }
+
+    /// How many rays run at once on this machine.
+    pub fn lanes(self) -> usize {
+        match self {
+            Self::Variant(variant) => variant.isa().1,
+            Self::F64 => 1,
+        }
+    }
+}
+
+/// One way to compute a case's result. Of a [`SampleMethod`] it has the name `random`, `stratified`
+/// or `sobol`; of a text that name, for methods of your own, such as rules of quadrature.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Method {
+    pub(super) name: String,
+    pub(super) sampling: SampleMethod,
+}
+
+impl Method {
+    /// The name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// How samples are placed; [`SampleMethod::Sobol`] for a method of your own.
+    pub fn sampling(&self) -> SampleMethod {
+        self.sampling
+    }
+}
+
+impl From<SampleMethod> for Method {
+    fn from(sampling: SampleMethod) -> Self {
+        let name = match sampling {
+            SampleMethod::Random => "random",
+            SampleMethod::Stratified => "stratified",
+            SampleMethod::Sobol => "sobol",
+        };
+        Self { name: name.to_owned(), sampling }
+    }
+}
+
+impl From<&str> for Method {
+    fn from(name: &str) -> Self {
+        Self { name: name.to_owned(), sampling: SampleMethod::Sobol }
+    }
+}
+
+/// The exponents of the knob with which an error may fall: from `steepest` to `flattest`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Order {
+    /// The least exponent that theory allows.
+    pub steepest: f64,
+    /// The greatest.
+    pub flattest: f64,
+}
+
+impl Order {
+    /// Independent samples: -0.5, to within 0.05.
+    pub const RANDOM: Self = Self::near(-0.5, 0.05);
+
+    /// This exponent, to within `slack`.
+    pub const fn near(order: f64, slack: f64) -> Self {
+        Self { steepest: order - slack, flattest: order + slack }
+    }
+
+    /// This exponent, or any below it.
+    pub const fn at_most(flattest: f64) -> Self {
+        Self { steepest: f64::NEG_INFINITY, flattest }
+    }
+}
+
+pub(super) type Estimate<'a> = dyn Fn(&Run<'_>) -> Result<Estimates, Missing> + 'a;
+
+/// Something that is computed by several methods, each with a knob that makes it better and slower,
+/// and what should come out.
+///
+/// ```
+/// use raydsl::prelude::*;
+/// use raydsl::report::work_precision::{Case, Order, Reference, Run};
+///
+/// // The integral of x y over the unit square.
+/// let case = Case::new("x y", Reference::closed_form(0.25), |run: &Run| {
+///     let method = run.method().sampling();
+///     run.integral(&kernel!(|_ray: Ray, sampler: Sampler| {
+///         let mut sampler = sampler;
+///         let u = sampler.next_2d(host(method));
+///         u.x * u.y
+///     }))
+/// });
+/// let case = case
+///     .method(SampleMethod::Random, Some(Order::RANDOM))
+///     .method(SampleMethod::Sobol, Some(Order::at_most(-1.2)));
+/// assert_eq!(case.name(), "x y");
+/// ```
+pub struct Case<'a> {
+    pub(super) name: String,
+    pub(super) knob: String,
+    pub(super) reference: Reference,
+    pub(super) methods: Vec<(Method, Option<Order>)>,
+    pub(super) estimate: Box<Estimate<'a>>,
+}
+
+impl core::fmt::Debug for Case<'_> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let methods: Vec<&str> = self.methods.iter().map(|(m, _)| m.name()).collect();
+        f.debug_struct("Case")
+            .field("name", &self.name)
+            .field("knob", &self.knob)
+            .field("reference", &self.reference)
+            .field("methods", &methods)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> Case<'a> {
+    /// A case without methods. `estimate` computes it as the [`Run`] says, and is what is timed.
+    pub fn new(
+        name: impl Into<String>,
+        reference: Reference,
+        estimate: impl Fn(&Run<'_>) -> Result<Estimates, Missing> + 'a,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            knob: "spp".to_owned(),
+            reference,
+            methods: Vec::new(),
+            estimate: Box::new(estimate),
+        }
+    }
+
+    /// What the knob is called: `spp` (samples of each pixel) unless this is called.
+    pub fn knob(self, name: impl Into<String>) -> Self {
+        Self { knob: name.into(), ..self }
+    }
+
+    /// Adds a method and the order that theory gives it, if it gives one.
+    pub fn method(mut self, method: impl Into<Method>, order: Option<Order>) -> Self {
+        self.methods.push((method.into(), order));
+        self
+    }
+
+    /// The name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What it is compared with.
+    pub fn reference(&self) -> &Reference {
+        &self.reference
+    }
+
+    /// Computes it once.
+    ///
+    /// # Errors
+    ///
+    /// If the backend cannot run it.
+    pub fn estimate(&self, run: &Run<'_>) -> Result<Estimates, Missing> {
+        (self.estimate)(run)
+    }
+}

@@ -1,0 +1,347 @@
+//! What repetitions of one method on one backend come to.
+
+use super::case::{Backend, Method, Order};
+use super::fit::{Fit, Reached, first_below, student_t, value_at};
+use super::metrics::Metrics;
+use super::reference::Reference;
+use crate::report::{Missing, Times};
+
+/// What a point is good for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Status {
+    /// It counts.
+    Ok,
+    /// Its error is not above what the reference, or rounding, is uncertain by: no order is fitted
+    /// to it, and it is drawn dotted.
+    Floor,
+    /// Estimates were no finite numbers.
+    Diverged,
+    /// It would have taken longer than the time allows, and was not run.
+    Budget,
+}
+
+impl Status {
+    /// `ok`, `floor`, `diverged` or `budget`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Ok => "ok",
+            Self::Floor => "floor",
+            Self::Diverged => "diverged",
+            Self::Budget => "budget",
+        }
+    }
+}
+
+/// One timed run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Repetition {
+    /// Its seed.
+    pub seed: u32,
+    /// How long it took, in seconds.
+    pub seconds: f64,
+    /// Samples in all.
+    pub samples: u64,
+    /// Rays in all, if they are counted.
+    pub rays: Option<u64>,
+    /// What the kernel counted, in all.
+    pub counted: Option<u64>,
+    /// The error.
+    pub metrics: Metrics,
+    /// What it is good for.
+    pub status: Status,
+    /// The estimates.
+    pub values: Vec<f64>,
+}
+
+/// All runs of one method on one backend with one value of the knob.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// The knob's value.
+    pub knob: u32,
+    /// Its runs, with a seed each; none where the time did not allow one.
+    pub repetitions: Vec<Repetition>,
+    /// The root of the mean square difference to the same samples in `f64`, if that was run.
+    pub rounding: Option<f64>,
+}
+
+impl Point {
+    /// The root of the mean square error over all repetitions that gave finite numbers.
+    pub fn rmse(&self) -> f64 {
+        let squares: Vec<f64> = self.finite().map(|r| r.metrics.rmse.powi(2)).collect();
+        (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+    }
+
+    /// The mean error over all repetitions, in standard errors; 0 where there is no error at all.
+    pub fn bias_z(&self) -> f64 {
+        let bias: f64 = self.finite().map(|r| r.metrics.bias).sum();
+        let variance: f64 = self.finite().map(|r| r.metrics.bias_error.powi(2)).sum();
+        if bias == 0.0 { 0.0 } else { bias / variance.sqrt() }
+    }
+
+    fn finite(&self) -> impl Iterator<Item = &Repetition> {
+        self.repetitions.iter().filter(|r| r.status != Status::Diverged)
+    }
+
+    /// The shortest time, in seconds; infinite without a run.
+    pub fn t_min(&self) -> f64 {
+        self.repetitions.iter().map(|r| r.seconds).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The middle time, in seconds; 0 without a run.
+    pub fn t_median(&self) -> f64 {
+        Times { ms: self.repetitions.iter().map(|r| r.seconds).collect() }.median()
+    }
+
+    /// Samples of one run; 0 without one.
+    pub fn samples(&self) -> u64 {
+        self.repetitions.first().map_or(0, |r| r.samples)
+    }
+
+    /// The worst that a run of it was; [`Status::Budget`] without a run.
+    pub fn status(&self) -> Status {
+        let has = |status| self.repetitions.iter().any(|r| r.status == status);
+        match self.repetitions.len() {
+            0 => Status::Budget,
+            _ if has(Status::Diverged) => Status::Diverged,
+            _ if has(Status::Floor) => Status::Floor,
+            _ => Status::Ok,
+        }
+    }
+}
+
+/// How the measured order compares with theory's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Verdict {
+    /// The 95 % interval meets the expected orders.
+    AsExpected,
+    /// The error falls more slowly than theory says.
+    TooSlow,
+    /// It falls faster: the theory does not fit the case.
+    Steeper,
+    /// The interval is wider than 0.5, or there are too few points above the floor.
+    Unclear,
+    /// Theory says nothing of the method.
+    NoTheory,
+    /// Estimates were no finite numbers.
+    Diverged,
+    /// It was not run.
+    NotRun,
+}
+
+impl Verdict {
+    /// A word or two.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::AsExpected => "expected",
+            Self::TooSlow => "too slow",
+            Self::Steeper => "steeper",
+            Self::Unclear => "unclear",
+            Self::NoTheory => "no theory",
+            Self::Diverged => "diverged",
+            Self::NotRun => "not run",
+        }
+    }
+}
+
+/// How many times faster one backend is than another, at the largest value of the knob that both
+/// ran.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Speedup {
+    /// The geometric mean of the ratios round by round.
+    pub ratio: f64,
+    /// The lower end of its 95 % interval, by Student's t of the logarithms.
+    pub low: f64,
+    /// The upper end.
+    pub high: f64,
+}
+
+impl Speedup {
+    /// Of pairs of times, the base's first. None of fewer than two.
+    pub fn of(pairs: &[(f64, f64)]) -> Option<Self> {
+        let logs: Vec<f64> =
+            pairs.iter().filter(|p| p.0 > 0.0 && p.1 > 0.0).map(|p| (p.0 / p.1).ln()).collect();
+        let n = logs.len();
+        if n < 2 {
+            return None;
+        }
+        let mean = logs.iter().sum::<f64>() / n as f64;
+        let squares: f64 = logs.iter().map(|x| (x - mean).powi(2)).sum();
+        let half = student_t(n - 1) * (squares / (n - 1) as f64 / n as f64).sqrt();
+        let [ratio, low, high] = [mean, mean - half, mean + half].map(f64::exp);
+        Some(Self { ratio, low, high })
+    }
+
+    /// Whether it may be claimed: the interval does not contain 1.
+    pub fn is_claimed(&self) -> bool {
+        self.low > 1.0 || self.high < 1.0
+    }
+}
+
+/// One method on one backend: error over knob and time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// The method.
+    pub method: Method,
+    /// What ran it.
+    pub backend: Backend,
+    /// The orders that theory gives it.
+    pub expected: Option<Order>,
+    /// A point for each value of the knob.
+    pub points: Vec<Point>,
+    /// The fitted order.
+    pub fit: Option<Fit>,
+    /// The speed-up over the first backend of the same method.
+    pub speedup: Option<Speedup>,
+    /// Why it was not run, if it was not.
+    pub missing: Option<Missing>,
+}
+
+impl Curve {
+    /// Points (x, error) with a finite error, in the order of x.
+    fn errors(&self, x: impl Fn(&Point) -> f64) -> Vec<(f64, f64)> {
+        let ran = self.points.iter().filter(|p| p.rmse().is_finite());
+        let mut points: Vec<_> = ran.map(|p| (x(p), p.rmse())).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points
+    }
+
+    /// The median time, in seconds, after which the error is no larger than `limit`.
+    pub fn time_to_error(&self, limit: f64) -> Reached {
+        first_below(&self.errors(Point::t_median), limit)
+    }
+
+    /// The error after this many seconds.
+    pub fn error_at_time(&self, seconds: f64) -> Reached {
+        value_at(&self.errors(Point::t_median), seconds)
+    }
+
+    /// Fits the order to all repetitions that count.
+    pub(super) fn fit(&mut self) {
+        let counts = |point: &Point| {
+            let knob = f64::from(point.knob);
+            let good = point.repetitions.iter().filter(|r| r.status == Status::Ok);
+            good.map(|r| (knob, r.metrics.rmse)).collect::<Vec<_>>()
+        };
+        let points: Vec<_> = self.points.iter().flat_map(counts).collect();
+        self.fit = Fit::of(&points);
+    }
+
+    /// The fitted order against theory's.
+    pub fn verdict(&self) -> Verdict {
+        let is = |status| self.points.iter().any(|p| p.status() == status);
+        if self.missing.is_some() {
+            return Verdict::NotRun;
+        }
+        if is(Status::Diverged) {
+            return Verdict::Diverged;
+        }
+        match (self.fit, self.expected) {
+            (_, None) => Verdict::NoTheory,
+            (None, _) => Verdict::Unclear,
+            (Some(fit), _) if fit.high - fit.low > 0.5 => Verdict::Unclear,
+            (Some(fit), Some(order)) if fit.low > order.flattest => Verdict::TooSlow,
+            (Some(fit), Some(order)) if fit.high < order.steepest => Verdict::Steeper,
+            _ => Verdict::AsExpected,
+        }
+    }
+}
+
+/// The error that rounding to `f32` leaves in an estimate of this reference: one rounding of the
+/// result and one of the running mean, 2^-24 each, of the root of its mean square.
+pub(super) fn rounding_floor(reference: &Reference) -> f64 {
+    reference.size() * f64::from(f32::EPSILON)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Variant;
+    use crate::sampling::SampleMethod;
+
+    fn point(knob: u32, rmse: f64, status: Status) -> Point {
+        let metrics = Metrics { rmse, ..Metrics::default() };
+        let seconds = f64::from(knob) * 1e-3;
+        let repetition = Repetition {
+            seed: 0,
+            seconds,
+            samples: u64::from(knob),
+            rays: None,
+            counted: None,
+            metrics,
+            status,
+            values: Vec::new(),
+        };
+        Point { knob, repetitions: vec![repetition], rounding: None }
+    }
+
+    fn curve(points: Vec<Point>, expected: Option<Order>) -> Curve {
+        let mut curve = Curve {
+            method: SampleMethod::Random.into(),
+            backend: Backend::Variant(Variant::Scalar),
+            expected,
+            points,
+            fit: None,
+            speedup: None,
+            missing: None,
+        };
+        curve.fit();
+        curve
+    }
+
+    /// Errors of order -1 that stop falling at 1e-3.
+    fn with_floor(status: Status) -> Vec<Point> {
+        let law = |i: u32| {
+            let error = (1.0 / f64::from(1u32 << i)).max(1e-3);
+            point(1 << i, error, if error > 1e-3 { Status::Ok } else { status })
+        };
+        (3..16).map(law).collect()
+    }
+
+    #[test]
+    fn what_lies_at_the_floor_is_not_fitted() {
+        let fit = curve(with_floor(Status::Floor), None).fit.expect("seven points");
+        assert!((fit.order + 1.0).abs() < 1e-12 && fit.points == 7, "{fit:?}");
+        let bent = curve(with_floor(Status::Ok), None).fit.expect("thirteen points");
+        assert!(bent.order > -0.85 && bent.points == 13, "{bent:?}");
+    }
+
+    #[test]
+    fn verdicts() {
+        let points = || with_floor(Status::Floor);
+        let of = |order| curve(points(), Some(order)).verdict();
+        assert_eq!(of(Order::near(-1.0, 0.05)), Verdict::AsExpected);
+        assert_eq!(of(Order::at_most(-0.7)), Verdict::AsExpected);
+        assert_eq!(of(Order::at_most(-1.2)), Verdict::TooSlow);
+        assert_eq!(of(Order::RANDOM), Verdict::Steeper);
+        assert_eq!(curve(points(), None).verdict(), Verdict::NoTheory);
+        let few = curve(points()[..2].to_vec(), Some(Order::RANDOM));
+        assert_eq!(few.verdict(), Verdict::Unclear);
+        let mut bad = points();
+        bad[12].repetitions[0].status = Status::Diverged;
+        assert_eq!(curve(bad, Some(Order::RANDOM)).verdict(), Verdict::Diverged);
+        let mut missing = curve(points(), Some(Order::RANDOM));
+        missing.missing = Some(Missing::NoDevice("none".to_owned()));
+        assert_eq!(missing.verdict(), Verdict::NotRun);
+    }
+
+    #[test]
+    fn a_speed_up_is_claimed_only_if_it_is_one() {
+        let clear = Speedup::of(&[(4.0, 2.0), (4.1, 2.0), (3.9, 2.0), (4.0, 2.1)]);
+        let clear = clear.expect("four pairs");
+        assert!(clear.is_claimed() && (clear.ratio - 1.97).abs() < 0.02, "{clear:?}");
+        let noise = Speedup::of(&[(1.0, 2.0), (2.0, 1.0), (1.5, 1.2)]).expect("three pairs");
+        assert!(!noise.is_claimed() && noise.low < 1.0 && noise.high > 1.0, "{noise:?}");
+        assert_eq!(Speedup::of(&[(1.0, 2.0)]), None);
+    }
+
+    #[test]
+    fn a_point_without_a_run_is_out_of_budget() {
+        let none = Point { knob: 1, repetitions: Vec::new(), rounding: None };
+        assert_eq!(none.status(), Status::Budget);
+        assert!(none.rmse().is_nan());
+        let curve = curve(vec![point(4, 0.5, Status::Ok), none], None);
+        assert_eq!(curve.time_to_error(0.5), Reached::AtMost(0.004));
+        assert_eq!(curve.time_to_error(0.1), Reached::Never);
+        assert_eq!(curve.error_at_time(1.0), Reached::AtMost(0.5));
+    }
+}

@@ -1,0 +1,56 @@
+//! What a report was measured on.
+
+use super::case::Backend;
+use crate::kernel::Variant;
+
+/// The machine and the build.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Environment {
+    /// The processor's name, or its architecture if the system does not tell.
+    pub cpu: String,
+    /// The operating system.
+    pub os: &'static str,
+    /// The device of the WGSL variant.
+    pub device: Option<String>,
+    /// Each backend, the instruction set that runs it, and its lanes.
+    pub backends: Vec<(&'static str, &'static str, usize)>,
+    /// Threads that runs on the CPU take.
+    pub threads: u32,
+    /// Whether debug assertions are on: then times mean little.
+    pub has_debug_assertions: bool,
+    /// The version of raydsl.
+    pub version: &'static str,
+}
+
+impl Environment {
+    pub(super) fn of(
+        backends: &[Backend],
+        #[cfg(feature = "gpu")] gpu: Option<&crate::gpu::GpuScheduler>,
+    ) -> Self {
+        let described = |backend: &Backend| match backend {
+            Backend::Variant(variant) => (backend.name(), variant.isa().0, variant.isa().1),
+            Backend::F64 => (backend.name(), "scalar", 1),
+        };
+        #[cfg(feature = "gpu")]
+        let device = gpu.map(|g| g.context().adapter_name());
+        #[cfg(not(feature = "gpu"))]
+        let device = None;
+        let has_device = backends.contains(&Backend::Variant(Variant::Wgsl));
+        Self {
+            cpu: cpu().unwrap_or_else(|| std::env::consts::ARCH.to_owned()),
+            os: std::env::consts::OS,
+            device: device.filter(|_| has_device),
+            backends: backends.iter().map(described).collect(),
+            threads: 1,
+            has_debug_assertions: cfg!(debug_assertions),
+            version: env!("CARGO_PKG_VERSION"),
+        }
+    }
+}
+
+/// The processor's name, where Linux tells it.
+fn cpu() -> Option<String> {
+    let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
+    let line = text.lines().find(|l| l.starts_with("model name"))?;
+    line.split_once(':').map(|(_, name)| name.trim().to_owned())
+}

@@ -1,0 +1,124 @@
+//! `report.json`.
+
+use serde_json::{Value, json};
+
+use super::case::Order;
+use super::curve::{Curve, Point, Repetition};
+use super::fit::Reached;
+use super::{FORMULAS, Measured, Report};
+
+/// Errors whose times are told.
+pub(super) const ERRORS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
+
+/// Times, in seconds, whose errors are told.
+pub(super) const TIMES: [f64; 3] = [0.1, 1.0, 10.0];
+
+impl Report {
+    /// Everything, for programs. Numbers that are not finite are strings.
+    pub fn json(&self) -> Value {
+        let e = &self.environment;
+        let backend = |(name, isa, lanes): &(&str, &str, usize)| json!([name, isa, lanes]);
+        json!({
+            "environment": {
+                "cpu": e.cpu,
+                "os": e.os,
+                "device": e.device,
+                "backends": e.backends.iter().map(backend).collect::<Vec<_>>(),
+                "threads": e.threads,
+                "debug_assertions": e.has_debug_assertions,
+                "version": e.version,
+            },
+            "formulas": FORMULAS.iter().map(|(n, f)| json!([n, f])).collect::<Vec<_>>(),
+            "size": [self.size.0, self.size.1],
+            "cases": self.cases.iter().map(case).collect::<Vec<_>>(),
+        })
+    }
+}
+
+fn number(v: f64) -> Value {
+    if v.is_finite() { v.into() } else { v.to_string().into() }
+}
+
+fn case(case: &Measured) -> Value {
+    json!({
+        "case": case.name,
+        "knob": case.knob,
+        "reference_kind": case.kind.name(),
+        "reference_uncertainty": case.uncertainty,
+        "rounding_floor": case.rounding_floor,
+        "curves": case.curves.iter().map(curve).collect::<Vec<_>>(),
+        "not_asked_for": case.not_asked_for,
+    })
+}
+
+fn curve(curve: &Curve) -> Value {
+    let to_error = |e: &f64| json!([number(*e), reached(curve.time_to_error(*e))]);
+    let at_time = |t: &f64| json!([number(*t), reached(curve.error_at_time(*t))]);
+    json!({
+        "method": curve.method.name,
+        "backend": curve.backend.name(),
+        "lanes": curve.backend.lanes(),
+        "not_run": curve.missing.as_ref().map(ToString::to_string),
+        "order": curve.fit.map(|f| f.order),
+        "order_low": curve.fit.map(|f| number(f.low)),
+        "order_high": curve.fit.map(|f| number(f.high)),
+        "order_points": curve.fit.map(|f| f.points),
+        "order_expected": curve.expected.map(expected),
+        "verdict": curve.verdict().name(),
+        "time_to_error": ERRORS.iter().map(to_error).collect::<Vec<_>>(),
+        "error_at_time": TIMES.iter().map(at_time).collect::<Vec<_>>(),
+        "speedup": curve.speedup.map(|s| json!({
+            "ratio": s.ratio, "low": number(s.low), "high": number(s.high),
+            "is_claimed": s.is_claimed(),
+        })),
+        "points": curve.points.iter().map(point).collect::<Vec<_>>(),
+    })
+}
+
+fn expected(order: Order) -> Value {
+    json!([number(order.steepest), number(order.flattest)])
+}
+
+fn reached(reached: Reached) -> Value {
+    match reached {
+        Reached::At(v) => number(v),
+        Reached::AtMost(v) => json!({ "at_most": number(v) }),
+        Reached::Never => "not reached".into(),
+    }
+}
+
+fn point(point: &Point) -> Value {
+    json!({
+        "knob_value": point.knob,
+        "status": point.status().name(),
+        "rmse": number(point.rmse()),
+        "bias_z": number(point.bias_z()),
+        "t_min": number(point.t_min()),
+        "t_median": point.t_median(),
+        "samples": point.samples(),
+        "rounding": point.rounding.map(number),
+        "repetitions": point.repetitions.iter().map(repetition).collect::<Vec<_>>(),
+    })
+}
+
+fn repetition(r: &Repetition) -> Value {
+    let m = &r.metrics;
+    json!({
+        "seed": r.seed,
+        "seconds": r.seconds,
+        "rays": r.rays,
+        "counted": r.counted,
+        "status": r.status.name(),
+        "rmse": number(m.rmse),
+        "mae": number(m.mae),
+        "max": number(m.max),
+        "p99": number(m.p99),
+        "rel_mse": number(m.rel_mse),
+        "rel_mse_trimmed": number(m.rel_mse_trimmed),
+        "bias": number(m.bias),
+        "bias_z": number(m.bias_z()),
+        "nan": m.nan,
+        "inf": m.inf,
+        "negative": m.negative,
+    })
+}

@@ -1,0 +1,303 @@
+//! The work-precision diagram.
+
+use super::Measured;
+use super::case::{Backend, Order};
+use super::curve::{Curve, Point, Status};
+use super::drawing::{Anchor, Color, Drawing, Mark, Symbol};
+use crate::kernel::Variant;
+
+/// The colours of methods, which the colour-blind can tell apart. (Okabe and Ito, "Color Universal
+/// Design", 2008.)
+const COLORS: [Color; 6] =
+    [[213, 94, 0], [0, 114, 178], [0, 158, 115], [204, 121, 167], [230, 159, 0], [86, 180, 233]];
+const INK: Color = [40, 40, 44];
+const GRID: Color = [226, 226, 230];
+const FLOOR: Color = [110, 110, 116];
+
+const WIDTH: u32 = 1180;
+const HEIGHT: u32 = 520;
+/// Both panels: their left edges, width, top and bottom.
+const LEFTS: [f64; 2] = [84.0, 576.0];
+const PANEL: f64 = 420.0;
+const TOP: f64 = 48.0;
+const BOTTOM: f64 = 456.0;
+const LEGEND: f64 = LEFTS[1] + PANEL + 24.0;
+
+/// A floor is on the plot if it is within so many decades of the least error.
+const REACH: f64 = 2.0;
+
+fn symbol(backend: Backend) -> Symbol {
+    match backend {
+        Backend::Variant(Variant::Scalar) => Symbol::Circle,
+        Backend::Variant(Variant::Packet4) => Symbol::Down,
+        Backend::Variant(Variant::Packet8) => Symbol::Square,
+        Backend::Variant(Variant::Packet16) => Symbol::Up,
+        Backend::Variant(Variant::Wgsl) => Symbol::Diamond,
+        Backend::F64 => Symbol::Hexagon,
+    }
+}
+
+impl Measured {
+    /// The diagram, with logarithmic axes: at the left the root of the mean square error over the
+    /// median time of a run, for each method (a colour) and backend (a symbol), with bars from the
+    /// least to the largest of the repetitions; at the right over the number of samples, which is
+    /// no matter of the machine, with triangles of the orders that theory gives. What lies at a
+    /// floor is dotted.
+    pub fn plot(&self) -> Drawing {
+        let mut plot = Plot { case: self, marks: Vec::new(), methods: methods(self) };
+        let shown = shown(self);
+        plot.text((LEFTS[0], 20.0), &self.name, Anchor::Start);
+        let (ys, floors) = plot.heights(&shown);
+        for (i, curves) in [&shown, &firsts(&shown)].into_iter().enumerate() {
+            let x: fn(&Point) -> f64 =
+                if i == 0 { Point::t_median } else { |p| p.samples() as f64 };
+            let values = curves.iter().flat_map(|c| c.points.iter().filter(|p| ran(p)).map(x));
+            let axes = Axes { left: LEFTS[i], xs: decades(values), ys };
+            plot.axes(&axes, ["seconds (median)", "samples in all"][i]);
+            floors.iter().for_each(|(name, floor)| plot.floor(&axes, name, *floor));
+            if i == 1 {
+                curves.iter().enumerate().for_each(|(k, c)| plot.triangle(&axes, c, k));
+            }
+            curves.iter().for_each(|curve| plot.curve(&axes, curve, x, i == 0));
+        }
+        plot.legend(&shown);
+        Drawing { width: WIDTH, height: HEIGHT, marks: plot.marks }
+    }
+}
+
+/// The names of methods in their order; their places choose colours.
+fn methods(case: &Measured) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for curve in &case.curves {
+        if !names.contains(&curve.method.name) {
+            names.push(curve.method.name.clone());
+        }
+    }
+    names
+}
+
+fn ran(point: &Point) -> bool {
+    !point.repetitions.is_empty() && point.rmse().is_finite()
+}
+
+fn shown(case: &Measured) -> Vec<&Curve> {
+    case.curves.iter().filter(|c| c.points.iter().any(ran)).collect()
+}
+
+/// Of each method the first backend: the others take the same samples.
+fn firsts<'c>(curves: &[&'c Curve]) -> Vec<&'c Curve> {
+    let is_first = |i: usize| curves[..i].iter().all(|c| c.method != curves[i].method);
+    (0..curves.len()).filter(|i| is_first(*i)).map(|i| curves[i]).collect()
+}
+
+/// The whole powers of ten around positive numbers; one decade if there is none.
+fn decades(values: impl Iterator<Item = f64>) -> (i32, i32) {
+    let logs = values.filter(|v| *v > 0.0 && v.is_finite()).map(f64::log10);
+    let (low, high) =
+        logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    if low > high {
+        return (-1, 0);
+    }
+    let (low, high) = (low.floor() as i32, high.ceil() as i32);
+    (low, high.max(low + 1))
+}
+
+struct Axes {
+    left: f64,
+    xs: (i32, i32),
+    ys: (i32, i32),
+}
+
+impl Axes {
+    fn place(&self, x: f64, y: f64) -> (f64, f64) {
+        let share = |v: f64, (low, high): (i32, i32)| {
+            let log = v.max(f64::MIN_POSITIVE).log10();
+            ((log - f64::from(low)) / f64::from(high - low)).clamp(0.0, 1.0)
+        };
+        let height = BOTTOM - TOP;
+        (self.left + PANEL * share(x, self.xs), BOTTOM - height * share(y, self.ys))
+    }
+}
+
+struct Plot<'c> {
+    case: &'c Measured,
+    marks: Vec<Mark>,
+    methods: Vec<String>,
+}
+
+impl Plot<'_> {
+    fn line(&mut self, points: &[(f64, f64)], color: Color, width: f64, dash: Option<f64>) {
+        self.marks.push(Mark::Line { points: points.to_vec(), color, width, dash });
+    }
+
+    fn text(&mut self, at: (f64, f64), text: &str, anchor: Anchor) {
+        self.colored(at, text, anchor, INK);
+    }
+
+    fn colored(&mut self, at: (f64, f64), text: &str, anchor: Anchor, color: Color) {
+        let text = text.to_owned();
+        self.marks.push(Mark::Text { at, text, color, anchor, is_turned: false });
+    }
+
+    fn color(&self, curve: &Curve) -> Color {
+        let at = self.methods.iter().position(|m| *m == curve.method.name).unwrap_or(0);
+        COLORS[at % COLORS.len()]
+    }
+
+    /// The decades of errors, and the floors that are on them.
+    fn heights(&self, curves: &[&Curve]) -> ((i32, i32), Vec<(&'static str, f64)>) {
+        let errors: Vec<f64> =
+            curves.iter().flat_map(|c| c.points.iter().map(Point::rmse)).collect();
+        let positive = errors.iter().copied().filter(|e| *e > 0.0);
+        let least = positive.fold(f64::INFINITY, f64::min);
+        let all = [("rounding", self.case.rounding_floor), ("reference", self.case.uncertainty)];
+        let is_near = |f: f64| f > 0.0 && (!least.is_finite() || f * 10f64.powf(REACH) >= least);
+        let floors: Vec<_> = all.into_iter().filter(|f| is_near(f.1)).collect();
+        (decades(errors.into_iter().chain(floors.iter().map(|f| f.1))), floors)
+    }
+
+    fn axes(&mut self, axes: &Axes, label: &str) {
+        let ends = |a: (i32, i32)| (10f64.powi(a.0), 10f64.powi(a.1));
+        let ((x0, x1), (y0, y1)) = (ends(axes.xs), ends(axes.ys));
+        for e in axes.xs.0..=axes.xs.1 {
+            let x = 10f64.powi(e);
+            self.line(&[axes.place(x, y0), axes.place(x, y1)], GRID, 1.0, None);
+            self.text((axes.place(x, y0).0, BOTTOM + 16.0), &format!("1e{e}"), Anchor::Middle);
+        }
+        for e in axes.ys.0..=axes.ys.1 {
+            let y = 10f64.powi(e);
+            self.line(&[axes.place(x0, y), axes.place(x1, y)], GRID, 1.0, None);
+            self.text((axes.left - 8.0, axes.place(x0, y).1), &format!("1e{e}"), Anchor::End);
+        }
+        let corners = [(x0, y1), (x0, y0), (x1, y0)].map(|(x, y)| axes.place(x, y));
+        self.line(&corners, INK, 1.25, None);
+        self.text((axes.left + PANEL / 2.0, BOTTOM + 40.0), label, Anchor::Middle);
+        // The panels have one scale of errors.
+        if axes.left > LEFTS[0] {
+            return;
+        }
+        self.marks.push(Mark::Text {
+            at: (axes.left - 64.0, 0.5 * (TOP + BOTTOM)),
+            text: "root of the mean square error".to_owned(),
+            color: INK,
+            anchor: Anchor::Middle,
+            is_turned: true,
+        });
+    }
+
+    fn floor(&mut self, axes: &Axes, name: &str, floor: f64) {
+        let (x0, x1) = (10f64.powi(axes.xs.0), 10f64.powi(axes.xs.1));
+        let ends = [axes.place(x0, floor), axes.place(x1, floor)];
+        self.line(&ends, FLOOR, 1.25, Some(2.0));
+        let at = (ends[1].0 - 4.0, ends[1].1 - 9.0);
+        self.colored(at, name, Anchor::End, FLOOR);
+    }
+
+    fn curve(&mut self, axes: &Axes, curve: &Curve, x: fn(&Point) -> f64, has_bars: bool) {
+        let color = self.color(curve);
+        let mut points: Vec<&Point> = curve.points.iter().filter(|p| ran(p)).collect();
+        points.sort_by(|a, b| x(a).total_cmp(&x(b)));
+        let place = |p: &Point| axes.place(x(p), p.rmse());
+        for pair in points.windows(2) {
+            let is_good = pair.iter().all(|p| p.status() == Status::Ok);
+            let dash = (!is_good).then_some(3.0);
+            self.line(&[place(pair[0]), place(pair[1])], color, 1.5, dash);
+        }
+        let shape = symbol(curve.backend);
+        for point in points {
+            if has_bars {
+                self.bars(axes, point, color);
+            }
+            self.marks.push(Mark::Symbol { at: place(point), symbol: shape, color, radius: 4.5 });
+        }
+    }
+
+    /// From the least to the largest time and error.
+    fn bars(&mut self, axes: &Axes, point: &Point, color: Color) {
+        let all = &point.repetitions;
+        let ends = |of: fn(&super::Repetition) -> f64| {
+            let values = all.iter().map(of).filter(|v| v.is_finite());
+            values.fold((f64::INFINITY, 0.0), |(l, h), v| (f64::min(l, v), f64::max(h, v)))
+        };
+        let (t, e) = (ends(|r| r.seconds), ends(|r| r.metrics.rmse));
+        let (time, error) = (point.t_median(), point.rmse());
+        self.line(&[axes.place(t.0, error), axes.place(t.1, error)], color, 1.0, None);
+        self.line(&[axes.place(time, e.0), axes.place(time, e.1)], color, 1.0, None);
+    }
+
+    /// The order that theory gives a method: the first method's above its curve, the others' below
+    /// theirs, each at another place.
+    fn triangle(&mut self, axes: &Axes, curve: &Curve, k: usize) {
+        let points: Vec<&Point> = curve.points.iter().filter(|p| ran(p)).collect();
+        let (Some(order), true) = (curve.expected.map(drawn), points.len() > 1) else { return };
+        let is_above = k == 0;
+        let first = (points.len() - 2).min(k.max(1) - usize::from(!is_above));
+        let (a, b) = (points[first], points[first + 1]);
+        let (x0, x1) = (a.samples() as f64, b.samples() as f64);
+        let y0 = if is_above { 1.6 } else { 0.55 } * a.rmse();
+        let y1 = y0 * (x1 / x0).powf(order);
+        let (low, high) = (10f64.powi(axes.ys.0), 10f64.powi(axes.ys.1));
+        let is_inside = y1 > low && y0 < high;
+        if !is_inside {
+            return;
+        }
+        let right_angle = if is_above { (x1, y0) } else { (x0, y1) };
+        let color = self.color(curve);
+        let corners = [(x0, y0), (x1, y1), right_angle, (x0, y0)].map(|(x, y)| axes.place(x, y));
+        self.line(&corners, color, 1.0, None);
+        let (aside, anchor) = if is_above { (4.0, Anchor::Start) } else { (-4.0, Anchor::End) };
+        let at = (corners[2].0 + aside, 0.5 * (corners[0].1 + corners[1].1));
+        self.colored(at, &format!("{order:.2}"), anchor, color);
+    }
+
+    /// Which colour is which method, with its order, and which symbol is which backend.
+    fn legend(&mut self, curves: &[&Curve]) {
+        let mut y = TOP + 8.0;
+        for curve in firsts(curves) {
+            let color = self.color(curve);
+            self.line(&[(LEGEND, y), (LEGEND + 20.0, y)], color, 2.5, None);
+            let name: String = curve.method.name.chars().take(16).collect();
+            self.text((LEGEND + 28.0, y), &name, Anchor::Start);
+            let order = curve.fit.map_or_else(String::new, |f| {
+                format!("{:.2} +- {:.2}", f.order, 0.5 * (f.high - f.low))
+            });
+            self.text((LEGEND + 28.0, y + 16.0), &order, Anchor::Start);
+            y += 40.0;
+        }
+        let mut backends: Vec<Backend> = Vec::new();
+        for curve in curves {
+            if !backends.contains(&curve.backend) {
+                backends.push(curve.backend);
+            }
+        }
+        for backend in backends {
+            let at = (LEGEND + 10.0, y);
+            self.marks.push(Mark::Symbol { at, symbol: symbol(backend), color: INK, radius: 5.0 });
+            self.text((LEGEND + 28.0, y), backend.name(), Anchor::Start);
+            y += 20.0;
+        }
+        let title = format!("reference {}", self.case.kind.name());
+        self.text((LEGEND, y + 12.0), &title, Anchor::Start);
+    }
+}
+
+/// The order of a triangle: the middle of a range, or its end.
+fn drawn(order: Order) -> f64 {
+    if order.steepest.is_finite() {
+        0.5 * (order.steepest + order.flattest)
+    } else {
+        order.flattest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decades_hold_all_numbers() {
+        assert_eq!(decades([0.002, 0.5].into_iter()), (-3, 0));
+        assert_eq!(decades([1.0].into_iter()), (0, 1));
+        assert_eq!(decades([f64::NAN, 0.0, -1.0, f64::INFINITY].into_iter()), (-1, 0));
+    }
+}

@@ -1,0 +1,236 @@
+//! One computation of a case.
+
+use glam::{DVec4, Vec3};
+
+use super::case::{Backend, Method};
+use crate::camera::{Camera, Orthographic};
+use crate::kernel::{Kernel, Variant};
+use crate::machine::{Machine, Outcomes, Rounding, U, X2};
+use crate::render::{
+    Film, FilmArgs, Pass, PixelSampler, Radiance, Sampling, Scheduler, SimpleScheduler,
+};
+use crate::report::Missing;
+
+/// What a computation gave, and what it cost besides time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Estimates {
+    /// The estimates: one for each pixel, row by row from the bottom, or however many there are.
+    pub values: Vec<f64>,
+    /// Samples taken in all.
+    pub samples: u64,
+    /// Rays traced in all, if they are counted.
+    pub rays: Option<u64>,
+    /// What the kernel counts itself, in all: nodes visited, steps, look-ups.
+    pub counted: Option<u64>,
+}
+
+impl Estimates {
+    /// Of numbers and the samples that they took in all.
+    pub fn new(values: Vec<f64>, samples: u64) -> Self {
+        Self { values, samples, rays: None, counted: None }
+    }
+
+    /// Every sample traces so many rays.
+    #[must_use]
+    pub fn rays_per_sample(self, rays: u64) -> Self {
+        Self { rays: Some(self.samples.saturating_mul(rays)), ..self }
+    }
+}
+
+/// How a case is to be computed: by which method, on what, with which value of the knob and which
+/// seed.
+///
+/// [`Run::film`] and [`Run::integral`] run a kernel so; a case that does something else asks for
+/// the parts and makes [`Estimates`] of its own.
+#[derive(Clone, Copy, Debug)]
+pub struct Run<'a> {
+    pub(super) method: &'a Method,
+    pub(super) backend: Backend,
+    pub(super) knob: u32,
+    pub(super) seed: u32,
+    pub(super) size: (u32, u32),
+    #[cfg(feature = "gpu")]
+    pub(super) gpu: Option<&'a crate::gpu::GpuScheduler>,
+}
+
+impl<'a> Run<'a> {
+    /// A run of one pixel, with seed 0 and without a device.
+    pub fn new(method: &'a Method, backend: Backend, knob: u32) -> Self {
+        Self {
+            method,
+            backend,
+            knob,
+            seed: 0,
+            size: (1, 1),
+            #[cfg(feature = "gpu")]
+            gpu: None,
+        }
+    }
+
+    /// With another seed.
+    #[must_use]
+    pub fn seeded(self, seed: u32) -> Self {
+        Self { seed, ..self }
+    }
+
+    /// With a film of this size.
+    #[must_use]
+    pub fn sized(self, width: u32, height: u32) -> Self {
+        Self { size: (width, height), ..self }
+    }
+
+    /// With a device for [`Variant::Wgsl`].
+    #[cfg(feature = "gpu")]
+    #[must_use]
+    pub fn on(self, gpu: &'a crate::gpu::GpuScheduler) -> Self {
+        Self { gpu: Some(gpu), ..self }
+    }
+
+    /// The method.
+    pub fn method(&self) -> &Method {
+        self.method
+    }
+
+    /// What runs it.
+    pub fn backend(&self) -> Backend {
+        self.backend
+    }
+
+    /// The knob's value: samples of each pixel, steps ...
+    pub fn knob(&self) -> u32 {
+        self.knob
+    }
+
+    /// Each repetition has another one.
+    pub fn seed(&self) -> u32 {
+        self.seed
+    }
+
+    /// The film's size.
+    pub fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    /// Renders a film, with as many samples of each pixel as the knob says, jittered by the method,
+    /// on one thread of the CPU or on the device. Estimates are the red channels of its pixels.
+    ///
+    /// # Errors
+    ///
+    /// If there is no device for WGSL, or it refuses.
+    pub fn film<C: Camera, A: FilmArgs, R: Radiance + Send>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+    ) -> Result<Estimates, Missing> {
+        self.red(&self.means(camera, kernel, PixelSampler::Jittered)?)
+    }
+
+    /// The same of a kernel that gives the light in red, and in green what it counted on the way:
+    /// nodes visited, steps, look-ups.
+    ///
+    /// # Errors
+    ///
+    /// If there is no device for WGSL, or it refuses.
+    pub fn film_counted<C: Camera, A: FilmArgs, R: Radiance + Send>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+    ) -> Result<Estimates, Missing> {
+        let means = self.means(camera, kernel, PixelSampler::Jittered)?;
+        let counted: f64 = means.iter().map(|p| p.y * f64::from(self.knob)).sum();
+        Ok(Estimates { counted: Some(counted.round() as u64), ..self.red(&means)? })
+    }
+
+    /// Runs a kernel that looks at nothing but its sampler: every pixel is an estimate of one
+    /// integral of its own samples, which all go to the kernel. Its ray is the same everywhere.
+    ///
+    /// # Errors
+    ///
+    /// If there is no device for WGSL, or it refuses.
+    pub fn integral<A: FilmArgs, R: Radiance + Send>(
+        &self,
+        kernel: &Kernel<'_, A, R>,
+    ) -> Result<Estimates, Missing> {
+        let camera = Orthographic::new(Vec3::Z, Vec3::ZERO, Vec3::Y, 1.0);
+        self.red(&self.means(&camera, kernel, PixelSampler::Center)?)
+    }
+
+    fn red(&self, means: &[DVec4]) -> Result<Estimates, Missing> {
+        let samples = means.len() as u64 * u64::from(self.knob);
+        Ok(Estimates::new(means.iter().map(|p| p.x).collect(), samples))
+    }
+
+    /// The mean colour of each pixel.
+    fn means<C: Camera, A: FilmArgs, R: Radiance + Send>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        pixels: PixelSampler,
+    ) -> Result<Vec<DVec4>, Missing> {
+        let sampling = Sampling::new(self.knob).method(self.method.sampling).seed(self.seed);
+        let sampling = sampling.pixels(pixels);
+        let mut film = Film::new(self.size.0, self.size.1);
+        match self.backend {
+            Backend::F64 => return Ok(self.in_f64(camera, kernel, sampling)),
+            Backend::Variant(Variant::Wgsl) => {
+                self.on_device(camera, kernel, &sampling, &mut film)?;
+            }
+            Backend::Variant(cpu) => {
+                let scheduler = SimpleScheduler::new().variant(cpu);
+                scheduler.accumulate(camera, kernel, &sampling, &mut film, self.knob);
+            }
+        }
+        Ok(film.means().collect())
+    }
+
+    #[cfg(feature = "gpu")]
+    fn on_device<C: Camera, A: FilmArgs, R: Radiance + Send>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        sampling: &Sampling,
+        film: &mut Film,
+    ) -> Result<(), Missing> {
+        let gpu = self.gpu.ok_or_else(|| Missing::NoDevice("there is no device".to_owned()))?;
+        let done = gpu.accumulate(camera, kernel, sampling, film, self.knob);
+        done.map(drop).map_err(|e| Missing::Refused(e.to_string()))
+    }
+
+    #[cfg(not(feature = "gpu"))]
+    fn on_device<C: Camera, A: FilmArgs, R: Radiance + Send>(
+        &self,
+        _: &C,
+        _: &Kernel<'_, A, R>,
+        _: &Sampling,
+        _: &mut Film,
+    ) -> Result<(), Missing> {
+        Err(Missing::NoDevice("raydsl was built without the feature `gpu`".to_owned()))
+    }
+
+    /// The means of the same samples, each computed in `f64`.
+    fn in_f64<C: Camera, A: FilmArgs, R: Radiance + Send>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        sampling: Sampling,
+    ) -> Vec<DVec4> {
+        let (width, height) = self.size;
+        let rays = camera.begin_frame(width, height);
+        let sample = |x: u32, y: u32, first: u32| {
+            let pass = Pass { rays, kernel, sampling, first, count: 1 };
+            let outcomes = Outcomes::of(Rounding::IEEE, 1, |m| {
+                let pixel = X2 { x: U(m.u32(x)), y: U(m.u32(y)) };
+                crate::render::Shot::pixel_on(&pass, m, pixel, &|m, args| kernel.on_margin(m, args))
+            });
+            // Moments: how many, then their mean.
+            let mean = |i: usize| outcomes.reference()[1 + i].value();
+            DVec4::new(mean(0), mean(1), mean(2), mean(3))
+        };
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let mean = |(x, y)| {
+            let sum: DVec4 = (0..self.knob).map(|i| sample(x, y, i)).sum();
+            sum / f64::from(self.knob)
+        };
+        pixels.map(mean).collect()
+    }
+}

@@ -1,0 +1,162 @@
+//! The filters: kernels over a texture's texels.
+//!
+//! Each works on rows along the first axis, which are blended along the others. Filter and address
+//! modes are the host's, so a recorder writes down those of the texture alone.
+
+use glam::{UVec2, UVec3, Vec2, Vec3};
+
+use super::taps::{Four, OUTSIDE, Pair, four, nearest_texel, pair};
+use super::texel::{Texel, TexelValue};
+use super::view::Texels;
+use crate::kernel;
+use crate::machine::generic::select;
+
+/// The first texel of part `i` of those of `size` texels from `first` on: of a row in an image, of
+/// an image in a volume.
+#[kernel]
+fn part(first: u32, size: u32, i: u32, #[host] has_border: bool) -> u32 {
+    if has_border {
+        let start = first.wrapping_add(i.wrapping_mul(size));
+        select(i == OUTSIDE || first == OUTSIDE, OUTSIDE, start)
+    } else {
+        first + i * size
+    }
+}
+
+/// The texel `i` of a row, or the border.
+#[kernel]
+fn texel<T: Texel<Value = V>, V: TexelValue>(texels: &Texels<'_, T>, row: u32, i: u32) -> V {
+    if texels.has_border() {
+        let is_outside = row == OUTSIDE || i == OUTSIDE;
+        let inside: V = texels.value(select(is_outside, 0u32, row.wrapping_add(i)));
+        if is_outside { texels.border() } else { inside }
+    } else {
+        texels.value(row + i)
+    }
+}
+
+#[kernel]
+fn linear_row<T: Texel<Value = V>, V: TexelValue>(texels: &Texels<'_, T>, row: u32, x: Pair) -> V {
+    let a: V = texel(texels, row, x.first);
+    let b: V = texel(texels, row, x.second);
+    a.blend(b, x.share)
+}
+
+#[kernel]
+fn linear_image<T: Texel<Value = V>, V: TexelValue>(
+    texels: &Texels<'_, T>,
+    first: u32,
+    width: u32,
+    x: Pair,
+    y: Pair,
+) -> V {
+    let a: V = linear_row(texels, part(first, width, y.first, texels.has_border()), x);
+    let b: V = linear_row(texels, part(first, width, y.second, texels.has_border()), x);
+    a.blend(b, y.share)
+}
+
+#[kernel]
+fn cubic_row<T: Texel<Value = V>, V: TexelValue>(texels: &Texels<'_, T>, row: u32, x: Four) -> V {
+    let a: V = texel(texels, row, x.first);
+    let b: V = texel(texels, row, x.second);
+    let c: V = texel(texels, row, x.third);
+    let d: V = texel(texels, row, x.fourth);
+    b.blend4(a, c, d, x.w1, x.w3, x.w4)
+}
+
+#[kernel]
+fn cubic_image<T: Texel<Value = V>, V: TexelValue>(
+    texels: &Texels<'_, T>,
+    first: u32,
+    width: u32,
+    x: Four,
+    y: Four,
+) -> V {
+    let a: V = cubic_row(texels, part(first, width, y.first, texels.has_border()), x);
+    let b: V = cubic_row(texels, part(first, width, y.second, texels.has_border()), x);
+    let c: V = cubic_row(texels, part(first, width, y.third, texels.has_border()), x);
+    let d: V = cubic_row(texels, part(first, width, y.fourth, texels.has_border()), x);
+    b.blend4(a, c, d, y.w1, y.w3, y.w4)
+}
+
+/// The value at `x` of `size` texels from `first` on.
+#[kernel]
+pub(super) fn filter1<T: Texel<Value = V>, V: TexelValue>(
+    texels: &Texels<'_, T>,
+    size: u32,
+    first: u32,
+    x: f32,
+) -> V {
+    if texels.is_nearest() {
+        texel(texels, first, nearest_texel(x, size, texels.address_u()))
+    } else if texels.is_linear() {
+        linear_row(texels, first, pair(x, size, texels.address_u()))
+    } else {
+        cubic_row(texels, first, four(x, size, texels.address_u(), texels.filter()))
+    }
+}
+
+/// The value at `uv` of an image that starts at `first`.
+#[kernel]
+pub(super) fn filter2<T: Texel<Value = V>, V: TexelValue>(
+    texels: &Texels<'_, T>,
+    size: UVec2,
+    first: u32,
+    uv: Vec2,
+) -> V {
+    if texels.is_nearest() {
+        let i = nearest_texel(uv.x, size.x, texels.address_u());
+        let j = nearest_texel(uv.y, size.y, texels.address_v());
+        texel(texels, part(first, size.x, j, texels.has_border()), i)
+    } else if texels.is_linear() {
+        let x = pair(uv.x, size.x, texels.address_u());
+        let y = pair(uv.y, size.y, texels.address_v());
+        linear_image(texels, first, size.x, x, y)
+    } else {
+        let x = four(uv.x, size.x, texels.address_u(), texels.filter());
+        let y = four(uv.y, size.y, texels.address_v(), texels.filter());
+        cubic_image(texels, first, size.x, x, y)
+    }
+}
+
+/// The value at `uvw` of a volume that starts at `first`.
+#[kernel]
+pub(super) fn filter3<T: Texel<Value = V>, V: TexelValue>(
+    texels: &Texels<'_, T>,
+    size: UVec3,
+    first: u32,
+    uvw: Vec3,
+) -> V {
+    let image = size.x * size.y;
+    if texels.is_nearest() {
+        let i = nearest_texel(uvw.x, size.x, texels.address_u());
+        let j = nearest_texel(uvw.y, size.y, texels.address_v());
+        let k = nearest_texel(uvw.z, size.z, texels.address_w());
+        let start = part(first, image, k, texels.has_border());
+        texel(texels, part(start, size.x, j, texels.has_border()), i)
+    } else if texels.is_linear() {
+        let x = pair(uvw.x, size.x, texels.address_u());
+        let y = pair(uvw.y, size.y, texels.address_v());
+        let z = pair(uvw.z, size.z, texels.address_w());
+        let front = part(first, image, z.first, texels.has_border());
+        let back = part(first, image, z.second, texels.has_border());
+        let a: V = linear_image(texels, front, size.x, x, y);
+        let b: V = linear_image(texels, back, size.x, x, y);
+        a.blend(b, z.share)
+    } else {
+        let x = four(uvw.x, size.x, texels.address_u(), texels.filter());
+        let y = four(uvw.y, size.y, texels.address_v(), texels.filter());
+        let z = four(uvw.z, size.z, texels.address_w(), texels.filter());
+        let starts = [
+            part(first, image, z.first, texels.has_border()),
+            part(first, image, z.second, texels.has_border()),
+            part(first, image, z.third, texels.has_border()),
+            part(first, image, z.fourth, texels.has_border()),
+        ];
+        let a: V = cubic_image(texels, starts[0], size.x, x, y);
+        let b: V = cubic_image(texels, starts[1], size.x, x, y);
+        let c: V = cubic_image(texels, starts[2], size.x, x, y);
+        let d: V = cubic_image(texels, starts[3], size.x, x, y);
+        b.blend4(a, c, d, z.w1, z.w3, z.w4)
+    }
+}

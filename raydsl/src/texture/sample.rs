@@ -1,0 +1,105 @@
+//! Kernels over texels: values at level 0, and at any level of detail.
+
+use glam::{UVec2, UVec3, Vec2, Vec3};
+
+use super::filter::{filter1, filter2, filter3};
+use super::texel::{Texel, TexelValue};
+use super::view::Texels;
+use crate::kernel;
+use crate::machine::generic::{max, min};
+
+/// How many texels an axis has at a level.
+#[kernel]
+fn size_at(size: u32, level: u32) -> u32 {
+    max(size >> level, 1u32)
+}
+
+/// The first texel of a level; one level is behind the other.
+#[kernel]
+fn level_start(size: UVec3, level: u32) -> u32 {
+    let mut start = 0u32;
+    for finer in 0..level {
+        start += size_at(size.x, finer) * size_at(size.y, finer) * size_at(size.z, finer);
+    }
+    start
+}
+
+/// A level within `0..=last`; what is no number becomes 0.
+#[kernel]
+fn level_within(level: f32, last: u32) -> f32 {
+    min(max(0.0, level), last as f32)
+}
+
+#[kernel]
+pub(super) fn tex1<T: Texel<Value = V>, V: TexelValue>(texels: &Texels<'_, T>, u: f32) -> V {
+    filter1(texels, texels.size1(), 0u32, u)
+}
+
+#[kernel]
+pub(super) fn tex2<T: Texel<Value = V>, V: TexelValue>(texels: &Texels<'_, T>, uv: Vec2) -> V {
+    filter2(texels, texels.size2(), 0u32, uv)
+}
+
+#[kernel]
+pub(super) fn tex3<T: Texel<Value = V>, V: TexelValue>(texels: &Texels<'_, T>, uvw: Vec3) -> V {
+    filter3(texels, texels.size3(), 0u32, uvw)
+}
+
+#[kernel]
+fn at_level1<T: Texel<Value = V>, V: TexelValue>(texels: &Texels<'_, T>, u: f32, level: u32) -> V {
+    let size = texels.size1();
+    let first = level_start(UVec3::new(size, 1, 1), level);
+    filter1(texels, size_at(size, level), first, u)
+}
+
+#[kernel]
+fn at_level2<T: Texel<Value = V>, V: TexelValue>(
+    texels: &Texels<'_, T>,
+    uv: Vec2,
+    level: u32,
+) -> V {
+    let size = texels.size2();
+    let first = level_start(UVec3::new(size.x, size.y, 1), level);
+    filter2(texels, UVec2::new(size_at(size.x, level), size_at(size.y, level)), first, uv)
+}
+
+#[kernel]
+fn at_level3<T: Texel<Value = V>, V: TexelValue>(
+    texels: &Texels<'_, T>,
+    uvw: Vec3,
+    level: u32,
+) -> V {
+    let size = texels.size3();
+    let (w, h, d) = (size_at(size.x, level), size_at(size.y, level), size_at(size.z, level));
+    filter3(texels, UVec3::new(w, h, d), level_start(size, level), uvw)
+}
+
+macro_rules! leveled {
+    ($leveled:ident $base:ident $at_level:ident $coordinate:ty) => {
+        #[kernel]
+        pub(super) fn $leveled<T: Texel<Value = V>, V: TexelValue>(
+            texels: &Texels<'_, T>,
+            at: $coordinate,
+            level: f32,
+        ) -> V {
+            if texels.has_levels() {
+                let last = texels.last_level();
+                let place = level_within(level, last);
+                if texels.blends_levels() {
+                    let finer = place.floor();
+                    let below: V = $at_level(texels, at, finer as u32);
+                    let above: V = $at_level(texels, at, min(finer as u32 + 1, last));
+                    below.blend(above, place - finer)
+                } else {
+                    $at_level(texels, at, (place + 0.5).floor() as u32)
+                }
+            } else {
+                $base(texels, at)
+            }
+        }
+    };
+}
+
+leveled!(tex1_level tex1 at_level1 f32);
+leveled!(tex2_level tex2 at_level2 Vec2);
+leveled!(tex3_level tex3 at_level3 Vec3);

@@ -1,0 +1,147 @@
+//! From a coordinate along one axis to texels and weights.
+
+use super::config::{Address, Filter};
+use crate::Type;
+use crate::kernel;
+use crate::machine::generic::{max, min, select};
+
+/// In place of the number of a texel, or of a row's first: it is outside, the border is meant.
+pub(super) const OUTSIDE: u32 = u32::MAX;
+
+/// A coordinate brought near the texture, with the same meaning: within one period, or not far
+/// outside. Where the texture repeats, what is no number or infinite becomes 0.
+#[kernel]
+fn reduced(x: f32, #[host] address: Address) -> f32 {
+    if address == Address::Wrap {
+        let c = select(x.is_finite(), x, 0.0);
+        // From 0 to 1, which it is for small negative numbers.
+        c - c.floor()
+    } else if address == Address::Mirror {
+        let c = select(x.is_finite(), x, 0.0);
+        c - 2.0 * (c * 0.5).floor()
+    } else {
+        // Far enough that none of four texels is inside, were there a single one. In this order NaN
+        // becomes -2.
+        min(max(-2.0, x), 3.0)
+    }
+}
+
+/// The texel at place `i` of an axis with `n`: as far outside as filters reach, and for mirrors
+/// within two periods.
+#[kernel]
+fn texel_at(i: i32, n: i32, #[host] address: Address) -> u32 {
+    let last = n - 1;
+    if address == Address::Wrap {
+        let j = if i < 0 { i + n } else { i };
+        let k = if j > last { j - n } else { j };
+        // Filters are wider than a texture of one texel.
+        min(max(k, 0), last) as u32
+    } else if address == Address::Mirror {
+        let j = if i > last { 2 * n - 1 - i } else { i };
+        let k = if j < 0 { -1 - j } else { j };
+        min(k, last) as u32
+    } else if address == Address::Clamp {
+        min(max(i, 0), last) as u32
+    } else if i >= 0 && i < n {
+        i as u32
+    } else {
+        OUTSIDE
+    }
+}
+
+/// The texel that `x` lies in.
+#[kernel]
+pub(super) fn nearest_texel(x: f32, size: u32, #[host] address: Address) -> u32 {
+    let n = size as i32;
+    let i = (reduced(x, address) * size as f32).floor() as i32;
+    if address == Address::Wrap {
+        // A period ends with its last texel: the coordinate may have been rounded up to 1.
+        min(i, n - 1) as u32
+    } else {
+        texel_at(i, n, address)
+    }
+}
+
+/// Two neighbours and the share of the second.
+#[derive(Clone, Copy, Debug, Type)]
+pub(super) struct Pair {
+    pub(super) first: u32,
+    pub(super) second: u32,
+    pub(super) share: f32,
+}
+
+/// The neighbours of `x`. Both places come from one number: found apart, rounding could place them
+/// a whole texel from each other's share.
+#[kernel]
+pub(super) fn pair(x: f32, size: u32, #[host] address: Address) -> Pair {
+    let n = size as i32;
+    let place = reduced(x, address) * size as f32 - 0.5;
+    let below = place.floor();
+    let i = below as i32;
+    Pair {
+        first: texel_at(i, n, address),
+        second: texel_at(i + 1, n, address),
+        share: place - below,
+    }
+}
+
+/// Four neighbours and the weights of all but the second; that one has the rest of 1.
+#[derive(Clone, Copy, Debug, Type)]
+pub(super) struct Four {
+    pub(super) first: u32,
+    pub(super) second: u32,
+    pub(super) third: u32,
+    pub(super) fourth: u32,
+    pub(super) w1: f32,
+    pub(super) w3: f32,
+    pub(super) w4: f32,
+}
+
+/// The neighbours of `x` for a cubic filter.
+#[kernel]
+pub(super) fn four(x: f32, size: u32, #[host] address: Address, #[host] filter: Filter) -> Four {
+    let n = size as i32;
+    let place = reduced(x, address) * size as f32 - 0.5;
+    let below = place.floor();
+    let i = below as i32;
+    let w = weights(place - below, filter);
+    Four {
+        first: texel_at(i - 1, n, address),
+        second: texel_at(i, n, address),
+        third: texel_at(i + 1, n, address),
+        fourth: texel_at(i + 2, n, address),
+        w1: w.first,
+        w3: w.third,
+        w4: w.fourth,
+    }
+}
+
+/// The weights of the first, third and fourth of four neighbours.
+#[derive(Clone, Copy, Debug, Type)]
+struct Weights {
+    first: f32,
+    third: f32,
+    fourth: f32,
+}
+
+/// The weights where the share of the way from the second to the third is `a`, from 0 to 1.
+///
+/// They are products of what is not negative, so no rounding gives one the wrong sign: expanded as
+/// `1 - 3a + 3a² - a³`, the first weight of the B-spline does become negative near `a = 1`.
+#[kernel]
+fn weights(a: f32, #[host] filter: Filter) -> Weights {
+    let b = 1.0 - a;
+    if filter == Filter::BSpline {
+        Weights {
+            first: b * b * b / 6.0,
+            third: (1.0 + 3.0 * a * (1.0 + a * b)) / 6.0,
+            fourth: a * a * a / 6.0,
+        }
+    } else {
+        Weights {
+            first: -0.5 * (a * b * b),
+            third: 0.5 * a * (1.0 + a * (4.0 - 3.0 * a)),
+            fourth: -0.5 * (a * a * b),
+        }
+    }
+}

@@ -1,0 +1,316 @@
+//! Texels, and what is read from them.
+
+use glam::{Vec2, Vec3, Vec4};
+
+use super::color::{linear_to_srgb, srgb_to_linear};
+use super::config::ColorSpace;
+use crate::kernel;
+use crate::machine::{F, Machine, Method, Type, X2, X3, X4, name};
+use crate::math::{F16, Unorm8, Unorm16};
+
+/// What filters do with values: they are folded as `a + w (b - a)`, so that a constant texture
+/// comes back with the same bits.
+#[kernel]
+pub trait Blend {
+    /// `self + (to - self) * w`.
+    fn blend(self, to: Self, w: f32) -> Self;
+
+    /// `self`, the second of four neighbours, and the differences to the others by their weights.
+    fn blend4(self, first: Self, third: Self, fourth: Self, w1: f32, w3: f32, w4: f32) -> Self;
+}
+
+macro_rules! blend {
+    ($($t:ident),+) => {
+        $(
+            #[kernel]
+            impl Blend for $t {
+                fn blend(self, to: Self, w: f32) -> Self {
+                    self + (to - self) * w
+                }
+
+                fn blend4(
+                    self,
+                    first: Self,
+                    third: Self,
+                    fourth: Self,
+                    w1: f32,
+                    w3: f32,
+                    w4: f32,
+                ) -> Self {
+                    self + ((first - self) * w1 + (third - self) * w3 + (fourth - self) * w4)
+                }
+            }
+        )+
+    };
+}
+
+blend!(f32, Vec2, Vec3, Vec4);
+
+/// What a texture gives: `f32`, `Vec2`, `Vec3` or `Vec4`, by the number of channels.
+pub trait TexelValue: Blend + Texel<Value = Self> {
+    /// How many channels.
+    const CHANNELS: usize;
+
+    /// The value of the first of these channels.
+    fn from_channels(channels: [f32; 4]) -> Self;
+
+    /// The channels; those that it does not have are 0.
+    fn to_channels(self) -> [f32; 4];
+
+    /// [`from_channels`](Self::from_channels) on a machine.
+    #[doc(hidden)]
+    fn from_channels_on<M: Machine>(m: &M, channels: &[F<M>]) -> Self::On<M>;
+}
+
+macro_rules! value {
+    ($($t:ident $n:literal $twin:ident ($($c:ident $i:literal)+);)+) => {
+        $(
+            impl TexelValue for $t {
+                const CHANNELS: usize = $n;
+
+                #[inline(always)]
+                fn from_channels(channels: [f32; 4]) -> Self {
+                    Self::new($(channels[$i]),+)
+                }
+
+                #[inline(always)]
+                fn to_channels(self) -> [f32; 4] {
+                    let mut all = [0.0; 4];
+                    $(all[$i] = self.$c;)+
+                    all
+                }
+
+                #[inline(always)]
+                fn from_channels_on<M: Machine>(_: &M, channels: &[F<M>]) -> Self::On<M> {
+                    $twin { $($c: channels[$i]),+ }
+                }
+            }
+        )+
+    };
+}
+
+value! {
+    Vec2 2 X2 (x 0 y 1);
+    Vec3 3 X3 (x 0 y 1 z 2);
+    Vec4 4 X4 (x 0 y 1 z 2 w 3);
+}
+
+impl TexelValue for f32 {
+    const CHANNELS: usize = 1;
+
+    #[inline(always)]
+    fn from_channels(channels: [f32; 4]) -> Self {
+        channels[0]
+    }
+
+    #[inline(always)]
+    fn to_channels(self) -> [f32; 4] {
+        [self, 0.0, 0.0, 0.0]
+    }
+
+    #[inline(always)]
+    fn from_channels_on<M: Machine>(_: &M, channels: &[F<M>]) -> F<M> {
+        channels[0]
+    }
+}
+
+/// A texel: one to four channels of [`Unorm8`], [`Unorm16`], [`F16`] or `f32`.
+///
+/// Arrays of one to four such numbers, the numbers themselves, and glam's vectors are texels. A
+/// texel is stored as the application has it; a device pads it to whole words of 4 bytes.
+pub trait Texel: Type {
+    /// What is read: a number for each channel.
+    type Value: TexelValue;
+
+    /// The value.
+    fn decode(self, space: ColorSpace) -> Self::Value;
+
+    /// The texel nearest to a value.
+    fn encode(value: Self::Value, space: ColorSpace) -> Self;
+
+    /// [`decode`](Self::decode) on a machine.
+    #[doc(hidden)]
+    fn decode_on<M: Machine>(
+        m: &M,
+        this: Self::On<M>,
+        space: ColorSpace,
+    ) -> <Self::Value as Type>::On<M>;
+}
+
+/// One channel of a texel.
+pub trait Channel: Type {
+    /// Its number.
+    fn number(self) -> f32;
+    /// The nearest to `v`.
+    fn nearest(v: f32) -> Self;
+    /// [`number`](Self::number) on a machine.
+    #[doc(hidden)]
+    fn number_on<M: Machine>(m: &M, this: Self::On<M>) -> F<M>;
+}
+
+impl Channel for f32 {
+    #[inline(always)]
+    fn number(self) -> f32 {
+        self
+    }
+
+    fn nearest(v: f32) -> Self {
+        v
+    }
+
+    #[inline(always)]
+    fn number_on<M: Machine>(_: &M, this: F<M>) -> F<M> {
+        this
+    }
+}
+
+macro_rules! small_channel {
+    ($($t:ident),+) => {
+        $(
+            impl Channel for $t {
+                #[inline(always)]
+                fn number(self) -> f32 {
+                    self.to_f32()
+                }
+
+                fn nearest(v: f32) -> Self {
+                    Self::new(v)
+                }
+
+                #[inline(always)]
+                fn number_on<M: Machine>(m: &M, this: Self::On<M>) -> F<M> {
+                    Method::<{ name("to_f32") }, M, ()>::call(this, m, ())
+                }
+            }
+        )+
+    };
+}
+
+small_channel!(Unorm8, Unorm16, F16);
+
+/// Whether channel `i` of `n` is opacity.
+const fn is_opacity(i: usize, n: usize) -> bool {
+    n.is_multiple_of(2) && i + 1 == n
+}
+
+#[inline(always)]
+fn decoded<C: Channel>(c: C, is_encoded: bool) -> f32 {
+    let v = c.number();
+    if is_encoded { srgb_to_linear(v) } else { v }
+}
+
+fn encoded<C: Channel>(v: f32, is_encoded: bool) -> C {
+    C::nearest(if is_encoded { linear_to_srgb(v) } else { v })
+}
+
+#[inline(always)]
+fn decoded_on<M: Machine, C: Channel>(m: &M, c: C::On<M>, is_encoded: bool) -> F<M> {
+    let v = C::number_on(m, c);
+    if is_encoded { srgb_to_linear::on(m, v) } else { v }
+}
+
+/// Whether the channels of a texel are encoded.
+#[inline(always)]
+fn encodings(space: ColorSpace, n: usize) -> [bool; 4] {
+    core::array::from_fn(
+        #[inline(always)]
+        |i| space == ColorSpace::Srgb && !is_opacity(i, n),
+    )
+}
+
+macro_rules! array_texel {
+    ($($n:literal $v:ident ($($i:literal)+);)+) => {
+        $(
+            impl<C: Channel> Texel for [C; $n] {
+                type Value = $v;
+
+                #[inline(always)]
+                fn decode(self, space: ColorSpace) -> $v {
+                    let is = encodings(space, $n);
+                    let mut all = [0.0; 4];
+                    $(all[$i] = decoded(self[$i], is[$i]);)+
+                    $v::from_channels(all)
+                }
+
+                fn encode(value: $v, space: ColorSpace) -> Self {
+                    let (is, all) = (encodings(space, $n), value.to_channels());
+                    [$(encoded(all[$i], is[$i])),+]
+                }
+
+                #[inline(always)]
+                fn decode_on<M: Machine>(
+                    m: &M,
+                    this: Self::On<M>,
+                    space: ColorSpace,
+                ) -> <$v as Type>::On<M> {
+                    let is = encodings(space, $n);
+                    let all = [$(decoded_on::<M, C>(m, this[$i], is[$i])),+];
+                    $v::from_channels_on(m, &all)
+                }
+            }
+        )+
+    };
+}
+
+array_texel! {
+    1 f32 (0);
+    2 Vec2 (0 1);
+    3 Vec3 (0 1 2);
+    4 Vec4 (0 1 2 3);
+}
+
+macro_rules! single_texel {
+    ($($t:ty),+) => {
+        $(
+            impl Texel for $t {
+                type Value = f32;
+
+                #[inline(always)]
+                fn decode(self, space: ColorSpace) -> f32 {
+                    [self].decode(space)
+                }
+
+                fn encode(value: f32, space: ColorSpace) -> Self {
+                    <[Self; 1]>::encode(value, space)[0]
+                }
+
+                #[inline(always)]
+                fn decode_on<M: Machine>(m: &M, this: Self::On<M>, space: ColorSpace) -> F<M> {
+                    <[Self; 1]>::decode_on(m, [this], space)
+                }
+            }
+        )+
+    };
+}
+
+single_texel!(f32, Unorm8, Unorm16, F16);
+
+macro_rules! vector_texel {
+    ($($t:ident $n:literal ($($c:ident)+);)+) => {
+        $(
+            impl Texel for $t {
+                type Value = $t;
+
+                #[inline(always)]
+                fn decode(self, space: ColorSpace) -> $t {
+                    self.to_array().decode(space)
+                }
+
+                fn encode(value: $t, space: ColorSpace) -> Self {
+                    <[f32; $n]>::encode(value, space).into()
+                }
+
+                #[inline(always)]
+                fn decode_on<M: Machine>(m: &M, this: Self::On<M>, space: ColorSpace) -> Self::On<M> {
+                    <[f32; $n]>::decode_on(m, [$(this.$c),+], space)
+                }
+            }
+        )+
+    };
+}
+
+vector_texel! {
+    Vec2 2 (x y);
+    Vec3 3 (x y z);
+    Vec4 4 (x y z w);
+}

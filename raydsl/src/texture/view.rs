@@ -1,0 +1,182 @@
+//! What kernels see of a texture: a value of the host on every machine.
+//!
+//! Texels are read in place. Filter, address modes and colour space are known while a kernel is
+//! recorded; sizes and the border are brought to the machine where they are used, so they are
+//! numbers of the uniform block.
+
+use glam::{UVec2, UVec3};
+
+use super::config::{Address, Filter, LevelFilter, TextureConfig};
+use super::texel::{Texel, TexelValue};
+use crate::Type;
+use crate::bvh::View;
+use crate::machine::wgsl::BufferKey;
+use crate::machine::{Leaves, Machine, Method, Parameter, Schema, U, Value, X2, X3, name};
+
+/// The texels of a texture and how they are read, whatever its dimension.
+#[derive(Debug)]
+pub struct Texels<'a, T> {
+    pub(super) all: &'a [T],
+    /// Of axes that the texture does not have, 1.
+    pub(super) size: [u32; 3],
+    pub(super) levels: u32,
+    /// Axes that the texture does not have are clamped.
+    pub(super) config: TextureConfig,
+    /// The name that a device has for the texels, if their owner is known.
+    pub(super) key: Option<BufferKey>,
+    /// The name in the source.
+    pub(super) name: &'static str,
+}
+
+impl<T> Clone for Texels<'_, T> {
+    #[inline(always)]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Texels<'_, T> {}
+
+impl<'a, T> Texels<'a, T> {
+    #[inline(always)]
+    pub(super) fn view(&self) -> View<'a, T> {
+        View::owned_slice(self.all, self.key).named(self.name)
+    }
+}
+
+/// What a texture has in the uniform block: `tiles_size`.
+#[derive(Clone, Copy, Type)]
+struct Extent<S: Type> {
+    size: S,
+}
+
+/// `tiles_border`.
+#[derive(Clone, Copy, Type)]
+struct Border<V: TexelValue> {
+    border: V,
+}
+
+/// `tiles_last_level`.
+#[derive(Clone, Copy, Type)]
+struct Levels {
+    last_level: u32,
+}
+
+/// Methods of kernels: `name(self, arguments) -> type on the host, type on a machine`.
+macro_rules! methods {
+    ($(
+        $(#[$doc:meta])*
+        $name:ident ($this:ident) -> $host:ty { $e:expr }
+        on ($m:ident) -> $twin:ty { $on:expr }
+    )+) => {
+        impl<T: Texel> Texels<'_, T> {
+            $(
+                $(#[$doc])*
+                #[inline(always)]
+                pub(super) fn $name(&self) -> $host {
+                    let $this = self;
+                    $e
+                }
+            )+
+        }
+        $(
+            #[diagnostic::do_not_recommend]
+            impl<M: Machine, T: Texel> Method<{ name(stringify!($name)) }, M, ()> for Texels<'_, T> {
+                type Output = $twin;
+
+                #[inline(always)]
+                fn call(self, $m: &M, (): ()) -> $twin {
+                    let $this = self;
+                    $on
+                }
+            }
+        )+
+    };
+}
+
+/// Those that are decided while a kernel is recorded.
+macro_rules! known {
+    ($($(#[$doc:meta])* $name:ident ($this:ident) -> $host:ty { $e:expr })+) => {
+        methods! {
+            $($(#[$doc])* $name ($this) -> $host { $e } on (_m) -> $host { $e })+
+        }
+    };
+}
+
+known! {
+    /// Whether a texel may be the border.
+    has_border(t) -> bool { t.config.address.contains(&Address::Border) }
+    has_levels(t) -> bool { t.levels > 1 }
+    blends_levels(t) -> bool { t.config.level_filter == LevelFilter::Linear }
+    is_nearest(t) -> bool { t.config.filter == Filter::Nearest }
+    is_linear(t) -> bool { t.config.filter == Filter::Linear }
+    filter(t) -> Filter { t.config.filter }
+    address_u(t) -> Address { t.config.address[0] }
+    address_v(t) -> Address { t.config.address[1] }
+    address_w(t) -> Address { t.config.address[2] }
+}
+
+methods! {
+    size1(t) -> u32 { t.size[0] }
+    on(m) -> U<M> { m.capture(t.name, Extent { size: t.size[0] }).size }
+
+    size2(t) -> UVec2 { UVec2::new(t.size[0], t.size[1]) }
+    on(m) -> X2<U<M>> { m.capture(t.name, Extent { size: t.size2() }).size }
+
+    size3(t) -> UVec3 { UVec3::from(t.size) }
+    on(m) -> X3<U<M>> { m.capture(t.name, Extent { size: t.size3() }).size }
+
+    last_level(t) -> u32 { t.levels - 1 }
+    on(m) -> U<M> { m.capture(t.name, Levels { last_level: t.levels - 1 }).last_level }
+
+    border(t) -> T::Value { T::Value::from_channels(t.config.border.to_array()) }
+    on(m) -> <T::Value as Type>::On<M> { m.capture(t.name, Border { border: t.border() }).border }
+}
+
+impl<T: Texel> Texels<'_, T> {
+    /// The value of texel `i`, which there is.
+    #[inline(always)]
+    pub(super) fn value(&self, i: u32) -> T::Value {
+        self.all[i as usize].decode(self.config.color_space)
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine, T: Texel> Method<{ name("value") }, M, (U<M>,)> for Texels<'_, T> {
+    type Output = <T::Value as Type>::On<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (i,): (U<M>,)) -> Self::Output {
+        let texel = m.fetch(&self.view(), i);
+        T::decode_on(m, texel, self.config.color_space)
+    }
+}
+
+impl<T: Type> Parameter for Texels<'_, T> {
+    type On<'a, M: Machine> = Texels<'a, T>;
+}
+
+impl<M: Machine, T> Value<M> for Texels<'_, T> {
+    const SCHEMA: &'static Schema = &Schema::Host;
+
+    #[inline(always)]
+    fn zero(_: &M) -> Self {
+        let config = TextureConfig::default();
+        Self { all: &[], size: [1; 3], levels: 1, config, key: None, name: "texture" }
+    }
+
+    #[inline(always)]
+    fn zip(_: &M, a: Self, b: Self, _: &mut impl Leaves<M>) -> Self {
+        // Nothing yet: a variable that has been declared.
+        if a.all.is_empty() {
+            return b;
+        }
+        let is_same = || core::ptr::eq(a.all, b.all) && a.size == b.size && a.config == b.config;
+        assert!(
+            b.all.is_empty() || is_same(),
+            "a kernel cannot choose between two textures by a value of its rays: choose between \
+             what it reads from them, or by a captured `bool`"
+        );
+        a
+    }
+}

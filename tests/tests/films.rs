@@ -1,0 +1,287 @@
+//! Films: the same samples from every scheduler, variant, tile and number of threads.
+
+use std::error::Error;
+use std::ops::ControlFlow;
+
+use raydsl::camera::{Camera, CameraRays};
+use raydsl::prelude::*;
+use raydsl::render::{Shot, Watch};
+use raydsl_tests::gpu::gpu;
+use raydsl_tests::scenes::spheres;
+
+const CPU: [Variant; 4] = [Variant::Scalar, Variant::Packet4, Variant::Packet8, Variant::Packet16];
+const PATTERNS: [PixelSampler; 5] = [
+    PixelSampler::Center,
+    PixelSampler::Two,
+    PixelSampler::Four,
+    PixelSampler::Eight,
+    PixelSampler::Jittered,
+];
+
+fn camera() -> Pinhole {
+    Pinhole::new(vec3(1.0, 2.0, -14.0), vec3(0.2, 0.0, 0.0), vec3(0.0, 1.0, 0.0), 0.9)
+}
+
+/// A light of random colour, seen past spheres.
+macro_rules! lit {
+    ($bvh:ident, $method:ident) => {
+        kernel!(|ray: Ray, pixel: UVec2, sampler: Sampler| {
+            let mut sampler = sampler;
+            let u = sampler.next_2d(host($method));
+            let hit = $bvh.closest_hit(ray);
+            let column = pixel.x as f32 * 0.01;
+            if hit.is_hit { vec4(u.x, u.y, column, 1.0) } else { vec4(0.1, 0.2, u.x, 0.0) }
+        })
+    };
+}
+
+/// One scheduler that is the user's own.
+struct Own;
+
+impl Scheduler for Own {
+    fn run<S: Shot>(&self, shot: &S, image: &mut Image<S::Output>, watch: &Watch<'_>) {
+        for tile in image.tiles(5).iter_mut().rev() {
+            tile.render(shot, Variant::Packet4);
+            watch.advance(tile.area());
+        }
+    }
+
+    fn batch<A: raydsl::Type + Sync, R: raydsl::Type + Send>(
+        &self,
+        kernel: &Kernel<'_, A, R>,
+        inputs: &[A],
+        outputs: &mut [R],
+    ) {
+        kernel.run(Variant::Packet4, inputs, outputs);
+    }
+}
+
+#[test]
+fn every_scheduler_and_variant_and_tile() -> Result<(), Box<dyn Error>> {
+    let balls = spheres(800);
+    let bvh = Bvh::build(&balls)?;
+    let methods = [SampleMethod::Random, SampleMethod::Stratified, SampleMethod::Sobol];
+    for (pixels, i) in PATTERNS.into_iter().zip(0..) {
+        let method = methods[i % 3];
+        let kernel = lit!(bvh, method);
+        let sampling = Sampling::new(70).pixels(pixels).method(method).seed(i as u32);
+        let accumulated = |scheduler: &dyn Fn(&mut Film)| {
+            let mut film = Film::new(37, 21);
+            scheduler(&mut film);
+            assert_eq!(film.samples(), 70);
+            film
+        };
+        let expected = accumulated(&|film| {
+            SimpleScheduler::new().accumulate(&camera(), &kernel, &sampling, film, 70);
+        });
+        let own = accumulated(&|film| Own.accumulate(&camera(), &kernel, &sampling, film, 70));
+        assert!(own == expected, "own {pixels:?}");
+        for v in CPU {
+            for edge in [1, 7, 16, 64] {
+                let found = accumulated(&|film| {
+                    let tiled = TiledScheduler::new().variant(v).tile(edge);
+                    tiled.accumulate(&camera(), &kernel, &sampling, film, 70);
+                });
+                assert!(found == expected, "{v:?} {pixels:?} tiles of {edge}");
+            }
+        }
+        if let Some(gpu) = gpu() {
+            let mut found = Film::new(37, 21);
+            let timing = gpu.accumulate(&camera(), &kernel, &sampling, &mut found, 70)?;
+            assert!(found == expected && timing.dispatches >= 2, "WGSL {pixels:?} {timing:?}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn any_number_of_threads() -> Result<(), Box<dyn Error>> {
+    let balls = spheres(800);
+    let bvh = Bvh::build(&balls)?;
+    let method = SampleMethod::Sobol;
+    let kernel = lit!(bvh, method);
+    let sampling = Sampling::new(16);
+    let mut expected = Film::new(131, 77);
+    SimpleScheduler::new().accumulate(&camera(), &kernel, &sampling, &mut expected, 16);
+    for threads in [1, 2, 7] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+        let mut found = Film::new(131, 77);
+        pool.install(|| {
+            TiledScheduler::new().accumulate(&camera(), &kernel, &sampling, &mut found, 16);
+        });
+        assert!(found == expected, "{threads} threads");
+    }
+    Ok(())
+}
+
+/// The mean of a film is that of its samples, and so is the variance.
+#[test]
+fn means_and_variances() {
+    let kernel = kernel!(|_ray: Ray, sampler: Sampler| {
+        let mut sampler = sampler;
+        sampler.next_1d(host(SampleMethod::Random))
+    });
+    let mut film = Film::new(40, 40);
+    let sampling = Sampling::new(1000).pixels(PixelSampler::Center);
+    TiledScheduler::new().accumulate(&camera(), &kernel, &sampling, &mut film, 500);
+    TiledScheduler::new().accumulate(&camera(), &kernel, &sampling, &mut film, 500);
+    let average = |image: &Image<Vec4>| {
+        image.pixels().iter().map(|p| f64::from(p.x)).sum::<f64>() / image.pixels().len() as f64
+    };
+    // Of 1.6 million uniform numbers: five standard errors.
+    assert!((average(&film.image()) - 0.5).abs() < 5.0 * (1.0 / 12.0f64 / 1.6e6).sqrt());
+    let variance = average(&film.variance());
+    assert!((variance * 12.0 - 1.0).abs() < 5e-3, "{variance}");
+    let error = average(&film.standard_error());
+    assert!((error - (1.0 / 12.0f64 / 1000.0).sqrt()).abs() < 1e-4, "{error}");
+    assert_eq!(film.image().pixels()[0].w, 1.0);
+    film.clear();
+    assert_eq!((film.samples(), film.image().pixels()[7]), (0, Vec4::ZERO));
+}
+
+/// Jittered samples cover their pixel, and only that.
+#[test]
+fn samples_lie_in_their_pixel() {
+    let camera = Flat;
+    let kernel = kernel!(|ray: Ray, pixel: UVec2| {
+        let place = vec2(ray.origin.x, ray.origin.y) - pixel.as_vec2();
+        vec4(place.x, place.y, 0.0, 0.0)
+    });
+    for (pixels, width) in [(PixelSampler::Jittered, 1.0), (PixelSampler::Eight, 63.0 / 64.0)] {
+        let mut film = Film::new(19, 11);
+        let sampling = Sampling::new(64).pixels(pixels);
+        SimpleScheduler::new().accumulate(&camera, &kernel, &sampling, &mut film, 64);
+        for (mean, variance) in film.image().pixels().iter().zip(film.variance().pixels()) {
+            let (mean, variance) = (mean.truncate().truncate(), variance.truncate().truncate());
+            assert!((mean - 0.5).abs().max_element() < 0.02, "{pixels:?} {mean}");
+            let expected = width / 12.0 * 64.0 / 63.0;
+            assert!((variance - expected).abs().max_element() < 4e-3, "{pixels:?} {variance}");
+        }
+    }
+}
+
+/// Rays that begin at the point of the film.
+struct Flat;
+
+#[derive(Clone, Copy, Debug, raydsl::Type)]
+struct FlatRays {
+    z: f32,
+}
+
+#[raydsl::kernel]
+impl CameraRays for FlatRays {
+    fn primary_ray(&self, x: f32, y: f32) -> Ray {
+        Ray::new(vec3(x, y, self.z), vec3(0.0, 0.0, 1.0))
+    }
+}
+
+impl Camera for Flat {
+    type Rays = FlatRays;
+
+    fn begin_frame(&self, _: u32, _: u32) -> FlatRays {
+        FlatRays { z: -1.0 }
+    }
+}
+
+/// The lens is asked for its own dimensions, and only where there is one.
+#[test]
+fn lenses_blur_what_is_not_at_their_distance() -> Result<(), Box<dyn Error>> {
+    let balls = spheres(800);
+    let bvh = Bvh::build(&balls)?;
+    let seen = kernel!(|ray: Ray| if bvh.any_hit(ray) { 1.0 } else { 0.0 });
+    let sampling = Sampling::new(32).pixels(PixelSampler::Center);
+    let film = |lens: f32, variant: Variant| {
+        let mut film = Film::new(33, 17);
+        let camera = ThinLens::new(camera(), lens, 3.0);
+        let scheduler = TiledScheduler::new().variant(variant);
+        scheduler.accumulate(&camera, &seen, &sampling, &mut film, 32);
+        film
+    };
+    let grey =
+        |film: &Film| film.image().pixels().iter().filter(|p| p.x > 0.0 && p.x < 1.0).count();
+    assert_eq!(grey(&film(0.0, Variant::Scalar)), 0);
+    let expected = film(0.5, Variant::Scalar);
+    assert!(grey(&expected) > 100, "{}", grey(&expected));
+    for v in CPU {
+        assert!(film(0.5, v) == expected, "{v:?}");
+    }
+    Ok(())
+}
+
+/// An observer hears of progress, and stops a picture; a film keeps whole passes.
+#[test]
+fn observers_are_told_and_obeyed() {
+    let kernel = kernel!(|ray: Ray| ray.direction.y);
+    let tiled = TiledScheduler::new();
+    let mut shares = Vec::new();
+    let mut image = Image::filled(100, 100, 7.0);
+    let end = tiled.frame_observed(&camera(), &kernel, &mut image, &mut |share| {
+        shares.push(share);
+        ControlFlow::Continue(())
+    });
+    assert!(end.is_continue() && !image.pixels().contains(&7.0));
+    assert!(shares.is_sorted() && shares[0] == 0.0 && shares.last() == Some(&1.0), "{shares:?}");
+    let mut image = Image::filled(100, 100, 7.0);
+    let stop =
+        tiled.frame_observed(&camera(), &kernel, &mut image, &mut |_| ControlFlow::Break(()));
+    assert!(stop.is_break() && image.pixels().iter().all(|&p| p == 7.0));
+    // On one thread, so that no tile finds the observer busy.
+    let mut film = Film::new(20, 20);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let stop = pool.install(|| {
+        tiled.accumulate_observed(
+            &camera(),
+            &kernel,
+            &Sampling::new(256),
+            &mut film,
+            256,
+            &mut |done| if done > 0.6 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) },
+        )
+    });
+    assert!(stop.is_break());
+    assert_eq!(film.samples(), 128, "two passes of 64");
+    let mut expected = Film::new(20, 20);
+    tiled.accumulate(&camera(), &kernel, &Sampling::new(256), &mut expected, 128);
+    assert!(film == expected);
+}
+
+/// A sample that is no number is seen, counted, and never taken for a number.
+#[test]
+fn samples_that_are_no_numbers_are_counted() {
+    let kernel = kernel!(|ray: Ray, pixel: UVec2| {
+        let x: f32 = if pixel.x == 3 { -1.0 } else { 1.0 };
+        vec4(x.sqrt(), ray.direction.y, 0.0, 1.0)
+    });
+    let mut film = Film::new(8, 4);
+    TiledScheduler::new().accumulate(&camera(), &kernel, &Sampling::new(4), &mut film, 4);
+    assert_eq!(film.nan_pixels(), 4);
+    let shown = raydsl::render::Display::new().show(&film.image());
+    assert_eq!(shown.get(3, 2).map(|p| p.map(|c| c.to_bits())), Some([255, 0, 255, 255]));
+}
+
+#[test]
+fn batches_without_a_camera() {
+    let kernel = kernel!(|x: f32, n: u32| x * n as f32);
+    let inputs: Vec<(f32, u32)> = (0..5000).map(|i| (i as f32 * 0.5, i)).collect();
+    let expected: Vec<f32> = inputs.iter().map(|&(x, n)| x * n as f32).collect();
+    for v in CPU {
+        let mut found = vec![0.0; inputs.len()];
+        TiledScheduler::new().variant(v).batch(&kernel, &inputs, &mut found);
+        assert_eq!(found, expected, "{v:?}");
+    }
+    let mut found = vec![0.0; inputs.len()];
+    Own.batch(&kernel, &inputs, &mut found);
+    assert_eq!(found, expected);
+}
+
+/// The first frame of a film of no pixels is one of no pixels.
+#[test]
+fn films_of_any_size() {
+    let kernel = kernel!(|ray: Ray| ray.direction);
+    for (width, height) in [(0, 5), (5, 0), (1, 1), (1, 70), (65_535, 1)] {
+        let mut film = Film::new(width, height);
+        TiledScheduler::new().accumulate(&camera(), &kernel, &Sampling::new(0), &mut film, 2);
+        assert_eq!(film.image().pixels().len(), width as usize * height as usize);
+        assert_eq!((film.samples(), film.nan_pixels()), (2, 0));
+    }
+}

@@ -1,0 +1,15 @@
+//! Textures: facts of the formulas, an independent reference in `f64`, all variants, sizes, levels,
+//! files.
+
+mod example;
+mod facts;
+mod files;
+mod levels;
+mod reference;
+mod sizes;
+mod variants;
+
+use raydsl::texture::{Address, Filter};
+
+const FILTERS: [Filter; 4] = [Filter::Nearest, Filter::Linear, Filter::BSpline, Filter::CatmullRom];
+const ADDRESSES: [Address; 4] = [Address::Wrap, Address::Mirror, Address::Clamp, Address::Border];

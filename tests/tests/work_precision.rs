@@ -1,0 +1,247 @@
+//! Error against run time: measurements whose outcome is known.
+
+use std::error::Error;
+use std::time::Duration;
+
+use raydsl::prelude::*;
+use raydsl::report::Missing;
+use raydsl::report::work_precision::*;
+
+const SCALAR: Backend = Backend::Variant(Variant::Scalar);
+
+/// Settings that need no device and end soon.
+fn quick() -> WorkPrecision<'static> {
+    WorkPrecision::new().backends(&[SCALAR]).repetitions(3).size(2, 2)
+}
+
+/// The integral of exp over the unit interval.
+const EXACT: f64 = core::f64::consts::E - 1.0;
+
+/// It by a rule of quadrature that takes exp at this share of each step.
+fn rule(run: &Run<'_>) -> Estimates {
+    let n = f64::from(run.knob());
+    let share = if run.method().name() == "left" { 0.0 } else { 0.5 };
+    let sum: f64 = (0..run.knob()).map(|i| ((f64::from(i) + share) / n).exp()).sum();
+    Estimates::new(vec![sum / n], u64::from(run.knob()))
+}
+
+fn quadrature(name: &str) -> Case<'static> {
+    Case::new(name, Reference::closed_form(EXACT), |run| Ok(rule(run)))
+        .knob("steps")
+        .method("left", Some(Order::near(-1.0, 0.02)))
+        .method("middle", Some(Order::near(-2.0, 0.02)))
+}
+
+/// What a number of the run gives, for each of four pixels.
+fn case(name: &str, number: impl Fn(&Run<'_>) -> f64 + 'static) -> Case<'static> {
+    let estimates = move |run: &Run<'_>| Estimates::new(vec![number(run); 4], 1);
+    Case::new(name, Reference::closed_form(1.0), move |run| Ok(estimates(run)))
+        .method(SampleMethod::Random, Some(Order::RANDOM))
+}
+
+/// The error falls as n^-1 down to a floor.
+fn with_floor(uncertainty: f64) -> Case<'static> {
+    let reference = Reference::quadrature([1.0], uncertainty);
+    Case::new("floor", reference, |run| {
+        let error = (1.0 / f64::from(run.knob())).max(1e-3);
+        Ok(Estimates::new(vec![1.0 + error], 1))
+    })
+    .method("rule", Some(Order::near(-1.0, 0.02)))
+}
+
+#[test]
+fn rules_of_quadrature_have_their_orders() -> Result<(), Box<dyn Error>> {
+    let report = quick().knobs(&[4, 8, 16, 32, 64]).run(&[quadrature("exp")])?;
+    let [left, middle] = &report.cases[0].curves[..] else { panic!("two curves") };
+    for (curve, order) in [(left, -1.0), (middle, -2.0)] {
+        let fit = curve.fit.ok_or("five points")?;
+        assert!((fit.order - order).abs() < 0.02, "{fit:?}");
+        // Repetitions of what has no random numbers say nothing new.
+        assert_eq!(fit.points, 5);
+        assert_eq!(curve.verdict(), Verdict::AsExpected);
+    }
+    // The error of the midpoint rule is about e^x / 24 n^2 in the mean, 4.7e-3 for n = 4.
+    assert!(matches!(middle.time_to_error(1e-2), Reached::AtMost(_)));
+    assert!(matches!(middle.time_to_error(1e-3), Reached::At(_)));
+    assert_eq!(middle.time_to_error(1e-6), Reached::Never);
+    Ok(())
+}
+
+#[test]
+fn what_is_below_a_floor_is_not_fitted() -> Result<(), Box<dyn Error>> {
+    let knobs: Vec<u32> = (2..14).map(|i| 1 << i).collect();
+    let verdict = |uncertainty| {
+        let report = quick().knobs(&knobs).run(&[with_floor(uncertainty)]);
+        report.map(|r| (r.cases[0].curves[0].clone(), r.omissions()))
+    };
+    let (curve, left_out) = verdict(1e-3)?;
+    assert_eq!((curve.verdict(), curve.fit.ok_or("a fit")?.points), (Verdict::AsExpected, 8));
+    assert_eq!(curve.points[11].status(), Status::Floor);
+    assert!(left_out.contains("spp = 1024, 2048"), "{left_out}");
+    assert_eq!(verdict(0.0)?.0.verdict(), Verdict::TooSlow);
+    Ok(())
+}
+
+/// A method that diverges, one that has no device, one that takes too long: each has its rows.
+#[test]
+fn nothing_is_missing() -> Result<(), Box<dyn Error>> {
+    let bad = case("bad", |run| if run.knob() > 16 { f64::NAN } else { 1.5 });
+    let inf = case("infinite", |_| f64::INFINITY);
+    let nowhere = Case::new("nowhere", Reference::closed_form(1.0), |_| {
+        Err(Missing::NoDevice("no device, \"none\"\nat all".to_owned()))
+    });
+    let slow = case("slow", |run| {
+        std::thread::sleep(Duration::from_millis(5 * u64::from(run.knob())));
+        1.1
+    });
+    let cases = [bad, inf, nowhere.method("m,n", None), slow];
+    let report = quick().knobs(&[4, 16, 64]).time(Duration::from_millis(110)).run(&cases)?;
+    let verdicts: Vec<Verdict> = report.cases.iter().map(|c| c.curves[0].verdict()).collect();
+    let [diverged, not_run] = [Verdict::Diverged, Verdict::NotRun];
+    assert_eq!(verdicts[..3], [diverged, diverged, not_run]);
+    let slow: Vec<Status> = report.cases[3].curves[0].points.iter().map(Point::status).collect();
+    assert_eq!(slow[2], Status::Budget, "{slow:?}");
+    let (csv, table, left_out) = (report.csv(), report.table(), report.omissions());
+    for word in [",diverged", ",budget", "\"omitted: no device, \"\"none\"\"\"", "\"m,n\""] {
+        assert!(csv.contains(word), "{word}\n{csv}");
+    }
+    assert!(table.contains("diverged") && table.contains("no device"), "{table}");
+    for word in ["the time was up", "no finite numbers", "no device, \"none\" at all"] {
+        assert!(left_out.contains(word), "{left_out}");
+    }
+    for case in &report.cases {
+        let svg = case.plot().svg();
+        assert!(!svg.contains("NaN") && !svg.contains("inf,"), "{svg}");
+    }
+    Ok(())
+}
+
+/// The cells of a line of CSV.
+fn cells(line: &str) -> usize {
+    let mut is_quoted = false;
+    let commas = line.chars().filter(|c| {
+        is_quoted ^= *c == '"';
+        *c == ',' && !is_quoted
+    });
+    commas.count() + 1
+}
+
+#[test]
+fn shapes_of_files() -> Result<(), Box<dyn Error>> {
+    let long = "a name, quite \"long\" <&> that goes on and on and on and on and on and on and on";
+    let absent = Case::new("absent", Reference::closed_form(1.0), |_| {
+        Err(Missing::Refused("no".repeat(200)))
+    });
+    let cases = [quadrature("exp"), quadrature(long), absent.method("none", None)];
+    let folder = std::env::temp_dir().join(format!("raydsl-report-{}", std::process::id()));
+    let report = quick().knobs(&[4, 8, 16, 32]).run(&cases)?;
+    let plots = report.write(&folder)?;
+    let read = |name: &str| std::fs::read_to_string(folder.join(name));
+    let (csv, json) = (read("points.csv")?, read("report.json")?);
+    let header = csv.lines().next().map_or(0, cells);
+    assert!(csv.lines().all(|l| cells(l) == header), "{csv}");
+    // Two cases of two methods with four points of three runs each, and one that was not run.
+    assert_eq!((csv.lines().count(), header), (1 + 2 * 2 * 4 * 3 + 1, 33));
+    let json: serde_json::Value = serde_json::from_str(&json)?;
+    let curve = &json["cases"][0]["curves"][1];
+    assert_eq!(
+        (curve["method"].as_str(), curve["verdict"].as_str()),
+        (Some("middle"), Some("expected"))
+    );
+    assert_eq!(curve["points"].as_array().map(Vec::len), Some(4));
+    assert_eq!(curve["points"][0]["repetitions"].as_array().map(Vec::len), Some(3));
+    let order = curve["order"].as_f64().ok_or("an order")?;
+    assert!((order + 2.0).abs() < 0.02, "{order}");
+    assert_eq!(json["cases"][2]["curves"][0]["points"][0]["rmse"].as_str(), Some("NaN"));
+    let table = read("table.txt")?;
+    assert!(table.lines().all(|l| l.chars().count() <= 100), "{table}");
+    assert!(read("omissions.md")?.contains("nono"));
+    assert_eq!(plots.len(), 3);
+    for plot in plots {
+        let svg = std::fs::read_to_string(plot.with_extension("svg"))?;
+        assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n") && !svg.contains("<&>"));
+    }
+    std::fs::remove_dir_all(&folder)?;
+    let file = std::env::temp_dir().join(format!("raydsl-file-{}", std::process::id()));
+    std::fs::write(&file, "in the way")?;
+    let refused = report.write(&file);
+    std::fs::remove_file(&file)?;
+    assert!(matches!(refused, Err(WorkPrecisionError::File { .. })), "{refused:?}");
+    Ok(())
+}
+
+#[test]
+fn bad_input_is_refused() {
+    use WorkPrecisionError as E;
+    let one = || [case("one", |_| 1.0)];
+    let error = |settings: WorkPrecision<'_>, cases: &[Case<'_>]| match settings.run(cases) {
+        Ok(_) => panic!("accepted"),
+        Err(e) => e,
+    };
+    assert!(matches!(error(quick(), &[]), E::Nothing { what: "case" }));
+    assert!(matches!(error(quick().knobs(&[]), &one()), E::Nothing { .. }));
+    assert!(matches!(error(quick().backends(&[]), &one()), E::Nothing { what: "backend" }));
+    assert!(matches!(error(quick().methods(&["none"]), &one()), E::Nothing { .. }));
+    for knobs in [&[0, 1][..], &[4, 4], &[8, 4], &[1, MAX_KNOB + 1]] {
+        assert!(matches!(error(quick().knobs(knobs), &one()), E::Knob { .. }), "{knobs:?}");
+    }
+    assert!(matches!(error(quick().size(0, 5), &one()), E::Size { .. }));
+    assert!(matches!(error(quick().size(u32::MAX, u32::MAX), &one()), E::Size { .. }));
+    let twice = [case("one", |_| 1.0), case("one", |_| 1.0)];
+    assert!(matches!(error(quick(), &twice), E::Name { .. }));
+    assert!(matches!(error(quick(), &[case("", |_| 1.0)]), E::Name { .. }));
+    let with = |reference| {
+        let case = Case::new("c", reference, |_| Ok(Estimates::new(vec![1.0; 4], 1)));
+        error(quick(), &[case.method("m", None)])
+    };
+    assert!(matches!(with(Reference::closed_form(f64::NAN)), E::Reference { index: 0, .. }));
+    assert!(matches!(with(Reference::quadrature([], 0.0)), E::Nothing { .. }));
+    assert!(matches!(with(Reference::quadrature([1.0], -1.0)), E::Uncertainty { .. }));
+    assert!(matches!(with(Reference::f64([1.0], f64::NAN)), E::Uncertainty { .. }));
+    assert!(matches!(with(Reference::f64([1.0; 3], 0.0)), E::Length { found: 4, expected: 3, .. }));
+    assert!(matches!(with(Reference::halves([1.0; 4], [1.0; 3])), E::Length { .. }));
+    assert!(matches!(with(Reference::halves([1.0; 4], [f64::INFINITY; 4])), E::Reference { .. }));
+}
+
+/// The optical depth of a ramp by the left rule, with as many steps as the knob says, counted in
+/// green.
+#[test]
+fn a_kernel_counts_its_steps_on_every_backend() -> Result<(), Box<dyn Error>> {
+    let march = |run: &Run<'_>| {
+        let steps = run.knob();
+        let camera = Orthographic::new(Vec3::Z, Vec3::ZERO, Vec3::Y, 1.0);
+        run.film_counted(
+            &camera,
+            &kernel!(|_ray: Ray| {
+                let mut depth = 0.0;
+                let mut count: u32 = 0;
+                while count < steps {
+                    depth += count as f32 / (steps as f32 * steps as f32);
+                    count += 1;
+                }
+                vec3(depth, count as f32, 0.0)
+            }),
+        )
+    };
+    let case = Case::new("ramp", Reference::closed_form(0.5), march).method("left", None);
+    let backends: Vec<Backend> = Backend::ALL.to_vec();
+    let report = WorkPrecision::new().backends(&backends).knobs(&[3, 12]).size(3, 3).repetitions(2);
+    let report = report.run(&[case])?;
+    let curves = &report.cases[0].curves;
+    for curve in curves {
+        let runs = curve.points.iter().flat_map(|p| &p.repetitions);
+        if !raydsl::testing::can_run(Variant::Wgsl, "work_precision") && curve.missing.is_some() {
+            continue;
+        }
+        for (run, steps) in runs.zip([3u64, 3, 12, 12]) {
+            // Each of nine pixels takes `steps` samples of as many steps.
+            assert_eq!(run.counted, Some(9 * steps * steps), "{}", curve.backend.name());
+            let exact = 0.5 - 0.5 / steps as f64;
+            assert!(run.values.iter().all(|v| (v - exact).abs() < 1e-6), "{:?}", run.values);
+        }
+    }
+    let rounding = curves[0].points[1].rounding.ok_or("f64 was run")?;
+    assert!(rounding > 0.0 && rounding < 1e-7, "{rounding}");
+    assert_eq!(curves[5].points[1].rounding, None);
+    Ok(())
+}
