@@ -251,9 +251,9 @@ fn twin_of(item: &syn::DeriveInput, fields: &[syn::Field], owner: &TokenStream) 
             #[inline(always)]
             fn from_lanes<__M: #p::LaneMachine>(
                 m: &__M,
-                f: &impl Fn(usize) -> Self,
+                f: impl Fn(usize) -> Self + Copy,
             ) -> #twin<__M, #used> {
-                #twin { #(#names: #p::Type::from_lanes(m, &|lane| f(lane).#names),)* }
+                #twin { #(#names: #p::Type::from_lanes(m, #[inline(always)] |lane| f(lane).#names),)* }
             }
 
             #[inline(always)]

@@ -463,7 +463,7 @@ pub fn run_batch<L: Lanes, A: Type, R: Type>(
     lanes.vectorize(|| {
         for (inputs, outputs) in inputs.chunks(L::N).zip(outputs.chunks_mut(L::N)) {
             let m = Packet::with_count(lanes, inputs.len());
-            let args = A::from_lanes(&m, &|l| inputs[l.min(inputs.len() - 1)]);
+            let args = A::from_lanes(&m, |l| inputs[l.min(inputs.len() - 1)]);
             let result = kernel(&m, args);
             for (l, out) in outputs.iter_mut().enumerate() {
                 *out = R::lane(&result, l);

@@ -259,7 +259,7 @@ mod overflow {
                 let alive = !(1u64 << lane);
                 let m = Packet::with_bits(lanes, alive);
                 let text = panic_of(|| {
-                    kernel(&m, F::Args::from_lanes(&m, &|l| inputs[l]));
+                    kernel(&m, F::Args::from_lanes(&m, |l| inputs[l]));
                 });
                 assert_eq!(text, None, "{name}: the dead lane {lane} panics");
             }

@@ -206,9 +206,9 @@ impl Choice<'_> {
                 #[inline(always)]
                 fn from_lanes<__M: #p::LaneMachine>(
                     m: &__M,
-                    f: &impl Fn(usize) -> Self,
+                    f: impl Fn(usize) -> Self + Copy,
                 ) -> #twin<__M> {
-                    #p::Type::from_lanes(m, &|lane| f(lane).__data())
+                    #p::Type::from_lanes(m, #[inline(always)] |lane| f(lane).__data())
                 }
 
                 #[inline(always)]

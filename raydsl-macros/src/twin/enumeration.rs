@@ -115,8 +115,8 @@ pub(super) fn twin(item: &syn::DeriveInput, variants: &[Ident]) -> TokenStream {
             }
 
             #[inline(always)]
-            fn from_lanes<__M: #p::LaneMachine>(m: &__M, f: &impl Fn(usize) -> Self) -> #twin<__M> {
-                #twin { number: <u32 as #p::Type>::from_lanes(m, &|lane| f(lane) as u32) }
+            fn from_lanes<__M: #p::LaneMachine>(m: &__M, f: impl Fn(usize) -> Self + Copy) -> #twin<__M> {
+                #twin { number: <u32 as #p::Type>::from_lanes(m, #[inline(always)] |lane| f(lane) as u32) }
             }
 
             #[inline(always)]

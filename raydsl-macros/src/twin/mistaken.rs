@@ -27,7 +27,7 @@ pub(super) fn mistaken(item: &syn::DeriveInput, errors: Errors) -> TokenStream {
                     ::core::unreachable!()
                 }
 
-                fn from_lanes<__M: #p::LaneMachine>(_: &__M, _: &impl Fn(usize) -> Self) -> Mistaken {
+                fn from_lanes<__M: #p::LaneMachine>(_: &__M, _: impl Fn(usize) -> Self + Copy) -> Mistaken {
                     ::core::unreachable!()
                 }
 

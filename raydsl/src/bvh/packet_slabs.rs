@@ -153,8 +153,9 @@ fn pad<L: Lanes>(l: L, origin: [L::F32; 3], root: &Node, allowance: Allowance) -
     if allowance.origin == 0.0 {
         return pad;
     }
-    let [x, y, z] = origin.map(|o| abs(l, o));
-    add(l, pad, mul(l, max(l, max(l, x, y), z), l.f32(allowance.origin)))
+    let [x, y, z] = origin;
+    let largest = max(l, max(l, abs(l, x), abs(l, y)), abs(l, z));
+    add(l, pad, mul(l, largest, l.f32(allowance.origin)))
 }
 
 /// The reciprocal of every component, finite.

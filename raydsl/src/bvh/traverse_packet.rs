@@ -73,12 +73,12 @@ pub(crate) fn closest_hit<L: Lanes, P: Primitive>(
     prims: &SceneView<'_, P>,
     ray: RayOn<Packet<L>>,
 ) -> HitOn<Packet<L>> {
-    if prims.is_standing() {
-        return each_lane(m, Hit::miss(), ray, |ray| traverse::nearest(prims, ray));
-    }
     m.lanes().vectorize(
         #[inline(always)]
         || {
+            if prims.is_standing() {
+                return each_lane(m, Hit::miss(), ray, |ray| traverse::nearest(prims, ray));
+            }
             let m = Packet::with_mask(Entered(m.lanes()), m.active());
             let hit = closest_hit_inside(&m, prims, inner_ray(&ray));
             HitOn {
@@ -101,7 +101,10 @@ pub(crate) fn closest_hit_with_cost<L: Lanes, P: Primitive>(
     prims: &SceneView<'_, P>,
     ray: RayOn<Packet<L>>,
 ) -> CountedHitOn<Packet<L>> {
-    each_lane(m, CountedHit::default(), ray, |ray| traverse::nearest_counted(prims, ray))
+    m.lanes().vectorize(
+        #[inline(always)]
+        || each_lane(m, CountedHit::default(), ray, |ray| traverse::nearest_counted(prims, ray)),
+    )
 }
 
 #[inline(always)]
@@ -195,12 +198,12 @@ pub(crate) fn any_hit<L: Lanes, P: Primitive>(
     prims: &SceneView<'_, P>,
     ray: RayOn<Packet<L>>,
 ) -> B<Packet<L>> {
-    if prims.is_standing() {
-        return each_lane(m, false, ray, |ray| traverse::any_hit(prims, ray));
-    }
     m.lanes().vectorize(
         #[inline(always)]
         || {
+            if prims.is_standing() {
+                return each_lane(m, false, ray, |ray| traverse::any_hit(prims, ray));
+            }
             let m = Packet::with_mask(Entered(m.lanes()), m.active());
             B(any_hit_inside(&m, prims, inner_ray(&ray)).0)
         },
@@ -269,13 +272,18 @@ pub(crate) fn visit<L: Lanes, P: Primitive>(
 }
 
 /// What a query of one ray gives for the ray of each running lane; `other` in the rest.
+#[inline(always)]
 fn each_lane<L: Lanes, T: Type>(
     m: &Packet<L>,
     other: T,
     ray: RayOn<Packet<L>>,
     query: impl Fn(Ray) -> T,
 ) -> T::On<Packet<L>> {
-    m.of_running(other, |lane| query(Ray::lane::<Packet<L>>(&ray, lane)))
+    m.of_running(
+        other,
+        #[inline(always)]
+        |lane| query(Ray::lane::<Packet<L>>(&ray, lane)),
+    )
 }
 
 /// [`visit`] for one lane after another, all hits of each.

@@ -83,7 +83,8 @@ pub trait Lanes: Copy + Send + Sync + 'static {
 
 /// `[f(0), f(1), ..]`. Unlike the array functions of `core` it is always inlined: what is not
 /// inlined is not compiled for the level, and there every operation is a call. Up to four elements,
-/// as vectors have, it is no loop that an optimiser must unroll.
+/// as vectors have, it is no loop that an optimiser must unroll; more are one, so that `f` stands
+/// in one place.
 #[inline(always)]
 pub(crate) fn fill<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T; N] {
     let mut all = [const { MaybeUninit::uninit() }; N];
@@ -94,9 +95,10 @@ pub(crate) fn fill<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T
             })+
         };
     }
-    element!(0 1 2 3);
-    if const { N > 4 } {
-        for (i, v) in all.iter_mut().enumerate().skip(4) {
+    if const { N <= 4 } {
+        element!(0 1 2 3);
+    } else {
+        for (i, v) in all.iter_mut().enumerate() {
             v.write(f(i));
         }
     }
@@ -323,15 +325,15 @@ macro_rules! simd_lanes {
             }
             #[inline(always)]
             fn f32_from_fn(self, f: impl FnMut(usize) -> f32) -> $f<S> {
-                $f::from_fn(self.0, f)
+                $f::load_array(self.0, fill(f))
             }
             #[inline(always)]
             fn i32_from_fn(self, f: impl FnMut(usize) -> i32) -> $i<S> {
-                $i::from_fn(self.0, f)
+                $i::load_array(self.0, fill(f))
             }
             #[inline(always)]
             fn u32_from_fn(self, f: impl FnMut(usize) -> u32) -> $u<S> {
-                $u::from_fn(self.0, f)
+                $u::load_array(self.0, fill(f))
             }
             #[inline(always)]
             fn f32_lane(a: &$f<S>, lane: usize) -> f32 {

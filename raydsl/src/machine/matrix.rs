@@ -72,8 +72,8 @@ macro_rules! columns {
             }
 
             #[inline(always)]
-            fn from_lanes<M: LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> $twin<M> {
-                $twin { $($c: <$t as Type>::from_lanes(m, &|l| f(l).$c)),+ }
+            fn from_lanes<M: LaneMachine>(m: &M, f: impl Fn(usize) -> Self + Copy) -> $twin<M> {
+                $twin { $($c: <$t as Type>::from_lanes(m, #[inline(always)] |l| f(l).$c)),+ }
             }
 
             #[inline(always)]

@@ -1,6 +1,7 @@
 //! SIMD packets: one register a value, a mask of running lanes.
 
 use core::cell::Cell;
+use core::mem::MaybeUninit;
 
 use glam::{Affine3, Vec3};
 
@@ -91,15 +92,31 @@ impl<L: Lanes> Packet<L> {
         other: T,
         of_lane: impl Fn(usize) -> T,
     ) -> T::On<Self> {
-        const { assert!(L::N <= 64) };
         let active = self.lanes.bits(self.active.get());
-        let mut all = [other; 64];
+        self.of_each(
+            #[inline(always)]
+            |lane| if active >> lane & 1 != 0 { of_lane(lane) } else { other },
+        )
+    }
+
+    /// What `of_lane` gives for each lane, which it is asked for once: a value with many members is
+    /// taken apart from where it then lies.
+    #[inline(always)]
+    fn of_each<T: Type>(&self, of_lane: impl Fn(usize) -> T) -> T::On<Self> {
+        const { assert!(L::N <= 64) };
+        let mut all = [const { MaybeUninit::<T>::uninit() }; 64];
         for (lane, value) in all.iter_mut().enumerate().take(L::N) {
-            if active >> lane & 1 != 0 {
-                *value = of_lane(lane);
-            }
+            value.write(of_lane(lane));
         }
-        T::from_lanes(self, &|lane| all[lane % 64])
+        T::from_lanes(
+            self,
+            #[inline(always)]
+            |lane| {
+                assert!(lane < L::N);
+                // SAFETY: the first `N` have been written.
+                unsafe { all[lane].assume_init() }
+            },
+        )
     }
 
     /// Takes the running lanes out.
@@ -563,8 +580,10 @@ impl<L: Lanes> Machine for Packet<L> {
         }
         // A lane that does not run may hold any index.
         let index = self.lanes.u32_select(active, index.0, self.lanes.u32(first));
-        let get = |l| prims.get(L::u32_lane(&index, l));
-        P::from_lanes(self, &get)
+        self.of_each(
+            #[inline(always)]
+            |lane| prims.get(L::u32_lane(&index, lane)),
+        )
     }
 }
 

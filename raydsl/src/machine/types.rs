@@ -2,7 +2,7 @@
 
 use glam::{BVec2, BVec3, BVec4, IVec2, IVec3, IVec4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 
-use super::{B, F, Field, I, Machine, Schema, U, Usize, Value, Varying, X2, X3, X4};
+use super::{B, F, Field, I, Machine, Schema, U, Usize, Value, Varying, X2, X3, X4, fill};
 
 /// A type that kernels may use: it has a twin on every machine.
 ///
@@ -22,7 +22,7 @@ pub trait Type: Copy + 'static {
     /// The same value in every lane.
     fn splat<M: Machine>(m: &M, v: Self) -> Self::On<M>;
     /// A value for each lane.
-    fn from_lanes<M: LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> Self::On<M>;
+    fn from_lanes<M: LaneMachine>(m: &M, f: impl Fn(usize) -> Self + Copy) -> Self::On<M>;
     /// The value of one lane.
     fn lane<M: LaneMachine>(v: &Self::On<M>, lane: usize) -> Self;
     /// Writes the value in the host's layout to the start of `out` (little-endian).
@@ -69,7 +69,7 @@ macro_rules! scalar_type {
             }
 
             #[inline(always)]
-            fn from_lanes<M: LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> $twin<M> {
+            fn from_lanes<M: LaneMachine>(m: &M, f: impl Fn(usize) -> Self + Copy) -> $twin<M> {
                 $twin(m.$from(f))
             }
 
@@ -107,8 +107,11 @@ impl Type for usize {
     }
 
     #[inline(always)]
-    fn from_lanes<M: LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> Usize<M> {
-        Usize(m.u32_from_fn(|l| f(l) as u32))
+    fn from_lanes<M: LaneMachine>(m: &M, f: impl Fn(usize) -> Self + Copy) -> Usize<M> {
+        Usize(m.u32_from_fn(
+            #[inline(always)]
+            |l| f(l) as u32,
+        ))
     }
 
     #[inline(always)]
@@ -142,8 +145,8 @@ macro_rules! vector_type {
             }
 
             #[inline(always)]
-            fn from_lanes<M: LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> Self::On<M> {
-                $twin { $($c: <$element as Type>::from_lanes(m, &|l| f(l).$c)),+ }
+            fn from_lanes<M: LaneMachine>(m: &M, f: impl Fn(usize) -> Self + Copy) -> Self::On<M> {
+                $twin { $($c: <$element as Type>::from_lanes(m, #[inline(always)] |l| f(l).$c)),+ }
             }
 
             #[inline(always)]
@@ -180,17 +183,32 @@ impl<T: Type, const N: usize> Type for [T; N] {
 
     #[inline(always)]
     fn splat<M: Machine>(m: &M, v: Self) -> Self::On<M> {
-        v.map(|x| T::splat(m, x))
+        fill(
+            #[inline(always)]
+            |i| T::splat(m, v[i]),
+        )
     }
 
     #[inline(always)]
-    fn from_lanes<M: LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> Self::On<M> {
-        core::array::from_fn(|i| T::from_lanes(m, &|l| f(l)[i]))
+    fn from_lanes<M: LaneMachine>(m: &M, f: impl Fn(usize) -> Self + Copy) -> Self::On<M> {
+        fill(
+            #[inline(always)]
+            |i| {
+                T::from_lanes(
+                    m,
+                    #[inline(always)]
+                    |l| f(l)[i],
+                )
+            },
+        )
     }
 
     #[inline(always)]
     fn lane<M: LaneMachine>(v: &Self::On<M>, lane: usize) -> Self {
-        core::array::from_fn(|i| T::lane(&v[i], lane))
+        fill(
+            #[inline(always)]
+            |i| T::lane(&v[i], lane),
+        )
     }
 
     fn write(&self, out: &mut [u8]) {
@@ -215,7 +233,7 @@ impl Type for () {
     fn splat<M: Machine>(_: &M, (): Self) {}
 
     #[inline(always)]
-    fn from_lanes<M: LaneMachine>(_: &M, _: &impl Fn(usize) -> Self) {}
+    fn from_lanes<M: LaneMachine>(_: &M, _: impl Fn(usize) -> Self + Copy) {}
 
     #[inline(always)]
     fn lane<M: LaneMachine>((): &(), _: usize) {}
@@ -246,8 +264,8 @@ macro_rules! tuple_type {
             }
 
             #[inline(always)]
-            fn from_lanes<M: LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> Self::On<M> {
-                ($($name::from_lanes(m, &|l| f(l).$index),)+)
+            fn from_lanes<M: LaneMachine>(m: &M, f: impl Fn(usize) -> Self + Copy) -> Self::On<M> {
+                ($($name::from_lanes(m, |l| f(l).$index),)+)
             }
 
             #[inline(always)]

@@ -1,6 +1,6 @@
 //! Values on a machine: the wrappers of the scalar types, and what every twin can do.
 
-use super::{Machine, Schema};
+use super::{Machine, Schema, fill};
 
 macro_rules! scalar_wrapper {
     ($(#[$doc:meta])* $name:ident($repr:ident), $leaf:ident, $schema:ident) => {
@@ -121,7 +121,10 @@ impl<M: Machine, V: Value<M>, const N: usize> Value<M> for [V; N] {
 
     #[inline(always)]
     fn zip(m: &M, a: Self, b: Self, f: &mut impl Leaves<M>) -> Self {
-        core::array::from_fn(|i| V::zip(m, a[i], b[i], f))
+        fill(
+            #[inline(always)]
+            |i| V::zip(m, a[i], b[i], f),
+        )
     }
 }
 

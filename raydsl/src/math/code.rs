@@ -68,8 +68,11 @@ macro_rules! code {
             }
 
             #[inline(always)]
-            fn from_lanes<M: LaneMachine>(m: &M, f: &impl Fn(usize) -> Self) -> $twin<M> {
-                $twin { bits: U(m.u32_from_fn(|l| u32::from(f(l).0))) }
+            fn from_lanes<M: LaneMachine>(m: &M, f: impl Fn(usize) -> Self + Copy) -> $twin<M> {
+                $twin { bits: U(m.u32_from_fn(
+                    #[inline(always)]
+                    |l| u32::from(f(l).0),
+                )) }
             }
 
             #[inline(always)]

@@ -187,7 +187,7 @@ impl Case {
         out: &mut [Outcome],
     ) {
         let m = Packet::with_bits(lanes, bits);
-        let args = Args::from_lanes(&m, &|l| if l < width { input(l) } else { garbage() });
+        let args = Args::from_lanes(&m, |l| if l < width { input(l) } else { garbage() });
         let result = (self.packet)(&m, args);
         for (l, out) in out.iter_mut().enumerate() {
             *out = Outcome::lane::<Packet<Any>>(&result, l);

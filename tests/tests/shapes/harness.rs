@@ -371,8 +371,8 @@ impl<P: Subject> LevelTask for Lanewise<P> {
             for (prims, rays) in self.prims.chunks(L::N).zip(self.rays.chunks(L::N)) {
                 let m = Packet::with_count(lanes, rays.len());
                 let last = rays.len() - 1;
-                let prim = P::from_lanes(&m, &|l| prims[l.min(last)]);
-                let ray = Ray::from_lanes(&m, &|l| rays[l.min(last)]);
+                let prim = P::from_lanes(&m, |l| prims[l.min(last)]);
+                let ray = Ray::from_lanes(&m, |l| rays[l.min(last)]);
                 let found = P::intersect_on(&m, prim, ray, prims.view().shared());
                 for (l, (prim, ray)) in prims.iter().zip(rays).enumerate() {
                     let hit = Hit::lane::<Packet<L>>(&found, l);

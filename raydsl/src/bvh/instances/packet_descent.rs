@@ -126,8 +126,8 @@ impl<'a, L: Lanes> PacketDescent<'a, L> {
                     return Some((tree.indices[node.first as usize], mask));
                 }
                 let children = &tree.nodes[node.first as usize..node.first as usize + 2];
-                let [(t0, hit0), (t1, hit1)] =
-                    [&children[0], &children[1]].map(|child| level.slabs.enter(l, child, limit));
+                let (t0, hit0) = level.slabs.enter(l, &children[0], limit);
+                let (t1, hit1) = level.slabs.enter(l, &children[1], limit);
                 let (hit0, hit1) = (and(l, mask, hit0), and(l, mask, hit1));
                 let both = and(l, hit0, hit1);
                 let left = and(l, both, l.f32_compare(op::Le, t0, t1));
