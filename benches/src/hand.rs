@@ -19,6 +19,26 @@ pub trait ByHand: Primitive<Hit = Hit, Shared = ()> {
     fn meet<const AXIS: usize>(&self, ray: &Ray, p: &Self::Prepared) -> Option<(f32, f32, f32)>;
 }
 
+/// One instruction, unlike `f32::min`, which cares for NaN.
+#[inline(always)]
+fn min(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The same for the larger.
+#[inline(always)]
+fn max(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+#[cold]
+#[inline(never)]
+fn exact(triangle: &Triangle, ray: &Ray) -> Option<(f32, f32, f32)> {
+    let hit = triangle.intersect(*ray);
+    let is_within = hit.is_hit && hit.t >= ray.t_min && hit.t <= ray.t_max;
+    is_within.then_some((hit.t, hit.u, hit.v))
+}
+
 /// The shear that takes a ray onto its fastest axis.
 pub struct Shear {
     x: f32,
@@ -49,9 +69,20 @@ impl ByHand for Triangle {
         if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
             return None;
         }
-        let sum = u + v + w;
-        if sum == 0.0 {
+        // The ray passes between the vertices, whatever rounding says of the edges.
+        let is_beside = (ax < 0.0 && bx < 0.0 && cx < 0.0)
+            || (ax > 0.0 && bx > 0.0 && cx > 0.0)
+            || (ay < 0.0 && by < 0.0 && cy < 0.0)
+            || (ay > 0.0 && by > 0.0 && cy > 0.0);
+        if is_beside {
             return None;
+        }
+        let sum = u + v + w;
+        // Seen along its plane: exact products are needed, which nobody writes twice.
+        let (near, far) = (min(min(az, bz), cz), max(max(az, bz), cz));
+        let products = (cx * by).abs() + (ax * cy).abs() + (bx * ay).abs();
+        if 2.0 * sum.abs() <= products * ((far - near) / max(near.abs(), far.abs())) {
+            return exact(self, ray);
         }
         let t = (u / sum) * (az / s.dz) + (v / sum) * (bz / s.dz) + (w / sum) * (cz / s.dz);
         (t >= ray.t_min && t <= ray.t_max).then(|| (t, v / sum, w / sum))
@@ -110,8 +141,6 @@ impl Boxes {
     /// Where the ray enters the box, if it does before `limit`.
     #[inline(always)]
     fn enter(&self, node: &Node, limit: f32) -> Option<f32> {
-        let min = |a: f32, b: f32| if a < b { a } else { b };
-        let max = |a: f32, b: f32| if a > b { a } else { b };
         let t0 = (node.min - self.lower) * self.inverse;
         let t1 = (node.max - self.upper) * self.inverse;
         let near = max(max(min(t0.x, t1.x), min(t0.y, t1.y)), max(min(t0.z, t1.z), self.t_min));
