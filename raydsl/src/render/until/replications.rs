@@ -4,10 +4,15 @@ use glam::DVec3;
 
 use super::quantile::f_quantile;
 use super::{Estimate, Film, Metric, REPLICATIONS};
+use crate::render::moments::Sums;
 
 /// What rounding leaves of a number: half an ulp where it is made, half an ulp where it is
 /// averaged.
 const ROUNDING: f64 = 1.0 / (1 << 23) as f64;
+
+/// Replications that lie no farther apart than this, in relation to their mean, agree: what is left
+/// is rounding of different orders.
+const AGREEMENT: f64 = 4.0 * ROUNDING;
 
 /// Added to the square of a value that an error is put in relation to.
 const RELATIVE_EPSILON: f64 = 1e-2;
@@ -100,17 +105,51 @@ impl Replications {
         }
     }
 
-    /// The variance of the mean of all replications.
-    fn of_means(&self, sum_of_squares: f64) -> f64 {
+    /// The variance of the mean of all replications, by how far they lie apart; `unseen` where they
+    /// agree.
+    fn of_means(&self, sum_of_squares: f64, mean: f64, unseen: impl FnOnce() -> f64) -> f64 {
         let n = f64::from(self.count);
-        if self.count < 2 { 0.0 } else { sum_of_squares / (n * (n - 1.0)) }
+        let rounding = AGREEMENT * mean;
+        if self.count < 2 {
+            0.0
+        } else if sum_of_squares <= n * rounding * rounding {
+            unseen()
+        } else {
+            sum_of_squares / (n * (n - 1.0))
+        }
+    }
+
+    /// The squared error that replications of a pixel share where they agree. Evenly spread samples
+    /// meet what is rare equally often in all of them, as 5 times where 5.12 are due: then each is
+    /// off by a part of one sample's weight, at most by `1 - f` of it if a share `f` of all
+    /// replications gives the same. All of `n` do so with a probability of `f^n`; with every `f` as
+    /// likely as any other beforehand, the mean of `(1 - f)^2` is `2 / ((n + 2) (n + 3))`.
+    ///
+    /// The weight is that of samples which are all or nothing, `E[x^2] / E[x]`; but no more than
+    /// what one sample among all can have, given their variance.
+    fn unseen(&self, sums: &Sums) -> DVec3 {
+        let (mean, m2) = (sums.mean.truncate(), sums.m2.truncate());
+        let (all, n) = (sums.count as f64, f64::from(self.count));
+        let share = (2.0 / ((n + 2.0) * (n + 3.0))).sqrt() / f64::from(self.each);
+        let weight = |mean: f64, m2: f64| {
+            let of_rare = mean.abs() + m2 / (all * mean.abs());
+            of_rare.min(m2.sqrt())
+        };
+        let one = |mean: f64, m2: f64| (share * weight(mean, m2)).powi(2);
+        DVec3::new(one(mean.x, m2.x), one(mean.y, m2.y), one(mean.z, m2.z))
     }
 
     fn spread_of_mean(&self) -> Spread {
         let mean = self.means.iter().sum::<f64>() / self.means.len() as f64;
         let squares = self.means.iter().map(|m| (m - mean) * (m - mean)).sum();
         let floor = if mean.is_nan() { f64::INFINITY } else { ROUNDING * mean.abs() };
-        Spread { mean_square: self.of_means(squares), pixels: 1.0, floor }
+        let unseen = || {
+            let finite = self.film.sums().iter().filter(|s| s.mean.is_finite());
+            let each = finite.map(|s| self.unseen(s).element_sum() / 3.0);
+            let (sum, pixels) = each.fold((0.0, 0.0), |(sum, n), v| (sum + v, n + 1.0));
+            sum / (pixels * pixels)
+        };
+        Spread { mean_square: self.of_means(squares, mean, unseen), pixels: 1.0, floor }
     }
 
     /// `weigh` puts a square in relation to a value. The channels of a pixel may go together, so a
@@ -125,7 +164,10 @@ impl Replications {
             if !(apart.is_finite() && value.is_finite()) {
                 continue;
             }
-            let variance = self.of_means(mean_of(*apart, value));
+            let unseen = self.unseen(sums);
+            let of_channel = |i: usize| self.of_means(apart[i], value[i], || unseen[i]);
+            let variance = DVec3::new(of_channel(0), of_channel(1), of_channel(2));
+            let variance = mean_of(variance, value);
             pixels += 1;
             sum += variance;
             squares += variance * variance;
@@ -157,7 +199,40 @@ pub(super) fn is_complete(stage: &Replications) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec4;
+
     use super::*;
+    use crate::render::{Image, Moments};
+
+    /// A film of one pixel with `hits` samples of 100 among `each`.
+    fn rare(hits: u32, each: u32) -> Film {
+        let mut film = Film::new(1, 1);
+        let mut moments = Moments::none();
+        (0..each).for_each(|i| moments.add(Vec4::splat(if i < hits { 100.0 } else { 0.0 })));
+        film.join(&Image::filled(1, 1, moments), each);
+        film
+    }
+
+    /// 5 rare samples in each of eight replications of 512, where 5.12 are due: they agree, and the
+    /// error is known all the same.
+    #[test]
+    fn replications_that_agree_do_not_deceive() {
+        let mut all = Replications::none(1, 1, 512);
+        (0..REPLICATIONS).for_each(|_| all.join(&rare(5, 512)));
+        for metric in [Metric::Rmse, Metric::Mean] {
+            let (estimate, _) = all.estimate(metric, 0.95);
+            let quantum = 100.0 / 512.0;
+            assert!(
+                estimate.high > 0.3 * quantum && estimate.high < 0.35 * quantum,
+                "{estimate:?}"
+            );
+        }
+        // A constant has no rare samples.
+        let mut constant = Replications::none(1, 1, 512);
+        (0..REPLICATIONS).for_each(|_| constant.join(&rare(512, 512)));
+        let (estimate, floor) = constant.estimate(Metric::Rmse, 0.95);
+        assert_eq!(estimate.high, floor);
+    }
 
     #[test]
     fn one_pixel_is_one_and_equal_ones_are_all() {
