@@ -356,11 +356,19 @@ impl ::raydsl::__private::Type for Sample {
     #[inline(always)]
     fn from_lanes<__M: ::raydsl::__private::LaneMachine>(
         m: &__M,
-        f: &impl Fn(usize) -> Self,
+        f: impl Fn(usize) -> Self + Copy,
     ) -> SampleOn<__M> {
         SampleOn {
-            value: ::raydsl::__private::Type::from_lanes(m, &|lane| f(lane).value),
-            count: ::raydsl::__private::Type::from_lanes(m, &|lane| f(lane).count),
+            value: ::raydsl::__private::Type::from_lanes(
+                m,
+                #[inline(always)]
+                |lane| f(lane).value,
+            ),
+            count: ::raydsl::__private::Type::from_lanes(
+                m,
+                #[inline(always)]
+                |lane| f(lane).count,
+            ),
         }
     }
     #[inline(always)]

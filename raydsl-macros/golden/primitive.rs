@@ -387,12 +387,24 @@ impl ::raydsl::__private::Type for ColorSphere {
     #[inline(always)]
     fn from_lanes<__M: ::raydsl::__private::LaneMachine>(
         m: &__M,
-        f: &impl Fn(usize) -> Self,
+        f: impl Fn(usize) -> Self + Copy,
     ) -> ColorSphereOn<__M> {
         ColorSphereOn {
-            center: ::raydsl::__private::Type::from_lanes(m, &|lane| f(lane).center),
-            radius: ::raydsl::__private::Type::from_lanes(m, &|lane| f(lane).radius),
-            color: ::raydsl::__private::Type::from_lanes(m, &|lane| f(lane).color),
+            center: ::raydsl::__private::Type::from_lanes(
+                m,
+                #[inline(always)]
+                |lane| f(lane).center,
+            ),
+            radius: ::raydsl::__private::Type::from_lanes(
+                m,
+                #[inline(always)]
+                |lane| f(lane).radius,
+            ),
+            color: ::raydsl::__private::Type::from_lanes(
+                m,
+                #[inline(always)]
+                |lane| f(lane).color,
+            ),
         }
     }
     #[inline(always)]
