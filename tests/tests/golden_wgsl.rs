@@ -108,7 +108,7 @@ macro_rules! tests {
 
 raydsl_tests::kernel_table!(tests);
 
-const SCENES: [&str; 10] = [
+const SCENES: [&str; 11] = [
     "instances",
     "list_of_meshes",
     "primary",
@@ -118,6 +118,7 @@ const SCENES: [&str; 10] = [
     "slice",
     "texture_levels",
     "texture_linear",
+    "texture_sampled",
     "two_trees",
 ];
 
@@ -252,6 +253,21 @@ fn texture_linear() -> Result<(), raydsl::texture::TextureError> {
     for trace in ["four", "cubic", "pow", "level", "reduced_"] {
         assert!(!one.contains(trace), "{trace} in {one}");
     }
+    Ok(())
+}
+
+/// Read by the device's own sampler, next to one that is not.
+#[test]
+fn texture_sampled() -> Result<(), raydsl::texture::TextureError> {
+    use raydsl::texture::{ColorSpace, Filtering, LevelFilter};
+    let (colors, heights) = ([[Unorm8::ONE; 4]; 32], [0.5; 6]);
+    let config = TextureConfig::new().color_space(ColorSpace::Srgb).filtering(Filtering::Device);
+    let config = config.level_filter(LevelFilter::Linear);
+    let floor = Texture2::new(&colors, [8, 4], config)?.with_levels()?;
+    let relief = Texture1::new(&heights, [6], TextureConfig::new())?;
+    let kernel =
+        kernel!(|uv: Vec2, level: f32| { tex2_level(&floor, uv, level) * tex1(&relief, uv.x) });
+    assert_wgsl("texture_sampled", &kernel.wgsl());
     Ok(())
 }
 

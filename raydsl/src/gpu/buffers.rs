@@ -12,7 +12,7 @@ use crate::machine::wgsl::{Buffer, BufferKey, Window};
 
 /// Bytes of one transfer: wgpu stages each in a buffer of its own, so this, twice, bounds
 /// the extra memory while a large scene is uploaded.
-const PIECE: usize = 64 << 20;
+pub(super) const PIECE: usize = 64 << 20;
 
 /// The bytes of a scene buffer by its key, as the caller of a run has them.
 pub(super) type Source<'s, 'd> = &'s dyn Fn(BufferKey) -> Option<Cow<'d, [u8]>>;

@@ -9,6 +9,7 @@ use super::device::{Gpu, lock};
 use super::error::{GpuError, one_line};
 use super::pipeline::{Checks, Pipelines};
 use super::slot::Slot;
+use super::textures::Textures;
 use crate::machine::wgsl::{BufferKey, Limits};
 
 /// A device, the scene buffers uploaded to it and the pipelines compiled for it.
@@ -20,6 +21,7 @@ pub struct Context {
     adapter: wgpu::AdapterInfo,
     pub(super) checks: Checks,
     pub(super) uploads: Mutex<Uploads>,
+    pub(super) textures: Mutex<Textures>,
     pub(super) pipelines: Mutex<Pipelines>,
     /// Buffers of finished dispatches, for the next ones.
     pub(super) idle: Mutex<Vec<Slot>>,
@@ -54,6 +56,7 @@ impl Context {
             adapter,
             checks: Checks::Full,
             uploads: Mutex::default(),
+            textures: Mutex::default(),
             pipelines: Mutex::default(),
             idle: Mutex::default(),
         }
@@ -123,13 +126,13 @@ impl Context {
 
     /// Bytes of scene data sent to the device so far.
     pub fn uploaded_bytes(&self) -> u64 {
-        lock(&self.uploads).uploaded()
+        lock(&self.uploads).uploaded() + lock(&self.textures).uploaded()
     }
 
     /// Bytes of scene data that the device keeps: what was sent and belongs to trees that still
     /// are.
     pub fn scene_bytes(&self) -> u64 {
-        lock(&self.uploads).kept()
+        lock(&self.uploads).kept() + lock(&self.textures).kept()
     }
 
     /// Shaders compiled so far.
@@ -140,11 +143,13 @@ impl Context {
     /// Frees the scene buffers of one owner; they are uploaded again when asked for.
     pub fn forget(&self, id: u64) {
         lock(&self.uploads).forget(id);
+        lock(&self.textures).forget(id);
     }
 
     /// Frees the scene buffers of trees that are no more.
     pub(super) fn forget_gone(&self) {
         lock(&self.uploads).forget_gone();
+        lock(&self.textures).forget_gone();
     }
 
     /// Names a buffer of the application as the contents of `key`: `size` bytes from

@@ -69,6 +69,19 @@ pub enum GpuError {
         /// The limit of this context.
         limit: u64,
     },
+    /// A texture for the device's sampler is too large for the device.
+    #[error(
+        "the texture {name} has {} x {} x {} texels but the device's limit is {limit} along an \
+         axis: read it with Filtering::Exact", size[0], size[1], size[2]
+    )]
+    TextureTooLarge {
+        /// The texture's name in the kernel.
+        name: String,
+        /// Texels along each axis.
+        size: [u32; 3],
+        /// The device's limit.
+        limit: u32,
+    },
     /// More storage buffers than one shader stage may have.
     #[error(
         "the kernel needs {needed} storage buffers but max_storage_buffers_per_shader_stage is \

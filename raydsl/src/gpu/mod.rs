@@ -16,6 +16,7 @@ mod pipeline;
 mod run;
 mod scheduler;
 mod slot;
+mod textures;
 mod tiles;
 mod window;
 

@@ -22,7 +22,7 @@ pub enum Checks {
 pub(super) struct Pipeline {
     pub(super) compute: wgpu::ComputePipeline,
     pub(super) layout: wgpu::BindGroupLayout,
-    storage: Vec<Storage>,
+    bindings: Bindings,
     /// Invocations of one dispatch, as the last run left them: the next starts there.
     pub(super) goal: AtomicU64,
 }
@@ -32,6 +32,20 @@ pub(super) struct Pipeline {
 pub(super) struct Storage {
     pub(super) binding: u32,
     pub(super) read_only: bool,
+}
+
+/// A texture of a kernel; its sampler's binding is the next one.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct Sampled {
+    pub(super) binding: u32,
+    pub(super) is_volume: bool,
+}
+
+/// All of a kernel's bindings but the uniform ones, which are always the same.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) struct Bindings {
+    pub(super) storage: Vec<Storage>,
+    pub(super) sampled: Vec<Sampled>,
 }
 
 /// The kernels compiled so far, by their text.
@@ -54,13 +68,13 @@ impl Pipelines {
         gpu: &Gpu,
         checks: Checks,
         source: &str,
-        storage: &[Storage],
+        bindings: &Bindings,
     ) -> Result<Arc<Pipeline>, GpuError> {
         let known = self.by_source.get(source).into_iter().flatten();
-        if let Some(pipeline) = known.into_iter().find(|known| known.storage == storage) {
+        if let Some(pipeline) = known.into_iter().find(|known| known.bindings == *bindings) {
             return Ok(Arc::clone(pipeline));
         }
-        let pipeline = Arc::new(compile(gpu, checks, source, storage)?);
+        let pipeline = Arc::new(compile(gpu, checks, source, bindings)?);
         self.compiled += 1;
         let same_text = self.by_source.entry(source.to_owned()).or_default();
         same_text.push(Arc::clone(&pipeline));
@@ -76,18 +90,18 @@ fn compile(
     gpu: &Gpu,
     checks: Checks,
     source: &str,
-    storage: &[Storage],
+    bindings: &Bindings,
 ) -> Result<Pipeline, GpuError> {
     let module = shader(gpu, checks, source)?;
     let made = gpu.guarded("the pipeline", || {
-        let layout = layout(&gpu.device, storage);
+        let layout = layout(&gpu.device, bindings);
         (pipeline(&gpu.device, &module, &layout, checks), layout)
     });
     match made {
         Ok((compute, layout)) => Ok(Pipeline {
             compute,
             layout,
-            storage: storage.to_vec(),
+            bindings: bindings.clone(),
             goal: AtomicU64::new(FIRST_GOAL),
         }),
         Err(GpuError::Rejected { message, .. }) => Err(GpuError::PipelineFailed { message }),
@@ -119,25 +133,40 @@ fn pipeline(
     })
 }
 
-fn layout(device: &wgpu::Device, storage: &[Storage]) -> wgpu::BindGroupLayout {
-    let uniforms = [0, 1].map(|binding| entry(binding, wgpu::BufferBindingType::Uniform));
-    let storage = storage.iter().map(|&Storage { binding, read_only }| {
-        entry(binding, wgpu::BufferBindingType::Storage { read_only })
+fn layout(device: &wgpu::Device, bindings: &Bindings) -> wgpu::BindGroupLayout {
+    let uniforms = [0, 1].map(|binding| buffer(binding, wgpu::BufferBindingType::Uniform));
+    let storage = bindings.storage.iter().map(|&Storage { binding, read_only }| {
+        buffer(binding, wgpu::BufferBindingType::Storage { read_only })
     });
-    let entries: Vec<_> = uniforms.into_iter().chain(storage).collect();
+    let sampled = bindings.sampled.iter().flat_map(sampled);
+    let entries: Vec<_> = uniforms.into_iter().chain(storage).chain(sampled).collect();
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("raydsl"),
         entries: &entries,
     })
 }
 
-fn entry(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
-        count: None,
-    }
+fn buffer(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEntry {
+    let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    entry(binding, ty)
+}
+
+fn sampled(&Sampled { binding, is_volume }: &Sampled) -> [wgpu::BindGroupLayoutEntry; 2] {
+    let texture = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+        view_dimension: if is_volume {
+            wgpu::TextureViewDimension::D3
+        } else {
+            wgpu::TextureViewDimension::D2
+        },
+        multisampled: false,
+    };
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+    [entry(binding, texture), entry(binding + 1, sampler)]
+}
+
+fn entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None }
 }
 
 /// Parses and validates a text, quoting the line at fault.

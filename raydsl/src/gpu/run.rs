@@ -10,8 +10,9 @@ use super::buffers::{Bound, Source};
 use super::context::Context;
 use super::device::lock;
 use super::error::GpuError;
-use super::pipeline::{Pipeline, Storage};
+use super::pipeline::{Bindings, Pipeline, Sampled, Storage};
 use super::slot::{Finished, InFlight, Pass, Slot};
+use super::textures::BoundTexture;
 use super::tiles::{Tiler, next_goal};
 use super::window::GpuWindow;
 use crate::machine::wgsl::{BufferKey, Module};
@@ -104,6 +105,7 @@ impl Context {
             pipeline: &pipeline,
             uniforms: self.uniforms(module)?,
             scene: self.scene(module, data)?,
+            textures: self.textures(module, data)?,
             size,
             inputs,
         };
@@ -150,14 +152,18 @@ impl Context {
 
     /// The compiled kernel.
     fn pipeline(&self, module: &Module) -> Result<Arc<Pipeline>, GpuError> {
-        let storage = storage(module);
+        let sampled = module.textures.iter().map(|texture| Sampled {
+            binding: texture.binding,
+            is_volume: texture.layout.is_volume,
+        });
+        let bindings = Bindings { storage: storage(module), sampled: sampled.collect() };
         let limit = self.gpu.caps.max_storage_buffers;
-        let needed = storage.len() as u64;
+        let needed = bindings.storage.len() as u64;
         if needed > u64::from(limit) {
             return Err(GpuError::TooManyBuffers { needed, limit });
         }
         let mut pipelines = lock(&self.pipelines);
-        pipelines.get(&self.gpu, self.checks, &module.source, &storage)
+        pipelines.get(&self.gpu, self.checks, &module.source, &bindings)
     }
 
     /// The kernel's parameters on the device.
@@ -187,6 +193,16 @@ impl Context {
             scene.extend(uploads.bind(&self.gpu, buffer, data)?);
         }
         Ok(scene)
+    }
+
+    /// All textures for the sampler, uploaded where needed.
+    fn textures(
+        &self,
+        module: &Module,
+        data: Source<'_, '_>,
+    ) -> Result<Vec<BoundTexture>, GpuError> {
+        let mut textures = lock(&self.textures);
+        module.textures.iter().map(|texture| textures.bind(&self.gpu, texture, data)).collect()
     }
 
     /// Sends the tiles off, a few in flight, and learns how large they should be.

@@ -229,8 +229,10 @@ impl GpuScheduler {
         let data = |key| bytes_of(kernel, key).map(Cow::Owned);
         let timing = self.context.run_to(module, &data, inputs, size, outputs);
         // The address of a slice names its data only while it is borrowed.
-        for b in module.buffers.iter().filter(|b| crate::bvh::is_slice_key(b.key)) {
-            self.context.forget(b.key.id);
+        let buffers = module.buffers.iter().map(|buffer| buffer.key);
+        let keys = buffers.chain(module.textures.iter().map(|texture| texture.key));
+        for key in keys.filter(|key| crate::bvh::is_slice_key(*key)) {
+            self.context.forget(key.id);
         }
         timing
     }

@@ -8,6 +8,7 @@ use super::clock::{Clock, STAMPS};
 use super::device::{Gpu, lost};
 use super::error::GpuError;
 use super::pipeline::Pipeline;
+use super::textures::BoundTexture;
 use super::tiles::Tile;
 use super::window::GpuWindow;
 use crate::machine::wgsl::Module;
@@ -23,6 +24,7 @@ pub(super) struct Pass<'a> {
     pub(super) pipeline: &'a Pipeline,
     pub(super) uniforms: wgpu::Buffer,
     pub(super) scene: Vec<Bound>,
+    pub(super) textures: Vec<BoundTexture>,
     pub(super) size: [u32; 2],
     pub(super) inputs: &'a [u8],
 }
@@ -162,6 +164,12 @@ impl Slot {
         entries.extend(
             scene.map(|bound| entry(bound.binding, &bound.buffer, bound.offset, bound.size)),
         );
+        entries.extend(pass.textures.iter().flat_map(|BoundTexture { binding, view, sampler }| {
+            let texture = wgpu::BindingResource::TextureView(view);
+            let sampler = wgpu::BindingResource::Sampler(sampler);
+            [(*binding, texture), (*binding + 1, sampler)]
+                .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+        }));
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("raydsl"),
             layout: &pass.pipeline.layout,

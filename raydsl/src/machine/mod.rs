@@ -174,6 +174,8 @@ pub trait Machine: Sized + 'static {
     type Loop;
     /// Whether lifted code runs round by round: then a counter is one number in all lanes.
     const RUNS: bool = true;
+    /// Whether it may have samplers of textures: see [`sampled`](Self::sampled).
+    const HAS_SAMPLERS: bool = false;
 
     // Constants, the same in every lane.
     fn f32(&self, v: f32) -> Self::F32;
@@ -529,6 +531,25 @@ pub trait Machine: Sized + 'static {
         let last = self.u32((slice.len() as u32).wrapping_sub(1));
         let within = self.u32_compare(op::Le, index.0, last);
         self.fetch(slice, U(self.u32_select(within, index.0, last)))
+    }
+
+    /// What a sampler gives at a place of a texture, for each of four channels; nothing where the
+    /// machine has none for it.
+    fn sampled<T: Type, S: Type>(
+        &self,
+        _texels: &crate::bvh::View<'_, T, S>,
+        _layout: &wgsl::TextureLayout,
+        _at: &[Self::F32],
+        _level: Self::F32,
+    ) -> Option<[Self::F32; 4]> {
+        None
+    }
+
+    /// A number that a device may have otherwise: off by `absolute` and this part of itself. Where
+    /// it is computed as written, it is what it is.
+    #[inline(always)]
+    fn off_by(&self, v: Self::F32, _absolute: f32, _relative: f32) -> Self::F32 {
+        v
     }
 
     /// The element `index` of a slice, which has it.

@@ -1,5 +1,7 @@
 //! What recording a kernel produces: WGSL text and the data that it reads. Knows nothing of wgpu.
 
+use crate::texture::Address;
+
 /// How generated code computes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Arithmetic {
@@ -17,7 +19,7 @@ pub enum Arithmetic {
 /// A complete WGSL module with the entry point `main`.
 ///
 /// Everything lies in bind group 0: the kernel's numbers at binding 0, the `Job` at 1, inputs at
-/// 2, outputs at 3, windows of the scene's buffers from 4 on.
+/// 2, outputs at 3, windows of the scene's buffers from 4 on, and then the textures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Module {
     /// The text.
@@ -32,6 +34,8 @@ pub struct Module {
     pub output_stride: u32,
     /// Read-only buffers of the scene.
     pub buffers: Vec<Buffer>,
+    /// Textures that the device's own sampler reads.
+    pub textures: Vec<Texture>,
 }
 
 /// A buffer of the scene, in as many windows as bindings of limited size need.
@@ -58,6 +62,63 @@ pub struct Window {
     pub first: u64,
     /// How many elements.
     pub count: u64,
+}
+
+/// A texture that the device's own sampler reads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texture {
+    /// Which texels: those of all levels, one level behind the other.
+    pub key: BufferKey,
+    /// The name in the text.
+    pub name: String,
+    /// The binding's number; the next one is that of the sampler.
+    pub binding: u32,
+    /// What the texels are and how they are read.
+    pub layout: TextureLayout,
+}
+
+/// What the texels of a texture are, and how a sampler reads them: linearly between texels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct TextureLayout {
+    /// Whether it is a volume; if not, an image.
+    pub is_volume: bool,
+    /// Texels along each axis; 1 along the third axis of an image.
+    pub size: [u32; 3],
+    /// Levels of detail, at least 1.
+    pub levels: u32,
+    /// What a texel is.
+    pub format: TexelFormat,
+    /// Bytes from one texel to the next, as [`BufferKey`] names them.
+    pub stride: u32,
+    /// What lies outside: never the border.
+    pub address: [Address; 3],
+    /// Whether levels are blended.
+    pub blends_levels: bool,
+}
+
+/// Texels that every device of WebGPU filters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "they are named as WebGPU names them")]
+pub enum TexelFormat {
+    R8Unorm,
+    Rg8Unorm,
+    Rgba8Unorm,
+    Rgba8UnormSrgb,
+    R16Float,
+    Rg16Float,
+    Rgba16Float,
+}
+
+impl TexelFormat {
+    /// Bytes of a texel.
+    pub fn bytes(self) -> u32 {
+        match self {
+            Self::R8Unorm => 1,
+            Self::Rg8Unorm | Self::R16Float => 2,
+            Self::Rgba8Unorm | Self::Rgba8UnormSrgb | Self::Rg16Float => 4,
+            Self::Rgba16Float => 8,
+        }
+    }
 }
 
 /// Names data of the host: the same key means the same bytes.

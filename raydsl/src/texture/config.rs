@@ -58,6 +58,26 @@ pub enum LevelFilter {
     Linear,
 }
 
+/// Who filters on a GPU.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Filtering {
+    /// The library's code, on texels in a buffer: the values are those of the CPU, within what WGSL
+    /// may round.
+    #[default]
+    Exact,
+    /// The device's own sampler, where it can: fast, with as few as 8 bits of a coordinate between
+    /// two texels, so that a value may be off by 2^-8 of the difference of its neighbours, and
+    /// that of a texel of 8 bits by 2^-8 besides. `compare` shows by how much, and knows these
+    /// bounds. What NaN and infinite coordinates give, the device decides.
+    ///
+    /// It can where the filter is [`Filter::Linear`], no axis has [`Address::Border`], texels are
+    /// one, two or four [`Unorm8`](crate::math::Unorm8) or [`F16`](crate::math::F16) (in sRGB: four
+    /// `Unorm8`), an image has at most 8192 texels along an axis and a volume 2048, and the kernel
+    /// has no more than 16 such textures. Others are read as with `Exact`, and so are all on the
+    /// CPU.
+    Device,
+}
+
 macro_rules! host_value {
     ($($t:ty),+) => {
         $(
@@ -79,10 +99,10 @@ macro_rules! host_value {
     };
 }
 
-host_value!(Filter, Address, ColorSpace, LevelFilter);
+host_value!(Filter, Address, ColorSpace, LevelFilter, Filtering);
 
 /// How a texture is read; the default is [`Filter::Linear`], [`Address::Wrap`] along every axis,
-/// [`ColorSpace::Linear`], [`LevelFilter::Nearest`] and a border of zeroes.
+/// [`ColorSpace::Linear`], [`LevelFilter::Nearest`], [`Filtering::Exact`] and a border of zeroes.
 ///
 /// ```
 /// use raydsl::texture::{Address, ColorSpace, Filter, TextureConfig};
@@ -107,6 +127,8 @@ pub struct TextureConfig {
     pub color_space: ColorSpace,
     /// How levels of detail are blended.
     pub level_filter: LevelFilter,
+    /// Who filters on a GPU.
+    pub filtering: Filtering,
 }
 
 impl TextureConfig {
@@ -147,6 +169,12 @@ impl TextureConfig {
     #[must_use]
     pub fn color_space(self, color_space: ColorSpace) -> Self {
         Self { color_space, ..self }
+    }
+
+    /// Filtered on a GPU by this.
+    #[must_use]
+    pub fn filtering(self, filtering: Filtering) -> Self {
+        Self { filtering, ..self }
     }
 
     /// With this way from one level of detail to the next.

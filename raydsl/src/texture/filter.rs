@@ -39,7 +39,7 @@ fn texel<T: Texel<Value = V>, V: TexelValue>(texels: &Texels<'_, T>, row: u32, i
 fn linear_row<T: Texel<Value = V>, V: TexelValue>(texels: &Texels<'_, T>, row: u32, x: Pair) -> V {
     let a: V = texel(texels, row, x.first);
     let b: V = texel(texels, row, x.second);
-    a.blend(b, x.share)
+    a.blend(b, texels.near(x.share))
 }
 
 #[kernel]
@@ -52,7 +52,7 @@ fn linear_image<T: Texel<Value = V>, V: TexelValue>(
 ) -> V {
     let a: V = linear_row(texels, part(first, width, y.first, texels.has_border()), x);
     let b: V = linear_row(texels, part(first, width, y.second, texels.has_border()), x);
-    a.blend(b, y.share)
+    a.blend(b, texels.near(y.share))
 }
 
 #[kernel]
@@ -142,7 +142,7 @@ pub(super) fn filter3<T: Texel<Value = V>, V: TexelValue>(
         let back = part(first, image, z.second, texels.has_border());
         let a: V = linear_image(texels, front, size.x, x, y);
         let b: V = linear_image(texels, back, size.x, x, y);
-        a.blend(b, z.share)
+        a.blend(b, texels.near(z.share))
     } else {
         let x = four(uvw.x, size.x, texels.address_u(), texels.filter());
         let y = four(uvw.y, size.y, texels.address_v(), texels.filter());

@@ -11,7 +11,7 @@ use crate::machine::{Coerce, F, Machine, Type, X2, X3};
 
 macro_rules! functions {
     ($(
-        $n:literal $at:ident: $coordinate:ty, $twin:ty;
+        $n:literal $at:ident: $coordinate:ty, $twin:ty, $components:expr;
         $(#[$doc:meta])* $tex:ident
         $(#[$level_doc:meta])* $tex_level:ident
     )+) => {
@@ -37,7 +37,11 @@ macro_rules! functions {
                     texture: TextureRef<'_, T, $n>,
                     $at: impl Coerce<M, $twin>,
                 ) -> <T::Value as Type>::On<M> {
-                    sample::$tex::on(m, texture.texels, $at.coerce(m))
+                    let $at = $at.coerce(m);
+                    match texture.texels.sampled(m, &$components($at), None) {
+                        Some(value) => value,
+                        None => sample::$tex::on(m, texture.texels, $at),
+                    }
                 }
             }
 
@@ -64,7 +68,11 @@ macro_rules! functions {
                     $at: impl Coerce<M, $twin>,
                     level: impl Coerce<M, F<M>>,
                 ) -> <T::Value as Type>::On<M> {
-                    sample::$tex_level::on(m, texture.texels, $at.coerce(m), level.coerce(m))
+                    let ($at, level) = ($at.coerce(m), level.coerce(m));
+                    match texture.texels.sampled(m, &$components($at), Some(level.0)) {
+                        Some(value) => value,
+                        None => sample::$tex_level::on(m, texture.texels, $at, level),
+                    }
                 }
             }
         )+
@@ -72,13 +80,13 @@ macro_rules! functions {
 }
 
 functions! {
-    1 u: f32, F<M>;
+    1 u: f32, F<M>, |u: F<M>| [u.0];
     /// The value of a 1-D texture at `u`; of one with levels, at level 0. See [`tex2()`].
     tex1
     /// The value of a 1-D texture at `u` and a level of detail. See [`tex2_level()`].
     tex1_level
 
-    2 uv: Vec2, X2<F<M>>;
+    2 uv: Vec2, X2<F<M>>, |uv: X2<F<M>>| [uv.x.0, uv.y.0];
     /// The value of a 2-D texture at `uv`; of one with levels, at level 0.
     ///
     /// The texture covers `[0, 1)` along each axis, and texel `i` of `n` has its centre at
@@ -99,7 +107,7 @@ functions! {
     /// levels has level 0 alone. See [`Texture::with_levels`](super::Texture::with_levels).
     tex2_level
 
-    3 uvw: Vec3, X3<F<M>>;
+    3 uvw: Vec3, X3<F<M>>, |uvw: X3<F<M>>| [uvw.x.0, uvw.y.0, uvw.z.0];
     /// The value of a 3-D texture at `uvw`; of one with levels, at level 0. See [`tex2()`].
     tex3
     /// The value of a 3-D texture at `uvw` and a level of detail. See [`tex2_level()`].

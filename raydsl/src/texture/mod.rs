@@ -6,11 +6,12 @@
 //! border, colour space.
 //!
 //! The filters are kernels of this library, so all variants on the CPU give the same bits, and WGSL
-//! reads texels from a buffer by the same formulas rather than through a sampler of the device,
-//! whose weights have 8 bits.
+//! reads texels from a buffer by the same formulas. [`Filtering::Device`] has the device's own
+//! sampler read them, whose weights have 8 bits.
 
 mod color;
 mod config;
+mod device;
 mod error;
 mod filter;
 mod functions;
@@ -26,7 +27,7 @@ mod texture;
 mod view;
 
 pub use color::{linear_to_srgb, srgb_to_linear};
-pub use config::{Address, ColorSpace, Filter, LevelFilter, TextureConfig};
+pub use config::{Address, ColorSpace, Filter, Filtering, LevelFilter, TextureConfig};
 pub use error::TextureError;
 pub use functions::{tex1, tex1_level, tex2, tex2_level, tex3, tex3_level};
 #[cfg(feature = "image")]

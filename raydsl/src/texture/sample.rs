@@ -89,9 +89,9 @@ macro_rules! leveled {
                     let finer = place.floor();
                     let below: V = $at_level(texels, at, finer as u32);
                     let above: V = $at_level(texels, at, min(finer as u32 + 1, last));
-                    below.blend(above, place - finer)
+                    below.blend(above, texels.near(place - finer))
                 } else {
-                    $at_level(texels, at, (place + 0.5).floor() as u32)
+                    $at_level(texels, at, (texels.near(place) + 0.5).floor() as u32)
                 }
             } else {
                 $base(texels, at)

@@ -5,6 +5,7 @@ use glam::{Vec2, Vec3, Vec4};
 use super::color::{linear_to_srgb, srgb_to_linear};
 use super::config::ColorSpace;
 use crate::kernel;
+use crate::machine::wgsl::TexelFormat;
 use crate::machine::{F, Machine, Method, Type, X2, X3, X4, name};
 use crate::math::{F16, Unorm8, Unorm16};
 
@@ -128,6 +129,12 @@ pub trait Texel: Type {
     /// The texel nearest to a value.
     fn encode(value: Self::Value, space: ColorSpace) -> Self;
 
+    /// What samplers of devices call such texels, if every device has one that filters them.
+    #[doc(hidden)]
+    fn format(_space: ColorSpace) -> Option<TexelFormat> {
+        None
+    }
+
     /// [`decode`](Self::decode) on a machine.
     #[doc(hidden)]
     fn decode_on<M: Machine>(
@@ -143,6 +150,11 @@ pub trait Channel: Type {
     fn number(self) -> f32;
     /// The nearest to `v`.
     fn nearest(v: f32) -> Self;
+    /// [`Texel::format`] of this many.
+    #[doc(hidden)]
+    fn format(_channels: usize, _space: ColorSpace) -> Option<TexelFormat> {
+        None
+    }
     /// [`number`](Self::number) on a machine.
     #[doc(hidden)]
     fn number_on<M: Machine>(m: &M, this: Self::On<M>) -> F<M>;
@@ -165,7 +177,7 @@ impl Channel for f32 {
 }
 
 macro_rules! small_channel {
-    ($($t:ident),+) => {
+    ($($t:ident $(($($n:literal $space:ident $format:ident),+))?;)+) => {
         $(
             impl Channel for $t {
                 #[inline(always)]
@@ -177,6 +189,13 @@ macro_rules! small_channel {
                     Self::new(v)
                 }
 
+                $(fn format(channels: usize, space: ColorSpace) -> Option<TexelFormat> {
+                    match (channels, space) {
+                        $(($n, ColorSpace::$space) => Some(TexelFormat::$format),)+
+                        _ => None,
+                    }
+                })?
+
                 #[inline(always)]
                 fn number_on<M: Machine>(m: &M, this: Self::On<M>) -> F<M> {
                     Method::<{ name("to_f32") }, M, ()>::call(this, m, ())
@@ -186,7 +205,13 @@ macro_rules! small_channel {
     };
 }
 
-small_channel!(Unorm8, Unorm16, F16);
+small_channel! {
+    Unorm8 (
+        1 Linear R8Unorm, 2 Linear Rg8Unorm, 4 Linear Rgba8Unorm, 4 Srgb Rgba8UnormSrgb
+    );
+    Unorm16;
+    F16 (1 Linear R16Float, 2 Linear Rg16Float, 4 Linear Rgba16Float);
+}
 
 /// Whether channel `i` of `n` is opacity.
 const fn is_opacity(i: usize, n: usize) -> bool {
@@ -237,6 +262,10 @@ macro_rules! array_texel {
                     [$(encoded(all[$i], is[$i])),+]
                 }
 
+                fn format(space: ColorSpace) -> Option<TexelFormat> {
+                    C::format($n, space)
+                }
+
                 #[inline(always)]
                 fn decode_on<M: Machine>(
                     m: &M,
@@ -272,6 +301,10 @@ macro_rules! single_texel {
 
                 fn encode(value: f32, space: ColorSpace) -> Self {
                     <[Self; 1]>::encode(value, space)[0]
+                }
+
+                fn format(space: ColorSpace) -> Option<TexelFormat> {
+                    <[Self; 1]>::format(space)
                 }
 
                 #[inline(always)]

@@ -148,7 +148,7 @@ impl<M: Machine, T: Texel> Method<{ name("value") }, M, (U<M>,)> for Texels<'_, 
     #[inline(always)]
     fn call(self, m: &M, (i,): (U<M>,)) -> Self::Output {
         let texel = m.fetch(&self.view(), i);
-        T::decode_on(m, texel, self.config.color_space)
+        self.as_read(m, T::decode_on(m, texel, self.config.color_space))
     }
 }
 

@@ -6,6 +6,7 @@ mod facts;
 mod files;
 mod levels;
 mod reference;
+mod sampler;
 mod sizes;
 mod variants;
 

@@ -90,6 +90,7 @@ pub(super) fn gather(key: BufferKey, len: u64, window: u64, add: u32) -> Module 
         input_stride: 0,
         output_stride: 4,
         buffers: vec![buffer],
+        textures: vec![],
     }
 }
 
@@ -114,6 +115,7 @@ pub(super) fn spread(workgroup: [u32; 2], factor: u32) -> Module {
         input_stride: 4,
         output_stride: 16,
         buffers: Vec::new(),
+        textures: Vec::new(),
     }
 }
 
@@ -140,6 +142,7 @@ pub(super) fn grind(rounds: u32) -> Module {
         input_stride: 0,
         output_stride: 4,
         buffers: Vec::new(),
+        textures: Vec::new(),
     }
 }
 

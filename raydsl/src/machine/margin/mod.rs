@@ -530,6 +530,15 @@ impl Machine for Margin {
         }
     }
 
+    fn off_by(&self, v: Bounded, absolute: f32, relative: f32) -> Bounded {
+        // Packets and scalar code have no samplers.
+        if self.rounding.is_strict {
+            return v;
+        }
+        let most = f64::from(absolute) + f64::from(relative) * v.range.magnitude();
+        self.bounded(v.value, v.range.widened(most))
+    }
+
     fn fetch<P: crate::machine::Type, S: crate::machine::Type>(
         &self,
         prims: &crate::bvh::View<'_, P, S>,

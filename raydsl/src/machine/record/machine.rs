@@ -253,6 +253,7 @@ impl Machine for Recorder {
     type Branch = RecordedBranch;
     type Loop = RecordedLoop;
     const RUNS: bool = false;
+    const HAS_SAMPLERS: bool = true;
 
     fn f32(&self, v: f32) -> Id {
         if v.is_finite() {
@@ -758,6 +759,15 @@ impl Machine for Recorder {
         let function = self.element_function(slice);
         let call = self.add(Expr::Call(function, vec![index.0]), Type::of(T::SCHEMA));
         self.take_apart(call)
+    }
+    fn sampled<T: crate::machine::Type, S: crate::machine::Type>(
+        &self,
+        texels: &crate::bvh::View<'_, T, S>,
+        layout: &wgsl::TextureLayout,
+        at: &[Id],
+        level: Id,
+    ) -> Option<[Id; 4]> {
+        self.sample(texels.key(), &texels.name(), layout, at, level)
     }
     fn fetch<P: crate::machine::Type, S: crate::machine::Type>(
         &self,

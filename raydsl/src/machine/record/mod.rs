@@ -14,6 +14,7 @@ mod machine;
 mod module;
 mod names;
 mod storage;
+mod textures;
 mod traverse;
 mod types;
 mod visit;
@@ -41,6 +42,7 @@ struct State {
     functions: Vec<Function>,
     uniforms: Vec<Uniform>,
     buffers: Vec<SceneBuffer>,
+    textures: Vec<wgsl::Texture>,
 }
 
 impl State {
@@ -48,6 +50,7 @@ impl State {
     fn is_taken(&self, name: &str) -> bool {
         self.functions.iter().any(|f| f.name() == name)
             || self.buffers.iter().any(|b| belongs_to(name, &b.name))
+            || self.textures.iter().any(|t| belongs_to(name, &t.name))
     }
 
     /// Whether a buffer cannot have the name: something has it, or a name that goes with it.
@@ -61,7 +64,7 @@ impl State {
 
 /// Whether `name` is a buffer's, or that of a function that goes with it.
 fn belongs_to(name: &str, buffer: &str) -> bool {
-    const FUNCTIONS: [&str; 12] = [
+    const FUNCTIONS: [&str; 15] = [
         "_at",
         "_element",
         "_len",
@@ -74,6 +77,9 @@ fn belongs_to(name: &str, buffer: &str) -> bool {
         "_enter",
         "_local_ray",
         "_to_object",
+        "_sample",
+        "_texture",
+        "_sampler",
     ];
     name.strip_prefix(buffer).is_some_and(|rest| {
         rest.is_empty() || FUNCTIONS.contains(&rest) || rest.starts_with("_part")

@@ -7,10 +7,10 @@ use super::function::{FunctionPrinter, Text};
 use super::ir::{Function, Type, Uniform};
 use super::storage::{self, Stored};
 use super::types::Names;
-use super::{Recording, State};
+use super::{Recording, State, textures};
 use crate::machine::{
     Schema,
-    wgsl::{Buffer, Limits, Module, Window},
+    wgsl::{Buffer, Limits, Module, Texture, Window},
 };
 
 /// The workgroup: a square, so that the rays of neighbouring pixels run together.
@@ -291,6 +291,14 @@ pub(super) fn module(recording: &Recording, limits: &Limits) -> Module {
         }
         buffers.push(buffer);
     }
+    let is_sampled = |t: &&Texture| words.contains(format!("{}_sample", t.name).as_str());
+    let mut textures: Vec<Texture> = state.textures.iter().filter(is_sampled).cloned().collect();
+    for texture in &mut textures {
+        texture.binding = binding;
+        binding += 2;
+        bindings += "\n";
+        bindings += &textures::bindings(texture);
+    }
     let entry = entry_text(recording, &mut names);
     let (params, bytes) = uniform_block(&uniforms, &mut names);
     let mut source = names.declarations();
@@ -315,5 +323,6 @@ pub(super) fn module(recording: &Recording, limits: &Limits) -> Module {
         input_stride: recording.input.map_or(0, |s| storage::stride(s) as u32),
         output_stride: storage::stride(recording.output) as u32,
         buffers,
+        textures,
     }
 }

@@ -1,0 +1,125 @@
+//! Textures as the samplers of devices read them.
+
+use super::config::{Filter, Filtering};
+use super::texel::{Texel, TexelValue};
+use super::view::Texels;
+use crate::machine::wgsl::{TexelFormat, TextureLayout};
+use crate::machine::{F, Leaves, Machine, Method, Type, Value, name};
+
+/// Texels along an axis of an image, and of a volume: what WebGPU guarantees.
+const MAX_IMAGE: u32 = 8192;
+const MAX_VOLUME: u32 = 2048;
+/// A coordinate between two texels has at least 8 bits.
+const WEIGHT: f32 = 1.0 / 256.0;
+
+impl<T: Texel> Texels<'_, T> {
+    /// What a device's sampler takes the texels for, if it can read them and is to.
+    fn format(&self) -> Option<TexelFormat> {
+        let config = &self.config;
+        if config.filtering == Filtering::Exact {
+            return None;
+        }
+        let is_linear = config.filter == Filter::Linear;
+        let longest = if self.is_volume() { MAX_VOLUME } else { MAX_IMAGE };
+        let is_small = self.size.iter().all(|&n| n <= longest);
+        let is_fit = is_linear && is_small && !self.has_border() && !self.all.is_empty();
+        is_fit.then(|| T::format(config.color_space)).flatten()
+    }
+
+    /// Others are images: a row of texels is one of height 1.
+    fn is_volume(&self) -> bool {
+        self.size[2] > 1
+    }
+
+    /// What the machine's sampler gives at a place and a level of detail, if it has one for such
+    /// a texture.
+    #[inline(always)]
+    pub(super) fn sampled<M: Machine>(
+        &self,
+        m: &M,
+        at: &[M::F32],
+        level: Option<M::F32>,
+    ) -> Option<<T::Value as Type>::On<M>> {
+        if !M::HAS_SAMPLERS {
+            return None;
+        }
+        let layout = TextureLayout {
+            is_volume: self.is_volume(),
+            size: self.size,
+            levels: self.levels,
+            format: self.format()?,
+            stride: size_of::<T>().next_multiple_of(4) as u32,
+            address: self.config.address,
+            blends_levels: self.blends_levels(),
+        };
+        let level = level.unwrap_or_else(|| m.f32(0.0));
+        let middle = m.f32(0.5);
+        let place = [at[0], at.get(1).copied().unwrap_or(middle), at.last().copied()?];
+        let axes = if layout.is_volume { 3 } else { 2 };
+        let channels = m.sampled(&self.view(), &layout, &place[..axes], level)?.map(F);
+        Some(T::Value::from_channels_on(m, &channels))
+    }
+
+    /// A weight of the host's is what it is.
+    #[inline(always)]
+    pub(super) fn near(&self, weight: f32) -> f32 {
+        weight
+    }
+
+    /// What has been read, as a sampler may have it.
+    #[inline(always)]
+    pub(super) fn as_read<M: Machine>(
+        &self,
+        m: &M,
+        v: <T::Value as Type>::On<M>,
+    ) -> <T::Value as Type>::On<M> {
+        let mut off = match self.format() {
+            None => return v,
+            // Halves are rounded once more.
+            Some(TexelFormat::R16Float | TexelFormat::Rg16Float | TexelFormat::Rgba16Float) => {
+                OffBy { absolute: 0.0, relative: 1.0 / 2048.0 }
+            }
+            Some(_) => OffBy { absolute: WEIGHT, relative: 0.0 },
+        };
+        Value::zip(m, v, v, &mut off)
+    }
+}
+
+/// A weight as a sampler may have it.
+#[diagnostic::do_not_recommend]
+impl<M: Machine, T: Texel> Method<{ name("near") }, M, (F<M>,)> for Texels<'_, T> {
+    type Output = F<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (weight,): (F<M>,)) -> F<M> {
+        match self.format() {
+            None => weight,
+            Some(_) => F(m.off_by(weight.0, WEIGHT, 0.0)),
+        }
+    }
+}
+
+/// Every float is off by at most this, and this part of itself.
+struct OffBy {
+    absolute: f32,
+    relative: f32,
+}
+
+impl<M: Machine> Leaves<M> for OffBy {
+    #[inline(always)]
+    fn f32(&mut self, m: &M, a: M::F32, _: M::F32) -> M::F32 {
+        m.off_by(a, self.absolute, self.relative)
+    }
+    #[inline(always)]
+    fn i32(&mut self, _: &M, a: M::I32, _: M::I32) -> M::I32 {
+        a
+    }
+    #[inline(always)]
+    fn u32(&mut self, _: &M, a: M::U32, _: M::U32) -> M::U32 {
+        a
+    }
+    #[inline(always)]
+    fn bool(&mut self, _: &M, a: M::Bool, _: M::Bool) -> M::Bool {
+        a
+    }
+}
