@@ -263,10 +263,10 @@ fn texture_sampled() -> Result<(), raydsl::texture::TextureError> {
     let (colors, heights) = ([[Unorm8::ONE; 4]; 32], [0.5; 6]);
     let config = TextureConfig::new().color_space(ColorSpace::Srgb).filtering(Filtering::Device);
     let config = config.level_filter(LevelFilter::Linear);
-    let floor = Texture2::new(&colors, [8, 4], config)?.with_levels()?;
+    let tiles = Texture2::new(&colors, [8, 4], config)?.with_levels()?;
     let relief = Texture1::new(&heights, [6], TextureConfig::new())?;
     let kernel =
-        kernel!(|uv: Vec2, level: f32| { tex2_level(&floor, uv, level) * tex1(&relief, uv.x) });
+        kernel!(|uv: Vec2, level: f32| { tex2_level(&tiles, uv, level) * tex1(&relief, uv.x) });
     assert_wgsl("texture_sampled", &kernel.wgsl());
     Ok(())
 }
