@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::Parser;
 use raydsl::report::work_precision::Backend;
+use raydsl_examples::args::seconds;
 
 /// Error against run time.
 #[derive(Parser)]
@@ -41,10 +42,4 @@ pub(crate) struct Args {
 fn backend(name: &str) -> Result<Backend, String> {
     let names = Backend::ALL.map(Backend::name).join(", ");
     Backend::from_name(name).ok_or_else(|| format!("choose from {names}"))
-}
-
-fn seconds(text: &str) -> Result<Duration, String> {
-    let number = text.strip_suffix('s').unwrap_or(text).parse().ok();
-    let time = number.and_then(|s: f64| Duration::try_from_secs_f64(s).ok());
-    time.ok_or_else(|| "write seconds, for example 30s".to_owned())
 }

@@ -1,5 +1,7 @@
 //! What command lines of several programs are made of.
 
+use std::time::Duration;
+
 use raydsl::kernel::Variant;
 
 /// `1920x1200`.
@@ -40,4 +42,48 @@ pub fn point(text: &str) -> Result<[f64; 3], String> {
         .filter(|v: &f64| v.is_finite())
         .collect();
     parts.try_into().map_err(|_| "write three numbers, for example 1,2,3".to_owned())
+}
+
+/// `30s`, or `30`.
+///
+/// # Errors
+///
+/// A text that is no time, with the remedy.
+pub fn seconds(text: &str) -> Result<Duration, String> {
+    let number = text.strip_suffix('s').unwrap_or(text).parse().ok();
+    let time = number.and_then(|s: f64| Duration::try_from_secs_f64(s).ok());
+    time.ok_or_else(|| "write seconds, for example 30s".to_owned())
+}
+
+/// `1%`, or `0.01`.
+///
+/// # Errors
+///
+/// A text that is no number above 0, with the remedy.
+pub fn share(text: &str) -> Result<f64, String> {
+    let (number, whole) = text.strip_suffix('%').map_or((text, 1.0), |n| (n, 100.0));
+    let share = number.trim_end().parse().ok().map(|n: f64| n / whole);
+    share
+        .filter(|s| *s > 0.0 && s.is_finite())
+        .ok_or_else(|| "write a percentage above 0 or a share, for example 1% or 0.01".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_and_shares_are_read() {
+        assert_eq!(seconds("1.5s"), Ok(Duration::from_millis(1500)));
+        assert_eq!(seconds("2"), Ok(Duration::from_secs(2)));
+        for wrong in ["", "s", "-1s", "nan", "1m", "1e99"] {
+            assert!(seconds(wrong).is_err_and(|e| e.contains("30s")), "{wrong}");
+        }
+        assert_eq!(share("2%"), Ok(0.02));
+        assert_eq!(share("2 %"), Ok(0.02));
+        assert_eq!(share("0.5"), Ok(0.5));
+        for wrong in ["", "%", "0%", "-1%", "nan", "inf", "1e999%", "one"] {
+            assert!(share(wrong).is_err_and(|e| e.contains("1%")), "{wrong}");
+        }
+    }
 }

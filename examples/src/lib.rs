@@ -6,3 +6,4 @@ pub mod heat_map;
 pub mod mesh;
 pub mod picture;
 pub mod raster;
+pub mod rasterizer;

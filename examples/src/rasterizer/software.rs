@@ -3,16 +3,11 @@
 use raydsl::prelude::*;
 use raydsl::render::Fragment;
 
-/// A corner of a triangle: where it is, and its colour.
-#[derive(Clone, Copy)]
-pub(crate) struct Corner {
-    pub(crate) place: Vec3,
-    pub(crate) color: Vec3,
-}
+use super::Corner;
 
 /// Draws triangles seen through `clip`, the product of projection and view. Those that reach in
 /// front of the near plane are left out.
-pub(crate) fn draw(triangles: &[[Corner; 3]], clip: Mat4, image: &mut Image<Fragment>) {
+pub(super) fn draw(triangles: &[[Corner; 3]], clip: Mat4, image: &mut Image<Fragment>) {
     let (width, height) = (image.width(), image.height());
     for corners in triangles {
         let seen = corners.map(|c| clip * c.place.extend(1.0));
