@@ -101,7 +101,7 @@ mod tests {
     fn what_has_none() {
         assert_eq!(Efficiency::of(&[]), None);
         assert_eq!(Efficiency::of(&[(1.0, &[1.0]), (1.0, &[2.0])]), None, "two runs");
-        assert_eq!(Efficiency::of(&[(1.0, &[2.0]); 5]), None, "no variance");
+        assert_eq!(Efficiency::of(&[(1.0, &[2.0][..]); 5]), None, "no variance");
         assert_eq!(Efficiency::of(&[(1.0, &[][..]); 3]), None, "no estimates");
         let nan: [(f64, &[f64]); 3] = [(1.0, &[1.0]), (1.0, &[f64::NAN]), (1.0, &[2.0])];
         assert_eq!(Efficiency::of(&nan), None);

@@ -6,8 +6,9 @@ use super::{Report, WorkPrecisionError};
 
 impl Report {
     /// Writes into `folder`: `points.csv`, `report.json`, `table.txt`, `errors.txt`,
-    /// `omissions.md`, and a plot for each case, `work_precision.svg` if there is one case and `work_precision_NAME.svg`
-    /// otherwise. Gives the paths of the plots without their extension, in the order of the cases.
+    /// `omissions.md`, and a plot for each case, `work_precision.svg` if there is one case and
+    /// `work_precision_NAME.svg` otherwise. Gives the paths of the plots without their extension,
+    /// in the order of the cases.
     ///
     /// # Errors
     ///

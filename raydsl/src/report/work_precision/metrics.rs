@@ -161,8 +161,8 @@ mod tests {
         assert!((found.bias_z() - 0.25 / error).abs() < 1e-12);
     }
 
-    /// Half of the pixels dark, half bright, each off by a tenth of itself: relative errors of other
-    /// forms differ by what they are kept from 0 with.
+    /// Half of the pixels dark, half bright, each off by a tenth of itself: relative errors of
+    /// other forms differ by what they are kept from 0 with.
     #[test]
     fn relative_errors_are_of_their_own_forms() {
         let exact = [1e-3, 1.0, -1e-3, -1.0];
