@@ -34,6 +34,9 @@ pub(crate) struct Args {
     /// The time for each case, such as 30s.
     #[arg(long, default_value = "30s", value_parser = seconds)]
     pub(crate) time: Duration,
+    /// The commit of the source, for the files. Without this git is asked.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) commit: Option<String>,
     /// Folder of the results.
     #[arg(long, value_name = "DIR", default_value = "out/report")]
     pub(crate) out: PathBuf,

@@ -2,8 +2,8 @@
 //! whose results are known. Learn here how to measure a kernel of your own so.
 //!
 //! `cargo run --release --example report -- P-AO2` writes `work_precision.svg` and `.png`,
-//! `points.csv`, `report.json`, `table.txt` and `omissions.md` to `out/report`; `all` measures
-//! every case, `list` names them.
+//! `points.csv`, `report.json`, `table.txt`, `errors.txt` and `omissions.md` to `out/report`; `all`
+//! measures every case, `list` names them.
 
 mod args;
 mod cloud;
@@ -11,7 +11,7 @@ mod light;
 mod visibility;
 
 use std::error::Error;
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 use args::Args;
 use clap::Parser;
@@ -43,7 +43,11 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         return Err(format!("there is no case `{}`; `list` names them", args.case).into());
     }
     let methods: Vec<&str> = args.methods.iter().map(String::as_str).collect();
-    let report = WorkPrecision::new()
+    let mut settings = WorkPrecision::new();
+    if let Some(commit) = args.commit.clone().or_else(commit) {
+        settings = settings.commit(commit);
+    }
+    let report = settings
         .knobs(&args.knob)
         .methods(&methods)
         .backends(&args.variants)
@@ -56,7 +60,16 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     for (path, case) in plots.iter().zip(&report.cases) {
         raster(&case.plot(), 2).save(path.with_extension("png"))?;
     }
-    println!("{}", report.table());
+    println!("{}\n{}", report.table(), report.errors());
     println!("{}", args.out.display());
     Ok(())
+}
+
+/// The commit of the folder that this runs in, `-dirty` if files were changed since; none if there
+/// is no git, or the folder is no clone.
+fn commit() -> Option<String> {
+    let asked = ["describe", "--always", "--dirty", "--exclude=*", "--abbrev=12"];
+    let answer = Command::new("git").args(asked).output().ok()?;
+    let name = String::from_utf8(answer.stdout).ok()?.trim().to_owned();
+    (answer.status.success() && !name.is_empty()).then_some(name)
 }

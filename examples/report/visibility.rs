@@ -48,8 +48,23 @@ pub(crate) enum Occluder {
 }
 
 // ANCHOR: kernel
-/// Whether the sky is seen from the origin of the plane z = 0, in a direction that is likely as the
-/// cosine, or as any other, no farther away than `reach`.
+/// A ray from the origin of the plane z = 0, in a direction that is likely as the cosine, or as any
+/// other, no longer than `reach`.
+#[kernel]
+fn to_the_sky(
+    reach: f32,
+    #[host] is_uniform: bool,
+    #[host] method: SampleMethod,
+    sampler: Sampler,
+) -> Ray {
+    let mut sampler = sampler;
+    let u = sampler.next_2d(method);
+    let direction =
+        if is_uniform { sample_uniform_hemisphere(u) } else { sample_cosine_hemisphere(u) };
+    Ray { t_max: reach, ..Ray::new(vec3(0.0, 0.0, 0.0), direction) }
+}
+
+/// Whether such a ray sees the sky.
 #[kernel]
 pub(crate) fn visibility(
     occluders: &[Occluder],
@@ -58,11 +73,7 @@ pub(crate) fn visibility(
     #[host] method: SampleMethod,
     sampler: Sampler,
 ) -> f32 {
-    let mut sampler = sampler;
-    let u = sampler.next_2d(method);
-    let direction =
-        if is_uniform { sample_uniform_hemisphere(u) } else { sample_cosine_hemisphere(u) };
-    let ray = Ray { t_max: reach, ..Ray::new(vec3(0.0, 0.0, 0.0), direction) };
+    let ray = to_the_sky(reach, is_uniform, method, sampler);
     if occluders.any_hit(ray) { 0.0 } else { 1.0 }
 }
 // ANCHOR_END: kernel
@@ -130,7 +141,14 @@ fn case(scene: Scene) -> Case<'static> {
         let kernel = kernel!(|_ray: Ray, sampler: Sampler| {
             visibility(occluders, reach, host(is_uniform), host(method), sampler)
         });
-        Ok(run.integral(&kernel)?.rays_per_sample(1))
+        run.integral(&kernel)
+    })
+    .counted(move |run| {
+        let method = run.method().sampling();
+        run.integral_work(|sampler| {
+            let ray = to_the_sky(reach, is_uniform, method, sampler);
+            occluders.any_hit_with_cost(ray).1.into()
+        })
     })
     .method(SampleMethod::Random, Some(Order::RANDOM))
     .method(SampleMethod::Stratified, edge)

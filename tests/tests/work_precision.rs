@@ -1,5 +1,7 @@
 //! Error against run time: measurements whose outcome is known.
 
+use std::cell::Cell;
+use std::collections::HashMap;
 use std::error::Error;
 use std::time::Duration;
 
@@ -141,7 +143,7 @@ fn shapes_of_files() -> Result<(), Box<dyn Error>> {
     let header = csv.lines().next().map_or(0, cells);
     assert!(csv.lines().all(|l| cells(l) == header), "{csv}");
     // Two cases of two methods with four points of three runs each, and one that was not run.
-    assert_eq!((csv.lines().count(), header), (1 + 2 * 2 * 4 * 3 + 1, 33));
+    assert_eq!((csv.lines().count(), header), (1 + 2 * 2 * 4 * 3 + 1, 54));
     let json: serde_json::Value = serde_json::from_str(&json)?;
     let curve = &json["cases"][0]["curves"][1];
     assert_eq!(
@@ -153,8 +155,10 @@ fn shapes_of_files() -> Result<(), Box<dyn Error>> {
     let order = curve["order"].as_f64().ok_or("an order")?;
     assert!((order + 2.0).abs() < 0.02, "{order}");
     assert_eq!(json["cases"][2]["curves"][0]["points"][0]["rmse"].as_str(), Some("NaN"));
-    let table = read("table.txt")?;
-    assert!(table.lines().all(|l| l.chars().count() <= 100), "{table}");
+    for table in [read("table.txt")?, read("errors.txt")?] {
+        assert!(table.lines().all(|l| l.chars().count() <= 100), "{table}");
+        assert!(table.contains("nono") && table.contains("middle"), "{table}");
+    }
     assert!(read("omissions.md")?.contains("nono"));
     assert_eq!(plots.len(), 3);
     for plot in plots {
@@ -240,8 +244,208 @@ fn a_kernel_counts_its_steps_on_every_backend() -> Result<(), Box<dyn Error>> {
             assert!(run.values.iter().all(|v| (v - exact).abs() < 1e-6), "{:?}", run.values);
         }
     }
+    assert!(report.cases[0].plot().svg().contains(">counted in all<"));
     let rounding = curves[0].points[1].rounding.ok_or("f64 was run")?;
     assert!(rounding > 0.0 && rounding < 1e-7, "{rounding}");
     assert_eq!(curves[5].points[1].rounding, None);
+    Ok(())
+}
+
+#[primitive(sphere(center, radius))]
+struct Ball {
+    center: Vec3,
+    radius: f32,
+}
+
+/// Balls above the square that the camera sees, some before others.
+fn balls() -> Vec<Ball> {
+    let ball = |i: u16| {
+        let (x, y) = (f32::from(i % 8), f32::from(i / 8 % 8));
+        let center = vec3(0.25 * x - 0.9, 0.25 * y - 0.9, 0.1 * f32::from(i % 5));
+        Ball { center, radius: 0.05 + 0.02 * f32::from(i % 3) }
+    };
+    (0..128).map(ball).collect()
+}
+
+fn above() -> Orthographic {
+    Orthographic::new(vec3(0.0, 0.0, 4.0), Vec3::ZERO, Vec3::Y, 2.0)
+}
+
+/// What is counted on the host is what a kernel counts for the same samples.
+#[test]
+fn work_is_that_of_the_samples_of_a_run() -> Result<(), Box<dyn Error>> {
+    let balls = balls();
+    let tree = Bvh::build(&balls)?;
+    let lens = ThinLens::new(Pinhole::new(vec3(0.0, 0.0, 4.0), Vec3::ZERO, Vec3::Y, 0.5), 0.1, 4.0);
+    for sampling in [SampleMethod::Random, SampleMethod::Stratified, SampleMethod::Sobol] {
+        let method = Method::from(sampling);
+        let run = Run::new(&method, SCALAR, 9).sized(5, 4).seeded(3);
+        let total = |found: Result<Estimates, Missing>| {
+            let found = found.unwrap_or_else(|missing| panic!("{missing}"));
+            (9.0 * found.values.iter().sum::<f64>()).round() as u64
+        };
+        let nodes = kernel!(|ray: Ray| {
+            let (_, cost) = tree.closest_hit_with_cost(ray);
+            cost.nodes as f32
+        });
+        let tested = kernel!(|ray: Ray| {
+            let (_, cost) = tree.closest_hit_with_cost(ray);
+            cost.primitives as f32
+        });
+        let count = |ray, _| Work::from(tree.closest_hit_with_cost(ray).1);
+        let (flat, deep) = (run.film_work(&above(), count), run.film_work(&lens, count));
+        assert_eq!(flat.rays, Some(5 * 4 * 9));
+        assert_eq!(flat.nodes, Some(total(run.film(&above(), &nodes))));
+        assert_eq!(flat.primitives, Some(total(run.film(&above(), &tested))));
+        assert_eq!(deep.nodes, Some(total(run.film(&lens, &nodes))));
+        assert_ne!(deep.nodes, flat.nodes, "a lens needs numbers of its own");
+        // Of an integral the numbers alone say what is done: a look-up where the first is large.
+        let looks = kernel!(|_ray: Ray, sampler: Sampler| {
+            let mut sampler = sampler;
+            if sampler.next_2d(host(sampling)).x > 0.7 { 1.0 } else { 0.0 }
+        });
+        let looked = run.integral_work(|mut sampler| {
+            let is_large = sampler.next_2d(sampling).x > 0.7;
+            Work { texture_fetches: Some(u64::from(is_large)), ..Work::default() }
+        });
+        assert_eq!(looked.texture_fetches, Some(total(run.integral(&looks))));
+        assert_eq!((looked.rays, looked.texture_fetches > Some(9)), (None, true));
+    }
+    Ok(())
+}
+
+/// The cells of a line of CSV by their column's name; for text without commas in cells.
+fn row<'t>(csv: &'t str, line: usize) -> HashMap<&'t str, &'t str> {
+    let mut lines = csv.lines();
+    let header = lines.next().unwrap_or_default().split(',');
+    header.zip(lines.nth(line).unwrap_or_default().split(',')).collect()
+}
+
+#[test]
+fn what_is_counted_apart_is_in_the_files() -> Result<(), Box<dyn Error>> {
+    let balls = balls();
+    let tree = Bvh::build(&balls)?;
+    let calls = Cell::new(0);
+    let covered = |run: &Run<'_>| {
+        let method = run.method().sampling();
+        let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+            let mut sampler = sampler;
+            let shift = 0.01 * sampler.next_2d(host(method)).x;
+            if tree.any_hit(Ray { t_max: 9.0 + shift, ..ray }) { 1.0 } else { 0.0 }
+        });
+        run.film(&above(), &kernel)
+    };
+    let case = Case::new("covered", Reference::closed_form(0.5), covered)
+        .method(SampleMethod::Random, Some(Order::RANDOM))
+        .method(SampleMethod::Sobol, None)
+        .counted(|run| {
+            calls.set(calls.get() + 1);
+            run.film_work(&above(), |ray, _| tree.any_hit_with_cost(ray).1.into())
+        })
+        .built_in(Duration::from_millis(125));
+    let backends = [SCALAR, Backend::Variant(Variant::Packet8)];
+    let settings = quick().backends(&backends).knobs(&[2, 8, 32]).repetitions(4).size(4, 4);
+    let report = settings.commit("abc-dirty").run(&[case])?;
+    assert_eq!(calls.get(), 2 * 3, "once for each method and value of the knob");
+    let measured = &report.cases[0];
+    let [random, packets, sobol, _] = &measured.curves[..] else { panic!("four curves") };
+    let work = |curve: &Curve, i: usize| curve.points[i].work();
+    assert_eq!(work(random, 2).rays, Some(16 * 32));
+    assert!(work(random, 2).nodes > work(random, 1).nodes && work(random, 0).primitives > Some(0));
+    assert_eq!(work(random, 1), work(packets, 1));
+    assert_ne!(work(random, 1), work(sobol, 1));
+    assert!(random.code.is_some() && random.code == packets.code && random.code != sobol.code);
+    assert!(random.first_run > Some(0.0));
+    // Of the first curve the point of 32 samples is in rows 8 to 11.
+    let csv = report.csv();
+    let cells = row(&csv, 8);
+    let number = |name: &str| cells[name].parse::<f64>().unwrap_or(f64::NAN);
+    assert_eq!((cells["method"], cells["knob_value"], cells["repetitions"]), ("random", "32", "4"));
+    assert_eq!(cells["nodes"], work(random, 2).nodes.unwrap_or(0).to_string());
+    assert_eq!(
+        (cells["rays"], cells["texture_fetches"], cells["commit"]),
+        ("512", "", "abc-dirty")
+    );
+    assert_eq!((cells["t_build"], cells["status"]), ("1.25e-1", "ok"));
+    assert_eq!(cells["code"], format!("{:016x}", random.code.unwrap_or(0)));
+    assert_eq!((number("expected_low"), number("expected_high")), (-0.55, -0.45));
+    let rising = ["t_min", "t_p10", "t_median", "t_p90"].map(number);
+    assert!(rising.windows(2).all(|t| 0.0 < t[0] && t[0] <= t[1]), "{rising:?}");
+    let rising = ["efficiency_low", "efficiency", "efficiency_high"].map(number);
+    assert!(rising.windows(2).all(|e| 0.0 < e[0] && e[0] < e[1]), "{rising:?}");
+    assert!(number("rmse_p10") <= number("rmse_p90") && number("mrse") > 0.0);
+    let json = report.json();
+    let point = &json["cases"][0]["curves"][0]["points"][2];
+    assert_eq!(point["work"]["nodes"].as_u64(), work(random, 2).nodes);
+    assert!(point["work"]["texture_fetches"].is_null());
+    assert_eq!(point["efficiency"]["value"].as_f64(), Some(number("efficiency")));
+    assert_eq!(json["environment"]["commit"].as_str(), Some("abc-dirty"));
+    assert_eq!(json["cases"][0]["t_build"].as_f64(), Some(0.125));
+    let left_out = report.omissions();
+    assert!(left_out.contains("| texture fetches | the case does not count them |"), "{left_out}");
+    let svg = measured.plot().svg();
+    assert!(svg.contains(">tests of nodes and primitives in all<"), "{svg}");
+    Ok(())
+}
+
+/// A method without random numbers has no variance, and a closure no WGSL: that is said.
+#[test]
+fn what_is_not_known_is_not_made_up() -> Result<(), Box<dyn Error>> {
+    let report = quick().knobs(&[4, 8]).run(&[quadrature("exp")])?;
+    let curve = &report.cases[0].curves[0];
+    assert_eq!((curve.code, curve.points[0].efficiency()), (None, None));
+    let (csv, left_out, errors) = (report.csv(), report.omissions(), report.errors());
+    let cells = row(&csv, 0);
+    for name in ["code", "efficiency", "nodes", "primitive_tests", "rays", "t_build", "rounding"] {
+        assert_eq!(cells[name], "", "{name}");
+    }
+    assert_eq!(cells["commit"], "unknown");
+    for word in ["the efficiency at steps = 4, 8", "rays, nodes, primitive tests", "| FLIP |"] {
+        assert!(left_out.contains(word), "{word}\n{left_out}");
+    }
+    for (name, formula) in FORMULAS {
+        let start = formula.split(' ').next().unwrap_or_default();
+        let line = errors.lines().find(|l| l.starts_with(&format!("{name} ")));
+        assert!(line.is_some_and(|l| l.contains(start)), "{name}\n{errors}");
+    }
+    assert!(errors.lines().any(|l| l.starts_with("left") && l.ends_with('-')), "{errors}");
+    Ok(())
+}
+
+/// Five runs with errors of 1 to 5 hundredths: the symbol is at 3, the bar goes from 1.4 to 4.6.
+#[test]
+fn bars_go_from_the_tenth_to_the_ninetieth() -> Result<(), Box<dyn Error>> {
+    let off = case("off", |run| {
+        let turned = (run.seed() * 3) % 5;
+        1.0 + 0.01 * f64::from(turned + 1)
+    });
+    let report = quick().knobs(&[4]).repetitions(5).run(&[off])?;
+    let plot = report.cases[0].plot();
+    let at = plot.marks.iter().filter_map(|m| match m {
+        Mark::Symbol { at, radius, .. } if *radius < 5.0 => Some(*at),
+        _ => None,
+    });
+    let symbols: Vec<(f64, f64)> = at.collect();
+    assert_eq!(symbols.len(), 2, "one in each panel");
+    // The scale of errors, from the grid's lines at 1e-2 and 1e-1.
+    let grid = |label: &str| {
+        let at = plot.marks.iter().find_map(|m| match m {
+            Mark::Text { at, text, anchor: Anchor::End, .. } if text == label => Some(at.1),
+            _ => None,
+        });
+        at.ok_or(format!("no label {label}"))
+    };
+    let (low, high) = (grid("1e-2")?, grid("1e-1")?);
+    let place = |error: f64| low + (high - low) * (error.log10() + 2.0);
+    for (x, y) in symbols {
+        assert!((y - place(0.03)).abs() < 1e-6, "{y}");
+        let bar = plot.marks.iter().any(|m| match m {
+            Mark::Line { points, .. } => matches!(points[..], [a, b]
+                if a.0 == x && b.0 == x
+                && (a.1 - place(0.014)).abs() < 1e-6 && (b.1 - place(0.046)).abs() < 1e-6),
+            _ => false,
+        });
+        assert!(bar, "no bar at {x}");
+    }
     Ok(())
 }

@@ -37,6 +37,7 @@ pub use shot::Body;
 pub(crate) use shot::Frame;
 pub(crate) use shot::Pass;
 pub use shot::Shot;
+pub(crate) use shot::places;
 pub use simple::SimpleScheduler;
 pub use tile::Tile;
 pub use tiled::TiledScheduler;

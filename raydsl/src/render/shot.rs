@@ -48,7 +48,7 @@ pub type Body<'k, M, S> =
 /// Where on the film and on the lens a sample is, and the sampler after it.
 #[kernel]
 #[inline]
-fn places(
+pub(crate) fn places(
     pixel: UVec2,
     seed: u32,
     index: u32,

@@ -1,7 +1,10 @@
 //! What is measured.
 
+use std::time::Duration;
+
 use super::reference::Reference;
 use super::run::{Estimates, Run};
+use super::work::Work;
 use crate::kernel::Variant;
 use crate::report::Missing;
 use crate::sampling::SampleMethod;
@@ -111,6 +114,7 @@ impl Order {
 }
 
 pub(super) type Estimate<'a> = dyn Fn(&Run<'_>) -> Result<Estimates, Missing> + 'a;
+pub(super) type Count<'a> = dyn Fn(&Run<'_>) -> Work + 'a;
 
 /// Something that is computed by several methods, each with a knob that makes it better and slower,
 /// and what should come out.
@@ -139,6 +143,8 @@ pub struct Case<'a> {
     pub(super) reference: Reference,
     pub(super) methods: Vec<(Method, Option<Order>)>,
     pub(super) estimate: Box<Estimate<'a>>,
+    pub(super) count: Option<Box<Count<'a>>>,
+    pub(super) build: Option<Duration>,
 }
 
 impl core::fmt::Debug for Case<'_> {
@@ -166,6 +172,8 @@ impl<'a> Case<'a> {
             reference,
             methods: Vec::new(),
             estimate: Box::new(estimate),
+            count: None,
+            build: None,
         }
     }
 
@@ -178,6 +186,22 @@ impl<'a> Case<'a> {
     pub fn method(mut self, method: impl Into<Method>, order: Option<Order>) -> Self {
         self.methods.push((method.into(), order));
         self
+    }
+
+    /// What a run does, counted apart from the runs that are timed: `count` is called once for each
+    /// method and value of the knob, with the first seed, after them all. It replaces
+    /// [`Estimates::work`](super::Estimates::work), and its time is no part of the case's.
+    ///
+    /// [`Run::film_work`] and [`Run::integral_work`] count what the queries `closest_hit_with_cost`
+    /// and `any_hit_with_cost` say.
+    pub fn counted(self, count: impl Fn(&Run<'_>) -> Work + 'a) -> Self {
+        Self { count: Some(Box::new(count)), ..self }
+    }
+
+    /// How long it took to build what the runs use, such as a tree. It stands in the files, and is
+    /// no part of a run's time.
+    pub fn built_in(self, time: Duration) -> Self {
+        Self { build: Some(time), ..self }
     }
 
     /// The name.

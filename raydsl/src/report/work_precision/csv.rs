@@ -1,78 +1,179 @@
 //! `points.csv`.
 
-use core::fmt::Write;
-
 use super::curve::{Curve, Point, Repetition};
-use super::{Measured, Report};
+use super::{Environment, Measured, Report};
 
-/// The columns of [`Report::csv`].
-const COLUMNS: &str = "case,reference_kind,reference_uncertainty,rounding_floor,backend,lanes,\
-                       method,knob,knob_value,seed,repetitions,seconds,t_min,t_median,samples,\
-                       rays,counted,rmse,mae,max,p99,rel_mse,rel_mse_trimmed,bias,bias_z,nan,inf,\
-                       negative,rounding,order,order_low,order_high,status";
+/// The columns of [`Report::csv`]: what is the same for a curve, what there is of a run, and where
+/// it was measured.
+const OF_CURVE: [&str; 18] = [
+    "case",
+    "reference_kind",
+    "reference_uncertainty",
+    "rounding_floor",
+    "backend",
+    "lanes",
+    "method",
+    "knob",
+    "t_build",
+    "t_first",
+    "order",
+    "order_low",
+    "order_high",
+    "expected_low",
+    "expected_high",
+    "code",
+    "knob_value",
+    "repetitions",
+];
+const OF_RUN: [&str; 30] = [
+    "seed",
+    "seconds",
+    "t_min",
+    "t_p10",
+    "t_median",
+    "t_p90",
+    "samples",
+    "rays",
+    "nodes",
+    "primitive_tests",
+    "texture_fetches",
+    "counted",
+    "rmse",
+    "rmse_p10",
+    "rmse_p90",
+    "mae",
+    "max",
+    "p99",
+    "rel_mse",
+    "rel_mse_trimmed",
+    "mrse",
+    "bias",
+    "bias_z",
+    "efficiency",
+    "efficiency_low",
+    "efficiency_high",
+    "nan",
+    "inf",
+    "negative",
+    "rounding",
+];
+const OF_MACHINE: [&str; 6] = ["features", "version", "commit", "cpu", "device", "status"];
 
 impl Report {
     /// A header and a row for each run; and one for each point that was not run, whose status says
-    /// why. Times are seconds, `rounding` the difference to the same samples in `f64`. What is not
-    /// known is empty.
+    /// why. Times are seconds; those that begin with `t_`, `rmse_p10`, `rmse_p90` and the
+    /// efficiency are of all runs of the point. `rounding` is the difference to the same samples in
+    /// `f64`, `code` the hash of the kernel's WGSL. What is not known is empty.
     pub fn csv(&self) -> String {
-        let mut text = format!("{COLUMNS}\n");
+        let header = [&OF_CURVE[..], &OF_RUN, &OF_MACHINE].concat().join(",");
+        let mut lines = vec![header];
         for case in &self.cases {
             for curve in &case.curves {
-                rows(&mut text, case, curve);
+                lines.extend(rows(&self.environment, case, curve));
             }
         }
-        text
+        lines.join("\n") + "\n"
     }
 }
 
-fn rows(text: &mut String, case: &Measured, curve: &Curve) {
+fn rows(environment: &Environment, case: &Measured, curve: &Curve) -> Vec<String> {
+    let line = |point: [String; 2], run: Vec<String>, status: &str| {
+        let all = [of_curve(case, curve), point.to_vec(), run, of_machine(environment, status)];
+        all.concat().join(",")
+    };
+    let nothing = || vec![String::new(); OF_RUN.len()];
     if let Some(missing) = &curve.missing {
-        let why = quoted(&format!("omitted: {}", first_line(&missing.to_string())));
-        let _ = writeln!(text, "{}{}{why}", head(case, curve), ",".repeat(25));
-        return;
+        let why = format!("omitted: {}", first_line(&missing.to_string()));
+        return vec![line(Default::default(), nothing(), &why)];
     }
-    for point in &curve.points {
+    let of_point = |point: &Point| {
+        let head = || [point.knob.to_string(), point.repetitions.len().to_string()];
         if point.repetitions.is_empty() {
-            let (knob, status) = (point.knob, point.status().name());
-            let head = head(case, curve);
-            let _ = writeln!(text, "{head},{knob},,0{}{status}", ",".repeat(22));
+            return vec![line(head(), nothing(), point.status().name())];
         }
-        for repetition in &point.repetitions {
-            row(text, case, curve, point, repetition);
-        }
-    }
+        let row = |run: &Repetition| line(head(), of_run(point, run), run.status.name());
+        point.repetitions.iter().map(row).collect::<Vec<_>>()
+    };
+    curve.points.iter().flat_map(of_point).collect()
 }
 
-/// Up to the knob's name.
-fn head(case: &Measured, curve: &Curve) -> String {
-    let (kind, unsure, floor) = (case.kind.name(), case.uncertainty, case.rounding_floor);
-    let (name, method, knob) = (quoted(&case.name), quoted(&curve.method.name), quoted(&case.knob));
-    let (backend, lanes) = (curve.backend.name(), curve.backend.lanes());
-    format!("{name},{kind},{unsure:e},{floor:e},{backend},{lanes},{method},{knob}")
+/// Up to the knob's value.
+fn of_curve(case: &Measured, curve: &Curve) -> Vec<String> {
+    let (fit, expected) = (curve.fit, curve.expected);
+    vec![
+        quoted(&case.name),
+        case.kind.name().to_owned(),
+        number(case.uncertainty),
+        number(case.rounding_floor),
+        curve.backend.name().to_owned(),
+        curve.backend.lanes().to_string(),
+        quoted(&curve.method.name),
+        quoted(&case.knob),
+        perhaps(case.build),
+        perhaps(curve.first_run),
+        perhaps(fit.map(|f| f.order)),
+        perhaps(fit.map(|f| f.low)),
+        perhaps(fit.map(|f| f.high)),
+        perhaps(expected.map(|o| o.steepest)),
+        perhaps(expected.map(|o| o.flattest)),
+        curve.code.map_or_else(String::new, |hash| format!("{hash:016x}")),
+    ]
 }
 
-fn row(text: &mut String, case: &Measured, curve: &Curve, point: &Point, run: &Repetition) {
-    let m = &run.metrics;
+fn of_run(point: &Point, run: &Repetition) -> Vec<String> {
+    let (m, work, efficiency) = (&run.metrics, point.work(), point.efficiency());
     let whole = |n: Option<u64>| n.map_or_else(String::new, |n| n.to_string());
-    let number = |v: Option<f64>| v.map_or_else(String::new, |v| format!("{v:e}"));
-    let _ = write!(text, "{},{},{},", head(case, curve), point.knob, run.seed);
-    let _ = write!(
-        text,
-        "{},{:e},{:e},{:e},",
-        point.repetitions.len(),
-        run.seconds,
-        point.t_min(),
-        point.t_median()
-    );
-    let _ = write!(text, "{},{},{},", run.samples, whole(run.rays), whole(run.counted));
-    let _ = write!(text, "{:e},{:e},{:e},{:e},", m.rmse, m.mae, m.max, m.p99);
-    let _ = write!(text, "{:e},{:e},{:e},", m.rel_mse, m.rel_mse_trimmed, m.bias);
-    let _ = write!(text, "{:e},{},{},{},", m.bias_z(), m.nan, m.inf, m.negative);
-    let fit = curve.fit;
-    let (order, low, high) = (fit.map(|f| f.order), fit.map(|f| f.low), fit.map(|f| f.high));
-    let _ = write!(text, "{},{},{},", number(point.rounding), number(order), number(low));
-    let _ = writeln!(text, "{},{}", number(high), run.status.name());
+    vec![
+        run.seed.to_string(),
+        number(run.seconds),
+        number(point.t_min()),
+        number(point.t_quantile(0.1)),
+        number(point.t_median()),
+        number(point.t_quantile(0.9)),
+        run.samples.to_string(),
+        whole(work.rays),
+        whole(work.nodes),
+        whole(work.primitives),
+        whole(work.texture_fetches),
+        whole(run.counted),
+        number(m.rmse),
+        number(point.rmse_quantile(0.1)),
+        number(point.rmse_quantile(0.9)),
+        number(m.mae),
+        number(m.max),
+        number(m.p99),
+        number(m.rel_mse),
+        number(m.rel_mse_trimmed),
+        number(m.mrse),
+        number(m.bias),
+        number(m.bias_z()),
+        perhaps(efficiency.map(|e| e.value)),
+        perhaps(efficiency.map(|e| e.low)),
+        perhaps(efficiency.map(|e| e.high)),
+        m.nan.to_string(),
+        m.inf.to_string(),
+        m.negative.to_string(),
+        perhaps(point.rounding),
+    ]
+}
+
+fn of_machine(environment: &Environment, status: &str) -> Vec<String> {
+    vec![
+        environment.features.join(" "),
+        environment.version.to_owned(),
+        quoted(&environment.commit),
+        quoted(&environment.cpu),
+        quoted(environment.device.as_deref().unwrap_or_default()),
+        quoted(status),
+    ]
+}
+
+fn number(v: f64) -> String {
+    format!("{v:e}")
+}
+
+fn perhaps(v: Option<f64>) -> String {
+    v.map_or_else(String::new, number)
 }
 
 fn first_line(text: &str) -> &str {

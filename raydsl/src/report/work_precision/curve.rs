@@ -1,9 +1,11 @@
 //! What repetitions of one method on one backend come to.
 
 use super::case::{Backend, Method, Order};
+use super::efficiency::Efficiency;
 use super::fit::{Fit, Reached, first_below, student_t, value_at};
 use super::metrics::Metrics;
 use super::reference::Reference;
+use super::work::Work;
 use crate::report::{Missing, Times};
 
 /// What a point is good for.
@@ -41,10 +43,10 @@ pub struct Repetition {
     pub seconds: f64,
     /// Samples in all.
     pub samples: u64,
-    /// Rays in all, if they are counted.
-    pub rays: Option<u64>,
     /// What the kernel counted, in all.
     pub counted: Option<u64>,
+    /// What the run says that it did.
+    pub work: Work,
     /// The error.
     pub metrics: Metrics,
     /// What it is good for.
@@ -62,9 +64,16 @@ pub struct Point {
     pub repetitions: Vec<Repetition>,
     /// The root of the mean square difference to the same samples in `f64`, if that was run.
     pub rounding: Option<f64>,
+    /// What a run of the first seed does, if the case [counts it apart](super::Case::counted).
+    pub counted_apart: Option<Work>,
 }
 
 impl Point {
+    /// Without a run so far.
+    pub(super) fn new(knob: u32) -> Self {
+        Self { knob, repetitions: Vec::new(), rounding: None, counted_apart: None }
+    }
+
     /// The root of the mean square error over all repetitions that gave finite numbers.
     pub fn rmse(&self) -> f64 {
         let squares: Vec<f64> = self.finite().map(|r| r.metrics.rmse.powi(2)).collect();
@@ -90,6 +99,31 @@ impl Point {
     /// The middle time, in seconds; 0 without a run.
     pub fn t_median(&self) -> f64 {
         Times { ms: self.repetitions.iter().map(|r| r.seconds).collect() }.median()
+    }
+
+    /// The time, in seconds, that this share of the runs, from 0 to 1, does not exceed, linear
+    /// between neighbours; NaN without a run.
+    pub fn t_quantile(&self, share: f64) -> f64 {
+        quantile(self.repetitions.iter().map(|r| r.seconds), share)
+    }
+
+    /// The root of the mean square error that this share of the runs, from 0 to 1, does not
+    /// exceed, linear between neighbours; NaN without a run that gave finite numbers.
+    pub fn rmse_quantile(&self, share: f64) -> f64 {
+        quantile(self.finite().map(|r| r.metrics.rmse), share)
+    }
+
+    /// One over variance and time, of three runs or more that gave finite numbers.
+    pub fn efficiency(&self) -> Option<Efficiency> {
+        let runs: Vec<(f64, &[f64])> =
+            self.finite().map(|r| (r.seconds, r.values.as_slice())).collect();
+        Efficiency::of(&runs)
+    }
+
+    /// What a run does: [`Self::counted_apart`], or what the first run says.
+    pub fn work(&self) -> Work {
+        let first = self.repetitions.first().map(|r| r.work);
+        self.counted_apart.or(first).unwrap_or_default()
     }
 
     /// Samples of one run; 0 without one.
@@ -194,9 +228,30 @@ pub struct Curve {
     pub speedup: Option<Speedup>,
     /// Why it was not run, if it was not.
     pub missing: Option<Missing>,
+    /// Seconds of the run before all others, with the first value of the knob: it warms caches and
+    /// compiles pipelines, and counts in nothing else.
+    pub first_run: Option<f64>,
+    /// A hash of the WGSL of the kernels, whatever ran them: FNV-1a, 64 bits. None if none was run
+    /// by [`Run`](super::Run).
+    pub code: Option<u64>,
 }
 
 impl Curve {
+    /// Without points.
+    pub(super) fn new(method: Method, backend: Backend, expected: Option<Order>) -> Self {
+        Self {
+            method,
+            backend,
+            expected,
+            points: Vec::new(),
+            fit: None,
+            speedup: None,
+            missing: None,
+            first_run: None,
+            code: None,
+        }
+    }
+
     /// Points (x, error) with a finite error, in the order of x.
     fn errors(&self, x: impl Fn(&Point) -> f64) -> Vec<(f64, f64)> {
         let ran = self.points.iter().filter(|p| p.rmse().is_finite());
@@ -246,6 +301,17 @@ impl Curve {
     }
 }
 
+/// The number that a share of all numbers does not exceed, linear between neighbours in their order
+/// (Hyndman and Fan, "Sample Quantiles in Statistical Packages", 1996, definition 7); NaN of none.
+fn quantile(numbers: impl Iterator<Item = f64>, share: f64) -> f64 {
+    let mut sorted: Vec<f64> = numbers.collect();
+    sorted.sort_by(f64::total_cmp);
+    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
+    let place = share.clamp(0.0, 1.0) * last as f64;
+    let (below, above) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
+    if below == above { below } else { below + (above - below) * place.fract() }
+}
+
 /// The error that rounding to `f32` leaves in an estimate of this reference: one rounding of the
 /// result and one of the running mean, 2^-24 each, of the root of its mean square.
 pub(super) fn rounding_floor(reference: &Reference) -> f64 {
@@ -265,27 +331,60 @@ mod tests {
             seed: 0,
             seconds,
             samples: u64::from(knob),
-            rays: None,
             counted: None,
+            work: Work::default(),
             metrics,
             status,
             values: Vec::new(),
         };
-        Point { knob, repetitions: vec![repetition], rounding: None }
+        Point { repetitions: vec![repetition], ..Point::new(knob) }
     }
 
     fn curve(points: Vec<Point>, expected: Option<Order>) -> Curve {
-        let mut curve = Curve {
-            method: SampleMethod::Random.into(),
-            backend: Backend::Variant(Variant::Scalar),
-            expected,
-            points,
-            fit: None,
-            speedup: None,
-            missing: None,
-        };
+        let scalar = Backend::Variant(Variant::Scalar);
+        let mut curve = Curve::new(SampleMethod::Random.into(), scalar, expected);
+        curve.points = points;
         curve.fit();
         curve
+    }
+
+    #[test]
+    fn quantiles_lie_between_neighbours() {
+        let of = |share| quantile([3.0, 1.0, 2.0, 5.0, 4.0].into_iter(), share);
+        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
+        close(of(0.1), 1.4);
+        close(of(0.5), 3.0);
+        close(of(0.9), 4.6);
+        assert_eq!((of(-1.0), of(0.0), of(1.0), of(2.0)), (1.0, 1.0, 5.0, 5.0));
+        assert_eq!(quantile([7.0].into_iter(), 0.9), 7.0);
+        assert!(quantile([].into_iter(), 0.5).is_nan());
+    }
+
+    /// The third run of three gave no number: it has a time, and no error.
+    #[test]
+    fn quantiles_of_a_point() {
+        let mut all = point(8, 0.5, Status::Ok);
+        let run = |seconds, rmse, status| {
+            let mut run = all.repetitions[0].clone();
+            (run.seconds, run.metrics.rmse, run.status) = (seconds, rmse, status);
+            run
+        };
+        all.repetitions = vec![
+            run(1.0, 0.5, Status::Ok),
+            run(2.0, 0.25, Status::Floor),
+            run(9.0, f64::NAN, Status::Diverged),
+        ];
+        assert_eq!((all.t_quantile(0.5), all.t_quantile(1.0)), (2.0, 9.0));
+        assert_eq!((all.rmse_quantile(0.5), all.rmse_quantile(1.0)), (0.375, 0.5));
+    }
+
+    #[test]
+    fn what_is_counted_apart_comes_first() {
+        let mut one = point(8, 0.5, Status::Ok);
+        one.repetitions[0].work.rays = Some(7);
+        assert_eq!(one.work().rays, Some(7));
+        one.counted_apart = Some(Work { nodes: Some(3), ..Work::default() });
+        assert_eq!((one.work().rays, one.work().nodes), (None, Some(3)));
     }
 
     /// Errors of order -1 that stop falling at 1e-3.
@@ -336,9 +435,10 @@ mod tests {
 
     #[test]
     fn a_point_without_a_run_is_out_of_budget() {
-        let none = Point { knob: 1, repetitions: Vec::new(), rounding: None };
+        let none = Point::new(1);
         assert_eq!(none.status(), Status::Budget);
-        assert!(none.rmse().is_nan());
+        assert!(none.rmse().is_nan() && none.t_quantile(0.9).is_nan());
+        assert!(none.efficiency().is_none() && none.work().is_empty());
         let curve = curve(vec![point(4, 0.5, Status::Ok), none], None);
         assert_eq!(curve.time_to_error(0.5), Reached::AtMost(0.004));
         assert_eq!(curve.time_to_error(0.1), Reached::Never);

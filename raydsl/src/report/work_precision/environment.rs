@@ -20,11 +20,17 @@ pub struct Environment {
     pub has_debug_assertions: bool,
     /// The version of raydsl.
     pub version: &'static str,
+    /// The features that raydsl was built with, in the order of the alphabet.
+    pub features: Vec<&'static str>,
+    /// The commit of the source, or `unknown`: see
+    /// [`WorkPrecision::commit`](super::WorkPrecision::commit).
+    pub commit: String,
 }
 
 impl Environment {
     pub(super) fn of(
         backends: &[Backend],
+        commit: Option<String>,
         #[cfg(feature = "gpu")] gpu: Option<&crate::gpu::GpuScheduler>,
     ) -> Self {
         let described = |backend: &Backend| match backend {
@@ -44,8 +50,23 @@ impl Environment {
             threads: 1,
             has_debug_assertions: cfg!(debug_assertions),
             version: env!("CARGO_PKG_VERSION"),
+            features: features(),
+            commit: commit.unwrap_or_else(|| "unknown".to_owned()),
         }
     }
+}
+
+fn features() -> Vec<&'static str> {
+    let all = [
+        ("exr", cfg!(feature = "exr")),
+        ("gpu", cfg!(feature = "gpu")),
+        ("hdr", cfg!(feature = "hdr")),
+        ("image", cfg!(feature = "image")),
+        ("jpeg", cfg!(feature = "jpeg")),
+        ("parallel", cfg!(feature = "parallel")),
+        ("validate", cfg!(feature = "validate")),
+    ];
+    all.into_iter().filter(|f| f.1).map(|f| f.0).collect()
 }
 
 /// The processor's name, where Linux tells it.

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use super::{Report, WorkPrecisionError};
 
 impl Report {
-    /// Writes into `folder`: `points.csv`, `report.json`, `table.txt`, `omissions.md`, and a plot
-    /// for each case, `work_precision.svg` if there is one case and `work_precision_NAME.svg`
-    /// otherwise. Gives the paths of the plots without their extension, in the order of the cases.
+    /// Writes into `folder`: `points.csv`, `report.json`, `table.txt`, `errors.txt`,
+    /// `omissions.md`, and a plot for each case, `work_precision.svg` if there is one case and
+    /// `work_precision_NAME.svg` otherwise. Gives the paths of the plots without their extension,
+    /// in the order of the cases.
     ///
     /// # Errors
     ///
@@ -25,6 +26,7 @@ impl Report {
         write(folder.join("points.csv"), self.csv())?;
         write(folder.join("report.json"), format!("{:#}\n", self.json()))?;
         write(folder.join("table.txt"), self.table())?;
+        write(folder.join("errors.txt"), self.errors())?;
         write(folder.join("omissions.md"), self.omissions())?;
         let mut plots = Vec::new();
         for case in &self.cases {

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::case::Order;
 use super::curve::{Curve, Point, Repetition};
 use super::fit::Reached;
+use super::work::Work;
 use super::{FORMULAS, Measured, Report};
 
 /// Errors whose times are told.
@@ -27,6 +28,8 @@ impl Report {
                 "threads": e.threads,
                 "debug_assertions": e.has_debug_assertions,
                 "version": e.version,
+                "features": e.features,
+                "commit": e.commit,
             },
             "formulas": FORMULAS.iter().map(|(n, f)| json!([n, f])).collect::<Vec<_>>(),
             "size": [self.size.0, self.size.1],
@@ -46,6 +49,7 @@ fn case(case: &Measured) -> Value {
         "reference_kind": case.kind.name(),
         "reference_uncertainty": case.uncertainty,
         "rounding_floor": case.rounding_floor,
+        "t_build": case.build,
         "curves": case.curves.iter().map(curve).collect::<Vec<_>>(),
         "not_asked_for": case.not_asked_for,
     })
@@ -58,6 +62,8 @@ fn curve(curve: &Curve) -> Value {
         "method": curve.method.name,
         "backend": curve.backend.name(),
         "lanes": curve.backend.lanes(),
+        "t_first": curve.first_run,
+        "code": curve.code.map(|hash| format!("{hash:016x}")),
         "not_run": curve.missing.as_ref().map(ToString::to_string),
         "order": curve.fit.map(|f| f.order),
         "order_low": curve.fit.map(|f| number(f.low)),
@@ -92,12 +98,31 @@ fn point(point: &Point) -> Value {
         "knob_value": point.knob,
         "status": point.status().name(),
         "rmse": number(point.rmse()),
+        "rmse_p10": number(point.rmse_quantile(0.1)),
+        "rmse_median": number(point.rmse_quantile(0.5)),
+        "rmse_p90": number(point.rmse_quantile(0.9)),
         "bias_z": number(point.bias_z()),
         "t_min": number(point.t_min()),
+        "t_p10": number(point.t_quantile(0.1)),
         "t_median": point.t_median(),
+        "t_p90": number(point.t_quantile(0.9)),
         "samples": point.samples(),
+        "work": work(&point.work()),
+        "efficiency": point.efficiency().map(|e| json!({
+            "value": number(e.value), "low": number(e.low), "high": number(e.high),
+        })),
         "rounding": point.rounding.map(number),
         "repetitions": point.repetitions.iter().map(repetition).collect::<Vec<_>>(),
+    })
+}
+
+/// What was not counted is null.
+fn work(work: &Work) -> Value {
+    json!({
+        "rays": work.rays,
+        "nodes": work.nodes,
+        "primitive_tests": work.primitives,
+        "texture_fetches": work.texture_fetches,
     })
 }
 
@@ -106,7 +131,6 @@ fn repetition(r: &Repetition) -> Value {
     json!({
         "seed": r.seed,
         "seconds": r.seconds,
-        "rays": r.rays,
         "counted": r.counted,
         "status": r.status.name(),
         "rmse": number(m.rmse),
@@ -115,6 +139,7 @@ fn repetition(r: &Repetition) -> Value {
         "p99": number(m.p99),
         "rel_mse": number(m.rel_mse),
         "rel_mse_trimmed": number(m.rel_mse_trimmed),
+        "mrse": number(m.mrse),
         "bias": number(m.bias),
         "bias_z": number(m.bias_z()),
         "nan": m.nan,

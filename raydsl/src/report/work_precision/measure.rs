@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::case::{Backend, Case};
 use super::curve::{Curve, Point, Repetition, Speedup, Status, rounding_floor};
 use super::metrics::Metrics;
-use super::run::Run;
+use super::run::{CodeHash, Run};
 use super::{Measured, WorkPrecision, WorkPrecisionError};
 #[cfg(feature = "gpu")]
 use crate::gpu::GpuScheduler;
@@ -44,8 +44,7 @@ impl WorkPrecision<'_> {
         let mut all = self.series(case);
         (self.progress)(&format!("{}: warm-up", case.name));
         for series in &mut all {
-            let first = runner.once(&series.curve, self.knobs[0], 0)?;
-            series.curve.missing = first.err();
+            runner.warm_up(&mut series.curve, self.knobs[0])?;
         }
         all.iter_mut().for_each(|s| s.curve.points = self.points());
         let ready = all.iter().filter(|s| s.curve.missing.is_none()).count();
@@ -64,6 +63,7 @@ impl WorkPrecision<'_> {
         curves.iter_mut().for_each(Curve::fit);
         compare_with_f64(&mut curves);
         compare_with_first(&mut curves, self.backends[0]);
+        runner.count(&mut curves);
         let others = case.methods.iter().filter(|(m, _)| !self.is_chosen(m));
         Ok(Measured {
             name: case.name.clone(),
@@ -71,29 +71,21 @@ impl WorkPrecision<'_> {
             kind: case.reference.kind(),
             uncertainty: case.reference.uncertainty(),
             rounding_floor: runner.floor,
+            build: case.build.map(|time| time.as_secs_f64()),
             curves,
             not_asked_for: others.map(|(m, _)| m.name.clone()).collect(),
         })
     }
 
     fn points(&self) -> Vec<Point> {
-        let point = |k: &u32| Point { knob: *k, repetitions: Vec::new(), rounding: None };
-        self.knobs.iter().map(point).collect()
+        self.knobs.iter().map(|k| Point::new(*k)).collect()
     }
 
     /// A curve for each method and backend, without points.
     fn series(&self, case: &Case<'_>) -> Vec<Series> {
         let chosen = case.methods.iter().filter(|(m, _)| self.is_chosen(m));
         let of_method = |(method, expected): &(super::Method, Option<super::Order>)| {
-            let curve = |backend: &Backend| Curve {
-                method: method.clone(),
-                backend: *backend,
-                expected: *expected,
-                points: Vec::new(),
-                fit: None,
-                speedup: None,
-                missing: None,
-            };
+            let curve = |backend: &Backend| Curve::new(method.clone(), *backend, *expected);
             let series = |b| Series { curve: curve(b), spent: 0.0, last: None };
             self.backends.iter().map(series).collect::<Vec<_>>()
         };
@@ -111,10 +103,57 @@ struct Runner<'r, 'c> {
 }
 
 impl Runner<'_, '_> {
+    /// The run before all others, at the first value of the knob.
+    fn warm_up(&self, curve: &mut Curve, knob: u32) -> Result<(), WorkPrecisionError> {
+        let code = CodeHash::default();
+        match self.once(&self.run(curve, knob, 0, Some(&code)))? {
+            Ok(first) => curve.first_run = Some(first.seconds),
+            Err(missing) => curve.missing = Some(missing),
+        }
+        curve.code = code.hash();
+        Ok(())
+    }
+
+    /// Counts apart what the runs of each method do. All backends take the same samples.
+    fn count(&self, curves: &mut [Curve]) {
+        let Some(count) = &self.case.count else { return };
+        for i in 0..curves.len() {
+            for k in 0..curves[i].points.len() {
+                if curves[i].points[k].repetitions.is_empty() {
+                    continue;
+                }
+                let same = curves[..i].iter().find(|c| c.method == curves[i].method);
+                let known = same.and_then(|c| c.points[k].counted_apart);
+                let knob = curves[i].points[k].knob;
+                let work = known.unwrap_or_else(|| count(&self.run(&curves[i], knob, 0, None)));
+                curves[i].points[k].counted_apart = Some(work);
+            }
+        }
+    }
+
+    fn run<'a>(
+        &'a self,
+        curve: &'a Curve,
+        knob: u32,
+        seed: u32,
+        code: Option<&'a CodeHash>,
+    ) -> Run<'a> {
+        Run {
+            method: &curve.method,
+            backend: curve.backend,
+            knob,
+            seed,
+            size: self.size,
+            code,
+            #[cfg(feature = "gpu")]
+            gpu: self.gpu,
+        }
+    }
+
     /// Adds a run to point `i`.
     fn add(&self, series: &mut Series, i: usize, seed: u32) -> Result<(), WorkPrecisionError> {
         let knob = series.curve.points[i].knob;
-        match self.once(&series.curve, knob, seed)? {
+        match self.once(&self.run(&series.curve, knob, seed, None))? {
             Ok(repetition) => {
                 series.spent += repetition.seconds;
                 series.last = Some((knob, repetition.seconds));
@@ -126,46 +165,33 @@ impl Runner<'_, '_> {
     }
 
     /// One timed run.
-    fn once(
-        &self,
-        curve: &Curve,
-        knob: u32,
-        seed: u32,
-    ) -> Result<Result<Repetition, Missing>, WorkPrecisionError> {
-        let run = Run {
-            method: &curve.method,
-            backend: curve.backend,
-            knob,
-            seed,
-            size: self.size,
-            #[cfg(feature = "gpu")]
-            gpu: self.gpu,
-        };
+    fn once(&self, run: &Run<'_>) -> Result<Result<Repetition, Missing>, WorkPrecisionError> {
         let start = Instant::now();
-        let estimates = match self.case.estimate(&run) {
+        let estimates = match self.case.estimate(run) {
             Ok(estimates) => estimates,
             Err(missing) => return Ok(Err(missing)),
         };
-        let took = start.elapsed().max(Duration::from_nanos(1));
+        let took = start.elapsed().saturating_sub(run.code.map_or(Duration::ZERO, CodeHash::took));
+        let took = took.max(Duration::from_nanos(1));
         let (case, reference) = (self.case, &self.case.reference);
         if !reference.fits(estimates.values.len()) {
             return Err(WorkPrecisionError::Length {
                 case: case.name.clone(),
-                method: curve.method.name.clone(),
-                knob,
+                method: run.method.name.clone(),
+                knob: run.knob,
                 found: estimates.values.len(),
                 expected: reference.len(),
             });
         }
         let metrics = Metrics::of(&estimates.values, reference);
         Ok(Ok(Repetition {
-            seed,
+            seed: run.seed,
             seconds: took.as_secs_f64(),
             samples: estimates.samples,
-            rays: estimates.rays,
             counted: estimates.counted,
+            work: estimates.work,
             metrics,
-            status: self.status(curve.backend, &metrics),
+            status: self.status(run.backend, &metrics),
             values: estimates.values,
         }))
     }
@@ -234,15 +260,7 @@ mod tests {
 
     #[test]
     fn a_run_that_is_likely_too_long_is_not_begun() {
-        let curve = Curve {
-            method: "m".into(),
-            backend: Backend::F64,
-            expected: None,
-            points: Vec::new(),
-            fit: None,
-            speedup: None,
-            missing: None,
-        };
+        let curve = Curve::new("m".into(), Backend::F64, None);
         let mut series = Series { curve, spent: 0.0, last: None };
         assert!(series.may_run(1 << 20, 0.0), "the first point is always run");
         (series.spent, series.last) = (1.0, Some((4, 0.5)));

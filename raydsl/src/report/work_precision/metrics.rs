@@ -2,11 +2,11 @@
 
 use super::reference::Reference;
 
-/// What is added to the square of the reference in the relative error.
+/// What is added in relative errors to the reference, or to its square.
 const EPSILON: f64 = 1e-2;
 
 /// The names of metrics and their formulas: n finite estimates x of references r, d = x - r.
-pub const FORMULAS: [(&str, &str); 10] = [
+pub const FORMULAS: [(&str, &str); 12] = [
     ("bias", "mean of d"),
     ("bias_z", "bias / (standard deviation of d / sqrt(n)), pixels being independent"),
     ("rmse", "sqrt(mean of d^2); of two halves a, b: sqrt(max(0, mean of (x-a)(x-b)))"),
@@ -15,8 +15,14 @@ pub const FORMULAS: [(&str, &str); 10] = [
     ("p99", "the |d| that 99 % of the estimates do not exceed"),
     ("rel_mse", "mean of d^2 / (r^2 + 0.01)"),
     ("rel_mse_trimmed", "the same without the worst 0.1 % of the estimates, at least one"),
+    ("mrse", "mean of (d / (|r| + 0.01))^2: pbrt's relative error"),
     ("nan, inf", "estimates that are NaN, or infinite: they count in nothing else"),
     ("negative", "estimates below 0"),
+    (
+        "efficiency",
+        "1 / (v t): v is the variance of an estimate between runs, in the mean of all estimates, \
+         t the mean seconds of a run",
+    ),
 ];
 
 /// The error of a run, by each of [`FORMULAS`].
@@ -38,6 +44,10 @@ pub struct Metrics {
     pub rel_mse: f64,
     /// The same without the worst 0.1 %.
     pub rel_mse_trimmed: f64,
+    /// The mean of the squared ratio of the error to the size of the reference plus 0.01: the
+    /// relative error of pbrt-v4's `Image::MRSE`, which weighs dark pixels more than
+    /// [`Self::rel_mse`] does.
+    pub mrse: f64,
     /// Estimates that are NaN.
     pub nan: u64,
     /// Estimates that are infinite.
@@ -75,6 +85,7 @@ impl Metrics {
         let last = (0.99 * sizes.len() as f64).ceil() as usize;
         found.p99 = sizes.get(last.saturating_sub(1)).copied().unwrap_or(f64::NAN);
         found.rel_mse = mean(|e| e.relative);
+        found.mrse = mean(|e| e.ratio * e.ratio);
         found.rel_mse_trimmed = trimmed(errors.iter().map(|e| e.relative).collect());
         found
     }
@@ -95,12 +106,15 @@ struct Error {
     d: f64,
     square: f64,
     relative: f64,
+    /// The error over the reference, kept from 0.
+    ratio: f64,
 }
 
 impl Error {
     fn of(x: f64, (r, [a, b]): (f64, [f64; 2])) -> Self {
         let d = x - r;
-        Self { d, square: (x - a) * (x - b), relative: d * d / (r * r + EPSILON) }
+        let (square, ratio) = ((x - a) * (x - b), d / (r.abs() + EPSILON));
+        Self { d, square, relative: d * d / (r * r + EPSILON), ratio }
     }
 }
 
@@ -145,6 +159,20 @@ mod tests {
         // The squares of d - 0.25 are 1/16, 9/16, 1/16 and 9/16.
         let error = (1.25f64 / 3.0 / 4.0).sqrt();
         assert!((found.bias_z() - 0.25 / error).abs() < 1e-12);
+    }
+
+    /// Half of the pixels dark, half bright, each off by a tenth of itself: relative errors of
+    /// other forms differ by what they are kept from 0 with.
+    #[test]
+    fn relative_errors_are_of_their_own_forms() {
+        let exact = [1e-3, 1.0, -1e-3, -1.0];
+        let off = exact.map(|r| 1.1 * r);
+        let found = Metrics::of(&off, &Reference::quadrature(exact, 0.0));
+        let bright = 0.1f64 / 1.01;
+        let mrse = 0.5 * (bright.powi(2) + (1e-4f64 / 1.1e-2).powi(2));
+        assert!((found.mrse / mrse - 1.0).abs() < 1e-12, "{found:?}");
+        let rel_mse = 0.5 * (0.01 / 1.01 + 1e-8 / (1e-6 + 1e-2));
+        assert!((found.rel_mse / rel_mse - 1.0).abs() < 1e-12, "{found:?}");
     }
 
     /// The figures of one firefly among a hundred thousand pixels.

@@ -35,8 +35,10 @@ mod case;
 mod csv;
 mod curve;
 mod drawing;
+mod efficiency;
 mod environment;
 mod error;
+mod errors;
 mod files;
 mod fit;
 mod json;
@@ -47,18 +49,21 @@ mod plot;
 mod reference;
 mod run;
 mod table;
+mod work;
 
 use std::time::Duration;
 
 pub use case::{Backend, Case, Method, Order};
 pub use curve::{Curve, Point, Repetition, Speedup, Status, Verdict};
 pub use drawing::{Anchor, Color, Drawing, Mark, Symbol};
+pub use efficiency::Efficiency;
 pub use environment::Environment;
 pub use error::{MAX_KNOB, WorkPrecisionError};
 pub use fit::{Fit, Reached};
 pub use metrics::{FORMULAS, Metrics};
 pub use reference::{Reference, ReferenceKind};
 pub use run::{Estimates, Run};
+pub use work::Work;
 
 use crate::kernel::Variant;
 
@@ -70,6 +75,7 @@ pub struct WorkPrecision<'a> {
     repetitions: u32,
     time: Duration,
     size: (u32, u32),
+    commit: Option<String>,
     #[cfg(feature = "gpu")]
     gpu: Option<&'a crate::gpu::GpuScheduler>,
     progress: Box<dyn FnMut(&str) + 'a>,
@@ -93,6 +99,7 @@ impl<'a> WorkPrecision<'a> {
             repetitions: 5,
             time: Duration::from_secs(30),
             size: (16, 16),
+            commit: None,
             #[cfg(feature = "gpu")]
             gpu: None,
             progress: Box::new(|_| {}),
@@ -130,6 +137,12 @@ impl<'a> WorkPrecision<'a> {
         Self { size: (width, height), ..self }
     }
 
+    /// The commit of the source that is measured, for the files; `unknown` unless this is called.
+    /// Nothing here looks for it.
+    pub fn commit(self, commit: impl Into<String>) -> Self {
+        Self { commit: Some(commit.into()), ..self }
+    }
+
     /// The device for WGSL; without this the best of the machine.
     #[cfg(feature = "gpu")]
     pub fn gpu(self, gpu: &'a crate::gpu::GpuScheduler) -> Self {
@@ -159,6 +172,7 @@ impl<'a> WorkPrecision<'a> {
         let gpu = self.gpu.or(own.as_ref());
         let environment = Environment::of(
             &self.backends,
+            self.commit.clone(),
             #[cfg(feature = "gpu")]
             gpu,
         );
@@ -244,6 +258,8 @@ pub struct Measured {
     /// The error that rounding to `f32` leaves: two roundings of 2^-24 each of the root of the
     /// reference's mean square.
     pub rounding_floor: f64,
+    /// Seconds that it took to build what its runs use, if the case says so.
+    pub build: Option<f64>,
     /// A curve for each method and backend.
     pub curves: Vec<Curve>,
     /// Methods of the case that were not asked for.

@@ -2,19 +2,46 @@
 
 use core::fmt::Write;
 
-use super::curve::{Curve, Status, Verdict};
+use super::curve::{Curve, Point, Status, Verdict};
+use super::work::Work;
 use super::{Measured, Report};
 
+/// What no file of a report has, and why.
+const NOWHERE: [(&str, &str); 7] = [
+    (
+        "FLIP",
+        "it compares colours as they look on a screen; estimates here are numbers, one for each \
+         pixel",
+    ),
+    ("clamped energy", "nothing clamps: estimates are what the samples gave"),
+    ("errors of each channel", "estimates are the red channel"),
+    ("time to the first pixel", "a run gives all its pixels at once"),
+    (
+        "time to compile",
+        "a driver compiles when it likes; `t_first`, the run before all others, contains it",
+    ),
+    (
+        "time of the processor",
+        "the standard library has no such clock; `seconds` are those of the monotonic one",
+    ),
+    ("calls of exp, look-ups of a density", "a kernel that counts them has them in `counted`"),
+];
+
 impl Report {
-    /// Everything that was left out of the tables, fits and curves, and why, as Markdown.
+    /// Everything that was left out of the tables, fits and curves, and what no report has, with
+    /// why, as Markdown.
     pub fn omissions(&self) -> String {
         let rows: Vec<String> = self.cases.iter().flat_map(of_case).collect();
         let mut text = "# What is left out\n\n".to_owned();
         if rows.is_empty() {
-            return text + "Nothing: every point was run, and counts.\n";
+            text += "Nothing: every point was run, and counts.\n";
+        } else {
+            text += "| case | method | backend | what | why |\n|---|---|---|---|---|\n";
+            text += &rows.concat();
         }
-        text += "| case | method | backend | what | why |\n|---|---|---|---|---|\n";
-        text + &rows.concat()
+        text += "\n## What no report has\n\n| what | why |\n|---|---|\n";
+        NOWHERE.iter().for_each(|(what, why)| text += &format!("| {what} | {why} |\n"));
+        text
     }
 }
 
@@ -22,7 +49,23 @@ fn of_case(case: &Measured) -> Vec<String> {
     let not_asked_for = |method: &String| row(case, method, "all", "all", "not asked for");
     let mut rows: Vec<String> = case.not_asked_for.iter().map(not_asked_for).collect();
     rows.extend(case.curves.iter().flat_map(|curve| of_curve(case, curve)));
+    rows.extend(uncounted(case));
     rows
+}
+
+/// Units in which nothing of a case is counted.
+fn uncounted(case: &Measured) -> Option<String> {
+    let points = || case.curves.iter().flat_map(|c| &c.points).map(Point::work);
+    let units: [(&str, fn(&Work) -> Option<u64>); 4] = [
+        ("rays", |w| w.rays),
+        ("nodes", |w| w.nodes),
+        ("primitive tests", |w| w.primitives),
+        ("texture fetches", |w| w.texture_fetches),
+    ];
+    let is_missing = |of: fn(&Work) -> Option<u64>| points().all(|w| of(&w).is_none());
+    let missing: Vec<&str> = units.iter().filter(|u| is_missing(u.1)).map(|u| u.0).collect();
+    let list = (!missing.is_empty()).then(|| missing.join(", "))?;
+    Some(row(case, "all", "all", &list, "the case does not count them"))
 }
 
 fn of_curve(case: &Measured, curve: &Curve) -> Vec<String> {
@@ -45,6 +88,13 @@ fn of_curve(case: &Measured, curve: &Curve) -> Vec<String> {
         let what =
             format!("{} of {most} runs at {} = {}", most - p.repetitions.len(), case.knob, p.knob);
         rows.push(row(&what, why(Status::Budget)));
+    }
+    let ran = curve.points.iter().filter(|p| !p.repetitions.is_empty());
+    let without: Vec<String> =
+        ran.filter(|p| p.efficiency().is_none()).map(|p| p.knob.to_string()).collect();
+    if !without.is_empty() {
+        let what = format!("the efficiency at {} = {}", case.knob, without.join(", "));
+        rows.push(row(&what, "fewer than three runs gave finite numbers, or runs do not differ"));
     }
     if curve.verdict() == Verdict::Unclear {
         let why = "too few points above the floor, or an interval wider than 0.5";

@@ -23,6 +23,13 @@ const TOP: f64 = 48.0;
 const BOTTOM: f64 = 456.0;
 const LEGEND: f64 = LEFTS[1] + PANEL + 24.0;
 
+/// Of symbols.
+const RADIUS: f64 = 4.5;
+/// Half of the stroke at the end of a bar.
+const CAP: f64 = 3.0;
+/// The shares of all runs between which bars go.
+const BAR: [f64; 2] = [0.1, 0.9];
+
 /// A floor is on the plot if it is within so many decades of the least error.
 const REACH: f64 = 2.0;
 
@@ -39,24 +46,31 @@ fn symbol(backend: Backend) -> Symbol {
 
 impl Measured {
     /// The diagram, with logarithmic axes: at the left the root of the mean square error over the
-    /// median time of a run, for each method (a colour) and backend (a symbol), with bars from the
-    /// least to the largest of the repetitions; at the right over the number of samples, which is
-    /// no matter of the machine, with triangles of the orders that theory gives. What lies at a
-    /// floor is dotted.
+    /// time of a run, for each method (a colour) and backend (a symbol). Symbols are at the medians
+    /// of the repetitions; bars go from the tenth to the ninetieth of a hundred of them. At the
+    /// right the same over what was done, which is no matter of the machine, with triangles of the
+    /// orders that theory gives. What lies at a floor is dotted.
+    ///
+    /// What was done is the first of these that was counted of every point: what kernels count,
+    /// texture fetches, tests of nodes and primitives, rays; else samples.
     pub fn plot(&self) -> Drawing {
         let mut plot = Plot { case: self, marks: Vec::new(), methods: methods(self) };
         let shown = shown(self);
         plot.text((LEFTS[0], 20.0), &self.name, Anchor::Start);
         let (ys, floors) = plot.heights(&shown);
+        let unit = unit(&firsts(&shown));
         for (i, curves) in [&shown, &firsts(&shown)].into_iter().enumerate() {
-            let x: fn(&Point) -> f64 =
-                if i == 0 { Point::t_median } else { |p| p.samples() as f64 };
-            let values = curves.iter().flat_map(|c| c.points.iter().filter(|p| ran(p)).map(x));
-            let axes = Axes { left: LEFTS[i], xs: decades(values), ys };
-            plot.axes(&axes, ["seconds (median)", "samples in all"][i]);
+            let x: fn(&Point) -> f64 = if i == 0 { Point::t_median } else { unit.of };
+            let points = curves.iter().flat_map(|c| c.points.iter().filter(|p| ran(p)));
+            let ends = |p: &Point| {
+                let [low, high] = BAR.map(|share| if i == 0 { p.t_quantile(share) } else { x(p) });
+                [low, x(p), high]
+            };
+            let axes = Axes { left: LEFTS[i], xs: decades(points.flat_map(ends)), ys };
+            plot.axes(&axes, ["seconds (median)", unit.name][i]);
             floors.iter().for_each(|(name, floor)| plot.floor(&axes, name, *floor));
             if i == 1 {
-                curves.iter().enumerate().for_each(|(k, c)| plot.triangle(&axes, c, k));
+                curves.iter().enumerate().for_each(|(k, c)| plot.triangle(&axes, c, x, k));
             }
             curves.iter().for_each(|curve| plot.curve(&axes, curve, x, i == 0));
         }
@@ -77,7 +91,41 @@ fn methods(case: &Measured) -> Vec<String> {
 }
 
 fn ran(point: &Point) -> bool {
-    !point.repetitions.is_empty() && point.rmse().is_finite()
+    !point.repetitions.is_empty() && error(point).is_finite()
+}
+
+/// Where a point is drawn: the median of its runs.
+fn error(point: &Point) -> f64 {
+    point.rmse_quantile(0.5)
+}
+
+/// What the right panel's axis counts.
+struct Unit {
+    name: &'static str,
+    /// Of one run of a point; 0 if it is not known.
+    of: fn(&Point) -> f64,
+}
+
+/// The first unit that is known of every point, in the order of how much it says.
+fn unit(curves: &[&Curve]) -> Unit {
+    let units = [
+        Unit { name: "counted in all", of: |p| float(p.repetitions[0].counted) },
+        Unit { name: "texture fetches in all", of: |p| float(p.work().texture_fetches) },
+        Unit { name: "tests of nodes and primitives in all", of: |p| float(tests(p)) },
+        Unit { name: "rays in all", of: |p| float(p.work().rays) },
+    ];
+    let points = || curves.iter().flat_map(|c| c.points.iter().filter(|p| ran(p)));
+    let known = units.into_iter().find(|unit| points().all(|p| (unit.of)(p) > 0.0));
+    known.unwrap_or(Unit { name: "samples in all", of: |p| p.samples() as f64 })
+}
+
+fn float(count: Option<u64>) -> f64 {
+    count.unwrap_or(0) as f64
+}
+
+fn tests(point: &Point) -> Option<u64> {
+    let work = point.work();
+    work.nodes.zip(work.primitives).map(|(nodes, primitives)| nodes + primitives)
 }
 
 fn shown(case: &Measured) -> Vec<&Curve> {
@@ -146,8 +194,9 @@ impl Plot<'_> {
 
     /// The decades of errors, and the floors that are on them.
     fn heights(&self, curves: &[&Curve]) -> ((i32, i32), Vec<(&'static str, f64)>) {
-        let errors: Vec<f64> =
-            curves.iter().flat_map(|c| c.points.iter().map(Point::rmse)).collect();
+        let points = curves.iter().flat_map(|c| c.points.iter().filter(|p| ran(p)));
+        let ends = |p: &Point| [BAR[0], 0.5, BAR[1]].map(|share| p.rmse_quantile(share));
+        let errors: Vec<f64> = points.flat_map(ends).collect();
         let positive = errors.iter().copied().filter(|e| *e > 0.0);
         let least = positive.fold(f64::INFINITY, f64::min);
         let all = [("rounding", self.case.rounding_floor), ("reference", self.case.uncertainty)];
@@ -178,7 +227,7 @@ impl Plot<'_> {
         }
         self.marks.push(Mark::Text {
             at: (axes.left - 64.0, 0.5 * (TOP + BOTTOM)),
-            text: "root of the mean square error".to_owned(),
+            text: "root of the mean square error (median)".to_owned(),
             color: INK,
             anchor: Anchor::Middle,
             is_turned: true,
@@ -193,11 +242,11 @@ impl Plot<'_> {
         self.colored(at, name, Anchor::End, FLOOR);
     }
 
-    fn curve(&mut self, axes: &Axes, curve: &Curve, x: fn(&Point) -> f64, has_bars: bool) {
+    fn curve(&mut self, axes: &Axes, curve: &Curve, x: fn(&Point) -> f64, has_times: bool) {
         let color = self.color(curve);
         let mut points: Vec<&Point> = curve.points.iter().filter(|p| ran(p)).collect();
         points.sort_by(|a, b| x(a).total_cmp(&x(b)));
-        let place = |p: &Point| axes.place(x(p), p.rmse());
+        let place = |p: &Point| axes.place(x(p), error(p));
         for pair in points.windows(2) {
             let is_good = pair.iter().all(|p| p.status() == Status::Ok);
             let dash = (!is_good).then_some(3.0);
@@ -205,37 +254,53 @@ impl Plot<'_> {
         }
         let shape = symbol(curve.backend);
         for point in points {
-            if has_bars {
-                self.bars(axes, point, color);
-            }
-            self.marks.push(Mark::Symbol { at: place(point), symbol: shape, color, radius: 4.5 });
+            self.bars(axes, point, x(point), has_times, color);
+            self.marks.push(Mark::Symbol {
+                at: place(point),
+                symbol: shape,
+                color,
+                radius: RADIUS,
+            });
         }
     }
 
-    /// From the least to the largest time and error.
-    fn bars(&mut self, axes: &Axes, point: &Point, color: Color) {
-        let all = &point.repetitions;
-        let ends = |of: fn(&super::Repetition) -> f64| {
-            let values = all.iter().map(of).filter(|v| v.is_finite());
-            values.fold((f64::INFINITY, 0.0), |(l, h), v| (f64::min(l, v), f64::max(h, v)))
-        };
-        let (t, e) = (ends(|r| r.seconds), ends(|r| r.metrics.rmse));
-        let (time, error) = (point.t_median(), point.rmse());
-        self.line(&[axes.place(t.0, error), axes.place(t.1, error)], color, 1.0, None);
-        self.line(&[axes.place(time, e.0), axes.place(time, e.1)], color, 1.0, None);
+    /// From the tenth to the ninetieth of a hundred runs: of the error, and where the axis is that
+    /// of time, of the time.
+    fn bars(&mut self, axes: &Axes, point: &Point, x: f64, has_times: bool, color: Color) {
+        let [low, high] = BAR.map(|share| axes.place(x, point.rmse_quantile(share)));
+        self.bar(low, high, color);
+        if has_times {
+            let [low, high] = BAR.map(|share| axes.place(point.t_quantile(share), error(point)));
+            self.bar(low, high, color);
+        }
+    }
+
+    /// A line with a stroke across each end, unless the symbol would hide it.
+    fn bar(&mut self, a: (f64, f64), b: (f64, f64), color: Color) {
+        let length = (b.0 - a.0).hypot(b.1 - a.1);
+        if length <= 2.0 * RADIUS {
+            return;
+        }
+        self.line(&[a, b], color, 1.0, None);
+        let across = ((b.1 - a.1) / length * CAP, (b.0 - a.0) / length * CAP);
+        for end in [a, b] {
+            let ends = [-1.0, 1.0].map(|s| (end.0 + s * across.0, end.1 + s * across.1));
+            self.line(&ends, color, 1.0, None);
+        }
     }
 
     /// The order that theory gives a method: the first method's above its curve, the others' below
     /// theirs, each at another place.
-    fn triangle(&mut self, axes: &Axes, curve: &Curve, k: usize) {
+    fn triangle(&mut self, axes: &Axes, curve: &Curve, x: fn(&Point) -> f64, k: usize) {
         let points: Vec<&Point> = curve.points.iter().filter(|p| ran(p)).collect();
         let (Some(order), true) = (curve.expected.map(drawn), points.len() > 1) else { return };
         let is_above = k == 0;
         let first = (points.len() - 2).min(k.max(1) - usize::from(!is_above));
         let (a, b) = (points[first], points[first + 1]);
-        let (x0, x1) = (a.samples() as f64, b.samples() as f64);
-        let y0 = if is_above { 1.6 } else { 0.55 } * a.rmse();
-        let y1 = y0 * (x1 / x0).powf(order);
+        let (x0, x1) = (x(a), x(b));
+        let y0 = if is_above { 1.6 } else { 0.55 } * error(a);
+        // Orders are powers of the knob, whatever the axis counts.
+        let y1 = y0 * (f64::from(b.knob) / f64::from(a.knob)).powf(order);
         let (low, high) = (10f64.powi(axes.ys.0), 10f64.powi(axes.ys.1));
         let is_inside = y1 > low && y0 < high;
         if !is_inside {

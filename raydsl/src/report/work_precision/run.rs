@@ -1,15 +1,21 @@
 //! One computation of a case.
 
-use glam::{DVec4, Vec3};
+use core::cell::Cell;
+use std::time::{Duration, Instant};
+
+use glam::{DVec4, Vec3, uvec2};
 
 use super::case::{Backend, Method};
-use crate::camera::{Camera, Orthographic};
+use super::work::Work;
+use crate::camera::{Camera, CameraRays, Orthographic};
+use crate::geometry::Ray;
 use crate::kernel::{Kernel, Variant};
 use crate::machine::{Machine, Outcomes, Rounding, U, X2};
 use crate::render::{
-    Film, FilmArgs, Pass, PixelSampler, Radiance, Sampling, Scheduler, SimpleScheduler,
+    Film, FilmArgs, Pass, PixelSampler, Radiance, Sampling, Scheduler, SimpleScheduler, places,
 };
 use crate::report::Missing;
+use crate::sampling::Sampler;
 
 /// What a computation gave, and what it cost besides time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,22 +24,23 @@ pub struct Estimates {
     pub values: Vec<f64>,
     /// Samples taken in all.
     pub samples: u64,
-    /// Rays traced in all, if they are counted.
-    pub rays: Option<u64>,
-    /// What the kernel counts itself, in all: nodes visited, steps, look-ups.
+    /// What the kernel counts itself, in all: steps, look-ups of a density.
     pub counted: Option<u64>,
+    /// Rays and what else is known to have been done, in all.
+    pub work: Work,
 }
 
 impl Estimates {
     /// Of numbers and the samples that they took in all.
     pub fn new(values: Vec<f64>, samples: u64) -> Self {
-        Self { values, samples, rays: None, counted: None }
+        Self { values, samples, counted: None, work: Work::default() }
     }
 
     /// Every sample traces so many rays.
     #[must_use]
     pub fn rays_per_sample(self, rays: u64) -> Self {
-        Self { rays: Some(self.samples.saturating_mul(rays)), ..self }
+        let rays = Some(self.samples.saturating_mul(rays));
+        Self { work: Work { rays, ..self.work }, ..self }
     }
 }
 
@@ -49,6 +56,8 @@ pub struct Run<'a> {
     pub(super) knob: u32,
     pub(super) seed: u32,
     pub(super) size: (u32, u32),
+    /// Where to note the kernels' text, if it is asked for.
+    pub(super) code: Option<&'a CodeHash>,
     #[cfg(feature = "gpu")]
     pub(super) gpu: Option<&'a crate::gpu::GpuScheduler>,
 }
@@ -62,6 +71,7 @@ impl<'a> Run<'a> {
             knob,
             seed: 0,
             size: (1, 1),
+            code: None,
             #[cfg(feature = "gpu")]
             gpu: None,
         }
@@ -151,8 +161,43 @@ impl<'a> Run<'a> {
         &self,
         kernel: &Kernel<'_, A, R>,
     ) -> Result<Estimates, Missing> {
-        let camera = Orthographic::new(Vec3::Z, Vec3::ZERO, Vec3::Y, 1.0);
-        self.red(&self.means(&camera, kernel, PixelSampler::Center)?)
+        self.red(&self.means(&integral_camera(), kernel, PixelSampler::Center)?)
+    }
+
+    /// Counts what [`Run::film`] does: runs `count` on the host for the ray and the sampler of each
+    /// of its samples, and adds up. For what a kernel cannot count itself, or is not to count while
+    /// it is timed; see [`Case::counted`](super::Case::counted).
+    pub fn film_work<C: Camera>(&self, camera: &C, count: impl Fn(Ray, Sampler) -> Work) -> Work {
+        self.each_sample(camera, PixelSampler::Jittered, count)
+    }
+
+    /// Counts what [`Run::integral`] does, in the same way.
+    pub fn integral_work(&self, count: impl Fn(Sampler) -> Work) -> Work {
+        self.each_sample(&integral_camera(), PixelSampler::Center, |_, sampler| count(sampler))
+    }
+
+    fn each_sample<C: Camera>(
+        &self,
+        camera: &C,
+        pixels: PixelSampler,
+        count: impl Fn(Ray, Sampler) -> Work,
+    ) -> Work {
+        let (width, height) = self.size;
+        let rays = camera.begin_frame(width, height);
+        let Sampling { pixels, method, seed, planned } = self.sampling(pixels);
+        let one = |(x, y, index)| {
+            let pixel = uvec2(x, y);
+            let (at, lens, sampler) =
+                places(pixel, seed, index, planned, pixels, method, C::Rays::HAS_LENS);
+            count(rays.lens_ray(at.x, at.y, lens), sampler)
+        };
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let samples = pixels.flat_map(|(x, y)| (0..self.knob).map(move |i| (x, y, i)));
+        samples.map(one).fold(Work::default(), |all, work| all + work)
+    }
+
+    fn sampling(&self, pixels: PixelSampler) -> Sampling {
+        Sampling::new(self.knob).method(self.method.sampling).seed(self.seed).pixels(pixels)
     }
 
     fn red(&self, means: &[DVec4]) -> Result<Estimates, Missing> {
@@ -167,8 +212,10 @@ impl<'a> Run<'a> {
         kernel: &Kernel<'_, A, R>,
         pixels: PixelSampler,
     ) -> Result<Vec<DVec4>, Missing> {
-        let sampling = Sampling::new(self.knob).method(self.method.sampling).seed(self.seed);
-        let sampling = sampling.pixels(pixels);
+        if let Some(code) = self.code {
+            code.add(|| kernel.wgsl());
+        }
+        let sampling = self.sampling(pixels);
         let mut film = Film::new(self.size.0, self.size.1);
         match self.backend {
             Backend::F64 => return Ok(self.in_f64(camera, kernel, sampling)),
@@ -232,5 +279,58 @@ impl<'a> Run<'a> {
             sum / f64::from(self.knob)
         };
         pixels.map(mean).collect()
+    }
+}
+
+/// Of integrals, which do not look at their ray.
+fn integral_camera() -> Orthographic {
+    Orthographic::new(Vec3::Z, Vec3::ZERO, Vec3::Y, 1.0)
+}
+
+/// The hash of the WGSL of all kernels that a run used: FNV-1a of 64 bits. (Fowler, Noll, Vo and
+/// Eastlake, "The FNV Non-Cryptographic Hash Algorithm", RFC 9923.)
+#[derive(Debug, Default)]
+pub(super) struct CodeHash {
+    hash: Cell<Option<u64>>,
+    /// How long it took to write the text, which is no part of the run.
+    took: Cell<Duration>,
+}
+
+impl CodeHash {
+    fn add(&self, text: impl FnOnce() -> String) {
+        let start = Instant::now();
+        let before = self.hash.get().unwrap_or(0xcbf2_9ce4_8422_2325);
+        let step = |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        self.hash.set(Some(text().bytes().fold(before, step)));
+        self.took.set(self.took.get() + start.elapsed());
+    }
+
+    /// None if the run used no kernel.
+    pub(super) fn hash(&self) -> Option<u64> {
+        self.hash.get()
+    }
+
+    pub(super) fn took(&self) -> Duration {
+        self.took.get()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Values of the algorithm's authors.
+    #[test]
+    fn hashes_are_fnv_1a() {
+        let of = |texts: &[&str]| {
+            let code = CodeHash::default();
+            texts.iter().for_each(|t| code.add(|| (*t).to_owned()));
+            code.hash()
+        };
+        assert_eq!(of(&[]), None);
+        assert_eq!(of(&[""]), Some(0xcbf2_9ce4_8422_2325));
+        assert_eq!(of(&["a"]), Some(0xaf63_dc4c_8601_ec8c));
+        assert_eq!(of(&["foobar"]), Some(0x8594_4171_f739_67e8));
+        assert_eq!(of(&["foo", "bar"]), of(&["foobar"]));
     }
 }

@@ -8,14 +8,14 @@ use super::fit::Reached;
 use super::{Measured, Report};
 
 /// The longest line of a table.
-const WIDTH: usize = 100;
+pub(super) const WIDTH: usize = 100;
 
 impl Report {
     /// A table for each case, no line longer than 100 columns.
     ///
-    /// Times are medians, in seconds, after which the root of the mean square error is no larger
-    /// than 1e-2 and 1e-3; `<` stands before those of a curve's first point, `-` where the curve
-    /// does not get there. Then the fitted order with its 95 % interval, what theory says, the
+    /// Times are medians, in seconds, after which the root of the mean square error, over all runs,
+    /// is no larger than 1e-2 and 1e-3; `<` stands before those of a curve's first point, `-` where
+    /// the curve does not get there. Then the fitted order with its 95 % interval, theory's, the
     /// speed-up over the first backend if it is one, and the verdict on the order.
     pub fn table(&self) -> String {
         let mut text = self.cases.iter().map(table).collect::<Vec<_>>().join("\n");
@@ -44,7 +44,7 @@ fn table(case: &Measured) -> String {
 }
 
 /// A line that is not too long, with its end.
-fn cut(line: &str) -> String {
+pub(super) fn cut(line: &str) -> String {
     line.chars().take(WIDTH).collect::<String>().trim_end().to_owned() + "\n"
 }
 

@@ -1,0 +1,81 @@
+//! The table of errors for people, with their formulas.
+
+use core::fmt::Write;
+
+use super::curve::{Curve, Point};
+use super::efficiency::Efficiency;
+use super::table::{WIDTH, cut};
+use super::{FORMULAS, Measured, Report};
+
+const HEADER: &str = "method     backend      knob    rmse rel_mse trimmed    mrse bias_z  \
+                      efficiency (95 %)";
+
+impl Report {
+    /// A table for each case, and the formula of each column; no line longer than 100 columns.
+    ///
+    /// Errors are the mean over the runs at the largest value of the knob that was run, but for the
+    /// root of the mean square error, which is that of all runs. `trimmed` is `rel_mse` without the
+    /// worst 0.1 %. The [`Efficiency`] is of the same runs, `-` if it has none.
+    pub fn errors(&self) -> String {
+        let mut text = self.cases.iter().map(table).collect::<Vec<_>>().join("\n");
+        text += "\nn finite estimates x of references r, d = x - r\n";
+        for (name, formula) in FORMULAS {
+            text += &wrapped(name, formula);
+        }
+        text
+    }
+}
+
+fn table(case: &Measured) -> String {
+    let mut text = cut(&format!("{}: at the largest {} that was run", case.name, case.knob));
+    text += HEADER;
+    text += "\n";
+    for curve in &case.curves {
+        text += &cut(&line(curve));
+    }
+    text
+}
+
+fn line(curve: &Curve) -> String {
+    let name: String = curve.method.name.chars().take(10).collect();
+    let mut text = format!("{name:<10} {:<8}", curve.backend.name());
+    if let Some(missing) = &curve.missing {
+        let why = missing.to_string();
+        return text + "  " + why.lines().next().unwrap_or_default();
+    }
+    let Some(point) = curve.points.iter().rev().find(|p| !p.repetitions.is_empty()) else {
+        return text + "  not run";
+    };
+    let mean = |of: fn(&super::Metrics) -> f64| mean(point, of);
+    let (rel_mse, trimmed) = (mean(|m| m.rel_mse), mean(|m| m.rel_mse_trimmed));
+    let _ = write!(text, " {:>8} {:>7.1e} {rel_mse:>7.1e}", point.knob, point.rmse());
+    let _ = write!(text, " {trimmed:>7.1e} {:>7.1e}", mean(|m| m.mrse));
+    let efficiency = point.efficiency().map_or_else(|| "-".to_owned(), interval);
+    let _ = write!(text, " {:>6.1}  {efficiency}", point.bias_z());
+    text
+}
+
+fn mean(point: &Point, of: fn(&super::Metrics) -> f64) -> f64 {
+    let sum: f64 = point.repetitions.iter().map(|r| of(&r.metrics)).sum();
+    sum / point.repetitions.len() as f64
+}
+
+fn interval(found: Efficiency) -> String {
+    format!("{:.1e} ({:.1e} .. {:.1e})", found.value, found.low, found.high)
+}
+
+/// A name and its formula, which goes on below itself where it is long.
+fn wrapped(name: &str, formula: &str) -> String {
+    let mut text = format!("{name:<16}");
+    let mut column = text.len();
+    for word in formula.split(' ') {
+        if column + 1 + word.len() > WIDTH {
+            text += &format!("\n{:<16}", "");
+            column = 16;
+        }
+        text += " ";
+        text += word;
+        column += 1 + word.len();
+    }
+    text + "\n"
+}
