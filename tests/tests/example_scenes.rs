@@ -1,8 +1,14 @@
-//! The scenes of the examples `juggler`, `instances` and `leaves`, smaller, in every variant.
+//! The scenes of the examples `juggler`, `instances`, `leaves` and `until`, smaller, in every
+//! variant, and what `until` says.
+
+use std::ops::ControlFlow;
+use std::time::Duration;
 
 use raydsl::assert_variants_agree;
 use raydsl::bvh::Object;
+use raydsl::kernels::ambient_occlusion;
 use raydsl::prelude::*;
+use raydsl::render::{Budget, Estimate, Metric, Outcome, Progress, Reached, Target, Until};
 use raydsl_tests::rng::Rng;
 
 // Parts of one example call each other by the names of modules at the crate's root.
@@ -18,6 +24,10 @@ mod juggler;
 mod leaves;
 #[path = "../../examples/leaves/plant.rs"]
 mod plant;
+#[path = "../../examples/until/sponge.rs"]
+mod sponge;
+#[path = "../../examples/until/words.rs"]
+mod words;
 
 /// Rays from `eye` to points around `center`.
 fn rays(rng: &mut Rng, count: u32, eye: Vec3, center: Vec3, size: Vec3) -> Vec<(Ray,)> {
@@ -91,4 +101,104 @@ fn leaves_agree() {
     });
     let differ = shown[0].iter().zip(&shown[1]).filter(|(a, b)| a.id != b.id).count();
     assert!(differ > 20, "{differ} of {} rays go through a hole", rays.len());
+}
+
+#[test]
+fn half_a_sponge_is_closed() {
+    for levels in 1..=3 {
+        let triangles = sponge::half(levels);
+        // Of a closed surface that is seen anticlockwise from outside, the cones to the origin add
+        // up to the volume, here in cells, and the areas with their normals to nothing.
+        let volume: f32 = triangles.iter().map(|t| t.v0.dot(t.v1.cross(t.v2))).sum::<f32>() / 6.0;
+        let areas: Vec3 = triangles.iter().map(|t| (t.v1 - t.v0).cross(t.v2 - t.v0)).sum();
+        assert_eq!(areas, Vec3::ZERO);
+        // A point and its mirror image in the middle are both in the sponge or not: the half has as
+        // many cells as are beyond the cut, and those that are on it.
+        let all = 20f32.powi(levels as i32);
+        assert!(volume >= 0.5 * all && volume < 0.6 * all + 4.0, "{volume} cells of {all}");
+        assert!((volume - volume.round()).abs() < 0.01, "{volume}");
+    }
+}
+
+#[test]
+fn a_sponge_agrees() {
+    let triangles = sponge::half(2);
+    let mesh = Bvh::build(&triangles).expect("finite bounds");
+    let method = SampleMethod::Sobol;
+    let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+        ambient_occlusion(&mesh, 6.0, host(method), ray, sampler)
+    });
+    let eye = vec3(15.0, 16.0, 17.0);
+    let rays = rays(&mut Rng::of("sponge"), 800, eye, Vec3::splat(4.5), Vec3::splat(3.5));
+    let sampler = |i| Sampler::new(uvec2(i, 7), 3, 0, 1);
+    let rays: Vec<_> = (0..).zip(rays).map(|(i, (ray,))| (ray, sampler(i))).collect();
+    let lit: Vec<f32> = rays.iter().map(|&input| kernel.call(input)).map(|c| c.w - c.x).collect();
+    let closed = lit.iter().filter(|l| **l == 1.0).count();
+    assert!((100..700).contains(&closed), "{closed} of {} rays see what is closed", rays.len());
+    assert_variants_agree!(&kernel, &rays);
+}
+
+#[test]
+fn a_line_says_how_far_it_is_and_what_became_of_it() {
+    let estimate = Estimate { error: 0.012345, low: 0.0119, high: 0.0128 };
+    let (elapsed, time_left) = (Duration::from_millis(2345), Duration::from_millis(7655));
+    let progress = Progress { estimate, samples: 64, spent: 200, elapsed, time_left };
+    assert_eq!(
+        words::progress(&progress),
+        "error 1.23 % (1.19 % to 1.28 %), 64 samples a pixel, 200 taken, 8 s left"
+    );
+    let unknown = Estimate { error: f64::INFINITY, low: 0.0, high: f64::INFINITY };
+    let line = words::progress(&Progress { estimate: unknown, ..progress });
+    assert!(line.starts_with("error not known yet, 64 samples"), "{line}");
+    let small = Estimate { error: 4.5e-7, low: 0.0, high: 12.0 };
+    let line = words::progress(&Progress { estimate: small, ..progress });
+    assert!(line.starts_with("error 0.0000450 % (0 % to 1200 %)"), "{line}");
+
+    let outcome = Outcome::Stopped;
+    let reached = Reached { outcome, estimate, samples: 64, spent: 200, elapsed, nan_pixels: 0 };
+    assert_eq!(
+        words::reached(&reached),
+        "stopped after 2.3 s: error 1.23 % (1.19 % to 1.28 %), 64 samples a pixel, 200 taken"
+    );
+    let line = |outcome| words::reached(&Reached { outcome, ..reached });
+    assert!(line(Outcome::Converged).starts_with("the error is reached after"));
+    assert!(line(Outcome::OutOfTime).starts_with("the time is spent after"));
+    assert!(line(Outcome::OutOfSamples).starts_with("the samples are spent after"));
+    assert!(line(Outcome::Unresolvable { floor: 1e-6 }).starts_with("rounding leaves 0.000100 %;"));
+    let line = words::reached(&Reached { nan_pixels: 3, ..reached });
+    assert!(line.ends_with("; 3 pixels are no number and not in the error"), "{line}");
+}
+
+/// As the example does when Ctrl-C was pressed, here once there is a picture.
+#[test]
+fn what_is_stopped_has_the_best_picture_so_far() {
+    let triangles = sponge::half(1);
+    let mesh = Bvh::build(&triangles).expect("finite bounds");
+    let method = SampleMethod::Sobol;
+    let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+        ambient_occlusion(&mesh, 2.0, host(method), ray, sampler)
+    });
+    let camera = Pinhole::new(Vec3::splat(6.0), Vec3::splat(1.5), Vec3::Y, 0.6);
+    let target = Target::new(Metric::Rmse, 1e-4).pilot(128);
+    let until = Until::new(target, Budget::of_samples(100_000));
+    let mut film = Film::new(24, 18);
+    let mut last = None;
+    let reached = TiledScheduler::new().render_until_observed(
+        &camera,
+        &kernel,
+        &Sampling::new(1),
+        &mut film,
+        &until,
+        &mut |progress| {
+            last = Some(*progress);
+            if progress.samples < 64 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        },
+    );
+    let reached = reached.expect("it can be asked for");
+    assert_eq!(reached.outcome, Outcome::Stopped);
+    assert!(reached.samples >= 64 && reached.samples == film.samples());
+    assert!(words::reached(&reached).starts_with("stopped after"));
+    let told = last.expect("it was told").estimate;
+    assert_eq!(told, reached.estimate, "what was told is what is there");
+    assert!(film.image().pixels().iter().any(|p| p.w == 1.0 && p.x > 0.0 && p.x < 1.0));
 }

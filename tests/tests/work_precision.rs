@@ -315,7 +315,7 @@ fn work_is_that_of_the_samples_of_a_run() -> Result<(), Box<dyn Error>> {
 }
 
 /// The cells of a line of CSV by their column's name; for text without commas in cells.
-fn row<'t>(csv: &'t str, line: usize) -> HashMap<&'t str, &'t str> {
+fn row(csv: &str, line: usize) -> HashMap<&str, &str> {
     let mut lines = csv.lines();
     let header = lines.next().unwrap_or_default().split(',');
     header.zip(lines.nth(line).unwrap_or_default().split(',')).collect()

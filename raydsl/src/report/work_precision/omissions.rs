@@ -53,16 +53,19 @@ fn of_case(case: &Measured) -> Vec<String> {
     rows
 }
 
+/// How much of a unit was counted.
+type Unit = fn(&Work) -> Option<u64>;
+
 /// Units in which nothing of a case is counted.
 fn uncounted(case: &Measured) -> Option<String> {
     let points = || case.curves.iter().flat_map(|c| &c.points).map(Point::work);
-    let units: [(&str, fn(&Work) -> Option<u64>); 4] = [
+    let units: [(&str, Unit); 4] = [
         ("rays", |w| w.rays),
         ("nodes", |w| w.nodes),
         ("primitive tests", |w| w.primitives),
         ("texture fetches", |w| w.texture_fetches),
     ];
-    let is_missing = |of: fn(&Work) -> Option<u64>| points().all(|w| of(&w).is_none());
+    let is_missing = |of: Unit| points().all(|w| of(&w).is_none());
     let missing: Vec<&str> = units.iter().filter(|u| is_missing(u.1)).map(|u| u.0).collect();
     let list = (!missing.is_empty()).then(|| missing.join(", "))?;
     Some(row(case, "all", "all", &list, "the case does not count them"))
