@@ -1,9 +1,9 @@
 //! Rays and a rasteriser in one picture. Learn here how a `Matrix` camera sees what a rasteriser
 //! sees, and how pixels of both are put together by their depth in the window.
 //!
-//! `cargo run --release --example depth_compositing -- [FOLDER] [--rasterizer wgpu|software]` writes
-//! `depth_compositing.png` to FOLDER (`out` if none is given): what the rasteriser drew, what rays
-//! saw, and both in one.
+//! `cargo run --release --example depth_compositing -- [FOLDER] [--rasterizer wgpu|software]`
+//! writes `depth_compositing.png` to FOLDER (`out` if none is given): what the rasteriser drew,
+//! what rays saw, and both in one.
 
 mod scene;
 

@@ -1,9 +1,9 @@
 //! A picture as good as asked for. Learn here how a film takes samples until its error is small
 //! enough, who hears how far it is, and how Ctrl-C leaves the best picture so far.
 //!
-//! `cargo run --release --example until -- [FOLDER] [FILE] --error 1% --time 30s` writes `until.png`
-//! to FOLDER (`out` if none is given). FILE is an `.obj`, `.ply` or `.tri`; without one there is half
-//! a sponge. `--help` has the rest.
+//! `cargo run --release --example until -- [FOLDER] [FILE] --error 1% --time 30s` writes
+//! `until.png` to FOLDER (`out` if none is given). FILE is an `.obj`, `.ply` or `.tri`; without one
+//! there is half a sponge. `--help` has the rest.
 
 mod args;
 mod sponge;

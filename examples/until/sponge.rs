@@ -2,8 +2,8 @@
 
 use raydsl::prelude::*;
 
-/// The faces of the sponge with this many levels, of cells of edge 1, that is cut through its middle
-/// across the diagonal, where its holes are stars. The half with the origin is left.
+/// The faces of the sponge with this many levels, of cells of edge 1, that is cut through its
+/// middle across the diagonal, where its holes are stars. The half with the origin is left.
 pub(crate) fn half(levels: u32) -> Vec<Triangle> {
     let edge = 3i32.pow(levels);
     let is_solid = |cell: [i32; 3]| {
@@ -31,8 +31,8 @@ pub(crate) fn half(levels: u32) -> Vec<Triangle> {
     triangles
 }
 
-/// The side of a cell across `axis`, the one farther along it or the other. It is seen anticlockwise
-/// from outside.
+/// The side of a cell across `axis`, the one farther along it or the other. It is seen
+/// anticlockwise from outside.
 fn face(cell: [i32; 3], axis: usize, is_far: bool) -> [Triangle; 2] {
     let [u, v] = if is_far { [1, 2] } else { [2, 1] }.map(|i| (axis + i) % 3);
     let corner = |right: i32, up: i32| {

@@ -173,7 +173,7 @@ fn run_packet<F: KernelFn, L: Lanes>(
 ) {
     let m = Packet::with_bits(lanes, bits);
     lanes.vectorize(|| {
-        let args = F::Args::from_lanes(&m, |l| input(l));
+        let args = F::Args::from_lanes(&m, input);
         let result = kernel(&m, args);
         for (l, out) in out.iter_mut().enumerate() {
             *out = F::Output::lane::<Packet<L>>(&result, l);

@@ -105,5 +105,5 @@ impl<A: Type + Debug + Sync, R: Type + Sync> Operation<'_, A, R> {
 /// One function for all operations of the same operands.
 #[inline(never)]
 fn load<A: Type>(m: &Wide, f: &dyn Fn(usize) -> A) -> A::On<Wide> {
-    A::from_lanes(m, |l| f(l))
+    A::from_lanes(m, f)
 }

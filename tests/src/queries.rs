@@ -250,7 +250,7 @@ fn closest_hits<L: Lanes, P: Primitive>(
     let mut found = vec![Hit::miss(); rays.len()];
     fill(&mut found, |first, out| {
         packets(lanes, width, &rays[first..], out, |m, ray| {
-            let hit = m.closest_hit(view, Ray::from_lanes(m, |l| ray(l)));
+            let hit = m.closest_hit(view, Ray::from_lanes(m, &ray));
             move |l| Hit::lane::<Packet<L>>(&hit, l)
         });
     });
@@ -267,7 +267,7 @@ fn any_hits<L: Lanes, P: Primitive>(
     let mut found = vec![false; rays.len()];
     fill(&mut found, |first, out| {
         packets(lanes, width, &rays[first..], out, |m, ray| {
-            let hit = m.any_hit(view, Ray::from_lanes(m, |l| ray(l)));
+            let hit = m.any_hit(view, Ray::from_lanes(m, &ray));
             move |l| bool::lane::<Packet<L>>(&hit, l)
         });
     });

@@ -97,9 +97,9 @@ impl Rasterizer {
         }
     }
 
-    /// Draws triangles seen through `clip`, the product of projection and view, whose near plane has
-    /// depth 0. The software rasteriser leaves out those that reach in front of it, a device cuts
-    /// them.
+    /// Draws triangles seen through `clip`, the product of projection and view, whose near plane
+    /// has depth 0. The software rasteriser leaves out those that reach in front of it, a device
+    /// cuts them.
     ///
     /// # Errors
     ///
