@@ -52,10 +52,13 @@ impl Film {
         self.samples += samples;
     }
 
-    /// Adds all samples of another film of the same size, which must be other samples.
-    pub(super) fn merge(&mut self, other: &Self) {
+    /// Adds all samples of another film of the same size, which must be other samples. `each` sees
+    /// what a pixel was, what it has become, and what was added.
+    pub(super) fn merge(&mut self, other: &Self, mut each: impl FnMut(&Sums, &Sums, &Sums)) {
         for (sums, more) in self.pixels.iter_mut().zip(&other.pixels) {
+            let before = *sums;
             sums.merge(more);
+            each(&before, sums, more);
         }
         self.samples += other.samples;
     }

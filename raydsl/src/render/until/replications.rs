@@ -19,13 +19,14 @@ const RELATIVE_EPSILON: f64 = 1e-2;
 
 /// Replications of a film, of `each` samples a pixel.
 pub(super) struct Replications {
-    /// The samples of all.
-    pub(super) film: Film,
+    /// The samples of all; none before there is one.
+    film: Option<Film>,
     /// Samples a pixel of each.
     pub(super) each: u32,
     /// How many there are.
     pub(super) count: u32,
-    /// Of each pixel, the sum of the squared distances of their means from the mean.
+    /// Of each pixel, the sum of the squared distances of their means from the mean; of one
+    /// replication, nothing.
     apart: Vec<DVec3>,
     /// The mean of the whole picture, by each.
     means: Vec<f64>,
@@ -40,31 +41,43 @@ struct Spread {
 }
 
 impl Replications {
-    /// None yet.
-    pub(super) fn none(width: u32, height: u32, each: u32) -> Self {
-        let film = Film::new(width, height);
-        let apart = vec![DVec3::ZERO; film.sums().len()];
-        Self { film, each, count: 0, apart, means: Vec::new() }
+    /// None yet. Films are large: nothing is kept before there is something to keep.
+    pub(super) fn none(each: u32) -> Self {
+        Self { film: None, each, count: 0, apart: Vec::new(), means: Vec::new() }
     }
 
     /// Adds one. (Welford's step, for the mean of each pixel.)
-    pub(super) fn join(&mut self, one: &Film) {
-        let before: Vec<DVec3> = self.film.sums().iter().map(|s| s.mean.truncate()).collect();
-        self.film.merge(one);
-        let pixels = self.film.sums().iter().zip(one.sums());
-        for ((apart, before), (all, one)) in self.apart.iter_mut().zip(before).zip(pixels) {
-            let value = one.mean.truncate();
-            *apart += (value - before) * (value - all.mean.truncate());
-        }
+    pub(super) fn join(&mut self, one: Film) {
         let finite = one.sums().iter().map(|s| s.mean.truncate()).filter(|m| m.is_finite());
         let (sum, count) = finite.fold((0.0, 0u64), |(s, n), m| (s + m.element_sum() / 3.0, n + 1));
         self.means.push(if count == 0 { f64::NAN } else { sum / count as f64 });
         self.count += 1;
+        let Some(film) = &mut self.film else {
+            self.film = Some(one);
+            return;
+        };
+        self.apart.resize(one.sums().len(), DVec3::ZERO);
+        let mut apart = self.apart.iter_mut();
+        film.merge(&one, |before, all, one| {
+            let (value, mean) = (one.mean.truncate(), all.mean.truncate());
+            if let Some(apart) = apart.next() {
+                *apart += (value - before.mean.truncate()) * (value - mean);
+            }
+        });
+    }
+
+    /// The samples of all, if there are any.
+    pub(super) fn into_film(self) -> Option<Film> {
+        self.film
+    }
+
+    fn sums(&self) -> &[Sums] {
+        self.film.as_ref().map_or(&[], Film::sums)
     }
 
     /// Samples a pixel in all.
     pub(super) fn samples(&self) -> u32 {
-        self.film.samples()
+        self.film.as_ref().map_or(0, Film::samples)
     }
 
     /// How much the error is worth before it is known: the squared quantile, over the samples.
@@ -144,7 +157,7 @@ impl Replications {
         let squares = self.means.iter().map(|m| (m - mean) * (m - mean)).sum();
         let floor = if mean.is_nan() { f64::INFINITY } else { ROUNDING * mean.abs() };
         let unseen = || {
-            let finite = self.film.sums().iter().filter(|s| s.mean.is_finite());
+            let finite = self.sums().iter().filter(|s| s.mean.is_finite());
             let each = finite.map(|s| self.unseen(s).element_sum() / 3.0);
             let (sum, pixels) = each.fold((0.0, 0.0), |(sum, n), v| (sum + v, n + 1.0));
             sum / (pixels * pixels)
@@ -159,7 +172,8 @@ impl Replications {
         let (mut pixels, mut sum, mut squares, mut rounding) = (0u64, 0.0, 0.0, 0.0);
         let mean_of =
             |v: DVec3, values: DVec3| (0..3).map(|i| weigh(v[i], values[i])).sum::<f64>() / 3.0;
-        for (apart, sums) in self.apart.iter().zip(self.film.sums()) {
+        let apart = self.apart.iter().chain(std::iter::repeat(&DVec3::ZERO));
+        for (apart, sums) in apart.zip(self.sums()) {
             let value = sums.mean.truncate();
             if !(apart.is_finite() && value.is_finite()) {
                 continue;
@@ -217,8 +231,8 @@ mod tests {
     /// error is known all the same.
     #[test]
     fn replications_that_agree_do_not_deceive() {
-        let mut all = Replications::none(1, 1, 512);
-        (0..REPLICATIONS).for_each(|_| all.join(&rare(5, 512)));
+        let mut all = Replications::none(512);
+        (0..REPLICATIONS).for_each(|_| all.join(rare(5, 512)));
         for metric in [Metric::Rmse, Metric::Mean] {
             let (estimate, _) = all.estimate(metric, 0.95);
             let quantum = 100.0 / 512.0;
@@ -228,8 +242,8 @@ mod tests {
             );
         }
         // A constant has no rare samples.
-        let mut constant = Replications::none(1, 1, 512);
-        (0..REPLICATIONS).for_each(|_| constant.join(&rare(512, 512)));
+        let mut constant = Replications::none(512);
+        (0..REPLICATIONS).for_each(|_| constant.join(rare(512, 512)));
         let (estimate, floor) = constant.estimate(Metric::Rmse, 0.95);
         assert_eq!(estimate.high, floor);
     }

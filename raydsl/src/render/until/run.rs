@@ -63,19 +63,24 @@ pub(crate) fn run<R: Renderer>(
     observer: ProgressObserver<'_>,
     renderer: &mut R,
 ) -> Result<Reached, R::Error> {
-    let (width, height) = (film.width(), film.height());
+    let size = (film.width(), film.height());
     let begin = Instant::now();
-    let best = Replications::none(width, height, 0);
-    let mut run = Run { until, sampling, begin, observer, best, spent: 0, stages: 0 };
+    let best = Replications::none(0);
+    let mut run = Run { until, sampling, size, begin, observer, best, spent: 0, stages: 0 };
     let end = run.stages(renderer);
+    let Run { best, spent, .. } = run;
+    let samples = best.samples();
     // Whatever went wrong, the best picture so far is kept.
-    film.clone_from(&run.best.film);
+    match best.into_film() {
+        Some(best) => *film = best,
+        None => film.clear(),
+    }
     let (outcome, estimate) = end?;
     Ok(Reached {
         outcome,
         estimate,
-        samples: run.best.samples(),
-        spent: run.spent,
+        samples,
+        spent,
         elapsed: begin.elapsed(),
         nan_pixels: film.nan_pixels(),
     })
@@ -84,6 +89,8 @@ pub(crate) fn run<R: Renderer>(
 struct Run<'a> {
     until: &'a Until,
     sampling: &'a Sampling,
+    /// Columns and rows.
+    size: (u32, u32),
     begin: Instant,
     observer: ProgressObserver<'a>,
     /// The stage whose error is expected to be the smallest.
@@ -163,19 +170,19 @@ impl Run<'_> {
             return Ok(Stage { is_best: false, cut: Some(Outcome::OutOfSamples) });
         }
         let each = plan.each.min(affordable);
-        let (width, height) = (self.best.film.width(), self.best.film.height());
-        let mut stage = Replications::none(width, height, each);
+        let mut stage = Replications::none(each);
         let mut cut = None;
         let mut end = Ok(());
         for replication in 0..REPLICATIONS {
-            let mut one = Film::new(width, height);
+            let mut one = Film::new(self.size.0, self.size.1);
             let sampling = self.sampling_of(replication, each);
-            match self.replication(&sampling, &mut one, each, &stage, renderer) {
-                Ok(None) => stage.join(&one),
+            let replicated = self.replication(&sampling, &mut one, each, &stage, renderer);
+            self.spent += one.samples();
+            match replicated {
+                Ok(None) => stage.join(one),
                 Ok(Some(outcome)) => cut = Some(outcome),
                 Err(error) => end = Err(error),
             }
-            self.spent += one.samples();
             if cut.is_some() || end.is_err() {
                 break;
             }
