@@ -33,7 +33,7 @@ pub(crate) fn variant_test(args: &TokenStream, item: TokenStream) -> TokenStream
     check_signature(&f.sig, &mut errors);
     if !errors.is_empty() {
         let errors = errors.into_tokens();
-        return quote!(#[allow(dead_code)] #f #errors);
+        return quote!(#[allow(dead_code, reason = "its tests have errors")] #f #errors);
     }
     let is_of_test = |a: &syn::Attribute| OF_TESTS.iter().any(|name| a.path().is_ident(name));
     let attributes: Vec<_> = f.attrs.iter().filter(|a| is_of_test(a)).cloned().collect();

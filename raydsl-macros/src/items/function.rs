@@ -40,7 +40,7 @@ pub(crate) fn kernel_fn(item: &syn::ItemFn) -> TokenStream {
         let mistaken = mistaken(&kernel, errors);
         return quote! {
             #source
-            #[allow(non_camel_case_types, dead_code)]
+            #[allow(non_camel_case_types, dead_code, reason = "it stands for a kernel with errors")]
             #vis enum #name #bare { #never }
             #mistaken
         };
