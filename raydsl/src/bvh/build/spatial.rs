@@ -32,6 +32,10 @@ use super::spatial_bins::{Cut, Limits, Slabs};
 use super::watch::Watch;
 use super::{depth, partition, tasks};
 use crate::bvh::Node;
+use crate::geometry::Aabb;
+
+/// `2^-103`: differences of numbers of this size are ordinary ones.
+const FINEST: f32 = f32::MIN_POSITIVE / f32::EPSILON;
 
 /// How many spare places the references of `count` primitives have.
 pub(super) fn spare(count: usize, config: &BuildConfig) -> usize {
@@ -173,7 +177,7 @@ impl<S: Source> Builder<'_, '_, S> {
         let is_worth_it = || {
             let overlap = overlap.to_aabb();
             let least = f64::from(self.config.min_overlap) * self.root.to_aabb().half_area_f64();
-            overlap.is_valid() && overlap.half_area_f64() > least
+            overlap.is_valid() && overlap.half_area_f64() > least && self.is_fine()
         };
         let limits = Limits { room: range.places.len(), budget: range.budget };
         // Every cut needs a place more.
@@ -185,6 +189,13 @@ impl<S: Source> Builder<'_, '_, S> {
         let mut slabs = Slabs::new(references, &bounds, limits, self.chopper.scale)?;
         slabs.fill(references, &self.chopper);
         slabs.best_cut(grid)
+    }
+
+    /// Whether primitives can be cut finely: next to the smallest numbers a cut has few bits, and
+    /// computing it takes many times as long.
+    fn is_fine(&self) -> bool {
+        let Aabb { min, max } = self.root.to_aabb();
+        self.chopper.scale.outside((max - min).max_element()) >= FINEST
     }
 
     /// Cuts the references; returns how many are then on the left, at the front, and on the right,
