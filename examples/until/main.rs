@@ -2,8 +2,8 @@
 //! enough, who hears how far it is, and how Ctrl-C leaves the best picture so far.
 //!
 //! `cargo run --release --example until -- [FOLDER] [FILE] --error 1% --time 30s` writes
-//! `until.png` to FOLDER (`out` if none is given). FILE is an `.obj`, `.ply` or `.tri`; without one
-//! there is half a sponge. `--help` has the rest.
+//! `until.png` to FOLDER (`out` if none is given), with `--adaptive` also `samples.png`. FILE is
+//! an `.obj`, `.ply` or `.tri`; without one there is half a sponge. `--help` has the rest.
 
 mod args;
 mod sponge;
@@ -12,6 +12,7 @@ mod words;
 use std::error::Error;
 use std::fs;
 use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
 use std::process::{ExitCode, exit};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -22,6 +23,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use raydsl::kernels::ambient_occlusion;
 use raydsl::prelude::*;
 use raydsl::render::{Budget, Display, Metric, ProgressObserver, Target, Until};
+use raydsl_examples::heat_map::HeatMap;
 use raydsl_examples::mesh;
 
 fn main() -> ExitCode {
@@ -75,6 +77,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     // A pilot of 128 is plenty for a picture: its pixels have about the same variance.
     let target = Target::new(Metric::Rmse, args.error).confidence(args.confidence).pilot(128);
     let until = Until::new(target, Budget::of_time(args.time));
+    let until = if args.adaptive { until.adaptive() } else { until };
     let (sampling, film) = (Sampling::new(1), &mut Film::new(args.size.0, args.size.1));
     let reached = match args.variant {
         Variant::Wgsl => {
@@ -95,5 +98,18 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     Display::new().show(&film.image()).write_png(&path)?;
     // ANCHOR_END: until
     println!("{}", path.display());
+    if args.adaptive {
+        println!("{}", write_counts(film, &args.folder)?.display());
+    }
     Ok(())
+}
+
+/// Writes where the samples went.
+fn write_counts(film: &Film, folder: &Path) -> Result<PathBuf, Box<dyn Error>> {
+    let path = folder.join("samples.png");
+    let counts = film.sample_counts();
+    let values = counts.pixels().iter().map(|&n| n as f32).collect();
+    let (width, height) = (counts.width(), counts.height());
+    HeatMap { title: "samples".to_owned(), width, height, values }.write_png(&path)?;
+    Ok(path)
 }

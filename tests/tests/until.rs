@@ -11,7 +11,9 @@ use std::time::{Duration, Instant};
 
 use raydsl::kernel;
 use raydsl::prelude::*;
-use raydsl::render::{Budget, Estimate, Metric, Outcome, Reached, Target, Until, UntilError};
+use raydsl::render::{
+    Budget, Estimate, FilmArgs, Metric, Outcome, Radiance, Reached, Target, Until, UntilError,
+};
 use raydsl::texture::Filter;
 use raydsl_tests::gpu::gpu;
 use raydsl_tests::{in_parallel, scaled};
@@ -273,34 +275,112 @@ fn same_but_for_time(a: &Reached, b: &Reached) -> bool {
     Reached { elapsed: Duration::ZERO, ..*a } == Reached { elapsed: Duration::ZERO, ..*b }
 }
 
+/// Noise around 1; a part of the columns has thirty times that of the others.
+macro_rules! uneven {
+    ($noisy:ident, $method:ident) => {
+        kernel!(|_ray: Ray, pixel: UVec2, sampler: Sampler| {
+            let mut sampler = sampler;
+            let spread = if pixel.x < $noisy { 1.0 } else { 0.03 };
+            1.0 + spread * (sampler.next_1d(host($method)) - 0.5)
+        })
+    };
+}
+
 /// Every variant and scheduler of the CPU ends with the same bits; a device ends as well.
 #[test]
 fn every_variant_ends_with_the_same_picture() -> Result<(), Box<dyn Error>> {
     let case = &cases()[6];
     let (texture, number, method) = (texture(), case.number, SampleMethod::Sobol);
     let kernel = estimator!(number, texture, method);
-    let until = Until::new(Target::new(Metric::Rmse, 2e-3), Budget::of_samples(100_000));
+    let even = Until::new(Target::new(Metric::Rmse, 2e-3), Budget::of_samples(100_000));
+    let target = Target::new(Metric::Rmse, 2e-3).pilot(64);
+    let adaptive = Until::new(target, Budget::of_samples(2000)).adaptive();
+    let (noisy, random) = (9, SampleMethod::Stratified);
+    let uneven = uneven!(noisy, random);
+    ends_alike(&kernel, &even, (9, 7))?;
+    let film = ends_alike(&uneven, &adaptive, (37, 20))?;
+    let counts = film.sample_counts();
+    let (some, most) = (counts.get(36, 0), counts.get(0, 0));
+    assert!(some.zip(most).is_some_and(|(some, most)| 3 * some < *most), "{some:?} {most:?}");
+    Ok(())
+}
+
+/// Runs it by all variants; gives the film.
+fn ends_alike<A: FilmArgs, R: Radiance + Send>(
+    kernel: &Kernel<'_, A, R>,
+    until: &Until,
+    (width, height): (u32, u32),
+) -> Result<Film, Box<dyn Error>> {
     let sampling = Sampling::new(1).seed(5);
-    let mut expected = Film::new(9, 7);
+    let mut expected = Film::new(width, height);
     let scalar = SimpleScheduler::new();
-    let of_scalar = scalar.render_until(&camera(), &kernel, &sampling, &mut expected, &until)?;
+    let of_scalar = scalar.render_until(&camera(), kernel, &sampling, &mut expected, until)?;
     assert_eq!(of_scalar.outcome, Outcome::Converged);
-    assert_eq!(of_scalar.samples, expected.samples());
+    assert!(until.adaptive || of_scalar.samples == expected.samples());
     for v in [Variant::Packet4, Variant::Packet8, Variant::Packet16] {
-        let mut film = Film::new(9, 7);
+        let mut film = Film::new(width, height);
         let tiled = TiledScheduler::new().variant(v).tile(4);
-        let reached = tiled.render_until(&camera(), &kernel, &sampling, &mut film, &until)?;
+        let reached = tiled.render_until(&camera(), kernel, &sampling, &mut film, until)?;
         assert!(film == expected && same_but_for_time(&reached, &of_scalar), "{v:?} {reached:?}");
     }
     #[cfg(feature = "gpu")]
     if let Some(gpu) = gpu() {
-        let mut film = Film::new(9, 7);
-        let reached = gpu.render_until(&camera(), &kernel, &sampling, &mut film, &until)?;
+        let mut film = Film::new(width, height);
+        let reached = gpu.render_until(&camera(), kernel, &sampling, &mut film, until)?;
         assert_eq!((reached.outcome, reached.samples), (of_scalar.outcome, of_scalar.samples));
         let apart = |a: Estimate, b: Estimate| (a.high / b.high - 1.0).abs();
         assert!(apart(reached.estimate, of_scalar.estimate) < 1e-3, "{reached:?} {of_scalar:?}");
     }
-    Ok(())
+    Ok(expected)
+}
+
+/// What many seeds gave for a film of noise: the samples a pixel, and how often the error was as
+/// claimed.
+fn uneven(noisy: u32, tolerance: f64, adaptive: bool, seeds: u32) -> (f64, f64) {
+    let method = SampleMethod::Random;
+    let kernel = uneven!(noisy, method);
+    let target = Target::new(Metric::Rmse, tolerance).pilot(64);
+    let until = Until::new(target, Budget::of_samples(10_000_000));
+    let until = if adaptive { until.adaptive() } else { until };
+    let all = Mutex::new((0.0, 0.0));
+    in_parallel(seeds as usize, 1, |part| {
+        for seed in part {
+            let mut film = Film::new(64, 32);
+            let scheduler = SimpleScheduler::new().variant(Variant::widest());
+            let sampling = Sampling::new(1).seed(seed as u32);
+            let reached = scheduler
+                .render_until(&camera(), &kernel, &sampling, &mut film, &until)
+                .expect("a target and a budget");
+            assert_eq!(reached.outcome, Outcome::Converged);
+            let counts = film.sample_counts();
+            let total: f64 = counts.pixels().iter().map(|&n| f64::from(n)).sum();
+            let mean = total / counts.pixels().len() as f64;
+            assert!((mean - f64::from(reached.samples)).abs() < 1.0, "{mean} {reached:?}");
+            let squares =
+                film.image().pixels().iter().map(|p| f64::from(p.x - 1.0).powi(2)).sum::<f64>();
+            let error = (squares / counts.pixels().len() as f64).sqrt();
+            let mut all = all.lock().expect("no one panics");
+            all.0 += f64::from(reached.spent) / f64::from(seeds);
+            all.1 += if error <= reached.estimate.high { 1.0 } else { 0.0 } / f64::from(seeds);
+        }
+    });
+    all.into_inner().expect("no one panics")
+}
+
+/// Samples go where they are needed: the same error takes fewer where a part of the picture is
+/// noisy, and hardly more where all of it is; the claimed confidence holds.
+#[test]
+fn samples_go_where_they_are_needed() {
+    let seeds = scaled(64) as u32 / 4;
+    for (noisy, tolerance, least, most) in [(16, 6e-3, 1.5, 8.0), (64, 1.5e-2, 0.95, 1.05)] {
+        let (even, _) = uneven(noisy, tolerance, false, seeds);
+        let (adaptive, covered) = uneven(noisy, tolerance, true, seeds);
+        let gain = even / adaptive;
+        println!("{noisy} of 64 columns: {even:.0} or {adaptive:.0} samples, {covered:.3} covered");
+        assert!(gain >= least && gain <= most, "{noisy}: {gain}");
+        let doubt = 3.0 * (0.05 * 0.95 / f64::from(seeds)).sqrt();
+        assert!(covered >= 0.93 - doubt, "{noisy}: {covered}");
+    }
 }
 
 /// Noise that no budget of the tests makes good.

@@ -10,11 +10,17 @@ use super::{Context, GpuError, GpuWindow, Timing};
 use crate::camera::Camera;
 use crate::kernel::Kernel;
 use crate::machine::wgsl::{BufferKey, Module};
-use crate::machine::{Type, X2, stride};
+use crate::machine::{Resource, Type, X2, stride};
 use crate::render::{
-    Film, FilmArgs, Frame, Image, Moments, Observer, Pass, ProgressObserver, Radiance, Reached,
-    Renderer, Sampling, Shot, Until, passes, run_until,
+    Film, FilmArgs, Frame, Image, Moments, Observer, ProgressObserver, Radiance, Reached, Renderer,
+    Samples, Sampling, Shot, Until, passes, run_until,
 };
+
+/// Who is shown the buffers that a kernel may read.
+type Visit<'a> = &'a mut dyn FnMut(&dyn Resource);
+
+/// Shows them.
+type Resources<'a> = &'a dyn Fn(Visit<'_>);
 
 /// Runs the WGSL variant of kernels: pictures and batches.
 ///
@@ -92,8 +98,10 @@ impl GpuScheduler {
         let pixels = u64::from(width) * u64::from(height);
         check_target::<R>(&self.context.gpu, pixels, window)?;
         let rays = camera.begin_frame(width, height);
-        let module = self.module(&Frame { rays, kernel });
-        self.run_to(kernel, &module, &[], [width, height], Outputs::Device(window))
+        let shot = Frame { rays, kernel };
+        let resources = |visit: Visit<'_>| shot.resources(visit);
+        let module = self.module(&shot);
+        self.run_to(&resources, &module, &[], [width, height], Outputs::Device(window))
     }
 
     /// Adds `samples` samples to every pixel of `film`, as [`Scheduler::accumulate`] does. Those of
@@ -114,10 +122,9 @@ impl GpuScheduler {
     ) -> Result<Timing, GpuError> {
         let mut image = Image::filled(film.width(), film.height(), Moments::none());
         let mut timing = Timing::default();
+        let plan = Samples { sampling, each: samples, allocation: None };
         for count in passes(samples) {
-            let rays = camera.begin_frame(film.width(), film.height());
-            let pass = Pass { rays, kernel, sampling: *sampling, first: film.samples(), count };
-            timing += self.shoot(&pass, &mut image)?;
+            timing += self.shoot(&plan.pass(camera, kernel, film, count), &mut image)?;
             film.join(&image, count);
         }
         Ok(timing)
@@ -175,7 +182,7 @@ impl GpuScheduler {
     fn shoot<S: Shot>(&self, shot: &S, image: &mut Image<S::Output>) -> Result<Timing, GpuError> {
         let module = self.module(shot);
         let size = [image.width(), image.height()];
-        self.run(shot.kernel(), &module, &[], size, image.pixels_mut())
+        self.run(&|visit| shot.resources(visit), &module, &[], size, image.pixels_mut())
     }
 
     /// Runs a kernel over `inputs`; `outputs` has the same length.
@@ -197,12 +204,12 @@ impl GpuScheduler {
         }
         let count = u32::try_from(inputs.len())
             .map_err(|_| GpuError::GridTooLarge { size: [u32::MAX, 1] })?;
-        self.run(kernel, &module, &bytes, [count, 1], outputs)
+        self.run(&|visit| kernel.resources(visit), &module, &bytes, [count, 1], outputs)
     }
 
-    fn run<A: Type, R: Type, O: Type>(
+    fn run<O: Type>(
         &self,
-        kernel: &Kernel<'_, A, R>,
+        resources: Resources<'_>,
         module: &Module,
         inputs: &[u8],
         size: [u32; 2],
@@ -210,23 +217,23 @@ impl GpuScheduler {
     ) -> Result<Timing, GpuError> {
         let each = stride(O::SCHEMA);
         let mut bytes = vec![0; each * outputs.len()];
-        let timing = self.run_to(kernel, module, inputs, size, Outputs::Host(&mut bytes))?;
+        let timing = self.run_to(resources, module, inputs, size, Outputs::Host(&mut bytes))?;
         for (out, bytes) in outputs.iter_mut().zip(bytes.chunks_exact(each)) {
             *out = O::read(bytes);
         }
         Ok(timing)
     }
 
-    fn run_to<A: Type, R: Type>(
+    fn run_to(
         &self,
-        kernel: &Kernel<'_, A, R>,
+        resources: Resources<'_>,
         module: &Module,
         inputs: &[u8],
         size: [u32; 2],
         outputs: Outputs<'_>,
     ) -> Result<Timing, GpuError> {
         self.context.forget_gone();
-        let data = |key| bytes_of(kernel, key).map(Cow::Owned);
+        let data = |key| bytes_of(resources, key).map(Cow::Owned);
         let timing = self.context.run_to(module, &data, inputs, size, outputs);
         // The address of a slice names its data only while it is borrowed.
         let buffers = module.buffers.iter().map(|buffer| buffer.key);
@@ -259,18 +266,20 @@ impl<C: Camera, A: FilmArgs, R: Radiance + Send> Renderer for OnDevice<'_, C, A,
 
     fn render(
         &mut self,
-        sampling: &Sampling,
+        samples: &Samples<'_>,
         film: &mut Film,
-        samples: u32,
         observer: Observer<'_>,
     ) -> Result<ControlFlow<()>, GpuError> {
-        while film.samples() < samples {
-            if observer(f64::from(film.samples()) / f64::from(samples)).is_break() {
+        let mut image = Image::filled(film.width(), film.height(), Moments::none());
+        while film.samples() < samples.each {
+            if observer(f64::from(film.samples()) / f64::from(samples.each)).is_break() {
                 return Ok(ControlFlow::Break(()));
             }
-            let count = self.pass.min(samples - film.samples());
+            let count = self.pass.min(samples.each - film.samples());
             let begin = Instant::now();
-            self.scheduler.accumulate(self.camera, self.kernel, sampling, film, count)?;
+            let pass = samples.pass(self.camera, self.kernel, film, count);
+            self.scheduler.shoot(&pass, &mut image)?;
+            film.join(&image, count);
             self.learn(begin.elapsed());
         }
         Ok(ControlFlow::Continue(()))
@@ -289,9 +298,9 @@ impl<C, A: Type, R: Type> OnDevice<'_, C, A, R> {
 }
 
 /// The bytes of a buffer, made only where the device does not have them yet.
-fn bytes_of<A: Type, R: Type>(kernel: &Kernel<'_, A, R>, key: BufferKey) -> Option<Vec<u8>> {
+fn bytes_of(resources: Resources<'_>, key: BufferKey) -> Option<Vec<u8>> {
     let mut found = None;
-    kernel.resources(&mut |resource| {
+    resources(&mut |resource| {
         if found.is_none() {
             found = resource.bytes(key).map(Cow::into_owned);
         }

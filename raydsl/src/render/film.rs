@@ -4,6 +4,7 @@ use glam::{DVec4, Vec4};
 
 use super::moments::Sums;
 use super::{Image, Moments};
+use crate::machine::Type;
 
 /// The mean and the variance of every pixel, over all samples so far.
 ///
@@ -33,9 +34,21 @@ impl Film {
         self.height
     }
 
-    /// Samples of each pixel so far. The next pass begins with the one of this number.
+    /// Samples of each pixel so far, the most of any if they do not all have the same number. The
+    /// next pass begins with the one of this number.
     pub fn samples(&self) -> u32 {
         self.samples
+    }
+
+    /// How many samples each pixel has. They differ where [`Until::adaptive`](super::Until::adaptive)
+    /// chose them.
+    pub fn sample_counts(&self) -> Image<u32> {
+        self.map(|sums| u32::try_from(sums.count).unwrap_or(u32::MAX))
+    }
+
+    /// The samples of all pixels.
+    pub(super) fn total_samples(&self) -> u64 {
+        self.pixels.iter().map(|sums| sums.count).sum()
     }
 
     /// Forgets all samples, as when the camera has moved.
@@ -104,11 +117,9 @@ impl Film {
         self.pixels.iter().map(|sums| sums.mean)
     }
 
-    fn map(&self, f: impl Fn(&Sums) -> Vec4) -> Image<Vec4> {
-        let mut image = Image::filled(self.width, self.height, Vec4::ZERO);
-        for (pixel, sums) in image.pixels_mut().iter_mut().zip(&self.pixels) {
-            *pixel = f(sums);
-        }
-        image
+    fn map<T: Type>(&self, f: impl Fn(&Sums) -> T) -> Image<T> {
+        let width = self.width as usize;
+        let at = |x, y| f(&self.pixels[y as usize * width + x as usize]);
+        Image::from_fn(self.width, self.height, at)
     }
 }

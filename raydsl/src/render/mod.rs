@@ -3,6 +3,7 @@
 //! A [`Scheduler`] makes a frame (one ray through the middle of each pixel) or a pass (some samples
 //! of each pixel, added to a [`Film`]); a camera gives the rays.
 
+mod allocation;
 mod display;
 mod files;
 mod film;
@@ -30,7 +31,7 @@ pub use pixel_sampler::{PixelSampler, Sampling};
 pub use radiance::Radiance;
 pub use scheduler::Scheduler;
 #[cfg(feature = "gpu")]
-pub(crate) use scheduler::passes;
+pub(crate) use scheduler::{Samples, passes};
 #[doc(hidden)]
 pub use shot::Body;
 #[cfg(feature = "gpu")]

@@ -3,6 +3,7 @@
 use core::convert::Infallible;
 use core::ops::ControlFlow;
 
+use super::allocation::Allocation;
 use super::film_args::FilmArgs;
 use super::shot::{Frame, Pass, Shot};
 use super::until::{ProgressObserver, Reached, Renderer, Until, UntilError, run};
@@ -18,6 +19,31 @@ const PASS: u32 = 64;
 /// How many samples each pass takes.
 pub(crate) fn passes(samples: u32) -> impl Iterator<Item = u32> {
     (0..samples).step_by(PASS as usize).map(move |first| PASS.min(samples - first))
+}
+
+/// Samples that a film gets.
+#[derive(Clone, Copy)]
+pub(crate) struct Samples<'a> {
+    pub(crate) sampling: &'a Sampling,
+    /// Of each pixel; if they are allocated, the most of any.
+    pub(crate) each: u32,
+    /// How many each block gets in all, where they do not all get the same.
+    pub(crate) allocation: Option<&'a Allocation>,
+}
+
+impl<'a> Samples<'a> {
+    /// The next `count` of them.
+    pub(crate) fn pass<C: Camera, A: FilmArgs, R: Radiance + Send>(
+        &self,
+        camera: &C,
+        kernel: &'a Kernel<'a, A, R>,
+        film: &Film,
+        count: u32,
+    ) -> Pass<'a, C::Rays, A, R> {
+        let rays = camera.begin_frame(film.width(), film.height());
+        let Self { sampling, allocation, .. } = *self;
+        Pass { rays, kernel, sampling: *sampling, first: film.samples(), count, allocation }
+    }
 }
 
 /// Runs a kernel for every pixel of a film, or for every element of a batch, on the CPU.
@@ -143,28 +169,8 @@ pub trait Scheduler {
         samples: u32,
         observer: Observer<'_>,
     ) -> ControlFlow<()> {
-        observer(0.0)?;
-        let mut image = Image::filled(film.width(), film.height(), Moments::none());
-        let mut done = 0;
-        for count in passes(samples) {
-            let rays = camera.begin_frame(film.width(), film.height());
-            let pass = Pass { rays, kernel, sampling: *sampling, first: film.samples(), count };
-            let share =
-                |of_pass: f64| (f64::from(done) + of_pass * f64::from(count)) / f64::from(samples);
-            let mut tell = |of_pass: f64| observer(share(of_pass));
-            let watch = Watch::new(&mut tell, image.pixels().len());
-            self.run(&pass, &mut image, &watch);
-            if watch.is_stopped() {
-                return ControlFlow::Break(());
-            }
-            film.join(&image, count);
-            done += count;
-            let answer = observer(f64::from(done) / f64::from(samples));
-            if done < samples {
-                answer?;
-            }
-        }
-        ControlFlow::Continue(())
+        let plan = Samples { sampling, each: samples, allocation: None };
+        OnCpu { scheduler: self, camera, kernel }.accumulate(&plan, film, observer)
     }
 
     /// Renders until an error is reached, or a budget is spent. `film` gives the size; what it had
@@ -243,6 +249,43 @@ struct OnCpu<'a, S: ?Sized, C, A: Type, R: Type> {
     kernel: &'a Kernel<'a, A, R>,
 }
 
+impl<S, C, A, R> OnCpu<'_, S, C, A, R>
+where
+    S: Scheduler + ?Sized,
+    C: Camera,
+    A: FilmArgs,
+    R: Radiance + Send,
+{
+    fn accumulate(
+        &self,
+        samples: &Samples<'_>,
+        film: &mut Film,
+        observer: Observer<'_>,
+    ) -> ControlFlow<()> {
+        observer(0.0)?;
+        let all = f64::from(samples.each);
+        let mut image = Image::filled(film.width(), film.height(), Moments::none());
+        let mut done = 0;
+        for count in passes(samples.each) {
+            let pass = samples.pass(self.camera, self.kernel, film, count);
+            let share = |of_pass: f64| (f64::from(done) + of_pass * f64::from(count)) / all;
+            let mut tell = |of_pass: f64| observer(share(of_pass));
+            let watch = Watch::new(&mut tell, image.pixels().len());
+            self.scheduler.run(&pass, &mut image, &watch);
+            if watch.is_stopped() {
+                return ControlFlow::Break(());
+            }
+            film.join(&image, count);
+            done += count;
+            let answer = observer(f64::from(done) / all);
+            if done < samples.each {
+                answer?;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+}
+
 impl<S, C, A, R> Renderer for OnCpu<'_, S, C, A, R>
 where
     S: Scheduler + ?Sized,
@@ -254,12 +297,10 @@ where
 
     fn render(
         &mut self,
-        sampling: &Sampling,
+        samples: &Samples<'_>,
         film: &mut Film,
-        samples: u32,
         observer: Observer<'_>,
     ) -> Result<ControlFlow<()>, Infallible> {
-        let Self { scheduler, camera, kernel } = *self;
-        Ok(scheduler.accumulate_observed(camera, kernel, sampling, film, samples, observer))
+        Ok(self.accumulate(samples, film, observer))
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::{UVec2, Vec2, vec2};
 
+use super::allocation::{Allocation, part_of};
 use super::film_args::FilmArgs;
 use super::pixel_sampler::pixel_place;
 use super::{Moments, MomentsOn, PixelSampler, Radiance, Sampling};
@@ -9,7 +10,7 @@ use crate::camera::CameraRays;
 use crate::kernel;
 use crate::kernel::Kernel;
 use crate::machine::functions::vec2;
-use crate::machine::{Loop, Machine, Steps, Stop, Type, U, Var, X2};
+use crate::machine::{Capture, Loop, Machine, Recorder, Resource, Steps, Stop, Type, U, Var, X2};
 use crate::sampling::{SampleMethod, Sampler};
 
 /// What is done for each pixel of a film, by every variant: a frame's ray, or the samples of a
@@ -27,6 +28,12 @@ pub trait Shot: Sync {
 
     /// The kernel.
     fn kernel(&self) -> &Kernel<'_, Self::Args, Self::Result>;
+
+    /// Shows the buffers that it may read on a device.
+    #[doc(hidden)]
+    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        self.kernel().resources(visit);
+    }
 
     /// Runs it for a pixel by the user's own function.
     fn pixel(&self, pixel: UVec2) -> Self::Output;
@@ -108,6 +115,8 @@ pub(crate) struct Pass<'a, C, A: Type, R: Type> {
     pub(crate) first: u32,
     /// How many.
     pub(crate) count: u32,
+    /// Some blocks may need fewer: a pixel takes those whose number is below what it is given here.
+    pub(crate) allocation: Option<&'a Allocation>,
 }
 
 impl<C: CameraRays, A: FilmArgs, R: Radiance + Send> Shot for Pass<'_, C, A, R> {
@@ -119,10 +128,22 @@ impl<C: CameraRays, A: FilmArgs, R: Radiance + Send> Shot for Pass<'_, C, A, R> 
         self.kernel
     }
 
+    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        self.kernel.resources(visit);
+        if let Some(allocation) = self.allocation {
+            Capture::<Recorder>::resources(allocation.samples(), visit);
+        }
+    }
+
     fn pixel(&self, pixel: UVec2) -> Moments {
         let Sampling { pixels, method, seed, planned } = self.sampling;
+        let end = self.first + self.count;
+        let (planned, end) = match self.allocation {
+            Some(a) => part_of(a.samples(), a.columns(), pixel, end),
+            None => (planned, end),
+        };
         let mut moments = Moments::none();
-        for index in self.first..self.first + self.count {
+        for index in self.first..end {
             let (at, lens, sampler) =
                 places(pixel, seed, index, planned, pixels, method, C::HAS_LENS);
             let ray = self.rays.lens_ray(at.x, at.y, lens);
@@ -140,9 +161,17 @@ impl<C: CameraRays, A: FilmArgs, R: Radiance + Send> Shot for Pass<'_, C, A, R> 
     ) -> MomentsOn<M> {
         let Sampling { pixels, method, seed, planned } = self.sampling;
         let rays = m.capture("camera", self.rays);
-        let (seed, planned) = (m.capture("seed", seed), m.capture("planned", planned));
+        let seed = m.capture("seed", seed);
         let first = m.capture("first_sample", self.first);
-        let end = Stop::new(m, m.capture("end_of_samples", self.first + self.count));
+        let end = m.capture("end_of_samples", self.first + self.count);
+        let (planned, end) = match self.allocation {
+            Some(a) => {
+                let samples = Capture::capture(a.samples(), m, "samples_of_blocks");
+                part_of::on(m, samples, m.capture("columns_of_blocks", a.columns()), pixel, end)
+            }
+            None => (m.capture("planned", planned), end),
+        };
+        let end = Stop::new(m, end);
         let moments = Var::new(m, "moments", Moments::none_on(m));
         let index = Steps::new(m, "sample", first, self.first);
         let samples = Loop::new(m);
@@ -192,13 +221,15 @@ mod tests {
         let centred = sampling.pixels(PixelSampler::Center);
         let pass = |sampling| {
             let rays = pinhole.begin_frame(4, 4);
-            wgsl(&Pass { rays, kernel: &kernel, sampling, first: 0, count: 8 })
+            wgsl(&Pass { rays, kernel: &kernel, sampling, first: 0, count: 8, allocation: None })
         };
         assert!(pass(sampling).contains("sobol") && !pass(sampling).contains("permuted"));
         assert!(pass(stratified).contains("permuted") && !pass(stratified).contains("sobol"));
         assert!(!pass(centred).contains("sobol") && !pass(centred).contains("disk"));
         let rays = lens.begin_frame(4, 4);
-        let blurred = wgsl(&Pass { rays, kernel: &kernel, sampling: centred, first: 0, count: 8 });
+        let pass =
+            Pass { rays, kernel: &kernel, sampling: centred, first: 0, count: 8, allocation: None };
+        let blurred = wgsl(&pass);
         assert!(blurred.contains("sobol") && blurred.contains("disk"), "{blurred}");
     }
 }

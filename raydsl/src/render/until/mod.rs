@@ -3,6 +3,7 @@
 mod quantile;
 mod replications;
 mod run;
+mod shares;
 
 use core::ops::ControlFlow;
 use std::time::Duration;
@@ -79,7 +80,8 @@ impl Target {
 pub struct Budget {
     /// By the clock.
     pub time: Duration,
-    /// Samples a pixel in all, those of pilots too.
+    /// Samples a pixel in all, those of pilots too; on the average where [`Until::adaptive`] has
+    /// chosen them.
     pub samples: u32,
 }
 
@@ -109,17 +111,29 @@ pub struct Until {
     pub target: Target,
     /// What may be spent.
     pub budget: Budget,
+    /// Whether blocks of 16 by 16 pixels get samples as they need them; see [`Until::adaptive`].
+    pub adaptive: bool,
 }
 
 impl Until {
-    /// Until `target` is reached or `budget` is spent.
+    /// Until `target` is reached or `budget` is spent, with as many samples of one pixel as of
+    /// another.
     pub const fn new(target: Target, budget: Budget) -> Self {
-        Self { target, budget }
+        Self { target, budget, adaptive: false }
+    }
+
+    /// Gives more samples to blocks of 16 by 16 pixels whose samples differ more: as many as make
+    /// the error of the whole picture least (Neyman, "On the Two Different Aspects of the
+    /// Representative Method", 1934, section III), but nowhere less than an eighth of the mean.
+    /// The pilot tells where that is. [`Film::sample_counts`] has the numbers that it came to.
+    #[must_use]
+    pub const fn adaptive(self) -> Self {
+        Self { adaptive: true, ..self }
     }
 
     /// Whether this can be asked of a film.
     pub(crate) fn check(&self, film: &Film) -> Result<(), UntilError> {
-        let Self { target, budget } = *self;
+        let Self { target, budget, .. } = *self;
         if !(target.tolerance > 0.0 && target.tolerance.is_finite()) {
             return Err(UntilError::Tolerance { tolerance: target.tolerance });
         }
@@ -222,9 +236,9 @@ impl Estimate {
 pub struct Progress {
     /// The error of the best picture so far.
     pub estimate: Estimate,
-    /// Its samples a pixel.
+    /// Its samples a pixel, on the average.
     pub samples: u32,
-    /// Samples a pixel that were taken in all.
+    /// Samples a pixel that were taken in all, on the average.
     pub spent: u32,
     /// Since the beginning.
     pub elapsed: Duration,
@@ -239,9 +253,9 @@ pub struct Reached {
     pub outcome: Outcome,
     /// The error of the picture in the film.
     pub estimate: Estimate,
-    /// Samples of each pixel of it.
+    /// Samples a pixel of it, on the average; [`Film::sample_counts`] has those of each.
     pub samples: u32,
-    /// Samples of each pixel that were taken in all, those of pilots too.
+    /// Samples a pixel that were taken in all, those of pilots too, on the average.
     pub spent: u32,
     /// How long it took.
     pub elapsed: Duration,

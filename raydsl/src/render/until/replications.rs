@@ -17,7 +17,7 @@ const AGREEMENT: f64 = 4.0 * ROUNDING;
 /// Added to the square of a value that an error is put in relation to.
 const RELATIVE_EPSILON: f64 = 1e-2;
 
-/// Replications of a film, of `each` samples a pixel.
+/// Replications of a film, of `each` samples a pixel, on the average if they are allocated.
 pub(super) struct Replications {
     /// The samples of all; none before there is one.
     film: Option<Film>,
@@ -30,6 +30,16 @@ pub(super) struct Replications {
     apart: Vec<DVec3>,
     /// The mean of the whole picture, by each.
     means: Vec<f64>,
+}
+
+/// The error of a pixel's mean.
+pub(super) struct PixelError {
+    /// The mean of its square, as it is expected.
+    pub(super) variance: f64,
+    /// The square of what rounding leaves.
+    pub(super) rounding: f64,
+    /// Of how many samples it is.
+    pub(super) samples: u64,
 }
 
 /// A mean squared error as it is expected, and over how many independent pixels it is.
@@ -75,9 +85,12 @@ impl Replications {
         self.film.as_ref().map_or(&[], Film::sums)
     }
 
-    /// Samples a pixel in all.
+    /// Samples a pixel in all, on the average.
     pub(super) fn samples(&self) -> u32 {
-        self.film.as_ref().map_or(0, Film::samples)
+        self.film.as_ref().map_or(0, |film| {
+            let pixels = film.sums().len().max(1) as u64;
+            u32::try_from(film.total_samples() / pixels).unwrap_or(u32::MAX)
+        })
     }
 
     /// How much the error is worth before it is known: the squared quantile, over the samples.
@@ -111,10 +124,7 @@ impl Replications {
     fn spread(&self, metric: Metric) -> Spread {
         match metric {
             Metric::Mean => self.spread_of_mean(),
-            Metric::Rmse => self.spread_of_pixels(|square, _| square),
-            Metric::RelMse => {
-                self.spread_of_pixels(|square, value| square / (value * value + RELATIVE_EPSILON))
-            }
+            Metric::Rmse | Metric::RelMse => self.spread_of_pixels(metric),
         }
     }
 
@@ -143,7 +153,7 @@ impl Replications {
     fn unseen(&self, sums: &Sums) -> DVec3 {
         let (mean, m2) = (sums.mean.truncate(), sums.m2.truncate());
         let (all, n) = (sums.count as f64, f64::from(self.count));
-        let share = (2.0 / ((n + 2.0) * (n + 3.0))).sqrt() / f64::from(self.each);
+        let share = (2.0 / ((n + 2.0) * (n + 3.0))).sqrt() * n / all;
         let weight = |mean: f64, m2: f64| {
             let of_rare = mean.abs() + m2 / (all * mean.abs());
             of_rare.min(m2.sqrt())
@@ -165,27 +175,44 @@ impl Replications {
         Spread { mean_square: self.of_means(squares, mean, unseen), pixels: 1.0, floor }
     }
 
-    /// `weigh` puts a square in relation to a value. The channels of a pixel may go together, so a
-    /// pixel counts once. Pixels with more variance than others count for fewer (Satterthwaite, "An
-    /// Approximate Distribution of Estimates of Variance Components", 1946).
-    fn spread_of_pixels(&self, weigh: impl Fn(f64, f64) -> f64) -> Spread {
-        let (mut pixels, mut sum, mut squares, mut rounding) = (0u64, 0.0, 0.0, 0.0);
-        let mean_of =
-            |v: DVec3, values: DVec3| (0..3).map(|i| weigh(v[i], values[i])).sum::<f64>() / 3.0;
+    /// What is known of each pixel's error, in the metric's weights; nothing of those that are no
+    /// numbers.
+    pub(super) fn pixels(&self, metric: Metric) -> impl Iterator<Item = Option<PixelError>> {
+        let weigh = move |square: f64, value: f64| match metric {
+            Metric::Rmse | Metric::Mean => square,
+            Metric::RelMse => square / (value * value + RELATIVE_EPSILON),
+        };
+        let mean_of = move |squares: DVec3, values: DVec3| {
+            (0..3).map(|i| weigh(squares[i], values[i])).sum::<f64>() / 3.0
+        };
         let apart = self.apart.iter().chain(std::iter::repeat(&DVec3::ZERO));
-        for (apart, sums) in apart.zip(self.sums()) {
+        apart.zip(self.sums()).map(move |(apart, sums)| {
             let value = sums.mean.truncate();
             if !(apart.is_finite() && value.is_finite()) {
-                continue;
+                return None;
             }
             let unseen = self.unseen(sums);
             let of_channel = |i: usize| self.of_means(apart[i], value[i], || unseen[i]);
             let variance = DVec3::new(of_channel(0), of_channel(1), of_channel(2));
-            let variance = mean_of(variance, value);
+            let rounding = value * ROUNDING;
+            Some(PixelError {
+                variance: mean_of(variance, value),
+                rounding: mean_of(rounding * rounding, value),
+                samples: sums.count,
+            })
+        })
+    }
+
+    /// The channels of a pixel may go together, so a pixel counts once. Pixels with more variance
+    /// than others count for fewer (Satterthwaite, "An Approximate Distribution of Estimates of
+    /// Variance Components", 1946).
+    fn spread_of_pixels(&self, metric: Metric) -> Spread {
+        let (mut pixels, mut sum, mut squares, mut rounding) = (0u64, 0.0, 0.0, 0.0);
+        for pixel in self.pixels(metric).flatten() {
             pixels += 1;
-            sum += variance;
-            squares += variance * variance;
-            rounding += mean_of((value * ROUNDING) * (value * ROUNDING), value);
+            sum += pixel.variance;
+            squares += pixel.variance * pixel.variance;
+            rounding += pixel.rounding;
         }
         if pixels == 0 {
             return Spread { mean_square: 0.0, pixels: 1.0, floor: f64::INFINITY };

@@ -6,7 +6,10 @@ use std::time::{Duration, Instant};
 use glam::UVec4;
 
 use super::replications::{Replications, is_complete};
+use super::shares::Shares;
 use super::{Estimate, Outcome, Progress, ProgressObserver, REPLICATIONS, Reached, Until};
+use crate::render::allocation::Allocation;
+use crate::render::scheduler::Samples;
 use crate::render::watch::Observer;
 use crate::render::{Film, Sampling};
 use crate::sampling::pcg4d;
@@ -23,17 +26,19 @@ const AIM: f64 = 0.8;
 /// the rest.
 const FIRST_SHARE: f64 = 0.8;
 
+/// This part of a budget's time, at most, is kept for what follows the last sample.
+const MOST_FOR_END: u32 = 10;
+
 /// Adds samples to an empty film, as a scheduler does. The observer may break off.
 pub(crate) trait Renderer {
     /// What may go wrong.
     type Error;
 
-    /// Adds `samples` samples to each pixel.
+    /// Adds `samples`.
     fn render(
         &mut self,
-        sampling: &Sampling,
+        samples: &Samples<'_>,
         film: &mut Film,
-        samples: u32,
         observer: Observer<'_>,
     ) -> Result<ControlFlow<()>, Self::Error>;
 }
@@ -66,9 +71,21 @@ pub(crate) fn run<R: Renderer>(
     let size = (film.width(), film.height());
     let begin = Instant::now();
     let best = Replications::none(0);
-    let mut run = Run { until, sampling, size, begin, observer, best, spent: 0, stages: 0 };
+    let mut run = Run {
+        until,
+        sampling,
+        size,
+        begin,
+        observer,
+        best,
+        shares: None,
+        spent: 0,
+        stages: 0,
+        looked: begin,
+        between: Duration::ZERO,
+    };
     let end = run.stages(renderer);
-    let Run { best, spent, .. } = run;
+    let (spent, best) = (run.spent_each(), run.best);
     let samples = best.samples();
     // Whatever went wrong, the best picture so far is kept.
     match best.into_film() {
@@ -95,9 +112,15 @@ struct Run<'a> {
     observer: ProgressObserver<'a>,
     /// The stage whose error is expected to be the smallest.
     best: Replications,
-    /// Samples a pixel.
-    spent: u32,
+    /// How the samples of the next stage are shared among the blocks of the film.
+    shares: Option<Shares>,
+    /// Samples of all pixels.
+    spent: u64,
     stages: u32,
+    /// When the clock was looked at last.
+    looked: Instant,
+    /// How long it was not looked at between two replications: so long it may take to end.
+    between: Duration,
 }
 
 impl Run<'_> {
@@ -118,6 +141,9 @@ impl Run<'_> {
             }
             if let Some(outcome) = cut {
                 return Ok((outcome, self.reported(error)));
+            }
+            if self.until.adaptive && is_best && self.best.each >= pilot {
+                self.shares = Shares::of(&self.best, self.until.target.metric, self.size.0);
             }
             plan = self.next(plan, pilot, error.high - floor, floor, &mut left);
         }
@@ -150,7 +176,7 @@ impl Run<'_> {
         }
         let ratio = high / (AIM * (self.tolerance() - floor));
         // Errors of independent samples fall with the root of their number; others fall faster.
-        let need = ratio * ratio;
+        let need = ratio * ratio * self.shares.as_ref().map_or(1.0, |shares| shares.gain);
         // Where the last ones were to be enough and were not, more are needed.
         let least = if last.doubt.is_some() { 2.0 } else { 1.0 };
         let times = need.ceil().clamp(least, GROWTH) as u32;
@@ -165,19 +191,23 @@ impl Run<'_> {
 
     /// Renders the replications of a stage, as far as the budget goes.
     fn stage<R: Renderer>(&mut self, plan: Plan, renderer: &mut R) -> Result<Stage, R::Error> {
-        let affordable = (self.until.budget.samples - self.spent) / REPLICATIONS;
+        let affordable = (self.until.budget.samples - self.spent_each()) / REPLICATIONS;
         if affordable == 0 {
             return Ok(Stage { is_best: false, cut: Some(Outcome::OutOfSamples) });
         }
         let each = plan.each.min(affordable);
+        let allocation = self.shares.as_ref().map(|shares| shares.allocation(each));
+        let most = allocation.as_ref().map_or(each, Allocation::most);
         let mut stage = Replications::none(each);
         let mut cut = None;
         let mut end = Ok(());
         for replication in 0..REPLICATIONS {
             let mut one = Film::new(self.size.0, self.size.1);
             let sampling = self.sampling_of(replication, each);
-            let replicated = self.replication(&sampling, &mut one, each, &stage, renderer);
-            self.spent += one.samples();
+            let allocation = allocation.as_ref();
+            let samples = Samples { sampling: &sampling, each: most, allocation };
+            let replicated = self.replication(&samples, &mut one, &stage, renderer);
+            self.spent += one.total_samples();
             match replicated {
                 Ok(None) => stage.join(one),
                 Ok(Some(outcome)) => cut = Some(outcome),
@@ -198,6 +228,15 @@ impl Run<'_> {
         Ok(Stage { is_best: is_better && is_complete, cut })
     }
 
+    fn pixels(&self) -> u64 {
+        u64::from(self.size.0) * u64::from(self.size.1)
+    }
+
+    /// Samples a pixel that were taken in all, on the average.
+    fn spent_each(&self) -> u32 {
+        u32::try_from(self.spent.div_ceil(self.pixels())).unwrap_or(u32::MAX)
+    }
+
     /// Whether the error of a stage is expected to be smaller than that of the best one. How large
     /// it seems to be is not asked: that would choose what is flattered.
     fn is_better(&self, stage: &Replications) -> bool {
@@ -214,25 +253,31 @@ impl Run<'_> {
     /// Renders one replication, looking at the clock and asking the observer meanwhile.
     fn replication<R: Renderer>(
         &mut self,
-        sampling: &Sampling,
+        samples: &Samples<'_>,
         film: &mut Film,
-        samples: u32,
         stage: &Replications,
         renderer: &mut R,
     ) -> Result<Option<Outcome>, R::Error> {
         let shown = if self.is_better(stage) { stage } else { &self.best };
         let target = self.until.target;
         let (estimate, _) = shown.estimate(target.metric, target.confidence);
-        let (best, spent) = (shown.samples(), self.spent);
+        let (best, spent) = (shown.samples(), self.spent_each());
         let estimate = self.reported(estimate);
         let (begin, time) = (self.begin, self.until.budget.time);
+        let mut is_first = true;
         let mut cut = None;
         let mut watch = |share: f64| {
-            let elapsed = begin.elapsed();
+            let (now, last) = (Instant::now(), self.looked);
+            self.looked = now;
+            if is_first {
+                self.between = (now - last).min(time / MOST_FOR_END);
+                is_first = false;
+            }
+            let elapsed = now - begin;
             let time_left = time.saturating_sub(elapsed);
-            let spent = spent + (share * f64::from(samples)) as u32;
+            let spent = spent + (share * f64::from(stage.each)) as u32;
             let progress = Progress { estimate, samples: best, spent, elapsed, time_left };
-            if time_left == Duration::ZERO {
+            if time_left <= self.between {
                 cut = Some(Outcome::OutOfTime);
             } else if (self.observer)(&progress).is_break() {
                 cut = Some(Outcome::Stopped);
@@ -240,7 +285,7 @@ impl Run<'_> {
             if cut.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         // What is there when the observer breaks off at the end counts all the same.
-        let end = renderer.render(sampling, film, samples, &mut watch)?;
+        let end = renderer.render(samples, film, &mut watch)?;
         Ok(if end.is_break() { cut } else { None })
     }
 }

@@ -264,7 +264,7 @@ impl<'a> Run<'a> {
         let (width, height) = self.size;
         let rays = camera.begin_frame(width, height);
         let sample = |x: u32, y: u32, first: u32| {
-            let pass = Pass { rays, kernel, sampling, first, count: 1 };
+            let pass = Pass { rays, kernel, sampling, first, count: 1, allocation: None };
             let outcomes = Outcomes::of(Rounding::IEEE, 1, |m| {
                 let pixel = X2 { x: U(m.u32(x)), y: U(m.u32(y)) };
                 crate::render::Shot::pixel_on(&pass, m, pixel, &|m, args| kernel.on_margin(m, args))
