@@ -23,7 +23,7 @@ pub(crate) struct Args {
     /// How sure that must be, from 50% to 99.99%.
     #[arg(long, value_name = "SHARE", default_value = "95%", value_parser = share)]
     pub(crate) confidence: f64,
-    /// Take more samples where the picture needs more, and write how many: samples.png.
+    /// Take more samples where the picture needs more, and write how many: until_samples.png.
     #[arg(long)]
     pub(crate) adaptive: bool,
     /// The time that may be spent, such as 30s.

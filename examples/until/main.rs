@@ -2,8 +2,8 @@
 //! enough, who hears how far it is, and how Ctrl-C leaves the best picture so far.
 //!
 //! `cargo run --release --example until -- [FOLDER] [FILE] --error 1% --time 30s` writes
-//! `until.png` to FOLDER (`out` if none is given), with `--adaptive` also `samples.png`. FILE is
-//! an `.obj`, `.ply` or `.tri`; without one there is half a sponge. `--help` has the rest.
+//! `until.png` to FOLDER (`out` if none is given), with `--adaptive` also `until_samples.png`. FILE
+//! is an `.obj`, `.ply` or `.tri`; without one there is half a sponge. `--help` has the rest.
 
 mod args;
 mod sponge;
@@ -106,7 +106,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
 
 /// Writes where the samples went.
 fn write_counts(film: &Film, folder: &Path) -> Result<PathBuf, Box<dyn Error>> {
-    let path = folder.join("samples.png");
+    let path = folder.join("until_samples.png");
     let counts = film.sample_counts();
     let values = counts.pixels().iter().map(|&n| n as f32).collect();
     let (width, height) = (counts.width(), counts.height());

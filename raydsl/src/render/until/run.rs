@@ -90,7 +90,8 @@ pub(crate) fn run<R: Renderer>(
     // Whatever went wrong, the best picture so far is kept.
     match best.into_film() {
         Some(best) => *film = best,
-        None => film.clear(),
+        None if film.samples() > 0 => film.clear(),
+        None => {}
     }
     let (outcome, estimate) = end?;
     Ok(Reached {

@@ -1,0 +1,130 @@
+//! Lanes that do something of their own where others enter a level, or count.
+
+use super::Lanes;
+use crate::machine::{
+    BoolBinary, Compare, Counted, F32Binary, F32Unary, IntBinary, Op, Place, counted,
+};
+
+/// Lanes whose instruction set the code around is compiled for already.
+///
+/// Kernels that run on them are inlined instead of entering the level again; that is for the
+/// innermost loops, which must not pass registers through memory.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Entered<L>(pub(crate) L);
+
+macro_rules! delegate {
+    ($($name:ident($($a:ident: $t:ty),*) -> $result:ty;)+) => {
+        $(
+            #[inline(always)]
+            fn $name(self, $($a: $t),*) -> $result {
+                self.0.$name($($a),*)
+            }
+        )+
+    };
+    (operations $($name:ident: $kind:ident($($a:ident: $t:ty),*) -> $result:ty;)+) => {
+        $(
+            #[inline(always)]
+            fn $name<O: Op<$kind>>(self, op: O, $($a: $t),*) -> $result {
+                self.0.$name(op, $($a),*)
+            }
+        )+
+    };
+}
+
+/// Lanes around others: what is not given here is theirs.
+macro_rules! lanes_around {
+    ($name:ident { $($own:tt)* }) => {
+        impl<L: Lanes> Lanes for $name<L> {
+            const N: usize = L::N;
+            type F32 = L::F32;
+            type I32 = L::I32;
+            type U32 = L::U32;
+            type Mask = L::Mask;
+
+        $($own)*
+
+            delegate! {
+                operations
+                f32_unary: F32Unary(a: L::F32) -> L::F32;
+                f32_binary: F32Binary(a: L::F32, b: L::F32) -> L::F32;
+                i32_binary: IntBinary(a: L::I32, b: L::I32) -> L::I32;
+                u32_binary: IntBinary(a: L::U32, b: L::U32) -> L::U32;
+                mask_binary: BoolBinary(a: L::Mask, b: L::Mask) -> L::Mask;
+                f32_compare: Compare(a: L::F32, b: L::F32) -> L::Mask;
+                i32_compare: Compare(a: L::I32, b: L::I32) -> L::Mask;
+                u32_compare: Compare(a: L::U32, b: L::U32) -> L::Mask;
+            }
+            delegate! {
+                isa() -> &'static str;
+                f32(v: f32) -> L::F32;
+                i32(v: i32) -> L::I32;
+                u32(v: u32) -> L::U32;
+                mask(v: bool) -> L::Mask;
+                f32_mul_add(a: L::F32, b: L::F32, c: L::F32) -> L::F32;
+                mask_not(a: L::Mask) -> L::Mask;
+                f32_select(c: L::Mask, a: L::F32, b: L::F32) -> L::F32;
+                i32_select(c: L::Mask, a: L::I32, b: L::I32) -> L::I32;
+                u32_select(c: L::Mask, a: L::U32, b: L::U32) -> L::U32;
+                any(a: L::Mask) -> bool;
+                bits(a: L::Mask) -> u64;
+                mask_from_bits(bits: u64) -> L::Mask;
+                f32_to_i32(a: L::F32) -> L::I32;
+                f32_to_u32(a: L::F32) -> L::U32;
+                i32_to_f32(a: L::I32) -> L::F32;
+                u32_to_f32(a: L::U32) -> L::F32;
+                i32_to_u32(a: L::I32) -> L::U32;
+                u32_to_i32(a: L::U32) -> L::I32;
+                f32_to_bits(a: L::F32) -> L::U32;
+                f32_from_bits(a: L::U32) -> L::F32;
+                f32_from_fn(f: impl FnMut(usize) -> f32) -> L::F32;
+                i32_from_fn(f: impl FnMut(usize) -> i32) -> L::I32;
+                u32_from_fn(f: impl FnMut(usize) -> u32) -> L::U32;
+            }
+
+            #[inline(always)]
+            fn f32_lane(a: &L::F32, lane: usize) -> f32 {
+                L::f32_lane(a, lane)
+            }
+            #[inline(always)]
+            fn i32_lane(a: &L::I32, lane: usize) -> i32 {
+                L::i32_lane(a, lane)
+            }
+            #[inline(always)]
+            fn u32_lane(a: &L::U32, lane: usize) -> u32 {
+                L::u32_lane(a, lane)
+            }
+            #[inline(always)]
+            fn mask_lane(a: &L::Mask, lane: usize) -> bool {
+                L::mask_lane(a, lane)
+            }
+        }
+    };
+}
+
+lanes_around!(Entered {
+    #[inline(always)]
+    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
+        f()
+    }
+    #[inline(always)]
+    fn enter_again<R>(self, f: impl FnOnce() -> R) -> R {
+        self.0.vectorize(f)
+    }
+    #[inline(always)]
+    fn at(self, place: Place, active: L::Mask) {
+        self.0.at(place, active);
+    }
+});
+
+lanes_around!(Counted {
+    #[inline(always)]
+    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
+        self.0.vectorize(f)
+    }
+    #[inline(always)]
+    fn at(self, place: Place, active: L::Mask) {
+        if counted::is_counting() {
+            counted::add(place, self.0.bits(active));
+        }
+    }
+});

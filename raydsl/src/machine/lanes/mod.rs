@@ -1,0 +1,109 @@
+//! Lane operations of one instruction set and width.
+//!
+//! [`Lanes`] is the small trait under [`Packet`](super::Packet), implemented over the tokens of
+//! `fearless_simd`: a token is proof that the machine has the instruction set, and
+//! [`Lanes::vectorize`] enters it through a `#[target_feature]` function.
+
+mod around;
+mod one;
+mod simd;
+
+use core::mem::MaybeUninit;
+
+pub(crate) use around::Entered;
+pub use one::One;
+pub use simd::{Simd4, Simd8, Simd16};
+
+use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Op, Place};
+
+/// Registers of one width, and what can be done with them. `self` is the proof of the level.
+#[expect(missing_docs, reason = "the operations are documented at their enums")]
+pub trait Lanes: Copy + Send + Sync + 'static {
+    /// How many lanes.
+    const N: usize;
+    type F32: Copy + 'static;
+    type I32: Copy + 'static;
+    type U32: Copy + 'static;
+    type Mask: Copy + 'static;
+
+    /// The instruction set's name, as reports print it.
+    fn isa(self) -> &'static str;
+    /// Runs `f` compiled for the instruction set.
+    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R;
+    /// The same for a function of its own that is called from code that runs so already.
+    #[inline(always)]
+    fn enter_again<R>(self, f: impl FnOnce() -> R) -> R {
+        self.vectorize(f)
+    }
+    /// The lanes of `active` are at a place of the source. Only [`Counted`](super::Counted)
+    /// listens.
+    #[inline(always)]
+    fn at(self, _place: Place, _active: Self::Mask) {}
+
+    fn f32(self, v: f32) -> Self::F32;
+    fn i32(self, v: i32) -> Self::I32;
+    fn u32(self, v: u32) -> Self::U32;
+    fn mask(self, v: bool) -> Self::Mask;
+
+    fn f32_unary<O: Op<F32Unary>>(self, op: O, a: Self::F32) -> Self::F32;
+    fn f32_binary<O: Op<F32Binary>>(self, op: O, a: Self::F32, b: Self::F32) -> Self::F32;
+    fn f32_mul_add(self, a: Self::F32, b: Self::F32, c: Self::F32) -> Self::F32;
+    /// Sums, products, bits, shifts; the rest is done lane by lane.
+    fn i32_binary<O: Op<IntBinary>>(self, op: O, a: Self::I32, b: Self::I32) -> Self::I32;
+    fn u32_binary<O: Op<IntBinary>>(self, op: O, a: Self::U32, b: Self::U32) -> Self::U32;
+    fn mask_binary<O: Op<BoolBinary>>(self, op: O, a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    fn mask_not(self, a: Self::Mask) -> Self::Mask;
+    fn f32_compare<O: Op<Compare>>(self, op: O, a: Self::F32, b: Self::F32) -> Self::Mask;
+    fn i32_compare<O: Op<Compare>>(self, op: O, a: Self::I32, b: Self::I32) -> Self::Mask;
+    fn u32_compare<O: Op<Compare>>(self, op: O, a: Self::U32, b: Self::U32) -> Self::Mask;
+    fn f32_select(self, c: Self::Mask, a: Self::F32, b: Self::F32) -> Self::F32;
+    fn i32_select(self, c: Self::Mask, a: Self::I32, b: Self::I32) -> Self::I32;
+    fn u32_select(self, c: Self::Mask, a: Self::U32, b: Self::U32) -> Self::U32;
+    fn any(self, a: Self::Mask) -> bool;
+    /// One bit a lane, lane 0 the lowest.
+    fn bits(self, a: Self::Mask) -> u64;
+    fn mask_from_bits(self, bits: u64) -> Self::Mask;
+
+    fn f32_to_i32(self, a: Self::F32) -> Self::I32;
+    fn f32_to_u32(self, a: Self::F32) -> Self::U32;
+    fn i32_to_f32(self, a: Self::I32) -> Self::F32;
+    fn u32_to_f32(self, a: Self::U32) -> Self::F32;
+    fn i32_to_u32(self, a: Self::I32) -> Self::U32;
+    fn u32_to_i32(self, a: Self::U32) -> Self::I32;
+    fn f32_to_bits(self, a: Self::F32) -> Self::U32;
+    fn f32_from_bits(self, a: Self::U32) -> Self::F32;
+
+    fn f32_from_fn(self, f: impl FnMut(usize) -> f32) -> Self::F32;
+    fn i32_from_fn(self, f: impl FnMut(usize) -> i32) -> Self::I32;
+    fn u32_from_fn(self, f: impl FnMut(usize) -> u32) -> Self::U32;
+    fn f32_lane(a: &Self::F32, lane: usize) -> f32;
+    fn i32_lane(a: &Self::I32, lane: usize) -> i32;
+    fn u32_lane(a: &Self::U32, lane: usize) -> u32;
+    fn mask_lane(a: &Self::Mask, lane: usize) -> bool;
+}
+
+/// `[f(0), f(1), ..]`. Unlike the array functions of `core` it is always inlined: what is not
+/// inlined is not compiled for the level, and there every operation is a call. Up to four elements,
+/// as vectors have, it is no loop that an optimiser must unroll; more are one, so that `f` stands
+/// in one place.
+#[inline(always)]
+pub(crate) fn fill<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T; N] {
+    let mut all = [const { MaybeUninit::uninit() }; N];
+    macro_rules! element {
+        ($($i:literal)+) => {
+            $(if const { $i < N } {
+                all[$i].write(f($i));
+            })+
+        };
+    }
+    if const { N <= 4 } {
+        element!(0 1 2 3);
+    } else {
+        for (i, v) in all.iter_mut().enumerate() {
+            v.write(f(i));
+        }
+    }
+    // SAFETY: each of the `N` elements has been written, and `MaybeUninit<T>` has the layout of
+    // `T`.
+    unsafe { core::mem::transmute_copy::<[MaybeUninit<T>; N], [T; N]>(&all) }
+}
