@@ -256,8 +256,11 @@ fn the_confidence_is_as_claimed() {
             let share = |n: u32| f64::from(n) / f64::from(found.seeds);
             let covered = share(found.below);
             line += &format!(" {:6.1} {:9}", 100.0 * covered, found.samples / u64::from(seeds));
-            // Three standard errors of a share of so many seeds.
-            let doubt = 3.0 * (0.05 * 0.95 / f64::from(seeds)).sqrt();
+            // Three standard errors of a share of so many seeds; a thousand leave no doubt.
+            let doubt = match seeds {
+                1000.. => 0.0,
+                _ => 3.0 * (0.05 * 0.95 / f64::from(seeds)).sqrt(),
+            };
             let (least, most) = if is_rare { (0.90, 1.0) } else { (0.93, 0.99) };
             let is_covered = covered >= least - doubt && covered <= most + doubt;
             let has_converged = found.converged == if i < 2 { seeds } else { 0 };
@@ -426,6 +429,38 @@ fn budgets_are_kept() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// Two fixed places, half of which are bright: a half round more would show in the mean.
+#[test]
+fn fixed_places_are_taken_in_whole_rounds() -> Result<(), Box<dyn Error>> {
+    let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+        let mut sampler = sampler;
+        let noise = 1e-3 * sampler.next_1d(host(SampleMethod::Random));
+        if sampler.index % 8 < 4 { noise } else { 1.0 + noise }
+    });
+    let sampling = Sampling::new(1).pixels(PixelSampler::Eight);
+    let target = Target::new(Metric::Rmse, 1e-9).pilot(20);
+    for samples in [64, 100, 777] {
+        let until = Until::new(target, Budget::of_samples(samples)).adaptive();
+        let mut film = Film::new(40, 20);
+        let simple = SimpleScheduler::new().variant(Variant::widest());
+        let reached = simple.render_until(&camera(), &kernel, &sampling, &mut film, &until)?;
+        assert!(reached.samples >= 64 && reached.spent <= samples, "{reached:?}");
+        assert!(film.sample_counts().pixels().iter().all(|n| n % 64 == 0 && *n > 0));
+        let is_half = |p: &Vec4| (p.x - 0.5005).abs() < 5e-4;
+        assert!(film.image().pixels().iter().all(is_half));
+    }
+    let until = Until::new(target, Budget::of_samples(63));
+    let few = SimpleScheduler::new().render_until(
+        &camera(),
+        &kernel,
+        &sampling,
+        &mut Film::new(4, 4),
+        &until,
+    );
+    assert_eq!(few, Err(UntilError::TooFewSamples { samples: 63, needed: 64 }));
+    Ok(())
+}
+
 #[test]
 fn an_observer_hears_of_the_error_and_stops() -> Result<(), Box<dyn Error>> {
     let method = SampleMethod::Random;
@@ -459,6 +494,25 @@ fn an_observer_hears_of_the_error_and_stops() -> Result<(), Box<dyn Error>> {
     let last = heard.last().ok_or("it is told")?;
     assert_eq!((last.estimate, last.samples), (reached.estimate, reached.samples));
     assert!(heard.is_sorted_by(|a, b| a.spent <= b.spent && a.time_left >= b.time_left));
+    // One that says so only once is obeyed, whenever it is.
+    for nth in 0..40 {
+        let mut calls = 0;
+        let mut once = |_: &raydsl::render::Progress| {
+            calls += 1;
+            if calls == nth + 1 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let until = Until::new(until.target.pilot(64), Budget::of_samples(4096));
+        let simple = SimpleScheduler::new();
+        let reached = simple.render_until_observed(
+            &camera(),
+            &kernel,
+            &sampling,
+            &mut film,
+            &until,
+            &mut once,
+        )?;
+        assert_eq!((reached.outcome, calls), (Outcome::Stopped, nth + 1));
+    }
     // Stopped at once, there is no picture, and its error is unknown.
     let nothing = tiled.render_until_observed(
         &camera(),
@@ -526,7 +580,7 @@ fn what_cannot_be_asked_for_is_an_error() {
     assert_eq!(asked(good.pilot(0), some, 4), Some(UntilError::NoPilot));
     assert_eq!(asked(good, Budget::of_time(Duration::ZERO), 4), Some(UntilError::NoTime));
     let few = asked(good, Budget::of_samples(7), 4);
-    assert_eq!(few, Some(UntilError::TooFewSamples { samples: 7 }));
+    assert_eq!(few, Some(UntilError::TooFewSamples { samples: 7, needed: 8 }));
     assert_eq!(asked(good, some, 0), Some(UntilError::NoPixels { width: 0, height: 4 }));
     assert_eq!(asked(good, some, 4), None);
 }

@@ -23,7 +23,7 @@ pub(super) struct Pipeline {
     pub(super) compute: wgpu::ComputePipeline,
     pub(super) layout: wgpu::BindGroupLayout,
     bindings: Bindings,
-    /// Invocations of one dispatch, as the last run left them: the next starts there.
+    /// Samples of one dispatch, as the last run left them: the next starts there.
     pub(super) goal: AtomicU64,
 }
 

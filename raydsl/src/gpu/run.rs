@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::collections::VecDeque;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -22,6 +23,30 @@ const IN_FLIGHT: usize = 2;
 /// Inputs or outputs of one dispatch at most: several dispatches overlap better with their
 /// transfers than one large one, and the buffers stay small beside the scene.
 const TILE_BYTES: u64 = 64 << 20;
+
+/// What one pixel of a run costs, in samples.
+#[derive(Clone, Copy)]
+pub(super) struct Effort {
+    /// At most so many.
+    pub(super) samples: u32,
+    /// Whether all pixels take that many: only then a run tells how long others will take.
+    pub(super) is_even: bool,
+}
+
+impl Effort {
+    /// One sample.
+    pub(super) const ONE: Self = Self { samples: 1, is_even: true };
+}
+
+/// Is told the share of a run that is done, and says whether to go on.
+pub(super) type Teller<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
+
+/// A grid that is run: its size, what a pixel costs, and who is told how far it is.
+pub(super) struct Grid<'a> {
+    pub(super) size: [u32; 2],
+    pub(super) effort: Effort,
+    pub(super) teller: Teller<'a>,
+}
 
 /// Where the outputs of a run go.
 pub(super) enum Outputs<'a> {
@@ -71,26 +96,31 @@ impl Context {
         size: [u32; 2],
         outputs: &mut [u8],
     ) -> Result<Timing, GpuError> {
-        self.run_to(module, data, inputs, size, Outputs::Host(outputs))
+        let grid = Grid { size, effort: Effort::ONE, teller: &mut |_| ControlFlow::Continue(()) };
+        let (ControlFlow::Continue(timing) | ControlFlow::Break(timing)) =
+            self.run_to(module, data, inputs, grid, Outputs::Host(outputs))?;
+        Ok(timing)
     }
 
-    /// [`Context::run`], with the outputs where the caller wants them.
+    /// [`Context::run`], with the outputs where the caller wants them, unless it is told to break
+    /// off.
     pub(super) fn run_to<'a>(
         &self,
         module: &Module,
         data: &dyn Fn(BufferKey) -> Option<Cow<'a, [u8]>>,
         inputs: &[u8],
-        size: [u32; 2],
+        grid: Grid<'_>,
         outputs: Outputs<'_>,
-    ) -> Result<Timing, GpuError> {
+    ) -> Result<ControlFlow<Timing, Timing>, GpuError> {
         let start = Instant::now();
+        let size = grid.size;
         let pixels = pixels(size)?;
         self.check_lengths(module, pixels, inputs)?;
         if let Outputs::Host(bytes) = &outputs {
             expect("outputs", bytes, pixels, module.output_stride)?;
         }
         if pixels == 0 {
-            return Ok(Timing::default());
+            return Ok(ControlFlow::Continue(Timing::default()));
         }
         self.gpu.check()?;
         let max_elements = self.max_elements(module)?;
@@ -111,9 +141,13 @@ impl Context {
         };
         let max_groups = self.gpu.caps.max_groups;
         let tiler = Tiler::new(size, module.workgroup, max_elements, max_groups);
-        let mut timing = self.dispatch_all(&pass, tiler, outputs)?;
+        let mut timing = Timing::default();
+        let end = self.dispatch_all(&pass, tiler, outputs, grid, &mut timing)?;
         timing.wall_ms = start.elapsed().as_secs_f64() * 1e3;
-        Ok(timing)
+        Ok(match end {
+            ControlFlow::Continue(()) => ControlFlow::Continue(timing),
+            ControlFlow::Break(()) => ControlFlow::Break(timing),
+        })
     }
 
     /// Checks the module's numbers and the caller's slices against each other.
@@ -205,16 +239,28 @@ impl Context {
         module.textures.iter().map(|texture| textures.bind(&self.gpu, texture, data)).collect()
     }
 
-    /// Sends the tiles off, a few in flight, and learns how large they should be.
+    /// Sends the tiles off, a few in flight, and learns how large they should be. What is in flight
+    /// comes in, even where no more is wanted.
     fn dispatch_all(
         &self,
         pass: &Pass<'_>,
         mut tiler: Tiler,
         outputs: &mut [u8],
-    ) -> Result<Timing, GpuError> {
-        let mut progress = Progress::new(pass.pipeline.goal.load(Ordering::Relaxed));
+        grid: Grid<'_>,
+        timing: &mut Timing,
+    ) -> Result<ControlFlow<()>, GpuError> {
+        let Grid { effort, teller, .. } = grid;
+        let all = u64::from(pass.size[0]) * u64::from(pass.size[1]);
+        let goal = pass.pipeline.goal.load(Ordering::Relaxed);
+        let mut progress = Progress { goal, effort, last_end: None, timing, done: 0 };
         let mut in_flight: VecDeque<InFlight> = VecDeque::with_capacity(IN_FLIGHT);
-        while let Some(tile) = tiler.next(progress.goal) {
+        let mut end = ControlFlow::Continue(());
+        while let Some(tile) = tiler.next(progress.goal / u64::from(effort.samples.max(1))) {
+            // The beginning and the end are told by others.
+            if progress.done > 0 && teller(progress.done as f64 / all as f64).is_break() {
+                end = ControlFlow::Break(());
+                break;
+            }
             if in_flight.len() == IN_FLIGHT
                 && let Some(oldest) = in_flight.pop_front()
             {
@@ -231,8 +277,10 @@ impl Context {
         for oldest in in_flight {
             self.retire(oldest, pass, outputs, &mut progress)?;
         }
-        pass.pipeline.goal.store(progress.goal, Ordering::Relaxed);
-        Ok(progress.timing)
+        if effort.is_even {
+            pass.pipeline.goal.store(progress.goal, Ordering::Relaxed);
+        }
+        Ok(end)
     }
 
     /// Takes the outputs of a dispatch and puts its buffers by.
@@ -241,7 +289,7 @@ impl Context {
         dispatch: InFlight,
         pass: &Pass<'_>,
         outputs: &mut [u8],
-        progress: &mut Progress,
+        progress: &mut Progress<'_>,
     ) -> Result<(), GpuError> {
         let since = dispatch.since;
         let finished = dispatch.finish(&self.gpu, pass, outputs)?;
@@ -252,17 +300,17 @@ impl Context {
 }
 
 /// What a run has learnt so far.
-struct Progress {
+struct Progress<'a> {
+    /// Samples of one dispatch.
     goal: u64,
+    effort: Effort,
     last_end: Option<Instant>,
-    timing: Timing,
+    timing: &'a mut Timing,
+    /// Pixels that have come in.
+    done: u64,
 }
 
-impl Progress {
-    fn new(goal: u64) -> Self {
-        Self { goal, last_end: None, timing: Timing::default() }
-    }
-
+impl Progress<'_> {
     /// Accounts for a finished dispatch. Without timestamps it took from its submission, or
     /// from the end of the one before it, until now.
     fn note(&mut self, since: Instant, finished: &Finished) {
@@ -274,7 +322,9 @@ impl Progress {
             *self.timing.device_ms.get_or_insert(0.0) += ms;
         }
         let ms = finished.device_ms.unwrap_or(wall_ms);
-        self.goal = next_goal(self.goal, finished.tile.invocations(), ms);
+        let pixels = finished.tile.invocations();
+        self.done += pixels;
+        self.goal = next_goal(self.goal, pixels * u64::from(self.effort.samples), ms);
     }
 }
 

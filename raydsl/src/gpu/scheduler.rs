@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use super::run::Outputs;
+use super::run::{Effort, Grid, Outputs, Teller};
 use super::window::check_target;
 use super::{Context, GpuError, GpuWindow, Timing};
 use crate::camera::Camera;
@@ -13,7 +13,7 @@ use crate::machine::wgsl::{BufferKey, Module};
 use crate::machine::{Resource, Type, X2, stride};
 use crate::render::{
     Film, FilmArgs, Frame, Image, Moments, Observer, ProgressObserver, Radiance, Reached, Renderer,
-    Samples, Sampling, Shot, Until, passes, run_until,
+    Samples, Sampling, Shot, Until, run_until,
 };
 
 /// Who is shown the buffers that a kernel may read.
@@ -63,8 +63,34 @@ impl GpuScheduler {
         kernel: &Kernel<'_, A, R>,
         image: &mut Image<R>,
     ) -> Result<Timing, GpuError> {
+        match self.frame_observed(camera, kernel, image, &mut |_| ControlFlow::Continue(()))? {
+            ControlFlow::Continue(timing) | ControlFlow::Break(timing) => Ok(timing),
+        }
+    }
+
+    /// [`GpuScheduler::frame`], telling `observer` the share that is done, after each dispatch: they
+    /// take about 50 ms. It may break off; `image` is then what it was.
+    ///
+    /// # Errors
+    ///
+    /// As there.
+    pub fn frame_observed<C: Camera, A: FilmArgs, R: Type + Send>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        image: &mut Image<R>,
+        observer: Observer<'_>,
+    ) -> Result<ControlFlow<Timing, Timing>, GpuError> {
+        if observer(0.0).is_break() {
+            return Ok(ControlFlow::Break(Timing::default()));
+        }
         let rays = camera.begin_frame(image.width(), image.height());
-        self.shoot(&Frame { rays, kernel }, image)
+        let end = self.shoot(&Frame { rays, kernel }, Effort::ONE, image, observer)?;
+        if end.is_continue() {
+            // The picture is there, whatever the answer.
+            let _ = observer(1.0);
+        }
+        Ok(end)
     }
 
     /// Renders a frame of `width` by `height` pixels into the application's buffer: row by row from
@@ -101,7 +127,11 @@ impl GpuScheduler {
         let shot = Frame { rays, kernel };
         let resources = |visit: Visit<'_>| shot.resources(visit);
         let module = self.module(&shot);
-        self.run_to(&resources, &module, &[], [width, height], Outputs::Device(window))
+        let teller = &mut |_| ControlFlow::Continue(());
+        let grid = Grid { size: [width, height], effort: Effort::ONE, teller };
+        let (ControlFlow::Continue(timing) | ControlFlow::Break(timing)) =
+            self.run_to(&resources, &module, &[], grid, Outputs::Device(window))?;
+        Ok(timing)
     }
 
     /// Adds `samples` samples to every pixel of `film`, as [`Scheduler::accumulate`] does. Those of
@@ -120,19 +150,36 @@ impl GpuScheduler {
         film: &mut Film,
         samples: u32,
     ) -> Result<Timing, GpuError> {
-        let mut image = Image::filled(film.width(), film.height(), Moments::none());
-        let mut timing = Timing::default();
-        let plan = Samples { sampling, each: samples, allocation: None };
-        for count in passes(samples) {
-            timing += self.shoot(&plan.pass(camera, kernel, film, count), &mut image)?;
-            film.join(&image, count);
+        let go_on: Observer<'_> = &mut |_| ControlFlow::Continue(());
+        match self.accumulate_observed(camera, kernel, sampling, film, samples, go_on)? {
+            ControlFlow::Continue(timing) | ControlFlow::Break(timing) => Ok(timing),
         }
-        Ok(timing)
+    }
+
+    /// [`GpuScheduler::accumulate`], telling `observer` the share that is done, after each dispatch.
+    /// It may break off: the film then has the passes that were finished.
+    ///
+    /// # Errors
+    ///
+    /// As there.
+    pub fn accumulate_observed<C: Camera, A: FilmArgs, R: Radiance + Send>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        sampling: &Sampling,
+        film: &mut Film,
+        samples: u32,
+        observer: Observer<'_>,
+    ) -> Result<ControlFlow<Timing, Timing>, GpuError> {
+        let plan = Samples { sampling, each: samples, allocation: None };
+        let mut renderer =
+            OnDevice { scheduler: self, camera, kernel, slice: Duration::MAX, pass: LARGEST_PASS };
+        renderer.accumulate(&plan, film, observer)
     }
 
     /// Renders until an error is reached, or a budget is spent, as [`Scheduler::render_until`]
-    /// does. The clock is looked at after each pass over the film, which has so many samples that
-    /// it takes about a fiftieth of the time, but one at least.
+    /// does. The clock is looked at after each dispatch, which takes about 50 ms; what is broken off
+    /// in a pass over the film is lost, so that one takes about a fiftieth of the time.
     ///
     /// [`Scheduler::render_until`]: crate::render::Scheduler::render_until
     ///
@@ -166,7 +213,7 @@ impl GpuScheduler {
         until: &Until,
         observer: ProgressObserver<'_>,
     ) -> Result<Reached, GpuError> {
-        until.check(film)?;
+        until.check(film, sampling)?;
         let slice = until.budget.time / PASSES_OF_A_BUDGET;
         let mut renderer = OnDevice { scheduler: self, camera, kernel, pass: 1, slice };
         run_until(until, sampling, film, observer, &mut renderer)
@@ -179,10 +226,16 @@ impl GpuScheduler {
         recording.module(&self.context.limits())
     }
 
-    fn shoot<S: Shot>(&self, shot: &S, image: &mut Image<S::Output>) -> Result<Timing, GpuError> {
+    fn shoot<S: Shot>(
+        &self,
+        shot: &S,
+        effort: Effort,
+        image: &mut Image<S::Output>,
+        teller: Teller<'_>,
+    ) -> Result<ControlFlow<Timing, Timing>, GpuError> {
         let module = self.module(shot);
-        let size = [image.width(), image.height()];
-        self.run(&|visit| shot.resources(visit), &module, &[], size, image.pixels_mut())
+        let grid = Grid { size: [image.width(), image.height()], effort, teller };
+        self.run(&|visit| shot.resources(visit), &module, &[], grid, image.pixels_mut())
     }
 
     /// Runs a kernel over `inputs`; `outputs` has the same length.
@@ -204,24 +257,31 @@ impl GpuScheduler {
         }
         let count = u32::try_from(inputs.len())
             .map_err(|_| GpuError::GridTooLarge { size: [u32::MAX, 1] })?;
-        self.run(&|visit| kernel.resources(visit), &module, &bytes, [count, 1], outputs)
+        let teller = &mut |_| ControlFlow::Continue(());
+        let grid = Grid { size: [count, 1], effort: Effort::ONE, teller };
+        let (ControlFlow::Continue(timing) | ControlFlow::Break(timing)) =
+            self.run(&|visit| kernel.resources(visit), &module, &bytes, grid, outputs)?;
+        Ok(timing)
     }
 
+    /// Runs a module; if it was broken off, `outputs` are what they were.
     fn run<O: Type>(
         &self,
         resources: Resources<'_>,
         module: &Module,
         inputs: &[u8],
-        size: [u32; 2],
+        grid: Grid<'_>,
         outputs: &mut [O],
-    ) -> Result<Timing, GpuError> {
+    ) -> Result<ControlFlow<Timing, Timing>, GpuError> {
         let each = stride(O::SCHEMA);
         let mut bytes = vec![0; each * outputs.len()];
-        let timing = self.run_to(resources, module, inputs, size, Outputs::Host(&mut bytes))?;
-        for (out, bytes) in outputs.iter_mut().zip(bytes.chunks_exact(each)) {
-            *out = O::read(bytes);
+        let end = self.run_to(resources, module, inputs, grid, Outputs::Host(&mut bytes))?;
+        if end.is_continue() {
+            for (out, bytes) in outputs.iter_mut().zip(bytes.chunks_exact(each)) {
+                *out = O::read(bytes);
+            }
         }
-        Ok(timing)
+        Ok(end)
     }
 
     fn run_to(
@@ -229,19 +289,19 @@ impl GpuScheduler {
         resources: Resources<'_>,
         module: &Module,
         inputs: &[u8],
-        size: [u32; 2],
+        grid: Grid<'_>,
         outputs: Outputs<'_>,
-    ) -> Result<Timing, GpuError> {
+    ) -> Result<ControlFlow<Timing, Timing>, GpuError> {
         self.context.forget_gone();
         let data = |key| bytes_of(resources, key).map(Cow::Owned);
-        let timing = self.context.run_to(module, &data, inputs, size, outputs);
+        let end = self.context.run_to(module, &data, inputs, grid, outputs);
         // The address of a slice names its data only while it is borrowed.
         let buffers = module.buffers.iter().map(|buffer| buffer.key);
         let keys = buffers.chain(module.textures.iter().map(|texture| texture.key));
         for key in keys.filter(|key| crate::bvh::is_slice_key(*key)) {
             self.context.forget(key.id);
         }
-        timing
+        end
     }
 }
 
@@ -261,6 +321,50 @@ struct OnDevice<'a, C, A: Type, R: Type> {
     slice: Duration,
 }
 
+impl<C: Camera, A: FilmArgs, R: Radiance + Send> OnDevice<'_, C, A, R> {
+    /// Adds samples, pass by pass. What broke off in a pass does not count.
+    fn accumulate(
+        &mut self,
+        samples: &Samples<'_>,
+        film: &mut Film,
+        observer: Observer<'_>,
+    ) -> Result<ControlFlow<Timing, Timing>, GpuError> {
+        let mut timing = Timing::default();
+        if observer(0.0).is_break() {
+            return Ok(ControlFlow::Break(timing));
+        }
+        let all = f64::from(samples.each);
+        let mut image = Image::filled(film.width(), film.height(), Moments::none());
+        let mut done = 0;
+        while done < samples.each {
+            let count = self.pass.min(samples.each - done);
+            let pass = samples.pass(self.camera, self.kernel, film, count);
+            // Where some blocks have all they need, a pass is shorter than others will be.
+            let is_even = samples.least() >= done + count;
+            let mut tell =
+                |share: f64| observer((f64::from(done) + share * f64::from(count)) / all);
+            let effort = Effort { samples: count, is_even };
+            let begin = Instant::now();
+            let end = self.scheduler.shoot(&pass, effort, &mut image, &mut tell)?;
+            let (ControlFlow::Continue(took) | ControlFlow::Break(took)) = end;
+            timing += took;
+            if end.is_break() {
+                return Ok(ControlFlow::Break(timing));
+            }
+            if is_even {
+                self.learn(begin.elapsed());
+            }
+            film.join(&image, count);
+            done += count;
+            let answer = observer(f64::from(done) / all);
+            if done < samples.each && answer.is_break() {
+                return Ok(ControlFlow::Break(timing));
+            }
+        }
+        Ok(ControlFlow::Continue(timing))
+    }
+}
+
 impl<C: Camera, A: FilmArgs, R: Radiance + Send> Renderer for OnDevice<'_, C, A, R> {
     type Error = GpuError;
 
@@ -270,19 +374,10 @@ impl<C: Camera, A: FilmArgs, R: Radiance + Send> Renderer for OnDevice<'_, C, A,
         film: &mut Film,
         observer: Observer<'_>,
     ) -> Result<ControlFlow<()>, GpuError> {
-        let mut image = Image::filled(film.width(), film.height(), Moments::none());
-        while film.samples() < samples.each {
-            if observer(f64::from(film.samples()) / f64::from(samples.each)).is_break() {
-                return Ok(ControlFlow::Break(()));
-            }
-            let count = self.pass.min(samples.each - film.samples());
-            let begin = Instant::now();
-            let pass = samples.pass(self.camera, self.kernel, film, count);
-            self.scheduler.shoot(&pass, &mut image)?;
-            film.join(&image, count);
-            self.learn(begin.elapsed());
-        }
-        Ok(ControlFlow::Continue(()))
+        Ok(match self.accumulate(samples, film, observer)? {
+            ControlFlow::Continue(_) => ControlFlow::Continue(()),
+            ControlFlow::Break(_) => ControlFlow::Break(()),
+        })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Cuts a grid into dispatches that fit the device and stay short.
 
-/// Invocations of the very first dispatch of a kernel.
+/// Samples of the very first dispatch of a kernel: one for each invocation, unless it takes more.
 pub(super) const FIRST_GOAL: u64 = 1 << 16;
 /// No dispatch is made smaller for its time.
 const LEAST_GOAL: u64 = 256;
@@ -123,16 +123,16 @@ fn whole_groups(count: u64, group: u64) -> u64 {
     count - count % group
 }
 
-/// The next goal after a dispatch of `invocations` took `ms`.
+/// The next goal after a dispatch of `samples` took `ms`.
 ///
 /// Both steps look at the dispatch that was measured and not at the goal of now, which
 /// later dispatches already in flight have not shown yet: learning twice from old tiles
 /// changes nothing.
-pub(super) fn next_goal(goal: u64, invocations: u64, ms: f64) -> u64 {
+pub(super) fn next_goal(goal: u64, samples: u64, ms: f64) -> u64 {
     let next = if ms > TARGET_MS {
-        goal.min((invocations as f64 * TARGET_MS / ms) as u64)
+        goal.min((samples as f64 * TARGET_MS / ms) as u64)
     } else if ms < TARGET_MS / 2.0 {
-        goal.max(invocations * 2)
+        goal.max(samples * 2)
     } else {
         goal
     };

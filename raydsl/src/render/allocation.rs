@@ -31,6 +31,12 @@ impl Allocation {
         &self.samples
     }
 
+    /// The least that a pixel gets.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn least(&self) -> u32 {
+        self.samples.iter().copied().min().unwrap_or(0)
+    }
+
     /// The most that a pixel gets.
     pub(crate) fn most(&self) -> u32 {
         self.samples.iter().copied().max().unwrap_or(0)

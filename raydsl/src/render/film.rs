@@ -62,7 +62,7 @@ impl Film {
         for (sums, moments) in self.pixels.iter_mut().zip(pass.pixels()) {
             sums.join(moments);
         }
-        self.samples += samples;
+        self.samples = self.samples.saturating_add(samples);
     }
 
     /// Adds all samples of another film of the same size, which must be other samples. `each` sees
@@ -73,7 +73,7 @@ impl Film {
             sums.merge(more);
             each(&before, sums, more);
         }
-        self.samples += other.samples;
+        self.samples = self.samples.saturating_add(other.samples);
     }
 
     /// What is known of each pixel.

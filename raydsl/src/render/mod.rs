@@ -29,9 +29,9 @@ pub use image::{Image, Shaded, ShadedOn};
 pub use moments::{Moments, MomentsOn};
 pub use pixel_sampler::{PixelSampler, Sampling};
 pub use radiance::Radiance;
-pub use scheduler::Scheduler;
 #[cfg(feature = "gpu")]
-pub(crate) use scheduler::{Samples, passes};
+pub(crate) use scheduler::Samples;
+pub use scheduler::Scheduler;
 #[doc(hidden)]
 pub use shot::Body;
 #[cfg(feature = "gpu")]

@@ -25,6 +25,19 @@ pub enum PixelSampler {
     Jittered,
 }
 
+impl PixelSampler {
+    /// Samples after which the places begin anew: a mean over whole rounds weighs all parts of the
+    /// pixel alike.
+    pub const fn period(self) -> u32 {
+        match self {
+            Self::Center | Self::Jittered => 1,
+            Self::Two => 2,
+            Self::Four => 4,
+            Self::Eight => 8,
+        }
+    }
+}
+
 /// How the samples of pixels are made.
 ///
 /// ```

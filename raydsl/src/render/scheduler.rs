@@ -17,7 +17,7 @@ use crate::machine::Type;
 const PASS: u32 = 64;
 
 /// How many samples each pass takes.
-pub(crate) fn passes(samples: u32) -> impl Iterator<Item = u32> {
+fn passes(samples: u32) -> impl Iterator<Item = u32> {
     (0..samples).step_by(PASS as usize).map(move |first| PASS.min(samples - first))
 }
 
@@ -32,6 +32,12 @@ pub(crate) struct Samples<'a> {
 }
 
 impl<'a> Samples<'a> {
+    /// The least that a pixel gets.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn least(&self) -> u32 {
+        self.allocation.map_or(self.each, Allocation::least)
+    }
+
     /// The next `count` of them.
     pub(crate) fn pass<C: Camera, A: FilmArgs, R: Radiance + Send>(
         &self,
@@ -182,9 +188,7 @@ pub trait Scheduler {
     /// choice does not flatter them (Stein, "A Two-Sample Test for a Linear Hypothesis Whose Power
     /// is Independent of the Variance", 1945). Random numbers of the kernel must come from the
     /// `Sampler` that it is given: others are the same in all replications, and their error is not
-    /// seen. Neither is it where Sobol samples meet something rare equally often in all
-    /// replications: a pilot should meet it some hundred times, or the kernel draw with
-    /// `SampleMethod::Random`.
+    /// seen. Fixed places in pixels are taken in whole rounds.
     ///
     /// ```
     /// use raydsl::prelude::*;
@@ -235,7 +239,7 @@ pub trait Scheduler {
         until: &Until,
         observer: ProgressObserver<'_>,
     ) -> Result<Reached, UntilError> {
-        until.check(film)?;
+        until.check(film, sampling)?;
         let mut renderer = OnCpu { scheduler: self, camera, kernel };
         let Ok(reached) = run(until, sampling, film, observer, &mut renderer);
         Ok(reached)

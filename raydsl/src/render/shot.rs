@@ -137,7 +137,7 @@ impl<C: CameraRays, A: FilmArgs, R: Radiance + Send> Shot for Pass<'_, C, A, R> 
 
     fn pixel(&self, pixel: UVec2) -> Moments {
         let Sampling { pixels, method, seed, planned } = self.sampling;
-        let end = self.first + self.count;
+        let end = self.first.saturating_add(self.count);
         let (planned, end) = match self.allocation {
             Some(a) => part_of(a.samples(), a.columns(), pixel, end),
             None => (planned, end),
@@ -163,7 +163,7 @@ impl<C: CameraRays, A: FilmArgs, R: Radiance + Send> Shot for Pass<'_, C, A, R> 
         let rays = m.capture("camera", self.rays);
         let seed = m.capture("seed", seed);
         let first = m.capture("first_sample", self.first);
-        let end = m.capture("end_of_samples", self.first + self.count);
+        let end = m.capture("end_of_samples", self.first.saturating_add(self.count));
         let (planned, end) = match self.allocation {
             Some(a) => {
                 let samples = Capture::capture(a.samples(), m, "samples_of_blocks");

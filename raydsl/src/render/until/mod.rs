@@ -10,7 +10,7 @@ use std::time::Duration;
 
 pub(crate) use run::{Renderer, run};
 
-use super::Film;
+use super::{Film, Sampling};
 
 /// Independent replications of each estimate: the error is told by how far they lie apart.
 pub const REPLICATIONS: u32 = 8;
@@ -132,7 +132,7 @@ impl Until {
     }
 
     /// Whether this can be asked of a film.
-    pub(crate) fn check(&self, film: &Film) -> Result<(), UntilError> {
+    pub(crate) fn check(&self, film: &Film, sampling: &Sampling) -> Result<(), UntilError> {
         let Self { target, budget, .. } = *self;
         if !(target.tolerance > 0.0 && target.tolerance.is_finite()) {
             return Err(UntilError::Tolerance { tolerance: target.tolerance });
@@ -146,8 +146,9 @@ impl Until {
         if budget.time.is_zero() {
             return Err(UntilError::NoTime);
         }
-        if budget.samples < REPLICATIONS {
-            return Err(UntilError::TooFewSamples { samples: budget.samples });
+        let needed = REPLICATIONS * sampling.pixels.period();
+        if budget.samples < needed {
+            return Err(UntilError::TooFewSamples { samples: budget.samples, needed });
         }
         if film.width() == 0 || film.height() == 0 {
             return Err(UntilError::NoPixels { width: film.width(), height: film.height() });
@@ -180,11 +181,14 @@ pub enum UntilError {
     NoTime,
     /// There are fewer samples than replications.
     #[error(
-        "the budget has {samples} samples a pixel but needs {REPLICATIONS}, one for each replication"
+        "the budget has {samples} samples a pixel but needs {needed}: one for each of \
+         {REPLICATIONS} replications, and for each of the places in a pixel, if those are fixed"
     )]
     TooFewSamples {
         /// What was given.
         samples: u32,
+        /// The least that there may be.
+        needed: u32,
     },
     /// The film has no pixels.
     #[error("the film has {width} x {height} pixels: an error needs one at least")]

@@ -126,8 +126,9 @@ struct Run<'a> {
 
 impl Run<'_> {
     fn stages<R: Renderer>(&mut self, renderer: &mut R) -> Result<(Outcome, Estimate), R::Error> {
-        let pilot = self.until.target.pilot.div_ceil(REPLICATIONS);
-        let mut plan = Plan { each: pilot.min(1), doubt: None };
+        let period = self.sampling.pixels.period();
+        let pilot = self.until.target.pilot.div_ceil(REPLICATIONS).next_multiple_of(period);
+        let mut plan = Plan { each: period, doubt: None };
         let mut left = 1.0;
         loop {
             let Stage { is_best, cut } = self.stage(plan, renderer)?;
@@ -192,12 +193,15 @@ impl Run<'_> {
 
     /// Renders the replications of a stage, as far as the budget goes.
     fn stage<R: Renderer>(&mut self, plan: Plan, renderer: &mut R) -> Result<Stage, R::Error> {
-        let affordable = (self.until.budget.samples - self.spent_each()) / REPLICATIONS;
+        let affordable = self.until.budget.samples.saturating_sub(self.spent_each()) / REPLICATIONS;
+        // Half a round of fixed places would weigh some parts of a pixel more than others.
+        let period = self.sampling.pixels.period();
+        let affordable = affordable - affordable % period;
         if affordable == 0 {
             return Ok(Stage { is_best: false, cut: Some(Outcome::OutOfSamples) });
         }
         let each = plan.each.min(affordable);
-        let allocation = self.shares.as_ref().map(|shares| shares.allocation(each));
+        let allocation = self.shares.as_ref().map(|shares| shares.allocation(each, period));
         let most = allocation.as_ref().map_or(each, Allocation::most);
         let mut stage = Replications::none(each);
         let mut cut = None;
@@ -210,8 +214,12 @@ impl Run<'_> {
             let replicated = self.replication(&samples, &mut one, &stage, renderer);
             self.spent += one.total_samples();
             match replicated {
-                Ok(None) => stage.join(one),
-                Ok(Some(outcome)) => cut = Some(outcome),
+                Ok((is_whole, ended)) => {
+                    cut = ended;
+                    if is_whole {
+                        stage.join(one);
+                    }
+                }
                 Err(error) => end = Err(error),
             }
             if cut.is_some() || end.is_err() {
@@ -251,14 +259,15 @@ impl Run<'_> {
         Sampling { seed: pcg4d(key).x, planned, ..*self.sampling }
     }
 
-    /// Renders one replication, looking at the clock and asking the observer meanwhile.
+    /// Renders one replication, looking at the clock and asking the observer meanwhile. Whether it is
+    /// whole, and what ended the run, if something did: at its end, both may be.
     fn replication<R: Renderer>(
         &mut self,
         samples: &Samples<'_>,
         film: &mut Film,
         stage: &Replications,
         renderer: &mut R,
-    ) -> Result<Option<Outcome>, R::Error> {
+    ) -> Result<(bool, Option<Outcome>), R::Error> {
         let shown = if self.is_better(stage) { stage } else { &self.best };
         let target = self.until.target;
         let (estimate, _) = shown.estimate(target.metric, target.confidence);
@@ -285,8 +294,7 @@ impl Run<'_> {
             }
             if cut.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        // What is there when the observer breaks off at the end counts all the same.
         let end = renderer.render(samples, film, &mut watch)?;
-        Ok(if end.is_break() { cut } else { None })
+        Ok((end.is_continue(), cut))
     }
 }

@@ -74,11 +74,14 @@ impl Shares {
         Some(Self { width, weights, gain })
     }
 
-    /// The samples of each block if `each` are the mean.
-    pub(super) fn allocation(&self, each: u32) -> Allocation {
-        // One at least, and no more than that in all.
-        let rest = f64::from(each.saturating_sub(1));
-        let samples = self.weights.iter().map(|w| ((rest * w) as u32).saturating_add(1));
+    /// The samples of each block if `each` are the mean, in whole rounds of `period`.
+    pub(super) fn allocation(&self, each: u32, period: u32) -> Allocation {
+        // One round at least, and no more than the mean in all.
+        let rest = f64::from((each / period).saturating_sub(1));
+        let samples = self
+            .weights
+            .iter()
+            .map(|w| ((rest * w) as u32).saturating_add(1).saturating_mul(period));
         Allocation::new(self.width, samples.collect())
     }
 }
@@ -140,7 +143,7 @@ mod tests {
             let all = replications(width, height, |_, _| 0.1);
             let shares = Shares::of(&all, Metric::Rmse, width).expect("an error");
             assert!((shares.gain - 1.0).abs() < 1e-9, "{}", shares.gain);
-            assert!(shares.allocation(1000).samples().iter().all(|n| (999..=1000).contains(n)));
+            assert!(shares.allocation(1000, 1).samples().iter().all(|n| (999..=1000).contains(n)));
         }
         assert!(Shares::of(&replications(40, 40, |_, _| 0.0), Metric::Rmse, 40).is_none());
     }
@@ -153,7 +156,7 @@ mod tests {
         let all = replications(width, height, |x, _| if x < 16 { 0.1 } else { 1e-4 });
         let shares = Shares::of(&all, Metric::Rmse, width).expect("an error");
         for each in [1, 2, 8, 1000, 1 << 28] {
-            let allocation = shares.allocation(each);
+            let allocation = shares.allocation(each, 1);
             let samples = allocation.samples();
             assert_eq!(samples.len(), 20);
             let mean = samples.iter().map(|&n| f64::from(n)).sum::<f64>() / 20.0;
@@ -161,7 +164,9 @@ mod tests {
             assert!((0.0..=1.0).contains(&lost), "{each} {mean}");
             assert!(samples.iter().all(|&n| n >= 1));
         }
-        let samples = shares.allocation(1000).samples().to_vec();
+        let rounds = shares.allocation(1000, 8);
+        assert!(rounds.samples().iter().all(|n| n % 8 == 0));
+        let samples = shares.allocation(1000, 1).samples().to_vec();
         assert!(samples[0] > 3500 && samples[1] > 1500 && samples[2] < 200, "{samples:?}");
         assert!(shares.gain < 0.3, "{}", shares.gain);
     }
