@@ -143,7 +143,7 @@ fn shapes_of_files() -> Result<(), Box<dyn Error>> {
     let header = csv.lines().next().map_or(0, cells);
     assert!(csv.lines().all(|l| cells(l) == header), "{csv}");
     // Two cases of two methods with four points of three runs each, and one that was not run.
-    assert_eq!((csv.lines().count(), header), (1 + 2 * 2 * 4 * 3 + 1, 54));
+    assert_eq!((csv.lines().count(), header), (1 + 2 * 2 * 4 * 3 + 1, 56));
     let json: serde_json::Value = serde_json::from_str(&json)?;
     let curve = &json["cases"][0]["curves"][1];
     assert_eq!(
@@ -371,6 +371,9 @@ fn what_is_counted_apart_is_in_the_files() -> Result<(), Box<dyn Error>> {
     assert_eq!((number("expected_low"), number("expected_high")), (-0.55, -0.45));
     let rising = ["t_min", "t_p10", "t_median", "t_p90"].map(number);
     assert!(rising.windows(2).all(|t| 0.0 < t[0] && t[0] <= t[1]), "{rising:?}");
+    // No upper bound: other tests run in this process.
+    assert!(number("cpu_s") >= 0.0, "{cells:?}");
+    assert_eq!(number("t_compile"), 0.0);
     let rising = ["efficiency_low", "efficiency", "efficiency_high"].map(number);
     assert!(rising.windows(2).all(|e| 0.0 < e[0] && e[0] < e[1]), "{rising:?}");
     assert!(number("rmse_p10") <= number("rmse_p90") && number("mrse") > 0.0);
@@ -380,11 +383,37 @@ fn what_is_counted_apart_is_in_the_files() -> Result<(), Box<dyn Error>> {
     assert!(point["work"]["texture_fetches"].is_null());
     assert_eq!(point["efficiency"]["value"].as_f64(), Some(number("efficiency")));
     assert_eq!(json["environment"]["commit"].as_str(), Some("abc-dirty"));
+    assert_eq!(json["cases"][0]["curves"][0]["t_compile"].as_f64(), Some(0.0));
+    let runs = point["repetitions"].as_array().ok_or("four runs")?;
+    let sum: f64 = runs.iter().filter_map(|r| r["cpu_s"].as_f64()).sum();
+    assert_eq!((runs.len(), point["cpu_s"].as_f64()), (4, Some(sum)));
     assert_eq!(json["cases"][0]["t_build"].as_f64(), Some(0.125));
     let left_out = report.omissions();
     assert!(left_out.contains("| texture fetches | the case does not count them |"), "{left_out}");
     let svg = measured.plot().svg();
     assert!(svg.contains(">tests of nodes and primitives in all<"), "{svg}");
+    Ok(())
+}
+
+/// A pipeline is made once, in the run before all others; the CPU has none.
+#[test]
+fn compilation_is_timed_apart() -> Result<(), Box<dyn Error>> {
+    if !raydsl::testing::can_run(Variant::Wgsl, "work_precision") {
+        return Ok(());
+    }
+    // Not the one of all tests, which may compile meanwhile.
+    let gpu = &raydsl::gpu::GpuScheduler::new()?;
+    let kernel = |run: &Run<'_>| {
+        let seed = 77.25 + run.seed() as f32;
+        run.integral(&kernel!(|_ray: Ray| seed - 76.25))
+    };
+    let case = Case::new("one", Reference::closed_form(1.0), kernel);
+    let case = case.method("first", None).method("again", None);
+    let backends = [SCALAR, Backend::Variant(Variant::Wgsl)];
+    let report = quick().backends(&backends).gpu(gpu).knobs(&[2]).run(&[case])?;
+    let [scalar, first, _, again] = &report.cases[0].curves[..] else { panic!("four curves") };
+    assert_eq!((scalar.compile, again.compile), (Some(0.0), Some(0.0)));
+    assert!(first.compile > Some(0.0) && first.compile < first.first_run, "{:?}", first.compile);
     Ok(())
 }
 

@@ -41,6 +41,9 @@ pub struct Repetition {
     pub seed: u32,
     /// How long it took, in seconds.
     pub seconds: f64,
+    /// How long processors worked for it, in seconds, by user and system and of all threads of this
+    /// process: those of a driver that computes on the CPU too. None without the feature `cpu_time`.
+    pub cpu_seconds: Option<f64>,
     /// Samples in all.
     pub samples: u64,
     /// What the kernel counted, in all.
@@ -94,6 +97,14 @@ impl Point {
     /// The shortest time, in seconds; infinite without a run.
     pub fn t_min(&self) -> f64 {
         self.repetitions.iter().map(|r| r.seconds).fold(f64::INFINITY, f64::min)
+    }
+
+    /// What processors worked, in seconds, over all of its runs together; none without a run, or
+    /// without the feature `cpu_time`.
+    pub fn cpu_seconds(&self) -> Option<f64> {
+        let first = self.repetitions.first()?.cpu_seconds?;
+        let others = self.repetitions[1..].iter().filter_map(|r| r.cpu_seconds);
+        Some(first + others.sum::<f64>())
     }
 
     /// The middle time, in seconds; 0 without a run.
@@ -231,6 +242,10 @@ pub struct Curve {
     /// Seconds of the run before all others, with the first value of the knob: it warms caches and
     /// compiles pipelines, and counts in nothing else.
     pub first_run: Option<f64>,
+    /// Seconds of [`Self::first_run`] in which WGSL was made ready for the device: see
+    /// [`Context::compile_time`](crate::gpu::Context::compile_time). 0 on the CPU, whose variants
+    /// the Rust compiler made, and where an earlier curve had the same text. None without a run.
+    pub compile: Option<f64>,
     /// A hash of the WGSL of the kernels, whatever ran them: FNV-1a, 64 bits. None if none was run
     /// by [`Run`](super::Run).
     pub code: Option<u64>,
@@ -248,6 +263,7 @@ impl Curve {
             speedup: None,
             missing: None,
             first_run: None,
+            compile: None,
             code: None,
         }
     }
@@ -330,6 +346,7 @@ mod tests {
         let repetition = Repetition {
             seed: 0,
             seconds,
+            cpu_seconds: None,
             samples: u64::from(knob),
             counted: None,
             work: Work::default(),

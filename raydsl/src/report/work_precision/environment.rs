@@ -58,6 +58,7 @@ impl Environment {
 
 fn features() -> Vec<&'static str> {
     let all = [
+        ("cpu_time", cfg!(feature = "cpu_time")),
         ("exr", cfg!(feature = "exr")),
         ("gpu", cfg!(feature = "gpu")),
         ("hdr", cfg!(feature = "hdr")),

@@ -32,6 +32,7 @@
 //! "Solving Ordinary Differential Equations I" (1993), section II.10.
 
 mod case;
+mod cpu_clock;
 mod csv;
 mod curve;
 mod drawing;

@@ -7,7 +7,7 @@ use super::work::Work;
 use super::{Measured, Report};
 
 /// What no file of a report has, and why.
-const NOWHERE: [(&str, &str); 7] = [
+const NOWHERE: &[(&str, &str)] = &[
     (
         "FLIP",
         "it compares colours as they look on a screen; estimates here are numbers, one for each \
@@ -17,12 +17,13 @@ const NOWHERE: [(&str, &str); 7] = [
     ("errors of each channel", "estimates are the red channel"),
     ("time to the first pixel", "a run gives all its pixels at once"),
     (
-        "time to compile",
-        "a driver compiles when it likes; `t_first`, the run before all others, contains it",
+        "what a driver compiles at the first dispatch",
+        "nothing tells it apart: `t_compile` ends before, `t_first` contains it",
     ),
+    #[cfg(not(feature = "cpu_time"))]
     (
-        "time of the processor",
-        "the standard library has no such clock; `seconds` are those of the monotonic one",
+        "time of the processors, `cpu_s`",
+        "raydsl was built without the feature `cpu_time`; `seconds` are those of a clock",
     ),
     ("calls of exp, look-ups of a density", "a kernel that counts them has them in `counted`"),
 ];
