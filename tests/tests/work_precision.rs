@@ -142,8 +142,9 @@ fn shapes_of_files() -> Result<(), Box<dyn Error>> {
     let (csv, json) = (read("points.csv")?, read("report.json")?);
     let header = csv.lines().next().map_or(0, cells);
     assert!(csv.lines().all(|l| cells(l) == header), "{csv}");
+    let columns = if cfg!(feature = "flip") { 62 } else { 56 };
     // Two cases of two methods with four points of three runs each, and one that was not run.
-    assert_eq!((csv.lines().count(), header), (1 + 2 * 2 * 4 * 3 + 1, 56));
+    assert_eq!((csv.lines().count(), header), (1 + 2 * 2 * 4 * 3 + 1, columns));
     let json: serde_json::Value = serde_json::from_str(&json)?;
     let curve = &json["cases"][0]["curves"][1];
     assert_eq!(
@@ -392,6 +393,48 @@ fn what_is_counted_apart_is_in_the_files() -> Result<(), Box<dyn Error>> {
     assert!(left_out.contains("| texture fetches | the case does not count them |"), "{left_out}");
     let svg = measured.plot().svg();
     assert!(svg.contains(">tests of nodes and primitives in all<"), "{svg}");
+    Ok(())
+}
+
+/// What a picture of balls looks like against one that has converged: the more samples, the more
+/// alike. An integral is no picture.
+#[cfg(feature = "flip")]
+#[test]
+fn pictures_are_compared_by_flip() -> Result<(), Box<dyn Error>> {
+    let balls = balls();
+    let tree = Bvh::build(&balls)?;
+    let lit = |run: &Run<'_>| {
+        run.film(&above(), &kernel!(|ray: Ray| if tree.any_hit(ray) { 4.0 } else { 0.5 }))
+    };
+    let method = Method::from(SampleMethod::Sobol);
+    let half = |seed| {
+        let run = Run::new(&method, Backend::Variant(Variant::widest()), 1024).sized(24, 24);
+        lit(&run.seeded(seed)).map(|e| e.values).map_err(|missing| missing.to_string())
+    };
+    let case = Case::new("balls", Reference::halves(half(90)?, half(91)?), lit)
+        .method(SampleMethod::Sobol, None);
+    let report = quick().size(24, 24).knobs(&[1, 16, 256]);
+    let report = report.run(&[case, quadrature("exp")])?;
+    let curve = &report.cases[0].curves[0];
+    let first = |p: &Point| p.repetitions[0].flip.zip(p.repetitions[0].hdr_flip);
+    let found: Vec<_> = curve.points.iter().filter_map(first).collect();
+    assert_eq!(found.len(), 3);
+    for pair in found.windows(2) {
+        assert!(pair[1].0.mean < 0.5 * pair[0].0.mean, "LDR {found:?}");
+        assert!(pair[1].1.mean < 0.5 * pair[0].1.mean, "HDR {found:?}");
+    }
+    let (csv, json, errors) = (report.csv(), report.json(), report.errors());
+    let (mean, hdr) = (found[0].0.mean, found[0].1.p95);
+    assert_eq!(row(&csv, 0)["flip_mean"].parse(), Ok(mean));
+    assert_eq!(row(&csv, 0)["hdr_flip_p95"].parse(), Ok(hdr));
+    assert_eq!(row(&csv, 9)["flip_mean"], "");
+    let of_case = |i: usize| &json["cases"][i]["curves"][0]["points"][0]["repetitions"][0];
+    assert_eq!(of_case(0)["flip"]["mean"].as_f64(), Some(mean));
+    assert!(of_case(1)["flip"].is_null());
+    assert_eq!(errors.lines().filter(|l| l.contains("hdr_flip ")).count(), 2, "{errors}");
+    let left_out = report.omissions();
+    assert!(left_out.contains("| exp | all | all | FLIP | the estimates are no picture |"));
+    assert!(!left_out.contains("| balls | all | all | FLIP |"), "{left_out}");
     Ok(())
 }
 

@@ -1,6 +1,8 @@
 //! `points.csv`.
 
 use super::curve::{Curve, Point, Repetition};
+#[cfg(feature = "flip")]
+use super::flip::Flip;
 use super::{Environment, Measured, Report};
 
 /// The columns of [`Report::csv`]: what is the same for a curve, what there is of a run, and where
@@ -58,6 +60,18 @@ const OF_RUN: &[&str] = &[
     "inf",
     "negative",
     "rounding",
+    #[cfg(feature = "flip")]
+    "flip_mean",
+    #[cfg(feature = "flip")]
+    "flip_median",
+    #[cfg(feature = "flip")]
+    "flip_p95",
+    #[cfg(feature = "flip")]
+    "hdr_flip_mean",
+    #[cfg(feature = "flip")]
+    "hdr_flip_median",
+    #[cfg(feature = "flip")]
+    "hdr_flip_p95",
 ];
 const OF_MACHINE: &[&str] = &["features", "version", "commit", "cpu", "device", "status"];
 
@@ -126,7 +140,7 @@ fn of_curve(case: &Measured, curve: &Curve) -> Vec<String> {
 fn of_run(point: &Point, run: &Repetition) -> Vec<String> {
     let (m, work, efficiency) = (&run.metrics, point.work(), point.efficiency());
     let whole = |n: Option<u64>| n.map_or_else(String::new, |n| n.to_string());
-    vec![
+    let cells = vec![
         run.seed.to_string(),
         number(run.seconds),
         perhaps(run.cpu_seconds),
@@ -158,7 +172,19 @@ fn of_run(point: &Point, run: &Repetition) -> Vec<String> {
         m.inf.to_string(),
         m.negative.to_string(),
         perhaps(point.rounding),
-    ]
+    ];
+    #[cfg(feature = "flip")]
+    let cells = [cells, of_flip(run)].concat();
+    cells
+}
+
+#[cfg(feature = "flip")]
+fn of_flip(run: &Repetition) -> Vec<String> {
+    let numbers = |flip: Option<Flip>| {
+        let of = |number: fn(Flip) -> f64| perhaps(flip.map(number));
+        [of(|f| f.mean), of(|f| f.median), of(|f| f.p95)]
+    };
+    [numbers(run.flip), numbers(run.hdr_flip)].concat()
 }
 
 fn of_machine(environment: &Environment, status: &str) -> Vec<String> {

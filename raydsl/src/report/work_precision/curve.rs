@@ -3,6 +3,8 @@
 use super::case::{Backend, Method, Order};
 use super::efficiency::Efficiency;
 use super::fit::{Fit, Reached, first_below, student_t, value_at};
+#[cfg(feature = "flip")]
+use super::flip::Flip;
 use super::metrics::Metrics;
 use super::reference::Reference;
 use super::work::Work;
@@ -42,7 +44,7 @@ pub struct Repetition {
     /// How long it took, in seconds.
     pub seconds: f64,
     /// How long processors worked for it, in seconds, by user and system and of all threads of this
-    /// process: those of a driver that computes on the CPU too. None without the feature `cpu_time`.
+    /// process: those of a driver that computes on the CPU too. None without `cpu_time`, a feature.
     pub cpu_seconds: Option<f64>,
     /// Samples in all.
     pub samples: u64,
@@ -52,6 +54,12 @@ pub struct Repetition {
     pub work: Work,
     /// The error.
     pub metrics: Metrics,
+    /// Of estimates that are a picture: how different from the reference it looks, as grey light.
+    #[cfg(feature = "flip")]
+    pub flip: Option<Flip>,
+    /// The same without an end to the light.
+    #[cfg(feature = "flip")]
+    pub hdr_flip: Option<Flip>,
     /// What it is good for.
     pub status: Status,
     /// The estimates.
@@ -319,7 +327,7 @@ impl Curve {
 
 /// The number that a share of all numbers does not exceed, linear between neighbours in their order
 /// (Hyndman and Fan, "Sample Quantiles in Statistical Packages", 1996, definition 7); NaN of none.
-fn quantile(numbers: impl Iterator<Item = f64>, share: f64) -> f64 {
+pub(super) fn quantile(numbers: impl Iterator<Item = f64>, share: f64) -> f64 {
     let mut sorted: Vec<f64> = numbers.collect();
     sorted.sort_by(f64::total_cmp);
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
@@ -347,6 +355,10 @@ mod tests {
             seed: 0,
             seconds,
             cpu_seconds: None,
+            #[cfg(feature = "flip")]
+            flip: None,
+            #[cfg(feature = "flip")]
+            hdr_flip: None,
             samples: u64::from(knob),
             counted: None,
             work: Work::default(),

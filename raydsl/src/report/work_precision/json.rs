@@ -130,7 +130,7 @@ fn work(work: &Work) -> Value {
 
 fn repetition(r: &Repetition) -> Value {
     let m = &r.metrics;
-    json!({
+    let found = json!({
         "seed": r.seed,
         "seconds": r.seconds,
         "cpu_s": r.cpu_seconds,
@@ -148,5 +148,17 @@ fn repetition(r: &Repetition) -> Value {
         "nan": m.nan,
         "inf": m.inf,
         "negative": m.negative,
-    })
+    });
+    #[cfg(feature = "flip")]
+    let found = with_flip(found, r);
+    found
+}
+
+/// Null where the estimates are no picture.
+#[cfg(feature = "flip")]
+fn with_flip(mut found: Value, r: &Repetition) -> Value {
+    let numbers = |f: super::Flip| json!({ "mean": f.mean, "median": f.median, "p95": f.p95 });
+    found["flip"] = r.flip.map_or(Value::Null, numbers);
+    found["hdr_flip"] = r.hdr_flip.map_or(Value::Null, numbers);
+    found
 }

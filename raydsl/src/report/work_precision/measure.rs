@@ -198,6 +198,8 @@ impl Runner<'_, '_> {
             });
         }
         let metrics = Metrics::of(&estimates.values, reference);
+        #[cfg(feature = "flip")]
+        let (flip, hdr_flip) = super::flip::of_picture(&estimates, reference).unzip();
         Ok(Ok(Repetition {
             seed: run.seed,
             seconds: took.as_secs_f64(),
@@ -206,6 +208,10 @@ impl Runner<'_, '_> {
             counted: estimates.counted,
             work: estimates.work,
             metrics,
+            #[cfg(feature = "flip")]
+            flip,
+            #[cfg(feature = "flip")]
+            hdr_flip,
             status: self.status(run.backend, &metrics),
             values: estimates.values,
         }))

@@ -8,10 +8,11 @@ use super::{Measured, Report};
 
 /// What no file of a report has, and why.
 const NOWHERE: &[(&str, &str)] = &[
+    #[cfg(not(feature = "flip"))]
     (
         "FLIP",
-        "it compares colours as they look on a screen; estimates here are numbers, one for each \
-         pixel",
+        "raydsl was built without the feature `flip`: `--features flip` adds it, and needs a C++ \
+         compiler",
     ),
     ("clamped energy", "nothing clamps: estimates are what the samples gave"),
     ("errors of each channel", "estimates are the red channel"),
@@ -51,7 +52,17 @@ fn of_case(case: &Measured) -> Vec<String> {
     let mut rows: Vec<String> = case.not_asked_for.iter().map(not_asked_for).collect();
     rows.extend(case.curves.iter().flat_map(|curve| of_curve(case, curve)));
     rows.extend(uncounted(case));
+    #[cfg(feature = "flip")]
+    rows.extend(unseen(case));
     rows
+}
+
+/// FLIP of what is no picture.
+#[cfg(feature = "flip")]
+fn unseen(case: &Measured) -> Option<String> {
+    let mut runs = case.curves.iter().flat_map(|c| &c.points).flat_map(|p| &p.repetitions);
+    let has_none = runs.all(|r| r.flip.is_none());
+    has_none.then(|| row(case, "all", "all", "FLIP", "the estimates are no picture"))
 }
 
 /// How much of a unit was counted.
