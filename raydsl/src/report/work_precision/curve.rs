@@ -250,9 +250,9 @@ pub struct Curve {
     /// Seconds of the run before all others, with the first value of the knob: it warms caches and
     /// compiles pipelines, and counts in nothing else.
     pub first_run: Option<f64>,
-    /// Seconds of [`Self::first_run`] in which WGSL was made ready for the device: see
-    /// [`Context::compile_time`](crate::gpu::Context::compile_time). 0 on the CPU, whose variants
-    /// the Rust compiler made, and where an earlier curve had the same text. None without a run.
+    /// Seconds of [`Self::first_run`] in which WGSL was made ready for the device, by
+    /// `gpu::Context::compile_time`. 0 on the CPU, whose variants the Rust compiler made, and where
+    /// an earlier curve had the same text. None without a run.
     pub compile: Option<f64>,
     /// A hash of the WGSL of the kernels, whatever ran them: FNV-1a, 64 bits. None if none was run
     /// by [`Run`](super::Run).
