@@ -110,9 +110,8 @@ impl Point {
     /// What processors worked, in seconds, over all of its runs together; none without a run, or
     /// without the feature `cpu_time`.
     pub fn cpu_seconds(&self) -> Option<f64> {
-        let first = self.repetitions.first()?.cpu_seconds?;
-        let others = self.repetitions[1..].iter().filter_map(|r| r.cpu_seconds);
-        Some(first + others.sum::<f64>())
+        let all = self.repetitions.iter().map(|r| r.cpu_seconds).sum::<Option<f64>>();
+        all.filter(|_| !self.repetitions.is_empty())
     }
 
     /// The middle time, in seconds; 0 without a run.
