@@ -13,8 +13,6 @@ use crate::visibility::Ball;
 
 /// The film's edge in pixels: the reference has as many numbers.
 pub(crate) const EDGE: u32 = 16;
-/// Samples of each pixel of each half.
-const HALF: u32 = 16_384;
 
 /// Balls above the unit square.
 fn balls() -> Vec<Ball> {
@@ -66,8 +64,8 @@ fn estimate(cloud: &Bvh<'_, Ball>, run: &Run<'_>) -> Result<Estimates, Missing> 
     run.film(&camera(), &kernel)
 }
 
-/// The case; its reference takes a second or two.
-pub(crate) fn case() -> Result<Case<'static>, Box<dyn core::error::Error>> {
+/// The case; each half of its reference has so many samples of each pixel.
+pub(crate) fn case(samples: u32) -> Result<Case<'static>, Box<dyn core::error::Error>> {
     let balls: &'static [Ball] = balls().leak();
     let start = Instant::now();
     let cloud: &'static Bvh<'static, Ball> = Box::leak(Box::new(Bvh::build(balls)?));
@@ -75,7 +73,7 @@ pub(crate) fn case() -> Result<Case<'static>, Box<dyn core::error::Error>> {
     let (method, backend) =
         (Method::from(SampleMethod::Sobol), Backend::Variant(Variant::widest()));
     let half = |seed| {
-        let run = Run::new(&method, backend, HALF).sized(EDGE, EDGE).seeded(seed);
+        let run = Run::new(&method, backend, samples).sized(EDGE, EDGE).seeded(seed);
         estimate(cloud, &run).map(|e| e.values).map_err(|missing| missing.to_string())
     };
     let reference = Reference::halves(half(1001)?, half(1002)?);

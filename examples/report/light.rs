@@ -8,7 +8,7 @@ use raydsl::report::work_precision::{Case, Order, Reference};
 
 /// Light of unit radiance through a point of a lamp, per density of 1 over `area`.
 #[kernel]
-fn from_lamp(point: Vec3, normal: Vec3, area: f32, has_cosine: bool) -> f32 {
+pub(crate) fn from_lamp(point: Vec3, normal: Vec3, area: f32, has_cosine: bool) -> f32 {
     let square = point.dot(point);
     let way = point / square.sqrt();
     let cosine = if has_cosine { way.z } else { 1.0 };

@@ -8,6 +8,7 @@
 mod args;
 mod cloud;
 mod light;
+mod textured;
 mod visibility;
 
 use std::error::Error;
@@ -17,6 +18,9 @@ use args::Args;
 use clap::Parser;
 use raydsl::report::work_precision::{Case, WorkPrecision};
 use raydsl_examples::raster::raster;
+
+/// Of each pixel of each half of the cloud's reference: a second or two.
+const CLOUD_SAMPLES: u32 = 16_384;
 
 fn main() -> ExitCode {
     match run(&Args::parse()) {
@@ -29,7 +33,8 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
-    let mut cases: Vec<Case<'_>> = visibility::cases().into_iter().chain(light::cases()).collect();
+    let mut cases: Vec<Case<'_>> =
+        [visibility::cases(), light::cases(), textured::cases()].into_iter().flatten().collect();
     if args.case == "list" {
         let names: Vec<&str> = cases.iter().map(Case::name).chain(["cloud"]).collect();
         println!("cases: all, {}", names.join(", "));
@@ -37,7 +42,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     }
     cases.retain(|c| args.case == "all" || c.name() == args.case);
     if args.case == "all" || args.case == "cloud" {
-        cases.push(cloud::case()?);
+        cases.push(cloud::case(CLOUD_SAMPLES)?);
     }
     if cases.is_empty() {
         return Err(format!("there is no case `{}`; `list` names them", args.case).into());

@@ -142,8 +142,9 @@ fn shapes_of_files() -> Result<(), Box<dyn Error>> {
     let (csv, json) = (read("points.csv")?, read("report.json")?);
     let header = csv.lines().next().map_or(0, cells);
     assert!(csv.lines().all(|l| cells(l) == header), "{csv}");
+    let columns = if cfg!(feature = "flip") { 62 } else { 56 };
     // Two cases of two methods with four points of three runs each, and one that was not run.
-    assert_eq!((csv.lines().count(), header), (1 + 2 * 2 * 4 * 3 + 1, 54));
+    assert_eq!((csv.lines().count(), header), (1 + 2 * 2 * 4 * 3 + 1, columns));
     let json: serde_json::Value = serde_json::from_str(&json)?;
     let curve = &json["cases"][0]["curves"][1];
     assert_eq!(
@@ -371,6 +372,9 @@ fn what_is_counted_apart_is_in_the_files() -> Result<(), Box<dyn Error>> {
     assert_eq!((number("expected_low"), number("expected_high")), (-0.55, -0.45));
     let rising = ["t_min", "t_p10", "t_median", "t_p90"].map(number);
     assert!(rising.windows(2).all(|t| 0.0 < t[0] && t[0] <= t[1]), "{rising:?}");
+    // No upper bound: other tests run in this process.
+    assert!(number("cpu_s") >= 0.0, "{cells:?}");
+    assert_eq!(number("t_compile"), 0.0);
     let rising = ["efficiency_low", "efficiency", "efficiency_high"].map(number);
     assert!(rising.windows(2).all(|e| 0.0 < e[0] && e[0] < e[1]), "{rising:?}");
     assert!(number("rmse_p10") <= number("rmse_p90") && number("mrse") > 0.0);
@@ -380,11 +384,80 @@ fn what_is_counted_apart_is_in_the_files() -> Result<(), Box<dyn Error>> {
     assert!(point["work"]["texture_fetches"].is_null());
     assert_eq!(point["efficiency"]["value"].as_f64(), Some(number("efficiency")));
     assert_eq!(json["environment"]["commit"].as_str(), Some("abc-dirty"));
+    assert_eq!(json["cases"][0]["curves"][0]["t_compile"].as_f64(), Some(0.0));
+    let runs = point["repetitions"].as_array().ok_or("four runs")?;
+    let sum: f64 = runs.iter().filter_map(|r| r["cpu_s"].as_f64()).sum();
+    let all = point["cpu_s"].as_f64().ok_or("a clock")?;
+    assert!(runs.len() == 4 && (all - sum).abs() <= 1e-12 * sum, "{all} {sum}");
     assert_eq!(json["cases"][0]["t_build"].as_f64(), Some(0.125));
     let left_out = report.omissions();
     assert!(left_out.contains("| texture fetches | the case does not count them |"), "{left_out}");
     let svg = measured.plot().svg();
     assert!(svg.contains(">tests of nodes and primitives in all<"), "{svg}");
+    Ok(())
+}
+
+/// What a picture of balls looks like against one that has converged: the more samples, the more
+/// alike. An integral is no picture.
+#[cfg(feature = "flip")]
+#[test]
+fn pictures_are_compared_by_flip() -> Result<(), Box<dyn Error>> {
+    let balls = balls();
+    let tree = Bvh::build(&balls)?;
+    let lit = |run: &Run<'_>| {
+        run.film(&above(), &kernel!(|ray: Ray| if tree.any_hit(ray) { 4.0 } else { 0.5 }))
+    };
+    let method = Method::from(SampleMethod::Sobol);
+    let half = |seed| {
+        let run = Run::new(&method, Backend::Variant(Variant::widest()), 1024).sized(24, 24);
+        lit(&run.seeded(seed)).map(|e| e.values).map_err(|missing| missing.to_string())
+    };
+    let case = Case::new("balls", Reference::halves(half(90)?, half(91)?), lit)
+        .method(SampleMethod::Sobol, None);
+    let report = quick().size(24, 24).knobs(&[1, 16, 256]);
+    let report = report.run(&[case, quadrature("exp")])?;
+    let curve = &report.cases[0].curves[0];
+    let first = |p: &Point| p.repetitions[0].flip.zip(p.repetitions[0].hdr_flip);
+    let found: Vec<_> = curve.points.iter().filter_map(first).collect();
+    assert_eq!(found.len(), 3);
+    for pair in found.windows(2) {
+        assert!(pair[1].0.mean < 0.5 * pair[0].0.mean, "LDR {found:?}");
+        assert!(pair[1].1.mean < 0.5 * pair[0].1.mean, "HDR {found:?}");
+    }
+    let (csv, json, errors) = (report.csv(), report.json(), report.errors());
+    let (mean, hdr) = (found[0].0.mean, found[0].1.p95);
+    assert_eq!(row(&csv, 0)["flip_mean"].parse(), Ok(mean));
+    assert_eq!(row(&csv, 0)["hdr_flip_p95"].parse(), Ok(hdr));
+    assert_eq!(row(&csv, 9)["flip_mean"], "");
+    let of_case = |i: usize| &json["cases"][i]["curves"][0]["points"][0]["repetitions"][0];
+    assert_eq!(of_case(0)["flip"]["mean"].as_f64(), Some(mean));
+    assert!(of_case(1)["flip"].is_null());
+    assert_eq!(errors.lines().filter(|l| l.contains("hdr_flip ")).count(), 2, "{errors}");
+    let left_out = report.omissions();
+    assert!(left_out.contains("| exp | all | all | FLIP | the estimates are no picture |"));
+    assert!(!left_out.contains("| balls | all | all | FLIP |"), "{left_out}");
+    Ok(())
+}
+
+/// A pipeline is made once, in the run before all others; the CPU has none.
+#[test]
+fn compilation_is_timed_apart() -> Result<(), Box<dyn Error>> {
+    if !raydsl::testing::can_run(Variant::Wgsl, "work_precision") {
+        return Ok(());
+    }
+    // Not the one of all tests, which may compile meanwhile.
+    let gpu = &raydsl::gpu::GpuScheduler::new()?;
+    let kernel = |run: &Run<'_>| {
+        let seed = 77.25 + run.seed() as f32;
+        run.integral(&kernel!(|_ray: Ray| seed - 76.25))
+    };
+    let case = Case::new("one", Reference::closed_form(1.0), kernel);
+    let case = case.method("first", None).method("again", None);
+    let backends = [SCALAR, Backend::Variant(Variant::Wgsl)];
+    let report = quick().backends(&backends).gpu(gpu).knobs(&[2]).run(&[case])?;
+    let [scalar, first, _, again] = &report.cases[0].curves[..] else { panic!("four curves") };
+    assert_eq!((scalar.compile, again.compile), (Some(0.0), Some(0.0)));
+    assert!(first.compile > Some(0.0) && first.compile < first.first_run, "{:?}", first.compile);
     Ok(())
 }
 

@@ -140,6 +140,13 @@ impl Context {
         lock(&self.pipelines).compiled()
     }
 
+    /// How long their compilation took: to parse, validate and translate the text, and whatever the
+    /// driver does with it at once. What the driver puts off until the first dispatch is in that
+    /// dispatch's time.
+    pub fn compile_time(&self) -> Duration {
+        lock(&self.pipelines).compile_time()
+    }
+
     /// Frees the scene buffers of one owner; they are uploaded again when asked for.
     pub fn forget(&self, id: u64) {
         lock(&self.uploads).forget(id);

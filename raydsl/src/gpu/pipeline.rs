@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
+use std::time::{Duration, Instant};
 
 use super::device::Gpu;
 use super::error::{GpuError, one_line};
@@ -54,12 +55,18 @@ pub(super) struct Pipelines {
     /// The text nearly always fixes the bindings; where it does not, one entry for each.
     by_source: HashMap<String, Vec<Arc<Pipeline>>>,
     compiled: u64,
+    compile_time: Duration,
 }
 
 impl Pipelines {
     /// Shaders compiled so far.
     pub(super) fn compiled(&self) -> u64 {
         self.compiled
+    }
+
+    /// How long that took.
+    pub(super) fn compile_time(&self) -> Duration {
+        self.compile_time
     }
 
     /// The pipeline of a text, compiled if it is new.
@@ -74,7 +81,9 @@ impl Pipelines {
         if let Some(pipeline) = known.into_iter().find(|known| known.bindings == *bindings) {
             return Ok(Arc::clone(pipeline));
         }
+        let start = Instant::now();
         let pipeline = Arc::new(compile(gpu, checks, source, bindings)?);
+        self.compile_time += start.elapsed();
         self.compiled += 1;
         let same_text = self.by_source.entry(source.to_owned()).or_default();
         same_text.push(Arc::clone(&pipeline));

@@ -1,11 +1,13 @@
 //! `points.csv`.
 
 use super::curve::{Curve, Point, Repetition};
+#[cfg(feature = "flip")]
+use super::flip::Flip;
 use super::{Environment, Measured, Report};
 
 /// The columns of [`Report::csv`]: what is the same for a curve, what there is of a run, and where
 /// it was measured.
-const OF_CURVE: [&str; 18] = [
+const OF_CURVE: &[&str] = &[
     "case",
     "reference_kind",
     "reference_uncertainty",
@@ -16,6 +18,7 @@ const OF_CURVE: [&str; 18] = [
     "knob",
     "t_build",
     "t_first",
+    "t_compile",
     "order",
     "order_low",
     "order_high",
@@ -25,9 +28,10 @@ const OF_CURVE: [&str; 18] = [
     "knob_value",
     "repetitions",
 ];
-const OF_RUN: [&str; 30] = [
+const OF_RUN: &[&str] = &[
     "seed",
     "seconds",
+    "cpu_s",
     "t_min",
     "t_p10",
     "t_median",
@@ -56,8 +60,20 @@ const OF_RUN: [&str; 30] = [
     "inf",
     "negative",
     "rounding",
+    #[cfg(feature = "flip")]
+    "flip_mean",
+    #[cfg(feature = "flip")]
+    "flip_median",
+    #[cfg(feature = "flip")]
+    "flip_p95",
+    #[cfg(feature = "flip")]
+    "hdr_flip_mean",
+    #[cfg(feature = "flip")]
+    "hdr_flip_median",
+    #[cfg(feature = "flip")]
+    "hdr_flip_p95",
 ];
-const OF_MACHINE: [&str; 6] = ["features", "version", "commit", "cpu", "device", "status"];
+const OF_MACHINE: &[&str] = &["features", "version", "commit", "cpu", "device", "status"];
 
 impl Report {
     /// A header and a row for each run; and one for each point that was not run, whose status says
@@ -65,7 +81,7 @@ impl Report {
     /// efficiency are of all runs of the point. `rounding` is the difference to the same samples in
     /// `f64`, `code` the hash of the kernel's WGSL. What is not known is empty.
     pub fn csv(&self) -> String {
-        let header = [&OF_CURVE[..], &OF_RUN, &OF_MACHINE].concat().join(",");
+        let header = [OF_CURVE, OF_RUN, OF_MACHINE].concat().join(",");
         let mut lines = vec![header];
         for case in &self.cases {
             for curve in &case.curves {
@@ -111,6 +127,7 @@ fn of_curve(case: &Measured, curve: &Curve) -> Vec<String> {
         quoted(&case.knob),
         perhaps(case.build),
         perhaps(curve.first_run),
+        perhaps(curve.compile),
         perhaps(fit.map(|f| f.order)),
         perhaps(fit.map(|f| f.low)),
         perhaps(fit.map(|f| f.high)),
@@ -123,9 +140,10 @@ fn of_curve(case: &Measured, curve: &Curve) -> Vec<String> {
 fn of_run(point: &Point, run: &Repetition) -> Vec<String> {
     let (m, work, efficiency) = (&run.metrics, point.work(), point.efficiency());
     let whole = |n: Option<u64>| n.map_or_else(String::new, |n| n.to_string());
-    vec![
+    let cells = vec![
         run.seed.to_string(),
         number(run.seconds),
+        perhaps(run.cpu_seconds),
         number(point.t_min()),
         number(point.t_quantile(0.1)),
         number(point.t_median()),
@@ -154,7 +172,19 @@ fn of_run(point: &Point, run: &Repetition) -> Vec<String> {
         m.inf.to_string(),
         m.negative.to_string(),
         perhaps(point.rounding),
-    ]
+    ];
+    #[cfg(feature = "flip")]
+    let cells = [cells, of_flip(run)].concat();
+    cells
+}
+
+#[cfg(feature = "flip")]
+fn of_flip(run: &Repetition) -> Vec<String> {
+    let numbers = |flip: Option<Flip>| {
+        let of = |number: fn(Flip) -> f64| perhaps(flip.map(number));
+        [of(|f| f.mean), of(|f| f.median), of(|f| f.p95)]
+    };
+    [numbers(run.flip), numbers(run.hdr_flip)].concat()
 }
 
 fn of_machine(environment: &Environment, status: &str) -> Vec<String> {

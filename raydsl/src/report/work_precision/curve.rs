@@ -3,6 +3,8 @@
 use super::case::{Backend, Method, Order};
 use super::efficiency::Efficiency;
 use super::fit::{Fit, Reached, first_below, student_t, value_at};
+#[cfg(feature = "flip")]
+use super::flip::Flip;
 use super::metrics::Metrics;
 use super::reference::Reference;
 use super::work::Work;
@@ -41,6 +43,9 @@ pub struct Repetition {
     pub seed: u32,
     /// How long it took, in seconds.
     pub seconds: f64,
+    /// How long processors worked for it, in seconds, by user and system and of all threads of this
+    /// process: those of a driver that computes on the CPU too. None without `cpu_time`, a feature.
+    pub cpu_seconds: Option<f64>,
     /// Samples in all.
     pub samples: u64,
     /// What the kernel counted, in all.
@@ -49,6 +54,12 @@ pub struct Repetition {
     pub work: Work,
     /// The error.
     pub metrics: Metrics,
+    /// Of estimates that are a picture: how different from the reference it looks, as grey light.
+    #[cfg(feature = "flip")]
+    pub flip: Option<Flip>,
+    /// The same without an end to the light.
+    #[cfg(feature = "flip")]
+    pub hdr_flip: Option<Flip>,
     /// What it is good for.
     pub status: Status,
     /// The estimates.
@@ -94,6 +105,13 @@ impl Point {
     /// The shortest time, in seconds; infinite without a run.
     pub fn t_min(&self) -> f64 {
         self.repetitions.iter().map(|r| r.seconds).fold(f64::INFINITY, f64::min)
+    }
+
+    /// What processors worked, in seconds, over all of its runs together; none without a run, or
+    /// without the feature `cpu_time`.
+    pub fn cpu_seconds(&self) -> Option<f64> {
+        let all = self.repetitions.iter().map(|r| r.cpu_seconds).sum::<Option<f64>>();
+        all.filter(|_| !self.repetitions.is_empty())
     }
 
     /// The middle time, in seconds; 0 without a run.
@@ -231,6 +249,10 @@ pub struct Curve {
     /// Seconds of the run before all others, with the first value of the knob: it warms caches and
     /// compiles pipelines, and counts in nothing else.
     pub first_run: Option<f64>,
+    /// Seconds of [`Self::first_run`] in which WGSL was made ready for the device, by
+    /// `gpu::Context::compile_time`. 0 on the CPU, whose variants the Rust compiler made, and where
+    /// an earlier curve had the same text. None without a run.
+    pub compile: Option<f64>,
     /// A hash of the WGSL of the kernels, whatever ran them: FNV-1a, 64 bits. None if none was run
     /// by [`Run`](super::Run).
     pub code: Option<u64>,
@@ -248,6 +270,7 @@ impl Curve {
             speedup: None,
             missing: None,
             first_run: None,
+            compile: None,
             code: None,
         }
     }
@@ -303,7 +326,7 @@ impl Curve {
 
 /// The number that a share of all numbers does not exceed, linear between neighbours in their order
 /// (Hyndman and Fan, "Sample Quantiles in Statistical Packages", 1996, definition 7); NaN of none.
-fn quantile(numbers: impl Iterator<Item = f64>, share: f64) -> f64 {
+pub(super) fn quantile(numbers: impl Iterator<Item = f64>, share: f64) -> f64 {
     let mut sorted: Vec<f64> = numbers.collect();
     sorted.sort_by(f64::total_cmp);
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
@@ -330,6 +353,11 @@ mod tests {
         let repetition = Repetition {
             seed: 0,
             seconds,
+            cpu_seconds: None,
+            #[cfg(feature = "flip")]
+            flip: None,
+            #[cfg(feature = "flip")]
+            hdr_flip: None,
             samples: u64::from(knob),
             counted: None,
             work: Work::default(),

@@ -58,7 +58,9 @@ impl Environment {
 
 fn features() -> Vec<&'static str> {
     let all = [
+        ("cpu_time", cfg!(feature = "cpu_time")),
         ("exr", cfg!(feature = "exr")),
+        ("flip", cfg!(feature = "flip")),
         ("gpu", cfg!(feature = "gpu")),
         ("hdr", cfg!(feature = "hdr")),
         ("image", cfg!(feature = "image")),

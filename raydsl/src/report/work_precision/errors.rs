@@ -4,6 +4,8 @@ use core::fmt::Write;
 
 use super::curve::{Curve, Point};
 use super::efficiency::Efficiency;
+#[cfg(feature = "flip")]
+use super::flip::Flip;
 use super::table::{WIDTH, cut};
 use super::{FORMULAS, Measured, Report};
 
@@ -15,7 +17,8 @@ impl Report {
     ///
     /// Errors are the mean over the runs at the largest value of the knob that was run, but for the
     /// root of the mean square error, which is that of all runs. `trimmed` is `rel_mse` without the
-    /// worst 0.1 %. The [`Efficiency`] is of the same runs, `-` if it has none.
+    /// worst 0.1 %. The [`Efficiency`] is of the same runs, `-` if it has none. With the feature
+    /// `flip`, FLIP of pictures follows below.
     pub fn errors(&self) -> String {
         let mut text = self.cases.iter().map(table).collect::<Vec<_>>().join("\n");
         text += "\nn finite estimates x of references r, d = x - r\n";
@@ -33,7 +36,34 @@ fn table(case: &Measured) -> String {
     for curve in &case.curves {
         text += &cut(&line(curve));
     }
+    #[cfg(feature = "flip")]
+    flips(case, &mut text);
     text
+}
+
+/// How different pictures look, in the mean over the same runs.
+#[cfg(feature = "flip")]
+fn flips(case: &Measured, text: &mut String) {
+    let of_curve = |curve: &Curve| {
+        let point = curve.points.iter().rev().find(|p| !p.repetitions.is_empty())?;
+        let runs = || point.repetitions.iter().filter_map(|r| r.flip.zip(r.hdr_flip));
+        let n = runs().count() as f64;
+        let mean = |of: &dyn Fn((Flip, Flip)) -> f64| runs().map(of).sum::<f64>() / n;
+        let numbers = |of: fn((Flip, Flip)) -> Flip| {
+            [mean(&|f| of(f).mean), mean(&|f| of(f).median), mean(&|f| of(f).p95)]
+        };
+        let all = [numbers(|f| f.0), numbers(|f| f.1)].concat();
+        let all: String = all.iter().map(|v| format!(" {v:>8.1e}")).collect();
+        let name: String = curve.method.name.chars().take(10).collect();
+        let line = format!("{name:<10} {:<8} {:>8}{all}", curve.backend.name(), point.knob);
+        (n > 0.0).then(|| cut(&line))
+    };
+    let lines: Vec<String> = case.curves.iter().filter_map(of_curve).collect();
+    if !lines.is_empty() {
+        *text +=
+            "method     backend      knob     flip   median      p95 hdr_flip   median      p95\n";
+        *text += &lines.concat();
+    }
 }
 
 fn line(curve: &Curve) -> String {

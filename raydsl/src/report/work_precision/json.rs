@@ -63,6 +63,7 @@ fn curve(curve: &Curve) -> Value {
         "backend": curve.backend.name(),
         "lanes": curve.backend.lanes(),
         "t_first": curve.first_run,
+        "t_compile": curve.compile,
         "code": curve.code.map(|hash| format!("{hash:016x}")),
         "not_run": curve.missing.as_ref().map(ToString::to_string),
         "order": curve.fit.map(|f| f.order),
@@ -106,6 +107,7 @@ fn point(point: &Point) -> Value {
         "t_p10": number(point.t_quantile(0.1)),
         "t_median": point.t_median(),
         "t_p90": number(point.t_quantile(0.9)),
+        "cpu_s": point.cpu_seconds(),
         "samples": point.samples(),
         "work": work(&point.work()),
         "efficiency": point.efficiency().map(|e| json!({
@@ -128,9 +130,10 @@ fn work(work: &Work) -> Value {
 
 fn repetition(r: &Repetition) -> Value {
     let m = &r.metrics;
-    json!({
+    let found = json!({
         "seed": r.seed,
         "seconds": r.seconds,
+        "cpu_s": r.cpu_seconds,
         "counted": r.counted,
         "status": r.status.name(),
         "rmse": number(m.rmse),
@@ -145,5 +148,17 @@ fn repetition(r: &Repetition) -> Value {
         "nan": m.nan,
         "inf": m.inf,
         "negative": m.negative,
-    })
+    });
+    #[cfg(feature = "flip")]
+    let found = with_flip(found, r);
+    found
+}
+
+/// Null where the estimates are no picture.
+#[cfg(feature = "flip")]
+fn with_flip(mut found: Value, r: &Repetition) -> Value {
+    let numbers = |f: super::Flip| json!({ "mean": f.mean, "median": f.median, "p95": f.p95 });
+    found["flip"] = r.flip.map_or(Value::Null, numbers);
+    found["hdr_flip"] = r.hdr_flip.map_or(Value::Null, numbers);
+    found
 }

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::case::{Backend, Case};
+use super::cpu_clock::CpuClock;
 use super::curve::{Curve, Point, Repetition, Speedup, Status, rounding_floor};
 use super::metrics::Metrics;
 use super::run::{CodeHash, Run};
@@ -105,13 +106,24 @@ struct Runner<'r, 'c> {
 impl Runner<'_, '_> {
     /// The run before all others, at the first value of the knob.
     fn warm_up(&self, curve: &mut Curve, knob: u32) -> Result<(), WorkPrecisionError> {
-        let code = CodeHash::default();
+        let (code, before) = (CodeHash::default(), self.compile_time());
         match self.once(&self.run(curve, knob, 0, Some(&code)))? {
-            Ok(first) => curve.first_run = Some(first.seconds),
+            Ok(first) => {
+                curve.first_run = Some(first.seconds);
+                curve.compile = Some((self.compile_time() - before).as_secs_f64());
+            }
             Err(missing) => curve.missing = Some(missing),
         }
         curve.code = code.hash();
         Ok(())
+    }
+
+    /// What the device's pipelines have taken so far.
+    fn compile_time(&self) -> Duration {
+        #[cfg(feature = "gpu")]
+        return self.gpu.map_or(Duration::ZERO, |gpu| gpu.context().compile_time());
+        #[cfg(not(feature = "gpu"))]
+        Duration::ZERO
     }
 
     /// Counts apart what the runs of each method do. All backends take the same samples.
@@ -166,12 +178,14 @@ impl Runner<'_, '_> {
 
     /// One timed run.
     fn once(&self, run: &Run<'_>) -> Result<Result<Repetition, Missing>, WorkPrecisionError> {
+        let cpu = CpuClock::start();
         let start = Instant::now();
         let estimates = match self.case.estimate(run) {
             Ok(estimates) => estimates,
             Err(missing) => return Ok(Err(missing)),
         };
-        let took = start.elapsed().saturating_sub(run.code.map_or(Duration::ZERO, CodeHash::took));
+        let (took, cpu_seconds) = (start.elapsed(), cpu.seconds());
+        let took = took.saturating_sub(run.code.map_or(Duration::ZERO, CodeHash::took));
         let took = took.max(Duration::from_nanos(1));
         let (case, reference) = (self.case, &self.case.reference);
         if !reference.fits(estimates.values.len()) {
@@ -184,13 +198,20 @@ impl Runner<'_, '_> {
             });
         }
         let metrics = Metrics::of(&estimates.values, reference);
+        #[cfg(feature = "flip")]
+        let (flip, hdr_flip) = super::flip::of_picture(&estimates, reference).unzip();
         Ok(Ok(Repetition {
             seed: run.seed,
             seconds: took.as_secs_f64(),
+            cpu_seconds,
             samples: estimates.samples,
             counted: estimates.counted,
             work: estimates.work,
             metrics,
+            #[cfg(feature = "flip")]
+            flip,
+            #[cfg(feature = "flip")]
+            hdr_flip,
             status: self.status(run.backend, &metrics),
             values: estimates.values,
         }))

@@ -6,7 +6,7 @@ use super::reference::Reference;
 const EPSILON: f64 = 1e-2;
 
 /// The names of metrics and their formulas: n finite estimates x of references r, d = x - r.
-pub const FORMULAS: [(&str, &str); 12] = [
+pub const FORMULAS: &[(&str, &str)] = &[
     ("bias", "mean of d"),
     ("bias_z", "bias / (standard deviation of d / sqrt(n)), pixels being independent"),
     ("rmse", "sqrt(mean of d^2); of two halves a, b: sqrt(max(0, mean of (x-a)(x-b)))"),
@@ -22,6 +22,18 @@ pub const FORMULAS: [(&str, &str); 12] = [
         "efficiency",
         "1 / (v t): v is the variance of an estimate between runs, in the mean of all estimates, \
          t the mean seconds of a run",
+    ),
+    #[cfg(feature = "flip")]
+    (
+        "flip",
+        "mean, median and 95th percentile over pixels of LDR-FLIP (Andersson et al. 2020) of x and \
+         r as grey light, clamped to 1, in sRGB, 67 pixels per degree: 0 (the same) to 1",
+    ),
+    #[cfg(feature = "flip")]
+    (
+        "hdr_flip",
+        "the same of HDR-FLIP (Andersson et al. 2021): of each pixel the largest LDR-FLIP over \
+         exposures of r, tone mapped by ACES' curve",
     ),
 ];
 

@@ -32,6 +32,7 @@
 //! "Solving Ordinary Differential Equations I" (1993), section II.10.
 
 mod case;
+mod cpu_clock;
 mod csv;
 mod curve;
 mod drawing;
@@ -41,6 +42,8 @@ mod error;
 mod errors;
 mod files;
 mod fit;
+#[cfg(feature = "flip")]
+mod flip;
 mod json;
 mod measure;
 mod metrics;
@@ -60,6 +63,8 @@ pub use efficiency::Efficiency;
 pub use environment::Environment;
 pub use error::{MAX_KNOB, WorkPrecisionError};
 pub use fit::{Fit, Reached};
+#[cfg(feature = "flip")]
+pub use flip::{Flip, FlipError};
 pub use metrics::{FORMULAS, Metrics};
 pub use reference::{Reference, ReferenceKind};
 pub use run::{Estimates, Run};

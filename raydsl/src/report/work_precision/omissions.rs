@@ -7,22 +7,24 @@ use super::work::Work;
 use super::{Measured, Report};
 
 /// What no file of a report has, and why.
-const NOWHERE: [(&str, &str); 7] = [
+const NOWHERE: &[(&str, &str)] = &[
+    #[cfg(not(feature = "flip"))]
     (
         "FLIP",
-        "it compares colours as they look on a screen; estimates here are numbers, one for each \
-         pixel",
+        "raydsl was built without the feature `flip`: `--features flip` adds it, and needs a C++ \
+         compiler",
     ),
     ("clamped energy", "nothing clamps: estimates are what the samples gave"),
     ("errors of each channel", "estimates are the red channel"),
     ("time to the first pixel", "a run gives all its pixels at once"),
     (
-        "time to compile",
-        "a driver compiles when it likes; `t_first`, the run before all others, contains it",
+        "what a driver compiles at the first dispatch",
+        "nothing tells it apart: `t_compile` ends before, `t_first` contains it",
     ),
+    #[cfg(not(feature = "cpu_time"))]
     (
-        "time of the processor",
-        "the standard library has no such clock; `seconds` are those of the monotonic one",
+        "time of the processors, `cpu_s`",
+        "raydsl was built without the feature `cpu_time`; `seconds` are those of a clock",
     ),
     ("calls of exp, look-ups of a density", "a kernel that counts them has them in `counted`"),
 ];
@@ -50,7 +52,17 @@ fn of_case(case: &Measured) -> Vec<String> {
     let mut rows: Vec<String> = case.not_asked_for.iter().map(not_asked_for).collect();
     rows.extend(case.curves.iter().flat_map(|curve| of_curve(case, curve)));
     rows.extend(uncounted(case));
+    #[cfg(feature = "flip")]
+    rows.extend(unseen(case));
     rows
+}
+
+/// FLIP of what is no picture.
+#[cfg(feature = "flip")]
+fn unseen(case: &Measured) -> Option<String> {
+    let mut runs = case.curves.iter().flat_map(|c| &c.points).flat_map(|p| &p.repetitions);
+    let has_none = runs.all(|r| r.flip.is_none());
+    has_none.then(|| row(case, "all", "all", "FLIP", "the estimates are no picture"))
 }
 
 /// How much of a unit was counted.

@@ -23,6 +23,10 @@ const TOP: f64 = 48.0;
 const BOTTOM: f64 = 456.0;
 const LEGEND: f64 = LEFTS[1] + PANEL + 24.0;
 
+/// How wide and high a letter is.
+const LETTER: f64 = 8.0;
+/// Between a text and an axis.
+const MARGIN: f64 = 3.0;
 /// Of symbols.
 const RADIUS: f64 = 4.5;
 /// Half of the stroke at the end of a bar.
@@ -165,6 +169,37 @@ impl Axes {
         let height = BOTTOM - TOP;
         (self.left + PANEL * share(x, self.xs), BOTTOM - height * share(y, self.ys))
     }
+
+    /// The first place at which the whole text is in the panel; if none is, the last, moved there.
+    fn first_inside<const N: usize>(
+        &self,
+        places: [((f64, f64), Anchor); N],
+        text: &str,
+    ) -> ((f64, f64), Anchor) {
+        let length = LETTER * text.chars().count() as f64;
+        // How far it must go.
+        let shift = |((x, y), anchor): ((f64, f64), Anchor)| {
+            let left = match anchor {
+                Anchor::Start => x,
+                Anchor::Middle => x - 0.5 * length,
+                Anchor::End => x - length,
+            };
+            let (least, most) = (self.left + MARGIN, self.left + PANEL - MARGIN - length);
+            let half = 0.5 * LETTER;
+            let height = y.clamp(TOP + half, BOTTOM - MARGIN - half);
+            (left.clamp(least, most) - left, height - y)
+        };
+        let inside = places.into_iter().find(|place| shift(*place) == (0.0, 0.0));
+        inside.unwrap_or_else(|| {
+            let ((x, y), anchor) = places[N - 1];
+            let (right, down) = shift(places[N - 1]);
+            ((x + right, y + down), anchor)
+        })
+    }
+}
+
+fn mean(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
+    (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1))
 }
 
 struct Plot<'c> {
@@ -310,9 +345,15 @@ impl Plot<'_> {
         let color = self.color(curve);
         let corners = [(x0, y0), (x1, y1), right_angle, (x0, y0)].map(|(x, y)| axes.place(x, y));
         self.line(&corners, color, 1.0, None);
+        let text = format!("{order:.2}");
+        // Beside the upright leg, or where that is too near to an axis, along the level one.
+        let ((upright, level), middle) = (corners[2], mean(corners[0], corners[1]));
         let (aside, anchor) = if is_above { (4.0, Anchor::Start) } else { (-4.0, Anchor::End) };
-        let at = (corners[2].0 + aside, 0.5 * (corners[0].1 + corners[1].1));
-        self.colored(at, &format!("{order:.2}"), anchor, color);
+        let beyond = if is_above { -9.0 } else { 9.0 };
+        let places =
+            [((upright + aside, middle.1), anchor), ((middle.0, level + beyond), Anchor::Middle)];
+        let (at, anchor) = axes.first_inside(places, &text);
+        self.colored(at, &text, anchor, color);
     }
 
     /// Which colour is which method, with its order, and which symbol is which backend.
@@ -358,6 +399,19 @@ fn drawn(order: Order) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn texts_stay_in_their_panel() {
+        let axes = Axes { left: 100.0, xs: (0, 1), ys: (0, 1) };
+        let (beside, below) = (((300.0, 200.0), Anchor::End), ((320.0, 250.0), Anchor::Middle));
+        assert_eq!(axes.first_inside([beside, below], "-0.50"), beside);
+        // Its left end would be at 92.
+        let near = ((132.0, 200.0), Anchor::End);
+        assert_eq!(axes.first_inside([near, below], "-0.50"), below);
+        let corner = ((110.0, BOTTOM), Anchor::Middle);
+        let moved = ((100.0 + MARGIN + 20.0, BOTTOM - MARGIN - 4.0), Anchor::Middle);
+        assert_eq!(axes.first_inside([near, corner], "-0.50"), moved);
+    }
 
     #[test]
     fn decades_hold_all_numbers() {

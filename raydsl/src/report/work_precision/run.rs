@@ -28,12 +28,14 @@ pub struct Estimates {
     pub counted: Option<u64>,
     /// Rays and what else is known to have been done, in all.
     pub work: Work,
+    /// Columns and rows, if the values are a picture's. Those of [`Run::film`] are.
+    pub picture: Option<(u32, u32)>,
 }
 
 impl Estimates {
     /// Of numbers and the samples that they took in all.
     pub fn new(values: Vec<f64>, samples: u64) -> Self {
-        Self { values, samples, counted: None, work: Work::default() }
+        Self { values, samples, counted: None, work: Work::default(), picture: None }
     }
 
     /// Every sample traces so many rays.
@@ -132,7 +134,7 @@ impl<'a> Run<'a> {
         camera: &C,
         kernel: &Kernel<'_, A, R>,
     ) -> Result<Estimates, Missing> {
-        self.red(&self.means(camera, kernel, PixelSampler::Jittered)?)
+        Ok(self.picture(&self.means(camera, kernel, PixelSampler::Jittered)?))
     }
 
     /// The same of a kernel that gives the light in red, and in green what it counted on the way:
@@ -148,7 +150,7 @@ impl<'a> Run<'a> {
     ) -> Result<Estimates, Missing> {
         let means = self.means(camera, kernel, PixelSampler::Jittered)?;
         let counted: f64 = means.iter().map(|p| p.y * f64::from(self.knob)).sum();
-        Ok(Estimates { counted: Some(counted.round() as u64), ..self.red(&means)? })
+        Ok(Estimates { counted: Some(counted.round() as u64), ..self.picture(&means) })
     }
 
     /// Runs a kernel that looks at nothing but its sampler: every pixel is an estimate of one
@@ -161,7 +163,7 @@ impl<'a> Run<'a> {
         &self,
         kernel: &Kernel<'_, A, R>,
     ) -> Result<Estimates, Missing> {
-        self.red(&self.means(&integral_camera(), kernel, PixelSampler::Center)?)
+        Ok(self.red(&self.means(&integral_camera(), kernel, PixelSampler::Center)?))
     }
 
     /// Counts what [`Run::film`] does: runs `count` on the host for the ray and the sampler of each
@@ -200,9 +202,13 @@ impl<'a> Run<'a> {
         Sampling::new(self.knob).method(self.method.sampling).seed(self.seed).pixels(pixels)
     }
 
-    fn red(&self, means: &[DVec4]) -> Result<Estimates, Missing> {
+    fn red(&self, means: &[DVec4]) -> Estimates {
         let samples = means.len() as u64 * u64::from(self.knob);
-        Ok(Estimates::new(means.iter().map(|p| p.x).collect(), samples))
+        Estimates::new(means.iter().map(|p| p.x).collect(), samples)
+    }
+
+    fn picture(&self, means: &[DVec4]) -> Estimates {
+        Estimates { picture: Some(self.size), ..self.red(means) }
     }
 
     /// The mean colour of each pixel.
