@@ -5,7 +5,7 @@ use std::error::Error;
 use glam::DVec3;
 use raydsl::bvh::{Cost, Node};
 use raydsl::kernels::{
-    DirectionalLight, PointLight, Surface, ambient_occlusion, bvh_cost, bvh_cost_color,
+    DirectionalLight, PointLight, Surface, ambient_occlusion, aovs, bvh_cost, bvh_cost_color,
     direct_light, heat_color,
 };
 use raydsl::prelude::*;
@@ -407,5 +407,42 @@ fn heat_is_turbo() -> Result<(), Box<dyn Error>> {
             assert_eq!(run(&kernel, v, &[(ray,)]), [expected], "{v:?}");
         }
     }
+    Ok(())
+}
+
+#[test]
+fn aovs_are_those_of_the_closest_ball() -> Result<(), Box<dyn Error>> {
+    let balls = balls(24);
+    let scene = Bvh::build(&balls)?;
+    let kernel = kernel!(|ray: Ray| aovs(&scene, ray));
+    let rays: Vec<(Ray,)> = random_rays(6, 3000)
+        .into_iter()
+        .map(|ray| (Ray::new(ray.origin, ray.direction),))
+        .chain(broken_rays().into_iter().map(|ray| (ray,)))
+        .collect();
+    assert_variants_agree!(&kernel, &rays);
+    let (mut met, mut missed) = (0, 0);
+    for (ray,) in &rays[..3000] {
+        let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let (seen, margin) = closest(&balls, origin, direction);
+        if margin < 1e-4 {
+            continue;
+        }
+        let found = kernel.call((*ray,));
+        let Some((t, ball)) = seen else {
+            missed += 1;
+            assert_eq!((found.depth, found.prim_id, found.inst_id), (f32::MAX, u32::MAX, u32::MAX));
+            assert_eq!((found.albedo, found.normal), (Vec3::ZERO, Vec3::ZERO));
+            continue;
+        };
+        met += 1;
+        let outside = (origin + t * direction - ball.center.as_dvec3()).normalize();
+        let normal = if outside.dot(direction) > 0.0 { -outside } else { outside };
+        assert_eq!(found.albedo, ball.color);
+        assert_eq!((balls[found.prim_id as usize].center, found.inst_id), (ball.center, 0));
+        assert!((f64::from(found.depth) / t - 1.0).abs() < 1e-4, "{found:?} {t}");
+        assert!((found.normal.as_dvec3() - normal).length() < 1e-3, "{found:?} {normal}");
+    }
+    assert!(met > 500 && missed > 500, "{met} {missed}");
     Ok(())
 }

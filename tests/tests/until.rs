@@ -432,7 +432,7 @@ fn budgets_are_kept() -> Result<(), Box<dyn Error>> {
 /// Two fixed places, half of which are bright: a half round more would show in the mean.
 #[test]
 fn fixed_places_are_taken_in_whole_rounds() -> Result<(), Box<dyn Error>> {
-    let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+    let kernel = kernel!(|_ray: Ray, sampler: Sampler| {
         let mut sampler = sampler;
         let noise = 1e-3 * sampler.next_1d(host(SampleMethod::Random));
         if sampler.index % 8 < 4 { noise } else { 1.0 + noise }
@@ -524,6 +524,45 @@ fn an_observer_hears_of_the_error_and_stops() -> Result<(), Box<dyn Error>> {
     )?;
     assert_eq!((nothing.samples, film.samples()), (0, 0));
     assert_eq!(nothing.estimate.high, f64::INFINITY);
+    Ok(())
+}
+
+/// A device is asked after each dispatch. What was broken off leaves the image as it was, and the film
+/// its whole passes.
+#[cfg(feature = "gpu")]
+#[test]
+fn a_device_hears_the_observer() -> Result<(), Box<dyn Error>> {
+    let Some(gpu) = gpu() else { return Ok(()) };
+    let method = SampleMethod::Random;
+    let kernel = noise!(method);
+    let size = 1200;
+    let break_at = |at: f64| {
+        move |share: f64| match share {
+            s if s >= at => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        }
+    };
+    let mut image = Image::filled(size, size, 7.0f32);
+    let mut heard = Vec::new();
+    let mut listen = |share: f64| {
+        heard.push(share);
+        ControlFlow::Continue(())
+    };
+    let sky = kernel!(|ray: Ray| ray.direction.y);
+    let stopped = gpu.frame_observed(&camera(), &sky, &mut image, &mut break_at(0.0))?;
+    assert!(stopped.is_break() && image.pixels().iter().all(|&v| v == 7.0));
+    assert!(gpu.frame_observed(&camera(), &sky, &mut image, &mut listen)?.is_continue());
+    assert!(heard.is_sorted() && heard[0] == 0.0 && heard.last() == Some(&1.0), "{heard:?}");
+    assert!(image.pixels().iter().all(|&v| v != 7.0));
+    let mut film = Film::new(size, size);
+    let (sampling, stop) = (Sampling::new(1), &mut break_at(0.5));
+    let stopped = gpu.accumulate_observed(&camera(), &kernel, &sampling, &mut film, 128, stop)?;
+    assert!(stopped.is_break() && film.samples() == 64, "{}", film.samples());
+    // In the middle of a pass: there is more than one dispatch in it.
+    let mut film = Film::new(size, size);
+    let stop = &mut break_at(0.3);
+    let stopped = gpu.accumulate_observed(&camera(), &kernel, &sampling, &mut film, 128, stop)?;
+    assert!(stopped.is_break() && film.samples() == 0, "{}", film.samples());
     Ok(())
 }
 

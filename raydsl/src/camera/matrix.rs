@@ -1,6 +1,6 @@
 //! The camera of a rasteriser.
 
-use glam::{DMat4, DVec3, DVec4, Mat4, Vec2, Vec3, Vec4};
+use glam::{DMat4, DVec3, DVec4, Mat4, Vec2, Vec3, Vec4, dvec4};
 
 use super::{Camera, CameraRays};
 use crate::geometry::Ray;
@@ -35,6 +35,12 @@ pub enum CameraError {
     /// The near and the far plane have the same depth.
     #[error("the near and the far plane have the same depth")]
     NoDepth,
+    /// A corner of the near plane is behind the eye, or beside it.
+    #[error(
+        "the near plane is not in front of the eye: give the projection a near distance above 0, \
+         and the depth range that it was made for"
+    )]
+    NearBehindEye,
 }
 
 /// A camera that is given by the matrices of a rasteriser, so that both kinds of pictures can be
@@ -53,7 +59,8 @@ impl Matrix {
     ///
     /// # Errors
     ///
-    /// If the product has no inverse, or the depths of the planes are equal.
+    /// If the product has no inverse, the depths of the planes are equal, or the near plane is
+    /// behind the eye.
     pub fn new(view: Mat4, proj: Mat4, depth: DepthRange) -> Result<Self, CameraError> {
         let clip = proj.as_dmat4() * view.as_dmat4();
         let world = clip.inverse();
@@ -66,6 +73,12 @@ impl Matrix {
         }
         if !(depth.near - depth.far).is_normal() {
             return Err(CameraError::NoDepth);
+        }
+        // The last coordinate of a point is one over that of its place in clip space.
+        let in_front = |x: f64, y: f64| (world.row(3)).dot(dvec4(x, y, f64::from(depth.near), 1.0));
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
+        if !corners.iter().all(|&(x, y)| in_front(x, y) > 0.0) {
+            return Err(CameraError::NearBehindEye);
         }
         Ok(Self { clip, world, depth })
     }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`direct_light()`] | matt surfaces under lamps and suns, with shadows or without |
 //! | [`ambient_occlusion()`] | how much of its surroundings a point sees |
+//! | [`aovs()`] | albedo, normal, depth and numbers of what it meets |
 //! | [`bvh_cost()`], [`bvh_cost_color()`] | what the ray costs in its tree, as numbers or as a colour |
 //!
 //! They are kernels like any other: call them in a [`kernel!`](crate::prelude::kernel) of yours,
@@ -33,10 +34,12 @@ mod cost;
 mod direct;
 mod lights;
 mod occlusion;
+mod outputs;
 mod surface;
 
 pub use cost::{bvh_cost, bvh_cost_color, heat_color};
 pub use direct::{direct_light, irradiance};
 pub use lights::{DirectionalLight, Light, PointLight};
 pub use occlusion::{ambient_occlusion, is_open};
+pub use outputs::{Aovs, AovsOn, aovs};
 pub use surface::{Surface, facing};

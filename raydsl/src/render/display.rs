@@ -18,7 +18,7 @@ pub enum ToneMap {
     Clamp,
     /// Each channel by [`reinhard()`], with this white.
     Reinhard {
-        /// What becomes 1; above 0.
+        /// What becomes 1; at least 1e-6.
         white: f32,
     },
     /// Each channel by [`filmic()`].
@@ -91,7 +91,8 @@ impl Display {
         let exposed = exposed.clamp(Vec3::ZERO, Vec3::splat(BRIGHTEST));
         let mapped = match self.tone_map {
             ToneMap::Clamp => exposed,
-            ToneMap::Reinhard { white } => reinhard(exposed, white),
+            // With less, its square would be none.
+            ToneMap::Reinhard { white } => reinhard(exposed, white.max(1e-6)),
             ToneMap::Filmic => filmic(exposed),
         };
         let shown = mapped.clamp(Vec3::ZERO, Vec3::ONE);
@@ -147,7 +148,12 @@ mod tests {
         let magenta = vec4(1.0, 0.0, 1.0, 1.0);
         assert_eq!(display.color(vec4(f32::NAN, 0.0, 0.0, 1.0)), magenta);
         for light in [-1.0, 0.0, 1e-30, 1.0, 1e18, f32::MAX, f32::INFINITY] {
-            for map in [ToneMap::Clamp, ToneMap::Filmic, ToneMap::Reinhard { white: 2.0 }] {
+            for map in [
+                ToneMap::Clamp,
+                ToneMap::Filmic,
+                ToneMap::Reinhard { white: 2.0 },
+                ToneMap::Reinhard { white: 0.0 },
+            ] {
                 let shown = display.tone_map(map).color(Vec4::splat(light));
                 let range = Vec4::ZERO..=Vec4::ONE;
                 assert!(

@@ -10,7 +10,9 @@ use crate::{Type, kernel};
 pub struct Fragment {
     /// Colour times alpha, and alpha: transparent black where there is nothing.
     pub color: Vec4,
-    /// The depth in the window, from 0 (near) to 1 (far), 1 where there is nothing.
+    /// The depth in the window, from 0 (near) to 1 (far), 1 where there is nothing; with
+    /// [`DepthRange::REVERSED`](crate::camera::DepthRange::REVERSED), from 1 to 0 where there is
+    /// nothing.
     pub depth: f32,
 }
 
@@ -22,11 +24,24 @@ pub fn over(front: Vec4, back: Vec4) -> Vec4 {
     front + back * (1.0 - front.w)
 }
 
-/// Two makers' fragments of one pixel: the nearer is over the farther; of equal depths, `a` is.
+/// Two makers' fragments of one pixel: the nearer, which has the smaller depth, is over the
+/// farther; of equal depths, `a` is.
 #[kernel]
 #[inline]
 pub fn composite(a: Fragment, b: Fragment) -> Fragment {
     if b.depth < a.depth {
+        Fragment { color: over(b.color, a.color), depth: b.depth }
+    } else {
+        Fragment { color: over(a.color, b.color), depth: a.depth }
+    }
+}
+
+/// [`composite()`] where the greater depth is the nearer, as with
+/// [`DepthRange::REVERSED`](crate::camera::DepthRange::REVERSED).
+#[kernel]
+#[inline]
+pub fn composite_reversed(a: Fragment, b: Fragment) -> Fragment {
+    if b.depth > a.depth {
         Fragment { color: over(b.color, a.color), depth: b.depth }
     } else {
         Fragment { color: over(a.color, b.color), depth: a.depth }
@@ -49,5 +64,9 @@ mod tests {
         assert_eq!(composite(wall, nothing), wall);
         let behind = Fragment { depth: 0.75, ..glass };
         assert_eq!(composite(behind, wall), wall, "what is opaque hides");
+        let turned = |f: Fragment| Fragment { depth: 1.0 - f.depth, ..f };
+        for (a, b) in [(glass, wall), (wall, glass), (nothing, wall), (wall, nothing)] {
+            assert_eq!(composite_reversed(turned(a), turned(b)), turned(composite(a, b)));
+        }
     }
 }

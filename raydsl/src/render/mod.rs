@@ -24,7 +24,7 @@ mod watch;
 pub use display::{Display, ToneMap, Transfer, filmic, reinhard};
 pub use film::Film;
 pub use film_args::FilmArgs;
-pub use fragment::{Fragment, FragmentOn, composite, over};
+pub use fragment::{Fragment, FragmentOn, composite, composite_reversed, over};
 pub use image::{Image, Shaded, ShadedOn};
 pub use moments::{Moments, MomentsOn};
 pub use pixel_sampler::{PixelSampler, Sampling};

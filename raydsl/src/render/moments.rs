@@ -96,6 +96,59 @@ mod tests {
         assert!((sums.mean.x - mean).abs() < 1e-4, "{} {mean}", sums.mean.x);
     }
 
+    /// The hundred millionth sample counts as much as the first: a sum of `f32` would stand still at
+    /// 2^24.
+    #[test]
+    fn a_hundred_million_samples() {
+        let pass = |shift: f32| {
+            let mut moments = Moments::none();
+            // Evenly in [0, 1): 64 values whose mean is 0.4921875.
+            (0..64).for_each(|i| moments.add(Vec4::splat((i as f32 + shift) / 64.0)));
+            moments
+        };
+        let (low, high) = (pass(0.0), pass(0.5));
+        let mut sums = Sums::default();
+        (0..781_250).for_each(|_| {
+            sums.join(&low);
+            sums.join(&high);
+        });
+        assert_eq!(sums.count, 100_000_000);
+        let mean = (63.0 + 64.0) / 4.0 / 64.0;
+        assert!((sums.mean.x / mean - 1.0).abs() < 1e-6, "{}", sums.mean.x);
+        // Of 0 ..= 127, over 128^2.
+        let variance = (128.0 * 128.0 - 1.0) / 12.0 / (128.0 * 128.0);
+        let found = sums.m2.x / (sums.count - 1) as f64;
+        assert!((found / variance - 1.0).abs() < 1e-6, "{found} {variance}");
+    }
+
+    /// However parts are put together, the mean is the same to two units in the last place.
+    #[test]
+    fn the_order_of_joining_hardly_matters() {
+        let part = |i: u32| {
+            let mut moments = Moments::none();
+            let value = |j: u32| ((i * 97 + j * 31) % 1009) as f32 + 0.1;
+            (0..1 + i % 64).for_each(|j| moments.add(Vec4::splat(value(j))));
+            let mut sums = Sums::default();
+            sums.join(&moments);
+            sums
+        };
+        let all: Vec<Sums> = (0..1000).map(part).collect();
+        let joined = |parts: &[Sums]| {
+            let mut sums = Sums::default();
+            parts.iter().for_each(|p| sums.merge(p));
+            sums
+        };
+        let in_turn = joined(&all);
+        let by_tens: Vec<Sums> = all.chunks(10).map(joined).collect();
+        let backwards: Vec<Sums> = all.iter().rev().copied().collect();
+        for other in [joined(&by_tens), joined(&backwards)] {
+            assert_eq!(other.count, in_turn.count);
+            let ulp = f64::from(f32::EPSILON) * in_turn.mean.x / 2.0;
+            assert!((other.mean.x - in_turn.mean.x).abs() <= 2.0 * ulp);
+            assert!((other.m2.x / in_turn.m2.x - 1.0).abs() <= 2.0 * f64::from(f32::EPSILON));
+        }
+    }
+
     #[test]
     fn passes_of_any_size_are_joined() {
         let value = |i: u32| Vec4::new(i as f32, 1.0, 0.0, (i % 3) as f32);

@@ -1,0 +1,53 @@
+//! What is known of a pixel beside its light.
+
+use glam::{Vec3, vec3};
+
+use super::{Surface, facing};
+use crate::bvh::{Bvh, RayQuery};
+use crate::geometry::{Hit, Primitive, Ray};
+use crate::machine::functions::vec3;
+use crate::{Type, kernel};
+
+// ANCHOR: aovs
+/// The arbitrary output variables (AOVs) that denoisers, compositors and pickers ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
+#[repr(C)]
+pub struct Aovs {
+    /// The share of light that comes back from there, red, green and blue; 0 where nothing is met.
+    pub albedo: Vec3,
+    /// The unit normal, on the side that the ray comes from; 0 where nothing is met.
+    pub normal: Vec3,
+    /// The distance in lengths of the ray's direction; [`f32::MAX`] where nothing is met.
+    pub depth: f32,
+    /// The number of the primitive; [`u32::MAX`] where nothing is met.
+    pub prim_id: u32,
+    /// The number of the instance; 0 in a scene without, [`u32::MAX`] where nothing is met.
+    pub inst_id: u32,
+}
+
+/// What `ray` meets first. [`Image::map`](crate::render::Image::map) makes a picture of each
+/// member.
+#[kernel]
+pub fn aovs<P: Primitive<Hit = Hit> + Surface>(scene: &Bvh<'_, P>, ray: Ray) -> Aovs {
+    let hit = scene.closest_hit(ray);
+    if !hit.is_hit {
+        let nothing = vec3(0.0, 0.0, 0.0);
+        return Aovs {
+            albedo: nothing,
+            normal: nothing,
+            depth: f32::MAX,
+            prim_id: u32::MAX,
+            inst_id: u32::MAX,
+        };
+    }
+    let prim: P = scene.primitive(hit);
+    let point = facing(prim.surface(ray, hit), ray.direction);
+    Aovs {
+        albedo: prim.albedo(ray, hit),
+        normal: point.normal,
+        depth: hit.t,
+        prim_id: hit.prim_id,
+        inst_id: hit.inst_id,
+    }
+}
+// ANCHOR_END: aovs
