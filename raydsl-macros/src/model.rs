@@ -239,6 +239,11 @@ pub(crate) struct BinaryOp {
     pub(crate) may_overflow: bool,
 }
 
+/// Whether a name is a constant's, by the convention that rustc warns about.
+pub(crate) fn is_constant(name: &Ident) -> bool {
+    name.to_string().starts_with(|c: char| c.is_ascii_uppercase())
+}
+
 impl Kind {
     /// The tokens of an integer of the source.
     pub(crate) fn int_tokens(&self) -> Option<&TokenStream> {
@@ -489,6 +494,12 @@ impl Expr {
 }
 
 impl Stmt {
+    /// `let name = init`.
+    pub(crate) fn bind(name: Ident, mutable: bool, init: Expr) -> Self {
+        let (name, init) = (Some(name), Some(init));
+        Self::Let(Let { host: false, name, mutable, ty: None, init })
+    }
+
     pub(crate) fn ends_lanes(&self) -> bool {
         match self {
             Self::Let(l) => l.init.as_ref().is_some_and(Expr::ends_lanes),
