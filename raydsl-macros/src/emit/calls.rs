@@ -209,12 +209,6 @@ impl Emitter<'_> {
         ))
     }
 
-    /// Whether it is a constant of the source, by the convention that rustc warns about.
-    fn is_constant(&self, name: &Ident) -> bool {
-        let is_capital = name.to_string().starts_with(|c: char| c.is_ascii_uppercase());
-        is_capital && self.lookup(name).is_none()
-    }
-
     /// Whether it is a variable outside of the closure, or a part of one.
     fn is_part_of_outer(&self, e: &Expr) -> bool {
         match &e.kind {

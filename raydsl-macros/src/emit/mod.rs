@@ -19,7 +19,7 @@ use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 use crate::diag::Errors;
 use crate::generics::{Generics, identifiers};
 use crate::here::{At, here_own, in_one_place, of_type, quote_here as quote};
-use crate::model::{Block, Expr, Kernel, Kind, Param};
+use crate::model::{Block, Expr, Kernel, Kind, Param, is_constant};
 use owner::Owner;
 
 /// What a name stands for.
@@ -417,6 +417,11 @@ impl<'a> Emitter<'a> {
     fn find(&self, name: &Ident) -> Option<&Local> {
         let name = name.to_string();
         self.scopes.iter().rev().find_map(|s| s.get(&name))
+    }
+
+    /// Whether it is a constant of the source.
+    fn is_constant(&self, name: &Ident) -> bool {
+        is_constant(name) && self.lookup(name).is_none()
     }
 
     /// `self` cannot be the name of a local.

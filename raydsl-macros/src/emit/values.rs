@@ -287,8 +287,7 @@ impl Emitter<'_> {
             Some(Binding::Host) => quote!(#p::HostUse::value(#name, #m)),
             None => {
                 let machine = &self.machine;
-                let is_constant = name.to_string().starts_with(|c: char| c.is_ascii_uppercase());
-                if is_constant || !self.is_closure {
+                if self.is_constant(name) || !self.is_closure {
                     return quote!(#p::Capture::<#machine>::constant(&#name, #m));
                 }
                 if name == "self" {
