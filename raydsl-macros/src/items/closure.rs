@@ -7,7 +7,7 @@ use syn::spanned::Spanned;
 use super::{info, own, private, quiet};
 use crate::diag::Errors;
 use crate::emit::{Emitter, raw_capture};
-use crate::here::{At, quote_here};
+use crate::here::{At, private_here, quote_here};
 use crate::parse;
 use crate::rewrite::without_markers;
 
@@ -49,7 +49,7 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
         let raw_index = raw.iter().filter_map(|r| captured.iter().position(|c| c == r));
         let raw = raw.iter().zip(raw_index).map(|(name, i)| {
             let _at = At::new(name.span());
-            let (p, captures) = (quote_here!(::raydsl::__private), own("captures"));
+            let (p, captures) = (private_here(), own("captures"));
             let (i, raw) = (syn::Index::from(i), raw_capture(name));
             quote_here!(let #raw = #p::HostCapture::host({ #captures.#i });)
         });
@@ -60,7 +60,7 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
         }
         let brought = captured.iter().enumerate().map(|(i, name)| {
             let _at = At::new(name.span());
-            let p = quote_here!(::raydsl::__private);
+            let p = private_here();
             let (captures, m, i) = (own("captures"), own("m"), syn::Index::from(i));
             let text = name.to_string();
             quote_here!(
@@ -98,7 +98,7 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
     let (first, first_machine) = (others.remove(0), format_ident!("{}", NATURAL[0].0));
     let resources = captured.iter().enumerate().map(|(i, name)| {
         let _at = At::new(name.span());
-        let p = quote_here!(::raydsl::__private);
+        let p = private_here();
         let (captures, i) = (own("captures"), syn::Index::from(i));
         quote_here!(#p::Capture::<#p::Recorder>::resources({ #captures.#i }, visit);)
     });

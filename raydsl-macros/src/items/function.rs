@@ -6,7 +6,7 @@ use quote::{ToTokens, format_ident, quote};
 use super::{Place, asserted, info, lifted_function, own, param_ident, private, quiet};
 use crate::diag::Errors;
 use crate::generics::Generics;
-use crate::here::{of_type, quote_here};
+use crate::here::{of_type, private_here, quote_here};
 use crate::model::{Kernel, Param};
 use crate::parse;
 use crate::rewrite::without_markers;
@@ -197,7 +197,7 @@ fn entry(kernel: &Kernel, sig: &syn::Signature) -> TokenStream {
     let (declared, used) = (angled(declared), angled(used));
     let types: Vec<&TokenStream> = kernel.params.iter().map(|p| &p.ty).collect();
     let _at = types.first().map(|ty| of_type(ty));
-    let p = quote_here!(::raydsl::__private);
+    let p = private_here();
     let fields: Vec<syn::Index> = (0..types.len()).map(syn::Index::from).collect();
     let result = &kernel.result;
     let refs = scalar_arguments(sig, &fields);

@@ -19,17 +19,9 @@ use quote::quote;
 use crate::diag::Errors;
 use crate::emit::Emitter;
 use crate::generics::Generics;
-use crate::here::{here_own, in_one_place, of_type, quote_here};
+use crate::here::{in_one_place, of_type, own, private, private_here, quote_here};
 use crate::model::Kernel;
 use crate::ops;
-
-fn private() -> TokenStream {
-    quote!(::raydsl::__private)
-}
-
-fn own(name: &str) -> Ident {
-    Ident::new(name, here_own())
-}
 
 /// A parameter in lifted code; `self` cannot name a local.
 fn param_ident(name: &Ident) -> Ident {
@@ -95,7 +87,7 @@ fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> T
     let quiet = quiet();
     let arguments = values().zip(&names).zip(&types).map(|((param, name), ty)| {
         let _at = of_type(&param.ty);
-        let (p, m) = (quote_here!(::raydsl::__private), own("m"));
+        let (p, m) = (private_here(), own("m"));
         quote_here!(#p::Coerce::<__M, #ty>::coerce(#name, #m))
     });
     let call_it = if kernel.is_apart { quote!(call_apart) } else { quote!(call) };
@@ -158,7 +150,7 @@ fn asserted_type(ty: &TokenStream, generics: &Generics) -> TokenStream {
         return TokenStream::new();
     }
     let _at = of_type(ty);
-    let (p, ty) = (quote_here!(::raydsl::__private), in_one_place(ty.clone()));
+    let (p, ty) = (private_here(), in_one_place(ty.clone()));
     quote_here!(#ty: #p::Type,)
 }
 
