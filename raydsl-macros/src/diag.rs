@@ -3,6 +3,18 @@
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
+/// An item that a macro leaves as it is, with an error at all of `place`.
+pub(crate) fn refused(
+    item: &TokenStream,
+    place: &TokenStream,
+    what: &str,
+    help: &str,
+) -> TokenStream {
+    let e = syn::Error::new_spanned(place, format!("{what}\n  help: {help}"));
+    let e = e.into_compile_error();
+    quote!(#item #e)
+}
+
 /// Collects the errors of one macro call.
 #[derive(Default)]
 pub(crate) struct Errors {

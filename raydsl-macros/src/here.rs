@@ -7,6 +7,7 @@
 use std::cell::Cell;
 
 use proc_macro2::{Group, Ident, Span, TokenStream, TokenTree};
+use quote::quote;
 
 thread_local! {
     static HERE: Cell<Option<Span>> = const { Cell::new(None) };
@@ -32,14 +33,24 @@ pub(crate) fn here() -> Span {
     located(Span::call_site())
 }
 
-/// The place for locals of the macro's own.
-pub(crate) fn here_own() -> Span {
-    located(Span::mixed_site())
+/// A local of the macro's own: it cannot meet one of the user's.
+pub(crate) fn own(name: &str) -> Ident {
+    Ident::new(name, located(Span::mixed_site()))
 }
 
 /// A name of the library's.
 pub(crate) fn word(name: &str) -> Ident {
     Ident::new(name, here())
+}
+
+/// The module with all that generated code uses, standing where the macro is called.
+pub(crate) fn private() -> TokenStream {
+    quote!(::raydsl::__private)
+}
+
+/// The module with all that generated code uses, standing [`here()`].
+pub(crate) fn private_here() -> TokenStream {
+    quote_here!(::raydsl::__private)
 }
 
 /// Code stands where the type does.

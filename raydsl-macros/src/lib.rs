@@ -22,6 +22,8 @@ use proc_macro::TokenStream;
 use quote::quote;
 use syn::spanned::Spanned;
 
+use diag::refused;
+
 /// Lifts a function, or every function of an `impl` or a trait, to all variants.
 ///
 /// The function itself stays untouched: it is the scalar variant. Beside it stands a type of the
@@ -40,12 +42,7 @@ fn expand_kernel(
     item: proc_macro2::TokenStream,
 ) -> proc_macro2::TokenStream {
     if !args.is_empty() {
-        let e = syn::Error::new_spanned(
-            args,
-            "`#[kernel]` takes no arguments\n  help: write `#[kernel]`",
-        );
-        let e = e.into_compile_error();
-        return quote!(#item #e);
+        return refused(&item, &args, "`#[kernel]` takes no arguments", "write `#[kernel]`");
     }
     if let Ok(f) = syn::parse2::<syn::ItemFn>(item.clone()) {
         return items::kernel_fn(&f);
@@ -69,12 +66,8 @@ fn expand_kernel(
         // For rustc's sake a kernel all the same: what is done with it is right.
         return quote!({ #e ::raydsl::prelude::kernel!(#item) });
     }
-    let e = syn::Error::new_spanned(
-        &item,
-        "`#[kernel]` stands on a function, an impl or a trait\n  help: for a closure write `kernel!(|ray: Ray| ...)`",
-    );
-    let e = e.into_compile_error();
-    quote!(#item #e)
+    let what = "`#[kernel]` stands on a function, an impl or a trait";
+    refused(&item, &item, what, "for a closure write `kernel!(|ray: Ray| ...)`")
 }
 
 /// Makes kernels of the closures marked `#[kernel]` inside a function, `impl`, trait or module.
@@ -94,12 +87,7 @@ fn expand_kernels(
     if args.is_empty() {
         return rewritten;
     }
-    let e = syn::Error::new_spanned(
-        args,
-        "`#[kernels]` takes no arguments\n  help: write `#[kernels]`",
-    );
-    let e = e.into_compile_error();
-    quote!(#rewritten #e)
+    refused(&rewritten, &args, "`#[kernels]` takes no arguments", "write `#[kernels]`")
 }
 
 /// Makes a kernel of a closure: `kernel!(|ray: Ray| ...)`.
@@ -149,12 +137,8 @@ fn expand_primitive(
         return quote!(#item #errors);
     }
     let Ok(s) = syn::parse2::<syn::DeriveInput>(item.clone()) else {
-        let e = syn::Error::new_spanned(
-            &item,
-            "`#[primitive]` stands on a struct and on its impl\n  help: write `#[primitive] struct Name { ... }`",
-        );
-        let e = e.into_compile_error();
-        return quote!(#item #e);
+        let what = "`#[primitive]` stands on a struct and on its impl";
+        return refused(&item, &item, what, "write `#[primitive] struct Name { ... }`");
     };
     let twin = twin::primitive_item(&s);
     if args.is_empty() {

@@ -239,6 +239,11 @@ pub(crate) struct BinaryOp {
     pub(crate) may_overflow: bool,
 }
 
+/// Whether a name is a constant's, by the convention that rustc warns about.
+pub(crate) fn is_constant(name: &Ident) -> bool {
+    name.to_string().starts_with(|c: char| c.is_ascii_uppercase())
+}
+
 impl Kind {
     /// The tokens of an integer of the source.
     pub(crate) fn int_tokens(&self) -> Option<&TokenStream> {
@@ -259,20 +264,20 @@ impl Kind {
             | Self::Break(_, None)
             | Self::Continue(_)
             | Self::Return(None)
+            | Self::RefMut(_)
+            | Self::Closure(_)
             | Self::Error => vec![],
-            Self::RefMut(_) | Self::Closure(_) => vec![],
             Self::Deref(a)
             | Self::Host(a)
             | Self::Neg(a)
             | Self::Not(a)
             | Self::Return(Some(a))
-            | Self::Break(_, Some(a)) => {
-                vec![a]
-            }
-            Self::Cast { value, .. } => vec![value],
-            Self::Field { base, .. } | Self::Index { base, .. } => vec![base],
+            | Self::Break(_, Some(a))
+            | Self::Cast { value: a, .. }
+            | Self::Repeat { value: a, .. }
+            | Self::Field { base: a, .. }
+            | Self::Index { base: a, .. } => vec![a],
             Self::Element { base, index } => vec![base, index],
-            Self::Repeat { value, .. } => vec![value],
             Self::Assign { place, value } | Self::OpAssign { place, value, .. } => {
                 let steps = place.steps.iter().filter_map(|s| match s {
                     Step::Computed(e) => Some(e),
@@ -294,21 +299,13 @@ impl Kind {
                 fields.iter().map(|f| &f.1).chain(rest.as_deref()).collect()
             }
             Self::If { c, then, otherwise, .. } => {
-                let mut all = vec![&**c];
-                all.extend(then.children());
-                all.extend(otherwise.as_deref());
-                all
+                let arms = then.children().into_iter().chain(otherwise.as_deref());
+                core::iter::once(&**c).chain(arms).collect()
             }
-            Self::While { c, body, .. } => {
-                let mut all = vec![&**c];
-                all.extend(body.children());
-                all
-            }
+            Self::While { c, body, .. } => core::iter::once(&**c).chain(body.children()).collect(),
             Self::For { range, body, .. } => {
-                let mut all = vec![&*range.start, &*range.end];
-                all.extend(range.step.as_deref());
-                all.extend(body.children());
-                all
+                let bounds = [&*range.start, &*range.end].into_iter();
+                bounds.chain(range.step.as_deref()).chain(body.children()).collect()
             }
             Self::Loop { body, .. } | Self::Block(body) => body.children(),
         }
@@ -353,13 +350,7 @@ impl Expr {
     pub(crate) fn is_structured(&self) -> bool {
         match &self.kind {
             Kind::If { .. } => true,
-            Kind::Loop { label, body } => {
-                let mut values = Vec::new();
-                body.children()
-                    .iter()
-                    .for_each(|e| e.break_values(label.as_deref(), 0, &mut values));
-                !values.is_empty()
-            }
+            Kind::Loop { label, body } => !body.break_values(label.as_deref()).is_empty(),
             Kind::Block(b) => b.ends_lanes() || b.tail.as_ref().is_some_and(|e| e.is_structured()),
             _ => false,
         }
@@ -390,11 +381,7 @@ impl Expr {
             }
             Kind::Block(b) => of_block(b, found),
             Kind::Loop { label, body } => {
-                let mut values = Vec::new();
-                body.children()
-                    .iter()
-                    .for_each(|e| e.break_values(label.as_deref(), 0, &mut values));
-                values.iter().for_each(|e| e.outcomes(found));
+                body.break_values(label.as_deref()).iter().for_each(|e| e.outcomes(found));
             }
             _ if self.diverges() => {}
             _ => found.push(self),
@@ -461,9 +448,7 @@ impl Expr {
         };
         this && self.kind.children().iter().all(|e| e.is_total())
     }
-}
 
-impl Expr {
     /// Whether it calls or assigns something, so that its place in the order of things matters.
     pub(crate) fn may_act(&self) -> bool {
         let this = matches!(
@@ -489,6 +474,12 @@ impl Expr {
 }
 
 impl Stmt {
+    /// `let name = init`.
+    pub(crate) fn bind(name: Ident, mutable: bool, init: Expr) -> Self {
+        let (name, init) = (Some(name), Some(init));
+        Self::Let(Let { host: false, name, mutable, ty: None, init })
+    }
+
     pub(crate) fn ends_lanes(&self) -> bool {
         match self {
             Self::Let(l) => l.init.as_ref().is_some_and(Expr::ends_lanes),
@@ -501,6 +492,13 @@ impl Stmt {
 impl Block {
     pub(crate) fn ends_lanes(&self) -> bool {
         self.children().iter().any(|e| e.ends_lanes())
+    }
+
+    /// What `break` gives to the loop with this label, whose body the block is.
+    fn break_values(&self, label: Option<&str>) -> Vec<&Expr> {
+        let mut found = Vec::new();
+        self.children().iter().for_each(|e| e.break_values(label, 0, &mut found));
+        found
     }
 
     /// Whether something within leaves the block with this label.

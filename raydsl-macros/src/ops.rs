@@ -3,7 +3,10 @@
 use crate::model::BinaryOp;
 
 macro_rules! operators {
-    ($($name:ident = $symbol:literal $operator:literal $method:literal $trap:literal $overflow:literal;)+) => {
+    ($(
+        $name:ident = $symbol:literal $operator:literal $method:literal
+            $trap:literal $overflow:literal;
+    )+) => {
         $(
             pub(crate) const $name: BinaryOp = BinaryOp {
                 symbol: $symbol,

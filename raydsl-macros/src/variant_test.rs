@@ -4,7 +4,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use syn::spanned::Spanned as _;
 
-use crate::diag::Errors;
+use crate::diag::{Errors, refused};
 
 /// The variants, and the ends of their tests' names.
 const VARIANTS: [(&str, &str); 5] = [
@@ -21,12 +21,8 @@ const OF_TESTS: [&str; 3] = ["ignore", "should_panic", "cfg"];
 /// The function, and a test for each variant that calls it.
 pub(crate) fn variant_test(args: &TokenStream, item: TokenStream) -> TokenStream {
     let Ok(mut f) = syn::parse2::<syn::ItemFn>(item.clone()) else {
-        let e = syn::Error::new_spanned(
-            &item,
-            "`#[variant_test]` stands on a function\n  help: write `#[variant_test] fn agrees(variant: Variant) { ... }`",
-        );
-        let e = e.into_compile_error();
-        return quote!(#item #e);
+        let help = "write `#[variant_test] fn agrees(variant: Variant) { ... }`";
+        return refused(&item, &item, "`#[variant_test]` stands on a function", help);
     };
     let mut errors = Errors::default();
     check_arguments(args, &mut errors);

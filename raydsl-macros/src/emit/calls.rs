@@ -5,7 +5,7 @@ use proc_macro2::{Ident, Span, TokenStream};
 use super::places::{is_part_of_element, plain_steps};
 use super::{Binding, Emitter, own, private, shown};
 use crate::here::{At, quote_here as quote, word};
-use crate::model::{Expr, Kind};
+use crate::model::{Expr, Kind, Place};
 
 impl Emitter<'_> {
     pub(super) fn call(&mut self, path: &TokenStream, args: &[Expr], span: Span) -> TokenStream {
@@ -43,76 +43,88 @@ impl Emitter<'_> {
     }
 
     fn arguments(&mut self, args: &[Expr]) -> Arguments {
-        let (p, m) = (private(), own("m"));
         let mut all = Arguments::default();
         // What is read before a call is read in order.
         let is_part = |e: &Expr| matches!(&e.kind, Kind::RefMut(p) if !p.steps.is_empty());
         let in_order = args.iter().any(is_part);
         for arg in args {
-            let value = match &arg.kind {
-                Kind::Closure(kernel) => self.closure(kernel),
-                Kind::RefMut(place) => {
-                    let local = self.local(&place.name);
-                    if self.is_outer(&place.name) {
-                        self.outside(&place.name);
-                        continue;
-                    }
-                    if self.lookup(&place.name).is_none() && self.is_closure {
-                        self.not_ours(&place.name);
-                    }
-                    let Some(steps) = plain_steps(&place.steps) else {
-                        self.errors.at(
-                            arg.span,
-                            "a kernel has no `&mut` to a computed element",
-                            "copy the element to a variable, and assign it back after the call",
-                        );
-                        continue;
-                    };
-                    if steps.is_empty() {
-                        quote!(&#local)
-                    } else {
-                        let (part, whole) = (self.fresh("part"), own("whole"));
-                        let text = shown(&place.name);
-                        all.before.extend(quote! {
-                            let #part = #p::Var::new(#m, #text, #local.get(#m) #steps);
-                        });
-                        all.after.extend(quote!({
-                            let mut #whole = #local.get(#m);
-                            #whole #steps = #part.get(#m);
-                            #local.set(#m, #whole);
-                        }));
-                        quote!(&#part)
-                    }
+            if let Kind::RefMut(place) = &arg.kind {
+                let variable = self.mut_argument(place, arg.span, &mut all);
+                all.values.extend(variable);
+                continue;
+            }
+            let value = match self.unread(arg) {
+                Some(value) => value,
+                None if in_order => {
+                    let (value, ident) = (self.value(arg), self.fresh("argument"));
+                    all.before.extend(quote!(let #ident = #value;));
+                    quote!(#ident)
                 }
-                Kind::Name(name)
-                    if self.lookup(name) == Some(Binding::Mut) && !self.is_outer(name) =>
-                {
-                    let local = self.local(name);
-                    quote!(&#local)
-                }
-                // A number may be for a parameter of the host, and so may a constant.
-                Kind::Int { tokens, .. } => tokens.clone(),
-                Kind::Name(name) if self.is_constant(name) => {
-                    quote!(#p::Constant(&#name).give(#m))
-                }
-                Kind::Name(name) if self.lookup(name) == Some(Binding::Host) => quote!(#name),
-                Kind::Host(_) if self.host_value(arg).is_some() => {
-                    self.host_value(arg).unwrap_or_default()
-                }
-                _ => {
-                    let value = self.value(arg);
-                    if in_order {
-                        let ident = self.fresh("argument");
-                        all.before.extend(quote!(let #ident = #value;));
-                        quote!(#ident)
-                    } else {
-                        value
-                    }
-                }
+                None => self.value(arg),
             };
             all.values.push(value);
         }
         all
+    }
+
+    /// An argument that no lane reads before the call.
+    fn unread(&mut self, arg: &Expr) -> Option<TokenStream> {
+        let (p, m) = (private(), own("m"));
+        match &arg.kind {
+            Kind::Closure(kernel) => Some(self.closure(kernel)),
+            Kind::Name(name) if self.lookup(name) == Some(Binding::Mut) && !self.is_outer(name) => {
+                let local = self.local(name);
+                Some(quote!(&#local))
+            }
+            // A number may be for a parameter of the host, and so may a constant.
+            Kind::Int { tokens, .. } => Some(tokens.clone()),
+            Kind::Name(name) if self.is_constant(name) => {
+                Some(quote!(#p::Constant(&#name).give(#m)))
+            }
+            Kind::Name(name) if self.lookup(name) == Some(Binding::Host) => Some(quote!(#name)),
+            Kind::Host(_) => self.host_value(arg),
+            _ => None,
+        }
+    }
+
+    /// `&mut place`: the variable, or a copy of the part, which goes back behind the call.
+    fn mut_argument(
+        &mut self,
+        place: &Place,
+        span: Span,
+        around: &mut Arguments,
+    ) -> Option<TokenStream> {
+        let local = self.local(&place.name);
+        if self.is_outer(&place.name) {
+            self.outside(&place.name);
+            return None;
+        }
+        if self.lookup(&place.name).is_none() && self.is_closure {
+            self.not_ours(&place.name);
+        }
+        let Some(steps) = plain_steps(&place.steps) else {
+            self.errors.at(
+                span,
+                "a kernel has no `&mut` to a computed element",
+                "copy the element to a variable, and assign it back after the call",
+            );
+            return None;
+        };
+        if steps.is_empty() {
+            return Some(quote!(&#local));
+        }
+        let (p, m) = (private(), own("m"));
+        let (part, whole) = (self.fresh("part"), own("whole"));
+        let text = shown(&place.name);
+        around.before.extend(quote! {
+            let #part = #p::Var::new(#m, #text, #local.get(#m) #steps);
+        });
+        around.after.extend(quote!({
+            let mut #whole = #local.get(#m);
+            #whole #steps = #part.get(#m);
+            #local.set(#m, #whole);
+        }));
+        Some(quote!(&#part))
     }
 
     /// A method that takes `&mut self` changes the variable, or the part of one, that it is
@@ -124,18 +136,13 @@ impl Emitter<'_> {
         turbofish: &[TokenStream],
         args: &[Expr],
     ) -> TokenStream {
-        let (p, m) = (private(), own("m"));
         self.refuse(receiver, name);
         if let Some((generic, this)) = self.generic_receiver(receiver) {
             let function = word(&format!("{name}_on"));
             let args = self.arguments(args);
             let (m, values) = (own("m"), &args.values);
-            return args.around(quote!(<#generic>::#function(#m, #this, #(#values),*)
-            ));
+            return args.around(quote!(<#generic>::#function(#m, #this, #(#values),*)));
         }
-        let text = name.to_string();
-        let machine = self.machine.clone();
-        let method = quote!(#p::Method::<{ #p::name(#text) }, #machine, _, _>);
         let variable = self.variable_under(receiver);
         let mut value = self.value(receiver);
         let mut args = self.arguments(args);
@@ -147,42 +154,19 @@ impl Emitter<'_> {
         let generic =
             turbofish.iter().map(|ty| quote!(<#ty as ::core::default::Default>::default()));
         args.values.splice(0..0, generic);
-        let values = &args.values;
-        let Some((local, steps)) = variable else {
-            if is_part_of_element(receiver)
-                || self.is_part_of_outer(receiver)
-                || self.is_alias(receiver)
-            {
-                return args.around(
-                    quote!(#p::call_on_element::<{ #p::name(#text) }, #machine, _, _, _>(
-                            #m, #value, (#(#values,)*)
-                        )
-                    ),
-                );
-            }
-            return args.around(quote!(#method::call({ #value }, #m, (#({ #values },)*))));
-        };
-        if steps.is_empty() {
-            return args
-                .around(quote!(#method::call_at({ #value }, &#local, #m, (#({ #values },)*))
-                ));
-        }
-        let (old, list, part, whole) = (own("old"), own("args"), own("part"), own("whole"));
-        let result = own("result");
-        let shown = shown(&local);
-        args.around(quote!({
-            let (#old, #list) = (#value, (#(#values,)*));
-            if #p::is_mut::<{ #p::name(#text) }, #machine, _, _, _>(#m, &#old, &#list) {
-                let #part = #p::Var::new(#m, #shown, #old);
-                let #result = #method::call_at(#old, &#part, #m, #list);
-                let mut #whole = #local.get(#m);
-                #whole #steps = #part.get(#m);
-                #local.set(#m, #whole);
-                #result
-            } else {
-                #method::call(#old, #m, #list)
-            }
-        }))
+        let (machine, name) = (&self.machine, name.to_string());
+        let call = MethodCall { machine, name, receiver: value, values: &args.values };
+        args.around(match variable {
+            Some((local, steps)) if steps.is_empty() => call.on_variable(&local),
+            Some((local, steps)) => call.on_part(&local, &steps),
+            None if self.is_part_of_what_stays(receiver) => call.on_element(),
+            None => call.on_value(),
+        })
+    }
+
+    /// Whether it is part of something that a method cannot change, though rustc's methods could.
+    fn is_part_of_what_stays(&self, e: &Expr) -> bool {
+        is_part_of_element(e) || self.is_part_of_outer(e) || self.is_alias(e)
     }
 
     /// A receiver whose type is a type parameter: its trait has the lifted method, which takes a
@@ -207,12 +191,6 @@ impl Emitter<'_> {
                 Binding::Var | Binding::Mut => quote!(&#ident),
             },
         ))
-    }
-
-    /// Whether it is a constant of the source, by the convention that rustc warns about.
-    fn is_constant(&self, name: &Ident) -> bool {
-        let is_capital = name.to_string().starts_with(|c: char| c.is_ascii_uppercase());
-        is_capital && self.lookup(name).is_none()
     }
 
     /// Whether it is a variable outside of the closure, or a part of one.
@@ -257,12 +235,66 @@ struct Arguments {
 }
 
 impl Arguments {
-    pub(super) fn around(&self, call: TokenStream) -> TokenStream {
+    fn around(&self, call: TokenStream) -> TokenStream {
         let Self { before, after, .. } = self;
         if before.is_empty() {
             return call;
         }
         let result = own("result");
         quote!({ #before let #result = #call; #after #result })
+    }
+}
+
+/// A call of a method whose receiver and arguments are written already.
+struct MethodCall<'a> {
+    machine: &'a TokenStream,
+    name: String,
+    receiver: TokenStream,
+    values: &'a [TokenStream],
+}
+
+impl MethodCall<'_> {
+    fn method(&self) -> TokenStream {
+        let (p, Self { machine, name, .. }) = (private(), self);
+        quote!(#p::Method::<{ #p::name(#name) }, #machine, _, _>)
+    }
+
+    fn on_value(&self) -> TokenStream {
+        let (m, method, Self { receiver, values, .. }) = (own("m"), self.method(), self);
+        quote!(#method::call({ #receiver }, #m, (#({ #values },)*)))
+    }
+
+    /// The method takes no `&mut self`, or it is an error.
+    fn on_element(&self) -> TokenStream {
+        let (p, m, Self { machine, name, receiver, values }) = (private(), own("m"), self);
+        quote!(#p::call_on_element::<{ #p::name(#name) }, #machine, _, _, _>(
+            #m, #receiver, (#(#values,)*)
+        ))
+    }
+
+    fn on_variable(&self, local: &Ident) -> TokenStream {
+        let (m, method, Self { receiver, values, .. }) = (own("m"), self.method(), self);
+        quote!(#method::call_at({ #receiver }, &#local, #m, (#({ #values },)*)))
+    }
+
+    /// A method that takes `&mut self` is given a copy of the part, which goes back behind it.
+    fn on_part(&self, local: &Ident, steps: &TokenStream) -> TokenStream {
+        let (p, m, method) = (private(), own("m"), self.method());
+        let Self { machine, name, receiver, values } = self;
+        let (old, list, part, whole) = (own("old"), own("args"), own("part"), own("whole"));
+        let (result, shown) = (own("result"), shown(local));
+        quote!({
+            let (#old, #list) = (#receiver, (#(#values,)*));
+            if #p::is_mut::<{ #p::name(#name) }, #machine, _, _, _>(#m, &#old, &#list) {
+                let #part = #p::Var::new(#m, #shown, #old);
+                let #result = #method::call_at(#old, &#part, #m, #list);
+                let mut #whole = #local.get(#m);
+                #whole #steps = #part.get(#m);
+                #local.set(#m, #whole);
+                #result
+            } else {
+                #method::call(#old, #m, #list)
+            }
+        })
     }
 }

@@ -7,10 +7,10 @@ use quote::{format_ident, quote_spanned};
 
 use super::{Binding, Dest, Emitter, Loop, SlotType, own, private, shown};
 use crate::here::{At, quote_here as quote, word};
-use crate::model::{Block, Expr, Kind, Let, Range, Stmt};
+use crate::model::{Block, Expr, Kind, Let, Stmt};
 
 /// Tells the machine where its lanes are.
-fn place(what: &str, span: Span) -> TokenStream {
+pub(super) fn place(what: &str, span: Span) -> TokenStream {
     let (p, m) = (private(), own("m"));
     let line = quote_spanned!(span=> ::core::file!(), ::core::line!());
     quote!(#p::here(#m, #what, #line);)
@@ -64,7 +64,7 @@ impl Emitter<'_> {
         }
     }
 
-    pub(super) fn let_stmt(&mut self, l: &Let) -> TokenStream {
+    fn let_stmt(&mut self, l: &Let) -> TokenStream {
         let (p, m) = (private(), own("m"));
         if l.host {
             return self.host_let(l);
@@ -84,24 +84,7 @@ impl Emitter<'_> {
             Some(ty) => self.wanted(init, &text, ty),
             None => self.named_value(init, &text),
         };
-        let binding = if l.mutable { Binding::Var } else { Binding::Value };
-        let (is_alias, owner) = (self.is_alias(init), self.owner(init));
-        let generic = self.generic_of(init);
-        if is_alias && l.mutable && matches!(&init.kind, Kind::Name(_)) {
-            self.errors.at(
-                init.span,
-                "a kernel has no second name for a `&mut`",
-                "write `*x` to copy the value, or go on with the first name",
-            );
-        }
-        self.bind_typed(name, binding, l.ty.as_ref());
-        if l.ty.is_none() {
-            self.note_owner(name, owner);
-            self.note_generic(name, generic);
-        }
-        if is_alias && !l.mutable {
-            self.note_alias(name);
-        }
+        self.bind_let(name, l, init);
         match (l.mutable, ty) {
             (true, Some(ty)) => quote!(let #name = #p::Var::<#ty>::new(#m, #text, #value);),
             (true, None) => {
@@ -112,6 +95,27 @@ impl Emitter<'_> {
             }
             (false, None) => quote!(let #name = #p::Machine::named(#m, #text, #value);),
         }
+    }
+
+    /// Binds the name of a `let`, with what its first value says of it.
+    fn bind_let(&mut self, name: &Ident, l: &Let, init: &Expr) {
+        let (is_alias, owner) = (self.is_alias(init), self.owner(init));
+        let generic = self.generic_of(init);
+        if is_alias && l.mutable && matches!(&init.kind, Kind::Name(_)) {
+            self.errors.at(
+                init.span,
+                "a kernel has no second name for a `&mut`",
+                "write `*x` to copy the value, or go on with the first name",
+            );
+        }
+        let binding = if l.mutable { Binding::Var } else { Binding::Value };
+        self.bind_typed(name, binding, l.ty.as_ref());
+        let Some(local) = self.newest(name) else { return };
+        if l.ty.is_none() {
+            local.owner = owner;
+            (local.generic, local.elements) = generic;
+        }
+        local.alias |= is_alias && !l.mutable;
     }
 
     /// Evaluates `e` and sends its value to `dest`.
@@ -240,11 +244,8 @@ impl Emitter<'_> {
             let c = self.value(c);
             quote!(if !#ident.test(#m, #c) { break; })
         });
-        self.loops.push(Loop { label, ident: ident.clone(), dest: dest.clone() });
-        self.varying += 1;
-        let body = self.block(body, &Dest::None);
-        self.varying -= 1;
-        self.loops.pop();
+        let inside = Loop { label, ident: ident.clone(), dest: dest.clone() };
+        let body = self.loop_body(inside, body);
         quote! {
             let #ident = #p::Loop::new(#m);
             loop {
@@ -258,111 +259,14 @@ impl Emitter<'_> {
         }
     }
 
-    pub(super) fn for_loop(
-        &mut self,
-        label: Option<String>,
-        var: Option<&Ident>,
-        range: &Range,
-        body: &Block,
-        span: Span,
-    ) -> TokenStream {
-        let (p, m) = (private(), own("m"));
-        let here = place("loop", span);
-        let (ident, counter, done) =
-            (self.fresh("repeat"), self.fresh("counter"), self.fresh("done"));
-        let (begin, stop, by) = (own("begin"), own("end"), own("by"));
-        let text = var.map(shown).unwrap_or_else(|| "i".to_owned());
-        let (start, end) = (self.value(&range.start), self.value(&range.end));
-        let now = quote!(#counter.get(#m));
-        let steps = range.step.as_ref().map(|e| {
-            let value = self.value(e);
-            quote!(let #by = #p::step(#m, #value);)
-        });
-        // `[low, high)` or `[low, high]`, upwards from `low` or downwards from `high`.
-        let (low, high) = if range.reversed {
-            (quote!(#begin), now.clone())
-        } else {
-            (now.clone(), quote!(#stop))
-        };
-        let (first, last) = if range.reversed { (&stop, &begin) } else { (&begin, &stop) };
-        let one_down = range.reversed && !range.inclusive;
-        let item = if one_down { quote!(#p::decrement(#m, #now)) } else { now.clone() };
-        // All rays in the loop have the same counter if they began with the same number.
-        let plain = !range.reversed && range.step.is_none();
-        let from = range.start.kind.int_tokens().filter(|_| plain);
-        let is_in_step = from.is_some();
-        let (count, advance) = if is_in_step {
-            (quote!(#p::Steps::new(#m, #text, #first, #from as u32)), quote!(#counter.advance(#m)))
-        } else {
-            let next = word(if range.reversed { "decrement" } else { "increment" });
-            let next = match &range.step {
-                Some(_) => quote!(#p::advance(#m, #now, #by)),
-                None => quote!(#p::#next(#m, #now)),
-            };
-            (quote!(#p::Var::new(#m, #text, #first)), quote!(#counter.set(#m, #next)))
-        };
-        // The last number of a range that is inclusive or has steps may be the last of its type.
-        let until_done = |test: TokenStream, is_last: TokenStream| {
-            (
-                quote!(let #done = #p::Var::new(#m, "done", #p::Varying::varying(false, #m));),
-                quote!(#ident.test(#m, #test)),
-                quote!(#done.set(#m, #is_last);),
-            )
-        };
-        let inclusive = range.inclusive;
-        let (declare, test, note) = if range.step.is_some() {
-            until_done(
-                quote!(#p::goes_on_to(#m, #done.get(#m), #low, #high, #inclusive)),
-                quote!(#p::is_last(#m, #now, #last, #by, #inclusive)),
-            )
-        } else if inclusive {
-            until_done(
-                quote!(#p::goes_on(#m, #done.get(#m), #low, #high)),
-                quote!(#p::equal(#m, #now, #last)),
-            )
-        } else if is_in_step {
-            (
-                quote!(let #stop = #p::Stop::new(#m, #stop);),
-                quote!(#stop.is_after(#m, &#ident, &#counter)),
-                quote!(),
-            )
-        } else {
-            (quote!(), quote!(#ident.test(#m, #p::less(#m, #low, #high))), quote!())
-        };
-        self.scopes.push(HashMap::new());
-        let bound = var.map(|v| {
-            self.bind_counter(v, is_in_step.then(|| counter.clone()));
-            quote!(let #v = #item;)
-        });
-        self.loops.push(Loop { label, ident: ident.clone(), dest: Dest::None });
+    /// The body of a loop, which may leave it.
+    pub(super) fn loop_body(&mut self, inside: Loop, body: &Block) -> TokenStream {
+        self.loops.push(inside);
         self.varying += 1;
         let body = self.block(body, &Dest::None);
         self.varying -= 1;
         self.loops.pop();
-        self.scopes.pop();
-        let bounds = {
-            let _at = At::new(range.start.span);
-            let (p, m) = (private(), own("m"));
-            quote!(#p::range(#m, { #start }, { #end }))
-        };
-        quote! {{
-            let (#begin, #stop) = #bounds;
-            #steps
-            let #counter = #count;
-            #declare
-            let #ident = #p::Loop::new(#m);
-            loop {
-                if !#test { break; }
-                #here
-                #bound
-                #body
-                #ident.continuing(#m);
-                #note
-                #advance;
-                if !#ident.again(#m) { break; }
-            }
-            #ident.end(#m);
-        }}
+        body
     }
 
     pub(super) fn exit(

@@ -21,10 +21,7 @@ impl Emitter<'_> {
             }
             Kind::Bool(b) => Some(quote!(#b)),
             Kind::Name(name) if self.lookup(name) == Some(Binding::Host) => Some(quote!(#name)),
-            Kind::Name(name) => {
-                let is_constant = name.to_string().starts_with(|c: char| c.is_ascii_uppercase());
-                (is_constant && self.lookup(name).is_none()).then(|| quote!(#name))
-            }
+            Kind::Name(name) => self.is_constant(name).then(|| quote!(#name)),
             Kind::Host(inner) => self.host_argument(inner),
             Kind::Neg(a) => self.host_value(a).map(|a| quote!((-#a))),
             Kind::Not(a) => self.host_value(a).map(|a| quote!((!#a))),

@@ -5,6 +5,7 @@
 
 mod calls;
 mod control;
+mod for_loop;
 mod host;
 mod owner;
 mod places;
@@ -18,8 +19,8 @@ use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 
 use crate::diag::Errors;
 use crate::generics::{Generics, identifiers};
-use crate::here::{At, here_own, in_one_place, of_type, quote_here as quote};
-use crate::model::{Block, Expr, Kernel, Kind, Param};
+use crate::here::{At, in_one_place, of_type, own, private_here as private, quote_here as quote};
+use crate::model::{Block, Expr, Kernel, Kind, Param, is_constant};
 use owner::Owner;
 
 /// What a name stands for.
@@ -117,15 +118,6 @@ fn element_type(ty: &TokenStream) -> Option<TokenStream> {
     let is_semicolon = |t: &TokenTree| matches!(t, TokenTree::Punct(p) if p.as_char() == ';');
     let inside = g.stream().into_iter().take_while(|t| !is_semicolon(t)).collect();
     (g.delimiter() == Delimiter::Bracket).then_some(inside)
-}
-
-fn private() -> TokenStream {
-    quote!(::raydsl::__private)
-}
-
-/// An identifier that cannot meet one of the user's.
-fn own(name: &str) -> Ident {
-    Ident::new(name, here_own())
 }
 
 impl<'a> Emitter<'a> {
@@ -376,11 +368,9 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// Notes that a name stands for a `&mut` of the source, or for a part of one.
-    fn note_alias(&mut self, name: &Ident) {
-        if let Some(local) = self.scopes.last_mut().and_then(|s| s.get_mut(&name.to_string())) {
-            local.alias = true;
-        }
+    /// A name of the innermost scope.
+    fn newest(&mut self, name: &Ident) -> Option<&mut Local> {
+        self.scopes.last_mut()?.get_mut(&name.to_string())
     }
 
     /// Whether it is a `&mut` parameter, another name of one, or a part of one.
@@ -394,19 +384,11 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// Binds a counter that all rays have in step.
+    /// Binds the counter of a loop.
     fn bind_counter(&mut self, name: &Ident, step: Option<Ident>) {
-        let binding = Binding::Value;
-        let local = Local {
-            binding,
-            generic: None,
-            elements: None,
-            alias: false,
-            step,
-            owner: Owner::Library,
-        };
-        if let Some(scope) = self.scopes.last_mut() {
-            scope.insert(name.to_string(), local);
+        self.bind(name, Binding::Value);
+        if let Some(local) = self.newest(name) {
+            (local.owner, local.step) = (Owner::Library, step);
         }
     }
 
@@ -417,6 +399,11 @@ impl<'a> Emitter<'a> {
     fn find(&self, name: &Ident) -> Option<&Local> {
         let name = name.to_string();
         self.scopes.iter().rev().find_map(|s| s.get(&name))
+    }
+
+    /// Whether it is a constant of the source.
+    fn is_constant(&self, name: &Ident) -> bool {
+        is_constant(name) && self.lookup(name).is_none()
     }
 
     /// `self` cannot be the name of a local.

@@ -83,18 +83,6 @@ impl Emitter<'_> {
         }
     }
 
-    pub(super) fn note_generic(&mut self, name: &Ident, generic: (Option<Ident>, Option<Ident>)) {
-        if let Some(local) = self.scopes.last_mut().and_then(|s| s.get_mut(&name.to_string())) {
-            (local.generic, local.elements) = generic;
-        }
-    }
-
-    pub(super) fn note_owner(&mut self, name: &Ident, owner: Owner) {
-        if let Some(local) = self.scopes.last_mut().and_then(|s| s.get_mut(&name.to_string())) {
-            local.owner = owner;
-        }
-    }
-
     /// Refuses a method that kernels do not have, where the receiver is no type of the user's.
     pub(super) fn refuse(&mut self, receiver: &Expr, name: &Ident) {
         let Some(denied) = ops::denied(&name.to_string()) else { return };

@@ -31,50 +31,49 @@ impl Emitter<'_> {
         op: Option<BinaryOp>,
         value: &Expr,
     ) -> TokenStream {
-        let (p, m) = (private(), own("m"));
         let name = &place.name;
+        if self.lookup(name) == Some(Binding::Host) && !self.is_outer(name) {
+            return self.host_assign(name, op.map(|op| op.symbol), value);
+        }
+        if self.may_assign(name) {
+            self.assign_variable(place, op, value)
+        } else {
+            TokenStream::new()
+        }
+    }
+
+    /// Whether it is a variable of the kernel; what rustc has nothing against is reported.
+    fn may_assign(&mut self, name: &Ident) -> bool {
         if self.is_outer(name) {
             self.outside(name);
-            return TokenStream::new();
+            return false;
         }
         match self.lookup(name) {
-            Some(Binding::Host) => return self.host_assign(name, op.map(|op| op.symbol), value),
-            Some(Binding::Var | Binding::Mut) => {}
-            Some(Binding::Value) => {
-                // Of the others rustc says so, in the user's own function.
-                if self.find(name).is_some_and(|l| l.alias) {
-                    self.errors.at(
-                        name.span(),
-                        format!("a kernel cannot assign through `{name}`, a second name"),
-                        "assign to the `&mut` parameter itself: `s.x = ...`",
-                    );
-                }
-                return TokenStream::new();
-            }
-            None => {
-                if self.is_closure {
-                    self.not_ours(name);
-                }
-                return TokenStream::new();
-            }
+            Some(Binding::Var | Binding::Mut) => return true,
+            Some(Binding::Value) if self.find(name).is_some_and(|l| l.alias) => self.errors.at(
+                name.span(),
+                format!("a kernel cannot assign through `{name}`, a second name"),
+                "assign to the `&mut` parameter itself: `s.x = ...`",
+            ),
+            None if self.is_closure => self.not_ours(name),
+            // Of the others rustc says so, in the user's own function.
+            Some(_) | None => {}
         }
+        false
+    }
+
+    fn assign_variable(
+        &mut self,
+        place: &Place,
+        op: Option<BinaryOp>,
+        value: &Expr,
+    ) -> TokenStream {
+        let (p, m) = (private(), own("m"));
         // The right side first: it may read the place.
         let right = own("right");
         let is_list = matches!(value.kind, Kind::Tuple(_) | Kind::Array(_) | Kind::Repeat { .. });
         let value = if op.is_none() && is_list { self.coerced(value) } else { self.value(value) };
-        let mut indices = TokenStream::new();
-        let mut steps = Vec::new();
-        for step in &place.steps {
-            steps.push(match step {
-                Step::Member(member) => Part::Plain(quote!(.#member)),
-                Step::Element(index) => Part::Plain(quote!([#index])),
-                Step::Computed(e) => {
-                    let (index, value) = (self.fresh("index"), self.value(e));
-                    indices.extend(quote!(let #index = #value;));
-                    Part::Computed(index)
-                }
-            });
-        }
+        let (indices, steps) = self.parts(&place.steps);
         let new = |old: TokenStream| match op {
             Some(op) => {
                 let name = format!("{}=", op.symbol);
@@ -83,7 +82,7 @@ impl Emitter<'_> {
             None if is_list => quote!(#right),
             None => quote!(#p::Coerce::coerce(#right, #m)),
         };
-        let local = self.local(name);
+        let local = self.local(&place.name);
         if steps.is_empty() {
             let new = new(quote!(#local.get(#m)));
             return quote!({ let #right = #value; #local.set(#m, #new); });
@@ -97,6 +96,22 @@ impl Emitter<'_> {
             #change
             #local.set(#m, #whole);
         })
+    }
+
+    /// What evaluates the computed indices of a place, and its steps with them.
+    fn parts(&mut self, steps: &[Step]) -> (TokenStream, Vec<Part>) {
+        let mut indices = TokenStream::new();
+        let mut part = |step: &Step| match step {
+            Step::Member(member) => Part::Plain(quote!(.#member)),
+            Step::Element(index) => Part::Plain(quote!([#index])),
+            Step::Computed(e) => {
+                let (index, value) = (self.fresh("index"), self.value(e));
+                indices.extend(quote!(let #index = #value;));
+                Part::Computed(index)
+            }
+        };
+        let parts = steps.iter().map(&mut part).collect();
+        (indices, parts)
     }
 }
 

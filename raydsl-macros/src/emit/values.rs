@@ -134,6 +134,7 @@ impl Emitter<'_> {
         self.named_value(e, "value")
     }
 
+    /// A value that does not come out of control flow.
     pub(super) fn plain_value(&mut self, e: &Expr) -> TokenStream {
         let (p, m) = (private(), own("m"));
         let span = e.span;
@@ -142,43 +143,21 @@ impl Emitter<'_> {
                 let exact = in_f64(lit);
                 quote!(#p::literal(#m, #lit, #exact))
             }
-            Kind::Int { tokens, suffix } => match suffix {
-                Some(IntType::I32) => quote!(#p::i32(#m, #tokens)),
-                Some(IntType::U32) => quote!(#p::u32(#m, #tokens)),
-                Some(IntType::Usize) => quote!(#p::usize(#m, #tokens)),
-                None => tokens.clone(),
-            },
+            Kind::Int { tokens, suffix } => integer(tokens, *suffix),
             Kind::Bool(b) => quote!(#b),
             Kind::Name(name) => self.name(name),
-            Kind::Path(path) => {
-                let machine = &self.machine;
-                quote!(#p::Capture::<#machine>::constant(&#path, #m))
-            }
-            Kind::Neg(a) => match &a.kind {
-                Kind::Float(lit) => {
-                    let exact = in_f64(lit);
-                    quote!(#p::literal(#m, -#lit, -#exact))
-                }
-                Kind::Int { tokens, suffix: None } => quote!((-#tokens)),
-                _ => {
-                    let a = self.value(a);
-                    quote!(#p::OpNeg::neg(#m, #a))
-                }
-            },
+            Kind::Path(path) => self.constant(path),
+            Kind::Neg(a) => self.negated(a),
             Kind::Not(a) => {
                 let a = self.value(a);
                 quote!(#p::OpNot::not(#m, #a))
             }
             Kind::Binary { op, a, b } => {
                 let (a, b) = (self.value(a), self.value(b));
-                operator(*op, quote!(#m), a, b)
+                operator(*op, a, b)
             }
             Kind::Logic { and, a, b } => self.logic(*and, a, b, span),
-            Kind::Compare { op, a, b } => {
-                let op = word(op);
-                let (a, b) = (self.value(a), self.value(b));
-                quote!(#p::OpCompare::compare(#m, #p::op::#op, { #a }, { #b }))
-            }
+            Kind::Compare { op, a, b } => self.comparison(op, a, b),
             Kind::Cast { value, ty } => {
                 let value = self.value(value);
                 quote!(#p::cast::<_, _, #ty>(#m, #value))
@@ -190,7 +169,8 @@ impl Emitter<'_> {
             }
             Kind::Deref(a) => self.value(a),
             Kind::Host(inner) => self.host_use(inner),
-            Kind::RefMut(_) | Kind::Closure(_) => quote!(::core::unreachable!()),
+            // The arguments of calls see to the first two.
+            Kind::RefMut(_) | Kind::Closure(_) | Kind::Error => quote!(::core::unreachable!()),
             Kind::Field { base, member } => {
                 let base = self.value(base);
                 quote!(#base.#member)
@@ -204,45 +184,70 @@ impl Emitter<'_> {
                 let items = self.values(items);
                 quote!((#(#items,)*))
             }
-            Kind::Element { base, index } => {
-                let step = self.in_step(index);
-                let (base, index) = (self.value(base), self.value(index));
-                if let Some(step) = step {
-                    let seen = self.mentioned_in(&index);
-                    return quote!(#p::element_in_step(
-                        #m,
-                        #base,
-                        #step,
-                        #[inline(always)] || { #(let _ = &#seen;)* #index },
-                    ));
-                }
-                quote!(#p::element(#m, #base, #index))
-            }
-            Kind::Array(items) => {
-                let is_typed = items.iter().any(Expr::has_typed_outcome);
-                let items: Vec<_> = items
-                    .iter()
-                    .map(|e| {
-                        if is_typed && !e.has_typed_outcome() {
-                            self.coerced(e)
-                        } else {
-                            self.value(e)
-                        }
-                    })
-                    .collect();
-                quote!([#(#items,)*])
-            }
+            Kind::Element { base, index } => self.element(base, index),
+            Kind::Array(items) => self.array(items),
             Kind::Repeat { value, len } => {
                 let value = self.value(value);
                 quote!([#value; #len])
             }
             Kind::Block(b) => self.plain_block(b),
-            Kind::Error => quote!(::core::unreachable!()),
             _ => {
                 let code = self.into(e, &Dest::None);
                 quote!({ #code })
             }
         }
+    }
+
+    /// A constant of the source.
+    fn constant(&self, path: impl ToTokens) -> TokenStream {
+        let (p, m, machine) = (private(), own("m"), &self.machine);
+        quote!(#p::Capture::<#machine>::constant(&#path, #m))
+    }
+
+    fn negated(&mut self, a: &Expr) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        match &a.kind {
+            Kind::Float(lit) => {
+                let exact = in_f64(lit);
+                quote!(#p::literal(#m, -#lit, -#exact))
+            }
+            Kind::Int { tokens, suffix: None } => quote!((-#tokens)),
+            _ => {
+                let a = self.value(a);
+                quote!(#p::OpNeg::neg(#m, #a))
+            }
+        }
+    }
+
+    fn comparison(&mut self, op: &str, a: &Expr, b: &Expr) -> TokenStream {
+        let (p, m, op) = (private(), own("m"), word(op));
+        let (a, b) = (self.value(a), self.value(b));
+        quote!(#p::OpCompare::compare(#m, #p::op::#op, { #a }, { #b }))
+    }
+
+    /// A computed element. An index that is the same for all rays is given as one number too.
+    fn element(&mut self, base: &Expr, index: &Expr) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        let step = self.in_step(index);
+        let (base, index) = (self.value(base), self.value(index));
+        let Some(step) = step else { return quote!(#p::element(#m, #base, #index)) };
+        let seen = self.mentioned_in(&index);
+        quote!(#p::element_in_step(
+            #m,
+            #base,
+            #step,
+            #[inline(always)] || { #(let _ = &#seen;)* #index },
+        ))
+    }
+
+    /// The elements of an array, of which one may say what type the others have.
+    fn array(&mut self, items: &[Expr]) -> TokenStream {
+        let is_typed = items.iter().any(Expr::has_typed_outcome);
+        let of_others = |e: &Expr| is_typed && !e.has_typed_outcome();
+        let items =
+            items.iter().map(|e| if of_others(e) { self.coerced(e) } else { self.value(e) });
+        let items: Vec<_> = items.collect();
+        quote!([#(#items,)*])
     }
 
     /// An index that is the same for all rays, as one number: counters in step, and sums and
@@ -285,20 +290,16 @@ impl Emitter<'_> {
                 quote!(#local)
             }
             Some(Binding::Host) => quote!(#p::HostUse::value(#name, #m)),
+            None if self.is_constant(name) || !self.is_closure => self.constant(name),
+            None if name == "self" => {
+                self.errors.at(
+                    name.span(),
+                    "a kernel cannot capture `self`",
+                    "name what it needs before it: `let bvh = &self.bvh;`",
+                );
+                quote!(::core::unreachable!())
+            }
             None => {
-                let machine = &self.machine;
-                let is_constant = name.to_string().starts_with(|c: char| c.is_ascii_uppercase());
-                if is_constant || !self.is_closure {
-                    return quote!(#p::Capture::<#machine>::constant(&#name, #m));
-                }
-                if name == "self" {
-                    self.errors.at(
-                        name.span(),
-                        "a kernel cannot capture `self`",
-                        "name what it needs before it: `let bvh = &self.bvh;`",
-                    );
-                    return quote!(::core::unreachable!());
-                }
                 self.capture(name);
                 quote!(#name)
             }
@@ -375,10 +376,21 @@ impl Emitter<'_> {
     }
 }
 
-fn operator(op: BinaryOp, m: TokenStream, a: TokenStream, b: TokenStream) -> TokenStream {
-    let p = private();
+fn operator(op: BinaryOp, a: TokenStream, b: TokenStream) -> TokenStream {
+    let (p, m) = (private(), own("m"));
     let (operator, method) = (word(op.operator), word(op.method));
     quote!(#p::#operator::#method(#m, { #a }, { #b }))
+}
+
+/// An integer of the source; without a suffix it is for others to say what type it has.
+fn integer(tokens: &TokenStream, suffix: Option<IntType>) -> TokenStream {
+    let (p, m) = (private(), own("m"));
+    match suffix {
+        Some(IntType::I32) => quote!(#p::i32(#m, #tokens)),
+        Some(IntType::U32) => quote!(#p::u32(#m, #tokens)),
+        Some(IntType::Usize) => quote!(#p::usize(#m, #tokens)),
+        None => tokens.clone(),
+    }
 }
 
 /// A literal of `f32` with the suffix `f64`.

@@ -7,7 +7,8 @@ use syn::spanned::Spanned;
 use super::{info, own, private, quiet};
 use crate::diag::Errors;
 use crate::emit::{Emitter, raw_capture};
-use crate::here::{At, quote_here};
+use crate::here::{At, private_here, quote_here};
+use crate::model::Kernel;
 use crate::parse;
 use crate::rewrite::without_markers;
 
@@ -30,78 +31,17 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
     if kernel.params.is_empty() && errors.is_empty() {
         errors.at(closure.span(), "a kernel needs a parameter", "write for example `|ray: Ray|`");
     }
-    let (p, m) = (private(), own("m"));
-    let names: Vec<Ident> = kernel.params.iter().map(|p| p.name.clone()).collect();
-    let types: Vec<&TokenStream> = kernel.params.iter().map(|p| &p.ty).collect();
-    let (captures, quiet) = (own("captures"), quiet());
-    let mut captured = Vec::new();
-    let mut copies = Vec::new();
-    for (alias, member) in NATURAL {
-        let (alias, member) = (format_ident!("{alias}"), own(member));
-        // The machine of the first copy is inferred, from a cast. Casts come after all else, so the
-        // errors of a copy for any machine imply those of the others, and rustc leaves these out.
-        let machine = if copies.is_empty() { quote!(_) } else { quote!(#p::#alias) };
-        let mut seen = Errors::default();
-        let mut emitter = Emitter::new(&kernel, machine.clone(), None, true, &mut seen);
-        let body = emitter.body();
-        captured = core::mem::take(&mut emitter.captures);
-        let raw = core::mem::take(&mut emitter.host_captures);
-        let raw_index = raw.iter().filter_map(|r| captured.iter().position(|c| c == r));
-        let raw = raw.iter().zip(raw_index).map(|(name, i)| {
-            let _at = At::new(name.span());
-            let (p, captures) = (quote_here!(::raydsl::__private), own("captures"));
-            let (i, raw) = (syn::Index::from(i), raw_capture(name));
-            quote_here!(let #raw = #p::HostCapture::host({ #captures.#i });)
-        });
-        let on: Vec<TokenStream> = kernel.params.iter().map(|p| emitter.on(&p.ty)).collect();
-        // The copies have the same mistakes.
-        if copies.is_empty() {
-            errors.append(seen);
-        }
-        let brought = captured.iter().enumerate().map(|(i, name)| {
-            let _at = At::new(name.span());
-            let p = quote_here!(::raydsl::__private);
-            let (captures, m, i) = (own("captures"), own("m"), syn::Index::from(i));
-            let text = name.to_string();
-            quote_here!(
-                let #name = #p::Capture::<#machine>::capture({ #captures.#i }, #m, #text);
-            )
-        });
-        copies.push(quote! {
-            #quiet
-            let #member = move |#m: &#machine, (#(#names,)*): (#(#on,)*)| {
-                    use #p::operations::*;
-                    #p::Machine::call(
-                        #m,
-                        &__INFO,
-                        (#(#names,)*),
-                        #[inline(always)]
-                        |#m: &#machine, (#(#names,)*): (#(#on,)*)| {
-                            #(#raw)*
-                            #(#brought)*
-                            #body
-                        },
-                    )
-                };
-        });
-    }
+    let (copies, captured) = copies(&kernel, &mut errors);
+    // The closure itself stays, so that rustc and editors see its types.
+    let closure = without_markers(closure.to_token_stream());
     if !errors.is_empty() {
         let errors = errors.into_expression();
-        // The closure itself stays, so that rustc and editors see its types.
-        let closure = without_markers(closure.to_token_stream());
         return quote!({ let _ = #closure; #errors });
     }
-    let info = info(&kernel, "kernel");
-    let closure = without_markers(closure.to_token_stream());
-    let scalar = own("scalar");
-    let mut others: Vec<Ident> = NATURAL.iter().map(|n| own(n.1)).collect();
-    let (first, first_machine) = (others.remove(0), format_ident!("{}", NATURAL[0].0));
-    let resources = captured.iter().enumerate().map(|(i, name)| {
-        let _at = At::new(name.span());
-        let p = quote_here!(::raydsl::__private);
-        let (captures, i) = (own("captures"), syn::Index::from(i));
-        quote_here!(#p::Capture::<#p::Recorder>::resources({ #captures.#i }, visit);)
-    });
+    let (p, scalar, captures) = (private(), own("scalar"), own("captures"));
+    let names: Vec<&Ident> = kernel.params.iter().map(|p| &p.name).collect();
+    let types = kernel.params.iter().map(|p| &p.ty);
+    let (info, lifted, resources) = (info(&kernel, "kernel"), lifted(), resources(&captured));
     quote! {{
         #info
         let #scalar = #closure;
@@ -113,15 +53,118 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
         .lifted(
             {
                 #(#copies)*
-                #p::Lifted {
-                    #(#others: ::std::boxed::Box::new(#others),)*
-                    #first: ::std::boxed::Box::new(#first)
-                        as ::std::boxed::Box<dyn Fn(&#p::#first_machine, _) -> _ + Send + Sync>,
-                }
+                #lifted
             },
             move |visit: &mut dyn FnMut(&dyn #p::Resource)| {
                 #(#resources)*
             },
         )
     }}
+}
+
+/// A copy of the lifted closure for each natural machine, and the names that all capture.
+fn copies(kernel: &Kernel, errors: &mut Errors) -> (Vec<TokenStream>, Vec<Ident>) {
+    let p = private();
+    let (mut copies, mut captured) = (Vec::new(), Vec::new());
+    for (alias, member) in NATURAL {
+        let (alias, member) = (format_ident!("{alias}"), own(member));
+        // The machine of the first copy is inferred, from a cast. Casts come after all else, so the
+        // errors of a copy for any machine imply those of the others, and rustc leaves these out.
+        let machine = if copies.is_empty() { quote!(_) } else { quote!(#p::#alias) };
+        let mut seen = Errors::default();
+        let copy;
+        (copy, captured) = copy_for(&machine, &member, kernel, &mut seen);
+        // The copies have the same mistakes.
+        if copies.is_empty() {
+            errors.append(seen);
+        }
+        copies.push(copy);
+    }
+    (copies, captured)
+}
+
+/// The lifted closure for one machine, as the local `member`, and the names that it captures.
+fn copy_for(
+    machine: &TokenStream,
+    member: &Ident,
+    kernel: &Kernel,
+    errors: &mut Errors,
+) -> (TokenStream, Vec<Ident>) {
+    let (p, m, quiet) = (private(), own("m"), quiet());
+    let mut emitter = Emitter::new(kernel, machine.clone(), None, true, errors);
+    let body = emitter.body();
+    let captured = core::mem::take(&mut emitter.captures);
+    let raw = raw_captures(&emitter.host_captures, &captured);
+    let brought = brought(machine, &captured);
+    let names: Vec<&Ident> = kernel.params.iter().map(|p| &p.name).collect();
+    let types: Vec<TokenStream> = kernel.params.iter().map(|p| emitter.on(&p.ty)).collect();
+    let copy = quote! {
+        #quiet
+        let #member = move |#m: &#machine, (#(#names,)*): (#(#types,)*)| {
+                use #p::operations::*;
+                #p::Machine::call(
+                    #m,
+                    &__INFO,
+                    (#(#names,)*),
+                    #[inline(always)]
+                    |#m: &#machine, (#(#names,)*): (#(#types,)*)| {
+                        #(#raw)*
+                        #(#brought)*
+                        #body
+                    },
+                )
+            };
+    };
+    (copy, captured)
+}
+
+/// The captures as values of the machine.
+fn brought(machine: &TokenStream, captured: &[Ident]) -> Vec<TokenStream> {
+    let bring = |(i, name): (usize, &Ident)| {
+        let _at = At::new(name.span());
+        let (p, m, capture, text) = (private_here(), own("m"), capture(i), name.to_string());
+        quote_here!(let #name = #p::Capture::<#machine>::capture(#capture, #m, #text);)
+    };
+    captured.iter().enumerate().map(bring).collect()
+}
+
+/// The captures that are also wanted as the host has them.
+fn raw_captures(names: &[Ident], captured: &[Ident]) -> Vec<TokenStream> {
+    let raw = |name: &Ident| {
+        let _at = At::new(name.span());
+        let capture = capture(captured.iter().position(|c| c == name)?);
+        let (p, raw) = (private_here(), raw_capture(name));
+        Some(quote_here!(let #raw = #p::HostCapture::host(#capture);))
+    };
+    names.iter().filter_map(raw).collect()
+}
+
+/// What shows the resources of the captures to the runtime.
+fn resources(captured: &[Ident]) -> Vec<TokenStream> {
+    let visit = |(i, name): (usize, &Ident)| {
+        let _at = At::new(name.span());
+        let (p, capture) = (private_here(), capture(i));
+        quote_here!(#p::Capture::<#p::Recorder>::resources(#capture, visit);)
+    };
+    captured.iter().enumerate().map(visit).collect()
+}
+
+/// One of the captures, which are kept in a tuple.
+fn capture(i: usize) -> TokenStream {
+    let (captures, i) = (own("captures"), syn::Index::from(i));
+    quote_here!({ #captures.#i })
+}
+
+/// The copies for all machines, boxed. The cast of the first one says what machine it is for.
+fn lifted() -> TokenStream {
+    let p = private();
+    let mut others: Vec<Ident> = NATURAL.iter().map(|n| own(n.1)).collect();
+    let (first, machine) = (others.remove(0), format_ident!("{}", NATURAL[0].0));
+    quote! {
+        #p::Lifted {
+            #(#others: ::std::boxed::Box::new(#others),)*
+            #first: ::std::boxed::Box::new(#first)
+                as ::std::boxed::Box<dyn Fn(&#p::#machine, _) -> _ + Send + Sync>,
+        }
+    }
 }

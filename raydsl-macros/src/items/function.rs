@@ -6,7 +6,7 @@ use quote::{ToTokens, format_ident, quote};
 use super::{Place, asserted, info, lifted_function, own, param_ident, private, quiet};
 use crate::diag::Errors;
 use crate::generics::Generics;
-use crate::here::{of_type, quote_here};
+use crate::here::{of_type, private_here, quote_here};
 use crate::model::{Kernel, Param};
 use crate::parse;
 use crate::rewrite::without_markers;
@@ -122,8 +122,8 @@ fn never(generics: &Generics) -> TokenStream {
 
 /// Whether it can be run by itself: on values, for a value.
 fn has_entry(kernel: &Kernel, sig: &syn::Signature) -> bool {
-    if matches!(&sig.output, syn::ReturnType::Type(_, ty) if matches!(**ty, syn::Type::Reference(_)))
-    {
+    let syn::ReturnType::Type(_, result) = &sig.output else { return false };
+    if matches!(**result, syn::Type::Reference(_)) {
         return false;
     }
     let is_value = |p: &Param| !(p.by_mut || p.host || p.data);
@@ -132,63 +132,79 @@ fn has_entry(kernel: &Kernel, sig: &syn::Signature) -> bool {
 
 /// `on` of a generic kernel: the types are inferred from the arguments.
 fn inferring_function(kernel: &Kernel, vis: &TokenStream) -> TokenStream {
-    let p = private();
-    let (m, out) = (own("m"), own("out"));
-    let on = |ty: &TokenStream| quote!(<#ty as #p::Type>::On<__M>);
-    let mut before = TokenStream::new();
-    let mut after = TokenStream::new();
-    let mut params = Vec::new();
-    let mut values = Vec::new();
-    for param in &kernel.params {
-        let (name, ty) = (param_ident(&param.name), &param.ty);
-        let text = name.to_string();
-        let is_inferred = kernel.generics.has_type_in(ty) && !param.data;
-        params.push(match (is_inferred, param) {
-            (_, Param { host: true, .. }) => {
-                values.push(quote!(#name));
-                quote!(#name: #ty)
-            }
-            (true, Param { by_mut: true, .. }) => {
-                let copy = format_ident!("{name}_copy");
-                before.extend(quote! {
-                    let #copy = #p::Var::new(#m, #text, #p::Inferred::give(#name, #m));
-                });
-                after.extend(quote!(#name.set(#m, #p::Twin::from_host(#copy.get(#m)));));
-                values.push(quote!(&#copy));
-                quote!(#name: &#p::Var<impl #p::Twin<__M, Host = #ty>>)
-            }
-            (true, _) => {
-                values.push(quote!(#p::Inferred::give(#name, #m)));
-                quote!(#name: impl #p::Inferred<__M, Host = #ty>)
-            }
-            (false, param) => {
-                values.push(quote!(#name));
-                let ty =
-                    if param.data { quote!(<#ty as #p::Parameter>::On<'__a, __M>) } else { on(ty) };
-                if param.data {
-                    quote!(#name: #ty)
-                } else if param.by_mut {
-                    quote!(#name: &#p::Var<#ty>)
-                } else {
-                    quote!(#name: impl #p::Coerce<__M, #ty>)
-                }
-            }
-        });
-    }
+    let (p, m, out, quiet) = (private(), own("m"), own("out"), quiet());
+    let all: Vec<Passed> = kernel.params.iter().map(|param| passed(param, kernel)).collect();
+    let params = all.iter().map(|passed| &passed.param);
+    let values = all.iter().map(|passed| &passed.value);
+    let before = all.iter().map(|passed| &passed.before);
+    let after = all.iter().map(|passed| &passed.after);
     let lifetime = kernel.params.iter().any(|p| p.data).then(|| quote!('__a,));
-    let result = kernel.result.as_ref().map(on).unwrap_or_else(|| quote!(()));
-    let quiet = quiet();
+    let result = kernel.result.as_ref().map(on_any).unwrap_or_else(|| quote!(()));
     quote! {
         #[doc(hidden)]
         #[inline(always)]
         #quiet
         #vis fn on<#lifetime __M: #p::Machine>(#m: &__M, #(#params,)*) -> #result {
-            #before
+            #(#before)*
             let #out = Self::on_values(#m, #(#values,)*);
-            #after
+            #(#after)*
             #out
         }
     }
+}
+
+/// How a parameter of [`inferring_function`] goes to `on_values`.
+struct Passed {
+    param: TokenStream,
+    value: TokenStream,
+    /// What stands before the call, and behind it.
+    before: TokenStream,
+    after: TokenStream,
+}
+
+fn passed(param: &Param, kernel: &Kernel) -> Passed {
+    let (p, m) = (private(), own("m"));
+    let (name, ty) = (param_ident(&param.name), &param.ty);
+    let as_it_is = |param| Passed {
+        param,
+        value: quote!(#name),
+        before: TokenStream::new(),
+        after: TokenStream::new(),
+    };
+    if param.host {
+        return as_it_is(quote!(#name: #ty));
+    }
+    if param.data {
+        return as_it_is(quote!(#name: <#ty as #p::Parameter>::On<'__a, __M>));
+    }
+    let is_inferred = kernel.generics.has_type_in(ty);
+    if is_inferred && param.by_mut {
+        let (copy, text) = (format_ident!("{name}_copy"), name.to_string());
+        return Passed {
+            param: quote!(#name: &#p::Var<impl #p::Twin<__M, Host = #ty>>),
+            value: quote!(&#copy),
+            before: quote! {
+                let #copy = #p::Var::new(#m, #text, #p::Inferred::give(#name, #m));
+            },
+            after: quote!(#name.set(#m, #p::Twin::from_host(#copy.get(#m)));),
+        };
+    }
+    if is_inferred {
+        let value = quote!(#p::Inferred::give(#name, #m));
+        let param = quote!(#name: impl #p::Inferred<__M, Host = #ty>);
+        return Passed { value, ..as_it_is(param) };
+    }
+    let ty = on_any(ty);
+    match param.by_mut {
+        true => as_it_is(quote!(#name: &#p::Var<#ty>)),
+        false => as_it_is(quote!(#name: impl #p::Coerce<__M, #ty>)),
+    }
+}
+
+/// The twin of a type on a machine of any type.
+fn on_any(ty: &TokenStream) -> TokenStream {
+    let p = private();
+    quote!(<#ty as #p::Type>::On<__M>)
 }
 
 fn entry(kernel: &Kernel, sig: &syn::Signature) -> TokenStream {
@@ -197,7 +213,7 @@ fn entry(kernel: &Kernel, sig: &syn::Signature) -> TokenStream {
     let (declared, used) = (angled(declared), angled(used));
     let types: Vec<&TokenStream> = kernel.params.iter().map(|p| &p.ty).collect();
     let _at = types.first().map(|ty| of_type(ty));
-    let p = quote_here!(::raydsl::__private);
+    let p = private_here();
     let fields: Vec<syn::Index> = (0..types.len()).map(syn::Index::from).collect();
     let result = &kernel.result;
     let refs = scalar_arguments(sig, &fields);

@@ -192,7 +192,7 @@ impl Method<'_> {
 
     pub(super) fn implementation(&self, kernel: &Kernel) -> TokenStream {
         let p = private();
-        let Self { self_ty, called, name, around, .. } = self;
+        let Self { self_ty, name, around, .. } = self;
         let via = self.via();
         let Generics { declared, predicates, .. } = around;
         let (receiver, rest) = kernel.params.split_first().expect("a method has a receiver");
@@ -204,49 +204,18 @@ impl Method<'_> {
         let lifetime = rest.iter().any(|q| q.by_mut || q.data).then(|| quote!('__a,));
         let result = kernel.result.as_ref().map(|ty| self.twin(ty)).unwrap_or_else(|| quote!(()));
         let quiet = quiet();
-        let (m, this, variable) = (own("m"), own("this"), own("variable"));
-        let of =
-            quote!(<Self as #p::HostMethod<{ #p::name(#name) }, __M, (#(#arguments,)*), #via>>);
+        let of = quote!(#p::HostMethod<{ #p::name(#name) }, __M, (#(#arguments,)*), #via>);
+        let argument = quote!((#(#names,)*): (#(#arguments,)*));
+        let output = quote!(<Self as #of>::Output);
         let calls = if receiver.by_mut {
-            quote! {
-                const IS_MUT: bool = true;
-
-                #[inline(always)]
-                fn call(
-                    #this: <Self as #p::Type>::On<__M>,
-                    #m: &__M,
-                    (#(#names,)*): (#(#arguments,)*),
-                ) -> #of::Output {
-                    #called(#m, &#p::Var::new(#m, "self", #this), #(#names),*)
-                }
-
-                #[inline(always)]
-                fn call_at(
-                    _: <Self as #p::Type>::On<__M>,
-                    #variable: &#p::Var<<Self as #p::Type>::On<__M>>,
-                    #m: &__M,
-                    (#(#names,)*): (#(#arguments,)*),
-                ) -> #of::Output {
-                    #called(#m, #variable, #(#names),*)
-                }
-            }
+            self.calls_by_mut(&names, &argument, &output)
         } else {
-            quote! {
-                #[inline(always)]
-                fn call(
-                    #this: <Self as #p::Type>::On<__M>,
-                    #m: &__M,
-                    (#(#names,)*): (#(#arguments,)*),
-                ) -> #of::Output {
-                    #called(#m, #this, #(#names),*)
-                }
-            }
+            self.call(&names, &argument, &output)
         };
         quote! {
             #quiet
             #[diagnostic::do_not_recommend]
-            impl<#lifetime #declared __M: #p::Machine, #(#generics,)*>
-                #p::HostMethod<{ #p::name(#name) }, __M, (#(#arguments,)*), #via> for #self_ty
+            impl<#lifetime #declared __M: #p::Machine, #(#generics,)*> #of for #self_ty
             where
                 #predicates
                 #asserted
@@ -255,6 +224,46 @@ impl Method<'_> {
                 type Output = #result;
 
                 #calls
+            }
+        }
+    }
+
+    /// The call of a method that takes `self` or `&self`.
+    fn call(&self, names: &[&Ident], argument: &TokenStream, output: &TokenStream) -> TokenStream {
+        let (p, m, this, called) = (private(), own("m"), own("this"), &self.called);
+        quote! {
+            #[inline(always)]
+            fn call(#this: <Self as #p::Type>::On<__M>, #m: &__M, #argument,) -> #output {
+                #called(#m, #this, #(#names),*)
+            }
+        }
+    }
+
+    /// The calls of a method that takes `&mut self`: of a value, and of a variable.
+    fn calls_by_mut(
+        &self,
+        names: &[&Ident],
+        argument: &TokenStream,
+        output: &TokenStream,
+    ) -> TokenStream {
+        let (p, m, called) = (private(), own("m"), &self.called);
+        let (this, variable) = (own("this"), own("variable"));
+        quote! {
+            const IS_MUT: bool = true;
+
+            #[inline(always)]
+            fn call(#this: <Self as #p::Type>::On<__M>, #m: &__M, #argument,) -> #output {
+                #called(#m, &#p::Var::new(#m, "self", #this), #(#names),*)
+            }
+
+            #[inline(always)]
+            fn call_at(
+                _: <Self as #p::Type>::On<__M>,
+                #variable: &#p::Var<<Self as #p::Type>::On<__M>>,
+                #m: &__M,
+                #argument,
+            ) -> #output {
+                #called(#m, #variable, #(#names),*)
             }
         }
     }

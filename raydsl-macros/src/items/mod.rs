@@ -19,17 +19,9 @@ use quote::quote;
 use crate::diag::Errors;
 use crate::emit::Emitter;
 use crate::generics::Generics;
-use crate::here::{here_own, in_one_place, of_type, quote_here};
-use crate::model::Kernel;
+use crate::here::{in_one_place, of_type, own, private, private_here, quote_here};
+use crate::model::{Kernel, Param};
 use crate::ops;
-
-fn private() -> TokenStream {
-    quote!(::raydsl::__private)
-}
-
-fn own(name: &str) -> Ident {
-    Ident::new(name, here_own())
-}
 
 /// A parameter in lifted code; `self` cannot name a local.
 fn param_ident(name: &Ident) -> Ident {
@@ -77,7 +69,6 @@ struct Place<'a> {
 /// The generic function that runs the lifted body on any machine.
 fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> TokenStream {
     let p = private();
-    let (m, out) = (own("m"), own("out"));
     let mut seen = Errors::default();
     let emitter = Emitter::new(kernel, quote!(__M), place.self_ty.cloned(), false, &mut seen);
     let mut emitter = emitter.with_generics(place.around);
@@ -86,45 +77,11 @@ fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> T
     if emitter.has_errors() || !errors.is_empty() {
         body = quote!(::core::unreachable!());
     }
-    // Values of the host are no arguments on the machine: the body sees them as they are.
-    let values = || kernel.params.iter().filter(|p| !p.host);
-    let names: Vec<Ident> = values().map(|p| param_ident(&p.name)).collect();
-    let types: Vec<TokenStream> = values().map(|p| emitter.param(p)).collect();
     let head = head(kernel, place, &emitter);
     let info = info(kernel, place.wgsl_name);
     let quiet = quiet();
-    let arguments = values().zip(&names).zip(&types).map(|((param, name), ty)| {
-        let _at = of_type(&param.ty);
-        let (p, m) = (quote_here!(::raydsl::__private), own("m"));
-        quote_here!(#p::Coerce::<__M, #ty>::coerce(#name, #m))
-    });
-    let call_it = if kernel.is_apart { quote!(call_apart) } else { quote!(call) };
-    let call = quote! {
-        #p::Machine::#call_it(
-            #m,
-            &__INFO,
-            (#(#arguments,)*),
-            #[inline(always)]
-            |#m: &__M, (#(#names,)*): (#(#types,)*)| { #body },
-        )
-    };
-    let changed: Vec<_> = values().zip(&names).zip(&types).filter(|((p, _), _)| p.by_mut).collect();
-    let call = if changed.is_empty() {
-        call
-    } else {
-        // Copies go in; what became of them comes out beside the result.
-        let result = kernel.result.as_ref().map(|t| emitter.on(t)).unwrap_or_else(|| quote!(()));
-        let changed_types = changed.iter().map(|(_, ty)| ty);
-        let results = changed.iter().enumerate().map(|(i, ((_, name), _))| {
-            let i = syn::Index::from(i + 1);
-            quote!(#name.set(#m, #out.#i);)
-        });
-        quote! {
-            let #out: (#result, #(#changed_types,)*) = #call;
-            #(#results)*
-            #out.0
-        }
-    };
+    let call = call_of(&body, kernel, &emitter);
+    let call = with_changes_set(call, kernel, &emitter);
     errors.append(seen);
     quote! {
         #[doc(hidden)]
@@ -135,6 +92,50 @@ fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> T
             #info
             #call
         }
+    }
+}
+
+/// Gives the body to the machine, with its arguments. Values of the host are none: the body sees
+/// them as they are.
+fn call_of(body: &TokenStream, kernel: &Kernel, emitter: &Emitter<'_>) -> TokenStream {
+    let (p, m) = (private(), own("m"));
+    let values = || kernel.params.iter().filter(|p| !p.host);
+    let names: Vec<Ident> = values().map(|p| param_ident(&p.name)).collect();
+    let types: Vec<TokenStream> = values().map(|p| emitter.param(p)).collect();
+    let arguments = values().zip(&names).zip(&types).map(|((param, name), ty)| {
+        let _at = of_type(&param.ty);
+        let (p, m) = (private_here(), own("m"));
+        quote_here!(#p::Coerce::<__M, #ty>::coerce(#name, #m))
+    });
+    let call = if kernel.is_apart { quote!(call_apart) } else { quote!(call) };
+    quote! {
+        #p::Machine::#call(
+            #m,
+            &__INFO,
+            (#(#arguments,)*),
+            #[inline(always)]
+            |#m: &__M, (#(#names,)*): (#(#types,)*)| { #body },
+        )
+    }
+}
+
+/// Of `&mut` parameters copies go in; what became of them comes out beside the result.
+fn with_changes_set(call: TokenStream, kernel: &Kernel, emitter: &Emitter<'_>) -> TokenStream {
+    let changed: Vec<&Param> = kernel.params.iter().filter(|p| p.by_mut && !p.host).collect();
+    if changed.is_empty() {
+        return call;
+    }
+    let (m, out) = (own("m"), own("out"));
+    let result = kernel.result.as_ref().map(|t| emitter.on(t)).unwrap_or_else(|| quote!(()));
+    let types = changed.iter().map(|p| emitter.param(p));
+    let sets = changed.iter().enumerate().map(|(i, param)| {
+        let (name, i) = (param_ident(&param.name), syn::Index::from(i + 1));
+        quote!(#name.set(#m, #out.#i);)
+    });
+    quote! {
+        let #out: (#result, #(#types,)*) = #call;
+        #(#sets)*
+        #out.0
     }
 }
 
@@ -158,7 +159,7 @@ fn asserted_type(ty: &TokenStream, generics: &Generics) -> TokenStream {
         return TokenStream::new();
     }
     let _at = of_type(ty);
-    let (p, ty) = (quote_here!(::raydsl::__private), in_one_place(ty.clone()));
+    let (p, ty) = (private_here(), in_one_place(ty.clone()));
     quote_here!(#ty: #p::Type,)
 }
 

@@ -40,8 +40,8 @@ impl Parse for Shape {
 impl Shape {
     /// The shape in the parentheses of the attribute.
     pub(crate) fn of(args: TokenStream, errors: &mut Errors) -> Option<Self> {
-        let help = "write for example `#[primitive(sphere(center, radius))]`, or `#[primitive]` and \
-                    an impl of your own";
+        let help = "write for example `#[primitive(sphere(center, radius))]`, or `#[primitive]` \
+                    and an impl of your own";
         match syn::parse2::<Self>(args) {
             Ok(shape) => shape.checked(errors),
             Err(e) => {
@@ -73,72 +73,93 @@ impl Shape {
     }
 
     /// The `impl` that a user would write.
-    pub(crate) fn implementation(&self, ty: &Ident, members: &[&Ident]) -> syn::ItemImpl {
+    fn implementation(&self, ty: &Ident, members: &[&Ident]) -> syn::ItemImpl {
         let shape = &self.name;
         let shape = quote!(::raydsl::geometry::#shape);
         let arguments = of_self(self.arguments.to_token_stream(), members);
+        let (hits, surface) = (hits(&shape, &arguments), surface(&shape, &arguments));
+        let boxes = boxes(&shape, &arguments);
         syn::parse_quote! {
             #[allow(dead_code, reason = "not every program asks all of a shape")]
             impl #ty {
                 const SLACK: f32 = #shape::SLACK;
 
-                #[doc = "Where `ray` meets it."]
-                #[inline]
-                pub fn intersect(&self, ray: ::raydsl::geometry::Ray) -> ::raydsl::geometry::Hit {
-                    #shape::intersect(ray, #arguments)
-                }
-
-                #[doc = "The normal where `ray` hits it, with unit length."]
-                pub fn normal(
-                    &self,
-                    ray: ::raydsl::geometry::Ray,
-                    hit: ::raydsl::geometry::Hit,
-                ) -> ::raydsl::prelude::Vec3 {
-                    #shape::normal(ray, hit, #arguments)
-                }
-
-                #[doc = "Surface coordinates where `ray` hits it, from 0 to 1."]
-                pub fn uv(
-                    &self,
-                    ray: ::raydsl::geometry::Ray,
-                    hit: ::raydsl::geometry::Hit,
-                ) -> ::raydsl::prelude::Vec2 {
-                    #shape::uv(ray, hit, #arguments)
-                }
-
-                #[doc = "The point that `ray` hits, for rays that begin there."]
-                pub fn surface_point(
-                    &self,
-                    ray: ::raydsl::geometry::Ray,
-                    hit: ::raydsl::geometry::Hit,
-                ) -> ::raydsl::geometry::SurfacePoint {
-                    #shape::surface_point(ray, hit, #arguments)
-                }
-
-                #[doc = "The area of its surface."]
-                pub fn area(&self) -> f32 {
-                    #shape::area(#arguments)
-                }
-
-                #[doc = "A point of its surface; a uniform `u` in the unit square gives a uniform one."]
-                pub fn sample(&self, u: ::raydsl::prelude::Vec2) -> ::raydsl::geometry::SurfacePoint {
-                    #shape::sample(u, #arguments)
-                }
-
-                #[doc = "A box around it."]
-                pub fn get_bounds(&self) -> ::raydsl::geometry::Aabb {
-                    #shape::get_bounds(#arguments)
-                }
-
-                #[doc = "Boxes around its parts below and above a plane."]
-                pub fn split_primitive(
-                    &self,
-                    axis: usize,
-                    at: f32,
-                ) -> (::raydsl::geometry::Aabb, ::raydsl::geometry::Aabb) {
-                    #shape::split_primitive(axis, at, #arguments)
-                }
+                #hits
+                #surface
+                #boxes
             }
+        }
+    }
+}
+
+/// Where a ray hits a shape, and what is there.
+fn hits(shape: &TokenStream, arguments: &TokenStream) -> TokenStream {
+    quote! {
+        #[doc = "Where `ray` meets it."]
+        #[inline]
+        pub fn intersect(&self, ray: ::raydsl::geometry::Ray) -> ::raydsl::geometry::Hit {
+            #shape::intersect(ray, #arguments)
+        }
+
+        #[doc = "The normal where `ray` hits it, with unit length."]
+        pub fn normal(
+            &self,
+            ray: ::raydsl::geometry::Ray,
+            hit: ::raydsl::geometry::Hit,
+        ) -> ::raydsl::prelude::Vec3 {
+            #shape::normal(ray, hit, #arguments)
+        }
+
+        #[doc = "Surface coordinates where `ray` hits it, from 0 to 1."]
+        pub fn uv(
+            &self,
+            ray: ::raydsl::geometry::Ray,
+            hit: ::raydsl::geometry::Hit,
+        ) -> ::raydsl::prelude::Vec2 {
+            #shape::uv(ray, hit, #arguments)
+        }
+
+        #[doc = "The point that `ray` hits, for rays that begin there."]
+        pub fn surface_point(
+            &self,
+            ray: ::raydsl::geometry::Ray,
+            hit: ::raydsl::geometry::Hit,
+        ) -> ::raydsl::geometry::SurfacePoint {
+            #shape::surface_point(ray, hit, #arguments)
+        }
+    }
+}
+
+/// How large a shape is, and points of it.
+fn surface(shape: &TokenStream, arguments: &TokenStream) -> TokenStream {
+    quote! {
+        #[doc = "The area of its surface."]
+        pub fn area(&self) -> f32 {
+            #shape::area(#arguments)
+        }
+
+        #[doc = "A point of its surface; a uniform `u` in the unit square gives a uniform one."]
+        pub fn sample(&self, u: ::raydsl::prelude::Vec2) -> ::raydsl::geometry::SurfacePoint {
+            #shape::sample(u, #arguments)
+        }
+    }
+}
+
+/// The boxes around a shape and around its parts.
+fn boxes(shape: &TokenStream, arguments: &TokenStream) -> TokenStream {
+    quote! {
+        #[doc = "A box around it."]
+        pub fn get_bounds(&self) -> ::raydsl::geometry::Aabb {
+            #shape::get_bounds(#arguments)
+        }
+
+        #[doc = "Boxes around its parts below and above a plane."]
+        pub fn split_primitive(
+            &self,
+            axis: usize,
+            at: f32,
+        ) -> (::raydsl::geometry::Aabb, ::raydsl::geometry::Aabb) {
+            #shape::split_primitive(axis, at, #arguments)
         }
     }
 }

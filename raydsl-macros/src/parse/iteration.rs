@@ -4,8 +4,9 @@ use quote::quote;
 use syn::Pat;
 use syn::spanned::Spanned;
 
-use super::{Parser, inside_parens, label};
-use crate::model::{Block, Expr, Kind, Let, Range, Stmt};
+use super::Parser;
+use super::expression::{inside_parens, label};
+use crate::model::{Block, Expr, Kind, Range, Stmt};
 
 /// The slice or array that a `for` goes through, and whether it counts.
 struct Items<'a> {
@@ -39,6 +40,18 @@ fn items(e: &syn::Expr) -> Option<Items<'_>> {
     }
 }
 
+/// What stands before every `.rev()`, and whether their number is odd.
+fn without_reversals(mut range: &syn::Expr) -> (&syn::Expr, bool) {
+    let mut reversed = false;
+    while let syn::Expr::MethodCall(c) = range
+        && c.method == "rev"
+    {
+        reversed = !reversed;
+        range = inside_parens(&c.receiver);
+    }
+    (range, reversed)
+}
+
 impl Parser<'_> {
     pub(super) fn for_loop(&mut self, f: &syn::ExprForLoop) -> Kind {
         if let Some(items) = items(&f.expr) {
@@ -50,7 +63,7 @@ impl Parser<'_> {
             return self.body_alone(f);
         };
         let mut body = self.block(&f.body);
-        body.stmts.splice(0..0, changed.map(Stmt::Let));
+        body.stmts.splice(0..0, changed);
         Kind::For { label: label(&f.label), var, range, body }
     }
 
@@ -64,7 +77,7 @@ impl Parser<'_> {
     }
 
     /// The name that a loop counts with, and what the body makes of it.
-    fn counter(&mut self, mut pat: &Pat) -> Option<(Option<syn::Ident>, Option<Let>)> {
+    fn counter(&mut self, mut pat: &Pat) -> Option<(Option<syn::Ident>, Option<Stmt>)> {
         while let Pat::Paren(p) = pat {
             pat = &p.pat;
         }
@@ -73,9 +86,7 @@ impl Parser<'_> {
             Pat::Ident(p) if p.mutability.is_some() => {
                 let counter = self.temporary("i");
                 let init = Expr { kind: Kind::Name(counter.clone()), span: p.span() };
-                let name = Some(p.ident.clone());
-                let changed = Let { host: false, name, mutable: true, ty: None, init: Some(init) };
-                Some((Some(counter), Some(changed)))
+                Some((Some(counter), Some(Stmt::bind(p.ident.clone(), true, init))))
             }
             Pat::Ident(p) => Some((Some(p.ident.clone()), None)),
             Pat::Wild(_) => Some((None, None)),
@@ -89,32 +100,8 @@ impl Parser<'_> {
 
     /// `a..b`, `a..=b`, and each with `.rev()` or `.step_by(n)`.
     fn range(&mut self, e: &syn::Expr) -> Option<Range> {
-        let mut range = inside_parens(e);
-        let mut step = None;
-        if let syn::Expr::MethodCall(c) = range
-            && c.method == "step_by"
-            && let Some(by) = c.args.first()
-        {
-            step = Some(self.boxed(by));
-            range = inside_parens(&c.receiver);
-            if let syn::Expr::MethodCall(c) = range
-                && c.method == "rev"
-            {
-                self.errors.at(
-                    c.method.span(),
-                    "a kernel's range with steps counts upwards",
-                    "count from 0, and calculate: `for k in 0..n { let i = last - 2 * k; }`",
-                );
-                return None;
-            }
-        }
-        let mut reversed = false;
-        while let syn::Expr::MethodCall(c) = range
-            && c.method == "rev"
-        {
-            reversed = !reversed;
-            range = inside_parens(&c.receiver);
-        }
+        let (range, step) = self.without_steps(inside_parens(e))?;
+        let (range, reversed) = without_reversals(range);
         let syn::Expr::Range(r) = range else {
             self.errors.at(
                 e.span(),
@@ -123,6 +110,37 @@ impl Parser<'_> {
             );
             return None;
         };
+        let (start, end) = self.bounds(r)?;
+        let inclusive = matches!(r.limits, syn::RangeLimits::Closed(_));
+        Some(Range { start, end, inclusive, reversed, step })
+    }
+
+    /// What stands before `.step_by(n)`, and `n`.
+    fn without_steps<'e>(
+        &mut self,
+        e: &'e syn::Expr,
+    ) -> Option<(&'e syn::Expr, Option<Box<Expr>>)> {
+        let syn::Expr::MethodCall(c) = e else { return Some((e, None)) };
+        let Some(by) = c.args.first().filter(|_| c.method == "step_by") else {
+            return Some((e, None));
+        };
+        let step = self.boxed(by);
+        let range = inside_parens(&c.receiver);
+        if let syn::Expr::MethodCall(c) = range
+            && c.method == "rev"
+        {
+            self.errors.at(
+                c.method.span(),
+                "a kernel's range with steps counts upwards",
+                "count from 0, and calculate: `for k in 0..n { let i = last - 2 * k; }`",
+            );
+            return None;
+        }
+        Some((range, Some(step)))
+    }
+
+    /// The bounds of a range, of which one says what type of integer they are.
+    fn bounds(&mut self, r: &syn::ExprRange) -> Option<(Box<Expr>, Box<Expr>)> {
         let (Some(start), Some(end)) = (&r.start, &r.end) else {
             self.errors.at(
                 r.span(),
@@ -141,8 +159,7 @@ impl Parser<'_> {
             );
             return None;
         }
-        let inclusive = matches!(r.limits, syn::RangeLimits::Closed(_));
-        Some(Range { start, end, inclusive, reversed, step })
+        Some((start, end))
     }
 
     /// A loop over the elements: `for x in list` is `for i in 0..list.len() { let x = list[i]; ..
@@ -153,15 +170,8 @@ impl Parser<'_> {
         let (mut list, index) = (self.boxed(items.list), self.temporary("i"));
         let mut copy = Vec::new();
         if items.by_value {
-            let (ident, init) = (self.temporary("items"), *list);
-            let name = Some(ident.clone());
-            copy.push(Stmt::Let(Let {
-                host: false,
-                name,
-                mutable: false,
-                ty: None,
-                init: Some(init),
-            }));
+            let ident = self.temporary("items");
+            copy.push(Stmt::bind(ident.clone(), false, *list));
             list = boxed(Kind::Name(ident));
         }
         let name = || Expr { kind: Kind::Name(index.clone()), span };
@@ -197,8 +207,7 @@ impl Parser<'_> {
     fn bind_item(&mut self, pat: &Pat, item: Expr) -> Vec<Stmt> {
         match pat {
             Pat::Ident(p) if p.by_ref.is_none() && p.subpat.is_none() => {
-                let (name, mutable) = (Some(p.ident.clone()), p.mutability.is_some());
-                vec![Stmt::Let(Let { host: false, name, mutable, ty: None, init: Some(item) })]
+                vec![Stmt::bind(p.ident.clone(), p.mutability.is_some(), item)]
             }
             Pat::Paren(p) => self.bind_item(&p.pat, item),
             Pat::Reference(r) => self.bind_item(&r.pat, item),

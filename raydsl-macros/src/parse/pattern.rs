@@ -6,13 +6,9 @@ use syn::Pat;
 use syn::spanned::Spanned;
 
 use super::Parser;
+use super::attributes::is_coherent;
 use crate::generics::mentions;
-use crate::model::{Block, Expr, Kind, Let, Stmt};
-
-/// Whether a name in a pattern is a constant, by the convention that rustc warns about.
-fn is_constant(name: &Ident) -> bool {
-    name.to_string().starts_with(|c: char| c.is_ascii_uppercase())
-}
+use crate::model::{Block, Expr, Kind, Let, Stmt, is_constant};
 
 fn name(name: &Ident) -> Expr {
     Expr { kind: Kind::Name(name.clone()), span: name.span() }
@@ -34,10 +30,6 @@ fn both(a: Option<Expr>, b: Option<Expr>) -> Option<Expr> {
     }
 }
 
-fn bind(name: &Ident, mutable: bool, init: Expr) -> Stmt {
-    Stmt::Let(Let { host: false, name: Some(name.clone()), mutable, ty: None, init: Some(init) })
-}
-
 /// The enum that a variant's path names.
 fn enum_of(path: &syn::Path) -> Option<TokenStream> {
     let mut ty = path.clone();
@@ -56,7 +48,7 @@ fn is_rest(p: &Pat) -> bool {
 }
 
 /// A member of `from`; that of a tuple in the source is the element itself.
-fn member(from: &Expr, member: proc_macro2::TokenStream, span: Span) -> Expr {
+fn member(from: &Expr, member: TokenStream, span: Span) -> Expr {
     if let Kind::Tuple(items) = &from.kind
         && let Ok(i) = member.to_string().parse::<usize>()
         && let Some(item) = items.get(i)
@@ -67,12 +59,6 @@ fn member(from: &Expr, member: proc_macro2::TokenStream, span: Span) -> Expr {
 }
 
 impl Parser<'_> {
-    /// A name that the source cannot have.
-    pub(super) fn temporary(&mut self, hint: &str) -> Ident {
-        self.temporaries += 1;
-        Ident::new(&format!("__{hint}_{}", self.temporaries), Span::mixed_site())
-    }
-
     /// The condition under which `pat` matches `from`, none if it always does; `lets` is given
     /// what it binds.
     fn pattern(&mut self, pat: &Pat, from: &Expr, lets: &mut Vec<Stmt>) -> Option<Expr> {
@@ -87,7 +73,7 @@ impl Parser<'_> {
                 Some(compare("Eq", from, name(&p.ident), span))
             }
             Pat::Ident(p) => {
-                lets.push(bind(&p.ident, p.mutability.is_some(), from.clone()));
+                lets.push(Stmt::bind(p.ident.clone(), p.mutability.is_some(), from.clone()));
                 p.subpat.as_ref().and_then(|(_, sub)| self.pattern(sub, from, lets))
             }
             Pat::Path(p) => {
@@ -115,8 +101,8 @@ impl Parser<'_> {
                 self.errors.at(
                     t.span(),
                     format!("a kernel has no `{}`", t.path.to_token_stream()),
-                    "a value that may be missing is a struct with a flag, as `Hit` has `is_hit`; a kind \
-                     of an enum of primitives is written `Shape::Ball(ball)`",
+                    "a value that may be missing is a struct with a flag, as `Hit` has `is_hit`; a \
+                     kind of an enum of primitives is written `Shape::Ball(ball)`",
                 );
                 None
             }
@@ -248,7 +234,7 @@ impl Parser<'_> {
             _ => {
                 let ident = self.temporary("value");
                 let span = e.span;
-                lets.push(bind(&ident, false, e));
+                lets.push(Stmt::bind(ident.clone(), false, e));
                 Expr { kind: Kind::Name(ident), span }
             }
         }
@@ -259,7 +245,7 @@ impl Parser<'_> {
         &mut self,
         pat: &Pat,
         init: Expr,
-        ty: Option<proc_macro2::TokenStream>,
+        ty: Option<TokenStream>,
     ) -> Vec<Stmt> {
         // Elements of a tuple are evaluated before the first name is bound, which may be theirs.
         let mut lets = Vec::new();
@@ -284,34 +270,14 @@ impl Parser<'_> {
 
     /// `match`, as a chain of `if`.
     pub(super) fn matching(&mut self, m: &syn::ExprMatch) -> Kind {
-        let coherent = self.is_coherent || m.attrs.iter().any(super::is_coherent);
+        let coherent = self.is_coherent || m.attrs.iter().any(is_coherent);
         let mut stmts = Vec::new();
         let scrutinee = self.expr(&m.expr);
         let bound: TokenStream = m.arms.iter().map(|arm| arm.pat.to_token_stream()).collect();
         let from = self.read_often(scrutinee, &bound, &mut stmts);
         let mut arms = Vec::new();
         for arm in &m.arms {
-            self.no_attributes(&arm.attrs);
-            let (pat, guard) = match &arm.pat {
-                Pat::Guard(g) => (&*g.pat, Some(&*g.guard)),
-                pat => (pat, None),
-            };
-            let mut lets = Vec::new();
-            let mut test = self.pattern(pat, &from, &mut lets);
-            if let Some(guard) = guard {
-                let span = guard.span();
-                let mut guard = self.expr(guard);
-                if !lets.is_empty() {
-                    let tail = Some(Box::new(guard));
-                    guard = Expr { kind: Kind::Block(Block { stmts: lets.clone(), tail }), span };
-                }
-                test = both(test, Some(guard));
-            }
-            let body = self.expr(&arm.body);
-            let block = match body.kind {
-                Kind::Block(b) if lets.is_empty() => b,
-                _ => Block { stmts: lets, tail: Some(Box::new(body)) },
-            };
+            let (test, block) = self.arm(arm, &from);
             let always = test.is_none();
             arms.push((test, block, arm.span()));
             if always {
@@ -338,5 +304,36 @@ impl Parser<'_> {
             return chain.kind;
         }
         Kind::Block(Block { stmts, tail: Some(Box::new(chain)) })
+    }
+
+    /// When an arm is taken, none if always, and what it does.
+    fn arm(&mut self, arm: &syn::Arm, from: &Expr) -> (Option<Expr>, Block) {
+        self.no_attributes(&arm.attrs);
+        let (pat, guard) = match &arm.pat {
+            Pat::Guard(g) => (&*g.pat, Some(&*g.guard)),
+            pat => (pat, None),
+        };
+        let mut lets = Vec::new();
+        let mut test = self.pattern(pat, from, &mut lets);
+        if let Some(guard) = guard {
+            test = both(test, Some(self.guard(guard, &lets)));
+        }
+        let body = self.expr(&arm.body);
+        let block = match body.kind {
+            Kind::Block(b) if lets.is_empty() => b,
+            _ => Block { stmts: lets, tail: Some(Box::new(body)) },
+        };
+        (test, block)
+    }
+
+    /// What follows `if` in an arm: it sees what the pattern binds.
+    fn guard(&mut self, guard: &syn::Expr, lets: &[Stmt]) -> Expr {
+        let span = guard.span();
+        let guard = self.expr(guard);
+        if lets.is_empty() {
+            return guard;
+        }
+        let block = Block { stmts: lets.to_vec(), tail: Some(Box::new(guard)) };
+        Expr { kind: Kind::Block(block), span }
     }
 }

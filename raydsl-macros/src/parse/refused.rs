@@ -1,10 +1,11 @@
-//! Calls that no kernel has, and which the source alone tells from others.
+//! What no kernel has, and which the source alone tells from the rest.
 
 use proc_macro2::Ident;
 use quote::ToTokens;
 use syn::spanned::Spanned;
 
-use super::{Parser, inside_parens};
+use super::Parser;
+use super::expression::inside_parens;
 use crate::model::Kind;
 use crate::ops;
 
@@ -94,7 +95,8 @@ impl Parser<'_> {
         let help = match c.method.to_string().as_str() {
             "sum" => "write a `for`: `let mut sum = 0.0; for x in list.iter() { sum += x; }`",
             "map" => {
-                "write a `for` that assigns each element: `for i in 0..a.len() { a[i] = b[i] * 2.0; }`"
+                "write a `for` that assigns each element: \
+                 `for i in 0..a.len() { a[i] = b[i] * 2.0; }`"
             }
             _ => "write a `for` with a variable: `for x in list.iter() { best = best.max(*x); }`",
         };
@@ -129,5 +131,40 @@ impl Parser<'_> {
         };
         c.args.iter().for_each(|e| drop(self.expr(e)));
         Some(self.error(last.span(), what, &help))
+    }
+
+    /// An expression of no form that kernels have.
+    pub(super) fn unsupported(&mut self, e: &syn::Expr) -> Kind {
+        let (what, help) = match e {
+            syn::Expr::Closure(_) => {
+                ("closures but as arguments", "write a `#[kernel] fn` and call it")
+            }
+            syn::Expr::Try(_) => ("`?`", "give a value that says what happened: a miss is data"),
+            syn::Expr::Reference(_) => {
+                ("`&mut` outside the arguments of a call", "write the variable itself")
+            }
+            syn::Expr::Range(_) => ("ranges outside `for`", "write `for i in a..b`"),
+            syn::Expr::Let(_) => {
+                ("`if let` and `while let`", "compare the value: kernels have no Option")
+            }
+            syn::Expr::Unsafe(_) => ("`unsafe`", "write safe code"),
+            syn::Expr::Await(_) | syn::Expr::Async(_) => ("`async`", "write plain code"),
+            _ => ("this expression", "write it with the operations of the kernel language"),
+        };
+        self.error(e.span(), format!("a kernel has no {what}"), help)
+    }
+
+    /// A call of a macro.
+    pub(super) fn macro_call(&mut self, m: &syn::Macro) -> Kind {
+        let name = m.path.segments.last().map(|s| s.ident.to_string()).unwrap_or_default();
+        let help = match name.as_str() {
+            "vec" => "kernels have no heap: use a struct or a vector",
+            "println" | "print" | "eprintln" | "dbg" => "return the value and print it outside",
+            "assert" | "debug_assert" | "panic" | "todo" | "unreachable" => {
+                "a kernel cannot stop: return a value that says what happened"
+            }
+            _ => "write out what it stands for: the macro cannot see inside another macro",
+        };
+        self.error(m.path.span(), format!("a kernel cannot call the macro `{name}!`"), help)
     }
 }

@@ -81,7 +81,8 @@ bodies! {
     order_of_index: { let mut v = [x, x]; v[g(n)] += h(x); x } "comes first" "bind the index";
     no_range: { for i in list() {} x } "runs over a range" "list.iter()";
     mutable_reference: { let y = &mut x; *y } "`&mut` outside the arguments" "variable itself";
-    mutable_element: { let mut t = [x, x]; g(&mut t[n as usize]) } "computed element" "after the call";
+    mutable_element: { let mut t = [x, x]; g(&mut t[n as usize]) }
+        "computed element" "after the call";
     half_range: { for i in 0u32.. {} x } "two bounds" "a..=b";
     empty_match: { match n {} } "needs an arm" "_ => value";
     variant_pattern: { match g(x) { Some(y) => y, _ => x } } "no `Some`" "a struct with a flag";

@@ -6,9 +6,12 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 use syn::spanned::Spanned;
 
-use super::{capture, copies, private, twin_of};
+use super::copies;
+use super::shared::capture;
+use super::structure::twin_of;
 use crate::diag::Errors;
 use crate::generics::Generics;
+use crate::here::private;
 
 /// The bits of the set of kinds that a scene has.
 const MOST_KINDS: usize = 64;
@@ -22,14 +25,16 @@ pub(super) fn choice(item: &syn::DeriveInput, e: &syn::DataEnum) -> TokenStream 
         return quote!(#item #errors);
     }
     let choice = Choice { item, data: format_ident!("{}Data", item.ident), kinds };
-    let (copies, twin) = (copies(item), choice.twin());
-    let (r#type, primitive) = (choice.type_impl(), choice.primitive_impl());
-    let variants = choice.lifted_variants();
+    let (copies, twin, conversions) = (copies(item), choice.twin(), choice.conversions());
+    let (r#type, capture) = (choice.type_impl(), choice.capture());
+    let (primitive, variants) = (choice.primitive_impl(), choice.lifted_variants());
     quote! {
         #copies
         #item
         #twin
+        #conversions
         #r#type
+        #capture
         #primitive
         #variants
     }
@@ -78,6 +83,11 @@ struct Choice<'a> {
 }
 
 impl Choice<'_> {
+    fn twin_name(&self) -> Ident {
+        let data = &self.data;
+        format_ident!("{data}On")
+    }
+
     fn names(&self) -> Vec<&Ident> {
         self.kinds.iter().map(|k| &k.name).collect()
     }
@@ -129,9 +139,8 @@ impl Choice<'_> {
 
     /// What patterns and expressions of kernels say of a variant.
     fn lifted_variants(&self) -> TokenStream {
-        let (p, name, data) = (private(), &self.item.ident, &self.data);
+        let (p, name, twin) = (private(), &self.item.ident, self.twin_name());
         let (names, types, numbers) = (self.names(), self.types(), self.numbers());
-        let twin = format_ident!("{data}On");
         let asks: Vec<Ident> = names.iter().map(|n| format_ident!("__is_{n}_on")).collect();
         let takes: Vec<Ident> = names.iter().map(|n| format_ident!("__as_{n}_on")).collect();
         let makes: Vec<Ident> = names.iter().map(|n| format_ident!("{n}_on")).collect();
@@ -168,11 +177,10 @@ impl Choice<'_> {
         }
     }
 
-    fn type_impl(&self) -> TokenStream {
+    /// Between the enum and the struct that stands for it.
+    fn conversions(&self) -> TokenStream {
         let (p, name, data) = (private(), &self.item.ident, &self.data);
         let (names, types, numbers) = (self.names(), self.types(), self.numbers());
-        let twin = format_ident!("{data}On");
-        let capture = capture(&quote!(#twin<__M>), &quote!(#name), &Generics::default());
         let (first, first_ty) = (&self.kinds[0].name, &self.kinds[0].ty);
         quote! {
             impl #name {
@@ -191,7 +199,14 @@ impl Choice<'_> {
                     }
                 }
             }
+        }
+    }
 
+    /// The enum as a type of kernels.
+    fn type_impl(&self) -> TokenStream {
+        let (p, name, data) = (private(), &self.item.ident, &self.data);
+        let twin = self.twin_name();
+        quote! {
             #[diagnostic::do_not_recommend]
             impl #p::Type for #name {
                 type On<__M: #p::Machine> = #twin<__M>;
@@ -224,20 +239,20 @@ impl Choice<'_> {
                     Self::__of_data(#p::Type::read(bytes))
                 }
             }
-
-            #capture
         }
     }
 
+    fn capture(&self) -> TokenStream {
+        let (name, twin) = (&self.item.ident, self.twin_name());
+        capture(&quote!(#twin<__M>), &quote!(#name), &Generics::default())
+    }
+
     fn primitive_impl(&self) -> TokenStream {
-        let (p, name, data) = (private(), &self.item.ident, &self.data);
-        let (names, types, numbers) = (self.names(), self.types(), self.numbers());
-        let twin = format_ident!("{data}On");
-        let first = &self.kinds[0].ty;
+        let (p, name) = (private(), &self.item.ident);
+        let (record, shared) = (self.record(), self.shared());
         let count = self.kinds.len() as u32;
-        let wgsl_name = format!("{name}_intersect");
-        let record = quote!(<#first as #p::Primitive>::Hit);
-        let shared = quote!(<#first as #p::Primitive>::Shared);
+        let (slack, on_host, on_machine) =
+            (self.slack(), self.host_functions(), self.machine_functions());
         quote! {
             impl #p::Primitive for #name {
                 type Hit = #record;
@@ -245,117 +260,166 @@ impl Choice<'_> {
 
                 const KINDS: u32 = #count;
 
-                /// The largest of all kinds.
-                const SLACK: f32 = {
-                    let mut most = 0.0;
-                    #(
-                        if <#types as #p::Primitive>::SLACK > most {
-                            most = <#types as #p::Primitive>::SLACK;
-                        }
-                    )*
-                    most
-                };
+                #slack
+                #on_host
+                #on_machine
+            }
+        }
+    }
 
-                #[inline(always)]
-                fn intersect(&self, ray: #p::Ray, shared: &[#shared]) -> #record {
-                    match self {
-                        #(Self::#names(v) => <#types as #p::Primitive>::intersect(v, ray, shared),)*
+    /// What the first kind calls a hit, and the others with it.
+    fn record(&self) -> TokenStream {
+        let (p, first) = (private(), &self.kinds[0].ty);
+        quote!(<#first as #p::Primitive>::Hit)
+    }
+
+    /// What the primitives of a scene share.
+    fn shared(&self) -> TokenStream {
+        let (p, first) = (private(), &self.kinds[0].ty);
+        quote!(<#first as #p::Primitive>::Shared)
+    }
+
+    fn slack(&self) -> TokenStream {
+        let (p, types) = (private(), self.types());
+        quote! {
+            /// The largest of all kinds.
+            const SLACK: f32 = {
+                let mut most = 0.0;
+                #(
+                    if <#types as #p::Primitive>::SLACK > most {
+                        most = <#types as #p::Primitive>::SLACK;
                     }
-                }
+                )*
+                most
+            };
+        }
+    }
 
-                fn get_bounds(&self, shared: &[#shared]) -> #p::Aabb {
-                    match self {
-                        #(Self::#names(v) => <#types as #p::Primitive>::get_bounds(v, shared),)*
-                    }
-                }
-
-                fn split_primitive(
-                    &self,
-                    axis: usize,
-                    at: f32,
-                    shared: &[#shared],
-                ) -> (#p::Aabb, #p::Aabb) {
-                    match self {
-                        #(
-                            Self::#names(v) => {
-                                <#types as #p::Primitive>::split_primitive(v, axis, at, shared)
-                            }
-                        )*
-                    }
-                }
-
-                #[inline(always)]
-                fn kind(&self) -> u32 {
-                    match self {
-                        #(Self::#names(_) => #numbers,)*
-                    }
-                }
-
-                #[inline(always)]
-                fn intersect_on<__M: #p::Machine>(
-                    m: &__M,
-                    prim: #twin<__M>,
-                    ray: #p::RayOn<__M>,
-                    shared: #p::View<'_, #shared>,
-                ) -> <#record as #p::Type>::On<__M> {
-                    Self::intersect_among_on(m, #p::Kinds::ALL, prim, ray, shared)
-                }
-
-                #[inline(always)]
-                fn intersect_one_on<__M: #p::Machine>(
-                    m: &__M,
-                    prim: &Self,
-                    ray: #p::RayOn<__M>,
-                    shared: #p::View<'_, #shared>,
-                ) -> <#record as #p::Type>::On<__M> {
-                    match prim {
-                        #(
-                            Self::#names(v) => {
-                                <#types as #p::Primitive>::intersect_one_on(m, v, ray, shared)
-                            }
-                        )*
-                    }
-                }
-
-                #[inline(always)]
-                fn intersect_among_on<__M: #p::Machine>(
-                    m: &__M,
-                    kinds: #p::Kinds,
-                    prim: #twin<__M>,
-                    ray: #p::RayOn<__M>,
-                    shared: #p::View<'_, #shared>,
-                ) -> <#record as #p::Type>::On<__M> {
-                    static __INFO: #p::KernelInfo = #p::KernelInfo {
-                        name: #wgsl_name,
-                        file: ::core::file!(),
-                        line: ::core::line!(),
-                        params: &["self", "ray", "shared"],
-                    };
-                    #p::Machine::call(
-                        m,
-                        &__INFO,
-                        (prim, ray, shared),
-                        #[inline(always)]
-                        |m, (prim, ray, shared)| {
-                            let found = #p::Var::new(m, "found", #p::Value::zero(m));
-                            #(
-                                #p::of_kind(
-                                    m,
-                                    kinds,
-                                    prim.kind,
-                                    #numbers,
-                                    #[inline(always)]
-                                    || {
-                                        let prim = #p::of_words::<_, #types, _>(m, prim.words);
-                                        found.set(m, <#types as #p::Primitive>::intersect_on(m, prim, ray, shared));
-                                    },
-                                );
-                            )*
-                            found.get(m)
-                        },
-                    )
+    /// What asks the one kind that a primitive of the host is of.
+    fn host_functions(&self) -> TokenStream {
+        let (p, record, shared) = (private(), self.record(), self.shared());
+        let (names, types, numbers) = (self.names(), self.types(), self.numbers());
+        quote! {
+            #[inline(always)]
+            fn intersect(&self, ray: #p::Ray, shared: &[#shared]) -> #record {
+                match self {
+                    #(Self::#names(v) => <#types as #p::Primitive>::intersect(v, ray, shared),)*
                 }
             }
+
+            fn get_bounds(&self, shared: &[#shared]) -> #p::Aabb {
+                match self {
+                    #(Self::#names(v) => <#types as #p::Primitive>::get_bounds(v, shared),)*
+                }
+            }
+
+            fn split_primitive(
+                &self,
+                axis: usize,
+                at: f32,
+                shared: &[#shared],
+            ) -> (#p::Aabb, #p::Aabb) {
+                match self {
+                    #(
+                        Self::#names(v) => {
+                            <#types as #p::Primitive>::split_primitive(v, axis, at, shared)
+                        }
+                    )*
+                }
+            }
+
+            #[inline(always)]
+            fn kind(&self) -> u32 {
+                match self {
+                    #(Self::#names(_) => #numbers,)*
+                }
+            }
+        }
+    }
+
+    /// Intersection on a machine: with primitives of any kind, of one kind, and of some.
+    fn machine_functions(&self) -> TokenStream {
+        let (p, record, shared) = (private(), self.record(), self.shared());
+        let (names, types, twin) = (self.names(), self.types(), self.twin_name());
+        let among = self.intersect_among();
+        quote! {
+            #[inline(always)]
+            fn intersect_on<__M: #p::Machine>(
+                m: &__M,
+                prim: #twin<__M>,
+                ray: #p::RayOn<__M>,
+                shared: #p::View<'_, #shared>,
+            ) -> <#record as #p::Type>::On<__M> {
+                Self::intersect_among_on(m, #p::Kinds::ALL, prim, ray, shared)
+            }
+
+            #[inline(always)]
+            fn intersect_one_on<__M: #p::Machine>(
+                m: &__M,
+                prim: &Self,
+                ray: #p::RayOn<__M>,
+                shared: #p::View<'_, #shared>,
+            ) -> <#record as #p::Type>::On<__M> {
+                match prim {
+                    #(
+                        Self::#names(v) => {
+                            <#types as #p::Primitive>::intersect_one_on(m, v, ray, shared)
+                        }
+                    )*
+                }
+            }
+
+            #[inline(always)]
+            fn intersect_among_on<__M: #p::Machine>(
+                m: &__M,
+                kinds: #p::Kinds,
+                prim: #twin<__M>,
+                ray: #p::RayOn<__M>,
+                shared: #p::View<'_, #shared>,
+            ) -> <#record as #p::Type>::On<__M> {
+                #among
+            }
+        }
+    }
+
+    /// The body of `intersect_among_on`: each of the kinds in turn, with the rays whose primitive
+    /// is of it.
+    fn intersect_among(&self) -> TokenStream {
+        let (p, types, numbers) = (private(), self.types(), self.numbers());
+        let wgsl_name = format!("{}_intersect", self.item.ident);
+        quote! {
+            static __INFO: #p::KernelInfo = #p::KernelInfo {
+                name: #wgsl_name,
+                file: ::core::file!(),
+                line: ::core::line!(),
+                params: &["self", "ray", "shared"],
+            };
+            #p::Machine::call(
+                m,
+                &__INFO,
+                (prim, ray, shared),
+                #[inline(always)]
+                |m, (prim, ray, shared)| {
+                    let found = #p::Var::new(m, "found", #p::Value::zero(m));
+                    #(
+                        #p::of_kind(
+                            m,
+                            kinds,
+                            prim.kind,
+                            #numbers,
+                            #[inline(always)]
+                            || {
+                                let prim = #p::of_words::<_, #types, _>(m, prim.words);
+                                found.set(
+                                    m,
+                                    <#types as #p::Primitive>::intersect_on(m, prim, ray, shared)
+                                );
+                            },
+                        );
+                    )*
+                    found.get(m)
+                },
+            )
         }
     }
 }

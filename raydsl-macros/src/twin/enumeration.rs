@@ -4,9 +4,10 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 use syn::spanned::Spanned;
 
-use super::{methods, private};
+use super::shared::methods;
 use crate::diag::Errors;
 use crate::generics::Generics;
+use crate::here::private;
 
 /// The names of the variants.
 pub(super) fn variants(e: &syn::DataEnum, errors: &mut Errors) -> Vec<Ident> {
@@ -27,112 +28,186 @@ pub(super) fn variants(e: &syn::DataEnum, errors: &mut Errors) -> Vec<Ident> {
     e.variants.iter().map(|v| v.ident.clone()).collect()
 }
 
+/// The twin and the implementations that connect it with the host's.
 pub(super) fn twin(item: &syn::DeriveInput, variants: &[Ident]) -> TokenStream {
-    let p = private();
-    let (vis, name) = (&item.vis, &item.ident);
-    let twin = format_ident!("{name}On");
-    let doc = format!("[`{name}`] on a machine: the number of its variant.");
-    let methods = methods(&quote!(#twin<__M>), &quote!(#name), &Generics::default());
-    let (first, others) = variants.split_first().expect("there is a variant");
-    let casts = [quote!(u32), quote!(i32), quote!(usize)].map(|to| {
+    let name = &item.ident;
+    let enumeration = Enumeration { item, twin: format_ident!("{name}On"), variants };
+    let twin = &enumeration.twin;
+    let parts = [
+        enumeration.fits(),
+        enumeration.declaration(),
+        enumeration.of_number(),
+        enumeration.value_impl(),
+        methods(&quote!(#twin<__M>), &quote!(#name), &Generics::default()),
+        enumeration.operations(),
+        enumeration.type_impl(),
+        capture(name, twin),
+    ];
+    quote!(#(#parts)*)
+}
+
+struct Enumeration<'a> {
+    item: &'a syn::DeriveInput,
+    /// The twin's name.
+    twin: Ident,
+    variants: &'a [Ident],
+}
+
+impl Enumeration<'_> {
+    fn first_and_others(&self) -> (&Ident, &[Ident]) {
+        self.variants.split_first().expect("there is a variant")
+    }
+
+    /// That the numbers of the variants are numbers of kernels.
+    fn fits(&self) -> TokenStream {
+        let (name, variants) = (&self.item.ident, self.variants);
         quote! {
-            impl<__M: #p::Machine> #p::OpCast<__M, #to> for #twin<__M> {
+            const _: () = {
+                #(assert!(
+                    #name::#variants as i128 >= 0 && #name::#variants as i128 <= u32::MAX as i128,
+                    concat!(
+                        "the variant `", stringify!(#variants), "` of `", stringify!(#name),
+                        "` has a number that a kernel's `u32` does not have",
+                    ),
+                );)*
+            };
+        }
+    }
+
+    /// The twin, which is `Copy`.
+    fn declaration(&self) -> TokenStream {
+        let (p, twin, vis) = (private(), &self.twin, &self.item.vis);
+        let doc = format!("[`{}`] on a machine: the number of its variant.", self.item.ident);
+        quote! {
+            #[doc = #doc]
+            #vis struct #twin<__M: #p::Machine> {
+                number: <u32 as #p::Type>::On<__M>,
+            }
+
+            impl<__M: #p::Machine> Clone for #twin<__M> {
                 #[inline(always)]
-                fn cast(m: &__M, a: Self) -> <#to as #p::Type>::On<__M> {
-                    #p::cast::<_, _, #to>(m, a.number)
+                fn clone(&self) -> Self {
+                    *self
+                }
+            }
+
+            impl<__M: #p::Machine> Copy for #twin<__M> {}
+        }
+    }
+
+    fn of_number(&self) -> TokenStream {
+        let (name, (first, others)) = (&self.item.ident, self.first_and_others());
+        quote! {
+            impl #name {
+                /// The variant of a number; the first one for numbers that no variant has.
+                fn __of_number(number: u32) -> Self {
+                    #(if number == Self::#others as u32 { return Self::#others; })*
+                    Self::#first
                 }
             }
         }
-    });
+    }
+
+    /// The twin as a value of a machine.
+    fn value_impl(&self) -> TokenStream {
+        let (p, name, twin) = (private(), &self.item.ident, &self.twin);
+        let (first, _) = self.first_and_others();
+        quote! {
+            impl<__M: #p::Machine> #p::Value<__M> for #twin<__M> {
+                const SCHEMA: &'static #p::Schema = <#name as #p::Type>::SCHEMA;
+
+                #[inline(always)]
+                fn zero(m: &__M) -> Self {
+                    #p::Type::splat(m, #name::#first)
+                }
+
+                #[inline(always)]
+                fn zip(m: &__M, a: Self, b: Self, f: &mut impl #p::Leaves<__M>) -> Self {
+                    Self { number: #p::Value::zip(m, a.number, b.number, f) }
+                }
+            }
+        }
+    }
+
+    /// Comparisons, and casts to the types of integers.
+    fn operations(&self) -> TokenStream {
+        let (p, twin) = (private(), &self.twin);
+        let integers = [quote!(u32), quote!(i32), quote!(usize)];
+        quote! {
+            impl<__M: #p::Machine> #p::OpCompare<__M, Self> for #twin<__M> {
+                type Output = <bool as #p::Type>::On<__M>;
+
+                #[inline(always)]
+                fn compare<__O: #p::Op<#p::Compare>>(
+                    m: &__M,
+                    op: __O,
+                    a: Self,
+                    b: Self
+                ) -> Self::Output {
+                    #p::OpCompare::compare(m, op, a.number, b.number)
+                }
+            }
+
+            #(
+                impl<__M: #p::Machine> #p::OpCast<__M, #integers> for #twin<__M> {
+                    #[inline(always)]
+                    fn cast(m: &__M, a: Self) -> <#integers as #p::Type>::On<__M> {
+                        #p::cast::<_, _, #integers>(m, a.number)
+                    }
+                }
+            )*
+        }
+    }
+
+    /// The enum as a type of kernels.
+    fn type_impl(&self) -> TokenStream {
+        let (p, name, twin) = (private(), &self.item.ident, &self.twin);
+        quote! {
+            impl #p::Type for #name {
+                type On<__M: #p::Machine> = #twin<__M>;
+
+                const SCHEMA: &'static #p::Schema =
+                    #p::number_schema(::core::mem::size_of::<Self>());
+
+                #[inline(always)]
+                fn splat<__M: #p::Machine>(m: &__M, v: Self) -> #twin<__M> {
+                    #twin { number: <u32 as #p::Type>::splat(m, v as u32) }
+                }
+
+                #[inline(always)]
+                fn from_lanes<__M: #p::LaneMachine>(
+                    m: &__M,
+                    f: impl Fn(usize) -> Self + Copy
+                ) -> #twin<__M> {
+                    #twin {
+                        number: <u32 as #p::Type>::from_lanes(
+                            m,
+                            #[inline(always)] |lane| f(lane) as u32
+                        )
+                    }
+                }
+
+                #[inline(always)]
+                fn lane<__M: #p::LaneMachine>(v: &#twin<__M>, lane: usize) -> Self {
+                    Self::__of_number(<u32 as #p::Type>::lane(&v.number, lane))
+                }
+
+                fn write(&self, out: &mut [u8]) {
+                    #p::write_number(*self as u32, ::core::mem::size_of::<Self>(), out);
+                }
+
+                fn read(bytes: &[u8]) -> Self {
+                    Self::__of_number(#p::read_number(::core::mem::size_of::<Self>(), bytes))
+                }
+            }
+        }
+    }
+}
+
+/// How kernels capture a value of the host.
+fn capture(name: &Ident, twin: &Ident) -> TokenStream {
+    let p = private();
     quote! {
-        const _: () = {
-            #(assert!(
-                #name::#variants as i128 >= 0 && #name::#variants as i128 <= u32::MAX as i128,
-                concat!(
-                    "the variant `", stringify!(#variants), "` of `", stringify!(#name),
-                    "` has a number that a kernel's `u32` does not have",
-                ),
-            );)*
-        };
-
-        #[doc = #doc]
-        #vis struct #twin<__M: #p::Machine> {
-            number: <u32 as #p::Type>::On<__M>,
-        }
-
-        impl<__M: #p::Machine> Clone for #twin<__M> {
-            #[inline(always)]
-            fn clone(&self) -> Self {
-                *self
-            }
-        }
-
-        impl<__M: #p::Machine> Copy for #twin<__M> {}
-
-        impl #name {
-            /// The variant of a number; the first one for numbers that no variant has.
-            fn __of_number(number: u32) -> Self {
-                #(if number == Self::#others as u32 { return Self::#others; })*
-                Self::#first
-            }
-        }
-
-        impl<__M: #p::Machine> #p::Value<__M> for #twin<__M> {
-            const SCHEMA: &'static #p::Schema = <#name as #p::Type>::SCHEMA;
-
-            #[inline(always)]
-            fn zero(m: &__M) -> Self {
-                #p::Type::splat(m, #name::#first)
-            }
-
-            #[inline(always)]
-            fn zip(m: &__M, a: Self, b: Self, f: &mut impl #p::Leaves<__M>) -> Self {
-                Self { number: #p::Value::zip(m, a.number, b.number, f) }
-            }
-        }
-
-        #methods
-
-        impl<__M: #p::Machine> #p::OpCompare<__M, Self> for #twin<__M> {
-            type Output = <bool as #p::Type>::On<__M>;
-
-            #[inline(always)]
-            fn compare<__O: #p::Op<#p::Compare>>(m: &__M, op: __O, a: Self, b: Self) -> Self::Output {
-                #p::OpCompare::compare(m, op, a.number, b.number)
-            }
-        }
-
-        #(#casts)*
-
-        impl #p::Type for #name {
-            type On<__M: #p::Machine> = #twin<__M>;
-
-            const SCHEMA: &'static #p::Schema = #p::number_schema(::core::mem::size_of::<Self>());
-
-            #[inline(always)]
-            fn splat<__M: #p::Machine>(m: &__M, v: Self) -> #twin<__M> {
-                #twin { number: <u32 as #p::Type>::splat(m, v as u32) }
-            }
-
-            #[inline(always)]
-            fn from_lanes<__M: #p::LaneMachine>(m: &__M, f: impl Fn(usize) -> Self + Copy) -> #twin<__M> {
-                #twin { number: <u32 as #p::Type>::from_lanes(m, #[inline(always)] |lane| f(lane) as u32) }
-            }
-
-            #[inline(always)]
-            fn lane<__M: #p::LaneMachine>(v: &#twin<__M>, lane: usize) -> Self {
-                Self::__of_number(<u32 as #p::Type>::lane(&v.number, lane))
-            }
-
-            fn write(&self, out: &mut [u8]) {
-                #p::write_number(*self as u32, ::core::mem::size_of::<Self>(), out);
-            }
-
-            fn read(bytes: &[u8]) -> Self {
-                Self::__of_number(#p::read_number(::core::mem::size_of::<Self>(), bytes))
-            }
-        }
-
         /// A captured variant is known while the kernel is recorded: a `match` on it is decided.
         impl<__M: #p::Machine> #p::Capture<__M> for #name {
             type On<'c> = #twin<__M>;

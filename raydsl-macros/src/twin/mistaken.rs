@@ -3,8 +3,8 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::private;
 use crate::diag::Errors;
+use crate::here::private;
 use crate::parse;
 
 /// The errors, with implementations whose twin is a type that rustc asks nothing of.
@@ -27,7 +27,10 @@ pub(super) fn mistaken(item: &syn::DeriveInput, errors: Errors) -> TokenStream {
                     ::core::unreachable!()
                 }
 
-                fn from_lanes<__M: #p::LaneMachine>(_: &__M, _: impl Fn(usize) -> Self + Copy) -> Mistaken {
+                fn from_lanes<__M: #p::LaneMachine>(
+                    _: &__M,
+                    _: impl Fn(usize) -> Self + Copy
+                ) -> Mistaken {
                     ::core::unreachable!()
                 }
 

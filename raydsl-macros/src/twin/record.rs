@@ -3,9 +3,10 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::{named_fields, private};
+use super::named_fields;
 use crate::diag::Errors;
 use crate::generics::Generics;
+use crate::here::private;
 
 /// A struct with one member of the type `Hit`.
 pub(crate) fn hit_record(item: &syn::DeriveInput) -> TokenStream {

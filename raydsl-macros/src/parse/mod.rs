@@ -1,0 +1,49 @@
+//! From syn's syntax to the model. The only module that knows syn's expressions.
+
+mod attributes;
+mod call;
+mod expression;
+mod function;
+mod iteration;
+mod pattern;
+mod place;
+mod refused;
+mod statement;
+mod types;
+
+pub(crate) use function::{closure, function};
+pub(crate) use types::{refused_type, type_name};
+
+use proc_macro2::{Ident, Span};
+
+use crate::diag::Errors;
+use crate::model::Kind;
+use attributes::is_coherent;
+
+struct Parser<'a> {
+    errors: &'a mut Errors,
+    /// How many names have been made up.
+    temporaries: usize,
+    /// Whether a closure within the kernel is being read.
+    is_nested: bool,
+    /// Whether the whole kernel is `#[coherent]`.
+    is_coherent: bool,
+}
+
+impl<'a> Parser<'a> {
+    fn new(attrs: &[syn::Attribute], errors: &'a mut Errors) -> Self {
+        let is_coherent = attrs.iter().any(is_coherent);
+        Self { errors, temporaries: 0, is_nested: false, is_coherent }
+    }
+
+    /// A name that the source cannot have.
+    fn temporary(&mut self, hint: &str) -> Ident {
+        self.temporaries += 1;
+        Ident::new(&format!("__{hint}_{}", self.temporaries), Span::mixed_site())
+    }
+
+    fn error(&mut self, span: Span, what: impl core::fmt::Display, help: &str) -> Kind {
+        self.errors.at(span, what, help);
+        Kind::Error
+    }
+}

@@ -1,0 +1,121 @@
+//! Assignments, and the variables and parts of variables that they change.
+
+use quote::ToTokens;
+use syn::spanned::Spanned;
+use syn::{BinOp, Lit, UnOp};
+
+use super::Parser;
+use crate::model::{BinaryOp, Block, Expr, Kind, Place, Step, Stmt};
+use crate::ops;
+
+impl Parser<'_> {
+    pub(super) fn assign(&mut self, a: &syn::ExprAssign) -> Kind {
+        if let syn::Expr::Tuple(left) = &*a.left {
+            return self.assign_tuple(left, &a.right);
+        }
+        let (place, value) = (self.place(&a.left), self.boxed(&a.right));
+        match place {
+            Some(place) => Kind::Assign { place, value },
+            None => value.kind,
+        }
+    }
+
+    /// `(a, b) = (b, a)`: all of the right side comes first.
+    fn assign_tuple(&mut self, left: &syn::ExprTuple, right: &syn::Expr) -> Kind {
+        let (span, parts) = (right.span(), self.temporary("parts"));
+        let mut stmts = vec![Stmt::bind(parts.clone(), false, self.expr(right))];
+        for (i, e) in left.elems.iter().enumerate() {
+            if matches!(e, syn::Expr::Infer(_)) {
+                continue;
+            }
+            let Some(place) = self.place(e) else { return Kind::Error };
+            let base = Box::new(Expr { kind: Kind::Name(parts.clone()), span });
+            let index = syn::Index { index: i as u32, span: e.span() };
+            let part = Kind::Field { base, member: index.to_token_stream() };
+            let value = Box::new(Expr { kind: part, span });
+            stmts.push(Stmt::Expr(Expr { kind: Kind::Assign { place, value }, span }));
+        }
+        Kind::Block(Block { stmts, tail: None })
+    }
+
+    /// `a += b`.
+    pub(super) fn op_assign(&mut self, op: BinaryOp, b: &syn::ExprBinary) -> Kind {
+        let (place, value) = (self.place(&b.left), self.boxed(&b.right));
+        let Some(place) = place else { return value.kind };
+        let acts = |s: &Step| matches!(s, Step::Computed(e) if e.may_act());
+        if place.steps.iter().any(acts) && value.may_act() {
+            return self.error(
+                b.left.span(),
+                "which of the index and the value comes first depends on their types",
+                "bind the index first: `let i = ...;`",
+            );
+        }
+        Kind::OpAssign { op, place, value }
+    }
+
+    pub(super) fn place(&mut self, e: &syn::Expr) -> Option<Place> {
+        match e {
+            syn::Expr::Path(p) if p.path.get_ident().is_some() => {
+                Some(Place { name: p.path.get_ident()?.clone(), steps: vec![] })
+            }
+            syn::Expr::Field(f) => {
+                let mut place = self.place(&f.base)?;
+                place.steps.push(Step::Member(f.member.to_token_stream()));
+                Some(place)
+            }
+            syn::Expr::Index(i) => {
+                let mut place = self.place(&i.expr)?;
+                place.steps.push(self.step(&i.index)?);
+                Some(place)
+            }
+            syn::Expr::Paren(p) => self.place(&p.expr),
+            syn::Expr::Unary(u) if matches!(u.op, UnOp::Deref(_)) => self.place(&u.expr),
+            _ => {
+                self.errors.at(
+                    e.span(),
+                    "a kernel cannot assign to this",
+                    "assign to a variable, or to a member or an element of one",
+                );
+                None
+            }
+        }
+    }
+
+    /// What stands between brackets.
+    pub(super) fn step(&mut self, index: &syn::Expr) -> Option<Step> {
+        match index {
+            syn::Expr::Lit(syn::ExprLit { lit: Lit::Int(n), .. })
+                if matches!(n.suffix(), "" | "usize") =>
+            {
+                Some(Step::Element(n.to_token_stream()))
+            }
+            syn::Expr::Paren(p) => self.step(&p.expr),
+            syn::Expr::Range(r) => {
+                self.errors.at(
+                    r.span(),
+                    "a kernel has no slices of slices",
+                    "index the whole: `all[first + i]`",
+                );
+                None
+            }
+            index => Some(Step::Computed(self.expr(index))),
+        }
+    }
+}
+
+/// The operator of `+=` and its like.
+pub(super) fn assignment(op: &BinOp) -> Option<BinaryOp> {
+    Some(match op {
+        BinOp::AddAssign(_) => ops::ADD,
+        BinOp::SubAssign(_) => ops::SUB,
+        BinOp::MulAssign(_) => ops::MUL,
+        BinOp::DivAssign(_) => ops::DIV,
+        BinOp::RemAssign(_) => ops::REM,
+        BinOp::BitAndAssign(_) => ops::BIT_AND,
+        BinOp::BitOrAssign(_) => ops::BIT_OR,
+        BinOp::BitXorAssign(_) => ops::BIT_XOR,
+        BinOp::ShlAssign(_) => ops::SHL,
+        BinOp::ShrAssign(_) => ops::SHR,
+        _ => return None,
+    })
+}

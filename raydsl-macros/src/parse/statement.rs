@@ -1,0 +1,130 @@
+//! Blocks and their statements.
+
+use proc_macro2::TokenStream;
+use quote::ToTokens;
+use syn::Pat;
+use syn::spanned::Spanned;
+
+use super::Parser;
+use super::attributes::is_host;
+use super::refused::gives_struct;
+use crate::model::{Block, Expr, Kind, Let, Stmt};
+
+impl Parser<'_> {
+    pub(super) fn block(&mut self, b: &syn::Block) -> Block {
+        let mut stmts = Vec::new();
+        let mut tail = None;
+        let last = b.stmts.len().wrapping_sub(1);
+        for (i, stmt) in b.stmts.iter().enumerate() {
+            match stmt {
+                syn::Stmt::Local(l) => stmts.extend(self.local(l)),
+                syn::Stmt::Expr(e, None) if i == last => tail = Some(self.boxed(e)),
+                syn::Stmt::Expr(e, _) => stmts.push(Stmt::Expr(self.expr(e))),
+                syn::Stmt::Item(item) => stmts.extend(self.item(item)),
+                syn::Stmt::Macro(m) => {
+                    self.no_attributes(&m.attrs);
+                    let kind = self.macro_call(&m.mac);
+                    stmts.push(Stmt::Expr(Expr { kind, span: m.span() }));
+                }
+            }
+        }
+        Block { stmts, tail }
+    }
+
+    fn item(&mut self, item: &syn::Item) -> Option<Stmt> {
+        match item {
+            syn::Item::Const(_) | syn::Item::Use(_) => Some(Stmt::Item(item.to_token_stream())),
+            _ => {
+                self.errors.at(
+                    item.span(),
+                    "this item cannot stand inside a kernel",
+                    "move it out of the kernel",
+                );
+                None
+            }
+        }
+    }
+
+    fn local(&mut self, l: &syn::Local) -> Vec<Stmt> {
+        self.no_attributes(&l.attrs);
+        let (pat, ty) = match &l.pat {
+            Pat::Type(t) => (&*t.pat, Some(self.ty(&t.ty))),
+            pat => (pat, None),
+        };
+        if let Some((_, e)) = l.init.as_ref().and_then(|init| init.diverge.as_ref()) {
+            self.errors.at(
+                e.span(),
+                "a kernel has no `let ... else`",
+                "write an `if` that returns early",
+            );
+            return Vec::new();
+        }
+        let init = l.init.as_ref().map(|init| self.expr(&init.expr));
+        let (name, mutable) = match pat {
+            Pat::Ident(p) if p.by_ref.is_none() && p.subpat.is_none() => {
+                (Some(p.ident.clone()), p.mutability.is_some())
+            }
+            Pat::Wild(_) => (None, false),
+            pat => return self.local_parts(pat, ty, init),
+        };
+        let host = l.attrs.iter().any(is_host);
+        match &init {
+            Some(init) if mutable && ty.is_none() && !host => self.typed_number(init),
+            None if host => self.errors.at(
+                l.span(),
+                "a host variable needs a value",
+                "give it one: `let n = 4u32;`",
+            ),
+            _ => {}
+        }
+        vec![Stmt::Let(Let { host, name, mutable, ty, init })]
+    }
+
+    /// `let (a, b) = init`.
+    fn local_parts(&mut self, pat: &Pat, ty: Option<TokenStream>, init: Option<Expr>) -> Vec<Stmt> {
+        let Some(init) = init else {
+            self.errors.at(
+                pat.span(),
+                "a pattern of a kernel needs a value",
+                "declare each name by itself: `let a; let b;`",
+            );
+            return Vec::new();
+        };
+        if ty.is_none() {
+            self.typed_numbers(pat, &init);
+        }
+        if matches!(pat, Pat::Tuple(_)) && gives_struct(&init.kind) {
+            self.errors.leave_to_rustc();
+        }
+        self.destructure(pat, init, ty)
+    }
+
+    /// What a variable begins with must say which type of integer it is.
+    fn typed_number(&mut self, init: &Expr) {
+        let is_untyped = match &init.kind {
+            Kind::Repeat { value, .. } => value.is_untyped_integer(),
+            Kind::Array(items) => !items.is_empty() && items.iter().all(Expr::is_untyped_integer),
+            Kind::Binary { a, b, .. } => a.is_untyped_integer() && b.is_untyped_integer(),
+            _ => init.is_untyped_integer(),
+        };
+        if is_untyped {
+            self.errors.at(
+                init.span,
+                "a mutable integer needs a type",
+                "write `let mut n: u32 = ...`, or give the number a suffix: `0u32`",
+            );
+        }
+    }
+
+    /// The same for each mutable name of a pattern.
+    fn typed_numbers(&mut self, pat: &Pat, init: &Expr) {
+        if let (Pat::Tuple(pats), Kind::Tuple(items)) = (pat, &init.kind) {
+            for (pat, item) in pats.elems.iter().zip(items) {
+                match pat {
+                    Pat::Ident(p) if p.mutability.is_some() => self.typed_number(item),
+                    pat => self.typed_numbers(pat, item),
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! What the twins of structs and of enums have in common.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::operators;
+use crate::generics::Generics;
+use crate::here::private;
+
+/// How a twin is kept in variables, and its methods, which are those of the host's type.
+pub(super) fn methods(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> TokenStream {
+    let p = private();
+    let Generics { declared, predicates, .. } = generics;
+    let of = quote!(<#host as #p::HostMethod<__NAME, __M, __Args, __Via>>);
+    let operators = operators::operators(twin, host, generics);
+    quote! {
+        #operators
+
+        #[diagnostic::do_not_recommend]
+        impl<__M: #p::Machine, #declared> #p::Inferred<__M> for #twin where #predicates {
+            type Host = #host;
+
+            #[inline(always)]
+            fn give(self, _: &__M) -> Self {
+                self
+            }
+        }
+
+        impl<__M: #p::Machine, #declared> #p::Twin<__M> for #twin where #predicates {
+            #[inline(always)]
+            fn from_host(v: Self) -> Self {
+                v
+            }
+        }
+
+        #[diagnostic::do_not_recommend]
+        impl<__M: #p::Machine, #declared> #p::Varying<__M> for #twin where #predicates {
+            type Value = Self;
+
+            #[inline(always)]
+            fn varying(self, _: &__M) -> Self {
+                self
+            }
+        }
+
+        impl<const __NAME: u64, __M: #p::Machine, __Args, __Via, #declared>
+            #p::Method<__NAME, __M, __Args, __Via> for #twin
+        where
+            #host: #p::HostMethod<__NAME, __M, __Args, __Via, This = Self>,
+            #predicates
+        {
+            type Output = #of::Output;
+
+            const IS_MUT: bool = #of::IS_MUT;
+
+            #[inline(always)]
+            fn call(self, m: &__M, args: __Args) -> Self::Output {
+                #of::call(self, m, args)
+            }
+
+            #[inline(always)]
+            fn call_at(self, variable: &#p::Var<Self>, m: &__M, args: __Args) -> Self::Output {
+                #of::call_at(self, variable, m, args)
+            }
+        }
+    }
+}
+
+/// How kernels capture a value of the host, and read it where it is a constant.
+pub(super) fn capture(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> TokenStream {
+    let p = private();
+    let Generics { declared, predicates, .. } = generics;
+    quote! {
+        #[diagnostic::do_not_recommend]
+        impl<__M: #p::Machine, #declared> #p::Capture<__M> for #host where #predicates {
+            type On<'c> = #twin;
+
+            #[inline(always)]
+            fn capture(&self, m: &__M, name: &'static str) -> #twin {
+                #p::Machine::capture(m, name, *self)
+            }
+
+            #[inline(always)]
+            fn constant(&self, m: &__M) -> #twin {
+                #p::Type::splat(m, *self)
+            }
+        }
+    }
+}

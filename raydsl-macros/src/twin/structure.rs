@@ -1,0 +1,189 @@
+//! The twin of a struct: a struct of the members' twins.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+use super::shared::{capture, methods};
+use crate::generics::Generics;
+use crate::here::private;
+
+/// The twin struct and the implementations that connect it with the host's.
+pub(super) fn twin(item: &syn::DeriveInput, fields: &[syn::Field]) -> TokenStream {
+    let structure = Structure::new(item, fields);
+    structure.twin(&structure.host)
+}
+
+/// [`twin()`], with the methods of `owner`.
+pub(super) fn twin_of(
+    item: &syn::DeriveInput,
+    fields: &[syn::Field],
+    owner: &TokenStream,
+) -> TokenStream {
+    Structure::new(item, fields).twin(owner)
+}
+
+struct Structure<'a> {
+    item: &'a syn::DeriveInput,
+    fields: &'a [syn::Field],
+    generics: Generics,
+    /// The twin's name.
+    name: Ident,
+    /// The host's type, with its parameters.
+    host: TokenStream,
+    /// The twin's type, with its parameters.
+    twin: TokenStream,
+}
+
+impl<'a> Structure<'a> {
+    fn new(item: &'a syn::DeriveInput, fields: &'a [syn::Field]) -> Self {
+        let generics = Generics::new(&item.generics);
+        let (host, used) = (&item.ident, &generics.used);
+        let name = format_ident!("{host}On");
+        let (host, twin) = (quote!(#host<#used>), quote!(#name<__M, #used>));
+        Self { item, fields, generics, name, host, twin }
+    }
+
+    fn names(&self) -> Vec<&Ident> {
+        self.fields.iter().filter_map(|f| f.ident.as_ref()).collect()
+    }
+
+    fn types(&self) -> Vec<&syn::Type> {
+        self.fields.iter().map(|f| &f.ty).collect()
+    }
+
+    fn twin(&self, owner: &TokenStream) -> TokenStream {
+        let (declaration, value) = (self.declaration(), self.value_impl());
+        let methods = methods(&self.twin, owner, &self.generics);
+        let r#type = self.type_impl();
+        let capture = capture(&self.twin, &self.host, &self.generics);
+        quote! {
+            #declaration
+            #value
+            #methods
+            #r#type
+            #capture
+        }
+    }
+
+    /// The twin, which is `Copy`.
+    fn declaration(&self) -> TokenStream {
+        let (p, twin, name, vis) = (private(), &self.twin, &self.name, &self.item.vis);
+        let Generics { declared, predicates, .. } = &self.generics;
+        let (names, types) = (self.names(), self.types());
+        let visible = self.fields.iter().map(|f| &f.vis);
+        let doc = format!("[`{}`] on a machine.", self.item.ident);
+        quote! {
+            #[doc = #doc]
+            #[allow(missing_docs, reason = "the members are those of the struct")]
+            #vis struct #name<__M: #p::Machine, #declared> where #predicates {
+                #(#visible #names: <#types as #p::Type>::On<__M>,)*
+            }
+
+            impl<__M: #p::Machine, #declared> Clone for #twin where #predicates {
+                #[inline(always)]
+                fn clone(&self) -> Self {
+                    *self
+                }
+            }
+
+            impl<__M: #p::Machine, #declared> Copy for #twin where #predicates {}
+        }
+    }
+
+    fn schema(&self) -> TokenStream {
+        let (p, host, types) = (private(), &self.host, self.types());
+        let (name, names) = (self.item.ident.to_string(), self.names());
+        let texts = names.iter().map(ToString::to_string);
+        quote! {
+            &#p::Schema::Struct {
+                name: #name,
+                fields: &[#(#p::Field {
+                    name: #texts,
+                    offset: ::core::mem::offset_of!(#host, #names),
+                    schema: <#types as #p::Type>::SCHEMA,
+                }),*],
+                size: ::core::mem::size_of::<#host>(),
+            }
+        }
+    }
+
+    /// The twin as a value of a machine.
+    fn value_impl(&self) -> TokenStream {
+        let (p, twin, names, schema) = (private(), &self.twin, self.names(), self.schema());
+        let Generics { declared, predicates, .. } = &self.generics;
+        quote! {
+            impl<__M: #p::Machine, #declared> #p::Value<__M> for #twin where #predicates {
+                const SCHEMA: &'static #p::Schema = #schema;
+
+                #[inline(always)]
+                fn zero(m: &__M) -> Self {
+                    Self { #(#names: #p::Value::zero(m),)* }
+                }
+
+                #[inline(always)]
+                fn zip(m: &__M, a: Self, b: Self, f: &mut impl #p::Leaves<__M>) -> Self {
+                    Self { #(#names: #p::Value::zip(m, a.#names, b.#names, f),)* }
+                }
+            }
+        }
+    }
+
+    /// The host's type as one of kernels.
+    fn type_impl(&self) -> TokenStream {
+        let (p, host, twin, name) = (private(), &self.host, &self.twin, &self.name);
+        let Generics { declared, predicates, .. } = &self.generics;
+        let (names, schema, bytes) = (self.names(), self.schema(), self.bytes());
+        quote! {
+            #[diagnostic::do_not_recommend]
+            impl<#declared> #p::Type for #host where #predicates {
+                type On<__M: #p::Machine> = #twin;
+
+                const SCHEMA: &'static #p::Schema = #schema;
+
+                #[inline(always)]
+                fn splat<__M: #p::Machine>(m: &__M, v: Self) -> #twin {
+                    #name { #(#names: #p::Type::splat(m, v.#names),)* }
+                }
+
+                #[inline(always)]
+                fn from_lanes<__M: #p::LaneMachine>(
+                    m: &__M,
+                    f: impl Fn(usize) -> Self + Copy,
+                ) -> #twin {
+                    #name {
+                        #(
+                            #names: #p::Type::from_lanes(
+                                m,
+                                #[inline(always)] |lane| f(lane).#names
+                            ),
+                        )*
+                    }
+                }
+
+                #[inline(always)]
+                fn lane<__M: #p::LaneMachine>(v: &#twin, lane: usize) -> Self {
+                    Self { #(#names: #p::Type::lane(&v.#names, lane),)* }
+                }
+
+                #bytes
+            }
+        }
+    }
+
+    /// The functions that write a value of the host to bytes, and read one.
+    fn bytes(&self) -> TokenStream {
+        let (p, names) = (private(), self.names());
+        let host = &self.host;
+        let offsets: Vec<_> =
+            names.iter().map(|name| quote!(::core::mem::offset_of!(#host, #name))).collect();
+        quote! {
+            fn write(&self, out: &mut [u8]) {
+                #(#p::Type::write(&self.#names, &mut out[#offsets..]);)*
+            }
+
+            fn read(bytes: &[u8]) -> Self {
+                Self { #(#names: #p::Type::read(&bytes[#offsets..]),)* }
+            }
+        }
+    }
+}
