@@ -65,8 +65,8 @@ impl Parser<'_> {
         match e {
             syn::Expr::Lit(l) => self.literal(&l.lit),
             syn::Expr::Path(p) => self.path(p),
-            syn::Expr::Paren(p) => self.kind(&p.expr),
-            syn::Expr::Group(g) => self.kind(&g.expr),
+            syn::Expr::Paren(p) => self.expr(&p.expr).kind,
+            syn::Expr::Group(g) => self.expr(&g.expr).kind,
             syn::Expr::Unary(u) => self.unary(u),
             syn::Expr::Binary(b) => self.binary(b),
             syn::Expr::Cast(c) => Kind::Cast { value: self.boxed(&c.expr), ty: self.ty(&c.ty) },
@@ -103,7 +103,7 @@ impl Parser<'_> {
             syn::Expr::Return(r) => self.return_of(r.expr.as_deref()),
             syn::Expr::Assign(a) => self.assign(a),
             // Values are copied: a reference is the value, and so is what it refers to.
-            syn::Expr::Reference(r) if r.mutability.is_none() => self.kind(&r.expr),
+            syn::Expr::Reference(r) if r.mutability.is_none() => self.expr(&r.expr).kind,
             syn::Expr::Macro(m) => self.macro_call(&m.mac),
             other => self.unsupported(other),
         }

@@ -122,7 +122,16 @@ impl Parser<'_> {
                 data: shared && is_data(written),
                 host,
             },
-            pat => self.parts_param(pat, ty, by_mut, prologue),
+            pat => {
+                if host {
+                    self.errors.at(
+                        pat.span(),
+                        "a `#[host]` parameter has one name",
+                        "write `#[host] size: (u32, u32)`, and `size.0` in the kernel",
+                    );
+                }
+                self.parts_param(pat, ty, by_mut, prologue)
+            }
         }
     }
 
@@ -169,6 +178,10 @@ impl Parser<'_> {
             }
             params.push(param);
         }
+        if let Some(asyncness) = &c.asyncness {
+            self.errors.at(asyncness.span(), "a kernel cannot be `async`", "remove `async`");
+        }
+        self.check_result(&c.output);
         let result = self.result(&c.output);
         let mut body = match &*c.body {
             syn::Expr::Block(b) if b.label.is_none() => self.block(&b.block),

@@ -38,6 +38,13 @@ fn enum_of(path: &syn::Path) -> Option<TokenStream> {
     (!ty.segments.is_empty()).then(|| ty.to_token_stream())
 }
 
+/// Whether this is a kind of an enum of kernels: one of `Option` and `Result` is none.
+fn is_variant(path: &syn::Path) -> bool {
+    let of_std = ["Some", "Ok", "Err"];
+    let last = path.segments.last();
+    path.segments.len() > 1 && !last.is_some_and(|s| of_std.iter().any(|name| s.ident == name))
+}
+
 /// `..` and `name @ ..`.
 fn is_rest(p: &Pat) -> bool {
     match p {
@@ -96,7 +103,7 @@ impl Parser<'_> {
                 both(test, self.pattern(&f.pat, &item, lets))
             }),
             Pat::Slice(s) => self.slice_pattern(s, from, lets),
-            Pat::TupleStruct(t) if t.path.segments.len() > 1 => self.variant(t, from, lets),
+            Pat::TupleStruct(t) if is_variant(&t.path) => self.variant(t, from, lets),
             Pat::TupleStruct(t) => {
                 self.errors.at(
                     t.span(),

@@ -105,7 +105,19 @@ bodies! {
     inner_function: { fn g() {} x } "cannot stand inside a kernel" "move it out";
     assignment_to_a_call: { g(x) = 1.0; x } "cannot assign to this" "a variable";
     unsafe_block: { unsafe { x } } "no `unsafe`" "safe code";
+    attribute_in_parentheses: { (#[cfg(any())] x) } "attributes on statements" "remove";
+    attribute_behind_reference: { g(&#[cold] x) } "attributes on statements" "remove";
+    some_of_option: { match y { Option::Some(y) => y, _ => x } } "no `Option :: Some`" "a flag";
     statement_attribute: { #[cold] if x > 0.0 { } x } "attributes on statements" "remove";
+}
+
+#[test]
+fn closures_are_refused_what_functions_are() {
+    let of = expand_closure;
+    assert_one(of(quote!(async |x: f32| x)), "cannot be `async`", "remove `async`");
+    assert_one(of(quote!(|x: f32| -> &mut f32 { x })), "gives no `&mut`", "give the value");
+    let host = quote!(|#[host] (a, b): (u32, u32)| a + b);
+    assert_one(of(host), "`#[host]` parameter has one name", "size.0");
 }
 
 #[track_caller]
