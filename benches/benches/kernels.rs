@@ -1,5 +1,6 @@
 //! Parts of renderers, one thread: fetches of textures, ambient occlusion, numbers of samplers;
-//! every variant of the CPU against plain scalar Rust.
+//! every variant against plain scalar Rust. WGSL runs where there is a device, whose own threads it
+//! has; its time is that of the whole call, with what comes back.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -48,8 +49,6 @@ struct Row {
     high: f64,
 }
 
-const VARIANTS: [Variant; 4] =
-    [Variant::Scalar, Variant::Packet4, Variant::Packet8, Variant::Packet16];
 const FILTERS: [(&str, Filter); 4] = [
     ("nearest", Filter::Nearest),
     ("linear", Filter::Linear),
@@ -64,17 +63,29 @@ const METHODS: [(&str, SampleMethod); 3] = [
 /// Fetches of a ray that marches, and numbers that a sampler is asked for.
 const STEPS: u32 = 32;
 
+/// What is measured, and on what.
+struct Bench {
+    args: Args,
+    device: Option<GpuScheduler>,
+}
+
 fn main() -> ExitCode {
     let args = Args::parse();
+    let device = GpuScheduler::new();
+    match &device {
+        Ok(gpu) => println!("WGSL on {}", gpu.context().adapter_name()),
+        Err(error) => println!("no WGSL: {error}"),
+    }
+    let bench = Bench { args, device: device.ok() };
     println!(
         "{:<20}{:<9}{:<9}{:>10} {:<12}{:>8}{:>16}",
         "case", "variant", "isa", "M/s", "", "speedup", "middle half"
     );
-    let mut rows = textures(&args);
-    rows.extend(volumes(&args));
-    rows.extend(occlusion(&args));
-    rows.extend(samplers(&args));
-    if let Some(path) = &args.json {
+    let mut rows = textures(&bench);
+    rows.extend(volumes(&bench));
+    rows.extend(occlusion(&bench));
+    rows.extend(samplers(&bench));
+    if let Some(path) = &bench.args.json {
         let text = serde_json::to_string_pretty(&rows).expect("rows are plain data");
         if let Err(error) = std::fs::write(path, text) {
             eprintln!("{}: {error}", path.display());
@@ -85,9 +96,9 @@ fn main() -> ExitCode {
 }
 
 /// Interleaved rounds of one case: what the machine does meanwhile touches all variants alike.
-/// `run` gives what must be the same for all.
+/// `run` gives what must be the same for all variants of the CPU.
 fn measure<R: PartialEq>(
-    args: &Args,
+    Bench { args, device }: &Bench,
     case: String,
     (unit, count): (&'static str, f64),
     mut run: impl FnMut(Variant) -> R,
@@ -95,17 +106,20 @@ fn measure<R: PartialEq>(
     if !args.case.is_empty() && !args.case.iter().any(|word| case.contains(word.as_str())) {
         return Vec::new();
     }
-    let mut times = [const { Vec::new() }; VARIANTS.len()];
+    let has_device = device.is_some();
+    let variants = Variant::ALL.into_iter().filter(|v| *v != Variant::Wgsl || has_device);
+    let variants: Vec<Variant> = variants.collect();
+    let mut times = vec![Vec::new(); variants.len()];
     // The first round warms up.
     for round in 0..=args.rounds {
         let mut expected = None;
-        for (variant, times) in VARIANTS.into_iter().zip(&mut times) {
+        for (&variant, times) in variants.iter().zip(&mut times) {
             let mut result = None;
             let time = seconds(|| result = Some(run(variant)));
             if round > 0 {
                 times.push(time);
             }
-            let is_same = expected.is_none() || expected == result;
+            let is_same = variant == Variant::Wgsl || expected.is_none() || expected == result;
             assert!(is_same, "{case} on {} differs", variant.name());
             expected = expected.or(result);
         }
@@ -116,14 +130,14 @@ fn measure<R: PartialEq>(
             case: case.clone(),
             unit,
             variant: variant.name(),
-            isa: variant.isa().0,
+            isa: if variant == Variant::Wgsl { "device" } else { variant.isa().0 },
             rate: count / median(of_variant) * 1e-6,
             speedup: median(&ratios),
             low: quantile(&ratios, 0.25),
             high: quantile(&ratios, 0.75),
         }
     };
-    let rows: Vec<Row> = VARIANTS.into_iter().zip(&times).map(row).collect();
+    let rows: Vec<Row> = variants.into_iter().zip(&times).map(row).collect();
     for Row { case, unit, variant, isa, rate, speedup, low, high } in &rows {
         print!("{case:<20}{variant:<9}{isa:<9}{rate:>10.1} {unit:<12}");
         println!("{speedup:>7.2}x{low:>8.2} -{high:>6.2}");
@@ -143,20 +157,26 @@ fn marches(count: u32) -> Vec<(Vec3, Vec3)> {
 }
 
 fn run<A: Type, R: Type + Default>(
+    bench: &Bench,
     kernel: &Kernel<'_, A, R>,
     variant: Variant,
     inputs: &[A],
 ) -> Vec<R> {
     let mut outputs = vec![R::default(); inputs.len()];
-    kernel.run(variant, inputs, &mut outputs);
+    match (variant, &bench.device) {
+        (Variant::Wgsl, Some(gpu)) => {
+            gpu.batch(kernel, inputs, &mut outputs).expect("the device is not lost");
+        }
+        _ => kernel.run(variant, inputs, &mut outputs),
+    }
     outputs
 }
 
 /// 512 by 512 texels of four bytes.
-fn textures(args: &Args) -> Vec<Row> {
+fn textures(bench: &Bench) -> Vec<Row> {
     let texel = |i: u32| [i, i >> 3, i >> 9, i >> 5].map(|n| Unorm8::from_bits(n as u8));
     let texels: Vec<[Unorm8; 4]> = (0..512 * 512).map(texel).collect();
-    let inputs = marches(args.count);
+    let inputs = marches(bench.args.count);
     let mut rows = Vec::new();
     for (name, filter) in FILTERS {
         let config = TextureConfig::new().filter(filter);
@@ -170,17 +190,19 @@ fn textures(args: &Args) -> Vec<Row> {
             }
             sum
         });
-        let fetches = ("fetches", f64::from(args.count) * f64::from(STEPS));
-        rows.extend(measure(args, format!("2-D {name}"), fetches, |v| run(&kernel, v, &inputs)));
+        let fetches = ("fetches", f64::from(bench.args.count) * f64::from(STEPS));
+        rows.extend(measure(bench, format!("2-D {name}"), fetches, |v| {
+            run(bench, &kernel, v, &inputs)
+        }));
     }
     rows
 }
 
 /// 128³ texels of one byte.
-fn volumes(args: &Args) -> Vec<Row> {
+fn volumes(bench: &Bench) -> Vec<Row> {
     let texel = |i: u32| Unorm8::from_bits((i ^ i >> 7 ^ i >> 13) as u8);
     let texels: Vec<Unorm8> = (0..1 << 21).map(texel).collect();
-    let inputs = marches(args.count);
+    let inputs = marches(bench.args.count);
     let mut rows = Vec::new();
     for (name, filter) in FILTERS {
         let config = TextureConfig::new().filter(filter);
@@ -194,14 +216,16 @@ fn volumes(args: &Args) -> Vec<Row> {
             }
             sum
         });
-        let fetches = ("fetches", f64::from(args.count) * f64::from(STEPS));
-        rows.extend(measure(args, format!("3-D {name}"), fetches, |v| run(&kernel, v, &inputs)));
+        let fetches = ("fetches", f64::from(bench.args.count) * f64::from(STEPS));
+        rows.extend(measure(bench, format!("3-D {name}"), fetches, |v| {
+            run(bench, &kernel, v, &inputs)
+        }));
     }
     rows
 }
 
 /// Four samples of each pixel of a hall, as the scheduler makes them.
-fn occlusion(args: &Args) -> Vec<Row> {
+fn occlusion(bench: &Bench) -> Vec<Row> {
     const SAMPLES: u32 = 4;
     let (width, height) = (320, 200);
     let hall = scenes::colonnade();
@@ -213,23 +237,33 @@ fn occlusion(args: &Args) -> Vec<Row> {
             ambient_occlusion(&scene, radius, host(method), ray, sampler)
         });
         let render = |variant: Variant| {
-            let mut film = Film::new(width, height);
-            let sampling = Sampling::new(SAMPLES);
-            let scheduler = SimpleScheduler::new().variant(variant);
-            scheduler.accumulate(&hall.camera, &kernel, &sampling, &mut film, SAMPLES);
+            let (mut film, sampling) = (Film::new(width, height), Sampling::new(SAMPLES));
+            match (variant, &bench.device) {
+                (Variant::Wgsl, Some(gpu)) => {
+                    gpu.accumulate(&hall.camera, &kernel, &sampling, &mut film, SAMPLES)
+                        .expect("the device is not lost");
+                }
+                _ => SimpleScheduler::new().variant(variant).accumulate(
+                    &hall.camera,
+                    &kernel,
+                    &sampling,
+                    &mut film,
+                    SAMPLES,
+                ),
+            }
             film
         };
         // One ray to the surface, and one from it.
         let hits: f32 = render(Variant::widest()).image().pixels().iter().map(|p| 1.0 + p.w).sum();
         let rays = ("rays", f64::from(hits) * f64::from(SAMPLES));
-        rows.extend(measure(args, format!("occlusion {name}"), rays, render));
+        rows.extend(measure(bench, format!("occlusion {name}"), rays, render));
     }
     rows
 }
 
 /// Points of the unit square, `STEPS` of each sampler.
-fn samplers(args: &Args) -> Vec<Row> {
-    let inputs: Vec<(u32, u32)> = (0..args.count).map(|i| (i / 64, i % 64)).collect();
+fn samplers(bench: &Bench) -> Vec<Row> {
+    let inputs: Vec<(u32, u32)> = (0..bench.args.count).map(|i| (i / 64, i % 64)).collect();
     let mut rows = Vec::new();
     for (name, method) in METHODS {
         let kernel = kernel!(|pixel: u32, sample: u32| {
@@ -240,8 +274,10 @@ fn samplers(args: &Args) -> Vec<Row> {
             }
             sum
         });
-        let points = ("points", f64::from(args.count) * f64::from(STEPS));
-        rows.extend(measure(args, format!("sampler {name}"), points, |v| run(&kernel, v, &inputs)));
+        let points = ("points", f64::from(bench.args.count) * f64::from(STEPS));
+        rows.extend(measure(bench, format!("sampler {name}"), points, |v| {
+            run(bench, &kernel, v, &inputs)
+        }));
     }
     rows
 }
