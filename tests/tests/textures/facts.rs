@@ -120,9 +120,9 @@ fn a_mirror_is_that_of_gl() -> Result<(), TextureError> {
     Ok(())
 }
 
-/// Two tents, a quarter of the texture apart. Neighbours differ by 1 at most, the last texel and the
-/// first too, so no value is further off than its place; and where one tent has its foot or its top
-/// the other is steep.
+/// Two tents, a quarter of the texture apart. Neighbours differ by 1 at most, the last texel and
+/// the first too, so no value is further off than its place; and where one tent has its foot or its
+/// top the other is steep.
 fn tents(i: u32, n: u32) -> Vec2 {
     let tent = |i: u32| (i + 1).min(n - i) as f32;
     vec2(tent(i), tent((i + n / 4) % n))
