@@ -27,7 +27,8 @@ pub enum TextureError {
     },
     /// More than [`MAX_TEXELS`](super::MAX_TEXELS) texels.
     #[error(
-        "the texture has {count} texels with its levels, and kernels index {limit} at most: split it"
+        "the texture has {count} texels with its levels, and kernels index {limit} at most: split \
+         it"
     )]
     TooManyTexels {
         /// How many texels there are.

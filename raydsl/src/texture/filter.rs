@@ -14,8 +14,8 @@ use crate::machine::generic::select;
 /// The first texel of part `i` of those of `size` texels from `first` on: of a row in an image, of
 /// an image in a volume.
 #[kernel]
-fn part(first: u32, size: u32, i: u32, #[host] has_border: bool) -> u32 {
-    if has_border {
+fn part<T: Texel>(texels: &Texels<'_, T>, first: u32, size: u32, i: u32) -> u32 {
+    if texels.has_border() {
         let start = first.wrapping_add(i.wrapping_mul(size));
         select(i == OUTSIDE || first == OUTSIDE, OUTSIDE, start)
     } else {
@@ -50,8 +50,8 @@ fn linear_image<T: Texel<Value = V>, V: TexelValue>(
     x: Pair,
     y: Pair,
 ) -> V {
-    let a: V = linear_row(texels, part(first, width, y.first, texels.has_border()), x);
-    let b: V = linear_row(texels, part(first, width, y.second, texels.has_border()), x);
+    let a: V = linear_row(texels, part(texels, first, width, y.first), x);
+    let b: V = linear_row(texels, part(texels, first, width, y.second), x);
     a.blend(b, texels.near(y.share))
 }
 
@@ -72,10 +72,10 @@ fn cubic_image<T: Texel<Value = V>, V: TexelValue>(
     x: Four,
     y: Four,
 ) -> V {
-    let a: V = cubic_row(texels, part(first, width, y.first, texels.has_border()), x);
-    let b: V = cubic_row(texels, part(first, width, y.second, texels.has_border()), x);
-    let c: V = cubic_row(texels, part(first, width, y.third, texels.has_border()), x);
-    let d: V = cubic_row(texels, part(first, width, y.fourth, texels.has_border()), x);
+    let a: V = cubic_row(texels, part(texels, first, width, y.first), x);
+    let b: V = cubic_row(texels, part(texels, first, width, y.second), x);
+    let c: V = cubic_row(texels, part(texels, first, width, y.third), x);
+    let d: V = cubic_row(texels, part(texels, first, width, y.fourth), x);
     b.blend4(a, c, d, y.w1, y.w3, y.w4)
 }
 
@@ -107,7 +107,7 @@ pub(super) fn filter2<T: Texel<Value = V>, V: TexelValue>(
     if texels.is_nearest() {
         let i = nearest_texel(uv.x, size.x, texels.address_u());
         let j = nearest_texel(uv.y, size.y, texels.address_v());
-        texel(texels, part(first, size.x, j, texels.has_border()), i)
+        texel(texels, part(texels, first, size.x, j), i)
     } else if texels.is_linear() {
         let x = pair(uv.x, size.x, texels.address_u());
         let y = pair(uv.y, size.y, texels.address_v());
@@ -132,14 +132,14 @@ pub(super) fn filter3<T: Texel<Value = V>, V: TexelValue>(
         let i = nearest_texel(uvw.x, size.x, texels.address_u());
         let j = nearest_texel(uvw.y, size.y, texels.address_v());
         let k = nearest_texel(uvw.z, size.z, texels.address_w());
-        let start = part(first, image, k, texels.has_border());
-        texel(texels, part(start, size.x, j, texels.has_border()), i)
+        let start = part(texels, first, image, k);
+        texel(texels, part(texels, start, size.x, j), i)
     } else if texels.is_linear() {
         let x = pair(uvw.x, size.x, texels.address_u());
         let y = pair(uvw.y, size.y, texels.address_v());
         let z = pair(uvw.z, size.z, texels.address_w());
-        let front = part(first, image, z.first, texels.has_border());
-        let back = part(first, image, z.second, texels.has_border());
+        let front = part(texels, first, image, z.first);
+        let back = part(texels, first, image, z.second);
         let a: V = linear_image(texels, front, size.x, x, y);
         let b: V = linear_image(texels, back, size.x, x, y);
         a.blend(b, texels.near(z.share))
@@ -148,10 +148,10 @@ pub(super) fn filter3<T: Texel<Value = V>, V: TexelValue>(
         let y = four(uvw.y, size.y, texels.address_v(), texels.filter());
         let z = four(uvw.z, size.z, texels.address_w(), texels.filter());
         let starts = [
-            part(first, image, z.first, texels.has_border()),
-            part(first, image, z.second, texels.has_border()),
-            part(first, image, z.third, texels.has_border()),
-            part(first, image, z.fourth, texels.has_border()),
+            part(texels, first, image, z.first),
+            part(texels, first, image, z.second),
+            part(texels, first, image, z.third),
+            part(texels, first, image, z.fourth),
         ];
         let a: V = cubic_image(texels, starts[0], size.x, x, y);
         let b: V = cubic_image(texels, starts[1], size.x, x, y);

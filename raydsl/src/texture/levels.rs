@@ -6,10 +6,10 @@ use super::error::TextureError;
 use super::texel::{Texel, TexelValue};
 use super::texture::{Texture, count, within_limit};
 
-/// A grid of values with up to four channels.
+/// The numbers of a texture's level: axis 0 is that of the channels, the others are the texture's.
 pub(super) struct Grid {
-    pub(super) values: Vec<[f64; 4]>,
-    pub(super) size: [usize; 3],
+    pub(super) values: Vec<f64>,
+    pub(super) size: [usize; 4],
 }
 
 impl Grid {
@@ -17,16 +17,33 @@ impl Grid {
     pub(super) fn of<T: Texel, const D: usize>(
         texture: &Texture<'_, T, D>,
     ) -> Result<Self, TextureError> {
-        let size = texture.size();
-        let size = core::array::from_fn(|i| size.get(i).map_or(1, |n| *n as usize));
+        let channels = T::Value::CHANNELS;
+        let mut size = [channels, 1, 1, 1];
+        for (n, of_texture) in size[1..].iter_mut().zip(texture.size()) {
+            *n = of_texture as usize;
+        }
         let mut values = room(size.iter().product())?;
-        let base = &texture.texels()[..size.iter().product()];
+        let base = &texture.texels()[..size[1..].iter().product()];
         let space = texture.config().color_space;
-        values.extend(base.iter().map(|t| t.decode(space).to_channels().map(f64::from)));
+        for texel in base {
+            let all = texel.decode(space).to_channels();
+            values.extend(all[..channels].iter().map(|v| f64::from(*v)));
+        }
         Ok(Self { values, size })
     }
 
-    /// The places of texels that follow each other along an axis: how far apart they are, and the
+    /// The values of texels.
+    pub(super) fn texels<V: TexelValue>(&self) -> impl Iterator<Item = V> {
+        self.values.chunks_exact(self.size[0]).map(|texel| {
+            let mut channels = [0.0; 4];
+            for (channel, v) in channels.iter_mut().zip(texel) {
+                *channel = *v as f32;
+            }
+            V::from_channels(channels)
+        })
+    }
+
+    /// The places of numbers that follow each other along an axis: how far apart they are, and the
     /// first of each line.
     pub(super) fn lines(&self, axis: usize) -> (usize, impl Iterator<Item = usize> + use<>) {
         let step: usize = self.size[..axis].iter().product();
@@ -35,41 +52,41 @@ impl Grid {
         (step, (0..count).map(move |line| line / step * step * n + line % step))
     }
 
-    /// Half as many texels along an axis, rounded down. Each is the mean over its share of the
-    /// axis, so the mean of all stays, odd sizes or not.
-    fn halved(&self, axis: usize) -> Result<Self, TextureError> {
+    /// Leaves half as many texels along an axis, rounded down. Each is the mean over its share of
+    /// the axis, so the mean of all stays, odd sizes or not.
+    fn halve(&mut self, axis: usize) {
         let n = self.size[axis];
-        let mut size = self.size;
-        size[axis] = (n / 2).max(1);
-        let mut half = Self { values: room(size.iter().product())?, size };
-        half.values.resize(size.iter().product(), [0.0; 4]);
-        let ((step, sources), (_, targets)) = (self.lines(axis), half.lines(axis));
-        for (source, target) in sources.zip(targets) {
-            for i in 0..size[axis] {
-                half.values[target + i * step] = self.mean(source, step, n, size[axis], i);
+        if n == 1 {
+            return;
+        }
+        let m = n / 2;
+        let step: usize = self.size[..axis].iter().product();
+        let slabs = self.values.len() / (step * n);
+        // In this order a mean lies no further than the first number it is of, so those that are
+        // still to be read are whole.
+        let mut target = 0;
+        for slab in 0..slabs {
+            for i in 0..m {
+                for first in slab * step * n..slab * step * n + step {
+                    self.values[target] = self.mean(first, step, n, m, i);
+                    target += 1;
+                }
             }
         }
-        Ok(half)
+        self.values.truncate(target);
+        self.size[axis] = m;
     }
 
     /// The mean over part `i` of `m` of a line of `n` texels.
-    fn mean(&self, first: usize, step: usize, n: usize, m: usize, i: usize) -> [f64; 4] {
+    fn mean(&self, first: usize, step: usize, n: usize, m: usize, i: usize) -> f64 {
         // In units of 1/m of a texel, which are whole.
         let (start, end) = (i * n, (i + 1) * n);
-        let mut sum = [0.0; 4];
+        let mut sum = 0.0;
         for j in start / m..end.div_ceil(m) {
             let covered = end.min((j + 1) * m) - start.max(j * m);
-            let share = covered as f64 / n as f64;
-            for (sum, v) in sum.iter_mut().zip(self.values[first + j * step]) {
-                *sum += share * v;
-            }
+            sum += covered as f64 / n as f64 * self.values[first + j * step];
         }
         sum
-    }
-
-    /// The next level.
-    fn next(&self) -> Result<Self, TextureError> {
-        self.halved(0)?.halved(1)?.halved(2)
     }
 }
 
@@ -79,11 +96,6 @@ pub(super) fn room<T>(count: usize) -> Result<Vec<T>, TextureError> {
     let mut list = Vec::new();
     list.try_reserve_exact(count).map_err(|_| TextureError::OutOfMemory { bytes })?;
     Ok(list)
-}
-
-/// A texel with these channels.
-pub(super) fn value<V: TexelValue>(channels: [f64; 4]) -> V {
-    V::from_channels(channels.map(|v| v as f32))
 }
 
 impl<T: Texel, const D: usize> Texture<'_, T, D> {
@@ -96,18 +108,20 @@ impl<T: Texel, const D: usize> Texture<'_, T, D> {
     /// # Errors
     ///
     /// If all levels have more than [`MAX_TEXELS`](super::MAX_TEXELS) texels, or there is no memory
-    /// for them; while they are made, a texel takes 32 bytes more.
+    /// for them; while they are made, each channel of a texel of level 0 takes 8 bytes more.
     pub fn with_levels(&self) -> Result<Texture<'static, T, D>, TextureError> {
         let levels = self.size().into_iter().fold(1, u32::max).ilog2() + 1;
         let sizes = (0..levels).map(|l| self.size().map(|n| (n >> l).max(1)));
         let total = within_limit(sizes.map(|size| count(&size)).sum())?;
         let mut texels = room(total as usize)?;
         let mut grid = Grid::of(self)?;
-        texels.extend_from_slice(&self.texels()[..grid.values.len()]);
+        texels.extend_from_slice(&self.texels()[..count(&self.size()) as usize]);
+        let space = self.config().color_space;
         for _ in 1..levels {
-            grid = grid.next()?;
-            let space = self.config().color_space;
-            texels.extend(grid.values.iter().map(|v| T::encode(value(*v), space)));
+            for axis in 1..=D {
+                grid.halve(axis);
+            }
+            texels.extend(grid.texels().map(|v| T::encode(v, space)));
         }
         Ok(Texture::with_parts(Cow::Owned(texels), self.size(), levels, *self.config()))
     }

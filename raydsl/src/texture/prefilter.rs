@@ -9,7 +9,7 @@ use std::borrow::Cow;
 
 use super::config::{Address, ColorSpace, Filter, TextureConfig};
 use super::error::TextureError;
-use super::levels::{Grid, room, value};
+use super::levels::{Grid, room};
 use super::texel::Texel;
 use super::texture::Texture;
 
@@ -22,16 +22,17 @@ impl<T: Texel, const D: usize> Texture<'_, T, D> {
     ///
     /// # Errors
     ///
-    /// If there is no memory for the coefficients.
+    /// If there is no memory for the coefficients; while they are made, each channel of a texel
+    /// takes 8 bytes more, and each texel along an axis at most 24.
     pub fn interpolating(&self) -> Result<Texture<'static, T::Value, D>, TextureError> {
         let mut grid = Grid::of(self)?;
         let config = self.config();
-        for axis in 0..D {
-            let border = config.border.to_array().map(f64::from);
-            grid.solve(axis, config.address[axis], border);
+        let border = config.border.to_array().map(f64::from);
+        for (axis, address) in config.address.into_iter().take(D).enumerate() {
+            grid.solve(1 + axis, address, border)?;
         }
-        let mut texels = room(grid.values.len())?;
-        texels.extend(grid.values.iter().map(|v| value::<T::Value>(*v)));
+        let mut texels = room(grid.values.len() / grid.size[0])?;
+        texels.extend(grid.texels::<T::Value>());
         let (filter, color_space) = (Filter::BSpline, ColorSpace::Linear);
         let config = TextureConfig { filter, color_space, ..*config };
         Ok(Texture::with_parts(Cow::Owned(texels), self.size(), 1, config))
@@ -40,72 +41,120 @@ impl<T: Texel, const D: usize> Texture<'_, T, D> {
 
 impl Grid {
     /// Replaces the values of every line along an axis by coefficients.
-    fn solve(&mut self, axis: usize, address: Address, border: [f64; 4]) {
+    fn solve(
+        &mut self,
+        axis: usize,
+        address: Address,
+        border: [f64; 4],
+    ) -> Result<(), TextureError> {
         let n = self.size[axis];
+        let system = System::new(n, address)?;
+        let mut line = zeroes(n)?;
         let (step, lines) = self.lines(axis);
-        let mut line = vec![0.0; n];
         for first in lines {
-            for (channel, border) in border.into_iter().enumerate() {
-                for (i, v) in line.iter_mut().enumerate() {
-                    *v = 6.0 * self.values[first + i * step][channel];
-                }
-                solve(&mut line, address, border);
-                for (i, v) in line.iter().enumerate() {
-                    self.values[first + i * step][channel] = *v;
+            for (i, v) in line.iter_mut().enumerate() {
+                *v = 6.0 * self.values[first + i * step];
+            }
+            system.solve(&mut line, border[first % self.size[0]]);
+            for (i, v) in line.iter().enumerate() {
+                self.values[first + i * step] = *v;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The system `c[i - 1] + 4 c[i] + c[i + 1] = line[i]` of an axis.
+enum System {
+    /// A single texel, which is its own neighbour.
+    Single,
+    /// The neighbour outside is the texel at the edge, or the other one of two.
+    Inside(Tridiagonal),
+    /// The neighbour outside is the border.
+    Border(Tridiagonal),
+    /// The last texel is the neighbour of the first: a correction of the system without those
+    /// corners (the formula of Sherman and Morrison).
+    Cyclic { without_corners: Tridiagonal, correction: Vec<f64> },
+}
+
+/// What is in the corners that [`System::Cyclic`] corrects; any other number would do.
+const CORNER: f64 = -4.0;
+
+impl System {
+    fn new(n: usize, address: Address) -> Result<Self, TextureError> {
+        Ok(match address {
+            Address::Border => Self::Border(Tridiagonal::new(n, 4.0, 4.0, 1.0)?),
+            _ if n == 1 => Self::Single,
+            Address::Clamp | Address::Mirror => Self::Inside(Tridiagonal::new(n, 5.0, 5.0, 1.0)?),
+            Address::Wrap if n == 2 => Self::Inside(Tridiagonal::new(n, 4.0, 4.0, 2.0)?),
+            Address::Wrap => {
+                let (first, last) = (4.0 - CORNER, 4.0 - 1.0 / CORNER);
+                let without_corners = Tridiagonal::new(n, first, last, 1.0)?;
+                let mut correction = zeroes(n)?;
+                (correction[0], correction[n - 1]) = (CORNER, 1.0);
+                without_corners.solve(&mut correction);
+                Self::Cyclic { without_corners, correction }
+            }
+        })
+    }
+
+    fn solve(&self, line: &mut [f64], border: f64) {
+        let n = line.len();
+        match self {
+            Self::Single => line[0] /= 6.0,
+            Self::Inside(system) => system.solve(line),
+            Self::Border(system) => {
+                line[0] -= border;
+                line[n - 1] -= border;
+                system.solve(line);
+            }
+            Self::Cyclic { without_corners, correction } => {
+                without_corners.solve(line);
+                let end = |v: &[f64]| v[0] + v[n - 1] / CORNER;
+                let factor = end(line) / (1.0 + end(correction));
+                for (v, c) in line.iter_mut().zip(correction) {
+                    *v -= factor * c;
                 }
             }
         }
     }
 }
 
-/// Solves `c[i - 1] + 4 c[i] + c[i + 1] = line[i]`.
-fn solve(line: &mut [f64], address: Address, border: f64) {
-    let n = line.len();
-    match address {
-        // The neighbour outside is the texel at the edge, or on the other side of it.
-        _ if n == 1 && address != Address::Border => line[0] /= 6.0,
-        Address::Clamp | Address::Mirror => eliminate(line, 5.0, 5.0, 1.0),
-        Address::Border => {
-            line[0] -= border;
-            line[n - 1] -= border;
-            eliminate(line, 4.0, 4.0, 1.0);
+/// A system with 4 in the diagonal but for its ends, and `beside` next to it, eliminated once for
+/// all lines (Thomas' algorithm). The diagonal outweighs the rest, so there is no need to pivot.
+struct Tridiagonal {
+    beside: f64,
+    /// The diagonal after elimination.
+    pivots: Vec<f64>,
+}
+
+impl Tridiagonal {
+    fn new(n: usize, first: f64, last: f64, beside: f64) -> Result<Self, TextureError> {
+        let mut pivots = zeroes(n)?;
+        pivots[0] = first;
+        for i in 1..n {
+            let diagonal = if i + 1 == n { last } else { 4.0 };
+            pivots[i] = diagonal - beside / pivots[i - 1] * beside;
         }
-        // Both neighbours of one texel are the other.
-        Address::Wrap if n == 2 => eliminate(line, 4.0, 4.0, 2.0),
-        Address::Wrap => eliminate_cyclic(line),
+        Ok(Self { beside, pivots })
+    }
+
+    fn solve(&self, line: &mut [f64]) {
+        let Self { beside, pivots } = self;
+        let n = line.len();
+        for i in 1..n {
+            line[i] -= beside / pivots[i - 1] * line[i - 1];
+        }
+        line[n - 1] /= pivots[n - 1];
+        for i in (0..n - 1).rev() {
+            line[i] = (line[i] - beside * line[i + 1]) / pivots[i];
+        }
     }
 }
 
-/// Solves the system with 4 in the diagonal but for its ends, and `beside` next to it (Thomas'
-/// algorithm). The diagonal outweighs the rest, so there is no need to pivot.
-fn eliminate(line: &mut [f64], first: f64, last: f64, beside: f64) {
-    let n = line.len();
-    let mut pivots = vec![if n == 1 { first.min(last) } else { first }; n];
-    for i in 1..n {
-        let diagonal = if i + 1 == n { last } else { 4.0 };
-        let factor = beside / pivots[i - 1];
-        pivots[i] = diagonal - factor * beside;
-        line[i] -= factor * line[i - 1];
-    }
-    line[n - 1] /= pivots[n - 1];
-    for i in (0..n - 1).rev() {
-        line[i] = (line[i] - beside * line[i + 1]) / pivots[i];
-    }
-}
-
-/// Solves the system whose last texel is the neighbour of the first, as a correction of one without
-/// those corners (the formula of Sherman and Morrison).
-fn eliminate_cyclic(line: &mut [f64]) {
-    let n = line.len();
-    let corner = -4.0;
-    let (first, last) = (4.0 - corner, 4.0 - 1.0 / corner);
-    let mut correction = vec![0.0; n];
-    (correction[0], correction[n - 1]) = (corner, 1.0);
-    eliminate(line, first, last, 1.0);
-    eliminate(&mut correction, first, last, 1.0);
-    let end = |v: &[f64]| v[0] + v[n - 1] / corner;
-    let factor = end(line) / (1.0 + end(&correction));
-    for (v, c) in line.iter_mut().zip(&correction) {
-        *v -= factor * c;
-    }
+/// So many zeroes.
+fn zeroes(count: usize) -> Result<Vec<f64>, TextureError> {
+    let mut list = room(count)?;
+    list.resize(count, 0.0);
+    Ok(list)
 }

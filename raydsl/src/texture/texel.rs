@@ -334,7 +334,11 @@ macro_rules! vector_texel {
                 }
 
                 #[inline(always)]
-                fn decode_on<M: Machine>(m: &M, this: Self::On<M>, space: ColorSpace) -> Self::On<M> {
+                fn decode_on<M: Machine>(
+                    m: &M,
+                    this: Self::On<M>,
+                    space: ColorSpace,
+                ) -> Self::On<M> {
                     <[f32; $n]>::decode_on(m, [$(this.$c),+], space)
                 }
             }

@@ -4,7 +4,7 @@
 //! recorded; sizes and the border are brought to the machine where they are used, so they are
 //! numbers of the uniform block.
 
-use glam::{UVec2, UVec3};
+use glam::{UVec2, UVec3, Vec4};
 
 use super::config::{Address, Filter, LevelFilter, TextureConfig};
 use super::texel::{Texel, TexelValue};
@@ -81,7 +81,9 @@ macro_rules! methods {
         }
         $(
             #[diagnostic::do_not_recommend]
-            impl<M: Machine, T: Texel> Method<{ name(stringify!($name)) }, M, ()> for Texels<'_, T> {
+            impl<M: Machine, T: Texel> Method<{ name(stringify!($name)) }, M, ()>
+                for Texels<'_, T>
+            {
                 type Output = $twin;
 
                 #[inline(always)]
@@ -152,6 +154,13 @@ impl<M: Machine, T: Texel> Method<{ name("value") }, M, (U<M>,)> for Texels<'_, 
     }
 }
 
+/// Whether two configurations are the same, borders of NaN too.
+fn is_same_config(a: &TextureConfig, b: &TextureConfig) -> bool {
+    let bits = |config: &TextureConfig| config.border.to_array().map(f32::to_bits);
+    let rest = |config: &TextureConfig| TextureConfig { border: Vec4::ZERO, ..*config };
+    bits(a) == bits(b) && rest(a) == rest(b)
+}
+
 impl<T: Type> Parameter for Texels<'_, T> {
     type On<'a, M: Machine> = Texels<'a, T>;
 }
@@ -171,12 +180,27 @@ impl<M: Machine, T> Value<M> for Texels<'_, T> {
         if a.all.is_empty() {
             return b;
         }
-        let is_same = || core::ptr::eq(a.all, b.all) && a.size == b.size && a.config == b.config;
+        let is_same = || {
+            core::ptr::eq(a.all, b.all) && a.size == b.size && is_same_config(&a.config, &b.config)
+        };
         assert!(
             b.all.is_empty() || is_same(),
             "a kernel cannot choose between two textures by a value of its rays: choose between \
              what it reads from them, or by a captured `bool`"
         );
         a
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_border_of_nan_is_the_same_border() {
+        let nan = TextureConfig::new().border(Vec4::NAN);
+        assert!(is_same_config(&nan, &nan));
+        assert!(!is_same_config(&nan, &nan.border(Vec4::ZERO)));
+        assert!(!is_same_config(&nan, &nan.filter(Filter::Nearest)));
     }
 }

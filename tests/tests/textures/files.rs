@@ -33,14 +33,92 @@ fn png_is_srgb() -> Result<(), Box<dyn std::error::Error>> {
     assert_eq!(texture.texels()[5].map(|c| c.to_bits()), [200, 200, 7, 255]);
     let decoded = srgb_to_linear(200.0 / 255.0);
     assert_eq!(tex2(&texture, vec2(0.9, 0.9)).x, decoded);
-    // The numbers of a normal map are no colours.
-    let plain = texture.with_config(NEAREST());
-    assert_eq!(tex2(&plain, vec2(0.9, 0.9)).x, 200.0 / 255.0);
     let grey = Texture2::<Unorm16>::from_picture(&bytes, NEAREST())?;
     assert_eq!(grey.size(), [3, 2]);
     let wide = Texture2::<Vec3>::from_picture(&bytes, NEAREST())?;
     assert_eq!(wide.config().color_space, ColorSpace::Srgb);
     assert!((tex2(&wide, vec2(0.9, 0.9)).x - decoded).abs() < 1e-6);
+    Ok(())
+}
+
+/// The numbers of a normal map are no colours, and those of a picture of floats may be.
+#[test]
+fn a_colour_space_that_is_said() -> Result<(), Box<dyn std::error::Error>> {
+    let bytes = written(&small(), ImageFormat::Png)?;
+    let plain = ColorSpace::Linear;
+    let texture = Texture2::<[Unorm8; 4]>::from_picture_as(&bytes, plain, NEAREST())?;
+    assert_eq!(tex2(&texture, vec2(0.9, 0.9)).x, 200.0 / 255.0);
+    let bytes = written(&bright(), ImageFormat::OpenExr)?;
+    let texture = Texture2::<Vec3>::from_picture_as(&bytes, ColorSpace::Srgb, NEAREST())?;
+    assert_eq!(tex2(&texture, vec2(0.9, 0.9)).y, srgb_to_linear(0.25));
+    let missing = Texture2::<Unorm8>::load_as("no/such/picture.png", plain, NEAREST());
+    assert!(matches!(missing, Err(LoadError::Unreadable { .. })));
+    Ok(())
+}
+
+/// Halves are the floats of the same picture, rounded.
+#[test]
+fn halves_of_every_format() -> Result<(), Box<dyn std::error::Error>> {
+    let formats = [
+        (small(), ImageFormat::Png),
+        (bright(), ImageFormat::OpenExr),
+        (bright(), ImageFormat::Hdr),
+    ];
+    for (picture, format) in formats {
+        let bytes = written(&picture, format)?;
+        macro_rules! same {
+            ($half:ty, $float:ty) => {
+                let half = Texture2::<$half>::from_picture(&bytes, NEAREST())?;
+                let float = Texture2::<$float>::from_picture(&bytes, NEAREST())?;
+                assert_eq!(half.config(), float.config());
+                let floats = float.texels().iter().flat_map(|t| t.map(F16::new));
+                let halves = half.texels().iter().flatten().copied();
+                assert!(halves.eq(floats), "{format:?}");
+            };
+        }
+        same!([F16; 1], [f32; 1]);
+        same!([F16; 2], [f32; 2]);
+        same!([F16; 3], [f32; 3]);
+        same!([F16; 4], [f32; 4]);
+        let grey = Texture2::<F16>::from_picture(&bytes, NEAREST())?;
+        let greys = Texture2::<[F16; 1]>::from_picture(&bytes, NEAREST())?;
+        assert_eq!(grey.texels(), greys.texels().as_flattened());
+    }
+    // Beyond what a half holds.
+    let beyond = Rgb32FImage::from_pixel(1, 1, image::Rgb([1e6; 3]));
+    let bytes = written(&beyond.into(), ImageFormat::OpenExr)?;
+    let texture = Texture2::<[F16; 3]>::from_picture(&bytes, NEAREST())?;
+    assert_eq!(texture.texels()[0][0].to_f32(), f32::INFINITY);
+    Ok(())
+}
+
+/// Large pictures and long rows are converted in pieces, which no texel shows.
+#[test]
+fn pieces_of_large_pictures() -> Result<(), Box<dyn std::error::Error>> {
+    for [width, height] in [[300, 301], [70_000, 2], [1, 70_000], [65_537, 1]] {
+        let mut rng = Rng::new(31);
+        let color = |_, _| image::Rgb([(); 3].map(|()| rng.bits() as u8));
+        let picture = DynamicImage::from(RgbImage::from_fn(width, height, color));
+        let bytes = written(&picture, ImageFormat::Png)?;
+        let grey = Texture2::<Unorm16>::from_picture(&bytes, NEAREST())?;
+        let expected = picture.to_luma16().into_raw();
+        assert!(grey.texels().iter().map(|t| t.to_bits()).eq(expected), "{width} {height}");
+        let wide = Texture2::<Vec4>::from_picture(&bytes, NEAREST())?;
+        let expected = picture.to_rgba32f().into_raw();
+        assert!(wide.texels().iter().flat_map(|t| t.to_array()).eq(expected), "{width} {height}");
+    }
+    Ok(())
+}
+
+/// A picture that can be decoded, but not held together with the texels it is converted to.
+#[test]
+fn a_picture_and_its_texels_have_one_limit() -> Result<(), Box<dyn std::error::Error>> {
+    let side = 8000;
+    let grey: DynamicImage = image::GrayImage::new(side, side).into();
+    let bytes = written(&grey, ImageFormat::Png)?;
+    let found = Texture2::<Vec4>::from_picture(&bytes, NEAREST());
+    let taken = 17 * u64::from(side) * u64::from(side);
+    assert!(matches!(found, Err(LoadError::TooLarge { bytes, .. }) if bytes == taken));
     Ok(())
 }
 

@@ -4,6 +4,7 @@
 mod example;
 mod facts;
 mod files;
+mod known;
 mod levels;
 mod reference;
 mod sampler;

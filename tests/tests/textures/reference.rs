@@ -48,20 +48,9 @@ fn taps(filter: Filter, n: u32, address: Address, x: f64) -> Vec<(Option<i64>, f
         .collect()
 }
 
-/// A linear ramp from 0 to `n - 1`, and how steep what is read from it may be there.
-pub(super) fn ramp(n: f64, address: Address, x: f64) -> (f64, f64) {
-    let taps = taps(Filter::Linear, n as u32, address, x);
-    let value = |i: Option<i64>| i.map_or(0.0, |i| i as f64);
-    let ends = taps.iter().map(|(i, _)| value(*i));
-    let slope = ends.clone().fold(0.0, f64::max) - ends.fold(f64::MAX, f64::min);
-    let sum = taps.iter().map(|(i, w)| w * value(*i)).sum();
-    // Where a place lies on a texel, rounding takes it to either side.
-    let near = |d: f64| {
-        let p = x * n - 0.5 + d;
-        p.floor() != (x * n - 0.5).floor()
-    };
-    let at_a_texel = near(1e-5 * n) || near(-1e-5 * n);
-    (sum, if at_a_texel { n.max(1.0) } else { slope.max(1.0) })
+/// The linear filter at `x` of `n` texels, or the border, that have these values.
+pub(super) fn linear(n: u32, address: Address, x: f64, value: impl Fn(Option<i64>) -> f64) -> f64 {
+    taps(Filter::Linear, n, address, x).into_iter().map(|(i, w)| w * value(i)).sum()
 }
 
 struct Case {

@@ -79,7 +79,8 @@ proptest! {
         level in coordinate(),
     ) {
         let texels = vec![1.0; size.iter().product::<u32>() as usize];
-        let config = TextureConfig::new().filter(FILTERS[filter]).addresses(modes.map(|m| ADDRESSES[m]));
+        let modes = modes.map(|m| ADDRESSES[m]);
+        let config = TextureConfig::new().filter(FILTERS[filter]).addresses(modes);
         let made = Texture3::new(&texels, size, config).and_then(|t| t.with_levels());
         let texture = made.map_err(|e| TestCaseError::fail(e.to_string()))?;
         for v in [tex3(&texture, at.into()), tex3_level(&texture, at.into(), level)] {
@@ -89,7 +90,11 @@ proptest! {
 
     /// Whatever sizes are asked for, the answer is a texture or an error.
     #[test]
-    fn any_size_has_an_answer(size in any::<[u32; 3]>(), small in any::<[u8; 3]>(), len in 0usize..70) {
+    fn any_size_has_an_answer(
+        size in any::<[u32; 3]>(),
+        small in any::<[u8; 3]>(),
+        len in 0usize..70,
+    ) {
         let texels = vec![0.5; len];
         for size in [size, small.map(u32::from), small.map(|n| u32::from(n % 5))] {
             let made = TextureRef3::new(&texels, size, TextureConfig::new());
