@@ -161,10 +161,9 @@ fn a_device_has_the_same_pictures() -> Result<(), Box<dyn Error>> {
     cases.push(open::case("balls", balls(), 8)?);
     cases.push(quadrature::case());
     for case in &cases {
-        for sampling in [SampleMethod::Random, SampleMethod::Stratified, SampleMethod::Sobol] {
-            let method = Method::from(sampling);
+        for method in case.methods() {
             let of = |variant| {
-                let run = Run::new(&method, Backend::Variant(variant), 16);
+                let run = Run::new(method, Backend::Variant(variant), 16);
                 estimate(case, &run.sized(64, 64).seeded(7).on(gpu)).map(|e| e.values)
             };
             let (expected, found) = (of(Variant::Scalar)?, of(Variant::Wgsl)?);
@@ -268,16 +267,15 @@ fn orders_of_textures() -> Result<(), Box<dyn Error>> {
     assert_orders(&textured::cases(), &[64, 256, 1024, 4096])
 }
 
-/// 1, 2, 4 and 4. In `f32` the last two come to the floor of rounding with a dozen steps, and so
-/// have only the steps that are still too wide; in `f64` there are finer ones.
+/// 1, 2, 4 and 4. In `f32` the sum of 16 steps of the last two has as much rounding as error, which
+/// leaves too few points for a verdict, but not for the order; in `f64` there are more.
 #[test]
 fn orders_of_rules() -> Result<(), Box<dyn Error>> {
     let case = [quadrature::case()];
     let widest = Backend::Variant(Variant::widest());
-    for (backend, knobs, slack) in
-        [(widest, [2, 4, 8, 16], 0.15), (Backend::F64, [4, 8, 16, 32], 0.05)]
-    {
-        let report = WorkPrecision::new().backends(&[backend]).knobs(&knobs).size(2, 2);
+    let of_f32: (_, &[u32], f64) = (widest, &[2, 4, 8], 0.15);
+    for (backend, knobs, slack) in [of_f32, (Backend::F64, &[4, 8, 16, 32], 0.05)] {
+        let report = WorkPrecision::new().backends(&[backend]).knobs(knobs).size(2, 2);
         let report = report.repetitions(1).run(&case)?;
         println!("{}", report.table());
         let curves = &report.cases[0].curves;
@@ -286,7 +284,9 @@ fn orders_of_rules() -> Result<(), Box<dyn Error>> {
             let what = format!("{name} {}: {:?}", backend.name(), curve.fit);
             let fitted = curve.fit.ok_or(what.as_str())?.order;
             assert!((fitted - order).abs() < slack, "{what}");
-            assert_eq!(curve.verdict(), Verdict::AsExpected, "{what}");
+            if backend == Backend::F64 {
+                assert_eq!(curve.verdict(), Verdict::AsExpected, "{what}");
+            }
             // Of four pixels.
             let counted = curve.points[0].repetitions[0].counted;
             let expected = 4 * u64::from(knobs[0]) * look_ups;
