@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 use raydsl::report::work_precision::Backend;
 use raydsl_examples::args::seconds;
 
@@ -13,11 +13,14 @@ pub(crate) struct Args {
     /// A case, `all`, or `list`.
     #[arg(default_value = "list")]
     pub(crate) case: String,
-    /// Values of the knob: samples of each pixel.
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "64,256,1024,4096")]
-    pub(crate) knob: Vec<u32>,
-    /// Methods.
-    #[arg(long, value_delimiter = ',', default_value = "random,stratified,sobol")]
+    /// The knob that is turned: samples of each pixel, or steps. Cases without it are left out.
+    #[arg(long, value_enum, default_value_t = Knob::Spp)]
+    pub(crate) knob: Knob,
+    /// Its values, rising; 64,256,1024,4096 samples or 2,4,8,16,32 steps without this.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    values: Vec<u32>,
+    /// Methods, by name; all of each case without this. Cases that have none are left out.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub(crate) methods: Vec<String>,
     /// Variants; the first is what speed-ups are over. `f64` is the reference machine.
     #[arg(
@@ -40,6 +43,36 @@ pub(crate) struct Args {
     /// Folder of the results.
     #[arg(long, value_name = "DIR", default_value = "out/report")]
     pub(crate) out: PathBuf,
+}
+
+/// What makes a case better and slower.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Knob {
+    /// Samples of each pixel.
+    Spp,
+    /// Steps along a ray.
+    Step,
+}
+
+impl Knob {
+    /// What cases call it.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Spp => "spp",
+            Self::Step => "step",
+        }
+    }
+}
+
+impl Args {
+    /// The knob's values.
+    pub(crate) fn values(&self) -> &[u32] {
+        match self.knob {
+            _ if !self.values.is_empty() => &self.values,
+            Knob::Spp => &[64, 256, 1024, 4096],
+            Knob::Step => &[2, 4, 8, 16, 32],
+        }
+    }
 }
 
 fn backend(name: &str) -> Result<Backend, String> {

@@ -4,7 +4,7 @@ use core::f32::consts::PI;
 
 use raydsl::kernel;
 use raydsl::prelude::*;
-use raydsl::report::work_precision::{Case, Order, Reference};
+use raydsl::report::work_precision::{Case, Order, Reference, Work};
 
 /// Light of unit radiance through a point of a lamp, per density of 1 over `area`.
 #[kernel]
@@ -86,11 +86,18 @@ pub(crate) fn light(#[host] which: u32, #[host] method: SampleMethod, sampler: S
     if which < 4 { lamps(which, u) } else { means(which, u) }
 }
 
-/// Smooth in the square: stratified samples have -1, Sobol points nearly -1.5.
-const SMOOTH: Order = Order::near(-1.35, 0.15);
-/// The disk's warp has kinks along its diagonals, and the hemisphere's height an infinite slope at
-/// the horizon: continuous, but no more.
-const WARPED: Order = Order::near(-1.25, 0.25);
+// Orders of Sobol points, n of them in cells of the width n^-1/2; stratified samples have -1 in all
+// of these. (The first: Owen, "Scrambled Net Variance for Integrals of Smooth Functions", 1997.)
+
+/// Smooth in the square: -1.5 but for a power of log n, which makes it flatter at these n.
+const SMOOTH: Order = Order::near(-1.4, 0.1);
+/// With a kink aslant, as the triangle's warp has: the n^1/2 cells that it crosses have errors of
+/// the first order, each n^-3/2, and so together n^-5/4.
+const KINKED: Order = Order::near(-1.25, 0.05);
+/// The disk's warp has kinks along its diagonals; besides the hemisphere's height has an infinite
+/// slope at the horizon, and light an edge between day and night that is a kink. If cells were all
+/// that Sobol points had, the horizon would hold them to -1.
+const WARPED: Order = Order::near(-1.2, 0.1);
 
 fn case(name: &str, which: u32, exact: f64, sobol: Order) -> Case<'static> {
     Case::new(name, Reference::closed_form(exact), move |run| {
@@ -99,6 +106,8 @@ fn case(name: &str, which: u32, exact: f64, sobol: Order) -> Case<'static> {
             light(host(which), host(method), sampler)
         }))
     })
+    // Lamps are sampled, and nothing stands between.
+    .counted(|_| Work::NOTHING)
     .method(SampleMethod::Random, Some(Order::RANDOM))
     .method(SampleMethod::Stratified, Some(Order::near(-1.0, 0.1)))
     .method(SampleMethod::Sobol, Some(sobol))
@@ -109,8 +118,8 @@ pub(crate) fn cases() -> Vec<Case<'static>> {
     vec![
         case("P-D1", 0, 1.404_962_946_208_145_3, SMOOTH),
         case("P-D2", 1, 1.740_839_502_734_206_4, SMOOTH),
-        case("P-D3", 2, 0.452_401_900_028_853, SMOOTH),
-        case("P-D3-angle", 3, 0.479_707_883_154_055_55, SMOOTH),
+        case("P-D3", 2, 0.452_401_900_028_853, KINKED),
+        case("P-D3-angle", 3, 0.479_707_883_154_055_55, KINKED),
         case("P-D4", 4, 0.312_766_721_941_545, SMOOTH),
         case("P-D5-0", 5, 2.0 / 3.0, WARPED),
         case("P-D5-60", 6, 0.405_998_520_696_152_9, WARPED),

@@ -2,7 +2,7 @@
 
 use raydsl::kernel;
 use raydsl::prelude::*;
-use raydsl::report::work_precision::{Case, Order, Reference};
+use raydsl::report::work_precision::{Case, Order, Reference, Work};
 
 /// A disk.
 #[primitive(disk(center, normal, radius))]
@@ -147,7 +147,8 @@ fn case(scene: Scene) -> Case<'static> {
         let method = run.method().sampling();
         run.integral_work(|sampler| {
             let ray = to_the_sky(reach, is_uniform, method, sampler);
-            occluders.any_hit_with_cost(ray).1.into()
+            let cost = occluders.any_hit_with_cost(ray).1;
+            Work { texture_fetches: Some(0), ..cost.into() }
         })
     })
     .method(SampleMethod::Random, Some(Order::RANDOM))

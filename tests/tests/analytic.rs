@@ -1,6 +1,7 @@
 //! Integrals of light whose results are known, in every variant: those of the example `report`.
 
 use std::error::Error;
+use std::time::Duration;
 
 use raydsl::assert_variants_agree;
 use raydsl::prelude::*;
@@ -16,6 +17,10 @@ use raydsl_tests::scaled;
 mod cloud;
 #[path = "../../examples/report/light.rs"]
 mod light;
+#[path = "../../examples/report/open.rs"]
+mod open;
+#[path = "../../examples/report/quadrature.rs"]
+mod quadrature;
 #[path = "../../examples/report/textured.rs"]
 mod textured;
 #[path = "../../examples/report/visibility.rs"]
@@ -118,6 +123,33 @@ fn every_variant() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// Some balls on top of each other, in the place of a scene from a file.
+fn balls() -> open::Scene<visibility::Ball> {
+    let ball = |i: u16| {
+        let (x, y, z) = (f32::from(i % 6), f32::from(i / 6 % 6), f32::from(i / 36));
+        visibility::Ball { center: vec3(x, y, z - 0.1 * x), radius: 0.4 + 0.01 * y }
+    };
+    let camera = Pinhole::new(vec3(9.0, 7.0, 8.0), vec3(2.5, 2.5, 1.0), Vec3::Z, 0.7);
+    open::Scene { primitives: (0..108).map(ball).collect(), camera, radius: 2.0 }
+}
+
+/// Every sample has a ray, and another one where it meets something: then it is open or not.
+#[test]
+fn a_scene_is_open_and_counted() -> Result<(), Box<dyn Error>> {
+    let case = [open::case("balls", balls(), 64)?];
+    let scalar = [Backend::Variant(Variant::Scalar)];
+    let report = WorkPrecision::new().backends(&scalar).knobs(&[16]).repetitions(3).run(&case)?;
+    let [random, .., sobol] = &report.cases[0].curves[..] else { panic!("three curves") };
+    let work = random.points[0].work();
+    let samples = u64::from(EDGE * EDGE * 16);
+    assert!((samples + 1..2 * samples).contains(&work.rays.unwrap_or(0)), "{work:?}");
+    assert!(work.nodes > work.rays && work.texture_fetches == Some(0), "{work:?}");
+    let light = random.points[0].repetitions[0].values.iter().sum::<f64>();
+    assert!((0.1..0.9).contains(&(light / f64::from(EDGE * EDGE))), "{light}");
+    assert!(sobol.points[0].rmse() < random.points[0].rmse());
+    Ok(())
+}
+
 /// With the same seed a device has the scalar variant's pictures: light to 1e-4 of itself, but for
 /// one pixel in a thousand, where rounding may decide whether a ray meets an edge. By lavapipe no
 /// pixel needs that.
@@ -126,11 +158,12 @@ fn a_device_has_the_same_pictures() -> Result<(), Box<dyn Error>> {
     let Some(gpu) = gpu() else { return Ok(()) };
     let mut cases = all();
     cases.push(cloud::case(8)?);
+    cases.push(open::case("balls", balls(), 8)?);
+    cases.push(quadrature::case());
     for case in &cases {
-        for sampling in [SampleMethod::Random, SampleMethod::Stratified, SampleMethod::Sobol] {
-            let method = Method::from(sampling);
+        for method in case.methods() {
             let of = |variant| {
-                let run = Run::new(&method, Backend::Variant(variant), 16);
+                let run = Run::new(method, Backend::Variant(variant), 16);
                 estimate(case, &run.sized(64, 64).seeded(7).on(gpu)).map(|e| e.values)
             };
             let (expected, found) = (of(Variant::Scalar)?, of(Variant::Wgsl)?);
@@ -174,23 +207,90 @@ fn samples_agree() {
     }
 }
 
-/// Errors fall as theory says: -0.5 for random samples, -0.7 or faster past an edge, -1 and below
-/// for stratified and Sobol samples of what has none.
-#[test]
-fn orders() -> Result<(), Box<dyn Error>> {
-    let names = ["P-AO2", "P-AO5", "P-AO8", "P-D2", "P-D5-60", "P-S2", "texture", "textured-lamp"];
-    let cases: Vec<Case<'_>> = all().into_iter().filter(|c| names.contains(&c.name())).collect();
-    assert_eq!(cases.len(), names.len());
+/// Errors fall as theory says, which each case tells: -0.5 to within 0.05 for random samples, -0.7
+/// or faster past an edge, about -1 and below for stratified and Sobol samples of what has none.
+/// Seeds are fixed, so it is the fitted orders that must, not only their intervals.
+#[track_caller]
+fn assert_orders(cases: &[Case<'_>], knobs: &[u32]) -> Result<(), Box<dyn Error>> {
     let report = WorkPrecision::new()
         .backends(&[Backend::Variant(Variant::widest())])
-        .knobs(&[64, 256, 1024, 4096])
+        .knobs(knobs)
         .repetitions(2)
-        .run(&cases)?;
+        .time(Duration::from_secs(3600))
+        .run(cases)?;
     println!("{}", report.table());
     for case in &report.cases {
         for curve in &case.curves {
-            let (method, fit) = (curve.method.name(), curve.fit);
-            assert_eq!(curve.verdict(), Verdict::AsExpected, "{} {method} {fit:?}", case.name);
+            let what = format!("{} {}: {:?}", case.name, curve.method.name(), curve.fit);
+            let Some(order) = curve.expected else {
+                assert_eq!(curve.verdict(), Verdict::NoTheory, "{what}");
+                continue;
+            };
+            let fitted = curve.fit.ok_or(what.as_str())?.order;
+            assert!((order.steepest..=order.flattest).contains(&fitted), "{what}");
+            assert_eq!(curve.verdict(), Verdict::AsExpected, "{what}");
+        }
+    }
+    Ok(())
+}
+
+/// From 256 samples on: with 64 the rim of a thing that hides little of the sky, such as that of
+/// P-AO5, crosses as many strata as there are inside it, and the curve is still too flat.
+#[test]
+fn orders_past_edges() -> Result<(), Box<dyn Error>> {
+    assert_orders(&visibility::cases(), &[256, 1024, 4096, 16_384])
+}
+
+/// The one edge without an order: it runs along lines between strata, so that nothing but rounding
+/// is left.
+#[test]
+fn an_edge_along_strata_leaves_no_error() -> Result<(), Box<dyn Error>> {
+    let cases = visibility::cases();
+    let case = cases.iter().find(|c| c.name() == "P-AO7-uniform").ok_or("a case")?;
+    for sampling in [SampleMethod::Stratified, SampleMethod::Sobol] {
+        let method = Method::from(sampling);
+        let run = Run::new(&method, Backend::Variant(Variant::widest()), SAMPLES);
+        let found = estimate(case, &run.sized(EDGE, EDGE))?;
+        let error = Metrics::of(&found.values, case.reference()).rmse;
+        assert!(error < 1e-5, "{} {error}", method.name());
+    }
+    Ok(())
+}
+
+#[test]
+fn orders_of_light() -> Result<(), Box<dyn Error>> {
+    assert_orders(&light::cases(), &[64, 256, 1024, 4096])
+}
+
+#[test]
+fn orders_of_textures() -> Result<(), Box<dyn Error>> {
+    assert_orders(&textured::cases(), &[64, 256, 1024, 4096])
+}
+
+/// 1, 2, 4 and 4. In `f32` the sum of 16 steps of the last two has as much rounding as error, which
+/// leaves too few points for a verdict, but not for the order; in `f64` there are more.
+#[test]
+fn orders_of_rules() -> Result<(), Box<dyn Error>> {
+    let case = [quadrature::case()];
+    let widest = Backend::Variant(Variant::widest());
+    let of_f32: (_, &[u32], f64) = (widest, &[2, 4, 8], 0.15);
+    for (backend, knobs, slack) in [of_f32, (Backend::F64, &[4, 8, 16, 32], 0.05)] {
+        let report = WorkPrecision::new().backends(&[backend]).knobs(knobs).size(2, 2);
+        let report = report.repetitions(1).run(&case)?;
+        println!("{}", report.table());
+        let curves = &report.cases[0].curves;
+        assert_eq!(curves.len(), quadrature::RULES.len());
+        for (curve, (name, look_ups, order)) in curves.iter().zip(quadrature::RULES) {
+            let what = format!("{name} {}: {:?}", backend.name(), curve.fit);
+            let fitted = curve.fit.ok_or(what.as_str())?.order;
+            assert!((fitted - order).abs() < slack, "{what}");
+            if backend == Backend::F64 {
+                assert_eq!(curve.verdict(), Verdict::AsExpected, "{what}");
+            }
+            // Of four pixels.
+            let counted = curve.points[0].repetitions[0].counted;
+            let expected = 4 * u64::from(knobs[0]) * look_ups;
+            assert_eq!((curve.method.name(), counted), (name, Some(expected)));
         }
     }
     Ok(())

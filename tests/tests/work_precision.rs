@@ -135,16 +135,19 @@ fn shapes_of_files() -> Result<(), Box<dyn Error>> {
         Err(Missing::Refused("no".repeat(200)))
     });
     let cases = [quadrature("exp"), quadrature(long), absent.method("none", None)];
+    let why = "there is no file,\nnone";
     let folder = std::env::temp_dir().join(format!("raydsl-report-{}", std::process::id()));
-    let report = quick().knobs(&[4, 8, 16, 32]).run(&cases)?;
+    let report = quick().knobs(&[4, 8, 16, 32]).omit("a | file", why).run(&cases)?;
     let plots = report.write(&folder)?;
     let read = |name: &str| std::fs::read_to_string(folder.join(name));
     let (csv, json) = (read("points.csv")?, read("report.json")?);
     let header = csv.lines().next().map_or(0, cells);
     assert!(csv.lines().all(|l| cells(l) == header), "{csv}");
-    let columns = if cfg!(feature = "flip") { 62 } else { 56 };
-    // Two cases of two methods with four points of three runs each, and one that was not run.
-    assert_eq!((csv.lines().count(), header), (1 + 2 * 2 * 4 * 3 + 1, columns));
+    let columns = if cfg!(feature = "flip") { 67 } else { 61 };
+    // Two cases of two methods with four points of three runs each, one that was not run, and one
+    // that was left out.
+    assert_eq!((csv.lines().count(), header), (1 + 2 * 2 * 4 * 3 + 1 + 1, columns));
+    assert!(csv.ends_with(",\"omitted: there is no file,\"\n"), "{csv}");
     let json: serde_json::Value = serde_json::from_str(&json)?;
     let curve = &json["cases"][0]["curves"][1];
     assert_eq!(
@@ -160,7 +163,10 @@ fn shapes_of_files() -> Result<(), Box<dyn Error>> {
         assert!(table.lines().all(|l| l.chars().count() <= 100), "{table}");
         assert!(table.contains("nono") && table.contains("middle"), "{table}");
     }
-    assert!(read("omissions.md")?.contains("nono"));
+    let left_out = read("omissions.md")?;
+    let row = "| a \\| file | all | all | the case | there is no file, none |";
+    assert!(left_out.contains("nono") && left_out.contains(row), "{left_out}");
+    assert_eq!(json["omitted"], serde_json::json!([["a | file", why]]));
     assert_eq!(plots.len(), 3);
     for plot in plots {
         let svg = std::fs::read_to_string(plot.with_extension("svg"))?;
@@ -206,6 +212,42 @@ fn bad_input_is_refused() {
     assert!(matches!(with(Reference::f64([1.0; 3], 0.0)), E::Length { found: 4, expected: 3, .. }));
     assert!(matches!(with(Reference::halves([1.0; 4], [1.0; 3])), E::Length { .. }));
     assert!(matches!(with(Reference::halves([1.0; 4], [f64::INFINITY; 4])), E::Reference { .. }));
+}
+
+/// A knob of steps takes no more samples; what takes none takes one.
+#[test]
+fn samples_need_not_be_the_knob() -> Result<(), Box<dyn Error>> {
+    let method = Method::from("left");
+    let run = Run::new(&method, SCALAR, 64).sized(3, 2);
+    let samples = |run: Run<'_>| {
+        let found = run.integral(&kernel!(|_ray: Ray| 1.0));
+        found.map(|found| found.samples).map_err(|missing| missing.to_string())
+    };
+    assert_eq!((samples(run)?, samples(run.with_samples(5))?), (6 * 64, 6 * 5));
+    assert_eq!(samples(run.with_samples(0))?, 6);
+    let one = |_| Work { rays: Some(1), ..Work::default() };
+    assert_eq!(run.with_samples(5).integral_work(one).rays, Some(30));
+    Ok(())
+}
+
+/// A floor far below all errors is told in words, a near one is drawn, and an exact reference has
+/// none.
+#[test]
+fn no_floor_is_passed_over() -> Result<(), Box<dyn Error>> {
+    let texts = |uncertainty: f64| {
+        let reference = Reference::quadrature([1.0], uncertainty);
+        let case = Case::new("c", reference, |_| Ok(Estimates::new(vec![1.01], 1)));
+        let report = quick().knobs(&[4]).run(&[case.method("m", None)])?;
+        Ok::<_, WorkPrecisionError>(report.cases[0].plot().svg())
+    };
+    let far = texts(1e-5)?;
+    let note = ">f32 floor: 1.2e-7, below the picture; reference floor: 1.0e-5, below the picture<";
+    assert!(far.contains(note), "{far}");
+    let near = texts(1e-3)?;
+    assert!(near.contains(">f32 floor: 1.2e-7, below the picture<"), "{near}");
+    assert!(near.contains(">reference floor<"), "{near}");
+    assert!(!texts(0.0)?.contains("reference floor"));
+    Ok(())
 }
 
 /// The optical depth of a ramp by the left rule, with as many steps as the knob says, counted in
@@ -378,6 +420,10 @@ fn what_is_counted_apart_is_in_the_files() -> Result<(), Box<dyn Error>> {
     let rising = ["efficiency_low", "efficiency", "efficiency_high"].map(number);
     assert!(rising.windows(2).all(|e| 0.0 < e[0] && e[0] < e[1]), "{rising:?}");
     assert!(number("rmse_p10") <= number("rmse_p90") && number("mrse") > 0.0);
+    let rising = ["error_low", "error", "error_high"].map(number);
+    assert!(rising.windows(2).all(|e| 0.0 < e[0] && e[0] < e[1]), "{rising:?}");
+    assert_eq!(number("mse").sqrt(), number("rmse"));
+    assert_eq!((cells["gpu"], cells["driver"]), ("", ""), "no curve is of a device");
     let json = report.json();
     let point = &json["cases"][0]["curves"][0]["points"][2];
     assert_eq!(point["work"]["nodes"].as_u64(), work(random, 2).nodes);

@@ -149,7 +149,7 @@ pub struct Case<'a> {
 
 impl core::fmt::Debug for Case<'_> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let methods: Vec<&str> = self.methods.iter().map(|(m, _)| m.name()).collect();
+        let methods: Vec<&str> = self.methods().map(Method::name).collect();
         f.debug_struct("Case")
             .field("name", &self.name)
             .field("knob", &self.knob)
@@ -177,7 +177,8 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// What the knob is called: `spp` (samples of each pixel) unless this is called.
+    /// What the knob is called: `spp` (samples of each pixel) unless this is called. A case whose
+    /// knob is no count of samples says by [`Run::with_samples`] how many there are.
     pub fn knob(self, name: impl Into<String>) -> Self {
         Self { knob: name.into(), ..self }
     }
@@ -207,6 +208,16 @@ impl<'a> Case<'a> {
     /// The name.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// What its knob is called.
+    pub fn knob_name(&self) -> &str {
+        &self.knob
+    }
+
+    /// Its methods in their order.
+    pub fn methods(&self) -> impl Iterator<Item = &Method> {
+        self.methods.iter().map(|(method, _)| method)
     }
 
     /// What it is compared with.

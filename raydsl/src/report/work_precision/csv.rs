@@ -3,7 +3,7 @@
 use super::curve::{Curve, Point, Repetition};
 #[cfg(feature = "flip")]
 use super::flip::Flip;
-use super::{Environment, Measured, Report};
+use super::{Environment, Measured, Omitted, Report};
 
 /// The columns of [`Report::csv`]: what is the same for a curve, what there is of a run, and where
 /// it was measured.
@@ -42,6 +42,10 @@ const OF_RUN: &[&str] = &[
     "primitive_tests",
     "texture_fetches",
     "counted",
+    "error",
+    "error_low",
+    "error_high",
+    "mse",
     "rmse",
     "rmse_p10",
     "rmse_p90",
@@ -73,13 +77,14 @@ const OF_RUN: &[&str] = &[
     #[cfg(feature = "flip")]
     "hdr_flip_p95",
 ];
-const OF_MACHINE: &[&str] = &["features", "version", "commit", "cpu", "device", "status"];
+const OF_MACHINE: &[&str] = &["features", "version", "commit", "cpu", "gpu", "driver", "status"];
 
 impl Report {
     /// A header and a row for each run; and one for each point that was not run, whose status says
-    /// why. Times are seconds; those that begin with `t_`, `rmse_p10`, `rmse_p90` and the
-    /// efficiency are of all runs of the point. `rounding` is the difference to the same samples in
-    /// `f64`, `code` the hash of the kernel's WGSL. What is not known is empty.
+    /// why, and for each case that was left out. Times are seconds; those that begin with `t_`,
+    /// `error` (the root of the mean square error) with its 95 % interval, `rmse_p10`, `rmse_p90`
+    /// and the efficiency are of all runs of the point. `rounding` is the difference to the same
+    /// samples in `f64`, `code` the hash of the kernel's WGSL. What is not known is empty.
     pub fn csv(&self) -> String {
         let header = [OF_CURVE, OF_RUN, OF_MACHINE].concat().join(",");
         let mut lines = vec![header];
@@ -88,8 +93,17 @@ impl Report {
                 lines.extend(rows(&self.environment, case, curve));
             }
         }
+        lines.extend(self.omitted.iter().map(|o| left_out(&self.environment, o)));
         lines.join("\n") + "\n"
     }
+}
+
+/// A case that was not measured.
+fn left_out(environment: &Environment, omitted: &Omitted) -> String {
+    let mut cells = vec![String::new(); OF_CURVE.len() + OF_RUN.len()];
+    cells[0] = quoted(&omitted.case);
+    let why = format!("omitted: {}", first_line(&omitted.why));
+    [cells, of_machine(environment, &why)].concat().join(",")
 }
 
 fn rows(environment: &Environment, case: &Measured, curve: &Curve) -> Vec<String> {
@@ -139,6 +153,7 @@ fn of_curve(case: &Measured, curve: &Curve) -> Vec<String> {
 
 fn of_run(point: &Point, run: &Repetition) -> Vec<String> {
     let (m, work, efficiency) = (&run.metrics, point.work(), point.efficiency());
+    let error = point.rmse_interval();
     let whole = |n: Option<u64>| n.map_or_else(String::new, |n| n.to_string());
     let cells = vec![
         run.seed.to_string(),
@@ -154,6 +169,10 @@ fn of_run(point: &Point, run: &Repetition) -> Vec<String> {
         whole(work.primitives),
         whole(work.texture_fetches),
         whole(run.counted),
+        number(point.rmse()),
+        perhaps(error.map(|ends| ends[0])),
+        perhaps(error.map(|ends| ends[1])),
+        number(m.mse),
         number(m.rmse),
         number(point.rmse_quantile(0.1)),
         number(point.rmse_quantile(0.9)),
@@ -193,7 +212,8 @@ fn of_machine(environment: &Environment, status: &str) -> Vec<String> {
         environment.version.to_owned(),
         quoted(&environment.commit),
         quoted(&environment.cpu),
-        quoted(environment.device.as_deref().unwrap_or_default()),
+        quoted(environment.gpu.as_deref().unwrap_or_default()),
+        quoted(environment.driver.as_deref().unwrap_or_default()),
         quoted(status),
     ]
 }

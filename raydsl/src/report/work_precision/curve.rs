@@ -5,7 +5,7 @@ use super::efficiency::Efficiency;
 use super::fit::{Fit, Reached, first_below, student_t, value_at};
 #[cfg(feature = "flip")]
 use super::flip::Flip;
-use super::metrics::Metrics;
+use super::metrics::{Metrics, root};
 use super::reference::Reference;
 use super::work::Work;
 use crate::report::{Missing, Times};
@@ -85,10 +85,25 @@ impl Point {
         Self { knob, repetitions: Vec::new(), rounding: None, counted_apart: None }
     }
 
-    /// The root of the mean square error over all repetitions that gave finite numbers.
+    /// The root of the mean square error over all repetitions that gave finite numbers. Mean
+    /// squares of two halves are added with their signs: only their mean is cut off at 0.
     pub fn rmse(&self) -> f64 {
-        let squares: Vec<f64> = self.finite().map(|r| r.metrics.rmse.powi(2)).collect();
-        (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+        let squares: Vec<f64> = self.finite().map(|r| r.metrics.mse).collect();
+        root(squares.iter().sum::<f64>() / squares.len() as f64)
+    }
+
+    /// The 95 % interval of [`Self::rmse`]: the roots of that of the mean square, by Student's t
+    /// over the repetitions. None of fewer than two that gave finite numbers.
+    pub fn rmse_interval(&self) -> Option<[f64; 2]> {
+        let squares: Vec<f64> = self.finite().map(|r| r.metrics.mse).collect();
+        let n = squares.len();
+        if n < 2 {
+            return None;
+        }
+        let mean = squares.iter().sum::<f64>() / n as f64;
+        let spread: f64 = squares.iter().map(|s| (s - mean).powi(2)).sum();
+        let half = student_t(n - 1) * (spread / (n - 1) as f64 / n as f64).sqrt();
+        Some([root(mean - half), root(mean + half)])
     }
 
     /// The mean error over all repetitions, in standard errors; 0 where there is no error at all.
@@ -293,14 +308,15 @@ impl Curve {
         value_at(&self.errors(Point::t_median), seconds)
     }
 
-    /// Fits the order to all repetitions that count.
+    /// Fits the order to all repetitions of the points that count. Of a point near the floor all
+    /// are left out: those that happen to lie above it would make the curve look flatter.
     pub(super) fn fit(&mut self) {
-        let counts = |point: &Point| {
+        let all = |point: &Point| {
             let knob = f64::from(point.knob);
-            let good = point.repetitions.iter().filter(|r| r.status == Status::Ok);
-            good.map(|r| (knob, r.metrics.rmse)).collect::<Vec<_>>()
+            point.repetitions.iter().map(|r| (knob, r.metrics.rmse)).collect::<Vec<_>>()
         };
-        let points: Vec<_> = self.points.iter().flat_map(counts).collect();
+        let good = self.points.iter().filter(|p| p.status() == Status::Ok);
+        let points: Vec<_> = good.flat_map(all).collect();
         self.fit = Fit::of(&points);
     }
 
@@ -348,7 +364,7 @@ mod tests {
     use crate::sampling::SampleMethod;
 
     fn point(knob: u32, rmse: f64, status: Status) -> Point {
-        let metrics = Metrics { rmse, ..Metrics::default() };
+        let metrics = Metrics { mse: rmse * rmse, rmse, ..Metrics::default() };
         let seconds = f64::from(knob) * 1e-3;
         let repetition = Repetition {
             seed: 0,
@@ -406,6 +422,25 @@ mod tests {
         assert_eq!((all.rmse_quantile(0.5), all.rmse_quantile(1.0)), (0.375, 0.5));
     }
 
+    /// Mean squares of -1, 2 and 5: their mean is 2, with the first at 0 it would be 7/3.
+    #[test]
+    fn squares_are_cut_off_once() {
+        let mut all = point(8, 1.0, Status::Ok);
+        let run = |mse| {
+            let mut run = all.repetitions[0].clone();
+            (run.metrics.mse, run.metrics.rmse) = (mse, root(mse));
+            run
+        };
+        all.repetitions = [-1.0, 2.0, 5.0].map(run).to_vec();
+        assert_eq!(all.rmse(), 2.0f64.sqrt());
+        // The standard error is sqrt(3), and 2 - 4.303 sqrt(3) is below 0.
+        let [low, high] = all.rmse_interval().expect("three runs");
+        assert_eq!(low, 0.0);
+        assert!((high - (2.0 + 4.303 * 3.0f64.sqrt()).sqrt()).abs() < 1e-3, "{high}");
+        all.repetitions.truncate(1);
+        assert_eq!((all.rmse(), all.rmse_interval()), (0.0, None));
+    }
+
     #[test]
     fn what_is_counted_apart_comes_first() {
         let mut one = point(8, 0.5, Status::Ok);
@@ -430,6 +465,19 @@ mod tests {
         assert!((fit.order + 1.0).abs() < 1e-12 && fit.points == 7, "{fit:?}");
         let bent = curve(with_floor(Status::Ok), None).fit.expect("thirteen points");
         assert!(bent.order > -0.85 && bent.points == 13, "{bent:?}");
+    }
+
+    /// Of the last point one run lies above the floor, three times as high as the curve.
+    #[test]
+    fn a_point_that_touches_the_floor_is_not_fitted() {
+        let mut points: Vec<_> =
+            (3..8).map(|i| point(1 << i, 0.5f64.powi(i), Status::Ok)).collect();
+        let mut above = points[4].repetitions[0].clone();
+        above.metrics.rmse *= 3.0;
+        points[4].repetitions[0].status = Status::Floor;
+        points[4].repetitions.push(above);
+        let fit = curve(points, None).fit.expect("four points");
+        assert!((fit.order + 1.0).abs() < 1e-12 && fit.points == 4, "{fit:?}");
     }
 
     #[test]

@@ -11,7 +11,9 @@ pub struct Environment {
     /// The operating system.
     pub os: &'static str,
     /// The device of the WGSL variant.
-    pub device: Option<String>,
+    pub gpu: Option<String>,
+    /// How it is reached: the interface, and the driver's name and version as far as they are told.
+    pub driver: Option<String>,
     /// Each backend, the instruction set that runs it, and its lanes.
     pub backends: Vec<(&'static str, &'static str, usize)>,
     /// Threads that runs on the CPU take.
@@ -38,14 +40,17 @@ impl Environment {
             Backend::F64 => (backend.name(), "scalar", 1),
         };
         #[cfg(feature = "gpu")]
-        let device = gpu.map(|g| g.context().adapter_name());
+        let (gpu, driver) = gpu
+            .filter(|_| backends.contains(&Backend::Variant(Variant::Wgsl)))
+            .map(|g| device(g.context().adapter_info()))
+            .unzip();
         #[cfg(not(feature = "gpu"))]
-        let device = None;
-        let has_device = backends.contains(&Backend::Variant(Variant::Wgsl));
+        let (gpu, driver) = (None, None);
         Self {
             cpu: cpu().unwrap_or_else(|| std::env::consts::ARCH.to_owned()),
             os: std::env::consts::OS,
-            device: device.filter(|_| has_device),
+            gpu,
+            driver,
             backends: backends.iter().map(described).collect(),
             threads: 1,
             has_debug_assertions: cfg!(debug_assertions),
@@ -54,6 +59,15 @@ impl Environment {
             commit: commit.unwrap_or_else(|| "unknown".to_owned()),
         }
     }
+}
+
+/// A device's name, and how it is reached.
+#[cfg(feature = "gpu")]
+fn device(info: &wgpu::AdapterInfo) -> (String, String) {
+    let interface = format!("{:?}", info.backend);
+    let driver = [interface.as_str(), &info.driver, &info.driver_info];
+    let known: Vec<&str> = driver.into_iter().filter(|word| !word.is_empty()).collect();
+    (info.name.clone(), known.join(", "))
 }
 
 fn features() -> Vec<&'static str> {

@@ -23,7 +23,8 @@ impl Report {
             "environment": {
                 "cpu": e.cpu,
                 "os": e.os,
-                "device": e.device,
+                "gpu": e.gpu,
+                "driver": e.driver,
                 "backends": e.backends.iter().map(backend).collect::<Vec<_>>(),
                 "threads": e.threads,
                 "debug_assertions": e.has_debug_assertions,
@@ -34,6 +35,7 @@ impl Report {
             "formulas": FORMULAS.iter().map(|(n, f)| json!([n, f])).collect::<Vec<_>>(),
             "size": [self.size.0, self.size.1],
             "cases": self.cases.iter().map(case).collect::<Vec<_>>(),
+            "omitted": self.omitted.iter().map(|o| json!([o.case, o.why])).collect::<Vec<_>>(),
         })
     }
 }
@@ -99,6 +101,7 @@ fn point(point: &Point) -> Value {
         "knob_value": point.knob,
         "status": point.status().name(),
         "rmse": number(point.rmse()),
+        "rmse_interval": point.rmse_interval().map(|ends| ends.map(number)),
         "rmse_p10": number(point.rmse_quantile(0.1)),
         "rmse_median": number(point.rmse_quantile(0.5)),
         "rmse_p90": number(point.rmse_quantile(0.9)),
@@ -136,6 +139,7 @@ fn repetition(r: &Repetition) -> Value {
         "cpu_s": r.cpu_seconds,
         "counted": r.counted,
         "status": r.status.name(),
+        "mse": number(m.mse),
         "rmse": number(m.rmse),
         "mae": number(m.mae),
         "max": number(m.max),

@@ -154,6 +154,7 @@ impl Runner<'_, '_> {
             method: &curve.method,
             backend: curve.backend,
             knob,
+            samples: None,
             seed,
             size: self.size,
             code,

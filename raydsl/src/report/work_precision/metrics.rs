@@ -9,7 +9,8 @@ const EPSILON: f64 = 1e-2;
 pub const FORMULAS: &[(&str, &str)] = &[
     ("bias", "mean of d"),
     ("bias_z", "bias / (standard deviation of d / sqrt(n)), pixels being independent"),
-    ("rmse", "sqrt(mean of d^2); of two halves a, b: sqrt(max(0, mean of (x-a)(x-b)))"),
+    ("mse", "mean of d^2; of two halves a, b: mean of (x-a)(x-b), which noise may make negative"),
+    ("rmse", "sqrt(max(0, mse)); of several runs: sqrt(max(0, mean of their mse))"),
     ("mae", "mean of |d|"),
     ("max", "largest |d|"),
     ("p99", "the |d| that 99 % of the estimates do not exceed"),
@@ -44,7 +45,10 @@ pub struct Metrics {
     pub bias: f64,
     /// The standard error of [`Self::bias`]; 0 for fewer than two estimates.
     pub bias_error: f64,
-    /// The root of the mean square error.
+    /// The mean square error: of two halves of a reference an estimate without bias, below 0 where
+    /// the halves lie on either side. What goes into a mean over runs.
+    pub mse: f64,
+    /// The root of [`Self::mse`], 0 where that is negative.
     pub rmse: f64,
     /// The mean absolute error.
     pub mae: f64,
@@ -87,9 +91,8 @@ impl Metrics {
         let mean = |of: fn(&Error) -> f64| mean(errors.iter().map(of));
         found.bias = mean(|e| e.d);
         found.mae = mean(|e| e.d.abs());
-        let square = mean(|e| e.square);
-        // Halves that lie on either side of an estimate can make this negative.
-        found.rmse = if square < 0.0 { 0.0 } else { square.sqrt() };
+        found.mse = mean(|e| e.square);
+        found.rmse = root(found.mse);
         found.bias_error = standard_error(errors.iter().map(|e| e.d), found.bias);
         let mut sizes: Vec<f64> = errors.iter().map(|e| e.d.abs()).collect();
         sizes.sort_by(f64::total_cmp);
@@ -128,6 +131,11 @@ impl Error {
         let (square, ratio) = ((x - a) * (x - b), d / (r.abs() + EPSILON));
         Self { d, square, relative: d * d / (r * r + EPSILON), ratio }
     }
+}
+
+/// Of a mean square, which may be negative; NaN of NaN.
+pub(super) fn root(square: f64) -> f64 {
+    if square < 0.0 { 0.0 } else { square.sqrt() }
 }
 
 fn count(estimates: &[f64], is: impl Fn(f64) -> bool) -> u64 {
@@ -195,6 +203,15 @@ mod tests {
         let found = Metrics::of(&estimates, &Reference::closed_form(1.0));
         assert!(found.rel_mse > 9.0 && found.rel_mse_trimmed < 1.1e-4, "{found:?}");
         assert!((found.p99 - 0.01).abs() < 1e-12 && found.max == 999.0);
+    }
+
+    /// On the side of both halves the square counts, between them it is taken away again.
+    #[test]
+    fn a_mean_square_keeps_its_sign() {
+        let halves = Reference::halves([1.0], [3.0]);
+        let of = |x| Metrics::of(&[x], &halves);
+        assert_eq!((of(4.0).mse, of(4.0).rmse), (3.0, 3.0f64.sqrt()));
+        assert_eq!((of(2.0).mse, of(2.0).rmse), (-1.0, 0.0));
     }
 
     #[test]

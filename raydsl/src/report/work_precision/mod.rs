@@ -81,6 +81,7 @@ pub struct WorkPrecision<'a> {
     time: Duration,
     size: (u32, u32),
     commit: Option<String>,
+    omitted: Vec<Omitted>,
     #[cfg(feature = "gpu")]
     gpu: Option<&'a crate::gpu::GpuScheduler>,
     progress: Box<dyn FnMut(&str) + 'a>,
@@ -105,6 +106,7 @@ impl<'a> WorkPrecision<'a> {
             time: Duration::from_secs(30),
             size: (16, 16),
             commit: None,
+            omitted: Vec::new(),
             #[cfg(feature = "gpu")]
             gpu: None,
             progress: Box::new(|_| {}),
@@ -148,6 +150,12 @@ impl<'a> WorkPrecision<'a> {
         Self { commit: Some(commit.into()), ..self }
     }
 
+    /// Notes a case that is not measured, and why: the files name it among what is left out.
+    pub fn omit(mut self, case: impl Into<String>, why: impl Into<String>) -> Self {
+        self.omitted.push(Omitted { case: case.into(), why: why.into() });
+        self
+    }
+
     /// The device for WGSL; without this the best of the machine.
     #[cfg(feature = "gpu")]
     pub fn gpu(self, gpu: &'a crate::gpu::GpuScheduler) -> Self {
@@ -189,7 +197,7 @@ impl<'a> WorkPrecision<'a> {
                 gpu,
             )?);
         }
-        Ok(Report { environment, size: self.size, cases: measured })
+        Ok(Report { environment, size: self.size, cases: measured, omitted: self.omitted })
     }
 
     #[cfg(feature = "gpu")]
@@ -247,6 +255,17 @@ pub struct Report {
     pub size: (u32, u32),
     /// The cases in their order.
     pub cases: Vec<Measured>,
+    /// Cases that were [left out](WorkPrecision::omit).
+    pub omitted: Vec<Omitted>,
+}
+
+/// A case that was not measured.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Omitted {
+    /// Its name.
+    pub case: String,
+    /// Why, in a line.
+    pub why: String,
 }
 
 /// What was found of one case.

@@ -4,7 +4,7 @@ use core::fmt::Write;
 
 use super::curve::{Curve, Point, Status, Verdict};
 use super::work::Work;
-use super::{Measured, Report};
+use super::{Measured, Omitted, Report};
 
 /// What no file of a report has, and why.
 const NOWHERE: &[(&str, &str)] = &[
@@ -14,9 +14,9 @@ const NOWHERE: &[(&str, &str)] = &[
         "raydsl was built without the feature `flip`: `--features flip` adds it, and needs a C++ \
          compiler",
     ),
-    ("clamped energy", "nothing clamps: estimates are what the samples gave"),
+    ("clamped energy, `clamped`", "nothing clamps: estimates are what the samples gave"),
     ("errors of each channel", "estimates are the red channel"),
-    ("time to the first pixel", "a run gives all its pixels at once"),
+    ("time to the first pixel, `t_first_pixel`", "a run gives all its pixels at once"),
     (
         "what a driver compiles at the first dispatch",
         "nothing tells it apart: `t_compile` ends before, `t_first` contains it",
@@ -33,7 +33,9 @@ impl Report {
     /// Everything that was left out of the tables, fits and curves, and what no report has, with
     /// why, as Markdown.
     pub fn omissions(&self) -> String {
-        let rows: Vec<String> = self.cases.iter().flat_map(of_case).collect();
+        let whole = |o: &Omitted| row(&o.case, "all", "all", "the case", &o.why);
+        let mut rows: Vec<String> = self.omitted.iter().map(whole).collect();
+        rows.extend(self.cases.iter().flat_map(of_case));
         let mut text = "# What is left out\n\n".to_owned();
         if rows.is_empty() {
             text += "Nothing: every point was run, and counts.\n";
@@ -48,7 +50,7 @@ impl Report {
 }
 
 fn of_case(case: &Measured) -> Vec<String> {
-    let not_asked_for = |method: &String| row(case, method, "all", "all", "not asked for");
+    let not_asked_for = |method: &String| row(&case.name, method, "all", "all", "not asked for");
     let mut rows: Vec<String> = case.not_asked_for.iter().map(not_asked_for).collect();
     rows.extend(case.curves.iter().flat_map(|curve| of_curve(case, curve)));
     rows.extend(uncounted(case));
@@ -62,7 +64,7 @@ fn of_case(case: &Measured) -> Vec<String> {
 fn unseen(case: &Measured) -> Option<String> {
     let mut runs = case.curves.iter().flat_map(|c| &c.points).flat_map(|p| &p.repetitions);
     let has_none = runs.all(|r| r.flip.is_none());
-    has_none.then(|| row(case, "all", "all", "FLIP", "the estimates are no picture"))
+    has_none.then(|| row(&case.name, "all", "all", "FLIP", "the estimates are no picture"))
 }
 
 /// How much of a unit was counted.
@@ -80,12 +82,13 @@ fn uncounted(case: &Measured) -> Option<String> {
     let is_missing = |of: Unit| points().all(|w| of(&w).is_none());
     let missing: Vec<&str> = units.iter().filter(|u| is_missing(u.1)).map(|u| u.0).collect();
     let list = (!missing.is_empty()).then(|| missing.join(", "))?;
-    Some(row(case, "all", "all", &list, "the case does not count them"))
+    Some(row(&case.name, "all", "all", &list, "the case does not count them"))
 }
 
 fn of_curve(case: &Measured, curve: &Curve) -> Vec<String> {
-    let row =
-        |what: &str, why: &str| row(case, curve.method.name(), curve.backend.name(), what, why);
+    let row = |what: &str, why: &str| {
+        row(&case.name, curve.method.name(), curve.backend.name(), what, why)
+    };
     if let Some(missing) = &curve.missing {
         return vec![row("all", &missing.to_string())];
     }
@@ -130,9 +133,9 @@ fn why(status: Status) -> &'static str {
     }
 }
 
-fn row(case: &Measured, method: &str, backend: &str, what: &str, why: &str) -> String {
+fn row(case: &str, method: &str, backend: &str, what: &str, why: &str) -> String {
     let mut text = String::new();
-    let cells = [&case.name, method, backend, what, why];
+    let cells = [case, method, backend, what, why];
     for cell in cells {
         let cell = cell.replace('|', "\\|").replace(['\n', '\r'], " ");
         let _ = write!(text, "| {cell} ");

@@ -53,7 +53,8 @@ impl Measured {
     /// time of a run, for each method (a colour) and backend (a symbol). Symbols are at the medians
     /// of the repetitions; bars go from the tenth to the ninetieth of a hundred of them. At the
     /// right the same over what was done, which is no matter of the machine, with triangles of the
-    /// orders that theory gives. What lies at a floor is dotted.
+    /// orders that theory gives. What lies at a floor is dotted. A floor that is two decades or
+    /// more below all errors is told above the panels.
     ///
     /// What was done is the first of these that was counted of every point: what kernels count,
     /// texture fetches, tests of nodes and primitives, rays; else samples.
@@ -61,7 +62,10 @@ impl Measured {
         let mut plot = Plot { case: self, marks: Vec::new(), methods: methods(self) };
         let shown = shown(self);
         plot.text((LEFTS[0], 20.0), &self.name, Anchor::Start);
-        let (ys, floors) = plot.heights(&shown);
+        let (ys, floors, below) = plot.heights(&shown);
+        if !below.is_empty() {
+            plot.colored((LEFTS[0], 36.0), &below, Anchor::Start, FLOOR);
+        }
         let unit = unit(&firsts(&shown));
         for (i, curves) in [&shown, &firsts(&shown)].into_iter().enumerate() {
             let x: fn(&Point) -> f64 = if i == 0 { Point::t_median } else { unit.of };
@@ -227,17 +231,21 @@ impl Plot<'_> {
         COLORS[at % COLORS.len()]
     }
 
-    /// The decades of errors, and the floors that are on them.
-    fn heights(&self, curves: &[&Curve]) -> ((i32, i32), Vec<(&'static str, f64)>) {
+    /// The decades of errors, the floors that are on them, and a note of those that are below.
+    fn heights(&self, curves: &[&Curve]) -> ((i32, i32), Vec<(&'static str, f64)>, String) {
         let points = curves.iter().flat_map(|c| c.points.iter().filter(|p| ran(p)));
         let ends = |p: &Point| [BAR[0], 0.5, BAR[1]].map(|share| p.rmse_quantile(share));
         let errors: Vec<f64> = points.flat_map(ends).collect();
         let positive = errors.iter().copied().filter(|e| *e > 0.0);
         let least = positive.fold(f64::INFINITY, f64::min);
-        let all = [("rounding", self.case.rounding_floor), ("reference", self.case.uncertainty)];
-        let is_near = |f: f64| f > 0.0 && (!least.is_finite() || f * 10f64.powf(REACH) >= least);
-        let floors: Vec<_> = all.into_iter().filter(|f| is_near(f.1)).collect();
-        (decades(errors.into_iter().chain(floors.iter().map(|f| f.1))), floors)
+        let all =
+            [("f32 floor", self.case.rounding_floor), ("reference floor", self.case.uncertainty)];
+        let is_near = |f: f64| !least.is_finite() || f * 10f64.powf(REACH) >= least;
+        let (floors, below): (Vec<_>, Vec<_>) =
+            all.into_iter().filter(|f| f.1 > 0.0).partition(|f| is_near(f.1));
+        let note = |(name, floor): (&str, f64)| format!("{name}: {floor:.1e}, below the picture");
+        let below: Vec<String> = below.into_iter().map(note).collect();
+        (decades(errors.into_iter().chain(floors.iter().map(|f| f.1))), floors, below.join("; "))
     }
 
     fn axes(&mut self, axes: &Axes, label: &str) {

@@ -56,6 +56,8 @@ pub struct Run<'a> {
     pub(super) method: &'a Method,
     pub(super) backend: Backend,
     pub(super) knob: u32,
+    /// Of each pixel, if the knob does not say it.
+    pub(super) samples: Option<u32>,
     pub(super) seed: u32,
     pub(super) size: (u32, u32),
     /// Where to note the kernels' text, if it is asked for.
@@ -71,6 +73,7 @@ impl<'a> Run<'a> {
             method,
             backend,
             knob,
+            samples: None,
             seed: 0,
             size: (1, 1),
             code: None,
@@ -89,6 +92,13 @@ impl<'a> Run<'a> {
     #[must_use]
     pub fn sized(self, width: u32, height: u32) -> Self {
         Self { size: (width, height), ..self }
+    }
+
+    /// With so many samples of each pixel, at least one, whatever the knob says: for a knob that
+    /// counts steps, and 1 for a method without random numbers.
+    #[must_use]
+    pub fn with_samples(self, samples: u32) -> Self {
+        Self { samples: Some(samples.max(1)), ..self }
     }
 
     /// With a device for [`Variant::Wgsl`].
@@ -123,8 +133,9 @@ impl<'a> Run<'a> {
         self.size
     }
 
-    /// Renders a film, with as many samples of each pixel as the knob says, jittered by the method,
-    /// on one thread of the CPU or on the device. Estimates are the red channels of its pixels.
+    /// Renders a film, with as many samples of each pixel as the knob says, or
+    /// [`Run::with_samples`], jittered by the method, on one thread of the CPU or on the device.
+    /// Estimates are the red channels of its pixels.
     ///
     /// # Errors
     ///
@@ -149,7 +160,7 @@ impl<'a> Run<'a> {
         kernel: &Kernel<'_, A, R>,
     ) -> Result<Estimates, Missing> {
         let means = self.means(camera, kernel, PixelSampler::Jittered)?;
-        let counted: f64 = means.iter().map(|p| p.y * f64::from(self.knob)).sum();
+        let counted: f64 = means.iter().map(|p| p.y * f64::from(self.samples())).sum();
         Ok(Estimates { counted: Some(counted.round() as u64), ..self.picture(&means) })
     }
 
@@ -194,16 +205,21 @@ impl<'a> Run<'a> {
             count(rays.lens_ray(at.x, at.y, lens), sampler)
         };
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-        let samples = pixels.flat_map(|(x, y)| (0..self.knob).map(move |i| (x, y, i)));
+        let samples = pixels.flat_map(|(x, y)| (0..self.samples()).map(move |i| (x, y, i)));
         samples.map(one).fold(Work::default(), |all, work| all + work)
     }
 
+    /// Of each pixel.
+    fn samples(&self) -> u32 {
+        self.samples.unwrap_or(self.knob)
+    }
+
     fn sampling(&self, pixels: PixelSampler) -> Sampling {
-        Sampling::new(self.knob).method(self.method.sampling).seed(self.seed).pixels(pixels)
+        Sampling::new(self.samples()).method(self.method.sampling).seed(self.seed).pixels(pixels)
     }
 
     fn red(&self, means: &[DVec4]) -> Estimates {
-        let samples = means.len() as u64 * u64::from(self.knob);
+        let samples = means.len() as u64 * u64::from(self.samples());
         Estimates::new(means.iter().map(|p| p.x).collect(), samples)
     }
 
@@ -230,7 +246,7 @@ impl<'a> Run<'a> {
             }
             Backend::Variant(cpu) => {
                 let scheduler = SimpleScheduler::new().variant(cpu);
-                scheduler.accumulate(camera, kernel, &sampling, &mut film, self.knob);
+                scheduler.accumulate(camera, kernel, &sampling, &mut film, self.samples());
             }
         }
         Ok(film.means().collect())
@@ -245,7 +261,7 @@ impl<'a> Run<'a> {
         film: &mut Film,
     ) -> Result<(), Missing> {
         let gpu = self.gpu.ok_or_else(|| Missing::NoDevice("there is no device".to_owned()))?;
-        let done = gpu.accumulate(camera, kernel, sampling, film, self.knob);
+        let done = gpu.accumulate(camera, kernel, sampling, film, self.samples());
         done.map(drop).map_err(|e| Missing::Refused(e.to_string()))
     }
 
@@ -281,8 +297,8 @@ impl<'a> Run<'a> {
         };
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         let mean = |(x, y)| {
-            let sum: DVec4 = (0..self.knob).map(|i| sample(x, y, i)).sum();
-            sum / f64::from(self.knob)
+            let sum: DVec4 = (0..self.samples()).map(|i| sample(x, y, i)).sum();
+            sum / f64::from(self.samples())
         };
         pixels.map(mean).collect()
     }

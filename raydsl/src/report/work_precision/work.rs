@@ -27,6 +27,10 @@ pub struct Work {
 }
 
 impl Work {
+    /// Counted, and 0 of each: for kernels that send no rays and look nothing up.
+    pub const NOTHING: Self =
+        Self { rays: Some(0), nodes: Some(0), primitives: Some(0), texture_fetches: Some(0) };
+
     /// Whether nothing was counted.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
@@ -76,6 +80,7 @@ mod tests {
         assert_eq!(all, expected);
         assert_eq!((ray.texture_fetches, ray.is_empty()), (None, false));
         assert!((Work::default() + Work::default()).is_empty());
+        assert!(!Work::NOTHING.is_empty() && ray + Work::NOTHING != ray);
         let most = Work { rays: Some(u64::MAX), ..ray };
         assert_eq!((most + ray).rays, Some(u64::MAX));
     }

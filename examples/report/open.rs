@@ -1,0 +1,97 @@
+//! How open the places are that a camera sees in a scene: no closed form, so two halves of a
+//! reference.
+
+use core::error::Error;
+use std::time::Instant;
+
+use raydsl::kernels::{Surface, ambient_occlusion, facing};
+use raydsl::prelude::*;
+use raydsl::report::Missing;
+use raydsl::report::work_precision::{
+    Backend, Case, Estimates, Method, Order, Reference, Run, Work,
+};
+
+use crate::cloud::EDGE;
+use crate::visibility::Ball;
+
+#[raydsl::kernel]
+impl Surface for Ball {
+    fn surface(&self, ray: Ray, hit: Hit) -> SurfacePoint {
+        self.surface_point(ray, hit)
+    }
+
+    fn albedo(&self, _ray: Ray, _hit: Hit) -> Vec3 {
+        vec3(0.8, 0.8, 0.8)
+    }
+}
+
+/// What is seen from where, and how far away its surroundings may be to count.
+pub(crate) struct Scene<P> {
+    /// Its primitives.
+    pub(crate) primitives: Vec<P>,
+    /// The camera.
+    pub(crate) camera: Pinhole,
+    /// What is farther away hides nothing.
+    pub(crate) radius: f32,
+}
+
+/// A tree of the scene, and how to look at it.
+struct View<P: Primitive + 'static> {
+    tree: &'static Bvh<'static, P>,
+    camera: Pinhole,
+    radius: f32,
+}
+
+impl<P: Primitive<Hit = Hit, Shared = ()> + Surface + Sync + 'static> View<P> {
+    fn estimate(&self, run: &Run<'_>) -> Result<Estimates, Missing> {
+        let (tree, radius, method) = (self.tree, self.radius, run.method().sampling());
+        let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+            ambient_occlusion(tree, radius, host(method), ray, sampler)
+        });
+        run.film(&self.camera, &kernel)
+    }
+
+    /// The ray of the camera, and the one from where it meets the scene.
+    fn work(&self, run: &Run<'_>) -> Work {
+        let method = run.method().sampling();
+        run.film_work(&self.camera, |ray, mut sampler| {
+            let (hit, cost) = self.tree.closest_hit_with_cost(ray);
+            let seen = Work { texture_fetches: Some(0), ..cost.into() };
+            if !hit.is_hit {
+                return seen;
+            }
+            let point = facing(self.tree.primitive(hit).surface(ray, hit), ray.direction);
+            let direction = sample_cosine_hemisphere(sampler.next_2d(method));
+            let next = point.ray(Frame::around(point.normal).to_world(direction));
+            let (_, cost) = self.tree.any_hit_with_cost(Ray { t_max: self.radius, ..next });
+            seen + cost.into()
+        })
+    }
+}
+
+/// The case of a scene; each half of its reference has so many samples of each pixel.
+pub(crate) fn case<P: Primitive<Hit = Hit, Shared = ()> + Surface + Sync + 'static>(
+    name: &str,
+    scene: Scene<P>,
+    samples: u32,
+) -> Result<Case<'static>, Box<dyn Error>> {
+    let Scene { primitives, camera, radius } = scene;
+    let start = Instant::now();
+    let tree: &'static Bvh<'static, P> = Box::leak(Box::new(Bvh::build(primitives.leak())?));
+    let (build, view) = (start.elapsed(), View { tree, camera, radius });
+    let view: &'static View<P> = Box::leak(Box::new(view));
+    let (method, backend) =
+        (Method::from(SampleMethod::Sobol), Backend::Variant(Variant::widest()));
+    let half = |seed| {
+        let run = Run::new(&method, backend, samples).sized(EDGE, EDGE).seeded(seed);
+        view.estimate(&run).map(|e| e.values).map_err(|missing| missing.to_string())
+    };
+    let reference = Reference::halves(half(1001)?, half(1002)?);
+    // Edges in four dimensions, two of them the pixel's: theory says nothing of their constants.
+    Ok(Case::new(name, reference, move |run| view.estimate(run))
+        .counted(move |run| view.work(run))
+        .built_in(build)
+        .method(SampleMethod::Random, Some(Order::RANDOM))
+        .method(SampleMethod::Stratified, None)
+        .method(SampleMethod::Sobol, None))
+}
