@@ -432,7 +432,7 @@ fn budgets_are_kept() -> Result<(), Box<dyn Error>> {
 /// Two fixed places, half of which are bright: a half round more would show in the mean.
 #[test]
 fn fixed_places_are_taken_in_whole_rounds() -> Result<(), Box<dyn Error>> {
-    let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+    let kernel = kernel!(|_ray: Ray, sampler: Sampler| {
         let mut sampler = sampler;
         let noise = 1e-3 * sampler.next_1d(host(SampleMethod::Random));
         if sampler.index % 8 < 4 { noise } else { 1.0 + noise }
