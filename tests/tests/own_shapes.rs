@@ -3,6 +3,7 @@
 //! `RAYDSL_BLESS=1` rewrites `book/src/generated/torus.wgsl`.
 
 use hair::Hair;
+use raydsl::assert_variants_agree;
 use raydsl::prelude::*;
 use raydsl_tests::check::every_variant;
 use raydsl_tests::rng::Rng;
@@ -187,6 +188,28 @@ fn a_ring_has_up_to_four_roots() {
     assert!(seen[0] > 100 && seen[2] > 100 && seen[4] > 100, "{seen:?}");
     // A line that begins outside leaves as often as it enters, unless it only touches.
     assert!(seen[1] + seen[3] < 5, "{seen:?}");
+}
+
+/// Both roots of a quartic that is known to 17 digits, in every variant.
+#[test]
+fn the_roots_of_a_known_quartic() {
+    let rings = [Torus { center: Vec3::ZERO, major: 2.0, axis: Vec3::Z, minor: 0.5 }];
+    let bvh = Bvh::build(&rings).expect("one ring");
+    let kernel = kernel!(|ray: Ray| bvh.closest_hit(ray).t);
+    let ray = Ray::new(vec3(0.25, 0.125, 4.0), vec3(0.375, 0.0625, -1.0));
+    let rays = [(ray,), (ray.with_range(4.0, f32::MAX),)];
+    assert_variants_agree!(&kernel, &rays);
+    for (args, root) in rays.into_iter().zip([3.639_993_730_335_53, 4.499_578_443_815_823]) {
+        let off = |t: f64| (t / root - 1.0).abs();
+        assert!(off(f64::from(kernel.call(args))) <= 2e-6, "{} {root}", kernel.call(args));
+        let wide = kernel.reference(args);
+        assert!(off(wide[0]) <= 1e-6, "{wide:?} {root}");
+        println!(
+            "{root}: off by {:e}, in f64 by {:e}",
+            off(kernel.call(args).into()),
+            off(wide[0])
+        );
+    }
 }
 
 #[test]
