@@ -203,7 +203,7 @@ fn the_roots_of_a_known_quartic() {
         let off = |t: f64| (t / root - 1.0).abs();
         assert!(off(f64::from(kernel.call(args))) <= 2e-6, "{} {root}", kernel.call(args));
         let wide = kernel.reference(args);
-        assert!(off(wide[0]) <= 1e-6, "{wide:?} {root}");
+        assert!(off(wide[0]) <= 1e-12, "{wide:?} {root}");
         println!(
             "{root}: off by {:e}, in f64 by {:e}",
             off(kernel.call(args).into()),
