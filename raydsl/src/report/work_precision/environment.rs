@@ -1,6 +1,7 @@
 //! What a report was measured on.
 
 use super::case::Backend;
+#[cfg(feature = "gpu")]
 use crate::kernel::Variant;
 
 /// The machine and the build.
