@@ -54,13 +54,23 @@ fn exact(case: &Case<'_>) -> f64 {
 #[track_caller]
 fn assert_means(cases: &[Case<'_>]) -> Result<(), Box<dyn Error>> {
     let method = Method::from(SampleMethod::Random);
-    let backend = Backend::Variant(Variant::widest());
+    let run = |variant, seed| {
+        let run = Run::new(&method, Backend::Variant(variant), SAMPLES);
+        run.sized(EDGE, EDGE).seeded(seed)
+    };
+    let check = |case: &Case<'_>, run: Run<'_>, what: &str| -> Result<(), Box<dyn Error>> {
+        let found = estimate(case, &run)?;
+        assert_eq!(found.samples, 1 << 20);
+        assert!(is_right(&found, case, exact(case)), "{} {what}", case.name());
+        Ok(())
+    };
     for case in cases {
         for seed in 0..scaled(8) as u32 {
-            let run = Run::new(&method, backend, SAMPLES).sized(EDGE, EDGE).seeded(seed);
-            let found = estimate(case, &run)?;
-            assert_eq!(found.samples, 1 << 20);
-            assert!(is_right(&found, case, exact(case)), "{}, seed {seed}", case.name());
+            check(case, run(Variant::widest(), seed), &format!("by packets, seed {seed}"))?;
+        }
+        let Some(gpu) = gpu() else { continue };
+        for seed in 0..8 {
+            check(case, run(Variant::Wgsl, seed).on(gpu), &format!("in WGSL, seed {seed}"))?;
         }
     }
     Ok(())

@@ -45,7 +45,21 @@ pub(super) type Teller<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 pub(super) struct Grid<'a> {
     pub(super) size: [u32; 2],
     pub(super) effort: Effort,
-    pub(super) teller: Teller<'a>,
+    pub(super) teller: Option<Teller<'a>>,
+}
+
+impl Grid<'_> {
+    /// One sample a pixel, of which no one is told.
+    pub(super) const fn of(size: [u32; 2]) -> Self {
+        Self { size, effort: Effort::ONE, teller: None }
+    }
+}
+
+/// How long a run took that may have been broken off.
+pub(super) fn timing_of(end: ControlFlow<Timing, Timing>) -> Timing {
+    match end {
+        ControlFlow::Continue(timing) | ControlFlow::Break(timing) => timing,
+    }
 }
 
 /// Where the outputs of a run go.
@@ -96,10 +110,8 @@ impl Context {
         size: [u32; 2],
         outputs: &mut [u8],
     ) -> Result<Timing, GpuError> {
-        let grid = Grid { size, effort: Effort::ONE, teller: &mut |_| ControlFlow::Continue(()) };
-        let (ControlFlow::Continue(timing) | ControlFlow::Break(timing)) =
-            self.run_to(module, data, inputs, grid, Outputs::Host(outputs))?;
-        Ok(timing)
+        let outputs = Outputs::Host(outputs);
+        self.run_to(module, data, inputs, Grid::of(size), outputs).map(timing_of)
     }
 
     /// [`Context::run`], with the outputs where the caller wants them, unless it is told to break
@@ -249,7 +261,7 @@ impl Context {
         grid: Grid<'_>,
         timing: &mut Timing,
     ) -> Result<ControlFlow<()>, GpuError> {
-        let Grid { effort, teller, .. } = grid;
+        let Grid { effort, mut teller, .. } = grid;
         let all = u64::from(pass.size[0]) * u64::from(pass.size[1]);
         let goal = pass.pipeline.goal.load(Ordering::Relaxed);
         let mut progress = Progress { goal, effort, last_end: None, timing, done: 0 };
@@ -257,7 +269,10 @@ impl Context {
         let mut end = ControlFlow::Continue(());
         while let Some(tile) = tiler.next(progress.goal / u64::from(effort.samples.max(1))) {
             // The beginning and the end are told by others.
-            if progress.done > 0 && teller(progress.done as f64 / all as f64).is_break() {
+            if progress.done > 0
+                && let Some(teller) = &mut teller
+                && teller(progress.done as f64 / all as f64).is_break()
+            {
                 end = ControlFlow::Break(());
                 break;
             }
@@ -324,7 +339,9 @@ impl Progress<'_> {
         let ms = finished.device_ms.unwrap_or(wall_ms);
         let pixels = finished.tile.invocations();
         self.done += pixels;
-        self.goal = next_goal(self.goal, pixels * u64::from(self.effort.samples), ms);
+        let goal = next_goal(self.goal, pixels * u64::from(self.effort.samples), ms);
+        // Pixels that have all they need are quick, and say nothing of their neighbours.
+        self.goal = if self.effort.is_even { goal } else { goal.min(self.goal) };
     }
 }
 

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use super::run::{Effort, Grid, Outputs, Teller};
+use super::run::{Effort, Grid, Outputs, Teller, timing_of};
 use super::window::check_target;
 use super::{Context, GpuError, GpuWindow, Timing};
 use crate::camera::Camera;
@@ -63,9 +63,8 @@ impl GpuScheduler {
         kernel: &Kernel<'_, A, R>,
         image: &mut Image<R>,
     ) -> Result<Timing, GpuError> {
-        match self.frame_observed(camera, kernel, image, &mut |_| ControlFlow::Continue(()))? {
-            ControlFlow::Continue(timing) | ControlFlow::Break(timing) => Ok(timing),
-        }
+        let go_on: Observer<'_> = &mut |_| ControlFlow::Continue(());
+        self.frame_observed(camera, kernel, image, go_on).map(timing_of)
     }
 
     /// [`GpuScheduler::frame`], telling `observer` the share that is done, after each dispatch: they
@@ -127,11 +126,8 @@ impl GpuScheduler {
         let shot = Frame { rays, kernel };
         let resources = |visit: Visit<'_>| shot.resources(visit);
         let module = self.module(&shot);
-        let teller = &mut |_| ControlFlow::Continue(());
-        let grid = Grid { size: [width, height], effort: Effort::ONE, teller };
-        let (ControlFlow::Continue(timing) | ControlFlow::Break(timing)) =
-            self.run_to(&resources, &module, &[], grid, Outputs::Device(window))?;
-        Ok(timing)
+        let grid = Grid::of([width, height]);
+        self.run_to(&resources, &module, &[], grid, Outputs::Device(window)).map(timing_of)
     }
 
     /// Adds `samples` samples to every pixel of `film`, as [`Scheduler::accumulate`] does. Those of
@@ -151,9 +147,7 @@ impl GpuScheduler {
         samples: u32,
     ) -> Result<Timing, GpuError> {
         let go_on: Observer<'_> = &mut |_| ControlFlow::Continue(());
-        match self.accumulate_observed(camera, kernel, sampling, film, samples, go_on)? {
-            ControlFlow::Continue(timing) | ControlFlow::Break(timing) => Ok(timing),
-        }
+        self.accumulate_observed(camera, kernel, sampling, film, samples, go_on).map(timing_of)
     }
 
     /// [`GpuScheduler::accumulate`], telling `observer` the share that is done, after each dispatch.
@@ -234,7 +228,7 @@ impl GpuScheduler {
         teller: Teller<'_>,
     ) -> Result<ControlFlow<Timing, Timing>, GpuError> {
         let module = self.module(shot);
-        let grid = Grid { size: [image.width(), image.height()], effort, teller };
+        let grid = Grid { size: [image.width(), image.height()], effort, teller: Some(teller) };
         self.run(&|visit| shot.resources(visit), &module, &[], grid, image.pixels_mut())
     }
 
@@ -257,11 +251,8 @@ impl GpuScheduler {
         }
         let count = u32::try_from(inputs.len())
             .map_err(|_| GpuError::GridTooLarge { size: [u32::MAX, 1] })?;
-        let teller = &mut |_| ControlFlow::Continue(());
-        let grid = Grid { size: [count, 1], effort: Effort::ONE, teller };
-        let (ControlFlow::Continue(timing) | ControlFlow::Break(timing)) =
-            self.run(&|visit| kernel.resources(visit), &module, &bytes, grid, outputs)?;
-        Ok(timing)
+        let (resources, grid) = (|visit: Visit<'_>| kernel.resources(visit), Grid::of([count, 1]));
+        self.run(&resources, &module, &bytes, grid, outputs).map(timing_of)
     }
 
     /// Runs a module; if it was broken off, `outputs` are what they were.
@@ -346,8 +337,7 @@ impl<C: Camera, A: FilmArgs, R: Radiance + Send> OnDevice<'_, C, A, R> {
             let effort = Effort { samples: count, is_even };
             let begin = Instant::now();
             let end = self.scheduler.shoot(&pass, effort, &mut image, &mut tell)?;
-            let (ControlFlow::Continue(took) | ControlFlow::Break(took)) = end;
-            timing += took;
+            timing += timing_of(end);
             if end.is_break() {
                 return Ok(ControlFlow::Break(timing));
             }
