@@ -1,8 +1,9 @@
 //! Shared code of the benchmarks: scenes, the hand-written loop, clocks, the guard, visits of
-//! nodes.
+//! nodes, Embree.
 
 pub mod clock;
 pub mod divergent;
+pub mod embree;
 pub mod guard;
 pub mod hand;
 pub mod scenes;

@@ -5,8 +5,7 @@ use obvhs::bvh2::builder::build_bvh2_from_tris;
 use raydsl::bvh::{BuildConfig, BuildQuality, Node};
 use raydsl::prelude::*;
 use raydsl_benches::clock::seconds_on;
-
-use super::embree::Embree;
+use raydsl_benches::embree::{self, Embree, Quality, Shape};
 
 /// What was built, and how long it took: see [`seconds_on`].
 pub(crate) struct Tree {
@@ -130,29 +129,26 @@ fn sah_cost(nodes: &[Node]) -> f64 {
 
 /// Embree's three qualities, if `RAYDSL_EMBREE` names its library.
 fn embree(triangles: &[Triangle], threads: usize) -> Vec<Contender<'_>> {
-    let Some(path) = std::env::var_os("RAYDSL_EMBREE") else {
-        eprintln!("skipped Embree: RAYDSL_EMBREE names no library");
+    let Some(path) = embree::path() else {
         return Vec::new();
     };
-    let vertices = Embree::vertices(triangles);
-    ["low", "medium", "high"]
+    let shape = Shape::triangles(triangles);
+    [Quality::Low, Quality::Medium, Quality::High]
         .into_iter()
-        .zip(0..)
-        .map(|(builder, quality)| {
-            let mut embree = Embree::load(&path, threads);
-            let vertices = vertices.clone();
+        .map(|quality| {
+            let embree = Embree::load(&path, threads);
+            let shape = shape.clone();
             let build: Build<'_> = Box::new(move || {
-                let embree = embree.as_mut().map_err(|why| why.clone())?;
-                let (seconds, bytes) = embree.build(&vertices, quality)?;
+                let scene = embree.as_ref().map_err(Clone::clone)?.build(&shape, quality);
                 Ok(Tree {
-                    seconds,
+                    seconds: scene.seconds,
                     sah_cost: None,
                     nodes: None,
-                    bytes: Some(bytes),
+                    bytes: Some(scene.bytes),
                     refit_seconds: None,
                 })
             });
-            Contender { system: "embree", builder, build }
+            Contender { system: "embree", builder: quality.name(), build }
         })
         .collect()
 }

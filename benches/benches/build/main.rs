@@ -1,7 +1,6 @@
 //! Building trees: how fast, and how good they are, beside what others build in the same rounds.
 
 mod contender;
-mod embree;
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -1,11 +1,16 @@
 //! Scenes with a camera each.
 
+mod grove;
+
 use std::f32::consts::TAU;
 use std::path::Path;
 use std::{fs, io};
 
 use raydsl::prelude::*;
 use raydsl_examples::cloud;
+use raydsl_examples::mesh::{self, MeshError};
+
+pub use grove::grove;
 
 /// A point of a scan: 16 bytes.
 #[primitive]
@@ -103,6 +108,24 @@ pub fn file(data: &Path, name: &str) -> io::Result<Scene<Triangle>> {
     Ok(Scene { prims, camera })
 }
 
+/// The triangles of an `.obj`, a `.ply` or a `.tri`, seen whole from above one corner.
+///
+/// # Errors
+///
+/// As [`mesh::load`].
+pub fn mesh(path: &Path) -> Result<Scene<Triangle>, MeshError> {
+    let prims = mesh::load(path)?;
+    let bounds = bounds(&prims);
+    let (center, half) = (0.5 * (bounds.min + bounds.max), 0.5 * (bounds.max - bounds.min));
+    let eye = center + vec3(0.45, 0.35, 0.82) * (1.6 * half.length());
+    Ok(Scene { prims, camera: Pinhole::new(eye, center, Vec3::Y, 1.05) })
+}
+
+/// The box of some triangles.
+pub fn bounds(triangles: &[Triangle]) -> Aabb {
+    Aabb::from_points(triangles.iter().flat_map(|t| [t.v0, t.v1, t.v2]))
+}
+
 fn triangle(n: &[f32]) -> Triangle {
     Triangle { v0: vec3(n[0], n[1], n[2]), v1: vec3(n[3], n[4], n[5]), v2: vec3(n[6], n[7], n[8]) }
 }
@@ -150,16 +173,22 @@ fn patch(out: &mut Vec<Triangle>, nu: u32, nv: u32, at: impl Fn(f32, f32) -> Vec
     }
 }
 
-/// Small triangles in clusters of every density, a few large ones among them: nothing is a surface.
-pub fn scatter(count: usize) -> Vec<Triangle> {
+/// Numbers from 0 to below 1, always the same ones.
+///
+/// (Marsaglia, "Xorshift RNGs", 2003.)
+fn xorshift() -> impl FnMut() -> f32 {
     let mut state = 1u32;
-    let mut unit = move || {
-        // (Marsaglia, "Xorshift RNGs", 2003.)
+    move || {
         state ^= state << 13;
         state ^= state >> 17;
         state ^= state << 5;
         (state >> 8) as f32 / 16_777_216.0
-    };
+    }
+}
+
+/// Small triangles in clusters of every density, a few large ones among them: nothing is a surface.
+pub fn scatter(count: usize) -> Vec<Triangle> {
+    let mut unit = xorshift();
     let mut prims = Vec::with_capacity(count);
     let mut middle = Vec3::ZERO;
     for i in 0..count {

@@ -1,0 +1,145 @@
+//! Ambient occlusion: camera rays, and eight shadow rays from what they meet, in the library's
+//! kernels and in what others ask single rays or packets; the same rays in the same rounds.
+//!
+//! (The workload of Zellmann and others' Visionaray: an image of 1024 by 1024 pixels, eight rays
+//! with a density of the cosine, which end after a tenth of the scene's diagonal or never.)
+//!
+//! The library's kernels make rays while they ask. The other systems find theirs made, in the
+//! cache and in their own layout, and are charged for the time that the library's widest packets
+//! take to make them.
+
+mod contender;
+mod cwbvh;
+mod embree;
+mod own;
+mod rays;
+mod rounds;
+mod row;
+mod table;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Parser;
+use raydsl::prelude::*;
+use raydsl_benches::scenes::{self, Scene};
+
+use rays::{TILE, Workload};
+use row::Row;
+use table::Line;
+
+/// Measures primary, shadow and bounce rays beside Embree and obvhs.
+#[derive(Parser)]
+struct Args {
+    /// Writes the figures to this file.
+    #[arg(long)]
+    json: Option<PathBuf>,
+    /// Only the scenes whose names contain one of these words; or a file, .tri, .obj or .ply.
+    #[arg(long)]
+    scene: Vec<String>,
+    /// Numbers of threads, each measured on its own.
+    #[arg(long, value_delimiter = ',', default_value = "1")]
+    threads: Vec<usize>,
+    /// Rounds; each measures every mode of every row once.
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
+    rounds: u16,
+    /// Width and height of the film, a multiple of 16.
+    #[arg(long, default_value = "1024", value_parser = parse_size)]
+    size: u32,
+    /// Only these rows.
+    #[arg(long, value_delimiter = ',', value_parser = Row::from_name)]
+    only: Vec<Row>,
+    /// Cargo says so.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+fn parse_size(text: &str) -> Result<u32, String> {
+    let size = text.parse::<u32>().ok().filter(|n| (TILE..=4096).contains(n) && n % TILE == 0);
+    size.ok_or_else(|| "sizes are multiples of 16 up to 4096".to_owned())
+}
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    let mut lines = Vec::new();
+    for (name, scene) in all_scenes(&args.scene) {
+        for &threads in &args.threads {
+            lines.extend(measure(&args, &name, &scene, threads));
+        }
+    }
+    table::print_summary(&lines);
+    if let Some(path) = &args.json {
+        let text = serde_json::to_string_pretty(&lines).expect("lines are plain data");
+        if let Err(error) = std::fs::write(path, text) {
+            eprintln!("{}: {error}", path.display());
+            return ExitCode::FAILURE;
+        }
+    }
+    let void = lines.is_empty() || lines.iter().any(|line| line.status == "void");
+    if void { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+}
+
+/// The scenes that words name, and those of files.
+fn all_scenes(words: &[String]) -> Vec<(String, Scene<Triangle>)> {
+    let (files, words): (Vec<&String>, Vec<&String>) =
+        words.iter().partition(|word| Path::new(word).extension().is_some());
+    let is_wanted = |name: &str| {
+        let is_named = words.iter().any(|word| name.contains(word.as_str()));
+        is_named || words.is_empty() && files.is_empty()
+    };
+    let mut all = Vec::new();
+    let procedural: [(&str, fn() -> Scene<Triangle>); 2] =
+        [("colonnade", scenes::colonnade), ("grove", scenes::grove)];
+    for (name, make) in procedural.into_iter().filter(|(name, _)| is_wanted(name)) {
+        all.push((name.to_owned(), make()));
+    }
+    let data = std::env::var_os("RAYDSL_DATA");
+    for name in scenes::FILES.into_iter().filter(|name| is_wanted(name)) {
+        match data.as_ref().map(|data| scenes::file(data.as_ref(), name)) {
+            Some(Ok(scene)) => all.push((name.to_owned(), scene)),
+            Some(Err(error)) => eprintln!("skipped {name}: {error}"),
+            None => eprintln!("skipped {name}: RAYDSL_DATA names no folder"),
+        }
+    }
+    for file in files {
+        let name = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
+        match scenes::mesh(file.as_ref()) {
+            Ok(scene) => all.push((name.into_owned(), scene)),
+            Err(error) => eprintln!("skipped {error}"),
+        }
+    }
+    all
+}
+
+/// Measures one scene on so many threads.
+fn measure(args: &Args, name: &str, scene: &Scene<Triangle>, threads: usize) -> Vec<Line> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.expect("threads can be started");
+    pool.install(|| {
+        let own = own::trees(&scene.prims, threads);
+        let work = Workload::new(&own[0].bvh, scene.camera, args.size);
+        println!(
+            "{name}: {} triangles, {} of {} camera rays meet something, threads: {threads}\n",
+            scene.prims.len(),
+            work.places.len(),
+            work.primary.len()
+        );
+        let cwbvh = cwbvh::Tree::new(&scene.prims, threads);
+        let device = embree::Device::load(&scene.prims, threads);
+        let embree = device.as_ref().map_or_else(Vec::new, embree::Device::trees);
+        let mut contenders = own::contenders(&own, &work, threads);
+        contenders.extend(embree::contenders(&embree, &work, threads));
+        contenders.extend(cwbvh::contenders(&cwbvh, &work, threads));
+        let wanted = |row: Row| {
+            Row::COMPARED
+                .into_iter()
+                .filter(|r| table::is_wanted(&args.only, *r))
+                .any(|r| row.serves(r))
+        };
+        contenders.retain(|contender| wanted(contender.row));
+        let records = rounds::run(&mut contenders, args.rounds.into());
+        let lines = table::lines(name, threads, &work, &records, &args.only);
+        table::print(&lines);
+        lines
+    })
+}

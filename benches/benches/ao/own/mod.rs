@@ -1,0 +1,169 @@
+//! The library itself: kernels as users write them, in every variant.
+
+mod kernels;
+
+use raydsl::bvh::BuildConfig;
+use raydsl::prelude::*;
+use raydsl_benches::clock::seconds_on;
+
+use crate::contender::{Contender, Cost, Outcome, Run, in_parts};
+use crate::rays::Workload;
+use crate::row::Row;
+use kernels::Ask;
+
+/// A tree, and how it was built.
+pub(crate) struct Tree<'a> {
+    pub(crate) bvh: Bvh<'a, Triangle>,
+    cost: Cost,
+    setting: &'static Setting,
+}
+
+/// A setting of trees, and who asks them.
+struct Setting {
+    /// Behind the variant in the names of modes.
+    name: &'static str,
+    quality: BuildQuality,
+    is_asked_by: fn(Variant) -> bool,
+}
+
+/// All modes: these trees, each asked by some variants of the CPU.
+static SETTINGS: [Setting; 2] = [
+    Setting { name: "", quality: BuildQuality::Balanced, is_asked_by: |_| true },
+    Setting { name: " best", quality: BuildQuality::Best, is_asked_by: |v| v.isa().1 >= 8 },
+];
+
+impl Setting {
+    fn variants(&self) -> impl Iterator<Item = Variant> {
+        let native = Variant::ALL.into_iter().filter(|v| v.is_native());
+        native.filter(|v| (self.is_asked_by)(*v))
+    }
+}
+
+/// One tree for each setting.
+pub(crate) fn trees(triangles: &[Triangle], threads: usize) -> Vec<Tree<'_>> {
+    let tree = |setting: &'static Setting| {
+        let config = BuildConfig::from(setting.quality);
+        let (bvh, seconds) = seconds_on(threads, || Bvh::build_with(triangles, &config));
+        let bvh = bvh.expect("the scene has finite bounds");
+        let cost = Cost::new(seconds, bvh.bytes(), triangles.len());
+        Tree { bvh, cost, setting }
+    };
+    SETTINGS.iter().map(tree).collect()
+}
+
+/// Every mode of every row.
+pub(crate) fn contenders<'a>(
+    trees: &'a [Tree<'a>],
+    work: &'a Workload,
+    threads: usize,
+) -> Vec<Contender<'a>> {
+    let ask = |tree: &'a Tree<'a>, variant| Ask {
+        bvh: &tree.bvh,
+        work,
+        scheduler: TiledScheduler::new().variant(variant),
+        threads,
+    };
+    let widest = Variant::widest();
+    let charges = charges(ask(&trees[0], widest)).into_iter();
+    let mut all: Vec<_> =
+        charges.map(|(row, run)| contender(row, widest, &trees[0], run)).collect();
+    for tree in trees {
+        for variant in tree.setting.variants() {
+            let runs = runs(ask(tree, variant)).into_iter();
+            all.extend(runs.map(|(row, run)| contender(row, variant, tree, run)));
+        }
+        let run = one_by_one(&tree.bvh, work, threads);
+        all.push(contender(Row::SingleClosest, Variant::Scalar, tree, run));
+    }
+    all
+}
+
+fn contender<'a>(row: Row, variant: Variant, tree: &Tree<'_>, run: Run<'a>) -> Contender<'a> {
+    let (isa, lanes) = variant.isa();
+    let mode = format!("{}{}", variant.name(), tree.setting.name);
+    Contender { row, system: "raydsl", mode, isa, lanes, cost: tree.cost, run }
+}
+
+/// What others are charged with.
+fn charges(ask: Ask<'_>) -> [(Row, Run<'_>); 3] {
+    let none = |_: &[f32]| (0, 0.0);
+    [
+        (Row::PrimaryGeneration, picture(ask, 0.0, Ask::make_primary, none)),
+        (Row::Generation, batch(ask, Ask::make_shadow, none)),
+        (Row::Shading, shading(ask)),
+    ]
+}
+
+/// The rows that kernels run.
+fn runs(ask: Ask<'_>) -> [(Row, Run<'_>); 6] {
+    [
+        (Row::Frame, picture(ask, 0, Ask::picture, of_counts)),
+        (Row::Primary, picture(ask, Hit::miss(), Ask::primary, of_hits)),
+        (Row::AoShort, batch(ask, Ask::short, of_counts)),
+        (Row::AoUnbounded, batch(ask, Ask::unbounded, of_counts)),
+        (Row::AoShortUnbatched, batch(ask, Ask::unbatched, of_counts)),
+        (Row::Bounce, batch(ask, Ask::bounce, of_bounces)),
+    ]
+}
+
+/// A frame: `run` makes it, and `count` says how many hits it shows, and the sum of their
+/// distances.
+fn picture<'a, R: Type + Send + 'a>(
+    ask: Ask<'a>,
+    blank: R,
+    run: fn(Ask<'a>, &mut Image<R>) -> f64,
+    count: fn(&[R]) -> (usize, f64),
+) -> Run<'a> {
+    let mut image = Image::filled(ask.work.size, ask.work.size, blank);
+    Box::new(move || {
+        let seconds = run(ask, &mut image);
+        let (hits, distance) = count(image.pixels());
+        Outcome { seconds, hits, distance }
+    })
+}
+
+/// The same for all places from which shadow rays leave.
+fn batch<'a, R: Clone + Default + Send + 'a>(
+    ask: Ask<'a>,
+    run: fn(Ask<'a>, &mut [R]) -> f64,
+    count: fn(&[R]) -> (usize, f64),
+) -> Run<'a> {
+    let mut found = vec![R::default(); ask.work.places.len()];
+    Box::new(move || {
+        let seconds = run(ask, &mut found);
+        let (hits, distance) = count(&found);
+        Outcome { seconds, hits, distance }
+    })
+}
+
+fn shading(ask: Ask<'_>) -> Run<'_> {
+    let mut found = vec![(Vec3::ZERO, Vec3::ZERO); ask.work.hits.len()];
+    Box::new(move || Outcome { seconds: ask.shade(&mut found), ..Outcome::default() })
+}
+
+/// Asks on the host, where every ray is alone.
+fn one_by_one<'a>(bvh: &'a Bvh<'a, Triangle>, work: &'a Workload, threads: usize) -> Run<'a> {
+    Box::new(move || {
+        in_parts(&work.single, threads, |hits: &mut Vec<Hit>, rays| {
+            hits.clear();
+            let ask = || hits.extend(rays.iter().map(|ray| bvh.closest_hit(*ray)));
+            let ((), seconds) = seconds_on(threads, ask);
+            let (hits, distance) = of_hits(hits);
+            Outcome { seconds, hits, distance }
+        })
+    })
+}
+
+/// How many hits there are, and the sum of their distances.
+fn of_hits(hits: &[Hit]) -> (usize, f64) {
+    let hits = hits.iter().filter(|hit| hit.is_hit);
+    (hits.clone().count(), hits.map(|hit| f64::from(hit.t)).sum())
+}
+
+fn of_counts(counts: &[u32]) -> (usize, f64) {
+    (counts.iter().map(|n| *n as usize).sum(), 0.0)
+}
+
+fn of_bounces(found: &[(u32, f32)]) -> (usize, f64) {
+    (found.iter().map(|f| f.0 as usize).sum(), found.iter().map(|f| f64::from(f.1)).sum())
+}

@@ -1,0 +1,157 @@
+//! Interleaved rounds, and what they say.
+
+use raydsl_benches::clock::{median, spread};
+
+use crate::contender::{Contender, Cost, Outcome};
+use crate::rays::{SAMPLES, Workload};
+use crate::row::Row;
+
+/// The share of the rays whose hits may be others: those that pass through edges.
+const OTHER_HITS: f64 = 1e-5;
+/// How much the mean distance may be off, as a share.
+const OTHER_DISTANCE: f64 = 1e-4;
+
+/// What all rounds gave for a contender.
+pub(crate) struct Record {
+    pub(crate) row: Row,
+    pub(crate) system: &'static str,
+    pub(crate) mode: String,
+    pub(crate) isa: &'static str,
+    pub(crate) lanes: usize,
+    pub(crate) cost: Cost,
+    /// One for each round, with what the contender is charged for.
+    seconds: Vec<f64>,
+    outcome: Outcome,
+}
+
+/// The figures of a record.
+pub(crate) struct Figures {
+    pub(crate) mrays_per_s: f64,
+    /// The middle half of the rounds' ratios, or rates where there are none, as a share.
+    pub(crate) spread: f64,
+    /// How much faster than the best mode of Embree: the median of the rounds' ratios.
+    pub(crate) ratio: Option<f64>,
+    pub(crate) hits: usize,
+    pub(crate) mean_t: Option<f64>,
+    pub(crate) is_ok: bool,
+}
+
+/// Runs every contender once a round: what the machine does meanwhile touches all alike. Then
+/// charges those who were given their rays for the making of them.
+pub(crate) fn run(contenders: &mut [Contender<'_>], rounds: usize) -> Vec<Record> {
+    let record = |c: &Contender<'_>| Record {
+        row: c.row,
+        system: c.system,
+        mode: c.mode.clone(),
+        isa: c.isa,
+        lanes: c.lanes,
+        cost: c.cost,
+        seconds: Vec::new(),
+        outcome: Outcome::default(),
+    };
+    let mut records: Vec<Record> = contenders.iter().map(record).collect();
+    // The first round warms up.
+    for round in 0..=rounds {
+        for (contender, record) in contenders.iter_mut().zip(&mut records) {
+            record.outcome = (contender.run)();
+            if round > 0 {
+                record.seconds.push(record.outcome.seconds);
+            }
+        }
+    }
+    charge(&mut records);
+    records.extend(embree_frame(&records));
+    records
+}
+
+fn charge(records: &mut [Record]) {
+    for row in Row::CHARGES {
+        let Some(charge) = find(records, row).map(|record| record.seconds.clone()) else {
+            continue;
+        };
+        let others = records.iter_mut().filter(|r| r.system != "raydsl");
+        for record in others.filter(|r| r.row.charge() == Some(row)) {
+            add(&mut record.seconds, &charge);
+        }
+    }
+}
+
+fn find(records: &[Record], row: Row) -> Option<&Record> {
+    records.iter().find(|record| record.row == row)
+}
+
+fn add(seconds: &mut [f64], more: &[f64]) {
+    for (seconds, more) in seconds.iter_mut().zip(more) {
+        *seconds += more;
+    }
+}
+
+/// The mode of Embree with the least median time.
+fn best_embree(records: &[Record], row: Row) -> Option<&Record> {
+    let modes = records.iter().filter(|r| r.system == "embree" && r.row == row.rival());
+    modes.min_by(|a, b| median(&a.seconds).total_cmp(&median(&b.seconds)))
+}
+
+/// A picture with Embree: its best modes for both kinds of rays, and what lies between them.
+fn embree_frame(records: &[Record]) -> Option<Record> {
+    let primary = best_embree(records, Row::Primary)?;
+    let shadow = best_embree(records, Row::AoShort)?;
+    let mut seconds = primary.seconds.clone();
+    add(&mut seconds, &shadow.seconds);
+    add(&mut seconds, &find(records, Row::Shading)?.seconds);
+    let hits = primary.outcome.hits + shadow.outcome.hits;
+    Some(Record {
+        row: Row::Frame,
+        system: "embree",
+        mode: "best of both".to_owned(),
+        isa: shadow.isa,
+        lanes: shadow.lanes,
+        cost: shadow.cost,
+        seconds,
+        outcome: Outcome { seconds: 0.0, hits, distance: 0.0 },
+    })
+}
+
+/// How many rays a row asks.
+pub(crate) fn rays(row: Row, work: &Workload) -> usize {
+    let shadow = work.places.len() * SAMPLES as usize;
+    match row {
+        Row::Frame => work.primary.len() + shadow,
+        Row::Primary | Row::PrimaryGeneration | Row::Shading => work.primary.len(),
+        Row::SingleClosest => work.single.len(),
+        Row::AoShort | Row::AoUnbounded | Row::AoShortUnbatched | Row::Bounce | Row::Generation => {
+            shadow
+        }
+    }
+}
+
+/// The figures of one of the records.
+pub(crate) fn figures(record: &Record, records: &[Record], rays: usize) -> Figures {
+    let embree = best_embree(records, record.row);
+    let expected =
+        embree.or_else(|| find(records, record.row)).map_or(record.outcome, |r| r.outcome);
+    let rates: Vec<f64> = record.seconds.iter().map(|s| rays as f64 / s * 1e-6).collect();
+    let ratios: Option<Vec<f64>> = embree
+        .map(|embree| embree.seconds.iter().zip(&record.seconds).map(|(a, b)| a / b).collect());
+    Figures {
+        mrays_per_s: median(&rates),
+        spread: spread(ratios.as_ref().unwrap_or(&rates)),
+        ratio: ratios.as_deref().map(median),
+        hits: record.outcome.hits,
+        mean_t: mean(record.outcome),
+        is_ok: agrees(record.outcome, expected, rays),
+    }
+}
+
+fn mean(outcome: Outcome) -> Option<f64> {
+    (outcome.distance > 0.0).then(|| outcome.distance / outcome.hits as f64)
+}
+
+fn agrees(found: Outcome, expected: Outcome, rays: usize) -> bool {
+    let others = found.hits.abs_diff(expected.hits) as f64;
+    let is_near = match (mean(found), mean(expected)) {
+        (Some(a), Some(b)) => (a - b).abs() <= OTHER_DISTANCE * b,
+        (a, b) => a.is_none() && b.is_none(),
+    };
+    others <= OTHER_HITS * rays as f64 && is_near
+}
