@@ -88,11 +88,10 @@ fn all_scenes(words: &[String]) -> Vec<(String, Scene<Triangle>)> {
         is_named || words.is_empty() && files.is_empty()
     };
     let mut all = Vec::new();
-    let procedural: [(&str, fn() -> Scene<Triangle>); 2] =
-        [("colonnade", scenes::colonnade), ("grove", scenes::grove)];
-    for (name, make) in procedural.into_iter().filter(|(name, _)| is_wanted(name)) {
-        all.push((name.to_owned(), make()));
-    }
+    type Make = fn() -> Scene<Triangle>;
+    let procedural = [("colonnade", scenes::colonnade as Make), ("grove", scenes::grove)];
+    let wanted = procedural.into_iter().filter(|(name, _)| is_wanted(name));
+    all.extend(wanted.map(|(name, make)| (name.to_owned(), make())));
     let data = std::env::var_os("RAYDSL_DATA");
     for name in scenes::FILES.into_iter().filter(|name| is_wanted(name)) {
         match data.as_ref().map(|data| scenes::file(data.as_ref(), name)) {

@@ -11,11 +11,13 @@ const BRANCHES: u32 = 10;
 /// Clusters of leaves along a branch, and leaves in each.
 const CLUSTERS: u32 = 3;
 const LEAVES: u32 = 80;
+/// Clusters that grow on the ground.
+const BUSHES: u32 = 400;
 /// Half the width of the ground.
-const HALF: f32 = 30.0;
+const HALF: f32 = 18.0;
 
 /// A grove: ground, trunks, branches, and small leaves in clusters that face every way; about
-/// 180,000 triangles. Rays pass close by many things that they do not meet.
+/// 220,000 triangles. Rays pass close by many things that they do not meet.
 pub fn grove() -> Scene<Triangle> {
     let mut unit = xorshift();
     let mut prims = Vec::new();
@@ -27,8 +29,12 @@ pub fn grove() -> Scene<Triangle> {
         let z = HALF * ((row as f32 + unit()) / 3.0 - 1.0);
         tree(&mut prims, ground(x, z), &mut unit);
     }
+    for _ in 0..BUSHES {
+        let foot = ground(HALF * (2.0 * unit() - 1.0), HALF * (2.0 * unit() - 1.0));
+        cluster(&mut prims, foot + vec3(0.0, 0.4, 0.0), &mut unit);
+    }
     let eye = ground(0.4, HALF - 2.0) + vec3(0.0, 1.7, 0.0);
-    let camera = Pinhole::new(eye, vec3(-1.0, 2.6, 0.0), Vec3::Y, 1.05);
+    let camera = Pinhole::new(eye, vec3(-1.0, 2.2, 0.0), Vec3::Y, 1.05);
     Scene { prims, camera }
 }
 
