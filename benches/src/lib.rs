@@ -1,10 +1,12 @@
 //! Shared code of the benchmarks: scenes, the hand-written loop, clocks, the guard, visits of
-//! nodes, Embree.
+//! nodes, Embree, tables of systems beside each other.
 
 pub mod clock;
+pub mod contest;
 pub mod divergent;
 pub mod embree;
 pub mod guard;
 pub mod hand;
 pub mod scenes;
+pub mod table;
 pub mod visits;

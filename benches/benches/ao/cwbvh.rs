@@ -8,8 +8,9 @@ use obvhs::ray::{Ray as TheirRay, RayHit};
 use obvhs::triangle::Triangle as TheirTriangle;
 use raydsl::prelude::*;
 use raydsl_benches::clock::seconds_on;
+use raydsl_benches::contest::{Cost, Outcome, in_parts};
 
-use crate::contender::{Contender, Cost, Outcome, Run, in_parts};
+use crate::contender::{Contender, Run};
 use crate::rays::Workload;
 use crate::row::Row;
 

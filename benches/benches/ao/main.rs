@@ -22,11 +22,12 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use raydsl::prelude::*;
+use raydsl_benches::contest::TILE;
 use raydsl_benches::scenes::{self, Scene};
+use raydsl_benches::table::{Line, print, print_summary};
 
-use rays::{TILE, Workload};
+use rays::Workload;
 use row::Row;
-use table::Line;
 
 /// Measures primary, shadow and bounce rays beside Embree and obvhs.
 #[derive(Parser)]
@@ -67,7 +68,7 @@ fn main() -> ExitCode {
             lines.extend(measure(&args, &name, &scene, threads));
         }
     }
-    table::print_summary(&lines);
+    print_summary(&lines);
     if let Some(path) = &args.json {
         let text = serde_json::to_string_pretty(&lines).expect("lines are plain data");
         if let Err(error) = std::fs::write(path, text) {
@@ -138,7 +139,7 @@ fn measure(args: &Args, name: &str, scene: &Scene<Triangle>, threads: usize) -> 
         contenders.retain(|contender| wanted(contender.row));
         let records = rounds::run(&mut contenders, args.rounds.into());
         let lines = table::lines(name, threads, &work, &records, &args.only);
-        table::print(&lines);
+        print(&lines);
         lines
     })
 }

@@ -5,6 +5,7 @@ use raydsl::kernel as kernel_fn;
 use raydsl::kernels::facing;
 use raydsl::prelude::*;
 use raydsl::sampling::{pcg4d, unit_f32};
+use raydsl_benches::contest::pixels;
 use raydsl_benches::scenes;
 use rayon::prelude::*;
 
@@ -16,9 +17,6 @@ const GROUP: usize = 16;
 const SORTED: usize = 2048;
 /// The end of short rays, as a share of the scene's diagonal.
 const SHORT: f32 = 0.1;
-/// The edge of a tile in pixels, and of a block in it.
-pub(crate) const TILE: u32 = 16;
-const BLOCK: u32 = 4;
 
 /// Where shadow rays begin: a point, the normal there, and the pixel's number.
 pub(crate) type Place = (Vec3, Vec3, u32);
@@ -96,19 +94,6 @@ impl Workload {
         let short = SHORT * (bounds.max - bounds.min).length();
         Self { camera, size, primary, hits, places, shadow, sorted, single, short }
     }
-}
-
-/// The pixels of a square, tile by tile, and within them block by block.
-fn pixels(size: u32) -> Vec<(u32, u32)> {
-    let corners = |from: (u32, u32), size: u32, step: u32| {
-        (0..size).step_by(step as usize).flat_map(move |y| {
-            (0..size).step_by(step as usize).map(move |x| (from.0 + x, from.1 + y))
-        })
-    };
-    corners((0, 0), size, TILE)
-        .flat_map(|tile| corners(tile, TILE, BLOCK))
-        .flat_map(|block| corners(block, BLOCK, 1))
-        .collect()
 }
 
 fn shadow_rays(places: &[Place]) -> Vec<Ray> {

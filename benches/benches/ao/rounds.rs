@@ -1,15 +1,11 @@
 //! Interleaved rounds, and what they say.
 
 use raydsl_benches::clock::{median, spread};
+use raydsl_benches::contest::{Cost, Outcome};
 
-use crate::contender::{Contender, Cost, Outcome};
+use crate::contender::Contender;
 use crate::rays::{SAMPLES, Workload};
 use crate::row::Row;
-
-/// The share of the rays whose hits may be others: those that pass through edges.
-const OTHER_HITS: f64 = 1e-5;
-/// How much the mean distance may be off, as a share.
-const OTHER_DISTANCE: f64 = 1e-4;
 
 /// What all rounds gave for a contender.
 pub(crate) struct Record {
@@ -138,20 +134,7 @@ pub(crate) fn figures(record: &Record, records: &[Record], rays: usize) -> Figur
         spread: spread(ratios.as_ref().unwrap_or(&rates)),
         ratio: ratios.as_deref().map(median),
         hits: record.outcome.hits,
-        mean_t: mean(record.outcome),
-        is_ok: agrees(record.outcome, expected, rays),
+        mean_t: record.outcome.mean(),
+        is_ok: record.outcome.agrees(&expected, rays),
     }
-}
-
-fn mean(outcome: Outcome) -> Option<f64> {
-    (outcome.distance > 0.0).then(|| outcome.distance / outcome.hits as f64)
-}
-
-fn agrees(found: Outcome, expected: Outcome, rays: usize) -> bool {
-    let others = found.hits.abs_diff(expected.hits) as f64;
-    let is_near = match (mean(found), mean(expected)) {
-        (Some(a), Some(b)) => (a - b).abs() <= OTHER_DISTANCE * b,
-        (a, b) => a.is_none() && b.is_none(),
-    };
-    others <= OTHER_HITS * rays as f64 && is_near
 }

@@ -1,36 +1,10 @@
-//! What is printed and written.
+//! From records to lines.
 
-use serde::Serialize;
+use raydsl_benches::table::Line;
 
 use crate::rays::Workload;
 use crate::rounds::{self, Record};
 use crate::row::Row;
-
-/// One mode of one row.
-#[derive(Serialize)]
-pub(crate) struct Line {
-    scene: String,
-    row: &'static str,
-    system: &'static str,
-    mode: String,
-    isa: &'static str,
-    lanes: usize,
-    rays: usize,
-    threads: usize,
-    /// With what the system is charged for.
-    mrays_per_s: f64,
-    /// The middle half of the rounds' ratios, or rates where there are none, as a share.
-    spread: f64,
-    /// How much faster than the best mode of Embree.
-    ratio_to_embree: Option<f64>,
-    build_ms: f64,
-    /// Of the tree; Embree's and obvhs's hold copies of the triangles too.
-    bytes_per_primitive: f64,
-    hits: usize,
-    mean_t: Option<f64>,
-    /// `ok`, `void` where the hits are others than Embree's, or `skipped`.
-    pub(crate) status: &'static str,
-}
 
 /// The lines of the rows that are wanted, row by row, and of what others are charged with.
 pub(crate) fn lines(
@@ -99,48 +73,5 @@ fn skipped(scene: &str, threads: usize, row: Row, rays: usize) -> Line {
         hits: 0,
         mean_t: None,
         status: "skipped",
-    }
-}
-
-/// Prints the lines of a scene.
-pub(crate) fn print(lines: &[Line]) {
-    for of_row in lines.chunk_by(|a, b| a.row == b.row) {
-        println!("{}, {} rays", of_row[0].row, of_row[0].rays);
-        println!(
-            "  {:<14}{:<20}{:>9}{:>9}{:>9}{:>9}{:>9}{:>11}  status",
-            "system", "mode", "build ms", "B/prim", "Mrays/s", "ratio", "spread", "hits"
-        );
-        for l in of_row.iter().filter(|l| l.status != "skipped") {
-            let ratio = l.ratio_to_embree.map_or("-".to_owned(), |r| format!("{r:.3}"));
-            println!(
-                "  {:<14}{:<20}{:>9.0}{:>9.1}{:>9.2}{ratio:>9}{:>8.1}%{:>11}  {}",
-                l.system,
-                l.mode,
-                l.build_ms,
-                l.bytes_per_primitive,
-                l.mrays_per_s,
-                100.0 * l.spread,
-                l.hits,
-                l.status
-            );
-        }
-        println!();
-    }
-}
-
-/// Prints the ratio of the library's best mode for each row and scene.
-pub(crate) fn print_summary(lines: &[Line]) {
-    println!("the library's best mode against Embree's");
-    println!("  {:<14}{:>8}  {:<20}{:<16}{:>9}", "scene", "threads", "row", "mode", "ratio");
-    for of_row in
-        lines.chunk_by(|a, b| (a.row, &a.scene, a.threads) == (b.row, &b.scene, b.threads))
-    {
-        let own = of_row.iter().filter(|l| l.system == "raydsl" && l.status == "ok");
-        let ratio = |l: &&Line| l.ratio_to_embree.unwrap_or_default();
-        let best = own.max_by(|a, b| ratio(a).total_cmp(&ratio(b)));
-        if let Some(l) = best.filter(|l| l.ratio_to_embree.is_some()) {
-            let (scene, threads, ratio) = (&l.scene, l.threads, ratio(&l));
-            println!("  {scene:<14}{threads:>8}  {:<20}{:<16}{ratio:>9.3}", l.row, l.mode);
-        }
     }
 }

@@ -1,6 +1,7 @@
 //! Embree 4, loaded while the program runs: there is nothing to link.
 
 mod api;
+mod question;
 mod rays;
 mod scene;
 
@@ -10,6 +11,7 @@ use std::sync::atomic::{AtomicIsize, Ordering};
 use libloading::Library;
 
 use api::{Api, Handle};
+pub use question::{Mode, Question};
 pub use rays::{Lanes, RayHits, Rays, Width};
 pub use scene::{Coherence, Quality, Scene, Shape};
 

@@ -1,6 +1,7 @@
 //! Scenes with a camera each.
 
 mod grove;
+mod points;
 
 use std::f32::consts::TAU;
 use std::path::Path;
@@ -11,6 +12,7 @@ use raydsl_examples::cloud;
 use raydsl_examples::mesh::{self, MeshError};
 
 pub use grove::grove;
+pub use points::{Point, points};
 
 /// A point of a scan: 16 bytes.
 #[primitive]

@@ -5,8 +5,9 @@ mod kernels;
 use raydsl::bvh::BuildConfig;
 use raydsl::prelude::*;
 use raydsl_benches::clock::seconds_on;
+use raydsl_benches::contest::{Cost, Outcome, in_parts};
 
-use crate::contender::{Contender, Cost, Outcome, Run, in_parts};
+use crate::contender::{Contender, Run};
 use crate::rays::Workload;
 use crate::row::Row;
 use kernels::Ask;
