@@ -98,3 +98,42 @@ pub fn pixels(size: u32) -> Vec<(u32, u32)> {
         .flat_map(|block| corners(block, BLOCK, 1))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_pixel_is_there_once_in_blocks() {
+        let all = pixels(48);
+        let mut sorted = all.clone();
+        sorted.sort_unstable();
+        sorted.dedup();
+        assert_eq!((all.len(), sorted.len()), (48 * 48, 48 * 48));
+        for block in all.chunks(16) {
+            assert!(block.iter().all(|(x, y)| (x / 4, y / 4) == (block[0].0 / 4, block[0].1 / 4)));
+        }
+    }
+
+    #[test]
+    fn other_hits_and_distances_are_noticed() {
+        let outcome = |hits, distance| Outcome { seconds: 1.0, hits, distance };
+        let expected = outcome(500_000, 1e6);
+        assert!(outcome(500_005, 1.000_05e6).agrees(&expected, 1_000_000));
+        assert!(!outcome(500_020, 1e6).agrees(&expected, 1_000_000));
+        assert!(!outcome(500_000, 1.001e6).agrees(&expected, 1_000_000));
+        assert!(!outcome(500_000, 0.0).agrees(&expected, 1_000_000));
+    }
+
+    #[test]
+    fn parts_add_up() {
+        let rays = vec![Ray::new(Vec3::ZERO, Vec3::Z); 3 * PART + 1];
+        let outcome = in_parts(&rays, 2, |(): &mut (), part| Outcome {
+            seconds: 1.0,
+            hits: part.len(),
+            distance: 2.0,
+        });
+        let Outcome { seconds, hits, distance } = outcome;
+        assert_eq!((seconds, hits, distance), (2.0, rays.len(), 8.0));
+    }
+}

@@ -83,3 +83,15 @@ fn cluster(out: &mut Vec<Triangle>, middle: Vec3, unit: &mut impl FnMut() -> f32
         out.push(Triangle { v0: at - across, v1: at + across, v2: at + along });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_grove_is_always_the_same() {
+        let (a, b) = (grove().prims, grove().prims);
+        assert!((150_000..250_000).contains(&a.len()), "{}", a.len());
+        assert!(a == b && a.iter().all(|t| t.get_bounds().max.is_finite()));
+    }
+}

@@ -42,3 +42,24 @@ fn shuffle<T>(all: &mut [T], mut unit: impl FnMut() -> f32) {
         all.swap(last, (u as usize).min(last));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_lie_on_triangles_by_their_area() {
+        let corner = |x, y| vec3(x, y, 2.0);
+        let triangle = |size: f32, at: f32| Triangle {
+            v0: corner(at, 0.0),
+            v1: corner(at + size, 0.0),
+            v2: corner(at, size),
+        };
+        let all = points(&[triangle(1.0, 0.0), triangle(3.0, 10.0)], 5000);
+        assert_eq!(all.len(), 5000);
+        assert_eq!(all.iter().filter(|p| p.center.x < 5.0).count(), 500);
+        assert!(all.iter().all(|p| p.center.z == 2.0 && p.center.y >= 0.0));
+        assert!((all[0].radius - 0.7 * 0.001_f32.sqrt()).abs() < 1e-6);
+        assert_eq!(size_of::<Point>(), 16);
+    }
+}
