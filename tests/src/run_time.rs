@@ -5,7 +5,9 @@
 //! for every level and width takes thirteen times as long.
 
 use raydsl::__at_run_time as at_run_time;
-use raydsl::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Lanes, Op};
+use raydsl::machine::{
+    BoolBinary, Compare, F32Binary, F32Unary, Gang, IntBinary, Lanes, One, Op,
+};
 
 /// `N` lanes of the level behind the reference. It may have fewer: then the upper lanes hold
 /// nothing, and must not run.
@@ -215,7 +217,15 @@ macro_rules! operations {
             type I32 = [i32; N];
             type U32 = [u32; N];
             type Mask = Bits;
+            type Eight = Gang<One, 8>;
+            type Register = One;
 
+            fn eight(self) -> Gang<One, 8> {
+                Gang(One)
+            }
+            fn register(self) -> One {
+                One
+            }
             /// A kernel that calls another does not contain it.
             #[inline(never)]
             fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
@@ -263,7 +273,15 @@ macro_rules! operations {
                 type I32 = Register;
                 type U32 = Register;
                 type Mask = Bits;
+                type Eight = Gang<One, 8>;
+                type Register = One;
 
+                fn eight(self) -> Gang<One, 8> {
+                    Gang(One)
+                }
+                fn register(self) -> One {
+                    One
+                }
                 #[inline(never)]
                 fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
                     f()

@@ -27,6 +27,7 @@ pub mod traverse;
 pub(crate) mod traverse_packet;
 mod validate;
 mod view;
+pub mod wide;
 
 #[cfg(test)]
 mod tests;
@@ -34,13 +35,13 @@ mod tests;
 use core::ops::ControlFlow;
 
 pub use accelerator::{Accelerated, Accelerator};
-pub use build::{BuildConfig, BuildError, BuildQuality, MAX_DEPTH};
+pub use build::{BuildConfig, BuildError, BuildQuality, MAX_DEPTH, Storage};
 pub use instances::{Group, Instance, InstanceError, Instances, MAX_CONDITION, MAX_LEVELS, Object};
 pub(crate) use instances::{IS_INSTANCE, PLACE_SCHEMA, Placed, Placing, STACK, Target};
 pub use list::{BvhList, ListError};
 pub use node::Node;
 use owner::Owner;
-pub(crate) use query::{RecordOn, any_where, closest_on, closest_where};
+pub(crate) use query::{RecordOn, any_where, closest_on, closest_where, record_on};
 pub use ray_query::RayQuery;
 pub use refit::{DetachedBvh, RefitError};
 pub(crate) use slabs::Allowance;
@@ -80,6 +81,8 @@ pub struct Bvh<'a, P: Primitive> {
 struct Owned {
     nodes: Vec<Node>,
     indices: Vec<u32>,
+    /// The tree that packets go through, with [`Storage::Leaves`].
+    wide: Option<wide::Wide>,
     config: BuildConfig,
     owner: Owner,
     /// How often it has been refitted.
@@ -185,9 +188,11 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         }
         let source = build::Primitives { prims, shared };
         let tree = build::build_watched(&source, prims.len(), config, observer)?;
+        let wide = wide::of(&tree.nodes, &tree.indices, config, prims, shared);
         let own = Owned {
             nodes: tree.nodes,
             indices: tree.indices,
+            wide,
             config: *config,
             owner: Owner::new(),
             version: 0,
@@ -226,9 +231,12 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         self.tree.own.nodes.first().map_or(Aabb::EMPTY, Node::bounds)
     }
 
-    /// Bytes of the tree itself; the primitives are the application's.
+    /// Bytes of the tree itself, with the copies of primitives that [`Storage::Leaves`] makes; the
+    /// primitives are the application's.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.tree.own.nodes[..]) + size_of_val(&self.tree.own.indices[..])
+        let own = &self.tree.own;
+        let wide = own.wide.as_ref().map_or(0, wide::Wide::bytes);
+        size_of_val(&own.nodes[..]) + size_of_val(&own.indices[..]) + wide
     }
 
     /// The view that kernels work on.

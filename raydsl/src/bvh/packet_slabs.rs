@@ -160,7 +160,7 @@ fn pad<L: Lanes>(l: L, origin: [L::F32; 3], root: &Node, allowance: Allowance) -
 
 /// The reciprocal of every component, finite.
 #[inline(always)]
-fn finite_inverse<L: Lanes>(l: L, d: [L::F32; 3]) -> [L::F32; 3] {
+pub(super) fn finite_inverse<L: Lanes>(l: L, d: [L::F32; 3]) -> [L::F32; 3] {
     let largest = max(l, max(l, abs(l, d[0]), abs(l, d[1])), abs(l, d[2]));
     let least = max(l, mul(l, largest, l.f32(LEAST)), l.f32(f32::MIN_POSITIVE));
     fill(

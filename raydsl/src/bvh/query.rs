@@ -34,7 +34,7 @@ fn closest_with_cost_on<M: Machine, P: Primitive>(
 }
 
 #[inline(always)]
-fn record_on<M: Machine, P: Primitive>(
+pub(crate) fn record_on<M: Machine, P: Primitive>(
     m: &M,
     prims: &SceneView<'_, P>,
     ray: RayOn<M>,

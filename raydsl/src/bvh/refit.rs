@@ -9,7 +9,7 @@ use core::marker::PhantomData;
 use thiserror::Error;
 
 use super::view::Tree;
-use super::{BuildError, Bvh, Owned, build, stats};
+use super::{BuildError, Bvh, Owned, build, stats, wide};
 use crate::geometry::{Kinds, Primitive};
 
 /// A tree without its primitives, which the application may change meanwhile.
@@ -149,6 +149,7 @@ impl<P: Primitive> DetachedBvh<P> {
         }
         own.built_cost.get_or_insert_with(|| stats::sah_cost(&own.nodes, &own.config));
         build::refit(&mut own.nodes, &own.indices, before, |k| prims[k].get_bounds(shared))?;
+        own.wide = wide::of(&own.nodes, &own.indices, &own.config, prims, shared);
         own.version = own.version.wrapping_add(1);
         Ok(Bvh { tree: Tree { prims, shared, own, kinds: Kinds::of(prims) } })
     }

@@ -7,6 +7,7 @@ use glam::Affine3;
 use super::instances::Placed;
 use super::owner::Owner;
 use super::slabs::Allowance;
+use super::wide::Wide;
 use super::{Accelerator, Node, Owned, bytes_of, list, slice_key};
 use crate::geometry::{Kinds, Primitive, Ray};
 use crate::machine::{Field, Leaves, Machine, Resource, Schema, Type, Value, wgsl::BufferKey};
@@ -46,6 +47,8 @@ pub(crate) struct Part<'a, T, S> {
     pub(crate) prims: &'a [T],
     pub(crate) shared: &'a [S],
     pub(crate) tree: Option<Branches<'a>>,
+    /// The wide tree over the same primitives, if there is one.
+    pub(crate) wide: Option<&'a Wide>,
     /// What finds the primitives where there is no tree; without it all are asked.
     pub(crate) accelerator: Option<&'a dyn Accelerator>,
     /// The number of its first primitive, among those of a list.
@@ -80,8 +83,16 @@ pub(crate) struct Tree<'a, T, S> {
 impl<T, S> Tree<'_, T, S> {
     #[inline(always)]
     pub(super) fn part(&self) -> Part<'_, T, S> {
-        let tree = Some(Branches { nodes: &self.own.nodes, indices: &self.own.indices });
-        Part { prims: self.prims, shared: self.shared, tree, accelerator: None, first: 0 }
+        let own = &self.own;
+        let tree = Some(Branches { nodes: &own.nodes, indices: &own.indices });
+        Part {
+            prims: self.prims,
+            shared: self.shared,
+            tree,
+            wide: own.wide.as_ref(),
+            accelerator: None,
+            first: 0,
+        }
     }
 }
 
@@ -107,7 +118,8 @@ impl<T, S> Standing<'_, T, S> {
     #[inline(always)]
     fn part(&self) -> Part<'_, T, S> {
         let (prims, shared) = (self.prims, self.shared);
-        Part { prims, shared, tree: None, accelerator: Some(&*self.accelerator), first: 0 }
+        let accelerator = Some(&*self.accelerator);
+        Part { prims, shared, tree: None, wide: None, accelerator, first: 0 }
     }
 }
 
@@ -240,6 +252,7 @@ impl<'a, T, S> View<'a, T, S> {
                 prims,
                 shared: &[],
                 tree: None,
+                wide: None,
                 accelerator: None,
                 first: 0,
             }),

@@ -80,7 +80,17 @@ impl<L: Lanes, const K: usize> Lanes for Gang<L, K> {
     type I32 = [L::I32; K];
     type U32 = [L::U32; K];
     type Mask = [L::Mask; K];
+    type Eight = L::Eight;
+    type Register = L::Register;
 
+    #[inline(always)]
+    fn eight(self) -> L::Eight {
+        self.0.eight()
+    }
+    #[inline(always)]
+    fn register(self) -> L::Register {
+        self.0.register()
+    }
     fn isa(self) -> &'static str {
         self.0.isa()
     }
@@ -109,6 +119,7 @@ impl<L: Lanes, const K: usize> Lanes for Gang<L, K> {
 
     each_register! {
         f32_mul_add(a: F32, b: F32, c: F32) -> F32;
+        f32_mul_add_fast(a: F32, b: F32, c: F32) -> F32;
         mask_not(a: Mask) -> Mask;
         f32_select(c: Mask, a: F32, b: F32) -> F32;
         i32_select(c: Mask, a: I32, b: I32) -> I32;

@@ -470,6 +470,32 @@ pub trait Machine: Sized + 'static {
         ray: crate::geometry::RayOn<Self>,
     ) -> B<Self>;
 
+    /// [`Machine::closest_hit`] of several rays, which a machine may answer together.
+    #[inline(always)]
+    fn closest_hits<P: crate::geometry::Primitive, const N: usize>(
+        &self,
+        prims: &crate::bvh::SceneView<'_, P>,
+        rays: &[crate::geometry::RayOn<Self>; N],
+    ) -> [crate::geometry::HitOn<Self>; N] {
+        fill(
+            #[inline(always)]
+            |i| self.closest_hit(prims, rays[i]),
+        )
+    }
+
+    /// [`Machine::any_hit`] of several rays, which a machine may answer together.
+    #[inline(always)]
+    fn any_hits<P: crate::geometry::Primitive, const N: usize>(
+        &self,
+        prims: &crate::bvh::SceneView<'_, P>,
+        rays: &[crate::geometry::RayOn<Self>; N],
+    ) -> [B<Self>; N] {
+        fill(
+            #[inline(always)]
+            |i| self.any_hit(prims, rays[i]),
+        )
+    }
+
     /// Asks `meet` about every hit within the ray's range, in the lanes that have it: whether the
     /// lane goes on. Nodes beyond `limit` are left out. The hit, and the record that has it, has
     /// its primitive's number.

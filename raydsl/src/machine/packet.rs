@@ -6,6 +6,7 @@ use core::mem::MaybeUninit;
 use glam::{Affine3, Vec3};
 
 use super::*;
+use crate::bvh::wide::trace;
 use crate::bvh::{RecordOn, traverse_packet};
 use crate::geometry::{HitOn, Primitive, RayOn};
 
@@ -509,7 +510,8 @@ impl<L: Lanes> Machine for Packet<L> {
         prims: &crate::bvh::SceneView<'_, P>,
         ray: RayOn<Self>,
     ) -> HitOn<Self> {
-        traverse_packet::closest_hit(self, prims, ray)
+        let [hit] = self.closest_hits(prims, &[ray]);
+        hit
     }
     #[inline(always)]
     fn closest_hit_with_cost<P: Primitive>(
@@ -525,7 +527,40 @@ impl<L: Lanes> Machine for Packet<L> {
         prims: &crate::bvh::SceneView<'_, P>,
         ray: RayOn<Self>,
     ) -> B<Self> {
-        traverse_packet::any_hit(self, prims, ray)
+        let [hit] = self.any_hits(prims, &[ray]);
+        hit
+    }
+    #[inline(always)]
+    fn closest_hits<P: Primitive, const N: usize>(
+        &self,
+        prims: &crate::bvh::SceneView<'_, P>,
+        rays: &[RayOn<Self>; N],
+    ) -> [HitOn<Self>; N] {
+        if trace::answers(prims) {
+            let mut hits = [HitOn::zero(self); N];
+            trace::closest_hits(self, prims, rays, &mut hits);
+            return hits;
+        }
+        fill(
+            #[inline(always)]
+            |i| traverse_packet::closest_hit(self, prims, rays[i]),
+        )
+    }
+    #[inline(always)]
+    fn any_hits<P: Primitive, const N: usize>(
+        &self,
+        prims: &crate::bvh::SceneView<'_, P>,
+        rays: &[RayOn<Self>; N],
+    ) -> [B<Self>; N] {
+        if trace::answers(prims) {
+            let mut hits = [B(self.lanes.mask(false)); N];
+            trace::any_hits(self, prims, rays, &mut hits);
+            return hits;
+        }
+        fill(
+            #[inline(always)]
+            |i| traverse_packet::any_hit(self, prims, rays[i]),
+        )
     }
     #[inline(always)]
     fn visit<P: Primitive>(

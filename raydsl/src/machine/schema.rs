@@ -74,13 +74,13 @@ impl Schema {
     }
 
     /// Bytes of one value in the host's memory, padding at the end included.
-    pub fn size(&self) -> usize {
+    pub const fn size(&self) -> usize {
         match self {
             Self::F32 | Self::I32 | Self::U32 => 4,
             Self::Bool => 1,
             Self::Small { bytes } => *bytes,
-            Self::Vector(element, n) => element.size() * n,
-            Self::Array { count, stride, .. } => count * stride,
+            Self::Vector(element, n) => element.size() * *n,
+            Self::Array { count, stride, .. } => *count * *stride,
             Self::Struct { size, .. } => *size,
             Self::Host => 0,
         }

@@ -7,7 +7,7 @@
 mod choices;
 mod layout;
 
-use raydsl::bvh::{self, BuildError};
+use raydsl::bvh::{self, BuildError, Storage};
 use raydsl::prelude::*;
 use raydsl::primitive;
 
@@ -106,6 +106,7 @@ fn config(choices: &mut Choices<'_>) -> BuildConfig {
         traversal_cost: choices.pick(&[1.0, 0.0, 10.0]),
         min_overlap: choices.pick(&[1e-5, 0.0]),
         max_duplication: choices.pick(&[0.3, 0.0, 4.0]),
+        storage: choices.pick(&[Storage::Borrow, Storage::Leaves]),
         ..BuildConfig::default()
     }
 }
@@ -178,7 +179,7 @@ where
 {
     let expected: Vec<(Hit, bool)> =
         rays.iter().map(|ray| (scene.closest_hit(*ray), scene.any_hit(*ray))).collect();
-    for variant in [Variant::Packet4, Variant::Packet8, Variant::Packet16] {
+    for variant in [Variant::Packet4, Variant::Packet8, Variant::Packet16, Variant::Packet64] {
         assert_eq!(Queried(scene).ask(variant, rays), expected, "{variant:?}");
     }
 }

@@ -2,7 +2,9 @@
 
 use std::cell::Cell;
 
-use raydsl::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Lanes, One, Op};
+use raydsl::machine::{
+    BoolBinary, Compare, F32Binary, F32Unary, Gang, IntBinary, Lanes, One, Op,
+};
 
 thread_local! {
     static LOOSE: Cell<bool> = const { Cell::new(false) };
@@ -67,6 +69,16 @@ impl Lanes for Watch {
     type I32 = i32;
     type U32 = u32;
     type Mask = bool;
+    type Eight = Gang<Self, 8>;
+    type Register = Self;
+
+    fn eight(self) -> Gang<Self, 8> {
+        Gang(self)
+    }
+
+    fn register(self) -> Self {
+        self
+    }
 
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
         f()

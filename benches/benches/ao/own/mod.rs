@@ -2,7 +2,7 @@
 
 mod kernels;
 
-use raydsl::bvh::BuildConfig;
+use raydsl::bvh::{BuildConfig, Storage};
 use raydsl::prelude::*;
 use raydsl_benches::clock::seconds_on;
 use raydsl_benches::contest::{Cost, Outcome, in_parts};
@@ -24,13 +24,30 @@ struct Setting {
     /// Behind the variant in the names of modes.
     name: &'static str,
     quality: BuildQuality,
+    storage: Storage,
     is_asked_by: fn(Variant) -> bool,
 }
 
 /// All modes: these trees, each asked by some variants of the CPU.
-static SETTINGS: [Setting; 2] = [
-    Setting { name: "", quality: BuildQuality::Balanced, is_asked_by: |_| true },
-    Setting { name: " best", quality: BuildQuality::Best, is_asked_by: |v| v.isa().1 >= 8 },
+static SETTINGS: [Setting; 3] = [
+    Setting {
+        name: "",
+        quality: BuildQuality::Balanced,
+        storage: Storage::Borrow,
+        is_asked_by: |v| v.isa().1 <= 16,
+    },
+    Setting {
+        name: " leaves",
+        quality: BuildQuality::Balanced,
+        storage: Storage::Leaves,
+        is_asked_by: |v| v.isa().1 >= 8,
+    },
+    Setting {
+        name: " best",
+        quality: BuildQuality::Best,
+        storage: Storage::Leaves,
+        is_asked_by: |v| v.isa().1 >= 16,
+    },
 ];
 
 impl Setting {
@@ -43,7 +60,8 @@ impl Setting {
 /// One tree for each setting.
 pub(crate) fn trees(triangles: &[Triangle], threads: usize) -> Vec<Tree<'_>> {
     let tree = |setting: &'static Setting| {
-        let config = BuildConfig::from(setting.quality);
+        let Setting { quality, storage, .. } = *setting;
+        let config = BuildConfig { quality, storage, ..BuildConfig::default() };
         let (bvh, seconds) = seconds_on(threads, || Bvh::build_with(triangles, &config));
         let bvh = bvh.expect("the scene has finite bounds");
         let cost = Cost::new(seconds, bvh.bytes(), triangles.len());

@@ -60,7 +60,7 @@ impl Range<'_> {
     /// have moved them.
     fn tell_apart(&mut self, references: &[Reference], config: &BuildConfig) -> bool {
         let is_needed = !self.is_recoded
-            && self.keys.len() > config.max_leaf_size as usize
+            && self.keys.len() > config.leaf_size()
             && first_of_upper_half(self.keys).is_none();
         if is_needed {
             morton::order_again(self.keys, references);
@@ -169,7 +169,8 @@ impl<'a> Subtree<'a> {
         let area = area(bounds);
         let split_cost = f64::from(self.config.traversal_cost) * area + left.cost + right.cost;
         let cost = self.leaf_cost(count, area);
-        if count <= self.config.max_leaf_size && cost <= split_cost {
+        let is_block = self.config.is_block(count as usize);
+        if is_block || (count as usize <= self.config.leaf_size() && cost <= split_cost) {
             self.nodes.truncate(below);
             return Grown { node: Node::leaf(bounds.to_aabb(), first, count), bounds, cost };
         }

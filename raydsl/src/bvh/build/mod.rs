@@ -41,13 +41,13 @@ mod source;
 mod spatial;
 mod spatial_bins;
 mod subtree;
-mod tasks;
+pub(super) mod tasks;
 mod watch;
 
 #[cfg(test)]
 mod tests;
 
-pub use config::{BuildConfig, BuildQuality};
+pub use config::{BuildConfig, BuildQuality, Storage};
 pub use error::BuildError;
 pub(super) use refit::refit;
 #[cfg(test)]

@@ -139,7 +139,7 @@ impl<S: Source> Builder<'_, '_, S> {
         if count == 1 {
             return Err(range.leaf());
         }
-        let may_be_leaf = count <= self.config.max_leaf_size as usize;
+        let may_be_leaf = count <= self.config.leaf_size();
         let Some(grid) = Grid::new(&span, count, self.config.bins) else {
             return if may_be_leaf { Err(range.leaf()) } else { Ok(halves(range)) };
         };

@@ -111,10 +111,10 @@ fn divide(
     (config, watch): (&BuildConfig, &Watch),
 ) -> Option<(usize, [Span; 2])> {
     let count = references.len();
-    if count == 1 {
+    if count == 1 || config.is_block(count) {
         return None;
     }
-    let may_be_leaf = count <= config.max_leaf_size as usize;
+    let may_be_leaf = count <= config.leaf_size();
     let Some(grid) = Grid::new(span, count, config.bins) else {
         return if may_be_leaf { None } else { Some(partition::by_order(references)) };
     };

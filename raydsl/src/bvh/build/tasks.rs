@@ -38,7 +38,7 @@ pub(super) fn map_pieces<T: Sync, R: Send>(
 }
 
 /// [`map_pieces`] for pieces that are written.
-pub(super) fn map_pieces_mut<T: Send, R: Send>(
+pub(in crate::bvh) fn map_pieces_mut<T: Send, R: Send>(
     items: &mut [T],
     size: usize,
     f: impl Fn(usize, &mut [T]) -> R + Sync,

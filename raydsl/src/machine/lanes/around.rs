@@ -40,6 +40,8 @@ macro_rules! lanes_around {
             type I32 = L::I32;
             type U32 = L::U32;
             type Mask = L::Mask;
+            type Eight = L::Eight;
+            type Register = L::Register;
 
         $($own)*
 
@@ -56,11 +58,19 @@ macro_rules! lanes_around {
             }
             delegate! {
                 isa() -> &'static str;
+                eight() -> L::Eight;
+                register() -> L::Register;
                 f32(v: f32) -> L::F32;
                 i32(v: i32) -> L::I32;
                 u32(v: u32) -> L::U32;
                 mask(v: bool) -> L::Mask;
                 f32_mul_add(a: L::F32, b: L::F32, c: L::F32) -> L::F32;
+                f32_mul_add_fast(a: L::F32, b: L::F32, c: L::F32) -> L::F32;
+                u32_compress(a: L::U32, mask: L::Mask) -> L::U32;
+                u32_sort_descending(a: L::U32) -> L::U32;
+                u32_permute(a: L::U32, from: L::U32) -> L::U32;
+                f32_store(a: L::F32, out: &mut [f32]) -> ();
+                u32_store(a: L::U32, out: &mut [u32]) -> ();
                 mask_not(a: L::Mask) -> L::Mask;
                 f32_select(c: L::Mask, a: L::F32, b: L::F32) -> L::F32;
                 i32_select(c: L::Mask, a: L::I32, b: L::I32) -> L::I32;

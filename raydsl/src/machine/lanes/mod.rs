@@ -6,6 +6,7 @@
 
 mod around;
 mod one;
+mod shuffle;
 mod simd;
 
 use core::mem::MaybeUninit;
@@ -14,7 +15,7 @@ pub(crate) use around::Entered;
 pub use one::One;
 pub use simd::{Simd4, Simd8, Simd16};
 
-use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Op, Place};
+use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Op, Place, op};
 
 /// Registers of one width, and what can be done with them. `self` is the proof of the level.
 #[expect(missing_docs, reason = "the operations are documented at their enums")]
@@ -25,6 +26,16 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     type I32: Copy + 'static;
     type U32: Copy + 'static;
     type Mask: Copy + 'static;
+    /// Eight lanes of the same level: as many as a node of a wide tree has children, and a block
+    /// of its leaves primitives.
+    type Eight: Lanes;
+    /// One of the registers of a [`Gang`](super::Gang); elsewhere the lanes themselves.
+    type Register: Lanes;
+
+    /// The lanes of [`Lanes::Eight`].
+    fn eight(self) -> Self::Eight;
+    /// The lanes of [`Lanes::Register`].
+    fn register(self) -> Self::Register;
 
     /// The instruction set's name, as reports print it.
     fn isa(self) -> &'static str;
@@ -48,6 +59,12 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn f32_unary<O: Op<F32Unary>>(self, op: O, a: Self::F32) -> Self::F32;
     fn f32_binary<O: Op<F32Binary>>(self, op: O, a: Self::F32, b: Self::F32) -> Self::F32;
     fn f32_mul_add(self, a: Self::F32, b: Self::F32, c: Self::F32) -> Self::F32;
+    /// `a * b + c`, rounded once where that is one instruction, else twice. Not for kernels, whose
+    /// results are the same on all levels.
+    #[inline(always)]
+    fn f32_mul_add_fast(self, a: Self::F32, b: Self::F32, c: Self::F32) -> Self::F32 {
+        self.f32_binary(op::Add, self.f32_binary(op::Mul, a, b), c)
+    }
     /// Sums, products, bits, shifts; the rest is done lane by lane.
     fn i32_binary<O: Op<IntBinary>>(self, op: O, a: Self::I32, b: Self::I32) -> Self::I32;
     fn u32_binary<O: Op<IntBinary>>(self, op: O, a: Self::U32, b: Self::U32) -> Self::U32;
@@ -80,6 +97,51 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn i32_lane(a: &Self::I32, lane: usize) -> i32;
     fn u32_lane(a: &Self::U32, lane: usize) -> u32;
     fn mask_lane(a: &Self::Mask, lane: usize) -> bool;
+
+    /// The lanes of `mask` in their order, from the first lane on; what is behind them is not said.
+    #[inline(always)]
+    fn u32_compress(self, a: Self::U32, mask: Self::Mask) -> Self::U32 {
+        let (mut packed, mut n) = ([0; 64], 0);
+        for lane in 0..Self::N {
+            packed[n] = Self::u32_lane(&a, lane);
+            n += usize::from(Self::mask_lane(&mask, lane));
+        }
+        self.u32_from_fn(|lane| packed[lane])
+    }
+    /// The largest first.
+    #[inline(always)]
+    fn u32_sort_descending(self, a: Self::U32) -> Self::U32 {
+        let mut sorted = [0; 64];
+        for lane in 0..Self::N {
+            let v = Self::u32_lane(&a, lane);
+            let mut place = lane;
+            while place > 0 && sorted[place - 1] < v {
+                sorted[place] = sorted[place - 1];
+                place -= 1;
+            }
+            sorted[place] = v;
+        }
+        self.u32_from_fn(|lane| sorted[lane])
+    }
+    /// In each lane what `a` has in the lane that `from` names, modulo the number of lanes.
+    #[inline(always)]
+    fn u32_permute(self, a: Self::U32, from: Self::U32) -> Self::U32 {
+        self.u32_from_fn(|lane| Self::u32_lane(&a, Self::u32_lane(&from, lane) as usize % Self::N))
+    }
+    /// The lanes in order, at the beginning of `out`.
+    #[inline(always)]
+    fn f32_store(self, a: Self::F32, out: &mut [f32]) {
+        for (lane, out) in out[..Self::N].iter_mut().enumerate() {
+            *out = Self::f32_lane(&a, lane);
+        }
+    }
+    /// The lanes in order, at the beginning of `out`.
+    #[inline(always)]
+    fn u32_store(self, a: Self::U32, out: &mut [u32]) {
+        for (lane, out) in out[..Self::N].iter_mut().enumerate() {
+            *out = Self::u32_lane(&a, lane);
+        }
+    }
 }
 
 /// `[f(0), f(1), ..]`. Unlike the array functions of `core` it is always inlined: what is not

@@ -1,7 +1,7 @@
 //! One lane.
 
 use super::Lanes;
-use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Op, scalar};
+use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, Gang, IntBinary, Op, scalar};
 
 /// One lane with masks: `Packet<One>` against the untouched source is the oracle of the lowering.
 #[derive(Clone, Copy, Debug, Default)]
@@ -13,7 +13,17 @@ impl Lanes for One {
     type I32 = i32;
     type U32 = u32;
     type Mask = bool;
+    type Eight = Gang<Self, 8>;
+    type Register = Self;
 
+    #[inline(always)]
+    fn eight(self) -> Gang<Self, 8> {
+        Gang(self)
+    }
+    #[inline(always)]
+    fn register(self) -> Self {
+        self
+    }
     fn isa(self) -> &'static str {
         "portable"
     }

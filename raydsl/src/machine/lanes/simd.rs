@@ -5,7 +5,7 @@ use fearless_simd::{
     f32x8, f32x16, i32x4, i32x8, i32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
 };
 
-use super::{Lanes, fill};
+use super::{Lanes, fill, shuffle};
 use crate::machine::op::known;
 use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Op, scalar};
 
@@ -74,7 +74,7 @@ macro_rules! compare_op {
 }
 
 macro_rules! simd_lanes {
-    ($name:ident, $n:literal, $f:ident, $i:ident, $u:ident, $m:ident) => {
+    ($name:ident, $n:literal, $f:ident, $i:ident, $u:ident, $m:ident; $($own:item)*) => {
         #[doc = concat!(stringify!($n), " lanes of the instruction set that `S` proves.")]
         #[derive(Clone, Copy, Debug)]
         pub struct $name<S: Simd>(pub S);
@@ -85,7 +85,17 @@ macro_rules! simd_lanes {
             type I32 = $i<S>;
             type U32 = $u<S>;
             type Mask = $m<S>;
+            type Eight = Simd8<S>;
+            type Register = Self;
 
+            #[inline(always)]
+            fn eight(self) -> Simd8<S> {
+                Simd8(self.0)
+            }
+            #[inline(always)]
+            fn register(self) -> Self {
+                self
+            }
             fn isa(self) -> &'static str {
                 isa_name(self.0.level())
             }
@@ -137,6 +147,23 @@ macro_rules! simd_lanes {
             fn f32_mul_add(self, a: $f<S>, b: $f<S>, c: $f<S>) -> $f<S> {
                 a.mul_add_precise(b, c)
             }
+            #[inline(always)]
+            fn f32_mul_add_fast(self, a: $f<S>, b: $f<S>, c: $f<S>) -> $f<S> {
+                a.mul_add(b, c)
+            }
+            #[inline(always)]
+            fn u32_compress(self, a: $u<S>, mask: $m<S>) -> $u<S> {
+                a.compress(mask)
+            }
+            #[inline(always)]
+            fn f32_store(self, a: $f<S>, out: &mut [f32]) {
+                a.store_slice(&mut out[..$n]);
+            }
+            #[inline(always)]
+            fn u32_store(self, a: $u<S>, out: &mut [u32]) {
+                a.store_slice(&mut out[..$n]);
+            }
+            $($own)*
             #[inline(always)]
             fn i32_binary<O: Op<IntBinary>>(self, _: O, a: $i<S>, b: $i<S>) -> $i<S> {
                 int_vector_op!(self, $i, O, a, b, i32, scalar::i32_binary)
@@ -257,6 +284,15 @@ macro_rules! simd_lanes {
     };
 }
 
-simd_lanes!(Simd4, 4, f32x4, i32x4, u32x4, mask32x4);
-simd_lanes!(Simd8, 8, f32x8, i32x8, u32x8, mask32x8);
-simd_lanes!(Simd16, 16, f32x16, i32x16, u32x16, mask32x16);
+simd_lanes!(Simd4, 4, f32x4, i32x4, u32x4, mask32x4;);
+simd_lanes!(Simd8, 8, f32x8, i32x8, u32x8, mask32x8;
+    #[inline(always)]
+    fn u32_sort_descending(self, a: u32x8<S>) -> u32x8<S> {
+        shuffle::sort_descending(self, a)
+    }
+    #[inline(always)]
+    fn u32_permute(self, a: u32x8<S>, from: u32x8<S>) -> u32x8<S> {
+        shuffle::permute(self.0, a, from)
+    }
+);
+simd_lanes!(Simd16, 16, f32x16, i32x16, u32x16, mask32x16;);

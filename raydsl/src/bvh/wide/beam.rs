@@ -1,0 +1,164 @@
+//! Rays that go the same way, as box tests see them all at once.
+//!
+//! Origins and directions become intervals, and a box is entered by the beam where the first of
+//! its rays may, and left where the last one may: the test of one ray, with other numbers for the
+//! near planes than for the far ones. (Reshetov, Soupikov and Hurley, "Multi-Level Ray Tracing
+//! Algorithm", ACM Transactions on Graphics 24(3), 2005.)
+
+use super::rays::{GROUP, Rays, row};
+use super::step::Slabs;
+use crate::bvh::Node;
+use crate::bvh::slabs::{Allowance, ULP};
+use crate::machine::{Lanes, op};
+
+/// A bundle of rays that go up or down along each axis together.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beam {
+    pub(super) side: [usize; 3],
+    near: [[f32; 2]; 3],
+    far: [[f32; 2]; 3],
+    t_min: f32,
+    /// No node beyond this distance is worth a visit of any of the rays.
+    pub(super) limit: f32,
+}
+
+impl Slabs for &Beam {
+    #[inline(always)]
+    fn side(self, axis: usize) -> usize {
+        self.side[axis]
+    }
+    #[inline(always)]
+    fn near(self, axis: usize) -> [f32; 2] {
+        self.near[axis]
+    }
+    #[inline(always)]
+    fn far(self, axis: usize) -> [f32; 2] {
+        self.far[axis]
+    }
+    #[inline(always)]
+    fn t_min(self) -> f32 {
+        self.t_min
+    }
+    #[inline(always)]
+    fn limit(self) -> f32 {
+        self.limit
+    }
+}
+
+/// The most that directions of a beam may differ along an axis, relative to the largest component:
+/// rays that part further visit less on their own.
+const SPREAD: f32 = 0.5;
+
+/// The least and the greatest number in the rows of some rays.
+pub(super) struct Extent {
+    least: f32,
+    pub(super) greatest: f32,
+}
+
+/// The extent of a row, of the rays whose bits are set.
+#[inline(always)]
+pub(super) fn extent<E: Lanes>(e: E, rays: &Rays, members: &[u32], row: usize) -> Extent {
+    let mut least = e.f32(f32::INFINITY);
+    let mut greatest = e.f32(f32::NEG_INFINITY);
+    for (group, members) in members.iter().enumerate() {
+        for from in [0, E::N] {
+            let there = members >> from & 0xff;
+            if there == 0 {
+                continue;
+            }
+            let there = e.mask_from_bits(there.into());
+            let words = &rays.row(group, row)[from..from + E::N];
+            let v = e.f32_from_fn(
+                #[inline(always)]
+                |i| f32::from_bits(words[i]),
+            );
+            least = e.f32_binary(op::Min, least, e.f32_select(there, v, least));
+            greatest = e.f32_binary(op::Max, greatest, e.f32_select(there, v, greatest));
+        }
+    }
+    let (mut low, mut high) = ([0.0; 8], [0.0; 8]);
+    e.f32_store(least, &mut low);
+    e.f32_store(greatest, &mut high);
+    Extent { least: fold(low, less), greatest: fold(high, more) }
+}
+
+#[inline(always)]
+fn vector<E: Lanes>(e: E, rays: &Rays, members: &[u32], row: usize) -> [Extent; 3] {
+    [
+        extent(e, rays, members, row),
+        extent(e, rays, members, row + 1),
+        extent(e, rays, members, row + 2),
+    ]
+}
+
+#[inline(always)]
+fn less(a: f32, b: f32) -> f32 {
+    if b < a { b } else { a }
+}
+
+#[inline(always)]
+fn more(a: f32, b: f32) -> f32 {
+    if a < b { b } else { a }
+}
+
+#[inline(always)]
+fn fold([a, b, c, d, e, f, g, h]: [f32; 8], of: impl Fn(f32, f32) -> f32) -> f32 {
+    of(of(of(a, b), of(c, d)), of(of(e, f), of(g, h)))
+}
+
+impl Beam {
+    /// The beam of the rays whose bits are set, all of one octant; none if they part too
+    /// far.
+    #[inline(always)]
+    pub(super) fn of<E: Lanes>(
+        e: E,
+        rays: &Rays,
+        members: &[u32],
+        root: &Node,
+        allowance: Allowance,
+    ) -> Option<Self> {
+        const { assert!(2 * E::N == GROUP) };
+        let t_min = extent(e, rays, members, row::T_MIN).least;
+        let origins = vector(e, rays, members, row::ORIGIN);
+        let inverses = vector(e, rays, members, row::INVERSE);
+        let (mut largest, mut spread) = (0.0f32, 0.0f32);
+        for Extent { least, greatest } in &inverses {
+            let (a, b) = (1.0 / least, 1.0 / greatest);
+            largest = largest.max(a.abs()).max(b.abs());
+            spread = spread.max((a - b).abs());
+        }
+        // What lies behind an origin would have to be told from what lies before it.
+        if t_min.is_nan() || t_min < 0.0 || spread > SPREAD * largest {
+            return None;
+        }
+        let limit = extent(e, rays, members, row::LIMIT).greatest;
+        let mut beam =
+            Self { side: [0; 3], near: [[0.0; 2]; 3], far: [[0.0; 2]; 3], t_min, limit };
+        let pad = pad(&origins, root, allowance);
+        for axis in 0..3 {
+            let (o, i) = (&origins[axis], &inverses[axis]);
+            let is_up = i.least > 0.0;
+            beam.side[axis] = usize::from(!is_up);
+            // The least time to the near plane is that of the ray that begins next to it and is
+            // the fastest; the greatest to the far plane that of the opposite one.
+            let (first, fast) = if is_up { (o.greatest, i.least) } else { (o.least, i.greatest) };
+            let (last, slow) = if is_up { (o.least, i.greatest) } else { (o.greatest, i.least) };
+            beam.near[axis] = [fast, -(first * fast) - fast.abs() * pad];
+            beam.far[axis] = [slow, -(last * slow) + slow.abs() * pad];
+        }
+        Some(beam)
+    }
+}
+
+/// By how much boxes are widened, for the rays of a beam.
+fn pad(origins: &[Extent; 3], root: &Node, allowance: Allowance) -> f32 {
+    let (low, high) = (root.min.to_array(), root.max.to_array());
+    let (mut reach, mut largest) = (0.0f32, 0.0f32);
+    for (axis, o) in origins.iter().enumerate() {
+        reach = reach.max((o.greatest - low[axis]).abs()).max((high[axis] - o.least).abs());
+        reach = reach.max((o.least - low[axis]).abs()).max((high[axis] - o.greatest).abs());
+        largest = largest.max(o.least.abs()).max(o.greatest.abs());
+    }
+    let pad = (allowance.slack + 4.0 * ULP) * reach + (allowance.origin + 8.0 * ULP) * largest;
+    pad.max(f32::MIN_POSITIVE)
+}

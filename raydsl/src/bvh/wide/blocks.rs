@@ -1,0 +1,202 @@
+//! Primitives in blocks of eight, each member of all of them side by side.
+
+use super::collapse::Range;
+use super::node::WIDTH;
+use crate::bvh::build::tasks;
+use crate::geometry::Primitive;
+use crate::machine::{Leaves, Machine, Schema, Type, Value, op};
+
+/// A word of eight primitives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C, align(32))]
+pub(crate) struct Row(pub(crate) [u32; WIDTH]);
+
+/// Blocks of primitives in the order of the tree.
+///
+/// A block has a row for each word of a primitive in the host's layout, and one of their numbers.
+/// One that holds fewer than eight has the first one again in what is left.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Blocks {
+    rows: Vec<Row>,
+}
+
+/// Blocks that a thread fills at once.
+const PIECE: usize = 512;
+
+impl Blocks {
+    /// The blocks of these ranges of the index list.
+    pub(super) fn of<P: Primitive>(prims: &[P], indices: &[u32], ranges: &[Range]) -> Self {
+        let height = words_of::<P>() + 1;
+        let mut rows = vec![Row([0; WIDTH]); height * ranges.len()];
+        tasks::map_pieces_mut(&mut rows, PIECE * height, |first, rows| {
+            let mut bytes = vec![0; 4 * (height - 1)];
+            let ranges = &ranges[first / height..];
+            for (block, range) in rows.chunks_exact_mut(height).zip(ranges) {
+                let ids = &indices[range.first as usize..][..range.count as usize];
+                fill(block, prims, ids, &mut bytes);
+            }
+        });
+        Self { rows }
+    }
+
+    /// The rows of a block of these primitives, the last one their numbers.
+    #[inline(always)]
+    pub(crate) fn block<P: Primitive>(&self, index: usize) -> &[Row] {
+        let height = const { words_of::<P>() + 1 };
+        &self.rows[index * height..][..height]
+    }
+
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&self.rows[..])
+    }
+}
+
+fn fill<P: Primitive>(block: &mut [Row], prims: &[P], ids: &[u32], bytes: &mut [u8]) {
+    let Some((numbers, words)) = block.split_last_mut() else { return };
+    numbers.0 = each_once(ids);
+    for (lane, &id) in numbers.0.iter().enumerate() {
+        prims[id as usize].write(bytes);
+        for (row, word) in words.iter_mut().zip(bytes.chunks_exact(4)) {
+            row.0[lane] = u32::from_le_bytes([word[0], word[1], word[2], word[3]]);
+        }
+    }
+}
+
+/// The numbers, each once, and the first one again in what is left: a primitive that has been cut
+/// may be in two leaves that became one block.
+fn each_once(ids: &[u32]) -> [u32; WIDTH] {
+    let mut once = [ids[0]; WIDTH];
+    let mut count = 0;
+    for &id in ids {
+        if !once[..count].contains(&id) {
+            once[count] = id;
+            count += 1;
+        }
+    }
+    once
+}
+
+/// How many words a primitive has in memory.
+const fn words_of<P: Type>() -> usize {
+    P::SCHEMA.size().div_ceil(4)
+}
+
+/// Where a scalar lies in the bytes of a value, and how many bytes it has.
+#[derive(Clone, Copy)]
+struct Spot {
+    offset: u16,
+    size: u8,
+}
+
+/// The most scalars that a primitive in blocks may have.
+const MOST: usize = 256;
+
+/// The scalars of a structure in order of declaration, behind the first `n`.
+const fn spots(schema: &Schema, at: usize, spots: &mut [Spot; MOST], n: usize) -> usize {
+    const fn scalar(size: usize, at: usize, spots: &mut [Spot; MOST], n: usize) -> usize {
+        assert!(n < MOST && at + size <= 65536, "a primitive has at most 256 scalars and 64 KiB");
+        spots[n] = Spot { offset: at as u16, size: size as u8 };
+        n + 1
+    }
+    match schema {
+        Schema::F32 | Schema::I32 | Schema::U32 => scalar(4, at, spots, n),
+        Schema::Bool => scalar(1, at, spots, n),
+        Schema::Small { bytes } => scalar(*bytes, at, spots, n),
+        Schema::Vector(element, count) => {
+            let size = match element {
+                Schema::Bool => 1,
+                _ => 4,
+            };
+            many(element, *count, size, at, spots, n)
+        }
+        Schema::Array { element, count, stride } => many(element, *count, *stride, at, spots, n),
+        Schema::Struct { fields, .. } => {
+            let (mut n, mut i) = (n, 0);
+            while i < fields.len() {
+                n = self::spots(fields[i].schema, at + fields[i].offset, spots, n);
+                i += 1;
+            }
+            n
+        }
+        Schema::Host => n,
+    }
+}
+
+const fn many(
+    element: &Schema,
+    count: usize,
+    stride: usize,
+    at: usize,
+    spots: &mut [Spot; MOST],
+    n: usize,
+) -> usize {
+    let (mut n, mut i) = (n, 0);
+    while i < count {
+        n = self::spots(element, at + i * stride, spots, n);
+        i += 1;
+    }
+    n
+}
+
+/// The spots of a type.
+struct Spots<T>(core::marker::PhantomData<T>);
+
+impl<T: Type> Spots<T> {
+    const ALL: [Spot; MOST] = {
+        let mut all = [Spot { offset: 0, size: 0 }; MOST];
+        spots(T::SCHEMA, 0, &mut all, 0);
+        all
+    };
+}
+
+/// The value whose words in the host's layout `word` gives.
+#[inline(always)]
+pub(crate) fn read<M: Machine, T: Type>(m: &M, word: impl Fn(usize) -> M::U32) -> T::On<M> {
+    let zero = T::On::zero(m);
+    T::On::zip(m, zero, zero, &mut Reader::<_, T> { word, next: 0, of: core::marker::PhantomData })
+}
+
+struct Reader<W, T> {
+    word: W,
+    next: usize,
+    of: core::marker::PhantomData<T>,
+}
+
+impl<W, T: Type> Reader<W, T> {
+    #[inline(always)]
+    fn take<M: Machine>(&mut self, m: &M) -> M::U32
+    where
+        W: Fn(usize) -> M::U32,
+    {
+        let Spot { offset, size } = Spots::<T>::ALL[self.next];
+        self.next += 1;
+        let (word, bit) = ((self.word)(offset as usize / 4), 8 * (offset as u32 % 4));
+        if size == 4 {
+            return word;
+        }
+        let shifted = m.u32_binary(op::Shr, word, m.u32(bit));
+        m.u32_binary(op::And, shifted, m.u32((1 << (8 * size)) - 1))
+    }
+}
+
+impl<M: Machine, W: Fn(usize) -> M::U32, T: Type> Leaves<M> for Reader<W, T> {
+    #[inline(always)]
+    fn f32(&mut self, m: &M, _: M::F32, _: M::F32) -> M::F32 {
+        let bits = self.take(m);
+        m.f32_from_bits(bits)
+    }
+    #[inline(always)]
+    fn i32(&mut self, m: &M, _: M::I32, _: M::I32) -> M::I32 {
+        let bits = self.take(m);
+        m.u32_to_i32(bits)
+    }
+    #[inline(always)]
+    fn u32(&mut self, m: &M, _: M::U32, _: M::U32) -> M::U32 {
+        self.take(m)
+    }
+    #[inline(always)]
+    fn bool(&mut self, m: &M, _: M::Bool, _: M::Bool) -> M::Bool {
+        let bits = self.take(m);
+        m.u32_compare(op::Ne, bits, m.u32(0))
+    }
+}

@@ -1,0 +1,59 @@
+//! The wide tree: nodes of eight children over blocks of eight primitives, which one ray meets in
+//! one test each, and how many rays go through it.
+
+mod beam;
+mod blocks;
+mod collapse;
+mod node;
+mod packet;
+mod rays;
+mod step;
+pub(crate) mod trace;
+pub mod wave;
+
+use super::{BuildConfig, Node, Storage};
+use crate::geometry::Primitive;
+use blocks::Blocks;
+use node::WideNode;
+
+/// A wide tree with its primitives in its leaves; see [`Storage::Leaves`](super::Storage::Leaves).
+#[derive(Clone, Debug)]
+pub(crate) struct Wide {
+    nodes: Vec<WideNode>,
+    blocks: Blocks,
+    /// How many children may be pending at once on the way to a leaf.
+    pending: usize,
+}
+
+/// The wide tree over `prims`, if the configuration asks for one.
+pub(super) fn of<P: Primitive>(
+    nodes: &[Node],
+    indices: &[u32],
+    config: &BuildConfig,
+    prims: &[P],
+    shared: &[P::Shared],
+) -> Option<Wide> {
+    (config.storage == Storage::Leaves).then(|| Wide::of(nodes, indices, prims, shared))
+}
+
+impl Wide {
+    /// Collapses a binary tree over `prims`.
+    pub(super) fn of<P: Primitive>(
+        nodes: &[Node],
+        indices: &[u32],
+        prims: &[P],
+        shared: &[P::Shared],
+    ) -> Self {
+        let solidity = |range: collapse::Range| {
+            let ids = &indices[range.first as usize..][..range.count as usize];
+            ids.iter().map(|&id| 0.5 * prims[id as usize].get_bounds(shared).half_area()).sum()
+        };
+        let collapse::Collapsed { nodes, blocks, pending } = collapse::collapse(nodes, solidity);
+        Self { nodes, blocks: Blocks::of(prims, indices, &blocks), pending }
+    }
+
+    /// Bytes of nodes and leaves.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..]) + self.blocks.bytes()
+    }
+}

@@ -1,0 +1,288 @@
+//! Rays that go the same way, through the tree together.
+
+use super::beam::{Beam, extent};
+use super::blocks::{self, Row};
+use super::node::{Child, WIDTH, WideNode};
+use super::rays::{GROUP, Rays, lanes_mask, load, load_words, row};
+use super::step::{Meeting, enter, ids, sorted};
+use crate::bvh::Node;
+use crate::bvh::packet_slabs::{abs, add, and, max, min, mul, or};
+use crate::bvh::slabs::Allowance;
+use crate::geometry::{HitRecord, Primitive, RayOn};
+use crate::machine::{Entered, F, Lanes, Packet, V3, op};
+
+/// Fewer rays of one octant than this go their own ways.
+const FEWEST: u32 = 12;
+
+/// What a packet needs, kept from one query to the next.
+#[derive(Debug, Default)]
+pub(super) struct Together {
+    /// Slots that are to come: their number in their node, behind eight times the node's.
+    stack: Vec<u32>,
+    /// Where the packet enters them, as the bits of numbers above 0, in whose last three the slot
+    /// is.
+    enters: Vec<u32>,
+    /// The rays of one octant, a bit each.
+    members: Vec<u32>,
+}
+
+/// Finds the least hits of rays that go the same way, which are alive no more then.
+#[inline(always)]
+pub(super) fn closest_hit<R: Lanes, P: Primitive>(
+    r: R,
+    meeting: &Meeting<'_, R::Eight, P>,
+    rays: &mut Rays,
+    together: &mut Together,
+    root: &Node,
+) {
+    let mut left: u32 = rays.marks.iter().map(|marks| marks.alive.count_ones()).sum();
+    while left > 0 {
+        let octant = take_octant(rays, &mut together.members);
+        left -= octant;
+        let beam = if octant < FEWEST {
+            None
+        } else {
+            Beam::of(r.eight(), rays, &together.members, root, Allowance::of::<P>())
+        };
+        match beam {
+            Some(beam) => walk(r, meeting, rays, together, beam),
+            None => {
+                for (marks, members) in rays.marks.iter_mut().zip(&together.members) {
+                    marks.alone |= members;
+                }
+            }
+        }
+    }
+    for marks in &mut rays.marks {
+        marks.alive = core::mem::take(&mut marks.alone);
+    }
+}
+
+/// Moves the rays of one octant from those that are alive to `members`; returns how many.
+#[inline(always)]
+fn take_octant(rays: &mut Rays, members: &mut Vec<u32>) -> u32 {
+    members.clear();
+    let mut octant = None;
+    let mut count = 0;
+    for group in 0..rays.marks.len() {
+        let alive = rays.marks[group].alive;
+        if alive == 0 {
+            members.push(0);
+            continue;
+        }
+        let [x, y, z] = rays.marks[group].sides;
+        let first = alive.trailing_zeros();
+        let whole = |side: u32| (side >> first & 1).wrapping_neg();
+        let [ox, oy, oz] = *octant.get_or_insert([whole(x), whole(y), whole(z)]);
+        let same = alive & !(x ^ ox) & !(y ^ oy) & !(z ^ oz);
+        rays.marks[group].alive &= !same;
+        members.push(same);
+        count += same.count_ones();
+    }
+    count
+}
+
+/// Takes a packet through the tree.
+#[inline(always)]
+fn walk<R: Lanes, P: Primitive>(
+    r: R,
+    meeting: &Meeting<'_, R::Eight, P>,
+    rays: &mut Rays,
+    together: &mut Together,
+    mut beam: Beam,
+) {
+    let (e, tree) = (r.eight(), meeting.tree);
+    let Together { stack, enters, members } = together;
+    let room = 1 + tree.pending + WIDTH;
+    if stack.len() < room {
+        stack.resize(room, 0);
+        enters.resize(room, 0);
+    }
+    let slots = e.u32_from_fn(
+        #[inline(always)]
+        |i| i as u32,
+    );
+    let mut packet = Members { r, m: Packet::new(Entered(r)), rays, members, side: beam.side };
+    let (mut at, mut slot, mut top) = (Child::node(0), 0, 0);
+    loop {
+        if at.is_block() {
+            let node = &tree.nodes[slot / WIDTH];
+            let is_nearer = packet.meet(meeting, meeting.rows(at.index()), node, slot % WIDTH);
+            if is_nearer {
+                beam.limit = extent(e, packet.rays, packet.members, row::LIMIT).greatest;
+            }
+        } else {
+            let node = &tree.nodes[at.index()];
+            let (near, mask) = enter(e, node, &beam);
+            let keys = sorted(e, near, mask, slots);
+            let below = e.u32_binary(op::And, keys, e.u32(7));
+            let below = e.u32_binary(op::Or, below, e.u32(8 * at.0));
+            e.u32_store(below, &mut stack[top..][..WIDTH]);
+            e.u32_store(keys, &mut enters[top..][..WIDTH]);
+            top += e.bits(mask).count_ones() as usize;
+        }
+        // Below the first distance above zero no bits are larger.
+        let limit = if beam.limit > 0.0 { beam.limit.to_bits() } else { 7 };
+        loop {
+            if top == 0 {
+                return;
+            }
+            top -= 1;
+            if enters[top] & !7 <= limit {
+                break;
+            }
+        }
+        slot = stack[top] as usize;
+        at = Child(tree.nodes[slot / WIDTH].children[slot % WIDTH]);
+    }
+}
+
+/// The rays of a packet.
+struct Members<'a, R: Lanes> {
+    r: R,
+    m: Packet<Entered<R>>,
+    rays: &'a mut Rays,
+    /// A bit each.
+    members: &'a [u32],
+    side: [usize; 3],
+}
+
+impl<R: Lanes> Members<'_, R> {
+    /// Meets the primitives of a block, whose box is in a slot of a node; whether any ray has a
+    /// nearer hit.
+    #[inline(always)]
+    fn meet<P: Primitive>(
+        &mut self,
+        meeting: &Meeting<'_, R::Eight, P>,
+        block: &[Row],
+        node: &WideNode,
+        slot: usize,
+    ) -> bool {
+        let r = self.r;
+        let ids = ids(block);
+        // What is left of a block has its first primitive again.
+        let count = (1..WIDTH).find(|&i| ids[i] == ids[0]).unwrap_or(WIDTH);
+        let mut is_nearer = false;
+        for (group, &members) in self.members.iter().enumerate() {
+            for from in (0..GROUP).step_by(R::N) {
+                let alive = members >> from & lanes_mask::<R>();
+                if alive == 0 {
+                    continue;
+                }
+                let lanes = Register { r, m: &self.m, rays: self.rays, group, from };
+                let there = lanes.enter(node, slot, self.side);
+                let there = and(r, there, r.mask_from_bits(alive.into()));
+                if r.any(there) {
+                    is_nearer |= lanes.meet(meeting, block, count, there);
+                }
+            }
+        }
+        is_nearer
+    }
+}
+
+/// A register of rays.
+struct Register<'a, R: Lanes> {
+    r: R,
+    m: &'a Packet<Entered<R>>,
+    rays: &'a mut Rays,
+    group: usize,
+    from: usize,
+}
+
+impl<R: Lanes> Register<'_, R> {
+    #[inline(always)]
+    fn number(&self, row: usize) -> R::F32 {
+        load(self.r, self.rays.row(self.group, row), self.from)
+    }
+
+    #[inline(always)]
+    fn set(&mut self, row: usize, word: R::U32) {
+        self.r.u32_store(word, &mut self.rays.row_mut(self.group, row)[self.from..]);
+    }
+
+    #[inline(always)]
+    fn set_number(&mut self, row: usize, number: R::F32) {
+        self.set(row, self.r.f32_to_bits(number));
+    }
+
+    #[inline(always)]
+    fn vector(&self, row: usize) -> V3<Packet<Entered<R>>> {
+        V3 { x: F(self.number(row)), y: F(self.number(row + 1)), z: F(self.number(row + 2)) }
+    }
+
+    /// The rays that enter a box before their limits.
+    #[inline(always)]
+    fn enter(&self, node: &WideNode, slot: usize, side: [usize; 3]) -> R::Mask {
+        let r = self.r;
+        let mut near = self.number(row::T_MIN);
+        let mut far = self.number(row::LIMIT);
+        for axis in 0..3 {
+            let first = r.f32(node.planes[2 * axis + (side[axis] & 1)][slot % WIDTH]);
+            let last = r.f32(node.planes[2 * axis + 1 - (side[axis] & 1)][slot % WIDTH]);
+            let inverse = self.number(row::INVERSE + axis);
+            near = max(r, near, r.f32_mul_add_fast(first, inverse, self.number(row::FIRST + axis)));
+            far = min(r, far, r.f32_mul_add_fast(last, inverse, self.number(row::LAST + axis)));
+        }
+        r.f32_compare(op::Le, near, far)
+    }
+
+    /// Meets the first primitives of a block; whether any ray has a nearer hit.
+    #[inline(always)]
+    fn meet<P: Primitive>(
+        mut self,
+        meeting: &Meeting<'_, R::Eight, P>,
+        block: &[Row],
+        count: usize,
+        there: R::Mask,
+    ) -> bool {
+        let (r, m) = (self.r, self.m);
+        let ray = RayOn {
+            origin: self.vector(row::ORIGIN),
+            direction: self.vector(row::DIRECTION),
+            t_min: F(self.number(row::T_MIN)),
+            t_max: F(self.number(row::T_MAX)),
+        };
+        let numbers = ids(block);
+        let mut is_nearer = false;
+        // Without a check of bounds on the way, what depends on the rays alone is done once.
+        for i in 0..count {
+            let prim = blocks::read::<_, P>(
+                m,
+                #[inline(always)]
+                |word| r.u32(block[word].0[i % WIDTH]),
+            );
+            let record = m.with_active(
+                there,
+                #[inline(always)]
+                || P::intersect_among_on(m, meeting.kinds, prim, ray, meeting.shared),
+            );
+            let hit = P::Hit::hit_on(record);
+            let t = hit.t.0;
+            let best = self.number(row::T);
+            let after = r.f32_compare(op::Ge, t, ray.t_min.0);
+            let before = r.f32_compare(op::Le, t, ray.t_max.0);
+            let met = and(r, and(r, there, hit.is_hit.0), and(r, after, before));
+            let met = and(r, met, r.f32_compare(op::Le, t, best));
+            if !r.any(met) {
+                continue;
+            }
+            let id = r.u32(meeting.part.first + numbers[i % WIDTH]);
+            let ids = load_words(r, self.rays.row(self.group, row::ID), self.from);
+            let first = r.u32_compare(op::Lt, id, ids);
+            let take = and(r, met, or(r, r.f32_compare(op::Lt, t, best), first));
+            let best = r.f32_select(take, t, best);
+            let (u, v) = (self.number(row::U), self.number(row::V));
+            let found = load_words(r, self.rays.row(self.group, row::FOUND), self.from);
+            self.set_number(row::T, best);
+            self.set_number(row::U, r.f32_select(take, hit.u.0, u));
+            self.set_number(row::V, r.f32_select(take, hit.v.0, v));
+            self.set(row::ID, r.u32_select(take, id, ids));
+            self.set(row::FOUND, r.u32_select(take, r.u32(1), found));
+            let slack = mul(r, abs(r, best), r.f32(P::SLACK));
+            self.set_number(row::LIMIT, min(r, ray.t_max.0, add(r, best, slack)));
+            is_nearer = true;
+        }
+        is_nearer
+    }
+}

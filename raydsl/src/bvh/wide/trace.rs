@@ -1,0 +1,234 @@
+//! Queries of packets, answered by wide trees.
+
+use core::cell::Cell;
+
+use super::packet::{self, Together};
+use super::rays::{GROUP, RayWordsMut, Rays, load_words, place, ray_at_mut, row};
+use super::step::Meeting;
+use super::wave::{self, Wave};
+use crate::bvh::packet_slabs::{and, finite};
+use crate::bvh::slabs::Allowance;
+use crate::bvh::{Node, Part, SceneView, traverse};
+use crate::geometry::{HitOn, Primitive, RayOn};
+use crate::machine::{B, Entered, F, Lanes, Packet, U, op};
+
+/// The memory of a query, which a thread keeps for the next one.
+#[derive(Debug, Default)]
+struct Scratch {
+    rays: Rays,
+    wave: Wave,
+    together: Together,
+}
+
+thread_local! {
+    static SCRATCH: Cell<Option<Box<Scratch>>> = const { Cell::new(None) };
+}
+
+/// Whether a scene is trees with primitives in their leaves.
+#[inline(always)]
+pub(crate) fn answers<P: Primitive>(scene: &SceneView<'_, P>) -> bool {
+    scene.placed().is_none() && scene.parts().all(|part| part.wide.is_some())
+}
+
+/// The least `(t, id)` hit of every running lane, for each of some rays of a packet.
+#[inline(never)]
+pub(crate) fn closest_hits<L: Lanes, P: Primitive>(
+    m: &Packet<L>,
+    scene: &SceneView<'_, P>,
+    rays: &[RayOn<Packet<L>>],
+    hits: &mut [HitOn<Packet<L>>],
+) {
+    m.lanes().vectorize(
+        #[inline(always)]
+        || {
+            let mut scratch = SCRATCH.take().unwrap_or_default();
+            load(m, &mut scratch.rays, rays);
+            let l = m.lanes();
+            each_part(
+                l,
+                scene,
+                &mut scratch,
+                #[inline(always)]
+                |meeting, root, Scratch { rays, wave, together }| {
+                    packet::closest_hit(l.register(), meeting, rays, together, root);
+                    wave::closest_hit(l.register().eight(), meeting, rays, wave);
+                },
+                |words| {
+                    let hit = traverse::nearest(scene, words.as_ref().ray());
+                    words.set_number(row::T, hit.t);
+                    words.set_number(row::U, hit.u);
+                    words.set_number(row::V, hit.v);
+                    words.set(row::ID, hit.prim_id);
+                    hit.is_hit
+                },
+            );
+            for (q, hit) in hits.iter_mut().enumerate() {
+                *hit = hit_at(l, &scratch.rays, q * L::N);
+            }
+            SCRATCH.set(Some(scratch));
+        },
+    );
+}
+
+/// Whether every running lane hits anything, for each of some rays of a packet.
+#[inline(never)]
+pub(crate) fn any_hits<L: Lanes, P: Primitive>(
+    m: &Packet<L>,
+    scene: &SceneView<'_, P>,
+    rays: &[RayOn<Packet<L>>],
+    hits: &mut [B<Packet<L>>],
+) {
+    m.lanes().vectorize(
+        #[inline(always)]
+        || {
+            let mut scratch = SCRATCH.take().unwrap_or_default();
+            load(m, &mut scratch.rays, rays);
+            let l = m.lanes();
+            each_part(
+                l,
+                scene,
+                &mut scratch,
+                #[inline(always)]
+                |meeting, _, Scratch { rays, wave, .. }| {
+                    wave::any_hit(l.register().eight(), meeting, rays, wave);
+                },
+                |words| traverse::any_hit(scene, words.as_ref().ray()),
+            );
+            for (q, hit) in hits.iter_mut().enumerate() {
+                *hit = B(found_at(l, &scratch.rays, q * L::N));
+            }
+            SCRATCH.set(Some(scratch));
+        },
+    );
+}
+
+/// Asks every part of a scene about the rays, and `alone` about those that are too odd for boxes.
+#[inline(always)]
+fn each_part<L: Lanes, P: Primitive>(
+    l: L,
+    scene: &SceneView<'_, P>,
+    scratch: &mut Scratch,
+    mut ask: impl FnMut(&Meeting<'_, <L::Register as Lanes>::Eight, P>, &Node, &mut Scratch),
+    alone: impl Fn(&mut RayWordsMut<'_>) -> bool,
+) {
+    let e = l.register().eight();
+    let mut part_of = 0;
+    while let Some(part) = scene.part(part_of) {
+        part_of += 1;
+        let (Some(tree), Some(branches)) = (part.wide, part.tree) else { continue };
+        let Some(root) = branches.nodes.first() else { continue };
+        for group in 0..scratch.rays.marks.len() {
+            scratch.rays.prepare(l.register(), group, root, Allowance::of::<P>());
+        }
+        let meeting = meeting(e, scene, part, tree);
+        ask(&meeting, root, scratch);
+    }
+    let rays = &mut scratch.rays;
+    if rays.marks.iter().all(|marks| marks.odd == 0) {
+        return;
+    }
+    for group in 0..rays.marks.len() {
+        let odd = rays.marks[group].odd;
+        for lane in (0..GROUP).filter(|lane| odd >> lane & 1 != 0) {
+            let mut words = ray_at_mut(rays.words(), place(GROUP * group + lane));
+            let found = alone(&mut words);
+            words.set(row::FOUND, found.into());
+        }
+    }
+}
+
+#[inline(always)]
+fn meeting<'a, E: Lanes, P: Primitive>(
+    e: E,
+    scene: &SceneView<'a, P>,
+    part: Part<'a, P, P::Shared>,
+    tree: &'a super::Wide,
+) -> Meeting<'a, E, P> {
+    let (shared, kinds) = (scene.shared(), scene.kinds());
+    Meeting { m: Packet::new(Entered(e)), tree, part, shared, kinds }
+}
+
+/// Writes the rays of the running lanes to groups, one packet behind the other.
+#[inline(always)]
+fn load<L: Lanes>(m: &Packet<L>, to: &mut Rays, rays: &[RayOn<Packet<L>>]) {
+    let l = m.lanes();
+    to.begin(L::N * rays.len());
+    for (q, ray) in rays.iter().enumerate() {
+        let first = q * L::N;
+        let (o, d) = (ray.origin.array(), ray.direction.array());
+        for axis in 0..3 {
+            spread(l, o[axis], to, first, row::ORIGIN + axis);
+            spread(l, d[axis], to, first, row::DIRECTION + axis);
+        }
+        spread(l, ray.t_min.0, to, first, row::T_MIN);
+        spread(l, ray.t_max.0, to, first, row::T_MAX);
+        spread(l, ray.t_max.0, to, first, row::LIMIT);
+        spread(l, l.f32(f32::INFINITY), to, first, row::T);
+        spread(l, l.f32(0.0), to, first, row::U);
+        spread(l, l.f32(0.0), to, first, row::V);
+        spread(l, l.f32_from_bits(l.u32(u32::MAX)), to, first, row::ID);
+        spread(l, l.f32(0.0), to, first, row::FOUND);
+        let alive = l.bits(and(l, m.active(), finite(l, ray)));
+        for from in (0..L::N).step_by(GROUP) {
+            let (group, lane) = ((first + from) / GROUP, (first + from) % GROUP);
+            let lanes = if L::N < GROUP { alive } else { alive >> from & 0xffff };
+            to.marks[group].asked |= (lanes as u32) << lane;
+        }
+    }
+}
+
+/// Writes a number of every lane to its place.
+#[inline(always)]
+fn spread<L: Lanes>(l: L, numbers: L::F32, to: &mut Rays, first: usize, row: usize) {
+    let words = l.f32_to_bits(numbers);
+    if L::N <= GROUP {
+        l.u32_store(words, &mut to.row_mut(first / GROUP, row)[first % GROUP..]);
+    } else {
+        let mut all = [0; 64];
+        l.u32_store(words, &mut all);
+        for from in (0..L::N).step_by(GROUP) {
+            let lanes = &all[from..from + GROUP];
+            to.row_mut((first + from) / GROUP, row).copy_from_slice(lanes);
+        }
+    }
+}
+
+/// A word of each lane, from that of the ray `first` on.
+#[inline(always)]
+fn words_at<L: Lanes>(l: L, rays: &Rays, first: usize, row: usize) -> L::U32 {
+    if L::N <= GROUP {
+        return load_words(l, rays.row(first / GROUP, row), first % GROUP);
+    }
+    let mut all = [0; 64];
+    for from in (0..L::N).step_by(GROUP) {
+        all[from..from + GROUP].copy_from_slice(rays.row((first + from) / GROUP, row));
+    }
+    l.u32_from_fn(
+        #[inline(always)]
+        |lane| all[lane],
+    )
+}
+
+/// The lanes whose rays, from the number `first` on, have found anything.
+#[inline(always)]
+fn found_at<L: Lanes>(l: L, rays: &Rays, first: usize) -> L::Mask {
+    l.u32_compare(op::Ne, words_at(l, rays, first, row::FOUND), l.u32(0))
+}
+
+#[inline(always)]
+fn number_at<L: Lanes>(l: L, rays: &Rays, first: usize, row: usize) -> L::F32 {
+    l.f32_from_bits(words_at(l, rays, first, row))
+}
+
+#[inline(always)]
+fn hit_at<L: Lanes>(l: L, rays: &Rays, first: usize) -> HitOn<Packet<L>> {
+    let found = found_at(l, rays, first);
+    HitOn {
+        is_hit: B(found),
+        t: F(l.f32_select(found, number_at(l, rays, first, row::T), l.f32(0.0))),
+        prim_id: U(l.u32_select(found, words_at(l, rays, first, row::ID), l.u32(0))),
+        inst_id: U(l.u32(0)),
+        u: F(number_at(l, rays, first, row::U)),
+        v: F(number_at(l, rays, first, row::V)),
+    }
+}
