@@ -1,8 +1,8 @@
 //! A kernel with all its variants.
 
 use crate::machine::{
-    Counted, Gang, KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet, Recorder,
-    Recording, Resource, Rounding, Simd4, Simd8, Simd16, Type, U, wgsl,
+    Counted, Gang, KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet,
+    Recorder, Recording, Resource, Rounding, Simd4, Simd8, Simd16, Type, U, wgsl,
 };
 
 /// The machines for which closures are lifted: the natural widths of the target's levels.
@@ -113,14 +113,8 @@ pub enum Variant {
 
 impl Variant {
     /// Every variant, in the order of tables.
-    pub const ALL: [Self; 6] = [
-        Self::Scalar,
-        Self::Packet4,
-        Self::Packet8,
-        Self::Packet16,
-        Self::Packet64,
-        Self::Wgsl,
-    ];
+    pub const ALL: [Self; 6] =
+        [Self::Scalar, Self::Packet4, Self::Packet8, Self::Packet16, Self::Packet64, Self::Wgsl];
 
     /// `scalar`, `packet4`, `packet8`, `packet16`, `packet64` or `wgsl`.
     pub const fn name(self) -> &'static str {
@@ -184,7 +178,7 @@ impl Variant {
         }
     }
 
-    fn with_lanes<T: LanesTask>(self, task: T) -> T::Output {
+    pub(crate) fn with_lanes<T: LanesTask>(self, task: T) -> T::Output {
         let levels = Levels::detect();
         match self {
             Self::Packet4 if let Some(s) = levels.narrow => task.run(Simd4(s)),
@@ -197,7 +191,8 @@ impl Variant {
     }
 }
 
-trait LanesTask {
+/// Something to do with lanes of one kind.
+pub(crate) trait LanesTask {
     type Output;
     fn run<L: Lanes>(self, lanes: L) -> Self::Output;
 }

@@ -6,7 +6,9 @@ pub use glam::{
     bvec4, ivec2, ivec3, ivec4, mat3, mat4, uvec2, uvec3, uvec4, vec2, vec3, vec4,
 };
 
-pub use crate::bvh::{BuildConfig, BuildQuality, Bvh, BvhList, Instance, Instances, RayQuery};
+pub use crate::bvh::{
+    BuildConfig, BuildQuality, Bvh, BvhList, Instance, Instances, RayQuery, Storage,
+};
 pub use crate::camera::{
     Camera, CameraRays, DepthRange, Matrix, Orthographic, Pinhole, Stereo, ThinLens,
 };

@@ -5,9 +5,7 @@
 //! for every level and width takes thirteen times as long.
 
 use raydsl::__at_run_time as at_run_time;
-use raydsl::machine::{
-    BoolBinary, Compare, F32Binary, F32Unary, Gang, IntBinary, Lanes, One, Op,
-};
+use raydsl::machine::{BoolBinary, Compare, F32Binary, F32Unary, Gang, IntBinary, Lanes, One, Op};
 
 /// `N` lanes of the level behind the reference. It may have fewer: then the upper lanes hold
 /// nothing, and must not run.

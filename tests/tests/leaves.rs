@@ -3,7 +3,6 @@
 
 use core::fmt::Debug;
 
-use raydsl::bvh::Storage;
 use raydsl::prelude::*;
 use raydsl::{Type, kernel};
 use raydsl_tests::rng::Rng;
@@ -114,14 +113,19 @@ macro_rules! assert_as_slice {
     ($bvh:expr, $prims:expr, $rays:expr) => {{
         let (bvh, prims, rays) = (&$bvh, &$prims[..], &$rays[..]);
         let kernel = kernel!(|ray: Ray| {
-            let ahead = bvh.closest_hit_each::<3>(|i: u32| ray.with_range(0.3 * i as f32, ray.t_max));
+            let ahead =
+                bvh.closest_hit_each::<3>(|i: u32| ray.with_range(0.3 * i as f32, ray.t_max));
             let any = bvh.any_hit_each::<9>(|i: u32| ray.with_range(0.3 * i as f32, ray.t_max));
             let one = (bvh.closest_hit(ray), bvh.any_hit(ray));
             (one, ahead[0], ahead[2], any[0], any[8])
         });
         let mut hits = 0;
-        for (ray,) in rays {
+        let host: Vec<Ray> = rays.iter().map(|(ray,)| *ray).collect();
+        let many = bvh.closest_hits(&host).into_iter().zip(bvh.any_hits(&host));
+        assert_eq!(many.len(), rays.len());
+        for ((ray,), many) in rays.iter().zip(many) {
             let (closest, any) = kernel.call((*ray,)).0;
+            assert_eq!((closest, any), many, "{ray:?}");
             hits += usize::from(any);
             assert_eq!(closest, prims.closest_hit(*ray), "{ray:?}");
             assert_eq!(any, prims.any_hit(*ray), "{ray:?}");

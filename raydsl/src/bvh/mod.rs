@@ -11,6 +11,7 @@
 //! * Every layout runs the same arithmetic on the same members of a primitive.
 
 mod accelerator;
+mod batch;
 pub mod build;
 mod coverage;
 mod instances;
@@ -27,7 +28,7 @@ pub mod traverse;
 pub(crate) mod traverse_packet;
 mod validate;
 mod view;
-pub mod wide;
+pub(crate) mod wide;
 
 #[cfg(test)]
 mod tests;

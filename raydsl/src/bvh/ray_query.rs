@@ -2,7 +2,7 @@
 
 use glam::{Affine3, Vec3};
 
-use super::{Accelerated, Bvh, BvhList, Cost, Instances, SceneView, View, traverse};
+use super::{Accelerated, Bvh, BvhList, Cost, Instances, SceneView, View, batch, traverse};
 use crate::geometry::{Hit, Primitive, Ray, transform_normal_back};
 
 /// What rays may ask of primitives: of a slice, a tree ([`Bvh`]), a list of trees ([`BvhList`]),
@@ -60,6 +60,29 @@ pub trait RayQuery {
     /// ```
     fn any_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [bool; N] {
         core::array::from_fn(|i| self.any_hit(ray(i as u32)))
+    }
+
+    /// The least `(t, id)` hit of each ray, in packets: rays in, hits out, without a camera or a
+    /// kernel. On the calling thread; the results are those of [`RayQuery::closest_hit`].
+    ///
+    /// ```
+    /// use raydsl::prelude::*;
+    ///
+    /// let triangles = [Triangle { v0: Vec3::Z, v1: vec3(4.0, 0.0, 1.0), v2: vec3(0.0, 4.0, 1.0) }];
+    /// let bvh = Bvh::build_with(&triangles, &Storage::Leaves.into())?;
+    /// let rays: Vec<Ray> = (0..100).map(|i| Ray::new(vec3(0.1 * i as f32, 0.5, 0.0), Vec3::Z)).collect();
+    /// let hits = bvh.closest_hits(&rays);
+    /// assert_eq!(hits.len(), 100);
+    /// assert!(hits[35].is_hit && hits[35].t == 1.0 && !hits[36].is_hit);
+    /// # Ok::<(), raydsl::bvh::BuildError>(())
+    /// ```
+    fn closest_hits(&self, rays: &[Ray]) -> Vec<<Self::Primitive as Primitive>::Hit> {
+        batch::closest_hits(&self.view(), rays)
+    }
+
+    /// Whether each ray hits anything, in packets; as [`RayQuery::closest_hits`].
+    fn any_hits(&self, rays: &[Ray]) -> Vec<bool> {
+        batch::any_hits(&self.view(), rays)
     }
 
     /// The least `(t, id)` hit of `ray` that `accept` accepts: leaves with holes, sides that are

@@ -7,7 +7,7 @@
 mod choices;
 mod layout;
 
-use raydsl::bvh::{self, BuildError, Storage};
+use raydsl::bvh::{self, BuildError};
 use raydsl::prelude::*;
 use raydsl::primitive;
 

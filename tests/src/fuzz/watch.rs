@@ -2,9 +2,7 @@
 
 use std::cell::Cell;
 
-use raydsl::machine::{
-    BoolBinary, Compare, F32Binary, F32Unary, Gang, IntBinary, Lanes, One, Op,
-};
+use raydsl::machine::{BoolBinary, Compare, F32Binary, F32Unary, Gang, IntBinary, Lanes, One, Op};
 
 thread_local! {
     static LOOSE: Cell<bool> = const { Cell::new(false) };

@@ -2,7 +2,6 @@
 
 mod kernels;
 
-use raydsl::bvh::{BuildConfig, Storage};
 use raydsl::prelude::*;
 use raydsl_benches::clock::seconds_on;
 use raydsl_benches::contest::{Cost, Outcome, in_parts};

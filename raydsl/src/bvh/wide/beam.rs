@@ -132,8 +132,7 @@ impl Beam {
             return None;
         }
         let limit = extent(e, rays, members, row::LIMIT).greatest;
-        let mut beam =
-            Self { side: [0; 3], near: [[0.0; 2]; 3], far: [[0.0; 2]; 3], t_min, limit };
+        let mut beam = Self { side: [0; 3], near: [[0.0; 2]; 3], far: [[0.0; 2]; 3], t_min, limit };
         let pad = pad(&origins, root, allowance);
         for axis in 0..3 {
             let (o, i) = (&origins[axis], &inverses[axis]);

@@ -167,13 +167,3 @@ impl Emission<'_> {
         stopped * area / plan.costs[0].max(f32::MIN_POSITIVE)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pending_children_are_bounded() {
-        assert_eq!(collapse(&[], |_| 0.0).pending, 0);
-    }
-}

@@ -8,8 +8,10 @@ mod node;
 mod packet;
 mod rays;
 mod step;
+#[cfg(test)]
+mod tests;
 pub(crate) mod trace;
-pub mod wave;
+mod wave;
 
 use super::{BuildConfig, Node, Storage};
 use crate::geometry::Primitive;

@@ -11,7 +11,8 @@ use crate::bvh::slabs::Allowance;
 use crate::geometry::{HitRecord, Primitive, RayOn};
 use crate::machine::{Entered, F, Lanes, Packet, V3, op};
 
-/// Fewer rays of one octant than this go their own ways.
+/// Fewer rays of one octant than this go their own ways, unless they are most of those that there
+/// are.
 const FEWEST: u32 = 12;
 
 /// What a packet needs, kept from one query to the next.
@@ -36,10 +37,11 @@ pub(super) fn closest_hit<R: Lanes, P: Primitive>(
     root: &Node,
 ) {
     let mut left: u32 = rays.marks.iter().map(|marks| marks.alive.count_ones()).sum();
+    let fewest = FEWEST.min(left / 4 * 3).max(2);
     while left > 0 {
         let octant = take_octant(rays, &mut together.members);
         left -= octant;
-        let beam = if octant < FEWEST {
+        let beam = if octant < fewest {
             None
         } else {
             Beam::of(r.eight(), rays, &together.members, root, Allowance::of::<P>())
@@ -217,9 +219,9 @@ impl<R: Lanes> Register<'_, R> {
         let r = self.r;
         let mut near = self.number(row::T_MIN);
         let mut far = self.number(row::LIMIT);
-        for axis in 0..3 {
-            let first = r.f32(node.planes[2 * axis + (side[axis] & 1)][slot % WIDTH]);
-            let last = r.f32(node.planes[2 * axis + 1 - (side[axis] & 1)][slot % WIDTH]);
+        for (axis, side) in side.into_iter().enumerate() {
+            let first = r.f32(node.planes[2 * axis + (side & 1)][slot % WIDTH]);
+            let last = r.f32(node.planes[2 * axis + 1 - (side & 1)][slot % WIDTH]);
             let inverse = self.number(row::INVERSE + axis);
             near = max(r, near, r.f32_mul_add_fast(first, inverse, self.number(row::FIRST + axis)));
             far = min(r, far, r.f32_mul_add_fast(last, inverse, self.number(row::LAST + axis)));

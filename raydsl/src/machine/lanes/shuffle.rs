@@ -78,12 +78,7 @@ mod x86 {
     }
 
     #[inline(always)]
-    pub(super) fn permute<S: Simd>(
-        avx2: Avx2,
-        simd: S,
-        a: u32x8<S>,
-        from: u32x8<S>,
-    ) -> u32x8<S> {
+    pub(super) fn permute<S: Simd>(avx2: Avx2, simd: S, a: u32x8<S>, from: u32x8<S>) -> u32x8<S> {
         fearless_simd::kernel!(
             #[inline(always)]
             fn permute(_token: Avx2, a: __m256i, from: __m256i) -> __m256i {
@@ -107,8 +102,11 @@ mod tests {
             let of = |lane: usize| (bits >> lane & 1) * u32::MAX;
             let sorted = l.u32_sort_descending(l.u32_from_fn(of));
             let ones = bits.count_ones() as usize;
-            assert!((0..8).all(|lane| L::u32_lane(&sorted, lane) == u32::from(lane < ones) * u32::MAX));
-            let packed = l.u32_compress(l.u32_from_fn(|lane| lane as u32), l.mask_from_bits(bits.into()));
+            assert!(
+                (0..8).all(|lane| L::u32_lane(&sorted, lane) == u32::from(lane < ones) * u32::MAX)
+            );
+            let packed =
+                l.u32_compress(l.u32_from_fn(|lane| lane as u32), l.mask_from_bits(bits.into()));
             let expected = (0..8).filter(|lane| bits >> lane & 1 != 0);
             assert!(expected.enumerate().all(|(at, lane)| L::u32_lane(&packed, at) == lane));
             let from = |lane: usize| (bits.rotate_left(lane as u32) ^ lane as u32) & 0xff;

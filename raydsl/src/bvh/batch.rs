@@ -1,0 +1,84 @@
+//! Queries of many rays on the host, in packets.
+
+use super::{SceneView, record_on};
+use crate::geometry::{Primitive, Ray};
+use crate::kernel::{LanesTask, Variant};
+use crate::machine::{B, Lanes, Machine, Packet, Type, fill};
+
+/// Packets that ask together: what goes its own ways is quicker in company.
+const TOGETHER: usize = 8;
+
+/// The record of the least `(t, id)` hit of each ray.
+pub(super) fn closest_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray]) -> Vec<P::Hit> {
+    Variant::widest().with_lanes(Closest { scene, rays })
+}
+
+/// Whether each ray hits anything.
+pub(super) fn any_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray]) -> Vec<bool> {
+    Variant::widest().with_lanes(Any { scene, rays })
+}
+
+struct Closest<'a, 's, P: Primitive> {
+    scene: &'a SceneView<'s, P>,
+    rays: &'a [Ray],
+}
+
+struct Any<'a, 's, P: Primitive> {
+    scene: &'a SceneView<'s, P>,
+    rays: &'a [Ray],
+}
+
+impl<P: Primitive> LanesTask for Closest<'_, '_, P> {
+    type Output = Vec<P::Hit>;
+
+    fn run<L: Lanes>(self, lanes: L) -> Vec<P::Hit> {
+        let mut hits = Vec::with_capacity(self.rays.len());
+        lanes.vectorize(|| {
+            let m = Packet::new(lanes);
+            for rays in self.rays.chunks(TOGETHER * L::N) {
+                let packets = packets(&m, rays);
+                let found = m.closest_hits(self.scene, &packets);
+                for (i, _) in rays.iter().enumerate().step_by(L::N) {
+                    let q = i / L::N;
+                    let record = record_on(&m, self.scene, packets[q], found[q]);
+                    let left = rays.len() - i;
+                    hits.extend((0..L::N.min(left)).map(|lane| P::Hit::lane(&record, lane)));
+                }
+            }
+        });
+        hits
+    }
+}
+
+impl<P: Primitive> LanesTask for Any<'_, '_, P> {
+    type Output = Vec<bool>;
+
+    fn run<L: Lanes>(self, lanes: L) -> Vec<bool> {
+        let mut hits = Vec::with_capacity(self.rays.len());
+        lanes.vectorize(|| {
+            let m = Packet::new(lanes);
+            for rays in self.rays.chunks(TOGETHER * L::N) {
+                let found: [B<Packet<L>>; TOGETHER] = m.any_hits(self.scene, &packets(&m, rays));
+                let hit = |i: usize| L::mask_lane(&found[i / L::N].0, i % L::N);
+                hits.extend((0..rays.len()).map(hit));
+            }
+        });
+        hits
+    }
+}
+
+/// The rays in packets; lanes without one have a ray that meets nothing.
+#[inline(always)]
+fn packets<L: Lanes>(m: &Packet<L>, rays: &[Ray]) -> [<Ray as Type>::On<Packet<L>>; TOGETHER] {
+    let none = Ray::new(glam::Vec3::NAN, glam::Vec3::NAN);
+    fill(
+        #[inline(always)]
+        |q| {
+            Ray::from_lanes(
+                m,
+                #[inline(always)]
+                |lane| rays.get(q * L::N + lane).copied().unwrap_or(none),
+            )
+        },
+    )
+}

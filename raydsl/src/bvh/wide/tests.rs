@@ -1,0 +1,86 @@
+//! What holds of every wide tree.
+
+use glam::Vec3;
+
+use super::Wide;
+use super::node::{Child, WIDTH};
+use crate::bvh::{BuildConfig, BuildQuality, Bvh, Storage};
+use crate::geometry::{Aabb, Primitive, Triangle};
+
+/// A triangle for each number, in clusters of every size; some are the same.
+fn triangles(count: u32) -> Vec<Triangle> {
+    let coordinate = |i: u32, k: u32| {
+        let bits = (i * 31 + k).wrapping_mul(0x9e37_79b9) >> 8;
+        bits as f32 / 16_777_216.0
+    };
+    let point = |i, k| Vec3::new(coordinate(i, k), coordinate(i, k + 1), coordinate(i, k + 2));
+    (0..count)
+        .map(|i| {
+            let i = if i % 11 == 0 { 0 } else { i };
+            let (v0, size) = (point(i, 0) * 20.0, if i % 13 == 0 { 8.0 } else { 0.3 });
+            Triangle { v0, v1: v0 + point(i, 3) * size, v2: v0 + point(i, 6) * size }
+        })
+        .collect()
+}
+
+/// Walks everything below a child, and notes what is in its blocks; how many children are pending
+/// at most where each node's are visited in the worst order.
+fn walk(tree: &Wide, child: Child, bounds: Aabb, prims: &[Triangle], seen: &mut [u32]) -> usize {
+    if child.is_block() {
+        let block = tree.blocks.block::<Triangle>(child.index());
+        let ids = block[block.len() - 1].0;
+        for (lane, &id) in ids.iter().enumerate() {
+            let is_again = lane > 0 && id == ids[0];
+            seen[id as usize] += u32::from(!is_again);
+            let of = prims[id as usize].get_bounds(&[]);
+            // A leaf of cut primitives has parts of them.
+            assert!(!bounds.intersection(of).size().is_nan() && bounds.intersection(of).is_valid());
+            let words: Vec<f32> =
+                block[..9].iter().map(|row| f32::from_bits(row.0[lane])).collect();
+            let Triangle { v0, v1, v2 } = prims[id as usize];
+            assert_eq!(words, [v0, v1, v2].map(|v| v.to_array()).concat());
+        }
+        return 0;
+    }
+    let node = &tree.nodes[child.index()];
+    let mut children = 0;
+    let mut deepest = 0;
+    for slot in 0..WIDTH {
+        let below = Child(node.children[slot]);
+        if below == Child::NONE {
+            assert!(node.planes[0][slot] > node.planes[1][slot]);
+            continue;
+        }
+        let corner = |side: usize| [0, 1, 2].map(|axis| node.planes[2 * axis + side][slot]);
+        let own = Aabb::new(corner(0).into(), corner(1).into());
+        assert_eq!(own.union(bounds), bounds, "a child is in its parent");
+        children += 1;
+        deepest = deepest.max(walk(tree, below, own, prims, seen));
+    }
+    assert!(children > 0);
+    (children - 1 + deepest).max(children)
+}
+
+#[test]
+fn blocks_hold_every_primitive_and_stacks_are_deep_enough() {
+    for count in [1, 2, 8, 9, 64, 1000, 5000] {
+        let prims = triangles(count);
+        for quality in BuildQuality::ALL {
+            let config = BuildConfig { quality, storage: Storage::Leaves, ..Default::default() };
+            let bvh = Bvh::build_with(&prims, &config).expect("finite bounds");
+            let tree = bvh.tree.own.wide.as_ref().expect("it was asked for");
+            let mut seen = vec![0; prims.len()];
+            let pending = walk(tree, Child::node(0), bvh.bounds(), &prims, &mut seen);
+            assert!(pending <= tree.pending, "{pending} of {}", tree.pending);
+            let most = if quality == BuildQuality::Best { u32::MAX } else { 1 };
+            assert!(seen.iter().all(|&n| n >= 1 && n <= most), "{count} {quality:?}");
+        }
+    }
+}
+
+#[test]
+fn nothing_is_a_tree_too() {
+    let config = BuildConfig::from(Storage::Leaves);
+    let bvh = Bvh::<Triangle>::build_with(&[], &config).expect("nothing");
+    assert!(bvh.tree.own.wide.as_ref().is_some_and(|tree| tree.bytes() == 0));
+}
