@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::Wide;
 use super::node::{Child, WIDTH};
 use crate::bvh::{BuildConfig, BuildQuality, Bvh, Storage};
-use crate::geometry::{Aabb, Primitive, Triangle};
+use crate::geometry::{Aabb, Triangle};
 
 /// A triangle for each number, in clusters of every size; some are the same.
 fn triangles(count: u32) -> Vec<Triangle> {
@@ -32,7 +32,7 @@ fn walk(tree: &Wide, child: Child, bounds: Aabb, prims: &[Triangle], seen: &mut 
         for (lane, &id) in ids.iter().enumerate() {
             let is_again = lane > 0 && id == ids[0];
             seen[id as usize] += u32::from(!is_again);
-            let of = prims[id as usize].get_bounds(&[]);
+            let of = prims[id as usize].get_bounds();
             // A leaf of cut primitives has parts of them.
             assert!(!bounds.intersection(of).size().is_nan() && bounds.intersection(of).is_valid());
             let words: Vec<f32> =
