@@ -462,119 +462,6 @@ fn main() {
                         non_snake_case,
                         reason = "generated code"
                     )]
-                    let native64 = move |
-                        m: &::raydsl::__private::Native64,
-                        (
-                            ray,
-                        ): (
-                            <Ray as ::raydsl::__private::Type>::On<
-                                ::raydsl::__private::Native64,
-                            >,
-                        )|
-                    {
-                        use ::raydsl::__private::operations::*;
-                        ::raydsl::__private::Machine::call(
-                            m,
-                            &__INFO,
-                            (ray,),
-                            #[inline(always)]
-                            |
-                                m: &::raydsl::__private::Native64,
-                                (
-                                    ray,
-                                ): (
-                                    <Ray as ::raydsl::__private::Type>::On<
-                                        ::raydsl::__private::Native64,
-                                    >,
-                                )|
-                            {
-                                let bvh = ::raydsl::__private::Capture::<
-                                    ::raydsl::__private::Native64,
-                                >::capture({ captures.0 }, m, "bvh");
-                                let background = ::raydsl::__private::Capture::<
-                                    ::raydsl::__private::Native64,
-                                >::capture({ captures.1 }, m, "background");
-                                let hit = ::raydsl::__private::Machine::named(
-                                    m,
-                                    "hit",
-                                    ::raydsl::__private::Method::<
-                                        { ::raydsl::__private::name("closest_hit") },
-                                        ::raydsl::__private::Native64,
-                                        _,
-                                        _,
-                                    >::call({ bvh }, m, ({ ray },)),
-                                );
-                                {
-                                    let value_1 = ::raydsl::__private::Var::<
-                                        _,
-                                    >::declare(m, "result");
-                                    let branch_2 = ::raydsl::__private::Branch::new(
-                                        m,
-                                        hit.is_hit,
-                                    );
-                                    if branch_2.then(m) {
-                                        ::raydsl::__private::here(
-                                            m,
-                                            "if",
-                                            ::core::file!(),
-                                            ::core::line!(),
-                                        );
-                                        {
-                                            value_1
-                                                .set(
-                                                    m,
-                                                    ::raydsl::__private::Varying::varying(
-                                                        ::raydsl::__private::Method::<
-                                                            { ::raydsl::__private::name("rgb") },
-                                                            ::raydsl::__private::Native64,
-                                                            _,
-                                                            _,
-                                                        >::call(
-                                                            {
-                                                                ::raydsl::__private::Method::<
-                                                                    { ::raydsl::__private::name("primitive") },
-                                                                    ::raydsl::__private::Native64,
-                                                                    _,
-                                                                    _,
-                                                                >::call({ bvh }, m, ({ hit },))
-                                                            },
-                                                            m,
-                                                            (),
-                                                        ),
-                                                        m,
-                                                    ),
-                                                );
-                                        }
-                                    }
-                                    if branch_2.otherwise_small(m) {
-                                        ::raydsl::__private::here(
-                                            m,
-                                            "else",
-                                            ::core::file!(),
-                                            ::core::line!(),
-                                        );
-                                        {
-                                            value_1
-                                                .set(
-                                                    m,
-                                                    ::raydsl::__private::Varying::varying(background, m),
-                                                );
-                                        }
-                                    }
-                                    branch_2.end(m);
-                                    value_1.get(m)
-                                }
-                            },
-                        )
-                    };
-                    #[allow(
-                        unused,
-                        clippy::all,
-                        clippy::pedantic,
-                        clippy::nursery,
-                        non_snake_case,
-                        reason = "generated code"
-                    )]
                     let baseline = move |
                         m: &::raydsl::__private::Baseline,
                         (
@@ -910,7 +797,6 @@ fn main() {
                         native8: ::std::boxed::Box::new(native8),
                         native16: ::std::boxed::Box::new(native16),
                         native16_halves: ::std::boxed::Box::new(native16_halves),
-                        native64: ::std::boxed::Box::new(native64),
                         baseline: ::std::boxed::Box::new(baseline),
                         recorder: ::std::boxed::Box::new(recorder),
                         margin: ::std::boxed::Box::new(margin),

@@ -1,13 +1,13 @@
 //! A kernel with all its variants.
 
 use crate::machine::{
-    Counted, Gang, KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet,
-    Recorder, Recording, Resource, Rounding, Simd4, Simd8, Simd16, Type, U, wgsl,
+    Counted, KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet, Recorder,
+    Recording, Resource, Rounding, Simd4, Simd8, Simd16, Type, U, wgsl,
 };
 
 /// The machines for which closures are lifted: the natural widths of the target's levels.
 mod native {
-    use super::{Counted, Gang, Packet, Simd4, Simd8, Simd16};
+    use super::{Counted, Packet, Simd4, Simd8, Simd16};
 
     /// The levels of 4, 8 and 16 lanes, and the one that every machine of the target has.
     ///
@@ -42,8 +42,6 @@ mod native {
     pub type Native16 = Packet<Simd16<level::Wide>>;
     /// Sixteen lanes as two halves: AVX2.
     pub type Native16Halves = Packet<Simd16<level::Middle>>;
-    /// Sixty-four lanes as a gang of four registers: AVX-512, NEON.
-    pub type Native64 = Packet<Gang<Simd16<level::Wide>, 4>>;
     /// Eight lanes of what every machine of the target has: SSE2, NEON, or no instructions of
     /// this kind at all.
     ///
@@ -52,7 +50,7 @@ mod native {
     pub type Baseline = Packet<Counted<Simd8<level::Baseline>>>;
 }
 
-pub use native::{Baseline, Native4, Native8, Native16, Native16Halves, Native64};
+pub use native::{Baseline, Native4, Native8, Native16, Native16Halves};
 
 /// The tokens of the levels that this machine has.
 #[derive(Clone, Copy)]
@@ -104,26 +102,22 @@ pub enum Variant {
     Packet8,
     /// SIMD packets of 16 rays.
     Packet16,
-    /// SIMD packets of 64 rays, in gangs of registers: queries see more rays at once, and the rest
-    /// of a kernel takes more memory.
-    Packet64,
     /// WGSL on a GPU.
     Wgsl,
 }
 
 impl Variant {
     /// Every variant, in the order of tables.
-    pub const ALL: [Self; 6] =
-        [Self::Scalar, Self::Packet4, Self::Packet8, Self::Packet16, Self::Packet64, Self::Wgsl];
+    pub const ALL: [Self; 5] =
+        [Self::Scalar, Self::Packet4, Self::Packet8, Self::Packet16, Self::Wgsl];
 
-    /// `scalar`, `packet4`, `packet8`, `packet16`, `packet64` or `wgsl`.
+    /// `scalar`, `packet4`, `packet8`, `packet16` or `wgsl`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Scalar => "scalar",
             Self::Packet4 => "packet4",
             Self::Packet8 => "packet8",
             Self::Packet16 => "packet16",
-            Self::Packet64 => "packet64",
             Self::Wgsl => "wgsl",
         }
     }
@@ -173,7 +167,6 @@ impl Variant {
             Self::Packet4 => levels.narrow.is_some(),
             Self::Packet8 => levels.middle.is_some(),
             Self::Packet16 => levels.wide.is_some() || levels.middle.is_some(),
-            Self::Packet64 => levels.wide.is_some(),
             Self::Wgsl => false,
         }
     }
@@ -184,7 +177,6 @@ impl Variant {
             Self::Packet4 if let Some(s) = levels.narrow => task.run(Simd4(s)),
             Self::Packet8 if let Some(s) = levels.middle => task.run(Simd8(s)),
             Self::Packet16 if let Some(s) = levels.wide => task.run(Simd16(s)),
-            Self::Packet64 if let Some(s) = levels.wide => task.run(Gang::<_, 4>(Simd16(s))),
             Self::Packet16 if let Some(s) = levels.middle => task.run(Simd16(s)),
             _ => task.run(Simd8(levels.baseline)),
         }
@@ -240,7 +232,6 @@ pub struct Lifted<'a, A: Type, R: Type> {
     pub native8: LiftedFn<'a, Native8, A, R>,
     pub native16: LiftedFn<'a, Native16, A, R>,
     pub native16_halves: LiftedFn<'a, Native16Halves, A, R>,
-    pub native64: LiftedFn<'a, Native64, A, R>,
     pub baseline: LiftedFn<'a, Baseline, A, R>,
     pub recorder: LiftedFn<'a, Recorder, A, R>,
     pub margin: LiftedFn<'a, Margin, A, R>,
@@ -312,7 +303,6 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
                 native8: Box::new(F::lifted),
                 native16: Box::new(F::lifted),
                 native16_halves: Box::new(F::lifted),
-                native64: Box::new(F::lifted),
                 baseline: Box::new(F::lifted),
                 recorder: Box::new(F::lifted),
                 margin: Box::new(F::lifted),
@@ -366,9 +356,6 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
             }
             Variant::Packet16 if let Some(s) = levels.middle => {
                 task.run(Simd16(s), &*self.lifted.native16_halves)
-            }
-            Variant::Packet64 if let Some(s) = levels.wide => {
-                task.run(Gang(Simd16(s)), &*self.lifted.native64)
             }
             _ => task.run(Counted(Simd8(levels.baseline)), &*self.lifted.baseline),
         }

@@ -285,7 +285,6 @@ pub fn recorded<F: KernelFn>() -> Kernel<'static, F::Args, F::Output> {
             native8: Box::new(|_, _| unreachable!()),
             native16: Box::new(|_, _| unreachable!()),
             native16_halves: Box::new(|_, _| unreachable!()),
-            native64: Box::new(|_, _| unreachable!()),
             baseline: Box::new(|_, _| unreachable!()),
             recorder: Box::new(F::lifted),
             margin: Box::new(F::lifted),

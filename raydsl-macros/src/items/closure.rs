@@ -14,12 +14,11 @@ use crate::rewrite::without_markers;
 
 /// The natural machines of a closure, by the names of their aliases in the runtime and of the
 /// members of `Lifted` that hold their copies.
-const NATURAL: [(&str, &str); 8] = [
+const NATURAL: [(&str, &str); 7] = [
     ("Native4", "native4"),
     ("Native8", "native8"),
     ("Native16", "native16"),
     ("Native16Halves", "native16_halves"),
-    ("Native64", "native64"),
     ("Baseline", "baseline"),
     ("Recorder", "recorder"),
     ("Margin", "margin"),

@@ -242,7 +242,6 @@ impl Case {
                 native8: Box::new(|_, _| unreachable!()),
                 native16: Box::new(|_, _| unreachable!()),
                 native16_halves: Box::new(|_, _| unreachable!()),
-                native64: Box::new(|_, _| unreachable!()),
                 baseline: Box::new(|_, _| unreachable!()),
                 recorder: Box::new(self.recorder),
                 margin: Box::new(|_, _| unreachable!()),

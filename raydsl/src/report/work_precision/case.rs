@@ -20,13 +20,12 @@ pub enum Backend {
 }
 
 impl Backend {
-    /// `scalar`, `packet4`, `packet8`, `packet16`, `packet64`, `wgsl`, `f64`.
-    pub const ALL: [Self; 7] = [
+    /// `scalar`, `packet4`, `packet8`, `packet16`, `wgsl`, `f64`.
+    pub const ALL: [Self; 6] = [
         Self::Variant(Variant::Scalar),
         Self::Variant(Variant::Packet4),
         Self::Variant(Variant::Packet8),
         Self::Variant(Variant::Packet16),
-        Self::Variant(Variant::Packet64),
         Self::Variant(Variant::Wgsl),
         Self::F64,
     ];

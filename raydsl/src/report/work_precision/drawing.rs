@@ -25,7 +25,6 @@ pub enum Symbol {
     Up,
     Down,
     Diamond,
-    Pentagon,
     Hexagon,
 }
 
@@ -38,7 +37,6 @@ impl Symbol {
             Self::Up => (3, 0.25),
             Self::Down => (3, 0.75),
             Self::Diamond => (4, 0.25),
-            Self::Pentagon => (5, 0.25),
             Self::Hexagon => (6, 0.25),
         };
         let corner = |i: u32| {

@@ -43,7 +43,6 @@ fn symbol(backend: Backend) -> Symbol {
         Backend::Variant(Variant::Packet4) => Symbol::Down,
         Backend::Variant(Variant::Packet8) => Symbol::Square,
         Backend::Variant(Variant::Packet16) => Symbol::Up,
-        Backend::Variant(Variant::Packet64) => Symbol::Pentagon,
         Backend::Variant(Variant::Wgsl) => Symbol::Diamond,
         Backend::F64 => Symbol::Hexagon,
     }
