@@ -151,8 +151,11 @@ fn inspect(functions: &Functions) -> Vec<String> {
         if count < LEAST_FUNCTIONS {
             faults.push(format!("{count} traversals enter {level}, not {LEAST_FUNCTIONS}"));
         }
-        let all = traversals.iter().chain(&apart);
-        faults.extend(all.flat_map(|(at, f)| inspect_entry(*at, f, register)));
+        // Where one ray meets eight primitives, a level of wider registers uses half of them.
+        let narrower: &[&str] = if register == "%zmm" { &["%ymm", "%zmm"] } else { &[register] };
+        let traversals = traversals.iter().map(|(at, f)| inspect_entry(*at, f, &[register]));
+        let apart = apart.iter().map(|(at, f)| inspect_entry(*at, f, narrower));
+        faults.extend(traversals.chain(apart).flatten());
     }
     faults
 }
@@ -172,10 +175,13 @@ fn entries<'f>(
     callees.filter_map(|(at, _)| Some((*at, functions.get(at)?))).collect()
 }
 
-fn inspect_entry(at: u64, function: &Function, register: &str) -> Vec<String> {
-    let products = function.products.get(register).copied().unwrap_or_default();
-    let few = (products < LEAST_PRODUCTS)
-        .then(|| format!("{at:x}: {products} packed products in {register}, not {LEAST_PRODUCTS}"));
+fn inspect_entry(at: u64, function: &Function, registers: &[&str]) -> Vec<String> {
+    let of = |register: &&str| function.products.get(register).copied().unwrap_or_default();
+    let products: usize = registers.iter().map(of).sum();
+    let few = (products < LEAST_PRODUCTS).then(|| {
+        let registers = registers.join(" and ");
+        format!("{at:x}: {products} packed products in {registers}, not {LEAST_PRODUCTS}")
+    });
     let hot = function.calls.iter().filter(|(_, name)| !may_be_called(name));
     hot.map(|(_, name)| format!("{at:x}: a traversal calls {name}")).chain(few).collect()
 }
