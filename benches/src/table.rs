@@ -1,5 +1,8 @@
 //! Figures of systems beside each other: what is printed and written.
 
+use std::path::Path;
+use std::process::ExitCode;
+
 use serde::Serialize;
 
 /// One mode of one row.
@@ -65,8 +68,23 @@ pub fn print(lines: &[Line]) {
     }
 }
 
+/// Prints the summary of all lines and writes them to a file; fails if there are none, or one is
+/// void.
+pub fn finish(lines: &[Line], json: Option<&Path>) -> ExitCode {
+    print_summary(lines);
+    if let Some(path) = json {
+        let text = serde_json::to_string_pretty(lines).expect("lines are plain data");
+        if let Err(error) = std::fs::write(path, text) {
+            eprintln!("{}: {error}", path.display());
+            return ExitCode::FAILURE;
+        }
+    }
+    let is_void = lines.is_empty() || lines.iter().any(|line| line.status == "void");
+    if is_void { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+}
+
 /// Prints the ratio of the library's best mode for each row and scene.
-pub fn print_summary(lines: &[Line]) {
+fn print_summary(lines: &[Line]) {
     println!("the library's best mode against Embree's");
     println!("  {:<14}{:>8}  {:<20}{:<16}{:>9}", "scene", "threads", "row", "mode", "ratio");
     for of_row in

@@ -24,7 +24,7 @@ use clap::Parser;
 use raydsl::prelude::*;
 use raydsl_benches::contest::TILE;
 use raydsl_benches::scenes::{self, Scene};
-use raydsl_benches::table::{Line, print, print_summary};
+use raydsl_benches::table::{Line, finish, print};
 
 use rays::Workload;
 use row::Row;
@@ -68,16 +68,7 @@ fn main() -> ExitCode {
             lines.extend(measure(&args, &name, &scene, threads));
         }
     }
-    print_summary(&lines);
-    if let Some(path) = &args.json {
-        let text = serde_json::to_string_pretty(&lines).expect("lines are plain data");
-        if let Err(error) = std::fs::write(path, text) {
-            eprintln!("{}: {error}", path.display());
-            return ExitCode::FAILURE;
-        }
-    }
-    let void = lines.is_empty() || lines.iter().any(|line| line.status == "void");
-    if void { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+    finish(&lines, args.json.as_deref())
 }
 
 /// The scenes that words name, and those of files.

@@ -11,7 +11,7 @@ use raydsl::prelude::*;
 use raydsl_benches::clock::{median, spread};
 use raydsl_benches::contest::TILE;
 use raydsl_benches::scenes::{self, Scene};
-use raydsl_benches::table::{Line, print, print_summary};
+use raydsl_benches::table::{Line, finish, print};
 
 use systems::{Record, Rounds, Task};
 
@@ -56,16 +56,7 @@ fn main() -> ExitCode {
             Err(error) => eprintln!("skipped {name}: {error}"),
         }
     }
-    print_summary(&lines);
-    if let Some(path) = &args.json {
-        let text = serde_json::to_string_pretty(&lines).expect("lines are plain data");
-        if let Err(error) = std::fs::write(path, text) {
-            eprintln!("{}: {error}", path.display());
-            return ExitCode::FAILURE;
-        }
-    }
-    let void = lines.is_empty() || lines.iter().any(|line| line.status == "void");
-    if void { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+    finish(&lines, args.json.as_deref())
 }
 
 fn surface(name: &str) -> Result<Scene<Triangle>, String> {

@@ -1,6 +1,5 @@
 //! Who builds trees over the points and asks them, and what that gave.
 
-use raydsl::bvh::BuildConfig;
 use raydsl::camera::Camera;
 use raydsl::prelude::*;
 use raydsl_benches::clock::seconds_on;
@@ -9,8 +8,11 @@ use raydsl_benches::embree::{self, Embree, Mode, Quality, Question, Shape};
 use raydsl_benches::scenes::Point;
 
 /// The library's trees: `Best` cuts primitives, which balls of one size gain nothing from.
-const QUALITIES: [(&str, BuildQuality); 2] =
-    [("balanced", BuildQuality::Balanced), ("fast", BuildQuality::Fast)];
+const TREES: [(&str, BuildQuality, Storage); 3] = [
+    ("balanced", BuildQuality::Balanced, Storage::Borrow),
+    ("fast", BuildQuality::Fast, Storage::Borrow),
+    ("leaves", BuildQuality::Balanced, Storage::Leaves),
+];
 
 /// What all systems are asked.
 pub(crate) struct Task<'a> {
@@ -101,8 +103,8 @@ impl<'a> Rounds<'a> {
     pub(crate) fn run(mut self, rounds: usize) -> Vec<Record> {
         for round in 0..=rounds {
             self.round = round;
-            for (name, quality) in QUALITIES {
-                self.own(name, quality);
+            for (name, quality, storage) in TREES {
+                self.own(name, BuildConfig { quality, storage, ..BuildConfig::default() });
             }
             for quality in [Quality::Low, Quality::Medium, Quality::High] {
                 self.theirs(quality);
@@ -112,9 +114,8 @@ impl<'a> Rounds<'a> {
         self.records
     }
 
-    fn own(&mut self, name: &str, quality: BuildQuality) {
+    fn own(&mut self, name: &str, config: BuildConfig) {
         let task = self.task;
-        let config = BuildConfig::from(quality);
         let (bvh, seconds) = seconds_on(task.threads, || Bvh::build_with(task.points, &config));
         let bvh = bvh.expect("the points have finite bounds");
         let cost = Cost::new(seconds, bvh.bytes(), task.points.len());

@@ -24,7 +24,7 @@ pub struct Statistics {
     pub mean_leaf_size: f64,
     /// Primitives in the fullest leaf.
     pub max_leaf_size: usize,
-    /// Bytes of nodes and index list, as [`Bvh::bytes`].
+    /// Bytes of the tree itself, as [`Bvh::bytes`].
     pub bytes: usize,
     /// Entries in leaves for each primitive: 1 where every primitive is in one leaf, and for an
     /// empty tree.

@@ -100,10 +100,6 @@ fn walk<R: Lanes, P: Primitive>(
         stack.resize(room, 0);
         enters.resize(room, 0);
     }
-    let slots = e.u32_from_fn(
-        #[inline(always)]
-        |i| i as u32,
-    );
     let mut packet = Members { r, m: Packet::new(Entered(r)), rays, members, side: beam.side };
     let (mut at, mut slot, mut top) = (Child::node(0), 0, 0);
     loop {
@@ -116,7 +112,7 @@ fn walk<R: Lanes, P: Primitive>(
         } else {
             let node = &tree.nodes[at.index()];
             let (near, mask) = enter(e, node, &beam);
-            let keys = sorted(e, near, mask, slots);
+            let keys = sorted(e, near, mask);
             let below = e.u32_binary(op::And, keys, e.u32(7));
             let below = e.u32_binary(op::Or, below, e.u32(8 * at.0));
             e.u32_store(below, &mut stack[top..][..WIDTH]);

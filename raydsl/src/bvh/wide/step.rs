@@ -75,10 +75,14 @@ fn slab<E: Lanes>(e: E, node: &WideNode, ray: impl Slabs, axis: usize) -> [E::F3
 /// The slots of the children that a ray enters, the farthest first, below the bits of the distance
 /// at which it does.
 #[inline(always)]
-pub(super) fn sorted<E: Lanes>(e: E, near: E::F32, mask: E::Mask, slots: E::U32) -> E::U32 {
+pub(super) fn sorted<E: Lanes>(e: E, near: E::F32, mask: E::Mask) -> E::U32 {
     // In this order a zero has no sign.
     let near = e.f32_binary(op::Max, e.f32(0.0), near);
     let near = e.u32_binary(op::And, e.f32_to_bits(near), e.u32(!7));
+    let slots = e.u32_from_fn(
+        #[inline(always)]
+        |i| i as u32,
+    );
     let key = e.u32_binary(op::Or, near, slots);
     e.u32_sort_descending(e.u32_select(mask, key, e.u32(0)))
 }

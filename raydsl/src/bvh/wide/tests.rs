@@ -1,5 +1,7 @@
 //! What holds of every wide tree.
 
+use std::collections::HashSet;
+
 use glam::Vec3;
 
 use super::Wide;
@@ -29,12 +31,15 @@ fn walk(tree: &Wide, child: Child, bounds: Aabb, prims: &[Triangle], seen: &mut 
     if child.is_block() {
         let block = tree.blocks.block::<Triangle>(child.index());
         let ids = block[block.len() - 1].0;
+        let count = (1..WIDTH).find(|&lane| ids[lane] == ids[0]).unwrap_or(WIDTH);
+        let once: HashSet<u32> = ids[..count].iter().copied().collect();
+        assert_eq!(once.len(), count, "each once, then the first again: {ids:?}");
+        assert!(ids[count..].iter().all(|&id| id == ids[0]), "{ids:?}");
+        once.iter().for_each(|&id| seen[id as usize] += 1);
         for (lane, &id) in ids.iter().enumerate() {
-            let is_again = lane > 0 && id == ids[0];
-            seen[id as usize] += u32::from(!is_again);
-            let of = prims[id as usize].get_bounds();
-            // A leaf of cut primitives has parts of them.
-            assert!(!bounds.intersection(of).size().is_nan() && bounds.intersection(of).is_valid());
+            // Of a primitive that was cut a part is there.
+            let part = bounds.intersection(prims[id as usize].get_bounds());
+            assert!(part.is_valid());
             let words: Vec<f32> =
                 block[..9].iter().map(|row| f32::from_bits(row.0[lane])).collect();
             let Triangle { v0, v1, v2 } = prims[id as usize];

@@ -38,35 +38,27 @@ pub(crate) fn closest_hits<L: Lanes, P: Primitive>(
     rays: &[RayOn<Packet<L>>],
     hits: &mut [HitOn<Packet<L>>],
 ) {
-    m.lanes().vectorize(
+    let l = m.lanes();
+    answer(
+        m,
+        scene,
+        rays,
         #[inline(always)]
-        || {
-            let mut scratch = SCRATCH.take().unwrap_or_default();
-            load(m, &mut scratch.rays, rays);
-            let l = m.lanes();
-            each_part(
-                l,
-                scene,
-                &mut scratch,
-                #[inline(always)]
-                |meeting, root, Scratch { rays, wave, together }| {
-                    packet::closest_hit(l.register(), meeting, rays, together, root);
-                    wave::closest_hit(l.register().eight(), meeting, rays, wave);
-                },
-                |words| {
-                    let hit = traverse::nearest(scene, words.as_ref().ray());
-                    words.set_number(row::T, hit.t);
-                    words.set_number(row::U, hit.u);
-                    words.set_number(row::V, hit.v);
-                    words.set(row::ID, hit.prim_id);
-                    hit.is_hit
-                },
-            );
-            for (q, hit) in hits.iter_mut().enumerate() {
-                *hit = hit_at(l, &scratch.rays, q * L::N);
-            }
-            SCRATCH.set(Some(scratch));
+        |meeting, root, Scratch { rays, wave, together }| {
+            packet::closest_hit(l.register(), meeting, rays, together, root);
+            wave::run::<true, _, _>(l.register().eight(), meeting, rays, wave);
         },
+        |words| {
+            let hit = traverse::nearest(scene, words.as_ref().ray());
+            words.set_number(row::T, hit.t);
+            words.set_number(row::U, hit.u);
+            words.set_number(row::V, hit.v);
+            words.set(row::ID, hit.prim_id);
+            hit.is_hit
+        },
+        hits,
+        #[inline(always)]
+        |rays, first| hit_at(l, rays, first),
     );
 }
 
@@ -78,24 +70,42 @@ pub(crate) fn any_hits<L: Lanes, P: Primitive>(
     rays: &[RayOn<Packet<L>>],
     hits: &mut [B<Packet<L>>],
 ) {
+    let l = m.lanes();
+    answer(
+        m,
+        scene,
+        rays,
+        #[inline(always)]
+        |meeting, _, Scratch { rays, wave, .. }| {
+            wave::run::<false, _, _>(l.register().eight(), meeting, rays, wave);
+        },
+        |words| traverse::any_hit(scene, words.as_ref().ray()),
+        hits,
+        #[inline(always)]
+        |rays, first| B(found_at(l, rays, first)),
+    );
+}
+
+/// Asks about the rays, and reads what each packet of them has found.
+#[inline(always)]
+fn answer<L: Lanes, P: Primitive, H>(
+    m: &Packet<L>,
+    scene: &SceneView<'_, P>,
+    rays: &[RayOn<Packet<L>>],
+    ask: impl FnMut(&Meeting<'_, <L::Register as Lanes>::Eight, P>, &Node, &mut Scratch),
+    alone: impl Fn(&mut RayWordsMut<'_>) -> bool,
+    hits: &mut [H],
+    found: impl Fn(&Rays, usize) -> H,
+) {
     m.lanes().vectorize(
         #[inline(always)]
         || {
+            // A primitive may ask another scene meanwhile, which has memory of its own then.
             let mut scratch = SCRATCH.take().unwrap_or_default();
             load(m, &mut scratch.rays, rays);
-            let l = m.lanes();
-            each_part(
-                l,
-                scene,
-                &mut scratch,
-                #[inline(always)]
-                |meeting, _, Scratch { rays, wave, .. }| {
-                    wave::any_hit(l.register().eight(), meeting, rays, wave);
-                },
-                |words| traverse::any_hit(scene, words.as_ref().ray()),
-            );
+            each_part(m.lanes(), scene, &mut scratch, ask, alone);
             for (q, hit) in hits.iter_mut().enumerate() {
-                *hit = B(found_at(l, &scratch.rays, q * L::N));
+                *hit = found(&scratch.rays, q * L::N);
             }
             SCRATCH.set(Some(scratch));
         },

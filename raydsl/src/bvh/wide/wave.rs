@@ -108,58 +108,18 @@ impl Turns<'_> {
     }
 }
 
-/// Whether each ray that is alive meets anything.
+/// Whether each ray that is alive meets anything; with `CLOSEST` the least hit of each, if it is less
+/// than what the ray has already.
 #[inline(always)]
-pub(super) fn any_hit<E: Lanes, P: Primitive>(
+pub(super) fn run<const CLOSEST: bool, E: Lanes, P: Primitive>(
     e: E,
     meeting: &Meeting<'_, E, P>,
     rays: &mut Rays,
     wave: &mut Wave,
 ) {
     let tree = meeting.tree;
-    let mut turns = wave.begin(rays, tree.pending, false);
+    let mut turns = wave.begin(rays, tree.pending, CLOSEST);
     let all = rays.words();
-    while turns.nodes.len + turns.blocks.len > 0 {
-        for i in 0..core::mem::take(&mut turns.nodes.len) {
-            let ray = turns.nodes.places[i];
-            let words_of = ray_at(all, ray);
-            let top = words_of.word(row::TOP);
-            let node = &tree.nodes[words_of.word(row::AT) as usize];
-            let (_, mask) = enter(e, node, words_of);
-            let children = words(e, &node.children);
-            e.u32_store(e.u32_compress(children, mask), turns.stack(top));
-            turns.pop(all, ray, top + e.bits(mask).count_ones());
-        }
-        for i in 0..core::mem::take(&mut turns.blocks.len) {
-            let ray = turns.blocks.places[i];
-            let words_of = ray_at(all, ray);
-            let top = words_of.word(row::TOP);
-            let block = meeting.rows(Child(words_of.word(row::AT)).index());
-            let (_, mask) = meeting.block(block, words_of);
-            if e.any(mask) {
-                ray_at_mut(all, ray).set(row::FOUND, 1);
-            } else {
-                turns.pop(all, ray, top);
-            }
-        }
-    }
-}
-
-/// The least hit of each ray that is alive, if it is less than what its group has already.
-#[inline(always)]
-pub(super) fn closest_hit<E: Lanes, P: Primitive>(
-    e: E,
-    meeting: &Meeting<'_, E, P>,
-    rays: &mut Rays,
-    wave: &mut Wave,
-) {
-    let tree = meeting.tree;
-    let mut turns = wave.begin(rays, tree.pending, true);
-    let all = rays.words();
-    let slots = e.u32_from_fn(
-        #[inline(always)]
-        |i| i as u32,
-    );
     while turns.nodes.len + turns.blocks.len > 0 {
         for i in 0..core::mem::take(&mut turns.nodes.len) {
             let ray = turns.nodes.places[i];
@@ -167,10 +127,14 @@ pub(super) fn closest_hit<E: Lanes, P: Primitive>(
             let top = words_of.word(row::TOP);
             let node = &tree.nodes[words_of.word(row::AT) as usize];
             let (near, mask) = enter(e, node, words_of);
-            let keys = sorted(e, near, mask, slots);
             let children = words(e, &node.children);
-            e.u32_store(e.u32_permute(children, keys), turns.stack(top));
-            e.u32_store(keys, &mut turns.enters[top as usize..][..WIDTH]);
+            if CLOSEST {
+                let keys = sorted(e, near, mask);
+                e.u32_store(e.u32_permute(children, keys), turns.stack(top));
+                e.u32_store(keys, &mut turns.enters[top as usize..][..WIDTH]);
+            } else {
+                e.u32_store(e.u32_compress(children, mask), turns.stack(top));
+            }
             turns.pop(all, ray, top + e.bits(mask).count_ones());
         }
         for i in 0..core::mem::take(&mut turns.blocks.len) {
@@ -179,9 +143,15 @@ pub(super) fn closest_hit<E: Lanes, P: Primitive>(
             let mut top = words_of.word(row::TOP);
             let block = meeting.rows(Child(words_of.word(row::AT)).index());
             let (hit, mask) = meeting.block(block, words_of);
-            if e.any(mask) && take(e, meeting, &hit, mask, block, all, ray) {
-                let limit = ray_at(all, ray).number(row::LIMIT);
-                top = turns.drop_beyond(e, top, limit);
+            if e.any(mask) {
+                if !CLOSEST {
+                    ray_at_mut(all, ray).set(row::FOUND, 1);
+                    continue;
+                }
+                if take(e, meeting, &hit, mask, block, all, ray) {
+                    let limit = ray_at(all, ray).number(row::LIMIT);
+                    top = turns.drop_beyond(e, top, limit);
+                }
             }
             turns.pop(all, ray, top);
         }
@@ -190,7 +160,7 @@ pub(super) fn closest_hit<E: Lanes, P: Primitive>(
 
 /// Keeps the least hit of a block if it is less than the ray's; whether it is.
 #[inline(always)]
-pub(super) fn take<E: Lanes, P: Primitive>(
+fn take<E: Lanes, P: Primitive>(
     e: E,
     meeting: &Meeting<'_, E, P>,
     hit: &HitOn<Leaf<E>>,

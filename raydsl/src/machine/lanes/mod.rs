@@ -111,22 +111,12 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     /// The largest first.
     #[inline(always)]
     fn u32_sort_descending(self, a: Self::U32) -> Self::U32 {
-        let mut sorted = [0; 64];
-        for lane in 0..Self::N {
-            let v = Self::u32_lane(&a, lane);
-            let mut place = lane;
-            while place > 0 && sorted[place - 1] < v {
-                sorted[place] = sorted[place - 1];
-                place -= 1;
-            }
-            sorted[place] = v;
-        }
-        self.u32_from_fn(|lane| sorted[lane])
+        shuffle::sort_by_insertion(self, a)
     }
     /// In each lane what `a` has in the lane that `from` names, modulo the number of lanes.
     #[inline(always)]
     fn u32_permute(self, a: Self::U32, from: Self::U32) -> Self::U32 {
-        self.u32_from_fn(|lane| Self::u32_lane(&a, Self::u32_lane(&from, lane) as usize % Self::N))
+        shuffle::permute_by_lane(self, a, from)
     }
     /// The lanes in order, at the beginning of `out`.
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use fearless_simd::{Simd, u32x8};
 
-use super::Simd8;
+use super::{Lanes, Simd8};
 
 /// The lanes, the largest first: a bitonic network. (Batcher, "Sorting Networks and Their
 /// Applications", AFIPS 1968.)
@@ -17,26 +17,34 @@ pub(super) fn sort_descending<S: Simd>(lanes: Simd8<S>, a: u32x8<S>) -> u32x8<S>
 
 /// In each lane what `a` has in the lane that `from` names, modulo 8.
 #[inline(always)]
-pub(super) fn permute<S: Simd>(simd: S, a: u32x8<S>, from: u32x8<S>) -> u32x8<S> {
+pub(super) fn permute<S: Simd>(lanes: Simd8<S>, a: u32x8<S>, from: u32x8<S>) -> u32x8<S> {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    if let Some(avx2) = simd.level().as_avx2() {
-        return x86::permute(avx2, simd, a, from);
+    if let Some(avx2) = lanes.0.level().as_avx2() {
+        return x86::permute(avx2, lanes.0, a, from);
     }
-    let (all, from): ([u32; 8], [u32; 8]) = (a.into(), from.into());
-    fearless_simd::SimdFrom::simd_from(simd, from.map(|lane| all[lane as usize % 8]))
+    permute_by_lane(lanes, a, from)
 }
 
+/// The same on any lanes.
 #[inline(always)]
-fn sort_by_insertion<S: Simd>(lanes: Simd8<S>, a: u32x8<S>) -> u32x8<S> {
-    let mut all: [u32; 8] = a.into();
-    for end in 1..8 {
-        let mut place = end;
-        while place > 0 && all[place - 1] < all[place] {
-            all.swap(place - 1, place);
+pub(super) fn sort_by_insertion<L: Lanes>(lanes: L, a: L::U32) -> L::U32 {
+    let mut sorted = [0; 64];
+    for lane in 0..L::N {
+        let v = L::u32_lane(&a, lane);
+        let mut place = lane;
+        while place > 0 && sorted[place - 1] < v {
+            sorted[place] = sorted[place - 1];
             place -= 1;
         }
+        sorted[place] = v;
     }
-    fearless_simd::SimdFrom::simd_from(lanes.0, all)
+    lanes.u32_from_fn(|lane| sorted[lane])
+}
+
+/// The same on any lanes, modulo their number.
+#[inline(always)]
+pub(super) fn permute_by_lane<L: Lanes>(lanes: L, a: L::U32, from: L::U32) -> L::U32 {
+    lanes.u32_from_fn(|lane| L::u32_lane(&a, L::u32_lane(&from, lane) as usize % L::N))
 }
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -92,7 +100,6 @@ mod x86 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::machine::Lanes;
 
     /// Every order of zeroes and ones is sorted, and so every order of anything (Knuth, "The Art of
     /// Computer Programming", volume 3, section 5.3.4); and what a permutation gives is what the

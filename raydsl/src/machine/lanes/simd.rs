@@ -292,7 +292,7 @@ simd_lanes!(Simd8, 8, f32x8, i32x8, u32x8, mask32x8;
     }
     #[inline(always)]
     fn u32_permute(self, a: u32x8<S>, from: u32x8<S>) -> u32x8<S> {
-        shuffle::permute(self.0, a, from)
+        shuffle::permute(self, a, from)
     }
 );
 simd_lanes!(Simd16, 16, f32x16, i32x16, u32x16, mask32x16;);
