@@ -110,7 +110,11 @@ fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
 }
 
 fn is_inside(sides: vec3<f32>) -> bool {
-    return (sides.x >= 0.0f && sides.y >= 0.0f && sides.z >= 0.0f) || (sides.x <= 0.0f && sides.y <= 0.0f && sides.z <= 0.0f);
+    let t = select(sides.x, sides.y, sides.y < sides.x);
+    let least = select(t, sides.z, sides.z < t);
+    let t_1 = select(sides.x, sides.y, sides.x < sides.y);
+    let greatest = select(t_1, sides.z, t_1 < sides.z);
+    return least >= 0.0f || greatest <= 0.0f;
 }
 
 fn Hit_new(is_hit: bool, t: f32) -> Hit {
@@ -181,6 +185,9 @@ fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
     let c_x = c.x - sx * c.z;
     let c_y = c.y - sy * c.z;
     var sides: vec3<f32> = vec3<f32>(b_y * c_x - b_x * c_y, c_y * a_x - c_x * a_y, a_y * b_x - a_x * b_y);
+    if (!is_inside(sides)) {
+        return Hit_miss();
+    }
     let t = select(a_x, b_x, b_x < a_x);
     let left = select(t, c_x, c_x < t);
     let t_1 = select(a_x, b_x, a_x < b_x);
@@ -190,10 +197,10 @@ fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
     let t_3 = select(a_y, b_y, a_y < b_y);
     let high = select(t_3, c_y, t_3 < c_y);
     let between = left <= 0.0f && right >= 0.0f && low <= 0.0f && high >= 0.0f;
-    var sum: f32 = sides.x + sides.y + sides.z;
-    if (!(is_inside(sides) && between)) {
+    if (!between) {
         return Hit_miss();
     }
+    var sum: f32 = sides.x + sides.y + sides.z;
     let t_4 = select(a.z, b.z, b.z < a.z);
     let near = select(t_4, c.z, c.z < t_4);
     let t_5 = select(a.z, b.z, a.z < b.z);
@@ -217,7 +224,7 @@ fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
     let u = sides.x / sum;
     let v = sides.y / sum;
     let w = sides.z / sum;
-    let t_8 = u * (a.z / d.z) + v * (b.z / d.z) + w * (c.z / d.z);
+    let t_8 = (u * a.z + v * b.z + w * c.z) * (1.0f / d.z);
     let t_9 = v1 - v0;
     let t_10 = v2 - v0;
     let is_flat = t_9.y * t_10.z - t_10.y * t_9.z == 0.0f && t_9.z * t_10.x - t_10.z * t_9.x == 0.0f && t_9.x * t_10.y - t_10.x * t_9.y == 0.0f;

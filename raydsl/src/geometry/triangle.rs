@@ -12,8 +12,8 @@ use crate::machine::functions::{vec2, vec3};
 use crate::machine::generic::{max, min};
 use crate::{kernel, primitive};
 
-/// What a triangle's hit may be off by, as a sphere's: the sheared vertices carry at most 6 eps of
-/// the farthest coordinate.
+/// What a triangle's hit may be off by, as a sphere's 16 eps: the sheared vertices carry at most
+/// 6 eps of the farthest coordinate, and weights, depths and distance nine roundings more.
 pub const SLACK: f32 = super::sphere::SLACK;
 
 /// 8 eps (eps = 2^-24): what a point is off by, and `intersect` from there, relative to the longest
@@ -141,8 +141,9 @@ fn is_line(v0: Vec3, v1: Vec3, v2: Vec3) -> bool {
 #[kernel]
 #[inline]
 fn is_inside(sides: Vec3) -> bool {
-    (sides.x >= 0.0 && sides.y >= 0.0 && sides.z >= 0.0)
-        || (sides.x <= 0.0 && sides.y <= 0.0 && sides.z <= 0.0)
+    let least = min(min(sides.x, sides.y), sides.z);
+    let greatest = max(max(sides.x, sides.y), sides.z);
+    least >= 0.0 || greatest <= 0.0
 }
 
 /// Where a ray meets the triangle: both sides, edges and vertices included. One whose
@@ -187,6 +188,9 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
     let xs = vec3(a_x, b_x, c_x);
     let ys = vec3(a_y, b_y, c_y);
     let mut sides = ys.cross(xs);
+    if !is_inside(sides) {
+        return Hit::miss();
+    }
     // Seen edge-on the signs are those of rounding errors: the ray must pass between the
     // vertices all the same.
     let left = min(min(a_x, b_x), c_x);
@@ -194,10 +198,10 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
     let low = min(min(a_y, b_y), c_y);
     let high = max(max(a_y, b_y), c_y);
     let between = left <= 0.0 && right >= 0.0 && low <= 0.0 && high >= 0.0;
-    let mut sum = sides.x + sides.y + sides.z;
-    if !(is_inside(sides) && between) {
+    if !between {
         return Hit::miss();
     }
+    let mut sum = sides.x + sides.y + sides.z;
     // A product loses eps of its size, and where products cancel that may say more about the
     // depth than the vertices do: in a thin triangle whose plane the ray runs along. Then nothing
     // may be lost. Signs stay right or zero, so no ray passes between a triangle whose signs are
@@ -215,8 +219,8 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
         return Hit::miss();
     }
     let (u, v, w) = (sides.x / sum, sides.y / sum, sides.z / sum);
-    // A mean of the vertices' distances: it lies between them.
-    let t = u * (a.z / d.z) + v * (b.z / d.z) + w * (c.z / d.z);
+    // A mean of the vertices' depths, as a distance.
+    let t = (u * a.z + v * b.z + w * c.z) * (1.0 / d.z);
     // Vertices on one line have no inside: the signs are those of rounding errors. The area of a
     // sliver may be rounded to nothing, and it closes a gap all the same.
     let n = (v1 - v0).cross(v2 - v0);
