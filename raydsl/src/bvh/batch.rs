@@ -1,6 +1,7 @@
 //! Queries of many rays on the host, in packets.
 
-use super::{SceneView, record_on};
+use super::wide::trace;
+use super::{SceneView, record_on, traverse};
 use crate::geometry::{Primitive, Ray};
 use crate::kernel::{LanesTask, Variant};
 use crate::machine::{B, Lanes, Machine, Packet, Type, fill};
@@ -33,6 +34,12 @@ impl<P: Primitive> LanesTask for Closest<'_, '_, P> {
 
     fn run<L: Lanes>(self, lanes: L) -> Vec<P::Hit> {
         let mut hits = Vec::with_capacity(self.rays.len());
+        if trace::answers(self.scene) {
+            trace::each_closest(lanes, self.scene, self.rays, |ray, hit| {
+                hits.push(traverse::complete(self.scene, *ray, hit));
+            });
+            return hits;
+        }
         lanes.vectorize(|| {
             let m = Packet::new(lanes);
             for rays in self.rays.chunks(TOGETHER * L::N) {
@@ -55,6 +62,10 @@ impl<P: Primitive> LanesTask for Any<'_, '_, P> {
 
     fn run<L: Lanes>(self, lanes: L) -> Vec<bool> {
         let mut hits = Vec::with_capacity(self.rays.len());
+        if trace::answers(self.scene) {
+            trace::each_any(lanes, self.scene, self.rays, |is_hit| hits.push(is_hit));
+            return hits;
+        }
         lanes.vectorize(|| {
             let m = Packet::new(lanes);
             for rays in self.rays.chunks(TOGETHER * L::N) {

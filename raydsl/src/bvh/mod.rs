@@ -82,7 +82,7 @@ pub struct Bvh<'a, P: Primitive> {
 struct Owned {
     nodes: Vec<Node>,
     indices: Vec<u32>,
-    /// The tree that packets go through, with [`Storage::Leaves`].
+    /// The tree that most queries go through, with [`Storage::Leaves`].
     wide: Option<wide::Wide>,
     config: BuildConfig,
     owner: Owner,

@@ -47,7 +47,7 @@ pub(crate) const ULP: f32 = f32::EPSILON;
 pub(crate) const LEAST: f32 = 8.673_617_4e-19;
 
 /// The reciprocal of every component, finite.
-fn finite_inverse(d: Vec3) -> Vec3 {
+pub(super) fn finite_inverse(d: Vec3) -> Vec3 {
     let largest = d.abs().max_element();
     let least = (largest * LEAST).max(f32::MIN_POSITIVE);
     let safe = |x: f32| {

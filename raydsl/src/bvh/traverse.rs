@@ -1,10 +1,11 @@
-//! Traversal for one ray: the yardstick of every other.
+//! Traversal of binary trees for one ray: the yardstick of every other.
 
 use core::mem::MaybeUninit;
 
 use super::instances::Descent;
 use super::slabs::{Allowance, Slabs};
 use super::view::Branches;
+use super::wide::single;
 use super::{Accelerator, MAX_DEPTH, Node, Part, Placed, SceneView};
 use crate::Type;
 use crate::geometry::{Hit, HitRecord, Primitive, Ray};
@@ -139,12 +140,15 @@ pub fn closest_hit<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> P::Hit {
 /// [`closest_hit`] without the rest of the record.
 #[inline(always)]
 pub(crate) fn nearest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> Hit {
-    closest(prims, ray, &mut Uncounted)
+    single::closest_hit(prims, ray).unwrap_or_else(
+        #[inline(always)]
+        || closest(prims, ray, &mut Uncounted),
+    )
 }
 
 /// The record of a hit: traversal carries the hit alone.
 #[inline(always)]
-fn complete<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, hit: Hit) -> P::Hit {
+pub(super) fn complete<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, hit: Hit) -> P::Hit {
     let again = || {
         let ray = prims.local_ray(hit.inst_id, ray);
         prims.get(hit.prim_id).intersect(ray, prims.shared().elements())
@@ -186,7 +190,7 @@ fn closest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Co
 
 /// Whether `ray` hits any of `prims`.
 pub fn any_hit<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> bool {
-    any(prims, ray, &mut Uncounted)
+    single::any_hit(prims, ray).unwrap_or_else(|| any(prims, ray, &mut Uncounted))
 }
 
 /// [`any_hit`], and what it cost.

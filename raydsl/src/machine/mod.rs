@@ -50,7 +50,7 @@ pub(crate) use counted::{Count, count};
 pub use counted::{Counted, Place};
 pub use counter::{Counter, Steps, Stop, decrement, increment};
 pub use gang::Gang;
-pub(crate) use lanes::{Entered, fill};
+pub(crate) use lanes::{Entered, Straight, fill};
 pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
 pub(crate) use margin::result_leaves;
 pub use margin::{Leaf, Margin, Outcomes, Rounding};
@@ -376,7 +376,7 @@ pub trait Machine: Sized + 'static {
     /// Leaves the loop: lanes that left it go on behind it.
     fn loop_end(&self, t: Self::Loop);
 
-    /// Whether any lane is running.
+    /// Whether what follows an early exit is to run: if any lane is left, or that is not worth asking.
     fn alive(&self) -> bool;
     /// Whether any running lane has `c`; the recorder says yes.
     fn any(&self, c: Self::Bool) -> bool;

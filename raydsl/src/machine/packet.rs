@@ -120,6 +120,11 @@ impl<L: Lanes> Packet<L> {
         )
     }
 
+    #[inline(always)]
+    fn is_running(&self) -> bool {
+        self.lanes.any(self.active.get())
+    }
+
     /// Takes the running lanes out.
     #[inline(always)]
     fn stop(&self) -> L::Mask {
@@ -347,12 +352,12 @@ impl<L: Lanes> Machine for Packet<L> {
     }
     #[inline(always)]
     fn branch_then(&self, _: &Cell<L::Mask>) -> bool {
-        self.alive()
+        self.is_running()
     }
     #[inline(always)]
     fn branch_else(&self, rest: &Cell<L::Mask>) -> bool {
         self.active.swap(rest);
-        self.alive()
+        self.is_running()
     }
     #[inline(always)]
     fn choose<V: Value<Self>>(
@@ -395,7 +400,7 @@ impl<L: Lanes> Machine for Packet<L> {
         let old = self.active.get();
         self.active.set(self.and(old, c));
         l.exited.set(self.or(l.exited.get(), self.and(old, self.lanes.mask_not(c))));
-        self.alive()
+        self.is_running()
     }
     #[inline(always)]
     fn loop_break(&self, l: &PacketLoop<L>) {
@@ -412,7 +417,7 @@ impl<L: Lanes> Machine for Packet<L> {
     }
     #[inline(always)]
     fn loop_again(&self, _: &PacketLoop<L>) -> bool {
-        self.alive()
+        self.is_running()
     }
     #[inline(always)]
     fn loop_end(&self, l: PacketLoop<L>) {
@@ -420,7 +425,7 @@ impl<L: Lanes> Machine for Packet<L> {
     }
     #[inline(always)]
     fn alive(&self) -> bool {
-        self.lanes.any(self.active.get())
+        L::STRAIGHT || self.is_running()
     }
     #[inline(always)]
     fn any(&self, c: L::Mask) -> bool {

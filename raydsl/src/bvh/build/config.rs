@@ -55,7 +55,7 @@ impl BuildQuality {
     }
 }
 
-/// Where the primitives lie that packets test.
+/// Where the primitives lie that rays test.
 ///
 /// Hits are the same with each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -68,7 +68,7 @@ pub enum Storage {
     /// of eight children. One ray meets eight boxes or eight primitives at a time, and packets go
     /// through the tree together or part, whichever is quicker.
     ///
-    /// For scenes that packets ask often. A device has no use for it.
+    /// For scenes that are asked often. A device has no use for it.
     Leaves,
 }
 
@@ -95,7 +95,7 @@ impl From<BuildQuality> for BuildConfig {
 pub struct BuildConfig {
     /// How the tree is built; default [`BuildQuality::Balanced`].
     pub quality: BuildQuality,
-    /// Where the primitives lie that packets test; default [`Storage::Borrow`].
+    /// Where the primitives lie that rays test; default [`Storage::Borrow`].
     pub storage: Storage,
     /// The most primitives a leaf may hold, `1..=256`; default 4. With [`Storage::Leaves`] it is 8,
     /// whatever stands here, and what few enough primitives there are is not split further.

@@ -5,7 +5,7 @@
 //! near planes than for the far ones. (Reshetov, Soupikov and Hurley, "Multi-Level Ray Tracing
 //! Algorithm", ACM Transactions on Graphics 24(3), 2005.)
 
-use super::rays::{GROUP, Rays, row};
+use super::rays::{GROUP, Rays, lanes_mask, load, row};
 use super::step::Slabs;
 use crate::bvh::Node;
 use crate::bvh::slabs::{Allowance, ULP};
@@ -49,37 +49,58 @@ impl Slabs for &Beam {
 /// rays that part further visit less on their own.
 const SPREAD: f32 = 0.5;
 
-/// The least and the greatest number in the rows of some rays.
+/// The least and the greatest number of some rays.
 pub(super) struct Extent {
-    least: f32,
+    pub(super) least: f32,
     pub(super) greatest: f32,
+}
+
+/// The same of each lane.
+#[derive(Clone, Copy)]
+pub(super) struct Extents<E: Lanes> {
+    least: E::F32,
+    greatest: E::F32,
+}
+
+impl<E: Lanes> Extents<E> {
+    /// Of no numbers.
+    #[inline(always)]
+    pub(super) fn none(e: E) -> Self {
+        Self { least: e.f32(f32::INFINITY), greatest: e.f32(f32::NEG_INFINITY) }
+    }
+
+    /// Also of the numbers that are there; those that are none are left out.
+    #[inline(always)]
+    pub(super) fn add(&mut self, e: E, v: E::F32, there: E::Mask) {
+        self.least = e.f32_binary(op::Min, self.least, e.f32_select(there, v, self.least));
+        self.greatest = e.f32_binary(op::Max, self.greatest, e.f32_select(there, v, self.greatest));
+    }
+
+    /// Of all lanes.
+    #[inline(always)]
+    pub(super) fn extent(self, e: E) -> Extent {
+        const { assert!(E::N == 8) };
+        let (mut low, mut high) = ([0.0; 8], [0.0; 8]);
+        e.f32_store(self.least, &mut low);
+        e.f32_store(self.greatest, &mut high);
+        Extent { least: fold(low, less), greatest: fold(high, more) }
+    }
 }
 
 /// The extent of a row, of the rays whose bits are set.
 #[inline(always)]
 pub(super) fn extent<E: Lanes>(e: E, rays: &Rays, members: &[u32], row: usize) -> Extent {
-    let mut least = e.f32(f32::INFINITY);
-    let mut greatest = e.f32(f32::NEG_INFINITY);
+    let mut extents = Extents::none(e);
     for (group, members) in members.iter().enumerate() {
-        for from in [0, E::N] {
-            let there = members >> from & 0xff;
-            if there == 0 {
-                continue;
+        for from in (0..GROUP).step_by(E::N) {
+            let there = members >> from & lanes_mask::<E>();
+            if there != 0 {
+                let there = e.mask_from_bits(there.into());
+                extents.add(e, load(e, rays.row(group, row), from), there);
             }
-            let there = e.mask_from_bits(there.into());
-            let words = &rays.row(group, row)[from..from + E::N];
-            let v = e.f32_from_fn(
-                #[inline(always)]
-                |i| f32::from_bits(words[i]),
-            );
-            least = e.f32_binary(op::Min, least, e.f32_select(there, v, least));
-            greatest = e.f32_binary(op::Max, greatest, e.f32_select(there, v, greatest));
         }
     }
-    let (mut low, mut high) = ([0.0; 8], [0.0; 8]);
-    e.f32_store(least, &mut low);
-    e.f32_store(greatest, &mut high);
-    Extent { least: fold(low, less), greatest: fold(high, more) }
+    extents.extent(e)
 }
 
 #[inline(always)]
@@ -117,7 +138,6 @@ impl Beam {
         root: &Node,
         allowance: Allowance,
     ) -> Option<Self> {
-        const { assert!(2 * E::N == GROUP) };
         let t_min = extent(e, rays, members, row::T_MIN).least;
         let origins = vector(e, rays, members, row::ORIGIN);
         let inverses = vector(e, rays, members, row::INVERSE);
@@ -128,7 +148,7 @@ impl Beam {
             spread = spread.max((a - b).abs());
         }
         // What lies behind an origin would have to be told from what lies before it.
-        if t_min.is_nan() || t_min < 0.0 || spread > SPREAD * largest {
+        if t_min < 0.0 || spread > SPREAD * largest {
             return None;
         }
         let limit = extent(e, rays, members, row::LIMIT).greatest;
@@ -149,8 +169,8 @@ impl Beam {
     }
 }
 
-/// By how much boxes are widened, for the rays of a beam.
-fn pad(origins: &[Extent; 3], root: &Node, allowance: Allowance) -> f32 {
+/// By how much boxes are widened, for rays with these origins.
+pub(super) fn pad(origins: &[Extent; 3], root: &Node, allowance: Allowance) -> f32 {
     let (low, high) = (root.min.to_array(), root.max.to_array());
     let (mut reach, mut largest) = (0.0f32, 0.0f32);
     for (axis, o) in origins.iter().enumerate() {

@@ -4,9 +4,11 @@
 mod beam;
 mod blocks;
 mod collapse;
+mod entry;
 mod node;
 mod packet;
 mod rays;
+pub(crate) mod single;
 mod step;
 #[cfg(test)]
 mod tests;

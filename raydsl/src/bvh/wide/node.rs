@@ -58,6 +58,13 @@ impl WideNode {
         }
     };
 
+    /// The box of a slot.
+    pub(crate) fn bounds(&self, slot: usize) -> Aabb {
+        let along = |axis: usize| (self.planes[2 * axis][slot], self.planes[2 * axis + 1][slot]);
+        let (x, y, z) = (along(0), along(1), along(2));
+        Aabb::new([x.0, y.0, z.0].into(), [x.1, y.1, z.1].into())
+    }
+
     pub(crate) fn set(&mut self, slot: usize, bounds: Aabb, child: Child) {
         let (min, max) = (bounds.min.to_array(), bounds.max.to_array());
         for axis in 0..3 {

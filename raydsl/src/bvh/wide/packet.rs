@@ -3,8 +3,8 @@
 use super::beam::{Beam, extent};
 use super::blocks::{self, Row};
 use super::node::{Child, WIDTH, WideNode};
-use super::rays::{GROUP, Rays, lanes_mask, load, load_words, row};
-use super::step::{Meeting, enter, ids, sorted};
+use super::rays::{GROUP, Group, Rays, lanes_mask, load, load_words, row};
+use super::step::{Meeting, enter, ids, last_key, sorted};
 use crate::bvh::Node;
 use crate::bvh::packet_slabs::{abs, add, and, max, min, mul, or};
 use crate::bvh::slabs::Allowance;
@@ -31,7 +31,7 @@ pub(super) struct Together {
 #[inline(always)]
 pub(super) fn closest_hit<R: Lanes, P: Primitive>(
     r: R,
-    meeting: &Meeting<'_, R::Eight, P>,
+    meeting: &Meeting<'_, P>,
     rays: &mut Rays,
     together: &mut Together,
     root: &Node,
@@ -88,7 +88,7 @@ fn take_octant(rays: &mut Rays, members: &mut Vec<u32>) -> u32 {
 #[inline(always)]
 fn walk<R: Lanes, P: Primitive>(
     r: R,
-    meeting: &Meeting<'_, R::Eight, P>,
+    meeting: &Meeting<'_, P>,
     rays: &mut Rays,
     together: &mut Together,
     mut beam: Beam,
@@ -119,14 +119,13 @@ fn walk<R: Lanes, P: Primitive>(
             e.u32_store(keys, &mut enters[top..][..WIDTH]);
             top += e.bits(mask).count_ones() as usize;
         }
-        // Below the first distance above zero no bits are larger.
-        let limit = if beam.limit > 0.0 { beam.limit.to_bits() } else { 7 };
+        let last = last_key(beam.limit);
         loop {
             if top == 0 {
                 return;
             }
             top -= 1;
-            if enters[top] & !7 <= limit {
+            if enters[top] & !7 <= last {
                 break;
             }
         }
@@ -151,7 +150,7 @@ impl<R: Lanes> Members<'_, R> {
     #[inline(always)]
     fn meet<P: Primitive>(
         &mut self,
-        meeting: &Meeting<'_, R::Eight, P>,
+        meeting: &Meeting<'_, P>,
         block: &[Row],
         node: &WideNode,
         slot: usize,
@@ -167,7 +166,7 @@ impl<R: Lanes> Members<'_, R> {
                 if alive == 0 {
                     continue;
                 }
-                let lanes = Register { r, m: &self.m, rays: self.rays, group, from };
+                let lanes = Register { r, m: &self.m, group: self.rays.group_mut(group), from };
                 let there = lanes.enter(node, slot, self.side);
                 let there = and(r, there, r.mask_from_bits(alive.into()));
                 if r.any(there) {
@@ -183,20 +182,19 @@ impl<R: Lanes> Members<'_, R> {
 struct Register<'a, R: Lanes> {
     r: R,
     m: &'a Packet<Entered<R>>,
-    rays: &'a mut Rays,
-    group: usize,
+    group: &'a mut Group,
     from: usize,
 }
 
 impl<R: Lanes> Register<'_, R> {
     #[inline(always)]
     fn number(&self, row: usize) -> R::F32 {
-        load(self.r, self.rays.row(self.group, row), self.from)
+        load(self.r, &self.group[row].0, self.from)
     }
 
     #[inline(always)]
     fn set(&mut self, row: usize, word: R::U32) {
-        self.r.u32_store(word, &mut self.rays.row_mut(self.group, row)[self.from..]);
+        self.r.u32_store(word, &mut self.group[row].0[self.from..]);
     }
 
     #[inline(always)]
@@ -229,7 +227,7 @@ impl<R: Lanes> Register<'_, R> {
     #[inline(always)]
     fn meet<P: Primitive>(
         mut self,
-        meeting: &Meeting<'_, R::Eight, P>,
+        meeting: &Meeting<'_, P>,
         block: &[Row],
         count: usize,
         there: R::Mask,
@@ -266,12 +264,12 @@ impl<R: Lanes> Register<'_, R> {
                 continue;
             }
             let id = r.u32(meeting.part.first + numbers[i % WIDTH]);
-            let ids = load_words(r, self.rays.row(self.group, row::ID), self.from);
+            let ids = load_words(r, &self.group[row::ID].0, self.from);
             let first = r.u32_compare(op::Lt, id, ids);
             let take = and(r, met, or(r, r.f32_compare(op::Lt, t, best), first));
             let best = r.f32_select(take, t, best);
             let (u, v) = (self.number(row::U), self.number(row::V));
-            let found = load_words(r, self.rays.row(self.group, row::FOUND), self.from);
+            let found = load_words(r, &self.group[row::FOUND].0, self.from);
             self.set_number(row::T, best);
             self.set_number(row::U, r.f32_select(take, hit.u.0, u));
             self.set_number(row::V, r.f32_select(take, hit.v.0, v));

@@ -4,7 +4,8 @@
 use crate::bvh::Node;
 use crate::bvh::packet_slabs::{abs, add, and, finite_inverse, max, mul, sub};
 use crate::bvh::slabs::{Allowance, ULP};
-use crate::geometry::{Ray, RayOn};
+use crate::bvh::traverse::is_finite;
+use crate::geometry::{Hit, Ray, RayOn};
 use crate::machine::{F, Lanes, Machine, V3, fill, op};
 
 /// How many rays a group has.
@@ -33,10 +34,11 @@ pub(super) mod row {
     pub(in super::super) const ID: usize = 24;
     /// Not 0 if there is a hit.
     pub(in super::super) const FOUND: usize = 25;
-    /// Where a ray is on its own, and the top of its stack.
+    /// Where a ray is on its own, and the bottom and the top of its stack.
     pub(in super::super) const AT: usize = 26;
-    pub(in super::super) const TOP: usize = 27;
-    pub(in super::super) const COUNT: usize = 28;
+    pub(in super::super) const BOTTOM: usize = 27;
+    pub(in super::super) const TOP: usize = 28;
+    pub(in super::super) const COUNT: usize = 29;
 }
 
 /// A word of each ray of a group.
@@ -59,10 +61,13 @@ pub(super) struct Marks {
     pub(super) sides: [u32; 3],
 }
 
+/// A word of each kind of sixteen rays.
+pub(super) type Group = [Row; row::COUNT];
+
 /// Groups of rays.
 #[derive(Debug, Default)]
 pub(super) struct Rays {
-    rows: Vec<Row>,
+    groups: Vec<Group>,
     pub(super) marks: Vec<Marks>,
 }
 
@@ -107,6 +112,16 @@ impl RayWords<'_> {
         }
     }
 
+    /// The least hit so far.
+    pub(super) fn hit(self) -> Hit {
+        if self.word(row::FOUND) == 0 {
+            return Hit::miss();
+        }
+        let (u, v) = (self.number(row::U), self.number(row::V));
+        let (t, prim_id) = (self.number(row::T), self.word(row::ID));
+        Hit { is_hit: true, t, prim_id, inst_id: 0, u, v }
+    }
+
     pub(super) fn ray(self) -> Ray {
         let vector = |row| glam::vec3(self.number(row), self.number(row + 1), self.number(row + 2));
         Ray {
@@ -131,6 +146,14 @@ impl RayWordsMut<'_> {
         self.0[STRIDE * row] = word;
     }
 
+    pub(super) fn set_hit(&mut self, hit: Hit) {
+        self.set(row::FOUND, hit.is_hit.into());
+        self.set_number(row::T, hit.t);
+        self.set_number(row::U, hit.u);
+        self.set_number(row::V, hit.v);
+        self.set(row::ID, hit.prim_id);
+    }
+
     #[inline(always)]
     pub(super) fn set_number(&mut self, row: usize, number: f32) {
         self.set(row, number.to_bits());
@@ -147,27 +170,65 @@ impl Rays {
     /// Room for so many rays, none of which is asked about. What the rows hold is not said.
     pub(super) fn begin(&mut self, rays: usize) {
         let groups = rays.div_ceil(GROUP);
-        if self.rows.len() < groups * row::COUNT {
-            self.rows.resize(groups * row::COUNT, Row([0; GROUP]));
+        if self.groups.len() < groups {
+            self.groups.resize(groups, [Row([0; GROUP]); row::COUNT]);
         }
         self.marks.clear();
         self.marks.resize(groups, Marks::default());
     }
 
+    /// The rays of the host, one behind the other.
+    pub(super) fn load(&mut self, rays: &[Ray]) {
+        self.begin(rays.len());
+        for (group, rays) in rays.chunks(GROUP).enumerate() {
+            let rows = &mut self.groups[group];
+            for (lane, ray) in rays.iter().enumerate() {
+                let mut set = |row: usize, number: f32| rows[row].0[lane] = number.to_bits();
+                for axis in 0..3 {
+                    set(row::ORIGIN + axis, ray.origin[axis]);
+                    set(row::DIRECTION + axis, ray.direction[axis]);
+                }
+                set(row::T_MIN, ray.t_min);
+                set(row::T_MAX, ray.t_max);
+                set(row::LIMIT, ray.t_max);
+                set(row::T, f32::INFINITY);
+                rows[row::U].0[lane] = 0;
+                rows[row::V].0[lane] = 0;
+                rows[row::ID].0[lane] = u32::MAX;
+                rows[row::FOUND].0[lane] = 0;
+                self.marks[group].asked |= u32::from(is_finite(ray)) << lane;
+            }
+        }
+    }
+
+    /// Asks no more about the rays that have found something.
+    pub(super) fn forget_found(&mut self) {
+        for (marks, rows) in self.marks.iter_mut().zip(&self.groups) {
+            for (lane, &found) in rows[row::FOUND].0.iter().enumerate() {
+                marks.asked &= !(u32::from(found != 0) << lane);
+            }
+        }
+    }
+
     /// All words, as [`place`] finds a ray's.
     #[inline(always)]
     pub(super) fn words(&mut self) -> &mut [u32] {
-        bytemuck::cast_slice_mut(&mut self.rows)
+        bytemuck::cast_slice_mut(self.groups.as_flattened_mut())
+    }
+
+    #[inline(always)]
+    pub(super) fn group_mut(&mut self, group: usize) -> &mut Group {
+        &mut self.groups[group]
     }
 
     #[inline(always)]
     pub(super) fn row(&self, group: usize, row: usize) -> &[u32; GROUP] {
-        &self.rows[group * row::COUNT + row].0
+        &self.groups[group][row].0
     }
 
     #[inline(always)]
     pub(super) fn row_mut(&mut self, group: usize, row: usize) -> &mut [u32; GROUP] {
-        &mut self.rows[group * row::COUNT + row].0
+        &mut self.groups[group][row].0
     }
 
     /// Prepares the rays of a group for the tree under `root`, as
@@ -204,7 +265,7 @@ impl Rays {
         root: &Node,
         allowance: Allowance,
     ) -> u32 {
-        let rows = &mut self.rows[group * row::COUNT..][..row::COUNT];
+        let rows = &mut self.groups[group];
         let origin: [L::F32; 3] = fill(
             #[inline(always)]
             |axis| load(l, &rows[row::ORIGIN + axis].0, from),
@@ -269,7 +330,7 @@ pub(super) fn ray_at_mut(words: &mut [u32], place: u32) -> RayWordsMut<'_> {
 }
 
 /// 2^120.
-const HUGE: f32 = 1.329_228e36;
+pub(super) const HUGE: f32 = 1.329_228e36;
 
 #[inline(always)]
 pub(super) const fn lanes_mask<L: Lanes>() -> u32 {

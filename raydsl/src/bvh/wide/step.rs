@@ -6,11 +6,8 @@ use super::node::{WIDTH, WideNode};
 use super::rays::{RayWords, row};
 use crate::bvh::packet_slabs::{max, min};
 use crate::bvh::{Part, View};
-use crate::geometry::{HitOn, HitRecord, Kinds, Primitive};
-use crate::machine::{Entered, Lanes, Packet, op};
-
-/// The machine of eight lanes for leaves.
-pub(super) type Leaf<E> = Packet<Entered<E>>;
+use crate::geometry::{HitOn, HitRecord, Kinds, Primitive, RayOn};
+use crate::machine::{Lanes, Packet, op};
 
 /// What meets boxes: a ray, or a beam of them.
 pub(super) trait Slabs: Copy {
@@ -87,6 +84,21 @@ pub(super) fn sorted<E: Lanes>(e: E, near: E::F32, mask: E::Mask) -> E::U32 {
     e.u32_sort_descending(e.u32_select(mask, key, e.u32(0)))
 }
 
+/// What is compared with the bits of a distance, without the slot below them, at which a box is
+/// entered: no box with more may hold a hit before `limit`.
+#[inline(always)]
+pub(super) fn last_key(limit: f32) -> u32 {
+    // Below the first distance above zero no bits are larger.
+    if limit > 0.0 { limit.to_bits() } else { 7 }
+}
+
+/// Up to where boxes may hold a hit that is less than one at `t`, of a ray that ends at `t_max`.
+#[inline(always)]
+pub(super) fn beyond(t: f32, t_max: f32, slack: f32) -> f32 {
+    let limit = t + t.abs() * slack;
+    if limit < t_max { limit } else { t_max }
+}
+
 /// Eight numbers from memory.
 #[inline(always)]
 fn numbers<E: Lanes>(e: E, numbers: &[f32; WIDTH]) -> E::F32 {
@@ -106,39 +118,41 @@ pub(super) fn words<E: Lanes>(e: E, words: &[u32; WIDTH]) -> E::U32 {
 }
 
 /// What rays meet the primitives of a wide tree with.
-pub(super) struct Meeting<'a, E: Lanes, P: Primitive> {
-    pub(super) m: Leaf<E>,
+pub(super) struct Meeting<'a, P: Primitive> {
     pub(super) tree: &'a Wide,
     pub(super) part: Part<'a, P, P::Shared>,
     pub(super) shared: View<'a, P::Shared>,
     pub(super) kinds: Kinds,
 }
 
-impl<E: Lanes, P: Primitive> Meeting<'_, E, P> {
+impl<P: Primitive> Meeting<'_, P> {
     /// The rows of a block.
     #[inline(always)]
     pub(super) fn rows(&self, index: usize) -> &[Row] {
         self.tree.blocks.block::<P>(index)
     }
 
-    /// Where a ray meets the primitives of a block, and where that is within the ray's range.
+    /// Where a ray meets the primitives of a block, and where that is within the ray's range and
+    /// not beyond `best`.
     #[inline(always)]
-    pub(super) fn block(&self, block: &[Row], ray: RayWords<'_>) -> (HitOn<Leaf<E>>, E::Mask) {
-        let (m, e) = (&self.m, self.m.lanes().0);
-        let ray = ray.ray_on(m);
+    pub(super) fn block<E: Lanes>(
+        &self,
+        e: E,
+        block: &[Row],
+        ray: RayOn<Packet<E>>,
+        best: f32,
+    ) -> (HitOn<Packet<E>>, E::Mask) {
+        let m = &Packet::new(e);
         let prim = blocks::read::<_, P>(
             m,
             #[inline(always)]
             |word| words(e, &block[word].0),
         );
-        let record = m.with_active(
-            e.mask(true),
-            #[inline(always)]
-            || P::intersect_among_on(m, self.kinds, prim, ray, self.shared),
-        );
+        let record = P::intersect_among_on(m, self.kinds, prim, ray, self.shared);
         let hit = P::Hit::hit_on(record);
         let after = e.f32_compare(op::Ge, hit.t.0, ray.t_min.0);
-        let before = e.f32_compare(op::Le, hit.t.0, ray.t_max.0);
+        // In this order a range without an end that is a number holds nothing.
+        let before = e.f32_compare(op::Le, hit.t.0, min(e, ray.t_max.0, e.f32(best)));
         let within = e.mask_binary(op::And, after, before);
         (hit, e.mask_binary(op::And, hit.is_hit.0, within))
     }

@@ -4,18 +4,25 @@ use std::collections::HashSet;
 
 use glam::Vec3;
 
-use super::Wide;
-use super::node::{Child, WIDTH};
+use super::node::{Child, WIDTH, WideNode};
+use super::rays::Rays;
+use super::{Wide, entry};
+use crate::bvh::slabs::Allowance;
 use crate::bvh::{BuildConfig, BuildQuality, Bvh, Storage};
-use crate::geometry::{Aabb, Triangle};
+use crate::geometry::{Aabb, Ray, Triangle};
+use crate::machine::Simd8;
 
-/// A triangle for each number, in clusters of every size; some are the same.
-fn triangles(count: u32) -> Vec<Triangle> {
-    let coordinate = |i: u32, k: u32| {
+/// A point of the unit cube for each pair of numbers.
+fn point(i: u32, k: u32) -> Vec3 {
+    let coordinate = |k: u32| {
         let bits = (i * 31 + k).wrapping_mul(0x9e37_79b9) >> 8;
         bits as f32 / 16_777_216.0
     };
-    let point = |i, k| Vec3::new(coordinate(i, k), coordinate(i, k + 1), coordinate(i, k + 2));
+    Vec3::new(coordinate(k), coordinate(k + 1), coordinate(k + 2))
+}
+
+/// A triangle for each number, in clusters of every size; some are the same.
+fn triangles(count: u32) -> Vec<Triangle> {
     (0..count)
         .map(|i| {
             let i = if i % 11 == 0 { 0 } else { i };
@@ -81,6 +88,64 @@ fn blocks_hold_every_primitive_and_stacks_are_deep_enough() {
             assert!(seen.iter().all(|&n| n >= 1 && n <= most), "{count} {quality:?}");
         }
     }
+}
+
+/// The blocks in and below a slot whose boxes meet `bounds`.
+fn blocks(tree: &Wide, node: &WideNode, bounds: Aabb, found: &mut HashSet<u32>) {
+    for slot in 0..WIDTH {
+        let child = Child(node.children[slot]);
+        if child == Child::NONE || !node.bounds(slot).intersection(bounds).is_valid() {
+            continue;
+        }
+        if child.is_block() {
+            found.insert(child.0);
+        } else {
+            blocks(tree, &tree.nodes[child.index()], bounds, found);
+        }
+    }
+}
+
+#[test]
+fn entries_lead_to_all_that_rays_may_reach() {
+    let e = Simd8(fearless_simd::Fallback::new());
+    let prims = triangles(3000);
+    let bvh = Bvh::build_with(&prims, &Storage::Leaves.into()).expect("finite bounds");
+    let tree = bvh.tree.own.wide.as_ref().expect("it was asked for");
+    let (root, allowance) = (bvh.nodes()[0], Allowance::of::<Triangle>());
+    let (mut rays, mut opened) = (Rays::default(), 0);
+    for case in 0..300 {
+        let length = 10f32.powi(case as i32 % 5 - 3);
+        let middle = point(case, 9) * 20.0;
+        let ray = |i: u32| {
+            let origin = middle + point(i, case) * 0.2;
+            let direction = point(i, case + 50) - 0.5;
+            Ray { t_min: -0.2 * length, t_max: length, ..Ray::new(origin, direction) }
+        };
+        let mut all: Vec<Ray> = (0..64).map(ray).collect();
+        let reach = all.iter().fold(Aabb::EMPTY, |reach, ray| {
+            let at = |t| ray.origin + ray.direction * t;
+            let (from, to) = (at(ray.t_min), at(ray.t_max));
+            reach.union(Aabb::new(from.min(to), from.max(to)))
+        });
+        let mut of = |all: &[Ray]| {
+            rays.load(all);
+            for group in 0..rays.marks.len() {
+                rays.prepare(e, group, &root, allowance);
+            }
+            entry::of(e, tree, &rays, &root, allowance)
+        };
+        let entry = of(&all).expect("rays with an end");
+        let (mut below, mut wanted) = (HashSet::new(), HashSet::new());
+        blocks(tree, &entry, reach, &mut below);
+        blocks(tree, &tree.nodes[0], reach, &mut wanted);
+        assert_eq!(below, wanted);
+        let is_new = |child: &u32| !tree.nodes[0].children.contains(child);
+        opened += u32::from(entry.children.iter().any(is_new));
+        all[7].t_max = f32::MAX;
+        assert!(of(&all).is_none(), "one has no end");
+        assert!(of(&all[20..60]).is_none(), "few");
+    }
+    assert!(opened > 200, "{opened}");
 }
 
 #[test]

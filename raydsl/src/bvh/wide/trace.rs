@@ -1,16 +1,17 @@
-//! Queries of packets, answered by wide trees.
+//! Queries of packets, and of many rays of the host, answered by wide trees.
 
 use core::cell::Cell;
 
+use super::entry;
 use super::packet::{self, Together};
-use super::rays::{GROUP, RayWordsMut, Rays, load_words, place, ray_at_mut, row};
+use super::rays::{GROUP, Rays, load_words, place, ray_at, ray_at_mut, row};
 use super::step::Meeting;
 use super::wave::{self, Wave};
 use crate::bvh::packet_slabs::{and, finite};
 use crate::bvh::slabs::Allowance;
-use crate::bvh::{Node, Part, SceneView, traverse};
-use crate::geometry::{HitOn, Primitive, RayOn};
-use crate::machine::{B, Entered, F, Lanes, Packet, U, op};
+use crate::bvh::{Part, SceneView, traverse};
+use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn};
+use crate::machine::{B, Entered, F, Lanes, Packet, Straight, U, op};
 
 /// The memory of a query, which a thread keeps for the next one.
 #[derive(Debug, Default)]
@@ -39,27 +40,21 @@ pub(crate) fn closest_hits<L: Lanes, P: Primitive>(
     hits: &mut [HitOn<Packet<L>>],
 ) {
     let l = m.lanes();
-    answer(
-        m,
-        scene,
-        rays,
-        #[inline(always)]
-        |meeting, root, Scratch { rays, wave, together }| {
-            packet::closest_hit(l.register(), meeting, rays, together, root);
-            wave::run::<true, _, _>(l.register().eight(), meeting, rays, wave);
-        },
-        |words| {
-            let hit = traverse::nearest(scene, words.as_ref().ray());
-            words.set_number(row::T, hit.t);
-            words.set_number(row::U, hit.u);
-            words.set_number(row::V, hit.v);
-            words.set(row::ID, hit.prim_id);
-            hit.is_hit
-        },
-        hits,
-        #[inline(always)]
-        |rays, first| hit_at(l, rays, first),
-    );
+    with_scratch(|scratch| {
+        l.enter_again(
+            #[inline(always)]
+            || load(m, &mut scratch.rays, rays),
+        );
+        answer::<true, _, P>(l.register(), scene, scratch);
+        l.enter_again(
+            #[inline(always)]
+            || {
+                for (q, hit) in hits.iter_mut().enumerate() {
+                    *hit = hit_at(l, &scratch.rays, q * L::N);
+                }
+            },
+        );
+    });
 }
 
 /// Whether every running lane hits anything, for each of some rays of a packet.
@@ -71,91 +66,132 @@ pub(crate) fn any_hits<L: Lanes, P: Primitive>(
     hits: &mut [B<Packet<L>>],
 ) {
     let l = m.lanes();
-    answer(
-        m,
-        scene,
-        rays,
-        #[inline(always)]
-        |meeting, _, Scratch { rays, wave, .. }| {
-            wave::run::<false, _, _>(l.register().eight(), meeting, rays, wave);
-        },
-        |words| traverse::any_hit(scene, words.as_ref().ray()),
-        hits,
-        #[inline(always)]
-        |rays, first| B(found_at(l, rays, first)),
-    );
+    with_scratch(|scratch| {
+        l.enter_again(
+            #[inline(always)]
+            || load(m, &mut scratch.rays, rays),
+        );
+        answer::<false, _, P>(l.register(), scene, scratch);
+        l.enter_again(
+            #[inline(always)]
+            || {
+                for (q, hit) in hits.iter_mut().enumerate() {
+                    *hit = B(found_at(l, &scratch.rays, q * L::N));
+                }
+            },
+        );
+    });
 }
 
-/// Asks about the rays, and reads what each packet of them has found.
-#[inline(always)]
-fn answer<L: Lanes, P: Primitive, H>(
-    m: &Packet<L>,
+/// How many rays of the host are asked about together.
+const TOGETHER: usize = 128;
+
+/// The least `(t, id)` hit of each ray.
+pub(crate) fn each_closest<R: Lanes, P: Primitive>(
+    r: R,
     scene: &SceneView<'_, P>,
-    rays: &[RayOn<Packet<L>>],
-    ask: impl FnMut(&Meeting<'_, <L::Register as Lanes>::Eight, P>, &Node, &mut Scratch),
-    alone: impl Fn(&mut RayWordsMut<'_>) -> bool,
-    hits: &mut [H],
-    found: impl Fn(&Rays, usize) -> H,
+    rays: &[Ray],
+    mut found: impl FnMut(&Ray, Hit),
 ) {
-    m.lanes().vectorize(
-        #[inline(always)]
-        || {
-            // A primitive may ask another scene meanwhile, which has memory of its own then.
-            let mut scratch = SCRATCH.take().unwrap_or_default();
-            load(m, &mut scratch.rays, rays);
-            each_part(m.lanes(), scene, &mut scratch, ask, alone);
-            for (q, hit) in hits.iter_mut().enumerate() {
-                *hit = found(&scratch.rays, q * L::N);
+    with_scratch(|scratch| {
+        for rays in rays.chunks(TOGETHER) {
+            scratch.rays.load(rays);
+            answer::<true, R, P>(r, scene, scratch);
+            for (i, ray) in rays.iter().enumerate() {
+                found(ray, ray_at(scratch.rays.words(), place(i)).hit());
             }
-            SCRATCH.set(Some(scratch));
-        },
-    );
+        }
+    });
 }
 
-/// Asks every part of a scene about the rays, and `alone` about those that are too odd for boxes.
-#[inline(always)]
-fn each_part<L: Lanes, P: Primitive>(
-    l: L,
+/// Whether each ray hits anything.
+pub(crate) fn each_any<R: Lanes, P: Primitive>(
+    r: R,
+    scene: &SceneView<'_, P>,
+    rays: &[Ray],
+    mut found: impl FnMut(bool),
+) {
+    with_scratch(|scratch| {
+        for rays in rays.chunks(TOGETHER) {
+            scratch.rays.load(rays);
+            answer::<false, R, P>(r, scene, scratch);
+            for i in 0..rays.len() {
+                found(ray_at(scratch.rays.words(), place(i)).word(row::FOUND) != 0);
+            }
+        }
+    });
+}
+
+/// Lends a query the memory of the one before. A primitive may ask another scene meanwhile, which
+/// has memory of its own then.
+fn with_scratch(query: impl FnOnce(&mut Scratch)) {
+    let mut scratch = SCRATCH.take().unwrap_or_default();
+    query(&mut scratch);
+    SCRATCH.set(Some(scratch));
+}
+
+/// Finds what the rays meet: the least hits with `CLOSEST`, else whether there is any.
+///
+/// In its own function, which all that have registers of one kind share.
+#[inline(never)]
+fn answer<const CLOSEST: bool, R: Lanes, P: Primitive>(
+    r: R,
     scene: &SceneView<'_, P>,
     scratch: &mut Scratch,
-    mut ask: impl FnMut(&Meeting<'_, <L::Register as Lanes>::Eight, P>, &Node, &mut Scratch),
-    alone: impl Fn(&mut RayWordsMut<'_>) -> bool,
 ) {
-    let e = l.register().eight();
-    let mut part_of = 0;
-    while let Some(part) = scene.part(part_of) {
-        part_of += 1;
-        let (Some(tree), Some(branches)) = (part.wide, part.tree) else { continue };
-        let Some(root) = branches.nodes.first() else { continue };
-        for group in 0..scratch.rays.marks.len() {
-            scratch.rays.prepare(l.register(), group, root, Allowance::of::<P>());
-        }
-        let meeting = meeting(e, scene, part, tree);
-        ask(&meeting, root, scratch);
-    }
-    let rays = &mut scratch.rays;
-    if rays.marks.iter().all(|marks| marks.odd == 0) {
-        return;
-    }
+    r.vectorize(
+        #[inline(always)]
+        || {
+            let mut next = 0;
+            while let Some(part) = scene.part(next) {
+                next += 1;
+                let (Some(tree), Some(branches)) = (part.wide, part.tree) else { continue };
+                let Some(root) = branches.nodes.first() else { continue };
+                for group in 0..scratch.rays.marks.len() {
+                    scratch.rays.prepare(r, group, root, Allowance::of::<P>());
+                }
+                let Scratch { rays, wave, together } = &mut *scratch;
+                let (meeting, e) = (meeting(scene, part, tree), r.eight());
+                if CLOSEST {
+                    packet::closest_hit(r, &meeting, rays, together, root);
+                    wave::run::<true, _, _>(Entered(e), &meeting, None, rays, wave);
+                } else {
+                    let entry = entry::of(e, tree, rays, root, Allowance::of::<P>());
+                    wave::run::<false, _, _>(Straight(e), &meeting, entry.as_ref(), rays, wave);
+                    if scene.part(next).is_some() {
+                        rays.forget_found();
+                    }
+                }
+            }
+        },
+    );
+    alone::<CLOSEST, P>(scene, &mut scratch.rays);
+}
+
+/// Asks about the rays that are too odd for boxes.
+fn alone<const CLOSEST: bool, P: Primitive>(scene: &SceneView<'_, P>, rays: &mut Rays) {
     for group in 0..rays.marks.len() {
         let odd = rays.marks[group].odd;
         for lane in (0..GROUP).filter(|lane| odd >> lane & 1 != 0) {
             let mut words = ray_at_mut(rays.words(), place(GROUP * group + lane));
-            let found = alone(&mut words);
-            words.set(row::FOUND, found.into());
+            let ray = words.as_ref().ray();
+            if CLOSEST {
+                words.set_hit(traverse::nearest(scene, ray));
+            } else {
+                words.set(row::FOUND, traverse::any_hit(scene, ray).into());
+            }
         }
     }
 }
 
 #[inline(always)]
-fn meeting<'a, E: Lanes, P: Primitive>(
-    e: E,
+pub(super) fn meeting<'a, P: Primitive>(
     scene: &SceneView<'a, P>,
     part: Part<'a, P, P::Shared>,
     tree: &'a super::Wide,
-) -> Meeting<'a, E, P> {
+) -> Meeting<'a, P> {
     let (shared, kinds) = (scene.shared(), scene.kinds());
-    Meeting { m: Packet::new(Entered(e)), tree, part, shared, kinds }
+    Meeting { tree, part, shared, kinds }
 }
 
 /// Writes the rays of the running lanes to groups, one packet behind the other.

@@ -6,11 +6,11 @@
 //! next rays while one waits for memory.
 
 use super::blocks::Row;
-use super::node::{Child, WIDTH};
-use super::rays::{Rays, place, ray_at, ray_at_mut, row};
-use super::step::{Leaf, Meeting, enter, ids, sorted, words};
+use super::node::{Child, WIDTH, WideNode};
+use super::rays::{GROUP, Rays, place, ray_at, ray_at_mut, row};
+use super::step::{Meeting, beyond, enter, ids, last_key, sorted, words};
 use crate::geometry::{HitOn, Primitive};
-use crate::machine::{Lanes, op};
+use crate::machine::{Lanes, Packet, op};
 
 /// What rays in turn need, kept from one query to the next.
 #[derive(Debug, Default)]
@@ -54,7 +54,7 @@ struct Turns<'a> {
 impl Wave {
     /// Puts the rays of all groups that are alive at the root.
     fn begin(&mut self, rays: &mut Rays, pending: usize, is_sorted: bool) -> Turns<'_> {
-        let count = 16 * rays.marks.len();
+        let count = GROUP * rays.marks.len();
         // The end, what is pending, and room behind: eight are written at once.
         let stride = 1 + pending + WIDTH;
         let at_least = |v: &mut Vec<u32>, len: usize| {
@@ -75,8 +75,9 @@ impl Wave {
                 alive &= alive - 1;
                 self.stacks[base] = Child::NONE.0;
                 rays.row_mut(group, row::AT)[lane] = Child::node(0).0;
+                rays.row_mut(group, row::BOTTOM)[lane] = base as u32 + 1;
                 rays.row_mut(group, row::TOP)[lane] = base as u32 + 1;
-                nodes.push_if(true, place(16 * group + lane));
+                nodes.push_if(true, place(GROUP * group + lane));
                 base += stride;
             }
         }
@@ -96,64 +97,87 @@ impl Turns<'_> {
         &mut self.stacks[top as usize..][..WIDTH]
     }
 
-    /// Goes on with what is below the `top` of a ray's stack.
+    /// Goes on with what is below the `top` of a ray's stack, or with nothing.
     #[inline(always)]
-    fn pop(&mut self, words: &mut [u32], ray: u32, top: u32) {
+    fn pop_if(&mut self, condition: bool, words: &mut [u32], ray: u32, top: u32) {
         let at = Child(self.stacks[top as usize - 1]);
         let mut state = ray_at_mut(words, ray);
         state.set(row::AT, at.0);
         state.set(row::TOP, top - 1);
-        self.nodes.push_if(!at.is_block(), ray);
-        self.blocks.push_if(at.is_block() && at != Child::NONE, ray);
+        self.nodes.push_if(condition & !at.is_block(), ray);
+        self.blocks.push_if(condition & at.is_block() & (at != Child::NONE), ray);
+    }
+}
+
+impl Turns<'_> {
+    /// Takes a ray from a node to what it enters first there, and keeps the rest for later.
+    #[inline(always)]
+    fn step<const CLOSEST: bool, E: Lanes>(
+        &mut self,
+        e: E,
+        node: &WideNode,
+        all: &mut [u32],
+        ray: u32,
+    ) {
+        let words_of = ray_at(all, ray);
+        let top = words_of.word(row::TOP);
+        let (near, mask) = enter(e, node, words_of);
+        let children = words(e, &node.children);
+        if CLOSEST {
+            let keys = sorted(e, near, mask);
+            e.u32_store(e.u32_permute(children, keys), self.stack(top));
+            e.u32_store(keys, &mut self.enters[top as usize..][..WIDTH]);
+        } else {
+            e.u32_store(e.u32_compress(children, mask), self.stack(top));
+        }
+        self.pop_if(true, all, ray, top + e.bits(mask).count_ones());
     }
 }
 
 /// Whether each ray that is alive meets anything; with `CLOSEST` the least hit of each, if it is less
-/// than what the ray has already.
+/// than what the ray has already. They begin at `entry`, or at the root.
 #[inline(always)]
 pub(super) fn run<const CLOSEST: bool, E: Lanes, P: Primitive>(
     e: E,
-    meeting: &Meeting<'_, E, P>,
+    meeting: &Meeting<'_, P>,
+    entry: Option<&WideNode>,
     rays: &mut Rays,
     wave: &mut Wave,
 ) {
     let tree = meeting.tree;
-    let mut turns = wave.begin(rays, tree.pending, CLOSEST);
+    // Seven more of the entry's children may wait for what is below one.
+    let pending = tree.pending + if entry.is_some() { WIDTH } else { 0 };
+    let mut turns = wave.begin(rays, pending, CLOSEST);
     let all = rays.words();
+    if let Some(entry) = entry {
+        for i in 0..core::mem::take(&mut turns.nodes.len) {
+            let ray = turns.nodes.places[i];
+            turns.step::<CLOSEST, E>(e, entry, all, ray);
+        }
+    }
     while turns.nodes.len + turns.blocks.len > 0 {
         for i in 0..core::mem::take(&mut turns.nodes.len) {
             let ray = turns.nodes.places[i];
-            let words_of = ray_at(all, ray);
-            let top = words_of.word(row::TOP);
-            let node = &tree.nodes[words_of.word(row::AT) as usize];
-            let (near, mask) = enter(e, node, words_of);
-            let children = words(e, &node.children);
-            if CLOSEST {
-                let keys = sorted(e, near, mask);
-                e.u32_store(e.u32_permute(children, keys), turns.stack(top));
-                e.u32_store(keys, &mut turns.enters[top as usize..][..WIDTH]);
-            } else {
-                e.u32_store(e.u32_compress(children, mask), turns.stack(top));
-            }
-            turns.pop(all, ray, top + e.bits(mask).count_ones());
+            let node = &tree.nodes[ray_at(all, ray).word(row::AT) as usize];
+            turns.step::<CLOSEST, E>(e, node, all, ray);
         }
         for i in 0..core::mem::take(&mut turns.blocks.len) {
             let ray = turns.blocks.places[i];
             let words_of = ray_at(all, ray);
             let mut top = words_of.word(row::TOP);
             let block = meeting.rows(Child(words_of.word(row::AT)).index());
-            let (hit, mask) = meeting.block(block, words_of);
-            if e.any(mask) {
-                if !CLOSEST {
-                    ray_at_mut(all, ray).set(row::FOUND, 1);
-                    continue;
-                }
-                if take(e, meeting, &hit, mask, block, all, ray) {
-                    let limit = ray_at(all, ray).number(row::LIMIT);
-                    top = turns.drop_beyond(e, top, limit);
-                }
+            let (ray_on, best) = (words_of.ray_on(&Packet::new(e)), words_of.number(row::T));
+            let (hit, mask) = meeting.block(e, block, ray_on, best);
+            let is_met = e.any(mask);
+            if !CLOSEST {
+                let found = words_of.word(row::FOUND) | u32::from(is_met);
+                ray_at_mut(all, ray).set(row::FOUND, found);
+            } else if is_met && take(e, meeting, &hit, mask, block, all, ray) {
+                let words_of = ray_at(all, ray);
+                let (bottom, limit) = (words_of.word(row::BOTTOM), words_of.number(row::LIMIT));
+                top = turns.drop_beyond(e, bottom, top, limit);
             }
-            turns.pop(all, ray, top);
+            turns.pop_if(CLOSEST || !is_met, all, ray, top);
         }
     }
 }
@@ -162,8 +186,8 @@ pub(super) fn run<const CLOSEST: bool, E: Lanes, P: Primitive>(
 #[inline(always)]
 fn take<E: Lanes, P: Primitive>(
     e: E,
-    meeting: &Meeting<'_, E, P>,
-    hit: &HitOn<Leaf<E>>,
+    meeting: &Meeting<'_, P>,
+    hit: &HitOn<Packet<E>>,
     mask: E::Mask,
     block: &[Row],
     all: &mut [u32],
@@ -189,8 +213,7 @@ fn take<E: Lanes, P: Primitive>(
     if is_taken {
         words.set(row::FOUND, 1);
         let (t, end) = (words.as_ref().number(row::T), words.as_ref().number(row::T_MAX));
-        let limit = t + t.abs() * P::SLACK;
-        words.set_number(row::LIMIT, if limit < end { limit } else { end });
+        words.set_number(row::LIMIT, beyond(t, end, P::SLACK));
     }
     is_taken
 }
@@ -198,14 +221,9 @@ fn take<E: Lanes, P: Primitive>(
 impl Turns<'_> {
     /// Takes what a ray enters beyond `limit` from its stack; returns the new top.
     #[inline(always)]
-    fn drop_beyond<E: Lanes>(&mut self, e: E, top: u32, limit: f32) -> u32 {
-        // Below the first distance above zero no bits are larger.
-        let limit = e.u32(if limit > 0.0 { limit.to_bits() } else { 7 });
-        let mut bottom = top as usize;
-        while self.stacks[bottom - 1] != Child::NONE.0 {
-            bottom -= 1;
-        }
-        let (mut kept, mut from) = (bottom, bottom);
+    fn drop_beyond<E: Lanes>(&mut self, e: E, bottom: u32, top: u32, limit: f32) -> u32 {
+        let last = e.u32(last_key(limit));
+        let (mut kept, mut from) = (bottom as usize, bottom as usize);
         while from < top as usize {
             let enters = load(e, self.enters, from);
             let stack = load(e, self.stacks, from);
@@ -215,7 +233,7 @@ impl Turns<'_> {
                 |i| (from + i) as u32,
             );
             let there = e.u32_compare(op::Lt, places, e.u32(top));
-            let within = e.u32_compare(op::Le, begun, limit);
+            let within = e.u32_compare(op::Le, begun, last);
             let stay = e.mask_binary(op::And, there, within);
             e.u32_store(e.u32_compress(enters, stay), &mut self.enters[kept..][..WIDTH]);
             e.u32_store(e.u32_compress(stack, stay), &mut self.stacks[kept..][..WIDTH]);

@@ -126,6 +126,28 @@ lanes_around!(Entered {
     }
 });
 
+/// Lanes as [`Entered`], for code whose early exits cannot be foretold: what follows one runs on even
+/// where no lane is left.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Straight<L>(pub(crate) L);
+
+lanes_around!(Straight {
+    const STRAIGHT: bool = true;
+
+    #[inline(always)]
+    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
+        f()
+    }
+    #[inline(always)]
+    fn enter_again<R>(self, f: impl FnOnce() -> R) -> R {
+        self.0.vectorize(f)
+    }
+    #[inline(always)]
+    fn at(self, place: Place, active: L::Mask) {
+        self.0.at(place, active);
+    }
+});
+
 lanes_around!(Counted {
     #[inline(always)]
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {

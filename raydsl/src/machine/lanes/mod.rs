@@ -11,7 +11,7 @@ mod simd;
 
 use core::mem::MaybeUninit;
 
-pub(crate) use around::Entered;
+pub(crate) use around::{Entered, Straight};
 pub use one::One;
 pub use simd::{Simd4, Simd8, Simd16};
 
@@ -26,6 +26,8 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     type I32: Copy + 'static;
     type U32: Copy + 'static;
     type Mask: Copy + 'static;
+    /// Whether what follows an early exit of a kernel runs even where no lane is left.
+    const STRAIGHT: bool = false;
     /// Eight lanes of the same level: as many as a node of a wide tree has children, and a block
     /// of its leaves primitives.
     type Eight: Lanes;

@@ -1,0 +1,225 @@
+//! One ray through wide trees.
+
+use super::node::{Child, WIDTH};
+use super::rays::HUGE;
+use super::step::{Meeting, Slabs, beyond, enter, ids, last_key, sorted, words};
+use super::trace::{answers, meeting};
+use crate::bvh::slabs::{Allowance, ULP, finite_inverse};
+use crate::bvh::traverse::is_finite;
+use crate::bvh::{Node, SceneView};
+use crate::geometry::{Hit, Primitive, Ray};
+use crate::kernel::{LanesTask, Variant};
+use crate::machine::{Entered, Lanes, Packet, Type};
+
+/// Entries of the stack; deeper trees are left to others.
+const STACK: usize = 256;
+
+/// The least `(t, id)` hit of a ray; none if the scene is no wide trees, or the ray too odd for
+/// their boxes.
+#[inline(always)]
+pub(crate) fn closest_hit<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray) -> Option<Hit> {
+    if !answers(scene) {
+        return None;
+    }
+    ask::<true, P>(scene, ray)
+}
+
+/// Whether a ray hits anything; none as of [`closest_hit`].
+#[inline(always)]
+pub(crate) fn any_hit<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray) -> Option<bool> {
+    if !answers(scene) {
+        return None;
+    }
+    ask::<false, P>(scene, ray).map(|hit| hit.is_hit)
+}
+
+#[inline(never)]
+fn ask<const CLOSEST: bool, P: Primitive>(scene: &SceneView<'_, P>, ray: Ray) -> Option<Hit> {
+    Variant::widest().with_lanes(Ask::<CLOSEST, P> { scene, ray })
+}
+
+struct Ask<'a, 's, const CLOSEST: bool, P: Primitive> {
+    scene: &'a SceneView<'s, P>,
+    ray: Ray,
+}
+
+impl<const CLOSEST: bool, P: Primitive> LanesTask for Ask<'_, '_, CLOSEST, P> {
+    type Output = Option<Hit>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> Option<Hit> {
+        at_level::<CLOSEST, _, P>(lanes.register().eight(), self.scene, self.ray)
+    }
+}
+
+/// A function of its own, which all widths of a level share.
+#[inline(never)]
+fn at_level<const CLOSEST: bool, E: Lanes, P: Primitive>(
+    e: E,
+    scene: &SceneView<'_, P>,
+    ray: Ray,
+) -> Option<Hit> {
+    e.vectorize(
+        #[inline(always)]
+        || each_part::<CLOSEST, _, P>(Entered(e), scene, ray),
+    )
+}
+
+/// Children that are to come, and where the ray enters them, as the bits of numbers above 0, in whose
+/// last three the slot is.
+struct Pending {
+    children: [u32; STACK],
+    enters: [u32; STACK],
+}
+
+#[inline(always)]
+fn each_part<const CLOSEST: bool, E: Lanes, P: Primitive>(
+    e: E,
+    scene: &SceneView<'_, P>,
+    ray: Ray,
+) -> Option<Hit> {
+    let mut best = Hit::miss();
+    if !is_finite(&ray) {
+        return Some(best);
+    }
+    let mut pending = Pending { children: [0; STACK], enters: [0; STACK] };
+    let mut next = 0;
+    while let Some(part) = scene.part(next) {
+        next += 1;
+        let (Some(tree), Some(branches)) = (part.wide, part.tree) else { continue };
+        let Some(root) = branches.nodes.first() else { continue };
+        if tree.pending + 1 + WIDTH > STACK {
+            return None;
+        }
+        let mut lone = Lone::new(&ray, root, Allowance::of::<P>(), &best)?;
+        let meeting = meeting(scene, part, tree);
+        walk::<CLOSEST, E, P>(e, &meeting, &ray, &mut lone, &mut pending, &mut best);
+        if !CLOSEST && best.is_hit {
+            break;
+        }
+    }
+    Some(best)
+}
+
+/// A ray, prepared for the boxes of a wide tree as [`Rays::prepare`](super::rays::Rays::prepare)
+/// does it.
+struct Lone {
+    side: [usize; 3],
+    inverse: [f32; 3],
+    first: [f32; 3],
+    last: [f32; 3],
+    t_min: f32,
+    limit: f32,
+}
+
+impl Slabs for &Lone {
+    #[inline(always)]
+    fn side(self, axis: usize) -> usize {
+        self.side[axis]
+    }
+    #[inline(always)]
+    fn near(self, axis: usize) -> [f32; 2] {
+        [self.inverse[axis], self.first[axis]]
+    }
+    #[inline(always)]
+    fn far(self, axis: usize) -> [f32; 2] {
+        [self.inverse[axis], self.last[axis]]
+    }
+    #[inline(always)]
+    fn t_min(self) -> f32 {
+        self.t_min
+    }
+    #[inline(always)]
+    fn limit(self) -> f32 {
+        self.limit
+    }
+}
+
+impl Lone {
+    /// For the tree under `root`; none where products may overflow.
+    #[inline(always)]
+    fn new(ray: &Ray, root: &Node, allowance: Allowance, best: &Hit) -> Option<Self> {
+        let inverse = finite_inverse(ray.direction);
+        let corner = (root.min - ray.origin).abs().max((root.max - ray.origin).abs());
+        let (reach, largest) = (corner.max_element(), ray.origin.abs().max_element());
+        let pad = (allowance.slack + 2.0 * ULP) * reach + allowance.origin * largest;
+        let pad = pad.max(f32::MIN_POSITIVE) + ray.origin.abs() * (4.0 * ULP);
+        let span = root.min.abs().max(root.max.abs()).max_element();
+        let is_tame = (inverse.abs() * (ray.origin.abs() + span)).cmplt(glam::Vec3::splat(HUGE));
+        let (shift, width) = (ray.origin * inverse, pad * inverse.abs());
+        let limit =
+            if best.is_hit { beyond(best.t, ray.t_max, allowance.slack) } else { ray.t_max };
+        is_tame.all().then(|| Self {
+            side: inverse.to_array().map(|i| usize::from(i.is_sign_negative())),
+            inverse: inverse.to_array(),
+            first: (-(shift + width)).to_array(),
+            last: (width - shift).to_array(),
+            t_min: ray.t_min,
+            limit,
+        })
+    }
+}
+
+#[inline(always)]
+fn walk<const CLOSEST: bool, E: Lanes, P: Primitive>(
+    e: E,
+    meeting: &Meeting<'_, P>,
+    ray: &Ray,
+    lone: &mut Lone,
+    pending: &mut Pending,
+    best: &mut Hit,
+) {
+    let tree = meeting.tree;
+    let on = Ray::splat(&Packet::new(e), *ray);
+    let Pending { children: stack, enters } = pending;
+    let (mut at, mut top) = (Child::node(0), 0);
+    loop {
+        if at.is_block() {
+            let block = meeting.rows(at.index());
+            let best_t = if best.is_hit { best.t } else { f32::INFINITY };
+            let (hit, mask) = meeting.block(e, block, on, best_t);
+            let mut met = e.bits(mask);
+            if !CLOSEST && met != 0 {
+                best.is_hit = true;
+                return;
+            }
+            while met != 0 {
+                let i = met.trailing_zeros() as usize;
+                met &= met - 1;
+                let (t, id) = (E::f32_lane(&hit.t.0, i), meeting.part.first + ids(block)[i]);
+                if !best.is_hit || t < best.t || (t == best.t && id < best.prim_id) {
+                    let (u, v) = (E::f32_lane(&hit.u.0, i), E::f32_lane(&hit.v.0, i));
+                    *best = Hit { is_hit: true, t, prim_id: id, inst_id: 0, u, v };
+                    lone.limit = beyond(t, ray.t_max, P::SLACK);
+                }
+            }
+        } else {
+            let node = &tree.nodes[at.index()];
+            let (near, mask) = enter(e, node, &*lone);
+            let entered = e.bits(mask);
+            if entered.is_power_of_two() {
+                at = Child(node.children[entered.trailing_zeros() as usize % WIDTH]);
+                continue;
+            }
+            let children = words(e, &node.children);
+            if CLOSEST {
+                let keys = sorted(e, near, mask);
+                e.u32_store(e.u32_permute(children, keys), &mut stack[top..][..WIDTH]);
+                e.u32_store(keys, &mut enters[top..][..WIDTH]);
+            } else {
+                e.u32_store(e.u32_compress(children, mask), &mut stack[top..][..WIDTH]);
+            }
+            top += entered.count_ones() as usize;
+        }
+        let last = last_key(lone.limit);
+        at = loop {
+            if top == 0 {
+                return;
+            }
+            top -= 1;
+            if !CLOSEST || enters[top] & !7 <= last {
+                break Child(stack[top]);
+            }
+        };
+    }
+}
