@@ -1,5 +1,5 @@
-//! Trees with primitives in their leaves answer as the primitives alone do, in all packets. Other
-//! variants have no use for the leaves.
+//! Trees with primitives in their leaves answer as the primitives alone do, ray by ray, in all
+//! packets, and as the binary tree under them.
 
 use core::fmt::Debug;
 
@@ -45,6 +45,57 @@ impl Grain {
 enum Thing {
     Ball(Ball),
     Face(Triangle),
+}
+
+/// A ball that is found by steps, a few lengths of a table at a time: with early returns before a
+/// loop, a call and a quotient of integers, and without heed of the ray's range.
+#[primitive]
+#[derive(Debug, PartialEq)]
+struct Stepped {
+    center: Vec3,
+    radius: f32,
+    steps: u32,
+}
+
+/// Behind an early return of its own.
+#[kernel]
+fn shorter(length: f32, by: u32) -> f32 {
+    if length > 100.0 {
+        return 100.0;
+    }
+    length / (1 + by / 2) as f32
+}
+
+#[primitive]
+impl Stepped {
+    const SLACK: f32 = 64.0 * sphere::SLACK;
+
+    fn intersect(&self, ray: Ray) -> Hit {
+        let length = ray.direction.length();
+        if length == 0.0 {
+            return Hit::miss();
+        }
+        let direction = ray.direction / length;
+        let middle = (self.center - ray.origin).dot(direction);
+        let aside = (ray.origin + direction * middle - self.center).length();
+        if aside > self.radius {
+            return Hit::miss();
+        }
+        let lengths = [1.0, 0.5, 0.25, 0.125];
+        let mut t = middle - self.radius;
+        for i in 0..self.steps {
+            let left = (ray.origin + direction * t - self.center).length() - self.radius;
+            if left < 1e-4 * self.radius {
+                return Hit::new(true, t / length);
+            }
+            t += shorter(left * lengths[(i % 4) as usize], 7 / (1 + i) % 2);
+        }
+        Hit::new(true, middle / length)
+    }
+
+    fn get_bounds(&self) -> Aabb {
+        Aabb::from_sphere(self.center, self.radius)
+    }
 }
 
 /// Rays of every kind: alike and apart, bounded, from within, beginning behind themselves, along
@@ -131,6 +182,9 @@ macro_rules! assert_as_slice {
             hits += usize::from(any);
             assert_eq!(closest, prims.closest_hit(*ray), "{ray:?}");
             assert_eq!(any, prims.any_hit(*ray), "{ray:?}");
+            // What counts goes through the binary tree.
+            assert_eq!(closest, bvh.closest_hit_with_cost(*ray).0, "{ray:?}");
+            assert_eq!(any, bvh.any_hit_with_cost(*ray).0, "{ray:?}");
         }
         assert_packets(&kernel, rays);
         hits
@@ -174,6 +228,20 @@ fn numbers_of_one_byte_and_kinds() {
     assert!(hits > 200, "{hits}");
 }
 
+/// Blocks are met without early returns.
+#[test]
+fn early_returns() {
+    let mut rng = Rng::of("steps");
+    let rays = rays(&mut rng, 1200);
+    let stepped: Vec<Stepped> = balls(&mut rng, 120)
+        .into_iter()
+        .zip(0..)
+        .map(|(Ball { center, radius }, i)| Stepped { center, radius, steps: i % 5 })
+        .collect();
+    let hits = assert_as_slice!(leaves(&stepped, BuildQuality::Balanced), stepped, rays);
+    assert!(hits > 200, "{hits}");
+}
+
 /// Primitives that share data are fetched from it for each lane.
 #[test]
 fn indexed_triangles() {
@@ -213,6 +281,70 @@ fn lists() {
         let hits = assert_as_slice!(list, all, rays);
         assert!(hits > 200, "{hits}");
     }
+}
+
+/// Packets that ask together.
+const TOGETHER: usize = 16;
+
+/// Rays that end soon and begin near each other, in all packets that ask together.
+struct Short<'a> {
+    scene: BvhList<'a, Triangle>,
+    rays: Vec<Ray>,
+    found: Vec<bool>,
+}
+
+impl LevelTask for Short<'_> {
+    fn run<L: Lanes>(&mut self, name: &str, lanes: L) {
+        let (m, scene) = (Packet::new(lanes), self.scene.view());
+        let chunks = self.rays.chunks_exact(TOGETHER * L::N);
+        for (rays, found) in chunks.zip(self.found.chunks_exact(TOGETHER * L::N)) {
+            let packets: [_; TOGETHER] =
+                core::array::from_fn(|q| Ray::from_lanes(&m, |lane| rays[q * L::N + lane]));
+            let any = m.any_hits(&scene, &packets);
+            for (i, (ray, found)) in rays.iter().zip(found).enumerate() {
+                let is_met = L::mask_lane(&any[i / L::N].0, i % L::N);
+                assert_eq!(is_met, *found, "{name} {ray:?}");
+            }
+        }
+    }
+}
+
+/// Rays that end soon, or begin behind themselves, begin at a node made for them.
+#[test]
+fn short_rays() {
+    let mut rng = Rng::of("short rays");
+    let faces = triangles(&mut rng, 1500);
+    let trees = [&faces[..1200], &faces[1200..]].map(|faces| leaves(faces, BuildQuality::Balanced));
+    let mut rays = Vec::new();
+    for length in [0.01, 0.1, 0.5, 2.0, 1e9] {
+        for _ in 0..4 {
+            let middle = rng.point(3.0);
+            for i in 0..256 {
+                let t_min = if i % 3 == 0 { -0.5 * length } else { 0.0 };
+                let (from, to) = (middle + rng.point(0.1), rng.point(1.0));
+                let direction = match i % 50 {
+                    7 => Vec3::ZERO,
+                    8 => Vec3::X,
+                    9 => to * 1e-20,
+                    _ => to,
+                };
+                rays.push(Ray { t_min, t_max: length, ..Ray::new(from, direction) });
+            }
+        }
+    }
+    let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX];
+    for (i, value) in odd.into_iter().enumerate() {
+        rays[256 * i + 20].t_max = value;
+        rays[256 * (i + 5) + 20].t_min = value;
+    }
+    let found: Vec<bool> = rays.iter().map(|ray| faces.any_hit(*ray)).collect();
+    let hits = found.iter().filter(|found| **found).count();
+    assert!((1000..4500).contains(&hits), "{hits}");
+    let scene = BvhList::new(&trees).expect("few primitives");
+    assert_eq!(scene.any_hits(&rays), found);
+    let mut short = Short { scene, rays, found };
+    each_level(&mut short);
+    widest_level(&mut short);
 }
 
 /// A tree, rays, and what they meet.
