@@ -183,6 +183,21 @@ impl Variant {
     }
 }
 
+/// Something to do with eight lanes.
+pub(crate) trait EightTask {
+    type Output;
+    fn run<E: Lanes>(self, e: E) -> Self::Output;
+}
+
+/// Does it with the widest level of this machine, if it has AVX2 or NEON.
+pub(crate) fn with_eight<T: EightTask>(task: T) -> Option<T::Output> {
+    let levels = Levels::detect();
+    if let Some(s) = levels.wide {
+        return Some(task.run(Simd8(s)));
+    }
+    levels.middle.map(|s| task.run(Simd8(s)))
+}
+
 /// Something to do with lanes of one kind.
 pub(crate) trait LanesTask {
     type Output;

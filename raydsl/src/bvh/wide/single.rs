@@ -8,20 +8,20 @@ use crate::bvh::slabs::{Allowance, ULP, finite_inverse};
 use crate::bvh::traverse::is_finite;
 use crate::bvh::{Node, SceneView};
 use crate::geometry::{Hit, Primitive, Ray};
-use crate::kernel::{LanesTask, Variant};
+use crate::kernel::{EightTask, with_eight};
 use crate::machine::{Entered, Lanes, Packet, Type};
 
 /// Entries of the stack; deeper trees are left to others.
 const STACK: usize = 256;
 
-/// The least `(t, id)` hit of a ray; none if the scene is no wide trees, or the ray too odd for
-/// their boxes.
+/// The least `(t, id)` hit of a ray; none if the scene is no wide trees, the ray too odd for their
+/// boxes, or the machine without AVX2 and NEON.
 #[inline(always)]
 pub(crate) fn closest_hit<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray) -> Option<Hit> {
     if !answers(scene) {
         return None;
     }
-    ask::<true, P>(scene, ray)
+    ask(scene, ray, Wanted::Closest)
 }
 
 /// Whether a ray hits anything; none as of [`closest_hit`].
@@ -30,39 +30,34 @@ pub(crate) fn any_hit<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray) -> Optio
     if !answers(scene) {
         return None;
     }
-    ask::<false, P>(scene, ray).map(|hit| hit.is_hit)
+    ask(scene, ray, Wanted::Any).map(|hit| hit.is_hit)
+}
+
+/// What is asked: not a type, for every copy of a walk is time that a user waits for a compiler.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Wanted {
+    Closest,
+    Any,
 }
 
 #[inline(never)]
-fn ask<const CLOSEST: bool, P: Primitive>(scene: &SceneView<'_, P>, ray: Ray) -> Option<Hit> {
-    Variant::widest().with_lanes(Ask::<CLOSEST, P> { scene, ray })
-}
-
-struct Ask<'a, 's, const CLOSEST: bool, P: Primitive> {
-    scene: &'a SceneView<'s, P>,
-    ray: Ray,
-}
-
-impl<const CLOSEST: bool, P: Primitive> LanesTask for Ask<'_, '_, CLOSEST, P> {
-    type Output = Option<Hit>;
-
-    #[inline(always)]
-    fn run<L: Lanes>(self, lanes: L) -> Option<Hit> {
-        at_level::<CLOSEST, _, P>(lanes.register().eight(), self.scene, self.ray)
+fn ask<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray, wanted: Wanted) -> Option<Hit> {
+    struct Ask<'a, 's, P: Primitive> {
+        scene: &'a SceneView<'s, P>,
+        ray: Ray,
+        wanted: Wanted,
     }
-}
+    impl<P: Primitive> EightTask for Ask<'_, '_, P> {
+        type Output = Option<Hit>;
 
-/// A function of its own, which all widths of a level share.
-#[inline(never)]
-fn at_level<const CLOSEST: bool, E: Lanes, P: Primitive>(
-    e: E,
-    scene: &SceneView<'_, P>,
-    ray: Ray,
-) -> Option<Hit> {
-    e.vectorize(
-        #[inline(always)]
-        || each_part::<CLOSEST, _, P>(Entered(e), scene, ray),
-    )
+        fn run<E: Lanes>(self, e: E) -> Option<Hit> {
+            e.vectorize(
+                #[inline(always)]
+                || each_part(Entered(e), self.scene, self.ray, self.wanted),
+            )
+        }
+    }
+    with_eight(Ask { scene, ray, wanted })?
 }
 
 /// Children that are to come, and where the ray enters them, as the bits of numbers above 0, in whose
@@ -73,10 +68,11 @@ struct Pending {
 }
 
 #[inline(always)]
-fn each_part<const CLOSEST: bool, E: Lanes, P: Primitive>(
+fn each_part<E: Lanes, P: Primitive>(
     e: E,
     scene: &SceneView<'_, P>,
     ray: Ray,
+    wanted: Wanted,
 ) -> Option<Hit> {
     let mut best = Hit::miss();
     if !is_finite(&ray) {
@@ -93,8 +89,8 @@ fn each_part<const CLOSEST: bool, E: Lanes, P: Primitive>(
         }
         let mut lone = Lone::new(&ray, root, Allowance::of::<P>(), &best)?;
         let meeting = meeting(scene, part, tree);
-        walk::<CLOSEST, E, P>(e, &meeting, &ray, &mut lone, &mut pending, &mut best);
-        if !CLOSEST && best.is_hit {
+        walk(e, &meeting, &ray, wanted, &mut lone, &mut pending, &mut best);
+        if wanted == Wanted::Any && best.is_hit {
             break;
         }
     }
@@ -161,10 +157,11 @@ impl Lone {
 }
 
 #[inline(always)]
-fn walk<const CLOSEST: bool, E: Lanes, P: Primitive>(
+fn walk<E: Lanes, P: Primitive>(
     e: E,
     meeting: &Meeting<'_, P>,
     ray: &Ray,
+    wanted: Wanted,
     lone: &mut Lone,
     pending: &mut Pending,
     best: &mut Hit,
@@ -179,7 +176,7 @@ fn walk<const CLOSEST: bool, E: Lanes, P: Primitive>(
             let best_t = if best.is_hit { best.t } else { f32::INFINITY };
             let (hit, mask) = meeting.block(e, block, on, best_t);
             let mut met = e.bits(mask);
-            if !CLOSEST && met != 0 {
+            if wanted == Wanted::Any && met != 0 {
                 best.is_hit = true;
                 return;
             }
@@ -202,7 +199,7 @@ fn walk<const CLOSEST: bool, E: Lanes, P: Primitive>(
                 continue;
             }
             let children = words(e, &node.children);
-            if CLOSEST {
+            if wanted == Wanted::Closest {
                 let keys = sorted(e, near, mask);
                 e.u32_store(e.u32_permute(children, keys), &mut stack[top..][..WIDTH]);
                 e.u32_store(keys, &mut enters[top..][..WIDTH]);
@@ -217,7 +214,7 @@ fn walk<const CLOSEST: bool, E: Lanes, P: Primitive>(
                 return;
             }
             top -= 1;
-            if !CLOSEST || enters[top] & !7 <= last {
+            if wanted == Wanted::Any || enters[top] & !7 <= last {
                 break Child(stack[top]);
             }
         };
