@@ -27,6 +27,7 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
     let p = private();
     let self_ty = &item.self_ty;
     let slack = parts.has_slack.then(|| quote!(const SLACK: f32 = <#self_ty>::SLACK;));
+    let is_short = parts.has_is_short.then(|| quote!(const IS_SHORT: bool = <#self_ty>::IS_SHORT;));
     let (record, shared) = (parts.record(), parts.shared());
     // What a function does not ask for it is not given.
     let given =
@@ -51,6 +52,7 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
             type Hit = #record;
             type Shared = #shared;
             #slack
+            #is_short
 
             #[inline(always)]
             fn intersect(&self, ray: #p::Ray, shared: &[#shared]) -> #record {
@@ -117,6 +119,7 @@ struct Parts<'a> {
     get_bounds: Option<Function<'a>>,
     split: Option<Function<'a>>,
     has_slack: bool,
+    has_is_short: bool,
 }
 
 /// One of a primitive's functions.
@@ -192,9 +195,11 @@ impl<'a> Parts<'a> {
                 check_signature(function, wanted, errors);
             }
         }
-        let has_slack =
-            item.items.iter().any(|i| matches!(i, syn::ImplItem::Const(c) if c.ident == "SLACK"));
-        let parts = Self { intersect, get_bounds, split, has_slack };
+        let has = |name: &str| {
+            item.items.iter().any(|i| matches!(i, syn::ImplItem::Const(c) if c.ident == name))
+        };
+        let (has_slack, has_is_short) = (has("SLACK"), has("IS_SHORT"));
+        let parts = Self { intersect, get_bounds, split, has_slack, has_is_short };
         parts.check_shared(errors);
         parts
     }

@@ -79,10 +79,17 @@ impl Shape {
         let arguments = of_self(self.arguments.to_token_stream(), members);
         let (hits, surface) = (hits(&shape, &arguments), surface(&shape, &arguments));
         let boxes = boxes(&shape, &arguments);
+        let is_short = self.name == "triangle" || self.name == "sphere";
+        let is_short = is_short.then(|| {
+            quote!(
+                const IS_SHORT: bool = true;
+            )
+        });
         syn::parse_quote! {
             #[allow(dead_code, reason = "not every program asks all of a shape")]
             impl #ty {
                 const SLACK: f32 = #shape::SLACK;
+                #is_short
 
                 #hits
                 #surface

@@ -52,6 +52,7 @@ pub struct IndexedTriangle {
 #[primitive]
 impl IndexedTriangle {
     const SLACK: f32 = SLACK;
+    const IS_SHORT: bool = true;
 
     /// Where `ray` meets it.
     #[inline]

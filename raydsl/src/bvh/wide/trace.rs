@@ -157,7 +157,12 @@ fn answer<const CLOSEST: bool, R: Lanes, P: Primitive>(
                     wave::run::<true, _, _>(Entered(e), &meeting, None, rays, wave);
                 } else {
                     let entry = entry::of(e, tree, rays, root, Allowance::of::<P>());
-                    wave::run::<false, _, _>(Straight(e), &meeting, entry.as_ref(), rays, wave);
+                    let entry = entry.as_ref();
+                    if const { P::IS_SHORT } {
+                        wave::run::<false, _, _>(Straight(e), &meeting, entry, rays, wave);
+                    } else {
+                        wave::run::<false, _, _>(Entered(e), &meeting, entry, rays, wave);
+                    }
                     if scene.part(next).is_some() {
                         rays.forget_found();
                     }
