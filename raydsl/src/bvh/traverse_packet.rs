@@ -79,7 +79,7 @@ pub(crate) fn closest_hit<L: Lanes, P: Primitive>(
             if prims.is_standing() {
                 return each_lane(m, Hit::miss(), ray, |ray| traverse::nearest(prims, ray));
             }
-            let m = Packet::with_mask(Entered(m.lanes()), m.active());
+            let m = Packet::with_mask(Entered::new(m.lanes()), m.active());
             let hit = closest_hit_inside(&m, prims, inner_ray(&ray));
             HitOn {
                 is_hit: B(hit.is_hit.0),
@@ -204,7 +204,7 @@ pub(crate) fn any_hit<L: Lanes, P: Primitive>(
             if prims.is_standing() {
                 return each_lane(m, false, ray, |ray| traverse::any_hit(prims, ray));
             }
-            let m = Packet::with_mask(Entered(m.lanes()), m.active());
+            let m = Packet::with_mask(Entered::new(m.lanes()), m.active());
             B(any_hit_inside(&m, prims, inner_ray(&ray)).0)
         },
     )

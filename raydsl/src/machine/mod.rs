@@ -50,7 +50,7 @@ pub(crate) use counted::{Count, count};
 pub use counted::{Counted, Place};
 pub use counter::{Counter, Steps, Stop, decrement, increment};
 pub use gang::Gang;
-pub(crate) use lanes::{Entered, Straight, fill};
+pub(crate) use lanes::{Entered, fill};
 pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
 pub(crate) use margin::result_leaves;
 pub use margin::{Leaf, Margin, Outcomes, Rounding};

@@ -5,10 +5,13 @@
 //! near planes than for the far ones. (Reshetov, Soupikov and Hurley, "Multi-Level Ray Tracing
 //! Algorithm", ACM Transactions on Graphics 24(3), 2005.)
 
-use super::rays::{GROUP, Rays, lanes_mask, load, row};
+use glam::Vec3;
+
+use super::rays::{GROUP, HUGE, Rays, lanes_mask, load, row};
 use super::step::Slabs;
 use crate::bvh::Node;
-use crate::bvh::slabs::{Allowance, ULP};
+use crate::bvh::slabs::{Allowance, ULP, finite_inverse};
+use crate::geometry::Ray;
 use crate::machine::{Lanes, op};
 
 /// A bundle of rays that go up or down along each axis together.
@@ -152,8 +155,29 @@ impl Beam {
             return None;
         }
         let limit = extent(e, rays, members, row::LIMIT).greatest;
-        let mut beam = Self { side: [0; 3], near: [[0.0; 2]; 3], far: [[0.0; 2]; 3], t_min, limit };
+        Some(Self::new(&origins, &inverses, [t_min, limit], pad(&origins, root, allowance)))
+    }
+
+    /// The beam of one ray, up to a limit; none where products may overflow.
+    #[inline(always)]
+    pub(super) fn of_one(ray: &Ray, limit: f32, root: &Node, allowance: Allowance) -> Option<Self> {
+        let inverse = finite_inverse(ray.direction);
+        let span = root.min.abs().max(root.max.abs()).max_element();
+        let is_tame = (inverse.abs() * (ray.origin.abs() + span)).cmplt(Vec3::splat(HUGE));
+        let alone = |v: Vec3| v.to_array().map(|v| Extent { least: v, greatest: v });
+        let (origins, inverses) = (alone(ray.origin), alone(inverse));
         let pad = pad(&origins, root, allowance);
+        is_tame.all().then(|| Self::new(&origins, &inverses, [ray.t_min, limit], pad))
+    }
+
+    #[inline(always)]
+    fn new(
+        origins: &[Extent; 3],
+        inverses: &[Extent; 3],
+        [t_min, limit]: [f32; 2],
+        pad: f32,
+    ) -> Self {
+        let mut beam = Self { side: [0; 3], near: [[0.0; 2]; 3], far: [[0.0; 2]; 3], t_min, limit };
         for axis in 0..3 {
             let (o, i) = (&origins[axis], &inverses[axis]);
             let is_up = i.least > 0.0;
@@ -165,11 +189,12 @@ impl Beam {
             beam.near[axis] = [fast, -(first * fast) - fast.abs() * pad];
             beam.far[axis] = [slow, -(last * slow) + slow.abs() * pad];
         }
-        Some(beam)
+        beam
     }
 }
 
 /// By how much boxes are widened, for rays with these origins.
+#[inline(always)]
 pub(super) fn pad(origins: &[Extent; 3], root: &Node, allowance: Allowance) -> f32 {
     let (low, high) = (root.min.to_array(), root.max.to_array());
     let (mut reach, mut largest) = (0.0f32, 0.0f32);

@@ -100,7 +100,7 @@ fn walk<R: Lanes, P: Primitive>(
         stack.resize(room, 0);
         enters.resize(room, 0);
     }
-    let mut packet = Members { r, m: Packet::new(Entered(r)), rays, members, side: beam.side };
+    let mut packet = Members { r, m: Packet::new(Entered::new(r)), rays, members, side: beam.side };
     let (mut at, mut slot, mut top) = (Child::node(0), 0, 0);
     loop {
         if at.is_block() {

@@ -1,12 +1,12 @@
 //! One ray through wide trees.
 
+use super::beam::Beam;
 use super::node::{Child, WIDTH};
-use super::rays::HUGE;
-use super::step::{Meeting, Slabs, beyond, enter, ids, last_key, sorted, words};
+use super::step::{Meeting, beyond, enter, ids, last_key, sorted, words};
 use super::trace::{answers, meeting};
-use crate::bvh::slabs::{Allowance, ULP, finite_inverse};
+use crate::bvh::SceneView;
+use crate::bvh::slabs::Allowance;
 use crate::bvh::traverse::is_finite;
-use crate::bvh::{Node, SceneView};
 use crate::geometry::{Hit, Primitive, Ray};
 use crate::kernel::{EightTask, with_eight};
 use crate::machine::{Entered, Lanes, Packet, Type};
@@ -53,7 +53,7 @@ fn ask<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray, wanted: Wanted) -> Opti
         fn run<E: Lanes>(self, e: E) -> Option<Hit> {
             e.vectorize(
                 #[inline(always)]
-                || each_part(Entered(e), self.scene, self.ray, self.wanted),
+                || each_part(Entered::new(e), self.scene, self.ray, self.wanted),
             )
         }
     }
@@ -87,73 +87,15 @@ fn each_part<E: Lanes, P: Primitive>(
         if tree.pending + 1 + WIDTH > STACK {
             return None;
         }
-        let mut lone = Lone::new(&ray, root, Allowance::of::<P>(), &best)?;
+        let limit = if best.is_hit { beyond(best.t, ray.t_max, P::SLACK) } else { ray.t_max };
+        let beam = Beam::of_one(&ray, limit, root, Allowance::of::<P>())?;
         let meeting = meeting(scene, part, tree);
-        walk(e, &meeting, &ray, wanted, &mut lone, &mut pending, &mut best);
+        walk(e, &meeting, &ray, wanted, beam, &mut pending, &mut best);
         if wanted == Wanted::Any && best.is_hit {
             break;
         }
     }
     Some(best)
-}
-
-/// A ray, prepared for the boxes of a wide tree as [`Rays::prepare`](super::rays::Rays::prepare)
-/// does it.
-struct Lone {
-    side: [usize; 3],
-    inverse: [f32; 3],
-    first: [f32; 3],
-    last: [f32; 3],
-    t_min: f32,
-    limit: f32,
-}
-
-impl Slabs for &Lone {
-    #[inline(always)]
-    fn side(self, axis: usize) -> usize {
-        self.side[axis]
-    }
-    #[inline(always)]
-    fn near(self, axis: usize) -> [f32; 2] {
-        [self.inverse[axis], self.first[axis]]
-    }
-    #[inline(always)]
-    fn far(self, axis: usize) -> [f32; 2] {
-        [self.inverse[axis], self.last[axis]]
-    }
-    #[inline(always)]
-    fn t_min(self) -> f32 {
-        self.t_min
-    }
-    #[inline(always)]
-    fn limit(self) -> f32 {
-        self.limit
-    }
-}
-
-impl Lone {
-    /// For the tree under `root`; none where products may overflow.
-    #[inline(always)]
-    fn new(ray: &Ray, root: &Node, allowance: Allowance, best: &Hit) -> Option<Self> {
-        let inverse = finite_inverse(ray.direction);
-        let corner = (root.min - ray.origin).abs().max((root.max - ray.origin).abs());
-        let (reach, largest) = (corner.max_element(), ray.origin.abs().max_element());
-        let pad = (allowance.slack + 2.0 * ULP) * reach + allowance.origin * largest;
-        let pad = pad.max(f32::MIN_POSITIVE) + ray.origin.abs() * (4.0 * ULP);
-        let span = root.min.abs().max(root.max.abs()).max_element();
-        let is_tame = (inverse.abs() * (ray.origin.abs() + span)).cmplt(glam::Vec3::splat(HUGE));
-        let (shift, width) = (ray.origin * inverse, pad * inverse.abs());
-        let limit =
-            if best.is_hit { beyond(best.t, ray.t_max, allowance.slack) } else { ray.t_max };
-        is_tame.all().then(|| Self {
-            side: inverse.to_array().map(|i| usize::from(i.is_sign_negative())),
-            inverse: inverse.to_array(),
-            first: (-(shift + width)).to_array(),
-            last: (width - shift).to_array(),
-            t_min: ray.t_min,
-            limit,
-        })
-    }
 }
 
 #[inline(always)]
@@ -162,7 +104,7 @@ fn walk<E: Lanes, P: Primitive>(
     meeting: &Meeting<'_, P>,
     ray: &Ray,
     wanted: Wanted,
-    lone: &mut Lone,
+    mut beam: Beam,
     pending: &mut Pending,
     best: &mut Hit,
 ) {
@@ -187,12 +129,12 @@ fn walk<E: Lanes, P: Primitive>(
                 if !best.is_hit || t < best.t || (t == best.t && id < best.prim_id) {
                     let (u, v) = (E::f32_lane(&hit.u.0, i), E::f32_lane(&hit.v.0, i));
                     *best = Hit { is_hit: true, t, prim_id: id, inst_id: 0, u, v };
-                    lone.limit = beyond(t, ray.t_max, P::SLACK);
+                    beam.limit = beyond(t, ray.t_max, P::SLACK);
                 }
             }
         } else {
             let node = &tree.nodes[at.index()];
-            let (near, mask) = enter(e, node, &*lone);
+            let (near, mask) = enter(e, node, &beam);
             let entered = e.bits(mask);
             if entered.is_power_of_two() {
                 at = Child(node.children[entered.trailing_zeros() as usize % WIDTH]);
@@ -208,7 +150,7 @@ fn walk<E: Lanes, P: Primitive>(
             }
             top += entered.count_ones() as usize;
         }
-        let last = last_key(lone.limit);
+        let last = last_key(beam.limit);
         at = loop {
             if top == 0 {
                 return;

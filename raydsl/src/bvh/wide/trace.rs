@@ -11,7 +11,7 @@ use crate::bvh::packet_slabs::{and, finite};
 use crate::bvh::slabs::Allowance;
 use crate::bvh::{Part, SceneView, traverse};
 use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn};
-use crate::machine::{B, Entered, F, Lanes, Packet, Straight, U, op};
+use crate::machine::{B, Entered, F, Lanes, Packet, U, op};
 
 /// The memory of a query, which a thread keeps for the next one.
 #[derive(Debug, Default)]
@@ -40,21 +40,14 @@ pub(crate) fn closest_hits<L: Lanes, P: Primitive>(
     hits: &mut [HitOn<Packet<L>>],
 ) {
     let l = m.lanes();
-    with_scratch(|scratch| {
-        l.enter_again(
-            #[inline(always)]
-            || load(m, &mut scratch.rays, rays),
-        );
-        answer::<true, _, P>(l.register(), scene, scratch);
-        l.enter_again(
-            #[inline(always)]
-            || {
-                for (q, hit) in hits.iter_mut().enumerate() {
-                    *hit = hit_at(l, &scratch.rays, q * L::N);
-                }
-            },
-        );
-    });
+    ask::<true, _, P, _>(
+        m,
+        scene,
+        rays,
+        hits,
+        #[inline(always)]
+        |rays, first| hit_at(l, rays, first),
+    );
 }
 
 /// Whether every running lane hits anything, for each of some rays of a packet.
@@ -66,17 +59,37 @@ pub(crate) fn any_hits<L: Lanes, P: Primitive>(
     hits: &mut [B<Packet<L>>],
 ) {
     let l = m.lanes();
+    ask::<false, _, P, _>(
+        m,
+        scene,
+        rays,
+        hits,
+        #[inline(always)]
+        |rays, first| B(found_at(l, rays, first)),
+    );
+}
+
+/// Asks about the rays, and reads what each packet of them has found.
+#[inline(always)]
+fn ask<const CLOSEST: bool, L: Lanes, P: Primitive, H>(
+    m: &Packet<L>,
+    scene: &SceneView<'_, P>,
+    rays: &[RayOn<Packet<L>>],
+    hits: &mut [H],
+    found: impl Fn(&Rays, usize) -> H,
+) {
+    let l = m.lanes();
     with_scratch(|scratch| {
         l.enter_again(
             #[inline(always)]
             || load(m, &mut scratch.rays, rays),
         );
-        answer::<false, _, P>(l.register(), scene, scratch);
+        answer::<CLOSEST, _, P>(l.register(), scene, scratch);
         l.enter_again(
             #[inline(always)]
             || {
                 for (q, hit) in hits.iter_mut().enumerate() {
-                    *hit = B(found_at(l, &scratch.rays, q * L::N));
+                    *hit = found(&scratch.rays, q * L::N);
                 }
             },
         );
@@ -84,7 +97,7 @@ pub(crate) fn any_hits<L: Lanes, P: Primitive>(
 }
 
 /// How many rays of the host are asked about together.
-const TOGETHER: usize = 128;
+const AT_ONCE: usize = 128;
 
 /// The least `(t, id)` hit of each ray.
 pub(crate) fn each_closest<R: Lanes, P: Primitive>(
@@ -94,7 +107,7 @@ pub(crate) fn each_closest<R: Lanes, P: Primitive>(
     mut found: impl FnMut(&Ray, Hit),
 ) {
     with_scratch(|scratch| {
-        for rays in rays.chunks(TOGETHER) {
+        for rays in rays.chunks(AT_ONCE) {
             scratch.rays.load(rays);
             answer::<true, R, P>(r, scene, scratch);
             for (i, ray) in rays.iter().enumerate() {
@@ -112,7 +125,7 @@ pub(crate) fn each_any<R: Lanes, P: Primitive>(
     mut found: impl FnMut(bool),
 ) {
     with_scratch(|scratch| {
-        for rays in rays.chunks(TOGETHER) {
+        for rays in rays.chunks(AT_ONCE) {
             scratch.rays.load(rays);
             answer::<false, R, P>(r, scene, scratch);
             for i in 0..rays.len() {
@@ -154,14 +167,14 @@ fn answer<const CLOSEST: bool, R: Lanes, P: Primitive>(
                 let (meeting, e) = (meeting(scene, part, tree), r.eight());
                 if CLOSEST {
                     packet::closest_hit(r, &meeting, rays, together, root);
-                    wave::run::<true, _, _>(Entered(e), &meeting, None, rays, wave);
+                    wave::run::<true, _, _>(Entered::new(e), &meeting, None, rays, wave);
                 } else {
                     let entry = entry::of(e, tree, rays, root, Allowance::of::<P>());
                     let entry = entry.as_ref();
                     if const { P::IS_SHORT } {
-                        wave::run::<false, _, _>(Straight(e), &meeting, entry, rays, wave);
+                        wave::run::<false, _, _>(Entered::straight(e), &meeting, entry, rays, wave);
                     } else {
-                        wave::run::<false, _, _>(Entered(e), &meeting, entry, rays, wave);
+                        wave::run::<false, _, _>(Entered::new(e), &meeting, entry, rays, wave);
                     }
                     if scene.part(next).is_some() {
                         rays.forget_found();

@@ -49,6 +49,8 @@ struct Turns<'a> {
     enters: &'a mut [u32],
     nodes: List<'a>,
     blocks: List<'a>,
+    /// How many children of each may be on its stack.
+    pending: u32,
 }
 
 impl Wave {
@@ -86,6 +88,7 @@ impl Wave {
             enters: &mut self.enters,
             nodes,
             blocks: List { places: &mut self.at_blocks, len: 0 },
+            pending: pending as u32,
         }
     }
 }
@@ -107,9 +110,7 @@ impl Turns<'_> {
         self.nodes.push_if(condition & !at.is_block(), ray);
         self.blocks.push_if(condition & at.is_block() & (at != Child::NONE), ray);
     }
-}
 
-impl Turns<'_> {
     /// Takes a ray from a node to what it enters first there, and keeps the rest for later.
     #[inline(always)]
     fn step<const CLOSEST: bool, E: Lanes>(
@@ -123,6 +124,7 @@ impl Turns<'_> {
         let top = words_of.word(row::TOP);
         let (near, mask) = enter(e, node, words_of);
         let children = words(e, &node.children);
+        debug_assert!(top + e.bits(mask).count_ones() <= words_of.word(row::BOTTOM) + self.pending);
         if CLOSEST {
             let keys = sorted(e, near, mask);
             e.u32_store(e.u32_permute(children, keys), self.stack(top));
@@ -131,6 +133,30 @@ impl Turns<'_> {
             e.u32_store(e.u32_compress(children, mask), self.stack(top));
         }
         self.pop_if(true, all, ray, top + e.bits(mask).count_ones());
+    }
+
+    /// Takes what a ray enters beyond `limit` from its stack; returns the new top.
+    #[inline(always)]
+    fn drop_beyond<E: Lanes>(&mut self, e: E, bottom: u32, top: u32, limit: f32) -> u32 {
+        let last = e.u32(last_key(limit));
+        let (mut kept, mut from) = (bottom as usize, bottom as usize);
+        while from < top as usize {
+            let enters = load(e, self.enters, from);
+            let stack = load(e, self.stacks, from);
+            let begun = e.u32_binary(op::And, enters, e.u32(!7));
+            let places = e.u32_from_fn(
+                #[inline(always)]
+                |i| (from + i) as u32,
+            );
+            let there = e.u32_compare(op::Lt, places, e.u32(top));
+            let within = e.u32_compare(op::Le, begun, last);
+            let stay = e.mask_binary(op::And, there, within);
+            e.u32_store(e.u32_compress(enters, stay), &mut self.enters[kept..][..WIDTH]);
+            e.u32_store(e.u32_compress(stack, stay), &mut self.stacks[kept..][..WIDTH]);
+            kept += e.bits(stay).count_ones() as usize;
+            from += WIDTH;
+        }
+        kept as u32
     }
 }
 
@@ -216,32 +242,6 @@ fn take<E: Lanes, P: Primitive>(
         words.set_number(row::LIMIT, beyond(t, end, P::SLACK));
     }
     is_taken
-}
-
-impl Turns<'_> {
-    /// Takes what a ray enters beyond `limit` from its stack; returns the new top.
-    #[inline(always)]
-    fn drop_beyond<E: Lanes>(&mut self, e: E, bottom: u32, top: u32, limit: f32) -> u32 {
-        let last = e.u32(last_key(limit));
-        let (mut kept, mut from) = (bottom as usize, bottom as usize);
-        while from < top as usize {
-            let enters = load(e, self.enters, from);
-            let stack = load(e, self.stacks, from);
-            let begun = e.u32_binary(op::And, enters, e.u32(!7));
-            let places = e.u32_from_fn(
-                #[inline(always)]
-                |i| (from + i) as u32,
-            );
-            let there = e.u32_compare(op::Lt, places, e.u32(top));
-            let within = e.u32_compare(op::Le, begun, last);
-            let stay = e.mask_binary(op::And, there, within);
-            e.u32_store(e.u32_compress(enters, stay), &mut self.enters[kept..][..WIDTH]);
-            e.u32_store(e.u32_compress(stack, stay), &mut self.stacks[kept..][..WIDTH]);
-            kept += e.bits(stay).count_ones() as usize;
-            from += WIDTH;
-        }
-        kept as u32
-    }
 }
 
 /// Eight words from `from` on.

@@ -10,7 +10,22 @@ use crate::machine::{
 /// Kernels that run on them are inlined instead of entering the level again; that is for the
 /// innermost loops, which must not pass registers through memory.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Entered<L>(pub(crate) L);
+pub(crate) struct Entered<L, const STRAIGHT: bool = false>(L);
+
+impl<L> Entered<L> {
+    #[inline(always)]
+    pub(crate) fn new(lanes: L) -> Self {
+        Self(lanes)
+    }
+}
+
+impl<L> Entered<L, true> {
+    /// For code whose early exits cannot be foretold: see [`Lanes::STRAIGHT`].
+    #[inline(always)]
+    pub(crate) fn straight(lanes: L) -> Self {
+        Self(lanes)
+    }
+}
 
 macro_rules! delegate {
     ($($name:ident($($a:ident: $t:ty),*) -> $result:ty;)+) => {
@@ -33,8 +48,8 @@ macro_rules! delegate {
 
 /// Lanes around others: what is not given here is theirs.
 macro_rules! lanes_around {
-    ($name:ident { $($own:tt)* }) => {
-        impl<L: Lanes> Lanes for $name<L> {
+    (<L $(, const $n:ident: $t:ty)?> $name:ty { $($own:tt)* }) => {
+        impl<L: Lanes $(, const $n: $t)?> Lanes for $name {
             const N: usize = L::N;
             type F32 = L::F32;
             type I32 = L::I32;
@@ -111,28 +126,8 @@ macro_rules! lanes_around {
     };
 }
 
-lanes_around!(Entered {
-    #[inline(always)]
-    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
-        f()
-    }
-    #[inline(always)]
-    fn enter_again<R>(self, f: impl FnOnce() -> R) -> R {
-        self.0.vectorize(f)
-    }
-    #[inline(always)]
-    fn at(self, place: Place, active: L::Mask) {
-        self.0.at(place, active);
-    }
-});
-
-/// Lanes as [`Entered`], for code whose early exits cannot be foretold: what follows one runs on even
-/// where no lane is left.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Straight<L>(pub(crate) L);
-
-lanes_around!(Straight {
-    const STRAIGHT: bool = true;
+lanes_around!(<L, const IS_STRAIGHT: bool> Entered<L, IS_STRAIGHT> {
+    const STRAIGHT: bool = IS_STRAIGHT;
 
     #[inline(always)]
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
@@ -148,7 +143,7 @@ lanes_around!(Straight {
     }
 });
 
-lanes_around!(Counted {
+lanes_around!(<L> Counted<L> {
     #[inline(always)]
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
         self.0.vectorize(f)

@@ -11,7 +11,7 @@ mod simd;
 
 use core::mem::MaybeUninit;
 
-pub(crate) use around::{Entered, Straight};
+pub(crate) use around::Entered;
 pub use one::One;
 pub use simd::{Simd4, Simd8, Simd16};
 
