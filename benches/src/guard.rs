@@ -15,10 +15,14 @@ use std::process::{Command, ExitCode};
 const LEVELS: [(&str, &str); 2] = [("vectorize_avx2", "%ymm"), ("vectorize_avx512", "%zmm")];
 /// What enters them.
 const TRAVERSALS: &str = "raydsl::bvh::traverse_packet::";
-/// What traversals call on purpose, in code that few rays need: kernels with `#[inline(never)]`, and
-/// the way from instance to instance. Each enters the level again and is inspected like them.
-const APART: [&str; 2] =
-    ["raydsl::machine::packet::apart", "raydsl::bvh::instances::packet_descent::"];
+/// What traversals call on purpose: kernels with `#[inline(never)]`, the way from instance to
+/// instance, and the walks of wide trees. Each enters the level again and is inspected like them.
+const APART: [&str; 4] = [
+    "raydsl::machine::packet::apart",
+    "raydsl::bvh::instances::packet_descent::",
+    "raydsl::bvh::wide::trace::answer",
+    "raydsl::bvh::wide::single::ask",
+];
 /// One ray after another: scenes under an accelerator of one's own know no packets.
 const ONE_BY_ONE: &str = "raydsl::bvh::traverse::";
 /// The bench traverses triangles and spheres at each level.
