@@ -20,7 +20,7 @@ const TRAVERSALS: &str = "raydsl::bvh::traverse_packet::";
 const APART: [&str; 4] = [
     "raydsl::machine::packet::apart",
     "raydsl::bvh::instances::packet_descent::",
-    "raydsl::bvh::wide::trace::answer",
+    "raydsl::bvh::wide::trace::each_part",
     "raydsl::bvh::wide::single::ask",
 ];
 /// One ray after another: scenes under an accelerator of one's own know no packets.

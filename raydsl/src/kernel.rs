@@ -1,5 +1,7 @@
 //! A kernel with all its variants.
 
+use fearless_simd::Level;
+
 use crate::machine::{
     Counted, KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet, Recorder,
     Recording, Resource, Rounding, Simd4, Simd8, Simd16, Type, U, wgsl,
@@ -62,9 +64,12 @@ struct Levels {
 }
 
 impl Levels {
-    #[cfg(target_arch = "x86_64")]
     fn detect() -> Self {
-        let level = fearless_simd::Level::new();
+        Self::of(Level::new())
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    fn of(level: Level) -> Self {
         let Some(baseline) = level.as_sse2() else {
             unreachable!("SSE2 is a part of x86-64");
         };
@@ -77,15 +82,15 @@ impl Levels {
     }
 
     #[cfg(target_arch = "aarch64")]
-    fn detect() -> Self {
-        let Some(neon) = fearless_simd::Level::new().as_neon() else {
+    fn of(level: Level) -> Self {
+        let Some(neon) = level.as_neon() else {
             unreachable!("NEON is a part of AArch64");
         };
         Self { narrow: Some(neon), middle: Some(neon), wide: Some(neon), baseline: neon }
     }
 
     #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-    fn detect() -> Self {
+    fn of(_: Level) -> Self {
         let baseline = fearless_simd::Fallback::new();
         Self { narrow: None, middle: None, wide: None, baseline }
     }
@@ -183,17 +188,21 @@ impl Variant {
     }
 }
 
-/// Something to do with eight lanes.
-pub(crate) trait EightTask {
-    type Output;
-    fn run<E: Lanes>(self, e: E) -> Self::Output;
+/// Whether this machine has lanes that go through wide trees: AVX-512, AVX2 or NEON.
+pub(crate) fn has_wide_walks() -> bool {
+    Levels::detect().middle.is_some()
 }
 
-/// Does it with the widest level of this machine, if it has AVX2 or NEON.
-pub(crate) fn with_eight<T: EightTask>(task: T) -> Option<T::Output> {
-    let levels = Levels::detect();
+/// Does it with the lanes that go through wide trees at this level, if it has such, or else with
+/// those of this machine.
+///
+/// They do not depend on how many lanes a packet has: a walk is large, and a user waits for every
+/// copy of it.
+pub(crate) fn with_wide_walks<T: LanesTask>(level: Option<Level>, task: T) -> Option<T::Output> {
+    let levels = level.map(Levels::of).filter(|levels| levels.middle.is_some());
+    let levels = levels.unwrap_or_else(Levels::detect);
     if let Some(s) = levels.wide {
-        return Some(task.run(Simd8(s)));
+        return Some(task.run(Simd16(s)));
     }
     levels.middle.map(|s| task.run(Simd8(s)))
 }

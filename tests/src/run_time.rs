@@ -216,13 +216,9 @@ macro_rules! operations {
             type U32 = [u32; N];
             type Mask = Bits;
             type Eight = Gang<One, 8>;
-            type Register = One;
 
             fn eight(self) -> Gang<One, 8> {
                 Gang(One)
-            }
-            fn register(self) -> One {
-                One
             }
             /// A kernel that calls another does not contain it.
             #[inline(never)]
@@ -272,13 +268,9 @@ macro_rules! operations {
                 type U32 = Register;
                 type Mask = Bits;
                 type Eight = Gang<One, 8>;
-                type Register = One;
 
                 fn eight(self) -> Gang<One, 8> {
                     Gang(One)
-                }
-                fn register(self) -> One {
-                    One
                 }
                 #[inline(never)]
                 fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {

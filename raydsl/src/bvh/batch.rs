@@ -11,11 +11,23 @@ const TOGETHER: usize = 8;
 
 /// The record of the least `(t, id)` hit of each ray.
 pub(super) fn closest_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray]) -> Vec<P::Hit> {
+    if trace::answers(scene) {
+        let mut hits = Vec::with_capacity(rays.len());
+        trace::each_closest(scene, rays, |ray, hit| {
+            hits.push(traverse::complete(scene, *ray, hit));
+        });
+        return hits;
+    }
     Variant::widest().with_lanes(Closest { scene, rays })
 }
 
 /// Whether each ray hits anything.
 pub(super) fn any_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray]) -> Vec<bool> {
+    if trace::answers(scene) {
+        let mut hits = Vec::with_capacity(rays.len());
+        trace::each_any(scene, rays, |is_hit| hits.push(is_hit));
+        return hits;
+    }
     Variant::widest().with_lanes(Any { scene, rays })
 }
 
@@ -34,12 +46,6 @@ impl<P: Primitive> LanesTask for Closest<'_, '_, P> {
 
     fn run<L: Lanes>(self, lanes: L) -> Vec<P::Hit> {
         let mut hits = Vec::with_capacity(self.rays.len());
-        if trace::answers(self.scene) {
-            trace::each_closest(lanes, self.scene, self.rays, |ray, hit| {
-                hits.push(traverse::complete(self.scene, *ray, hit));
-            });
-            return hits;
-        }
         lanes.vectorize(|| {
             let m = Packet::new(lanes);
             for rays in self.rays.chunks(TOGETHER * L::N) {
@@ -62,10 +68,6 @@ impl<P: Primitive> LanesTask for Any<'_, '_, P> {
 
     fn run<L: Lanes>(self, lanes: L) -> Vec<bool> {
         let mut hits = Vec::with_capacity(self.rays.len());
-        if trace::answers(self.scene) {
-            trace::each_any(lanes, self.scene, self.rays, |is_hit| hits.push(is_hit));
-            return hits;
-        }
         lanes.vectorize(|| {
             let m = Packet::new(lanes);
             for rays in self.rays.chunks(TOGETHER * L::N) {

@@ -1,5 +1,7 @@
 //! Packets wider than a register: several registers a value.
 
+use fearless_simd::Level;
+
 use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Lanes, Op, fill, op};
 
 /// `K` registers of `L`: `K` times as many lanes of the same level, at most 64.
@@ -81,15 +83,14 @@ impl<L: Lanes, const K: usize> Lanes for Gang<L, K> {
     type U32 = [L::U32; K];
     type Mask = [L::Mask; K];
     type Eight = L::Eight;
-    type Register = L::Register;
 
     #[inline(always)]
     fn eight(self) -> L::Eight {
         self.0.eight()
     }
     #[inline(always)]
-    fn register(self) -> L::Register {
-        self.0.register()
+    fn level(self) -> Option<Level> {
+        self.0.level()
     }
     fn isa(self) -> &'static str {
         self.0.isa()

@@ -68,15 +68,11 @@ impl Lanes for Watch {
     type U32 = u32;
     type Mask = bool;
     type Eight = Gang<Self, 8>;
-    type Register = Self;
 
     fn eight(self) -> Gang<Self, 8> {
         Gang(self)
     }
 
-    fn register(self) -> Self {
-        self
-    }
 
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
         f()

@@ -8,14 +8,14 @@ use crate::bvh::SceneView;
 use crate::bvh::slabs::Allowance;
 use crate::bvh::traverse::is_finite;
 use crate::geometry::{Hit, Primitive, Ray};
-use crate::kernel::{EightTask, with_eight};
+use crate::kernel::{LanesTask, with_wide_walks};
 use crate::machine::{Entered, Lanes, Packet, Type};
 
 /// Entries of the stack; deeper trees are left to others.
 const STACK: usize = 256;
 
-/// The least `(t, id)` hit of a ray; none if the scene is no wide trees, the ray too odd for their
-/// boxes, or the machine without AVX2 and NEON.
+/// The least `(t, id)` hit of a ray; none if wide trees do not answer, or the ray is too odd for
+/// their boxes.
 #[inline(always)]
 pub(crate) fn closest_hit<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray) -> Option<Hit> {
     if !answers(scene) {
@@ -47,17 +47,18 @@ fn ask<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray, wanted: Wanted) -> Opti
         ray: Ray,
         wanted: Wanted,
     }
-    impl<P: Primitive> EightTask for Ask<'_, '_, P> {
+    impl<P: Primitive> LanesTask for Ask<'_, '_, P> {
         type Output = Option<Hit>;
 
-        fn run<E: Lanes>(self, e: E) -> Option<Hit> {
+        fn run<R: Lanes>(self, r: R) -> Option<Hit> {
+            let e = r.eight();
             e.vectorize(
                 #[inline(always)]
                 || each_part(Entered::new(e), self.scene, self.ray, self.wanted),
             )
         }
     }
-    with_eight(Ask { scene, ray, wanted })?
+    with_wide_walks(None, Ask { scene, ray, wanted })?
 }
 
 /// Children that are to come, and where the ray enters them, as the bits of numbers above 0, in whose

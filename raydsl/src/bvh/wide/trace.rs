@@ -2,6 +2,8 @@
 
 use core::cell::Cell;
 
+use fearless_simd::Level;
+
 use super::entry;
 use super::packet::{self, Together};
 use super::rays::{GROUP, Rays, load_words, place, ray_at, ray_at_mut, row};
@@ -11,6 +13,7 @@ use crate::bvh::packet_slabs::{and, finite};
 use crate::bvh::slabs::Allowance;
 use crate::bvh::{Part, SceneView, traverse};
 use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn};
+use crate::kernel::{LanesTask, has_wide_walks, with_wide_walks};
 use crate::machine::{B, Entered, F, Lanes, Packet, U, op};
 
 /// The memory of a query, which a thread keeps for the next one.
@@ -25,10 +28,10 @@ thread_local! {
     static SCRATCH: Cell<Option<Box<Scratch>>> = const { Cell::new(None) };
 }
 
-/// Whether a scene is trees with primitives in their leaves.
+/// Whether a scene is wide trees, and this machine goes through such.
 #[inline(always)]
 pub(crate) fn answers<P: Primitive>(scene: &SceneView<'_, P>) -> bool {
-    scene.placed().is_none() && scene.parts().all(|part| part.wide.is_some())
+    scene.placed().is_none() && scene.parts().all(|part| part.wide.is_some()) && has_wide_walks()
 }
 
 /// The least `(t, id)` hit of every running lane, for each of some rays of a packet.
@@ -84,7 +87,7 @@ fn ask<const CLOSEST: bool, L: Lanes, P: Primitive, H>(
             #[inline(always)]
             || load(m, &mut scratch.rays, rays),
         );
-        answer::<CLOSEST, _, P>(l.register(), scene, scratch);
+        answer::<CLOSEST, P>(l.level(), scene, scratch);
         l.enter_again(
             #[inline(always)]
             || {
@@ -100,8 +103,7 @@ fn ask<const CLOSEST: bool, L: Lanes, P: Primitive, H>(
 const AT_ONCE: usize = 128;
 
 /// The least `(t, id)` hit of each ray.
-pub(crate) fn each_closest<R: Lanes, P: Primitive>(
-    r: R,
+pub(crate) fn each_closest<P: Primitive>(
     scene: &SceneView<'_, P>,
     rays: &[Ray],
     mut found: impl FnMut(&Ray, Hit),
@@ -109,7 +111,7 @@ pub(crate) fn each_closest<R: Lanes, P: Primitive>(
     with_scratch(|scratch| {
         for rays in rays.chunks(AT_ONCE) {
             scratch.rays.load(rays);
-            answer::<true, R, P>(r, scene, scratch);
+            answer::<true, P>(None, scene, scratch);
             for (i, ray) in rays.iter().enumerate() {
                 found(ray, ray_at(scratch.rays.words(), place(i)).hit());
             }
@@ -118,8 +120,7 @@ pub(crate) fn each_closest<R: Lanes, P: Primitive>(
 }
 
 /// Whether each ray hits anything.
-pub(crate) fn each_any<R: Lanes, P: Primitive>(
-    r: R,
+pub(crate) fn each_any<P: Primitive>(
     scene: &SceneView<'_, P>,
     rays: &[Ray],
     mut found: impl FnMut(bool),
@@ -127,7 +128,7 @@ pub(crate) fn each_any<R: Lanes, P: Primitive>(
     with_scratch(|scratch| {
         for rays in rays.chunks(AT_ONCE) {
             scratch.rays.load(rays);
-            answer::<false, R, P>(r, scene, scratch);
+            answer::<false, P>(None, scene, scratch);
             for i in 0..rays.len() {
                 found(ray_at(scratch.rays.words(), place(i)).word(row::FOUND) != 0);
             }
@@ -144,10 +145,29 @@ fn with_scratch(query: impl FnOnce(&mut Scratch)) {
 }
 
 /// Finds what the rays meet: the least hits with `CLOSEST`, else whether there is any.
-///
-/// In its own function, which all that have registers of one kind share.
+fn answer<const CLOSEST: bool, P: Primitive>(
+    level: Option<Level>,
+    scene: &SceneView<'_, P>,
+    scratch: &mut Scratch,
+) {
+    struct Answer<'a, 's, const CLOSEST: bool, P: Primitive> {
+        scene: &'a SceneView<'s, P>,
+        scratch: &'a mut Scratch,
+    }
+    impl<const CLOSEST: bool, P: Primitive> LanesTask for Answer<'_, '_, CLOSEST, P> {
+        type Output = ();
+
+        fn run<R: Lanes>(self, r: R) {
+            each_part::<CLOSEST, R, P>(r, self.scene, self.scratch);
+        }
+    }
+    with_wide_walks(level, Answer::<CLOSEST, P> { scene, scratch: &mut *scratch });
+    alone::<CLOSEST, P>(scene, &mut scratch.rays);
+}
+
+/// In its own function, which packets of any width share.
 #[inline(never)]
-fn answer<const CLOSEST: bool, R: Lanes, P: Primitive>(
+fn each_part<const CLOSEST: bool, R: Lanes, P: Primitive>(
     r: R,
     scene: &SceneView<'_, P>,
     scratch: &mut Scratch,
@@ -183,7 +203,6 @@ fn answer<const CLOSEST: bool, R: Lanes, P: Primitive>(
             }
         },
     );
-    alone::<CLOSEST, P>(scene, &mut scratch.rays);
 }
 
 /// Asks about the rays that are too odd for boxes.

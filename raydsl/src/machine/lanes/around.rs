@@ -1,5 +1,7 @@
 //! Lanes that do something of their own where others enter a level, or count.
 
+use fearless_simd::Level;
+
 use super::Lanes;
 use crate::machine::{
     BoolBinary, Compare, Counted, F32Binary, F32Unary, IntBinary, Op, Place, counted,
@@ -56,7 +58,6 @@ macro_rules! lanes_around {
             type U32 = L::U32;
             type Mask = L::Mask;
             type Eight = L::Eight;
-            type Register = L::Register;
 
         $($own)*
 
@@ -74,7 +75,7 @@ macro_rules! lanes_around {
             delegate! {
                 isa() -> &'static str;
                 eight() -> L::Eight;
-                register() -> L::Register;
+                level() -> Option<Level>;
                 f32(v: f32) -> L::F32;
                 i32(v: i32) -> L::I32;
                 u32(v: u32) -> L::U32;

@@ -11,6 +11,8 @@ mod simd;
 
 use core::mem::MaybeUninit;
 
+use fearless_simd::Level;
+
 pub(crate) use around::Entered;
 pub use one::One;
 pub use simd::{Simd4, Simd8, Simd16};
@@ -31,13 +33,14 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     /// Eight lanes of the same level: as many as a node of a wide tree has children, and a block
     /// of its leaves primitives.
     type Eight: Lanes;
-    /// One of the registers of a [`Gang`](super::Gang); elsewhere the lanes themselves.
-    type Register: Lanes;
 
     /// The lanes of [`Lanes::Eight`].
     fn eight(self) -> Self::Eight;
-    /// The lanes of [`Lanes::Register`].
-    fn register(self) -> Self::Register;
+    /// The level of the instruction set, if they are of one.
+    #[inline(always)]
+    fn level(self) -> Option<Level> {
+        None
+    }
 
     /// The instruction set's name, as reports print it.
     fn isa(self) -> &'static str;

@@ -14,15 +14,10 @@ impl Lanes for One {
     type U32 = u32;
     type Mask = bool;
     type Eight = Gang<Self, 8>;
-    type Register = Self;
 
     #[inline(always)]
     fn eight(self) -> Gang<Self, 8> {
         Gang(self)
-    }
-    #[inline(always)]
-    fn register(self) -> Self {
-        self
     }
     fn isa(self) -> &'static str {
         "portable"

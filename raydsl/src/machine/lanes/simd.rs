@@ -1,8 +1,9 @@
 //! Registers of an instruction set.
 
 use fearless_simd::{
-    Bytes, Select, Simd, SimdBase, SimdCvtFloat, SimdCvtTruncate, SimdFloat, SimdMask, f32x4,
-    f32x8, f32x16, i32x4, i32x8, i32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
+    Bytes, Level, Select, Simd, SimdBase, SimdCvtFloat, SimdCvtTruncate, SimdFloat, SimdMask,
+    f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8,
+    u32x16,
 };
 
 use super::{Lanes, fill, shuffle};
@@ -10,21 +11,21 @@ use crate::machine::op::known;
 use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Op, scalar};
 
 /// The name of a level, as reports print it.
-fn isa_name(level: fearless_simd::Level) -> &'static str {
+fn isa_name(level: Level) -> &'static str {
     #[allow(unreachable_patterns, reason = "which levels exist depends on the target")]
     match level {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        fearless_simd::Level::Avx512(_) => "avx512",
+        Level::Avx512(_) => "avx512",
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        fearless_simd::Level::Avx2(_) => "avx2",
+        Level::Avx2(_) => "avx2",
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        fearless_simd::Level::Sse4_2(_) => "sse4.2",
+        Level::Sse4_2(_) => "sse4.2",
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        fearless_simd::Level::Sse2(_) => "sse2",
+        Level::Sse2(_) => "sse2",
         #[cfg(target_arch = "aarch64")]
-        fearless_simd::Level::Neon(_) => "neon",
+        Level::Neon(_) => "neon",
         #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-        fearless_simd::Level::WasmSimd128(_) => "simd128",
+        Level::WasmSimd128(_) => "simd128",
         _ => "portable",
     }
 }
@@ -32,9 +33,9 @@ fn isa_name(level: fearless_simd::Level) -> &'static str {
 /// Whether a level's `x.min(y)` is `if x < y { x } else { y }` for every pair of numbers, as it is
 /// on x86, and `max` likewise.
 #[inline(always)]
-fn has_ordered_min(level: fearless_simd::Level) -> bool {
+fn has_ordered_min(level: Level) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    use fearless_simd::Level::{Avx2, Avx512, Sse2, Sse4_2};
+    use Level::{Avx2, Avx512, Sse2, Sse4_2};
     #[allow(unreachable_patterns, reason = "which levels exist depends on the target")]
     match level {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -86,15 +87,14 @@ macro_rules! simd_lanes {
             type U32 = $u<S>;
             type Mask = $m<S>;
             type Eight = Simd8<S>;
-            type Register = Self;
 
             #[inline(always)]
             fn eight(self) -> Simd8<S> {
                 Simd8(self.0)
             }
             #[inline(always)]
-            fn register(self) -> Self {
-                self
+            fn level(self) -> Option<Level> {
+                Some(self.0.level())
             }
             fn isa(self) -> &'static str {
                 isa_name(self.0.level())
