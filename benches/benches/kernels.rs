@@ -234,7 +234,7 @@ fn occlusion(bench: &Bench) -> Vec<Row> {
     let mut rows = Vec::new();
     for (name, radius) in [("near", 1.0), ("far", 100.0)] {
         let kernel = kernel!(|ray: Ray, sampler: Sampler| {
-            ambient_occlusion(&scene, radius, host(method), ray, sampler)
+            ambient_occlusion::<_, 1>(&scene, radius, host(method), ray, sampler)
         });
         let render = |variant: Variant| {
             let (mut film, sampling) = (Film::new(width, height), Sampling::new(SAMPLES));

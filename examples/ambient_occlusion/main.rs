@@ -18,7 +18,9 @@ use raydsl_examples::mesh;
 
 /// Passes over the film, and samples of each pixel in each.
 const PASSES: u32 = 4;
-const SAMPLES: u32 = 64;
+const SAMPLES: u32 = 16;
+/// Directions that each sample looks in, asked about together.
+const DIRECTIONS: usize = 4;
 
 /// Looks at all of `bounds` from above on one side.
 fn camera_at(bounds: Aabb) -> Pinhole {
@@ -43,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // ANCHOR: film
     let method = SampleMethod::Sobol;
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
-        ambient_occlusion(&mesh, radius, host(method), ray, sampler)
+        ambient_occlusion::<_, DIRECTIONS>(&mesh, radius, host(method), ray, sampler)
     });
     let mut film = Film::new(640, 400);
     let sampling = Sampling::new(PASSES * SAMPLES);

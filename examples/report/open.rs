@@ -46,7 +46,7 @@ impl<P: Primitive<Hit = Hit, Shared = ()> + Surface + Sync + 'static> View<P> {
     fn estimate(&self, run: &Run<'_>) -> Result<Estimates, Missing> {
         let (tree, radius, method) = (self.tree, self.radius, run.method().sampling());
         let kernel = kernel!(|ray: Ray, sampler: Sampler| {
-            ambient_occlusion(tree, radius, host(method), ray, sampler)
+            ambient_occlusion::<_, 1>(tree, radius, host(method), ray, sampler)
         });
         run.film(&self.camera, &kernel)
     }

@@ -55,7 +55,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         (vec3(0.80, 0.81, 0.84), vec3(0.02, 0.03, 0.09), vec3(1.0, 0.93, 0.8));
     let method = SampleMethod::Sobol;
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
-        let seen = ambient_occlusion(&mesh, radius, host(method), ray, sampler);
+        let seen = ambient_occlusion::<_, 1>(&mesh, radius, host(method), ray, sampler);
         if seen.w > 0.0 { closed + (open - closed) * seen.x } else { paper }
     });
 

@@ -126,7 +126,7 @@ fn a_sponge_agrees() {
     let mesh = Bvh::build(&triangles).expect("finite bounds");
     let method = SampleMethod::Sobol;
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
-        ambient_occlusion(&mesh, 6.0, host(method), ray, sampler)
+        ambient_occlusion::<_, 1>(&mesh, 6.0, host(method), ray, sampler)
     });
     let eye = vec3(15.0, 16.0, 17.0);
     let rays = rays(&mut Rng::of("sponge"), 800, eye, Vec3::splat(4.5), Vec3::splat(3.5));
@@ -176,7 +176,7 @@ fn what_is_stopped_has_the_best_picture_so_far() {
     let mesh = Bvh::build(&triangles).expect("finite bounds");
     let method = SampleMethod::Sobol;
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
-        ambient_occlusion(&mesh, 2.0, host(method), ray, sampler)
+        ambient_occlusion::<_, 1>(&mesh, 2.0, host(method), ray, sampler)
     });
     let camera = Pinhole::new(Vec3::splat(6.0), Vec3::splat(1.5), Vec3::Y, 0.6);
     let target = Target::new(Metric::Rmse, 1e-4).pilot(128);

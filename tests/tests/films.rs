@@ -40,7 +40,7 @@ struct Own;
 
 impl Scheduler for Own {
     fn run<S: Shot>(&self, shot: &S, image: &mut Image<S::Output>, watch: &Watch<'_>) {
-        for tile in image.tiles(5).iter_mut().rev() {
+        for mut tile in image.tiles(5).rev() {
             tile.render(shot, Variant::Packet4);
             watch.advance(tile.area());
         }

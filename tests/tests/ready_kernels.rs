@@ -213,13 +213,13 @@ fn ambient_occlusion_is_the_form_factor() -> Result<(), Box<dyn Error>> {
         let down = Ray::new(vec3(0.0, 0.0, 0.5), Vec3::NEG_Z);
         let kernel = kernel!(|ray: Ray, i: u32, seed: u32| {
             let sampler = Sampler::new(uvec2(i % 1024, i / 1024), seed, 0, 1);
-            ambient_occlusion(&scene, radius, host(method), ray, sampler)
+            ambient_occlusion::<_, 4>(&scene, radius, host(method), ray, sampler)
         });
         for seed in 0..2 {
             let inputs: Vec<(Ray, u32, u32)> = (0..SAMPLES).map(|i| (down, i, seed)).collect();
             let samples = run(&kernel, Variant::widest(), &inputs);
             let mean = samples.iter().map(|v| f64::from(v.x)).sum::<f64>() / f64::from(SAMPLES);
-            let error = (expected * (1.0 - expected) / f64::from(SAMPLES)).sqrt();
+            let error = (expected * (1.0 - expected) / (4.0 * f64::from(SAMPLES))).sqrt();
             assert!((mean - expected).abs() < 4.0 * error, "{center} {seed}: {mean}, {expected}");
         }
         let inputs: Vec<(Ray, u32, u32)> = (0..2000).map(|i| (down, i, 9)).collect();
@@ -234,7 +234,7 @@ fn ambient_occlusion_in_every_variant() -> Result<(), Box<dyn Error>> {
     let scene = Bvh::build(&soup)?;
     for method in [SampleMethod::Stratified, SampleMethod::Sobol] {
         let kernel = kernel!(|ray: Ray, sampler: Sampler| {
-            ambient_occlusion(&scene, 1.5, host(method), ray, sampler)
+            ambient_occlusion::<_, 4>(&scene, 1.5, host(method), ray, sampler)
         });
         let camera = Pinhole::new(vec3(2.0, 3.0, 16.0), Vec3::ZERO, Vec3::Y, 0.8);
         let film = |scheduler: &dyn Fn(&Sampling, &mut Film)| {

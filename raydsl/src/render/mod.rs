@@ -40,7 +40,7 @@ pub(crate) use shot::Pass;
 pub use shot::Shot;
 pub(crate) use shot::places;
 pub use simple::SimpleScheduler;
-pub use tile::Tile;
+pub use tile::{Tile, Tiles};
 pub use tiled::TiledScheduler;
 pub use until::{
     Budget, Estimate, Metric, Outcome, Progress, ProgressObserver, REPLICATIONS, Reached, Target,

@@ -61,16 +61,19 @@ impl<'a> Samples<'a> {
 /// use raydsl::prelude::*;
 /// use raydsl::render::{Shot, Watch};
 ///
-/// /// A thread for each row of tiles.
-/// struct Rows;
+/// /// Four threads, each with every fourth tile.
+/// struct Four;
 ///
-/// impl Scheduler for Rows {
+/// impl Scheduler for Four {
 ///     fn run<S: Shot>(&self, shot: &S, image: &mut Image<S::Output>, watch: &Watch<'_>) {
-///         let mut tiles = image.tiles(32);
+///         let mut shares = [const { Vec::new() }; 4];
+///         for (i, tile) in image.tiles(32).enumerate() {
+///             shares[i % 4].push(tile);
+///         }
 ///         std::thread::scope(|scope| {
-///             for row in tiles.chunk_by_mut(|a, b| a.origin().y == b.origin().y) {
+///             for share in shares {
 ///                 scope.spawn(|| {
-///                     for tile in row {
+///                     for mut tile in share {
 ///                         if !watch.is_stopped() {
 ///                             tile.render(shot, Variant::widest());
 ///                             watch.advance(tile.area());
@@ -94,7 +97,7 @@ impl<'a> Samples<'a> {
 /// let camera = Pinhole::new(vec3(0.0, 0.0, 5.0), Vec3::ZERO, Vec3::Y, 1.0);
 /// let sky = kernel!(|ray: Ray| ray.direction.y);
 /// let (mut a, mut b) = (Image::filled(100, 70, 0.0), Image::filled(100, 70, 0.0));
-/// Rows.frame(&camera, &sky, &mut a);
+/// Four.frame(&camera, &sky, &mut a);
 /// SimpleScheduler::new().frame(&camera, &sky, &mut b);
 /// assert_eq!(a, b);
 /// ```

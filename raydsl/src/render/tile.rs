@@ -1,5 +1,9 @@
 //! The pixels of a rectangle, by one variant.
 
+use core::marker::PhantomData;
+use core::ops::Range;
+use core::ptr::NonNull;
+
 use glam::{UVec2, uvec2};
 
 use super::{Image, Shot};
@@ -9,40 +13,143 @@ use crate::machine::{Lanes, Packet, Type, U, X2, op};
 /// Edge of a tile in pixels, unless a scheduler has another.
 pub(super) const TILE: u32 = 16;
 
+/// Rows of tiles in a band: tiles that follow each other lie near each other, both ways.
+const BAND: u32 = 8;
+
 /// A rectangle of a film, and its pixels: what a scheduler hands out. See [`Image::tiles`].
-#[derive(Debug)]
 pub struct Tile<'a, R> {
     x: u32,
     y: u32,
     width: u32,
-    rows: Vec<&'a mut [R]>,
+    height: u32,
+    /// Its lower left pixel, and how many pixels lie between its rows.
+    first: NonNull<R>,
+    stride: usize,
+    image: PhantomData<&'a mut [R]>,
 }
 
+// SAFETY: a tile is a rectangle of an image that is borrowed for it alone, as `&mut [R]` would be.
+unsafe impl<R: Send> Send for Tile<'_, R> {}
+// SAFETY: as above.
+unsafe impl<R: Sync> Sync for Tile<'_, R> {}
+
+/// The tiles of an image, one after the other; see [`Image::tiles`].
+#[derive(Debug)]
+pub struct Tiles<'a, R> {
+    grid: Grid<R>,
+    /// Those that are to come.
+    numbers: Range<usize>,
+    image: PhantomData<&'a mut [R]>,
+}
+
+/// How an image is cut.
+#[derive(Debug)]
+struct Grid<R> {
+    pixels: NonNull<R>,
+    /// In pixels.
+    width: u32,
+    height: u32,
+    edge: u32,
+}
+
+// SAFETY: what it points to is only reached by `Grid::tile`, whose caller answers for that.
+unsafe impl<R: Send> Send for Grid<R> {}
+// SAFETY: as above; tiles of other threads are sent to them.
+unsafe impl<R: Send> Sync for Grid<R> {}
+
 impl<R: Type> Image<R> {
-    /// Cuts the image into tiles of `edge` by `edge` pixels, row by row of tiles from the bottom;
-    /// those at the end of rows and columns may be smaller. An edge of 0 is taken as 1.
-    pub fn tiles(&mut self, edge: u32) -> Vec<Tile<'_, R>> {
-        let (width, edge) = (self.width(), edge.max(1));
-        if width == 0 {
-            return Vec::new();
+    /// Cuts the image into tiles of `edge` by `edge` pixels, those at the end of rows and columns
+    /// may be smaller. An edge of 0 is taken as 1.
+    ///
+    /// They come in an order that keeps caches warm: column by column in bands of eight rows of
+    /// tiles, from the bottom. Nothing is allocated for them.
+    pub fn tiles(&mut self, edge: u32) -> Tiles<'_, R> {
+        let (width, height, edge) = (self.width(), self.height(), edge.max(1));
+        let pixels = self.pixels_mut();
+        assert_eq!(pixels.len(), width as usize * height as usize, "an image has all its pixels");
+        let grid = Grid { pixels: NonNull::from(pixels).cast(), width, height, edge };
+        let numbers = 0..grid.columns() as usize * grid.lines() as usize;
+        Tiles { grid, numbers, image: PhantomData }
+    }
+}
+
+impl<R> Grid<R> {
+    /// How many tiles lie side by side.
+    fn columns(&self) -> u32 {
+        self.width.div_ceil(self.edge)
+    }
+
+    fn lines(&self) -> u32 {
+        self.height.div_ceil(self.edge)
+    }
+
+    /// The column and the line of a tile.
+    fn place(&self, number: usize) -> UVec2 {
+        let of_band = self.columns() as usize * BAND as usize;
+        let first = (number / of_band) as u32 * BAND;
+        let (lines, number) = (BAND.min(self.lines() - first), (number % of_band) as u32);
+        uvec2(number / lines, first + number % lines)
+    }
+
+    /// The tile of a number below that of tiles.
+    ///
+    /// # Safety
+    ///
+    /// The image is borrowed mutably for `'a`, and its tile of this number given to no one else.
+    unsafe fn tile<'a>(&self, number: usize) -> Tile<'a, R> {
+        let UVec2 { x, y } = self.place(number) * self.edge;
+        let (width, height) = (self.edge.min(self.width - x), self.edge.min(self.height - y));
+        let stride = self.width as usize;
+        // SAFETY: `x` and `y` are below the width and the height of the image, so this is one of
+        // its pixels.
+        let first = unsafe { self.pixels.add(y as usize * stride + x as usize) };
+        Tile { x, y, width, height, first, stride, image: PhantomData }
+    }
+}
+
+impl<'a, R> Tiles<'a, R> {
+    /// Runs `f` for each tile, on all threads of the current rayon pool if there are any.
+    pub(super) fn for_each_parallel(self, f: impl Fn(Tile<'a, R>) + Sync)
+    where
+        R: Send,
+    {
+        #[cfg(feature = "parallel")]
+        {
+            use rayon::prelude::*;
+            let Self { grid, numbers, .. } = self;
+            // SAFETY: the image is borrowed for 'a, and each number comes once.
+            numbers.into_par_iter().for_each(|number| f(unsafe { grid.tile(number) }));
         }
-        let mut all = Vec::new();
-        let band = (width as usize).saturating_mul(edge as usize);
-        for (y, band) in (0..).step_by(edge as usize).zip(self.pixels_mut().chunks_mut(band)) {
-            let first = all.len();
-            all.extend((0..width).step_by(edge as usize).map(|x| Tile {
-                x,
-                y,
-                width: edge.min(width - x),
-                rows: Vec::with_capacity(band.len() / width as usize),
-            }));
-            for row in band.chunks_mut(width as usize) {
-                for (tile, part) in all[first..].iter_mut().zip(row.chunks_mut(edge as usize)) {
-                    tile.rows.push(part);
-                }
-            }
-        }
-        all
+        #[cfg(not(feature = "parallel"))]
+        self.for_each(f);
+    }
+}
+
+impl<'a, R> Iterator for Tiles<'a, R> {
+    type Item = Tile<'a, R>;
+
+    fn next(&mut self) -> Option<Tile<'a, R>> {
+        // SAFETY: the image is borrowed for 'a, and each number comes once.
+        self.numbers.next().map(|number| unsafe { self.grid.tile(number) })
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.numbers.size_hint()
+    }
+}
+
+impl<R> DoubleEndedIterator for Tiles<'_, R> {
+    fn next_back(&mut self) -> Option<Self::Item> {
+        // SAFETY: the image is borrowed for 'a, and each number comes once.
+        self.numbers.next_back().map(|number| unsafe { self.grid.tile(number) })
+    }
+}
+
+impl<R> ExactSizeIterator for Tiles<'_, R> {}
+
+impl<R> core::fmt::Debug for Tile<'_, R> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Tile").field("origin", &self.origin()).field("size", &self.size()).finish()
     }
 }
 
@@ -54,12 +161,23 @@ impl<R> Tile<'_, R> {
 
     /// Its width and height.
     pub fn size(&self) -> UVec2 {
-        uvec2(self.width, self.rows.len() as u32)
+        uvec2(self.width, self.height)
     }
 
     /// The number of pixels.
     pub fn area(&self) -> usize {
-        self.width as usize * self.rows.len()
+        self.width as usize * self.height as usize
+    }
+
+    /// Its pixels in a row, which is below its height.
+    fn row(&mut self, row: u32) -> &mut [R] {
+        assert!(row < self.height, "row {row} of a tile that has {}", self.height);
+        // SAFETY: a row of the tile is one of its image's, cut to its width; the tile has it alone
+        // and is borrowed as long as the slice.
+        unsafe {
+            let first = self.first.add(row as usize * self.stride);
+            core::slice::from_raw_parts_mut(first.as_ptr(), self.width as usize)
+        }
     }
 
     /// Runs a shot for its pixels, by a variant of the CPU; [`Variant::Wgsl`] needs a device and
@@ -68,9 +186,10 @@ impl<R> Tile<'_, R> {
         match variant {
             Variant::Wgsl => panic!("WGSL runs on a device: use raydsl::gpu::GpuScheduler"),
             Variant::Scalar => {
-                for (row, y) in self.rows.iter_mut().zip(self.y..) {
-                    for (pixel, x) in row.iter_mut().zip(self.x..) {
-                        *pixel = shot.pixel(uvec2(x, y));
+                let UVec2 { x: left, y: bottom } = self.origin();
+                for row in 0..self.height {
+                    for (pixel, x) in self.row(row).iter_mut().zip(left..) {
+                        *pixel = shot.pixel(uvec2(x, bottom + row));
                     }
                 }
             }
@@ -117,8 +236,7 @@ impl<S: Shot> PacketTask<S::Args, S::Result> for Packets<'_, '_, S> {
                         let y = from(lanes, tile.y + by, lines);
                         let result = shot.pixel_on(&m, X2 { x, y }, &|m, args| kernel(m, args));
                         for j in 0..up {
-                            let row = &mut tile.rows[(by + j) as usize];
-                            let row = &mut row[bx as usize..][..across as usize];
+                            let row = &mut tile.row(by + j)[bx as usize..][..across as usize];
                             for (pixel, i) in row.iter_mut().zip(0..) {
                                 *pixel = S::Output::lane(&result, (j * bw + i) as usize);
                             }

@@ -1,12 +1,13 @@
 //! Tiles on all threads.
 
-use super::tile::{TILE, Tile};
+use super::tile::TILE;
 use super::watch::Watch;
 use super::{Image, Scheduler, Shot};
 use crate::kernel::{Kernel, Variant};
 use crate::machine::Type;
 
 /// Elements of a batch that a thread takes at once.
+#[cfg(feature = "parallel")]
 const BATCH: usize = 1024;
 
 /// Runs tiles, on all threads of the current rayon pool with the feature
@@ -42,13 +43,12 @@ impl TiledScheduler {
 
 impl Scheduler for TiledScheduler {
     fn run<S: Shot>(&self, shot: &S, image: &mut Image<S::Output>, watch: &Watch<'_>) {
-        let run = |tile: &mut Tile<'_, S::Output>| {
+        image.tiles(self.edge).for_each_parallel(|mut tile| {
             if !watch.is_stopped() {
                 tile.render(shot, self.variant);
                 watch.advance(tile.area());
             }
-        };
-        for_each(&mut image.tiles(self.edge), run);
+        });
     }
 
     fn batch<A: Type + Sync, R: Type + Send>(
@@ -58,18 +58,13 @@ impl Scheduler for TiledScheduler {
         outputs: &mut [R],
     ) {
         assert_eq!(inputs.len(), outputs.len(), "one output for each input");
-        let mut parts: Vec<_> = inputs.chunks(BATCH).zip(outputs.chunks_mut(BATCH)).collect();
-        for_each(&mut parts, |(inputs, outputs)| kernel.run(self.variant, inputs, outputs));
+        #[cfg(feature = "parallel")]
+        {
+            use rayon::prelude::*;
+            let parts = inputs.par_chunks(BATCH).zip(outputs.par_chunks_mut(BATCH));
+            parts.for_each(|(inputs, outputs)| kernel.run(self.variant, inputs, outputs));
+        }
+        #[cfg(not(feature = "parallel"))]
+        kernel.run(self.variant, inputs, outputs);
     }
-}
-
-/// Runs `f` for each item, on all threads of the pool if there are any.
-fn for_each<T: Send>(items: &mut [T], f: impl Fn(&mut T) + Sync) {
-    #[cfg(feature = "parallel")]
-    {
-        use rayon::prelude::*;
-        items.par_iter_mut().for_each(&f);
-    }
-    #[cfg(not(feature = "parallel"))]
-    items.iter_mut().for_each(f);
 }

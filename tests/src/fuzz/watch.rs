@@ -73,7 +73,6 @@ impl Lanes for Watch {
         Gang(self)
     }
 
-
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
         f()
     }
