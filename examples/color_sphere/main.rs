@@ -7,6 +7,7 @@
 mod args;
 mod scan;
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -14,7 +15,7 @@ use std::time::Instant;
 use args::Args;
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
-use raydsl::bvh::BuildError;
+use raydsl::bvh::{BuildConfig, BuildError};
 use raydsl::kernel::Kernel;
 use raydsl::prelude::*;
 use raydsl::report::{Compare, Comparison, SceneInfo};
@@ -79,7 +80,7 @@ fn run(args: &Args) -> Result<(), Failure> {
     let scan = Scan::load(args)?;
     println!("{}", scan.description());
     let start = Instant::now();
-    let bvh = Bvh::build(&scan.spheres)?;
+    let bvh = build(&scan.spheres)?;
     let build_ms = start.elapsed().as_secs_f64() * 1e3;
     println!("tree: {} nodes, {:.0} ms", bvh.nodes().len(), build_ms);
 
@@ -127,6 +128,18 @@ fn run(args: &Args) -> Result<(), Failure> {
         std::fs::write(path, text).map_err(|e| cannot_write(path, &e))?;
     }
     Ok(())
+}
+
+/// Builds the tree, with a bar: for a hundred million spheres it takes a minute.
+fn build(spheres: &[ColorSphere]) -> Result<Bvh<'_, ColorSphere>, BuildError> {
+    const STEPS: f64 = 1000.0;
+    let bar = bar(STEPS as u64, "building the tree");
+    let bvh = Bvh::build_observed(spheres, &[], &BuildConfig::default(), |done| {
+        bar.set_position((done * STEPS) as u64);
+        ControlFlow::Continue(())
+    });
+    bar.finish_and_clear();
+    bvh
 }
 
 fn cannot_write(path: &Path, e: &dyn std::fmt::Display) -> Failure {

@@ -4,7 +4,7 @@ use super::beam::{Beam, extent};
 use super::blocks::{self, Row};
 use super::node::{Child, WIDTH, WideNode};
 use super::rays::{GROUP, Group, Rays, lanes_mask, load, load_words, row};
-use super::step::{Meeting, enter, ids, last_key, sorted};
+use super::step::{Meeting, enter, ids, last_key, nearest, sorted};
 use crate::bvh::Node;
 use crate::bvh::packet_slabs::{abs, add, and, max, min, mul, or};
 use crate::bvh::slabs::Allowance;
@@ -112,12 +112,20 @@ fn walk<R: Lanes, P: Primitive>(
         } else {
             let node = &tree.nodes[at.index()];
             let (near, mask) = enter(e, node, &beam);
+            let entered = e.bits(mask).count_ones() as usize;
             let keys = sorted(e, near, mask);
             let below = e.u32_binary(op::And, keys, e.u32(7));
             let below = e.u32_binary(op::Or, below, e.u32(8 * at.0));
             e.u32_store(below, &mut stack[top..][..WIDTH]);
             e.u32_store(keys, &mut enters[top..][..WIDTH]);
-            top += e.bits(mask).count_ones() as usize;
+            if entered > 0 {
+                // What it enters first is the last of them, and no more to come.
+                top += entered - 1;
+                let first = nearest(e, near, mask);
+                slot = WIDTH * at.index() + first;
+                at = Child(node.children[first]);
+                continue;
+            }
         }
         let last = last_key(beam.limit);
         loop {

@@ -2,7 +2,7 @@
 
 use super::beam::Beam;
 use super::node::{Child, WIDTH};
-use super::step::{Meeting, beyond, enter, ids, last_key, sorted, words};
+use super::step::{Meeting, beyond, enter, ids, last_key, nearest, sorted, words};
 use super::trace::{answers, meeting};
 use crate::bvh::SceneView;
 use crate::bvh::slabs::Allowance;
@@ -11,8 +11,8 @@ use crate::geometry::{Hit, Primitive, Ray};
 use crate::kernel::{LanesTask, with_wide_walks};
 use crate::machine::{Entered, Lanes, Packet, Type};
 
-/// Entries of the stack; deeper trees are left to others.
-const STACK: usize = 256;
+/// Entries of the stack that cost no allocation: what all but very deep trees need.
+const FEW: usize = 96;
 
 /// The least `(t, id)` hit of a ray; none if wide trees do not answer, or the ray is too odd for
 /// their boxes.
@@ -46,6 +46,7 @@ fn ask<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray, wanted: Wanted) -> Opti
         scene: &'a SceneView<'s, P>,
         ray: Ray,
         wanted: Wanted,
+        pending: Pending<'a>,
     }
     impl<P: Primitive> LanesTask for Ask<'_, '_, P> {
         type Output = Option<Hit>;
@@ -54,18 +55,29 @@ fn ask<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray, wanted: Wanted) -> Opti
             let e = r.eight();
             e.vectorize(
                 #[inline(always)]
-                || each_part(Entered::new(e), self.scene, self.ray, self.wanted),
+                || each_part(Entered::new(e), self.scene, self.ray, self.wanted, self.pending),
             )
         }
     }
-    with_wide_walks(None, Ask { scene, ray, wanted })?
+    let pending = scene.parts().filter_map(|part| part.wide).map(|tree| tree.pending).max();
+    let room = pending? + 1 + WIDTH;
+    let (mut few, mut many);
+    let both = if room <= FEW {
+        few = [0; 2 * FEW];
+        &mut few[..]
+    } else {
+        many = vec![0; 2 * room];
+        &mut many[..]
+    };
+    let (children, enters) = both.split_at_mut(room.max(FEW));
+    with_wide_walks(None, Ask { scene, ray, wanted, pending: Pending { children, enters } })?
 }
 
 /// Children that are to come, and where the ray enters them, as the bits of numbers above 0, in whose
 /// last three the slot is.
-struct Pending {
-    children: [u32; STACK],
-    enters: [u32; STACK],
+struct Pending<'a> {
+    children: &'a mut [u32],
+    enters: &'a mut [u32],
 }
 
 #[inline(always)]
@@ -74,20 +86,17 @@ fn each_part<E: Lanes, P: Primitive>(
     scene: &SceneView<'_, P>,
     ray: Ray,
     wanted: Wanted,
+    mut pending: Pending<'_>,
 ) -> Option<Hit> {
     let mut best = Hit::miss();
     if !is_finite(&ray) {
         return Some(best);
     }
-    let mut pending = Pending { children: [0; STACK], enters: [0; STACK] };
     let mut next = 0;
     while let Some(part) = scene.part(next) {
         next += 1;
         let (Some(tree), Some(branches)) = (part.wide, part.tree) else { continue };
         let Some(root) = branches.nodes.first() else { continue };
-        if tree.pending + 1 + WIDTH > STACK {
-            return None;
-        }
         let limit = if best.is_hit { beyond(best.t, ray.t_max, P::SLACK) } else { ray.t_max };
         let beam = Beam::of_one(&ray, limit, root, Allowance::of::<P>())?;
         let meeting = meeting(scene, part, tree);
@@ -106,7 +115,7 @@ fn walk<E: Lanes, P: Primitive>(
     ray: &Ray,
     wanted: Wanted,
     mut beam: Beam,
-    pending: &mut Pending,
+    pending: &mut Pending<'_>,
     best: &mut Hit,
 ) {
     let tree = meeting.tree;
@@ -137,19 +146,24 @@ fn walk<E: Lanes, P: Primitive>(
             let node = &tree.nodes[at.index()];
             let (near, mask) = enter(e, node, &beam);
             let entered = e.bits(mask);
-            if entered.is_power_of_two() {
-                at = Child(node.children[entered.trailing_zeros() as usize % WIDTH]);
+            if entered != 0 {
+                let mut first = entered.ilog2() as usize % WIDTH;
+                if !entered.is_power_of_two() {
+                    let children = words(e, &node.children);
+                    if wanted == Wanted::Closest {
+                        first = nearest(e, near, mask);
+                        let keys = sorted(e, near, mask);
+                        e.u32_store(e.u32_permute(children, keys), &mut stack[top..][..WIDTH]);
+                        e.u32_store(keys, &mut enters[top..][..WIDTH]);
+                    } else {
+                        e.u32_store(e.u32_compress(children, mask), &mut stack[top..][..WIDTH]);
+                    }
+                    // What it enters first is the last of them, and no more to come.
+                    top += entered.count_ones() as usize - 1;
+                }
+                at = Child(node.children[first]);
                 continue;
             }
-            let children = words(e, &node.children);
-            if wanted == Wanted::Closest {
-                let keys = sorted(e, near, mask);
-                e.u32_store(e.u32_permute(children, keys), &mut stack[top..][..WIDTH]);
-                e.u32_store(keys, &mut enters[top..][..WIDTH]);
-            } else {
-                e.u32_store(e.u32_compress(children, mask), &mut stack[top..][..WIDTH]);
-            }
-            top += entered.count_ones() as usize;
         }
         let last = last_key(beam.limit);
         at = loop {

@@ -73,6 +73,20 @@ fn slab<E: Lanes>(e: E, node: &WideNode, ray: impl Slabs, axis: usize) -> [E::F3
 /// at which it does.
 #[inline(always)]
 pub(super) fn sorted<E: Lanes>(e: E, near: E::F32, mask: E::Mask) -> E::U32 {
+    e.u32_sort_descending(e.u32_select(mask, keys(e, near), e.u32(0)))
+}
+
+/// The slot of the child that a ray enters first, if it enters any.
+///
+/// It is there before all of them are sorted, and the next node can be fetched meanwhile.
+#[inline(always)]
+pub(super) fn nearest<E: Lanes>(e: E, near: E::F32, mask: E::Mask) -> usize {
+    e.u32_least(e.u32_select(mask, keys(e, near), e.u32(u32::MAX))) as usize % WIDTH
+}
+
+/// Slots below the bits of distances.
+#[inline(always)]
+fn keys<E: Lanes>(e: E, near: E::F32) -> E::U32 {
     // In this order a zero has no sign.
     let near = e.f32_binary(op::Max, e.f32(0.0), near);
     let near = e.u32_binary(op::And, e.f32_to_bits(near), e.u32(!7));
@@ -80,8 +94,7 @@ pub(super) fn sorted<E: Lanes>(e: E, near: E::F32, mask: E::Mask) -> E::U32 {
         #[inline(always)]
         |i| i as u32,
     );
-    let key = e.u32_binary(op::Or, near, slots);
-    e.u32_sort_descending(e.u32_select(mask, key, e.u32(0)))
+    e.u32_binary(op::Or, near, slots)
 }
 
 /// What is compared with the bits of a distance, without the slot below them, at which a box is

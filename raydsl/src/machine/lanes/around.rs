@@ -84,6 +84,7 @@ macro_rules! lanes_around {
                 f32_mul_add_fast(a: L::F32, b: L::F32, c: L::F32) -> L::F32;
                 u32_compress(a: L::U32, mask: L::Mask) -> L::U32;
                 u32_sort_descending(a: L::U32) -> L::U32;
+                u32_least(a: L::U32) -> u32;
                 u32_permute(a: L::U32, from: L::U32) -> L::U32;
                 f32_store(a: L::F32, out: &mut [f32]) -> ();
                 u32_store(a: L::U32, out: &mut [u32]) -> ();

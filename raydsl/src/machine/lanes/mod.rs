@@ -118,6 +118,11 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn u32_sort_descending(self, a: Self::U32) -> Self::U32 {
         shuffle::sort_by_insertion(self, a)
     }
+    /// The smallest lane.
+    #[inline(always)]
+    fn u32_least(self, a: Self::U32) -> u32 {
+        shuffle::least_by_lane::<Self>(a)
+    }
     /// In each lane what `a` has in the lane that `from` names, modulo the number of lanes.
     #[inline(always)]
     fn u32_permute(self, a: Self::U32, from: Self::U32) -> Self::U32 {

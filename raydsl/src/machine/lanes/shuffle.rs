@@ -15,6 +15,26 @@ pub(super) fn sort_descending<S: Simd>(lanes: Simd8<S>, a: u32x8<S>) -> u32x8<S>
     sort_by_insertion(lanes, a)
 }
 
+/// The smallest lane.
+#[inline(always)]
+pub(super) fn least<S: Simd>(lanes: Simd8<S>, a: u32x8<S>) -> u32 {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if let Some(avx2) = lanes.0.level().as_avx2() {
+        return x86::least(avx2, a);
+    }
+    least_by_lane::<Simd8<S>>(a)
+}
+
+/// The same on any lanes.
+#[inline(always)]
+pub(super) fn least_by_lane<L: Lanes>(a: L::U32) -> u32 {
+    (0..L::N).fold(
+        u32::MAX,
+        #[inline(always)]
+        |least, lane| least.min(L::u32_lane(&a, lane)),
+    )
+}
+
 /// In each lane what `a` has in the lane that `from` names, modulo 8.
 #[inline(always)]
 pub(super) fn permute<S: Simd>(lanes: Simd8<S>, a: u32x8<S>, from: u32x8<S>) -> u32x8<S> {
@@ -55,8 +75,9 @@ mod x86 {
     use core::arch::x86_64 as arch;
 
     use arch::{
-        __m256i, _mm256_blend_epi32, _mm256_max_epu32, _mm256_min_epu32, _mm256_permute4x64_epi64,
-        _mm256_permutevar8x32_epi32, _mm256_shuffle_epi32,
+        __m256i, _mm_cvtsi128_si32, _mm_min_epu32, _mm_shuffle_epi32, _mm256_blend_epi32,
+        _mm256_castsi256_si128, _mm256_extracti128_si256, _mm256_max_epu32, _mm256_min_epu32,
+        _mm256_permute4x64_epi64, _mm256_permutevar8x32_epi32, _mm256_shuffle_epi32,
     };
     use fearless_simd::{Avx2, Simd, SimdInto, u32x8};
 
@@ -86,6 +107,20 @@ mod x86 {
     }
 
     #[inline(always)]
+    pub(super) fn least<S: Simd>(avx2: Avx2, a: u32x8<S>) -> u32 {
+        fearless_simd::kernel!(
+            #[inline(always)]
+            fn least(_token: Avx2, a: __m256i) -> u32 {
+                let a = _mm_min_epu32(_mm256_castsi256_si128(a), _mm256_extracti128_si256::<1>(a));
+                let a = _mm_min_epu32(a, _mm_shuffle_epi32::<0x4e>(a));
+                let a = _mm_min_epu32(a, _mm_shuffle_epi32::<0xb1>(a));
+                _mm_cvtsi128_si32(a) as u32
+            }
+        );
+        least(avx2, a.into())
+    }
+
+    #[inline(always)]
     pub(super) fn permute<S: Simd>(avx2: Avx2, simd: S, a: u32x8<S>, from: u32x8<S>) -> u32x8<S> {
         fearless_simd::kernel!(
             #[inline(always)]
@@ -112,6 +147,9 @@ mod tests {
             assert!(
                 (0..8).all(|lane| L::u32_lane(&sorted, lane) == u32::from(lane < ones) * u32::MAX)
             );
+            let numbered = |lane: usize| of(lane) ^ (0x8000_0000 + 7 - lane as u32);
+            let least = (0..8).map(numbered).min().expect("eight");
+            assert_eq!(l.u32_least(l.u32_from_fn(numbered)), least);
             let packed =
                 l.u32_compress(l.u32_from_fn(|lane| lane as u32), l.mask_from_bits(bits.into()));
             let expected = (0..8).filter(|lane| bits >> lane & 1 != 0);

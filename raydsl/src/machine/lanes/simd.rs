@@ -291,6 +291,10 @@ simd_lanes!(Simd8, 8, f32x8, i32x8, u32x8, mask32x8;
         shuffle::sort_descending(self, a)
     }
     #[inline(always)]
+    fn u32_least(self, a: u32x8<S>) -> u32 {
+        shuffle::least(self, a)
+    }
+    #[inline(always)]
     fn u32_permute(self, a: u32x8<S>, from: u32x8<S>) -> u32x8<S> {
         shuffle::permute(self, a, from)
     }
