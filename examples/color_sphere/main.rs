@@ -82,7 +82,7 @@ fn run(args: &Args) -> Result<(), Failure> {
     let start = Instant::now();
     let bvh = build(&scan.spheres)?;
     let build_ms = start.elapsed().as_secs_f64() * 1e3;
-    println!("tree: {} nodes, {:.0} ms", bvh.nodes().len(), build_ms);
+    println!("tree: {} nodes, {build_ms:.0} ms", bvh.nodes().len());
 
     // ANCHOR: kernel
     let zenith = vec3(0.36, 0.52, 0.76);

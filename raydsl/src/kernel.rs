@@ -193,18 +193,25 @@ pub(crate) fn has_wide_walks() -> bool {
     Levels::detect().middle.is_some()
 }
 
-/// Does it with the lanes that go through wide trees at this level, if it has such, or else with
-/// those of this machine.
+/// Does it with the lanes that go through wide trees at a level, or at this machine's where that
+/// level has none; none where the machine has none either.
 ///
 /// They do not depend on how many lanes a packet has: a walk is large, and a user waits for every
 /// copy of it.
 pub(crate) fn with_wide_walks<T: LanesTask>(level: Option<Level>, task: T) -> Option<T::Output> {
-    let levels = level.map(Levels::of).filter(|levels| levels.middle.is_some());
-    let levels = levels.unwrap_or_else(Levels::detect);
+    let levels = level.filter(|level| !level.is_fallback()).map(Levels::of);
+    let levels = levels.filter(|levels| levels.middle.is_some()).unwrap_or_else(Levels::detect);
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    let _: (Levels, T) = (levels, task);
+    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
     if let Some(s) = levels.wide {
         return Some(task.run(Simd16(s)));
     }
-    levels.middle.map(|s| task.run(Simd8(s)))
+    #[cfg(target_arch = "x86_64")]
+    if let Some(s) = levels.middle {
+        return Some(task.run(Simd8(s)));
+    }
+    None
 }
 
 /// Something to do with lanes of one kind.

@@ -1,8 +1,7 @@
-//! A frame allocates nothing, however many tiles it has.
+//! A frame allocates nothing for a tile or a ray.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::error::Error;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use raydsl::bvh::{BuildConfig, Storage};
@@ -33,9 +32,6 @@ static COUNTING: Counting = Counting;
 
 /// The allocations of a frame, the least of some: a thread makes room for its first query.
 fn allocations(mut frame: impl FnMut()) -> usize {
-    /// Other tests allocate too.
-    static ALONE: Mutex<()> = Mutex::new(());
-    let _alone = ALONE.lock().expect("no test panics");
     let counts = (0..8).map(|_| {
         let before = COUNT.load(Ordering::Relaxed);
         frame();

@@ -28,11 +28,13 @@ pub fn is_open<P: Primitive>(
 
 /// Ambient occlusion where `ray` meets the scene, by `N` directions: the share of them in which
 /// nothing is nearer than `radius`, from black to white; alpha is 1, or all is 0 where nothing is
-/// met. The mean of many is the light that a matt white surface has from surroundings that are white
+/// met. The mean of many samples is the light that a matt white surface has from surroundings that are white
 /// everywhere.
 ///
 /// The directions are asked about together, which is quicker than one after the other, and share
-/// their camera ray: a picture of soft shadows wants `N` from 4 to 16, one of fine detail 1.
+/// their camera ray. Each takes the next two dimensions of the sampler, so those of a sample are
+/// independent of each other: with [`SampleMethod::Sobol`] and [`SampleMethod::Stratified`] as many
+/// rays of as many samples, `N` of 1, are spread more evenly, and take longer. `N` is at least 1.
 ///
 /// (Zhukov, Iones and Kronin, "An Ambient Light Illumination Model", EGWR 1998, with a radius
 /// instead of a falloff.)

@@ -28,7 +28,9 @@ pub struct Image<R = Shaded> {
 impl<R: KernelType> Image<R> {
     /// An image of `width` by `height` pixels, all `value`.
     pub fn filled(width: u32, height: u32, value: R) -> Self {
-        Self { width, height, pixels: vec![value; width as usize * height as usize] }
+        let area = (width as usize).checked_mul(height as usize);
+        let area = area.expect("an image has no more pixels than the machine has addresses");
+        Self { width, height, pixels: vec![value; area] }
     }
 
     /// An image of `width` by `height` pixels: `pixel` is given the column and the row.

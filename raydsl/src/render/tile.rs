@@ -1,5 +1,6 @@
 //! The pixels of a rectangle, by one variant.
 
+use core::iter::FusedIterator;
 use core::marker::PhantomData;
 use core::ops::Range;
 use core::ptr::NonNull;
@@ -66,8 +67,10 @@ impl<R: Type> Image<R> {
     pub fn tiles(&mut self, edge: u32) -> Tiles<'_, R> {
         let (width, height, edge) = (self.width(), self.height(), edge.max(1));
         let pixels = self.pixels_mut();
-        assert_eq!(pixels.len(), width as usize * height as usize, "an image has all its pixels");
+        let area = (width as usize).checked_mul(height as usize);
+        assert_eq!(Some(pixels.len()), area, "an image has all its pixels");
         let grid = Grid { pixels: NonNull::from(pixels).cast(), width, height, edge };
+        // No more than there are pixels.
         let numbers = 0..grid.columns() as usize * grid.lines() as usize;
         Tiles { grid, numbers, image: PhantomData }
     }
@@ -83,19 +86,22 @@ impl<R> Grid<R> {
         self.height.div_ceil(self.edge)
     }
 
-    /// The column and the line of a tile.
+    /// The column and the line of a tile: another one for each number below that of tiles.
     fn place(&self, number: usize) -> UVec2 {
-        let of_band = self.columns() as usize * BAND as usize;
+        // A band may have more tiles than 32 bits can count.
+        let (number, of_band) = (number as u64, u64::from(self.columns()) * u64::from(BAND));
         let first = (number / of_band) as u32 * BAND;
-        let (lines, number) = (BAND.min(self.lines() - first), (number % of_band) as u32);
-        uvec2(number / lines, first + number % lines)
+        let lines = u64::from(BAND.min(self.lines() - first));
+        let in_band = number % of_band;
+        uvec2((in_band / lines) as u32, first + (in_band % lines) as u32)
     }
 
-    /// The tile of a number below that of tiles.
+    /// A tile.
     ///
     /// # Safety
     ///
-    /// The image is borrowed mutably for `'a`, and its tile of this number given to no one else.
+    /// The image of this grid is borrowed mutably for `'a`; the number is below that of its tiles, and
+    /// the tile of it given to no one else. Tiles of different numbers have no pixel in common.
     unsafe fn tile<'a>(&self, number: usize) -> Tile<'a, R> {
         let UVec2 { x, y } = self.place(number) * self.edge;
         let (width, height) = (self.edge.min(self.width - x), self.edge.min(self.height - y));
@@ -117,7 +123,7 @@ impl<'a, R> Tiles<'a, R> {
         {
             use rayon::prelude::*;
             let Self { grid, numbers, .. } = self;
-            // SAFETY: the image is borrowed for 'a, and each number comes once.
+            // SAFETY: the image is borrowed for 'a, and each number of a tile comes once.
             numbers.into_par_iter().for_each(|number| f(unsafe { grid.tile(number) }));
         }
         #[cfg(not(feature = "parallel"))]
@@ -129,7 +135,7 @@ impl<'a, R> Iterator for Tiles<'a, R> {
     type Item = Tile<'a, R>;
 
     fn next(&mut self) -> Option<Tile<'a, R>> {
-        // SAFETY: the image is borrowed for 'a, and each number comes once.
+        // SAFETY: the image is borrowed for 'a, and each number of a tile comes once.
         self.numbers.next().map(|number| unsafe { self.grid.tile(number) })
     }
 
@@ -140,12 +146,14 @@ impl<'a, R> Iterator for Tiles<'a, R> {
 
 impl<R> DoubleEndedIterator for Tiles<'_, R> {
     fn next_back(&mut self) -> Option<Self::Item> {
-        // SAFETY: the image is borrowed for 'a, and each number comes once.
+        // SAFETY: the image is borrowed for 'a, and each number of a tile comes once.
         self.numbers.next_back().map(|number| unsafe { self.grid.tile(number) })
     }
 }
 
 impl<R> ExactSizeIterator for Tiles<'_, R> {}
+
+impl<R> FusedIterator for Tiles<'_, R> {}
 
 impl<R> core::fmt::Debug for Tile<'_, R> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
@@ -259,4 +267,56 @@ fn from<L: Lanes>(l: L, start: u32, offsets: L::U32) -> U<Packet<L>> {
 fn lanes_within(width: u32, height: u32, bw: u32) -> u64 {
     let line = (1 << width) - 1;
     (0..height).fold(0, |bits, j| bits | line << (j * bw))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use super::*;
+
+    #[test]
+    fn each_pixel_is_in_one_tile() {
+        for (width, height) in [(0, 0), (0, 5), (5, 0), (1, 1), (37, 21), (16, 400), (131, 77)] {
+            for edge in [0, 1, 5, 16, 64, u32::MAX] {
+                let mut image = Image::filled(width, height, 0u32);
+                let mut tiles = image.tiles(edge);
+                let (mut count, mut left) = (0, tiles.len());
+                let fill = |mut tile: Tile<'_, u32>| {
+                    assert!(tile.size().max_element() <= edge.max(1) && tile.area() > 0);
+                    for row in 0..tile.size().y {
+                        tile.row(row).iter_mut().for_each(|pixel| *pixel += 1);
+                    }
+                };
+                // From both ends.
+                while let Some(tile) = if count % 3 == 2 { tiles.next_back() } else { tiles.next() }
+                {
+                    fill(tile);
+                    count += 1;
+                    left -= 1;
+                    assert_eq!(tiles.len(), left);
+                }
+                assert!(tiles.next().is_none() && tiles.next_back().is_none() && left == 0);
+                assert!(image.pixels().iter().all(|&n| n == 1), "{width} x {height}, {edge}");
+                image.tiles(edge).for_each_parallel(fill);
+                assert!(image.pixels().iter().all(|&n| n == 2), "{width} x {height}, {edge}");
+            }
+        }
+    }
+
+    /// Where a band has more tiles than 32 bits can count, too; nothing is that large here.
+    #[test]
+    #[cfg(target_pointer_width = "64")]
+    fn numbers_of_tiles_lead_to_different_places() {
+        for (width, height) in [(u32::MAX, 11), (1 << 29 | 1, 8), (11, u32::MAX)] {
+            let grid = Grid { pixels: NonNull::<u32>::dangling(), width, height, edge: 1 };
+            let area = width as usize * height as usize;
+            let numbers = (0..200).map(|i| i * (area / 200)).chain(area - 20..area);
+            let numbers = numbers.chain([7, (1 << 32) + 7, 1 << 32]).filter(|&n| n < area);
+            let numbers: HashSet<usize> = numbers.collect();
+            let places: HashSet<UVec2> = numbers.iter().map(|&n| grid.place(n)).collect();
+            assert_eq!(places.len(), numbers.len(), "{width} x {height}");
+            assert!(places.iter().all(|p| p.x < width && p.y < height));
+        }
+    }
 }

@@ -17,6 +17,7 @@ mod wave;
 
 use super::{BuildConfig, Node, Storage};
 use crate::geometry::Primitive;
+use crate::kernel::has_wide_walks;
 use blocks::Blocks;
 use node::WideNode;
 
@@ -29,7 +30,7 @@ pub(crate) struct Wide {
     pending: usize,
 }
 
-/// The wide tree over `prims`, if the configuration asks for one.
+/// The wide tree over `prims`, if the configuration asks for one, and this machine goes through such.
 pub(super) fn of<P: Primitive>(
     nodes: &[Node],
     indices: &[u32],
@@ -37,7 +38,8 @@ pub(super) fn of<P: Primitive>(
     prims: &[P],
     shared: &[P::Shared],
 ) -> Option<Wide> {
-    (config.storage == Storage::Leaves).then(|| Wide::of(nodes, indices, prims, shared))
+    (config.storage == Storage::Leaves && has_wide_walks())
+        .then(|| Wide::of(nodes, indices, prims, shared))
 }
 
 impl Wide {

@@ -1,5 +1,7 @@
 //! One ray through wide trees.
 
+use core::cell::Cell;
+
 use super::beam::Beam;
 use super::node::{Child, WIDTH};
 use super::step::{Meeting, beyond, enter, ids, last_key, nearest, sorted, words};
@@ -11,8 +13,14 @@ use crate::geometry::{Hit, Primitive, Ray};
 use crate::kernel::{LanesTask, with_wide_walks};
 use crate::machine::{Entered, Lanes, Packet, Type};
 
-/// Entries of the stack that cost no allocation: what all but very deep trees need.
-const FEW: usize = 96;
+/// Entries of a stack that is made for each ray: what all but very deep trees need. Tests of the
+/// library make do with less, so that both are tested.
+const FEW: usize = if cfg!(test) { 24 } else { 96 };
+
+thread_local! {
+    /// Stacks for very deep trees, kept for the next ray.
+    static DEEP: Cell<Vec<u32>> = const { Cell::new(Vec::new()) };
+}
 
 /// The least `(t, id)` hit of a ray; none if wide trees do not answer, or the ray is too odd for
 /// their boxes.
@@ -61,16 +69,22 @@ fn ask<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray, wanted: Wanted) -> Opti
     }
     let pending = scene.parts().filter_map(|part| part.wide).map(|tree| tree.pending).max();
     let room = pending? + 1 + WIDTH;
-    let (mut few, mut many);
-    let both = if room <= FEW {
-        few = [0; 2 * FEW];
-        &mut few[..]
-    } else {
-        many = vec![0; 2 * room];
-        &mut many[..]
+    // In one place, for every copy of a walk is time that a user waits for a compiler.
+    let walk = |stacks: &mut [u32]| {
+        let (children, enters) = stacks.split_at_mut(stacks.len() / 2);
+        with_wide_walks(None, Ask { scene, ray, wanted, pending: Pending { children, enters } })?
     };
-    let (children, enters) = both.split_at_mut(room.max(FEW));
-    with_wide_walks(None, Ask { scene, ray, wanted, pending: Pending { children, enters } })?
+    if room <= FEW {
+        return walk(&mut [0; 2 * FEW]);
+    }
+    // A primitive may ask another scene meanwhile, which has stacks of its own then.
+    let mut stacks = DEEP.take();
+    if stacks.len() < 2 * room {
+        stacks.resize(2 * room, 0);
+    }
+    let found = walk(&mut stacks);
+    DEEP.set(stacks);
+    found
 }
 
 /// Children that are to come, and where the ray enters them, as the bits of numbers above 0, in whose

@@ -13,7 +13,7 @@ use crate::bvh::packet_slabs::{and, finite};
 use crate::bvh::slabs::Allowance;
 use crate::bvh::{Part, SceneView, traverse};
 use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn};
-use crate::kernel::{LanesTask, has_wide_walks, with_wide_walks};
+use crate::kernel::{LanesTask, with_wide_walks};
 use crate::machine::{B, Entered, F, Lanes, Packet, U, op};
 
 /// The memory of a query, which a thread keeps for the next one.
@@ -28,10 +28,10 @@ thread_local! {
     static SCRATCH: Cell<Option<Box<Scratch>>> = const { Cell::new(None) };
 }
 
-/// Whether a scene is wide trees, and this machine goes through such.
+/// Whether a scene is wide trees.
 #[inline(always)]
 pub(crate) fn answers<P: Primitive>(scene: &SceneView<'_, P>) -> bool {
-    scene.placed().is_none() && scene.parts().all(|part| part.wide.is_some()) && has_wide_walks()
+    scene.placed().is_none() && scene.parts().all(|part| part.wide.is_some())
 }
 
 /// The least `(t, id)` hit of every running lane, for each of some rays of a packet.
@@ -161,7 +161,8 @@ fn answer<const CLOSEST: bool, P: Primitive>(
             each_part::<CLOSEST, R, P>(r, self.scene, self.scratch);
         }
     }
-    with_wide_walks(level, Answer::<CLOSEST, P> { scene, scratch: &mut *scratch });
+    let done = with_wide_walks(level, Answer::<CLOSEST, P> { scene, scratch: &mut *scratch });
+    debug_assert!(done.is_some(), "wide trees are there where the machine goes through them");
     alone::<CLOSEST, P>(scene, &mut scratch.rays);
 }
 

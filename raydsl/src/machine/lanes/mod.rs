@@ -121,7 +121,7 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     /// The smallest lane.
     #[inline(always)]
     fn u32_least(self, a: Self::U32) -> u32 {
-        shuffle::least_by_lane::<Self>(a)
+        shuffle::least_by_lane(self, a)
     }
     /// In each lane what `a` has in the lane that `from` names, modulo the number of lanes.
     #[inline(always)]

@@ -22,12 +22,12 @@ pub(super) fn least<S: Simd>(lanes: Simd8<S>, a: u32x8<S>) -> u32 {
     if let Some(avx2) = lanes.0.level().as_avx2() {
         return x86::least(avx2, a);
     }
-    least_by_lane::<Simd8<S>>(a)
+    least_by_lane(lanes, a)
 }
 
 /// The same on any lanes.
 #[inline(always)]
-pub(super) fn least_by_lane<L: Lanes>(a: L::U32) -> u32 {
+pub(super) fn least_by_lane<L: Lanes>(_: L, a: L::U32) -> u32 {
     (0..L::N).fold(
         u32::MAX,
         #[inline(always)]
