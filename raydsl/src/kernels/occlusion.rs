@@ -28,8 +28,8 @@ pub fn is_open<P: Primitive>(
 
 /// Ambient occlusion where `ray` meets the scene, by `N` directions: the share of them in which
 /// nothing is nearer than `radius`, from black to white; alpha is 1, or all is 0 where nothing is
-/// met. The mean of many samples is the light that a matt white surface has from surroundings that are white
-/// everywhere.
+/// met. The mean of many samples is the light that a matt white surface has from surroundings that
+/// are white everywhere.
 ///
 /// The directions are asked about together, which is quicker than one after the other, and share
 /// their camera ray. Each takes the next two dimensions of the sampler, so those of a sample are

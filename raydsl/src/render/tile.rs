@@ -59,7 +59,7 @@ unsafe impl<R: Send> Send for Grid<R> {}
 unsafe impl<R: Send> Sync for Grid<R> {}
 
 impl<R: Type> Image<R> {
-    /// Cuts the image into tiles of `edge` by `edge` pixels, those at the end of rows and columns
+    /// Cuts the image into tiles of `edge` by `edge` pixels; those at the end of rows and columns
     /// may be smaller. An edge of 0 is taken as 1.
     ///
     /// They come in an order that keeps caches warm: column by column in bands of eight rows of
