@@ -20,9 +20,11 @@ const TRAVERSALS: &str = "raydsl::bvh::traverse_packet::";
 const APART: [&str; 4] = [
     "raydsl::machine::packet::apart",
     "raydsl::bvh::instances::packet_descent::",
-    "raydsl::bvh::wide::trace::each_part",
-    "raydsl::bvh::wide::single::ask",
+    WALKS[0],
+    WALKS[1],
 ];
+/// Of these, what the bench surely has at each level.
+const WALKS: [&str; 2] = ["raydsl::bvh::wide::trace::each_part", "raydsl::bvh::wide::single::ask"];
 /// One ray after another: scenes under an accelerator of one's own know no packets.
 const ONE_BY_ONE: &str = "raydsl::bvh::traverse::";
 /// The bench traverses triangles and spheres at each level.
@@ -155,6 +157,8 @@ fn inspect(functions: &Functions) -> Vec<String> {
         if count < LEAST_FUNCTIONS {
             faults.push(format!("{count} traversals enter {level}, not {LEAST_FUNCTIONS}"));
         }
+        let missing = WALKS.iter().filter(|walk| entries(functions, &[**walk], level).is_empty());
+        faults.extend(missing.map(|walk| format!("no {walk} enters {level}")));
         // Where one ray meets eight primitives, a level of wider registers uses half of them.
         let narrower: &[&str] = if register == "%zmm" { &["%ymm", "%zmm"] } else { &[register] };
         let traversals = traversals.iter().map(|(at, f)| inspect_entry(*at, f, &[register]));
@@ -201,7 +205,9 @@ mod tests {
     use super::*;
 
     fn listing(product: &str, callee: &str) -> String {
-        functions(0x1000, TRAVERSALS, product, callee)
+        let walks = WALKS.iter().zip([0x10000, 0x20000]);
+        let walks = walks.map(|(walk, first)| functions(first, walk, product, callee));
+        functions(0x1000, TRAVERSALS, product, callee) + &walks.collect::<String>()
     }
 
     /// What `outer` enters at each level, from `first` on.
@@ -246,10 +252,12 @@ mod tests {
 
     #[test]
     fn scalar_products_and_calls_are_found() {
-        assert_eq!(inspect(&parse(&listing("vmulss", PANIC))).len(), 4);
-        assert_eq!(inspect(&parse(&listing("vmulps", "core::array::try_map"))).len(), 4);
+        assert_eq!(inspect(&parse(&listing("vmulss", PANIC))).len(), 12);
+        assert_eq!(inspect(&parse(&listing("vmulps", "core::array::try_map"))).len(), 12);
         let operation = "Simd::add_f32x8::kernel::__fearless_simd_kernel";
-        assert_eq!(inspect(&parse(&listing("vmulps", operation))).len(), 8);
-        assert_eq!(inspect(&parse("")).len(), 2);
+        assert_eq!(inspect(&parse(&listing("vmulps", operation))).len(), 24);
+        let traversals = functions(0x1000, TRAVERSALS, "vmulps", PANIC);
+        assert_eq!(inspect(&parse(&traversals)).len(), 4, "two walks at two levels");
+        assert_eq!(inspect(&parse("")).len(), 6);
     }
 }
