@@ -4,7 +4,7 @@ use super::beam::{Beam, extent};
 use super::blocks::{self, Row};
 use super::node::{Child, WIDTH, WideNode};
 use super::rays::{GROUP, Group, Rays, lanes_mask, load, load_words, row};
-use super::step::{Meeting, enter, ids, last_key, nearest, sorted};
+use super::step::{Meeting, count, enter, ids, last_key, nearest, sorted};
 use crate::bvh::Node;
 use crate::bvh::packet_slabs::{abs, add, and, max, min, mul, or};
 use crate::bvh::slabs::Allowance;
@@ -164,9 +164,7 @@ impl<R: Lanes> Members<'_, R> {
         slot: usize,
     ) -> bool {
         let r = self.r;
-        let ids = ids(block);
-        // What is left of a block has its first primitive again.
-        let count = (1..WIDTH).find(|&i| ids[i] == ids[0]).unwrap_or(WIDTH);
+        let count = count(r.eight(), block);
         let mut is_nearer = false;
         for (group, &members) in self.members.iter().enumerate() {
             for from in (0..GROUP).step_by(R::N) {

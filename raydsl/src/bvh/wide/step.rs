@@ -171,6 +171,15 @@ impl<P: Primitive> Meeting<'_, P> {
     }
 }
 
+/// How many primitives a block has: what is left has its first one again.
+#[inline(always)]
+pub(super) fn count<E: Lanes>(e: E, block: &[Row]) -> usize {
+    let ids = ids(block);
+    let again = e.bits(e.u32_compare(op::Eq, words(e, ids), e.u32(ids[0])));
+    // The first one is itself.
+    ((again & !1) | 1 << WIDTH).trailing_zeros() as usize % (WIDTH + 1)
+}
+
 /// The numbers of a block's primitives.
 #[inline(always)]
 pub(super) fn ids(block: &[Row]) -> &[u32; WIDTH] {
