@@ -17,14 +17,19 @@ const LEVELS: [(&str, &str); 2] = [("vectorize_avx2", "%ymm"), ("vectorize_avx51
 const TRAVERSALS: &str = "raydsl::bvh::traverse_packet::";
 /// What traversals call on purpose: kernels with `#[inline(never)]`, the way from instance to
 /// instance, and the walks of wide trees. Each enters the level again and is inspected like them.
-const APART: [&str; 4] = [
+const APART: [&str; 5] = [
     "raydsl::machine::packet::apart",
     "raydsl::bvh::instances::packet_descent::",
     WALKS[0],
     WALKS[1],
+    WALKS[2],
 ];
 /// Of these, what the bench surely has at each level.
-const WALKS: [&str; 2] = ["raydsl::bvh::wide::trace::each_part", "raydsl::bvh::wide::single::ask"];
+const WALKS: [&str; 3] = [
+    "raydsl::bvh::wide::trace::each_part",
+    "raydsl::bvh::wide::wave::each_turn",
+    "raydsl::bvh::wide::single::ask",
+];
 /// One ray after another: scenes under an accelerator of one's own know no packets.
 const ONE_BY_ONE: &str = "raydsl::bvh::traverse::";
 /// The bench traverses triangles and spheres at each level.
@@ -205,7 +210,7 @@ mod tests {
     use super::*;
 
     fn listing(product: &str, callee: &str) -> String {
-        let walks = WALKS.iter().zip([0x10000, 0x20000]);
+        let walks = WALKS.iter().zip([0x10000, 0x20000, 0x30000]);
         let walks = walks.map(|(walk, first)| functions(first, walk, product, callee));
         functions(0x1000, TRAVERSALS, product, callee) + &walks.collect::<String>()
     }
@@ -252,12 +257,12 @@ mod tests {
 
     #[test]
     fn scalar_products_and_calls_are_found() {
-        assert_eq!(inspect(&parse(&listing("vmulss", PANIC))).len(), 12);
-        assert_eq!(inspect(&parse(&listing("vmulps", "core::array::try_map"))).len(), 12);
+        assert_eq!(inspect(&parse(&listing("vmulss", PANIC))).len(), 16);
+        assert_eq!(inspect(&parse(&listing("vmulps", "core::array::try_map"))).len(), 16);
         let operation = "Simd::add_f32x8::kernel::__fearless_simd_kernel";
-        assert_eq!(inspect(&parse(&listing("vmulps", operation))).len(), 24);
+        assert_eq!(inspect(&parse(&listing("vmulps", operation))).len(), 32);
         let traversals = functions(0x1000, TRAVERSALS, "vmulps", PANIC);
-        assert_eq!(inspect(&parse(&traversals)).len(), 4, "two walks at two levels");
-        assert_eq!(inspect(&parse("")).len(), 6);
+        assert_eq!(inspect(&parse(&traversals)).len(), 6, "three walks at two levels");
+        assert_eq!(inspect(&parse("")).len(), 8);
     }
 }

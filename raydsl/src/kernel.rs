@@ -1,7 +1,10 @@
 //! A kernel with all its variants.
 
+use core::cell::Cell;
+
 use fearless_simd::Level;
 
+use crate::bvh::wide::fibers;
 use crate::machine::{
     Counted, KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet, Recorder,
     Recording, Resource, Rounding, Simd4, Simd8, Simd16, Type, U, wgsl,
@@ -395,7 +398,8 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
     /// Runs packets of 8 lanes, of what every machine of the target has: the ones that count.
     pub(crate) fn run_counted(&self, inputs: &[A], outputs: &mut [R]) {
         let lanes = Counted(Simd8(Levels::detect().baseline));
-        run_batch(lanes, &*self.lifted.baseline, inputs, outputs);
+        // One packet after the other: counts belong to whoever runs.
+        run_in_gangs(lanes, 0, &*self.lifted.baseline, inputs, outputs);
     }
 
     /// Runs a CPU variant over `inputs`; `outputs` has the same length.
@@ -404,6 +408,22 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
     ///
     /// If the lengths differ, or for [`Variant::Wgsl`], which needs a device.
     pub fn run(&self, variant: Variant, inputs: &[A], outputs: &mut [R]) {
+        self.run_in_gangs(variant, GANG, inputs, outputs);
+    }
+
+    /// [`Kernel::run`] with gangs of so many lanes: packets that wait for each other where they ask
+    /// trees with [`Storage::Leaves`](crate::bvh::Storage::Leaves), which are quicker the more rays
+    /// they are asked about at once. [`Kernel::run`] has gangs of [`GANG`]; with fewer lanes than two
+    /// packets have, each packet goes on its own. The outputs are the same.
+    ///
+    /// Each packet of a gang, of which there are 64 at most, has a stack of its own, of 2 MiB of
+    /// address space. There are gangs on Unix, on x86-64 and AArch64; elsewhere each packet goes on
+    /// its own.
+    ///
+    /// # Panics
+    ///
+    /// As there.
+    pub fn run_in_gangs(&self, variant: Variant, lanes: usize, inputs: &[A], outputs: &mut [R]) {
         assert_eq!(inputs.len(), outputs.len(), "one output for each input");
         match variant {
             Variant::Scalar => {
@@ -412,7 +432,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
                 }
             }
             Variant::Wgsl => panic!("WGSL runs on a device: use raydsl::gpu"),
-            packet => self.with_packets(packet, Batch { inputs, outputs }),
+            packet => self.with_packets(packet, Batch { gang: lanes, inputs, outputs }),
         }
     }
 
@@ -472,7 +492,11 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
     }
 }
 
+/// Lanes of a gang unless another number is asked for; see [`Kernel::run_in_gangs`].
+pub const GANG: usize = 64;
+
 struct Batch<'b, A, R> {
+    gang: usize,
     inputs: &'b [A],
     outputs: &'b mut [R],
 }
@@ -481,8 +505,32 @@ impl<A: Type, R: Type> PacketTask<A, R> for Batch<'_, A, R> {
     type Output = ();
 
     fn run<L: Lanes>(self, lanes: L, kernel: &PacketKernel<'_, L, A, R>) {
-        run_batch(lanes, kernel, self.inputs, self.outputs);
+        run_in_gangs(lanes, self.gang, kernel, self.inputs, self.outputs);
     }
+}
+
+/// Runs `kernel` over `inputs` in packets; the last one may be partly filled. Those of a gang, of so
+/// many lanes, go on together.
+fn run_in_gangs<L: Lanes, A: Type, R: Type>(
+    lanes: L,
+    gang: usize,
+    kernel: &(impl Fn(&Packet<L>, A::On<Packet<L>>) -> R::On<Packet<L>> + ?Sized),
+    inputs: &[A],
+    outputs: &mut [R],
+) {
+    let outputs = Cell::from_mut(outputs).as_slice_of_cells();
+    fibers::each(inputs.len().div_ceil(L::N), gang / L::N, &|packet| {
+        lanes.vectorize(|| {
+            let first = packet * L::N;
+            let inputs = &inputs[first..inputs.len().min(first + L::N)];
+            let m = Packet::with_count(lanes, inputs.len());
+            let args = A::from_lanes(&m, |l| inputs[l.min(inputs.len() - 1)]);
+            let result = kernel(&m, args);
+            for (l, out) in outputs[first..].iter().take(inputs.len()).enumerate() {
+                out.set(R::lane(&result, l));
+            }
+        });
+    });
 }
 
 /// Runs `kernel` over `inputs` in packets; the last one may be partly filled.
@@ -492,16 +540,7 @@ pub fn run_batch<L: Lanes, A: Type, R: Type>(
     inputs: &[A],
     outputs: &mut [R],
 ) {
-    lanes.vectorize(|| {
-        for (inputs, outputs) in inputs.chunks(L::N).zip(outputs.chunks_mut(L::N)) {
-            let m = Packet::with_count(lanes, inputs.len());
-            let args = A::from_lanes(&m, |l| inputs[l.min(inputs.len() - 1)]);
-            let result = kernel(&m, args);
-            for (l, out) in outputs.iter_mut().enumerate() {
-                *out = R::lane(&result, l);
-            }
-        }
-    });
+    run_in_gangs(lanes, GANG, kernel, inputs, outputs);
 }
 
 /// Runs the lifted body of a `#[kernel] fn` on packets of `lanes`, for tests of every level.

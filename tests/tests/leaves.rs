@@ -349,6 +349,107 @@ fn short_rays() {
     widest_level(&mut short);
 }
 
+/// Many rays with an end go together in the order of their directions, as long as they go the same
+/// way.
+#[test]
+fn sorted_rays() {
+    let mut rng = Rng::of("sorted rays");
+    let faces = triangles(&mut rng, 1500);
+    let trees = [&faces[..1200], &faces[1200..]].map(|faces| leaves(faces, BuildQuality::Balanced));
+    let scene = BvhList::new(&trees).expect("few primitives");
+    let mut ray = |i: usize| {
+        let length = [0.1, 0.5, 2.0, 1e9][i / 3000 % 4];
+        let direction = match i % 100 {
+            7 => Vec3::ZERO,
+            8 => Vec3::X,
+            9 => Vec3::splat(1e-20),
+            10 => vec3(f32::NAN, 1.0, 0.0),
+            // A beam of many beside those that go anywhere.
+            11..50 => vec3(1.0, 0.3, -0.2) + rng.point(0.02),
+            _ => rng.point(1.0),
+        };
+        let size = if i % 100 == 60 { 1e30 } else { 1.0 };
+        let origin = (vec3(0.5, -1.0, 1.0) + rng.point(0.1)) * size;
+        let t_min = if i % 3 == 0 { -0.5 * length } else { 0.0 };
+        Ray { t_min, t_max: length, ..Ray::new(origin, direction) }
+    };
+    let mut rays: Vec<Ray> = (0..12_000).map(&mut ray).collect();
+    rays[99].t_min = f32::NAN;
+    rays[199].t_max = f32::NEG_INFINITY;
+    let found: Vec<bool> = rays.iter().map(|ray| faces.any_hit(*ray)).collect();
+    let hits = found.iter().filter(|found| **found).count();
+    assert!((2000..8000).contains(&hits), "{hits}");
+    for range in [0..511, 0..512, 3..516, 5..2048, 3000..12_000, 0..12_000] {
+        assert_eq!(scene.any_hits(&rays[range.clone()]), found[range]);
+    }
+    // More of a packet than can be sorted at once.
+    let kernel = kernel!(|ray: Ray| {
+        let all = scene.any_hit_each::<400>(|i: u32| {
+            let t_max = ray.t_max * (1.0 + 0.01 * i as f32);
+            ray.with_range(ray.t_min, t_max)
+        });
+        let mut count = 0u32;
+        for is_hit in &all {
+            count += if *is_hit { 1u32 } else { 0u32 };
+        }
+        (all[0], count)
+    });
+    let inputs: Vec<(Ray,)> = rays.iter().step_by(50).map(|ray| (*ray,)).collect();
+    assert_packets(&kernel, &inputs);
+}
+
+/// A gang's packets ask about different scenes, in different rounds of loops, and end when they
+/// like; how many go together changes nothing.
+#[test]
+fn gangs_of_packets() {
+    let mut rng = Rng::of("gangs of packets");
+    let faces = triangles(&mut rng, 400);
+    let balls = balls(&mut rng, 100);
+    let (faces, balls) =
+        (leaves(&faces, BuildQuality::Balanced), leaves(&balls, BuildQuality::Fast));
+    let kernel = kernel!(|ray: Ray| {
+        let mut ray = ray;
+        let mut length = 0.0;
+        let mut hits = 0u32;
+        for i in 0..9u32 {
+            let face = faces.closest_hit(ray);
+            if !face.is_hit {
+                break;
+            }
+            length += face.t;
+            if face.prim_id % 3 == 0 {
+                let ball = balls.closest_hit(ray.with_range(0.0, face.t));
+                hits += if ball.is_hit { ball.prim_id } else { i };
+            } else if faces.any_hit(ray.with_range(face.t * 1.2, ray.t_max)) {
+                hits += 1000;
+            }
+            ray = ray.with_range(face.t * 1.01 + 1e-3, ray.t_max);
+        }
+        (length, hits)
+    });
+    let rays = rays(&mut rng, 1500);
+    let expected: Vec<(f32, u32)> = rays.iter().map(|ray| kernel.call(*ray)).collect();
+    assert!(expected.iter().filter(|(_, hits)| *hits > 1000).count() > 50);
+    let bits = |(length, hits): &(f32, u32)| (length.to_bits(), *hits);
+    for variant in [Variant::Packet4, Variant::Packet8, Variant::Packet16] {
+        for lanes in [0, 8, 24, 64, 100, 256, usize::MAX] {
+            let mut found = vec![(0.0, 0); rays.len()];
+            kernel.run_in_gangs(variant, lanes, &rays, &mut found);
+            let is_same = |(a, b)| bits(a) == bits(b);
+            assert!(found.iter().zip(&expected).all(is_same), "{variant:?} {lanes}");
+        }
+    }
+    let camera = Pinhole::new(vec3(1.0, 2.0, 9.0), Vec3::ZERO, Vec3::Y, 0.8);
+    let [mut alone, mut together] = [(); 2].map(|()| Image::filled(53, 37, (0.0, 0)));
+    SimpleScheduler::new().variant(Variant::Packet8).frame(&camera, &kernel, &mut alone);
+    for (lanes, edge) in [(0, 16), (64, 16), (64, 7), (256, 64), (1000, 3)] {
+        let scheduler = TiledScheduler::new().gang(lanes).tile(edge);
+        scheduler.frame(&camera, &kernel, &mut together);
+        let same = alone.pixels().iter().zip(together.pixels());
+        assert!(same.into_iter().all(|(a, b)| bits(a) == bits(b)), "{lanes} {edge}");
+    }
+}
+
 /// A tree, rays, and what they meet.
 struct Asked<'a> {
     bvh: &'a Bvh<'a, Triangle>,

@@ -80,7 +80,8 @@ pub trait RayQuery {
         batch::closest_hits(&self.view(), rays)
     }
 
-    /// Whether each ray hits anything, in packets; as [`RayQuery::closest_hits`].
+    /// Whether each ray hits anything, in packets; as [`RayQuery::closest_hits`]. Where there are
+    /// hundreds, rays that begin near each other are best beside each other.
     fn any_hits(&self, rays: &[Ray]) -> Vec<bool> {
         batch::any_hits(&self.view(), rays)
     }

@@ -202,6 +202,17 @@ impl<'a, T, S> View<'a, T, S> {
         Self { scene: Scene::Standing(standing), key: None, name: "prims" }
     }
 
+    /// Where the scene lies: views with the same one are of the same scene.
+    pub(crate) fn place(&self) -> [usize; 3] {
+        match self.scene {
+            Scene::Slice(prims) => [0, prims.as_ptr().addr(), prims.len()],
+            Scene::Tree(tree) => [1, core::ptr::from_ref(tree).addr(), 0],
+            Scene::List(trees) => [2, core::ptr::from_ref(trees).addr(), 0],
+            Scene::Instances(placed) => [3, core::ptr::from_ref(placed).addr(), 0],
+            Scene::Standing(standing) => [4, core::ptr::from_ref(standing).addr(), 0],
+        }
+    }
+
     /// Whether the host's own structure finds the primitives.
     #[inline(always)]
     pub(crate) fn is_standing(&self) -> bool {

@@ -6,7 +6,7 @@ use super::{Image, Scheduler, Shot};
 use crate::kernel::{Kernel, Variant};
 use crate::machine::Type;
 
-/// Runs on the calling thread.
+/// Runs on the calling thread, each packet on its own.
 #[derive(Clone, Copy, Debug)]
 pub struct SimpleScheduler {
     variant: Variant,
@@ -36,7 +36,7 @@ impl Scheduler for SimpleScheduler {
             if watch.is_stopped() {
                 return;
             }
-            tile.render(shot, self.variant);
+            tile.render_in_gangs(shot, self.variant, 0);
             watch.advance(tile.area());
         }
     }
@@ -47,6 +47,6 @@ impl Scheduler for SimpleScheduler {
         inputs: &[A],
         outputs: &mut [R],
     ) {
-        kernel.run(self.variant, inputs, outputs);
+        kernel.run_in_gangs(self.variant, 0, inputs, outputs);
     }
 }

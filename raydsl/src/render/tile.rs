@@ -1,5 +1,6 @@
 //! The pixels of a rectangle, by one variant.
 
+use core::cell::RefCell;
 use core::iter::FusedIterator;
 use core::marker::PhantomData;
 use core::ops::Range;
@@ -8,7 +9,8 @@ use core::ptr::NonNull;
 use glam::{UVec2, uvec2};
 
 use super::{Image, Shot};
-use crate::kernel::{PacketKernel, PacketTask, Variant};
+use crate::bvh::wide::fibers;
+use crate::kernel::{GANG, PacketKernel, PacketTask, Variant};
 use crate::machine::{Lanes, Packet, Type, U, X2, op};
 
 /// Edge of a tile in pixels, unless a scheduler has another.
@@ -16,6 +18,9 @@ pub(super) const TILE: u32 = 16;
 
 /// Rows of tiles in a band: tiles that follow each other lie near each other, both ways.
 const BAND: u32 = 8;
+
+/// Rows of pixels in a band of packets: those of a gang of 64 lanes cover a square.
+const GANG_EDGE: u32 = 8;
 
 /// A rectangle of a film, and its pixels: what a scheduler hands out. See [`Image::tiles`].
 pub struct Tile<'a, R> {
@@ -71,29 +76,39 @@ impl<R: Type> Image<R> {
         assert_eq!(Some(pixels.len()), area, "an image has all its pixels");
         let grid = Grid { pixels: NonNull::from(pixels).cast(), width, height, edge };
         // No more than there are pixels.
-        let numbers = 0..grid.columns() as usize * grid.lines() as usize;
+        let numbers = 0..grid.blocks().count();
         Tiles { grid, numbers, image: PhantomData }
     }
 }
 
-impl<R> Grid<R> {
-    /// How many tiles lie side by side.
-    fn columns(&self) -> u32 {
-        self.width.div_ceil(self.edge)
+/// What a rectangle is cut into.
+#[derive(Clone, Copy, Debug)]
+struct Blocks {
+    columns: u32,
+    lines: u32,
+}
+
+impl Blocks {
+    fn count(self) -> usize {
+        self.columns as usize * self.lines as usize
     }
 
-    fn lines(&self) -> u32 {
-        self.height.div_ceil(self.edge)
-    }
-
-    /// The column and the line of a tile: another one for each number below that of tiles.
-    fn place(&self, number: usize) -> UVec2 {
-        // A band may have more tiles than 32 bits can count.
-        let (number, of_band) = (number as u64, u64::from(self.columns()) * u64::from(BAND));
-        let first = (number / of_band) as u32 * BAND;
-        let lines = u64::from(BAND.min(self.lines() - first));
+    /// The column and the line of a block, another one for each number below their count: column by
+    /// column in bands of `band` lines.
+    fn place(self, number: usize, band: u32) -> UVec2 {
+        // A band may have more blocks than 32 bits can count.
+        let (number, of_band) = (number as u64, u64::from(self.columns) * u64::from(band));
+        let first = (number / of_band) as u32 * band;
+        let lines = u64::from(band.min(self.lines - first));
         let in_band = number % of_band;
         uvec2((in_band / lines) as u32, first + (in_band % lines) as u32)
+    }
+}
+
+impl<R> Grid<R> {
+    fn blocks(&self) -> Blocks {
+        let Self { width, height, edge, .. } = *self;
+        Blocks { columns: width.div_ceil(edge), lines: height.div_ceil(edge) }
     }
 
     /// A tile.
@@ -103,7 +118,7 @@ impl<R> Grid<R> {
     /// The image of this grid is borrowed mutably for `'a`; the number is below that of its tiles, and
     /// the tile of it given to no one else. Tiles of different numbers have no pixel in common.
     unsafe fn tile<'a>(&self, number: usize) -> Tile<'a, R> {
-        let UVec2 { x, y } = self.place(number) * self.edge;
+        let UVec2 { x, y } = self.blocks().place(number, BAND) * self.edge;
         let (width, height) = (self.edge.min(self.width - x), self.edge.min(self.height - y));
         let stride = self.width as usize;
         // SAFETY: `x` and `y` are below the width and the height of the image, so this is one of
@@ -191,6 +206,16 @@ impl<R> Tile<'_, R> {
     /// Runs a shot for its pixels, by a variant of the CPU; [`Variant::Wgsl`] needs a device and
     /// panics here.
     pub fn render<S: Shot<Output = R>>(&mut self, shot: &S, variant: Variant) {
+        self.render_in_gangs(shot, variant, GANG);
+    }
+
+    /// [`Tile::render`] with gangs of so many lanes; see [`Kernel::run_in_gangs`].
+    pub fn render_in_gangs<S: Shot<Output = R>>(
+        &mut self,
+        shot: &S,
+        variant: Variant,
+        lanes: usize,
+    ) {
         match variant {
             Variant::Wgsl => panic!("WGSL runs on a device: use raydsl::gpu::GpuScheduler"),
             Variant::Scalar => {
@@ -201,13 +226,16 @@ impl<R> Tile<'_, R> {
                     }
                 }
             }
-            packet => shot.kernel().with_packets(packet, Packets { shot, tile: self }),
+            packet => {
+                shot.kernel().with_packets(packet, Packets { shot, gang: lanes, tile: self });
+            }
         }
     }
 }
 
 struct Packets<'a, 'r, S: Shot> {
     shot: &'a S,
+    gang: usize,
     tile: &'a mut Tile<'r, S::Output>,
 }
 
@@ -227,32 +255,36 @@ impl<S: Shot> PacketTask<S::Args, S::Result> for Packets<'_, '_, S> {
     type Output = ();
 
     fn run<L: Lanes>(self, lanes: L, kernel: &PacketKernel<'_, L, S::Args, S::Result>) {
-        let Self { shot, tile } = self;
+        let Self { shot, gang, tile } = self;
         let (bw, bh) = const { block(L::N) };
+        let UVec2 { x: left, y: bottom } = tile.origin();
         let UVec2 { x: width, y: height } = tile.size();
-        lanes.vectorize(
-            #[inline(always)]
-            || {
-                let columns = lanes.u32_from_fn(|l| l as u32 % bw);
-                let lines = lanes.u32_from_fn(|l| l as u32 / bw);
-                for by in (0..height).step_by(bh as usize) {
-                    for bx in (0..width).step_by(bw as usize) {
-                        // At the tile's edge a packet is partly filled.
-                        let (across, up) = (bw.min(width - bx), bh.min(height - by));
-                        let m = Packet::with_bits(lanes, lanes_within(across, up, bw));
-                        let x = from(lanes, tile.x + bx, columns);
-                        let y = from(lanes, tile.y + by, lines);
-                        let result = shot.pixel_on(&m, X2 { x, y }, &|m, args| kernel(m, args));
-                        for j in 0..up {
-                            let row = &mut tile.row(by + j)[bx as usize..][..across as usize];
-                            for (pixel, i) in row.iter_mut().zip(0..) {
-                                *pixel = S::Output::lane(&result, (j * bw + i) as usize);
-                            }
+        let blocks = Blocks { columns: width.div_ceil(bw), lines: height.div_ceil(bh) };
+        let band = (GANG_EDGE / bh).max(1);
+        let tile = RefCell::new(tile);
+        fibers::each(blocks.count(), gang / L::N, &|packet| {
+            lanes.vectorize(
+                #[inline(always)]
+                || {
+                    let columns = lanes.u32_from_fn(|l| l as u32 % bw);
+                    let lines = lanes.u32_from_fn(|l| l as u32 / bw);
+                    let UVec2 { x: bx, y: by } = blocks.place(packet, band) * uvec2(bw, bh);
+                    // At the tile's edge a packet is partly filled.
+                    let (across, up) = (bw.min(width - bx), bh.min(height - by));
+                    let m = Packet::with_bits(lanes, lanes_within(across, up, bw));
+                    let x = from(lanes, left + bx, columns);
+                    let y = from(lanes, bottom + by, lines);
+                    let result = shot.pixel_on(&m, X2 { x, y }, &|m, args| kernel(m, args));
+                    let mut tile = tile.borrow_mut();
+                    for j in 0..up {
+                        let row = &mut tile.row(by + j)[bx as usize..][..across as usize];
+                        for (pixel, i) in row.iter_mut().zip(0..) {
+                            *pixel = S::Output::lane(&result, (j * bw + i) as usize);
                         }
                     }
-                }
-            },
-        );
+                },
+            );
+        });
     }
 }
 
@@ -314,7 +346,8 @@ mod tests {
             let numbers = (0..200).map(|i| i * (area / 200)).chain(area - 20..area);
             let numbers = numbers.chain([7, (1 << 32) + 7, 1 << 32]).filter(|&n| n < area);
             let numbers: HashSet<usize> = numbers.collect();
-            let places: HashSet<UVec2> = numbers.iter().map(|&n| grid.place(n)).collect();
+            let places: HashSet<UVec2> =
+                numbers.iter().map(|&n| grid.blocks().place(n, BAND)).collect();
             assert_eq!(places.len(), numbers.len(), "{width} x {height}");
             assert!(places.iter().all(|p| p.x < width && p.y < height));
         }

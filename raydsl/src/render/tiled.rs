@@ -3,7 +3,7 @@
 use super::tile::TILE;
 use super::watch::Watch;
 use super::{Image, Scheduler, Shot};
-use crate::kernel::{Kernel, Variant};
+use crate::kernel::{GANG, Kernel, Variant};
 use crate::machine::Type;
 
 /// Elements of a batch that a thread takes at once.
@@ -16,6 +16,7 @@ const BATCH: usize = 1024;
 pub struct TiledScheduler {
     variant: Variant,
     edge: u32,
+    gang: usize,
 }
 
 impl Default for TiledScheduler {
@@ -27,12 +28,19 @@ impl Default for TiledScheduler {
 impl TiledScheduler {
     /// Runs the widest packets of this machine.
     pub fn new() -> Self {
-        Self { variant: Variant::widest(), edge: TILE }
+        Self { variant: Variant::widest(), edge: TILE, gang: GANG }
     }
 
     /// Runs another variant of the CPU; [`Variant::Wgsl`] needs a device and panics here.
     pub const fn variant(self, variant: Variant) -> Self {
         Self { variant, ..self }
+    }
+
+    /// Gangs of `lanes`, whose packets wait for each other so that trees are asked about more rays at
+    /// once: [`GANG`] unless this is called, and packets on their own with 0. See
+    /// [`Kernel::run_in_gangs`].
+    pub const fn gang(self, lanes: usize) -> Self {
+        Self { gang: lanes, ..self }
     }
 
     /// Tiles of `edge` by `edge` pixels: 16 unless this is called.
@@ -45,7 +53,7 @@ impl Scheduler for TiledScheduler {
     fn run<S: Shot>(&self, shot: &S, image: &mut Image<S::Output>, watch: &Watch<'_>) {
         image.tiles(self.edge).for_each_parallel(|mut tile| {
             if !watch.is_stopped() {
-                tile.render(shot, self.variant);
+                tile.render_in_gangs(shot, self.variant, self.gang);
                 watch.advance(tile.area());
             }
         });
@@ -62,9 +70,11 @@ impl Scheduler for TiledScheduler {
         {
             use rayon::prelude::*;
             let parts = inputs.par_chunks(BATCH).zip(outputs.par_chunks_mut(BATCH));
-            parts.for_each(|(inputs, outputs)| kernel.run(self.variant, inputs, outputs));
+            parts.for_each(|(inputs, outputs)| {
+                kernel.run_in_gangs(self.variant, self.gang, inputs, outputs)
+            });
         }
         #[cfg(not(feature = "parallel"))]
-        kernel.run(self.variant, inputs, outputs);
+        kernel.run_in_gangs(self.variant, self.gang, inputs, outputs);
     }
 }

@@ -48,10 +48,6 @@ impl Slabs for &Beam {
     }
 }
 
-/// The most that directions of a beam may differ along an axis, relative to the largest component:
-/// rays that part further visit less on their own.
-const SPREAD: f32 = 0.5;
-
 /// The least and the greatest number of some rays.
 pub(super) struct Extent {
     pub(super) least: f32,
@@ -92,14 +88,20 @@ impl<E: Lanes> Extents<E> {
 
 /// The extent of a row, of the rays whose bits are set.
 #[inline(always)]
-pub(super) fn extent<E: Lanes>(e: E, rays: &Rays, members: &[u32], row: usize) -> Extent {
+pub(super) fn extent<E: Lanes>(
+    e: E,
+    rays: &Rays,
+    first: usize,
+    members: &[u32],
+    row: usize,
+) -> Extent {
     let mut extents = Extents::none(e);
     for (group, members) in members.iter().enumerate() {
         for from in (0..GROUP).step_by(E::N) {
             let there = members >> from & lanes_mask::<E>();
             if there != 0 {
                 let there = e.mask_from_bits(there.into());
-                extents.add(e, load(e, rays.row(group, row), from), there);
+                extents.add(e, load(e, rays.row(first + group, row), from), there);
             }
         }
     }
@@ -107,11 +109,11 @@ pub(super) fn extent<E: Lanes>(e: E, rays: &Rays, members: &[u32], row: usize) -
 }
 
 #[inline(always)]
-fn vector<E: Lanes>(e: E, rays: &Rays, members: &[u32], row: usize) -> [Extent; 3] {
+fn vector<E: Lanes>(e: E, rays: &Rays, first: usize, members: &[u32], row: usize) -> [Extent; 3] {
     [
-        extent(e, rays, members, row),
-        extent(e, rays, members, row + 1),
-        extent(e, rays, members, row + 2),
+        extent(e, rays, first, members, row),
+        extent(e, rays, first, members, row + 1),
+        extent(e, rays, first, members, row + 2),
     ]
 }
 
@@ -137,13 +139,15 @@ impl Beam {
     pub(super) fn of<E: Lanes>(
         e: E,
         rays: &Rays,
+        first: usize,
         members: &[u32],
+        most: f32,
         root: &Node,
         allowance: Allowance,
     ) -> Option<Self> {
-        let t_min = extent(e, rays, members, row::T_MIN).least;
-        let origins = vector(e, rays, members, row::ORIGIN);
-        let inverses = vector(e, rays, members, row::INVERSE);
+        let t_min = extent(e, rays, first, members, row::T_MIN).least;
+        let origins = vector(e, rays, first, members, row::ORIGIN);
+        let inverses = vector(e, rays, first, members, row::INVERSE);
         let (mut largest, mut spread) = (0.0f32, 0.0f32);
         for Extent { least, greatest } in &inverses {
             let (a, b) = (1.0 / least, 1.0 / greatest);
@@ -151,10 +155,10 @@ impl Beam {
             spread = spread.max((a - b).abs());
         }
         // What lies behind an origin would have to be told from what lies before it.
-        if t_min < 0.0 || spread > SPREAD * largest {
+        if t_min < 0.0 || spread > most * largest {
             return None;
         }
-        let limit = extent(e, rays, members, row::LIMIT).greatest;
+        let limit = extent(e, rays, first, members, row::LIMIT).greatest;
         Some(Self::new(&origins, &inverses, [t_min, limit], pad(&origins, root, allowance)))
     }
 

@@ -97,15 +97,7 @@ fn meets(node: &WideNode, slot: usize, bounds: &Aabb) -> bool {
 /// A box around what the rays reach; none if some have no end.
 #[inline(always)]
 fn bounds<E: Lanes>(e: E, rays: &Rays, root: &Node, allowance: Allowance) -> Option<Aabb> {
-    let mut limits = Extents::none(e);
-    each_alive(
-        e,
-        rays,
-        #[inline(always)]
-        |group, from, alive| limits.add(e, load(e, rays.row(group, row::LIMIT), from), alive),
-    );
-    // `f32::MAX` is what rays have that go on.
-    if limits.extent(e).greatest >= f32::MAX {
+    if !have_ends(e, rays) {
         return None;
     }
     let mut origins = [Extents::none(e); 3];
@@ -137,6 +129,20 @@ fn bounds<E: Lanes>(e: E, rays: &Rays, root: &Node, allowance: Allowance) -> Opt
         bounds.max[axis] = end.greatest + pad;
     }
     bounds.is_finite().then_some(bounds)
+}
+
+/// Whether all rays that are alive end somewhere.
+#[inline(always)]
+pub(super) fn have_ends<E: Lanes>(e: E, rays: &Rays) -> bool {
+    let mut limits = Extents::none(e);
+    each_alive(
+        e,
+        rays,
+        #[inline(always)]
+        |group, from, alive| limits.add(e, load(e, rays.row(group, row::LIMIT), from), alive),
+    );
+    // `f32::MAX` is what rays have that go on.
+    limits.extent(e).greatest < f32::MAX
 }
 
 /// Calls `see` for the rays that are alive: with their group, where they begin in it, and which of

@@ -5,7 +5,14 @@ mod beam;
 mod blocks;
 mod collapse;
 mod entry;
+#[cfg_attr(
+    not(all(unix, any(target_arch = "x86_64", target_arch = "aarch64"))),
+    path = "one_by_one.rs"
+)]
+pub(crate) mod fibers;
+mod hybrid;
 mod node;
+mod order;
 mod packet;
 mod rays;
 pub(crate) mod single;

@@ -1,9 +1,12 @@
 //! Rays that go the same way, through the tree together.
 
+use core::ops::Range;
+
+use super::Wide;
 use super::beam::{Beam, extent};
 use super::blocks::{self, Row};
 use super::node::{Child, WIDTH, WideNode};
-use super::rays::{GROUP, Group, Rays, lanes_mask, load, load_words, row};
+use super::rays::{GROUP, Group, Marks, Rays, lanes_mask, load, load_words, row};
 use super::step::{Meeting, count, enter, ids, last_key, nearest, sorted};
 use crate::bvh::Node;
 use crate::bvh::packet_slabs::{abs, add, and, max, min, mul, or};
@@ -15,16 +18,35 @@ use crate::machine::{Entered, F, Lanes, Packet, V3, op};
 /// are.
 const FEWEST: u32 = 12;
 
+/// Groups that go together: with more, boxes are entered that few rays meet.
+pub(super) const GROUPS: usize = 4;
+
+/// The most that directions of a beam may differ along an axis, relative to the largest component:
+/// rays that part further visit less on their own.
+const SPREAD: f32 = 0.5;
+
 /// What a packet needs, kept from one query to the next.
 #[derive(Debug, Default)]
 pub(super) struct Together {
     /// Slots that are to come: their number in their node, behind eight times the node's.
-    stack: Vec<u32>,
+    pub(super) stack: Vec<u32>,
     /// Where the packet enters them, as the bits of numbers above 0, in whose last three the slot
     /// is.
     enters: Vec<u32>,
-    /// The rays of one octant, a bit each.
-    members: Vec<u32>,
+    /// The rays of one octant, a bit each, group by group.
+    pub(super) members: Vec<u32>,
+}
+
+impl Together {
+    /// Stacks for a tree: all that may be pending, and eight more, which are written at once.
+    pub(super) fn make_room(&mut self, tree: &Wide) {
+        let room = 1 + tree.pending + WIDTH;
+        for stack in [&mut self.stack, &mut self.enters] {
+            if stack.len() < room {
+                stack.resize(room, 0);
+            }
+        }
+    }
 }
 
 /// Finds the least hits of rays that go the same way, which are alive no more then.
@@ -36,22 +58,27 @@ pub(super) fn closest_hit<R: Lanes, P: Primitive>(
     together: &mut Together,
     root: &Node,
 ) {
-    let mut left: u32 = rays.marks.iter().map(|marks| marks.alive.count_ones()).sum();
-    let fewest = FEWEST.min(left / 4 * 3).max(2);
-    while left > 0 {
-        let octant = take_octant(rays, &mut together.members);
-        left -= octant;
-        let beam = if octant < fewest {
-            None
-        } else {
-            Beam::of(r.eight(), rays, &together.members, root, Allowance::of::<P>())
-        };
-        match beam {
-            Some(beam) => walk(r, meeting, rays, together, beam),
-            None => {
-                for (marks, members) in rays.marks.iter_mut().zip(&together.members) {
-                    marks.alone |= members;
-                }
+    let count = rays.marks.len();
+    for first in (0..count).step_by(GROUPS) {
+        let groups = first..(first + GROUPS).min(count);
+        let alive = |marks: &Marks| marks.alive.count_ones();
+        let mut left: u32 = rays.marks[groups.clone()].iter().map(alive).sum();
+        let fewest = FEWEST.min(left / 4 * 3).max(2);
+        while left > 0 {
+            let octant = take_octant(rays, groups.clone(), &mut together.members);
+            left -= octant;
+            let (allowance, members) = (Allowance::of::<P>(), &together.members);
+            let beam = if octant < fewest {
+                None
+            } else {
+                Beam::of(r.eight(), rays, first, members, SPREAD, root, allowance)
+            };
+            if let Some(beam) = beam {
+                walk(r, meeting, rays, first, together, beam);
+                continue;
+            }
+            for (marks, members) in rays.marks[groups.clone()].iter_mut().zip(members) {
+                marks.alone |= members;
             }
         }
     }
@@ -60,13 +87,14 @@ pub(super) fn closest_hit<R: Lanes, P: Primitive>(
     }
 }
 
-/// Moves the rays of one octant from those that are alive to `members`; returns how many.
+/// Moves the rays of one octant from those of some groups that are alive to `members`; returns how
+/// many.
 #[inline(always)]
-fn take_octant(rays: &mut Rays, members: &mut Vec<u32>) -> u32 {
+pub(super) fn take_octant(rays: &mut Rays, groups: Range<usize>, members: &mut Vec<u32>) -> u32 {
     members.clear();
     let mut octant = None;
     let mut count = 0;
-    for group in 0..rays.marks.len() {
+    for group in groups {
         let alive = rays.marks[group].alive;
         if alive == 0 {
             members.push(0);
@@ -90,24 +118,22 @@ fn walk<R: Lanes, P: Primitive>(
     r: R,
     meeting: &Meeting<'_, P>,
     rays: &mut Rays,
+    first: usize,
     together: &mut Together,
     mut beam: Beam,
 ) {
     let (e, tree) = (r.eight(), meeting.tree);
+    together.make_room(tree);
     let Together { stack, enters, members } = together;
-    let room = 1 + tree.pending + WIDTH;
-    if stack.len() < room {
-        stack.resize(room, 0);
-        enters.resize(room, 0);
-    }
-    let mut packet = Members { r, m: Packet::new(Entered::new(r)), rays, members, side: beam.side };
+    let mut packet =
+        Members { r, m: Packet::new(Entered::new(r)), rays, first, members, side: beam.side };
     let (mut at, mut slot, mut top) = (Child::node(0), 0, 0);
     loop {
         if at.is_block() {
             let node = &tree.nodes[slot / WIDTH];
             let is_nearer = packet.meet(meeting, meeting.rows(at.index()), node, slot % WIDTH);
             if is_nearer {
-                beam.limit = extent(e, packet.rays, packet.members, row::LIMIT).greatest;
+                beam.limit = extent(e, packet.rays, first, packet.members, row::LIMIT).greatest;
             }
         } else {
             let node = &tree.nodes[at.index()];
@@ -147,7 +173,8 @@ struct Members<'a, R: Lanes> {
     r: R,
     m: Packet<Entered<R>>,
     rays: &'a mut Rays,
-    /// A bit each.
+    /// The group of the first, and a bit for each of them.
+    first: usize,
     members: &'a [u32],
     side: [usize; 3],
 }
@@ -172,7 +199,12 @@ impl<R: Lanes> Members<'_, R> {
                 if alive == 0 {
                     continue;
                 }
-                let lanes = Register { r, m: &self.m, group: self.rays.group_mut(group), from };
+                let lanes = Register {
+                    r,
+                    m: &self.m,
+                    group: self.rays.group_mut(self.first + group),
+                    from,
+                };
                 let there = lanes.enter(node, slot, self.side);
                 let there = and(r, there, r.mask_from_bits(alive.into()));
                 if r.any(there) {
@@ -185,11 +217,11 @@ impl<R: Lanes> Members<'_, R> {
 }
 
 /// A register of rays.
-struct Register<'a, R: Lanes> {
-    r: R,
-    m: &'a Packet<Entered<R>>,
-    group: &'a mut Group,
-    from: usize,
+pub(super) struct Register<'a, R: Lanes> {
+    pub(super) r: R,
+    pub(super) m: &'a Packet<Entered<R>>,
+    pub(super) group: &'a mut Group,
+    pub(super) from: usize,
 }
 
 impl<R: Lanes> Register<'_, R> {
@@ -215,7 +247,7 @@ impl<R: Lanes> Register<'_, R> {
 
     /// The rays that enter a box before their limits.
     #[inline(always)]
-    fn enter(&self, node: &WideNode, slot: usize, side: [usize; 3]) -> R::Mask {
+    pub(super) fn enter(&self, node: &WideNode, slot: usize, side: [usize; 3]) -> R::Mask {
         let r = self.r;
         let mut near = self.number(row::T_MIN);
         let mut far = self.number(row::LIMIT);
@@ -227,6 +259,51 @@ impl<R: Lanes> Register<'_, R> {
             far = min(r, far, r.f32_mul_add_fast(last, inverse, self.number(row::LAST + axis)));
         }
         r.f32_compare(op::Le, near, far)
+    }
+
+    /// Meets the primitives of a block; the rays, of those of `there`, that are stopped.
+    #[inline(always)]
+    pub(super) fn meet_any<P: Primitive>(
+        mut self,
+        meeting: &Meeting<'_, P>,
+        block: &[Row],
+        count: usize,
+        mut there: R::Mask,
+    ) -> u32 {
+        let (r, m) = (self.r, self.m);
+        let ray = RayOn {
+            origin: self.vector(row::ORIGIN),
+            direction: self.vector(row::DIRECTION),
+            t_min: F(self.number(row::T_MIN)),
+            t_max: F(self.number(row::T_MAX)),
+        };
+        let asked = there;
+        for i in 0..count {
+            let prim = blocks::read::<_, P>(
+                m,
+                #[inline(always)]
+                |word| r.u32(block[word].0[i % WIDTH]),
+            );
+            let record = m.with_active(
+                there,
+                #[inline(always)]
+                || P::intersect_among_on(m, meeting.kinds, prim, ray, meeting.shared),
+            );
+            let hit = P::Hit::hit_on(record);
+            let after = r.f32_compare(op::Ge, hit.t.0, ray.t_min.0);
+            let before = r.f32_compare(op::Le, hit.t.0, ray.t_max.0);
+            let met = and(r, and(r, there, hit.is_hit.0), and(r, after, before));
+            if r.any(met) {
+                there = and(r, there, r.mask_not(met));
+                if !r.any(there) {
+                    break;
+                }
+            }
+        }
+        let stopped = and(r, asked, r.mask_not(there));
+        let found = load_words(r, &self.group[row::FOUND].0, self.from);
+        self.set(row::FOUND, r.u32_select(stopped, r.u32(1), found));
+        r.bits(stopped) as u32
     }
 
     /// Meets the first primitives of a block; whether any ray has a nearer hit.

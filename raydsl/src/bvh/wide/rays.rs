@@ -69,6 +69,8 @@ pub(super) type Group = [Row; row::COUNT];
 pub(super) struct Rays {
     groups: Vec<Group>,
     pub(super) marks: Vec<Marks>,
+    /// How many there are, with gaps between those of packets of different widths.
+    count: usize,
 }
 
 /// From one row to the next of a ray.
@@ -166,20 +168,36 @@ pub(super) const fn place(ray: usize) -> u32 {
     (ray / GROUP * GROUP * row::COUNT + ray % GROUP) as u32
 }
 
+/// The group and the lane of the ray at `place`.
+const fn group_and_lane(place: u32) -> (usize, usize) {
+    let words = GROUP * row::COUNT;
+    (place as usize / words, place as usize % words)
+}
+
 impl Rays {
-    /// Room for so many rays, none of which is asked about. What the rows hold is not said.
-    pub(super) fn begin(&mut self, rays: usize) {
-        let groups = rays.div_ceil(GROUP);
+    /// Has no rays.
+    pub(super) fn clear(&mut self) {
+        self.marks.clear();
+        self.count = 0;
+    }
+
+    /// Room for so many packets of `width` rays more, none of which is asked about; returns the number of
+    /// the first. What the rows hold is not said.
+    pub(super) fn add(&mut self, width: usize, packets: usize) -> usize {
+        let first = self.count.next_multiple_of(width.min(GROUP));
+        self.count = first + width * packets;
+        let groups = self.count.div_ceil(GROUP);
         if self.groups.len() < groups {
             self.groups.resize(groups, [Row([0; GROUP]); row::COUNT]);
         }
-        self.marks.clear();
         self.marks.resize(groups, Marks::default());
+        first
     }
 
     /// The rays of the host, one behind the other.
     pub(super) fn load(&mut self, rays: &[Ray]) {
-        self.begin(rays.len());
+        self.clear();
+        self.add(1, rays.len());
         for (group, rays) in rays.chunks(GROUP).enumerate() {
             let rows = &mut self.groups[group];
             for (lane, ray) in rays.iter().enumerate() {
@@ -197,6 +215,46 @@ impl Rays {
                 rows[row::ID].0[lane] = u32::MAX;
                 rows[row::FOUND].0[lane] = 0;
                 self.marks[group].asked |= u32::from(is_finite(ray)) << lane;
+            }
+        }
+    }
+
+    /// The rays at some places of others, one behind the other, that have found nothing yet. Each
+    /// has its place as its number.
+    pub(super) fn gather(&mut self, from: &Self, places: &[u32]) {
+        self.clear();
+        self.add(1, places.len());
+        let words = bytemuck::cast_slice(from.groups.as_flattened());
+        for (group, places) in places.chunks(GROUP).enumerate() {
+            let rows = &mut self.groups[group];
+            for (lane, &place) in places.iter().enumerate() {
+                let ray = ray_at(words, place);
+                for (row, words) in rows[..=row::T_MAX].iter_mut().enumerate() {
+                    words.0[lane] = ray.word(row);
+                }
+                rows[row::ID].0[lane] = place;
+            }
+            rows[row::LIMIT] = rows[row::T_MAX];
+            rows[row::T] = Row([f32::INFINITY.to_bits(); GROUP]);
+            rows[row::FOUND] = Row([0; GROUP]);
+            self.marks[group].asked = (1 << places.len()) - 1;
+        }
+    }
+
+    /// Tells others what rays have found that were gathered from there, and which are odd.
+    pub(super) fn give_back(&self, to: &mut Self) {
+        for (rows, marks) in self.groups.iter().zip(&self.marks) {
+            let lanes = rows[row::FOUND].0.iter().zip(&rows[row::ID].0);
+            for (lane, (&found, &place)) in lanes.enumerate() {
+                if marks.asked >> lane & 1 != 0 {
+                    ray_at_mut(to.words(), place).set(row::FOUND, found);
+                }
+            }
+            let mut odd = marks.odd;
+            while odd != 0 {
+                let (group, lane) = group_and_lane(rows[row::ID].0[odd.trailing_zeros() as usize]);
+                odd &= odd - 1;
+                to.marks[group].odd |= 1 << lane;
             }
         }
     }
@@ -231,17 +289,18 @@ impl Rays {
         &mut self.groups[group][row].0
     }
 
-    /// Prepares the rays of a group for the tree under `root`, as
-    /// [`Slabs`](crate::bvh::slabs::Slabs) does. Those whose numbers are so large or so small that
-    /// products may overflow are odd, and not alive.
+    /// Prepares the rays for the tree under `root`, as [`Slabs`](crate::bvh::slabs::Slabs) does.
+    /// Those whose numbers are so large or so small that products may overflow are odd, and not
+    /// alive.
     #[inline(always)]
-    pub(super) fn prepare<L: Lanes>(
-        &mut self,
-        l: L,
-        group: usize,
-        root: &Node,
-        allowance: Allowance,
-    ) {
+    pub(super) fn prepare<L: Lanes>(&mut self, l: L, root: &Node, allowance: Allowance) {
+        for group in 0..self.marks.len() {
+            self.prepare_group(l, group, root, allowance);
+        }
+    }
+
+    #[inline(always)]
+    fn prepare_group<L: Lanes>(&mut self, l: L, group: usize, root: &Node, allowance: Allowance) {
         let Marks { asked, odd, .. } = self.marks[group];
         let mut alive = asked & !odd;
         for from in (0..GROUP).step_by(L::N) {

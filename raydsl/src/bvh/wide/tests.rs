@@ -129,9 +129,7 @@ fn entries_lead_to_all_that_rays_may_reach() {
         });
         let mut of = |all: &[Ray]| {
             rays.load(all);
-            for group in 0..rays.marks.len() {
-                rays.prepare(e, group, &root, allowance);
-            }
+            rays.prepare(e, &root, allowance);
             entry::of(e, tree, &rays, &root, allowance)
         };
         let entry = of(&all).expect("rays with an end");

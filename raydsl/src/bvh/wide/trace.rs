@@ -5,23 +5,32 @@ use core::cell::Cell;
 use fearless_simd::Level;
 
 use super::entry;
+use super::fibers;
+use super::hybrid::{self, Sorted};
 use super::packet::{self, Together};
 use super::rays::{GROUP, Rays, load_words, place, ray_at, ray_at_mut, row};
 use super::step::Meeting;
 use super::wave::{self, Wave};
 use crate::bvh::packet_slabs::{and, finite};
 use crate::bvh::slabs::Allowance;
-use crate::bvh::{Part, SceneView, traverse};
+use crate::bvh::{Node, Part, SceneView, traverse};
 use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn};
 use crate::kernel::{LanesTask, with_wide_walks};
 use crate::machine::{B, Entered, F, Lanes, Packet, U, op};
 
 /// The memory of a query, which a thread keeps for the next one.
 #[derive(Debug, Default)]
-struct Scratch {
-    rays: Rays,
-    wave: Wave,
-    together: Together,
+pub(super) struct Scratch {
+    pub(super) rays: Rays,
+    pub(super) wave: Wave,
+    pub(super) together: Together,
+    pub(super) sorted: Sorted,
+}
+impl Scratch {
+    /// Has no rays.
+    pub(super) fn clear(&mut self) {
+        self.rays.clear();
+    }
 }
 
 thread_local! {
@@ -72,7 +81,8 @@ pub(crate) fn any_hits<L: Lanes, P: Primitive>(
     );
 }
 
-/// Asks about the rays, and reads what each packet of them has found.
+/// Asks about the rays, together with other packets if there are any, and reads what each packet of
+/// them has found.
 #[inline(always)]
 fn ask<const CLOSEST: bool, L: Lanes, P: Primitive, H>(
     m: &Packet<L>,
@@ -82,25 +92,37 @@ fn ask<const CLOSEST: bool, L: Lanes, P: Primitive, H>(
     found: impl Fn(&Rays, usize) -> H,
 ) {
     let l = m.lanes();
-    with_scratch(|scratch| {
+    let load = |scratch: &mut Scratch| {
         l.enter_again(
             #[inline(always)]
             || load(m, &mut scratch.rays, rays),
-        );
-        answer::<CLOSEST, P>(l.level(), scene, scratch);
+        )
+    };
+    let answer = |scratch: &mut Scratch| answer::<CLOSEST, P>(l.level(), scene, scratch);
+    let mut read = |scratch: &Scratch, first: usize| {
         l.enter_again(
             #[inline(always)]
             || {
                 for (q, hit) in hits.iter_mut().enumerate() {
-                    *hit = found(&scratch.rays, q * L::N);
+                    *hit = found(&scratch.rays, first + q * L::N);
                 }
             },
         );
+    };
+    let key = (self::answer::<CLOSEST, P> as *const () as usize, scene.place());
+    if fibers::ask(key, load, answer, &mut read) {
+        return;
+    }
+    with_scratch(|scratch| {
+        scratch.clear();
+        let first = load(scratch);
+        answer(scratch);
+        read(scratch, first);
     });
 }
 
 /// How many rays of the host are asked about together.
-const AT_ONCE: usize = 128;
+const AT_ONCE: usize = 2048;
 
 /// The least `(t, id)` hit of each ray.
 pub(crate) fn each_closest<P: Primitive>(
@@ -181,29 +203,51 @@ fn each_part<const CLOSEST: bool, R: Lanes, P: Primitive>(
                 next += 1;
                 let (Some(tree), Some(branches)) = (part.wide, part.tree) else { continue };
                 let Some(root) = branches.nodes.first() else { continue };
-                for group in 0..scratch.rays.marks.len() {
-                    scratch.rays.prepare(r, group, root, Allowance::of::<P>());
-                }
-                let Scratch { rays, wave, together } = &mut *scratch;
                 let (meeting, e) = (meeting(scene, part, tree), r.eight());
                 if CLOSEST {
+                    let Scratch { rays, wave, together, .. } = &mut *scratch;
+                    rays.prepare(r, root, Allowance::of::<P>());
                     packet::closest_hit(r, &meeting, rays, together, root);
                     wave::run::<true, _, _>(Entered::new(e), &meeting, None, rays, wave);
+                    continue;
+                }
+                if const { P::IS_SHORT } {
+                    any(r, Entered::straight(e), &meeting, root, scratch);
                 } else {
-                    let entry = entry::of(e, tree, rays, root, Allowance::of::<P>());
-                    let entry = entry.as_ref();
-                    if const { P::IS_SHORT } {
-                        wave::run::<false, _, _>(Entered::straight(e), &meeting, entry, rays, wave);
-                    } else {
-                        wave::run::<false, _, _>(Entered::new(e), &meeting, entry, rays, wave);
-                    }
-                    if scene.part(next).is_some() {
-                        rays.forget_found();
-                    }
+                    any(r, Entered::new(e), &meeting, root, scratch);
+                }
+                if scene.part(next).is_some() {
+                    scratch.rays.forget_found();
                 }
             }
         },
     );
+}
+
+/// Whether the rays meet anything in a part of the scene. `e` is for those on their own ways.
+#[inline(always)]
+fn any<R: Lanes, E: Lanes, P: Primitive>(
+    r: R,
+    e: E,
+    meeting: &Meeting<'_, P>,
+    root: &Node,
+    scratch: &mut Scratch,
+) {
+    let allowance = Allowance::of::<P>();
+    let Scratch { rays, wave, .. } = &mut *scratch;
+    let mut count = 0;
+    for marks in &mut rays.marks {
+        marks.alive = marks.asked & !marks.odd;
+        count += marks.alive.count_ones();
+    }
+    // Rays without an end mostly meet something soon, each on its own way.
+    if count >= hybrid::FEWEST && entry::have_ends(r.eight(), rays) {
+        hybrid::any_hit(r, e, meeting, root, scratch);
+    } else {
+        rays.prepare(r, root, allowance);
+        let entry = entry::of(r.eight(), meeting.tree, rays, root, allowance);
+        wave::run::<false, _, _>(e, meeting, entry.as_ref(), rays, wave);
+    }
 }
 
 /// Asks about the rays that are too odd for boxes.
@@ -232,13 +276,14 @@ pub(super) fn meeting<'a, P: Primitive>(
     Meeting { tree, part, shared, kinds }
 }
 
-/// Writes the rays of the running lanes to groups, one packet behind the other.
+/// Writes the rays of the running lanes to groups, one packet behind the other; returns the number of
+/// the first.
 #[inline(always)]
-fn load<L: Lanes>(m: &Packet<L>, to: &mut Rays, rays: &[RayOn<Packet<L>>]) {
+fn load<L: Lanes>(m: &Packet<L>, to: &mut Rays, rays: &[RayOn<Packet<L>>]) -> usize {
     let l = m.lanes();
-    to.begin(L::N * rays.len());
+    let begin = to.add(L::N, rays.len());
     for (q, ray) in rays.iter().enumerate() {
-        let first = q * L::N;
+        let first = begin + q * L::N;
         let (o, d) = (ray.origin.array(), ray.direction.array());
         for axis in 0..3 {
             spread(l, o[axis], to, first, row::ORIGIN + axis);
@@ -259,6 +304,7 @@ fn load<L: Lanes>(m: &Packet<L>, to: &mut Rays, rays: &[RayOn<Packet<L>>]) {
             to.marks[group].asked |= (lanes as u32) << lane;
         }
     }
+    begin
 }
 
 /// Writes a number of every lane to its place.

@@ -5,6 +5,8 @@
 //! takes no branch. So no branch is left that cannot be foretold, and the processor works on the
 //! next rays while one waits for memory.
 
+use core::ops::Range;
+
 use super::blocks::Row;
 use super::node::{Child, WIDTH, WideNode};
 use super::rays::{GROUP, Rays, place, ray_at, ray_at_mut, row};
@@ -25,6 +27,9 @@ pub(super) struct Wave {
     at_blocks: Vec<u32>,
 }
 
+/// Groups of a wave: with more rays, what they need leaves the cache.
+const GROUPS: usize = 16;
+
 /// The places of rays.
 struct List<'a> {
     places: &'a mut [u32],
@@ -44,7 +49,7 @@ impl List<'_> {
 }
 
 /// A wave under way.
-struct Turns<'a> {
+pub(super) struct Turns<'a> {
     stacks: &'a mut [u32],
     enters: &'a mut [u32],
     nodes: List<'a>,
@@ -54,9 +59,36 @@ struct Turns<'a> {
 }
 
 impl Wave {
-    /// Puts the rays of all groups that are alive at the root.
-    fn begin(&mut self, rays: &mut Rays, pending: usize, is_sorted: bool) -> Turns<'_> {
-        let count = GROUP * rays.marks.len();
+    /// Puts the rays of some groups that are alive at the root.
+    fn begin(
+        &mut self,
+        rays: &mut Rays,
+        groups: Range<usize>,
+        pending: usize,
+        is_sorted: bool,
+    ) -> Turns<'_> {
+        let mut turns = self.begin_empty(rays, groups.clone(), pending, is_sorted);
+        for group in groups {
+            let mut alive = rays.marks[group].alive;
+            while alive != 0 {
+                let lane = alive.trailing_zeros() as usize;
+                alive &= alive - 1;
+                rays.row_mut(group, row::AT)[lane] = Child::node(0).0;
+                turns.nodes.push_if(true, place(GROUP * group + lane));
+            }
+        }
+        turns
+    }
+
+    /// Empty stacks for the rays of some groups that are alive, with room for `pending` children each.
+    pub(super) fn begin_empty(
+        &mut self,
+        rays: &mut Rays,
+        groups: Range<usize>,
+        pending: usize,
+        is_sorted: bool,
+    ) -> Turns<'_> {
+        let count = GROUP * groups.len();
         // The end, what is pending, and room behind: eight are written at once.
         let stride = 1 + pending + WIDTH;
         let at_least = |v: &mut Vec<u32>, len: usize| {
@@ -68,25 +100,22 @@ impl Wave {
         at_least(&mut self.enters, if is_sorted { stride * count } else { 0 });
         at_least(&mut self.at_nodes, count + 1);
         at_least(&mut self.at_blocks, count + 1);
-        let mut nodes = List { places: &mut self.at_nodes, len: 0 };
         let mut base = 0;
-        for group in 0..rays.marks.len() {
+        for group in groups {
             let mut alive = rays.marks[group].alive;
             while alive != 0 {
                 let lane = alive.trailing_zeros() as usize;
                 alive &= alive - 1;
                 self.stacks[base] = Child::NONE.0;
-                rays.row_mut(group, row::AT)[lane] = Child::node(0).0;
                 rays.row_mut(group, row::BOTTOM)[lane] = base as u32 + 1;
                 rays.row_mut(group, row::TOP)[lane] = base as u32 + 1;
-                nodes.push_if(true, place(GROUP * group + lane));
                 base += stride;
             }
         }
         Turns {
             stacks: &mut self.stacks,
             enters: &mut self.enters,
-            nodes,
+            nodes: List { places: &mut self.at_nodes, len: 0 },
             blocks: List { places: &mut self.at_blocks, len: 0 },
             pending: pending as u32,
         }
@@ -94,6 +123,26 @@ impl Wave {
 }
 
 impl Turns<'_> {
+    /// Writes an entry of a stack.
+    #[inline(always)]
+    pub(super) fn set(&mut self, top: u32, child: Child) {
+        self.stacks[top as usize] = child.0;
+    }
+
+    /// Goes on with what rays that have found nothing have on their stacks.
+    pub(super) fn start(&mut self, rays: &mut Rays) {
+        for group in 0..rays.marks.len() {
+            let mut left = rays.marks[group].asked & !rays.marks[group].odd;
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let is_open = rays.row(group, row::FOUND)[lane] == 0;
+                let top = rays.row(group, row::TOP)[lane];
+                self.pop_if(is_open, rays.words(), place(GROUP * group + lane), top);
+            }
+        }
+    }
+
     /// Eight entries of the stacks from `top` on.
     #[inline(always)]
     fn stack(&mut self, top: u32) -> &mut [u32] {
@@ -170,42 +219,64 @@ pub(super) fn run<const CLOSEST: bool, E: Lanes, P: Primitive>(
     rays: &mut Rays,
     wave: &mut Wave,
 ) {
-    let tree = meeting.tree;
     // Seven more of the entry's children may wait for what is below one.
-    let pending = tree.pending + if entry.is_some() { WIDTH } else { 0 };
-    let mut turns = wave.begin(rays, pending, CLOSEST);
-    let all = rays.words();
-    if let Some(entry) = entry {
-        for i in 0..core::mem::take(&mut turns.nodes.len) {
-            let ray = turns.nodes.places[i];
-            turns.step::<CLOSEST, E>(e, entry, all, ray);
-        }
-    }
-    while turns.nodes.len + turns.blocks.len > 0 {
-        for i in 0..core::mem::take(&mut turns.nodes.len) {
-            let ray = turns.nodes.places[i];
-            let node = &tree.nodes[ray_at(all, ray).word(row::AT) as usize];
-            turns.step::<CLOSEST, E>(e, node, all, ray);
-        }
-        for i in 0..core::mem::take(&mut turns.blocks.len) {
-            let ray = turns.blocks.places[i];
-            let words_of = ray_at(all, ray);
-            let mut top = words_of.word(row::TOP);
-            let block = meeting.rows(Child(words_of.word(row::AT)).index());
-            let (ray_on, best) = (words_of.ray_on(&Packet::new(e)), words_of.number(row::T));
-            let (hit, mask) = meeting.block(e, block, ray_on, best);
-            let is_met = e.any(mask);
-            if !CLOSEST {
-                let found = words_of.word(row::FOUND) | u32::from(is_met);
-                ray_at_mut(all, ray).set(row::FOUND, found);
-            } else if is_met && take(e, meeting, &hit, mask, block, all, ray) {
-                let words_of = ray_at(all, ray);
-                let (bottom, limit) = (words_of.word(row::BOTTOM), words_of.number(row::LIMIT));
-                top = turns.drop_beyond(e, bottom, top, limit);
+    let pending = meeting.tree.pending + if entry.is_some() { WIDTH } else { 0 };
+    let count = rays.marks.len();
+    for first in (0..count).step_by(GROUPS) {
+        let groups = first..(first + GROUPS).min(count);
+        let mut turns = wave.begin(rays, groups, pending, CLOSEST);
+        let all = rays.words();
+        if let Some(entry) = entry {
+            for i in 0..core::mem::take(&mut turns.nodes.len) {
+                let ray = turns.nodes.places[i];
+                turns.step::<CLOSEST, E>(e, entry, all, ray);
             }
-            turns.pop_if(CLOSEST || !is_met, all, ray, top);
         }
+        each_turn::<CLOSEST, E, P>(e, meeting, all, turns);
     }
+}
+
+/// [`run`] from where the rays are. In its own function, which rays that were sorted share.
+#[inline(never)]
+pub(super) fn each_turn<const CLOSEST: bool, E: Lanes, P: Primitive>(
+    e: E,
+    meeting: &Meeting<'_, P>,
+    all: &mut [u32],
+    mut turns: Turns<'_>,
+) {
+    e.enter_again(
+        #[inline(always)]
+        || {
+            let tree = meeting.tree;
+            while turns.nodes.len + turns.blocks.len > 0 {
+                for i in 0..core::mem::take(&mut turns.nodes.len) {
+                    let ray = turns.nodes.places[i];
+                    let node = &tree.nodes[ray_at(all, ray).word(row::AT) as usize];
+                    turns.step::<CLOSEST, E>(e, node, all, ray);
+                }
+                for i in 0..core::mem::take(&mut turns.blocks.len) {
+                    let ray = turns.blocks.places[i];
+                    let words_of = ray_at(all, ray);
+                    let mut top = words_of.word(row::TOP);
+                    let block = meeting.rows(Child(words_of.word(row::AT)).index());
+                    let (ray_on, best) =
+                        (words_of.ray_on(&Packet::new(e)), words_of.number(row::T));
+                    let (hit, mask) = meeting.block(e, block, ray_on, best);
+                    let is_met = e.any(mask);
+                    if !CLOSEST {
+                        let found = words_of.word(row::FOUND) | u32::from(is_met);
+                        ray_at_mut(all, ray).set(row::FOUND, found);
+                    } else if is_met && take(e, meeting, &hit, mask, block, all, ray) {
+                        let words_of = ray_at(all, ray);
+                        let (bottom, limit) =
+                            (words_of.word(row::BOTTOM), words_of.number(row::LIMIT));
+                        top = turns.drop_beyond(e, bottom, top, limit);
+                    }
+                    turns.pop_if(CLOSEST || !is_met, all, ray, top);
+                }
+            }
+        },
+    );
 }
 
 /// Keeps the least hit of a block if it is less than the ray's; whether it is.

@@ -1,0 +1,83 @@
+//! Rays in the order of their directions.
+
+use core::ops::Range;
+
+use super::rays::{GROUP, Rays, lanes_mask, load, place, row};
+use crate::bvh::packet_slabs::{abs, add, max, min, mul};
+use crate::machine::{Lanes, op};
+
+/// Directions are told apart by so many steps along each axis.
+const STEPS: u32 = 8;
+const KEYS: usize = (STEPS * STEPS * STEPS) as usize;
+
+/// The most groups whose rays are sorted at once: numbers of rays fit into 16 bits.
+pub(super) const MOST: usize = 256;
+
+/// What sorting needs, kept from one query to the next.
+#[derive(Debug, Default)]
+pub(super) struct Order {
+    /// Of each ray: its key above its number.
+    keys: Vec<u32>,
+    /// The places of the rays, in order.
+    places: Vec<u32>,
+}
+
+impl Order {
+    /// The places of the rays that are alive in some groups, in the order of their directions: along
+    /// a Morton curve through the cube that they point to, so that rays of an octant come together.
+    #[inline(always)]
+    pub(super) fn of<R: Lanes>(&mut self, r: R, rays: &Rays, groups: Range<usize>) -> &[u32] {
+        self.keys.clear();
+        let mut begins = [0u32; KEYS];
+        let first = groups.start;
+        for group in groups {
+            let mut left = rays.marks[group].alive;
+            let mut keys = [0; GROUP];
+            for from in (0..GROUP).step_by(R::N) {
+                if left >> from & lanes_mask::<R>() != 0 {
+                    r.u32_store(keys_of(r, rays, group, from), &mut keys[from..]);
+                }
+            }
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let key = keys[lane] % KEYS as u32;
+                begins[key as usize] += 1;
+                self.keys.push(key << 16 | (GROUP * (group - first) + lane) as u32);
+            }
+        }
+        let mut begin = 0;
+        for count in &mut begins {
+            begin += core::mem::replace(count, begin);
+        }
+        self.places.resize(self.keys.len(), 0);
+        for &key in &self.keys {
+            let number = &mut begins[(key >> 16) as usize % KEYS];
+            self.places[*number as usize] = place(GROUP * first + (key & 0xffff) as usize);
+            *number += 1;
+        }
+        &self.places
+    }
+}
+
+/// Three bits of each component of the directions, interleaved.
+#[inline(always)]
+fn keys_of<R: Lanes>(r: R, rays: &Rays, group: usize, from: usize) -> R::U32 {
+    let x = load(r, rays.row(group, row::DIRECTION), from);
+    let y = load(r, rays.row(group, row::DIRECTION + 1), from);
+    let z = load(r, rays.row(group, row::DIRECTION + 2), from);
+    let largest = max(r, max(r, abs(r, x), abs(r, y)), abs(r, z));
+    let half = r.f32(0.5 * STEPS as f32);
+    let scale = r.f32_binary(op::Div, half, largest);
+    let mut key = r.u32(0);
+    for (axis, d) in [x, y, z].into_iter().enumerate() {
+        let steps = min(r, add(r, mul(r, d, scale), half), r.f32(STEPS as f32 - 1.0));
+        let steps = r.f32_to_u32(steps);
+        for bit in 0..3u32 {
+            let one = r.u32_binary(op::And, steps, r.u32(1 << bit));
+            let up = r.u32_binary(op::Shl, one, r.u32(2 * bit + axis as u32));
+            key = r.u32_binary(op::Or, key, up);
+        }
+    }
+    key
+}
