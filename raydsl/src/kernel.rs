@@ -416,9 +416,10 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
     /// they are asked about at once. [`Kernel::run`] has gangs of [`GANG`]; with fewer lanes than two
     /// packets have, each packet goes on its own. The outputs are the same.
     ///
-    /// Each packet of a gang, of which there are 64 at most, has a stack of its own, of 2 MiB of
-    /// address space. There are gangs on Unix, on x86-64 and AArch64; elsewhere each packet goes on
-    /// its own.
+    /// Each packet of a gang, of which there are 64 at most, has a stack of its own, of 8 MiB of
+    /// address space; a kernel that needs more ends the program. There are gangs on Unix, on x86-64
+    /// and AArch64; elsewhere each packet goes on its own. A packet of a [`Gang`](crate::machine::Gang)
+    /// is one packet here, however many registers it has.
     ///
     /// # Panics
     ///
@@ -520,16 +521,23 @@ fn run_in_gangs<L: Lanes, A: Type, R: Type>(
 ) {
     let outputs = Cell::from_mut(outputs).as_slice_of_cells();
     fibers::each(inputs.len().div_ceil(L::N), gang / L::N, &|packet| {
-        lanes.vectorize(|| {
-            let first = packet * L::N;
-            let inputs = &inputs[first..inputs.len().min(first + L::N)];
-            let m = Packet::with_count(lanes, inputs.len());
-            let args = A::from_lanes(&m, |l| inputs[l.min(inputs.len() - 1)]);
-            let result = kernel(&m, args);
-            for (l, out) in outputs[first..].iter().take(inputs.len()).enumerate() {
-                out.set(R::lane(&result, l));
-            }
-        });
+        lanes.vectorize(
+            #[inline(always)]
+            || {
+                let first = packet * L::N;
+                let inputs = &inputs[first..inputs.len().min(first + L::N)];
+                let m = Packet::with_count(lanes, inputs.len());
+                let args = A::from_lanes(
+                    &m,
+                    #[inline(always)]
+                    |l| inputs[l.min(inputs.len() - 1)],
+                );
+                let result = kernel(&m, args);
+                for (l, out) in outputs[first..].iter().take(inputs.len()).enumerate() {
+                    out.set(R::lane(&result, l));
+                }
+            },
+        );
     });
 }
 

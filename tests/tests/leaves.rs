@@ -2,7 +2,9 @@
 //! packets, and as the binary tree under them.
 
 use core::fmt::Debug;
+use std::sync::Mutex;
 
+use raydsl::bvh::{Accelerated, Accelerator};
 use raydsl::machine::{Lanes, Machine, Packet};
 use raydsl::prelude::*;
 use raydsl::{Type, kernel};
@@ -382,20 +384,26 @@ fn sorted_rays() {
     for range in [0..511, 0..512, 3..516, 5..2048, 3000..12_000, 0..12_000] {
         assert_eq!(scene.any_hits(&rays[range.clone()]), found[range]);
     }
-    // More of a packet than can be sorted at once.
+    // More of a packet than can be sorted at once, and some that are none.
     let kernel = kernel!(|ray: Ray| {
-        let all = scene.any_hit_each::<400>(|i: u32| {
-            let t_max = ray.t_max * (1.0 + 0.01 * i as f32);
-            ray.with_range(ray.t_min, t_max)
+        let all = scene.any_hit_each::<600>(|i: u32| {
+            let direction = ray.direction * if i % 10 == 0 { f32::NAN } else { 1.0 };
+            Ray { direction, t_max: ray.t_max * (1.0 + 0.01 * i as f32), ..ray }
         });
         let mut count = 0u32;
         for is_hit in &all {
             count += if *is_hit { 1u32 } else { 0u32 };
         }
-        (all[0], count)
+        (all[0], all[1], count)
     });
-    let inputs: Vec<(Ray,)> = rays.iter().step_by(50).map(|ray| (*ray,)).collect();
+    let inputs: Vec<(Ray,)> = rays.iter().step_by(70).map(|ray| (*ray,)).collect();
     assert_packets(&kernel, &inputs);
+    // One ray of a packet, by a thread that has asked nothing before.
+    for input in inputs.iter().step_by(9) {
+        std::thread::scope(|scope| {
+            scope.spawn(|| assert_packets(&kernel, &[*input]));
+        });
+    }
 }
 
 /// A gang's packets ask about different scenes, in different rounds of loops, and end when they
@@ -448,6 +456,46 @@ fn gangs_of_packets() {
         let same = alone.pixels().iter().zip(together.pixels());
         assert!(same.into_iter().all(|(a, b)| bits(a) == bits(b)), "{lanes} {edge}");
     }
+}
+
+/// A structure that asks another scene while it looks for candidates, with its lock held, and takes
+/// up other work of the pool.
+struct Asking<'a> {
+    balls: &'a Bvh<'a, Ball>,
+    lock: Mutex<usize>,
+}
+
+impl Accelerator for Asking<'_> {
+    fn candidates(&self, ray: &Ray, _limit: f32, meet: &mut dyn FnMut(u32) -> f32) {
+        let mut asked = self.lock.lock().expect("nobody panics");
+        let balls = self.balls;
+        let kernel = kernel!(|ray: Ray| balls.any_hit(ray));
+        let mut met = [false; 40];
+        kernel.run(Variant::Packet8, &[(*ray,); 40], &mut met);
+        *asked += usize::from(met[39]);
+        drop(asked);
+        rayon::join(|| balls.any_hit(*ray), || balls.closest_hit(*ray));
+        (0..60).for_each(|id| _ = meet(id));
+    }
+}
+
+#[test]
+fn gangs_leave_nothing_halfway() {
+    let mut rng = Rng::of("gangs and locks");
+    let (faces, prims) = (triangles(&mut rng, 50), balls(&mut rng, 60));
+    let (faces, balls) =
+        (leaves(&faces, BuildQuality::Balanced), leaves(&prims, BuildQuality::Balanced));
+    let scene = Accelerated::new(&prims, Asking { balls: &balls, lock: Mutex::default() });
+    let kernel = kernel!(|ray: Ray| {
+        let face = faces.closest_hit(ray);
+        let ball = scene.closest_hit(ray);
+        (face.t, ball.t, faces.any_hit(ray.with_range(0.0, ball.t)))
+    });
+    let rays = rays(&mut rng, 600);
+    assert_packets(&kernel, &rays);
+    let mut found = vec![(0.0, 0.0, false); rays.len()];
+    let scheduler = TiledScheduler::new();
+    scheduler.batch(&kernel, &rays, &mut found);
 }
 
 /// A tree, rays, and what they meet.

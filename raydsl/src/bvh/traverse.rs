@@ -5,6 +5,7 @@ use core::mem::MaybeUninit;
 use super::instances::Descent;
 use super::slabs::{Allowance, Slabs};
 use super::view::Branches;
+use super::wide::fibers::Alone;
 use super::wide::single;
 use super::{Accelerator, MAX_DEPTH, Node, Part, Placed, SceneView};
 use crate::Type;
@@ -424,6 +425,8 @@ fn find<C: Count>(
     mut visit: impl FnMut(u32, &mut f32, &mut C) -> bool,
 ) -> bool {
     let mut stopped = false;
+    // What it asks on its way it is told at once.
+    let _alone = Alone::begin();
     accelerator.candidates(ray, *limit, &mut |id| {
         // It may go on after all, or name what is not there.
         if !stopped && (id as usize) < len {

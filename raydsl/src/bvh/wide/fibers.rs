@@ -18,8 +18,8 @@ use super::trace::Scratch;
 /// How many packets may go on together.
 const MOST: usize = 64;
 
-/// Bytes of address space for a stack, as threads have; what is not used is never memory.
-const STACK: usize = 2 << 20;
+/// Bytes of address space for a stack, as a main thread has; what is not used is never memory.
+const STACK: usize = 8 << 20;
 
 /// A packet's stack. Stacks begin at different places within a page: what runs on one would else
 /// take the caches' lines from what runs on the others, which does the same.
@@ -61,7 +61,7 @@ type Fiber = Coroutine<Turn, (), (), Stagger>;
 
 /// Packets that go on together.
 #[derive(Default)]
-struct Crew {
+pub(crate) struct Crew {
     /// Queries that more packets may join.
     open: RefCell<Vec<Batch>>,
     /// That whose packets are going on.
@@ -73,6 +73,8 @@ struct Crew {
     #[expect(clippy::vec_box, reason = "queries take it as it is")]
     spare: RefCell<Vec<Box<Scratch>>>,
     stacks: RefCell<Vec<Stagger>>,
+    /// Room for the fibers of a run, of which there are none between two.
+    fibers: Cell<Vec<Option<Fiber>>>,
 }
 
 /// What several packets ask.
@@ -85,6 +87,9 @@ struct Batch {
 
 /// Packets whose key is the same ask the same of the same scene: the function that answers, and
 /// where the scene lies.
+///
+/// The scene of a packet that waits is borrowed, so no other one lies there; and the function is
+/// that of its type of primitives, or one of the same code.
 pub(super) type Key = (usize, [usize; 3]);
 
 thread_local! {
@@ -94,11 +99,29 @@ thread_local! {
     static CURRENT: Cell<Option<NonNull<Crew>>> = const { Cell::new(None) };
 }
 
+/// While it is there, no packet of this thread waits for others: nothing of the host's is left
+/// halfway, with its locks held and its jobs taken.
+pub(crate) struct Alone(Option<NonNull<Crew>>);
+
+impl Alone {
+    pub(crate) fn begin() -> Self {
+        Self(CURRENT.take())
+    }
+}
+
+impl Drop for Alone {
+    fn drop(&mut self) {
+        CURRENT.set(self.0);
+    }
+}
+
 /// Runs `job` for each number below `count`, `at_once` of them in turn so that their queries are
 /// answered together. One that never asks takes no stack from the others.
 pub(crate) fn each(count: usize, at_once: usize, job: &dyn Fn(usize)) {
+    // What a packet of another crew runs it runs to the end.
+    let _alone = Alone::begin();
     let at_once = at_once.min(count).min(MOST);
-    if at_once < 2 || CURRENT.get().is_some() {
+    if at_once < 2 {
         (0..count).for_each(job);
         return;
     }
@@ -124,16 +147,16 @@ type Panic = Box<dyn Any + Send>;
 impl Crew {
     /// Runs `job` again and again, by as many fibers in turn, until it says that there are none left.
     fn run(&self, at_once: usize, job: &dyn Fn() -> bool) -> Result<(), Panic> {
-        let mut fibers: [Option<Fiber>; MOST] = [const { None }; MOST];
+        let mut fibers = self.fibers.take();
         for number in 0..at_once {
             let Some(stack) = self.stack(number) else { break };
             let run = |yielder: &Yielder<Turn, ()>, _: Turn| {
                 self.yielder.set(Some(yielder.into()));
                 while job() {}
             };
-            // SAFETY: what the function borrows outlives the fibers, which are dropped at the end
-            // of this call.
-            fibers[number] = Some(unsafe { Coroutine::with_stack_unchecked(stack, run) });
+            // SAFETY: what the function borrows outlives the fibers, which are dropped before this
+            // call returns.
+            fibers.push(Some(unsafe { Coroutine::with_stack_unchecked(stack, run) }));
             self.resume(&mut fibers, number, Turn::GoOn)?;
             if fibers[number].is_none() {
                 // It has done all jobs that were left.
@@ -151,6 +174,8 @@ impl Crew {
             }
             self.spare.borrow_mut().extend(self.closed.take().map(|batch| batch.scratch));
         }
+        fibers.clear();
+        self.fibers.set(fibers);
         Ok(())
     }
 
@@ -212,10 +237,10 @@ pub(super) fn ask(
         unreachable!("a fiber goes on with its query")
     };
     if turn == Turn::Ask {
-        // A primitive may ask another scene meanwhile, and does not wait then.
-        CURRENT.set(None);
+        // A primitive may ask another scene meanwhile, and does not wait then. If it panics, so do
+        // all packets: nothing on their stacks catches it.
+        let _alone = Alone::begin();
         answer(&mut batch.scratch);
-        CURRENT.set(Some(current));
     }
     read(&batch.scratch, first);
     crew.closed.set(Some(batch));
@@ -263,17 +288,20 @@ mod tests {
         assert!(sizes.len() < 20 && sizes.iter().all(|&n| n > 0 && n <= 16), "{sizes:?}");
     }
 
+    /// What runs within a packet, as a job that a thread of a pool takes up while it waits, does so
+    /// to its end.
     #[test]
-    fn crews_within_crews_go_one_by_one() {
-        let count = Cell::new(0);
+    fn crews_within_crews_do_not_wait_for_them() {
+        let (count, held) = (Cell::new(0), RefCell::new(()));
         each(4, 4, &|_| {
-            ask((1, [0; 3]), |_| 0, |_| (), |_, _| ());
-            each(3, 3, &|_| {
-                assert!(ask((2, [0; 3]), |_| 0, |_| (), |_, _| ()), "as the packet that it is in");
-                count.set(count.get() + 1);
-            });
+            assert!(ask((1, [0; 3]), |_| 0, |_| (), |_, _| ()));
+            let _held = held.borrow_mut();
+            assert_eq!(asked_together(6, 3, |_| 1), [3, 3]);
+            let _alone = Alone::begin();
+            assert!(!ask((2, [0; 3]), |_| 0, |_| (), |_, _| ()), "alone");
+            count.set(count.get() + 1);
         });
-        assert_eq!(count.get(), 12);
+        assert_eq!(count.get(), 4);
     }
 
     #[test]

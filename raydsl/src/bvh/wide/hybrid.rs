@@ -24,11 +24,13 @@ pub(super) const FEWEST: u32 = 512;
 /// Where no more rays than this enter a box, they go their own ways from there.
 const APART: u32 = 16;
 
-/// How much directions of a packet may differ, more than where its rays stay together.
-const SPREAD: f32 = 2.0;
+/// Directions may differ as they like: the order keeps them near each other, and rays that part
+/// come apart.
+const SPREAD: f32 = f32::INFINITY;
 
-/// So many boxes a ray may keep for its own way.
-const KEPT: usize = 40;
+/// So many boxes a ray may keep for its own way. Tests of the library make do with few, so that rays
+/// stay together for want of room.
+const KEPT: usize = if cfg!(test) { 3 } else { 40 };
 
 /// So many rays at once come from the order: what they need lies in a cache of the second level.
 const SOME: usize = 512;
@@ -104,6 +106,9 @@ fn go_together<R: Lanes, P: Primitive>(
 /// Keeps a child for the own way of some rays of a group.
 #[inline(always)]
 fn keep(rays: &mut Rays, turns: &mut Turns<'_>, group: usize, mut members: u32, child: Child) {
+    if members == 0 {
+        return;
+    }
     let tops = rays.row_mut(group, row::TOP);
     while members != 0 {
         let lane = members.trailing_zeros() as usize;
@@ -181,7 +186,7 @@ fn walk<R: Lanes, P: Primitive>(
                 continue;
             }
             if entered <= APART && has_room(rays, first, &entering) {
-                for (g, &there) in entering.iter().enumerate() {
+                for (g, &there) in entering[..members.len()].iter().enumerate() {
                     keep(rays, turns, first + g, there, child);
                 }
                 continue;

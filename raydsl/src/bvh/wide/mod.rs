@@ -6,7 +6,12 @@ mod blocks;
 mod collapse;
 mod entry;
 #[cfg_attr(
-    not(all(unix, any(target_arch = "x86_64", target_arch = "aarch64"))),
+    not(all(
+        unix,
+        target_pointer_width = "64",
+        any(target_arch = "x86_64", target_arch = "aarch64"),
+        not(miri)
+    )),
     path = "one_by_one.rs"
 )]
 pub(crate) mod fibers;

@@ -10,8 +10,9 @@ use crate::machine::{Lanes, op};
 const STEPS: u32 = 8;
 const KEYS: usize = (STEPS * STEPS * STEPS) as usize;
 
-/// The most groups whose rays are sorted at once: numbers of rays fit into 16 bits.
+/// The most groups whose rays are sorted at once, so that they stay in a cache of the second level.
 pub(super) const MOST: usize = 256;
+const _: () = assert!(MOST * GROUP <= 1 << 16, "a ray's number has 16 bits below its key");
 
 /// What sorting needs, kept from one query to the next.
 #[derive(Debug, Default)]

@@ -8,7 +8,7 @@ use super::node::{Child, WIDTH, WideNode};
 use super::rays::Rays;
 use super::{Wide, entry};
 use crate::bvh::slabs::Allowance;
-use crate::bvh::{BuildConfig, BuildQuality, Bvh, Storage};
+use crate::bvh::{BuildConfig, BuildQuality, Bvh, RayQuery, Storage};
 use crate::geometry::{Aabb, Ray, Triangle};
 use crate::machine::Simd8;
 
@@ -151,4 +151,29 @@ fn nothing_is_a_tree_too() {
     let config = BuildConfig::from(Storage::Leaves);
     let bvh = Bvh::<Triangle>::build_with(&[], &config).expect("nothing");
     assert!(bvh.tree.own.wide.as_ref().is_some_and(|tree| tree.bytes() == 0));
+}
+
+/// Rays keep few boxes for their own way here, so that packets stay together for want of room.
+#[test]
+fn sorted_rays_meet_what_each_meets() {
+    for count in [20, 3000] {
+        let prims = triangles(count);
+        let bvh = Bvh::build_with(&prims, &Storage::Leaves.into()).expect("finite bounds");
+        for case in 0..12 {
+            let number = [511, 512, 600, 2048, 2500, 5000][case as usize % 6];
+            let spread = if case < 6 { 0.05 } else { 2.0 };
+            let rays: Vec<Ray> = (0..number)
+                .map(|i| {
+                    let origin = point(i, case) * if i % 40 == 3 { 1e30 } else { 4.0 };
+                    let direction =
+                        point(7, case) + 0.1 + point(i, case + 50) * spread - spread / 2.0;
+                    let direction = if i % 9 == 5 { Vec3::NAN } else { direction };
+                    Ray { t_max: 9.0, ..Ray::new(origin, direction) }
+                })
+                .collect();
+            let expected: Vec<bool> = rays.iter().map(|ray| prims.any_hit(*ray)).collect();
+            let found = std::thread::scope(|scope| scope.spawn(|| bvh.any_hits(&rays)).join());
+            assert_eq!(found.expect("no panic"), expected, "{count} {case}");
+        }
+    }
 }
