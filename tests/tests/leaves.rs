@@ -372,7 +372,7 @@ fn sorted_rays() {
         };
         let size = if i % 100 == 60 { 1e30 } else { 1.0 };
         let origin = (vec3(0.5, -1.0, 1.0) + rng.point(0.1)) * size;
-        let t_min = if i % 3 == 0 { -0.5 * length } else { 0.0 };
+        let t_min = if i.is_multiple_of(3) { -0.5 * length } else { 0.0 };
         Ray { t_min, t_max: length, ..Ray::new(origin, direction) }
     };
     let mut rays: Vec<Ray> = (0..12_000).map(&mut ray).collect();
@@ -387,7 +387,8 @@ fn sorted_rays() {
     // More of a packet than can be sorted at once, and some that are none.
     let kernel = kernel!(|ray: Ray| {
         let all = scene.any_hit_each::<600>(|i: u32| {
-            let direction = ray.direction * if i % 10 == 0 { f32::NAN } else { 1.0 };
+            let tenth = i % 10;
+            let direction = ray.direction * if tenth == 0 { f32::NAN } else { 1.0 };
             Ray { direction, t_max: ray.t_max * (1.0 + 0.01 * i as f32), ..ray }
         });
         let mut count = 0u32;
