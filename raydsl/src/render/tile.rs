@@ -209,7 +209,8 @@ impl<R> Tile<'_, R> {
         self.render_in_gangs(shot, variant, GANG);
     }
 
-    /// [`Tile::render`] with gangs of so many lanes; see [`Kernel::run_in_gangs`].
+    /// [`Tile::render`] with gangs of so many lanes; see
+    /// [`Kernel::run_in_gangs`](crate::kernel::Kernel::run_in_gangs).
     pub fn render_in_gangs<S: Shot<Output = R>>(
         &mut self,
         shot: &S,
