@@ -178,7 +178,7 @@ fn trees<'p, 'a, T, S>(
 ) -> impl Iterator<Item = (&'p Part<'a, T, S>, Branches<'a>, [u32; 2])> {
     let mut before = [0; 2];
     parts.iter().filter_map(move |part| {
-        let tree = part.tree?;
+        let tree = part.tree()?;
         let here = before;
         before = [here[0] + tree.nodes.len() as u32, here[1] + tree.indices.len() as u32];
         Some((part, tree, here))
@@ -192,7 +192,9 @@ pub(super) fn roots<T, S>(parts: &[Part<'_, T, S>]) -> impl Iterator<Item = u32>
 
 /// The nodes of all trees in one array.
 pub(super) fn nodes<'a, T, S>(parts: &[Part<'a, T, S>]) -> Cow<'a, [u8]> {
-    if let [Part { tree: Some(tree), .. }] = parts {
+    if let [part] = parts
+        && let Some(tree) = part.tree()
+    {
         return Cow::Borrowed(cast_slice(tree.nodes));
     }
     let moved = trees(parts).flat_map(|(_, tree, [nodes, indices])| {
@@ -206,7 +208,9 @@ pub(super) fn nodes<'a, T, S>(parts: &[Part<'a, T, S>]) -> Cow<'a, [u8]> {
 
 /// The index lists of all trees in one array, of numbers that count through the list.
 pub(super) fn indices<'a, T, S>(parts: &[Part<'a, T, S>]) -> Cow<'a, [u8]> {
-    if let [Part { tree: Some(tree), first: 0, .. }] = parts {
+    if let [part @ Part { first: 0, .. }] = parts
+        && let Some(tree) = part.tree()
+    {
         return Cow::Borrowed(cast_slice(tree.indices));
     }
     let moved = trees(parts)

@@ -24,6 +24,7 @@ mod ray_query;
 mod refit;
 pub(crate) mod slabs;
 mod stats;
+mod structure;
 pub mod traverse;
 pub(crate) mod traverse_packet;
 mod validate;
@@ -47,6 +48,7 @@ pub use ray_query::RayQuery;
 pub use refit::{DetachedBvh, RefitError};
 pub(crate) use slabs::Allowance;
 pub use stats::Statistics;
+use structure::Structure;
 pub use traverse::Cost;
 pub(crate) use traverse::nearest_counted;
 #[doc(hidden)]
@@ -80,10 +82,7 @@ pub struct Bvh<'a, P: Primitive> {
 /// What is a tree's own, and outlives the borrow of its primitives.
 #[derive(Debug)]
 struct Owned {
-    nodes: Vec<Node>,
-    indices: Vec<u32>,
-    /// The tree that most queries go through, with [`Storage::Leaves`].
-    wide: Option<wide::Wide>,
+    structure: Structure,
     config: BuildConfig,
     owner: Owner,
     /// How often it has been refitted.
@@ -189,11 +188,8 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         }
         let source = build::Primitives { prims, shared };
         let tree = build::build_watched(&source, prims.len(), config, observer)?;
-        let wide = wide::of(&tree.nodes, &tree.indices, config, prims, shared);
         let own = Owned {
-            nodes: tree.nodes,
-            indices: tree.indices,
-            wide,
+            structure: Structure::of(tree, config, prims, shared),
             config: *config,
             owner: Owner::new(),
             version: 0,
@@ -212,14 +208,15 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         self.tree.shared
     }
 
-    /// The nodes; the root is the first, children are adjacent.
+    /// The nodes of the binary tree; the root is the first, children are adjacent. With
+    /// [`Storage::Leaves`] it is made, and kept, when it is first asked for.
     pub fn nodes(&self) -> &[Node] {
-        &self.tree.own.nodes
+        &self.tree.own.structure.binary().nodes
     }
 
-    /// The index list that leaves refer to.
+    /// The index list that the leaves of the binary tree refer to, as [`Bvh::nodes`].
     pub fn indices(&self) -> &[u32] {
-        &self.tree.own.indices
+        &self.tree.own.structure.binary().indices
     }
 
     /// What the tree was built with.
@@ -229,15 +226,13 @@ impl<'a, P: Primitive> Bvh<'a, P> {
 
     /// A box around everything; empty without primitives.
     pub fn bounds(&self) -> Aabb {
-        self.tree.own.nodes.first().map_or(Aabb::EMPTY, Node::bounds)
+        self.tree.own.structure.bounds()
     }
 
-    /// Bytes of the tree itself, with the copies of primitives that [`Storage::Leaves`] makes; the
-    /// primitives are the application's.
+    /// Bytes of the tree itself, with the copies of primitives that [`Storage::Leaves`] makes, and
+    /// with its binary tree if anything has asked for that; the primitives are the application's.
     pub fn bytes(&self) -> usize {
-        let own = &self.tree.own;
-        let wide = own.wide.as_ref().map_or(0, wide::Wide::bytes);
-        size_of_val(&own.nodes[..]) + size_of_val(&own.indices[..]) + wide
+        self.tree.own.structure.bytes()
     }
 
     /// The view that kernels work on.

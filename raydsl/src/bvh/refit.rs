@@ -9,7 +9,7 @@ use core::marker::PhantomData;
 use thiserror::Error;
 
 use super::view::Tree;
-use super::{BuildError, Bvh, Owned, build, stats, wide};
+use super::{BuildError, Bvh, Owned, stats};
 use crate::geometry::{Kinds, Primitive};
 
 /// A tree without its primitives, which the application may change meanwhile.
@@ -103,11 +103,9 @@ impl<P: Primitive> Bvh<'_, P> {
     /// The cost is that of rays that meet the box of the tree: a single primitive that leaves all
     /// others far behind enlarges that box, and lowers it. Takes one pass over the nodes.
     pub fn cost_growth(&self) -> f64 {
-        let now = stats::sah_cost(&self.tree.own.nodes, &self.tree.own.config);
-        match self.tree.own.built_cost {
-            Some(built) if built != now => now / built,
-            _ => 1.0,
-        }
+        let Some(built) = self.tree.own.built_cost else { return 1.0 };
+        let now = stats::sah_cost(self.nodes(), self.config());
+        if built == now { 1.0 } else { now / built }
     }
 }
 
@@ -143,14 +141,18 @@ impl<P: Primitive> DetachedBvh<P> {
         prims: &'b [P],
         shared: &'b [P::Shared],
     ) -> Result<Bvh<'b, P>, RefitError> {
-        let Self { mut own, count: before, .. } = self;
+        let Self { own, count: before, .. } = self;
         if prims.len() != before {
             return Err(RefitError::CountChanged { before, now: prims.len() });
         }
-        own.built_cost.get_or_insert_with(|| stats::sah_cost(&own.nodes, &own.config));
-        build::refit(&mut own.nodes, &own.indices, before, |k| prims[k].get_bounds(shared))?;
-        own.wide = wide::of(&own.nodes, &own.indices, &own.config, prims, shared);
-        own.version = own.version.wrapping_add(1);
+        let cost = || stats::sah_cost(&own.structure.binary().nodes, &own.config);
+        let built_cost = own.built_cost.unwrap_or_else(cost);
+        let own = Owned {
+            structure: own.structure.refit(&own.config, prims, shared)?,
+            version: own.version.wrapping_add(1),
+            built_cost: Some(built_cost),
+            ..own
+        };
         Ok(Bvh { tree: Tree { prims, shared, own, kinds: Kinds::of(prims) } })
     }
 

@@ -1,5 +1,6 @@
 //! What a tree is like: its size, its shape, what a ray may expect of it.
 
+use super::build::Tree;
 use super::{BuildConfig, Bvh, Node};
 use crate::geometry::{Aabb, Primitive};
 
@@ -32,7 +33,7 @@ pub struct Statistics {
 }
 
 impl<P: Primitive> Bvh<'_, P> {
-    /// Counts what the tree is like; takes one pass over its nodes.
+    /// Counts what the binary tree is like; takes one pass over its nodes.
     ///
     /// ```
     /// use raydsl::prelude::*;
@@ -51,7 +52,8 @@ impl<P: Primitive> Bvh<'_, P> {
     /// # Ok::<(), raydsl::bvh::BuildError>(())
     /// ```
     pub fn statistics(&self) -> Statistics {
-        let (nodes, primitives) = (self.nodes(), self.primitives().len());
+        let tree = self.tree.own.structure.peek();
+        let (Tree { nodes, indices }, primitives) = (&*tree, self.primitives().len());
         let leaves = || nodes.iter().filter(|node| node.is_leaf());
         let ratio = |a: usize, b: usize, of_nothing: f64| match b {
             0 => of_nothing,
@@ -62,10 +64,10 @@ impl<P: Primitive> Bvh<'_, P> {
             nodes: nodes.len(),
             leaves: leaves().count(),
             depth: depth(nodes),
-            mean_leaf_size: ratio(self.indices().len(), leaves().count(), 0.0),
+            mean_leaf_size: ratio(indices.len(), leaves().count(), 0.0),
             max_leaf_size: leaves().map(|leaf| leaf.count as usize).max().unwrap_or(0),
             bytes: self.bytes(),
-            duplication: ratio(self.indices().len(), primitives, 1.0),
+            duplication: ratio(indices.len(), primitives, 1.0),
         }
     }
 }

@@ -4,7 +4,7 @@ use core::mem::MaybeUninit;
 
 use super::instances::Descent;
 use super::slabs::{Allowance, Slabs};
-use super::view::Branches;
+use super::view::{Branches, Finder};
 use super::wide::fibers::Alone;
 use super::wide::single;
 use super::{Accelerator, MAX_DEPTH, Node, Part, Placed, SceneView};
@@ -407,10 +407,13 @@ fn walk_part<P: Primitive, C: Count>(
         count.primitive();
         visit(&Candidate { part, ray, inst, id }, limit)
     };
-    match (part.tree, part.accelerator) {
-        (Some(tree), _) => walk(tree, ray, Allowance::of::<P>(), limit, count, visit),
-        (None, Some(accelerator)) => find(accelerator, part.prims.len(), ray, limit, count, visit),
-        (None, None) => (0..part.prims.len() as u32).any(|id| visit(id, limit, count)),
+    let len = part.prims.len();
+    match part.finder {
+        Finder::Trees(trees) => {
+            walk(trees.branches(), ray, Allowance::of::<P>(), limit, count, visit)
+        }
+        Finder::Accelerator(accelerator) => find(accelerator, len, ray, limit, count, visit),
+        Finder::Nothing => (0..len as u32).any(|id| visit(id, limit, count)),
     }
 }
 

@@ -397,7 +397,7 @@ fn walk_part<L: Lanes, P: Primitive>(
     // A slice is one leaf, which every ray meets.
     let mut leaf = Leaf { begin: 0, end: part.prims.len(), mask: *alive };
     let mut descent = None;
-    if let Some(tree) = part.tree {
+    if let Some(tree) = part.tree() {
         let Some(root) = tree.nodes.first() else { return };
         let slabs = PacketSlabs::new(l, ray, *alive, root, Allowance::of::<P>());
         let (enter, hit) = slabs.enter(l, root, *limit);

@@ -148,7 +148,8 @@ pub enum TreeFault {
 /// last.
 pub fn validate<P: Primitive>(bvh: &Bvh<'_, P>) -> Result<(), TreeFault> {
     let source = Primitives { prims: bvh.primitives(), shared: bvh.shared() };
-    check(bvh.nodes(), bvh.indices(), bvh.primitives().len(), &source)
+    let tree = bvh.tree.own.structure.peek();
+    check(&tree.nodes, &tree.indices, bvh.primitives().len(), &source)
 }
 
 /// [`validate`], for the parts of a tree over `count` primitives.

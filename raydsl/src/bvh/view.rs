@@ -7,6 +7,7 @@ use glam::Affine3;
 use super::instances::Placed;
 use super::owner::Owner;
 use super::slabs::Allowance;
+use super::structure::Structure;
 use super::wide::Wide;
 use super::{Accelerator, Node, Owned, bytes_of, list, slice_key};
 use crate::geometry::{Kinds, Primitive, Ray};
@@ -42,15 +43,20 @@ pub(crate) struct Branches<'a> {
     pub(crate) indices: &'a [u32],
 }
 
-/// Primitives, what they share, and what finds them if there is anything.
+/// What finds the primitives that a ray may meet.
+#[derive(Clone, Copy)]
+pub(crate) enum Finder<'a> {
+    /// Nothing: all are asked.
+    Nothing,
+    Trees(&'a Structure),
+    Accelerator(&'a dyn Accelerator),
+}
+
+/// Primitives, what they share, and what finds them.
 pub(crate) struct Part<'a, T, S> {
     pub(crate) prims: &'a [T],
     pub(crate) shared: &'a [S],
-    pub(crate) tree: Option<Branches<'a>>,
-    /// The wide tree over the same primitives, if there is one.
-    pub(crate) wide: Option<&'a Wide>,
-    /// What finds the primitives where there is no tree; without it all are asked.
-    pub(crate) accelerator: Option<&'a dyn Accelerator>,
+    pub(crate) finder: Finder<'a>,
     /// The number of its first primitive, among those of a list.
     pub(crate) first: u32,
 }
@@ -71,6 +77,26 @@ impl<T, S> Clone for Part<'_, T, S> {
 
 impl<T, S> Copy for Part<'_, T, S> {}
 
+impl<'a, T, S> Part<'a, T, S> {
+    /// The binary tree, if trees stand over the primitives.
+    #[inline(always)]
+    pub(crate) fn tree(&self) -> Option<Branches<'a>> {
+        match self.finder {
+            Finder::Trees(structure) => Some(structure.branches()),
+            _ => None,
+        }
+    }
+
+    /// The wide tree, if there is one.
+    #[inline(always)]
+    pub(crate) fn wide(&self) -> Option<&'a Wide> {
+        match self.finder {
+            Finder::Trees(structure) => structure.wide(),
+            _ => None,
+        }
+    }
+}
+
 /// A tree: its primitives, what they share, and what is its own.
 #[derive(Debug)]
 pub(crate) struct Tree<'a, T, S> {
@@ -83,16 +109,8 @@ pub(crate) struct Tree<'a, T, S> {
 impl<T, S> Tree<'_, T, S> {
     #[inline(always)]
     pub(super) fn part(&self) -> Part<'_, T, S> {
-        let own = &self.own;
-        let tree = Some(Branches { nodes: &own.nodes, indices: &own.indices });
-        Part {
-            prims: self.prims,
-            shared: self.shared,
-            tree,
-            wide: own.wide.as_ref(),
-            accelerator: None,
-            first: 0,
-        }
+        let finder = Finder::Trees(&self.own.structure);
+        Part { prims: self.prims, shared: self.shared, finder, first: 0 }
     }
 }
 
@@ -117,9 +135,8 @@ pub(crate) struct Standing<'a, T, S> {
 impl<T, S> Standing<'_, T, S> {
     #[inline(always)]
     fn part(&self) -> Part<'_, T, S> {
-        let (prims, shared) = (self.prims, self.shared);
-        let accelerator = Some(&*self.accelerator);
-        Part { prims, shared, tree: None, wide: None, accelerator, first: 0 }
+        let finder = Finder::Accelerator(&*self.accelerator);
+        Part { prims: self.prims, shared: self.shared, finder, first: 0 }
     }
 }
 
@@ -259,14 +276,9 @@ impl<'a, T, S> View<'a, T, S> {
     #[inline(always)]
     pub(crate) fn part(&self, i: usize) -> Option<Part<'a, T, S>> {
         match self.scene {
-            Scene::Slice(prims) => (i == 0).then_some(Part {
-                prims,
-                shared: &[],
-                tree: None,
-                wide: None,
-                accelerator: None,
-                first: 0,
-            }),
+            Scene::Slice(prims) => {
+                (i == 0).then_some(Part { prims, shared: &[], finder: Finder::Nothing, first: 0 })
+            }
             Scene::Standing(standing) => (i == 0).then(|| standing.part()),
             Scene::Tree(tree) => (i == 0).then(|| tree.part()),
             Scene::List(trees) => trees.parts.get(i).copied(),
@@ -375,7 +387,7 @@ impl<'a, T, S> View<'a, T, S> {
 
     /// How many nodes and how many indices.
     pub(crate) fn tree_len(&self) -> (u64, u64) {
-        let trees = self.parts().filter_map(|part| part.tree);
+        let trees = self.parts().filter_map(|part| part.tree());
         let groups = self.placed().map_or((0, 0), Placed::group_len);
         trees.fold(groups, |(n, i), t| (n + t.nodes.len() as u64, i + t.indices.len() as u64))
     }

@@ -66,7 +66,7 @@ impl<T, S> Placed<'_, T, S> {
 
     /// How many nodes and indices stand before those of the groups.
     fn len_of_trees(&self) -> [u32; 2] {
-        let trees = self.trees.parts.iter().filter_map(|part| part.tree);
+        let trees = self.trees.parts.iter().filter_map(|part| part.tree());
         trees.fold([0, 0], |[nodes, indices], tree| {
             [nodes + tree.nodes.len() as u32, indices + tree.indices.len() as u32]
         })
@@ -145,7 +145,7 @@ impl<T, S> Placed<'_, T, S> {
 
     /// The root of every tree among the nodes of all.
     fn tree_roots(&self) -> Vec<u32> {
-        let lens = self.trees.parts.iter().map(|part| part.tree.map_or(0, |t| t.nodes.len()));
+        let lens = self.trees.parts.iter().map(|part| part.tree().map_or(0, |t| t.nodes.len()));
         roots(0, lens)
     }
 

@@ -203,7 +203,7 @@ impl Placing {
 
 impl<'a, T, S> Placed<'a, T, S> {
     pub(super) fn new(trees: Trees<'a, T, S>, allowance: Allowance) -> Self {
-        let nodes = trees.parts.iter().map(|part| part.tree.map_or(&[][..], |tree| tree.nodes));
+        let nodes = trees.parts.iter().map(|part| part.tree().map_or(&[][..], |tree| tree.nodes));
         let depths = nodes.map(stats::depth).collect();
         Self { trees, allowance, depths, groups: Vec::new(), version: 0 }
     }
@@ -253,7 +253,7 @@ impl<T, S> Placed<'_, T, S> {
     fn see(&self, target: Target) -> Seen {
         match target {
             Target::Tree(tree) => {
-                let nodes = self.trees.parts[tree as usize].tree.map_or(&[][..], |t| t.nodes);
+                let nodes = self.trees.parts[tree as usize].tree().map_or(&[][..], |t| t.nodes);
                 Seen {
                     bounds: nodes.first().map_or(Aabb::EMPTY, Node::bounds),
                     allowance: self.allowance,

@@ -9,9 +9,8 @@ use glam::Vec3;
 
 use super::rays::{GROUP, HUGE, Rays, lanes_mask, load, row};
 use super::step::Slabs;
-use crate::bvh::Node;
 use crate::bvh::slabs::{Allowance, ULP, finite_inverse};
-use crate::geometry::Ray;
+use crate::geometry::{Aabb, Ray};
 use crate::machine::{Lanes, op};
 
 /// A bundle of rays that go up or down along each axis together.
@@ -142,7 +141,7 @@ impl Beam {
         first: usize,
         members: &[u32],
         most: f32,
-        root: &Node,
+        root: &Aabb,
         allowance: Allowance,
     ) -> Option<Self> {
         let t_min = extent(e, rays, first, members, row::T_MIN).least;
@@ -164,7 +163,7 @@ impl Beam {
 
     /// The beam of one ray, up to a limit; none where products may overflow.
     #[inline(always)]
-    pub(super) fn of_one(ray: &Ray, limit: f32, root: &Node, allowance: Allowance) -> Option<Self> {
+    pub(super) fn of_one(ray: &Ray, limit: f32, root: &Aabb, allowance: Allowance) -> Option<Self> {
         let inverse = finite_inverse(ray.direction);
         let span = root.min.abs().max(root.max.abs()).max_element();
         let is_tame = (inverse.abs() * (ray.origin.abs() + span)).cmplt(Vec3::splat(HUGE));
@@ -199,7 +198,7 @@ impl Beam {
 
 /// By how much boxes are widened, for rays with these origins.
 #[inline(always)]
-pub(super) fn pad(origins: &[Extent; 3], root: &Node, allowance: Allowance) -> f32 {
+pub(super) fn pad(origins: &[Extent; 3], root: &Aabb, allowance: Allowance) -> f32 {
     let (low, high) = (root.min.to_array(), root.max.to_array());
     let (mut reach, mut largest) = (0.0f32, 0.0f32);
     for (axis, o) in origins.iter().enumerate() {

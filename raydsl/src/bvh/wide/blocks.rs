@@ -18,6 +18,8 @@ pub(crate) struct Row(pub(crate) [u32; WIDTH]);
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blocks {
     rows: Vec<Row>,
+    /// How many rows a block has.
+    height: usize,
 }
 
 /// Blocks that a thread fills at once.
@@ -36,7 +38,7 @@ impl Blocks {
                 fill(block, prims, ids, &mut bytes);
             }
         });
-        Self { rows }
+        Self { rows, height }
     }
 
     /// The rows of a block of these primitives, the last one their numbers.
@@ -44,6 +46,13 @@ impl Blocks {
     pub(crate) fn block<P: Primitive>(&self, index: usize) -> &[Row] {
         let height = const { words_of::<P>() + 1 };
         &self.rows[index * height..][..height]
+    }
+
+    /// The numbers of a block's primitives, each once.
+    pub(super) fn members(&self, index: usize) -> &[u32] {
+        let Row(ids) = &self.rows[(index + 1) * self.height - 1];
+        let again = ids[1..].iter().position(|&id| id == ids[0]);
+        &ids[..again.map_or(WIDTH, |k| k + 1)]
     }
 
     pub(crate) fn bytes(&self) -> usize {

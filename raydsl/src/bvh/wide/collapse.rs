@@ -106,10 +106,48 @@ struct Emission<'a> {
     made: Collapsed,
 }
 
-/// The binary nodes that become the children of a wide one.
+/// The binary nodes that become the children of a wide one, and how those between join them.
+#[derive(Default)]
 struct Children {
     nodes: [usize; WIDTH],
     count: usize,
+    joints: [[u8; 2]; WIDTH - 1],
+    joint_count: usize,
+}
+
+impl Children {
+    fn add(&mut self, node: usize) -> u8 {
+        self.nodes[self.count] = node;
+        self.count += 1;
+        self.count as u8 - 1
+    }
+
+    fn join(&mut self, members: [u8; 2]) -> u8 {
+        self.joints[self.joint_count] = members;
+        self.joint_count += 1;
+        (WIDTH + self.joint_count - 1) as u8
+    }
+
+    /// Orders the children, the one of least `worth` first.
+    fn sort(&mut self, worth: impl Fn(usize) -> f32) {
+        let count = self.count;
+        let mut order: [u8; WIDTH] = core::array::from_fn(|k| k as u8);
+        let mut worths = [0.0; WIDTH];
+        for (of_child, &node) in worths.iter_mut().zip(&self.nodes[..count]) {
+            *of_child = worth(node);
+        }
+        order[..count].sort_by(|&a, &b| worths[a as usize].total_cmp(&worths[b as usize]));
+        let mut slots = [0; WIDTH];
+        for (slot, &child) in order.iter().enumerate() {
+            slots[child as usize] = slot as u8;
+        }
+        self.nodes = order.map(|child| self.nodes[child as usize]);
+        for member in self.joints[..self.joint_count].as_flattened_mut() {
+            if (*member as usize) < WIDTH {
+                *member = slots[*member as usize];
+            }
+        }
+    }
 }
 
 impl Emission<'_> {
@@ -120,17 +158,15 @@ impl Emission<'_> {
 
     /// Emits a node and what is below it; also how many children may be pending there.
     fn node(&mut self, node: usize) -> (Child, usize) {
-        let mut children = Children { nodes: [0; WIDTH], count: 0 };
-        let (first, left) = (self.nodes[node].first as usize, self.plans[node].left[0] as usize);
-        self.collect(first, left - 1, &mut children);
-        self.collect(first + 1, WIDTH - 1 - left, &mut children);
-        let all = &mut children.nodes[..children.count];
+        let mut children = Children::default();
+        self.split(node, self.plans[node].left[0], WIDTH, &mut children);
         // What is likely to stop a ray, and costs little to find out, comes last.
-        all.sort_by(|a, b| self.worth(*a).total_cmp(&self.worth(*b)));
+        children.sort(|child| self.worth(child));
         let index = self.made.nodes.len();
         self.made.nodes.push(WideNode::EMPTY);
+        self.made.nodes[index].join(&children.joints[..children.joint_count]);
         let mut deepest = 0;
-        for (slot, &child) in all.iter().enumerate() {
+        for (slot, &child) in children.nodes[..children.count].iter().enumerate() {
             let (emitted, pending) = match self.plans[child].left[0] {
                 0 => (self.block(child), 0),
                 _ => self.node(child),
@@ -141,20 +177,23 @@ impl Emission<'_> {
         (Child::node(index as u32), children.count - 1 + deepest.max(1))
     }
 
-    /// Adds the trees of a forest of at most `k + 1` below a node.
-    fn collect(&self, node: usize, k: usize, children: &mut Children) {
-        if k == 0 {
-            children.nodes[children.count] = node;
-            children.count += 1;
-            return;
+    /// Adds the trees of a forest of at most `count` below a node; returns what joins them.
+    fn collect(&self, node: usize, count: usize, children: &mut Children) -> u8 {
+        if count == 1 {
+            return children.add(node);
         }
-        let left = self.plans[node].left[k] as usize;
-        if left == 0 {
-            return self.collect(node, k - 1, children);
+        match self.plans[node].left[count - 1] {
+            0 => self.collect(node, count - 1, children),
+            left => self.split(node, left, count, children),
         }
-        let first = self.nodes[node].first as usize;
-        self.collect(first, left - 1, children);
-        self.collect(first + 1, k - left, children);
+    }
+
+    /// [`Emission::collect`], `left` of the trees from the left side.
+    fn split(&self, node: usize, left: u8, count: usize, children: &mut Children) -> u8 {
+        let (first, left) = (self.nodes[node].first as usize, left as usize);
+        let members = [(first, left), (first + 1, count - left)]
+            .map(|(node, count)| self.collect(node, count, children));
+        children.join(members)
     }
 
     /// The chance that a ray which enters a node's box is stopped there, for each visit. (After

@@ -5,7 +5,6 @@ use super::Wide;
 use super::beam::{Extents, pad};
 use super::node::{Child, WIDTH, WideNode};
 use super::rays::{GROUP, Rays, lanes_mask, load, row};
-use crate::bvh::Node;
 use crate::bvh::slabs::Allowance;
 use crate::geometry::Aabb;
 use crate::machine::Lanes;
@@ -23,7 +22,7 @@ pub(super) fn of<E: Lanes>(
     e: E,
     tree: &Wide,
     rays: &Rays,
-    root: &Node,
+    root: &Aabb,
     allowance: Allowance,
 ) -> Option<WideNode> {
     let count: u32 = rays.marks.iter().map(|marks| marks.alive.count_ones()).sum();
@@ -96,7 +95,7 @@ fn meets(node: &WideNode, slot: usize, bounds: &Aabb) -> bool {
 
 /// A box around what the rays reach; none if some have no end.
 #[inline(always)]
-fn bounds<E: Lanes>(e: E, rays: &Rays, root: &Node, allowance: Allowance) -> Option<Aabb> {
+fn bounds<E: Lanes>(e: E, rays: &Rays, root: &Aabb, allowance: Allowance) -> Option<Aabb> {
     if !have_ends(e, rays) {
         return None;
     }

@@ -13,9 +13,8 @@ use super::rays::{GROUP, Rays, lanes_mask, row};
 use super::step::{Meeting, count, enter};
 use super::trace::Scratch;
 use super::wave::{Turns, each_turn};
-use crate::bvh::Node;
 use crate::bvh::slabs::Allowance;
-use crate::geometry::Primitive;
+use crate::geometry::{Aabb, Primitive};
 use crate::machine::{Entered, Lanes, Packet, op};
 
 /// Fewer rays than this are sooner traced than sorted.
@@ -48,7 +47,7 @@ pub(super) fn any_hit<R: Lanes, E: Lanes, P: Primitive>(
     r: R,
     e: E,
     meeting: &Meeting<'_, P>,
-    root: &Node,
+    root: &Aabb,
     scratch: &mut Scratch,
 ) {
     let Scratch { rays, wave, together, sorted: Sorted { order, some } } = scratch;
@@ -75,7 +74,7 @@ pub(super) fn any_hit<R: Lanes, E: Lanes, P: Primitive>(
 fn go_together<R: Lanes, P: Primitive>(
     r: R,
     meeting: &Meeting<'_, P>,
-    root: &Node,
+    root: &Aabb,
     rays: &mut Rays,
     first: usize,
     together: &mut Together,

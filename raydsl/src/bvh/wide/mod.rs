@@ -2,6 +2,7 @@
 //! one test each, and how many rays go through it.
 
 mod beam;
+mod binary;
 mod blocks;
 mod collapse;
 mod entry;
@@ -27,8 +28,9 @@ mod tests;
 pub(crate) mod trace;
 mod wave;
 
+use super::build::Tree;
 use super::{BuildConfig, Node, Storage};
-use crate::geometry::Primitive;
+use crate::geometry::{Aabb, Primitive};
 use crate::kernel::has_wide_walks;
 use blocks::Blocks;
 use node::WideNode;
@@ -40,34 +42,39 @@ pub(crate) struct Wide {
     blocks: Blocks,
     /// How many children may be pending at once on the way to a leaf.
     pending: usize,
+    bounds: Aabb,
 }
 
 /// The wide tree over `prims`, if the configuration asks for one, and this machine goes through such.
 pub(super) fn of<P: Primitive>(
-    nodes: &[Node],
-    indices: &[u32],
+    tree: &Tree,
     config: &BuildConfig,
     prims: &[P],
     shared: &[P::Shared],
 ) -> Option<Wide> {
-    (config.storage == Storage::Leaves && has_wide_walks())
-        .then(|| Wide::of(nodes, indices, prims, shared))
+    (config.storage == Storage::Leaves && has_wide_walks()).then(|| Wide::of(tree, prims, shared))
 }
 
 impl Wide {
     /// Collapses a binary tree over `prims`.
-    pub(super) fn of<P: Primitive>(
-        nodes: &[Node],
-        indices: &[u32],
-        prims: &[P],
-        shared: &[P::Shared],
-    ) -> Self {
+    pub(super) fn of<P: Primitive>(tree: &Tree, prims: &[P], shared: &[P::Shared]) -> Self {
+        let Tree { nodes, indices } = tree;
         let solidity = |range: collapse::Range| {
             let ids = &indices[range.first as usize..][..range.count as usize];
             ids.iter().map(|&id| 0.5 * prims[id as usize].get_bounds(shared).half_area()).sum()
         };
         let collapse::Collapsed { nodes, blocks, pending } = collapse::collapse(nodes, solidity);
-        Self { nodes, blocks: Blocks::of(prims, indices, &blocks), pending }
+        let bounds = tree.nodes.first().map_or(Aabb::EMPTY, Node::bounds);
+        Self { nodes, blocks: Blocks::of(prims, indices, &blocks), pending, bounds }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// A box around everything.
+    pub(super) fn bounds(&self) -> Aabb {
+        self.bounds
     }
 
     /// Bytes of nodes and leaves.

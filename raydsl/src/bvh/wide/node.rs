@@ -46,6 +46,11 @@ pub(crate) struct WideNode {
     /// Lower and upper planes along x, along y, along z.
     pub(crate) planes: [[f32; WIDTH]; 6],
     pub(crate) children: [u32; WIDTH],
+    /// The binary nodes between this one and its children, the lowest first: what each of them
+    /// joins, slots or, from `WIDTH` on, joints.
+    joints: [[u8; 2]; WIDTH - 1],
+    /// How many there are.
+    joint_count: u8,
 }
 
 impl WideNode {
@@ -55,6 +60,8 @@ impl WideNode {
         Self {
             planes: [LOWER, UPPER, LOWER, UPPER, LOWER, UPPER],
             children: [Child::NONE.0; WIDTH],
+            joints: [[0; 2]; WIDTH - 1],
+            joint_count: 0,
         }
     };
 
@@ -63,6 +70,25 @@ impl WideNode {
         let along = |axis: usize| (self.planes[2 * axis][slot], self.planes[2 * axis + 1][slot]);
         let (x, y, z) = (along(0), along(1), along(2));
         Aabb::new([x.0, y.0, z.0].into(), [x.1, y.1, z.1].into())
+    }
+
+    /// Says how the children are joined; the last joint is that of all.
+    pub(super) fn join(&mut self, joints: &[[u8; 2]]) {
+        self.joints[..joints.len()].copy_from_slice(joints);
+        self.joint_count = joints.len() as u8;
+    }
+
+    /// The member that stands for all children.
+    pub(super) fn top(&self) -> usize {
+        match self.joint_count {
+            0 => 0,
+            count => WIDTH + count as usize - 1,
+        }
+    }
+
+    /// The two members that a member joins; none if it is a slot.
+    pub(super) fn joined(&self, member: usize) -> Option<[usize; 2]> {
+        Some(self.joints[member.checked_sub(WIDTH)?].map(usize::from))
     }
 
     pub(crate) fn set(&mut self, slot: usize, bounds: Aabb, child: Child) {

@@ -8,10 +8,9 @@ use super::blocks::{self, Row};
 use super::node::{Child, WIDTH, WideNode};
 use super::rays::{GROUP, Group, Marks, Rays, lanes_mask, load, load_words, row};
 use super::step::{Meeting, count, enter, ids, last_key, nearest, sorted};
-use crate::bvh::Node;
 use crate::bvh::packet_slabs::{abs, add, and, max, min, mul, or};
 use crate::bvh::slabs::Allowance;
-use crate::geometry::{HitRecord, Primitive, RayOn};
+use crate::geometry::{Aabb, HitRecord, Primitive, RayOn};
 use crate::machine::{Entered, F, Lanes, Packet, V3, op};
 
 /// Fewer rays of one octant than this go their own ways, unless they are most of those that there
@@ -56,7 +55,7 @@ pub(super) fn closest_hit<R: Lanes, P: Primitive>(
     meeting: &Meeting<'_, P>,
     rays: &mut Rays,
     together: &mut Together,
-    root: &Node,
+    root: &Aabb,
 ) {
     let count = rays.marks.len();
     for first in (0..count).step_by(GROUPS) {

@@ -1,11 +1,10 @@
 //! Rays on their way through a wide tree: sixteen of them to a group, each number side by side, so
 //! that packets are written and read as they are and one ray's numbers are broadcast from memory.
 
-use crate::bvh::Node;
 use crate::bvh::packet_slabs::{abs, add, and, finite_inverse, max, mul, sub};
 use crate::bvh::slabs::{Allowance, ULP};
 use crate::bvh::traverse::is_finite;
-use crate::geometry::{Hit, Ray, RayOn};
+use crate::geometry::{Aabb, Hit, Ray, RayOn};
 use crate::machine::{F, Lanes, Machine, V3, fill, op};
 
 /// How many rays a group has.
@@ -293,14 +292,14 @@ impl Rays {
     /// Those whose numbers are so large or so small that products may overflow are odd, and not
     /// alive.
     #[inline(always)]
-    pub(super) fn prepare<L: Lanes>(&mut self, l: L, root: &Node, allowance: Allowance) {
+    pub(super) fn prepare<L: Lanes>(&mut self, l: L, root: &Aabb, allowance: Allowance) {
         for group in 0..self.marks.len() {
             self.prepare_group(l, group, root, allowance);
         }
     }
 
     #[inline(always)]
-    fn prepare_group<L: Lanes>(&mut self, l: L, group: usize, root: &Node, allowance: Allowance) {
+    fn prepare_group<L: Lanes>(&mut self, l: L, group: usize, root: &Aabb, allowance: Allowance) {
         let Marks { asked, odd, .. } = self.marks[group];
         let mut alive = asked & !odd;
         for from in (0..GROUP).step_by(L::N) {
@@ -321,7 +320,7 @@ impl Rays {
         l: L,
         group: usize,
         from: usize,
-        root: &Node,
+        root: &Aabb,
         allowance: Allowance,
     ) -> u32 {
         let rows = &mut self.groups[group];

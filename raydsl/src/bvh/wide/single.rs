@@ -67,7 +67,7 @@ fn ask<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray, wanted: Wanted) -> Opti
             )
         }
     }
-    let pending = scene.parts().filter_map(|part| part.wide).map(|tree| tree.pending).max();
+    let pending = scene.parts().filter_map(|part| part.wide()).map(|tree| tree.pending).max();
     let room = pending? + 1 + WIDTH;
     // In one place, for every copy of a walk is time that a user waits for a compiler.
     let walk = |stacks: &mut [u32]| {
@@ -109,10 +109,9 @@ fn each_part<E: Lanes, P: Primitive>(
     let mut next = 0;
     while let Some(part) = scene.part(next) {
         next += 1;
-        let (Some(tree), Some(branches)) = (part.wide, part.tree) else { continue };
-        let Some(root) = branches.nodes.first() else { continue };
+        let Some(tree) = part.wide().filter(|tree| !tree.is_empty()) else { continue };
         let limit = if best.is_hit { beyond(best.t, ray.t_max, P::SLACK) } else { ray.t_max };
-        let beam = Beam::of_one(&ray, limit, root, Allowance::of::<P>())?;
+        let beam = Beam::of_one(&ray, limit, &tree.bounds(), Allowance::of::<P>())?;
         let meeting = meeting(scene, part, tree);
         walk(e, &meeting, &ray, wanted, beam, &mut pending, &mut best);
         if wanted == Wanted::Any && best.is_hit {

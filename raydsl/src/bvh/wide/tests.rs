@@ -7,8 +7,11 @@ use glam::Vec3;
 use super::node::{Child, WIDTH, WideNode};
 use super::rays::Rays;
 use super::{Wide, entry};
+use crate::bvh::build::{Primitives, build_watched};
 use crate::bvh::slabs::Allowance;
-use crate::bvh::{BuildConfig, BuildQuality, Bvh, RayQuery, Storage};
+use crate::bvh::stats::depth;
+use crate::bvh::validate::check;
+use crate::bvh::{BuildConfig, BuildQuality, Bvh, Node, RayQuery, Storage, validate};
 use crate::geometry::{Aabb, Ray, Triangle};
 use crate::machine::Simd8;
 
@@ -80,7 +83,7 @@ fn blocks_hold_every_primitive_and_stacks_are_deep_enough() {
         for quality in BuildQuality::ALL {
             let config = BuildConfig { quality, storage: Storage::Leaves, ..Default::default() };
             let bvh = Bvh::build_with(&prims, &config).expect("finite bounds");
-            let tree = bvh.tree.own.wide.as_ref().expect("it was asked for");
+            let tree = bvh.tree.own.structure.wide().expect("it was asked for");
             let mut seen = vec![0; prims.len()];
             let pending = walk(tree, Child::node(0), bvh.bounds(), &prims, &mut seen);
             assert!(pending <= tree.pending, "{pending} of {}", tree.pending);
@@ -88,6 +91,45 @@ fn blocks_hold_every_primitive_and_stacks_are_deep_enough() {
             assert!(seen.iter().all(|&n| n >= 1 && n <= most), "{count} {quality:?}");
         }
     }
+}
+
+#[test]
+fn the_binary_tree_comes_back() {
+    for count in [0, 1, 8, 9, 64, 1000, 5000] {
+        let prims = triangles(count);
+        let source = Primitives { prims: &prims, shared: &[] };
+        for quality in BuildQuality::ALL {
+            let config = BuildConfig { quality, storage: Storage::Leaves, ..Default::default() };
+            let built = build_watched(&source, prims.len(), &config, None).expect("finite bounds");
+            let wide = Wide::of(&built, &prims, &[]);
+            let tree = wide.binary();
+            assert_eq!(check(&tree.nodes, &tree.indices, prims.len(), &source), Ok(()));
+            assert_eq!(tree.nodes.first().map(Node::bounds), built.nodes.first().map(Node::bounds));
+            let boxes: HashSet<_> = built.nodes.iter().map(bits).collect();
+            assert!(tree.nodes.iter().map(bits).all(|node| boxes.contains(&node)), "of its own");
+            assert!(depth(&tree.nodes) <= depth(&built.nodes));
+            // There is nothing left to collapse.
+            assert_eq!(Wide::of(&tree, &prims, &[]).binary(), tree);
+        }
+    }
+}
+
+/// The box of a node, as something to look up.
+fn bits(node: &Node) -> [[u32; 3]; 2] {
+    // Zeros of either sign are one plane.
+    [node.min, node.max].map(|corner| (corner + 0.0).to_array().map(f32::to_bits))
+}
+
+#[test]
+fn the_binary_tree_is_there_once_it_is_asked_for() {
+    let prims = triangles(1000);
+    let bvh = Bvh::build_with(&prims, &Storage::Leaves.into()).expect("finite bounds");
+    let alone = bvh.bytes();
+    assert_eq!(bvh.statistics().bytes, alone);
+    assert!(validate(&bvh).is_ok() && bvh.closest_hit(Ray::new(Vec3::ZERO, Vec3::ONE)).t >= 0.0);
+    assert_eq!(bvh.bytes(), alone, "nothing has asked");
+    let binary = size_of_val(bvh.nodes()) + size_of_val(bvh.indices());
+    assert_eq!((bvh.bytes(), bvh.bounds()), (alone + binary, bvh.nodes()[0].bounds()));
 }
 
 /// The blocks in and below a slot whose boxes meet `bounds`.
@@ -110,8 +152,8 @@ fn entries_lead_to_all_that_rays_may_reach() {
     let e = Simd8(fearless_simd::Fallback::new());
     let prims = triangles(3000);
     let bvh = Bvh::build_with(&prims, &Storage::Leaves.into()).expect("finite bounds");
-    let tree = bvh.tree.own.wide.as_ref().expect("it was asked for");
-    let (root, allowance) = (bvh.nodes()[0], Allowance::of::<Triangle>());
+    let tree = bvh.tree.own.structure.wide().expect("it was asked for");
+    let (root, allowance) = (bvh.bounds(), Allowance::of::<Triangle>());
     let (mut rays, mut opened) = (Rays::default(), 0);
     for case in 0..300 {
         let length = 10f32.powi(case as i32 % 5 - 3);
@@ -150,7 +192,7 @@ fn entries_lead_to_all_that_rays_may_reach() {
 fn nothing_is_a_tree_too() {
     let config = BuildConfig::from(Storage::Leaves);
     let bvh = Bvh::<Triangle>::build_with(&[], &config).expect("nothing");
-    assert!(bvh.tree.own.wide.as_ref().is_some_and(|tree| tree.bytes() == 0));
+    assert!(bvh.tree.own.structure.wide().is_some_and(|tree| tree.bytes() == 0));
 }
 
 /// Rays keep few boxes for their own way here, so that packets stay together for want of room.

@@ -13,8 +13,8 @@ use super::step::Meeting;
 use super::wave::{self, Wave};
 use crate::bvh::packet_slabs::{and, finite};
 use crate::bvh::slabs::Allowance;
-use crate::bvh::{Node, Part, SceneView, traverse};
-use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn};
+use crate::bvh::{Part, SceneView, traverse};
+use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn};
 use crate::kernel::{LanesTask, with_wide_walks};
 use crate::machine::{B, Entered, F, Lanes, Packet, U, op};
 
@@ -40,7 +40,7 @@ thread_local! {
 /// Whether a scene is wide trees.
 #[inline(always)]
 pub(crate) fn answers<P: Primitive>(scene: &SceneView<'_, P>) -> bool {
-    scene.placed().is_none() && scene.parts().all(|part| part.wide.is_some())
+    scene.placed().is_none() && scene.parts().all(|part| part.wide().is_some())
 }
 
 /// The least `(t, id)` hit of every running lane, for each of some rays of a packet.
@@ -201,8 +201,8 @@ fn each_part<const CLOSEST: bool, R: Lanes, P: Primitive>(
             let mut next = 0;
             while let Some(part) = scene.part(next) {
                 next += 1;
-                let (Some(tree), Some(branches)) = (part.wide, part.tree) else { continue };
-                let Some(root) = branches.nodes.first() else { continue };
+                let Some(tree) = part.wide().filter(|tree| !tree.is_empty()) else { continue };
+                let root = &tree.bounds();
                 let (meeting, e) = (meeting(scene, part, tree), r.eight());
                 if CLOSEST {
                     let Scratch { rays, wave, together, .. } = &mut *scratch;
@@ -230,7 +230,7 @@ fn any<R: Lanes, E: Lanes, P: Primitive>(
     r: R,
     e: E,
     meeting: &Meeting<'_, P>,
-    root: &Node,
+    root: &Aabb,
     scratch: &mut Scratch,
 ) {
     let allowance = Allowance::of::<P>();

@@ -79,7 +79,7 @@ pub(super) fn query<P: Primitive, R>(
     let scene = Scene {
         ray,
         parts: parts
-            .map(|p| Part { first: p.first, len: p.prims.len() as u32, tree: p.tree })
+            .map(|p| Part { first: p.first, len: p.prims.len() as u32, tree: p.tree() })
             .collect(),
         groups: prims.placed().map(|placed| &placed.groups[..]),
         allowance: Allowance::of::<P>(),

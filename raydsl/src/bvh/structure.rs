@@ -1,0 +1,98 @@
+//! The trees over some primitives, of which there are only those that something goes through.
+
+use std::borrow::Cow;
+use std::sync::OnceLock;
+
+use super::build::{self, Tree};
+use super::view::Branches;
+use super::wide::{self, Wide};
+use super::{BuildConfig, BuildError};
+use crate::geometry::{Aabb, Primitive};
+
+/// The binary tree, the wide one, or both.
+#[derive(Debug)]
+pub(crate) struct Structure {
+    /// If there is a wide tree, made of it when it is first asked for.
+    binary: OnceLock<Tree>,
+    wide: Option<Wide>,
+}
+
+impl Structure {
+    /// What `config` asks for over `prims`, of the tree that was built.
+    pub(super) fn of<P: Primitive>(
+        tree: Tree,
+        config: &BuildConfig,
+        prims: &[P],
+        shared: &[P::Shared],
+    ) -> Self {
+        let wide = wide::of(&tree, config, prims, shared);
+        let binary = if wide.is_some() { OnceLock::new() } else { tree.into() };
+        Self { binary, wide }
+    }
+
+    /// The wide tree, if there is one.
+    #[inline(always)]
+    pub(crate) fn wide(&self) -> Option<&Wide> {
+        self.wide.as_ref()
+    }
+
+    /// The binary tree.
+    #[inline(always)]
+    pub(super) fn binary(&self) -> &Tree {
+        match self.binary.get() {
+            Some(tree) => tree,
+            None => self.make_binary(),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn make_binary(&self) -> &Tree {
+        self.binary.get_or_init(|| self.wide.as_ref().map(Wide::binary).unwrap_or_default())
+    }
+
+    /// The binary tree, which is not kept if it was not there.
+    pub(super) fn peek(&self) -> Cow<'_, Tree> {
+        match (self.binary.get(), &self.wide) {
+            (None, Some(wide)) => Cow::Owned(wide.binary()),
+            _ => Cow::Borrowed(self.binary()),
+        }
+    }
+
+    /// The nodes of the binary tree and its index list.
+    #[inline(always)]
+    pub(crate) fn branches(&self) -> Branches<'_> {
+        let Tree { nodes, indices } = self.binary();
+        Branches { nodes, indices }
+    }
+
+    /// A box around everything.
+    pub(super) fn bounds(&self) -> Aabb {
+        match &self.wide {
+            Some(wide) => wide.bounds(),
+            None => self.branches().nodes.first().map_or(Aabb::EMPTY, super::Node::bounds),
+        }
+    }
+
+    /// Bytes of the trees that there are.
+    pub(super) fn bytes(&self) -> usize {
+        let of_binary = |tree: &Tree| size_of_val(&tree.nodes[..]) + size_of_val(&tree.indices[..]);
+        self.binary.get().map_or(0, of_binary) + self.wide.as_ref().map_or(0, Wide::bytes)
+    }
+
+    /// The trees over primitives that have moved.
+    pub(super) fn refit<P: Primitive>(
+        mut self,
+        config: &BuildConfig,
+        prims: &[P],
+        shared: &[P::Shared],
+    ) -> Result<Self, BuildError> {
+        self.binary();
+        let mut tree = self.binary.take().unwrap_or_default();
+        let bounds = |k: usize| prims[k].get_bounds(shared);
+        build::refit(&mut tree.nodes, &tree.indices, prims.len(), bounds)?;
+        let wide = wide::of(&tree, config, prims, shared);
+        // What has moved is likely to move again.
+        Ok(Self { binary: tree.into(), wide })
+    }
+}

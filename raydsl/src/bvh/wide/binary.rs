@@ -1,0 +1,61 @@
+//! From the wide tree back to the binary one, of which it has kept the shape.
+
+use super::Wide;
+use super::node::Child;
+use crate::bvh::Node;
+use crate::bvh::build::Tree;
+use crate::geometry::Aabb;
+
+impl Wide {
+    /// The binary tree that the wide one was collapsed from, but each block is one leaf.
+    pub(in crate::bvh) fn binary(&self) -> Tree {
+        let mut expansion = Expansion { wide: self, made: Tree::default() };
+        if !self.is_empty() {
+            expansion.reserve(1);
+            expansion.node(0, 0);
+        }
+        expansion.made
+    }
+}
+
+struct Expansion<'a> {
+    wide: &'a Wide,
+    made: Tree,
+}
+
+impl Expansion<'_> {
+    /// Makes room for nodes; the place of the first.
+    fn reserve(&mut self, count: usize) -> usize {
+        let first = self.made.nodes.len();
+        self.made.nodes.resize(first + count, Node::inner(Aabb::EMPTY, 0));
+        first
+    }
+
+    /// Puts what a wide node stands for at `place`; returns its box.
+    fn node(&mut self, node: usize, place: usize) -> Aabb {
+        self.member(node, self.wide.nodes[node].top(), place)
+    }
+
+    /// Puts a member of a wide node at `place`: a child, or some of the children joined.
+    fn member(&mut self, node: usize, member: usize, place: usize) -> Aabb {
+        let wide = &self.wide.nodes[node];
+        let Some([left, right]) = wide.joined(member) else {
+            return self.child(Child(wide.children[member]), wide.bounds(member), place);
+        };
+        let first = self.reserve(2);
+        let bounds = self.member(node, left, first).union(self.member(node, right, first + 1));
+        self.made.nodes[place] = Node::inner(bounds, first as u32);
+        bounds
+    }
+
+    fn child(&mut self, child: Child, bounds: Aabb, place: usize) -> Aabb {
+        if !child.is_block() {
+            return self.node(child.index(), place);
+        }
+        let indices = &mut self.made.indices;
+        let (first, ids) = (indices.len(), self.wide.blocks.members(child.index()));
+        indices.extend_from_slice(ids);
+        self.made.nodes[place] = Node::leaf(bounds, first as u32, ids.len() as u32);
+        bounds
+    }
+}
