@@ -220,7 +220,7 @@ impl<'a, T, S> View<'a, T, S> {
     }
 
     /// Where the scene lies: views with the same one are of the same scene.
-    pub(crate) fn place(&self) -> [usize; 3] {
+    pub(crate) fn address(&self) -> [usize; 3] {
         match self.scene {
             Scene::Slice(prims) => [0, prims.as_ptr().addr(), prims.len()],
             Scene::Tree(tree) => [1, core::ptr::from_ref(tree).addr(), 0],

@@ -28,7 +28,7 @@ const ROUND: f32 = 8_388_608.0;
 
 /// The bins over the centroids of one node.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Grid {
+pub(super) struct Grid<'a> {
     origin: Vec4,
     /// Bins per unit of length; 0 on an axis along which the centroids do not differ.
     scale: Vec4,
@@ -36,16 +36,17 @@ pub(super) struct Grid {
     len: usize,
     /// The unit of length for areas, see `scaling`: 1 / longest edge of the node.
     unit: f32,
+    config: &'a BuildConfig,
 }
 
-impl Grid {
+impl<'a> Grid<'a> {
     /// The bins for `count` primitives within `span`; `None` when all centroids coincide.
-    pub(super) fn new(span: &Span, count: usize, bins: u32) -> Option<Self> {
+    pub(super) fn new(span: &Span, count: usize, config: &'a BuildConfig) -> Option<Self> {
         let extent = (span.centroids.hi - span.centroids.lo).xyz();
         if extent.max_element() < CLOSE {
             return None;
         }
-        let len = (bins as usize).min(4 + count / 20);
+        let len = (config.bins as usize).min(4 + count / 20);
         // Bin k is what rounds to k; the first and the last are half as wide as the others. The
         // largest centroid falls on len - 1 up to rounding, so the index is never out of range.
         let per_length = |extent: f32| if extent < CLOSE { 0.0 } else { (len - 1) as f32 / extent };
@@ -55,7 +56,7 @@ impl Grid {
         // An origin moved a little outwards, far too little to matter to a bin, prevents that.
         let origin = span.centroids.lo - (extent * 2e-7).extend(0.0);
         let unit = 1.0 / (span.bounds.hi - span.bounds.lo).xyz().max_element();
-        Some(Self { origin, scale: scale.extend(0.0), len, unit })
+        Some(Self { origin, scale: scale.extend(0.0), len, unit, config })
     }
 
     /// The bins of a centroid, each plus [`ROUND`].
@@ -76,13 +77,18 @@ impl Grid {
         terms.x + terms.y + terms.z
     }
 
+    /// What `count` primitives within a box cost, weighted by its measure.
+    #[inline]
+    pub(super) fn cost(&self, bounds: Bounds, count: usize) -> f32 {
+        self.measure(bounds) * self.config.tests(count)
+    }
+
     /// Whether splitting `count` primitives within `span` costs less than testing them all, where
-    /// `cost` is that of both sides: their primitives, weighted by their measures.
-    pub(super) fn pays(&self, cost: f32, span: &Span, count: usize, config: &BuildConfig) -> bool {
-        let BuildConfig { traversal_cost, intersection_cost, .. } = *config;
-        let measure = self.measure(span.bounds);
-        let split = traversal_cost * measure + intersection_cost * cost;
-        split < intersection_cost * count as f32 * measure
+    /// `cost` is that of both sides.
+    pub(super) fn pays(&self, cost: f32, span: &Span, count: usize) -> bool {
+        let BuildConfig { traversal_cost, intersection_cost, .. } = *self.config;
+        let split = traversal_cost * self.measure(span.bounds) + intersection_cost * cost;
+        split < intersection_cost * self.cost(span.bounds, count)
     }
 }
 
@@ -170,7 +176,7 @@ impl Bins {
                 bounds = bounds.union(self.bounds[axis][bin - 1]);
                 count += self.counts[axis][bin - 1];
                 // Neither side is empty (the first and the last bin are not), so this is finite.
-                let cost = grid.measure(bounds) * count as f32 + right;
+                let cost = grid.cost(bounds, count as usize) + right;
                 // In doubt the first axis and the lowest plane, always.
                 if best.is_none_or(|best| cost < best.cost) {
                     best = Some(Plane { axis, bin, cost });
@@ -187,7 +193,7 @@ impl Bins {
         for k in (1..grid.len).rev() {
             bounds = bounds.union(self.bounds[axis][k]);
             count += self.counts[axis][k];
-            costs[k] = grid.measure(bounds) * count as f32;
+            costs[k] = grid.cost(bounds, count as usize);
         }
         costs
     }
@@ -211,12 +217,12 @@ pub(super) struct Plane {
     pub(super) axis: usize,
     /// The first bin on its right.
     bin: usize,
-    /// The primitives on both sides, weighted by the measure of the side.
+    /// What both sides cost.
     cost: f32,
 }
 
 impl Plane {
-    /// The primitives on both sides, weighted by the measure of the side.
+    /// What both sides cost.
     pub(super) fn cost(&self) -> f32 {
         self.cost
     }

@@ -140,7 +140,7 @@ impl<S: Source> Builder<'_, '_, S> {
             return Err(range.leaf());
         }
         let may_be_leaf = count <= self.config.leaf_size();
-        let Some(grid) = Grid::new(&span, count, self.config.bins) else {
+        let Some(grid) = Grid::new(&span, count, self.config) else {
             return if may_be_leaf { Err(range.leaf()) } else { Ok(halves(range)) };
         };
         bins.fill(range.references(), &grid);
@@ -149,7 +149,7 @@ impl<S: Source> Builder<'_, '_, S> {
         let overlap = sides[0].0.intersection(sides[1].0);
         let cut = self.best_cut(&mut range, overlap, &grid).filter(|cut| cut.cost < plane.cost());
         let cost = cut.map_or(plane.cost(), |cut| cut.cost);
-        if may_be_leaf && !grid.pays(cost, &span, count, self.config) {
+        if may_be_leaf && !grid.pays(cost, &span, count) {
             return Err(range.leaf());
         }
         if let Some((left, right)) = cut.and_then(|cut| self.cut(&mut range, &cut, &grid)) {
@@ -263,7 +263,7 @@ fn unsplit(
 ) -> Parts {
     let [(left_bounds, left_count), (right_bounds, right_count)] = *sides;
     let cost = |left: Bounds, left_count: usize, right: Bounds, right_count: usize| {
-        grid.measure(left) * left_count as f32 + grid.measure(right) * right_count as f32
+        grid.cost(left, left_count) + grid.cost(right, right_count)
     };
     let whole = reference.bounds();
     let both = cost(left_bounds, left_count, right_bounds, right_count);

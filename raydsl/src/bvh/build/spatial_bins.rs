@@ -223,7 +223,7 @@ impl Slabs {
                 if sides.iter().any(|(bounds, _)| !bounds.to_aabb().is_valid()) {
                     continue;
                 }
-                let cost = sides.map(|(bounds, count)| grid.measure(bounds) * count as f32);
+                let cost = sides.map(|(bounds, count)| grid.cost(bounds, count));
                 let cost = cost[0] + cost[1];
                 // In doubt the first axis and the lowest plane, always.
                 if best.is_none_or(|best| cost < best.cost) {

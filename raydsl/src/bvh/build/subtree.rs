@@ -115,14 +115,14 @@ fn divide(
         return None;
     }
     let may_be_leaf = count <= config.leaf_size();
-    let Some(grid) = Grid::new(span, count, config.bins) else {
+    let Some(grid) = Grid::new(span, count, config) else {
         return if may_be_leaf { None } else { Some(partition::by_order(references)) };
     };
     bins.fill(references, &grid);
     let Some(plane) = bins.best_plane(&grid) else {
         return Some(partition::by_order(references));
     };
-    if may_be_leaf && !grid.pays(plane.cost(), span, count, config) {
+    if may_be_leaf && !grid.pays(plane.cost(), span, count) {
         return None;
     }
     let [(left, left_count), (right, right_count)] = bins.sides(&plane, &grid);

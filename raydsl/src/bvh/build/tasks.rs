@@ -53,7 +53,7 @@ pub(in crate::bvh) fn map_pieces_mut<T: Send, R: Send>(
 }
 
 /// Maps all items, in pieces of at least `size` of them.
-pub(super) fn map<T: Sync, R: Send>(
+pub(in crate::bvh) fn map<T: Sync, R: Send>(
     items: &[T],
     size: usize,
     f: impl Fn(&T) -> R + Sync + Send,

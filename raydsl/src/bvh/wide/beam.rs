@@ -7,6 +7,7 @@
 
 use glam::Vec3;
 
+use super::octant::Octant;
 use super::rays::{GROUP, HUGE, Rays, lanes_mask, load, row};
 use super::step::Slabs;
 use crate::bvh::slabs::{Allowance, ULP, finite_inverse};
@@ -87,20 +88,14 @@ impl<E: Lanes> Extents<E> {
 
 /// The extent of a row, of the rays whose bits are set.
 #[inline(always)]
-pub(super) fn extent<E: Lanes>(
-    e: E,
-    rays: &Rays,
-    first: usize,
-    members: &[u32],
-    row: usize,
-) -> Extent {
+pub(super) fn extent<E: Lanes>(e: E, rays: &Rays, octant: &Octant, row: usize) -> Extent {
     let mut extents = Extents::none(e);
-    for (group, members) in members.iter().enumerate() {
+    for (group, members) in octant.groups() {
         for from in (0..GROUP).step_by(E::N) {
             let there = members >> from & lanes_mask::<E>();
             if there != 0 {
                 let there = e.mask_from_bits(there.into());
-                extents.add(e, load(e, rays.row(first + group, row), from), there);
+                extents.add(e, load(e, rays.row(group, row), from), there);
             }
         }
     }
@@ -108,11 +103,11 @@ pub(super) fn extent<E: Lanes>(
 }
 
 #[inline(always)]
-fn vector<E: Lanes>(e: E, rays: &Rays, first: usize, members: &[u32], row: usize) -> [Extent; 3] {
+fn vector<E: Lanes>(e: E, rays: &Rays, octant: &Octant, row: usize) -> [Extent; 3] {
     [
-        extent(e, rays, first, members, row),
-        extent(e, rays, first, members, row + 1),
-        extent(e, rays, first, members, row + 2),
+        extent(e, rays, octant, row),
+        extent(e, rays, octant, row + 1),
+        extent(e, rays, octant, row + 2),
     ]
 }
 
@@ -132,21 +127,19 @@ fn fold([a, b, c, d, e, f, g, h]: [f32; 8], of: impl Fn(f32, f32) -> f32) -> f32
 }
 
 impl Beam {
-    /// The beam of the rays whose bits are set, all of one octant; none if they part too
-    /// far.
+    /// The beam of the rays of an octant; none if they part too far.
     #[inline(always)]
     pub(super) fn of<E: Lanes>(
         e: E,
         rays: &Rays,
-        first: usize,
-        members: &[u32],
+        octant: &Octant,
         most: f32,
         root: &Aabb,
         allowance: Allowance,
     ) -> Option<Self> {
-        let t_min = extent(e, rays, first, members, row::T_MIN).least;
-        let origins = vector(e, rays, first, members, row::ORIGIN);
-        let inverses = vector(e, rays, first, members, row::INVERSE);
+        let t_min = extent(e, rays, octant, row::T_MIN).least;
+        let origins = vector(e, rays, octant, row::ORIGIN);
+        let inverses = vector(e, rays, octant, row::INVERSE);
         let (mut largest, mut spread) = (0.0f32, 0.0f32);
         for Extent { least, greatest } in &inverses {
             let (a, b) = (1.0 / least, 1.0 / greatest);
@@ -157,7 +150,7 @@ impl Beam {
         if t_min < 0.0 || spread > most * largest {
             return None;
         }
-        let limit = extent(e, rays, first, members, row::LIMIT).greatest;
+        let limit = extent(e, rays, octant, row::LIMIT).greatest;
         Some(Self::new(&origins, &inverses, [t_min, limit], pad(&origins, root, allowance)))
     }
 

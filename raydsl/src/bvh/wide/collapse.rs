@@ -8,9 +8,13 @@
 
 use super::node::{Child, WIDTH, WideNode};
 use crate::bvh::Node;
+use crate::bvh::build::tasks;
 
 /// What a test of eight primitives costs, where one of eight boxes costs 1.
 const BLOCK_COST: f32 = 1.0;
+
+/// The fewest nodes whose primitives a thread looks at.
+const PIECE: usize = 1 << 12;
 
 /// Primitives that become a block: a range of the index list.
 #[derive(Clone, Copy, Debug)]
@@ -43,9 +47,14 @@ struct Plan {
 
 /// Collapses a binary tree. `solidity` says what area the primitives at some places of the index
 /// list have, as rays meet it.
-pub(super) fn collapse(nodes: &[Node], solidity: impl Fn(Range) -> f32) -> Collapsed {
+pub(super) fn collapse(nodes: &[Node], solidity: impl Fn(Range) -> f32 + Sync) -> Collapsed {
     let Some(root) = nodes.first() else { return Collapsed::default() };
-    let plans = plan(nodes, solidity);
+    // The primitives may be anywhere in memory.
+    let leaves = tasks::map(nodes, PIECE, |node| match node.count {
+        0 => 0.0,
+        count => solidity(Range { first: node.first, count }),
+    });
+    let plans = plan(nodes, &leaves);
     let mut emission = Emission { nodes, plans: &plans, made: Collapsed::default() };
     if plans[0].left[0] == 0 {
         let mut node = WideNode::EMPTY;
@@ -58,8 +67,8 @@ pub(super) fn collapse(nodes: &[Node], solidity: impl Fn(Range) -> f32) -> Colla
     emission.made
 }
 
-/// The plans of all nodes: children come after their parents.
-fn plan(nodes: &[Node], solidity: impl Fn(Range) -> f32) -> Vec<Plan> {
+/// The plans of all nodes: children come after their parents. `leaves` has the solidity of each leaf.
+fn plan(nodes: &[Node], leaves: &[f32]) -> Vec<Plan> {
     let range = Range { first: 0, count: 0 };
     let none = Plan { costs: [0.0; WIDTH], left: [0; WIDTH], range, solidity: 0.0 };
     let mut plans = vec![none; nodes.len()];
@@ -67,7 +76,7 @@ fn plan(nodes: &[Node], solidity: impl Fn(Range) -> f32) -> Vec<Plan> {
         let area = node.bounds().half_area();
         plans[k] = if node.is_leaf() {
             let range = Range { first: node.first, count: node.count };
-            Plan { costs: [BLOCK_COST * area; WIDTH], range, solidity: solidity(range), ..none }
+            Plan { costs: [BLOCK_COST * area; WIDTH], range, solidity: leaves[k], ..none }
         } else {
             let first = node.first as usize;
             inner(area, &plans[first], &plans[first + 1])

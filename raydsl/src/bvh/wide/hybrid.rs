@@ -5,17 +5,20 @@
 //! Arbitrary Ray Distributions on the Intel MIC Architecture", TVCG 18(9), 2012; what is left of a
 //! packet goes on as a wave here, not ray by ray.)
 
+use core::ops::Range;
+
 use super::beam::Beam;
 use super::node::{Child, WIDTH};
+use super::octant::Octant;
 use super::order::{self, Order};
-use super::packet::{GROUPS, Register, Together, take_octant};
-use super::rays::{GROUP, Rays, lanes_mask, row};
-use super::step::{Meeting, count, enter};
+use super::packet::{Bundle, Together};
+use super::rays::{Rays, lanes_of, row};
+use super::step::{Meeting, enter};
 use super::trace::Scratch;
 use super::wave::{Turns, each_turn};
 use crate::bvh::slabs::Allowance;
 use crate::geometry::{Aabb, Primitive};
-use crate::machine::{Entered, Lanes, Packet, op};
+use crate::machine::{Lanes, op};
 
 /// Fewer rays than this are sooner traced than sorted.
 pub(super) const FEWEST: u32 = 512;
@@ -59,8 +62,8 @@ pub(super) fn any_hit<R: Lanes, E: Lanes, P: Primitive>(
             some.prepare(r, root, Allowance::of::<P>());
             let groups = 0..some.marks.len();
             let mut turns = wave.begin_empty(some, groups, meeting.tree.pending + KEPT, false);
-            for first in (0..some.marks.len()).step_by(GROUPS) {
-                go_together(r, meeting, root, some, first, together, &mut turns);
+            for groups in Octant::ranges(some.marks.len()) {
+                go_together(r, meeting, root, some, groups, together, &mut turns);
             }
             turns.start(some);
             each_turn::<false, E, P>(e, meeting, some.words(), turns);
@@ -69,34 +72,33 @@ pub(super) fn any_hit<R: Lanes, E: Lanes, P: Primitive>(
     }
 }
 
-/// Takes the rays from the group `first` on through the tree, each octant for itself.
+/// Takes the rays of some groups through the tree, each octant for itself.
 #[inline(always)]
 fn go_together<R: Lanes, P: Primitive>(
     r: R,
     meeting: &Meeting<'_, P>,
     root: &Aabb,
     rays: &mut Rays,
-    first: usize,
+    groups: Range<usize>,
     together: &mut Together,
     turns: &mut Turns<'_>,
 ) {
-    let groups = first..(first + GROUPS).min(rays.marks.len());
     loop {
-        let octant = take_octant(rays, groups.clone(), &mut together.members);
-        if octant == 0 {
+        let octant = &mut together.octant;
+        let taken = octant.take(rays, groups.clone());
+        if taken == 0 {
             return;
         }
-        let allowance = Allowance::of::<P>();
-        let beam = if octant > APART {
-            Beam::of(r.eight(), rays, first, &together.members, SPREAD, root, allowance)
+        let beam = if taken > APART {
+            Beam::of(r.eight(), rays, octant, SPREAD, root, Allowance::of::<P>())
         } else {
             None
         };
         if let Some(beam) = beam {
-            walk(r, meeting, rays, turns, together, first, &beam);
+            walk(r, meeting, rays, turns, together, &beam);
         } else {
-            for (g, &members) in together.members.iter().enumerate() {
-                keep(rays, turns, first + g, members, Child::node(0));
+            for (group, members) in octant.groups() {
+                keep(rays, turns, group, members, Child::node(0));
             }
         }
     }
@@ -104,34 +106,22 @@ fn go_together<R: Lanes, P: Primitive>(
 
 /// Keeps a child for the own way of some rays of a group.
 #[inline(always)]
-fn keep(rays: &mut Rays, turns: &mut Turns<'_>, group: usize, mut members: u32, child: Child) {
+fn keep(rays: &mut Rays, turns: &mut Turns<'_>, group: usize, members: u32, child: Child) {
     if members == 0 {
         return;
     }
     let tops = rays.row_mut(group, row::TOP);
-    while members != 0 {
-        let lane = members.trailing_zeros() as usize;
-        members &= members - 1;
+    for lane in lanes_of(members) {
         turns.set(tops[lane], child);
         tops[lane] += 1;
     }
 }
 
-/// Whether all of these rays may keep one more child.
+/// Whether all of these rays of a group may keep one more child.
 #[inline(always)]
-fn has_room(rays: &Rays, first: usize, members: &[u32; GROUPS]) -> bool {
-    members.iter().enumerate().all(|(g, &members)| {
-        let group = first + g;
-        let mut members = members;
-        let mut has_room = true;
-        while members != 0 {
-            let lane = members.trailing_zeros() as usize;
-            members &= members - 1;
-            let begin = rays.row(group, row::BOTTOM)[lane];
-            has_room &= ((rays.row(group, row::TOP)[lane] - begin) as usize) < KEPT;
-        }
-        has_room
-    })
+fn has_room(rays: &Rays, group: usize, members: u32) -> bool {
+    let (bottoms, tops) = (rays.row(group, row::BOTTOM), rays.row(group, row::TOP));
+    lanes_of(members).all(|lane| ((tops[lane] - bottoms[lane]) as usize) < KEPT)
 }
 
 /// Takes a packet through the tree, and keeps for later what few of its rays enter.
@@ -142,17 +132,16 @@ fn walk<R: Lanes, P: Primitive>(
     rays: &mut Rays,
     turns: &mut Turns<'_>,
     together: &mut Together,
-    first: usize,
     beam: &Beam,
 ) {
     let (e, tree) = (r.eight(), meeting.tree);
     together.make_room(tree);
-    let Together { stack, members, .. } = together;
+    let Together { stack, octant, .. } = together;
+    let mut bundle = Bundle::new(r, rays, octant, beam.side);
     let slots = e.u32_from_fn(
         #[inline(always)]
         |i| i as u32,
     );
-    let m = Packet::new(Entered::new(r));
     let (mut at, mut top) = (0u32, 0);
     loop {
         let node = &tree.nodes[at as usize];
@@ -165,50 +154,26 @@ fn walk<R: Lanes, P: Primitive>(
                 return;
             }
             top -= 1;
-            let (node, slot) =
-                (&tree.nodes[stack[top] as usize / WIDTH], stack[top] as usize % WIDTH);
+            let (node, slot) = (stack[top] as usize / WIDTH, stack[top] as usize % WIDTH);
+            let node = &tree.nodes[node];
             let child = Child(node.children[slot]);
-            let mut entering = [0u32; GROUPS];
-            let mut entered = 0;
-            for (g, &members) in members.iter().enumerate() {
-                for from in (0..GROUP).step_by(R::N) {
-                    let alive = members >> from & lanes_mask::<R>();
-                    if alive != 0 {
-                        let lanes = Register { r, m: &m, group: rays.group_mut(first + g), from };
-                        let there = r.bits(lanes.enter(node, slot, beam.side)) as u32 & alive;
-                        entering[g] |= there << from;
-                        entered += there.count_ones();
-                    }
-                }
-            }
-            if entered == 0 {
+            let (entering, count) = bundle.enter(node, slot);
+            if count == 0 {
                 continue;
             }
-            if entered <= APART && has_room(rays, first, &entering) {
-                for (g, &there) in entering[..members.len()].iter().enumerate() {
-                    keep(rays, turns, first + g, there, child);
+            let of_groups = || bundle.octant.groups().zip(entering);
+            if count <= APART
+                && of_groups().all(|((group, _), there)| has_room(bundle.rays, group, there))
+            {
+                for ((group, _), there) in of_groups() {
+                    keep(bundle.rays, turns, group, there, child);
                 }
                 continue;
             }
             if !child.is_block() {
                 break child.0;
             }
-            let block = meeting.rows(child.index());
-            let count = count(e, block);
-            let mut left = 0;
-            for (g, members) in members.iter_mut().enumerate() {
-                for from in (0..GROUP).step_by(R::N) {
-                    let there = entering[g] >> from & lanes_mask::<R>();
-                    if there != 0 {
-                        let lanes = Register { r, m: &m, group: rays.group_mut(first + g), from };
-                        let hit =
-                            lanes.meet_any(meeting, block, count, r.mask_from_bits(there.into()));
-                        *members &= !(hit << from);
-                    }
-                }
-                left |= *members;
-            }
-            if left == 0 {
+            if !bundle.stop(meeting, meeting.rows(child.index()), entering) {
                 return;
             }
         };

@@ -18,6 +18,7 @@ mod entry;
 pub(crate) mod fibers;
 mod hybrid;
 mod node;
+mod octant;
 mod order;
 mod packet;
 mod rays;

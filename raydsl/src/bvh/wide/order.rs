@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use super::rays::{GROUP, Rays, lanes_mask, load, place, row};
+use super::rays::{GROUP, Rays, lanes_mask, lanes_of, load, place, row};
 use crate::bvh::packet_slabs::{abs, add, max, min, mul};
 use crate::machine::{Lanes, op};
 
@@ -32,16 +32,14 @@ impl Order {
         let mut begins = [0u32; KEYS];
         let first = groups.start;
         for group in groups {
-            let mut left = rays.marks[group].alive;
+            let alive = rays.marks[group].alive;
             let mut keys = [0; GROUP];
             for from in (0..GROUP).step_by(R::N) {
-                if left >> from & lanes_mask::<R>() != 0 {
+                if alive >> from & lanes_mask::<R>() != 0 {
                     r.u32_store(keys_of(r, rays, group, from), &mut keys[from..]);
                 }
             }
-            while left != 0 {
-                let lane = left.trailing_zeros() as usize;
-                left &= left - 1;
+            for lane in lanes_of(alive) {
                 let key = keys[lane] % KEYS as u32;
                 begins[key as usize] += 1;
                 self.keys.push(key << 16 | (GROUP * (group - first) + lane) as u32);

@@ -1,11 +1,10 @@
 //! Rays that go the same way, through the tree together.
 
-use core::ops::Range;
-
 use super::Wide;
 use super::beam::{Beam, extent};
 use super::blocks::{self, Row};
 use super::node::{Child, WIDTH, WideNode};
+use super::octant::{GROUPS, Octant};
 use super::rays::{GROUP, Group, Marks, Rays, lanes_mask, load, load_words, row};
 use super::step::{Meeting, count, enter, ids, last_key, nearest, sorted};
 use crate::bvh::packet_slabs::{abs, add, and, max, min, mul, or};
@@ -16,9 +15,6 @@ use crate::machine::{Entered, F, Lanes, Packet, V3, op};
 /// Fewer rays of one octant than this go their own ways, unless they are most of those that there
 /// are.
 const FEWEST: u32 = 12;
-
-/// Groups that go together: with more, boxes are entered that few rays meet.
-pub(super) const GROUPS: usize = 4;
 
 /// The most that directions of a beam may differ along an axis, relative to the largest component:
 /// rays that part further visit less on their own.
@@ -32,8 +28,8 @@ pub(super) struct Together {
     /// Where the packet enters them, as the bits of numbers above 0, in whose last three the slot
     /// is.
     enters: Vec<u32>,
-    /// The rays of one octant, a bit each, group by group.
-    pub(super) members: Vec<u32>,
+    /// The rays that go together.
+    pub(super) octant: Octant,
 }
 
 impl Together {
@@ -57,27 +53,25 @@ pub(super) fn closest_hit<R: Lanes, P: Primitive>(
     together: &mut Together,
     root: &Aabb,
 ) {
-    let count = rays.marks.len();
-    for first in (0..count).step_by(GROUPS) {
-        let groups = first..(first + GROUPS).min(count);
+    for groups in Octant::ranges(rays.marks.len()) {
         let alive = |marks: &Marks| marks.alive.count_ones();
         let mut left: u32 = rays.marks[groups.clone()].iter().map(alive).sum();
         let fewest = FEWEST.min(left / 4 * 3).max(2);
         while left > 0 {
-            let octant = take_octant(rays, groups.clone(), &mut together.members);
-            left -= octant;
-            let (allowance, members) = (Allowance::of::<P>(), &together.members);
-            let beam = if octant < fewest {
+            let octant = &mut together.octant;
+            let taken = octant.take(rays, groups.clone());
+            left -= taken;
+            let beam = if taken < fewest {
                 None
             } else {
-                Beam::of(r.eight(), rays, first, members, SPREAD, root, allowance)
+                Beam::of(r.eight(), rays, octant, SPREAD, root, Allowance::of::<P>())
             };
             if let Some(beam) = beam {
-                walk(r, meeting, rays, first, together, beam);
+                walk(r, meeting, rays, together, beam);
                 continue;
             }
-            for (marks, members) in rays.marks[groups.clone()].iter_mut().zip(members) {
-                marks.alone |= members;
+            for (group, members) in octant.groups() {
+                rays.marks[group].alone |= members;
             }
         }
     }
@@ -86,53 +80,26 @@ pub(super) fn closest_hit<R: Lanes, P: Primitive>(
     }
 }
 
-/// Moves the rays of one octant from those of some groups that are alive to `members`; returns how
-/// many.
-#[inline(always)]
-pub(super) fn take_octant(rays: &mut Rays, groups: Range<usize>, members: &mut Vec<u32>) -> u32 {
-    members.clear();
-    let mut octant = None;
-    let mut count = 0;
-    for group in groups {
-        let alive = rays.marks[group].alive;
-        if alive == 0 {
-            members.push(0);
-            continue;
-        }
-        let [x, y, z] = rays.marks[group].sides;
-        let first = alive.trailing_zeros();
-        let whole = |side: u32| (side >> first & 1).wrapping_neg();
-        let [ox, oy, oz] = *octant.get_or_insert([whole(x), whole(y), whole(z)]);
-        let same = alive & !(x ^ ox) & !(y ^ oy) & !(z ^ oz);
-        rays.marks[group].alive &= !same;
-        members.push(same);
-        count += same.count_ones();
-    }
-    count
-}
-
 /// Takes a packet through the tree.
 #[inline(always)]
 fn walk<R: Lanes, P: Primitive>(
     r: R,
     meeting: &Meeting<'_, P>,
     rays: &mut Rays,
-    first: usize,
     together: &mut Together,
     mut beam: Beam,
 ) {
     let (e, tree) = (r.eight(), meeting.tree);
     together.make_room(tree);
-    let Together { stack, enters, members } = together;
-    let mut packet =
-        Members { r, m: Packet::new(Entered::new(r)), rays, first, members, side: beam.side };
+    let Together { stack, enters, octant } = together;
+    let mut bundle = Bundle::new(r, rays, octant, beam.side);
     let (mut at, mut slot, mut top) = (Child::node(0), 0, 0);
     loop {
         if at.is_block() {
             let node = &tree.nodes[slot / WIDTH];
-            let is_nearer = packet.meet(meeting, meeting.rows(at.index()), node, slot % WIDTH);
+            let is_nearer = bundle.meet(meeting, meeting.rows(at.index()), node, slot % WIDTH);
             if is_nearer {
-                beam.limit = extent(e, packet.rays, first, packet.members, row::LIMIT).greatest;
+                beam.limit = extent(e, bundle.rays, bundle.octant, row::LIMIT).greatest;
             }
         } else {
             let node = &tree.nodes[at.index()];
@@ -167,18 +134,26 @@ fn walk<R: Lanes, P: Primitive>(
     }
 }
 
-/// The rays of a packet.
-struct Members<'a, R: Lanes> {
+/// Rays that go through a tree together.
+pub(super) struct Bundle<'a, R: Lanes> {
     r: R,
     m: Packet<Entered<R>>,
-    rays: &'a mut Rays,
-    /// The group of the first, and a bit for each of them.
-    first: usize,
-    members: &'a [u32],
+    pub(super) rays: &'a mut Rays,
+    pub(super) octant: &'a mut Octant,
     side: [usize; 3],
 }
 
-impl<R: Lanes> Members<'_, R> {
+impl<'a, R: Lanes> Bundle<'a, R> {
+    #[inline(always)]
+    pub(super) fn new(r: R, rays: &'a mut Rays, octant: &'a mut Octant, side: [usize; 3]) -> Self {
+        Self { r, m: Packet::new(Entered::new(r)), rays, octant, side }
+    }
+
+    #[inline(always)]
+    fn register(&mut self, group: usize, from: usize) -> Register<'_, R> {
+        Register { r: self.r, m: &self.m, group: self.rays.group_mut(group), from }
+    }
+
     /// Meets the primitives of a block, whose box is in a slot of a node; whether any ray has a
     /// nearer hit.
     #[inline(always)]
@@ -189,22 +164,17 @@ impl<R: Lanes> Members<'_, R> {
         node: &WideNode,
         slot: usize,
     ) -> bool {
-        let r = self.r;
+        let (r, side) = (self.r, self.side);
         let count = count(r.eight(), block);
         let mut is_nearer = false;
-        for (group, &members) in self.members.iter().enumerate() {
+        for (group, members) in self.octant.groups() {
             for from in (0..GROUP).step_by(R::N) {
                 let alive = members >> from & lanes_mask::<R>();
                 if alive == 0 {
                     continue;
                 }
-                let lanes = Register {
-                    r,
-                    m: &self.m,
-                    group: self.rays.group_mut(self.first + group),
-                    from,
-                };
-                let there = lanes.enter(node, slot, self.side);
+                let lanes = self.register(group, from);
+                let there = lanes.enter(node, slot, side);
                 let there = and(r, there, r.mask_from_bits(alive.into()));
                 if r.any(there) {
                     is_nearer |= lanes.meet(meeting, block, count, there);
@@ -213,14 +183,61 @@ impl<R: Lanes> Members<'_, R> {
         }
         is_nearer
     }
+
+    /// The rays that enter the box in a slot of a node before their limits, a bit each group by
+    /// group, and how many they are.
+    #[inline(always)]
+    pub(super) fn enter(&mut self, node: &WideNode, slot: usize) -> ([u32; GROUPS], u32) {
+        let (r, side) = (self.r, self.side);
+        let (mut entering, mut count) = ([0; GROUPS], 0);
+        for (entering, (group, members)) in entering.iter_mut().zip(self.octant.groups()) {
+            for from in (0..GROUP).step_by(R::N) {
+                let alive = members >> from & lanes_mask::<R>();
+                if alive != 0 {
+                    let lanes = self.register(group, from);
+                    let there = r.bits(lanes.enter(node, slot, side)) as u32 & alive;
+                    *entering |= there << from;
+                    count += there.count_ones();
+                }
+            }
+        }
+        (entering, count)
+    }
+
+    /// Meets the primitives of a block with some of the rays, and goes on without those that are
+    /// stopped; whether any is left.
+    #[inline(always)]
+    pub(super) fn stop<P: Primitive>(
+        &mut self,
+        meeting: &Meeting<'_, P>,
+        block: &[Row],
+        entering: [u32; GROUPS],
+    ) -> bool {
+        let r = self.r;
+        let count = count(r.eight(), block);
+        let mut stopped = [0; GROUPS];
+        for ((stopped, entering), (group, _)) in
+            stopped.iter_mut().zip(entering).zip(self.octant.groups())
+        {
+            for from in (0..GROUP).step_by(R::N) {
+                let there = entering >> from & lanes_mask::<R>();
+                if there != 0 {
+                    let there = r.mask_from_bits(there.into());
+                    *stopped |=
+                        self.register(group, from).stop(meeting, block, count, there) << from;
+                }
+            }
+        }
+        self.octant.leave(stopped)
+    }
 }
 
 /// A register of rays.
-pub(super) struct Register<'a, R: Lanes> {
-    pub(super) r: R,
-    pub(super) m: &'a Packet<Entered<R>>,
-    pub(super) group: &'a mut Group,
-    pub(super) from: usize,
+struct Register<'a, R: Lanes> {
+    r: R,
+    m: &'a Packet<Entered<R>>,
+    group: &'a mut Group,
+    from: usize,
 }
 
 impl<R: Lanes> Register<'_, R> {
@@ -246,7 +263,7 @@ impl<R: Lanes> Register<'_, R> {
 
     /// The rays that enter a box before their limits.
     #[inline(always)]
-    pub(super) fn enter(&self, node: &WideNode, slot: usize, side: [usize; 3]) -> R::Mask {
+    fn enter(&self, node: &WideNode, slot: usize, side: [usize; 3]) -> R::Mask {
         let r = self.r;
         let mut near = self.number(row::T_MIN);
         let mut far = self.number(row::LIMIT);
@@ -260,9 +277,20 @@ impl<R: Lanes> Register<'_, R> {
         r.f32_compare(op::Le, near, far)
     }
 
-    /// Meets the primitives of a block; the rays, of those of `there`, that are stopped.
+    /// The rays themselves.
     #[inline(always)]
-    pub(super) fn meet_any<P: Primitive>(
+    fn ray(&self) -> RayOn<Packet<Entered<R>>> {
+        RayOn {
+            origin: self.vector(row::ORIGIN),
+            direction: self.vector(row::DIRECTION),
+            t_min: F(self.number(row::T_MIN)),
+            t_max: F(self.number(row::T_MAX)),
+        }
+    }
+
+    /// Meets the first primitives of a block; the rays, of those of `there`, that are stopped.
+    #[inline(always)]
+    fn stop<P: Primitive>(
         mut self,
         meeting: &Meeting<'_, P>,
         block: &[Row],
@@ -270,13 +298,7 @@ impl<R: Lanes> Register<'_, R> {
         mut there: R::Mask,
     ) -> u32 {
         let (r, m) = (self.r, self.m);
-        let ray = RayOn {
-            origin: self.vector(row::ORIGIN),
-            direction: self.vector(row::DIRECTION),
-            t_min: F(self.number(row::T_MIN)),
-            t_max: F(self.number(row::T_MAX)),
-        };
-        let asked = there;
+        let (ray, asked) = (self.ray(), there);
         for i in 0..count {
             let prim = blocks::read::<_, P>(
                 m,
@@ -315,15 +337,10 @@ impl<R: Lanes> Register<'_, R> {
         there: R::Mask,
     ) -> bool {
         let (r, m) = (self.r, self.m);
-        let ray = RayOn {
-            origin: self.vector(row::ORIGIN),
-            direction: self.vector(row::DIRECTION),
-            t_min: F(self.number(row::T_MIN)),
-            t_max: F(self.number(row::T_MAX)),
-        };
-        let numbers = ids(block);
+        let (ray, numbers) = (self.ray(), ids(block));
         let mut is_nearer = false;
-        // Without a check of bounds on the way, what depends on the rays alone is done once.
+        // In a function that `stop` shares these tests are up to a tenth slower. Without a check of
+        // bounds on the way, what depends on the rays alone is done once.
         for i in 0..count {
             let prim = blocks::read::<_, P>(
                 m,
@@ -336,8 +353,7 @@ impl<R: Lanes> Register<'_, R> {
                 || P::intersect_among_on(m, meeting.kinds, prim, ray, meeting.shared),
             );
             let hit = P::Hit::hit_on(record);
-            let t = hit.t.0;
-            let best = self.number(row::T);
+            let (t, best) = (hit.t.0, self.number(row::T));
             let after = r.f32_compare(op::Ge, t, ray.t_min.0);
             let before = r.f32_compare(op::Le, t, ray.t_max.0);
             let met = and(r, and(r, there, hit.is_hit.0), and(r, after, before));

@@ -249,10 +249,8 @@ impl Rays {
                     ray_at_mut(to.words(), place).set(row::FOUND, found);
                 }
             }
-            let mut odd = marks.odd;
-            while odd != 0 {
-                let (group, lane) = group_and_lane(rows[row::ID].0[odd.trailing_zeros() as usize]);
-                odd &= odd - 1;
+            for lane in lanes_of(marks.odd) {
+                let (group, lane) = group_and_lane(rows[row::ID].0[lane]);
                 to.marks[group].odd |= 1 << lane;
             }
         }
@@ -389,6 +387,21 @@ pub(super) fn ray_at_mut(words: &mut [u32], place: u32) -> RayWordsMut<'_> {
 
 /// 2^120.
 pub(super) const HUGE: f32 = 1.329_228e36;
+
+/// The lanes whose bits are set.
+#[inline(always)]
+pub(super) fn lanes_of(mut bits: u32) -> impl Iterator<Item = usize> {
+    core::iter::from_fn(
+        #[inline(always)]
+        move || {
+            let lane = bits.trailing_zeros() as usize;
+            (bits != 0).then(|| {
+                bits &= bits - 1;
+                lane
+            })
+        },
+    )
+}
 
 #[inline(always)]
 pub(super) const fn lanes_mask<L: Lanes>() -> u32 {

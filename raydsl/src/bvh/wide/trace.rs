@@ -8,7 +8,7 @@ use super::entry;
 use super::fibers;
 use super::hybrid::{self, Sorted};
 use super::packet::{self, Together};
-use super::rays::{GROUP, Rays, load_words, place, ray_at, ray_at_mut, row};
+use super::rays::{GROUP, Rays, lanes_of, load_words, place, ray_at, ray_at_mut, row};
 use super::step::Meeting;
 use super::wave::{self, Wave};
 use crate::bvh::packet_slabs::{and, finite};
@@ -109,7 +109,7 @@ fn ask<const CLOSEST: bool, L: Lanes, P: Primitive, H>(
             },
         );
     };
-    let key = (self::answer::<CLOSEST, P> as *const () as usize, scene.place());
+    let key = (self::answer::<CLOSEST, P> as *const () as usize, scene.address());
     if fibers::ask(key, load, answer, &mut read) {
         return;
     }
@@ -253,8 +253,7 @@ fn any<R: Lanes, E: Lanes, P: Primitive>(
 /// Asks about the rays that are too odd for boxes.
 fn alone<const CLOSEST: bool, P: Primitive>(scene: &SceneView<'_, P>, rays: &mut Rays) {
     for group in 0..rays.marks.len() {
-        let odd = rays.marks[group].odd;
-        for lane in (0..GROUP).filter(|lane| odd >> lane & 1 != 0) {
+        for lane in lanes_of(rays.marks[group].odd) {
             let mut words = ray_at_mut(rays.words(), place(GROUP * group + lane));
             let ray = words.as_ref().ray();
             if CLOSEST {

@@ -9,7 +9,7 @@ use core::ops::Range;
 
 use super::blocks::Row;
 use super::node::{Child, WIDTH, WideNode};
-use super::rays::{GROUP, Rays, place, ray_at, ray_at_mut, row};
+use super::rays::{GROUP, Rays, lanes_of, place, ray_at, ray_at_mut, row};
 use super::step::{Meeting, beyond, enter, ids, last_key, sorted, words};
 use crate::geometry::{HitOn, Primitive};
 use crate::machine::{Lanes, Packet, op};
@@ -69,10 +69,7 @@ impl Wave {
     ) -> Turns<'_> {
         let mut turns = self.begin_empty(rays, groups.clone(), pending, is_sorted);
         for group in groups {
-            let mut alive = rays.marks[group].alive;
-            while alive != 0 {
-                let lane = alive.trailing_zeros() as usize;
-                alive &= alive - 1;
+            for lane in lanes_of(rays.marks[group].alive) {
                 rays.row_mut(group, row::AT)[lane] = Child::node(0).0;
                 turns.nodes.push_if(true, place(GROUP * group + lane));
             }
@@ -102,10 +99,7 @@ impl Wave {
         at_least(&mut self.at_blocks, count + 1);
         let mut base = 0;
         for group in groups {
-            let mut alive = rays.marks[group].alive;
-            while alive != 0 {
-                let lane = alive.trailing_zeros() as usize;
-                alive &= alive - 1;
+            for lane in lanes_of(rays.marks[group].alive) {
                 self.stacks[base] = Child::NONE.0;
                 rays.row_mut(group, row::BOTTOM)[lane] = base as u32 + 1;
                 rays.row_mut(group, row::TOP)[lane] = base as u32 + 1;
@@ -132,10 +126,7 @@ impl Turns<'_> {
     /// Goes on with what rays that have found nothing have on their stacks.
     pub(super) fn start(&mut self, rays: &mut Rays) {
         for group in 0..rays.marks.len() {
-            let mut left = rays.marks[group].asked & !rays.marks[group].odd;
-            while left != 0 {
-                let lane = left.trailing_zeros() as usize;
-                left &= left - 1;
+            for lane in lanes_of(rays.marks[group].asked & !rays.marks[group].odd) {
                 let is_open = rays.row(group, row::FOUND)[lane] == 0;
                 let top = rays.row(group, row::TOP)[lane];
                 self.pop_if(is_open, rays.words(), place(GROUP * group + lane), top);
