@@ -1,11 +1,12 @@
 //! What holds of every wide tree.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use glam::Vec3;
 
 use super::node::{Child, WIDTH, WideNode};
-use super::rays::Rays;
+use super::order::Order;
+use super::rays::{GROUP, Rays, place};
 use super::{Wide, entry};
 use crate::bvh::build::{Primitives, build_watched};
 use crate::bvh::slabs::Allowance;
@@ -193,6 +194,37 @@ fn nothing_is_a_tree_too() {
     let config = BuildConfig::from(Storage::Leaves);
     let bvh = Bvh::<Triangle>::build_with(&[], &config).expect("nothing");
     assert!(bvh.tree.own.structure.wide().is_some_and(|tree| tree.bytes() == 0));
+}
+
+#[test]
+fn the_order_has_each_ray_once_octant_by_octant() {
+    let e = Simd8(fearless_simd::Fallback::new());
+    let direction = |i: u32| match i {
+        7 => Vec3::ZERO,
+        8 => Vec3::new(0.0, -0.0, 1e30),
+        _ => point(i, 5) - 0.5,
+    };
+    let all: Vec<Ray> = (0..700).map(|i| Ray::new(Vec3::ZERO, direction(i))).collect();
+    let mut rays = Rays::default();
+    rays.load(&all);
+    rays.prepare(e, &Aabb::new(Vec3::ZERO, Vec3::ONE), Allowance::of::<Triangle>());
+    let is_alive = |i: &usize| i % 3 != 0;
+    for (group, marks) in rays.marks.iter_mut().enumerate() {
+        marks.alive =
+            (0..GROUP).filter(|lane| is_alive(&(GROUP * group + lane))).map(|l| 1 << l).sum();
+    }
+    let alive = (0..all.len()).filter(is_alive);
+    let numbers: HashMap<u32, usize> = alive.map(|i| (place(i), i)).collect();
+    let groups = 0..all.len() / GROUP;
+    let mut order = Order::default();
+    let sorted = order.of(e, &rays, groups.clone());
+    let once: HashSet<_> = sorted.iter().collect();
+    let expected = numbers.values().filter(|&&i| i < GROUP * groups.len()).count();
+    assert_eq!((sorted.len(), once.len()), (expected, expected));
+    let octant = |place: &u32| all[numbers[place]].direction.to_array().map(|d| d >= 0.0);
+    let changes = sorted.windows(2).filter(|pair| octant(&pair[0]) != octant(&pair[1])).count();
+    // Directions along an axis lie between octants.
+    assert!(changes <= 7 + 4, "{changes}");
 }
 
 /// Rays keep few boxes for their own way here, so that packets stay together for want of room.
