@@ -208,7 +208,7 @@ fn the_order_has_each_ray_once_octant_by_octant() {
     let mut rays = Rays::default();
     rays.load(&all);
     rays.prepare(e, &Aabb::new(Vec3::ZERO, Vec3::ONE), Allowance::of::<Triangle>());
-    let is_alive = |i: &usize| i % 3 != 0;
+    let is_alive = |i: &usize| !i.is_multiple_of(3);
     for (group, marks) in rays.marks.iter_mut().enumerate() {
         marks.alive =
             (0..GROUP).filter(|lane| is_alive(&(GROUP * group + lane))).map(|l| 1 << l).sum();
