@@ -230,7 +230,8 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     }
 
     /// Bytes of the tree itself, with the copies of primitives that [`Storage::Leaves`] makes, and
-    /// with its binary tree if anything has asked for that; the primitives are the application's.
+    /// with its binary tree if anything has asked for that, or it has been refitted; the primitives
+    /// are the application's.
     pub fn bytes(&self) -> usize {
         self.tree.own.structure.bytes()
     }

@@ -25,7 +25,7 @@ pub struct Statistics {
     pub mean_leaf_size: f64,
     /// Primitives in the fullest leaf.
     pub max_leaf_size: usize,
-    /// Bytes of the tree itself, as [`Bvh::bytes`].
+    /// Bytes of the trees that there are, as [`Bvh::bytes`].
     pub bytes: usize,
     /// Entries in leaves for each primitive: 1 where every primitive is in one leaf, and for an
     /// empty tree.
@@ -33,7 +33,9 @@ pub struct Statistics {
 }
 
 impl<P: Primitive> Bvh<'_, P> {
-    /// Counts what the binary tree is like; takes one pass over its nodes.
+    /// Counts what the binary tree is like; takes one pass over its nodes. With
+    /// [`Storage::Leaves`](super::Storage::Leaves) that tree has a leaf for each block, and is made for
+    /// this and not kept, unless something has asked for it before.
     ///
     /// ```
     /// use raydsl::prelude::*;

@@ -12,7 +12,8 @@ use crate::geometry::{Aabb, Primitive};
 /// The binary tree, the wide one, or both.
 #[derive(Debug)]
 pub(crate) struct Structure {
-    /// If there is a wide tree, made of it when it is first asked for.
+    /// If there is a wide tree, made of it when it is first asked for. From then on it stays, whatever
+    /// moves: a device keeps the index list of a tree that is refitted.
     binary: OnceLock<Tree>,
     wide: Option<Wide>,
 }
@@ -36,7 +37,7 @@ impl Structure {
         self.wide.as_ref()
     }
 
-    /// The binary tree.
+    /// The binary tree, which is made if it is not there.
     #[inline(always)]
     pub(super) fn binary(&self) -> &Tree {
         match self.binary.get() {
@@ -45,10 +46,15 @@ impl Structure {
         }
     }
 
+    /// Makes the binary tree on this thread alone. Others that ask wait, so nothing in here may wait
+    /// for them: no tasks, none of the host's code, and no packet that goes on meanwhile.
     #[cold]
     #[inline(never)]
     fn make_binary(&self) -> &Tree {
-        self.binary.get_or_init(|| self.wide.as_ref().map(Wide::binary).unwrap_or_default())
+        self.binary.get_or_init(|| match &self.wide {
+            Some(wide) => wide.binary(),
+            None => unreachable!("there is a wide tree where there is no binary one"),
+        })
     }
 
     /// The binary tree, which is not kept if it was not there.
@@ -59,7 +65,7 @@ impl Structure {
         }
     }
 
-    /// The nodes of the binary tree and its index list.
+    /// The nodes of the binary tree, as [`Structure::binary`], and its index list.
     #[inline(always)]
     pub(crate) fn branches(&self) -> Branches<'_> {
         let Tree { nodes, indices } = self.binary();
@@ -88,11 +94,11 @@ impl Structure {
         shared: &[P::Shared],
     ) -> Result<Self, BuildError> {
         self.binary();
-        let mut tree = self.binary.take().unwrap_or_default();
+        let Some(mut tree) = self.binary.take() else { unreachable!("it has been made") };
         let bounds = |k: usize| prims[k].get_bounds(shared);
         build::refit(&mut tree.nodes, &tree.indices, prims.len(), bounds)?;
         let wide = wide::of(&tree, config, prims, shared);
-        // What has moved is likely to move again.
+        // The same tree as before, and what has moved is likely to move again.
         Ok(Self { binary: tree.into(), wide })
     }
 }

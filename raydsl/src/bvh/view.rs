@@ -78,7 +78,7 @@ impl<T, S> Clone for Part<'_, T, S> {
 impl<T, S> Copy for Part<'_, T, S> {}
 
 impl<'a, T, S> Part<'a, T, S> {
-    /// The binary tree, if trees stand over the primitives.
+    /// The binary tree, if trees stand over the primitives; made if it is not there.
     #[inline(always)]
     pub(crate) fn tree(&self) -> Option<Branches<'a>> {
         match self.finder {

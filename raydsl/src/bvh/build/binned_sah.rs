@@ -80,7 +80,7 @@ impl<'a> Grid<'a> {
     /// What `count` primitives within a box cost, weighted by its measure.
     #[inline]
     pub(super) fn cost(&self, bounds: Bounds, count: usize) -> f32 {
-        self.measure(bounds) * self.config.tests(count)
+        self.measure(bounds) * self.config.test_cost(count)
     }
 
     /// Whether splitting `count` primitives within `span` costs less than testing them all, where

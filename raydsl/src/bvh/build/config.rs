@@ -3,7 +3,7 @@
 use super::error::BuildError;
 
 /// How many primitives a block of a wide tree holds.
-const BLOCK: usize = 8;
+pub(in crate::bvh) const BLOCK: usize = 8;
 
 /// What a place that is left empty in a block costs, where a primitive costs 1. With 1 blocks are
 /// fullest, and rays a tenth slower in halls of large triangles; with 0 trees are a tenth larger.
@@ -74,6 +74,11 @@ pub enum Storage {
     ///
     /// For scenes that are asked often. A device has no use for it, and a machine without AVX2 and
     /// NEON makes no copy: there it is as [`Storage::Borrow`], with leaves of eight.
+    ///
+    /// The binary tree is not kept, and made again when it is first asked for, by one thread while
+    /// others wait for it: by a query with a condition or of several hits, a ray whose numbers are too
+    /// large for the wide tree's boxes, a scene of instances, a device, refitting, or
+    /// [`Bvh::nodes`](crate::bvh::Bvh::nodes), which may be called to have it in time.
     Leaves,
 }
 
@@ -95,7 +100,9 @@ impl From<BuildQuality> for BuildConfig {
 ///
 /// Only the ratio of the two costs matters. It decides when a small node stays a leaf: the
 /// estimated cost of a leaf of `n` primitives is `intersection_cost * n`, that of splitting it
-/// `traversal_cost` plus the cost of the children weighted by their share of its surface.
+/// `traversal_cost` plus the cost of the children weighted by their share of its surface. With
+/// [`Storage::Leaves`] up to eight primitives are a leaf, whatever that costs, and places that blocks
+/// leave empty cost a little when [`BuildQuality::Balanced`] and [`BuildQuality::Best`] split.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuildConfig {
     /// How the tree is built; default [`BuildQuality::Balanced`].
@@ -166,7 +173,7 @@ impl BuildConfig {
 
     /// What it costs to test so many primitives, as a number of them. A block that is not full takes
     /// as long as a full one; but what is split for the sake of full blocks has larger boxes.
-    pub(super) fn tests(&self, count: usize) -> f32 {
+    pub(super) fn test_cost(&self, count: usize) -> f32 {
         match self.storage {
             Storage::Borrow => count as f32,
             Storage::Leaves => {

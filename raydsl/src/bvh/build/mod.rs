@@ -47,6 +47,7 @@ mod watch;
 #[cfg(test)]
 mod tests;
 
+pub(super) use config::BLOCK;
 pub use config::{BuildConfig, BuildQuality, Storage};
 pub use error::BuildError;
 pub(super) use refit::refit;

@@ -44,14 +44,34 @@ fn anything_may_become_anything() {
     let balls = numbers.balls(64);
     let collapsed = vec![Ball { center: Vec3::ONE, radius: 0.0 }; 64];
     let huge: Vec<_> = balls.iter().map(|b| Ball { center: b.center * 1e30, ..*b }).collect();
-    let mut bvh = Bvh::build(&balls).expect("finite bounds");
-    for balls in [&collapsed, &huge, &balls] {
-        bvh = bvh.refit(balls).expect("finite bounds");
-        crate::bvh::validate(&bvh).expect("the tree is sound");
-        assert!(bvh.cost_growth() > 0.0);
+    for storage in [Storage::Borrow, Storage::Leaves] {
+        let mut bvh = Bvh::build_with(&balls, &storage.into()).expect("finite bounds");
+        for balls in [&collapsed, &huge, &balls] {
+            bvh = bvh.refit(balls).expect("finite bounds");
+            crate::bvh::validate(&bvh).expect("the tree is sound");
+            assert!(bvh.cost_growth() > 0.0);
+        }
+        assert_eq!(bvh.cost_growth(), 1.0);
+        assert_as_brute_force(&bvh, &balls);
+        let bvh = Bvh::build_with(&huge, &storage.into()).expect("finite bounds");
+        assert_as_brute_force(&bvh, &huge);
     }
-    assert_eq!(bvh.cost_growth(), 1.0);
-    assert_as_brute_force(&bvh, &balls);
+}
+
+#[test]
+fn refitting_leaves_the_order_of_primitives() {
+    let mut numbers = Numbers::of(11);
+    let (before, after) = (numbers.balls(500), numbers.balls(500));
+    for quality in BuildQuality::ALL {
+        let config = BuildConfig { quality, storage: Storage::Leaves, ..BuildConfig::default() };
+        let bvh = Bvh::build_with(&before, &config).expect("finite bounds");
+        let indices = bvh.indices().to_vec();
+        let bvh = bvh.refit(&after).expect("finite bounds");
+        assert_eq!(bvh.indices(), indices);
+        assert_as_brute_force(&bvh, &after);
+        let unseen = Bvh::build_with(&before, &config).expect("finite bounds");
+        assert_as_brute_force(&unseen.refit(&after).expect("finite bounds"), &after);
+    }
 }
 
 #[test]

@@ -9,7 +9,11 @@ use crate::geometry::Aabb;
 impl Wide {
     /// The binary tree that the wide one was collapsed from, but each block is one leaf.
     pub(in crate::bvh) fn binary(&self) -> Tree {
-        let mut expansion = Expansion { wide: self, made: Tree::default() };
+        let blocks = self.blocks.len();
+        let entries = (0..blocks).map(|block| self.blocks.members(block).len()).sum();
+        let nodes = Vec::with_capacity((2 * blocks).saturating_sub(1));
+        let made = Tree { nodes, indices: Vec::with_capacity(entries) };
+        let mut expansion = Expansion { wide: self, made };
         if !self.is_empty() {
             expansion.reserve(1);
             expansion.node(0, 0);

@@ -18,7 +18,7 @@ pub(crate) struct Row(pub(crate) [u32; WIDTH]);
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blocks {
     rows: Vec<Row>,
-    /// How many rows a block has.
+    /// How many rows a block has, for what does not know the primitives.
     height: usize,
 }
 
@@ -46,6 +46,10 @@ impl Blocks {
     pub(crate) fn block<P: Primitive>(&self, index: usize) -> &[Row] {
         let height = const { words_of::<P>() + 1 };
         &self.rows[index * height..][..height]
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.rows.len() / self.height
     }
 
     /// The numbers of a block's primitives, each once.

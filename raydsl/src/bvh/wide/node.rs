@@ -1,9 +1,10 @@
 //! The node of the wide tree.
 
+use crate::bvh::build::BLOCK;
 use crate::geometry::Aabb;
 
 /// How many children a node has at most, and a block primitives.
-pub(crate) const WIDTH: usize = 8;
+pub(crate) const WIDTH: usize = BLOCK;
 
 /// What a slot of a node leads to: another node, or a block of primitives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -26,6 +26,7 @@ impl Octant {
     /// returns how many.
     #[inline(always)]
     pub(super) fn take(&mut self, rays: &mut Rays, groups: Range<usize>) -> u32 {
+        debug_assert!(groups.len() <= GROUPS);
         *self = Self { first: groups.start, count: groups.len(), members: [0; GROUPS] };
         let mut octant = None;
         let mut count = 0;

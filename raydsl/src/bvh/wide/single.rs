@@ -160,20 +160,19 @@ fn walk<E: Lanes, P: Primitive>(
             let (near, mask) = enter(e, node, &beam);
             let entered = e.bits(mask);
             if entered != 0 {
-                let mut first = entered.ilog2() as usize % WIDTH;
-                if !entered.is_power_of_two() {
-                    let children = words(e, &node.children);
-                    if wanted == Wanted::Closest {
-                        first = nearest(e, near, mask);
-                        let keys = sorted(e, near, mask);
-                        e.u32_store(e.u32_permute(children, keys), &mut stack[top..][..WIDTH]);
-                        e.u32_store(keys, &mut enters[top..][..WIDTH]);
-                    } else {
-                        e.u32_store(e.u32_compress(children, mask), &mut stack[top..][..WIDTH]);
-                    }
-                    // What it enters first is the last of them, and no more to come.
-                    top += entered.count_ones() as usize - 1;
+                let children = words(e, &node.children);
+                let first;
+                if wanted == Wanted::Closest {
+                    first = nearest(e, near, mask);
+                    let keys = sorted(e, near, mask);
+                    e.u32_store(e.u32_permute(children, keys), &mut stack[top..][..WIDTH]);
+                    e.u32_store(keys, &mut enters[top..][..WIDTH]);
+                } else {
+                    first = entered.ilog2() as usize % WIDTH;
+                    e.u32_store(e.u32_compress(children, mask), &mut stack[top..][..WIDTH]);
                 }
+                // What it enters first is the last of them, and no more to come.
+                top += entered.count_ones() as usize - 1;
                 at = Child(node.children[first]);
                 continue;
             }

@@ -5,8 +5,9 @@ use std::collections::{HashMap, HashSet};
 use glam::Vec3;
 
 use super::node::{Child, WIDTH, WideNode};
+use super::octant::Octant;
 use super::order::Order;
-use super::rays::{GROUP, Rays, place};
+use super::rays::{GROUP, Rays, lanes_of, place};
 use super::{Wide, entry};
 use crate::bvh::build::{Primitives, build_watched};
 use crate::bvh::slabs::Allowance;
@@ -127,8 +128,23 @@ fn the_binary_tree_is_there_once_it_is_asked_for() {
     let bvh = Bvh::build_with(&prims, &Storage::Leaves.into()).expect("finite bounds");
     let alone = bvh.bytes();
     assert_eq!(bvh.statistics().bytes, alone);
-    assert!(validate(&bvh).is_ok() && bvh.closest_hit(Ray::new(Vec3::ZERO, Vec3::ONE)).t >= 0.0);
+    assert!(validate(&bvh).is_ok());
+    let rays: Vec<Ray> = (0..600)
+        .map(|i| Ray { t_max: 9.0, ..Ray::new(point(i, 1) * 20.0, point(i, 5) - 0.5) })
+        .collect();
+    for ray in &rays {
+        assert_eq!(bvh.closest_hit(*ray), prims.closest_hit(*ray));
+        assert_eq!(bvh.any_hit(*ray), prims.any_hit(*ray));
+    }
+    assert_eq!(bvh.closest_hits(&rays).len() + bvh.any_hits(&rays).len(), 1200);
     assert_eq!(bvh.bytes(), alone, "nothing has asked");
+    let odd = Ray::new(Vec3::splat(-1e30), Vec3::splat(1e-10));
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| assert_eq!(bvh.closest_hit(odd), prims.closest_hit(odd)));
+        }
+    });
+    assert!(bvh.bytes() > alone, "the ray is too odd for the wide tree");
     let binary = size_of_val(bvh.nodes()) + size_of_val(bvh.indices());
     assert_eq!((bvh.bytes(), bvh.bounds()), (alone + binary, bvh.nodes()[0].bounds()));
 }
@@ -225,6 +241,42 @@ fn the_order_has_each_ray_once_octant_by_octant() {
     let changes = sorted.windows(2).filter(|pair| octant(&pair[0]) != octant(&pair[1])).count();
     // Directions along an axis lie between octants.
     assert!(changes <= 7 + 4, "{changes}");
+}
+
+#[test]
+fn octants_have_each_ray_once() {
+    let e = Simd8(fearless_simd::Fallback::new());
+    for count in [1, 16, 17, 64, 100, 130] {
+        let all: Vec<Ray> = (0..count).map(|i| Ray::new(Vec3::ZERO, point(i, 5) - 0.5)).collect();
+        let mut rays = Rays::default();
+        rays.load(&all);
+        rays.prepare(e, &Aabb::new(Vec3::ZERO, Vec3::ONE), Allowance::of::<Triangle>());
+        for (group, marks) in rays.marks.iter_mut().enumerate() {
+            let lanes = (0..GROUP).filter(|lane| GROUP * group + lane < all.len());
+            marks.alive = lanes.map(|lane| 1 << lane).sum();
+        }
+        let mut seen = vec![0; all.len()];
+        let mut octant = Octant::default();
+        for groups in Octant::ranges(rays.marks.len()) {
+            loop {
+                let taken = octant.take(&mut rays, groups.clone());
+                if taken == 0 {
+                    break;
+                }
+                let lanes = octant
+                    .groups()
+                    .flat_map(|(group, bits)| lanes_of(bits).map(move |lane| GROUP * group + lane));
+                let members: Vec<usize> = lanes.collect();
+                assert_eq!(members.len(), taken as usize);
+                let signs = |i: usize| all[i].direction.to_array().map(|d| d < 0.0);
+                assert!(members.iter().all(|&i| signs(i) == signs(members[0])));
+                members.iter().for_each(|&i| seen[i] += 1);
+                let mut bits = octant.groups().map(|(_, bits)| bits);
+                assert!(!octant.leave(core::array::from_fn(|_| bits.next().unwrap_or(0))));
+            }
+        }
+        assert!(seen.iter().all(|&n| n == 1), "{count}: {seen:?}");
+    }
 }
 
 /// Rays keep few boxes for their own way here, so that packets stay together for want of room.
