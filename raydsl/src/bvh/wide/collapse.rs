@@ -71,9 +71,8 @@ pub(super) fn collapse(nodes: &[Node], solidity: impl Fn(Range) -> f32 + Sync) -
 fn plan(nodes: &[Node], leaves: &[f32]) -> Vec<Plan> {
     // Shares of the surface of all, for areas of `f32` overflow.
     let whole = nodes.first().map_or(0.0, |root| root.bounds().half_area_f64());
-    let share = |node: &Node| match whole > 0.0 {
-        true => (node.bounds().half_area_f64() / whole) as f32,
-        false => 0.0,
+    let share = |node: &Node| {
+        if whole > 0.0 { (node.bounds().half_area_f64() / whole) as f32 } else { 0.0 }
     };
     let range = Range { first: 0, count: 0 };
     let none = Plan { costs: [0.0; WIDTH], left: [0; WIDTH], range, solidity: 0.0 };
