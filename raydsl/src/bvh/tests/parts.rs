@@ -239,3 +239,16 @@ fn parts_that_are_none_lose_no_primitive() {
         assert_eq!(check(&tree.nodes, &tree.indices, 1000, &source), Ok(()));
     }
 }
+
+/// A device keeps the list: another order, or fewer entries, would be met with the wrong leaves.
+#[test]
+fn refitting_leaves_the_index_list() {
+    let (before, after) = (Numbers::of(23).slanted(400), Numbers::of(24).slanted(400));
+    let config = BuildConfig { storage: Storage::Leaves, ..best(4.0) };
+    let bvh = Bvh::build_with(&before, &config).expect("finite bounds");
+    let indices = bvh.indices().to_vec();
+    assert!(indices.len() > before.len(), "some are cut");
+    let bvh = bvh.refit(&after).expect("finite bounds");
+    assert!(bvh.indices() == indices);
+    assert_as_brute_force(&bvh, &after);
+}
