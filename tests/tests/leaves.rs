@@ -201,8 +201,12 @@ fn shapes() {
     let rays = rays(&mut rng, 2500);
     for count in [1, 7, 8, 9, 300] {
         let balls = balls(&mut rng, count);
-        let hits = assert_as_slice!(leaves(&balls, BuildQuality::Balanced), balls, rays);
-        assert!(hits > 10, "{hits} of {count}");
+        let mut bvh = leaves(&balls, BuildQuality::Balanced);
+        for traversal in Traversal::ALL {
+            bvh.set_traversal(traversal);
+            let hits = assert_as_slice!(bvh, balls, rays);
+            assert!(hits > 10, "{hits} of {count}, {traversal:?}");
+        }
     }
     let faces = triangles(&mut rng, 400);
     for quality in BuildQuality::ALL {
@@ -265,7 +269,8 @@ fn indexed_triangles() {
     assert_packets(&kernel, &rays);
 }
 
-/// Some trees of a list may have leaves of their own and others not.
+/// Some trees of a list may have leaves of their own and others not, and rays go through each as it
+/// says.
 #[test]
 fn lists() {
     let mut rng = Rng::of("lists of leaves");
@@ -278,7 +283,9 @@ fn lists() {
             .enumerate()
             .map(|(i, model)| {
                 let storage = if i < borrows { Storage::Leaves } else { Storage::Borrow };
-                Bvh::build_with(model, &storage.into()).expect("finite bounds")
+                let traversal = Traversal::ALL[(borrows + i) % 4];
+                let config = BuildConfig { storage, traversal, ..BuildConfig::default() };
+                Bvh::build_with(model, &config).expect("finite bounds")
             })
             .collect();
         let list = BvhList::new(&trees).expect("few primitives");

@@ -50,6 +50,9 @@ struct Args {
     /// Only these rows.
     #[arg(long, value_delimiter = ',', value_parser = Row::from_name)]
     only: Vec<Row>,
+    /// How rays go through trees with copies; each is a mode of its own.
+    #[arg(long, value_delimiter = ',', default_value = "auto", value_parser = parse_traversal)]
+    traversal: Vec<Traversal>,
     /// Cargo says so.
     #[arg(long, hide = true)]
     bench: bool,
@@ -58,6 +61,11 @@ struct Args {
 fn parse_size(text: &str) -> Result<u32, String> {
     let size = text.parse::<u32>().ok().filter(|n| (TILE..=4096).contains(n) && n % TILE == 0);
     size.ok_or_else(|| "sizes are multiples of 16 up to 4096".to_owned())
+}
+
+fn parse_traversal(text: &str) -> Result<Traversal, String> {
+    let named = Traversal::ALL.into_iter().find(|traversal| traversal.name() == text);
+    named.ok_or_else(|| format!("one of {}", Traversal::ALL.map(Traversal::name).join(", ")))
 }
 
 fn main() -> ExitCode {
@@ -107,7 +115,7 @@ fn measure(args: &Args, name: &str, scene: &Scene<Triangle>, threads: usize) -> 
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.expect("threads can be started");
     pool.install(|| {
-        let own = own::trees(&scene.prims, threads);
+        let own = own::trees(&scene.prims, threads, &args.traversal);
         let work = Workload::new(&own[0].bvh, scene.camera, args.size);
         println!(
             "{name}: {} triangles, {} of {} camera rays meet something, threads: {threads}\n",

@@ -37,7 +37,7 @@ mod tests;
 use core::ops::ControlFlow;
 
 pub use accelerator::{Accelerated, Accelerator};
-pub use build::{BuildConfig, BuildError, BuildQuality, MAX_DEPTH, Storage};
+pub use build::{BuildConfig, BuildError, BuildQuality, MAX_DEPTH, Storage, Traversal};
 pub use instances::{Group, Instance, InstanceError, Instances, MAX_CONDITION, MAX_LEVELS, Object};
 pub(crate) use instances::{IS_INSTANCE, PLACE_SCHEMA, Placed, Placing, STACK, Target};
 pub use list::{BvhList, ListError};
@@ -219,9 +219,30 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         &self.tree.own.structure.binary().indices
     }
 
-    /// What the tree was built with.
+    /// What the tree was built with, and how rays go through it.
     pub fn config(&self) -> &BuildConfig {
         &self.tree.own.config
+    }
+
+    /// Says how rays go through the tree from now on; see [`Traversal`].
+    ///
+    /// ```
+    /// use raydsl::prelude::*;
+    ///
+    /// let triangle = |z| Triangle { v0: vec3(0.0, 0.0, z), v1: vec3(4.0, 0.0, z), v2: vec3(0.0, 4.0, z) };
+    /// let triangles: Vec<_> = (1..1000).map(|z| triangle(z as f32)).collect();
+    /// let mut bvh = Bvh::build_with(&triangles, &Storage::Leaves.into())?;
+    /// let rays = [Ray::new(vec3(1.0, 1.0, 0.0), Vec3::Z); 100];
+    /// let hits = bvh.closest_hits(&rays);
+    /// for traversal in Traversal::ALL {
+    ///     bvh.set_traversal(traversal);
+    ///     assert_eq!(bvh.closest_hits(&rays), hits);
+    /// }
+    /// # Ok::<(), raydsl::bvh::BuildError>(())
+    /// ```
+    pub fn set_traversal(&mut self, traversal: Traversal) {
+        self.tree.own.config.traversal = traversal;
+        self.tree.own.structure.set_traversal(traversal);
     }
 
     /// A box around everything; empty without primitives.

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use super::build::{self, Tree};
 use super::view::Branches;
 use super::wide::{self, Wide};
-use super::{BuildConfig, BuildError};
+use super::{BuildConfig, BuildError, Traversal};
 use crate::geometry::{Aabb, Primitive};
 
 /// The binary tree, the wide one, or both.
@@ -35,6 +35,13 @@ impl Structure {
     #[inline(always)]
     pub(crate) fn wide(&self) -> Option<&Wide> {
         self.wide.as_ref()
+    }
+
+    /// How rays go through the wide tree from now on.
+    pub(super) fn set_traversal(&mut self, traversal: Traversal) {
+        if let Some(wide) = &mut self.wide {
+            wide.traversal = traversal;
+        }
     }
 
     /// The binary tree, which is made if it is not there.

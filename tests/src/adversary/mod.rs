@@ -107,6 +107,7 @@ fn config(choices: &mut Choices<'_>) -> BuildConfig {
         min_overlap: choices.pick(&[1e-5, 0.0]),
         max_duplication: choices.pick(&[0.3, 0.0, 4.0]),
         storage: choices.pick(&[Storage::Borrow, Storage::Leaves]),
+        traversal: choices.pick(&Traversal::ALL),
         ..BuildConfig::default()
     }
 }

@@ -16,6 +16,7 @@ pub(crate) struct Tree<'a> {
     pub(crate) bvh: Bvh<'a, Triangle>,
     cost: Cost,
     setting: &'static Setting,
+    traversal: Traversal,
 }
 
 /// A setting of trees, and who asks them.
@@ -56,17 +57,28 @@ impl Setting {
     }
 }
 
-/// One tree for each setting.
-pub(crate) fn trees(triangles: &[Triangle], threads: usize) -> Vec<Tree<'_>> {
-    let tree = |setting: &'static Setting| {
+/// One tree for each setting, and for each way that rays go through trees with copies.
+pub(crate) fn trees<'a>(
+    triangles: &'a [Triangle],
+    threads: usize,
+    traversals: &[Traversal],
+) -> Vec<Tree<'a>> {
+    let tree = |setting: &'static Setting, traversal| {
         let Setting { quality, storage, .. } = *setting;
-        let config = BuildConfig { quality, storage, ..BuildConfig::default() };
+        let config = BuildConfig { quality, storage, traversal, ..BuildConfig::default() };
         let (bvh, seconds) = seconds_on(threads, || Bvh::build_with(triangles, &config));
         let bvh = bvh.expect("the scene has finite bounds");
         let cost = Cost::new(seconds, bvh.bytes(), triangles.len());
-        Tree { bvh, cost, setting }
+        Tree { bvh, cost, setting, traversal }
     };
-    SETTINGS.iter().map(tree).collect()
+    let of_setting = |setting: &'static Setting| {
+        let traversals = match setting.storage {
+            Storage::Leaves => traversals,
+            _ => &[Traversal::Auto],
+        };
+        traversals.iter().map(move |traversal| tree(setting, *traversal))
+    };
+    SETTINGS.iter().flat_map(of_setting).collect()
 }
 
 /// Every mode of every row.
@@ -98,7 +110,11 @@ pub(crate) fn contenders<'a>(
 
 fn contender<'a>(row: Row, variant: Variant, tree: &Tree<'_>, run: Run<'a>) -> Contender<'a> {
     let (isa, lanes) = variant.isa();
-    let mode = format!("{}{}", variant.name(), tree.setting.name);
+    let traversal = match tree.traversal {
+        Traversal::Auto => String::new(),
+        other => format!(" {}", other.name()),
+    };
+    let mode = format!("{}{}{traversal}", variant.name(), tree.setting.name);
     Contender { row, system: "raydsl", mode, isa, lanes, cost: tree.cost, run }
 }
 

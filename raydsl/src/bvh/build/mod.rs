@@ -48,7 +48,7 @@ mod watch;
 mod tests;
 
 pub(super) use config::BLOCK;
-pub use config::{BuildConfig, BuildQuality, Storage};
+pub use config::{BuildConfig, BuildQuality, Storage, Traversal};
 pub use error::BuildError;
 pub(super) use refit::refit;
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! Many rays that ask for any hit: sorted by direction they go together as long as enough of them
-//! enter a box, and their own ways from there.
+//! Many rays that ask for any hit: they go together as long as enough of them enter a box, and their
+//! own ways from there.
 //!
 //! (After Benthin, Wald, Woop, Ernst and Mark, "Combining Single and Packet-Ray Tracing for
 //! Arbitrary Ray Distributions on the Intel MIC Architecture", TVCG 18(9), 2012; what is left of a
@@ -10,7 +10,6 @@ use core::ops::Range;
 use super::beam::Beam;
 use super::node::{Child, WIDTH};
 use super::octant::Octant;
-use super::order::{self, Order};
 use super::packet::{Bundle, Together};
 use super::rays::{Rays, lanes_of, row};
 use super::step::{Meeting, enter};
@@ -24,7 +23,7 @@ use crate::machine::{Lanes, op};
 pub(super) const FEWEST: u32 = 512;
 
 /// Where no more rays than this enter a box, they go their own ways from there.
-const APART: u32 = 16;
+pub(super) const APART: u32 = 16;
 
 /// Directions may differ as they like: the order keeps them near each other, and rays that part
 /// come apart.
@@ -34,17 +33,8 @@ const SPREAD: f32 = f32::INFINITY;
 /// stay together for want of room.
 const KEPT: usize = if cfg!(test) { 3 } else { 40 };
 
-/// So many rays at once come from the order: what they need lies in a cache of the second level.
-const SOME: usize = 512;
-
-/// The rays under way, kept from one query to the next.
-#[derive(Debug, Default)]
-pub(super) struct Sorted {
-    order: Order,
-    some: Rays,
-}
-
-/// Whether each ray that is alive meets anything. `e` is for rays on their own ways.
+/// Whether each ray that is alive meets anything, in the order of their directions or as they come.
+/// `e` is for rays on their own ways.
 #[inline(always)]
 pub(super) fn any_hit<R: Lanes, E: Lanes, P: Primitive>(
     r: R,
@@ -52,24 +42,25 @@ pub(super) fn any_hit<R: Lanes, E: Lanes, P: Primitive>(
     meeting: &Meeting<'_, P>,
     root: &Aabb,
     scratch: &mut Scratch,
+    is_sorted: bool,
 ) {
-    let Scratch { rays, wave, together, sorted: Sorted { order, some } } = scratch;
-    let count = rays.marks.len();
-    for first in (0..count).step_by(order::MOST) {
-        let groups = first..(first + order::MOST).min(count);
-        for places in order.of(r, rays, groups).chunks(SOME) {
-            some.gather(rays, places);
-            some.prepare(r, root, Allowance::of::<P>());
-            let groups = 0..some.marks.len();
-            let mut turns = wave.begin_empty(some, groups, meeting.tree.pending + KEPT, false);
-            for groups in Octant::ranges(some.marks.len()) {
-                go_together(r, meeting, root, some, groups, together, &mut turns);
+    let Scratch { rays, wave, together, reordered } = scratch;
+    reordered.each::<false, R>(
+        r,
+        rays,
+        is_sorted,
+        #[inline(always)]
+        |rays| {
+            rays.prepare(r, root, Allowance::of::<P>());
+            let groups = 0..rays.marks.len();
+            let mut turns = wave.begin_empty(rays, groups, meeting.tree.pending + KEPT, false);
+            for groups in Octant::ranges(rays.marks.len()) {
+                go_together(r, meeting, root, rays, groups, together, &mut turns);
             }
-            turns.start(some);
-            each_turn::<false, E, P>(e, meeting, some.words(), turns);
-            some.give_back(rays);
-        }
-    }
+            turns.start(rays);
+            each_turn::<false, E, P>(e, meeting, rays.words(), turns);
+        },
+    );
 }
 
 /// Takes the rays of some groups through the tree, each octant for itself.

@@ -30,7 +30,7 @@ pub(crate) mod trace;
 mod wave;
 
 use super::build::Tree;
-use super::{BuildConfig, Node, Storage};
+use super::{BuildConfig, Node, Storage, Traversal};
 use crate::geometry::{Aabb, Primitive};
 use crate::kernel::has_wide_walks;
 use blocks::Blocks;
@@ -44,6 +44,8 @@ pub(crate) struct Wide {
     /// How many children may be pending at once on the way to a leaf.
     pending: usize,
     bounds: Aabb,
+    /// How rays go through it.
+    pub(super) traversal: Traversal,
 }
 
 /// The wide tree over `prims`, if the configuration asks for one, and this machine goes through such.
@@ -53,7 +55,10 @@ pub(super) fn of<P: Primitive>(
     prims: &[P],
     shared: &[P::Shared],
 ) -> Option<Wide> {
-    (config.storage == Storage::Leaves && has_wide_walks()).then(|| Wide::of(tree, prims, shared))
+    if config.storage != Storage::Leaves || !has_wide_walks() {
+        return None;
+    }
+    Some(Wide { traversal: config.traversal, ..Wide::of(tree, prims, shared) })
 }
 
 impl Wide {
@@ -66,7 +71,8 @@ impl Wide {
         };
         let collapse::Collapsed { nodes, blocks, pending } = collapse::collapse(nodes, solidity);
         let bounds = tree.nodes.first().map_or(Aabb::EMPTY, Node::bounds);
-        Self { nodes, blocks: Blocks::of(prims, indices, &blocks), pending, bounds }
+        let blocks = Blocks::of(prims, indices, &blocks);
+        Self { nodes, blocks, pending, bounds, traversal: Traversal::Auto }
     }
 
     pub(super) fn is_empty(&self) -> bool {

@@ -1,4 +1,4 @@
-//! Rays in the order of their directions.
+//! Rays of a query in another order, some at a time.
 
 use core::ops::Range;
 
@@ -11,10 +11,55 @@ const STEPS: u32 = 8;
 const KEYS: usize = (STEPS * STEPS * STEPS) as usize;
 
 /// The most groups whose rays are sorted at once, so that they stay in a cache of the second level.
-pub(super) const MOST: usize = 256;
+const MOST: usize = 256;
 const _: () = assert!(MOST * GROUP <= 1 << 16, "a ray's number has 16 bits below its key");
 
-/// What sorting needs, kept from one query to the next.
+/// So many rays at once come from the order: what they need lies in a cache of the second level.
+const SOME: usize = 512;
+
+/// What this needs, kept from one query to the next.
+#[derive(Debug, Default)]
+pub(super) struct Reordered {
+    order: Order,
+    some: Rays,
+}
+
+impl Reordered {
+    /// Hands over the rays that are alive, some at a time, as they come or in the order of their
+    /// directions, and takes back what they have found: with `CLOSEST` hits, else whether there is any.
+    #[inline(always)]
+    pub(super) fn each<const CLOSEST: bool, R: Lanes>(
+        &mut self,
+        r: R,
+        rays: &mut Rays,
+        is_sorted: bool,
+        mut find: impl FnMut(&mut Rays),
+    ) {
+        let Self { order, some } = self;
+        let count = rays.marks.len();
+        for first in (0..count).step_by(MOST) {
+            let groups = first..(first + MOST).min(count);
+            let places = if is_sorted {
+                order.by_direction(r, rays, groups)
+            } else {
+                order.as_they_come(rays, groups)
+            };
+            for places in places.chunks(SOME) {
+                some.gather::<CLOSEST>(rays, places);
+                find(some);
+                some.give_back::<CLOSEST>(rays, places);
+            }
+        }
+    }
+
+    /// Whether any rays have been put into order.
+    #[cfg(test)]
+    pub(super) fn has_sorted(&self) -> bool {
+        !self.order.keys.is_empty()
+    }
+}
+
+/// What sorting needs.
 #[derive(Debug, Default)]
 pub(super) struct Order {
     /// Of each ray: its key above its number.
@@ -24,10 +69,25 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// The places of the rays that are alive in some groups, in the order of their directions: along
-    /// a Morton curve through the cube that they point to, so that rays of an octant come together.
+    /// The places of the rays that are alive in some groups, as they come.
+    pub(super) fn as_they_come(&mut self, rays: &Rays, groups: Range<usize>) -> &[u32] {
+        self.places.clear();
+        for group in groups {
+            let lanes = lanes_of(rays.marks[group].alive);
+            self.places.extend(lanes.map(|lane| place(GROUP * group + lane)));
+        }
+        &self.places
+    }
+
+    /// The same in the order of their directions: along a Morton curve through the cube that they
+    /// point to, so that rays of an octant come together.
     #[inline(always)]
-    pub(super) fn of<R: Lanes>(&mut self, r: R, rays: &Rays, groups: Range<usize>) -> &[u32] {
+    pub(super) fn by_direction<R: Lanes>(
+        &mut self,
+        r: R,
+        rays: &Rays,
+        groups: Range<usize>,
+    ) -> &[u32] {
         self.keys.clear();
         let mut begins = [0u32; KEYS];
         let first = groups.start;

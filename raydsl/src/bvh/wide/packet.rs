@@ -44,7 +44,8 @@ impl Together {
     }
 }
 
-/// Finds the least hits of rays that go the same way, which are alive no more then.
+/// Finds the least hits of rays that go the same way, which are alive no more then; of all that may
+/// go together, however they part, if they must.
 #[inline(always)]
 pub(super) fn closest_hit<R: Lanes, P: Primitive>(
     r: R,
@@ -52,11 +53,13 @@ pub(super) fn closest_hit<R: Lanes, P: Primitive>(
     rays: &mut Rays,
     together: &mut Together,
     root: &Aabb,
+    they_must: bool,
 ) {
+    let (at_least, spread) = if they_must { (2, f32::INFINITY) } else { (FEWEST, SPREAD) };
     for groups in Octant::ranges(rays.marks.len()) {
         let alive = |marks: &Marks| marks.alive.count_ones();
         let mut left: u32 = rays.marks[groups.clone()].iter().map(alive).sum();
-        let fewest = FEWEST.min(left / 4 * 3).max(2);
+        let fewest = at_least.min(left / 4 * 3).max(2);
         while left > 0 {
             let octant = &mut together.octant;
             let taken = octant.take(rays, groups.clone());
@@ -64,7 +67,7 @@ pub(super) fn closest_hit<R: Lanes, P: Primitive>(
             let beam = if taken < fewest {
                 None
             } else {
-                Beam::of(r.eight(), rays, octant, SPREAD, root, Allowance::of::<P>())
+                Beam::of(r.eight(), rays, octant, spread, root, Allowance::of::<P>())
             };
             if let Some(beam) = beam {
                 walk(r, meeting, rays, together, beam);

@@ -12,6 +12,8 @@ pub(super) const GROUP: usize = 16;
 
 /// The rows of a group: what there is a number of for each ray.
 pub(super) mod row {
+    use core::ops::Range;
+
     pub(in super::super) const ORIGIN: usize = 0;
     pub(in super::super) const DIRECTION: usize = 3;
     pub(in super::super) const T_MIN: usize = 6;
@@ -38,6 +40,11 @@ pub(super) mod row {
     pub(in super::super) const BOTTOM: usize = 27;
     pub(in super::super) const TOP: usize = 28;
     pub(in super::super) const COUNT: usize = 29;
+
+    /// The ray itself.
+    pub(in super::super) const RAY: Range<usize> = ORIGIN..T_MAX + 1;
+    /// The least hit so far, and how far it lets a ray go.
+    pub(in super::super) const RESULT: Range<usize> = LIMIT..FOUND + 1;
 }
 
 /// A word of each ray of a group.
@@ -218,9 +225,19 @@ impl Rays {
         }
     }
 
-    /// The rays at some places of others, one behind the other, that have found nothing yet. Each
-    /// has its place as its number.
-    pub(super) fn gather(&mut self, from: &Self, places: &[u32]) {
+    /// All that are asked about are on their way, but for the odd ones; how many.
+    pub(super) fn all_alive(&mut self) -> u32 {
+        let mut count = 0;
+        for marks in &mut self.marks {
+            marks.alive = marks.asked & !marks.odd;
+            count += marks.alive.count_ones();
+        }
+        count
+    }
+
+    /// The rays at some places of others, one behind the other: with `CLOSEST` and what they have
+    /// found so far, else as if that were nothing.
+    pub(super) fn gather<const CLOSEST: bool>(&mut self, from: &Self, places: &[u32]) {
         self.clear();
         self.add(1, places.len());
         let words = bytemuck::cast_slice(from.groups.as_flattened());
@@ -228,29 +245,34 @@ impl Rays {
             let rows = &mut self.groups[group];
             for (lane, &place) in places.iter().enumerate() {
                 let ray = ray_at(words, place);
-                for (row, words) in rows[..=row::T_MAX].iter_mut().enumerate() {
-                    words.0[lane] = ray.word(row);
+                for row in row::RAY {
+                    rows[row].0[lane] = ray.word(row);
                 }
-                rows[row::ID].0[lane] = place;
+                for row in if CLOSEST { row::RESULT } else { 0..0 } {
+                    rows[row].0[lane] = ray.word(row);
+                }
             }
-            rows[row::LIMIT] = rows[row::T_MAX];
-            rows[row::T] = Row([f32::INFINITY.to_bits(); GROUP]);
-            rows[row::FOUND] = Row([0; GROUP]);
+            if !CLOSEST {
+                rows[row::LIMIT] = rows[row::T_MAX];
+                rows[row::T] = Row([f32::INFINITY.to_bits(); GROUP]);
+                rows[row::FOUND] = Row([0; GROUP]);
+            }
             self.marks[group].asked = (1 << places.len()) - 1;
         }
     }
 
-    /// Tells others what rays have found that were gathered from there, and which are odd.
-    pub(super) fn give_back(&self, to: &mut Self) {
-        for (rows, marks) in self.groups.iter().zip(&self.marks) {
-            let lanes = rows[row::FOUND].0.iter().zip(&rows[row::ID].0);
-            for (lane, (&found, &place)) in lanes.enumerate() {
-                if marks.asked >> lane & 1 != 0 {
-                    ray_at_mut(to.words(), place).set(row::FOUND, found);
+    /// Tells others what the rays have found that were gathered from these places, and which are odd.
+    pub(super) fn give_back<const CLOSEST: bool>(&self, to: &mut Self, places: &[u32]) {
+        let groups = self.groups.iter().zip(&self.marks);
+        for ((rows, marks), places) in groups.zip(places.chunks(GROUP)) {
+            for (lane, &place) in places.iter().enumerate() {
+                let mut ray = ray_at_mut(to.words(), place);
+                for row in if CLOSEST { row::RESULT } else { row::FOUND..row::FOUND + 1 } {
+                    ray.set(row, rows[row].0[lane]);
                 }
             }
             for lane in lanes_of(marks.odd) {
-                let (group, lane) = group_and_lane(rows[row::ID].0[lane]);
+                let (group, lane) = group_and_lane(places[lane]);
                 to.marks[group].odd |= 1 << lane;
             }
         }

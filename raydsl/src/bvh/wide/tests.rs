@@ -8,13 +8,14 @@ use super::node::{Child, WIDTH, WideNode};
 use super::octant::Octant;
 use super::order::Order;
 use super::rays::{GROUP, Rays, lanes_of, place};
+use super::trace::{self, Ways};
 use super::{Wide, entry};
 use crate::bvh::build::{Primitives, build_watched};
 use crate::bvh::slabs::Allowance;
 use crate::bvh::stats::depth;
 use crate::bvh::validate::check;
-use crate::bvh::{BuildConfig, BuildQuality, Bvh, Node, RayQuery, Storage, validate};
-use crate::geometry::{Aabb, Ray, Triangle};
+use crate::bvh::{BuildConfig, BuildQuality, Bvh, Node, RayQuery, Storage, Traversal, validate};
+use crate::geometry::{Aabb, Hit, Ray, Triangle};
 use crate::machine::Simd8;
 
 /// A point of the unit cube for each pair of numbers.
@@ -233,7 +234,7 @@ fn the_order_has_each_ray_once_octant_by_octant() {
     let numbers: HashMap<u32, usize> = alive.map(|i| (place(i), i)).collect();
     let groups = 0..all.len() / GROUP;
     let mut order = Order::default();
-    let sorted = order.of(e, &rays, groups.clone());
+    let sorted = order.by_direction(e, &rays, groups.clone());
     let once: HashSet<_> = sorted.iter().collect();
     let expected = numbers.values().filter(|&&i| i < GROUP * groups.len()).count();
     assert_eq!((sorted.len(), once.len()), (expected, expected));
@@ -281,12 +282,12 @@ fn octants_have_each_ray_once() {
 
 /// Rays keep few boxes for their own way here, so that packets stay together for want of room.
 #[test]
-fn sorted_rays_meet_what_each_meets() {
+fn rays_meet_the_same_whatever_way_they_go() {
     for count in [20, 3000] {
         let prims = triangles(count);
-        let bvh = Bvh::build_with(&prims, &Storage::Leaves.into()).expect("finite bounds");
+        let mut bvh = Bvh::build_with(&prims, &Storage::Leaves.into()).expect("finite bounds");
         for case in 0..12 {
-            let number = [511, 512, 600, 2048, 2500, 5000][case as usize % 6];
+            let number = [1, 511, 512, 600, 2500, 5000][case as usize % 6];
             let spread = if case < 6 { 0.05 } else { 2.0 };
             let rays: Vec<Ray> = (0..number)
                 .map(|i| {
@@ -294,12 +295,64 @@ fn sorted_rays_meet_what_each_meets() {
                     let direction =
                         point(7, case) + 0.1 + point(i, case + 50) * spread - spread / 2.0;
                     let direction = if i % 9 == 5 { Vec3::NAN } else { direction };
-                    Ray { t_max: 9.0, ..Ray::new(origin, direction) }
+                    let t_max = if case % 2 == 0 { 9.0 } else { f32::MAX };
+                    Ray { t_max, ..Ray::new(origin, direction) }
                 })
                 .collect();
-            let expected: Vec<bool> = rays.iter().map(|ray| prims.any_hit(*ray)).collect();
-            let found = std::thread::scope(|scope| scope.spawn(|| bvh.any_hits(&rays)).join());
-            assert_eq!(found.expect("no panic"), expected, "{count} {case}");
+            let found: Vec<bool> = rays.iter().map(|ray| prims.any_hit(*ray)).collect();
+            let hits: Vec<Hit> = rays.iter().map(|ray| prims.closest_hit(*ray)).collect();
+            for traversal in Traversal::ALL {
+                bvh.set_traversal(traversal);
+                let ask = || (bvh.any_hits(&rays), bvh.closest_hits(&rays));
+                let answer = on_its_own_thread(ask);
+                assert_eq!(answer.0, found, "{count} {case} {traversal:?}");
+                assert_eq!(answer.1, hits, "{count} {case} {traversal:?}");
+            }
         }
     }
+}
+
+/// Calls `ask` on a thread that has asked nothing yet.
+fn on_its_own_thread<T: Send>(ask: impl FnOnce() -> T + Send) -> T {
+    std::thread::scope(|scope| scope.spawn(ask).join()).expect("no panic")
+}
+
+#[test]
+fn rays_go_the_way_that_is_said() {
+    let prims = triangles(1000);
+    let mut bvh = Bvh::build_with(&prims, &Storage::Leaves.into()).expect("finite bounds");
+    let rays = |spread: f32, t_max: f32| -> Vec<Ray> {
+        let ray = |i| {
+            let direction = Vec3::splat(0.5) + (point(i, 0) - 0.5) * spread;
+            Ray { t_max, ..Ray::new(Vec3::splat(-0.5), direction) }
+        };
+        (0..600).map(ray).collect()
+    };
+    let (of_a_camera, bounces) = (rays(0.1, f32::MAX), rays(0.9, f32::MAX));
+    let (shadows, one) = (rays(2.0, 3.0), &rays(2.0, 3.0)[..1]);
+    let (together, apart) = (Ways { packets: true, order: false }, Ways::default());
+    let sorted = Ways { packets: true, order: true };
+    for (traversal, closest, any) in [
+        (Traversal::Auto, [together, apart], [sorted, apart, apart]),
+        (Traversal::Waves, [apart, apart], [apart, apart, apart]),
+        (Traversal::Packets, [together, together], [together, apart, together]),
+        (Traversal::Sorted, [sorted, sorted], [sorted, apart, sorted]),
+    ] {
+        bvh.set_traversal(traversal);
+        assert_eq!(bvh.config().traversal, traversal);
+        for (rays, expected) in [&of_a_camera, &bounces].into_iter().zip(closest) {
+            let ask = || (bvh.closest_hits(rays), trace::ways()).1;
+            assert_eq!(on_its_own_thread(ask), expected, "{traversal:?} of {}", rays[0].t_max);
+        }
+        for (rays, expected) in [&shadows[..], one, &bounces[..]].into_iter().zip(any) {
+            let ask = || (bvh.any_hits(rays), trace::ways()).1;
+            let (number, t_max) = (rays.len(), rays[0].t_max);
+            assert_eq!(on_its_own_thread(ask), expected, "{traversal:?} of {number} to {t_max}");
+        }
+    }
+    let config = BuildConfig { traversal: Traversal::Waves, ..Storage::Leaves.into() };
+    let bvh = Bvh::build_with(&prims, &config).expect("finite bounds");
+    let bvh = bvh.refit(&prims).expect("finite bounds");
+    let ask = || (bvh.closest_hits(&of_a_camera), trace::ways()).1;
+    assert_eq!(on_its_own_thread(ask), apart, "set before, and refitted");
 }

@@ -6,14 +6,15 @@ use fearless_simd::Level;
 
 use super::entry;
 use super::fibers;
-use super::hybrid::{self, Sorted};
+use super::hybrid;
+use super::order::Reordered;
 use super::packet::{self, Together};
 use super::rays::{GROUP, Rays, lanes_of, load_words, place, ray_at, ray_at_mut, row};
 use super::step::Meeting;
 use super::wave::{self, Wave};
 use crate::bvh::packet_slabs::{and, finite};
 use crate::bvh::slabs::Allowance;
-use crate::bvh::{Part, SceneView, traverse};
+use crate::bvh::{Part, SceneView, Traversal, traverse};
 use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn};
 use crate::kernel::{LanesTask, with_wide_walks};
 use crate::machine::{B, Entered, F, Lanes, Packet, U, op};
@@ -24,7 +25,7 @@ pub(super) struct Scratch {
     pub(super) rays: Rays,
     pub(super) wave: Wave,
     pub(super) together: Together,
-    pub(super) sorted: Sorted,
+    pub(super) reordered: Reordered,
 }
 impl Scratch {
     /// Has no rays.
@@ -166,6 +167,27 @@ fn with_scratch(query: impl FnOnce(&mut Scratch)) {
     SCRATCH.set(Some(scratch));
 }
 
+/// What queries of this thread have done.
+#[cfg(test)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Ways {
+    /// Whether any rays went together.
+    pub(super) packets: bool,
+    /// Whether any were put into order.
+    pub(super) order: bool,
+}
+
+/// Which ways rays of this thread have gone.
+#[cfg(test)]
+pub(super) fn ways() -> Ways {
+    let mut ways = Ways::default();
+    with_scratch(|scratch| {
+        ways.packets = !scratch.together.stack.is_empty();
+        ways.order = scratch.reordered.has_sorted();
+    });
+    ways
+}
+
 /// Finds what the rays meet: the least hits with `CLOSEST`, else whether there is any.
 fn answer<const CLOSEST: bool, P: Primitive>(
     level: Option<Level>,
@@ -205,10 +227,7 @@ fn each_part<const CLOSEST: bool, R: Lanes, P: Primitive>(
                 let root = &tree.bounds();
                 let (meeting, e) = (meeting(scene, part, tree), r.eight());
                 if CLOSEST {
-                    let Scratch { rays, wave, together, .. } = &mut *scratch;
-                    rays.prepare(r, root, Allowance::of::<P>());
-                    packet::closest_hit(r, &meeting, rays, together, root);
-                    wave::run::<true, _, _>(Entered::new(e), &meeting, None, rays, wave);
+                    closest(r, &meeting, root, scratch);
                     continue;
                 }
                 if const { P::IS_SHORT } {
@@ -224,6 +243,52 @@ fn each_part<const CLOSEST: bool, R: Lanes, P: Primitive>(
     );
 }
 
+/// The least hits of the rays with a part of the scene.
+#[inline(always)]
+fn closest<R: Lanes, P: Primitive>(
+    r: R,
+    meeting: &Meeting<'_, P>,
+    root: &Aabb,
+    scratch: &mut Scratch,
+) {
+    let Scratch { rays, wave, together, reordered } = scratch;
+    if meeting.tree.traversal != Traversal::Sorted {
+        return closest_of(r, meeting, root, rays, together, wave);
+    }
+    rays.all_alive();
+    reordered.each::<true, R>(
+        r,
+        rays,
+        true,
+        #[inline(always)]
+        |rays| closest_of(r, meeting, root, rays, together, wave),
+    );
+}
+
+/// The same of rays as they come. In its own function, which those that were sorted share.
+#[inline(never)]
+fn closest_of<R: Lanes, P: Primitive>(
+    r: R,
+    meeting: &Meeting<'_, P>,
+    root: &Aabb,
+    rays: &mut Rays,
+    together: &mut Together,
+    wave: &mut Wave,
+) {
+    r.enter_again(
+        #[inline(always)]
+        || {
+            rays.prepare(r, root, Allowance::of::<P>());
+            let traversal = meeting.tree.traversal;
+            if traversal != Traversal::Waves {
+                let must = traversal == Traversal::Packets;
+                packet::closest_hit(r, meeting, rays, together, root, must);
+            }
+            wave::run::<true, _, _>(Entered::new(r.eight()), meeting, None, rays, wave);
+        },
+    );
+}
+
 /// Whether the rays meet anything in a part of the scene. `e` is for those on their own ways.
 #[inline(always)]
 fn any<R: Lanes, E: Lanes, P: Primitive>(
@@ -235,14 +300,16 @@ fn any<R: Lanes, E: Lanes, P: Primitive>(
 ) {
     let allowance = Allowance::of::<P>();
     let Scratch { rays, wave, .. } = &mut *scratch;
-    let mut count = 0;
-    for marks in &mut rays.marks {
-        marks.alive = marks.asked & !marks.odd;
-        count += marks.alive.count_ones();
-    }
-    // Rays without an end mostly meet something soon, each on its own way.
-    if count >= hybrid::FEWEST && entry::have_ends(r.eight(), rays) {
-        hybrid::any_hit(r, e, meeting, root, scratch);
+    let count = rays.all_alive();
+    let (go_together, are_sorted) = match meeting.tree.traversal {
+        // Rays without an end mostly meet something soon, each on its own way.
+        Traversal::Auto => (count >= hybrid::FEWEST && entry::have_ends(r.eight(), rays), true),
+        Traversal::Waves => (false, false),
+        Traversal::Packets => (count > hybrid::APART, false),
+        Traversal::Sorted => (count > hybrid::APART, true),
+    };
+    if go_together {
+        hybrid::any_hit(r, e, meeting, root, scratch, are_sorted);
     } else {
         rays.prepare(r, root, allowance);
         let entry = entry::of(r.eight(), meeting.tree, rays, root, allowance);
