@@ -73,7 +73,9 @@ pub fn brute_force<P: Primitive<Hit = Hit, Shared = ()>>(
         }
     }
     hits.sort_by(|a, b| {
-        a.t.total_cmp(&b.t).then((a.inst_id, a.prim_id).cmp(&(b.inst_id, b.prim_id)))
+        // Zeros of either sign are one distance.
+        let nearer = (a.t + 0.0).total_cmp(&(b.t + 0.0));
+        nearer.then((a.inst_id, a.prim_id).cmp(&(b.inst_id, b.prim_id)))
     });
     hits
 }

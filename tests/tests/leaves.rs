@@ -269,21 +269,24 @@ fn indexed_triangles() {
     assert_packets(&kernel, &rays);
 }
 
-/// Some trees of a list may have leaves of their own and others not, and rays go through each as it
-/// says.
+/// Some trees of a list may have leaves of their own and others not, and rays go through those
+/// that all have as each says.
 #[test]
 fn lists() {
     let mut rng = Rng::of("lists of leaves");
     let rays = rays(&mut rng, 1500);
-    let models = [balls(&mut rng, 50), balls(&mut rng, 20), Vec::new(), balls(&mut rng, 9)];
+    let [a, b, c, d] = [50, 20, 9, 30].map(|count| balls(&mut rng, count));
+    let models = [a, b, Vec::new(), c, d];
     let all = models.concat();
-    for borrows in [4, 1] {
+    for (borrows, shift) in [(5, 0), (5, 1), (5, 2), (5, 3), (1, 0)] {
         let trees: Vec<_> = models
             .iter()
             .enumerate()
             .map(|(i, model)| {
                 let storage = if i < borrows { Storage::Leaves } else { Storage::Borrow };
-                let traversal = Traversal::ALL[(borrows + i) % 4];
+                // With one that sorts, rays are sorted for all.
+                let ways = if shift % 2 == 0 { 4 } else { 3 };
+                let traversal = Traversal::ALL[([0, 1, 0, 2, 3][i] + shift) % ways];
                 let config = BuildConfig { storage, traversal, ..BuildConfig::default() };
                 Bvh::build_with(model, &config).expect("finite bounds")
             })

@@ -85,8 +85,9 @@ pub enum Storage {
 /// How rays that are asked about together go through a tree with [`Storage::Leaves`].
 ///
 /// Those of one query are: of a packet, of a gang, of
-/// [`RayQuery::any_hits`](crate::bvh::RayQuery::any_hits). Hits are the same with each. A tree without
-/// copies, instances, and queries with a condition or of several hits take no notice.
+/// [`RayQuery::closest_hits`](crate::bvh::RayQuery::closest_hits) and `any_hits`. Hits are the same
+/// with each. One ray on the host takes no notice, nor do trees without copies, lists with such a tree,
+/// instances, devices, and queries with a condition or of several hits.
 ///
 /// [`Traversal::Auto`] was within 6 % of the best of the others in every kind of ray of three
 /// architectural scenes, but for bounces in one of them (9 %), and a wrong one is slower by factors. Set
@@ -95,20 +96,23 @@ pub enum Storage {
 #[non_exhaustive]
 pub enum Traversal {
     /// By what rays ask, how many they are, and how they part; the default. Closest hits: rays go in
-    /// packets where twelve or more go up or down along each axis together and part by no more than
-    /// half of their length, others in waves. Any hits: 512 rays and more that all have an end are
-    /// sorted, others go in waves.
+    /// packets where twelve or more, or most of those that there are, go up or down along each axis
+    /// together and part by no more than half of their length, others in waves. Any hits: 512 rays and
+    /// more that all have an end are sorted, others go in waves.
     #[default]
     Auto,
     /// Each ray on its own way, up to 256 of them in turn. For rays that have nothing in common.
     Waves,
     /// Rays that come together, up to 64 of them, stay together if they go up or down along each axis
-    /// together, however far they part. Those that ask for any hit come apart where 16 or fewer enter a
-    /// box. For rays of one camera or one light.
+    /// together, however far they part; not those that begin behind their origin. Those that ask for any
+    /// hit come apart where 16 or fewer enter a box. For rays of one camera or one light.
     Packets,
-    /// Up to 4096 rays are put into the order of their directions first. Then those that ask for any
-    /// hit go as with [`Traversal::Packets`], those that ask for the closest one as with
-    /// [`Traversal::Auto`]. For many rays that begin near each other.
+    /// More than 16 rays, up to 4096 at once, are put into the order of their directions first. Then
+    /// those that ask for any hit go as with [`Traversal::Packets`], those that ask for the closest one
+    /// as with [`Traversal::Auto`]. For many rays that begin near each other.
+    ///
+    /// In a list of trees rays that ask for the closest hit are put into order for all of them if it is
+    /// set for one.
     Sorted,
 }
 

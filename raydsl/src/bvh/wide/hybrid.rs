@@ -10,6 +10,7 @@ use core::ops::Range;
 use super::beam::Beam;
 use super::node::{Child, WIDTH};
 use super::octant::Octant;
+use super::order::Sequence;
 use super::packet::{Bundle, Together};
 use super::rays::{Rays, lanes_of, row};
 use super::step::{Meeting, enter};
@@ -33,8 +34,7 @@ const SPREAD: f32 = f32::INFINITY;
 /// stay together for want of room.
 const KEPT: usize = if cfg!(test) { 3 } else { 40 };
 
-/// Whether each ray that is alive meets anything, in the order of their directions or as they come.
-/// `e` is for rays on their own ways.
+/// Whether each ray that is alive meets anything, in some sequence. `e` is for rays on their own ways.
 #[inline(always)]
 pub(super) fn any_hit<R: Lanes, E: Lanes, P: Primitive>(
     r: R,
@@ -42,13 +42,13 @@ pub(super) fn any_hit<R: Lanes, E: Lanes, P: Primitive>(
     meeting: &Meeting<'_, P>,
     root: &Aabb,
     scratch: &mut Scratch,
-    is_sorted: bool,
+    sequence: Sequence,
 ) {
-    let Scratch { rays, wave, together, reordered } = scratch;
-    reordered.each::<false, R>(
+    let Scratch { rays, wave, together, portions } = scratch;
+    portions.each::<false, R>(
         r,
         rays,
-        is_sorted,
+        sequence,
         #[inline(always)]
         |rays| {
             rays.prepare(r, root, Allowance::of::<P>());

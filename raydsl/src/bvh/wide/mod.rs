@@ -58,12 +58,17 @@ pub(super) fn of<P: Primitive>(
     if config.storage != Storage::Leaves || !has_wide_walks() {
         return None;
     }
-    Some(Wide { traversal: config.traversal, ..Wide::of(tree, prims, shared) })
+    Some(Wide::of(tree, prims, shared, config.traversal))
 }
 
 impl Wide {
     /// Collapses a binary tree over `prims`.
-    pub(super) fn of<P: Primitive>(tree: &Tree, prims: &[P], shared: &[P::Shared]) -> Self {
+    pub(super) fn of<P: Primitive>(
+        tree: &Tree,
+        prims: &[P],
+        shared: &[P::Shared],
+        traversal: Traversal,
+    ) -> Self {
         let Tree { nodes, indices } = tree;
         let solidity = |range: collapse::Range| {
             let ids = &indices[range.first as usize..][..range.count as usize];
@@ -72,7 +77,7 @@ impl Wide {
         let collapse::Collapsed { nodes, blocks, pending } = collapse::collapse(nodes, solidity);
         let bounds = tree.nodes.first().map_or(Aabb::EMPTY, Node::bounds);
         let blocks = Blocks::of(prims, indices, &blocks);
-        Self { nodes, blocks, pending, bounds, traversal: Traversal::Auto }
+        Self { nodes, blocks, pending, bounds, traversal }
     }
 
     pub(super) fn is_empty(&self) -> bool {

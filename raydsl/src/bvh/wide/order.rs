@@ -1,4 +1,4 @@
-//! Rays of a query in another order, some at a time.
+//! The rays of a query in another order, some at a time.
 
 use core::ops::Range;
 
@@ -17,32 +17,40 @@ const _: () = assert!(MOST * GROUP <= 1 << 16, "a ray's number has 16 bits below
 /// So many rays at once come from the order: what they need lies in a cache of the second level.
 const SOME: usize = 512;
 
-/// What this needs, kept from one query to the next.
+/// In which order rays come.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Sequence {
+    AsTheyCome,
+    /// Along a Morton curve through the cube that they point to, so that rays of an octant come
+    /// together.
+    ByDirection,
+}
+
+/// The rays of a query in a sequence, some at a time. Its memory is kept from one query to the next.
 #[derive(Debug, Default)]
-pub(super) struct Reordered {
+pub(super) struct Portions {
     order: Order,
     some: Rays,
 }
 
-impl Reordered {
-    /// Hands over the rays that are alive, some at a time, as they come or in the order of their
-    /// directions, and takes back what they have found: with `CLOSEST` hits, else whether there is any.
+impl Portions {
+    /// Hands over the rays that are alive, and takes back what they have found: with `CLOSEST` hits,
+    /// else whether there is any.
     #[inline(always)]
     pub(super) fn each<const CLOSEST: bool, R: Lanes>(
         &mut self,
         r: R,
         rays: &mut Rays,
-        is_sorted: bool,
+        sequence: Sequence,
         mut find: impl FnMut(&mut Rays),
     ) {
         let Self { order, some } = self;
         let count = rays.marks.len();
         for first in (0..count).step_by(MOST) {
             let groups = first..(first + MOST).min(count);
-            let places = if is_sorted {
-                order.by_direction(r, rays, groups)
-            } else {
-                order.as_they_come(rays, groups)
+            let places = match sequence {
+                Sequence::AsTheyCome => order.as_they_come(rays, groups),
+                Sequence::ByDirection => order.by_direction(r, rays, groups),
             };
             for places in places.chunks(SOME) {
                 some.gather::<CLOSEST>(rays, places);
@@ -69,7 +77,7 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// The places of the rays that are alive in some groups, as they come.
+    /// The places of the rays that are alive in some groups.
     pub(super) fn as_they_come(&mut self, rays: &Rays, groups: Range<usize>) -> &[u32] {
         self.places.clear();
         for group in groups {
@@ -79,8 +87,7 @@ impl Order {
         &self.places
     }
 
-    /// The same in the order of their directions: along a Morton curve through the cube that they
-    /// point to, so that rays of an octant come together.
+    /// The same in the order of their directions.
     #[inline(always)]
     pub(super) fn by_direction<R: Lanes>(
         &mut self,

@@ -6,8 +6,8 @@ use glam::Vec3;
 
 use super::node::{Child, WIDTH, WideNode};
 use super::octant::Octant;
-use super::order::Order;
-use super::rays::{GROUP, Rays, lanes_of, place};
+use super::order::{Order, Portions, Sequence};
+use super::rays::{GROUP, Rays, lanes_of, place, ray_at, ray_at_mut, row};
 use super::trace::{self, Ways};
 use super::{Wide, entry};
 use crate::bvh::build::{Primitives, build_watched};
@@ -104,7 +104,7 @@ fn the_binary_tree_comes_back() {
         for quality in BuildQuality::ALL {
             let config = BuildConfig { quality, storage: Storage::Leaves, ..Default::default() };
             let built = build_watched(&source, prims.len(), &config, None).expect("finite bounds");
-            let wide = Wide::of(&built, &prims, &[]);
+            let wide = Wide::of(&built, &prims, &[], Traversal::Auto);
             let tree = wide.binary();
             assert_eq!(check(&tree.nodes, &tree.indices, prims.len(), &source), Ok(()));
             assert_eq!(tree.nodes.first().map(Node::bounds), built.nodes.first().map(Node::bounds));
@@ -112,7 +112,7 @@ fn the_binary_tree_comes_back() {
             assert!(tree.nodes.iter().map(bits).all(|node| boxes.contains(&node)), "of its own");
             assert!(depth(&tree.nodes) <= depth(&built.nodes));
             // There is nothing left to collapse.
-            assert_eq!(Wide::of(&tree, &prims, &[]).binary(), tree);
+            assert_eq!(Wide::of(&tree, &prims, &[], Traversal::Auto).binary(), tree);
         }
     }
 }
@@ -245,6 +245,50 @@ fn the_order_has_each_ray_once_octant_by_octant() {
 }
 
 #[test]
+fn portions_have_each_ray_once_and_bring_back_what_it_found() {
+    let e = Simd8(fearless_simd::Fallback::new());
+    // More than are sorted at once.
+    let all: Vec<Ray> = (0..5000)
+        .map(|i| Ray::new(Vec3::splat(i as f32), if i % 9 == 5 { Vec3::NAN } else { point(i, 5) }))
+        .collect();
+    for sequence in [Sequence::AsTheyCome, Sequence::ByDirection] {
+        let mut rays = Rays::default();
+        rays.load(&all);
+        assert_eq!(rays.all_alive() as usize, all.len() - (0..5000).filter(|i| i % 9 == 5).count());
+        for round in 1..=2 {
+            let odd = |i: usize| i.is_multiple_of(100);
+            Portions::default().each::<true, _>(e, &mut rays, sequence, |some| {
+                for group in 0..some.marks.len() {
+                    for lane in lanes_of(some.marks[group].asked) {
+                        let mut ray = ray_at_mut(some.words(), place(GROUP * group + lane));
+                        let number = ray.as_ref().number(row::ORIGIN);
+                        let found = ray.as_ref().word(row::FOUND);
+                        assert_eq!(found, round - 1, "what it has found before is there");
+                        ray.set(row::FOUND, found + 1);
+                        ray.set_number(row::T, number + round as f32);
+                        ray.set(row::ID, number as u32);
+                        ray.set_number(row::LIMIT, 2.0 * number);
+                        some.marks[group].odd |= u32::from(odd(number as usize)) << lane;
+                    }
+                }
+            });
+            for (i, Ray { direction, .. }) in all.iter().enumerate() {
+                let ray = ray_at(rays.words(), place(i));
+                let result = (ray.word(row::FOUND), ray.word(row::ID), ray.number(row::T));
+                let limit = ray.number(row::LIMIT);
+                let is_odd = rays.marks[i / GROUP].odd >> (i % GROUP) & 1 == 1;
+                if direction.is_nan() {
+                    assert!(result.0 == 0 && limit == all[i].t_max && !is_odd, "{i}");
+                } else {
+                    assert_eq!(result, (round, i as u32, i as f32 + round as f32));
+                    assert!(limit == 2.0 * i as f32 && is_odd == odd(i), "{i}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn octants_have_each_ray_once() {
     let e = Simd8(fearless_simd::Fallback::new());
     for count in [1, 16, 17, 64, 100, 130] {
@@ -342,7 +386,7 @@ fn rays_go_the_way_that_is_said() {
         assert_eq!(bvh.config().traversal, traversal);
         for (rays, expected) in [&of_a_camera, &bounces].into_iter().zip(closest) {
             let ask = || (bvh.closest_hits(rays), trace::ways()).1;
-            assert_eq!(on_its_own_thread(ask), expected, "{traversal:?} of {}", rays[0].t_max);
+            assert_eq!(on_its_own_thread(ask), expected, "{traversal:?} {}", rays[0].direction);
         }
         for (rays, expected) in [&shadows[..], one, &bounces[..]].into_iter().zip(any) {
             let ask = || (bvh.any_hits(rays), trace::ways()).1;

@@ -1,13 +1,14 @@
 //! Queries of packets, and of many rays of the host, answered by wide trees.
 
 use core::cell::Cell;
+use core::mem::{swap, take};
 
 use fearless_simd::Level;
 
 use super::entry;
 use super::fibers;
 use super::hybrid;
-use super::order::Reordered;
+use super::order::{Portions, Sequence};
 use super::packet::{self, Together};
 use super::rays::{GROUP, Rays, lanes_of, load_words, place, ray_at, ray_at_mut, row};
 use super::step::Meeting;
@@ -25,7 +26,7 @@ pub(super) struct Scratch {
     pub(super) rays: Rays,
     pub(super) wave: Wave,
     pub(super) together: Together,
-    pub(super) reordered: Reordered,
+    pub(super) portions: Portions,
 }
 impl Scratch {
     /// Has no rays.
@@ -183,7 +184,7 @@ pub(super) fn ways() -> Ways {
     let mut ways = Ways::default();
     with_scratch(|scratch| {
         ways.packets = !scratch.together.stack.is_empty();
-        ways.order = scratch.reordered.has_sorted();
+        ways.order = scratch.portions.has_sorted();
     });
     ways
 }
@@ -202,12 +203,38 @@ fn answer<const CLOSEST: bool, P: Primitive>(
         type Output = ();
 
         fn run<R: Lanes>(self, r: R) {
-            each_part::<CLOSEST, R, P>(r, self.scene, self.scratch);
+            let Self { scene, scratch } = self;
+            let is_sorted = |part: Part<'_, P, P::Shared>| {
+                part.wide().is_some_and(|tree| tree.traversal == Traversal::Sorted)
+            };
+            if CLOSEST && scene.parts().any(is_sorted) && scratch.rays.all_alive() > hybrid::APART {
+                closest_sorted(r, scene, scratch);
+            } else {
+                each_part::<CLOSEST, R, P>(r, scene, scratch);
+            }
         }
     }
     let done = with_wide_walks(level, Answer::<CLOSEST, P> { scene, scratch: &mut *scratch });
     debug_assert!(done.is_some(), "wide trees are there where the machine goes through them");
     alone::<CLOSEST, P>(scene, &mut scratch.rays);
+}
+
+/// Finds the least hits of the rays that are alive, some at a time in the order of their directions.
+#[inline(never)]
+fn closest_sorted<R: Lanes, P: Primitive>(r: R, scene: &SceneView<'_, P>, scratch: &mut Scratch) {
+    r.vectorize(
+        #[inline(always)]
+        || {
+            let (mut rays, mut portions) = (take(&mut scratch.rays), take(&mut scratch.portions));
+            let find = |some: &mut Rays| {
+                swap(&mut scratch.rays, some);
+                each_part::<true, R, P>(r, scene, scratch);
+                swap(&mut scratch.rays, some);
+            };
+            portions.each::<true, R>(r, &mut rays, Sequence::ByDirection, find);
+            (scratch.rays, scratch.portions) = (rays, portions);
+        },
+    );
 }
 
 /// In its own function, which packets of any width share.
@@ -227,7 +254,13 @@ fn each_part<const CLOSEST: bool, R: Lanes, P: Primitive>(
                 let root = &tree.bounds();
                 let (meeting, e) = (meeting(scene, part, tree), r.eight());
                 if CLOSEST {
-                    closest(r, &meeting, root, scratch);
+                    let Scratch { rays, wave, together, .. } = &mut *scratch;
+                    rays.prepare(r, root, Allowance::of::<P>());
+                    if tree.traversal != Traversal::Waves {
+                        let must = tree.traversal == Traversal::Packets;
+                        packet::closest_hit(r, &meeting, rays, together, root, must);
+                    }
+                    wave::run::<true, _, _>(Entered::new(e), &meeting, None, rays, wave);
                     continue;
                 }
                 if const { P::IS_SHORT } {
@@ -239,52 +272,6 @@ fn each_part<const CLOSEST: bool, R: Lanes, P: Primitive>(
                     scratch.rays.forget_found();
                 }
             }
-        },
-    );
-}
-
-/// The least hits of the rays with a part of the scene.
-#[inline(always)]
-fn closest<R: Lanes, P: Primitive>(
-    r: R,
-    meeting: &Meeting<'_, P>,
-    root: &Aabb,
-    scratch: &mut Scratch,
-) {
-    let Scratch { rays, wave, together, reordered } = scratch;
-    if meeting.tree.traversal != Traversal::Sorted {
-        return closest_of(r, meeting, root, rays, together, wave);
-    }
-    rays.all_alive();
-    reordered.each::<true, R>(
-        r,
-        rays,
-        true,
-        #[inline(always)]
-        |rays| closest_of(r, meeting, root, rays, together, wave),
-    );
-}
-
-/// The same of rays as they come. In its own function, which those that were sorted share.
-#[inline(never)]
-fn closest_of<R: Lanes, P: Primitive>(
-    r: R,
-    meeting: &Meeting<'_, P>,
-    root: &Aabb,
-    rays: &mut Rays,
-    together: &mut Together,
-    wave: &mut Wave,
-) {
-    r.enter_again(
-        #[inline(always)]
-        || {
-            rays.prepare(r, root, Allowance::of::<P>());
-            let traversal = meeting.tree.traversal;
-            if traversal != Traversal::Waves {
-                let must = traversal == Traversal::Packets;
-                packet::closest_hit(r, meeting, rays, together, root, must);
-            }
-            wave::run::<true, _, _>(Entered::new(r.eight()), meeting, None, rays, wave);
         },
     );
 }
@@ -301,15 +288,16 @@ fn any<R: Lanes, E: Lanes, P: Primitive>(
     let allowance = Allowance::of::<P>();
     let Scratch { rays, wave, .. } = &mut *scratch;
     let count = rays.all_alive();
-    let (go_together, are_sorted) = match meeting.tree.traversal {
+    let sequence = match meeting.tree.traversal {
         // Rays without an end mostly meet something soon, each on its own way.
-        Traversal::Auto => (count >= hybrid::FEWEST && entry::have_ends(r.eight(), rays), true),
-        Traversal::Waves => (false, false),
-        Traversal::Packets => (count > hybrid::APART, false),
-        Traversal::Sorted => (count > hybrid::APART, true),
+        Traversal::Auto => (count >= hybrid::FEWEST && entry::have_ends(r.eight(), rays))
+            .then_some(Sequence::ByDirection),
+        Traversal::Waves => None,
+        Traversal::Packets => (count > hybrid::APART).then_some(Sequence::AsTheyCome),
+        Traversal::Sorted => (count > hybrid::APART).then_some(Sequence::ByDirection),
     };
-    if go_together {
-        hybrid::any_hit(r, e, meeting, root, scratch, are_sorted);
+    if let Some(sequence) = sequence {
+        hybrid::any_hit(r, e, meeting, root, scratch, sequence);
     } else {
         rays.prepare(r, root, allowance);
         let entry = entry::of(r.eight(), meeting.tree, rays, root, allowance);
