@@ -78,7 +78,8 @@ impl Target {
 /// What may be spent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
-    /// By the clock.
+    /// By the clock. What the run seems to need after its last sample, at most a tenth, is kept
+    /// for that: a run that is out of time may end as much earlier.
     pub time: Duration,
     /// Samples a pixel in all, those of pilots too; on the average where [`Until::adaptive`] has
     /// chosen them.
