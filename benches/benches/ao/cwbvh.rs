@@ -18,7 +18,7 @@ use crate::row::Row;
 pub(crate) struct Tree {
     bvh: CwBvh,
     leaves: Vec<TheirTriangle>,
-    cost: Cost,
+    pub(crate) cost: Cost,
 }
 
 impl Tree {

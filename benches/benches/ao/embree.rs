@@ -19,7 +19,7 @@ pub(crate) struct Device {
 pub(crate) struct Tree<'a> {
     scene: Scene<'a>,
     quality: Quality,
-    cost: Cost,
+    pub(crate) cost: Cost,
 }
 
 impl Device {

@@ -22,7 +22,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use raydsl::prelude::*;
-use raydsl_benches::contest::TILE;
+use raydsl_benches::clock::median;
+use raydsl_benches::contest::{Cost, TILE};
 use raydsl_benches::scenes::{self, Scene};
 use raydsl_benches::table::{Line, finish, print};
 
@@ -41,7 +42,7 @@ struct Args {
     /// Numbers of threads, each measured on its own.
     #[arg(long, value_delimiter = ',', default_value = "1")]
     threads: Vec<usize>,
-    /// Rounds; each measures every mode of every row once.
+    /// Rounds; each builds every tree, and measures every mode of every row, once.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
     /// Width and height of the film, a multiple of 16.
@@ -110,12 +111,51 @@ fn all_scenes(words: &[String]) -> Vec<(String, Scene<Triangle>)> {
     all
 }
 
+/// What all systems built.
+struct Trees<'a> {
+    own: Vec<own::Tree<'a>>,
+    cwbvh: cwbvh::Tree,
+    embree: Vec<embree::Tree<'a>>,
+}
+
+impl Trees<'_> {
+    /// Builds every tree once a round, and keeps the last ones with the medians of their times.
+    fn of_rounds(rounds: usize, build: impl Fn() -> Self) -> Self {
+        // The first round warms up.
+        let mut trees = build();
+        let mut times = vec![Vec::new(); trees.costs().len()];
+        for _ in 0..rounds {
+            drop(trees);
+            trees = build();
+            for (times, cost) in times.iter_mut().zip(trees.costs()) {
+                times.push(cost.build_ms);
+            }
+        }
+        for (times, cost) in times.iter().zip(trees.costs()) {
+            cost.build_ms = median(times);
+        }
+        trees
+    }
+
+    fn costs(&mut self) -> Vec<&mut Cost> {
+        let own = self.own.iter_mut().map(|tree| &mut tree.cost);
+        let embree = self.embree.iter_mut().map(|tree| &mut tree.cost);
+        own.chain([&mut self.cwbvh.cost]).chain(embree).collect()
+    }
+}
+
 /// Measures one scene on so many threads.
 fn measure(args: &Args, name: &str, scene: &Scene<Triangle>, threads: usize) -> Vec<Line> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.expect("threads can be started");
     pool.install(|| {
-        let own = own::trees(&scene.prims, threads, &args.traversal);
+        let device = embree::Device::load(&scene.prims, threads);
+        let build = || Trees {
+            own: own::trees(&scene.prims, threads, &args.traversal),
+            cwbvh: cwbvh::Tree::new(&scene.prims, threads),
+            embree: device.as_ref().map_or_else(Vec::new, embree::Device::trees),
+        };
+        let Trees { own, cwbvh, embree } = Trees::of_rounds(args.rounds.into(), build);
         let work = Workload::new(&own[0].bvh, scene.camera, args.size);
         println!(
             "{name}: {} triangles, {} of {} camera rays meet something, threads: {threads}\n",
@@ -123,9 +163,6 @@ fn measure(args: &Args, name: &str, scene: &Scene<Triangle>, threads: usize) -> 
             work.places.len(),
             work.primary.len()
         );
-        let cwbvh = cwbvh::Tree::new(&scene.prims, threads);
-        let device = embree::Device::load(&scene.prims, threads);
-        let embree = device.as_ref().map_or_else(Vec::new, embree::Device::trees);
         let mut contenders = own::contenders(&own, &work, threads);
         contenders.extend(embree::contenders(&embree, &work, threads));
         contenders.extend(cwbvh::contenders(&cwbvh, &work, threads));

@@ -138,8 +138,11 @@ impl<'a, R> Tiles<'a, R> {
         {
             use rayon::prelude::*;
             let Self { grid, numbers, .. } = self;
+            // Any tile may be stolen: what rayon takes to be small enough is up to a quarter of a frame
+            // for two threads.
+            let numbers = numbers.into_par_iter().with_max_len(1);
             // SAFETY: the image is borrowed for 'a, and each number of a tile comes once.
-            numbers.into_par_iter().for_each(|number| f(unsafe { grid.tile(number) }));
+            numbers.for_each(|number| f(unsafe { grid.tile(number) }));
         }
         #[cfg(not(feature = "parallel"))]
         self.for_each(f);
@@ -307,6 +310,32 @@ mod tests {
     use std::collections::HashSet;
 
     use super::*;
+
+    /// The first tile waits until all others are done: a tile that is slow holds up no other one.
+    #[cfg(feature = "parallel")]
+    #[test]
+    fn any_tile_is_stolen_from_a_slow_one() {
+        use std::sync::atomic::{AtomicUsize, Ordering};
+        use std::time::{Duration, Instant};
+
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
+        let pool = pool.expect("two threads can be started");
+        let mut image = Image::filled(64, 16, 0u32);
+        let others = image.tiles(1).len() - 1;
+        let done = AtomicUsize::new(0);
+        let begin = Instant::now();
+        pool.install(|| {
+            image.tiles(1).for_each_parallel(|tile| {
+                let is_first = tile.origin() == UVec2::ZERO;
+                while is_first && done.load(Ordering::Relaxed) < others {
+                    let waited = begin.elapsed();
+                    assert!(waited < Duration::from_secs(60), "{done:?} of {others}");
+                    std::thread::yield_now();
+                }
+                done.fetch_add(1, Ordering::Relaxed);
+            });
+        });
+    }
 
     #[test]
     fn each_pixel_is_in_one_tile() {

@@ -70,7 +70,7 @@ impl Scheduler for TiledScheduler {
         {
             use rayon::prelude::*;
             let parts = inputs.par_chunks(BATCH).zip(outputs.par_chunks_mut(BATCH));
-            parts.for_each(|(inputs, outputs)| {
+            parts.with_max_len(1).for_each(|(inputs, outputs)| {
                 kernel.run_in_gangs(self.variant, self.gang, inputs, outputs)
             });
         }

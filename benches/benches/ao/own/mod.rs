@@ -14,7 +14,7 @@ use kernels::Ask;
 /// A tree, and how it was built.
 pub(crate) struct Tree<'a> {
     pub(crate) bvh: Bvh<'a, Triangle>,
-    cost: Cost,
+    pub(crate) cost: Cost,
     setting: &'static Setting,
     traversal: Traversal,
     /// Whether it stands for its setting where each ray is alone, and takes no notice of `traversal`.
