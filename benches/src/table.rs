@@ -68,8 +68,8 @@ pub fn print(lines: &[Line]) {
     }
 }
 
-/// Prints the summary of all lines and writes them to a file; fails if there are none, or one is
-/// void.
+/// Prints the summary of all lines and writes them to a file; fails if nothing was
+/// measured, or a line is void.
 pub fn finish(lines: &[Line], json: Option<&Path>) -> ExitCode {
     print_summary(lines);
     if let Some(path) = json {
@@ -79,7 +79,8 @@ pub fn finish(lines: &[Line], json: Option<&Path>) -> ExitCode {
             return ExitCode::FAILURE;
         }
     }
-    let is_void = lines.is_empty() || lines.iter().any(|line| line.status == "void");
+    let is_void = lines.iter().any(|line| line.status == "void");
+    let is_void = is_void || lines.iter().all(|line| line.status == "skipped");
     if is_void { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }
 

@@ -22,6 +22,12 @@ pub(crate) struct Tree<'a> {
     pub(crate) cost: Cost,
 }
 
+impl Tree<'_> {
+    pub(crate) fn name(&self) -> &'static str {
+        self.quality.name()
+    }
+}
+
 impl Device {
     /// Embree, if it can be loaded; else says why not.
     pub(crate) fn load(triangles: &[Triangle], threads: usize) -> Option<Self> {
@@ -48,8 +54,8 @@ impl Device {
     }
 }
 
-/// Every mode of every row. With rays that are sorted only the better tree is asked: that they are
-/// is not charged, so these figures are limits.
+/// Every mode of every row, and of rays that are sorted: that they are is not charged, so those
+/// figures are limits.
 pub(crate) fn contenders<'a>(
     trees: &'a [Tree<'a>],
     work: &'a Workload,
@@ -61,8 +67,7 @@ pub(crate) fn contenders<'a>(
         let asked = rows.filter(|(row, _)| mode == Mode::SINGLE || *row != Row::SingleClosest);
         all.extend(asked.map(|(row, question)| contender("embree", row, tree, mode, question)));
     }
-    let best = trees.iter().filter(|tree| tree.quality == Quality::High);
-    for (tree, mode) in best.flat_map(|tree| Mode::ALL.map(|mode| (tree, mode))) {
+    for (tree, mode) in trees.iter().flat_map(|tree| Mode::ALL.map(|mode| (tree, mode))) {
         let rows = sorted_rows(work, threads).into_iter();
         all.extend(rows.map(|(row, q)| contender("embree-sorted", row, tree, mode, q)));
     }

@@ -28,6 +28,7 @@ use raydsl_benches::scenes::{self, Scene};
 use raydsl_benches::table::{Line, finish, print};
 
 use rays::Workload;
+use rounds::Record;
 use row::Row;
 
 /// Measures primary, shadow and bounce rays beside Embree and obvhs.
@@ -40,9 +41,11 @@ struct Args {
     #[arg(long)]
     scene: Vec<String>,
     /// Numbers of threads, each measured on its own.
-    #[arg(long, value_delimiter = ',', default_value = "1")]
-    threads: Vec<usize>,
-    /// Rounds; each builds every tree, and measures every mode of every row, once.
+    #[arg(long, value_delimiter = ',', default_value = "1",
+          value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Vec<u16>,
+    /// Rounds; each builds every tree, if builds are wanted, and measures every mode of every row,
+    /// once.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
     /// Width and height of the film, a multiple of 16.
@@ -73,15 +76,21 @@ fn main() -> ExitCode {
     let args = Args::parse();
     let mut lines = Vec::new();
     for (name, scene) in all_scenes(&args.scene) {
-        for &threads in &args.threads {
-            lines.extend(measure(&args, &name, &scene, threads));
+        for threads in args.threads.iter().map(|&threads| threads.into()) {
+            match &scene {
+                Ok(scene) => lines.extend(measure(&args, &name, scene, threads)),
+                Err(_) => lines.extend(table::without_scene(&name, threads, &args.only)),
+            }
+        }
+        if let Err(error) = scene {
+            eprintln!("skipped {name}: {error}");
         }
     }
     finish(&lines, args.json.as_deref())
 }
 
-/// The scenes that words name, and those of files.
-fn all_scenes(words: &[String]) -> Vec<(String, Scene<Triangle>)> {
+/// The scenes that words name, and those of files; or why one is not there.
+fn all_scenes(words: &[String]) -> Vec<(String, Result<Scene<Triangle>, String>)> {
     let (files, words): (Vec<&String>, Vec<&String>) =
         words.iter().partition(|word| Path::new(word).extension().is_some());
     let is_wanted = |name: &str| {
@@ -92,21 +101,19 @@ fn all_scenes(words: &[String]) -> Vec<(String, Scene<Triangle>)> {
     type Make = fn() -> Scene<Triangle>;
     let procedural = [("colonnade", scenes::colonnade as Make), ("grove", scenes::grove)];
     let wanted = procedural.into_iter().filter(|(name, _)| is_wanted(name));
-    all.extend(wanted.map(|(name, make)| (name.to_owned(), make())));
+    all.extend(wanted.map(|(name, make)| (name.to_owned(), Ok(make()))));
     let data = std::env::var_os("RAYDSL_DATA");
     for name in scenes::FILES.into_iter().filter(|name| is_wanted(name)) {
-        match data.as_ref().map(|data| scenes::file(data.as_ref(), name)) {
-            Some(Ok(scene)) => all.push((name.to_owned(), scene)),
-            Some(Err(error)) => eprintln!("skipped {name}: {error}"),
-            None => eprintln!("skipped {name}: RAYDSL_DATA names no folder"),
-        }
+        let scene = match &data {
+            Some(data) => scenes::file(data.as_ref(), name).map_err(|error| error.to_string()),
+            None => Err("RAYDSL_DATA names no folder".to_owned()),
+        };
+        all.push((name.to_owned(), scene));
     }
     for file in files {
         let name = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
-        match scenes::mesh(file.as_ref()) {
-            Ok(scene) => all.push((name.into_owned(), scene)),
-            Err(error) => eprintln!("skipped {error}"),
-        }
+        let scene = scenes::mesh(file.as_ref()).map_err(|error| error.to_string());
+        all.push((name.into_owned(), scene));
     }
     all
 }
@@ -119,28 +126,36 @@ struct Trees<'a> {
 }
 
 impl Trees<'_> {
-    /// Builds every tree once a round, and keeps the last ones with the medians of their times.
-    fn of_rounds(rounds: usize, build: impl Fn() -> Self) -> Self {
+    /// Builds every tree once a round. The last ones, with the medians of their times, and what the
+    /// rounds gave; without rounds each tree is built once, and there are no records.
+    fn of_rounds(rounds: usize, build: impl Fn() -> Self) -> (Self, Vec<Record>) {
         // The first round warms up.
         let mut trees = build();
-        let mut times = vec![Vec::new(); trees.costs().len()];
+        let mut seconds = vec![Vec::new(); trees.builds().len()];
         for _ in 0..rounds {
             drop(trees);
             trees = build();
-            for (times, cost) in times.iter_mut().zip(trees.costs()) {
-                times.push(cost.build_ms);
+            for (seconds, (.., cost)) in seconds.iter_mut().zip(trees.builds()) {
+                seconds.push(1e-3 * cost.build_ms);
             }
         }
-        for (times, cost) in times.iter().zip(trees.costs()) {
-            cost.build_ms = median(times);
+        let mut records = Vec::new();
+        if rounds > 0 {
+            for (seconds, (system, mode, cost)) in seconds.into_iter().zip(trees.builds()) {
+                cost.build_ms = 1e3 * median(&seconds);
+                records.push(Record::of_build(system, mode, *cost, seconds));
+            }
         }
-        trees
+        (trees, records)
     }
 
-    fn costs(&mut self) -> Vec<&mut Cost> {
-        let own = self.own.iter_mut().map(|tree| &mut tree.cost);
-        let embree = self.embree.iter_mut().map(|tree| &mut tree.cost);
-        own.chain([&mut self.cwbvh.cost]).chain(embree).collect()
+    /// Whose each tree is, its name, and what it cost.
+    fn builds(&mut self) -> Vec<(&'static str, String, &mut Cost)> {
+        let own = self.own.iter_mut().map(|tree| ("raydsl", tree.name(), &mut tree.cost));
+        let cwbvh = ("obvhs", "cwbvh".to_owned(), &mut self.cwbvh.cost);
+        let embree = self.embree.iter_mut();
+        let embree = embree.map(|tree| ("embree", tree.name().to_owned(), &mut tree.cost));
+        own.chain([cwbvh]).chain(embree).collect()
     }
 }
 
@@ -155,7 +170,9 @@ fn measure(args: &Args, name: &str, scene: &Scene<Triangle>, threads: usize) -> 
             cwbvh: cwbvh::Tree::new(&scene.prims, threads),
             embree: device.as_ref().map_or_else(Vec::new, embree::Device::trees),
         };
-        let Trees { own, cwbvh, embree } = Trees::of_rounds(args.rounds.into(), build);
+        let is_build_wanted = table::is_wanted(&args.only, Row::Build);
+        let rounds = if is_build_wanted { args.rounds.into() } else { 0 };
+        let (Trees { own, cwbvh, embree }, builds) = Trees::of_rounds(rounds, build);
         let work = Workload::new(&own[0].bvh, scene.camera, args.size);
         println!(
             "{name}: {} triangles, {} of {} camera rays meet something, threads: {threads}\n",
@@ -173,9 +190,13 @@ fn measure(args: &Args, name: &str, scene: &Scene<Triangle>, threads: usize) -> 
                 .any(|r| row.serves(r))
         };
         contenders.retain(|contender| wanted(contender.row));
-        let records = rounds::run(&mut contenders, args.rounds.into());
+        let mut records = rounds::run(&mut contenders, args.rounds.into());
+        records.extend(builds);
         let lines = table::lines(name, threads, &work, &records, &args.only);
         print(&lines);
+        if let Some(ratio) = rounds::frame_over_parts(&records) {
+            println!("the frame's ratio over that of its parts: {ratio:.2}\n");
+        }
         lines
     })
 }

@@ -27,8 +27,8 @@ pub(crate) struct Workload {
     pub(crate) size: u32,
     /// Rays of the camera, in blocks of pixels.
     pub(crate) primary: Vec<Ray>,
-    /// These, with what they meet.
-    pub(crate) hits: Vec<(Ray, Hit)>,
+    /// These, with what they meet and the numbers of their pixels.
+    pub(crate) hits: Vec<(Ray, Hit, u32)>,
     /// Where they meet something, in the same order.
     pub(crate) places: Vec<Place>,
     /// From there, without an end.
@@ -39,6 +39,8 @@ pub(crate) struct Workload {
     pub(crate) single: Vec<Ray>,
     /// Where short rays end.
     pub(crate) short: f32,
+    /// Of the scene.
+    pub(crate) primitives: usize,
 }
 
 /// Ray `i` of a place: its direction is as likely as its cosine with the normal.
@@ -78,13 +80,15 @@ impl Workload {
         let pixels = pixels(size);
         let ray = |&(x, y): &(u32, u32)| rays.primary_ray(x as f32 + 0.5, y as f32 + 0.5);
         let primary: Vec<Ray> = pixels.iter().map(ray).collect();
-        let hits: Vec<(Ray, Hit)> =
-            primary.par_iter().map(|ray| (*ray, bvh.closest_hit(*ray))).collect();
-        let place = |(&(ray, hit), &(x, y)): (&(Ray, Hit), &(u32, u32))| {
-            let (origin, normal) = place_of(bvh.primitive(hit), ray, hit);
-            hit.is_hit.then_some((origin, normal, y * size + x))
+        let seen = |(ray, (x, y)): (&Ray, &(u32, u32))| (*ray, bvh.closest_hit(*ray), y * size + x);
+        let hits: Vec<(Ray, Hit, u32)> = primary.par_iter().zip(&pixels).map(seen).collect();
+        let place = |&(ray, hit, pixel): &(Ray, Hit, u32)| {
+            hit.is_hit.then(|| {
+                let (origin, normal) = place_of(bvh.primitive(hit), ray, hit);
+                (origin, normal, pixel)
+            })
         };
-        let places: Vec<Place> = hits.iter().zip(&pixels).filter_map(place).collect();
+        let places: Vec<Place> = hits.iter().filter_map(place).collect();
         let shadow = shadow_rays(&places);
         let mut sorted = shadow.clone();
         sorted.par_chunks_mut(SORTED).for_each(|rays| rays.sort_by_key(direction_key));
@@ -92,7 +96,8 @@ impl Workload {
         let single = primary.iter().copied().chain(first).collect();
         let bounds = scenes::bounds(bvh.primitives());
         let short = SHORT * (bounds.max - bounds.min).length();
-        Self { camera, size, primary, hits, places, shadow, sorted, single, short }
+        let primitives = bvh.primitives().len();
+        Self { camera, size, primary, hits, places, shadow, sorted, single, short, primitives }
     }
 }
 
@@ -107,9 +112,11 @@ fn shadow_rays(places: &[Place]) -> Vec<Ray> {
     places.par_chunks(GROUP).flat_map_iter(of_group).collect()
 }
 
-/// Three bits of each axis, interleaved: where a direction lies on a Morton curve.
+/// Three bits of each axis, interleaved: where a direction lies on a Morton curve through the cube
+/// that it points to, as the library sorts rays.
 fn direction_key(ray: &Ray) -> u32 {
-    let cells = ((ray.direction + 1.0) * 4.0).clamp(Vec3::ZERO, Vec3::splat(7.0));
+    let d = ray.direction / ray.direction.abs().max_element();
+    let cells = ((d + 1.0) * 4.0).clamp(Vec3::ZERO, Vec3::splat(7.0));
     let spread = |x: f32| {
         let n = x as u32;
         (n & 1) | (n & 2) << 2 | (n & 4) << 4

@@ -55,9 +55,23 @@ pub(crate) fn run(contenders: &mut [Contender<'_>], rounds: usize) -> Vec<Record
             }
         }
     }
+    let frame = embree_frame(&records);
     charge(&mut records);
-    records.extend(embree_frame(&records));
+    records.extend(frame);
     records
+}
+
+impl Record {
+    /// Of a tree that was built once a round.
+    pub(crate) fn of_build(
+        system: &'static str,
+        mode: String,
+        cost: Cost,
+        seconds: Vec<f64>,
+    ) -> Self {
+        let (row, isa, lanes, outcome) = (Row::Build, "", 0, Outcome::default());
+        Self { row, system, mode, isa, lanes, cost, seconds, outcome }
+    }
 }
 
 fn charge(records: &mut [Record]) {
@@ -88,13 +102,17 @@ fn best_embree(records: &[Record], row: Row) -> Option<&Record> {
     modes.min_by(|a, b| median(&a.seconds).total_cmp(&median(&b.seconds)))
 }
 
-/// A picture with Embree: its best modes for both kinds of rays, and what lies between them.
+/// A picture with Embree: its best modes for both kinds of rays, and making them as a frame does,
+/// where what a camera ray meets is in registers when its shadow rays are made. Nobody has been
+/// charged yet.
 fn embree_frame(records: &[Record]) -> Option<Record> {
     let primary = best_embree(records, Row::Primary)?;
     let shadow = best_embree(records, Row::AoShort)?;
     let mut seconds = primary.seconds.clone();
     add(&mut seconds, &shadow.seconds);
-    add(&mut seconds, &find(records, Row::Shading)?.seconds);
+    for row in [Row::PrimaryGeneration, Row::FrameGeneration] {
+        add(&mut seconds, &find(records, row)?.seconds);
+    }
     let hits = primary.outcome.hits + shadow.outcome.hits;
     Some(Record {
         row: Row::Frame,
@@ -108,12 +126,25 @@ fn embree_frame(records: &[Record]) -> Option<Record> {
     })
 }
 
-/// How many rays a row asks.
+/// How the ratio of the library's frame to Embree's compares with that of camera rays and short
+/// shadow rays, each in the best mode: well below 1, the scheduler loses time between them.
+pub(crate) fn frame_over_parts(records: &[Record]) -> Option<f64> {
+    let best = |system, row| {
+        let modes = records.iter().filter(|r| r.system == system && r.row == row);
+        modes.map(|r| median(&r.seconds)).min_by(f64::total_cmp)
+    };
+    let parts = |system| Some(best(system, Row::Primary)? + best(system, Row::AoShort)?);
+    let frame = best("embree", Row::Frame)? / best("raydsl", Row::Frame)?;
+    Some(frame / (parts("embree")? / parts("raydsl")?))
+}
+
+/// How many rays a row asks; of builds, how many primitives there are.
 pub(crate) fn rays(row: Row, work: &Workload) -> usize {
     let shadow = work.places.len() * SAMPLES as usize;
     match row {
         Row::Frame => work.primary.len() + shadow,
-        Row::Primary | Row::PrimaryGeneration | Row::Shading => work.primary.len(),
+        Row::Primary | Row::PrimaryGeneration | Row::FrameGeneration => work.primary.len(),
+        Row::Build => work.primitives,
         Row::SingleClosest => work.single.len(),
         Row::AoShort | Row::AoUnbounded | Row::AoShortUnbatched | Row::Bounce | Row::Generation => {
             shadow

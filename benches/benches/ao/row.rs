@@ -21,13 +21,15 @@ pub(crate) enum Row {
     Generation,
     /// Making the camera's rays.
     PrimaryGeneration,
-    /// From the hit of a primary ray to where its shadow rays begin.
-    Shading,
+    /// From the hit of a primary ray to its shadow rays, which a frame makes while it asks.
+    FrameGeneration,
+    /// Building trees.
+    Build,
 }
 
 impl Row {
     /// Those with figures of several systems.
-    pub(crate) const COMPARED: [Self; 7] = [
+    pub(crate) const COMPARED: [Self; 8] = [
         Self::Frame,
         Self::Primary,
         Self::AoShort,
@@ -35,10 +37,11 @@ impl Row {
         Self::AoShortUnbatched,
         Self::Bounce,
         Self::SingleClosest,
+        Self::Build,
     ];
     /// What others are charged with.
     pub(crate) const CHARGES: [Self; 3] =
-        [Self::Generation, Self::PrimaryGeneration, Self::Shading];
+        [Self::Generation, Self::PrimaryGeneration, Self::FrameGeneration];
 
     pub(crate) const fn name(self) -> &'static str {
         match self {
@@ -51,7 +54,8 @@ impl Row {
             Self::SingleClosest => "single_closest",
             Self::Generation => "generation",
             Self::PrimaryGeneration => "generation_primary",
-            Self::Shading => "shading",
+            Self::FrameGeneration => "generation_frame",
+            Self::Build => "build",
         }
     }
 

@@ -22,7 +22,7 @@ pub(crate) fn lines(
         all.extend(of_row.map(|r| line(scene, threads, r, records, rays)));
         let has_rival = records.iter().any(|r| r.system == "embree" && r.row == row.rival());
         if !has_rival && !Row::CHARGES.contains(&row) {
-            all.push(skipped(scene, threads, row, rays));
+            all.push(skipped("embree", scene, threads, row, rays));
         }
     }
     all
@@ -55,13 +55,23 @@ fn line(scene: &str, threads: usize, r: &Record, records: &[Record], rays: usize
     }
 }
 
-fn skipped(scene: &str, threads: usize, row: Row, rays: usize) -> Line {
+/// A scene that is not there has no figures.
+pub(crate) fn without_scene<'a>(
+    scene: &'a str,
+    threads: usize,
+    only: &'a [Row],
+) -> impl Iterator<Item = Line> + 'a {
+    let wanted = Row::COMPARED.into_iter().filter(|row| is_wanted(only, *row));
+    wanted.map(move |row| skipped("raydsl", scene, threads, row, 0))
+}
+
+fn skipped(system: &'static str, scene: &str, threads: usize, row: Row, rays: usize) -> Line {
     Line {
         scene: scene.to_owned(),
         row: row.name(),
-        system: "embree",
+        system,
         mode: String::new(),
-        isa: "embree",
+        isa: "",
         lanes: 0,
         rays,
         threads,

@@ -22,8 +22,9 @@ struct Args {
     #[arg(long)]
     scene: Vec<String>,
     /// Numbers of threads, each measured on its own.
-    #[arg(long, value_delimiter = ',', default_value = "1,2")]
-    threads: Vec<usize>,
+    #[arg(long, value_delimiter = ',', default_value = "1,2",
+          value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Vec<u16>,
     /// Rounds; each builds with every builder once.
     #[arg(long, default_value_t = 7)]
     rounds: usize,
@@ -59,7 +60,7 @@ fn main() -> ExitCode {
     let mut scene = |name: &'static str, triangles: &[raydsl::prelude::Triangle]| {
         if args.scene.is_empty() || args.scene.iter().any(|word| name.contains(word.as_str())) {
             for &threads in &args.threads {
-                rows.extend(measure(&args, name, triangles, threads));
+                rows.extend(measure(&args, name, triangles, threads.into()));
             }
         }
     };

@@ -29,8 +29,9 @@ struct Args {
     #[arg(long, default_value_t = 10_000_000)]
     points: usize,
     /// Numbers of threads, each measured on its own.
-    #[arg(long, value_delimiter = ',', default_value = "1")]
-    threads: Vec<usize>,
+    #[arg(long, value_delimiter = ',', default_value = "1",
+          value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Vec<u16>,
     /// Rounds; each builds every tree and measures every mode once.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
@@ -50,7 +51,7 @@ fn main() -> ExitCode {
             Ok(scene) => {
                 let points = scenes::points(&scene.prims, args.points);
                 for &threads in &args.threads {
-                    lines.extend(measure(&args, name, &points, scene.camera, threads));
+                    lines.extend(measure(&args, name, &points, scene.camera, threads.into()));
                 }
             }
             Err(error) => eprintln!("skipped {name}: {error}"),

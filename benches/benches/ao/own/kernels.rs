@@ -131,10 +131,16 @@ impl Ask<'_> {
         self.batch(&kernel, found)
     }
 
-    /// Finds where shadow rays begin.
-    pub(super) fn shade(self, found: &mut [(Vec3, Vec3)]) -> f64 {
+    /// Only makes the shadow rays of a frame, from what its camera rays meet.
+    pub(super) fn make_frame(self, found: &mut [f32]) -> f64 {
         let bvh = self.bvh;
-        let kernel = kernel!(|ray: Ray, hit: Hit| place_of(bvh.primitive(hit), ray, hit));
+        let kernel = kernel!(|ray: Ray, hit: Hit, seed: u32| {
+            if !hit.is_hit {
+                return 0.0;
+            }
+            let (origin, normal) = place_of(bvh.primitive(hit), ray, hit);
+            sum_of_rays(origin, normal, seed)
+        });
         let run = || self.scheduler.batch(&kernel, &self.work.hits, found);
         seconds_on(self.threads, run).1
     }

@@ -52,6 +52,25 @@ static SETTINGS: [Setting; 3] = [
     },
 ];
 
+impl Tree<'_> {
+    /// What the tree is called where builds are compared.
+    pub(crate) fn name(&self) -> String {
+        let setting = match self.setting.name.trim_start() {
+            "" => "balanced",
+            name => name,
+        };
+        format!("{setting}{}", ending(self.traversal))
+    }
+}
+
+/// What names of modes say of a traversal.
+fn ending(traversal: Traversal) -> String {
+    match traversal {
+        Traversal::Auto => String::new(),
+        other => format!(" {}", other.name()),
+    }
+}
+
 impl Setting {
     fn variants(&self) -> impl Iterator<Item = Variant> {
         let native = Variant::ALL.into_iter().filter(|v| v.is_native());
@@ -106,7 +125,13 @@ pub(crate) fn contenders<'a>(
         }
         if tree.is_asked_alone {
             let run = one_by_one(&tree.bvh, work, threads);
-            all.push(contender(Row::SingleClosest, Variant::Scalar, tree, run));
+            let single = contender(Row::SingleClosest, Variant::Scalar, tree, run);
+            // Nodes of eight children are met by one ray with the widest level that there is.
+            let (isa, lanes) = match tree.setting.storage {
+                Storage::Leaves => (widest.isa().0, 8),
+                _ => (single.isa, single.lanes),
+            };
+            all.push(Contender { isa, lanes, ..single });
         }
     }
     all
@@ -114,11 +139,7 @@ pub(crate) fn contenders<'a>(
 
 fn contender<'a>(row: Row, variant: Variant, tree: &Tree<'_>, run: Run<'a>) -> Contender<'a> {
     let (isa, lanes) = variant.isa();
-    let traversal = match tree.traversal {
-        Traversal::Auto => String::new(),
-        other => format!(" {}", other.name()),
-    };
-    let mode = format!("{}{}{traversal}", variant.name(), tree.setting.name);
+    let mode = format!("{}{}{}", variant.name(), tree.setting.name, ending(tree.traversal));
     Contender { row, system: "raydsl", mode, isa, lanes, cost: tree.cost, run }
 }
 
@@ -128,7 +149,7 @@ fn charges(ask: Ask<'_>) -> [(Row, Run<'_>); 3] {
     [
         (Row::PrimaryGeneration, picture(ask, 0.0, Ask::make_primary, none)),
         (Row::Generation, batch(ask, Ask::make_shadow, none)),
-        (Row::Shading, shading(ask)),
+        (Row::FrameGeneration, frame_generation(ask)),
     ]
 }
 
@@ -174,9 +195,9 @@ fn batch<'a, R: Clone + Default + Send + 'a>(
     })
 }
 
-fn shading(ask: Ask<'_>) -> Run<'_> {
-    let mut found = vec![(Vec3::ZERO, Vec3::ZERO); ask.work.hits.len()];
-    Box::new(move || Outcome { seconds: ask.shade(&mut found), ..Outcome::default() })
+fn frame_generation(ask: Ask<'_>) -> Run<'_> {
+    let mut found = vec![0.0; ask.work.hits.len()];
+    Box::new(move || Outcome { seconds: ask.make_frame(&mut found), ..Outcome::default() })
 }
 
 /// Asks on the host, where every ray is alone.
