@@ -24,10 +24,10 @@ pub enum BuildQuality {
     /// change from frame to frame.
     ///
     /// Of a million primitives, with two threads, it took less than half the time of
-    /// [`BuildQuality::Balanced`], of ten million 0.64. The expected cost of a ray was 6 % higher for small spheres all
-    /// over a cube, and 21 % for the triangles of a hilly surface. It is several times as high if
-    /// one primitive encloses all others: only centroids count, and the large box goes deep into
-    /// the tree.
+    /// [`BuildQuality::Balanced`], of ten million 0.64 of it. The expected cost of a ray was 6 %
+    /// higher for small spheres all over a cube, and 21 % for the triangles of a hilly surface. It
+    /// is several times as high if one primitive encloses all others: only centroids count, and the
+    /// large box goes deep into the tree.
     Fast,
     /// Each node is split at the best of up to 32 planes an axis by the surface area heuristic:
     /// Wald, *On fast construction of SAH-based bounding volume hierarchies* (2007). The default.
