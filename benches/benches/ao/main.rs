@@ -9,6 +9,8 @@
 //! take to make them.
 
 mod contender;
+#[cfg(feature = "counts")]
+mod counts;
 mod cwbvh;
 mod embree;
 mod own;
@@ -57,6 +59,9 @@ struct Args {
     /// How rays go through trees with copies; each is a mode of its own.
     #[arg(long, value_delimiter = ',', default_value = "auto", value_parser = parse_traversal)]
     traversal: Vec<Traversal>,
+    /// Counts what the library's queries do, once, and measures nothing; needs the feature `counts`.
+    #[arg(long, conflicts_with_all = ["json", "threads", "rounds", "traversal"])]
+    counts: bool,
     /// Cargo says so.
     #[arg(long, hide = true)]
     bench: bool,
@@ -74,6 +79,9 @@ fn parse_traversal(text: &str) -> Result<Traversal, String> {
 
 fn main() -> ExitCode {
     let args = Args::parse();
+    if args.counts {
+        return count(&args);
+    }
     let mut lines = Vec::new();
     for (name, scene) in all_scenes(&args.scene) {
         for threads in args.threads.iter().map(|&threads| threads.into()) {
@@ -87,6 +95,33 @@ fn main() -> ExitCode {
         }
     }
     finish(&lines, args.json.as_deref())
+}
+
+/// Counts what queries do, where that is compiled in.
+#[cfg(not(feature = "counts"))]
+fn count(_: &Args) -> ExitCode {
+    eprintln!("--counts needs the feature: `cargo bench -p raydsl-benches --features counts ...`");
+    ExitCode::FAILURE
+}
+
+#[cfg(feature = "counts")]
+fn count(args: &Args) -> ExitCode {
+    let mut done = ExitCode::FAILURE;
+    for (name, scene) in all_scenes(&args.scene) {
+        match scene {
+            Ok(scene) => {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+                pool.expect("a thread can be started").install(|| {
+                    let trees = own::trees(&scene.prims, 1, &[Traversal::Auto]);
+                    let work = Workload::new(&trees[0].bvh, scene.camera, args.size);
+                    counts::print(&name, &trees, &work, &args.only);
+                });
+                done = ExitCode::SUCCESS;
+            }
+            Err(error) => eprintln!("skipped {name}: {error}"),
+        }
+    }
+    done
 }
 
 /// The scenes that words name, and those of files; or why one is not there.

@@ -57,6 +57,8 @@ pub use validate::{TreeFault, validate};
 use view::Tree;
 pub(crate) use view::{Branches, NODE_SCHEMA, Part, buffers};
 pub use view::{SceneView, View};
+#[cfg(feature = "counts")]
+pub use wide::counts::Counts;
 
 use crate::geometry::{Aabb, Kinds, Primitive};
 use crate::machine::{Capture, Machine, Resource, Type, wgsl::BufferKey};

@@ -8,6 +8,7 @@
 use core::ops::Range;
 
 use super::beam::Beam;
+use super::counts::{self, Event};
 use super::node::{Child, WIDTH};
 use super::octant::Octant;
 use super::order::Sequence;
@@ -86,6 +87,7 @@ fn go_together<R: Lanes, P: Primitive>(
             None
         };
         if let Some(beam) = beam {
+            counts::some(Event::BeamRay, taken);
             walk(r, meeting, rays, turns, together, &beam);
         } else {
             for (group, members) in octant.groups() {
@@ -128,6 +130,7 @@ fn walk<R: Lanes, P: Primitive>(
     let (e, tree) = (r.eight(), meeting.tree);
     together.make_room(tree);
     let Together { stack, octant, .. } = together;
+    counts::one(Event::Beam);
     let mut bundle = Bundle::new(r, rays, octant, beam.side);
     let slots = e.u32_from_fn(
         #[inline(always)]
@@ -135,6 +138,7 @@ fn walk<R: Lanes, P: Primitive>(
     );
     let (mut at, mut top) = (0u32, 0);
     loop {
+        counts::one(Event::BeamNode);
         let node = &tree.nodes[at as usize];
         let (_, mask) = enter(e, node, beam);
         let below = e.u32_binary(op::Or, slots, e.u32(8 * at));
@@ -164,6 +168,7 @@ fn walk<R: Lanes, P: Primitive>(
             if !child.is_block() {
                 break child.0;
             }
+            counts::one(Event::BeamBlock);
             if !bundle.stop(meeting, meeting.rows(child.index()), entering) {
                 return;
             }

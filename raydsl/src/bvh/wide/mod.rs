@@ -5,6 +5,7 @@ mod beam;
 mod binary;
 mod blocks;
 mod collapse;
+pub(super) mod counts;
 mod entry;
 #[cfg_attr(
     not(all(

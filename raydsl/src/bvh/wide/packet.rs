@@ -3,6 +3,7 @@
 use super::Wide;
 use super::beam::{Beam, extent};
 use super::blocks::{self, Row};
+use super::counts::{self, Event};
 use super::node::{Child, WIDTH, WideNode};
 use super::octant::{GROUPS, Octant};
 use super::rays::{GROUP, Group, Marks, Rays, lanes_mask, load, load_words, row};
@@ -70,6 +71,7 @@ pub(super) fn closest_hit<R: Lanes, P: Primitive>(
                 Beam::of(r.eight(), rays, octant, spread, root, Allowance::of::<P>())
             };
             if let Some(beam) = beam {
+                counts::some(Event::BeamRay, taken);
                 walk(r, meeting, rays, together, beam);
                 continue;
             }
@@ -95,16 +97,19 @@ fn walk<R: Lanes, P: Primitive>(
     let (e, tree) = (r.eight(), meeting.tree);
     together.make_room(tree);
     let Together { stack, enters, octant } = together;
+    counts::one(Event::Beam);
     let mut bundle = Bundle::new(r, rays, octant, beam.side);
     let (mut at, mut slot, mut top) = (Child::node(0), 0, 0);
     loop {
         if at.is_block() {
+            counts::one(Event::BeamBlock);
             let node = &tree.nodes[slot / WIDTH];
             let is_nearer = bundle.meet(meeting, meeting.rows(at.index()), node, slot % WIDTH);
             if is_nearer {
                 beam.limit = extent(e, bundle.rays, bundle.octant, row::LIMIT).greatest;
             }
         } else {
+            counts::one(Event::BeamNode);
             let node = &tree.nodes[at.index()];
             let (near, mask) = enter(e, node, &beam);
             let entered = e.bits(mask).count_ones() as usize;
@@ -180,7 +185,9 @@ impl<'a, R: Lanes> Bundle<'a, R> {
                 let there = lanes.enter(node, slot, side);
                 let there = and(r, there, r.mask_from_bits(alive.into()));
                 if r.any(there) {
-                    is_nearer |= lanes.meet(meeting, block, count, there);
+                    let met = lanes.meet(meeting, block, count, there);
+                    counts::some(Event::Nearer, met.into());
+                    is_nearer |= met;
                 }
             }
         }
@@ -267,6 +274,7 @@ impl<R: Lanes> Register<'_, R> {
     /// The rays that enter a box before their limits.
     #[inline(always)]
     fn enter(&self, node: &WideNode, slot: usize, side: [usize; 3]) -> R::Mask {
+        counts::one(Event::RegisterBox);
         let r = self.r;
         let mut near = self.number(row::T_MIN);
         let mut far = self.number(row::LIMIT);
@@ -302,7 +310,9 @@ impl<R: Lanes> Register<'_, R> {
     ) -> u32 {
         let (r, m) = (self.r, self.m);
         let (ray, asked) = (self.ray(), there);
+        counts::one(Event::RegisterBlock);
         for i in 0..count {
+            counts::one(Event::RegisterPrimitive);
             let prim = blocks::read::<_, P>(
                 m,
                 #[inline(always)]
@@ -342,9 +352,11 @@ impl<R: Lanes> Register<'_, R> {
         let (r, m) = (self.r, self.m);
         let (ray, numbers) = (self.ray(), ids(block));
         let mut is_nearer = false;
+        counts::one(Event::RegisterBlock);
         // In a function that `stop` shares these tests are up to a tenth slower. Without a check of
         // bounds on the way, what depends on the rays alone is done once.
         for i in 0..count {
+            counts::one(Event::RegisterPrimitive);
             let prim = blocks::read::<_, P>(
                 m,
                 #[inline(always)]

@@ -3,6 +3,7 @@
 use core::cell::Cell;
 
 use super::beam::Beam;
+use super::counts::{self, Event};
 use super::node::{Child, WIDTH};
 use super::step::{Meeting, beyond, enter, ids, last_key, nearest, sorted, words};
 use super::trace::{answers, meeting};
@@ -137,10 +138,12 @@ fn walk<E: Lanes, P: Primitive>(
     let (mut at, mut top) = (Child::node(0), 0);
     loop {
         if at.is_block() {
+            counts::one(Event::Block);
             let block = meeting.rows(at.index());
             let best_t = if best.is_hit { best.t } else { f32::INFINITY };
             let (hit, mask) = meeting.block(e, block, on, best_t);
             let mut met = e.bits(mask);
+            let mut is_nearer = false;
             if wanted == Wanted::Any && met != 0 {
                 best.is_hit = true;
                 return;
@@ -153,9 +156,12 @@ fn walk<E: Lanes, P: Primitive>(
                     let (u, v) = (E::f32_lane(&hit.u.0, i), E::f32_lane(&hit.v.0, i));
                     *best = Hit { is_hit: true, t, prim_id: id, inst_id: 0, u, v };
                     beam.limit = beyond(t, ray.t_max, P::SLACK);
+                    is_nearer = true;
                 }
             }
+            counts::some(Event::Nearer, is_nearer.into());
         } else {
+            counts::one(Event::Node);
             let node = &tree.nodes[at.index()];
             let (near, mask) = enter(e, node, &beam);
             let entered = e.bits(mask);

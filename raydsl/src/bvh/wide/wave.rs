@@ -8,6 +8,7 @@
 use core::ops::Range;
 
 use super::blocks::Row;
+use super::counts::{self, Event};
 use super::node::{Child, WIDTH, WideNode};
 use super::rays::{GROUP, Rays, lanes_of, place, ray_at, ray_at_mut, row};
 use super::step::{Meeting, beyond, enter, ids, last_key, sorted, words};
@@ -160,6 +161,7 @@ impl Turns<'_> {
         all: &mut [u32],
         ray: u32,
     ) {
+        counts::one(Event::Node);
         let words_of = ray_at(all, ray);
         let top = words_of.word(row::TOP);
         let (near, mask) = enter(e, node, words_of);
@@ -246,6 +248,7 @@ pub(super) fn each_turn<const CLOSEST: bool, E: Lanes, P: Primitive>(
                     turns.step::<CLOSEST, E>(e, node, all, ray);
                 }
                 for i in 0..core::mem::take(&mut turns.blocks.len) {
+                    counts::one(Event::Block);
                     let ray = turns.blocks.places[i];
                     let words_of = ray_at(all, ray);
                     let mut top = words_of.word(row::TOP);
@@ -299,6 +302,7 @@ fn take<E: Lanes, P: Primitive>(
         }
     }
     if is_taken {
+        counts::one(Event::Nearer);
         words.set(row::FOUND, 1);
         let (t, end) = (words.as_ref().number(row::T), words.as_ref().number(row::T_MAX));
         words.set_number(row::LIMIT, beyond(t, end, P::SLACK));

@@ -1,0 +1,68 @@
+//! What is counted is what is known of a tree with one node and one block.
+#![cfg(feature = "counts")]
+
+use raydsl::bvh::Counts;
+use raydsl::prelude::*;
+
+/// Three triangles, one behind the other.
+fn triangles() -> [Triangle; 3] {
+    [0.0, 1.0, 2.0].map(|z| Triangle {
+        v0: Vec3::new(-9.0, -9.0, z),
+        v1: Vec3::new(9.0, -9.0, z),
+        v2: Vec3::new(0.0, 9.0, z),
+    })
+}
+
+/// A ray straight down at one of the triangles, or past them.
+fn ray(i: u16, is_aimed: bool) -> Ray {
+    let x = if is_aimed { 0.0 } else { 100.0 } + f32::from(i) / 64.0;
+    Ray::new(Vec3::new(x, 0.0, 5.0), Vec3::new(1e-3, 1e-3, -1.0))
+}
+
+// One test: the counts are those of the process.
+#[test]
+fn counts_are_those_of_one_node_and_one_block() {
+    let (_, lanes) = Variant::widest().isa();
+    if lanes < 8 {
+        eprintln!("SKIPPED: no wide trees on this machine");
+        return;
+    }
+    let config = BuildConfig { storage: Storage::Leaves, ..BuildConfig::default() };
+    let triangles = triangles();
+    let bvh = Bvh::build_with(&triangles, &config).unwrap();
+    let _ = Counts::take();
+
+    // One ray after another meets three primitives at once, and the first of them is new.
+    for i in 0..5 {
+        assert!(bvh.closest_hit(ray(i, true)).is_hit);
+        assert!(!bvh.closest_hit(ray(i, false)).is_hit);
+    }
+    let alone = Counts { nodes: 10, blocks: 5, nearer: 5, ..Counts::default() };
+    assert_eq!(Counts::take(), alone);
+
+    // Those that go together ask once; each register of them meets one primitive at a time.
+    let rays: Vec<Ray> = (0..64).map(|i| ray(i, true)).collect();
+    assert!(bvh.closest_hits(&rays).iter().all(|hit| hit.is_hit));
+    let registers = 64 / lanes as u64;
+    let together = Counts {
+        beams: 1,
+        beam_rays: 64,
+        beam_nodes: 1,
+        beam_blocks: 1,
+        register_boxes: registers,
+        register_blocks: registers,
+        register_primitives: 3 * registers,
+        nearer: registers,
+        ..Counts::default()
+    };
+    assert_eq!(Counts::take(), together);
+
+    let past: Vec<Ray> = (0..64).map(|i| ray(i, false)).collect();
+    assert!(bvh.closest_hits(&past).iter().all(|hit| !hit.is_hit));
+    let together = Counts { beams: 1, beam_rays: 64, beam_nodes: 1, ..Counts::default() };
+    assert_eq!(Counts::take(), together);
+
+    // In turn each is on its own, and stops at what it meets.
+    assert!(bvh.any_hits(&rays).iter().all(|is_hit| *is_hit));
+    assert_eq!(Counts::take(), Counts { nodes: 64, blocks: 64, ..Counts::default() });
+}
