@@ -159,7 +159,8 @@ fn a_device_that_refuses_does_not_agree() {
     let found = Compare::new().size(32, 32).runs(1).gpu(&gpu).run(&sum, &camera());
     println!("{}", found.table());
     assert!(found.table().contains("refused: "));
-    assert_eq!(found.verdict(), Verdict::Differ);
+    assert_eq!(found.verdict(), Verdict::Refused);
+    assert!(!found.agrees());
     let wgsl = found.rows.iter().find(|r| r.variant == Variant::Wgsl);
     assert!(wgsl.is_some_and(|r| matches!(r.unavailable, Some(Missing::Refused(_)))));
 }

@@ -294,8 +294,10 @@ pub enum Verdict {
     /// CPU variants have the same bits. Rounding accounts for every difference of WGSL, and numbers
     /// are within [`Compare::tolerance`] if that was called.
     Agree,
-    /// They do not, or the device refuses the kernel.
+    /// They do not.
     Differ,
+    /// Those that ran do, and the device refuses the kernel, or was lost.
+    Refused,
     /// Rounding accounts for the differences, but more than 1 % of the sampled pixels are uncertain
     /// or none was sampled: with so much open, that means little.
     NotMeaningful,
@@ -319,8 +321,11 @@ impl<R: Type> Comparison<R> {
     pub fn verdict(&self) -> Verdict {
         let is_refused = |r: &Row<R>| matches!(r.unavailable, Some(Missing::Refused(_)));
         let ran = || self.rows.iter().filter(|r| r.unavailable.is_none());
-        if self.rows.iter().any(is_refused) || !ran().all(|r| self.is_fine(r)) {
+        if !ran().all(|r| self.is_fine(r)) {
             return Verdict::Differ;
+        }
+        if self.rows.iter().any(is_refused) {
+            return Verdict::Refused;
         }
         let forgiven = ran().any(|r| !r.agreement.is_bit_identical());
         match ran().count() {

@@ -34,6 +34,7 @@ pub(super) fn json<R: Type>(c: &Comparison<R>, scene: &SceneInfo) -> Value {
         "verdict": match c.verdict() {
             Verdict::Agree => "agree",
             Verdict::Differ => "differ",
+            Verdict::Refused => "refused",
             Verdict::NotMeaningful => "not meaningful",
             Verdict::NothingCompared => "nothing compared",
         },

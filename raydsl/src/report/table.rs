@@ -28,6 +28,7 @@ fn verdict(v: Verdict) -> &'static str {
     match v {
         Verdict::Agree => "the variants agree",
         Verdict::Differ => "the variants differ",
+        Verdict::Refused => "the variants that ran agree; one was refused",
         Verdict::NotMeaningful => "not meaningful: more than 1 % is open, or nothing was sampled",
         Verdict::NothingCompared => "nothing was compared",
     }
@@ -54,14 +55,35 @@ fn reference<R: Type>(c: &Comparison<R>) -> String {
     text
 }
 
+/// Words on as many lines as they need, behind what the first one begins with. A word that is longer
+/// than a line is cut.
+fn wrapped(start: &str, words: &str) -> String {
+    const INDENT: usize = 13;
+    let (mut text, mut column) = (start.to_owned(), start.chars().count());
+    let mut is_first = true;
+    for word in words.split_whitespace() {
+        let len = word.chars().count();
+        if !is_first && column + 1 + len > WIDTH {
+            let _ = write!(text, "\n{:INDENT$}", "");
+            (column, is_first) = (INDENT, true);
+        }
+        let room = WIDTH - column - usize::from(!is_first);
+        if !is_first {
+            text.push(' ');
+            column += 1;
+        }
+        text.extend(word.chars().take(room));
+        column += len.min(room);
+        is_first = false;
+    }
+    text + "\n"
+}
+
 fn line<R: Type>(row: &Row<R>, scalar: &Row<R>) -> String {
     let name = row.variant.name();
     if let Some(reason) = &row.unavailable {
         let what = if matches!(reason, Missing::Refused(_)) { "refused" } else { "not run" };
-        let reason = reason.to_string();
-        let reason = reason.lines().next().unwrap_or_default();
-        let line: String = format!("{name:<10} {what}: {reason}").chars().take(WIDTH).collect();
-        return line + "\n";
+        return wrapped(&format!("{name:<10} {what}: "), &reason.to_string());
     }
     let a = &row.agreement;
     let mut text = String::new();
@@ -79,4 +101,20 @@ fn line<R: Type>(row: &Row<R>, scalar: &Row<R>) -> String {
         a.unexplained,
     );
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{WIDTH, wrapped};
+
+    #[test]
+    fn reasons_are_there_to_the_last_word() {
+        let words = "seven letters and more, again and again; ".repeat(9) + "the limit is 63";
+        let text = wrapped("WGSL       refused: ", &words);
+        assert!(text.lines().count() > 3 && text.lines().all(|l| l.chars().count() <= WIDTH));
+        assert!(text.ends_with("is 63\n"));
+        let back: Vec<&str> = text.split_whitespace().skip(2).collect();
+        assert_eq!(back, words.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(wrapped("a ", &"x".repeat(300)).trim_end().chars().count(), WIDTH);
+    }
 }
