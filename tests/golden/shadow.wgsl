@@ -94,19 +94,10 @@ fn walls_ids_at(i: u32) -> u32 {
 }
 
 fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
-    var result: vec3<f32>;
-    if (k == 0u) {
-        result = v.yzx;
-    } else {
-        var result_1: vec3<f32>;
-        if (k == 1u) {
-            result_1 = v.zxy;
-        } else {
-            result_1 = v;
-        }
-        result = result_1;
-    }
-    return result;
+    let x = select(v.x, v.z, (k == 0u));
+    let y = select(v.y, v.z, (k == 1u));
+    let z = select(select(v.z, v.y, (k == 1u)), v.x, (k == 0u));
+    return vec3<f32>(x, y, z);
 }
 
 fn is_inside(sides: vec3<f32>) -> bool {

@@ -115,17 +115,21 @@ impl IndexedTriangle {
     }
 }
 
-/// The components of `v`, rotated so that the axis `k` (0, 1 or 2) comes last.
+/// The components of `v`, of which that along the axis `k` (0, 1 or 2) and the last have changed
+/// places: two selections fewer than a rotation, and all signs are the same or all are others.
 #[kernel]
 #[inline]
 fn axis_last(v: Vec3, k: u32) -> Vec3 {
-    if k == 0 {
-        vec3(v.y, v.z, v.x)
+    let x = if k == 0 { v.z } else { v.x };
+    let y = if k == 1 { v.z } else { v.y };
+    let z = if k == 0 {
+        v.x
     } else if k == 1 {
-        vec3(v.z, v.x, v.y)
+        v.y
     } else {
-        v
-    }
+        v.z
+    };
+    vec3(x, y, z)
 }
 
 /// Whether three points whose edges have a cross product of 0, as rounded, lie on one line exactly.
