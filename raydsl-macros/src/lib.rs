@@ -93,13 +93,22 @@ fn expand_kernels(
 /// Makes a kernel of a closure: `kernel!(|ray: Ray| ...)`.
 ///
 /// What the closure captures is borrowed; the kernel lives as long as that.
+///
+/// `kernel!(counted |ray: Ray| ...)` also lifts it for the lanes that `report::utilisation` counts:
+/// one more copy to compile.
+///
+/// **It takes rustc time**: each closure is compiled for packets of 4, 8 and 16 lanes, for WGSL and
+/// for the reference. While you edit one, name what you need in the environment:
+/// `RAYDSL_VARIANTS=packet8 cargo run --release`. The others are left out: their packets run the
+/// narrower copy that is there, or the scalar function; what needs WGSL or the reference panics and
+/// says so. More of it in the book, "Compile time".
 #[proc_macro]
 pub fn kernel_closure(input: TokenStream) -> TokenStream {
     rewrite::with_readable_names(expand_closure(input.into())).into()
 }
 
 fn expand_closure(input: proc_macro2::TokenStream) -> proc_macro2::TokenStream {
-    match syn::parse2::<syn::ExprClosure>(input) {
+    match syn::parse2::<items::ClosureKernel>(input) {
         Ok(c) => items::kernel_closure(&c),
         Err(e) => {
             let e = syn::Error::new(

@@ -2,7 +2,7 @@
 
 pub use crate::bvh::View;
 pub use crate::geometry::{Aabb, Hit, HitOn, HitRecord, Kinds, Primitive, Ray, RayOn};
-pub use crate::kernel::{Baseline, Kernel, Lifted, Native4, Native8, Native16, Native16Halves};
+pub use crate::kernel::{Counting, Kernel, Lifted, Native4, Native8, Native16};
 pub use crate::machine::{
     Assigned, B, Branch, Capture, Coerce, Compare, Const, Field, HostMethod, Inferred, KernelFn,
     KernelInfo, LaneMachine, Leaves, Loop, Machine, Margin, Method, Op, OpAdd, OpAnd, OpBitAnd,

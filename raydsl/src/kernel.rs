@@ -14,56 +14,49 @@ use crate::machine::{
 mod native {
     use super::{Counted, Packet, Simd4, Simd8, Simd16};
 
-    /// The levels of 4, 8 and 16 lanes, and the one that every machine of the target has.
-    ///
-    /// The last is not `Fallback` where there is a better one: scalar code for eight lanes takes
-    /// LLVM thirty times as long as vector code.
+    /// The levels of 4, 8 and 16 lanes. Every machine of the target has the first one.
     #[cfg(target_arch = "x86_64")]
     pub(super) mod level {
-        pub(in super::super) use fearless_simd::{
-            Avx2 as Middle, Avx512 as Wide, Sse2 as Baseline, Sse4_2 as Narrow,
-        };
+        pub(in super::super) use fearless_simd::{Avx2 as Middle, Avx512 as Wide, Sse2 as Narrow};
     }
 
     #[cfg(target_arch = "aarch64")]
     pub(super) mod level {
-        pub(in super::super) use fearless_simd::{
-            Neon as Narrow, Neon as Middle, Neon as Wide, Neon as Baseline,
-        };
+        pub(in super::super) use fearless_simd::{Neon as Middle, Neon as Narrow, Neon as Wide};
     }
 
     #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
     pub(super) mod level {
         pub(in super::super) use fearless_simd::{
-            Fallback as Narrow, Fallback as Middle, Fallback as Wide, Fallback as Baseline,
+            Fallback as Middle, Fallback as Narrow, Fallback as Wide,
         };
     }
 
-    /// Four lanes: SSE4.2, NEON.
-    pub type Native4 = Packet<Simd4<level::Narrow>>;
+    /// Four lanes: SSE2, NEON, or no instructions of this kind at all.
+    pub(crate) type Lanes4 = Simd4<level::Narrow>;
     /// Eight lanes: AVX2, NEON.
-    pub type Native8 = Packet<Simd8<level::Middle>>;
+    pub(crate) type Lanes8 = Simd8<level::Middle>;
     /// Sixteen lanes: AVX-512, NEON.
-    pub type Native16 = Packet<Simd16<level::Wide>>;
-    /// Sixteen lanes as two halves: AVX2.
-    pub type Native16Halves = Packet<Simd16<level::Middle>>;
-    /// Eight lanes of what every machine of the target has: SSE2, NEON, or no instructions of
-    /// this kind at all.
-    ///
-    /// It is also the copy that counts where its lanes are, when it is asked: the others have
-    /// nothing to do with that.
-    pub type Baseline = Packet<Counted<Simd8<level::Baseline>>>;
+    pub(crate) type Lanes16 = Simd16<level::Wide>;
+    /// Packets of [`Lanes4`].
+    pub type Native4 = Packet<Lanes4>;
+    /// Packets of [`Lanes8`].
+    pub type Native8 = Packet<Lanes8>;
+    /// Packets of [`Lanes16`].
+    pub type Native16 = Packet<Lanes16>;
+    /// Eight lanes of what every machine of the target has, which count where they are.
+    pub type Counting = Packet<Counted<Simd8<level::Narrow>>>;
 }
 
-pub use native::{Baseline, Native4, Native8, Native16, Native16Halves};
+pub use native::{Counting, Native4, Native8, Native16};
+pub(crate) use native::{Lanes4, Lanes8, Lanes16};
 
 /// The tokens of the levels that this machine has.
 #[derive(Clone, Copy)]
 struct Levels {
-    narrow: Option<native::level::Narrow>,
+    narrow: native::level::Narrow,
     middle: Option<native::level::Middle>,
     wide: Option<native::level::Wide>,
-    baseline: native::level::Baseline,
 }
 
 impl Levels {
@@ -73,15 +66,10 @@ impl Levels {
 
     #[cfg(target_arch = "x86_64")]
     fn of(level: Level) -> Self {
-        let Some(baseline) = level.as_sse2() else {
+        let Some(narrow) = level.as_sse2() else {
             unreachable!("SSE2 is a part of x86-64");
         };
-        Self {
-            narrow: level.as_sse4_2(),
-            middle: level.as_avx2(),
-            wide: level.as_avx512(),
-            baseline,
-        }
+        Self { narrow, middle: level.as_avx2(), wide: level.as_avx512() }
     }
 
     #[cfg(target_arch = "aarch64")]
@@ -89,13 +77,12 @@ impl Levels {
         let Some(neon) = level.as_neon() else {
             unreachable!("NEON is a part of AArch64");
         };
-        Self { narrow: Some(neon), middle: Some(neon), wide: Some(neon), baseline: neon }
+        Self { narrow: neon, middle: Some(neon), wide: Some(neon) }
     }
 
     #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
     fn of(_: Level) -> Self {
-        let baseline = fearless_simd::Fallback::new();
-        Self { narrow: None, middle: None, wide: None, baseline }
+        Self { narrow: fearless_simd::Fallback::new(), middle: None, wide: None }
     }
 }
 
@@ -149,8 +136,7 @@ impl Variant {
 
     /// The instruction set that runs the variant on this machine, and its lanes.
     ///
-    /// A width whose level the machine lacks runs on 8 lanes of what every machine of the
-    /// target has.
+    /// A width whose level the machine lacks runs as several packets of the next narrower one.
     pub fn isa(self) -> (&'static str, usize) {
         struct Name;
         impl LanesTask for Name {
@@ -166,15 +152,15 @@ impl Variant {
         }
     }
 
-    /// Whether this machine has registers for the variant. Packets that it lacks run on what every
-    /// machine of the target has; for WGSL the answer is no.
+    /// Whether this machine has registers for the variant. Packets that it lacks run as several of the
+    /// next narrower width; for WGSL the answer is no.
     pub fn is_native(self) -> bool {
         let levels = Levels::detect();
         match self {
             Self::Scalar => true,
-            Self::Packet4 => levels.narrow.is_some(),
+            Self::Packet4 => cfg!(any(target_arch = "x86_64", target_arch = "aarch64")),
             Self::Packet8 => levels.middle.is_some(),
-            Self::Packet16 => levels.wide.is_some() || levels.middle.is_some(),
+            Self::Packet16 => levels.wide.is_some(),
             Self::Wgsl => false,
         }
     }
@@ -182,11 +168,9 @@ impl Variant {
     pub(crate) fn with_lanes<T: LanesTask>(self, task: T) -> T::Output {
         let levels = Levels::detect();
         match self {
-            Self::Packet4 if let Some(s) = levels.narrow => task.run(Simd4(s)),
-            Self::Packet8 if let Some(s) = levels.middle => task.run(Simd8(s)),
             Self::Packet16 if let Some(s) = levels.wide => task.run(Simd16(s)),
-            Self::Packet16 if let Some(s) = levels.middle => task.run(Simd16(s)),
-            _ => task.run(Simd8(levels.baseline)),
+            Self::Packet8 | Self::Packet16 if let Some(s) = levels.middle => task.run(Simd8(s)),
+            _ => task.run(Simd4(levels.narrow)),
         }
     }
 }
@@ -259,16 +243,15 @@ impl Variants {
 pub type LiftedFn<'a, M, A, R> =
     Box<dyn Fn(&M, <A as Type>::On<M>) -> <R as Type>::On<M> + Send + Sync + 'a>;
 
-/// The lifted body of a closure, for every machine that it is lifted for.
+/// The lifted body of a closure, for every machine that it is lifted for. `RAYDSL_VARIANTS` may have
+/// left some out.
 #[expect(missing_docs, reason = "the members are named like their machines")]
 pub struct Lifted<'a, A: Type, R: Type> {
-    pub native4: LiftedFn<'a, Native4, A, R>,
-    pub native8: LiftedFn<'a, Native8, A, R>,
-    pub native16: LiftedFn<'a, Native16, A, R>,
-    pub native16_halves: LiftedFn<'a, Native16Halves, A, R>,
-    pub baseline: LiftedFn<'a, Baseline, A, R>,
-    pub recorder: LiftedFn<'a, Recorder, A, R>,
-    pub margin: LiftedFn<'a, Margin, A, R>,
+    pub native4: Option<LiftedFn<'a, Native4, A, R>>,
+    pub native8: Option<LiftedFn<'a, Native8, A, R>>,
+    pub native16: Option<LiftedFn<'a, Native16, A, R>>,
+    pub recorder: Option<LiftedFn<'a, Recorder, A, R>>,
+    pub margin: Option<LiftedFn<'a, Margin, A, R>>,
 }
 
 type Resources<'a> = Box<dyn Fn(&mut dyn FnMut(&dyn Resource)) + Send + Sync + 'a>;
@@ -315,6 +298,9 @@ pub trait PacketTask<A: Type, R: Type> {
 
     /// Does it. `kernel` is the lifted body for packets of `lanes`.
     fn run<L: Lanes>(self, lanes: L, kernel: &PacketKernel<'_, L, A, R>) -> Self::Output;
+
+    /// Does it one lane at a time, where `RAYDSL_VARIANTS` has left out the lifted bodies.
+    fn scalar(self, kernel: &(dyn Fn(A) -> R + Send + Sync)) -> Self::Output;
 }
 
 impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
@@ -333,17 +319,26 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
             info: F::info(),
             scalar: Box::new(F::scalar),
             lifted: Lifted {
-                native4: Box::new(F::lifted),
-                native8: Box::new(F::lifted),
-                native16: Box::new(F::lifted),
-                native16_halves: Box::new(F::lifted),
-                baseline: Box::new(F::lifted),
-                recorder: Box::new(F::lifted),
-                margin: Box::new(F::lifted),
+                native4: Some(Box::new(F::lifted)),
+                native8: Some(Box::new(F::lifted)),
+                native16: Some(Box::new(F::lifted)),
+                recorder: Some(Box::new(F::lifted)),
+                margin: Some(Box::new(F::lifted)),
             },
             resources: Box::new(|_| {}),
             arithmetic: wgsl::Arithmetic::Strict,
         }
+    }
+
+    /// The kernel of a `#[kernel] fn`, with the lanes that count: `Kernel::counted_of::<name>()`.
+    pub fn counted_of<F: KernelFn<Args = A, Output = R>>() -> CountedKernel<'a, A, R> {
+        Self::of::<F>().counted(Box::new(F::lifted))
+    }
+
+    /// With the copy that counts; what `kernel!(counted ..)` calls last.
+    #[doc(hidden)]
+    pub fn counted(self, counted: LiftedFn<'a, Counting, A, R>) -> CountedKernel<'a, A, R> {
+        CountedKernel { kernel: self, counted }
     }
 
     /// The same kernel with another arithmetic of its WGSL variant; the others stay as they are.
@@ -374,32 +369,22 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
 
     /// Hands the lifted body for `variant`'s packets to `task`.
     ///
-    /// A width whose level the machine lacks, and the variants that are no packets, run on 8 lanes
-    /// of what every machine of the target has.
+    /// A width whose level the machine lacks, or whose copy `RAYDSL_VARIANTS` has left out, runs as
+    /// several packets of the next narrower one, or the scalar function where there is none.
     pub fn with_packets<T: PacketTask<A, R>>(&self, variant: Variant, task: T) -> T::Output {
-        let levels = Levels::detect();
-        match variant {
-            Variant::Packet4 if let Some(s) = levels.narrow => {
-                task.run(Simd4(s), &*self.lifted.native4)
-            }
-            Variant::Packet8 if let Some(s) = levels.middle => {
-                task.run(Simd8(s), &*self.lifted.native8)
-            }
-            Variant::Packet16 if let Some(s) = levels.wide => {
-                task.run(Simd16(s), &*self.lifted.native16)
-            }
-            Variant::Packet16 if let Some(s) = levels.middle => {
-                task.run(Simd16(s), &*self.lifted.native16_halves)
-            }
-            _ => task.run(Counted(Simd8(levels.baseline)), &*self.lifted.baseline),
+        let Lifted { native4, native8, native16, .. } = &self.lifted;
+        let Levels { narrow, middle, wide } = Levels::detect();
+        let is_wide = variant == Variant::Packet16;
+        let is_middle = is_wide || variant == Variant::Packet8;
+        if is_wide && let (Some(level), Some(kernel)) = (wide, native16) {
+            task.run(Simd16(level), &**kernel)
+        } else if is_middle && let (Some(level), Some(kernel)) = (middle, native8) {
+            task.run(Simd8(level), &**kernel)
+        } else if let Some(kernel) = native4 {
+            task.run(Simd4(narrow), &**kernel)
+        } else {
+            task.scalar(&*self.scalar)
         }
-    }
-
-    /// Runs packets of 8 lanes, of what every machine of the target has: the ones that count.
-    pub(crate) fn run_counted(&self, inputs: &[A], outputs: &mut [R]) {
-        let lanes = Counted(Simd8(Levels::detect().baseline));
-        // One packet after the other: counts belong to whoever runs.
-        run_in_gangs(lanes, 0, &*self.lifted.baseline, inputs, outputs);
     }
 
     /// Runs a CPU variant over `inputs`; `outputs` has the same length.
@@ -412,8 +397,8 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
     }
 
     /// [`Kernel::run`] with gangs of so many lanes: packets that wait for each other where they ask
-    /// trees with [`Storage::Leaves`](crate::bvh::Storage::Leaves), which are quicker the more rays
-    /// they are asked about at once. [`Kernel::run`] has gangs of [`GANG`]; with fewer lanes than two
+    /// [wide trees](crate::bvh::Bvh::build_wide), which are quicker the more rays they are asked about
+    /// at once. [`Kernel::run`] has gangs of [`GANG`]; with fewer lanes than two
     /// packets have, each packet goes on its own. The outputs are the same.
     ///
     /// Each packet of a gang, of which there are 64 at most, has a stack of its own, of 8 MiB of
@@ -459,7 +444,22 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
 
     /// The lifted body on the machine of the reference.
     pub(crate) fn on_margin(&self, m: &Margin, args: A::On<Margin>) -> R::On<Margin> {
-        (self.lifted.margin)(m, args)
+        self.built(&self.lifted.margin, "reference")(m, args)
+    }
+
+    fn on_recorder(&self) -> &LiftedFn<'a, Recorder, A, R> {
+        self.built(&self.lifted.recorder, "wgsl")
+    }
+
+    /// A copy that must be there.
+    fn built<'c, F>(&self, copy: &'c Option<F>, name: &str) -> &'c F {
+        copy.as_ref().unwrap_or_else(|| {
+            let KernelInfo { name: kernel, file, line, .. } = self.info;
+            panic!(
+                "`{kernel}` ({file}:{line}) was compiled without the variant `{name}`: add it to the \
+                 environment variable RAYDSL_VARIANTS, or unset that"
+            )
+        })
     }
 
     /// The kernel as WGSL that reads its parameters from a buffer, for the limits that WebGPU
@@ -470,7 +470,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
 
     /// Records the kernel over a buffer of parameters.
     pub fn record(&self) -> Recording {
-        Recording::batch::<A, R>(self.arithmetic, |m, args| (self.lifted.recorder)(m, args))
+        Recording::batch::<A, R>(self.arithmetic, |m, args| self.on_recorder()(m, args))
     }
 
     /// Records what is done for each pixel of a film: `pixel` is given its coordinates and the
@@ -484,12 +484,37 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
             &LiftedFn<'a, Recorder, A, R>,
         ) -> O::On<Recorder>,
     ) -> Recording {
-        Recording::grid::<O>(self.arithmetic, |m, x, y| pixel(m, x, y, &self.lifted.recorder))
+        Recording::grid::<O>(self.arithmetic, |m, x, y| pixel(m, x, y, self.on_recorder()))
     }
 
     /// Shows the buffers that the recorded kernel may read.
     pub fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
         (self.resources)(visit);
+    }
+}
+
+/// A kernel that is also lifted for lanes that count where they are, which
+/// [`utilisation`](crate::report::utilisation) asks: `kernel!(counted |ray: Ray| ..)`, or
+/// [`Kernel::counted_of`]. One more copy to compile.
+pub struct CountedKernel<'a, A: Type, R: Type> {
+    kernel: Kernel<'a, A, R>,
+    counted: LiftedFn<'a, Counting, A, R>,
+}
+
+impl<'a, A: Type, R: Type> core::ops::Deref for CountedKernel<'a, A, R> {
+    type Target = Kernel<'a, A, R>;
+
+    fn deref(&self) -> &Kernel<'a, A, R> {
+        &self.kernel
+    }
+}
+
+impl<A: Type, R: Type> CountedKernel<'_, A, R> {
+    /// Runs packets of 8 lanes, of what every machine of the target has: the ones that count.
+    pub(crate) fn run_counted(&self, inputs: &[A], outputs: &mut [R]) {
+        let lanes = Counted(Simd8(Levels::detect().narrow));
+        // One packet after the other: counts belong to whoever runs.
+        run_in_gangs(lanes, 0, &*self.counted, inputs, outputs);
     }
 }
 
@@ -507,6 +532,12 @@ impl<A: Type, R: Type> PacketTask<A, R> for Batch<'_, A, R> {
 
     fn run<L: Lanes>(self, lanes: L, kernel: &PacketKernel<'_, L, A, R>) {
         run_in_gangs(lanes, self.gang, kernel, self.inputs, self.outputs);
+    }
+
+    fn scalar(self, kernel: &(dyn Fn(A) -> R + Send + Sync)) {
+        for (a, r) in self.inputs.iter().zip(self.outputs) {
+            *r = kernel(*a);
+        }
     }
 }
 
@@ -556,4 +587,4 @@ pub fn run_fn<F: KernelFn, L: Lanes>(lanes: L, inputs: &[F::Args], outputs: &mut
     run_batch(lanes, &|m: &Packet<L>, args| F::lifted(m, args), inputs, outputs);
 }
 
-const _: () = assert!(<Baseline as LaneMachine>::LANES == 8);
+const _: () = assert!(<Counting as LaneMachine>::LANES == 8);

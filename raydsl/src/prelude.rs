@@ -7,7 +7,7 @@ pub use glam::{
 };
 
 pub use crate::bvh::{
-    BuildConfig, BuildQuality, Bvh, BvhList, Instance, Instances, RayQuery, Storage, Traversal,
+    BuildConfig, BuildQuality, Bvh, BvhList, Instance, Instances, RayQuery, Traversal,
 };
 pub use crate::camera::{
     Camera, CameraRays, DepthRange, Matrix, Orthographic, Pinhole, Stereo, ThinLens,

@@ -281,13 +281,11 @@ pub fn recorded<F: KernelFn>() -> Kernel<'static, F::Args, F::Output> {
         KernelInfo { name: "function", file: file!(), line: line!(), params: &[] };
     Kernel::scalar(&INFO, F::scalar).lifted(
         Lifted {
-            native4: Box::new(|_, _| unreachable!()),
-            native8: Box::new(|_, _| unreachable!()),
-            native16: Box::new(|_, _| unreachable!()),
-            native16_halves: Box::new(|_, _| unreachable!()),
-            baseline: Box::new(|_, _| unreachable!()),
-            recorder: Box::new(F::lifted),
-            margin: Box::new(F::lifted),
+            native4: Some(Box::new(|_, _| unreachable!())),
+            native8: Some(Box::new(|_, _| unreachable!())),
+            native16: Some(Box::new(|_, _| unreachable!())),
+            recorder: Some(Box::new(F::lifted)),
+            margin: Some(Box::new(F::lifted)),
         },
         |_| {},
     )

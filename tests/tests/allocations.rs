@@ -4,7 +4,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::error::Error;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use raydsl::bvh::{BuildConfig, Storage};
+use raydsl::bvh::BuildConfig;
 use raydsl::kernels::ambient_occlusion;
 use raydsl::prelude::*;
 use raydsl_tests::scenes::triangles;
@@ -45,8 +45,11 @@ fn frames_allocate_nothing() -> Result<(), Box<dyn Error>> {
     let soup = triangles(300);
     let camera = Pinhole::new(vec3(2.0, 3.0, 16.0), Vec3::ZERO, Vec3::Y, 0.8);
     let method = SampleMethod::Sobol;
-    for storage in [Storage::Borrow, Storage::Leaves] {
-        let scene = Bvh::build_with(&soup, &BuildConfig { storage, ..BuildConfig::default() })?;
+    for is_wide in [false, true] {
+        let config = BuildConfig::default();
+        let scene =
+            if is_wide { Bvh::build_wide(&soup, &[], &config)? } else { Bvh::build(&soup)? };
+        assert!(!scene.is_wide() || is_wide);
         let kernel = kernel!(|ray: Ray, pixel: UVec2| {
             let sampler = Sampler::new(pixel, 1, 0, 1);
             ambient_occlusion::<_, 2>(&scene, 1.5, host(method), ray, sampler)
@@ -55,11 +58,11 @@ fn frames_allocate_nothing() -> Result<(), Box<dyn Error>> {
         for variant in [Variant::Scalar, Variant::Packet4, Variant::Packet8, Variant::Packet16] {
             let scheduler = SimpleScheduler::new().variant(variant);
             let count = allocations(|| scheduler.frame(&camera, &kernel, &mut image));
-            assert_eq!(count, 0, "{variant:?} {storage:?}");
+            assert_eq!(count, 0, "{variant:?} {is_wide}");
             // What rayon needs for a job that comes from outside, now and then.
             let scheduler = TiledScheduler::new().variant(variant).tile(4);
             let count = allocations(|| scheduler.frame(&camera, &kernel, &mut image));
-            assert!(count <= 1, "{count} of 1440 tiles, {variant:?} {storage:?}");
+            assert!(count <= 1, "{count} of 1440 tiles, {variant:?} {is_wide}");
         }
     }
     Ok(())

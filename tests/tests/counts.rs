@@ -27,9 +27,9 @@ fn counts_are_those_of_one_node_and_one_block() {
         eprintln!("SKIPPED: no wide trees on this machine");
         return;
     }
-    let config = BuildConfig { storage: Storage::Leaves, ..BuildConfig::default() };
+    let config = BuildConfig { min_wide_size: 0, ..BuildConfig::default() };
     let triangles = triangles();
-    let bvh = Bvh::build_with(&triangles, &config).unwrap();
+    let bvh = Bvh::build_wide(&triangles, &[], &config).unwrap();
     let _ = Counts::take();
 
     // One ray after another meets three primitives at once, and the first of them is new.

@@ -146,9 +146,14 @@ fn triangles(rng: &mut Rng, count: usize) -> Vec<Triangle> {
     all
 }
 
+/// Makes wide trees however few primitives there are.
+fn always() -> BuildConfig {
+    BuildConfig { min_wide_size: 0, ..BuildConfig::default() }
+}
+
 fn leaves<P: Primitive<Shared = ()>>(prims: &[P], quality: BuildQuality) -> Bvh<'_, P> {
-    let config = BuildConfig { quality, storage: Storage::Leaves, ..BuildConfig::default() };
-    Bvh::build_with(prims, &config).expect("finite bounds")
+    let config = BuildConfig { quality, ..always() };
+    Bvh::build_wide(prims, &[], &config).expect("finite bounds")
 }
 
 /// Packets give what the scalar function does.
@@ -258,8 +263,7 @@ fn indexed_triangles() {
     let faces: Vec<IndexedTriangle> = (0..150)
         .map(|_| IndexedTriangle { vertices: [0; 3].map(|_| rng.range(0.0, 59.9) as u32) })
         .collect();
-    let config = BuildConfig::from(Storage::Leaves);
-    let bvh = Bvh::build_sharing(&faces, &vertices, &config).expect("finite bounds");
+    let bvh = Bvh::build_wide(&faces, &vertices, &always()).expect("finite bounds");
     let kernel = kernel!(|ray: Ray| (bvh.closest_hit(ray), bvh.any_hit(ray)));
     let plain = Bvh::build_sharing(&faces, &vertices, &BuildConfig::default()).expect("the same");
     let rays = rays(&mut rng, 1000);
@@ -283,12 +287,16 @@ fn lists() {
             .iter()
             .enumerate()
             .map(|(i, model)| {
-                let storage = if i < borrows { Storage::Leaves } else { Storage::Borrow };
                 // With one that sorts, rays are sorted for all.
                 let ways = if shift % 2 == 0 { 4 } else { 3 };
                 let traversal = Traversal::ALL[([0, 1, 0, 2, 3][i] + shift) % ways];
-                let config = BuildConfig { storage, traversal, ..BuildConfig::default() };
-                Bvh::build_with(model, &config).expect("finite bounds")
+                let config = BuildConfig { traversal, ..always() };
+                let is_wide = i < borrows;
+                let tree = match is_wide {
+                    true => Bvh::build_wide(model, &[], &config),
+                    false => Bvh::build_with(model, &config),
+                };
+                tree.expect("finite bounds")
             })
             .collect();
         let list = BvhList::new(&trees).expect("few primitives");
@@ -565,10 +573,9 @@ fn refitted() {
 fn bytes() {
     let mut rng = Rng::of("bytes of leaves");
     let faces = triangles(&mut rng, 10_000);
-    let [borrowed, copied] = [Storage::Borrow, Storage::Leaves].map(|storage| {
-        let bvh = Bvh::build_with(&faces, &storage.into()).expect("finite bounds");
-        bvh.bytes() as f64 / faces.len() as f64
-    });
+    let trees = [Bvh::build(&faces), Bvh::build_wide(&faces, &[], &BuildConfig::default())];
+    let [borrowed, copied] =
+        trees.map(|bvh| bvh.expect("finite bounds").bytes() as f64 / faces.len() as f64);
     // Nine words and a number for each, in blocks that are mostly full, and the nodes.
     assert!(borrowed < 80.0 && copied > 40.0 && copied < 120.0, "{borrowed}, {copied}");
 }

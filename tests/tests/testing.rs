@@ -95,13 +95,11 @@ fn the_wrong_number_is_shown() -> Result<(), String> {
     static INFO: KernelInfo = KernelInfo { name: "side", file: "f.rs", line: 7, params: &[] };
     let kernel = Kernel::scalar(&INFO, sum_and_side::scalar).lifted(
         Lifted {
-            native4: Box::new(sum_and_side::lifted),
-            native8: Box::new(sum_and_side::lifted),
-            native16: Box::new(sum_and_side::lifted),
-            native16_halves: Box::new(sum_and_side::lifted),
-            baseline: Box::new(sum_and_side::lifted),
-            recorder: Box::new(other_side::lifted),
-            margin: Box::new(sum_and_side::lifted),
+            native4: Some(Box::new(sum_and_side::lifted)),
+            native8: Some(Box::new(sum_and_side::lifted)),
+            native16: Some(Box::new(sum_and_side::lifted)),
+            recorder: Some(Box::new(other_side::lifted)),
+            margin: Some(Box::new(sum_and_side::lifted)),
         },
         |_| {},
     );
@@ -132,13 +130,19 @@ fn broken(packet: bool, wgsl: bool) -> Kernel<'static, (f32, f32), f32> {
     static INFO: KernelInfo = KernelInfo { name: "broken", file: "f.rs", line: 7, params: &[] };
     Kernel::scalar(&INFO, falloff::scalar).lifted(
         Lifted {
-            native4: Box::new(falloff::lifted),
-            native8: if packet { Box::new(mistaken::lifted) } else { Box::new(falloff::lifted) },
-            native16: Box::new(falloff::lifted),
-            native16_halves: Box::new(falloff::lifted),
-            baseline: Box::new(falloff::lifted),
-            recorder: if wgsl { Box::new(mistaken::lifted) } else { Box::new(falloff::lifted) },
-            margin: Box::new(falloff::lifted),
+            native4: Some(Box::new(falloff::lifted)),
+            native8: Some(if packet {
+                Box::new(mistaken::lifted)
+            } else {
+                Box::new(falloff::lifted)
+            }),
+            native16: Some(Box::new(falloff::lifted)),
+            recorder: Some(if wgsl {
+                Box::new(mistaken::lifted)
+            } else {
+                Box::new(falloff::lifted)
+            }),
+            margin: Some(Box::new(falloff::lifted)),
         },
         |_| {},
     )

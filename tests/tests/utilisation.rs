@@ -47,7 +47,7 @@ fn find(found: &Utilisation, what: &str) -> Result<(u32, u64, u64), String> {
 fn arms_and_rounds_are_counted() -> Result<(), String> {
     let numbers: Vec<u32> = (1..=100).collect();
     let inputs: Vec<(u32,)> = numbers.iter().map(|n| (*n,)).collect();
-    let found = utilisation(&Kernel::of::<steps>(), &inputs);
+    let found = utilisation(&Kernel::counted_of::<steps>(), &inputs);
     println!("{found}");
     assert_eq!((found.kernel, found.lanes, found.packets), ("steps", LANES, 13));
 
@@ -68,7 +68,7 @@ fn arms_and_rounds_are_counted() -> Result<(), String> {
 #[test]
 fn the_table_shows_the_source() {
     let inputs: Vec<(u32,)> = (1..=100).map(|n| (n,)).collect();
-    let table = utilisation(&Kernel::of::<steps>(), &inputs).to_string();
+    let table = utilisation(&Kernel::counted_of::<steps>(), &inputs).to_string();
     assert!(table.contains("`steps`: 13 packets of 8 lanes"), "{table}");
     assert!(table.contains("tests/tests/utilisation.rs"), "{table}");
     let row = table.lines().find(|l| l.contains(" loop ")).unwrap_or_default();
@@ -81,7 +81,7 @@ fn the_table_shows_the_source() {
 fn walks_of_trees_are_counted() -> Result<(), Box<dyn std::error::Error>> {
     let prims = raydsl_tests::scenes::triangles(500);
     let bvh = Bvh::build(&prims)?;
-    let kernel = kernel!(|ray: Ray| {
+    let kernel = kernel!(counted |ray: Ray| {
         let hit = bvh.closest_hit(ray);
         if hit.is_hit { 1.0 / (1.0 + hit.t) } else { -1.0 }
     });
@@ -104,7 +104,7 @@ fn walks_of_trees_are_counted() -> Result<(), Box<dyn std::error::Error>> {
 #[test]
 fn only_the_own_runs_count() {
     let inputs: Vec<(u32,)> = (1..=100).map(|n| (n,)).collect();
-    let kernel = Kernel::of::<steps>();
+    let kernel = Kernel::counted_of::<steps>();
     let alone = utilisation(&kernel, &inputs);
     std::thread::scope(|scope| {
         scope.spawn(|| (0..100).for_each(|_| assert_eq!(utilisation(&kernel, &inputs), alone)));

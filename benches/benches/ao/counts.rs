@@ -20,9 +20,9 @@ pub(crate) fn print(name: &str, trees: &[Tree<'_>], work: &Workload, only: &[Row
         "  {:<20}{:>8}{:>7}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}",
         "row", "beams", "beam", "nodes", "blocks", "x reg.", "x reg.", "nodes", "blocks", "hits"
     );
-    let widest = format!("{} leaves", Variant::widest().name());
+    let widest = format!("{} wide", Variant::widest().name());
     for mut contender in own::contenders(trees, work, 1) {
-        let is_single = contender.row == Row::SingleClosest && contender.mode == "scalar leaves";
+        let is_single = contender.row == Row::SingleClosest && contender.mode == "scalar wide";
         let is_compared = Row::COMPARED.contains(&contender.row);
         let is_packet =
             is_compared && contender.row != Row::SingleClosest && contender.mode == widest;

@@ -7,11 +7,11 @@ use raydsl_benches::contest::{Cost, Outcome, pixels};
 use raydsl_benches::embree::{self, Embree, Mode, Quality, Question, Shape};
 use raydsl_benches::scenes::Point;
 
-/// The library's trees: `Best` cuts primitives, which balls of one size gain nothing from.
-const TREES: [(&str, BuildQuality, Storage); 3] = [
-    ("balanced", BuildQuality::Balanced, Storage::Borrow),
-    ("fast", BuildQuality::Fast, Storage::Borrow),
-    ("leaves", BuildQuality::Balanced, Storage::Leaves),
+/// The library's trees, and whether they are wide: `Best` cuts primitives, which balls of one size gain nothing from.
+const TREES: [(&str, BuildQuality, bool); 3] = [
+    ("balanced", BuildQuality::Balanced, false),
+    ("fast", BuildQuality::Fast, false),
+    ("wide", BuildQuality::Balanced, true),
 ];
 
 /// What all systems are asked.
@@ -103,8 +103,8 @@ impl<'a> Rounds<'a> {
     pub(crate) fn run(mut self, rounds: usize) -> Vec<Record> {
         for round in 0..=rounds {
             self.round = round;
-            for (name, quality, storage) in TREES {
-                self.own(name, BuildConfig { quality, storage, ..BuildConfig::default() });
+            for (name, quality, is_wide) in TREES {
+                self.own(name, &quality.into(), is_wide);
             }
             for quality in [Quality::Low, Quality::Medium, Quality::High] {
                 self.theirs(quality);
@@ -114,9 +114,13 @@ impl<'a> Rounds<'a> {
         self.records
     }
 
-    fn own(&mut self, name: &str, config: BuildConfig) {
+    fn own(&mut self, name: &str, config: &BuildConfig, is_wide: bool) {
         let task = self.task;
-        let (bvh, seconds) = seconds_on(task.threads, || Bvh::build_with(task.points, &config));
+        let build = || match is_wide {
+            true => Bvh::build_wide(task.points, &[], config),
+            false => Bvh::build_with(task.points, config),
+        };
+        let (bvh, seconds) = seconds_on(task.threads, build);
         let bvh = bvh.expect("the points have finite bounds");
         let cost = Cost::new(seconds, bvh.bytes(), task.points.len());
         let who = |mode, (isa, lanes)| Who { system: "raydsl", mode, isa, lanes };

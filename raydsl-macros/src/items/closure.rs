@@ -12,26 +12,62 @@ use crate::model::Kernel;
 use crate::parse;
 use crate::rewrite::without_markers;
 
-/// The natural machines of a closure, by the names of their aliases in the runtime and of the
-/// members of `Lifted` that hold their copies.
-const NATURAL: [(&str, &str); 7] = [
-    ("Native4", "native4"),
-    ("Native8", "native8"),
-    ("Native16", "native16"),
-    ("Native16Halves", "native16_halves"),
-    ("Baseline", "baseline"),
-    ("Recorder", "recorder"),
-    ("Margin", "margin"),
+/// A machine that a closure is lifted for.
+struct Natural {
+    /// Its alias in the runtime.
+    alias: &'static str,
+    /// The member of `Lifted` that holds its copy.
+    member: &'static str,
+    /// What `RAYDSL_VARIANTS` calls it.
+    variant: &'static str,
+}
+
+const NATURAL: [Natural; 5] = [
+    Natural { alias: "Native4", member: "native4", variant: "packet4" },
+    Natural { alias: "Native8", member: "native8", variant: "packet8" },
+    Natural { alias: "Native16", member: "native16", variant: "packet16" },
+    Natural { alias: "Recorder", member: "recorder", variant: "wgsl" },
+    Natural { alias: "Margin", member: "margin", variant: "reference" },
 ];
 
+/// The copy that counts lanes: made where the source asks for it.
+const COUNTED: Natural = Natural { alias: "Counting", member: "counted", variant: "counted" };
+
+/// The environment variable that names the copies to make, for those who edit a kernel and wait for
+/// rustc: the others are left out.
+const VARIANTS: &str = "RAYDSL_VARIANTS";
+
+/// How many tokens a closure may have whose first copy is for a machine that rustc infers; see
+/// [`copies`].
+const INFERRED: usize = 256;
+
+/// `kernel!(|ray: Ray| ...)` and `kernel!(counted |ray: Ray| ...)`.
+pub(crate) struct ClosureKernel {
+    counted: Option<Ident>,
+    closure: syn::ExprClosure,
+}
+
+impl syn::parse::Parse for ClosureKernel {
+    fn parse(input: syn::parse::ParseStream<'_>) -> syn::Result<Self> {
+        let ahead = input.fork();
+        let is_counted = ahead.parse::<Ident>().is_ok_and(|word| word == "counted");
+        let is_counted = is_counted && ahead.peek(syn::Token![|]);
+        let counted = if is_counted { Some(input.parse()?) } else { None };
+        Ok(Self { counted, closure: input.parse()? })
+    }
+}
+
 /// `kernel!(|ray: Ray| ...)`.
-pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
+pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel) -> TokenStream {
     let mut errors = Errors::default();
+    let wanted = wanted(&mut errors);
     let kernel = parse::closure(closure, "kernel", &mut errors);
     if kernel.params.is_empty() && errors.is_empty() {
         errors.at(closure.span(), "a kernel needs a parameter", "write for example `|ray: Ray|`");
     }
-    let (copies, captured) = copies(&kernel, &mut errors);
+    let machines: Vec<&Natural> =
+        wanted.iter().copied().chain(counted.as_ref().map(|_| &COUNTED)).collect();
+    let (copies, captured) = copies(&kernel, closure, &machines, &mut errors);
     // The closure itself stays, so that rustc and editors see its types.
     let closure = without_markers(closure.to_token_stream());
     if !errors.is_empty() {
@@ -41,36 +77,76 @@ pub(crate) fn kernel_closure(closure: &syn::ExprClosure) -> TokenStream {
     let (p, scalar, captures) = (private(), own("scalar"), own("captures"));
     let names: Vec<&Ident> = kernel.params.iter().map(|p| &p.name).collect();
     let types = kernel.params.iter().map(|p| &p.ty);
-    let (info, lifted, resources) = (info(&kernel, "kernel"), lifted(), resources(&captured));
+    let (info, resources) = (info(&kernel, "kernel"), resources(&captured));
+    let boxed = |machine: &&Natural| boxed(machine, machine.member == machines[0].member);
+    let members = NATURAL.iter().map(|machine| {
+        let name = format_ident!("{}", machine.member);
+        let is_wanted = |other: &&&Natural| other.member == machine.member;
+        match wanted.iter().find(is_wanted).map(boxed) {
+            Some(copy) => quote!(#name: ::core::option::Option::Some(#copy)),
+            None => quote!(#name: ::core::option::Option::None),
+        }
+    });
+    let with_counted = counted.as_ref().map(|_| {
+        let copy = boxed(&&COUNTED);
+        quote!(.counted(#copy))
+    });
     quote! {{
         #info
+        // For cargo, which builds anew when it changes.
+        const _: ::core::option::Option<&str> = ::core::option_env!(#VARIANTS);
         let #scalar = #closure;
         let #captures = (#(&#captured,)*);
+        #(#copies)*
         #p::Kernel::scalar(
             &__INFO,
             move |(#(#names,)*): (#(#types,)*)| #scalar(#(#names),*),
         )
         .lifted(
-            {
-                #(#copies)*
-                #lifted
-            },
+            #p::Lifted { #(#members,)* },
             move |visit: &mut dyn FnMut(&dyn #p::Resource)| {
                 #(#resources)*
             },
         )
+        #with_counted
     }}
 }
 
-/// A copy of the lifted closure for each natural machine, and the names that all capture.
-fn copies(kernel: &Kernel, errors: &mut Errors) -> (Vec<TokenStream>, Vec<Ident>) {
+/// The machines that closures are lifted for: all, or those that the environment names.
+fn wanted(errors: &mut Errors) -> Vec<&'static Natural> {
+    let Ok(names) = std::env::var(VARIANTS) else { return NATURAL.iter().collect() };
+    let names: Vec<&str> = names.split(',').map(str::trim).filter(|n| !n.is_empty()).collect();
+    let is_known = |name: &str| name == "scalar" || NATURAL.iter().any(|n| n.variant == name);
+    for name in names.iter().filter(|name| !is_known(name)) {
+        let all: Vec<&str> = NATURAL.iter().map(|n| n.variant).collect();
+        errors.at(
+            proc_macro2::Span::call_site(),
+            &format!("the environment variable {VARIANTS} names `{name}`, which is no variant"),
+            &format!("it is a list of some of: scalar,{}", all.join(",")),
+        );
+    }
+    NATURAL.iter().filter(|n| names.contains(&n.variant)).collect()
+}
+
+/// A copy of the lifted closure for each machine, and the names that all capture.
+///
+/// rustc would report a mistake once for each copy. The machine of the first copy of a short closure
+/// is therefore inferred, from a cast. Casts come after all else, so the errors of a copy for any
+/// machine imply those of the others, and rustc leaves these out. But all that the first copy asks of
+/// its machine is looked through again and again until the cast is reached: in a closure of sixty
+/// lines for 19 of 20 seconds. There each copy has its own errors.
+fn copies(
+    kernel: &Kernel,
+    closure: &syn::ExprClosure,
+    machines: &[&Natural],
+    errors: &mut Errors,
+) -> (Vec<TokenStream>, Vec<Ident>) {
     let p = private();
+    let is_short = tokens(closure.to_token_stream(), INFERRED) < INFERRED;
     let (mut copies, mut captured) = (Vec::new(), Vec::new());
-    for (alias, member) in NATURAL {
-        let (alias, member) = (format_ident!("{alias}"), own(member));
-        // The machine of the first copy is inferred, from a cast. Casts come after all else, so the
-        // errors of a copy for any machine imply those of the others, and rustc leaves these out.
-        let machine = if copies.is_empty() { quote!(_) } else { quote!(#p::#alias) };
+    for machine in machines {
+        let (alias, member) = (format_ident!("{}", machine.alias), own(machine.member));
+        let machine = if copies.is_empty() && is_short { quote!(_) } else { quote!(#p::#alias) };
         let mut seen = Errors::default();
         let copy;
         (copy, captured) = copy_for(&machine, &member, kernel, &mut seen);
@@ -81,6 +157,21 @@ fn copies(kernel: &Kernel, errors: &mut Errors) -> (Vec<TokenStream>, Vec<Ident>
         copies.push(copy);
     }
     (copies, captured)
+}
+
+/// How many tokens there are, if no more than `most`.
+fn tokens(stream: TokenStream, most: usize) -> usize {
+    let mut count = 0;
+    for token in stream {
+        count += 1;
+        if let proc_macro2::TokenTree::Group(group) = token {
+            count += tokens(group.stream(), most - count.min(most));
+        }
+        if count >= most {
+            break;
+        }
+    }
+    count
 }
 
 /// The lifted closure for one machine, as the local `member`, and the names that it captures.
@@ -155,16 +246,10 @@ fn capture(i: usize) -> TokenStream {
     quote_here!({ #captures.#i })
 }
 
-/// The copies for all machines, boxed. The cast of the first one says what machine it is for.
-fn lifted() -> TokenStream {
-    let p = private();
-    let mut others: Vec<Ident> = NATURAL.iter().map(|n| own(n.1)).collect();
-    let (first, machine) = (others.remove(0), format_ident!("{}", NATURAL[0].0));
-    quote! {
-        #p::Lifted {
-            #(#others: ::std::boxed::Box::new(#others),)*
-            #first: ::std::boxed::Box::new(#first)
-                as ::std::boxed::Box<dyn Fn(&#p::#machine, _) -> _ + Send + Sync>,
-        }
-    }
+/// A copy, boxed. The cast of the first one says what machine it is for.
+fn boxed(machine: &Natural, is_first: bool) -> TokenStream {
+    let (p, copy, alias) = (private(), own(machine.member), format_ident!("{}", machine.alias));
+    let cast =
+        is_first.then(|| quote!(as ::std::boxed::Box<dyn Fn(&#p::#alias, _) -> _ + Send + Sync>));
+    quote!(::std::boxed::Box::new(#copy) #cast)
 }

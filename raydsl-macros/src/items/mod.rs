@@ -7,7 +7,7 @@ mod operators;
 mod primitive;
 mod shape;
 
-pub(crate) use closure::kernel_closure;
+pub(crate) use closure::{ClosureKernel, kernel_closure};
 pub(crate) use function::kernel_fn;
 pub(crate) use methods::{kernel_impl, kernel_trait};
 pub(crate) use primitive::primitive_impl;

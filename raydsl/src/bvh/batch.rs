@@ -11,9 +11,9 @@ const TOGETHER: usize = 8;
 
 /// The record of the least `(t, id)` hit of each ray.
 pub(super) fn closest_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray]) -> Vec<P::Hit> {
-    if trace::answers(scene) {
+    if let Some(walks) = scene.walks() {
         let mut hits = Vec::with_capacity(rays.len());
-        trace::each_closest(scene, rays, |ray, hit| {
+        trace::each_closest((scene, walks), rays, |ray, hit| {
             hits.push(traverse::complete(scene, *ray, hit));
         });
         return hits;
@@ -23,9 +23,9 @@ pub(super) fn closest_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray])
 
 /// Whether each ray hits anything.
 pub(super) fn any_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray]) -> Vec<bool> {
-    if trace::answers(scene) {
+    if let Some(walks) = scene.walks() {
         let mut hits = Vec::with_capacity(rays.len());
-        trace::each_any(scene, rays, |is_hit| hits.push(is_hit));
+        trace::each_any((scene, walks), rays, |is_hit| hits.push(is_hit));
         return hits;
     }
     Variant::widest().with_lanes(Any { scene, rays })

@@ -89,7 +89,9 @@ impl<'a, P: Primitive> BvhList<'a, P> {
         };
         let parts = trees.iter().map(part).collect();
         let kinds = trees.iter().fold(Kinds::NONE, |all, tree| all.union(tree.tree.kinds));
-        Ok(Self { trees: Trees { parts, shared, owner: Owner::new(), kinds } })
+        let is_wide = trees.iter().all(Bvh::is_wide);
+        let walks = trees.first().filter(|_| is_wide).and_then(|tree| tree.tree.walks);
+        Ok(Self { trees: Trees { parts, shared, owner: Owner::new(), kinds, walks } })
     }
 
     /// Which tree holds the primitive that was hit, by its place in the list; none for a miss.

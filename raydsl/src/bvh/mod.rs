@@ -37,7 +37,8 @@ mod tests;
 use core::ops::ControlFlow;
 
 pub use accelerator::{Accelerated, Accelerator};
-pub use build::{BuildConfig, BuildError, BuildQuality, MAX_DEPTH, Storage, Traversal};
+use build::Settings;
+pub use build::{BuildConfig, BuildError, BuildQuality, MAX_DEPTH, Traversal};
 pub use instances::{Group, Instance, InstanceError, Instances, MAX_CONDITION, MAX_LEVELS, Object};
 pub(crate) use instances::{IS_INSTANCE, PLACE_SCHEMA, Placed, Placing, STACK, Target};
 pub use list::{BvhList, ListError};
@@ -57,6 +58,7 @@ pub use validate::{TreeFault, validate};
 use view::Tree;
 pub(crate) use view::{Branches, NODE_SCHEMA, Part, buffers};
 pub use view::{SceneView, View};
+use wide::Walks;
 #[cfg(feature = "counts")]
 pub use wide::counts::Counts;
 
@@ -135,7 +137,60 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         shared: &'a [P::Shared],
         config: &BuildConfig,
     ) -> Result<Self, BuildError> {
-        Self::build_told(prims, shared, config, None)
+        Self::build_told(prims, shared, config, None, None)
+    }
+
+    /// Builds a wide tree, with copies of the primitives in its leaves, for scenes that are asked
+    /// often. A scene without shared data passes `&[]`.
+    ///
+    /// A copy of each primitive lies in blocks of eight, member by member, under nodes of eight
+    /// children. One ray meets eight boxes or eight primitives at a time, and packets go through the
+    /// tree together or part, whichever is quicker. Hits are those of any other tree.
+    ///
+    /// A device has no use for it. A machine without AVX2 and NEON makes no copy, and of fewer
+    /// primitives than [`BuildConfig::min_wide_size`] none is made: then the tree is a binary one. The
+    /// walks through wide trees are long, and a program that calls this takes rustc seconds more for
+    /// each type of primitive.
+    ///
+    /// The binary tree is not kept, and made again when it is first asked for, by one thread while
+    /// others wait for it: by a query with a condition or of several hits, a ray whose numbers are too
+    /// large for the wide tree's boxes, a scene of instances, a device, refitting, or [`Bvh::nodes`],
+    /// which may be called to have it in time.
+    ///
+    /// ```
+    /// use raydsl::prelude::*;
+    ///
+    /// let triangle = |z| Triangle { v0: vec3(0.0, 0.0, z), v1: vec3(4.0, 0.0, z), v2: vec3(0.0, 4.0, z) };
+    /// let triangles: Vec<_> = (1..1000).map(|z| triangle(z as f32)).collect();
+    /// let bvh = Bvh::build_wide(&triangles, &[], &BuildConfig::default())?;
+    /// let hit = bvh.closest_hit(Ray::new(vec3(1.0, 1.0, 0.0), Vec3::Z));
+    /// assert_eq!((hit.prim_id, hit.t), (0, 1.0));
+    /// # Ok::<(), raydsl::bvh::BuildError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`Bvh::build_sharing`].
+    pub fn build_wide(
+        prims: &'a [P],
+        shared: &'a [P::Shared],
+        config: &BuildConfig,
+    ) -> Result<Self, BuildError> {
+        Self::build_told(prims, shared, config, None, wide::walks())
+    }
+
+    /// [`Bvh::build_wide`] with an observer, as [`Bvh::build_observed`] has one.
+    ///
+    /// # Errors
+    ///
+    /// As [`Bvh::build_observed`].
+    pub fn build_wide_observed(
+        prims: &'a [P],
+        shared: &'a [P::Shared],
+        config: &BuildConfig,
+        mut observer: impl FnMut(f64) -> ControlFlow<()> + Send,
+    ) -> Result<Self, BuildError> {
+        Self::build_told(prims, shared, config, Some(&mut observer), wide::walks())
     }
 
     /// [`Bvh::build_sharing`], of which `observer` is told how much is done, from 0 to 1, and says
@@ -173,7 +228,7 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         config: &BuildConfig,
         mut observer: impl FnMut(f64) -> ControlFlow<()> + Send,
     ) -> Result<Self, BuildError> {
-        Self::build_told(prims, shared, config, Some(&mut observer))
+        Self::build_told(prims, shared, config, Some(&mut observer), None)
     }
 
     fn build_told(
@@ -181,6 +236,7 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         shared: &'a [P::Shared],
         config: &BuildConfig,
         observer: Option<&mut build::Observer>,
+        walks: Option<Walks<P, P::Shared>>,
     ) -> Result<Self, BuildError> {
         const {
             assert!(
@@ -189,15 +245,18 @@ impl<'a, P: Primitive> Bvh<'a, P> {
             );
         }
         let source = build::Primitives { prims, shared };
-        let tree = build::build_watched(&source, prims.len(), config, observer)?;
+        let walks = walks.filter(|_| prims.len() >= config.min_wide_size as usize);
+        let settings = Settings { config: *config, is_wide: walks.is_some() };
+        let tree = build::build_watched(&source, prims.len(), &settings, observer)?;
+        let wide = walks.map(|walks| (walks.collapse)(&tree, prims, shared, config.traversal));
         let own = Owned {
-            structure: Structure::of(tree, config, prims, shared),
+            structure: Structure::of(tree, wide),
             config: *config,
             owner: Owner::new(),
             version: 0,
             built_cost: None,
         };
-        Ok(Self { tree: Tree { prims, shared, own, kinds: Kinds::of(prims) } })
+        Ok(Self { tree: Tree { prims, shared, own, kinds: Kinds::of(prims), walks } })
     }
 
     /// The primitives, as the application owns them.
@@ -210,8 +269,13 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         self.tree.shared
     }
 
-    /// The nodes of the binary tree; the root is the first, children are adjacent. With
-    /// [`Storage::Leaves`] it is made, and kept, when it is first asked for.
+    /// Whether it is a wide tree: [`Bvh::build_wide`] was asked for one, and made it.
+    pub fn is_wide(&self) -> bool {
+        self.tree.walks.is_some()
+    }
+
+    /// The nodes of the binary tree; the root is the first, children are adjacent. Of a wide tree it is
+    /// made, and kept, when it is first asked for.
     pub fn nodes(&self) -> &[Node] {
         &self.tree.own.structure.binary().nodes
     }
@@ -233,7 +297,7 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     ///
     /// let triangle = |z| Triangle { v0: vec3(0.0, 0.0, z), v1: vec3(4.0, 0.0, z), v2: vec3(0.0, 4.0, z) };
     /// let triangles: Vec<_> = (1..1000).map(|z| triangle(z as f32)).collect();
-    /// let mut bvh = Bvh::build_with(&triangles, &Storage::Leaves.into())?;
+    /// let mut bvh = Bvh::build_wide(&triangles, &[], &BuildConfig::default())?;
     /// let rays = [Ray::new(vec3(1.0, 1.0, 0.0), Vec3::Z); 100];
     /// let hits = bvh.closest_hits(&rays);
     /// for traversal in Traversal::ALL {
@@ -252,8 +316,8 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         self.tree.own.structure.bounds()
     }
 
-    /// Bytes of the tree itself, with the copies of primitives that [`Storage::Leaves`] makes, and
-    /// with its binary tree if anything has asked for that, or it has been refitted; the primitives
+    /// Bytes of the tree itself, with the copies of primitives in a wide one, and with its binary tree
+    /// if anything has asked for that, or it has been refitted; the primitives
     /// are the application's.
     pub fn bytes(&self) -> usize {
         self.tree.own.structure.bytes()

@@ -69,7 +69,7 @@ pub trait RayQuery {
     /// use raydsl::prelude::*;
     ///
     /// let triangles = [Triangle { v0: Vec3::Z, v1: vec3(4.0, 0.0, 1.0), v2: vec3(0.0, 4.0, 1.0) }];
-    /// let bvh = Bvh::build_with(&triangles, &Storage::Leaves.into())?;
+    /// let bvh = Bvh::build(&triangles)?;
     /// let rays: Vec<Ray> = (0..100).map(|i| Ray::new(vec3(0.1 * i as f32, 0.5, 0.0), Vec3::Z)).collect();
     /// let hits = bvh.closest_hits(&rays);
     /// assert_eq!(hits.len(), 100);

@@ -4,11 +4,10 @@
 //! the borrow and keeps the tree; [`DetachedBvh::refit`] gives it back over the primitives as they
 //! then are.
 
-use core::marker::PhantomData;
-
 use thiserror::Error;
 
 use super::view::Tree;
+use super::wide::Walks;
 use super::{BuildError, Bvh, Owned, stats};
 use crate::geometry::{Kinds, Primitive};
 
@@ -43,7 +42,7 @@ pub struct DetachedBvh<P: Primitive> {
     own: Owned,
     /// How many primitives there were.
     count: usize,
-    primitives: PhantomData<fn() -> P>,
+    walks: Option<Walks<P, P::Shared>>,
 }
 
 /// Why a tree cannot be refitted, and what to do about it. The tree is lost: build one.
@@ -66,7 +65,8 @@ pub enum RefitError {
 impl<P: Primitive> Bvh<'_, P> {
     /// The tree without its primitives, so that they may be changed.
     pub fn detach(self) -> DetachedBvh<P> {
-        DetachedBvh { count: self.tree.prims.len(), own: self.tree.own, primitives: PhantomData }
+        let Tree { prims, own, walks, .. } = self.tree;
+        DetachedBvh { own, count: prims.len(), walks }
     }
 
     /// The tree over other primitives: [`Bvh::detach`] and [`DetachedBvh::refit`], for primitives
@@ -141,19 +141,21 @@ impl<P: Primitive> DetachedBvh<P> {
         prims: &'b [P],
         shared: &'b [P::Shared],
     ) -> Result<Bvh<'b, P>, RefitError> {
-        let Self { own, count: before, .. } = self;
+        let Self { own, count: before, walks } = self;
         if prims.len() != before {
             return Err(RefitError::CountChanged { before, now: prims.len() });
         }
         let cost = || stats::sah_cost(&own.structure.binary().nodes, &own.config);
         let built_cost = own.built_cost.unwrap_or_else(cost);
+        let traversal = own.config.traversal;
+        let collapse = |tree: &_| Some((walks?.collapse)(tree, prims, shared, traversal));
         let own = Owned {
-            structure: own.structure.refit(&own.config, prims, shared)?,
+            structure: own.structure.refit(prims, shared, collapse)?,
             version: own.version.wrapping_add(1),
             built_cost: Some(built_cost),
             ..own
         };
-        Ok(Bvh { tree: Tree { prims, shared, own, kinds: Kinds::of(prims) } })
+        Ok(Bvh { tree: Tree { prims, shared, own, kinds: Kinds::of(prims), walks } })
     }
 
     /// How many primitives the tree is over.

@@ -33,9 +33,8 @@ pub struct Statistics {
 }
 
 impl<P: Primitive> Bvh<'_, P> {
-    /// Counts what the binary tree is like; takes one pass over its nodes. With
-    /// [`Storage::Leaves`](super::Storage::Leaves) that tree has a leaf for each block, and is made for
-    /// this and not kept, unless something has asked for it before.
+    /// Counts what the binary tree is like; takes one pass over its nodes. Of a wide tree it has a leaf
+    /// for each block, and is made for this and not kept, unless something has asked for it before.
     ///
     /// ```
     /// use raydsl::prelude::*;

@@ -5,8 +5,8 @@ use std::sync::OnceLock;
 
 use super::build::{self, Tree};
 use super::view::Branches;
-use super::wide::{self, Wide};
-use super::{BuildConfig, BuildError, Traversal};
+use super::wide::Wide;
+use super::{BuildError, Traversal};
 use crate::geometry::{Aabb, Primitive};
 
 /// The binary tree, the wide one, or both.
@@ -19,14 +19,8 @@ pub(crate) struct Structure {
 }
 
 impl Structure {
-    /// What `config` asks for over `prims`, of the tree that was built.
-    pub(super) fn of<P: Primitive>(
-        tree: Tree,
-        config: &BuildConfig,
-        prims: &[P],
-        shared: &[P::Shared],
-    ) -> Self {
-        let wide = wide::of(&tree, config, prims, shared);
+    /// The tree that was built, or the wide one that it is made into.
+    pub(super) fn of(tree: Tree, wide: Option<Wide>) -> Self {
         let binary = if wide.is_some() { OnceLock::new() } else { tree.into() };
         Self { binary, wide }
     }
@@ -96,15 +90,15 @@ impl Structure {
     /// The trees over primitives that have moved.
     pub(super) fn refit<P: Primitive>(
         mut self,
-        config: &BuildConfig,
         prims: &[P],
         shared: &[P::Shared],
+        collapse: impl FnOnce(&Tree) -> Option<Wide>,
     ) -> Result<Self, BuildError> {
         self.binary();
         let Some(mut tree) = self.binary.take() else { unreachable!("it has been made") };
         let bounds = |k: usize| prims[k].get_bounds(shared);
         build::refit(&mut tree.nodes, &tree.indices, prims.len(), bounds)?;
-        let wide = wide::of(&tree, config, prims, shared);
+        let wide = collapse(&tree);
         // The same tree as before, and what has moved is likely to move again.
         Ok(Self { binary: tree.into(), wide })
     }

@@ -6,7 +6,6 @@ use super::instances::Descent;
 use super::slabs::{Allowance, Slabs};
 use super::view::{Branches, Finder};
 use super::wide::fibers::Alone;
-use super::wide::single;
 use super::{Accelerator, MAX_DEPTH, Node, Part, Placed, SceneView};
 use crate::Type;
 use crate::geometry::{Hit, HitRecord, Primitive, Ray};
@@ -141,7 +140,11 @@ pub fn closest_hit<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> P::Hit {
 /// [`closest_hit`] without the rest of the record.
 #[inline(always)]
 pub(crate) fn nearest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> Hit {
-    single::closest_hit(prims, ray).unwrap_or_else(
+    let of_wide = prims.walks().and_then(
+        #[inline(always)]
+        |walks| (walks.closest_of_one)(prims, ray),
+    );
+    of_wide.unwrap_or_else(
         #[inline(always)]
         || closest(prims, ray, &mut Uncounted),
     )
@@ -191,7 +194,8 @@ fn closest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Co
 
 /// Whether `ray` hits any of `prims`.
 pub fn any_hit<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> bool {
-    single::any_hit(prims, ray).unwrap_or_else(|| any(prims, ray, &mut Uncounted))
+    let of_wide = prims.walks().and_then(|walks| (walks.any_of_one)(prims, ray));
+    of_wide.unwrap_or_else(|| any(prims, ray, &mut Uncounted))
 }
 
 /// [`any_hit`], and what it cost.

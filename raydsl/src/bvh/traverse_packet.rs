@@ -1,5 +1,8 @@
 //! Traversal for packets: one stack for all lanes, a mask of those that a node concerns.
 
+use core::any::Any;
+use core::marker::PhantomData;
+
 use super::instances::PacketDescent;
 use super::packet_slabs::{PacketSlabs, abs, and, finite, min, mul, or, without};
 use super::slabs::Allowance;
@@ -7,7 +10,8 @@ use super::traverse::Stack;
 use super::view::Branches;
 use super::{CountedHit, CountedHitOn, Part, Placed, RecordOn, SceneView, View, traverse};
 use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn};
-use crate::machine::{B, Entered, F, Lanes, Packet, Place, Type, U, V3, op};
+use crate::kernel::{Lanes4, Lanes8, Lanes16};
+use crate::machine::{B, Entered, F, Lanes, Packet, Place, Type, U, V3, Value, op};
 
 /// The machine of the loops: its kernels are inlined, so that nothing travels through memory.
 type Inner<L> = Packet<Entered<L>>;
@@ -36,8 +40,6 @@ struct Best<L: Lanes> {
     limit: L::F32,
     /// How far behind a hit nodes are still visited, relative to its distance.
     slack: f32,
-    /// Whether primitives have numbers of instances.
-    is_placed: bool,
 }
 
 /// A primitive that some lanes may meet, and the rays as its tree is asked about them.
@@ -79,16 +81,17 @@ pub(crate) fn closest_hit<L: Lanes, P: Primitive>(
             if prims.is_standing() {
                 return each_lane(m, Hit::miss(), ray, |ray| traverse::nearest(prims, ray));
             }
-            let m = Packet::with_mask(Entered::new(m.lanes()), m.active());
-            let hit = closest_hit_inside(&m, prims, inner_ray(&ray));
-            HitOn {
-                is_hit: B(hit.is_hit.0),
-                t: F(hit.t.0),
-                prim_id: U(hit.prim_id.0),
-                inst_id: U(hit.inst_id.0),
-                u: F(hit.u.0),
-                v: F(hit.v.0),
+            if let Some(placed) = prims.placed() {
+                return match InstanceWalks::<L, P>::of(placed) {
+                    Some(walks) => (walks.closest_hit)(m, prims, &ray),
+                    None => each_lane(m, Hit::miss(), ray, |ray| traverse::nearest(prims, ray)),
+                };
             }
+            closest_hit_inside(m, prims, &ray, |_, ray, _| Parts {
+                scene: *prims,
+                next: 0,
+                ray: *ray,
+            })
         },
     )
 }
@@ -107,33 +110,35 @@ pub(crate) fn closest_hit_with_cost<L: Lanes, P: Primitive>(
     )
 }
 
+/// In the lanes of the loops. `places` are the parts of the scene for a ray of some lanes.
 #[inline(always)]
-fn closest_hit_inside<L: Lanes, P: Primitive>(
+fn closest_hit_inside<'a, L: Lanes, P: Primitive, W: Places<'a, Entered<L>, P>>(
     m: &Packet<L>,
-    prims: &SceneView<'_, P>,
-    ray: RayOn<Packet<L>>,
+    prims: &SceneView<'a, P>,
+    ray: &RayOn<Packet<L>>,
+    places: impl FnOnce(Entered<L>, &RayOn<Inner<L>>, L::Mask) -> W,
 ) -> HitOn<Packet<L>> {
-    let l = m.lanes();
+    let m = &Packet::with_mask(Entered::new(m.lanes()), m.active());
+    let (l, ray) = (m.lanes(), inner_ray(ray));
     let zero = l.f32(0.0);
-    let is_placed = prims.placed().is_some();
     let mut best = Best {
         t: l.f32(f32::INFINITY),
-        inst: l.u32(if is_placed { u32::MAX } else { 0 }),
+        inst: l.u32(if W::HAVE_INSTANCES { u32::MAX } else { 0 }),
         id: l.u32(u32::MAX),
         u: zero,
         v: zero,
         found: l.mask(false),
         limit: ray.t_max.0,
         slack: prims.allowance().slack,
-        is_placed,
     };
     walk_all(
         m,
         prims,
         &ray,
+        places,
         #[inline(always)]
         |candidate, mask, limit| {
-            meet(m, candidate, mask, &mut best);
+            meet::<_, P, W>(m, candidate, mask, &mut best);
             *limit = best.limit;
             mask
         },
@@ -150,7 +155,7 @@ fn closest_hit_inside<L: Lanes, P: Primitive>(
 
 /// Tests one primitive and keeps it in the lanes where it is closer.
 #[inline(always)]
-fn meet<L: Lanes, P: Primitive>(
+fn meet<'a, L: Lanes, P: Primitive, W: Places<'a, L, P>>(
     m: &Packet<L>,
     candidate: &Candidate<'_, '_, L, P>,
     mask: L::Mask,
@@ -167,13 +172,13 @@ fn meet<L: Lanes, P: Primitive>(
     let (inst, id) = (l.u32(candidate.inst), l.u32(candidate.part.first + candidate.id));
     let nearer = l.f32_compare(op::Lt, t, best.t);
     let mut first = l.u32_compare(op::Lt, id, best.id);
-    if best.is_placed {
+    if const { W::HAVE_INSTANCES } {
         let earlier = l.u32_compare(op::Lt, inst, best.inst);
         first = or(l, earlier, and(l, l.u32_compare(op::Eq, inst, best.inst), first));
     }
     let take = and(l, met, or(l, nearer, first));
     best.t = l.f32_select(take, t, best.t);
-    if best.is_placed {
+    if const { W::HAVE_INSTANCES } {
         best.inst = l.u32_select(take, inst, best.inst);
     }
     best.id = l.u32_select(take, id, best.id);
@@ -204,24 +209,33 @@ pub(crate) fn any_hit<L: Lanes, P: Primitive>(
             if prims.is_standing() {
                 return each_lane(m, false, ray, |ray| traverse::any_hit(prims, ray));
             }
-            let m = Packet::with_mask(Entered::new(m.lanes()), m.active());
-            B(any_hit_inside(&m, prims, inner_ray(&ray)).0)
+            if let Some(placed) = prims.placed() {
+                return match InstanceWalks::<L, P>::of(placed) {
+                    Some(walks) => (walks.any_hit)(m, prims, &ray),
+                    None => each_lane(m, false, ray, |ray| traverse::any_hit(prims, ray)),
+                };
+            }
+            any_hit_inside(m, prims, &ray, |_, ray, _| Parts { scene: *prims, next: 0, ray: *ray })
         },
     )
 }
 
+/// As [`closest_hit_inside`].
 #[inline(always)]
-fn any_hit_inside<L: Lanes, P: Primitive>(
+fn any_hit_inside<'a, L: Lanes, P: Primitive, W: Places<'a, Entered<L>, P>>(
     m: &Packet<L>,
-    prims: &SceneView<'_, P>,
-    ray: RayOn<Packet<L>>,
+    prims: &SceneView<'a, P>,
+    ray: &RayOn<Packet<L>>,
+    places: impl FnOnce(Entered<L>, &RayOn<Inner<L>>, L::Mask) -> W,
 ) -> B<Packet<L>> {
-    let l = m.lanes();
+    let m = &Packet::with_mask(Entered::new(m.lanes()), m.active());
+    let (l, ray) = (m.lanes(), inner_ray(ray));
     let mut found = l.mask(false);
     walk_all(
         m,
         prims,
         &ray,
+        places,
         #[inline(always)]
         |candidate, mask, _| {
             let hit = P::Hit::hit_on(candidate.intersect(m, mask));
@@ -235,9 +249,9 @@ fn any_hit_inside<L: Lanes, P: Primitive>(
 /// Calls `meet` for every hit within each lane's range, in the lanes that have it, until it returns
 /// false there.
 #[inline(always)]
-pub(crate) fn visit<L: Lanes, P: Primitive>(
+pub(crate) fn visit<'a, L: Lanes, P: Primitive>(
     m: &Packet<L>,
-    prims: &SceneView<'_, P>,
+    prims: &SceneView<'a, P>,
     ray: RayOn<Packet<L>>,
     limit: impl Fn() -> F<Packet<L>>,
     meet: impl Fn(HitOn<Packet<L>>, RecordOn<Packet<L>, P>) -> B<Packet<L>>,
@@ -250,6 +264,11 @@ pub(crate) fn visit<L: Lanes, P: Primitive>(
         m,
         prims,
         &ray,
+        #[inline(always)]
+        |l, ray, alive| match prims.placed() {
+            Some(placed) => Either::Placed(Located::new(l, placed, ray, alive)),
+            None => Either::Parts(Parts { scene: *prims, next: 0, ray: *ray }),
+        },
         #[inline(always)]
         |candidate, mask, end| {
             let record = candidate.intersect(m, mask);
@@ -312,17 +331,18 @@ const PRIMITIVES: Place = Place { what: "primitives in leaves", file: "", line: 
 /// concerned, may lower their limits, and returns those that stay interested. Rays with a component
 /// that is no finite number meet nothing.
 #[inline(always)]
-fn walk_all<L: Lanes, P: Primitive>(
+fn walk_all<'a, L: Lanes, P: Primitive, W: Places<'a, L, P>>(
     m: &Packet<L>,
-    prims: &SceneView<'_, P>,
+    prims: &SceneView<'a, P>,
     ray: &RayOn<Packet<L>>,
+    places: impl FnOnce(L, &RayOn<Packet<L>>, L::Mask) -> W,
     mut visit: impl FnMut(&Candidate<'_, '_, L, P>, L::Mask, &mut L::F32) -> L::Mask,
 ) {
     let l = m.lanes();
     let shared = prims.shared();
     let mut limit = ray.t_max.0;
     let mut alive = and(l, m.active(), finite(l, ray));
-    let mut places = Places::new(l, prims, ray, alive);
+    let mut places = places(l, ray, alive);
     while l.any(alive)
         && let Some((part, inst, ray, mask)) = places.next(l, alive, limit)
     {
@@ -344,41 +364,151 @@ fn walk_all<L: Lanes, P: Primitive>(
 
 /// The parts of a scene, one after another: each with the number of its instance, the rays as it
 /// sees them, and the lanes that it concerns.
-enum Places<'a, L: Lanes, P: Primitive> {
-    Parts { scene: SceneView<'a, P>, next: usize, ray: RayOn<Packet<L>> },
-    Instances { placed: &'a Placed<'a, P, P::Shared>, descent: Box<PacketDescent<'a, L>> },
+trait Places<'a, L: Lanes, P: Primitive> {
+    /// Whether primitives have numbers of instances.
+    const HAVE_INSTANCES: bool;
+
+    /// The next part that lanes of `alive` may meet before their limits.
+    fn next(&mut self, l: L, alive: L::Mask, limit: L::F32) -> Option<PacketPart<'a, L, P>>;
 }
 
 /// What [`Places`] gives.
 type PacketPart<'a, L, P> =
     (Part<'a, P, <P as Primitive>::Shared>, u32, RayOn<Packet<L>>, <L as Lanes>::Mask);
 
-impl<'a, L: Lanes, P: Primitive> Places<'a, L, P> {
+/// The parts of a scene where nothing is placed.
+struct Parts<'a, L: Lanes, P: Primitive> {
+    scene: SceneView<'a, P>,
+    next: usize,
+    ray: RayOn<Packet<L>>,
+}
+
+impl<'a, L: Lanes, P: Primitive> Places<'a, L, P> for Parts<'a, L, P> {
+    const HAVE_INSTANCES: bool = false;
+
     #[inline(always)]
-    fn new(l: L, scene: &SceneView<'a, P>, ray: &RayOn<Packet<L>>, alive: L::Mask) -> Self {
-        match scene.placed() {
-            Some(placed) => Self::Instances {
-                placed,
-                descent: PacketDescent::new(l, &placed.groups, ray, alive),
-            },
-            None => Self::Parts { scene: *scene, next: 0, ray: *ray },
-        }
+    fn next(&mut self, _: L, alive: L::Mask, _: L::F32) -> Option<PacketPart<'a, L, P>> {
+        let part = self.scene.part(self.next)?;
+        self.next += 1;
+        Some((part, 0, self.ray, alive))
     }
+}
+
+/// The trees of a scene of instances.
+struct Located<'a, L: Lanes, P: Primitive> {
+    placed: &'a Placed<'a, P, P::Shared>,
+    descent: Box<PacketDescent<'a, L>>,
+}
+
+impl<'a, L: Lanes, P: Primitive> Located<'a, L, P> {
+    #[inline(always)]
+    fn new(
+        l: L,
+        placed: &'a Placed<'a, P, P::Shared>,
+        ray: &RayOn<Packet<L>>,
+        alive: L::Mask,
+    ) -> Self {
+        Self { placed, descent: PacketDescent::new(l, &placed.groups, ray, alive) }
+    }
+}
+
+impl<'a, L: Lanes, P: Primitive> Places<'a, L, P> for Located<'a, L, P> {
+    const HAVE_INSTANCES: bool = true;
+
+    #[inline(always)]
+    fn next(&mut self, l: L, alive: L::Mask, limit: L::F32) -> Option<PacketPart<'a, L, P>> {
+        let place = self.descent.next(l, alive, limit)?;
+        let part = self.placed.trees.parts[place.tree as usize];
+        Some((part, place.inst, place.ray, place.mask))
+    }
+}
+
+/// Those of any scene.
+enum Either<'a, L: Lanes, P: Primitive> {
+    Parts(Parts<'a, L, P>),
+    Placed(Located<'a, L, P>),
+}
+
+impl<'a, L: Lanes, P: Primitive> Places<'a, L, P> for Either<'a, L, P> {
+    const HAVE_INSTANCES: bool = true;
 
     #[inline(always)]
     fn next(&mut self, l: L, alive: L::Mask, limit: L::F32) -> Option<PacketPart<'a, L, P>> {
         match self {
-            Self::Parts { scene, next, ray } => {
-                let part = scene.part(*next)?;
-                *next += 1;
-                Some((part, 0, *ray, alive))
-            }
-            Self::Instances { placed, descent } => {
-                let place = descent.next(l, alive, limit)?;
-                Some((placed.trees.parts[place.tree as usize], place.inst, place.ray, place.mask))
-            }
+            Self::Parts(parts) => parts.next(l, alive, limit),
+            Self::Placed(located) => located.next(l, alive, limit),
         }
     }
+}
+
+/// The walks of packets through scenes of instances, for one kind of lanes.
+///
+/// They are as long as those through single trees. So nothing refers to them but the tables that
+/// [`Instances`](super::Instances) are made with: what makes none is compiled without them.
+struct InstanceWalks<L: Lanes, P: Primitive> {
+    closest_hit: InstanceQuery<L, P, HitOn<Packet<L>>>,
+    any_hit: InstanceQuery<L, P, B<Packet<L>>>,
+}
+
+type InstanceQuery<L, P, R> = fn(&Packet<L>, &SceneView<'_, P>, &RayOn<Packet<L>>) -> R;
+
+/// [`InstanceWalks`] of some kinds of lanes.
+pub(crate) type InstanceTable = &'static [&'static (dyn Any + Send + Sync)];
+
+/// Those of the lanes that kernels have.
+pub(crate) fn instance_table<P: Primitive>() -> InstanceTable {
+    struct Of<P>(PhantomData<P>);
+    impl<P: Primitive> Of<P> {
+        const TABLE: InstanceTable = &[
+            &InstanceWalks::<Lanes4, P>::NEW,
+            &InstanceWalks::<Lanes8, P>::NEW,
+            &InstanceWalks::<Lanes16, P>::NEW,
+        ];
+    }
+    Of::<P>::TABLE
+}
+
+impl<L: Lanes, P: Primitive> InstanceWalks<L, P> {
+    const NEW: Self =
+        Self { closest_hit: closest_hit_placed::<L, P>, any_hit: any_hit_placed::<L, P> };
+
+    /// Those of the lanes; none where no kernel is lifted for them.
+    #[inline(always)]
+    fn of<'w>(placed: &Placed<'w, P, P::Shared>) -> Option<&'w Self> {
+        if const { L::HAS_TABLES } {
+            placed.walks.iter().find_map(|walks| walks.downcast_ref())
+        } else {
+            Some(const { &Self::NEW })
+        }
+    }
+}
+
+fn closest_hit_placed<L: Lanes, P: Primitive>(
+    m: &Packet<L>,
+    prims: &SceneView<'_, P>,
+    ray: &RayOn<Packet<L>>,
+) -> HitOn<Packet<L>> {
+    m.lanes().vectorize(
+        #[inline(always)]
+        || {
+            let Some(placed) = prims.placed() else { return HitOn::zero(m) };
+            closest_hit_inside(m, prims, ray, |l, ray, alive| Located::new(l, placed, ray, alive))
+        },
+    )
+}
+
+fn any_hit_placed<L: Lanes, P: Primitive>(
+    m: &Packet<L>,
+    prims: &SceneView<'_, P>,
+    ray: &RayOn<Packet<L>>,
+) -> B<Packet<L>> {
+    m.lanes().vectorize(
+        #[inline(always)]
+        || {
+            let Some(placed) = prims.placed() else { return B::zero(m) };
+            any_hit_inside(m, prims, ray, |l, ray, alive| Located::new(l, placed, ray, alive))
+        },
+    )
 }
 
 /// [`walk_all`] in one part, by the rays of `alive`: visits what is in the leaves that some lane may

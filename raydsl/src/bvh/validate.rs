@@ -131,8 +131,8 @@ pub enum TreeFault {
 /// may hold a part of it. Then it is checked along each axis that no part is left out, as far as
 /// [`Primitive::split_primitive`] tells.
 ///
-/// Takes one pass over the nodes, two bytes a node, and asks for the bounds of all primitives. With
-/// [`Storage::Leaves`](super::Storage::Leaves) the binary tree is made for it, as for [`Bvh::statistics`].
+/// Takes one pass over the nodes, two bytes a node, and asks for the bounds of all primitives. Of a
+/// wide tree the binary one is made for it, as for [`Bvh::statistics`].
 ///
 /// ```
 /// use raydsl::prelude::*;

@@ -8,7 +8,7 @@ use super::instances::Placed;
 use super::owner::Owner;
 use super::slabs::Allowance;
 use super::structure::Structure;
-use super::wide::Wide;
+use super::wide::{Walks, Wide};
 use super::{Accelerator, Node, Owned, bytes_of, list, slice_key};
 use crate::geometry::{Kinds, Primitive, Ray};
 use crate::machine::{Field, Leaves, Machine, Resource, Schema, Type, Value, wgsl::BufferKey};
@@ -104,6 +104,8 @@ pub(crate) struct Tree<'a, T, S> {
     pub(crate) shared: &'a [S],
     pub(super) own: Owned,
     pub(super) kinds: Kinds,
+    /// If the tree is wide.
+    pub(super) walks: Option<Walks<T, S>>,
 }
 
 impl<T, S> Tree<'_, T, S> {
@@ -121,6 +123,8 @@ pub(crate) struct Trees<'a, T, S> {
     pub(super) shared: &'a [S],
     pub(super) owner: Owner,
     pub(super) kinds: Kinds,
+    /// If all trees are wide.
+    pub(super) walks: Option<Walks<T, S>>,
 }
 
 /// Primitives under a structure of the application's own.
@@ -240,6 +244,16 @@ impl<'a, T, S> View<'a, T, S> {
     #[inline(always)]
     pub(crate) fn named(self, name: &'static str) -> Self {
         Self { name, ..self }
+    }
+
+    /// What goes through its trees, if all of them are wide.
+    #[inline(always)]
+    pub(crate) fn walks(&self) -> Option<&'a Walks<T, S>> {
+        match self.scene {
+            Scene::Tree(tree) => tree.walks.as_ref(),
+            Scene::List(trees) => trees.walks.as_ref(),
+            Scene::Slice(_) | Scene::Instances(_) | Scene::Standing(_) => None,
+        }
     }
 
     /// The trees of a list, or of a scene of instances.

@@ -61,9 +61,8 @@ pub trait Primitive: Type + Send + Sync {
     /// default suits a careful `intersect` of a few dozen operations.
     const SLACK: f32 = 1.0 / 65536.0;
 
-    /// Whether eight primitives of a block, in trees with
-    /// [`Storage::Leaves`](crate::bvh::Storage::Leaves), are met without leaving `intersect` early:
-    /// quicker where it is a hundred operations or so, of which none is in a loop. Hits are the
+    /// Whether eight primitives of a block of a [wide tree](crate::bvh::Bvh::build_wide) are met
+    /// without leaving `intersect` early: quicker where it is a hundred operations or so, of which none is in a loop. Hits are the
     /// same. In an `impl` under `#[primitive]` it is a constant of that name.
     const IS_SHORT: bool = false;
 

@@ -174,6 +174,8 @@ pub trait Machine: Sized + 'static {
     type Loop;
     /// Whether lifted code runs round by round: then a counter is one number in all lanes.
     const RUNS: bool = true;
+    /// Whether it has operations on whole vectors; else they go component by component.
+    const HAS_VECTORS: bool = false;
     /// Whether it may have samplers of textures: see [`sampled`](Self::sampled).
     const HAS_SAMPLERS: bool = false;
 

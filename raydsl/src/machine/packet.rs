@@ -541,9 +541,9 @@ impl<L: Lanes> Machine for Packet<L> {
         prims: &crate::bvh::SceneView<'_, P>,
         rays: &[RayOn<Self>; N],
     ) -> [HitOn<Self>; N] {
-        if trace::answers(prims) {
+        if let Some(walks) = prims.walks() {
             let mut hits = [HitOn::zero(self); N];
-            trace::closest_hits(self, prims, rays, &mut hits);
+            trace::closest_hits(self, (prims, walks), rays, &mut hits);
             return hits;
         }
         fill(
@@ -557,9 +557,9 @@ impl<L: Lanes> Machine for Packet<L> {
         prims: &crate::bvh::SceneView<'_, P>,
         rays: &[RayOn<Self>; N],
     ) -> [B<Self>; N] {
-        if trace::answers(prims) {
+        if let Some(walks) = prims.walks() {
             let mut hits = [B(self.lanes.mask(false)); N];
-            trace::any_hits(self, prims, rays, &mut hits);
+            trace::any_hits(self, (prims, walks), rays, &mut hits);
             return hits;
         }
         fill(

@@ -338,6 +338,10 @@ impl IsScalar for u32 {}
 impl IsScalar for bool {}
 
 /// A vector of any size.
+///
+/// What works on every component goes from one to the next, and what it calls is `Copy`: a closure
+/// that is dropped has a landing pad at each call, and arrays pass through memory. Both are gone once
+/// optimised, but a packet's operation is eight calls deep, and all of it is compiled first.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot call this method with these arguments",
     label = "not an operation of the kernel language"
@@ -351,22 +355,22 @@ pub trait Vector<M: Machine>: Value<M> {
     /// `v` in every component.
     fn of_one(v: Self::Component) -> Self;
     /// `f` of every component.
-    fn each<E: Component<M>>(self, f: impl FnMut(Self::Component) -> E) -> Self::Of<E>;
+    fn each<E: Component<M>>(self, f: impl Fn(Self::Component) -> E + Copy) -> Self::Of<E>;
     /// `f` of every pair of components.
     fn both<D: Component<M>, E: Component<M>>(
         self,
         b: Self::Of<D>,
-        f: impl FnMut(Self::Component, D) -> E,
+        f: impl Fn(Self::Component, D) -> E + Copy,
     ) -> Self::Of<E>;
     /// The components put together from the first to the last.
     fn fold(
         self,
-        f: impl FnMut(Self::Component, Self::Component) -> Self::Component,
+        f: impl Fn(Self::Component, Self::Component) -> Self::Component + Copy,
     ) -> Self::Component;
     /// The components put together from the last to the first.
     fn fold_back(
         self,
-        f: impl FnMut(Self::Component, Self::Component) -> Self::Component,
+        f: impl Fn(Self::Component, Self::Component) -> Self::Component + Copy,
     ) -> Self::Component;
     /// Arithmetic on every component.
     fn arithmetic<O: Op<IntBinary>>(m: &M, op: O, a: Self, b: Self) -> Self
@@ -499,12 +503,20 @@ macro_rules! vector {
         impl<M: Machine> Floats<M> for $name<F<M>> {
             #[inline(always)]
             fn binary<O: Op<F32Binary>>(m: &M, op: O, a: Self, b: Self) -> Self {
-                Self::from_array(m.vector_binary(op, a.array(), b.array()))
+                if const { M::HAS_VECTORS } {
+                    Self::from_array(m.vector_binary(op, a.array(), b.array()))
+                } else {
+                    Self { $($c: F(m.f32_binary(op, a.$c.0, b.$c.0))),+ }
+                }
             }
 
             #[inline(always)]
             fn unary<O: Op<F32Unary>>(m: &M, op: O, a: Self) -> Self {
-                Self::from_array(m.vector_unary(op, a.array()))
+                if const { M::HAS_VECTORS } {
+                    Self::from_array(m.vector_unary(op, a.array()))
+                } else {
+                    Self { $($c: F(m.f32_unary(op, a.$c.0))),+ }
+                }
             }
         }
 
@@ -519,7 +531,7 @@ macro_rules! vector {
             }
 
             #[inline(always)]
-            fn each<E: Component<M>>(self, mut f: impl FnMut(C) -> E) -> $name<E> {
+            fn each<E: Component<M>>(self, f: impl Fn(C) -> E + Copy) -> $name<E> {
                 $name { $($c: f(self.$c)),+ }
             }
 
@@ -527,20 +539,20 @@ macro_rules! vector {
             fn both<D: Component<M>, E: Component<M>>(
                 self,
                 b: $name<D>,
-                mut f: impl FnMut(C, D) -> E,
+                f: impl Fn(C, D) -> E + Copy,
             ) -> $name<E> {
                 $name { $($c: f(self.$c, b.$c)),+ }
             }
 
             #[inline(always)]
-            fn fold(self, mut f: impl FnMut(C, C) -> C) -> C {
+            fn fold(self, f: impl Fn(C, C) -> C + Copy) -> C {
                 let all = self.$first;
                 $(let all = f(all, self.$next);)+
                 all
             }
 
             #[inline(always)]
-            fn fold_back(self, mut f: impl FnMut(C, C) -> C) -> C {
+            fn fold_back(self, f: impl Fn(C, C) -> C + Copy) -> C {
                 let all = self.$last;
                 $(let all = f(all, self.$before);)+
                 all
@@ -551,7 +563,11 @@ macro_rules! vector {
             where
                 C: Arithmetic<M>,
             {
-                Self::of(C::binary_each(m, op, a.components(), b.components()))
+                if const { M::HAS_VECTORS } {
+                    Self::of(C::binary_each(m, op, a.components(), b.components()))
+                } else {
+                    Self { $($c: C::binary(m, op, a.$c, b.$c)),+ }
+                }
             }
 
             #[inline(always)]
@@ -559,7 +575,11 @@ macro_rules! vector {
             where
                 C: Arithmetic<M>,
             {
-                Self::of(C::extreme_each(m, op, a.components(), b.components()))
+                if const { M::HAS_VECTORS } {
+                    Self::of(C::extreme_each(m, op, a.components(), b.components()))
+                } else {
+                    Self { $($c: C::extreme(m, op, a.$c, b.$c)),+ }
+                }
             }
         }
 

@@ -222,17 +222,19 @@ impl<R> Tile<'_, R> {
     ) {
         match variant {
             Variant::Wgsl => panic!("WGSL runs on a device: use raydsl::gpu::GpuScheduler"),
-            Variant::Scalar => {
-                let UVec2 { x: left, y: bottom } = self.origin();
-                for row in 0..self.height {
-                    for (pixel, x) in self.row(row).iter_mut().zip(left..) {
-                        *pixel = shot.pixel(uvec2(x, bottom + row));
-                    }
-                }
-            }
+            Variant::Scalar => pixel_by_pixel(self, shot),
             packet => {
                 shot.kernel().with_packets(packet, Packets { shot, gang: lanes, tile: self });
             }
+        }
+    }
+}
+
+fn pixel_by_pixel<S: Shot>(tile: &mut Tile<'_, S::Output>, shot: &S) {
+    let UVec2 { x: left, y: bottom } = tile.origin();
+    for row in 0..tile.height {
+        for (pixel, x) in tile.row(row).iter_mut().zip(left..) {
+            *pixel = shot.pixel(uvec2(x, bottom + row));
         }
     }
 }
@@ -289,6 +291,10 @@ impl<S: Shot> PacketTask<S::Args, S::Result> for Packets<'_, '_, S> {
                 },
             );
         });
+    }
+
+    fn scalar(self, _: &(dyn Fn(S::Args) -> S::Result + Send + Sync)) {
+        pixel_by_pixel(self.tile, self.shot);
     }
 }
 

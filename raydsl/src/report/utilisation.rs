@@ -4,7 +4,7 @@ use core::fmt;
 use std::collections::HashMap;
 use std::path::Path;
 
-use crate::kernel::{Baseline, Kernel};
+use crate::kernel::{CountedKernel, Counting};
 use crate::machine::{Count, LaneMachine, Place, Type, count};
 
 /// How many lanes run at each arm of an `if`, in each round of a loop, and in walks of trees.
@@ -53,14 +53,14 @@ impl Utilisation {
 /// packets in their order, so give those of one packet as the program would. Calls of other kernels
 /// count at the lines of those.
 ///
-/// It is slow, and costs nothing where it is not called: only the packets that stand in where a
-/// machine has no better ones can count.
+/// It is slow, and needs a copy of the kernel that counts, which is compiled where the source asks for
+/// it: `kernel!(counted |ray: Ray| ..)`, or [`Kernel::counted_of`](crate::kernel::Kernel::counted_of).
 ///
 /// ```
 /// use raydsl::prelude::*;
 /// use raydsl::report::utilisation;
 ///
-/// let kernel = kernel!(|n: u32| {
+/// let kernel = kernel!(counted |n: u32| {
 ///     let mut sum = 0u32;
 ///     for i in 0..n {
 ///         sum += i;
@@ -75,7 +75,10 @@ impl Utilisation {
 /// assert_eq!((line.place.what, line.rounds, line.lanes), ("loop", 7, 28));
 /// assert_eq!(line.mean_lanes(), 4.0);
 /// ```
-pub fn utilisation<A: Type, R: Type>(kernel: &Kernel<'_, A, R>, inputs: &[A]) -> Utilisation {
+pub fn utilisation<A: Type, R: Type>(
+    kernel: &CountedKernel<'_, A, R>,
+    inputs: &[A],
+) -> Utilisation {
     let mut outputs = vec![R::read(&vec![0; R::SCHEMA.size()]); inputs.len()];
     let counts = count(|| kernel.run_counted(inputs, &mut outputs));
     let line = |(place, count): (Place, Count)| LineCount {
@@ -85,8 +88,8 @@ pub fn utilisation<A: Type, R: Type>(kernel: &Kernel<'_, A, R>, inputs: &[A]) ->
     };
     Utilisation {
         kernel: kernel.info().name,
-        lanes: Baseline::LANES,
-        packets: inputs.len().div_ceil(Baseline::LANES) as u64,
+        lanes: Counting::LANES,
+        packets: inputs.len().div_ceil(Counting::LANES) as u64,
         lines: counts.into_iter().map(line).collect(),
     }
 }

@@ -71,12 +71,12 @@ pub fn scene(bytes: &[u8]) -> usize {
 }
 
 fn scene_of<P: Subject>(choices: &mut Choices<'_>) -> usize {
-    let config = config(choices);
+    let way = way(choices);
     let mut prims: Vec<P> = layout::chosen(choices);
-    let bvh = match Bvh::build_with(&prims, &config) {
+    let bvh = match way.build(&prims) {
         Ok(bvh) => bvh,
         Err(error) => {
-            assert_deserved(&error, &prims, &config);
+            assert_deserved(&error, &prims, &way.config);
             return 0;
         }
     };
@@ -84,7 +84,7 @@ fn scene_of<P: Subject>(choices: &mut Choices<'_>) -> usize {
     let rays = rays(choices, &prims, bvh.bounds());
     let mut hits = assert_as_slice(&bvh, &prims, &rays);
     if choices.below(2) == 1 {
-        hits += placed_scene(choices, &prims, &config);
+        hits += placed_scene(choices, &prims, &way);
     }
     let tree = bvh.detach();
     layout::move_some(choices, &mut prims);
@@ -98,18 +98,36 @@ fn scene_of<P: Subject>(choices: &mut Choices<'_>) -> usize {
     hits
 }
 
-fn config(choices: &mut Choices<'_>) -> BuildConfig {
-    BuildConfig {
+/// How trees are built.
+struct Way {
+    config: BuildConfig,
+    is_wide: bool,
+}
+
+impl Way {
+    fn build<'p, P: Subject>(&self, prims: &'p [P]) -> Result<Bvh<'p, P>, BuildError> {
+        if self.is_wide {
+            Bvh::build_wide(prims, &[], &self.config)
+        } else {
+            Bvh::build_with(prims, &self.config)
+        }
+    }
+}
+
+fn way(choices: &mut Choices<'_>) -> Way {
+    let mut config = BuildConfig {
         quality: choices.pick(&BuildQuality::ALL),
         max_leaf_size: choices.pick(&[4, 1, 2, 16, 0]),
         bins: choices.pick(&[32, 2, 5]),
         traversal_cost: choices.pick(&[1.0, 0.0, 10.0]),
         min_overlap: choices.pick(&[1e-5, 0.0]),
         max_duplication: choices.pick(&[0.3, 0.0, 4.0]),
-        storage: choices.pick(&[Storage::Borrow, Storage::Leaves]),
-        traversal: choices.pick(&Traversal::ALL),
+        min_wide_size: 0,
         ..BuildConfig::default()
-    }
+    };
+    let is_wide = choices.pick(&[false, true]);
+    config.traversal = choices.pick(&Traversal::ALL);
+    Way { config, is_wide }
 }
 
 fn is_finite<P: Subject>(prim: &P) -> bool {
@@ -213,9 +231,9 @@ macro_rules! ask {
 ask!(Bvh, Instances);
 
 /// The same primitives, placed a few times; how many rays hit.
-fn placed_scene<P: Subject>(choices: &mut Choices<'_>, prims: &[P], config: &BuildConfig) -> usize {
+fn placed_scene<P: Subject>(choices: &mut Choices<'_>, prims: &[P], way: &Way) -> usize {
     let (front, back) = prims.split_at(choices.below(prims.len() + 1));
-    let trees = [front, back].map(|prims| Bvh::build_with(prims, config));
+    let trees = [front, back].map(|prims| way.build(prims));
     let [Ok(front), Ok(back)] = trees else { return 0 };
     let trees = [front, back];
     let Ok(mut scene) = Instances::new(&trees) else { unreachable!("few primitives") };

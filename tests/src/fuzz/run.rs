@@ -238,13 +238,11 @@ impl Case {
     fn recorded(&self) -> Kernel<'static, Args, Outcome> {
         Kernel::scalar(&INFO, self.source).lifted(
             Lifted {
-                native4: Box::new(|_, _| unreachable!()),
-                native8: Box::new(|_, _| unreachable!()),
-                native16: Box::new(|_, _| unreachable!()),
-                native16_halves: Box::new(|_, _| unreachable!()),
-                baseline: Box::new(|_, _| unreachable!()),
-                recorder: Box::new(self.recorder),
-                margin: Box::new(|_, _| unreachable!()),
+                native4: Some(Box::new(|_, _| unreachable!())),
+                native8: Some(Box::new(|_, _| unreachable!())),
+                native16: Some(Box::new(|_, _| unreachable!())),
+                recorder: Some(Box::new(self.recorder)),
+                margin: Some(Box::new(|_, _| unreachable!())),
             },
             resources,
         )

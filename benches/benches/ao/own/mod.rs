@@ -26,7 +26,7 @@ struct Setting {
     /// Behind the variant in the names of modes.
     name: &'static str,
     quality: BuildQuality,
-    storage: Storage,
+    is_wide: bool,
     is_asked_by: fn(Variant) -> bool,
 }
 
@@ -35,20 +35,20 @@ static SETTINGS: [Setting; 3] = [
     Setting {
         name: "",
         quality: BuildQuality::Balanced,
-        storage: Storage::Borrow,
+        is_wide: false,
         is_asked_by: |v| v.isa().1 <= 16,
     },
     Setting {
-        name: " leaves",
+        name: " wide",
         quality: BuildQuality::Balanced,
-        storage: Storage::Leaves,
+        is_wide: true,
         is_asked_by: |v| v.isa().1 >= 8,
     },
     Setting {
         name: " best",
         quality: BuildQuality::Best,
-        storage: Storage::Leaves,
-        is_asked_by: |v| v.isa().1 >= 16,
+        is_wide: true,
+        is_asked_by: |v| v == Variant::widest(),
     },
 ];
 
@@ -85,18 +85,19 @@ pub(crate) fn trees<'a>(
     traversals: &[Traversal],
 ) -> Vec<Tree<'a>> {
     let tree = |setting: &'static Setting, traversal, is_asked_alone| {
-        let Setting { quality, storage, .. } = *setting;
-        let config = BuildConfig { quality, storage, traversal, ..BuildConfig::default() };
-        let (bvh, seconds) = seconds_on(threads, || Bvh::build_with(triangles, &config));
+        let Setting { quality, is_wide, .. } = *setting;
+        let config = BuildConfig { quality, traversal, ..BuildConfig::default() };
+        let build = || match is_wide {
+            true => Bvh::build_wide(triangles, &[], &config),
+            false => Bvh::build_with(triangles, &config),
+        };
+        let (bvh, seconds) = seconds_on(threads, build);
         let bvh = bvh.expect("the scene has finite bounds");
         let cost = Cost::new(seconds, bvh.bytes(), triangles.len());
         Tree { bvh, cost, setting, traversal, is_asked_alone }
     };
     let of_setting = |setting: &'static Setting| {
-        let traversals = match setting.storage {
-            Storage::Leaves => traversals,
-            _ => &[Traversal::Auto],
-        };
+        let traversals = if setting.is_wide { traversals } else { &[Traversal::Auto] };
         traversals.iter().enumerate().map(move |(i, traversal)| tree(setting, *traversal, i == 0))
     };
     SETTINGS.iter().flat_map(of_setting).collect()
@@ -127,9 +128,9 @@ pub(crate) fn contenders<'a>(
             let run = one_by_one(&tree.bvh, work, threads);
             let single = contender(Row::SingleClosest, Variant::Scalar, tree, run);
             // Nodes of eight children are met by one ray with the widest level that there is.
-            let (isa, lanes) = match tree.setting.storage {
-                Storage::Leaves => (widest.isa().0, 8),
-                _ => (single.isa, single.lanes),
+            let (isa, lanes) = match tree.setting.is_wide {
+                true => (widest.isa().0, 8),
+                false => (single.isa, single.lanes),
             };
             all.push(Contender { isa, lanes, ..single });
         }

@@ -6,7 +6,7 @@
 
 use glam::{Vec3, Vec4, Vec4Swizzles};
 
-use super::config::{BuildConfig, MAX_BINS};
+use super::config::{BuildConfig, MAX_BINS, Settings};
 use super::reference::{Bounds, Reference, Span};
 use super::tasks;
 
@@ -36,12 +36,12 @@ pub(super) struct Grid<'a> {
     len: usize,
     /// The unit of length for areas, see `scaling`: 1 / longest edge of the node.
     unit: f32,
-    config: &'a BuildConfig,
+    config: &'a Settings,
 }
 
 impl<'a> Grid<'a> {
     /// The bins for `count` primitives within `span`; `None` when all centroids coincide.
-    pub(super) fn new(span: &Span, count: usize, config: &'a BuildConfig) -> Option<Self> {
+    pub(super) fn new(span: &Span, count: usize, config: &'a Settings) -> Option<Self> {
         let extent = (span.centroids.hi - span.centroids.lo).xyz();
         if extent.max_element() < CLOSE {
             return None;
@@ -86,7 +86,7 @@ impl<'a> Grid<'a> {
     /// Whether splitting `count` primitives within `span` costs less than testing them all, where
     /// `cost` is that of both sides.
     pub(super) fn pays(&self, cost: f32, span: &Span, count: usize) -> bool {
-        let BuildConfig { traversal_cost, intersection_cost, .. } = *self.config;
+        let BuildConfig { traversal_cost, intersection_cost, .. } = **self.config;
         let split = traversal_cost * self.measure(span.bounds) + intersection_cost * cost;
         split < intersection_cost * self.cost(span.bounds, count)
     }

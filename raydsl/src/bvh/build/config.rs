@@ -59,34 +59,11 @@ impl BuildQuality {
     }
 }
 
-/// Where the primitives lie that rays test.
-///
-/// Hits are the same with each.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Storage {
-    /// In the application's array alone: a tree is its nodes and a list of indices. The default.
-    #[default]
-    Borrow,
-    /// Also in the tree: a copy of each primitive in blocks of eight, member by member, under nodes
-    /// of eight children. One ray meets eight boxes or eight primitives at a time, and packets go
-    /// through the tree together or part, whichever is quicker.
-    ///
-    /// For scenes that are asked often. A device has no use for it, and a machine without AVX2 and
-    /// NEON makes no copy: there it is as [`Storage::Borrow`], with leaves of eight.
-    ///
-    /// The binary tree is not kept, and made again when it is first asked for, by one thread while
-    /// others wait for it: by a query with a condition or of several hits, a ray whose numbers are too
-    /// large for the wide tree's boxes, a scene of instances, a device, refitting, or
-    /// [`Bvh::nodes`](crate::bvh::Bvh::nodes), which may be called to have it in time.
-    Leaves,
-}
-
-/// How rays that are asked about together go through a tree with [`Storage::Leaves`].
+/// How rays that are asked about together go through a wide tree.
 ///
 /// Those of one query are: of a packet, of a gang, of
 /// [`RayQuery::closest_hits`](crate::bvh::RayQuery::closest_hits) and `any_hits`. Hits are the same
-/// with each. One ray on the host takes no notice, nor do trees without copies, lists with such a tree,
+/// with each. One ray on the host takes no notice, nor do binary trees, lists with such a tree,
 /// instances, devices, and queries with a condition or of several hits.
 ///
 /// [`Traversal::Auto`] was within 6 % of the best of the others in every kind of ray of three
@@ -131,13 +108,6 @@ impl Traversal {
     }
 }
 
-impl From<Storage> for BuildConfig {
-    /// The default settings with this storage.
-    fn from(storage: Storage) -> Self {
-        Self { storage, ..Self::default() }
-    }
-}
-
 impl From<BuildQuality> for BuildConfig {
     /// The default settings with this quality.
     fn from(quality: BuildQuality) -> Self {
@@ -149,20 +119,21 @@ impl From<BuildQuality> for BuildConfig {
 ///
 /// Only the ratio of the two costs matters. It decides when a small node stays a leaf: the
 /// estimated cost of a leaf of `n` primitives is `intersection_cost * n`, that of splitting it
-/// `traversal_cost` plus the cost of the children weighted by their share of its surface. With
-/// [`Storage::Leaves`] places that a block leaves empty cost a quarter of a primitive, and
+/// `traversal_cost` plus the cost of the children weighted by their share of its surface. In a wide
+/// tree places that a block leaves empty cost a quarter of a primitive, and
 /// [`BuildQuality::Fast`] and [`BuildQuality::Balanced`] split no eight primitives or fewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuildConfig {
     /// How the tree is built; default [`BuildQuality::Balanced`].
     pub quality: BuildQuality,
-    /// Where the primitives lie that rays test; default [`Storage::Borrow`].
-    pub storage: Storage,
-    /// How rays go through the tree, which [`Bvh::set_traversal`](crate::bvh::Bvh::set_traversal)
+    /// How rays go through a wide tree, which [`Bvh::set_traversal`](crate::bvh::Bvh::set_traversal)
     /// changes later; default [`Traversal::Auto`].
     pub traversal: Traversal,
-    /// The most primitives a leaf may hold, `1..=256`; default 4. With [`Storage::Leaves`] it is 8,
-    /// whatever stands here.
+    /// The fewest primitives over which [`Bvh::build_wide`](crate::bvh::Bvh::build_wide) makes a wide
+    /// tree; of fewer it makes a binary one. Default 64: below, rays were no quicker.
+    pub min_wide_size: u32,
+    /// The most primitives a leaf may hold, `1..=256`; default 4. In a wide tree it is 8, whatever
+    /// stands here.
     ///
     /// An upper limit only: the costs decide what becomes a leaf. Against 4, on three scenes of
     /// 66 to 331 thousand triangles, the expected cost of a ray is 0 to 1 % lower with 8 or 16 and
@@ -198,8 +169,8 @@ impl Default for BuildConfig {
     fn default() -> Self {
         Self {
             quality: BuildQuality::Balanced,
-            storage: Storage::Borrow,
             traversal: Traversal::Auto,
+            min_wide_size: 64,
             max_leaf_size: 4,
             bins: 32,
             traversal_cost: 1.0,
@@ -210,32 +181,45 @@ impl Default for BuildConfig {
     }
 }
 
-impl BuildConfig {
+/// What the builder is asked for.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::bvh) struct Settings {
+    pub(in crate::bvh) config: BuildConfig,
+    /// Whether its leaves become the blocks of a wide tree.
+    pub(in crate::bvh) is_wide: bool,
+}
+
+impl core::ops::Deref for Settings {
+    type Target = BuildConfig;
+
+    fn deref(&self) -> &BuildConfig {
+        &self.config
+    }
+}
+
+impl Settings {
     /// The most primitives that a leaf may hold.
     pub(super) fn leaf_size(&self) -> usize {
-        match self.storage {
-            Storage::Borrow => self.max_leaf_size as usize,
-            Storage::Leaves => BLOCK,
-        }
+        if self.is_wide { BLOCK } else { self.max_leaf_size as usize }
     }
 
     /// Whether so few primitives are a leaf, whatever a split would cost.
     pub(super) fn is_block(&self, count: usize) -> bool {
-        self.storage == Storage::Leaves && count <= BLOCK
+        self.is_wide && count <= BLOCK
     }
 
     /// What it costs to test so many primitives, as a number of them. A block that is not full takes
     /// as long as a full one; but what is split for the sake of full blocks has larger boxes.
     pub(super) fn test_cost(&self, count: usize) -> f32 {
-        match self.storage {
-            Storage::Borrow => count as f32,
-            Storage::Leaves => {
-                let empty = count.next_multiple_of(BLOCK) - count;
-                count as f32 + EMPTY_COST * empty as f32
-            }
+        if !self.is_wide {
+            return count as f32;
         }
+        let empty = count.next_multiple_of(BLOCK) - count;
+        count as f32 + EMPTY_COST * empty as f32
     }
+}
 
+impl BuildConfig {
     /// Checks every field against its range.
     pub(super) fn check(&self) -> Result<(), BuildError> {
         let require = |ok: bool, field, value: f64, range| {

@@ -21,7 +21,7 @@
 //! [`depth`] forbids that: a split that would leave the larger side too many primitives for the
 //! levels that remain is a split in halves instead, in the order that the primitives have.
 
-use super::config::BuildConfig;
+use super::config::Settings;
 use super::morton::{self, Key};
 use super::part::{PIECE, Part};
 use super::reference::{Bounds, Reference, Span};
@@ -33,7 +33,7 @@ use crate::bvh::Node;
 pub(super) fn grow(
     references: &[Reference],
     span: &Span,
-    config: &BuildConfig,
+    config: &Settings,
     watch: &Watch,
 ) -> (Part, Vec<u32>) {
     let mut keys = morton::keys(references, &span.centroids);
@@ -58,7 +58,7 @@ struct Range<'a> {
 impl Range<'_> {
     /// Gives primitives of one code codes within their own cube; returns whether it did, and so may
     /// have moved them.
-    fn tell_apart(&mut self, references: &[Reference], config: &BuildConfig) -> bool {
+    fn tell_apart(&mut self, references: &[Reference], config: &Settings) -> bool {
         let is_needed = !self.is_recoded
             && self.keys.len() > config.leaf_size()
             && first_of_upper_half(self.keys).is_none();
@@ -85,12 +85,7 @@ impl Range<'_> {
     }
 }
 
-fn grow_part(
-    mut range: Range,
-    references: &[Reference],
-    config: &BuildConfig,
-    watch: &Watch,
-) -> Part {
+fn grow_part(mut range: Range, references: &[Reference], config: &Settings, watch: &Watch) -> Part {
     let count = range.keys.len();
     if watch.is_stopped() {
         let root = Node::leaf(Bounds::EMPTY.to_aabb(), range.first, count as u32);
@@ -115,7 +110,7 @@ fn grow_part(
 /// A subtree in the making.
 struct Subtree<'a> {
     references: &'a [Reference],
-    config: &'a BuildConfig,
+    config: &'a Settings,
     /// The position of its first key among all.
     first: u32,
     /// The boxes of its primitives, in the order of the keys. They may be anywhere in memory: one
@@ -133,7 +128,7 @@ struct Grown {
 }
 
 impl<'a> Subtree<'a> {
-    fn new(range: &Range, references: &'a [Reference], config: &'a BuildConfig) -> Self {
+    fn new(range: &Range, references: &'a [Reference], config: &'a Settings) -> Self {
         let count = range.keys.len();
         let boxes = vec![Bounds::EMPTY; count];
         let nodes = Vec::with_capacity(2 * count);

@@ -48,7 +48,8 @@ mod watch;
 mod tests;
 
 pub(super) use config::BLOCK;
-pub use config::{BuildConfig, BuildQuality, Storage, Traversal};
+pub(super) use config::Settings;
+pub use config::{BuildConfig, BuildQuality, Traversal};
 pub use error::BuildError;
 pub(super) use refit::refit;
 #[cfg(test)]
@@ -113,7 +114,8 @@ pub fn build(
     count: usize,
     config: &BuildConfig,
 ) -> Result<Tree, BuildError> {
-    build_watched(&source::Boxes(bounds), count, config, None)
+    let settings = Settings { config: *config, is_wide: false };
+    build_watched(&source::Boxes(bounds), count, &settings, None)
 }
 
 /// Told how much of a build is done, from 0 to 1; answers whether to go on.
@@ -123,7 +125,7 @@ pub(super) type Observer<'a> = dyn FnMut(f64) -> ControlFlow<()> + Send + 'a;
 pub(super) fn build_watched(
     source: &impl Source,
     count: usize,
-    config: &BuildConfig,
+    config: &Settings,
     observer: Option<&mut Observer>,
 ) -> Result<Tree, BuildError> {
     config.check()?;
@@ -149,7 +151,7 @@ fn grow(
     source: &impl Source,
     count: usize,
     spare: usize,
-    config: &BuildConfig,
+    config: &Settings,
     watch: &Watch,
 ) -> Result<Tree, BuildError> {
     let (mut references, mut span) = reference::collect(source, count, spare, watch)?;

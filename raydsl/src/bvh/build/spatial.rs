@@ -24,7 +24,7 @@
 
 use super::binned_sah::{Bins, Grid};
 use super::chop::{Chopper, Parts};
-use super::config::BuildConfig;
+use super::config::Settings;
 use super::part::{PIECE, Part};
 use super::reference::{Bounds, Reference, Span};
 use super::source::Source;
@@ -38,7 +38,7 @@ use crate::geometry::Aabb;
 const FINEST: f32 = f32::MIN_POSITIVE / f32::EPSILON;
 
 /// How many spare places the references of `count` primitives have.
-pub(super) fn spare(count: usize, config: &BuildConfig) -> usize {
+pub(super) fn spare(count: usize, config: &Settings) -> usize {
     let wanted = count as f64 * f64::from(config.max_duplication);
     // The sum of both is limited as the number of primitives is.
     (wanted as usize).min(super::MAX_PRIMITIVES - count)
@@ -50,7 +50,7 @@ pub(super) fn grow<'a, S: Source>(
     count: usize,
     span: Span,
     chopper: Chopper<'a, S>,
-    (config, watch): (&'a BuildConfig, &'a Watch<'_>),
+    (config, watch): (&'a Settings, &'a Watch<'_>),
 ) -> Part {
     let budget = depth::budget(count);
     let builder = Builder { chopper, config, watch, root: span.bounds };
@@ -104,7 +104,7 @@ fn share(spare: usize, left: usize, right: usize) -> usize {
 /// What all nodes have in common.
 struct Builder<'a, 'w, S> {
     chopper: Chopper<'a, S>,
-    config: &'a BuildConfig,
+    config: &'a Settings,
     watch: &'a Watch<'w>,
     /// The box around everything.
     root: Bounds,

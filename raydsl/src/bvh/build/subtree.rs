@@ -1,7 +1,7 @@
 //! The recursion of the surface area heuristic: from a range of references to nodes.
 
 use super::binned_sah::{Bins, Grid};
-use super::config::BuildConfig;
+use super::config::Settings;
 use super::part::{PIECE, Part};
 use super::reference::{Reference, Span};
 use super::watch::Watch;
@@ -12,7 +12,7 @@ use crate::bvh::Node;
 pub(super) fn grow(
     references: &mut [Reference],
     span: Span,
-    config: &BuildConfig,
+    config: &Settings,
     watch: &Watch,
 ) -> Part {
     let budget = depth::budget(references.len());
@@ -29,7 +29,7 @@ struct Range<'a> {
     budget: u32,
 }
 
-fn grow_part(range: Range, config: &BuildConfig, watch: &Watch) -> Part {
+fn grow_part(range: Range, config: &Settings, watch: &Watch) -> Part {
     let count = range.references.len();
     if watch.is_stopped() {
         let root = Node::leaf(range.span.bounds.to_aabb(), range.first, count as u32);
@@ -56,7 +56,7 @@ fn grow_part(range: Range, config: &BuildConfig, watch: &Watch) -> Part {
 
 /// A subtree in the making.
 struct Subtree<'a, 'w> {
-    config: &'a BuildConfig,
+    config: &'a Settings,
     watch: &'a Watch<'w>,
     bins: Bins,
     nodes: Vec<Node>,
@@ -85,7 +85,7 @@ impl Subtree<'_, '_> {
 fn split<'a>(
     range: Range<'a>,
     bins: &mut Bins,
-    config: &BuildConfig,
+    config: &Settings,
     watch: &Watch,
 ) -> Result<[Range<'a>; 2], Node> {
     let Range { references, first, span, budget } = range;
@@ -108,7 +108,7 @@ fn divide(
     span: &Span,
     budget: u32,
     bins: &mut Bins,
-    (config, watch): (&BuildConfig, &Watch),
+    (config, watch): (&Settings, &Watch),
 ) -> Option<(usize, [Span; 2])> {
     let count = references.len();
     if count == 1 || config.is_block(count) {

@@ -9,6 +9,7 @@ use glam::Affine3;
 use thiserror::Error;
 
 use super::slabs::Allowance;
+use super::traverse_packet::instance_table;
 use super::{Bvh, BvhList, ListError, SceneView, View};
 pub(crate) use buffers::{IS_INSTANCE, PLACE_SCHEMA};
 pub(crate) use descent::Descent;
@@ -207,7 +208,8 @@ impl<'a, P: Primitive> Instances<'a, P> {
     /// Trees that [`BvhList::new`] would not take.
     pub fn new(trees: &'a [Bvh<'a, P>]) -> Result<Self, InstanceError> {
         let trees = BvhList::new(trees)?.into_trees();
-        Ok(Self { placed: Placed::new(trees, Allowance::of::<P>()), groups: Vec::new() })
+        let placed = Placed::new(trees, Allowance::of::<P>(), instance_table::<P>());
+        Ok(Self { placed, groups: Vec::new() })
     }
 
     /// Adds a group of instances of trees and of earlier groups. Rays meet the group that was added

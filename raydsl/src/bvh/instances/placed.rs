@@ -5,6 +5,7 @@ use glam::Affine3;
 use super::{InstanceError, MAX_CONDITION, MAX_LEVELS};
 use crate::bvh::build::{self, BuildConfig, MAX_PRIMITIVES};
 use crate::bvh::slabs::{Allowance, ULP};
+use crate::bvh::traverse_packet::InstanceTable;
 use crate::bvh::view::{Branches, Trees};
 use crate::bvh::{Node, stats};
 use crate::geometry::affine::{self, Inverted};
@@ -27,6 +28,8 @@ pub(crate) struct Placed<'a, T, S> {
     pub(crate) groups: Vec<Placing>,
     /// How often the groups have changed.
     pub(crate) version: u32,
+    /// How packets go through it.
+    pub(crate) walks: InstanceTable,
 }
 
 /// The tree over the instances of a group.
@@ -202,10 +205,10 @@ impl Placing {
 }
 
 impl<'a, T, S> Placed<'a, T, S> {
-    pub(super) fn new(trees: Trees<'a, T, S>, allowance: Allowance) -> Self {
+    pub(super) fn new(trees: Trees<'a, T, S>, allowance: Allowance, walks: InstanceTable) -> Self {
         let nodes = trees.parts.iter().map(|part| part.tree().map_or(&[][..], |tree| tree.nodes));
         let depths = nodes.map(stats::depth).collect();
-        Self { trees, allowance, depths, groups: Vec::new(), version: 0 }
+        Self { trees, allowance, depths, groups: Vec::new(), version: 0, walks }
     }
 
     /// The group that rays meet.

@@ -44,8 +44,13 @@ fn anything_may_become_anything() {
     let balls = numbers.balls(64);
     let collapsed = vec![Ball { center: Vec3::ONE, radius: 0.0 }; 64];
     let huge: Vec<_> = balls.iter().map(|b| Ball { center: b.center * 1e30, ..*b }).collect();
-    for storage in [Storage::Borrow, Storage::Leaves] {
-        let mut bvh = Bvh::build_with(&balls, &storage.into()).expect("finite bounds");
+    for is_wide in [false, true] {
+        let config = BuildConfig::default();
+        let build = |balls| {
+            if is_wide { Bvh::build_wide(balls, &[], &config) } else { Bvh::build(balls) }
+        };
+        let mut bvh = build(&balls[..]).expect("finite bounds");
+        assert!(!bvh.is_wide() || is_wide);
         for balls in [&collapsed, &huge, &balls] {
             bvh = bvh.refit(balls).expect("finite bounds");
             crate::bvh::validate(&bvh).expect("the tree is sound");
@@ -53,7 +58,7 @@ fn anything_may_become_anything() {
         }
         assert_eq!(bvh.cost_growth(), 1.0);
         assert_as_brute_force(&bvh, &balls);
-        let bvh = Bvh::build_with(&huge, &storage.into()).expect("finite bounds");
+        let bvh = build(&huge[..]).expect("finite bounds");
         assert_as_brute_force(&bvh, &huge);
     }
 }
@@ -63,8 +68,7 @@ fn trees_with_leaves_move_before_their_binary_tree_is_there() {
     let mut numbers = Numbers::of(11);
     let (before, after) = (numbers.balls(500), numbers.balls(500));
     for quality in BuildQuality::ALL {
-        let config = BuildConfig { quality, storage: Storage::Leaves, ..BuildConfig::default() };
-        let bvh = Bvh::build_with(&before, &config).expect("finite bounds");
+        let bvh = Bvh::build_wide(&before, &[], &quality.into()).expect("finite bounds");
         let bvh = bvh.refit(&after).expect("finite bounds");
         crate::bvh::validate(&bvh).expect("the tree is sound");
         assert_as_brute_force(&bvh, &after);

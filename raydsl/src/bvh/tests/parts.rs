@@ -1,8 +1,12 @@
 //! Trees that hold parts of primitives.
 
 use super::*;
-use crate::bvh::{Node, TreeFault, build, validate::check};
+use crate::bvh::{Node, Settings, TreeFault, build, validate::check};
 use crate::geometry::Aabb;
+
+fn binary(config: BuildConfig) -> Settings {
+    Settings { config, is_wide: false }
+}
 
 fn best(max_duplication: f32) -> BuildConfig {
     BuildConfig { max_duplication, ..BuildQuality::Best.into() }
@@ -233,7 +237,7 @@ fn parts_that_are_none_lose_no_primitive() {
     let boxes: Vec<_> = numbers.slanted(1000).iter().map(|t| t.get_bounds()).collect();
     for lie in [Lie::NotNumbers, Lie::Nothing, Lie::Elsewhere, Lie::Inverted, Lie::Everything] {
         let liar = Liar { boxes: boxes.clone(), lie };
-        let tree = build::build_watched(&liar, 1000, &best(1.0), None).expect("finite bounds");
+        let tree = build::build_watched(&liar, 1000, &binary(best(1.0)), None).expect("finite bounds");
         // The parts of the boxes themselves hold what there is.
         let source = build::Boxes(|k: usize| boxes[k]);
         assert_eq!(check(&tree.nodes, &tree.indices, 1000, &source), Ok(()));
@@ -244,8 +248,7 @@ fn parts_that_are_none_lose_no_primitive() {
 #[test]
 fn refitting_leaves_the_index_list() {
     let (before, after) = (Numbers::of(23).slanted(400), Numbers::of(24).slanted(400));
-    let config = BuildConfig { storage: Storage::Leaves, ..best(4.0) };
-    let bvh = Bvh::build_with(&before, &config).expect("finite bounds");
+    let bvh = Bvh::build_wide(&before, &[], &best(4.0)).expect("finite bounds");
     let indices = bvh.indices().to_vec();
     assert!(indices.len() > before.len(), "some are cut");
     let bvh = bvh.refit(&after).expect("finite bounds");

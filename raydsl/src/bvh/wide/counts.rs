@@ -2,8 +2,8 @@
 
 use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// What all queries of the process have done in trees with
-/// [`Storage::Leaves`](crate::bvh::Storage::Leaves) since [`Counts::take`] was called.
+/// What all queries of the process have done in wide trees since
+/// [`Counts::take`] was called.
 ///
 /// Finding the nodes at which the rays of a query begin is not counted. Rays too odd for the boxes of such trees, and queries with a condition or of several hits, go
 /// through the binary tree and are not counted. Of queries that

@@ -28,16 +28,17 @@ mod step;
 #[cfg(test)]
 mod tests;
 pub(crate) mod trace;
+mod walks;
 mod wave;
 
 use super::build::Tree;
-use super::{BuildConfig, Node, Storage, Traversal};
+use super::{Node, Traversal};
 use crate::geometry::{Aabb, Primitive};
-use crate::kernel::has_wide_walks;
 use blocks::Blocks;
 use node::WideNode;
+pub(crate) use walks::{Walks, walks};
 
-/// A wide tree with its primitives in its leaves; see [`Storage::Leaves`](super::Storage::Leaves).
+/// A wide tree with its primitives in its leaves; see [`Bvh::build_wide`](super::Bvh::build_wide).
 #[derive(Clone, Debug)]
 pub(crate) struct Wide {
     nodes: Vec<WideNode>,
@@ -47,19 +48,6 @@ pub(crate) struct Wide {
     bounds: Aabb,
     /// How rays go through it.
     pub(super) traversal: Traversal,
-}
-
-/// The wide tree over `prims`, if the configuration asks for one, and this machine goes through such.
-pub(super) fn of<P: Primitive>(
-    tree: &Tree,
-    config: &BuildConfig,
-    prims: &[P],
-    shared: &[P::Shared],
-) -> Option<Wide> {
-    if config.storage != Storage::Leaves || !has_wide_walks() {
-        return None;
-    }
-    Some(Wide::of(tree, prims, shared, config.traversal))
 }
 
 impl Wide {

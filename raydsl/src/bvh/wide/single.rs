@@ -6,7 +6,7 @@ use super::beam::Beam;
 use super::counts::{self, Event};
 use super::node::{Child, WIDTH};
 use super::step::{Meeting, beyond, enter, ids, last_key, nearest, sorted, words};
-use super::trace::{answers, meeting};
+use super::trace::meeting;
 use crate::bvh::SceneView;
 use crate::bvh::slabs::Allowance;
 use crate::bvh::traverse::is_finite;
@@ -23,22 +23,13 @@ thread_local! {
     static DEEP: Cell<Vec<u32>> = const { Cell::new(Vec::new()) };
 }
 
-/// The least `(t, id)` hit of a ray; none if wide trees do not answer, or the ray is too odd for
-/// their boxes.
-#[inline(always)]
-pub(crate) fn closest_hit<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray) -> Option<Hit> {
-    if !answers(scene) {
-        return None;
-    }
+/// The least `(t, id)` hit of a ray; none if it is too odd for the boxes of wide trees.
+pub(super) fn closest_hit<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray) -> Option<Hit> {
     ask(scene, ray, Wanted::Closest)
 }
 
 /// Whether a ray hits anything; none as of [`closest_hit`].
-#[inline(always)]
-pub(crate) fn any_hit<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray) -> Option<bool> {
-    if !answers(scene) {
-        return None;
-    }
+pub(super) fn any_hit<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray) -> Option<bool> {
     ask(scene, ray, Wanted::Any).map(|hit| hit.is_hit)
 }
 

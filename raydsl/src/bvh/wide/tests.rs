@@ -14,9 +14,14 @@ use crate::bvh::build::{Primitives, build_watched};
 use crate::bvh::slabs::Allowance;
 use crate::bvh::stats::depth;
 use crate::bvh::validate::check;
-use crate::bvh::{BuildConfig, BuildQuality, Bvh, Node, RayQuery, Storage, Traversal, validate};
+use crate::bvh::{BuildConfig, BuildQuality, Bvh, Node, RayQuery, Settings, Traversal, validate};
 use crate::geometry::{Aabb, Hit, Ray, Triangle};
 use crate::machine::Simd8;
+
+/// A wide tree of however few primitives.
+fn wide() -> BuildConfig {
+    BuildConfig { min_wide_size: 0, ..BuildConfig::default() }
+}
 
 /// A point of the unit cube for each pair of numbers.
 fn point(i: u32, k: u32) -> Vec3 {
@@ -84,8 +89,8 @@ fn blocks_hold_every_primitive_and_stacks_are_deep_enough() {
     for count in [1, 2, 8, 9, 64, 1000, 5000] {
         let prims = triangles(count);
         for quality in BuildQuality::ALL {
-            let config = BuildConfig { quality, storage: Storage::Leaves, ..Default::default() };
-            let bvh = Bvh::build_with(&prims, &config).expect("finite bounds");
+            let config = BuildConfig { quality, ..wide() };
+            let bvh = Bvh::build_wide(&prims, &[], &config).expect("finite bounds");
             let tree = bvh.tree.own.structure.wide().expect("it was asked for");
             let mut seen = vec![0; prims.len()];
             let pending = walk(tree, Child::node(0), bvh.bounds(), &prims, &mut seen);
@@ -102,8 +107,9 @@ fn the_binary_tree_comes_back() {
         let prims = triangles(count);
         let source = Primitives { prims: &prims, shared: &[] };
         for quality in BuildQuality::ALL {
-            let config = BuildConfig { quality, storage: Storage::Leaves, ..Default::default() };
-            let built = build_watched(&source, prims.len(), &config, None).expect("finite bounds");
+            let settings = Settings { config: quality.into(), is_wide: true };
+            let built =
+                build_watched(&source, prims.len(), &settings, None).expect("finite bounds");
             let wide = Wide::of(&built, &prims, &[], Traversal::Auto);
             let tree = wide.binary();
             assert_eq!(check(&tree.nodes, &tree.indices, prims.len(), &source), Ok(()));
@@ -126,7 +132,7 @@ fn bits(node: &Node) -> [[u32; 3]; 2] {
 #[test]
 fn the_binary_tree_is_there_once_it_is_asked_for() {
     let prims = triangles(1000);
-    let bvh = Bvh::build_with(&prims, &Storage::Leaves.into()).expect("finite bounds");
+    let bvh = Bvh::build_wide(&prims, &[], &wide()).expect("finite bounds");
     let alone = bvh.bytes();
     assert_eq!(bvh.statistics().bytes, alone);
     assert!(validate(&bvh).is_ok());
@@ -169,7 +175,7 @@ fn blocks(tree: &Wide, node: &WideNode, bounds: Aabb, found: &mut HashSet<u32>) 
 fn entries_lead_to_all_that_rays_may_reach() {
     let e = Simd8(fearless_simd::Fallback::new());
     let prims = triangles(3000);
-    let bvh = Bvh::build_with(&prims, &Storage::Leaves.into()).expect("finite bounds");
+    let bvh = Bvh::build_wide(&prims, &[], &wide()).expect("finite bounds");
     let tree = bvh.tree.own.structure.wide().expect("it was asked for");
     let (root, allowance) = (bvh.bounds(), Allowance::of::<Triangle>());
     let (mut rays, mut opened) = (Rays::default(), 0);
@@ -208,8 +214,7 @@ fn entries_lead_to_all_that_rays_may_reach() {
 
 #[test]
 fn nothing_is_a_tree_too() {
-    let config = BuildConfig::from(Storage::Leaves);
-    let bvh = Bvh::<Triangle>::build_with(&[], &config).expect("nothing");
+    let bvh = Bvh::<Triangle>::build_wide(&[], &[], &wide()).expect("nothing");
     assert!(bvh.tree.own.structure.wide().is_some_and(|tree| tree.bytes() == 0));
 }
 
@@ -329,7 +334,7 @@ fn octants_have_each_ray_once() {
 fn rays_meet_the_same_whatever_way_they_go() {
     for count in [20, 3000] {
         let prims = triangles(count);
-        let mut bvh = Bvh::build_with(&prims, &Storage::Leaves.into()).expect("finite bounds");
+        let mut bvh = Bvh::build_wide(&prims, &[], &wide()).expect("finite bounds");
         for case in 0..12 {
             let number = [1, 511, 512, 600, 2500, 5000][case as usize % 6];
             let spread = if case < 6 { 0.05 } else { 2.0 };
@@ -364,7 +369,7 @@ fn on_its_own_thread<T: Send>(ask: impl FnOnce() -> T + Send) -> T {
 #[test]
 fn rays_go_the_way_that_is_said() {
     let prims = triangles(1000);
-    let mut bvh = Bvh::build_with(&prims, &Storage::Leaves.into()).expect("finite bounds");
+    let mut bvh = Bvh::build_wide(&prims, &[], &wide()).expect("finite bounds");
     let rays = |spread: f32, t_max: f32| -> Vec<Ray> {
         let ray = |i| {
             let direction = Vec3::splat(0.5) + (point(i, 0) - 0.5) * spread;
@@ -394,8 +399,8 @@ fn rays_go_the_way_that_is_said() {
             assert_eq!(on_its_own_thread(ask), expected, "{traversal:?} of {number} to {t_max}");
         }
     }
-    let config = BuildConfig { traversal: Traversal::Waves, ..Storage::Leaves.into() };
-    let bvh = Bvh::build_with(&prims, &config).expect("finite bounds");
+    let config = BuildConfig { traversal: Traversal::Waves, ..wide() };
+    let bvh = Bvh::build_wide(&prims, &[], &config).expect("finite bounds");
     let bvh = bvh.refit(&prims).expect("finite bounds");
     let ask = || (bvh.closest_hits(&of_a_camera), trace::ways()).1;
     assert_eq!(on_its_own_thread(ask), apart, "set before, and refitted");

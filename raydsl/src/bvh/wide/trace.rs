@@ -12,10 +12,11 @@ use super::order::{Portions, Sequence};
 use super::packet::{self, Together};
 use super::rays::{GROUP, Rays, lanes_of, load_words, place, ray_at, ray_at_mut, row};
 use super::step::Meeting;
+use super::walks::Walks;
 use super::wave::{self, Wave};
 use crate::bvh::packet_slabs::{and, finite};
 use crate::bvh::slabs::Allowance;
-use crate::bvh::{Part, SceneView, Traversal, traverse};
+use crate::bvh::{Part, SceneView, Traversal, View, traverse};
 use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn};
 use crate::kernel::{LanesTask, with_wide_walks};
 use crate::machine::{B, Entered, F, Lanes, Packet, U, op};
@@ -39,80 +40,69 @@ thread_local! {
     static SCRATCH: Cell<Option<Box<Scratch>>> = const { Cell::new(None) };
 }
 
-/// Whether a scene is wide trees.
-#[inline(always)]
-pub(crate) fn answers<P: Primitive>(scene: &SceneView<'_, P>) -> bool {
-    scene.placed().is_none() && scene.parts().all(|part| part.wide().is_some())
-}
-
 /// The least `(t, id)` hit of every running lane, for each of some rays of a packet.
-#[inline(never)]
-pub(crate) fn closest_hits<L: Lanes, P: Primitive>(
+#[inline(always)]
+pub(crate) fn closest_hits<L: Lanes, T, S>(
     m: &Packet<L>,
-    scene: &SceneView<'_, P>,
+    (scene, walks): (&View<'_, T, S>, &Walks<T, S>),
     rays: &[RayOn<Packet<L>>],
     hits: &mut [HitOn<Packet<L>>],
 ) {
     let l = m.lanes();
-    ask::<true, _, P, _>(
-        m,
-        scene,
-        rays,
-        hits,
-        #[inline(always)]
-        |rays, first| hit_at(l, rays, first),
-    );
-}
-
-/// Whether every running lane hits anything, for each of some rays of a packet.
-#[inline(never)]
-pub(crate) fn any_hits<L: Lanes, P: Primitive>(
-    m: &Packet<L>,
-    scene: &SceneView<'_, P>,
-    rays: &[RayOn<Packet<L>>],
-    hits: &mut [B<Packet<L>>],
-) {
-    let l = m.lanes();
-    ask::<false, _, P, _>(
-        m,
-        scene,
-        rays,
-        hits,
-        #[inline(always)]
-        |rays, first| B(found_at(l, rays, first)),
-    );
-}
-
-/// Asks about the rays, together with other packets if there are any, and reads what each packet of
-/// them has found.
-#[inline(always)]
-fn ask<const CLOSEST: bool, L: Lanes, P: Primitive, H>(
-    m: &Packet<L>,
-    scene: &SceneView<'_, P>,
-    rays: &[RayOn<Packet<L>>],
-    hits: &mut [H],
-    found: impl Fn(&Rays, usize) -> H,
-) {
-    let l = m.lanes();
-    let load = |scratch: &mut Scratch| {
-        l.enter_again(
-            #[inline(always)]
-            || load(m, &mut scratch.rays, rays),
-        )
-    };
-    let answer = |scratch: &mut Scratch| answer::<CLOSEST, P>(l.level(), scene, scratch);
-    let mut read = |scratch: &Scratch, first: usize| {
+    let key = (walks.closest as *const () as usize, scene.address());
+    let answer = |scratch: &mut Scratch| (walks.closest)(l.level(), scene, scratch);
+    ask(m, key, rays, &answer, &mut |scratch, first| {
         l.enter_again(
             #[inline(always)]
             || {
                 for (q, hit) in hits.iter_mut().enumerate() {
-                    *hit = found(&scratch.rays, first + q * L::N);
+                    *hit = hit_at(l, &scratch.rays, first + q * L::N);
                 }
             },
         );
+    });
+}
+
+/// Whether every running lane hits anything, for each of some rays of a packet.
+#[inline(always)]
+pub(crate) fn any_hits<L: Lanes, T, S>(
+    m: &Packet<L>,
+    (scene, walks): (&View<'_, T, S>, &Walks<T, S>),
+    rays: &[RayOn<Packet<L>>],
+    hits: &mut [B<Packet<L>>],
+) {
+    let l = m.lanes();
+    let key = (walks.any as *const () as usize, scene.address());
+    let answer = |scratch: &mut Scratch| (walks.any)(l.level(), scene, scratch);
+    ask(m, key, rays, &answer, &mut |scratch, first| {
+        l.enter_again(
+            #[inline(always)]
+            || {
+                for (q, hit) in hits.iter_mut().enumerate() {
+                    *hit = B(found_at(l, &scratch.rays, first + q * L::N));
+                }
+            },
+        );
+    });
+}
+
+/// Asks about the rays, together with other packets if there are any, and has each packet read what
+/// its rays have found. One function for packets of one kind, whatever the primitives.
+#[inline(never)]
+fn ask<L: Lanes>(
+    m: &Packet<L>,
+    key: fibers::Key,
+    rays: &[RayOn<Packet<L>>],
+    answer: &dyn Fn(&mut Scratch),
+    read: &mut dyn FnMut(&Scratch, usize),
+) {
+    let load = |scratch: &mut Scratch| {
+        m.lanes().enter_again(
+            #[inline(always)]
+            || load(m, &mut scratch.rays, rays),
+        )
     };
-    let key = (self::answer::<CLOSEST, P> as *const () as usize, scene.address());
-    if fibers::ask(key, load, answer, &mut read) {
+    if fibers::ask(key, load, answer, &mut *read) {
         return;
     }
     with_scratch(|scratch| {
@@ -127,15 +117,15 @@ fn ask<const CLOSEST: bool, L: Lanes, P: Primitive, H>(
 const AT_ONCE: usize = 2048;
 
 /// The least `(t, id)` hit of each ray.
-pub(crate) fn each_closest<P: Primitive>(
-    scene: &SceneView<'_, P>,
+pub(crate) fn each_closest<T, S>(
+    (scene, walks): (&View<'_, T, S>, &Walks<T, S>),
     rays: &[Ray],
     mut found: impl FnMut(&Ray, Hit),
 ) {
     with_scratch(|scratch| {
         for rays in rays.chunks(AT_ONCE) {
             scratch.rays.load(rays);
-            answer::<true, P>(None, scene, scratch);
+            (walks.closest)(None, scene, scratch);
             for (i, ray) in rays.iter().enumerate() {
                 found(ray, ray_at(scratch.rays.words(), place(i)).hit());
             }
@@ -144,15 +134,15 @@ pub(crate) fn each_closest<P: Primitive>(
 }
 
 /// Whether each ray hits anything.
-pub(crate) fn each_any<P: Primitive>(
-    scene: &SceneView<'_, P>,
+pub(crate) fn each_any<T, S>(
+    (scene, walks): (&View<'_, T, S>, &Walks<T, S>),
     rays: &[Ray],
     mut found: impl FnMut(bool),
 ) {
     with_scratch(|scratch| {
         for rays in rays.chunks(AT_ONCE) {
             scratch.rays.load(rays);
-            answer::<false, P>(None, scene, scratch);
+            (walks.any)(None, scene, scratch);
             for i in 0..rays.len() {
                 found(ray_at(scratch.rays.words(), place(i)).word(row::FOUND) != 0);
             }
@@ -190,7 +180,7 @@ pub(super) fn ways() -> Ways {
 }
 
 /// Finds what the rays meet: the least hits with `CLOSEST`, else whether there is any.
-fn answer<const CLOSEST: bool, P: Primitive>(
+pub(super) fn answer<const CLOSEST: bool, P: Primitive>(
     level: Option<Level>,
     scene: &SceneView<'_, P>,
     scratch: &mut Scratch,

@@ -9,7 +9,7 @@ mod one;
 mod shuffle;
 mod simd;
 
-use core::mem::MaybeUninit;
+use core::mem::{ManuallyDrop, MaybeUninit};
 
 use fearless_simd::Level;
 
@@ -30,6 +30,9 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     type Mask: Copy + 'static;
     /// Whether what follows an early exit of a kernel runs even where no lane is left.
     const STRAIGHT: bool = false;
+    /// Whether long walks of these lanes stand in tables, where kernels are lifted for them, and are not
+    /// to be compiled where they may not be needed.
+    const HAS_TABLES: bool = false;
     /// Eight lanes of the same level: as many as a node of a wide tree has children, and a block
     /// of its leaves primitives.
     type Eight: Lanes;
@@ -149,12 +152,15 @@ pub trait Lanes: Copy + Send + Sync + 'static {
 /// as vectors have, it is no loop that an optimiser must unroll; more are one, so that `f` stands
 /// in one place.
 #[inline(always)]
-pub(crate) fn fill<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T; N] {
+pub(crate) fn fill<T: Copy, const N: usize>(f: impl FnMut(usize) -> T) -> [T; N] {
+    // Not dropped, or each call of it has a landing pad.
+    let f = &mut *ManuallyDrop::new(f);
     let mut all = [const { MaybeUninit::uninit() }; N];
     macro_rules! element {
         ($($i:literal)+) => {
             $(if const { $i < N } {
-                all[$i].write(f($i));
+                // SAFETY: it is an element.
+                unsafe { all.get_unchecked_mut($i) }.write(f($i));
             })+
         };
     }

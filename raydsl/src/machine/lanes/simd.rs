@@ -82,6 +82,7 @@ macro_rules! simd_lanes {
 
         impl<S: Simd> Lanes for $name<S> {
             const N: usize = $n;
+            const HAS_TABLES: bool = true;
             type F32 = $f<S>;
             type I32 = $i<S>;
             type U32 = $u<S>;

@@ -5,6 +5,8 @@
 //! and its `min` another result for NaN: those methods are denied, and the error names what the
 //! prelude has instead.
 
+use core::cell::Cell;
+
 use super::super::{
     B, BoolBinary, Coerce, Compare, F, I, Machine, Op, U, V2, V3, V4, X2, X3, X4, op,
     vector::{Arithmetic, Component, Floats, IsVector, Vector, cast_each},
@@ -385,10 +387,10 @@ fused!(V2: x y; V3: x y z; V4: x y z w;);
 method!([V: IsVector + Vector<M, Component = B<M>>] V, "any", |m, a| -> B<M> { join(m, op::Or, a) });
 method!([V: IsVector + Vector<M, Component = B<M>>] V, "all", |m, a| -> B<M> { join(m, op::And, a) });
 method!([V: IsVector + Vector<M, Component = B<M>>] V, "bitmask", |m, a| -> U<M> {{
-    let mut place = 0;
+    let place = Cell::new(0);
     let bits = a.each(#[inline(always)] |c| {
-        place += 1;
-        U(m.u32_binary(op::Shl, m.bool_to_u32(c.0), m.u32(place - 1)))
+        let to = place.replace(place.get() + 1);
+        U(m.u32_binary(op::Shl, m.bool_to_u32(c.0), m.u32(to)))
     });
     bits.fold(#[inline(always)] |x, y| U(m.u32_binary(op::Or, x.0, y.0)))
 }});

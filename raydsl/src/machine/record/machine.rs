@@ -253,6 +253,7 @@ impl Machine for Recorder {
     type Branch = RecordedBranch;
     type Loop = RecordedLoop;
     const RUNS: bool = false;
+    const HAS_VECTORS: bool = true;
     const HAS_SAMPLERS: bool = true;
 
     fn f32(&self, v: f32) -> Id {
