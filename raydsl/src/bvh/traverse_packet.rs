@@ -11,7 +11,7 @@ use super::view::Branches;
 use super::{CountedHit, CountedHitOn, Part, Placed, RecordOn, SceneView, View, traverse};
 use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn};
 use crate::kernel::{Lanes4, Lanes8, Lanes16};
-use crate::machine::{B, Entered, F, Lanes, Packet, Place, Type, U, V3, Value, op};
+use crate::machine::{B, Entered, F, Lanes, Packet, Place, RecordedWalks, Type, U, V3, Value, op};
 
 /// The machine of the loops: its kernels are inlined, so that nothing travels through memory.
 type Inner<L> = Packet<Entered<L>>;
@@ -452,10 +452,10 @@ struct InstanceWalks<L: Lanes, P: Primitive> {
 
 type InstanceQuery<L, P, R> = fn(&Packet<L>, &SceneView<'_, P>, &RayOn<Packet<L>>) -> R;
 
-/// [`InstanceWalks`] of some kinds of lanes.
+/// [`InstanceWalks`] of some kinds of lanes, and [`RecordedWalks`].
 pub(crate) type InstanceTable = &'static [&'static (dyn Any + Send + Sync)];
 
-/// Those of the lanes that kernels have.
+/// Those of the lanes that kernels have, and of recorders.
 pub(crate) fn instance_table<P: Primitive>() -> InstanceTable {
     struct Of<P>(PhantomData<P>);
     impl<P: Primitive> Of<P> {
@@ -463,6 +463,7 @@ pub(crate) fn instance_table<P: Primitive>() -> InstanceTable {
             &InstanceWalks::<Lanes4, P>::NEW,
             &InstanceWalks::<Lanes8, P>::NEW,
             &InstanceWalks::<Lanes16, P>::NEW,
+            &RecordedWalks::<P>::NEW,
         ];
     }
     Of::<P>::TABLE

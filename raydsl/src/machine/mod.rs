@@ -63,7 +63,7 @@ pub use ops::{
     OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Varying,
 };
 pub use packet::Packet;
-pub(crate) use record::stride;
+pub(crate) use record::{RecordedWalks, stride};
 pub use record::{Recorder, Recording};
 pub use scalar::Scalar;
 pub use schema::{Field, Schema};

@@ -237,7 +237,8 @@ fn parts_that_are_none_lose_no_primitive() {
     let boxes: Vec<_> = numbers.slanted(1000).iter().map(|t| t.get_bounds()).collect();
     for lie in [Lie::NotNumbers, Lie::Nothing, Lie::Elsewhere, Lie::Inverted, Lie::Everything] {
         let liar = Liar { boxes: boxes.clone(), lie };
-        let tree = build::build_watched(&liar, 1000, &binary(best(1.0)), None).expect("finite bounds");
+        let tree =
+            build::build_watched(&liar, 1000, &binary(best(1.0)), None).expect("finite bounds");
         // The parts of the boxes themselves hold what there is.
         let source = build::Boxes(|k: usize| boxes[k]);
         assert_eq!(check(&tree.nodes, &tree.indices, 1000, &source), Ok(()));

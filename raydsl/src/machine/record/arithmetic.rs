@@ -28,8 +28,8 @@ impl Recorder {
     }
 
     /// A vector operand: the number itself where all components are one number.
-    pub(super) fn operand<const N: usize>(&self, v: [Id; N]) -> Id {
-        if v.iter().all(|x| *x == v[0]) && N > 1 { v[0] } else { self.vector(&v) }
+    pub(super) fn operand(&self, v: &[Id]) -> Id {
+        if v.iter().all(|x| *x == v[0]) && v.len() > 1 { v[0] } else { self.vector(v) }
     }
 
     pub(super) fn float_unary(&self, op: F32Unary, a: Id) -> Id {
@@ -113,68 +113,63 @@ impl Recorder {
         self.add(Expr::U32Unary(op, a), Type::U32)
     }
 
-    pub(super) fn float_vectors<const N: usize>(
-        &self,
-        op: F32Binary,
-        a: [Id; N],
-        b: [Id; N],
-    ) -> [Id; N] {
-        if a.iter().chain(&b).all(|x| self.literal(*x).is_some()) {
-            return core::array::from_fn(|i| self.float_binary(op, a[i], b[i]));
+    /// `a[i] = op(a[i], b[i])`: vectors of any length, so that it is compiled once.
+    pub(super) fn float_vectors(&self, op: F32Binary, a: &mut [Id], b: &[Id]) {
+        if a.iter().chain(b).all(|x| self.literal(*x).is_some()) {
+            a.iter_mut().zip(b).for_each(|(a, b)| *a = self.float_binary(op, *a, *b));
+            return;
         }
         let (mut x, mut y) = (self.operand(a), self.operand(b));
         // `min` and `max` are selects by component; two splats still are a vector.
         let selects = matches!(op, F32Binary::Min | F32Binary::Max);
         if selects || !(self.is_vector(x) || self.is_vector(y)) {
-            (x, y) = (self.vector(&a), self.vector(&b));
+            (x, y) = (self.vector(a), self.vector(b));
         }
-        let v = self.floats(op, x, y, Type::F32.times(N));
-        self.components(v)
+        let v = self.floats(op, x, y, Type::F32.times(a.len()));
+        self.components(v, a);
     }
 
-    pub(super) fn float_vector<const N: usize>(&self, op: F32Unary, a: [Id; N]) -> [Id; N] {
+    pub(super) fn float_vector(&self, op: F32Unary, a: &mut [Id]) {
         if a.iter().all(|x| self.literal(*x).is_some()) {
-            return a.map(|x| self.float_unary(op, x));
+            a.iter_mut().for_each(|x| *x = self.float_unary(op, *x));
+            return;
         }
-        let v = self.vector(&a);
-        let v = self.add(Expr::F32Unary(op, v), Type::F32.times(N));
-        self.components(v)
+        let v = self.vector(a);
+        let v = self.add(Expr::F32Unary(op, v), Type::F32.times(a.len()));
+        self.components(v, a);
     }
 
     /// Arithmetic on integer vectors; a shift goes component by component, as its amount must have
     /// another type.
-    pub(super) fn int_vectors<const N: usize>(
-        &self,
-        op: IntBinary,
-        ty: Type,
-        a: [Id; N],
-        b: [Id; N],
-    ) -> [Id; N] {
+    pub(super) fn int_vectors(&self, op: IntBinary, ty: Type, a: &mut [Id], b: &[Id]) {
         let is_number = |x: &Id| matches!(self.node(*x).expr, Expr::I32(_) | Expr::U32(_));
         let is_shift = matches!(op, IntBinary::Shl | IntBinary::Shr);
-        if is_shift || a.iter().chain(&b).all(is_number) {
-            return core::array::from_fn(|i| match ty {
-                Type::I32 => self.signed_binary(op, a[i], b[i]),
-                _ => self.unsigned_binary(op, a[i], b[i]),
-            });
+        if is_shift || a.iter().chain(b).all(is_number) {
+            let binary = |a, b| match ty {
+                Type::I32 => self.signed_binary(op, a, b),
+                _ => self.unsigned_binary(op, a, b),
+            };
+            a.iter_mut().zip(b).for_each(|(a, b)| *a = binary(*a, *b));
+            return;
         }
         let (mut x, mut y) = (self.operand(a), self.operand(b));
         // Operators of bits want two vectors.
         let bits = matches!(op, IntBinary::And | IntBinary::Or | IntBinary::Xor);
         if bits || !(self.is_vector(x) || self.is_vector(y)) {
-            (x, y) = (self.vector(&a), self.vector(&b));
+            (x, y) = (self.vector(a), self.vector(b));
         }
-        let v = self.add(Expr::IntBinary(op, x, y), ty.times(N));
-        self.components(v)
+        let v = self.add(Expr::IntBinary(op, x, y), ty.times(a.len()));
+        self.components(v, a);
     }
 
     pub(super) fn is_vector(&self, id: Id) -> bool {
         matches!(self.node(id).ty, Type::Vector(..))
     }
 
-    pub(super) fn components<const N: usize>(&self, v: Id) -> [Id; N] {
-        let names = ["x", "y", "z", "w"];
+    fn components(&self, v: Id, to: &mut [Id]) {
         let ty = self.node(v).ty.component();
-        core::array::from_fn(|i| self.add(Expr::Member(v, names[i]), ty))
+        for (to, name) in to.iter_mut().zip(["x", "y", "z", "w"]) {
+            *to = self.add(Expr::Member(v, name), ty);
+        }
     }
 }

@@ -6,14 +6,16 @@
 
 use super::Recorder;
 use super::ir::{Expr, Stmt, Type};
+use super::traverse::Described;
 use super::types::zero_value;
 use super::visit::NONE;
 use crate::bvh::{
     Cost, CountedHit, IS_INSTANCE, MAX_LEVELS, NODE_SCHEMA, PLACE_SCHEMA, RecordOn, STACK,
     SceneView,
 };
-use crate::bvh::{View, any_where, buffers, closest_where};
+use crate::bvh::{Placed, View, any_where, buffers, closest_where};
 use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn, transform_ray};
+use crate::machine::wgsl::BufferKey;
 use crate::machine::{
     A3, B, F, Field, KernelInfo, Loop, Machine, Schema, Type as HostType, U, Value, op,
 };
@@ -125,6 +127,28 @@ pub(super) const CANDIDATE: &Schema = &Schema::Struct {
     size: 40,
 };
 
+/// How scenes of instances are recorded. Only what makes such a scene refers to it: in other programs
+/// none of it is compiled.
+pub(crate) struct RecordedWalks<P: Primitive> {
+    pub(super) closest_hit: fn(&Recorder, &SceneView<'_, P>, RayOn<Recorder>) -> HitOn<Recorder>,
+    /// The function that also counts.
+    pub(super) closest_hit_with_cost: fn(&Recorder, &SceneView<'_, P>) -> usize,
+    pub(super) any_hit: fn(&Recorder, &SceneView<'_, P>, RayOn<Recorder>) -> B<Recorder>,
+}
+
+impl<P: Primitive> RecordedWalks<P> {
+    pub(crate) const NEW: Self = Self {
+        closest_hit: Recorder::closest_placed_hit::<P>,
+        closest_hit_with_cost: Recorder::closest_placed_hit_with_cost::<P>,
+        any_hit: Recorder::any_placed_hit::<P>,
+    };
+
+    pub(super) fn of<'a>(placed: &Placed<'a, P, P::Shared>) -> &'a Self {
+        let found = placed.walks.iter().find_map(|walks| walks.downcast_ref());
+        found.expect("instances know how they are recorded")
+    }
+}
+
 impl Recorder {
     /// The least `(t, inst_id, prim_id)` hit: a function of its own.
     pub(super) fn closest_placed_hit<P: Primitive>(
@@ -149,14 +173,24 @@ impl Recorder {
         &self,
         prims: &SceneView<'_, P>,
     ) -> usize {
-        let prims_name = self.prims_buffer(prims);
-        let (intersect, path) = self.intersect(prims);
+        self.prims_buffer(prims);
+        let call = self.intersect(prims);
+        self.placed_with_cost_function(prims, &call)
+    }
+
+    fn placed_with_cost_function(
+        &self,
+        prims: &dyn Described,
+        (intersect, path): &(String, String),
+    ) -> usize {
+        let prims_name = prims.primitives(self);
         let (start, next) = self.descent_functions(prims, Walk::Counted);
         let (start, next) = (self.function_name(start), self.function_name(next));
-        let (_, places) = self.places(prims);
+        let (_, places) = self.places_of(prims);
         let zero = zero_value(CountedHit::SCHEMA);
-        let types = vec![Ray::SCHEMA, Hit::SCHEMA, Cost::SCHEMA, CountedHit::SCHEMA, P::SCHEMA];
-        self.text_function(format!("{prims_name}_closest_hit_with_cost"), types, |name| {
+        let types =
+            vec![Ray::SCHEMA, Hit::SCHEMA, Cost::SCHEMA, CountedHit::SCHEMA, prims.schema()];
+        self.text_function(format!("{prims_name}_closest_hit_with_cost"), types, &|name| {
             format!(
                 "\
 fn {name}(ray: Ray) -> CountedHit {{
@@ -223,10 +257,17 @@ fn {name}(ray: Ray) -> CountedHit {{
 
     /// `fn scene_places_at(i: u32) -> Place`, and the name of its buffer.
     fn places<T: HostType, S: HostType>(&self, scene: &View<'_, T, S>) -> (usize, String) {
-        let name = format!("{}_places", scene.name());
         let len = scene.placed().map_or(0, |placed| placed.place_count());
-        let buffer = self.buffer(scene.key_of(buffers::PLACES), &name, PLACE_SCHEMA, len);
+        self.places_buffer(&scene.name(), scene.key_of(buffers::PLACES), len)
+    }
+
+    fn places_buffer(&self, scene: &str, key: BufferKey, len: u64) -> (usize, String) {
+        let buffer = self.buffer(key, &format!("{scene}_places"), PLACE_SCHEMA, len);
         (self.at_function(&buffer, PLACE_SCHEMA), buffer)
+    }
+
+    fn places_of(&self, prims: &dyn Described) -> (usize, String) {
+        self.places_buffer(&prims.name(), prims.key_of(buffers::PLACES), prims.place_count())
     }
 
     /// The allowance of the whole scene, which is data: it changes when instances move.
@@ -301,7 +342,7 @@ fn {name}(ray: Ray) -> CountedHit {{
         let (_, places) = self.places(scene);
         let name = format!("{}{suffix}", self.prims_buffer(scene));
         let types = vec![PLACE_SCHEMA, result];
-        self.text_function(name, types, |name| {
+        self.text_function(name, types, &|name| {
             format!(
                 "\
 fn {name}({parameters}) -> {name_of_result} {{
@@ -328,25 +369,21 @@ fn {name}({parameters}) -> {name_of_result} {{
     }
 
     /// `fn scene_walk(ray: Ray) -> InstanceWalk` and `fn scene_next(..) -> NextPrimitive`.
-    fn descent_functions<P: Primitive>(
-        &self,
-        prims: &SceneView<'_, P>,
-        walk: Walk,
-    ) -> (usize, usize) {
-        let name = self.prims_buffer(prims);
-        let (_, places) = self.places(prims);
+    fn descent_functions(&self, prims: &dyn Described, walk: Walk) -> (usize, usize) {
+        let name = prims.primitives(self);
+        let (_, places) = self.places_of(prims);
         self.finite_function();
         let Some(tree) = self.tree(prims) else { unreachable!("instances are of trees") };
         let transform = self.transform_function();
         let [walk_type, suffix] = walk.names();
         let types =
             || vec![Ray::SCHEMA, LEVEL, walk.schema(), CANDIDATE, PLACE_SCHEMA, NODE_SCHEMA];
-        self.text_function("slabs_of_place".to_owned(), types(), |_| SLABS.to_owned());
-        let enter = self.text_function(format!("{name}_enter{suffix}"), types(), |name| {
+        self.text_function("slabs_of_place".to_owned(), types(), &|_| SLABS.to_owned());
+        let enter = self.text_function(format!("{name}_enter{suffix}"), types(), &|name| {
             enter_text(name, &places, &tree.nodes, walk)
         });
         let enter = self.function_name(enter);
-        let start = self.text_function(format!("{name}_walk{suffix}"), types(), |name| {
+        let start = self.text_function(format!("{name}_walk{suffix}"), types(), &|name| {
             format!(
                 "\
 /// A walk that has yet to begin.
@@ -358,7 +395,7 @@ fn {name}(ray: Ray) -> {walk_type} {{
 "
             )
         });
-        let next = self.text_function(format!("{name}_next{suffix}"), types(), |name| {
+        let next = self.text_function(format!("{name}_next{suffix}"), types(), &|name| {
             next_text(name, [&places, &tree.nodes, &tree.indices], [&enter, &transform], walk)
         });
         (start, next)

@@ -3,7 +3,7 @@
 use core::cell::Cell;
 
 use super::ir::{Conversion, Expr, Id, Stmt, Type, VarId};
-use super::{RecordedBranch, RecordedLoop, Recorder, storage};
+use super::{RecordedBranch, RecordedLoop, RecordedWalks, Recorder, storage};
 use crate::bvh::RecordOn;
 use crate::geometry::{HitOn, Primitive, RayOn};
 use crate::machine::index::{choose, with_element};
@@ -49,11 +49,7 @@ impl Recorder {
     }
 
     /// What WGSL's own function gives, if the kernel is an elementary function that it has.
-    fn builtin<A: Value<Self>, R: Value<Self>>(
-        &self,
-        info: &'static KernelInfo,
-        args: A,
-    ) -> Option<R> {
+    fn builtin(&self, info: &'static KernelInfo, args: Vec<Id>) -> Option<Vec<Id>> {
         let name = match function(info)? {
             Function::Sin => "sin",
             Function::Cos => "cos",
@@ -69,14 +65,13 @@ impl Recorder {
             Function::Pow => "pow",
             Function::SinCos2Pi => {
                 let turn = self.f32(core::f32::consts::TAU);
-                let angle = self.f32_binary(op::Mul, self.leaves_of(args)[0], turn);
+                let angle = self.f32_binary(op::Mul, args[0], turn);
                 let of = |name| self.add(Expr::Builtin(name, vec![angle]), Type::F32);
-                return Some(self.of_leaves(&[of("sin"), of("cos")]));
+                return Some(vec![of("sin"), of("cos")]);
             }
             Function::Expm1 | Function::Log1p => return None,
         };
-        let result = self.add(Expr::Builtin(name, self.leaves_of(args)), Type::F32);
-        Some(self.of_leaves(&[result]))
+        Some(vec![self.add(Expr::Builtin(name, args), Type::F32)])
     }
 
     /// The number that `id` is in the source.
@@ -184,10 +179,12 @@ impl Recorder {
 }
 
 /// Variables: the state of one is the leaves that read its cells.
+///
+/// What is not generic here is compiled once: hooks take values apart, and hand leaves over.
 impl Recorder {
-    fn cells<V: Value<Self>>(&self, name: &str) -> Vec<storage::Cell> {
+    fn cells(name: &str, schema: &'static Schema) -> Vec<storage::Cell> {
         let mut cells = Vec::new();
-        storage::cells(name, V::SCHEMA, &mut cells);
+        storage::cells(name, schema, &mut cells);
         cells
     }
 
@@ -204,10 +201,10 @@ impl Recorder {
         }
     }
 
-    fn new_cells<V: Value<Self>>(&self, name: &str, value: Option<V>) -> V {
-        let mut values = value.map(|v| self.leaves_of(v).into_iter());
+    fn new_cells(&self, name: &str, schema: &'static Schema, value: Option<Vec<Id>>) -> Vec<Id> {
+        let mut values = value.map(Vec::into_iter);
         let mut state = Vec::new();
-        for cell in self.cells::<V>(name) {
+        for cell in Self::cells(name, schema) {
             let value = values.as_mut().map(|values| {
                 let parts: Vec<Id> = values.by_ref().take(cell.leaves).collect();
                 if parts.len() > 1 { self.vector(&parts) } else { parts[0] }
@@ -222,13 +219,13 @@ impl Recorder {
             });
             state.extend(self.read(v, cell.ty));
         }
-        self.with_leaves(value.unwrap_or_else(|| V::zero(self)), &state)
+        state
     }
 
     /// The variables behind a state, with their types.
-    fn vars_of<V: Value<Self>>(&self, state: V) -> Vec<(VarId, Type)> {
-        let mut leaves = self.leaves_of(state).into_iter();
-        let cells = self.cells::<V>("");
+    fn vars_of(&self, schema: &'static Schema, state: Vec<Id>) -> Vec<(VarId, Type)> {
+        let mut leaves = state.into_iter();
+        let cells = Self::cells("", schema);
         let vars = cells.into_iter().filter_map(|cell| {
             let first = leaves.next()?;
             leaves.by_ref().take(cell.leaves - 1).for_each(drop);
@@ -242,6 +239,78 @@ impl Recorder {
             }
         });
         vars.collect()
+    }
+
+    /// The leaves that read a variable now.
+    fn read_all(&self, schema: &'static Schema, state: Vec<Id>) -> Vec<Id> {
+        let vars = self.vars_of(schema, state).into_iter();
+        vars.flat_map(|(v, ty)| self.read(v, ty)).collect()
+    }
+
+    fn store_all(&self, schema: &'static Schema, state: Vec<Id>, values: Vec<Id>) {
+        let mut values = values.into_iter();
+        for (var, ty) in self.vars_of(schema, state) {
+            let value = match ty {
+                Type::Vector(_, n) => {
+                    let parts: Vec<Id> = values.by_ref().take(n).collect();
+                    self.vector(&parts)
+                }
+                _ => values.next().expect("one leaf for each scalar of the schema"),
+            };
+            self.builder(|b| b.store(var, value));
+        }
+    }
+
+    fn give_all(&self, schema: &'static Schema, leaves: Vec<Id>) {
+        if leaves.is_empty() {
+            self.builder(|b| b.push(Stmt::Return(None)));
+        } else {
+            self.give_leaves(schema, leaves);
+        }
+    }
+
+    /// One of two vectors.
+    fn select_vector(&self, c: Id, a: &[Id], b: &[Id]) -> Id {
+        let (a, b) = (self.vector(a), self.vector(b));
+        let ty = self.node(a).ty;
+        self.add(Expr::Select(c, a, b), ty)
+    }
+
+    fn captured(&self, name: &str, schema: &'static Schema, bytes: &[u8]) -> Vec<Id> {
+        let mut leaves = Vec::new();
+        storage::uniforms(self, name, schema, bytes, &mut leaves);
+        leaves
+    }
+
+    fn name_leaves(&self, name: &'static str, leaves: &[Id]) {
+        let whole = leaves.first().map(|l| self.node(*l).expr);
+        self.builder(|b| {
+            // All parts of one value: the value is what has the name.
+            let owner = match whole {
+                Some(Expr::Member(a, _) | Expr::Element(a, _)) if leaves.len() > 1 => Some(a),
+                _ if leaves.len() == 1 => Some(leaves[0]),
+                _ => None,
+            };
+            let Some(mut id) = owner else { return };
+            while let Expr::Member(a, _) | Expr::Element(a, _) = b.node(id).expr
+                && leaves.len() > 1
+            {
+                id = a;
+            }
+            let node = b.node(id);
+            if !node.expr.is_trivial() && node.name.is_none() {
+                node.name = Some(name);
+            }
+        });
+    }
+
+    /// A call of a recorded function, and the leaves of what it gives.
+    fn call_of(&self, function: usize, operands: Vec<Id>, result: &'static Schema) -> Vec<Id> {
+        let ty = Type::of(result);
+        let call = self.add(Expr::Call(function, operands), ty);
+        let mut leaves = Vec::with_capacity(result.leaves());
+        self.parts(result, call, &mut leaves);
+        leaves
     }
 }
 
@@ -394,30 +463,34 @@ impl Machine for Recorder {
     fn vector_binary<O: Op<F32Binary>, const N: usize>(
         &self,
         _: O,
-        a: [Id; N],
+        mut a: [Id; N],
         b: [Id; N],
     ) -> [Id; N] {
-        self.float_vectors(O::OP, a, b)
+        self.float_vectors(O::OP, &mut a, &b);
+        a
     }
-    fn vector_unary<O: Op<F32Unary>, const N: usize>(&self, _: O, a: [Id; N]) -> [Id; N] {
-        self.float_vector(O::OP, a)
+    fn vector_unary<O: Op<F32Unary>, const N: usize>(&self, _: O, mut a: [Id; N]) -> [Id; N] {
+        self.float_vector(O::OP, &mut a);
+        a
     }
 
     fn i32_vector_binary<O: Op<IntBinary>, const N: usize>(
         &self,
         _: O,
-        a: [Id; N],
+        mut a: [Id; N],
         b: [Id; N],
     ) -> [Id; N] {
-        self.int_vectors(O::OP, Type::I32, a, b)
+        self.int_vectors(O::OP, Type::I32, &mut a, &b);
+        a
     }
     fn u32_vector_binary<O: Op<IntBinary>, const N: usize>(
         &self,
         _: O,
-        a: [Id; N],
+        mut a: [Id; N],
         b: [Id; N],
     ) -> [Id; N] {
-        self.int_vectors(O::OP, Type::U32, a, b)
+        self.int_vectors(O::OP, Type::U32, &mut a, &b);
+        a
     }
     fn u32_unary<O: Op<U32Unary>>(&self, _: O, a: Id) -> Id {
         self.bits_unary(O::OP, a)
@@ -475,10 +548,7 @@ impl Machine for Recorder {
             }
             (None, Schema::Vector(..)) => {
                 let (a, b) = (self.leaves_of(a()), self.leaves_of(b()));
-                let (a, b) = (self.vector(&a), self.vector(&b));
-                let ty = self.node(a).ty;
-                let selected = self.add(Expr::Select(c.0, a, b), ty);
-                self.take_apart(selected)
+                self.take_apart(self.select_vector(c.0, &a, &b))
             }
             (None, _) => {
                 let (a, b) = (a(), b());
@@ -566,36 +636,20 @@ impl Machine for Recorder {
     }
 
     fn var_new<V: Value<Self>>(&self, name: &'static str, v: V) -> V {
-        self.new_cells(name, Some(v))
+        self.with_leaves(v, &self.new_cells(name, V::SCHEMA, Some(self.leaves_of(v))))
     }
     fn var_declare<V: Value<Self>>(&self, name: &'static str) -> V {
-        self.new_cells(name, None)
+        self.with_leaves(V::zero(self), &self.new_cells(name, V::SCHEMA, None))
     }
     fn var_get<V: Value<Self>>(&self, state: V) -> V {
-        let vars = self.vars_of(state);
-        let leaves: Vec<Id> = vars.into_iter().flat_map(|(v, ty)| self.read(v, ty)).collect();
-        self.with_leaves(state, &leaves)
+        self.with_leaves(state, &self.read_all(V::SCHEMA, self.leaves_of(state)))
     }
     fn var_set<V: Value<Self>>(&self, state: V, v: V) -> V {
-        let mut values = self.leaves_of(v).into_iter();
-        for (var, ty) in self.vars_of(state) {
-            let value = match ty {
-                Type::Vector(_, n) => {
-                    let parts: Vec<Id> = values.by_ref().take(n).collect();
-                    self.vector(&parts)
-                }
-                _ => values.next().expect("one leaf for each scalar of the schema"),
-            };
-            self.builder(|b| b.store(var, value));
-        }
+        self.store_all(V::SCHEMA, self.leaves_of(state), self.leaves_of(v));
         state
     }
     fn give<V: Value<Self>>(&self, _: &Cell<V>, v: V) {
-        if V::SCHEMA.leaves() == 0 {
-            self.builder(|b| b.push(Stmt::Return(None)));
-        } else {
-            self.give_leaves(V::SCHEMA, self.leaves_of(v));
-        }
+        self.give_all(V::SCHEMA, self.leaves_of(v));
     }
     fn give_slot<V: Value<Self>>(&self) -> V {
         V::zero(self)
@@ -607,50 +661,28 @@ impl Machine for Recorder {
         body: impl FnOnce(&Self, A) -> R,
     ) -> R {
         if self.arithmetic == wgsl::Arithmetic::Fast
-            && let Some(result) = self.builtin(info, args)
+            && let Some(result) = self.builtin(info, self.leaves_of(args))
         {
-            return result;
+            return self.of_leaves(&result);
         }
-        let operands = self.arguments(args);
+        let operands = self.arguments(A::SCHEMA, self.leaves_of(args));
         let params = self.begin(info, args);
         let result = body(self, params);
         let function = self.end(result);
         if R::SCHEMA.leaves() == 0 {
             return result;
         }
-        let call = self.add(Expr::Call(function, operands), Type::of(R::SCHEMA));
-        self.take_apart(call)
+        self.of_leaves(&self.call_of(function, operands, R::SCHEMA))
     }
 
     fn capture<T: crate::machine::Type>(&self, name: &'static str, v: T) -> T::On<Self> {
         let mut bytes = vec![0; size_of::<T>()];
         v.write(&mut bytes);
-        let mut leaves = Vec::new();
-        storage::uniforms(self, name, T::SCHEMA, &bytes, &mut leaves);
-        self.of_leaves(&leaves)
+        self.of_leaves(&self.captured(name, T::SCHEMA, &bytes))
     }
 
     fn named<V: Value<Self>>(&self, name: &'static str, v: V) -> V {
-        let leaves = self.leaves_of(v);
-        let whole = leaves.first().map(|l| self.node(*l).expr);
-        self.builder(|b| {
-            // All parts of one value: the value is what has the name.
-            let owner = match whole {
-                Some(Expr::Member(a, _) | Expr::Element(a, _)) if leaves.len() > 1 => Some(a),
-                _ if leaves.len() == 1 => Some(leaves[0]),
-                _ => None,
-            };
-            let Some(mut id) = owner else { return };
-            while let Expr::Member(a, _) | Expr::Element(a, _) = b.node(id).expr
-                && leaves.len() > 1
-            {
-                id = a;
-            }
-            let node = b.node(id);
-            if !node.expr.is_trivial() && node.name.is_none() {
-                node.name = Some(name);
-            }
-        });
+        self.name_leaves(name, &self.leaves_of(v));
         v
     }
 
@@ -659,8 +691,8 @@ impl Machine for Recorder {
         prims: &crate::bvh::SceneView<'_, P>,
         ray: RayOn<Self>,
     ) -> HitOn<Self> {
-        if prims.placed().is_some() {
-            return self.closest_placed_hit(prims, ray);
+        if let Some(placed) = prims.placed() {
+            return (RecordedWalks::of(placed).closest_hit)(self, prims, ray);
         }
         let function = self.closest_hit_function(prims);
         let ray = self.put_together(
@@ -677,7 +709,7 @@ impl Machine for Recorder {
         ray: RayOn<Self>,
     ) -> crate::bvh::CountedHitOn<Self> {
         let function = match prims.placed() {
-            Some(_) => self.closest_placed_hit_with_cost(prims),
+            Some(placed) => (RecordedWalks::of(placed).closest_hit_with_cost)(self, prims),
             None => self.closest_hit_with_cost_function(prims),
         };
         let schema: &'static Schema = <crate::bvh::CountedHitOn<Self> as Value<Self>>::SCHEMA;
@@ -689,8 +721,8 @@ impl Machine for Recorder {
         prims: &crate::bvh::SceneView<'_, P>,
         ray: RayOn<Self>,
     ) -> B<Self> {
-        if prims.placed().is_some() {
-            return self.any_placed_hit(prims, ray);
+        if let Some(placed) = prims.placed() {
+            return (RecordedWalks::of(placed).any_hit)(self, prims, ray);
         }
         let function = self.any_hit_function(prims);
         let ray = self.put_together(

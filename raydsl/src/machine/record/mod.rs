@@ -21,6 +21,7 @@ mod visit;
 
 use core::cell::RefCell;
 
+pub(crate) use instances::RecordedWalks;
 pub(crate) use storage::stride;
 
 use builder::{Builder, LoopState};
@@ -182,7 +183,7 @@ impl Recorder {
     }
 
     /// The expression of a whole value: the one that all its leaves are parts of, else a new one.
-    fn put_together(&self, schema: &'static Schema, leaves: &mut impl Iterator<Item = Id>) -> Id {
+    fn put_together(&self, schema: &'static Schema, leaves: &mut std::vec::IntoIter<Id>) -> Id {
         match schema {
             Schema::Vector(_, n) => {
                 let parts: Vec<Id> = leaves.by_ref().take(*n).collect();
@@ -236,9 +237,9 @@ impl Recorder {
     }
 
     /// The expressions of a tuple's elements that have any leaves.
-    fn arguments<A: Value<Self>>(&self, args: A) -> Vec<Id> {
-        let mut leaves = self.leaves_of(args).into_iter();
-        let Schema::Struct { fields, .. } = A::SCHEMA else { return Vec::new() };
+    fn arguments(&self, schema: &'static Schema, leaves: Vec<Id>) -> Vec<Id> {
+        let mut leaves = leaves.into_iter();
+        let Schema::Struct { fields, .. } = schema else { return Vec::new() };
         fields
             .iter()
             .filter(|f| f.schema.leaves() > 0)
@@ -248,6 +249,11 @@ impl Recorder {
 
     /// Begins a function whose parameters are the tuple `A`; gives the parameters.
     fn begin<A: Value<Self>>(&self, info: &'static KernelInfo, host: A) -> A {
+        self.with_leaves(host, &self.begin_function(info, A::SCHEMA))
+    }
+
+    /// Begins a function with the parameters of a tuple; gives their leaves.
+    fn begin_function(&self, info: &'static KernelInfo, tuple: &'static Schema) -> Vec<Id> {
         let mut state = self.state.borrow_mut();
         let depth = state
             .open
@@ -267,8 +273,8 @@ impl Recorder {
         );
         state.open.push(Builder::new(info));
         drop(state);
-        let Schema::Struct { fields, .. } = A::SCHEMA else { return host };
         let mut leaves = Vec::new();
+        let Schema::Struct { fields, .. } = tuple else { return leaves };
         for (i, f) in fields.iter().enumerate().filter(|(_, f)| f.schema.leaves() > 0) {
             let name = info.params.get(i).copied().unwrap_or(f.name);
             let n = self.builder(|b| {
@@ -280,7 +286,7 @@ impl Recorder {
             let id = self.add(Expr::Param(n), Type::of(f.schema));
             self.parts(f.schema, id, &mut leaves);
         }
-        self.with_leaves(host, &leaves)
+        leaves
     }
 
     /// `host` with its leaves replaced; host values in it stay.
@@ -311,12 +317,16 @@ impl Recorder {
     /// Ends the function under way with `result` and gives its number, that of an equal one if
     /// there is one.
     fn end<R: Value<Self>>(&self, result: R) -> usize {
+        self.end_function(R::SCHEMA, self.leaves_of(result))
+    }
+
+    fn end_function(&self, schema: &'static Schema, result: Vec<Id>) -> usize {
         let returned = self.builder(|b| b.blocks.last().is_some_and(|b| always_returns(&b.1)));
-        if R::SCHEMA.leaves() > 0 {
+        if !result.is_empty() {
             if !returned {
-                self.give_leaves(R::SCHEMA, self.leaves_of(result));
+                self.give_leaves(schema, result);
             }
-            self.builder(|b| b.function.result = Some(Type::of(R::SCHEMA)));
+            self.builder(|b| b.function.result = Some(Type::of(schema)));
         }
         let mut state = self.state.borrow_mut();
         let mut builder = state.open.pop().expect("begin and end come in pairs");

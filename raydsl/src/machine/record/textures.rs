@@ -22,7 +22,7 @@ impl Recorder {
     ) -> Option<[Id; 4]> {
         let name = self.texture(key, name, layout)?;
         let n = at.len();
-        let function = self.text_function(format!("{name}_sample"), vec![], |function| {
+        let function = self.text_function(format!("{name}_sample"), vec![], &|function| {
             format!(
                 "fn {function}(at: vec{n}<f32>, level: f32) -> vec4<f32> {{\n    \
                  return textureSampleLevel({name}_texture, {name}_sampler, at, level);\n}}\n"

@@ -3,12 +3,15 @@
 //! The contract is that of [`crate::bvh`]: the least `(t, id)` of all primitives whose
 //! `intersect` accepts. Nodes are culled with the same robust slab test as on the CPU.
 
+use std::borrow::Cow;
+
 use super::ir::Function;
 use super::names::member_name;
 use super::types::zero_value;
 use super::{Builder, Recorder};
 use crate::bvh::{Cost, CountedHit, NODE_SCHEMA, SceneView, View, buffers};
 use crate::geometry::{Hit, HitRecord, Primitive, Ray, RayOn};
+use crate::machine::wgsl::BufferKey;
 use crate::machine::{KernelInfo, Schema, Type, Value};
 
 static SCRATCH: KernelInfo =
@@ -60,11 +63,66 @@ fn enter_leave(s: Slabs, node: Node, t_min: f32, t_max: f32) -> vec2<f32> {
 }
 ";
 
+/// What the text of a query says of its scene: whatever the primitives are, the text is made in one
+/// place.
+pub(super) trait Described {
+    /// The name of the buffer of primitives, which `m` gets.
+    fn primitives(&self, m: &Recorder) -> String;
+    fn schema(&self) -> &'static Schema;
+    fn slack(&self) -> f32;
+    fn name(&self) -> Cow<'static, str>;
+    fn key_of(&self, part: u32) -> BufferKey;
+    fn is_list(&self) -> bool;
+    fn has_tree(&self) -> bool;
+    /// How many nodes and how many indices.
+    fn tree_len(&self) -> (u64, u64);
+    fn root_len(&self) -> u64;
+    fn place_count(&self) -> u64;
+}
+
+impl<P: Primitive> Described for SceneView<'_, P> {
+    fn primitives(&self, m: &Recorder) -> String {
+        m.prims_buffer(self)
+    }
+    fn schema(&self) -> &'static Schema {
+        P::SCHEMA
+    }
+    fn slack(&self) -> f32 {
+        P::SLACK
+    }
+    fn name(&self) -> Cow<'static, str> {
+        View::name(self)
+    }
+    fn key_of(&self, part: u32) -> BufferKey {
+        View::key_of(self, part)
+    }
+    fn is_list(&self) -> bool {
+        View::is_list(self)
+    }
+    fn has_tree(&self) -> bool {
+        View::has_tree(self)
+    }
+    fn tree_len(&self) -> (u64, u64) {
+        View::tree_len(self)
+    }
+    fn root_len(&self) -> u64 {
+        View::root_len(self)
+    }
+    fn place_count(&self) -> u64 {
+        self.placed().map_or(0, |placed| placed.place_count())
+    }
+}
+
 impl Recorder {
     /// The number of the function that `call` records, without a call of it.
     pub(super) fn function_of<R: Value<Self>>(&self, call: impl FnOnce(&Self) -> R) -> usize {
         self.state.borrow_mut().open.push(Builder::new(&SCRATCH));
         call(self);
+        self.called()
+    }
+
+    /// The number of the function that is called last in the function under way, which goes.
+    fn called(&self) -> usize {
         let scratch = self.state.borrow_mut().open.pop();
         let called =
             scratch.iter().flat_map(|b| &b.function.nodes).rev().find_map(|n| match n.expr {
@@ -78,7 +136,7 @@ impl Recorder {
         &self,
         name: String,
         types: Vec<&'static Schema>,
-        text: impl FnOnce(&str) -> String,
+        text: &dyn Fn(&str) -> String,
     ) -> usize {
         let mut state = self.state.borrow_mut();
         if let Some(i) = state.functions.iter().position(|f| f.is_text() && f.name() == name) {
@@ -99,7 +157,7 @@ impl Recorder {
     }
 
     pub(super) fn at_function(&self, buffer: &str, schema: &'static Schema) -> usize {
-        self.text_function(format!("{buffer}_at"), vec![schema], |_| String::new())
+        self.text_function(format!("{buffer}_at"), vec![schema], &|_| String::new())
     }
 
     /// `fn points_len() -> u32`.
@@ -108,7 +166,7 @@ impl Recorder {
     }
 
     pub(super) fn len_of_buffer(&self, buffer: &str) -> usize {
-        self.text_function(format!("{buffer}_len"), vec![], |name| {
+        self.text_function(format!("{buffer}_len"), vec![], &|name| {
             format!("fn {name}() -> u32 {{\n    return params.len_of_{buffer};\n}}\n")
         })
     }
@@ -116,12 +174,12 @@ impl Recorder {
     /// `fn points_element(i: u32) -> ColorSphere`, for any `i`; it too is printed with the buffer.
     pub(super) fn element_function<P: Type, S: Type>(&self, prims: &View<'_, P, S>) -> usize {
         let name = format!("{}_element", self.prims_buffer(prims));
-        self.text_function(name, vec![P::SCHEMA], |_| String::new())
+        self.text_function(name, vec![P::SCHEMA], &|_| String::new())
     }
 
     /// `fn is_finite(v: vec3<f32>) -> bool`.
     pub(super) fn finite_function(&self) -> usize {
-        self.text_function("is_finite".to_owned(), vec![], |_| FINITE.to_owned())
+        self.text_function("is_finite".to_owned(), vec![], &|_| FINITE.to_owned())
     }
 
     pub(super) fn prims_buffer<P: Type, S: Type>(&self, prims: &View<'_, P, S>) -> String {
@@ -138,11 +196,14 @@ impl Recorder {
         (self.function_name(f), path)
     }
 
-    /// What the least `(t, id)` hit does with a primitive, and the distance beyond which there is
-    /// none.
-    fn closest_text<P: Primitive>(&self, prims: &SceneView<'_, P>) -> (String, String) {
-        let prims_name = self.prims_buffer(prims);
-        let (intersect, path) = self.intersect(prims);
+    /// What the least `(t, id)` hit does with a primitive that `call` meets, and the distance beyond
+    /// which there is none.
+    fn closest_text(
+        &self,
+        prims: &dyn Described,
+        (intersect, path): &(String, String),
+    ) -> (String, String) {
+        let prims_name = prims.primitives(self);
         self.finite_function();
         let test = format!(
             "let candidate = {intersect}({prims_name}_at(id), ray){path};\n\
@@ -152,14 +213,20 @@ impl Recorder {
         );
         let limit = format!(
             "select(ray.t_max, min(best.t + abs(best.t) * {:?}, ray.t_max), best.is_hit)",
-            P::SLACK
+            prims.slack()
         );
         (test, limit)
     }
 
     pub(super) fn closest_hit_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
-        let prims_name = self.prims_buffer(prims);
-        let (test, limit) = self.closest_text(prims);
+        self.prims_buffer(prims);
+        let call = self.intersect(prims);
+        self.closest_function(prims, &call)
+    }
+
+    fn closest_function(&self, prims: &dyn Described, call: &(String, String)) -> usize {
+        let prims_name = prims.primitives(self);
+        let (test, limit) = self.closest_text(prims, call);
         let miss = zero_value(Hit::SCHEMA);
         let query = Query {
             result: "Hit",
@@ -167,7 +234,7 @@ impl Recorder {
             limit: &limit,
             test: &test,
             give: "best",
-            slack: P::SLACK,
+            slack: prims.slack(),
             counts: false,
         };
         if !prims.is_list() {
@@ -177,7 +244,7 @@ impl Recorder {
         let each = Query { declare: "var best = before;", ..query };
         let each =
             self.tree_function(prims, format!("{prims_name}_closer_hit"), ", before: Hit", &each);
-        self.list_function(prims, format!("{prims_name}_closest_hit"), "Hit", |roots| {
+        self.list_function(prims, format!("{prims_name}_closest_hit"), "Hit", &|roots| {
             format!(
                 "    var best = {miss};\n    \
                  for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
@@ -191,8 +258,14 @@ impl Recorder {
         &self,
         prims: &SceneView<'_, P>,
     ) -> usize {
-        let prims_name = self.prims_buffer(prims);
-        let (test, limit) = self.closest_text(prims);
+        self.prims_buffer(prims);
+        let call = self.intersect(prims);
+        self.closest_with_cost_function(prims, &call)
+    }
+
+    fn closest_with_cost_function(&self, prims: &dyn Described, call: &(String, String)) -> usize {
+        let prims_name = prims.primitives(self);
+        let (test, limit) = self.closest_text(prims, call);
         let test = format!("cost.primitives = cost.primitives + 1u;\n{test}");
         let before = zero_value(CountedHit::SCHEMA);
         let declare = |before: &str| format!("var best = {before}.hit;\nvar cost = {before}.cost;");
@@ -202,7 +275,7 @@ impl Recorder {
             limit: &limit,
             test: &test,
             give: "CountedHit(best, cost)",
-            slack: P::SLACK,
+            slack: prims.slack(),
             counts: true,
         };
         let name = format!("{prims_name}_closest_hit_with_cost");
@@ -213,7 +286,7 @@ impl Recorder {
         let each = Query { declare: &declare("before"), ..query };
         let each_name = format!("{prims_name}_closer_hit_with_cost");
         let each = self.tree_function(prims, each_name, ", before: CountedHit", &each);
-        self.list_function(prims, name, "CountedHit", |roots| {
+        self.list_function(prims, name, "CountedHit", &|roots| {
             format!(
                 "    var best = {before};\n    \
                  for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
@@ -223,8 +296,13 @@ impl Recorder {
     }
 
     pub(super) fn any_hit_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
-        let prims_name = self.prims_buffer(prims);
-        let (intersect, path) = self.intersect(prims);
+        self.prims_buffer(prims);
+        let call = self.intersect(prims);
+        self.any_function(prims, &call)
+    }
+
+    fn any_function(&self, prims: &dyn Described, (intersect, path): &(String, String)) -> usize {
+        let prims_name = prims.primitives(self);
         self.finite_function();
         let test = format!(
             "let candidate = {intersect}({prims_name}_at(id), ray){path};\n\
@@ -237,14 +315,14 @@ impl Recorder {
             limit: "ray.t_max",
             test: &test,
             give: "false",
-            slack: P::SLACK,
+            slack: prims.slack(),
             counts: false,
         };
         if !prims.is_list() {
             return self.query_function(prims, format!("{prims_name}_any_hit"), &query);
         }
         let each = self.tree_function(prims, format!("{prims_name}_any_hit_in"), "", &query);
-        self.list_function(prims, format!("{prims_name}_any_hit"), "bool", |roots| {
+        self.list_function(prims, format!("{prims_name}_any_hit"), "bool", &|roots| {
             format!(
                 "    for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
                  if ({each}(ray, {roots}_at(i))) {{\n            return true;\n        }}\n    }}\n    \
@@ -254,57 +332,52 @@ impl Recorder {
     }
 
     /// The function of a query of a slice, or of one tree.
-    fn query_function<P: Primitive>(
-        &self,
-        prims: &SceneView<'_, P>,
-        name: String,
-        query: &Query<'_>,
-    ) -> usize {
-        let (prims_name, tree) = (self.prims_buffer(prims), self.tree(prims));
-        self.text_function(name, types_of_query::<P>(query), |name| match &tree {
+    fn query_function(&self, prims: &dyn Described, name: String, query: &Query<'_>) -> usize {
+        let (prims_name, tree) = (prims.primitives(self), self.tree(prims));
+        self.text_function(name, types_of_query(prims, query), &|name| match &tree {
             None => linear(name, query, &prims_name),
             Some(tree) => walk(name, "ray: Ray", ["0u", "ray.t_max"], query, tree),
         })
     }
 
     /// The function of a query of the tree at one of the roots: its name.
-    fn tree_function<P: Primitive>(
+    fn tree_function(
         &self,
-        prims: &SceneView<'_, P>,
+        prims: &dyn Described,
         name: String,
         more: &str,
         query: &Query<'_>,
     ) -> String {
         let Some(tree) = self.tree(prims) else { unreachable!("a list has trees") };
         let parameters = format!("ray: Ray, first: u32{more}");
-        let function = self.text_function(name, types_of_query::<P>(query), |name| {
+        let function = self.text_function(name, types_of_query(prims, query), &|name| {
             walk(name, &parameters, ["first", query.limit], query, &tree)
         });
         self.function_name(function)
     }
 
     /// The function of a query of a list, which asks one tree after another.
-    fn list_function<P: Primitive>(
+    fn list_function(
         &self,
-        prims: &SceneView<'_, P>,
+        prims: &dyn Described,
         name: String,
         result: &str,
-        body: impl FnOnce(&str) -> String,
+        body: &dyn Fn(&str) -> String,
     ) -> usize {
         let roots = self.roots_buffer(prims);
-        self.text_function(name, types_of::<P>(), |name| {
+        self.text_function(name, types_of(prims), &|name| {
             format!("fn {name}(ray: Ray) -> {result} {{\n{}}}\n", body(&roots))
         })
     }
 
     /// Where the roots of a list are among its nodes.
-    pub(super) fn roots_buffer<P: Primitive>(&self, prims: &SceneView<'_, P>) -> String {
+    pub(super) fn roots_buffer(&self, prims: &dyn Described) -> String {
         let name = format!("{}_roots", prims.name());
         self.buffer(prims.key_of(buffers::ROOTS), &name, &Schema::U32, prims.root_len())
     }
 
     /// The buffers of a tree, or of all trees of a list: nodes and index list. `None` for a slice.
-    pub(super) fn tree<P: Primitive>(&self, prims: &SceneView<'_, P>) -> Option<TreeNames> {
+    pub(super) fn tree(&self, prims: &dyn Described) -> Option<TreeNames> {
         if !prims.has_tree() {
             return None;
         }
@@ -313,7 +386,7 @@ impl Recorder {
         let (nodes, indices) = (prims.key_of(buffers::NODES), prims.key_of(buffers::INDICES));
         let nodes = self.buffer(nodes, &format!("{name}_nodes"), NODE_SCHEMA, node_count);
         let indices = self.buffer(indices, &format!("{name}_ids"), &Schema::U32, index_count);
-        self.text_function("slabs".to_owned(), vec![Ray::SCHEMA, NODE_SCHEMA], |_| {
+        self.text_function("slabs".to_owned(), vec![Ray::SCHEMA, NODE_SCHEMA], &|_| {
             SLABS.to_owned()
         });
         Some(TreeNames { nodes, indices })
@@ -321,14 +394,14 @@ impl Recorder {
 }
 
 /// The types that the text of a query names.
-fn types_of<P: Primitive>() -> Vec<&'static Schema> {
-    vec![Ray::SCHEMA, Hit::SCHEMA, P::SCHEMA, NODE_SCHEMA]
+fn types_of(prims: &dyn Described) -> Vec<&'static Schema> {
+    vec![Ray::SCHEMA, Hit::SCHEMA, prims.schema(), NODE_SCHEMA]
 }
 
 /// The same, of a query.
-fn types_of_query<P: Primitive>(query: &Query<'_>) -> Vec<&'static Schema> {
+fn types_of_query(prims: &dyn Described, query: &Query<'_>) -> Vec<&'static Schema> {
     let counted = query.counts.then_some([Cost::SCHEMA, CountedHit::SCHEMA]);
-    types_of::<P>().into_iter().chain(counted.into_iter().flatten()).collect()
+    types_of(prims).into_iter().chain(counted.into_iter().flatten()).collect()
 }
 
 /// The names of a tree's buffers.

@@ -3,6 +3,7 @@
 
 use super::Recorder;
 use super::ir::{Expr, Id, Stmt, Type};
+use super::traverse::Described;
 use crate::bvh::{NODE_SCHEMA, RecordOn, SceneView};
 use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn};
 use crate::machine::{B, Branch, F, Field, Loop, Machine, Schema, U, Value, Var, op};
@@ -167,17 +168,17 @@ impl Recorder {
     }
 
     /// `fn bvh_walk(ray: Ray, ..) -> Traversal` and `fn bvh_next(..) -> u32`.
-    fn walk_functions<P: Primitive>(&self, prims: &SceneView<'_, P>) -> (usize, usize) {
-        let name = self.prims_buffer(prims);
+    fn walk_functions(&self, prims: &dyn Described) -> (usize, usize) {
+        let name = prims.primitives(self);
         self.finite_function();
         let Some(tree) = self.tree(prims) else { unreachable!("only trees are walked") };
-        let (nodes, ids, slack) = (&tree.nodes, &tree.indices, P::SLACK);
+        let (nodes, ids, slack) = (&tree.nodes, &tree.indices, prims.slack());
         let (parameter, first) =
             if prims.is_list() { (", first: u32", "first") } else { ("", "0u") };
         let start = self.text_function(
             format!("{name}_walk"),
             vec![<Ray as crate::machine::Type>::SCHEMA, TRAVERSAL, NODE_SCHEMA],
-            |name| {
+            &|name| {
                 format!(
                     "\
 /// A traversal that has yet to begin.
@@ -202,7 +203,7 @@ fn {name}(ray: Ray{parameter}) -> Traversal {{
             },
         );
         let next =
-            self.text_function(format!("{name}_next"), vec![TRAVERSAL, NODE_SCHEMA], |name| {
+            self.text_function(format!("{name}_next"), vec![TRAVERSAL, NODE_SCHEMA], &|name| {
                 format!(
                     "\
 /// The next primitive that the ray may meet at or before `limit`; {NONE}u when none is left.
