@@ -3,11 +3,11 @@
 use std::fmt::Debug;
 
 use raydsl::kernel::{Kernel, Lifted, Variant};
-use raydsl::machine::{KernelFn, KernelInfo, Lanes, Packet, Rounding, Scalar, Type};
+use raydsl::machine::{KernelFn, KernelInfo, Lanes, One, Packet, Rounding, Scalar, Type};
 use raydsl::report::{Cause, explain};
 
 use crate::gpu::gpu;
-use crate::levels::{LevelTask, each_level, gangs, widest_level};
+use crate::levels::{LevelTask, each_level_padded, gangs, widest_level};
 use crate::rng::Rng;
 use crate::scaled;
 use crate::values::{Numbers, compare, compare_within, garbage, random};
@@ -46,7 +46,8 @@ where
     let expected: Vec<F::Output> = inputs.iter().map(|a| F::scalar(*a)).collect();
     let case = Case::<F> { name, inputs, expected };
     case.scalar_machine();
-    each_level(&mut &case);
+    case.packets("one lane", One, 1);
+    each_level_padded(&mut |name, lanes, width| case.packets(name, lanes, width));
     widest_level(&mut &case);
     for gang in gangs() {
         case.packets(&gang.name, gang.lanes, gang.width);
@@ -281,9 +282,9 @@ pub fn recorded<F: KernelFn>() -> Kernel<'static, F::Args, F::Output> {
         KernelInfo { name: "function", file: file!(), line: line!(), params: &[] };
     Kernel::scalar(&INFO, F::scalar).lifted(
         Lifted {
-            native4: Some(Box::new(|_, _| unreachable!())),
-            native8: Some(Box::new(|_, _| unreachable!())),
-            native16: Some(Box::new(|_, _| unreachable!())),
+            native4: None,
+            native8: None,
+            native16: None,
             recorder: Some(Box::new(F::lifted)),
             margin: Some(Box::new(F::lifted)),
         },

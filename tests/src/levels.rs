@@ -15,8 +15,44 @@ pub trait LevelTask {
 /// operations are calls.
 pub fn each_level(task: &mut impl LevelTask) {
     task.run("one lane", One);
+    let task = &mut AtRunTime(task);
     widths(task, Fallback::new());
     native(task, Level::new());
+}
+
+/// Does `task` with 4, 8 and 16 lanes of every level of this machine, in one kind of 16 lanes for all
+/// of them, of which those behind the width hold nothing: a kernel is compiled once for all.
+pub fn each_level_padded(task: &mut dyn FnMut(&str, RunTime<16>, usize)) {
+    struct Padded<'a>(&'a mut dyn FnMut(&str, RunTime<16>, usize));
+    impl Widths for Padded<'_> {
+        fn run<L: Lanes>(&mut self, lanes: L) {
+            self.0(&format!("{} x{}", lanes.isa(), L::N), RunTime::new(lanes), L::N);
+        }
+    }
+    let task = &mut Padded(task);
+    widths(task, Fallback::new());
+    native(task, Level::new());
+}
+
+/// Something to do with one width of one level.
+trait Widths {
+    fn run<L: Lanes>(&mut self, lanes: L);
+}
+
+/// As lanes of their width, whose operations are calls.
+struct AtRunTime<'a, T>(&'a mut T);
+
+impl<T: LevelTask> Widths for AtRunTime<'_, T> {
+    fn run<L: Lanes>(&mut self, lanes: L) {
+        // Known when code is made, so that each table is there once.
+        if const { L::N == 4 } {
+            one_width(self.0, RunTime::<4>::new(lanes));
+        } else if const { L::N == 8 } {
+            one_width(self.0, RunTime::<8>::new(lanes));
+        } else {
+            one_width(self.0, RunTime::<16>::new(lanes));
+        }
+    }
 }
 
 /// Does `task` with the widest packets that this machine has registers for, as production has
@@ -44,6 +80,7 @@ fn padded<L: Lanes>(task: &mut dyn FnMut(&str, Numbered), lanes: L) {
 #[cfg(target_arch = "x86_64")]
 fn natural(task: &mut dyn FnMut(&str, Numbered), level: Level) {
     if let Some(s) = level.as_sse2() {
+        padded(task, Simd4(s));
         padded(task, Simd8(s));
     }
     if let Some(s) = level.as_sse4_2() {
@@ -150,7 +187,7 @@ pub struct AnyGang {
 }
 
 #[cfg(target_arch = "x86_64")]
-fn native(task: &mut impl LevelTask, level: Level) {
+fn native(task: &mut impl Widths, level: Level) {
     match level.as_sse2() {
         Some(s) => widths(task, s),
         None => unreachable!("SSE2 is a part of x86-64"),
@@ -170,7 +207,7 @@ fn native(task: &mut impl LevelTask, level: Level) {
 }
 
 #[cfg(target_arch = "aarch64")]
-fn native(task: &mut impl LevelTask, level: Level) {
+fn native(task: &mut impl Widths, level: Level) {
     match level.as_neon() {
         Some(s) => widths(task, s),
         None => println!("SKIPPED: this machine has no NEON"),
@@ -178,14 +215,14 @@ fn native(task: &mut impl LevelTask, level: Level) {
 }
 
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-fn native(_: &mut impl LevelTask, _: Level) {
+fn native(_: &mut impl Widths, _: Level) {
     println!("SKIPPED: no levels are known for this target");
 }
 
-fn widths<S: Simd>(task: &mut impl LevelTask, s: S) {
-    one_width(task, RunTime::<4>::new(Simd4(s)));
-    one_width(task, RunTime::<8>::new(Simd8(s)));
-    one_width(task, RunTime::<16>::new(Simd16(s)));
+fn widths<S: Simd>(task: &mut impl Widths, s: S) {
+    task.run(Simd4(s));
+    task.run(Simd8(s));
+    task.run(Simd16(s));
 }
 
 fn one_width<L: Lanes>(task: &mut impl LevelTask, lanes: L) {

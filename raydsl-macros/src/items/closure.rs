@@ -121,7 +121,7 @@ fn wanted(errors: &mut Errors) -> Vec<&'static Natural> {
         let all: Vec<&str> = NATURAL.iter().map(|n| n.variant).collect();
         errors.at(
             proc_macro2::Span::call_site(),
-            &format!("the environment variable {VARIANTS} names `{name}`, which is no variant"),
+            format!("the environment variable {VARIANTS} names `{name}`, which is no variant"),
             &format!("it is a list of some of: scalar,{}", all.join(",")),
         );
     }

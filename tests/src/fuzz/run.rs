@@ -238,11 +238,11 @@ impl Case {
     fn recorded(&self) -> Kernel<'static, Args, Outcome> {
         Kernel::scalar(&INFO, self.source).lifted(
             Lifted {
-                native4: Some(Box::new(|_, _| unreachable!())),
-                native8: Some(Box::new(|_, _| unreachable!())),
-                native16: Some(Box::new(|_, _| unreachable!())),
+                native4: None,
+                native8: None,
+                native16: None,
                 recorder: Some(Box::new(self.recorder)),
-                margin: Some(Box::new(|_, _| unreachable!())),
+                margin: None,
             },
             resources,
         )
