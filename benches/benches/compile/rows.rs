@@ -1,0 +1,213 @@
+//! Measures cases, and prints a row for each measure.
+
+use std::path::Path;
+
+use raydsl_benches::clock::{median, spread};
+use serde::Serialize;
+
+use super::cases::{COPIES, Case, Measure, SCALAR, WHILE_EDITING};
+use super::project::{Order, Profile, Project};
+use super::rustc::Times;
+
+/// One measure of one case.
+#[derive(Serialize)]
+pub(crate) struct Row {
+    case: String,
+    /// How it was compiled.
+    command: String,
+    /// Which copies it has, as `RAYDSL_VARIANTS` names them, or `all`.
+    variants: &'static str,
+    /// Seconds that the processors were busy, the median of all runs; of systems that do not say
+    /// it, none.
+    cpu_s: Option<f64>,
+    /// These, less those of the scalar function alone.
+    over_scalar_s: Option<f64>,
+    /// The middle half of the runs, as a share; of the seconds of the day where there are no others.
+    spread: f64,
+    /// Seconds of the day, the median.
+    wall_s: f64,
+    /// How often it was compiled.
+    runs: usize,
+}
+
+/// The rows so far.
+pub(crate) struct Rows {
+    project: Project,
+    runs: usize,
+    rows: Vec<Row>,
+    /// Whether the library's macros read `RAYDSL_VARIANTS`, if that is known.
+    has_variants: Option<bool>,
+}
+
+/// All copies.
+const ALL: &str = "all";
+
+/// With the profile for an edit loop, for the first time.
+const FROM_SCRATCH: &str = "edit loop: from scratch";
+
+impl Rows {
+    /// No rows, of programs that depend on the library in a workspace.
+    pub(crate) fn new(library: &Path, runs: usize, is_kept: bool) -> Result<Self, String> {
+        let project = Project::new(library, is_kept)?;
+        println!("{} in {}", library.display(), project.folder().display());
+        println!(
+            "{:<14}{:<38}{:<10}{:>8}{:>13}{:>8}{:>8}",
+            "case", "command", "variants", "CPU s", "over scalar", "spread", "wall s"
+        );
+        Ok(Self { project, runs, rows: Vec::new(), has_variants: None })
+    }
+
+    /// The rows.
+    pub(crate) fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// Only whether a case compiles.
+    pub(crate) fn check(&mut self, case: &Case) -> Result<(), String> {
+        self.compile(case, Measure::Check, None, None).map(|_| ())
+    }
+
+    /// All measures of a case.
+    pub(crate) fn measure(&mut self, case: &Case) -> Result<(), String> {
+        for &measure in &case.measures {
+            if measure == Measure::Edit {
+                self.edit(case, None)?;
+                if self.has_variants()? {
+                    self.edit(case, Some(WHILE_EDITING))?;
+                }
+            } else {
+                self.compile(case, measure, None, None)?;
+            }
+        }
+        if case.by_copy && self.has_variants()? {
+            let base = self.compile(case, Measure::Release, Some(SCALAR), None)?;
+            for copy in COPIES {
+                self.compile(case, Measure::Release, Some(copy), base)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Compiles a program as often as it shall be, and prints the row: its seconds of the
+    /// processors. `base` are those without the copy.
+    fn compile(
+        &mut self,
+        case: &Case,
+        measure: Measure,
+        variants: Option<&'static str>,
+        base: Option<f64>,
+    ) -> Result<Option<f64>, String> {
+        let order = order(case, measure, variants);
+        self.prepare(order.profile)?;
+        let times = (0..self.runs).map(|_| self.project.build(order));
+        let times = times.collect::<Result<Vec<Times>, String>>()?;
+        Ok(self.add(&case.name, measure.name(), variants, &times, base))
+    }
+
+    /// Compiles a program, and again with another number; prints a row for each.
+    fn edit(&mut self, case: &Case, variants: Option<&'static str>) -> Result<(), String> {
+        let [before, after] = case.edit.ok_or("no edit is known of it")?;
+        if case.source.matches(before).count() != 1 {
+            return Err(format!("`{before}` is not there once"));
+        }
+        let edited = case.source.replace(before, after);
+        let order = order(case, Measure::Edit, variants);
+        self.prepare(order.profile)?;
+        let (mut first, mut again) = (Vec::new(), Vec::new());
+        for _ in 0..self.runs {
+            self.project.forget(order.profile)?;
+            first.push(self.project.build(order)?);
+            again.push(self.project.build(Order { source: &edited, ..order })?);
+        }
+        self.add(&case.name, FROM_SCRATCH.to_owned(), variants, &first, None);
+        self.add(&case.name, Measure::Edit.name(), variants, &again, None);
+        Ok(())
+    }
+
+    /// Compiles the dependencies, once a profile.
+    fn prepare(&mut self, profile: Profile) -> Result<(), String> {
+        if let Some(times) = self.project.prepare(profile)? {
+            let command = match profile {
+                Profile::Check => Measure::Check.name(),
+                Profile::Release => Measure::Release.name(),
+                Profile::Edit => FROM_SCRATCH.to_owned(),
+            };
+            self.add("dependencies", command, None, &[times], None);
+        }
+        Ok(())
+    }
+
+    /// Whether `RAYDSL_VARIANTS` makes a difference: a program with the scalar function alone is
+    /// another one than that with all copies.
+    fn has_variants(&mut self) -> Result<bool, String> {
+        if let Some(known) = self.has_variants {
+            return Ok(known);
+        }
+        self.prepare(Profile::Release)?;
+        let source = include_str!("programs/empty.rs");
+        let whole = Order {
+            name: "variants",
+            source,
+            profile: Profile::Release,
+            options: "",
+            variants: None,
+        };
+        let mut sizes = [0; 2];
+        for (size, variants) in sizes.iter_mut().zip([None, Some(SCALAR)]) {
+            self.project.build(Order { variants, ..whole })?;
+            *size = self.project.executable(whole.name, whole.profile)?.len();
+        }
+        let has = sizes[0] != sizes[1];
+        if !has {
+            println!("left out: rows by copy, since this library does not know RAYDSL_VARIANTS");
+        }
+        self.has_variants = Some(has);
+        Ok(has)
+    }
+
+    /// Adds a row and prints it.
+    fn add(
+        &mut self,
+        case: &str,
+        command: String,
+        variants: Option<&'static str>,
+        times: &[Times],
+        base: Option<f64>,
+    ) -> Option<f64> {
+        let wall: Vec<f64> = times.iter().map(|t| t.wall).collect();
+        let cpu: Option<Vec<f64>> = times.iter().map(|t| t.cpu).collect();
+        let cpu_s = cpu.as_deref().map(median);
+        let row = Row {
+            case: case.to_owned(),
+            command,
+            variants: variants.unwrap_or(ALL),
+            cpu_s,
+            over_scalar_s: cpu_s.zip(base).map(|(cpu, base)| cpu - base),
+            spread: spread(cpu.as_ref().unwrap_or(&wall)),
+            wall_s: median(&wall),
+            runs: times.len(),
+        };
+        print(&row);
+        self.rows.push(row);
+        cpu_s
+    }
+}
+
+fn order<'a>(case: &'a Case, measure: Measure, variants: Option<&'a str>) -> Order<'a> {
+    let (profile, options) = match measure {
+        Measure::Check => (Profile::Check, ""),
+        Measure::Release => (Profile::Release, ""),
+        Measure::ReleaseWith(options) => (Profile::Release, options),
+        Measure::Edit => (Profile::Edit, ""),
+    };
+    Order { name: &case.name, source: &case.source, profile, options, variants }
+}
+
+fn print(row: &Row) {
+    let Row { case, command, variants, cpu_s, over_scalar_s, spread, wall_s, runs } = row;
+    let seconds = |s: Option<f64>| s.map_or("-".to_owned(), |s| format!("{s:.2}"));
+    let (cpu_s, over_scalar_s) = (seconds(*cpu_s), seconds(*over_scalar_s));
+    let spread = if *runs > 1 { format!("{:.1}%", 100.0 * spread) } else { "-".to_owned() };
+    print!("{case:<14}{command:<38}{variants:<10}{cpu_s:>8}");
+    println!("{over_scalar_s:>13}{spread:>8}{wall_s:>8.2}");
+}
