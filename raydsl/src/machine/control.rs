@@ -264,6 +264,9 @@ impl<M: Machine, C: Condition<M>> Branch<M, C> {
 }
 
 /// A loop of lifted code.
+///
+/// What outlives a round is in a [`Var`] or a [`Ret`]: all else that the round has made may be gone
+/// after it.
 pub struct Loop<M: Machine> {
     state: M::Loop,
 }

@@ -500,7 +500,7 @@ pub trait Machine: Sized + 'static {
 
     /// Asks `meet` about every hit within the ray's range, in the lanes that have it: whether the
     /// lane goes on. Nodes beyond `limit` are left out. The hit, and the record that has it, has
-    /// its primitive's number.
+    /// its primitive's number. What outlives a hit is in variables, as for rounds of a [`Loop`].
     fn visit<P: crate::geometry::Primitive>(
         &self,
         prims: &crate::bvh::SceneView<'_, P>,

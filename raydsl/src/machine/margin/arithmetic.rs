@@ -3,9 +3,10 @@
 use std::rc::Rc;
 
 use super::affine::{Form, Handle};
+use super::arena::Known;
 use super::interval::{Interval, Rounded};
 use super::sums::Parts;
-use super::{Bounded, Margin, rounding};
+use super::{Margin, rounding};
 use crate::machine::F32Binary;
 
 /// How many integers an open conversion may give before the run is given up.
@@ -30,7 +31,7 @@ impl Margin {
     /// them; `nans` are those that a NaN may give.
     pub(super) fn integer<T: Copy + PartialEq>(
         &self,
-        a: Bounded,
+        a: Known,
         of: impl Fn(f64) -> T,
         order: impl Fn(T) -> i64,
         back: impl Fn(i64) -> T,
@@ -60,7 +61,7 @@ impl Margin {
     }
 
     /// A function in steps that rises: a decision where few steps are possible.
-    pub(super) fn stepped(&self, a: Bounded, f: impl Fn(f64) -> f64) -> Bounded {
+    pub(super) fn stepped(&self, a: Known, f: impl Fn(f64) -> f64) -> Known {
         let value = f(a.value);
         if a.range.is_nan() {
             return self.point(f64::NAN);
@@ -90,23 +91,23 @@ impl Margin {
     }
 
     /// `|a|`.
-    pub(super) fn size(&self, a: Bounded) -> Bounded {
+    pub(super) fn size(&self, a: Known) -> Known {
         let size = match a.range {
             // The same number, whatever the signs of zeros.
             r if r.low >= 0.0 && !r.is_nan() => a,
             r if r.high <= 0.0 && !r.is_nan() => self.negated(a),
             _ => self.bounded(a.value, a.range),
         };
-        Bounded { value: a.value.abs(), range: a.range.abs(), ..size }
+        Known { value: a.value.abs(), range: a.range.abs(), ..size }
     }
 
     /// A float that is `value` in `f64`, and a rounded one of `range` in `f32`.
-    pub(super) fn rounded(&self, value: f64, range: Interval, by: Rounded) -> Bounded {
+    pub(super) fn rounded(&self, value: f64, range: Interval, by: Rounded) -> Known {
         self.computed(value, range, None, by)
     }
 
     /// A float that is `value` in `f64`, and in `f32` what `range` and `form` say, rounded.
-    fn computed(&self, value: f64, range: Interval, form: Option<Form>, by: Rounded) -> Bounded {
+    fn computed(&self, value: f64, range: Interval, form: Option<Form>, by: Rounded) -> Known {
         self.computed_within(value, range, form, by, 0.0)
     }
 
@@ -118,7 +119,7 @@ impl Margin {
         form: Option<Form>,
         by: Rounded,
         extra: f64,
-    ) -> Bounded {
+    ) -> Known {
         let form = form.filter(|_| !range.is_nan());
         let range = form.as_ref().map_or(range, |f| range.narrowed(f.range()));
         let result = range.widened(extra).rounded(by);
@@ -130,29 +131,29 @@ impl Margin {
         }
         let form = form.or_else(|| self.forms.get(Handle::NONE, range).map(Rc::unwrap_or_clone));
         let error = range.magnitude() * by.relative + by.absolute + extra;
-        Bounded { form: self.forms.put_rounded(form, error), ..rounded }
+        Known { form: self.forms.put_rounded(form, error), ..rounded }
     }
 
     /// What an operation makes of two forms, if both are known.
     pub(super) fn both(
         &self,
-        a: Bounded,
-        b: Bounded,
+        a: Known,
+        b: Known,
         f: impl Fn(&Form, &Form) -> Form,
     ) -> Option<Form> {
         Some(f(&*self.forms.get(a.form, a.range)?, &*self.forms.get(b.form, b.range)?))
     }
 
     /// `-a`.
-    pub(super) fn negated(&self, a: Bounded) -> Bounded {
+    pub(super) fn negated(&self, a: Known) -> Known {
         let negated =
             |form| self.forms.put(self.forms.get(form, a.range).map(|f| Rc::new(f.neg())));
         let parts = a.parts.map(|p| Parts { form: negated(p.form), ..p });
-        Bounded { form: negated(a.form), parts, ..self.bounded(-a.value, a.range.neg()) }
+        Known { form: negated(a.form), parts, ..self.bounded(-a.value, a.range.neg()) }
     }
 
     /// The square root.
-    pub(super) fn root(&self, a: Bounded) -> Bounded {
+    pub(super) fn root(&self, a: Known) -> Known {
         if self.rounding.is_strict
             && let Some(exact) = a.range.as_point().and_then(rounding::exact_root)
         {
@@ -163,7 +164,7 @@ impl Margin {
     }
 
     /// `a op b`.
-    pub(super) fn binary(&self, op: F32Binary, a: Bounded, b: Bounded) -> Bounded {
+    pub(super) fn binary(&self, op: F32Binary, a: Known, b: Known) -> Known {
         let (x, y) = (a.value, b.value);
         if let Some(exact) = self.exact(op, a, b) {
             return self.point(exact);
@@ -171,8 +172,8 @@ impl Margin {
         let same = a.id == b.id;
         let sum = self.rounding.sum();
         // The same number, but for the sign of a zero. A sum that cancels may not in another order.
-        let is_zero = |v: Bounded| v.range.is_zero() && v.parts.is_none();
-        let kept = |v: Bounded, value| Bounded { value, range: v.range.with_any_zero(), ..v };
+        let is_zero = |v: Known| v.range.is_zero() && v.parts.is_none();
+        let kept = |v: Known, value| Known { value, range: v.range.with_any_zero(), ..v };
         match op {
             F32Binary::Add if is_zero(b) => kept(a, x + y),
             F32Binary::Sub if is_zero(b) => kept(a, x - y),
@@ -192,14 +193,14 @@ impl Margin {
                 let by = self.rounding.product(a.range, b.range);
                 let form = self.both(a, b, Form::mul);
                 let product = self.computed(x * y, range, form.clone(), by);
-                Bounded { parts: self.parts_of_product(product.range, form, by), ..product }
+                Known { parts: self.parts_of_product(product.range, form, by), ..product }
             }
             F32Binary::Div if !self.rounding.divides(b.range) => {
                 let is_nan = a.range.is_nan() || b.range.is_nan();
                 self.bounded(x / y, if is_nan { Interval::NAN } else { Interval::ALL })
             }
             F32Binary::Div => {
-                let get = |v: Bounded| self.forms.get(v.form, v.range);
+                let get = |v: Known| self.forms.get(v.form, v.range);
                 let form = get(a).zip(get(b)).and_then(|(a, b)| a.div(&b));
                 self.computed(x / y, a.range.div(b.range), form, self.rounding.quotient(b.range))
             }
@@ -209,7 +210,7 @@ impl Margin {
     }
 
     /// The result of an operation that no variant rounds.
-    fn exact(&self, op: F32Binary, a: Bounded, b: Bounded) -> Option<f64> {
+    fn exact(&self, op: F32Binary, a: Known, b: Known) -> Option<f64> {
         let (x, y) = (a.range.as_point()?, b.range.as_point()?);
         let result = rounding::exact(op, x, y)?;
         let is_safe = match op {
@@ -222,18 +223,18 @@ impl Margin {
     }
 
     /// The smaller or the larger of two, which needs no decision: it is near either's ends.
-    fn least(&self, a: Bounded, b: Bounded, value: f64, range: Interval) -> Bounded {
+    fn least(&self, a: Known, b: Known, value: f64, range: Interval) -> Known {
         // The operand itself, where it is certain which one it is.
         match range {
             r if a.range.overlaps(b.range) || r.nan => self.bounded(value, r),
-            r if r == a.range => Bounded { value, ..a },
-            r if r == b.range => Bounded { value, ..b },
+            r if r == a.range => Known { value, ..a },
+            r if r == b.range => Known { value, ..b },
             r => self.bounded(value, r),
         }
     }
 
     /// An integer as a float.
-    pub(super) fn converted(&self, value: f64, short: f32) -> Bounded {
+    pub(super) fn converted(&self, value: f64, short: f32) -> Known {
         if f64::from(short) == value {
             return self.point(value);
         }

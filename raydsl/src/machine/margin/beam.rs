@@ -4,6 +4,7 @@ use super::Margin;
 use super::interval::Interval;
 use crate::bvh::{Allowance, Node};
 use crate::geometry::RayOn;
+use crate::machine::F;
 
 /// A ray as wide as rounding makes it.
 pub(super) struct Beam {
@@ -15,9 +16,10 @@ pub(super) struct Beam {
 
 impl Beam {
     /// `ray`, for boxes that are widened by this allowance.
-    pub(super) fn new(ray: RayOn<Margin>, root: &Node, allowance: Allowance) -> Self {
-        let origin = [ray.origin.x, ray.origin.y, ray.origin.z].map(|c| c.0.range);
-        let direction = [ray.direction.x, ray.direction.y, ray.direction.z].map(|c| c.0.range);
+    pub(super) fn new(m: &Margin, ray: RayOn<Margin>, root: &Node, allowance: Allowance) -> Self {
+        let range = |c: F<Margin>| m.get(c.0).range;
+        let origin = [ray.origin.x, ray.origin.y, ray.origin.z].map(range);
+        let direction = [ray.direction.x, ray.direction.y, ray.direction.z].map(range);
         let (low, high) = (root.min.to_array().map(f64::from), root.max.to_array().map(f64::from));
         let mut reach = 0f64;
         for axis in 0..3 {
@@ -39,7 +41,7 @@ impl Beam {
             Interval::new(o.low - pad, o.high + pad, false)
         });
         let middle = direction.map(|d| 0.5 * (d.low + d.high));
-        Self { origin: widest, direction: middle, t_min: ray.t_min.0.range.low }
+        Self { origin: widest, direction: middle, t_min: range(ray.t_min).low }
     }
 
     /// Where the beam enters and leaves a box.

@@ -2,21 +2,15 @@
 
 use core::f64::consts::{PI, TAU};
 
+use super::Margin;
+use super::arena::Known;
 use super::interval::Interval;
-use super::{Bounded, Margin, Truth};
-use crate::machine::{Leaves, Value};
 use crate::math::elementary::Function;
 
 impl Margin {
-    /// Runs an elementary function on the floats of `args`.
-    pub(super) fn elementary<A: Value<Self>, R: Value<Self>>(
-        &self,
-        function: Function,
-        args: A,
-    ) -> R {
-        let mut floats = Take(Vec::new());
-        A::zip(self, args, args, &mut floats);
-        let results = match (function, &floats.0[..]) {
+    /// What an elementary function gives for these floats.
+    pub(super) fn elementary(&self, function: Function, args: &[Known]) -> Vec<Known> {
+        match (function, args) {
             (Function::SinCos2Pi, [u]) => {
                 let waves = [
                     (turn_sin as fn(f64) -> f64, u.range.map_wave(TAU, turn_sin)),
@@ -36,12 +30,11 @@ impl Margin {
                 vec![self.result(value, range)]
             }
             _ => Vec::new(),
-        };
-        R::zip(self, R::zero(self), R::zero(self), &mut Give(results.into_iter()))
+        }
     }
 
     /// Where a function of exact arguments is 0, infinite or NaN, it is so in every variant.
-    fn result(&self, value: f64, range: Interval) -> Bounded {
+    fn result(&self, value: f64, range: Interval) -> Known {
         if range.is_nan() || range.as_point().is_some_and(|v| v == 0.0 || v.is_infinite()) {
             return self.bounded(value, range);
         }
@@ -50,7 +43,7 @@ impl Margin {
 
     /// The angles of the points of a rectangle. Across the negative axis of x they jump: on which
     /// side the point is, is a decision.
-    fn angle(&self, y: Bounded, x: Bounded) -> Interval {
+    fn angle(&self, y: Known, x: Known) -> Interval {
         let (up, across) = (y.range, x.range);
         if up.is_nan() || across.is_nan() {
             return Interval::NAN;
@@ -171,37 +164,3 @@ fn turn_cos(u: f64) -> f64 {
         _ => (r * TAU).cos(),
     }
 }
-
-/// Takes the floats of a value.
-pub(super) struct Take(pub(super) Vec<Bounded>);
-
-/// Gives a value floats.
-pub(super) struct Give(pub(super) std::vec::IntoIter<Bounded>);
-
-macro_rules! leaves {
-    ($name:ident, |$self:ident, $m:ident, $a:ident| $float:expr) => {
-        impl Leaves<Margin> for $name {
-            fn f32(&mut $self, $m: &Margin, $a: Bounded, _: Bounded) -> Bounded {
-                $float
-            }
-
-            fn i32(&mut self, _: &Margin, a: i32, _: i32) -> i32 {
-                a
-            }
-
-            fn u32(&mut self, _: &Margin, a: u32, _: u32) -> u32 {
-                a
-            }
-
-            fn bool(&mut self, _: &Margin, a: Truth, _: Truth) -> Truth {
-                a
-            }
-        }
-    };
-}
-
-leaves!(Take, |self, _m, a| {
-    self.0.push(a);
-    a
-});
-leaves!(Give, |self, m, a| self.0.next().unwrap_or_else(|| m.bounded(a.value, Interval::ALL)));

@@ -1,9 +1,8 @@
 //! What a cross product loses: known to be small, where intervals would only widen.
 
-use super::elementary::{Give, Take};
+use super::Margin;
+use super::arena::Known;
 use super::interval::Interval;
-use super::{Bounded, Margin};
-use crate::machine::Value;
 
 /// By what a factor is multiplied to tell its halves apart, rounded up.
 const SPLIT: f64 = 4098.0;
@@ -13,10 +12,8 @@ const PARTS: f64 = 8.0;
 impl Margin {
     /// [`lost_by_cross`](crate::geometry::exact::is_lost_by_cross): nothing in `f64`. Each product loses at most
     /// its rounding; a device that fuses or reorders what finds that may be off by as much again.
-    pub(super) fn lost_by_cross<A: Value<Self>, R: Value<Self>>(&self, args: A) -> R {
-        let mut floats = Take(Vec::new());
-        A::zip(self, args, args, &mut floats);
-        let size = |i: usize| floats.0[i].range.magnitude();
+    pub(super) fn lost_by_cross(&self, args: &[Known]) -> Vec<Known> {
+        let size = |i: usize| args[i].range.magnitude();
         let product = |i: usize, j: usize| {
             let (a, b) = (size(i), size(3 + j));
             // Halves of a factor are told apart by a multiple of it; beyond the largest number that
@@ -28,13 +25,12 @@ impl Margin {
             2.0 * (self.rounding.sum * a * b + PARTS * self.rounding.least)
         };
         let lost = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| product(i, j) + product(j, i));
-        let nan = floats.0.iter().any(|v| v.range.nan || v.range.is_nan());
+        let nan = args.iter().any(|v| v.range.nan || v.range.is_nan());
         let within = |error: f64| {
             let nan = nan || !error.is_finite();
             self.bounded(0.0, Interval::new(-error, error, nan))
         };
         let rest = lost.map(|error| 2.0 * (self.rounding.sum * error + self.rounding.least));
-        let results: Vec<Bounded> = lost.into_iter().chain(rest).map(within).collect();
-        R::zip(self, R::zero(self), R::zero(self), &mut Give(results.into_iter()))
+        lost.into_iter().chain(rest).map(within).collect()
     }
 }

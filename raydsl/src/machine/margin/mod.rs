@@ -9,8 +9,13 @@
 //! A comparison is *open* when its sides overlap. Truth values are those of Kleene's three-valued
 //! logic until an `if`, a loop, a selection or a result needs to know: that is a **decision**. A
 //! run follows `f64`; [`Outcomes`] come of further runs with decisions turned.
+//!
+//! What is known of a float is large and lies in the machine's [`arena`]; lifted code moves handles.
+//! That code is compiled once more for every kernel, so an operation in it is one call: methods that
+//! are generic over the operation pass it on as a value.
 
 mod affine;
+mod arena;
 mod arithmetic;
 mod beam;
 #[cfg(test)]
@@ -21,6 +26,10 @@ mod exact;
 #[cfg(test)]
 mod fuzz;
 mod interval;
+mod leaves;
+#[cfg(test)]
+mod loops;
+mod operations;
 mod outcome;
 mod rounding;
 mod sums;
@@ -28,32 +37,21 @@ mod traverse;
 
 use core::cell::Cell;
 
-use super::scalar::{self, ScalarLoop, compare};
+use super::scalar::ScalarLoop;
 use super::*;
 use crate::bvh::RecordOn;
 use crate::geometry::{HitOn, HitRecord, Primitive, RayOn};
 use affine::{Forms, Handle};
+use arena::{Arena, Bounded, Known, Mark};
 use arithmetic::{bits_of, constant, ordered};
 use decisions::{Decisions, Explored};
 use interval::Interval;
-use sums::Parts;
+use leaves::{Assigned, Copied, Give, Take};
+use operations::KnownFunction;
 
 pub(crate) use outcome::result_leaves;
 pub use outcome::{Leaf, Outcomes};
 pub use rounding::Rounding;
-
-/// A float on [`Margin`]: its `f64` value, and where the `f32` one lies.
-#[derive(Clone, Copy, Debug)]
-pub struct Bounded {
-    value: f64,
-    range: Interval,
-    /// Values of one number are the same value.
-    id: u64,
-    /// Which errors it carries.
-    form: Handle,
-    /// What a device that reorders sums may take it apart into, if it is a sum or a product.
-    parts: Option<Parts>,
-}
 
 /// A truth value on [`Margin`].
 #[derive(Clone, Copy, Debug)]
@@ -73,12 +71,21 @@ impl Truth {
     }
 }
 
+/// A loop under way.
+#[derive(Debug)]
+pub struct Rounds {
+    lane: ScalarLoop,
+    /// Where the floats of a round begin.
+    begin: Mark,
+}
+
 /// The machine of one lane that computes in `f64` with a bound of the rounding error of `f32`.
 #[derive(Debug)]
 pub struct Margin {
     lane: Scalar,
     rounding: Rounding,
     decisions: Decisions,
+    floats: Arena,
     forms: Forms,
 }
 
@@ -89,29 +96,49 @@ impl Margin {
             lane: Scalar::default(),
             rounding,
             decisions: Decisions::default(),
+            floats: Arena::default(),
             forms: Forms::default(),
         }
     }
 
-    /// A float with a number of its own.
-    fn bounded(&self, value: f64, range: Interval) -> Bounded {
-        Bounded { value, range, id: self.decisions.fresh(), form: Handle::NONE, parts: None }
+    /// Keeps a float.
+    fn put(&self, known: Known) -> Bounded {
+        self.floats.put(known)
     }
 
-    fn point(&self, v: f64) -> Bounded {
+    /// What is known of a float.
+    fn get(&self, float: Bounded) -> Known {
+        self.floats.get(float)
+    }
+
+    /// What is known of a float with a number of its own.
+    fn bounded(&self, value: f64, range: Interval) -> Known {
+        Known { value, range, id: self.decisions.fresh(), form: Handle::NONE, parts: None }
+    }
+
+    fn point(&self, v: f64) -> Known {
         self.bounded(v, Interval::point(v))
+    }
+
+    /// A number of the input or of the scene.
+    fn taken(&self, v: f32) -> Known {
+        self.bounded(f64::from(v), self.rounding.taken(v))
     }
 
     fn is_running(&self) -> bool {
         self.lane.active.get()
     }
 
-    /// Runs `f` for each way in which its decisions may go, up to `limit`.
+    /// Runs `f` for each way in which its decisions may go, up to `limit`. The floats of a run are
+    /// gone after it, so its result has none.
     fn each_way<R>(&self, limit: usize, f: &dyn Fn() -> R) -> Explored<R> {
         let active = self.lane.active.replace(true);
         let explored = self.decisions.explore(limit, || {
             self.lane.active.set(true);
-            f()
+            let begin = self.floats.mark();
+            let result = f();
+            self.floats.drop_since(begin);
+            result
         });
         self.lane.active.set(active);
         explored
@@ -134,7 +161,7 @@ impl Margin {
     }
 
     /// Whether the sign is `-`.
-    fn is_negative(&self, a: Bounded) -> Truth {
+    fn is_negative(&self, a: Known) -> Truth {
         match a.range.is_negative() {
             Some(known) => Truth::certain(known),
             None => self.truth(a.value.is_sign_negative(), true, true),
@@ -156,14 +183,15 @@ impl Machine for Margin {
     type U32 = u32;
     type Bool = Truth;
     type Branch = Cell<bool>;
-    type Loop = ScalarLoop;
+    type Loop = Rounds;
 
     fn f32(&self, v: f32) -> Bounded {
-        self.bounded(f64::from(v), self.rounding.taken(v))
+        self.put(self.taken(v))
     }
 
     fn f32_literal(&self, v: f32, exact: f64) -> Bounded {
-        self.bounded(exact, self.rounding.taken(v).hull(Interval::point(exact)))
+        let range = self.rounding.taken(v).hull(Interval::point(exact));
+        self.put(self.bounded(exact, range))
     }
 
     fn f32_constant(&self, v: f32) -> Bounded {
@@ -182,48 +210,37 @@ impl Machine for Margin {
         Truth::certain(v)
     }
 
+    #[inline]
     fn f32_unary<O: Op<F32Unary>>(&self, _: O, a: Bounded) -> Bounded {
-        match O::OP {
-            F32Unary::Neg => self.negated(a),
-            F32Unary::Abs => self.size(a),
-            F32Unary::Sqrt => self.root(a),
-            F32Unary::Floor => self.stepped(a, f64::floor),
-            F32Unary::Ceil => self.stepped(a, f64::ceil),
-            F32Unary::Trunc => self.stepped(a, f64::trunc),
-        }
+        self.of_one(O::OP, a)
     }
 
+    #[inline]
     fn f32_binary<O: Op<F32Binary>>(&self, _: O, a: Bounded, b: Bounded) -> Bounded {
-        self.binary(O::OP, a, b)
+        self.of_two(O::OP, a, b)
     }
 
     fn f32_mul_add(&self, a: Bounded, b: Bounded, c: Bounded) -> Bounded {
+        let (a, b, c) = (self.get(a), self.get(b), self.get(c));
         // As two operations, since a device need not fuse them; `f64` does.
         let product = self.binary(F32Binary::Mul, a, b);
         let sum = self.binary(F32Binary::Add, product, c);
-        self.bounded(a.value.mul_add(b.value, c.value), sum.range)
+        self.put(self.bounded(a.value.mul_add(b.value, c.value), sum.range))
     }
 
+    #[inline]
     fn i32_binary<O: Op<IntBinary>>(&self, _: O, a: i32, b: i32) -> i32 {
-        scalar::i32_binary(O::OP, a, b).1
+        operations::of_two_i32(O::OP, a, b)
     }
 
+    #[inline]
     fn u32_binary<O: Op<IntBinary>>(&self, _: O, a: u32, b: u32) -> u32 {
-        scalar::u32_binary(O::OP, a, b).1
+        operations::of_two_u32(O::OP, a, b)
     }
 
+    #[inline]
     fn bool_binary<O: Op<BoolBinary>>(&self, _: O, a: Truth, b: Truth) -> Truth {
-        let (a, b) = (self.known(a), self.known(b));
-        let value = scalar::bool_binary(O::OP, a.value, b.value);
-        match O::OP {
-            BoolBinary::And if a.is(false) || b.is(false) => Truth::certain(false),
-            BoolBinary::Or if a.is(true) || b.is(true) => Truth::certain(true),
-            _ if a.open == 0 && b.open == 0 => Truth::certain(value),
-            // The other one decides: it, or its opposite.
-            _ if a.open == 0 => Truth { value, open: b.open },
-            _ if b.open == 0 => Truth { value, open: a.open },
-            _ => self.truth(value, true, true),
-        }
+        self.joined(O::OP, a, b)
     }
 
     fn i32_neg(&self, a: i32) -> i32 {
@@ -239,44 +256,22 @@ impl Machine for Margin {
     }
 
     fn bool_not(&self, a: Truth) -> Truth {
-        Truth { value: !a.value, ..a }
+        a.opposite()
     }
 
+    #[inline]
     fn f32_compare<O: Op<Compare>>(&self, _: O, a: Bounded, b: Bounded) -> Truth {
-        let value = compare(O::OP, a.value, b.value);
-        let (x, y) = (a.range, b.range);
-        let numbers = !x.is_nan() && !y.is_nan();
-        let same = a.id == b.id;
-        let mut less = numbers && !same && x.low < y.high;
-        let mut more = numbers && !same && x.high > y.low;
-        let mut equal = numbers && x.overlaps(y);
-        if less
-            && more
-            && let Some(difference) = self.both(a, b, affine::Form::sub)
-        {
-            let difference = difference.range();
-            less = difference.low < 0.0;
-            more = difference.high > 0.0;
-            equal = difference.contains(0.0);
-        }
-        let unordered = x.nan || y.nan;
-        let (is_true, is_false) = match O::OP {
-            Compare::Eq => (equal, less || more || unordered),
-            Compare::Ne => (less || more || unordered, equal),
-            Compare::Lt => (less, equal || more || unordered),
-            Compare::Le => (less || equal, more || unordered),
-            Compare::Gt => (more, less || equal || unordered),
-            Compare::Ge => (more || equal, less || unordered),
-        };
-        self.truth(value, is_true, is_false)
+        self.compared(O::OP, a, b)
     }
 
+    #[inline]
     fn i32_compare<O: Op<Compare>>(&self, _: O, a: i32, b: i32) -> Truth {
-        Truth::certain(compare(O::OP, a, b))
+        operations::compared_integers(O::OP, a.into(), b.into())
     }
 
+    #[inline]
     fn u32_compare<O: Op<Compare>>(&self, _: O, a: u32, b: u32) -> Truth {
-        Truth::certain(compare(O::OP, a, b))
+        operations::compared_integers(O::OP, a.into(), b.into())
     }
 
     fn f32_select(&self, c: Truth, a: Bounded, b: Bounded) -> Bounded {
@@ -296,19 +291,19 @@ impl Machine for Margin {
     }
 
     fn f32_to_i32(&self, a: Bounded) -> i32 {
-        self.integer(a, |v| v as i32, i64::from, |v| v as i32, &[0])
+        self.integer(self.get(a), |v| v as i32, i64::from, |v| v as i32, &[0])
     }
 
     fn f32_to_u32(&self, a: Bounded) -> u32 {
-        self.integer(a, |v| v as u32, i64::from, |v| v as u32, &[0])
+        self.integer(self.get(a), |v| v as u32, i64::from, |v| v as u32, &[0])
     }
 
     fn i32_to_f32(&self, a: i32) -> Bounded {
-        self.converted(f64::from(a), a as f32)
+        self.put(self.converted(f64::from(a), a as f32))
     }
 
     fn u32_to_f32(&self, a: u32) -> Bounded {
-        self.converted(f64::from(a), a as f32)
+        self.put(self.converted(f64::from(a), a as f32))
     }
 
     fn i32_to_u32(&self, a: i32) -> u32 {
@@ -320,6 +315,7 @@ impl Machine for Margin {
     }
 
     fn f32_to_bits(&self, a: Bounded) -> u32 {
+        let a = self.get(a);
         // The sign of a NaN is the processor's, and its other bits tell where it came from.
         if a.range.nan && self.is_running() {
             self.decisions.lose();
@@ -333,31 +329,20 @@ impl Machine for Margin {
         self.f32(f32::from_bits(a))
     }
 
+    #[inline]
     fn f32_beside_infinity<O: Op<Compare>>(&self, _: O, a: Bounded) -> Truth {
-        let Interval { low, high, nan } = a.range;
-        let is_number = !a.range.is_nan();
-        let may_be_infinite = is_number && (low.is_infinite() || high.is_infinite());
-        let may_be_finite = is_number && low < f64::INFINITY && high > f64::NEG_INFINITY;
-        let size = a.value.abs();
-        match O::OP {
-            Compare::Gt => self.truth(size.is_nan(), nan, is_number),
-            Compare::Eq => self.truth(size.is_infinite(), may_be_infinite, nan || may_be_finite),
-            Compare::Lt => self.truth(size.is_finite(), may_be_finite, nan || may_be_infinite),
-            // The opposites.
-            Compare::Le => self.bool_not(self.f32_beside_infinity(op::Gt, a)),
-            Compare::Ne => self.bool_not(self.f32_beside_infinity(op::Eq, a)),
-            Compare::Ge => self.bool_not(self.f32_beside_infinity(op::Lt, a)),
-        }
+        self.beside_infinity(O::OP, a)
     }
 
+    #[inline]
     fn f32_sign_bit<O: Op<Compare>>(&self, _: O, a: Bounded) -> Truth {
-        let is_negative = self.is_negative(a);
-        if O::OP == Compare::Lt { is_negative } else { self.bool_not(is_negative) }
+        self.sign_bit(O::OP, a)
     }
 
     fn f32_copysign(&self, a: Bounded, sign: Bounded) -> Bounded {
-        let size = self.f32_unary(op::Abs, a);
-        if self.decided(self.is_negative(sign)) { self.f32_unary(op::Neg, size) } else { size }
+        let size = self.size(self.get(a));
+        let is_negative = self.decided(self.is_negative(self.get(sign)));
+        self.put(if is_negative { self.negated(size) } else { size })
     }
 
     fn bool_to_u32(&self, a: Truth) -> u32 {
@@ -380,35 +365,38 @@ impl Machine for Margin {
         self.lane.branch_end(t);
     }
 
-    fn loop_begin(&self) -> ScalarLoop {
-        self.lane.loop_begin()
+    fn loop_begin(&self) -> Rounds {
+        Rounds { lane: self.lane.loop_begin(), begin: self.floats.mark() }
     }
 
-    fn loop_test(&self, l: &ScalarLoop, c: Truth) -> bool {
-        self.lane.loop_test(l, self.decided(c))
+    fn loop_test(&self, l: &Rounds, c: Truth) -> bool {
+        self.lane.loop_test(&l.lane, self.decided(c))
     }
 
-    fn loop_break(&self, l: &ScalarLoop) {
-        self.lane.loop_break(l);
+    fn loop_break(&self, l: &Rounds) {
+        self.lane.loop_break(&l.lane);
     }
 
-    fn loop_continue(&self, l: &ScalarLoop) {
-        self.lane.loop_continue(l);
+    fn loop_continue(&self, l: &Rounds) {
+        self.lane.loop_continue(&l.lane);
     }
 
-    fn loop_continuing(&self, l: &ScalarLoop) {
-        self.lane.loop_continuing(l);
+    fn loop_continuing(&self, l: &Rounds) {
+        self.lane.loop_continuing(&l.lane);
     }
 
-    fn loop_again(&self, l: &ScalarLoop) -> bool {
+    fn loop_again(&self, l: &Rounds) -> bool {
+        self.floats.drop_since(l.begin);
         if self.is_running() && !self.decisions.round() {
-            self.lane.loop_break(l);
+            self.lane.loop_break(&l.lane);
         }
-        self.lane.loop_again(l)
+        self.lane.loop_again(&l.lane)
     }
 
-    fn loop_end(&self, l: ScalarLoop) {
-        self.lane.loop_end(l);
+    fn loop_end(&self, l: Rounds) {
+        // The last round may have ended at its beginning, behind the test.
+        self.floats.drop_since(l.begin);
+        self.lane.loop_end(l.lane);
     }
 
     fn alive(&self) -> bool {
@@ -419,30 +407,39 @@ impl Machine for Margin {
         self.lane.any(self.decided(c))
     }
 
+    #[inline]
     fn var_new<V: Value<Self>>(&self, _: &'static str, v: V) -> V {
-        v
+        V::zip(self, v, v, &mut Copied)
     }
 
+    #[inline]
     fn var_declare<V: Value<Self>>(&self, _: &'static str) -> V {
-        V::zero(self)
+        self.give_slot()
     }
 
+    #[inline]
     fn var_get<V: Value<Self>>(&self, state: V) -> V {
-        state
+        V::zip(self, state, state, &mut Copied)
     }
 
+    #[inline]
     fn var_set<V: Value<Self>>(&self, state: V, v: V) -> V {
-        if self.is_running() { v } else { state }
+        if self.is_running() { V::zip(self, v, state, &mut Assigned) } else { state }
     }
 
+    #[inline]
     fn give<V: Value<Self>>(&self, slot: &Cell<V>, v: V) {
-        if self.lane.active.replace(false) {
-            slot.set(v);
+        if self.is_running() {
+            slot.set(V::zip(self, v, slot.get(), &mut Assigned));
+            self.lane.active.set(false);
         }
     }
 
+    #[inline]
     fn give_slot<V: Value<Self>>(&self) -> V {
-        V::zero(self)
+        // The zeros of an array are one and the same, and slots are not.
+        let zero = V::zero(self);
+        V::zip(self, zero, zero, &mut Copied)
     }
 
     fn call<A: Value<Self>, R: Value<Self>>(
@@ -451,11 +448,12 @@ impl Machine for Margin {
         args: A,
         body: impl FnOnce(&Self, A) -> R,
     ) -> R {
-        if let Some(function) = crate::math::elementary::function(info) {
-            return self.elementary(function, args);
-        }
-        if crate::geometry::exact::is_lost_by_cross(info) {
-            return self.lost_by_cross(args);
+        if let Some(known) = KnownFunction::of(info) {
+            let mut floats = Take(Vec::new());
+            A::zip(self, args, args, &mut floats);
+            let mut results = Give(self.results(known, &floats.0).into_iter());
+            let zero = R::zero(self);
+            return R::zip(self, zero, zero, &mut results);
         }
         let entry = self.is_running();
         let result = body(self, args);
@@ -481,7 +479,7 @@ impl Machine for Margin {
         if self.is_running() {
             self.decisions.lose();
         }
-        let cost = crate::bvh::nearest_counted(prims, traverse::rounded(ray)).cost;
+        let cost = crate::bvh::nearest_counted(prims, traverse::rounded(self, ray)).cost;
         crate::bvh::CountedHitOn { hit, cost: crate::machine::Type::splat(self, cost) }
     }
 
@@ -525,7 +523,7 @@ impl Machine for Margin {
                     let record = found.get().unwrap_or_else(|| Value::zero(m));
                     m.decided(meet(hit, P::Hit::with_hit_on(record, hit)).0)
                 };
-                traverse::visit(m, scene, &|| limit().0.range.high, &meets);
+                traverse::visit(m, scene, &|| self.get(limit().0).range.high, &meets);
             });
         }
     }
@@ -535,8 +533,9 @@ impl Machine for Margin {
         if self.rounding.is_strict {
             return v;
         }
+        let v = self.get(v);
         let most = f64::from(absolute) + f64::from(relative) * v.range.magnitude();
-        self.bounded(v.value, v.range.widened(most))
+        self.put(self.bounded(v.value, v.range.widened(most)))
     }
 
     fn fetch<P: crate::machine::Type, S: crate::machine::Type>(

@@ -2,7 +2,9 @@
 
 use core::cell::Cell;
 
-use super::{Bounded, Margin, Rounding, Truth};
+use super::arena::{Bounded, Known};
+use super::interval::Interval;
+use super::{Margin, Rounding, Truth};
 use crate::machine::{Leaves, Type, Value};
 
 /// A scalar of a result.
@@ -171,9 +173,9 @@ fn leaves<V: Value<Margin>>(m: &Margin, v: V) -> Vec<Leaf> {
 struct Collect(Vec<Leaf>);
 
 impl Leaves<Margin> for Collect {
-    fn f32(&mut self, _: &Margin, a: Bounded, _: Bounded) -> Bounded {
-        let (low, high) = (a.range.low, a.range.high);
-        self.0.push(Leaf::Float { value: a.value, low, high, may_be_nan: a.range.nan });
+    fn f32(&mut self, m: &Margin, a: Bounded, _: Bounded) -> Bounded {
+        let Known { value, range: Interval { low, high, nan }, .. } = m.get(a);
+        self.0.push(Leaf::Float { value, low, high, may_be_nan: nan });
         a
     }
 

@@ -8,8 +8,9 @@
 use std::rc::Rc;
 
 use super::affine::{Form, Handle};
+use super::arena::Known;
 use super::interval::{Interval, Rounded};
-use super::{Bounded, Margin, rounding};
+use super::{Margin, rounding};
 use crate::machine::F32Binary;
 
 /// What a value is the sum of.
@@ -26,7 +27,7 @@ pub(super) struct Parts {
 }
 
 impl Margin {
-    fn parts(&self, v: Bounded) -> Parts {
+    fn parts(&self, v: Known) -> Parts {
         let one = Parts { count: 1.0, bulk: v.range.magnitude(), error: 0.0, form: v.form };
         v.parts.unwrap_or(one)
     }
@@ -47,13 +48,13 @@ impl Margin {
     }
 
     /// `a + b` or `a - b`, whatever the order of all their addends.
-    pub(super) fn sum_in_any_order(&self, op: F32Binary, a: Bounded, b: Bounded) -> Bounded {
+    pub(super) fn sum_in_any_order(&self, op: F32Binary, a: Known, b: Known) -> Known {
         let (p, q) = (self.parts(a), self.parts(b));
         let (count, bulk, error) = (p.count + q.count, p.bulk + q.bulk, p.error + q.error);
         let is_sum = op == F32Binary::Add;
         let (x, y) = (a.value, b.value);
         let value = if is_sum { x + y } else { x - y };
-        let with_parts = |form, v| Bounded { parts: Some(Parts { count, bulk, error, form }), ..v };
+        let with_parts = |form, v| Known { parts: Some(Parts { count, bulk, error, form }), ..v };
         let is_pair = count == 2.0 && error == 0.0;
         if is_pair
             && let (Some(x), Some(y)) = (a.range.as_point(), b.range.as_point())

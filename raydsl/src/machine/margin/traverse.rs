@@ -11,10 +11,11 @@ use std::rc::Rc;
 use glam::Vec3;
 
 use super::affine::Form;
+use super::arena::Known;
 use super::beam::Beam;
 use super::decisions::Explored;
 use super::interval::Interval;
-use super::{Bounded, Margin, Truth};
+use super::{Margin, Truth};
 use crate::bvh::{Allowance, Branches, Placing, RecordOn, SceneView, Target, View};
 use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn, transform_ray};
 use crate::machine::{B, F, Machine, Type, U, V3, op};
@@ -105,16 +106,16 @@ pub(super) fn local_ray<T, S>(
     ray
 }
 
-/// A value that outlives the forms of its run, with its own.
-type Kept = (Bounded, Option<Rc<Form>>);
+/// A float that outlives its run, and what that knew of its errors.
+type Kept = (Known, Option<Rc<Form>>);
 
 /// How a primitive may be hit.
 #[derive(Clone, Copy)]
 struct Found {
     name: Name,
-    t: Bounded,
-    u: Bounded,
-    v: Bounded,
+    t: Known,
+    u: Known,
+    v: Known,
     /// Whether it is hit in every way.
     is_certain: bool,
     /// Whether `f64` hits it.
@@ -122,8 +123,8 @@ struct Found {
 }
 
 /// The ray as it is if nothing but itself is rounded.
-pub(super) fn rounded(ray: RayOn<Margin>) -> Ray {
-    let number = |v: F<Margin>| v.0.value as f32;
+pub(super) fn rounded(m: &Margin, ray: RayOn<Margin>) -> Ray {
+    let number = |v: F<Margin>| m.get(v.0).value as f32;
     let vector = |v: V3<Margin>| Vec3::new(number(v.x), number(v.y), number(v.z));
     Ray {
         origin: vector(ray.origin),
@@ -136,8 +137,8 @@ pub(super) fn rounded(ray: RayOn<Margin>) -> Ray {
 /// The least `(t, id)` hit.
 pub(super) fn closest_hit(m: &Margin, scene: &Scene<'_>) -> HitOn<Margin> {
     let mut found = Vec::new();
-    let fate = fate(scene.ray);
-    let limit = Cell::new(scene.ray.t_max.0.range.high);
+    let fate = fate(m, scene.ray);
+    let limit = Cell::new(m.get(scene.ray.t_max.0).range.high);
     if fate != Fate::Misses {
         scene.walk(m, &limit, &mut |name| {
             let hits = scene.ask(m, name);
@@ -165,18 +166,18 @@ pub(super) fn closest_hit(m: &Margin, scene: &Scene<'_>) -> HitOn<Margin> {
     }
     // The closest hit is no farther than any that is certain.
     let near = Interval::new(f64::NEG_INFINITY, limit.get(), false);
-    let cut = |h: Found| Found { t: Bounded { range: h.t.range.narrowed(near), ..h.t }, ..h };
+    let cut = |h: Found| Found { t: Known { range: h.t.range.narrowed(near), ..h.t }, ..h };
     hit_on(m, m.one_of(None, &hits).map(cut))
 }
 
 /// Whether anything is hit.
 pub(super) fn any_hit(m: &Margin, scene: &Scene<'_>) -> Truth {
-    let fate = fate(scene.ray);
+    let fate = fate(m, scene.ray);
     if fate == Fate::Misses {
         return Truth::certain(false);
     }
     let (mut may_be, mut is_certain, mut is_reference) = (false, false, false);
-    let limit = Cell::new(scene.ray.t_max.0.range.high);
+    let limit = Cell::new(m.get(scene.ray.t_max.0).range.high);
     scene.walk(m, &limit, &mut |name| {
         for hit in scene.ask(m, name) {
             may_be = true;
@@ -195,7 +196,7 @@ pub(super) fn visit(
     limit: &dyn Fn() -> f64,
     meet: &dyn Fn(HitOn<Margin>) -> bool,
 ) {
-    let runs = match fate(scene.ray) {
+    let runs = match fate(m, scene.ray) {
         Fate::Misses => false,
         Fate::Runs => true,
         Fate::MayMiss => m.decided(m.truth(true, true, true)),
@@ -203,22 +204,26 @@ pub(super) fn visit(
     if !runs {
         return;
     }
-    let end = Cell::new(scene.ray.t_max.0.range.high);
+    let end = Cell::new(m.get(scene.ray.t_max.0).range.high);
     scene.walk(m, &end, &mut |name| {
-        let mark = m.forms.len();
+        let (floats, forms) = (m.floats.mark(), m.forms.len());
         let hit = (scene.intersect)(name);
-        if !m.decided(scene.accepts(m, &hit)) {
-            m.forms.truncate(mark);
-            return false;
+        let is_accepted = m.decided(scene.accepts(m, &hit));
+        let mut goes_on = true;
+        if is_accepted {
+            goes_on = meet(HitOn { prim_id: U(name.prim), inst_id: U(name.inst), ..hit });
+            end.set(limit());
+        } else {
+            m.forms.truncate(forms);
         }
-        let goes_on = meet(HitOn { prim_id: U(name.prim), inst_id: U(name.inst), ..hit });
-        end.set(limit());
+        // What is kept of a hit is in variables.
+        m.floats.drop_since(floats);
         !goes_on
     });
 }
 
 fn hit_on(m: &Margin, found: Option<Found>) -> HitOn<Margin> {
-    let number = |v: Option<Bounded>| F(v.unwrap_or_else(|| m.f32(0.0)));
+    let number = |v: Option<Known>| F(v.map_or_else(|| m.f32(0.0), |v| m.put(v)));
     HitOn {
         is_hit: B(m.bool(found.is_some())),
         t: number(found.map(|h| h.t)),
@@ -237,9 +242,9 @@ enum Fate {
     Misses,
 }
 
-fn fate(ray: RayOn<Margin>) -> Fate {
+fn fate(m: &Margin, ray: RayOn<Margin>) -> Fate {
     let (o, d) = (ray.origin, ray.direction);
-    let all = [o.x, o.y, o.z, d.x, d.y, d.z].map(|c| c.0.range);
+    let all = [o.x, o.y, o.z, d.x, d.y, d.z].map(|c| m.get(c.0).range);
     let no_number = |r: &Interval| r.is_nan() || r.low == f64::INFINITY || r.high == -f64::INFINITY;
     if all.iter().any(no_number) {
         Fate::Misses
@@ -265,7 +270,10 @@ impl Scene<'_> {
             let mark = m.forms.len();
             let hit = (self.intersect)(name);
             let accepted = m.decided(self.accepts(m, &hit));
-            let results = [hit.t.0, hit.u.0, hit.v.0].map(|v| (v, m.forms.get(v.form, v.range)));
+            let results = [hit.t.0, hit.u.0, hit.v.0].map(|v| {
+                let v = m.get(v);
+                (v, m.forms.get(v.form, v.range))
+            });
             m.forms.truncate(mark);
             accepted.then_some(results)
         })
@@ -282,22 +290,23 @@ impl Scene<'_> {
         if !ways.is_complete && m.is_running() {
             m.decisions.lose();
         }
+        let (t_min, t_max) = (m.get(self.ray.t_min.0).range, m.get(self.ray.t_max.0).range);
         let is_certain = ways.is_complete && ways.results.iter().all(Option::is_some);
         let mut found: Vec<Found> = Vec::new();
         for (way, result) in ways.results.into_iter().enumerate() {
             let Some(results) = result else { continue };
             let [t, u, v] =
-                results.map(|(v, form)| Bounded { form: m.forms.put(form), parts: None, ..v });
+                results.map(|(v, form)| Known { form: m.forms.put(form), parts: None, ..v });
             // What was accepted is a number between the ends of the ray.
-            let first = self.ray.t_min.0.range.low.max(t.range.low);
-            let last = self.ray.t_max.0.range.high.min(t.range.high);
-            let t = Bounded { range: Interval::new(first, last, false), ..t };
+            let first = t_min.low.max(t.range.low);
+            let last = t_max.high.min(t.range.high);
+            let t = Known { range: Interval::new(first, last, false), ..t };
             let near = found.iter_mut().find(|f| {
                 [(f.t, t), (f.u, u), (f.v, v)].iter().all(|(a, b)| a.range.overlaps(b.range))
             });
             match near {
                 Some(f) => {
-                    let join = |a: Bounded, b: Bounded| m.bounded(a.value, a.range.hull(b.range));
+                    let join = |a: Known, b: Known| m.bounded(a.value, a.range.hull(b.range));
                     (f.t, f.u, f.v) = (join(f.t, t), join(f.u, u), join(f.v, v));
                 }
                 None => {
@@ -337,7 +346,7 @@ impl Scene<'_> {
     fn walk(&self, m: &Margin, limit: &Cell<f64>, visit: &mut dyn FnMut(Name) -> bool) {
         match self.groups {
             None => {
-                let each = |part| self.walk_part(part, 0, self.ray, limit, visit);
+                let each = |part| self.walk_part(m, part, 0, self.ray, limit, visit);
                 let _ = self.parts.iter().any(each);
             }
             Some(groups) => {
@@ -358,29 +367,33 @@ impl Scene<'_> {
         limit: &Cell<f64>,
         visit: &mut dyn FnMut(Name) -> bool,
     ) -> bool {
-        if fate(ray) == Fate::Misses {
+        if fate(m, ray) == Fate::Misses {
             return false;
         }
-        walk_tree(group.branches(), ray, group.allowance, limit, &mut |index| {
+        walk_tree(m, group.branches(), ray, group.allowance, limit, &mut |index| {
             let item = &group.items[index as usize];
             let first = first + item.first;
+            let mark = m.floats.mark();
             let ray = transform_ray::on(m, ray, Type::splat(m, item.to_object));
-            match item.target {
+            let ends = match item.target {
                 // Coordinates that overflow on the way miss.
-                Target::Tree(_) if fate(ray) == Fate::Misses => false,
+                Target::Tree(_) if fate(m, ray) == Fate::Misses => false,
                 Target::Tree(tree) => {
-                    self.walk_part(&self.parts[tree as usize], first, ray, limit, visit)
+                    self.walk_part(m, &self.parts[tree as usize], first, ray, limit, visit)
                 }
                 Target::Group(group) => {
                     let groups = self.groups.unwrap_or(&[]);
                     self.walk_group(m, &groups[group as usize], first, ray, limit, visit)
                 }
-            }
+            };
+            m.floats.drop_since(mark);
+            ends
         })
     }
 
     fn walk_part(
         &self,
+        m: &Margin,
         part: &Part<'_>,
         inst: u32,
         ray: RayOn<Margin>,
@@ -389,7 +402,7 @@ impl Scene<'_> {
     ) -> bool {
         let mut visit = |id| visit(Name { inst, prim: part.first + id });
         match part.tree {
-            Some(tree) => walk_tree(tree, ray, self.allowance, limit, &mut visit),
+            Some(tree) => walk_tree(m, tree, ray, self.allowance, limit, &mut visit),
             None => (0..part.len).any(visit),
         }
     }
@@ -398,6 +411,7 @@ impl Scene<'_> {
 /// Visits what is in the leaves that the ray may meet at or before `limit`, until `visit` returns
 /// true.
 fn walk_tree(
+    m: &Margin,
     tree: Branches<'_>,
     ray: RayOn<Margin>,
     allowance: Allowance,
@@ -405,7 +419,7 @@ fn walk_tree(
     visit: &mut dyn FnMut(u32) -> bool,
 ) -> bool {
     let Some(root) = tree.nodes.first() else { return false };
-    let beam = Beam::new(ray, root, allowance);
+    let beam = Beam::new(m, ray, root, allowance);
     let mut stack = vec![root];
     while let Some(node) = stack.pop() {
         if !beam.meets(node, limit.get()) {

@@ -1,0 +1,189 @@
+//! Where the machine keeps its floats.
+//!
+//! What is known of a float takes some ninety bytes. Lifted code hands its floats from one layer to
+//! the next, and the compiler looks for copies that it can leave out among all of them: for a long
+//! kernel that took most of its time. So a float is a handle of eight bytes, and what is known of it
+//! lies here.
+//!
+//! Nothing is dropped by itself. A loop notes how long the arena is where it begins, and what a
+//! round has added is dropped at its end. That is all that the round has made: what outlives it was
+//! given to variables, and those have *slots*, entries in front of the loop's that are overwritten.
+//! So do the values of functions with early returns. Runs of decisions and primitives that are
+//! visited end in the same way.
+
+use core::cell::{Cell, RefCell};
+
+use super::affine::Handle;
+use super::interval::Interval;
+use super::sums::Parts;
+
+/// A float on [`Margin`](super::Margin): which of the machine's it is.
+///
+/// Its place, and above that a serial number, which tells it from others that were there: one word
+/// for the compiler.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounded(u64);
+
+impl Bounded {
+    fn new(at: usize, serial: u32) -> Self {
+        Self(at as u64 | u64::from(serial) << 32)
+    }
+
+    fn at(self) -> usize {
+        self.0 as u32 as usize
+    }
+
+    fn serial(self) -> u32 {
+        (self.0 >> 32) as u32
+    }
+}
+
+/// What is known of a float: its `f64` value, and where the `f32` one lies.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Known {
+    pub(super) value: f64,
+    pub(super) range: Interval,
+    /// Values of one number are the same value.
+    pub(super) id: u64,
+    /// Which errors it carries.
+    pub(super) form: Handle,
+    /// What a device that reorders sums may take it apart into, if it is a sum or a product.
+    pub(super) parts: Option<Parts>,
+}
+
+#[derive(Debug)]
+struct Entry {
+    known: Known,
+    serial: u32,
+}
+
+/// How long the arena was.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mark(usize);
+
+/// The floats of a machine.
+#[derive(Debug, Default)]
+pub(super) struct Arena {
+    entries: RefCell<Vec<Entry>>,
+    /// The serial number of the next entry. After four thousand million the numbers come again,
+    /// and one handle in as many that is out of date would not be noticed.
+    next: Cell<u32>,
+    /// How long the arena was at most.
+    #[cfg(test)]
+    most: Cell<usize>,
+}
+
+impl Arena {
+    /// Keeps a float.
+    pub(super) fn put(&self, known: Known) -> Bounded {
+        let serial = self.next.replace(self.next.get().wrapping_add(1));
+        let mut entries = self.entries.borrow_mut();
+        let float = Bounded::new(entries.len(), serial);
+        entries.push(Entry { known, serial });
+        #[cfg(test)]
+        self.most.set(self.most.get().max(entries.len()));
+        float
+    }
+
+    /// What is known of a float.
+    pub(super) fn get(&self, float: Bounded) -> Known {
+        match self.entries.borrow().get(float.at()) {
+            Some(entry) if entry.serial == float.serial() => entry.known,
+            _ => gone(float),
+        }
+    }
+
+    /// Overwrites a slot.
+    pub(super) fn set(&self, slot: Bounded, known: Known) {
+        match self.entries.borrow_mut().get_mut(slot.at()) {
+            Some(entry) if entry.serial == slot.serial() => entry.known = known,
+            _ => gone(slot),
+        }
+    }
+
+    pub(super) fn mark(&self) -> Mark {
+        Mark(self.entries.borrow().len())
+    }
+
+    /// Drops all that was kept since `mark`.
+    pub(super) fn drop_since(&self, mark: Mark) {
+        self.entries.borrow_mut().truncate(mark.0);
+    }
+
+    /// The greatest number of floats that there have been at once.
+    #[cfg(test)]
+    pub(super) fn most(&self) -> usize {
+        self.most.get()
+    }
+}
+
+/// Better an end than another float's value.
+#[cold]
+#[inline(never)]
+fn gone(float: Bounded) -> ! {
+    panic!(
+        "raydsl has a bug: {float:?} of the machine `Margin` was dropped before its last use; a \
+         value that outlives a round of a loop must be in a variable"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Machine, Margin, Rounding, op};
+    use crate::machine::{F, Loop, Var};
+
+    #[test]
+    fn variables_outlive_rounds() {
+        let m = Margin::new(Rounding::IEEE);
+        let sum = Var::new(&m, "sum", F(m.f32(0.0)));
+        let (rounds, mut left) = (Loop::new(&m), 3);
+        loop {
+            let before = sum.get(&m);
+            sum.set(&m, F(m.f32_binary(op::Add, before.0, m.f32(2.0))));
+            assert_eq!(m.get(before.0).value, 2.0 * f64::from(3 - left));
+            left -= 1;
+            if left == 0 {
+                rounds.leave(&m);
+            }
+            rounds.continuing(&m);
+            if !rounds.again(&m) {
+                break;
+            }
+        }
+        rounds.end(&m);
+        assert_eq!(m.get(sum.get(&m).0).value, 6.0);
+    }
+
+    #[test]
+    #[should_panic(expected = "dropped before its last use")]
+    fn floats_of_a_round_are_gone() {
+        let m = Margin::new(Rounding::IEEE);
+        let rounds = Loop::new(&m);
+        let kept = m.f32(1.0);
+        assert!(rounds.again(&m));
+        m.f32_binary(op::Add, kept, kept);
+    }
+
+    /// Another float may be where it was.
+    #[test]
+    #[should_panic(expected = "dropped before its last use")]
+    fn another_float_is_not_taken_for_one_that_is_gone() {
+        let m = Margin::new(Rounding::IEEE);
+        let rounds = Loop::new(&m);
+        let kept = m.f32(1.0);
+        assert!(rounds.again(&m));
+        let other = m.f32(2.0);
+        m.f32_binary(op::Add, other, kept);
+    }
+
+    #[test]
+    #[should_panic(expected = "dropped before its last use")]
+    fn slots_of_a_round_are_gone() {
+        let m = Margin::new(Rounding::IEEE);
+        let rounds = Loop::new(&m);
+        let within = Var::new(&m, "within", F(m.f32(1.0)));
+        assert!(rounds.again(&m));
+        let other = F(m.f32(2.0));
+        within.set(&m, other);
+    }
+}
