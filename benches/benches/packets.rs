@@ -76,6 +76,7 @@ struct Entry<'a> {
 fn main() -> ExitCode {
     let args = Args::parse();
     if args.guard {
+        ask_a_wide_tree();
         return guard::run();
     }
     let mut rows = Vec::new();
@@ -102,6 +103,19 @@ fn main() -> ExitCode {
     }
     let void = rows.iter().any(|r| r.speedup.is_none());
     if void { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+}
+
+/// Asks one, so that this program has the walks through wide trees, which the guard inspects.
+fn ask_a_wide_tree() {
+    let scene = scenes::colonnade();
+    let bvh = Bvh::build_wide(&scene.prims, &[], &BuildConfig::default());
+    let bvh = bvh.expect("the scene has finite bounds");
+    let ray = |i: u32| scene.camera.begin_frame(64, 64).primary_ray(i as f32 + 0.5, 32.5);
+    let rays: Vec<Ray> = (0..64).map(ray).collect();
+    let hits = bvh.closest_hits(&rays).iter().filter(|hit| hit.is_hit).count();
+    let stopped = bvh.any_hits(&rays).iter().filter(|is_hit| **is_hit).count();
+    let single = rays.iter().filter(|ray| bvh.closest_hit(**ray).is_hit).count();
+    assert!(hits == stopped && hits == single, "{hits}, {stopped} and {single} rays hit something");
 }
 
 fn wanted(args: &Args, scene: &str) -> bool {

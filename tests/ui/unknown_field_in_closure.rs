@@ -2,7 +2,7 @@ use raydsl::prelude::*;
 
 fn main() {
     let k = kernel!(|ray: Ray| {
-        ray.start.x //~ rustc 8
+        ray.start.x //~ rustc 6
     });
     k.wgsl();
 }
