@@ -60,7 +60,7 @@ impl syn::parse::Parse for ClosureKernel {
 /// `kernel!(|ray: Ray| ...)`.
 pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel) -> TokenStream {
     let mut errors = Errors::default();
-    let wanted = wanted(&mut errors);
+    let wanted = wanted(std::env::var(VARIANTS).ok().as_deref(), &mut errors);
     let kernel = parse::closure(closure, "kernel", &mut errors);
     if kernel.params.is_empty() && errors.is_empty() {
         errors.at(closure.span(), "a kernel needs a parameter", "write for example `|ray: Ray|`");
@@ -113,8 +113,8 @@ pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel)
 }
 
 /// The machines that closures are lifted for: all, or those that the environment names.
-fn wanted(errors: &mut Errors) -> Vec<&'static Natural> {
-    let Ok(names) = std::env::var(VARIANTS) else { return NATURAL.iter().collect() };
+fn wanted(names: Option<&str>, errors: &mut Errors) -> Vec<&'static Natural> {
+    let Some(names) = names else { return NATURAL.iter().collect() };
     let names: Vec<&str> = names.split(',').map(str::trim).filter(|n| !n.is_empty()).collect();
     let is_known = |name: &str| name == "scalar" || NATURAL.iter().any(|n| n.variant == name);
     for name in names.iter().filter(|name| !is_known(name)) {
@@ -252,4 +252,35 @@ fn boxed(machine: &Natural, is_first: bool) -> TokenStream {
     let cast =
         is_first.then(|| quote!(as ::std::boxed::Box<dyn Fn(&#p::#alias, _) -> _ + Send + Sync>));
     quote!(::std::boxed::Box::new(#copy) #cast)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn variants(names: Option<&str>) -> Result<Vec<&'static str>, String> {
+        let mut errors = Errors::default();
+        let wanted = wanted(names, &mut errors).iter().map(|n| n.variant).collect();
+        if errors.is_empty() { Ok(wanted) } else { Err(errors.into_tokens().to_string()) }
+    }
+
+    #[test]
+    fn the_environment_names_copies() {
+        let all = ["packet4", "packet8", "packet16", "wgsl", "reference"];
+        assert_eq!(variants(None).as_deref(), Ok(&all[..]));
+        assert_eq!(variants(Some(" wgsl, packet8,")).as_deref(), Ok(&["packet8", "wgsl"][..]));
+        assert_eq!(variants(Some("scalar")).as_deref(), Ok(&[][..]));
+        assert_eq!(variants(Some("")).as_deref(), Ok(&[][..]));
+        let error = variants(Some("packet8,packet9")).expect_err("there is no such variant");
+        assert!(error.contains("RAYDSL_VARIANTS names `packet9`"), "{error}");
+        assert!(error.contains("scalar,packet4,packet8,packet16,wgsl,reference"), "{error}");
+    }
+
+    #[test]
+    fn only_long_closures_are_counted_to_the_end() {
+        let few = quote!(|x: f32| x + 1.0);
+        assert_eq!(tokens(few.clone(), 100), 8);
+        let many = quote!({ #few; #few; #few; #few });
+        assert!(tokens(many, 10) >= 10);
+    }
 }
