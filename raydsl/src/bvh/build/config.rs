@@ -130,7 +130,8 @@ pub struct BuildConfig {
     /// changes later; default [`Traversal::Auto`].
     pub traversal: Traversal,
     /// The fewest primitives over which [`Bvh::build_wide`](crate::bvh::Bvh::build_wide) makes a wide
-    /// tree; of fewer it makes a binary one. Default 64: below, rays were no quicker.
+    /// tree; of fewer it makes a binary one. Default 64: packets meet few primitives sooner in a
+    /// binary tree.
     pub min_wide_size: u32,
     /// The most primitives a leaf may hold, `1..=256`; default 4. In a wide tree it is 8, whatever
     /// stands here.
