@@ -494,7 +494,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
 }
 
 /// A kernel that is also lifted for lanes that count where they are, which
-/// [`utilisation`](crate::report::utilisation) asks: `kernel!(counted |ray: Ray| ..)`, or
+/// [`utilisation`](crate::report::utilisation()) asks: `kernel!(counted |ray: Ray| ..)`, or
 /// [`Kernel::counted_of`]. One more copy to compile.
 pub struct CountedKernel<'a, A: Type, R: Type> {
     kernel: Kernel<'a, A, R>,
