@@ -38,11 +38,11 @@ mod native {
     pub(crate) type Lanes8 = Simd8<level::Middle>;
     /// Sixteen lanes: AVX-512, NEON.
     pub(crate) type Lanes16 = Simd16<level::Wide>;
-    /// Packets of [`Lanes4`].
+    /// Packets of four lanes: SSE2, NEON, or no instructions of this kind at all.
     pub type Native4 = Packet<Lanes4>;
-    /// Packets of [`Lanes8`].
+    /// Packets of eight lanes: AVX2, NEON.
     pub type Native8 = Packet<Lanes8>;
-    /// Packets of [`Lanes16`].
+    /// Packets of sixteen lanes: AVX-512, NEON.
     pub type Native16 = Packet<Lanes16>;
     /// Eight lanes of what every machine of the target has, which count where they are.
     pub type Counting = Packet<Counted<Simd8<level::Narrow>>>;
