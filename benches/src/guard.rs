@@ -30,6 +30,14 @@ const WALKS: [&str; 3] = [
     "raydsl::bvh::wide::wave::each_turn",
     "raydsl::bvh::wide::single::ask",
 ];
+/// What the walks of wide trees call once for hundreds of rays.
+const ONCE: [&str; 5] = [
+    "raydsl::bvh::wide::rays::Rays::gather",
+    "raydsl::bvh::wide::rays::Rays::give_back",
+    "raydsl::bvh::wide::entry::Entries::largest",
+    "raydsl::geometry::aabb::Aabb::is_finite",
+    "alloc::vec::Vec<T,A>::resize",
+];
 /// One ray after another: scenes under an accelerator of one's own know no packets.
 const ONE_BY_ONE: &str = "raydsl::bvh::traverse::";
 /// The bench traverses triangles and spheres at each level.
@@ -202,6 +210,7 @@ fn inspect_entry(at: u64, function: &Function, registers: &[&str]) -> Vec<String
 fn may_be_called(name: &str) -> bool {
     COLD.iter().any(|c| name.contains(c))
         || APART.iter().any(|a| name.contains(a))
+        || ONCE.contains(&name)
         || name.starts_with(ONE_BY_ONE)
 }
 

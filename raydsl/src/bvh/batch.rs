@@ -55,7 +55,10 @@ impl<P: Primitive> LanesTask for Closest<'_, '_, P> {
                     let q = i / L::N;
                     let record = record_on(&m, self.scene, packets[q], found[q]);
                     let left = rays.len() - i;
-                    hits.extend((0..L::N.min(left)).map(|lane| P::Hit::lane(&record, lane)));
+                    // Not `extend`: what it is given is not always inlined, nor the lanes in it.
+                    for lane in 0..L::N.min(left) {
+                        hits.push(P::Hit::lane(&record, lane));
+                    }
                 }
             }
         });
@@ -72,8 +75,9 @@ impl<P: Primitive> LanesTask for Any<'_, '_, P> {
             let m = Packet::new(lanes);
             for rays in self.rays.chunks(TOGETHER * L::N) {
                 let found: [B<Packet<L>>; TOGETHER] = m.any_hits(self.scene, &packets(&m, rays));
-                let hit = |i: usize| L::mask_lane(&found[i / L::N].0, i % L::N);
-                hits.extend((0..rays.len()).map(hit));
+                for i in 0..rays.len() {
+                    hits.push(L::mask_lane(&found[i / L::N].0, i % L::N));
+                }
             }
         });
         hits

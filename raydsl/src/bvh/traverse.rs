@@ -138,7 +138,10 @@ pub fn closest_hit<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> P::Hit {
 }
 
 /// [`closest_hit`] without the rest of the record.
-#[inline(always)]
+///
+/// A function of its own, as [`any_hit`] is: packets whose rays go one by one share it, at each of
+/// their levels.
+#[inline(never)]
 pub(crate) fn nearest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> Hit {
     let of_wide = prims.walks().and_then(
         #[inline(always)]
@@ -167,6 +170,7 @@ pub fn closest_hit_with_cost<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -
 }
 
 /// [`closest_hit_with_cost`] without the rest of the record.
+#[inline(never)]
 pub(crate) fn nearest_counted<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> CountedHit {
     let mut cost = Cost::default();
     let hit = closest(prims, ray, &mut cost);
@@ -193,6 +197,7 @@ fn closest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Co
 }
 
 /// Whether `ray` hits any of `prims`.
+#[inline(never)]
 pub fn any_hit<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> bool {
     let of_wide = prims.walks().and_then(|walks| (walks.any_of_one)(prims, ray));
     of_wide.unwrap_or_else(|| any(prims, ray, &mut Uncounted))

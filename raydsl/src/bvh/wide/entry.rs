@@ -34,9 +34,7 @@ pub(super) fn of<E: Lanes>(
         Entries { count: 0, boxes: [Aabb::EMPTY; WIDTH], children: [Child::NONE; WIDTH] };
     entries.open(tree, &bounds, None);
     for _ in 1..OPENED {
-        let inner = (0..entries.count).filter(|&i| !entries.children[i].is_block());
-        let area = |i: usize| entries.boxes[i].half_area();
-        let Some(largest) = inner.max_by(|&i, &j| area(i).total_cmp(&area(j))) else { break };
+        let Some(largest) = entries.largest() else { break };
         if !entries.open(tree, &bounds, Some(largest)) {
             break;
         }
@@ -56,6 +54,14 @@ struct Entries {
 }
 
 impl Entries {
+    /// The inner node with the largest box; the last of several.
+    #[inline(never)]
+    fn largest(&self) -> Option<usize> {
+        let inner = (0..self.count).filter(|&i| !self.children[i].is_block());
+        let area = |i: usize| self.boxes[i].half_area();
+        inner.max_by(|&i, &j| area(i).total_cmp(&area(j)))
+    }
+
     /// Puts the children of the root, or of an entry in its place, that `bounds` meets; not if they
     /// are too many.
     fn open(&mut self, tree: &Wide, bounds: &Aabb, entry: Option<usize>) -> bool {
