@@ -176,8 +176,6 @@ pub trait Machine: Sized + 'static {
     const RUNS: bool = true;
     /// Whether it has operations on whole vectors; else they go component by component.
     const HAS_VECTORS: bool = false;
-    /// Whether it may have samplers of textures: see [`sampled`](Self::sampled).
-    const HAS_SAMPLERS: bool = false;
 
     // Constants, the same in every lane.
     fn f32(&self, v: f32) -> Self::F32;
@@ -561,16 +559,31 @@ pub trait Machine: Sized + 'static {
         self.fetch(slice, U(self.u32_select(within, index.0, last)))
     }
 
-    /// What a sampler gives at a place of a texture, for each of four channels; nothing where the
-    /// machine has none for it.
-    fn sampled<T: Type, S: Type>(
+    /// What a texture has at a place of `D` axes.
+    #[inline(always)]
+    fn texture<T: crate::texture::Texel, const D: usize>(
         &self,
-        _texels: &crate::bvh::View<'_, T, S>,
-        _layout: &wgsl::TextureLayout,
-        _at: &[Self::F32],
-        _level: Self::F32,
-    ) -> Option<[Self::F32; 4]> {
-        None
+        texels: &crate::texture::Texels<'_, T>,
+        at: &[F<Self>; D],
+    ) -> <T::Value as Type>::On<Self> {
+        texels.by_kernels(self, at)
+    }
+
+    /// The same at a level of detail.
+    #[inline(always)]
+    fn texture_at_level<T: crate::texture::Texel, const D: usize>(
+        &self,
+        texels: &crate::texture::Texels<'_, T>,
+        at: &[F<Self>; D],
+        level: F<Self>,
+    ) -> <T::Value as Type>::On<Self> {
+        texels.by_kernels_at_level(self, at, level)
+    }
+
+    /// `code / max`, of a code up to `max`.
+    #[inline(always)]
+    fn unorm(&self, code: Self::U32, max: u32) -> Self::F32 {
+        self.f32_binary(op::Div, self.u32_to_f32(code), self.f32(max as f32))
     }
 
     /// A number that a device may have otherwise: off by `absolute` and this part of itself. Where

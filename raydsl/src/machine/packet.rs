@@ -9,6 +9,7 @@ use super::*;
 use crate::bvh::wide::trace;
 use crate::bvh::{RecordOn, traverse_packet};
 use crate::geometry::{HitOn, Primitive, RayOn};
+use crate::texture::{Texel, Texels};
 
 /// A machine of [`Lanes::N`] lanes with masked control flow.
 ///
@@ -177,6 +178,20 @@ impl<L: Lanes> Packet<L> {
 const fn is_checked(op: IntBinary) -> bool {
     use IntBinary::{Add, Div, Mul, Rem, Shl, Shr, Sub};
     cfg!(debug_assertions) && matches!(op, Add | Sub | Mul | Div | Rem | Shl | Shr)
+}
+
+const UNORM8: [f32; 2] = reciprocal(0xff);
+const UNORM16: [f32; 2] = reciprocal(0xffff);
+
+/// `1 / max` as a sum. The first number is so short that its product with a code up to `max` is
+/// exact, and the other so small that `code * high + code * low` is `code / max` for each code: a
+/// test tries all. Divisions take as long as ten products.
+const fn reciprocal(max: u32) -> [f32; 2] {
+    let whole = 1.0 / max as f64;
+    // An f32 has 24 bits, a code takes so many of them, and an f64 has 53.
+    let bits = 24 - (u32::BITS - max.leading_zeros());
+    let high = f64::from_bits(whole.to_bits() & (u64::MAX << (53 - bits)));
+    [high as f32, (whole - high) as f32]
 }
 
 /// A kernel's body as a function of its own, compiled for the level once for all of its calls.
@@ -599,6 +614,38 @@ impl<L: Lanes> Machine for Packet<L> {
         self.of_running(Affine3::IDENTITY, |l| scene.to_object(L::u32_lane(&inst.0, l)))
     }
     #[inline(always)]
+    fn unorm(&self, code: L::U32, max: u32) -> L::F32 {
+        let l = self.lanes;
+        let [high, low] = match max {
+            0xff => UNORM8,
+            0xffff => UNORM16,
+            _ => return l.f32_binary(op::Div, l.u32_to_f32(code), l.f32(max as f32)),
+        };
+        let code = l.i32_to_f32(l.u32_to_i32(code));
+        let product = |factor| l.f32_binary(op::Mul, code, l.f32(factor));
+        l.f32_binary(op::Add, product(high), product(low))
+    }
+
+    #[inline(always)]
+    fn texture<T: Texel, const D: usize>(
+        &self,
+        texels: &Texels<'_, T>,
+        at: &[F<Self>; D],
+    ) -> <T::Value as Type>::On<Self> {
+        texels.in_packet(self, at)
+    }
+
+    #[inline(always)]
+    fn texture_at_level<T: Texel, const D: usize>(
+        &self,
+        texels: &Texels<'_, T>,
+        at: &[F<Self>; D],
+        level: F<Self>,
+    ) -> <T::Value as Type>::On<Self> {
+        texels.in_packet_at_level(self, at, level)
+    }
+
+    #[inline(always)]
     fn fetch<P: Type, S: Type>(
         &self,
         prims: &crate::bvh::View<'_, P, S>,
@@ -662,5 +709,21 @@ impl<L: Lanes> LaneMachine for Packet<L> {
     #[inline(always)]
     fn bool_lane(v: &L::Mask, lane: usize) -> bool {
         L::mask_lane(v, lane)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_divided() {
+        for (max, [high, low]) in [(0xff, UNORM8), (0xffff, UNORM16)] {
+            for code in 0..=max {
+                let code = code as f32;
+                let sum = code * high + code * low;
+                assert_eq!(sum.to_bits(), (code / max as f32).to_bits(), "{code} of {max}");
+            }
+        }
     }
 }

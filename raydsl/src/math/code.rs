@@ -21,7 +21,7 @@ macro_rules! code {
 
         #[doc = concat!("[`", stringify!($name), "`] on machine `M`: its code.")]
         pub struct $twin<M: Machine> {
-            pub(super) bits: U<M>,
+            pub(crate) bits: U<M>,
         }
 
         impl<M: Machine> Clone for $twin<M> {

@@ -5,7 +5,7 @@
 
 use super::code::code;
 use crate::machine::{
-    Capture, F, LaneMachine, Leaves, Machine, Method, Schema, Type, U, Value, Varying, name, op,
+    Capture, F, LaneMachine, Leaves, Machine, Method, Schema, Type, U, Value, Varying, name,
 };
 
 macro_rules! unorm {
@@ -49,8 +49,7 @@ macro_rules! unorm {
 
             #[inline(always)]
             fn call(self, m: &M, (): ()) -> F<M> {
-                let d = m.f32(<$bits>::MAX as f32);
-                F(m.f32_binary(op::Div, m.u32_to_f32(self.bits.0), d))
+                F(m.unorm(self.bits.0, u32::from(<$bits>::MAX)))
             }
         }
     };

@@ -1,7 +1,7 @@
 //! Textures as the samplers of devices read them.
 
 use super::config::{Filter, Filtering};
-use super::texel::{Texel, TexelValue};
+use super::texel::Texel;
 use super::view::Texels;
 use crate::machine::wgsl::{TexelFormat, TextureLayout};
 use crate::machine::{F, Leaves, Machine, Method, Type, Value, name};
@@ -31,19 +31,9 @@ impl<T: Texel> Texels<'_, T> {
         self.size[2] > 1
     }
 
-    /// What the machine's sampler gives at a place and a level of detail, if it has one for such
-    /// a texture.
-    #[inline(always)]
-    pub(super) fn sampled<M: Machine>(
-        &self,
-        m: &M,
-        at: &[M::F32],
-        level: Option<M::F32>,
-    ) -> Option<<T::Value as Type>::On<M>> {
-        if !M::HAS_SAMPLERS {
-            return None;
-        }
-        let layout = TextureLayout {
+    /// How a device's sampler reads the texels, if it can and is to.
+    pub(crate) fn layout(&self) -> Option<TextureLayout> {
+        Some(TextureLayout {
             is_volume: self.is_volume(),
             size: self.size,
             levels: self.levels,
@@ -51,13 +41,7 @@ impl<T: Texel> Texels<'_, T> {
             stride: size_of::<T>().next_multiple_of(4) as u32,
             address: self.config.address,
             blends_levels: self.blends_levels(),
-        };
-        let level = level.unwrap_or_else(|| m.f32(0.0));
-        let middle = m.f32(0.5);
-        let place = [at[0], at.get(1).copied().unwrap_or(middle), at.last().copied()?];
-        let axes = if layout.is_volume { 3 } else { 2 };
-        let channels = m.sampled(&self.view(), &layout, &place[..axes], level)?.map(F);
-        Some(T::Value::from_channels_on(m, &channels))
+        })
     }
 
     /// A weight of the host's is what it is.

@@ -37,11 +37,7 @@ macro_rules! functions {
                     texture: TextureRef<'_, T, $n>,
                     $at: impl Coerce<M, $twin>,
                 ) -> <T::Value as Type>::On<M> {
-                    let $at = $at.coerce(m);
-                    match texture.texels.sampled(m, &$components($at), None) {
-                        Some(value) => value,
-                        None => sample::$tex::on(m, texture.texels, $at),
-                    }
+                    m.texture(&texture.texels, &$components($at.coerce(m)))
                 }
             }
 
@@ -68,11 +64,8 @@ macro_rules! functions {
                     $at: impl Coerce<M, $twin>,
                     level: impl Coerce<M, F<M>>,
                 ) -> <T::Value as Type>::On<M> {
-                    let ($at, level) = ($at.coerce(m), level.coerce(m));
-                    match texture.texels.sampled(m, &$components($at), Some(level.0)) {
-                        Some(value) => value,
-                        None => sample::$tex_level::on(m, texture.texels, $at, level),
-                    }
+                    let level = level.coerce(m);
+                    m.texture_at_level(&texture.texels, &$components($at.coerce(m)), level)
                 }
             }
         )+
@@ -80,13 +73,13 @@ macro_rules! functions {
 }
 
 functions! {
-    1 u: f32, F<M>, |u: F<M>| [u.0];
+    1 u: f32, F<M>, |u: F<M>| [u];
     /// The value of a 1-D texture at `u`; of one with levels, at level 0. See [`tex2()`].
     tex1
     /// The value of a 1-D texture at `u` and a level of detail. See [`tex2_level()`].
     tex1_level
 
-    2 uv: Vec2, X2<F<M>>, |uv: X2<F<M>>| [uv.x.0, uv.y.0];
+    2 uv: Vec2, X2<F<M>>, |uv: X2<F<M>>| [uv.x, uv.y];
     /// The value of a 2-D texture at `uv`; of one with levels, at level 0.
     ///
     /// The texture covers `[0, 1)` along each axis, and texel `i` of `n` has its centre at
@@ -107,7 +100,7 @@ functions! {
     /// levels has level 0 alone. See [`Texture::with_levels`](super::Texture::with_levels).
     tex2_level
 
-    3 uvw: Vec3, X3<F<M>>, |uvw: X3<F<M>>| [uvw.x.0, uvw.y.0, uvw.z.0];
+    3 uvw: Vec3, X3<F<M>>, |uvw: X3<F<M>>| [uvw.x, uvw.y, uvw.z];
     /// The value of a 3-D texture at `uvw`; of one with levels, at level 0. See [`tex2()`].
     tex3
     /// The value of a 3-D texture at `uvw` and a level of detail. See [`tex2_level()`].

@@ -5,18 +5,20 @@ use glam::{UVec2, UVec3, Vec2, Vec3};
 use super::filter::{filter1, filter2, filter3};
 use super::texel::{Texel, TexelValue};
 use super::view::Texels;
+use crate::Type;
 use crate::kernel;
 use crate::machine::generic::{max, min};
+use crate::machine::{F, Machine, X2, X3};
 
 /// How many texels an axis has at a level.
 #[kernel]
-fn size_at(size: u32, level: u32) -> u32 {
+pub(super) fn size_at(size: u32, level: u32) -> u32 {
     max(size >> level, 1u32)
 }
 
 /// The first texel of a level; one level is behind the other.
 #[kernel]
-fn level_start(size: UVec3, level: u32) -> u32 {
+pub(super) fn level_start(size: UVec3, level: u32) -> u32 {
     let mut start = 0u32;
     for finer in 0..level {
         start += size_at(size.x, finer) * size_at(size.y, finer) * size_at(size.z, finer);
@@ -26,7 +28,7 @@ fn level_start(size: UVec3, level: u32) -> u32 {
 
 /// A level within `0..=last`; what is no number becomes 0.
 #[kernel]
-fn level_within(level: f32, last: u32) -> f32 {
+pub(super) fn level_within(level: f32, last: u32) -> f32 {
     min(max(0.0, level), last as f32)
 }
 
@@ -103,3 +105,50 @@ macro_rules! leveled {
 leveled!(tex1_level tex1 at_level1 f32);
 leveled!(tex2_level tex2 at_level2 Vec2);
 leveled!(tex3_level tex3 at_level3 Vec3);
+
+/// The kernels of a number of axes.
+macro_rules! by_axes {
+    ($d:ident: $one:expr, $two:expr, $three:expr) => {
+        if const { $d == 1 } {
+            $one
+        } else if const { $d == 2 } {
+            $two
+        } else {
+            $three
+        }
+    };
+}
+
+impl<T: Texel> Texels<'_, T> {
+    /// What the kernels find on a machine at a place of `D` axes. A function of its own: it has all
+    /// filters.
+    #[inline(never)]
+    pub(crate) fn by_kernels<M: Machine, const D: usize>(
+        &self,
+        m: &M,
+        at: &[F<M>; D],
+    ) -> <T::Value as Type>::On<M> {
+        let x = |i: usize| at[i];
+        by_axes!(D:
+            tex1::on(m, *self, x(0)),
+            tex2::on(m, *self, X2 { x: x(0), y: x(1) }),
+            tex3::on(m, *self, X3 { x: x(0), y: x(1), z: x(2) })
+        )
+    }
+
+    /// The same at a level of detail.
+    #[inline(never)]
+    pub(crate) fn by_kernels_at_level<M: Machine, const D: usize>(
+        &self,
+        m: &M,
+        at: &[F<M>; D],
+        level: F<M>,
+    ) -> <T::Value as Type>::On<M> {
+        let x = |i: usize| at[i];
+        by_axes!(D:
+            tex1_level::on(m, *self, x(0), level),
+            tex2_level::on(m, *self, X2 { x: x(0), y: x(1) }, level),
+            tex3_level::on(m, *self, X3 { x: x(0), y: x(1), z: x(2) }, level)
+        )
+    }
+}

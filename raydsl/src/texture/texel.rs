@@ -6,8 +6,8 @@ use super::color::{linear_to_srgb, srgb_to_linear};
 use super::config::ColorSpace;
 use crate::kernel;
 use crate::machine::wgsl::TexelFormat;
-use crate::machine::{F, Machine, Method, Type, X2, X3, X4, name};
-use crate::math::{F16, Unorm8, Unorm16};
+use crate::machine::{F, LaneMachine, Machine, Method, Type, U, X2, X3, X4, fill, name, op};
+use crate::math::{F16, Unorm8, Unorm8On, Unorm16};
 
 /// What filters do with values: they are folded as `a + w (b - a)`, so that a constant texture
 /// comes back with the same bits.
@@ -61,6 +61,10 @@ pub trait TexelValue: Blend + Texel<Value = Self> {
     /// [`from_channels`](Self::from_channels) on a machine.
     #[doc(hidden)]
     fn from_channels_on<M: Machine>(m: &M, channels: &[F<M>]) -> Self::On<M>;
+
+    /// [`to_channels`](Self::to_channels) on a machine, to the beginning of `out`.
+    #[doc(hidden)]
+    fn channels_on<M: Machine>(this: &Self::On<M>, out: &mut [M::F32]);
 }
 
 macro_rules! value {
@@ -84,6 +88,11 @@ macro_rules! value {
                 #[inline(always)]
                 fn from_channels_on<M: Machine>(_: &M, channels: &[F<M>]) -> Self::On<M> {
                     $twin { $($c: channels[$i]),+ }
+                }
+
+                #[inline(always)]
+                fn channels_on<M: Machine>(this: &Self::On<M>, out: &mut [M::F32]) {
+                    $(out[$i] = this.$c.0;)+
                 }
             }
         )+
@@ -113,6 +122,11 @@ impl TexelValue for f32 {
     fn from_channels_on<M: Machine>(_: &M, channels: &[F<M>]) -> F<M> {
         channels[0]
     }
+
+    #[inline(always)]
+    fn channels_on<M: Machine>(this: &F<M>, out: &mut [M::F32]) {
+        out[0] = this.0;
+    }
 }
 
 /// A texel: one to four channels of [`Unorm8`], [`Unorm16`], [`F16`] or `f32`.
@@ -135,6 +149,13 @@ pub trait Texel: Type {
         None
     }
 
+    /// The texel that `f` gives for each lane.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn gather<M: LaneMachine>(m: &M, f: impl Fn(usize) -> Self + Copy) -> Self::On<M> {
+        Self::from_lanes(m, f)
+    }
+
     /// [`decode`](Self::decode) on a machine.
     #[doc(hidden)]
     fn decode_on<M: Machine>(
@@ -154,6 +175,15 @@ pub trait Channel: Type {
     #[doc(hidden)]
     fn format(_channels: usize, _space: ColorSpace) -> Option<TexelFormat> {
         None
+    }
+    /// [`Texel::gather`] of an array.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn gather<M: LaneMachine, const N: usize>(
+        m: &M,
+        f: impl Fn(usize) -> [Self; N] + Copy,
+    ) -> [Self::On<M>; N] {
+        <[Self; N]>::from_lanes(m, f)
     }
     /// [`number`](Self::number) on a machine.
     #[doc(hidden)]
@@ -177,9 +207,13 @@ impl Channel for f32 {
 }
 
 macro_rules! small_channel {
-    ($($t:ident $(($($n:literal $space:ident $format:ident),+))?;)+) => {
+    ($(
+        $t:ident $(($($n:literal $space:ident $format:ident),+))? $({ $($own:item)+ })?;
+    )+) => {
         $(
             impl Channel for $t {
+                $($($own)+)?
+
                 #[inline(always)]
                 fn number(self) -> f32 {
                     self.to_f32()
@@ -208,7 +242,35 @@ macro_rules! small_channel {
 small_channel! {
     Unorm8 (
         1 Linear R8Unorm, 2 Linear Rg8Unorm, 4 Linear Rgba8Unorm, 4 Srgb Rgba8UnormSrgb
-    );
+    ) {
+        /// Read as whole words, which are then taken apart in all lanes at once.
+        #[inline(always)]
+        fn gather<M: LaneMachine, const N: usize>(
+            m: &M,
+            f: impl Fn(usize) -> [Self; N] + Copy,
+        ) -> [Self::On<M>; N] {
+            if const { N > 4 } {
+                return <[Self; N]>::from_lanes(m, f);
+            }
+            let words = m.u32_from_fn(
+                #[inline(always)]
+                |lane| {
+                    let mut word = [0; 4];
+                    for (byte, channel) in word.iter_mut().zip(f(lane)) {
+                        *byte = channel.to_bits();
+                    }
+                    u32::from_le_bytes(word)
+                },
+            );
+            fill(
+                #[inline(always)]
+                |i| {
+                    let above = m.u32_binary(op::Shr, words, m.u32(8 * i as u32));
+                    Unorm8On { bits: U(m.u32_binary(op::And, above, m.u32(0xff))) }
+                },
+            )
+        }
+    };
     Unorm16;
     F16 (1 Linear R16Float, 2 Linear Rg16Float, 4 Linear Rgba16Float);
 }
@@ -264,6 +326,14 @@ macro_rules! array_texel {
 
                 fn format(space: ColorSpace) -> Option<TexelFormat> {
                     C::format($n, space)
+                }
+
+                #[inline(always)]
+                fn gather<M: LaneMachine>(
+                    m: &M,
+                    f: impl Fn(usize) -> Self + Copy,
+                ) -> Self::On<M> {
+                    C::gather(m, f)
                 }
 
                 #[inline(always)]

@@ -39,7 +39,7 @@ impl<T> Copy for Texels<'_, T> {}
 
 impl<'a, T> Texels<'a, T> {
     #[inline(always)]
-    pub(super) fn view(&self) -> View<'a, T> {
+    pub(crate) fn view(&self) -> View<'a, T> {
         View::owned_slice(self.all, self.key).named(self.name)
     }
 }

@@ -9,10 +9,11 @@ use crate::geometry::{HitOn, Primitive, RayOn};
 use crate::machine::index::{choose, with_element};
 use crate::machine::wgsl;
 use crate::machine::{
-    B, BoolBinary, Branch, Compare, F32Binary, F32Unary, IntBinary, KernelInfo, Loop, Machine, Op,
-    Schema, U, U32Unary, Usize, Value, Var, op,
+    B, BoolBinary, Branch, Compare, F, F32Binary, F32Unary, IntBinary, KernelInfo, Loop, Machine,
+    Op, Schema, U, U32Unary, Usize, Value, Var, op,
 };
 use crate::math::elementary::{Function, function};
+use crate::texture::{Texel, TexelValue, Texels};
 
 /// `lit_0_125`: the name of a literal in the uniform block.
 fn literal_name(v: f32) -> String {
@@ -323,7 +324,6 @@ impl Machine for Recorder {
     type Loop = RecordedLoop;
     const RUNS: bool = false;
     const HAS_VECTORS: bool = true;
-    const HAS_SAMPLERS: bool = true;
 
     fn f32(&self, v: f32) -> Id {
         if v.is_finite() {
@@ -793,14 +793,28 @@ impl Machine for Recorder {
         let call = self.add(Expr::Call(function, vec![index.0]), Type::of(T::SCHEMA));
         self.take_apart(call)
     }
-    fn sampled<T: crate::machine::Type, S: crate::machine::Type>(
+    fn texture<T: Texel, const D: usize>(
         &self,
-        texels: &crate::bvh::View<'_, T, S>,
-        layout: &wgsl::TextureLayout,
-        at: &[Id],
-        level: Id,
-    ) -> Option<[Id; 4]> {
-        self.sample(texels.key(), &texels.name(), layout, at, level)
+        texels: &Texels<'_, T>,
+        at: &[F<Self>; D],
+    ) -> <T::Value as crate::machine::Type>::On<Self> {
+        let place = at.map(|x| x.0);
+        match self.sample(&texels.view(), texels.layout(), &place, None) {
+            Some(channels) => T::Value::from_channels_on(self, &channels.map(F)),
+            None => texels.by_kernels(self, at),
+        }
+    }
+    fn texture_at_level<T: Texel, const D: usize>(
+        &self,
+        texels: &Texels<'_, T>,
+        at: &[F<Self>; D],
+        level: F<Self>,
+    ) -> <T::Value as crate::machine::Type>::On<Self> {
+        let place = at.map(|x| x.0);
+        match self.sample(&texels.view(), texels.layout(), &place, Some(level.0)) {
+            Some(channels) => T::Value::from_channels_on(self, &channels.map(F)),
+            None => texels.by_kernels_at_level(self, at, level),
+        }
     }
     fn fetch<P: crate::machine::Type, S: crate::machine::Type>(
         &self,

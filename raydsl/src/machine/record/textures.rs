@@ -5,21 +5,38 @@ use core::fmt::Write;
 use super::Recorder;
 use super::ir::{Expr, Id, Scalar, Type};
 use super::names::{safe_name, unique};
+use crate::bvh::View;
 use crate::machine::wgsl::{BufferKey, Texture, TextureLayout};
+use crate::machine::{self, Machine};
 
 /// Sampled textures, and samplers, of a shader stage: what WebGPU guarantees.
 const MOST: usize = 16;
 
 impl Recorder {
-    /// `tiles_sample(at, level)`, taken apart; nothing if there are too many textures.
-    pub(super) fn sample(
+    /// `tiles_sample(at, level)`, taken apart; nothing if no sampler reads the texels, or if there are
+    /// too many textures. Axes that `at` does not have are read in the middle, and no level is level 0.
+    pub(super) fn sample<T: machine::Type>(
+        &self,
+        texels: &View<'_, T>,
+        layout: Option<TextureLayout>,
+        at: &[Id],
+        level: Option<Id>,
+    ) -> Option<[Id; 4]> {
+        self.sample_of(texels.key(), &texels.name(), &layout?, at, level)
+    }
+
+    fn sample_of(
         &self,
         key: BufferKey,
         name: &str,
         layout: &TextureLayout,
         at: &[Id],
-        level: Id,
+        level: Option<Id>,
     ) -> Option<[Id; 4]> {
+        let level = level.unwrap_or_else(|| self.f32(0.0));
+        let middle = self.f32(0.5);
+        let place = [*at.first()?, at.get(1).copied().unwrap_or(middle), *at.last()?];
+        let at = &place[..if layout.is_volume { 3 } else { 2 }];
         let name = self.texture(key, name, layout)?;
         let n = at.len();
         let function = self.text_function(format!("{name}_sample"), vec![], &|function| {
