@@ -8,16 +8,17 @@
 use super::config::{Address, ColorSpace, Filter, LevelFilter};
 use super::sample::{level_start, level_within, size_at};
 use super::taps::{OUTSIDE, four, nearest_texel, pair};
-use super::texel::{Texel, TexelValue};
+use super::texel::Texel;
 use super::view::Texels;
 use crate::Type;
 use crate::machine::{Entered, F, Lanes, Leaves, Machine, Packet, U, Value, X3, fill, op};
 
-/// The machine of the filters: kernels are inlined into them.
+/// The machine that finds places: its kernels are inlined. Those that decode texels are not, which the
+/// curve of sRGB makes long.
 type Inner<L> = Packet<Entered<L>>;
 
 /// What texels of type `T` give.
-type Given<L, T> = <<T as Texel>::Value as Type>::On<Inner<L>>;
+type Given<L, T> = <<T as Texel>::Value as Type>::On<Packet<L>>;
 
 impl<T: Texel> Texels<'_, T> {
     /// What the texture has at places of `D` axes.
@@ -26,7 +27,7 @@ impl<T: Texel> Texels<'_, T> {
         &self,
         m: &Packet<L>,
         at: &[F<Packet<L>>; D],
-    ) -> <T::Value as Type>::On<Packet<L>> {
+    ) -> Given<L, T> {
         filtered::<L, T, D>(m, self, &places(at), None)
     }
 
@@ -37,7 +38,7 @@ impl<T: Texel> Texels<'_, T> {
         m: &Packet<L>,
         at: &[F<Packet<L>>; D],
         level: F<Packet<L>>,
-    ) -> <T::Value as Type>::On<Packet<L>> {
+    ) -> Given<L, T> {
         if self.has_levels() {
             leveled::<L, T, D>(m, self, &places(at), &level.0)
         } else {
@@ -68,7 +69,7 @@ fn filtered<L: Lanes, T: Texel, const D: usize>(
     texels: &Texels<'_, T>,
     at: &[L::F32; 3],
     extent: Option<&Extent<L>>,
-) -> <T::Value as Type>::On<Packet<L>> {
+) -> Given<L, T> {
     match texels.config.filter {
         Filter::Nearest => nearest::<L, T, D>(m, texels, at, extent),
         Filter::Linear => linear::<L, T, D>(m, texels, at, extent),
@@ -83,7 +84,7 @@ fn leveled<L: Lanes, T: Texel, const D: usize>(
     texels: &Texels<'_, T>,
     at: &[L::F32; 3],
     level: &L::F32,
-) -> <T::Value as Type>::On<Packet<L>> {
+) -> Given<L, T> {
     let l = m.lanes();
     l.enter_again(
         #[inline(always)]
@@ -131,25 +132,14 @@ fn entered<L: Lanes, T: Texel>(
     m: &Packet<L>,
     texels: &Texels<'_, T>,
     extent: Option<&Extent<L>>,
-    filter: impl FnOnce(&Inner<L>, &Grid<'_, L, T>) -> Given<L, T>,
-) -> <T::Value as Type>::On<Packet<L>> {
-    let l = m.lanes();
+    filter: impl FnOnce(&Grid<'_, L, T>) -> Given<L, T>,
+) -> Given<L, T> {
     if texels.all.is_empty() {
         return Value::zero(m);
     }
-    l.enter_again(
+    m.lanes().enter_again(
         #[inline(always)]
-        || {
-            let inner = &Packet::with_mask(Entered::new(l), m.active());
-            let value = filter(inner, &Grid::of(inner, texels, extent));
-            let mut channels = [l.f32(0.0); 4];
-            T::Value::channels_on(&value, &mut channels);
-            let channels: [_; 4] = fill(
-                #[inline(always)]
-                |c| F(channels[c]),
-            );
-            T::Value::from_channels_on(m, &channels)
-        },
+        || filter(&Grid::of(m, texels, extent)),
     )
 }
 
@@ -159,28 +149,28 @@ fn nearest<L: Lanes, T: Texel, const D: usize>(
     texels: &Texels<'_, T>,
     at: &[L::F32; 3],
     extent: Option<&Extent<L>>,
-) -> <T::Value as Type>::On<Packet<L>> {
+) -> Given<L, T> {
     entered(
         m,
         texels,
         extent,
         #[inline(always)]
-        |m, grid| nearest_of::<L, T, D>(m, grid, at),
+        |grid| nearest_of::<L, T, D>(grid, at),
     )
 }
 
 #[inline(always)]
 fn nearest_of<L: Lanes, T: Texel, const D: usize>(
-    m: &Inner<L>,
     grid: &Grid<'_, L, T>,
     at: &[L::F32; 3],
 ) -> Given<L, T> {
     let mut index = grid.first;
     for axis in (0..D).rev() {
         let (size, address) = grid.axis(axis);
-        index = grid.part(m, index, axis, nearest_texel::on(m, F(at[axis]), U(size), address).0);
+        index =
+            grid.part(index, axis, nearest_texel::on(&grid.inner, F(at[axis]), U(size), address).0);
     }
-    let [value] = grid.values(m, &[index], 1);
+    let [value] = grid.values(&[index], 1);
     value
 }
 
@@ -190,57 +180,51 @@ fn linear<L: Lanes, T: Texel, const D: usize>(
     texels: &Texels<'_, T>,
     at: &[L::F32; 3],
     extent: Option<&Extent<L>>,
-) -> <T::Value as Type>::On<Packet<L>> {
+) -> Given<L, T> {
     entered(
         m,
         texels,
         extent,
         #[inline(always)]
-        |m, grid| linear_of::<L, T, D>(m, grid, at),
+        |grid| linear_of::<L, T, D>(grid, at),
     )
 }
 
 #[inline(always)]
 fn linear_of<L: Lanes, T: Texel, const D: usize>(
-    m: &Inner<L>,
     grid: &Grid<'_, L, T>,
     at: &[L::F32; 3],
 ) -> Given<L, T> {
-    let l = m.lanes();
+    let l = grid.m.lanes();
     let (mut taps, mut shares) = ([[l.u32(0); 2]; 3], [l.f32(0.0); 3]);
     for axis in 0..D {
         let (size, address) = grid.axis(axis);
-        let found = pair::on(m, F(at[axis]), U(size), address);
+        let found = pair::on(&grid.inner, F(at[axis]), U(size), address);
         (taps[axis], shares[axis]) = ([found.first.0, found.second.0], found.share.0);
     }
     // No loop over axes, so that each is one of a known length.
     let mut indices = [grid.first; 8];
     if const { D > 2 } {
-        grid.split(m, 2, &taps[2], &mut indices, 1);
+        grid.split(2, &taps[2], &mut indices, 1);
     }
     if const { D > 1 } {
-        grid.split(m, 1, &taps[1], &mut indices, D - 1);
+        grid.split(1, &taps[1], &mut indices, D - 1);
     }
-    grid.split(m, 0, &taps[0], &mut indices, 1 << (D - 1));
-    let mut values = grid.values(m, &indices, 1 << D);
-    join(m, shares[0], &mut values, 1 << (D - 1));
+    grid.split(0, &taps[0], &mut indices, 1 << (D - 1));
+    let mut values = grid.values(&indices, 1 << D);
+    join(grid.m, shares[0], &mut values, 1 << (D - 1));
     if const { D > 1 } {
-        join(m, shares[1], &mut values, D - 1);
+        join(grid.m, shares[1], &mut values, D - 1);
     }
     if const { D > 2 } {
-        join(m, shares[2], &mut values, 1);
+        join(grid.m, shares[2], &mut values, 1);
     }
     values[0]
 }
 
 /// Makes one value of each two, of which the second has a share.
 #[inline(always)]
-fn join<L: Lanes, V: Value<Inner<L>>>(
-    m: &Inner<L>,
-    share: L::F32,
-    values: &mut [V; 8],
-    count: usize,
-) {
+fn join<M: Machine, V: Value<M>>(m: &M, share: M::F32, values: &mut [V; 8], count: usize) {
     for i in 0..count {
         values[i] = blend(m, values[2 * i], values[2 * i + 1], share);
     }
@@ -252,29 +236,28 @@ fn cubic<L: Lanes, T: Texel, const D: usize>(
     texels: &Texels<'_, T>,
     at: &[L::F32; 3],
     extent: Option<&Extent<L>>,
-) -> <T::Value as Type>::On<Packet<L>> {
+) -> Given<L, T> {
     entered(
         m,
         texels,
         extent,
         #[inline(always)]
-        |m, grid| cubic_of::<L, T, D>(m, grid, at),
+        |grid| cubic_of::<L, T, D>(grid, at),
     )
 }
 
 #[inline(always)]
 fn cubic_of<L: Lanes, T: Texel, const D: usize>(
-    m: &Inner<L>,
     grid: &Grid<'_, L, T>,
     at: &[L::F32; 3],
 ) -> Given<L, T> {
-    let l = m.lanes();
+    let (m, l) = (grid.m, grid.m.lanes());
     let filter = grid.texels.config.filter;
     let mut weights = [[l.f32(0.0); 3]; D];
     let mut places = [[l.u32(0); 4]; D];
     for axis in 0..D {
         let (size, address) = grid.axis(axis);
-        let taps = four::on(m, F(at[axis]), U(size), address, filter);
+        let taps = four::on(&grid.inner, F(at[axis]), U(size), address, filter);
         weights[axis] = [taps.w1.0, taps.w3.0, taps.w4.0];
         places[axis] = [taps.first.0, taps.second.0, taps.third.0, taps.fourth.0];
     }
@@ -284,7 +267,7 @@ fn cubic_of<L: Lanes, T: Texel, const D: usize>(
         for i in (0..1 << (2 * (D - 1 - axis))).rev() {
             let start = rows[i];
             for k in 0..4 {
-                rows[4 * i + k] = grid.part(m, start, axis, places[axis][k]);
+                rows[4 * i + k] = grid.part(start, axis, places[axis][k]);
             }
         }
     }
@@ -292,9 +275,9 @@ fn cubic_of<L: Lanes, T: Texel, const D: usize>(
     for i in 0..1 << (2 * (D - 1)) {
         let taps = fill(
             #[inline(always)]
-            |k| grid.part(m, rows[i], 0, places[0][k]),
+            |k| grid.part(rows[i], 0, places[0][k]),
         );
-        values[i] = blend4(m, &grid.values(m, &taps, 4), &weights[0]);
+        values[i] = blend4(m, &grid.values(&taps, 4), &weights[0]);
     }
     for axis in 1..D {
         for i in 0..1 << (2 * (D - 1 - axis)) {
@@ -310,6 +293,8 @@ fn cubic_of<L: Lanes, T: Texel, const D: usize>(
 
 /// A level of a texture, and where its texels are.
 struct Grid<'t, L: Lanes, T: Texel> {
+    m: &'t Packet<L>,
+    inner: Inner<L>,
     texels: &'t Texels<'t, T>,
     size: [L::U32; 3],
     first: L::U32,
@@ -322,7 +307,7 @@ struct Grid<'t, L: Lanes, T: Texel> {
 
 impl<'t, L: Lanes, T: Texel> Grid<'t, L, T> {
     #[inline(always)]
-    fn of(m: &Inner<L>, texels: &'t Texels<'t, T>, extent: Option<&Extent<L>>) -> Self {
+    fn of(m: &'t Packet<L>, texels: &'t Texels<'t, T>, extent: Option<&Extent<L>>) -> Self {
         let l = m.lanes();
         let (size, first) = match extent {
             Some(extent) => (extent.size, extent.first),
@@ -333,7 +318,9 @@ impl<'t, L: Lanes, T: Texel> Grid<'t, L, T> {
         };
         let steps = [l.u32(1), size[0], l.u32_binary(op::Mul, size[0], size[1])];
         let border = T::Value::splat(m, texels.border());
-        Self { texels, size, first, steps, has_border: texels.has_border(), border }
+        let inner = Packet::with_mask(Entered::new(l), m.active());
+        let has_border = texels.has_border();
+        Self { m, inner, texels, size, first, steps, has_border, border }
     }
 
     /// The size and the address mode of an axis.
@@ -344,8 +331,8 @@ impl<'t, L: Lanes, T: Texel> Grid<'t, L, T> {
 
     /// The first texel of part `i` along an axis of what begins at `first`.
     #[inline(always)]
-    fn part(&self, m: &Inner<L>, first: L::U32, axis: usize, i: L::U32) -> L::U32 {
-        let l = m.lanes();
+    fn part(&self, first: L::U32, axis: usize, i: L::U32) -> L::U32 {
+        let l = self.m.lanes();
         let steps = if axis == 0 { i } else { l.u32_binary(op::Mul, i, self.steps[axis]) };
         let inside = l.u32_binary(op::Add, first, steps);
         if !self.has_border {
@@ -358,34 +345,22 @@ impl<'t, L: Lanes, T: Texel> Grid<'t, L, T> {
 
     /// Makes two places of each along an axis: neighbours along the first one follow each other.
     #[inline(always)]
-    fn split(
-        &self,
-        m: &Inner<L>,
-        axis: usize,
-        &[a, b]: &[L::U32; 2],
-        indices: &mut [L::U32; 8],
-        count: usize,
-    ) {
+    fn split(&self, axis: usize, &[a, b]: &[L::U32; 2], indices: &mut [L::U32; 8], count: usize) {
         for i in (0..count).rev() {
             let start = indices[i];
-            indices[2 * i] = self.part(m, start, axis, a);
-            indices[2 * i + 1] = self.part(m, start, axis, b);
+            indices[2 * i] = self.part(start, axis, a);
+            indices[2 * i + 1] = self.part(start, axis, b);
         }
     }
 
     /// The values of the first `count` texels, or of the border where there is none. Lanes that do not
     /// run have one too: whatever their coordinates are, places are inside or [`OUTSIDE`].
     #[inline(always)]
-    fn values<const N: usize>(
-        &self,
-        m: &Inner<L>,
-        places: &[L::U32; N],
-        count: usize,
-    ) -> [Given<L, T>; N] {
-        let l = m.lanes();
+    fn values<const N: usize>(&self, places: &[L::U32; N], count: usize) -> [Given<L, T>; N] {
+        let (m, l) = (self.m, self.m.lanes());
         let mut values = [Given::<L, T>::zero(m); N];
         if !self.has_border {
-            self.inside(m, places, count, &mut values);
+            self.inside(places, count, &mut values);
             return values;
         }
         let is_outside = |place| l.u32_compare(op::Eq, place, l.u32(OUTSIDE));
@@ -393,7 +368,7 @@ impl<'t, L: Lanes, T: Texel> Grid<'t, L, T> {
         for place in &mut inside {
             *place = l.u32_select(is_outside(*place), l.u32(0), *place);
         }
-        self.inside(m, &inside, count, &mut values);
+        self.inside(&inside, count, &mut values);
         for (value, place) in values.iter_mut().zip(places) {
             let mut select = Select(is_outside(*place));
             *value = Value::zip(m, self.border, *value, &mut select);
@@ -405,13 +380,12 @@ impl<'t, L: Lanes, T: Texel> Grid<'t, L, T> {
     #[inline(always)]
     fn inside<const N: usize>(
         &self,
-        m: &Inner<L>,
         places: &[L::U32; N],
         count: usize,
         values: &mut [Given<L, T>; N],
     ) {
-        let all = self.texels.all;
-        let mut texels = [T::On::<Inner<L>>::zero(m); N];
+        let (m, all) = (self.m, self.texels.all);
+        let mut texels = [T::On::<Packet<L>>::zero(m); N];
         for i in 0..count {
             texels[i] = T::gather(
                 m,
@@ -443,10 +417,10 @@ fn blend<M: Machine, V: Value<M>>(m: &M, a: V, b: V, share: M::F32) -> V {
 
 /// [`Blend::blend4`](super::Blend::blend4) of neighbours in their order.
 #[inline(always)]
-fn blend4<L: Lanes, V: Value<Inner<L>>>(
-    m: &Inner<L>,
+fn blend4<M: Machine, V: Value<M>>(
+    m: &M,
     &[first, second, third, fourth]: &[V; 4],
-    &[w1, w3, w4]: &[L::F32; 3],
+    &[w1, w3, w4]: &[M::F32; 3],
 ) -> V {
     let way = |to, weight| V::zip(m, to, second, &mut Way(weight));
     let sum = V::zip(m, way(first, w1), way(third, w3), &mut Sum);

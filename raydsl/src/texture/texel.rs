@@ -61,10 +61,6 @@ pub trait TexelValue: Blend + Texel<Value = Self> {
     /// [`from_channels`](Self::from_channels) on a machine.
     #[doc(hidden)]
     fn from_channels_on<M: Machine>(m: &M, channels: &[F<M>]) -> Self::On<M>;
-
-    /// [`to_channels`](Self::to_channels) on a machine, to the beginning of `out`.
-    #[doc(hidden)]
-    fn channels_on<M: Machine>(this: &Self::On<M>, out: &mut [M::F32]);
 }
 
 macro_rules! value {
@@ -88,11 +84,6 @@ macro_rules! value {
                 #[inline(always)]
                 fn from_channels_on<M: Machine>(_: &M, channels: &[F<M>]) -> Self::On<M> {
                     $twin { $($c: channels[$i]),+ }
-                }
-
-                #[inline(always)]
-                fn channels_on<M: Machine>(this: &Self::On<M>, out: &mut [M::F32]) {
-                    $(out[$i] = this.$c.0;)+
                 }
             }
         )+
@@ -121,11 +112,6 @@ impl TexelValue for f32 {
     #[inline(always)]
     fn from_channels_on<M: Machine>(_: &M, channels: &[F<M>]) -> F<M> {
         channels[0]
-    }
-
-    #[inline(always)]
-    fn channels_on<M: Machine>(this: &F<M>, out: &mut [M::F32]) {
-        out[0] = this.0;
     }
 }
 

@@ -521,6 +521,7 @@ impl Machine for Recorder {
         t.then.replace(Some(then));
         true
     }
+    #[inline]
     fn choose<V: Value<Self>>(
         &self,
         name: &'static str,
@@ -654,6 +655,8 @@ impl Machine for Recorder {
     fn give_slot<V: Value<Self>>(&self) -> V {
         V::zero(self)
     }
+    // Inlined, so that with an edit the code of kernels is compiled again, and not all of the recorder.
+    #[inline]
     fn call<A: Value<Self>, R: Value<Self>>(
         &self,
         info: &'static KernelInfo,
