@@ -62,6 +62,13 @@ impl Workshop {
         // test of the whole workspace builds, so there it builds nothing.
         command.args(["test", "--no-run", "--message-format", "json", "--workspace"]);
         command.args(["--test", test, "--target-dir"]).arg(target_folder);
+        // As they are here, or all of it is built again.
+        match (cfg!(feature = "flip"), cfg!(feature = "counts")) {
+            (true, true) => drop(command.arg("--all-features")),
+            (true, false) => drop(command.args(["--features", "raydsl-tests/flip"])),
+            (false, true) => drop(command.args(["--features", "raydsl-tests/counts"])),
+            (false, false) => {}
+        }
         if !cfg!(debug_assertions) {
             command.arg("--release");
         }
