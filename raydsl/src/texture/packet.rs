@@ -357,55 +357,44 @@ impl<'t, L: Lanes, T: Texel> Grid<'t, L, T> {
     /// run have one too: whatever their coordinates are, places are inside or [`OUTSIDE`].
     #[inline(always)]
     fn values<const N: usize>(&self, places: &[L::U32; N], count: usize) -> [Given<L, T>; N] {
-        let (m, l) = (self.m, self.m.lanes());
-        let mut values = [Given::<L, T>::zero(m); N];
-        if !self.has_border {
-            self.inside(places, count, &mut values);
+        let mut values = [Given::<L, T>::zero(self.m); N];
+        if self.has_border || self.texels.config.color_space != ColorSpace::Linear {
+            self.values_apart(&places[..count], &mut values[..count]);
             return values;
         }
-        let is_outside = |place| l.u32_compare(op::Eq, place, l.u32(OUTSIDE));
-        let mut inside = *places;
-        for place in &mut inside {
-            *place = l.u32_select(is_outside(*place), l.u32(0), *place);
-        }
-        self.inside(&inside, count, &mut values);
-        for (value, place) in values.iter_mut().zip(places) {
-            let mut select = Select(is_outside(*place));
-            *value = Value::zip(m, self.border, *value, &mut select);
+        for i in 0..count {
+            values[i] = self.inside(&places[i], ColorSpace::Linear);
         }
         values
     }
 
+    /// [`values`](Self::values) of any texture, in a function that all filters share.
+    #[inline(never)]
+    fn values_apart(&self, places: &[L::U32], values: &mut [Given<L, T>]) {
+        let (m, l) = (self.m, self.m.lanes());
+        l.enter_again(
+            #[inline(always)]
+            || {
+                for (place, value) in places.iter().zip(values) {
+                    let is_outside = l.u32_compare(op::Eq, *place, l.u32(OUTSIDE));
+                    let inside = l.u32_select(is_outside, l.u32(0), *place);
+                    let texel = self.inside(&inside, self.texels.config.color_space);
+                    *value = Value::zip(m, self.border, texel, &mut Select(is_outside));
+                }
+            },
+        );
+    }
+
     /// The values of texels that there are.
     #[inline(always)]
-    fn inside<const N: usize>(
-        &self,
-        places: &[L::U32; N],
-        count: usize,
-        values: &mut [Given<L, T>; N],
-    ) {
-        let (m, all) = (self.m, self.texels.all);
-        let mut texels = [T::On::<Packet<L>>::zero(m); N];
-        for i in 0..count {
-            texels[i] = T::gather(
-                m,
-                #[inline(always)]
-                |lane| all[L::u32_lane(&places[i], lane) as usize],
-            );
-        }
-        // In loops of their own, which need fewer registers.
-        match self.texels.config.color_space {
-            ColorSpace::Linear => {
-                for i in 0..count {
-                    values[i] = T::decode_on(m, texels[i], ColorSpace::Linear);
-                }
-            }
-            ColorSpace::Srgb => {
-                for i in 0..count {
-                    values[i] = T::decode_on(m, texels[i], ColorSpace::Srgb);
-                }
-            }
-        }
+    fn inside(&self, places: &L::U32, space: ColorSpace) -> Given<L, T> {
+        let all = self.texels.all;
+        let texel = T::gather(
+            self.m,
+            #[inline(always)]
+            |lane| all[L::u32_lane(places, lane) as usize],
+        );
+        T::decode_on(self.m, texel, space)
     }
 }
 
