@@ -14,38 +14,42 @@ use crate::machine::{
 mod native {
     use super::{Counted, Packet, Simd4, Simd8, Simd16};
 
-    /// The levels of 4, 8 and 16 lanes. Every machine of the target has the first one.
+    /// The levels of 4, 8 and 16 lanes, and the one that every machine of the target has.
     #[cfg(target_arch = "x86_64")]
     pub(super) mod level {
-        pub(in super::super) use fearless_simd::{Avx2 as Middle, Avx512 as Wide, Sse2 as Narrow};
+        pub(in super::super) use fearless_simd::{
+            Avx2 as Middle, Avx512 as Wide, Sse2 as Least, Sse4_2 as Narrow,
+        };
     }
 
     #[cfg(target_arch = "aarch64")]
     pub(super) mod level {
-        pub(in super::super) use fearless_simd::{Neon as Middle, Neon as Narrow, Neon as Wide};
+        pub(in super::super) use fearless_simd::{
+            Neon as Least, Neon as Middle, Neon as Narrow, Neon as Wide,
+        };
     }
 
     #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
     pub(super) mod level {
         pub(in super::super) use fearless_simd::{
-            Fallback as Middle, Fallback as Narrow, Fallback as Wide,
+            Fallback as Least, Fallback as Middle, Fallback as Narrow, Fallback as Wide,
         };
     }
 
-    /// Four lanes: SSE2, NEON, or no instructions of this kind at all.
+    /// Four lanes: SSE4.2, NEON, or no instructions of this kind at all.
     pub(crate) type Lanes4 = Simd4<level::Narrow>;
     /// Eight lanes: AVX2, NEON.
     pub(crate) type Lanes8 = Simd8<level::Middle>;
     /// Sixteen lanes: AVX-512, NEON.
     pub(crate) type Lanes16 = Simd16<level::Wide>;
-    /// Packets of four lanes: SSE2, NEON, or no instructions of this kind at all.
+    /// Packets of four lanes: SSE4.2, NEON, or no instructions of this kind at all.
     pub type Native4 = Packet<Lanes4>;
     /// Packets of eight lanes: AVX2, NEON.
     pub type Native8 = Packet<Lanes8>;
     /// Packets of sixteen lanes: AVX-512, NEON.
     pub type Native16 = Packet<Lanes16>;
     /// Eight lanes of what every machine of the target has, which count where they are.
-    pub type Counting = Packet<Counted<Simd8<level::Narrow>>>;
+    pub type Counting = Packet<Counted<Simd8<level::Least>>>;
 }
 
 pub use native::{Counting, Native4, Native8, Native16};
@@ -54,7 +58,8 @@ pub(crate) use native::{Lanes4, Lanes8, Lanes16};
 /// The tokens of the levels that this machine has.
 #[derive(Clone, Copy)]
 struct Levels {
-    narrow: native::level::Narrow,
+    least: native::level::Least,
+    narrow: Option<native::level::Narrow>,
     middle: Option<native::level::Middle>,
     wide: Option<native::level::Wide>,
 }
@@ -66,10 +71,11 @@ impl Levels {
 
     #[cfg(target_arch = "x86_64")]
     fn of(level: Level) -> Self {
-        let Some(narrow) = level.as_sse2() else {
+        let Some(least) = level.as_sse2() else {
             unreachable!("SSE2 is a part of x86-64");
         };
-        Self { narrow, middle: level.as_avx2(), wide: level.as_avx512() }
+        let (narrow, middle, wide) = (level.as_sse4_2(), level.as_avx2(), level.as_avx512());
+        Self { least, narrow, middle, wide }
     }
 
     #[cfg(target_arch = "aarch64")]
@@ -77,12 +83,13 @@ impl Levels {
         let Some(neon) = level.as_neon() else {
             unreachable!("NEON is a part of AArch64");
         };
-        Self { narrow: neon, middle: Some(neon), wide: Some(neon) }
+        Self { least: neon, narrow: Some(neon), middle: Some(neon), wide: Some(neon) }
     }
 
     #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
     fn of(_: Level) -> Self {
-        Self { narrow: fearless_simd::Fallback::new(), middle: None, wide: None }
+        let least = fearless_simd::Fallback::new();
+        Self { least, narrow: Some(least), middle: None, wide: None }
     }
 }
 
@@ -136,7 +143,8 @@ impl Variant {
 
     /// The instruction set that runs the variant on this machine, and its lanes.
     ///
-    /// A width whose level the machine lacks runs as several packets of the next narrower one.
+    /// A width whose level the machine lacks runs as several packets of the next narrower one; without
+    /// SSE4.2 or NEON, one ray after another.
     pub fn isa(self) -> (&'static str, usize) {
         struct Name;
         impl LanesTask for Name {
@@ -148,7 +156,7 @@ impl Variant {
         match self {
             Self::Scalar => ("scalar", 1),
             Self::Wgsl => ("wgsl", 1),
-            packet => packet.with_lanes(Name),
+            packet => packet.with_lanes(Name).unwrap_or(("scalar", 1)),
         }
     }
 
@@ -158,19 +166,25 @@ impl Variant {
         let levels = Levels::detect();
         match self {
             Self::Scalar => true,
-            Self::Packet4 => cfg!(any(target_arch = "x86_64", target_arch = "aarch64")),
+            Self::Packet4 => {
+                let has_any = cfg!(any(target_arch = "x86_64", target_arch = "aarch64"));
+                has_any && levels.narrow.is_some()
+            }
             Self::Packet8 => levels.middle.is_some(),
             Self::Packet16 => levels.wide.is_some(),
             Self::Wgsl => false,
         }
     }
 
-    pub(crate) fn with_lanes<T: LanesTask>(self, task: T) -> T::Output {
+    /// Does it with the lanes that run the variant's packets; not where the machine has none.
+    pub(crate) fn with_lanes<T: LanesTask>(self, task: T) -> Option<T::Output> {
         let levels = Levels::detect();
         match self {
-            Self::Packet16 if let Some(s) = levels.wide => task.run(Simd16(s)),
-            Self::Packet8 | Self::Packet16 if let Some(s) = levels.middle => task.run(Simd8(s)),
-            _ => task.run(Simd4(levels.narrow)),
+            Self::Packet16 if let Some(s) = levels.wide => Some(task.run(Simd16(s))),
+            Self::Packet8 | Self::Packet16 if let Some(s) = levels.middle => {
+                Some(task.run(Simd8(s)))
+            }
+            _ => levels.narrow.map(|s| task.run(Simd4(s))),
         }
     }
 }
@@ -299,7 +313,8 @@ pub trait PacketTask<A: Type, R: Type> {
     /// Does it. `kernel` is the lifted body for packets of `lanes`.
     fn run<L: Lanes>(self, lanes: L, kernel: &PacketKernel<'_, L, A, R>) -> Self::Output;
 
-    /// Does it one lane at a time, where `RAYDSL_VARIANTS` has left out the lifted bodies.
+    /// Does it one lane at a time, where the machine has no such lanes, or `RAYDSL_VARIANTS` has left out the
+    /// lifted bodies.
     fn scalar(self, kernel: &(dyn Fn(A) -> R + Send + Sync)) -> Self::Output;
 }
 
@@ -373,15 +388,15 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
     /// several packets of the next narrower one, or the scalar function where there is none.
     pub fn with_packets<T: PacketTask<A, R>>(&self, variant: Variant, task: T) -> T::Output {
         let Lifted { native4, native8, native16, .. } = &self.lifted;
-        let Levels { narrow, middle, wide } = Levels::detect();
+        let Levels { narrow, middle, wide, .. } = Levels::detect();
         let is_wide = variant == Variant::Packet16;
         let is_middle = is_wide || variant == Variant::Packet8;
         if is_wide && let (Some(level), Some(kernel)) = (wide, native16) {
             task.run(Simd16(level), &**kernel)
         } else if is_middle && let (Some(level), Some(kernel)) = (middle, native8) {
             task.run(Simd8(level), &**kernel)
-        } else if let Some(kernel) = native4 {
-            task.run(Simd4(narrow), &**kernel)
+        } else if let (Some(level), Some(kernel)) = (narrow, native4) {
+            task.run(Simd4(level), &**kernel)
         } else {
             task.scalar(&*self.scalar)
         }
@@ -512,7 +527,7 @@ impl<'a, A: Type, R: Type> core::ops::Deref for CountedKernel<'a, A, R> {
 impl<A: Type, R: Type> CountedKernel<'_, A, R> {
     /// Runs packets of 8 lanes, of what every machine of the target has: the ones that count.
     pub(crate) fn run_counted(&self, inputs: &[A], outputs: &mut [R]) {
-        let lanes = Counted(Simd8(Levels::detect().narrow));
+        let lanes = Counted(Simd8(Levels::detect().least));
         // One packet after the other: counts belong to whoever runs.
         run_in_gangs(lanes, 0, &*self.counted, inputs, outputs);
     }

@@ -80,7 +80,6 @@ fn padded<L: Lanes>(task: &mut dyn FnMut(&str, Numbered), lanes: L) {
 #[cfg(target_arch = "x86_64")]
 fn natural(task: &mut dyn FnMut(&str, Numbered), level: Level) {
     if let Some(s) = level.as_sse2() {
-        padded(task, Simd4(s));
         padded(task, Simd8(s));
     }
     if let Some(s) = level.as_sse4_2() {

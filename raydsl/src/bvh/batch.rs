@@ -18,7 +18,8 @@ pub(super) fn closest_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray])
         });
         return hits;
     }
-    Variant::widest().with_lanes(Closest { scene, rays })
+    let hits = Variant::widest().with_lanes(Closest { scene, rays });
+    hits.unwrap_or_else(|| rays.iter().map(|ray| traverse::closest_hit(scene, *ray)).collect())
 }
 
 /// Whether each ray hits anything.
@@ -28,7 +29,8 @@ pub(super) fn any_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray]) -> 
         trace::each_any((scene, walks), rays, |is_hit| hits.push(is_hit));
         return hits;
     }
-    Variant::widest().with_lanes(Any { scene, rays })
+    let hits = Variant::widest().with_lanes(Any { scene, rays });
+    hits.unwrap_or_else(|| rays.iter().map(|ray| traverse::any_hit(scene, *ray)).collect())
 }
 
 struct Closest<'a, 's, P: Primitive> {

@@ -138,19 +138,17 @@ pub fn closest_hit<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> P::Hit {
 }
 
 /// [`closest_hit`] without the rest of the record.
-///
-/// A function of its own, as [`any_hit`] is: packets whose rays go one by one share it, at each of
-/// their levels.
-#[inline(never)]
+#[inline]
 pub(crate) fn nearest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> Hit {
-    let of_wide = prims.walks().and_then(
-        #[inline(always)]
-        |walks| (walks.closest_of_one)(prims, ray),
-    );
-    of_wide.unwrap_or_else(
-        #[inline(always)]
-        || closest(prims, ray, &mut Uncounted),
-    )
+    let of_wide = prims.walks().and_then(|walks| (walks.closest_of_one)(prims, ray));
+    of_wide.unwrap_or_else(|| nearest_alone(prims, ray))
+}
+
+/// [`nearest`] where the trees are not wide. A function of its own, which packets whose rays go one by one
+/// share, and whose ray is nowhere else.
+#[inline(never)]
+fn nearest_alone<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> Hit {
+    closest(prims, ray, &mut Uncounted)
 }
 
 /// The record of a hit: traversal carries the hit alone.
@@ -197,10 +195,16 @@ fn closest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Co
 }
 
 /// Whether `ray` hits any of `prims`.
-#[inline(never)]
+#[inline]
 pub fn any_hit<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> bool {
     let of_wide = prims.walks().and_then(|walks| (walks.any_of_one)(prims, ray));
-    of_wide.unwrap_or_else(|| any(prims, ray, &mut Uncounted))
+    of_wide.unwrap_or_else(|| any_alone(prims, ray))
+}
+
+/// As [`nearest_alone`].
+#[inline(never)]
+fn any_alone<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> bool {
+    any(prims, ray, &mut Uncounted)
 }
 
 /// [`any_hit`], and what it cost.
