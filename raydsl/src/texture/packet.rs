@@ -279,13 +279,13 @@ fn cubic_of<L: Lanes, T: Texel, const D: usize>(
         );
         values[i] = blend4(m, &grid.values(&taps, 4), &weights[0]);
     }
-    for axis in 1..D {
+    for (axis, weights) in weights.iter().enumerate().skip(1) {
         for i in 0..1 << (2 * (D - 1 - axis)) {
             let taps = fill(
                 #[inline(always)]
                 |k| values[4 * i + k],
             );
-            values[i] = blend4(m, &taps, &weights[axis]);
+            values[i] = blend4(m, &taps, weights);
         }
     }
     values[0]
