@@ -144,8 +144,8 @@ pub(crate) fn nearest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> Hit {
     of_wide.unwrap_or_else(|| nearest_alone(prims, ray))
 }
 
-/// [`nearest`] where the trees are not wide. A function of its own, which packets whose rays go one by one
-/// share, and whose ray is nowhere else.
+/// [`nearest`] where the trees are not wide. A function of its own: packets whose rays go one by one
+/// share it at all of their levels, and the ray can stay in registers, as nothing else has its address.
 #[inline(never)]
 fn nearest_alone<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> Hit {
     closest(prims, ray, &mut Uncounted)
@@ -167,7 +167,7 @@ pub fn closest_hit_with_cost<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -
     (complete(prims, ray, hit), cost)
 }
 
-/// [`closest_hit_with_cost`] without the rest of the record.
+/// [`closest_hit_with_cost`] without the rest of the record. Packets of all levels share it.
 #[inline(never)]
 pub(crate) fn nearest_counted<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> CountedHit {
     let mut cost = Cost::default();

@@ -622,8 +622,8 @@ impl<L: Lanes> Machine for Packet<L> {
             _ => return l.f32_binary(op::Div, l.u32_to_f32(code), l.f32(max as f32)),
         };
         let code = l.i32_to_f32(l.u32_to_i32(code));
-        let product = |factor| l.f32_binary(op::Mul, code, l.f32(factor));
-        l.f32_binary(op::Add, product(high), product(low))
+        let high = l.f32_binary(op::Mul, code, l.f32(high));
+        l.f32_binary(op::Add, high, l.f32_binary(op::Mul, code, l.f32(low)))
     }
 
     #[inline(always)]

@@ -125,7 +125,7 @@ pub fn variants_agree<A: Type + Sync, R: Type + Sync>(
     })
 }
 
-/// A packet of what every machine has stands in for a width that this one lacks.
+/// A narrower packet, or the scalar function, stands in for a width that this machine lacks.
 fn packet<A: Type, R: Type>(
     kernel: &Kernel<'_, A, R>,
     variant: Variant,

@@ -1,4 +1,5 @@
-//! The filters: kernels over a texture's texels.
+//! The filters: kernels over a texture's texels. Packets have them in `packet`: what changes here
+//! changes there.
 //!
 //! Each works on rows along the first axis, which are blended along the others. Filter and address
 //! modes are the host's, so a recorder writes down those of the texture alone.

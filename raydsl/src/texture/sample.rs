@@ -1,4 +1,5 @@
-//! Kernels over texels: values at level 0, and at any level of detail.
+//! Kernels over texels: values at level 0, and at any level of detail. Packets have them in
+//! `packet`: what changes here changes there.
 
 use glam::{UVec2, UVec3, Vec2, Vec3};
 
@@ -128,6 +129,7 @@ impl<T: Texel> Texels<'_, T> {
         m: &M,
         at: &[F<M>; D],
     ) -> <T::Value as Type>::On<M> {
+        // Not by constants: an array of one axis has no second element, where none is read.
         let x = |i: usize| at[i];
         by_axes!(D:
             tex1::on(m, *self, x(0)),
@@ -144,6 +146,7 @@ impl<T: Texel> Texels<'_, T> {
         at: &[F<M>; D],
         level: F<M>,
     ) -> <T::Value as Type>::On<M> {
+        // Not by constants: an array of one axis has no second element, where none is read.
         let x = |i: usize| at[i];
         by_axes!(D:
             tex1_level::on(m, *self, x(0), level),

@@ -235,9 +235,7 @@ small_channel! {
             m: &M,
             f: impl Fn(usize) -> [Self; N] + Copy,
         ) -> [Self::On<M>; N] {
-            if const { N > 4 } {
-                return <[Self; N]>::from_lanes(m, f);
-            }
+            const { assert!(N <= 4, "a texel has up to four channels") };
             let words = m.u32_from_fn(
                 #[inline(always)]
                 |lane| {

@@ -63,11 +63,10 @@ impl Workshop {
         command.args(["test", "--no-run", "--message-format", "json", "--workspace"]);
         command.args(["--test", test, "--target-dir"]).arg(target_folder);
         // As they are here, or all of it is built again.
-        match (cfg!(feature = "flip"), cfg!(feature = "counts")) {
-            (true, true) => drop(command.arg("--all-features")),
-            (true, false) => drop(command.args(["--features", "raydsl-tests/flip"])),
-            (false, true) => drop(command.args(["--features", "raydsl-tests/counts"])),
-            (false, false) => {}
+        if cfg!(all(feature = "flip", feature = "counts")) {
+            command.arg("--all-features");
+        } else if cfg!(feature = "counts") {
+            command.args(["--features", "raydsl-tests/counts,raydsl-benches/counts"]);
         }
         if !cfg!(debug_assertions) {
             command.arg("--release");
