@@ -5,12 +5,14 @@
 use raydsl::assert_variants_agree;
 use raydsl::kernel;
 use raydsl::kernel::run_batch;
-use raydsl::machine::{One, Packet};
+use raydsl::machine::{Lanes, One, Packet, Type};
 use raydsl::prelude::*;
 use raydsl::texture::{
     Address, AsTextureRef, ColorSpace, Filter, LevelFilter, Texel, TexelValue, TextureError,
 };
+use raydsl_tests::levels::each_level_padded;
 use raydsl_tests::rng::Rng;
+use raydsl_tests::run_time::RunTime;
 
 use super::{ADDRESSES, FILTERS};
 
@@ -83,6 +85,34 @@ fn one(texture: &Texture1<'_, f32>) {
     }
 }
 
+/// Kinds of lanes that no closure is lifted for.
+#[test]
+fn every_level() -> Result<(), TextureError> {
+    let mut rng = Rng::new(49);
+    let texels: Vec<Unorm8> = (0..60).map(|_| Unorm8::new(rng.unit())).collect();
+    let inputs = points(&mut Rng::new(50));
+    for config in configs() {
+        let texture = Texture3::new(&texels, [3, 4, 5], config)?.with_levels()?;
+        let expected: Vec<f32> = inputs.iter().map(|(p,)| tex3_level(&texture, *p, p.x)).collect();
+        let lifted = |m: &Packet<RunTime<16>>, (p,): (raydsl::machine::V3<_>,)| {
+            tex3_level::on(m, texture.as_texture_ref(), p, p.x)
+        };
+        each_level_padded(&mut |name, lanes, width| {
+            // One packet after the other, whose upper lanes hold nothing.
+            for (inputs, expected) in inputs.chunks(width).zip(expected.chunks(width)) {
+                let m = Packet::with_count(lanes, inputs.len());
+                let args = <(Vec3,)>::from_lanes(&m, |l| inputs[l.min(inputs.len() - 1)]);
+                let found = lanes.vectorize(|| lifted(&m, args));
+                for (l, expected) in expected.iter().enumerate() {
+                    let found = f32::lane(&found, l);
+                    assert_eq!(found.to_bits(), expected.to_bits(), "{name}: {:?}", inputs[l]);
+                }
+            }
+        });
+    }
+    Ok(())
+}
+
 #[test]
 fn two_dimensions() -> Result<(), TextureError> {
     let mut rng = Rng::new(42);
@@ -135,11 +165,71 @@ fn leveled(texture: &Texture2<'_, Unorm16>) {
     agree!(|p| tex2_level(texture, vec2(p.x, p.y), p.z));
 }
 
+/// Levels of textures of one and three axes, with a border and in sRGB, as `two_dimensions` has them.
+#[test]
+fn levels_of_lines_and_volumes() -> Result<(), TextureError> {
+    let mut rng = Rng::new(47);
+    let texels: Vec<[Unorm8; 4]> =
+        (0..105).map(|_| [(); 4].map(|()| Unorm8::new(rng.unit()))).collect();
+    for (i, filter) in FILTERS.into_iter().enumerate() {
+        let config = TextureConfig::new()
+            .filter(filter)
+            .color_space([ColorSpace::Srgb, ColorSpace::Linear][i % 2])
+            .level_filter([LevelFilter::Linear, LevelFilter::Nearest][i / 2])
+            .addresses([Address::Border, Address::Wrap, Address::Mirror])
+            .border(vec4(0.5, -1.0, 2.0, 0.25));
+        leveled_line(&Texture1::new(&texels, [105], config)?.with_levels()?);
+        leveled_volume(&Texture3::new(&texels, [7, 5, 3], config)?.with_levels()?);
+    }
+    Ok(())
+}
+
+fn leveled_line(texture: &Texture1<'_, [Unorm8; 4]>) {
+    agree!(|p| tex1_level(texture, p.x, p.y));
+}
+
+fn leveled_volume(texture: &Texture3<'_, [Unorm8; 4]>) {
+    agree!(|p| tex3_level(texture, p, p.x * 2.0));
+}
+
+/// Some lanes read and others do not, in arms and in loops whose rounds differ.
+#[test]
+fn lanes_that_do_not_read() -> Result<(), TextureError> {
+    let mut rng = Rng::new(48);
+    let texels: Vec<Unorm8> = (0..60).map(|_| Unorm8::new(rng.unit())).collect();
+    for config in configs() {
+        let texture = Texture3::new(&texels, [3, 4, 5], config)?;
+        divided(&texture);
+        divided(&texture.with_levels()?);
+    }
+    Ok(())
+}
+
+fn divided(texture: &Texture3<'_, Unorm8>) {
+    agree!(|p| {
+        let mut sum: f32 = 0.0;
+        let mut at = p;
+        let mut left = select(p.x > 0.5, 3u32, 1u32);
+        while left > 0 {
+            if at.y > 0.25 {
+                sum += tex3_level(texture, at, at.z);
+            } else {
+                sum += 2.0 * tex3(texture, at);
+            }
+            at = vec3(at.y, at.z, at.x) * 1.5;
+            left -= 1;
+        }
+        sum
+    });
+}
+
 /// Texels of every kind are decoded to the same bits.
 fn texels<T: Texel>(all: &[T], check: impl Fn(&Texture1<'_, T>)) -> Result<(), TextureError> {
     for space in [ColorSpace::Linear, ColorSpace::Srgb] {
-        let config = TextureConfig::new().filter(Filter::Nearest).color_space(space);
-        check(&Texture1::new(all, [all.len() as u32], config)?);
+        for filter in [Filter::Nearest, Filter::Linear] {
+            let config = TextureConfig::new().filter(filter).color_space(space);
+            check(&Texture1::new(all, [all.len() as u32], config)?);
+        }
     }
     assert_eq!(T::decode(all[0], ColorSpace::Linear).to_channels()[3..], {
         let n = <T::Value as TexelValue>::CHANNELS;
@@ -171,6 +261,7 @@ fn half(rng: &mut Rng) -> F16 {
 }
 
 texel_tests! {
+    unorm8_2: [Unorm8; 2], |rng: &mut Rng| [(); 2].map(|()| Unorm8::new(rng.unit()));
     unorm8_3: [Unorm8; 3], |rng: &mut Rng| [(); 3].map(|()| Unorm8::new(rng.unit()));
     half3: [F16; 3], |rng: &mut Rng| [(); 3].map(|()| half(rng));
     vector4: Vec4, |rng: &mut Rng| rng.point(2.0).extend(rng.unit());
