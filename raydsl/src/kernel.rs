@@ -178,13 +178,19 @@ impl Variant {
 
     /// Does it with the lanes that run the variant's packets; not where the machine has none.
     pub(crate) fn with_lanes<T: LanesTask>(self, task: T) -> Option<T::Output> {
-        let levels = Levels::detect();
-        match self {
-            Self::Packet16 if let Some(s) = levels.wide => Some(task.run(Simd16(s))),
-            Self::Packet8 | Self::Packet16 if let Some(s) = levels.middle => {
+        Levels::detect().with_lanes(self, task)
+    }
+}
+
+impl Levels {
+    /// [`Variant::with_lanes`] of a machine that has these levels.
+    fn with_lanes<T: LanesTask>(self, variant: Variant, task: T) -> Option<T::Output> {
+        match variant {
+            Variant::Packet16 if let Some(s) = self.wide => Some(task.run(Simd16(s))),
+            Variant::Packet8 | Variant::Packet16 if let Some(s) = self.middle => {
                 Some(task.run(Simd8(s)))
             }
-            _ => levels.narrow.map(|s| task.run(Simd4(s))),
+            _ => self.narrow.map(|s| task.run(Simd4(s))),
         }
     }
 }
@@ -603,3 +609,50 @@ pub fn run_fn<F: KernelFn, L: Lanes>(lanes: L, inputs: &[F::Args], outputs: &mut
 }
 
 const _: () = assert!(<Counting as LaneMachine>::LANES == 8);
+
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests {
+    use super::*;
+
+    struct Name;
+    impl LanesTask for Name {
+        type Output = (&'static str, usize);
+        fn run<L: Lanes>(self, lanes: L) -> Self::Output {
+            (lanes.isa(), L::N)
+        }
+    }
+
+    fn lanes(level: Level) -> [Option<(&'static str, usize)>; 3] {
+        let levels = Levels::of(level);
+        [Variant::Packet4, Variant::Packet8, Variant::Packet16]
+            .map(|variant| levels.with_lanes(variant, Name))
+    }
+
+    /// Each on a machine that has no more than one level.
+    #[test]
+    fn widths_that_a_machine_lacks_run_as_the_next_narrower_ones() {
+        let best = Level::new();
+        if let Some(s) = best.as_sse2() {
+            assert_eq!(lanes(Level::Sse2(s)), [None; 3], "one ray after another");
+        }
+        match best.as_sse4_2() {
+            Some(s) => assert_eq!(lanes(Level::Sse4_2(s)), [Some(("sse4.2", 4)); 3]),
+            None => println!("SKIPPED: this machine has no SSE4.2"),
+        }
+        let narrow = Some(("sse4.2", 4));
+        match best.as_avx2() {
+            Some(s) => {
+                let middle = Some(("avx2", 8));
+                assert_eq!(lanes(Level::Avx2(s)), [narrow, middle, middle]);
+            }
+            None => println!("SKIPPED: this machine has no AVX2"),
+        }
+        match best.as_avx512() {
+            Some(s) => {
+                let found = lanes(Level::Avx512(s));
+                assert_eq!(found, [narrow, Some(("avx2", 8)), Some(("avx512", 16))]);
+            }
+            None => println!("SKIPPED: this machine has no AVX-512"),
+        }
+    }
+}

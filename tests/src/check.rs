@@ -68,8 +68,8 @@ pub fn wgsl_agrees<A: Type + Debug + Sync, R: Type + Sync>(
     wgsl: Wgsl,
 ) {
     let Some(gpu) = gpu() else { return };
-    let taken = inputs.iter().zip(expected).filter(|(a, _)| wgsl == Wgsl::Same || is_finite(*a));
-    let (inputs, expected): (Vec<A>, Vec<R>) = taken.unzip();
+    let is_taken: Vec<bool> = inputs.iter().map(|a| wgsl == Wgsl::Same || is_finite(a)).collect();
+    let (inputs, expected) = (taken(inputs, &is_taken), taken(expected, &is_taken));
     let mut found = vec![garbage(); inputs.len()];
     if let Err(error) = gpu.batch(kernel, &inputs, &mut found) {
         panic!("{name} in WGSL: {error}\n{}", kernel.wgsl());
@@ -105,6 +105,10 @@ fn assert_explained<A: Type + Debug + Sync, R: Type + Sync>(
     let (decided, sample) = (why.count(Cause::Decision), why.sample);
     assert!(decided == 0 || sample.is_meaningful(), "{name} in WGSL: {decided} of {sample:?}");
     assert!(sample.median_width_ulp < 1000.0, "{name} in WGSL: {sample:?}");
+}
+
+fn taken<T: Copy>(all: &[T], is_taken: &[bool]) -> Vec<T> {
+    all.iter().zip(is_taken).filter(|(_, is_taken)| **is_taken).map(|(v, _)| *v).collect()
 }
 
 fn is_finite<T: Type>(v: &T) -> bool {

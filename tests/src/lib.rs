@@ -2,7 +2,7 @@
 //!
 //! The tests are split by the kind of evidence that they give: `variants` (every variant of small
 //! kernels agrees with the untouched source), `glam` (so does every operation), `rays` and `edges`
-//! (queries of scenes), `images`, `gpu`, `golden_wgsl`, `layout`, `unorm`, `elementary`, `fuzz`
+//! (queries of scenes), `images`, `gpu`, `layout`, `unorm`, `elementary`, `fuzz`
 //! (random kernels), `robustness` (many rays at what is hard), `adversary` (scenes made of bytes).
 
 pub mod adversary;

@@ -100,7 +100,7 @@ fn normal(x: f32) -> f32 {
 }
 
 /// Shows every scalar of a type with its offset in the host's memory.
-pub fn each_leaf(schema: &Schema, offset: usize, visit: &mut impl FnMut(usize, &Schema)) {
+pub fn each_leaf(schema: &Schema, offset: usize, visit: &mut dyn FnMut(usize, &Schema)) {
     match schema {
         Schema::Host => {}
         Schema::Vector(element, n) => {
@@ -119,12 +119,18 @@ pub fn each_leaf(schema: &Schema, offset: usize, visit: &mut impl FnMut(usize, &
 }
 
 fn from_words<T: Type>(mut word: impl FnMut(&Schema) -> u32) -> T {
-    let mut bytes = vec![0u8; T::SCHEMA.size()];
-    each_leaf(T::SCHEMA, 0, &mut |offset, leaf| {
+    T::read(&bytes_of_words(T::SCHEMA, &mut word))
+}
+
+// What follows knows a value by its bytes and its schema: it is compiled once for all types.
+
+fn bytes_of_words(schema: &Schema, word: &mut dyn FnMut(&Schema) -> u32) -> Vec<u8> {
+    let mut bytes = vec![0u8; schema.size()];
+    each_leaf(schema, 0, &mut |offset, leaf| {
         let n = leaf.size();
         bytes[offset..offset + n].copy_from_slice(&word(leaf).to_le_bytes()[..n]);
     });
-    T::read(&bytes)
+    bytes
 }
 
 /// Numbers next to the ends of the range of `f32`, beside [`SPECIAL_F32`].
@@ -184,8 +190,12 @@ pub fn garbage<T: Type>() -> T {
 pub fn words<T: Type>(v: &T) -> Vec<u32> {
     let mut bytes = vec![0u8; T::SCHEMA.size()];
     v.write(&mut bytes);
+    words_of_bytes(T::SCHEMA, &bytes)
+}
+
+fn words_of_bytes(schema: &Schema, bytes: &[u8]) -> Vec<u32> {
     let mut words = Vec::new();
-    each_leaf(T::SCHEMA, 0, &mut |offset, leaf| {
+    each_leaf(schema, 0, &mut |offset, leaf| {
         let mut word = [0; 4];
         let n = leaf.size();
         word[..n].copy_from_slice(&bytes[offset..offset + n]);
@@ -197,10 +207,19 @@ pub fn words<T: Type>(v: &T) -> Vec<u32> {
 
 /// The floats among the scalars of a value.
 pub fn floats<T: Type>(v: &T) -> Vec<f32> {
-    let mut is_float = Vec::new();
-    each_leaf(T::SCHEMA, 0, &mut |_, leaf| is_float.push(*leaf == Schema::F32));
-    let words = words(v).into_iter().zip(is_float);
-    words.filter(|(_, is_float)| *is_float).map(|(w, _)| f32::from_bits(w)).collect()
+    floats_of_words(T::SCHEMA, &words(v))
+}
+
+fn floats_of_words(schema: &Schema, words: &[u32]) -> Vec<f32> {
+    let words = words.iter().zip(are_floats(schema));
+    words.filter(|(_, is_float)| *is_float).map(|(w, _)| f32::from_bits(*w)).collect()
+}
+
+/// Whether each leaf is a float.
+fn are_floats(schema: &Schema) -> Vec<bool> {
+    let mut all = Vec::new();
+    each_leaf(schema, 0, &mut |_, leaf| all.push(*leaf == Schema::F32));
+    all
 }
 
 fn same_zero_and_nan(bits: u32) -> u32 {
@@ -226,17 +245,32 @@ pub struct Comparison {
 /// Compares results; -0 equals +0, and every NaN every other.
 pub fn compare<T: Type>(who: impl Into<String>, expected: &[T], found: &[T]) -> Comparison {
     assert_eq!(expected.len(), found.len(), "one result for each input");
-    let size = T::SCHEMA.size();
-    let (mut a, mut b) = (vec![0u8; size], vec![0u8; size]);
-    // Most results are equal byte by byte: those need no second look.
-    let mut differ = |(_, (e, f)): &(usize, (&T, &T))| {
-        e.write(&mut a);
-        f.write(&mut b);
-        a != b
+    let write = |i: usize, a: &mut [u8], b: &mut [u8]| {
+        expected[i].write(a);
+        found[i].write(b);
     };
-    let pairs = expected.iter().zip(found).enumerate().filter(|p| differ(p));
-    let differing = pairs.map(|(i, (e, f))| (i, words(e), words(f))).filter(|(_, e, f)| e != f);
-    Comparison { who: who.into(), compared: expected.len(), differing: differing.collect() }
+    compare_bytes(who.into(), T::SCHEMA, expected.len(), &write)
+}
+
+fn compare_bytes(
+    who: String,
+    schema: &Schema,
+    count: usize,
+    write: &dyn Fn(usize, &mut [u8], &mut [u8]),
+) -> Comparison {
+    let (mut a, mut b) = (vec![0u8; schema.size()], vec![0u8; schema.size()]);
+    let mut differing = Vec::new();
+    for i in 0..count {
+        write(i, &mut a, &mut b);
+        // Most results are equal byte by byte: those need no second look.
+        if a != b {
+            let (expected, found) = (words_of_bytes(schema, &a), words_of_bytes(schema, &b));
+            if expected != found {
+                differing.push((i, expected, found));
+            }
+        }
+    }
+    Comparison { who, compared: count, differing }
 }
 
 /// Compares results, of which floats may be `ulps` apart; denormals are zeros, as on many GPUs.
@@ -247,15 +281,7 @@ pub fn compare_within<T: Type>(
     found: &[T],
 ) -> Comparison {
     let mut all = compare(who, expected, found);
-    all.differing.retain(|(i, e, f)| {
-        let mut leaves = Vec::new();
-        each_leaf(T::SCHEMA, 0, &mut |_, leaf| leaves.push(*leaf == Schema::F32));
-        debug_assert_eq!(leaves.len(), e.len(), "one word for each leaf of result {i}");
-        let near = |(k, is_float): (usize, &bool)| {
-            e[k] == f[k] || *is_float && distance(e[k], f[k]) <= ulps
-        };
-        !leaves.iter().enumerate().all(near)
-    });
+    all.allow(ulps, &are_floats(T::SCHEMA));
     all
 }
 
@@ -277,6 +303,17 @@ impl Comparison {
         self.differing.len()
     }
 
+    /// Forgets results whose floats are at most `ulps` apart, and all else equal.
+    fn allow(&mut self, ulps: u32, are_floats: &[bool]) {
+        self.differing.retain(|(i, e, f)| {
+            assert_eq!(are_floats.len(), e.len(), "one word for each leaf of result {i}");
+            let near = |(k, is_float): (usize, &bool)| {
+                e[k] == f[k] || *is_float && distance(e[k], f[k]) <= ulps
+            };
+            !are_floats.iter().enumerate().all(near)
+        });
+    }
+
     /// Panics if any result differs; `input` describes the input of a number.
     ///
     /// # Panics
@@ -284,6 +321,11 @@ impl Comparison {
     /// If any result differs, or if nothing was compared.
     #[track_caller]
     pub fn assert_same(self, input: impl Fn(usize) -> String) {
+        self.assert_none(&input);
+    }
+
+    #[track_caller]
+    fn assert_none(self, input: &dyn Fn(usize) -> String) {
         assert!(self.compared > 0, "{}: nothing was compared", self.who);
         let Some((i, expected, found)) = self.differing.first() else { return };
         let float = |words: &[u32]| words.iter().map(|w| f32::from_bits(*w)).collect::<Vec<_>>();

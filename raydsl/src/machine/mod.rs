@@ -69,6 +69,7 @@ pub use scalar::Scalar;
 pub use schema::{Field, Schema};
 pub use twin::{Inferred, Twin};
 pub use types::{LaneMachine, Type};
+pub(crate) use value::Floats;
 pub use value::{B, F, I, Leaves, U, Usize, Value};
 pub use vector::{V2, V3, V4, X2, X3, X4};
 pub use words::{host_of_words, is_kind, of_kind, of_words, to_words, to_words_on};

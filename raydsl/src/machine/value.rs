@@ -77,6 +77,28 @@ pub trait Leaves<M: Machine> {
     fn bool(&mut self, m: &M, a: M::Bool, b: M::Bool) -> M::Bool;
 }
 
+/// Does something to the floats of values; other leaves stay those of the first value.
+pub(crate) struct Floats<F>(pub(crate) F);
+
+impl<M: Machine, F: FnMut(&M, M::F32, M::F32) -> M::F32> Leaves<M> for Floats<F> {
+    #[inline(always)]
+    fn f32(&mut self, m: &M, a: M::F32, b: M::F32) -> M::F32 {
+        self.0(m, a, b)
+    }
+    #[inline(always)]
+    fn i32(&mut self, _: &M, a: M::I32, _: M::I32) -> M::I32 {
+        a
+    }
+    #[inline(always)]
+    fn u32(&mut self, _: &M, a: M::U32, _: M::U32) -> M::U32 {
+        a
+    }
+    #[inline(always)]
+    fn bool(&mut self, _: &M, a: M::Bool, _: M::Bool) -> M::Bool {
+        a
+    }
+}
+
 impl<M: Machine> Value<M> for () {
     const SCHEMA: &'static Schema = &Schema::Host;
 

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::explain::{causes, each, spread};
+use super::explain::{OutcomesOf, causes, sampled, spread};
 use super::{Accuracy, Agreement, Cause, SAMPLES, Sample, Times};
 use crate::camera::{Camera, CameraRays};
 use crate::geometry::Ray;
@@ -165,11 +165,11 @@ impl<'a> Compare<'a> {
         };
         if let Some((scalar, others)) = rows.split_first_mut() {
             for row in others.iter_mut().filter(|r| r.unavailable.is_none()) {
-                row.agreement = row.agreement_with(scalar, pixel);
+                row.agreement = row.agreement_with(scalar, &pixel);
             }
         }
         let indices = spread(self.width as usize * self.height as usize, self.samples);
-        let sampled = each(&indices, |i| pixel(i, 1));
+        let sampled = sampled(&indices, &pixel);
         for row in &mut rows {
             row.accuracy = row.accuracy_at(&indices, &sampled);
         }
@@ -240,11 +240,7 @@ impl<R: Type> Row<R> {
     }
 
     /// The CPU's variants must have the same bits, so there nothing is explained.
-    fn agreement_with(
-        &self,
-        scalar: &Self,
-        outcomes: impl Fn(usize, usize) -> Outcomes + Sync,
-    ) -> Agreement
+    fn agreement_with(&self, scalar: &Self, outcomes: OutcomesOf<'_>) -> Agreement
     where
         R: Sync,
     {

@@ -27,8 +27,8 @@ pub enum Cause {
 
 impl Cause {
     /// Why `found` differs from `expected`; `outcomes` follows up to so many ways.
-    fn of<R: Type>(expected: R, found: R, outcomes: impl Fn(usize) -> Outcomes) -> Self {
-        let both = |all: &Outcomes| all.contains(expected) && all.contains(found);
+    fn of(expected: &[Leaf], found: &[Leaf], outcomes: &dyn Fn(usize) -> Outcomes) -> Self {
+        let both = |all: &Outcomes| all.contain(expected) && all.contain(found);
         let first = outcomes(1);
         if both(&first) {
             let limited = is_limited(first.reference(), expected, found);
@@ -48,12 +48,11 @@ impl Cause {
 
 /// Whether the bounds limit every number that differs: an interval that ends in infinity holds
 /// mistakes too, and so does one that may be NaN.
-fn is_limited<R: Type>(bounds: &[Leaf], expected: R, found: R) -> bool {
-    let (expected, found) = (result_leaves(expected), result_leaves(found));
+fn is_limited(bounds: &[Leaf], expected: &[Leaf], found: &[Leaf]) -> bool {
     let differs = |a: f64, b: f64| a != b && !(a.is_nan() && b.is_nan());
     bounds
         .iter()
-        .zip(expected.iter().zip(&found))
+        .zip(expected.iter().zip(found))
         .all(|(bound, (a, b))| bound.width() < f64::INFINITY || !differs(a.value(), b.value()))
 }
 
@@ -111,8 +110,17 @@ pub(super) fn spread(len: usize, count: usize) -> Vec<usize> {
     all
 }
 
+/// The outcomes of an input, of which at most so many ways are followed. By reference: so
+/// what calls it is compiled once, not for every kernel.
+pub(super) type OutcomesOf<'a> = &'a (dyn Fn(usize, usize) -> Outcomes + Sync);
+
+/// The outcomes on the paths that `f64` takes.
+pub(super) fn sampled(indices: &[usize], outcomes: OutcomesOf<'_>) -> Vec<Outcomes> {
+    each(indices, &|i| outcomes(i, 1))
+}
+
 /// `f` of every index in `indices`, on all processors where the feature `parallel` is on.
-pub(super) fn each<T: Send>(indices: &[usize], f: impl Fn(usize) -> T + Sync) -> Vec<T> {
+fn each<T: Send>(indices: &[usize], f: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
     #[cfg(feature = "parallel")]
     {
         use rayon::prelude::*;
@@ -126,10 +134,22 @@ pub(super) fn each<T: Send>(indices: &[usize], f: impl Fn(usize) -> T + Sync) ->
 pub(super) fn causes<R: Type + Sync>(
     expected: &[R],
     found: &[R],
-    outcomes: impl Fn(usize, usize) -> Outcomes + Sync,
+    outcomes: OutcomesOf<'_>,
 ) -> Vec<(usize, Cause)> {
-    let indices = differing(expected, found);
-    each(&indices, |i| (i, Cause::of(expected[i], found[i], |limit| outcomes(i, limit))))
+    let results = |i: usize| [result_leaves(expected[i]), result_leaves(found[i])];
+    causes_at(&differing(expected, found), &results, outcomes)
+}
+
+/// [`causes`] of inputs with two results each.
+fn causes_at(
+    indices: &[usize],
+    results: &(dyn Fn(usize) -> [Vec<Leaf>; 2] + Sync),
+    outcomes: OutcomesOf<'_>,
+) -> Vec<(usize, Cause)> {
+    each(indices, &|i| {
+        let [expected, found] = results(i);
+        (i, Cause::of(&expected, &found, &|limit| outcomes(i, limit)))
+    })
 }
 
 /// How results differ from the scalar variant's, and why.
@@ -189,8 +209,8 @@ pub fn explain<A: Type + Sync, R: Type + Sync>(
     let expected: Vec<R> = inputs.iter().map(|a| kernel.call(*a)).collect();
     let outcomes = |i: usize, limit| kernel.outcomes(inputs[i], rounding, limit);
     Explanation {
-        causes: causes(&expected, outputs, outcomes),
-        sample: Sample::of(&each(&spread(inputs.len(), super::SAMPLES), |i| outcomes(i, 1))),
+        causes: causes(&expected, outputs, &outcomes),
+        sample: Sample::of(&sampled(&spread(inputs.len(), super::SAMPLES), &outcomes)),
     }
 }
 

@@ -4,7 +4,7 @@ use super::config::{Filter, Filtering};
 use super::texel::Texel;
 use super::view::Texels;
 use crate::machine::wgsl::{TexelFormat, TextureLayout};
-use crate::machine::{F, Leaves, Machine, Method, Type, Value, name};
+use crate::machine::{F, Floats, Machine, Method, Type, Value, name};
 
 /// Texels along an axis of an image, and of a volume: what WebGPU guarantees.
 const MAX_IMAGE: u32 = 8192;
@@ -57,15 +57,24 @@ impl<T: Texel> Texels<'_, T> {
         m: &M,
         v: <T::Value as Type>::On<M>,
     ) -> <T::Value as Type>::On<M> {
-        let mut off = match self.format() {
+        // Every float may be off by so much, and by this part of itself.
+        let (absolute, relative) = match self.format() {
             None => return v,
             // Halves are rounded once more.
             Some(TexelFormat::R16Float | TexelFormat::Rg16Float | TexelFormat::Rgba16Float) => {
-                OffBy { absolute: 0.0, relative: 1.0 / 2048.0 }
+                (0.0, 1.0 / 2048.0)
             }
-            Some(_) => OffBy { absolute: WEIGHT, relative: 0.0 },
+            Some(_) => (WEIGHT, 0.0),
         };
-        Value::zip(m, v, v, &mut off)
+        Value::zip(
+            m,
+            v,
+            v,
+            &mut Floats(
+                #[inline(always)]
+                |m: &M, a, _| m.off_by(a, absolute, relative),
+            ),
+        )
     }
 }
 
@@ -80,30 +89,5 @@ impl<M: Machine, T: Texel> Method<{ name("near") }, M, (F<M>,)> for Texels<'_, T
             None => weight,
             Some(_) => F(m.off_by(weight.0, WEIGHT, 0.0)),
         }
-    }
-}
-
-/// Every float is off by at most this, and this part of itself.
-struct OffBy {
-    absolute: f32,
-    relative: f32,
-}
-
-impl<M: Machine> Leaves<M> for OffBy {
-    #[inline(always)]
-    fn f32(&mut self, m: &M, a: M::F32, _: M::F32) -> M::F32 {
-        m.off_by(a, self.absolute, self.relative)
-    }
-    #[inline(always)]
-    fn i32(&mut self, _: &M, a: M::I32, _: M::I32) -> M::I32 {
-        a
-    }
-    #[inline(always)]
-    fn u32(&mut self, _: &M, a: M::U32, _: M::U32) -> M::U32 {
-        a
-    }
-    #[inline(always)]
-    fn bool(&mut self, _: &M, a: M::Bool, _: M::Bool) -> M::Bool {
-        a
     }
 }

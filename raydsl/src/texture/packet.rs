@@ -12,7 +12,7 @@ use super::taps::{OUTSIDE, four, nearest_texel, pair};
 use super::texel::Texel;
 use super::view::Texels;
 use crate::Type;
-use crate::machine::{Entered, F, Lanes, Leaves, Machine, Packet, U, Value, X3, fill, op};
+use crate::machine::{Entered, F, Floats, Lanes, Machine, Packet, U, Value, X3, fill, op};
 
 /// The machine that finds places: its kernels are inlined. Those that decode texels are not: the
 /// curve of sRGB makes them long.
@@ -378,7 +378,7 @@ fn values_apart<L: Lanes, T: Texel>(
                 let is_outside = l.u32_compare(op::Eq, *place, l.u32(OUTSIDE));
                 let place = l.u32_select(is_outside, l.u32(0), *place);
                 let texel = inside(m, texels, &place, texels.config.color_space);
-                *value = Value::zip(m, border, texel, &mut Select(is_outside));
+                *value = select(m, is_outside, border, texel);
             }
         },
     );
@@ -403,7 +403,7 @@ fn inside<L: Lanes, T: Texel>(
 /// [`Blend::blend`](super::Blend::blend).
 #[inline(always)]
 fn blend<M: Machine, V: Value<M>>(m: &M, a: V, b: V, share: M::F32) -> V {
-    V::zip(m, a, way(m, b, a, share), &mut Sum)
+    sum(m, a, way(m, b, a, share))
 }
 
 /// [`Blend::blend4`](super::Blend::blend4) of neighbours in their order.
@@ -413,54 +413,47 @@ fn blend4<M: Machine, V: Value<M>>(
     &[first, second, third, fourth]: &[V; 4],
     &[w1, w3, w4]: &[M::F32; 3],
 ) -> V {
-    let sum = V::zip(m, way(m, first, second, w1), way(m, third, second, w3), &mut Sum);
-    V::zip(m, second, V::zip(m, sum, way(m, fourth, second, w4), &mut Sum), &mut Sum)
+    let beside = sum(m, way(m, first, second, w1), way(m, third, second, w3));
+    sum(m, second, sum(m, beside, way(m, fourth, second, w4)))
+}
+
+#[inline(always)]
+fn sum<M: Machine, V: Value<M>>(m: &M, a: V, b: V) -> V {
+    V::zip(
+        m,
+        a,
+        b,
+        &mut Floats(
+            #[inline(always)]
+            |m: &M, a, b| m.f32_binary(op::Add, a, b),
+        ),
+    )
 }
 
 /// `(to - from) * w`.
 #[inline(always)]
 fn way<M: Machine, V: Value<M>>(m: &M, to: V, from: V, w: M::F32) -> V {
-    V::zip(m, to, from, &mut Way::<M>(w))
+    V::zip(
+        m,
+        to,
+        from,
+        &mut Floats(
+            #[inline(always)]
+            |m: &M, a, b| m.f32_binary(op::Mul, m.f32_binary(op::Sub, a, b), w),
+        ),
+    )
 }
 
-/// `(a - b) * w`.
-struct Way<M: Machine>(M::F32);
-
-/// `a + b`.
-struct Sum;
-
-/// `a` where it is true, `b` elsewhere.
-struct Select<M: Machine>(M::Bool);
-
-/// How floats of a texture's values are put together; it has no other leaves.
-macro_rules! leaves {
-    ($($name:ty, |$this:ident, $m:ident, $a:ident, $b:ident| $e:expr;)+) => {
-        $(
-            impl<M: Machine> Leaves<M> for $name {
-                #[inline(always)]
-                fn f32(&mut self, $m: &M, $a: M::F32, $b: M::F32) -> M::F32 {
-                    let $this = &*self;
-                    $e
-                }
-                #[inline(always)]
-                fn i32(&mut self, _: &M, a: M::I32, _: M::I32) -> M::I32 {
-                    a
-                }
-                #[inline(always)]
-                fn u32(&mut self, _: &M, a: M::U32, _: M::U32) -> M::U32 {
-                    a
-                }
-                #[inline(always)]
-                fn bool(&mut self, _: &M, a: M::Bool, _: M::Bool) -> M::Bool {
-                    a
-                }
-            }
-        )+
-    };
-}
-
-leaves! {
-    Way<M>, |this, m, a, b| m.f32_binary(op::Mul, m.f32_binary(op::Sub, a, b), this.0);
-    Sum, |_this, m, a, b| m.f32_binary(op::Add, a, b);
-    Select<M>, |this, m, a, b| m.f32_select(this.0, a, b);
+/// `a` where it is true, `b` elsewhere. Values of textures have floats only.
+#[inline(always)]
+fn select<M: Machine, V: Value<M>>(m: &M, condition: M::Bool, a: V, b: V) -> V {
+    V::zip(
+        m,
+        a,
+        b,
+        &mut Floats(
+            #[inline(always)]
+            |m: &M, a, b| m.f32_select(condition, a, b),
+        ),
+    )
 }

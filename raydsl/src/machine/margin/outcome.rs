@@ -153,8 +153,12 @@ impl Outcomes {
     /// Whether `result` is within the bounds of an outcome: integers equal, floats between their
     /// ends.
     pub fn contains<R: Type>(&self, result: R) -> bool {
-        let found = result_leaves(result);
-        self.outcomes.iter().any(|o| o.iter().zip(&found).all(|(may, found)| may.contains(*found)))
+        self.contain(&result_leaves(result))
+    }
+
+    /// [`Outcomes::contains`] of the leaves of a result.
+    pub(crate) fn contain(&self, result: &[Leaf]) -> bool {
+        self.outcomes.iter().any(|o| o.iter().zip(result).all(|(may, found)| may.contains(*found)))
     }
 }
 

@@ -13,7 +13,7 @@ use crate::machine::{
     Op, Schema, U, U32Unary, Usize, Value, Var, op,
 };
 use crate::math::elementary::{Function, function};
-use crate::texture::{Texel, TexelValue, Texels};
+use crate::texture::{Texel, Texels};
 
 /// `lit_0_125`: the name of a literal in the uniform block.
 fn literal_name(v: f32) -> String {
@@ -801,11 +801,7 @@ impl Machine for Recorder {
         texels: &Texels<'_, T>,
         at: &[F<Self>; D],
     ) -> <T::Value as crate::machine::Type>::On<Self> {
-        let place = at.map(|x| x.0);
-        match self.sample(&texels.view(), texels.layout(), &place, None) {
-            Some(channels) => T::Value::from_channels_on(self, &channels.map(F)),
-            None => texels.by_kernels(self, at),
-        }
+        self.sampled(texels, at, None).unwrap_or_else(|| texels.by_kernels(self, at))
     }
     fn texture_at_level<T: Texel, const D: usize>(
         &self,
@@ -813,11 +809,8 @@ impl Machine for Recorder {
         at: &[F<Self>; D],
         level: F<Self>,
     ) -> <T::Value as crate::machine::Type>::On<Self> {
-        let place = at.map(|x| x.0);
-        match self.sample(&texels.view(), texels.layout(), &place, Some(level.0)) {
-            Some(channels) => T::Value::from_channels_on(self, &channels.map(F)),
-            None => texels.by_kernels_at_level(self, at, level),
-        }
+        let found = self.sampled(texels, at, Some(level));
+        found.unwrap_or_else(|| texels.by_kernels_at_level(self, at, level))
     }
     fn fetch<P: crate::machine::Type, S: crate::machine::Type>(
         &self,

@@ -5,27 +5,30 @@ use core::fmt::Write;
 use super::Recorder;
 use super::ir::{Expr, Id, Scalar, Type};
 use super::names::{safe_name, unique};
-use crate::bvh::View;
 use crate::machine::wgsl::{BufferKey, Texture, TextureLayout};
-use crate::machine::{self, Machine};
+use crate::machine::{self, F, Machine};
+use crate::texture::{Texel, TexelValue, Texels};
 
 /// Sampled textures, and samplers, of a shader stage: what WebGPU guarantees.
 const MOST: usize = 16;
 
 impl Recorder {
-    /// `tiles_sample(at, level)`, taken apart; nothing if no sampler reads the texels, or if there are
-    /// too many textures. Axes that `at` does not have are read in the middle, and no level is level 0.
-    pub(super) fn sample<T: machine::Type>(
+    /// What a device's sampler gives of texels; at level 0 if no other is given. Nothing if no sampler
+    /// reads them, or if there are too many textures.
+    pub(super) fn sampled<T: Texel, const D: usize>(
         &self,
-        texels: &View<'_, T>,
-        layout: Option<TextureLayout>,
-        at: &[Id],
-        level: Option<Id>,
-    ) -> Option<[Id; 4]> {
-        self.sample_of(texels.key(), &texels.name(), &layout?, at, level)
+        texels: &Texels<'_, T>,
+        at: &[F<Self>; D],
+        level: Option<F<Self>>,
+    ) -> Option<<T::Value as machine::Type>::On<Self>> {
+        let (view, layout) = (texels.view(), texels.layout()?);
+        let (at, level) = (at.map(|x| x.0), level.map(|level| level.0));
+        let channels = self.sample(view.key(), &view.name(), &layout, &at, level)?;
+        Some(T::Value::from_channels_on(self, &channels.map(F)))
     }
 
-    fn sample_of(
+    /// `tiles_sample(at, level)`, taken apart. Axes that `at` does not have are read in the middle.
+    fn sample(
         &self,
         key: BufferKey,
         name: &str,
