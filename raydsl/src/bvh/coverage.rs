@@ -8,7 +8,7 @@ use super::build::Source;
 use crate::geometry::Aabb;
 
 /// Whether `leaves`, boxes that hold parts of a primitive, leave out nothing of it along any axis.
-pub(super) fn is_covered(source: &impl Source, primitive: usize, leaves: &mut [Aabb]) -> bool {
+pub(super) fn is_covered(source: &dyn Source, primitive: usize, leaves: &mut [Aabb]) -> bool {
     let whole = trimmed(source, primitive);
     (0..3).all(|axis| {
         leaves.sort_unstable_by(|a, b| a.min[axis].total_cmp(&b.min[axis]));
@@ -27,7 +27,7 @@ pub(super) fn is_covered(source: &impl Source, primitive: usize, leaves: &mut [A
 }
 
 /// A box around the primitive that is as tight as its parts are, which its own need not be.
-fn trimmed(source: &impl Source, primitive: usize) -> Aabb {
+fn trimmed(source: &dyn Source, primitive: usize) -> Aabb {
     let whole = source.bounds(primitive);
     (0..3).fold(whole, |all, axis| {
         let (below, above) = source.split(primitive, axis, whole.center()[axis]);
@@ -39,7 +39,7 @@ fn trimmed(source: &impl Source, primitive: usize) -> Aabb {
 
 /// Whether the primitive has points between two planes, beyond what rounding makes of a plane.
 fn has_points(
-    source: &impl Source,
+    source: &dyn Source,
     primitive: usize,
     whole: Aabb,
     axis: usize,

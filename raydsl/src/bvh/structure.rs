@@ -97,7 +97,7 @@ impl Structure {
         self.binary();
         let Some(mut tree) = self.binary.take() else { unreachable!("it has been made") };
         let bounds = |k: usize| prims[k].get_bounds(shared);
-        build::refit(&mut tree.nodes, &tree.indices, prims.len(), bounds)?;
+        build::refit(&mut tree.nodes, &tree.indices, prims.len(), &bounds)?;
         let wide = collapse(&tree);
         // The same tree as before, and what has moved is likely to move again.
         Ok(Self { binary: tree.into(), wide })

@@ -158,7 +158,7 @@ pub(super) fn check(
     nodes: &[Node],
     indices: &[u32],
     count: usize,
-    source: &impl Source,
+    source: &dyn Source,
 ) -> Result<(), TreeFault> {
     let mut walk = Walk {
         nodes,
@@ -193,10 +193,10 @@ struct Found {
 }
 
 /// A walk over all nodes, one after another.
-struct Walk<'a, S> {
+struct Walk<'a> {
     nodes: &'a [Node],
     indices: &'a [u32],
-    source: &'a S,
+    source: &'a dyn Source,
     /// How deep those nodes are of which a parent has been visited.
     depths: Vec<Option<u8>>,
     found: Vec<Found>,
@@ -204,7 +204,7 @@ struct Walk<'a, S> {
     parts: Vec<(u32, u32)>,
 }
 
-impl<S: Source> Walk<'_, S> {
+impl Walk<'_> {
     fn visit(&mut self, node: usize) -> Result<(), TreeFault> {
         let depth = self.depths[node].ok_or(TreeFault::Unreachable { node })?;
         if usize::from(depth) > MAX_DEPTH {

@@ -134,19 +134,24 @@ impl<'a, R> Tiles<'a, R> {
     where
         R: Send,
     {
-        #[cfg(feature = "parallel")]
-        {
-            use rayon::prelude::*;
-            let Self { grid, numbers, .. } = self;
-            // Any tile may be stolen: what rayon takes to be small enough is up to a quarter of a frame
-            // for two threads.
-            let numbers = numbers.into_par_iter().with_max_len(1);
-            // SAFETY: the image is borrowed for 'a, and each number of a tile comes once.
-            numbers.for_each(|number| f(unsafe { grid.tile(number) }));
-        }
-        #[cfg(not(feature = "parallel"))]
-        self.for_each(f);
+        let Self { grid, numbers, .. } = self;
+        // SAFETY: the image is borrowed for 'a, and each number of a tile comes once.
+        each_number(numbers, &|number| f(unsafe { grid.tile(number) }));
     }
+}
+
+/// Runs `f` for each number once, on all threads of the current rayon pool if there are any. It knows
+/// no types of a kernel: what threads cost to compile is compiled once.
+fn each_number(numbers: Range<usize>, f: &(dyn Fn(usize) + Sync)) {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        // Any tile may be stolen: what rayon takes to be small enough is up to a quarter of a frame for
+        // two threads.
+        numbers.into_par_iter().with_max_len(1).for_each(f);
+    }
+    #[cfg(not(feature = "parallel"))]
+    numbers.for_each(f);
 }
 
 impl<'a, R> Iterator for Tiles<'a, R> {

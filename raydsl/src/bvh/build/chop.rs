@@ -45,12 +45,12 @@ pub(super) enum Parts {
 }
 
 /// Cuts references.
-pub(super) struct Chopper<'a, S> {
-    pub(super) source: &'a S,
+pub(super) struct Chopper<'a> {
+    pub(super) source: &'a dyn Source,
     pub(super) scale: Scale,
 }
 
-impl<S: Source> Chopper<'_, S> {
+impl Chopper<'_> {
     /// Cuts a reference that is partly below and partly above the plane `axis = at`.
     pub(super) fn chop(&self, reference: &Reference, axis: usize, at: f32) -> Parts {
         let own = reference.bounds().to_aabb();

@@ -123,7 +123,7 @@ pub(super) type Observer<'a> = dyn FnMut(f64) -> ControlFlow<()> + Send + 'a;
 
 /// [`build`] of primitives that can be cut, with an observer.
 pub(super) fn build_watched(
-    source: &impl Source,
+    source: &dyn Source,
     count: usize,
     config: &Settings,
     observer: Option<&mut Observer>,
@@ -148,7 +148,7 @@ pub(super) fn build_watched(
 }
 
 fn grow(
-    source: &impl Source,
+    source: &dyn Source,
     count: usize,
     spare: usize,
     config: &Settings,

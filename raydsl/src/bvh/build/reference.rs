@@ -138,7 +138,7 @@ impl Span {
 
 /// Reads and checks all boxes, with room for `spare` more references behind them.
 pub(super) fn collect(
-    source: &impl Source,
+    source: &dyn Source,
     count: usize,
     spare: usize,
     watch: &Watch,

@@ -15,7 +15,7 @@ pub(in crate::bvh) fn refit(
     nodes: &mut [Node],
     indices: &[u32],
     count: usize,
-    bounds: impl Fn(usize) -> Aabb + Sync,
+    bounds: &(dyn Fn(usize) -> Aabb + Sync),
 ) -> Result<(), BuildError> {
     let checked = |index| reference::checked(bounds(index), index);
     set_boxes(nodes, indices, &checked).map_err(|error| {
@@ -28,7 +28,7 @@ pub(in crate::bvh) fn refit(
 pub(super) fn refit_checked(
     nodes: &mut [Node],
     indices: &[u32],
-    bounds: &(impl Fn(usize) -> Aabb + Sync),
+    bounds: &(dyn Fn(usize) -> Aabb + Sync),
 ) {
     let Ok(()) = set_boxes(nodes, indices, &|index| Ok::<_, Infallible>(bounds(index)));
 }

@@ -27,7 +27,6 @@ use super::chop::{Chopper, Parts};
 use super::config::Settings;
 use super::part::{PIECE, Part};
 use super::reference::{Bounds, Reference, Span};
-use super::source::Source;
 use super::spatial_bins::{Cut, Limits, Slabs};
 use super::watch::Watch;
 use super::{depth, partition, tasks};
@@ -45,11 +44,11 @@ pub(super) fn spare(count: usize, config: &Settings) -> usize {
 }
 
 /// Builds the tree over the first `count` of `places`. Leaves refer to places.
-pub(super) fn grow<'a, S: Source>(
+pub(super) fn grow<'a>(
     places: &mut [Reference],
     count: usize,
     span: Span,
-    chopper: Chopper<'a, S>,
+    chopper: Chopper<'a>,
     (config, watch): (&'a Settings, &'a Watch<'_>),
 ) -> Part {
     let budget = depth::budget(count);
@@ -102,15 +101,15 @@ fn share(spare: usize, left: usize, right: usize) -> usize {
 }
 
 /// What all nodes have in common.
-struct Builder<'a, 'w, S> {
-    chopper: Chopper<'a, S>,
+struct Builder<'a, 'w> {
+    chopper: Chopper<'a>,
     config: &'a Settings,
     watch: &'a Watch<'w>,
     /// The box around everything.
     root: Bounds,
 }
 
-impl<S: Source> Builder<'_, '_, S> {
+impl Builder<'_, '_> {
     fn grow_part(&self, range: Range) -> Part {
         if self.watch.is_stopped() {
             return Part::Whole { root: range.leaf(), below: Vec::new() };
@@ -306,13 +305,13 @@ fn halves(mut range: Range) -> [Range; 2] {
 }
 
 /// A subtree in the making.
-struct Subtree<'a, 'w, S> {
-    builder: &'a Builder<'a, 'w, S>,
+struct Subtree<'a, 'w> {
+    builder: &'a Builder<'a, 'w>,
     bins: Bins,
     nodes: Vec<Node>,
 }
 
-impl<S: Source> Subtree<'_, '_, S> {
+impl Subtree<'_, '_> {
     /// Appends the nodes below the range's own, which is returned.
     fn grow(&mut self, range: Range) -> Node {
         let bounds = range.span.bounds.to_aabb();

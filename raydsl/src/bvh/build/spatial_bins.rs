@@ -14,7 +14,6 @@ use super::binned_sah::Grid;
 use super::chop::{Chopper, Parts};
 use super::reference::{Bounds, Reference};
 use super::scaling::Scale;
-use super::source::Source;
 use super::{depth, tasks};
 
 /// The most slabs along an axis.
@@ -142,7 +141,7 @@ impl Slabs {
     }
 
     /// Cuts all references.
-    pub(super) fn fill(&mut self, references: &[Reference], chopper: &Chopper<impl Source>) {
+    pub(super) fn fill(&mut self, references: &[Reference], chopper: &Chopper) {
         if references.len() < LARGE {
             self.bounds = self.filled(references, chopper);
             return;
@@ -156,11 +155,7 @@ impl Slabs {
         }
     }
 
-    fn filled(
-        &self,
-        references: &[Reference],
-        chopper: &Chopper<impl Source>,
-    ) -> [[Bounds; MAX_SLABS]; 3] {
+    fn filled(&self, references: &[Reference], chopper: &Chopper) -> [[Bounds; MAX_SLABS]; 3] {
         let mut bounds = [[Bounds::EMPTY; MAX_SLABS]; 3];
         for axis in (0..3).filter(|&axis| self.has_planes(axis)) {
             for reference in references {
@@ -176,7 +171,7 @@ impl Slabs {
         &self,
         reference: &Reference,
         axis: usize,
-        chopper: &Chopper<impl Source>,
+        chopper: &Chopper,
         bounds: &mut [Bounds; MAX_SLABS],
     ) {
         let (first, last) = self.planes[axis].slabs(&reference.bounds(), axis);

@@ -28,14 +28,26 @@ const PIECE: usize = 512;
 impl Blocks {
     /// The blocks of these ranges of the index list.
     pub(super) fn of<P: Primitive>(prims: &[P], indices: &[u32], ranges: &[Range]) -> Self {
-        let height = words_of::<P>() + 1;
+        Self::filled(words_of::<P>() + 1, indices, ranges, &|block, ids, bytes| {
+            fill(block, prims, ids, bytes);
+        })
+    }
+
+    /// Blocks of `height` rows, each filled by `fill` with the primitives of its range; the bytes are
+    /// room for one of them.
+    fn filled(
+        height: usize,
+        indices: &[u32],
+        ranges: &[Range],
+        fill: &(dyn Fn(&mut [Row], &[u32], &mut [u8]) + Sync),
+    ) -> Self {
         let mut rows = vec![Row([0; WIDTH]); height * ranges.len()];
         tasks::map_pieces_mut(&mut rows, PIECE * height, |first, rows| {
             let mut bytes = vec![0; 4 * (height - 1)];
             let ranges = &ranges[first / height..];
             for (block, range) in rows.chunks_exact_mut(height).zip(ranges) {
                 let ids = &indices[range.first as usize..][..range.count as usize];
-                fill(block, prims, ids, &mut bytes);
+                fill(block, ids, &mut bytes);
             }
         });
         Self { rows, height }

@@ -47,7 +47,7 @@ struct Plan {
 
 /// Collapses a binary tree. `solidity` says what area the primitives at some places of the index
 /// list have, as rays meet it.
-pub(super) fn collapse(nodes: &[Node], solidity: impl Fn(Range) -> f32 + Sync) -> Collapsed {
+pub(super) fn collapse(nodes: &[Node], solidity: &(dyn Fn(Range) -> f32 + Sync)) -> Collapsed {
     let Some(root) = nodes.first() else { return Collapsed::default() };
     // The primitives may be anywhere in memory.
     let leaves = tasks::map(nodes, PIECE, |node| match node.count {

@@ -63,7 +63,7 @@ impl Wide {
             let ids = &indices[range.first as usize..][..range.count as usize];
             ids.iter().map(|&id| 0.5 * prims[id as usize].get_bounds(shared).half_area()).sum()
         };
-        let collapse::Collapsed { nodes, blocks, pending } = collapse::collapse(nodes, solidity);
+        let collapse::Collapsed { nodes, blocks, pending } = collapse::collapse(nodes, &solidity);
         let bounds = tree.nodes.first().map_or(Aabb::EMPTY, Node::bounds);
         let blocks = Blocks::of(prims, indices, &blocks);
         Self { nodes, blocks, pending, bounds, traversal }

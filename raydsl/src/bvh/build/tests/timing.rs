@@ -84,7 +84,7 @@ fn hostile_inputs_take_three_times_as_long_at_most() {
             let (seconds, mut tree) = timed(boxes, &config);
             let cost = stats::sah_cost(&tree.nodes, &config);
             let start = Instant::now();
-            refit(&mut tree.nodes, &tree.indices, boxes.len(), |k| boxes[k]).expect("valid");
+            refit(&mut tree.nodes, &tree.indices, boxes.len(), &|k| boxes[k]).expect("valid");
             let refit = start.elapsed().as_secs_f64();
             let [build, refit] = [seconds, refit].map(|s| 1e3 * s);
             let nodes = tree.nodes.len();
