@@ -15,9 +15,43 @@ pub trait LevelTask {
 /// operations are calls.
 pub fn each_level(task: &mut impl LevelTask) {
     task.run("one lane", One);
-    let task = &mut AtRunTime(task);
-    widths(task, Fallback::new());
-    native(task, Level::new());
+    for (name, lanes) in at_run_time() {
+        match lanes {
+            AtRunTime::Four(lanes) => task.run(&name, lanes),
+            AtRunTime::Eight(lanes) => task.run(&name, lanes),
+            AtRunTime::Sixteen(lanes) => task.run(&name, lanes),
+        }
+    }
+}
+
+/// Lanes of their width, whose operations are calls.
+enum AtRunTime {
+    Four(RunTime<4>),
+    Eight(RunTime<8>),
+    Sixteen(RunTime<16>),
+}
+
+/// Those of every level of this machine. It knows no task, so that tables of operations are compiled
+/// once, not for every test.
+fn at_run_time() -> Vec<(String, AtRunTime)> {
+    struct All(Vec<(String, AtRunTime)>);
+    impl Widths for All {
+        fn run<L: Lanes>(&mut self, lanes: L) {
+            // Known when code is made, so that each table is there once.
+            let kind = if const { L::N == 4 } {
+                AtRunTime::Four(RunTime::new(lanes))
+            } else if const { L::N == 8 } {
+                AtRunTime::Eight(RunTime::new(lanes))
+            } else {
+                AtRunTime::Sixteen(RunTime::new(lanes))
+            };
+            self.0.push((format!("{} x{}", lanes.isa(), L::N), kind));
+        }
+    }
+    let mut all = All(Vec::new());
+    widths(&mut all, Fallback::new());
+    native(&mut all, Level::new());
+    all.0
 }
 
 /// Does `task` with 4, 8 and 16 lanes of every level of this machine, in one kind of 16 lanes for all
@@ -37,22 +71,6 @@ pub fn each_level_padded(task: &mut dyn FnMut(&str, RunTime<16>, usize)) {
 /// Something to do with one width of one level.
 trait Widths {
     fn run<L: Lanes>(&mut self, lanes: L);
-}
-
-/// As lanes of their width, whose operations are calls.
-struct AtRunTime<'a, T>(&'a mut T);
-
-impl<T: LevelTask> Widths for AtRunTime<'_, T> {
-    fn run<L: Lanes>(&mut self, lanes: L) {
-        // Known when code is made, so that each table is there once.
-        if const { L::N == 4 } {
-            one_width(self.0, RunTime::<4>::new(lanes));
-        } else if const { L::N == 8 } {
-            one_width(self.0, RunTime::<8>::new(lanes));
-        } else {
-            one_width(self.0, RunTime::<16>::new(lanes));
-        }
-    }
 }
 
 /// Does `task` with the widest packets that this machine has registers for, as production has

@@ -252,12 +252,10 @@ pub fn compare<T: Type>(who: impl Into<String>, expected: &[T], found: &[T]) -> 
     compare_bytes(who.into(), T::SCHEMA, expected.len(), &write)
 }
 
-fn compare_bytes(
-    who: String,
-    schema: &Schema,
-    count: usize,
-    write: &dyn Fn(usize, &mut [u8], &mut [u8]),
-) -> Comparison {
+/// Writes an expected result and the one that was found.
+type Write<'a> = &'a dyn Fn(usize, &mut [u8], &mut [u8]);
+
+fn compare_bytes(who: String, schema: &Schema, count: usize, write: Write<'_>) -> Comparison {
     let (mut a, mut b) = (vec![0u8; schema.size()], vec![0u8; schema.size()]);
     let mut differing = Vec::new();
     for i in 0..count {

@@ -22,6 +22,9 @@ pub(crate) struct Blocks {
     height: usize,
 }
 
+/// Fills a block with these primitives; the bytes are room for one of them.
+type Fill<'a> = &'a (dyn Fn(&mut [Row], &[u32], &mut [u8]) + Sync);
+
 /// Blocks that a thread fills at once.
 const PIECE: usize = 512;
 
@@ -33,14 +36,8 @@ impl Blocks {
         })
     }
 
-    /// Blocks of `height` rows, each filled by `fill` with the primitives of its range; the bytes are
-    /// room for one of them.
-    fn filled(
-        height: usize,
-        indices: &[u32],
-        ranges: &[Range],
-        fill: &(dyn Fn(&mut [Row], &[u32], &mut [u8]) + Sync),
-    ) -> Self {
+    /// Blocks of `height` rows, each of the primitives of its range.
+    fn filled(height: usize, indices: &[u32], ranges: &[Range], fill: Fill<'_>) -> Self {
         let mut rows = vec![Row([0; WIDTH]); height * ranges.len()];
         tasks::map_pieces_mut(&mut rows, PIECE * height, |first, rows| {
             let mut bytes = vec![0; 4 * (height - 1)];

@@ -1,0 +1,300 @@
+//! The rooms of the library and what they may name: arrows run down, and no two rooms name each other.
+//!
+//! A room is a module at the crate's root. Every path of the sources is read, in `use` trees, in
+//! expressions and types, in the bodies of macros; unit tests may name anything.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use proc_macro2::{Delimiter, TokenStream, TokenTree};
+
+/// The floors, the top one first. A room may name those below its floor, and those on it that do not
+/// name it, directly or by way of others.
+const FLOORS: [&[&str]; 9] = [
+    &["__private", "error", "prelude"],
+    &["gpu", "report", "testing"],
+    &["render"],
+    &["kernels"],
+    &["bvh", "camera", "sampling", "texture"],
+    &["geometry"],
+    &["math"],
+    &["kernel"],
+    &["machine"],
+];
+
+/// Arrows that run up today. One that is gone must leave this list.
+const UP: &[(&str, &str)] = &[
+    ("geometry", "bvh"),
+    ("kernel", "bvh"),
+    ("machine", "bvh"),
+    ("machine", "geometry"),
+    ("machine", "math"),
+    ("machine", "texture"),
+];
+
+/// Which room names which, and where first.
+type Arrows = BTreeMap<(String, String), String>;
+
+fn floor(room: &str) -> usize {
+    let found = FLOORS.iter().position(|rooms| rooms.contains(&room));
+    found.unwrap_or_else(|| panic!("`{room}` stands on no floor: add it to FLOORS"))
+}
+
+/// Every source file below a folder.
+fn sources(folder: &Path, all: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("a folder of sources can be read") {
+        let path = entry.expect("so can its entries").path();
+        if path.is_dir() {
+            sources(&path, all);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            all.push(path);
+        }
+    }
+}
+
+/// The module of a file, as the names from the crate's root to it.
+fn module(file: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        file.with_extension("").iter().map(|name| name.to_string_lossy().into_owned()).collect();
+    if names.last().is_some_and(|name| name == "mod" || name == "lib") {
+        names.pop();
+    }
+    names
+}
+
+/// Tokens side by side, at one place in the tree of modules.
+struct Reader<'a> {
+    /// How many modules stand between these tokens and the crate's root.
+    depth: usize,
+    found: &'a mut dyn FnMut(&str),
+}
+
+impl Reader<'_> {
+    fn read(&mut self, tokens: TokenStream) {
+        let all: Vec<TokenTree> = tokens.into_iter().collect();
+        let mut i = 0;
+        while i < all.len() {
+            if is_test_attribute(&all[i..])
+                && let Some(n) = item_len(&all[i..])
+            {
+                i += n;
+                continue;
+            }
+            let (supers, start) = self.start_of_path(&all, i);
+            if supers == Some(self.depth) {
+                self.first_names(&all[start..]);
+                i = start;
+                continue;
+            }
+            match &all[i] {
+                TokenTree::Group(group) => {
+                    let is_module = i >= 2 && is_ident(&all[i - 2], "mod");
+                    let depth = self.depth + usize::from(is_module);
+                    Reader { depth, found: &mut *self.found }.read(group.stream());
+                }
+                _ => {}
+            }
+            i += 1;
+        }
+    }
+
+    /// How many modules a path that begins here climbs, all for `crate`, and where its names begin.
+    fn start_of_path(&self, all: &[TokenTree], mut i: usize) -> (Option<usize>, usize) {
+        let is_within = i >= 2 && is_colons(&all[i - 2..i]);
+        if is_within {
+            return (None, i);
+        }
+        if is_ident(&all[i], "crate") && all.len() > i + 2 && is_colons(&all[i + 1..i + 3]) {
+            return (Some(self.depth), i + 3);
+        }
+        let mut supers = 0;
+        while all.len() > i + 2 && is_ident(&all[i], "super") && is_colons(&all[i + 1..i + 3]) {
+            (supers, i) = (supers + 1, i + 3);
+        }
+        ((supers > 0).then_some(supers), i)
+    }
+
+    /// Tells the names with which paths from the crate's root begin: one, or those of a group.
+    fn first_names(&mut self, all: &[TokenTree]) {
+        match all.first() {
+            // `crate::kernel` alone is the attribute.
+            Some(TokenTree::Ident(name)) if name != "kernel" || is_colons(&all[1..]) => {
+                (self.found)(&name.to_string());
+            }
+            Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Brace => {
+                let inner: Vec<TokenTree> = group.stream().into_iter().collect();
+                inner
+                    .split(|token| matches!(token, TokenTree::Punct(p) if p.as_char() == ','))
+                    .for_each(|path| self.first_names(path));
+            }
+            _ => {}
+        }
+    }
+}
+
+fn is_ident(token: &TokenTree, name: &str) -> bool {
+    matches!(token, TokenTree::Ident(ident) if ident == name)
+}
+
+fn is_colons(tokens: &[TokenTree]) -> bool {
+    tokens.len() >= 2
+        && tokens[..2].iter().all(|t| matches!(t, TokenTree::Punct(p) if p.as_char() == ':'))
+}
+
+/// Whether this is `#[cfg(test)]` or `#[cfg(all(test, ..))]`.
+fn is_test_attribute(tokens: &[TokenTree]) -> bool {
+    let [TokenTree::Punct(hash), TokenTree::Group(group), ..] = tokens else { return false };
+    let text = group.stream().to_string().replace(' ', "");
+    hash.as_char() == '#' && (text.starts_with("cfg(test)") || text.starts_with("cfg(all(test"))
+}
+
+/// How many tokens an item has with its attributes: up to `;` or a block.
+fn item_len(tokens: &[TokenTree]) -> Option<usize> {
+    tokens
+        .iter()
+        .position(|token| match token {
+            TokenTree::Punct(p) => p.as_char() == ';',
+            TokenTree::Group(group) => group.delimiter() == Delimiter::Brace,
+            _ => false,
+        })
+        .map(|at| at + 1)
+}
+
+/// The files that `#[cfg(test)] mod name;` asks for, by name.
+fn test_modules(tokens: &TokenStream) -> Vec<String> {
+    let all: Vec<TokenTree> = tokens.clone().into_iter().collect();
+    let names = (0..all.len()).filter(|i| is_test_attribute(&all[*i..])).filter_map(|i| {
+        let item = &all[i..][..item_len(&all[i..])?];
+        let at = item.iter().position(|token| is_ident(token, "mod"))?;
+        Some(item.get(at + 1)?.to_string())
+    });
+    names.collect()
+}
+
+/// The arrows of all sources of the library.
+fn arrows() -> Arrows {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../raydsl/src");
+    let mut paths = Vec::new();
+    sources(&root, &mut paths);
+    paths.sort();
+    let read = |path: &PathBuf| {
+        let file = path.strip_prefix(&root).expect("it was found below the root").to_owned();
+        let text = std::fs::read_to_string(path).expect("a source file can be read");
+        (module(&file), file, text.parse::<TokenStream>().expect("it compiles"))
+    };
+    let files: Vec<_> = paths.iter().map(read).collect();
+    let tests: BTreeSet<Vec<String>> = files
+        .iter()
+        .flat_map(|(module, _, tokens)| {
+            test_modules(tokens).into_iter().map(|name| [&module[..], &[name]].concat())
+        })
+        .collect();
+    let mut arrows = Arrows::new();
+    for (module, file, tokens) in &files {
+        let is_test = (1..=module.len()).any(|n| tests.contains(&module[..n]));
+        let Some(room) = module.first().filter(|room| is_room(room) && !is_test) else { continue };
+        let mut found = |name: &str| {
+            if name != room && is_room(name) {
+                let key = (room.clone(), name.to_owned());
+                arrows.entry(key).or_insert_with(|| file.display().to_string());
+            }
+        };
+        Reader { depth: module.len(), found: &mut found }.read(tokens.clone());
+    }
+    arrows
+}
+
+fn is_room(name: &str) -> bool {
+    FLOORS.concat().contains(&name)
+}
+
+/// A module at the root that no floor has would escape the other tests.
+#[test]
+fn every_room_has_a_floor() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../raydsl/src");
+    for entry in std::fs::read_dir(root).expect("the sources can be read") {
+        let path = entry.expect("so can its entries").path();
+        let name = path.file_stem().expect("it has a name").to_string_lossy().into_owned();
+        assert!(name == "lib" || floor(&name) < FLOORS.len(), "{name}");
+    }
+}
+
+#[test]
+fn arrows_run_down() {
+    let arrows = arrows();
+    assert!(arrows.len() > 30, "the sources were not read: {arrows:?}");
+    let up: BTreeSet<(&str, &str)> = arrows
+        .keys()
+        .map(|(from, to)| (from.as_str(), to.as_str()))
+        .filter(|(from, to)| floor(from) > floor(to))
+        .collect();
+    let allowed: BTreeSet<(&str, &str)> = UP.iter().copied().collect();
+    let new: Vec<String> = up
+        .difference(&allowed)
+        .map(|(from, to)| {
+            let file = &arrows[&((*from).to_owned(), (*to).to_owned())];
+            format!("`{from}` names `{to}`, which stands above it, first in {file}")
+        })
+        .collect();
+    assert!(new.is_empty(), "{}", new.join("\n"));
+    for (from, to) in allowed.difference(&up) {
+        panic!("`{from}` names `{to}` no longer: take it out of UP");
+    }
+}
+
+/// Rooms on one floor may name each other, but not in a circle.
+#[test]
+fn floors_have_no_circles() {
+    let arrows = arrows();
+    for rooms in FLOORS {
+        for room in rooms {
+            let mut seen = BTreeSet::new();
+            let mut next = vec![*room];
+            while let Some(from) = next.pop() {
+                for to in rooms.iter().filter(|to| is_arrow(&arrows, from, to)) {
+                    assert!(to != room, "`{room}` names itself by way of `{from}`");
+                    if seen.insert(*to) {
+                        next.push(to);
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn is_arrow(arrows: &Arrows, from: &str, to: &str) -> bool {
+    arrows.contains_key(&(from.to_owned(), to.to_owned()))
+}
+
+/// What the reader finds in a text, in a module so deep.
+fn found(depth: usize, text: &str) -> Vec<String> {
+    let mut all = Vec::new();
+    let mut add = |name: &str| all.push(name.to_owned());
+    Reader { depth, found: &mut add }.read(text.parse().expect("tokens"));
+    all
+}
+
+#[test]
+fn paths_of_every_kind_are_read() {
+    assert_eq!(found(1, "use crate::bvh::View;"), ["bvh"]);
+    assert_eq!(found(1, "use crate::{bvh::{View, Node}, math};"), ["bvh", "math"]);
+    assert_eq!(
+        found(1, "fn f(a: &crate::gpu::Context) { super::render::run(a) }"),
+        ["gpu", "render"]
+    );
+    assert_eq!(found(2, "use super::super::camera; use super::own;"), ["camera"]);
+    assert_eq!(
+        found(1, "mod inner { use super::own; use super::super::report::Row; }"),
+        ["report"]
+    );
+    assert_eq!(found(1, "macro_rules! m { () => { $crate::testing::check() } }"), ["testing"]);
+    assert_eq!(
+        found(1, "#[cfg(test)] mod tests { use crate::gpu::X; } use crate::math::Y;"),
+        ["math"]
+    );
+    assert_eq!(
+        found(1, "use crate::{kernel, math}; use crate::kernel::Kernel;"),
+        ["math", "kernel"]
+    );
+    assert_eq!(found(1, "other::crate_name::bvh(); self::bvh::f();"), Vec::<String>::new());
+}
