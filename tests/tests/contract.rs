@@ -25,8 +25,8 @@ impl Card {
         let t = (self.low.z - ray.origin.z) / ray.direction.z;
         let x = ray.origin.x + t * ray.direction.x;
         let y = ray.origin.y + t * ray.direction.y;
-        let is_beside = x < self.low.x || x > self.high.x || y < self.low.y || y > self.high.y;
-        Hit { u: x, v: y, ..Hit::new(!is_beside && x == x && y == y, t) }
+        let is_inside = x >= self.low.x && x <= self.high.x && y >= self.low.y && y <= self.high.y;
+        Hit { u: x, v: y, ..Hit::new(is_inside, t) }
     }
 
     fn get_bounds(&self) -> Aabb {
