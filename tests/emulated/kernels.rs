@@ -1,5 +1,4 @@
-//! Kernels in every variant of the CPU: one or two of each kind of statement and operation, of those
-//! that `raydsl-tests` has.
+//! A few kernels in every variant of the CPU.
 
 use raydsl_tests::check::{Wgsl, check};
 use raydsl_tests::kernels;
@@ -7,49 +6,17 @@ use raydsl_tests::levels::level_names;
 use raydsl_tests::values::Numbers;
 
 macro_rules! tests {
-    ($($kernel:ident: $numbers:ident;)+) => {
+    ($($kernel:ident: $numbers:ident $wgsl:ident;)+) => {
         $(
             #[test]
             fn $kernel() {
-                check::<kernels::$kernel>(stringify!($kernel), Numbers::$numbers, Wgsl::Same);
+                check::<kernels::$kernel>(stringify!($kernel), Numbers::$numbers, Wgsl::$wgsl);
             }
         )+
     };
 }
 
-tests! {
-    else_arms: Tame;
-    labelled: Tame;
-    return_in_loops: Tame;
-    early_returns: Any;
-    masked_division: Any;
-    vector_places: Any;
-    calls_in_branches: Tame;
-    methods: Tame;
-    struct_branches: Tame;
-    integers: Any;
-    bits: Any;
-    shifts: Any;
-    signed: Any;
-    hash: Any;
-    from_float: Any;
-    to_float: Any;
-    truths: Any;
-    clamped: Any;
-    float_methods: Any;
-    float_bits: Any;
-    fused: Any;
-    vectors: Tame;
-    transforms: Any;
-    unorms: Any;
-    arrays: Any;
-    match_tuples: Tame;
-    loops_with_values: Tame;
-    array_of_structs: Tame;
-    enums: Tame;
-    angles: Any;
-    growth: Any;
-}
+raydsl_tests::small_kernel_table!(tests);
 
 /// The processor's own lanes are among those that the tests above ran on.
 #[test]

@@ -23,62 +23,36 @@ pub use patterns::*;
 #[macro_export]
 macro_rules! kernel_table {
     ($use:ident) => {
-        $use! {
+        $crate::small_kernel_table! { $use
             if_that_ends_lanes: Any SameIfFinite;
-            else_arms: Tame Same;
-            labelled: Tame Same;
-            return_in_loops: Tame Same;
             store_before_if: Any SameIfFinite;
             for_with_continue: Tame Same;
             for_over_signed: Tame Same;
             loop_until: Tame Same;
             while_with_both: Tame Same;
-            early_returns: Any SameIfFinite;
             value_ifs: Any SameIfFinite;
             blocks_with_exits: Tame Same;
             tail_is_an_if: Any SameIfFinite;
-            masked_division: Any Same;
             guarded_sum: Any Same;
             declared_later: Any SameIfFinite;
             struct_places: Tame Same;
-            vector_places: Any SameIfFinite;
             compound: Tame Same;
             shadowing: Any SameIfFinite;
             calls: Tame Same;
-            calls_in_branches: Tame Same;
-            methods: Tame Same;
             struct_rest: Any SameIfFinite;
             struct_result: Any SameIfFinite;
-            struct_branches: Tame Same;
-            integers: Any Same;
-            bits: Any Same;
-            shifts: Any Same;
-            signed: Any Same;
-            hash: Any Same;
             collatz: Tame Same;
-            from_float: Any Same;
-            to_float: Any Same;
-            truths: Any Same;
             truth_variables: Tame Same;
-            clamped: Any SameIfFinite;
-            float_methods: Any SameIfFinite;
-            float_bits: Any Same;
-            fused: Any Explained;
             constants: Any SameIfFinite;
-            vectors: Tame Same;
             vector_parts: Any SameIfFinite;
             cells_in_turn: Any SameIfFinite;
-            transforms: Any SameIfFinite;
             small_vectors: Tame Same;
-            unorms: Any Same;
-            arrays: Any Same;
             constant_integers: Any Same;
             splats: Tame Same;
             newton: Tame Same;
             mandelbrot: Tame Same;
             match_numbers: Tame Same;
             match_signed: Tame Same;
-            match_tuples: Tame Same;
             match_in_loops: Tame Same;
             tuples: Tame Same;
             tuple_result: Tame Same;
@@ -86,17 +60,14 @@ macro_rules! kernel_table {
             struct_patterns: Tame Same;
             inclusive_ranges: Tame Same;
             reversed_ranges: Tame Same;
-            loops_with_values: Tame Same;
             labelled_blocks: Tame Same;
             array_elements: Tame Same;
-            array_of_structs: Tame Same;
             random_sum: Any Same;
             random_walk: Tame Same;
             changed_arguments: Tame Same;
             lights: Tame Explained;
             sources: Any Same;
             constant_parameters: Any SameIfFinite;
-            enums: Tame Same;
             sizes: Any Same;
             permuted_names: Tame Explained;
             swapped_by_assignment: Any Explained;
@@ -109,8 +80,6 @@ macro_rules! kernel_table {
             changed_while_read: Tame Explained;
             known_truths: Any SameIfFinite;
             named_type_parameters: Any SameIfFinite;
-            angles: Any Explained;
-            growth: Any Explained;
             own_operators: Tame Explained;
             own_names: Tame Explained;
             names_of_two_traits: Tame Explained;
@@ -119,6 +88,47 @@ macro_rules! kernel_table {
             generic_elements: Tame Explained;
             constant_arguments: Tame Explained;
             ranges_with_steps: Any Same;
+        }
+    };
+}
+
+/// [`kernel_table!`] with one or two kernels of each kind of statement and operation, and `$more`.
+#[macro_export]
+macro_rules! small_kernel_table {
+    ($use:ident $($more:tt)*) => {
+        $use! {
+            else_arms: Tame Same;
+            labelled: Tame Same;
+            return_in_loops: Tame Same;
+            early_returns: Any SameIfFinite;
+            masked_division: Any Same;
+            vector_places: Any SameIfFinite;
+            calls_in_branches: Tame Same;
+            methods: Tame Same;
+            struct_branches: Tame Same;
+            integers: Any Same;
+            bits: Any Same;
+            shifts: Any Same;
+            signed: Any Same;
+            hash: Any Same;
+            from_float: Any Same;
+            to_float: Any Same;
+            truths: Any Same;
+            clamped: Any SameIfFinite;
+            float_methods: Any SameIfFinite;
+            float_bits: Any Same;
+            fused: Any Explained;
+            vectors: Tame Same;
+            transforms: Any SameIfFinite;
+            unorms: Any Same;
+            arrays: Any Same;
+            match_tuples: Tame Same;
+            loops_with_values: Tame Same;
+            array_of_structs: Tame Same;
+            enums: Tame Same;
+            angles: Any Explained;
+            growth: Any Explained;
+            $($more)*
         }
     };
 }

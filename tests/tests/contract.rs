@@ -1,9 +1,9 @@
 //! The contract of queries, against a loop in plain Rust: of the hits within the ray's range, ends
 //! included, the least by `(t, inst_id, prim_id)`, whatever finds them.
 //!
-//! No walk of the library has a part in the oracle. Distances are computed without rounding and most of
-//! them are shared, by copies and by neighbours, so that many queries end in a tie; and half of the
-//! ranges begin or end at a hit.
+//! No traversal of the library has a part in the oracle. Distances are computed without rounding, so
+//! copies and neighbours share them, and ranges begin or end at hits; that enough rays meet both is
+//! asserted.
 
 use raydsl::bvh::{Accelerated, Accelerator, BuildError};
 use raydsl::kernel;
@@ -140,15 +140,17 @@ fn assert_contract(
     scene: &[Placed<'_>],
     rays: &[(Ray,)],
 ) {
-    let mut tied = 0;
+    let (mut tied, mut at_an_end) = (0, 0);
     for (ray,) in rays {
         let expected = expected(scene, *ray);
         let found = kernel.call((*ray,));
         assert_eq!(found, expected, "{who}: {ray:?}");
         let [first, second, _] = expected.2;
         tied += usize::from(second.is_hit && first.t == second.t);
+        at_an_end += usize::from(first.is_hit && (first.t == ray.t_min || first.t == ray.t_max));
     }
-    assert!(tied * 8 > rays.len(), "{who}: {tied} of {} rays have a tie", rays.len());
+    assert!(tied * 4 > rays.len(), "{who}: {tied} of {} rays have a tie", rays.len());
+    assert!(at_an_end * 10 > rays.len(), "{who}: {at_an_end} of {} end at a hit", rays.len());
     every_variant(kernel, rays);
 }
 
@@ -175,7 +177,7 @@ const HERE: Vec3 = Vec3::ZERO;
 #[test]
 fn slices() {
     let mut rng = Rng::of("slices");
-    let cards = cards(&mut rng, 40);
+    let cards = cards(&mut rng, 120);
     let all = &cards[..];
     let scene = [Placed { cards: all, first: 0, moved: HERE }];
     assert_contract("a slice", &asked!(all), &scene, &rays(&mut rng, RAYS));
@@ -253,7 +255,7 @@ impl Accelerator for Backwards {
 #[test]
 fn accelerators_of_the_application() {
     let mut rng = Rng::of("accelerators");
-    let cards = cards(&mut rng, 40);
+    let cards = cards(&mut rng, 120);
     let scene = [Placed { cards: &cards, first: 0, moved: HERE }];
     let standing = Accelerated::new(&cards, Backwards(cards.len() as u32));
     assert_contract("an accelerator", &asked!(standing), &scene, &rays(&mut rng, RAYS));

@@ -28,7 +28,7 @@ pub enum Cause {
 impl Cause {
     /// Why `found` differs from `expected`; `outcomes` follows up to so many ways.
     fn of(expected: &[Leaf], found: &[Leaf], outcomes: &dyn Fn(usize) -> Outcomes) -> Self {
-        let both = |all: &Outcomes| all.contain(expected) && all.contain(found);
+        let both = |all: &Outcomes| all.contains_leaves(expected) && all.contains_leaves(found);
         let first = outcomes(1);
         if both(&first) {
             let limited = is_limited(first.reference(), expected, found);

@@ -153,11 +153,11 @@ impl Outcomes {
     /// Whether `result` is within the bounds of an outcome: integers equal, floats between their
     /// ends.
     pub fn contains<R: Type>(&self, result: R) -> bool {
-        self.contain(&result_leaves(result))
+        self.contains_leaves(&result_leaves(result))
     }
 
     /// [`Outcomes::contains`] of the leaves of a result.
-    pub(crate) fn contain(&self, result: &[Leaf]) -> bool {
+    pub(crate) fn contains_leaves(&self, result: &[Leaf]) -> bool {
         self.outcomes.iter().any(|o| o.iter().zip(result).all(|(may, found)| may.contains(*found)))
     }
 }

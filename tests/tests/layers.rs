@@ -1,16 +1,17 @@
-//! The rooms of the library and what they may name: arrows run down, and no two rooms name each other.
+//! The layers of the library: a module at the crate's root depends on those below it, not on those
+//! above.
 //!
-//! A room is a module at the crate's root. Every path of the sources is read, in `use` trees, in
-//! expressions and types, in the bodies of macros; unit tests may name anything.
+//! Every path of the sources is read: in `use` trees, in expressions and types, in the bodies of macros.
+//! Unit tests may depend on anything.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
-/// The floors, the top one first. A room may name those below its floor, and those on it that do not
-/// name it, directly or by way of others.
-const FLOORS: [&[&str]; 9] = [
+/// The layers, the top one first. A module may depend on those of lower layers, and on those of its own
+/// that do not depend on it.
+const LAYERS: [&[&str]; 9] = [
     &["__private", "error", "prelude"],
     &["gpu", "report", "testing"],
     &["render"],
@@ -22,8 +23,8 @@ const FLOORS: [&[&str]; 9] = [
     &["machine"],
 ];
 
-/// Arrows that run up today. One that is gone must leave this list.
-const UP: &[(&str, &str)] = &[
+/// Dependencies on a higher layer that are still there. This list only gets shorter.
+const UPWARD: &[(&str, &str)] = &[
     ("geometry", "bvh"),
     ("kernel", "bvh"),
     ("machine", "bvh"),
@@ -32,12 +33,12 @@ const UP: &[(&str, &str)] = &[
     ("machine", "texture"),
 ];
 
-/// Which room names which, and where first.
-type Arrows = BTreeMap<(String, String), String>;
+/// Which module depends on which, and the first file in which it does.
+type Dependencies = BTreeMap<(String, String), String>;
 
-fn floor(room: &str) -> usize {
-    let found = FLOORS.iter().position(|rooms| rooms.contains(&room));
-    found.unwrap_or_else(|| panic!("`{room}` stands on no floor: add it to FLOORS"))
+fn layer(module: &str) -> usize {
+    let found = LAYERS.iter().position(|modules| modules.contains(&module));
+    found.unwrap_or_else(|| panic!("`{module}` has no layer: add it to LAYERS"))
 }
 
 /// Every source file below a folder.
@@ -52,8 +53,8 @@ fn sources(folder: &Path, all: &mut Vec<PathBuf>) {
     }
 }
 
-/// The module of a file, as the names from the crate's root to it.
-fn module(file: &Path) -> Vec<String> {
+/// The path of a file's module, from the crate's root.
+fn module_path(file: &Path) -> Vec<String> {
     let mut names: Vec<String> =
         file.with_extension("").iter().map(|name| name.to_string_lossy().into_owned()).collect();
     if names.last().is_some_and(|name| name == "mod" || name == "lib") {
@@ -95,17 +96,19 @@ impl Reader<'_> {
         }
     }
 
-    /// How many modules a path that begins here climbs, all for `crate`, and where its names begin.
+    /// How many modules a path that begins here climbs, and where its names begin. `crate`, and the
+    /// library's own name, climb all.
     fn start_of_path(&self, all: &[TokenTree], mut i: usize) -> (Option<usize>, usize) {
         let is_within = i >= 2 && is_colons(&all[i - 2..i]);
         if is_within {
             return (None, i);
         }
-        if is_ident(&all[i], "crate") && all.len() > i + 2 && is_colons(&all[i + 1..i + 3]) {
+        let is_root = is_ident(&all[i], "crate") || is_ident(&all[i], "raydsl");
+        if is_root && is_colons(&all[i + 1..]) {
             return (Some(self.depth), i + 3);
         }
         let mut supers = 0;
-        while all.len() > i + 2 && is_ident(&all[i], "super") && is_colons(&all[i + 1..i + 3]) {
+        while i < all.len() && is_ident(&all[i], "super") && is_colons(&all[i + 1..]) {
             (supers, i) = (supers + 1, i + 3);
         }
         ((supers > 0).then_some(supers), i)
@@ -168,8 +171,8 @@ fn test_modules(tokens: &TokenStream) -> Vec<String> {
     names.collect()
 }
 
-/// The arrows of all sources of the library.
-fn arrows() -> Arrows {
+/// The dependencies in all sources of the library.
+fn dependencies() -> Dependencies {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../raydsl/src");
     let mut paths = Vec::new();
     sources(&root, &mut paths);
@@ -177,78 +180,78 @@ fn arrows() -> Arrows {
     let read = |path: &PathBuf| {
         let file = path.strip_prefix(&root).expect("it was found below the root").to_owned();
         let text = std::fs::read_to_string(path).expect("a source file can be read");
-        (module(&file), file, text.parse::<TokenStream>().expect("it compiles"))
+        (module_path(&file), file, text.parse::<TokenStream>().expect("it compiles"))
     };
     let files: Vec<_> = paths.iter().map(read).collect();
     let tests: BTreeSet<Vec<String>> = files
         .iter()
-        .flat_map(|(module, _, tokens)| {
-            test_modules(tokens).into_iter().map(|name| [&module[..], &[name]].concat())
+        .flat_map(|(path, _, tokens)| {
+            test_modules(tokens).into_iter().map(|name| [&path[..], &[name]].concat())
         })
         .collect();
-    let mut arrows = Arrows::new();
-    for (module, file, tokens) in &files {
-        let is_test = (1..=module.len()).any(|n| tests.contains(&module[..n]));
-        let Some(room) = module.first().filter(|room| is_room(room) && !is_test) else { continue };
-        let mut found = |name: &str| {
-            if name != room && is_room(name) {
-                let key = (room.clone(), name.to_owned());
-                arrows.entry(key).or_insert_with(|| file.display().to_string());
+    let mut all = Dependencies::new();
+    for (path, file, tokens) in &files {
+        let is_test = (1..=path.len()).any(|n| tests.contains(&path[..n]));
+        let Some(from) = path.first().filter(|name| is_module(name) && !is_test) else { continue };
+        let mut found = |to: &str| {
+            if to != from && is_module(to) {
+                let key = (from.clone(), to.to_owned());
+                all.entry(key).or_insert_with(|| file.display().to_string());
             }
         };
-        Reader { depth: module.len(), found: &mut found }.read(tokens.clone());
+        Reader { depth: path.len(), found: &mut found }.read(tokens.clone());
     }
-    arrows
+    all
 }
 
-fn is_room(name: &str) -> bool {
-    FLOORS.concat().contains(&name)
+fn is_module(name: &str) -> bool {
+    LAYERS.concat().contains(&name)
 }
 
-/// A module at the root that no floor has would escape the other tests.
+/// A module without a layer would escape the other tests.
 #[test]
-fn every_room_has_a_floor() {
+fn every_module_has_a_layer() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../raydsl/src");
     for entry in std::fs::read_dir(root).expect("the sources can be read") {
         let path = entry.expect("so can its entries").path();
         let name = path.file_stem().expect("it has a name").to_string_lossy().into_owned();
-        assert!(name == "lib" || floor(&name) < FLOORS.len(), "{name}");
+        assert!(name == "lib" || layer(&name) < LAYERS.len(), "{name}");
     }
 }
 
 #[test]
-fn arrows_run_down() {
-    let arrows = arrows();
-    assert!(arrows.len() > 30, "the sources were not read: {arrows:?}");
-    let up: BTreeSet<(&str, &str)> = arrows
+fn no_module_depends_on_a_higher_layer() {
+    let all = dependencies();
+    assert!(all.len() > 30, "the sources were not read: {all:?}");
+    let up: BTreeSet<(&str, &str)> = all
         .keys()
         .map(|(from, to)| (from.as_str(), to.as_str()))
-        .filter(|(from, to)| floor(from) > floor(to))
+        .filter(|(from, to)| layer(from) > layer(to))
         .collect();
-    let allowed: BTreeSet<(&str, &str)> = UP.iter().copied().collect();
+    let allowed: BTreeSet<(&str, &str)> = UPWARD.iter().copied().collect();
     let new: Vec<String> = up
         .difference(&allowed)
         .map(|(from, to)| {
-            let file = &arrows[&((*from).to_owned(), (*to).to_owned())];
-            format!("`{from}` names `{to}`, which stands above it, first in {file}")
+            let file = &all[&((*from).to_owned(), (*to).to_owned())];
+            format!("`{from}` depends on `{to}`, which is above it, first in {file}")
         })
         .collect();
     assert!(new.is_empty(), "{}", new.join("\n"));
     let gone: Vec<_> = allowed.difference(&up).collect();
-    assert!(gone.is_empty(), "these run up no longer, so take them out of UP: {gone:?}");
+    assert!(gone.is_empty(), "take them out of UPWARD, they are gone: {gone:?}");
 }
 
-/// Rooms on one floor may name each other, but not in a circle.
 #[test]
-fn floors_have_no_circles() {
-    let arrows = arrows();
-    for rooms in FLOORS {
-        for room in rooms {
+fn no_layer_has_a_cycle() {
+    let all = dependencies();
+    let depends = |from: &str, to: &str| all.contains_key(&(from.to_owned(), to.to_owned()));
+    for modules in LAYERS {
+        for module in modules {
             let mut seen = BTreeSet::new();
-            let mut next = vec![*room];
+            let mut next = vec![*module];
             while let Some(from) = next.pop() {
-                for to in rooms.iter().filter(|to| is_arrow(&arrows, from, to)) {
-                    assert!(to != room, "`{room}` names itself by way of `{from}`");
+                for to in modules.iter().filter(|to| depends(from, to)) {
+                    assert!(to != module, "`{module}` depends on itself by way of `{from}`");
                     if seen.insert(*to) {
                         next.push(to);
                     }
@@ -256,10 +259,6 @@ fn floors_have_no_circles() {
             }
         }
     }
-}
-
-fn is_arrow(arrows: &Arrows, from: &str, to: &str) -> bool {
-    arrows.contains_key(&(from.to_owned(), to.to_owned()))
 }
 
 /// What the reader finds in a text, in a module so deep.
@@ -292,5 +291,6 @@ fn paths_of_every_kind_are_read() {
         found(1, "use crate::{kernel, math}; use crate::kernel::Kernel;"),
         ["math", "kernel"]
     );
+    assert_eq!(found(1, "fn f() -> raydsl::report::Row { f() }"), ["report"]);
     assert_eq!(found(1, "other::crate_name::bvh(); self::bvh::f();"), Vec::<String>::new());
 }
