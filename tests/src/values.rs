@@ -122,8 +122,7 @@ fn from_words<T: Type>(mut word: impl FnMut(&Schema) -> u32) -> T {
     T::read(&bytes_of_words(T::SCHEMA, &mut word))
 }
 
-// What follows knows a value by its bytes and its schema: it is compiled once for all types.
-
+/// The bytes of a value. As all that takes a schema here, it is compiled once, not once a type.
 fn bytes_of_words(schema: &Schema, word: &mut dyn FnMut(&Schema) -> u32) -> Vec<u8> {
     let mut bytes = vec![0u8; schema.size()];
     each_leaf(schema, 0, &mut |offset, leaf| {

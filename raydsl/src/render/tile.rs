@@ -140,8 +140,8 @@ impl<'a, R> Tiles<'a, R> {
     }
 }
 
-/// Runs `f` for each number once, on all threads of the current rayon pool if there are any. It knows
-/// no types of a kernel: what threads cost to compile is compiled once.
+/// Runs `f` for each number once, on all threads of the current rayon pool if there are any. `f` is a
+/// trait object, so that rayon's part is compiled once, not for every type of pixels.
 fn each_number(numbers: Range<usize>, f: &(dyn Fn(usize) + Sync)) {
     #[cfg(feature = "parallel")]
     {

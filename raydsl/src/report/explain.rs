@@ -110,11 +110,11 @@ pub(super) fn spread(len: usize, count: usize) -> Vec<usize> {
     all
 }
 
-/// The outcomes of an input, of which at most so many ways are followed. By reference: so
-/// what calls it is compiled once, not for every kernel.
+/// Gives the outcomes of an input, following at most so many ways. A trait object, so that its callers
+/// are compiled once, not for every kernel.
 pub(super) type OutcomesOf<'a> = &'a (dyn Fn(usize, usize) -> Outcomes + Sync);
 
-/// The outcomes on the paths that `f64` takes.
+/// The outcomes of these inputs on the paths that `f64` takes.
 pub(super) fn sampled(indices: &[usize], outcomes: OutcomesOf<'_>) -> Vec<Outcomes> {
     each(indices, &|i| outcomes(i, 1))
 }
@@ -140,7 +140,7 @@ pub(super) fn causes<R: Type + Sync>(
     causes_at(&differing(expected, found), &results, outcomes)
 }
 
-/// [`causes`] of inputs with two results each.
+/// [`causes`] of the inputs that differ, from the leaves of both results.
 fn causes_at(
     indices: &[usize],
     results: &(dyn Fn(usize) -> [Vec<Leaf>; 2] + Sync),

@@ -5,7 +5,7 @@ use crate::geometry::{Aabb, Primitive};
 /// Primitives, as the builder sees them: boxes, and boxes of their parts.
 ///
 /// Both functions must be pure. They are called in any order and from several threads. The builder
-/// calls them through a table: so it is compiled once, not for every kind of primitive.
+/// takes a trait object, so that it is compiled once, not for every kind of primitive.
 pub(in crate::bvh) trait Source: Sync {
     /// A box around the whole primitive.
     fn bounds(&self, index: usize) -> Aabb;
