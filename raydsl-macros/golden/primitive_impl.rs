@@ -134,7 +134,7 @@ impl ::raydsl::__private::Primitive for ColorSphere {
         m: &__M,
         prim: <Self as ::raydsl::__private::Type>::On<__M>,
         ray: ::raydsl::__private::RayOn<__M>,
-        shared: ::raydsl::__private::View<'_, ()>,
+        shared: ::raydsl::__private::Slice<'_, ()>,
     ) -> <Hit as ::raydsl::__private::Type>::On<__M> {
         <ColorSphere>::intersect_on(m, prim, ray)
     }

@@ -15,6 +15,7 @@ pub mod math;
 pub mod prelude;
 pub mod render;
 pub mod report;
+mod run;
 pub mod sampling;
 pub mod testing;
 pub mod texture;

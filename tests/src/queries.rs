@@ -1,7 +1,7 @@
 //! Queries of scenes in every variant of the CPU.
 
 use raydsl::bvh::SceneView;
-use raydsl::machine::{Capture, Lanes, Machine, Packet, Scalar, Type};
+use raydsl::machine::{Lanes, Method, Packet, Type, name};
 use raydsl::prelude::{
     Bvh, Hit, HitRecord, Kernel, Primitive, Ray, RayQuery, Triangle, Variant, kernel,
 };
@@ -45,7 +45,7 @@ pub fn fill<T: Send>(out: &mut [T], work: impl Fn(usize, &mut [T]) + Sync) {
 
 /// Primitives without a tree, as kernels see them.
 pub fn slice_view<P: Primitive<Shared = ()>>(prims: &[P]) -> SceneView<'_, P> {
-    Capture::<Scalar>::constant(prims, &Scalar::default())
+    RayQuery::view(prims)
 }
 
 /// The scalar answers.
@@ -250,7 +250,9 @@ fn closest_hits<L: Lanes, P: Primitive>(
     let mut found = vec![Hit::miss(); rays.len()];
     fill(&mut found, |first, out| {
         packets(lanes, width, &rays[first..], out, |m, ray| {
-            let hit = m.closest_hit(view, Ray::from_lanes(m, &ray));
+            let rays = (Ray::from_lanes(m, &ray),);
+            let record = Method::<{ name("closest_hit") }, _, _>::call(*view, m, rays);
+            let hit = P::Hit::hit_on(record);
             move |l| Hit::lane::<Packet<L>>(&hit, l)
         });
     });
@@ -267,7 +269,8 @@ fn any_hits<L: Lanes, P: Primitive>(
     let mut found = vec![false; rays.len()];
     fill(&mut found, |first, out| {
         packets(lanes, width, &rays[first..], out, |m, ray| {
-            let hit = m.any_hit(view, Ray::from_lanes(m, &ray));
+            let rays = (Ray::from_lanes(m, &ray),);
+            let hit = Method::<{ name("any_hit") }, _, _>::call(*view, m, rays);
             move |l| bool::lane::<Packet<L>>(&hit, l)
         });
     });

@@ -11,7 +11,7 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 /// The layers, the top one first. A module may depend on those of lower layers, and on those of its own
 /// that do not depend on it.
-const LAYERS: [&[&str]; 9] = [
+const LAYERS: [&[&str]; 10] = [
     &["__private", "error", "prelude"],
     &["gpu", "report", "testing"],
     &["render"],
@@ -20,18 +20,12 @@ const LAYERS: [&[&str]; 9] = [
     &["geometry"],
     &["math"],
     &["kernel"],
+    &["run"],
     &["machine"],
 ];
 
 /// Dependencies on a higher layer that are still there. This list only gets shorter.
-const UPWARD: &[(&str, &str)] = &[
-    ("geometry", "bvh"),
-    ("kernel", "bvh"),
-    ("machine", "bvh"),
-    ("machine", "geometry"),
-    ("machine", "math"),
-    ("machine", "texture"),
-];
+const UPWARD: &[(&str, &str)] = &[("machine", "math")];
 
 /// Which module depends on which, and the first file in which it does.
 type Dependencies = BTreeMap<(String, String), String>;

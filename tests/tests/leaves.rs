@@ -4,7 +4,7 @@
 use core::fmt::Debug;
 use std::sync::Mutex;
 
-use raydsl::bvh::{Accelerated, Accelerator};
+use raydsl::bvh::{Accelerated, Accelerator, AnyHits, ClosestHits};
 use raydsl::machine::{Lanes, Machine, Packet};
 use raydsl::prelude::*;
 use raydsl::{Type, kernel};
@@ -322,7 +322,7 @@ impl LevelTask for Short<'_> {
         for (rays, found) in chunks.zip(self.found.chunks_exact(TOGETHER * L::N)) {
             let packets: [_; TOGETHER] =
                 core::array::from_fn(|q| Ray::from_lanes(&m, |lane| rays[q * L::N + lane]));
-            let any = m.any_hits(&scene, &packets);
+            let any = m.perform(&AnyHits(&scene), packets);
             for (i, (ray, found)) in rays.iter().zip(found).enumerate() {
                 let is_met = L::mask_lane(&any[i / L::N].0, i % L::N);
                 assert_eq!(is_met, *found, "{name} {ray:?}");
@@ -530,7 +530,8 @@ impl LevelTask for Asked<'_> {
         let chunks = self.rays.chunks_exact(2 * L::N).zip(self.hits.chunks_exact(2 * L::N));
         for (rays, hits) in chunks {
             let packets = [0, L::N].map(|from| Ray::from_lanes(&m, |lane| rays[from + lane].0));
-            let (closest, any) = (m.closest_hits(&scene, &packets), m.any_hits(&scene, &packets));
+            let (closest, any) =
+                (m.perform(&ClosestHits(&scene), packets), m.perform(&AnyHits(&scene), packets));
             for (i, expected) in hits.iter().enumerate() {
                 let found = Hit::lane(&closest[i / L::N], i % L::N);
                 let is_met = L::mask_lane(&any[i / L::N].0, i % L::N);

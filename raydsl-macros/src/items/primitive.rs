@@ -70,7 +70,7 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
                 m: &__M,
                 prim: <Self as #p::Type>::On<__M>,
                 ray: #p::RayOn<__M>,
-                shared: #p::View<'_, #shared>,
+                shared: #p::Slice<'_, #shared>,
             ) -> <#record as #p::Type>::On<__M> {
                 <#self_ty>::intersect_on(m, prim, ray #met)
             }
@@ -105,7 +105,7 @@ fn mistaken(item: &syn::ItemImpl, parts: &Parts<'_>) -> TokenStream {
                 _: &__M,
                 _: <Self as #p::Type>::On<__M>,
                 _: #p::RayOn<__M>,
-                _: #p::View<'_, #shared>,
+                _: #p::Slice<'_, #shared>,
             ) -> <#record as #p::Type>::On<__M> {
                 ::core::unreachable!()
             }

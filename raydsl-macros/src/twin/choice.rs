@@ -348,7 +348,7 @@ impl Choice<'_> {
                 m: &__M,
                 prim: #twin<__M>,
                 ray: #p::RayOn<__M>,
-                shared: #p::View<'_, #shared>,
+                shared: #p::Slice<'_, #shared>,
             ) -> <#record as #p::Type>::On<__M> {
                 Self::intersect_among_on(m, #p::Kinds::ALL, prim, ray, shared)
             }
@@ -358,7 +358,7 @@ impl Choice<'_> {
                 m: &__M,
                 prim: &Self,
                 ray: #p::RayOn<__M>,
-                shared: #p::View<'_, #shared>,
+                shared: #p::Slice<'_, #shared>,
             ) -> <#record as #p::Type>::On<__M> {
                 match prim {
                     #(
@@ -375,7 +375,7 @@ impl Choice<'_> {
                 kinds: #p::Kinds,
                 prim: #twin<__M>,
                 ray: #p::RayOn<__M>,
-                shared: #p::View<'_, #shared>,
+                shared: #p::Slice<'_, #shared>,
             ) -> <#record as #p::Type>::On<__M> {
                 #among
             }

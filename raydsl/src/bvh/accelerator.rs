@@ -1,10 +1,9 @@
 //! Other structures than the tree.
 
-use super::owner::Owner;
 use super::view::Standing;
 use super::{SceneView, View};
 use crate::geometry::{Kinds, Primitive, Ray};
-use crate::machine::{Capture, Machine, Parameter, Resource};
+use crate::machine::{Capture, Machine, Owner, Parameter, Resource};
 
 /// What finds the primitives that a ray may meet: a grid, the tree of another library, a closure.
 ///

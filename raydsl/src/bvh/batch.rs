@@ -1,10 +1,11 @@
 //! Queries of many rays on the host, in packets.
 
+use super::on::{AnyHits, ClosestHits};
 use super::wide::trace;
 use super::{SceneView, record_on, traverse};
 use crate::geometry::{Primitive, Ray};
-use crate::kernel::{LanesTask, Variant};
 use crate::machine::{B, Lanes, Machine, Packet, Type, fill};
+use crate::run::{LanesTask, Variant};
 
 /// Packets that ask together: what goes its own ways is quicker in company.
 const TOGETHER: usize = 8;
@@ -52,7 +53,7 @@ impl<P: Primitive> LanesTask for Closest<'_, '_, P> {
             let m = Packet::new(lanes);
             for rays in self.rays.chunks(TOGETHER * L::N) {
                 let packets = packets(&m, rays);
-                let found = m.closest_hits(self.scene, &packets);
+                let found = m.perform(&ClosestHits(self.scene), packets);
                 for (i, _) in rays.iter().enumerate().step_by(L::N) {
                     let q = i / L::N;
                     let record = record_on(&m, self.scene, packets[q], found[q]);
@@ -76,7 +77,8 @@ impl<P: Primitive> LanesTask for Any<'_, '_, P> {
         lanes.vectorize(|| {
             let m = Packet::new(lanes);
             for rays in self.rays.chunks(TOGETHER * L::N) {
-                let found: [B<Packet<L>>; TOGETHER] = m.any_hits(self.scene, &packets(&m, rays));
+                let found: [B<Packet<L>>; TOGETHER] =
+                    m.perform(&AnyHits(self.scene), packets(&m, rays));
                 for i in 0..rays.len() {
                     hits.push(L::mask_lane(&found[i / L::N].0, i % L::N));
                 }

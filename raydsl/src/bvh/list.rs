@@ -6,11 +6,10 @@ use bytemuck::cast_slice;
 use thiserror::Error;
 
 use super::build::MAX_PRIMITIVES;
-use super::owner::Owner;
 use super::view::{Branches, Part, Trees};
 use super::{Bvh, Node, SceneView, View};
 use crate::geometry::{Hit, Kinds, Primitive};
-use crate::machine::{Capture, Machine, Parameter, Resource};
+use crate::machine::{Capture, Machine, Owner, Parameter, Resource};
 
 /// Trees over primitives of one type that are asked as one: what moves and what stands still,
 /// the parts of a model.

@@ -9,6 +9,23 @@
 //! * Boxes are widened, and nodes behind the best hit are culled, with an allowance of
 //!   [`Primitive::SLACK`]: what rounding may do to a hit, it does to no visit.
 //! * Every layout runs the same arithmetic on the same members of a primitive.
+//!
+//! Where what is:
+//!
+//! | file | what it has |
+//! |---|---|
+//! | `view` | the scenes that kernels see: a slice, a tree, a list, instances, a foreign structure |
+//! | `ray_query`, `batch` | queries on the host: of one ray, of many in packets |
+//! | `methods`, `query` | queries in kernels: their names, and those that ask the kernel about each hit |
+//! | `on` | how each machine does a query; `on/wgsl` its text, `on/margin` its bounds of rounding |
+//! | `traverse` | one ray through the binary tree, and which of two hits comes first |
+//! | `traverse_packet`, `packet_slabs` | a packet through it, by one stack (Wald et al., "Interactive Rendering with Coherent Ray Tracing", 2001) |
+//! | `slabs` | whether a ray meets a box in spite of rounding (after Ize, "Robust BVH Ray Traversal", 2013) |
+//! | `wide` | trees of eight children over blocks of eight primitives, and how rays go through them |
+//! | `instances`, `list`, `accelerator` | trees that are placed, lists of trees, structures of the application's |
+//! | `build` | builders: binned SAH, spatial splits, Morton order |
+//! | `refit`, `validate`, `coverage`, `stats` | moved primitives, whether a tree is one, what it is like |
+//! | `structure`, `node` | the trees that there are over some primitives, and a node |
 
 mod accelerator;
 mod batch;
@@ -16,8 +33,9 @@ pub mod build;
 mod coverage;
 mod instances;
 mod list;
+mod methods;
 mod node;
-pub(crate) mod owner;
+mod on;
 mod packet_slabs;
 mod query;
 mod ray_query;
@@ -43,8 +61,10 @@ pub use instances::{Group, Instance, InstanceError, Instances, MAX_CONDITION, MA
 pub(crate) use instances::{IS_INSTANCE, PLACE_SCHEMA, Placed, Placing, STACK, Target};
 pub use list::{BvhList, ListError};
 pub use node::Node;
-use owner::Owner;
-pub(crate) use query::{RecordOn, any_where, closest_on, closest_where, record_on};
+pub(crate) use on::RecordedWalks;
+#[doc(hidden)]
+pub use on::{AnyHits, ClosestHits};
+pub(crate) use query::{RecordOn, any_where, closest_where, record_on};
 pub use ray_query::RayQuery;
 pub use refit::{DetachedBvh, RefitError};
 pub(crate) use slabs::Allowance;
@@ -63,7 +83,7 @@ use wide::Walks;
 pub use wide::counts::Counts;
 
 use crate::geometry::{Aabb, Kinds, Primitive};
-use crate::machine::{Capture, Machine, Resource, Type, wgsl::BufferKey};
+use crate::machine::{Capture, Machine, Owner, Parameter, Resource};
 
 /// A binary tree over primitives that the application owns.
 ///
@@ -351,68 +371,6 @@ impl<M: Machine, P: Primitive> Capture<M> for Bvh<'_, P> {
     }
 }
 
-#[diagnostic::do_not_recommend]
-impl<M: Machine, T: Type> Capture<M> for [T] {
-    type On<'c>
-        = View<'c, T>
-    where
-        Self: 'c;
-
-    #[inline(always)]
-    fn capture<'c>(&'c self, _: &M, name: &'static str) -> View<'c, T> {
-        View::slice(self).named(name)
-    }
-
-    #[inline(always)]
-    fn constant<'c>(&'c self, _: &M) -> View<'c, T> {
-        View::slice(self)
-    }
-
-    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        visit(&View::<T>::slice(self));
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, T: Type> Capture<M> for Vec<T> {
-    type On<'c>
-        = View<'c, T>
-    where
-        Self: 'c;
-
-    #[inline(always)]
-    fn capture<'c>(&'c self, m: &M, name: &'static str) -> View<'c, T> {
-        self.as_slice().capture(m, name)
-    }
-
-    #[inline(always)]
-    fn constant<'c>(&'c self, m: &M) -> View<'c, T> {
-        self.as_slice().constant(m)
-    }
-
-    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        Capture::<M>::resources(self.as_slice(), visit);
-    }
-}
-
-/// The key of a slice: the address and length of borrowed data name it while the borrow lasts.
-pub(crate) fn slice_key<P>(prims: &[P]) -> BufferKey {
-    let address = prims.as_ptr() as usize as u64;
-    BufferKey { id: address | 1 << 63, version: prims.len() as u32, part: size_of::<P>() as u32 }
-}
-
-/// The bytes of primitives in the host's layout.
-fn bytes_of<P: Type>(prims: &[P]) -> Vec<u8> {
-    let stride = crate::machine::stride(P::SCHEMA);
-    let mut bytes = vec![0; stride * prims.len()];
-    for (p, out) in prims.iter().zip(bytes.chunks_exact_mut(stride)) {
-        p.write(out);
-    }
-    bytes
-}
-
-/// Whether a key names a slice rather than a tree.
-#[cfg(feature = "gpu")]
-pub(crate) fn is_slice_key(key: BufferKey) -> bool {
-    key.id >> 63 == 1
+impl<P: Primitive> Parameter for Bvh<'_, P> {
+    type On<'a, M: Machine> = SceneView<'a, P>;
 }

@@ -3,9 +3,10 @@
 //! The machine visits the primitives; what is kept of them is said here once, for all machines.
 
 use super::SceneView;
+use super::on::{ClosestHitWithCost, ClosestHits, Hits, LocalRay, Slack};
 use super::traverse::CostOn;
 use crate::geometry::{Hit, HitOn, HitRecord, Kinds, Primitive, RayOn};
-use crate::machine::{B, Branch, Coerce, Const, F, Machine, Method, Type, U, Var, name, op};
+use crate::machine::{B, Branch, F, Machine, Type, U, Var, op};
 
 /// What `intersect` of a primitive gives, lifted.
 pub(crate) type RecordOn<M, P> = <<P as Primitive>::Hit as Type>::On<M>;
@@ -18,18 +19,18 @@ pub(crate) fn closest_on<M: Machine, P: Primitive>(
     prims: &SceneView<'_, P>,
     ray: RayOn<M>,
 ) -> RecordOn<M, P> {
-    let hit = m.closest_hit(prims, ray);
+    let [hit] = m.perform(&ClosestHits(prims), [ray]);
     record_on(m, prims, ray, hit)
 }
 
 /// [`closest_on`], and what it cost: of each ray as if it were alone.
 #[inline(always)]
-fn closest_with_cost_on<M: Machine, P: Primitive>(
+pub(super) fn closest_with_cost_on<M: Machine, P: Primitive>(
     m: &M,
     prims: &SceneView<'_, P>,
     ray: RayOn<M>,
 ) -> (RecordOn<M, P>, CostOn<M>) {
-    let counted = m.closest_hit_with_cost(prims, ray);
+    let counted = m.perform(&ClosestHitWithCost(prims), ray);
     (record_on(m, prims, ray, counted.hit), counted.cost)
 }
 
@@ -49,7 +50,7 @@ pub(crate) fn record_on<M: Machine, P: Primitive>(
             let kinds = if M::RUNS { Kinds::ALL } else { prims.kinds() };
             let prim = m.fetch(prims, U(hit.prim_id.0));
             let ray = match prims.placed() {
-                Some(_) => m.local_ray(prims, hit.inst_id, ray),
+                Some(_) => m.perform(&LocalRay(prims), (ray, hit.inst_id)),
                 None => ray,
             };
             P::intersect_among_on(m, kinds, prim, ray, prims.shared())
@@ -97,7 +98,7 @@ fn limit_of<M: Machine, P: Primitive>(
     ray: RayOn<M>,
 ) -> F<M> {
     let slack = m.f32_unary(op::Abs, worst.t.0);
-    let slack = m.f32_binary(op::Mul, slack, m.slack(prims).0);
+    let slack = m.f32_binary(op::Mul, slack, m.perform(&Slack(prims), ()).0);
     let limit = m.f32_binary(op::Add, worst.t.0, slack);
     // In this order what is no number becomes the ray's end.
     let limit = m.f32_binary(op::Min, ray.t_max.0, limit);
@@ -113,13 +114,13 @@ pub(crate) fn closest_where<M: Machine, P: Primitive>(
     accept: &impl Fn(RecordOn<M, P>) -> B<M>,
 ) -> HitOn<M> {
     let best = Var::<HitOn<M>>::new(m, "best", Hit::splat(m, Hit::miss()));
-    m.visit::<P>(
-        prims,
+    m.visit(
+        &Hits(prims),
         ray,
         #[inline(always)]
         || limit_of(m, prims, best.get(m), ray),
         #[inline(always)]
-        |hit, record| {
+        |(hit, record)| {
             let is_closer = Branch::new(m, is_before(m, Placing::of(prims), hit, best.get(m)));
             if is_closer.then(m) {
                 let accepted = Branch::new(m, accept(record));
@@ -144,13 +145,13 @@ pub(crate) fn any_where<M: Machine, P: Primitive>(
     accept: &impl Fn(RecordOn<M, P>) -> B<M>,
 ) -> B<M> {
     let found = Var::<B<M>>::new(m, "found", B(m.bool(false)));
-    m.visit::<P>(
-        prims,
+    m.visit(
+        &Hits(prims),
         ray,
         #[inline(always)]
         || ray.t_max,
         #[inline(always)]
-        |_, record| {
+        |(_, record)| {
             let accepted = accept(record);
             found.set(m, accepted);
             B(m.bool_not(accepted.0))
@@ -161,7 +162,7 @@ pub(crate) fn any_where<M: Machine, P: Primitive>(
 
 /// The `N` least `(t, id)` hits of those that `accept` accepts, in order.
 #[inline(always)]
-fn multi_where<M: Machine, P: Primitive, const N: usize>(
+pub(super) fn multi_where<M: Machine, P: Primitive, const N: usize>(
     m: &M,
     prims: &SceneView<'_, P>,
     ray: RayOn<M>,
@@ -181,7 +182,7 @@ fn multi_where<M: Machine, P: Primitive, const N: usize>(
 
 /// The first `N` hits in the order of `is_closer`.
 #[inline(always)]
-fn multi_by<M: Machine, P: Primitive, const N: usize>(
+pub(super) fn multi_by<M: Machine, P: Primitive, const N: usize>(
     m: &M,
     prims: &SceneView<'_, P>,
     ray: RayOn<M>,
@@ -234,13 +235,13 @@ fn first_hits<M: Machine, P: Primitive, const N: usize>(
 ) -> [RecordOn<M, P>; N] {
     const { assert!(N > 0, "a query of no hits has no result") };
     let all = Var::<[HitOn<M>; N]>::new(m, "hits", [Hit::splat(m, Hit::miss()); N]);
-    m.visit::<P>(
-        prims,
+    m.visit(
+        &Hits(prims),
         ray,
         #[inline(always)]
         || limit(all.get(m)[N - 1]),
         #[inline(always)]
-        |hit, record| {
+        |(hit, record)| {
             let hits = all.get(m);
             let fits = m.bool_binary(
                 op::And,
@@ -318,118 +319,5 @@ fn select<M: Machine>(m: &M, c: B<M>, a: HitOn<M>, b: HitOn<M>) -> HitOn<M> {
         inst_id: U(m.u32_select(c.0, a.inst_id.0, b.inst_id.0)),
         u: F(m.f32_select(c.0, a.u.0, b.u.0)),
         v: F(m.f32_select(c.0, a.v.0, b.v.0)),
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("closest_hit") }, M, (RayOn<M>,)>
-    for SceneView<'_, P>
-{
-    type Output = RecordOn<M, P>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (ray,): (RayOn<M>,)) -> Self::Output {
-        closest_on(m, &self, ray)
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("closest_hit_with_cost") }, M, (RayOn<M>,)>
-    for SceneView<'_, P>
-{
-    type Output = (RecordOn<M, P>, CostOn<M>);
-
-    #[inline(always)]
-    fn call(self, m: &M, (ray,): (RayOn<M>,)) -> Self::Output {
-        closest_with_cost_on(m, &self, ray)
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("any_hit") }, M, (RayOn<M>,)> for SceneView<'_, P> {
-    type Output = B<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (ray,): (RayOn<M>,)) -> B<M> {
-        m.any_hit(&self, ray)
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive, const N: usize>
-    Method<{ name("multi_hit") }, M, (Const<N>, RayOn<M>)> for SceneView<'_, P>
-{
-    type Output = [RecordOn<M, P>; N];
-
-    #[inline(always)]
-    fn call(self, m: &M, (_, ray): (Const<N>, RayOn<M>)) -> [RecordOn<M, P>; N] {
-        multi_where(m, &self, ray, &|_| B(m.bool(true)))
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M, P, R, G> Method<{ name("closest_hit_where") }, M, (RayOn<M>, G)> for SceneView<'_, P>
-where
-    M: Machine,
-    P: Primitive,
-    R: Coerce<M, B<M>>,
-    G: Fn(&M, RecordOn<M, P>) -> R,
-{
-    type Output = RecordOn<M, P>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (ray, accept): (RayOn<M>, G)) -> Self::Output {
-        let hit = closest_where(m, &self, ray, &|record| accept(m, record).coerce(m));
-        record_on(m, &self, ray, hit)
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M, P, R, G> Method<{ name("any_hit_where") }, M, (RayOn<M>, G)> for SceneView<'_, P>
-where
-    M: Machine,
-    P: Primitive,
-    R: Coerce<M, B<M>>,
-    G: Fn(&M, RecordOn<M, P>) -> R,
-{
-    type Output = B<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (ray, accept): (RayOn<M>, G)) -> B<M> {
-        any_where(m, &self, ray, &|record| accept(m, record).coerce(m))
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M, P, R, G, const N: usize> Method<{ name("multi_hit_where") }, M, (Const<N>, RayOn<M>, G)>
-    for SceneView<'_, P>
-where
-    M: Machine,
-    P: Primitive,
-    R: Coerce<M, B<M>>,
-    G: Fn(&M, RecordOn<M, P>) -> R,
-{
-    type Output = [RecordOn<M, P>; N];
-
-    #[inline(always)]
-    fn call(self, m: &M, (_, ray, accept): (Const<N>, RayOn<M>, G)) -> [RecordOn<M, P>; N] {
-        multi_where(m, &self, ray, &|record| accept(m, record).coerce(m))
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M, P, R, G, const N: usize> Method<{ name("multi_hit_by") }, M, (Const<N>, RayOn<M>, G)>
-    for SceneView<'_, P>
-where
-    M: Machine,
-    P: Primitive,
-    R: Coerce<M, B<M>>,
-    G: Fn(&M, HitOn<M>, HitOn<M>) -> R,
-{
-    type Output = [RecordOn<M, P>; N];
-
-    #[inline(always)]
-    fn call(self, m: &M, (_, ray, is_closer): (Const<N>, RayOn<M>, G)) -> [RecordOn<M, P>; N] {
-        multi_by(m, &self, ray, &|a, b| is_closer(m, a, b).coerce(m))
     }
 }

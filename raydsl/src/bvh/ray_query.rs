@@ -4,6 +4,7 @@ use glam::{Affine3, Vec3};
 
 use super::{Accelerated, Bvh, BvhList, Cost, Instances, SceneView, View, batch, traverse};
 use crate::geometry::{Hit, Primitive, Ray, transform_normal_back};
+use crate::machine::{Data, Slice};
 
 /// What rays may ask of primitives: of a slice, a tree ([`Bvh`]), a list of trees ([`BvhList`]),
 /// trees that are placed many times ([`Instances`]), or under a structure of one's own
@@ -222,7 +223,7 @@ impl<P: Primitive<Shared = ()>> RayQuery for [P] {
     type Primitive = P;
 
     fn view(&self) -> SceneView<'_, P> {
-        View::slice(self)
+        View::slice(Slice::new(self, "prims"))
     }
 }
 

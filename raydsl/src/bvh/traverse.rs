@@ -5,10 +5,11 @@ use core::mem::MaybeUninit;
 use super::instances::Descent;
 use super::slabs::{Allowance, Slabs};
 use super::view::{Branches, Finder};
-use super::wide::fibers::Alone;
 use super::{Accelerator, MAX_DEPTH, Node, Part, Placed, SceneView};
 use crate::Type;
 use crate::geometry::{Hit, HitRecord, Primitive, Ray};
+use crate::machine::Data;
+use crate::run::fibers::Alone;
 
 /// Entries of a traversal's stack: one a level.
 pub(crate) const STACK: usize = MAX_DEPTH + 2;

@@ -8,10 +8,10 @@ use super::packet_slabs::{PacketSlabs, abs, and, finite, min, mul, or, without};
 use super::slabs::Allowance;
 use super::traverse::Stack;
 use super::view::Branches;
-use super::{CountedHit, CountedHitOn, Part, Placed, RecordOn, SceneView, View, traverse};
+use super::{CountedHit, CountedHitOn, Part, Placed, RecordOn, RecordedWalks, SceneView, traverse};
 use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn};
-use crate::kernel::{Lanes4, Lanes8, Lanes16};
-use crate::machine::{B, Entered, F, Lanes, Packet, Place, RecordedWalks, Type, U, V3, Value, op};
+use crate::machine::{B, Entered, F, Lanes, Packet, Place, Slice, Type, U, V3, Value, op};
+use crate::run::{Lanes4, Lanes8, Lanes16};
 
 /// The machine of the loops: its kernels are inlined, so that nothing travels through memory.
 type Inner<L> = Packet<Entered<L>>;
@@ -46,7 +46,7 @@ struct Best<L: Lanes> {
 struct Candidate<'c, 'a, L: Lanes, P: Primitive> {
     part: &'c Part<'a, P, P::Shared>,
     ray: &'c RayOn<Packet<L>>,
-    shared: View<'c, P::Shared>,
+    shared: Slice<'c, P::Shared>,
     inst: u32,
     /// Its place in its part.
     id: u32,

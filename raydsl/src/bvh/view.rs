@@ -5,13 +5,15 @@ use std::borrow::Cow;
 use glam::Affine3;
 
 use super::instances::Placed;
-use super::owner::Owner;
 use super::slabs::Allowance;
 use super::structure::Structure;
 use super::wide::{Walks, Wide};
-use super::{Accelerator, Node, Owned, bytes_of, list, slice_key};
+use super::{Accelerator, Node, Owned, list};
 use crate::geometry::{Kinds, Primitive, Ray};
-use crate::machine::{Field, Leaves, Machine, Resource, Schema, Type, Value, wgsl::BufferKey};
+use crate::machine::{
+    B, Data, Field, Indexed, Leaves, Machine, Method, Owner, Resource, Schema, Slice, Type, U,
+    Usize, Value, borrowed_key, bytes_of, element_in_step, name, op, wgsl::BufferKey,
+};
 
 /// The structure of a [`Node`].
 pub(crate) const NODE_SCHEMA: &Schema = &Schema::Struct {
@@ -33,7 +35,6 @@ pub(crate) mod buffers {
     pub(crate) const SHARED: u32 = 3;
     pub(crate) const ROOTS: u32 = 4;
     pub(crate) const PLACES: u32 = 5;
-    pub(crate) const TEXELS: u32 = 6;
 }
 
 /// The nodes of a tree and its index list.
@@ -146,21 +147,19 @@ impl<T, S> Standing<'_, T, S> {
 
 /// What a view is of. Small, since kernels hand views to each other.
 enum Scene<'a, T, S> {
-    Slice(&'a [T]),
+    Slice(Slice<'a, T>),
     Tree(&'a Tree<'a, T, S>),
     List(&'a Trees<'a, T, S>),
     Instances(&'a Placed<'a, T, S>),
     Standing(&'a Standing<'a, T, S>),
 }
 
-/// A slice, a tree over one, or a list of trees: a value of the host on every machine.
+/// Primitives and what finds them, as kernels see them: a slice, a tree over one, a list of trees. A
+/// value of the host on every machine.
 ///
 /// `S` is the type of what the primitives share; see [`Primitive::Shared`].
 pub struct View<'a, T, S = ()> {
     scene: Scene<'a, T, S>,
-    /// The name that a device has for a slice whose owner is known: for what primitives share, and
-    /// for texels.
-    key: Option<BufferKey>,
     name: &'static str,
 }
 
@@ -193,40 +192,37 @@ impl<T, S> Copy for View<'_, T, S> {}
 
 impl<'a, T, S> View<'a, T, S> {
     #[inline(always)]
-    pub(crate) fn slice(prims: &'a [T]) -> Self {
-        Self { scene: Scene::Slice(prims), key: None, name: "prims" }
-    }
-
-    /// A slice that a device is sent once, for it belongs to an owner.
-    #[inline(always)]
-    pub(crate) fn owned_slice(prims: &'a [T], key: Option<BufferKey>) -> Self {
-        Self { key, ..Self::slice(prims) }
+    pub(crate) fn slice(prims: Slice<'a, T>) -> Self {
+        Self { scene: Scene::Slice(prims), name: "prims" }
     }
 
     #[inline(always)]
     pub(super) fn tree(tree: &'a Tree<'a, T, S>) -> Self {
-        Self { scene: Scene::Tree(tree), key: None, name: "bvh" }
+        Self { scene: Scene::Tree(tree), name: "bvh" }
     }
 
     #[inline(always)]
     pub(super) fn list(trees: &'a Trees<'a, T, S>) -> Self {
-        Self { scene: Scene::List(trees), key: None, name: "trees" }
+        Self { scene: Scene::List(trees), name: "trees" }
     }
 
     #[inline(always)]
     pub(super) fn instances(placed: &'a Placed<'a, T, S>) -> Self {
-        Self { scene: Scene::Instances(placed), key: None, name: "scene" }
+        Self { scene: Scene::Instances(placed), name: "scene" }
     }
 
     #[inline(always)]
     pub(super) fn standing(standing: &'a Standing<'a, T, S>) -> Self {
-        Self { scene: Scene::Standing(standing), key: None, name: "prims" }
+        Self { scene: Scene::Standing(standing), name: "prims" }
     }
 
     /// Where the scene lies: views with the same one are of the same scene.
     pub(crate) fn address(&self) -> [usize; 3] {
         match self.scene {
-            Scene::Slice(prims) => [0, prims.as_ptr().addr(), prims.len()],
+            Scene::Slice(prims) => {
+                let prims = prims.elements();
+                [0, prims.as_ptr().addr(), prims.len()]
+            }
             Scene::Tree(tree) => [1, core::ptr::from_ref(tree).addr(), 0],
             Scene::List(trees) => [2, core::ptr::from_ref(trees).addr(), 0],
             Scene::Instances(placed) => [3, core::ptr::from_ref(placed).addr(), 0],
@@ -290,9 +286,12 @@ impl<'a, T, S> View<'a, T, S> {
     #[inline(always)]
     pub(crate) fn part(&self, i: usize) -> Option<Part<'a, T, S>> {
         match self.scene {
-            Scene::Slice(prims) => {
-                (i == 0).then_some(Part { prims, shared: &[], finder: Finder::Nothing, first: 0 })
-            }
+            Scene::Slice(prims) => (i == 0).then_some(Part {
+                prims: prims.elements(),
+                shared: &[],
+                finder: Finder::Nothing,
+                first: 0,
+            }),
             Scene::Standing(standing) => (i == 0).then(|| standing.part()),
             Scene::Tree(tree) => (i == 0).then(|| tree.part()),
             Scene::List(trees) => trees.parts.get(i).copied(),
@@ -302,7 +301,7 @@ impl<'a, T, S> View<'a, T, S> {
 
     /// What the primitives share.
     #[inline(always)]
-    pub fn shared(&self) -> View<'a, S> {
+    pub fn shared(&self) -> Slice<'a, S> {
         let shared = match self.scene {
             Scene::Slice(_) => &[],
             Scene::Tree(tree) => tree.shared,
@@ -311,14 +310,14 @@ impl<'a, T, S> View<'a, T, S> {
             Scene::Standing(standing) => standing.shared,
         };
         let key = (!self.is_slice()).then(|| self.key_of(buffers::SHARED));
-        View { key, name: self.name, ..View::slice(shared) }
+        Slice::owned(shared, key, self.name).suffixed("shared")
     }
 
     /// The elements of a slice, or of the slice under a tree.
     #[inline(always)]
     pub(crate) fn elements(&self) -> &'a [T] {
         match self.scene {
-            Scene::Slice(prims) => prims,
+            Scene::Slice(prims) => prims.elements(),
             Scene::Tree(tree) => tree.prims,
             Scene::Standing(standing) => standing.prims,
             Scene::List(_) | Scene::Instances(_) => &[],
@@ -352,23 +351,6 @@ impl<'a, T, S> View<'a, T, S> {
     /// Whether it is a list of trees.
     pub(crate) fn is_list(&self) -> bool {
         matches!(self.scene, Scene::List(_))
-    }
-
-    pub(crate) fn name(&self) -> Cow<'static, str> {
-        match self.key {
-            Some(key) if key.part == buffers::SHARED => format!("{}_shared", self.name).into(),
-            _ => self.name.into(),
-        }
-    }
-
-    /// The key of the primitives, or of what they share.
-    pub(crate) fn key(&self) -> BufferKey {
-        match (self.key, self.scene) {
-            (Some(key), _) => key,
-            (None, Scene::Slice(prims)) => slice_key(prims),
-            (None, Scene::Standing(standing)) => slice_key(standing.prims),
-            (None, _) => self.key_of(buffers::PRIMITIVES),
-        }
     }
 
     /// The key of another buffer of the same scene.
@@ -413,14 +395,16 @@ impl<'a, T, S> View<'a, T, S> {
     }
 }
 
-impl<T: Copy, S> View<'_, T, S> {
-    /// The primitive `index`.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such primitive.
+impl<T: Type, S> Data for View<'_, T, S> {
+    type Element = T;
+
     #[inline(always)]
-    pub fn get(&self, index: u32) -> T {
+    fn count(&self) -> usize {
+        self.len()
+    }
+
+    #[inline(always)]
+    fn get(&self, index: u32) -> T {
         match self.trees() {
             Some(trees) => {
                 let part = &trees.parts[list::tree_of(&trees.parts, index)];
@@ -429,13 +413,28 @@ impl<T: Copy, S> View<'_, T, S> {
             None => self.elements()[index as usize],
         }
     }
+
+    fn key(&self) -> BufferKey {
+        match self.scene {
+            Scene::Slice(prims) => prims.buffer_key(),
+            Scene::Standing(standing) => borrowed_key(standing.prims),
+            _ => self.key_of(buffers::PRIMITIVES),
+        }
+    }
+
+    fn name(&self) -> Cow<'static, str> {
+        match self.scene {
+            Scene::Slice(prims) => prims.full_name(),
+            _ => self.name.into(),
+        }
+    }
 }
 
 impl<P: Primitive> SceneView<'_, P> {
     /// The kinds of its primitives.
     pub(crate) fn kinds(&self) -> Kinds {
         match self.scene {
-            Scene::Slice(prims) => Kinds::of(prims),
+            Scene::Slice(prims) => Kinds::of(prims.elements()),
             Scene::Tree(tree) => tree.kinds,
             Scene::List(trees) => trees.kinds,
             Scene::Instances(placed) => placed.trees.kinds,
@@ -488,7 +487,7 @@ impl<M: Machine, T, S> Value<M> for View<'_, T, S> {
 
     #[inline(always)]
     fn zero(_: &M) -> Self {
-        Self::slice(&[])
+        Self::slice(Slice::new(&[], "prims"))
     }
 
     #[inline(always)]
@@ -499,7 +498,7 @@ impl<M: Machine, T, S> Value<M> for View<'_, T, S> {
             return b;
         }
         let is_same = || match (a.scene, b.scene) {
-            (Scene::Slice(a), Scene::Slice(b)) => core::ptr::eq(a, b),
+            (Scene::Slice(a), Scene::Slice(b)) => core::ptr::eq(a.elements(), b.elements()),
             (Scene::Tree(a), Scene::Tree(b)) => core::ptr::eq(a, b),
             (Scene::List(a), Scene::List(b)) => core::ptr::eq(a, b),
             (Scene::Instances(a), Scene::Instances(b)) => core::ptr::eq(a, b),
@@ -508,9 +507,49 @@ impl<M: Machine, T, S> Value<M> for View<'_, T, S> {
         };
         assert!(
             is_nothing(&b) || is_same(),
-            "a kernel cannot choose between two slices or trees by a value of its rays: choose \
+            "a kernel cannot choose between two scenes by a value of its rays: choose \
              between what it reads from them, or by a captured `bool`"
         );
         a
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine, T: Type, S: Type> Indexed<M> for View<'_, T, S> {
+    type Element = T::On<M>;
+
+    #[inline(always)]
+    fn element(self, m: &M, i: U<M>) -> T::On<M> {
+        m.element(&self, i)
+    }
+
+    #[inline(always)]
+    fn at(self, m: &M, i: usize) -> T::On<M> {
+        m.element(&self, U(m.u32(i as u32)))
+    }
+
+    #[inline(always)]
+    fn in_step(self, m: &M, i: u32) -> T::On<M> {
+        element_in_step(m, self, i)
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine, T: Type, S: Type> Method<{ name("len") }, M, ()> for View<'_, T, S> {
+    type Output = Usize<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (): ()) -> Usize<M> {
+        Usize(m.len(&self).0)
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine, T: Type, S: Type> Method<{ name("is_empty") }, M, ()> for View<'_, T, S> {
+    type Output = B<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (): ()) -> B<M> {
+        B(m.u32_compare(op::Eq, m.len(&self).0, m.u32(0)))
     }
 }

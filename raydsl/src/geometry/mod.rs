@@ -8,7 +8,6 @@ pub mod cuboid;
 pub mod cylinder;
 pub mod disk;
 mod edges;
-pub(crate) mod exact;
 mod hit;
 mod near;
 mod origin;

@@ -1,42 +1,16 @@
 //! What makes a type a primitive.
 
 use super::{Aabb, HitRecord, Ray, RayOn};
-use crate::bvh::View;
-use crate::machine::{Machine, Type};
-
-/// The kinds of an enum of primitives that a scene has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Kinds(u64);
+pub use crate::machine::Kinds;
+use crate::machine::{Machine, Slice, Type};
 
 impl Kinds {
-    /// Every kind.
-    pub const ALL: Self = Self(u64::MAX);
-
     /// Those of these primitives.
     pub fn of<P: Primitive>(prims: &[P]) -> Self {
         if P::KINDS == 1 {
             return Self::ALL;
         }
-        Self(prims.iter().fold(0, |all, p| all | 1 << p.kind()))
-    }
-
-    /// No kind.
-    pub const NONE: Self = Self(0);
-
-    /// Those of both.
-    #[must_use]
-    pub const fn union(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
-    /// Whether `kind` is among them.
-    pub const fn has(self, kind: u32) -> bool {
-        self.0 >> kind & 1 == 1
-    }
-
-    /// Whether there is no other than `kind`.
-    pub const fn is_only(self, kind: u32) -> bool {
-        self.0 == 1 << kind
+        prims.iter().fold(Self::NONE, |all, p| all.union(Self::one(p.kind())))
     }
 }
 
@@ -91,7 +65,7 @@ pub trait Primitive: Type + Send + Sync {
         m: &M,
         prim: Self::On<M>,
         ray: RayOn<M>,
-        shared: View<'_, Self::Shared>,
+        shared: Slice<'_, Self::Shared>,
     ) -> <Self::Hit as Type>::On<M>;
 
     /// How many kinds the type has: more than one for an enum.
@@ -112,7 +86,7 @@ pub trait Primitive: Type + Send + Sync {
         m: &M,
         prim: &Self,
         ray: RayOn<M>,
-        shared: View<'_, Self::Shared>,
+        shared: Slice<'_, Self::Shared>,
     ) -> <Self::Hit as Type>::On<M> {
         Self::intersect_on(m, Self::splat(m, *prim), ray, shared)
     }
@@ -125,7 +99,7 @@ pub trait Primitive: Type + Send + Sync {
         _kinds: Kinds,
         prim: Self::On<M>,
         ray: RayOn<M>,
-        shared: View<'_, Self::Shared>,
+        shared: Slice<'_, Self::Shared>,
     ) -> <Self::Hit as Type>::On<M> {
         Self::intersect_on(m, prim, ray, shared)
     }

@@ -3,13 +3,13 @@
 use glam::{Vec2, Vec3, vec2, vec3};
 
 use super::edges::{across, spanned};
-use super::exact::{exact_cross, lost_by_difference};
 use super::near::largest;
 use super::outwards::{around, wide};
 use super::surface::rounded_point;
 use super::{Aabb, Hit, Ray, SurfacePoint};
 use crate::machine::functions::{vec2, vec3};
 use crate::machine::generic::{max, min};
+use crate::math::exact::{exact_cross, lost_by_difference};
 use crate::{kernel, primitive};
 
 /// What a triangle's hit may be off by, as a sphere's 16 eps: the sheared vertices carry at most

@@ -7,7 +7,7 @@ use super::chunks::{Span, plan};
 use super::device::{Caps, Gpu};
 use super::error::GpuError;
 use super::window::{GpuWindow, WindowError};
-use crate::bvh::owner;
+use crate::machine::owner;
 use crate::machine::wgsl::{Buffer, BufferKey, Window};
 
 /// Bytes of one transfer: wgpu stages each in a buffer of its own, so this, twice, bounds

@@ -289,7 +289,7 @@ impl GpuScheduler {
         // The address of a slice names its data only while it is borrowed.
         let buffers = module.buffers.iter().map(|buffer| buffer.key);
         let keys = buffers.chain(module.textures.iter().map(|texture| texture.key));
-        for key in keys.filter(|key| crate::bvh::is_slice_key(*key)) {
+        for key in keys.filter(|key| crate::machine::is_borrowed(*key)) {
             self.context.forget(key.id);
         }
         end

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use super::buffers::{PIECE, Source};
 use super::device::Gpu;
 use super::error::GpuError;
-use crate::bvh::owner;
+use crate::machine::owner;
 use crate::machine::wgsl::{TexelFormat, Texture, TextureLayout};
 use crate::texture::Address;
 

@@ -10,7 +10,7 @@ use super::{Context, GpuScheduler};
 use crate::bvh::{Bvh, BvhList, Instances, View};
 use crate::geometry::Primitive;
 use crate::machine::wgsl::BufferKey;
-use crate::machine::{Type, stride};
+use crate::machine::{Data, Slice, Type, borrowed_key, stride};
 
 /// Part of a buffer of the application: `size` bytes from `offset`.
 #[derive(Clone, Debug)]
@@ -46,7 +46,7 @@ impl<T: Type> OnHost for [T] {
     type Element = T;
 
     fn buffer(&self) -> (BufferKey, usize) {
-        View::<T>::slice(self).buffer()
+        (borrowed_key(self), self.len())
     }
 }
 
@@ -67,6 +67,14 @@ impl<T: Type, const N: usize> OnHost for [T; N] {
 }
 
 impl<T: Type, S: Type> OnHost for View<'_, T, S> {
+    type Element = T;
+
+    fn buffer(&self) -> (BufferKey, usize) {
+        (self.key(), self.len())
+    }
+}
+
+impl<T: Type> OnHost for Slice<'_, T> {
     type Element = T;
 
     fn buffer(&self) -> (BufferKey, usize) {

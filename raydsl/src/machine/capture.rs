@@ -7,9 +7,6 @@ use glam::{
     Vec4,
 };
 
-use crate::bvh;
-use crate::geometry::Primitive;
-
 use super::{F, Machine, Type, Value, wgsl::BufferKey};
 
 /// Data that recorded kernels read from buffers.
@@ -54,14 +51,6 @@ pub trait Parameter {
 
 impl<T: Type> Parameter for T {
     type On<'a, M: Machine> = <T as Type>::On<M>;
-}
-
-impl<T: Type> Parameter for [T] {
-    type On<'a, M: Machine> = bvh::View<'a, T>;
-}
-
-impl<P: Primitive> Parameter for bvh::Bvh<'_, P> {
-    type On<'a, M: Machine> = bvh::SceneView<'a, P>;
 }
 
 #[diagnostic::do_not_recommend]

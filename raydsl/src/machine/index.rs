@@ -4,8 +4,7 @@
 //! whose number it reaches. An index out of range is an error of the kernel. With debug assertions
 //! it panics and names the lane; without, it means the last element, in every variant.
 
-use super::{Coerce, Leaves, Machine, Type, U, Usize, Value, Varying, op};
-use crate::bvh::View;
+use super::{Coerce, Data, Leaves, Machine, Slice, Type, U, Usize, Value, Varying, op};
 
 /// An integer that indexes.
 #[diagnostic::on_unimplemented(
@@ -84,29 +83,39 @@ impl<M: Machine, V: Varying<M> + Copy, const N: usize> Indexed<M> for [V; N] {
 }
 
 #[diagnostic::do_not_recommend]
-impl<M: Machine, P: Type, S: Type> Indexed<M> for View<'_, P, S> {
-    type Element = P::On<M>;
+impl<M: Machine, T: Type> Indexed<M> for Slice<'_, T> {
+    type Element = T::On<M>;
 
     #[inline(always)]
-    fn element(self, m: &M, i: U<M>) -> P::On<M> {
+    fn element(self, m: &M, i: U<M>) -> T::On<M> {
         m.element(&self, i)
     }
 
     #[inline(always)]
-    fn at(self, m: &M, i: usize) -> P::On<M> {
-        self.element(m, U(m.u32(i as u32)))
+    fn at(self, m: &M, i: usize) -> T::On<M> {
+        m.element(&self, U(m.u32(i as u32)))
     }
 
     #[inline(always)]
-    fn in_step(self, m: &M, i: u32) -> P::On<M> {
-        let len = self.len() as u32;
-        m.check_index(&m.u32(i), len);
-        // A slice without elements has none to stand for one.
-        if len == 0 {
-            return P::On::zero(m);
-        }
-        P::splat(m, self.get(i.min(len - 1)))
+    fn in_step(self, m: &M, i: u32) -> T::On<M> {
+        element_in_step(m, self, i)
     }
+}
+
+/// The element at a place that is the same for all running lanes.
+#[inline(always)]
+pub(crate) fn element_in_step<M: Machine, D: Data>(
+    m: &M,
+    data: D,
+    i: u32,
+) -> <D::Element as Type>::On<M> {
+    let len = data.count() as u32;
+    m.check_index(&m.u32(i), len);
+    // Of no elements none stands for another.
+    if len == 0 {
+        return Value::zero(m);
+    }
+    D::Element::splat(m, data.get(i.min(len - 1)))
 }
 
 /// `array` with `v` at `i`.

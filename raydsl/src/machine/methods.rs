@@ -4,11 +4,7 @@
 //! part of the trait, so that the methods of a user's types and those of the library meet without
 //! an import.
 
-use glam::Affine3;
-
-use super::{A3, B, Coerce, Machine, Type, U, Usize, V3, Var, op};
-use crate::bvh::{SceneView, View};
-use crate::geometry::{HitOn, Primitive, RayOn, transform_normal_back};
+use super::{Coerce, Machine, Usize, Var, op};
 
 /// The number of a method's name (FNV-1a, 64 bits).
 pub const fn name(text: &str) -> u64 {
@@ -102,6 +98,10 @@ pub fn call_on_element<const NAME: u64, M: Machine, T: Method<NAME, M, A, Via>, 
     }
     element.call(m, args)
 }
+
+/// A number between `::<` and `>`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Const<const N: usize>;
 
 /// A method of a struct's kernels; the derived twin forwards [`Method`] to it.
 ///
@@ -248,27 +248,7 @@ method!([] Usize<M>, "saturating_sub", |m, a, b: Usize<M>| -> Usize<M> {
     }
 });
 
-// Slices, and trees over primitives
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, T: Type, S: Type> Method<{ name("len") }, M, ()> for View<'_, T, S> {
-    type Output = Usize<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (): ()) -> Usize<M> {
-        Usize(m.len(&self).0)
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, T: Type, S: Type> Method<{ name("is_empty") }, M, ()> for View<'_, T, S> {
-    type Output = B<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (): ()) -> B<M> {
-        B(m.u32_compare(op::Eq, m.len(&self).0, m.u32(0)))
-    }
-}
+// Arrays
 
 #[diagnostic::do_not_recommend]
 impl<M: Machine, V: super::Value<M>, const N: usize> Method<{ name("len") }, M, ()> for [V; N] {
@@ -277,114 +257,5 @@ impl<M: Machine, V: super::Value<M>, const N: usize> Method<{ name("len") }, M, 
     #[inline(always)]
     fn call(self, _: &M, (): ()) -> usize {
         N
-    }
-}
-
-/// Queries of a captured array, which is a value of the kernel: rays meet primitives in memory.
-pub struct PrimitivesOfValue<M>(core::marker::PhantomData<M>);
-
-const _: () = {
-    #[diagnostic::on_unimplemented(
-        message = "rays do not meet the primitives of a captured array",
-        label = "an array is a value of the kernel, and a slice lies in memory",
-        note = "capture a slice of it: `let shapes = &shapes[..];` before the kernel"
-    )]
-    pub trait InMemory {}
-
-    macro_rules! queries {
-        ($($name:literal -> $out:ty;)+) => {
-            $(
-                impl<M: Machine, A, V: super::Value<M>, const N: usize>
-                    Method<{ name($name) }, M, A> for [V; N]
-                where
-                    PrimitivesOfValue<M>: InMemory,
-                {
-                    type Output = $out;
-
-                    fn call(self, _: &M, _: A) -> $out {
-                        unreachable!()
-                    }
-                }
-            )+
-        };
-    }
-
-    queries! {
-        "closest_hit" -> HitOn<M>;
-        "closest_hit_each" -> [HitOn<M>; 1];
-        "closest_hit_where" -> HitOn<M>;
-        "any_hit" -> B<M>;
-        "any_hit_each" -> [B<M>; 1];
-        "any_hit_where" -> B<M>;
-        "multi_hit" -> [HitOn<M>; 1];
-        "multi_hit_by" -> [HitOn<M>; 1];
-        "multi_hit_where" -> [HitOn<M>; 1];
-        "primitive" -> V;
-        "to_object" -> A3<M>;
-        "local_ray" -> RayOn<M>;
-        "normal_in_scene" -> V3<M>;
-    }
-};
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("primitive") }, M, (HitOn<M>,)> for SceneView<'_, P> {
-    type Output = P::On<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (hit,): (HitOn<M>,)) -> P::On<M> {
-        let id = m.u32_select(hit.is_hit.0, hit.prim_id.0, m.u32(0));
-        // The hit may be that of another scene.
-        m.element(&self, U(id))
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("to_object") }, M, (HitOn<M>,)> for SceneView<'_, P> {
-    type Output = A3<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (hit,): (HitOn<M>,)) -> A3<M> {
-        match self.placed() {
-            Some(_) => m.to_object(&self, hit.inst_id),
-            None => Affine3::splat(m, Affine3::IDENTITY),
-        }
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("local_ray") }, M, (RayOn<M>, HitOn<M>)>
-    for SceneView<'_, P>
-{
-    type Output = RayOn<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (ray, hit): (RayOn<M>, HitOn<M>)) -> RayOn<M> {
-        match self.placed() {
-            Some(_) => m.local_ray(&self, hit.inst_id, ray),
-            None => ray,
-        }
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("normal_in_scene") }, M, (HitOn<M>, V3<M>)>
-    for SceneView<'_, P>
-{
-    type Output = V3<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (hit, normal): (HitOn<M>, V3<M>)) -> V3<M> {
-        let map = Method::<{ name("to_object") }, M, (HitOn<M>,)>::call(self, m, (hit,));
-        transform_normal_back::on(m, normal, map)
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<'a, M: Machine, P: Primitive> Method<{ name("shared") }, M, ()> for SceneView<'a, P> {
-    type Output = View<'a, P::Shared>;
-
-    #[inline(always)]
-    fn call(self, _: &M, (): ()) -> View<'a, P::Shared> {
-        View::shared(&self)
     }
 }

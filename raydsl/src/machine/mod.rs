@@ -10,29 +10,48 @@
 //! A machine offers arithmetic on lanes and *control hooks*: an `if` or a loop of the source calls
 //! them, and what they return steers real Rust control flow. The scalar machine returns the
 //! condition itself, a packet whether any lane is left, the recorder always `true`.
+//!
+//! Where what is:
+//!
+//! | file | what it has |
+//! |---|---|
+//! | `scalar`, `packet`, `record`, `margin` | the machines |
+//! | `lanes`, `gang`, `counted` | what packets are made of: registers, several of them, lanes that are counted |
+//! | `control`, `counter` | variables, branches and loops of lifted code |
+//! | `types`, `schema`, `twin`, `value`, `words`, `kinds` | types of the host, and what stands for them on a machine |
+//! | `vector`, `matrix` | the twins of glam's types |
+//! | `op`, `ops`, `operand`, `bits` | operations as types, and the operators of lifted code |
+//! | `methods`, `functions`, `generic` | methods and functions of lifted code |
+//! | `data`, `index`, `capture`, `owner` | slices, elements, what a kernel takes from around it, who owns it |
+//! | `operation` | how other modules do something on machines |
+//! | `call`, `lowered`, `host` | what generated code calls |
+//! | `wgsl` | what recording gives |
 
-mod batch;
 mod bits;
 mod call;
 mod capture;
 mod control;
 mod counted;
 mod counter;
+mod data;
 pub(crate) mod functions;
 mod gang;
 pub mod generic;
 pub mod host;
 pub(crate) mod index;
+mod kinds;
 mod lanes;
 pub mod lowered;
-mod margin;
+pub(crate) mod margin;
 pub(crate) mod matrix;
 mod methods;
 pub mod op;
 mod operand;
+mod operation;
 mod ops;
+pub(crate) mod owner;
 mod packet;
-mod record;
+pub(crate) mod record;
 mod scalar;
 mod schema;
 mod twin;
@@ -42,28 +61,35 @@ mod vector;
 pub mod wgsl;
 mod words;
 
-pub use batch::Const;
 pub use call::{KernelFn, KernelInfo};
 pub use capture::{Capture, Parameter, Resource};
 pub use control::{Branch, Condition, Loop, Ret, Var};
 pub(crate) use counted::{Count, count};
 pub use counted::{Counted, Place};
 pub use counter::{Counter, Steps, Stop, decrement, increment};
+#[cfg(feature = "gpu")]
+pub(crate) use data::is_borrowed;
+pub use data::{Data, Slice};
+pub(crate) use data::{borrowed_key, bytes_of};
 pub use gang::Gang;
+pub(crate) use index::{Indexed, element_in_step};
+pub use kinds::Kinds;
 pub(crate) use lanes::{Entered, fill};
 pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
 pub(crate) use margin::result_leaves;
 pub use margin::{Leaf, Margin, Outcomes, Rounding};
 pub(crate) use matrix::A3;
-pub use methods::{HostMethod, Method, Through, call_on_element, is_mut, name};
+pub use methods::{Const, HostMethod, Method, Through, call_on_element, is_mut, name};
 pub use op::Op;
 pub use operand::{Assigned, RightOperand};
+pub use operation::{On, Operation, Visit};
 pub use ops::{
     Bounds, Coerce, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv, OpMul,
     OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Varying,
 };
+pub(crate) use owner::Owner;
 pub use packet::Packet;
-pub(crate) use record::{RecordedWalks, stride};
+pub(crate) use record::stride;
 pub use record::{Recorder, Recording};
 pub use scalar::Scalar;
 pub use schema::{Field, Schema};
@@ -450,87 +476,21 @@ pub trait Machine: Sized + 'static {
         v
     }
 
-    /// The least `(t, id)` hit over a tree; see [`crate::bvh`].
-    fn closest_hit<P: crate::geometry::Primitive>(
+    /// Does an operation of another module, in this machine's way.
+    fn perform<O: Operation>(
         &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: crate::geometry::RayOn<Self>,
-    ) -> crate::geometry::HitOn<Self>;
+        operation: &O,
+        input: On<O::Input, Self>,
+    ) -> On<O::Output, Self>;
 
-    /// [`Machine::closest_hit`], and what it costs each ray, were it alone.
-    fn closest_hit_with_cost<P: crate::geometry::Primitive>(
+    /// Finds items one after another, in this machine's way; see [`Visit`].
+    fn visit<T: Visit>(
         &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: crate::geometry::RayOn<Self>,
-    ) -> crate::bvh::CountedHitOn<Self>;
-
-    /// Whether anything is hit.
-    fn any_hit<P: crate::geometry::Primitive>(
-        &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: crate::geometry::RayOn<Self>,
-    ) -> B<Self>;
-
-    /// [`Machine::closest_hit`] of several rays, which a machine may answer together.
-    #[inline(always)]
-    fn closest_hits<P: crate::geometry::Primitive, const N: usize>(
-        &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        rays: &[crate::geometry::RayOn<Self>; N],
-    ) -> [crate::geometry::HitOn<Self>; N] {
-        fill(
-            #[inline(always)]
-            |i| self.closest_hit(prims, rays[i]),
-        )
-    }
-
-    /// [`Machine::any_hit`] of several rays, which a machine may answer together.
-    #[inline(always)]
-    fn any_hits<P: crate::geometry::Primitive, const N: usize>(
-        &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        rays: &[crate::geometry::RayOn<Self>; N],
-    ) -> [B<Self>; N] {
-        fill(
-            #[inline(always)]
-            |i| self.any_hit(prims, rays[i]),
-        )
-    }
-
-    /// Asks `meet` about every hit within the ray's range, in the lanes that have it: whether the
-    /// lane goes on. Nodes beyond `limit` are left out. The hit, and the record that has it, has
-    /// its primitive's number. What outlives a hit is in variables, as for rounds of a [`Loop`].
-    fn visit<P: crate::geometry::Primitive>(
-        &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: crate::geometry::RayOn<Self>,
+        items: &T,
+        input: On<T::Input, Self>,
         limit: impl Fn() -> F<Self>,
-        meet: impl Fn(crate::geometry::HitOn<Self>, crate::bvh::RecordOn<Self, P>) -> B<Self>,
+        visit: impl Fn(On<T::Item, Self>) -> B<Self>,
     );
-
-    /// The ray as the tree of an instance is asked about it. A scene of instances has one.
-    fn local_ray<T: Type, S: Type>(
-        &self,
-        scene: &crate::bvh::View<'_, T, S>,
-        inst: U<Self>,
-        ray: crate::geometry::RayOn<Self>,
-    ) -> crate::geometry::RayOn<Self>;
-
-    /// From the space of the scene to that of an instance's tree.
-    fn to_object<T: Type, S: Type>(
-        &self,
-        scene: &crate::bvh::View<'_, T, S>,
-        inst: U<Self>,
-    ) -> A3<Self>;
-
-    /// How far behind a hit nodes are still visited, relative to its distance.
-    #[inline(always)]
-    fn slack<P: crate::geometry::Primitive>(
-        &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-    ) -> F<Self> {
-        F(self.f32(prims.allowance().slack))
-    }
 
     /// `[f(0), f(1), ..]`; a loop in generated code.
     #[inline(always)]
@@ -541,44 +501,20 @@ pub trait Machine: Sized + 'static {
         )
     }
 
-    /// How many elements a slice has.
+    /// How many elements there are.
     #[inline(always)]
-    fn len<T: Type, S: Type>(&self, slice: &crate::bvh::View<'_, T, S>) -> U<Self> {
-        U(self.u32(slice.len() as u32))
+    fn len<D: Data>(&self, data: &D) -> U<Self> {
+        U(self.u32(data.count() as u32))
     }
 
-    /// The element `index` of a slice; the last one where there is none.
+    /// The element `index`; the last one where there is none.
     #[inline(always)]
-    fn element<T: Type, S: Type>(
-        &self,
-        slice: &crate::bvh::View<'_, T, S>,
-        index: U<Self>,
-    ) -> T::On<Self> {
-        self.check_index(&index.0, slice.len() as u32);
-        let last = self.u32((slice.len() as u32).wrapping_sub(1));
+    fn element<D: Data>(&self, data: &D, index: U<Self>) -> <D::Element as Type>::On<Self> {
+        let count = data.count() as u32;
+        self.check_index(&index.0, count);
+        let last = self.u32(count.wrapping_sub(1));
         let within = self.u32_compare(op::Le, index.0, last);
-        self.fetch(slice, U(self.u32_select(within, index.0, last)))
-    }
-
-    /// What a texture has at a place of `D` axes.
-    #[inline(always)]
-    fn texture<T: crate::texture::Texel, const D: usize>(
-        &self,
-        texels: &crate::texture::Texels<'_, T>,
-        at: &[F<Self>; D],
-    ) -> <T::Value as Type>::On<Self> {
-        texels.by_kernels(self, at)
-    }
-
-    /// The same at a level of detail.
-    #[inline(always)]
-    fn texture_at_level<T: crate::texture::Texel, const D: usize>(
-        &self,
-        texels: &crate::texture::Texels<'_, T>,
-        at: &[F<Self>; D],
-        level: F<Self>,
-    ) -> <T::Value as Type>::On<Self> {
-        texels.by_kernels_at_level(self, at, level)
+        self.fetch(data, U(self.u32_select(within, index.0, last)))
     }
 
     /// `code / max`, of a code up to `max`.
@@ -594,10 +530,6 @@ pub trait Machine: Sized + 'static {
         v
     }
 
-    /// The element `index` of a slice, which has it.
-    fn fetch<T: Type, S: Type>(
-        &self,
-        slice: &crate::bvh::View<'_, T, S>,
-        index: U<Self>,
-    ) -> T::On<Self>;
+    /// The element `index`, which there is.
+    fn fetch<D: Data>(&self, data: &D, index: U<Self>) -> <D::Element as Type>::On<Self>;
 }

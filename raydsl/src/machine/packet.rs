@@ -3,13 +3,7 @@
 use core::cell::Cell;
 use core::mem::MaybeUninit;
 
-use glam::{Affine3, Vec3};
-
 use super::*;
-use crate::bvh::wide::trace;
-use crate::bvh::{RecordOn, traverse_packet};
-use crate::geometry::{HitOn, Primitive, RayOn};
-use crate::texture::{Texel, Texels};
 
 /// A machine of [`Lanes::N`] lanes with masked control flow.
 ///
@@ -525,93 +519,22 @@ impl<L: Lanes> Machine for Packet<L> {
     }
 
     #[inline(always)]
-    fn closest_hit<P: Primitive>(
+    fn perform<O: Operation>(
         &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: RayOn<Self>,
-    ) -> HitOn<Self> {
-        let [hit] = self.closest_hits(prims, &[ray]);
-        hit
+        operation: &O,
+        input: On<O::Input, Self>,
+    ) -> On<O::Output, Self> {
+        operation.on_packet(self, input)
     }
     #[inline(always)]
-    fn closest_hit_with_cost<P: Primitive>(
+    fn visit<T: Visit>(
         &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: RayOn<Self>,
-    ) -> crate::bvh::CountedHitOn<Self> {
-        traverse_packet::closest_hit_with_cost(self, prims, ray)
-    }
-    #[inline(always)]
-    fn any_hit<P: Primitive>(
-        &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: RayOn<Self>,
-    ) -> B<Self> {
-        let [hit] = self.any_hits(prims, &[ray]);
-        hit
-    }
-    #[inline(always)]
-    fn closest_hits<P: Primitive, const N: usize>(
-        &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        rays: &[RayOn<Self>; N],
-    ) -> [HitOn<Self>; N] {
-        if let Some(walks) = prims.walks() {
-            let mut hits = [HitOn::zero(self); N];
-            trace::closest_hits(self, (prims, walks), rays, &mut hits);
-            return hits;
-        }
-        fill(
-            #[inline(always)]
-            |i| traverse_packet::closest_hit(self, prims, rays[i]),
-        )
-    }
-    #[inline(always)]
-    fn any_hits<P: Primitive, const N: usize>(
-        &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        rays: &[RayOn<Self>; N],
-    ) -> [B<Self>; N] {
-        if let Some(walks) = prims.walks() {
-            let mut hits = [B(self.lanes.mask(false)); N];
-            trace::any_hits(self, (prims, walks), rays, &mut hits);
-            return hits;
-        }
-        fill(
-            #[inline(always)]
-            |i| traverse_packet::any_hit(self, prims, rays[i]),
-        )
-    }
-    #[inline(always)]
-    fn visit<P: Primitive>(
-        &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: RayOn<Self>,
+        items: &T,
+        input: On<T::Input, Self>,
         limit: impl Fn() -> F<Self>,
-        meet: impl Fn(HitOn<Self>, RecordOn<Self, P>) -> B<Self>,
+        visit: impl Fn(On<T::Item, Self>) -> B<Self>,
     ) {
-        traverse_packet::visit(self, prims, ray, limit, meet);
-    }
-    #[inline(always)]
-    fn local_ray<T: Type, S: Type>(
-        &self,
-        scene: &crate::bvh::View<'_, T, S>,
-        inst: U<Self>,
-        ray: RayOn<Self>,
-    ) -> RayOn<Self> {
-        let of_lane = |l| {
-            let ray = crate::geometry::Ray::lane::<Self>(&ray, l);
-            scene.local_ray(L::u32_lane(&inst.0, l), ray)
-        };
-        self.of_running(crate::geometry::Ray::new(Vec3::ZERO, Vec3::ZERO), of_lane)
-    }
-    #[inline(always)]
-    fn to_object<T: Type, S: Type>(
-        &self,
-        scene: &crate::bvh::View<'_, T, S>,
-        inst: U<Self>,
-    ) -> A3<Self> {
-        self.of_running(Affine3::IDENTITY, |l| scene.to_object(L::u32_lane(&inst.0, l)))
+        items.on_packet(self, input, limit, visit);
     }
     #[inline(always)]
     fn unorm(&self, code: L::U32, max: u32) -> L::F32 {
@@ -627,49 +550,26 @@ impl<L: Lanes> Machine for Packet<L> {
     }
 
     #[inline(always)]
-    fn texture<T: Texel, const D: usize>(
-        &self,
-        texels: &Texels<'_, T>,
-        at: &[F<Self>; D],
-    ) -> <T::Value as Type>::On<Self> {
-        texels.in_packet(self, at)
-    }
-
-    #[inline(always)]
-    fn texture_at_level<T: Texel, const D: usize>(
-        &self,
-        texels: &Texels<'_, T>,
-        at: &[F<Self>; D],
-        level: F<Self>,
-    ) -> <T::Value as Type>::On<Self> {
-        texels.in_packet_at_level(self, at, level)
-    }
-
-    #[inline(always)]
-    fn fetch<P: Type, S: Type>(
-        &self,
-        prims: &crate::bvh::View<'_, P, S>,
-        index: U<Self>,
-    ) -> P::On<Self> {
-        if prims.is_empty() {
-            return P::On::zero(self);
+    fn fetch<D: Data>(&self, data: &D, index: U<Self>) -> <D::Element as Type>::On<Self> {
+        if data.count() == 0 {
+            return Value::zero(self);
         }
         let active = self.active.get();
         if !self.lanes.any(active) {
-            return P::On::zero(self);
+            return Value::zero(self);
         }
         let first = self.lanes.bits(active).trailing_zeros() as usize % L::N;
         let first = L::u32_lane(&index.0, first);
         // The counter of a loop is one number in all lanes.
         let same = self.lanes.u32_compare(op::Eq, index.0, self.lanes.u32(first));
         if !self.lanes.any(self.and(active, self.lanes.mask_not(same))) {
-            return P::splat(self, prims.get(first));
+            return D::Element::splat(self, data.get(first));
         }
         // A lane that does not run may hold any index.
         let index = self.lanes.u32_select(active, index.0, self.lanes.u32(first));
         self.of_each(
             #[inline(always)]
-            |lane| prims.get(L::u32_lane(&index, lane)),
+            |lane| data.get(L::u32_lane(&index, lane)),
         )
     }
 }

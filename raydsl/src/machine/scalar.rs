@@ -2,11 +2,7 @@
 
 use core::cell::Cell;
 
-use glam::Affine3;
-
 use super::*;
-use crate::bvh::{RecordOn, traverse};
-use crate::geometry::{HitOn, Primitive, RayOn};
 
 /// One lane, plain Rust numbers: a cross-check of the lowering.
 ///
@@ -403,73 +399,27 @@ impl Machine for Scalar {
         result
     }
 
-    fn closest_hit<P: Primitive>(
+    fn perform<O: Operation>(
         &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: RayOn<Self>,
-    ) -> HitOn<Self> {
-        let ray = crate::geometry::Ray::lane::<Self>(&ray, 0);
-        crate::geometry::Hit::splat(self, traverse::nearest(prims, ray))
+        operation: &O,
+        input: On<O::Input, Self>,
+    ) -> On<O::Output, Self> {
+        operation.on_scalar(self, input)
     }
-    fn closest_hit_with_cost<P: Primitive>(
+    fn visit<T: Visit>(
         &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: RayOn<Self>,
-    ) -> crate::bvh::CountedHitOn<Self> {
-        let ray = crate::geometry::Ray::lane::<Self>(&ray, 0);
-        crate::bvh::CountedHit::splat(self, traverse::nearest_counted(prims, ray))
-    }
-    fn any_hit<P: Primitive>(
-        &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: RayOn<Self>,
-    ) -> B<Self> {
-        let ray = crate::geometry::Ray::lane::<Self>(&ray, 0);
-        B(traverse::any_hit(prims, ray))
-    }
-    fn visit<P: Primitive>(
-        &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: RayOn<Self>,
+        items: &T,
+        input: On<T::Input, Self>,
         limit: impl Fn() -> F<Self>,
-        meet: impl Fn(HitOn<Self>, RecordOn<Self, P>) -> B<Self>,
+        visit: impl Fn(On<T::Item, Self>) -> B<Self>,
     ) {
-        if !self.alive() {
-            return;
+        items.on_scalar(self, input, limit, visit);
+    }
+    fn fetch<D: Data>(&self, data: &D, index: U<Self>) -> <D::Element as Type>::On<Self> {
+        if data.count() == 0 {
+            return Value::zero(self);
         }
-        let ray = crate::geometry::Ray::lane::<Self>(&ray, 0);
-        traverse::visit::<P>(prims, ray, |hit, record, end| {
-            let record = P::Hit::splat(self, record);
-            let goes_on = meet(crate::geometry::Hit::splat(self, hit), record).0;
-            *end = limit().0;
-            goes_on
-        });
-    }
-    fn local_ray<T: Type, S: Type>(
-        &self,
-        scene: &crate::bvh::View<'_, T, S>,
-        inst: U<Self>,
-        ray: RayOn<Self>,
-    ) -> RayOn<Self> {
-        let ray = crate::geometry::Ray::lane::<Self>(&ray, 0);
-        crate::geometry::Ray::splat(self, scene.local_ray(inst.0, ray))
-    }
-    fn to_object<T: Type, S: Type>(
-        &self,
-        scene: &crate::bvh::View<'_, T, S>,
-        inst: U<Self>,
-    ) -> A3<Self> {
-        Affine3::splat(self, scene.to_object(inst.0))
-    }
-    fn fetch<P: Type, S: Type>(
-        &self,
-        prims: &crate::bvh::View<'_, P, S>,
-        index: U<Self>,
-    ) -> P::On<Self> {
-        if prims.is_empty() {
-            return P::On::zero(self);
-        }
-        P::splat(self, prims.get(index.0))
+        D::Element::splat(self, data.get(index.0))
     }
 }
 

@@ -1,7 +1,5 @@
 //! What recording a kernel produces: WGSL text and the data that it reads. Knows nothing of wgpu.
 
-use crate::texture::Address;
-
 /// How generated code computes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Arithmetic {
@@ -75,6 +73,21 @@ pub struct Texture {
     pub binding: u32,
     /// What the texels are and how they are read.
     pub layout: TextureLayout,
+}
+
+/// What lies outside of `[0, 1)` along an axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Address {
+    /// The texture again and again.
+    #[default]
+    Wrap,
+    /// The texture again and again, every second time mirrored: `GL_MIRRORED_REPEAT`.
+    Mirror,
+    /// The texel at the edge.
+    Clamp,
+    /// The border's colour; filters blend with it. A texel that is outside along one axis is
+    /// outside, whatever the others say.
+    Border,
 }
 
 /// What the texels of a texture are, and how a sampler reads them: linearly between texels.

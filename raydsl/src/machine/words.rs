@@ -1,7 +1,6 @@
 //! Values as words of 32 bits, one a scalar: how an enum of primitives keeps its kinds.
 
-use super::{B, Branch, Leaves, Machine, Scalar, Type, U, Value, op};
-use crate::geometry::Kinds;
+use super::{B, Branch, Kinds, Leaves, Machine, Scalar, Type, U, Value, op};
 
 /// The words of a value; those beyond its scalars are 0.
 #[inline(always)]

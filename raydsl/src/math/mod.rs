@@ -2,6 +2,7 @@
 
 mod code;
 pub mod elementary;
+pub(crate) mod exact;
 mod half;
 pub(crate) mod matrix;
 mod unorm;

@@ -9,9 +9,9 @@ use core::ptr::NonNull;
 use glam::{UVec2, uvec2};
 
 use super::{Image, Shot};
-use crate::bvh::wide::fibers;
 use crate::kernel::{GANG, PacketKernel, PacketTask, Variant};
 use crate::machine::{Lanes, Packet, Type, U, X2, op};
+use crate::run::fibers;
 
 /// Edge of a tile in pixels, unless a scheduler has another.
 pub(super) const TILE: u32 = 16;

@@ -2,6 +2,7 @@
 
 use glam::Vec4;
 
+pub use crate::machine::wgsl::Address;
 use crate::machine::{Leaves, Machine, Schema, Value};
 
 /// How a value between texels is made.
@@ -20,21 +21,6 @@ pub enum Filter {
     /// The Catmull-Rom (cardinal) spline: 4 texels an axis. It goes through the texels and may
     /// overshoot between them.
     CatmullRom,
-}
-
-/// What lies outside of `[0, 1)` along an axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Address {
-    /// The texture again and again.
-    #[default]
-    Wrap,
-    /// The texture again and again, every second time mirrored: `GL_MIRRORED_REPEAT`.
-    Mirror,
-    /// The texel at the edge.
-    Clamp,
-    /// The border's colour; filters blend with it. A texel that is outside along one axis is
-    /// outside, whatever the others say.
-    Border,
 }
 
 /// What the numbers of texels mean.

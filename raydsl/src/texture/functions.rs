@@ -4,6 +4,7 @@
 
 use glam::{Vec2, Vec3};
 
+use super::on::{Lookup, LookupAtLevel};
 use super::sample;
 use super::texel::Texel;
 use super::texture::{AsTextureRef, TextureRef};
@@ -37,7 +38,7 @@ macro_rules! functions {
                     texture: TextureRef<'_, T, $n>,
                     $at: impl Coerce<M, $twin>,
                 ) -> <T::Value as Type>::On<M> {
-                    m.texture(&texture.texels, &$components($at.coerce(m)))
+                    m.perform(&Lookup(&texture.texels), $components($at.coerce(m)))
                 }
             }
 
@@ -65,7 +66,7 @@ macro_rules! functions {
                     level: impl Coerce<M, F<M>>,
                 ) -> <T::Value as Type>::On<M> {
                     let level = level.coerce(m);
-                    m.texture_at_level(&texture.texels, &$components($at.coerce(m)), level)
+                    m.perform(&LookupAtLevel(&texture.texels), ($components($at.coerce(m)), level))
                 }
             }
         )+

@@ -18,6 +18,7 @@ mod functions;
 mod levels;
 #[cfg(feature = "image")]
 mod load;
+mod on;
 mod packet;
 mod prefilter;
 mod sample;

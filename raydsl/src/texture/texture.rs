@@ -6,9 +6,8 @@ use super::config::{Address, TextureConfig};
 use super::error::TextureError;
 use super::texel::Texel;
 use super::view::Texels;
-use crate::bvh::{buffers, owner::Owner};
 use crate::machine::wgsl::BufferKey;
-use crate::machine::{Capture, Leaves, Machine, Parameter, Resource, Schema, Type, Value};
+use crate::machine::{Capture, Leaves, Machine, Owner, Parameter, Resource, Schema, Type, Value};
 
 /// The most texels along an axis: up to here every whole number is an `f32`.
 pub const MAX_SIZE: u32 = 1 << 24;
@@ -231,7 +230,7 @@ impl<T: Texel, const D: usize> AsTextureRef<D> for Texture<'_, T, D> {
 
     #[inline]
     fn as_texture_ref(&self) -> TextureRef<'_, T, D> {
-        let key = BufferKey { id: self.owner.id(), version: 0, part: buffers::TEXELS };
+        let key = BufferKey { id: self.owner.id(), version: 0, part: 0 };
         TextureRef::with_parts(&self.texels, self.size, self.levels, self.config, Some(key))
     }
 }
@@ -288,7 +287,7 @@ macro_rules! capture {
             }
 
             fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-                visit(&self.as_texture_ref().texels.view());
+                visit(&self.as_texture_ref().texels.slice());
             }
         }
     };

@@ -9,9 +9,8 @@ use glam::{UVec2, UVec3, Vec4};
 use super::config::{Address, Filter, LevelFilter, TextureConfig};
 use super::texel::{Texel, TexelValue};
 use crate::Type;
-use crate::bvh::View;
 use crate::machine::wgsl::BufferKey;
-use crate::machine::{Leaves, Machine, Method, Parameter, Schema, U, Value, X2, X3, name};
+use crate::machine::{Leaves, Machine, Method, Parameter, Schema, Slice, U, Value, X2, X3, name};
 
 /// The texels of a texture and how they are read, whatever its dimension.
 #[derive(Debug)]
@@ -39,8 +38,8 @@ impl<T> Copy for Texels<'_, T> {}
 
 impl<'a, T> Texels<'a, T> {
     #[inline(always)]
-    pub(crate) fn view(&self) -> View<'a, T> {
-        View::owned_slice(self.all, self.key).named(self.name)
+    pub(crate) fn slice(&self) -> Slice<'a, T> {
+        Slice::owned(self.all, self.key, self.name)
     }
 }
 
@@ -149,7 +148,7 @@ impl<M: Machine, T: Texel> Method<{ name("value") }, M, (U<M>,)> for Texels<'_, 
 
     #[inline(always)]
     fn call(self, m: &M, (i,): (U<M>,)) -> Self::Output {
-        let texel = m.fetch(&self.view(), i);
+        let texel = m.fetch(&self.slice(), i);
         self.as_read(m, T::decode_on(m, texel, self.config.color_space))
     }
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::bvh::{BuildError, RefitError, buffers};
+use crate::machine::Data;
 use crate::machine::Resource;
 
 #[test]

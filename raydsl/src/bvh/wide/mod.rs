@@ -16,7 +16,6 @@ mod entry;
     )),
     path = "one_by_one.rs"
 )]
-pub(crate) mod fibers;
 mod hybrid;
 mod node;
 mod octant;

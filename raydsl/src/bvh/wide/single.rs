@@ -11,8 +11,8 @@ use crate::bvh::SceneView;
 use crate::bvh::slabs::Allowance;
 use crate::bvh::traverse::is_finite;
 use crate::geometry::{Hit, Primitive, Ray};
-use crate::kernel::{LanesTask, with_wide_walks};
 use crate::machine::{Entered, Lanes, Packet, Type};
+use crate::run::{LanesTask, with_wide_walks};
 
 /// Entries of a stack that is made for each ray: what all but very deep trees need. Tests of the
 /// library make do with less, so that both are tested.

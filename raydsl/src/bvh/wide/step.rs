@@ -4,10 +4,10 @@ use super::Wide;
 use super::blocks::{self, Row};
 use super::node::{WIDTH, WideNode};
 use super::rays::{RayWords, row};
+use crate::bvh::Part;
 use crate::bvh::packet_slabs::{max, min};
-use crate::bvh::{Part, View};
 use crate::geometry::{HitOn, HitRecord, Kinds, Primitive, RayOn};
-use crate::machine::{Lanes, Packet, op};
+use crate::machine::{Lanes, Packet, Slice, op};
 
 /// What meets boxes: a ray, or a beam of them.
 pub(super) trait Slabs: Copy {
@@ -134,7 +134,7 @@ pub(super) fn words<E: Lanes>(e: E, words: &[u32; WIDTH]) -> E::U32 {
 pub(super) struct Meeting<'a, P: Primitive> {
     pub(super) tree: &'a Wide,
     pub(super) part: Part<'a, P, P::Shared>,
-    pub(super) shared: View<'a, P::Shared>,
+    pub(super) shared: Slice<'a, P::Shared>,
     pub(super) kinds: Kinds,
 }
 

@@ -6,7 +6,6 @@ use core::mem::{swap, take};
 use fearless_simd::Level;
 
 use super::entry;
-use super::fibers;
 use super::hybrid;
 use super::order::{Portions, Sequence};
 use super::packet::{self, Together};
@@ -18,8 +17,9 @@ use crate::bvh::packet_slabs::{and, finite};
 use crate::bvh::slabs::Allowance;
 use crate::bvh::{Part, SceneView, Traversal, View, traverse};
 use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn};
-use crate::kernel::{LanesTask, with_wide_walks};
 use crate::machine::{B, Entered, F, Lanes, Packet, U, op};
+use crate::run::fibers::{self, Scratch as _};
+use crate::run::{LanesTask, with_wide_walks};
 
 /// The memory of a query, which a thread keeps for the next one.
 #[derive(Debug, Default)]
@@ -29,9 +29,8 @@ pub(super) struct Scratch {
     pub(super) together: Together,
     pub(super) portions: Portions,
 }
-impl Scratch {
-    /// Has no rays.
-    pub(super) fn clear(&mut self) {
+impl fibers::Scratch for Scratch {
+    fn clear(&mut self) {
         self.rays.clear();
     }
 }

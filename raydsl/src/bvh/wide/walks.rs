@@ -9,7 +9,7 @@ use super::{Wide, single, trace};
 use crate::bvh::build::Tree;
 use crate::bvh::{SceneView, Traversal, View};
 use crate::geometry::{Hit, Primitive, Ray};
-use crate::kernel::has_wide_walks;
+use crate::run::has_wide_walks;
 
 /// What makes wide trees over primitives of type `T`, and goes through them.
 ///

@@ -17,7 +17,7 @@ const FORMS: usize = 1 << 14;
 /// `center + terms + rest`: terms are symbols between -1 and 1 with their weights, in order of
 /// their numbers; the rest is on its own.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Form {
+pub(crate) struct Form {
     center: f64,
     terms: Vec<(u32, f64)>,
     rest: f64,
@@ -39,7 +39,7 @@ impl Form {
     }
 
     /// Where the value lies.
-    pub(super) fn range(&self) -> Interval {
+    pub(crate) fn range(&self) -> Interval {
         let radius = self.radius() + self.slop();
         // A sum says nothing of the sign of a zero.
         Interval::new(self.center - radius, self.center + radius, false).with_any_zero()
@@ -64,19 +64,19 @@ impl Form {
         }
     }
 
-    pub(super) fn add(&self, other: &Self) -> Self {
+    pub(crate) fn add(&self, other: &Self) -> Self {
         self.combined(1.0, other, 1.0)
     }
 
-    pub(super) fn sub(&self, other: &Self) -> Self {
+    pub(crate) fn sub(&self, other: &Self) -> Self {
         self.combined(1.0, other, -1.0)
     }
 
-    pub(super) fn neg(&self) -> Self {
+    pub(crate) fn neg(&self) -> Self {
         self.combined(-1.0, &Self::point(0.0), 0.0)
     }
 
-    pub(super) fn mul(&self, other: &Self) -> Self {
+    pub(crate) fn mul(&self, other: &Self) -> Self {
         let mut all = self.combined(other.center, other, self.center);
         all.center = self.center * other.center;
         all.rest += self.radius() * other.radius();
@@ -84,7 +84,7 @@ impl Form {
     }
 
     /// `self / other`, unless `other` may be 0.
-    pub(super) fn div(&self, other: &Self) -> Option<Self> {
+    pub(crate) fn div(&self, other: &Self) -> Option<Self> {
         let (c, r) = (other.center, other.radius());
         // 1/c - (y - c)/c², and what that is off by.
         (r < c.abs()).then(|| {
@@ -96,7 +96,7 @@ impl Form {
     }
 
     /// The square root of a positive number.
-    pub(super) fn sqrt(&self) -> Option<Self> {
+    pub(crate) fn sqrt(&self) -> Option<Self> {
         let (c, r) = (self.center, self.radius());
         (r < c).then(|| {
             let root = c.sqrt();
@@ -127,15 +127,15 @@ impl Form {
 
 /// The number of a form; [`Handle::NONE`] where there is only an interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Handle(u32);
+pub(crate) struct Handle(u32);
 
 impl Handle {
-    pub(super) const NONE: Self = Self(u32::MAX);
+    pub(crate) const NONE: Self = Self(u32::MAX);
 }
 
 /// The forms of a machine's values.
 #[derive(Debug, Default)]
-pub(super) struct Forms {
+pub(crate) struct Forms {
     all: RefCell<Vec<Rc<Form>>>,
     symbols: Cell<u32>,
     /// Whether there are only intervals for now.
@@ -147,17 +147,17 @@ impl Forms {
         self.symbols.replace(self.symbols.get().wrapping_add(1))
     }
 
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.all.borrow().len()
     }
 
     /// Forgets all but the first `len` forms.
-    pub(super) fn truncate(&self, len: usize) {
+    pub(crate) fn truncate(&self, len: usize) {
         self.all.borrow_mut().truncate(len);
     }
 
     /// Does `f` with intervals alone, which is faster.
-    pub(super) fn without<R>(&self, f: impl FnOnce() -> R) -> R {
+    pub(crate) fn without<R>(&self, f: impl FnOnce() -> R) -> R {
         let off = self.off.replace(true);
         let result = f();
         self.off.set(off);
@@ -165,7 +165,7 @@ impl Forms {
     }
 
     /// The form of a value; one that has none is an error of its own.
-    pub(super) fn get(&self, handle: Handle, range: Interval) -> Option<Rc<Form>> {
+    pub(crate) fn get(&self, handle: Handle, range: Interval) -> Option<Rc<Form>> {
         if self.off.get() {
             return None;
         }
@@ -181,7 +181,7 @@ impl Forms {
     }
 
     /// Keeps a form.
-    pub(super) fn put(&self, form: Option<Rc<Form>>) -> Handle {
+    pub(crate) fn put(&self, form: Option<Rc<Form>>) -> Handle {
         let mut all = self.all.borrow_mut();
         match form {
             Some(form) if all.len() < FORMS && form.radius().is_finite() => {
@@ -193,7 +193,7 @@ impl Forms {
     }
 
     /// Keeps a form that was rounded: `error` is a new one.
-    pub(super) fn put_rounded(&self, form: Option<Form>, error: f64) -> Handle {
+    pub(crate) fn put_rounded(&self, form: Option<Form>, error: f64) -> Handle {
         self.put(form.map(|f| Rc::new(f.with_error(self.symbol(), error))))
     }
 }

@@ -40,15 +40,15 @@ impl Bounded {
 
 /// What is known of a float: its `f64` value, and where the `f32` one lies.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Known {
-    pub(super) value: f64,
-    pub(super) range: Interval,
+pub(crate) struct Known {
+    pub(crate) value: f64,
+    pub(crate) range: Interval,
     /// Values of one number are the same value.
-    pub(super) id: u64,
+    pub(crate) id: u64,
     /// Which errors it carries.
-    pub(super) form: Handle,
+    pub(crate) form: Handle,
     /// What a device that reorders sums may take it apart into, if it is a sum or a product.
-    pub(super) parts: Option<Parts>,
+    pub(crate) parts: Option<Parts>,
 }
 
 #[derive(Debug)]
@@ -59,11 +59,11 @@ struct Entry {
 
 /// How long the arena was.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Mark(usize);
+pub(crate) struct Mark(usize);
 
 /// The floats of a machine.
 #[derive(Debug, Default)]
-pub(super) struct Arena {
+pub(crate) struct Arena {
     entries: RefCell<Vec<Entry>>,
     /// The serial number of the next entry. After four thousand million the numbers come again,
     /// and one handle in as many that is out of date would not be noticed.
@@ -75,7 +75,7 @@ pub(super) struct Arena {
 
 impl Arena {
     /// Keeps a float.
-    pub(super) fn put(&self, known: Known) -> Bounded {
+    pub(crate) fn put(&self, known: Known) -> Bounded {
         let serial = self.next.replace(self.next.get().wrapping_add(1));
         let mut entries = self.entries.borrow_mut();
         let float = Bounded::new(entries.len(), serial);
@@ -86,7 +86,7 @@ impl Arena {
     }
 
     /// What is known of a float.
-    pub(super) fn get(&self, float: Bounded) -> Known {
+    pub(crate) fn get(&self, float: Bounded) -> Known {
         match self.entries.borrow().get(float.at()) {
             Some(entry) if entry.serial == float.serial() => entry.known,
             _ => gone(float),
@@ -94,25 +94,25 @@ impl Arena {
     }
 
     /// Overwrites a slot.
-    pub(super) fn set(&self, slot: Bounded, known: Known) {
+    pub(crate) fn set(&self, slot: Bounded, known: Known) {
         match self.entries.borrow_mut().get_mut(slot.at()) {
             Some(entry) if entry.serial == slot.serial() => entry.known = known,
             _ => gone(slot),
         }
     }
 
-    pub(super) fn mark(&self) -> Mark {
+    pub(crate) fn mark(&self) -> Mark {
         Mark(self.entries.borrow().len())
     }
 
     /// Drops all that was kept since `mark`.
-    pub(super) fn drop_since(&self, mark: Mark) {
+    pub(crate) fn drop_since(&self, mark: Mark) {
         self.entries.borrow_mut().truncate(mark.0);
     }
 
     /// The greatest number of floats that there have been at once.
     #[cfg(test)]
-    pub(super) fn most(&self) -> usize {
+    pub(crate) fn most(&self) -> usize {
         self.most.get()
     }
 }

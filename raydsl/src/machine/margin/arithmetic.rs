@@ -15,7 +15,7 @@ const ALTERNATIVES: usize = 16;
 impl Margin {
     /// One of some alternatives, the first of which is that of `f64`. Without any the run is lost,
     /// and `value` stands in.
-    pub(super) fn one_of<T: Copy>(&self, value: T, alternatives: &[T]) -> T {
+    pub(crate) fn one_of<T: Copy>(&self, value: T, alternatives: &[T]) -> T {
         let chosen = match alternatives {
             [first, _, ..] if !self.is_running() => Some(first),
             [_, _, ..] => alternatives.get(self.decisions.choose(alternatives.len())),

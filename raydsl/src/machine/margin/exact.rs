@@ -10,7 +10,7 @@ const SPLIT: f64 = 4098.0;
 const PARTS: f64 = 8.0;
 
 impl Margin {
-    /// [`lost_by_cross`](crate::geometry::exact::is_lost_by_cross): nothing in `f64`. Each product loses at most
+    /// [`lost_by_cross`](crate::math::exact::is_lost_by_cross): nothing in `f64`. Each product loses at most
     /// its rounding; a device that fuses or reorders what finds that may be off by as much again.
     pub(super) fn lost_by_cross(&self, args: &[Known]) -> Vec<Known> {
         let size = |i: usize| args[i].range.magnitude();

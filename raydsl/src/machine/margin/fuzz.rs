@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::__at_run_time as at_run_time;
-use crate::geometry::exact::lost_by_cross;
 use crate::math::elementary as math;
+use crate::math::exact::lost_by_cross;
 
 /// How many programs run, unless `RAYDSL_MARGIN_FUZZ` says otherwise.
 const PROGRAMS: u32 = 200_000;

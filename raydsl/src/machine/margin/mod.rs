@@ -17,7 +17,6 @@
 mod affine;
 mod arena;
 mod arithmetic;
-mod beam;
 #[cfg(test)]
 mod cases;
 mod decisions;
@@ -33,22 +32,22 @@ mod operations;
 mod outcome;
 mod rounding;
 mod sums;
-mod traverse;
 
 use core::cell::Cell;
 
 use super::scalar::ScalarLoop;
 use super::*;
-use crate::bvh::RecordOn;
-use crate::geometry::{HitOn, HitRecord, Primitive, RayOn};
 use affine::{Forms, Handle};
-use arena::{Arena, Bounded, Known, Mark};
+use arena::{Arena, Bounded, Mark};
 use arithmetic::{bits_of, constant, ordered};
-use decisions::{Decisions, Explored};
-use interval::Interval;
+use decisions::Decisions;
 use leaves::{Assigned, Copied, Give, Take};
 use operations::KnownFunction;
 
+pub(crate) use affine::Form;
+pub(crate) use arena::Known;
+pub(crate) use decisions::Explored;
+pub(crate) use interval::Interval;
 pub(crate) use outcome::result_leaves;
 pub use outcome::{Leaf, Outcomes};
 pub use rounding::Rounding;
@@ -62,11 +61,11 @@ pub struct Truth {
 }
 
 impl Truth {
-    fn certain(value: bool) -> Self {
+    pub(crate) fn certain(value: bool) -> Self {
         Self { value, open: 0 }
     }
 
-    fn is(self, value: bool) -> bool {
+    pub(crate) fn is(self, value: bool) -> bool {
         self.open == 0 && self.value == value
     }
 }
@@ -85,8 +84,8 @@ pub struct Margin {
     lane: Scalar,
     rounding: Rounding,
     decisions: Decisions,
-    floats: Arena,
-    forms: Forms,
+    pub(crate) floats: Arena,
+    pub(crate) forms: Forms,
 }
 
 impl Margin {
@@ -102,21 +101,21 @@ impl Margin {
     }
 
     /// Keeps a float.
-    fn put(&self, known: Known) -> Bounded {
+    pub(crate) fn put(&self, known: Known) -> Bounded {
         self.floats.put(known)
     }
 
     /// What is known of a float.
-    fn get(&self, float: Bounded) -> Known {
+    pub(crate) fn get(&self, float: Bounded) -> Known {
         self.floats.get(float)
     }
 
     /// What is known of a float with a number of its own.
-    fn bounded(&self, value: f64, range: Interval) -> Known {
+    pub(crate) fn bounded(&self, value: f64, range: Interval) -> Known {
         Known { value, range, id: self.decisions.fresh(), form: Handle::NONE, parts: None }
     }
 
-    fn point(&self, v: f64) -> Known {
+    pub(crate) fn point(&self, v: f64) -> Known {
         self.bounded(v, Interval::point(v))
     }
 
@@ -125,13 +124,18 @@ impl Margin {
         self.bounded(f64::from(v), self.rounding.taken(v))
     }
 
-    fn is_running(&self) -> bool {
+    /// Something is open that cannot be followed.
+    pub(crate) fn lose(&self) {
+        self.decisions.lose();
+    }
+
+    pub(crate) fn is_running(&self) -> bool {
         self.lane.active.get()
     }
 
     /// Runs `f` for each way in which its decisions may go, up to `limit`. The floats of a run are
     /// gone after it, so its result has none.
-    fn each_way<R>(&self, limit: usize, f: &dyn Fn() -> R) -> Explored<R> {
+    pub(crate) fn each_way<R>(&self, limit: usize, f: &dyn Fn() -> R) -> Explored<R> {
         let active = self.lane.active.replace(true);
         let explored = self.decisions.explore(limit, || {
             self.lane.active.set(true);
@@ -145,7 +149,7 @@ impl Margin {
     }
 
     /// A truth value that the sides of a comparison leave open, if they do.
-    fn truth(&self, value: bool, may_be_true: bool, may_be_false: bool) -> Truth {
+    pub(crate) fn truth(&self, value: bool, may_be_true: bool, may_be_false: bool) -> Truth {
         match (may_be_true, may_be_false) {
             (true, true) => Truth { value, open: self.decisions.fresh() },
             (certain, _) => Truth::certain(certain),
@@ -153,7 +157,7 @@ impl Margin {
     }
 
     /// Decides.
-    fn decided(&self, t: Truth) -> bool {
+    pub(crate) fn decided(&self, t: Truth) -> bool {
         if t.open == 0 || !self.is_running() {
             return t.value;
         }
@@ -461,71 +465,21 @@ impl Machine for Margin {
         result
     }
 
-    fn closest_hit<P: Primitive>(
+    fn perform<O: Operation>(
         &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: RayOn<Self>,
-    ) -> HitOn<Self> {
-        traverse::query(self, prims, ray, |_| {}, traverse::closest_hit)
+        operation: &O,
+        input: On<O::Input, Self>,
+    ) -> On<O::Output, Self> {
+        operation.on_margin(self, input)
     }
-
-    fn closest_hit_with_cost<P: Primitive>(
+    fn visit<T: Visit>(
         &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: RayOn<Self>,
-    ) -> crate::bvh::CountedHitOn<Self> {
-        let hit = self.closest_hit(prims, ray);
-        // Boxes are tested in `f32`, and each test may go another way on a device.
-        if self.is_running() {
-            self.decisions.lose();
-        }
-        let cost = crate::bvh::nearest_counted(prims, traverse::rounded(self, ray)).cost;
-        crate::bvh::CountedHitOn { hit, cost: crate::machine::Type::splat(self, cost) }
-    }
-
-    fn any_hit<P: Primitive>(
-        &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: RayOn<Self>,
-    ) -> B<Self> {
-        B(traverse::query(self, prims, ray, |_| {}, traverse::any_hit))
-    }
-
-    fn local_ray<T: crate::machine::Type, S: crate::machine::Type>(
-        &self,
-        scene: &crate::bvh::View<'_, T, S>,
-        inst: U<Self>,
-        ray: RayOn<Self>,
-    ) -> RayOn<Self> {
-        traverse::local_ray(self, scene, inst.0, ray)
-    }
-
-    fn to_object<T: crate::machine::Type, S: crate::machine::Type>(
-        &self,
-        scene: &crate::bvh::View<'_, T, S>,
-        inst: U<Self>,
-    ) -> A3<Self> {
-        crate::machine::Type::splat(self, scene.to_object(inst.0))
-    }
-
-    fn visit<P: Primitive>(
-        &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: RayOn<Self>,
+        items: &T,
+        input: On<T::Input, Self>,
         limit: impl Fn() -> F<Self>,
-        meet: impl Fn(HitOn<Self>, RecordOn<Self, P>) -> B<Self>,
+        visit: impl Fn(On<T::Item, Self>) -> B<Self>,
     ) {
-        if self.is_running() {
-            let found = Cell::new(None);
-            let keep = |record| found.set(Some(record));
-            traverse::query(self, prims, ray, keep, |m, scene| {
-                let meets = |hit| {
-                    let record = found.get().unwrap_or_else(|| Value::zero(m));
-                    m.decided(meet(hit, P::Hit::with_hit_on(record, hit)).0)
-                };
-                traverse::visit(m, scene, &|| self.get(limit().0).range.high, &meets);
-            });
-        }
+        items.on_margin(self, input, limit, visit);
     }
 
     fn off_by(&self, v: Bounded, absolute: f32, relative: f32) -> Bounded {
@@ -538,14 +492,14 @@ impl Machine for Margin {
         self.put(self.bounded(v.value, v.range.widened(most)))
     }
 
-    fn fetch<P: crate::machine::Type, S: crate::machine::Type>(
+    fn fetch<D: Data>(
         &self,
-        prims: &crate::bvh::View<'_, P, S>,
+        data: &D,
         index: U<Self>,
-    ) -> P::On<Self> {
-        if prims.is_empty() {
-            return P::On::zero(self);
+    ) -> <D::Element as crate::machine::Type>::On<Self> {
+        if data.count() == 0 {
+            return Value::zero(self);
         }
-        P::splat(self, prims.get(index.0))
+        D::Element::splat(self, data.get(index.0))
     }
 }

@@ -3,10 +3,10 @@
 use super::arena::{Bounded, Known};
 use super::interval::Interval;
 use super::{Margin, Truth, affine};
-use crate::geometry::exact::is_lost_by_cross;
 use crate::machine::scalar::{self, compare};
 use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, KernelInfo};
 use crate::math::elementary::{Function, function};
+use crate::math::exact::is_lost_by_cross;
 
 impl Margin {
     #[inline(never)]

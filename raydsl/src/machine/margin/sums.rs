@@ -15,7 +15,7 @@ use crate::machine::F32Binary;
 
 /// What a value is the sum of.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Parts {
+pub(crate) struct Parts {
     /// How many addends.
     pub(super) count: f64,
     /// The sum of their sizes.

@@ -6,15 +6,15 @@ use crate::machine::{
 
 /// An expression of the function that is being recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Id(pub(super) u32);
+pub struct Id(pub(crate) u32);
 
 /// A variable of the function that is being recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) struct VarId(pub(super) u32);
+pub(crate) struct VarId(pub(crate) u32);
 
 /// What a vector consists of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Scalar {
+pub(crate) enum Scalar {
     F32,
     I32,
     U32,
@@ -22,7 +22,7 @@ pub(super) enum Scalar {
 }
 
 impl Scalar {
-    pub(super) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::F32 => "f32",
             Self::I32 => "i32",
@@ -34,7 +34,7 @@ impl Scalar {
 
 /// The type of an expression.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Type {
+pub(crate) enum Type {
     F32,
     I32,
     U32,
@@ -44,7 +44,7 @@ pub(super) enum Type {
 }
 
 impl Type {
-    pub(super) fn of(schema: &'static Schema) -> Self {
+    pub(crate) fn of(schema: &'static Schema) -> Self {
         match schema {
             Schema::F32 => Self::F32,
             Schema::I32 => Self::I32,
@@ -56,7 +56,7 @@ impl Type {
     }
 
     /// A vector of `n` such scalars.
-    pub(super) fn times(self, n: usize) -> Self {
+    pub(crate) fn times(self, n: usize) -> Self {
         match self {
             Self::I32 => Self::Vector(Scalar::I32, n),
             Self::U32 => Self::Vector(Scalar::U32, n),
@@ -66,7 +66,7 @@ impl Type {
     }
 
     /// What it is a vector of.
-    pub(super) fn component(self) -> Self {
+    pub(crate) fn component(self) -> Self {
         match self {
             Self::Vector(Scalar::F32, _) => Self::F32,
             Self::Vector(Scalar::I32, _) => Self::I32,
@@ -89,7 +89,7 @@ impl PartialEq for Type {
 
 /// How a scalar becomes another.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Conversion {
+pub(crate) enum Conversion {
     /// `T(x)`.
     To,
     /// `bitcast<T>(x)`.
@@ -99,7 +99,7 @@ pub(super) enum Conversion {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Expr {
+pub(crate) enum Expr {
     /// The bits of an `f32`, so that equal programs compare equal.
     F32(u32),
     I32(i32),
@@ -132,7 +132,7 @@ pub(super) enum Expr {
 
 impl Expr {
     /// Whether it is so short that it never needs a name.
-    pub(super) fn is_trivial(&self) -> bool {
+    pub(crate) fn is_trivial(&self) -> bool {
         matches!(
             self,
             Self::F32(_)
@@ -147,7 +147,7 @@ impl Expr {
         )
     }
 
-    pub(super) fn operands(&self) -> Vec<Id> {
+    pub(crate) fn operands(&self) -> Vec<Id> {
         match self {
             Self::F32(_)
             | Self::I32(_)
@@ -177,23 +177,23 @@ impl Expr {
 
 /// An expression and what the printer must know of it.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Node {
-    pub(super) expr: Expr,
-    pub(super) ty: Type,
+pub(crate) struct Node {
+    pub(crate) expr: Expr,
+    pub(crate) ty: Type,
     /// The name that it has in the source.
-    pub(super) name: Option<&'static str>,
+    pub(crate) name: Option<&'static str>,
     /// It must be evaluated where it was recorded, not where it is used.
-    pub(super) pinned: bool,
+    pub(crate) pinned: bool,
     /// The block in which it was recorded.
-    pub(super) block: u32,
+    pub(crate) block: u32,
     /// The loads under it that would be repeated if it was written where it is used.
-    pub(super) loads: Vec<Id>,
+    pub(crate) loads: Vec<Id>,
     /// Of a load: the variable's version when it was recorded.
-    pub(super) version: u32,
+    pub(crate) version: u32,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Stmt {
+pub(crate) enum Stmt {
     /// Where an expression was recorded.
     Let(Id),
     Var(VarId, Option<Id>),
@@ -214,16 +214,16 @@ pub(super) enum Stmt {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Variable {
-    pub(super) name: String,
-    pub(super) ty: Type,
+pub(crate) struct Variable {
+    pub(crate) name: String,
+    pub(crate) ty: Type,
     /// Grows with every store and at the start of every loop.
-    pub(super) version: u32,
+    pub(crate) version: u32,
 }
 
 /// A function, recorded or written by hand.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Function {
+pub(crate) enum Function {
     Recorded(Recorded),
     /// WGSL text, with the types it names.
     Text {
@@ -235,11 +235,20 @@ pub(super) enum Function {
 
 impl Function {
     /// Whether it is the library's text; a user's function may have any name.
-    pub(super) fn is_text(&self) -> bool {
+    pub(crate) fn is_text(&self) -> bool {
         matches!(self, Self::Text { .. })
     }
 
-    pub(super) fn name(&self) -> &str {
+    /// The types that its text has by their names.
+    pub(crate) fn named_types(&self) -> impl Iterator<Item = &'static Schema> + '_ {
+        let types = match self {
+            Self::Text { text, types, .. } if !text.is_empty() => &types[..],
+            _ => &[],
+        };
+        types.iter().copied()
+    }
+
+    pub(crate) fn name(&self) -> &str {
         match self {
             Self::Recorded(f) => &f.name,
             Self::Text { name, .. } => name,
@@ -248,23 +257,23 @@ impl Function {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Recorded {
+pub(crate) struct Recorded {
     /// The name in the source; `name` may differ where several kernels share it.
-    pub(super) source_name: &'static str,
-    pub(super) name: String,
+    pub(crate) source_name: &'static str,
+    pub(crate) name: String,
     /// Where it stands in the Rust source.
-    pub(super) file: &'static str,
-    pub(super) line: u32,
-    pub(super) params: Vec<(String, Type)>,
-    pub(super) result: Option<Type>,
-    pub(super) nodes: Vec<Node>,
-    pub(super) vars: Vec<Variable>,
-    pub(super) body: Vec<Stmt>,
+    pub(crate) file: &'static str,
+    pub(crate) line: u32,
+    pub(crate) params: Vec<(String, Type)>,
+    pub(crate) result: Option<Type>,
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) vars: Vec<Variable>,
+    pub(crate) body: Vec<Stmt>,
 }
 
 impl Recorded {
     /// Equal but for the name.
-    pub(super) fn same_code(&self, other: &Self) -> bool {
+    pub(crate) fn same_code(&self, other: &Self) -> bool {
         self.source_name == other.source_name
             && self.params == other.params
             && self.result == other.result
@@ -276,18 +285,18 @@ impl Recorded {
 
 /// A member of the uniform block.
 #[derive(Clone, Debug)]
-pub(super) struct Uniform {
-    pub(super) name: String,
-    pub(super) ty: Type,
+pub(crate) struct Uniform {
+    pub(crate) name: String,
+    pub(crate) ty: Type,
     /// The four-byte words of the value.
-    pub(super) words: Vec<u32>,
+    pub(crate) words: Vec<u32>,
 }
 
 /// A buffer of the scene.
 #[derive(Clone, Debug)]
-pub(super) struct SceneBuffer {
-    pub(super) key: BufferKey,
-    pub(super) name: String,
-    pub(super) schema: &'static Schema,
-    pub(super) len: u64,
+pub(crate) struct SceneBuffer {
+    pub(crate) key: BufferKey,
+    pub(crate) name: String,
+    pub(crate) schema: &'static Schema,
+    pub(crate) len: u64,
 }

@@ -3,17 +3,15 @@
 use core::cell::Cell;
 
 use super::ir::{Conversion, Expr, Id, Stmt, Type, VarId};
-use super::{RecordedBranch, RecordedLoop, RecordedWalks, Recorder, storage};
-use crate::bvh::RecordOn;
-use crate::geometry::{HitOn, Primitive, RayOn};
+use super::{RecordedBranch, RecordedLoop, Recorder, storage};
 use crate::machine::index::{choose, with_element};
 use crate::machine::wgsl;
 use crate::machine::{
-    B, BoolBinary, Branch, Compare, F, F32Binary, F32Unary, IntBinary, KernelInfo, Loop, Machine,
-    Op, Schema, U, U32Unary, Usize, Value, Var, op,
+    B, BoolBinary, Branch, Compare, Data, F, F32Binary, F32Unary, IntBinary, KernelInfo, Loop,
+    Machine, On, Op, Operation, Schema, Type as MachineType, U, U32Unary, Usize, Value, Var, Visit,
+    op,
 };
 use crate::math::elementary::{Function, function};
-use crate::texture::{Texel, Texels};
 
 /// `lit_0_125`: the name of a literal in the uniform block.
 fn literal_name(v: f32) -> String {
@@ -689,80 +687,21 @@ impl Machine for Recorder {
         v
     }
 
-    fn closest_hit<P: Primitive>(
+    fn perform<O: Operation>(
         &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: RayOn<Self>,
-    ) -> HitOn<Self> {
-        if let Some(placed) = prims.placed() {
-            return (RecordedWalks::of(placed).closest_hit)(self, prims, ray);
-        }
-        let function = self.closest_hit_function(prims);
-        let ray = self.put_together(
-            <RayOn<Self> as Value<Self>>::SCHEMA,
-            &mut self.leaves_of(ray).into_iter(),
-        );
-        let schema: &'static Schema = <HitOn<Self> as Value<Self>>::SCHEMA;
-        let call = self.add(Expr::Call(function, vec![ray]), Type::of(schema));
-        self.take_apart(call)
+        operation: &O,
+        input: On<O::Input, Self>,
+    ) -> On<O::Output, Self> {
+        operation.on_recorder(self, input)
     }
-    fn closest_hit_with_cost<P: Primitive>(
+    fn visit<T: Visit>(
         &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: RayOn<Self>,
-    ) -> crate::bvh::CountedHitOn<Self> {
-        let function = match prims.placed() {
-            Some(placed) => (RecordedWalks::of(placed).closest_hit_with_cost)(self, prims),
-            None => self.closest_hit_with_cost_function(prims),
-        };
-        let schema: &'static Schema = <crate::bvh::CountedHitOn<Self> as Value<Self>>::SCHEMA;
-        let call = self.add(Expr::Call(function, vec![self.whole(ray)]), Type::of(schema));
-        self.take_apart(call)
-    }
-    fn any_hit<P: Primitive>(
-        &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: RayOn<Self>,
-    ) -> B<Self> {
-        if let Some(placed) = prims.placed() {
-            return (RecordedWalks::of(placed).any_hit)(self, prims, ray);
-        }
-        let function = self.any_hit_function(prims);
-        let ray = self.put_together(
-            <RayOn<Self> as Value<Self>>::SCHEMA,
-            &mut self.leaves_of(ray).into_iter(),
-        );
-        B(self.add(Expr::Call(function, vec![ray]), Type::Bool))
-    }
-    fn slack<P: Primitive>(&self, prims: &crate::bvh::SceneView<'_, P>) -> crate::machine::F<Self> {
-        match prims.placed() {
-            Some(_) => self.slack_of_places(prims),
-            None => crate::machine::F(self.f32(P::SLACK)),
-        }
-    }
-    fn local_ray<T: crate::machine::Type, S: crate::machine::Type>(
-        &self,
-        scene: &crate::bvh::View<'_, T, S>,
-        inst: U<Self>,
-        ray: RayOn<Self>,
-    ) -> RayOn<Self> {
-        self.local_ray_of(scene, inst, ray)
-    }
-    fn to_object<T: crate::machine::Type, S: crate::machine::Type>(
-        &self,
-        scene: &crate::bvh::View<'_, T, S>,
-        inst: U<Self>,
-    ) -> crate::machine::A3<Self> {
-        self.to_object_of(scene, inst)
-    }
-    fn visit<P: Primitive>(
-        &self,
-        prims: &crate::bvh::SceneView<'_, P>,
-        ray: RayOn<Self>,
-        limit: impl Fn() -> crate::machine::F<Self>,
-        meet: impl Fn(HitOn<Self>, RecordOn<Self, P>) -> B<Self>,
+        items: &T,
+        input: On<T::Input, Self>,
+        limit: impl Fn() -> F<Self>,
+        visit: impl Fn(On<T::Item, Self>) -> B<Self>,
     ) {
-        self.visit_hits(prims, ray, &limit, &meet);
+        items.on_recorder(self, input, limit, visit);
     }
     fn each<V: Value<Self>, const N: usize>(&self, mut f: impl FnMut(U<Self>) -> V) -> [V; N] {
         let all = Var::new(self, "each", [V::zero(self); N]);
@@ -780,45 +719,18 @@ impl Machine for Recorder {
         repeat.end(self);
         all.get(self)
     }
-    fn len<T: crate::machine::Type, S: crate::machine::Type>(
-        &self,
-        slice: &crate::bvh::View<'_, T, S>,
-    ) -> U<Self> {
-        let function = self.len_function(slice);
+    fn len<D: Data>(&self, data: &D) -> U<Self> {
+        let function = self.len_function(data);
         U(self.add(Expr::Call(function, vec![]), Type::U32))
     }
-    fn element<T: crate::machine::Type, S: crate::machine::Type>(
-        &self,
-        slice: &crate::bvh::View<'_, T, S>,
-        index: U<Self>,
-    ) -> T::On<Self> {
-        let function = self.element_function(slice);
-        let call = self.add(Expr::Call(function, vec![index.0]), Type::of(T::SCHEMA));
+    fn element<D: Data>(&self, data: &D, index: U<Self>) -> <D::Element as MachineType>::On<Self> {
+        let function = self.element_function(data);
+        let call = self.add(Expr::Call(function, vec![index.0]), Type::of(D::Element::SCHEMA));
         self.take_apart(call)
     }
-    fn texture<T: Texel, const D: usize>(
-        &self,
-        texels: &Texels<'_, T>,
-        at: &[F<Self>; D],
-    ) -> <T::Value as crate::machine::Type>::On<Self> {
-        self.sampled(texels, at, None).unwrap_or_else(|| texels.by_kernels(self, at))
-    }
-    fn texture_at_level<T: Texel, const D: usize>(
-        &self,
-        texels: &Texels<'_, T>,
-        at: &[F<Self>; D],
-        level: F<Self>,
-    ) -> <T::Value as crate::machine::Type>::On<Self> {
-        let found = self.sampled(texels, at, Some(level));
-        found.unwrap_or_else(|| texels.by_kernels_at_level(self, at, level))
-    }
-    fn fetch<P: crate::machine::Type, S: crate::machine::Type>(
-        &self,
-        prims: &crate::bvh::View<'_, P, S>,
-        index: U<Self>,
-    ) -> P::On<Self> {
-        let function = self.fetch_function(prims);
-        let call = self.add(Expr::Call(function, vec![index.0]), Type::of(P::SCHEMA));
+    fn fetch<D: Data>(&self, data: &D, index: U<Self>) -> <D::Element as MachineType>::On<Self> {
+        let function = self.fetch_function(data);
+        let call = self.add(Expr::Call(function, vec![index.0]), Type::of(D::Element::SCHEMA));
         self.take_apart(call)
     }
 }

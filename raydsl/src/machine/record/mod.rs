@@ -6,23 +6,23 @@
 
 mod arithmetic;
 mod builder;
+mod data;
 mod expression;
 mod function;
-mod instances;
-mod ir;
+pub(crate) mod ir;
 mod machine;
 mod module;
 mod names;
 mod storage;
+mod text;
 mod textures;
-mod traverse;
 mod types;
-mod visit;
 
 use core::cell::RefCell;
 
-pub(crate) use instances::RecordedWalks;
+pub(crate) use names::member_name;
 pub(crate) use storage::stride;
+pub(crate) use types::zero_value;
 
 use builder::{Builder, LoopState};
 use ir::{Expr, Function, Id, Node, SceneBuffer, Stmt, Type, Uniform};
@@ -47,6 +47,11 @@ struct State {
 }
 
 impl State {
+    /// Names of types, with those that hand-written text has.
+    fn names(&self) -> types::Names {
+        types::Names::new(self.functions.iter().flat_map(Function::named_types))
+    }
+
     /// Whether a function, a buffer, or something that belongs to a buffer has the name.
     fn is_taken(&self, name: &str) -> bool {
         self.functions.iter().any(|f| f.name() == name)
@@ -107,13 +112,13 @@ impl Default for Recorder {
 }
 
 impl Recorder {
-    fn builder<R>(&self, f: impl FnOnce(&mut Builder) -> R) -> R {
+    pub(crate) fn builder<R>(&self, f: impl FnOnce(&mut Builder) -> R) -> R {
         let mut state = self.state.borrow_mut();
         let builder = state.open.last_mut().expect("values exist only inside a kernel");
         f(builder)
     }
 
-    fn add(&self, expr: Expr, ty: Type) -> Id {
+    pub(crate) fn add(&self, expr: Expr, ty: Type) -> Id {
         self.builder(|b| b.add(expr, ty))
     }
 
@@ -147,17 +152,17 @@ impl Recorder {
     }
 
     /// The twin whose leaves are the parts of `id`.
-    fn take_apart<V: Value<Self>>(&self, id: Id) -> V {
+    pub(crate) fn take_apart<V: Value<Self>>(&self, id: Id) -> V {
         let mut leaves = Vec::with_capacity(V::SCHEMA.leaves());
         self.parts(V::SCHEMA, id, &mut leaves);
         self.of_leaves(&leaves)
     }
 
-    fn of_leaves<V: Value<Self>>(&self, leaves: &[Id]) -> V {
+    pub(crate) fn of_leaves<V: Value<Self>>(&self, leaves: &[Id]) -> V {
         self.with_leaves(V::zero(self), leaves)
     }
 
-    fn leaves_of<V: Value<Self>>(&self, v: V) -> Vec<Id> {
+    pub(crate) fn leaves_of<V: Value<Self>>(&self, v: V) -> Vec<Id> {
         struct Collect(Vec<Id>);
         impl Leaves<Recorder> for Collect {
             fn f32(&mut self, _: &Recorder, a: Id, _: Id) -> Id {
@@ -183,7 +188,11 @@ impl Recorder {
     }
 
     /// The expression of a whole value: the one that all its leaves are parts of, else a new one.
-    fn put_together(&self, schema: &'static Schema, leaves: &mut std::vec::IntoIter<Id>) -> Id {
+    pub(crate) fn put_together(
+        &self,
+        schema: &'static Schema,
+        leaves: &mut std::vec::IntoIter<Id>,
+    ) -> Id {
         match schema {
             Schema::Vector(_, n) => {
                 let parts: Vec<Id> = leaves.by_ref().take(*n).collect();
@@ -212,7 +221,7 @@ impl Recorder {
         }
     }
 
-    fn vector(&self, parts: &[Id]) -> Id {
+    pub(crate) fn vector(&self, parts: &[Id]) -> Id {
         let whole = |i: usize, e: &Expr| match e {
             Expr::Member(a, name) if *name == ["x", "y", "z", "w"][i] => Some(*a),
             _ => None,
@@ -378,7 +387,7 @@ impl Recorder {
     }
 
     /// Names a buffer of the scene; the same key is the same buffer.
-    fn buffer(
+    pub(crate) fn buffer(
         &self,
         key: wgsl::BufferKey,
         name: &str,

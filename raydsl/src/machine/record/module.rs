@@ -183,7 +183,7 @@ fn reachable(state: &State, entry: usize) -> Vec<usize> {
             return;
         }
         under_way.push(i);
-        let text = function_text(state, i, &mut Names::new());
+        let text = function_text(state, i, &mut state.names());
         let words = identifiers(&text);
         for (j, g) in state.functions.iter().enumerate() {
             if j != i && words.contains(g.name()) {
@@ -250,7 +250,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
 /// Prints the whole module.
 pub(super) fn module(recording: &Recording, limits: &Limits) -> Module {
     let state = &recording.state;
-    let mut names = Names::new();
+    let mut names = state.names();
     let order = reachable(state, recording.entry);
 
     let mut functions = String::new();

@@ -285,6 +285,6 @@ pub(super) fn qualified(name: &str, file: &str) -> String {
 }
 
 /// The name of a member: only reserved words are not allowed there.
-pub(super) fn member_name(name: &str) -> String {
+pub(crate) fn member_name(name: &str) -> String {
     if RESERVED.contains(&name) { format!("{name}_") } else { name.to_owned() }
 }

@@ -5,30 +5,18 @@ use core::fmt::Write;
 use super::Recorder;
 use super::ir::{Expr, Id, Scalar, Type};
 use super::names::{safe_name, unique};
+use crate::machine::Machine;
 use crate::machine::wgsl::{BufferKey, Texture, TextureLayout};
-use crate::machine::{self, F, Machine};
-use crate::texture::{Texel, TexelValue, Texels};
 
 /// Sampled textures, and samplers, of a shader stage: what WebGPU guarantees.
 const MOST: usize = 16;
 
 impl Recorder {
-    /// What a device's sampler gives of texels; at level 0 if no other is given. Nothing if no sampler
-    /// reads them, or if there are too many textures.
-    pub(super) fn sampled<T: Texel, const D: usize>(
-        &self,
-        texels: &Texels<'_, T>,
-        at: &[F<Self>; D],
-        level: Option<F<Self>>,
-    ) -> Option<<T::Value as machine::Type>::On<Self>> {
-        let (view, layout) = (texels.view(), texels.layout()?);
-        let (at, level) = (at.map(|x| x.0), level.map(|level| level.0));
-        let channels = self.sample(view.key(), &view.name(), &layout, &at, level)?;
-        Some(T::Value::from_channels_on(self, &channels.map(F)))
-    }
-
-    /// `tiles_sample(at, level)`, taken apart. Axes that `at` does not have are read in the middle.
-    fn sample(
+    /// What a device's sampler gives: `tiles_sample(at, level)`, taken apart; at level 0 if no other is
+    /// given. Nothing if there are too many textures.
+    ///
+    /// Axes that `at` does not have are read in the middle.
+    pub(crate) fn sample(
         &self,
         key: BufferKey,
         name: &str,

@@ -2,13 +2,9 @@
 
 use core::fmt::Write;
 
-use super::instances::{CANDIDATE, DESCENT, LEVEL};
 use super::ir::Type;
 use super::names::{member_name, safe_name, unique};
-use super::visit::TRAVERSAL;
-use crate::bvh::{NODE_SCHEMA, PLACE_SCHEMA};
-use crate::geometry::{Hit, Ray};
-use crate::machine::{Schema, Type as HostType};
+use crate::machine::Schema;
 
 /// The names of types, declared as they are asked for.
 #[derive(Default)]
@@ -37,27 +33,18 @@ fn same_type(a: &Schema, b: &Schema) -> bool {
     }
 }
 
-/// The types that hand-written text names.
-const LIBRARY: [&Schema; 9] = [
-    Ray::SCHEMA,
-    Hit::SCHEMA,
-    NODE_SCHEMA,
-    TRAVERSAL,
-    PLACE_SCHEMA,
-    LEVEL,
-    DESCENT,
-    CANDIDATE,
-    <glam::Affine3 as HostType>::SCHEMA,
-];
-
 impl Names {
-    /// The library's types have their names before a user's of the same name is met.
-    pub(super) fn new() -> Self {
-        let structs = LIBRARY.into_iter().filter_map(|schema| match schema {
-            Schema::Struct { name, .. } => Some(((*name).to_owned(), schema)),
-            _ => None,
-        });
-        Self { structs: structs.collect(), ..Self::default() }
+    /// Text that was written by hand has types by these names: a user's of the same name gets another.
+    pub(super) fn new(named: impl Iterator<Item = &'static Schema>) -> Self {
+        let mut names = Self::default();
+        for schema in named {
+            if let Schema::Struct { name, .. } = schema
+                && !names.structs.iter().any(|(known, _)| known == name)
+            {
+                names.structs.push(((*name).to_owned(), schema));
+            }
+        }
+        names
     }
 
     pub(super) fn helper(&mut self, name: &'static str) {
@@ -146,7 +133,7 @@ impl Names {
 }
 
 /// The zero value of a struct, as an expression.
-pub(super) fn zero_value(schema: &'static Schema) -> String {
+pub(crate) fn zero_value(schema: &'static Schema) -> String {
     match schema {
         Schema::Struct { name, .. } => format!("{}()", safe_name(name)),
         _ => "0".to_owned(),

@@ -1,10 +1,9 @@
 //! The box test for a ray that rounding makes wide.
 
-use super::Margin;
-use super::interval::Interval;
 use crate::bvh::{Allowance, Node};
 use crate::geometry::RayOn;
 use crate::machine::F;
+use crate::machine::margin::{Interval, Margin};
 
 /// A ray as wide as rounding makes it.
 pub(super) struct Beam {

@@ -20,7 +20,7 @@ fn kept(a: Vec3) -> Vec3 {
 /// What `a - b` lost by rounding (Knuth, TAOCP 2, 4.2.2, theorem B).
 #[kernel]
 #[inline]
-pub(super) fn lost_by_difference(a: Vec3, b: Vec3) -> Vec3 {
+pub(crate) fn lost_by_difference(a: Vec3, b: Vec3) -> Vec3 {
     let difference = kept(a - b);
     let part = kept(a - difference);
     let rest = difference + part;
@@ -76,7 +76,7 @@ pub(crate) fn is_lost_by_cross(info: &KernelInfo) -> bool {
 /// signs are those of the exact ones.
 #[kernel]
 #[inline(never)]
-pub(super) fn exact_cross(a: Vec3, b: Vec3) -> Vec3 {
+pub(crate) fn exact_cross(a: Vec3, b: Vec3) -> Vec3 {
     let lost = lost_by_cross(a, b);
     kept(kept(a.cross(b)) + lost.most) + lost.rest
 }

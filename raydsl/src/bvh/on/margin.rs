@@ -10,15 +10,11 @@ use std::rc::Rc;
 
 use glam::Vec3;
 
-use super::affine::Form;
-use super::arena::Known;
 use super::beam::Beam;
-use super::decisions::Explored;
-use super::interval::Interval;
-use super::{Margin, Truth};
 use crate::bvh::{Allowance, Branches, Placing, RecordOn, SceneView, Target, View};
 use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn, transform_ray};
-use crate::machine::{B, F, Machine, Type, U, V3, op};
+use crate::machine::margin::{Explored, Form, Interval, Known, Margin, Truth};
+use crate::machine::{B, Data, F, Machine, Type, U, V3, op};
 
 /// In how many ways one primitive is asked.
 const WAYS: usize = 64;
@@ -288,7 +284,7 @@ impl Scene<'_> {
         }
         let ways = self.ways(m, name);
         if !ways.is_complete && m.is_running() {
-            m.decisions.lose();
+            m.lose();
         }
         let (t_min, t_max) = (m.get(self.ray.t_min.0).range, m.get(self.ray.t_max.0).range);
         let is_certain = ways.is_complete && ways.results.iter().all(Option::is_some);

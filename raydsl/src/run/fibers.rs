@@ -13,8 +13,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use corosensei::stack::{DefaultStack, Stack, StackPointer};
 use corosensei::{Coroutine, CoroutineResult, Yielder};
 
-use super::trace::Scratch;
-
 /// How many packets may go on together.
 const MOST: usize = 64;
 
@@ -70,17 +68,22 @@ pub(crate) struct Crew {
     running: Cell<usize>,
     yielder: Cell<Option<NonNull<Yielder<Turn, ()>>>>,
     /// Memory of queries, and stacks, that no one uses.
-    #[expect(clippy::vec_box, reason = "queries take it as it is")]
-    spare: RefCell<Vec<Box<Scratch>>>,
+    spare: RefCell<Vec<Box<dyn Any>>>,
     stacks: RefCell<Vec<Stagger>>,
     /// Room for the fibers of a run, of which there are none between two.
     fibers: Cell<Vec<Option<Fiber>>>,
 }
 
+/// The memory of a query, which is used again.
+pub(crate) trait Scratch: Any + Default {
+    /// Forgets what was asked.
+    fn clear(&mut self);
+}
+
 /// What several packets ask.
 struct Batch {
     key: Key,
-    scratch: Box<Scratch>,
+    scratch: Box<dyn Any>,
     /// The packets that wait, a bit each.
     waiting: u64,
 }
@@ -90,7 +93,7 @@ struct Batch {
 ///
 /// The scene of a packet that waits is borrowed, so no other one lies there; and the function is
 /// that of its type of primitives, or one of the same code.
-pub(super) type Key = (usize, [usize; 3]);
+pub(crate) type Key = (usize, [usize; 3]);
 
 thread_local! {
     /// Kept from one crew of a thread to the next.
@@ -183,6 +186,16 @@ impl Crew {
         self.stacks.borrow_mut().pop().or_else(|| Stagger::new(number))
     }
 
+    /// Memory in which nothing is asked.
+    fn scratch<S: Scratch>(&self) -> Box<S> {
+        let mut spare = self.spare.borrow_mut();
+        let at = spare.iter().position(|scratch| scratch.is::<S>());
+        let found = at.and_then(|at| spare.swap_remove(at).downcast().ok());
+        let mut scratch: Box<S> = found.unwrap_or_default();
+        scratch.clear();
+        scratch
+    }
+
     /// Lets a fiber go on until it waits, or is done and no more there.
     fn resume(&self, fibers: &mut [Option<Fiber>], number: usize, turn: Turn) -> Result<(), Panic> {
         let Some(mut fiber) = fibers[number].take() else { return Ok(()) };
@@ -205,29 +218,37 @@ impl Crew {
     }
 }
 
+/// The memory of a query of this type.
+fn memory<S: Scratch>(scratch: &mut Box<dyn Any>) -> &mut S {
+    let Some(scratch) = scratch.downcast_mut() else {
+        unreachable!("a query is joined by those with the same memory")
+    };
+    scratch
+}
+
 /// Asks together with the other packets of this thread; not if there are none.
 ///
 /// `load` writes rays behind those that are there, and says where they begin. `answer` finds what
 /// all of them meet, and `read` takes what is the packet's own.
-pub(super) fn ask(
+pub(crate) fn ask<S: Scratch>(
     key: Key,
-    load: impl FnOnce(&mut Scratch) -> usize,
-    answer: impl FnOnce(&mut Scratch),
-    read: impl FnOnce(&Scratch, usize),
+    load: impl FnOnce(&mut S) -> usize,
+    answer: impl FnOnce(&mut S),
+    read: impl FnOnce(&S, usize),
 ) -> bool {
     let Some(current) = CURRENT.get() else { return false };
     // SAFETY: a crew is current while one of its fibers runs, and is borrowed as long.
     let crew = unsafe { current.as_ref() };
     let first = {
         let mut open = crew.open.borrow_mut();
-        let at = open.iter().position(|batch| batch.key == key).unwrap_or_else(|| {
-            let mut scratch = crew.spare.borrow_mut().pop().unwrap_or_default();
-            scratch.clear();
+        let is_same = |batch: &Batch| batch.key == key && batch.scratch.is::<S>();
+        let at = open.iter().position(is_same).unwrap_or_else(|| {
+            let scratch: Box<dyn Any> = crew.scratch::<S>();
             open.push(Batch { key, scratch, waiting: 0 });
             open.len() - 1
         });
         open[at].waiting |= 1 << crew.running.get();
-        load(&mut open[at].scratch)
+        load(memory(&mut open[at].scratch))
     };
     let Some(yielder) = crew.yielder.get() else { unreachable!("a fiber runs with its yielder") };
     // SAFETY: it is that of the fiber which runs, whose function has not returned.
@@ -240,9 +261,9 @@ pub(super) fn ask(
         // A primitive may ask another scene meanwhile, and does not wait then. If it panics, so do
         // all packets: nothing on their stacks catches it.
         let _alone = Alone::begin();
-        answer(&mut batch.scratch);
+        answer(memory(&mut batch.scratch));
     }
-    read(&batch.scratch, first);
+    read(memory(&mut batch.scratch), first);
     crew.closed.set(Some(batch));
     true
 }
@@ -253,13 +274,20 @@ mod tests {
 
     use super::*;
 
+    #[derive(Default)]
+    struct Nothing;
+
+    impl Scratch for Nothing {
+        fn clear(&mut self) {}
+    }
+
     /// Asks once for each of some packets, and notes how many were asked about together.
     fn asked_together(count: usize, at_once: usize, times: impl Fn(usize) -> usize) -> Vec<usize> {
         let (waiting, sizes) = (RefCell::new([0; 3]), RefCell::new(Vec::new()));
         let done = Cell::new(0);
         each(count, at_once, &|packet| {
             for time in 0..times(packet) {
-                let asked = ask(
+                let asked = ask::<Nothing>(
                     (1, [time; 3]),
                     |_| {
                         waiting.borrow_mut()[time] += 1;
@@ -294,11 +322,11 @@ mod tests {
     fn crews_within_crews_do_not_wait_for_them() {
         let (count, held) = (Cell::new(0), RefCell::new(()));
         each(4, 4, &|_| {
-            assert!(ask((1, [0; 3]), |_| 0, |_| (), |_, _| ()));
+            assert!(ask::<Nothing>((1, [0; 3]), |_| 0, |_| (), |_, _| ()));
             let _held = held.borrow_mut();
             assert_eq!(asked_together(6, 3, |_| 1), [3, 3]);
             let _alone = Alone::begin();
-            assert!(!ask((2, [0; 3]), |_| 0, |_| (), |_, _| ()), "alone");
+            assert!(!ask::<Nothing>((2, [0; 3]), |_| 0, |_| (), |_, _| ()), "alone");
             count.set(count.get() + 1);
         });
         assert_eq!(count.get(), 4);
@@ -319,7 +347,7 @@ mod tests {
                     let _dropped = Dropped(&dropped);
                     let panic_at = |place: usize| assert!(packet != 2 || at != place, "{place}");
                     panic_at(0);
-                    ask((1, [0; 3]), |_| 0, |_| panic_at(1), |_, _| panic_at(1));
+                    ask::<Nothing>((1, [0; 3]), |_| 0, |_| panic_at(1), |_, _| panic_at(1));
                     panic_at(2);
                 });
             });

@@ -1,21 +1,21 @@
-//! Traversal in WGSL: the text around a primitive's recorded `intersect`.
+//! Queries in WGSL: the text around a primitive's recorded `intersect`.
 //!
 //! The contract is that of [`crate::bvh`]: the least `(t, id)` of all primitives whose
 //! `intersect` accepts. Nodes are culled with the same robust slab test as on the CPU.
 
+mod instances;
+mod visit;
+
 use std::borrow::Cow;
 
-use super::ir::Function;
-use super::names::member_name;
-use super::types::zero_value;
-use super::{Builder, Recorder};
-use crate::bvh::{Cost, CountedHit, NODE_SCHEMA, SceneView, View, buffers};
-use crate::geometry::{Hit, HitRecord, Primitive, Ray, RayOn};
-use crate::machine::wgsl::BufferKey;
-use crate::machine::{KernelInfo, Schema, Type, Value};
+pub(crate) use instances::RecordedWalks;
 
-static SCRATCH: KernelInfo =
-    KernelInfo { name: "scratch", file: file!(), line: line!(), params: &[] };
+use crate::bvh::{Cost, CountedHit, CountedHitOn, NODE_SCHEMA, SceneView, View, buffers};
+use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn};
+use crate::machine::record::ir::{self, Expr};
+use crate::machine::record::{member_name, zero_value};
+use crate::machine::wgsl::BufferKey;
+use crate::machine::{B, Data, Recorder, Schema, Type, Value};
 
 /// Whether a ray may hit anything: NaN and infinities are told by their bits, since WGSL lets an
 /// implementation assume that there are none.
@@ -68,7 +68,6 @@ fn enter_leave(s: Slabs, node: Node, t_min: f32, t_max: f32) -> vec2<f32> {
 pub(super) trait Described {
     /// The name of the buffer of primitives, which `m` gets.
     fn primitives(&self, m: &Recorder) -> String;
-    fn schema(&self) -> &'static Schema;
     fn slack(&self) -> f32;
     fn name(&self) -> Cow<'static, str>;
     fn key_of(&self, part: u32) -> BufferKey;
@@ -82,16 +81,13 @@ pub(super) trait Described {
 
 impl<P: Primitive> Described for SceneView<'_, P> {
     fn primitives(&self, m: &Recorder) -> String {
-        m.prims_buffer(self)
-    }
-    fn schema(&self) -> &'static Schema {
-        P::SCHEMA
+        m.buffer_of(self)
     }
     fn slack(&self) -> f32 {
         P::SLACK
     }
     fn name(&self) -> Cow<'static, str> {
-        View::name(self)
+        Data::name(self)
     }
     fn key_of(&self, part: u32) -> BufferKey {
         View::key_of(self, part)
@@ -114,76 +110,9 @@ impl<P: Primitive> Described for SceneView<'_, P> {
 }
 
 impl Recorder {
-    /// The number of the function that `call` records, without a call of it.
-    pub(super) fn function_of<R: Value<Self>>(&self, call: impl FnOnce(&Self) -> R) -> usize {
-        self.state.borrow_mut().open.push(Builder::new(&SCRATCH));
-        call(self);
-        self.called()
-    }
-
-    /// The number of the function that is called last in the function under way, which goes.
-    fn called(&self) -> usize {
-        let scratch = self.state.borrow_mut().open.pop();
-        let called =
-            scratch.iter().flat_map(|b| &b.function.nodes).rev().find_map(|n| match n.expr {
-                super::Expr::Call(f, _) => Some(f),
-                _ => None,
-            });
-        called.expect("an intersection is a kernel, and a call of a kernel records a function")
-    }
-
-    pub(super) fn text_function(
-        &self,
-        name: String,
-        types: Vec<&'static Schema>,
-        text: &dyn Fn(&str) -> String,
-    ) -> usize {
-        let mut state = self.state.borrow_mut();
-        if let Some(i) = state.functions.iter().position(|f| f.is_text() && f.name() == name) {
-            return i;
-        }
-        let text = text(&name);
-        state.functions.push(Function::Text { name, text, types });
-        state.functions.len() - 1
-    }
-
-    pub(super) fn function_name(&self, i: usize) -> String {
-        self.state.borrow().functions[i].name().to_owned()
-    }
-
-    /// `fn points_at(i: u32) -> ColorSphere`; the accessor itself is printed with the buffer.
-    pub(super) fn fetch_function<P: Type, S: Type>(&self, prims: &View<'_, P, S>) -> usize {
-        self.at_function(&self.prims_buffer(prims), P::SCHEMA)
-    }
-
-    pub(super) fn at_function(&self, buffer: &str, schema: &'static Schema) -> usize {
-        self.text_function(format!("{buffer}_at"), vec![schema], &|_| String::new())
-    }
-
-    /// `fn points_len() -> u32`.
-    pub(super) fn len_function<P: Type, S: Type>(&self, prims: &View<'_, P, S>) -> usize {
-        self.len_of_buffer(&self.prims_buffer(prims))
-    }
-
-    pub(super) fn len_of_buffer(&self, buffer: &str) -> usize {
-        self.text_function(format!("{buffer}_len"), vec![], &|name| {
-            format!("fn {name}() -> u32 {{\n    return params.len_of_{buffer};\n}}\n")
-        })
-    }
-
-    /// `fn points_element(i: u32) -> ColorSphere`, for any `i`; it too is printed with the buffer.
-    pub(super) fn element_function<P: Type, S: Type>(&self, prims: &View<'_, P, S>) -> usize {
-        let name = format!("{}_element", self.prims_buffer(prims));
-        self.text_function(name, vec![P::SCHEMA], &|_| String::new())
-    }
-
     /// `fn is_finite(v: vec3<f32>) -> bool`.
     pub(super) fn finite_function(&self) -> usize {
         self.text_function("is_finite".to_owned(), vec![], &|_| FINITE.to_owned())
-    }
-
-    pub(super) fn prims_buffer<P: Type, S: Type>(&self, prims: &View<'_, P, S>) -> String {
-        self.buffer(prims.key(), &prims.name(), P::SCHEMA, prims.len() as u64)
     }
 
     /// Records `P::intersect`: the text before and behind its arguments, which gives a `Hit`.
@@ -218,8 +147,58 @@ impl Recorder {
         (test, limit)
     }
 
-    pub(super) fn closest_hit_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
-        self.prims_buffer(prims);
+    /// The least `(t, id)` hit of a ray.
+    pub(in crate::bvh::on) fn closest_hit<P: Primitive>(
+        &self,
+        prims: &SceneView<'_, P>,
+        ray: RayOn<Self>,
+    ) -> HitOn<Self> {
+        if let Some(placed) = prims.placed() {
+            return (RecordedWalks::of(placed).closest_hit)(self, prims, ray);
+        }
+        let function = self.closest_hit_function(prims);
+        self.asked(function, ray, Hit::SCHEMA)
+    }
+
+    /// The same, and what it costs a ray that is alone.
+    pub(in crate::bvh::on) fn closest_hit_with_cost<P: Primitive>(
+        &self,
+        prims: &SceneView<'_, P>,
+        ray: RayOn<Self>,
+    ) -> CountedHitOn<Self> {
+        let function = match prims.placed() {
+            Some(placed) => (RecordedWalks::of(placed).closest_hit_with_cost)(self, prims),
+            None => self.closest_hit_with_cost_function(prims),
+        };
+        self.asked(function, ray, CountedHit::SCHEMA)
+    }
+
+    /// Whether a ray hits anything.
+    pub(in crate::bvh::on) fn any_hit<P: Primitive>(
+        &self,
+        prims: &SceneView<'_, P>,
+        ray: RayOn<Self>,
+    ) -> B<Self> {
+        if let Some(placed) = prims.placed() {
+            return (RecordedWalks::of(placed).any_hit)(self, prims, ray);
+        }
+        let function = self.any_hit_function(prims);
+        self.asked(function, ray, &Schema::Bool)
+    }
+
+    /// Calls the function of a query.
+    fn asked<V: Value<Self>>(
+        &self,
+        function: usize,
+        ray: RayOn<Self>,
+        schema: &'static Schema,
+    ) -> V {
+        let call = Expr::Call(function, vec![self.whole(ray)]);
+        self.take_apart(self.add(call, ir::Type::of(schema)))
+    }
+
+    fn closest_hit_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
+        self.buffer_of(prims);
         let call = self.intersect(prims);
         self.closest_function(prims, &call)
     }
@@ -254,11 +233,8 @@ impl Recorder {
     }
 
     /// The least `(t, id)` hit, with the nodes and primitives that are tested for it.
-    pub(super) fn closest_hit_with_cost_function<P: Primitive>(
-        &self,
-        prims: &SceneView<'_, P>,
-    ) -> usize {
-        self.prims_buffer(prims);
+    fn closest_hit_with_cost_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
+        self.buffer_of(prims);
         let call = self.intersect(prims);
         self.closest_with_cost_function(prims, &call)
     }
@@ -295,8 +271,8 @@ impl Recorder {
         })
     }
 
-    pub(super) fn any_hit_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
-        self.prims_buffer(prims);
+    fn any_hit_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
+        self.buffer_of(prims);
         let call = self.intersect(prims);
         self.any_function(prims, &call)
     }
@@ -334,7 +310,7 @@ impl Recorder {
     /// The function of a query of a slice, or of one tree.
     fn query_function(&self, prims: &dyn Described, name: String, query: &Query<'_>) -> usize {
         let (prims_name, tree) = (prims.primitives(self), self.tree(prims));
-        self.text_function(name, types_of_query(prims, query), &|name| match &tree {
+        self.text_function(name, types_of(query), &|name| match &tree {
             None => linear(name, query, &prims_name),
             Some(tree) => walk(name, "ray: Ray", ["0u", "ray.t_max"], query, tree),
         })
@@ -350,7 +326,7 @@ impl Recorder {
     ) -> String {
         let Some(tree) = self.tree(prims) else { unreachable!("a list has trees") };
         let parameters = format!("ray: Ray, first: u32{more}");
-        let function = self.text_function(name, types_of_query(prims, query), &|name| {
+        let function = self.text_function(name, types_of(query), &|name| {
             walk(name, &parameters, ["first", query.limit], query, &tree)
         });
         self.function_name(function)
@@ -365,7 +341,7 @@ impl Recorder {
         body: &dyn Fn(&str) -> String,
     ) -> usize {
         let roots = self.roots_buffer(prims);
-        self.text_function(name, types_of(prims), &|name| {
+        self.text_function(name, TYPES.to_vec(), &|name| {
             format!("fn {name}(ray: Ray) -> {result} {{\n{}}}\n", body(&roots))
         })
     }
@@ -394,14 +370,12 @@ impl Recorder {
 }
 
 /// The types that the text of a query names.
-fn types_of(prims: &dyn Described) -> Vec<&'static Schema> {
-    vec![Ray::SCHEMA, Hit::SCHEMA, prims.schema(), NODE_SCHEMA]
-}
+const TYPES: [&Schema; 3] = [Ray::SCHEMA, Hit::SCHEMA, NODE_SCHEMA];
 
 /// The same, of a query.
-fn types_of_query(prims: &dyn Described, query: &Query<'_>) -> Vec<&'static Schema> {
+fn types_of(query: &Query<'_>) -> Vec<&'static Schema> {
     let counted = query.counts.then_some([Cost::SCHEMA, CountedHit::SCHEMA]);
-    types_of(prims).into_iter().chain(counted.into_iter().flatten()).collect()
+    TYPES.into_iter().chain(counted.into_iter().flatten()).collect()
 }
 
 /// The names of a tree's buffers.

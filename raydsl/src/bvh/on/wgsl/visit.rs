@@ -1,12 +1,11 @@
 //! Queries whose hits the kernel sees one by one: the traversal is a struct that gives the next
 //! primitive, so that what is done with a hit stands in the kernel's own function.
 
-use super::Recorder;
-use super::ir::{Expr, Id, Stmt, Type};
-use super::traverse::Described;
+use super::Described;
 use crate::bvh::{NODE_SCHEMA, RecordOn, SceneView};
 use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn};
-use crate::machine::{B, Branch, F, Field, Loop, Machine, Schema, U, Value, Var, op};
+use crate::machine::record::ir::{Expr, Id, Stmt, Type};
+use crate::machine::{B, Branch, F, Field, Loop, Machine, Recorder, Schema, U, Var, op};
 
 /// As deep as a tree may be, and one more.
 const STACK: usize = 64;
@@ -40,7 +39,7 @@ pub(super) const TRAVERSAL: &Schema = &Schema::Struct {
 
 impl Recorder {
     /// Records a loop over the hits of `prims`.
-    pub(super) fn visit_hits<P: Primitive>(
+    pub(in crate::bvh::on) fn visit_hits<P: Primitive>(
         &self,
         prims: &SceneView<'_, P>,
         ray: RayOn<Self>,
@@ -153,10 +152,6 @@ impl Recorder {
             stops.end(self);
         }
         is_met.end(self);
-    }
-
-    pub(super) fn whole<V: Value<Self>>(&self, v: V) -> Id {
-        self.put_together(V::SCHEMA, &mut self.leaves_of(v).into_iter())
     }
 
     fn is_finite(&self, ray: RayOn<Self>) -> Id {

@@ -4,10 +4,7 @@
 //! leaf names is a primitive, or a place in the table of places. It gives the next primitive, as
 //! the walk through a tree does, and with it the ray as its tree sees it.
 
-use super::Recorder;
-use super::ir::{Expr, Stmt, Type};
-use super::traverse::Described;
-use super::types::zero_value;
+use super::Described;
 use super::visit::NONE;
 use crate::bvh::{
     Cost, CountedHit, IS_INSTANCE, MAX_LEVELS, NODE_SCHEMA, PLACE_SCHEMA, RecordOn, STACK,
@@ -15,9 +12,12 @@ use crate::bvh::{
 };
 use crate::bvh::{Placed, View, any_where, buffers, closest_where};
 use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn, transform_ray};
+use crate::machine::record::ir::{Expr, Stmt, Type};
+use crate::machine::record::zero_value;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
-    A3, B, F, Field, KernelInfo, Loop, Machine, Schema, Type as HostType, U, Value, op,
+    A3, B, Data, F, Field, KernelInfo, Loop, Machine, Recorder, Schema, Type as HostType, U, Value,
+    op,
 };
 
 static CLOSEST: KernelInfo =
@@ -173,7 +173,7 @@ impl Recorder {
         &self,
         prims: &SceneView<'_, P>,
     ) -> usize {
-        self.prims_buffer(prims);
+        self.buffer_of(prims);
         let call = self.intersect(prims);
         self.placed_with_cost_function(prims, &call)
     }
@@ -188,8 +188,7 @@ impl Recorder {
         let (start, next) = (self.function_name(start), self.function_name(next));
         let (_, places) = self.places_of(prims);
         let zero = zero_value(CountedHit::SCHEMA);
-        let types =
-            vec![Ray::SCHEMA, Hit::SCHEMA, Cost::SCHEMA, CountedHit::SCHEMA, prims.schema()];
+        let types = vec![Ray::SCHEMA, Hit::SCHEMA, Cost::SCHEMA, CountedHit::SCHEMA];
         self.text_function(format!("{prims_name}_closest_hit_with_cost"), types, &|name| {
             format!(
                 "\
@@ -258,7 +257,7 @@ fn {name}(ray: Ray) -> CountedHit {{
     /// `fn scene_places_at(i: u32) -> Place`, and the name of its buffer.
     fn places<T: HostType, S: HostType>(&self, scene: &View<'_, T, S>) -> (usize, String) {
         let len = scene.placed().map_or(0, |placed| placed.place_count());
-        self.places_buffer(&scene.name(), scene.key_of(buffers::PLACES), len)
+        self.places_buffer(&Data::name(scene), scene.key_of(buffers::PLACES), len)
     }
 
     fn places_buffer(&self, scene: &str, key: BufferKey, len: u64) -> (usize, String) {
@@ -271,7 +270,10 @@ fn {name}(ray: Ray) -> CountedHit {{
     }
 
     /// The allowance of the whole scene, which is data: it changes when instances move.
-    pub(super) fn slack_of_places<P: Primitive>(&self, prims: &SceneView<'_, P>) -> F<Self> {
+    pub(in crate::bvh::on) fn slack_of_places<P: Primitive>(
+        &self,
+        prims: &SceneView<'_, P>,
+    ) -> F<Self> {
         let (at, _) = self.places(prims);
         let scene = self.add(Expr::Call(at, vec![self.u32(0)]), Type::Of(PLACE_SCHEMA));
         F(self.add(Expr::Member(scene, "slack"), Type::F32))
@@ -286,7 +288,7 @@ fn {name}(ray: Ray) -> CountedHit {{
     }
 
     /// The ray as the tree of an instance is asked about it.
-    pub(super) fn local_ray_of<T: HostType, S: HostType>(
+    pub(in crate::bvh::on) fn local_ray_of<T: HostType, S: HostType>(
         &self,
         scene: &View<'_, T, S>,
         inst: U<Self>,
@@ -307,7 +309,7 @@ fn {name}(ray: Ray) -> CountedHit {{
     }
 
     /// From the space of the scene to that of an instance's tree.
-    pub(super) fn to_object_of<T: HostType, S: HostType>(
+    pub(in crate::bvh::on) fn to_object_of<T: HostType, S: HostType>(
         &self,
         scene: &View<'_, T, S>,
         inst: U<Self>,
@@ -340,7 +342,7 @@ fn {name}(ray: Ray) -> CountedHit {{
     ) -> usize {
         let LevelsText { parameters, result: name_of_result, variable, from, body } = text;
         let (_, places) = self.places(scene);
-        let name = format!("{}{suffix}", self.prims_buffer(scene));
+        let name = format!("{}{suffix}", self.buffer_of(scene));
         let types = vec![PLACE_SCHEMA, result];
         self.text_function(name, types, &|name| {
             format!(

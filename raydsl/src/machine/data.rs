@@ -1,0 +1,247 @@
+//! Data that kernels read in place: slices of the host, and whatever else has elements.
+
+use std::borrow::Cow;
+
+use super::wgsl::BufferKey;
+use super::{B, Capture, Leaves, Machine, Method, Parameter, Resource, Schema, Type, Usize, Value};
+use super::{name, op, stride};
+
+/// Elements in the host's memory: a value of the host on every machine.
+pub trait Data: Copy {
+    /// One element.
+    type Element: Type;
+
+    /// How many elements.
+    fn count(&self) -> usize;
+
+    /// The element `index`.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such element.
+    fn get(&self, index: u32) -> Self::Element;
+
+    /// What names the elements among the buffers of a device.
+    fn key(&self) -> BufferKey;
+
+    /// The name in the source.
+    fn name(&self) -> Cow<'static, str>;
+}
+
+/// A slice as kernels see it.
+pub struct Slice<'a, T> {
+    elements: &'a [T],
+    /// The key of elements whose owner is known: a device keeps them as long as the owner lives.
+    key: Option<BufferKey>,
+    name: &'static str,
+    suffix: &'static str,
+}
+
+impl<T> Clone for Slice<'_, T> {
+    #[inline(always)]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Slice<'_, T> {}
+
+impl<T> core::fmt::Debug for Slice<'_, T> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Slice").field("name", &self.name).field("len", &self.len()).finish()
+    }
+}
+
+impl<'a, T> Slice<'a, T> {
+    /// A slice that is borrowed while kernels run.
+    #[inline(always)]
+    pub(crate) fn new(elements: &'a [T], name: &'static str) -> Self {
+        Self { elements, key: None, name, suffix: "" }
+    }
+
+    /// A slice under the key that its owner gives it.
+    #[inline(always)]
+    pub(crate) fn owned(elements: &'a [T], key: Option<BufferKey>, name: &'static str) -> Self {
+        Self { key, ..Self::new(elements, name) }
+    }
+
+    /// The slice with this behind its name.
+    #[inline(always)]
+    pub(crate) fn suffixed(self, suffix: &'static str) -> Self {
+        Self { suffix, ..self }
+    }
+
+    /// The elements.
+    #[inline(always)]
+    pub fn elements(&self) -> &'a [T] {
+        self.elements
+    }
+
+    /// How many elements.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.elements.len()
+    }
+
+    /// Whether there are none.
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.elements.is_empty()
+    }
+
+    /// The key of the elements: their owner's, or their address and length, which name borrowed data
+    /// while the borrow lasts.
+    pub(crate) fn buffer_key(&self) -> BufferKey {
+        self.key.unwrap_or_else(|| borrowed_key(self.elements))
+    }
+
+    /// The name, with what stands behind it.
+    pub(crate) fn full_name(&self) -> Cow<'static, str> {
+        match self.suffix {
+            "" => self.name.into(),
+            suffix => format!("{}_{suffix}", self.name).into(),
+        }
+    }
+}
+
+impl<T: Type> Data for Slice<'_, T> {
+    type Element = T;
+
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.elements.len()
+    }
+
+    #[inline(always)]
+    fn get(&self, index: u32) -> T {
+        self.elements[index as usize]
+    }
+
+    fn key(&self) -> BufferKey {
+        self.buffer_key()
+    }
+
+    fn name(&self) -> Cow<'static, str> {
+        self.full_name()
+    }
+}
+
+/// The key of borrowed data.
+pub(crate) fn borrowed_key<T>(elements: &[T]) -> BufferKey {
+    let address = elements.as_ptr() as usize as u64;
+    let (version, part) = (elements.len() as u32, size_of::<T>() as u32);
+    BufferKey { id: address | 1 << 63, version, part }
+}
+
+/// Whether a key names borrowed data.
+#[cfg(feature = "gpu")]
+pub(crate) fn is_borrowed(key: BufferKey) -> bool {
+    key.id >> 63 == 1
+}
+
+/// The bytes of elements in the host's layout.
+pub(crate) fn bytes_of<T: Type>(elements: &[T]) -> Vec<u8> {
+    let stride = stride(T::SCHEMA);
+    let mut bytes = vec![0; stride * elements.len()];
+    for (element, out) in elements.iter().zip(bytes.chunks_exact_mut(stride)) {
+        element.write(out);
+    }
+    bytes
+}
+
+impl<T: Type> Resource for Slice<'_, T> {
+    fn bytes(&self, key: BufferKey) -> Option<Cow<'_, [u8]>> {
+        (key == self.buffer_key()).then(|| Cow::Owned(bytes_of(self.elements)))
+    }
+}
+
+impl<M: Machine, T> Value<M> for Slice<'_, T> {
+    const SCHEMA: &'static Schema = &Schema::Host;
+
+    #[inline(always)]
+    fn zero(_: &M) -> Self {
+        Self::new(&[], "table")
+    }
+
+    #[inline(always)]
+    fn zip(_: &M, a: Self, b: Self, _: &mut impl Leaves<M>) -> Self {
+        // Nothing yet: a variable that has been declared.
+        if a.is_empty() {
+            return b;
+        }
+        assert!(
+            b.is_empty() || core::ptr::eq(a.elements, b.elements),
+            "a kernel cannot choose between two slices by a value of its rays: choose between what it \
+             reads from them, or by a captured `bool`"
+        );
+        a
+    }
+}
+
+impl<T: Type> Parameter for [T] {
+    type On<'a, M: Machine> = Slice<'a, T>;
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine, T: Type> Capture<M> for [T] {
+    type On<'c>
+        = Slice<'c, T>
+    where
+        Self: 'c;
+
+    #[inline(always)]
+    fn capture<'c>(&'c self, _: &M, name: &'static str) -> Slice<'c, T> {
+        Slice::new(self, name)
+    }
+
+    #[inline(always)]
+    fn constant<'c>(&'c self, _: &M) -> Slice<'c, T> {
+        Slice::new(self, "table")
+    }
+
+    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        visit(&Slice::new(self, "table"));
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine, T: Type> Capture<M> for Vec<T> {
+    type On<'c>
+        = Slice<'c, T>
+    where
+        Self: 'c;
+
+    #[inline(always)]
+    fn capture<'c>(&'c self, m: &M, name: &'static str) -> Slice<'c, T> {
+        self.as_slice().capture(m, name)
+    }
+
+    #[inline(always)]
+    fn constant<'c>(&'c self, m: &M) -> Slice<'c, T> {
+        self.as_slice().constant(m)
+    }
+
+    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        Capture::<M>::resources(self.as_slice(), visit);
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine, T: Type> Method<{ name("len") }, M, ()> for Slice<'_, T> {
+    type Output = Usize<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (): ()) -> Usize<M> {
+        Usize(m.len(&self).0)
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine, T: Type> Method<{ name("is_empty") }, M, ()> for Slice<'_, T> {
+    type Output = B<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (): ()) -> B<M> {
+        B(m.u32_compare(op::Eq, m.len(&self).0, m.u32(0)))
+    }
+}

@@ -1,0 +1,181 @@
+//! The instruction sets that this machine has, and the lanes that run each variant.
+
+use fearless_simd::Level;
+
+use super::Variant;
+use crate::machine::{Counted, Lanes, Packet, Simd4, Simd8, Simd16};
+
+/// The machines for which closures are lifted: the natural widths of the target's levels.
+mod native {
+    use super::{Counted, Packet, Simd4, Simd8, Simd16};
+
+    /// The levels of 4, 8 and 16 lanes, and the one that every machine of the target has.
+    #[cfg(target_arch = "x86_64")]
+    pub(crate) mod level {
+        pub(crate) use fearless_simd::{
+            Avx2 as Middle, Avx512 as Wide, Sse2 as Least, Sse4_2 as Narrow,
+        };
+    }
+
+    #[cfg(target_arch = "aarch64")]
+    pub(crate) mod level {
+        pub(crate) use fearless_simd::{
+            Neon as Least, Neon as Middle, Neon as Narrow, Neon as Wide,
+        };
+    }
+
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    pub(crate) mod level {
+        pub(crate) use fearless_simd::{
+            Fallback as Least, Fallback as Middle, Fallback as Narrow, Fallback as Wide,
+        };
+    }
+
+    /// Four lanes: SSE4.2, NEON, or no instructions of this kind at all.
+    pub(crate) type Lanes4 = Simd4<level::Narrow>;
+    /// Eight lanes: AVX2, NEON.
+    pub(crate) type Lanes8 = Simd8<level::Middle>;
+    /// Sixteen lanes: AVX-512, NEON.
+    pub(crate) type Lanes16 = Simd16<level::Wide>;
+    /// Packets of four lanes: SSE4.2, NEON, or no instructions of this kind at all.
+    pub type Native4 = Packet<Lanes4>;
+    /// Packets of eight lanes: AVX2, NEON.
+    pub type Native8 = Packet<Lanes8>;
+    /// Packets of sixteen lanes: AVX-512, NEON.
+    pub type Native16 = Packet<Lanes16>;
+    /// Eight lanes of what every machine of the target has, which count where they are.
+    pub type Counting = Packet<Counted<Simd8<level::Least>>>;
+}
+
+pub use native::{Counting, Native4, Native8, Native16};
+pub(crate) use native::{Lanes4, Lanes8, Lanes16};
+
+/// The tokens of the levels that this machine has.
+#[derive(Clone, Copy)]
+pub(crate) struct Levels {
+    pub(crate) least: native::level::Least,
+    pub(crate) narrow: Option<native::level::Narrow>,
+    pub(crate) middle: Option<native::level::Middle>,
+    pub(crate) wide: Option<native::level::Wide>,
+}
+
+impl Levels {
+    pub(crate) fn detect() -> Self {
+        Self::of(Level::new())
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    fn of(level: Level) -> Self {
+        let Some(least) = level.as_sse2() else {
+            unreachable!("SSE2 is a part of x86-64");
+        };
+        let (narrow, middle, wide) = (level.as_sse4_2(), level.as_avx2(), level.as_avx512());
+        Self { least, narrow, middle, wide }
+    }
+
+    #[cfg(target_arch = "aarch64")]
+    fn of(level: Level) -> Self {
+        let Some(neon) = level.as_neon() else {
+            unreachable!("NEON is a part of AArch64");
+        };
+        Self { least: neon, narrow: Some(neon), middle: Some(neon), wide: Some(neon) }
+    }
+
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    fn of(_: Level) -> Self {
+        let least = fearless_simd::Fallback::new();
+        Self { least, narrow: Some(least), middle: None, wide: None }
+    }
+}
+
+impl Levels {
+    /// [`Variant::with_lanes`] of a machine that has these levels.
+    pub(super) fn with_lanes<T: LanesTask>(self, variant: Variant, task: T) -> Option<T::Output> {
+        match variant {
+            Variant::Packet16 if let Some(s) = self.wide => Some(task.run(Simd16(s))),
+            Variant::Packet8 | Variant::Packet16 if let Some(s) = self.middle => {
+                Some(task.run(Simd8(s)))
+            }
+            _ => self.narrow.map(|s| task.run(Simd4(s))),
+        }
+    }
+}
+
+/// Whether this machine has lanes that go through wide trees: AVX-512, AVX2 or NEON.
+pub(crate) fn has_wide_walks() -> bool {
+    Levels::detect().middle.is_some()
+}
+
+/// Does it with the lanes that go through wide trees at a level, or at this machine's where that
+/// level has none; none where the machine has none either.
+///
+/// They do not depend on how many lanes a packet has: a walk is large, and a user waits for every
+/// copy of it.
+pub(crate) fn with_wide_walks<T: LanesTask>(level: Option<Level>, task: T) -> Option<T::Output> {
+    let levels = level.filter(|level| !level.is_fallback()).map(Levels::of);
+    let levels = levels.filter(|levels| levels.middle.is_some()).unwrap_or_else(Levels::detect);
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    let _: (Levels, T) = (levels, task);
+    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+    if let Some(s) = levels.wide {
+        return Some(task.run(Simd16(s)));
+    }
+    #[cfg(target_arch = "x86_64")]
+    if let Some(s) = levels.middle {
+        return Some(task.run(Simd8(s)));
+    }
+    None
+}
+
+/// Something to do with lanes of one kind.
+pub(crate) trait LanesTask {
+    type Output;
+    fn run<L: Lanes>(self, lanes: L) -> Self::Output;
+}
+
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests {
+    use super::*;
+
+    struct Name;
+    impl LanesTask for Name {
+        type Output = (&'static str, usize);
+        fn run<L: Lanes>(self, lanes: L) -> Self::Output {
+            (lanes.isa(), L::N)
+        }
+    }
+
+    fn lanes(level: Level) -> [Option<(&'static str, usize)>; 3] {
+        let levels = Levels::of(level);
+        [Variant::Packet4, Variant::Packet8, Variant::Packet16]
+            .map(|variant| levels.with_lanes(variant, Name))
+    }
+
+    /// Each on a machine that has no more than one level.
+    #[test]
+    fn widths_that_a_machine_lacks_run_as_the_next_narrower_ones() {
+        let best = Level::new();
+        if let Some(s) = best.as_sse2() {
+            assert_eq!(lanes(Level::Sse2(s)), [None; 3], "one ray after another");
+        }
+        match best.as_sse4_2() {
+            Some(s) => assert_eq!(lanes(Level::Sse4_2(s)), [Some(("sse4.2", 4)); 3]),
+            None => println!("SKIPPED: this machine has no SSE4.2"),
+        }
+        let narrow = Some(("sse4.2", 4));
+        match best.as_avx2() {
+            Some(s) => {
+                let middle = Some(("avx2", 8));
+                assert_eq!(lanes(Level::Avx2(s)), [narrow, middle, middle]);
+            }
+            None => println!("SKIPPED: this machine has no AVX2"),
+        }
+        match best.as_avx512() {
+            Some(s) => {
+                let found = lanes(Level::Avx512(s));
+                assert_eq!(found, [narrow, Some(("avx2", 8)), Some(("avx512", 16))]);
+            }
+            None => println!("SKIPPED: this machine has no AVX-512"),
+        }
+    }
+}

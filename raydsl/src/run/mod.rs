@@ -1,0 +1,12 @@
+//! How kernels run on this machine: which variants there are, which instructions it has for them, and
+//! packets that wait for each other.
+
+pub(crate) mod fibers;
+mod levels;
+mod variant;
+
+pub use levels::{Counting, Native4, Native8, Native16};
+pub(crate) use levels::{
+    Lanes4, Lanes8, Lanes16, LanesTask, Levels, has_wide_walks, with_wide_walks,
+};
+pub use variant::{Variant, Variants};
