@@ -226,6 +226,7 @@ const _: () = {
         "closest_hit" -> HitOn<M>;
         "closest_hit_each" -> [HitOn<M>; 1];
         "closest_hit_where" -> HitOn<M>;
+        "closest_hit_with_cost" -> HitOn<M>;
         "any_hit" -> B<M>;
         "any_hit_each" -> [B<M>; 1];
         "any_hit_where" -> B<M>;

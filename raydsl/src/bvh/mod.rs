@@ -9,23 +9,23 @@
 //! * Boxes are widened, and nodes behind the best hit are culled, with an allowance of
 //!   [`Primitive::SLACK`]: what rounding may do to a hit, it does to no visit.
 //! * Every layout runs the same arithmetic on the same members of a primitive.
-//!
-//! Where what is:
-//!
-//! | file | what it has |
-//! |---|---|
-//! | `view` | the scenes that kernels see: a slice, a tree, a list, instances, a foreign structure |
-//! | `ray_query`, `batch` | queries on the host: of one ray, of many in packets |
-//! | `methods`, `query` | queries in kernels: their names, and those that ask the kernel about each hit |
-//! | `on` | how each machine does a query; `on/wgsl` its text, `on/margin` its bounds of rounding |
-//! | `traverse` | one ray through the binary tree, and which of two hits comes first |
-//! | `traverse_packet`, `packet_slabs` | a packet through it, by one stack (Wald et al., "Interactive Rendering with Coherent Ray Tracing", 2001) |
-//! | `slabs` | whether a ray meets a box in spite of rounding (after Ize, "Robust BVH Ray Traversal", 2013) |
-//! | `wide` | trees of eight children over blocks of eight primitives, and how rays go through them |
-//! | `instances`, `list`, `accelerator` | trees that are placed, lists of trees, structures of the application's |
-//! | `build` | builders: binned SAH, spatial splits, Morton order |
-//! | `refit`, `validate`, `coverage`, `stats` | moved primitives, whether a tree is one, what it is like |
-//! | `structure`, `node` | the trees that there are over some primitives, and a node |
+
+// Where what is:
+//
+// | file | what it has |
+// |---|---|
+// | `view` | the scenes that kernels see: a slice, a tree, a list, instances, a foreign structure |
+// | `ray_query`, `batch` | queries on the host: of one ray, of many in packets |
+// | `methods`, `query` | queries in kernels: their names, and those that ask the kernel about each hit |
+// | `on` | how each machine does a query; `on/wgsl` its text, `on/margin` its bounds of rounding |
+// | `traverse` | one ray through the binary tree, and which of two hits comes first |
+// | `traverse_packet`, `packet_slabs` | a packet through it, by one stack (Wald et al., "Interactive Rendering with Coherent Ray Tracing", 2001) |
+// | `slabs` | whether a ray meets a box in spite of rounding (after Ize, "Robust BVH Ray Traversal", 2013) |
+// | `wide` | trees of eight children over blocks of eight primitives, and how rays go through them |
+// | `instances`, `list`, `accelerator` | trees that are placed, lists of trees, structures of the application's |
+// | `build` | builders: binned SAH, spatial splits, Morton order |
+// | `refit`, `validate`, `coverage`, `stats` | moved primitives, whether a tree is one, what it is like |
+// | `structure`, `node` | the trees that there are over some primitives, and a node |
 
 mod accelerator;
 mod batch;

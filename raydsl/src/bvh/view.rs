@@ -145,7 +145,7 @@ impl<T, S> Standing<'_, T, S> {
     }
 }
 
-/// What a view is of. Small, since kernels hand views to each other.
+/// What a view is of.
 enum Scene<'a, T, S> {
     Slice(Slice<'a, T>),
     Tree(&'a Tree<'a, T, S>),
@@ -193,7 +193,7 @@ impl<T, S> Copy for View<'_, T, S> {}
 impl<'a, T, S> View<'a, T, S> {
     #[inline(always)]
     pub(crate) fn slice(prims: Slice<'a, T>) -> Self {
-        Self { scene: Scene::Slice(prims), name: "prims" }
+        Self { name: prims.source_name(), scene: Scene::Slice(prims) }
     }
 
     #[inline(always)]

@@ -95,6 +95,12 @@ impl<'a, T> Slice<'a, T> {
         self.key.unwrap_or_else(|| borrowed_key(self.elements))
     }
 
+    /// The name in the source of what it is a part of.
+    #[inline(always)]
+    pub(crate) fn source_name(&self) -> &'static str {
+        self.name
+    }
+
     /// The name, with what stands behind it.
     pub(crate) fn full_name(&self) -> Cow<'static, str> {
         match self.suffix {

@@ -10,22 +10,22 @@
 //! A machine offers arithmetic on lanes and *control hooks*: an `if` or a loop of the source calls
 //! them, and what they return steers real Rust control flow. The scalar machine returns the
 //! condition itself, a packet whether any lane is left, the recorder always `true`.
-//!
-//! Where what is:
-//!
-//! | file | what it has |
-//! |---|---|
-//! | `scalar`, `packet`, `record`, `margin` | the machines |
-//! | `lanes`, `gang`, `counted` | what packets are made of: registers, several of them, lanes that are counted |
-//! | `control`, `counter` | variables, branches and loops of lifted code |
-//! | `types`, `schema`, `twin`, `value`, `words`, `kinds` | types of the host, and what stands for them on a machine |
-//! | `vector`, `matrix` | the twins of glam's types |
-//! | `op`, `ops`, `operand`, `bits` | operations as types, and the operators of lifted code |
-//! | `methods`, `functions`, `generic` | methods and functions of lifted code |
-//! | `data`, `index`, `capture`, `owner` | slices, elements, what a kernel takes from around it, who owns it |
-//! | `operation` | how other modules do something on machines |
-//! | `call`, `lowered`, `host` | what generated code calls |
-//! | `wgsl` | what recording gives |
+
+// Where what is:
+//
+// | file | what it has |
+// |---|---|
+// | `scalar`, `packet`, `record`, `margin` | the machines |
+// | `lanes`, `gang`, `counted` | what packets are made of: registers, several of them, lanes that are counted |
+// | `control`, `counter` | variables, branches and loops of lifted code |
+// | `types`, `schema`, `twin`, `value`, `words`, `kinds` | types of the host, and what stands for them on a machine |
+// | `vector`, `matrix` | the twins of glam's types |
+// | `op`, `ops`, `operand`, `bits` | operations as types, and the operators of lifted code |
+// | `methods`, `functions`, `generic` | methods and functions of lifted code |
+// | `data`, `index`, `capture`, `owner` | slices, elements, what a kernel takes from around it, who owns it |
+// | `operation` | how other modules do something on machines |
+// | `call`, `lowered`, `host` | what generated code calls |
+// | `wgsl` | what recording gives |
 
 mod bits;
 mod call;

@@ -15,24 +15,24 @@ pub trait Operation {
     /// The result, as a type of the host.
     type Output: Type;
 
-    /// With one lane.
+    /// Does it with one lane.
     fn on_scalar(&self, m: &Scalar, input: On<Self::Input, Scalar>) -> On<Self::Output, Scalar>;
 
-    /// In a packet: for its running lanes.
+    /// Does it in a packet: for its running lanes. The operands of others may be anything.
     fn on_packet<L: Lanes>(
         &self,
         m: &Packet<L>,
         input: On<Self::Input, Packet<L>>,
     ) -> On<Self::Output, Packet<L>>;
 
-    /// Recorded.
+    /// Records it.
     fn on_recorder(
         &self,
         m: &Recorder,
         input: On<Self::Input, Recorder>,
     ) -> On<Self::Output, Recorder>;
 
-    /// With bounds of what rounding may do.
+    /// Does it in `f64`, with bounds of what rounding may do.
     fn on_margin(&self, m: &Margin, input: On<Self::Input, Margin>) -> On<Self::Output, Margin>;
 }
 
@@ -47,7 +47,7 @@ pub trait Visit {
     /// What is found, as a type of the host.
     type Item: Type;
 
-    /// With one lane.
+    /// Does it with one lane.
     fn on_scalar(
         &self,
         m: &Scalar,
@@ -56,7 +56,7 @@ pub trait Visit {
         visit: impl Fn(On<Self::Item, Scalar>) -> B<Scalar>,
     );
 
-    /// In a packet: for its running lanes.
+    /// Does it in a packet: for its running lanes. The operands of others may be anything.
     fn on_packet<L: Lanes>(
         &self,
         m: &Packet<L>,
@@ -65,7 +65,7 @@ pub trait Visit {
         visit: impl Fn(On<Self::Item, Packet<L>>) -> B<Packet<L>>,
     );
 
-    /// Recorded.
+    /// Records it.
     fn on_recorder(
         &self,
         m: &Recorder,
@@ -74,7 +74,7 @@ pub trait Visit {
         visit: impl Fn(On<Self::Item, Recorder>) -> B<Recorder>,
     );
 
-    /// With bounds of what rounding may do.
+    /// Does it in `f64`, with bounds of what rounding may do.
     fn on_margin(
         &self,
         m: &Margin,

@@ -399,6 +399,7 @@ impl Machine for Scalar {
         result
     }
 
+    #[inline(always)]
     fn perform<O: Operation>(
         &self,
         operation: &O,

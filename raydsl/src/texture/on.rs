@@ -31,7 +31,7 @@ impl<T: Texel, const D: usize> Operation for Lookup<'_, '_, T, D> {
     }
 }
 
-/// The same at a level of detail.
+/// What a texture has at a place of `D` axes and a level of detail.
 pub(super) struct LookupAtLevel<'t, 'a, T, const D: usize>(pub(super) &'t Texels<'a, T>);
 
 impl<T: Texel, const D: usize> Operation for LookupAtLevel<'_, '_, T, D> {

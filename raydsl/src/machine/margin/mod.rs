@@ -465,6 +465,7 @@ impl Machine for Margin {
         result
     }
 
+    #[inline(always)]
     fn perform<O: Operation>(
         &self,
         operation: &O,

@@ -160,7 +160,7 @@ impl Recorder {
         self.asked(function, ray, Hit::SCHEMA)
     }
 
-    /// The same, and what it costs a ray that is alone.
+    /// The least `(t, id)` hit of a ray, and what it costs a ray that is alone.
     pub(in crate::bvh::on) fn closest_hit_with_cost<P: Primitive>(
         &self,
         prims: &SceneView<'_, P>,
@@ -223,13 +223,18 @@ impl Recorder {
         let each = Query { declare: "var best = before;", ..query };
         let each =
             self.tree_function(prims, format!("{prims_name}_closer_hit"), ", before: Hit", &each);
-        self.list_function(prims, format!("{prims_name}_closest_hit"), "Hit", &|roots| {
-            format!(
-                "    var best = {miss};\n    \
+        self.list_function(
+            prims,
+            format!("{prims_name}_closest_hit"),
+            ("Hit", types_of(&query)),
+            &|roots| {
+                format!(
+                    "    var best = {miss};\n    \
                  for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
                  best = {each}(ray, {roots}_at(i), best);\n    }}\n    return best;\n"
-            )
-        })
+                )
+            },
+        )
     }
 
     /// The least `(t, id)` hit, with the nodes and primitives that are tested for it.
@@ -262,7 +267,7 @@ impl Recorder {
         let each = Query { declare: &declare("before"), ..query };
         let each_name = format!("{prims_name}_closer_hit_with_cost");
         let each = self.tree_function(prims, each_name, ", before: CountedHit", &each);
-        self.list_function(prims, name, "CountedHit", &|roots| {
+        self.list_function(prims, name, ("CountedHit", types_of(&query)), &|roots| {
             format!(
                 "    var best = {before};\n    \
                  for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
@@ -298,7 +303,7 @@ impl Recorder {
             return self.query_function(prims, format!("{prims_name}_any_hit"), &query);
         }
         let each = self.tree_function(prims, format!("{prims_name}_any_hit_in"), "", &query);
-        self.list_function(prims, format!("{prims_name}_any_hit"), "bool", &|roots| {
+        self.list_function(prims, format!("{prims_name}_any_hit"), ("bool", types_of(&query)), &|roots| {
             format!(
                 "    for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
                  if ({each}(ray, {roots}_at(i))) {{\n            return true;\n        }}\n    }}\n    \
@@ -337,11 +342,11 @@ impl Recorder {
         &self,
         prims: &dyn Described,
         name: String,
-        result: &str,
+        (result, types): (&str, Vec<&'static Schema>),
         body: &dyn Fn(&str) -> String,
     ) -> usize {
         let roots = self.roots_buffer(prims);
-        self.text_function(name, TYPES.to_vec(), &|name| {
+        self.text_function(name, types, &|name| {
             format!("fn {name}(ray: Ray) -> {result} {{\n{}}}\n", body(&roots))
         })
     }
