@@ -1,6 +1,15 @@
 //! How kernels run on this machine: which variants there are, which instructions it has for them, and
 //! packets that wait for each other.
 
+#[cfg_attr(
+    not(all(
+        unix,
+        target_pointer_width = "64",
+        any(target_arch = "x86_64", target_arch = "aarch64"),
+        not(miri)
+    )),
+    path = "one_by_one.rs"
+)]
 pub(crate) mod fibers;
 mod levels;
 mod variant;

@@ -7,15 +7,6 @@ mod blocks;
 mod collapse;
 pub(super) mod counts;
 mod entry;
-#[cfg_attr(
-    not(all(
-        unix,
-        target_pointer_width = "64",
-        any(target_arch = "x86_64", target_arch = "aarch64"),
-        not(miri)
-    )),
-    path = "one_by_one.rs"
-)]
 mod hybrid;
 mod node;
 mod octant;

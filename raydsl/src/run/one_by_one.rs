@@ -1,9 +1,13 @@
 //! Packets that do not wait for each other, where a machine has no fibers.
 
-use super::trace::Scratch;
-
 /// What packets that would wait for each other have in common.
-pub(super) type Key = (usize, [usize; 3]);
+pub(crate) type Key = (usize, [usize; 3]);
+
+/// The memory of a query, which is used again.
+pub(crate) trait Scratch: Default + 'static {
+    /// Forgets what was asked.
+    fn clear(&mut self);
+}
 
 /// Packets are alone anyway.
 pub(crate) struct Alone;
@@ -20,11 +24,11 @@ pub(crate) fn each(count: usize, _at_once: usize, job: &dyn Fn(usize)) {
 }
 
 /// Does not ask together with others.
-pub(super) fn ask(
+pub(crate) fn ask<S: Scratch>(
     _key: Key,
-    _load: impl FnOnce(&mut Scratch) -> usize,
-    _answer: impl FnOnce(&mut Scratch),
-    _read: impl FnOnce(&Scratch, usize),
+    _load: impl FnOnce(&mut S) -> usize,
+    _answer: impl FnOnce(&mut S),
+    _read: impl FnOnce(&S, usize),
 ) -> bool {
     false
 }
