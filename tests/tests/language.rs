@@ -36,6 +36,7 @@ const OWNERS: &[(&str, Option<&str>)] = &[
     ("parts", Some("all vectors")),
     ("conversions", None),
     ("method", None),
+    ("read_in_place", Some("slices and trees")),
 ];
 
 /// The type of the host that a receiver in the library's sources stands for.
@@ -56,8 +57,6 @@ fn owner(receiver: &str) -> Option<&'static str> {
         ("M4", "`Mat4`"),
         ("A3", "`Affine3`"),
         ("[V; N]", "arrays"),
-        ("Slice<'_, T>", "slices and trees"),
-        ("View<'_, T, S>", "slices and trees"),
         ("SceneView<'_, P>", "slices and trees of primitives"),
         ("SceneView<'a, P>", "slices and trees of primitives"),
         ("$twin<M>", "`Unorm8` and its like"),
@@ -97,7 +96,6 @@ fn methods() -> io::Result<BTreeMap<&'static str, BTreeSet<String>>> {
         "methods/vector.rs",
         "data.rs",
         "../bvh/methods.rs",
-        "../bvh/view.rs",
         "../math/code.rs",
         "../math/half.rs",
         "../math/unorm.rs",

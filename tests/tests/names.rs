@@ -152,3 +152,101 @@ fn primitives_have_short_names() {
     });
     assert_variants_agree!(&k, &[(0.0,), (3.0,), (9.0,)]);
 }
+
+/// Types that have the names of those in the text of queries.
+mod types_of_queries {
+    use raydsl::kernel;
+    use raydsl::prelude::{self as library, *};
+    use raydsl::testing::validate;
+
+    macro_rules! types {
+        ($($name:ident $sum:ident)+) => {
+            $(
+                #[derive(Clone, Copy, Type)]
+                struct $name {
+                    x: f32,
+                    next: u32,
+                }
+
+                #[kernel]
+                fn $sum(v: $name) -> f32 {
+                    v.x + v.next as f32
+                }
+            )+
+
+            #[kernel]
+            fn sums(x: f32) -> f32 {
+                let mut sum = 0.0;
+                $(sum += $sum($name { x, next: 2 });)+
+                sum
+            }
+        };
+    }
+
+    types! {
+        Ray of_ray
+        Hit of_hit
+        Node of_node
+        Slabs of_slabs
+        Traversal of_traversal
+        Place of_place
+        WalkLevel of_level
+        InstanceWalk of_walk
+        CountedInstanceWalk of_counted_walk
+        NextPrimitive of_next
+        Cost of_cost
+        CountedHit of_counted
+        Affine3 of_affine
+    }
+
+    #[primitive(sphere(center, radius))]
+    struct Ball {
+        center: Vec3,
+        radius: f32,
+    }
+
+    /// Asks a scene, with the user's own types in front of the library's.
+    macro_rules! asked {
+        ($scene:ident) => {{
+            let found = kernel!(|x: f32| {
+                let own = sums(x);
+                let ray = library::Ray::new(vec3(x, 0.0, 0.0), Vec3::Z);
+                let hit = $scene.closest_hit(ray);
+                let far = $scene.closest_hit_where(ray, |hit: library::Hit| hit.t > 4.0);
+                let local = $scene.local_ray(ray, hit);
+                (
+                    own,
+                    hit.t,
+                    far.t,
+                    $scene.any_hit(ray),
+                    local.origin,
+                    $scene.to_object(hit).transform_point3(ray.origin),
+                )
+            });
+            raydsl::assert_variants_agree!(&found, &[(0.0,), (0.25,), (3.0,)]);
+            let counted = kernel!(|x: f32| {
+                let own = sums(x);
+                let ray = library::Ray::new(vec3(x, 0.0, 0.0), Vec3::Z);
+                let (hit, cost) = $scene.closest_hit_with_cost(ray);
+                (own, hit.t, cost.nodes)
+            });
+            validate(&counted).expect("its WGSL is valid");
+        }};
+    }
+
+    #[test]
+    fn stand_beside_the_users() {
+        let balls = [3.0, 6.0, 9.0].map(|z| Ball { center: vec3(0.0, 0.0, z), radius: 1.0 });
+        let trees = [&balls[..2], &balls[2..]].map(|part| Bvh::build(part).expect("finite bounds"));
+        let slice = &balls[..];
+        asked!(slice);
+        let tree = &trees[0];
+        asked!(tree);
+        let list = BvhList::new(&trees).expect("few trees");
+        asked!(list);
+        let moved = glam::Affine3::from_translation(vec3(0.0, 0.0, 1.0));
+        let placed = [Instance::new(0, moved), Instance::new(1, moved)];
+        let instances = Instances::build(&trees, &placed).expect("few instances");
+        asked!(instances);
+    }
+}

@@ -11,8 +11,8 @@ use super::wide::{Walks, Wide};
 use super::{Accelerator, Node, Owned, list};
 use crate::geometry::{Kinds, Primitive, Ray};
 use crate::machine::{
-    B, Data, Field, Indexed, Leaves, Machine, Method, Owner, Resource, Schema, Slice, Type, U,
-    Usize, Value, borrowed_key, bytes_of, element_in_step, name, op, wgsl::BufferKey,
+    Data, Field, Leaves, Machine, Owner, Resource, Schema, Slice, Type, Value, borrowed_key,
+    bytes_of, read_in_place, wgsl::BufferKey,
 };
 
 /// The structure of a [`Node`].
@@ -514,42 +514,4 @@ impl<M: Machine, T, S> Value<M> for View<'_, T, S> {
     }
 }
 
-#[diagnostic::do_not_recommend]
-impl<M: Machine, T: Type, S: Type> Indexed<M> for View<'_, T, S> {
-    type Element = T::On<M>;
-
-    #[inline(always)]
-    fn element(self, m: &M, i: U<M>) -> T::On<M> {
-        m.element(&self, i)
-    }
-
-    #[inline(always)]
-    fn at(self, m: &M, i: usize) -> T::On<M> {
-        m.element(&self, U(m.u32(i as u32)))
-    }
-
-    #[inline(always)]
-    fn in_step(self, m: &M, i: u32) -> T::On<M> {
-        element_in_step(m, self, i)
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, T: Type, S: Type> Method<{ name("len") }, M, ()> for View<'_, T, S> {
-    type Output = Usize<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (): ()) -> Usize<M> {
-        Usize(m.len(&self).0)
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, T: Type, S: Type> Method<{ name("is_empty") }, M, ()> for View<'_, T, S> {
-    type Output = B<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (): ()) -> B<M> {
-        B(m.u32_compare(op::Eq, m.len(&self).0, m.u32(0)))
-    }
-}
+read_in_place!([T: Type, S: Type] View<'_, T, S>);

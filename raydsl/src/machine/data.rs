@@ -3,8 +3,7 @@
 use std::borrow::Cow;
 
 use super::wgsl::BufferKey;
-use super::{B, Capture, Leaves, Machine, Method, Parameter, Resource, Schema, Type, Usize, Value};
-use super::{name, op, stride};
+use super::{Capture, Leaves, Machine, Parameter, Resource, Schema, Type, Value, stride};
 
 /// Elements in the host's memory: a value of the host on every machine.
 pub trait Data: Copy {
@@ -232,22 +231,55 @@ impl<M: Machine, T: Type> Capture<M> for Vec<T> {
     }
 }
 
-#[diagnostic::do_not_recommend]
-impl<M: Machine, T: Type> Method<{ name("len") }, M, ()> for Slice<'_, T> {
-    type Output = Usize<M>;
+/// What kernels do with [`Data`]: its elements by `[]`, `len()` and `is_empty()`.
+macro_rules! read_in_place {
+    ([$($g:tt)*] $data:ty) => {
+        #[diagnostic::do_not_recommend]
+        impl<M: $crate::machine::Machine, $($g)*> $crate::machine::Indexed<M> for $data {
+            type Element = T::On<M>;
 
-    #[inline(always)]
-    fn call(self, m: &M, (): ()) -> Usize<M> {
-        Usize(m.len(&self).0)
-    }
+            #[inline(always)]
+            fn element(self, m: &M, i: $crate::machine::U<M>) -> T::On<M> {
+                m.element(&self, i)
+            }
+
+            #[inline(always)]
+            fn at(self, m: &M, i: usize) -> T::On<M> {
+                m.element(&self, $crate::machine::U(m.u32(i as u32)))
+            }
+
+            #[inline(always)]
+            fn in_step(self, m: &M, i: u32) -> T::On<M> {
+                $crate::machine::element_in_step(m, self, i)
+            }
+        }
+
+        #[diagnostic::do_not_recommend]
+        impl<M: $crate::machine::Machine, $($g)*>
+            $crate::machine::Method<{ $crate::machine::name("len") }, M, ()> for $data
+        {
+            type Output = $crate::machine::Usize<M>;
+
+            #[inline(always)]
+            fn call(self, m: &M, (): ()) -> $crate::machine::Usize<M> {
+                $crate::machine::Usize(m.len(&self).0)
+            }
+        }
+
+        #[diagnostic::do_not_recommend]
+        impl<M: $crate::machine::Machine, $($g)*>
+            $crate::machine::Method<{ $crate::machine::name("is_empty") }, M, ()> for $data
+        {
+            type Output = $crate::machine::B<M>;
+
+            #[inline(always)]
+            fn call(self, m: &M, (): ()) -> $crate::machine::B<M> {
+                $crate::machine::B(m.u32_compare($crate::machine::op::Eq, m.len(&self).0, m.u32(0)))
+            }
+        }
+    };
 }
 
-#[diagnostic::do_not_recommend]
-impl<M: Machine, T: Type> Method<{ name("is_empty") }, M, ()> for Slice<'_, T> {
-    type Output = B<M>;
+pub(crate) use read_in_place;
 
-    #[inline(always)]
-    fn call(self, m: &M, (): ()) -> B<M> {
-        B(m.u32_compare(op::Eq, m.len(&self).0, m.u32(0)))
-    }
-}
+read_in_place!([T: Type] Slice<'_, T>);

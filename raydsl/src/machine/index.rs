@@ -4,7 +4,7 @@
 //! whose number it reaches. An index out of range is an error of the kernel. With debug assertions
 //! it panics and names the lane; without, it means the last element, in every variant.
 
-use super::{Coerce, Data, Leaves, Machine, Slice, Type, U, Usize, Value, Varying, op};
+use super::{Coerce, Data, Leaves, Machine, Type, U, Usize, Value, Varying, op};
 
 /// An integer that indexes.
 #[diagnostic::on_unimplemented(
@@ -79,26 +79,6 @@ impl<M: Machine, V: Varying<M> + Copy, const N: usize> Indexed<M> for [V; N] {
         const { assert!(N > 0, "an array without elements cannot be indexed") };
         m.check_index(&m.u32(i), N as u32);
         self[(i as usize).min(N - 1)].varying(m)
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, T: Type> Indexed<M> for Slice<'_, T> {
-    type Element = T::On<M>;
-
-    #[inline(always)]
-    fn element(self, m: &M, i: U<M>) -> T::On<M> {
-        m.element(&self, i)
-    }
-
-    #[inline(always)]
-    fn at(self, m: &M, i: usize) -> T::On<M> {
-        m.element(&self, U(m.u32(i as u32)))
-    }
-
-    #[inline(always)]
-    fn in_step(self, m: &M, i: u32) -> T::On<M> {
-        element_in_step(m, self, i)
     }
 }
 

@@ -70,7 +70,7 @@ pub use counter::{Counter, Steps, Stop, decrement, increment};
 #[cfg(feature = "gpu")]
 pub(crate) use data::is_borrowed;
 pub use data::{Data, Slice};
-pub(crate) use data::{borrowed_key, bytes_of};
+pub(crate) use data::{borrowed_key, bytes_of, read_in_place};
 pub use gang::Gang;
 pub(crate) use index::{Indexed, element_in_step};
 pub use kinds::Kinds;

@@ -13,6 +13,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use corosensei::stack::{DefaultStack, Stack, StackPointer};
 use corosensei::{Coroutine, CoroutineResult, Yielder};
 
+use super::{Key, Scratch};
+
 /// How many packets may go on together.
 const MOST: usize = 64;
 
@@ -74,12 +76,6 @@ pub(crate) struct Crew {
     fibers: Cell<Vec<Option<Fiber>>>,
 }
 
-/// The memory of a query, which is used again.
-pub(crate) trait Scratch: Any + Default {
-    /// Forgets what was asked.
-    fn clear(&mut self);
-}
-
 /// What several packets ask.
 struct Batch {
     key: Key,
@@ -87,13 +83,6 @@ struct Batch {
     /// The packets that wait, a bit each.
     waiting: u64,
 }
-
-/// Packets whose key is the same ask the same of the same scene: the function that answers, and
-/// where the scene lies.
-///
-/// The scene of a packet that waits is borrowed, so no other one lies there; and the function is
-/// that of its type of primitives, or one of the same code.
-pub(crate) type Key = (usize, [usize; 3]);
 
 thread_local! {
     /// Kept from one crew of a thread to the next.

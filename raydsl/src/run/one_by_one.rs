@@ -1,13 +1,6 @@
 //! Packets that do not wait for each other, where a machine has no fibers.
 
-/// What packets that would wait for each other have in common.
-pub(crate) type Key = (usize, [usize; 3]);
-
-/// The memory of a query, which is used again.
-pub(crate) trait Scratch: Default + 'static {
-    /// Forgets what was asked.
-    fn clear(&mut self);
-}
+use super::{Key, Scratch};
 
 /// Packets are alone anyway.
 pub(crate) struct Alone;

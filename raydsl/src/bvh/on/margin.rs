@@ -436,3 +436,59 @@ fn walk_tree(
     }
     false
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel;
+    use crate::machine::{Capture, Outcomes, Rounding};
+    use crate::prelude::{Bvh, Hit, RayQuery, primitive, vec3};
+
+    #[primitive(sphere(center, radius))]
+    #[derive(Debug)]
+    struct Ball {
+        center: Vec3,
+        radius: f32,
+    }
+
+    #[kernel]
+    fn met(balls: &Bvh<'_, Ball>, ray: Ray) -> (f32, f32) {
+        let nearest = balls.closest_hit_where(ray, |hit: Hit| {
+            let mut t = hit.t;
+            for _ in 0..3u32 {
+                t *= 0.5;
+                if t < 0.125 {
+                    return false;
+                }
+            }
+            t > 0.25
+        });
+        let last = balls.multi_hit_by::<2>(ray, |a: Hit, b: Hit| a.t > b.t);
+        (nearest.t, last[0].t + last[1].t)
+    }
+
+    /// What a query keeps of one primitive is gone before the next one.
+    #[test]
+    fn many_hits_take_little_memory() {
+        let most = |count: u16| {
+            let ball = |i| Ball { center: vec3(0.0, 0.0, 4.0 + 4.0 * f32::from(i)), radius: 1.0 };
+            let balls: Vec<Ball> = (0..count).map(ball).collect();
+            let bvh = Bvh::build(&balls).expect("finite bounds");
+            let ray = Ray::new(Vec3::ZERO, Vec3::Z);
+            let most = Cell::new(0);
+            let outcomes = Outcomes::of(Rounding::IEEE, 1, |m| {
+                let scene = Capture::<Margin>::capture(&bvh, m, "scene");
+                let result = met::on(m, scene, Type::splat(m, ray));
+                most.set(m.floats.most());
+                result
+            });
+            let found: Vec<f64> = outcomes.reference().iter().map(|leaf| leaf.value()).collect();
+            let last = 3.0 + 4.0 * f32::from(count - 1);
+            let expected = (3.0, last + (last - 4.0));
+            assert_eq!(met(&bvh, ray), expected);
+            assert_eq!(found, [expected.0, expected.1].map(f64::from));
+            most.get()
+        };
+        assert_eq!(most(64), most(1000));
+    }
+}

@@ -18,8 +18,7 @@ use crate::bvh::slabs::Allowance;
 use crate::bvh::{Part, SceneView, Traversal, View, traverse};
 use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn};
 use crate::machine::{B, Entered, F, Lanes, Packet, U, op};
-use crate::run::fibers::{self, Scratch as _};
-use crate::run::{LanesTask, with_wide_walks};
+use crate::run::{self, LanesTask, Scratch as _, fibers, with_wide_walks};
 
 /// The memory of a query, which a thread keeps for the next one.
 #[derive(Debug, Default)]
@@ -29,7 +28,7 @@ pub(super) struct Scratch {
     pub(super) together: Together,
     pub(super) portions: Portions,
 }
-impl fibers::Scratch for Scratch {
+impl run::Scratch for Scratch {
     fn clear(&mut self) {
         self.rays.clear();
     }
@@ -90,7 +89,7 @@ pub(crate) fn any_hits<L: Lanes, T, S>(
 #[inline(never)]
 fn ask<L: Lanes>(
     m: &Packet<L>,
-    key: fibers::Key,
+    key: run::Key,
     rays: &[RayOn<Packet<L>>],
     answer: &dyn Fn(&mut Scratch),
     read: &mut dyn FnMut(&Scratch, usize),

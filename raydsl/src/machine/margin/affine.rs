@@ -39,7 +39,7 @@ impl Form {
     }
 
     /// Where the value lies.
-    pub(crate) fn range(&self) -> Interval {
+    pub(super) fn range(&self) -> Interval {
         let radius = self.radius() + self.slop();
         // A sum says nothing of the sign of a zero.
         Interval::new(self.center - radius, self.center + radius, false).with_any_zero()
@@ -64,19 +64,19 @@ impl Form {
         }
     }
 
-    pub(crate) fn add(&self, other: &Self) -> Self {
+    pub(super) fn add(&self, other: &Self) -> Self {
         self.combined(1.0, other, 1.0)
     }
 
-    pub(crate) fn sub(&self, other: &Self) -> Self {
+    pub(super) fn sub(&self, other: &Self) -> Self {
         self.combined(1.0, other, -1.0)
     }
 
-    pub(crate) fn neg(&self) -> Self {
+    pub(super) fn neg(&self) -> Self {
         self.combined(-1.0, &Self::point(0.0), 0.0)
     }
 
-    pub(crate) fn mul(&self, other: &Self) -> Self {
+    pub(super) fn mul(&self, other: &Self) -> Self {
         let mut all = self.combined(other.center, other, self.center);
         all.center = self.center * other.center;
         all.rest += self.radius() * other.radius();
@@ -84,7 +84,7 @@ impl Form {
     }
 
     /// `self / other`, unless `other` may be 0.
-    pub(crate) fn div(&self, other: &Self) -> Option<Self> {
+    pub(super) fn div(&self, other: &Self) -> Option<Self> {
         let (c, r) = (other.center, other.radius());
         // 1/c - (y - c)/c², and what that is off by.
         (r < c.abs()).then(|| {
@@ -96,7 +96,7 @@ impl Form {
     }
 
     /// The square root of a positive number.
-    pub(crate) fn sqrt(&self) -> Option<Self> {
+    pub(super) fn sqrt(&self) -> Option<Self> {
         let (c, r) = (self.center, self.radius());
         (r < c).then(|| {
             let root = c.sqrt();
@@ -130,7 +130,7 @@ impl Form {
 pub(crate) struct Handle(u32);
 
 impl Handle {
-    pub(crate) const NONE: Self = Self(u32::MAX);
+    pub(super) const NONE: Self = Self(u32::MAX);
 }
 
 /// The forms of a machine's values.
@@ -193,7 +193,7 @@ impl Forms {
     }
 
     /// Keeps a form that was rounded: `error` is a new one.
-    pub(crate) fn put_rounded(&self, form: Option<Form>, error: f64) -> Handle {
+    pub(super) fn put_rounded(&self, form: Option<Form>, error: f64) -> Handle {
         self.put(form.map(|f| Rc::new(f.with_error(self.symbol(), error))))
     }
 }

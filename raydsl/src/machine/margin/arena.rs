@@ -75,7 +75,7 @@ pub(crate) struct Arena {
 
 impl Arena {
     /// Keeps a float.
-    pub(crate) fn put(&self, known: Known) -> Bounded {
+    pub(super) fn put(&self, known: Known) -> Bounded {
         let serial = self.next.replace(self.next.get().wrapping_add(1));
         let mut entries = self.entries.borrow_mut();
         let float = Bounded::new(entries.len(), serial);
@@ -86,7 +86,7 @@ impl Arena {
     }
 
     /// What is known of a float.
-    pub(crate) fn get(&self, float: Bounded) -> Known {
+    pub(super) fn get(&self, float: Bounded) -> Known {
         match self.entries.borrow().get(float.at()) {
             Some(entry) if entry.serial == float.serial() => entry.known,
             _ => gone(float),
@@ -94,7 +94,7 @@ impl Arena {
     }
 
     /// Overwrites a slot.
-    pub(crate) fn set(&self, slot: Bounded, known: Known) {
+    pub(super) fn set(&self, slot: Bounded, known: Known) {
         match self.entries.borrow_mut().get_mut(slot.at()) {
             Some(entry) if entry.serial == slot.serial() => entry.known = known,
             _ => gone(slot),

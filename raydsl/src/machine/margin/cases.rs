@@ -1,9 +1,8 @@
 //! Kernels whose bounds were wrong once.
 
 use super::*;
-use crate::kernel::Kernel;
 use crate::math::elementary::sincos_2pi;
-use crate::prelude::kernel;
+use crate::prelude::{Kernel, kernel};
 
 /// Asserts that what the kernel gives is within an outcome, and returns all.
 #[track_caller]

@@ -21,7 +21,7 @@ struct Script {
 
 /// What a machine needs to know of its decisions.
 #[derive(Debug)]
-pub(crate) struct Decisions {
+pub(super) struct Decisions {
     script: RefCell<Script>,
     /// The next number that is not in use.
     next: Cell<u64>,
@@ -47,24 +47,24 @@ pub(crate) struct Explored<R> {
     /// The first one follows `f64`.
     pub(crate) results: Vec<R>,
     /// Whether the first one met something that was open.
-    pub(crate) is_uncertain: bool,
+    pub(super) is_uncertain: bool,
     /// Whether these are all.
     pub(crate) is_complete: bool,
 }
 
 impl Decisions {
     /// A number that no other value has.
-    pub(crate) fn fresh(&self) -> u64 {
+    pub(super) fn fresh(&self) -> u64 {
         self.next.replace(self.next.get() + 1)
     }
 
     /// Something is open in more ways than can be followed.
-    pub(crate) fn lose(&self) {
+    pub(super) fn lose(&self) {
         self.lost.set(true);
     }
 
     /// Chooses among `count` alternatives, of which number 0 is that of `f64`.
-    pub(crate) fn choose(&self, count: usize) -> usize {
+    pub(super) fn choose(&self, count: usize) -> usize {
         let script = &mut *self.script.borrow_mut();
         let chosen = script.planned.get(script.made.len()).copied().unwrap_or(0);
         script.made.push((chosen, count as u32));
@@ -72,7 +72,7 @@ impl Decisions {
     }
 
     /// Whether the truth value `id` is the opposite of the `f64` one; it stays what it was.
-    pub(crate) fn flip(&self, id: u64) -> bool {
+    pub(super) fn flip(&self, id: u64) -> bool {
         let known = self.script.borrow().flips.get(&id).copied();
         known.unwrap_or_else(|| {
             let flip = self.choose(2) == 1;
@@ -82,17 +82,17 @@ impl Decisions {
     }
 
     /// Whether the truth value `id` was decided, and how.
-    pub(crate) fn known(&self, id: u64) -> Option<bool> {
+    pub(super) fn known(&self, id: u64) -> Option<bool> {
         self.script.borrow().flips.get(&id).copied()
     }
 
     /// The path of `f64` is done; the others have fewer rounds.
-    pub(crate) fn turn_aside(&self) {
+    pub(super) fn turn_aside(&self) {
         self.rounds.set(self.rounds.get().min(ROUNDS_ASIDE));
     }
 
     /// A round of a loop; false when there have been too many.
-    pub(crate) fn round(&self) -> bool {
+    pub(super) fn round(&self) -> bool {
         let left = self.rounds.get();
         if left == 0 {
             self.lose();
@@ -103,7 +103,7 @@ impl Decisions {
 
     /// Runs `f` for each way in which its decisions may go, those with few changes first, up to
     /// `limit` runs. Decisions under way are left alone.
-    pub(crate) fn explore<R>(&self, limit: usize, mut f: impl FnMut() -> R) -> Explored<R> {
+    pub(super) fn explore<R>(&self, limit: usize, mut f: impl FnMut() -> R) -> Explored<R> {
         let outer = self.script.take();
         let lost = self.lost.replace(false);
         let mut results = Vec::new();

@@ -11,24 +11,24 @@
 pub(crate) struct Interval {
     pub(crate) low: f64,
     pub(crate) high: f64,
-    pub(crate) nan: bool,
+    pub(super) nan: bool,
 }
 
 /// How far a rounded result may lie from the exact one: this part of it, and this much.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Rounded {
-    pub(crate) relative: f64,
-    pub(crate) absolute: f64,
+pub(super) struct Rounded {
+    pub(super) relative: f64,
+    pub(super) absolute: f64,
 }
 
 impl Interval {
     /// NaN, and nothing else.
-    pub(crate) const NAN: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, nan: true };
+    pub(super) const NAN: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, nan: true };
     /// Nothing is known.
-    pub(crate) const ALL: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY, nan: true };
+    pub(super) const ALL: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY, nan: true };
 
     /// This number alone.
-    pub(crate) fn point(v: f64) -> Self {
+    pub(super) fn point(v: f64) -> Self {
         if v.is_nan() { Self::NAN } else { Self { low: v, high: v, nan: false } }
     }
 
@@ -42,7 +42,7 @@ impl Interval {
     }
 
     /// The smallest interval around some numbers; a NaN among them is no limit.
-    pub(crate) fn around(numbers: impl IntoIterator<Item = f64>, nan: bool) -> Self {
+    pub(super) fn around(numbers: impl IntoIterator<Item = f64>, nan: bool) -> Self {
         let mut all = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, nan };
         for v in numbers {
             if v.is_nan() {
@@ -59,23 +59,23 @@ impl Interval {
     }
 
     /// The number, if only one is possible. Zeros of either sign are two.
-    pub(crate) fn as_point(self) -> Option<f64> {
+    pub(super) fn as_point(self) -> Option<f64> {
         (self.low.to_bits() == self.high.to_bits() && !self.nan).then_some(self.low)
     }
 
     /// Whether it is 0 for certain, of whatever sign.
-    pub(crate) fn is_zero(self) -> bool {
+    pub(super) fn is_zero(self) -> bool {
         self.low == 0.0 && self.high == 0.0 && !self.nan
     }
 
     /// Whether its sign is known, and which: true for `-`. A NaN may have either.
-    pub(crate) fn is_negative(self) -> Option<bool> {
+    pub(super) fn is_negative(self) -> Option<bool> {
         let (low, high) = (self.low.is_sign_negative(), self.high.is_sign_negative());
         (low == high && !self.nan).then_some(low)
     }
 
     /// The same, where the sign of a zero at an end is not known.
-    pub(crate) fn with_any_zero(self) -> Self {
+    pub(super) fn with_any_zero(self) -> Self {
         Self {
             low: if self.low == 0.0 { -0.0 } else { self.low },
             high: if self.high == 0.0 { 0.0 } else { self.high },
@@ -84,7 +84,7 @@ impl Interval {
     }
 
     /// The same with each end moved apart by `by`.
-    pub(crate) fn widened(self, by: f64) -> Self {
+    pub(super) fn widened(self, by: f64) -> Self {
         if self.is_nan() || by == 0.0 {
             return self;
         }
@@ -92,11 +92,11 @@ impl Interval {
     }
 
     /// The largest size of a number in it.
-    pub(crate) fn magnitude(self) -> f64 {
+    pub(super) fn magnitude(self) -> f64 {
         if self.is_nan() { 0.0 } else { self.low.abs().max(self.high.abs()) }
     }
 
-    pub(crate) fn contains(self, v: f64) -> bool {
+    pub(super) fn contains(self, v: f64) -> bool {
         if v.is_nan() { self.nan } else { self.low <= v && v <= self.high }
     }
 
@@ -124,7 +124,7 @@ impl Interval {
     }
 
     /// What may become of it when it is rounded to `f32`, which overflows.
-    pub(crate) fn rounded(self, by: Rounded) -> Self {
+    pub(super) fn rounded(self, by: Rounded) -> Self {
         if self.is_nan() {
             return self;
         }
@@ -146,7 +146,7 @@ impl Interval {
         }
     }
 
-    pub(crate) fn neg(self) -> Self {
+    pub(super) fn neg(self) -> Self {
         if self.is_nan() { self } else { Self { low: -self.high, high: -self.low, nan: self.nan } }
     }
 
@@ -160,7 +160,7 @@ impl Interval {
         }
     }
 
-    pub(crate) fn add(self, b: Self) -> Self {
+    pub(super) fn add(self, b: Self) -> Self {
         if self.is_nan() || b.is_nan() {
             return Self::NAN;
         }
@@ -169,7 +169,7 @@ impl Interval {
         Self::new(self.low + b.low, self.high + b.high, self.nan || b.nan || opposite)
     }
 
-    pub(crate) fn sub(self, b: Self) -> Self {
+    pub(super) fn sub(self, b: Self) -> Self {
         self.add(b.neg())
     }
 
@@ -179,7 +179,7 @@ impl Interval {
         self.contains(0.0) && infinite(b) || b.contains(0.0) && infinite(self)
     }
 
-    pub(crate) fn mul(self, b: Self) -> Self {
+    pub(super) fn mul(self, b: Self) -> Self {
         if self.is_nan() || b.is_nan() {
             return Self::NAN;
         }
@@ -198,7 +198,7 @@ impl Interval {
     }
 
     /// The product with itself.
-    pub(crate) fn square(self) -> Self {
+    pub(super) fn square(self) -> Self {
         let size = self.abs();
         if size.is_nan() {
             size
@@ -207,7 +207,7 @@ impl Interval {
         }
     }
 
-    pub(crate) fn div(self, b: Self) -> Self {
+    pub(super) fn div(self, b: Self) -> Self {
         if self.is_nan() || b.is_nan() {
             return Self::NAN;
         }
@@ -220,7 +220,7 @@ impl Interval {
         Self::around(corners, nan)
     }
 
-    pub(crate) fn sqrt(self) -> Self {
+    pub(super) fn sqrt(self) -> Self {
         if self.is_nan() || self.high < 0.0 {
             return Self::NAN;
         }
@@ -230,7 +230,7 @@ impl Interval {
     }
 
     /// `if b < a { b } else { a }`, so a NaN `b` gives `a`.
-    pub(crate) fn min(self, b: Self) -> Self {
+    pub(super) fn min(self, b: Self) -> Self {
         if self.is_nan() || b.is_nan() {
             return self;
         }
@@ -243,12 +243,12 @@ impl Interval {
     }
 
     /// `if a < b { b } else { a }`.
-    pub(crate) fn max(self, b: Self) -> Self {
+    pub(super) fn max(self, b: Self) -> Self {
         self.neg().min(b.neg()).neg()
     }
 
     /// `f` of it, for a function that rises or falls everywhere in `domain` and is NaN outside.
-    pub(crate) fn monotone(self, domain: (f64, f64), f: impl Fn(f64) -> f64) -> Self {
+    pub(super) fn monotone(self, domain: (f64, f64), f: impl Fn(f64) -> f64) -> Self {
         if self.is_nan() || self.high < domain.0 || self.low > domain.1 {
             return Self::NAN;
         }

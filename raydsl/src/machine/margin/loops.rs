@@ -1,11 +1,9 @@
 //! What outlives the rounds of loops, and how many floats there are for all of them.
 
 use super::*;
-use crate::bvh::RayQuery;
-use crate::geometry::{Hit, Ray};
 use crate::kernel;
-use crate::machine::{Capture, KernelFn};
-use crate::prelude::{Bvh, Vec3, Vec4, primitive, vec3, vec4};
+use crate::machine::KernelFn;
+use crate::prelude::{Vec3, Vec4, vec3, vec4};
 
 /// What the kernel gives in `f64`, and the greatest number of floats on the way.
 fn followed<F: KernelFn>(args: F::Args) -> (Vec<f64>, usize) {
@@ -365,48 +363,4 @@ fn each_way_has_its_own_variables() {
         outcomes.iter().map(|leaves| leaves.iter().map(|l| l.value()).collect()).collect();
     found.sort_by(|a, b| a[0].total_cmp(&b[0]));
     assert_eq!(found, [goes(false), goes(true)]);
-}
-
-#[primitive(sphere(center, radius))]
-#[derive(Debug)]
-struct Ball {
-    center: Vec3,
-    radius: f32,
-}
-
-#[kernel]
-fn met(balls: &Bvh<'_, Ball>, ray: Ray) -> (f32, f32) {
-    let nearest = balls.closest_hit_where(ray, |hit: Hit| {
-        let mut t = hit.t;
-        for _ in 0..3u32 {
-            t *= 0.5;
-            if t < 0.125 {
-                return false;
-            }
-        }
-        t > 0.25
-    });
-    let last = balls.multi_hit_by::<2>(ray, |a: Hit, b: Hit| a.t > b.t);
-    (nearest.t, last[0].t + last[1].t)
-}
-
-/// What a query keeps of one primitive is gone before the next one.
-#[test]
-fn many_hits_take_little_memory() {
-    let most = |count: u16| {
-        let ball = |i| Ball { center: vec3(0.0, 0.0, 4.0 + 4.0 * f32::from(i)), radius: 1.0 };
-        let balls: Vec<Ball> = (0..count).map(ball).collect();
-        let bvh = Bvh::build(&balls).expect("finite bounds");
-        let ray = Ray::new(Vec3::ZERO, Vec3::Z);
-        let (found, most) = counted(|m| {
-            let scene = Capture::<Margin>::capture(&bvh, m, "scene");
-            met::on(m, scene, Type::splat(m, ray))
-        });
-        let last = 3.0 + 4.0 * f32::from(count - 1);
-        let expected = (3.0, last + (last - 4.0));
-        assert_eq!(met(&bvh, ray), expected);
-        assert_eq!(found, [expected.0, expected.1].map(f64::from));
-        most
-    };
-    assert_eq!(most(64), most(1000));
 }

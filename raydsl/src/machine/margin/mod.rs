@@ -65,7 +65,7 @@ impl Truth {
         Self { value, open: 0 }
     }
 
-    pub(crate) fn is(self, value: bool) -> bool {
+    fn is(self, value: bool) -> bool {
         self.open == 0 && self.value == value
     }
 }
@@ -115,7 +115,7 @@ impl Margin {
         Known { value, range, id: self.decisions.fresh(), form: Handle::NONE, parts: None }
     }
 
-    pub(crate) fn point(&self, v: f64) -> Known {
+    fn point(&self, v: f64) -> Known {
         self.bounded(v, Interval::point(v))
     }
 

@@ -5,24 +5,24 @@ use super::names::unique;
 use crate::machine::KernelInfo;
 
 /// A function under way.
-pub(crate) struct Builder {
-    pub(crate) function: Recorded,
-    pub(crate) blocks: Vec<(u32, Vec<Stmt>)>,
-    pub(crate) next_block: u32,
-    pub(crate) loops: Vec<LoopState>,
-    pub(crate) next_loop: u32,
+pub(super) struct Builder {
+    pub(super) function: Recorded,
+    pub(super) blocks: Vec<(u32, Vec<Stmt>)>,
+    pub(super) next_block: u32,
+    pub(super) loops: Vec<LoopState>,
+    pub(super) next_loop: u32,
     /// The variable that says which labelled loop is being left.
-    pub(crate) leave: Option<VarId>,
+    pub(super) leave: Option<VarId>,
 }
 
-pub(crate) struct LoopState {
-    pub(crate) number: u32,
+pub(super) struct LoopState {
+    pub(super) number: u32,
     /// Labelled exits that pass through this loop: the loop they are meant for, and `continue`.
-    pub(crate) passing: Vec<(u32, bool)>,
+    pub(super) passing: Vec<(u32, bool)>,
 }
 
 impl Builder {
-    pub(crate) fn new(info: &'static KernelInfo) -> Self {
+    pub(super) fn new(info: &'static KernelInfo) -> Self {
         Self {
             function: Recorded {
                 source_name: info.name,
@@ -43,32 +43,32 @@ impl Builder {
         }
     }
 
-    pub(crate) fn block(&self) -> u32 {
+    pub(super) fn block(&self) -> u32 {
         self.blocks.last().map_or(0, |b| b.0)
     }
 
-    pub(crate) fn push(&mut self, stmt: Stmt) {
+    pub(super) fn push(&mut self, stmt: Stmt) {
         if let Some((_, block)) = self.blocks.last_mut() {
             block.push(stmt);
         }
     }
 
-    pub(crate) fn open_block(&mut self) {
+    pub(super) fn open_block(&mut self) {
         self.blocks.push((self.next_block, Vec::new()));
         self.next_block += 1;
     }
 
-    pub(crate) fn close_block(&mut self) -> Vec<Stmt> {
+    pub(super) fn close_block(&mut self) -> Vec<Stmt> {
         self.blocks.pop().map(|b| b.1).unwrap_or_default()
     }
 
-    pub(crate) fn node(&mut self, id: Id) -> &mut Node {
+    pub(super) fn node(&mut self, id: Id) -> &mut Node {
         &mut self.function.nodes[id.0 as usize]
     }
 
     /// Notes that `id` is used now: what it loads must not have changed, and it is only written
     /// in place if that place is in its own block.
-    pub(crate) fn used(&mut self, id: Id) -> Vec<Id> {
+    pub(super) fn used(&mut self, id: Id) -> Vec<Id> {
         let here = self.block();
         // A part of a value is written as the value and its member: the value must not be
         // evaluated again in an inner block.
@@ -105,7 +105,7 @@ impl Builder {
         fresh
     }
 
-    pub(crate) fn add(&mut self, expr: Expr, ty: Type) -> Id {
+    pub(super) fn add(&mut self, expr: Expr, ty: Type) -> Id {
         if expr.is_trivial()
             && let Some(i) = self.function.nodes.iter().position(|n| n.expr == expr && n.ty == ty)
         {
@@ -144,7 +144,7 @@ impl Builder {
         id
     }
 
-    pub(crate) fn new_var(&mut self, name: &str, ty: Type) -> VarId {
+    pub(super) fn new_var(&mut self, name: &str, ty: Type) -> VarId {
         let v = VarId(self.function.vars.len() as u32);
         let taken = |n: &str| {
             self.function.vars.iter().any(|v| v.name == n)
@@ -155,7 +155,7 @@ impl Builder {
         v
     }
 
-    pub(crate) fn store(&mut self, v: VarId, value: Id) {
+    pub(super) fn store(&mut self, v: VarId, value: Id) {
         let unchanged = matches!(self.function.nodes[value.0 as usize].expr, Expr::Load(w) if w == v)
             && self.function.nodes[value.0 as usize].version
                 == self.function.vars[v.0 as usize].version;

@@ -6,11 +6,11 @@ use crate::machine::{
 
 /// An expression of the function that is being recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Id(pub(crate) u32);
+pub struct Id(pub(super) u32);
 
 /// A variable of the function that is being recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct VarId(pub(crate) u32);
+pub(crate) struct VarId(pub(super) u32);
 
 /// What a vector consists of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +22,7 @@ pub(crate) enum Scalar {
 }
 
 impl Scalar {
-    pub(crate) fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         match self {
             Self::F32 => "f32",
             Self::I32 => "i32",
@@ -56,7 +56,7 @@ impl Type {
     }
 
     /// A vector of `n` such scalars.
-    pub(crate) fn times(self, n: usize) -> Self {
+    pub(super) fn times(self, n: usize) -> Self {
         match self {
             Self::I32 => Self::Vector(Scalar::I32, n),
             Self::U32 => Self::Vector(Scalar::U32, n),
@@ -66,7 +66,7 @@ impl Type {
     }
 
     /// What it is a vector of.
-    pub(crate) fn component(self) -> Self {
+    pub(super) fn component(self) -> Self {
         match self {
             Self::Vector(Scalar::F32, _) => Self::F32,
             Self::Vector(Scalar::I32, _) => Self::I32,
@@ -132,7 +132,7 @@ pub(crate) enum Expr {
 
 impl Expr {
     /// Whether it is so short that it never needs a name.
-    pub(crate) fn is_trivial(&self) -> bool {
+    pub(super) fn is_trivial(&self) -> bool {
         matches!(
             self,
             Self::F32(_)
@@ -147,7 +147,7 @@ impl Expr {
         )
     }
 
-    pub(crate) fn operands(&self) -> Vec<Id> {
+    pub(super) fn operands(&self) -> Vec<Id> {
         match self {
             Self::F32(_)
             | Self::I32(_)
@@ -177,23 +177,23 @@ impl Expr {
 
 /// An expression and what the printer must know of it.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Node {
-    pub(crate) expr: Expr,
-    pub(crate) ty: Type,
+pub(super) struct Node {
+    pub(super) expr: Expr,
+    pub(super) ty: Type,
     /// The name that it has in the source.
-    pub(crate) name: Option<&'static str>,
+    pub(super) name: Option<&'static str>,
     /// It must be evaluated where it was recorded, not where it is used.
-    pub(crate) pinned: bool,
+    pub(super) pinned: bool,
     /// The block in which it was recorded.
-    pub(crate) block: u32,
+    pub(super) block: u32,
     /// The loads under it that would be repeated if it was written where it is used.
-    pub(crate) loads: Vec<Id>,
+    pub(super) loads: Vec<Id>,
     /// Of a load: the variable's version when it was recorded.
-    pub(crate) version: u32,
+    pub(super) version: u32,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Stmt {
+pub(super) enum Stmt {
     /// Where an expression was recorded.
     Let(Id),
     Var(VarId, Option<Id>),
@@ -214,16 +214,16 @@ pub(crate) enum Stmt {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Variable {
-    pub(crate) name: String,
-    pub(crate) ty: Type,
+pub(super) struct Variable {
+    pub(super) name: String,
+    pub(super) ty: Type,
     /// Grows with every store and at the start of every loop.
-    pub(crate) version: u32,
+    pub(super) version: u32,
 }
 
 /// A function, recorded or written by hand.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Function {
+pub(super) enum Function {
     Recorded(Recorded),
     /// WGSL text, with the types it names.
     Text {
@@ -235,12 +235,12 @@ pub(crate) enum Function {
 
 impl Function {
     /// Whether it is the library's text; a user's function may have any name.
-    pub(crate) fn is_text(&self) -> bool {
+    pub(super) fn is_text(&self) -> bool {
         matches!(self, Self::Text { .. })
     }
 
     /// The types that its text has by their names.
-    pub(crate) fn named_types(&self) -> impl Iterator<Item = &'static Schema> + '_ {
+    pub(super) fn named_types(&self) -> impl Iterator<Item = &'static Schema> + '_ {
         let types = match self {
             Self::Text { text, types, .. } if !text.is_empty() => &types[..],
             _ => &[],
@@ -248,7 +248,7 @@ impl Function {
         types.iter().copied()
     }
 
-    pub(crate) fn name(&self) -> &str {
+    pub(super) fn name(&self) -> &str {
         match self {
             Self::Recorded(f) => &f.name,
             Self::Text { name, .. } => name,
@@ -257,23 +257,23 @@ impl Function {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Recorded {
+pub(super) struct Recorded {
     /// The name in the source; `name` may differ where several kernels share it.
-    pub(crate) source_name: &'static str,
-    pub(crate) name: String,
+    pub(super) source_name: &'static str,
+    pub(super) name: String,
     /// Where it stands in the Rust source.
-    pub(crate) file: &'static str,
-    pub(crate) line: u32,
-    pub(crate) params: Vec<(String, Type)>,
-    pub(crate) result: Option<Type>,
-    pub(crate) nodes: Vec<Node>,
-    pub(crate) vars: Vec<Variable>,
-    pub(crate) body: Vec<Stmt>,
+    pub(super) file: &'static str,
+    pub(super) line: u32,
+    pub(super) params: Vec<(String, Type)>,
+    pub(super) result: Option<Type>,
+    pub(super) nodes: Vec<Node>,
+    pub(super) vars: Vec<Variable>,
+    pub(super) body: Vec<Stmt>,
 }
 
 impl Recorded {
     /// Equal but for the name.
-    pub(crate) fn same_code(&self, other: &Self) -> bool {
+    pub(super) fn same_code(&self, other: &Self) -> bool {
         self.source_name == other.source_name
             && self.params == other.params
             && self.result == other.result
@@ -285,18 +285,18 @@ impl Recorded {
 
 /// A member of the uniform block.
 #[derive(Clone, Debug)]
-pub(crate) struct Uniform {
-    pub(crate) name: String,
-    pub(crate) ty: Type,
+pub(super) struct Uniform {
+    pub(super) name: String,
+    pub(super) ty: Type,
     /// The four-byte words of the value.
-    pub(crate) words: Vec<u32>,
+    pub(super) words: Vec<u32>,
 }
 
 /// A buffer of the scene.
 #[derive(Clone, Debug)]
-pub(crate) struct SceneBuffer {
-    pub(crate) key: BufferKey,
-    pub(crate) name: String,
-    pub(crate) schema: &'static Schema,
-    pub(crate) len: u64,
+pub(super) struct SceneBuffer {
+    pub(super) key: BufferKey,
+    pub(super) name: String,
+    pub(super) schema: &'static Schema,
+    pub(super) len: u64,
 }

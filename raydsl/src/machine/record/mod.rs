@@ -112,12 +112,13 @@ impl Default for Recorder {
 }
 
 impl Recorder {
-    pub(crate) fn builder<R>(&self, f: impl FnOnce(&mut Builder) -> R) -> R {
+    fn builder<R>(&self, f: impl FnOnce(&mut Builder) -> R) -> R {
         let mut state = self.state.borrow_mut();
         let builder = state.open.last_mut().expect("values exist only inside a kernel");
         f(builder)
     }
 
+    /// Adds an expression to the function under way.
     pub(crate) fn add(&self, expr: Expr, ty: Type) -> Id {
         self.builder(|b| b.add(expr, ty))
     }
@@ -158,11 +159,11 @@ impl Recorder {
         self.of_leaves(&leaves)
     }
 
-    pub(crate) fn of_leaves<V: Value<Self>>(&self, leaves: &[Id]) -> V {
+    fn of_leaves<V: Value<Self>>(&self, leaves: &[Id]) -> V {
         self.with_leaves(V::zero(self), leaves)
     }
 
-    pub(crate) fn leaves_of<V: Value<Self>>(&self, v: V) -> Vec<Id> {
+    fn leaves_of<V: Value<Self>>(&self, v: V) -> Vec<Id> {
         struct Collect(Vec<Id>);
         impl Leaves<Recorder> for Collect {
             fn f32(&mut self, _: &Recorder, a: Id, _: Id) -> Id {

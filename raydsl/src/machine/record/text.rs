@@ -1,6 +1,6 @@
 //! Functions that are written as text, beside those that are recorded.
 
-use super::ir::{Expr, Function, Id};
+use super::ir::{Expr, Function, Id, Stmt, Type, VarId};
 use super::{Builder, Recorder};
 use crate::machine::{KernelInfo, Schema, Value};
 
@@ -42,8 +42,27 @@ impl Recorder {
         called.expect("an intersection is a kernel, and a call of a kernel records a function")
     }
 
+    /// The name of a function.
     pub(crate) fn function_name(&self, i: usize) -> String {
         self.state.borrow().functions[i].name().to_owned()
+    }
+
+    /// A variable that begins with a value.
+    pub(crate) fn declare(&self, name: &'static str, value: Id, schema: &'static Schema) -> VarId {
+        self.builder(|b| {
+            let variable = b.new_var(name, Type::Of(schema));
+            b.used(value);
+            b.push(Stmt::Var(variable, Some(value)));
+            variable
+        })
+    }
+
+    /// Has a value computed where it stands, under this name.
+    pub(crate) fn pin(&self, id: Id, name: &'static str) {
+        self.builder(|b| {
+            let node = b.node(id);
+            (node.pinned, node.name) = (true, Some(name));
+        });
     }
 
     /// A value in one piece.

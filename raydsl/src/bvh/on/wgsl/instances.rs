@@ -12,7 +12,7 @@ use crate::bvh::{
 };
 use crate::bvh::{Placed, View, any_where, buffers, closest_where};
 use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn, transform_ray};
-use crate::machine::record::ir::{Expr, Stmt, Type};
+use crate::machine::record::ir::{Expr, Type};
 use crate::machine::record::zero_value;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
@@ -231,19 +231,11 @@ fn {name}(ray: Ray) -> CountedHit {{
     ) {
         let (start, next) = self.descent_functions(prims, Walk::Plain);
         let start = self.add(Expr::Call(start, vec![self.whole(ray)]), Type::Of(DESCENT));
-        let walk = self.builder(|b| {
-            let walk = b.new_var("walk", Type::Of(DESCENT));
-            b.used(start);
-            b.push(Stmt::Var(walk, Some(start)));
-            walk
-        });
+        let walk = self.declare("walk", start, DESCENT);
         let repeat = Loop::new(self);
         let walk = self.add(Expr::Address(walk), Type::Of(DESCENT));
         let found = self.add(Expr::Call(next, vec![walk, limit().0]), Type::Of(CANDIDATE));
-        self.builder(|b| {
-            let node = b.node(found);
-            (node.pinned, node.name) = (true, Some("next"));
-        });
+        self.pin(found, "next");
         let member = |name, ty| self.add(Expr::Member(found, name), ty);
         let (id, inst) = (member("id", Type::U32), member("inst", Type::U32));
         repeat.test(self, B(self.u32_compare(op::Ne, id, self.u32(NONE))));

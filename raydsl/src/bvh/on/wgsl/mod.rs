@@ -157,7 +157,7 @@ impl Recorder {
             return (RecordedWalks::of(placed).closest_hit)(self, prims, ray);
         }
         let function = self.closest_hit_function(prims);
-        self.asked(function, ray, Hit::SCHEMA)
+        self.call_query(function, ray, Hit::SCHEMA)
     }
 
     /// The least `(t, id)` hit of a ray, and what it costs a ray that is alone.
@@ -170,7 +170,7 @@ impl Recorder {
             Some(placed) => (RecordedWalks::of(placed).closest_hit_with_cost)(self, prims),
             None => self.closest_hit_with_cost_function(prims),
         };
-        self.asked(function, ray, CountedHit::SCHEMA)
+        self.call_query(function, ray, CountedHit::SCHEMA)
     }
 
     /// Whether a ray hits anything.
@@ -183,11 +183,11 @@ impl Recorder {
             return (RecordedWalks::of(placed).any_hit)(self, prims, ray);
         }
         let function = self.any_hit_function(prims);
-        self.asked(function, ray, &Schema::Bool)
+        self.call_query(function, ray, &Schema::Bool)
     }
 
     /// Calls the function of a query.
-    fn asked<V: Value<Self>>(
+    fn call_query<V: Value<Self>>(
         &self,
         function: usize,
         ray: RayOn<Self>,
@@ -223,18 +223,13 @@ impl Recorder {
         let each = Query { declare: "var best = before;", ..query };
         let each =
             self.tree_function(prims, format!("{prims_name}_closer_hit"), ", before: Hit", &each);
-        self.list_function(
-            prims,
-            format!("{prims_name}_closest_hit"),
-            ("Hit", types_of(&query)),
-            &|roots| {
-                format!(
-                    "    var best = {miss};\n    \
+        self.list_function(prims, format!("{prims_name}_closest_hit"), &query, &|roots| {
+            format!(
+                "    var best = {miss};\n    \
                  for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
                  best = {each}(ray, {roots}_at(i), best);\n    }}\n    return best;\n"
-                )
-            },
-        )
+            )
+        })
     }
 
     /// The least `(t, id)` hit, with the nodes and primitives that are tested for it.
@@ -267,7 +262,7 @@ impl Recorder {
         let each = Query { declare: &declare("before"), ..query };
         let each_name = format!("{prims_name}_closer_hit_with_cost");
         let each = self.tree_function(prims, each_name, ", before: CountedHit", &each);
-        self.list_function(prims, name, ("CountedHit", types_of(&query)), &|roots| {
+        self.list_function(prims, name, &query, &|roots| {
             format!(
                 "    var best = {before};\n    \
                  for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
@@ -303,7 +298,7 @@ impl Recorder {
             return self.query_function(prims, format!("{prims_name}_any_hit"), &query);
         }
         let each = self.tree_function(prims, format!("{prims_name}_any_hit_in"), "", &query);
-        self.list_function(prims, format!("{prims_name}_any_hit"), ("bool", types_of(&query)), &|roots| {
+        self.list_function(prims, format!("{prims_name}_any_hit"), &query, &|roots| {
             format!(
                 "    for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
                  if ({each}(ray, {roots}_at(i))) {{\n            return true;\n        }}\n    }}\n    \
@@ -342,11 +337,12 @@ impl Recorder {
         &self,
         prims: &dyn Described,
         name: String,
-        (result, types): (&str, Vec<&'static Schema>),
+        query: &Query<'_>,
         body: &dyn Fn(&str) -> String,
     ) -> usize {
         let roots = self.roots_buffer(prims);
-        self.text_function(name, types, &|name| {
+        let result = query.result;
+        self.text_function(name, types_of(query), &|name| {
             format!("fn {name}(ray: Ray) -> {result} {{\n{}}}\n", body(&roots))
         })
     }
@@ -375,12 +371,12 @@ impl Recorder {
 }
 
 /// The types that the text of a query names.
-const TYPES: [&Schema; 3] = [Ray::SCHEMA, Hit::SCHEMA, NODE_SCHEMA];
-
-/// The same, of a query.
 fn types_of(query: &Query<'_>) -> Vec<&'static Schema> {
     let counted = query.counts.then_some([Cost::SCHEMA, CountedHit::SCHEMA]);
-    TYPES.into_iter().chain(counted.into_iter().flatten()).collect()
+    [Ray::SCHEMA, Hit::SCHEMA, NODE_SCHEMA]
+        .into_iter()
+        .chain(counted.into_iter().flatten())
+        .collect()
 }
 
 /// The names of a tree's buffers.

@@ -4,7 +4,7 @@
 use super::Described;
 use crate::bvh::{NODE_SCHEMA, RecordOn, SceneView};
 use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn};
-use crate::machine::record::ir::{Expr, Id, Stmt, Type};
+use crate::machine::record::ir::{Expr, Id, Type};
 use crate::machine::{B, Branch, F, Field, Loop, Machine, Recorder, Schema, U, Var, op};
 
 /// As deep as a tree may be, and one more.
@@ -104,20 +104,12 @@ impl Recorder {
         let (start, next) = self.walk_functions(prims);
         let arguments = [self.whole(ray)].into_iter().chain(root.map(|r| r.0)).collect();
         let start = self.add(Expr::Call(start, arguments), Type::Of(TRAVERSAL));
-        let walk = self.builder(|b| {
-            let walk = b.new_var("walk", Type::Of(TRAVERSAL));
-            b.used(start);
-            b.push(Stmt::Var(walk, Some(start)));
-            walk
-        });
+        let walk = self.declare("walk", start, TRAVERSAL);
         let repeat = Loop::new(self);
         let arguments =
             vec![self.add(Expr::Address(walk), Type::Of(TRAVERSAL)), ray.t_min.0, limit().0];
         let id = self.add(Expr::Call(next, arguments), Type::U32);
-        self.builder(|b| {
-            let node = b.node(id);
-            (node.pinned, node.name) = (true, Some("id"));
-        });
+        self.pin(id, "id");
         repeat.test(self, B(self.u32_compare(op::Ne, id, self.u32(NONE))));
         let names = [U(id), U(self.u32(0))];
         self.ask(prims, ray, names, meet, root.map_or(&repeat, |r| r.1));
