@@ -416,7 +416,7 @@ impl<T: Type, S> Data for View<'_, T, S> {
 
     fn key(&self) -> BufferKey {
         match self.scene {
-            Scene::Slice(prims) => prims.buffer_key(),
+            Scene::Slice(prims) => prims.key(),
             Scene::Standing(standing) => borrowed_key(standing.prims),
             _ => self.key_of(buffers::PRIMITIVES),
         }
@@ -424,7 +424,7 @@ impl<T: Type, S> Data for View<'_, T, S> {
 
     fn name(&self) -> Cow<'static, str> {
         match self.scene {
-            Scene::Slice(prims) => prims.full_name(),
+            Scene::Slice(prims) => Data::name(&prims),
             _ => self.name.into(),
         }
     }

@@ -88,24 +88,10 @@ impl<'a, T> Slice<'a, T> {
         self.elements.is_empty()
     }
 
-    /// The key of the elements: their owner's, or their address and length, which name borrowed data
-    /// while the borrow lasts.
-    pub(crate) fn buffer_key(&self) -> BufferKey {
-        self.key.unwrap_or_else(|| borrowed_key(self.elements))
-    }
-
     /// The name in the source of what it is a part of.
     #[inline(always)]
     pub(crate) fn source_name(&self) -> &'static str {
         self.name
-    }
-
-    /// The name, with what stands behind it.
-    pub(crate) fn full_name(&self) -> Cow<'static, str> {
-        match self.suffix {
-            "" => self.name.into(),
-            suffix => format!("{}_{suffix}", self.name).into(),
-        }
     }
 }
 
@@ -122,16 +108,20 @@ impl<T: Type> Data for Slice<'_, T> {
         self.elements[index as usize]
     }
 
+    /// That of their owner, or their address and length.
     fn key(&self) -> BufferKey {
-        self.buffer_key()
+        self.key.unwrap_or_else(|| borrowed_key(self.elements))
     }
 
     fn name(&self) -> Cow<'static, str> {
-        self.full_name()
+        match self.suffix {
+            "" => self.name.into(),
+            suffix => format!("{}_{suffix}", self.name).into(),
+        }
     }
 }
 
-/// The key of borrowed data.
+/// The key of borrowed data: its address and length, which name it while the borrow lasts.
 pub(crate) fn borrowed_key<T>(elements: &[T]) -> BufferKey {
     let address = elements.as_ptr() as usize as u64;
     let (version, part) = (elements.len() as u32, size_of::<T>() as u32);
@@ -156,7 +146,7 @@ pub(crate) fn bytes_of<T: Type>(elements: &[T]) -> Vec<u8> {
 
 impl<T: Type> Resource for Slice<'_, T> {
     fn bytes(&self, key: BufferKey) -> Option<Cow<'_, [u8]>> {
-        (key == self.buffer_key()).then(|| Cow::Owned(bytes_of(self.elements)))
+        (key == self.key()).then(|| Cow::Owned(bytes_of(self.elements)))
     }
 }
 

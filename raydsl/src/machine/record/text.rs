@@ -8,7 +8,8 @@ static SCRATCH: KernelInfo =
     KernelInfo { name: "scratch", file: file!(), line: line!(), params: &[] };
 
 impl Recorder {
-    /// The number of a function whose text is not recorded; made if there is none of that name.
+    /// The number of the function of this name that is text, made if there is none. `types` are those that
+    /// its text has by their names.
     pub(crate) fn text_function(
         &self,
         name: String,
@@ -39,7 +40,7 @@ impl Recorder {
                 Expr::Call(f, _) => Some(f),
                 _ => None,
             });
-        called.expect("an intersection is a kernel, and a call of a kernel records a function")
+        called.expect("what is recorded calls a kernel, which records a function")
     }
 
     /// The name of a function.
