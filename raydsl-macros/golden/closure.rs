@@ -5,6 +5,7 @@ fn main() {
             file: ::core::file!(),
             line: ::core::line!(),
             params: &["ray"],
+            known: ::core::option::Option::None,
         };
         const _: ::core::option::Option<&str> = ::core::option_env!("RAYDSL_VARIANTS");
         let scalar = |ray: Ray| {

@@ -53,6 +53,7 @@ impl walk {
             file: ::core::file!(),
             line: ::core::line!(),
             params: &["x", "n"],
+            known: ::core::option::Option::None,
         };
         ::raydsl::__private::Machine::call(
             m,
@@ -401,6 +402,7 @@ impl ::raydsl::__private::KernelFn for walk {
             file: ::core::file!(),
             line: ::core::line!(),
             params: &["x", "n"],
+            known: ::core::option::Option::None,
         };
         &__INFO
     }

@@ -40,6 +40,7 @@ where
             file: ::core::file!(),
             line: ::core::line!(),
             params: &["self", "by"],
+            known: ::core::option::Option::None,
         };
         ::raydsl::__private::Machine::call(
             m,
@@ -106,6 +107,7 @@ where
             file: ::core::file!(),
             line: ::core::line!(),
             params: &[],
+            known: ::core::option::Option::None,
         };
         ::raydsl::__private::Machine::call(
             m,

@@ -39,6 +39,7 @@ impl push {
             file: ::core::file!(),
             line: ::core::line!(),
             params: &["p", "by"],
+            known: ::core::option::Option::None,
         };
         ::raydsl::__private::Machine::call(
             m,
@@ -120,6 +121,7 @@ where
             file: ::core::file!(),
             line: ::core::line!(),
             params: &["p", "by"],
+            known: ::core::option::Option::None,
         };
         &__INFO
     }

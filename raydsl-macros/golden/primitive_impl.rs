@@ -38,6 +38,7 @@ where
             file: ::core::file!(),
             line: ::core::line!(),
             params: &["self", "ray"],
+            known: ::core::option::Option::None,
         };
         ::raydsl::__private::Machine::call(
             m,

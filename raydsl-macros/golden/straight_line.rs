@@ -34,6 +34,7 @@ impl smooth {
             file: ::core::file!(),
             line: ::core::line!(),
             params: &["x", "n"],
+            known: ::core::option::Option::None,
         };
         ::raydsl::__private::Machine::call(
             m,
@@ -109,6 +110,7 @@ impl ::raydsl::__private::KernelFn for smooth {
             file: ::core::file!(),
             line: ::core::line!(),
             params: &["x", "n"],
+            known: ::core::option::Option::None,
         };
         &__INFO
     }

@@ -41,11 +41,16 @@ fn expand_kernel(
     args: proc_macro2::TokenStream,
     item: proc_macro2::TokenStream,
 ) -> proc_macro2::TokenStream {
+    if let Ok(f) = syn::parse2::<syn::ItemFn>(item.clone()) {
+        if args.is_empty() {
+            return items::kernel_fn(&f, None);
+        }
+        if let Ok(known) = syn::parse2::<items::KnownBy>(args.clone()) {
+            return items::kernel_fn(&f, Some(&known));
+        }
+    }
     if !args.is_empty() {
         return refused(&item, &args, "`#[kernel]` takes no arguments", "write `#[kernel]`");
-    }
-    if let Ok(f) = syn::parse2::<syn::ItemFn>(item.clone()) {
-        return items::kernel_fn(&f);
     }
     if let Ok(i) = syn::parse2::<syn::ItemImpl>(item.clone()) {
         let mut errors = diag::Errors::default();

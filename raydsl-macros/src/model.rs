@@ -15,6 +15,8 @@ pub(crate) struct Kernel {
     pub(crate) body: Block,
     /// Whether it says `#[inline(never)]`.
     pub(crate) is_apart: bool,
+    /// What machines know of it beyond its code.
+    pub(crate) known: Option<syn::Expr>,
     /// Whether there is a mistake in its signature: then nothing can be made of it.
     pub(crate) is_broken: bool,
 }

@@ -283,7 +283,7 @@ pub fn inputs<A: Type>(seed: u64) -> Vec<A> {
 /// that the tests take to compile, and are the same functions.
 pub fn recorded<F: KernelFn>() -> Kernel<'static, F::Args, F::Output> {
     static INFO: KernelInfo =
-        KernelInfo { name: "function", file: file!(), line: line!(), params: &[] };
+        KernelInfo { name: "function", file: file!(), line: line!(), params: &[], known: None };
     Kernel::scalar(&INFO, F::scalar).lifted(
         Lifted {
             native4: None,

@@ -23,7 +23,7 @@ const PACKETS: [Variant; 3] = [Variant::Packet4, Variant::Packet8, Variant::Pack
 /// The kernel with the copies for these packets, and without WGSL and the reference.
 fn with(packets: &[Variant]) -> Kernel<'static, (u32,), f32> {
     static INFO: KernelInfo =
-        KernelInfo { name: "steps", file: "steps.rs", line: 7, params: &["n"] };
+        KernelInfo { name: "steps", file: "steps.rs", line: 7, params: &["n"], known: None };
     let has = |variant| packets.contains(&variant);
     Kernel::scalar(&INFO, steps::scalar).lifted(
         Lifted {
@@ -82,7 +82,8 @@ fn frames_are_the_same() {
         image
     };
     let whole = kernel!(|ray: Ray| ray.direction.x * 3.0 + ray.direction.y);
-    static INFO: KernelInfo = KernelInfo { name: "sum", file: "sum.rs", line: 1, params: &["ray"] };
+    static INFO: KernelInfo =
+        KernelInfo { name: "sum", file: "sum.rs", line: 1, params: &["ray"], known: None };
     let sum = |(ray,): (Ray,)| ray.direction.x * 3.0 + ray.direction.y;
     let none =
         Lifted { native4: None, native8: None, native16: None, recorder: None, margin: None };

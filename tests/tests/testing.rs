@@ -92,7 +92,8 @@ fn the_wrong_number_is_shown() -> Result<(), String> {
     if !raydsl::testing::can_run(Variant::Wgsl, "the_wrong_number_is_shown") {
         return Ok(());
     }
-    static INFO: KernelInfo = KernelInfo { name: "side", file: "f.rs", line: 7, params: &[] };
+    static INFO: KernelInfo =
+        KernelInfo { name: "side", file: "f.rs", line: 7, params: &[], known: None };
     let kernel = Kernel::scalar(&INFO, sum_and_side::scalar).lifted(
         Lifted {
             native4: Some(Box::new(sum_and_side::lifted)),
@@ -127,7 +128,8 @@ fn mistaken(distance: f32, radius: f32) -> f32 {
 
 /// A kernel whose packets of 4 lanes, or whose WGSL, are another's.
 fn broken(packet: bool, wgsl: bool) -> Kernel<'static, (f32, f32), f32> {
-    static INFO: KernelInfo = KernelInfo { name: "broken", file: "f.rs", line: 7, params: &[] };
+    static INFO: KernelInfo =
+        KernelInfo { name: "broken", file: "f.rs", line: 7, params: &[], known: None };
     Kernel::scalar(&INFO, falloff::scalar).lifted(
         Lifted {
             native4: Some(if packet {

@@ -11,10 +11,24 @@ use crate::model::{Kernel, Param};
 use crate::parse;
 use crate::rewrite::without_markers;
 
+/// `known = Function::Sin`: for the library's own functions, of which machines know more than the code
+/// says.
+pub(crate) struct KnownBy(syn::Expr);
+
+impl syn::parse::Parse for KnownBy {
+    fn parse(input: syn::parse::ParseStream<'_>) -> syn::Result<Self> {
+        let name: Ident = input.parse()?;
+        input.parse::<syn::Token![=]>()?;
+        let known = input.parse()?;
+        if name == "known" { Ok(Self(known)) } else { Err(input.error("no such argument")) }
+    }
+}
+
 /// The function as it is, a type of the same name, and the lifted body as the type's `on`.
-pub(crate) fn kernel_fn(item: &syn::ItemFn) -> TokenStream {
+pub(crate) fn kernel_fn(item: &syn::ItemFn, known: Option<&KnownBy>) -> TokenStream {
     let mut errors = Errors::default();
-    let kernel = parse::function(&item.attrs, &item.sig, &item.block, None, &mut errors);
+    let mut kernel = parse::function(&item.attrs, &item.sig, &item.block, None, &mut errors);
+    kernel.known = known.map(|by| by.0.clone());
     let name = &kernel.name;
     let vis = item.vis.to_token_stream();
     let source = without_markers(item.to_token_stream());

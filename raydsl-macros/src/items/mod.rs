@@ -8,7 +8,7 @@ mod primitive;
 mod shape;
 
 pub(crate) use closure::{ClosureKernel, kernel_closure};
-pub(crate) use function::kernel_fn;
+pub(crate) use function::{KnownBy, kernel_fn};
 pub(crate) use methods::{kernel_impl, kernel_trait};
 pub(crate) use primitive::primitive_impl;
 pub(crate) use shape::{Shape, with_shape};
@@ -34,12 +34,17 @@ fn info(kernel: &Kernel, name: &str) -> TokenStream {
     // Values of the host are no arguments on a machine.
     let values = kernel.params.iter().filter(|p| !p.host);
     let params: Vec<String> = values.map(|p| p.name.to_string()).collect();
+    let known = match &kernel.known {
+        Some(known) => quote!(::core::option::Option::Some(#p::KnownBy(&#known))),
+        None => quote!(::core::option::Option::None),
+    };
     quote! {
         static __INFO: #p::KernelInfo = #p::KernelInfo {
             name: #name,
             file: ::core::file!(),
             line: ::core::line!(),
             params: &[#(#params),*],
+            known: #known,
         };
     }
 }

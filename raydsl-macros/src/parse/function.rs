@@ -36,7 +36,8 @@ pub(crate) fn function(
     body.stmts.splice(0..0, prologue);
     let generics = Generics::new(&sig.generics);
     let is_apart = attrs.iter().any(is_never_inlined);
-    Kernel { name: sig.ident.clone(), generics, params, result, body, is_apart, is_broken }
+    let name = sig.ident.clone();
+    Kernel { name, generics, params, result, body, is_apart, known: None, is_broken }
 }
 
 /// A kernel is neither `async` nor `unsafe`.
@@ -190,7 +191,7 @@ impl Parser<'_> {
         body.stmts.splice(0..0, prologue);
         let name = Ident::new(name, Span::call_site());
         let (generics, is_apart, is_broken) = (Generics::default(), false, false);
-        Kernel { name, generics, params, result, body, is_apart, is_broken }
+        Kernel { name, generics, params, result, body, is_apart, known: None, is_broken }
     }
 
     /// A closure as an argument. With a `return` its body is a labelled block.

@@ -393,6 +393,7 @@ impl Choice<'_> {
                 file: ::core::file!(),
                 line: ::core::line!(),
                 params: &["self", "ray", "shared"],
+                known: ::core::option::Option::None,
             };
             #p::Machine::call(
                 m,

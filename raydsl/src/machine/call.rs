@@ -1,6 +1,8 @@
 //! Kernels as functions of a machine.
 
-use super::{Machine, Type};
+use super::margin::Known;
+use super::record::ir::Id;
+use super::{Machine, Margin, Recorder, Type};
 
 /// Where a kernel stands in the source, and the names of its parameters.
 #[derive(Debug)]
@@ -13,7 +15,22 @@ pub struct KernelInfo {
     pub line: u32,
     /// The parameters' names.
     pub params: &'static [&'static str],
+    /// What machines know of it beyond its code.
+    pub known: Option<KnownBy>,
 }
+
+/// A function of which machines know more than its code says: `sin` is in WGSL, and in std for `f64`.
+pub(crate) trait KnownFunction: core::fmt::Debug + Sync {
+    /// Records what WGSL itself has for it, for code that need not be the same as on the CPU.
+    fn record_builtin(&self, m: &Recorder, args: &[Id]) -> Option<Vec<Id>>;
+
+    /// Its results in `f64`, with bounds of what rounding may do.
+    fn bound(&self, m: &Margin, args: &[Known]) -> Vec<Known>;
+}
+
+/// Who knows more of a kernel.
+#[derive(Clone, Copy, Debug)]
+pub struct KnownBy(pub(crate) &'static dyn KnownFunction);
 
 /// A `#[kernel] fn`: its scalar source and its lifted body.
 #[diagnostic::on_unimplemented(

@@ -19,7 +19,6 @@ use super::vector::{Arithmetic, Floats, Vector};
 use super::{
     B, BoolBinary, Coerce, F, F32Binary, I, Machine, Op, U, V3, Value, Varying, X2, X3, X4, op,
 };
-use crate::math::matrix;
 
 /// What [`min()`], [`max()`] and [`clamp()`] take: numbers, and vectors of numbers.
 pub trait Ordered: Copy {
@@ -228,7 +227,7 @@ impl Invertible for Affine3 {
 impl Invertible for Mat4 {
     #[inline(always)]
     fn inverted(self) -> Self {
-        matrix::inverse_mat4(self)
+        super::inverse::inverse_mat4(self)
     }
 }
 
@@ -256,7 +255,7 @@ impl Square for Mat3 {
 impl Square for Mat4 {
     #[inline(always)]
     fn determined(self) -> f32 {
-        matrix::determinant_mat4(self)
+        super::inverse::determinant_mat4(self)
     }
 }
 
@@ -413,7 +412,7 @@ impl<M: Machine> InvertibleOn<M> for A3<M> {
 impl<M: Machine> InvertibleOn<M> for M4<M> {
     #[inline(always)]
     fn inverted(m: &M, a: Self) -> Self {
-        matrix::inverse_mat4::on(m, a)
+        super::inverse::inverse_mat4::on(m, a)
     }
 }
 
@@ -433,7 +432,7 @@ impl<M: Machine> SquareOn<M> for M3<M> {
 impl<M: Machine> SquareOn<M> for M4<M> {
     #[inline(always)]
     fn determined(m: &M, a: Self) -> F<M> {
-        matrix::determinant_mat4::on(m, a)
+        super::inverse::determinant_mat4::on(m, a)
     }
 }
 

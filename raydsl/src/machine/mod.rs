@@ -39,6 +39,7 @@ mod gang;
 pub mod generic;
 pub mod host;
 pub(crate) mod index;
+mod inverse;
 mod kinds;
 mod lanes;
 pub mod lowered;
@@ -61,7 +62,8 @@ mod vector;
 pub mod wgsl;
 mod words;
 
-pub use call::{KernelFn, KernelInfo};
+pub(crate) use call::KnownFunction;
+pub use call::{KernelFn, KernelInfo, KnownBy};
 pub use capture::{Capture, Parameter, Resource};
 pub use control::{Branch, Condition, Loop, Ret, Var};
 pub(crate) use counted::{Count, count};

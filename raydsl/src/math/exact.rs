@@ -6,7 +6,9 @@ use glam::{Vec3, vec3};
 
 use crate::machine::functions::vec3;
 use crate::machine::generic::min;
-use crate::machine::{KernelFn, KernelInfo};
+use crate::machine::margin::{Interval, Known};
+use crate::machine::record::ir::Id;
+use crate::machine::{KnownFunction, Margin, Recorder};
 use crate::{Type, kernel};
 
 /// The same number, of which a compiler knows nothing: those of some drivers cancel `a - (a - b)`
@@ -55,7 +57,7 @@ pub(crate) struct Lost {
 }
 
 /// What the cross product loses by rounding its products.
-#[kernel]
+#[kernel(known = LostByCross)]
 #[inline]
 pub(crate) fn lost_by_cross(a: Vec3, b: Vec3) -> Lost {
     let (a_yzx, a_zxy) = (vec3(a.y, a.z, a.x), vec3(a.z, a.x, a.y));
@@ -65,11 +67,43 @@ pub(crate) fn lost_by_cross(a: Vec3, b: Vec3) -> Lost {
     Lost { most: lost - lost_too, rest: lost_by_difference(lost, lost_too) }
 }
 
-/// Whether a kernel is [`lost_by_cross()`]. A machine that bounds errors knows how small its
-/// results are, and could not find out from its operations.
-pub(crate) fn is_lost_by_cross(info: &KernelInfo) -> bool {
-    let own = <lost_by_cross as KernelFn>::info();
-    (info.name, info.file, info.line) == (own.name, own.file, own.line)
+/// What machines know of [`lost_by_cross()`]: it is small, where intervals would only widen.
+#[derive(Debug)]
+struct LostByCross;
+
+/// By what a factor is multiplied to tell its halves apart, rounded up.
+const SPLIT: f64 = 4098.0;
+/// How many of the sums and products that find what one product loses may underflow.
+const PARTS: f64 = 8.0;
+
+impl KnownFunction for LostByCross {
+    fn record_builtin(&self, _: &Recorder, _: &[Id]) -> Option<Vec<Id>> {
+        None
+    }
+
+    /// Nothing in `f64`. Each product loses at most its rounding; a device that fuses or reorders what
+    /// finds that may be off by as much again.
+    fn bound(&self, m: &Margin, args: &[Known]) -> Vec<Known> {
+        let size = |i: usize| args[i].range.magnitude();
+        let product = |i: usize, j: usize| {
+            let (a, b) = (size(i), size(3 + j));
+            // Halves of a factor are told apart by a multiple of it; beyond the largest number that
+            // is infinite, and the rest of it is no number.
+            let largest = (SPLIT * a).max(SPLIT * b).max(a * b);
+            if largest > f64::from(f32::MAX) {
+                return f64::INFINITY;
+            }
+            2.0 * (m.rounding().sum * a * b + PARTS * m.rounding().least)
+        };
+        let lost = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| product(i, j) + product(j, i));
+        let nan = args.iter().any(|v| v.range.nan || v.range.is_nan());
+        let within = |error: f64| {
+            let nan = nan || !error.is_finite();
+            m.bounded(0.0, Interval::new(-error, error, nan))
+        };
+        let rest = lost.map(|error| 2.0 * (m.rounding().sum * error + m.rounding().least));
+        lost.into_iter().chain(rest).map(within).collect()
+    }
 }
 
 /// The cross product with 2 ulp at most lost of each component, however much they cancel: their

@@ -1,10 +1,9 @@
-//! Numbers with few bits, elementary functions, and what glam's matrices lack.
+//! Numbers with few bits, elementary functions, and arithmetic that keeps what rounding loses.
 
 mod code;
 pub mod elementary;
 pub(crate) mod exact;
 mod half;
-pub(crate) mod matrix;
 mod unorm;
 
 pub use half::{F16, F16On};

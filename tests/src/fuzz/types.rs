@@ -308,7 +308,7 @@ where
 
 /// Of kernels that are not named.
 pub static INFO: KernelInfo =
-    KernelInfo { name: "function", file: file!(), line: line!(), params: &[] };
+    KernelInfo { name: "function", file: file!(), line: line!(), params: &[], known: None };
 
 /// `Entry`: the kernel `entry` of the module with the slices of a scene, as a function of the rest.
 #[macro_export]

@@ -102,7 +102,7 @@ impl Margin {
     }
 
     /// A float that is `value` in `f64`, and a rounded one of `range` in `f32`.
-    pub(super) fn rounded(&self, value: f64, range: Interval, by: Rounded) -> Known {
+    pub(crate) fn rounded(&self, value: f64, range: Interval, by: Rounded) -> Known {
         self.computed(value, range, None, by)
     }
 

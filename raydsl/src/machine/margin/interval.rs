@@ -11,24 +11,24 @@
 pub(crate) struct Interval {
     pub(crate) low: f64,
     pub(crate) high: f64,
-    pub(super) nan: bool,
+    pub(crate) nan: bool,
 }
 
 /// How far a rounded result may lie from the exact one: this part of it, and this much.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Rounded {
+pub(crate) struct Rounded {
     pub(super) relative: f64,
     pub(super) absolute: f64,
 }
 
 impl Interval {
     /// NaN, and nothing else.
-    pub(super) const NAN: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, nan: true };
+    pub(crate) const NAN: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, nan: true };
     /// Nothing is known.
-    pub(super) const ALL: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY, nan: true };
+    pub(crate) const ALL: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY, nan: true };
 
     /// This number alone.
-    pub(super) fn point(v: f64) -> Self {
+    pub(crate) fn point(v: f64) -> Self {
         if v.is_nan() { Self::NAN } else { Self { low: v, high: v, nan: false } }
     }
 
@@ -42,7 +42,7 @@ impl Interval {
     }
 
     /// The smallest interval around some numbers; a NaN among them is no limit.
-    pub(super) fn around(numbers: impl IntoIterator<Item = f64>, nan: bool) -> Self {
+    pub(crate) fn around(numbers: impl IntoIterator<Item = f64>, nan: bool) -> Self {
         let mut all = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, nan };
         for v in numbers {
             if v.is_nan() {
@@ -59,7 +59,7 @@ impl Interval {
     }
 
     /// The number, if only one is possible. Zeros of either sign are two.
-    pub(super) fn as_point(self) -> Option<f64> {
+    pub(crate) fn as_point(self) -> Option<f64> {
         (self.low.to_bits() == self.high.to_bits() && !self.nan).then_some(self.low)
     }
 
@@ -69,7 +69,7 @@ impl Interval {
     }
 
     /// Whether its sign is known, and which: true for `-`. A NaN may have either.
-    pub(super) fn is_negative(self) -> Option<bool> {
+    pub(crate) fn is_negative(self) -> Option<bool> {
         let (low, high) = (self.low.is_sign_negative(), self.high.is_sign_negative());
         (low == high && !self.nan).then_some(low)
     }
@@ -92,11 +92,11 @@ impl Interval {
     }
 
     /// The largest size of a number in it.
-    pub(super) fn magnitude(self) -> f64 {
+    pub(crate) fn magnitude(self) -> f64 {
         if self.is_nan() { 0.0 } else { self.low.abs().max(self.high.abs()) }
     }
 
-    pub(super) fn contains(self, v: f64) -> bool {
+    pub(crate) fn contains(self, v: f64) -> bool {
         if v.is_nan() { self.nan } else { self.low <= v && v <= self.high }
     }
 
@@ -248,7 +248,7 @@ impl Interval {
     }
 
     /// `f` of it, for a function that rises or falls everywhere in `domain` and is NaN outside.
-    pub(super) fn monotone(self, domain: (f64, f64), f: impl Fn(f64) -> f64) -> Self {
+    pub(crate) fn monotone(self, domain: (f64, f64), f: impl Fn(f64) -> f64) -> Self {
         if self.is_nan() || self.high < domain.0 || self.low > domain.1 {
             return Self::NAN;
         }

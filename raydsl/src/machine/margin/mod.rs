@@ -20,8 +20,6 @@ mod arithmetic;
 #[cfg(test)]
 mod cases;
 mod decisions;
-mod elementary;
-mod exact;
 #[cfg(test)]
 mod fuzz;
 mod interval;
@@ -42,7 +40,6 @@ use arena::{Arena, Bounded, Mark};
 use arithmetic::{bits_of, constant, ordered};
 use decisions::Decisions;
 use leaves::{Assigned, Copied, Give, Take};
-use operations::KnownFunction;
 
 pub(crate) use affine::Form;
 pub(crate) use arena::Known;
@@ -108,6 +105,17 @@ impl Margin {
     /// What is known of a float.
     pub(crate) fn get(&self, float: Bounded) -> Known {
         self.floats.get(float)
+    }
+
+    /// How its variants round.
+    pub(crate) fn rounding(&self) -> Rounding {
+        self.rounding
+    }
+
+    /// Whether the way that is followed takes the other of two alternatives, of which `f64` takes the
+    /// first.
+    pub(crate) fn chooses_other(&self) -> bool {
+        self.is_running() && self.decisions.choose(2) == 1
     }
 
     /// What is known of a float with a number of its own.
@@ -452,7 +460,7 @@ impl Machine for Margin {
         args: A,
         body: impl FnOnce(&Self, A) -> R,
     ) -> R {
-        if let Some(known) = KnownFunction::of(info) {
+        if let Some(known) = info.known {
             let mut floats = Take(Vec::new());
             A::zip(self, args, args, &mut floats);
             let mut results = Give(self.results(known, &floats.0).into_iter());

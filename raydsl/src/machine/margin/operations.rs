@@ -4,9 +4,7 @@ use super::arena::{Bounded, Known};
 use super::interval::Interval;
 use super::{Margin, Truth, affine};
 use crate::machine::scalar::{self, compare};
-use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, KernelInfo};
-use crate::math::elementary::{Function, function};
-use crate::math::exact::is_lost_by_cross;
+use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, KnownBy};
 
 impl Margin {
     #[inline(never)]
@@ -104,33 +102,12 @@ impl Margin {
     }
 }
 
-/// A function of the library of which the machine knows more than its code says.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum KnownFunction {
-    Elementary(Function),
-    LostByCross,
-}
-
-impl KnownFunction {
-    #[inline(never)]
-    pub(super) fn of(info: &'static KernelInfo) -> Option<Self> {
-        match function(info) {
-            Some(function) => Some(Self::Elementary(function)),
-            None => is_lost_by_cross(info).then_some(Self::LostByCross),
-        }
-    }
-}
-
 impl Margin {
     /// What the function gives for these floats.
     #[inline(never)]
-    pub(super) fn results(&self, of: KnownFunction, args: &[Bounded]) -> Vec<Bounded> {
+    pub(super) fn results(&self, of: KnownBy, args: &[Bounded]) -> Vec<Bounded> {
         let args: Vec<Known> = args.iter().map(|a| self.get(*a)).collect();
-        let results = match of {
-            KnownFunction::Elementary(function) => self.elementary(function, &args),
-            KnownFunction::LostByCross => self.lost_by_cross(&args),
-        };
-        results.into_iter().map(|v| self.put(v)).collect()
+        of.0.bound(self, &args).into_iter().map(|v| self.put(v)).collect()
     }
 }
 

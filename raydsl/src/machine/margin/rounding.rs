@@ -86,7 +86,7 @@ impl Rounding {
         self.rounded(self.root)
     }
 
-    pub(super) fn function(self) -> Rounded {
+    pub(crate) fn function(self) -> Rounded {
         Rounded { absolute: 8.0 * self.least, ..self.rounded(self.elementary) }
     }
 }

@@ -11,7 +11,6 @@ use crate::machine::{
     Machine, On, Op, Operation, Schema, Type as MachineType, U, U32Unary, Usize, Value, Var, Visit,
     op,
 };
-use crate::math::elementary::{Function, function};
 
 /// `lit_0_125`: the name of a literal in the uniform block.
 fn literal_name(v: f32) -> String {
@@ -45,32 +44,6 @@ impl Recorder {
             }
             _ => id,
         }
-    }
-
-    /// What WGSL's own function gives, if the kernel is an elementary function that it has.
-    fn builtin(&self, info: &'static KernelInfo, args: Vec<Id>) -> Option<Vec<Id>> {
-        let name = match function(info)? {
-            Function::Sin => "sin",
-            Function::Cos => "cos",
-            Function::Tan => "tan",
-            Function::Asin => "asin",
-            Function::Acos => "acos",
-            Function::Atan => "atan",
-            Function::Atan2 => "atan2",
-            Function::Exp => "exp",
-            Function::Exp2 => "exp2",
-            Function::Log => "log",
-            Function::Log2 => "log2",
-            Function::Pow => "pow",
-            Function::SinCos2Pi => {
-                let turn = self.f32(core::f32::consts::TAU);
-                let angle = self.f32_binary(op::Mul, args[0], turn);
-                let of = |name| self.add(Expr::Builtin(name, vec![angle]), Type::F32);
-                return Some(vec![of("sin"), of("cos")]);
-            }
-            Function::Expm1 | Function::Log1p => return None,
-        };
-        Some(vec![self.add(Expr::Builtin(name, args), Type::F32)])
     }
 
     /// The number that `id` is in the source.
@@ -662,7 +635,8 @@ impl Machine for Recorder {
         body: impl FnOnce(&Self, A) -> R,
     ) -> R {
         if self.arithmetic == wgsl::Arithmetic::Fast
-            && let Some(result) = self.builtin(info, self.leaves_of(args))
+            && let Some(known) = info.known
+            && let Some(result) = known.0.record_builtin(self, &self.leaves_of(args))
         {
             return self.of_leaves(&result);
         }

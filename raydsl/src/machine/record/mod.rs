@@ -420,8 +420,13 @@ impl Recording {
         arithmetic: wgsl::Arithmetic,
         kernel: impl FnOnce(&Recorder, super::U<Recorder>, super::U<Recorder>) -> R::On<Recorder>,
     ) -> Self {
-        static INFO: KernelInfo =
-            KernelInfo { name: "pixel", file: file!(), line: line!(), params: &["x", "y"] };
+        static INFO: KernelInfo = KernelInfo {
+            name: "pixel",
+            file: file!(),
+            line: line!(),
+            params: &["x", "y"],
+            known: None,
+        };
         Self::record(arithmetic, &INFO, None, R::SCHEMA, |m, (x, y)| kernel(m, x, y))
     }
 
@@ -430,8 +435,13 @@ impl Recording {
         arithmetic: wgsl::Arithmetic,
         kernel: impl FnOnce(&Recorder, A::On<Recorder>) -> R::On<Recorder>,
     ) -> Self {
-        static INFO: KernelInfo =
-            KernelInfo { name: "element", file: file!(), line: line!(), params: &["input"] };
+        static INFO: KernelInfo = KernelInfo {
+            name: "element",
+            file: file!(),
+            line: line!(),
+            params: &["input"],
+            known: None,
+        };
         Self::record(arithmetic, &INFO, Some(A::SCHEMA), R::SCHEMA, |m, (a,)| kernel(m, a))
     }
 

@@ -5,7 +5,7 @@ use super::{Builder, Recorder};
 use crate::machine::{KernelInfo, Schema, Value};
 
 static SCRATCH: KernelInfo =
-    KernelInfo { name: "scratch", file: file!(), line: line!(), params: &[] };
+    KernelInfo { name: "scratch", file: file!(), line: line!(), params: &[], known: None };
 
 impl Recorder {
     /// The number of the function of this name that is text, made if there is none. `types` are those that

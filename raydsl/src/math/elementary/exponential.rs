@@ -2,6 +2,7 @@
 
 use core::f32::consts::LOG2_E;
 
+use super::function::Function;
 use super::parts::{exp2_near_zero, power_of_two, scaled};
 use crate::kernel;
 use crate::machine::generic::clamp;
@@ -17,7 +18,7 @@ pub(super) const LN_2_LOW: f32 = 3.1946183e-5;
 ///
 /// `x = n ln 2 + r` with a whole `n` and `|r| <= ln 2 / 2` by two parts of ln 2 (Cody and Waite,
 /// 1980), then a polynomial of degree 6 in `r`.
-#[kernel]
+#[kernel(known = Function::Exp)]
 #[inline]
 pub fn exp(x: f32) -> f32 {
     // What lies outside overflows or vanishes as the limits do.
@@ -34,7 +35,7 @@ pub fn exp(x: f32) -> f32 {
 /// At most 1.09 ulp off, and exact where `x` is whole. Infinity from 128 on, 0 from -150 down.
 ///
 /// The whole part goes to the exponent, the rest through a polynomial of degree 6.
-#[kernel]
+#[kernel(known = Function::Exp2)]
 #[inline]
 pub fn exp2(x: f32) -> f32 {
     let y = clamp(x, -151.0, 129.0);
@@ -48,7 +49,7 @@ pub fn exp2(x: f32) -> f32 {
 ///
 /// With `x = n ln 2 + r` as in [`exp()`] and `e = e^r - 1`, the result is `2^n (e + (1 - 2^-n))`:
 /// for `n = 0` nothing is added.
-#[kernel]
+#[kernel(known = Function::Expm1)]
 #[inline]
 pub fn expm1(x: f32) -> f32 {
     let y = clamp(x, -18.0, 90.0);

@@ -1,10 +1,13 @@
-//! Which elementary function a kernel is: machines may have better means than its polynomial.
+//! What machines know of the elementary functions beyond their code.
 
-use crate::machine::{KernelFn, KernelInfo};
+use super::bounds;
+use crate::machine::margin::Known;
+use crate::machine::record::ir::{Expr, Id, Type};
+use crate::machine::{KnownFunction, Machine, Margin, Recorder, op};
 
 /// An elementary function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Function {
+pub(super) enum Function {
     Sin,
     Cos,
     Tan,
@@ -22,20 +25,33 @@ pub(crate) enum Function {
     SinCos2Pi,
 }
 
-/// The elementary function that a kernel is. A kernel of a user may have the same name, but stands
-/// elsewhere.
-pub(crate) fn function(info: &KernelInfo) -> Option<Function> {
-    macro_rules! find {
-        ($($name:ident $function:ident)+) => {
-            match info.name {
-                $(stringify!($name) => (Function::$function, <super::$name as KernelFn>::info()),)+
-                _ => return None,
+impl KnownFunction for Function {
+    fn record_builtin(&self, m: &Recorder, args: &[Id]) -> Option<Vec<Id>> {
+        let of = |name, args: &[Id]| m.add(Expr::Builtin(name, args.to_vec()), Type::F32);
+        let name = match self {
+            Self::Sin => "sin",
+            Self::Cos => "cos",
+            Self::Tan => "tan",
+            Self::Asin => "asin",
+            Self::Acos => "acos",
+            Self::Atan => "atan",
+            Self::Atan2 => "atan2",
+            Self::Exp => "exp",
+            Self::Exp2 => "exp2",
+            Self::Log => "log",
+            Self::Log2 => "log2",
+            Self::Pow => "pow",
+            Self::SinCos2Pi => {
+                let turn = m.f32(core::f32::consts::TAU);
+                let angle = m.f32_binary(op::Mul, args[0], turn);
+                return Some(vec![of("sin", &[angle]), of("cos", &[angle])]);
             }
+            Self::Expm1 | Self::Log1p => return None,
         };
+        Some(vec![of(name, args)])
     }
-    let (function, own) = find!(
-        sin Sin cos Cos tan Tan asin Asin acos Acos atan Atan atan2 Atan2 exp Exp exp2 Exp2
-        expm1 Expm1 log Log log2 Log2 log1p Log1p pow Pow sincos_2pi SinCos2Pi
-    );
-    (info.file == own.file && info.line == own.line).then_some(function)
+
+    fn bound(&self, m: &Margin, args: &[Known]) -> Vec<Known> {
+        bounds::of(m, *self, args)
+    }
 }

@@ -2,6 +2,7 @@
 
 use core::f32::consts::{FRAC_PI_2, PI};
 
+use super::function::Function;
 use super::parts::{is_nan, turned};
 use crate::kernel;
 use crate::machine::generic::{max, min};
@@ -21,7 +22,7 @@ const FRAC_PI_4_LOW: f32 = 0.0002419134;
 ///
 /// A polynomial up to 1/2; above, `asin(x) = pi/2 - 2 asin(sqrt((1 - x) / 2))` (Cody and Waite,
 /// 1980, chapter 10).
-#[kernel]
+#[kernel(known = Function::Asin)]
 #[inline]
 pub fn asin(x: f32) -> f32 {
     let a = x.abs();
@@ -38,7 +39,7 @@ pub fn asin(x: f32) -> f32 {
 /// At most 1.13 ulp off. NaN outside -1 to 1.
 ///
 /// `pi/2 - asin(x)` up to 1/2; above, `2 asin(sqrt((1 - x) / 2))`, which loses nothing near 1.
-#[kernel]
+#[kernel(known = Function::Acos)]
 #[inline]
 pub fn acos(x: f32) -> f32 {
     let a = x.abs();
@@ -66,7 +67,7 @@ fn asin_series(s: f32, z: f32) -> f32 {
 ///
 /// With `k` eighths of a turn taken off, `atan(x) = k pi/4 + atan(q)` with `|q| <= tan(pi/8)`: `q`
 /// is `x`, `(x - 1) / (x + 1)` or `-1 / x` (Cephes, `atanf.c`).
-#[kernel]
+#[kernel(known = Function::Atan)]
 #[inline]
 pub fn atan(x: f32) -> f32 {
     let a = x.abs();
@@ -87,7 +88,7 @@ pub fn atan(x: f32) -> f32 {
 /// pi / 4 where both are infinite.
 ///
 /// The arc tangent of the smaller part over the larger one, and the quadrant from the signs.
-#[kernel]
+#[kernel(known = Function::Atan2)]
 #[inline]
 pub fn atan2(y: f32, x: f32) -> f32 {
     let width = x.abs();

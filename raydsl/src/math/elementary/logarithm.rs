@@ -1,6 +1,7 @@
 //! `log`, `log2`, `log1p`.
 
 use super::exponential::{LN_2_HIGH, LN_2_LOW};
+use super::function::Function;
 use super::parts::{head, power_of_two, split};
 use crate::kernel;
 
@@ -16,7 +17,7 @@ const LOG2_E_LOW: f32 = 0.0003122284;
 /// `x = m 2^k` with `m` from `sqrt(1/2)` to `sqrt(2)`. With `f = m - 1` and `s = f / (2 + f)`,
 /// `log(1 + f) = 2 atanh(s) = f - f²/2 + s (f²/2 + R(s²))` (the form of FreeBSD's msun, `e_log.c`,
 /// after Remez), and `k ln 2` is added in two parts.
-#[kernel]
+#[kernel(known = Function::Log)]
 #[inline]
 pub fn log(x: f32) -> f32 {
     let parts = split(x);
@@ -30,7 +31,7 @@ pub fn log(x: f32) -> f32 {
 /// infinity.
 ///
 /// As [`log()`], with the logarithm of the mantissa in two parts for the product with 1 / ln 2.
-#[kernel]
+#[kernel(known = Function::Log2)]
 #[inline]
 pub fn log2(x: f32) -> f32 {
     let parts = split(x);
@@ -51,7 +52,7 @@ pub fn log2(x: f32) -> f32 {
 ///
 /// The rounded `1 + x` only tells the exponent `k`. `f = 2^-k x + (2^-k - 1)` is then `2^-k (1 + x)
 /// - 1`: `x` itself for `k = 0`, else rounded once where the result is large.
-#[kernel]
+#[kernel(known = Function::Log1p)]
 #[inline]
 pub fn log1p(x: f32) -> f32 {
     let y = 1.0 + x;

@@ -18,6 +18,7 @@
 //! coefficients are minimax fits of the relative error (Remez' exchange), rounded to `f32` one
 //! after the other, with a new fit of the rest after each.
 
+mod bounds;
 mod exponential;
 mod function;
 mod inverse;
@@ -25,8 +26,6 @@ mod logarithm;
 mod parts;
 mod power;
 mod trigonometric;
-
-pub(crate) use function::{Function, function};
 
 pub use exponential::{exp, exp2, expm1};
 pub use inverse::{acos, asin, atan, atan2};

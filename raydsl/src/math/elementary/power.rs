@@ -1,5 +1,6 @@
 //! `pow`.
 
+use super::function::Function;
 use super::parts::{exp2_near_zero, head, is_nan, scaled, split};
 use crate::kernel;
 use crate::machine::generic::clamp;
@@ -14,7 +15,7 @@ use crate::machine::generic::clamp;
 /// `2^(y log2(x))`, where the logarithm and its product with `y` are sums of two numbers, together
 /// about 35 bits, as in FreeBSD's msun, `e_powf.c`: with `s = (m - 1) / (m + 1)` of the mantissa
 /// `m` in two parts, `log(m) = 2/3 s (3 + s² + s⁴ G(s²))`.
-#[kernel]
+#[kernel(known = Function::Pow)]
 #[inline]
 pub fn pow(x: f32, y: f32) -> f32 {
     let a = x.abs();

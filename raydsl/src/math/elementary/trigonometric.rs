@@ -2,6 +2,7 @@
 
 use core::f32::consts::{FRAC_2_PI, FRAC_PI_2, TAU};
 
+use super::function::Function;
 use super::parts::turned;
 use crate::{Type, kernel};
 
@@ -23,7 +24,7 @@ const FRAC_PI_2_REST: f32 = 0.0004838268;
 /// The angle is reduced to at most pi / 4: below 8192 by pi / 2 in four parts (Cody and Waite,
 /// 1980), else by the bits of 2 / pi that matter to it (Payne and Hanek, 1983). Packets skip what
 /// none of their lanes needs.
-#[kernel]
+#[kernel(known = Function::Sin)]
 #[inline]
 pub fn sin(x: f32) -> f32 {
     let angle = reduced(x.abs());
@@ -35,7 +36,7 @@ pub fn sin(x: f32) -> f32 {
 /// At most 1.71 ulp off, for every number, however large. NaN at the infinities.
 ///
 /// As [`sin()`], a quarter of a turn ahead.
-#[kernel]
+#[kernel(known = Function::Cos)]
 #[inline]
 pub fn cos(x: f32) -> f32 {
     let angle = reduced(x.abs());
@@ -47,7 +48,7 @@ pub fn cos(x: f32) -> f32 {
 /// At most 2.54 ulp off, for every number, however large. NaN at the infinities; -0 gives -0.
 ///
 /// The angle is reduced as in [`sin()`]; in odd quarters `tan(r + pi/2) = -1 / tan(r)`.
-#[kernel]
+#[kernel(known = Function::Tan)]
 #[inline]
 pub fn tan(x: f32) -> f32 {
     let angle = reduced(x.abs());
@@ -78,7 +79,7 @@ pub struct SinCos {
 ///
 /// Turns are reduced without an error, which makes this both more accurate and faster than
 /// [`sin()`] of a product with 2 pi.
-#[kernel]
+#[kernel(known = Function::SinCos2Pi)]
 #[inline]
 pub fn sincos_2pi(u: f32) -> SinCos {
     let a = u.abs();

@@ -21,9 +21,9 @@ use crate::machine::{
 };
 
 static CLOSEST: KernelInfo =
-    KernelInfo { name: "closest_hit", file: file!(), line: line!(), params: &["ray"] };
+    KernelInfo { name: "closest_hit", file: file!(), line: line!(), params: &["ray"], known: None };
 static ANY: KernelInfo =
-    KernelInfo { name: "any_hit", file: file!(), line: line!(), params: &["ray"] };
+    KernelInfo { name: "any_hit", file: file!(), line: line!(), params: &["ray"], known: None };
 
 /// What is kept of the levels around: the groups, and what is around the outermost.
 const LEVELS: usize = MAX_LEVELS + 1;

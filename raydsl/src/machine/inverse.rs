@@ -5,8 +5,8 @@
 
 use glam::{Mat4, vec4};
 
+use super::functions::vec4;
 use crate::kernel;
-use crate::machine::functions::vec4;
 
 /// The determinant.
 #[kernel]
