@@ -1,3 +1,12 @@
+struct Hit {
+    is_hit: bool,
+    t: f32,
+    prim_id: u32,
+    inst_id: u32,
+    u: f32,
+    v: f32,
+}
+
 struct Ray {
     origin: vec3<f32>,
     direction: vec3<f32>,
@@ -5,11 +14,10 @@ struct Ray {
     t_max: f32,
 }
 
-struct Node {
-    min: vec3<f32>,
-    first: u32,
-    max: vec3<f32>,
-    count: u32,
+struct Slabs {
+    lower: vec3<f32>,
+    upper: vec3<f32>,
+    inverse: vec3<f32>,
 }
 
 struct WalkLevel {
@@ -60,13 +68,11 @@ struct Place {
     count: u32,
 }
 
-struct Hit {
-    is_hit: bool,
-    t: f32,
-    prim_id: u32,
-    inst_id: u32,
-    u: f32,
-    v: f32,
+struct Node {
+    min: vec3<f32>,
+    first: u32,
+    max: vec3<f32>,
+    count: u32,
 }
 
 struct Lost {
@@ -187,70 +193,64 @@ fn scene_ids_at(i: u32) -> u32 {
     return scene_ids[i];
 }
 
-fn is_finite(v: vec3<f32>) -> bool {
-    let exponent = bitcast<vec3<u32>>(v) & vec3<u32>(0x7f800000u);
-    return all(exponent != vec3<u32>(0x7f800000u));
+fn is_within(hit: Hit, ray: Ray) -> bool {
+    return hit.is_hit && (hit.t >= ray.t_min && hit.t <= ray.t_max);
+}
+
+fn limit_behind(t: f32, slack: f32, t_max: f32) -> f32 {
+    let t_1 = t + abs(t) * slack;
+    return select(t_max, t_1, t_1 < t_max);
+}
+
+fn are_finite(v: vec3<f32>) -> bool {
+    return (bitcast<u32>(v.x) & 2147483647u) < 2139095040u && (bitcast<u32>(v.y) & 2147483647u) < 2139095040u && (bitcast<u32>(v.z) & 2147483647u) < 2139095040u;
+}
+
+fn is_finite(ray: Ray) -> bool {
+    return are_finite(ray.origin) && are_finite(ray.direction);
 }
 
 fn largest(v: vec3<f32>) -> f32 {
-    let t = abs(v.x);
-    let t_1 = abs(v.y);
-    let t_2 = select(t, t_1, t < t_1);
-    let t_3 = abs(v.z);
-    return select(t_2, t_3, t_2 < t_3);
+    return max(max(v.x, v.y), v.z);
 }
 
-/// Where a ray meets boxes: origins moved apart by the allowance for rounding, and finite
-/// reciprocals of the direction.
-struct Slabs {
-    lower: vec3<f32>,
-    upper: vec3<f32>,
-    inverse: vec3<f32>,
+fn at_least(x: f32, size: f32) -> f32 {
+    let signed = select(size, -size, (x < 0.0f));
+    return select(x, signed, (abs(x) < size));
 }
 
 fn finite_inverse(d: vec3<f32>) -> vec3<f32> {
-    let a = abs(d);
-    let largest = max(max(a.x, a.y), a.z);
-    let least = max(largest * 8.6736174e-19, 1.1754944e-38);
-    let safe = select(d, select(vec3<f32>(least), vec3<f32>(-least), d < vec3<f32>(0.0)), a < vec3<f32>(least));
-    return 1.0 / safe;
+    let least = max(largest(abs(d)) * 8.6736174e-19f, 1.1754944e-38f);
+    return 1.0f / vec3<f32>(at_least(d.x, least), at_least(d.y, least), at_least(d.z, least));
 }
 
-fn slabs(ray: Ray, root: Node, slack: f32) -> Slabs {
-    let reach = max(abs(root.min - ray.origin), abs(root.max - ray.origin));
-    let pad = max(slack * max(max(reach.x, reach.y), reach.z), 1.1754944e-38) + abs(ray.origin) * 1.1920929e-7;
-    return Slabs(ray.origin + pad, ray.origin - pad, finite_inverse(ray.direction));
+fn slabs(ray: Ray, low: vec3<f32>, high: vec3<f32>, slack: f32, origin: f32) -> Slabs {
+    let reach = max(abs(low - ray.origin), abs(high - ray.origin));
+    let distant = abs(ray.origin);
+    let padding = max(slack * largest(reach), 1.1754944e-38f) + largest(distant) * origin;
+    let padding_1 = distant * 1.1920929e-7f + padding;
+    return Slabs(ray.origin + padding_1, ray.origin - padding_1, finite_inverse(ray.direction));
 }
 
-/// The distances at which a ray enters and leaves a box.
-fn enter_leave(s: Slabs, node: Node, t_min: f32, t_max: f32) -> vec2<f32> {
-    let t0 = (node.min - s.lower) * s.inverse;
-    let t1 = (node.max - s.upper) * s.inverse;
-    let near = min(t0, t1);
-    let far = max(t0, t1);
-    return vec2<f32>(
-        max(max(near.x, near.y), max(near.z, t_min)),
-        min(min(far.x, far.y), min(far.z, t_max)),
-    );
+fn overlap(near: vec3<f32>, far: vec3<f32>, t_min: f32, t_max: f32) -> vec2<f32> {
+    return vec2<f32>(max(max(near.x, near.y), max(near.z, t_min)), min(min(far.x, far.y), min(far.z, t_max)));
 }
 
-/// The slab test for the boxes in a place.
-fn slabs_of_place(ray: Ray, root: Node, place: Place) -> Slabs {
-    let s = slabs(ray, root, place.slack);
-    let a = abs(ray.origin);
-    let pad = max(max(a.x, a.y), a.z) * place.origin;
-    return Slabs(s.lower + pad, s.upper - pad, s.inverse);
+fn enter_leave(s: Slabs, low: vec3<f32>, high: vec3<f32>, t_min: f32, t_max: f32) -> vec2<f32> {
+    let a = (low - s.lower) * s.inverse;
+    let b = (high - s.upper) * s.inverse;
+    return overlap(min(a, b), max(a, b), t_min, t_max);
 }
 
 /// Goes into what is placed if the ray, as it is seen there, may meet it.
 fn scene_enter(w: ptr<function, InstanceWalk>, index: u32, ray: Ray, limit: f32) {
     let place = scene_places_at(index);
-    if (place.root == 4294967295u || !(is_finite(ray.origin) && is_finite(ray.direction))) {
+    if (place.root == 4294967295u || !is_finite(ray)) {
         return;
     }
     let root = scene_nodes_at(place.root);
-    let s = slabs_of_place(ray, root, place);
-    let enter = enter_leave(s, root, ray.t_min, limit);
+    let s = slabs(ray, root.min, root.max, place.slack, place.origin);
+    let enter = enter_leave(s, root.min, root.max, ray.t_min, limit);
     if (!(enter.x <= enter.y)) {
         return;
     }
@@ -303,7 +303,8 @@ fn scene_next(w: ptr<function, InstanceWalk>, limit: f32) -> NextPrimitive {
             (*w).level = (*w).level - 1u;
             (*w).here = (*w).levels[(*w).level];
             let place = scene_places_at((*w).here.place);
-            let s = slabs_of_place((*w).here.ray, scene_nodes_at(place.root), place);
+            let root = scene_nodes_at(place.root);
+            let s = slabs((*w).here.ray, root.min, root.max, place.slack, place.origin);
             (*w).lower = s.lower;
             (*w).upper = s.upper;
             (*w).inverse = s.inverse;
@@ -315,8 +316,8 @@ fn scene_next(w: ptr<function, InstanceWalk>, limit: f32) -> NextPrimitive {
         while (node.count == 0u) {
             let left = scene_nodes_at(node.first);
             let right = scene_nodes_at(node.first + 1u);
-            let l = enter_leave(s, left, (*w).here.ray.t_min, limit);
-            let r = enter_leave(s, right, (*w).here.ray.t_min, limit);
+            let l = enter_leave(s, left.min, left.max, (*w).here.ray.t_min, limit);
+            let r = enter_leave(s, right.min, right.max, (*w).here.ray.t_min, limit);
             let hit_left = l.x <= l.y;
             let hit_right = r.x <= r.y;
             if (!hit_left && !hit_right) {
@@ -478,6 +479,12 @@ fn Triangle_intersect(self_: Triangle, ray: Ray) -> Hit {
     return intersect(ray, self_.v0, self_.v1, self_.v2);
 }
 
+fn contract_is_before(hit: Hit, best: Hit) -> bool {
+    var is_first: bool = hit.prim_id < best.prim_id;
+    is_first = hit.inst_id < best.inst_id || (hit.inst_id == best.inst_id && is_first);
+    return !best.is_hit || (hit.t < best.t || (hit.t == best.t && is_first));
+}
+
 fn closest_hit(ray: Ray) -> Hit {
     var best_is_hit: bool = false;
     var best_t: f32 = 0.0f;
@@ -487,12 +494,11 @@ fn closest_hit(ray: Ray) -> Hit {
     var best_v: f32 = 0.0f;
     var walk: InstanceWalk = scene_walk(ray);
     loop {
-        let t = best_t + abs(best_t) * scene_places_at(0u).slack;
-        let next = scene_next(&walk, select(ray.t_max, select(ray.t_max, t, t < ray.t_max), best_is_hit));
+        let next = scene_next(&walk, select(ray.t_max, limit_behind(best_t, scene_places_at(0u).slack, ray.t_max), best_is_hit));
         if (!(next.id != 4294967295u)) { break; }
         let candidate = Triangle_intersect(scene_at(next.id), next.ray);
-        if (candidate.is_hit && (candidate.t >= next.ray.t_min && candidate.t <= next.ray.t_max)) {
-            if (!best_is_hit || (candidate.t < best_t || (candidate.t == best_t && (next.inst < best_inst_id || (next.inst == best_inst_id && next.id < best_prim_id))))) {
+        if (is_within(candidate, next.ray)) {
+            if (contract_is_before(Hit(candidate.is_hit, candidate.t, next.id, next.inst, candidate.u, candidate.v), Hit(best_is_hit, best_t, best_prim_id, best_inst_id, best_u, best_v))) {
                 best_is_hit = candidate.is_hit;
                 best_t = candidate.t;
                 best_prim_id = next.id;
@@ -524,9 +530,17 @@ fn scene_local_ray(inst: u32, of_scene: Ray) -> Ray {
     return ray;
 }
 
+fn near_largest(v: vec3<f32>) -> f32 {
+    let t = abs(v.x);
+    let t_1 = abs(v.y);
+    let t_2 = select(t, t_1, t < t_1);
+    let t_3 = abs(v.z);
+    return select(t_2, t_3, t_2 < t_3);
+}
+
 fn across(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
-    let t = a / largest(a);
-    let t_1 = b / largest(b);
+    let t = a / near_largest(a);
+    let t_1 = b / near_largest(b);
     let t_2 = t.y * t_1.z - t_1.y * t.z;
     let t_3 = t.z * t_1.x - t_1.z * t.x;
     let t_4 = t.x * t_1.y - t_1.x * t.y;
@@ -581,7 +595,7 @@ fn any_hit(ray: Ray) -> bool {
         let next = scene_next(&walk, ray.t_max);
         if (!(next.id != 4294967295u)) { break; }
         let candidate = Triangle_intersect(scene_at(next.id), next.ray);
-        if (candidate.is_hit && (candidate.t >= next.ray.t_min && candidate.t <= next.ray.t_max)) {
+        if (is_within(candidate, next.ray)) {
             found = true;
             break;
         }

@@ -226,18 +226,24 @@ fn Triangle_intersect(self_: Triangle, ray: Ray) -> Hit {
     return intersect(ray, self_.v0, self_.v1, self_.v2);
 }
 
-fn is_finite(v: vec3<f32>) -> bool {
-    let exponent = bitcast<vec3<u32>>(v) & vec3<u32>(0x7f800000u);
-    return all(exponent != vec3<u32>(0x7f800000u));
+fn are_finite(v: vec3<f32>) -> bool {
+    return (bitcast<u32>(v.x) & 2147483647u) < 2139095040u && (bitcast<u32>(v.y) & 2147483647u) < 2139095040u && (bitcast<u32>(v.z) & 2147483647u) < 2139095040u;
+}
+
+fn is_finite(ray: Ray) -> bool {
+    return are_finite(ray.origin) && are_finite(ray.direction);
+}
+
+fn is_within(hit: Hit, ray: Ray) -> bool {
+    return hit.is_hit && (hit.t >= ray.t_min && hit.t <= ray.t_max);
 }
 
 fn few_any_hit(ray: Ray) -> bool {
-    if (!(is_finite(ray.origin) && is_finite(ray.direction))) {
+    if (!is_finite(ray)) {
         return false;
     }
     for (var id = 0u; id < params.len_of_few; id = id + 1u) {
-        let candidate = Triangle_intersect(few_at(id), ray);
-        if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max) {
+        if (is_within(Triangle_intersect(few_at(id), ray), ray)) {
             return true;
         }
     }

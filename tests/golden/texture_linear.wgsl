@@ -54,7 +54,7 @@ fn saturate_i32(x: f32) -> i32 {
 }
 
 fn reduced(x: f32) -> f32 {
-    let c = select(0.0f, x, ((bitcast<i32>(bitcast<u32>(x)) & 2147483647i) < 2139095040i));
+    let c = select(0.0f, x, ((bitcast<u32>(x) & 2147483647u) < 2139095040u));
     let result = c - floor(c);
     return result;
 }

@@ -6,7 +6,7 @@
 //!
 //! * `intersect` sees the ray's own range, never the best `t` so far; the traversal alone
 //!   compares, and of equal `t` keeps the smaller id.
-//! * Boxes are widened, and nodes behind the best hit are culled, with an allowance of
+//! * Boxes are widened, and nodes behind the best hit are culled, with an padding of
 //!   [`Primitive::SLACK`]: what rounding may do to a hit, it does to no visit.
 //! * Every layout runs the same arithmetic on the same members of a primitive.
 
@@ -30,6 +30,7 @@
 mod accelerator;
 mod batch;
 pub mod build;
+mod contract;
 mod coverage;
 mod instances;
 mod list;
@@ -40,7 +41,6 @@ mod packet_slabs;
 mod query;
 mod ray_query;
 mod refit;
-pub(crate) mod slabs;
 mod stats;
 mod structure;
 pub mod traverse;
@@ -57,6 +57,7 @@ use core::ops::ControlFlow;
 pub use accelerator::{Accelerated, Accelerator};
 use build::Settings;
 pub use build::{BuildConfig, BuildError, BuildQuality, MAX_DEPTH, Traversal};
+pub(crate) use contract::Padding;
 pub use instances::{Group, Instance, InstanceError, Instances, MAX_CONDITION, MAX_LEVELS, Object};
 pub(crate) use instances::{IS_INSTANCE, PLACE_SCHEMA, Placed, Placing, STACK, Target};
 pub use list::{BvhList, ListError};
@@ -67,7 +68,6 @@ pub use on::{AnyHits, ClosestHits};
 pub(crate) use query::{RecordOn, any_where, closest_where, record_on};
 pub use ray_query::RayQuery;
 pub use refit::{DetachedBvh, RefitError};
-pub(crate) use slabs::Allowance;
 pub use stats::Statistics;
 use structure::Structure;
 pub use traverse::Cost;

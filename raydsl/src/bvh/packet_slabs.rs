@@ -1,9 +1,10 @@
-//! The robust slab test for the rays of a packet; see [`super::slabs`].
+//! The test of boxes for the rays of a packet, faster where all go the same way; see
+//! [`super::contract`].
 
 use super::Node;
-use super::slabs::{Allowance, LEAST, ULP};
+use super::contract::{Padding, overlap, slabs};
 use crate::geometry::RayOn;
-use crate::machine::{Lanes, Packet, fill, op};
+use crate::machine::{F, Lanes, Packet, Type, V3, op};
 
 #[inline(always)]
 pub(super) fn min<L: Lanes>(l: L, a: L::F32, b: L::F32) -> L::F32 {
@@ -55,7 +56,7 @@ pub(super) fn without<L: Lanes>(l: L, a: L::Mask, b: L::Mask) -> L::Mask {
 const MIN: [usize; 3] = [0, 1, 2];
 const MAX: [usize; 3] = [4, 5, 6];
 
-/// Rays of a packet, prepared for box tests; see [`super::slabs`].
+/// Rays of a packet, prepared for box tests; see [`super::contract`].
 pub(super) struct PacketSlabs<L: Lanes> {
     /// From where each axis' first and second plane are measured.
     near_origin: [L::F32; 3],
@@ -76,13 +77,20 @@ impl<L: Lanes> PacketSlabs<L> {
         ray: &RayOn<Packet<L>>,
         alive: L::Mask,
         root: &Node,
-        allowance: Allowance,
+        padding: Padding,
     ) -> Self {
-        let o = ray.origin.array();
-        let pad = pad(l, o, root, allowance);
-        let inverse = finite_inverse(l, ray.direction.array());
+        let m = &Packet::new(l);
+        let s = slabs::on(
+            m,
+            *ray,
+            Type::splat(m, root.min),
+            Type::splat(m, root.max),
+            F(l.f32(padding.slack)),
+            F(l.f32(padding.origin)),
+        );
+        let (lower, upper, inverse) = (s.lower.array(), s.upper.array(), s.inverse.array());
         let alive = l.bits(alive);
-        let (mut near_origin, mut far_origin) = (o, o);
+        let (mut near_origin, mut far_origin) = (lower, upper);
         let (mut near_bound, mut far_bound) = (MIN, MAX);
         let mut is_aligned = true;
         for i in 0..3 {
@@ -93,11 +101,9 @@ impl<L: Lanes> PacketSlabs<L> {
             }
         }
         for i in 0..3 {
-            let pad = add(l, pad, mul(l, abs(l, o[i]), l.f32(ULP)));
-            let (lower, upper) = (add(l, o[i], pad), sub(l, o[i], pad));
-            let is_reversed = is_aligned && near_bound[i] != MIN[i];
-            (near_origin[i], far_origin[i]) =
-                if is_reversed { (upper, lower) } else { (lower, upper) };
+            if is_aligned && near_bound[i] != MIN[i] {
+                (near_origin[i], far_origin[i]) = (upper[i], lower[i]);
+            }
         }
         Self {
             near_origin,
@@ -134,53 +140,8 @@ impl<L: Lanes> PacketSlabs<L> {
                 (near[i], far[i]) = (min(l, low, high), max(l, low, high));
             }
         }
-        let near = max(l, max(l, near[0], near[1]), max(l, near[2], self.t_min));
-        let far = min(l, min(l, far[0], far[1]), min(l, far[2], limit));
-        (near, l.f32_compare(op::Le, near, far))
+        let (near, far) = (V3::from_array(near), V3::from_array(far));
+        let span = overlap::on(&Packet::new(l), near, far, F(self.t_min), F(limit));
+        (span.x.0, l.f32_compare(op::Le, span.x.0, span.y.0))
     }
-}
-
-/// By how much every box is widened for each lane.
-#[inline(always)]
-fn pad<L: Lanes>(l: L, origin: [L::F32; 3], root: &Node, allowance: Allowance) -> L::F32 {
-    let (low, high) = (root.min.to_array(), root.max.to_array());
-    let mut farthest = l.f32(0.0);
-    for i in 0..3 {
-        farthest = max(l, farthest, abs(l, sub(l, l.f32(low[i]), origin[i])));
-        farthest = max(l, farthest, abs(l, sub(l, l.f32(high[i]), origin[i])));
-    }
-    let pad = max(l, mul(l, l.f32(allowance.slack), farthest), l.f32(f32::MIN_POSITIVE));
-    if allowance.origin == 0.0 {
-        return pad;
-    }
-    let [x, y, z] = origin;
-    let largest = max(l, max(l, abs(l, x), abs(l, y)), abs(l, z));
-    add(l, pad, mul(l, largest, l.f32(allowance.origin)))
-}
-
-/// The reciprocal of every component, finite.
-#[inline(always)]
-pub(super) fn finite_inverse<L: Lanes>(l: L, d: [L::F32; 3]) -> [L::F32; 3] {
-    let largest = max(l, max(l, abs(l, d[0]), abs(l, d[1])), abs(l, d[2]));
-    let least = max(l, mul(l, largest, l.f32(LEAST)), l.f32(f32::MIN_POSITIVE));
-    fill(
-        #[inline(always)]
-        |i| {
-            let negative = l.f32_compare(op::Lt, d[i], l.f32(0.0));
-            let tiny = l.f32_select(negative, l.f32_unary(op::Neg, least), least);
-            let small = l.f32_compare(op::Lt, abs(l, d[i]), least);
-            l.f32_binary(op::Div, l.f32(1.0), l.f32_select(small, tiny, d[i]))
-        },
-    )
-}
-
-/// The rays whose every component is a finite number; the others miss.
-#[inline(always)]
-pub(super) fn finite<L: Lanes>(l: L, ray: &RayOn<Packet<L>>) -> L::Mask {
-    let (o, d) = (ray.origin, ray.direction);
-    let mut all = l.mask(true);
-    for c in [o.x, o.y, o.z, d.x, d.y, d.z] {
-        all = and(l, all, l.f32_compare(op::Le, abs(l, c.0), l.f32(f32::MAX)));
-    }
-    all
 }

@@ -3,6 +3,7 @@
 //! The machine visits the primitives; what is kept of them is said here once, for all machines.
 
 use super::SceneView;
+use super::contract::{is_before, limit_behind};
 use super::on::{ClosestHitWithCost, ClosestHits, Hits, LocalRay, Slack};
 use super::traverse::CostOn;
 use crate::geometry::{Hit, HitOn, HitRecord, Kinds, Primitive, RayOn};
@@ -58,37 +59,6 @@ pub(crate) fn record_on<M: Machine, P: Primitive>(
     )
 }
 
-/// Whether the hits of a scene have numbers of instances.
-#[derive(Clone, Copy, PartialEq)]
-enum Placing {
-    Once,
-    Instances,
-}
-
-impl Placing {
-    #[inline(always)]
-    fn of<P: Primitive>(prims: &SceneView<'_, P>) -> Self {
-        if prims.placed().is_some() { Self::Instances } else { Self::Once }
-    }
-}
-
-/// Whether `a` comes before `b` in the order of `(t, inst_id, prim_id)`; any hit comes before a
-/// miss.
-#[inline(always)]
-fn is_before<M: Machine>(m: &M, placing: Placing, a: HitOn<M>, b: HitOn<M>) -> B<M> {
-    let and = |x, y| m.bool_binary(op::And, x, y);
-    let or = |x, y| m.bool_binary(op::Or, x, y);
-    let nearer = m.f32_compare(op::Lt, a.t.0, b.t.0);
-    let equal = m.f32_compare(op::Eq, a.t.0, b.t.0);
-    let mut first = m.u32_compare(op::Lt, a.prim_id.0, b.prim_id.0);
-    if placing == Placing::Instances {
-        let earlier = m.u32_compare(op::Lt, a.inst_id.0, b.inst_id.0);
-        let same = m.u32_compare(op::Eq, a.inst_id.0, b.inst_id.0);
-        first = or(earlier, and(same, first));
-    }
-    B(or(m.bool_not(b.is_hit.0), or(nearer, and(equal, first))))
-}
-
 /// No node beyond this distance can hold a hit before `worst`; the ray's end if there is none.
 #[inline(always)]
 fn limit_of<M: Machine, P: Primitive>(
@@ -97,12 +67,14 @@ fn limit_of<M: Machine, P: Primitive>(
     worst: HitOn<M>,
     ray: RayOn<M>,
 ) -> F<M> {
-    let slack = m.f32_unary(op::Abs, worst.t.0);
-    let slack = m.f32_binary(op::Mul, slack, m.perform(&Slack(prims), ()).0);
-    let limit = m.f32_binary(op::Add, worst.t.0, slack);
-    // In this order what is no number becomes the ray's end.
-    let limit = m.f32_binary(op::Min, ray.t_max.0, limit);
-    F(m.f32_select(worst.is_hit.0, limit, ray.t_max.0))
+    let limit = limit_behind::on(m, worst.t, m.perform(&Slack(prims), ()), ray.t_max);
+    F(m.f32_select(worst.is_hit.0, limit.0, ray.t_max.0))
+}
+
+/// Whether the hits of a scene have numbers of instances.
+#[inline(always)]
+fn is_placed<P: Primitive>(prims: &SceneView<'_, P>) -> bool {
+    prims.placed().is_some()
 }
 
 /// The least `(t, id)` hit of those that `accept` accepts.
@@ -121,7 +93,7 @@ pub(crate) fn closest_where<M: Machine, P: Primitive>(
         || limit_of(m, prims, best.get(m), ray),
         #[inline(always)]
         |(hit, record)| {
-            let is_closer = Branch::new(m, is_before(m, Placing::of(prims), hit, best.get(m)));
+            let is_closer = Branch::new(m, is_before::on(m, is_placed(prims), hit, best.get(m)));
             if is_closer.then(m) {
                 let accepted = Branch::new(m, accept(record));
                 if accepted.then(m) {
@@ -175,7 +147,7 @@ pub(super) fn multi_where<M: Machine, P: Primitive, const N: usize>(
         #[inline(always)]
         |last| limit_of(m, prims, last, ray),
         #[inline(always)]
-        |a, b| is_before(m, Placing::of(prims), a, b),
+        |a, b| is_before::on(m, is_placed(prims), a, b),
         accept,
     )
 }
@@ -195,7 +167,7 @@ pub(super) fn multi_by<M: Machine, P: Primitive, const N: usize>(
         #[inline(always)]
         |_| ray.t_max,
         #[inline(always)]
-        |a, b| is_before_by(m, Placing::of(prims), is_closer, a, b),
+        |a, b| is_before_by(m, is_placed(prims), is_closer, a, b),
         &|_| B(m.bool(true)),
     )
 }
@@ -205,7 +177,7 @@ pub(super) fn multi_by<M: Machine, P: Primitive, const N: usize>(
 #[inline(always)]
 fn is_before_by<M: Machine>(
     m: &M,
-    placing: Placing,
+    is_placed: bool,
     is_closer: &impl Fn(HitOn<M>, HitOn<M>) -> B<M>,
     a: HitOn<M>,
     b: HitOn<M>,
@@ -216,7 +188,7 @@ fn is_before_by<M: Machine>(
         // Where both hold, as with `<=`, or neither, it is a tie.
         let (closer, farther) = (is_closer(a, b).0, is_closer(b, a).0);
         let differ = m.bool_binary(op::Xor, closer, farther);
-        first.set(m, B(m.bool_select(differ, closer, is_before(m, placing, a, b).0)));
+        first.set(m, B(m.bool_select(differ, closer, is_before::on(m, is_placed, a, b).0)));
     }
     both.end(m);
     first.get(m)
@@ -246,7 +218,7 @@ fn first_hits<M: Machine, P: Primitive, const N: usize>(
             let fits = m.bool_binary(
                 op::And,
                 is_before(hit, hits[N - 1]).0,
-                m.bool_not(is_among(m, Placing::of(prims), hit, &hits)),
+                m.bool_not(is_among(m, is_placed(prims), hit, &hits)),
             );
             let fits = Branch::new(m, B(fits));
             if fits.then(m) {
@@ -270,14 +242,14 @@ fn first_hits<M: Machine, P: Primitive, const N: usize>(
 #[inline(always)]
 fn is_among<M: Machine, const N: usize>(
     m: &M,
-    placing: Placing,
+    is_placed: bool,
     hit: HitOn<M>,
     hits: &[HitOn<M>; N],
 ) -> M::Bool {
     let and = |x, y| m.bool_binary(op::And, x, y);
     hits.iter().fold(m.bool(false), |any, h| {
         let mut same = m.u32_compare(op::Eq, h.prim_id.0, hit.prim_id.0);
-        if placing == Placing::Instances {
+        if is_placed {
             same = and(same, m.u32_compare(op::Eq, h.inst_id.0, hit.inst_id.0));
         }
         m.bool_binary(op::Or, any, and(same, h.is_hit.0))

@@ -2,9 +2,9 @@
 
 use glam::{Affine3, Vec3};
 
-use super::{Accelerated, Bvh, BvhList, Cost, Instances, SceneView, View, batch, traverse};
-use crate::geometry::{Hit, Primitive, Ray, transform_normal_back};
-use crate::machine::{Data, Slice};
+use super::{Accelerated, Bvh, BvhList, Cost, Instances, SceneView, View, batch, query, traverse};
+use crate::geometry::{Hit, HitOn, Primitive, Ray, transform_normal_back};
+use crate::machine::{B, Data, Scalar, Slice, Type};
 
 /// What rays may ask of primitives: of a slice, a tree ([`Bvh`]), a list of trees ([`BvhList`]),
 /// trees that are placed many times ([`Instances`]), or under a structure of one's own
@@ -95,7 +95,10 @@ pub trait RayQuery {
         ray: Ray,
         accept: impl Fn(<Self::Primitive as Primitive>::Hit) -> bool,
     ) -> <Self::Primitive as Primitive>::Hit {
-        traverse::closest_hit_where(&self.view(), ray, accept)
+        let (m, scene) = (&Scalar::default(), &self.view());
+        let accept = |record| B(accept(Type::lane::<Scalar>(&record, 0)));
+        let hit = query::closest_where(m, scene, Type::splat(m, ray), &accept);
+        traverse::complete(scene, ray, Type::lane::<Scalar>(&hit, 0))
     }
 
     /// Whether `ray` has a hit that `accept` accepts.
@@ -104,7 +107,9 @@ pub trait RayQuery {
         ray: Ray,
         accept: impl Fn(<Self::Primitive as Primitive>::Hit) -> bool,
     ) -> bool {
-        traverse::any_hit_where(&self.view(), ray, accept)
+        let m = &Scalar::default();
+        let accept = |record| B(accept(Type::lane::<Scalar>(&record, 0)));
+        query::any_where(m, &self.view(), Type::splat(m, ray), &accept).0
     }
 
     /// The `N` least `(t, id)` hits of `ray`, in order, with misses behind them. Each primitive
@@ -133,7 +138,10 @@ pub trait RayQuery {
         ray: Ray,
         accept: impl Fn(<Self::Primitive as Primitive>::Hit) -> bool,
     ) -> [<Self::Primitive as Primitive>::Hit; N] {
-        traverse::multi_hit_where(&self.view(), ray, accept)
+        let m = &Scalar::default();
+        let accept = |record| B(accept(Type::lane::<Scalar>(&record, 0)));
+        let hits = query::multi_where(m, &self.view(), Type::splat(m, ray), &accept);
+        hits.map(|hit| Type::lane::<Scalar>(&hit, 0))
     }
 
     /// The first `N` hits of `ray` in an order of your own, with misses behind them: `is_closer`
@@ -159,7 +167,11 @@ pub trait RayQuery {
         ray: Ray,
         is_closer: impl Fn(Hit, Hit) -> bool,
     ) -> [<Self::Primitive as Primitive>::Hit; N] {
-        traverse::multi_hit_by(&self.view(), ray, is_closer)
+        let m = &Scalar::default();
+        let host = |hit: HitOn<Scalar>| Hit::lane::<Scalar>(&hit, 0);
+        let is_closer = |a, b| B(is_closer(host(a), host(b)));
+        let hits = query::multi_by(m, &self.view(), Type::splat(m, ray), &is_closer);
+        hits.map(|hit| Type::lane::<Scalar>(&hit, 0))
     }
 
     /// The ray as the object sees it that was hit: the ray itself where nothing is

@@ -2,8 +2,8 @@
 
 use core::mem::MaybeUninit;
 
+use super::contract::{Padding, Slabs, is_before, is_finite, is_within, limit_behind};
 use super::instances::Descent;
-use super::slabs::{Allowance, Slabs};
 use super::view::{Branches, Finder};
 use super::{Accelerator, MAX_DEPTH, Node, Part, Placed, SceneView};
 use crate::Type;
@@ -49,26 +49,6 @@ impl<E: Copy, const SIZE: usize> Stack<E, SIZE> {
         // SAFETY: `push` alone raises `top`, after it has written the entry below.
         Some(unsafe { (self.nodes[self.top].assume_init(), self.enters[self.top].assume_init()) })
     }
-}
-
-/// A ray with a NaN or an infinite component misses everything.
-#[inline(always)]
-pub(super) fn is_finite(ray: &Ray) -> bool {
-    ray.origin.is_finite() && ray.direction.is_finite()
-}
-
-/// Whether there is a hit, within the ray's range.
-#[inline(always)]
-fn is_met(hit: &Hit, ray: &Ray) -> bool {
-    hit.is_hit && hit.t >= ray.t_min && hit.t <= ray.t_max
-}
-
-/// Whether a hit comes before `best` in the order of `(t, inst_id, prim_id)`; any hit comes before
-/// a miss.
-#[inline(always)]
-fn is_before(hit: &Hit, best: &Hit) -> bool {
-    let is_first = || (hit.inst_id, hit.prim_id) < (best.inst_id, best.prim_id);
-    !best.is_hit || hit.t < best.t || (hit.t == best.t && is_first())
 }
 
 /// A primitive that a ray may meet, and the ray as its tree is asked about it.
@@ -179,15 +159,15 @@ pub(crate) fn nearest_counted<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) 
 #[inline(always)]
 fn closest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Count) -> Hit {
     let mut best = Hit::miss();
-    let slack = prims.allowance().slack;
+    let slack = prims.padding().slack;
     walk_all(prims, ray, count, |candidate, limit| {
         let hit = candidate.intersect().hit();
         // Most are no hits: their numbers wait.
-        if is_met(&hit, &ray) {
+        if is_within(hit, ray) {
             let hit = candidate.numbered(hit);
-            if is_before(&hit, &best) {
+            if is_before(true, hit, best) {
                 best = hit;
-                *limit = beyond(&hit, &ray, slack);
+                *limit = limit_behind(hit.t, slack, ray.t_max);
             }
         }
         false
@@ -217,7 +197,7 @@ pub fn any_hit_with_cost<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> (b
 
 #[inline(always)]
 fn any<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Count) -> bool {
-    walk_all(prims, ray, count, |candidate, _| is_met(&candidate.intersect().hit(), &ray))
+    walk_all(prims, ray, count, |candidate, _| is_within(candidate.intersect().hit(), ray))
 }
 
 /// Calls `meet` for every hit within the ray's range until it returns false. It may lower the limit
@@ -231,117 +211,8 @@ pub(crate) fn visit<P: Primitive>(
     !walk_all(prims, ray, &mut Uncounted, |candidate, limit| {
         let record = candidate.intersect();
         let hit = candidate.numbered(record.hit());
-        is_met(&hit, &ray) && !meet(hit, record.with_hit(hit), limit)
+        is_within(hit, ray) && !meet(hit, record.with_hit(hit), limit)
     })
-}
-
-/// The least `(t, id)` hit of those that `accept` accepts.
-pub fn closest_hit_where<P: Primitive>(
-    prims: &SceneView<'_, P>,
-    ray: Ray,
-    accept: impl Fn(P::Hit) -> bool,
-) -> P::Hit {
-    let mut best = Hit::miss();
-    let slack = prims.allowance().slack;
-    visit::<P>(prims, ray, |hit, record, limit| {
-        if is_before(&hit, &best) && accept(record) {
-            best = hit;
-            *limit = beyond(&hit, &ray, slack);
-        }
-        true
-    });
-    complete(prims, ray, best)
-}
-
-/// Whether there is a hit that `accept` accepts.
-pub fn any_hit_where<P: Primitive>(
-    prims: &SceneView<'_, P>,
-    ray: Ray,
-    accept: impl Fn(P::Hit) -> bool,
-) -> bool {
-    !visit::<P>(prims, ray, |_, record, _| !accept(record))
-}
-
-/// The `N` least `(t, id)` hits of those that `accept` accepts, in order; misses behind them.
-pub fn multi_hit_where<P: Primitive, const N: usize>(
-    prims: &SceneView<'_, P>,
-    ray: Ray,
-    accept: impl Fn(P::Hit) -> bool,
-) -> [P::Hit; N] {
-    let mut hits = FirstHits::<N>::new();
-    let slack = prims.allowance().slack;
-    visit::<P>(prims, ray, |hit, record, limit| {
-        let place = hits.place(hit, |h| is_before(&hit, h));
-        if let Some(place) = place
-            && accept(record)
-        {
-            hits.insert(place, hit);
-            if hits.last().is_hit {
-                *limit = beyond(hits.last(), &ray, slack);
-            }
-        }
-        true
-    });
-    hits.0.map(|hit| complete(prims, ray, hit))
-}
-
-/// The first `N` hits in the order of `is_closer`; misses behind them.
-pub fn multi_hit_by<P: Primitive, const N: usize>(
-    prims: &SceneView<'_, P>,
-    ray: Ray,
-    is_closer: impl Fn(Hit, Hit) -> bool,
-) -> [P::Hit; N] {
-    let mut hits = FirstHits::<N>::new();
-    visit::<P>(prims, ray, |hit, _, _| {
-        let is_first = |h: &Hit| {
-            if !h.is_hit {
-                return true;
-            }
-            // Where both hold, as with `<=`, or neither, it is a tie.
-            let (closer, farther) = (is_closer(hit, *h), is_closer(*h, hit));
-            if closer != farther { closer } else { is_before(&hit, h) }
-        };
-        if let Some(place) = hits.place(hit, is_first) {
-            hits.insert(place, hit);
-        }
-        true
-    });
-    hits.0.map(|hit| complete(prims, ray, hit))
-}
-
-/// The first hits in some order, with misses behind them.
-struct FirstHits<const N: usize>([Hit; N]);
-
-impl<const N: usize> FirstHits<N> {
-    fn new() -> Self {
-        const { assert!(N > 0, "a query of no hits has no result") };
-        Self([Hit::miss(); N])
-    }
-
-    /// Where a hit belongs, if it is among the first. `is_first` says whether it comes before one.
-    fn place(&self, hit: Hit, is_first: impl Fn(&Hit) -> bool) -> Option<usize> {
-        // A tree with spatial splits holds a primitive more than once.
-        let is_same = |h: &Hit| (h.inst_id, h.prim_id) == (hit.inst_id, hit.prim_id);
-        let is_there = || self.0.iter().any(|h| h.is_hit && is_same(h));
-        if !is_first(self.last()) || is_there() {
-            return None;
-        }
-        self.0.iter().position(is_first)
-    }
-
-    fn insert(&mut self, place: usize, hit: Hit) {
-        self.0[place..].rotate_right(1);
-        self.0[place] = hit;
-    }
-
-    fn last(&self) -> &Hit {
-        &self.0[N - 1]
-    }
-}
-
-/// No node beyond this distance can hold a hit before `hit`; the ray's end if that is no number.
-fn beyond(hit: &Hit, ray: &Ray, slack: f32) -> f32 {
-    (hit.t + hit.t.abs() * slack).min(ray.t_max)
 }
 
 /// Visits the primitives of a scene that the ray may meet, until `visit` returns true; whether it
@@ -379,7 +250,7 @@ impl<'a, P: Primitive> Places<'a, P> {
             Some(placed) => Self::Instances { placed, descent: Descent::new(&placed.groups, ray) },
             None => {
                 // Behind the last part.
-                let next = if is_finite(&ray) { 0 } else { usize::MAX };
+                let next = if is_finite(ray) { 0 } else { usize::MAX };
                 Self::Parts { scene: *scene, next, ray }
             }
         }
@@ -424,7 +295,7 @@ fn walk_part<P: Primitive, C: Count>(
     let len = part.prims.len();
     match part.finder {
         Finder::Trees(trees) => {
-            walk(trees.branches(), ray, Allowance::of::<P>(), limit, count, visit)
+            walk(trees.branches(), ray, Padding::of::<P>(), limit, count, visit)
         }
         Finder::Accelerator(accelerator) => find(accelerator, len, ray, limit, count, visit),
         Finder::Nothing => (0..len as u32).any(|id| visit(id, limit, count)),
@@ -460,15 +331,16 @@ fn find<C: Count>(
 fn walk<C: Count>(
     tree: Branches<'_>,
     ray: &Ray,
-    allowance: Allowance,
+    padding: Padding,
     limit: &mut f32,
     count: &mut C,
     mut visit: impl FnMut(u32, &mut f32, &mut C) -> bool,
 ) -> bool {
     let Some(root) = tree.nodes.first() else { return false };
-    let slabs = Slabs::new(ray, root, allowance);
+    let slabs = Slabs::of(ray, root, padding);
+    let enter = |node: &Node, limit| slabs.enter(node, ray.t_min, limit);
     count.nodes(1);
-    if slabs.enter(root, *limit).is_none() {
+    if enter(root, *limit).is_none() {
         return false;
     }
     let mut stack = Stack::<f32>::new();
@@ -484,7 +356,7 @@ fn walk<C: Count>(
         } else {
             let children = &tree.nodes[node.first as usize..node.first as usize + 2];
             count.nodes(2);
-            match (slabs.enter(&children[0], *limit), slabs.enter(&children[1], *limit)) {
+            match (enter(&children[0], *limit), enter(&children[1], *limit)) {
                 (Some(left), Some(right)) => {
                     let near = usize::from(right < left);
                     stack.push(node.first + 1 - near as u32, left.max(right));

@@ -3,9 +3,9 @@
 use core::any::Any;
 use core::marker::PhantomData;
 
+use super::contract::{Padding, is_before, is_finite, is_within, limit_behind};
 use super::instances::PacketDescent;
-use super::packet_slabs::{PacketSlabs, abs, and, finite, min, mul, or, without};
-use super::slabs::Allowance;
+use super::packet_slabs::{PacketSlabs, and, min, or, without};
 use super::traverse::Stack;
 use super::view::Branches;
 use super::{CountedHit, CountedHitOn, Part, Placed, RecordOn, RecordedWalks, SceneView, traverse};
@@ -63,6 +63,13 @@ impl<L: Lanes, P: Primitive> Candidate<'_, '_, L, P> {
                 P::intersect_one_on(m, prim, *self.ray, self.shared)
             },
         )
+    }
+
+    /// The hit under its primitive's number.
+    #[inline(always)]
+    fn numbered(&self, l: L, hit: HitOn<Packet<L>>) -> HitOn<Packet<L>> {
+        let prim_id = U(l.u32(self.part.first + self.id));
+        HitOn { prim_id, inst_id: U(l.u32(self.inst)), ..hit }
     }
 }
 
@@ -129,7 +136,7 @@ fn closest_hit_inside<'a, L: Lanes, P: Primitive, W: Places<'a, Entered<L>, P>>(
         v: zero,
         found: l.mask(false),
         limit: ray.t_max.0,
-        slack: prims.allowance().slack,
+        slack: prims.padding().slack,
     };
     walk_all(
         m,
@@ -161,39 +168,30 @@ fn meet<'a, L: Lanes, P: Primitive, W: Places<'a, L, P>>(
     mask: L::Mask,
     best: &mut Best<L>,
 ) {
-    let (l, ray) = (m.lanes(), candidate.ray);
-    let hit = P::Hit::hit_on(candidate.intersect(m, mask));
-    let t = hit.t.0;
-    let near = l.f32_compare(op::Le, t, best.t);
-    let met = and(l, and(l, mask, accepts(l, &hit, ray)), near);
+    let (l, ray) = (m.lanes(), *candidate.ray);
+    let hit = candidate.numbered(l, P::Hit::hit_on(candidate.intersect(m, mask)));
+    let t_max = F(min(l, ray.t_max.0, best.t));
+    let met = and(l, mask, is_within::on(m, hit, RayOn { t_max, ..ray }).0);
     if !l.any(met) {
         return;
     }
-    let (inst, id) = (l.u32(candidate.inst), l.u32(candidate.part.first + candidate.id));
-    let nearer = l.f32_compare(op::Lt, t, best.t);
-    let mut first = l.u32_compare(op::Lt, id, best.id);
+    let before = HitOn {
+        is_hit: B(l.mask(true)),
+        t: F(best.t),
+        prim_id: U(best.id),
+        inst_id: U(best.inst),
+        ..hit
+    };
+    let take = and(l, met, is_before::on(m, W::HAVE_INSTANCES, hit, before).0);
+    best.t = l.f32_select(take, hit.t.0, best.t);
     if const { W::HAVE_INSTANCES } {
-        let earlier = l.u32_compare(op::Lt, inst, best.inst);
-        first = or(l, earlier, and(l, l.u32_compare(op::Eq, inst, best.inst), first));
+        best.inst = l.u32_select(take, hit.inst_id.0, best.inst);
     }
-    let take = and(l, met, or(l, nearer, first));
-    best.t = l.f32_select(take, t, best.t);
-    if const { W::HAVE_INSTANCES } {
-        best.inst = l.u32_select(take, inst, best.inst);
-    }
-    best.id = l.u32_select(take, id, best.id);
+    best.id = l.u32_select(take, hit.prim_id.0, best.id);
     best.u = l.f32_select(take, hit.u.0, best.u);
     best.v = l.f32_select(take, hit.v.0, best.v);
     best.found = or(l, best.found, take);
-    let slack = mul(l, abs(l, best.t), l.f32(best.slack));
-    best.limit = min(l, ray.t_max.0, l.f32_binary(op::Add, best.t, slack));
-}
-
-#[inline(always)]
-fn accepts<L: Lanes>(l: L, hit: &HitOn<Packet<L>>, ray: &RayOn<Packet<L>>) -> L::Mask {
-    let after = l.f32_compare(op::Ge, hit.t.0, ray.t_min.0);
-    let before = l.f32_compare(op::Le, hit.t.0, ray.t_max.0);
-    and(l, hit.is_hit.0, and(l, after, before))
+    best.limit = limit_behind::on(m, F(best.t), F(l.f32(best.slack)), ray.t_max).0;
 }
 
 /// Whether each running lane hits anything. Lanes that have hit retire.
@@ -239,7 +237,7 @@ fn any_hit_inside<'a, L: Lanes, P: Primitive, W: Places<'a, Entered<L>, P>>(
         #[inline(always)]
         |candidate, mask, _| {
             let hit = P::Hit::hit_on(candidate.intersect(m, mask));
-            found = or(l, found, and(l, mask, accepts(l, &hit, &ray)));
+            found = or(l, found, and(l, mask, is_within::on(m, hit, ray).0));
             without(l, mask, found)
         },
     );
@@ -272,13 +270,11 @@ pub(crate) fn visit<'a, L: Lanes, P: Primitive>(
         #[inline(always)]
         |candidate, mask, end| {
             let record = candidate.intersect(m, mask);
-            let hit = P::Hit::hit_on(record);
-            let met = and(l, mask, accepts(l, &hit, &ray));
+            let hit = candidate.numbered(l, P::Hit::hit_on(record));
+            let met = and(l, mask, is_within::on(m, hit, ray).0);
             if !l.any(met) {
                 return mask;
             }
-            let prim_id = U(l.u32(candidate.part.first + candidate.id));
-            let hit = HitOn { prim_id, inst_id: U(l.u32(candidate.inst)), ..hit };
             let goes_on = m.with_active(
                 met,
                 #[inline(always)]
@@ -341,7 +337,7 @@ fn walk_all<'a, L: Lanes, P: Primitive, W: Places<'a, L, P>>(
     let l = m.lanes();
     let shared = prims.shared();
     let mut limit = ray.t_max.0;
-    let mut alive = and(l, m.active(), finite(l, ray));
+    let mut alive = and(l, m.active(), is_finite::on(m, *ray).0);
     let mut places = places(l, ray, alive);
     while l.any(alive)
         && let Some((part, inst, ray, mask)) = places.next(l, alive, limit)
@@ -530,7 +526,7 @@ fn walk_part<L: Lanes, P: Primitive>(
     let mut descent = None;
     if let Some(tree) = part.tree() {
         let Some(root) = tree.nodes.first() else { return };
-        let slabs = PacketSlabs::new(l, ray, *alive, root, Allowance::of::<P>());
+        let slabs = PacketSlabs::new(l, ray, *alive, root, Padding::of::<P>());
         let (enter, hit) = slabs.enter(l, root, *limit);
         push(l, &mut stack, 0, enter, hit);
         (leaf, descent) = (Leaf { end: 0, ..leaf }, Some(Descent { tree, slabs }));

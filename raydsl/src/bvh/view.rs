@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use glam::Affine3;
 
+use super::contract::Padding;
 use super::instances::Placed;
-use super::slabs::Allowance;
 use super::structure::Structure;
 use super::wide::{Walks, Wide};
 use super::{Accelerator, Node, Owned, list};
@@ -444,9 +444,9 @@ impl<P: Primitive> SceneView<'_, P> {
 
     /// By how much boxes are widened, and how far behind a hit nodes are still visited.
     #[inline(always)]
-    pub(crate) fn allowance(&self) -> Allowance {
+    pub(crate) fn padding(&self) -> Padding {
         let top = self.placed().and_then(Placed::top);
-        top.map_or(Allowance::of::<P>(), |top| top.allowance)
+        top.map_or(Padding::of::<P>(), |top| top.padding)
     }
 }
 

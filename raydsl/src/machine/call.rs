@@ -22,10 +22,29 @@ pub struct KernelInfo {
 /// A function of which machines know more than its code says: `sin` is in WGSL, and in std for `f64`.
 pub(crate) trait KnownFunction: core::fmt::Debug + Sync {
     /// Records what WGSL itself has for it, for code that need not be the same as on the CPU.
-    fn record_builtin(&self, m: &Recorder, args: &[Id]) -> Option<Vec<Id>>;
+    fn record_builtin(&self, _m: &Recorder, _args: &[Id]) -> Option<Vec<Id>> {
+        None
+    }
 
-    /// Its results in `f64`, with bounds of what rounding may do.
-    fn bound(&self, m: &Margin, args: &[Known]) -> Vec<Known>;
+    /// Its results in `f64`, with bounds of what rounding may do, if its code does not say them.
+    fn bound(&self, _m: &Margin, _args: &[Known]) -> Option<Vec<Known>> {
+        None
+    }
+
+    /// Whether it does not matter what `min` and `max` in it give for a NaN, so that WGSL's own serve.
+    fn is_without_nan(&self) -> bool {
+        false
+    }
+}
+
+/// A function that is asked about numbers alone, or whose results for a NaN nobody uses.
+#[derive(Debug)]
+pub(crate) struct WithoutNan;
+
+impl KnownFunction for WithoutNan {
+    fn is_without_nan(&self) -> bool {
+        true
+    }
 }
 
 /// Who knows more of a kernel.

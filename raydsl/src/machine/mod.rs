@@ -62,8 +62,8 @@ mod vector;
 pub mod wgsl;
 mod words;
 
-pub(crate) use call::KnownFunction;
 pub use call::{KernelFn, KernelInfo, KnownBy};
+pub(crate) use call::{KnownFunction, WithoutNan};
 pub use capture::{Capture, Parameter, Resource};
 pub use control::{Branch, Condition, Loop, Ret, Var};
 pub(crate) use counted::{Count, count};

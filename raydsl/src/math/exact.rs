@@ -7,8 +7,7 @@ use glam::{Vec3, vec3};
 use crate::machine::functions::vec3;
 use crate::machine::generic::min;
 use crate::machine::margin::{Interval, Known};
-use crate::machine::record::ir::Id;
-use crate::machine::{KnownFunction, Margin, Recorder};
+use crate::machine::{KnownFunction, Margin};
 use crate::{Type, kernel};
 
 /// The same number, of which a compiler knows nothing: those of some drivers cancel `a - (a - b)`
@@ -77,13 +76,9 @@ const SPLIT: f64 = 4098.0;
 const PARTS: f64 = 8.0;
 
 impl KnownFunction for LostByCross {
-    fn record_builtin(&self, _: &Recorder, _: &[Id]) -> Option<Vec<Id>> {
-        None
-    }
-
     /// Nothing in `f64`. Each product loses at most its rounding; a device that fuses or reorders what
     /// finds that may be off by as much again.
-    fn bound(&self, m: &Margin, args: &[Known]) -> Vec<Known> {
+    fn bound(&self, m: &Margin, args: &[Known]) -> Option<Vec<Known>> {
         let size = |i: usize| args[i].range.magnitude();
         let product = |i: usize, j: usize| {
             let (a, b) = (size(i), size(3 + j));
@@ -102,7 +97,7 @@ impl KnownFunction for LostByCross {
             m.bounded(0.0, Interval::new(-error, error, nan))
         };
         let rest = lost.map(|error| 2.0 * (m.rounding().sum * error + m.rounding().least));
-        lost.into_iter().chain(rest).map(within).collect()
+        Some(lost.into_iter().chain(rest).map(within).collect())
     }
 }
 

@@ -9,7 +9,7 @@ use bytemuck::cast_slice;
 use glam::Affine3;
 
 use super::placed::{Placed, Placing, Target};
-use crate::bvh::slabs::Allowance;
+use crate::bvh::contract::Padding;
 use crate::bvh::{Node, list};
 use crate::machine::{Field, Schema, Type};
 
@@ -28,7 +28,7 @@ struct Place {
     root: u32,
     /// The number of the first tree in it, among those of its group.
     first: u32,
-    /// By how much boxes are widened in it: see `Allowance`.
+    /// By how much boxes are widened in it: see `Padding`.
     slack: f32,
     origin: f32,
     /// Of a group, the places of its instances.
@@ -123,8 +123,8 @@ impl<T, S> Placed<'_, T, S> {
             to_object: Affine3::IDENTITY.to_cols_array(),
             root: NO_ROOT,
             first: 0,
-            slack: self.allowance.slack,
-            origin: self.allowance.origin,
+            slack: self.padding.slack,
+            origin: self.padding.origin,
             items: 0,
             count: 0,
         }
@@ -135,7 +135,7 @@ impl<T, S> Placed<'_, T, S> {
         let mut items = 1;
         let place = |(group, root): (&Placing, u32)| {
             let count = group.items.len() as u32;
-            let Allowance { slack, origin } = group.allowance;
+            let Padding { slack, origin } = group.padding;
             let place = Place { root, slack, origin, items, count, ..self.of_nothing() };
             items += count;
             place

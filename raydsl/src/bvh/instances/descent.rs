@@ -1,8 +1,8 @@
 //! From instance to instance, for one ray.
 
 use super::placed::{Placing, STACK, Target};
-use crate::bvh::slabs::Slabs;
-use crate::bvh::traverse::{Stack, is_finite};
+use crate::bvh::contract::{Slabs, is_finite};
+use crate::bvh::traverse::Stack;
 use crate::geometry::{Ray, transform_ray};
 
 /// A walk through the groups of a scene, which stops at every tree that the ray may meet.
@@ -51,12 +51,12 @@ impl<'a> Descent<'a> {
     /// Goes into a group if the ray may meet it.
     fn enter(&mut self, group: &'a Placing, first: u32, ray: Ray, limit: f32) {
         let Some(root) = group.branches().nodes.first() else { return };
-        if !is_finite(&ray) {
+        if !is_finite(ray) {
             return;
         }
-        let slabs = Slabs::new(&ray, root, group.allowance);
+        let slabs = Slabs::of(&ray, root, group.padding);
         self.nodes += 1;
-        if let Some(enter) = slabs.enter(root, limit) {
+        if let Some(enter) = slabs.enter(root, ray.t_min, limit) {
             self.levels.push(Level { group, first, ray, slabs, bottom: self.stack.len() });
             self.stack.push(0, enter);
         }
@@ -73,7 +73,7 @@ impl<'a> Descent<'a> {
             let item = &group.items[index as usize];
             let (inst, ray) = (first + item.first, transform_ray(ray, item.to_object));
             match item.target {
-                Target::Tree(tree) if is_finite(&ray) => return Some(Place { tree, inst, ray }),
+                Target::Tree(tree) if is_finite(ray) => return Some(Place { tree, inst, ray }),
                 Target::Tree(_) => {}
                 Target::Group(group) => self.enter(&self.groups[group as usize], inst, ray, limit),
             }
@@ -95,8 +95,9 @@ impl<'a> Descent<'a> {
             while !node.is_leaf() {
                 let children = &tree.nodes[node.first as usize..node.first as usize + 2];
                 self.nodes += 2;
-                let enters =
-                    [&children[0], &children[1]].map(|child| level.slabs.enter(child, limit));
+                let t_min = level.ray.t_min;
+                let enter = |child| level.slabs.enter(child, t_min, limit);
+                let enters = [enter(&children[0]), enter(&children[1])];
                 node = match enters {
                     [Some(left), Some(right)] => {
                         let near = usize::from(right < left);

@@ -8,7 +8,7 @@ mod placed;
 use glam::Affine3;
 use thiserror::Error;
 
-use super::slabs::Allowance;
+use super::contract::Padding;
 use super::traverse_packet::instance_table;
 use super::{Bvh, BvhList, ListError, SceneView, View};
 pub(crate) use buffers::{IS_INSTANCE, PLACE_SCHEMA};
@@ -208,7 +208,7 @@ impl<'a, P: Primitive> Instances<'a, P> {
     /// Trees that [`BvhList::new`] would not take.
     pub fn new(trees: &'a [Bvh<'a, P>]) -> Result<Self, InstanceError> {
         let trees = BvhList::new(trees)?.into_trees();
-        let placed = Placed::new(trees, Allowance::of::<P>(), instance_table::<P>());
+        let placed = Placed::new(trees, Padding::of::<P>(), instance_table::<P>());
         Ok(Self { placed, groups: Vec::new() })
     }
 

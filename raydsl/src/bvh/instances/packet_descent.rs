@@ -1,7 +1,8 @@
 //! From instance to instance, for the rays of a packet: [`Descent`](super::Descent) with masks.
 
 use super::placed::{Placing, STACK, Target};
-use crate::bvh::packet_slabs::{PacketSlabs, and, finite};
+use crate::bvh::contract::is_finite;
+use crate::bvh::packet_slabs::{PacketSlabs, and};
 use crate::bvh::traverse::Stack;
 use crate::geometry::{RayOn, transform_ray};
 use crate::machine::{Lanes, Packet, Type, op};
@@ -70,7 +71,7 @@ impl<'a, L: Lanes> PacketDescent<'a, L> {
         limit: L::F32,
     ) {
         let Some(root) = group.branches().nodes.first() else { return };
-        let slabs = PacketSlabs::new(l, ray, alive, root, group.allowance);
+        let slabs = PacketSlabs::new(l, ray, alive, root, group.padding);
         let (enter, hit) = slabs.enter(l, root, limit);
         let hit = and(l, alive, hit);
         if l.any(hit) {
@@ -96,7 +97,7 @@ impl<'a, L: Lanes> PacketDescent<'a, L> {
                         (&group.items[index as usize], &self.levels[self.levels.len() - 1]);
                     let map = Type::splat(&m, item.to_object);
                     let ray = transform_ray::on(&m, level.ray, map);
-                    let (inst, mask) = (first + item.first, and(l, mask, finite(l, &ray)));
+                    let (inst, mask) = (first + item.first, and(l, mask, is_finite::on(&m, ray).0));
                     match item.target {
                         Target::Tree(tree) if l.any(mask) => {
                             return Some(PacketPlace { tree, inst, ray, mask });

@@ -4,7 +4,7 @@ use glam::Affine3;
 
 use super::{InstanceError, MAX_CONDITION, MAX_LEVELS};
 use crate::bvh::build::{self, BuildConfig, MAX_PRIMITIVES};
-use crate::bvh::slabs::{Allowance, ULP};
+use crate::bvh::contract::{Padding, ULP};
 use crate::bvh::traverse_packet::InstanceTable;
 use crate::bvh::view::{Branches, Trees};
 use crate::bvh::{Node, stats};
@@ -14,7 +14,7 @@ use crate::geometry::{Aabb, Ray, transform_ray};
 /// The most nodes that one ray may have to come back to, on all levels of instances together.
 pub(crate) const STACK: usize = 128;
 
-/// An allowance with which every box is met.
+/// An padding with which every box is met.
 const EVERYTHING: f64 = 16.0;
 
 /// Trees and the groups in which they are placed. Rays meet the last group.
@@ -22,7 +22,7 @@ const EVERYTHING: f64 = 16.0;
 pub(crate) struct Placed<'a, T, S> {
     pub(crate) trees: Trees<'a, T, S>,
     /// By how much boxes are widened in the trees.
-    pub(crate) allowance: Allowance,
+    pub(crate) padding: Padding,
     /// The depth of each tree.
     depths: Vec<usize>,
     pub(crate) groups: Vec<Placing>,
@@ -39,7 +39,7 @@ pub(crate) struct Placing {
     nodes: Vec<Node>,
     /// One entry a leaf.
     indices: Vec<u32>,
-    pub(crate) allowance: Allowance,
+    pub(crate) padding: Padding,
     /// How many trees are placed in it, each as often as it is.
     pub(super) size: u32,
     /// Levels of instances.
@@ -90,7 +90,7 @@ impl Placement {
 /// What is placed, as the group sees it in which it is.
 struct Seen {
     bounds: Aabb,
-    allowance: Allowance,
+    padding: Padding,
     size: u32,
     levels: usize,
     depth: usize,
@@ -107,7 +107,7 @@ impl Placing {
             items: Vec::with_capacity(instances.len()),
             nodes: Vec::new(),
             indices: Vec::new(),
-            allowance: placed.allowance,
+            padding: placed.padding,
             size: 0,
             levels: 1,
             depth: 0,
@@ -159,15 +159,15 @@ impl Placing {
         map: &Inverted,
         seen: &Seen,
     ) -> Result<Aabb, InstanceError> {
-        let inner = seen.allowance;
+        let inner = seen.padding;
         let rounding = 16.0 * ULP;
         // More than all is no use, and must stay a number.
         let larger = |x: f32| {
             let larger = 3.0 * map.condition * f64::from(x + rounding) * (1.0 + 1e-6);
             larger.min(EVERYTHING) as f32
         };
-        self.allowance.slack = self.allowance.slack.max(larger(inner.slack));
-        self.allowance.origin = self.allowance.origin.max(larger(inner.origin));
+        self.padding.slack = self.padding.slack.max(larger(inner.slack));
+        self.padding.origin = self.padding.origin.max(larger(inner.origin));
         self.condition = self.condition.max(map.condition * seen.condition);
         self.levels = self.levels.max(1 + seen.levels);
         self.depth = self.depth.max(seen.depth);
@@ -205,10 +205,10 @@ impl Placing {
 }
 
 impl<'a, T, S> Placed<'a, T, S> {
-    pub(super) fn new(trees: Trees<'a, T, S>, allowance: Allowance, walks: InstanceTable) -> Self {
+    pub(super) fn new(trees: Trees<'a, T, S>, padding: Padding, walks: InstanceTable) -> Self {
         let nodes = trees.parts.iter().map(|part| part.tree().map_or(&[][..], |tree| tree.nodes));
         let depths = nodes.map(stats::depth).collect();
-        Self { trees, allowance, depths, groups: Vec::new(), version: 0, walks }
+        Self { trees, padding, depths, groups: Vec::new(), version: 0, walks }
     }
 
     /// The group that rays meet.
@@ -259,7 +259,7 @@ impl<T, S> Placed<'_, T, S> {
                 let nodes = self.trees.parts[tree as usize].tree().map_or(&[][..], |t| t.nodes);
                 Seen {
                     bounds: nodes.first().map_or(Aabb::EMPTY, Node::bounds),
-                    allowance: self.allowance,
+                    padding: self.padding,
                     size: 1,
                     levels: 0,
                     depth: self.depths[tree as usize] + 2,
@@ -270,7 +270,7 @@ impl<T, S> Placed<'_, T, S> {
                 let group = &self.groups[group as usize];
                 Seen {
                     bounds: group.bounds(),
-                    allowance: group.allowance,
+                    padding: group.padding,
                     size: group.size,
                     levels: group.levels,
                     depth: group.depth,

@@ -1,21 +1,21 @@
 //! The box test for a ray that rounding makes wide.
 
-use crate::bvh::{Allowance, Node};
+use crate::bvh::{Node, Padding};
 use crate::geometry::RayOn;
 use crate::machine::F;
 use crate::machine::margin::{Interval, Margin};
 
 /// A ray as wide as rounding makes it.
 pub(super) struct Beam {
-    /// Where it may start, moved apart by the allowance.
+    /// Where it may start, moved apart by the padding.
     origin: [Interval; 3],
     direction: [f64; 3],
     t_min: f64,
 }
 
 impl Beam {
-    /// `ray`, for boxes that are widened by this allowance.
-    pub(super) fn new(m: &Margin, ray: RayOn<Margin>, root: &Node, allowance: Allowance) -> Self {
+    /// `ray`, for boxes that are widened by this padding.
+    pub(super) fn new(m: &Margin, ray: RayOn<Margin>, root: &Node, padding: Padding) -> Self {
         let range = |c: F<Margin>| m.get(c.0).range;
         let origin = [ray.origin.x, ray.origin.y, ray.origin.z].map(range);
         let direction = [ray.direction.x, ray.direction.y, ray.direction.z].map(range);
@@ -29,9 +29,9 @@ impl Beam {
         let width = direction.iter().map(|d| d.high - d.low).fold(0.0, f64::max);
         let length = direction.iter().map(|d| d.abs().low).fold(0.0, f64::max);
         let aside = width * 2.0 * reach / length;
-        let slack = f64::from(allowance.slack);
+        let slack = f64::from(padding.slack);
         let farthest = origin.iter().map(|o| o.abs().high).fold(0.0, f64::max);
-        let aside = aside + 2.0 * farthest * f64::from(allowance.origin);
+        let aside = aside + 2.0 * farthest * f64::from(padding.origin);
         let ulp = f64::from(f32::EPSILON);
         let widest = origin.map(|o| {
             let pad = 2.0 * slack * reach + o.abs().high * 2.0 * ulp + aside;
@@ -50,7 +50,7 @@ impl Beam {
         for axis in 0..3 {
             let (o, d) = (self.origin[axis], self.direction[axis]);
             let (first, last) = (low[axis] - o.high, high[axis] - o.low);
-            // Across the axis, within the allowance, or without a limit: this axis says nothing.
+            // Across the axis, within the padding, or without a limit: this axis says nothing.
             if d == 0.0 || !(first / d).is_finite() || !(last / d).is_finite() {
                 if first > 0.0 || last < 0.0 {
                     return (f64::INFINITY, f64::NEG_INFINITY);

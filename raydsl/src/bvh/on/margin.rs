@@ -11,10 +11,11 @@ use std::rc::Rc;
 use glam::Vec3;
 
 use super::beam::Beam;
-use crate::bvh::{Allowance, Branches, Placing, RecordOn, SceneView, Target, View};
+use crate::bvh::contract::is_within;
+use crate::bvh::{Branches, Padding, Placing, RecordOn, SceneView, Target, View};
 use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn, transform_ray};
 use crate::machine::margin::{Explored, Form, Interval, Known, Margin, Truth};
-use crate::machine::{B, Data, F, Machine, Type, U, V3, op};
+use crate::machine::{B, Data, F, Machine, Type, U, V3};
 
 /// In how many ways one primitive is asked.
 const WAYS: usize = 64;
@@ -26,7 +27,7 @@ pub(super) struct Scene<'a> {
     /// The groups in which the parts are placed, if they are.
     groups: Option<&'a [Placing]>,
     /// Of the trees that are parts.
-    allowance: Allowance,
+    padding: Padding,
     /// Where the ray meets a primitive.
     intersect: &'a dyn Fn(Name) -> HitOn<Margin>,
     /// What tells a primitive from others: its bytes, and where it is placed.
@@ -79,7 +80,7 @@ pub(super) fn query<P: Primitive, R>(
             .map(|p| Part { first: p.first, len: p.prims.len() as u32, tree: p.tree() })
             .collect(),
         groups: prims.placed().map(|placed| &placed.groups[..]),
-        allowance: Allowance::of::<P>(),
+        padding: Padding::of::<P>(),
         intersect: &intersect,
         bytes: &bytes,
     };
@@ -254,10 +255,7 @@ fn fate(m: &Margin, ray: RayOn<Margin>) -> Fate {
 impl Scene<'_> {
     /// Whether there is a hit, within the ray's range.
     fn accepts(&self, m: &Margin, hit: &HitOn<Margin>) -> Truth {
-        let late = m.f32_compare(op::Ge, hit.t.0, self.ray.t_min.0);
-        let early = m.f32_compare(op::Le, hit.t.0, self.ray.t_max.0);
-        let inside = m.bool_binary(op::And, late, early);
-        m.bool_binary(op::And, hit.is_hit.0, inside)
+        is_within::on(m, *hit, self.ray).0
     }
 
     /// Every way in which one primitive is hit. Forms are kept for the results alone.
@@ -366,7 +364,7 @@ impl Scene<'_> {
         if fate(m, ray) == Fate::Misses {
             return false;
         }
-        walk_tree(m, group.branches(), ray, group.allowance, limit, &mut |index| {
+        walk_tree(m, group.branches(), ray, group.padding, limit, &mut |index| {
             let item = &group.items[index as usize];
             let first = first + item.first;
             let mark = m.floats.mark();
@@ -398,7 +396,7 @@ impl Scene<'_> {
     ) -> bool {
         let mut visit = |id| visit(Name { inst, prim: part.first + id });
         match part.tree {
-            Some(tree) => walk_tree(m, tree, ray, self.allowance, limit, &mut visit),
+            Some(tree) => walk_tree(m, tree, ray, self.padding, limit, &mut visit),
             None => (0..part.len).any(visit),
         }
     }
@@ -410,12 +408,12 @@ fn walk_tree(
     m: &Margin,
     tree: Branches<'_>,
     ray: RayOn<Margin>,
-    allowance: Allowance,
+    padding: Padding,
     limit: &Cell<f64>,
     visit: &mut dyn FnMut(u32) -> bool,
 ) -> bool {
     let Some(root) = tree.nodes.first() else { return false };
-    let beam = Beam::new(m, ray, root, allowance);
+    let beam = Beam::new(m, ray, root, padding);
     let mut stack = vec![root];
     while let Some(node) = stack.pop() {
         if !beam.meets(node, limit.get()) {

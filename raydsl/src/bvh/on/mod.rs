@@ -272,7 +272,7 @@ pub(crate) struct Slack<'s, 'a, P: Primitive>(pub(crate) &'s SceneView<'a, P>);
 impl<P: Primitive> Slack<'_, '_, P> {
     #[inline(always)]
     fn on_host<M: Machine>(&self, m: &M) -> On<f32, M> {
-        F(m.f32(self.0.allowance().slack))
+        F(m.f32(self.0.padding().slack))
     }
 }
 

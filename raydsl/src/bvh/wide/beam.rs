@@ -10,7 +10,7 @@ use glam::Vec3;
 use super::octant::Octant;
 use super::rays::{GROUP, HUGE, Rays, lanes_mask, load, row};
 use super::step::Slabs;
-use crate::bvh::slabs::{Allowance, ULP, finite_inverse};
+use crate::bvh::contract::{Padding, ULP, finite_inverse};
 use crate::geometry::{Aabb, Ray};
 use crate::machine::{Lanes, op};
 
@@ -135,7 +135,7 @@ impl Beam {
         octant: &Octant,
         most: f32,
         root: &Aabb,
-        allowance: Allowance,
+        padding: Padding,
     ) -> Option<Self> {
         let t_min = extent(e, rays, octant, row::T_MIN).least;
         let origins = vector(e, rays, octant, row::ORIGIN);
@@ -151,18 +151,18 @@ impl Beam {
             return None;
         }
         let limit = extent(e, rays, octant, row::LIMIT).greatest;
-        Some(Self::new(&origins, &inverses, [t_min, limit], pad(&origins, root, allowance)))
+        Some(Self::new(&origins, &inverses, [t_min, limit], pad(&origins, root, padding)))
     }
 
     /// The beam of one ray, up to a limit; none where products may overflow.
     #[inline(always)]
-    pub(super) fn of_one(ray: &Ray, limit: f32, root: &Aabb, allowance: Allowance) -> Option<Self> {
+    pub(super) fn of_one(ray: &Ray, limit: f32, root: &Aabb, padding: Padding) -> Option<Self> {
         let inverse = finite_inverse(ray.direction);
         let span = root.min.abs().max(root.max.abs()).max_element();
         let is_tame = (inverse.abs() * (ray.origin.abs() + span)).cmplt(Vec3::splat(HUGE));
         let alone = |v: Vec3| v.to_array().map(|v| Extent { least: v, greatest: v });
         let (origins, inverses) = (alone(ray.origin), alone(inverse));
-        let pad = pad(&origins, root, allowance);
+        let pad = pad(&origins, root, padding);
         is_tame.all().then(|| Self::new(&origins, &inverses, [ray.t_min, limit], pad))
     }
 
@@ -191,7 +191,7 @@ impl Beam {
 
 /// By how much boxes are widened, for rays with these origins.
 #[inline(always)]
-pub(super) fn pad(origins: &[Extent; 3], root: &Aabb, allowance: Allowance) -> f32 {
+pub(super) fn pad(origins: &[Extent; 3], root: &Aabb, padding: Padding) -> f32 {
     let (low, high) = (root.min.to_array(), root.max.to_array());
     let (mut reach, mut largest) = (0.0f32, 0.0f32);
     for (axis, o) in origins.iter().enumerate() {
@@ -199,6 +199,6 @@ pub(super) fn pad(origins: &[Extent; 3], root: &Aabb, allowance: Allowance) -> f
         reach = reach.max((o.least - low[axis]).abs()).max((high[axis] - o.greatest).abs());
         largest = largest.max(o.least.abs()).max(o.greatest.abs());
     }
-    let pad = (allowance.slack + 4.0 * ULP) * reach + (allowance.origin + 8.0 * ULP) * largest;
+    let pad = (padding.slack + 4.0 * ULP) * reach + (padding.origin + 8.0 * ULP) * largest;
     pad.max(f32::MIN_POSITIVE)
 }

@@ -5,7 +5,7 @@ use super::Wide;
 use super::beam::{Extents, pad};
 use super::node::{Child, WIDTH, WideNode};
 use super::rays::{GROUP, Rays, lanes_mask, load, row};
-use crate::bvh::slabs::Allowance;
+use crate::bvh::contract::Padding;
 use crate::geometry::Aabb;
 use crate::machine::Lanes;
 
@@ -23,13 +23,13 @@ pub(super) fn of<E: Lanes>(
     tree: &Wide,
     rays: &Rays,
     root: &Aabb,
-    allowance: Allowance,
+    padding: Padding,
 ) -> Option<WideNode> {
     let count: u32 = rays.marks.iter().map(|marks| marks.alive.count_ones()).sum();
     if count < FEWEST {
         return None;
     }
-    let bounds = bounds(e, rays, root, allowance)?;
+    let bounds = bounds(e, rays, root, padding)?;
     let mut entries =
         Entries { count: 0, boxes: [Aabb::EMPTY; WIDTH], children: [Child::NONE; WIDTH] };
     entries.open(tree, &bounds, None);
@@ -101,7 +101,7 @@ fn meets(node: &WideNode, slot: usize, bounds: &Aabb) -> bool {
 
 /// A box around what the rays reach; none if some have no end.
 #[inline(always)]
-fn bounds<E: Lanes>(e: E, rays: &Rays, root: &Aabb, allowance: Allowance) -> Option<Aabb> {
+fn bounds<E: Lanes>(e: E, rays: &Rays, root: &Aabb, padding: Padding) -> Option<Aabb> {
     if !have_ends(e, rays) {
         return None;
     }
@@ -126,7 +126,7 @@ fn bounds<E: Lanes>(e: E, rays: &Rays, root: &Aabb, allowance: Allowance) -> Opt
     let origins = [origins[0].extent(e), origins[1].extent(e), origins[2].extent(e)];
     // What rounding takes from an end is within what boxes are widened by, or lies outside the
     // scene.
-    let pad = pad(&origins, root, allowance);
+    let pad = pad(&origins, root, padding);
     let mut bounds = Aabb::EMPTY;
     for (axis, end) in ends.into_iter().enumerate() {
         let end = end.extent(e);

@@ -17,7 +17,7 @@ use super::rays::{Rays, lanes_of, row};
 use super::step::{Meeting, enter};
 use super::trace::Scratch;
 use super::wave::{Turns, each_turn};
-use crate::bvh::slabs::Allowance;
+use crate::bvh::contract::Padding;
 use crate::geometry::{Aabb, Primitive};
 use crate::machine::{Lanes, op};
 
@@ -52,7 +52,7 @@ pub(super) fn any_hit<R: Lanes, E: Lanes, P: Primitive>(
         sequence,
         #[inline(always)]
         |rays| {
-            rays.prepare(r, root, Allowance::of::<P>());
+            rays.prepare(r, root, Padding::of::<P>());
             let groups = 0..rays.marks.len();
             let mut turns = wave.begin_empty(rays, groups, meeting.tree.pending + KEPT, false);
             for groups in Octant::ranges(rays.marks.len()) {
@@ -82,7 +82,7 @@ fn go_together<R: Lanes, P: Primitive>(
             return;
         }
         let beam = if taken > APART {
-            Beam::of(r.eight(), rays, octant, SPREAD, root, Allowance::of::<P>())
+            Beam::of(r.eight(), rays, octant, SPREAD, root, Padding::of::<P>())
         } else {
             None
         };

@@ -8,10 +8,10 @@ use super::node::{Child, WIDTH, WideNode};
 use super::octant::{GROUPS, Octant};
 use super::rays::{GROUP, Group, Marks, Rays, lanes_mask, load, load_words, row};
 use super::step::{Meeting, count, enter, ids, last_key, nearest, sorted};
-use crate::bvh::packet_slabs::{abs, add, and, max, min, mul, or};
-use crate::bvh::slabs::Allowance;
-use crate::geometry::{Aabb, HitRecord, Primitive, RayOn};
-use crate::machine::{Entered, F, Lanes, Packet, V3, op};
+use crate::bvh::contract::{Padding, is_before, is_within, limit_behind};
+use crate::bvh::packet_slabs::{and, max, min};
+use crate::geometry::{Aabb, HitOn, HitRecord, Primitive, RayOn};
+use crate::machine::{B, Entered, F, Lanes, Packet, U, V3, op};
 
 /// Fewer rays of one octant than this go their own ways, unless they are most of those that there
 /// are.
@@ -68,7 +68,7 @@ pub(super) fn closest_hit<R: Lanes, P: Primitive>(
             let beam = if taken < fewest {
                 None
             } else {
-                Beam::of(r.eight(), rays, octant, spread, root, Allowance::of::<P>())
+                Beam::of(r.eight(), rays, octant, spread, root, Padding::of::<P>())
             };
             if let Some(beam) = beam {
                 counts::some(Event::BeamRay, taken);
@@ -324,9 +324,7 @@ impl<R: Lanes> Register<'_, R> {
                 || P::intersect_among_on(m, meeting.kinds, prim, ray, meeting.shared),
             );
             let hit = P::Hit::hit_on(record);
-            let after = r.f32_compare(op::Ge, hit.t.0, ray.t_min.0);
-            let before = r.f32_compare(op::Le, hit.t.0, ray.t_max.0);
-            let met = and(r, and(r, there, hit.is_hit.0), and(r, after, before));
+            let met = and(r, there, is_within::on(m, hit, ray).0);
             if r.any(met) {
                 there = and(r, there, r.mask_not(met));
                 if !r.any(there) {
@@ -368,19 +366,18 @@ impl<R: Lanes> Register<'_, R> {
                 || P::intersect_among_on(m, meeting.kinds, prim, ray, meeting.shared),
             );
             let hit = P::Hit::hit_on(record);
-            let (t, best) = (hit.t.0, self.number(row::T));
-            let after = r.f32_compare(op::Ge, t, ray.t_min.0);
-            let before = r.f32_compare(op::Le, t, ray.t_max.0);
-            let met = and(r, and(r, there, hit.is_hit.0), and(r, after, before));
-            let met = and(r, met, r.f32_compare(op::Le, t, best));
+            let best = self.number(row::T);
+            let t_max = F(min(r, ray.t_max.0, best));
+            let met = and(r, there, is_within::on(m, hit, RayOn { t_max, ..ray }).0);
             if !r.any(met) {
                 continue;
             }
             let id = r.u32(meeting.part.first + numbers[i % WIDTH]);
             let ids = load_words(r, &self.group[row::ID].0, self.from);
-            let first = r.u32_compare(op::Lt, id, ids);
-            let take = and(r, met, or(r, r.f32_compare(op::Lt, t, best), first));
-            let best = r.f32_select(take, t, best);
+            let (hit, found) = (HitOn { prim_id: U(id), ..hit }, B(r.mask(true)));
+            let before = HitOn { is_hit: found, t: F(best), prim_id: U(ids), ..hit };
+            let take = and(r, met, is_before::on(m, false, hit, before).0);
+            let best = r.f32_select(take, hit.t.0, best);
             let (u, v) = (self.number(row::U), self.number(row::V));
             let found = load_words(r, &self.group[row::FOUND].0, self.from);
             self.set_number(row::T, best);
@@ -388,8 +385,8 @@ impl<R: Lanes> Register<'_, R> {
             self.set_number(row::V, r.f32_select(take, hit.v.0, v));
             self.set(row::ID, r.u32_select(take, id, ids));
             self.set(row::FOUND, r.u32_select(take, r.u32(1), found));
-            let slack = mul(r, abs(r, best), r.f32(P::SLACK));
-            self.set_number(row::LIMIT, min(r, ray.t_max.0, add(r, best, slack)));
+            let limit = limit_behind::on(m, F(best), F(r.f32(P::SLACK)), ray.t_max);
+            self.set_number(row::LIMIT, limit.0);
             is_nearer = true;
         }
         is_nearer

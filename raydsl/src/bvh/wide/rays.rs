@@ -1,11 +1,10 @@
 //! Rays on their way through a wide tree: sixteen of them to a group, each number side by side, so
 //! that packets are written and read as they are and one ray's numbers are broadcast from memory.
 
-use crate::bvh::packet_slabs::{abs, add, and, finite_inverse, max, mul, sub};
-use crate::bvh::slabs::{Allowance, ULP};
-use crate::bvh::traverse::is_finite;
+use crate::bvh::contract::{Padding, ULP, finite_inverse, is_finite};
+use crate::bvh::packet_slabs::{abs, add, and, max, mul, sub};
 use crate::geometry::{Aabb, Hit, Ray, RayOn};
-use crate::machine::{F, Lanes, Machine, V3, fill, op};
+use crate::machine::{F, Lanes, Machine, Packet, V3, fill, op};
 
 /// How many rays a group has.
 pub(super) const GROUP: usize = 16;
@@ -220,7 +219,7 @@ impl Rays {
                 rows[row::V].0[lane] = 0;
                 rows[row::ID].0[lane] = u32::MAX;
                 rows[row::FOUND].0[lane] = 0;
-                self.marks[group].asked |= u32::from(is_finite(ray)) << lane;
+                self.marks[group].asked |= u32::from(is_finite(*ray)) << lane;
             }
         }
     }
@@ -308,23 +307,23 @@ impl Rays {
         &mut self.groups[group][row].0
     }
 
-    /// Prepares the rays for the tree under `root`, as [`Slabs`](crate::bvh::slabs::Slabs) does.
+    /// Prepares the rays for the tree under `root`, as [`slabs`](crate::bvh::contract::slabs()) does.
     /// Those whose numbers are so large or so small that products may overflow are odd, and not
     /// alive.
     #[inline(always)]
-    pub(super) fn prepare<L: Lanes>(&mut self, l: L, root: &Aabb, allowance: Allowance) {
+    pub(super) fn prepare<L: Lanes>(&mut self, l: L, root: &Aabb, padding: Padding) {
         for group in 0..self.marks.len() {
-            self.prepare_group(l, group, root, allowance);
+            self.prepare_group(l, group, root, padding);
         }
     }
 
     #[inline(always)]
-    fn prepare_group<L: Lanes>(&mut self, l: L, group: usize, root: &Aabb, allowance: Allowance) {
+    fn prepare_group<L: Lanes>(&mut self, l: L, group: usize, root: &Aabb, padding: Padding) {
         let Marks { asked, odd, .. } = self.marks[group];
         let mut alive = asked & !odd;
         for from in (0..GROUP).step_by(L::N) {
             if alive >> from & lanes_mask::<L>() != 0 {
-                let tame = self.prepare_lanes(l, group, from, root, allowance);
+                let tame = self.prepare_lanes(l, group, from, root, padding);
                 alive &= !(!tame << from & lanes_mask::<L>() << from);
             }
         }
@@ -341,7 +340,7 @@ impl Rays {
         group: usize,
         from: usize,
         root: &Aabb,
-        allowance: Allowance,
+        padding: Padding,
     ) -> u32 {
         let rows = &mut self.groups[group];
         let origin: [L::F32; 3] = fill(
@@ -361,10 +360,11 @@ impl Rays {
             largest = max(l, largest, abs(l, origin[axis]));
         }
         // Besides what slabs take: planes are multiplied before anything is taken from them.
-        let part = l.f32(allowance.slack + 2.0 * ULP);
-        let pad = add(l, mul(l, part, reach), mul(l, l.f32(allowance.origin), largest));
+        let part = l.f32(padding.slack + 2.0 * ULP);
+        let pad = add(l, mul(l, part, reach), mul(l, l.f32(padding.origin), largest));
         let pad = max(l, pad, l.f32(f32::MIN_POSITIVE));
-        let inverse = finite_inverse(l, direction);
+        let direction = V3::from_array(direction);
+        let inverse = finite_inverse::on(&Packet::new(l), direction).array();
         let span = l.f32(root.min.abs().max(root.max.abs()).max_element());
         let mut tame = l.mask(true);
         for axis in 0..3 {

@@ -5,11 +5,10 @@ use core::cell::Cell;
 use super::beam::Beam;
 use super::counts::{self, Event};
 use super::node::{Child, WIDTH};
-use super::step::{Meeting, beyond, enter, ids, last_key, nearest, sorted, words};
+use super::step::{Meeting, enter, ids, last_key, nearest, sorted, words};
 use super::trace::meeting;
 use crate::bvh::SceneView;
-use crate::bvh::slabs::Allowance;
-use crate::bvh::traverse::is_finite;
+use crate::bvh::contract::{Padding, is_before, is_finite, limit_behind};
 use crate::geometry::{Hit, Primitive, Ray};
 use crate::machine::{Entered, Lanes, Packet, Type};
 use crate::run::{LanesTask, with_wide_walks};
@@ -95,15 +94,15 @@ fn each_part<E: Lanes, P: Primitive>(
     mut pending: Pending<'_>,
 ) -> Option<Hit> {
     let mut best = Hit::miss();
-    if !is_finite(&ray) {
+    if !is_finite(ray) {
         return Some(best);
     }
     let mut next = 0;
     while let Some(part) = scene.part(next) {
         next += 1;
         let Some(tree) = part.wide().filter(|tree| !tree.is_empty()) else { continue };
-        let limit = if best.is_hit { beyond(best.t, ray.t_max, P::SLACK) } else { ray.t_max };
-        let beam = Beam::of_one(&ray, limit, &tree.bounds(), Allowance::of::<P>())?;
+        let limit = if best.is_hit { limit_behind(best.t, P::SLACK, ray.t_max) } else { ray.t_max };
+        let beam = Beam::of_one(&ray, limit, &tree.bounds(), Padding::of::<P>())?;
         let meeting = meeting(scene, part, tree);
         walk(e, &meeting, &ray, wanted, beam, &mut pending, &mut best);
         if wanted == Wanted::Any && best.is_hit {
@@ -142,11 +141,13 @@ fn walk<E: Lanes, P: Primitive>(
             while met != 0 {
                 let i = met.trailing_zeros() as usize;
                 met &= met - 1;
-                let (t, id) = (E::f32_lane(&hit.t.0, i), meeting.part.first + ids(block)[i]);
-                if !best.is_hit || t < best.t || (t == best.t && id < best.prim_id) {
-                    let (u, v) = (E::f32_lane(&hit.u.0, i), E::f32_lane(&hit.v.0, i));
-                    *best = Hit { is_hit: true, t, prim_id: id, inst_id: 0, u, v };
-                    beam.limit = beyond(t, ray.t_max, P::SLACK);
+                let t = E::f32_lane(&hit.t.0, i);
+                let prim_id = meeting.part.first + ids(block)[i];
+                let (u, v) = (E::f32_lane(&hit.u.0, i), E::f32_lane(&hit.v.0, i));
+                let hit = Hit { is_hit: true, t, prim_id, inst_id: 0, u, v };
+                if is_before(false, hit, *best) {
+                    *best = hit;
+                    beam.limit = limit_behind(t, P::SLACK, ray.t_max);
                     is_nearer = true;
                 }
             }

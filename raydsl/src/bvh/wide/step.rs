@@ -5,9 +5,10 @@ use super::blocks::{self, Row};
 use super::node::{WIDTH, WideNode};
 use super::rays::{RayWords, row};
 use crate::bvh::Part;
+use crate::bvh::contract::is_within;
 use crate::bvh::packet_slabs::{max, min};
 use crate::geometry::{HitOn, HitRecord, Kinds, Primitive, RayOn};
-use crate::machine::{Lanes, Packet, Slice, op};
+use crate::machine::{F, Lanes, Packet, Slice, op};
 
 /// What meets boxes: a ray, or a beam of them.
 pub(super) trait Slabs: Copy {
@@ -105,13 +106,6 @@ pub(super) fn last_key(limit: f32) -> u32 {
     if limit > 0.0 { limit.to_bits() } else { 7 }
 }
 
-/// Up to where boxes may hold a hit that is less than one at `t`, of a ray that ends at `t_max`.
-#[inline(always)]
-pub(super) fn beyond(t: f32, t_max: f32, slack: f32) -> f32 {
-    let limit = t + t.abs() * slack;
-    if limit < t_max { limit } else { t_max }
-}
-
 /// Eight numbers from memory.
 #[inline(always)]
 fn numbers<E: Lanes>(e: E, numbers: &[f32; WIDTH]) -> E::F32 {
@@ -163,11 +157,9 @@ impl<P: Primitive> Meeting<'_, P> {
         );
         let record = P::intersect_among_on(m, self.kinds, prim, ray, self.shared);
         let hit = P::Hit::hit_on(record);
-        let after = e.f32_compare(op::Ge, hit.t.0, ray.t_min.0);
         // In this order a range without an end that is a number holds nothing.
-        let before = e.f32_compare(op::Le, hit.t.0, min(e, ray.t_max.0, e.f32(best)));
-        let within = e.mask_binary(op::And, after, before);
-        (hit, e.mask_binary(op::And, hit.is_hit.0, within))
+        let t_max = F(min(e, ray.t_max.0, e.f32(best)));
+        (hit, is_within::on(m, hit, RayOn { t_max, ..ray }).0)
     }
 }
 

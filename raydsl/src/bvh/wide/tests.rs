@@ -11,7 +11,7 @@ use super::rays::{GROUP, Rays, lanes_of, place, ray_at, ray_at_mut, row};
 use super::trace::{self, Ways};
 use super::{Wide, entry};
 use crate::bvh::build::{Primitives, build_watched};
-use crate::bvh::slabs::Allowance;
+use crate::bvh::contract::Padding;
 use crate::bvh::stats::depth;
 use crate::bvh::validate::check;
 use crate::bvh::{BuildConfig, BuildQuality, Bvh, Node, RayQuery, Settings, Traversal, validate};
@@ -177,7 +177,7 @@ fn entries_lead_to_all_that_rays_may_reach() {
     let prims = triangles(3000);
     let bvh = Bvh::build_wide(&prims, &[], &wide()).expect("finite bounds");
     let tree = bvh.tree.own.structure.wide().expect("it was asked for");
-    let (root, allowance) = (bvh.bounds(), Allowance::of::<Triangle>());
+    let (root, padding) = (bvh.bounds(), Padding::of::<Triangle>());
     let (mut rays, mut opened) = (Rays::default(), 0);
     for case in 0..300 {
         let length = 10f32.powi(case as i32 % 5 - 3);
@@ -195,8 +195,8 @@ fn entries_lead_to_all_that_rays_may_reach() {
         });
         let mut of = |all: &[Ray]| {
             rays.load(all);
-            rays.prepare(e, &root, allowance);
-            entry::of(e, tree, &rays, &root, allowance)
+            rays.prepare(e, &root, padding);
+            entry::of(e, tree, &rays, &root, padding)
         };
         let entry = of(&all).expect("rays with an end");
         let (mut below, mut wanted) = (HashSet::new(), HashSet::new());
@@ -229,7 +229,7 @@ fn the_order_has_each_ray_once_octant_by_octant() {
     let all: Vec<Ray> = (0..700).map(|i| Ray::new(Vec3::ZERO, direction(i))).collect();
     let mut rays = Rays::default();
     rays.load(&all);
-    rays.prepare(e, &Aabb::new(Vec3::ZERO, Vec3::ONE), Allowance::of::<Triangle>());
+    rays.prepare(e, &Aabb::new(Vec3::ZERO, Vec3::ONE), Padding::of::<Triangle>());
     let is_alive = |i: &usize| !i.is_multiple_of(3);
     for (group, marks) in rays.marks.iter_mut().enumerate() {
         marks.alive =
@@ -300,7 +300,7 @@ fn octants_have_each_ray_once() {
         let all: Vec<Ray> = (0..count).map(|i| Ray::new(Vec3::ZERO, point(i, 5) - 0.5)).collect();
         let mut rays = Rays::default();
         rays.load(&all);
-        rays.prepare(e, &Aabb::new(Vec3::ZERO, Vec3::ONE), Allowance::of::<Triangle>());
+        rays.prepare(e, &Aabb::new(Vec3::ZERO, Vec3::ONE), Padding::of::<Triangle>());
         for (group, marks) in rays.marks.iter_mut().enumerate() {
             let lanes = (0..GROUP).filter(|lane| GROUP * group + lane < all.len());
             marks.alive = lanes.map(|lane| 1 << lane).sum();

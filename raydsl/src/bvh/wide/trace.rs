@@ -13,8 +13,8 @@ use super::rays::{GROUP, Rays, lanes_of, load_words, place, ray_at, ray_at_mut, 
 use super::step::Meeting;
 use super::walks::Walks;
 use super::wave::{self, Wave};
-use crate::bvh::packet_slabs::{and, finite};
-use crate::bvh::slabs::Allowance;
+use crate::bvh::contract::{Padding, is_finite};
+use crate::bvh::packet_slabs::and;
 use crate::bvh::{Part, SceneView, Traversal, View, traverse};
 use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn};
 use crate::machine::{B, Entered, F, Lanes, Packet, U, op};
@@ -243,7 +243,7 @@ fn each_part<const CLOSEST: bool, R: Lanes, P: Primitive>(
                 let (meeting, e) = (meeting(scene, part, tree), r.eight());
                 if CLOSEST {
                     let Scratch { rays, wave, together, .. } = &mut *scratch;
-                    rays.prepare(r, root, Allowance::of::<P>());
+                    rays.prepare(r, root, Padding::of::<P>());
                     if tree.traversal != Traversal::Waves {
                         let must = tree.traversal == Traversal::Packets;
                         packet::closest_hit(r, &meeting, rays, together, root, must);
@@ -273,7 +273,7 @@ fn any<R: Lanes, E: Lanes, P: Primitive>(
     root: &Aabb,
     scratch: &mut Scratch,
 ) {
-    let allowance = Allowance::of::<P>();
+    let padding = Padding::of::<P>();
     let Scratch { rays, wave, .. } = &mut *scratch;
     let count = rays.all_alive();
     let sequence = match meeting.tree.traversal {
@@ -287,8 +287,8 @@ fn any<R: Lanes, E: Lanes, P: Primitive>(
     if let Some(sequence) = sequence {
         hybrid::any_hit(r, e, meeting, root, scratch, sequence);
     } else {
-        rays.prepare(r, root, allowance);
-        let entry = entry::of(r.eight(), meeting.tree, rays, root, allowance);
+        rays.prepare(r, root, padding);
+        let entry = entry::of(r.eight(), meeting.tree, rays, root, padding);
         wave::run::<false, _, _>(e, meeting, entry.as_ref(), rays, wave);
     }
 }
@@ -339,7 +339,7 @@ fn load<L: Lanes>(m: &Packet<L>, to: &mut Rays, rays: &[RayOn<Packet<L>>]) -> us
         spread(l, l.f32(0.0), to, first, row::V);
         spread(l, l.f32_from_bits(l.u32(u32::MAX)), to, first, row::ID);
         spread(l, l.f32(0.0), to, first, row::FOUND);
-        let alive = l.bits(and(l, m.active(), finite(l, ray)));
+        let alive = l.bits(and(l, m.active(), is_finite::on(m, *ray).0));
         for from in (0..L::N).step_by(GROUP) {
             let (group, lane) = ((first + from) / GROUP, (first + from) % GROUP);
             let lanes = if L::N < GROUP { alive } else { alive >> from & 0xffff };

@@ -11,8 +11,9 @@ use super::blocks::Row;
 use super::counts::{self, Event};
 use super::node::{Child, WIDTH, WideNode};
 use super::rays::{GROUP, Rays, lanes_of, place, ray_at, ray_at_mut, row};
-use super::step::{Meeting, beyond, enter, ids, last_key, sorted, words};
-use crate::geometry::{HitOn, Primitive};
+use super::step::{Meeting, enter, ids, last_key, sorted, words};
+use crate::bvh::contract::{is_before, limit_behind};
+use crate::geometry::{Hit, HitOn, Primitive};
 use crate::machine::{Lanes, Packet, op};
 
 /// What rays in turn need, kept from one query to the next.
@@ -291,13 +292,14 @@ fn take<E: Lanes, P: Primitive>(
     while bits != 0 {
         let i = bits.trailing_zeros() as usize;
         bits &= bits - 1;
-        let (t, id) = (E::f32_lane(&hit.t.0, i), meeting.part.first + numbers[i]);
-        let (best, first) = (words.as_ref().number(row::T), words.as_ref().word(row::ID));
-        if t < best || (t == best && id < first) {
-            words.set_number(row::T, t);
+        let of = |t, prim_id| Hit { is_hit: true, t, prim_id, ..Hit::miss() };
+        let found = of(E::f32_lane(&hit.t.0, i), meeting.part.first + numbers[i]);
+        let best = of(words.as_ref().number(row::T), words.as_ref().word(row::ID));
+        if is_before(false, found, best) {
+            words.set_number(row::T, found.t);
             words.set_number(row::U, E::f32_lane(&hit.u.0, i));
             words.set_number(row::V, E::f32_lane(&hit.v.0, i));
-            words.set(row::ID, id);
+            words.set(row::ID, found.prim_id);
             is_taken = true;
         }
     }
@@ -305,7 +307,7 @@ fn take<E: Lanes, P: Primitive>(
         counts::one(Event::Nearer);
         words.set(row::FOUND, 1);
         let (t, end) = (words.as_ref().number(row::T), words.as_ref().number(row::T_MAX));
-        words.set_number(row::LIMIT, beyond(t, end, P::SLACK));
+        words.set_number(row::LIMIT, limit_behind(t, P::SLACK, end));
     }
     is_taken
 }

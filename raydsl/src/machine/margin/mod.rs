@@ -463,9 +463,10 @@ impl Machine for Margin {
         if let Some(known) = info.known {
             let mut floats = Take(Vec::new());
             A::zip(self, args, args, &mut floats);
-            let mut results = Give(self.results(known, &floats.0).into_iter());
-            let zero = R::zero(self);
-            return R::zip(self, zero, zero, &mut results);
+            if let Some(results) = self.results(known, &floats.0) {
+                let zero = R::zero(self);
+                return R::zip(self, zero, zero, &mut Give(results.into_iter()));
+            }
         }
         let entry = self.is_running();
         let result = body(self, args);

@@ -103,11 +103,11 @@ impl Margin {
 }
 
 impl Margin {
-    /// What the function gives for these floats.
+    /// What the function gives for these floats, if more is known of it than its code says.
     #[inline(never)]
-    pub(super) fn results(&self, of: KnownBy, args: &[Bounded]) -> Vec<Bounded> {
+    pub(super) fn results(&self, of: KnownBy, args: &[Bounded]) -> Option<Vec<Bounded>> {
         let args: Vec<Known> = args.iter().map(|a| self.get(*a)).collect();
-        of.0.bound(self, &args).into_iter().map(|v| self.put(v)).collect()
+        Some(of.0.bound(self, &args)?.into_iter().map(|v| self.put(v)).collect())
     }
 }
 

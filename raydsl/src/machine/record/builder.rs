@@ -29,6 +29,7 @@ impl Builder {
                 name: info.name.to_owned(),
                 file: info.file,
                 line: info.line,
+                is_without_nan: info.known.is_some_and(|known| known.0.is_without_nan()),
                 params: Vec::new(),
                 result: None,
                 nodes: Vec::new(),

@@ -193,6 +193,11 @@ impl Expressions<'_> {
             self.infix(s, Bind::Product, (a, Bind::Product), (b, Bind::Unary), t)
         };
         let chosen = |less: bool, t: &mut Names| {
+            if self.function.is_without_nan {
+                let name = if less { "min" } else { "max" };
+                let text = format!("{name}({}, {})", self.any(a, t), self.any(b, t));
+                return (text, Bind::Primary);
+            }
             let (a, b) = (self.at_least(a, Bind::Sum, t), self.at_least(b, Bind::Sum, t));
             let c = if less { format!("{b} < {a}") } else { format!("{a} < {b}") };
             (format!("select({a}, {b}, {c})"), Bind::Primary)

@@ -76,8 +76,9 @@ impl<'a> FunctionPrinter<'a> {
         if self.uses[i] > 1 && !node.expr.is_trivial() {
             return;
         }
-        // `min` and `max` write their operands twice.
-        let twice = matches!(node.expr, Expr::F32Binary(F32Binary::Min | F32Binary::Max, ..));
+        // `min` and `max` as selects write their operands twice.
+        let twice = !self.function.is_without_nan
+            && matches!(node.expr, Expr::F32Binary(F32Binary::Min | F32Binary::Max, ..));
         for operand in node.expr.operands() {
             self.count(operand);
             if twice {

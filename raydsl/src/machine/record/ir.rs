@@ -264,6 +264,8 @@ pub(super) struct Recorded {
     /// Where it stands in the Rust source.
     pub(super) file: &'static str,
     pub(super) line: u32,
+    /// Whether `min` and `max` in it are WGSL's own; see `KnownFunction::is_without_nan`.
+    pub(super) is_without_nan: bool,
     pub(super) params: Vec<(String, Type)>,
     pub(super) result: Option<Type>,
     pub(super) nodes: Vec<Node>,

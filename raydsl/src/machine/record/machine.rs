@@ -626,6 +626,10 @@ impl Machine for Recorder {
     fn give_slot<V: Value<Self>>(&self) -> V {
         V::zero(self)
     }
+    fn f32_beside_infinity<O: Op<Compare>>(&self, _: O, a: Id) -> Id {
+        let size = self.u32_binary(op::And, self.f32_to_bits(a), self.u32(0x7fff_ffff));
+        self.unsigned_compare(O::OP, size, self.u32(0x7f80_0000))
+    }
     // Inlined, so that with an edit the code of kernels is compiled again, and not all of the recorder.
     #[inline]
     fn call<A: Value<Self>, R: Value<Self>>(

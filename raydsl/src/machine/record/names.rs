@@ -246,14 +246,8 @@ const TAKEN: &[&str] = &[
     "Job",
     "inputs",
     "outputs",
-    "slabs",
-    "Slabs",
-    "enter_leave",
-    "finite_inverse",
-    "is_finite",
     "saturate_i32",
     "saturate_u32",
-    "Node",
     "leave",
 ];
 

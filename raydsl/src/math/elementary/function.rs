@@ -51,7 +51,7 @@ impl KnownFunction for Function {
         Some(vec![of(name, args)])
     }
 
-    fn bound(&self, m: &Margin, args: &[Known]) -> Vec<Known> {
-        bounds::of(m, *self, args)
+    fn bound(&self, m: &Margin, args: &[Known]) -> Option<Vec<Known>> {
+        Some(bounds::of(m, *self, args))
     }
 }

@@ -4,8 +4,9 @@
 //! leaf names is a primitive, or a place in the table of places. It gives the next primitive, as
 //! the walk through a tree does, and with it the ray as its tree sees it.
 
-use super::Described;
 use super::visit::NONE;
+use super::{BoxTests, Described, Rules, TreeNames};
+use crate::bvh::contract::Slabs;
 use crate::bvh::{
     Cost, CountedHit, IS_INSTANCE, MAX_LEVELS, NODE_SCHEMA, PLACE_SCHEMA, RecordOn, STACK,
     SceneView,
@@ -188,6 +189,8 @@ impl Recorder {
         let (start, next) = (self.function_name(start), self.function_name(next));
         let (_, places) = self.places_of(prims);
         let zero = zero_value(CountedHit::SCHEMA);
+        let Rules { is_within, limit_behind, .. } = self.rules();
+        let is_before = self.is_before_name(true);
         let types = vec![Ray::SCHEMA, Hit::SCHEMA, Cost::SCHEMA, CountedHit::SCHEMA];
         self.text_function(format!("{prims_name}_closest_hit_with_cost"), types, &|name| {
             format!(
@@ -204,14 +207,12 @@ fn {name}(ray: Ray) -> CountedHit {{
             break;
         }}
         primitives = primitives + 1u;
-        let candidate = {intersect}({prims_name}_at(next.id), next.ray){path};
-        let is_first = next.inst < best.inst_id || (next.inst == best.inst_id && next.id < best.prim_id);
-        if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max
-            && (!best.is_hit || candidate.t < best.t || (candidate.t == best.t && is_first))) {{
+        var candidate = {intersect}({prims_name}_at(next.id), next.ray){path};
+        candidate.prim_id = next.id;
+        candidate.inst_id = next.inst;
+        if ({is_within}(candidate, ray) && {is_before}(candidate, best)) {{
             best = candidate;
-            best.prim_id = next.id;
-            best.inst_id = next.inst;
-            limit = min(best.t + abs(best.t) * slack, ray.t_max);
+            limit = {limit_behind}(best.t, slack, ray.t_max);
         }}
     }}
     return CountedHit(best, Cost(w.tested, primitives));
@@ -261,7 +262,7 @@ fn {name}(ray: Ray) -> CountedHit {{
         self.places_buffer(&prims.name(), prims.key_of(buffers::PLACES), prims.place_count())
     }
 
-    /// The allowance of the whole scene, which is data: it changes when instances move.
+    /// The padding of the whole scene, which is data: it changes when instances move.
     pub(in crate::bvh::on) fn slack_of_places<P: Primitive>(
         &self,
         prims: &SceneView<'_, P>,
@@ -366,15 +367,22 @@ fn {name}({parameters}) -> {name_of_result} {{
     fn descent_functions(&self, prims: &dyn Described, walk: Walk) -> (usize, usize) {
         let name = prims.primitives(self);
         let (_, places) = self.places_of(prims);
-        self.finite_function();
         let Some(tree) = self.tree(prims) else { unreachable!("instances are of trees") };
         let transform = self.transform_function();
         let [walk_type, suffix] = walk.names();
-        let types =
-            || vec![Ray::SCHEMA, LEVEL, walk.schema(), CANDIDATE, PLACE_SCHEMA, NODE_SCHEMA];
-        self.text_function("slabs_of_place".to_owned(), types(), &|_| SLABS.to_owned());
+        let types = || {
+            vec![
+                Ray::SCHEMA,
+                LEVEL,
+                walk.schema(),
+                CANDIDATE,
+                PLACE_SCHEMA,
+                NODE_SCHEMA,
+                Slabs::SCHEMA,
+            ]
+        };
         let enter = self.text_function(format!("{name}_enter{suffix}"), types(), &|name| {
-            enter_text(name, &places, &tree.nodes, walk)
+            enter_text(name, &places, &tree, walk)
         });
         let enter = self.function_name(enter);
         let start = self.text_function(format!("{name}_walk{suffix}"), types(), &|name| {
@@ -390,7 +398,7 @@ fn {name}(ray: Ray) -> {walk_type} {{
             )
         });
         let next = self.text_function(format!("{name}_next{suffix}"), types(), &|name| {
-            next_text(name, [&places, &tree.nodes, &tree.indices], [&enter, &transform], walk)
+            next_text(name, &places, &tree, [&enter, &transform], walk)
         });
         (start, next)
     }
@@ -407,29 +415,21 @@ struct LevelsText<'a> {
     body: &'a str,
 }
 
-const SLABS: &str = "\
-/// The slab test for the boxes in a place.
-fn slabs_of_place(ray: Ray, root: Node, place: Place) -> Slabs {
-    let s = slabs(ray, root, place.slack);
-    let a = abs(ray.origin);
-    let pad = max(max(a.x, a.y), a.z) * place.origin;
-    return Slabs(s.lower + pad, s.upper - pad, s.inverse);
-}
-";
-
-fn enter_text(name: &str, places: &str, nodes: &str, walk: Walk) -> String {
+fn enter_text(name: &str, places: &str, tree: &TreeNames, walk: Walk) -> String {
     let ([walk_type, _], root_count) = (walk.names(), walk.count(1, 4));
+    let TreeNames { nodes, rules, boxes, .. } = tree;
+    let (is_finite, BoxTests { slabs, enter_leave }) = (&rules.is_finite, boxes);
     format!(
         "\
 /// Goes into what is placed if the ray, as it is seen there, may meet it.
 fn {name}(w: ptr<function, {walk_type}>, index: u32, ray: Ray, limit: f32) {{
     let place = {places}_at(index);
-    if (place.root == {NONE}u || !(is_finite(ray.origin) && is_finite(ray.direction))) {{
+    if (place.root == {NONE}u || !{is_finite}(ray)) {{
         return;
     }}
     let root = {nodes}_at(place.root);
-    let s = slabs_of_place(ray, root, place);
-{root_count}    let enter = enter_leave(s, root, ray.t_min, limit);
+    let s = {slabs}(ray, root.min, root.max, place.slack, place.origin);
+{root_count}    let enter = {enter_leave}(s, root.min, root.max, ray.t_min, limit);
     if (!(enter.x <= enter.y)) {{
         return;
     }}
@@ -449,12 +449,14 @@ fn {name}(w: ptr<function, {walk_type}>, index: u32, ray: Ray, limit: f32) {{
 
 fn next_text(
     name: &str,
-    [places, nodes, ids]: [&str; 3],
+    places: &str,
+    tree: &TreeNames,
     [enter, transform]: [&str; 2],
     walk: Walk,
 ) -> String {
     let number = !IS_INSTANCE;
     let ([walk_type, _], child_count) = (walk.names(), walk.count(2, 12));
+    let TreeNames { nodes, indices: ids, boxes: BoxTests { slabs, enter_leave }, .. } = tree;
     format!(
         "\
 /// The next primitive that the ray may meet at or before `limit`; {NONE}u when none is left.
@@ -484,7 +486,8 @@ fn {name}(w: ptr<function, {walk_type}>, limit: f32) -> NextPrimitive {{
             (*w).level = (*w).level - 1u;
             (*w).here = (*w).levels[(*w).level];
             let place = {places}_at((*w).here.place);
-            let s = slabs_of_place((*w).here.ray, {nodes}_at(place.root), place);
+            let root = {nodes}_at(place.root);
+            let s = {slabs}((*w).here.ray, root.min, root.max, place.slack, place.origin);
             (*w).lower = s.lower;
             (*w).upper = s.upper;
             (*w).inverse = s.inverse;
@@ -496,8 +499,8 @@ fn {name}(w: ptr<function, {walk_type}>, limit: f32) -> NextPrimitive {{
         while (node.count == 0u) {{
             let left = {nodes}_at(node.first);
             let right = {nodes}_at(node.first + 1u);
-{child_count}            let l = enter_leave(s, left, (*w).here.ray.t_min, limit);
-            let r = enter_leave(s, right, (*w).here.ray.t_min, limit);
+{child_count}            let l = {enter_leave}(s, left.min, left.max, (*w).here.ray.t_min, limit);
+            let r = {enter_leave}(s, right.min, right.max, (*w).here.ray.t_min, limit);
             let hit_left = l.x <= l.y;
             let hit_right = r.x <= r.y;
             if (!hit_left && !hit_right) {{

@@ -1,7 +1,6 @@
 //! Queries in WGSL: the text around a primitive's recorded `intersect`.
 //!
-//! The contract is that of [`crate::bvh`]: the least `(t, id)` of all primitives whose
-//! `intersect` accepts. Nodes are culled with the same robust slab test as on the CPU.
+//! The rules are those of [`contract`](crate::bvh::contract), which are recorded; the text calls them.
 
 mod instances;
 mod visit;
@@ -10,58 +9,15 @@ use std::borrow::Cow;
 
 pub(crate) use instances::RecordedWalks;
 
+use crate::bvh::contract::{
+    SlabsOn, enter_leave, is_before, is_finite, is_within, limit_behind, slabs,
+};
 use crate::bvh::{Cost, CountedHit, CountedHitOn, NODE_SCHEMA, SceneView, View, buffers};
 use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn};
 use crate::machine::record::ir::{self, Expr};
 use crate::machine::record::{member_name, zero_value};
 use crate::machine::wgsl::BufferKey;
-use crate::machine::{B, Data, Recorder, Schema, Type, Value};
-
-/// Whether a ray may hit anything: NaN and infinities are told by their bits, since WGSL lets an
-/// implementation assume that there are none.
-const FINITE: &str = "\
-fn is_finite(v: vec3<f32>) -> bool {
-    let exponent = bitcast<vec3<u32>>(v) & vec3<u32>(0x7f800000u);
-    return all(exponent != vec3<u32>(0x7f800000u));
-}
-";
-
-/// The slab test, shared by every tree.
-const SLABS: &str = "\
-/// Where a ray meets boxes: origins moved apart by the allowance for rounding, and finite
-/// reciprocals of the direction.
-struct Slabs {
-    lower: vec3<f32>,
-    upper: vec3<f32>,
-    inverse: vec3<f32>,
-}
-
-fn finite_inverse(d: vec3<f32>) -> vec3<f32> {
-    let a = abs(d);
-    let largest = max(max(a.x, a.y), a.z);
-    let least = max(largest * 8.6736174e-19, 1.1754944e-38);
-    let safe = select(d, select(vec3<f32>(least), vec3<f32>(-least), d < vec3<f32>(0.0)), a < vec3<f32>(least));
-    return 1.0 / safe;
-}
-
-fn slabs(ray: Ray, root: Node, slack: f32) -> Slabs {
-    let reach = max(abs(root.min - ray.origin), abs(root.max - ray.origin));
-    let pad = max(slack * max(max(reach.x, reach.y), reach.z), 1.1754944e-38) + abs(ray.origin) * 1.1920929e-7;
-    return Slabs(ray.origin + pad, ray.origin - pad, finite_inverse(ray.direction));
-}
-
-/// The distances at which a ray enters and leaves a box.
-fn enter_leave(s: Slabs, node: Node, t_min: f32, t_max: f32) -> vec2<f32> {
-    let t0 = (node.min - s.lower) * s.inverse;
-    let t1 = (node.max - s.upper) * s.inverse;
-    let near = min(t0, t1);
-    let far = max(t0, t1);
-    return vec2<f32>(
-        max(max(near.x, near.y), max(near.z, t_min)),
-        min(min(far.x, far.y), min(far.z, t_max)),
-    );
-}
-";
+use crate::machine::{B, Data, F, Machine, Recorder, Schema, Type, V3, Value};
 
 /// What the text of a query says of its scene: whatever the primitives are, the text is made in one
 /// place.
@@ -110,9 +66,39 @@ impl<P: Primitive> Described for SceneView<'_, P> {
 }
 
 impl Recorder {
-    /// `fn is_finite(v: vec3<f32>) -> bool`.
-    pub(super) fn finite_function(&self) -> usize {
-        self.text_function("is_finite".to_owned(), vec![], &|_| FINITE.to_owned())
+    /// The name of the function that `call` records.
+    pub(super) fn name_of<R: Value<Self>>(&self, call: impl FnOnce(&Self) -> R) -> String {
+        self.function_name(self.function_of(call))
+    }
+
+    /// The names of the rules that text calls.
+    pub(super) fn rules(&self) -> Rules {
+        let zero = |m: &Self| F(m.f32(0.0));
+        Rules {
+            is_finite: self.name_of(|m| is_finite::on(m, RayOn::zero(m))),
+            is_within: self.name_of(|m| is_within::on(m, HitOn::zero(m), RayOn::zero(m))),
+            is_before: self.is_before_name(false),
+            limit_behind: self.name_of(|m| limit_behind::on(m, zero(m), zero(m), zero(m))),
+        }
+    }
+
+    pub(super) fn is_before_name(&self, is_placed: bool) -> String {
+        self.name_of(|m| is_before::on(m, is_placed, HitOn::zero(m), HitOn::zero(m)))
+    }
+
+    /// The names of the tests of boxes.
+    pub(super) fn box_tests(&self) -> BoxTests {
+        let zero = |m: &Self| F(m.f32(0.0));
+        BoxTests {
+            slabs: self.name_of(|m| {
+                let (ray, corner) = (RayOn::zero(m), V3::zero(m));
+                slabs::on(m, ray, corner, corner, zero(m), zero(m))
+            }),
+            enter_leave: self.name_of(|m| {
+                let (prepared, corner) = (SlabsOn::zero(m), V3::zero(m));
+                enter_leave::on(m, prepared, corner, corner, zero(m), zero(m))
+            }),
+        }
     }
 
     /// Records `P::intersect`: the text before and behind its arguments, which gives a `Hit`.
@@ -125,26 +111,23 @@ impl Recorder {
         (self.function_name(f), path)
     }
 
-    /// What the least `(t, id)` hit does with a primitive that `call` meets, and the distance beyond
-    /// which there is none.
+    /// What the least `(t, id)` hit does with a primitive that `call` meets, and how the limit begins
+    /// with a hit that is there before.
     fn closest_text(
         &self,
         prims: &dyn Described,
         (intersect, path): &(String, String),
     ) -> (String, String) {
         let prims_name = prims.primitives(self);
-        self.finite_function();
+        let Rules { is_within, is_before, limit_behind, .. } = self.rules();
+        let lower = format!("limit = {limit_behind}(best.t, {:?}, ray.t_max);", prims.slack());
         let test = format!(
-            "let candidate = {intersect}({prims_name}_at(id), ray){path};\n\
-             if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max\n    \
-             && (!best.is_hit || candidate.t < best.t || (candidate.t == best.t && id < best.prim_id))) {{\n    \
-             best = candidate;\n    best.prim_id = id;\n}}",
+            "var candidate = {intersect}({prims_name}_at(id), ray){path};\n\
+             candidate.prim_id = id;\n\
+             if ({is_within}(candidate, ray) && {is_before}(candidate, best)) {{\n    \
+             best = candidate;\n    {lower}\n}}",
         );
-        let limit = format!(
-            "select(ray.t_max, min(best.t + abs(best.t) * {:?}, ray.t_max), best.is_hit)",
-            prims.slack()
-        );
-        (test, limit)
+        (test, format!("if (best.is_hit) {{\n    {lower}\n}}"))
     }
 
     /// The least `(t, id)` hit of a ray.
@@ -205,12 +188,12 @@ impl Recorder {
 
     fn closest_function(&self, prims: &dyn Described, call: &(String, String)) -> usize {
         let prims_name = prims.primitives(self);
-        let (test, limit) = self.closest_text(prims, call);
+        let (test, lower) = self.closest_text(prims, call);
         let miss = zero_value(Hit::SCHEMA);
         let query = Query {
             result: "Hit",
             declare: &format!("var best = {miss};"),
-            limit: &limit,
+            begin: "",
             test: &test,
             give: "best",
             slack: prims.slack(),
@@ -220,7 +203,7 @@ impl Recorder {
             return self.query_function(prims, format!("{prims_name}_closest_hit"), &query);
         }
         // One tree after another, each with the best hit so far.
-        let each = Query { declare: "var best = before;", ..query };
+        let each = Query { declare: "var best = before;", begin: &lower, ..query };
         let each =
             self.tree_function(prims, format!("{prims_name}_closer_hit"), ", before: Hit", &each);
         self.list_function(prims, format!("{prims_name}_closest_hit"), &query, &|roots| {
@@ -241,14 +224,14 @@ impl Recorder {
 
     fn closest_with_cost_function(&self, prims: &dyn Described, call: &(String, String)) -> usize {
         let prims_name = prims.primitives(self);
-        let (test, limit) = self.closest_text(prims, call);
+        let (test, lower) = self.closest_text(prims, call);
         let test = format!("cost.primitives = cost.primitives + 1u;\n{test}");
         let before = zero_value(CountedHit::SCHEMA);
         let declare = |before: &str| format!("var best = {before}.hit;\nvar cost = {before}.cost;");
         let query = Query {
             result: "CountedHit",
             declare: &declare(&before),
-            limit: &limit,
+            begin: "",
             test: &test,
             give: "CountedHit(best, cost)",
             slack: prims.slack(),
@@ -259,7 +242,7 @@ impl Recorder {
             return self.query_function(prims, name, &query);
         }
         // One tree after another, each with the best hit so far, and with what that cost.
-        let each = Query { declare: &declare("before"), ..query };
+        let each = Query { declare: &declare("before"), begin: &lower, ..query };
         let each_name = format!("{prims_name}_closer_hit_with_cost");
         let each = self.tree_function(prims, each_name, ", before: CountedHit", &each);
         self.list_function(prims, name, &query, &|roots| {
@@ -279,16 +262,15 @@ impl Recorder {
 
     fn any_function(&self, prims: &dyn Described, (intersect, path): &(String, String)) -> usize {
         let prims_name = prims.primitives(self);
-        self.finite_function();
+        let is_within = self.rules().is_within;
         let test = format!(
-            "let candidate = {intersect}({prims_name}_at(id), ray){path};\n\
-             if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max) {{\n    \
+            "if ({is_within}({intersect}({prims_name}_at(id), ray){path}, ray)) {{\n    \
              return true;\n}}",
         );
         let query = Query {
             result: "bool",
             declare: "",
-            limit: "ray.t_max",
+            begin: "",
             test: &test,
             give: "false",
             slack: prims.slack(),
@@ -310,9 +292,10 @@ impl Recorder {
     /// The function of a query of a slice, or of one tree.
     fn query_function(&self, prims: &dyn Described, name: String, query: &Query<'_>) -> usize {
         let (prims_name, tree) = (prims.primitives(self), self.tree(prims));
+        let is_finite = self.rules().is_finite;
         self.text_function(name, types_of(query), &|name| match &tree {
-            None => linear(name, query, &prims_name),
-            Some(tree) => walk(name, "ray: Ray", ["0u", "ray.t_max"], query, tree),
+            None => linear(name, query, &prims_name, &is_finite),
+            Some(tree) => walk(name, "ray: Ray", "0u", query, tree),
         })
     }
 
@@ -327,7 +310,7 @@ impl Recorder {
         let Some(tree) = self.tree(prims) else { unreachable!("a list has trees") };
         let parameters = format!("ray: Ray, first: u32{more}");
         let function = self.text_function(name, types_of(query), &|name| {
-            walk(name, &parameters, ["first", query.limit], query, &tree)
+            walk(name, &parameters, "first", query, &tree)
         });
         self.function_name(function)
     }
@@ -363,10 +346,7 @@ impl Recorder {
         let (nodes, indices) = (prims.key_of(buffers::NODES), prims.key_of(buffers::INDICES));
         let nodes = self.buffer(nodes, &format!("{name}_nodes"), NODE_SCHEMA, node_count);
         let indices = self.buffer(indices, &format!("{name}_ids"), &Schema::U32, index_count);
-        self.text_function("slabs".to_owned(), vec![Ray::SCHEMA, NODE_SCHEMA], &|_| {
-            SLABS.to_owned()
-        });
-        Some(TreeNames { nodes, indices })
+        Some(TreeNames { nodes, indices, rules: self.rules(), boxes: self.box_tests() })
     }
 }
 
@@ -379,15 +359,32 @@ fn types_of(query: &Query<'_>) -> Vec<&'static Schema> {
         .collect()
 }
 
-/// The names of a tree's buffers.
+/// The names of a tree's buffers, and of what walks through it call.
 pub(super) struct TreeNames {
     pub(super) nodes: String,
     pub(super) indices: String,
+    pub(super) rules: Rules,
+    pub(super) boxes: BoxTests,
+}
+
+/// The names of the functions of the [`contract`](crate::bvh::contract).
+pub(super) struct Rules {
+    pub(super) is_finite: String,
+    pub(super) is_within: String,
+    /// Of hits without instances.
+    pub(super) is_before: String,
+    pub(super) limit_behind: String,
+}
+
+/// The names of the functions that test boxes.
+pub(super) struct BoxTests {
+    pub(super) slabs: String,
+    pub(super) enter_leave: String,
 }
 
 fn indent(text: &str, by: usize) -> String {
     let pad = " ".repeat(by);
-    text.lines().map(|l| format!("{pad}{l}\n")).collect()
+    text.lines().filter(|l| !l.is_empty()).map(|l| format!("{pad}{l}\n")).collect()
 }
 
 /// What a query does with the primitives that it meets.
@@ -395,8 +392,8 @@ fn indent(text: &str, by: usize) -> String {
 struct Query<'a> {
     result: &'a str,
     declare: &'a str,
-    /// No node beyond this distance is worth a visit.
-    limit: &'a str,
+    /// How the limit begins that is the ray's end: no node beyond it is worth a visit.
+    begin: &'a str,
     test: &'a str,
     give: &'a str,
     slack: f32,
@@ -414,45 +411,40 @@ impl Query<'_> {
     }
 }
 
-fn linear(name: &str, query: &Query<'_>, prims: &str) -> String {
+fn linear(name: &str, query: &Query<'_>, prims: &str, is_finite: &str) -> String {
     let Query { result, declare, test, give, .. } = query;
     let declare = indent(declare, 4);
     let test = indent(test, 8);
     format!(
         "fn {name}(ray: Ray) -> {result} {{\n{declare}    \
-         if (!(is_finite(ray.origin) && is_finite(ray.direction))) {{\n        \
+         if (!{is_finite}(ray)) {{\n        \
          return {give};\n    }}\n    \
          for (var id = 0u; id < params.len_of_{prims}; id = id + 1u) {{\n{test}    }}\n    \
          return {give};\n}}\n"
     )
 }
 
-/// Depth-first from the node `first`, which the ray must enter before `end`; the nearer child
-/// first, the farther one on a stack with its distance.
-fn walk(
-    name: &str,
-    parameters: &str,
-    [first, end]: [&str; 2],
-    query: &Query<'_>,
-    tree: &TreeNames,
-) -> String {
-    let Query { result, declare, limit, test, give, slack, .. } = query;
+/// Depth-first from the node `first`; the nearer child first, the farther one on a stack with its
+/// distance.
+fn walk(name: &str, parameters: &str, first: &str, query: &Query<'_>, tree: &TreeNames) -> String {
+    let Query { result, declare, begin, test, give, slack, .. } = query;
     let (root_count, child_count) = (query.count(1, 4), query.count(2, 12));
-    let TreeNames { nodes, indices } = tree;
-    let declare = indent(declare, 4);
+    let TreeNames { nodes, indices, rules, boxes } = tree;
+    let (is_finite, BoxTests { slabs, enter_leave }) = (&rules.is_finite, boxes);
+    let declare = indent(&format!("{declare}\nvar limit = ray.t_max;\n{begin}"), 4);
     let test = indent(test, 16);
     format!(
         "\
 fn {name}({parameters}) -> {result} {{
-{declare}    if (params.len_of_{nodes} == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {{
+{declare}    if (params.len_of_{nodes} == 0u || !{is_finite}(ray)) {{
         return {give};
     }}
     var stack: array<u32, 64>;
     var stack_t: array<f32, 64>;
     var top = 0u;
     var node = {nodes}_at({first});
-    let s = slabs(ray, node, {slack:?});
-{root_count}    let root = enter_leave(s, node, ray.t_min, {end});
+    let s = {slabs}(ray, node.min, node.max, {slack:?}, 0.0);
+{root_count}    let root = {enter_leave}(s, node.min, node.max, ray.t_min, limit);
     if (!(root.x <= root.y)) {{
         return {give};
     }}
@@ -464,9 +456,8 @@ fn {name}({parameters}) -> {result} {{
         }} else {{
             let left = {nodes}_at(node.first);
             let right = {nodes}_at(node.first + 1u);
-            let limit = {limit};
-{child_count}            let l = enter_leave(s, left, ray.t_min, limit);
-            let r = enter_leave(s, right, ray.t_min, limit);
+{child_count}            let l = {enter_leave}(s, left.min, left.max, ray.t_min, limit);
+            let r = {enter_leave}(s, right.min, right.max, ray.t_min, limit);
             let hit_left = l.x <= l.y;
             let hit_right = r.x <= r.y;
             if (hit_left && hit_right) {{
@@ -480,11 +471,11 @@ fn {name}({parameters}) -> {result} {{
             if (hit_left) {{ node = left; continue; }}
             if (hit_right) {{ node = right; continue; }}
         }}
-        // The next node on the stack that is not behind the best hit.
+        // The next node on the stack that is not beyond the limit.
         var found = false;
         while (top > 0u && !found) {{
             top = top - 1u;
-            found = stack_t[top] <= {limit};
+            found = stack_t[top] <= limit;
         }}
         if (!found) {{
             break;

@@ -1,11 +1,14 @@
 //! Queries whose hits the kernel sees one by one: the traversal is a struct that gives the next
 //! primitive, so that what is done with a hit stands in the kernel's own function.
 
-use super::Described;
+use super::{BoxTests, Described};
+use crate::bvh::contract::{Slabs, is_finite, is_within};
 use crate::bvh::{NODE_SCHEMA, RecordOn, SceneView};
 use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn};
 use crate::machine::record::ir::{Expr, Id, Type};
-use crate::machine::{B, Branch, F, Field, Loop, Machine, Recorder, Schema, U, Var, op};
+use crate::machine::{
+    B, Branch, F, Field, Loop, Machine, Recorder, Schema, Type as HostType, U, Var, op,
+};
 
 /// As deep as a tree may be, and one more.
 const STACK: usize = 64;
@@ -65,7 +68,7 @@ impl Recorder {
         } else {
             let goes_on = |id| {
                 let within = self.u32_compare(op::Lt, id, self.len(prims).0);
-                self.bool_binary(op::And, self.is_finite(ray), within)
+                self.bool_binary(op::And, is_finite::on(self, ray).0, within)
             };
             self.count("id", goes_on, |id, ids| {
                 self.ask(prims, ray, [U(id), U(self.u32(0))], meet, ids);
@@ -131,10 +134,7 @@ impl Recorder {
         let found = P::intersect_among_on(self, prims.kinds(), prim, ray, prims.shared());
         let found = self.named("candidate", found);
         let hit = HitOn { prim_id: id, inst_id: inst, ..P::Hit::hit_on(found) };
-        let late = self.f32_compare(op::Ge, hit.t.0, ray.t_min.0);
-        let early = self.f32_compare(op::Le, hit.t.0, ray.t_max.0);
-        let inside = self.bool_binary(op::And, late, early);
-        let is_met = Branch::new(self, B(self.bool_binary(op::And, hit.is_hit.0, inside)));
+        let is_met = Branch::new(self, is_within::on(self, P::Hit::hit_on(found), ray));
         if is_met.then(self) {
             let stops =
                 Branch::new(self, B(self.bool_not(meet(hit, P::Hit::with_hit_on(found, hit)).0)));
@@ -146,40 +146,33 @@ impl Recorder {
         is_met.end(self);
     }
 
-    fn is_finite(&self, ray: RayOn<Self>) -> Id {
-        let function = self.finite_function();
-        let of = |v: crate::machine::V3<Self>| {
-            self.add(Expr::Call(function, vec![self.whole(v)]), Type::Bool)
-        };
-        self.bool_binary(op::And, of(ray.origin), of(ray.direction))
-    }
-
     /// `fn bvh_walk(ray: Ray, ..) -> Traversal` and `fn bvh_next(..) -> u32`.
     fn walk_functions(&self, prims: &dyn Described) -> (usize, usize) {
         let name = prims.primitives(self);
-        self.finite_function();
         let Some(tree) = self.tree(prims) else { unreachable!("only trees are walked") };
         let (nodes, ids, slack) = (&tree.nodes, &tree.indices, prims.slack());
+        let (is_finite, boxes) = (&tree.rules.is_finite, &tree.boxes);
+        let BoxTests { slabs, enter_leave } = boxes;
         let (parameter, first) =
             if prims.is_list() { (", first: u32", "first") } else { ("", "0u") };
         let start = self.text_function(
             format!("{name}_walk"),
-            vec![<Ray as crate::machine::Type>::SCHEMA, TRAVERSAL, NODE_SCHEMA],
+            vec![<Ray as HostType>::SCHEMA, TRAVERSAL, NODE_SCHEMA],
             &|name| {
                 format!(
                     "\
 /// A traversal that has yet to begin.
 fn {name}(ray: Ray{parameter}) -> Traversal {{
     var w = Traversal();
-    if (params.len_of_{nodes} == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {{
+    if (params.len_of_{nodes} == 0u || !{is_finite}(ray)) {{
         return w;
     }}
     let node = {nodes}_at({first});
-    let s = slabs(ray, node, {slack:?});
+    let s = {slabs}(ray, node.min, node.max, {slack:?}, 0.0);
     w.lower = s.lower;
     w.upper = s.upper;
     w.inverse = s.inverse;
-    let enter = enter_leave(s, node, ray.t_min, ray.t_max);
+    let enter = {enter_leave}(s, node.min, node.max, ray.t_min, ray.t_max);
     w.nodes[0] = {first};
     w.enters[0] = enter.x;
     w.top = select(0u, 1u, enter.x <= enter.y);
@@ -189,8 +182,10 @@ fn {name}(ray: Ray{parameter}) -> Traversal {{
                 )
             },
         );
-        let next =
-            self.text_function(format!("{name}_next"), vec![TRAVERSAL, NODE_SCHEMA], &|name| {
+        let next = self.text_function(
+            format!("{name}_next"),
+            vec![TRAVERSAL, NODE_SCHEMA, <Slabs as HostType>::SCHEMA],
+            &|name| {
                 format!(
                     "\
 /// The next primitive that the ray may meet at or before `limit`; {NONE}u when none is left.
@@ -215,8 +210,8 @@ fn {name}(w: ptr<function, Traversal>, t_min: f32, limit: f32) -> u32 {{
         while (node.count == 0u) {{
             let left = {nodes}_at(node.first);
             let right = {nodes}_at(node.first + 1u);
-            let l = enter_leave(s, left, t_min, limit);
-            let r = enter_leave(s, right, t_min, limit);
+            let l = {enter_leave}(s, left.min, left.max, t_min, limit);
+            let r = {enter_leave}(s, right.min, right.max, t_min, limit);
             let hit_left = l.x <= l.y;
             let hit_right = r.x <= r.y;
             if (!hit_left && !hit_right) {{
@@ -237,7 +232,8 @@ fn {name}(w: ptr<function, Traversal>, t_min: f32, limit: f32) -> u32 {{
 }}
 "
                 )
-            });
+            },
+        );
         (start, next)
     }
 }

@@ -1,0 +1,166 @@
+//! The contract of every query, written once: which rays and hits count, which of two hits comes
+//! first, how far a traversal must look behind a hit, and whether a ray enters a box.
+//!
+//! Each rule is a kernel. A traversal of one ray calls the function; packets, WGSL and the bounds of
+//! rounding run its lifted body. Two traversals have arithmetic of their own for boxes, for reasons
+//! that stand there: `wide::step`, of eight boxes, and `on::beam`, in `f64` with bounds.
+//!
+//! **Boxes.** A box test must never lose a hit that `intersect` accepts. The ray's origin is moved
+//! apart by a padding, once a ray: lower faces are measured from the upper origin and the other way
+//! round, which widens every box by `SLACK` times the distance to the farthest corner of the scene
+//! and absorbs all rounding, at no cost in the loop. A direction component that is 0, or 2^60 times
+//! smaller than the largest, is replaced by one of that size: its reciprocal is finite, so no product
+//! is NaN, and the widened slab decides alone. (After Ize, "Robust BVH Ray Traversal", JCGT 2013.)
+
+use glam::{Vec2, Vec3, vec2, vec3};
+
+use super::Node;
+use crate::geometry::{Hit, Primitive, Ray};
+use crate::machine::WithoutNan;
+use crate::machine::functions::{vec2, vec3};
+use crate::machine::generic::{max, min};
+use crate::{Type, kernel};
+
+/// 2^-23: an ulp of a number is at most this part of it.
+pub(crate) const ULP: f32 = f32::EPSILON;
+
+/// 2^-60.
+const LEAST: f32 = 8.673_617_4e-19;
+
+/// Whether a ray may hit anything: one with a NaN or an infinite component does not.
+#[kernel]
+#[inline(always)]
+pub(crate) fn is_finite(ray: Ray) -> bool {
+    are_finite(ray.origin) & are_finite(ray.direction)
+}
+
+#[kernel]
+#[inline(always)]
+fn are_finite(v: Vec3) -> bool {
+    v.is_finite()
+}
+
+/// Whether a hit lies within the range of its ray.
+#[kernel]
+#[inline(always)]
+pub(crate) fn is_within(hit: Hit, ray: Ray) -> bool {
+    hit.is_hit & ((hit.t >= ray.t_min) & (hit.t <= ray.t_max))
+}
+
+/// Whether a hit comes before `best` in the order of `(t, inst_id, prim_id)`; any comes before a miss.
+/// Where nothing is placed all instances are 0, and are not compared.
+#[kernel]
+#[inline(always)]
+pub(crate) fn is_before(#[host] is_placed: bool, hit: Hit, best: Hit) -> bool {
+    let mut is_first = hit.prim_id < best.prim_id;
+    if is_placed {
+        is_first = (hit.inst_id < best.inst_id) | ((hit.inst_id == best.inst_id) & is_first);
+    }
+    !best.is_hit | ((hit.t < best.t) | ((hit.t == best.t) & is_first))
+}
+
+/// Up to where boxes may hold a hit that comes before one at `t`, of a ray that ends at `t_max`: what
+/// rounding does to a hit, it does to no visit. See [`Primitive::SLACK`].
+#[kernel]
+#[inline(always)]
+pub(crate) fn limit_behind(t: f32, slack: f32, t_max: f32) -> f32 {
+    // In this order what is no number becomes the ray's end.
+    min(t_max, t + t.abs() * slack)
+}
+
+/// By how much boxes are widened, so that they hold what rounding makes of the primitives in them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Padding {
+    /// Relative to the distance from the ray's origin to the farthest corner of the scene: see
+    /// [`Primitive::SLACK`].
+    pub(crate) slack: f32,
+    /// Relative to the coordinates of the ray's origin.
+    pub(crate) origin: f32,
+}
+
+impl Padding {
+    /// That of a tree over these primitives.
+    #[inline(always)]
+    pub(crate) const fn of<P: Primitive>() -> Self {
+        Self { slack: P::SLACK, origin: 0.0 }
+    }
+}
+
+/// A ray, prepared for box tests: from where upper and lower faces are measured, and finite
+/// reciprocals of the direction.
+#[derive(Clone, Copy, Debug, Type)]
+pub(crate) struct Slabs {
+    pub(crate) lower: Vec3,
+    pub(crate) upper: Vec3,
+    pub(crate) inverse: Vec3,
+}
+
+impl Slabs {
+    /// [`slabs()`] of the tree under `root`, for one ray.
+    #[inline(always)]
+    pub(crate) fn of(ray: &Ray, root: &Node, padding: Padding) -> Self {
+        slabs(*ray, root.min, root.max, padding.slack, padding.origin)
+    }
+
+    /// Where the ray, from `t_min` on, enters a node's box, if it does so at or before `limit`.
+    #[inline(always)]
+    pub(crate) fn enter(&self, node: &Node, t_min: f32, limit: f32) -> Option<f32> {
+        let span = enter_leave(*self, node.min, node.max, t_min, limit);
+        (span.x <= span.y).then_some(span.x)
+    }
+}
+
+/// Prepares a ray for the tree whose root has the corners `low` and `high`, with a [`Padding`].
+#[kernel(known = WithoutNan)]
+#[inline(always)]
+pub(crate) fn slabs(ray: Ray, low: Vec3, high: Vec3, slack: f32, origin: f32) -> Slabs {
+    let reach = max((low - ray.origin).abs(), (high - ray.origin).abs());
+    // Where the origin is large against the scene the padding must still move it.
+    let distant = ray.origin.abs();
+    let padding = max(slack * largest(reach), f32::MIN_POSITIVE) + largest(distant) * origin;
+    let padding = distant * ULP + padding;
+    Slabs {
+        lower: ray.origin + padding,
+        upper: ray.origin - padding,
+        inverse: finite_inverse(ray.direction),
+    }
+}
+
+/// Where a ray enters a box, not before `t_min`, and where it leaves it, not behind `t_max`: it meets
+/// the box if the first is not behind the second.
+#[kernel(known = WithoutNan)]
+#[inline(always)]
+pub(crate) fn enter_leave(s: Slabs, low: Vec3, high: Vec3, t_min: f32, t_max: f32) -> Vec2 {
+    let a = (low - s.lower) * s.inverse;
+    let b = (high - s.upper) * s.inverse;
+    overlap(min(a, b), max(a, b), t_min, t_max)
+}
+
+/// From the last of the near planes, and of the range, to the first of the far ones.
+#[kernel(known = WithoutNan)]
+#[inline(always)]
+pub(crate) fn overlap(near: Vec3, far: Vec3, t_min: f32, t_max: f32) -> Vec2 {
+    vec2(max(max(near.x, near.y), max(near.z, t_min)), min(min(far.x, far.y), min(far.z, t_max)))
+}
+
+/// The reciprocal of every component, finite.
+#[kernel(known = WithoutNan)]
+#[inline(always)]
+pub(crate) fn finite_inverse(d: Vec3) -> Vec3 {
+    let least = max(largest(d.abs()) * LEAST, f32::MIN_POSITIVE);
+    1.0 / vec3(at_least(d.x, least), at_least(d.y, least), at_least(d.z, least))
+}
+
+/// `x`, or what is of this size and has its sign.
+#[kernel]
+#[inline(always)]
+fn at_least(x: f32, size: f32) -> f32 {
+    let signed = if x < 0.0 { -size } else { size };
+    if x.abs() < size { signed } else { x }
+}
+
+#[kernel(known = WithoutNan)]
+#[inline(always)]
+fn largest(v: Vec3) -> f32 {
+    max(max(v.x, v.y), v.z)
+}
