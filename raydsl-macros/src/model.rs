@@ -175,6 +175,13 @@ pub(crate) enum Kind {
         range: Range,
         body: Block,
     },
+    /// A loop over what a cursor finds: its body binds the items by this name.
+    ForItems {
+        label: Option<String>,
+        item: Ident,
+        items: Box<Expr>,
+        body: Block,
+    },
     Block(Block),
     Break(Option<String>, Option<Box<Expr>>),
     Continue(Option<String>),
@@ -309,6 +316,9 @@ impl Kind {
                 let bounds = [&*range.start, &*range.end].into_iter();
                 bounds.chain(range.step.as_deref()).chain(body.children()).collect()
             }
+            Self::ForItems { items, body, .. } => {
+                core::iter::once(&**items).chain(body.children()).collect()
+            }
             Self::Loop { body, .. } | Self::Block(body) => body.children(),
         }
     }
@@ -338,7 +348,10 @@ impl Expr {
                 None => loops == 0,
                 Some(l) => !inside.iter().flatten().any(|x| x == l),
             },
-            Kind::While { label, .. } | Kind::Loop { label, .. } | Kind::For { label, .. } => {
+            Kind::While { label, .. }
+            | Kind::Loop { label, .. }
+            | Kind::For { label, .. }
+            | Kind::ForItems { label, .. } => {
                 inside.push(label.as_deref());
                 let ends = self.kind.children().iter().any(|e| e.ends(inside, loops + 1));
                 inside.pop();
@@ -365,8 +378,10 @@ impl Expr {
             Kind::Break(Some(l), Some(value)) if Some(l.as_str()) == label => found.push(value),
             _ => {}
         }
-        let is_loop =
-            matches!(self.kind, Kind::While { .. } | Kind::For { .. } | Kind::Loop { .. });
+        let is_loop = matches!(
+            self.kind,
+            Kind::While { .. } | Kind::For { .. } | Kind::ForItems { .. } | Kind::Loop { .. }
+        );
         let depth = depth + usize::from(is_loop);
         self.kind.children().iter().for_each(|e| e.break_values(label, depth, found));
     }
@@ -437,6 +452,7 @@ impl Expr {
             | Kind::While { .. }
             | Kind::Loop { .. }
             | Kind::For { .. }
+            | Kind::ForItems { .. }
             | Kind::Block(_)
             | Kind::Break(..)
             | Kind::Continue(_)

@@ -133,6 +133,9 @@ impl Emitter<'_> {
                 self.while_loop(label.clone(), Some(c), body, &Dest::None, e.span)
             }
             Kind::Loop { label, body } => self.while_loop(label.clone(), None, body, dest, e.span),
+            Kind::ForItems { label, item, items, body } => {
+                self.for_items(label.clone(), item, items, body, e.span)
+            }
             Kind::For { label, var, range, body } => {
                 self.for_loop(label.clone(), var.as_ref(), range, body, e.span)
             }

@@ -1,4 +1,4 @@
-//! `for` over a range: how it counts, and when it ends.
+//! `for` over a range: how it counts, and when it ends; and over what a cursor finds.
 
 use std::collections::HashMap;
 
@@ -7,7 +7,7 @@ use proc_macro2::{Ident, Span, TokenStream};
 use super::control::place;
 use super::{Dest, Emitter, Loop, own, private, shown};
 use crate::here::{At, quote_here as quote, word};
-use crate::model::{Block, Range};
+use crate::model::{Block, Expr, Range};
 
 impl Emitter<'_> {
     pub(super) fn for_loop(
@@ -46,6 +46,39 @@ impl Emitter<'_> {
                 #repeat.continuing(#m);
                 #note
                 #advance;
+                if !#repeat.again(#m) { break; }
+            }
+            #repeat.end(#m);
+        }}
+    }
+
+    pub(super) fn for_items(
+        &mut self,
+        label: Option<String>,
+        item: &Ident,
+        items: &Expr,
+        body: &Block,
+        span: Span,
+    ) -> TokenStream {
+        let (p, m, here) = (private(), own("m"), place("loop", span));
+        let [repeat, cursor, state] = ["repeat", "cursor", "state"].map(|n| self.fresh(n));
+        let value = self.value(items);
+        self.scopes.push(HashMap::new());
+        self.bind_counter(item, None);
+        let inside = Loop { label, ident: repeat.clone(), dest: Dest::None };
+        let body = self.loop_body(inside, body);
+        self.scopes.pop();
+        let _at = At::new(items.span);
+        quote! {{
+            let #cursor = { #value };
+            let #state = #p::Cursor::begin(&#cursor, #m);
+            let #repeat = #p::Loop::new(#m);
+            loop {
+                if !#repeat.test(#m, #p::Cursor::advance(&#cursor, #m, &#state)) { break; }
+                #here
+                let #item = #p::Cursor::item(&#cursor, #m, &#state);
+                #body
+                #repeat.continuing(#m);
                 if !#repeat.again(#m) { break; }
             }
             #repeat.end(#m);

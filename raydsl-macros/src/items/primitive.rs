@@ -1,6 +1,6 @@
 //! `#[primitive] impl T`.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 use syn::spanned::Spanned;
 
@@ -26,8 +26,10 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
     }
     let p = private();
     let self_ty = &item.self_ty;
-    let slack = parts.has_slack.then(|| quote!(const SLACK: f32 = <#self_ty>::SLACK;));
-    let is_short = parts.has_is_short.then(|| quote!(const IS_SHORT: bool = <#self_ty>::IS_SHORT;));
+    let constants = parts.constants.iter().map(|(name, ty)| {
+        let (name, ty) = (Ident::new(name, Span::call_site()), Ident::new(ty, Span::call_site()));
+        quote!(const #name: #ty = <#self_ty>::#name;)
+    });
     let (record, shared) = (parts.record(), parts.shared());
     // What a function does not ask for it is not given.
     let given =
@@ -51,8 +53,7 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
         impl #p::Primitive for #self_ty {
             type Hit = #record;
             type Shared = #shared;
-            #slack
-            #is_short
+            #(#constants)*
 
             #[inline(always)]
             fn intersect(&self, ray: #p::Ray, shared: &[#shared]) -> #record {
@@ -113,13 +114,17 @@ fn mistaken(item: &syn::ItemImpl, parts: &Parts<'_>) -> TokenStream {
     }
 }
 
+/// The constants that an `impl` may have, and their types.
+const CONSTANTS: [(&str, &str); 3] =
+    [("SLACK", "f32"), ("MAX_CROSSINGS", "u32"), ("IS_SHORT", "bool")];
+
 /// What an `impl` says of a primitive.
 struct Parts<'a> {
     intersect: Option<Function<'a>>,
     get_bounds: Option<Function<'a>>,
     split: Option<Function<'a>>,
-    has_slack: bool,
-    has_is_short: bool,
+    /// The names and types of the constants that it has.
+    constants: Vec<(&'static str, &'static str)>,
 }
 
 /// One of a primitive's functions.
@@ -198,8 +203,8 @@ impl<'a> Parts<'a> {
         let has = |name: &str| {
             item.items.iter().any(|i| matches!(i, syn::ImplItem::Const(c) if c.ident == name))
         };
-        let (has_slack, has_is_short) = (has("SLACK"), has("IS_SHORT"));
-        let parts = Self { intersect, get_bounds, split, has_slack, has_is_short };
+        let constants = CONSTANTS.into_iter().filter(|(name, _)| has(name)).collect();
+        let parts = Self { intersect, get_bounds, split, constants };
         parts.check_shared(errors);
         parts
     }

@@ -89,6 +89,7 @@ impl Shape {
             #[allow(dead_code, reason = "not every program asks all of a shape")]
             impl #ty {
                 const SLACK: f32 = #shape::SLACK;
+                const MAX_CROSSINGS: u32 = #shape::MAX_CROSSINGS;
                 #is_short
 
                 #hits

@@ -40,6 +40,11 @@ fn items(e: &syn::Expr) -> Option<Items<'_>> {
     }
 }
 
+/// `scene.hits(ray)`: what finds its items one after another.
+fn is_cursor(e: &syn::Expr) -> bool {
+    matches!(inside_parens(e), syn::Expr::MethodCall(c) if c.method == "hits")
+}
+
 /// What stands before every `.rev()`, and whether their number is odd.
 fn without_reversals(mut range: &syn::Expr) -> (&syn::Expr, bool) {
     let mut reversed = false;
@@ -56,6 +61,9 @@ impl Parser<'_> {
     pub(super) fn for_loop(&mut self, f: &syn::ExprForLoop) -> Kind {
         if let Some(items) = items(&f.expr) {
             return self.for_each(f, items);
+        }
+        if is_cursor(&f.expr) {
+            return self.for_items(f);
         }
         let counter = self.counter(&f.pat);
         let range = self.range(&f.expr);
@@ -105,8 +113,9 @@ impl Parser<'_> {
         let syn::Expr::Range(r) = range else {
             self.errors.at(
                 e.span(),
-                "a kernel's `for` runs over a range, or over the elements of a slice or an array",
-                "write `for i in 0u32..n`, `for x in list.iter()` or an index: `list[i]`",
+                "a kernel's `for` runs over a range, the elements of a slice or an array, or hits",
+                "write `for i in 0u32..n`, `for x in list.iter()`, `for hit in scene.hits(ray)` or \
+                 an index: `list[i]`",
             );
             return None;
         };
@@ -201,6 +210,16 @@ impl Parser<'_> {
         }
         copy.push(Stmt::Expr(Expr { kind: repeat, span }));
         Kind::Block(Block { stmts: copy, tail: None })
+    }
+
+    /// A loop over what a cursor finds.
+    fn for_items(&mut self, f: &syn::ExprForLoop) -> Kind {
+        let (items, item) = (self.boxed(&f.expr), self.temporary("item"));
+        let value = Expr { kind: Kind::Name(item.clone()), span: f.pat.span() };
+        let mut stmts = self.bind_item(&f.pat, value);
+        let Block { stmts: body, tail } = self.block(&f.body);
+        stmts.extend(body);
+        Kind::ForItems { label: label(&f.label), item, items, body: Block { stmts, tail } }
     }
 
     /// What the pattern of a loop over elements binds.

@@ -252,7 +252,7 @@ impl Choice<'_> {
         let (record, shared) = (self.record(), self.shared());
         let count = self.kinds.len() as u32;
         let (slack, on_host, on_machine) =
-            (self.slack(), self.host_functions(), self.machine_functions());
+            (self.constants(), self.host_functions(), self.machine_functions());
         quote! {
             impl #p::Primitive for #name {
                 type Hit = #record;
@@ -279,7 +279,7 @@ impl Choice<'_> {
         quote!(<#first as #p::Primitive>::Shared)
     }
 
-    fn slack(&self) -> TokenStream {
+    fn constants(&self) -> TokenStream {
         let (p, types) = (private(), self.types());
         quote! {
             /// The largest of all kinds.
@@ -288,6 +288,17 @@ impl Choice<'_> {
                 #(
                     if <#types as #p::Primitive>::SLACK > most {
                         most = <#types as #p::Primitive>::SLACK;
+                    }
+                )*
+                most
+            };
+
+            /// The largest of all kinds.
+            const MAX_CROSSINGS: u32 = {
+                let mut most = 1;
+                #(
+                    if <#types as #p::Primitive>::MAX_CROSSINGS > most {
+                        most = <#types as #p::Primitive>::MAX_CROSSINGS;
                     }
                 )*
                 most

@@ -16,9 +16,10 @@ use glam::{Vec2, Vec3, vec2, vec3};
 
 use super::Node;
 use crate::geometry::{Hit, Primitive, Ray};
-use crate::machine::WithoutNan;
 use crate::machine::functions::{vec2, vec3};
 use crate::machine::generic::{max, min};
+use crate::machine::margin::{Interval, Known};
+use crate::machine::{KnownFunction, Margin, WithoutNan};
 use crate::{Type, kernel};
 
 /// 2^-23: an ulp of a number is at most this part of it.
@@ -47,16 +48,23 @@ pub(crate) fn is_within(hit: Hit, ray: Ray) -> bool {
     hit.is_hit & ((hit.t >= ray.t_min) & (hit.t <= ray.t_max))
 }
 
-/// Whether a hit comes before `best` in the order of `(t, inst_id, prim_id)`; any comes before a miss.
-/// Where nothing is placed all instances are 0, and are not compared.
+/// Whether a hit comes before another in the order of `(t, inst_id, prim_id)`. Where nothing is placed all
+/// instances are 0, and are not compared.
+#[kernel]
+#[inline(always)]
+pub(crate) fn precedes(#[host] is_placed: bool, hit: Hit, other: Hit) -> bool {
+    let mut is_first = hit.prim_id < other.prim_id;
+    if is_placed {
+        is_first = (hit.inst_id < other.inst_id) | ((hit.inst_id == other.inst_id) & is_first);
+    }
+    (hit.t < other.t) | ((hit.t == other.t) & is_first)
+}
+
+/// Whether a hit comes before `best`; any comes before a miss.
 #[kernel]
 #[inline(always)]
 pub(crate) fn is_before(#[host] is_placed: bool, hit: Hit, best: Hit) -> bool {
-    let mut is_first = hit.prim_id < best.prim_id;
-    if is_placed {
-        is_first = (hit.inst_id < best.inst_id) | ((hit.inst_id == best.inst_id) & is_first);
-    }
-    !best.is_hit | ((hit.t < best.t) | ((hit.t == best.t) & is_first))
+    !best.is_hit | precedes(is_placed, hit, best)
 }
 
 /// Up to where boxes may hold a hit that comes before one at `t`, of a ray that ends at `t_max`: what
@@ -66,6 +74,31 @@ pub(crate) fn is_before(#[host] is_placed: bool, hit: Hit, best: Hit) -> bool {
 pub(crate) fn limit_behind(t: f32, slack: f32, t_max: f32) -> f32 {
     // In this order what is no number becomes the ray's end.
     min(t_max, t + t.abs() * slack)
+}
+
+/// The least distance that is behind another, from where a primitive is asked for its next crossing.
+/// Distances nearer to 0 than the smallest normal number are one: a device may take them for 0.
+#[kernel(known = Behind)]
+#[inline(always)]
+pub(crate) fn behind(t: f32) -> f32 {
+    let is_small = t.abs() < f32::MIN_POSITIVE;
+    let bits = t.to_bits();
+    let next = f32::from_bits(if t > 0.0 { bits.wrapping_add(1) } else { bits.wrapping_sub(1) });
+    if is_small { f32::MIN_POSITIVE } else { next }
+}
+
+/// What machines know of [`behind()`]: how near it is, where its bits say nothing.
+#[derive(Debug)]
+struct Behind;
+
+impl KnownFunction for Behind {
+    fn bound(&self, m: &Margin, args: &[Known]) -> Option<Vec<Known>> {
+        let range = args[0].range;
+        let next = |t: f64| f64::from(behind(t as f32)).max(t);
+        let high = next(range.high);
+        let range = Interval::new(range.low, high, range.may_break());
+        Some(vec![m.bounded(next(args[0].value), range)])
+    }
 }
 
 /// By how much boxes are widened, so that they hold what rounding makes of the primitives in them.
@@ -99,7 +132,7 @@ impl Slabs {
     /// [`slabs()`] of the tree under `root`, for one ray.
     #[inline(always)]
     pub(crate) fn of(ray: &Ray, root: &Node, padding: Padding) -> Self {
-        slabs(*ray, root.min, root.max, padding.slack, padding.origin)
+        slabs(padding.origin != 0.0, *ray, root.min, root.max, padding.slack, padding.origin)
     }
 
     /// Where the ray, from `t_min` on, enters a node's box, if it does so at or before `limit`.
@@ -110,14 +143,25 @@ impl Slabs {
     }
 }
 
-/// Prepares a ray for the tree whose root has the corners `low` and `high`, with a [`Padding`].
+/// Prepares a ray for the tree whose root has the corners `low` and `high`, with a [`Padding`], of which
+/// `origin` is left out unless the tree `is_placed`.
 #[kernel(known = WithoutNan)]
 #[inline(always)]
-pub(crate) fn slabs(ray: Ray, low: Vec3, high: Vec3, slack: f32, origin: f32) -> Slabs {
+pub(crate) fn slabs(
+    #[host] is_placed: bool,
+    ray: Ray,
+    low: Vec3,
+    high: Vec3,
+    slack: f32,
+    origin: f32,
+) -> Slabs {
     let reach = max((low - ray.origin).abs(), (high - ray.origin).abs());
-    // Where the origin is large against the scene the padding must still move it.
+    let mut padding = max(slack * largest(reach), f32::MIN_POSITIVE);
     let distant = ray.origin.abs();
-    let padding = max(slack * largest(reach), f32::MIN_POSITIVE) + largest(distant) * origin;
+    if is_placed {
+        padding += largest(distant) * origin;
+    }
+    // Where the origin is large against the scene the padding must still move it.
     let padding = distant * ULP + padding;
     Slabs {
         lower: ray.origin + padding,
@@ -140,7 +184,7 @@ pub(crate) fn enter_leave(s: Slabs, low: Vec3, high: Vec3, t_min: f32, t_max: f3
 #[kernel(known = WithoutNan)]
 #[inline(always)]
 pub(crate) fn overlap(near: Vec3, far: Vec3, t_min: f32, t_max: f32) -> Vec2 {
-    vec2(max(max(near.x, near.y), max(near.z, t_min)), min(min(far.x, far.y), min(far.z, t_max)))
+    vec2(max(max(near.x, near.y), max(t_min, near.z)), min(min(far.x, far.y), min(t_max, far.z)))
 }
 
 /// The reciprocal of every component, finite.

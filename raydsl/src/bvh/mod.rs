@@ -16,11 +16,12 @@
 // |---|---|
 // | `view` | the scenes that kernels see: a slice, a tree, a list, instances, a foreign structure |
 // | `ray_query`, `batch` | queries on the host: of one ray, of many in packets |
+// | `contract` | which rays and hits count, which of two comes first, how far to look, what a box test is |
 // | `methods`, `query` | queries in kernels: their names, and those that ask the kernel about each hit |
+// | `hits` | every hit in order, for loops (after Amstutz et al., JCGT 2015) |
 // | `on` | how each machine does a query; `on/wgsl` its text, `on/margin` its bounds of rounding |
-// | `traverse` | one ray through the binary tree, and which of two hits comes first |
+// | `traverse` | one ray through the binary tree |
 // | `traverse_packet`, `packet_slabs` | a packet through it, by one stack (Wald et al., "Interactive Rendering with Coherent Ray Tracing", 2001) |
-// | `slabs` | whether a ray meets a box in spite of rounding (after Ize, "Robust BVH Ray Traversal", 2013) |
 // | `wide` | trees of eight children over blocks of eight primitives, and how rays go through them |
 // | `instances`, `list`, `accelerator` | trees that are placed, lists of trees, structures of the application's |
 // | `build` | builders: binned SAH, spatial splits, Morton order |
@@ -32,6 +33,7 @@ mod batch;
 pub mod build;
 mod contract;
 mod coverage;
+mod hits;
 mod instances;
 mod list;
 mod methods;
@@ -58,6 +60,7 @@ pub use accelerator::{Accelerated, Accelerator};
 use build::Settings;
 pub use build::{BuildConfig, BuildError, BuildQuality, MAX_DEPTH, Traversal};
 pub(crate) use contract::Padding;
+pub use hits::Hits;
 pub use instances::{Group, Instance, InstanceError, Instances, MAX_CONDITION, MAX_LEVELS, Object};
 pub(crate) use instances::{IS_INSTANCE, PLACE_SCHEMA, Placed, Placing, STACK, Target};
 pub use list::{BvhList, ListError};
@@ -173,9 +176,9 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     /// each type of primitive.
     ///
     /// The binary tree is not kept, and made again when it is first asked for, by one thread while
-    /// others wait for it: by a query with a condition or of several hits, a ray whose numbers are too
-    /// large for the wide tree's boxes, a scene of instances, a device, refitting, or [`Bvh::nodes`],
-    /// which may be called to have it in time.
+    /// others wait for it: by a ray whose numbers are too large for the wide tree's boxes, a scene of
+    /// instances, a device, the reference, refitting, or [`Bvh::nodes`], which may be called to have it
+    /// in time.
     ///
     /// ```
     /// use raydsl::prelude::*;

@@ -82,6 +82,7 @@ impl<L: Lanes> PacketSlabs<L> {
         let m = &Packet::new(l);
         let s = slabs::on(
             m,
+            padding.origin != 0.0,
             *ray,
             Type::splat(m, root.min),
             Type::splat(m, root.max),

@@ -4,7 +4,7 @@
 
 use super::SceneView;
 use super::contract::{is_before, limit_behind};
-use super::on::{ClosestHitWithCost, ClosestHits, Hits, LocalRay, Slack};
+use super::on::{AllHits, ClosestHitWithCost, ClosestHits, LocalRay, Slack};
 use super::traverse::CostOn;
 use crate::geometry::{Hit, HitOn, HitRecord, Kinds, Primitive, RayOn};
 use crate::machine::{B, Branch, F, Machine, Type, U, Var, op};
@@ -61,7 +61,7 @@ pub(crate) fn record_on<M: Machine, P: Primitive>(
 
 /// No node beyond this distance can hold a hit before `worst`; the ray's end if there is none.
 #[inline(always)]
-fn limit_of<M: Machine, P: Primitive>(
+pub(super) fn limit_of<M: Machine, P: Primitive>(
     m: &M,
     prims: &SceneView<'_, P>,
     worst: HitOn<M>,
@@ -73,7 +73,7 @@ fn limit_of<M: Machine, P: Primitive>(
 
 /// Whether the hits of a scene have numbers of instances.
 #[inline(always)]
-fn is_placed<P: Primitive>(prims: &SceneView<'_, P>) -> bool {
+pub(super) fn is_placed<P: Primitive>(prims: &SceneView<'_, P>) -> bool {
     prims.placed().is_some()
 }
 
@@ -87,7 +87,7 @@ pub(crate) fn closest_where<M: Machine, P: Primitive>(
 ) -> HitOn<M> {
     let best = Var::<HitOn<M>>::new(m, "best", Hit::splat(m, Hit::miss()));
     m.visit(
-        &Hits(prims),
+        &AllHits(prims),
         ray,
         #[inline(always)]
         || limit_of(m, prims, best.get(m), ray),
@@ -118,7 +118,7 @@ pub(crate) fn any_where<M: Machine, P: Primitive>(
 ) -> B<M> {
     let found = Var::<B<M>>::new(m, "found", B(m.bool(false)));
     m.visit(
-        &Hits(prims),
+        &AllHits(prims),
         ray,
         #[inline(always)]
         || ray.t_max,
@@ -208,7 +208,7 @@ fn first_hits<M: Machine, P: Primitive, const N: usize>(
     const { assert!(N > 0, "a query of no hits has no result") };
     let all = Var::<[HitOn<M>; N]>::new(m, "hits", [Hit::splat(m, Hit::miss()); N]);
     m.visit(
-        &Hits(prims),
+        &AllHits(prims),
         ray,
         #[inline(always)]
         || limit(all.get(m)[N - 1]),
@@ -258,7 +258,7 @@ fn is_among<M: Machine, const N: usize>(
 
 /// The hits with one more in its place; the last one falls out.
 #[inline(always)]
-fn inserted<M: Machine, const N: usize>(
+pub(super) fn inserted<M: Machine, const N: usize>(
     m: &M,
     is_before: &impl Fn(HitOn<M>, HitOn<M>) -> B<M>,
     hit: HitOn<M>,

@@ -2,7 +2,9 @@
 
 use glam::{Affine3, Vec3};
 
-use super::{Accelerated, Bvh, BvhList, Cost, Instances, SceneView, View, batch, query, traverse};
+use super::{
+    Accelerated, Bvh, BvhList, Cost, Hits, Instances, SceneView, View, batch, query, traverse,
+};
 use crate::geometry::{Hit, HitOn, Primitive, Ray, transform_normal_back};
 use crate::machine::{B, Data, Scalar, Slice, Type};
 
@@ -172,6 +174,43 @@ pub trait RayQuery {
         let is_closer = |a, b| B(is_closer(host(a), host(b)));
         let hits = query::multi_by(m, &self.view(), Type::splat(m, ray), &is_closer);
         hits.map(|hit| Type::lane::<Scalar>(&hit, 0))
+    }
+
+    /// Every hit within the ray's range, in the order of `(t, inst_id, prim_id)`: all crossings of a
+    /// primitive, a sphere's entry and its exit, up to [`Primitive::MAX_CROSSINGS`] of each.
+    ///
+    /// They are found as they are taken, four at a time. So a loop that stops early costs little more
+    /// than [`closest_hit`](RayQuery::closest_hit), one over all hits a traversal for four of them. In
+    /// kernels `for hit in scene.hits(ray)` is the same.
+    ///
+    /// ```
+    /// use raydsl::prelude::*;
+    ///
+    /// #[primitive(sphere(center, radius))]
+    /// struct Ball {
+    ///     center: Vec3,
+    ///     radius: f32,
+    /// }
+    ///
+    /// let balls = [5.0, 8.0].map(|z| Ball { center: vec3(0.0, 0.0, z), radius: 1.0 });
+    /// let bvh = Bvh::build(&balls)?;
+    /// let ray = Ray::new(Vec3::ZERO, Vec3::Z);
+    /// let hits: Vec<(f32, u32)> = bvh.hits(ray).map(|hit| (hit.t, hit.prim_id)).collect();
+    /// assert_eq!(hits, [(4.0, 0), (6.0, 0), (7.0, 1), (9.0, 1)]);
+    ///
+    /// // How far the ray goes through glass.
+    /// let thickness = kernel!(|ray: Ray| {
+    ///     let mut inside = 0.0;
+    ///     for hit in bvh.hits(ray) {
+    ///         inside = hit.t - inside;
+    ///     }
+    ///     inside
+    /// });
+    /// assert_eq!(thickness.call((ray,)), 4.0);
+    /// # Ok::<(), raydsl::bvh::BuildError>(())
+    /// ```
+    fn hits(&self, ray: Ray) -> Hits<'_, Self::Primitive> {
+        Hits::new(self.view(), ray)
     }
 
     /// The ray as the object sees it that was hit: the ray itself where nothing is

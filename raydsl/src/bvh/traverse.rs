@@ -208,11 +208,22 @@ pub(crate) fn visit<P: Primitive>(
     ray: Ray,
     mut meet: impl FnMut(Hit, P::Hit, &mut f32) -> bool,
 ) -> bool {
-    !walk_all(prims, ray, &mut Uncounted, |candidate, limit| {
+    let mut is_last = |candidate: &Candidate<'_, '_, P>, limit: &mut f32| {
         let record = candidate.intersect();
         let hit = candidate.numbered(record.hit());
         is_within(hit, ray) && !meet(hit, record.with_hit(hit), limit)
-    })
+    };
+    if let Some(walks) = prims.walks() {
+        let (mut limit, mut is_over) = (ray.t_max, false);
+        let found = (walks.candidates)(prims, ray, &mut |part, id| {
+            is_over = is_last(&Candidate { part, ray: &ray, inst: 0, id }, &mut limit);
+            if is_over { f32::NEG_INFINITY } else { limit }
+        });
+        if found.is_some() {
+            return !is_over;
+        }
+    }
+    !walk_all(prims, ray, &mut Uncounted, is_last)
 }
 
 /// Visits the primitives of a scene that the ray may meet, until `visit` returns true; whether it

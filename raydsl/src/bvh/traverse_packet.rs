@@ -3,7 +3,7 @@
 use core::any::Any;
 use core::marker::PhantomData;
 
-use super::contract::{Padding, is_before, is_finite, is_within, limit_behind};
+use super::contract::{Padding, is_finite, is_within, limit_behind, precedes};
 use super::instances::PacketDescent;
 use super::packet_slabs::{PacketSlabs, and, min, or, without};
 use super::traverse::Stack;
@@ -175,14 +175,8 @@ fn meet<'a, L: Lanes, P: Primitive, W: Places<'a, L, P>>(
     if !l.any(met) {
         return;
     }
-    let before = HitOn {
-        is_hit: B(l.mask(true)),
-        t: F(best.t),
-        prim_id: U(best.id),
-        inst_id: U(best.inst),
-        ..hit
-    };
-    let take = and(l, met, is_before::on(m, W::HAVE_INSTANCES, hit, before).0);
+    let before = HitOn { t: F(best.t), prim_id: U(best.id), inst_id: U(best.inst), ..hit };
+    let take = and(l, met, precedes::on(m, W::HAVE_INSTANCES, hit, before).0);
     best.t = l.f32_select(take, hit.t.0, best.t);
     if const { W::HAVE_INSTANCES } {
         best.inst = l.u32_select(take, hit.inst_id.0, best.inst);
@@ -254,8 +248,8 @@ pub(crate) fn visit<'a, L: Lanes, P: Primitive>(
     limit: impl Fn() -> F<Packet<L>>,
     meet: impl Fn(HitOn<Packet<L>>, RecordOn<Packet<L>, P>) -> B<Packet<L>>,
 ) {
-    if prims.is_standing() {
-        return visit_each_lane(m, prims, ray, &meet);
+    if prims.is_standing() || prims.walks().is_some() {
+        return visit_each_lane(m, prims, ray, &limit, &meet);
     }
     let l = m.lanes();
     walk_all(
@@ -306,15 +300,20 @@ fn visit_each_lane<L: Lanes, P: Primitive>(
     m: &Packet<L>,
     prims: &SceneView<'_, P>,
     ray: RayOn<Packet<L>>,
+    limit: &impl Fn() -> F<Packet<L>>,
     meet: &impl Fn(HitOn<Packet<L>>, RecordOn<Packet<L>, P>) -> B<Packet<L>>,
 ) {
     let l = m.lanes();
     let active = l.bits(m.active());
     for lane in (0..L::N).filter(|lane| active >> lane & 1 != 0) {
         let mask = l.mask_from_bits(1 << lane);
-        traverse::visit::<P>(prims, Ray::lane::<Packet<L>>(&ray, lane), |hit, record, _| {
+        traverse::visit::<P>(prims, Ray::lane::<Packet<L>>(&ray, lane), |hit, record, end| {
             let (hit, record) = (Hit::splat(m, hit), P::Hit::splat(m, record));
-            l.enter_again(|| l.any(m.with_active(mask, || and(l, mask, meet(hit, record).0))))
+            l.enter_again(|| {
+                let goes_on = m.with_active(mask, || and(l, mask, meet(hit, record).0));
+                *end = L::f32_lane(&limit().0, lane);
+                l.any(goes_on)
+            })
         });
     }
 }

@@ -16,6 +16,9 @@ use crate::{kernel, primitive};
 /// 6 eps of the farthest coordinate, and weights, depths and distance nine roundings more.
 pub const SLACK: f32 = super::sphere::SLACK;
 
+/// How often a ray crosses it at most; see [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
+pub const MAX_CROSSINGS: u32 = 1;
+
 /// 8 eps (eps = 2^-24): what a point is off by, and `intersect` from there, relative to the longest
 /// edge. Weighted edges lose 3 eps, sheared vertices 4.
 const NEARBY: f32 = 1.0 / 2_097_152.0;
@@ -53,6 +56,7 @@ pub struct IndexedTriangle {
 impl IndexedTriangle {
     const SLACK: f32 = SLACK;
     const IS_SHORT: bool = true;
+    const MAX_CROSSINGS: u32 = MAX_CROSSINGS;
 
     /// Where `ray` meets it.
     #[inline]

@@ -33,6 +33,7 @@ mod capture;
 mod control;
 mod counted;
 mod counter;
+mod cursor;
 mod data;
 pub(crate) mod functions;
 mod gang;
@@ -69,6 +70,7 @@ pub use control::{Branch, Condition, Loop, Ret, Var};
 pub(crate) use counted::{Count, count};
 pub use counted::{Counted, Place};
 pub use counter::{Counter, Steps, Stop, decrement, increment};
+pub use cursor::Cursor;
 #[cfg(feature = "gpu")]
 pub(crate) use data::is_borrowed;
 pub use data::{Data, Slice};

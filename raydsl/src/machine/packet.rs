@@ -490,6 +490,17 @@ impl<L: Lanes> Machine for Packet<L> {
         V::zero(self)
     }
     #[inline(always)]
+    fn f32_beside_infinity<O: Op<Compare>>(&self, op: O, a: L::F32) -> L::Mask {
+        // Floats stay floats: a mask of integers would cross over.
+        let l = self.lanes;
+        let (size, infinity) = (l.f32_unary(op::Abs, a), l.f32(f32::INFINITY));
+        match O::OP {
+            Compare::Gt => l.f32_compare(op::Ne, a, a),
+            Compare::Ge => l.mask_not(l.f32_compare(op::Lt, size, infinity)),
+            _ => l.f32_compare(op, size, infinity),
+        }
+    }
+    #[inline(always)]
     fn call<A: Value<Self>, R: Value<Self>>(
         &self,
         _: &'static KernelInfo,

@@ -128,11 +128,11 @@ impl<P: Primitive> Operation for ClosestHitWithCost<'_, '_, P> {
     }
 }
 
-/// Every hit within a ray's range, with the primitive's number and its record, in any order. Nodes
-/// beyond the limit are left out.
-pub(crate) struct Hits<'s, 'a, P: Primitive>(pub(crate) &'s SceneView<'a, P>);
+/// The hit of every primitive within a ray's range, with the primitive's number and its record, in any
+/// order. Nodes beyond the limit are left out.
+pub(crate) struct AllHits<'s, 'a, P: Primitive>(pub(crate) &'s SceneView<'a, P>);
 
-impl<P: Primitive> Visit for Hits<'_, '_, P> {
+impl<P: Primitive> Visit for AllHits<'_, '_, P> {
     type Input = Ray;
     type Item = (Hit, P::Hit);
 

@@ -8,10 +8,10 @@ use super::node::{Child, WIDTH, WideNode};
 use super::octant::{GROUPS, Octant};
 use super::rays::{GROUP, Group, Marks, Rays, lanes_mask, load, load_words, row};
 use super::step::{Meeting, count, enter, ids, last_key, nearest, sorted};
-use crate::bvh::contract::{Padding, is_before, is_within, limit_behind};
+use crate::bvh::contract::{Padding, is_within, limit_behind, precedes};
 use crate::bvh::packet_slabs::{and, max, min};
 use crate::geometry::{Aabb, HitOn, HitRecord, Primitive, RayOn};
-use crate::machine::{B, Entered, F, Lanes, Packet, U, V3, op};
+use crate::machine::{Entered, F, Lanes, Packet, U, V3, op};
 
 /// Fewer rays of one octant than this go their own ways, unless they are most of those that there
 /// are.
@@ -374,9 +374,9 @@ impl<R: Lanes> Register<'_, R> {
             }
             let id = r.u32(meeting.part.first + numbers[i % WIDTH]);
             let ids = load_words(r, &self.group[row::ID].0, self.from);
-            let (hit, found) = (HitOn { prim_id: U(id), ..hit }, B(r.mask(true)));
-            let before = HitOn { is_hit: found, t: F(best), prim_id: U(ids), ..hit };
-            let take = and(r, met, is_before::on(m, false, hit, before).0);
+            let hit = HitOn { prim_id: U(id), ..hit };
+            let before = HitOn { t: F(best), prim_id: U(ids), ..hit };
+            let take = and(r, met, precedes::on(m, false, hit, before).0);
             let best = r.f32_select(take, hit.t.0, best);
             let (u, v) = (self.number(row::U), self.number(row::V));
             let found = load_words(r, &self.group[row::FOUND].0, self.from);

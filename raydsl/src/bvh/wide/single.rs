@@ -7,8 +7,8 @@ use super::counts::{self, Event};
 use super::node::{Child, WIDTH};
 use super::step::{Meeting, enter, ids, last_key, nearest, sorted, words};
 use super::trace::meeting;
-use crate::bvh::SceneView;
 use crate::bvh::contract::{Padding, is_before, is_finite, limit_behind};
+use crate::bvh::{Part, SceneView};
 use crate::geometry::{Hit, Primitive, Ray};
 use crate::machine::{Entered, Lanes, Packet, Type};
 use crate::run::{LanesTask, with_wide_walks};
@@ -24,46 +24,68 @@ thread_local! {
 
 /// The least `(t, id)` hit of a ray; none if it is too odd for the boxes of wide trees.
 pub(super) fn closest_hit<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray) -> Option<Hit> {
-    ask(scene, ray, Wanted::Closest)
+    ask(scene, ray, Wanted::Closest, &mut |_, _| ray.t_max)
 }
 
 /// Whether a ray hits anything; none as of [`closest_hit`].
 pub(super) fn any_hit<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray) -> Option<bool> {
-    ask(scene, ray, Wanted::Any).map(|hit| hit.is_hit)
+    ask(scene, ray, Wanted::Any, &mut |_, _| ray.t_max).map(|hit| hit.is_hit)
 }
+
+/// Names each primitive that a ray meets at or before the limit that `meet` gives back, until that is
+/// less than any number; none as of [`closest_hit`].
+pub(super) fn candidates<P: Primitive>(
+    scene: &SceneView<'_, P>,
+    ray: Ray,
+    meet: &mut Meet<'_, P>,
+) -> Option<()> {
+    ask(scene, ray, Wanted::Each, meet).map(|_| ())
+}
+
+/// What is called with each primitive, and gives the limit.
+type Meet<'m, P> = dyn FnMut(&Part<'_, P, <P as Primitive>::Shared>, u32) -> f32 + 'm;
 
 /// What is asked: not a type, for every copy of a walk is time that a user waits for a compiler.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Wanted {
     Closest,
     Any,
+    /// Every primitive that is met.
+    Each,
 }
 
 #[inline(never)]
-fn ask<P: Primitive>(scene: &SceneView<'_, P>, ray: Ray, wanted: Wanted) -> Option<Hit> {
-    struct Ask<'a, 's, P: Primitive> {
+fn ask<P: Primitive>(
+    scene: &SceneView<'_, P>,
+    ray: Ray,
+    wanted: Wanted,
+    meet: &mut Meet<'_, P>,
+) -> Option<Hit> {
+    struct Ask<'a, 's, 'm, P: Primitive> {
         scene: &'a SceneView<'s, P>,
         ray: Ray,
         wanted: Wanted,
         pending: Pending<'a>,
+        meet: &'a mut Meet<'m, P>,
     }
-    impl<P: Primitive> LanesTask for Ask<'_, '_, P> {
+    impl<P: Primitive> LanesTask for Ask<'_, '_, '_, P> {
         type Output = Option<Hit>;
 
         fn run<R: Lanes>(self, r: R) -> Option<Hit> {
-            let e = r.eight();
+            let (e, Self { scene, ray, wanted, pending, meet }) = (r.eight(), self);
             e.vectorize(
                 #[inline(always)]
-                || each_part(Entered::new(e), self.scene, self.ray, self.wanted, self.pending),
+                || each_part(Entered::new(e), scene, ray, wanted, pending, meet),
             )
         }
     }
     let pending = scene.parts().filter_map(|part| part.wide()).map(|tree| tree.pending).max();
     let room = pending? + 1 + WIDTH;
     // In one place, for every copy of a walk is time that a user waits for a compiler.
-    let walk = |stacks: &mut [u32]| {
+    let mut walk = |stacks: &mut [u32]| {
         let (children, enters) = stacks.split_at_mut(stacks.len() / 2);
-        with_wide_walks(None, Ask { scene, ray, wanted, pending: Pending { children, enters } })?
+        let pending = Pending { children, enters };
+        with_wide_walks(None, Ask { scene, ray, wanted, pending, meet: &mut *meet })?
     };
     if room <= FEW {
         return walk(&mut [0; 2 * FEW]);
@@ -92,8 +114,9 @@ fn each_part<E: Lanes, P: Primitive>(
     ray: Ray,
     wanted: Wanted,
     mut pending: Pending<'_>,
+    meet: &mut Meet<'_, P>,
 ) -> Option<Hit> {
-    let mut best = Hit::miss();
+    let (mut best, mut limit) = (Hit::miss(), ray.t_max);
     if !is_finite(ray) {
         return Some(best);
     }
@@ -101,11 +124,10 @@ fn each_part<E: Lanes, P: Primitive>(
     while let Some(part) = scene.part(next) {
         next += 1;
         let Some(tree) = part.wide().filter(|tree| !tree.is_empty()) else { continue };
-        let limit = if best.is_hit { limit_behind(best.t, P::SLACK, ray.t_max) } else { ray.t_max };
         let beam = Beam::of_one(&ray, limit, &tree.bounds(), Padding::of::<P>())?;
         let meeting = meeting(scene, part, tree);
-        walk(e, &meeting, &ray, wanted, beam, &mut pending, &mut best);
-        if wanted == Wanted::Any && best.is_hit {
+        limit = walk(e, &meeting, &ray, wanted, beam, &mut pending, &mut best, meet);
+        if wanted == Wanted::Any && best.is_hit || limit == f32::NEG_INFINITY {
             break;
         }
     }
@@ -121,7 +143,8 @@ fn walk<E: Lanes, P: Primitive>(
     mut beam: Beam,
     pending: &mut Pending<'_>,
     best: &mut Hit,
-) {
+    meet: &mut Meet<'_, P>,
+) -> f32 {
     let tree = meeting.tree;
     let on = Ray::splat(&Packet::new(e), *ray);
     let Pending { children: stack, enters } = pending;
@@ -130,17 +153,28 @@ fn walk<E: Lanes, P: Primitive>(
         if at.is_block() {
             counts::one(Event::Block);
             let block = meeting.rows(at.index());
-            let best_t = if best.is_hit { best.t } else { f32::INFINITY };
+            let best_t = match wanted {
+                Wanted::Each => beam.limit,
+                _ if best.is_hit => best.t,
+                _ => f32::INFINITY,
+            };
             let (hit, mask) = meeting.block(e, block, on, best_t);
             let mut met = e.bits(mask);
             let mut is_nearer = false;
             if wanted == Wanted::Any && met != 0 {
                 best.is_hit = true;
-                return;
+                return beam.limit;
             }
             while met != 0 {
                 let i = met.trailing_zeros() as usize;
                 met &= met - 1;
+                if wanted == Wanted::Each {
+                    beam.limit = meet(&meeting.part, ids(block)[i]);
+                    if beam.limit == f32::NEG_INFINITY {
+                        return beam.limit;
+                    }
+                    continue;
+                }
                 let t = E::f32_lane(&hit.t.0, i);
                 let prim_id = meeting.part.first + ids(block)[i];
                 let (u, v) = (E::f32_lane(&hit.u.0, i), E::f32_lane(&hit.v.0, i));
@@ -160,7 +194,7 @@ fn walk<E: Lanes, P: Primitive>(
             if entered != 0 {
                 let children = words(e, &node.children);
                 let first;
-                if wanted == Wanted::Closest {
+                if wanted != Wanted::Any {
                     first = nearest(e, near, mask);
                     let keys = sorted(e, near, mask);
                     e.u32_store(e.u32_permute(children, keys), &mut stack[top..][..WIDTH]);
@@ -178,7 +212,7 @@ fn walk<E: Lanes, P: Primitive>(
         let last = last_key(beam.limit);
         at = loop {
             if top == 0 {
-                return;
+                return beam.limit;
             }
             top -= 1;
             if wanted == Wanted::Any || enters[top] & !7 <= last {

@@ -7,7 +7,7 @@ use fearless_simd::Level;
 use super::trace::Scratch;
 use super::{Wide, single, trace};
 use crate::bvh::build::Tree;
-use crate::bvh::{SceneView, Traversal, View};
+use crate::bvh::{Part, SceneView, Traversal, View};
 use crate::geometry::{Hit, Primitive, Ray};
 use crate::run::has_wide_walks;
 
@@ -27,7 +27,14 @@ pub(crate) struct Walks<T, S> {
     pub(in crate::bvh) closest_of_one: fn(&View<'_, T, S>, Ray) -> Option<Hit>,
     /// Whether one ray hits anything.
     pub(in crate::bvh) any_of_one: fn(&View<'_, T, S>, Ray) -> Option<bool>,
+    /// Names the primitives that one ray meets.
+    pub(in crate::bvh) candidates: Candidates<T, S>,
 }
+
+/// Names each primitive that a ray meets at or before the limit that it is given back, until that is
+/// less than any number; none if the ray is too odd for boxes, of which it may be aware late.
+pub(in crate::bvh) type Candidates<T, S> =
+    fn(&View<'_, T, S>, Ray, &mut dyn FnMut(&Part<'_, T, S>, u32) -> f32) -> Option<()>;
 
 /// Asks about the rays in memory, with lanes of a level.
 pub(super) type Answer<T, S> = fn(Option<Level>, &View<'_, T, S>, &mut Scratch);
@@ -54,5 +61,6 @@ pub(crate) fn walks<P: Primitive>() -> Option<Walks<P, P::Shared>> {
         any: trace::answer::<false, P>,
         closest_of_one: |scene: &SceneView<'_, P>, ray| single::closest_hit(scene, ray),
         any_of_one: |scene: &SceneView<'_, P>, ray| single::any_hit(scene, ray),
+        candidates: |scene: &SceneView<'_, P>, ray, meet| single::candidates(scene, ray, meet),
     })
 }

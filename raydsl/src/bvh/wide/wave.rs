@@ -12,7 +12,7 @@ use super::counts::{self, Event};
 use super::node::{Child, WIDTH, WideNode};
 use super::rays::{GROUP, Rays, lanes_of, place, ray_at, ray_at_mut, row};
 use super::step::{Meeting, enter, ids, last_key, sorted, words};
-use crate::bvh::contract::{is_before, limit_behind};
+use crate::bvh::contract::{limit_behind, precedes};
 use crate::geometry::{Hit, HitOn, Primitive};
 use crate::machine::{Lanes, Packet, op};
 
@@ -295,7 +295,7 @@ fn take<E: Lanes, P: Primitive>(
         let of = |t, prim_id| Hit { is_hit: true, t, prim_id, ..Hit::miss() };
         let found = of(E::f32_lane(&hit.t.0, i), meeting.part.first + numbers[i]);
         let best = of(words.as_ref().number(row::T), words.as_ref().word(row::ID));
-        if is_before(false, found, best) {
+        if precedes(false, found, best) {
             words.set_number(row::T, found.t);
             words.set_number(row::U, E::f32_lane(&hit.u.0, i));
             words.set_number(row::V, E::f32_lane(&hit.v.0, i));

@@ -87,12 +87,12 @@ impl Recorder {
     }
 
     /// The names of the tests of boxes.
-    pub(super) fn box_tests(&self) -> BoxTests {
+    pub(super) fn box_tests(&self, is_placed: bool) -> BoxTests {
         let zero = |m: &Self| F(m.f32(0.0));
         BoxTests {
             slabs: self.name_of(|m| {
                 let (ray, corner) = (RayOn::zero(m), V3::zero(m));
-                slabs::on(m, ray, corner, corner, zero(m), zero(m))
+                slabs::on(m, is_placed, ray, corner, corner, zero(m), zero(m))
             }),
             enter_leave: self.name_of(|m| {
                 let (prepared, corner) = (SlabsOn::zero(m), V3::zero(m));
@@ -111,8 +111,8 @@ impl Recorder {
         (self.function_name(f), path)
     }
 
-    /// What the least `(t, id)` hit does with a primitive that `call` meets, and how the limit begins
-    /// with a hit that is there before.
+    /// What the least `(t, id)` hit does with a primitive that `call` meets, and how a walk lowers its
+    /// limit then.
     fn closest_text(
         &self,
         prims: &dyn Described,
@@ -120,14 +120,13 @@ impl Recorder {
     ) -> (String, String) {
         let prims_name = prims.primitives(self);
         let Rules { is_within, is_before, limit_behind, .. } = self.rules();
-        let lower = format!("limit = {limit_behind}(best.t, {:?}, ray.t_max);", prims.slack());
         let test = format!(
             "var candidate = {intersect}({prims_name}_at(id), ray){path};\n\
              candidate.prim_id = id;\n\
              if ({is_within}(candidate, ray) && {is_before}(candidate, best)) {{\n    \
-             best = candidate;\n    {lower}\n}}",
+             best = candidate;\n    {LOWER}\n}}",
         );
-        (test, format!("if (best.is_hit) {{\n    {lower}\n}}"))
+        (test, format!("limit = {limit_behind}(best.t, {:?}, ray.t_max);", prims.slack()))
     }
 
     /// The least `(t, id)` hit of a ray.
@@ -193,17 +192,18 @@ impl Recorder {
         let query = Query {
             result: "Hit",
             declare: &format!("var best = {miss};"),
-            begin: "",
+            lower: &lower,
             test: &test,
             give: "best",
             slack: prims.slack(),
             counts: false,
+            continues: false,
         };
         if !prims.is_list() {
             return self.query_function(prims, format!("{prims_name}_closest_hit"), &query);
         }
         // One tree after another, each with the best hit so far.
-        let each = Query { declare: "var best = before;", begin: &lower, ..query };
+        let each = Query { declare: "var best = before;", continues: true, ..query };
         let each =
             self.tree_function(prims, format!("{prims_name}_closer_hit"), ", before: Hit", &each);
         self.list_function(prims, format!("{prims_name}_closest_hit"), &query, &|roots| {
@@ -231,18 +231,19 @@ impl Recorder {
         let query = Query {
             result: "CountedHit",
             declare: &declare(&before),
-            begin: "",
+            lower: &lower,
             test: &test,
             give: "CountedHit(best, cost)",
             slack: prims.slack(),
             counts: true,
+            continues: false,
         };
         let name = format!("{prims_name}_closest_hit_with_cost");
         if !prims.is_list() {
             return self.query_function(prims, name, &query);
         }
         // One tree after another, each with the best hit so far, and with what that cost.
-        let each = Query { declare: &declare("before"), begin: &lower, ..query };
+        let each = Query { declare: &declare("before"), continues: true, ..query };
         let each_name = format!("{prims_name}_closer_hit_with_cost");
         let each = self.tree_function(prims, each_name, ", before: CountedHit", &each);
         self.list_function(prims, name, &query, &|roots| {
@@ -270,11 +271,12 @@ impl Recorder {
         let query = Query {
             result: "bool",
             declare: "",
-            begin: "",
+            lower: "",
             test: &test,
             give: "false",
             slack: prims.slack(),
             counts: false,
+            continues: false,
         };
         if !prims.is_list() {
             return self.query_function(prims, format!("{prims_name}_any_hit"), &query);
@@ -346,7 +348,12 @@ impl Recorder {
         let (nodes, indices) = (prims.key_of(buffers::NODES), prims.key_of(buffers::INDICES));
         let nodes = self.buffer(nodes, &format!("{name}_nodes"), NODE_SCHEMA, node_count);
         let indices = self.buffer(indices, &format!("{name}_ids"), &Schema::U32, index_count);
-        Some(TreeNames { nodes, indices, rules: self.rules(), boxes: self.box_tests() })
+        Some(TreeNames {
+            nodes,
+            indices,
+            rules: self.rules(),
+            boxes: self.box_tests(prims.place_count() > 0),
+        })
     }
 }
 
@@ -384,16 +391,21 @@ pub(super) struct BoxTests {
 
 fn indent(text: &str, by: usize) -> String {
     let pad = " ".repeat(by);
-    text.lines().filter(|l| !l.is_empty()).map(|l| format!("{pad}{l}\n")).collect()
+    text.lines().filter(|l| !l.trim().is_empty()).map(|l| format!("{pad}{l}\n")).collect()
 }
+
+/// Where the text of a test lowers the limit of a walk.
+const LOWER: &str = "{lower}";
 
 /// What a query does with the primitives that it meets.
 #[derive(Clone, Copy)]
 struct Query<'a> {
     result: &'a str,
     declare: &'a str,
-    /// How the limit begins that is the ray's end: no node beyond it is worth a visit.
-    begin: &'a str,
+    /// What lowers the limit in place of [`LOWER`]: no node beyond it is worth a visit.
+    lower: &'a str,
+    /// Whether `best` may be a hit before anything is met.
+    continues: bool,
     test: &'a str,
     give: &'a str,
     slack: f32,
@@ -414,7 +426,7 @@ impl Query<'_> {
 fn linear(name: &str, query: &Query<'_>, prims: &str, is_finite: &str) -> String {
     let Query { result, declare, test, give, .. } = query;
     let declare = indent(declare, 4);
-    let test = indent(test, 8);
+    let test = indent(&test.replace(LOWER, ""), 8);
     format!(
         "fn {name}(ray: Ray) -> {result} {{\n{declare}    \
          if (!{is_finite}(ray)) {{\n        \
@@ -427,12 +439,17 @@ fn linear(name: &str, query: &Query<'_>, prims: &str, is_finite: &str) -> String
 /// Depth-first from the node `first`; the nearer child first, the farther one on a stack with its
 /// distance.
 fn walk(name: &str, parameters: &str, first: &str, query: &Query<'_>, tree: &TreeNames) -> String {
-    let Query { result, declare, begin, test, give, slack, .. } = query;
+    let Query { result, declare, lower, test, give, slack, .. } = query;
     let (root_count, child_count) = (query.count(1, 4), query.count(2, 12));
     let TreeNames { nodes, indices, rules, boxes } = tree;
     let (is_finite, BoxTests { slabs, enter_leave }) = (&rules.is_finite, boxes);
-    let declare = indent(&format!("{declare}\nvar limit = ray.t_max;\n{begin}"), 4);
-    let test = indent(test, 16);
+    let begin = match query.continues {
+        true => format!("var limit = ray.t_max;\nif (best.is_hit) {{\n    {lower}\n}}"),
+        false if lower.is_empty() => "let limit = ray.t_max;".to_owned(),
+        false => "var limit = ray.t_max;".to_owned(),
+    };
+    let declare = indent(&format!("{declare}\n{begin}"), 4);
+    let test = indent(&test.replace(LOWER, lower), 16);
     format!(
         "\
 fn {name}({parameters}) -> {result} {{

@@ -1,0 +1,270 @@
+//! Hits in order, as many as are asked for.
+//!
+//! A query finds the next few hits behind the last one, and another what follows when they have been
+//! taken. So nothing of a traversal is kept between two hits, hits come in one order whatever finds
+//! them, and one that is in several leaves comes once. (After Amstutz, Gribble, Guenther and Wald, "An
+//! Evaluation of Multi-Hit Ray Traversal in a BVH using Existing First-Hit/Any-Hit Kernels", JCGT 4(4),
+//! 2015.)
+
+use core::iter::FusedIterator;
+
+use super::contract::{behind, is_before, is_within};
+use super::on::{AllHits, LocalRay};
+use super::query::{RecordOn, inserted, is_placed, limit_of, record_on};
+use super::{SceneView, View};
+use crate::geometry::{Hit, HitOn, HitRecord, Kinds, Primitive, Ray, RayOn};
+use crate::machine::{B, Branch, Cursor, F, KernelInfo, Loop, Machine, Scalar, Type, U, Var, op};
+
+/// How many hits one query finds.
+const BATCH: usize = 4;
+
+/// The hits of a ray, in the order of `(t, inst_id, prim_id)`: see
+/// [`RayQuery::hits`](super::RayQuery::hits).
+pub struct Hits<'a, P: Primitive> {
+    m: Scalar,
+    hits: HitsOn<'a, Scalar, P>,
+    state: State<Scalar>,
+}
+
+impl<'a, P: Primitive> Hits<'a, P> {
+    pub(super) fn new(scene: SceneView<'a, P>, ray: Ray) -> Self {
+        let m = Scalar::default();
+        let hits = HitsOn { scene, ray: Type::splat(&m, ray) };
+        let state = hits.begin(&m);
+        Self { m, hits, state }
+    }
+}
+
+impl<P: Primitive> core::fmt::Debug for Hits<'_, P> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let ray = Ray::lane::<Scalar>(&self.hits.ray, 0);
+        f.debug_struct("Hits").field("ray", &ray).finish_non_exhaustive()
+    }
+}
+
+impl<P: Primitive> Iterator for Hits<'_, P> {
+    type Item = P::Hit;
+
+    fn next(&mut self) -> Option<P::Hit> {
+        let is_there = self.hits.advance(&self.m, &self.state).0;
+        is_there.then(|| P::Hit::lane::<Scalar>(&self.hits.item(&self.m, &self.state), 0))
+    }
+}
+
+impl<P: Primitive> FusedIterator for Hits<'_, P> {}
+
+/// [`Hits`], lifted.
+pub struct HitsOn<'a, M: Machine, P: Primitive> {
+    pub(super) scene: SceneView<'a, P>,
+    pub(super) ray: RayOn<M>,
+}
+
+/// How far a loop over hits has come.
+pub struct State<M: Machine> {
+    /// Hits that are found and yet to come, in order; misses behind them.
+    pending: Var<[HitOn<M>; BATCH]>,
+    /// The hit at which it stands; a miss before the first.
+    last: Var<HitOn<M>>,
+    /// Whether there may be hits behind those that are pending.
+    has_more: Var<B<M>>,
+}
+
+impl<M: Machine, P: Primitive> Cursor<M> for HitsOn<'_, M, P> {
+    type Item = RecordOn<M, P>;
+    type State = State<M>;
+
+    #[inline(always)]
+    fn begin(&self, m: &M) -> State<M> {
+        let miss = Hit::splat(m, Hit::miss());
+        State {
+            pending: Var::new(m, "pending", [miss; BATCH]),
+            last: Var::new(m, "last", miss),
+            has_more: Var::new(m, "has_more", B(m.bool(true))),
+        }
+    }
+
+    #[inline(always)]
+    fn advance(&self, m: &M, state: &State<M>) -> B<M> {
+        let [first, ..] = state.pending.get(m);
+        let is_due = m.bool_binary(op::And, m.bool_not(first.is_hit.0), state.has_more.get(m).0);
+        let is_due = Branch::new(m, B(is_due));
+        if is_due.then(m) {
+            let found = next_hits(m, &self.scene, self.ray, state.last.get(m));
+            state.pending.set(m, found);
+            state.has_more.set(m, found[BATCH - 1].is_hit);
+        }
+        is_due.end(m);
+        let [first, others @ ..] = state.pending.get(m);
+        let mut pending = [Hit::splat(m, Hit::miss()); BATCH];
+        pending[..BATCH - 1].copy_from_slice(&others);
+        state.last.set(m, first);
+        state.pending.set(m, pending);
+        first.is_hit
+    }
+
+    #[inline(always)]
+    fn item(&self, m: &M, state: &State<M>) -> RecordOn<M, P> {
+        let hit = state.last.get(m);
+        // From there on this crossing of the primitive is the first.
+        record_on(m, &self.scene, RayOn { t_min: hit.t, ..self.ray }, hit)
+    }
+}
+
+static NEXT_HITS: KernelInfo = KernelInfo {
+    name: "next_hits",
+    file: file!(),
+    line: line!(),
+    params: &["ray", "last"],
+    known: None,
+};
+
+/// The least hits behind `last`, or the least of all if that is a miss; misses behind them. A function
+/// of its own wherever it is called from.
+#[inline(always)]
+fn next_hits<M: Machine, P: Primitive>(
+    m: &M,
+    scene: &SceneView<'_, P>,
+    ray: RayOn<M>,
+    last: HitOn<M>,
+) -> [HitOn<M>; BATCH] {
+    m.call_apart(
+        &NEXT_HITS,
+        (ray, last),
+        #[inline(always)]
+        |m, (ray, last)| {
+            let t_min = F(m.f32_select(last.is_hit.0, last.t.0, ray.t_min.0));
+            let search = Search {
+                m,
+                scene,
+                ray: RayOn { t_min, ..ray },
+                last,
+                found: Var::new(m, "found", [Hit::splat(m, Hit::miss()); BATCH]),
+            };
+            m.visit(
+                &AllHits(scene),
+                search.ray,
+                #[inline(always)]
+                || limit_of(m, scene, search.farthest(), search.ray),
+                #[inline(always)]
+                |(hit, _)| {
+                    search.every_crossing(hit);
+                    B(m.bool(true))
+                },
+            );
+            search.found.get(m)
+        },
+    )
+}
+
+/// A search for the next hits.
+struct Search<'s, 'a, M: Machine, P: Primitive> {
+    m: &'s M,
+    scene: &'s SceneView<'a, P>,
+    /// From the last hit on.
+    ray: RayOn<M>,
+    last: HitOn<M>,
+    found: Var<[HitOn<M>; BATCH]>,
+}
+
+impl<M: Machine, P: Primitive> Search<'_, '_, M, P> {
+    /// The last of the hits that are found.
+    #[inline(always)]
+    fn farthest(&self) -> HitOn<M> {
+        self.found.get(self.m)[BATCH - 1]
+    }
+
+    #[inline(always)]
+    fn is_before(&self, a: HitOn<M>, b: HitOn<M>) -> M::Bool {
+        is_before::on(self.m, is_placed(self.scene), a, b).0
+    }
+
+    /// Keeps the crossings of a primitive whose first is `hit`.
+    #[inline(always)]
+    fn every_crossing(&self, hit: HitOn<M>) {
+        self.keep(hit);
+        match P::MAX_CROSSINGS {
+            0 | 1 => {}
+            2 => self.keep(self.next_crossing(hit)),
+            most => self.keep_behind(hit, most - 1),
+        }
+    }
+
+    /// Keeps up to `most` crossings behind `hit`.
+    #[inline(always)]
+    fn keep_behind(&self, hit: HitOn<M>, most: u32) {
+        let m = self.m;
+        let at = Var::new(m, "crossing", hit);
+        let left = Var::new(m, "left", U(m.u32(most)));
+        let repeat = Loop::new(m);
+        loop {
+            let some_left = m.u32_compare(op::Gt, left.get(m).0, m.u32(0));
+            let goes_on = m.bool_binary(op::And, some_left, at.get(m).is_hit.0);
+            if !repeat.test(m, B(goes_on)) {
+                break;
+            }
+            let next = self.next_crossing(at.get(m));
+            self.keep(next);
+            at.set(m, next);
+            left.set(m, U(m.u32_binary(op::WrappingSub, left.get(m).0, m.u32(1))));
+            repeat.continuing(m);
+            if !repeat.again(m) {
+                break;
+            }
+        }
+        repeat.end(m);
+    }
+
+    /// Where the ray crosses the primitive next, if it does so before what is kept.
+    #[inline(always)]
+    fn next_crossing(&self, hit: HitOn<M>) -> HitOn<M> {
+        let (m, scene) = (self.m, self.scene);
+        let ray = RayOn { t_min: behind::on(m, hit.t), ..self.ray };
+        let local = match scene.placed() {
+            Some(_) => m.perform(&LocalRay(scene), (ray, hit.inst_id)),
+            None => ray,
+        };
+        let kinds = if M::RUNS { Kinds::ALL } else { scene.kinds() };
+        let prim = m.fetch(scene, hit.prim_id);
+        let found = P::intersect_among_on(m, kinds, prim, local, View::shared(scene));
+        let next = HitOn { prim_id: hit.prim_id, inst_id: hit.inst_id, ..P::Hit::hit_on(found) };
+        let is_wanted = m.bool_binary(
+            op::And,
+            is_within::on(m, next, ray).0,
+            self.is_before(next, self.farthest()),
+        );
+        HitOn { is_hit: B(is_wanted), ..next }
+    }
+
+    /// Keeps a hit if it is behind the last one, and before some that is kept.
+    #[inline(always)]
+    fn keep(&self, hit: HitOn<M>) {
+        let m = self.m;
+        let and = |a, b| m.bool_binary(op::And, a, b);
+        let or = |a, b| m.bool_binary(op::Or, a, b);
+        let found = self.found.get(m);
+        let is_behind = or(m.bool_not(self.last.is_hit.0), self.is_before(self.last, hit));
+        let is_new = and(is_behind, m.bool_not(self.is_among(hit, &found)));
+        let fits = and(hit.is_hit.0, and(is_new, self.is_before(hit, found[BATCH - 1])));
+        let fits = Branch::new(m, B(fits));
+        if fits.then(m) {
+            let before = |a, b| B(self.is_before(a, b));
+            self.found.set(m, inserted(m, &before, hit, found));
+        }
+        fits.end(m);
+    }
+
+    /// Whether the hit is there already: a tree with spatial splits holds a primitive more than once.
+    #[inline(always)]
+    fn is_among(&self, hit: HitOn<M>, found: &[HitOn<M>; BATCH]) -> M::Bool {
+        let m = self.m;
+        let and = |a, b| m.bool_binary(op::And, a, b);
+        found.iter().fold(m.bool(false), |any, h| {
+            let same_t = m.f32_compare(op::Eq, h.t.0, hit.t.0);
+            let mut same = and(same_t, m.u32_compare(op::Eq, h.prim_id.0, hit.prim_id.0));
+            if is_placed(self.scene) {
+                same = and(same, m.u32_compare(op::Eq, h.inst_id.0, hit.inst_id.0));
+            }
+            m.bool_binary(op::Or, any, and(same, h.is_hit.0))
+        })
+    }
+}
