@@ -34,7 +34,7 @@ pub use crate::math::elementary::{
 };
 pub use crate::math::{F16, Unorm8, Unorm16, Unorm32};
 pub use crate::render::{
-    Film, Image, PixelSampler, Radiance, Sampling, Scheduler, Shaded, SimpleScheduler,
+    Film, Image, PixelSampler, Radiance, Renderer, Sampling, Scheduler, Shaded, SimpleScheduler,
     TiledScheduler,
 };
 pub use crate::report::compare;

@@ -177,9 +177,13 @@ fn is_within(hit: Hit, ray: Ray) -> bool {
     return hit.is_hit && (hit.t >= ray.t_min && hit.t <= ray.t_max);
 }
 
+fn precedes(hit: Hit, other: Hit) -> bool {
+    var is_first: bool = hit.prim_id < other.prim_id;
+    return hit.t < other.t || (hit.t == other.t && is_first);
+}
+
 fn is_before(hit: Hit, best: Hit) -> bool {
-    var is_first: bool = hit.prim_id < best.prim_id;
-    return !best.is_hit || (hit.t < best.t || (hit.t == best.t && is_first));
+    return !best.is_hit || precedes(hit, best);
 }
 
 fn limit_behind(t: f32, slack: f32, t_max: f32) -> f32 {
@@ -203,14 +207,14 @@ fn finite_inverse(d: vec3<f32>) -> vec3<f32> {
 
 fn slabs(ray: Ray, low: vec3<f32>, high: vec3<f32>, slack: f32, origin: f32) -> Slabs {
     let reach = max(abs(low - ray.origin), abs(high - ray.origin));
+    var padding: f32 = max(slack * largest(reach), 1.1754944e-38f);
     let distant = abs(ray.origin);
-    let padding = max(slack * largest(reach), 1.1754944e-38f) + largest(distant) * origin;
     let padding_1 = distant * 1.1920929e-7f + padding;
     return Slabs(ray.origin + padding_1, ray.origin - padding_1, finite_inverse(ray.direction));
 }
 
 fn overlap(near: vec3<f32>, far: vec3<f32>, t_min: f32, t_max: f32) -> vec2<f32> {
-    return vec2<f32>(max(max(near.x, near.y), max(near.z, t_min)), min(min(far.x, far.y), min(far.z, t_max)));
+    return vec2<f32>(max(max(near.x, near.y), max(t_min, near.z)), min(min(far.x, far.y), min(t_max, far.z)));
 }
 
 fn enter_leave(s: Slabs, low: vec3<f32>, high: vec3<f32>, t_min: f32, t_max: f32) -> vec2<f32> {

@@ -4,6 +4,7 @@ use std::fmt::Debug;
 
 use raydsl::kernel::{Kernel, Lifted, Variant};
 use raydsl::machine::{KernelFn, KernelInfo, Lanes, One, Packet, Rounding, Scalar, Type};
+use raydsl::prelude::Renderer;
 use raydsl::report::{Cause, explain};
 
 use crate::gpu::gpu;
@@ -60,7 +61,7 @@ where
 /// # Panics
 ///
 /// If any result differs by more than `wgsl` allows.
-pub fn wgsl_agrees<A: Type + Debug + Sync, R: Type + Sync>(
+pub fn wgsl_agrees<A: Type + Debug + Sync, R: Type>(
     name: &str,
     kernel: &Kernel<'_, A, R>,
     inputs: &[A],
@@ -86,7 +87,7 @@ pub fn wgsl_agrees<A: Type + Debug + Sync, R: Type + Sync>(
     result.assert_same(|i| format!("{:?}", inputs[i]));
 }
 
-fn assert_explained<A: Type + Debug + Sync, R: Type + Sync>(
+fn assert_explained<A: Type + Debug + Sync, R: Type>(
     name: &str,
     kernel: &Kernel<'_, A, R>,
     inputs: &[A],

@@ -56,7 +56,7 @@ struct Operation<'a, A: Type, R: Type> {
     wgsl: Kernel<'static, A, R>,
 }
 
-impl<A: Type + Debug + Sync, R: Type + Sync> Operation<'_, A, R> {
+impl<A: Type + Debug + Sync, R: Type> Operation<'_, A, R> {
     fn check(&self, numbers: Numbers, wgsl: Wgsl) {
         let mut rng = Rng::of(self.name);
         let count = (scaled(NUMBERS) / A::SCHEMA.leaves()).max(ON_EACH_LEVEL);

@@ -3,7 +3,7 @@
 use raydsl::bvh::SceneView;
 use raydsl::machine::{Lanes, Method, Packet, Type, name};
 use raydsl::prelude::{
-    Bvh, Hit, HitRecord, Kernel, Primitive, Ray, RayQuery, Triangle, Variant, kernel,
+    Bvh, Hit, HitRecord, Kernel, Primitive, Ray, RayQuery, Renderer, Triangle, Variant, kernel,
 };
 
 use crate::levels::{LevelTask, each_level, gangs, widest_level};

@@ -275,11 +275,7 @@ fn elementary_functions_on_a_device_are_right() {
     println!("{differing} results differ from the CPU's");
 }
 
-fn agrees<R: raydsl::Type + Send + Sync>(
-    who: &str,
-    kernel: &Kernel<'_, (Ray,), R>,
-    camera: &Pinhole,
-) -> Sample {
+fn agrees<R: raydsl::Type>(who: &str, kernel: &Kernel<'_, (Ray,), R>, camera: &Pinhole) -> Sample {
     let found = Compare::new().size(320, 240).runs(1).run(kernel, camera);
     println!("{who}\n{}", found.table());
     assert!(found.table().lines().all(|l| l.chars().count() <= 100));

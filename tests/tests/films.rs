@@ -46,7 +46,7 @@ impl Scheduler for Own {
         }
     }
 
-    fn batch<A: raydsl::Type + Sync, R: raydsl::Type + Send>(
+    fn run_batch<A: raydsl::Type, R: raydsl::Type>(
         &self,
         kernel: &Kernel<'_, A, R>,
         inputs: &[A],

@@ -309,7 +309,7 @@ fn every_variant_ends_with_the_same_picture() -> Result<(), Box<dyn Error>> {
 }
 
 /// Runs it by all variants; gives the film.
-fn ends_alike<A: FilmArgs, R: Radiance + Send>(
+fn ends_alike<A: FilmArgs, R: Radiance>(
     kernel: &Kernel<'_, A, R>,
     until: &Until,
     (width, height): (u32, u32),

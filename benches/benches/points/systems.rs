@@ -65,7 +65,7 @@ impl<'a> Task<'a> {
         Self { points, camera, size, primary, threads, shape }
     }
 
-    fn frame<R: Type + Send>(
+    fn frame<R: Type>(
         &self,
         variant: Variant,
         kernel: &Kernel<'_, (Ray,), R>,

@@ -238,33 +238,64 @@ impl<M: Machine, P: Primitive> Search<'_, '_, M, P> {
     /// Keeps a hit if it is behind the last one, and before some that is kept.
     #[inline(always)]
     fn keep(&self, hit: HitOn<M>) {
-        let m = self.m;
-        let and = |a, b| m.bool_binary(op::And, a, b);
-        let or = |a, b| m.bool_binary(op::Or, a, b);
-        let found = self.found.get(m);
-        let is_behind = or(m.bool_not(self.last.is_hit.0), self.is_before(self.last, hit));
-        let is_new = and(is_behind, m.bool_not(self.is_among(hit, &found)));
-        let fits = and(hit.is_hit.0, and(is_new, self.is_before(hit, found[BATCH - 1])));
-        let fits = Branch::new(m, B(fits));
-        if fits.then(m) {
-            let before = |a, b| B(self.is_before(a, b));
-            self.found.set(m, inserted(m, &before, hit, found));
-        }
-        fits.end(m);
+        let (is_placed, found) = (is_placed(self.scene), self.found.get(self.m));
+        let kept = self.m.call(
+            &WITH_HIT,
+            (found, self.last, hit),
+            #[inline(always)]
+            |m, (found, last, hit)| with_hit(m, is_placed, found, last, hit),
+        );
+        self.found.set(self.m, kept);
     }
+}
 
-    /// Whether the hit is there already: a tree with spatial splits holds a primitive more than once.
-    #[inline(always)]
-    fn is_among(&self, hit: HitOn<M>, found: &[HitOn<M>; BATCH]) -> M::Bool {
-        let m = self.m;
-        let and = |a, b| m.bool_binary(op::And, a, b);
-        found.iter().fold(m.bool(false), |any, h| {
-            let same_t = m.f32_compare(op::Eq, h.t.0, hit.t.0);
-            let mut same = and(same_t, m.u32_compare(op::Eq, h.prim_id.0, hit.prim_id.0));
-            if is_placed(self.scene) {
-                same = and(same, m.u32_compare(op::Eq, h.inst_id.0, hit.inst_id.0));
-            }
-            m.bool_binary(op::Or, any, and(same, h.is_hit.0))
-        })
+static WITH_HIT: KernelInfo = KernelInfo {
+    name: "with_hit",
+    file: file!(),
+    line: line!(),
+    params: &["found", "last", "hit"],
+    known: None,
+};
+
+/// What is found with one more hit, if that is behind `last` and before some that is there.
+#[inline(always)]
+fn with_hit<M: Machine>(
+    m: &M,
+    is_placed: bool,
+    found: [HitOn<M>; BATCH],
+    last: HitOn<M>,
+    hit: HitOn<M>,
+) -> [HitOn<M>; BATCH] {
+    let and = |a, b| m.bool_binary(op::And, a, b);
+    let or = |a, b| m.bool_binary(op::Or, a, b);
+    let before = |a, b| is_before::on(m, is_placed, a, b);
+    let is_behind = or(m.bool_not(last.is_hit.0), before(last, hit).0);
+    let is_new = and(is_behind, m.bool_not(is_among(m, is_placed, hit, &found)));
+    let fits = and(hit.is_hit.0, and(is_new, before(hit, found[BATCH - 1]).0));
+    let all = Var::new(m, "all", found);
+    let fits = Branch::new(m, B(fits));
+    if fits.then(m) {
+        all.set(m, inserted(m, &before, hit, found));
     }
+    fits.end(m);
+    all.get(m)
+}
+
+/// Whether the hit is there already: a tree with spatial splits holds a primitive more than once.
+#[inline(always)]
+fn is_among<M: Machine>(
+    m: &M,
+    is_placed: bool,
+    hit: HitOn<M>,
+    found: &[HitOn<M>; BATCH],
+) -> M::Bool {
+    let and = |a, b| m.bool_binary(op::And, a, b);
+    found.iter().fold(m.bool(false), |any, h| {
+        let same_t = m.f32_compare(op::Eq, h.t.0, hit.t.0);
+        let mut same = and(same_t, m.u32_compare(op::Eq, h.prim_id.0, hit.prim_id.0));
+        if is_placed {
+            same = and(same, m.u32_compare(op::Eq, h.inst_id.0, hit.inst_id.0));
+        }
+        m.bool_binary(op::Or, any, and(same, h.is_hit.0))
+    })
 }

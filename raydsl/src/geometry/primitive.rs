@@ -19,13 +19,13 @@ impl Kinds {
     message = "`{Self}` is not a primitive",
     note = "write `#[primitive]` on the struct, and on an impl with `intersect` and `get_bounds`"
 )]
-pub trait Primitive: Type + Send + Sync {
+pub trait Primitive: Type {
     /// What `intersect` gives: [`Hit`](super::Hit), or a struct of your own with a `Hit` in it.
     type Hit: HitRecord;
 
     /// What all primitives of a scene share: the elements of one slice beside theirs, such as the
     /// vertices of indexed triangles. `()` if they stand alone.
-    type Shared: Type + Send + Sync;
+    type Shared: Type;
 
     /// How far an accepted hit may lie from the exact one, relative to the distance between the
     /// ray's origin and the farthest corner of the scene: the error of `t`, and by how much the

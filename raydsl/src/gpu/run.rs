@@ -17,26 +17,13 @@ use super::textures::BoundTexture;
 use super::tiles::{Tiler, next_goal};
 use super::window::GpuWindow;
 use crate::machine::wgsl::{BufferKey, Module};
+use crate::render::{Effort, timing_of};
 
 /// Dispatches on their way at once: one computes while the other's outputs come back.
 const IN_FLIGHT: usize = 2;
 /// Inputs or outputs of one dispatch at most: several dispatches overlap better with their
 /// transfers than one large one, and the buffers stay small beside the scene.
 const TILE_BYTES: u64 = 64 << 20;
-
-/// What one pixel of a run costs, in samples.
-#[derive(Clone, Copy)]
-pub(super) struct Effort {
-    /// At most so many.
-    pub(super) samples: u32,
-    /// Whether all pixels take that many: only then a run tells how long others will take.
-    pub(super) is_even: bool,
-}
-
-impl Effort {
-    /// One sample.
-    pub(super) const ONE: Self = Self { samples: 1, is_even: true };
-}
 
 /// Is told the share of a run that is done, and says whether to go on.
 pub(super) type Teller<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
@@ -52,13 +39,6 @@ impl Grid<'_> {
     /// One sample a pixel, of which no one is told.
     pub(super) const fn of(size: [u32; 2]) -> Self {
         Self { size, effort: Effort::ONE, teller: None }
-    }
-}
-
-/// How long a run took that may have been broken off.
-pub(super) fn timing_of(end: ControlFlow<Timing, Timing>) -> Timing {
-    match end {
-        ControlFlow::Continue(timing) | ControlFlow::Break(timing) => timing,
     }
 }
 

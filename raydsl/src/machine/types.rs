@@ -12,7 +12,7 @@ use super::{B, F, Field, I, Machine, Schema, U, Usize, Value, Varying, X2, X3, X
     label = "not a type that kernels understand",
     note = "derive it for a struct of such types: #[derive(Clone, Copy, raydsl::Type)]"
 )]
-pub trait Type: Copy + 'static {
+pub trait Type: Copy + Send + Sync + 'static {
     /// The twin: what stands for a value of this type on machine `M`.
     type On<M: Machine>: Value<M> + Varying<M, Value = Self::On<M>>;
 

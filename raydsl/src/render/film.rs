@@ -8,7 +8,7 @@ use crate::machine::Type;
 
 /// The mean and the variance of every pixel, over all samples so far.
 ///
-/// [`Scheduler::accumulate`](super::Scheduler::accumulate) adds samples. Means are kept in `f64`.
+/// [`Renderer::accumulate`](super::Renderer::accumulate) adds samples. Means are kept in `f64`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     width: u32,

@@ -1,6 +1,6 @@
 //! From kernels to pictures.
 //!
-//! A [`Scheduler`] makes a frame (one ray through the middle of each pixel) or a pass (some samples
+//! A [`Renderer`], a [`Scheduler`] of the CPU or a device, makes a frame (one ray through the middle of each pixel) or a pass (some samples
 //! of each pixel, added to a [`Film`]); a camera gives the rays.
 
 mod allocation;
@@ -13,6 +13,7 @@ mod image;
 mod moments;
 mod pixel_sampler;
 mod radiance;
+mod renderer;
 mod scheduler;
 mod shot;
 mod simple;
@@ -29,16 +30,18 @@ pub use image::{Image, Shaded, ShadedOn};
 pub use moments::{Moments, MomentsOn};
 pub use pixel_sampler::{PixelSampler, Sampling};
 pub use radiance::Radiance;
+pub use renderer::Renderer;
 #[cfg(feature = "gpu")]
-pub(crate) use scheduler::Samples;
+pub(crate) use renderer::timing_of;
+#[doc(hidden)]
+pub use renderer::{Effort, Pace};
 pub use scheduler::Scheduler;
 #[doc(hidden)]
 pub use shot::Body;
 #[cfg(feature = "gpu")]
 pub(crate) use shot::Frame;
-pub(crate) use shot::Pass;
 pub use shot::Shot;
-pub(crate) use shot::places;
+pub(crate) use shot::{Pass, places};
 pub use simple::SimpleScheduler;
 pub use tile::{Tile, Tiles};
 pub use tiled::TiledScheduler;
@@ -46,6 +49,4 @@ pub use until::{
     Budget, Estimate, Metric, Outcome, Progress, ProgressObserver, REPLICATIONS, Reached, Target,
     Until, UntilError,
 };
-#[cfg(feature = "gpu")]
-pub(crate) use until::{Renderer, run as run_until};
 pub use watch::{Observer, Watch};

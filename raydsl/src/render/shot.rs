@@ -24,7 +24,7 @@ pub trait Shot: Sync {
     /// What the kernel gives.
     type Result: Type;
     /// What there is for each pixel.
-    type Output: Type + Send;
+    type Output: Type;
 
     /// The kernel.
     fn kernel(&self) -> &Kernel<'_, Self::Args, Self::Result>;
@@ -76,7 +76,7 @@ pub(crate) struct Frame<'a, C, A: Type, R: Type> {
     pub(crate) kernel: &'a Kernel<'a, A, R>,
 }
 
-impl<C: CameraRays, A: FilmArgs, R: Type + Send> Shot for Frame<'_, C, A, R> {
+impl<C: CameraRays, A: FilmArgs, R: Type> Shot for Frame<'_, C, A, R> {
     type Args = A;
     type Result = R;
     type Output = R;
@@ -119,7 +119,7 @@ pub(crate) struct Pass<'a, C, A: Type, R: Type> {
     pub(crate) allocation: Option<&'a Allocation>,
 }
 
-impl<C: CameraRays, A: FilmArgs, R: Radiance + Send> Shot for Pass<'_, C, A, R> {
+impl<C: CameraRays, A: FilmArgs, R: Radiance> Shot for Pass<'_, C, A, R> {
     type Args = A;
     type Result = R;
     type Output = Moments;

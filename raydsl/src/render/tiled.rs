@@ -59,7 +59,7 @@ impl Scheduler for TiledScheduler {
         });
     }
 
-    fn batch<A: Type + Sync, R: Type + Send>(
+    fn run_batch<A: Type, R: Type>(
         &self,
         kernel: &Kernel<'_, A, R>,
         inputs: &[A],

@@ -8,7 +8,7 @@ use crate::camera::{Camera, CameraRays};
 use crate::geometry::Ray;
 use crate::kernel::{Kernel, Variant, Variants};
 use crate::machine::{F, Machine, Outcomes, Rounding, Type};
-use crate::render::{Image, Scheduler, TiledScheduler};
+use crate::render::{Image, Renderer, TiledScheduler};
 
 /// Settings of a comparison.
 ///
@@ -108,7 +108,7 @@ impl<'a> Compare<'a> {
     /// Runs the variants in turn, round by round.
     ///
     /// A variant that cannot run (no device, no WGSL in this build) has a row that says why.
-    pub fn run<C: Camera, R: Type + Send + Sync>(
+    pub fn run<C: Camera, R: Type>(
         mut self,
         kernel: &Kernel<'_, (Ray,), R>,
         camera: &C,
@@ -354,7 +354,7 @@ impl<R: Type> Comparison<R> {
 }
 
 /// Runs a kernel in `variants` at 640 by 480 pixels and compares; see [`Compare`] for settings.
-pub fn compare<C: Camera, R: Type + Send + Sync>(
+pub fn compare<C: Camera, R: Type>(
     kernel: &Kernel<'_, (Ray,), R>,
     camera: &C,
     variants: Variants,

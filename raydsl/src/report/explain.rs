@@ -131,7 +131,7 @@ fn each<T: Send>(indices: &[usize], f: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
 }
 
 /// Why results differ at `indices`.
-pub(super) fn causes<R: Type + Sync>(
+pub(super) fn causes<R: Type>(
     expected: &[R],
     found: &[R],
     outcomes: OutcomesOf<'_>,
@@ -199,7 +199,7 @@ impl Explanation {
 /// # Panics
 ///
 /// If there is not one output for each input.
-pub fn explain<A: Type + Sync, R: Type + Sync>(
+pub fn explain<A: Type, R: Type>(
     kernel: &Kernel<'_, A, R>,
     inputs: &[A],
     outputs: &[R],

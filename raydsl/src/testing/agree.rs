@@ -93,7 +93,7 @@ struct Wrong<R> {
 /// # Panics
 ///
 /// If there are no inputs, or no device where `RAYDSL_REQUIRE_GPU` is `1`.
-pub fn variants_agree<A: Type + Sync, R: Type + Sync>(
+pub fn variants_agree<A: Type, R: Type>(
     kernel: &Kernel<'_, A, R>,
     inputs: &[A],
     rounding: Rounding,
@@ -144,7 +144,7 @@ fn packet<A: Type, R: Type>(
     (!indices.is_empty()).then_some(Wrong { variant, summary, found, indices })
 }
 
-fn wgsl<A: Type + Sync, R: Type + Sync>(
+fn wgsl<A: Type, R: Type>(
     kernel: &Kernel<'_, A, R>,
     inputs: &[A],
     rounding: Rounding,

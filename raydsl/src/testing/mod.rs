@@ -104,6 +104,7 @@ fn on_device<A: Type, R: Type>(
     inputs: &[A],
     found: &mut [R],
 ) -> Result<(), String> {
+    use crate::render::Renderer;
     shared()?.batch(kernel, inputs, found).map(|_| ()).map_err(|e| e.to_string())
 }
 

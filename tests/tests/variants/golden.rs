@@ -108,7 +108,8 @@ macro_rules! tests {
 
 raydsl_tests::kernel_table!(tests);
 
-const SCENES: [&str; 11] = [
+const SCENES: [&str; 12] = [
+    "hits",
     "instances",
     "list_of_meshes",
     "primary",
@@ -190,6 +191,27 @@ fn two_trees() -> Result<(), raydsl::bvh::BuildError> {
         if b.is_hit && (!a.is_hit || b.t < a.t) { b } else { a }
     });
     assert_wgsl("two_trees", &kernel.wgsl());
+    Ok(())
+}
+
+/// A loop over hits, of shapes that are crossed twice.
+#[test]
+fn hits() -> Result<(), raydsl::bvh::BuildError> {
+    let balls = spheres(20);
+    let bvh = Bvh::build(&balls)?;
+    let kernel = kernel!(|ray: Ray| {
+        let mut passed = 0u32;
+        let mut last = 0.0;
+        for hit in bvh.hits(ray) {
+            passed += 1;
+            last = hit.t;
+            if passed == 3 {
+                break;
+            }
+        }
+        (passed, last)
+    });
+    assert_wgsl("hits", &kernel.wgsl());
     Ok(())
 }
 

@@ -32,16 +32,12 @@ pub(super) struct Ask<'a> {
 }
 
 impl Ask<'_> {
-    fn frame<A: FilmArgs, R: Type + Send>(
-        self,
-        kernel: &Kernel<'_, A, R>,
-        image: &mut Image<R>,
-    ) -> f64 {
+    fn frame<A: FilmArgs, R: Type>(self, kernel: &Kernel<'_, A, R>, image: &mut Image<R>) -> f64 {
         let run = || self.scheduler.frame(&self.work.camera, kernel, image);
         seconds_on(self.threads, run).1
     }
 
-    fn batch<R: Type + Send>(self, kernel: &Kernel<'_, Place, R>, found: &mut [R]) -> f64 {
+    fn batch<R: Type>(self, kernel: &Kernel<'_, Place, R>, found: &mut [R]) -> f64 {
         let run = || self.scheduler.batch(kernel, &self.work.places, found);
         seconds_on(self.threads, run).1
     }

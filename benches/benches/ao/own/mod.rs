@@ -168,7 +168,7 @@ fn runs(ask: Ask<'_>) -> [(Row, Run<'_>); 6] {
 
 /// A frame: `run` makes it, and `count` says how many hits it shows, and the sum of their
 /// distances.
-fn picture<'a, R: Type + Send + 'a>(
+fn picture<'a, R: Type + 'a>(
     ask: Ask<'a>,
     blank: R,
     run: fn(Ask<'a>, &mut Image<R>) -> f64,

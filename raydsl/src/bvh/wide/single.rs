@@ -126,7 +126,7 @@ fn each_part<E: Lanes, P: Primitive>(
         let Some(tree) = part.wide().filter(|tree| !tree.is_empty()) else { continue };
         let beam = Beam::of_one(&ray, limit, &tree.bounds(), Padding::of::<P>())?;
         let meeting = meeting(scene, part, tree);
-        limit = walk(e, &meeting, &ray, wanted, beam, &mut pending, &mut best, meet);
+        limit = walk(e, &meeting, &ray, (wanted, &mut *meet), beam, &mut pending, &mut best);
         if wanted == Wanted::Any && best.is_hit || limit == f32::NEG_INFINITY {
             break;
         }
@@ -139,11 +139,10 @@ fn walk<E: Lanes, P: Primitive>(
     e: E,
     meeting: &Meeting<'_, P>,
     ray: &Ray,
-    wanted: Wanted,
+    (wanted, meet): (Wanted, &mut Meet<'_, P>),
     mut beam: Beam,
     pending: &mut Pending<'_>,
     best: &mut Hit,
-    meet: &mut Meet<'_, P>,
 ) -> f32 {
     let tree = meeting.tree;
     let on = Ray::splat(&Packet::new(e), *ray);

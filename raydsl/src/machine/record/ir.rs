@@ -1,4 +1,38 @@
 //! The recorded program: functions of structured statements over a table of expressions.
+//!
+//! **A function** has parameters, variables, a table of nodes, and a body. A [`Node`] is an expression
+//! over earlier nodes, named by its [`Id`]; nodes are never changed but for the marks of the printer.
+//! Vectors and structs are taken apart into scalars as values of the machine and put together again
+//! where all parts come from one value. Trivial expressions (numbers, parameters, members) are one node
+//! wherever they occur.
+//!
+//! **Evaluation.** Every node that is not trivial has a [`Stmt::Let`] where it was recorded: there it is
+//! evaluated, once, in the order of the statements. Expressions have no effects, but [`Expr::Call`] of a
+//! function that is given an [`Expr::Address`], which may change that variable. So a printer may write a
+//! node in place of its name wherever nothing tells the two apart:
+//!
+//! * It is *pinned* if it is used in another block than its own, where it might be evaluated more often
+//!   or under another condition.
+//! * A [`Expr::Load`] is the value of a variable at its place. Variables count their stores in
+//!   `version`, and a loop counts as a store to every variable, since its body may come again. A use
+//!   of a load whose version has passed pins the load.
+//! * Otherwise it is printed where it is used, if that is once, and gets a `let` if it is more often.
+//!
+//! **Control flow** is structured. [`Stmt::If`] and [`Stmt::Loop`] have blocks; [`Stmt::BreakUnless`],
+//! [`Stmt::Break`] and [`Stmt::Continue`] concern the innermost loop, whose `continuing` block runs
+//! before every further round, after a `Continue` too. An exit through several loops is a number in the
+//! variable `leave`, tested behind each of them. [`Stmt::Return`] leaves the function.
+//!
+//! **Arithmetic** is that of the scalar source, operation by operation: floats as IEEE 754 says, where the
+//! device does; `wrapping_` operations of integers wrap, and so do those that would panic; a quotient by
+//! 0 and shifts beyond the width are defined as in the book, "What the numbers promise"; conversions
+//! saturate. `min` and `max` are `if b < a { b } else { a }` and its like, also for a NaN, unless the
+//! function is without any (`KnownFunction::is_without_nan`). Operations on numbers alone are done
+//! while recording.
+//!
+//! **What is data**: captured numbers are members of the uniform block ([`Expr::Uniform`]), scenes and
+//! slices are read by functions over their buffers. Both may change without a new program; what decides
+//! the program itself are values of the host, and the kinds and layouts of what is captured.
 
 use crate::machine::{
     BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Schema, U32Unary, wgsl::BufferKey,

@@ -22,6 +22,7 @@ use core::cell::RefCell;
 
 pub(crate) use names::member_name;
 pub(crate) use storage::stride;
+pub(crate) use text::from_template;
 pub(crate) use types::zero_value;
 
 use builder::{Builder, LoopState};

@@ -71,3 +71,66 @@ impl Recorder {
         self.put_together(V::SCHEMA, &mut self.leaves_of(v).into_iter())
     }
 }
+
+/// WGSL with the `$names` in it replaced, `${names}` where a name goes on behind. A line of one name
+/// alone is as many lines as the value has, none if that is empty, and has its indentation.
+///
+/// # Panics
+///
+/// If the text has a name without a value.
+pub(crate) fn from_template(template: &str, values: &[(&str, &str)]) -> String {
+    let value_of = |name: &str| {
+        let found = values.iter().find(|(of, _)| *of == name);
+        found.unwrap_or_else(|| panic!("the template has `${name}`, which has no value")).1
+    };
+    let mut text = String::new();
+    for line in template.lines() {
+        let inner = line.trim_start();
+        let indentation = &line[..line.len() - inner.len()];
+        if let Some(name) = inner.strip_prefix('$').filter(|name| is_name(name)) {
+            for line in value_of(name).lines().filter(|line| !line.trim().is_empty()) {
+                text += &format!("{indentation}{line}\n");
+            }
+            continue;
+        }
+        let mut parts = line.split('$');
+        text += parts.next().unwrap_or_default();
+        for part in parts {
+            let (name, rest) = match part.strip_prefix('{').and_then(|part| part.split_once('}')) {
+                Some(parts) => parts,
+                None => part.split_at(part.find(|c| !is_of_name(c)).unwrap_or(part.len())),
+            };
+            text += value_of(name);
+            text += rest;
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn is_of_name(c: char) -> bool {
+    c.is_ascii_alphanumeric() || c == '_'
+}
+
+fn is_name(text: &str) -> bool {
+    !text.is_empty() && text.chars().all(is_of_name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::from_template;
+
+    #[test]
+    fn names_are_replaced() {
+        let template = "fn $name() {\n    $body\n    let ${a}_b = $a;\n    $nothing\n}\n";
+        let values = [("name", "f"), ("body", "x;\ny;"), ("a", "v"), ("nothing", "")];
+        let expected = "fn f() {\n    x;\n    y;\n    let v_b = v;\n}\n";
+        assert_eq!(from_template(template, &values), expected);
+    }
+
+    #[test]
+    #[should_panic(expected = "`$b`, which has no value")]
+    fn names_without_values_are_mistakes() {
+        from_template("$a $b", &[("a", "1")]);
+    }
+}

@@ -8,7 +8,7 @@ mod shares;
 use core::ops::ControlFlow;
 use std::time::Duration;
 
-pub(crate) use run::{Renderer, run};
+pub(crate) use run::{Accumulate, run};
 
 use super::{Film, Sampling};
 
@@ -105,7 +105,7 @@ impl Budget {
 }
 
 /// An error to reach and what may be spent on it; see
-/// [`Scheduler::render_until`](super::Scheduler::render_until).
+/// [`Renderer::render_until`](super::Renderer::render_until).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Until {
     /// The error.
@@ -199,6 +199,12 @@ pub enum UntilError {
         /// Rows.
         height: u32,
     },
+}
+
+impl From<core::convert::Infallible> for UntilError {
+    fn from(never: core::convert::Infallible) -> Self {
+        match never {}
+    }
 }
 
 /// Why no more samples were taken.

@@ -9,7 +9,7 @@ use super::replications::{Replications, is_complete};
 use super::shares::Shares;
 use super::{Estimate, Outcome, Progress, ProgressObserver, REPLICATIONS, Reached, Until};
 use crate::render::allocation::Allocation;
-use crate::render::scheduler::Samples;
+use crate::render::renderer::Samples;
 use crate::render::watch::Observer;
 use crate::render::{Film, Sampling};
 use crate::sampling::pcg4d;
@@ -29,13 +29,13 @@ const FIRST_SHARE: f64 = 0.8;
 /// This part of a budget's time, at most, is kept for what follows the last sample.
 const MOST_FOR_END: u32 = 10;
 
-/// Adds samples to an empty film, as a scheduler does. The observer may break off.
-pub(crate) trait Renderer {
+/// Adds samples to an empty film. The observer may break off.
+pub(crate) trait Accumulate {
     /// What may go wrong.
     type Error;
 
     /// Adds `samples`.
-    fn render(
+    fn accumulate(
         &mut self,
         samples: &Samples<'_>,
         film: &mut Film,
@@ -61,7 +61,7 @@ struct Stage {
 }
 
 /// Renders into `film` until it is good enough. `until` has been checked.
-pub(crate) fn run<R: Renderer>(
+pub(crate) fn run<R: Accumulate>(
     until: &Until,
     sampling: &Sampling,
     film: &mut Film,
@@ -125,7 +125,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn stages<R: Renderer>(&mut self, renderer: &mut R) -> Result<(Outcome, Estimate), R::Error> {
+    fn stages<R: Accumulate>(&mut self, renderer: &mut R) -> Result<(Outcome, Estimate), R::Error> {
         let period = self.sampling.pixels.period();
         let pilot = self.until.target.pilot.div_ceil(REPLICATIONS).next_multiple_of(period);
         let mut plan = Plan { each: period, doubt: None };
@@ -192,7 +192,7 @@ impl Run<'_> {
     }
 
     /// Renders the replications of a stage, as far as the budget goes.
-    fn stage<R: Renderer>(&mut self, plan: Plan, renderer: &mut R) -> Result<Stage, R::Error> {
+    fn stage<R: Accumulate>(&mut self, plan: Plan, renderer: &mut R) -> Result<Stage, R::Error> {
         let affordable = self.until.budget.samples.saturating_sub(self.spent_each()) / REPLICATIONS;
         // Half a round of fixed places would weigh some parts of a pixel more than others.
         let period = self.sampling.pixels.period();
@@ -261,7 +261,7 @@ impl Run<'_> {
 
     /// Renders one replication, looking at the clock and asking the observer meanwhile. Whether it is
     /// whole, and what ended the run, if something did: at its end, both may be.
-    fn replication<R: Renderer>(
+    fn replication<R: Accumulate>(
         &mut self,
         samples: &Samples<'_>,
         film: &mut Film,
@@ -294,7 +294,7 @@ impl Run<'_> {
             }
             if cut.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        let end = renderer.render(samples, film, &mut watch)?;
+        let end = renderer.accumulate(samples, film, &mut watch)?;
         Ok((end.is_continue(), cut))
     }
 }

@@ -12,7 +12,7 @@ use crate::geometry::Ray;
 use crate::kernel::{Kernel, Variant};
 use crate::machine::{Machine, Outcomes, Rounding, U, X2};
 use crate::render::{
-    Film, FilmArgs, Pass, PixelSampler, Radiance, Sampling, Scheduler, SimpleScheduler, places,
+    Film, FilmArgs, Pass, PixelSampler, Radiance, Renderer, Sampling, SimpleScheduler, places,
 };
 use crate::report::Missing;
 use crate::sampling::Sampler;
@@ -140,7 +140,7 @@ impl<'a> Run<'a> {
     /// # Errors
     ///
     /// If there is no device for WGSL, or it refuses.
-    pub fn film<C: Camera, A: FilmArgs, R: Radiance + Send>(
+    pub fn film<C: Camera, A: FilmArgs, R: Radiance>(
         &self,
         camera: &C,
         kernel: &Kernel<'_, A, R>,
@@ -154,7 +154,7 @@ impl<'a> Run<'a> {
     /// # Errors
     ///
     /// If there is no device for WGSL, or it refuses.
-    pub fn film_counted<C: Camera, A: FilmArgs, R: Radiance + Send>(
+    pub fn film_counted<C: Camera, A: FilmArgs, R: Radiance>(
         &self,
         camera: &C,
         kernel: &Kernel<'_, A, R>,
@@ -170,7 +170,7 @@ impl<'a> Run<'a> {
     /// # Errors
     ///
     /// If there is no device for WGSL, or it refuses.
-    pub fn integral<A: FilmArgs, R: Radiance + Send>(
+    pub fn integral<A: FilmArgs, R: Radiance>(
         &self,
         kernel: &Kernel<'_, A, R>,
     ) -> Result<Estimates, Missing> {
@@ -228,7 +228,7 @@ impl<'a> Run<'a> {
     }
 
     /// The mean colour of each pixel.
-    fn means<C: Camera, A: FilmArgs, R: Radiance + Send>(
+    fn means<C: Camera, A: FilmArgs, R: Radiance>(
         &self,
         camera: &C,
         kernel: &Kernel<'_, A, R>,
@@ -253,7 +253,7 @@ impl<'a> Run<'a> {
     }
 
     #[cfg(feature = "gpu")]
-    fn on_device<C: Camera, A: FilmArgs, R: Radiance + Send>(
+    fn on_device<C: Camera, A: FilmArgs, R: Radiance>(
         &self,
         camera: &C,
         kernel: &Kernel<'_, A, R>,
@@ -266,7 +266,7 @@ impl<'a> Run<'a> {
     }
 
     #[cfg(not(feature = "gpu"))]
-    fn on_device<C: Camera, A: FilmArgs, R: Radiance + Send>(
+    fn on_device<C: Camera, A: FilmArgs, R: Radiance>(
         &self,
         _: &C,
         _: &Kernel<'_, A, R>,
@@ -277,7 +277,7 @@ impl<'a> Run<'a> {
     }
 
     /// The means of the same samples, each computed in `f64`.
-    fn in_f64<C: Camera, A: FilmArgs, R: Radiance + Send>(
+    fn in_f64<C: Camera, A: FilmArgs, R: Radiance>(
         &self,
         camera: &C,
         kernel: &Kernel<'_, A, R>,

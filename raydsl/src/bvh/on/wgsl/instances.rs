@@ -14,7 +14,7 @@ use crate::bvh::{
 use crate::bvh::{Placed, View, any_where, buffers, closest_where};
 use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn, transform_ray};
 use crate::machine::record::ir::{Expr, Type};
-use crate::machine::record::zero_value;
+use crate::machine::record::{from_template, zero_value};
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
     A3, B, Data, F, Field, KernelInfo, Loop, Machine, Recorder, Schema, Type as HostType, U, Value,
@@ -109,10 +109,10 @@ impl Walk {
     }
 
     /// The line that counts `n` tests of nodes.
-    fn count(self, n: u32, indent: usize) -> String {
+    fn count(self, n: u32) -> String {
         match self {
             Self::Plain => String::new(),
-            Self::Counted => format!("{:indent$}(*w).tested = (*w).tested + {n}u;\n", ""),
+            Self::Counted => format!("(*w).tested = (*w).tested + {n}u;"),
         }
     }
 }
@@ -193,31 +193,22 @@ impl Recorder {
         let is_before = self.is_before_name(true);
         let types = vec![Ray::SCHEMA, Hit::SCHEMA, Cost::SCHEMA, CountedHit::SCHEMA];
         self.text_function(format!("{prims_name}_closest_hit_with_cost"), types, &|name| {
-            format!(
-                "\
-fn {name}(ray: Ray) -> CountedHit {{
-    let slack = {places}_at(0u).slack;
-    var best = {zero}.hit;
-    var primitives = 0u;
-    var limit = ray.t_max;
-    var w = {start}(ray);
-    loop {{
-        let next = {next}(&w, limit);
-        if (next.id == {NONE}u) {{
-            break;
-        }}
-        primitives = primitives + 1u;
-        var candidate = {intersect}({prims_name}_at(next.id), next.ray){path};
-        candidate.prim_id = next.id;
-        candidate.inst_id = next.inst;
-        if ({is_within}(candidate, ray) && {is_before}(candidate, best)) {{
-            best = candidate;
-            limit = {limit_behind}(best.t, slack, ray.t_max);
-        }}
-    }}
-    return CountedHit(best, Cost(w.tested, primitives));
-}}
-"
+            from_template(
+                include_str!("placed_closest_with_cost.wgsl"),
+                &[
+                    ("name", name),
+                    ("places", &places),
+                    ("zero", &zero),
+                    ("start", &start),
+                    ("next", &next),
+                    ("NONE", &NONE.to_string()),
+                    ("intersect", intersect),
+                    ("prims_name", &prims_name),
+                    ("path", path),
+                    ("is_within", &is_within),
+                    ("is_before", &is_before),
+                    ("limit_behind", &limit_behind),
+                ],
             )
         })
     }
@@ -338,27 +329,17 @@ fn {name}(ray: Ray) -> CountedHit {{
         let name = format!("{}{suffix}", self.buffer_of(scene));
         let types = vec![PLACE_SCHEMA, result];
         self.text_function(name, types, &|name| {
-            format!(
-                "\
-fn {name}({parameters}) -> {name_of_result} {{
-    var place = {places}_at(0u);
-    var {variable} = {from};
-    var rest = inst;
-    while (place.count > 0u) {{
-        // The last of its instances that begins at or before the one that is sought.
-        var low = place.items;
-        var high = place.items + place.count;
-        while (high - low > 1u) {{
-            let middle = (low + high) / 2u;
-            if ({places}_at(middle).first <= rest) {{ low = middle; }} else {{ high = middle; }}
-        }}
-        place = {places}_at(low);
-        rest = rest - place.first;
-        {body}
-    }}
-    return {variable};
-}}
-"
+            from_template(
+                include_str!("placed_levels.wgsl"),
+                &[
+                    ("name", name),
+                    ("parameters", parameters),
+                    ("name_of_result", name_of_result),
+                    ("variable", variable),
+                    ("from", from),
+                    ("body", body),
+                    ("places", &places),
+                ],
             )
         })
     }
@@ -386,15 +367,9 @@ fn {name}({parameters}) -> {name_of_result} {{
         });
         let enter = self.function_name(enter);
         let start = self.text_function(format!("{name}_walk{suffix}"), types(), &|name| {
-            format!(
-                "\
-/// A walk that has yet to begin.
-fn {name}(ray: Ray) -> {walk_type} {{
-    var w = {walk_type}();
-    {enter}(&w, 0u, ray, ray.t_max);
-    return w;
-}}
-"
+            from_template(
+                include_str!("placed_begin.wgsl"),
+                &[("name", name), ("walk_type", walk_type), ("enter", &enter)],
             )
         });
         let next = self.text_function(format!("{name}_next{suffix}"), types(), &|name| {
@@ -416,34 +391,22 @@ struct LevelsText<'a> {
 }
 
 fn enter_text(name: &str, places: &str, tree: &TreeNames, walk: Walk) -> String {
-    let ([walk_type, _], root_count) = (walk.names(), walk.count(1, 4));
+    let [walk_type, _] = walk.names();
     let TreeNames { nodes, rules, boxes, .. } = tree;
-    let (is_finite, BoxTests { slabs, enter_leave }) = (&rules.is_finite, boxes);
-    format!(
-        "\
-/// Goes into what is placed if the ray, as it is seen there, may meet it.
-fn {name}(w: ptr<function, {walk_type}>, index: u32, ray: Ray, limit: f32) {{
-    let place = {places}_at(index);
-    if (place.root == {NONE}u || !{is_finite}(ray)) {{
-        return;
-    }}
-    let root = {nodes}_at(place.root);
-    let s = {slabs}(ray, root.min, root.max, place.slack, place.origin);
-{root_count}    let enter = {enter_leave}(s, root.min, root.max, ray.t_min, limit);
-    if (!(enter.x <= enter.y)) {{
-        return;
-    }}
-    (*w).levels[(*w).level] = (*w).here;
-    (*w).level = (*w).level + 1u;
-    (*w).here = WalkLevel(ray, index, (*w).here.first + place.first, (*w).top);
-    (*w).lower = s.lower;
-    (*w).upper = s.upper;
-    (*w).inverse = s.inverse;
-    (*w).nodes[(*w).top] = place.root;
-    (*w).enters[(*w).top] = enter.x;
-    (*w).top = (*w).top + 1u;
-}}
-"
+    let BoxTests { slabs, enter_leave } = boxes;
+    from_template(
+        include_str!("placed_enter.wgsl"),
+        &[
+            ("name", name),
+            ("walk_type", walk_type),
+            ("places", places),
+            ("nodes", nodes),
+            ("NONE", &NONE.to_string()),
+            ("is_finite", &rules.is_finite),
+            ("slabs", slabs),
+            ("enter_leave", enter_leave),
+            ("root_count", &walk.count(1)),
+        ],
     )
 }
 
@@ -454,72 +417,25 @@ fn next_text(
     [enter, transform]: [&str; 2],
     walk: Walk,
 ) -> String {
-    let number = !IS_INSTANCE;
-    let ([walk_type, _], child_count) = (walk.names(), walk.count(2, 12));
+    let [walk_type, _] = walk.names();
     let TreeNames { nodes, indices: ids, boxes: BoxTests { slabs, enter_leave }, .. } = tree;
-    format!(
-        "\
-/// The next primitive that the ray may meet at or before `limit`; {NONE}u when none is left.
-fn {name}(w: ptr<function, {walk_type}>, limit: f32) -> NextPrimitive {{
-    loop {{
-        if ((*w).next < (*w).last) {{
-            let id = {ids}_at((*w).next);
-            (*w).next = (*w).next + 1u;
-            if (id < {IS_INSTANCE}u) {{
-                return NextPrimitive((*w).here.ray, id, (*w).here.first);
-            }}
-            let index = id & {number}u;
-            let ray = {transform}((*w).here.ray, {places}_at(index).to_object);
-            {enter}(w, index, ray, limit);
-        }}
-        // The next node on the stack that is not beyond the limit.
-        var found = false;
-        while ((*w).top > (*w).here.bottom && !found) {{
-            (*w).top = (*w).top - 1u;
-            found = (*w).enters[(*w).top] <= limit;
-        }}
-        if (!found) {{
-            if ((*w).level <= 1u) {{
-                break;
-            }}
-            // Back to the group around.
-            (*w).level = (*w).level - 1u;
-            (*w).here = (*w).levels[(*w).level];
-            let place = {places}_at((*w).here.place);
-            let root = {nodes}_at(place.root);
-            let s = {slabs}((*w).here.ray, root.min, root.max, place.slack, place.origin);
-            (*w).lower = s.lower;
-            (*w).upper = s.upper;
-            (*w).inverse = s.inverse;
-            continue;
-        }}
-        var node = {nodes}_at((*w).nodes[(*w).top]);
-        let s = Slabs((*w).lower, (*w).upper, (*w).inverse);
-        // Down to a leaf, the nearer child first.
-        while (node.count == 0u) {{
-            let left = {nodes}_at(node.first);
-            let right = {nodes}_at(node.first + 1u);
-{child_count}            let l = {enter_leave}(s, left.min, left.max, (*w).here.ray.t_min, limit);
-            let r = {enter_leave}(s, right.min, right.max, (*w).here.ray.t_min, limit);
-            let hit_left = l.x <= l.y;
-            let hit_right = r.x <= r.y;
-            if (!hit_left && !hit_right) {{
-                break;
-            }}
-            let left_first = hit_left && (!hit_right || l.x <= r.x);
-            if (hit_left && hit_right) {{
-                (*w).nodes[(*w).top] = select(node.first, node.first + 1u, left_first);
-                (*w).enters[(*w).top] = select(l.x, r.x, left_first);
-                (*w).top = (*w).top + 1u;
-            }}
-            if (left_first) {{ node = left; }} else {{ node = right; }}
-        }}
-        (*w).next = node.first;
-        (*w).last = node.first + node.count;
-    }}
-    return NextPrimitive((*w).here.ray, {NONE}u, 0u);
-}}
-"
+    from_template(
+        include_str!("placed_next.wgsl"),
+        &[
+            ("name", name),
+            ("walk_type", walk_type),
+            ("places", places),
+            ("nodes", nodes),
+            ("ids", ids),
+            ("IS_INSTANCE", &IS_INSTANCE.to_string()),
+            ("number", &(!IS_INSTANCE).to_string()),
+            ("NONE", &NONE.to_string()),
+            ("transform", transform),
+            ("enter", enter),
+            ("slabs", slabs),
+            ("enter_leave", enter_leave),
+            ("child_count", &walk.count(2)),
+        ],
     )
 }
 

@@ -15,7 +15,7 @@ use crate::bvh::contract::{
 use crate::bvh::{Cost, CountedHit, CountedHitOn, NODE_SCHEMA, SceneView, View, buffers};
 use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn};
 use crate::machine::record::ir::{self, Expr};
-use crate::machine::record::{member_name, zero_value};
+use crate::machine::record::{from_template, member_name, zero_value};
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{B, Data, F, Machine, Recorder, Schema, Type, V3, Value};
 
@@ -389,11 +389,6 @@ pub(super) struct BoxTests {
     pub(super) enter_leave: String,
 }
 
-fn indent(text: &str, by: usize) -> String {
-    let pad = " ".repeat(by);
-    text.lines().filter(|l| !l.trim().is_empty()).map(|l| format!("{pad}{l}\n")).collect()
-}
-
 /// Where the text of a test lowers the limit of a walk.
 const LOWER: &str = "{lower}";
 
@@ -415,24 +410,24 @@ struct Query<'a> {
 
 impl Query<'_> {
     /// The line that counts `n` tests of nodes.
-    fn count(&self, n: u32, indent: usize) -> String {
-        if !self.counts {
-            return String::new();
-        }
-        format!("{:indent$}cost.nodes = cost.nodes + {n}u;\n", "")
+    fn count(&self, n: u32) -> String {
+        if self.counts { format!("cost.nodes = cost.nodes + {n}u;") } else { String::new() }
     }
 }
 
 fn linear(name: &str, query: &Query<'_>, prims: &str, is_finite: &str) -> String {
     let Query { result, declare, test, give, .. } = query;
-    let declare = indent(declare, 4);
-    let test = indent(&test.replace(LOWER, ""), 8);
-    format!(
-        "fn {name}(ray: Ray) -> {result} {{\n{declare}    \
-         if (!{is_finite}(ray)) {{\n        \
-         return {give};\n    }}\n    \
-         for (var id = 0u; id < params.len_of_{prims}; id = id + 1u) {{\n{test}    }}\n    \
-         return {give};\n}}\n"
+    from_template(
+        include_str!("linear.wgsl"),
+        &[
+            ("name", name),
+            ("result", result),
+            ("declare", declare),
+            ("test", &test.replace(LOWER, "")),
+            ("give", give),
+            ("prims", prims),
+            ("is_finite", is_finite),
+        ],
     )
 }
 
@@ -440,67 +435,30 @@ fn linear(name: &str, query: &Query<'_>, prims: &str, is_finite: &str) -> String
 /// distance.
 fn walk(name: &str, parameters: &str, first: &str, query: &Query<'_>, tree: &TreeNames) -> String {
     let Query { result, declare, lower, test, give, slack, .. } = query;
-    let (root_count, child_count) = (query.count(1, 4), query.count(2, 12));
     let TreeNames { nodes, indices, rules, boxes } = tree;
-    let (is_finite, BoxTests { slabs, enter_leave }) = (&rules.is_finite, boxes);
     let begin = match query.continues {
         true => format!("var limit = ray.t_max;\nif (best.is_hit) {{\n    {lower}\n}}"),
         false if lower.is_empty() => "let limit = ray.t_max;".to_owned(),
         false => "var limit = ray.t_max;".to_owned(),
     };
-    let declare = indent(&format!("{declare}\n{begin}"), 4);
-    let test = indent(&test.replace(LOWER, lower), 16);
-    format!(
-        "\
-fn {name}({parameters}) -> {result} {{
-{declare}    if (params.len_of_{nodes} == 0u || !{is_finite}(ray)) {{
-        return {give};
-    }}
-    var stack: array<u32, 64>;
-    var stack_t: array<f32, 64>;
-    var top = 0u;
-    var node = {nodes}_at({first});
-    let s = {slabs}(ray, node.min, node.max, {slack:?}, 0.0);
-{root_count}    let root = {enter_leave}(s, node.min, node.max, ray.t_min, limit);
-    if (!(root.x <= root.y)) {{
-        return {give};
-    }}
-    loop {{
-        if (node.count > 0u) {{
-            for (var i = node.first; i < node.first + node.count; i = i + 1u) {{
-                let id = {indices}_at(i);
-{test}            }}
-        }} else {{
-            let left = {nodes}_at(node.first);
-            let right = {nodes}_at(node.first + 1u);
-{child_count}            let l = {enter_leave}(s, left.min, left.max, ray.t_min, limit);
-            let r = {enter_leave}(s, right.min, right.max, ray.t_min, limit);
-            let hit_left = l.x <= l.y;
-            let hit_right = r.x <= r.y;
-            if (hit_left && hit_right) {{
-                let left_first = l.x <= r.x;
-                stack[top] = select(node.first, node.first + 1u, left_first);
-                stack_t[top] = select(l.x, r.x, left_first);
-                top = top + 1u;
-                if (left_first) {{ node = left; }} else {{ node = right; }}
-                continue;
-            }}
-            if (hit_left) {{ node = left; continue; }}
-            if (hit_right) {{ node = right; continue; }}
-        }}
-        // The next node on the stack that is not beyond the limit.
-        var found = false;
-        while (top > 0u && !found) {{
-            top = top - 1u;
-            found = stack_t[top] <= limit;
-        }}
-        if (!found) {{
-            break;
-        }}
-        node = {nodes}_at(stack[top]);
-    }}
-    return {give};
-}}
-"
+    from_template(
+        include_str!("walk.wgsl"),
+        &[
+            ("name", name),
+            ("parameters", parameters),
+            ("result", result),
+            ("declare", &format!("{declare}\n{begin}")),
+            ("first", first),
+            ("slack", &format!("{slack:?}")),
+            ("test", &test.replace(LOWER, lower)),
+            ("give", give),
+            ("root_count", &query.count(1)),
+            ("child_count", &query.count(2)),
+            ("nodes", nodes),
+            ("indices", indices),
+            ("is_finite", &rules.is_finite),
+            ("slabs", &boxes.slabs),
+            ("enter_leave", &boxes.enter_leave),
+        ],
     )
 }

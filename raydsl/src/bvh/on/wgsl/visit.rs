@@ -5,6 +5,7 @@ use super::{BoxTests, Described};
 use crate::bvh::contract::{Slabs, is_finite, is_within};
 use crate::bvh::{NODE_SCHEMA, RecordOn, SceneView};
 use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn};
+use crate::machine::record::from_template;
 use crate::machine::record::ir::{Expr, Id, Type};
 use crate::machine::{
     B, Branch, F, Field, Loop, Machine, Recorder, Schema, Type as HostType, U, Var, op,
@@ -159,26 +160,18 @@ impl Recorder {
             format!("{name}_walk"),
             vec![<Ray as HostType>::SCHEMA, TRAVERSAL, NODE_SCHEMA],
             &|name| {
-                format!(
-                    "\
-/// A traversal that has yet to begin.
-fn {name}(ray: Ray{parameter}) -> Traversal {{
-    var w = Traversal();
-    if (params.len_of_{nodes} == 0u || !{is_finite}(ray)) {{
-        return w;
-    }}
-    let node = {nodes}_at({first});
-    let s = {slabs}(ray, node.min, node.max, {slack:?}, 0.0);
-    w.lower = s.lower;
-    w.upper = s.upper;
-    w.inverse = s.inverse;
-    let enter = {enter_leave}(s, node.min, node.max, ray.t_min, ray.t_max);
-    w.nodes[0] = {first};
-    w.enters[0] = enter.x;
-    w.top = select(0u, 1u, enter.x <= enter.y);
-    return w;
-}}
-"
+                from_template(
+                    include_str!("tree_begin.wgsl"),
+                    &[
+                        ("name", name),
+                        ("parameter", parameter),
+                        ("first", first),
+                        ("nodes", nodes),
+                        ("slack", &format!("{slack:?}")),
+                        ("is_finite", is_finite),
+                        ("slabs", slabs),
+                        ("enter_leave", enter_leave),
+                    ],
                 )
             },
         );
@@ -186,51 +179,15 @@ fn {name}(ray: Ray{parameter}) -> Traversal {{
             format!("{name}_next"),
             vec![TRAVERSAL, NODE_SCHEMA, <Slabs as HostType>::SCHEMA],
             &|name| {
-                format!(
-                    "\
-/// The next primitive that the ray may meet at or before `limit`; {NONE}u when none is left.
-fn {name}(w: ptr<function, Traversal>, t_min: f32, limit: f32) -> u32 {{
-    loop {{
-        if ((*w).next < (*w).last) {{
-            (*w).next = (*w).next + 1u;
-            return {ids}_at((*w).next - 1u);
-        }}
-        // The next node on the stack that is not beyond the limit.
-        var found = false;
-        while ((*w).top > 0u && !found) {{
-            (*w).top = (*w).top - 1u;
-            found = (*w).enters[(*w).top] <= limit;
-        }}
-        if (!found) {{
-            break;
-        }}
-        var node = {nodes}_at((*w).nodes[(*w).top]);
-        let s = Slabs((*w).lower, (*w).upper, (*w).inverse);
-        // Down to a leaf, the nearer child first.
-        while (node.count == 0u) {{
-            let left = {nodes}_at(node.first);
-            let right = {nodes}_at(node.first + 1u);
-            let l = {enter_leave}(s, left.min, left.max, t_min, limit);
-            let r = {enter_leave}(s, right.min, right.max, t_min, limit);
-            let hit_left = l.x <= l.y;
-            let hit_right = r.x <= r.y;
-            if (!hit_left && !hit_right) {{
-                break;
-            }}
-            let left_first = hit_left && (!hit_right || l.x <= r.x);
-            if (hit_left && hit_right) {{
-                (*w).nodes[(*w).top] = select(node.first, node.first + 1u, left_first);
-                (*w).enters[(*w).top] = select(l.x, r.x, left_first);
-                (*w).top = (*w).top + 1u;
-            }}
-            if (left_first) {{ node = left; }} else {{ node = right; }}
-        }}
-        (*w).next = node.first;
-        (*w).last = node.first + node.count;
-    }}
-    return {NONE}u;
-}}
-"
+                from_template(
+                    include_str!("tree_next.wgsl"),
+                    &[
+                        ("name", name),
+                        ("nodes", nodes),
+                        ("ids", ids),
+                        ("NONE", &NONE.to_string()),
+                        ("enter_leave", enter_leave),
+                    ],
                 )
             },
         );
