@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::{env, fs};
 
 use raydsl::kernel;
-use raydsl::kernels::{DirectionalLight, PointLight, Surface, direct_light};
+use raydsl::integrators::{DirectionalLight, PointLight, Surface, direct_light};
 use raydsl::prelude::*;
 use raydsl::render::Display;
 

@@ -2,7 +2,7 @@
 
 use raydsl::camera::Camera;
 use raydsl::kernel as kernel_fn;
-use raydsl::kernels::facing;
+use raydsl::integrators::facing;
 use raydsl::prelude::*;
 use raydsl::sampling::{pcg4d, unit_f32};
 use raydsl_benches::contest::pixels;
