@@ -44,11 +44,13 @@ impl<F: Fn(&Ray, f32, &mut dyn FnMut(u32) -> f32) + Send + Sync> Accelerator for
 /// }
 ///
 /// // A row along x with one ball in each cell: the cells that the ray passes, nearer ones first.
-/// let row: Vec<_> = (0..100).map(|x| Ball { center: vec3(x as f32, 0.0, 0.0), radius: 0.4 }).collect();
+/// let ball = |x| Ball { center: vec3(x as f32, 0.0, 0.0), radius: 0.4 };
+/// let row: Vec<_> = (0..100).map(ball).collect();
 /// let cells = |ray: &Ray, mut limit: f32, meet: &mut dyn FnMut(u32) -> f32| {
 ///     let (o, d) = (ray.origin.x, ray.direction.x);
 ///     let mut cell = o.round().clamp(0.0, 99.0);
-///     while (0.0..100.0).contains(&cell) && (d == 0.0 || (cell - 0.5 * d.signum() - o) / d <= limit) {
+///     let is_near = |cell, limit| d == 0.0 || (cell - 0.5 * d.signum() - o) / d <= limit;
+///     while (0.0..100.0).contains(&cell) && is_near(cell, limit) {
 ///         limit = meet(cell as u32);
 ///         cell += if d > 0.0 { 1.0 } else { -1.0 };
 ///     }

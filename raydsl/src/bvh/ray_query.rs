@@ -47,7 +47,8 @@ pub trait RayQuery {
     /// ```
     /// use raydsl::prelude::*;
     ///
-    /// let triangles = [Triangle { v0: vec3(0.0, 0.0, 1.0), v1: vec3(4.0, 0.0, 1.0), v2: vec3(0.0, 4.0, 1.0) }];
+    /// let v = |x, y| vec3(x, y, 1.0);
+    /// let triangles = [Triangle { v0: v(0.0, 0.0), v1: v(4.0, 0.0), v2: v(0.0, 4.0) }];
     /// let bvh = Bvh::build(&triangles)?;
     /// let up = vec3(0.0, 0.0, 1.0);
     /// let visible = kernel!(|x: f32, y: f32| {
@@ -71,9 +72,11 @@ pub trait RayQuery {
     /// ```
     /// use raydsl::prelude::*;
     ///
-    /// let triangles = [Triangle { v0: Vec3::Z, v1: vec3(4.0, 0.0, 1.0), v2: vec3(0.0, 4.0, 1.0) }];
+    /// let (v1, v2) = (vec3(4.0, 0.0, 1.0), vec3(0.0, 4.0, 1.0));
+    /// let triangles = [Triangle { v0: Vec3::Z, v1, v2 }];
     /// let bvh = Bvh::build(&triangles)?;
-    /// let rays: Vec<Ray> = (0..100).map(|i| Ray::new(vec3(0.1 * i as f32, 0.5, 0.0), Vec3::Z)).collect();
+    /// let ray = |i| Ray::new(vec3(0.1 * i as f32, 0.5, 0.0), Vec3::Z);
+    /// let rays: Vec<Ray> = (0..100).map(ray).collect();
     /// let hits = bvh.closest_hits(&rays);
     /// assert_eq!(hits.len(), 100);
     /// assert!(hits[35].is_hit && hits[35].t == 1.0 && !hits[36].is_hit);
@@ -121,7 +124,8 @@ pub trait RayQuery {
     /// use raydsl::prelude::*;
     ///
     /// let v = |x, y, z| vec3(x, y, z);
-    /// let slabs = [3.0, 1.0, 2.0].map(|z| Triangle { v0: v(0.0, 0.0, z), v1: v(4.0, 0.0, z), v2: v(0.0, 4.0, z) });
+    /// let slab = |z| Triangle { v0: v(0.0, 0.0, z), v1: v(4.0, 0.0, z), v2: v(0.0, 4.0, z) };
+    /// let slabs = [3.0, 1.0, 2.0].map(slab);
     /// let bvh = Bvh::build(&slabs)?;
     /// let depths = kernel!(|ray: Ray| {
     ///     let hits = bvh.multi_hit::<2>(ray);
@@ -155,7 +159,8 @@ pub trait RayQuery {
     /// use raydsl::prelude::*;
     ///
     /// let v = |x, y, z| vec3(x, y, z);
-    /// let slabs = [3.0, 1.0, 2.0].map(|z| Triangle { v0: v(0.0, 0.0, z), v1: v(4.0, 0.0, z), v2: v(0.0, 4.0, z) });
+    /// let slab = |z| Triangle { v0: v(0.0, 0.0, z), v1: v(4.0, 0.0, z), v2: v(0.0, 4.0, z) };
+    /// let slabs = [3.0, 1.0, 2.0].map(slab);
     /// let bvh = Bvh::build(&slabs)?;
     /// let farthest = kernel!(|ray: Ray| {
     ///     let hits = bvh.multi_hit_by::<2>(ray, |a: Hit, b: Hit| a.t > b.t);
@@ -176,12 +181,12 @@ pub trait RayQuery {
         hits.map(|hit| Type::lane::<Scalar>(&hit, 0))
     }
 
-    /// Every hit within the ray's range, in the order of `(t, inst_id, prim_id)`: all crossings of a
-    /// primitive, a sphere's entry and its exit, up to [`Primitive::MAX_CROSSINGS`] of each.
+    /// Every hit within the ray's range, in the order of `(t, inst_id, prim_id)`: all crossings of
+    /// a primitive, a sphere's entry and its exit, up to [`Primitive::MAX_CROSSINGS`] of each.
     ///
-    /// They are found as they are taken, four at a time. So a loop that stops early costs little more
-    /// than [`closest_hit`](RayQuery::closest_hit), one over all hits a traversal for four of them. In
-    /// kernels `for hit in scene.hits(ray)` is the same.
+    /// They are found as they are taken, four at a time. So a loop that stops early costs little
+    /// more than [`closest_hit`](RayQuery::closest_hit), one over all hits a traversal for four of
+    /// them. In kernels `for hit in scene.hits(ray)` is the same.
     ///
     /// ```
     /// use raydsl::prelude::*;
@@ -232,7 +237,8 @@ pub trait RayQuery {
     /// ```
     /// use raydsl::prelude::*;
     ///
-    /// let triangles = [Triangle { v0: Vec3::ZERO, v1: vec3(4.0, 0.0, 4.0), v2: vec3(0.0, 4.0, 0.0) }];
+    /// let (v1, v2) = (vec3(4.0, 0.0, 4.0), vec3(0.0, 4.0, 0.0));
+    /// let triangles = [Triangle { v0: Vec3::ZERO, v1, v2 }];
     /// let trees = [Bvh::build(&triangles)?];
     /// let flat = Affine3::from_scale(vec3(1.0, 1.0, 0.5));
     /// let scene = Instances::build(&trees, &[Instance::new(0, flat)])?;

@@ -154,8 +154,8 @@ enum Scene<'a, T, S> {
     Standing(&'a Standing<'a, T, S>),
 }
 
-/// Primitives and what finds them, as kernels see them: a slice, a tree over one, a list of trees. A
-/// value of the host on every machine.
+/// Primitives and what finds them, as kernels see them: a slice, a tree over one, a list of trees.
+/// A value of the host on every machine.
 ///
 /// `S` is the type of what the primitives share; see [`Primitive::Shared`].
 pub struct View<'a, T, S = ()> {
