@@ -168,15 +168,15 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
         self.run_in_gangs(variant, GANG, inputs, outputs);
     }
 
-    /// [`Kernel::run`] with gangs of so many lanes: packets that wait for each other where they ask
-    /// [wide trees](crate::bvh::Bvh::build_wide), which are quicker the more rays they are asked
-    /// about at once. [`Kernel::run`] has gangs of [`GANG`]; with fewer lanes than two packets
-    /// have, each packet goes on its own. The outputs are the same.
+    /// Runs the kernel as [`Kernel::run`], in gangs of so many lanes: packets that run as fibers,
+    /// whose queries of [wide trees](crate::bvh::Bvh::build_wide) are answered in batches, since
+    /// traversals are faster with more rays. [`Kernel::run`] has gangs of [`GANG`]; with fewer lanes
+    /// than two packets have, each packet runs by itself. The outputs are the same.
     ///
-    /// Each packet of a gang, of which there are 64 at most, has a stack of its own, of 8 MiB of
-    /// address space; a kernel that needs more ends the program. There are gangs on Unix, on x86-64
-    /// and AArch64; elsewhere each packet goes on its own. A packet of a
-    /// [`Gang`](crate::machine::Gang) is one packet here, however many registers it has.
+    /// Each of the at most 64 packets of a gang has a stack of its own, of 8 MiB of address space; a
+    /// kernel that needs more aborts the program. There are gangs on Unix, on x86-64 and AArch64;
+    /// elsewhere each packet runs by itself. A packet of a [`Gang`](crate::machine::Gang) is one
+    /// packet here, however many registers it has.
     ///
     /// # Panics
     ///
@@ -290,7 +290,7 @@ impl<A: Type, R: Type> CountedKernel<'_, A, R> {
     }
 }
 
-/// Lanes of a gang unless another number is asked for; see [`Kernel::run_in_gangs`].
+/// The default lanes of a gang; see [`Kernel::run_in_gangs`].
 pub const GANG: usize = 64;
 
 struct Batch<'b, A, R> {

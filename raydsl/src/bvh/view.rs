@@ -44,10 +44,10 @@ pub(crate) struct Branches<'a> {
     pub(crate) indices: &'a [u32],
 }
 
-/// What finds the primitives that a ray may meet.
+/// The structure that finds the primitives that a ray may hit.
 #[derive(Clone, Copy)]
 pub(crate) enum Finder<'a> {
-    /// Nothing: all are asked.
+    /// No structure: all primitives are tested.
     Nothing,
     Trees(&'a Structure),
     Accelerator(&'a dyn Accelerator),
@@ -58,7 +58,7 @@ pub(crate) struct Part<'a, T, S> {
     pub(crate) prims: &'a [T],
     pub(crate) shared: &'a [S],
     pub(crate) finder: Finder<'a>,
-    /// The number of its first primitive, among those of a list.
+    /// The id of its first primitive, among those of a list.
     pub(crate) first: u32,
 }
 
@@ -371,7 +371,7 @@ impl<'a, T, S> View<'a, T, S> {
         BufferKey { id, version, part }
     }
 
-    /// The ray as the tree of an instance is asked about it; the ray itself where there are none.
+    /// Returns the ray in the space of an instance's tree; the ray itself without instances.
     pub(crate) fn local_ray(&self, inst: u32, ray: Ray) -> Ray {
         self.placed().map_or(ray, |placed| placed.local_ray(inst, ray))
     }
