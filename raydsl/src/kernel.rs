@@ -170,11 +170,11 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
 
     /// Runs the kernel as [`Kernel::run`], in gangs of so many lanes: packets that run as fibers,
     /// whose queries of [wide trees](crate::bvh::Bvh::build_wide) are answered in batches, since
-    /// traversals are faster with more rays. [`Kernel::run`] has gangs of [`GANG`]; with fewer lanes
-    /// than two packets have, each packet runs by itself. The outputs are the same.
+    /// traversals are faster with more rays. [`Kernel::run`] has gangs of [`GANG`]; with fewer
+    /// lanes than two packets have, each packet runs by itself. The outputs are the same.
     ///
-    /// Each of the at most 64 packets of a gang has a stack of its own, of 8 MiB of address space; a
-    /// kernel that needs more aborts the program. There are gangs on Unix, on x86-64 and AArch64;
+    /// Each of the at most 64 packets of a gang has a stack of its own, of 8 MiB of address space;
+    /// a kernel that needs more aborts the program. There are gangs on Unix, on x86-64 and AArch64;
     /// elsewhere each packet runs by itself. A packet of a [`Gang`](crate::machine::Gang) is one
     /// packet here, however many registers it has.
     ///

@@ -20,7 +20,7 @@ pub(crate) struct Descent<'a> {
 /// A group on the way.
 struct Level<'a> {
     group: &'a Placing,
-    /// The number of the first tree in it.
+    /// The instance id of the first tree in it.
     first: u32,
     /// The ray as the group sees it.
     ray: Ray,

@@ -338,7 +338,7 @@ impl<'a, P: Primitive> Instances<'a, P> {
         hit.is_hit.then(|| super::list::tree_of(&self.placed.trees.parts, hit.prim_id))
     }
 
-    /// The number that the first primitive of a tree has.
+    /// Returns the id of the first primitive of a tree.
     ///
     /// # Panics
     ///
