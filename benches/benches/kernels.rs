@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use raydsl::kernels::ambient_occlusion;
+use raydsl::integrators::ambient_occlusion;
 use raydsl::prelude::*;
 use raydsl::texture::Filter;
 use raydsl_benches::clock::{median, quantile, seconds};

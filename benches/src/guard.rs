@@ -15,8 +15,8 @@ use std::process::{Command, ExitCode};
 const LEVELS: [(&str, &str); 2] = [("vectorize_avx2", "%ymm"), ("vectorize_avx512", "%zmm")];
 /// What enters them.
 const TRAVERSALS: &str = "raydsl::bvh::traverse_packet::";
-/// What traversals call on purpose: kernels with `#[inline(never)]`, the way from instance to
-/// instance, and the walks of wide trees. Each enters the level again and is inspected like them.
+/// What traversals call on purpose: kernels with `#[inline(never)]`, the descent through instances,
+/// and the traversals of wide trees. Each enters the level again and is inspected like them.
 const APART: [&str; 5] = [
     "raydsl::machine::packet::apart",
     "raydsl::bvh::instances::packet_descent::",
@@ -27,10 +27,10 @@ const APART: [&str; 5] = [
 /// Of these, what the bench surely has at each level.
 const WALKS: [&str; 3] = [
     "raydsl::bvh::wide::trace::each_part",
-    "raydsl::bvh::wide::wave::each_turn",
+    "raydsl::bvh::wide::stream::trace_interleaved",
     "raydsl::bvh::wide::single::ask",
 ];
-/// What the walks of wide trees call once for hundreds of rays.
+/// What the traversals of wide trees call once for hundreds of rays.
 const ONCE: [&str; 5] = [
     "raydsl::bvh::wide::rays::Rays::gather",
     "raydsl::bvh::wide::rays::Rays::give_back",
@@ -38,7 +38,7 @@ const ONCE: [&str; 5] = [
     "raydsl::geometry::aabb::Aabb::is_finite",
     "alloc::vec::Vec<T,A>::resize",
 ];
-/// One ray after another: scenes under an accelerator of one's own know no packets.
+/// Single-ray traversal: scenes under an accelerator of the application's have no packets.
 const ONE_BY_ONE: &str = "raydsl::bvh::traverse::";
 /// The bench traverses triangles and spheres at each level.
 const LEAST_FUNCTIONS: usize = 2;
@@ -71,7 +71,7 @@ struct Function {
 
 type Functions = BTreeMap<u64, Function>;
 
-/// Inspects this program and prints what is wrong with it.
+/// Inspects this program and prints its faults.
 pub fn run() -> ExitCode {
     if !cfg!(target_arch = "x86_64") {
         eprintln!("GUARD SKIPPED: it knows the machine code of x86-64 only");
@@ -172,7 +172,7 @@ fn inspect(functions: &Functions) -> Vec<String> {
         }
         let missing = WALKS.iter().filter(|walk| entries(functions, &[**walk], level).is_empty());
         faults.extend(missing.map(|walk| format!("no {walk} enters {level}")));
-        // Where one ray meets eight primitives, a level of wider registers uses half of them.
+        // Where one ray is tested against eight primitives, wider registers are used by half.
         let narrower: &[&str] = if register == "%zmm" { &["%ymm", "%zmm"] } else { &[register] };
         let traversals = traversals.iter().map(|(at, f)| inspect_entry(*at, f, &[register]));
         let apart = apart.iter().map(|(at, f)| inspect_entry(*at, f, narrower));

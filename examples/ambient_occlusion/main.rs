@@ -11,7 +11,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use raydsl::kernels::ambient_occlusion;
+use raydsl::integrators::ambient_occlusion;
 use raydsl::prelude::*;
 use raydsl::render::Display;
 use raydsl_examples::mesh;

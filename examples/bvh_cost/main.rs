@@ -14,7 +14,7 @@ use std::time::Instant;
 use clap::Parser;
 use hall::hall;
 use raydsl::bvh::{BuildError, Cost};
-use raydsl::kernels::bvh_cost;
+use raydsl::integrators::bvh_cost;
 use raydsl::prelude::*;
 use raydsl_examples::args::{point, size};
 use raydsl_examples::heat_map::HeatMap;

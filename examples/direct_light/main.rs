@@ -8,8 +8,8 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::{env, fs};
 
+use raydsl::integrators::{DirectionalLight, PointLight, Surface, direct_light};
 use raydsl::kernel;
-use raydsl::kernels::{DirectionalLight, PointLight, Surface, direct_light};
 use raydsl::prelude::*;
 use raydsl::render::Display;
 

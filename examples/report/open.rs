@@ -4,7 +4,7 @@
 use core::error::Error;
 use std::time::Instant;
 
-use raydsl::kernels::{Surface, ambient_occlusion, facing};
+use raydsl::integrators::{Surface, ambient_occlusion, facing};
 use raydsl::prelude::*;
 use raydsl::report::Missing;
 use raydsl::report::work_precision::{

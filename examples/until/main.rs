@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use args::Args;
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
-use raydsl::kernels::ambient_occlusion;
+use raydsl::integrators::ambient_occlusion;
 use raydsl::prelude::*;
 use raydsl::render::{Budget, Display, Metric, ProgressObserver, Target, Until};
 use raydsl_examples::heat_map::HeatMap;

@@ -14,8 +14,8 @@ pub use crate::run::{Counting, Native4, Native8, Native16, Variant, Variants};
 pub type LiftedFn<'a, M, A, R> =
     Box<dyn Fn(&M, <A as Type>::On<M>) -> <R as Type>::On<M> + Send + Sync + 'a>;
 
-/// The lifted body of a closure, for every machine that it is lifted for. `RAYDSL_VARIANTS` may have
-/// left some out.
+/// The lifted body of a closure, for every machine that it is lifted for. `RAYDSL_VARIANTS` may
+/// have left some out.
 #[expect(missing_docs, reason = "the members are named like their machines")]
 pub struct Lifted<'a, A: Type, R: Type> {
     pub native4: Option<LiftedFn<'a, Native4, A, R>>,
@@ -70,8 +70,8 @@ pub trait PacketTask<A: Type, R: Type> {
     /// Does it. `kernel` is the lifted body for packets of `lanes`.
     fn run<L: Lanes>(self, lanes: L, kernel: &PacketKernel<'_, L, A, R>) -> Self::Output;
 
-    /// Does it one lane at a time, where the machine has no such lanes, or `RAYDSL_VARIANTS` has left out the
-    /// lifted bodies.
+    /// Does it one lane at a time, where the machine has no such lanes, or `RAYDSL_VARIANTS` has
+    /// left out the lifted bodies.
     fn scalar(self, kernel: &(dyn Fn(A) -> R + Send + Sync)) -> Self::Output;
 }
 
@@ -168,15 +168,15 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
         self.run_in_gangs(variant, GANG, inputs, outputs);
     }
 
-    /// [`Kernel::run`] with gangs of so many lanes: packets that wait for each other where they ask
-    /// [wide trees](crate::bvh::Bvh::build_wide), which are quicker the more rays they are asked about
-    /// at once. [`Kernel::run`] has gangs of [`GANG`]; with fewer lanes than two
-    /// packets have, each packet goes on its own. The outputs are the same.
+    /// Runs the kernel as [`Kernel::run`], in gangs of so many lanes: packets that run as fibers,
+    /// whose queries of [wide trees](crate::bvh::Bvh::build_wide) are answered in batches, since
+    /// traversals are faster with more rays. [`Kernel::run`] has gangs of [`GANG`]; with fewer
+    /// lanes than two packets have, each packet runs by itself. The outputs are the same.
     ///
-    /// Each packet of a gang, of which there are 64 at most, has a stack of its own, of 8 MiB of
-    /// address space; a kernel that needs more ends the program. There are gangs on Unix, on x86-64
-    /// and AArch64; elsewhere each packet goes on its own. A packet of a [`Gang`](crate::machine::Gang)
-    /// is one packet here, however many registers it has.
+    /// Each of the at most 64 packets of a gang has a stack of its own, of 8 MiB of address space;
+    /// a kernel that needs more aborts the program. There are gangs on Unix, on x86-64 and AArch64;
+    /// elsewhere each packet runs by itself. A packet of a [`Gang`](crate::machine::Gang) is one
+    /// packet here, however many registers it has.
     ///
     /// # Panics
     ///
@@ -290,7 +290,7 @@ impl<A: Type, R: Type> CountedKernel<'_, A, R> {
     }
 }
 
-/// Lanes of a gang unless another number is asked for; see [`Kernel::run_in_gangs`].
+/// The default lanes of a gang; see [`Kernel::run_in_gangs`].
 pub const GANG: usize = 64;
 
 struct Batch<'b, A, R> {
@@ -313,8 +313,8 @@ impl<A: Type, R: Type> PacketTask<A, R> for Batch<'_, A, R> {
     }
 }
 
-/// Runs `kernel` over `inputs` in packets; the last one may be partly filled. Those of a gang, of so
-/// many lanes, go on together.
+/// Runs `kernel` over `inputs` in packets; the last one may be partly filled. The packets of a gang
+/// of so many lanes run as fibers, and their queries are batched.
 fn run_in_gangs<L: Lanes, A: Type, R: Type>(
     lanes: L,
     gang: usize,

@@ -8,8 +8,8 @@ pub mod error;
 pub mod geometry;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+pub mod integrators;
 pub mod kernel;
-pub mod kernels;
 pub mod machine;
 pub mod math;
 pub mod prelude;

@@ -5,7 +5,7 @@ use std::error::Error;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use raydsl::bvh::BuildConfig;
-use raydsl::kernels::ambient_occlusion;
+use raydsl::integrators::ambient_occlusion;
 use raydsl::prelude::*;
 use raydsl_tests::scenes::triangles;
 

@@ -1,4 +1,4 @@
-//! What is counted is what is known of a tree with one node and one block.
+//! Counters of traversals, in a tree with one node and one block.
 #![cfg(feature = "counts")]
 
 use raydsl::bvh::Counts;
@@ -32,19 +32,19 @@ fn counts_are_those_of_one_node_and_one_block() {
     let bvh = Bvh::build_wide(&triangles, &[], &config).unwrap();
     let _ = Counts::take();
 
-    // One ray after another meets three primitives at once, and the first of them is new.
+    // Each single ray is tested against three primitives at once, and the first of them is nearer.
     for i in 0..5 {
         assert!(bvh.closest_hit(ray(i, true)).is_hit);
         assert!(!bvh.closest_hit(ray(i, false)).is_hit);
     }
-    let alone = Counts { nodes: 10, blocks: 5, nearer: 5, ..Counts::default() };
-    assert_eq!(Counts::take(), alone);
+    let single = Counts { nodes: 10, blocks: 5, nearer: 5, ..Counts::default() };
+    assert_eq!(Counts::take(), single);
 
-    // Those that go together ask once; each register of them meets one primitive at a time.
+    // A ray packet visits a node once; each of its registers is tested against single primitives.
     let rays: Vec<Ray> = (0..64).map(|i| ray(i, true)).collect();
     assert!(bvh.closest_hits(&rays).iter().all(|hit| hit.is_hit));
     let registers = 64 / lanes as u64;
-    let together = Counts {
+    let packets = Counts {
         beams: 1,
         beam_rays: 64,
         beam_nodes: 1,
@@ -55,14 +55,14 @@ fn counts_are_those_of_one_node_and_one_block() {
         nearer: registers,
         ..Counts::default()
     };
-    assert_eq!(Counts::take(), together);
+    assert_eq!(Counts::take(), packets);
 
     let past: Vec<Ray> = (0..64).map(|i| ray(i, false)).collect();
     assert!(bvh.closest_hits(&past).iter().all(|hit| !hit.is_hit));
-    let together = Counts { beams: 1, beam_rays: 64, beam_nodes: 1, ..Counts::default() };
-    assert_eq!(Counts::take(), together);
+    let packets = Counts { beams: 1, beam_rays: 64, beam_nodes: 1, ..Counts::default() };
+    assert_eq!(Counts::take(), packets);
 
-    // In turn each is on its own, and stops at what it meets.
+    // In a stream each ray visits nodes by itself, and stops at a hit.
     assert!(bvh.any_hits(&rays).iter().all(|is_hit| *is_hit));
     assert_eq!(Counts::take(), Counts { nodes: 64, blocks: 64, ..Counts::default() });
 }

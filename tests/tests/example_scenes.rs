@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use raydsl::assert_variants_agree;
 use raydsl::bvh::Object;
-use raydsl::kernels::ambient_occlusion;
+use raydsl::integrators::ambient_occlusion;
 use raydsl::prelude::*;
 use raydsl::render::{Budget, Estimate, Metric, Outcome, Progress, Reached, Target, Until};
 use raydsl_tests::rng::Rng;

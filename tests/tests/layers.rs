@@ -15,7 +15,7 @@ const LAYERS: [&[&str]; 10] = [
     &["__private", "error", "prelude"],
     &["gpu", "report", "testing"],
     &["render"],
-    &["kernels"],
+    &["integrators"],
     &["bvh", "camera", "sampling", "texture"],
     &["geometry"],
     &["math"],

@@ -241,7 +241,7 @@ fn numbers_of_one_byte_and_kinds() {
     assert!(hits > 200, "{hits}");
 }
 
-/// Blocks are met without early returns.
+/// Blocks are intersected without early returns.
 #[test]
 fn early_returns() {
     let mut rng = Rng::of("steps");
@@ -305,10 +305,10 @@ fn lists() {
     }
 }
 
-/// Packets that ask together.
-const TOGETHER: usize = 16;
+/// Packets per query.
+const PACKETS: usize = 16;
 
-/// Rays that end soon and begin near each other, in all packets that ask together.
+/// Short rays that begin near each other, in all packets of a query.
 struct Short<'a> {
     scene: BvhList<'a, Triangle>,
     rays: Vec<Ray>,
@@ -318,20 +318,20 @@ struct Short<'a> {
 impl LevelTask for Short<'_> {
     fn run<L: Lanes>(&mut self, name: &str, lanes: L) {
         let (m, scene) = (Packet::new(lanes), self.scene.view());
-        let chunks = self.rays.chunks_exact(TOGETHER * L::N);
-        for (rays, found) in chunks.zip(self.found.chunks_exact(TOGETHER * L::N)) {
-            let packets: [_; TOGETHER] =
+        let chunks = self.rays.chunks_exact(PACKETS * L::N);
+        for (rays, found) in chunks.zip(self.found.chunks_exact(PACKETS * L::N)) {
+            let packets: [_; PACKETS] =
                 core::array::from_fn(|q| Ray::from_lanes(&m, |lane| rays[q * L::N + lane]));
             let any = m.perform(&AnyHits(&scene), packets);
             for (i, (ray, found)) in rays.iter().zip(found).enumerate() {
-                let is_met = L::mask_lane(&any[i / L::N].0, i % L::N);
-                assert_eq!(is_met, *found, "{name} {ray:?}");
+                let is_hit = L::mask_lane(&any[i / L::N].0, i % L::N);
+                assert_eq!(is_hit, *found, "{name} {ray:?}");
             }
         }
     }
 }
 
-/// Rays that end soon, or begin behind themselves, begin at a node made for them.
+/// Short rays, some of which begin behind their origin, begin at an entry node.
 #[test]
 fn short_rays() {
     let mut rng = Rng::of("short rays");
@@ -369,8 +369,7 @@ fn short_rays() {
     widest_level(&mut short);
 }
 
-/// Many rays with an end go together in the order of their directions, as long as they go the same
-/// way.
+/// Many bounded rays are sorted by direction, and form ray packets while they are coherent.
 #[test]
 fn sorted_rays() {
     let mut rng = Rng::of("sorted rays");
@@ -425,8 +424,8 @@ fn sorted_rays() {
     }
 }
 
-/// A gang's packets ask about different scenes, in different rounds of loops, and end when they
-/// like; how many go together changes nothing.
+/// The packets of a gang query different scenes, in different iterations of loops, and end at
+/// different times; the size of the gang changes nothing.
 #[test]
 fn gangs_of_packets() {
     let mut rng = Rng::of("gangs of packets");
@@ -467,12 +466,12 @@ fn gangs_of_packets() {
         }
     }
     let camera = Pinhole::new(vec3(1.0, 2.0, 9.0), Vec3::ZERO, Vec3::Y, 0.8);
-    let [mut alone, mut together] = [(); 2].map(|()| Image::filled(53, 37, (0.0, 0)));
-    SimpleScheduler::new().variant(Variant::Packet8).frame(&camera, &kernel, &mut alone);
+    let [mut single, mut gang] = [(); 2].map(|()| Image::filled(53, 37, (0.0, 0)));
+    SimpleScheduler::new().variant(Variant::Packet8).frame(&camera, &kernel, &mut single);
     for (lanes, edge) in [(0, 16), (64, 16), (64, 7), (256, 64), (1000, 3)] {
         let scheduler = TiledScheduler::new().gang(lanes).tile(edge);
-        scheduler.frame(&camera, &kernel, &mut together);
-        let same = alone.pixels().iter().zip(together.pixels());
+        scheduler.frame(&camera, &kernel, &mut gang);
+        let same = single.pixels().iter().zip(gang.pixels());
         assert!(same.into_iter().all(|(a, b)| bits(a) == bits(b)), "{lanes} {edge}");
     }
 }
@@ -489,9 +488,9 @@ impl Accelerator for Asking<'_> {
         let mut asked = self.lock.lock().expect("nobody panics");
         let balls = self.balls;
         let kernel = kernel!(|ray: Ray| balls.any_hit(ray));
-        let mut met = [false; 40];
-        kernel.run(Variant::Packet8, &[(*ray,); 40], &mut met);
-        *asked += usize::from(met[39]);
+        let mut hits = [false; 40];
+        kernel.run(Variant::Packet8, &[(*ray,); 40], &mut hits);
+        *asked += usize::from(hits[39]);
         drop(asked);
         rayon::join(|| balls.any_hit(*ray), || balls.closest_hit(*ray));
         (0..60).for_each(|id| _ = meet(id));
@@ -534,8 +533,8 @@ impl LevelTask for Asked<'_> {
                 (m.perform(&ClosestHits(&scene), packets), m.perform(&AnyHits(&scene), packets));
             for (i, expected) in hits.iter().enumerate() {
                 let found = Hit::lane(&closest[i / L::N], i % L::N);
-                let is_met = L::mask_lane(&any[i / L::N].0, i % L::N);
-                assert_eq!((found, is_met), (*expected, expected.is_hit), "{name} {:?}", rays[i]);
+                let is_hit = L::mask_lane(&any[i / L::N].0, i % L::N);
+                assert_eq!((found, is_hit), (*expected, expected.is_hit), "{name} {:?}", rays[i]);
             }
         }
     }

@@ -1,8 +1,8 @@
 //! The rays, which are the same for all systems.
 
 use raydsl::camera::Camera;
+use raydsl::integrators::facing;
 use raydsl::kernel as kernel_fn;
-use raydsl::kernels::facing;
 use raydsl::prelude::*;
 use raydsl::sampling::{pcg4d, unit_f32};
 use raydsl_benches::contest::pixels;

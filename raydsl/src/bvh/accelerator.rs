@@ -1,23 +1,23 @@
-//! Other structures than the tree.
+//! Acceleration structures of the application.
 
 use super::view::Standing;
 use super::{SceneView, View};
 use crate::geometry::{Kinds, Primitive, Ray};
 use crate::machine::{Capture, Machine, Owner, Parameter, Resource};
 
-/// What finds the primitives that a ray may meet: a grid, the tree of another library, a closure.
+/// An acceleration structure of the application: a grid, the tree of another library, a closure.
 ///
-/// It stands in for the tree of a [`Bvh`](super::Bvh) in an [`Accelerated`] scene, whose queries
-/// answer as ever: what is hit is a function of the ray and the primitives, and the structure only
-/// says which of them need not be asked.
+/// It replaces the tree of a [`Bvh`](super::Bvh) in an [`Accelerated`] scene, whose queries have
+/// the same results: hits are a function of the ray and the primitives, and the structure only
+/// culls primitives.
 pub trait Accelerator: Send + Sync {
-    /// Calls `meet` with the number of every primitive that `ray` may meet at or before the
-    /// distance `limit`; one may be named more than once, in any order, but nearer ones first makes
-    /// for fewer calls. `meet` returns the limit from then on, which becomes smaller where a hit is
-    /// found, and is negative infinity when nothing is sought any more.
+    /// Calls `meet` with the id of every primitive that `ray` may hit at or before the distance
+    /// `limit`. Ids may repeat, and come in any order, but nearer ones first makes for fewer calls.
+    /// `meet` returns the new limit: smaller after a hit, and negative infinity when the query is
+    /// done.
     ///
-    /// A primitive that is not named is not hit. What is named need not be near; numbers beyond the
-    /// last primitive are passed over. The ray is finite; its range is `t_min` to `t_max`.
+    /// A primitive whose id is not passed is not hit. Candidates need not be near; ids beyond the
+    /// last primitive are ignored. The ray is finite; its range is `t_min` to `t_max`.
     fn candidates(&self, ray: &Ray, limit: f32, meet: &mut dyn FnMut(u32) -> f32);
 }
 
@@ -30,8 +30,8 @@ impl<F: Fn(&Ray, f32, &mut dyn FnMut(u32) -> f32) + Send + Sync> Accelerator for
 /// Primitives under an [`Accelerator`] of one's own, which kernels take as they take a
 /// [`Bvh`](super::Bvh).
 ///
-/// Packets ask it for one lane after another. A GPU has no use for what runs on the host: there
-/// every primitive is tested, with the same results.
+/// Packets query it for one lane after another. It does not run on a GPU, where every primitive is
+/// tested instead, with the same results.
 ///
 /// ```
 /// use raydsl::bvh::Accelerated;
@@ -44,11 +44,13 @@ impl<F: Fn(&Ray, f32, &mut dyn FnMut(u32) -> f32) + Send + Sync> Accelerator for
 /// }
 ///
 /// // A row along x with one ball in each cell: the cells that the ray passes, nearer ones first.
-/// let row: Vec<_> = (0..100).map(|x| Ball { center: vec3(x as f32, 0.0, 0.0), radius: 0.4 }).collect();
+/// let ball = |x| Ball { center: vec3(x as f32, 0.0, 0.0), radius: 0.4 };
+/// let row: Vec<_> = (0..100).map(ball).collect();
 /// let cells = |ray: &Ray, mut limit: f32, meet: &mut dyn FnMut(u32) -> f32| {
 ///     let (o, d) = (ray.origin.x, ray.direction.x);
 ///     let mut cell = o.round().clamp(0.0, 99.0);
-///     while (0.0..100.0).contains(&cell) && (d == 0.0 || (cell - 0.5 * d.signum() - o) / d <= limit) {
+///     let is_near = |cell, limit| d == 0.0 || (cell - 0.5 * d.signum() - o) / d <= limit;
+///     while (0.0..100.0).contains(&cell) && is_near(cell, limit) {
 ///         limit = meet(cell as u32);
 ///         cell += if d > 0.0 { 1.0 } else { -1.0 };
 ///     }

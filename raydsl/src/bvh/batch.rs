@@ -7,10 +7,10 @@ use crate::geometry::{Primitive, Ray};
 use crate::machine::{B, Lanes, Machine, Packet, Type, fill};
 use crate::run::{LanesTask, Variant};
 
-/// Packets that ask together: what goes its own ways is quicker in company.
-const TOGETHER: usize = 8;
+/// Packets per query: streams are faster with more rays.
+const PACKETS: usize = 8;
 
-/// The record of the least `(t, id)` hit of each ray.
+/// Finds the record of the least `(t, id)` hit of each ray.
 pub(super) fn closest_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray]) -> Vec<P::Hit> {
     if let Some(walks) = scene.walks() {
         let mut hits = Vec::with_capacity(rays.len());
@@ -23,7 +23,7 @@ pub(super) fn closest_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray])
     hits.unwrap_or_else(|| rays.iter().map(|ray| traverse::closest_hit(scene, *ray)).collect())
 }
 
-/// Whether each ray hits anything.
+/// Finds whether each ray hits anything.
 pub(super) fn any_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray]) -> Vec<bool> {
     if let Some(walks) = scene.walks() {
         let mut hits = Vec::with_capacity(rays.len());
@@ -51,14 +51,14 @@ impl<P: Primitive> LanesTask for Closest<'_, '_, P> {
         let mut hits = Vec::with_capacity(self.rays.len());
         lanes.vectorize(|| {
             let m = Packet::new(lanes);
-            for rays in self.rays.chunks(TOGETHER * L::N) {
+            for rays in self.rays.chunks(PACKETS * L::N) {
                 let packets = packets(&m, rays);
                 let found = m.perform(&ClosestHits(self.scene), packets);
                 for (i, _) in rays.iter().enumerate().step_by(L::N) {
                     let q = i / L::N;
                     let record = record_on(&m, self.scene, packets[q], found[q]);
                     let left = rays.len() - i;
-                    // Not `extend`: what it is given is not always inlined, nor the lanes in it.
+                    // Not `extend`: its closure, with the lanes in it, is not always inlined.
                     for lane in 0..L::N.min(left) {
                         hits.push(P::Hit::lane(&record, lane));
                     }
@@ -76,8 +76,8 @@ impl<P: Primitive> LanesTask for Any<'_, '_, P> {
         let mut hits = Vec::with_capacity(self.rays.len());
         lanes.vectorize(|| {
             let m = Packet::new(lanes);
-            for rays in self.rays.chunks(TOGETHER * L::N) {
-                let found: [B<Packet<L>>; TOGETHER] =
+            for rays in self.rays.chunks(PACKETS * L::N) {
+                let found: [B<Packet<L>>; PACKETS] =
                     m.perform(&AnyHits(self.scene), packets(&m, rays));
                 for i in 0..rays.len() {
                     hits.push(L::mask_lane(&found[i / L::N].0, i % L::N));
@@ -88,9 +88,9 @@ impl<P: Primitive> LanesTask for Any<'_, '_, P> {
     }
 }
 
-/// The rays in packets; lanes without one have a ray that meets nothing.
+/// Loads the rays as packets; lanes without one have a ray that hits nothing.
 #[inline(always)]
-fn packets<L: Lanes>(m: &Packet<L>, rays: &[Ray]) -> [<Ray as Type>::On<Packet<L>>; TOGETHER] {
+fn packets<L: Lanes>(m: &Packet<L>, rays: &[Ray]) -> [<Ray as Type>::On<Packet<L>>; PACKETS] {
     let none = Ray::new(glam::Vec3::NAN, glam::Vec3::NAN);
     fill(
         #[inline(always)]

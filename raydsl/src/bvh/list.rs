@@ -98,7 +98,7 @@ impl<'a, P: Primitive> BvhList<'a, P> {
         hit.is_hit.then(|| tree_of(&self.trees.parts, hit.prim_id))
     }
 
-    /// The number that the first primitive of a tree has.
+    /// Returns the id of the first primitive of a tree.
     ///
     /// # Panics
     ///
@@ -167,22 +167,22 @@ fn shared_by_all<'a, P: Primitive>(trees: &[Bvh<'a, P>]) -> Result<&'a [P::Share
     Ok(found.map_or(&[], |(_, slice)| slice))
 }
 
-/// Which part holds the primitive `index`; the first one where there is none.
+/// Returns the part that holds the primitive `index`; the first one if none does.
 #[inline(always)]
 pub(super) fn tree_of<T, S>(parts: &[Part<'_, T, S>], index: u32) -> usize {
     parts.partition_point(|part| part.first <= index).saturating_sub(1)
 }
 
-/// The trees of a list, and how many nodes and indices stand before each.
+/// Iterates over the trees of a list, each with the number of nodes and indices before it.
 fn trees<'p, 'a, T, S>(
     parts: &'p [Part<'a, T, S>],
 ) -> impl Iterator<Item = (&'p Part<'a, T, S>, Branches<'a>, [u32; 2])> {
     let mut before = [0; 2];
     parts.iter().filter_map(move |part| {
         let tree = part.tree()?;
-        let here = before;
-        before = [here[0] + tree.nodes.len() as u32, here[1] + tree.indices.len() as u32];
-        Some((part, tree, here))
+        let begin = before;
+        before = [begin[0] + tree.nodes.len() as u32, begin[1] + tree.indices.len() as u32];
+        Some((part, tree, begin))
     })
 }
 
@@ -207,7 +207,7 @@ pub(super) fn nodes<'a, T, S>(parts: &[Part<'a, T, S>]) -> Cow<'a, [u8]> {
     Cow::Owned(cast_slice(&moved.collect::<Vec<Node>>()).to_vec())
 }
 
-/// The index lists of all trees in one array, of numbers that count through the list.
+/// The index lists of all trees in one array, of ids that count through the list.
 pub(super) fn indices<'a, T, S>(parts: &[Part<'a, T, S>]) -> Cow<'a, [u8]> {
     if let [part @ Part { first: 0, .. }] = parts
         && let Some(tree) = part.tree()

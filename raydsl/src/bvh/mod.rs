@@ -6,27 +6,26 @@
 //!
 //! * `intersect` sees the ray's own range, never the best `t` so far; the traversal alone
 //!   compares, and of equal `t` keeps the smaller id.
-//! * Boxes are widened, and nodes behind the best hit are culled, with an padding of
+//! * Boxes are widened, and nodes behind the best hit are culled, with a padding of
 //!   [`Primitive::SLACK`]: what rounding may do to a hit, it does to no visit.
 //! * Every layout runs the same arithmetic on the same members of a primitive.
 
-// Where what is:
+// The files:
 //
-// | file | what it has |
-// |---|---|
-// | `view` | the scenes that kernels see: a slice, a tree, a list, instances, a foreign structure |
-// | `ray_query`, `batch` | queries on the host: of one ray, of many in packets |
-// | `contract` | which rays and hits count, which of two comes first, how far to look, what a box test is |
-// | `methods`, `query` | queries in kernels: their names, and those that ask the kernel about each hit |
-// | `hits` | every hit in order, for loops (after Amstutz et al., JCGT 2015) |
-// | `on` | how each machine does a query; `on/wgsl` its text, `on/margin` its bounds of rounding |
-// | `traverse` | one ray through the binary tree |
-// | `traverse_packet`, `packet_slabs` | a packet through it, by one stack (Wald et al., "Interactive Rendering with Coherent Ray Tracing", 2001) |
-// | `wide` | trees of eight children over blocks of eight primitives, and how rays go through them |
-// | `instances`, `list`, `accelerator` | trees that are placed, lists of trees, structures of the application's |
-// | `build` | builders: binned SAH, spatial splits, Morton order |
-// | `refit`, `validate`, `coverage`, `stats` | moved primitives, whether a tree is one, what it is like |
-// | `structure`, `node` | the trees that there are over some primitives, and a node |
+// * `view`: scenes as kernels see them: a slice, a tree, a list, instances, a foreign structure.
+// * `ray_query`, `batch`: queries on the host, of one ray and of many in packets.
+// * `contract`: the valid rays and hits, the order of hits, culling distances, and the box test.
+// * `methods`, `query`: queries in kernels: their names, and those with a callback for each hit.
+// * `hits`: every hit in order, for loops (after Amstutz et al., JCGT 2015).
+// * `on`: queries on each machine; `on/wgsl` has their text, `on/margin` their rounding bounds.
+// * `traverse`: single-ray traversal of binary trees.
+// * `traverse_packet`, `packet_slabs`: SIMD packet traversal of binary trees with one stack (Wald
+//   et al., "Interactive Rendering with Coherent Ray Tracing", 2001).
+// * `wide`: trees of eight children over blocks of eight primitives, and their traversals.
+// * `instances`, `list`, `accelerator`: placed trees, lists of trees, the application's structures.
+// * `build`: builders: binned SAH, spatial splits, Morton order.
+// * `refit`, `validate`, `coverage`, `stats`: refitting, validation and statistics of trees.
+// * `structure`, `node`: the trees over some primitives, and a node.
 
 mod accelerator;
 mod batch;
@@ -95,7 +94,8 @@ use crate::machine::{Capture, Machine, Owner, Parameter, Resource};
 /// ```
 /// use raydsl::prelude::*;
 ///
-/// let triangles = [Triangle { v0: vec3(0.0, 0.0, 1.0), v1: vec3(4.0, 0.0, 1.0), v2: vec3(0.0, 4.0, 1.0) }];
+/// let v = |x, y| vec3(x, y, 1.0);
+/// let triangles = [Triangle { v0: v(0.0, 0.0), v1: v(4.0, 0.0), v2: v(0.0, 4.0) }];
 /// let bvh = Bvh::build(&triangles)?;
 /// let hit = bvh.closest_hit(Ray::new(vec3(1.0, 1.0, 0.0), vec3(0.0, 0.0, 1.0)));
 /// assert!(hit.is_hit && hit.t == 1.0 && hit.prim_id == 0);
@@ -106,13 +106,13 @@ pub struct Bvh<'a, P: Primitive> {
     tree: Tree<'a, P, P::Shared>,
 }
 
-/// What is a tree's own, and outlives the borrow of its primitives.
+/// The part of a tree that outlives the borrow of its primitives.
 #[derive(Debug)]
 struct Owned {
     structure: Structure,
     config: BuildConfig,
     owner: Owner,
-    /// How often it has been refitted.
+    /// The number of refits.
     version: u32,
     /// Its cost when it was built, if it has been refitted.
     built_cost: Option<f64>,
@@ -144,7 +144,8 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     /// ```
     /// use raydsl::prelude::*;
     ///
-    /// let vertices = [vec3(0.0, 0.0, 1.0), vec3(4.0, 0.0, 1.0), vec3(4.0, 4.0, 1.0), vec3(0.0, 4.0, 1.0)];
+    /// let v = |x, y| vec3(x, y, 1.0);
+    /// let vertices = [v(0.0, 0.0), v(4.0, 0.0), v(4.0, 4.0), v(0.0, 4.0)];
     /// let triangles = [[0, 1, 2], [2, 3, 0]].map(|vertices| IndexedTriangle { vertices });
     /// let bvh = Bvh::build_sharing(&triangles, &vertices, &BuildConfig::default())?;
     /// let hit = bvh.closest_hit(Ray::new(vec3(1.0, 3.0, 0.0), Vec3::Z));
@@ -163,27 +164,28 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         Self::build_told(prims, shared, config, None, None)
     }
 
-    /// Builds a wide tree, with copies of the primitives in its leaves, for scenes that are asked
-    /// often. A scene without shared data passes `&[]`.
+    /// Builds a wide tree, with copies of the primitives in its leaves, for scenes with many
+    /// queries. A scene without shared data passes `&[]`.
     ///
-    /// A copy of each primitive lies in blocks of eight, member by member, under nodes of eight
-    /// children. One ray meets eight boxes or eight primitives at a time, and packets go through the
-    /// tree together or part, whichever is quicker. Hits are those of any other tree.
+    /// Nodes have eight children, and leaves are blocks of eight primitives in structure-of-arrays
+    /// layout. One ray tests eight boxes or eight primitives at a time; the rays of a query are
+    /// traced as ray packets or ray streams, whichever is faster. Hits are those of any other tree.
     ///
-    /// A device has no use for it. A machine without AVX2 and NEON makes no copy, and of fewer
-    /// primitives than [`BuildConfig::min_wide_size`] none is made: then the tree is a binary one. The
-    /// walks through wide trees are long, and a program that calls this takes rustc seconds more for
-    /// each type of primitive.
+    /// Devices do not use it. On a machine without AVX2 and NEON, and for fewer primitives than
+    /// [`BuildConfig::min_wide_size`], the tree is a binary one without copies. Traversals of wide
+    /// trees are a lot of code: a program that calls this takes rustc some seconds more for each
+    /// type of primitive.
     ///
-    /// The binary tree is not kept, and made again when it is first asked for, by one thread while
-    /// others wait for it: by a ray whose numbers are too large for the wide tree's boxes, a scene of
-    /// instances, a device, the reference, refitting, or [`Bvh::nodes`], which may be called to have it
-    /// in time.
+    /// The binary tree is not kept. It is made again on first use, by one thread while others wait
+    /// for it: for degenerate rays, whose components are too large or too small for the box tests
+    /// of the wide tree, scenes of instances, devices, the reference, refitting, and
+    /// [`Bvh::nodes`], which may be called to have it in time.
     ///
     /// ```
     /// use raydsl::prelude::*;
     ///
-    /// let triangle = |z| Triangle { v0: vec3(0.0, 0.0, z), v1: vec3(4.0, 0.0, z), v2: vec3(0.0, 4.0, z) };
+    /// let v = vec3;
+    /// let triangle = |z| Triangle { v0: v(0.0, 0.0, z), v1: v(4.0, 0.0, z), v2: v(0.0, 4.0, z) };
     /// let triangles: Vec<_> = (1..1000).map(|z| triangle(z as f32)).collect();
     /// let bvh = Bvh::build_wide(&triangles, &[], &BuildConfig::default())?;
     /// let hit = bvh.closest_hit(Ray::new(vec3(1.0, 1.0, 0.0), Vec3::Z));
@@ -202,7 +204,7 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         Self::build_told(prims, shared, config, None, wide::walks())
     }
 
-    /// [`Bvh::build_wide`] with an observer, as [`Bvh::build_observed`] has one.
+    /// Builds a wide tree as [`Bvh::build_wide`], with an observer as [`Bvh::build_observed`].
     ///
     /// # Errors
     ///
@@ -227,7 +229,8 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     /// use raydsl::prelude::*;
     /// use core::ops::ControlFlow;
     ///
-    /// let triangle = |z| Triangle { v0: vec3(0.0, 0.0, z), v1: vec3(4.0, 0.0, z), v2: vec3(0.0, 4.0, z) };
+    /// let v = vec3;
+    /// let triangle = |z| Triangle { v0: v(0.0, 0.0, z), v1: v(4.0, 0.0, z), v2: v(0.0, 4.0, z) };
     /// let triangles: Vec<_> = (0..1000).map(|z| triangle(z as f32)).collect();
     /// let mut percent = 0.0;
     /// let bvh = Bvh::build_observed(&triangles, &[], &BuildConfig::default(), |done| {
@@ -237,7 +240,8 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     /// assert_eq!(bvh.primitives().len(), 1000);
     /// assert_eq!(percent, 100.0);
     ///
-    /// let stopped = Bvh::build_observed(&triangles, &[], &BuildConfig::default(), |_| ControlFlow::Break(()));
+    /// let stop = |_| ControlFlow::Break(());
+    /// let stopped = Bvh::build_observed(&triangles, &[], &BuildConfig::default(), stop);
     /// assert!(matches!(stopped, Err(raydsl::bvh::BuildError::Cancelled)));
     /// # Ok::<(), raydsl::bvh::BuildError>(())
     /// ```
@@ -282,43 +286,44 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         Ok(Self { tree: Tree { prims, shared, own, kinds: Kinds::of(prims), walks } })
     }
 
-    /// The primitives, as the application owns them.
+    /// Returns the primitives, which the application owns.
     pub fn primitives(&self) -> &'a [P] {
         self.tree.prims
     }
 
-    /// What the primitives share, as the application owns it.
+    /// Returns the shared data of the primitives, which the application owns.
     pub fn shared(&self) -> &'a [P::Shared] {
         self.tree.shared
     }
 
-    /// Whether it is a wide tree: [`Bvh::build_wide`] was asked for one, and made it.
+    /// Returns whether the tree is wide, as [`Bvh::build_wide`] makes it.
     pub fn is_wide(&self) -> bool {
         self.tree.walks.is_some()
     }
 
-    /// The nodes of the binary tree; the root is the first, children are adjacent. Of a wide tree it is
-    /// made, and kept, when it is first asked for.
+    /// Returns the nodes of the binary tree, root first, with adjacent children. The binary tree of
+    /// a wide one is made on first use, and kept.
     pub fn nodes(&self) -> &[Node] {
         &self.tree.own.structure.binary().nodes
     }
 
-    /// The index list that the leaves of the binary tree refer to, as [`Bvh::nodes`].
+    /// Returns the index list that the leaves of the binary tree refer to, as [`Bvh::nodes`].
     pub fn indices(&self) -> &[u32] {
         &self.tree.own.structure.binary().indices
     }
 
-    /// What the tree was built with, and how rays go through it.
+    /// Returns the settings of the builder and of traversal.
     pub fn config(&self) -> &BuildConfig {
         &self.tree.own.config
     }
 
-    /// Says how rays go through the tree from now on; see [`Traversal`].
+    /// Sets the traversal of the tree; see [`Traversal`].
     ///
     /// ```
     /// use raydsl::prelude::*;
     ///
-    /// let triangle = |z| Triangle { v0: vec3(0.0, 0.0, z), v1: vec3(4.0, 0.0, z), v2: vec3(0.0, 4.0, z) };
+    /// let v = vec3;
+    /// let triangle = |z| Triangle { v0: v(0.0, 0.0, z), v1: v(4.0, 0.0, z), v2: v(0.0, 4.0, z) };
     /// let triangles: Vec<_> = (1..1000).map(|z| triangle(z as f32)).collect();
     /// let mut bvh = Bvh::build_wide(&triangles, &[], &BuildConfig::default())?;
     /// let rays = [Ray::new(vec3(1.0, 1.0, 0.0), Vec3::Z); 100];
@@ -334,19 +339,18 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         self.tree.own.structure.set_traversal(traversal);
     }
 
-    /// A box around everything; empty without primitives.
+    /// Returns the bounds of all primitives; empty without primitives.
     pub fn bounds(&self) -> Aabb {
         self.tree.own.structure.bounds()
     }
 
-    /// Bytes of the tree itself, with the copies of primitives in a wide one, and with its binary tree
-    /// if anything has asked for that, or it has been refitted; the primitives
-    /// are the application's.
+    /// Returns the size of the tree in bytes, without the primitives, which the application owns. A
+    /// wide tree includes its copies of primitives, and its binary tree if that has been made.
     pub fn bytes(&self) -> usize {
         self.tree.own.structure.bytes()
     }
 
-    /// The view that kernels work on.
+    /// Returns the view that kernels work on.
     pub fn view(&self) -> SceneView<'_, P> {
         View::tree(&self.tree)
     }

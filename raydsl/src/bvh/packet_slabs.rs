@@ -1,4 +1,4 @@
-//! The test of boxes for the rays of a packet, faster where all go the same way; see
+//! Slab tests of a SIMD packet, faster where all rays have directions in one octant; see
 //! [`super::contract`].
 
 use super::Node;
@@ -46,27 +46,27 @@ pub(super) fn abs<L: Lanes>(l: L, a: L::F32) -> L::F32 {
     l.f32_unary(op::Abs, a)
 }
 
-/// `a` without the lanes of `b`.
+/// Returns `a` without the lanes of `b`.
 #[inline(always)]
 pub(super) fn without<L: Lanes>(l: L, a: L::Mask, b: L::Mask) -> L::Mask {
     and(l, a, l.mask_not(b))
 }
 
-/// Where a node's bounds are among its eight members.
+/// Indices of a node's bounds among its eight members.
 const MIN: [usize; 3] = [0, 1, 2];
 const MAX: [usize; 3] = [4, 5, 6];
 
 /// Rays of a packet, prepared for box tests; see [`super::contract`].
 pub(super) struct PacketSlabs<L: Lanes> {
-    /// From where each axis' first and second plane are measured.
+    /// The origins that each axis' near and far plane are measured from.
     near_origin: [L::F32; 3],
     far_origin: [L::F32; 3],
     inverse: [L::F32; 3],
     t_min: L::F32,
-    /// Where, among a node's members, each axis' first and second plane are.
+    /// The indices of each axis' near and far plane among a node's members.
     near_bound: [usize; 3],
     far_bound: [usize; 3],
-    /// All rays go the same way along every axis, so that the same planes come first for all.
+    /// Whether all directions lie in one octant, so that the near planes are the same for all.
     is_aligned: bool,
 }
 
@@ -75,7 +75,7 @@ impl<L: Lanes> PacketSlabs<L> {
     pub(super) fn new(
         l: L,
         ray: &RayOn<Packet<L>>,
-        alive: L::Mask,
+        active: L::Mask,
         root: &Node,
         padding: Padding,
     ) -> Self {
@@ -90,13 +90,13 @@ impl<L: Lanes> PacketSlabs<L> {
             F(l.f32(padding.origin)),
         );
         let (lower, upper, inverse) = (s.lower.array(), s.upper.array(), s.inverse.array());
-        let alive = l.bits(alive);
+        let active = l.bits(active);
         let (mut near_origin, mut far_origin) = (lower, upper);
         let (mut near_bound, mut far_bound) = (MIN, MAX);
         let mut is_aligned = true;
         for i in 0..3 {
-            let negative = l.bits(l.f32_compare(op::Lt, inverse[i], l.f32(0.0))) & alive;
-            is_aligned &= negative == 0 || negative == alive;
+            let negative = l.bits(l.f32_compare(op::Lt, inverse[i], l.f32(0.0))) & active;
+            is_aligned &= negative == 0 || negative == active;
             if negative != 0 {
                 (near_bound[i], far_bound[i]) = (MAX[i], MIN[i]);
             }
@@ -117,16 +117,16 @@ impl<L: Lanes> PacketSlabs<L> {
         }
     }
 
-    /// When each lane meets the plane at `bound` of axis `i`.
+    /// Returns the distance of each lane to the plane at `bound` of axis `i`.
     #[inline(always)]
     fn plane(&self, l: L, bound: f32, origin: L::F32, i: usize) -> L::F32 {
         mul(l, sub(l, l.f32(bound), origin), self.inverse[i])
     }
 
-    /// Where each lane enters the box, and which do so at or before `limit`.
+    /// Returns where each lane enters the box, and the mask of those that do so within `limit`.
     #[inline(always)]
     pub(super) fn enter(&self, l: L, node: &Node, limit: L::F32) -> (L::F32, L::Mask) {
-        // Read where it lies: a copy would go through the stack.
+        // Read in place: a copy would go through the stack.
         let bounds: &[f32; 8] = bytemuck::cast_ref(node);
         let (mut near, mut far) = (self.near_origin, self.far_origin);
         if self.is_aligned {

@@ -9,11 +9,11 @@ use super::traverse::CostOn;
 use crate::geometry::{Hit, HitOn, HitRecord, Kinds, Primitive, RayOn};
 use crate::machine::{B, Branch, F, Machine, Type, U, Var, op};
 
-/// What `intersect` of a primitive gives, lifted.
+/// The lifted result of `intersect` of a primitive.
 pub(crate) type RecordOn<M, P> = <<P as Primitive>::Hit as Type>::On<M>;
 
-/// The record of the least `(t, id)` hit: traversal carries the hit alone, and the rest is computed
-/// once more for the primitive that was hit.
+/// Completes the record of the least `(t, id)` hit: traversals keep only the hit itself, and the
+/// rest is computed again for the primitive that was hit.
 #[inline(always)]
 pub(crate) fn closest_on<M: Machine, P: Primitive>(
     m: &M,
@@ -24,7 +24,7 @@ pub(crate) fn closest_on<M: Machine, P: Primitive>(
     record_on(m, prims, ray, hit)
 }
 
-/// [`closest_on`], and what it cost: of each ray as if it were alone.
+/// Does [`closest_on`] and counts the cost of each ray as if it were traced by itself.
 #[inline(always)]
 pub(super) fn closest_with_cost_on<M: Machine, P: Primitive>(
     m: &M,
@@ -59,7 +59,8 @@ pub(crate) fn record_on<M: Machine, P: Primitive>(
     )
 }
 
-/// No node beyond this distance can hold a hit before `worst`; the ray's end if there is none.
+/// Returns the distance beyond which no node can hold a hit before `worst`; the ray's end if there
+/// is no such hit.
 #[inline(always)]
 pub(super) fn limit_of<M: Machine, P: Primitive>(
     m: &M,
@@ -71,13 +72,13 @@ pub(super) fn limit_of<M: Machine, P: Primitive>(
     F(m.f32_select(worst.is_hit.0, limit.0, ray.t_max.0))
 }
 
-/// Whether the hits of a scene have numbers of instances.
+/// Returns whether the hits of a scene have instance ids.
 #[inline(always)]
 pub(super) fn is_placed<P: Primitive>(prims: &SceneView<'_, P>) -> bool {
     prims.placed().is_some()
 }
 
-/// The least `(t, id)` hit of those that `accept` accepts.
+/// Finds the least `(t, id)` hit of those that `accept` accepts.
 #[inline(always)]
 pub(crate) fn closest_where<M: Machine, P: Primitive>(
     m: &M,
@@ -108,7 +109,7 @@ pub(crate) fn closest_where<M: Machine, P: Primitive>(
     best.get(m)
 }
 
-/// Whether there is a hit that `accept` accepts.
+/// Finds whether there is a hit that `accept` accepts.
 #[inline(always)]
 pub(crate) fn any_where<M: Machine, P: Primitive>(
     m: &M,
@@ -132,7 +133,7 @@ pub(crate) fn any_where<M: Machine, P: Primitive>(
     found.get(m)
 }
 
-/// The `N` least `(t, id)` hits of those that `accept` accepts, in order.
+/// Finds the `N` least `(t, id)` hits of those that `accept` accepts, in order.
 #[inline(always)]
 pub(super) fn multi_where<M: Machine, P: Primitive, const N: usize>(
     m: &M,
@@ -152,7 +153,7 @@ pub(super) fn multi_where<M: Machine, P: Primitive, const N: usize>(
     )
 }
 
-/// The first `N` hits in the order of `is_closer`.
+/// Finds the first `N` hits in the order of `is_closer`.
 #[inline(always)]
 pub(super) fn multi_by<M: Machine, P: Primitive, const N: usize>(
     m: &M,
@@ -172,8 +173,8 @@ pub(super) fn multi_by<M: Machine, P: Primitive, const N: usize>(
     )
 }
 
-/// Whether `a` comes before `b` in the order of `is_closer`, then of `(t, inst_id, prim_id)`. What
-/// stands for a miss is not asked about.
+/// Returns whether `a` precedes `b` in the order of `is_closer`, then of `(t, inst_id, prim_id)`.
+/// `is_closer` is not called with a miss.
 #[inline(always)]
 fn is_before_by<M: Machine>(
     m: &M,
@@ -185,7 +186,7 @@ fn is_before_by<M: Machine>(
     let first = Var::<B<M>>::new(m, "is_first", B(m.bool(true)));
     let both = Branch::new(m, b.is_hit);
     if both.then(m) {
-        // Where both hold, as with `<=`, or neither, it is a tie.
+        // If both hold, as with `<=`, or neither, it is a tie.
         let (closer, farther) = (is_closer(a, b).0, is_closer(b, a).0);
         let differ = m.bool_binary(op::Xor, closer, farther);
         first.set(m, B(m.bool_select(differ, closer, is_before::on(m, is_placed, a, b).0)));
@@ -194,8 +195,8 @@ fn is_before_by<M: Machine>(
     first.get(m)
 }
 
-/// The first `N` hits in some order of those that `accept` accepts. Nodes beyond `limit` of the
-/// last of them are left out.
+/// Finds the first `N` hits in some order of those that `accept` accepts. Nodes beyond `limit` of
+/// the last of them are culled.
 #[inline(always)]
 fn first_hits<M: Machine, P: Primitive, const N: usize>(
     m: &M,
@@ -238,7 +239,8 @@ fn first_hits<M: Machine, P: Primitive, const N: usize>(
     )
 }
 
-/// Whether the hit is there already: a tree with spatial splits holds a primitive more than once.
+/// Returns whether the hit has been inserted already: trees with spatial splits hold a primitive
+/// more than once.
 #[inline(always)]
 fn is_among<M: Machine, const N: usize>(
     m: &M,
@@ -256,7 +258,7 @@ fn is_among<M: Machine, const N: usize>(
     })
 }
 
-/// The hits with one more in its place; the last one falls out.
+/// Inserts a hit at its place in the order; the last one is dropped.
 #[inline(always)]
 pub(super) fn inserted<M: Machine, const N: usize>(
     m: &M,
@@ -264,7 +266,7 @@ pub(super) fn inserted<M: Machine, const N: usize>(
     hit: HitOn<M>,
     mut hits: [HitOn<M>; N],
 ) -> [HitOn<M>; N] {
-    // Behind the first hit that comes later all do; the last one does, or nothing were inserted.
+    // All hits after the first later one are later; the last one is, or nothing would be inserted.
     let mut carried = hit;
     let mut found = B(m.bool(false));
     let (last, others) = match hits.split_last_mut() {
@@ -274,9 +276,9 @@ pub(super) fn inserted<M: Machine, const N: usize>(
     for slot in others {
         let before = is_before(hit, *slot);
         found = B(m.bool_binary(op::Or, found.0, before.0));
-        let here = select(m, found, carried, *slot);
+        let kept = select(m, found, carried, *slot);
         carried = select(m, found, *slot, carried);
-        *slot = here;
+        *slot = kept;
     }
     *last = carried;
     hits

@@ -1,4 +1,4 @@
-//! What rays may ask, on the host.
+//! The queries of scenes, on the host.
 
 use glam::{Affine3, Vec3};
 
@@ -8,33 +8,33 @@ use super::{
 use crate::geometry::{Hit, HitOn, Primitive, Ray, transform_normal_back};
 use crate::machine::{B, Data, Scalar, Slice, Type};
 
-/// What rays may ask of primitives: of a slice, a tree ([`Bvh`]), a list of trees ([`BvhList`]),
-/// trees that are placed many times ([`Instances`]), or under a structure of one's own
+/// The queries of a scene: of a slice, a tree ([`Bvh`]), a list of trees ([`BvhList`]), trees that
+/// are placed many times ([`Instances`]), or an acceleration structure of the application
 /// ([`Accelerated`]).
 ///
-/// A query of a slice tests every primitive, which with a few dozen of them is faster than a tree.
-/// All answer alike, and as kernels do that ask the same.
+/// A query of a slice tests every primitive, and is faster than a tree for a few dozen of them. The
+/// results do not depend on the scene's structure, and are the same as in kernels.
 pub trait RayQuery {
-    /// What the rays meet.
+    /// The type of primitives.
     type Primitive: Primitive;
 
-    /// The view that kernels work on.
+    /// Returns the view that kernels work on.
     fn view(&self) -> SceneView<'_, Self::Primitive>;
 
-    /// The least `(t, id)` hit of `ray`.
+    /// Finds the least `(t, id)` hit of `ray`.
     fn closest_hit(&self, ray: Ray) -> <Self::Primitive as Primitive>::Hit {
         traverse::closest_hit(&self.view(), ray)
     }
 
-    /// Whether `ray` hits anything.
+    /// Finds whether `ray` hits anything.
     fn any_hit(&self, ray: Ray) -> bool {
         traverse::any_hit(&self.view(), ray)
     }
 
-    /// The least `(t, id)` hit of each of `N` rays, `ray(0)` to `ray(N - 1)`.
+    /// Finds the least `(t, id)` hit of each of `N` rays, `ray(0)` to `ray(N - 1)`.
     ///
-    /// What one query sees at once it can trace better than one ray after another; the results
-    /// are those of [`RayQuery::closest_hit`]. Inside a kernel `ray` is a closure of the kernel.
+    /// One query of many rays is faster than many queries of one; the results are those of
+    /// [`RayQuery::closest_hit`]. Inside a kernel `ray` is a closure of the kernel.
     fn closest_hit_each<const N: usize>(
         &self,
         ray: impl Fn(u32) -> Ray,
@@ -42,12 +42,13 @@ pub trait RayQuery {
         core::array::from_fn(|i| self.closest_hit(ray(i as u32)))
     }
 
-    /// Whether each of `N` rays, `ray(0)` to `ray(N - 1)`, hits anything.
+    /// Finds whether each of `N` rays, `ray(0)` to `ray(N - 1)`, hits anything.
     ///
     /// ```
     /// use raydsl::prelude::*;
     ///
-    /// let triangles = [Triangle { v0: vec3(0.0, 0.0, 1.0), v1: vec3(4.0, 0.0, 1.0), v2: vec3(0.0, 4.0, 1.0) }];
+    /// let v = |x, y| vec3(x, y, 1.0);
+    /// let triangles = [Triangle { v0: v(0.0, 0.0), v1: v(4.0, 0.0), v2: v(0.0, 4.0) }];
     /// let bvh = Bvh::build(&triangles)?;
     /// let up = vec3(0.0, 0.0, 1.0);
     /// let visible = kernel!(|x: f32, y: f32| {
@@ -65,15 +66,17 @@ pub trait RayQuery {
         core::array::from_fn(|i| self.any_hit(ray(i as u32)))
     }
 
-    /// The least `(t, id)` hit of each ray, in packets: rays in, hits out, without a camera or a
-    /// kernel. On the calling thread; the results are those of [`RayQuery::closest_hit`].
+    /// Finds the least `(t, id)` hit of each ray, in packets, without a camera or a kernel. Runs on
+    /// the calling thread; the results are those of [`RayQuery::closest_hit`].
     ///
     /// ```
     /// use raydsl::prelude::*;
     ///
-    /// let triangles = [Triangle { v0: Vec3::Z, v1: vec3(4.0, 0.0, 1.0), v2: vec3(0.0, 4.0, 1.0) }];
+    /// let (v1, v2) = (vec3(4.0, 0.0, 1.0), vec3(0.0, 4.0, 1.0));
+    /// let triangles = [Triangle { v0: Vec3::Z, v1, v2 }];
     /// let bvh = Bvh::build(&triangles)?;
-    /// let rays: Vec<Ray> = (0..100).map(|i| Ray::new(vec3(0.1 * i as f32, 0.5, 0.0), Vec3::Z)).collect();
+    /// let ray = |i| Ray::new(vec3(0.1 * i as f32, 0.5, 0.0), Vec3::Z);
+    /// let rays: Vec<Ray> = (0..100).map(ray).collect();
     /// let hits = bvh.closest_hits(&rays);
     /// assert_eq!(hits.len(), 100);
     /// assert!(hits[35].is_hit && hits[35].t == 1.0 && !hits[36].is_hit);
@@ -83,15 +86,15 @@ pub trait RayQuery {
         batch::closest_hits(&self.view(), rays)
     }
 
-    /// Whether each ray hits anything, in packets; as [`RayQuery::closest_hits`]. Where there are
-    /// hundreds, rays that begin near each other are best beside each other.
+    /// Finds whether each ray hits anything, in packets, as [`RayQuery::closest_hits`]. Hundreds of
+    /// rays are traced fastest if rays that begin near each other are consecutive.
     fn any_hits(&self, rays: &[Ray]) -> Vec<bool> {
         batch::any_hits(&self.view(), rays)
     }
 
-    /// The least `(t, id)` hit of `ray` that `accept` accepts: leaves with holes, sides that are
-    /// not seen. `accept` is asked about some of the hits, in any order. Inside a kernel it is a
-    /// closure of the kernel, which may read what stands around it.
+    /// Finds the least `(t, id)` hit of `ray` that `accept` accepts, as for cut-out leaves and
+    /// back-face culling. `accept` is called with some of the hits, in any order. Inside a kernel
+    /// it is a closure of the kernel, which may capture variables.
     fn closest_hit_where(
         &self,
         ray: Ray,
@@ -103,7 +106,7 @@ pub trait RayQuery {
         traverse::complete(scene, ray, Type::lane::<Scalar>(&hit, 0))
     }
 
-    /// Whether `ray` has a hit that `accept` accepts.
+    /// Finds whether `ray` has a hit that `accept` accepts.
     fn any_hit_where(
         &self,
         ray: Ray,
@@ -114,14 +117,15 @@ pub trait RayQuery {
         query::any_where(m, &self.view(), Type::splat(m, ray), &accept).0
     }
 
-    /// The `N` least `(t, id)` hits of `ray`, in order, with misses behind them. Each primitive
-    /// gives the hit of its `intersect`, so a sphere is there once.
+    /// Finds the `N` least `(t, id)` hits of `ray`, in order, followed by misses. Each primitive
+    /// has one hit, that of its `intersect`, so a sphere is hit once.
     ///
     /// ```
     /// use raydsl::prelude::*;
     ///
     /// let v = |x, y, z| vec3(x, y, z);
-    /// let slabs = [3.0, 1.0, 2.0].map(|z| Triangle { v0: v(0.0, 0.0, z), v1: v(4.0, 0.0, z), v2: v(0.0, 4.0, z) });
+    /// let slab = |z| Triangle { v0: v(0.0, 0.0, z), v1: v(4.0, 0.0, z), v2: v(0.0, 4.0, z) };
+    /// let slabs = [3.0, 1.0, 2.0].map(slab);
     /// let bvh = Bvh::build(&slabs)?;
     /// let depths = kernel!(|ray: Ray| {
     ///     let hits = bvh.multi_hit::<2>(ray);
@@ -134,7 +138,7 @@ pub trait RayQuery {
         self.multi_hit_where(ray, |_| true)
     }
 
-    /// The `N` least `(t, id)` hits of `ray` that `accept` accepts, in order.
+    /// Finds the `N` least `(t, id)` hits of `ray` that `accept` accepts, in order.
     fn multi_hit_where<const N: usize>(
         &self,
         ray: Ray,
@@ -146,16 +150,17 @@ pub trait RayQuery {
         hits.map(|hit| Type::lane::<Scalar>(&hit, 0))
     }
 
-    /// The first `N` hits of `ray` in an order of your own, with misses behind them: `is_closer`
-    /// says whether its first hit comes before its second; of two where both or neither does, the
-    /// least `(t, id)` comes first. An order that runs in a circle has a result that depends on the
-    /// tree. Every hit within the ray's range is looked at.
+    /// Finds the first `N` hits of `ray` in an order of your own, followed by misses: `is_closer`
+    /// returns whether its first hit precedes its second, and ties are broken by the least
+    /// `(t, id)`. With an order that is not transitive the result depends on the tree. Every hit
+    /// within the ray's range is compared.
     ///
     /// ```
     /// use raydsl::prelude::*;
     ///
     /// let v = |x, y, z| vec3(x, y, z);
-    /// let slabs = [3.0, 1.0, 2.0].map(|z| Triangle { v0: v(0.0, 0.0, z), v1: v(4.0, 0.0, z), v2: v(0.0, 4.0, z) });
+    /// let slab = |z| Triangle { v0: v(0.0, 0.0, z), v1: v(4.0, 0.0, z), v2: v(0.0, 4.0, z) };
+    /// let slabs = [3.0, 1.0, 2.0].map(slab);
     /// let bvh = Bvh::build(&slabs)?;
     /// let farthest = kernel!(|ray: Ray| {
     ///     let hits = bvh.multi_hit_by::<2>(ray, |a: Hit, b: Hit| a.t > b.t);
@@ -176,12 +181,12 @@ pub trait RayQuery {
         hits.map(|hit| Type::lane::<Scalar>(&hit, 0))
     }
 
-    /// Every hit within the ray's range, in the order of `(t, inst_id, prim_id)`: all crossings of a
-    /// primitive, a sphere's entry and its exit, up to [`Primitive::MAX_CROSSINGS`] of each.
+    /// Every hit within the ray's range, in the order of `(t, inst_id, prim_id)`: all crossings of
+    /// a primitive, a sphere's entry and its exit, up to [`Primitive::MAX_CROSSINGS`] of each.
     ///
-    /// They are found as they are taken, four at a time. So a loop that stops early costs little more
-    /// than [`closest_hit`](RayQuery::closest_hit), one over all hits a traversal for four of them. In
-    /// kernels `for hit in scene.hits(ray)` is the same.
+    /// They are found as they are taken, four at a time. So a loop that stops early costs little
+    /// more than [`closest_hit`](RayQuery::closest_hit), one over all hits a traversal for four of
+    /// them. In kernels `for hit in scene.hits(ray)` is the same.
     ///
     /// ```
     /// use raydsl::prelude::*;
@@ -213,26 +218,27 @@ pub trait RayQuery {
         Hits::new(self.view(), ray)
     }
 
-    /// The ray as the object sees it that was hit: the ray itself where nothing is
-    /// [placed](Instances). Primitives, and what they say of a hit, are in the object's space. `t`
-    /// is the same in both.
+    /// Returns the ray in the space of the object that was hit: the ray itself in a scene without
+    /// [instances](Instances). Primitives, and their methods for hits, are in the object's space.
+    /// `t` is the same in both.
     fn local_ray(&self, ray: Ray, hit: Hit) -> Ray {
         self.view().local_ray(hit.inst_id, ray)
     }
 
-    /// From the space of the scene to that of the object that was hit; the identity where nothing
-    /// is placed. For rays, [`RayQuery::local_ray`] is what the object was asked about, bit for
-    /// bit.
+    /// Returns the transform from the space of the scene to that of the object that was hit; the
+    /// identity without instances. [`RayQuery::local_ray`] transforms a ray to the same bits as the
+    /// traversal does.
     fn to_object(&self, hit: Hit) -> Affine3 {
         self.view().to_object(hit.inst_id)
     }
 
-    /// The unit normal in the scene of a surface that was hit, from one in the space of its object.
+    /// Transforms the unit normal of a hit from the space of its object to that of the scene.
     ///
     /// ```
     /// use raydsl::prelude::*;
     ///
-    /// let triangles = [Triangle { v0: Vec3::ZERO, v1: vec3(4.0, 0.0, 4.0), v2: vec3(0.0, 4.0, 0.0) }];
+    /// let (v1, v2) = (vec3(4.0, 0.0, 4.0), vec3(0.0, 4.0, 0.0));
+    /// let triangles = [Triangle { v0: Vec3::ZERO, v1, v2 }];
     /// let trees = [Bvh::build(&triangles)?];
     /// let flat = Affine3::from_scale(vec3(1.0, 1.0, 0.5));
     /// let scene = Instances::build(&trees, &[Instance::new(0, flat)])?;
@@ -248,19 +254,19 @@ pub trait RayQuery {
         transform_normal_back(normal, self.to_object(hit))
     }
 
-    /// The least `(t, id)` hit of `ray`, and what it cost to find. In kernels too: all variants
-    /// count what the ray visits if it is alone, and a device tests every primitive of an
+    /// Finds the least `(t, id)` hit of `ray`, and the cost of the traversal. In kernels all
+    /// variants count the nodes of a single-ray traversal, and a device tests every primitive of an
     /// [`Accelerated`].
     fn closest_hit_with_cost(&self, ray: Ray) -> (<Self::Primitive as Primitive>::Hit, Cost) {
         traverse::closest_hit_with_cost(&self.view(), ray)
     }
 
-    /// Whether `ray` hits anything, and what it cost to find out. On the host only.
+    /// Finds whether `ray` hits anything, and the cost of the traversal. On the host only.
     fn any_hit_with_cost(&self, ray: Ray) -> (bool, Cost) {
         traverse::any_hit_with_cost(&self.view(), ray)
     }
 
-    /// The primitive that was hit; the first one for a miss, so that code need not branch.
+    /// Returns the primitive that was hit; the first one for a miss, so that code need not branch.
     ///
     /// # Panics
     ///

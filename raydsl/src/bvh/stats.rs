@@ -33,8 +33,9 @@ pub struct Statistics {
 }
 
 impl<P: Primitive> Bvh<'_, P> {
-    /// Counts what the binary tree is like; takes one pass over its nodes. Of a wide tree it has a leaf
-    /// for each block, and is made for this and not kept, unless something has asked for it before.
+    /// Counts what the binary tree is like; takes one pass over its nodes. Of a wide tree it has a
+    /// leaf for each block, and is made for this and not kept, unless something has asked for it
+    /// before.
     ///
     /// ```
     /// use raydsl::prelude::*;

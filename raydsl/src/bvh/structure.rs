@@ -1,4 +1,4 @@
-//! The trees over some primitives, of which there are only those that something goes through.
+//! The trees over some primitives; each is made only if something traverses it.
 
 use std::borrow::Cow;
 use std::sync::OnceLock;
@@ -9,36 +9,36 @@ use super::wide::Wide;
 use super::{BuildError, Traversal};
 use crate::geometry::{Aabb, Primitive};
 
-/// The binary tree, the wide one, or both.
+/// The binary tree, the wide tree, or both.
 #[derive(Debug)]
 pub(crate) struct Structure {
-    /// If there is a wide tree, made of it when it is first asked for. From then on it stays, whatever
-    /// moves: a device keeps the index list of a tree that is refitted.
+    /// With a wide tree, the binary tree is expanded from it on first use, and kept from then on,
+    /// even by refitting: a device keeps the index list of a tree that is refitted.
     binary: OnceLock<Tree>,
     wide: Option<Wide>,
 }
 
 impl Structure {
-    /// The tree that was built, or the wide one that it is made into.
+    /// Keeps the binary tree, or the wide tree that it was collapsed to.
     pub(super) fn of(tree: Tree, wide: Option<Wide>) -> Self {
         let binary = if wide.is_some() { OnceLock::new() } else { tree.into() };
         Self { binary, wide }
     }
 
-    /// The wide tree, if there is one.
+    /// Returns the wide tree, if there is one.
     #[inline(always)]
     pub(crate) fn wide(&self) -> Option<&Wide> {
         self.wide.as_ref()
     }
 
-    /// How rays go through the wide tree from now on.
+    /// Sets the traversal of the wide tree.
     pub(super) fn set_traversal(&mut self, traversal: Traversal) {
         if let Some(wide) = &mut self.wide {
             wide.traversal = traversal;
         }
     }
 
-    /// The binary tree, which is made if it is not there.
+    /// Returns the binary tree, which is expanded from the wide one if necessary.
     #[inline(always)]
     pub(super) fn binary(&self) -> &Tree {
         match self.binary.get() {
@@ -47,8 +47,8 @@ impl Structure {
         }
     }
 
-    /// Makes the binary tree on this thread alone. Others that ask wait, so nothing in here may wait
-    /// for them: no tasks, none of the host's code, and no packet that goes on meanwhile.
+    /// Expands the binary tree on this thread. Other threads that need it block, so nothing in here
+    /// may wait for them: no tasks, no host code, and no fiber that yields.
     #[cold]
     #[inline(never)]
     fn make_binary(&self) -> &Tree {
@@ -58,7 +58,7 @@ impl Structure {
         })
     }
 
-    /// The binary tree, which is not kept if it was not there.
+    /// Returns the binary tree, without keeping it if it has to be expanded.
     pub(super) fn peek(&self) -> Cow<'_, Tree> {
         match (self.binary.get(), &self.wide) {
             (None, Some(wide)) => Cow::Owned(wide.binary()),
@@ -66,14 +66,14 @@ impl Structure {
         }
     }
 
-    /// The nodes of the binary tree, as [`Structure::binary`], and its index list.
+    /// Returns the nodes and the index list of the binary tree, as [`Structure::binary`].
     #[inline(always)]
     pub(crate) fn branches(&self) -> Branches<'_> {
         let Tree { nodes, indices } = self.binary();
         Branches { nodes, indices }
     }
 
-    /// A box around everything.
+    /// Returns the bounds of all primitives.
     pub(super) fn bounds(&self) -> Aabb {
         match &self.wide {
             Some(wide) => wide.bounds(),
@@ -81,13 +81,13 @@ impl Structure {
         }
     }
 
-    /// Bytes of the trees that there are.
+    /// Returns the size of the existing trees in bytes.
     pub(super) fn bytes(&self) -> usize {
         let of_binary = |tree: &Tree| size_of_val(&tree.nodes[..]) + size_of_val(&tree.indices[..]);
         self.binary.get().map_or(0, of_binary) + self.wide.as_ref().map_or(0, Wide::bytes)
     }
 
-    /// The trees over primitives that have moved.
+    /// Refits the trees to primitives that have moved.
     pub(super) fn refit<P: Primitive>(
         mut self,
         prims: &[P],
@@ -99,7 +99,7 @@ impl Structure {
         let bounds = |k: usize| prims[k].get_bounds(shared);
         build::refit(&mut tree.nodes, &tree.indices, prims.len(), &bounds)?;
         let wide = collapse(&tree);
-        // The same tree as before, and what has moved is likely to move again.
+        // The topology is the same, and primitives that have moved are likely to move again.
         Ok(Self { binary: tree.into(), wide })
     }
 }

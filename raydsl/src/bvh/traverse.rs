@@ -1,4 +1,4 @@
-//! Traversal of binary trees for one ray: the yardstick of every other.
+//! Single-ray traversal of binary trees: the reference of every other traversal.
 
 use core::mem::MaybeUninit;
 
@@ -9,14 +9,14 @@ use super::{Accelerator, MAX_DEPTH, Node, Part, Placed, SceneView};
 use crate::Type;
 use crate::geometry::{Hit, HitRecord, Primitive, Ray};
 use crate::machine::Data;
-use crate::run::fibers::Alone;
+use crate::run::fibers::NoYield;
 
-/// Entries of a traversal's stack: one a level.
+/// Entries of a traversal stack: one for each level.
 pub(crate) const STACK: usize = MAX_DEPTH + 2;
 
-/// Subtrees yet to be visited, and where the rays enter them.
+/// The traversal stack: pending nodes, and their entry distances.
 ///
-/// Left uninitialised: its kilobytes would cost a packet as much as a dozen nodes.
+/// Left uninitialised: clearing its kilobytes would cost a packet as much as a dozen nodes.
 pub(super) struct Stack<E, const SIZE: usize = STACK> {
     top: usize,
     nodes: [MaybeUninit<u32>; SIZE],
@@ -37,7 +37,7 @@ impl<E: Copy, const SIZE: usize> Stack<E, SIZE> {
         self.top += 1;
     }
 
-    /// How many entries there are.
+    /// Returns the number of entries.
     #[inline(always)]
     pub(super) fn len(&self) -> usize {
         self.top
@@ -51,12 +51,12 @@ impl<E: Copy, const SIZE: usize> Stack<E, SIZE> {
     }
 }
 
-/// A primitive that a ray may meet, and the ray as its tree is asked about it.
+/// A primitive that a ray may hit, and the ray in the space of its tree.
 struct Candidate<'c, 'a, P: Primitive> {
     part: &'c Part<'a, P, P::Shared>,
     ray: &'c Ray,
     inst: u32,
-    /// Its place in its part.
+    /// The id of the primitive in its part.
     id: u32,
 }
 
@@ -66,14 +66,14 @@ impl<P: Primitive> Candidate<'_, '_, P> {
         self.part.prims[self.id as usize].intersect(*self.ray, self.part.shared)
     }
 
-    /// The hit under its primitive's number.
+    /// Returns the hit with the ids of its primitive and its instance.
     #[inline(always)]
-    fn numbered(&self, hit: Hit) -> Hit {
+    fn with_ids(&self, hit: Hit) -> Hit {
         Hit { prim_id: self.part.first + self.id, inst_id: self.inst, ..hit }
     }
 }
 
-/// What a traversal did.
+/// The cost of a traversal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Type)]
 #[repr(C)]
 pub struct Cost {
@@ -83,17 +83,17 @@ pub struct Cost {
     pub primitives: u32,
 }
 
-/// A hit, and what it cost to find.
+/// A hit, and the cost of its traversal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 #[repr(C)]
 pub struct CountedHit {
     /// The hit.
     pub hit: Hit,
-    /// What it cost.
+    /// The cost of the traversal.
     pub cost: Cost,
 }
 
-/// Counts what a traversal does, or does not: [`Uncounted`] leaves no trace in the code.
+/// A counter of a traversal; [`Uncounted`] compiles to nothing.
 trait Count {
     fn nodes(&mut self, _: u32) {}
     fn primitive(&mut self) {}
@@ -113,26 +113,27 @@ impl Count for Cost {
     }
 }
 
-/// The least `(t, id)` hit of `ray` among `prims`.
+/// Finds the least `(t, id)` hit of `ray` among `prims`.
 pub fn closest_hit<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> P::Hit {
     complete(prims, ray, nearest(prims, ray))
 }
 
-/// [`closest_hit`] without the rest of the record.
+/// Finds the [`closest_hit`] without the rest of the record.
 #[inline]
 pub(crate) fn nearest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> Hit {
     let of_wide = prims.walks().and_then(|walks| (walks.closest_of_one)(prims, ray));
-    of_wide.unwrap_or_else(|| nearest_alone(prims, ray))
+    of_wide.unwrap_or_else(|| nearest_fallback(prims, ray))
 }
 
-/// [`nearest`] where the trees are not wide. A function of its own: packets whose rays go one by one
-/// share it at all of their levels, and the ray can stay in registers, as nothing else has its address.
+/// Finds the [`nearest`] hit in binary trees, the fallback where there is no wide tree or the ray
+/// is degenerate. A function of its own: packets whose rays are traced one by one share it at all
+/// of their levels, and the ray stays in registers, since nothing else takes its address.
 #[inline(never)]
-fn nearest_alone<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> Hit {
+fn nearest_fallback<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> Hit {
     closest(prims, ray, &mut Uncounted)
 }
 
-/// The record of a hit: traversal carries the hit alone.
+/// Completes the record of a hit, since traversals keep only the hit itself.
 #[inline(always)]
 pub(super) fn complete<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, hit: Hit) -> P::Hit {
     let again = || {
@@ -142,13 +143,13 @@ pub(super) fn complete<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, hit: Hi
     P::Hit::complete(hit, again)
 }
 
-/// [`closest_hit`], and what it cost.
+/// Finds the [`closest_hit`] and counts the cost.
 pub fn closest_hit_with_cost<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> (P::Hit, Cost) {
     let CountedHit { hit, cost } = nearest_counted(prims, ray);
     (complete(prims, ray, hit), cost)
 }
 
-/// [`closest_hit_with_cost`] without the rest of the record. Packets of all levels share it.
+/// Does [`closest_hit_with_cost`] without the rest of the record. Packets of all levels share it.
 #[inline(never)]
 pub(crate) fn nearest_counted<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> CountedHit {
     let mut cost = Cost::default();
@@ -162,9 +163,9 @@ fn closest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Co
     let slack = prims.padding().slack;
     walk_all(prims, ray, count, |candidate, limit| {
         let hit = candidate.intersect().hit();
-        // Most are no hits: their numbers wait.
+        // Most are misses, whose ids are not needed.
         if is_within(hit, ray) {
-            let hit = candidate.numbered(hit);
+            let hit = candidate.with_ids(hit);
             if is_before(true, hit, best) {
                 best = hit;
                 *limit = limit_behind(hit.t, slack, ray.t_max);
@@ -175,20 +176,20 @@ fn closest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Co
     best
 }
 
-/// Whether `ray` hits any of `prims`.
+/// Finds whether `ray` hits any of `prims`.
 #[inline]
 pub fn any_hit<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> bool {
     let of_wide = prims.walks().and_then(|walks| (walks.any_of_one)(prims, ray));
-    of_wide.unwrap_or_else(|| any_alone(prims, ray))
+    of_wide.unwrap_or_else(|| any_fallback(prims, ray))
 }
 
-/// As [`nearest_alone`].
+/// Finds whether `ray` hits anything in binary trees, as [`nearest_fallback`].
 #[inline(never)]
-fn any_alone<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> bool {
+fn any_fallback<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> bool {
     any(prims, ray, &mut Uncounted)
 }
 
-/// [`any_hit`], and what it cost.
+/// Finds [`any_hit`] and counts the cost.
 pub fn any_hit_with_cost<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> (bool, Cost) {
     let mut cost = Cost::default();
     let found = any(prims, ray, &mut cost);
@@ -210,7 +211,7 @@ pub(crate) fn visit<P: Primitive>(
 ) -> bool {
     let mut is_last = |candidate: &Candidate<'_, '_, P>, limit: &mut f32| {
         let record = candidate.intersect();
-        let hit = candidate.numbered(record.hit());
+        let hit = candidate.with_ids(record.hit());
         is_within(hit, ray) && !meet(hit, record.with_hit(hit), limit)
     };
     if let Some(walks) = prims.walks() {
@@ -226,9 +227,9 @@ pub(crate) fn visit<P: Primitive>(
     !walk_all(prims, ray, &mut Uncounted, is_last)
 }
 
-/// Visits the primitives of a scene that the ray may meet, until `visit` returns true; whether it
-/// did. `visit` may lower the limit of the distance. A ray with a component that is no finite
-/// number meets nothing.
+/// Visits the primitives of a scene that the ray may hit, until `visit` returns true; returns
+/// whether it did. `visit` may lower the limit of the distance. A ray with a component that is not
+/// finite hits nothing.
 #[inline(always)]
 fn walk_all<P: Primitive, C: Count>(
     prims: &SceneView<'_, P>,
@@ -236,7 +237,7 @@ fn walk_all<P: Primitive, C: Count>(
     count: &mut C,
     mut visit: impl FnMut(&Candidate<'_, '_, P>, &mut f32) -> bool,
 ) -> bool {
-    // No node beyond this distance is worth a visit.
+    // Nodes beyond this distance are culled.
     let mut limit = ray.t_max;
     let mut places = Places::new(prims, ray);
     while let Some((part, inst, ray)) = places.next(limit, count) {
@@ -247,8 +248,7 @@ fn walk_all<P: Primitive, C: Count>(
     false
 }
 
-/// The parts of a scene, one after another: each with the number of its instance, and the ray as it
-/// sees it.
+/// Iterates over the parts of a scene, each with its instance id and the ray in its space.
 enum Places<'a, P: Primitive> {
     Parts { scene: SceneView<'a, P>, next: usize, ray: Ray },
     Instances { placed: &'a Placed<'a, P, P::Shared>, descent: Box<Descent<'a>> },
@@ -260,7 +260,7 @@ impl<'a, P: Primitive> Places<'a, P> {
         match scene.placed() {
             Some(placed) => Self::Instances { placed, descent: Descent::new(&placed.groups, ray) },
             None => {
-                // Behind the last part.
+                // A ray that is not finite begins after the last part.
                 let next = if is_finite(ray) { 0 } else { usize::MAX };
                 Self::Parts { scene: *scene, next, ray }
             }
@@ -289,7 +289,7 @@ impl<'a, P: Primitive> Places<'a, P> {
     }
 }
 
-/// [`walk_all`] in one part.
+/// Does [`walk_all`] in one part.
 #[inline(always)]
 fn walk_part<P: Primitive, C: Count>(
     part: &Part<'_, P, P::Shared>,
@@ -313,8 +313,8 @@ fn walk_part<P: Primitive, C: Count>(
     }
 }
 
-/// Visits what an accelerator names of `len` primitives, until `visit` returns true; whether it
-/// did.
+/// Visits the candidates of an accelerator among `len` primitives, until `visit` returns true;
+/// returns whether it did.
 fn find<C: Count>(
     accelerator: &dyn Accelerator,
     len: usize,
@@ -324,10 +324,10 @@ fn find<C: Count>(
     mut visit: impl FnMut(u32, &mut f32, &mut C) -> bool,
 ) -> bool {
     let mut stopped = false;
-    // What it asks on its way it is told at once.
-    let _alone = Alone::begin();
+    // Its own queries are answered at once.
+    let _no_yield = NoYield::begin();
     accelerator.candidates(ray, *limit, &mut |id| {
-        // It may go on after all, or name what is not there.
+        // It may continue regardless, or name a primitive that does not exist.
         if !stopped && (id as usize) < len {
             stopped = visit(id, limit, count);
         }
@@ -336,8 +336,8 @@ fn find<C: Count>(
     stopped
 }
 
-/// Visits what is in the leaves that the ray may meet, the nearer leaves first, until `visit`
-/// returns true; whether it did.
+/// Visits the primitives in the leaves that the ray enters, nearer children first, until `visit`
+/// returns true; returns whether it did.
 #[inline(always)]
 fn walk<C: Count>(
     tree: Branches<'_>,

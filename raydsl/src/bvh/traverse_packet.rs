@@ -1,4 +1,4 @@
-//! Traversal for packets: one stack for all lanes, a mask of those that a node concerns.
+//! SIMD packet traversal of binary trees: one stack for all lanes, with an active mask.
 
 use core::any::Any;
 use core::marker::PhantomData;
@@ -13,10 +13,10 @@ use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn};
 use crate::machine::{B, Entered, F, Lanes, Packet, Place, Slice, Type, U, V3, Value, op};
 use crate::run::{Lanes4, Lanes8, Lanes16};
 
-/// The machine of the loops: its kernels are inlined, so that nothing travels through memory.
+/// The machine of the inner loops: its kernels are inlined, so that values stay in registers.
 type Inner<L> = Packet<Entered<L>>;
 
-/// The same rays on the machine of the loops.
+/// Converts rays to the machine of the inner loops.
 #[inline(always)]
 fn inner_ray<L: Lanes>(ray: &RayOn<Packet<L>>) -> RayOn<Inner<L>> {
     RayOn {
@@ -27,8 +27,8 @@ fn inner_ray<L: Lanes>(ray: &RayOn<Packet<L>>) -> RayOn<Inner<L>> {
     }
 }
 
-/// The least `(t, inst_id, prim_id)` of the hits seen so far. A lane without one has infinity and
-/// the last numbers, which every hit beats.
+/// The least `(t, inst_id, prim_id)` of the hits so far. A lane without one has infinity and the
+/// last ids, which every hit precedes.
 struct Best<L: Lanes> {
     t: L::F32,
     inst: L::U32,
@@ -36,19 +36,19 @@ struct Best<L: Lanes> {
     u: L::F32,
     v: L::F32,
     found: L::Mask,
-    /// No node beyond this distance is worth a lane's visit.
+    /// The distance beyond which nodes are culled for a lane.
     limit: L::F32,
     /// How far behind a hit nodes are still visited, relative to its distance.
     slack: f32,
 }
 
-/// A primitive that some lanes may meet, and the rays as its tree is asked about them.
+/// A primitive that some lanes may hit, and the rays in the space of its tree.
 struct Candidate<'c, 'a, L: Lanes, P: Primitive> {
     part: &'c Part<'a, P, P::Shared>,
     ray: &'c RayOn<Packet<L>>,
     shared: Slice<'c, P::Shared>,
     inst: u32,
-    /// Its place in its part.
+    /// The id of the primitive in its part.
     id: u32,
 }
 
@@ -65,17 +65,18 @@ impl<L: Lanes, P: Primitive> Candidate<'_, '_, L, P> {
         )
     }
 
-    /// The hit under its primitive's number.
+    /// Returns the hit with the ids of its primitive and its instance.
     #[inline(always)]
-    fn numbered(&self, l: L, hit: HitOn<Packet<L>>) -> HitOn<Packet<L>> {
+    fn with_ids(&self, l: L, hit: HitOn<Packet<L>>) -> HitOn<Packet<L>> {
         let prim_id = U(l.u32(self.part.first + self.id));
         HitOn { prim_id, inst_id: U(l.u32(self.inst)), ..hit }
     }
 }
 
-/// The least `(t, id)` hit of every running lane.
+/// Finds the least `(t, id)` hit of every active lane.
 ///
-/// A function of its own for each kind of packet and primitive, so that a kernel may ask often.
+/// A function of its own for each kind of packet and primitive, so that kernels with many queries
+/// stay small.
 #[inline(never)]
 pub(crate) fn closest_hit<L: Lanes, P: Primitive>(
     m: &Packet<L>,
@@ -103,8 +104,8 @@ pub(crate) fn closest_hit<L: Lanes, P: Primitive>(
     )
 }
 
-/// [`closest_hit`] of one lane after another, and what it costs each: a packet visits what any of its
-/// lanes wants, which says nothing about a lane.
+/// Finds the [`closest_hit`] and the cost of each lane, one after another: the nodes that a packet
+/// visits are those of all of its lanes.
 #[inline(never)]
 pub(crate) fn closest_hit_with_cost<L: Lanes, P: Primitive>(
     m: &Packet<L>,
@@ -117,7 +118,8 @@ pub(crate) fn closest_hit_with_cost<L: Lanes, P: Primitive>(
     )
 }
 
-/// In the lanes of the loops. `places` are the parts of the scene for a ray of some lanes.
+/// Does [`closest_hit`] in the lanes of the inner loops. `places` returns the parts of the scene
+/// for the rays of some lanes.
 #[inline(always)]
 fn closest_hit_inside<'a, L: Lanes, P: Primitive, W: Places<'a, Entered<L>, P>>(
     m: &Packet<L>,
@@ -145,7 +147,7 @@ fn closest_hit_inside<'a, L: Lanes, P: Primitive, W: Places<'a, Entered<L>, P>>(
         places,
         #[inline(always)]
         |candidate, mask, limit| {
-            meet::<_, P, W>(m, candidate, mask, &mut best);
+            update_best::<_, P, W>(m, candidate, mask, &mut best);
             *limit = best.limit;
             mask
         },
@@ -160,35 +162,35 @@ fn closest_hit_inside<'a, L: Lanes, P: Primitive, W: Places<'a, Entered<L>, P>>(
     }
 }
 
-/// Tests one primitive and keeps it in the lanes where it is closer.
+/// Tests one primitive, and updates the best hit of the lanes where it is closer.
 #[inline(always)]
-fn meet<'a, L: Lanes, P: Primitive, W: Places<'a, L, P>>(
+fn update_best<'a, L: Lanes, P: Primitive, W: Places<'a, L, P>>(
     m: &Packet<L>,
     candidate: &Candidate<'_, '_, L, P>,
     mask: L::Mask,
     best: &mut Best<L>,
 ) {
     let (l, ray) = (m.lanes(), *candidate.ray);
-    let hit = candidate.numbered(l, P::Hit::hit_on(candidate.intersect(m, mask)));
+    let hit = candidate.with_ids(l, P::Hit::hit_on(candidate.intersect(m, mask)));
     let t_max = F(min(l, ray.t_max.0, best.t));
-    let met = and(l, mask, is_within::on(m, hit, RayOn { t_max, ..ray }).0);
-    if !l.any(met) {
+    let hits = and(l, mask, is_within::on(m, hit, RayOn { t_max, ..ray }).0);
+    if !l.any(hits) {
         return;
     }
     let before = HitOn { t: F(best.t), prim_id: U(best.id), inst_id: U(best.inst), ..hit };
-    let take = and(l, met, precedes::on(m, W::HAVE_INSTANCES, hit, before).0);
-    best.t = l.f32_select(take, hit.t.0, best.t);
+    let is_closer = and(l, hits, precedes::on(m, W::HAVE_INSTANCES, hit, before).0);
+    best.t = l.f32_select(is_closer, hit.t.0, best.t);
     if const { W::HAVE_INSTANCES } {
-        best.inst = l.u32_select(take, hit.inst_id.0, best.inst);
+        best.inst = l.u32_select(is_closer, hit.inst_id.0, best.inst);
     }
-    best.id = l.u32_select(take, hit.prim_id.0, best.id);
-    best.u = l.f32_select(take, hit.u.0, best.u);
-    best.v = l.f32_select(take, hit.v.0, best.v);
-    best.found = or(l, best.found, take);
+    best.id = l.u32_select(is_closer, hit.prim_id.0, best.id);
+    best.u = l.f32_select(is_closer, hit.u.0, best.u);
+    best.v = l.f32_select(is_closer, hit.v.0, best.v);
+    best.found = or(l, best.found, is_closer);
     best.limit = limit_behind::on(m, F(best.t), F(l.f32(best.slack)), ray.t_max).0;
 }
 
-/// Whether each running lane hits anything. Lanes that have hit retire.
+/// Finds whether each active lane hits anything. Lanes with a hit become inactive.
 #[inline(never)]
 pub(crate) fn any_hit<L: Lanes, P: Primitive>(
     m: &Packet<L>,
@@ -212,7 +214,7 @@ pub(crate) fn any_hit<L: Lanes, P: Primitive>(
     )
 }
 
-/// As [`closest_hit_inside`].
+/// Does [`any_hit`] in the lanes of the inner loops, as [`closest_hit_inside`].
 #[inline(always)]
 fn any_hit_inside<'a, L: Lanes, P: Primitive, W: Places<'a, Entered<L>, P>>(
     m: &Packet<L>,
@@ -238,7 +240,7 @@ fn any_hit_inside<'a, L: Lanes, P: Primitive, W: Places<'a, Entered<L>, P>>(
     B(found)
 }
 
-/// Calls `meet` for every hit within each lane's range, in the lanes that have it, until it returns
+/// Calls `meet` for every hit within a lane's range, in the lanes with that hit, until it returns
 /// false there.
 #[inline(always)]
 pub(crate) fn visit<'a, L: Lanes, P: Primitive>(
@@ -257,30 +259,30 @@ pub(crate) fn visit<'a, L: Lanes, P: Primitive>(
         prims,
         &ray,
         #[inline(always)]
-        |l, ray, alive| match prims.placed() {
-            Some(placed) => Either::Placed(Located::new(l, placed, ray, alive)),
+        |l, ray, active| match prims.placed() {
+            Some(placed) => Either::Placed(Located::new(l, placed, ray, active)),
             None => Either::Parts(Parts { scene: *prims, next: 0, ray: *ray }),
         },
         #[inline(always)]
         |candidate, mask, end| {
             let record = candidate.intersect(m, mask);
-            let hit = candidate.numbered(l, P::Hit::hit_on(record));
-            let met = and(l, mask, is_within::on(m, hit, ray).0);
-            if !l.any(met) {
+            let hit = candidate.with_ids(l, P::Hit::hit_on(record));
+            let hits = and(l, mask, is_within::on(m, hit, ray).0);
+            if !l.any(hits) {
                 return mask;
             }
             let goes_on = m.with_active(
-                met,
+                hits,
                 #[inline(always)]
                 || meet(hit, P::Hit::with_hit_on(record, hit)).0,
             );
             *end = limit().0;
-            without(l, mask, without(l, met, goes_on))
+            without(l, mask, without(l, hits, goes_on))
         },
     );
 }
 
-/// What a query of one ray gives for the ray of each running lane; `other` in the rest.
+/// Runs a single-ray query for each active lane; the others have the result `other`.
 #[inline(always)]
 fn each_lane<L: Lanes, T: Type>(
     m: &Packet<L>,
@@ -295,7 +297,7 @@ fn each_lane<L: Lanes, T: Type>(
     )
 }
 
-/// [`visit`] for one lane after another, all hits of each.
+/// Does [`visit`] for one lane after another.
 fn visit_each_lane<L: Lanes, P: Primitive>(
     m: &Packet<L>,
     prims: &SceneView<'_, P>,
@@ -318,13 +320,13 @@ fn visit_each_lane<L: Lanes, P: Primitive>(
     }
 }
 
-/// What counters show for a walk; it has no place in the user's source.
+/// The places of traversals in reports of utilisation, which are not in the user's source.
 const NODES: Place = Place { what: "nodes of trees", file: "", line: 0 };
 const PRIMITIVES: Place = Place { what: "primitives in leaves", file: "", line: 0 };
 
-/// Visits the primitives of a scene that some running lane may meet. `visit` is given the lanes
-/// concerned, may lower their limits, and returns those that stay interested. Rays with a component
-/// that is no finite number meet nothing.
+/// Visits the primitives of a scene that some active lane may hit. `visit` takes the active mask,
+/// may lower the limits of lanes, and returns the lanes that stay active. Rays with a component
+/// that is not finite hit nothing.
 #[inline(always)]
 fn walk_all<'a, L: Lanes, P: Primitive, W: Places<'a, L, P>>(
     m: &Packet<L>,
@@ -336,42 +338,42 @@ fn walk_all<'a, L: Lanes, P: Primitive, W: Places<'a, L, P>>(
     let l = m.lanes();
     let shared = prims.shared();
     let mut limit = ray.t_max.0;
-    let mut alive = and(l, m.active(), is_finite::on(m, *ray).0);
-    let mut places = places(l, ray, alive);
-    while l.any(alive)
-        && let Some((part, inst, ray, mask)) = places.next(l, alive, limit)
+    let mut active = and(l, m.active(), is_finite::on(m, *ray).0);
+    let mut places = places(l, ray, active);
+    while l.any(active)
+        && let Some((part, inst, ray, mask)) = places.next(l, active, limit)
     {
-        let mut here = mask;
+        let mut still_active = mask;
         walk_part(
             m,
             &part,
             &ray,
-            &mut here,
+            &mut still_active,
             &mut limit,
             #[inline(always)]
             |id, mask, limit| {
                 visit(&Candidate { part: &part, ray: &ray, shared, inst, id }, mask, limit)
             },
         );
-        alive = without(l, alive, without(l, mask, here));
+        active = without(l, active, without(l, mask, still_active));
     }
 }
 
-/// The parts of a scene, one after another: each with the number of its instance, the rays as it
-/// sees them, and the lanes that it concerns.
+/// Iterates over the parts of a scene, each with its instance id, the rays in its space, and the
+/// active mask.
 trait Places<'a, L: Lanes, P: Primitive> {
-    /// Whether primitives have numbers of instances.
+    /// Whether primitives have instance ids.
     const HAVE_INSTANCES: bool;
 
-    /// The next part that lanes of `alive` may meet before their limits.
-    fn next(&mut self, l: L, alive: L::Mask, limit: L::F32) -> Option<PacketPart<'a, L, P>>;
+    /// Returns the next part that active lanes may enter within their limits.
+    fn next(&mut self, l: L, active: L::Mask, limit: L::F32) -> Option<PacketPart<'a, L, P>>;
 }
 
-/// What [`Places`] gives.
+/// An item of [`Places`].
 type PacketPart<'a, L, P> =
     (Part<'a, P, <P as Primitive>::Shared>, u32, RayOn<Packet<L>>, <L as Lanes>::Mask);
 
-/// The parts of a scene where nothing is placed.
+/// The parts of a scene without instances.
 struct Parts<'a, L: Lanes, P: Primitive> {
     scene: SceneView<'a, P>,
     next: usize,
@@ -382,10 +384,10 @@ impl<'a, L: Lanes, P: Primitive> Places<'a, L, P> for Parts<'a, L, P> {
     const HAVE_INSTANCES: bool = false;
 
     #[inline(always)]
-    fn next(&mut self, _: L, alive: L::Mask, _: L::F32) -> Option<PacketPart<'a, L, P>> {
+    fn next(&mut self, _: L, active: L::Mask, _: L::F32) -> Option<PacketPart<'a, L, P>> {
         let part = self.scene.part(self.next)?;
         self.next += 1;
-        Some((part, 0, self.ray, alive))
+        Some((part, 0, self.ray, active))
     }
 }
 
@@ -401,9 +403,9 @@ impl<'a, L: Lanes, P: Primitive> Located<'a, L, P> {
         l: L,
         placed: &'a Placed<'a, P, P::Shared>,
         ray: &RayOn<Packet<L>>,
-        alive: L::Mask,
+        active: L::Mask,
     ) -> Self {
-        Self { placed, descent: PacketDescent::new(l, &placed.groups, ray, alive) }
+        Self { placed, descent: PacketDescent::new(l, &placed.groups, ray, active) }
     }
 }
 
@@ -411,14 +413,14 @@ impl<'a, L: Lanes, P: Primitive> Places<'a, L, P> for Located<'a, L, P> {
     const HAVE_INSTANCES: bool = true;
 
     #[inline(always)]
-    fn next(&mut self, l: L, alive: L::Mask, limit: L::F32) -> Option<PacketPart<'a, L, P>> {
-        let place = self.descent.next(l, alive, limit)?;
+    fn next(&mut self, l: L, active: L::Mask, limit: L::F32) -> Option<PacketPart<'a, L, P>> {
+        let place = self.descent.next(l, active, limit)?;
         let part = self.placed.trees.parts[place.tree as usize];
         Some((part, place.inst, place.ray, place.mask))
     }
 }
 
-/// Those of any scene.
+/// The parts of any scene.
 enum Either<'a, L: Lanes, P: Primitive> {
     Parts(Parts<'a, L, P>),
     Placed(Located<'a, L, P>),
@@ -428,18 +430,19 @@ impl<'a, L: Lanes, P: Primitive> Places<'a, L, P> for Either<'a, L, P> {
     const HAVE_INSTANCES: bool = true;
 
     #[inline(always)]
-    fn next(&mut self, l: L, alive: L::Mask, limit: L::F32) -> Option<PacketPart<'a, L, P>> {
+    fn next(&mut self, l: L, active: L::Mask, limit: L::F32) -> Option<PacketPart<'a, L, P>> {
         match self {
-            Self::Parts(parts) => parts.next(l, alive, limit),
-            Self::Placed(located) => located.next(l, alive, limit),
+            Self::Parts(parts) => parts.next(l, active, limit),
+            Self::Placed(located) => located.next(l, active, limit),
         }
     }
 }
 
-/// The walks of packets through scenes of instances, for one kind of lanes.
+/// The packet traversals of scenes of instances, for one kind of lanes.
 ///
-/// They are as long as those through single trees. So nothing refers to them but the tables that
-/// [`Instances`](super::Instances) are made with: what makes none is compiled without them.
+/// They are as much code as those of single trees. Only the tables of
+/// [`Instances`](super::Instances) refer to them: a program without instances is compiled without
+/// them.
 struct InstanceWalks<L: Lanes, P: Primitive> {
     closest_hit: InstanceQuery<L, P, HitOn<Packet<L>>>,
     any_hit: InstanceQuery<L, P, B<Packet<L>>>,
@@ -447,10 +450,10 @@ struct InstanceWalks<L: Lanes, P: Primitive> {
 
 type InstanceQuery<L, P, R> = fn(&Packet<L>, &SceneView<'_, P>, &RayOn<Packet<L>>) -> R;
 
-/// [`InstanceWalks`] of some kinds of lanes, and [`RecordedWalks`].
+/// The [`InstanceWalks`] of some kinds of lanes, and [`RecordedWalks`].
 pub(crate) type InstanceTable = &'static [&'static (dyn Any + Send + Sync)];
 
-/// Those of the lanes that kernels have, and of recorders.
+/// Returns the traversals for all lanes of kernels, and for recorders.
 pub(crate) fn instance_table<P: Primitive>() -> InstanceTable {
     struct Of<P>(PhantomData<P>);
     impl<P: Primitive> Of<P> {
@@ -468,7 +471,7 @@ impl<L: Lanes, P: Primitive> InstanceWalks<L, P> {
     const NEW: Self =
         Self { closest_hit: closest_hit_placed::<L, P>, any_hit: any_hit_placed::<L, P> };
 
-    /// Those of the lanes; none where no kernel is lifted for them.
+    /// Returns the traversals for these lanes; none where no kernel is lifted for them.
     #[inline(always)]
     fn of<'w>(placed: &Placed<'w, P, P::Shared>) -> Option<&'w Self> {
         if const { L::HAS_TABLES } {
@@ -488,7 +491,7 @@ fn closest_hit_placed<L: Lanes, P: Primitive>(
         #[inline(always)]
         || {
             let Some(placed) = prims.placed() else { return HitOn::zero(m) };
-            closest_hit_inside(m, prims, ray, |l, ray, alive| Located::new(l, placed, ray, alive))
+            closest_hit_inside(m, prims, ray, |l, ray, active| Located::new(l, placed, ray, active))
         },
     )
 }
@@ -502,30 +505,30 @@ fn any_hit_placed<L: Lanes, P: Primitive>(
         #[inline(always)]
         || {
             let Some(placed) = prims.placed() else { return B::zero(m) };
-            any_hit_inside(m, prims, ray, |l, ray, alive| Located::new(l, placed, ray, alive))
+            any_hit_inside(m, prims, ray, |l, ray, active| Located::new(l, placed, ray, active))
         },
     )
 }
 
-/// [`walk_all`] in one part, by the rays of `alive`: visits what is in the leaves that some lane may
-/// meet, until none is interested.
+/// Does [`walk_all`] in one part: visits the primitives in the leaves that some active lane enters,
+/// until no lane is active.
 #[inline(always)]
 fn walk_part<L: Lanes, P: Primitive>(
     m: &Packet<L>,
     part: &Part<'_, P, P::Shared>,
     ray: &RayOn<Packet<L>>,
-    alive: &mut L::Mask,
+    active: &mut L::Mask,
     limit: &mut L::F32,
     mut visit: impl FnMut(u32, L::Mask, &mut L::F32) -> L::Mask,
 ) {
     let l = m.lanes();
     let mut stack = Stack::new();
-    // A slice is one leaf, which every ray meets.
-    let mut leaf = Leaf { begin: 0, end: part.prims.len(), mask: *alive };
+    // A slice is one leaf, which every ray enters.
+    let mut leaf = Leaf { begin: 0, end: part.prims.len(), mask: *active };
     let mut descent = None;
     if let Some(tree) = part.tree() {
         let Some(root) = tree.nodes.first() else { return };
-        let slabs = PacketSlabs::new(l, ray, *alive, root, Padding::of::<P>());
+        let slabs = PacketSlabs::new(l, ray, *active, root, Padding::of::<P>());
         let (enter, hit) = slabs.enter(l, root, *limit);
         push(l, &mut stack, 0, enter, hit);
         (leaf, descent) = (Leaf { end: 0, ..leaf }, Some(Descent { tree, slabs }));
@@ -540,54 +543,54 @@ fn walk_part<L: Lanes, P: Primitive>(
                 None => place as u32,
             };
             let stay = visit(id, leaf.mask, limit);
-            // A lane that lost interest leaves the walk.
-            *alive = without(l, *alive, without(l, leaf.mask, stay));
+            // A lane that is done becomes inactive.
+            *active = without(l, *active, without(l, leaf.mask, stay));
             leaf.mask = stay;
             if !l.any(leaf.mask) {
                 break;
             }
         }
-        let Some(descent) = descent.as_ref().filter(|_| l.any(*alive)) else { return };
-        let Some(next) = descent.next_leaf(l, &mut stack, *alive, *limit) else { return };
+        let Some(descent) = descent.as_ref().filter(|_| l.any(*active)) else { return };
+        let Some(next) = descent.next_leaf(l, &mut stack, *active, *limit) else { return };
         leaf = next;
     }
 }
 
-/// Some places in a list of primitives, and the lanes that may meet what is there.
+/// A range of a list of primitives, and the lanes that may hit them.
 struct Leaf<L: Lanes> {
     begin: usize,
     end: usize,
     mask: L::Mask,
 }
 
-/// What a walk down a tree asks.
+/// The descent through one tree.
 struct Descent<'t, L: Lanes> {
     tree: Branches<'t>,
     slabs: PacketSlabs<L>,
 }
 
-/// Subtrees to come, and where each lane enters them.
+/// The stack of pending nodes, and the entry distances of each lane.
 type Pending<L> = Stack<<L as Lanes>::F32>;
 
-/// Where a lane does not enter a subtree, it has NaN, which is at or before no limit.
+/// Pushes a node. Lanes that do not enter it have the entry distance NaN, which is within no limit.
 #[inline(always)]
 fn push<L: Lanes>(l: L, stack: &mut Pending<L>, node: u32, enter: L::F32, hit: L::Mask) {
     stack.push(node, l.f32_select(hit, enter, l.f32(f32::NAN)));
 }
 
 impl<L: Lanes> Descent<'_, L> {
-    /// The next leaf that some lane of `alive` enters before its limit.
+    /// Returns the next leaf that some active lane enters within its limit.
     #[inline(always)]
     fn next_leaf(
         &self,
         l: L,
         stack: &mut Pending<L>,
-        alive: L::Mask,
+        active: L::Mask,
         limit: L::F32,
     ) -> Option<Leaf<L>> {
         loop {
             let (index, enter) = stack.pop()?;
-            let mut mask = and(l, alive, l.f32_compare(op::Le, enter, limit));
+            let mut mask = and(l, active, l.f32_compare(op::Le, enter, limit));
             if !l.any(mask) {
                 continue;
             }
@@ -604,7 +607,7 @@ impl<L: Lanes> Descent<'_, L> {
                 let (hit0, hit1) = (and(l, mask, hit0), and(l, mask, hit1));
                 let is_first = match (l.any(hit0), l.any(hit1)) {
                     (true, true) => {
-                        // What most lanes enter first comes first.
+                        // The child that most lanes enter first is visited first.
                         let both = and(l, hit0, hit1);
                         let left = and(l, both, l.f32_compare(op::Le, t0, t1));
                         let is_first = 2 * l.bits(left).count_ones() >= l.bits(both).count_ones();

@@ -137,7 +137,8 @@ pub enum TreeFault {
 /// ```
 /// use raydsl::prelude::*;
 ///
-/// let triangle = |z| Triangle { v0: vec3(0.0, 0.0, z), v1: vec3(4.0, 0.0, z), v2: vec3(0.0, 4.0, z) };
+/// let v = vec3;
+/// let triangle = |z| Triangle { v0: v(0.0, 0.0, z), v1: v(4.0, 0.0, z), v2: v(0.0, 4.0, z) };
 /// let triangles: Vec<_> = (0..100).map(|z| triangle(z as f32)).collect();
 /// raydsl::bvh::validate(&Bvh::build(&triangles)?)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -1,4 +1,4 @@
-//! The light view of a slice, a tree or a list of trees, that kernels work on.
+//! The view of a scene that kernels work on: a slice, a tree, a list of trees, or instances.
 
 use std::borrow::Cow;
 
@@ -15,7 +15,7 @@ use crate::machine::{
     bytes_of, read_in_place, wgsl::BufferKey,
 };
 
-/// The structure of a [`Node`].
+/// The schema of a [`Node`].
 pub(crate) const NODE_SCHEMA: &Schema = &Schema::Struct {
     name: "Node",
     fields: &[
@@ -44,21 +44,21 @@ pub(crate) struct Branches<'a> {
     pub(crate) indices: &'a [u32],
 }
 
-/// What finds the primitives that a ray may meet.
+/// The structure that finds the primitives that a ray may hit.
 #[derive(Clone, Copy)]
 pub(crate) enum Finder<'a> {
-    /// Nothing: all are asked.
+    /// No structure: all primitives are tested.
     Nothing,
     Trees(&'a Structure),
     Accelerator(&'a dyn Accelerator),
 }
 
-/// Primitives, what they share, and what finds them.
+/// Primitives, their shared data, and the structure that finds them.
 pub(crate) struct Part<'a, T, S> {
     pub(crate) prims: &'a [T],
     pub(crate) shared: &'a [S],
     pub(crate) finder: Finder<'a>,
-    /// The number of its first primitive, among those of a list.
+    /// The id of its first primitive, among those of a list.
     pub(crate) first: u32,
 }
 
@@ -79,7 +79,7 @@ impl<T, S> Clone for Part<'_, T, S> {
 impl<T, S> Copy for Part<'_, T, S> {}
 
 impl<'a, T, S> Part<'a, T, S> {
-    /// The binary tree, if trees stand over the primitives; made if it is not there.
+    /// Returns the binary tree, if there are trees; expanded from the wide one if necessary.
     #[inline(always)]
     pub(crate) fn tree(&self) -> Option<Branches<'a>> {
         match self.finder {
@@ -88,7 +88,7 @@ impl<'a, T, S> Part<'a, T, S> {
         }
     }
 
-    /// The wide tree, if there is one.
+    /// Returns the wide tree, if there is one.
     #[inline(always)]
     pub(crate) fn wide(&self) -> Option<&'a Wide> {
         match self.finder {
@@ -98,14 +98,14 @@ impl<'a, T, S> Part<'a, T, S> {
     }
 }
 
-/// A tree: its primitives, what they share, and what is its own.
+/// A tree, its primitives and their shared data.
 #[derive(Debug)]
 pub(crate) struct Tree<'a, T, S> {
     pub(crate) prims: &'a [T],
     pub(crate) shared: &'a [S],
     pub(super) own: Owned,
     pub(super) kinds: Kinds,
-    /// If the tree is wide.
+    /// The traversals of wide trees, if the tree is wide.
     pub(super) walks: Option<Walks<T, S>>,
 }
 
@@ -124,11 +124,11 @@ pub(crate) struct Trees<'a, T, S> {
     pub(super) shared: &'a [S],
     pub(super) owner: Owner,
     pub(super) kinds: Kinds,
-    /// If all trees are wide.
+    /// The traversals of wide trees, if all trees are wide.
     pub(super) walks: Option<Walks<T, S>>,
 }
 
-/// Primitives under a structure of the application's own.
+/// Primitives under an acceleration structure of the application.
 pub(crate) struct Standing<'a, T, S> {
     pub(super) prims: &'a [T],
     pub(super) shared: &'a [S],
@@ -145,7 +145,7 @@ impl<T, S> Standing<'_, T, S> {
     }
 }
 
-/// What a view is of.
+/// The kind of a scene.
 enum Scene<'a, T, S> {
     Slice(Slice<'a, T>),
     Tree(&'a Tree<'a, T, S>),
@@ -154,16 +154,16 @@ enum Scene<'a, T, S> {
     Standing(&'a Standing<'a, T, S>),
 }
 
-/// Primitives and what finds them, as kernels see them: a slice, a tree over one, a list of trees. A
-/// value of the host on every machine.
+/// A scene as kernels see it: a slice, a tree over one, a list of trees. A value of the host on
+/// every machine.
 ///
-/// `S` is the type of what the primitives share; see [`Primitive::Shared`].
+/// `S` is the type of the shared data of primitives; see [`Primitive::Shared`].
 pub struct View<'a, T, S = ()> {
     scene: Scene<'a, T, S>,
     name: &'static str,
 }
 
-/// The view of primitives and of what they share.
+/// The view of primitives and of their shared data.
 pub type SceneView<'a, P> = View<'a, P, <P as Primitive>::Shared>;
 
 impl<T, S> Clone for Scene<'_, T, S> {
@@ -216,7 +216,7 @@ impl<'a, T, S> View<'a, T, S> {
         Self { scene: Scene::Standing(standing), name: "prims" }
     }
 
-    /// Where the scene lies: views with the same one are of the same scene.
+    /// Returns the address of the scene, which is the same for all views of it.
     pub(crate) fn address(&self) -> [usize; 3] {
         match self.scene {
             Scene::Slice(prims) => {
@@ -230,19 +230,19 @@ impl<'a, T, S> View<'a, T, S> {
         }
     }
 
-    /// Whether the host's own structure finds the primitives.
+    /// Returns whether a structure of the application finds the primitives.
     #[inline(always)]
     pub(crate) fn is_standing(&self) -> bool {
         matches!(self.scene, Scene::Standing(_))
     }
 
-    /// The view under the name that it has in the source.
+    /// Names the view as in the source.
     #[inline(always)]
     pub(crate) fn named(self, name: &'static str) -> Self {
         Self { name, ..self }
     }
 
-    /// What goes through its trees, if all of them are wide.
+    /// Returns the traversals of wide trees, if all trees of the scene are wide.
     #[inline(always)]
     pub(crate) fn walks(&self) -> Option<&'a Walks<T, S>> {
         match self.scene {
@@ -252,7 +252,7 @@ impl<'a, T, S> View<'a, T, S> {
         }
     }
 
-    /// The trees of a list, or of a scene of instances.
+    /// Returns the trees of a list, or of a scene of instances.
     #[inline(always)]
     fn trees(&self) -> Option<&'a Trees<'a, T, S>> {
         match self.scene {
@@ -262,7 +262,7 @@ impl<'a, T, S> View<'a, T, S> {
         }
     }
 
-    /// The instances, if it is a scene of them: rays meet its parts where they are placed.
+    /// Returns the instances, if it is a scene of instances, whose parts are placed by transforms.
     #[inline(always)]
     pub(crate) fn placed(&self) -> Option<&'a Placed<'a, T, S>> {
         match self.scene {
@@ -271,7 +271,7 @@ impl<'a, T, S> View<'a, T, S> {
         }
     }
 
-    /// The parts of the scene; of one without instances, what a query looks through, one after
+    /// Iterates over the parts of the scene, which a query without instances traverses one after
     /// another.
     #[inline(always)]
     pub(crate) fn parts(&self) -> impl Iterator<Item = Part<'a, T, S>> + use<'a, T, S> {
@@ -282,7 +282,7 @@ impl<'a, T, S> View<'a, T, S> {
         )
     }
 
-    /// The part `i` of the scene.
+    /// Returns part `i` of the scene.
     #[inline(always)]
     pub(crate) fn part(&self, i: usize) -> Option<Part<'a, T, S>> {
         match self.scene {
@@ -299,7 +299,7 @@ impl<'a, T, S> View<'a, T, S> {
         }
     }
 
-    /// What the primitives share.
+    /// Returns the shared data of the primitives.
     #[inline(always)]
     pub fn shared(&self) -> Slice<'a, S> {
         let shared = match self.scene {
@@ -313,7 +313,7 @@ impl<'a, T, S> View<'a, T, S> {
         Slice::owned(shared, key, self.name).suffixed("shared")
     }
 
-    /// The elements of a slice, or of the slice under a tree.
+    /// Returns the elements of a slice, or of the slice under a tree.
     #[inline(always)]
     pub(crate) fn elements(&self) -> &'a [T] {
         match self.scene {
@@ -324,7 +324,7 @@ impl<'a, T, S> View<'a, T, S> {
         }
     }
 
-    /// How many primitives.
+    /// Returns the number of primitives.
     #[inline(always)]
     pub fn len(&self) -> usize {
         match self.trees() {
@@ -333,7 +333,7 @@ impl<'a, T, S> View<'a, T, S> {
         }
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no primitives.
     #[inline(always)]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -343,17 +343,17 @@ impl<'a, T, S> View<'a, T, S> {
         matches!(self.scene, Scene::Slice(_))
     }
 
-    /// Whether trees stand over the primitives.
+    /// Returns whether there are trees over the primitives.
     pub(crate) fn has_tree(&self) -> bool {
         !self.is_slice() && !self.is_standing()
     }
 
-    /// Whether it is a list of trees.
+    /// Returns whether it is a list of trees.
     pub(crate) fn is_list(&self) -> bool {
         matches!(self.scene, Scene::List(_))
     }
 
-    /// The key of another buffer of the same scene.
+    /// Returns the key of another buffer of the same scene.
     pub(crate) fn key_of(&self, part: u32) -> BufferKey {
         let (id, version) = match self.scene {
             Scene::Slice(_) => (0, 0),
@@ -362,7 +362,7 @@ impl<'a, T, S> View<'a, T, S> {
             Scene::Instances(placed) => (placed.trees.owner.id(), placed.version),
             Scene::Standing(standing) => (standing.owner.id(), 0),
         };
-        // Refitting leaves the order of the primitives as it is, moved instances the primitives.
+        // Refitting keeps the order of the primitives, and moved instances keep the primitives.
         let stays = match self.scene {
             Scene::Instances(_) => part == buffers::PRIMITIVES || part == buffers::SHARED,
             _ => part == buffers::INDICES,
@@ -371,24 +371,24 @@ impl<'a, T, S> View<'a, T, S> {
         BufferKey { id, version, part }
     }
 
-    /// The ray as the tree of an instance is asked about it; the ray itself where there are none.
+    /// Returns the ray in the space of an instance's tree; the ray itself without instances.
     pub(crate) fn local_ray(&self, inst: u32, ray: Ray) -> Ray {
         self.placed().map_or(ray, |placed| placed.local_ray(inst, ray))
     }
 
-    /// From the space of the scene to that of an instance's tree.
+    /// Returns the transform from the space of the scene to that of an instance's tree.
     pub(crate) fn to_object(self, inst: u32) -> Affine3 {
         self.placed().map_or(Affine3::IDENTITY, |placed| placed.to_object(inst))
     }
 
-    /// How many nodes and how many indices.
+    /// Returns the number of nodes and of indices.
     pub(crate) fn tree_len(&self) -> (u64, u64) {
         let trees = self.parts().filter_map(|part| part.tree());
         let groups = self.placed().map_or((0, 0), Placed::group_len);
         trees.fold(groups, |(n, i), t| (n + t.nodes.len() as u64, i + t.indices.len() as u64))
     }
 
-    /// How many trees have a root.
+    /// Returns the number of trees with a root.
     pub(crate) fn root_len(&self) -> u64 {
         let parts: Vec<_> = self.parts().collect();
         list::roots(&parts).count() as u64
@@ -431,7 +431,7 @@ impl<T: Type, S> Data for View<'_, T, S> {
 }
 
 impl<P: Primitive> SceneView<'_, P> {
-    /// The kinds of its primitives.
+    /// Returns the kinds of its primitives.
     pub(crate) fn kinds(&self) -> Kinds {
         match self.scene {
             Scene::Slice(prims) => Kinds::of(prims.elements()),
@@ -442,7 +442,7 @@ impl<P: Primitive> SceneView<'_, P> {
         }
     }
 
-    /// By how much boxes are widened, and how far behind a hit nodes are still visited.
+    /// Returns the padding of boxes, and of the culling distance behind a hit.
     #[inline(always)]
     pub(crate) fn padding(&self) -> Padding {
         let top = self.placed().and_then(Placed::top);

@@ -18,7 +18,8 @@ use crate::{Type, kernel};
 /// distance from the apex.
 pub const SLACK: f32 = super::cylinder::SLACK;
 
-/// How often a ray crosses it at most; see [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
+/// How often a ray crosses it at most; see
+/// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 2;
 
 /// A leading coefficient below this is none; it belongs to a ray along the surface.

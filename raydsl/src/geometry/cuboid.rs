@@ -13,7 +13,8 @@ use crate::{Type, kernel};
 /// most 4 eps of the distance to it.
 pub const SLACK: f32 = 1.0 / 2_097_152.0;
 
-/// How often a ray crosses it at most; see [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
+/// How often a ray crosses it at most; see
+/// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 2;
 
 /// A ray and what it meets of a box.

@@ -22,7 +22,8 @@ use crate::{Type, kernel};
 /// Below 32 eps together; twice that is allowed.
 pub const SLACK: f32 = 1.0 / 262_144.0;
 
-/// How often a ray crosses it at most; see [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
+/// How often a ray crosses it at most; see
+/// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 2;
 
 /// A ray and what it meets of a cylinder.

@@ -20,7 +20,8 @@ use crate::machine::functions::vec2;
 /// together; twice that is allowed.
 pub const SLACK: f32 = 1.0 / 524_288.0;
 
-/// How often a ray crosses it at most; see [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
+/// How often a ray crosses it at most; see
+/// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 1;
 
 /// From the ray's closest point to where it meets the plane, in lengths of the line's direction.

@@ -17,7 +17,8 @@ use crate::machine::functions::vec2;
 /// world's origin and from the ray's: the two products are off by 3 eps each (eps = 2^-24).
 pub const SLACK: f32 = 1.0 / 2_097_152.0;
 
-/// How often a ray crosses it at most; see [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
+/// How often a ray crosses it at most; see
+/// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 1;
 
 /// Where a ray meets the plane, from either side. A ray within the plane misses it, and so does

@@ -35,15 +35,15 @@ pub trait Primitive: Type {
     /// default suits a careful `intersect` of a few dozen operations.
     const SLACK: f32 = 1.0 / 65536.0;
 
-    /// How often a ray crosses the primitive at most: once what is flat, twice what is convex, a torus
-    /// four times. Of [`hits`](crate::bvh::RayQuery::hits) every crossing is one: `intersect` is asked
-    /// again with a `t_min` behind the last, and must heed that for a shape that is crossed more than
-    /// once. In an `impl` under `#[primitive]` it is a constant of that name.
+    /// How often a ray crosses the primitive at most: once what is flat, twice what is convex, a
+    /// torus four times. Of [`hits`](crate::bvh::RayQuery::hits) every crossing is one: `intersect`
+    /// is asked again with a `t_min` behind the last, and must heed that for a shape that is
+    /// crossed more than once. In an `impl` under `#[primitive]` it is a constant of that name.
     const MAX_CROSSINGS: u32 = 8;
 
-    /// Whether eight primitives of a block of a [wide tree](crate::bvh::Bvh::build_wide) are met
-    /// without leaving `intersect` early: quicker where it is a hundred operations or so, of which none is in a loop. Hits are the
-    /// same. In an `impl` under `#[primitive]` it is a constant of that name.
+    /// Whether eight primitives of a block of a [wide tree](crate::bvh::Bvh::build_wide) are tested
+    /// without the early exits of `intersect`: faster where it has a hundred operations or so and
+    /// no loop. Hits are the same. In an `impl` under `#[primitive]` it is a constant of that name.
     const IS_SHORT: bool = false;
 
     /// Where `ray` meets the primitive. It sees the ray's own `t_min` and `t_max` and need not

@@ -11,7 +11,8 @@ use crate::machine::functions::vec2;
 /// What a quad's hit may be off by: that of its triangles.
 pub const SLACK: f32 = triangle::SLACK;
 
-/// How often a ray crosses it at most; see [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
+/// How often a ray crosses it at most; see
+/// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 1;
 
 /// Where a ray meets the quad: both sides, edges and vertices included.

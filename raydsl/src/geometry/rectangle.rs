@@ -15,7 +15,8 @@ use crate::machine::functions::{vec2, vec3};
 /// twice a quad's has room for.
 pub const SLACK: f32 = 2.0 * quad::SLACK;
 
-/// How often a ray crosses it at most; see [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
+/// How often a ray crosses it at most; see
+/// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 1;
 
 /// Where a ray meets the rectangle: both sides, edges and corners included. `hit.u` runs along

@@ -20,7 +20,8 @@ use crate::math::elementary::{acos, atan2, sincos_2pi};
 /// `(r - l) (r + l)`. 16 eps leave room for the closing sums.
 pub const SLACK: f32 = 1.0 / 1_048_576.0;
 
-/// How often a ray crosses it at most; see [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
+/// How often a ray crosses it at most; see
+/// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 2;
 
 /// Where a ray meets a sphere: the nearer of its two intersections that lies in the ray's range.

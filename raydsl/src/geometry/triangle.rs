@@ -16,7 +16,8 @@ use crate::{kernel, primitive};
 /// 6 eps of the farthest coordinate, and weights, depths and distance nine roundings more.
 pub const SLACK: f32 = super::sphere::SLACK;
 
-/// How often a ray crosses it at most; see [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
+/// How often a ray crosses it at most; see
+/// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 1;
 
 /// 8 eps (eps = 2^-24): what a point is off by, and `intersect` from there, relative to the longest
@@ -311,7 +312,8 @@ pub fn split_primitive(axis: usize, at: f32, v0: Vec3, v1: Vec3, v2: Vec3) -> (A
     split_polygon(axis, at, get_bounds(v0, v1, v2), &[v0, v1, v2].map(wide), 0.0)
 }
 
-/// [`split_primitive`] of any flat polygon in the box `whole`, whose vertices may be off by `error`.
+/// [`split_primitive`] of any flat polygon in the box `whole`, whose vertices may be off by
+/// `error`.
 pub(super) fn split_polygon(
     axis: usize,
     at: f32,

@@ -15,7 +15,8 @@ use crate::{Type, kernel};
 /// What a tube's hit may be off by: it is formed as a cylinder's.
 pub const SLACK: f32 = cylinder::SLACK;
 
-/// How often a ray crosses it at most; see [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
+/// How often a ray crosses it at most; see
+/// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 2;
 
 /// A ray and where it meets a tube.

@@ -19,7 +19,8 @@ pub struct KernelInfo {
     pub known: Option<KnownBy>,
 }
 
-/// A function of which machines know more than its code says: `sin` is in WGSL, and in std for `f64`.
+/// A function of which machines know more than its code says: `sin` is in WGSL, and in std for
+/// `f64`.
 pub(crate) trait KnownFunction: core::fmt::Debug + Sync {
     /// Records what WGSL itself has for it, for code that need not be the same as on the CPU.
     fn record_builtin(&self, _m: &Recorder, _args: &[Id]) -> Option<Vec<Id>> {
@@ -31,7 +32,8 @@ pub(crate) trait KnownFunction: core::fmt::Debug + Sync {
         None
     }
 
-    /// Whether it does not matter what `min` and `max` in it give for a NaN, so that WGSL's own serve.
+    /// Whether it does not matter what `min` and `max` in it give for a NaN, so that WGSL's own
+    /// serve.
     fn is_without_nan(&self) -> bool {
         false
     }

@@ -1,31 +1,30 @@
 //! The machines that a lifted kernel body runs on.
 //!
 //! The `#[kernel]` macro rewrites a body *once*, into a function generic over a [`Machine`]
-//! (tagless final: Carette, Kiselyov and Shan, "Finally tagless, partially evaluated", 2009).
-//! Three implementations give the variants: [`Scalar`] (a cross-check of the rewriting; the
-//! scalar *variant* is the user's own function), [`Packet`] (SIMD with masked control flow) and
-//! [`Recorder`] (writes WGSL). A fourth, [`Margin`], computes the reference in `f64` and bounds what
-//! rounding may do to the variants.
+//! (tagless final: Carette, Kiselyov and Shan, "Finally tagless, partially evaluated", 2009). Three
+//! implementations give the variants: [`Scalar`] (a cross-check of the rewriting; the scalar
+//! *variant* is the user's own function), [`Packet`] (SIMD with masked control flow) and
+//! [`Recorder`] (writes WGSL). A fourth, [`Margin`], computes the reference in `f64` and bounds
+//! what rounding may do to the variants.
 //!
 //! A machine offers arithmetic on lanes and *control hooks*: an `if` or a loop of the source calls
 //! them, and what they return steers real Rust control flow. The scalar machine returns the
 //! condition itself, a packet whether any lane is left, the recorder always `true`.
 
-// Where what is:
+// The files:
 //
-// | file | what it has |
-// |---|---|
-// | `scalar`, `packet`, `record`, `margin` | the machines |
-// | `lanes`, `gang`, `counted` | what packets are made of: registers, several of them, lanes that are counted |
-// | `control`, `counter` | variables, branches and loops of lifted code |
-// | `types`, `schema`, `twin`, `value`, `words`, `kinds` | types of the host, and what stands for them on a machine |
-// | `vector`, `matrix` | the twins of glam's types |
-// | `op`, `ops`, `operand`, `bits` | operations as types, and the operators of lifted code |
-// | `methods`, `functions`, `generic` | methods and functions of lifted code |
-// | `data`, `index`, `capture`, `owner` | slices, elements, what a kernel takes from around it, who owns it |
-// | `operation` | how other modules do something on machines |
-// | `call`, `lowered`, `host` | what generated code calls |
-// | `wgsl` | what recording gives |
+// * `scalar`, `packet`, `record`, `margin`: the machines.
+// * `lanes`, `gang`, `counted`: the lanes of packets: one register, several, with counters.
+// * `control`, `counter`: variables, branches and loops of lifted code.
+// * `types`, `schema`, `twin`, `value`, `words`, `kinds`: types of the host, and their twins on a
+//   machine.
+// * `vector`, `matrix`: the twins of glam's types.
+// * `op`, `ops`, `operand`, `bits`: operations as types, and the operators of lifted code.
+// * `methods`, `functions`, `generic`: methods and functions of lifted code.
+// * `data`, `index`, `capture`, `owner`: slices, their elements, captures of a kernel, and owners.
+// * `operation`: operations of other modules on machines.
+// * `call`, `lowered`, `host`: functions that generated code calls.
+// * `wgsl`: the result of recording.
 
 mod bits;
 mod call;
@@ -407,7 +406,8 @@ pub trait Machine: Sized + 'static {
     /// Leaves the loop: lanes that left it go on behind it.
     fn loop_end(&self, t: Self::Loop);
 
-    /// Whether what follows an early exit is to run: if any lane is left, or that is not worth asking.
+    /// Whether what follows an early exit is to run: if any lane is left, or that is not worth
+    /// asking.
     fn alive(&self) -> bool;
     /// Whether any running lane has `c`; the recorder says yes.
     fn any(&self, c: Self::Bool) -> bool;
@@ -456,8 +456,8 @@ pub trait Machine: Sized + 'static {
         body: impl FnOnce(&Self, A) -> R,
     ) -> R;
 
-    /// [`call`](Self::call) of a kernel that says `#[inline(never)]`: packets inline others where they
-    /// are called from a traversal.
+    /// [`call`](Self::call) of a kernel that says `#[inline(never)]`: packets inline others where
+    /// they are called from a traversal.
     #[inline(always)]
     fn call_apart<A: Value<Self>, R: Value<Self>>(
         &self,

@@ -8,7 +8,8 @@ use super::{B, F, Lanes, Margin, Packet, Recorder, Scalar, Type};
 /// The twin of a type of the host on a machine.
 pub type On<T, M> = <T as Type>::On<M>;
 
-/// Something that every machine does in a way of its own, by [`Machine::perform`](super::Machine::perform).
+/// Something that every machine does in a way of its own, by
+/// [`Machine::perform`](super::Machine::perform).
 pub trait Operation {
     /// The operands, as a type of the host.
     type Input: Type;
@@ -38,8 +39,8 @@ pub trait Operation {
 
 /// Items that are found one after another, by [`Machine::visit`](super::Machine::visit).
 ///
-/// `visit` is given each item in the lanes that have it, and says which of them go on. `limit` says up
-/// to where items are still wanted. What outlives an item is in variables, as for rounds of a
+/// `visit` is given each item in the lanes that have it, and says which of them go on. `limit` says
+/// up to where items are still wanted. What outlives an item is in variables, as for rounds of a
 /// [`Loop`](super::Loop).
 pub trait Visit {
     /// The operands, as a type of the host.

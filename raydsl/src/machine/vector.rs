@@ -340,8 +340,8 @@ impl IsScalar for bool {}
 /// A vector of any size.
 ///
 /// What works on every component goes from one to the next, and what it calls is `Copy`: a closure
-/// that is dropped has a landing pad at each call, and arrays pass through memory. Both are gone once
-/// optimised, but a packet's operation is eight calls deep, and all of it is compiled first.
+/// that is dropped has a landing pad at each call, and arrays pass through memory. Both are gone
+/// once optimised, but a packet's operation is eight calls deep, and all of it is compiled first.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot call this method with these arguments",
     label = "not an operation of the kernel language"

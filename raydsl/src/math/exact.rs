@@ -76,8 +76,8 @@ const SPLIT: f64 = 4098.0;
 const PARTS: f64 = 8.0;
 
 impl KnownFunction for LostByCross {
-    /// Nothing in `f64`. Each product loses at most its rounding; a device that fuses or reorders what
-    /// finds that may be off by as much again.
+    /// Nothing in `f64`. Each product loses at most its rounding; a device that fuses or reorders
+    /// what finds that may be off by as much again.
     fn bound(&self, m: &Margin, args: &[Known]) -> Option<Vec<Known>> {
         let size = |i: usize| args[i].range.magnitude();
         let product = |i: usize, j: usize| {

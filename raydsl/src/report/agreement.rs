@@ -19,8 +19,8 @@ pub struct Agreement {
     /// How many `f32` lie within each of [`BUCKETS`].
     pub histogram: [u64; BUCKETS.len()],
     /// Results that differ by more than rounding: those of [`Self::explained`] and those of
-    /// [`Self::unexplained`]. In [`Self::of`], which knows no bounds, those in which an integer or a
-    /// truth value differs (another primitive, hit for miss) or a number is NaN in one only.
+    /// [`Self::unexplained`]. In [`Self::of`], which knows no bounds, those in which an integer or
+    /// a truth value differs (another primitive, hit for miss) or a number is NaN in one only.
     pub hit_mismatches: u64,
     /// Mismatches that come of an uncertain decision. Their numbers count in neither
     /// [`Self::max_ulp`] nor [`Self::histogram`].

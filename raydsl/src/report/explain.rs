@@ -110,8 +110,8 @@ pub(super) fn spread(len: usize, count: usize) -> Vec<usize> {
     all
 }
 
-/// Gives the outcomes of an input, following at most so many ways. A trait object, so that its callers
-/// are compiled once, not for every kernel.
+/// Gives the outcomes of an input, following at most so many ways. A trait object, so that its
+/// callers are compiled once, not for every kernel.
 pub(super) type OutcomesOf<'a> = &'a (dyn Fn(usize, usize) -> Outcomes + Sync);
 
 /// The outcomes of these inputs on the paths that `f64` takes.

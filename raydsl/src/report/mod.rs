@@ -1,7 +1,7 @@
 //! Do the variants agree, and what does each cost?
 //!
-//! [`explain`] says which differences rounding accounts for. [`compare`] runs a kernel in any set of
-//! variants and says where they differ from the scalar one, in bits: the yardstick is the user's
+//! [`explain`] says which differences rounding accounts for. [`compare`] runs a kernel in any set
+//! of variants and says where they differ from the scalar one, in bits: the yardstick is the user's
 //! own function.
 //!
 //! [`work_precision`] measures error against run time of any computation by several methods.

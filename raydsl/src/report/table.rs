@@ -55,8 +55,8 @@ fn reference<R: Type>(c: &Comparison<R>) -> String {
     text
 }
 
-/// Words on as many lines as they need, behind what the first one begins with. A word that is longer
-/// than a line is cut.
+/// Words on as many lines as they need, behind what the first one begins with. A word that is
+/// longer than a line is cut.
 fn wrapped(start: &str, words: &str) -> String {
     const INDENT: usize = 13;
     let (mut text, mut column) = (start.to_owned(), start.chars().count());

@@ -53,8 +53,9 @@ impl Utilisation {
 /// packets in their order, so give those of one packet as the program would. Calls of other kernels
 /// count at the lines of those.
 ///
-/// It is slow, and needs a copy of the kernel that counts, which is compiled where the source asks for
-/// it: `kernel!(counted |ray: Ray| ..)`, or [`Kernel::counted_of`](crate::kernel::Kernel::counted_of).
+/// It is slow, and needs a copy of the kernel that counts, which is compiled where the source asks
+/// for it: `kernel!(counted |ray: Ray| ..)`, or
+/// [`Kernel::counted_of`](crate::kernel::Kernel::counted_of).
 ///
 /// ```
 /// use raydsl::prelude::*;

@@ -1,9 +1,10 @@
-//! Packets that wait for each other.
+//! Fibers: packets whose queries are answered in batches.
 //!
-//! A tree is quicker for each ray, the more rays it is asked about at once, and a packet asks about
-//! its own only. So several packets run in turn on one thread, each on a stack of its own (a
-//! fiber): one that asks waits until the others ask too, or are done, and then one of them asks for
-//! all. Where a machine has no such stacks, each packet asks for itself, and finds the same.
+//! Traversals are faster per ray the more rays a query has, and a packet has few. So several
+//! packets run on one thread, each as a fiber with a stack of its own. A fiber that reaches a query
+//! yields until the others have reached theirs or are done, and one of them then answers the
+//! queries of all. On targets without fibers each packet answers its own query, with the same
+//! results.
 
 use core::any::Any;
 use core::cell::{Cell, RefCell};
@@ -15,31 +16,31 @@ use corosensei::{Coroutine, CoroutineResult, Yielder};
 
 use super::{Key, Scratch};
 
-/// How many packets may go on together.
+/// The most fibers in a pool.
 const MOST: usize = 64;
 
-/// Bytes of address space for a stack, as a main thread has; what is not used is never memory.
+/// Bytes of address space of a stack, as for a main thread; unused pages take no memory.
 const STACK: usize = 8 << 20;
 
-/// A packet's stack. Stacks begin at different places within a page: what runs on one would else
-/// take the caches' lines from what runs on the others, which does the same.
-struct Stagger {
+/// The stack of a fiber. Stacks begin at different offsets within a page: all fibers run the same
+/// code, and would compete for the same cache sets otherwise.
+struct StaggeredStack {
     stack: DefaultStack,
     offset: usize,
 }
 
-impl Stagger {
-    fn new(number: usize) -> Option<Self> {
+impl StaggeredStack {
+    fn new(index: usize) -> Option<Self> {
         let stack = DefaultStack::new(STACK).ok()?;
-        Some(Self { stack, offset: number % 16 * 256 })
+        Some(Self { stack, offset: index % 16 * 256 })
     }
 }
 
-// SAFETY: it is a stack with a guard page, without less than a page at its base, which stays
-// aligned to 256 bytes.
-unsafe impl Stack for Stagger {
+// SAFETY: it is a stack with a guard page, shortened at its base by less than a page, and the base
+// stays aligned to 256 bytes.
+unsafe impl Stack for StaggeredStack {
     fn base(&self) -> StackPointer {
-        // A stack is larger than what is left out.
+        // A stack is larger than the offset.
         StackPointer::new(self.stack.base().get() - self.offset).unwrap_or(self.stack.base())
     }
 
@@ -48,121 +49,122 @@ unsafe impl Stack for Stagger {
     }
 }
 
-/// What a packet that has waited does next.
+/// The reason for which a fiber is resumed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Turn {
-    /// It begins, or reads what has been found.
-    GoOn,
-    /// It asks for all that wait as it does.
-    Ask,
+enum Resume {
+    /// It begins, or reads the results of its query.
+    Continue,
+    /// It answers its batch of queries first.
+    Answer,
 }
 
-type Fiber = Coroutine<Turn, (), (), Stagger>;
+type Fiber = Coroutine<Resume, (), (), StaggeredStack>;
 
-/// Packets that go on together.
+/// A pool of fibers that run on one thread.
 #[derive(Default)]
-pub(crate) struct Crew {
-    /// Queries that more packets may join.
+pub(crate) struct FiberPool {
+    /// Batches that more queries may join.
     open: RefCell<Vec<Batch>>,
-    /// That whose packets are going on.
+    /// The batch whose fibers are being resumed.
     closed: Cell<Option<Batch>>,
-    /// The number of the packet that is running.
+    /// The index of the running fiber.
     running: Cell<usize>,
-    yielder: Cell<Option<NonNull<Yielder<Turn, ()>>>>,
-    /// Memory of queries, and stacks, that no one uses.
+    yielder: Cell<Option<NonNull<Yielder<Resume, ()>>>>,
+    /// Scratch memory of queries that is not in use.
     spare: RefCell<Vec<Box<dyn Any>>>,
-    stacks: RefCell<Vec<Stagger>>,
-    /// Room for the fibers of a run, of which there are none between two.
+    /// Stacks that are not in use.
+    stacks: RefCell<Vec<StaggeredStack>>,
+    /// The allocation for the fibers of a run, empty between runs.
     fibers: Cell<Vec<Option<Fiber>>>,
 }
 
-/// What several packets ask.
+/// The queries of several packets that are answered as one.
 struct Batch {
     key: Key,
     scratch: Box<dyn Any>,
-    /// The packets that wait, a bit each.
+    /// The fibers that wait, as a bit mask.
     waiting: u64,
 }
 
 thread_local! {
-    /// Kept from one crew of a thread to the next.
-    static KEPT: Cell<Option<Box<Crew>>> = const { Cell::new(None) };
-    /// The crew whose packet is running.
-    static CURRENT: Cell<Option<NonNull<Crew>>> = const { Cell::new(None) };
+    /// The pool of this thread, kept from one run to the next.
+    static KEPT: Cell<Option<Box<FiberPool>>> = const { Cell::new(None) };
+    /// The pool whose fiber is running.
+    static CURRENT: Cell<Option<NonNull<FiberPool>>> = const { Cell::new(None) };
 }
 
-/// While it is there, no packet of this thread waits for others: nothing of the host's is left
-/// halfway, with its locks held and its jobs taken.
-pub(crate) struct Alone(Option<NonNull<Crew>>);
+/// A guard during which queries of this thread do not yield to other fibers, so that host code is
+/// never suspended with locks held or jobs taken.
+pub(crate) struct NoYield(Option<NonNull<FiberPool>>);
 
-impl Alone {
+impl NoYield {
     pub(crate) fn begin() -> Self {
         Self(CURRENT.take())
     }
 }
 
-impl Drop for Alone {
+impl Drop for NoYield {
     fn drop(&mut self) {
         CURRENT.set(self.0);
     }
 }
 
-/// Runs `job` for each number below `count`, `at_once` of them in turn so that their queries are
-/// answered together. One that never asks takes no stack from the others.
+/// Runs `job` for each index below `count`, in a pool of up to `at_once` fibers whose queries are
+/// answered in batches. A job without queries takes no further fiber.
 pub(crate) fn each(count: usize, at_once: usize, job: &dyn Fn(usize)) {
-    // What a packet of another crew runs it runs to the end.
-    let _alone = Alone::begin();
+    // Jobs that a fiber of an outer pool runs are not suspended for that pool.
+    let _no_yield = NoYield::begin();
     let at_once = at_once.min(count).min(MOST);
     if at_once < 2 {
         (0..count).for_each(job);
         return;
     }
-    let crew = KEPT.take().unwrap_or_default();
+    let pool = KEPT.take().unwrap_or_default();
     let next = Cell::new(0);
     let jobs = || {
         let i = next.get();
         next.set(i + 1);
         (i < count).then_some(i)
     };
-    if let Err(panic) = crew.run(at_once, &|| jobs().map(job).is_some()) {
-        // What is left of the crew goes with it.
+    if let Err(panic) = pool.run(at_once, &|| jobs().map(job).is_some()) {
+        // The pool is dropped with its remaining fibers.
         resume_unwind(panic);
     }
-    // A stack may have been missing, and then the rest is done on this one.
+    // If no stack could be allocated, the remaining jobs run on this one.
     while jobs().map(job).is_some() {}
-    KEPT.set(Some(crew));
+    KEPT.set(Some(pool));
 }
 
-/// What a packet panicked with.
+/// The payload of a panic.
 type Panic = Box<dyn Any + Send>;
 
-impl Crew {
-    /// Runs `job` again and again, by as many fibers in turn, until it says that there are none left.
+impl FiberPool {
+    /// Runs `job` on up to `at_once` fibers, each repeatedly, until it returns false.
     fn run(&self, at_once: usize, job: &dyn Fn() -> bool) -> Result<(), Panic> {
         let mut fibers = self.fibers.take();
-        for number in 0..at_once {
-            let Some(stack) = self.stack(number) else { break };
-            let run = |yielder: &Yielder<Turn, ()>, _: Turn| {
+        for index in 0..at_once {
+            let Some(stack) = self.stack(index) else { break };
+            let run = |yielder: &Yielder<Resume, ()>, _: Resume| {
                 self.yielder.set(Some(yielder.into()));
                 while job() {}
             };
-            // SAFETY: what the function borrows outlives the fibers, which are dropped before this
+            // SAFETY: the borrows of the function outlive the fibers, which are dropped before this
             // call returns.
             fibers.push(Some(unsafe { Coroutine::with_stack_unchecked(stack, run) }));
-            self.resume(&mut fibers, number, Turn::GoOn)?;
-            if fibers[number].is_none() {
-                // It has done all jobs that were left.
+            self.resume(&mut fibers, index, Resume::Continue)?;
+            if fibers[index].is_none() {
+                // It has run all remaining jobs.
                 break;
             }
         }
         while let Some(batch) = self.close() {
             let mut waiting = batch.waiting;
             self.closed.set(Some(batch));
-            let mut turn = Turn::Ask;
+            let mut resume = Resume::Answer;
             while waiting != 0 {
-                self.resume(&mut fibers, waiting.trailing_zeros() as usize, turn)?;
+                self.resume(&mut fibers, waiting.trailing_zeros() as usize, resume)?;
                 waiting &= waiting - 1;
-                turn = Turn::GoOn;
+                resume = Resume::Continue;
             }
             self.spare.borrow_mut().extend(self.closed.take().map(|batch| batch.scratch));
         }
@@ -171,11 +173,11 @@ impl Crew {
         Ok(())
     }
 
-    fn stack(&self, number: usize) -> Option<Stagger> {
-        self.stacks.borrow_mut().pop().or_else(|| Stagger::new(number))
+    fn stack(&self, index: usize) -> Option<StaggeredStack> {
+        self.stacks.borrow_mut().pop().or_else(|| StaggeredStack::new(index))
     }
 
-    /// Memory in which nothing is asked.
+    /// Returns empty scratch memory of a query.
     fn scratch<S: Scratch>(&self) -> Box<S> {
         let mut spare = self.spare.borrow_mut();
         let at = spare.iter().position(|scratch| scratch.is::<S>());
@@ -185,21 +187,26 @@ impl Crew {
         scratch
     }
 
-    /// Lets a fiber go on until it waits, or is done and no more there.
-    fn resume(&self, fibers: &mut [Option<Fiber>], number: usize, turn: Turn) -> Result<(), Panic> {
-        let Some(mut fiber) = fibers[number].take() else { return Ok(()) };
-        self.running.set(number);
+    /// Resumes a fiber until it yields, or returns and is removed.
+    fn resume(
+        &self,
+        fibers: &mut [Option<Fiber>],
+        index: usize,
+        resume: Resume,
+    ) -> Result<(), Panic> {
+        let Some(mut fiber) = fibers[index].take() else { return Ok(()) };
+        self.running.set(index);
         CURRENT.set(Some(self.into()));
-        let result = catch_unwind(AssertUnwindSafe(|| fiber.resume(turn)));
+        let result = catch_unwind(AssertUnwindSafe(|| fiber.resume(resume)));
         CURRENT.set(None);
         match result? {
-            CoroutineResult::Yield(()) => fibers[number] = Some(fiber),
+            CoroutineResult::Yield(()) => fibers[index] = Some(fiber),
             CoroutineResult::Return(()) => self.stacks.borrow_mut().push(fiber.into_stack()),
         }
         Ok(())
     }
 
-    /// Takes the query for which most packets wait.
+    /// Removes and returns the open batch with the most waiting fibers.
     fn close(&self) -> Option<Batch> {
         let mut open = self.open.borrow_mut();
         let most = (0..open.len()).max_by_key(|&i| open[i].waiting.count_ones());
@@ -207,18 +214,19 @@ impl Crew {
     }
 }
 
-/// The memory of a query of this type.
+/// Downcasts the scratch memory of a batch.
 fn memory<S: Scratch>(scratch: &mut Box<dyn Any>) -> &mut S {
     let Some(scratch) = scratch.downcast_mut() else {
-        unreachable!("a query is joined by those with the same memory")
+        unreachable!("queries of a batch have the same type of scratch memory")
     };
     scratch
 }
 
-/// Asks together with the other packets of this thread; not if there are none.
+/// Answers a query in a batch with those of the other fibers of this thread. Returns false, and
+/// does nothing, outside of a fiber.
 ///
-/// `load` writes rays behind those that are there, and says where they begin. `answer` finds what
-/// all of them meet, and `read` takes what is the packet's own.
+/// `load` appends the packet's rays and returns the index of the first, `answer` traces all rays of
+/// the batch, and `read` takes the packet's results.
 pub(crate) fn ask<S: Scratch>(
     key: Key,
     load: impl FnOnce(&mut S) -> usize,
@@ -226,34 +234,34 @@ pub(crate) fn ask<S: Scratch>(
     read: impl FnOnce(&S, usize),
 ) -> bool {
     let Some(current) = CURRENT.get() else { return false };
-    // SAFETY: a crew is current while one of its fibers runs, and is borrowed as long.
-    let crew = unsafe { current.as_ref() };
+    // SAFETY: a pool is current while one of its fibers runs, and is borrowed as long.
+    let pool = unsafe { current.as_ref() };
     let first = {
-        let mut open = crew.open.borrow_mut();
+        let mut open = pool.open.borrow_mut();
         let is_same = |batch: &Batch| batch.key == key && batch.scratch.is::<S>();
         let at = open.iter().position(is_same).unwrap_or_else(|| {
-            let scratch: Box<dyn Any> = crew.scratch::<S>();
+            let scratch: Box<dyn Any> = pool.scratch::<S>();
             open.push(Batch { key, scratch, waiting: 0 });
             open.len() - 1
         });
-        open[at].waiting |= 1 << crew.running.get();
+        open[at].waiting |= 1 << pool.running.get();
         load(memory(&mut open[at].scratch))
     };
-    let Some(yielder) = crew.yielder.get() else { unreachable!("a fiber runs with its yielder") };
-    // SAFETY: it is that of the fiber which runs, whose function has not returned.
-    let turn = unsafe { yielder.as_ref() }.suspend(());
-    crew.yielder.set(Some(yielder));
-    let Some(mut batch) = crew.closed.take() else {
-        unreachable!("a fiber goes on with its query")
+    let Some(yielder) = pool.yielder.get() else { unreachable!("a fiber runs with its yielder") };
+    // SAFETY: the yielder is that of the running fiber, whose function has not returned.
+    let resume = unsafe { yielder.as_ref() }.suspend(());
+    pool.yielder.set(Some(yielder));
+    let Some(mut batch) = pool.closed.take() else {
+        unreachable!("a fiber is resumed with its batch")
     };
-    if turn == Turn::Ask {
-        // A primitive may ask another scene meanwhile, and does not wait then. If it panics, so do
-        // all packets: nothing on their stacks catches it.
-        let _alone = Alone::begin();
+    if resume == Resume::Answer {
+        // A primitive may query another scene meanwhile, which does not yield then. If it panics,
+        // so do all fibers: nothing on their stacks catches it.
+        let _no_yield = NoYield::begin();
         answer(memory(&mut batch.scratch));
     }
     read(memory(&mut batch.scratch), first);
-    crew.closed.set(Some(batch));
+    pool.closed.set(Some(batch));
     true
 }
 
@@ -270,8 +278,8 @@ mod tests {
         fn clear(&mut self) {}
     }
 
-    /// Asks once for each of some packets, and notes how many were asked about together.
-    fn asked_together(count: usize, at_once: usize, times: impl Fn(usize) -> usize) -> Vec<usize> {
+    /// Runs `count` packets with `times` queries each; returns the sizes of the batches.
+    fn batch_sizes(count: usize, at_once: usize, times: impl Fn(usize) -> usize) -> Vec<usize> {
         let (waiting, sizes) = (RefCell::new([0; 3]), RefCell::new(Vec::new()));
         let done = Cell::new(0);
         each(count, at_once, &|packet| {
@@ -283,7 +291,7 @@ mod tests {
                         100 * packet + time
                     },
                     |_| sizes.borrow_mut().push(core::mem::take(&mut waiting.borrow_mut()[time])),
-                    |_, first| assert_eq!(first, 100 * packet + time, "what it wrote"),
+                    |_, first| assert_eq!(first, 100 * packet + time, "the index that it returned"),
                 );
                 assert!(asked || at_once < 2);
             }
@@ -294,28 +302,27 @@ mod tests {
     }
 
     #[test]
-    fn packets_ask_together() {
-        assert_eq!(asked_together(8, 4, |_| 1), [4, 4]);
-        assert_eq!(asked_together(10, 4, |_| 1), [4, 4, 2]);
-        assert_eq!(asked_together(3, 64, |_| 1), [3]);
-        assert_eq!(asked_together(300, 1000, |_| 0), [0; 0]);
-        assert_eq!(asked_together(5, 1, |_| 1), [0; 0], "alone");
-        let sizes = asked_together(100, 16, |packet| packet % 4);
+    fn queries_of_packets_are_batched() {
+        assert_eq!(batch_sizes(8, 4, |_| 1), [4, 4]);
+        assert_eq!(batch_sizes(10, 4, |_| 1), [4, 4, 2]);
+        assert_eq!(batch_sizes(3, 64, |_| 1), [3]);
+        assert_eq!(batch_sizes(300, 1000, |_| 0), [0; 0]);
+        assert_eq!(batch_sizes(5, 1, |_| 1), [0; 0], "no fibers");
+        let sizes = batch_sizes(100, 16, |packet| packet % 4);
         assert_eq!(sizes.iter().sum::<usize>(), 150, "{sizes:?}");
         assert!(sizes.len() < 20 && sizes.iter().all(|&n| n > 0 && n <= 16), "{sizes:?}");
     }
 
-    /// What runs within a packet, as a job that a thread of a pool takes up while it waits, does so
-    /// to its end.
+    /// A pool within a fiber, such as one that a job of a thread pool makes, runs to its end.
     #[test]
-    fn crews_within_crews_do_not_wait_for_them() {
+    fn nested_pools_do_not_wait_for_outer_ones() {
         let (count, held) = (Cell::new(0), RefCell::new(()));
         each(4, 4, &|_| {
             assert!(ask::<Nothing>((1, [0; 3]), |_| 0, |_| (), |_, _| ()));
             let _held = held.borrow_mut();
-            assert_eq!(asked_together(6, 3, |_| 1), [3, 3]);
-            let _alone = Alone::begin();
-            assert!(!ask::<Nothing>((2, [0; 3]), |_| 0, |_| (), |_, _| ()), "alone");
+            assert_eq!(batch_sizes(6, 3, |_| 1), [3, 3]);
+            let _no_yield = NoYield::begin();
+            assert!(!ask::<Nothing>((2, [0; 3]), |_| 0, |_| (), |_, _| ()), "no batch");
             count.set(count.get() + 1);
         });
         assert_eq!(count.get(), 4);
@@ -342,9 +349,9 @@ mod tests {
             });
             let panic = catch_unwind(run).expect_err("a packet panics");
             assert_eq!(panic.downcast_ref::<String>().map(String::as_str), Some(&*at.to_string()));
-            // Those that wait leave nothing behind.
+            // Waiting fibers leave nothing behind.
             assert_eq!(dropped.get(), if at == 0 { 3 } else { 6 }, "{at}");
-            assert_eq!(asked_together(8, 4, |_| 1), [4, 4]);
+            assert_eq!(batch_sizes(8, 4, |_| 1), [4, 4]);
         }
     }
 }

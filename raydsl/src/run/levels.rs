@@ -1,4 +1,4 @@
-//! The instruction sets that this machine has, and the lanes that run each variant.
+//! The instruction sets of this machine, and the lanes of each variant.
 
 use fearless_simd::Level;
 
@@ -43,14 +43,14 @@ mod native {
     pub type Native8 = Packet<Lanes8>;
     /// Packets of sixteen lanes: AVX-512, NEON.
     pub type Native16 = Packet<Lanes16>;
-    /// Eight lanes of what every machine of the target has, which count where they are.
+    /// Eight lanes of the target's baseline level, which count active lanes by place in the kernel.
     pub type Counting = Packet<Counted<Simd8<level::Least>>>;
 }
 
 pub use native::{Counting, Native4, Native8, Native16};
 pub(crate) use native::{Lanes4, Lanes8, Lanes16};
 
-/// The tokens of the levels that this machine has.
+/// The tokens of the levels of this machine.
 #[derive(Clone, Copy)]
 pub(crate) struct Levels {
     pub(crate) least: native::level::Least,
@@ -89,7 +89,7 @@ impl Levels {
 }
 
 impl Levels {
-    /// [`Variant::with_lanes`] of a machine that has these levels.
+    /// Runs a task as [`Variant::with_lanes`] does, on a machine with these levels.
     pub(super) fn with_lanes<T: LanesTask>(self, variant: Variant, task: T) -> Option<T::Output> {
         match variant {
             Variant::Packet16 if let Some(s) = self.wide => Some(task.run(Simd16(s))),
@@ -101,16 +101,16 @@ impl Levels {
     }
 }
 
-/// Whether this machine has lanes that go through wide trees: AVX-512, AVX2 or NEON.
+/// Returns whether this machine has lanes that traverse wide trees: AVX-512, AVX2 or NEON.
 pub(crate) fn has_wide_walks() -> bool {
     Levels::detect().middle.is_some()
 }
 
-/// Does it with the lanes that go through wide trees at a level, or at this machine's where that
-/// level has none; none where the machine has none either.
+/// Runs a task with the lanes that traverse wide trees at a level, or at this machine's level where
+/// that one has none; none if the machine has none either.
 ///
-/// They do not depend on how many lanes a packet has: a walk is large, and a user waits for every
-/// copy of it.
+/// The lanes do not depend on the width of a packet: a traversal is a lot of code, and every copy
+/// of it costs compile time.
 pub(crate) fn with_wide_walks<T: LanesTask>(level: Option<Level>, task: T) -> Option<T::Output> {
     let levels = level.filter(|level| !level.is_fallback()).map(Levels::of);
     let levels = levels.filter(|levels| levels.middle.is_some()).unwrap_or_else(Levels::detect);
@@ -127,7 +127,7 @@ pub(crate) fn with_wide_walks<T: LanesTask>(level: Option<Level>, task: T) -> Op
     None
 }
 
-/// Something to do with lanes of one kind.
+/// A task that is generic over lanes.
 pub(crate) trait LanesTask {
     type Output;
     fn run<L: Lanes>(self, lanes: L) -> Self::Output;
@@ -151,7 +151,7 @@ mod tests {
             .map(|variant| levels.with_lanes(variant, Name))
     }
 
-    /// Each on a machine that has no more than one level.
+    /// Each level as the highest of a machine.
     #[test]
     fn widths_that_a_machine_lacks_run_as_the_next_narrower_ones() {
         let best = Level::new();

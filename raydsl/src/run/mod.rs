@@ -1,5 +1,5 @@
-//! How kernels run on this machine: which variants there are, which instructions it has for them, and
-//! packets that wait for each other.
+//! How kernels run on this machine: the variants, their instruction sets, and the fibers that batch
+//! queries of packets.
 
 #[cfg_attr(
     not(all(
@@ -22,15 +22,14 @@ pub(crate) use levels::{
 };
 pub use variant::{Variant, Variants};
 
-/// The memory of a query, which is used again.
+/// Scratch memory of a query, which is reused.
 pub(crate) trait Scratch: Any + Default {
-    /// Forgets what was asked.
+    /// Removes the rays of the last query.
     fn clear(&mut self);
 }
 
-/// Packets whose key is the same ask the same of the same scene: the function that answers, and
-/// where the scene lies.
+/// The key of a batch: the address of the function that answers its queries, and that of the scene.
 ///
-/// The scene of a packet that waits is borrowed, so no other one lies there; and the function is
-/// that of its type of primitives, or one of the same code.
+/// The scene of a waiting packet is borrowed, so no other scene has its address; and the function
+/// is that of its type of primitives, or one with the same code.
 pub(crate) type Key = (usize, [usize; 3]);

@@ -1,22 +1,22 @@
-//! Packets that do not wait for each other, where a machine has no fibers.
+//! Replacement of fibers on targets without them: packets answer their own queries.
 
 use super::{Key, Scratch};
 
-/// Packets are alone anyway.
-pub(crate) struct Alone;
+/// A guard without effect, since nothing yields.
+pub(crate) struct NoYield;
 
-impl Alone {
+impl NoYield {
     pub(crate) const fn begin() -> Self {
         Self
     }
 }
 
-/// Runs `job` for each number below `count`.
+/// Runs `job` for each index below `count`.
 pub(crate) fn each(count: usize, _at_once: usize, job: &dyn Fn(usize)) {
     (0..count).for_each(job);
 }
 
-/// Does not ask together with others.
+/// Returns false: there is no batch to join.
 pub(crate) fn ask<S: Scratch>(
     _key: Key,
     _load: impl FnOnce(&mut S) -> usize,

@@ -35,12 +35,12 @@ impl Variant {
         }
     }
 
-    /// The variant of this name.
+    /// Returns the variant of this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|v| v.name() == name)
     }
 
-    /// The packets with the most lanes that one register of this machine holds.
+    /// Returns the packet variant that fills the widest registers of this machine.
     pub fn widest() -> Self {
         let levels = Levels::detect();
         if levels.wide.is_some() {
@@ -52,10 +52,10 @@ impl Variant {
         }
     }
 
-    /// The instruction set that runs the variant on this machine, and its lanes.
+    /// Returns the instruction set that runs the variant on this machine, and its lanes.
     ///
-    /// A width whose level the machine lacks runs as several packets of the next narrower one; without
-    /// SSE4.2 or NEON, one ray after another.
+    /// A width whose level the machine lacks runs as several packets of the next narrower one;
+    /// without SSE4.2 or NEON, one ray after another.
     pub fn isa(self) -> (&'static str, usize) {
         struct Name;
         impl LanesTask for Name {
@@ -71,8 +71,8 @@ impl Variant {
         }
     }
 
-    /// Whether this machine has registers for the variant. Packets that it lacks run as several of the
-    /// next narrower width; for WGSL the answer is no.
+    /// Returns whether this machine has registers for the variant; false for WGSL. Packets that it
+    /// lacks run as several of the next narrower width.
     pub fn is_native(self) -> bool {
         let levels = Levels::detect();
         match self {
@@ -87,7 +87,7 @@ impl Variant {
         }
     }
 
-    /// Does it with the lanes that run the variant's packets; not where the machine has none.
+    /// Runs a task with the lanes of the variant's packets; none if the machine has none.
     pub(crate) fn with_lanes<T: LanesTask>(self, task: T) -> Option<T::Output> {
         Levels::detect().with_lanes(self, task)
     }
@@ -98,18 +98,18 @@ impl Variant {
 pub struct Variants(Vec<Variant>);
 
 impl Variants {
-    /// Every variant.
+    /// Returns every variant.
     pub fn all() -> Self {
         Self(Variant::ALL.to_vec())
     }
 
-    /// The variants that run on the CPU.
+    /// Returns the variants that run on the CPU.
     pub fn cpu() -> Self {
         Self(Variant::ALL.into_iter().filter(|v| *v != Variant::Wgsl).collect())
     }
 
-    /// These variants, each once, in the order of tables. The scalar one is always among them: it
-    /// is what the others are compared with.
+    /// Returns these variants, each once, in the order of tables. The scalar one is always among
+    /// them, since the others are compared with it.
     pub fn of(variants: &[Variant]) -> Self {
         Self(
             Variant::ALL
@@ -119,7 +119,7 @@ impl Variants {
         )
     }
 
-    /// The variants in the order of tables.
+    /// Iterates over the variants in the order of tables.
     pub fn iter(&self) -> impl Iterator<Item = Variant> + '_ {
         self.0.iter().copied()
     }

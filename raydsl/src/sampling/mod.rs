@@ -1,10 +1,13 @@
 //! Random numbers, sequences and warps, for kernels.
 //!
-//! * [`Rng`] gives random numbers, [`Sampler`] those of a pixel's samples, placed by a [`SampleMethod`].
-//! * Warps take them to [disks](sample_concentric_disk()), [hemispheres](sample_cosine_hemisphere()),
-//!   [cones](sample_cone()), [triangles](sample_triangle()) and [tables](sample_table()); [`Frame`] takes
-//!   directions to surfaces.
-//! * [`balance_heuristic()`] and [`power_heuristic()`] weigh samples that several warps could have made.
+//! * [`Rng`] gives random numbers, [`Sampler`] those of a pixel's samples, placed by a
+//!   [`SampleMethod`].
+//! * Warps take them to [disks](sample_concentric_disk()),
+//!   [hemispheres](sample_cosine_hemisphere()), [cones](sample_cone()),
+//!   [triangles](sample_triangle()) and [tables](sample_table()); [`Frame`] takes directions to
+//!   surfaces.
+//! * [`balance_heuristic()`] and [`power_heuristic()`] weigh samples that several warps could have
+//!   made.
 //!
 //! All are kernels. Integers are the same in every variant, on devices too. Floats are as
 //! everywhere: the same bits on the CPU, and what rounding allows in WGSL.

@@ -6,8 +6,9 @@
 //! border, colour space.
 //!
 //! The filters are kernels of this library; packets have the same arithmetic in functions of their
-//! own. So all variants on the CPU give the same bits, and WGSL reads texels from a buffer by the same formulas. [`Filtering::Device`] has the device's own
-//! sampler read them, whose weights have 8 bits.
+//! own. So all variants on the CPU give the same bits, and WGSL reads texels from a buffer by the
+//! same formulas. [`Filtering::Device`] has the device's own sampler read them, whose weights have
+//! 8 bits.
 
 mod color;
 mod config;

@@ -75,8 +75,8 @@ impl<T: Texel, const D: usize> Operation for LookupAtLevel<'_, '_, T, D> {
     }
 }
 
-/// What a device's sampler gives. Nothing if no sampler reads these texels, or if there are too many
-/// textures.
+/// What a device's sampler gives. Nothing if no sampler reads these texels, or if there are too
+/// many textures.
 fn sampled<T: Texel, const D: usize>(
     m: &Recorder,
     texels: &Texels<'_, T>,

@@ -2,9 +2,9 @@
 //! texel; and a filter is a function of its own, compiled once for a kind of texels and lanes,
 //! however often kernels call it.
 //!
-//! This is the arithmetic of the kernels in `filter` and `sample` once more, which scalar code, WGSL
-//! and the reference have: the same operations in the same order, for the same bits. What changes
-//! there changes here.
+//! This is the arithmetic of the kernels in `filter` and `sample` once more, which scalar code,
+//! WGSL and the reference have: the same operations in the same order, for the same bits. What
+//! changes there changes here.
 
 use super::config::{Address, ColorSpace, Filter};
 use super::sample::{level_start, level_within, size_at};

@@ -17,8 +17,9 @@ pub(crate) struct Tree<'a> {
     pub(crate) cost: Cost,
     setting: &'static Setting,
     traversal: Traversal,
-    /// Whether it stands for its setting where each ray is alone, and takes no notice of `traversal`.
-    is_asked_alone: bool,
+    /// Whether single-ray queries are measured with it: once a setting, since `traversal` has no
+    /// effect on them.
+    has_single_rays: bool,
 }
 
 /// A setting of trees, and who asks them.
@@ -78,13 +79,13 @@ impl Setting {
     }
 }
 
-/// One tree for each setting, and for each way that rays go through trees with copies.
+/// Builds one tree for each setting, and for each traversal of trees with copies.
 pub(crate) fn trees<'a>(
     triangles: &'a [Triangle],
     threads: usize,
     traversals: &[Traversal],
 ) -> Vec<Tree<'a>> {
-    let tree = |setting: &'static Setting, traversal, is_asked_alone| {
+    let tree = |setting: &'static Setting, traversal, has_single_rays| {
         let Setting { quality, is_wide, .. } = *setting;
         let config = BuildConfig { quality, traversal, ..BuildConfig::default() };
         let build = || match is_wide {
@@ -94,7 +95,7 @@ pub(crate) fn trees<'a>(
         let (bvh, seconds) = seconds_on(threads, build);
         let bvh = bvh.expect("the scene has finite bounds");
         let cost = Cost::new(seconds, bvh.bytes(), triangles.len());
-        Tree { bvh, cost, setting, traversal, is_asked_alone }
+        Tree { bvh, cost, setting, traversal, has_single_rays }
     };
     let of_setting = |setting: &'static Setting| {
         let traversals = if setting.is_wide { traversals } else { &[Traversal::Auto] };
@@ -124,10 +125,10 @@ pub(crate) fn contenders<'a>(
             let runs = runs(ask(tree, variant)).into_iter();
             all.extend(runs.map(|(row, run)| contender(row, variant, tree, run)));
         }
-        if tree.is_asked_alone {
+        if tree.has_single_rays {
             let run = one_by_one(&tree.bvh, work, threads);
             let single = contender(Row::SingleClosest, Variant::Scalar, tree, run);
-            // Nodes of eight children are met by one ray with the widest level that there is.
+            // A single ray tests the eight children of a node with the widest level of the machine.
             let (isa, lanes) = match tree.setting.is_wide {
                 true => (widest.isa().0, 8),
                 false => (single.isa, single.lanes),
@@ -201,7 +202,7 @@ fn frame_generation(ask: Ask<'_>) -> Run<'_> {
     Box::new(move || Outcome { seconds: ask.make_frame(&mut found), ..Outcome::default() })
 }
 
-/// Asks on the host, where every ray is alone.
+/// Traces single rays on the host.
 fn one_by_one<'a>(bvh: &'a Bvh<'a, Triangle>, work: &'a Workload, threads: usize) -> Run<'a> {
     Box::new(move || {
         in_parts(&work.single, threads, |hits: &mut Vec<Hit>, rays| {

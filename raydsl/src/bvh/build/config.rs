@@ -2,7 +2,7 @@
 
 use super::error::BuildError;
 
-/// How many primitives a block of a wide tree holds.
+/// Primitives per block of a wide tree.
 pub(in crate::bvh) const BLOCK: usize = 8;
 
 /// What a place that is left empty in a block costs, where a primitive costs 1. With 1 blocks are
@@ -59,49 +59,50 @@ impl BuildQuality {
     }
 }
 
-/// How rays that are asked about together go through a wide tree.
+/// The traversal of a wide tree by the rays of one query.
 ///
-/// Those of one query are: of a packet, of a gang, of
+/// A query has the rays of a packet, of a gang, or of
 /// [`RayQuery::closest_hits`](crate::bvh::RayQuery::closest_hits) and `any_hits`. Hits are the same
-/// with each. One ray on the host takes no notice, nor do binary trees, lists with such a tree,
-/// instances, devices, and queries with a condition or of several hits.
+/// with each traversal. It has no effect on single rays of the host, binary trees, lists with such
+/// a tree, instances, devices, and queries with a condition or of several hits.
 ///
-/// [`Traversal::Auto`] was within 6 % of the best of the others in every kind of ray of three
-/// architectural scenes, but for bounces in one of them (9 %), and a wrong one is slower by factors. Set
-/// another where you know more of the rays than it sees, and have measured.
+/// [`Traversal::Auto`] was within 6 % of the best of the others for every kind of ray in three
+/// architectural scenes, except bounces in one of them (9 %); a wrong choice is slower by factors.
+/// Set another where you know more about the rays than the library does, and have measured it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Traversal {
-    /// By what rays ask, how many they are, and how they part; the default. Closest hits: rays go in
-    /// packets where twelve or more, or most of those that there are, go up or down along each axis
-    /// together and part by no more than half of their length, others in waves. Any hits: 512 rays and
-    /// more that all have an end are sorted, others go in waves.
+    /// Chooses by the kind of query, the number of rays, and their divergence; the default. Closest
+    /// hits: rays form packets where twelve or more, or most of them, have directions in one octant
+    /// that differ by no more than half of their length; others form streams. Any hits: rays are
+    /// sorted if there are 512 or more and all are bounded; others form streams.
     #[default]
     Auto,
-    /// Each ray on its own way, up to 256 of them in turn. For rays that have nothing in common.
-    Waves,
-    /// Rays that come together, up to 64 of them, stay together if they go up or down along each axis
-    /// together, however far they part; not those that begin behind their origin. Those that ask for any
-    /// hit come apart where 16 or fewer enter a box. For rays of one camera or one light.
+    /// Ray streams: up to 256 rays are interleaved, each with its own stack. For incoherent rays.
+    Streams,
+    /// Ray packets with interval culling: up to 64 consecutive rays with directions in one octant
+    /// form a packet, however far they diverge, unless they begin behind their origin. In any-hit
+    /// queries they leave it for a stream where 16 or fewer enter a box. For rays of one camera or
+    /// one light.
     Packets,
-    /// More than 16 rays, up to 4096 at once, are put into the order of their directions first. Then
-    /// those that ask for any hit go as with [`Traversal::Packets`], those that ask for the closest one
-    /// as with [`Traversal::Auto`]. For many rays that begin near each other.
+    /// More than 16 rays, up to 4096 at once, are sorted by direction first. Any-hit queries
+    /// continue as with [`Traversal::Packets`], closest-hit queries as with [`Traversal::Auto`].
+    /// For many rays that begin near each other.
     ///
-    /// In a list of trees rays that ask for the closest hit are put into order for all of them if it is
-    /// set for one.
+    /// In a list of trees, rays of closest-hit queries are sorted for all trees if it is set for
+    /// one.
     Sorted,
 }
 
 impl Traversal {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Auto, Self::Waves, Self::Packets, Self::Sorted];
+    /// All traversals.
+    pub const ALL: [Self; 4] = [Self::Auto, Self::Streams, Self::Packets, Self::Sorted];
 
-    /// Its name in tables: `auto`, `waves`, `packets`, `sorted`.
+    /// Its name in tables: `auto`, `streams`, `packets`, `sorted`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",
-            Self::Waves => "waves",
+            Self::Streams => "streams",
             Self::Packets => "packets",
             Self::Sorted => "sorted",
         }
@@ -126,14 +127,14 @@ impl From<BuildQuality> for BuildConfig {
 pub struct BuildConfig {
     /// How the tree is built; default [`BuildQuality::Balanced`].
     pub quality: BuildQuality,
-    /// How rays go through a wide tree, which [`Bvh::set_traversal`](crate::bvh::Bvh::set_traversal)
+    /// The traversal of a wide tree, which [`Bvh::set_traversal`](crate::bvh::Bvh::set_traversal)
     /// changes later; default [`Traversal::Auto`].
     pub traversal: Traversal,
-    /// The fewest primitives over which [`Bvh::build_wide`](crate::bvh::Bvh::build_wide) makes a wide
-    /// tree; of fewer it makes a binary one. Default 64: in rooms of `12 k^2` triangles, rays that go
-    /// their own ways in packets of 16 find the closest hit 0.5 times as fast in a wide tree of 12
-    /// triangles as in a binary one, 0.9 times of 48, 1.2 times of 108 and 3 times of 7,000. Rays of a
-    /// camera gain at no such size.
+    /// The fewest primitives over which [`Bvh::build_wide`](crate::bvh::Bvh::build_wide) makes a
+    /// wide tree instead of a binary one. Default 64: in rooms of `12 k^2` triangles, incoherent
+    /// rays in packets of 16 find the closest hit 0.5 times as fast in a wide tree of 12 triangles
+    /// as in a binary one, 0.9 times of 48, 1.2 times of 108 and 3 times of 7,000. Camera rays gain
+    /// at none of these sizes.
     pub min_wide_size: u32,
     /// The most primitives a leaf may hold, `1..=256`; default 4. In a wide tree it is 8, whatever
     /// stands here.
@@ -211,8 +212,9 @@ impl Settings {
         self.is_wide && count <= BLOCK
     }
 
-    /// What it costs to test so many primitives, as a number of them. A block that is not full takes
-    /// as long as a full one; but what is split for the sake of full blocks has larger boxes.
+    /// Returns the cost of testing `count` primitives, in units of one primitive. A block that is
+    /// not full takes as long as a full one; but splits for the sake of full blocks make larger
+    /// boxes.
     pub(super) fn test_cost(&self, count: usize) -> f32 {
         if !self.is_wide {
             return count as f32;

@@ -12,8 +12,8 @@
 //!   the checks on the input;
 //! * `scaling`: what keeps `f32` areas from overflowing and denormals out of the inner loops;
 //! * `binned_sah`, `partition`, `subtree`: where the heuristic splits, splitting, the recursion;
-//! * `chop`, `spatial_bins`, `spatial`, `compact`: cutting a reference and why no hit is lost by it,
-//!   where to cut, the recursion, the list without gaps;
+//! * `chop`, `spatial_bins`, `spatial`, `compact`: cutting a reference and why no hit is lost by
+//!   it, where to cut, the recursion, the list without gaps;
 //! * `morton`, `linear`: the codes and the sort, the recursion;
 //! * `depth`: how deep a tree may be;
 //! * `part`: pieces of a tree, and how they are put together;

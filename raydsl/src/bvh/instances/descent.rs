@@ -5,7 +5,7 @@ use crate::bvh::contract::{Slabs, is_finite};
 use crate::bvh::traverse::Stack;
 use crate::geometry::{Ray, transform_ray};
 
-/// A walk through the groups of a scene, which stops at every tree that the ray may meet.
+/// A traversal of the groups of a scene, which stops at every tree that the ray may enter.
 ///
 /// The groups' trees have leaves of one instance each. The stack is one for all levels: a level
 /// ends where it is as short as it was when the level was entered.
@@ -20,7 +20,7 @@ pub(crate) struct Descent<'a> {
 /// A group on the way.
 struct Level<'a> {
     group: &'a Placing,
-    /// The number of the first tree in it.
+    /// The instance id of the first tree in it.
     first: u32,
     /// The ray as the group sees it.
     ray: Ray,
@@ -38,7 +38,7 @@ pub(crate) struct Place {
 }
 
 impl<'a> Descent<'a> {
-    /// A walk through the last group.
+    /// Begins a traversal of the last group.
     pub(crate) fn new(groups: &'a [Placing], ray: Ray) -> Box<Self> {
         let levels = Vec::with_capacity(1);
         let mut descent = Box::new(Self { groups, levels, stack: Stack::new(), nodes: 0 });

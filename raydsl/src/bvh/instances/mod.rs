@@ -45,8 +45,11 @@ pub const MAX_CONDITION: f64 = 1e7;
 ///
 /// let pearls = [0.0, 1.0, 2.0].map(|x| Ball { center: vec3(x, 0.0, 0.0), radius: 0.5 });
 /// let trees = [Bvh::build(&pearls)?];
-/// let place = |z, scale| Affine3 { translation: vec3(0.0, 0.0, z), ..Affine3::from_scale(Vec3::splat(scale)) };
-/// let scene = Instances::build(&trees, &[Instance::new(0, place(9.0, 1.0)), Instance::new(0, place(5.0, 2.0))])?;
+/// let place = |z, scale| {
+///     let translation = vec3(0.0, 0.0, z);
+///     Instance::new(0, Affine3 { translation, ..Affine3::from_scale(Vec3::splat(scale)) })
+/// };
+/// let scene = Instances::build(&trees, &[place(9.0, 1.0), place(5.0, 2.0)])?;
 /// let hit = scene.closest_hit(Ray::new(vec3(2.0, 0.0, 0.0), Vec3::Z));
 /// assert_eq!((hit.inst_id, hit.prim_id, hit.t), (1, 1, 4.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -335,7 +338,7 @@ impl<'a, P: Primitive> Instances<'a, P> {
         hit.is_hit.then(|| super::list::tree_of(&self.placed.trees.parts, hit.prim_id))
     }
 
-    /// The number that the first primitive of a tree has.
+    /// Returns the id of the first primitive of a tree.
     ///
     /// # Panics
     ///

@@ -1,4 +1,4 @@
-//! From instance to instance, for the rays of a packet: [`Descent`](super::Descent) with masks.
+//! Descent through instances by a SIMD packet: [`Descent`](super::Descent) with active masks.
 
 use super::placed::{Placing, STACK, Target};
 use crate::bvh::contract::is_finite;
@@ -7,44 +7,44 @@ use crate::bvh::traverse::Stack;
 use crate::geometry::{RayOn, transform_ray};
 use crate::machine::{Lanes, Packet, Type, op};
 
-/// A walk through the groups of a scene, which stops at every tree that some ray may meet.
+/// A traversal of the groups of a scene, which stops at every tree that some ray may enter.
 pub(crate) struct PacketDescent<'a, L: Lanes> {
     groups: &'a [Placing],
     levels: Vec<Level<'a, L>>,
-    /// Where a lane does not enter, it has NaN, which is at or before no limit.
+    /// Pending items. Lanes that do not enter one have NaN, which is within no limit.
     stack: Stack<L::F32, STACK>,
 }
 
-/// A group on the way.
+/// A group that is being traversed.
 struct Level<'a, L: Lanes> {
     group: &'a Placing,
-    /// The number of the first tree in it.
+    /// The instance id of the first tree in it.
     first: u32,
-    /// The rays as the group sees them.
+    /// The rays in the space of the group.
     ray: RayOn<Packet<L>>,
     slabs: PacketSlabs<L>,
-    /// How long the stack was.
+    /// The length of the stack when the group was entered.
     bottom: usize,
 }
 
-/// A tree in its place.
+/// A placed tree.
 pub(crate) struct PacketPlace<L: Lanes> {
     pub(crate) tree: u32,
     pub(crate) inst: u32,
-    /// The rays as the tree sees them.
+    /// The rays in the space of the tree.
     pub(crate) ray: RayOn<Packet<L>>,
-    /// Those that may meet it.
+    /// The rays that may enter it.
     pub(crate) mask: L::Mask,
 }
 
 impl<'a, L: Lanes> PacketDescent<'a, L> {
-    /// A walk through the last group.
+    /// Begins a traversal of the last group.
     #[inline(never)]
     pub(crate) fn new(
         l: L,
         groups: &'a [Placing],
         ray: &RayOn<Packet<L>>,
-        alive: L::Mask,
+        active: L::Mask,
     ) -> Box<Self> {
         l.enter_again(
             #[inline(always)]
@@ -52,14 +52,14 @@ impl<'a, L: Lanes> PacketDescent<'a, L> {
                 let levels = Vec::with_capacity(1);
                 let mut descent = Box::new(Self { groups, levels, stack: Stack::new() });
                 if let Some(top) = groups.last() {
-                    descent.enter(l, top, 0, ray, alive, ray.t_max.0);
+                    descent.enter(l, top, 0, ray, active, ray.t_max.0);
                 }
                 descent
             },
         )
     }
 
-    /// Goes into a group if some ray of `alive` may meet it.
+    /// Enters a group if some active ray may enter its bounds.
     #[inline(always)]
     fn enter(
         &mut self,
@@ -67,29 +67,29 @@ impl<'a, L: Lanes> PacketDescent<'a, L> {
         group: &'a Placing,
         first: u32,
         ray: &RayOn<Packet<L>>,
-        alive: L::Mask,
+        active: L::Mask,
         limit: L::F32,
     ) {
         let Some(root) = group.branches().nodes.first() else { return };
-        let slabs = PacketSlabs::new(l, ray, alive, root, group.padding);
+        let slabs = PacketSlabs::new(l, ray, active, root, group.padding);
         let (enter, hit) = slabs.enter(l, root, limit);
-        let hit = and(l, alive, hit);
+        let hit = and(l, active, hit);
         if l.any(hit) {
             self.levels.push(Level { group, first, ray: *ray, slabs, bottom: self.stack.len() });
             self.stack.push(0, l.f32_select(hit, enter, l.f32(f32::NAN)));
         }
     }
 
-    /// The next tree that some ray of `alive` may meet at or before its `limit`.
+    /// Returns the next tree that some active ray may enter within its `limit`.
     #[inline(never)]
-    pub(crate) fn next(&mut self, l: L, alive: L::Mask, limit: L::F32) -> Option<PacketPlace<L>> {
+    pub(crate) fn next(&mut self, l: L, active: L::Mask, limit: L::F32) -> Option<PacketPlace<L>> {
         l.enter_again(
             #[inline(always)]
             || {
-                let m = Packet::with_mask(l, alive);
+                let m = Packet::with_mask(l, active);
                 while let Some(level) = self.levels.last() {
                     let (group, first) = (level.group, level.first);
-                    let Some((index, mask)) = self.next_item(l, alive, limit) else {
+                    let Some((index, mask)) = self.next_item(l, active, limit) else {
                         self.levels.pop();
                         continue;
                     };
@@ -113,14 +113,15 @@ impl<'a, L: Lanes> PacketDescent<'a, L> {
         )
     }
 
-    /// The next instance of the innermost group that some ray may meet, and the rays that may.
+    /// Returns the next instance of the innermost group that some active ray may enter, and the
+    /// mask of those rays.
     #[inline(always)]
-    fn next_item(&mut self, l: L, alive: L::Mask, limit: L::F32) -> Option<(u32, L::Mask)> {
+    fn next_item(&mut self, l: L, active: L::Mask, limit: L::F32) -> Option<(u32, L::Mask)> {
         let level = self.levels.last()?;
         let tree = level.group.branches();
         while self.stack.len() > level.bottom {
             let (index, enter) = self.stack.pop()?;
-            let mut mask = and(l, alive, l.f32_compare(op::Le, enter, limit));
+            let mut mask = and(l, active, l.f32_compare(op::Le, enter, limit));
             let mut node = &tree.nodes[index as usize];
             while l.any(mask) {
                 if node.is_leaf() {
@@ -132,7 +133,7 @@ impl<'a, L: Lanes> PacketDescent<'a, L> {
                 let (hit0, hit1) = (and(l, mask, hit0), and(l, mask, hit1));
                 let both = and(l, hit0, hit1);
                 let left = and(l, both, l.f32_compare(op::Le, t0, t1));
-                // The child that more lanes enter first; the other waits, if any lane enters it.
+                // The child that more lanes enter first; the other is pushed if any lane enters it.
                 let left_first = match (l.any(hit0), l.any(hit1)) {
                     (true, true) => 2 * l.bits(left).count_ones() >= l.bits(both).count_ones(),
                     (left, _) => left,

@@ -244,7 +244,7 @@ impl<'a, T, S> Placed<'a, T, S> {
         map
     }
 
-    /// The ray as an instance's tree is asked about it.
+    /// Returns the ray in the space of an instance's tree.
     pub(crate) fn local_ray(&self, inst: u32, ray: Ray) -> Ray {
         let mut ray = ray;
         self.each_level(inst, |_, item| ray = transform_ray(ray, item.to_object));

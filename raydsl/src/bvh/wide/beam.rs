@@ -1,8 +1,8 @@
-//! Rays that go the same way, as box tests see them all at once.
+//! Interval culling: bounds of a ray packet, which one box test culls for all of its rays.
 //!
-//! Origins and directions become intervals, and a box is entered by the beam where the first of
-//! its rays may, and left where the last one may: the test of one ray, with other numbers for the
-//! near planes than for the far ones. (Reshetov, Soupikov and Hurley, "Multi-Level Ray Tracing
+//! Origins and inverse directions become intervals. The beam enters a box where the first of its
+//! rays may enter it, and leaves where the last one may leave: the test of one ray, with different
+//! values for near and far planes. (Reshetov, Soupikov and Hurley, "Multi-Level Ray Tracing
 //! Algorithm", ACM Transactions on Graphics 24(3), 2005.)
 
 use glam::Vec3;
@@ -14,14 +14,14 @@ use crate::bvh::contract::{Padding, ULP, finite_inverse};
 use crate::geometry::{Aabb, Ray};
 use crate::machine::{Lanes, op};
 
-/// A bundle of rays that go up or down along each axis together.
+/// The interval bounds of rays whose directions lie in one octant.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beam {
     pub(super) side: [usize; 3],
     near: [[f32; 2]; 3],
     far: [[f32; 2]; 3],
     t_min: f32,
-    /// No node beyond this distance is worth a visit of any of the rays.
+    /// The distance beyond which nodes are culled for all of the rays.
     pub(super) limit: f32,
 }
 
@@ -48,13 +48,13 @@ impl Slabs for &Beam {
     }
 }
 
-/// The least and the greatest number of some rays.
+/// The range of one component over some rays.
 pub(super) struct Extent {
     pub(super) least: f32,
     pub(super) greatest: f32,
 }
 
-/// The same of each lane.
+/// The range of one component, lane by lane.
 #[derive(Clone, Copy)]
 pub(super) struct Extents<E: Lanes> {
     least: E::F32,
@@ -62,20 +62,21 @@ pub(super) struct Extents<E: Lanes> {
 }
 
 impl<E: Lanes> Extents<E> {
-    /// Of no numbers.
+    /// Returns empty ranges.
     #[inline(always)]
     pub(super) fn none(e: E) -> Self {
         Self { least: e.f32(f32::INFINITY), greatest: e.f32(f32::NEG_INFINITY) }
     }
 
-    /// Also of the numbers that are there; those that are none are left out.
+    /// Extends the ranges by the active lanes of `v`; NaNs are ignored.
     #[inline(always)]
-    pub(super) fn add(&mut self, e: E, v: E::F32, there: E::Mask) {
-        self.least = e.f32_binary(op::Min, self.least, e.f32_select(there, v, self.least));
-        self.greatest = e.f32_binary(op::Max, self.greatest, e.f32_select(there, v, self.greatest));
+    pub(super) fn add(&mut self, e: E, v: E::F32, active: E::Mask) {
+        self.least = e.f32_binary(op::Min, self.least, e.f32_select(active, v, self.least));
+        self.greatest =
+            e.f32_binary(op::Max, self.greatest, e.f32_select(active, v, self.greatest));
     }
 
-    /// Of all lanes.
+    /// Reduces the ranges of all lanes to one.
     #[inline(always)]
     pub(super) fn extent(self, e: E) -> Extent {
         const { assert!(E::N == 8) };
@@ -86,16 +87,16 @@ impl<E: Lanes> Extents<E> {
     }
 }
 
-/// The extent of a row, of the rays whose bits are set.
+/// Computes the range of a row over the rays of an octant.
 #[inline(always)]
 pub(super) fn extent<E: Lanes>(e: E, rays: &Rays, octant: &Octant, row: usize) -> Extent {
     let mut extents = Extents::none(e);
     for (group, members) in octant.groups() {
         for from in (0..GROUP).step_by(E::N) {
-            let there = members >> from & lanes_mask::<E>();
-            if there != 0 {
-                let there = e.mask_from_bits(there.into());
-                extents.add(e, load(e, rays.row(group, row), from), there);
+            let active = members >> from & lanes_mask::<E>();
+            if active != 0 {
+                let active = e.mask_from_bits(active.into());
+                extents.add(e, load(e, rays.row(group, row), from), active);
             }
         }
     }
@@ -127,7 +128,8 @@ fn fold([a, b, c, d, e, f, g, h]: [f32; 8], of: impl Fn(f32, f32) -> f32) -> f32
 }
 
 impl Beam {
-    /// The beam of the rays of an octant; none if they part too far.
+    /// Computes the beam of the rays of an octant; none if they diverge by more than `most`, or if
+    /// one of them begins behind its origin.
     #[inline(always)]
     pub(super) fn of<E: Lanes>(
         e: E,
@@ -146,7 +148,7 @@ impl Beam {
             largest = largest.max(a.abs()).max(b.abs());
             spread = spread.max((a - b).abs());
         }
-        // What lies behind an origin would have to be told from what lies before it.
+        // A negative `t_min` would need the bounds of near and far planes exchanged.
         if t_min < 0.0 || spread > most * largest {
             return None;
         }
@@ -154,14 +156,14 @@ impl Beam {
         Some(Self::new(&origins, &inverses, [t_min, limit], pad(&origins, root, padding)))
     }
 
-    /// The beam of one ray, up to a limit; none where products may overflow.
+    /// Computes the beam of one ray, up to a limit; none if products may overflow.
     #[inline(always)]
     pub(super) fn of_one(ray: &Ray, limit: f32, root: &Aabb, padding: Padding) -> Option<Self> {
         let inverse = finite_inverse(ray.direction);
         let span = root.min.abs().max(root.max.abs()).max_element();
         let is_tame = (inverse.abs() * (ray.origin.abs() + span)).cmplt(Vec3::splat(HUGE));
-        let alone = |v: Vec3| v.to_array().map(|v| Extent { least: v, greatest: v });
-        let (origins, inverses) = (alone(ray.origin), alone(inverse));
+        let point = |v: Vec3| v.to_array().map(|v| Extent { least: v, greatest: v });
+        let (origins, inverses) = (point(ray.origin), point(inverse));
         let pad = pad(&origins, root, padding);
         is_tame.all().then(|| Self::new(&origins, &inverses, [ray.t_min, limit], pad))
     }
@@ -178,8 +180,8 @@ impl Beam {
             let (o, i) = (&origins[axis], &inverses[axis]);
             let is_up = i.least > 0.0;
             beam.side[axis] = usize::from(!is_up);
-            // The least time to the near plane is that of the ray that begins next to it and is
-            // the fastest; the greatest to the far plane that of the opposite one.
+            // The lower bound of the near distance is that of the closest origin and the fastest
+            // direction; the upper bound of the far distance that of the opposite ones.
             let (first, fast) = if is_up { (o.greatest, i.least) } else { (o.least, i.greatest) };
             let (last, slow) = if is_up { (o.least, i.greatest) } else { (o.greatest, i.least) };
             beam.near[axis] = [fast, -(first * fast) - fast.abs() * pad];
@@ -189,7 +191,7 @@ impl Beam {
     }
 }
 
-/// By how much boxes are widened, for rays with these origins.
+/// Returns the padding of boxes for rays with these origins.
 #[inline(always)]
 pub(super) fn pad(origins: &[Extent; 3], root: &Aabb, padding: Padding) -> f32 {
     let (low, high) = (root.min.to_array(), root.max.to_array());

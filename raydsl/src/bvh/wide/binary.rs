@@ -1,4 +1,4 @@
-//! From the wide tree back to the binary one, of which it has kept the shape.
+//! Expansion of a wide tree back to the binary tree that it was collapsed from.
 
 use super::Wide;
 use super::node::Child;
@@ -7,7 +7,8 @@ use crate::bvh::build::Tree;
 use crate::geometry::Aabb;
 
 impl Wide {
-    /// The binary tree that the wide one was collapsed from, but each block is one leaf.
+    /// Expands the wide tree to the binary tree that it was collapsed from, with one leaf for each
+    /// block.
     pub(in crate::bvh) fn binary(&self) -> Tree {
         let blocks = self.blocks.len();
         let entries = (0..blocks).map(|block| self.blocks.members(block).len()).sum();
@@ -28,19 +29,20 @@ struct Expansion<'a> {
 }
 
 impl Expansion<'_> {
-    /// Makes room for nodes; the place of the first.
+    /// Reserves nodes and returns the index of the first.
     fn reserve(&mut self, count: usize) -> usize {
         let first = self.made.nodes.len();
         self.made.nodes.resize(first + count, Node::inner(Aabb::EMPTY, 0));
         first
     }
 
-    /// Puts what a wide node stands for at `place`; returns its box.
+    /// Expands a wide node into the binary node at `place`; returns its bounds.
     fn node(&mut self, node: usize, place: usize) -> Aabb {
         self.member(node, self.wide.nodes[node].top(), place)
     }
 
-    /// Puts a member of a wide node at `place`: a child, or some of the children joined.
+    /// Expands a member of a wide node into the binary node at `place`: a child, or a joint of
+    /// children. Returns its bounds.
     fn member(&mut self, node: usize, member: usize, place: usize) -> Aabb {
         let wide = &self.wide.nodes[node];
         let Some([left, right]) = wide.joined(member) else {

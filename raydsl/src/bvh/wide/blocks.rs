@@ -1,4 +1,4 @@
-//! Primitives in blocks of eight, each member of all of them side by side.
+//! Primitives in blocks of eight, in structure-of-arrays layout.
 
 use super::collapse::Range;
 use super::node::WIDTH;
@@ -6,37 +6,37 @@ use crate::bvh::build::tasks;
 use crate::geometry::Primitive;
 use crate::machine::{Leaves, Machine, Schema, Type, Value, op};
 
-/// A word of eight primitives.
+/// One word of each of eight primitives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C, align(32))]
 pub(crate) struct Row(pub(crate) [u32; WIDTH]);
 
 /// Blocks of primitives in the order of the tree.
 ///
-/// A block has a row for each word of a primitive in the host's layout, and one of their numbers.
-/// One that holds fewer than eight has the first one again in what is left.
+/// A block has a row for each word of a primitive in the host's layout, and a row of primitive ids.
+/// Unused lanes repeat the first primitive.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blocks {
     rows: Vec<Row>,
-    /// How many rows a block has, for what does not know the primitives.
+    /// Rows per block, for code that is not generic over the primitive.
     height: usize,
 }
 
-/// Fills a block with these primitives; the bytes are room for one of them.
+/// Fills a block with the primitives of these ids; the bytes are scratch space for one of them.
 type Fill<'a> = &'a (dyn Fn(&mut [Row], &[u32], &mut [u8]) + Sync);
 
-/// Blocks that a thread fills at once.
+/// Blocks per task.
 const PIECE: usize = 512;
 
 impl Blocks {
-    /// The blocks of these ranges of the index list.
+    /// Builds the blocks of these ranges of the index list.
     pub(super) fn of<P: Primitive>(prims: &[P], indices: &[u32], ranges: &[Range]) -> Self {
         Self::filled(words_of::<P>() + 1, indices, ranges, &|block, ids, bytes| {
             fill(block, prims, ids, bytes);
         })
     }
 
-    /// Blocks of `height` rows, each of the primitives of its range.
+    /// Builds blocks of `height` rows, each of the primitives of its range.
     fn filled(height: usize, indices: &[u32], ranges: &[Range], fill: Fill<'_>) -> Self {
         let mut rows = vec![Row([0; WIDTH]); height * ranges.len()];
         tasks::map_pieces_mut(&mut rows, PIECE * height, |first, rows| {
@@ -50,7 +50,7 @@ impl Blocks {
         Self { rows, height }
     }
 
-    /// The rows of a block of these primitives, the last one their numbers.
+    /// Returns the rows of a block of these primitives; the last one has their ids.
     #[inline(always)]
     pub(crate) fn block<P: Primitive>(&self, index: usize) -> &[Row] {
         let height = const { words_of::<P>() + 1 };
@@ -61,7 +61,7 @@ impl Blocks {
         self.rows.len() / self.height
     }
 
-    /// The numbers of a block's primitives, each once.
+    /// Returns the ids of a block's primitives, each once.
     pub(super) fn members(&self, index: usize) -> &[u32] {
         let Row(ids) = &self.rows[(index + 1) * self.height - 1];
         let again = ids[1..].iter().position(|&id| id == ids[0]);
@@ -74,9 +74,9 @@ impl Blocks {
 }
 
 fn fill<P: Primitive>(block: &mut [Row], prims: &[P], ids: &[u32], bytes: &mut [u8]) {
-    let Some((numbers, words)) = block.split_last_mut() else { return };
-    numbers.0 = each_once(ids);
-    for (lane, &id) in numbers.0.iter().enumerate() {
+    let Some((id_row, words)) = block.split_last_mut() else { return };
+    id_row.0 = each_once(ids);
+    for (lane, &id) in id_row.0.iter().enumerate() {
         prims[id as usize].write(bytes);
         for (row, word) in words.iter_mut().zip(bytes.chunks_exact(4)) {
             row.0[lane] = u32::from_le_bytes([word[0], word[1], word[2], word[3]]);
@@ -98,12 +98,12 @@ fn each_once(ids: &[u32]) -> [u32; WIDTH] {
     once
 }
 
-/// How many words a primitive has in memory.
+/// Returns the size of a primitive in words.
 const fn words_of<P: Type>() -> usize {
     P::SCHEMA.size().div_ceil(4)
 }
 
-/// Where a scalar lies in the bytes of a value, and how many bytes it has.
+/// The offset and the size of a scalar in the bytes of a value.
 #[derive(Clone, Copy)]
 struct Spot {
     offset: u16,
@@ -113,7 +113,7 @@ struct Spot {
 /// The most scalars that a primitive in blocks may have.
 const MOST: usize = 256;
 
-/// The scalars of a structure in order of declaration, behind the first `n`.
+/// Appends the scalars of a structure in order of declaration to the first `n` spots.
 const fn spots(schema: &Schema, at: usize, spots: &mut [Spot; MOST], n: usize) -> usize {
     const fn scalar(size: usize, at: usize, spots: &mut [Spot; MOST], n: usize) -> usize {
         assert!(n < MOST && at + size <= 65536, "a primitive has at most 256 scalars and 64 KiB");
@@ -160,7 +160,7 @@ const fn many(
     n
 }
 
-/// The spots of a type.
+/// The spots of a type, as a constant.
 struct Spots<T>(core::marker::PhantomData<T>);
 
 impl<T: Type> Spots<T> {
@@ -171,7 +171,7 @@ impl<T: Type> Spots<T> {
     };
 }
 
-/// The value whose words in the host's layout `word` gives.
+/// Reads a value from its words in the host's layout.
 #[inline(always)]
 pub(crate) fn read<M: Machine, T: Type>(m: &M, word: impl Fn(usize) -> M::U32) -> T::On<M> {
     let zero = T::On::zero(m);

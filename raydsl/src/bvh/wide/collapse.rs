@@ -1,55 +1,54 @@
-//! From the binary tree to the wide one.
+//! Collapses a binary tree to a wide one.
 //!
-//! Which of the binary nodes become nodes of the wide tree is decided by the surface area
-//! heuristic for all of them at once, from the leaves up: the least cost of what is below a binary
-//! node as a forest of one to seven trees follows from those of its two children. (Ylitie, Karras
-//! and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017,
-//! section 3.1.)
+//! Dynamic programming from the leaves up chooses the binary nodes that become wide nodes, by the
+//! surface area heuristic: the least cost of a subtree as a forest of one to seven trees follows
+//! from those of its two children. (Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal
+//! on GPUs Through Compressed Wide BVHs", HPG 2017, section 3.1.)
 
 use super::node::{Child, WIDTH, WideNode};
 use crate::bvh::Node;
 use crate::bvh::build::tasks;
 
-/// What a test of eight primitives costs, where one of eight boxes costs 1.
+/// Cost of testing eight primitives, relative to testing eight boxes.
 const BLOCK_COST: f32 = 1.0;
 
-/// The fewest nodes whose primitives a thread looks at.
+/// Nodes per task.
 const PIECE: usize = 1 << 12;
 
-/// Primitives that become a block: a range of the index list.
+/// The range of the index list that becomes a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Range {
     pub(super) first: u32,
     pub(super) count: u32,
 }
 
-/// The nodes of a wide tree, the root first, and what its blocks hold.
+/// The nodes of a wide tree, root first, and the ranges of its blocks.
 #[derive(Debug, Default)]
 pub(super) struct Collapsed {
     pub(super) nodes: Vec<WideNode>,
     pub(super) blocks: Vec<Range>,
-    /// How many children may be pending at once on the way to a leaf.
+    /// Upper bound of the children that are on a traversal stack at once.
     pub(super) pending: usize,
 }
 
-/// What is below a binary node, as a forest.
+/// The optimal forests of the subtree below a binary node.
 #[derive(Clone, Copy)]
 struct Plan {
     /// The least cost as a forest of at most `k + 1` trees.
     costs: [f32; WIDTH],
-    /// How many of these trees are on the left side; 0 if one tree less costs no more. Of one tree:
-    /// how many of the node's eight children are; 0 for a block.
+    /// The number of these trees in the left subtree; 0 if one tree less costs no more. For one
+    /// tree: the number of the wide node's children there; 0 for a block.
     left: [u8; WIDTH],
     range: Range,
-    /// The area that rays may meet below.
+    /// The area of primitives below that rays may hit.
     solidity: f32,
 }
 
-/// Collapses a binary tree. `solidity` says what area the primitives at some places of the index
-/// list have, as rays meet it.
+/// Collapses a binary tree. `solidity` returns the mean projected area of the primitives in a range
+/// of the index list.
 pub(super) fn collapse(nodes: &[Node], solidity: &(dyn Fn(Range) -> f32 + Sync)) -> Collapsed {
     let Some(root) = nodes.first() else { return Collapsed::default() };
-    // The primitives may be anywhere in memory.
+    // In parallel, since primitives may be anywhere in memory.
     let leaves = tasks::map(nodes, PIECE, |node| match node.count {
         0 => 0.0,
         count => solidity(Range { first: node.first, count }),
@@ -67,9 +66,10 @@ pub(super) fn collapse(nodes: &[Node], solidity: &(dyn Fn(Range) -> f32 + Sync))
     emission.made
 }
 
-/// The plans of all nodes: children come after their parents. `leaves` has the solidity of each leaf.
+/// Computes the plans of all nodes, whose children come after their parents. `leaves` has the
+/// solidity of each leaf.
 fn plan(nodes: &[Node], leaves: &[f32]) -> Vec<Plan> {
-    // Shares of the surface of all, for areas of `f32` overflow.
+    // Relative to the surface of the root, since areas in `f32` overflow.
     let whole = nodes.first().map_or(0.0, |root| root.bounds().half_area_f64());
     let share = |node: &Node| {
         if whole > 0.0 { (node.bounds().half_area_f64() / whole) as f32 } else { 0.0 }
@@ -90,7 +90,7 @@ fn plan(nodes: &[Node], leaves: &[f32]) -> Vec<Plan> {
     plans
 }
 
-/// The plan of a node from those of its children.
+/// Computes the plan of an inner node from those of its children.
 fn inner(area: f32, l: &Plan, r: &Plan) -> Plan {
     let (mut costs, mut left) = ([f32::INFINITY; WIDTH], [0; WIDTH]);
     for i in 0..WIDTH - 1 {
@@ -120,7 +120,7 @@ struct Emission<'a> {
     made: Collapsed,
 }
 
-/// The binary nodes that become the children of a wide one, and how those between join them.
+/// The binary nodes that become the children of a wide node, and the joints between them.
 #[derive(Default)]
 struct Children {
     nodes: [usize; WIDTH],
@@ -142,7 +142,7 @@ impl Children {
         (WIDTH + self.joint_count - 1) as u8
     }
 
-    /// Orders the children, the one of least `worth` first.
+    /// Sorts the children by ascending `worth`.
     fn sort(&mut self, worth: impl Fn(usize) -> f32) {
         let count = self.count;
         let mut order: [u8; WIDTH] = core::array::from_fn(|k| k as u8);
@@ -170,11 +170,11 @@ impl Emission<'_> {
         Child::block(self.made.blocks.len() as u32 - 1)
     }
 
-    /// Emits a node and what is below it; also how many children may be pending there.
+    /// Emits a node and its subtree; returns the node and the bound of pending children.
     fn node(&mut self, node: usize) -> (Child, usize) {
         let mut children = Children::default();
         self.split(node, self.plans[node].left[0], WIDTH, &mut children);
-        // What is likely to stop a ray, and costs little to find out, comes last.
+        // Subtrees that are likely and cheap to occlude a ray come last.
         children.sort(|child| self.worth(child));
         let index = self.made.nodes.len();
         self.made.nodes.push(WideNode::EMPTY);
@@ -191,7 +191,7 @@ impl Emission<'_> {
         (Child::node(index as u32), children.count - 1 + deepest.max(1))
     }
 
-    /// Adds the trees of a forest of at most `count` below a node; returns what joins them.
+    /// Adds the trees of a forest of at most `count` below a node; returns the joint of them.
     fn collect(&self, node: usize, count: usize, children: &mut Children) -> u8 {
         if count == 1 {
             return children.add(node);
@@ -202,7 +202,7 @@ impl Emission<'_> {
         }
     }
 
-    /// [`Emission::collect`], `left` of the trees from the left side.
+    /// As [`Emission::collect`], with `left` of the trees from the left subtree.
     fn split(&self, node: usize, left: u8, count: usize, children: &mut Children) -> u8 {
         let (first, left) = (self.nodes[node].first as usize, left as usize);
         let members = [(first, left), (first + 1, count - left)]
@@ -210,12 +210,12 @@ impl Emission<'_> {
         children.join(members)
     }
 
-    /// The chance that a ray which enters a node's box is stopped there, for each visit. (After
-    /// Nah and Manocha, "SATO: Surface Area Traversal Order for Shadow Ray Tracing", Computer
-    /// Graphics Forum 33(6), 2014.)
+    /// Estimates the probability that a ray through a node's box is occluded there, per unit of
+    /// cost. (After Nah and Manocha, "SATO: Surface Area Traversal Order for Shadow Ray Tracing",
+    /// Computer Graphics Forum 33(6), 2014.)
     fn worth(&self, node: usize) -> f32 {
         let (plan, area) = (&self.plans[node], self.nodes[node].bounds().half_area());
-        // A box without a surface is entered by few, and left as soon.
+        // Few rays enter a box without a surface.
         let stopped = 1.0 - (-plan.solidity / area.max(f32::MIN_POSITIVE)).exp();
         stopped * area / plan.costs[0].max(f32::MIN_POSITIVE)
     }

@@ -1,42 +1,39 @@
-//! What queries do in wide trees, in numbers: nothing without the feature `counts`.
+//! Counters of traversals of wide trees; they do nothing without the feature `counts`.
 
 use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// What all queries of the process have done in wide trees since
-/// [`Counts::take`] was called.
+/// Counters of all queries of the process in wide trees since the last [`Counts::take`].
 ///
-/// Finding the nodes at which the rays of a query begin is not counted. Rays too odd for the boxes of such trees, and queries with a condition or of several hits, go
-/// through the binary tree and are not counted. Of queries that
-/// run meanwhile a part may be there.
+/// Finding the entry nodes of a query is not counted, nor are degenerate rays, which fall back to
+/// the binary tree. A query that runs meanwhile may be counted in part.
 #[cfg(feature = "counts")]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Beams: rays of one octant that go through a tree together.
+    /// Beams: ray packets of one octant that are traced with interval culling.
     pub beams: u64,
-    /// The rays of all beams.
+    /// Rays of all beams.
     pub beam_rays: u64,
-    /// Nodes whose eight boxes a beam was tested against.
+    /// Nodes visited by beams, each a test of eight boxes.
     pub beam_nodes: u64,
-    /// Blocks of up to eight primitives that a beam entered.
+    /// Blocks of up to eight primitives visited by beams.
     pub beam_blocks: u64,
-    /// Tests of a box against a register of a beam's rays, one for each ray.
+    /// Tests of a box against a register of a beam's rays.
     pub register_boxes: u64,
-    /// Blocks that a register of a beam's rays met, because one of them at least entered it.
+    /// Blocks intersected by a register of a beam's rays, since one of them at least enters it.
     pub register_blocks: u64,
     /// Tests of a primitive against a register of a beam's rays.
     pub register_primitives: u64,
-    /// Nodes whose eight boxes a ray on its own was tested against.
+    /// Nodes visited by single rays and rays of streams, each a test of eight boxes.
     pub nodes: u64,
-    /// Blocks whose primitives, up to eight at once, a ray on its own was tested against.
+    /// Blocks visited by single rays and rays of streams, each a test of up to eight primitives.
     pub blocks: u64,
-    /// Those of `blocks` and `register_blocks` that held a nearer hit than was known, where the
-    /// closest one is asked for.
+    /// Those of `blocks` and `register_blocks` that held a nearer hit, in closest-hit queries.
     pub nearer: u64,
 }
 
 #[cfg(feature = "counts")]
 impl Counts {
-    /// Everything since the last call; from now on it is counted anew.
+    /// Returns the counters since the last call, and resets them.
     pub fn take() -> Self {
         let of = |event: Event| COUNTS[event as usize].swap(0, Relaxed);
         Self {
@@ -54,7 +51,7 @@ impl Counts {
     }
 }
 
-/// What is counted; see the members of [`Counts`].
+/// Events that are counted; see the members of [`Counts`].
 #[derive(Clone, Copy)]
 pub(super) enum Event {
     Beam,
@@ -72,13 +69,13 @@ pub(super) enum Event {
 static COUNTS: [AtomicU64; Event::Nearer as usize + 1] =
     [const { AtomicU64::new(0) }; Event::Nearer as usize + 1];
 
-/// Counts an event.
+/// Counts one event.
 #[inline(always)]
 pub(super) fn one(event: Event) {
     some(event, 1);
 }
 
-/// Counts as many of an event.
+/// Counts several events of one kind.
 #[inline(always)]
 pub(super) fn some(event: Event, count: u32) {
     if cfg!(feature = "counts") {

@@ -1,5 +1,5 @@
-//! Where rays that end soon begin: at a node made for them, of the boxes that any of them may
-//! enter, instead of going down from the root one by one.
+//! Entry nodes: short rays begin at a node made of the boxes that any of them may enter, instead of
+//! each descending from the root.
 
 use super::Wide;
 use super::beam::{Extents, pad};
@@ -9,14 +9,14 @@ use crate::bvh::contract::Padding;
 use crate::geometry::Aabb;
 use crate::machine::Lanes;
 
-/// Fewer rays than this are sooner traced than their node is made.
+/// The fewest rays for which an entry node is made: fewer are traced in less time.
 const FEWEST: u32 = 48;
 
-/// So many nodes are opened for it at most.
+/// The most nodes that are opened for an entry node.
 const OPENED: usize = 8;
 
-/// A node of the boxes that the rays which are alive may enter within their limits; none if they
-/// are few, or some have no end. What does not fit into it stays closed.
+/// Makes a node of the boxes that the active rays may enter within their limits; none if there are
+/// few rays, or some are unbounded. Nodes whose children do not fit stay closed.
 #[inline(always)]
 pub(super) fn of<E: Lanes>(
     e: E,
@@ -25,7 +25,7 @@ pub(super) fn of<E: Lanes>(
     root: &Aabb,
     padding: Padding,
 ) -> Option<WideNode> {
-    let count: u32 = rays.marks.iter().map(|marks| marks.alive.count_ones()).sum();
+    let count: u32 = rays.masks.iter().map(|masks| masks.active.count_ones()).sum();
     if count < FEWEST {
         return None;
     }
@@ -46,7 +46,7 @@ pub(super) fn of<E: Lanes>(
     Some(node)
 }
 
-/// Children of nodes, in the order in which rays should visit them.
+/// Children of an entry node, in traversal order.
 struct Entries {
     count: usize,
     boxes: [Aabb; WIDTH],
@@ -54,7 +54,7 @@ struct Entries {
 }
 
 impl Entries {
-    /// The inner node with the largest box; the last of several.
+    /// Returns the inner node with the largest box; the last of several.
     #[inline(never)]
     fn largest(&self) -> Option<usize> {
         let inner = (0..self.count).filter(|&i| !self.children[i].is_block());
@@ -62,25 +62,25 @@ impl Entries {
         inner.max_by(|&i, &j| area(i).total_cmp(&area(j)))
     }
 
-    /// Puts the children of the root, or of an entry in its place, that `bounds` meets; not if they
-    /// are too many.
+    /// Replaces an entry by those of its children that overlap `bounds`, or adds those of the root.
+    /// Returns false, and does nothing, if they do not fit.
     fn open(&mut self, tree: &Wide, bounds: &Aabb, entry: Option<usize>) -> bool {
         let node = &tree.nodes[entry.map_or(0, |i| self.children[i].index())];
-        let mut met = [0; WIDTH];
+        let mut overlapping = [0; WIDTH];
         let mut count = 0;
         for slot in 0..WIDTH {
-            met[count] = slot;
-            count += usize::from(meets(node, slot, bounds));
+            overlapping[count] = slot;
+            count += usize::from(overlaps(node, slot, bounds));
         }
         let (at, others) = entry.map_or((0, 0), |i| (i, self.count - 1));
         if others + count > WIDTH {
             return false;
         }
-        // Those behind the entry move.
+        // The entries after it move.
         let behind = others - at;
         self.boxes.copy_within(self.count - behind..self.count, at + count);
         self.children.copy_within(self.count - behind..self.count, at + count);
-        for (i, &slot) in met[..count].iter().enumerate() {
+        for (i, &slot) in overlapping[..count].iter().enumerate() {
             self.boxes[at + i] = node.bounds(slot);
             self.children[at + i] = Child(node.children[slot]);
         }
@@ -89,9 +89,9 @@ impl Entries {
     }
 }
 
-/// Whether the box in a slot and `bounds` have a point in common.
+/// Tests whether the box in a slot overlaps `bounds`.
 #[inline(always)]
-fn meets(node: &WideNode, slot: usize, bounds: &Aabb) -> bool {
+fn overlaps(node: &WideNode, slot: usize, bounds: &Aabb) -> bool {
     let (low, high) = (bounds.min.to_array(), bounds.max.to_array());
     let along = |axis: usize| {
         (node.planes[2 * axis][slot] <= high[axis]) & (node.planes[2 * axis + 1][slot] >= low[axis])
@@ -99,33 +99,32 @@ fn meets(node: &WideNode, slot: usize, bounds: &Aabb) -> bool {
     along(0) & along(1) & along(2)
 }
 
-/// A box around what the rays reach; none if some have no end.
+/// Computes the bounds of the active rays up to their limits; none if some are unbounded.
 #[inline(always)]
 fn bounds<E: Lanes>(e: E, rays: &Rays, root: &Aabb, padding: Padding) -> Option<Aabb> {
-    if !have_ends(e, rays) {
+    if !are_bounded(e, rays) {
         return None;
     }
     let mut origins = [Extents::none(e); 3];
     let mut ends = [Extents::none(e); 3];
-    each_alive(
+    each_active(
         e,
         rays,
         #[inline(always)]
-        |group, from, alive| {
+        |group, from, active| {
             let first = load(e, rays.row(group, row::T_MIN), from);
             let last = load(e, rays.row(group, row::LIMIT), from);
             for axis in 0..3 {
                 let o = load(e, rays.row(group, row::ORIGIN + axis), from);
                 let d = load(e, rays.row(group, row::DIRECTION + axis), from);
-                origins[axis].add(e, o, alive);
-                ends[axis].add(e, e.f32_mul_add_fast(d, first, o), alive);
-                ends[axis].add(e, e.f32_mul_add_fast(d, last, o), alive);
+                origins[axis].add(e, o, active);
+                ends[axis].add(e, e.f32_mul_add_fast(d, first, o), active);
+                ends[axis].add(e, e.f32_mul_add_fast(d, last, o), active);
             }
         },
     );
     let origins = [origins[0].extent(e), origins[1].extent(e), origins[2].extent(e)];
-    // What rounding takes from an end is within what boxes are widened by, or lies outside the
-    // scene.
+    // Rounding errors of an end are within the padding of boxes, or outside the scene.
     let pad = pad(&origins, root, padding);
     let mut bounds = Aabb::EMPTY;
     for (axis, end) in ends.into_iter().enumerate() {
@@ -136,29 +135,29 @@ fn bounds<E: Lanes>(e: E, rays: &Rays, root: &Aabb, padding: Padding) -> Option<
     bounds.is_finite().then_some(bounds)
 }
 
-/// Whether all rays that are alive end somewhere.
+/// Tests whether all active rays are bounded.
 #[inline(always)]
-pub(super) fn have_ends<E: Lanes>(e: E, rays: &Rays) -> bool {
+pub(super) fn are_bounded<E: Lanes>(e: E, rays: &Rays) -> bool {
     let mut limits = Extents::none(e);
-    each_alive(
+    each_active(
         e,
         rays,
         #[inline(always)]
-        |group, from, alive| limits.add(e, load(e, rays.row(group, row::LIMIT), from), alive),
+        |group, from, active| limits.add(e, load(e, rays.row(group, row::LIMIT), from), active),
     );
-    // `f32::MAX` is what rays have that go on.
+    // Unbounded rays have `f32::MAX`.
     limits.extent(e).greatest < f32::MAX
 }
 
-/// Calls `see` for the rays that are alive: with their group, where they begin in it, and which of
-/// them are.
+/// Calls `visit` for each register of active rays: with its group, its first lane in the group, and
+/// the active mask.
 #[inline(always)]
-fn each_alive<E: Lanes>(e: E, rays: &Rays, mut see: impl FnMut(usize, usize, E::Mask)) {
-    for (group, marks) in rays.marks.iter().enumerate() {
+fn each_active<E: Lanes>(e: E, rays: &Rays, mut visit: impl FnMut(usize, usize, E::Mask)) {
+    for (group, masks) in rays.masks.iter().enumerate() {
         for from in (0..GROUP).step_by(E::N) {
-            let alive = marks.alive >> from & lanes_mask::<E>();
-            if alive != 0 {
-                see(group, from, e.mask_from_bits(alive.into()));
+            let active = masks.active >> from & lanes_mask::<E>();
+            if active != 0 {
+                visit(group, from, e.mask_from_bits(active.into()));
             }
         }
     }

@@ -1,9 +1,9 @@
-//! Many rays that ask for any hit: they go together as long as enough of them enter a box, and their
-//! own ways from there.
+//! Hybrid any-hit traversal of many rays: as ray packets while enough of their rays enter a box,
+//! and as a ray stream from there.
 //!
 //! (After Benthin, Wald, Woop, Ernst and Mark, "Combining Single and Packet-Ray Tracing for
-//! Arbitrary Ray Distributions on the Intel MIC Architecture", TVCG 18(9), 2012; what is left of a
-//! packet goes on as a wave here, not ray by ray.)
+//! Arbitrary Ray Distributions on the Intel MIC Architecture", TVCG 18(9), 2012, whose rays leave a
+//! packet one by one.)
 
 use core::ops::Range;
 
@@ -12,40 +12,39 @@ use super::counts::{self, Event};
 use super::node::{Child, WIDTH};
 use super::octant::Octant;
 use super::order::Sequence;
-use super::packet::{Bundle, Together};
+use super::packet::{PacketScratch, RayPacket};
 use super::rays::{Rays, lanes_of, row};
-use super::step::{Meeting, enter};
+use super::step::{LeafIntersector, enter};
+use super::stream::{Interleaved, trace_interleaved};
 use super::trace::Scratch;
-use super::wave::{Turns, each_turn};
 use crate::bvh::contract::Padding;
 use crate::geometry::{Aabb, Primitive};
 use crate::machine::{Lanes, op};
 
-/// Fewer rays than this are sooner traced than sorted.
+/// The fewest rays that are sorted: fewer are traced in less time unsorted.
 pub(super) const FEWEST: u32 = 512;
 
-/// Where no more rays than this enter a box, they go their own ways from there.
+/// The most rays that leave their packet where they enter a box, for the stream.
 pub(super) const APART: u32 = 16;
 
-/// Directions may differ as they like: the order keeps them near each other, and rays that part
-/// come apart.
+/// The limit of divergence: none, since rays are sorted, and divergent ones leave the packet.
 const SPREAD: f32 = f32::INFINITY;
 
-/// So many boxes a ray may keep for its own way. Tests of the library make do with few, so that rays
-/// stay together for want of room.
+/// The most boxes that a ray may keep for the stream. Few in unit tests, so that stacks are full
+/// and rays have to stay in the packet.
 const KEPT: usize = if cfg!(test) { 3 } else { 40 };
 
-/// Whether each ray that is alive meets anything, in some sequence. `e` is for rays on their own ways.
+/// Finds whether each active ray hits anything, in some sequence. `e` are the lanes of the stream.
 #[inline(always)]
 pub(super) fn any_hit<R: Lanes, E: Lanes, P: Primitive>(
     r: R,
     e: E,
-    meeting: &Meeting<'_, P>,
+    intersector: &LeafIntersector<'_, P>,
     root: &Aabb,
     scratch: &mut Scratch,
     sequence: Sequence,
 ) {
-    let Scratch { rays, wave, together, portions } = scratch;
+    let Scratch { rays, stream, packet_scratch, portions } = scratch;
     portions.each::<false, R>(
         r,
         rays,
@@ -53,85 +52,93 @@ pub(super) fn any_hit<R: Lanes, E: Lanes, P: Primitive>(
         #[inline(always)]
         |rays| {
             rays.prepare(r, root, Padding::of::<P>());
-            let groups = 0..rays.marks.len();
-            let mut turns = wave.begin_empty(rays, groups, meeting.tree.pending + KEPT, false);
-            for groups in Octant::ranges(rays.marks.len()) {
-                go_together(r, meeting, root, rays, groups, together, &mut turns);
+            let groups = 0..rays.masks.len();
+            let mut interleaved =
+                stream.begin_empty(rays, groups, intersector.tree.pending + KEPT, false);
+            for groups in Octant::ranges(rays.masks.len()) {
+                trace_packets(r, intersector, root, rays, groups, packet_scratch, &mut interleaved);
             }
-            turns.start(rays);
-            each_turn::<false, E, P>(e, meeting, rays.words(), turns);
+            interleaved.start(rays);
+            trace_interleaved::<false, E, P>(e, intersector, rays.words(), interleaved);
         },
     );
 }
 
-/// Takes the rays of some groups through the tree, each octant for itself.
+/// Traces the rays of some groups through the tree, as one packet for each octant.
 #[inline(always)]
-fn go_together<R: Lanes, P: Primitive>(
+fn trace_packets<R: Lanes, P: Primitive>(
     r: R,
-    meeting: &Meeting<'_, P>,
+    intersector: &LeafIntersector<'_, P>,
     root: &Aabb,
     rays: &mut Rays,
     groups: Range<usize>,
-    together: &mut Together,
-    turns: &mut Turns<'_>,
+    packet_scratch: &mut PacketScratch,
+    interleaved: &mut Interleaved<'_>,
 ) {
     loop {
-        let octant = &mut together.octant;
-        let taken = octant.take(rays, groups.clone());
-        if taken == 0 {
+        let octant = &mut packet_scratch.octant;
+        let size = octant.take(rays, groups.clone());
+        if size == 0 {
             return;
         }
-        let beam = if taken > APART {
+        let beam = if size > APART {
             Beam::of(r.eight(), rays, octant, SPREAD, root, Padding::of::<P>())
         } else {
             None
         };
         if let Some(beam) = beam {
-            counts::some(Event::BeamRay, taken);
-            walk(r, meeting, rays, turns, together, &beam);
+            counts::some(Event::BeamRay, size);
+            walk(r, intersector, rays, interleaved, packet_scratch, &beam);
         } else {
             for (group, members) in octant.groups() {
-                keep(rays, turns, group, members, Child::node(0));
+                keep(rays, interleaved, group, members, Child::node(0));
             }
         }
     }
 }
 
-/// Keeps a child for the own way of some rays of a group.
+/// Pushes a child on the stream's stacks of some rays of a group.
 #[inline(always)]
-fn keep(rays: &mut Rays, turns: &mut Turns<'_>, group: usize, members: u32, child: Child) {
+fn keep(
+    rays: &mut Rays,
+    interleaved: &mut Interleaved<'_>,
+    group: usize,
+    members: u32,
+    child: Child,
+) {
     if members == 0 {
         return;
     }
     let tops = rays.row_mut(group, row::TOP);
     for lane in lanes_of(members) {
-        turns.set(tops[lane], child);
+        interleaved.set(tops[lane], child);
         tops[lane] += 1;
     }
 }
 
-/// Whether all of these rays of a group may keep one more child.
+/// Returns whether the stream's stacks of all of these rays of a group have room for one more
+/// child.
 #[inline(always)]
 fn has_room(rays: &Rays, group: usize, members: u32) -> bool {
     let (bottoms, tops) = (rays.row(group, row::BOTTOM), rays.row(group, row::TOP));
     lanes_of(members).all(|lane| ((tops[lane] - bottoms[lane]) as usize) < KEPT)
 }
 
-/// Takes a packet through the tree, and keeps for later what few of its rays enter.
+/// Traces a packet through the tree, and keeps for the stream the boxes that few of its rays enter.
 #[inline(always)]
 fn walk<R: Lanes, P: Primitive>(
     r: R,
-    meeting: &Meeting<'_, P>,
+    intersector: &LeafIntersector<'_, P>,
     rays: &mut Rays,
-    turns: &mut Turns<'_>,
-    together: &mut Together,
+    interleaved: &mut Interleaved<'_>,
+    packet_scratch: &mut PacketScratch,
     beam: &Beam,
 ) {
-    let (e, tree) = (r.eight(), meeting.tree);
-    together.make_room(tree);
-    let Together { stack, octant, .. } = together;
+    let (e, tree) = (r.eight(), intersector.tree);
+    packet_scratch.make_room(tree);
+    let PacketScratch { stack, octant, .. } = packet_scratch;
     counts::one(Event::Beam);
-    let mut bundle = Bundle::new(r, rays, octant, beam.side);
+    let mut packet = RayPacket::new(r, rays, octant, beam.side);
     let slots = e.u32_from_fn(
         #[inline(always)]
         |i| i as u32,
@@ -152,16 +159,16 @@ fn walk<R: Lanes, P: Primitive>(
             let (node, slot) = (stack[top] as usize / WIDTH, stack[top] as usize % WIDTH);
             let node = &tree.nodes[node];
             let child = Child(node.children[slot]);
-            let (entering, count) = bundle.enter(node, slot);
+            let (entering, count) = packet.enter(node, slot);
             if count == 0 {
                 continue;
             }
-            let of_groups = || bundle.octant.groups().zip(entering);
+            let of_groups = || packet.octant.groups().zip(entering);
             if count <= APART
-                && of_groups().all(|((group, _), there)| has_room(bundle.rays, group, there))
+                && of_groups().all(|((group, _), active)| has_room(packet.rays, group, active))
             {
-                for ((group, _), there) in of_groups() {
-                    keep(bundle.rays, turns, group, there, child);
+                for ((group, _), active) in of_groups() {
+                    keep(packet.rays, interleaved, group, active, child);
                 }
                 continue;
             }
@@ -169,7 +176,7 @@ fn walk<R: Lanes, P: Primitive>(
                 break child.0;
             }
             counts::one(Event::BeamBlock);
-            if !bundle.stop(meeting, meeting.rows(child.index()), entering) {
+            if !packet.any_hits(intersector, intersector.rows(child.index()), entering) {
                 return;
             }
         };

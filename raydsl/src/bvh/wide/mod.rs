@@ -1,5 +1,5 @@
-//! The wide tree: nodes of eight children over blocks of eight primitives, which one ray meets in
-//! one test each, and how many rays go through it.
+//! The wide tree: nodes of eight children over blocks of eight primitives, each tested by one ray
+//! at once, and its traversals by single rays, ray streams and ray packets.
 
 mod beam;
 mod binary;
@@ -15,11 +15,11 @@ mod packet;
 mod rays;
 pub(crate) mod single;
 mod step;
+mod stream;
 #[cfg(test)]
 mod tests;
 pub(crate) mod trace;
 mod walks;
-mod wave;
 
 use super::build::Tree;
 use super::{Node, Traversal};
@@ -28,15 +28,16 @@ use blocks::Blocks;
 use node::WideNode;
 pub(crate) use walks::{Walks, walks};
 
-/// A wide tree with its primitives in its leaves; see [`Bvh::build_wide`](super::Bvh::build_wide).
+/// A wide tree with a copy of the primitives in its leaves; see
+/// [`Bvh::build_wide`](super::Bvh::build_wide).
 #[derive(Clone, Debug)]
 pub(crate) struct Wide {
     nodes: Vec<WideNode>,
     blocks: Blocks,
-    /// How many children may be pending at once on the way to a leaf.
+    /// Upper bound of the children that are on a traversal stack at once.
     pending: usize,
     bounds: Aabb,
-    /// How rays go through it.
+    /// The traversal of queries of many rays.
     pub(super) traversal: Traversal,
 }
 
@@ -63,12 +64,12 @@ impl Wide {
         self.nodes.is_empty()
     }
 
-    /// A box around everything.
+    /// Returns the bounds of all primitives.
     pub(super) fn bounds(&self) -> Aabb {
         self.bounds
     }
 
-    /// Bytes of nodes and leaves.
+    /// Returns the size of nodes and leaves in bytes.
     pub(super) fn bytes(&self) -> usize {
         size_of_val(&self.nodes[..]) + self.blocks.bytes()
     }

@@ -1,58 +1,58 @@
-//! Rays of some groups that go up or down along each axis together.
+//! Rays of some groups whose directions lie in one octant.
 
 use core::ops::Range;
 
 use super::rays::Rays;
 
-/// Groups whose rays go together: with more, boxes are entered that few rays meet.
+/// Groups per ray packet: larger packets enter more boxes that few of their rays enter.
 pub(super) const GROUPS: usize = 4;
 
-/// Some rays of groups that follow each other.
+/// Rays of one octant in consecutive groups.
 #[derive(Debug, Default)]
 pub(super) struct Octant {
     first: usize,
     count: usize,
-    /// A bit for each ray.
+    /// The rays, as a bit mask for each group.
     members: [u32; GROUPS],
 }
 
 impl Octant {
-    /// The groups, `GROUPS` of them at a time.
+    /// Iterates over ranges of `GROUPS` groups.
     pub(super) fn ranges(groups: usize) -> impl Iterator<Item = Range<usize>> {
         (0..groups).step_by(GROUPS).map(move |first| first..(first + GROUPS).min(groups))
     }
 
-    /// Takes the rays of one octant from those of some groups that are alive, at most `GROUPS`;
-    /// returns how many.
+    /// Takes the rays of one octant from the active rays of at most `GROUPS` groups; returns how
+    /// many rays.
     #[inline(always)]
     pub(super) fn take(&mut self, rays: &mut Rays, groups: Range<usize>) -> u32 {
         debug_assert!(groups.len() <= GROUPS);
         *self = Self { first: groups.start, count: groups.len(), members: [0; GROUPS] };
         let mut octant = None;
         let mut count = 0;
-        for (marks, members) in rays.marks[groups].iter_mut().zip(&mut self.members) {
-            let alive = marks.alive;
-            if alive == 0 {
+        for (masks, members) in rays.masks[groups].iter_mut().zip(&mut self.members) {
+            let active = masks.active;
+            if active == 0 {
                 continue;
             }
-            let [x, y, z] = marks.sides;
-            let first = alive.trailing_zeros();
+            let [x, y, z] = masks.sides;
+            let first = active.trailing_zeros();
             let whole = |side: u32| (side >> first & 1).wrapping_neg();
             let [ox, oy, oz] = *octant.get_or_insert([whole(x), whole(y), whole(z)]);
-            *members = alive & !(x ^ ox) & !(y ^ oy) & !(z ^ oz);
-            marks.alive &= !*members;
+            *members = active & !(x ^ ox) & !(y ^ oy) & !(z ^ oz);
+            masks.active &= !*members;
             count += members.count_ones();
         }
         count
     }
 
-    /// The numbers of the groups, each with its rays.
+    /// Iterates over the indices of the groups, each with the mask of its rays.
     #[inline(always)]
     pub(super) fn groups(&self) -> impl Iterator<Item = (usize, u32)> + use<> {
         (self.first..).zip(self.members).take(self.count)
     }
 
-    /// Goes on without some rays of each group; whether any is left.
+    /// Removes some rays of each group; returns whether any ray is left.
     #[inline(always)]
     pub(super) fn leave(&mut self, rays: [u32; GROUPS]) -> bool {
         let mut left = 0;

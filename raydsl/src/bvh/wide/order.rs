@@ -1,4 +1,4 @@
-//! The rays of a query in another order, some at a time.
+//! Ray reordering: the rays of a query, sorted by direction, in portions.
 
 use core::ops::Range;
 
@@ -6,27 +6,27 @@ use super::rays::{GROUP, Rays, lanes_mask, lanes_of, load, place, row};
 use crate::bvh::packet_slabs::{abs, add, max, min, mul};
 use crate::machine::{Lanes, op};
 
-/// Directions are told apart by so many steps along each axis.
+/// Quantisation steps of directions along each axis.
 const STEPS: u32 = 8;
 const KEYS: usize = (STEPS * STEPS * STEPS) as usize;
 
-/// The most groups whose rays are sorted at once, so that they stay in a cache of the second level.
+/// The most groups that are sorted at once, so that they stay in the L2 cache.
 const MOST: usize = 256;
-const _: () = assert!(MOST * GROUP <= 1 << 16, "a ray's number has 16 bits below its key");
+const _: () = assert!(MOST * GROUP <= 1 << 16, "a ray's index has 16 bits below its key");
 
-/// So many rays at once come from the order: what they need lies in a cache of the second level.
+/// Rays per portion, whose data fits into the L2 cache.
 const SOME: usize = 512;
 
-/// In which order rays come.
+/// The order of rays.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Sequence {
     AsTheyCome,
-    /// Along a Morton curve through the cube that they point to, so that rays of an octant come
-    /// together.
+    /// Along a Morton curve through the cube of directions, so that rays of an octant are
+    /// consecutive.
     ByDirection,
 }
 
-/// The rays of a query in a sequence, some at a time. Its memory is kept from one query to the next.
+/// The rays of a query in a sequence, in portions. Its memory is reused by the next query.
 #[derive(Debug, Default)]
 pub(super) struct Portions {
     order: Order,
@@ -34,8 +34,8 @@ pub(super) struct Portions {
 }
 
 impl Portions {
-    /// Hands over the rays that are alive, and takes back what they have found: with `CLOSEST` hits,
-    /// else whether there is any.
+    /// Calls `find` with the active rays in portions, and copies the results back: hits with
+    /// `CLOSEST`, else whether there is any.
     #[inline(always)]
     pub(super) fn each<const CLOSEST: bool, R: Lanes>(
         &mut self,
@@ -45,7 +45,7 @@ impl Portions {
         mut find: impl FnMut(&mut Rays),
     ) {
         let Self { order, some } = self;
-        let count = rays.marks.len();
+        let count = rays.masks.len();
         for first in (0..count).step_by(MOST) {
             let groups = first..(first + MOST).min(count);
             let places = match sequence {
@@ -60,34 +60,34 @@ impl Portions {
         }
     }
 
-    /// Whether any rays have been put into order.
+    /// Returns whether any rays have been sorted.
     #[cfg(test)]
     pub(super) fn has_sorted(&self) -> bool {
         !self.order.keys.is_empty()
     }
 }
 
-/// What sorting needs.
+/// Scratch memory of sorting.
 #[derive(Debug, Default)]
 pub(super) struct Order {
-    /// Of each ray: its key above its number.
+    /// For each ray, its key above its index.
     keys: Vec<u32>,
-    /// The places of the rays, in order.
+    /// The sorted places of the rays.
     places: Vec<u32>,
 }
 
 impl Order {
-    /// The places of the rays that are alive in some groups.
+    /// Returns the places of the active rays of some groups.
     pub(super) fn as_they_come(&mut self, rays: &Rays, groups: Range<usize>) -> &[u32] {
         self.places.clear();
         for group in groups {
-            let lanes = lanes_of(rays.marks[group].alive);
+            let lanes = lanes_of(rays.masks[group].active);
             self.places.extend(lanes.map(|lane| place(GROUP * group + lane)));
         }
         &self.places
     }
 
-    /// The same in the order of their directions.
+    /// Returns the places of the active rays of some groups, sorted by direction.
     #[inline(always)]
     pub(super) fn by_direction<R: Lanes>(
         &mut self,
@@ -99,14 +99,14 @@ impl Order {
         let mut begins = [0u32; KEYS];
         let first = groups.start;
         for group in groups {
-            let alive = rays.marks[group].alive;
+            let active = rays.masks[group].active;
             let mut keys = [0; GROUP];
             for from in (0..GROUP).step_by(R::N) {
-                if alive >> from & lanes_mask::<R>() != 0 {
+                if active >> from & lanes_mask::<R>() != 0 {
                     r.u32_store(keys_of(r, rays, group, from), &mut keys[from..]);
                 }
             }
-            for lane in lanes_of(alive) {
+            for lane in lanes_of(active) {
                 let key = keys[lane] % KEYS as u32;
                 begins[key as usize] += 1;
                 self.keys.push(key << 16 | (GROUP * (group - first) + lane) as u32);
@@ -118,15 +118,15 @@ impl Order {
         }
         self.places.resize(self.keys.len(), 0);
         for &key in &self.keys {
-            let number = &mut begins[(key >> 16) as usize % KEYS];
-            self.places[*number as usize] = place(GROUP * first + (key & 0xffff) as usize);
-            *number += 1;
+            let next = &mut begins[(key >> 16) as usize % KEYS];
+            self.places[*next as usize] = place(GROUP * first + (key & 0xffff) as usize);
+            *next += 1;
         }
         &self.places
     }
 }
 
-/// Three bits of each component of the directions, interleaved.
+/// Computes Morton codes of directions, with three bits of each component.
 #[inline(always)]
 fn keys_of<R: Lanes>(r: R, rays: &Rays, group: usize, from: usize) -> R::U32 {
     let x = load(r, rays.row(group, row::DIRECTION), from);

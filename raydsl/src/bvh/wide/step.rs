@@ -1,4 +1,4 @@
-//! One ray, eight boxes or eight primitives.
+//! Steps of a traversal: one ray against eight boxes or eight primitives.
 
 use super::Wide;
 use super::blocks::{self, Row};
@@ -10,13 +10,13 @@ use crate::bvh::packet_slabs::{max, min};
 use crate::geometry::{HitOn, HitRecord, Kinds, Primitive, RayOn};
 use crate::machine::{F, Lanes, Packet, Slice, op};
 
-/// What meets boxes: a ray, or a beam of them.
+/// The slabs of box tests: of a ray, or of a beam.
 pub(super) trait Slabs: Copy {
-    /// 1 where upper planes come first.
+    /// Returns 1 if upper planes are hit first, else 0.
     fn side(self, axis: usize) -> usize;
-    /// The first plane is met at itself times the first number plus the second one.
+    /// Returns the scale and the offset that map the near plane to its distance.
     fn near(self, axis: usize) -> [f32; 2];
-    /// The last plane.
+    /// Returns the scale and the offset that map the far plane to its distance.
     fn far(self, axis: usize) -> [f32; 2];
     fn t_min(self) -> f32;
     fn limit(self) -> f32;
@@ -29,23 +29,24 @@ impl Slabs for RayWords<'_> {
     }
     #[inline(always)]
     fn near(self, axis: usize) -> [f32; 2] {
-        [self.number(row::INVERSE + axis), self.number(row::FIRST + axis)]
+        [self.float(row::INVERSE + axis), self.float(row::FIRST + axis)]
     }
     #[inline(always)]
     fn far(self, axis: usize) -> [f32; 2] {
-        [self.number(row::INVERSE + axis), self.number(row::LAST + axis)]
+        [self.float(row::INVERSE + axis), self.float(row::LAST + axis)]
     }
     #[inline(always)]
     fn t_min(self) -> f32 {
-        self.number(row::T_MIN)
+        self.float(row::T_MIN)
     }
     #[inline(always)]
     fn limit(self) -> f32 {
-        self.number(row::LIMIT)
+        self.float(row::LIMIT)
     }
 }
 
-/// Where a ray enters the children of a node, and which it does at or before its limit.
+/// Returns the entry distances of the children of a node, and the mask of those that are entered
+/// within the limit.
 #[inline(always)]
 pub(super) fn enter<E: Lanes>(e: E, node: &WideNode, ray: impl Slabs) -> (E::F32, E::Mask) {
     let [near_x, far_x] = slab(e, node, ray, 0);
@@ -57,12 +58,12 @@ pub(super) fn enter<E: Lanes>(e: E, node: &WideNode, ray: impl Slabs) -> (E::F32
     (near, e.f32_compare(op::Le, near, far))
 }
 
-/// When a ray meets the first and the last plane of each child along an axis.
+/// Returns the distances of the near and the far plane of each child along an axis.
 #[inline(always)]
 fn slab<E: Lanes>(e: E, node: &WideNode, ray: impl Slabs, axis: usize) -> [E::F32; 2] {
     let side = ray.side(axis) & 1;
-    let near = numbers(e, &node.planes[2 * axis + side]);
-    let far = numbers(e, &node.planes[2 * axis + 1 - side]);
+    let near = floats(e, &node.planes[2 * axis + side]);
+    let far = floats(e, &node.planes[2 * axis + 1 - side]);
     let ([scale, first], [last_scale, last]) = (ray.near(axis), ray.far(axis));
     [
         e.f32_mul_add_fast(near, e.f32(scale), e.f32(first)),
@@ -70,25 +71,25 @@ fn slab<E: Lanes>(e: E, node: &WideNode, ray: impl Slabs, axis: usize) -> [E::F3
     ]
 }
 
-/// The slots of the children that a ray enters, the farthest first, below the bits of the distance
-/// at which it does.
+/// Sorts the slots of the children that a ray enters, farthest first, each below the bits of its
+/// entry distance.
 #[inline(always)]
 pub(super) fn sorted<E: Lanes>(e: E, near: E::F32, mask: E::Mask) -> E::U32 {
     e.u32_sort_descending(e.u32_select(mask, keys(e, near), e.u32(0)))
 }
 
-/// The slot of the child that a ray enters first, if it enters any.
+/// Returns the slot of the child that a ray enters first, if it enters any.
 ///
-/// It is there before all of them are sorted, and the next node can be fetched meanwhile.
+/// The result is ready before all children are sorted, so the next node is fetched meanwhile.
 #[inline(always)]
 pub(super) fn nearest<E: Lanes>(e: E, near: E::F32, mask: E::Mask) -> usize {
     e.u32_least(e.u32_select(mask, keys(e, near), e.u32(u32::MAX))) as usize % WIDTH
 }
 
-/// Slots below the bits of distances.
+/// Returns the slots below the bits of their distances.
 #[inline(always)]
 fn keys<E: Lanes>(e: E, near: E::F32) -> E::U32 {
-    // In this order a zero has no sign.
+    // In this order of operands a zero has no sign.
     let near = e.f32_binary(op::Max, e.f32(0.0), near);
     let near = e.u32_binary(op::And, e.f32_to_bits(near), e.u32(!7));
     let slots = e.u32_from_fn(
@@ -98,24 +99,24 @@ fn keys<E: Lanes>(e: E, near: E::F32) -> E::U32 {
     e.u32_binary(op::Or, near, slots)
 }
 
-/// What is compared with the bits of a distance, without the slot below them, at which a box is
-/// entered: no box with more may hold a hit before `limit`.
+/// Returns the last key within `limit`: a box whose entry distance has more bits, without the slot
+/// below them, is culled.
 #[inline(always)]
 pub(super) fn last_key(limit: f32) -> u32 {
-    // Below the first distance above zero no bits are larger.
+    // All distances up to zero have the bits of zero.
     if limit > 0.0 { limit.to_bits() } else { 7 }
 }
 
-/// Eight numbers from memory.
+/// Loads eight floats.
 #[inline(always)]
-fn numbers<E: Lanes>(e: E, numbers: &[f32; WIDTH]) -> E::F32 {
+fn floats<E: Lanes>(e: E, floats: &[f32; WIDTH]) -> E::F32 {
     e.f32_from_fn(
         #[inline(always)]
-        |i| numbers[i],
+        |i| floats[i],
     )
 }
 
-/// Eight words from memory.
+/// Loads eight words.
 #[inline(always)]
 pub(super) fn words<E: Lanes>(e: E, words: &[u32; WIDTH]) -> E::U32 {
     e.u32_from_fn(
@@ -124,25 +125,25 @@ pub(super) fn words<E: Lanes>(e: E, words: &[u32; WIDTH]) -> E::U32 {
     )
 }
 
-/// What rays meet the primitives of a wide tree with.
-pub(super) struct Meeting<'a, P: Primitive> {
+/// Intersects rays with the primitives in the leaves of a wide tree.
+pub(super) struct LeafIntersector<'a, P: Primitive> {
     pub(super) tree: &'a Wide,
     pub(super) part: Part<'a, P, P::Shared>,
     pub(super) shared: Slice<'a, P::Shared>,
     pub(super) kinds: Kinds,
 }
 
-impl<P: Primitive> Meeting<'_, P> {
-    /// The rows of a block.
+impl<P: Primitive> LeafIntersector<'_, P> {
+    /// Returns the rows of a block.
     #[inline(always)]
     pub(super) fn rows(&self, index: usize) -> &[Row] {
         self.tree.blocks.block::<P>(index)
     }
 
-    /// Where a ray meets the primitives of a block, and where that is within the ray's range and
-    /// not beyond `best`.
+    /// Intersects a ray with the primitives of a block; returns the hits, and the mask of those
+    /// that are within the ray's range and not beyond `best`.
     #[inline(always)]
-    pub(super) fn block<E: Lanes>(
+    pub(super) fn intersect<E: Lanes>(
         &self,
         e: E,
         block: &[Row],
@@ -157,22 +158,22 @@ impl<P: Primitive> Meeting<'_, P> {
         );
         let record = P::intersect_among_on(m, self.kinds, prim, ray, self.shared);
         let hit = P::Hit::hit_on(record);
-        // In this order a range without an end that is a number holds nothing.
+        // In this order of operands a range with a NaN limit is empty.
         let t_max = F(min(e, ray.t_max.0, e.f32(best)));
         (hit, is_within::on(m, hit, RayOn { t_max, ..ray }).0)
     }
 }
 
-/// How many primitives a block has: what is left has its first one again.
+/// Counts the primitives of a block, whose unused lanes repeat the first one.
 #[inline(always)]
 pub(super) fn count<E: Lanes>(e: E, block: &[Row]) -> usize {
     let ids = ids(block);
     let again = e.bits(e.u32_compare(op::Eq, words(e, ids), e.u32(ids[0])));
-    // The first one is itself.
+    // The first lane equals itself.
     ((again & !1) | 1 << WIDTH).trailing_zeros() as usize % (WIDTH + 1)
 }
 
-/// The numbers of a block's primitives.
+/// Returns the ids of a block's primitives.
 #[inline(always)]
 pub(super) fn ids(block: &[Row]) -> &[u32; WIDTH] {
     &block[block.len() - 1].0

@@ -1,4 +1,4 @@
-//! What holds of every wide tree.
+//! Invariants of wide trees and of their traversals.
 
 use std::collections::{HashMap, HashSet};
 
@@ -8,7 +8,7 @@ use super::node::{Child, WIDTH, WideNode};
 use super::octant::Octant;
 use super::order::{Order, Portions, Sequence};
 use super::rays::{GROUP, Rays, lanes_of, place, ray_at, ray_at_mut, row};
-use super::trace::{self, Ways};
+use super::trace::{self, Used};
 use super::{Wide, entry};
 use crate::bvh::build::{Primitives, build_watched};
 use crate::bvh::contract::Padding;
@@ -18,12 +18,12 @@ use crate::bvh::{BuildConfig, BuildQuality, Bvh, Node, RayQuery, Settings, Trave
 use crate::geometry::{Aabb, Hit, Ray, Triangle};
 use crate::machine::Simd8;
 
-/// A wide tree of however few primitives.
+/// Returns the settings of a wide tree over any number of primitives.
 fn wide() -> BuildConfig {
     BuildConfig { min_wide_size: 0, ..BuildConfig::default() }
 }
 
-/// A point of the unit cube for each pair of numbers.
+/// Returns a pseudo-random point of the unit cube for each pair of numbers.
 fn point(i: u32, k: u32) -> Vec3 {
     let coordinate = |k: u32| {
         let bits = (i * 31 + k).wrapping_mul(0x9e37_79b9) >> 8;
@@ -32,7 +32,7 @@ fn point(i: u32, k: u32) -> Vec3 {
     Vec3::new(coordinate(k), coordinate(k + 1), coordinate(k + 2))
 }
 
-/// A triangle for each number, in clusters of every size; some are the same.
+/// Returns triangles in clusters of every size, some of them equal.
 fn triangles(count: u32) -> Vec<Triangle> {
     (0..count)
         .map(|i| {
@@ -43,8 +43,8 @@ fn triangles(count: u32) -> Vec<Triangle> {
         .collect()
 }
 
-/// Walks everything below a child, and notes what is in its blocks; how many children are pending
-/// at most where each node's are visited in the worst order.
+/// Counts the primitives in the blocks below a child; returns the most pending children in the
+/// worst order of traversal.
 fn walk(tree: &Wide, child: Child, bounds: Aabb, prims: &[Triangle], seen: &mut [u32]) -> usize {
     if child.is_block() {
         let block = tree.blocks.block::<Triangle>(child.index());
@@ -55,7 +55,7 @@ fn walk(tree: &Wide, child: Child, bounds: Aabb, prims: &[Triangle], seen: &mut 
         assert!(ids[count..].iter().all(|&id| id == ids[0]), "{ids:?}");
         once.iter().for_each(|&id| seen[id as usize] += 1);
         for (lane, &id) in ids.iter().enumerate() {
-            // Of a primitive that was cut a part is there.
+            // Split primitives are there in part.
             let part = bounds.intersection(prims[id as usize].get_bounds());
             assert!(part.is_valid());
             let words: Vec<f32> =
@@ -91,7 +91,7 @@ fn blocks_hold_every_primitive_and_stacks_are_deep_enough() {
         for quality in BuildQuality::ALL {
             let config = BuildConfig { quality, ..wide() };
             let bvh = Bvh::build_wide(&prims, &[], &config).expect("finite bounds");
-            let tree = bvh.tree.own.structure.wide().expect("it was asked for");
+            let tree = bvh.tree.own.structure.wide().expect("a wide tree was asked for");
             let mut seen = vec![0; prims.len()];
             let pending = walk(tree, Child::node(0), bvh.bounds(), &prims, &mut seen);
             assert!(pending <= tree.pending, "{pending} of {}", tree.pending);
@@ -123,18 +123,18 @@ fn the_binary_tree_comes_back() {
     }
 }
 
-/// The box of a node, as something to look up.
+/// Returns the bits of a node's box, as a key of hash sets.
 fn bits(node: &Node) -> [[u32; 3]; 2] {
-    // Zeros of either sign are one plane.
+    // Zeros of either sign are the same plane.
     [node.min, node.max].map(|corner| (corner + 0.0).to_array().map(f32::to_bits))
 }
 
 #[test]
-fn the_binary_tree_is_there_once_it_is_asked_for() {
+fn the_binary_tree_is_made_on_demand() {
     let prims = triangles(1000);
     let bvh = Bvh::build_wide(&prims, &[], &wide()).expect("finite bounds");
-    let alone = bvh.bytes();
-    assert_eq!(bvh.statistics().bytes, alone);
+    let wide_only = bvh.bytes();
+    assert_eq!(bvh.statistics().bytes, wide_only);
     assert!(validate(&bvh).is_ok());
     let rays: Vec<Ray> = (0..600)
         .map(|i| Ray { t_max: 9.0, ..Ray::new(point(i, 1) * 20.0, point(i, 5) - 0.5) })
@@ -144,19 +144,19 @@ fn the_binary_tree_is_there_once_it_is_asked_for() {
         assert_eq!(bvh.any_hit(*ray), prims.any_hit(*ray));
     }
     assert_eq!(bvh.closest_hits(&rays).len() + bvh.any_hits(&rays).len(), 1200);
-    assert_eq!(bvh.bytes(), alone, "nothing has asked");
-    let odd = Ray::new(Vec3::splat(-1e30), Vec3::splat(1e-10));
+    assert_eq!(bvh.bytes(), wide_only, "nothing has asked for it");
+    let degenerate = Ray::new(Vec3::splat(-1e30), Vec3::splat(1e-10));
     std::thread::scope(|scope| {
         for _ in 0..4 {
-            scope.spawn(|| assert_eq!(bvh.closest_hit(odd), prims.closest_hit(odd)));
+            scope.spawn(|| assert_eq!(bvh.closest_hit(degenerate), prims.closest_hit(degenerate)));
         }
     });
-    assert!(bvh.bytes() > alone, "the ray is too odd for the wide tree");
+    assert!(bvh.bytes() > wide_only, "a degenerate ray falls back to the binary tree");
     let binary = size_of_val(bvh.nodes()) + size_of_val(bvh.indices());
-    assert_eq!((bvh.bytes(), bvh.bounds()), (alone + binary, bvh.nodes()[0].bounds()));
+    assert_eq!((bvh.bytes(), bvh.bounds()), (wide_only + binary, bvh.nodes()[0].bounds()));
 }
 
-/// The blocks in and below a slot whose boxes meet `bounds`.
+/// Collects the blocks below a node whose boxes overlap `bounds`.
 fn blocks(tree: &Wide, node: &WideNode, bounds: Aabb, found: &mut HashSet<u32>) {
     for slot in 0..WIDTH {
         let child = Child(node.children[slot]);
@@ -172,11 +172,11 @@ fn blocks(tree: &Wide, node: &WideNode, bounds: Aabb, found: &mut HashSet<u32>) 
 }
 
 #[test]
-fn entries_lead_to_all_that_rays_may_reach() {
+fn entry_nodes_lead_to_all_blocks_within_reach() {
     let e = Simd8(fearless_simd::Fallback::new());
     let prims = triangles(3000);
     let bvh = Bvh::build_wide(&prims, &[], &wide()).expect("finite bounds");
-    let tree = bvh.tree.own.structure.wide().expect("it was asked for");
+    let tree = bvh.tree.own.structure.wide().expect("a wide tree was asked for");
     let (root, padding) = (bvh.bounds(), Padding::of::<Triangle>());
     let (mut rays, mut opened) = (Rays::default(), 0);
     for case in 0..300 {
@@ -198,7 +198,7 @@ fn entries_lead_to_all_that_rays_may_reach() {
             rays.prepare(e, &root, padding);
             entry::of(e, tree, &rays, &root, padding)
         };
-        let entry = of(&all).expect("rays with an end");
+        let entry = of(&all).expect("bounded rays");
         let (mut below, mut wanted) = (HashSet::new(), HashSet::new());
         blocks(tree, &entry, reach, &mut below);
         blocks(tree, &tree.nodes[0], reach, &mut wanted);
@@ -206,14 +206,14 @@ fn entries_lead_to_all_that_rays_may_reach() {
         let is_new = |child: &u32| !tree.nodes[0].children.contains(child);
         opened += u32::from(entry.children.iter().any(is_new));
         all[7].t_max = f32::MAX;
-        assert!(of(&all).is_none(), "one has no end");
+        assert!(of(&all).is_none(), "one is unbounded");
         assert!(of(&all[20..60]).is_none(), "few");
     }
     assert!(opened > 200, "{opened}");
 }
 
 #[test]
-fn nothing_is_a_tree_too() {
+fn an_empty_scene_has_a_wide_tree() {
     let bvh = Bvh::<Triangle>::build_wide(&[], &[], &wide()).expect("nothing");
     assert!(bvh.tree.own.structure.wide().is_some_and(|tree| tree.bytes() == 0));
 }
@@ -230,13 +230,13 @@ fn the_order_has_each_ray_once_octant_by_octant() {
     let mut rays = Rays::default();
     rays.load(&all);
     rays.prepare(e, &Aabb::new(Vec3::ZERO, Vec3::ONE), Padding::of::<Triangle>());
-    let is_alive = |i: &usize| !i.is_multiple_of(3);
-    for (group, marks) in rays.marks.iter_mut().enumerate() {
-        marks.alive =
-            (0..GROUP).filter(|lane| is_alive(&(GROUP * group + lane))).map(|l| 1 << l).sum();
+    let is_active = |i: &usize| !i.is_multiple_of(3);
+    for (group, masks) in rays.masks.iter_mut().enumerate() {
+        masks.active =
+            (0..GROUP).filter(|lane| is_active(&(GROUP * group + lane))).map(|l| 1 << l).sum();
     }
-    let alive = (0..all.len()).filter(is_alive);
-    let numbers: HashMap<u32, usize> = alive.map(|i| (place(i), i)).collect();
+    let active = (0..all.len()).filter(is_active);
+    let numbers: HashMap<u32, usize> = active.map(|i| (place(i), i)).collect();
     let groups = 0..all.len() / GROUP;
     let mut order = Order::default();
     let sorted = order.by_direction(e, &rays, groups.clone());
@@ -245,48 +245,52 @@ fn the_order_has_each_ray_once_octant_by_octant() {
     assert_eq!((sorted.len(), once.len()), (expected, expected));
     let octant = |place: &u32| all[numbers[place]].direction.to_array().map(|d| d >= 0.0);
     let changes = sorted.windows(2).filter(|pair| octant(&pair[0]) != octant(&pair[1])).count();
-    // Directions along an axis lie between octants.
+    // Directions along an axis are between octants.
     assert!(changes <= 7 + 4, "{changes}");
 }
 
 #[test]
-fn portions_have_each_ray_once_and_bring_back_what_it_found() {
+fn portions_have_each_ray_once_and_copy_its_result_back() {
     let e = Simd8(fearless_simd::Fallback::new());
-    // More than are sorted at once.
+    // More rays than are sorted at once.
     let all: Vec<Ray> = (0..5000)
         .map(|i| Ray::new(Vec3::splat(i as f32), if i % 9 == 5 { Vec3::NAN } else { point(i, 5) }))
         .collect();
     for sequence in [Sequence::AsTheyCome, Sequence::ByDirection] {
         let mut rays = Rays::default();
         rays.load(&all);
-        assert_eq!(rays.all_alive() as usize, all.len() - (0..5000).filter(|i| i % 9 == 5).count());
+        assert_eq!(
+            rays.activate_all() as usize,
+            all.len() - (0..5000).filter(|i| i % 9 == 5).count()
+        );
         for round in 1..=2 {
-            let odd = |i: usize| i.is_multiple_of(100);
+            let degenerate = |i: usize| i.is_multiple_of(100);
             Portions::default().each::<true, _>(e, &mut rays, sequence, |some| {
-                for group in 0..some.marks.len() {
-                    for lane in lanes_of(some.marks[group].asked) {
+                for group in 0..some.masks.len() {
+                    for lane in lanes_of(some.masks[group].queried) {
                         let mut ray = ray_at_mut(some.words(), place(GROUP * group + lane));
-                        let number = ray.as_ref().number(row::ORIGIN);
+                        let index = ray.as_ref().float(row::ORIGIN);
                         let found = ray.as_ref().word(row::FOUND);
-                        assert_eq!(found, round - 1, "what it has found before is there");
+                        assert_eq!(found, round - 1, "the earlier result is there");
                         ray.set(row::FOUND, found + 1);
-                        ray.set_number(row::T, number + round as f32);
-                        ray.set(row::ID, number as u32);
-                        ray.set_number(row::LIMIT, 2.0 * number);
-                        some.marks[group].odd |= u32::from(odd(number as usize)) << lane;
+                        ray.set_float(row::T, index + round as f32);
+                        ray.set(row::ID, index as u32);
+                        ray.set_float(row::LIMIT, 2.0 * index);
+                        some.masks[group].degenerate |=
+                            u32::from(degenerate(index as usize)) << lane;
                     }
                 }
             });
             for (i, Ray { direction, .. }) in all.iter().enumerate() {
                 let ray = ray_at(rays.words(), place(i));
-                let result = (ray.word(row::FOUND), ray.word(row::ID), ray.number(row::T));
-                let limit = ray.number(row::LIMIT);
-                let is_odd = rays.marks[i / GROUP].odd >> (i % GROUP) & 1 == 1;
+                let result = (ray.word(row::FOUND), ray.word(row::ID), ray.float(row::T));
+                let limit = ray.float(row::LIMIT);
+                let is_degenerate = rays.masks[i / GROUP].degenerate >> (i % GROUP) & 1 == 1;
                 if direction.is_nan() {
-                    assert!(result.0 == 0 && limit == all[i].t_max && !is_odd, "{i}");
+                    assert!(result.0 == 0 && limit == all[i].t_max && !is_degenerate, "{i}");
                 } else {
                     assert_eq!(result, (round, i as u32, i as f32 + round as f32));
-                    assert!(limit == 2.0 * i as f32 && is_odd == odd(i), "{i}");
+                    assert!(limit == 2.0 * i as f32 && is_degenerate == degenerate(i), "{i}");
                 }
             }
         }
@@ -301,23 +305,23 @@ fn octants_have_each_ray_once() {
         let mut rays = Rays::default();
         rays.load(&all);
         rays.prepare(e, &Aabb::new(Vec3::ZERO, Vec3::ONE), Padding::of::<Triangle>());
-        for (group, marks) in rays.marks.iter_mut().enumerate() {
+        for (group, masks) in rays.masks.iter_mut().enumerate() {
             let lanes = (0..GROUP).filter(|lane| GROUP * group + lane < all.len());
-            marks.alive = lanes.map(|lane| 1 << lane).sum();
+            masks.active = lanes.map(|lane| 1 << lane).sum();
         }
         let mut seen = vec![0; all.len()];
         let mut octant = Octant::default();
-        for groups in Octant::ranges(rays.marks.len()) {
+        for groups in Octant::ranges(rays.masks.len()) {
             loop {
-                let taken = octant.take(&mut rays, groups.clone());
-                if taken == 0 {
+                let size = octant.take(&mut rays, groups.clone());
+                if size == 0 {
                     break;
                 }
                 let lanes = octant
                     .groups()
                     .flat_map(|(group, bits)| lanes_of(bits).map(move |lane| GROUP * group + lane));
                 let members: Vec<usize> = lanes.collect();
-                assert_eq!(members.len(), taken as usize);
+                assert_eq!(members.len(), size as usize);
                 let signs = |i: usize| all[i].direction.to_array().map(|d| d < 0.0);
                 assert!(members.iter().all(|&i| signs(i) == signs(members[0])));
                 members.iter().for_each(|&i| seen[i] += 1);
@@ -329,9 +333,9 @@ fn octants_have_each_ray_once() {
     }
 }
 
-/// Rays keep few boxes for their own way here, so that packets stay together for want of room.
+/// The stacks of streams are small here, so that some rays have to stay in their packet.
 #[test]
-fn rays_meet_the_same_whatever_way_they_go() {
+fn every_traversal_finds_the_same_hits() {
     for count in [20, 3000] {
         let prims = triangles(count);
         let mut bvh = Bvh::build_wide(&prims, &[], &wide()).expect("finite bounds");
@@ -361,13 +365,13 @@ fn rays_meet_the_same_whatever_way_they_go() {
     }
 }
 
-/// Calls `ask` on a thread that has asked nothing yet.
-fn on_its_own_thread<T: Send>(ask: impl FnOnce() -> T + Send) -> T {
-    std::thread::scope(|scope| scope.spawn(ask).join()).expect("no panic")
+/// Runs `query` on a thread that has made no queries yet.
+fn on_its_own_thread<T: Send>(query: impl FnOnce() -> T + Send) -> T {
+    std::thread::scope(|scope| scope.spawn(query).join()).expect("no panic")
 }
 
 #[test]
-fn rays_go_the_way_that_is_said() {
+fn the_configured_traversal_is_used() {
     let prims = triangles(1000);
     let mut bvh = Bvh::build_wide(&prims, &[], &wide()).expect("finite bounds");
     let rays = |spread: f32, t_max: f32| -> Vec<Ray> {
@@ -379,29 +383,29 @@ fn rays_go_the_way_that_is_said() {
     };
     let (of_a_camera, bounces) = (rays(0.1, f32::MAX), rays(0.9, f32::MAX));
     let (shadows, one) = (rays(2.0, 3.0), &rays(2.0, 3.0)[..1]);
-    let (together, apart) = (Ways { packets: true, order: false }, Ways::default());
-    let sorted = Ways { packets: true, order: true };
+    let (packets, streams) = (Used { packets: true, order: false }, Used::default());
+    let sorted = Used { packets: true, order: true };
     for (traversal, closest, any) in [
-        (Traversal::Auto, [together, apart], [sorted, apart, apart]),
-        (Traversal::Waves, [apart, apart], [apart, apart, apart]),
-        (Traversal::Packets, [together, together], [together, apart, together]),
-        (Traversal::Sorted, [sorted, sorted], [sorted, apart, sorted]),
+        (Traversal::Auto, [packets, streams], [sorted, streams, streams]),
+        (Traversal::Streams, [streams, streams], [streams, streams, streams]),
+        (Traversal::Packets, [packets, packets], [packets, streams, packets]),
+        (Traversal::Sorted, [sorted, sorted], [sorted, streams, sorted]),
     ] {
         bvh.set_traversal(traversal);
         assert_eq!(bvh.config().traversal, traversal);
         for (rays, expected) in [&of_a_camera, &bounces].into_iter().zip(closest) {
-            let ask = || (bvh.closest_hits(rays), trace::ways()).1;
+            let ask = || (bvh.closest_hits(rays), trace::used()).1;
             assert_eq!(on_its_own_thread(ask), expected, "{traversal:?} {}", rays[0].direction);
         }
         for (rays, expected) in [&shadows[..], one, &bounces[..]].into_iter().zip(any) {
-            let ask = || (bvh.any_hits(rays), trace::ways()).1;
-            let (number, t_max) = (rays.len(), rays[0].t_max);
-            assert_eq!(on_its_own_thread(ask), expected, "{traversal:?} of {number} to {t_max}");
+            let ask = || (bvh.any_hits(rays), trace::used()).1;
+            let (count, t_max) = (rays.len(), rays[0].t_max);
+            assert_eq!(on_its_own_thread(ask), expected, "{traversal:?} of {count} to {t_max}");
         }
     }
-    let config = BuildConfig { traversal: Traversal::Waves, ..wide() };
+    let config = BuildConfig { traversal: Traversal::Streams, ..wide() };
     let bvh = Bvh::build_wide(&prims, &[], &config).expect("finite bounds");
     let bvh = bvh.refit(&prims).expect("finite bounds");
-    let ask = || (bvh.closest_hits(&of_a_camera), trace::ways()).1;
-    assert_eq!(on_its_own_thread(ask), apart, "set before, and refitted");
+    let ask = || (bvh.closest_hits(&of_a_camera), trace::used()).1;
+    assert_eq!(on_its_own_thread(ask), streams, "set before, and refitted");
 }

@@ -1,4 +1,4 @@
-//! Queries of packets, and of many rays of the host, answered by wide trees.
+//! Queries of SIMD packets, and of many rays of the host, in wide trees.
 
 use core::cell::Cell;
 use core::mem::{swap, take};
@@ -8,11 +8,11 @@ use fearless_simd::Level;
 use super::entry;
 use super::hybrid;
 use super::order::{Portions, Sequence};
-use super::packet::{self, Together};
+use super::packet::{self, PacketScratch};
 use super::rays::{GROUP, Rays, lanes_of, load_words, place, ray_at, ray_at_mut, row};
-use super::step::Meeting;
+use super::step::LeafIntersector;
+use super::stream::{self, RayStream};
 use super::walks::Walks;
-use super::wave::{self, Wave};
 use crate::bvh::contract::{Padding, is_finite};
 use crate::bvh::packet_slabs::and;
 use crate::bvh::{Part, SceneView, Traversal, View, traverse};
@@ -20,12 +20,12 @@ use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn};
 use crate::machine::{B, Entered, F, Lanes, Packet, U, op};
 use crate::run::{self, LanesTask, Scratch as _, fibers, with_wide_walks};
 
-/// The memory of a query, which a thread keeps for the next one.
+/// Scratch memory of a query, which a thread keeps for the next one.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
     pub(super) rays: Rays,
-    pub(super) wave: Wave,
-    pub(super) together: Together,
+    pub(super) stream: RayStream,
+    pub(super) packet_scratch: PacketScratch,
     pub(super) portions: Portions,
 }
 impl run::Scratch for Scratch {
@@ -38,7 +38,7 @@ thread_local! {
     static SCRATCH: Cell<Option<Box<Scratch>>> = const { Cell::new(None) };
 }
 
-/// The least `(t, id)` hit of every running lane, for each of some rays of a packet.
+/// Finds the least `(t, id)` hit of every active lane, for several rays of a packet.
 #[inline(always)]
 pub(crate) fn closest_hits<L: Lanes, T, S>(
     m: &Packet<L>,
@@ -61,7 +61,7 @@ pub(crate) fn closest_hits<L: Lanes, T, S>(
     });
 }
 
-/// Whether every running lane hits anything, for each of some rays of a packet.
+/// Finds whether every active lane hits anything, for several rays of a packet.
 #[inline(always)]
 pub(crate) fn any_hits<L: Lanes, T, S>(
     m: &Packet<L>,
@@ -84,8 +84,8 @@ pub(crate) fn any_hits<L: Lanes, T, S>(
     });
 }
 
-/// Asks about the rays, together with other packets if there are any, and has each packet read what
-/// its rays have found. One function for packets of one kind, whatever the primitives.
+/// Answers a query of a packet, batched with those of other packets of its gang, and reads the
+/// packet's results. One function for each kind of packet, whatever the primitives.
 #[inline(never)]
 fn ask<L: Lanes>(
     m: &Packet<L>,
@@ -111,17 +111,17 @@ fn ask<L: Lanes>(
     });
 }
 
-/// How many rays of the host are asked about together.
-const AT_ONCE: usize = 2048;
+/// Rays of the host per batch.
+const BATCH: usize = 2048;
 
-/// The least `(t, id)` hit of each ray.
+/// Calls `found` with the least `(t, id)` hit of each ray.
 pub(crate) fn each_closest<T, S>(
     (scene, walks): (&View<'_, T, S>, &Walks<T, S>),
     rays: &[Ray],
     mut found: impl FnMut(&Ray, Hit),
 ) {
     with_scratch(|scratch| {
-        for rays in rays.chunks(AT_ONCE) {
+        for rays in rays.chunks(BATCH) {
             scratch.rays.load(rays);
             (walks.closest)(None, scene, scratch);
             for (i, ray) in rays.iter().enumerate() {
@@ -131,14 +131,14 @@ pub(crate) fn each_closest<T, S>(
     });
 }
 
-/// Whether each ray hits anything.
+/// Calls `found` with whether each ray hits anything.
 pub(crate) fn each_any<T, S>(
     (scene, walks): (&View<'_, T, S>, &Walks<T, S>),
     rays: &[Ray],
     mut found: impl FnMut(bool),
 ) {
     with_scratch(|scratch| {
-        for rays in rays.chunks(AT_ONCE) {
+        for rays in rays.chunks(BATCH) {
             scratch.rays.load(rays);
             (walks.any)(None, scene, scratch);
             for i in 0..rays.len() {
@@ -148,36 +148,36 @@ pub(crate) fn each_any<T, S>(
     });
 }
 
-/// Lends a query the memory of the one before. A primitive may ask another scene meanwhile, which
-/// has memory of its own then.
+/// Lends a query this thread's scratch memory. A primitive may query another scene meanwhile, which
+/// allocates its own then.
 fn with_scratch(query: impl FnOnce(&mut Scratch)) {
     let mut scratch = SCRATCH.take().unwrap_or_default();
     query(&mut scratch);
     SCRATCH.set(Some(scratch));
 }
 
-/// What queries of this thread have done.
+/// Traversals that queries of this thread have used.
 #[cfg(test)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Ways {
-    /// Whether any rays went together.
+pub(super) struct Used {
+    /// Whether any rays formed ray packets.
     pub(super) packets: bool,
-    /// Whether any were put into order.
+    /// Whether any rays were sorted.
     pub(super) order: bool,
 }
 
-/// Which ways rays of this thread have gone.
+/// Returns the traversals that queries of this thread have used.
 #[cfg(test)]
-pub(super) fn ways() -> Ways {
-    let mut ways = Ways::default();
+pub(super) fn used() -> Used {
+    let mut used = Used::default();
     with_scratch(|scratch| {
-        ways.packets = !scratch.together.stack.is_empty();
-        ways.order = scratch.portions.has_sorted();
+        used.packets = !scratch.packet_scratch.stack.is_empty();
+        used.order = scratch.portions.has_sorted();
     });
-    ways
+    used
 }
 
-/// Finds what the rays meet: the least hits with `CLOSEST`, else whether there is any.
+/// Answers a query: finds the least hits with `CLOSEST`, else whether there is any.
 pub(super) fn answer<const CLOSEST: bool, P: Primitive>(
     level: Option<Level>,
     scene: &SceneView<'_, P>,
@@ -195,7 +195,10 @@ pub(super) fn answer<const CLOSEST: bool, P: Primitive>(
             let is_sorted = |part: Part<'_, P, P::Shared>| {
                 part.wide().is_some_and(|tree| tree.traversal == Traversal::Sorted)
             };
-            if CLOSEST && scene.parts().any(is_sorted) && scratch.rays.all_alive() > hybrid::APART {
+            if CLOSEST
+                && scene.parts().any(is_sorted)
+                && scratch.rays.activate_all() > hybrid::APART
+            {
                 closest_sorted(r, scene, scratch);
             } else {
                 each_part::<CLOSEST, R, P>(r, scene, scratch);
@@ -203,11 +206,11 @@ pub(super) fn answer<const CLOSEST: bool, P: Primitive>(
         }
     }
     let done = with_wide_walks(level, Answer::<CLOSEST, P> { scene, scratch: &mut *scratch });
-    debug_assert!(done.is_some(), "wide trees are there where the machine goes through them");
-    alone::<CLOSEST, P>(scene, &mut scratch.rays);
+    debug_assert!(done.is_some(), "wide trees are built only where the machine can traverse them");
+    fallback::<CLOSEST, P>(scene, &mut scratch.rays);
 }
 
-/// Finds the least hits of the rays that are alive, some at a time in the order of their directions.
+/// Finds the least hits of the active rays, in portions sorted by direction.
 #[inline(never)]
 fn closest_sorted<R: Lanes, P: Primitive>(r: R, scene: &SceneView<'_, P>, scratch: &mut Scratch) {
     r.vectorize(
@@ -225,7 +228,8 @@ fn closest_sorted<R: Lanes, P: Primitive>(r: R, scene: &SceneView<'_, P>, scratc
     );
 }
 
-/// In its own function, which packets of any width share.
+/// Traces the rays through each part of the scene. A function of its own, which packets of any
+/// width share.
 #[inline(never)]
 fn each_part<const CLOSEST: bool, R: Lanes, P: Primitive>(
     r: R,
@@ -240,21 +244,21 @@ fn each_part<const CLOSEST: bool, R: Lanes, P: Primitive>(
                 next += 1;
                 let Some(tree) = part.wide().filter(|tree| !tree.is_empty()) else { continue };
                 let root = &tree.bounds();
-                let (meeting, e) = (meeting(scene, part, tree), r.eight());
+                let (intersector, e) = (leaf_intersector(scene, part, tree), r.eight());
                 if CLOSEST {
-                    let Scratch { rays, wave, together, .. } = &mut *scratch;
+                    let Scratch { rays, stream, packet_scratch, .. } = &mut *scratch;
                     rays.prepare(r, root, Padding::of::<P>());
-                    if tree.traversal != Traversal::Waves {
-                        let must = tree.traversal == Traversal::Packets;
-                        packet::closest_hit(r, &meeting, rays, together, root, must);
+                    if tree.traversal != Traversal::Streams {
+                        let is_forced = tree.traversal == Traversal::Packets;
+                        packet::closest_hit(r, &intersector, rays, packet_scratch, root, is_forced);
                     }
-                    wave::run::<true, _, _>(Entered::new(e), &meeting, None, rays, wave);
+                    stream::run::<true, _, _>(Entered::new(e), &intersector, None, rays, stream);
                     continue;
                 }
                 if const { P::IS_SHORT } {
-                    any(r, Entered::straight(e), &meeting, root, scratch);
+                    any(r, Entered::straight(e), &intersector, root, scratch);
                 } else {
-                    any(r, Entered::new(e), &meeting, root, scratch);
+                    any(r, Entered::new(e), &intersector, root, scratch);
                 }
                 if scene.part(next).is_some() {
                     scratch.rays.forget_found();
@@ -264,39 +268,39 @@ fn each_part<const CLOSEST: bool, R: Lanes, P: Primitive>(
     );
 }
 
-/// Whether the rays meet anything in a part of the scene. `e` is for those on their own ways.
+/// Finds whether the rays hit anything in a part of the scene. `e` are the lanes of streams.
 #[inline(always)]
 fn any<R: Lanes, E: Lanes, P: Primitive>(
     r: R,
     e: E,
-    meeting: &Meeting<'_, P>,
+    intersector: &LeafIntersector<'_, P>,
     root: &Aabb,
     scratch: &mut Scratch,
 ) {
     let padding = Padding::of::<P>();
-    let Scratch { rays, wave, .. } = &mut *scratch;
-    let count = rays.all_alive();
-    let sequence = match meeting.tree.traversal {
-        // Rays without an end mostly meet something soon, each on its own way.
-        Traversal::Auto => (count >= hybrid::FEWEST && entry::have_ends(r.eight(), rays))
+    let Scratch { rays, stream, .. } = &mut *scratch;
+    let count = rays.activate_all();
+    let sequence = match intersector.tree.traversal {
+        // Most unbounded rays are occluded soon, by different primitives.
+        Traversal::Auto => (count >= hybrid::FEWEST && entry::are_bounded(r.eight(), rays))
             .then_some(Sequence::ByDirection),
-        Traversal::Waves => None,
+        Traversal::Streams => None,
         Traversal::Packets => (count > hybrid::APART).then_some(Sequence::AsTheyCome),
         Traversal::Sorted => (count > hybrid::APART).then_some(Sequence::ByDirection),
     };
     if let Some(sequence) = sequence {
-        hybrid::any_hit(r, e, meeting, root, scratch, sequence);
+        hybrid::any_hit(r, e, intersector, root, scratch, sequence);
     } else {
         rays.prepare(r, root, padding);
-        let entry = entry::of(r.eight(), meeting.tree, rays, root, padding);
-        wave::run::<false, _, _>(e, meeting, entry.as_ref(), rays, wave);
+        let entry = entry::of(r.eight(), intersector.tree, rays, root, padding);
+        stream::run::<false, _, _>(e, intersector, entry.as_ref(), rays, stream);
     }
 }
 
-/// Asks about the rays that are too odd for boxes.
-fn alone<const CLOSEST: bool, P: Primitive>(scene: &SceneView<'_, P>, rays: &mut Rays) {
-    for group in 0..rays.marks.len() {
-        for lane in lanes_of(rays.marks[group].odd) {
+/// Traces degenerate rays one by one through the binary tree.
+fn fallback<const CLOSEST: bool, P: Primitive>(scene: &SceneView<'_, P>, rays: &mut Rays) {
+    for group in 0..rays.masks.len() {
+        for lane in lanes_of(rays.masks[group].degenerate) {
             let mut words = ray_at_mut(rays.words(), place(GROUP * group + lane));
             let ray = words.as_ref().ray();
             if CLOSEST {
@@ -308,18 +312,18 @@ fn alone<const CLOSEST: bool, P: Primitive>(scene: &SceneView<'_, P>, rays: &mut
     }
 }
 
+/// Returns the intersector of the leaves of a tree.
 #[inline(always)]
-pub(super) fn meeting<'a, P: Primitive>(
+pub(super) fn leaf_intersector<'a, P: Primitive>(
     scene: &SceneView<'a, P>,
     part: Part<'a, P, P::Shared>,
     tree: &'a super::Wide,
-) -> Meeting<'a, P> {
+) -> LeafIntersector<'a, P> {
     let (shared, kinds) = (scene.shared(), scene.kinds());
-    Meeting { tree, part, shared, kinds }
+    LeafIntersector { tree, part, shared, kinds }
 }
 
-/// Writes the rays of the running lanes to groups, one packet behind the other; returns the number of
-/// the first.
+/// Stores several rays of a packet's active lanes to groups; returns the index of the first ray.
 #[inline(always)]
 fn load<L: Lanes>(m: &Packet<L>, to: &mut Rays, rays: &[RayOn<Packet<L>>]) -> usize {
     let l = m.lanes();
@@ -339,20 +343,20 @@ fn load<L: Lanes>(m: &Packet<L>, to: &mut Rays, rays: &[RayOn<Packet<L>>]) -> us
         spread(l, l.f32(0.0), to, first, row::V);
         spread(l, l.f32_from_bits(l.u32(u32::MAX)), to, first, row::ID);
         spread(l, l.f32(0.0), to, first, row::FOUND);
-        let alive = l.bits(and(l, m.active(), is_finite::on(m, *ray).0));
+        let active = l.bits(and(l, m.active(), is_finite::on(m, *ray).0));
         for from in (0..L::N).step_by(GROUP) {
             let (group, lane) = ((first + from) / GROUP, (first + from) % GROUP);
-            let lanes = if L::N < GROUP { alive } else { alive >> from & 0xffff };
-            to.marks[group].asked |= (lanes as u32) << lane;
+            let lanes = if L::N < GROUP { active } else { active >> from & 0xffff };
+            to.masks[group].queried |= (lanes as u32) << lane;
         }
     }
     begin
 }
 
-/// Writes a number of every lane to its place.
+/// Stores one component of every lane's ray.
 #[inline(always)]
-fn spread<L: Lanes>(l: L, numbers: L::F32, to: &mut Rays, first: usize, row: usize) {
-    let words = l.f32_to_bits(numbers);
+fn spread<L: Lanes>(l: L, values: L::F32, to: &mut Rays, first: usize, row: usize) {
+    let words = l.f32_to_bits(values);
     if L::N <= GROUP {
         l.u32_store(words, &mut to.row_mut(first / GROUP, row)[first % GROUP..]);
     } else {
@@ -365,7 +369,7 @@ fn spread<L: Lanes>(l: L, numbers: L::F32, to: &mut Rays, first: usize, row: usi
     }
 }
 
-/// A word of each lane, from that of the ray `first` on.
+/// Loads one word of each lane, from ray `first` on.
 #[inline(always)]
 fn words_at<L: Lanes>(l: L, rays: &Rays, first: usize, row: usize) -> L::U32 {
     if L::N <= GROUP {
@@ -381,14 +385,14 @@ fn words_at<L: Lanes>(l: L, rays: &Rays, first: usize, row: usize) -> L::U32 {
     )
 }
 
-/// The lanes whose rays, from the number `first` on, have found anything.
+/// Returns the mask of the lanes whose rays, from ray `first` on, have a hit.
 #[inline(always)]
 fn found_at<L: Lanes>(l: L, rays: &Rays, first: usize) -> L::Mask {
     l.u32_compare(op::Ne, words_at(l, rays, first, row::FOUND), l.u32(0))
 }
 
 #[inline(always)]
-fn number_at<L: Lanes>(l: L, rays: &Rays, first: usize, row: usize) -> L::F32 {
+fn float_at<L: Lanes>(l: L, rays: &Rays, first: usize, row: usize) -> L::F32 {
     l.f32_from_bits(words_at(l, rays, first, row))
 }
 
@@ -397,10 +401,10 @@ fn hit_at<L: Lanes>(l: L, rays: &Rays, first: usize) -> HitOn<Packet<L>> {
     let found = found_at(l, rays, first);
     HitOn {
         is_hit: B(found),
-        t: F(l.f32_select(found, number_at(l, rays, first, row::T), l.f32(0.0))),
+        t: F(l.f32_select(found, float_at(l, rays, first, row::T), l.f32(0.0))),
         prim_id: U(l.u32_select(found, words_at(l, rays, first, row::ID), l.u32(0))),
         inst_id: U(l.u32(0)),
-        u: F(number_at(l, rays, first, row::U)),
-        v: F(number_at(l, rays, first, row::V)),
+        u: F(float_at(l, rays, first, row::U)),
+        v: F(float_at(l, rays, first, row::V)),
     }
 }

@@ -1,4 +1,4 @@
-//! The way from a scene to the walks through wide trees.
+//! Function pointers from a scene to the traversals of wide trees.
 
 use core::fmt;
 
@@ -11,11 +11,11 @@ use crate::bvh::{Part, SceneView, Traversal, View};
 use crate::geometry::{Hit, Primitive, Ray};
 use crate::run::has_wide_walks;
 
-/// What makes wide trees over primitives of type `T`, and goes through them.
+/// The builder and the traversals of wide trees over primitives of type `T`.
 ///
-/// The walks are most of what a program that asks trees is compiled from. So nothing refers to them
-/// but these pointers, and nothing makes these but [`Bvh::build_wide`](crate::bvh::Bvh::build_wide):
-/// what does not call that is compiled without them.
+/// Traversals are most of the code of a program with queries. Only these pointers refer to them,
+/// and only [`Bvh::build_wide`](crate::bvh::Bvh::build_wide) makes these pointers: a program that
+/// does not call it is compiled without wide traversals.
 pub(crate) struct Walks<T, S> {
     /// Collapses a binary tree.
     pub(in crate::bvh) collapse: fn(&Tree, &[T], &[S], Traversal) -> Wide,
@@ -23,20 +23,21 @@ pub(crate) struct Walks<T, S> {
     pub(super) closest: Answer<T, S>,
     /// Finds whether rays hit anything.
     pub(super) any: Answer<T, S>,
-    /// The least `(t, id)` hit of one ray; none if it is too odd for boxes.
+    /// Finds the least `(t, id)` hit of one ray; none if the ray is degenerate.
     pub(in crate::bvh) closest_of_one: fn(&View<'_, T, S>, Ray) -> Option<Hit>,
-    /// Whether one ray hits anything.
+    /// Finds whether one ray hits anything; none if the ray is degenerate.
     pub(in crate::bvh) any_of_one: fn(&View<'_, T, S>, Ray) -> Option<bool>,
-    /// Names the primitives that one ray meets.
+    /// Visits the primitives that one ray hits.
     pub(in crate::bvh) candidates: Candidates<T, S>,
 }
 
-/// Names each primitive that a ray meets at or before the limit that it is given back, until that is
-/// less than any number; none if the ray is too odd for boxes, of which it may be aware late.
+/// Calls back with each primitive that a ray hits up to the limit that the last call returned,
+/// until that is negative infinity; none if the ray is degenerate, which may be detected after some
+/// calls.
 pub(in crate::bvh) type Candidates<T, S> =
     fn(&View<'_, T, S>, Ray, &mut dyn FnMut(&Part<'_, T, S>, u32) -> f32) -> Option<()>;
 
-/// Asks about the rays in memory, with lanes of a level.
+/// Answers a query of the rays in scratch memory, with the lanes of a level.
 pub(super) type Answer<T, S> = fn(Option<Level>, &View<'_, T, S>, &mut Scratch);
 
 impl<T, S> Clone for Walks<T, S> {
@@ -53,7 +54,7 @@ impl<T, S> fmt::Debug for Walks<T, S> {
     }
 }
 
-/// Those of primitives, if this machine goes through wide trees.
+/// Returns the traversals for a type of primitives; none if this machine has no lanes for them.
 pub(crate) fn walks<P: Primitive>() -> Option<Walks<P, P::Shared>> {
     has_wide_walks().then_some(Walks {
         collapse: Wide::of::<P>,
@@ -61,6 +62,6 @@ pub(crate) fn walks<P: Primitive>() -> Option<Walks<P, P::Shared>> {
         any: trace::answer::<false, P>,
         closest_of_one: |scene: &SceneView<'_, P>, ray| single::closest_hit(scene, ray),
         any_of_one: |scene: &SceneView<'_, P>, ray| single::any_hit(scene, ray),
-        candidates: |scene: &SceneView<'_, P>, ray, meet| single::candidates(scene, ray, meet),
+        candidates: |scene: &SceneView<'_, P>, ray, visit| single::candidates(scene, ray, visit),
     })
 }

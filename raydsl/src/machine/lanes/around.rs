@@ -22,7 +22,7 @@ impl<L> Entered<L> {
 }
 
 impl<L> Entered<L, true> {
-    /// For code whose early exits cannot be foretold: see [`Lanes::STRAIGHT`].
+    /// Wraps lanes for code whose early exits are unpredictable branches; see [`Lanes::STRAIGHT`].
     #[inline(always)]
     pub(crate) fn straight(lanes: L) -> Self {
         Self(lanes)

@@ -28,10 +28,10 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     type I32: Copy + 'static;
     type U32: Copy + 'static;
     type Mask: Copy + 'static;
-    /// Whether what follows an early exit of a kernel runs even where no lane is left.
+    /// Whether a kernel continues after an early exit even if no lane is left.
     const STRAIGHT: bool = false;
-    /// Whether long walks of these lanes stand in tables, where kernels are lifted for them, and are not
-    /// to be compiled where they may not be needed.
+    /// Whether traversals for these lanes are reached through tables, where kernels are lifted for
+    /// them, so that they are compiled only where they may be needed.
     const HAS_TABLES: bool = false;
     /// Eight lanes of the same level: as many as a node of a wide tree has children, and a block
     /// of its leaves primitives.

@@ -2,8 +2,8 @@
 //!
 //! What is known of a float takes some ninety bytes. Lifted code hands its floats from one layer to
 //! the next, and the compiler looks for copies that it can leave out among all of them: for a long
-//! kernel that took most of its time. So a float is a handle of eight bytes, and what is known of it
-//! lies here.
+//! kernel that took most of its time. So a float is a handle of eight bytes, and what is known of
+//! it lies here.
 //!
 //! Nothing is dropped by itself. A loop notes how long the arena is where it begins, and what a
 //! round has added is dropped at its end. That is all that the round has made: what outlives it was

@@ -20,8 +20,8 @@ fn counted<V: Value<Margin>>(f: impl Fn(&Margin) -> V) -> (Vec<f64>, usize) {
     (outcomes.reference().iter().map(|leaf| leaf.value()).collect(), most.get())
 }
 
-/// Asserts that the kernel gives these numbers in `f64`, and that its outcomes hold what it gives in
-/// `f32`.
+/// Asserts that the kernel gives these numbers in `f64`, and that its outcomes hold what it gives
+/// in `f32`.
 #[track_caller]
 fn gives<F: KernelFn>(args: F::Args, expected: &[f64]) {
     assert_eq!(followed::<F>(args).0, expected);

@@ -10,9 +10,9 @@
 //! logic until an `if`, a loop, a selection or a result needs to know: that is a **decision**. A
 //! run follows `f64`; [`Outcomes`] come of further runs with decisions turned.
 //!
-//! What is known of a float is large and lies in the machine's [`arena`]; lifted code moves handles.
-//! That code is compiled once more for every kernel, so an operation in it is one call: methods that
-//! are generic over the operation pass it on as a value.
+//! What is known of a float is large and lies in the machine's [`arena`]; lifted code moves
+//! handles. That code is compiled once more for every kernel, so an operation in it is one call:
+//! methods that are generic over the operation pass it on as a value.
 
 mod affine;
 mod arena;
@@ -112,8 +112,8 @@ impl Margin {
         self.rounding
     }
 
-    /// Whether the way that is followed takes the other of two alternatives, of which `f64` takes the
-    /// first.
+    /// Whether the way that is followed takes the other of two alternatives, of which `f64` takes
+    /// the first.
     pub(crate) fn chooses_other(&self) -> bool {
         self.is_running() && self.decisions.choose(2) == 1
     }

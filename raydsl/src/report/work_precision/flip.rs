@@ -216,7 +216,8 @@ mod tests {
         assert!(hdr.mean > 0.05, "{hdr:?}");
     }
 
-    /// A white strip along a side looks different, and so does what is next to it, but not the rest.
+    /// A white strip along a side looks different, and so does what is next to it, but not the
+    /// rest.
     #[test]
     fn quantiles_are_of_pixels() {
         let strip = |end: u32| {

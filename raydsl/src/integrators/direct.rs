@@ -1,4 +1,4 @@
-//! What is seen of matt surfaces under lights.
+//! Direct light on diffuse surfaces.
 
 use core::f32::consts::FRAC_1_PI;
 
@@ -12,9 +12,9 @@ use crate::machine::Type;
 use crate::machine::functions::vec4;
 
 // ANCHOR: direct_light
-/// The light that falls on a point from all of `lights`, for each unit of its area.
+/// Sums the irradiance at a point from all of `lights`.
 ///
-/// Only where `shadows` is true are rays sent to see what is between.
+/// Shadow rays are traced only where `shadows` is true.
 #[kernel]
 pub fn irradiance<P: Primitive, L: Light + Type>(
     scene: &Bvh<'_, P>,
@@ -34,9 +34,9 @@ pub fn irradiance<P: Primitive, L: Light + Type>(
     sum
 }
 
-/// The radiance along `ray` of what it meets first: a surface that sends the light of `lamps` and
-/// `suns` back evenly in all directions (Lambert, "Photometria", 1760), on both of its sides. Alpha
-/// is 1, or all is 0 where nothing is met.
+/// Returns the radiance along `ray` from its closest hit, a two-sided Lambertian surface under the
+/// point lights `lamps` and the directional lights `suns` (Lambert, "Photometria", 1760). Alpha is
+/// 1; all components are 0 where the ray misses.
 #[kernel]
 pub fn direct_light<P: Primitive<Hit = Hit> + Surface>(
     scene: &Bvh<'_, P>,

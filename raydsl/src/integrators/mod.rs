@@ -1,18 +1,18 @@
-//! Kernels that are ready to render with, each as short as one would write it oneself.
+//! Integrators: ready-made kernels to render with, each as short as one would write it oneself.
 //!
-//! | kernel | what a ray sees |
+//! | kernel | result for a ray |
 //! |---|---|
-//! | [`direct_light()`] | matt surfaces under lamps and suns, with shadows or without |
-//! | [`ambient_occlusion()`] | how much of its surroundings a point sees |
-//! | [`aovs()`] | albedo, normal, depth and numbers of what it meets |
-//! | [`bvh_cost()`], [`bvh_cost_color()`] | what the ray costs in its tree, as numbers or as a colour |
+//! | [`direct_light()`] | radiance of diffuse surfaces under point and directional lights |
+//! | [`ambient_occlusion()`] | unoccluded share of the hemisphere above the hit |
+//! | [`aovs()`] | albedo, normal, depth and ids of the closest hit |
+//! | [`bvh_cost()`], [`bvh_cost_color()`] | traversal cost, as counts or as a colour |
 //!
 //! They are kernels like any other: call them in a [`kernel!`](crate::prelude::kernel) of yours,
-//! from a kernel of yours, or on the host. What they meet is a tree of any primitive that is a
-//! [`Surface`]. For a scene of another kind, or other light, take the source: it is a page each.
+//! from a kernel of yours, or on the host. They take a tree over any primitive that implements
+//! [`Surface`]. For another kind of scene, or other lights, copy the source: each fits on a page.
 //!
 //! ```
-//! use raydsl::kernels::{DirectionalLight, direct_light};
+//! use raydsl::integrators::{DirectionalLight, direct_light};
 //! use raydsl::prelude::*;
 //!
 //! let v = |x, y| vec3(x, y, 0.0);

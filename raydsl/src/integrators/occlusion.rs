@@ -1,4 +1,4 @@
-//! How much of its surroundings a point sees.
+//! Ambient occlusion.
 
 use glam::{Vec4, vec4};
 
@@ -10,9 +10,9 @@ use crate::machine::functions::vec4;
 use crate::sampling::{Frame, SampleMethod, Sampler, sample_cosine_hemisphere};
 
 // ANCHOR: ambient_occlusion
-/// Whether nothing is near a point, up to the distance `radius`, in a direction that is likely as
-/// its cosine with the normal. The next two dimensions of the sampler choose it. A radius that is
-/// no number, or not above 0, leaves everything open.
+/// Tests whether a point is unoccluded up to the distance `radius`, in a cosine-distributed
+/// direction chosen by the next two dimensions of the sampler. With a radius that is NaN, or not
+/// above 0, every point is unoccluded.
 #[kernel]
 pub fn is_open<P: Primitive>(
     scene: &Bvh<'_, P>,
@@ -26,20 +26,21 @@ pub fn is_open<P: Primitive>(
     !scene.any_hit(Ray { t_max: radius, ..ray })
 }
 
-/// Ambient occlusion where `ray` meets the scene, by `N` directions: the share of them in which
-/// nothing is nearer than `radius`, from black to white; alpha is 1, or all is 0 where nothing is
-/// met. The mean of many samples is the light that a matt white surface has from surroundings that
-/// are white everywhere.
+/// Estimates ambient occlusion at the closest hit of `ray` from `N` shadow rays: the share of them
+/// that are unoccluded within `radius`, from black to white. Alpha is 1; all components are 0 where
+/// the ray misses. The mean of many samples is the radiosity of a white diffuse surface under a
+/// white sky.
 ///
-/// The directions are asked about together, which is quicker than one after the other, and share
-/// their camera ray. Each takes the next two dimensions of the sampler, so those of a sample are
-/// independent of each other: with [`SampleMethod::Sobol`] and [`SampleMethod::Stratified`] as many
-/// rays of as many samples, `N` of 1, are spread more evenly, and take longer. `N` is at least 1.
+/// The shadow rays are traced by one query, which is faster than one after the other, and share
+/// their camera ray. Each takes the next two dimensions of the sampler, so those of one sample are
+/// independent of each other: with [`SampleMethod::Sobol`] and [`SampleMethod::Stratified`] the
+/// same number of shadow rays from more samples, `N` of 1, are spread more evenly, and take longer.
+/// `N` is at least 1.
 ///
 /// (Zhukov, Iones and Kronin, "An Ambient Light Illumination Model", EGWR 1998, with a radius
 /// instead of a falloff.)
 #[kernel]
-#[expect(clippy::needless_range_loop, reason = "kernels write elements by their numbers")]
+#[expect(clippy::needless_range_loop, reason = "kernels write elements by index")]
 pub fn ambient_occlusion<P: Primitive<Hit = Hit> + Surface, const N: usize>(
     scene: &Bvh<'_, P>,
     radius: f32,

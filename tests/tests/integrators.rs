@@ -1,10 +1,10 @@
-//! The kernels that the library brings: every variant, and witnesses in `f64` and in closed form.
+//! The integrators: every variant, against references in `f64` and in closed form.
 
 use std::error::Error;
 
 use glam::DVec3;
 use raydsl::bvh::{Cost, Node};
-use raydsl::kernels::{
+use raydsl::integrators::{
     DirectionalLight, PointLight, Surface, ambient_occlusion, aovs, bvh_cost, bvh_cost_color,
     direct_light, heat_color,
 };

@@ -1,4 +1,4 @@
-//! Lights without an extent, whose shadows are sharp.
+//! Delta lights, whose shadows are sharp.
 
 use glam::Vec3;
 
@@ -6,35 +6,34 @@ use crate::geometry::{Ray, SurfacePoint};
 use crate::machine::generic::max;
 use crate::{Type, kernel};
 
-/// Something that shines on a point from one direction.
+/// A light that illuminates a point from one direction.
 #[kernel]
 pub trait Light {
-    /// The light that falls on the point, for each unit of its area, if nothing is between. The
-    /// side that its normal is on is lit.
+    /// Returns the unshadowed irradiance at the point, on the side that its normal is on.
     fn falling_on(&self, point: SurfacePoint) -> Vec3;
 
-    /// What is between hits this ray.
+    /// Returns the shadow ray: the light is occluded where this ray hits anything.
     fn shadow_ray(&self, point: SurfacePoint) -> Ray;
 }
 
-/// A lamp that shines evenly in all directions.
+/// An isotropic point light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 #[repr(C)]
 pub struct PointLight {
-    /// Where it is.
+    /// The position of the light.
     pub position: Vec3,
-    /// Radiant intensity: what it sends into each unit of solid angle, as red, green and blue, not
-    /// negative. At a distance `r`, straight under it, `intensity / r²` falls on a unit of area.
+    /// Radiant intensity (flux per unit of solid angle) as red, green and blue, not negative. The
+    /// irradiance at normal incidence and distance `r` is `intensity / r²`.
     pub intensity: Vec3,
 }
 
-/// A light that is so far away that its rays are parallel: the sun.
+/// A directional light, so far away that its rays are parallel, such as the sun.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 #[repr(C)]
 pub struct DirectionalLight {
-    /// Towards the light, with unit length.
+    /// Unit vector towards the light.
     pub direction: Vec3,
-    /// What falls on a unit of area that faces it, as red, green and blue, not negative.
+    /// Irradiance at normal incidence, as red, green and blue, not negative.
     pub irradiance: Vec3,
 }
 
@@ -45,7 +44,7 @@ impl Light for PointLight {
         let way = self.position - point.position;
         let squared = way.dot(way);
         let up = point.normal.dot(way);
-        // The cosine is `up / r`. A lamp on the point itself has no direction, and no cosine.
+        // The cosine is `up / r`. A light at the point itself has no direction, and no cosine.
         let share = if up > 0.0 { up / max(squared * squared.sqrt(), 1e-37) } else { 0.0 };
         self.intensity * share
     }

@@ -1,4 +1,4 @@
-//! What rays cost in their tree.
+//! Traversal cost: as counts, and as a false-colour picture.
 
 use glam::{Vec3, vec3};
 
@@ -10,16 +10,16 @@ use crate::machine::generic::clamp;
 use crate::texture::srgb_to_linear;
 
 // ANCHOR: bvh_cost
-/// The nodes and primitives that are tested for the closest hit of `ray`, were it alone: a packet
-/// counts for each ray what that ray would visit, not what the packet does.
+/// Counts the nodes and primitives that are tested to find the closest hit of `ray`. In a packet,
+/// each ray is counted as if it were traced by itself.
 #[kernel]
 pub fn bvh_cost<P: Primitive>(scene: &Bvh<'_, P>, ray: Ray) -> Cost {
     let (_, cost) = scene.closest_hit_with_cost(ray);
     cost
 }
 
-/// What `ray` costs as a colour: [`heat_color()`] of its tests of nodes and primitives, where
-/// `most` of them, a number above 0, are the hottest.
+/// Returns the traversal cost of `ray` as a colour: the [`heat_color()`] of its tests of nodes and
+/// primitives, relative to `most`, a number above 0, which is the hot end of the map.
 #[kernel]
 pub fn bvh_cost_color<P: Primitive>(scene: &Bvh<'_, P>, most: f32, ray: Ray) -> Vec3 {
     let cost = bvh_cost(scene, ray);
@@ -27,10 +27,11 @@ pub fn bvh_cost_color<P: Primitive>(scene: &Bvh<'_, P>, most: f32, ray: Ray) -> 
 }
 // ANCHOR_END: bvh_cost
 
-/// The colour map "turbo" as linear light: dark blue at 0, through green and yellow, dark red at 1.
-/// What is outside has the colour of the end, and NaN that of 0.
+/// Evaluates the colour map "turbo" in linear light: dark blue at 0, through green and yellow, to
+/// dark red at 1. Values outside are clamped to the ends, and NaN has the colour of 0.
 ///
-/// Mikhailov's polynomials (2019), which leave his table by up to 0.09 of sRGB's range at the ends.
+/// Uses Mikhailov's polynomials (2019), which differ from his table by up to 0.09 of sRGB's range
+/// at the ends.
 #[kernel]
 pub fn heat_color(x: f32) -> Vec3 {
     let x = if x > 0.0 { clamp(x, 0.0, 1.0) } else { 0.0 };
@@ -40,7 +41,7 @@ pub fn heat_color(x: f32) -> Vec3 {
     vec3(red, green, blue)
 }
 
-/// A polynomial, from its constant on, which is a code of sRGB: as linear light.
+/// Evaluates a polynomial, constant term first, as an sRGB value and decodes it to linear light.
 #[kernel]
 fn polynomial(c: [f32; 6], x: f32) -> f32 {
     let code = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))));

@@ -1,4 +1,4 @@
-//! What is known of a pixel beside its light.
+//! Arbitrary output variables (AOVs): geometry and material at the first hit.
 
 use glam::{Vec3, vec3};
 
@@ -13,20 +13,20 @@ use crate::{Type, kernel};
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
 #[repr(C)]
 pub struct Aovs {
-    /// The share of light that comes back from there, red, green and blue; 0 where nothing is met.
+    /// The albedo, as red, green and blue; 0 where the ray misses.
     pub albedo: Vec3,
-    /// The unit normal, on the side that the ray comes from; 0 where nothing is met.
+    /// The unit normal, on the side that the ray comes from; 0 where the ray misses.
     pub normal: Vec3,
-    /// The distance in lengths of the ray's direction; [`f32::MAX`] where nothing is met.
+    /// The distance in lengths of the ray's direction; [`f32::MAX`] where the ray misses.
     pub depth: f32,
-    /// The number of the primitive; [`u32::MAX`] where nothing is met.
+    /// The id of the primitive; [`u32::MAX`] where the ray misses.
     pub prim_id: u32,
-    /// The number of the instance; 0 in a scene without, [`u32::MAX`] where nothing is met.
+    /// The id of the instance; 0 in a scene without instances, [`u32::MAX`] where the ray misses.
     pub inst_id: u32,
 }
 
-/// What `ray` meets first. [`Image::map`](crate::render::Image::map) makes a picture of each
-/// member.
+/// Returns the AOVs at the closest hit of `ray`. [`Image::map`](crate::render::Image::map) makes a
+/// picture of each member.
 #[kernel]
 pub fn aovs<P: Primitive<Hit = Hit> + Surface>(scene: &Bvh<'_, P>, ray: Ray) -> Aovs {
     let hit = scene.closest_hit(ray);

@@ -1,4 +1,4 @@
-//! What kernels ask of the primitives they shade.
+//! The trait of primitives that integrators can shade.
 
 use glam::Vec3;
 
@@ -7,12 +7,12 @@ use crate::kernel;
 
 /// A primitive that can be shaded.
 ///
-/// The shapes of the library have the point: `self.surface_point(ray, hit)`. That of a primitive
-/// with an `intersect` of its own has the position, the unit normal, and how far a ray must begin
-/// from there, as [`SurfacePoint`] says.
+/// The shapes of the library compute the surface point: `self.surface_point(ray, hit)`. A primitive
+/// with its own `intersect` fills in the position, the unit normal and the error bounds by which
+/// rays are offset; see [`SurfacePoint`].
 ///
 /// ```
-/// use raydsl::kernels::Surface;
+/// use raydsl::integrators::Surface;
 /// use raydsl::prelude::*;
 /// use raydsl::kernel;
 ///
@@ -36,14 +36,14 @@ use crate::kernel;
 /// ```
 #[kernel]
 pub trait Surface {
-    /// The point that `ray` hits. The normal may be on either side.
+    /// Returns the point that `ray` hits. The normal may be on either side.
     fn surface(&self, ray: Ray, hit: Hit) -> SurfacePoint;
 
-    /// The share of red, green and blue light that comes back from there, each from 0 to 1.
+    /// Returns the albedo at the hit: red, green and blue, each from 0 to 1.
     fn albedo(&self, ray: Ray, hit: Hit) -> Vec3;
 }
 
-/// A light grey.
+/// Has a light grey albedo.
 #[kernel]
 impl Surface for Triangle {
     #[inline]
@@ -57,7 +57,7 @@ impl Surface for Triangle {
     }
 }
 
-/// The point as seen from `direction`: its normal is on the side that the ray comes from.
+/// Flips the normal of a point to the side that a ray with this direction comes from.
 #[kernel]
 #[inline]
 pub fn facing(point: SurfacePoint, direction: Vec3) -> SurfacePoint {
