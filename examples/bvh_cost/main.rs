@@ -18,7 +18,8 @@ use raydsl::integrators::bvh_cost;
 use raydsl::prelude::*;
 use raydsl_examples::args::{point, size};
 use raydsl_examples::heat_map::HeatMap;
-use raydsl_examples::mesh::{self, MeshError};
+use raydsl_examples::mesh;
+use raydsl_io::LoadError;
 
 /// What is compared.
 const QUALITIES: [(&str, BuildQuality); 3] = [
@@ -51,7 +52,7 @@ struct Args {
 #[derive(Debug, thiserror::Error)]
 enum Failure {
     #[error(transparent)]
-    Mesh(#[from] MeshError),
+    Load(#[from] LoadError),
     #[error(transparent)]
     Build(#[from] BuildError),
     #[error("cannot write to {path}: {reason}; choose another place")]

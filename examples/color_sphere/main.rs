@@ -54,7 +54,9 @@ impl ColorSphere {
 #[derive(Debug, thiserror::Error)]
 enum Failure {
     #[error(transparent)]
-    Cloud(#[from] raydsl_examples::cloud::CloudError),
+    Load(#[from] raydsl_io::LoadError),
+    #[error(transparent)]
+    Scale(#[from] raydsl_examples::cloud::ScaleError),
     #[error(transparent)]
     Build(#[from] BuildError),
     #[error(transparent)]

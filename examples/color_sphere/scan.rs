@@ -4,7 +4,8 @@ use std::path::Path;
 
 use raydsl::math::Unorm8;
 use raydsl::prelude::{Pinhole, Vec3, vec3};
-use raydsl_examples::cloud::{self, PointCloud, Scaled, View};
+use raydsl_examples::cloud::{self, Scaled, View};
+use raydsl_io::cloud::{PointCloud, load};
 
 use crate::args::Args;
 use crate::{ColorSphere, Failure, bar};
@@ -79,7 +80,7 @@ fn file_name(path: &Path) -> String {
 
 fn read(path: &Path) -> Result<PointCloud, Failure> {
     let bar = bar(0, "reading");
-    let points = cloud::load(path, &mut |done, total| {
+    let points = load(path, &mut |done, total| {
         bar.set_length(total);
         bar.set_position(done);
     });

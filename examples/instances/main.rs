@@ -21,8 +21,9 @@ use raydsl::bvh::{Group, Object};
 use raydsl::kernel;
 use raydsl::prelude::*;
 use raydsl_examples::args::{size, variant};
-use raydsl_examples::mesh::{self, MeshError};
+use raydsl_examples::mesh;
 use raydsl_examples::picture::smooth_frame;
+use raydsl_io::LoadError;
 
 /// Ten thousand trees, in memory twice.
 #[derive(Parser)]
@@ -42,7 +43,7 @@ struct Args {
 }
 
 /// A file's triangles, two units tall, standing on the ground.
-fn planted(path: &Path) -> Result<Vec<Facet>, MeshError> {
+fn planted(path: &Path) -> Result<Vec<Facet>, LoadError> {
     let triangles = mesh::load(path)?;
     let all = triangles.iter().map(|t| t.get_bounds()).fold(Aabb::EMPTY, Aabb::union);
     let foot = vec3(0.5, 0.0, 0.5) * all.size() + all.min;

@@ -29,7 +29,7 @@ pub(crate) fn scene() -> Result<Scene<Triangle>, Box<dyn Error>> {
 /// A stone lion that was scanned by laser, of balls that close its surface. (The sample of the
 /// Potree viewer.)
 pub(crate) fn scan() -> Result<Scene<Ball>, Box<dyn Error>> {
-    let points = cloud::load(&file("lion_takanawa.copc.laz")?, &mut |_, _| {})?;
+    let points = raydsl_io::cloud::load(&file("lion_takanawa.copc.laz")?, &mut |_, _| {})?;
     let scaled = cloud::scale(&points, None)?;
     let radius = f32::from(scaled.radius_code) / 255.0;
     let ball = |center: &[f32; 3]| Ball { center: Vec3::from_array(*center), radius };

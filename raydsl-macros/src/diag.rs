@@ -16,7 +16,11 @@ pub(crate) fn refused(
 }
 
 /// Collects the errors of one macro call.
+///
+/// A user must see every one of them: a collection that is dropped with errors in it panics. It is
+/// used up by [`into_tokens`](Self::into_tokens) and the like, or handed over to another.
 #[derive(Default)]
+#[must_use = "errors that are dropped are seen by nobody"]
 pub(crate) struct Errors {
     first: Option<syn::Error>,
     count: usize,
@@ -45,10 +49,20 @@ impl Errors {
     }
 
     /// Takes over the errors of another collection.
-    pub(crate) fn append(&mut self, other: Self) {
+    pub(crate) fn append(&mut self, mut other: Self) {
         self.is_rustcs |= other.is_rustcs;
-        if let Some(e) = other.first {
+        if let Some(e) = other.first.take() {
             self.push(e);
+        }
+    }
+
+    /// Takes over the errors of a collection that has found the same mistakes once more: those that
+    /// are here already say all, and are kept alone.
+    pub(crate) fn append_repeated(&mut self, mut other: Self) {
+        if self.first.is_none() {
+            self.append(other);
+        } else {
+            other.first = None;
         }
     }
 
@@ -62,24 +76,96 @@ impl Errors {
     }
 
     /// The errors as `compile_error!` calls, or nothing.
-    pub(crate) fn into_tokens(self) -> TokenStream {
-        self.first.map(|e| e.into_compile_error()).unwrap_or_default()
+    #[must_use = "tokens that are dropped are seen by nobody"]
+    pub(crate) fn into_tokens(mut self) -> TokenStream {
+        self.first.take().map(|e| e.into_compile_error()).unwrap_or_default()
     }
 
     /// The errors as items and a type. The type has a mistake in it, so that rustc asks nothing
     /// more of what is made of it; a `compile_error!` in its place would be a `()`.
-    pub(crate) fn into_type(self) -> (TokenStream, TokenStream) {
-        let mut all = self.first.into_iter().flatten().map(syn::Error::into_compile_error);
+    #[must_use = "tokens that are dropped are seen by nobody"]
+    pub(crate) fn into_type(mut self) -> (TokenStream, TokenStream) {
+        let mut all = self.first.take().into_iter().flatten().map(syn::Error::into_compile_error);
         let first = all.next();
         (all.collect(), quote!([f32; #first]))
     }
 
     /// The errors as an expression: one of them stands for its value, of whatever type, so that
     /// rustc asks nothing more of it.
-    pub(crate) fn into_expression(self) -> TokenStream {
-        let mut all = self.first.into_iter().flatten().map(syn::Error::into_compile_error);
+    #[must_use = "tokens that are dropped are seen by nobody"]
+    pub(crate) fn into_expression(mut self) -> TokenStream {
+        let mut all = self.first.take().into_iter().flatten().map(syn::Error::into_compile_error);
         let Some(first) = all.next() else { return quote!(::core::unreachable!()) };
         let value = Ident::new("value", Span::mixed_site());
         quote!({ let #value = #first; #(#all)* #value })
+    }
+}
+
+impl Drop for Errors {
+    fn drop(&mut self) {
+        let Some(unread) = &self.first else { return };
+        // A second panic would abort the compiler, without the message of the first.
+        if !std::thread::panicking() {
+            panic!("a bug in raydsl-macros: an error was dropped: {unread}");
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+
+    use super::*;
+
+    fn one() -> Errors {
+        let mut errors = Errors::default();
+        errors.at(Span::call_site(), "no such thing", "write another");
+        errors
+    }
+
+    /// The message of a panic in `f`, if there is one.
+    fn panic_of(f: impl FnOnce()) -> Option<String> {
+        let payload = catch_unwind(AssertUnwindSafe(f)).err()?;
+        let literal = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
+        literal.or_else(|| payload.downcast_ref::<String>().cloned())
+    }
+
+    #[test]
+    fn unread_errors_panic() {
+        let message = panic_of(|| drop(one())).expect("a panic");
+        assert!(message.contains("was dropped: no such thing"), "{message}");
+        let mut kept = Errors::default();
+        let message = panic_of(|| {
+            let mut lost = Errors::default();
+            lost.append(one());
+            kept.append_repeated(one());
+        });
+        assert!(message.is_some_and(|m| m.contains("no such thing")));
+        assert!(kept.into_tokens().to_string().contains("no such thing"));
+    }
+
+    #[test]
+    fn read_errors_do_not_panic() {
+        let mut rustcs = Errors::default();
+        rustcs.leave_to_rustc();
+        drop((Errors::default(), rustcs));
+        let all = [one().into_tokens(), one().into_type().1, one().into_expression()];
+        assert!(all.iter().all(|tokens| tokens.to_string().contains("no such thing")));
+        let mut errors = one();
+        errors.append_repeated(one());
+        assert_eq!(errors.into_tokens().to_string().matches("no such thing").count(), 1);
+        let mut errors = one();
+        errors.append(one());
+        assert_eq!(errors.into_tokens().to_string().matches("no such thing").count(), 2);
+    }
+
+    /// A drop while a panic unwinds ends nothing: the first panic is what a user sees.
+    #[test]
+    fn a_panic_is_not_hidden_by_unread_errors() {
+        let message = panic_of(|| {
+            let _errors = one();
+            panic!("another bug");
+        });
+        assert_eq!(message.as_deref(), Some("another bug"));
     }
 }

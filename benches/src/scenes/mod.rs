@@ -9,7 +9,8 @@ use std::{fs, io};
 
 use raydsl::prelude::*;
 use raydsl_examples::cloud;
-use raydsl_examples::mesh::{self, MeshError};
+use raydsl_examples::mesh;
+use raydsl_io::LoadError;
 
 pub use grove::grove;
 pub use points::{Point, points};
@@ -91,14 +92,7 @@ pub fn sibenik(data: &Path) -> io::Result<Scene<Triangle>> {
 ///
 /// If the files cannot be read or are not what they should be.
 pub fn file(data: &Path, name: &str) -> io::Result<Scene<Triangle>> {
-    let bytes = fs::read(data.join(format!("{name}.tri")))?;
-    let numbers: Vec<f32> = bytes
-        .get(4..)
-        .unwrap_or_default()
-        .chunks_exact(4)
-        .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-        .collect();
-    let prims = numbers.chunks_exact(9).map(triangle).collect();
+    let prims = mesh::load(&data.join(format!("{name}.tri"))).map_err(io::Error::other)?;
     let cameras: serde_json::Value = serde_json::from_slice(&fs::read(data.join("cameras.json"))?)?;
     let camera = &cameras[name];
     let vector = |part: &str| {
@@ -115,7 +109,7 @@ pub fn file(data: &Path, name: &str) -> io::Result<Scene<Triangle>> {
 /// # Errors
 ///
 /// As [`mesh::load`].
-pub fn mesh(path: &Path) -> Result<Scene<Triangle>, MeshError> {
+pub fn mesh(path: &Path) -> Result<Scene<Triangle>, LoadError> {
     let prims = mesh::load(path)?;
     let bounds = bounds(&prims);
     let (center, half) = (0.5 * (bounds.min + bounds.max), 0.5 * (bounds.max - bounds.min));
@@ -126,10 +120,6 @@ pub fn mesh(path: &Path) -> Result<Scene<Triangle>, MeshError> {
 /// The box of some triangles.
 pub fn bounds(triangles: &[Triangle]) -> Aabb {
     Aabb::from_points(triangles.iter().flat_map(|t| [t.v0, t.v1, t.v2]))
-}
-
-fn triangle(n: &[f32]) -> Triangle {
-    Triangle { v0: vec3(n[0], n[1], n[2]), v1: vec3(n[3], n[4], n[5]), v2: vec3(n[6], n[7], n[8]) }
 }
 
 /// Two rows of fluted columns under a vault, about 80,000 triangles: a hall that needs no file.

@@ -10,6 +10,7 @@ mod shape;
 mod terrain;
 mod village;
 
+use raydsl_io::cloud::PointCloud;
 use rayon::prelude::*;
 
 use self::light::{Grid, Light};
@@ -17,7 +18,6 @@ use self::noise::{hash, unit};
 use self::paint::Paint;
 use self::shape::{Shape, Spot, normalize};
 use self::terrain::{HALF, Terrain, WATER};
-use super::PointCloud;
 
 /// Points that one task makes, and the step in which progress is told.
 const CHUNK: usize = 1 << 15;

@@ -1,10 +1,10 @@
 //! From the coordinates of a file to spheres in single precision.
 
+use raydsl_io::cloud::PointCloud;
 use rayon::prelude::*;
 
-use super::load::check_finite;
+use super::ScaleError;
 use super::spacing::spacing;
-use super::{CloudError, PointCloud};
 
 /// The radius over the spacing. On a square grid of step `d`, spheres close the surface
 /// from `d / sqrt(2) = 0.71 d` on. Points strewn at random over a surface, with as large
@@ -53,15 +53,16 @@ pub struct Scaled {
 /// # Examples
 ///
 /// ```
-/// # use raydsl_examples::cloud::{PointCloud, scale};
+/// # use raydsl_examples::cloud::scale;
+/// # use raydsl_io::cloud::PointCloud;
 /// let positions = vec![[0.0, 0.0, 0.0], [3.0, 0.0, 0.0]];
 /// let cloud = PointCloud { positions, colors: vec![[255; 3]; 2] };
 /// let scaled = scale(&cloud, Some(0.5))?;
 /// assert_eq!(scaled.radius_code, 128);
 /// assert_eq!(scaled.offset, [1.5, 0.0, 0.0]);
-/// # Ok::<(), raydsl_examples::cloud::CloudError>(())
+/// # Ok::<(), raydsl_examples::cloud::ScaleError>(())
 /// ```
-pub fn scale(cloud: &PointCloud, radius: Option<f64>) -> Result<Scaled, CloudError> {
+pub fn scale(cloud: &PointCloud, radius: Option<f64>) -> Result<Scaled, ScaleError> {
     check(cloud, radius)?;
     let [low, high] = bounds(&cloud.positions);
     let extent = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
@@ -69,45 +70,48 @@ pub fn scale(cloud: &PointCloud, radius: Option<f64>) -> Result<Scaled, CloudErr
     let offset: [f64; 3] = std::array::from_fn(|i| 0.5 * low[i] + 0.5 * high[i]);
     // Beyond these, squares of distances leave the range of f64.
     if extent > 0.0 && !(1e-150..=1e150).contains(&extent) {
-        return Err(CloudError::BadExtent { extent });
+        return Err(ScaleError::BadExtent { extent });
     }
     let spacing = spacing(&cloud.positions).unwrap_or(1.0);
     let radius = radius.unwrap_or(CLOSED * spacing);
     check_radius(radius, extent)?;
     let scale = f64::from(CODE) / 255.0 / radius;
     if !scale.is_normal() {
-        return Err(CloudError::BadRadius { radius });
+        return Err(ScaleError::BadRadius { radius });
     }
     let center = |p: &[f64; 3]| std::array::from_fn(|i| ((p[i] - offset[i]) * scale) as f32);
     let centers = cloud.positions.par_iter().map(center).collect();
     Ok(Scaled { centers, radius_code: CODE, scale, offset, spacing })
 }
 
-fn check(cloud: &PointCloud, radius: Option<f64>) -> Result<(), CloudError> {
+fn check(cloud: &PointCloud, radius: Option<f64>) -> Result<(), ScaleError> {
     let (positions, colors) = (cloud.positions.len(), cloud.colors.len());
     if positions != colors {
-        return Err(CloudError::LengthMismatch { positions, colors });
+        return Err(ScaleError::LengthMismatch { positions, colors });
     }
     if positions == 0 {
-        return Err(CloudError::Empty);
+        return Err(ScaleError::Empty);
     }
     if let Some(radius) = radius.filter(|r| !(r.is_finite() && *r > 0.0)) {
-        return Err(CloudError::BadRadius { radius });
+        return Err(ScaleError::BadRadius { radius });
     }
-    check_finite(&cloud.positions, || "the cloud".into(), "remove these points")
+    let is_bad = |p: &&[f64; 3]| !p.iter().all(|c| c.is_finite());
+    let Some(first) = cloud.positions.iter().position(|p| is_bad(&p)) else { return Ok(()) };
+    let count = cloud.positions[first..].iter().filter(is_bad).count();
+    Err(ScaleError::NotFinite { count, total: positions, first })
 }
 
 /// The two limits do not depend on the scale: rounding to f32 is relative to the distance
 /// from the origin, at most half the extent.
-fn check_radius(radius: f64, extent: f64) -> Result<(), CloudError> {
+fn check_radius(radius: f64, extent: f64) -> Result<(), ScaleError> {
     let rounding = 0.5 * extent / f64::from(1 << f32::MANTISSA_DIGITS);
     let minimum = rounding / TOLERANCE;
     if radius < minimum {
-        return Err(CloudError::RadiusTooSmall { radius, extent, minimum });
+        return Err(ScaleError::RadiusTooSmall { radius, extent, minimum });
     }
     let maximum = extent / DETAIL;
     if extent > 0.0 && radius > maximum {
-        return Err(CloudError::RadiusTooLarge { radius, extent, maximum });
+        return Err(ScaleError::RadiusTooLarge { radius, extent, maximum });
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! Where to look at a cloud from.
 
-use super::PointCloud;
+use raydsl_io::cloud::PointCloud;
 
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]

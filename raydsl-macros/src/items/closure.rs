@@ -153,6 +153,8 @@ fn copies(
         // The copies have the same mistakes.
         if copies.is_empty() {
             errors.append(seen);
+        } else {
+            errors.append_repeated(seen);
         }
         copies.push(copy);
     }

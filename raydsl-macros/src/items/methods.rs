@@ -298,8 +298,7 @@ pub(crate) fn kernel_trait(item: &syn::ItemTrait) -> TokenStream {
             None => {
                 let body = syn::parse_quote!({});
                 let kernel = parse::function(&f.attrs, &f.sig, &body, Some(&self_ty), &mut errors);
-                let mut unused = Errors::default();
-                let emitter = Emitter::new(&kernel, quote!(__M), None, false, &mut unused);
+                let emitter = Emitter::new(&kernel, quote!(__M), None, false, &mut errors);
                 let emitter = emitter.with_generics(&around);
                 let (head, quiet) = (head(&kernel, &place, &emitter), quiet());
                 functions.extend(quote!(#[doc(hidden)] #quiet #head;));

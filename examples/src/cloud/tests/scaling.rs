@@ -1,3 +1,6 @@
+use std::io::Write;
+use std::path::PathBuf;
+
 use super::*;
 
 fn cloud(positions: Vec<[f64; 3]>) -> PointCloud {
@@ -86,4 +89,23 @@ fn impossible_clouds_are_refused() {
     assert!(refusal(&cloud(vec![[0.0; 3], [f64::NAN; 3]]), None).contains("1 of 2"));
     let uneven = PointCloud { positions: vec![[0.0; 3]], colors: vec![] };
     refusal(&uneven, None);
+}
+
+#[test]
+fn a_real_scan_has_a_spacing() {
+    // Written past the test harness, which would swallow what a passing test prints.
+    let skip = |why: &str| {
+        let mut err = std::io::stderr();
+        let _ = writeln!(err, "SKIPPED a_real_scan_has_a_spacing: {why}; no real scan is read");
+    };
+    let Some(folder) = std::env::var_os("RAYDSL_DATA") else {
+        return skip("RAYDSL_DATA is not set");
+    };
+    let path = PathBuf::from(folder).join("lion_takanawa.copc.laz");
+    if !path.exists() {
+        return skip("RAYDSL_DATA holds no lion_takanawa.copc.laz");
+    }
+    let cloud = raydsl_io::cloud::load(&path, &mut |_, _| {}).expect("a cloud");
+    let scaled = scale(&cloud, None).expect("a scale");
+    assert!((0.005..0.05).contains(&scaled.spacing), "{}", scaled.spacing);
 }

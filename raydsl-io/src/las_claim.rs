@@ -3,31 +3,30 @@
 
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::ops::Range;
-use std::path::Path;
 
-use super::CloudError;
-use super::las::{corrupt, io_error, las_error};
-use super::load::Source;
+use crate::las::File;
+use crate::source::Source;
+use crate::{LoadError, Place};
 
 /// Where a LAS 1.4 header holds the place and number of extended records.
 const EXTENDED_RECORDS: Range<u64> = 235..247;
 
 /// What a header claims, and how many points the file's length can bear.
-pub(super) struct Claim {
-    pub(super) points: u64,
-    pub(super) credible: u64,
-    pub(super) compressed: bool,
+pub(crate) struct Claim {
+    pub(crate) points: u64,
+    pub(crate) credible: u64,
+    pub(crate) compressed: bool,
     /// Where the points start.
-    pub(super) start: u64,
+    pub(crate) start: u64,
     /// Bytes of a point before compression.
-    pub(super) record: u64,
+    pub(crate) record: u64,
 }
 
 impl Claim {
     /// Reads a header and leaves the source at its start.
-    pub(super) fn inspect(source: &mut Source, path: &Path) -> Result<Self, CloudError> {
-        let header = ::las::raw::Header::read_from(&mut *source).map_err(|e| las_error(path, e))?;
-        source.rewind().map_err(|e| io_error(path, &e))?;
+    pub(crate) fn inspect(source: &mut Source, file: File<'_>) -> Result<Self, LoadError> {
+        let header = ::las::raw::Header::read_from(&mut *source).map_err(|e| file.las_error(e))?;
+        source.rewind().map_err(|e| file.io_error(&e))?;
         let large = header.large_file.map_or(0, |l| l.number_of_point_records);
         let points = match header.number_of_point_records {
             0 => large,
@@ -36,14 +35,14 @@ impl Claim {
         let (start, len) = (u64::from(header.offset_to_point_data), source.len);
         if start > len {
             let what = format!("the points begin at byte {start} of {len}");
-            return Err(truncated(path, what));
+            return Err(file.truncated(what));
         }
         let record = u64::from(header.point_data_record_length);
         // The two high bits of the format mark compression.
         let compressed = header.point_data_record_format & 0xc0 != 0;
         let held = (len - start) / record.max(1);
         if !compressed && held < points {
-            return Err(truncated(path, format!("{held} of {points} points are there")));
+            return Err(file.truncated(format!("{held} of {points} points are there")));
         }
         // Compressed points take more than a byte, but in degenerate files, which may grow.
         let credible = if compressed { len } else { held };
@@ -52,7 +51,7 @@ impl Claim {
 }
 
 /// Whether compressed points come in chunks, as in all files but the earliest.
-pub(super) fn chunked(header: &::las::Header) -> bool {
+pub(crate) fn chunked(header: &::las::Header) -> bool {
     const POINTWISE: [u8; 2] = [1, 0];
     let vlr = header.vlrs().iter().find(|v| ::las::laz::is_laszip_vlr(v));
     vlr.is_some_and(|v| !v.data.starts_with(&POINTWISE))
@@ -60,16 +59,16 @@ pub(super) fn chunked(header: &::las::Header) -> bool {
 
 /// Holds the count of the chunk table, by which the decoder allocates, against the file's
 /// length; gives the range of the chunks.
-pub(super) fn check_chunks(
+pub(crate) fn check_chunks(
     source: &mut Source,
-    path: &Path,
+    file: File<'_>,
     start: u64,
-) -> Result<Range<u64>, CloudError> {
+) -> Result<Range<u64>, LoadError> {
     let len = source.len;
     let mut read_at = |at: SeekFrom| {
         let mut word = [0; 8];
         let result = source.seek(at).and_then(|_| source.read_exact(&mut word));
-        result.map(|()| word).map_err(|e| io_error(path, &e))
+        result.map(|()| word).map_err(|e| file.io_error(&e))
     };
     let mut table = i64::from_le_bytes(read_at(SeekFrom::Start(start))?);
     if table <= start as i64 {
@@ -78,12 +77,13 @@ pub(super) fn check_chunks(
     }
     let table = u64::try_from(table).unwrap_or(0);
     if !(start..len).contains(&table) {
-        return Err(truncated(path, "the table of its compressed chunks is missing".into()));
+        return Err(file.truncated("the table of its compressed chunks is missing".into()));
     }
     let [_, _, _, _, count @ ..] = read_at(SeekFrom::Start(table))?;
     let count = u64::from(u32::from_le_bytes(count));
     if count > len {
-        return Err(corrupt(path, format!("it lists {count} chunks in {len} bytes")));
+        let what = format!("it lists {count} chunks in {len} bytes");
+        return Err(file.corrupt(Place::Byte(table + 4), what));
     }
     Ok(start + 8..table)
 }
@@ -93,10 +93,10 @@ pub(super) fn check_chunks(
 /// The extended records, which would be loaded whole with a length from the file, are
 /// hidden; a picture needs none of them. Sizes of compressed layers, for which the decoder
 /// would zero up to 4 GiB each, must not exceed the file.
-pub(super) struct Masked {
-    pub(super) source: Source,
+pub(crate) struct Masked {
+    pub(crate) source: Source,
     /// Where chunks are; empty when there are none.
-    pub(super) chunks: Range<u64>,
+    pub(crate) chunks: Range<u64>,
     at: u64,
     /// Whether the header has extended records at all.
     extended: bool,
@@ -106,7 +106,7 @@ pub(super) struct Masked {
 }
 
 impl Masked {
-    pub(super) fn new(mut source: Source, record: u64) -> io::Result<Self> {
+    pub(crate) fn new(mut source: Source, record: u64) -> io::Result<Self> {
         let mut start = [0; 105];
         source.read_exact(&mut start)?;
         source.rewind()?;
@@ -146,7 +146,7 @@ impl Masked {
 
 impl Read for Masked {
     fn read(&mut self, buf: &mut [u8]) -> io::Result<usize> {
-        let n = self.source.file.read(buf)?;
+        let n = self.source.read(buf)?;
         self.words = 0;
         self.hide(&mut buf[..n]);
         self.at += n as u64;
@@ -154,7 +154,7 @@ impl Read for Masked {
     }
 
     fn read_exact(&mut self, buf: &mut [u8]) -> io::Result<()> {
-        self.source.file.read_exact(buf)?;
+        self.source.read_exact(buf)?;
         self.hide(buf);
         self.check_size(buf)?;
         self.at += buf.len() as u64;
@@ -167,8 +167,4 @@ impl Seek for Masked {
         self.at = self.source.seek(to)?;
         Ok(self.at)
     }
-}
-
-fn truncated(path: &Path, what: String) -> CloudError {
-    CloudError::Truncated { path: path.into(), what }
 }

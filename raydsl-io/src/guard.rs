@@ -24,7 +24,7 @@ fn silence() {
 
 /// Calls `decode`; a panic in it becomes its message. Whatever `decode` borrowed mutably
 /// must not be used after an error.
-pub(super) fn guarded<T>(decode: impl FnOnce() -> T) -> Result<T, String> {
+pub(crate) fn guarded<T>(decode: impl FnOnce() -> T) -> Result<T, String> {
     silence();
     let outer = QUIET.replace(true);
     let result = catch_unwind(AssertUnwindSafe(decode));

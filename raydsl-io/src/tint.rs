@@ -2,7 +2,7 @@
 
 /// Greys from 16-bit intensities. Scanners use any part of the range, so the 99th
 /// percentile becomes white.
-pub(super) fn from_intensity(intensity: &[u16]) -> Vec<[u8; 3]> {
+pub(crate) fn from_intensity(intensity: &[u16]) -> Vec<[u8; 3]> {
     let mut histogram = vec![0usize; 1 << 16];
     for &i in intensity {
         histogram[usize::from(i)] += 1;
@@ -19,7 +19,7 @@ pub(super) fn from_intensity(intensity: &[u16]) -> Vec<[u8; 3]> {
 }
 
 /// Colours from blue over green and sand to white, low to high.
-pub(super) fn from_height(positions: &[[f64; 3]]) -> Vec<[u8; 3]> {
+pub(crate) fn from_height(positions: &[[f64; 3]]) -> Vec<[u8; 3]> {
     const RAMP: [[f64; 3]; 5] = [
         [58.0, 92.0, 140.0],
         [84.0, 146.0, 110.0],
@@ -46,7 +46,7 @@ pub(super) fn from_height(positions: &[[f64; 3]]) -> Vec<[u8; 3]> {
 
 /// 16-bit colours to 8 bits. Some writers store 8-bit values unscaled; a file that never
 /// exceeds 255 is taken for one of these.
-pub(super) fn from_rgb16(colors: &[[u16; 3]]) -> Vec<[u8; 3]> {
+pub(crate) fn from_rgb16(colors: &[[u16; 3]]) -> Vec<[u8; 3]> {
     let narrow = colors.iter().flatten().all(|&c| c <= 255);
     let convert = |c: u16| if narrow { c as u8 } else { (c >> 8) as u8 };
     colors.iter().map(|c| c.map(convert)).collect()
@@ -56,19 +56,19 @@ pub(super) fn from_rgb16(colors: &[[u16; 3]]) -> Vec<[u8; 3]> {
 ///
 /// Which of the two is known only at the first value above 1. Until then values are scaled
 /// by 255; should they turn out to be bytes, each was 0 or 1 and can be told again.
-pub(super) struct Gathered {
+pub(crate) struct Gathered {
     colors: Vec<[u8; 3]>,
     bytes: bool,
 }
 
 impl Gathered {
     /// Collects into `colors`; `bytes` says that the values are 0 to 255 for sure.
-    pub(super) fn new(colors: Vec<[u8; 3]>, bytes: bool) -> Self {
+    pub(crate) fn new(colors: Vec<[u8; 3]>, bytes: bool) -> Self {
         Self { colors, bytes }
     }
 
     /// Adds a colour, or gives back the value that is no colour.
-    pub(super) fn push(&mut self, rgb: [f64; 3]) -> Result<(), f64> {
+    pub(crate) fn push(&mut self, rgb: [f64; 3]) -> Result<(), f64> {
         if let Some(&bad) = rgb.iter().find(|c| !(0.0..=255.0).contains(*c)) {
             return Err(bad);
         }
@@ -83,7 +83,7 @@ impl Gathered {
         Ok(())
     }
 
-    pub(super) fn finish(self) -> Vec<[u8; 3]> {
+    pub(crate) fn finish(self) -> Vec<[u8; 3]> {
         self.colors
     }
 }

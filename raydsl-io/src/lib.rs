@@ -1,0 +1,38 @@
+#![doc = include_str!("../README.md")]
+#![cfg_attr(
+    not(all(feature = "las", feature = "obj", feature = "ply", feature = "tri", feature = "xyz")),
+    allow(dead_code, unused_imports, reason = "formats share code")
+)]
+
+mod error;
+mod format;
+#[cfg(feature = "las")]
+mod guard;
+#[cfg(feature = "las")]
+mod las;
+#[cfg(feature = "las")]
+mod las_claim;
+#[cfg(feature = "obj")]
+mod obj;
+#[cfg(feature = "ply")]
+mod ply;
+mod source;
+#[cfg(all(
+    test,
+    feature = "las",
+    feature = "obj",
+    feature = "ply",
+    feature = "tri",
+    feature = "xyz"
+))]
+mod tests;
+mod tint;
+#[cfg(feature = "tri")]
+mod tri;
+#[cfg(feature = "xyz")]
+mod xyz;
+
+pub mod cloud;
+pub mod mesh;
+
+pub use error::{LoadError, Place};

@@ -1,0 +1,122 @@
+//! An open file, and how far it has been read.
+
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use crate::{LoadError, Place};
+
+/// Longer lines are a sign that the file is no text.
+const LONGEST: u64 = 1 << 20;
+
+/// An open file, its length and the place that is read next.
+pub(crate) struct Source {
+    pub(crate) path: PathBuf,
+    /// What errors call its format.
+    pub(crate) format: &'static str,
+    pub(crate) len: u64,
+    /// The line that was read last, from 1.
+    pub(crate) line: u64,
+    /// The byte that is read next.
+    pub(crate) at: u64,
+    file: BufReader<File>,
+}
+
+impl Source {
+    pub(crate) fn open(path: &Path, format: &'static str) -> Result<Self, LoadError> {
+        let refuse = |source: io::Error| match source.kind() {
+            ErrorKind::NotFound => LoadError::Missing { path: path.into() },
+            _ => LoadError::Unreadable { path: path.into(), source },
+        };
+        // Asked before it is opened: a pipe waits for a writer, and has no length.
+        let meta = fs::metadata(path).map_err(refuse)?;
+        if meta.is_dir() {
+            return Err(refuse(ErrorKind::IsADirectory.into()));
+        }
+        if !meta.is_file() {
+            return Err(refuse(io::Error::other("a device or a pipe")));
+        }
+        let file = File::open(path).map_err(refuse)?;
+        let file = BufReader::with_capacity(1 << 18, file);
+        Ok(Self { path: path.into(), format, len: meta.len(), line: 0, at: 0, file })
+    }
+
+    /// Bytes that are not read yet.
+    pub(crate) fn remaining(&self) -> u64 {
+        self.len.saturating_sub(self.at)
+    }
+
+    /// Reads a line into `line`, with its end; false at the end of the file.
+    pub(crate) fn next_line(&mut self, line: &mut Vec<u8>) -> Result<bool, LoadError> {
+        line.clear();
+        let read = (&mut self.file).take(LONGEST).read_until(b'\n', line);
+        let n = read.map_err(|e| self.unreadable(e))? as u64;
+        self.at += n;
+        self.line += 1;
+        if n == LONGEST && line.last() != Some(&b'\n') {
+            let what = format!("the line is longer than {LONGEST} bytes");
+            return Err(self.bad_line(what, "check that the file is text"));
+        }
+        Ok(n > 0)
+    }
+
+    /// Fills `bytes`; false where the file ends before.
+    pub(crate) fn fill(&mut self, bytes: &mut [u8]) -> Result<bool, LoadError> {
+        match self.file.read_exact(bytes) {
+            Ok(()) => {
+                self.at += bytes.len() as u64;
+                Ok(true)
+            }
+            Err(e) if e.kind() == ErrorKind::UnexpectedEof => Ok(false),
+            Err(e) => Err(self.unreadable(e)),
+        }
+    }
+
+    /// Passes over bytes; false where the file ends before.
+    pub(crate) fn skip(&mut self, count: u64) -> Result<bool, LoadError> {
+        let Some(step) = i64::try_from(count).ok().filter(|_| count <= self.remaining()) else {
+            return Ok(false);
+        };
+        self.file.seek_relative(step).map_err(|e| self.unreadable(e))?;
+        self.at += count;
+        Ok(true)
+    }
+
+    fn unreadable(&self, source: io::Error) -> LoadError {
+        LoadError::Unreadable { path: self.path.clone(), source }
+    }
+
+    pub(crate) fn truncated(&self, what: String) -> LoadError {
+        LoadError::Truncated { path: self.path.clone(), len: self.len, what }
+    }
+
+    pub(crate) fn corrupt(&self, place: Place, what: String, remedy: &'static str) -> LoadError {
+        LoadError::Corrupt { path: self.path.clone(), place, format: self.format, what, remedy }
+    }
+
+    /// Something is wrong with the line that was read last.
+    pub(crate) fn bad_line(&self, what: String, remedy: &'static str) -> LoadError {
+        self.corrupt(Place::Line(self.line), what, remedy)
+    }
+}
+
+impl Read for Source {
+    fn read(&mut self, buf: &mut [u8]) -> io::Result<usize> {
+        let n = self.file.read(buf)?;
+        self.at += n as u64;
+        Ok(n)
+    }
+
+    fn read_exact(&mut self, buf: &mut [u8]) -> io::Result<()> {
+        self.file.read_exact(buf)?;
+        self.at += buf.len() as u64;
+        Ok(())
+    }
+}
+
+impl Seek for Source {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.at = self.file.seek(to)?;
+        Ok(self.at)
+    }
+}
