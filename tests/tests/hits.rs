@@ -285,6 +285,133 @@ fn of_accelerators() {
     assert_hits("an accelerator", &scene, &asked!(scene), &oracle, &rays(&mut rng, RAYS));
 }
 
+/// A deck of which the first two crossings count.
+#[primitive]
+struct FirstTwo {
+    deck: Deck,
+}
+
+#[primitive]
+impl FirstTwo {
+    const MAX_CROSSINGS: u32 = 2;
+
+    fn intersect(&self, ray: Ray) -> Hit {
+        self.deck.intersect(ray)
+    }
+
+    fn get_bounds(&self) -> Aabb {
+        self.deck.get_bounds()
+    }
+}
+
+/// However many hits are found at a time.
+#[test]
+fn of_shapes_with_more_crossings_than_they_say() -> Result<(), BuildError> {
+    let mut rng = Rng::of("first two");
+    let decks = decks(&mut rng, 60);
+    let shapes: Vec<FirstTwo> = decks.iter().map(|deck| FirstTwo { deck: *deck }).collect();
+    let tree = Bvh::build(&shapes)?;
+    let last = kernel!(|ray: Ray| {
+        let mut count = 0u32;
+        let mut last = Hit::miss();
+        for hit in tree.hits(ray) {
+            count += 1;
+            last = hit;
+        }
+        (count, last)
+    });
+    let rays = rays(&mut rng, RAYS);
+    for (ray,) in &rays {
+        let all = expected(&[Placed { decks: &decks, first: 0, moved: HERE }], *ray);
+        let mut seen = vec![0; decks.len()];
+        let first_two = all.into_iter().filter(|hit| {
+            seen[hit.prim_id as usize] += 1;
+            seen[hit.prim_id as usize] <= 2
+        });
+        let first_two: Vec<Hit> = first_two.collect();
+        let found: Vec<Hit> = tree.hits(*ray).collect();
+        assert_eq!(found, first_two, "{ray:?}");
+        let end = first_two.last().copied().unwrap_or(Hit::miss());
+        assert_eq!(last.call((*ray,)), (found.len() as u32, end));
+    }
+    every_variant(&last, &rays);
+    Ok(())
+}
+
+/// Which card of a deck was hit.
+#[derive(Clone, Copy, Debug, Type, HitRecord)]
+struct CardHit {
+    hit: Hit,
+    card: u32,
+}
+
+/// A deck whose cards are numbered, and that does not count a hit where the range begins.
+#[primitive]
+struct Numbered {
+    deck: Deck,
+}
+
+#[primitive]
+impl Numbered {
+    const MAX_CROSSINGS: u32 = 6;
+
+    fn intersect(&self, ray: Ray) -> CardHit {
+        let mut found = CardHit { hit: Hit::miss(), card: 0 };
+        for i in 0..self.deck.cards {
+            let z = self.deck.low.z + i as f32;
+            let t = (z - ray.origin.z) / ray.direction.z;
+            let at = ray.origin + ray.direction * t;
+            let (low, high) = (self.deck.low, self.deck.high);
+            let is_inside = at.x >= low.x && at.x <= high.x && at.y >= low.y && at.y <= high.y;
+            let is_nearer = !found.hit.is_hit || t < found.hit.t;
+            if is_inside && t > ray.t_min && t <= ray.t_max && is_nearer {
+                found = CardHit { hit: Hit::new(true, t), card: i };
+            }
+        }
+        found
+    }
+
+    fn get_bounds(&self) -> Aabb {
+        self.deck.get_bounds()
+    }
+}
+
+/// The record is that of the crossing, not of the primitive's first one.
+#[test]
+fn records_of_each_crossing() -> Result<(), BuildError> {
+    let mut rng = Rng::of("numbered");
+    let decks = decks(&mut rng, 60);
+    let shapes: Vec<Numbered> = decks.iter().map(|deck| Numbered { deck: *deck }).collect();
+    let tree = Bvh::build(&shapes)?;
+    let sum = kernel!(|ray: Ray| {
+        let mut sum = 0u32;
+        for found in tree.hits(ray) {
+            sum = sum.wrapping_mul(7).wrapping_add(found.card);
+        }
+        sum
+    });
+    let rays: Vec<(Ray,)> =
+        rays(&mut rng, RAYS).into_iter().filter(|ray| ray.0.origin.is_finite()).collect();
+    let mut later = 0;
+    for (ray,) in &rays {
+        let mut number = 0u32;
+        for found in tree.hits(*ray) {
+            let deck = decks[found.hit.prim_id as usize];
+            let z = ray.origin.z + found.hit.t * ray.direction.z;
+            assert_eq!(found.card as f32, z - deck.low.z, "{ray:?}: {found:?}");
+            later += usize::from(found.card > 0);
+            number = number.wrapping_mul(7).wrapping_add(found.card);
+        }
+        let all = expected(&[Placed { decks: &decks, first: 0, moved: HERE }], *ray);
+        let inside = all.iter().filter(|hit| hit.t > ray.t_min).count();
+        assert_eq!(tree.hits(*ray).count(), inside, "{ray:?}");
+        assert_eq!(sum.call((*ray,)), number);
+    }
+    assert!(later > 500, "{later} hits of later cards");
+    every_variant(&sum, &rays);
+    Ok(())
+}
+
 #[primitive(sphere(center, radius))]
 struct Ball {
     center: Vec3,

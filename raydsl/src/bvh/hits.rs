@@ -1,7 +1,9 @@
 //! Hits in order, as many as are asked for.
 //!
 //! A query finds the next few hits behind the last one, and another what follows when they have been
-//! taken. So nothing of a traversal is kept between two hits, hits come in one order whatever finds
+//! taken. The crossings of a primitive are a chain: `intersect` of the ray, then of the ray from behind
+//! each crossing on. Every query follows it from the beginning, so that where a batch ends makes no
+//! difference. So nothing of a traversal is kept between two hits, hits come in one order whatever finds
 //! them, and one that is in several leaves comes once. (After Amstutz, Gribble, Guenther and Wald, "An
 //! Evaluation of Multi-Hit Ray Traversal in a BVH using Existing First-Hit/Any-Hit Kernels", JCGT 4(4),
 //! 2015.)
@@ -10,7 +12,7 @@ use core::iter::FusedIterator;
 
 use super::contract::{behind, is_before, is_within};
 use super::on::{AllHits, LocalRay};
-use super::query::{RecordOn, inserted, is_placed, limit_of, record_on};
+use super::query::{RecordOn, inserted, is_placed, limit_of, record_on, select};
 use super::{SceneView, View};
 use crate::geometry::{Hit, HitOn, HitRecord, Kinds, Primitive, Ray, RayOn};
 use crate::machine::{B, Branch, Cursor, F, KernelInfo, Loop, Machine, Scalar, Type, U, Var, op};
@@ -59,14 +61,22 @@ pub struct HitsOn<'a, M: Machine, P: Primitive> {
     pub(super) ray: RayOn<M>,
 }
 
+/// A hit, and from where on `intersect` was asked when it gave that.
+type Crossing<M> = (HitOn<M>, F<M>);
+
 /// How far a loop over hits has come.
 pub struct State<M: Machine> {
     /// Hits that are found and yet to come, in order; misses behind them.
-    pending: Var<[HitOn<M>; BATCH]>,
+    pending: Var<[Crossing<M>; BATCH]>,
     /// The hit at which it stands; a miss before the first.
-    last: Var<HitOn<M>>,
+    last: Var<Crossing<M>>,
     /// Whether there may be hits behind those that are pending.
     has_more: Var<B<M>>,
+}
+
+#[inline(always)]
+fn miss<M: Machine>(m: &M) -> Crossing<M> {
+    (Hit::splat(m, Hit::miss()), F(m.f32(0.0)))
 }
 
 impl<M: Machine, P: Primitive> Cursor<M> for HitsOn<'_, M, P> {
@@ -75,10 +85,9 @@ impl<M: Machine, P: Primitive> Cursor<M> for HitsOn<'_, M, P> {
 
     #[inline(always)]
     fn begin(&self, m: &M) -> State<M> {
-        let miss = Hit::splat(m, Hit::miss());
         State {
-            pending: Var::new(m, "pending", [miss; BATCH]),
-            last: Var::new(m, "last", miss),
+            pending: Var::new(m, "pending", [miss(m); BATCH]),
+            last: Var::new(m, "last", miss(m)),
             has_more: Var::new(m, "has_more", B(m.bool(true))),
         }
     }
@@ -86,27 +95,26 @@ impl<M: Machine, P: Primitive> Cursor<M> for HitsOn<'_, M, P> {
     #[inline(always)]
     fn advance(&self, m: &M, state: &State<M>) -> B<M> {
         let [first, ..] = state.pending.get(m);
-        let is_due = m.bool_binary(op::And, m.bool_not(first.is_hit.0), state.has_more.get(m).0);
+        let is_due = m.bool_binary(op::And, m.bool_not(first.0.is_hit.0), state.has_more.get(m).0);
         let is_due = Branch::new(m, B(is_due));
         if is_due.then(m) {
-            let found = next_hits(m, &self.scene, self.ray, state.last.get(m));
+            let found = next_hits(m, &self.scene, self.ray, state.last.get(m).0);
             state.pending.set(m, found);
-            state.has_more.set(m, found[BATCH - 1].is_hit);
+            state.has_more.set(m, found[BATCH - 1].0.is_hit);
         }
         is_due.end(m);
         let [first, others @ ..] = state.pending.get(m);
-        let mut pending = [Hit::splat(m, Hit::miss()); BATCH];
+        let mut pending = [miss(m); BATCH];
         pending[..BATCH - 1].copy_from_slice(&others);
         state.last.set(m, first);
         state.pending.set(m, pending);
-        first.is_hit
+        first.0.is_hit
     }
 
     #[inline(always)]
     fn item(&self, m: &M, state: &State<M>) -> RecordOn<M, P> {
-        let hit = state.last.get(m);
-        // From there on this crossing of the primitive is the first.
-        record_on(m, &self.scene, RayOn { t_min: hit.t, ..self.ray }, hit)
+        let (hit, t_min) = state.last.get(m);
+        record_on(m, &self.scene, RayOn { t_min, ..self.ray }, hit)
     }
 }
 
@@ -126,28 +134,22 @@ fn next_hits<M: Machine, P: Primitive>(
     scene: &SceneView<'_, P>,
     ray: RayOn<M>,
     last: HitOn<M>,
-) -> [HitOn<M>; BATCH] {
+) -> [Crossing<M>; BATCH] {
     m.call_apart(
         &NEXT_HITS,
         (ray, last),
         #[inline(always)]
         |m, (ray, last)| {
-            let t_min = F(m.f32_select(last.is_hit.0, last.t.0, ray.t_min.0));
-            let search = Search {
-                m,
-                scene,
-                ray: RayOn { t_min, ..ray },
-                last,
-                found: Var::new(m, "found", [Hit::splat(m, Hit::miss()); BATCH]),
-            };
+            let found = Var::new(m, "found", [miss(m); BATCH]);
+            let search = Search { m, scene, ray, last, found };
             m.visit(
                 &AllHits(scene),
-                search.ray,
+                ray,
                 #[inline(always)]
-                || limit_of(m, scene, search.farthest(), search.ray),
+                || limit_of(m, scene, search.farthest(), ray),
                 #[inline(always)]
                 |(hit, _)| {
-                    search.every_crossing(hit);
+                    search.keep_crossings(hit);
                     B(m.bool(true))
                 },
             );
@@ -160,51 +162,46 @@ fn next_hits<M: Machine, P: Primitive>(
 struct Search<'s, 'a, M: Machine, P: Primitive> {
     m: &'s M,
     scene: &'s SceneView<'a, P>,
-    /// From the last hit on.
     ray: RayOn<M>,
     last: HitOn<M>,
-    found: Var<[HitOn<M>; BATCH]>,
+    found: Var<[Crossing<M>; BATCH]>,
 }
 
 impl<M: Machine, P: Primitive> Search<'_, '_, M, P> {
     /// The last of the hits that are found.
     #[inline(always)]
     fn farthest(&self) -> HitOn<M> {
-        self.found.get(self.m)[BATCH - 1]
-    }
-
-    #[inline(always)]
-    fn is_before(&self, a: HitOn<M>, b: HitOn<M>) -> M::Bool {
-        is_before::on(self.m, is_placed(self.scene), a, b).0
+        self.found.get(self.m)[BATCH - 1].0
     }
 
     /// Keeps the crossings of a primitive whose first is `hit`.
     #[inline(always)]
-    fn every_crossing(&self, hit: HitOn<M>) {
-        self.keep(hit);
-        match P::MAX_CROSSINGS {
-            0 | 1 => {}
-            2 => self.keep(self.next_crossing(hit)),
-            most => self.keep_behind(hit, most - 1),
-        }
-    }
-
-    /// Keeps up to `most` crossings behind `hit`.
-    #[inline(always)]
-    fn keep_behind(&self, hit: HitOn<M>, most: u32) {
+    fn keep_crossings(&self, hit: HitOn<M>) {
         let m = self.m;
+        self.keep((hit, self.ray.t_min));
+        if P::MAX_CROSSINGS < 2 {
+            return;
+        }
+        if P::MAX_CROSSINGS == 2 {
+            let goes_on = Branch::new(m, B(self.goes_on(hit)));
+            if goes_on.then(m) {
+                self.keep(self.next_crossing(hit));
+            }
+            goes_on.end(m);
+            return;
+        }
         let at = Var::new(m, "crossing", hit);
-        let left = Var::new(m, "left", U(m.u32(most)));
+        let left = Var::new(m, "left", U(m.u32(P::MAX_CROSSINGS - 1)));
         let repeat = Loop::new(m);
         loop {
             let some_left = m.u32_compare(op::Gt, left.get(m).0, m.u32(0));
-            let goes_on = m.bool_binary(op::And, some_left, at.get(m).is_hit.0);
+            let goes_on = m.bool_binary(op::And, some_left, self.goes_on(at.get(m)));
             if !repeat.test(m, B(goes_on)) {
                 break;
             }
             let next = self.next_crossing(at.get(m));
             self.keep(next);
-            at.set(m, next);
+            at.set(m, next.0);
             left.set(m, U(m.u32_binary(op::WrappingSub, left.get(m).0, m.u32(1))));
             repeat.continuing(m);
             if !repeat.again(m) {
@@ -214,11 +211,19 @@ impl<M: Machine, P: Primitive> Search<'_, '_, M, P> {
         repeat.end(m);
     }
 
-    /// Where the ray crosses the primitive next, if it does so before what is kept.
+    /// Whether a crossing behind this one may be among the next hits.
     #[inline(always)]
-    fn next_crossing(&self, hit: HitOn<M>) -> HitOn<M> {
+    fn goes_on(&self, hit: HitOn<M>) -> M::Bool {
+        let is_near = is_before::on(self.m, is_placed(self.scene), hit, self.farthest());
+        self.m.bool_binary(op::And, hit.is_hit.0, is_near.0)
+    }
+
+    /// Where the ray crosses the primitive behind `hit`.
+    #[inline(always)]
+    fn next_crossing(&self, hit: HitOn<M>) -> Crossing<M> {
         let (m, scene) = (self.m, self.scene);
-        let ray = RayOn { t_min: behind::on(m, hit.t), ..self.ray };
+        let t_min = behind::on(m, hit.t);
+        let ray = RayOn { t_min, ..self.ray };
         let local = match scene.placed() {
             Some(_) => m.perform(&LocalRay(scene), (ray, hit.inst_id)),
             None => ray,
@@ -227,23 +232,18 @@ impl<M: Machine, P: Primitive> Search<'_, '_, M, P> {
         let prim = m.fetch(scene, hit.prim_id);
         let found = P::intersect_among_on(m, kinds, prim, local, View::shared(scene));
         let next = HitOn { prim_id: hit.prim_id, inst_id: hit.inst_id, ..P::Hit::hit_on(found) };
-        let is_wanted = m.bool_binary(
-            op::And,
-            is_within::on(m, next, ray).0,
-            self.is_before(next, self.farthest()),
-        );
-        HitOn { is_hit: B(is_wanted), ..next }
+        (HitOn { is_hit: is_within::on(m, next, ray), ..next }, t_min)
     }
 
     /// Keeps a hit if it is behind the last one, and before some that is kept.
     #[inline(always)]
-    fn keep(&self, hit: HitOn<M>) {
+    fn keep(&self, crossing: Crossing<M>) {
         let (is_placed, found) = (is_placed(self.scene), self.found.get(self.m));
         let kept = self.m.call(
             &WITH_HIT,
-            (found, self.last, hit),
+            (found, self.last, crossing),
             #[inline(always)]
-            |m, (found, last, hit)| with_hit(m, is_placed, found, last, hit),
+            |m, (found, last, crossing)| with_hit(m, is_placed, found, last, crossing),
         );
         self.found.set(self.m, kept);
     }
@@ -253,7 +253,7 @@ static WITH_HIT: KernelInfo = KernelInfo {
     name: "with_hit",
     file: file!(),
     line: line!(),
-    params: &["found", "last", "hit"],
+    params: &["found", "last", "crossing"],
     known: None,
 };
 
@@ -262,20 +262,25 @@ static WITH_HIT: KernelInfo = KernelInfo {
 fn with_hit<M: Machine>(
     m: &M,
     is_placed: bool,
-    found: [HitOn<M>; BATCH],
+    found: [Crossing<M>; BATCH],
     last: HitOn<M>,
-    hit: HitOn<M>,
-) -> [HitOn<M>; BATCH] {
+    crossing: Crossing<M>,
+) -> [Crossing<M>; BATCH] {
     let and = |a, b| m.bool_binary(op::And, a, b);
     let or = |a, b| m.bool_binary(op::Or, a, b);
     let before = |a, b| is_before::on(m, is_placed, a, b);
+    let hit = crossing.0;
     let is_behind = or(m.bool_not(last.is_hit.0), before(last, hit).0);
     let is_new = and(is_behind, m.bool_not(is_among(m, is_placed, hit, &found)));
-    let fits = and(hit.is_hit.0, and(is_new, before(hit, found[BATCH - 1]).0));
+    let fits = and(hit.is_hit.0, and(is_new, before(hit, found[BATCH - 1].0).0));
     let all = Var::new(m, "all", found);
     let fits = Branch::new(m, B(fits));
     if fits.then(m) {
-        all.set(m, inserted(m, &before, hit, found));
+        let is_first = |a: Crossing<M>, b: Crossing<M>| before(a.0, b.0);
+        let chosen = |c: B<M>, a: Crossing<M>, b: Crossing<M>| {
+            (select(m, c, a.0, b.0), F(m.f32_select(c.0, a.1.0, b.1.0)))
+        };
+        all.set(m, inserted(m, is_first, chosen, crossing, found));
     }
     fits.end(m);
     all.get(m)
@@ -287,10 +292,10 @@ fn is_among<M: Machine>(
     m: &M,
     is_placed: bool,
     hit: HitOn<M>,
-    found: &[HitOn<M>; BATCH],
+    found: &[Crossing<M>; BATCH],
 ) -> M::Bool {
     let and = |a, b| m.bool_binary(op::And, a, b);
-    found.iter().fold(m.bool(false), |any, h| {
+    found.iter().fold(m.bool(false), |any, (h, _)| {
         let same_t = m.f32_compare(op::Eq, h.t.0, hit.t.0);
         let mut same = and(same_t, m.u32_compare(op::Eq, h.prim_id.0, hit.prim_id.0));
         if is_placed {

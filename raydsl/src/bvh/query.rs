@@ -225,7 +225,7 @@ fn first_hits<M: Machine, P: Primitive, const N: usize>(
             if fits.then(m) {
                 let accepted = Branch::new(m, accept(record));
                 if accepted.then(m) {
-                    all.set(m, inserted(m, &is_before, hit, hits));
+                    all.set(m, inserted(m, &is_before, |c, a, b| select(m, c, a, b), hit, hits));
                 }
                 accepted.end(m);
             }
@@ -260,12 +260,13 @@ fn is_among<M: Machine, const N: usize>(
 
 /// Inserts a hit at its place in the order; the last one is dropped.
 #[inline(always)]
-pub(super) fn inserted<M: Machine, const N: usize>(
+pub(super) fn inserted<M: Machine, V: Copy, const N: usize>(
     m: &M,
-    is_before: &impl Fn(HitOn<M>, HitOn<M>) -> B<M>,
-    hit: HitOn<M>,
-    mut hits: [HitOn<M>; N],
-) -> [HitOn<M>; N] {
+    is_before: impl Fn(V, V) -> B<M>,
+    select: impl Fn(B<M>, V, V) -> V,
+    hit: V,
+    mut hits: [V; N],
+) -> [V; N] {
     // All hits after the first later one are later; the last one is, or nothing would be inserted.
     let mut carried = hit;
     let mut found = B(m.bool(false));
@@ -276,8 +277,8 @@ pub(super) fn inserted<M: Machine, const N: usize>(
     for slot in others {
         let before = is_before(hit, *slot);
         found = B(m.bool_binary(op::Or, found.0, before.0));
-        let kept = select(m, found, carried, *slot);
-        carried = select(m, found, *slot, carried);
+        let kept = select(found, carried, *slot);
+        carried = select(found, *slot, carried);
         *slot = kept;
     }
     *last = carried;
@@ -285,7 +286,7 @@ pub(super) fn inserted<M: Machine, const N: usize>(
 }
 
 #[inline(always)]
-fn select<M: Machine>(m: &M, c: B<M>, a: HitOn<M>, b: HitOn<M>) -> HitOn<M> {
+pub(super) fn select<M: Machine>(m: &M, c: B<M>, a: HitOn<M>, b: HitOn<M>) -> HitOn<M> {
     HitOn {
         is_hit: B(m.bool_select(c.0, a.is_hit.0, b.is_hit.0)),
         t: F(m.f32_select(c.0, a.t.0, b.t.0)),

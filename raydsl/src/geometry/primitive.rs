@@ -35,10 +35,11 @@ pub trait Primitive: Type {
     /// default suits a careful `intersect` of a few dozen operations.
     const SLACK: f32 = 1.0 / 65536.0;
 
-    /// How often a ray crosses the primitive at most: once what is flat, twice what is convex, a
-    /// torus four times. Of [`hits`](crate::bvh::RayQuery::hits) every crossing is one: `intersect`
-    /// is asked again with a `t_min` behind the last, and must heed that for a shape that is
-    /// crossed more than once. In an `impl` under `#[primitive]` it is a constant of that name.
+    /// How often a ray crosses the primitive at most: once what is flat, twice what is convex, a torus
+    /// four times. Of [`hits`](crate::bvh::RayQuery::hits) every crossing is one, up to this many:
+    /// `intersect` is asked again for the ray from behind each crossing on. A shape that is crossed more
+    /// than once must heed `t_min`, and find a crossing at the same distance whatever that is. In an
+    /// `impl` under `#[primitive]` it is a constant of that name.
     const MAX_CROSSINGS: u32 = 8;
 
     /// Whether eight primitives of a block of a [wide tree](crate::bvh::Bvh::build_wide) are tested

@@ -11,9 +11,10 @@ use crate::machine::functions::vec2;
 /// What a quad's hit may be off by: that of its triangles.
 pub const SLACK: f32 = triangle::SLACK;
 
-/// How often a ray crosses it at most; see
+/// How often a ray crosses it at most: twice if it is not flat. One through the diagonal of a flat quad
+/// may cross both halves, which meet there, at distances an ulp apart. See
 /// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
-pub const MAX_CROSSINGS: u32 = 1;
+pub const MAX_CROSSINGS: u32 = 2;
 
 /// Where a ray meets the quad: both sides, edges and vertices included.
 ///
