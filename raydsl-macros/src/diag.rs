@@ -53,6 +53,8 @@ impl Errors {
         self.is_rustcs |= other.is_rustcs;
         if let Some(e) = other.first.take() {
             self.push(e);
+            // It stands for all of them.
+            self.count += other.count - 1;
         }
     }
 

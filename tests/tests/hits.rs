@@ -436,8 +436,8 @@ fn lengths_within_spheres() -> Result<(), BuildError> {
         let mut sum = 0.0;
         for hit in tree.hits(ray) {
             let ball = tree.primitive(hit);
-            let is_entry =
-                (ray.origin + ray.direction * hit.t - ball.center).dot(ray.direction) < 0.0;
+            let normal = ball.normal(ray.with_range(hit.t, ray.t_max), hit);
+            let is_entry = normal.dot(ray.direction) < 0.0;
             if is_entry {
                 if depth == 0 {
                     from = hit.t;

@@ -156,6 +156,9 @@ pub(super) fn read(source: &mut Source) -> Result<Header, LoadError> {
     }
 }
 
+/// Elements of a header at most; scans and meshes have a handful.
+const MOST_ELEMENTS: usize = 256;
+
 fn statement(
     line: &[u8],
     encoding: &mut Option<Encoding>,
@@ -170,6 +173,9 @@ fn statement(
         ["element", name, count] => {
             let count = count.parse();
             let count = count.map_err(|_| format!("element '{}' has no count", short(name)))?;
+            if elements.len() == MOST_ELEMENTS {
+                return Err(format!("it has more than {MOST_ELEMENTS} elements"));
+            }
             if elements.iter().any(|e| e.name == name) {
                 return Err(format!("it has two elements '{}'", short(name)));
             }
