@@ -45,11 +45,16 @@ struct ColorSphere {
 }
 
 struct Tuple {
-    _0: u32,
+    _0: Hit,
     _1: f32,
 }
 
 struct Tuple_1 {
+    _0: u32,
+    _1: f32,
+}
+
+struct Tuple_2 {
     _0: Ray,
 }
 
@@ -58,7 +63,7 @@ struct StoredColorSphere {
     radius_color_0_color_1_color_2: u32,
 }
 
-struct StoredTuple_1 {
+struct StoredTuple_2 {
     arg0_origin: vec3<f32>,
     arg0_direction_x: f32,
     arg0_direction_y: f32,
@@ -67,7 +72,7 @@ struct StoredTuple_1 {
     arg0_t_max: f32,
 }
 
-struct StoredTuple {
+struct StoredTuple_1 {
     arg0: u32,
     arg1: f32,
 }
@@ -249,73 +254,83 @@ fn ColorSphere_intersect(self_: ColorSphere, ray: Ray) -> Hit {
     return intersect(ray, self_.center, f32(self_.radius) / params.lit_255_0);
 }
 
-fn with_hit(found: array<Hit, 4>, last: Hit, hit: Hit) -> array<Hit, 4> {
-    var all_0_is_hit: bool = found[0].is_hit;
-    var all_0_t: f32 = found[0].t;
-    var all_0_prim_id: u32 = found[0].prim_id;
-    var all_0_inst_id: u32 = found[0].inst_id;
-    var all_0_u: f32 = found[0].u;
-    var all_0_v: f32 = found[0].v;
-    var all_1_is_hit: bool = found[1].is_hit;
-    var all_1_t: f32 = found[1].t;
-    var all_1_prim_id: u32 = found[1].prim_id;
-    var all_1_inst_id: u32 = found[1].inst_id;
-    var all_1_u: f32 = found[1].u;
-    var all_1_v: f32 = found[1].v;
-    var all_2_is_hit: bool = found[2].is_hit;
-    var all_2_t: f32 = found[2].t;
-    var all_2_prim_id: u32 = found[2].prim_id;
-    var all_2_inst_id: u32 = found[2].inst_id;
-    var all_2_u: f32 = found[2].u;
-    var all_2_v: f32 = found[2].v;
-    var all_3_is_hit: bool = found[3].is_hit;
-    var all_3_t: f32 = found[3].t;
-    var all_3_prim_id: u32 = found[3].prim_id;
-    var all_3_inst_id: u32 = found[3].inst_id;
-    var all_3_u: f32 = found[3].u;
-    var all_3_v: f32 = found[3].v;
-    if (hit.is_hit && ((!last.is_hit || is_before(last, hit)) && !((found[0].t == hit.t && found[0].prim_id == hit.prim_id && found[0].is_hit) || (found[1].t == hit.t && found[1].prim_id == hit.prim_id && found[1].is_hit) || (found[2].t == hit.t && found[2].prim_id == hit.prim_id && found[2].is_hit) || (found[3].t == hit.t && found[3].prim_id == hit.prim_id && found[3].is_hit)) && is_before(hit, found[3]))) {
-        let t = is_before(hit, found[0]);
-        let t_1 = select(hit.is_hit, found[0].is_hit, t);
-        let t_2 = select(hit.t, found[0].t, t);
-        let t_3 = select(hit.prim_id, found[0].prim_id, t);
-        let t_4 = select(hit.inst_id, found[0].inst_id, t);
-        let t_5 = select(hit.u, found[0].u, t);
-        let t_6 = select(hit.v, found[0].v, t);
-        let t_7 = t || is_before(hit, found[1]);
-        let t_8 = select(t_1, found[1].is_hit, t_7);
-        let t_9 = select(t_2, found[1].t, t_7);
-        let t_10 = select(t_3, found[1].prim_id, t_7);
-        let t_11 = select(t_4, found[1].inst_id, t_7);
-        let t_12 = select(t_5, found[1].u, t_7);
-        let t_13 = select(t_6, found[1].v, t_7);
-        let t_14 = t_7 || is_before(hit, found[2]);
-        all_0_is_hit = select(found[0].is_hit, hit.is_hit, t);
-        all_0_t = select(found[0].t, hit.t, t);
-        all_0_prim_id = select(found[0].prim_id, hit.prim_id, t);
-        all_0_inst_id = select(found[0].inst_id, hit.inst_id, t);
-        all_0_u = select(found[0].u, hit.u, t);
-        all_0_v = select(found[0].v, hit.v, t);
-        all_1_is_hit = select(found[1].is_hit, t_1, t_7);
-        all_1_t = select(found[1].t, t_2, t_7);
-        all_1_prim_id = select(found[1].prim_id, t_3, t_7);
-        all_1_inst_id = select(found[1].inst_id, t_4, t_7);
-        all_1_u = select(found[1].u, t_5, t_7);
-        all_1_v = select(found[1].v, t_6, t_7);
-        all_2_is_hit = select(found[2].is_hit, t_8, t_14);
-        all_2_t = select(found[2].t, t_9, t_14);
-        all_2_prim_id = select(found[2].prim_id, t_10, t_14);
-        all_2_inst_id = select(found[2].inst_id, t_11, t_14);
-        all_2_u = select(found[2].u, t_12, t_14);
-        all_2_v = select(found[2].v, t_13, t_14);
-        all_3_is_hit = select(t_8, found[2].is_hit, t_14);
-        all_3_t = select(t_9, found[2].t, t_14);
-        all_3_prim_id = select(t_10, found[2].prim_id, t_14);
-        all_3_inst_id = select(t_11, found[2].inst_id, t_14);
-        all_3_u = select(t_12, found[2].u, t_14);
-        all_3_v = select(t_13, found[2].v, t_14);
+fn with_hit(found: array<Tuple, 4>, last: Hit, crossing: Tuple) -> array<Tuple, 4> {
+    var all_0_0_is_hit: bool = found[0]._0.is_hit;
+    var all_0_0_t: f32 = found[0]._0.t;
+    var all_0_0_prim_id: u32 = found[0]._0.prim_id;
+    var all_0_0_inst_id: u32 = found[0]._0.inst_id;
+    var all_0_0_u: f32 = found[0]._0.u;
+    var all_0_0_v: f32 = found[0]._0.v;
+    var all_0_1: f32 = found[0]._1;
+    var all_1_0_is_hit: bool = found[1]._0.is_hit;
+    var all_1_0_t: f32 = found[1]._0.t;
+    var all_1_0_prim_id: u32 = found[1]._0.prim_id;
+    var all_1_0_inst_id: u32 = found[1]._0.inst_id;
+    var all_1_0_u: f32 = found[1]._0.u;
+    var all_1_0_v: f32 = found[1]._0.v;
+    var all_1_1: f32 = found[1]._1;
+    var all_2_0_is_hit: bool = found[2]._0.is_hit;
+    var all_2_0_t: f32 = found[2]._0.t;
+    var all_2_0_prim_id: u32 = found[2]._0.prim_id;
+    var all_2_0_inst_id: u32 = found[2]._0.inst_id;
+    var all_2_0_u: f32 = found[2]._0.u;
+    var all_2_0_v: f32 = found[2]._0.v;
+    var all_2_1: f32 = found[2]._1;
+    var all_3_0_is_hit: bool = found[3]._0.is_hit;
+    var all_3_0_t: f32 = found[3]._0.t;
+    var all_3_0_prim_id: u32 = found[3]._0.prim_id;
+    var all_3_0_inst_id: u32 = found[3]._0.inst_id;
+    var all_3_0_u: f32 = found[3]._0.u;
+    var all_3_0_v: f32 = found[3]._0.v;
+    var all_3_1: f32 = found[3]._1;
+    if (crossing._0.is_hit && ((!last.is_hit || is_before(last, crossing._0)) && !((found[0]._0.t == crossing._0.t && found[0]._0.prim_id == crossing._0.prim_id && found[0]._0.is_hit) || (found[1]._0.t == crossing._0.t && found[1]._0.prim_id == crossing._0.prim_id && found[1]._0.is_hit) || (found[2]._0.t == crossing._0.t && found[2]._0.prim_id == crossing._0.prim_id && found[2]._0.is_hit) || (found[3]._0.t == crossing._0.t && found[3]._0.prim_id == crossing._0.prim_id && found[3]._0.is_hit)) && is_before(crossing._0, found[3]._0))) {
+        let t = is_before(crossing._0, found[0]._0);
+        let t_1 = select(crossing._0.is_hit, found[0]._0.is_hit, t);
+        let t_2 = select(crossing._0.t, found[0]._0.t, t);
+        let t_3 = select(crossing._0.prim_id, found[0]._0.prim_id, t);
+        let t_4 = select(crossing._0.inst_id, found[0]._0.inst_id, t);
+        let t_5 = select(crossing._0.u, found[0]._0.u, t);
+        let t_6 = select(crossing._0.v, found[0]._0.v, t);
+        let t_7 = select(crossing._1, found[0]._1, t);
+        let t_8 = t || is_before(crossing._0, found[1]._0);
+        let t_9 = select(t_1, found[1]._0.is_hit, t_8);
+        let t_10 = select(t_2, found[1]._0.t, t_8);
+        let t_11 = select(t_3, found[1]._0.prim_id, t_8);
+        let t_12 = select(t_4, found[1]._0.inst_id, t_8);
+        let t_13 = select(t_5, found[1]._0.u, t_8);
+        let t_14 = select(t_6, found[1]._0.v, t_8);
+        let t_15 = select(t_7, found[1]._1, t_8);
+        let t_16 = t_8 || is_before(crossing._0, found[2]._0);
+        all_0_0_is_hit = select(found[0]._0.is_hit, crossing._0.is_hit, t);
+        all_0_0_t = select(found[0]._0.t, crossing._0.t, t);
+        all_0_0_prim_id = select(found[0]._0.prim_id, crossing._0.prim_id, t);
+        all_0_0_inst_id = select(found[0]._0.inst_id, crossing._0.inst_id, t);
+        all_0_0_u = select(found[0]._0.u, crossing._0.u, t);
+        all_0_0_v = select(found[0]._0.v, crossing._0.v, t);
+        all_0_1 = select(found[0]._1, crossing._1, t);
+        all_1_0_is_hit = select(found[1]._0.is_hit, t_1, t_8);
+        all_1_0_t = select(found[1]._0.t, t_2, t_8);
+        all_1_0_prim_id = select(found[1]._0.prim_id, t_3, t_8);
+        all_1_0_inst_id = select(found[1]._0.inst_id, t_4, t_8);
+        all_1_0_u = select(found[1]._0.u, t_5, t_8);
+        all_1_0_v = select(found[1]._0.v, t_6, t_8);
+        all_1_1 = select(found[1]._1, t_7, t_8);
+        all_2_0_is_hit = select(found[2]._0.is_hit, t_9, t_16);
+        all_2_0_t = select(found[2]._0.t, t_10, t_16);
+        all_2_0_prim_id = select(found[2]._0.prim_id, t_11, t_16);
+        all_2_0_inst_id = select(found[2]._0.inst_id, t_12, t_16);
+        all_2_0_u = select(found[2]._0.u, t_13, t_16);
+        all_2_0_v = select(found[2]._0.v, t_14, t_16);
+        all_2_1 = select(found[2]._1, t_15, t_16);
+        all_3_0_is_hit = select(t_9, found[2]._0.is_hit, t_16);
+        all_3_0_t = select(t_10, found[2]._0.t, t_16);
+        all_3_0_prim_id = select(t_11, found[2]._0.prim_id, t_16);
+        all_3_0_inst_id = select(t_12, found[2]._0.inst_id, t_16);
+        all_3_0_u = select(t_13, found[2]._0.u, t_16);
+        all_3_0_v = select(t_14, found[2]._0.v, t_16);
+        all_3_1 = select(t_15, found[2]._1, t_16);
     }
-    return array<Hit, 4>(Hit(all_0_is_hit, all_0_t, all_0_prim_id, all_0_inst_id, all_0_u, all_0_v), Hit(all_1_is_hit, all_1_t, all_1_prim_id, all_1_inst_id, all_1_u, all_1_v), Hit(all_2_is_hit, all_2_t, all_2_prim_id, all_2_inst_id, all_2_u, all_2_v), Hit(all_3_is_hit, all_3_t, all_3_prim_id, all_3_inst_id, all_3_u, all_3_v));
+    return array<Tuple, 4>(Tuple(Hit(all_0_0_is_hit, all_0_0_t, all_0_0_prim_id, all_0_0_inst_id, all_0_0_u, all_0_0_v), all_0_1), Tuple(Hit(all_1_0_is_hit, all_1_0_t, all_1_0_prim_id, all_1_0_inst_id, all_1_0_u, all_1_0_v), all_1_1), Tuple(Hit(all_2_0_is_hit, all_2_0_t, all_2_0_prim_id, all_2_0_inst_id, all_2_0_u, all_2_0_v), all_2_1), Tuple(Hit(all_3_0_is_hit, all_3_0_t, all_3_0_prim_id, all_3_0_inst_id, all_3_0_u, all_3_0_v), all_3_1));
 }
 
 fn behind(t: f32) -> f32 {
@@ -331,86 +346,97 @@ fn behind(t: f32) -> f32 {
     return select(next, 1.1754944e-38f, is_small);
 }
 
-fn next_hits(ray: Ray, last: Hit) -> array<Hit, 4> {
-    let t = select(ray.t_min, last.t, last.is_hit);
-    var found_0_is_hit: bool = false;
-    var found_0_t: f32 = 0.0f;
-    var found_0_prim_id: u32 = 0u;
-    var found_0_inst_id: u32 = 0u;
-    var found_0_u: f32 = 0.0f;
-    var found_0_v: f32 = 0.0f;
-    var found_1_is_hit: bool = false;
-    var found_1_t: f32 = 0.0f;
-    var found_1_prim_id: u32 = 0u;
-    var found_1_inst_id: u32 = 0u;
-    var found_1_u: f32 = 0.0f;
-    var found_1_v: f32 = 0.0f;
-    var found_2_is_hit: bool = false;
-    var found_2_t: f32 = 0.0f;
-    var found_2_prim_id: u32 = 0u;
-    var found_2_inst_id: u32 = 0u;
-    var found_2_u: f32 = 0.0f;
-    var found_2_v: f32 = 0.0f;
-    var found_3_is_hit: bool = false;
-    var found_3_t: f32 = 0.0f;
-    var found_3_prim_id: u32 = 0u;
-    var found_3_inst_id: u32 = 0u;
-    var found_3_u: f32 = 0.0f;
-    var found_3_v: f32 = 0.0f;
-    var walk: Traversal = bvh_walk(Ray(ray.origin, ray.direction, t, ray.t_max));
+fn next_hits(ray: Ray, last: Hit) -> array<Tuple, 4> {
+    var found_0_0_is_hit: bool = false;
+    var found_0_0_t: f32 = 0.0f;
+    var found_0_0_prim_id: u32 = 0u;
+    var found_0_0_inst_id: u32 = 0u;
+    var found_0_0_u: f32 = 0.0f;
+    var found_0_0_v: f32 = 0.0f;
+    var found_0_1: f32 = 0.0f;
+    var found_1_0_is_hit: bool = false;
+    var found_1_0_t: f32 = 0.0f;
+    var found_1_0_prim_id: u32 = 0u;
+    var found_1_0_inst_id: u32 = 0u;
+    var found_1_0_u: f32 = 0.0f;
+    var found_1_0_v: f32 = 0.0f;
+    var found_1_1: f32 = 0.0f;
+    var found_2_0_is_hit: bool = false;
+    var found_2_0_t: f32 = 0.0f;
+    var found_2_0_prim_id: u32 = 0u;
+    var found_2_0_inst_id: u32 = 0u;
+    var found_2_0_u: f32 = 0.0f;
+    var found_2_0_v: f32 = 0.0f;
+    var found_2_1: f32 = 0.0f;
+    var found_3_0_is_hit: bool = false;
+    var found_3_0_t: f32 = 0.0f;
+    var found_3_0_prim_id: u32 = 0u;
+    var found_3_0_inst_id: u32 = 0u;
+    var found_3_0_u: f32 = 0.0f;
+    var found_3_0_v: f32 = 0.0f;
+    var found_3_1: f32 = 0.0f;
+    var walk: Traversal = bvh_walk(ray);
     loop {
-        let id = bvh_next(&walk, t, select(ray.t_max, limit_behind(found_3_t, 9.536743e-7f, ray.t_max), found_3_is_hit));
+        let id = bvh_next(&walk, ray.t_min, select(ray.t_max, limit_behind(found_3_0_t, 9.536743e-7f, ray.t_max), found_3_0_is_hit));
         if (!(id != 4294967295u)) { break; }
-        let candidate = ColorSphere_intersect(bvh_at(id), Ray(ray.origin, ray.direction, t, ray.t_max));
-        if (is_within(candidate, Ray(ray.origin, ray.direction, t, ray.t_max))) {
-            let found_0_is_hit_1 = found_0_is_hit;
-            let found_0_t_1 = found_0_t;
-            let found_0_prim_id_1 = found_0_prim_id;
-            let found_0_inst_id_1 = found_0_inst_id;
-            let found_0_u_1 = found_0_u;
-            let found_0_v_1 = found_0_v;
-            let found_1_is_hit_1 = found_1_is_hit;
-            let found_1_t_1 = found_1_t;
-            let found_1_prim_id_1 = found_1_prim_id;
-            let found_1_inst_id_1 = found_1_inst_id;
-            let found_1_u_1 = found_1_u;
-            let found_1_v_1 = found_1_v;
-            let found_2_is_hit_1 = found_2_is_hit;
-            let found_2_t_1 = found_2_t;
-            let found_2_prim_id_1 = found_2_prim_id;
-            let found_2_inst_id_1 = found_2_inst_id;
-            let found_2_u_1 = found_2_u;
-            let found_2_v_1 = found_2_v;
-            let found_3_is_hit_1 = found_3_is_hit;
-            let found_3_t_1 = found_3_t;
-            let found_3_prim_id_1 = found_3_prim_id;
-            let found_3_inst_id_1 = found_3_inst_id;
-            let found_3_u_1 = found_3_u;
-            let t_1 = with_hit(array<Hit, 4>(Hit(found_0_is_hit_1, found_0_t_1, found_0_prim_id_1, found_0_inst_id_1, found_0_u_1, found_0_v_1), Hit(found_1_is_hit_1, found_1_t_1, found_1_prim_id_1, found_1_inst_id_1, found_1_u_1, found_1_v_1), Hit(found_2_is_hit_1, found_2_t_1, found_2_prim_id_1, found_2_inst_id_1, found_2_u_1, found_2_v_1), Hit(found_3_is_hit_1, found_3_t_1, found_3_prim_id_1, found_3_inst_id_1, found_3_u_1, found_3_v)), last, Hit(candidate.is_hit, candidate.t, id, 0u, candidate.u, candidate.v));
-            found_0_is_hit = t_1[0].is_hit;
-            found_0_t = t_1[0].t;
-            found_0_prim_id = t_1[0].prim_id;
-            found_0_inst_id = t_1[0].inst_id;
-            found_0_u = t_1[0].u;
-            found_0_v = t_1[0].v;
-            found_1_is_hit = t_1[1].is_hit;
-            found_1_t = t_1[1].t;
-            found_1_prim_id = t_1[1].prim_id;
-            found_1_inst_id = t_1[1].inst_id;
-            found_1_u = t_1[1].u;
-            found_1_v = t_1[1].v;
-            found_2_is_hit = t_1[2].is_hit;
-            found_2_t = t_1[2].t;
-            found_2_prim_id = t_1[2].prim_id;
-            found_2_inst_id = t_1[2].inst_id;
-            found_2_u = t_1[2].u;
-            found_2_v = t_1[2].v;
-            found_3_is_hit = t_1[3].is_hit;
-            found_3_t = t_1[3].t;
-            found_3_prim_id = t_1[3].prim_id;
-            found_3_inst_id = t_1[3].inst_id;
-            found_3_u = t_1[3].u;
-            found_3_v = t_1[3].v;
+        let candidate = ColorSphere_intersect(bvh_at(id), ray);
+        if (is_within(candidate, ray)) {
+            let found_0_0_is_hit_1 = found_0_0_is_hit;
+            let found_0_0_t_1 = found_0_0_t;
+            let found_0_0_prim_id_1 = found_0_0_prim_id;
+            let found_0_0_inst_id_1 = found_0_0_inst_id;
+            let found_0_0_u_1 = found_0_0_u;
+            let found_0_0_v_1 = found_0_0_v;
+            let found_0_1_1 = found_0_1;
+            let found_1_0_is_hit_1 = found_1_0_is_hit;
+            let found_1_0_t_1 = found_1_0_t;
+            let found_1_0_prim_id_1 = found_1_0_prim_id;
+            let found_1_0_inst_id_1 = found_1_0_inst_id;
+            let found_1_0_u_1 = found_1_0_u;
+            let found_1_0_v_1 = found_1_0_v;
+            let found_1_1_1 = found_1_1;
+            let found_2_0_is_hit_1 = found_2_0_is_hit;
+            let found_2_0_t_1 = found_2_0_t;
+            let found_2_0_prim_id_1 = found_2_0_prim_id;
+            let found_2_0_inst_id_1 = found_2_0_inst_id;
+            let found_2_0_u_1 = found_2_0_u;
+            let found_2_0_v_1 = found_2_0_v;
+            let found_2_1_1 = found_2_1;
+            let found_3_0_is_hit_1 = found_3_0_is_hit;
+            let found_3_0_t_1 = found_3_0_t;
+            let found_3_0_prim_id_1 = found_3_0_prim_id;
+            let found_3_0_inst_id_1 = found_3_0_inst_id;
+            let found_3_0_u_1 = found_3_0_u;
+            let found_3_0_v_1 = found_3_0_v;
+            let t = with_hit(array<Tuple, 4>(Tuple(Hit(found_0_0_is_hit_1, found_0_0_t_1, found_0_0_prim_id_1, found_0_0_inst_id_1, found_0_0_u_1, found_0_0_v_1), found_0_1_1), Tuple(Hit(found_1_0_is_hit_1, found_1_0_t_1, found_1_0_prim_id_1, found_1_0_inst_id_1, found_1_0_u_1, found_1_0_v_1), found_1_1_1), Tuple(Hit(found_2_0_is_hit_1, found_2_0_t_1, found_2_0_prim_id_1, found_2_0_inst_id_1, found_2_0_u_1, found_2_0_v_1), found_2_1_1), Tuple(Hit(found_3_0_is_hit_1, found_3_0_t_1, found_3_0_prim_id_1, found_3_0_inst_id_1, found_3_0_u_1, found_3_0_v_1), found_3_1)), last, Tuple(Hit(candidate.is_hit, candidate.t, id, 0u, candidate.u, candidate.v), ray.t_min));
+            found_0_0_is_hit = t[0]._0.is_hit;
+            found_0_0_t = t[0]._0.t;
+            found_0_0_prim_id = t[0]._0.prim_id;
+            found_0_0_inst_id = t[0]._0.inst_id;
+            found_0_0_u = t[0]._0.u;
+            found_0_0_v = t[0]._0.v;
+            found_0_1 = t[0]._1;
+            found_1_0_is_hit = t[1]._0.is_hit;
+            found_1_0_t = t[1]._0.t;
+            found_1_0_prim_id = t[1]._0.prim_id;
+            found_1_0_inst_id = t[1]._0.inst_id;
+            found_1_0_u = t[1]._0.u;
+            found_1_0_v = t[1]._0.v;
+            found_1_1 = t[1]._1;
+            found_2_0_is_hit = t[2]._0.is_hit;
+            found_2_0_t = t[2]._0.t;
+            found_2_0_prim_id = t[2]._0.prim_id;
+            found_2_0_inst_id = t[2]._0.inst_id;
+            found_2_0_u = t[2]._0.u;
+            found_2_0_v = t[2]._0.v;
+            found_2_1 = t[2]._1;
+            found_3_0_is_hit = t[3]._0.is_hit;
+            found_3_0_t = t[3]._0.t;
+            found_3_0_prim_id = t[3]._0.prim_id;
+            found_3_0_inst_id = t[3]._0.inst_id;
+            found_3_0_u = t[3]._0.u;
+            found_3_0_v = t[3]._0.v;
+            found_3_1 = t[3]._1;
             var crossing_is_hit: bool = candidate.is_hit;
             var crossing_t: f32 = candidate.t;
             var crossing_prim_id: u32 = id;
@@ -418,190 +444,206 @@ fn next_hits(ray: Ray, last: Hit) -> array<Hit, 4> {
             var crossing_u: f32 = candidate.u;
             var crossing_v: f32 = candidate.v;
             var left: u32 = 7u;
-            while (left > 0u && crossing_is_hit) {
+            while (left > 0u && (crossing_is_hit && is_before(Hit(crossing_is_hit, crossing_t, crossing_prim_id, crossing_inst_id, crossing_u, crossing_v), Hit(found_3_0_is_hit, found_3_0_t, found_3_0_prim_id, found_3_0_inst_id, found_3_0_u, found_3_0_v)))) {
                 let crossing_t_1 = crossing_t;
-                let t_2 = behind(crossing_t_1);
-                let t_3 = ColorSphere_intersect(bvh_at(crossing_prim_id), Ray(ray.origin, ray.direction, t_2, ray.t_max));
-                let found_3_is_hit_2 = found_3_is_hit;
-                let found_3_t_2 = found_3_t;
-                let found_3_prim_id_2 = found_3_prim_id;
-                let found_3_inst_id_2 = found_3_inst_id;
-                let found_3_u_2 = found_3_u;
-                let found_3_v_1 = found_3_v;
-                let t_4 = is_within(Hit(t_3.is_hit, t_3.t, crossing_prim_id, crossing_inst_id, t_3.u, t_3.v), Ray(ray.origin, ray.direction, t_2, ray.t_max)) && is_before(Hit(t_3.is_hit, t_3.t, crossing_prim_id, crossing_inst_id, t_3.u, t_3.v), Hit(found_3_is_hit_2, found_3_t_2, found_3_prim_id_2, found_3_inst_id_2, found_3_u_2, found_3_v_1));
-                let found_0_is_hit_2 = found_0_is_hit;
-                let found_0_t_2 = found_0_t;
-                let found_0_prim_id_2 = found_0_prim_id;
-                let found_0_inst_id_2 = found_0_inst_id;
-                let found_0_u_2 = found_0_u;
-                let found_0_v_2 = found_0_v;
-                let found_1_is_hit_2 = found_1_is_hit;
-                let found_1_t_2 = found_1_t;
-                let found_1_prim_id_2 = found_1_prim_id;
-                let found_1_inst_id_2 = found_1_inst_id;
-                let found_1_u_2 = found_1_u;
-                let found_1_v_2 = found_1_v;
-                let found_2_is_hit_2 = found_2_is_hit;
-                let found_2_t_2 = found_2_t;
-                let found_2_prim_id_2 = found_2_prim_id;
-                let found_2_inst_id_2 = found_2_inst_id;
-                let found_2_u_2 = found_2_u;
-                let found_2_v_2 = found_2_v;
-                let found_3_is_hit_3 = found_3_is_hit;
-                let found_3_t_3 = found_3_t;
-                let found_3_prim_id_3 = found_3_prim_id;
-                let found_3_inst_id_3 = found_3_inst_id;
-                let found_3_u_3 = found_3_u;
-                let t_5 = with_hit(array<Hit, 4>(Hit(found_0_is_hit_2, found_0_t_2, found_0_prim_id_2, found_0_inst_id_2, found_0_u_2, found_0_v_2), Hit(found_1_is_hit_2, found_1_t_2, found_1_prim_id_2, found_1_inst_id_2, found_1_u_2, found_1_v_2), Hit(found_2_is_hit_2, found_2_t_2, found_2_prim_id_2, found_2_inst_id_2, found_2_u_2, found_2_v_2), Hit(found_3_is_hit_3, found_3_t_3, found_3_prim_id_3, found_3_inst_id_3, found_3_u_3, found_3_v)), last, Hit(t_4, t_3.t, crossing_prim_id, crossing_inst_id, t_3.u, t_3.v));
-                found_0_is_hit = t_5[0].is_hit;
-                found_0_t = t_5[0].t;
-                found_0_prim_id = t_5[0].prim_id;
-                found_0_inst_id = t_5[0].inst_id;
-                found_0_u = t_5[0].u;
-                found_0_v = t_5[0].v;
-                found_1_is_hit = t_5[1].is_hit;
-                found_1_t = t_5[1].t;
-                found_1_prim_id = t_5[1].prim_id;
-                found_1_inst_id = t_5[1].inst_id;
-                found_1_u = t_5[1].u;
-                found_1_v = t_5[1].v;
-                found_2_is_hit = t_5[2].is_hit;
-                found_2_t = t_5[2].t;
-                found_2_prim_id = t_5[2].prim_id;
-                found_2_inst_id = t_5[2].inst_id;
-                found_2_u = t_5[2].u;
-                found_2_v = t_5[2].v;
-                found_3_is_hit = t_5[3].is_hit;
-                found_3_t = t_5[3].t;
-                found_3_prim_id = t_5[3].prim_id;
-                found_3_inst_id = t_5[3].inst_id;
-                found_3_u = t_5[3].u;
-                found_3_v = t_5[3].v;
-                crossing_is_hit = t_4;
-                crossing_t = t_3.t;
-                crossing_u = t_3.u;
-                crossing_v = t_3.v;
+                let t_1 = behind(crossing_t_1);
+                let t_2 = ColorSphere_intersect(bvh_at(crossing_prim_id), Ray(ray.origin, ray.direction, t_1, ray.t_max));
+                let t_3 = is_within(Hit(t_2.is_hit, t_2.t, crossing_prim_id, crossing_inst_id, t_2.u, t_2.v), Ray(ray.origin, ray.direction, t_1, ray.t_max));
+                let found_0_0_is_hit_2 = found_0_0_is_hit;
+                let found_0_0_t_2 = found_0_0_t;
+                let found_0_0_prim_id_2 = found_0_0_prim_id;
+                let found_0_0_inst_id_2 = found_0_0_inst_id;
+                let found_0_0_u_2 = found_0_0_u;
+                let found_0_0_v_2 = found_0_0_v;
+                let found_0_1_2 = found_0_1;
+                let found_1_0_is_hit_2 = found_1_0_is_hit;
+                let found_1_0_t_2 = found_1_0_t;
+                let found_1_0_prim_id_2 = found_1_0_prim_id;
+                let found_1_0_inst_id_2 = found_1_0_inst_id;
+                let found_1_0_u_2 = found_1_0_u;
+                let found_1_0_v_2 = found_1_0_v;
+                let found_1_1_2 = found_1_1;
+                let found_2_0_is_hit_2 = found_2_0_is_hit;
+                let found_2_0_t_2 = found_2_0_t;
+                let found_2_0_prim_id_2 = found_2_0_prim_id;
+                let found_2_0_inst_id_2 = found_2_0_inst_id;
+                let found_2_0_u_2 = found_2_0_u;
+                let found_2_0_v_2 = found_2_0_v;
+                let found_2_1_2 = found_2_1;
+                let found_3_0_is_hit_2 = found_3_0_is_hit;
+                let found_3_0_t_2 = found_3_0_t;
+                let found_3_0_prim_id_2 = found_3_0_prim_id;
+                let found_3_0_inst_id_2 = found_3_0_inst_id;
+                let found_3_0_u_2 = found_3_0_u;
+                let found_3_0_v_2 = found_3_0_v;
+                let t_4 = with_hit(array<Tuple, 4>(Tuple(Hit(found_0_0_is_hit_2, found_0_0_t_2, found_0_0_prim_id_2, found_0_0_inst_id_2, found_0_0_u_2, found_0_0_v_2), found_0_1_2), Tuple(Hit(found_1_0_is_hit_2, found_1_0_t_2, found_1_0_prim_id_2, found_1_0_inst_id_2, found_1_0_u_2, found_1_0_v_2), found_1_1_2), Tuple(Hit(found_2_0_is_hit_2, found_2_0_t_2, found_2_0_prim_id_2, found_2_0_inst_id_2, found_2_0_u_2, found_2_0_v_2), found_2_1_2), Tuple(Hit(found_3_0_is_hit_2, found_3_0_t_2, found_3_0_prim_id_2, found_3_0_inst_id_2, found_3_0_u_2, found_3_0_v_2), found_3_1)), last, Tuple(Hit(t_3, t_2.t, crossing_prim_id, crossing_inst_id, t_2.u, t_2.v), t_1));
+                found_0_0_is_hit = t_4[0]._0.is_hit;
+                found_0_0_t = t_4[0]._0.t;
+                found_0_0_prim_id = t_4[0]._0.prim_id;
+                found_0_0_inst_id = t_4[0]._0.inst_id;
+                found_0_0_u = t_4[0]._0.u;
+                found_0_0_v = t_4[0]._0.v;
+                found_0_1 = t_4[0]._1;
+                found_1_0_is_hit = t_4[1]._0.is_hit;
+                found_1_0_t = t_4[1]._0.t;
+                found_1_0_prim_id = t_4[1]._0.prim_id;
+                found_1_0_inst_id = t_4[1]._0.inst_id;
+                found_1_0_u = t_4[1]._0.u;
+                found_1_0_v = t_4[1]._0.v;
+                found_1_1 = t_4[1]._1;
+                found_2_0_is_hit = t_4[2]._0.is_hit;
+                found_2_0_t = t_4[2]._0.t;
+                found_2_0_prim_id = t_4[2]._0.prim_id;
+                found_2_0_inst_id = t_4[2]._0.inst_id;
+                found_2_0_u = t_4[2]._0.u;
+                found_2_0_v = t_4[2]._0.v;
+                found_2_1 = t_4[2]._1;
+                found_3_0_is_hit = t_4[3]._0.is_hit;
+                found_3_0_t = t_4[3]._0.t;
+                found_3_0_prim_id = t_4[3]._0.prim_id;
+                found_3_0_inst_id = t_4[3]._0.inst_id;
+                found_3_0_u = t_4[3]._0.u;
+                found_3_0_v = t_4[3]._0.v;
+                found_3_1 = t_4[3]._1;
+                crossing_is_hit = t_3;
+                crossing_t = t_2.t;
+                crossing_u = t_2.u;
+                crossing_v = t_2.v;
                 left = left - 1u;
             }
         }
     }
-    return array<Hit, 4>(Hit(found_0_is_hit, found_0_t, found_0_prim_id, found_0_inst_id, found_0_u, found_0_v), Hit(found_1_is_hit, found_1_t, found_1_prim_id, found_1_inst_id, found_1_u, found_1_v), Hit(found_2_is_hit, found_2_t, found_2_prim_id, found_2_inst_id, found_2_u, found_2_v), Hit(found_3_is_hit, found_3_t, found_3_prim_id, found_3_inst_id, found_3_u, found_3_v));
+    return array<Tuple, 4>(Tuple(Hit(found_0_0_is_hit, found_0_0_t, found_0_0_prim_id, found_0_0_inst_id, found_0_0_u, found_0_0_v), found_0_1), Tuple(Hit(found_1_0_is_hit, found_1_0_t, found_1_0_prim_id, found_1_0_inst_id, found_1_0_u, found_1_0_v), found_1_1), Tuple(Hit(found_2_0_is_hit, found_2_0_t, found_2_0_prim_id, found_2_0_inst_id, found_2_0_u, found_2_0_v), found_2_1), Tuple(Hit(found_3_0_is_hit, found_3_0_t, found_3_0_prim_id, found_3_0_inst_id, found_3_0_u, found_3_0_v), found_3_1));
 }
 
-fn kernel(ray: Ray) -> Tuple {
+fn kernel(ray: Ray) -> Tuple_1 {
     var passed: u32 = 0u;
     var last: f32 = 0.0f;
-    var pending_0_is_hit: bool = false;
-    var pending_0_t: f32 = 0.0f;
-    var pending_0_prim_id: u32 = 0u;
-    var pending_0_inst_id: u32 = 0u;
-    var pending_0_u: f32 = 0.0f;
-    var pending_0_v: f32 = 0.0f;
-    var pending_1_is_hit: bool = false;
-    var pending_1_t: f32 = 0.0f;
-    var pending_1_prim_id: u32 = 0u;
-    var pending_1_inst_id: u32 = 0u;
-    var pending_1_u: f32 = 0.0f;
-    var pending_1_v: f32 = 0.0f;
-    var pending_2_is_hit: bool = false;
-    var pending_2_t: f32 = 0.0f;
-    var pending_2_prim_id: u32 = 0u;
-    var pending_2_inst_id: u32 = 0u;
-    var pending_2_u: f32 = 0.0f;
-    var pending_2_v: f32 = 0.0f;
-    var pending_3_is_hit: bool = false;
-    var pending_3_t: f32 = 0.0f;
-    var pending_3_prim_id: u32 = 0u;
-    var pending_3_inst_id: u32 = 0u;
-    var pending_3_u: f32 = 0.0f;
-    var pending_3_v: f32 = 0.0f;
-    var last_is_hit: bool = false;
-    var last_t: f32 = 0.0f;
-    var last_prim_id: u32 = 0u;
-    var last_inst_id: u32 = 0u;
-    var last_u: f32 = 0.0f;
-    var last_v: f32 = 0.0f;
+    var pending_0_0_is_hit: bool = false;
+    var pending_0_0_t: f32 = 0.0f;
+    var pending_0_0_prim_id: u32 = 0u;
+    var pending_0_0_inst_id: u32 = 0u;
+    var pending_0_0_u: f32 = 0.0f;
+    var pending_0_0_v: f32 = 0.0f;
+    var pending_0_1: f32 = 0.0f;
+    var pending_1_0_is_hit: bool = false;
+    var pending_1_0_t: f32 = 0.0f;
+    var pending_1_0_prim_id: u32 = 0u;
+    var pending_1_0_inst_id: u32 = 0u;
+    var pending_1_0_u: f32 = 0.0f;
+    var pending_1_0_v: f32 = 0.0f;
+    var pending_1_1: f32 = 0.0f;
+    var pending_2_0_is_hit: bool = false;
+    var pending_2_0_t: f32 = 0.0f;
+    var pending_2_0_prim_id: u32 = 0u;
+    var pending_2_0_inst_id: u32 = 0u;
+    var pending_2_0_u: f32 = 0.0f;
+    var pending_2_0_v: f32 = 0.0f;
+    var pending_2_1: f32 = 0.0f;
+    var pending_3_0_is_hit: bool = false;
+    var pending_3_0_t: f32 = 0.0f;
+    var pending_3_0_prim_id: u32 = 0u;
+    var pending_3_0_inst_id: u32 = 0u;
+    var pending_3_0_u: f32 = 0.0f;
+    var pending_3_0_v: f32 = 0.0f;
+    var pending_3_1: f32 = 0.0f;
+    var last_0_is_hit: bool = false;
+    var last_0_t: f32 = 0.0f;
+    var last_0_prim_id: u32 = 0u;
+    var last_0_inst_id: u32 = 0u;
+    var last_0_u: f32 = 0.0f;
+    var last_0_v: f32 = 0.0f;
+    var last_1: f32 = 0.0f;
     var has_more: bool = true;
     loop {
-        if (!pending_0_is_hit && has_more) {
-            let t = next_hits(ray, Hit(last_is_hit, last_t, last_prim_id, last_inst_id, last_u, last_v));
-            pending_0_is_hit = t[0].is_hit;
-            pending_0_t = t[0].t;
-            pending_0_prim_id = t[0].prim_id;
-            pending_0_inst_id = t[0].inst_id;
-            pending_0_u = t[0].u;
-            pending_0_v = t[0].v;
-            pending_1_is_hit = t[1].is_hit;
-            pending_1_t = t[1].t;
-            pending_1_prim_id = t[1].prim_id;
-            pending_1_inst_id = t[1].inst_id;
-            pending_1_u = t[1].u;
-            pending_1_v = t[1].v;
-            pending_2_is_hit = t[2].is_hit;
-            pending_2_t = t[2].t;
-            pending_2_prim_id = t[2].prim_id;
-            pending_2_inst_id = t[2].inst_id;
-            pending_2_u = t[2].u;
-            pending_2_v = t[2].v;
-            pending_3_is_hit = t[3].is_hit;
-            pending_3_t = t[3].t;
-            pending_3_prim_id = t[3].prim_id;
-            pending_3_inst_id = t[3].inst_id;
-            pending_3_u = t[3].u;
-            pending_3_v = t[3].v;
-            has_more = t[3].is_hit;
+        if (!pending_0_0_is_hit && has_more) {
+            let t = next_hits(ray, Hit(last_0_is_hit, last_0_t, last_0_prim_id, last_0_inst_id, last_0_u, last_0_v));
+            pending_0_0_is_hit = t[0]._0.is_hit;
+            pending_0_0_t = t[0]._0.t;
+            pending_0_0_prim_id = t[0]._0.prim_id;
+            pending_0_0_inst_id = t[0]._0.inst_id;
+            pending_0_0_u = t[0]._0.u;
+            pending_0_0_v = t[0]._0.v;
+            pending_0_1 = t[0]._1;
+            pending_1_0_is_hit = t[1]._0.is_hit;
+            pending_1_0_t = t[1]._0.t;
+            pending_1_0_prim_id = t[1]._0.prim_id;
+            pending_1_0_inst_id = t[1]._0.inst_id;
+            pending_1_0_u = t[1]._0.u;
+            pending_1_0_v = t[1]._0.v;
+            pending_1_1 = t[1]._1;
+            pending_2_0_is_hit = t[2]._0.is_hit;
+            pending_2_0_t = t[2]._0.t;
+            pending_2_0_prim_id = t[2]._0.prim_id;
+            pending_2_0_inst_id = t[2]._0.inst_id;
+            pending_2_0_u = t[2]._0.u;
+            pending_2_0_v = t[2]._0.v;
+            pending_2_1 = t[2]._1;
+            pending_3_0_is_hit = t[3]._0.is_hit;
+            pending_3_0_t = t[3]._0.t;
+            pending_3_0_prim_id = t[3]._0.prim_id;
+            pending_3_0_inst_id = t[3]._0.inst_id;
+            pending_3_0_u = t[3]._0.u;
+            pending_3_0_v = t[3]._0.v;
+            pending_3_1 = t[3]._1;
+            has_more = t[3]._0.is_hit;
         }
-        let pending_0_is_hit_1 = pending_0_is_hit;
-        last_is_hit = pending_0_is_hit_1;
-        last_t = pending_0_t;
-        last_prim_id = pending_0_prim_id;
-        last_inst_id = pending_0_inst_id;
-        last_u = pending_0_u;
-        last_v = pending_0_v;
-        pending_0_is_hit = pending_1_is_hit;
-        pending_0_t = pending_1_t;
-        pending_0_prim_id = pending_1_prim_id;
-        pending_0_inst_id = pending_1_inst_id;
-        pending_0_u = pending_1_u;
-        pending_0_v = pending_1_v;
-        pending_1_is_hit = pending_2_is_hit;
-        pending_1_t = pending_2_t;
-        pending_1_prim_id = pending_2_prim_id;
-        pending_1_inst_id = pending_2_inst_id;
-        pending_1_u = pending_2_u;
-        pending_1_v = pending_2_v;
-        pending_2_is_hit = pending_3_is_hit;
-        pending_2_t = pending_3_t;
-        pending_2_prim_id = pending_3_prim_id;
-        pending_2_inst_id = pending_3_inst_id;
-        pending_2_u = pending_3_u;
-        pending_2_v = pending_3_v;
-        pending_3_is_hit = false;
-        pending_3_t = 0.0f;
-        pending_3_prim_id = 0u;
-        pending_3_inst_id = 0u;
-        pending_3_u = 0.0f;
-        pending_3_v = 0.0f;
-        if (!(pending_0_is_hit_1)) { break; }
+        let pending_0_0_is_hit_1 = pending_0_0_is_hit;
+        last_0_is_hit = pending_0_0_is_hit_1;
+        last_0_t = pending_0_0_t;
+        last_0_prim_id = pending_0_0_prim_id;
+        last_0_inst_id = pending_0_0_inst_id;
+        last_0_u = pending_0_0_u;
+        last_0_v = pending_0_0_v;
+        last_1 = pending_0_1;
+        pending_0_0_is_hit = pending_1_0_is_hit;
+        pending_0_0_t = pending_1_0_t;
+        pending_0_0_prim_id = pending_1_0_prim_id;
+        pending_0_0_inst_id = pending_1_0_inst_id;
+        pending_0_0_u = pending_1_0_u;
+        pending_0_0_v = pending_1_0_v;
+        pending_0_1 = pending_1_1;
+        pending_1_0_is_hit = pending_2_0_is_hit;
+        pending_1_0_t = pending_2_0_t;
+        pending_1_0_prim_id = pending_2_0_prim_id;
+        pending_1_0_inst_id = pending_2_0_inst_id;
+        pending_1_0_u = pending_2_0_u;
+        pending_1_0_v = pending_2_0_v;
+        pending_1_1 = pending_2_1;
+        pending_2_0_is_hit = pending_3_0_is_hit;
+        pending_2_0_t = pending_3_0_t;
+        pending_2_0_prim_id = pending_3_0_prim_id;
+        pending_2_0_inst_id = pending_3_0_inst_id;
+        pending_2_0_u = pending_3_0_u;
+        pending_2_0_v = pending_3_0_v;
+        pending_2_1 = pending_3_1;
+        pending_3_0_is_hit = false;
+        pending_3_0_t = 0.0f;
+        pending_3_0_prim_id = 0u;
+        pending_3_0_inst_id = 0u;
+        pending_3_0_u = 0.0f;
+        pending_3_0_v = 0.0f;
+        pending_3_1 = 0.0f;
+        if (!(pending_0_0_is_hit_1)) { break; }
         passed = passed + 1u;
-        last = last_t;
+        last = last_0_t;
         if (passed == 3u) {
             break;
         }
     }
-    return Tuple(passed, last);
+    return Tuple_1(passed, last);
 }
 
-fn element(input: Tuple_1) -> Tuple {
+fn element(input: Tuple_2) -> Tuple_1 {
     return kernel(input._0);
 }
 
-@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple_1>;
-@group(0) @binding(3) var<storage, read_write> outputs: array<StoredTuple>;
+@group(0) @binding(2) var<storage, read> inputs: array<StoredTuple_2>;
+@group(0) @binding(3) var<storage, read_write> outputs: array<StoredTuple_1>;
 
-fn load_input(i: u32) -> Tuple_1 {
+fn load_input(i: u32) -> Tuple_2 {
     let s = inputs[i];
-    return Tuple_1(Ray(s.arg0_origin, vec3<f32>(s.arg0_direction_x, s.arg0_direction_y, s.arg0_direction_z), s.arg0_t_min, s.arg0_t_max));
+    return Tuple_2(Ray(s.arg0_origin, vec3<f32>(s.arg0_direction_x, s.arg0_direction_y, s.arg0_direction_z), s.arg0_t_min, s.arg0_t_max));
 }
 
 @compute @workgroup_size(8, 8)
@@ -610,5 +652,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let at = job.first + id.xy;
     let index = at.y * job.size.x + at.x - job.base;
     let result = element(load_input(index));
-    outputs[index] = StoredTuple(result._0, result._1);
+    outputs[index] = StoredTuple_1(result._0, result._1);
 }
