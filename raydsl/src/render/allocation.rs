@@ -32,7 +32,6 @@ impl Allocation {
     }
 
     /// The least that a pixel gets.
-    #[cfg(feature = "gpu")]
     pub(crate) fn least(&self) -> u32 {
         self.samples.iter().copied().min().unwrap_or(0)
     }
