@@ -1,3 +1,12 @@
+struct Hit {
+    is_hit: bool,
+    t: f32,
+    prim_id: u32,
+    inst_id: u32,
+    u: f32,
+    v: f32,
+}
+
 struct Ray {
     origin: vec3<f32>,
     direction: vec3<f32>,
@@ -5,18 +14,16 @@ struct Ray {
     t_max: f32,
 }
 
-struct Hit {
-    is_hit: bool,
-    t: f32,
-    prim_id: u32,
-    u: f32,
-    v: f32,
-}
-
 struct ColorSphere {
     center: vec3<f32>,
     radius: u32,
     color: array<u32, 3>,
+}
+
+struct Slabs {
+    lower: vec3<f32>,
+    upper: vec3<f32>,
+    inverse: vec3<f32>,
 }
 
 struct Node {
@@ -106,6 +113,10 @@ fn bvh_ids_at(i: u32) -> u32 {
     return bvh_ids[i];
 }
 
+fn Hit_new(is_hit: bool, t: f32) -> Hit {
+    return Hit(is_hit, t, 0u, 0u, 0.0f, 0.0f);
+}
+
 fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
     let f = center - ray.origin;
     let per_d2 = 1.0f / (ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z);
@@ -118,63 +129,83 @@ fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
     let far = closest + half;
     let t = select(near, far, (near < ray.t_min));
     let is_hit = radicand >= 0.0f && radius > 0.0f && t >= ray.t_min && t <= ray.t_max;
-    return Hit(is_hit, t, 0u, 0.0f, 0.0f);
+    return Hit_new(is_hit, t);
 }
 
 fn ColorSphere_intersect(self_: ColorSphere, ray: Ray) -> Hit {
     return intersect(ray, self_.center, f32(self_.radius) / params.lit_255_0);
 }
 
-fn is_finite(v: vec3<f32>) -> bool {
-    let exponent = bitcast<vec3<u32>>(v) & vec3<u32>(0x7f800000u);
-    return all(exponent != vec3<u32>(0x7f800000u));
+fn are_finite(v: vec3<f32>) -> bool {
+    return (bitcast<u32>(v.x) & 2147483647u) < 2139095040u && (bitcast<u32>(v.y) & 2147483647u) < 2139095040u && (bitcast<u32>(v.z) & 2147483647u) < 2139095040u;
 }
 
-/// Where a ray meets boxes: origins moved apart by the allowance for rounding, and finite
-/// reciprocals of the direction.
-struct Slabs {
-    lower: vec3<f32>,
-    upper: vec3<f32>,
-    inverse: vec3<f32>,
+fn is_finite(ray: Ray) -> bool {
+    return are_finite(ray.origin) && are_finite(ray.direction);
+}
+
+fn is_within(hit: Hit, ray: Ray) -> bool {
+    return hit.is_hit && (hit.t >= ray.t_min && hit.t <= ray.t_max);
+}
+
+fn precedes(hit: Hit, other: Hit) -> bool {
+    var is_first: bool = hit.prim_id < other.prim_id;
+    return hit.t < other.t || (hit.t == other.t && is_first);
+}
+
+fn is_before(hit: Hit, best: Hit) -> bool {
+    return !best.is_hit || precedes(hit, best);
+}
+
+fn limit_behind(t: f32, slack: f32, t_max: f32) -> f32 {
+    let t_1 = t + abs(t) * slack;
+    return select(t_max, t_1, t_1 < t_max);
+}
+
+fn largest(v: vec3<f32>) -> f32 {
+    return max(max(v.x, v.y), v.z);
+}
+
+fn at_least(x: f32, size: f32) -> f32 {
+    let signed = select(size, -size, (x < 0.0f));
+    return select(x, signed, (abs(x) < size));
 }
 
 fn finite_inverse(d: vec3<f32>) -> vec3<f32> {
-    let a = abs(d);
-    let largest = max(max(a.x, a.y), a.z);
-    let least = max(largest * 8.6736174e-19, 1.1754944e-38);
-    let safe = select(d, select(vec3<f32>(least), vec3<f32>(-least), d < vec3<f32>(0.0)), a < vec3<f32>(least));
-    return 1.0 / safe;
+    let least = max(largest(abs(d)) * 8.6736174e-19f, 1.1754944e-38f);
+    return 1.0f / vec3<f32>(at_least(d.x, least), at_least(d.y, least), at_least(d.z, least));
 }
 
-fn slabs(ray: Ray, root: Node, slack: f32) -> Slabs {
-    let reach = max(abs(root.min - ray.origin), abs(root.max - ray.origin));
-    let pad = max(slack * max(max(reach.x, reach.y), reach.z), 1.1754944e-38) + abs(ray.origin) * 1.1920929e-7;
-    return Slabs(ray.origin + pad, ray.origin - pad, finite_inverse(ray.direction));
+fn slabs(ray: Ray, low: vec3<f32>, high: vec3<f32>, slack: f32, origin: f32) -> Slabs {
+    let reach = max(abs(low - ray.origin), abs(high - ray.origin));
+    var padding: f32 = max(slack * largest(reach), 1.1754944e-38f);
+    let distant = abs(ray.origin);
+    let padding_1 = distant * 1.1920929e-7f + padding;
+    return Slabs(ray.origin + padding_1, ray.origin - padding_1, finite_inverse(ray.direction));
 }
 
-/// The distances at which a ray enters and leaves a box.
-fn enter_leave(s: Slabs, node: Node, t_min: f32, t_max: f32) -> vec2<f32> {
-    let t0 = (node.min - s.lower) * s.inverse;
-    let t1 = (node.max - s.upper) * s.inverse;
-    let near = min(t0, t1);
-    let far = max(t0, t1);
-    return vec2<f32>(
-        max(max(near.x, near.y), max(near.z, t_min)),
-        min(min(far.x, far.y), min(far.z, t_max)),
-    );
+fn overlap(near: vec3<f32>, far: vec3<f32>, t_min: f32, t_max: f32) -> vec2<f32> {
+    return vec2<f32>(max(max(near.x, near.y), max(t_min, near.z)), min(min(far.x, far.y), min(t_max, far.z)));
+}
+
+fn enter_leave(s: Slabs, low: vec3<f32>, high: vec3<f32>, t_min: f32, t_max: f32) -> vec2<f32> {
+    let a = (low - s.lower) * s.inverse;
+    let b = (high - s.upper) * s.inverse;
+    return overlap(min(a, b), max(a, b), t_min, t_max);
 }
 
 fn bvh_closest_hit(ray: Ray) -> Hit {
     var best = Hit();
-    if (params.len_of_bvh_nodes == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {
+    var limit = ray.t_max;
+    if (params.len_of_bvh_nodes == 0u || !is_finite(ray)) {
         return best;
     }
     var stack: array<u32, 64>;
     var stack_t: array<f32, 64>;
     var top = 0u;
     var node = bvh_nodes_at(0u);
-    let s = slabs(ray, node, 9.536743e-7);
-    let root = enter_leave(s, node, ray.t_min, ray.t_max);
+    let s = slabs(ray, node.min, node.max, 9.536743e-7, 0.0);
+    let root = enter_leave(s, node.min, node.max, ray.t_min, limit);
     if (!(root.x <= root.y)) {
         return best;
     }
@@ -182,19 +213,18 @@ fn bvh_closest_hit(ray: Ray) -> Hit {
         if (node.count > 0u) {
             for (var i = node.first; i < node.first + node.count; i = i + 1u) {
                 let id = bvh_ids_at(i);
-                let candidate = ColorSphere_intersect(bvh_at(id), ray);
-                if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max
-                    && (!best.is_hit || candidate.t < best.t || (candidate.t == best.t && id < best.prim_id))) {
+                var candidate = ColorSphere_intersect(bvh_at(id), ray);
+                candidate.prim_id = id;
+                if (is_within(candidate, ray) && is_before(candidate, best)) {
                     best = candidate;
-                    best.prim_id = id;
+                    limit = limit_behind(best.t, 9.536743e-7, ray.t_max);
                 }
             }
         } else {
             let left = bvh_nodes_at(node.first);
             let right = bvh_nodes_at(node.first + 1u);
-            let limit = select(ray.t_max, min(best.t + abs(best.t) * 9.536743e-7, ray.t_max), best.is_hit);
-            let l = enter_leave(s, left, ray.t_min, limit);
-            let r = enter_leave(s, right, ray.t_min, limit);
+            let l = enter_leave(s, left.min, left.max, ray.t_min, limit);
+            let r = enter_leave(s, right.min, right.max, ray.t_min, limit);
             let hit_left = l.x <= l.y;
             let hit_right = r.x <= r.y;
             if (hit_left && hit_right) {
@@ -208,11 +238,11 @@ fn bvh_closest_hit(ray: Ray) -> Hit {
             if (hit_left) { node = left; continue; }
             if (hit_right) { node = right; continue; }
         }
-        // The next node on the stack that is not behind the best hit.
+        // The next node on the stack that is not beyond the limit.
         var found = false;
         while (top > 0u && !found) {
             top = top - 1u;
-            found = stack_t[top] <= select(ray.t_max, min(best.t + abs(best.t) * 9.536743e-7, ray.t_max), best.is_hit);
+            found = stack_t[top] <= limit;
         }
         if (!found) {
             break;
@@ -227,15 +257,16 @@ fn Ray_at(self_: Ray, t: f32) -> vec3<f32> {
 }
 
 fn bvh_any_hit(ray: Ray) -> bool {
-    if (params.len_of_bvh_nodes == 0u || !(is_finite(ray.origin) && is_finite(ray.direction))) {
+    let limit = ray.t_max;
+    if (params.len_of_bvh_nodes == 0u || !is_finite(ray)) {
         return false;
     }
     var stack: array<u32, 64>;
     var stack_t: array<f32, 64>;
     var top = 0u;
     var node = bvh_nodes_at(0u);
-    let s = slabs(ray, node, 9.536743e-7);
-    let root = enter_leave(s, node, ray.t_min, ray.t_max);
+    let s = slabs(ray, node.min, node.max, 9.536743e-7, 0.0);
+    let root = enter_leave(s, node.min, node.max, ray.t_min, limit);
     if (!(root.x <= root.y)) {
         return false;
     }
@@ -243,17 +274,15 @@ fn bvh_any_hit(ray: Ray) -> bool {
         if (node.count > 0u) {
             for (var i = node.first; i < node.first + node.count; i = i + 1u) {
                 let id = bvh_ids_at(i);
-                let candidate = ColorSphere_intersect(bvh_at(id), ray);
-                if (candidate.is_hit && candidate.t >= ray.t_min && candidate.t <= ray.t_max) {
+                if (is_within(ColorSphere_intersect(bvh_at(id), ray), ray)) {
                     return true;
                 }
             }
         } else {
             let left = bvh_nodes_at(node.first);
             let right = bvh_nodes_at(node.first + 1u);
-            let limit = ray.t_max;
-            let l = enter_leave(s, left, ray.t_min, limit);
-            let r = enter_leave(s, right, ray.t_min, limit);
+            let l = enter_leave(s, left.min, left.max, ray.t_min, limit);
+            let r = enter_leave(s, right.min, right.max, ray.t_min, limit);
             let hit_left = l.x <= l.y;
             let hit_right = r.x <= r.y;
             if (hit_left && hit_right) {
@@ -267,11 +296,11 @@ fn bvh_any_hit(ray: Ray) -> bool {
             if (hit_left) { node = left; continue; }
             if (hit_right) { node = right; continue; }
         }
-        // The next node on the stack that is not behind the best hit.
+        // The next node on the stack that is not beyond the limit.
         var found = false;
         while (top > 0u && !found) {
             top = top - 1u;
-            found = stack_t[top] <= ray.t_max;
+            found = stack_t[top] <= limit;
         }
         if (!found) {
             break;
