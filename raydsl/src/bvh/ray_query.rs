@@ -184,10 +184,6 @@ pub trait RayQuery {
     /// Every hit within the ray's range, in the order of `(t, inst_id, prim_id)`: all crossings of
     /// a primitive, a sphere's entry and its exit, up to [`Primitive::MAX_CROSSINGS`] of each.
     ///
-    /// What shapes say of a hit, their `normal` or `surface_point`, is of the first crossing of the ray
-    /// that they are given: for a later one give them the ray from there on,
-    /// `ray.with_range(hit.t, ray.t_max)`.
-    ///
     /// They are found as they are taken, four at a time. So a loop that stops early costs little
     /// more than [`closest_hit`](RayQuery::closest_hit), one over all hits a traversal for four of
     /// them. In kernels `for hit in scene.hits(ray)` is the same.

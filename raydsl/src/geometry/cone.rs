@@ -5,7 +5,7 @@ use core::f32::consts::PI;
 use glam::{Vec2, Vec3, vec2};
 
 use super::axial::{Axial, at_turn, axial, choose, turn};
-use super::near::{Near, Span, both, end_of, is_leaving, near, slab};
+use super::near::{Near, Span, both, end_of, is_at_end, near, slab};
 use super::outwards::{around_disk, difference};
 use super::surface::{point_on_ray, rounded_point};
 use super::{Aabb, Hit, Ray, SurfacePoint};
@@ -123,9 +123,9 @@ fn is_through_base(m: Meeting, is_leaving: bool) -> bool {
 /// ray's origin, or to the height where that is larger.
 #[kernel]
 #[inline]
-pub fn normal(ray: Ray, _hit: Hit, base: Vec3, apex: Vec3, radius: f32) -> Vec3 {
+pub fn normal(ray: Ray, hit: Hit, base: Vec3, apex: Vec3, radius: f32) -> Vec3 {
     let m = meet(ray, base, apex, radius);
-    let is_leaving = is_leaving(ray, m.line, m.inside);
+    let is_leaving = is_at_end(hit, m.line, m.inside);
     if is_through_base(m, is_leaving) {
         m.view.axis
     } else {
@@ -141,9 +141,9 @@ pub fn normal(ray: Ray, _hit: Hit, base: Vec3, apex: Vec3, radius: f32) -> Vec3 
 /// the apex. The turn begins at `axis.any_orthonormal_pair().0`, where the axis points to the base.
 #[kernel]
 #[inline]
-pub fn uv(ray: Ray, _hit: Hit, base: Vec3, apex: Vec3, radius: f32) -> Vec2 {
+pub fn uv(ray: Ray, hit: Hit, base: Vec3, apex: Vec3, radius: f32) -> Vec2 {
     let m = meet(ray, base, apex, radius);
-    let s = if is_leaving(ray, m.line, m.inside) { m.inside.leave } else { m.inside.enter };
+    let s = if is_at_end(hit, m.line, m.inside) { m.inside.leave } else { m.inside.enter };
     let height = 1.0 - (m.view.along + m.view.step_along * s) / m.view.length;
     vec2(turn(m.view.axis, m.view.across + m.view.step_across * s), clamp(height, 0.0, 1.0))
 }

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
-use super::near::{Near, Span, both, end_of, is_leaving, largest, slab};
+use super::near::{Near, Span, both, end_of, is_at_end, largest, slab};
 use super::surface::{point_on_ray, rounded_point};
 use super::{Aabb, Hit, Ray, SurfacePoint};
 use crate::machine::functions::{vec2, vec3};
@@ -71,9 +71,9 @@ fn face(m: Meeting, is_leaving: bool) -> u32 {
 /// The normal of the face that `ray` hits, outwards.
 #[kernel]
 #[inline]
-pub fn normal(ray: Ray, _hit: Hit, min: Vec3, max: Vec3) -> Vec3 {
+pub fn normal(ray: Ray, hit: Hit, min: Vec3, max: Vec3) -> Vec3 {
     let m = meet(ray, min, max);
-    let is_leaving = is_leaving(ray, m.line, m.inside);
+    let is_leaving = is_at_end(hit, m.line, m.inside);
     let face = face(m, is_leaving);
     let d = m.line.direction;
     let along = if face == 0 {
@@ -104,9 +104,9 @@ fn share(x: f32, size: f32) -> f32 {
 /// along z and x in one across y, along x and y in one across z.
 #[kernel]
 #[inline]
-pub fn uv(ray: Ray, _hit: Hit, min: Vec3, max: Vec3) -> Vec2 {
+pub fn uv(ray: Ray, hit: Hit, min: Vec3, max: Vec3) -> Vec2 {
     let m = meet(ray, min, max);
-    let is_leaving = is_leaving(ray, m.line, m.inside);
+    let is_leaving = is_at_end(hit, m.line, m.inside);
     let s = if is_leaving { m.inside.leave } else { m.inside.enter };
     let at = m.line.direction * s - (min - ray.origin);
     let size = max - min;

@@ -5,7 +5,7 @@ use core::f32::consts::PI;
 use glam::{Vec2, Vec3, vec2};
 
 use super::axial::{Axial, Round, at_turn, axial, choose, round, turn};
-use super::near::{Near, Span, both, end_of, is_leaving, near, slab};
+use super::near::{Near, Span, both, end_of, is_at_end, near, slab};
 use super::outwards::{around_disk, difference};
 use super::surface::{point_on_ray, rounded_point};
 use super::{Aabb, Hit, Ray, SurfacePoint};
@@ -68,9 +68,9 @@ pub fn intersect(ray: Ray, p0: Vec3, p1: Vec3, radius: f32) -> Hit {
 /// radius is to the distance, or to the length where that is larger.
 #[kernel]
 #[inline]
-pub fn normal(ray: Ray, _hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec3 {
+pub fn normal(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec3 {
     let m = meet(ray, p0, p1, radius);
-    let is_leaving = is_leaving(ray, m.line, m.inside);
+    let is_leaving = is_at_end(hit, m.line, m.inside);
     let through_cap = if is_leaving {
         m.caps.leave < m.round.span.leave
     } else {
@@ -89,9 +89,9 @@ pub fn normal(ray: Ray, _hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec3 {
 /// `p1`. The turn begins at `axis.any_orthonormal_pair().0`. On the caps the height is 0 or 1.
 #[kernel]
 #[inline]
-pub fn uv(ray: Ray, _hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec2 {
+pub fn uv(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec2 {
     let m = meet(ray, p0, p1, radius);
-    let s = if is_leaving(ray, m.line, m.inside) { m.inside.leave } else { m.inside.enter };
+    let s = if is_at_end(hit, m.line, m.inside) { m.inside.leave } else { m.inside.enter };
     let height = (m.view.along + m.view.step_along * s) / m.view.length + 0.5;
     vec2(turn(m.view.axis, m.view.across + m.view.step_across * s), clamp(height, 0.0, 1.0))
 }

@@ -86,8 +86,17 @@ pub(super) fn distance_of(line: Near, s: f32) -> f32 {
 /// `t_min`.
 #[kernel]
 #[inline]
-pub(super) fn is_leaving(ray: Ray, line: Near, span: Span) -> bool {
+fn is_leaving(ray: Ray, line: Near, span: Span) -> bool {
     distance_of(line, span.enter) < ray.t_min
+}
+
+/// Whether a hit is at the end of the span, not at its beginning: whichever is nearer to it. A ray may
+/// have both for hits.
+#[kernel]
+#[inline]
+pub(super) fn is_at_end(hit: Hit, line: Near, span: Span) -> bool {
+    let (enter, leave) = (distance_of(line, span.enter), distance_of(line, span.leave));
+    (hit.t - enter).abs() > (leave - hit.t).abs()
 }
 
 /// Where the ray meets a solid that its line is in for `span`: the nearer end of the two that lies

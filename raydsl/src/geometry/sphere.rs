@@ -56,7 +56,7 @@ pub fn intersect(ray: Ray, center: Vec3, radius: f32) -> Hit {
 /// of what the radius is to the distance (eps = 2^-24).
 #[kernel]
 #[inline]
-pub fn normal(ray: Ray, _hit: Hit, center: Vec3, radius: f32) -> Vec3 {
+pub fn normal(ray: Ray, hit: Hit, center: Vec3, radius: f32) -> Vec3 {
     let f = center - ray.origin;
     let d = ray.direction;
     let per_d2 = 1.0 / d.dot(d);
@@ -65,8 +65,9 @@ pub fn normal(ray: Ray, _hit: Hit, center: Vec3, radius: f32) -> Vec3 {
     let distance = aside.length();
     let radicand = (radius - distance) * (radius + distance);
     let half = (max(radicand, 0.0) * per_d2).sqrt();
-    // The intersection that `intersect` took.
-    let along = if closest - half < ray.t_min { half } else { -half };
+    // Of the two intersections the one that is nearer to the hit.
+    let is_far = (hit.t - (closest - half)).abs() > (closest + half - hit.t).abs();
+    let along = if is_far { half } else { -half };
     (d * along - aside).normalize()
 }
 

@@ -5,7 +5,7 @@ use core::f32::consts::PI;
 use glam::{Vec2, Vec3, vec2};
 
 use super::axial::{Axial, Round, at_turn, axial, round, turn};
-use super::near::{Near, distance_of, near};
+use super::near::{Near, distance_of, is_at_end, near};
 use super::surface::{point_on_ray, rounded_point};
 use super::{Aabb, Hit, Ray, SurfacePoint, cylinder};
 use crate::machine::functions::vec2;
@@ -25,8 +25,6 @@ struct Meeting {
     line: Near,
     view: Axial,
     round: Round,
-    /// Whether it is the far side that the ray meets.
-    is_leaving: bool,
     is_met: bool,
     /// The point, along the line.
     s: f32,
@@ -53,7 +51,7 @@ fn meet(ray: Ray, p0: Vec3, p1: Vec3, radius: f32) -> Meeting {
     let is_some = round.span.is_met && radius > 0.0 && view.length > 0.0;
     // A ray along the axis passes within or without.
     let is_met = is_some && round.half < f32::MAX && is_on(ray, line, view, s);
-    Meeting { line, view, round, is_leaving, is_met, s }
+    Meeting { line, view, round, is_met, s }
 }
 
 /// Where a ray meets the tube, from outside or inside: the nearer of its intersections that lies in
@@ -70,9 +68,10 @@ pub fn intersect(ray: Ray, p0: Vec3, p1: Vec3, radius: f32) -> Hit {
 /// The normal where `ray` hits the tube, away from the axis; as precise as a cylinder's.
 #[kernel]
 #[inline]
-pub fn normal(ray: Ray, _hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec3 {
+pub fn normal(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec3 {
     let m = meet(ray, p0, p1, radius);
-    let half = if m.is_leaving { m.round.half } else { -m.round.half };
+    let is_far = is_at_end(hit, m.line, m.round.span);
+    let half = if is_far { m.round.half } else { -m.round.half };
     (m.round.aside + m.view.step_across * half).normalize()
 }
 
@@ -80,10 +79,12 @@ pub fn normal(ray: Ray, _hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec3 {
 /// `p1`. The turn begins at `axis.any_orthonormal_pair().0`.
 #[kernel]
 #[inline]
-pub fn uv(ray: Ray, _hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec2 {
+pub fn uv(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec2 {
     let m = meet(ray, p0, p1, radius);
-    let height = (m.view.along + m.view.step_along * m.s) / m.view.length + 0.5;
-    vec2(turn(m.view.axis, m.view.across + m.view.step_across * m.s), clamp(height, 0.0, 1.0))
+    let is_far = is_at_end(hit, m.line, m.round.span);
+    let s = if is_far { m.round.span.leave } else { m.round.span.enter };
+    let height = (m.view.along + m.view.step_along * s) / m.view.length + 0.5;
+    vec2(turn(m.view.axis, m.view.across + m.view.step_across * s), clamp(height, 0.0, 1.0))
 }
 
 /// The area of the outer side.
