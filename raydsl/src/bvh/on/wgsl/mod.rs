@@ -12,6 +12,7 @@ pub(crate) use instances::RecordedWalks;
 use crate::bvh::contract::{
     SlabsOn, enter_leave, is_before, is_finite, is_within, limit_behind, slabs,
 };
+use crate::bvh::traverse::STACK;
 use crate::bvh::{Cost, CountedHit, CountedHitOn, NODE_SCHEMA, SceneView, View, buffers};
 use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn};
 use crate::machine::record::ir::{self, Expr};
@@ -124,7 +125,7 @@ impl Recorder {
             "var candidate = {intersect}({prims_name}_at(id), ray){path};\n\
              candidate.prim_id = id;\n\
              if ({is_within}(candidate, ray) && {is_before}(candidate, best)) {{\n    \
-             best = candidate;\n    {LOWER}\n}}",
+             best = candidate;\n    $lower\n}}",
         );
         (test, format!("limit = {limit_behind}(best.t, {:?}, ray.t_max);", prims.slack()))
     }
@@ -389,18 +390,16 @@ pub(super) struct BoxTests {
     pub(super) enter_leave: String,
 }
 
-/// Where the text of a test lowers the limit of a walk.
-const LOWER: &str = "{lower}";
-
 /// What a query does with the primitives that it meets.
 #[derive(Clone, Copy)]
 struct Query<'a> {
     result: &'a str,
     declare: &'a str,
-    /// What lowers the limit in place of [`LOWER`]: no node beyond it is worth a visit.
+    /// The line that lowers the limit of a walk, beyond which no node is worth a visit.
     lower: &'a str,
     /// Whether `best` may be a hit before anything is met.
     continues: bool,
+    /// A template with a line `$lower`, which only walks have.
     test: &'a str,
     give: &'a str,
     slack: f32,
@@ -423,7 +422,7 @@ fn linear(name: &str, query: &Query<'_>, prims: &str, is_finite: &str) -> String
             ("name", name),
             ("result", result),
             ("declare", declare),
-            ("test", &test.replace(LOWER, "")),
+            ("test", &from_template(test, &[("lower", "")])),
             ("give", give),
             ("prims", prims),
             ("is_finite", is_finite),
@@ -449,8 +448,9 @@ fn walk(name: &str, parameters: &str, first: &str, query: &Query<'_>, tree: &Tre
             ("result", result),
             ("declare", &format!("{declare}\n{begin}")),
             ("first", first),
+            ("STACK", &STACK.to_string()),
             ("slack", &format!("{slack:?}")),
-            ("test", &test.replace(LOWER, lower)),
+            ("test", &from_template(test, &[("lower", lower)])),
             ("give", give),
             ("root_count", &query.count(1)),
             ("child_count", &query.count(2)),

@@ -3,6 +3,7 @@
 
 use super::{BoxTests, Described};
 use crate::bvh::contract::{Slabs, is_finite, is_within};
+use crate::bvh::traverse::STACK;
 use crate::bvh::{NODE_SCHEMA, RecordOn, SceneView};
 use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn};
 use crate::machine::record::from_template;
@@ -10,9 +11,6 @@ use crate::machine::record::ir::{Expr, Id, Type};
 use crate::machine::{
     B, Branch, F, Field, Loop, Machine, Recorder, Schema, Type as HostType, U, Var, op,
 };
-
-/// As deep as a tree may be, and one more.
-const STACK: usize = 64;
 
 /// No primitive is left.
 pub(super) const NONE: u32 = u32::MAX;

@@ -3,8 +3,8 @@ fn $name($parameters) -> $result {
     if (params.len_of_$nodes == 0u || !$is_finite(ray)) {
         return $give;
     }
-    var stack: array<u32, 64>;
-    var stack_t: array<f32, 64>;
+    var stack: array<u32, $STACK>;
+    var stack_t: array<f32, $STACK>;
     var top = 0u;
     var node = ${nodes}_at($first);
     let s = $slabs(ray, node.min, node.max, $slack, 0.0);
