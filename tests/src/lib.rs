@@ -11,6 +11,7 @@ pub mod check;
 pub mod fuzz;
 pub mod gpu;
 pub mod kernels;
+pub mod lattice;
 pub mod levels;
 pub mod operations;
 pub mod placed;

@@ -5,10 +5,11 @@
 //! copies and neighbours share them, and ranges begin or end at hits; that enough rays meet both is
 //! asserted.
 
-use raydsl::bvh::{Accelerated, Accelerator, BuildError};
+use raydsl::bvh::{Accelerated, BuildError};
 use raydsl::kernel;
 use raydsl::prelude::*;
 use raydsl_tests::check::every_variant;
+use raydsl_tests::lattice::{Backwards, lattice_rays};
 use raydsl_tests::rng::Rng;
 
 /// A rectangle across the z axis. It leaves the ray's range to its caller.
@@ -50,33 +51,6 @@ fn cards(rng: &mut Rng, count: usize) -> Vec<Card> {
     }
     let order = rng.permutation(all.len());
     order.into_iter().map(|i| all[i]).collect()
-}
-
-/// Rays from points of a lattice in few directions: every distance is exact.
-fn rays(rng: &mut Rng, count: usize) -> Vec<(Ray,)> {
-    let mut all: Vec<(Ray,)> = (0..count)
-        .map(|_| {
-            let at = |rng: &mut Rng| (rng.below(41) as f32 - 20.0) * 0.25;
-            let origin = vec3(at(rng), at(rng), at(rng).floor());
-            let aside = |rng: &mut Rng| rng.pick(&[0.0, 0.0, 0.5, -0.5, 1.0, -0.25]);
-            let along = rng.pick(&[1.0, -1.0, 2.0, -0.5]);
-            let direction = vec3(aside(rng), aside(rng), along);
-            let t_min = rng.pick(&[0.0, 0.0, 1.0, 2.0, -3.0, -0.0, 0.5]);
-            let t_max = rng.pick(&[f32::INFINITY, f32::MAX, 2.0, 3.0, 1.0, 0.0, -1.0, 100.0]);
-            (Ray::new(origin, direction).with_range(t_min, t_max),)
-        })
-        .collect();
-    let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
-    for (i, value) in odd.into_iter().enumerate() {
-        all[10 * i].0.origin.x = value;
-        all[10 * i + 1].0.direction.z = value;
-        all[10 * i + 2].0.t_min = value;
-        all[10 * i + 3].0.t_max = value;
-    }
-    // Along a card, and nowhere.
-    all[40].0.direction = Vec3::X;
-    all[41].0.direction = Vec3::ZERO;
-    all
 }
 
 /// Cards where they stand in a scene.
@@ -180,7 +154,7 @@ fn slices() {
     let cards = cards(&mut rng, 120);
     let all = &cards[..];
     let scene = [Placed { cards: all, first: 0, moved: HERE }];
-    assert_contract("a slice", &asked!(all), &scene, &rays(&mut rng, RAYS));
+    assert_contract("a slice", &asked!(all), &scene, &lattice_rays(&mut rng, RAYS));
 }
 
 #[test]
@@ -188,7 +162,7 @@ fn trees() -> Result<(), BuildError> {
     let mut rng = Rng::of("trees");
     let cards = cards(&mut rng, 120);
     let scene = [Placed { cards: &cards, first: 0, moved: HERE }];
-    let rays = rays(&mut rng, RAYS);
+    let rays = lattice_rays(&mut rng, RAYS);
     let check = |who: &str, tree: &Bvh<'_, Card>| {
         assert_contract(who, &asked!(tree), &scene, &rays);
     };
@@ -204,7 +178,7 @@ fn trees() -> Result<(), BuildError> {
 fn lists_of_trees() -> Result<(), Box<dyn std::error::Error>> {
     let mut rng = Rng::of("lists");
     let cards = cards(&mut rng, 120);
-    let rays = rays(&mut rng, RAYS);
+    let rays = lattice_rays(&mut rng, RAYS);
     let (front, back) = cards.split_at(50);
     // One number after the other, as of one slice.
     let scene = [Placed { cards: &cards, first: 0, moved: HERE }];
@@ -239,17 +213,8 @@ fn instances() -> Result<(), Box<dyn std::error::Error>> {
             moved: *moved,
         })
         .collect();
-    assert_contract("instances", &asked!(scene), &oracle, &rays(&mut rng, RAYS));
+    assert_contract("instances", &asked!(scene), &oracle, &lattice_rays(&mut rng, RAYS));
     Ok(())
-}
-
-/// Names every primitive, the last one first.
-struct Backwards(u32);
-
-impl Accelerator for Backwards {
-    fn candidates(&self, _: &Ray, _: f32, meet: &mut dyn FnMut(u32) -> f32) {
-        (0..self.0).rev().for_each(|id| _ = meet(id));
-    }
 }
 
 #[test]
@@ -258,5 +223,5 @@ fn accelerators_of_the_application() {
     let cards = cards(&mut rng, 120);
     let scene = [Placed { cards: &cards, first: 0, moved: HERE }];
     let standing = Accelerated::new(&cards, Backwards(cards.len() as u32));
-    assert_contract("an accelerator", &asked!(standing), &scene, &rays(&mut rng, RAYS));
+    assert_contract("an accelerator", &asked!(standing), &scene, &lattice_rays(&mut rng, RAYS));
 }

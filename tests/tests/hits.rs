@@ -3,9 +3,10 @@
 //! The oracle asks each shape for all of its crossings at once, sorts them, and has no part of the
 //! library in it. Distances are computed without rounding, so copies and neighbours share them.
 
-use raydsl::bvh::{Accelerated, Accelerator, BuildError};
+use raydsl::bvh::{Accelerated, BuildError};
 use raydsl::prelude::*;
 use raydsl_tests::check::every_variant;
+use raydsl_tests::lattice::{Backwards, lattice_rays};
 use raydsl_tests::rng::Rng;
 
 /// Cards across the z axis, one unit behind another. It is crossed as often as it has cards.
@@ -74,28 +75,6 @@ fn decks(rng: &mut Rng, count: usize) -> Vec<Deck> {
     }
     let order = rng.permutation(all.len());
     order.into_iter().map(|i| all[i]).collect()
-}
-
-/// Rays from points of a lattice in few directions: every distance is exact.
-fn rays(rng: &mut Rng, count: usize) -> Vec<(Ray,)> {
-    let mut all: Vec<(Ray,)> = (0..count)
-        .map(|_| {
-            let at = |rng: &mut Rng| (rng.below(41) as f32 - 20.0) * 0.25;
-            let origin = vec3(at(rng), at(rng), at(rng).floor());
-            let aside = |rng: &mut Rng| rng.pick(&[0.0, 0.0, 0.5, -0.5, 1.0, -0.25]);
-            let direction = vec3(aside(rng), aside(rng), rng.pick(&[1.0, -1.0, 2.0, -0.5]));
-            let t_min = rng.pick(&[0.0, 0.0, 1.0, 2.0, -3.0, -0.0, 0.5, -100.0]);
-            let t_max = rng.pick(&[f32::INFINITY, f32::MAX, 2.0, 3.0, 1.0, 0.0, 100.0]);
-            (Ray::new(origin, direction).with_range(t_min, t_max),)
-        })
-        .collect();
-    for (i, value) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY].into_iter().enumerate() {
-        all[10 * i].0.origin.x = value;
-        all[10 * i + 1].0.direction.z = value;
-        all[10 * i + 2].0.t_min = value;
-        all[10 * i + 3].0.t_max = value;
-    }
-    all
 }
 
 /// Decks where they stand in a scene.
@@ -201,7 +180,7 @@ const HERE: Vec3 = Vec3::ZERO;
 fn of_slices_and_trees() -> Result<(), Box<dyn std::error::Error>> {
     let mut rng = Rng::of("decks");
     let decks = decks(&mut rng, 120);
-    let rays = rays(&mut rng, RAYS);
+    let rays = lattice_rays(&mut rng, RAYS);
     let oracle = [Placed { decks: &decks, first: 0, moved: HERE }];
     let all = &decks[..];
     assert_hits("a slice", all, &asked!(all), &oracle, &rays);
@@ -213,21 +192,27 @@ fn of_slices_and_trees() -> Result<(), Box<dyn std::error::Error>> {
         check(&format!("{quality:?}"), &Bvh::build_with(&decks, &config)?);
         let wide = Bvh::build_wide(&decks, &[], &config)?;
         let bytes = wide.bytes();
-        // Not `check`: WGSL has the binary tree.
-        for (ray,) in &rays {
-            let found: Vec<Hit> = wide.hits(*ray).collect();
-            assert_eq!(found, expected(&oracle, *ray), "{quality:?}, wide: {ray:?}");
-        }
-        let listed = asked!(wide);
-        let inputs = &rays[40..];
-        let mut found = vec![(0, 0, Hit::miss(), Hit::miss()); inputs.len()];
-        for variant in [Variant::Packet4, Variant::Packet8, Variant::Packet16] {
-            listed.run(variant, inputs, &mut found);
-            for (input, found) in inputs.iter().zip(&found) {
-                assert_eq!(*found, listed.call(*input), "{}: {input:?}", variant.name());
+        let compare = |rays: &[(Ray,)]| {
+            for (ray,) in rays {
+                let found: Vec<Hit> = wide.hits(*ray).collect();
+                assert_eq!(found, expected(&oracle, *ray), "{quality:?}, wide: {ray:?}");
             }
-        }
+            // Not `every_variant`: WGSL has the binary tree.
+            let listed = asked!(wide);
+            let mut found = vec![(0, 0, Hit::miss(), Hit::miss()); rays.len()];
+            for variant in [Variant::Packet4, Variant::Packet8, Variant::Packet16] {
+                listed.run(variant, rays, &mut found);
+                for (ray, found) in rays.iter().zip(&found) {
+                    assert_eq!(*found, listed.call(*ray), "{}: {ray:?}", variant.name());
+                }
+            }
+        };
+        let is_steep = |ray: &(Ray,)| ray.0.direction.z != 0.0;
+        let (steep, flat): (Vec<_>, Vec<_>) = rays.iter().copied().partition(is_steep);
+        compare(&steep);
         assert_eq!(wide.bytes(), bytes, "the binary tree was made");
+        // Degenerate ones need it.
+        compare(&flat);
     }
     Ok(())
 }
@@ -236,7 +221,7 @@ fn of_slices_and_trees() -> Result<(), Box<dyn std::error::Error>> {
 fn of_lists() -> Result<(), Box<dyn std::error::Error>> {
     let mut rng = Rng::of("lists of decks");
     let decks = decks(&mut rng, 120);
-    let rays = rays(&mut rng, RAYS);
+    let rays = lattice_rays(&mut rng, RAYS);
     let (front, back) = decks.split_at(50);
     // One number after the other, as of one slice.
     let oracle = [Placed { decks: &decks, first: 0, moved: HERE }];
@@ -263,17 +248,8 @@ fn of_instances() -> Result<(), Box<dyn std::error::Error>> {
     let firsts = [0, one.len() as u32];
     let oracle =
         places.map(|(tree, moved)| Placed { decks: [one, two][tree], first: firsts[tree], moved });
-    assert_hits("instances", &scene, &asked!(scene), &oracle, &rays(&mut rng, RAYS));
+    assert_hits("instances", &scene, &asked!(scene), &oracle, &lattice_rays(&mut rng, RAYS));
     Ok(())
-}
-
-/// Names every primitive, the last one first.
-struct Backwards(u32);
-
-impl Accelerator for Backwards {
-    fn candidates(&self, _: &Ray, _: f32, meet: &mut dyn FnMut(u32) -> f32) {
-        (0..self.0).rev().for_each(|id| _ = meet(id));
-    }
 }
 
 #[test]
@@ -282,7 +258,7 @@ fn of_accelerators() {
     let decks = decks(&mut rng, 120);
     let oracle = [Placed { decks: &decks, first: 0, moved: HERE }];
     let scene = Accelerated::new(&decks, Backwards(decks.len() as u32));
-    assert_hits("an accelerator", &scene, &asked!(scene), &oracle, &rays(&mut rng, RAYS));
+    assert_hits("an accelerator", &scene, &asked!(scene), &oracle, &lattice_rays(&mut rng, RAYS));
 }
 
 /// A deck of which the first two crossings count.
@@ -320,7 +296,7 @@ fn of_shapes_with_more_crossings_than_they_say() -> Result<(), BuildError> {
         }
         (count, last)
     });
-    let rays = rays(&mut rng, RAYS);
+    let rays = lattice_rays(&mut rng, RAYS);
     for (ray,) in &rays {
         let all = expected(&[Placed { decks: &decks, first: 0, moved: HERE }], *ray);
         let mut seen = vec![0; decks.len()];
@@ -391,7 +367,7 @@ fn records_of_each_crossing() -> Result<(), BuildError> {
         sum
     });
     let rays: Vec<(Ray,)> =
-        rays(&mut rng, RAYS).into_iter().filter(|ray| ray.0.origin.is_finite()).collect();
+        lattice_rays(&mut rng, RAYS).into_iter().filter(|ray| ray.0.origin.is_finite()).collect();
     let mut later = 0;
     for (ray,) in &rays {
         let mut number = 0u32;
@@ -436,8 +412,7 @@ fn lengths_within_spheres() -> Result<(), BuildError> {
         let mut sum = 0.0;
         for hit in tree.hits(ray) {
             let ball = tree.primitive(hit);
-            let normal = ball.normal(ray.with_range(hit.t, ray.t_max), hit);
-            let is_entry = normal.dot(ray.direction) < 0.0;
+            let is_entry = ball.normal(ray, hit).dot(ray.direction) < 0.0;
             if is_entry {
                 if depth == 0 {
                     from = hit.t;
@@ -489,6 +464,108 @@ fn lengths_within_spheres() -> Result<(), BuildError> {
     Ok(())
 }
 
+#[primitive(cylinder(p0, p1, radius))]
+struct Rod {
+    p0: Vec3,
+    p1: Vec3,
+    radius: f32,
+}
+
+#[primitive(tube(p0, p1, radius))]
+struct Pipe {
+    p0: Vec3,
+    p1: Vec3,
+    radius: f32,
+}
+
+#[primitive(cone(p0, p1, radius))]
+struct Hat {
+    p0: Vec3,
+    p1: Vec3,
+    radius: f32,
+}
+
+#[primitive(cuboid(min, max))]
+struct Chest {
+    min: Vec3,
+    max: Vec3,
+}
+
+/// Of each hit of a shape: whether its normal points with the ray, and whether the point of the surface
+/// lies where the ray is then.
+macro_rules! outwards {
+    ($scene:ident) => {
+        kernel!(|ray: Ray| {
+            let mut count = 0u32;
+            let mut leaving = 0u32;
+            let mut error = 0.0;
+            for hit in $scene.hits(ray) {
+                let shape = $scene.primitive(hit);
+                if shape.normal(ray, hit).dot(ray.direction) > 0.0 {
+                    leaving += 1u32 << count;
+                }
+                let at = ray.origin + ray.direction * hit.t;
+                error = max(error, (shape.surface_point(ray, hit).position - at).length());
+                count += 1;
+            }
+            (count, leaving, error)
+        })
+    };
+}
+
+/// Shapes answer for the hit that they are given: at an exit the normal points with the ray.
+#[test]
+fn normals_at_entries_and_exits() {
+    let mut rng = Rng::of("exits");
+    let point = |rng: &mut Rng| rng.point(1.0);
+    let (p0, p1, radius) = (vec3(-0.5, -0.25, 0.25), vec3(0.5, 0.5, -0.25), 0.5);
+    let (balls, rods) = ([Ball { center: p0, radius }], [Rod { p0, p1, radius }]);
+    let (pipes, hats) = ([Pipe { p0, p1, radius }], [Hat { p0, p1, radius }]);
+    let chests = [Chest { min: p0 - 0.5, max: p0 + 0.5 }];
+    let rays: Vec<(Ray,)> = (0..600)
+        .map(|_| {
+            let origin = 4.0 * point(&mut rng).normalize();
+            (Ray::new(origin, point(&mut rng) - origin),)
+        })
+        .collect();
+    macro_rules! check {
+        ($($shapes:ident)+) => {
+            $({
+                let scene = &$shapes[..];
+                let kernel = outwards!(scene);
+                let mut both = 0;
+                for (ray,) in &rays {
+                    let (count, leaving, error) = kernel.call((*ray,));
+                    assert!(error < 1e-5, "{}: {ray:?}: {error}", stringify!($shapes));
+                    match count {
+                        0 => assert_eq!(leaving, 0),
+                        // Into an open end, or out of one.
+                        1 => assert_eq!(stringify!($shapes), "pipes", "{ray:?}"),
+                        _ => {
+                            assert_eq!((count, leaving), (2, 2), "{}: {ray:?}", stringify!($shapes));
+                            both += 1;
+                        }
+                    }
+                }
+                assert!(both > 100, "{}: {both}", stringify!($shapes));
+                let parts = kernel!(|ray: Ray| {
+                    let mut count = 0u32;
+                    let mut leaving = 0u32;
+                    for hit in scene.hits(ray) {
+                        if scene.primitive(hit).normal(ray, hit).dot(ray.direction) > 0.0 {
+                            leaving += 1u32 << count;
+                        }
+                        count += 1;
+                    }
+                    (count, leaving)
+                });
+                every_variant(&parts, &rays);
+            })+
+        };
+    }
+    check!(balls rods pipes hats chests);
+}
+
 /// Loops within loops, `return` out of one, and two rays of which each has its own hits.
 #[test]
 fn within_control_flow() -> Result<(), BuildError> {
@@ -513,7 +590,7 @@ fn within_control_flow() -> Result<(), BuildError> {
         }
         (pairs, 0u32)
     });
-    let all = rays(&mut rng, RAYS);
+    let all = lattice_rays(&mut rng, RAYS);
     let inputs: Vec<(Ray, Ray)> =
         all.iter().zip(all.iter().rev()).map(|(a, b)| (a.0, b.0)).collect();
     let busy = inputs.iter().filter(|input| pairs.call(**input).0 > 0).count();
