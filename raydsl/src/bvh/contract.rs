@@ -95,7 +95,11 @@ impl KnownFunction for Behind {
     fn bound(&self, m: &Margin, args: &[Known]) -> Option<Vec<Known>> {
         let range = args[0].range;
         let next = |t: f64| f64::from(behind(t as f32)).max(t);
-        let high = next(range.high);
+        // What is nearer to 0 than the smallest normal number a device may take for 0.
+        let high = match next(range.high) {
+            high if high < 0.0 && high > -f64::from(f32::MIN_POSITIVE) => 0.0,
+            high => high,
+        };
         let range = Interval::new(range.low, high, range.may_break());
         Some(vec![m.bounded(next(args[0].value), range)])
     }
