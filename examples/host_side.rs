@@ -11,8 +11,8 @@ use std::{env, fs};
 use raydsl::bvh::BuildConfig;
 use raydsl::camera::Camera;
 use raydsl::prelude::*;
-use raydsl::report::Compare;
 use raydsl::{assert_variants_agree, kernel};
+use raydsl_report::Compare;
 // ANCHOR_END: imports
 use raydsl_examples::picture::reduced;
 

@@ -18,8 +18,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use raydsl::bvh::{BuildConfig, BuildError};
 use raydsl::kernel::Kernel;
 use raydsl::prelude::*;
-use raydsl::report::{Compare, Comparison, SceneInfo};
 use raydsl_examples::heat_map::HeatMap;
+use raydsl_report::{Compare, Comparison, SceneInfo};
 use rayon::prelude::*;
 use scan::Scan;
 
@@ -60,7 +60,7 @@ enum Failure {
     #[error(transparent)]
     Build(#[from] BuildError),
     #[error(transparent)]
-    Write(#[from] raydsl::report::WriteError),
+    Write(#[from] raydsl_report::WriteError),
     #[error("{0}")]
     Usage(String),
     #[error("cannot write {path}: {reason}; choose another place")]

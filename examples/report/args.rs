@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Parser, ValueEnum};
-use raydsl::report::work_precision::Backend;
 use raydsl_examples::args::seconds;
+use raydsl_report::work_precision::Backend;
 
 /// Error against run time.
 #[derive(Parser)]

@@ -4,7 +4,7 @@ use core::f32::consts::PI;
 
 use raydsl::kernel;
 use raydsl::prelude::*;
-use raydsl::report::work_precision::{Case, Order, Reference, Work};
+use raydsl_report::work_precision::{Case, Order, Reference, Work};
 
 /// Light of unit radiance through a point of a lamp, per density of 1 over `area`.
 #[kernel]

@@ -20,8 +20,8 @@ use std::process::{Command, ExitCode};
 
 use args::{Args, Knob};
 use clap::Parser;
-use raydsl::report::work_precision::{Case, Method, WorkPrecision};
 use raydsl_examples::raster::raster;
+use raydsl_report::work_precision::{Case, Method, WorkPrecision};
 
 /// Of each pixel of each half of the cloud's reference: a second or two.
 const CLOUD_SAMPLES: u32 = 16_384;

@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use raydsl::integrators::{Surface, ambient_occlusion, facing};
 use raydsl::prelude::*;
-use raydsl::report::Missing;
-use raydsl::report::work_precision::{
+use raydsl_report::Missing;
+use raydsl_report::work_precision::{
     Backend, Case, Estimates, Method, Order, Reference, Run, Work,
 };
 

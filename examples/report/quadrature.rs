@@ -2,7 +2,7 @@
 
 use raydsl::kernel;
 use raydsl::prelude::*;
-use raydsl::report::work_precision::{Case, Estimates, Order, Reference, Run, Work};
+use raydsl_report::work_precision::{Case, Estimates, Order, Reference, Run, Work};
 
 /// Haze that is thinner the higher it is: extinction per unit of length.
 #[kernel]

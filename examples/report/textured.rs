@@ -2,8 +2,8 @@
 
 use raydsl::kernel;
 use raydsl::prelude::*;
-use raydsl::report::work_precision::{Case, Order, Reference, Work};
 use raydsl::texture::Filter;
+use raydsl_report::work_precision::{Case, Order, Reference, Work};
 
 use crate::light::from_lamp;
 

@@ -2,7 +2,7 @@
 
 use raydsl::kernel;
 use raydsl::prelude::*;
-use raydsl::report::work_precision::{Case, Order, Reference, Work};
+use raydsl_report::work_precision::{Case, Order, Reference, Work};
 
 /// A disk.
 #[primitive(disk(center, normal, radius))]

@@ -2,7 +2,7 @@
 
 use font8x8::UnicodeFonts;
 use image::{Rgb, RgbImage};
-use raydsl::report::work_precision::{Anchor, Color, Drawing, Mark};
+use raydsl_report::work_precision::{Anchor, Color, Drawing, Mark};
 
 /// The pixels of a drawing, `scale` for each of its units; letters are 8 units wide.
 pub fn raster(drawing: &Drawing, scale: u32) -> RgbImage {
@@ -173,7 +173,7 @@ impl Canvas {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use raydsl::report::work_precision::Symbol;
+    use raydsl_report::work_precision::Symbol;
 
     fn drawn(mark: Mark) -> RgbImage {
         raster(&Drawing { width: 40, height: 20, marks: vec![mark] }, 2)

@@ -11,8 +11,8 @@ use std::{env, fs};
 
 use raydsl::kernel;
 use raydsl::prelude::*;
-use raydsl::report::Compare;
 use raydsl_examples::picture::reduced;
+use raydsl_report::Compare;
 use shape::Torus;
 
 // ANCHOR: scene

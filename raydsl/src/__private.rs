@@ -23,3 +23,8 @@ pub mod operations {
 pub use crate::machine::host::{Constant, HostCapture, HostUse};
 pub use crate::machine::index::with_element;
 pub use crate::machine::lowered::*;
+
+/// What the crate `raydsl-report` uses besides.
+pub mod report {
+    pub use crate::testing::{OutcomesOf, SAMPLES, causes, sampled, spread};
+}

@@ -3,8 +3,8 @@
 use core::cell::Cell;
 
 use crate::machine::{
-    Counted, KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet, Recorder,
-    Recording, Resource, Rounding, Simd4, Simd8, Simd16, Type, U, wgsl,
+    Count, Counted, KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet,
+    Place, Recorder, Recording, Resource, Rounding, Simd4, Simd8, Simd16, Type, U, count, wgsl,
 };
 use crate::run::{Levels, fibers};
 
@@ -214,8 +214,9 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
         Outcomes::of(rounding, limit, |m| self.on_margin(m, A::splat(m, args)))
     }
 
-    /// The lifted body on the machine of the reference.
-    pub(crate) fn on_margin(&self, m: &Margin, args: A::On<Margin>) -> R::On<Margin> {
+    /// The lifted body on the machine of the reference, for arguments that are computed there: see
+    /// [`Outcomes::of`].
+    pub fn on_margin(&self, m: &Margin, args: A::On<Margin>) -> R::On<Margin> {
         self.built(&self.lifted.margin, "reference")(m, args)
     }
 
@@ -266,7 +267,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
 }
 
 /// A kernel that is also lifted for lanes that count where they are, which
-/// [`utilisation`](crate::report::utilisation()) asks: `kernel!(counted |ray: Ray| ..)`, or
+/// `utilisation` of the crate `raydsl-report` asks: `kernel!(counted |ray: Ray| ..)`, or
 /// [`Kernel::counted_of`]. One more copy to compile.
 pub struct CountedKernel<'a, A: Type, R: Type> {
     kernel: Kernel<'a, A, R>,
@@ -282,11 +283,16 @@ impl<'a, A: Type, R: Type> core::ops::Deref for CountedKernel<'a, A, R> {
 }
 
 impl<A: Type, R: Type> CountedKernel<'_, A, R> {
-    /// Runs packets of 8 lanes, of what every machine of the target has: the ones that count.
-    pub(crate) fn run_counted(&self, inputs: &[A], outputs: &mut [R]) {
+    /// How many lanes are lifted to count.
+    pub const LANES: usize = Counting::LANES;
+
+    /// Runs packets of 8 lanes, of what every machine of the target has, and counts the lanes that
+    /// run: at each place that a packet comes by, in order of the places.
+    pub fn count(&self, inputs: &[A]) -> Vec<(Place, Count)> {
+        let mut outputs = vec![R::read(&vec![0; R::SCHEMA.size()]); inputs.len()];
         let lanes = Counted(Simd8(Levels::detect().least));
         // One packet after the other: counts belong to whoever runs.
-        run_in_gangs(lanes, 0, &*self.counted, inputs, outputs);
+        count(|| run_in_gangs(lanes, 0, &*self.counted, inputs, &mut outputs))
     }
 }
 

@@ -14,7 +14,6 @@ pub mod machine;
 pub mod math;
 pub mod prelude;
 pub mod render;
-pub mod report;
 mod run;
 pub mod sampling;
 pub mod testing;

@@ -37,7 +37,6 @@ pub use crate::render::{
     Film, Image, PixelSampler, Radiance, Renderer, Sampling, Scheduler, Shaded, SimpleScheduler,
     TiledScheduler,
 };
-pub use crate::report::compare;
 pub use crate::sampling::{
     Distribution1d, Distribution2d, Frame, Rng, SampleMethod, Sampler, balance_heuristic,
     bilinear_pdf, cone_pdf, cosine_hemisphere_pdf, one_minus_cos, power_cosine_pdf,

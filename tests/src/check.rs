@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use raydsl::kernel::{Kernel, Lifted, Variant};
 use raydsl::machine::{KernelFn, KernelInfo, Lanes, One, Packet, Rounding, Scalar, Type};
 use raydsl::prelude::Renderer;
-use raydsl::report::{Cause, explain};
+use raydsl::testing::{Cause, explain};
 
 use crate::gpu::gpu;
 use crate::levels::{LevelTask, each_level_padded, gangs, widest_level};

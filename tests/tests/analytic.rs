@@ -5,10 +5,10 @@ use std::time::Duration;
 
 use raydsl::assert_variants_agree;
 use raydsl::prelude::*;
-use raydsl::report::work_precision::{
+use raydsl::texture::Filter;
+use raydsl_report::work_precision::{
     Backend, Case, Estimates, Method, Metrics, Run, Verdict, WorkPrecision,
 };
-use raydsl::texture::Filter;
 use raydsl_tests::gpu::gpu;
 use raydsl_tests::scaled;
 

@@ -13,7 +13,7 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 /// that do not depend on it.
 const LAYERS: [&[&str]; 10] = [
     &["__private", "error", "prelude"],
-    &["gpu", "report", "testing"],
+    &["gpu", "testing"],
     &["render"],
     &["integrators"],
     &["bvh", "camera", "sampling", "texture"],
@@ -262,8 +262,8 @@ fn paths_of_every_kind_are_read() {
     );
     assert_eq!(found(2, "use super::super::camera; use super::own;"), ["camera"]);
     assert_eq!(
-        found(1, "mod inner { use super::own; use super::super::report::Row; }"),
-        ["report"]
+        found(1, "mod inner { use super::own; use super::super::render::Film; }"),
+        ["render"]
     );
     assert_eq!(found(1, "macro_rules! m { () => { $crate::testing::check() } }"), ["testing"]);
     assert_eq!(
@@ -274,6 +274,6 @@ fn paths_of_every_kind_are_read() {
         found(1, "use crate::{kernel, math}; use crate::kernel::Kernel;"),
         ["math", "kernel"]
     );
-    assert_eq!(found(1, "fn f() -> raydsl::report::Row { f() }"), ["report"]);
+    assert_eq!(found(1, "fn f() -> raydsl::render::Film { f() }"), ["render"]);
     assert_eq!(found(1, "other::crate_name::bvh(); self::bvh::f();"), Vec::<String>::new());
 }

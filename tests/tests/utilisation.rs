@@ -3,7 +3,7 @@
 #![allow(clippy::manual_is_multiple_of, reason = "what kernels are written in")]
 
 use raydsl::prelude::*;
-use raydsl::report::{Utilisation, utilisation};
+use raydsl_report::{Utilisation, utilisation};
 
 // ANCHOR: kernel
 /// How many steps a number takes to 1, by Collatz' rule.

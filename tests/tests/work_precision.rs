@@ -6,8 +6,8 @@ use std::error::Error;
 use std::time::Duration;
 
 use raydsl::prelude::*;
-use raydsl::report::Missing;
-use raydsl::report::work_precision::*;
+use raydsl_report::Missing;
+use raydsl_report::work_precision::*;
 
 const SCALAR: Backend = Backend::Variant(Variant::Scalar);
 

@@ -61,8 +61,11 @@ impl Emitter<'_> {
         span: Span,
     ) -> TokenStream {
         let (p, m, here) = (private(), own("m"), place("loop", span));
-        let [repeat, cursor, state] = ["repeat", "cursor", "state"].map(|n| self.fresh(n));
         let value = self.value(items);
+        let [repeat, cursor, state] = {
+            let _at = At::new(items.span);
+            ["repeat", "cursor", "state"].map(|n| self.fresh(n))
+        };
         self.scopes.push(HashMap::new());
         self.bind_counter(item, None);
         let inside = Loop { label, ident: repeat.clone(), dest: Dest::None };

@@ -21,9 +21,11 @@ pub struct Counted<L>(pub L);
 
 /// How often packets came by, and how many lanes were running in all of them together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Count {
-    pub(crate) rounds: u64,
-    pub(crate) lanes: u64,
+pub struct Count {
+    /// How often a packet came by.
+    pub rounds: u64,
+    /// How many lanes were running, summed over the rounds.
+    pub lanes: u64,
 }
 
 type Counts = HashMap<Place, Count>;

@@ -57,6 +57,11 @@ scalar_wrapper!(
 ///
 /// A twin is a tree whose leaves are scalars of the machine; everything a machine does to whole
 /// values (blend, store, name) goes through [`Value::zip`].
+#[diagnostic::on_unimplemented(
+    message = "a variable of a kernel cannot hold this",
+    label = "not a value of the kernel language",
+    note = "what a loop runs over stands in its head: `for hit in scene.hits(ray)`"
+)]
 pub trait Value<M: Machine>: Copy {
     /// The structure; [`Schema::Host`] if there are no leaves.
     const SCHEMA: &'static Schema;

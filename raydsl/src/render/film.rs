@@ -112,8 +112,8 @@ impl Film {
         self.pixels.iter().filter(|sums| sums.mean.is_nan()).count()
     }
 
-    /// The means before they are rounded.
-    pub(crate) fn means(&self) -> impl Iterator<Item = DVec4> {
+    /// The means, row by row from the bottom, before they are rounded to `f32`.
+    pub fn means(&self) -> impl Iterator<Item = DVec4> {
         self.pixels.iter().map(|sums| sums.mean)
     }
 

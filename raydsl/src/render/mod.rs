@@ -1,7 +1,8 @@
 //! From kernels to pictures.
 //!
-//! A [`Renderer`], a [`Scheduler`] of the CPU or a device, makes a frame (one ray through the middle of each pixel) or a pass (some samples
-//! of each pixel, added to a [`Film`]); a camera gives the rays.
+//! A [`Renderer`], a [`Scheduler`] of the CPU or a device, makes a frame (one ray through the
+//! middle of each pixel) or a pass (some samples of each pixel, added to a [`Film`]); a camera gives
+//! the rays.
 
 mod allocation;
 mod display;
@@ -13,6 +14,7 @@ mod image;
 mod moments;
 mod pixel_sampler;
 mod radiance;
+mod reference;
 mod renderer;
 mod scheduler;
 mod shot;
@@ -41,7 +43,6 @@ pub use shot::Body;
 #[cfg(feature = "gpu")]
 pub(crate) use shot::Frame;
 pub use shot::Shot;
-pub(crate) use shot::{Pass, places};
 pub use simple::SimpleScheduler;
 pub use tile::{Tile, Tiles};
 pub use tiled::TiledScheduler;

@@ -2,11 +2,12 @@
 
 use core::fmt;
 
+use super::agreement::differing;
+use super::explain::{Cause, explain};
 use super::leaves::{leaves, one_line};
 use super::{can_run, try_run, unwritten, validate};
 use crate::kernel::{Kernel, Variant};
 use crate::machine::{Leaf, Rounding, Type, result_leaves};
-use crate::report::{Cause, differing, explain};
 
 /// In how many ways the decisions of a result that is shown are turned.
 const WAYS: usize = 64;

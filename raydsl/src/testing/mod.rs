@@ -10,6 +10,8 @@
 //! the environment a missing device is an error: for runs that must have one.
 
 mod agree;
+mod agreement;
+mod explain;
 mod leaves;
 mod wgsl;
 
@@ -17,6 +19,10 @@ use crate::kernel::{Kernel, Variant};
 use crate::machine::Type;
 
 pub use agree::{Disagreement, variants_agree};
+pub use agreement::{Agreement, BUCKETS, ulp};
+pub use explain::{Cause, Explanation, Sample, explain};
+#[doc(hidden)]
+pub use explain::{OutcomesOf, SAMPLES, causes, sampled, spread};
 pub use wgsl::{InvalidWgsl, assert_valid_wgsl, validate};
 
 /// Whether `variant` runs on this machine; `test` is named where it does not.
@@ -120,7 +126,7 @@ fn on_device<A: Type, R: Type>(_: &Kernel<'_, A, R>, _: &[A], _: &mut [R]) -> Re
 ///
 /// * Packets must give the bits of the scalar function; +0 equals -0, and NaN equals NaN.
 /// * The WGSL must be valid. Where there is a device its results may differ by rounding, and in
-///   decisions that rounding leaves open, as [`report::explain`](crate::report::explain) tells. How
+///   decisions that rounding leaves open, as [`explain`] tells. How
 ///   it rounds is what WGSL allows, [`Rounding::WGSL`](crate::machine::Rounding::WGSL), unless a
 ///   third argument says something else.
 ///

@@ -3,7 +3,7 @@
 
 use raydsl::machine::Rounding;
 use raydsl::prelude::*;
-use raydsl::report::explain;
+use raydsl::testing::explain;
 use raydsl::texture::{
     Address, AsTextureRef, ColorSpace, Filter, Filtering, LevelFilter, Texel, TexelValue,
     TextureError,

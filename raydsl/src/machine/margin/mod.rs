@@ -45,8 +45,7 @@ pub(crate) use affine::Form;
 pub(crate) use arena::Known;
 pub(crate) use decisions::Explored;
 pub(crate) use interval::Interval;
-pub(crate) use outcome::result_leaves;
-pub use outcome::{Leaf, Outcomes};
+pub use outcome::{Leaf, Outcomes, result_leaves};
 pub use rounding::Rounding;
 
 /// A truth value on [`Margin`].

@@ -163,7 +163,7 @@ impl Outcomes {
 }
 
 /// The leaves of a result of the host.
-pub(crate) fn result_leaves<R: Type>(result: R) -> Vec<Leaf> {
+pub fn result_leaves<R: Type>(result: R) -> Vec<Leaf> {
     let m = Margin::new(Rounding::IEEE);
     leaves(&m, R::splat(&m, result))
 }

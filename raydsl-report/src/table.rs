@@ -3,7 +3,7 @@
 use core::fmt::Write;
 
 use super::{Comparison, Missing, Row, Verdict};
-use crate::machine::Type;
+use raydsl::machine::Type;
 
 const HEADER: &str = "variant    isa      lanes  ms/frame  Mrays/s  speed-up  max ulp  mismatches  \
                       explained  unexplained";

@@ -6,9 +6,9 @@ use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8};
 use super::curve::quantile;
 use super::reference::Reference;
 use super::run::Estimates;
-use crate::render::{Display, Image, ToneMap};
+use raydsl::render::{Display, Image, ToneMap};
 
-/// The light that [`filmic`](crate::render::filmic()) shows as 0.85. Exposures bring the
+/// The light that [`filmic`](raydsl::render::filmic()) shows as 0.85. Exposures bring the
 /// reference's brightest pixel there, and its median one.
 const SHOULDER: f32 = 1.271_321;
 
@@ -24,12 +24,12 @@ const MAX_PIXELS: u64 = 1 << 28;
 ///
 /// ```
 /// use raydsl::prelude::*;
-/// use raydsl::report::work_precision::Flip;
+/// use raydsl_report::work_precision::Flip;
 ///
 /// let grey = |light| Image::filled(32, 32, vec4(light, light, light, 1.0));
 /// let (near, far) = (Flip::ldr(&grey(0.5), &grey(0.45))?, Flip::ldr(&grey(0.5), &grey(0.2))?);
 /// assert!(0.0 < near.mean && near.mean < far.mean && far.mean < 1.0);
-/// # Ok::<(), raydsl::report::work_precision::FlipError>(())
+/// # Ok::<(), raydsl_report::work_precision::FlipError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flip {
@@ -78,7 +78,7 @@ impl Flip {
     }
 
     /// Of linear light without an end: the largest difference that each pixel has over exposures
-    /// about a stop apart, each tone mapped by [`filmic`](crate::render::filmic()). The first shows
+    /// about a stop apart, each tone mapped by [`filmic`](raydsl::render::filmic()). The first shows
     /// the reference's brightest pixel well, the last its median one. (Andersson, Nilsson, Shirley
     /// and Akenine-Möller, "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics
     /// 2021.)
@@ -160,7 +160,7 @@ fn exposures(reference: &Image<Vec4>) -> impl Iterator<Item = f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::filmic;
+    use raydsl::render::filmic;
 
     fn grey(light: f32) -> Image<Vec4> {
         Image::filled(24, 16, Vec3::splat(light).extend(1.0))

@@ -1,9 +1,11 @@
 //! Why results differ: rounding, a decision that rounding leaves open, or a mistake.
 
-use super::accuracy::ulp;
-use super::agreement::differing;
+use super::agreement::{differing, ulp};
 use crate::kernel::Kernel;
 use crate::machine::{Leaf, Outcomes, Rounding, Type, result_leaves};
+
+/// How many inputs a sample has, unless it is told otherwise.
+pub const SAMPLES: usize = 4096;
 
 /// In how many ways the decisions of one input are turned.
 const WAYS: usize = 64;
@@ -81,7 +83,7 @@ impl Sample {
     }
 
     /// What the outcomes of a sample's inputs come to.
-    pub(super) fn of(sampled: &[Outcomes]) -> Self {
+    pub fn of(sampled: &[Outcomes]) -> Self {
         let uncertain = sampled.iter().filter(|o| o.is_uncertain() || o.is_vague()).count();
         let floats = sampled.iter().flat_map(|o| o.reference());
         let mut widths: Vec<f64> = floats
@@ -98,7 +100,7 @@ impl Sample {
 }
 
 /// `count` of the indices below `len`, spread evenly: multiples of the golden ratio.
-pub(super) fn spread(len: usize, count: usize) -> Vec<usize> {
+pub fn spread(len: usize, count: usize) -> Vec<usize> {
     if count >= len {
         return (0..len).collect();
     }
@@ -112,10 +114,10 @@ pub(super) fn spread(len: usize, count: usize) -> Vec<usize> {
 
 /// Gives the outcomes of an input, following at most so many ways. A trait object, so that its
 /// callers are compiled once, not for every kernel.
-pub(super) type OutcomesOf<'a> = &'a (dyn Fn(usize, usize) -> Outcomes + Sync);
+pub type OutcomesOf<'a> = &'a (dyn Fn(usize, usize) -> Outcomes + Sync);
 
 /// The outcomes of these inputs on the paths that `f64` takes.
-pub(super) fn sampled(indices: &[usize], outcomes: OutcomesOf<'_>) -> Vec<Outcomes> {
+pub fn sampled(indices: &[usize], outcomes: OutcomesOf<'_>) -> Vec<Outcomes> {
     each(indices, &|i| outcomes(i, 1))
 }
 
@@ -131,7 +133,7 @@ fn each<T: Send>(indices: &[usize], f: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
 }
 
 /// Why results differ at `indices`.
-pub(super) fn causes<R: Type>(
+pub fn causes<R: Type>(
     expected: &[R],
     found: &[R],
     outcomes: OutcomesOf<'_>,
@@ -185,7 +187,7 @@ impl Explanation {
 /// ```
 /// use raydsl::prelude::*;
 /// use raydsl::machine::Rounding;
-/// use raydsl::report::explain;
+/// use raydsl::testing::explain;
 ///
 /// let kernel = kernel!(|x: f32, y: f32| if x * x + y * y < 0.5 { 1.0 } else { x / y });
 /// let inputs: Vec<(f32, f32)> = (1..999).map(|i| (i as f32 * 0.001, 0.5)).collect();
@@ -210,7 +212,7 @@ pub fn explain<A: Type, R: Type>(
     let outcomes = |i: usize, limit| kernel.outcomes(inputs[i], rounding, limit);
     Explanation {
         causes: causes(&expected, outputs, &outcomes),
-        sample: Sample::of(&sampled(&spread(inputs.len(), super::SAMPLES), &outcomes)),
+        sample: Sample::of(&sampled(&spread(inputs.len(), SAMPLES), &outcomes)),
     }
 }
 

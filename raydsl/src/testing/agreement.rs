@@ -48,7 +48,7 @@ impl Agreement {
 
     /// Compares `results` with those of the scalar variant, `expected`. `cause` is asked why the
     /// results of an index differ; it is also told whether an integer does.
-    pub(super) fn judged<R: Type>(
+    pub fn judged<R: Type>(
         expected: &[R],
         results: &[R],
         cause: impl Fn(usize, bool) -> Cause,
@@ -102,8 +102,14 @@ impl Agreement {
     }
 }
 
+/// The distance of neighbouring `f32` at `v`.
+pub fn ulp(v: f64) -> f64 {
+    let exponent = (v.to_bits() >> 52 & 0x7ff) as i32 - 1023;
+    2f64.powi(exponent.clamp(-126, 127) - 23)
+}
+
 /// The indices at which two lists of results differ in any bit.
-pub(crate) fn differing<R: Type>(expected: &[R], results: &[R]) -> Vec<usize> {
+pub(super) fn differing<R: Type>(expected: &[R], results: &[R]) -> Vec<usize> {
     let size = R::SCHEMA.size();
     let (mut a, mut b) = (vec![0; size], vec![0; size]);
     let mut differs = |x: &R, y: &R| {

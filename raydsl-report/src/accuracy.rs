@@ -1,6 +1,7 @@
 //! Results against the reference.
 
-use crate::machine::{Leaf, Type, result_leaves};
+use raydsl::machine::{Leaf, Type, result_leaves};
+use raydsl::testing::ulp;
 
 /// How far results are from the reference in `f64`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -58,12 +59,6 @@ fn error(found: f64, reference: f64) -> f64 {
         return f64::INFINITY;
     }
     (found - reference).abs() / ulp(reference)
-}
-
-/// The distance of neighbouring `f32` at `v`.
-pub(super) fn ulp(v: f64) -> f64 {
-    let exponent = (v.to_bits() >> 52 & 0x7ff) as i32 - 1023;
-    2f64.powi(exponent.clamp(-126, 127) - 23)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use serde_json::{Value, json as value};
 
 use super::{Comparison, Missing, Row, Verdict};
-use crate::machine::Type;
+use raydsl::machine::Type;
 
 /// What a comparison does not know of its scene.
 #[derive(Clone, Debug, Default, PartialEq)]

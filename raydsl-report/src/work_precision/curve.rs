@@ -8,7 +8,7 @@ use super::flip::Flip;
 use super::metrics::{Metrics, root};
 use super::reference::Reference;
 use super::work::Work;
-use crate::report::{Missing, Times};
+use crate::{Missing, Times};
 
 /// What a point is good for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -360,8 +360,8 @@ pub(super) fn rounding_floor(reference: &Reference) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::Variant;
-    use crate::sampling::SampleMethod;
+    use raydsl::kernel::Variant;
+    use raydsl::sampling::SampleMethod;
 
     fn point(knob: u32, rmse: f64, status: Status) -> Point {
         let metrics = Metrics { mse: rmse * rmse, rmse, ..Metrics::default() };

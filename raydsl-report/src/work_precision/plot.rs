@@ -4,7 +4,7 @@ use super::Measured;
 use super::case::{Backend, Order};
 use super::curve::{Curve, Point, Status};
 use super::drawing::{Anchor, Color, Drawing, Mark, Symbol};
-use crate::kernel::Variant;
+use raydsl::kernel::Variant;
 
 /// The colours of methods, which the colour-blind can tell apart. (Okabe and Ito, "Color Universal
 /// Design", 2008.)

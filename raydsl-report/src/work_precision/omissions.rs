@@ -11,7 +11,7 @@ const NOWHERE: &[(&str, &str)] = &[
     #[cfg(not(feature = "flip"))]
     (
         "FLIP",
-        "raydsl was built without the feature `flip`: `--features flip` adds it, and needs a C++ \
+        "raydsl-report was built without the feature `flip`: `--features flip` adds it, and needs a C++ \
          compiler",
     ),
     ("clamped energy, `clamped`", "nothing clamps: estimates are what the samples gave"),
@@ -24,7 +24,7 @@ const NOWHERE: &[(&str, &str)] = &[
     #[cfg(not(feature = "cpu_time"))]
     (
         "time of the processors, `cpu_s`",
-        "raydsl was built without the feature `cpu_time`; `seconds` are those of a clock",
+        "raydsl-report was built without the feature `cpu_time`; `seconds` are those of a clock",
     ),
     ("calls of exp, look-ups of a density", "a kernel that counts them has them in `counted`"),
 ];

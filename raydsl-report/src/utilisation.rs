@@ -4,8 +4,8 @@ use core::fmt;
 use std::collections::HashMap;
 use std::path::Path;
 
-use crate::kernel::{CountedKernel, Counting};
-use crate::machine::{Count, LaneMachine, Place, Type, count};
+use raydsl::kernel::CountedKernel;
+use raydsl::machine::{Count, Place, Type};
 
 /// How many lanes run at each arm of an `if`, in each round of a loop, and in walks of trees.
 ///
@@ -55,11 +55,11 @@ impl Utilisation {
 ///
 /// It is slow, and needs a copy of the kernel that counts, which is compiled where the source asks
 /// for it: `kernel!(counted |ray: Ray| ..)`, or
-/// [`Kernel::counted_of`](crate::kernel::Kernel::counted_of).
+/// [`Kernel::counted_of`](raydsl::kernel::Kernel::counted_of).
 ///
 /// ```
 /// use raydsl::prelude::*;
-/// use raydsl::report::utilisation;
+/// use raydsl_report::utilisation;
 ///
 /// let kernel = kernel!(counted |n: u32| {
 ///     let mut sum = 0u32;
@@ -80,8 +80,7 @@ pub fn utilisation<A: Type, R: Type>(
     kernel: &CountedKernel<'_, A, R>,
     inputs: &[A],
 ) -> Utilisation {
-    let mut outputs = vec![R::read(&vec![0; R::SCHEMA.size()]); inputs.len()];
-    let counts = count(|| kernel.run_counted(inputs, &mut outputs));
+    let lanes = CountedKernel::<A, R>::LANES;
     let line = |(place, count): (Place, Count)| LineCount {
         place,
         rounds: count.rounds,
@@ -89,9 +88,9 @@ pub fn utilisation<A: Type, R: Type>(
     };
     Utilisation {
         kernel: kernel.info().name,
-        lanes: Counting::LANES,
-        packets: inputs.len().div_ceil(Counting::LANES) as u64,
-        lines: counts.into_iter().map(line).collect(),
+        lanes,
+        packets: inputs.len().div_ceil(lanes) as u64,
+        lines: kernel.count(inputs).into_iter().map(line).collect(),
     }
 }
 

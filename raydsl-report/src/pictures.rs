@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::Comparison;
-use crate::render::{Image, Shaded};
+use raydsl::render::{Image, Shaded};
 
 /// What went wrong while writing.
 #[derive(Debug, thiserror::Error)]

@@ -7,15 +7,12 @@ use glam::{DVec4, Vec3, uvec2};
 
 use super::case::{Backend, Method};
 use super::work::Work;
-use crate::camera::{Camera, CameraRays, Orthographic};
-use crate::geometry::Ray;
-use crate::kernel::{Kernel, Variant};
-use crate::machine::{Machine, Outcomes, Rounding, U, X2};
-use crate::render::{
-    Film, FilmArgs, Pass, PixelSampler, Radiance, Renderer, Sampling, SimpleScheduler, places,
-};
-use crate::report::Missing;
-use crate::sampling::Sampler;
+use crate::Missing;
+use raydsl::camera::{Camera, Orthographic};
+use raydsl::geometry::Ray;
+use raydsl::kernel::{Kernel, Variant};
+use raydsl::render::{Film, FilmArgs, PixelSampler, Radiance, Renderer, Sampling, SimpleScheduler};
+use raydsl::sampling::Sampler;
 
 /// What a computation gave, and what it cost besides time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -63,7 +60,7 @@ pub struct Run<'a> {
     /// Where to note the kernels' text, if it is asked for.
     pub(super) code: Option<&'a CodeHash>,
     #[cfg(feature = "gpu")]
-    pub(super) gpu: Option<&'a crate::gpu::GpuScheduler>,
+    pub(super) gpu: Option<&'a raydsl::gpu::GpuScheduler>,
 }
 
 impl<'a> Run<'a> {
@@ -104,7 +101,7 @@ impl<'a> Run<'a> {
     /// With a device for [`Variant::Wgsl`].
     #[cfg(feature = "gpu")]
     #[must_use]
-    pub fn on(self, gpu: &'a crate::gpu::GpuScheduler) -> Self {
+    pub fn on(self, gpu: &'a raydsl::gpu::GpuScheduler) -> Self {
         Self { gpu: Some(gpu), ..self }
     }
 
@@ -197,12 +194,10 @@ impl<'a> Run<'a> {
     ) -> Work {
         let (width, height) = self.size;
         let rays = camera.begin_frame(width, height);
-        let Sampling { pixels, method, seed, planned } = self.sampling(pixels);
+        let sampling = self.sampling(pixels);
         let one = |(x, y, index)| {
-            let pixel = uvec2(x, y);
-            let (at, lens, sampler) =
-                places(pixel, seed, index, planned, pixels, method, C::Rays::HAS_LENS);
-            count(rays.lens_ray(at.x, at.y, lens), sampler)
+            let (ray, sampler) = sampling.sample(&rays, uvec2(x, y), index);
+            count(ray, sampler)
         };
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         let samples = pixels.flat_map(|(x, y)| (0..self.samples()).map(move |i| (x, y, i)));
@@ -240,7 +235,9 @@ impl<'a> Run<'a> {
         let sampling = self.sampling(pixels);
         let mut film = Film::new(self.size.0, self.size.1);
         match self.backend {
-            Backend::F64 => return Ok(self.in_f64(camera, kernel, sampling)),
+            Backend::F64 => {
+                return Ok(sampling.means_in_f64(camera, kernel, self.size, self.samples()));
+            }
             Backend::Variant(Variant::Wgsl) => {
                 self.on_device(camera, kernel, &sampling, &mut film)?;
             }
@@ -273,34 +270,7 @@ impl<'a> Run<'a> {
         _: &Sampling,
         _: &mut Film,
     ) -> Result<(), Missing> {
-        Err(Missing::NoDevice("raydsl was built without the feature `gpu`".to_owned()))
-    }
-
-    /// The means of the same samples, each computed in `f64`.
-    fn in_f64<C: Camera, A: FilmArgs, R: Radiance>(
-        &self,
-        camera: &C,
-        kernel: &Kernel<'_, A, R>,
-        sampling: Sampling,
-    ) -> Vec<DVec4> {
-        let (width, height) = self.size;
-        let rays = camera.begin_frame(width, height);
-        let sample = |x: u32, y: u32, first: u32| {
-            let pass = Pass { rays, kernel, sampling, first, count: 1, allocation: None };
-            let outcomes = Outcomes::of(Rounding::IEEE, 1, |m| {
-                let pixel = X2 { x: U(m.u32(x)), y: U(m.u32(y)) };
-                crate::render::Shot::pixel_on(&pass, m, pixel, &|m, args| kernel.on_margin(m, args))
-            });
-            // Moments: how many, then their mean.
-            let mean = |i: usize| outcomes.reference()[1 + i].value();
-            DVec4::new(mean(0), mean(1), mean(2), mean(3))
-        };
-        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-        let mean = |(x, y)| {
-            let sum: DVec4 = (0..self.samples()).map(|i| sample(x, y, i)).sum();
-            sum / f64::from(self.samples())
-        };
-        pixels.map(mean).collect()
+        Err(Missing::NoDevice("raydsl-report was built without the feature `gpu`".to_owned()))
     }
 }
 

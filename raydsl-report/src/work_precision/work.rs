@@ -2,12 +2,12 @@
 
 use core::ops::Add;
 
-use crate::bvh::Cost;
+use raydsl::bvh::Cost;
 
 /// What a computation did, in units that no machine changes. What was not counted is `None`.
 ///
 /// ```
-/// use raydsl::report::work_precision::Work;
+/// use raydsl_report::work_precision::Work;
 ///
 /// let ray = Work { rays: Some(1), nodes: Some(12), primitives: Some(3), ..Work::default() };
 /// let look_up = Work { texture_fetches: Some(2), ..Work::default() };

@@ -8,9 +8,9 @@ use super::curve::{Curve, Point, Repetition, Speedup, Status, rounding_floor};
 use super::metrics::Metrics;
 use super::run::{CodeHash, Run};
 use super::{Measured, WorkPrecision, WorkPrecisionError};
+use crate::Missing;
 #[cfg(feature = "gpu")]
-use crate::gpu::GpuScheduler;
-use crate::report::Missing;
+use raydsl::gpu::GpuScheduler;
 
 /// A curve while it is measured.
 struct Series {

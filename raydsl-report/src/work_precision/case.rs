@@ -5,9 +5,9 @@ use std::time::Duration;
 use super::reference::Reference;
 use super::run::{Estimates, Run};
 use super::work::Work;
-use crate::kernel::Variant;
-use crate::report::Missing;
-use crate::sampling::SampleMethod;
+use crate::Missing;
+use raydsl::kernel::Variant;
+use raydsl::sampling::SampleMethod;
 
 /// What runs a kernel: a [`Variant`], or the reference machine in `f64`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -121,7 +121,7 @@ pub(super) type Count<'a> = dyn Fn(&Run<'_>) -> Work + 'a;
 ///
 /// ```
 /// use raydsl::prelude::*;
-/// use raydsl::report::work_precision::{Case, Order, Reference, Run};
+/// use raydsl_report::work_precision::{Case, Order, Reference, Run};
 ///
 /// // The integral of x y over the unit square.
 /// let case = Case::new("x y", Reference::closed_form(0.25), |run: &Run| {

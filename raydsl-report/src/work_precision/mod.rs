@@ -8,7 +8,7 @@
 //!
 //! ```
 //! use raydsl::prelude::*;
-//! use raydsl::report::work_precision::*;
+//! use raydsl_report::work_precision::*;
 //!
 //! let case = Case::new("x y", Reference::closed_form(0.25), |run: &Run| {
 //!     let method = run.method().sampling();
@@ -70,7 +70,7 @@ pub use reference::{Reference, ReferenceKind};
 pub use run::{Estimates, Run};
 pub use work::Work;
 
-use crate::kernel::Variant;
+use raydsl::kernel::Variant;
 
 /// Settings of a measurement.
 pub struct WorkPrecision<'a> {
@@ -83,7 +83,7 @@ pub struct WorkPrecision<'a> {
     commit: Option<String>,
     omitted: Vec<Omitted>,
     #[cfg(feature = "gpu")]
-    gpu: Option<&'a crate::gpu::GpuScheduler>,
+    gpu: Option<&'a raydsl::gpu::GpuScheduler>,
     progress: Box<dyn FnMut(&str) + 'a>,
 }
 
@@ -158,7 +158,7 @@ impl<'a> WorkPrecision<'a> {
 
     /// The device for WGSL; without this the best of the machine.
     #[cfg(feature = "gpu")]
-    pub fn gpu(self, gpu: &'a crate::gpu::GpuScheduler) -> Self {
+    pub fn gpu(self, gpu: &'a raydsl::gpu::GpuScheduler) -> Self {
         Self { gpu: Some(gpu), ..self }
     }
 
@@ -201,10 +201,10 @@ impl<'a> WorkPrecision<'a> {
     }
 
     #[cfg(feature = "gpu")]
-    fn own_gpu(&self) -> Option<crate::gpu::GpuScheduler> {
+    fn own_gpu(&self) -> Option<raydsl::gpu::GpuScheduler> {
         let is_wanted = self.backends.contains(&Backend::Variant(Variant::Wgsl));
         let is_missing = is_wanted && self.gpu.is_none();
-        is_missing.then(crate::gpu::GpuScheduler::new).and_then(Result::ok)
+        is_missing.then(raydsl::gpu::GpuScheduler::new).and_then(Result::ok)
     }
 
     fn check(&self, cases: &[Case<'_>]) -> Result<(), WorkPrecisionError> {

@@ -2,19 +2,20 @@
 
 use std::time::Instant;
 
-use super::explain::{OutcomesOf, causes, sampled, spread};
-use super::{Accuracy, Agreement, Cause, SAMPLES, Sample, Times};
-use crate::camera::{Camera, CameraRays};
-use crate::geometry::Ray;
-use crate::kernel::{Kernel, Variant, Variants};
-use crate::machine::{F, Machine, Outcomes, Rounding, Type};
-use crate::render::{Image, Renderer, TiledScheduler};
+use super::{Accuracy, Times};
+use raydsl::__private::report::{OutcomesOf, SAMPLES, causes, sampled, spread};
+use raydsl::camera::{Camera, CameraRays};
+use raydsl::geometry::Ray;
+use raydsl::kernel::{Kernel, Variant, Variants};
+use raydsl::machine::{F, Machine, Outcomes, Rounding, Type};
+use raydsl::render::{Image, Renderer, TiledScheduler};
+use raydsl::testing::{Agreement, Cause, Sample};
 
 /// Settings of a comparison.
 ///
 /// ```
 /// use raydsl::prelude::*;
-/// use raydsl::report::Compare;
+/// use raydsl_report::Compare;
 ///
 /// let light = vec3(0.0, 1.0, 0.0);
 /// let sky = kernel!(|ray: Ray| {
@@ -34,7 +35,7 @@ pub struct Compare<'a> {
     rounding: Rounding,
     variants: Variants,
     #[cfg(feature = "gpu")]
-    gpu: Option<&'a crate::gpu::GpuScheduler>,
+    gpu: Option<&'a raydsl::gpu::GpuScheduler>,
     progress: Box<dyn FnMut(&str) + 'a>,
 }
 
@@ -96,7 +97,7 @@ impl<'a> Compare<'a> {
 
     /// The device for the WGSL variant; without this the best of the machine.
     #[cfg(feature = "gpu")]
-    pub fn gpu(self, gpu: &'a crate::gpu::GpuScheduler) -> Self {
+    pub fn gpu(self, gpu: &'a raydsl::gpu::GpuScheduler) -> Self {
         Self { gpu: Some(gpu), ..self }
     }
 
@@ -139,7 +140,7 @@ impl<'a> Compare<'a> {
                     }),
                     #[cfg(not(feature = "gpu"))]
                     Variant::Wgsl => Err(Missing::NoDevice(
-                        "raydsl was built without the feature `gpu`".to_owned(),
+                        "raydsl-report was built without the feature `gpu`".to_owned(),
                     )),
                     cpu => {
                         TiledScheduler::new().variant(cpu).frame(camera, kernel, &mut row.image);
@@ -178,9 +179,9 @@ impl<'a> Compare<'a> {
     }
 
     #[cfg(feature = "gpu")]
-    fn own_gpu(&self) -> Option<Result<crate::gpu::GpuScheduler, String>> {
+    fn own_gpu(&self) -> Option<Result<raydsl::gpu::GpuScheduler, String>> {
         let wanted = self.variants.iter().any(|v| v == Variant::Wgsl) && self.gpu.is_none();
-        wanted.then(|| crate::gpu::GpuScheduler::new().map_err(|e| e.to_string()))
+        wanted.then(|| raydsl::gpu::GpuScheduler::new().map_err(|e| e.to_string()))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::case::Backend;
 #[cfg(feature = "gpu")]
-use crate::kernel::Variant;
+use raydsl::kernel::Variant;
 
 /// The machine and the build.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,7 +34,7 @@ impl Environment {
     pub(super) fn of(
         backends: &[Backend],
         commit: Option<String>,
-        #[cfg(feature = "gpu")] gpu: Option<&crate::gpu::GpuScheduler>,
+        #[cfg(feature = "gpu")] gpu: Option<&raydsl::gpu::GpuScheduler>,
     ) -> Self {
         let described = |backend: &Backend| match backend {
             Backend::Variant(variant) => (backend.name(), variant.isa().0, variant.isa().1),
@@ -74,14 +74,10 @@ fn device(info: &wgpu::AdapterInfo) -> (String, String) {
 fn features() -> Vec<&'static str> {
     let all = [
         ("cpu_time", cfg!(feature = "cpu_time")),
-        ("exr", cfg!(feature = "exr")),
         ("flip", cfg!(feature = "flip")),
         ("gpu", cfg!(feature = "gpu")),
-        ("hdr", cfg!(feature = "hdr")),
         ("image", cfg!(feature = "image")),
-        ("jpeg", cfg!(feature = "jpeg")),
         ("parallel", cfg!(feature = "parallel")),
-        ("validate", cfg!(feature = "validate")),
     ];
     all.into_iter().filter(|f| f.1).map(|f| f.0).collect()
 }
