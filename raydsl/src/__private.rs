@@ -2,13 +2,10 @@
 
 pub use crate::geometry::{Aabb, Hit, HitOn, HitRecord, Kinds, Primitive, Ray, RayOn};
 pub use crate::kernel::{Counting, Kernel, Lifted, Native4, Native8, Native16};
+pub use crate::machine::generated::*;
 pub use crate::machine::{
-    Assigned, B, Branch, Capture, Coerce, Compare, Const, Cursor, Field, HostMethod, Inferred,
-    KernelFn, KernelInfo, KnownBy, LaneMachine, Leaves, Loop, Machine, Margin, Method, Op, OpAdd,
-    OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv, OpMul, OpNeg, OpNot, OpOr, OpRem,
-    OpShl, OpShr, OpSub, Parameter, Recorder, Resource, Ret, RightOperand, Schema, Slice, Steps,
-    Stop, Through, Twin, Type, Value, Var, Varying, call_on_element, decrement, host_of_words,
-    increment, is_kind, is_mut, name, of_kind, of_words, op, to_words, to_words_on,
+    B, Capture, Compare, F, Field, KernelFn, KernelInfo, Lanes, Machine, Margin, Op, Recorder,
+    Resource, Schema, Slice, Type, Value, op,
 };
 
 /// Traits of associated functions.

@@ -1,7 +1,8 @@
 //! Queries of scenes in every variant of the CPU.
 
+use raydsl::__private::{Method, name};
 use raydsl::bvh::SceneView;
-use raydsl::machine::{Lanes, Method, Packet, Type, name};
+use raydsl::machine::{Lanes, Packet, Type};
 use raydsl::prelude::{
     Bvh, Hit, HitRecord, Kernel, Primitive, Ray, RayQuery, Renderer, Triangle, Variant, kernel,
 };

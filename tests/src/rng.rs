@@ -14,7 +14,7 @@ impl Rng {
 
     /// A generator for this name.
     pub fn of(name: &str) -> Self {
-        Self(raydsl::machine::name(name))
+        Self(raydsl::__private::name(name))
     }
 
     /// 64 random bits.

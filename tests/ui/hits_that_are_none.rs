@@ -13,15 +13,13 @@ impl Counter {
     }
 }
 
-fn shade(counter: Counter) {
-    let k = kernel!(|ray: Ray| {
-        let mut sum = 0.0;
-        for t in counter.hits(ray) { //~ lifted
-            sum += t;
-        }
-        sum
-    });
-    k.wgsl();
+#[kernel]
+fn shade(counter: Counter, ray: Ray) -> f32 {
+    let mut sum = 0.0;
+    for t in counter.hits(ray) { //~ lifted
+        sum += t;
+    }
+    sum
 }
 
 fn main() {}

@@ -54,7 +54,7 @@ pub fn read_number(size: usize, bytes: &[u8]) -> u32 {
     u32::from_le_bytes(number)
 }
 
-/// What runs next, for [`report::utilisation`](crate::report::utilisation).
+/// What runs next, for lanes that count; see [`CountedKernel`](crate::kernel::CountedKernel).
 #[inline(always)]
 pub fn here<M: Machine>(m: &M, what: &'static str, file: &'static str, line: u32) {
     m.at(super::Place { what, file, line });

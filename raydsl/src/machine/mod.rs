@@ -36,16 +36,17 @@ mod cursor;
 mod data;
 pub(crate) mod functions;
 mod gang;
-pub mod generic;
-pub mod host;
+pub(crate) mod generic;
+pub(crate) mod host;
 pub(crate) mod index;
 mod inverse;
 mod kinds;
 mod lanes;
-pub mod lowered;
+pub(crate) mod lowered;
 pub(crate) mod margin;
 pub(crate) mod matrix;
 mod methods;
+#[doc(hidden)]
 pub mod op;
 mod operand;
 mod operation;
@@ -62,45 +63,54 @@ mod vector;
 pub mod wgsl;
 mod words;
 
-pub use call::{KernelFn, KernelInfo, KnownBy};
+pub use call::{KernelFn, KernelInfo};
 pub(crate) use call::{KnownFunction, WithoutNan};
-pub use capture::{Capture, Parameter, Resource};
-pub use control::{Branch, Condition, Loop, Ret, Var};
+pub use capture::{Capture, Resource};
 pub(crate) use counted::count;
 pub use counted::{Count, Counted, Place};
-pub use counter::{Counter, Steps, Stop, decrement, increment};
-pub use cursor::Cursor;
 #[cfg(feature = "gpu")]
 pub(crate) use data::is_borrowed;
 pub use data::{Data, Slice};
 pub(crate) use data::{borrowed_key, bytes_of, read_in_place};
 pub use gang::Gang;
+pub(crate) use generated::*;
 pub(crate) use index::{Indexed, element_in_step};
 pub use kinds::Kinds;
 pub(crate) use lanes::{Entered, fill};
 pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
 pub use margin::{Leaf, Margin, Outcomes, Rounding, result_leaves};
 pub(crate) use matrix::A3;
-pub use methods::{Const, HostMethod, Method, Through, call_on_element, is_mut, name};
 pub use op::Op;
-pub use operand::{Assigned, RightOperand};
 pub use operation::{On, Operation, Visit};
-pub use ops::{
-    Bounds, Coerce, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv, OpMul,
-    OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Varying,
-};
 pub(crate) use owner::Owner;
 pub use packet::Packet;
 pub(crate) use record::stride;
 pub use record::{Recorder, Recording};
 pub use scalar::Scalar;
 pub use schema::{Field, Schema};
-pub use twin::{Inferred, Twin};
-pub use types::{LaneMachine, Type};
+pub use types::Type;
 pub(crate) use value::Floats;
-pub use value::{B, F, I, Leaves, U, Usize, Value};
+pub use value::{B, F, I, U, Usize, Value};
 pub use vector::{V2, V3, V4, X2, X3, X4};
-pub use words::{host_of_words, is_kind, of_kind, of_words, to_words, to_words_on};
+
+/// What only generated code names; see `crate::__private`.
+pub(crate) mod generated {
+    pub use super::call::KnownBy;
+    pub use super::capture::Parameter;
+    pub use super::control::{Branch, Condition, Loop, Ret, Var};
+    pub use super::counter::{Counter, Steps, Stop, decrement, increment};
+    pub use super::cursor::Cursor;
+    pub use super::methods::{Const, HostMethod, Method, Through, call_on_element, is_mut, name};
+    pub use super::operand::{Assigned, RightOperand};
+    pub use super::ops::{
+        Bounds, Coerce, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv, OpMul,
+        OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Varying,
+    };
+    pub use super::twin::{Inferred, Twin};
+    pub use super::types::LaneMachine;
+    pub use super::value::Leaves;
+    pub use super::words::{host_of_words, is_kind, of_kind, of_words, to_words, to_words_on};
+}
 
 /// An operation on one `f32`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -15,7 +15,7 @@ pub(crate) const SAMPLES: usize = 10_000_000;
 /// Counts `scaled(SAMPLES)` samples; `bin` gives the coordinates of one, from 0 to 1. Histograms of
 /// other names have other random numbers.
 pub(crate) fn histogram(name: &str, bin: impl Fn(&mut Rng) -> [f64; 2] + Sync) -> Vec<u64> {
-    let seed = raydsl::machine::name(name) as u32;
+    let seed = raydsl::__private::name(name) as u32;
     let all = Mutex::new(vec![0u64; SIDE * SIDE]);
     in_parallel(scaled(SAMPLES), 1 << 16, |part: Range<usize>| {
         let mut rng = Rng::new(uvec2(part.start as u32 >> 16, 0), 0, seed);
