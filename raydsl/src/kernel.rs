@@ -1,11 +1,14 @@
 //! A kernel with all its variants.
 
 use core::cell::Cell;
+use core::sync::atomic::{AtomicU64, Ordering};
 
 use crate::machine::{
     Count, Counted, KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet,
     Place, Recorder, Recording, Resource, Rounding, Simd4, Simd8, Simd16, Type, U, count, wgsl,
 };
+#[cfg(feature = "gpu")]
+use crate::machine::{Frame, Value};
 use crate::run::{Levels, fibers};
 
 pub use crate::run::{Counting, Native4, Native8, Native16, Variant, Variants};
@@ -36,6 +39,13 @@ pub struct Kernel<'a, A: Type, R: Type> {
     lifted: Lifted<'a, A, R>,
     resources: Resources<'a>,
     arithmetic: wgsl::Arithmetic,
+    number: u64,
+}
+
+/// A number that no kernel had before.
+fn new_number() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
 /// A kernel's scalar function, before its lifted copies; what `kernel!` starts with.
@@ -54,7 +64,7 @@ impl<'a, A: Type, R: Type> ScalarKernel<'a, A, R> {
     ) -> Kernel<'a, A, R> {
         let Self { info, scalar } = self;
         let (resources, arithmetic) = (Box::new(resources), wgsl::Arithmetic::Strict);
-        Kernel { info, scalar, lifted, resources, arithmetic }
+        Kernel { info, scalar, lifted, resources, arithmetic, number: new_number() }
     }
 }
 
@@ -99,6 +109,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
             },
             resources: Box::new(|_| {}),
             arithmetic: wgsl::Arithmetic::Strict,
+            number: new_number(),
         }
     }
 
@@ -125,7 +136,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
     /// ```
     #[must_use]
     pub fn arithmetic(self, arithmetic: wgsl::Arithmetic) -> Self {
-        Self { arithmetic, ..self }
+        Self { arithmetic, number: new_number(), ..self }
     }
 
     /// Where the kernel stands in the source.
@@ -239,6 +250,17 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
     /// guarantees.
     pub fn wgsl(&self) -> String {
         self.record().module(&wgsl::Limits::default()).source
+    }
+
+    /// A number that no other kernel of the process has: what it records is always the same.
+    pub fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// What is around the body where it runs over a buffer of parameters.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn frame(&self) -> Frame {
+        Frame::new(Recording::batch::<A, R>(self.arithmetic, |m, _| Value::zero(m)))
     }
 
     /// Records the kernel over a buffer of parameters.

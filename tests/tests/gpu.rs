@@ -182,6 +182,85 @@ fn numbers_compile_nothing_and_trees_are_kept() -> Result<(), Error> {
 }
 
 /// A slice is named by its address: after it is gone, other data may lie there.
+/// A picture by a device that knows no kernel yet.
+fn picture(
+    gpu: &GpuScheduler,
+    kernel: &Kernel<'_, (Ray, Sampler), Vec4>,
+    camera: &Pinhole,
+    sampling: &Sampling,
+) -> Result<Image<Vec4>, Error> {
+    let mut film = Film::new(24, 16);
+    gpu.accumulate(camera, kernel, sampling, &mut film, 2)?;
+    gpu.accumulate(camera, kernel, sampling, &mut film, 2)?;
+    Ok(film.image())
+}
+
+#[test]
+fn a_kernel_is_recorded_once_and_a_program_printed_once() -> Result<(), Error> {
+    let Some(gpu) = own_scheduler()? else { return Ok(()) };
+    let points = spheres(300);
+    let bvh = Bvh::build(&points)?;
+    let context = gpu.context();
+    let counts = || (context.recorded(), context.printed(), context.compiled());
+    let from = |x: f32| Pinhole::new(vec3(x, 0.0, 3.0), Vec3::ZERO, Vec3::Y, 1.0);
+    // Its number has the name, and in one picture the value, of one that passes capture themselves.
+    let seed = 7u32;
+    let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+        let hit = bvh.closest_hit(ray);
+        let mut sampler = sampler;
+        let noise = sampler.next_1d(host(SampleMethod::Random));
+        if hit.is_hit { vec4(hit.t, noise, seed as f32, 1.0) } else { Vec4::ZERO }
+    });
+    let expected = |camera: &Pinhole, sampling: &Sampling| {
+        picture(&GpuScheduler::with_context(Context::new()?), &kernel, camera, sampling)
+    };
+    let jittered = |seed| Sampling::new(4).seed(seed).pixels(PixelSampler::Jittered);
+    let sampling = jittered(7);
+    let same = |name: &str, expected: &Image<Vec4>, found: &Image<Vec4>| {
+        compare(name, expected.pixels(), found.pixels()).assert_same(|i| format!("pixel {i}"));
+    };
+    let found = picture(&gpu, &kernel, &from(0.0), &sampling)?;
+    same("first", &expected(&from(0.0), &sampling)?, &found);
+    assert_eq!(counts(), (1, 1, 1), "two passes of a kernel");
+    // What the frame captures is another number; what the kernel captured stays.
+    for (camera, sampling) in
+        [(from(1.0), sampling), (from(1.0), jittered(8)), (from(0.0), sampling)]
+    {
+        let found = picture(&gpu, &kernel, &camera, &sampling)?;
+        same("another frame", &expected(&camera, &sampling)?, &found);
+    }
+    assert_eq!(counts(), (1, 1, 1), "another camera and another seed");
+    // A value of the host in the frame is another program.
+    let random = jittered(7).method(SampleMethod::Random);
+    let found = picture(&gpu, &kernel, &from(0.0), &random)?;
+    same("random", &expected(&from(0.0), &random)?, &found);
+    assert_eq!(counts(), (2, 2, 2), "another method");
+    let found = picture(&gpu, &kernel, &from(1.0), &sampling)?;
+    same("the method before", &expected(&from(1.0), &sampling)?, &found);
+    assert_eq!(counts(), (2, 2, 2), "a method that was used before");
+    // The same closure with another number is another kernel, and the same program; more of them
+    // than are kept.
+    for number in 0..200u32 {
+        let made = kernel!(|ray: Ray| vec4(ray.direction.x, 0.0, number as f32, 1.0));
+        let mut image = Image::filled(8, 8, Vec4::ZERO);
+        gpu.frame(&from(0.0), &made, &mut image)?;
+        assert!(image.pixels().iter().all(|p| p.z == number as f32), "{number}");
+    }
+    assert_eq!(counts(), (202, 3, 3), "many kernels of one program");
+    let found = picture(&gpu, &kernel, &from(0.0), &sampling)?;
+    same("one that was forgotten", &expected(&from(0.0), &sampling)?, &found);
+    assert_eq!(counts(), (203, 3, 3), "a kernel that was forgotten");
+    // A batch is a program of its own.
+    let double = kernel!(|x: f32| x * 2.0);
+    let mut doubled = [0.0; 3];
+    for _ in 0..2 {
+        gpu.batch(&double, &[(1.0,), (2.0,), (3.0,)], &mut doubled)?;
+    }
+    assert_eq!(doubled, [2.0, 4.0, 6.0]);
+    assert_eq!(counts(), (204, 4, 4), "a batch");
+    Ok(())
+}
+
 #[test]
 fn slices_are_sent_every_time() -> Result<(), Error> {
     let Some(gpu) = own_scheduler()? else { return Ok(()) };

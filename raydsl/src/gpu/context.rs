@@ -10,6 +10,7 @@ use super::error::{GpuError, one_line};
 use super::pipeline::{Checks, Pipelines};
 use super::slot::Slot;
 use super::textures::Textures;
+use crate::machine::Modules;
 use crate::machine::wgsl::{BufferKey, Limits};
 
 /// A device, the scene buffers uploaded to it and the pipelines compiled for it.
@@ -23,6 +24,7 @@ pub struct Context {
     pub(super) uploads: Mutex<Uploads>,
     pub(super) textures: Mutex<Textures>,
     pub(super) pipelines: Mutex<Pipelines>,
+    pub(super) modules: Mutex<Modules>,
     /// Buffers of finished dispatches, for the next ones.
     pub(super) idle: Mutex<Vec<Slot>>,
 }
@@ -58,6 +60,7 @@ impl Context {
             uploads: Mutex::default(),
             textures: Mutex::default(),
             pipelines: Mutex::default(),
+            modules: Mutex::default(),
             idle: Mutex::default(),
         }
     }
@@ -133,6 +136,16 @@ impl Context {
     /// are.
     pub fn scene_bytes(&self) -> u64 {
         lock(&self.uploads).kept() + lock(&self.textures).kept()
+    }
+
+    /// Kernels recorded so far: one that runs again is not recorded again.
+    pub fn recorded(&self) -> u64 {
+        lock(&self.modules).recorded()
+    }
+
+    /// Programs printed as WGSL so far: kernels that record the same have one text.
+    pub fn printed(&self) -> u64 {
+        lock(&self.modules).printed()
     }
 
     /// Shaders compiled so far.

@@ -4,13 +4,16 @@ use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
+use super::device::lock;
 use super::run::{Grid, Outputs, Teller};
 use super::window::check_target;
 use super::{Context, GpuError, GpuWindow, Timing};
 use crate::camera::Camera;
 use crate::kernel::Kernel;
 use crate::machine::wgsl::{BufferKey, Module};
-use crate::machine::{Resource, Type, X2, stride};
+use crate::machine::{
+    Frame as KernelFrame, Recorder, Recording, Resource, Type, Value, X2, stride,
+};
 use crate::render::{Effort, FilmArgs, Frame, Image, Observer, Pace, Renderer, Shot, timing_of};
 
 /// Who is shown the buffers that a kernel may read.
@@ -87,10 +90,29 @@ impl GpuScheduler {
     }
 
     fn module<S: Shot>(&self, shot: &S) -> Module {
-        let recording = shot.kernel().record_grid::<S::Output>(|m, x, y, body| {
-            shot.pixel_on(m, X2 { x, y }, &|m, args| body(m, args))
+        let kernel = shot.kernel();
+        let frame = kernel.record_grid::<S::Output>(|m, x, y, _| {
+            shot.pixel_on(m, X2 { x, y }, &|m, _| no_body(m))
         });
-        recording.module(&self.context.limits())
+        let record = || {
+            kernel.record_grid::<S::Output>(|m, x, y, body| {
+                shot.pixel_on(m, X2 { x, y }, &|m, args| {
+                    m.begin_body();
+                    body(m, args)
+                })
+            })
+        };
+        self.known_module(kernel.number(), KernelFrame::new(frame), &record)
+    }
+
+    /// The module of a kernel in a frame, which `record` records where it is not known.
+    fn known_module(
+        &self,
+        kernel: u64,
+        frame: KernelFrame,
+        record: &dyn Fn() -> Recording,
+    ) -> Module {
+        lock(&self.context.modules).get(self.context.limits(), kernel, frame, record)
     }
 
     /// Runs a module; if it was broken off, `outputs` are what they were.
@@ -171,7 +193,7 @@ impl Renderer for GpuScheduler {
         inputs: &[A],
         outputs: &mut [R],
     ) -> Result<Timing, GpuError> {
-        let module = kernel.record().module(&self.context.limits());
+        let module = self.known_module(kernel.number(), kernel.frame(), &|| kernel.record());
         let each = stride(A::SCHEMA);
         let mut bytes = vec![0; each * inputs.len()];
         for (a, out) in inputs.iter().zip(bytes.chunks_exact_mut(each)) {
@@ -182,6 +204,12 @@ impl Renderer for GpuScheduler {
         let (resources, grid) = (|visit: Visit<'_>| kernel.resources(visit), Grid::of([count, 1]));
         self.run(&resources, &module, &bytes, grid, outputs).map(timing_of)
     }
+}
+
+/// A result in place of a kernel's.
+fn no_body<V: Value<Recorder>>(m: &Recorder) -> V {
+    m.begin_body();
+    V::zero(m)
 }
 
 /// The bytes of a buffer, made only where the device does not have them yet.

@@ -85,6 +85,8 @@ pub use operation::{On, Operation, Visit};
 pub(crate) use owner::Owner;
 pub use packet::Packet;
 pub(crate) use record::stride;
+#[cfg(feature = "gpu")]
+pub(crate) use record::{Frame, Modules};
 pub use record::{Recorder, Recording};
 pub use scalar::Scalar;
 pub use schema::{Field, Schema};

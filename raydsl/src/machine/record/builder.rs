@@ -1,20 +1,26 @@
 //! A function while it is recorded.
 
+use std::collections::HashMap;
+
 use super::ir::{Expr, Id, Node, Recorded, Stmt, Type, VarId, Variable};
 use super::names::unique;
 use crate::machine::KernelInfo;
 
 /// A function under way.
+#[derive(Clone)]
 pub(super) struct Builder {
     pub(super) function: Recorded,
     pub(super) blocks: Vec<(u32, Vec<Stmt>)>,
     pub(super) next_block: u32,
     pub(super) loops: Vec<LoopState>,
     pub(super) next_loop: u32,
+    /// The trivial expressions: each is one node for each of its types.
+    trivial: HashMap<Expr, Vec<Id>>,
     /// The variable that says which labelled loop is being left.
     pub(super) leave: Option<VarId>,
 }
 
+#[derive(Clone)]
 pub(super) struct LoopState {
     pub(super) number: u32,
     /// Labelled exits that pass through this loop: the loop they are meant for, and `continue`.
@@ -40,6 +46,7 @@ impl Builder {
             next_block: 1,
             loops: Vec::new(),
             next_loop: 1,
+            trivial: HashMap::new(),
             leave: None,
         }
     }
@@ -107,10 +114,12 @@ impl Builder {
     }
 
     pub(super) fn add(&mut self, expr: Expr, ty: Type) -> Id {
-        if expr.is_trivial()
-            && let Some(i) = self.function.nodes.iter().position(|n| n.expr == expr && n.ty == ty)
+        let is_trivial = expr.is_trivial();
+        if is_trivial
+            && let Some(known) = self.trivial.get(&expr)
+            && let Some(id) = known.iter().find(|id| self.function.nodes[id.0 as usize].ty == ty)
         {
-            return Id(i as u32);
+            return *id;
         }
         let mut loads = Vec::new();
         for operand in expr.operands() {
@@ -128,7 +137,9 @@ impl Builder {
             }
             _ => 0,
         };
-        let place = !expr.is_trivial();
+        if is_trivial {
+            self.trivial.entry(expr.clone()).or_default().push(id);
+        }
         let block = self.block();
         self.function.nodes.push(Node {
             expr,
@@ -139,7 +150,7 @@ impl Builder {
             loads,
             version,
         });
-        if place {
+        if !is_trivial {
             self.push(Stmt::Let(id));
         }
         id

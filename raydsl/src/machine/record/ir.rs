@@ -122,7 +122,7 @@ impl PartialEq for Type {
 }
 
 /// How a scalar becomes another.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Conversion {
     /// `T(x)`.
     To,
@@ -132,7 +132,7 @@ pub(crate) enum Conversion {
     Saturate,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Expr {
     /// The bits of an `f32`, so that equal programs compare equal.
     F32(u32),
@@ -181,8 +181,9 @@ impl Expr {
         )
     }
 
-    pub(super) fn operands(&self) -> Vec<Id> {
-        match self {
+    /// Its operands, in order.
+    pub(super) fn operands(&self) -> impl Iterator<Item = Id> + '_ {
+        let (few, many): ([Option<Id>; 3], &[Id]) = match self {
             Self::F32(_)
             | Self::I32(_)
             | Self::U32(_)
@@ -190,7 +191,7 @@ impl Expr {
             | Self::Param(_)
             | Self::Uniform(_)
             | Self::Address(_)
-            | Self::Load(_) => vec![],
+            | Self::Load(_) => ([None; 3], &[]),
             Self::Member(a, _)
             | Self::Element(a, _)
             | Self::F32Unary(_, a)
@@ -198,14 +199,15 @@ impl Expr {
             | Self::Neg(a)
             | Self::Not(a)
             | Self::Complement(a)
-            | Self::Convert(_, a) => vec![*a],
+            | Self::Convert(_, a) => ([Some(*a), None, None], &[]),
             Self::F32Binary(_, a, b)
             | Self::IntBinary(_, a, b)
             | Self::BoolBinary(_, a, b)
-            | Self::Compare(_, a, b) => vec![*a, *b],
-            Self::MulAdd(a, b, c) | Self::Select(a, b, c) => vec![*a, *b, *c],
-            Self::Call(_, args) | Self::Builtin(_, args) | Self::Compose(args) => args.clone(),
-        }
+            | Self::Compare(_, a, b) => ([Some(*a), Some(*b), None], &[]),
+            Self::MulAdd(a, b, c) | Self::Select(a, b, c) => ([Some(*a), Some(*b), Some(*c)], &[]),
+            Self::Call(_, args) | Self::Builtin(_, args) | Self::Compose(args) => ([None; 3], args),
+        };
+        few.into_iter().flatten().chain(many.iter().copied())
     }
 }
 

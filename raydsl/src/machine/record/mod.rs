@@ -6,6 +6,8 @@
 
 mod arithmetic;
 mod builder;
+#[cfg(feature = "gpu")]
+mod cache;
 mod data;
 mod expression;
 mod function;
@@ -20,6 +22,8 @@ mod types;
 
 use core::cell::RefCell;
 
+#[cfg(feature = "gpu")]
+pub(crate) use cache::{Frame, Modules};
 pub(crate) use names::member_name;
 pub(crate) use storage::stride;
 pub(crate) use text::from_template;
@@ -37,7 +41,7 @@ pub struct Recorder {
     state: RefCell<State>,
 }
 
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct State {
     /// The functions under way, the innermost last.
     open: Vec<Builder>,
@@ -45,6 +49,15 @@ struct State {
     uniforms: Vec<Uniform>,
     buffers: Vec<SceneBuffer>,
     textures: Vec<wgsl::Texture>,
+    /// What was captured before the body of a kernel was called.
+    before_body: Captured,
+}
+
+/// How many uniforms and buffers there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Captured {
+    uniforms: usize,
+    buffers: usize,
 }
 
 impl State {
@@ -368,15 +381,27 @@ impl Recorder {
         });
     }
 
-    /// A number of the uniform block.
+    /// A captured number of the uniform block: not one of another frame, though they are equal now.
+    fn captured_uniform(&self, name: &str, ty: Type, words: Vec<u32>) -> Id {
+        let first = self.state.borrow().before_body.uniforms;
+        self.uniform_since(first, name, ty, words)
+    }
+
+    /// A constant that stands in the uniform block.
     fn uniform(&self, name: &str, ty: Type, words: Vec<u32>) -> Id {
+        self.uniform_since(0, name, ty, words)
+    }
+
+    /// A number of the uniform block: one that is there, from the `first` on, or a new one.
+    fn uniform_since(&self, first: usize, name: &str, ty: Type, words: Vec<u32>) -> Id {
         let n = {
             let mut state = self.state.borrow_mut();
             let same = state
                 .uniforms
                 .iter()
+                .skip(first)
                 .position(|u| u.name == name && u.ty == ty && u.words == words);
-            same.unwrap_or_else(|| {
+            same.map(|i| first + i).unwrap_or_else(|| {
                 let taken = |n: &str| state.uniforms.iter().any(|u| u.name == n);
                 // The lengths of buffers are in the same block.
                 let prefix = if name.starts_with("len_of_") { "captured_" } else { "" };
@@ -407,6 +432,7 @@ impl Recorder {
 }
 
 /// A recorded kernel, ready to be printed for the limits of a device.
+#[derive(Clone)]
 pub struct Recording {
     state: State,
     entry: usize,
@@ -466,7 +492,7 @@ impl Recording {
 
     /// The text, with scene buffers split into windows as `limits` asks.
     pub fn module(&self, limits: &wgsl::Limits) -> wgsl::Module {
-        module::module(self, limits)
+        module::module(self, limits).module
     }
 }
 

@@ -4,7 +4,7 @@ use core::fmt::Write;
 use std::collections::HashSet;
 
 use super::function::{FunctionPrinter, Text};
-use super::ir::{Function, Type, Uniform};
+use super::ir::{Function, SceneBuffer, Type, Uniform};
 use super::storage::{self, Stored};
 use super::types::Names;
 use super::{Recording, State, textures};
@@ -46,9 +46,72 @@ fn saturate_u32(x: f32) -> u32 {
 }
 ";
 
-/// The uniform block: its declaration and its bytes.
-fn uniform_block(uniforms: &[Uniform], names: &mut Names) -> (String, Vec<u8>) {
+/// A module, and what its numbers and data are those of: the text stays where those change.
+#[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "only a device runs modules"))]
+pub(super) struct Printed {
+    pub(super) module: Module,
+    uniforms: Vec<Number>,
+    /// The recorded buffers and textures that the text has, in its order.
+    buffers: Vec<usize>,
+    textures: Vec<usize>,
+}
+
+/// What stands in the uniform block.
+#[derive(Clone, Copy)]
+enum Number {
+    /// A recorded uniform.
+    Uniform(usize),
+    /// The length of a recorded buffer.
+    Length(usize),
+}
+
+impl Number {
+    fn uniform(self, state: &State) -> Uniform {
+        match self {
+            Self::Uniform(i) => state.uniforms[i].clone(),
+            Self::Length(i) => {
+                let SceneBuffer { name, len, .. } = &state.buffers[i];
+                let words = vec![*len as u32];
+                Uniform { name: format!("len_of_{name}"), ty: Type::U32, words }
+            }
+        }
+    }
+}
+
+#[cfg(feature = "gpu")]
+impl Printed {
+    /// The module with the numbers and data of a recording of the same program, for the same limits.
+    pub(super) fn of(&self, recording: &Recording, limits: &Limits) -> Module {
+        let state = &recording.state;
+        let uniforms: Vec<Uniform> = self.uniforms.iter().map(|n| n.uniform(state)).collect();
+        let mut module = Module { uniforms: uniform_bytes(&uniforms), ..self.module.clone() };
+        for (buffer, i) in module.buffers.iter_mut().zip(&self.buffers) {
+            let SceneBuffer { key, len, .. } = state.buffers[*i];
+            let (stride, first) = (u64::from(buffer.stride), buffer.windows[0].binding);
+            let windows = windows(len, stride, limits.max_binding_bytes, first);
+            (buffer.key, buffer.len, buffer.windows) = (key, len, windows);
+        }
+        for (texture, i) in module.textures.iter_mut().zip(&self.textures) {
+            texture.key = state.textures[*i].key;
+        }
+        module
+    }
+}
+
+/// The declaration of the uniform block.
+fn uniform_block(uniforms: &[Uniform], names: &mut Names) -> String {
     let mut text = "struct Params {\n".to_owned();
+    for u in uniforms {
+        let _ = writeln!(text, "    {}: {},", u.name, names.ty(u.ty));
+    }
+    if uniforms.is_empty() {
+        text += "    none: u32,\n";
+    }
+    text + "}\n"
+}
+
+/// The bytes of the uniform block.
+fn uniform_bytes(uniforms: &[Uniform]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for u in uniforms {
         let align = match u.ty {
@@ -58,13 +121,16 @@ fn uniform_block(uniforms: &[Uniform], names: &mut Names) -> (String, Vec<u8>) {
         };
         bytes.resize(usize::next_multiple_of(bytes.len(), align), 0);
         bytes.extend(u.words.iter().flat_map(|w| w.to_le_bytes()));
-        let _ = writeln!(text, "    {}: {},", u.name, names.ty(u.ty));
-    }
-    if uniforms.is_empty() {
-        text += "    none: u32,\n";
     }
     bytes.resize(usize::next_multiple_of(bytes.len().max(1), 16), 0);
-    (text + "}\n", bytes)
+    bytes
+}
+
+/// How many windows a buffer has.
+#[cfg(feature = "gpu")]
+pub(super) fn window_count(buffer: &SceneBuffer, limits: &Limits) -> usize {
+    let stride = storage::stride(buffer.schema) as u64;
+    windows(buffer.len, stride, limits.max_binding_bytes, 0).len()
 }
 
 /// Splits `len` elements into windows of at most `max` bytes.
@@ -248,7 +314,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
 }
 
 /// Prints the whole module.
-pub(super) fn module(recording: &Recording, limits: &Limits) -> Module {
+pub(super) fn module(recording: &Recording, limits: &Limits) -> Printed {
     let state = &recording.state;
     let mut names = state.names();
     let order = reachable(state, recording.entry);
@@ -263,18 +329,18 @@ pub(super) fn module(recording: &Recording, limits: &Limits) -> Module {
     }
     let words = identifiers(&functions);
 
-    let is_used = |u: &Uniform| words.contains(u.name.as_str());
-    let mut uniforms: Vec<Uniform> =
-        state.uniforms.iter().filter(|u| is_used(u)).cloned().collect();
-    let mut buffers = Vec::new();
+    let is_used = |i: &usize| words.contains(state.uniforms[*i].name.as_str());
+    let mut numbers: Vec<Number> =
+        (0..state.uniforms.len()).filter(is_used).map(Number::Uniform).collect();
+    let (mut buffers, mut printed_buffers) = (Vec::new(), Vec::new());
     let mut bindings = String::new();
     let mut binding = 4;
-    for b in &state.buffers {
+    for (i, b) in state.buffers.iter().enumerate() {
         let has_elements = words.contains(format!("{}_element", b.name).as_str());
         // A kernel may ask for the length and for no element.
         let length = format!("len_of_{}", b.name);
         if has_elements || words.contains(length.as_str()) {
-            uniforms.push(Uniform { name: length, ty: Type::U32, words: vec![b.len as u32] });
+            numbers.push(Number::Length(i));
         }
         if !has_elements && !words.contains(format!("{}_at", b.name).as_str()) {
             continue;
@@ -290,9 +356,13 @@ pub(super) fn module(recording: &Recording, limits: &Limits) -> Module {
             bindings += &element_text(&b.name, &names.ty(Type::of(b.schema)));
         }
         buffers.push(buffer);
+        printed_buffers.push(i);
     }
-    let is_sampled = |t: &&Texture| words.contains(format!("{}_sample", t.name).as_str());
-    let mut textures: Vec<Texture> = state.textures.iter().filter(is_sampled).cloned().collect();
+    let is_sampled =
+        |i: &usize| words.contains(format!("{}_sample", state.textures[*i].name).as_str());
+    let printed_textures: Vec<usize> = (0..state.textures.len()).filter(is_sampled).collect();
+    let mut textures: Vec<Texture> =
+        printed_textures.iter().map(|i| state.textures[*i].clone()).collect();
     for texture in &mut textures {
         texture.binding = binding;
         binding += 2;
@@ -300,7 +370,8 @@ pub(super) fn module(recording: &Recording, limits: &Limits) -> Module {
         bindings += &textures::bindings(texture);
     }
     let entry = entry_text(recording, &mut names);
-    let (params, bytes) = uniform_block(&uniforms, &mut names);
+    let uniforms: Vec<Uniform> = numbers.iter().map(|n| n.uniform(state)).collect();
+    let params = uniform_block(&uniforms, &mut names);
     let mut source = names.declarations();
     source += &names.stored_declarations();
     source += &params;
@@ -316,13 +387,14 @@ pub(super) fn module(recording: &Recording, limits: &Limits) -> Module {
     source += &functions;
     source += "\n";
     source += &entry;
-    Module {
+    let module = Module {
         source,
         workgroup: WORKGROUP,
-        uniforms: bytes,
+        uniforms: uniform_bytes(&uniforms),
         input_stride: recording.input.map_or(0, |s| storage::stride(s) as u32),
         output_stride: storage::stride(recording.output) as u32,
         buffers,
         textures,
-    }
+    };
+    Printed { module, uniforms: numbers, buffers: printed_buffers, textures: printed_textures }
 }

@@ -61,15 +61,15 @@ pub(super) fn uniforms(
     match schema {
         Schema::Host => {}
         Schema::Bool => {
-            let u = m.uniform(name, Type::U32, vec![u32::from(bytes[0])]);
+            let u = m.captured_uniform(name, Type::U32, vec![u32::from(bytes[0])]);
             let zero = m.add(Expr::U32(0), Type::U32);
             leaves.push(m.add(Expr::Compare(Compare::Ne, u, zero), Type::Bool));
         }
         Schema::F32 | Schema::I32 | Schema::U32 => {
-            leaves.push(m.uniform(name, Type::of(schema), vec![word(&bytes[..4])]));
+            leaves.push(m.captured_uniform(name, Type::of(schema), vec![word(&bytes[..4])]));
         }
         Schema::Small { bytes: n } => {
-            leaves.push(m.uniform(name, Type::U32, vec![word(&bytes[..*n])]));
+            leaves.push(m.captured_uniform(name, Type::U32, vec![word(&bytes[..*n])]));
         }
         Schema::Vector(Schema::Bool, n) => {
             for (c, byte) in COMPONENTS.into_iter().zip(bytes.chunks_exact(1)).take(*n) {
@@ -78,7 +78,7 @@ pub(super) fn uniforms(
         }
         Schema::Vector(element, n) => {
             let words = bytes.chunks_exact(4).take(*n).map(word).collect();
-            let v = m.uniform(name, Type::of(schema), words);
+            let v = m.captured_uniform(name, Type::of(schema), words);
             for c in COMPONENTS.into_iter().take(*n) {
                 leaves.push(m.add(Expr::Member(v, c), Type::of(element)));
             }

@@ -1,0 +1,157 @@
+//! Modules that have been printed: a kernel is recorded once, and a program printed once.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use super::ir::{SceneBuffer, Uniform};
+use super::module::{self, Printed, window_count};
+use super::{Captured, Recorder, Recording};
+use crate::machine::wgsl::{Limits, Module, Texture};
+
+/// How many kernels, and how many programs, are kept: those that were used last.
+const KEPT: usize = 64;
+
+/// A program and its text.
+struct Program {
+    recording: Recording,
+    limits: Limits,
+    printed: Printed,
+}
+
+/// A kernel that was recorded.
+struct Known {
+    /// Its number.
+    kernel: u64,
+    /// What is around its body.
+    frame: Frame,
+    recording: Recording,
+    program: Arc<Program>,
+}
+
+impl Recorder {
+    /// Notes that what comes now is the body of a kernel, which captures the same in every frame.
+    pub(crate) fn begin_body(&self) {
+        let mut state = self.state.borrow_mut();
+        state.before_body =
+            Captured { uniforms: state.uniforms.len(), buffers: state.buffers.len() };
+    }
+}
+
+impl Recording {
+    /// Whether it has the same text under `limits`: only the numbers in the uniform block, and the
+    /// data in the buffers, may be others.
+    fn has_same_program(&self, other: &Self, limits: &Limits) -> bool {
+        let (a, b) = (&self.state, &other.state);
+        let same_uniform = |(a, b): (&Uniform, &Uniform)| a.name == b.name && a.ty == b.ty;
+        let same_buffer = |(a, b): (&SceneBuffer, &SceneBuffer)| {
+            let windows = |of: &SceneBuffer| window_count(of, limits);
+            a.name == b.name && a.schema == b.schema && windows(a) == windows(b)
+        };
+        let same_texture = |(a, b): (&Texture, &Texture)| a.name == b.name && a.layout == b.layout;
+        (self.entry, self.input, self.output) == (other.entry, other.input, other.output)
+            && a.before_body == b.before_body
+            && a.functions == b.functions
+            && (a.uniforms.len(), a.buffers.len(), a.textures.len())
+                == (b.uniforms.len(), b.buffers.len(), b.textures.len())
+            && a.uniforms.iter().zip(&b.uniforms).all(same_uniform)
+            && a.buffers.iter().zip(&b.buffers).all(same_buffer)
+            && a.textures.iter().zip(&b.textures).all(same_texture)
+    }
+}
+
+/// What is recorded around the body of a kernel, without the body. It tells whatever may differ from
+/// one run of a kernel to the next, and is small beside it.
+pub(crate) struct Frame(Recording);
+
+impl Frame {
+    /// `recording` has called [`Recorder::begin_body`] where it left
+    /// out the body.
+    pub(crate) fn new(recording: Recording) -> Self {
+        Self(recording)
+    }
+
+    /// Has `recording`, of the body in such a frame, begin with what this one captures.
+    fn enter(&self, recording: &mut Recording) {
+        let (from, to) = (&self.0.state, &mut recording.state);
+        let count = from.before_body;
+        to.uniforms[..count.uniforms].clone_from_slice(&from.uniforms[..count.uniforms]);
+        to.buffers[..count.buffers].clone_from_slice(&from.buffers[..count.buffers]);
+    }
+}
+
+/// The modules of kernels that ran before, on one device.
+///
+/// The program that a kernel records depends on its code, on what it captures, which stays the same
+/// while it lives, and on values of the host in the frame around it. Kernels of one program, such as
+/// those of one closure that is made anew for each picture, have one text.
+#[derive(Default)]
+pub(crate) struct Modules {
+    known: VecDeque<Known>,
+    programs: VecDeque<Arc<Program>>,
+    recorded: u64,
+    printed: u64,
+}
+
+impl Modules {
+    /// Kernels recorded so far.
+    pub(crate) fn recorded(&self) -> u64 {
+        self.recorded
+    }
+
+    /// Programs printed so far.
+    pub(crate) fn printed(&self) -> u64 {
+        self.printed
+    }
+
+    /// The module of a kernel, by its number, in a frame; `record` records both. The limits are the
+    /// device's.
+    pub(crate) fn get(
+        &mut self,
+        limits: Limits,
+        kernel: u64,
+        frame: Frame,
+        record: impl FnOnce() -> Recording,
+    ) -> Module {
+        let is_same = |k: &Known| {
+            k.kernel == kernel
+                && k.program.limits == limits
+                && k.frame.0.has_same_program(&frame.0, &limits)
+        };
+        let at = self.known.iter().position(is_same);
+        if let Some(mut known) = at.and_then(|at| self.known.remove(at)) {
+            frame.enter(&mut known.recording);
+            let module = known.program.printed.of(&known.recording, &limits);
+            self.known.push_back(known);
+            return module;
+        }
+        self.recorded += 1;
+        let recording = record();
+        let program = self.program(limits, &recording);
+        let module = program.printed.of(&recording, &limits);
+        keep(&mut self.known, Known { kernel, frame, recording, program });
+        module
+    }
+
+    /// The program of a recording, printed if it is new.
+    fn program(&mut self, limits: Limits, recording: &Recording) -> Arc<Program> {
+        let is_same = |p: &Arc<Program>| {
+            p.limits == limits && p.recording.has_same_program(recording, &limits)
+        };
+        let at = self.programs.iter().position(is_same);
+        let program = at.and_then(|at| self.programs.remove(at)).unwrap_or_else(|| {
+            self.printed += 1;
+            let printed = module::module(recording, &limits);
+            Arc::new(Program { recording: recording.clone(), limits, printed })
+        });
+        keep(&mut self.programs, Arc::clone(&program));
+        program
+    }
+}
+
+/// Adds the newest; the oldest goes where there are too many.
+fn keep<T>(all: &mut VecDeque<T>, newest: T) {
+    if all.len() == KEPT {
+        all.pop_front();
+    }
+    all.push_back(newest);
+}
