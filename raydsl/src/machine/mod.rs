@@ -80,7 +80,7 @@ pub(crate) use lanes::{Entered, fill};
 pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
 pub use margin::{Leaf, Margin, Outcomes, Rounding, result_leaves};
 pub(crate) use matrix::A3;
-pub use op::Op;
+pub use op::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Op, U32Unary};
 pub use operation::{On, Operation, Visit};
 pub(crate) use owner::Owner;
 pub use packet::Packet;
@@ -112,87 +112,6 @@ pub(crate) mod generated {
     pub use super::types::LaneMachine;
     pub use super::value::Leaves;
     pub use super::words::{host_of_words, is_kind, of_kind, of_words, to_words, to_words_on};
-}
-
-/// An operation on one `f32`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "the names are those of the operations on `f32`")]
-pub enum F32Unary {
-    Neg,
-    Abs,
-    Sqrt,
-    Floor,
-    Ceil,
-    Trunc,
-}
-
-/// An operation on two `f32`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "the names are those of the operators")]
-pub enum F32Binary {
-    Add,
-    Sub,
-    Mul,
-    Div,
-    /// `if b < a { b } else { a }`
-    Min,
-    /// `if a < b { b } else { a }`
-    Max,
-}
-
-/// An operation on two integers of one type.
-///
-/// `Add`, `Sub`, `Mul`, `Shl`, `Shr`, `Div` and `Rem` are the operators of Rust: where Rust would
-/// panic, a packet built with debug assertions panics too and names the lane. Without them every
-/// machine gives one result: sums wrap, a shift uses its amount modulo 32, `x / 0` is `x` and
-/// `x % 0` is 0 (the rules of WGSL).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "the names are those of the operators")]
-pub enum IntBinary {
-    Add,
-    Sub,
-    Mul,
-    Div,
-    Rem,
-    And,
-    Or,
-    Xor,
-    Shl,
-    Shr,
-    WrappingAdd,
-    WrappingSub,
-    WrappingMul,
-}
-
-/// An operation on the bits of one integer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "the names are those of the methods of `u32`")]
-pub enum U32Unary {
-    CountOnes,
-    LeadingZeros,
-    TrailingZeros,
-    ReverseBits,
-}
-
-/// A comparison; with a NaN operand only `Ne` holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "the names are those of the operators")]
-pub enum Compare {
-    Eq,
-    Ne,
-    Lt,
-    Le,
-    Gt,
-    Ge,
-}
-
-/// An operation on two truth values.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "the names are those of the operators")]
-pub enum BoolBinary {
-    And,
-    Or,
-    Xor,
 }
 
 /// What lifted kernel bodies run on: arithmetic on lanes, and hooks for control flow.

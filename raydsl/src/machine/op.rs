@@ -3,8 +3,6 @@
 //! A kernel is inlined whole before an optimiser looks at it: were operations values, all of them
 //! would be compiled wherever there is one, to be thrown away.
 
-use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, U32Unary};
-
 /// One of the operations of `Kind`.
 pub trait Op<Kind>: Copy + 'static {
     /// As a value.
@@ -49,12 +47,21 @@ macro_rules! __at_run_time {
     };
 }
 
-macro_rules! operations {
-    ($($name:ident: $($kind:ident)+;)+) => {
+/// Kinds of operations: an enum of each, whose variants are types as well.
+macro_rules! kinds {
+    ($($(#[$about:meta])* $kind:ident { $($(#[$doc:meta])* $name:ident,)+ })+) => {
         $(
-            #[doc = concat!("The operation `", stringify!($name), "`.")]
-            #[derive(Clone, Copy, Debug)]
-            pub struct $name;
+            $(#[$about])*
+            #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+            #[expect(missing_docs, reason = "the names are those of operators and methods")]
+            pub enum $kind {
+                $($(#[$doc])* $name,)+
+            }
+
+            impl $kind {
+                /// All of them.
+                pub const ALL: &[Self] = &[$(Self::$name,)+];
+            }
 
             $(
                 impl Op<$kind> for $name {
@@ -65,36 +72,169 @@ macro_rules! operations {
     };
 }
 
-operations! {
-    Add: F32Binary IntBinary;
-    Sub: F32Binary IntBinary;
-    Mul: F32Binary IntBinary;
-    Div: F32Binary IntBinary;
-    Min: F32Binary;
-    Max: F32Binary;
-    Rem: IntBinary;
-    And: IntBinary BoolBinary;
-    Or: IntBinary BoolBinary;
-    Xor: IntBinary BoolBinary;
-    Shl: IntBinary;
-    Shr: IntBinary;
-    WrappingAdd: IntBinary;
-    WrappingSub: IntBinary;
-    WrappingMul: IntBinary;
-    Neg: F32Unary;
-    Abs: F32Unary;
-    Sqrt: F32Unary;
-    Floor: F32Unary;
-    Ceil: F32Unary;
-    Trunc: F32Unary;
-    CountOnes: U32Unary;
-    LeadingZeros: U32Unary;
-    TrailingZeros: U32Unary;
-    ReverseBits: U32Unary;
-    Eq: Compare;
-    Ne: Compare;
-    Lt: Compare;
-    Le: Compare;
-    Gt: Compare;
-    Ge: Compare;
+kinds! {
+    /// An operation on one `f32`.
+    F32Unary { Neg, Abs, Sqrt, Floor, Ceil, Trunc, }
+
+    /// An operation on two `f32`.
+    F32Binary {
+        Add,
+        Sub,
+        Mul,
+        Div,
+        /// `if b < a { b } else { a }`
+        Min,
+        /// `if a < b { b } else { a }`
+        Max,
+    }
+
+    /// An operation on two integers of one type.
+    ///
+    /// `Add`, `Sub`, `Mul`, `Shl`, `Shr`, `Div` and `Rem` are the operators of Rust: where Rust would
+    /// panic, a packet built with debug assertions panics too and names the lane. Without them every
+    /// machine gives one result: sums wrap, a shift uses its amount modulo 32, `x / 0` is `x` and
+    /// `x % 0` is 0 (the rules of WGSL).
+    IntBinary {
+        Add,
+        Sub,
+        Mul,
+        Div,
+        Rem,
+        And,
+        Or,
+        Xor,
+        Shl,
+        Shr,
+        WrappingAdd,
+        WrappingSub,
+        WrappingMul,
+    }
+
+    /// An operation on the bits of one integer.
+    U32Unary { CountOnes, LeadingZeros, TrailingZeros, ReverseBits, }
+
+    /// A comparison; with a NaN operand only `Ne` holds.
+    Compare { Eq, Ne, Lt, Le, Gt, Ge, }
+
+    /// An operation on two truth values.
+    BoolBinary { And, Or, Xor, }
+}
+
+macro_rules! types {
+    ($($name:ident)+) => {
+        $(
+            #[doc = concat!("The operation `", stringify!($name), "`.")]
+            #[derive(Clone, Copy, Debug)]
+            pub struct $name;
+        )+
+    };
+}
+
+types! {
+    Neg Abs Sqrt Floor Ceil Trunc
+    Add Sub Mul Div Rem Min Max
+    And Or Xor Shl Shr
+    WrappingAdd WrappingSub WrappingMul
+    CountOnes LeadingZeros TrailingZeros ReverseBits
+    Eq Ne Lt Le Gt Ge
+}
+
+impl F32Unary {
+    /// The operation itself.
+    pub(super) fn of(self, a: f32) -> f32 {
+        match self {
+            Self::Neg => -a,
+            Self::Abs => a.abs(),
+            Self::Sqrt => a.sqrt(),
+            Self::Floor => a.floor(),
+            Self::Ceil => a.ceil(),
+            Self::Trunc => a.trunc(),
+        }
+    }
+
+    /// How WGSL writes it.
+    pub(super) fn wgsl(self) -> &'static str {
+        match self {
+            Self::Neg => "-",
+            Self::Abs => "abs",
+            Self::Sqrt => "sqrt",
+            Self::Floor => "floor",
+            Self::Ceil => "ceil",
+            Self::Trunc => "trunc",
+        }
+    }
+}
+
+impl F32Binary {
+    /// The operation itself.
+    pub(super) fn of(self, a: f32, b: f32) -> f32 {
+        match self {
+            Self::Add => a + b,
+            Self::Sub => a - b,
+            Self::Mul => a * b,
+            Self::Div => a / b,
+            Self::Min if b < a => b,
+            Self::Max if a < b => b,
+            Self::Min | Self::Max => a,
+        }
+    }
+}
+
+impl U32Unary {
+    /// The operation itself.
+    pub(super) fn of(self, a: u32) -> u32 {
+        match self {
+            Self::CountOnes => a.count_ones(),
+            Self::LeadingZeros => a.leading_zeros(),
+            Self::TrailingZeros => a.trailing_zeros(),
+            Self::ReverseBits => a.reverse_bits(),
+        }
+    }
+
+    /// How WGSL writes it.
+    pub(super) fn wgsl(self) -> &'static str {
+        match self {
+            Self::CountOnes => "countOneBits",
+            Self::LeadingZeros => "countLeadingZeros",
+            Self::TrailingZeros => "countTrailingZeros",
+            Self::ReverseBits => "reverseBits",
+        }
+    }
+}
+
+impl Compare {
+    /// The operation itself.
+    pub(super) fn of<T: PartialOrd>(self, a: T, b: T) -> bool {
+        match self {
+            Self::Eq => a == b,
+            Self::Ne => a != b,
+            Self::Lt => a < b,
+            Self::Le => a <= b,
+            Self::Gt => a > b,
+            Self::Ge => a >= b,
+        }
+    }
+
+    /// How WGSL writes it.
+    pub(super) fn wgsl(self) -> &'static str {
+        match self {
+            Self::Eq => "==",
+            Self::Ne => "!=",
+            Self::Lt => "<",
+            Self::Le => "<=",
+            Self::Gt => ">",
+            Self::Ge => ">=",
+        }
+    }
+}
+
+impl BoolBinary {
+    /// The operation itself.
+    pub(super) fn of(self, a: bool, b: bool) -> bool {
+        match self {
+            Self::And => a & b,
+            Self::Or => a | b,
+            Self::Xor => a ^ b,
+        }
+    }
 }

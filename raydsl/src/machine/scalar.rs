@@ -26,68 +26,6 @@ pub struct ScalarLoop {
     continued: Cell<bool>,
 }
 
-pub(super) fn compare<T: PartialOrd>(op: Compare, a: T, b: T) -> bool {
-    match op {
-        Compare::Eq => a == b,
-        Compare::Ne => a != b,
-        Compare::Lt => a < b,
-        Compare::Le => a <= b,
-        Compare::Gt => a > b,
-        Compare::Ge => a >= b,
-    }
-}
-
-pub(super) fn f32_unary(op: F32Unary, a: f32) -> f32 {
-    match op {
-        F32Unary::Neg => -a,
-        F32Unary::Abs => a.abs(),
-        F32Unary::Sqrt => a.sqrt(),
-        F32Unary::Floor => a.floor(),
-        F32Unary::Ceil => a.ceil(),
-        F32Unary::Trunc => a.trunc(),
-    }
-}
-
-pub(super) fn f32_binary(op: F32Binary, a: f32, b: f32) -> f32 {
-    match op {
-        F32Binary::Add => a + b,
-        F32Binary::Sub => a - b,
-        F32Binary::Mul => a * b,
-        F32Binary::Div => a / b,
-        F32Binary::Min => {
-            if b < a {
-                b
-            } else {
-                a
-            }
-        }
-        F32Binary::Max => {
-            if a < b {
-                b
-            } else {
-                a
-            }
-        }
-    }
-}
-
-pub(super) fn bool_binary(op: BoolBinary, a: bool, b: bool) -> bool {
-    match op {
-        BoolBinary::And => a & b,
-        BoolBinary::Or => a | b,
-        BoolBinary::Xor => a ^ b,
-    }
-}
-
-pub(super) fn u32_unary(op: U32Unary, a: u32) -> u32 {
-    match op {
-        U32Unary::CountOnes => a.count_ones(),
-        U32Unary::LeadingZeros => a.leading_zeros(),
-        U32Unary::TrailingZeros => a.trailing_zeros(),
-        U32Unary::ReverseBits => a.reverse_bits(),
-    }
-}
-
 macro_rules! int_binary {
     ($name:ident, $t:ty) => {
         /// The defined result of every operation; `None` where Rust calls it an error.
@@ -165,11 +103,11 @@ impl Machine for Scalar {
     }
     #[inline(always)]
     fn f32_unary<O: Op<F32Unary>>(&self, _: O, a: f32) -> f32 {
-        f32_unary(O::OP, a)
+        O::OP.of(a)
     }
     #[inline(always)]
     fn f32_binary<O: Op<F32Binary>>(&self, _: O, a: f32, b: f32) -> f32 {
-        f32_binary(O::OP, a, b)
+        O::OP.of(a, b)
     }
     #[inline(always)]
     fn f32_mul_add(&self, a: f32, b: f32, c: f32) -> f32 {
@@ -193,7 +131,7 @@ impl Machine for Scalar {
     }
     #[inline(always)]
     fn bool_binary<O: Op<BoolBinary>>(&self, _: O, a: bool, b: bool) -> bool {
-        bool_binary(O::OP, a, b)
+        O::OP.of(a, b)
     }
     #[inline(always)]
     fn i32_neg(&self, a: i32) -> i32 {
@@ -213,15 +151,15 @@ impl Machine for Scalar {
     }
     #[inline(always)]
     fn f32_compare<O: Op<Compare>>(&self, _: O, a: f32, b: f32) -> bool {
-        compare(O::OP, a, b)
+        O::OP.of(a, b)
     }
     #[inline(always)]
     fn i32_compare<O: Op<Compare>>(&self, _: O, a: i32, b: i32) -> bool {
-        compare(O::OP, a, b)
+        O::OP.of(a, b)
     }
     #[inline(always)]
     fn u32_compare<O: Op<Compare>>(&self, _: O, a: u32, b: u32) -> bool {
-        compare(O::OP, a, b)
+        O::OP.of(a, b)
     }
     #[inline(always)]
     fn f32_select(&self, c: bool, a: f32, b: f32) -> f32 {

@@ -44,11 +44,11 @@ impl Lanes for One {
     }
     #[inline(always)]
     fn f32_unary<O: Op<F32Unary>>(self, _: O, a: f32) -> f32 {
-        scalar::f32_unary(O::OP, a)
+        O::OP.of(a)
     }
     #[inline(always)]
     fn f32_binary<O: Op<F32Binary>>(self, _: O, a: f32, b: f32) -> f32 {
-        scalar::f32_binary(O::OP, a, b)
+        O::OP.of(a, b)
     }
     #[inline(always)]
     fn f32_mul_add(self, a: f32, b: f32, c: f32) -> f32 {
@@ -64,7 +64,7 @@ impl Lanes for One {
     }
     #[inline(always)]
     fn mask_binary<O: Op<BoolBinary>>(self, _: O, a: bool, b: bool) -> bool {
-        scalar::bool_binary(O::OP, a, b)
+        O::OP.of(a, b)
     }
     #[inline(always)]
     fn mask_not(self, a: bool) -> bool {
@@ -72,15 +72,15 @@ impl Lanes for One {
     }
     #[inline(always)]
     fn f32_compare<O: Op<Compare>>(self, _: O, a: f32, b: f32) -> bool {
-        scalar::compare(O::OP, a, b)
+        O::OP.of(a, b)
     }
     #[inline(always)]
     fn i32_compare<O: Op<Compare>>(self, _: O, a: i32, b: i32) -> bool {
-        scalar::compare(O::OP, a, b)
+        O::OP.of(a, b)
     }
     #[inline(always)]
     fn u32_compare<O: Op<Compare>>(self, _: O, a: u32, b: u32) -> bool {
-        scalar::compare(O::OP, a, b)
+        O::OP.of(a, b)
     }
     #[inline(always)]
     fn f32_select(self, c: bool, a: f32, b: f32) -> f32 {

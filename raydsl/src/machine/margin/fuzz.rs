@@ -44,25 +44,6 @@ const SPECIAL: [f32; 32] = [
     1.1,
 ];
 
-const UNARY: [F32Unary; 6] = [
-    F32Unary::Neg,
-    F32Unary::Abs,
-    F32Unary::Sqrt,
-    F32Unary::Floor,
-    F32Unary::Ceil,
-    F32Unary::Trunc,
-];
-const BINARY: [F32Binary; 6] = [
-    F32Binary::Add,
-    F32Binary::Sub,
-    F32Binary::Mul,
-    F32Binary::Div,
-    F32Binary::Min,
-    F32Binary::Max,
-];
-const COMPARE: [Compare; 6] =
-    [Compare::Eq, Compare::Ne, Compare::Lt, Compare::Le, Compare::Gt, Compare::Ge];
-
 /// `SplitMix64`.
 struct Random(u64);
 
@@ -120,16 +101,16 @@ impl Op {
         let [a, b, c, d] = core::array::from_fn(|_| r.below(len));
         match r.below(22) {
             0 => Self::Number(r.number()),
-            1..=3 => Self::Unary(r.pick(&UNARY), a),
-            4..=10 => Self::Binary(r.pick(&BINARY), [a, b]),
+            1..=3 => Self::Unary(r.pick(F32Unary::ALL), a),
+            4..=10 => Self::Binary(r.pick(F32Binary::ALL), [a, b]),
             11 => Self::MulAdd([a, b, c]),
-            12 => Self::Select(r.pick(&COMPARE), [a, b, c, d]),
+            12 => Self::Select(r.pick(Compare::ALL), [a, b, c, d]),
             13 => Self::SelectBoth(r.pick(&[BoolBinary::And, BoolBinary::Or]), [a, b, c, d]),
             14 => Self::ToI32(a),
             15 => Self::ToU32(a),
             16 => Self::Bits(a, (r.below(5) as u32).wrapping_sub(2)),
             17 => Self::CopySign([a, b]),
-            18 => Self::Beside(r.pick(&COMPARE), a),
+            18 => Self::Beside(r.pick(Compare::ALL), a),
             19 => Self::LostByCross([a, b, c, d]),
             _ => Self::Elementary(r.below(15), [a, b]),
         }

@@ -3,7 +3,7 @@
 use super::arena::{Bounded, Known};
 use super::interval::Interval;
 use super::{Margin, Truth, affine};
-use crate::machine::scalar::{self, compare};
+use crate::machine::scalar;
 use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, KnownBy};
 
 impl Margin {
@@ -31,7 +31,7 @@ impl Margin {
     #[inline(never)]
     pub(super) fn compared(&self, op: Compare, a: Bounded, b: Bounded) -> Truth {
         let (a, b) = (self.get(a), self.get(b));
-        let value = compare(op, a.value, b.value);
+        let value = op.of(a.value, b.value);
         let (x, y) = (a.range, b.range);
         let numbers = !x.is_nan() && !y.is_nan();
         let same = a.id == b.id;
@@ -89,7 +89,7 @@ impl Margin {
     #[inline(never)]
     pub(super) fn joined(&self, op: BoolBinary, a: Truth, b: Truth) -> Truth {
         let (a, b) = (self.known(a), self.known(b));
-        let value = scalar::bool_binary(op, a.value, b.value);
+        let value = op.of(a.value, b.value);
         match op {
             BoolBinary::And if a.is(false) || b.is(false) => Truth::certain(false),
             BoolBinary::Or if a.is(true) || b.is(true) => Truth::certain(true),
@@ -130,5 +130,5 @@ pub(super) fn of_two_u32(op: IntBinary, a: u32, b: u32) -> u32 {
 /// Compares integers of either type.
 #[inline(never)]
 pub(super) fn compared_integers(op: Compare, a: i64, b: i64) -> Truth {
-    Truth::certain(compare(op, a, b))
+    Truth::certain(op.of(a, b))
 }

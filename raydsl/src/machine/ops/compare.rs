@@ -3,7 +3,7 @@
 use super::OpCompare;
 use crate::machine::op::known;
 use crate::machine::vector::{Component, Vector};
-use crate::machine::{B, Compare, F, I, Machine, Op, Type, U, Usize, X2, X3, X4, op, scalar};
+use crate::machine::{B, Compare, F, I, Machine, Op, Type, U, Usize, X2, X3, X4, op};
 
 macro_rules! compare {
     ($a:ty, $b:ty, $out:ty, |$m:ident, $op:ident, $x:ident, $y:ident| $e:expr) => {
@@ -20,7 +20,7 @@ macro_rules! compare {
 }
 
 fn compare_host<T: PartialOrd, O: Op<Compare>>(_: O, a: T, b: T) -> bool {
-    scalar::compare(O::OP, a, b)
+    O::OP.of(a, b)
 }
 
 compare!(F<M>, F<M>, B<M>, |m, op, a, b| B(m.f32_compare(op, a.0, b.0)));

@@ -34,14 +34,14 @@ impl Recorder {
 
     pub(super) fn float_unary(&self, op: F32Unary, a: Id) -> Id {
         if let Some(a) = self.literal(a) {
-            return self.f32(scalar::f32_unary(op, a));
+            return self.f32(op.of(a));
         }
         self.add(Expr::F32Unary(op, a), Type::F32)
     }
 
     pub(super) fn float_binary(&self, op: F32Binary, a: Id, b: Id) -> Id {
         if let (Some(a), Some(b)) = (self.literal(a), self.literal(b)) {
-            return self.f32(scalar::f32_binary(op, a, b));
+            return self.f32(op.of(a, b));
         }
         self.floats(op, a, b, Type::F32)
     }
@@ -87,28 +87,28 @@ impl Recorder {
 
     pub(super) fn float_compare(&self, op: Compare, a: Id, b: Id) -> Id {
         if let (Some(a), Some(b)) = (self.literal(a), self.literal(b)) {
-            return self.bool(scalar::compare(op, a, b));
+            return self.bool(op.of(a, b));
         }
         self.add(Expr::Compare(op, a, b), Type::Bool)
     }
 
     pub(super) fn signed_compare(&self, op: Compare, a: Id, b: Id) -> Id {
         if let (Some(a), Some(b)) = (self.i32_literal(a), self.i32_literal(b)) {
-            return self.bool(scalar::compare(op, a, b));
+            return self.bool(op.of(a, b));
         }
         self.add(Expr::Compare(op, a, b), Type::Bool)
     }
 
     pub(super) fn unsigned_compare(&self, op: Compare, a: Id, b: Id) -> Id {
         if let (Some(a), Some(b)) = (self.u32_literal(a), self.u32_literal(b)) {
-            return self.bool(scalar::compare(op, a, b));
+            return self.bool(op.of(a, b));
         }
         self.add(Expr::Compare(op, a, b), Type::Bool)
     }
 
     pub(super) fn bits_unary(&self, op: U32Unary, a: Id) -> Id {
         if let Some(a) = self.u32_literal(a) {
-            return self.u32(scalar::u32_unary(op, a));
+            return self.u32(op.of(a));
         }
         self.add(Expr::U32Unary(op, a), Type::U32)
     }

@@ -4,7 +4,7 @@ use super::function::Text;
 use super::ir::{Conversion, Expr, Id, Recorded, Type};
 use super::names::member_name;
 use super::types::Names;
-use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, U32Unary};
+use crate::machine::{BoolBinary, F32Binary, F32Unary, IntBinary};
 
 /// How tightly an expression binds; an operand that binds less is put in parentheses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -90,26 +90,8 @@ impl Expressions<'_> {
             Expr::F32Unary(F32Unary::Neg, a) | Expr::Neg(a) => self.prefix("-", *a, names),
             Expr::Not(a) => self.prefix("!", *a, names),
             Expr::Complement(a) => self.prefix("~", *a, names),
-            Expr::F32Unary(op, a) => {
-                let f = match op {
-                    F32Unary::Neg => "-",
-                    F32Unary::Abs => "abs",
-                    F32Unary::Sqrt => "sqrt",
-                    F32Unary::Floor => "floor",
-                    F32Unary::Ceil => "ceil",
-                    F32Unary::Trunc => "trunc",
-                };
-                primary(format!("{f}({})", self.any(*a, names)))
-            }
-            Expr::U32Unary(op, a) => {
-                let f = match op {
-                    U32Unary::CountOnes => "countOneBits",
-                    U32Unary::LeadingZeros => "countLeadingZeros",
-                    U32Unary::TrailingZeros => "countTrailingZeros",
-                    U32Unary::ReverseBits => "reverseBits",
-                };
-                primary(format!("{f}({})", self.any(*a, names)))
-            }
+            Expr::F32Unary(op, a) => primary(format!("{}({})", op.wgsl(), self.any(*a, names))),
+            Expr::U32Unary(op, a) => primary(format!("{}({})", op.wgsl(), self.any(*a, names))),
             Expr::F32Binary(op, a, b) => self.f32_binary(*op, *a, *b, names),
             Expr::MulAdd(a, b, c) => {
                 let [a, b, c] = [a, b, c].map(|x| self.item(*x, names));
@@ -118,15 +100,7 @@ impl Expressions<'_> {
             Expr::IntBinary(op, a, b) => self.int_binary(*op, *a, *b, names),
             Expr::BoolBinary(op, a, b) => self.bool_binary(*op, *a, *b, names),
             Expr::Compare(op, a, b) => {
-                let symbol = match op {
-                    Compare::Eq => "==",
-                    Compare::Ne => "!=",
-                    Compare::Lt => "<",
-                    Compare::Le => "<=",
-                    Compare::Gt => ">",
-                    Compare::Ge => ">=",
-                };
-                self.infix(symbol, Bind::Compare, (*a, Bind::Sum), (*b, Bind::Sum), names)
+                self.infix(op.wgsl(), Bind::Compare, (*a, Bind::Sum), (*b, Bind::Sum), names)
             }
             Expr::Select(c, a, b) => {
                 let [c, a, b] = [c, a, b].map(|x| self.item(*x, names));
