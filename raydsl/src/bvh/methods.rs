@@ -5,7 +5,7 @@ use glam::Affine3;
 use super::hits::HitsOn;
 use super::on::{AnyHits, ClosestHits, LocalRay, ToObject};
 use super::query::{
-    any_where, closest_on, count, closest_where, closest_with_cost_on, multi_by, multi_where, record_on,
+    any_where, closest_on, closest_where, closest_with_cost_on, multi_by, multi_where, record_on,
 };
 use super::traverse::CostOn;
 use super::{RecordOn, SceneView};
@@ -46,16 +46,6 @@ impl<M: Machine, P: Primitive> Method<{ name("any_hit") }, M, (RayOn<M>,)> for S
     fn call(self, m: &M, (ray,): (RayOn<M>,)) -> B<M> {
         let [is_hit] = m.perform(&AnyHits(&self), [ray]);
         is_hit
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("count_hits") }, M, (RayOn<M>,)> for SceneView<'_, P> {
-    type Output = U<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (ray,): (RayOn<M>,)) -> U<M> {
-        count(m, &self, ray)
     }
 }
 
@@ -252,7 +242,6 @@ const _: () = {
         "any_hit_each" -> [B<M>; 1];
         "any_hit_where" -> B<M>;
         "hits" -> ();
-        "count_hits" -> U<M>;
         "multi_hit" -> [HitOn<M>; 1];
         "multi_hit_by" -> [HitOn<M>; 1];
         "multi_hit_where" -> [HitOn<M>; 1];
@@ -350,6 +339,6 @@ macro_rules! of_slices {
 of_slices! {
     "closest_hit" "closest_hit_each" "closest_hit_where" "closest_hit_with_cost"
     "any_hit" "any_hit_each" "any_hit_where"
-    "hits" "count_hits" "multi_hit" "multi_hit_by" "multi_hit_where"
+    "hits" "multi_hit" "multi_hit_by" "multi_hit_where"
     "primitive" "local_ray" "to_object" "normal_in_scene" "shared"
 }

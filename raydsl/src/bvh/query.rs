@@ -133,28 +133,6 @@ pub(crate) fn any_where<M: Machine, P: Primitive>(
     found.get(m)
 }
 
-/// Counts the primitives that a ray hits.
-#[inline(always)]
-pub(crate) fn count<M: Machine, P: Primitive>(
-    m: &M,
-    prims: &SceneView<'_, P>,
-    ray: RayOn<M>,
-) -> U<M> {
-    let count = Var::<U<M>>::new(m, "count", U(m.u32(0)));
-    m.visit(
-        &AllHits(prims),
-        ray,
-        #[inline(always)]
-        || ray.t_max,
-        #[inline(always)]
-        |_| {
-            count.set(m, U(m.u32_binary(op::Add, count.get(m).0, m.u32(1))));
-            B(m.bool(true))
-        },
-    );
-    count.get(m)
-}
-
 /// Finds the `N` least `(t, id)` hits of those that `accept` accepts, in order.
 #[inline(always)]
 pub(super) fn multi_where<M: Machine, P: Primitive, const N: usize>(

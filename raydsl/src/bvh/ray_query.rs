@@ -106,25 +106,6 @@ pub trait RayQuery {
         traverse::complete(scene, ray, Type::lane::<Scalar>(&hit, 0))
     }
 
-    /// Counts the primitives that `ray` hits.
-    ///
-    /// ```
-    /// use raydsl::prelude::*;
-    ///
-    /// let (v1, v2) = (vec3(4.0, 0.0, 1.0), vec3(0.0, 4.0, 1.0));
-    /// let shapes = [Triangle { v0: Vec3::Z, v1, v2 }; 2];
-    /// let bvh = Bvh::build(&shapes)?;
-    /// let ray = Ray::new(vec3(0.5, 0.5, 0.0), Vec3::Z);
-    /// assert_eq!(bvh.count_hits(ray), 2);
-    /// let counted = kernel!(|ray: Ray| bvh.count_hits(ray));
-    /// raydsl::assert_variants_agree!(&counted, &[(ray,); 5]);
-    /// # Ok::<(), raydsl::bvh::BuildError>(())
-    /// ```
-    fn count_hits(&self, ray: Ray) -> u32 {
-        let m = &Scalar::default();
-        query::count(m, &self.view(), Type::splat(m, ray)).0
-    }
-
     /// Finds whether `ray` has a hit that `accept` accepts.
     fn any_hit_where(
         &self,

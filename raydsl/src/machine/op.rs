@@ -24,7 +24,7 @@ pub(crate) use known;
 #[macro_export]
 macro_rules! __at_run_time {
     (F32Unary $($rest:tt)+) => {
-        $crate::__at_run_time!(@F32Unary Neg Abs Sqrt Floor Ceil Trunc Even; $($rest)+)
+        $crate::__at_run_time!(@F32Unary Neg Abs Sqrt Floor Ceil Trunc; $($rest)+)
     };
     (F32Binary $($rest:tt)+) => {
         $crate::__at_run_time!(@F32Binary Add Sub Mul Div Min Max; $($rest)+)
@@ -74,7 +74,7 @@ macro_rules! kinds {
 
 kinds! {
     /// An operation on one `f32`.
-    F32Unary { Neg, Abs, Sqrt, Floor, Ceil, Trunc, Even, }
+    F32Unary { Neg, Abs, Sqrt, Floor, Ceil, Trunc, }
 
     /// An operation on two `f32`.
     F32Binary {
@@ -131,7 +131,7 @@ macro_rules! types {
 }
 
 types! {
-    Neg Abs Sqrt Floor Ceil Trunc Even
+    Neg Abs Sqrt Floor Ceil Trunc
     Add Sub Mul Div Rem Min Max
     And Or Xor Shl Shr
     WrappingAdd WrappingSub WrappingMul
@@ -149,7 +149,6 @@ impl F32Unary {
             Self::Floor => a.floor(),
             Self::Ceil => a.ceil(),
             Self::Trunc => a.trunc(),
-            Self::Even => a.round_ties_even(),
         }
     }
 
@@ -162,7 +161,6 @@ impl F32Unary {
             Self::Floor => "floor",
             Self::Ceil => "ceil",
             Self::Trunc => "trunc",
-            Self::Even => "round",
         }
     }
 }

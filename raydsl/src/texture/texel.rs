@@ -7,7 +7,7 @@ use super::config::ColorSpace;
 use crate::kernel;
 use crate::machine::wgsl::TexelFormat;
 use crate::machine::{F, LaneMachine, Machine, Method, Type, U, X2, X3, X4, fill, name, op};
-use crate::math::{F16, Unorm8, Unorm8On, Unorm16, Unorm32};
+use crate::math::{F16, Unorm8, Unorm8On, Unorm16};
 
 /// What filters do with values: they are folded as `a + w (b - a)`, so that a constant texture
 /// comes back with the same bits.
@@ -256,7 +256,6 @@ small_channel! {
         }
     };
     Unorm16;
-    Unorm32;
     F16 (1 Linear R16Float, 2 Linear Rg16Float, 4 Linear Rgba16Float);
 }
 
@@ -371,7 +370,7 @@ macro_rules! single_texel {
     };
 }
 
-single_texel!(f32, Unorm8, Unorm16, Unorm32, F16);
+single_texel!(f32, Unorm8, Unorm16, F16);
 
 macro_rules! vector_texel {
     ($($t:ident $n:literal ($($c:ident)+);)+) => {

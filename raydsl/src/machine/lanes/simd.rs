@@ -129,7 +129,6 @@ macro_rules! simd_lanes {
                     F32Unary::Floor => a.floor(),
                     F32Unary::Ceil => a.ceil(),
                     F32Unary::Trunc => a.trunc(),
-                    F32Unary::Even => a.round_ties_even(),
                 )
             }
             #[inline(always)]

@@ -25,7 +25,6 @@ impl Margin {
             F32Unary::Floor => self.stepped(a, f64::floor),
             F32Unary::Ceil => self.stepped(a, f64::ceil),
             F32Unary::Trunc => self.stepped(a, f64::trunc),
-            F32Unary::Even => self.stepped(a, f64::round_ties_even),
         }
     }
 

@@ -118,7 +118,6 @@ of_f32! {
     "floor", |m, a| -> F<M> { unary(m, op::Floor, a) };
     "ceil", |m, a| -> F<M> { unary(m, op::Ceil, a) };
     "trunc", |m, a| -> F<M> { unary(m, op::Trunc, a) };
-    "round_ties_even", |m, a| -> F<M> { unary(m, op::Even, a) };
     "round", |m, a| -> F<M> { round(m, a) };
     "fract", |m, a| -> F<M> { fract(m, a) };
     "sqrt", |m, a| -> F<M> { unary(m, op::Sqrt, a) };

@@ -179,7 +179,6 @@ floats! {
     "floor", |m, a| -> V { V::unary(m, op::Floor, a) };
     "ceil", |m, a| -> V { V::unary(m, op::Ceil, a) };
     "trunc", |m, a| -> V { V::unary(m, op::Trunc, a) };
-    "round_ties_even", |m, a| -> V { V::unary(m, op::Even, a) };
     "sqrt", |m, a| -> V { V::unary(m, op::Sqrt, a) };
     "round", |m, a| -> V { a.each(#[inline(always)] |x| round(m, x)) };
     "fract", |m, a| -> V { minus(m, a, V::unary(m, op::Trunc, a)) };
