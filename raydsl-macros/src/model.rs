@@ -3,6 +3,7 @@
 use proc_macro2::{Ident, Span, TokenStream};
 
 use crate::generics::Generics;
+use crate::here::quote_here as quote;
 
 /// A function, method or closure to lift.
 #[derive(Clone)]
@@ -253,6 +254,14 @@ pub(crate) fn is_constant(name: &Ident) -> bool {
     name.to_string().starts_with(|c: char| c.is_ascii_uppercase())
 }
 
+impl Kernel {
+    /// Whether the result of a closure may be an integer whose type is inferred: then it is that of
+    /// the source.
+    pub(crate) fn gives_bare_integer(&self) -> bool {
+        self.result.is_none() && self.body.has_bare_integer()
+    }
+}
+
 impl Kind {
     /// The tokens of an integer of the source.
     pub(crate) fn int_tokens(&self) -> Option<&TokenStream> {
@@ -410,30 +419,64 @@ impl Expr {
         match &self.kind {
             Kind::Int { suffix, .. } => suffix.is_none(),
             Kind::Neg(a) => a.is_untyped_integer(),
+            Kind::Binary { a, b, .. } => a.is_untyped_integer() && b.is_untyped_integer(),
             _ => false,
         }
     }
 
+    /// The tokens of such an integer: rustc computes it, and infers its type.
+    pub(crate) fn integer_tokens(&self) -> Option<TokenStream> {
+        match &self.kind {
+            Kind::Int { tokens, suffix: None } => Some(tokens.clone()),
+            Kind::Neg(a) => {
+                let a = a.integer_tokens()?;
+                Some(quote!((-#a)))
+            }
+            Kind::Binary { op, a, b } => {
+                let (a, b) = (a.integer_tokens()?, b.integer_tokens()?);
+                let symbol: TokenStream = op.symbol.parse().ok()?;
+                Some(quote!((#a #symbol #b)))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether an element of the array says what type the others have.
+    pub(crate) fn has_typed_item(&self) -> bool {
+        matches!(&self.kind, Kind::Array(items) if items.iter().any(Self::has_typed_outcome))
+    }
+
     /// Whether it is, or lists, an integer of the source whose type is for others to say.
-    fn has_untyped_integer(&self) -> bool {
+    pub(crate) fn has_untyped_integer(&self) -> bool {
         match &self.kind {
             Kind::Tuple(items) | Kind::Array(items) => items.iter().any(Self::has_untyped_integer),
             _ => self.is_untyped_integer(),
         }
     }
 
-    /// Whether one of its outcomes says what type those have that are bare integers.
-    pub(crate) fn has_typed_outcome(&self) -> bool {
+    /// The expressions that may become its value; none of those that diverge.
+    pub(crate) fn all_outcomes(&self) -> Vec<&Self> {
         let mut found = Vec::new();
         self.outcomes(&mut found);
-        found.iter().any(|e| !e.has_untyped_integer())
+        found
+    }
+
+    /// Whether one of its outcomes says what type those have that are bare integers.
+    pub(crate) fn has_typed_outcome(&self) -> bool {
+        self.all_outcomes().iter().any(|e| !e.has_untyped_integer())
+    }
+
+    /// Whether it is an integer, or a list or a tuple with one, that has no type of its own.
+    pub(crate) fn is_bare(&self) -> bool {
+        match &self.kind {
+            Kind::Repeat { value, .. } => value.has_untyped_integer(),
+            _ => !self.has_no_outcome() && !self.has_typed_outcome(),
+        }
     }
 
     /// Whether no way through it gives a value.
     pub(crate) fn has_no_outcome(&self) -> bool {
-        let mut found = Vec::new();
-        self.outcomes(&mut found);
-        found.is_empty()
+        self.all_outcomes().is_empty()
     }
 
     /// Whether no lane goes on behind it.
@@ -491,6 +534,13 @@ impl Expr {
     }
 }
 
+impl Let {
+    /// Whether it is a variable whose integer type is inferred.
+    pub(crate) fn is_bare(&self) -> bool {
+        self.mutable && self.ty.is_none() && self.init.as_ref().is_some_and(Expr::is_bare)
+    }
+}
+
 impl Stmt {
     /// `let name = init`.
     pub(crate) fn bind(name: Ident, mutable: bool, init: Expr) -> Self {
@@ -517,6 +567,31 @@ impl Block {
         let mut found = Vec::new();
         self.children().iter().for_each(|e| e.break_values(label, 0, &mut found));
         found
+    }
+
+    /// Whether a variable, a counter or the value of the block is an integer that has no type of its
+    /// own.
+    pub(crate) fn has_bare_integer(&self) -> bool {
+        fn within(e: &Expr) -> bool {
+            let of_block = |b: &Block| b.has_bare_integer();
+            let this = match &e.kind {
+                Kind::For { range, body, .. } => {
+                    range.start.is_bare() && range.end.is_bare() || of_block(body)
+                }
+                Kind::If { then, .. } => e.is_structured() && e.is_bare() || of_block(then),
+                Kind::While { body, .. }
+                | Kind::Loop { body, .. }
+                | Kind::ForItems { body, .. }
+                | Kind::Block(body) => of_block(body),
+                Kind::Array(_) | Kind::Repeat { .. } => e.is_bare(),
+                _ => false,
+            };
+            this || e.kind.children().into_iter().any(within)
+        }
+        let is_bare_let = |s: &Stmt| matches!(s, Stmt::Let(l) if l.is_bare());
+        self.stmts.iter().any(is_bare_let)
+            || self.tail.as_ref().is_some_and(|e| e.is_bare())
+            || self.children().into_iter().any(within)
     }
 
     /// Whether something within leaves the block with this label.

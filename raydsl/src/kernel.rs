@@ -4,8 +4,9 @@ use core::cell::Cell;
 use core::sync::atomic::{AtomicU64, Ordering};
 
 use crate::machine::{
-    Count, Counted, KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Margin, Outcomes, Packet,
-    Place, Recorder, Recording, Resource, Rounding, Simd4, Simd8, Simd16, Type, U, count, wgsl,
+    Count, Counted, KernelFn, KernelInfo, LaneMachine, Lanes, Leaf, Machine, Margin, Outcomes,
+    Packet, Place, Recorder, Recording, Resource, Rounding, Simd4, Simd8, Simd16, Type, U, count,
+    wgsl,
 };
 #[cfg(feature = "gpu")]
 use crate::machine::{Frame, Value};
@@ -56,6 +57,12 @@ pub struct ScalarKernel<'a, A, R> {
 }
 
 impl<'a, A: Type, R: Type> ScalarKernel<'a, A, R> {
+    /// A lifted copy, whose result is that of the function: what rustc infers there it need not
+    /// infer here.
+    pub fn like<M: Machine, F: Fn(&M, A::On<M>) -> R::On<M>>(&self, copy: F) -> F {
+        copy
+    }
+
     /// Adds the lifted copies.
     pub fn lifted(
         self,

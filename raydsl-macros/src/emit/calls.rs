@@ -110,12 +110,20 @@ impl Emitter<'_> {
             );
             return None;
         };
-        if steps.is_empty() {
-            return Some(quote!(&#local));
-        }
         let (p, m) = (private(), own("m"));
         let (part, whole) = (self.fresh("part"), own("whole"));
         let text = shown(&place.name);
+        if steps.is_empty() && self.find(&place.name).is_some_and(|local| local.bare) {
+            // The function says which integer it is.
+            around.before.extend(quote! {
+                let #part = #p::Var::new(#m, #text, #p::Coerce::coerce(#local.get(#m), #m));
+            });
+            around.after.extend(quote!(#local.set(#m, #p::Coerce::coerce(#part.get(#m), #m));));
+            return Some(quote!(&#part));
+        }
+        if steps.is_empty() {
+            return Some(quote!(&#local));
+        }
         around.before.extend(quote! {
             let #part = #p::Var::new(#m, #text, #local.get(#m) #steps);
         });

@@ -82,13 +82,15 @@ impl Emitter<'_> {
         };
         let value = match &l.ty {
             Some(ty) => self.wanted(init, &text, ty),
+            None if l.mutable => self.varying(init, &text),
+            None if matches!(init.kind, Kind::Tuple(_)) => self.tuple(init),
             None => self.named_value(init, &text),
         };
         self.bind_let(name, l, init);
         match (l.mutable, ty) {
             (true, Some(ty)) => quote!(let #name = #p::Var::<#ty>::new(#m, #text, #value);),
             (true, None) => {
-                quote!(let #name = #p::Var::new(#m, #text, #p::Varying::varying(#value, #m));)
+                quote!(let #name = #p::Var::new(#m, #text, #value);)
             }
             (false, Some(ty)) => {
                 quote!(let #name: #ty = #p::Machine::named(#m, #text, #value);)
@@ -116,6 +118,8 @@ impl Emitter<'_> {
             (local.generic, local.elements) = generic;
         }
         local.alias |= is_alias && !l.mutable;
+        local.literal = !l.mutable && l.ty.is_none() && init.is_untyped_integer();
+        local.bare = l.is_bare();
     }
 
     /// Evaluates `e` and sends its value to `dest`.
@@ -149,7 +153,7 @@ impl Emitter<'_> {
     }
 
     pub(super) fn send(&mut self, e: &Expr, dest: &Dest) -> TokenStream {
-        let (p, m) = (private(), own("m"));
+        let m = own("m");
         match dest {
             Dest::None => {
                 let value = self.value(e);
@@ -163,20 +167,23 @@ impl Emitter<'_> {
                 quote!(#var.set(#m, #value);)
             }
             Dest::Slot { var, .. } => {
-                let value = self.value(e);
-                quote!(#var.set(#m, #p::Varying::varying(#value, #m));)
+                let value = self.varying(e, "value");
+                quote!(#var.set(#m, #value);)
             }
             Dest::Return => self.give(e),
         }
     }
 
     pub(super) fn give(&mut self, e: &Expr) -> TokenStream {
-        let (p, m, ret) = (private(), own("m"), own("ret"));
+        let (m, ret) = (own("m"), own("ret"));
         let value = if self.kernel.result.is_some() {
             self.coerced(e)
         } else {
-            let value = self.value(e);
-            if self.is_inferred() { quote!(#p::Varying::varying(#value, #m)) } else { value }
+            match self.is_inferred() {
+                true if self.gives_bare() => self.coerced(e),
+                true => self.varying(e, "value"),
+                false => self.value(e),
+            }
         };
         let all = self.with_changed(value);
         quote!(#ret.give(#m, #all);)

@@ -90,9 +90,12 @@ impl Emitter<'_> {
 
     /// Both bounds, as numbers of one type.
     fn bounds(&mut self, range: &Range) -> TokenStream {
-        let (start, end) = (self.value(&range.start), self.value(&range.end));
+        let (mut start, end) = (self.value(&range.start), self.value(&range.end));
         let _at = At::new(range.start.span);
         let (p, m) = (private(), own("m"));
+        if range.start.is_untyped_integer() && range.end.is_untyped_integer() {
+            start = quote!(#p::bare(#m, #start));
+        }
         quote!(#p::range(#m, { #start }, { #end }))
     }
 

@@ -50,6 +50,10 @@ struct Local {
     step: Option<Ident>,
     /// Whose methods it has.
     owner: Owner,
+    /// Whether it is an integer without a suffix, which stays a number of the host.
+    literal: bool,
+    /// Whether it is a variable that began as one: its type is inferred.
+    bare: bool,
 }
 
 /// Where the value of a control structure goes.
@@ -252,6 +256,12 @@ impl<'a> Emitter<'a> {
         self.is_closure || self.outer > 0
     }
 
+    /// Whether the result of the closure may be an integer without a type of its own: then it has
+    /// that of the source's closure.
+    fn gives_bare(&self) -> bool {
+        self.is_closure && self.outer == 0 && self.kernel.gives_bare_integer()
+    }
+
     /// A closure as an argument. It may read what is around it.
     fn closure(&mut self, kernel: &Kernel) -> TokenStream {
         let m = own("m");
@@ -341,7 +351,11 @@ impl<'a> Emitter<'a> {
                 quote!(#out #value)
             }
             None => {
-                let value = self.named_value(tail, "result");
+                let value = if self.gives_bare() {
+                    self.coerced(tail)
+                } else {
+                    self.named_value(tail, "result")
+                };
                 quote!(#out #value)
             }
         }
@@ -362,7 +376,16 @@ impl<'a> Emitter<'a> {
         };
         let generic = ty.and_then(parameter);
         let elements = ty.and_then(element_type).and_then(|ty| parameter(&ty));
-        let local = Local { binding, generic, elements, alias: false, step: None, owner };
+        let local = Local {
+            binding,
+            generic,
+            elements,
+            alias: false,
+            step: None,
+            owner,
+            literal: false,
+            bare: false,
+        };
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name.to_string(), local);
         }

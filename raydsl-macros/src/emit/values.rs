@@ -110,8 +110,7 @@ impl Emitter<'_> {
             if wanted {
                 return self.coerced(e);
             }
-            let value = self.value(e);
-            return quote!(#p::Varying::varying(#value, #m));
+            return self.varying(e, name);
         };
         let calls = then.may_act() || other.may_act();
         let c = self.host_value(c).unwrap_or_else(|| self.value(c));
@@ -134,10 +133,54 @@ impl Emitter<'_> {
         self.named_value(e, "value")
     }
 
+    /// A value as a variable has it: numbers of the host become numbers of the machine.
+    pub(super) fn varying(&mut self, e: &Expr, name: &str) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        let value = self.with_bare(e).unwrap_or_else(|| self.named_value(e, name));
+        quote!(#p::Varying::varying(#value, #m))
+    }
+
+    /// A tuple whose parts get names: integers without a suffix may become variables.
+    pub(super) fn tuple(&mut self, e: &Expr) -> TokenStream {
+        self.with_bare(e).unwrap_or_else(|| self.value(e))
+    }
+
+    /// An integer without a suffix, or a list or a tuple that has some: its type is inferred from
+    /// what is done with it.
+    fn with_bare(&mut self, e: &Expr) -> Option<TokenStream> {
+        let _at = At::new(e.span);
+        let (p, m) = (private(), own("m"));
+        if let Some(integer) = e.integer_tokens() {
+            return Some(quote!(#p::bare(#m, #integer)));
+        }
+        let part = |this: &mut Self, e: &Expr| this.with_bare(e).unwrap_or_else(|| this.value(e));
+        match &e.kind {
+            Kind::Tuple(items) if items.iter().any(Expr::has_untyped_integer) => {
+                let items: Vec<_> = items.iter().map(|e| part(self, e)).collect();
+                Some(quote!((#(#items,)*)))
+            }
+            Kind::Array(items) if !items.is_empty() && !e.has_typed_item() => {
+                let items: Vec<_> = items.iter().map(|e| part(self, e)).collect();
+                Some(quote!([#(#items,)*]))
+            }
+            Kind::Repeat { value, len } => {
+                let value = self.with_bare(value)?;
+                Some(quote!([#value; #len]))
+            }
+            Kind::Name(name) if self.find(name).is_some_and(|local| local.literal) => {
+                Some(quote!(#p::bare(#m, #name)))
+            }
+            _ => None,
+        }
+    }
+
     /// A value that does not come out of control flow.
     pub(super) fn plain_value(&mut self, e: &Expr) -> TokenStream {
         let (p, m) = (private(), own("m"));
         let span = e.span;
+        if let Some(integer) = e.integer_tokens() {
+            return integer;
+        }
         match &e.kind {
             Kind::Float(lit) => {
                 let exact = in_f64(lit);
@@ -185,7 +228,7 @@ impl Emitter<'_> {
                 quote!((#(#items,)*))
             }
             Kind::Element { base, index } => self.element(base, index),
-            Kind::Array(items) => self.array(items),
+            Kind::Array(items) => self.with_bare(e).unwrap_or_else(|| self.array(items)),
             Kind::Repeat { value, len } => {
                 let value = self.value(value);
                 quote!([#value; #len])
@@ -211,7 +254,6 @@ impl Emitter<'_> {
                 let exact = in_f64(lit);
                 quote!(#p::literal(#m, -#lit, -#exact))
             }
-            Kind::Int { tokens, suffix: None } => quote!((-#tokens)),
             _ => {
                 let a = self.value(a);
                 quote!(#p::OpNeg::neg(#m, #a))

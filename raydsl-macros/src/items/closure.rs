@@ -96,13 +96,13 @@ pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel)
         // For cargo, which builds anew when it changes.
         const _: ::core::option::Option<&str> = ::core::option_env!(#VARIANTS);
         let #scalar = #closure;
-        let #captures = (#(&#captured,)*);
-        #(#copies)*
-        #p::Kernel::scalar(
+        let #scalar = #p::Kernel::scalar(
             &__INFO,
             move |(#(#names,)*): (#(#types,)*)| #scalar(#(#names),*),
-        )
-        .lifted(
+        );
+        let #captures = (#(&#captured,)*);
+        #(#copies)*
+        #scalar.lifted(
             #p::Lifted { #(#members,)* },
             move |visit: &mut dyn FnMut(&dyn #p::Resource)| {
                 #(#resources)*
@@ -192,23 +192,28 @@ fn copy_for(
     let names: Vec<&Ident> = kernel.params.iter().map(|p| &p.name).collect();
     let types: Vec<TokenStream> = kernel.params.iter().map(|p| emitter.on(&p.ty)).collect();
     let copy = quote! {
-        #quiet
-        let #member = move |#m: &#machine, (#(#names,)*): (#(#types,)*)| {
-                use #p::operations::*;
-                #p::Machine::call(
-                    #m,
-                    &__INFO,
-                    (#(#names,)*),
-                    #[inline(always)]
-                    |#m: &#machine, (#(#names,)*): (#(#types,)*)| {
-                        #(#raw)*
-                        #(#brought)*
-                        #body
-                    },
-                )
-            };
+        move |#m: &#machine, (#(#names,)*): (#(#types,)*)| {
+            use #p::operations::*;
+            #p::Machine::call(
+                #m,
+                &__INFO,
+                (#(#names,)*),
+                #[inline(always)]
+                |#m: &#machine, (#(#names,)*): (#(#types,)*)| {
+                    #(#raw)*
+                    #(#brought)*
+                    #body
+                },
+            )
+        }
     };
-    (copy, captured)
+    let copy = if kernel.gives_bare_integer() {
+        let scalar = own("scalar");
+        quote!(#scalar.like(#copy))
+    } else {
+        copy
+    };
+    (quote!(#quiet let #member = #copy;), captured)
 }
 
 /// The captures as values of the machine.

@@ -148,7 +148,7 @@ impl Parser<'_> {
         Some((range, Some(step)))
     }
 
-    /// The bounds of a range, of which one says what type of integer they are.
+    /// The bounds of a range.
     fn bounds(&mut self, r: &syn::ExprRange) -> Option<(Box<Expr>, Box<Expr>)> {
         let (Some(start), Some(end)) = (&r.start, &r.end) else {
             self.errors.at(
@@ -158,17 +158,7 @@ impl Parser<'_> {
             );
             return None;
         };
-        let (start, end) = (self.boxed(start), self.boxed(end));
-        let untyped = |e: &Expr| matches!(e.kind, Kind::Int { suffix: None, .. });
-        if untyped(&start) && untyped(&end) {
-            self.errors.at(
-                start.span,
-                "a counter needs a type",
-                "give one bound a suffix: `for i in 0u32..8`",
-            );
-            return None;
-        }
-        Some((start, end))
+        Some((self.boxed(start), self.boxed(end)))
     }
 
     /// A loop over the elements: `for x in list` is `for i in 0..list.len() { let x = list[i]; ..

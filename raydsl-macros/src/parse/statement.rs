@@ -8,7 +8,7 @@ use syn::spanned::Spanned;
 use super::Parser;
 use super::attributes::is_host;
 use super::refused::gives_struct;
-use crate::model::{Block, Expr, Kind, Let, Stmt};
+use crate::model::{Block, Expr, Let, Stmt};
 
 impl Parser<'_> {
     pub(super) fn block(&mut self, b: &syn::Block) -> Block {
@@ -68,14 +68,12 @@ impl Parser<'_> {
             pat => return self.local_parts(pat, ty, init),
         };
         let host = l.attrs.iter().any(is_host);
-        match &init {
-            Some(init) if mutable && ty.is_none() && !host => self.typed_number(init),
-            None if host => self.errors.at(
+        if host && init.is_none() {
+            self.errors.at(
                 l.span(),
                 "a host variable needs a value",
                 "give it one: `let n = 4u32;`",
-            ),
-            _ => {}
+            );
         }
         vec![Stmt::Let(Let { host, name, mutable, ty, init })]
     }
@@ -90,41 +88,9 @@ impl Parser<'_> {
             );
             return Vec::new();
         };
-        if ty.is_none() {
-            self.typed_numbers(pat, &init);
-        }
         if matches!(pat, Pat::Tuple(_)) && gives_struct(&init.kind) {
             self.errors.leave_to_rustc();
         }
         self.destructure(pat, init, ty)
-    }
-
-    /// What a variable begins with must say which type of integer it is.
-    fn typed_number(&mut self, init: &Expr) {
-        let is_untyped = match &init.kind {
-            Kind::Repeat { value, .. } => value.is_untyped_integer(),
-            Kind::Array(items) => !items.is_empty() && items.iter().all(Expr::is_untyped_integer),
-            Kind::Binary { a, b, .. } => a.is_untyped_integer() && b.is_untyped_integer(),
-            _ => init.is_untyped_integer(),
-        };
-        if is_untyped {
-            self.errors.at(
-                init.span,
-                "a mutable integer needs a type",
-                "write `let mut n: u32 = ...`, or give the number a suffix: `0u32`",
-            );
-        }
-    }
-
-    /// The same for each mutable name of a pattern.
-    fn typed_numbers(&mut self, pat: &Pat, init: &Expr) {
-        if let (Pat::Tuple(pats), Kind::Tuple(items)) = (pat, &init.kind) {
-            for (pat, item) in pats.elems.iter().zip(items) {
-                match pat {
-                    Pat::Ident(p) if p.mutability.is_some() => self.typed_number(item),
-                    pat => self.typed_numbers(pat, item),
-                }
-            }
-        }
     }
 }

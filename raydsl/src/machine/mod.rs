@@ -26,6 +26,7 @@
 // * `call`, `lowered`, `host`: functions that generated code calls.
 // * `wgsl`: the result of recording.
 
+mod bare;
 mod bits;
 mod call;
 mod capture;
@@ -74,7 +75,7 @@ pub use data::{Data, Slice};
 pub(crate) use data::{borrowed_key, bytes_of, read_in_place};
 pub use gang::Gang;
 pub(crate) use generated::*;
-pub(crate) use index::{Indexed, element_in_step};
+pub(crate) use index::{Index, Indexed, element_in_step};
 pub use kinds::Kinds;
 pub(crate) use lanes::{Entered, fill};
 pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
@@ -97,13 +98,14 @@ pub use vector::{V2, V3, V4, X2, X3, X4};
 
 /// What only generated code names; see `crate::__private`.
 pub(crate) mod generated {
+    pub use super::bare::{Bare, bare};
     pub use super::call::KnownBy;
     pub use super::capture::Parameter;
     pub use super::control::{Branch, Condition, Loop, Ret, Var};
     pub use super::counter::{Counter, Steps, Stop, decrement, increment};
     pub use super::cursor::Cursor;
     pub use super::methods::{Const, HostMethod, Method, Through, call_on_element, is_mut, name};
-    pub use super::operand::{Assigned, RightOperand};
+    pub use super::operand::{Assigned, Plain, RightOperand};
     pub use super::ops::{
         Bounds, Coerce, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv, OpMul,
         OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Varying,
