@@ -1,12 +1,12 @@
 //! Cameras: rays through points of a film.
 //!
-//! | camera | what it is |
+//! | camera | projection |
 //! |---|---|
-//! | [`Pinhole`] | everything is sharp |
-//! | [`ThinLens`] | what is at one distance is sharp |
-//! | [`Orthographic`] | rays are parallel |
-//! | [`Matrix`] | that of a rasteriser, given by its matrices |
-//! | [`Stereo`] | two pinholes, one for each eye |
+//! | [`Pinhole`] | perspective, sharp everywhere |
+//! | [`ThinLens`] | perspective, sharp at one distance |
+//! | [`Orthographic`] | parallel rays |
+//! | [`Matrix`] | given by the matrices of a rasteriser |
+//! | [`Stereo`] | a pinhole for each eye |
 //!
 //! Degenerate input has a defined result. Where `eye` and `center` coincide, the view is along -z;
 //! where `up` is parallel to the view, some direction perpendicular to it is up. Fields of view are

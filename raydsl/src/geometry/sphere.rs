@@ -16,8 +16,8 @@ use crate::math::elementary::{acos, atan2, sincos_2pi};
 ///
 /// With `f` the offset of the centre, the radicand `r² - |f - (f·d) d|²` is exact for a radius
 /// within 4 eps |f| of `r` (eps = 2^-24): the error of the perpendicular is that of two roundings
-/// of `f`, and the squares are not subtracted: with `l` its length the radicand is `(r - l) (r +
-/// l)`. 16 eps leave room for the final sums.
+/// of `f`, and the squares are not subtracted: with `l` its length the radicand is
+/// `(r - l) (r + l)`. 16 eps leave room for the final sums.
 pub const SLACK: f32 = 1.0 / 1_048_576.0;
 
 /// Maximum number of crossings of a ray; see

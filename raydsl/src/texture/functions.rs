@@ -84,8 +84,8 @@ functions! {
     2 uv: Vec2, X2<F<M>>, |uv: X2<F<M>>| [uv.x, uv.y];
     /// Returns the value of a 2-D texture at `uv`; with levels, that of level 0.
     ///
-    /// The texture covers `[0, 1)` along each axis, and texel `i` of `n` has its centre at `(i +
-    /// 0.5) / n`. `u` runs along a row and `v` from row 0 on. The texture's
+    /// The texture covers `[0, 1)` along each axis, and texel `i` of `n` has its centre at
+    /// `(i + 0.5) / n`. `u` runs along a row and `v` from row 0 on. The texture's
     /// [`TextureConfig`](super::TextureConfig) determines values outside, and between the centres.
     ///
     /// The position between two texels is at most `2^-20 n` texels off, for `u` within `[-1, 2]`;

@@ -78,8 +78,8 @@ pub trait PictureTexel: Texel {
     fn of_picture(picture: DynamicImage) -> Result<Vec<Self>, LoadError>;
 }
 
-/// Implements it: `texel: is it small, (the kind of image with such texels), conversion (and its
-/// map)`.
+/// Implements it:
+/// `texel: is it small, (the kind of image with such texels), conversion (and its map)`.
 macro_rules! picture_texel {
     ($($t:ty: $is_small:literal ($($own:ident)?) $into:ident $($from:expr)?;)+) => {
         $(

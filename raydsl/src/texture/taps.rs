@@ -126,8 +126,8 @@ struct Weights {
 
 /// Returns the weights for the share `a` of the way from the second to the third, from 0 to 1.
 ///
-/// They are products of non-negative factors, so rounding never flips a sign: expanded as `1 - 3a +
-/// 3a² - a³`, the first weight of the B-spline does become negative near `a = 1`.
+/// They are products of non-negative factors, so rounding never flips a sign: expanded as
+/// `1 - 3a + 3a² - a³`, the first weight of the B-spline does become negative near `a = 1`.
 #[kernel]
 fn weights(a: f32, #[host] filter: Filter) -> Weights {
     let b = 1.0 - a;

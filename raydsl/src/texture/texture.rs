@@ -51,8 +51,8 @@ pub type Texture3<'a, T> = Texture<'a, T, 3>;
 impl<'a, T: Texel, const D: usize> Texture<'a, T, D> {
     /// Creates a texture over a slice of the application, or with a `Vec` of its own.
     ///
-    /// The first axis runs fastest: texel `(x, y, z)` has the index `(z * size[1] + y) * size[0] +
-    /// x`.
+    /// The first axis runs fastest: texel `(x, y, z)` has the index
+    /// `(z * size[1] + y) * size[0] + x`.
     ///
     /// # Errors
     ///

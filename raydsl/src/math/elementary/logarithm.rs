@@ -50,8 +50,8 @@ pub fn log2(x: f32) -> f32 {
 /// At most 1.39 ulp off. -infinity at -1, NaN below, `x` itself next to 0 (-0 gives -0), infinity
 /// at infinity.
 ///
-/// The rounded `1 + x` only determines the exponent `k`. `f = 2^-k x + (2^-k - 1)` is then `2^-k (1
-/// + x) - 1`: `x` itself for `k = 0`, else rounded once where the result is large.
+/// The rounded `1 + x` only determines the exponent `k`. `f = 2^-k x + (2^-k - 1)` is then
+/// `2^-k (1 + x) - 1`: `x` itself for `k = 0`, else rounded once where the result is large.
 #[kernel(known = Function::Log1p)]
 #[inline]
 pub fn log1p(x: f32) -> f32 {

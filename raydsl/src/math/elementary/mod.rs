@@ -11,10 +11,10 @@
 //! A NaN returns a NaN, with the exceptions that [`pow()`] names.
 //!
 //! Where one `f32` is not precise enough, a value is the sum of two, the upper with 12 bits:
-//! products of such heads are exact. Heads are cut by a bit mask, never by the customary `a - (a -
-//! b)`, which drivers simplify. The range reductions are those of Cody and Waite, "Software Manual
-//! for the Elementary Functions" (1980), and of Payne and Hanek, "Radian reduction for
-//! trigonometric functions" (1983); see Muller, "Elementary Functions" (2016), chapter 11. The
+//! products of such heads are exact. Heads are cut by a bit mask, never by the customary
+//! `a - (a - b)`, which drivers simplify. The range reductions are those of Cody and Waite,
+//! "Software Manual for the Elementary Functions" (1980), and of Payne and Hanek, "Radian reduction
+//! for trigonometric functions" (1983); see Muller, "Elementary Functions" (2016), chapter 11. The
 //! coefficients are minimax fits of the relative error (Remez' exchange), rounded to `f32` one
 //! after another, with a new fit of the rest after each.
 

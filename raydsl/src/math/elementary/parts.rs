@@ -2,8 +2,8 @@
 
 use crate::{Type, kernel};
 
-/// Returns the upper 12 bits of a number's mantissa: the product of two heads is exact, and `x -
-/// head(x)` has the 12 lower ones.
+/// Returns the upper 12 bits of a number's mantissa: the product of two heads is exact, and
+/// `x - head(x)` has the 12 lower ones.
 #[kernel]
 #[inline]
 pub(super) fn head(x: f32) -> f32 {
