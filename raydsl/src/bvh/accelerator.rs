@@ -1,11 +1,11 @@
-//! Acceleration structures of the application.
+//! Application-defined acceleration structures.
 
 use super::view::Standing;
 use super::{SceneView, View};
 use crate::geometry::{Kinds, Primitive, Ray};
 use crate::machine::{Capture, Machine, Owner, Parameter, Resource};
 
-/// An acceleration structure of the application: a grid, the tree of another library, a closure.
+/// Application-defined acceleration structure: a grid, the tree of another library, a closure.
 ///
 /// It replaces the tree of a [`Bvh`](super::Bvh) in an [`Accelerated`] scene, whose queries have
 /// the same results: hits are a function of the ray and the primitives, and the structure only
@@ -27,11 +27,11 @@ impl<F: Fn(&Ray, f32, &mut dyn FnMut(u32) -> f32) + Send + Sync> Accelerator for
     }
 }
 
-/// Primitives under an [`Accelerator`] of one's own, which kernels take as they take a
+/// Primitives under an application-defined [`Accelerator`]; kernels take it like a
 /// [`Bvh`](super::Bvh).
 ///
-/// Packets query it for one lane after another. It does not run on a GPU, where every primitive is
-/// tested instead, with the same results.
+/// Packets query it one lane at a time. It does not run on a GPU, where every primitive is tested
+/// instead, with the same results.
 ///
 /// ```
 /// use raydsl::bvh::Accelerated;
@@ -65,14 +65,14 @@ pub struct Accelerated<'a, P: Primitive> {
 }
 
 impl<'a, P: Primitive<Shared = ()>> Accelerated<'a, P> {
-    /// Primitives and what finds them.
+    /// Creates a scene of primitives culled by `accelerator`.
     pub fn new(prims: &'a [P], accelerator: impl Accelerator + 'a) -> Self {
         Self::sharing(prims, &[], accelerator)
     }
 }
 
 impl<'a, P: Primitive> Accelerated<'a, P> {
-    /// Primitives that share data, and what finds them.
+    /// Creates a scene of primitives with shared data, culled by `accelerator`.
     pub fn sharing(
         prims: &'a [P],
         shared: &'a [P::Shared],
@@ -82,17 +82,17 @@ impl<'a, P: Primitive> Accelerated<'a, P> {
         Self { standing: Standing { prims, shared, accelerator, owner, kinds: Kinds::of(prims) } }
     }
 
-    /// The primitives, as the application owns them.
+    /// Returns the application's primitives.
     pub fn primitives(&self) -> &'a [P] {
         self.standing.prims
     }
 
-    /// What the primitives share, as the application owns it.
+    /// Returns the data that the primitives share.
     pub fn shared(&self) -> &'a [P::Shared] {
         self.standing.shared
     }
 
-    /// The view that kernels work on.
+    /// Returns the view that kernels query.
     pub fn view(&self) -> SceneView<'_, P> {
         View::standing(&self.standing)
     }

@@ -1,4 +1,4 @@
-//! Queries of many rays on the host, in packets.
+//! Batched ray queries on the host, in ray packets.
 
 use super::on::{AnyHits, ClosestHits};
 use super::wide::trace;
@@ -7,7 +7,7 @@ use crate::geometry::{Primitive, Ray};
 use crate::machine::{B, Lanes, Machine, Packet, Type, fill};
 use crate::run::{LanesTask, Variant};
 
-/// Packets per query: streams are faster with more rays.
+/// Packets per query: ray streams are faster with more rays.
 const PACKETS: usize = 8;
 
 /// Finds the record of the least `(t, id)` hit of each ray.
@@ -23,7 +23,7 @@ pub(super) fn closest_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray])
     hits.unwrap_or_else(|| rays.iter().map(|ray| traverse::closest_hit(scene, *ray)).collect())
 }
 
-/// Finds whether each ray hits anything.
+/// Returns whether each ray hits anything.
 pub(super) fn any_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray]) -> Vec<bool> {
     if let Some(walks) = scene.walks() {
         let mut hits = Vec::with_capacity(rays.len());
@@ -88,7 +88,7 @@ impl<P: Primitive> LanesTask for Any<'_, '_, P> {
     }
 }
 
-/// Loads the rays as packets; lanes without one have a ray that hits nothing.
+/// Loads the rays as packets; unused lanes get a ray that hits nothing.
 #[inline(always)]
 fn packets<L: Lanes>(m: &Packet<L>, rays: &[Ray]) -> [<Ray as Type>::On<Packet<L>>; PACKETS] {
     let none = Ray::new(glam::Vec3::NAN, glam::Vec3::NAN);

@@ -1,16 +1,17 @@
-//! The contract of every query, written once: which rays and hits count, which of two hits comes
-//! first, how far a traversal must look behind a hit, and whether a ray enters a box.
+//! Shared rules of every query: the validity of rays and hits, the order of hits, the culling
+//! distance behind a hit, and the box test.
 //!
-//! Each rule is a kernel. A traversal of one ray calls the function; packets, WGSL and the bounds of
-//! rounding run its lifted body. Two traversals have arithmetic of their own for boxes, for reasons
-//! that stand there: `wide::step`, of eight boxes, and `on::beam`, in `f64` with bounds.
+//! Each rule is a kernel. Single-ray traversal calls the function; packets, WGSL and the rounding
+//! bounds run its lifted body. Two traversals have their own box arithmetic, for reasons given
+//! there: `wide::step`, of eight boxes, and `on::beam`, in `f64` with bounds.
 //!
 //! **Boxes.** A box test must never lose a hit that `intersect` accepts. The ray's origin is moved
-//! apart by a padding, once a ray: lower faces are measured from the upper origin and the other way
-//! round, which widens every box by `SLACK` times the distance to the farthest corner of the scene
-//! and absorbs all rounding, at no cost in the loop. A direction component that is 0, or 2^60 times
-//! smaller than the largest, is replaced by one of that size: its reciprocal is finite, so no product
-//! is NaN, and the widened slab decides alone. (After Ize, "Robust BVH Ray Traversal", JCGT 2013.)
+//! apart by a padding, once a ray: lower faces are measured from the upper origin and vice versa.
+//! That widens every box by `SLACK` times the distance to the farthest corner of the scene and
+//! absorbs all rounding, at no cost in the loop. A direction component that is 0, or 2^60 times
+//! smaller than the largest, is replaced by one of that size: its reciprocal is finite, so no
+//! product is NaN, and the widened slab decides alone. (After Ize, "Robust BVH Ray Traversal", JCGT
+//! 2013.)
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
@@ -22,13 +23,13 @@ use crate::machine::margin::{Interval, Known};
 use crate::machine::{KnownFunction, Margin, WithoutNan};
 use crate::{Type, kernel};
 
-/// 2^-23: an ulp of a number is at most this part of it.
+/// 2^-23: an ulp of a number is at most this fraction of it.
 pub(crate) const ULP: f32 = f32::EPSILON;
 
 /// 2^-60.
 const LEAST: f32 = 8.673_617_4e-19;
 
-/// Whether a ray may hit anything: one with a NaN or an infinite component does not.
+/// Returns whether a ray may hit anything: rays with a NaN or infinite component do not.
 #[kernel]
 #[inline(always)]
 pub(crate) fn is_finite(ray: Ray) -> bool {
@@ -41,15 +42,15 @@ fn are_finite(v: Vec3) -> bool {
     v.is_finite()
 }
 
-/// Whether a hit lies within the range of its ray.
+/// Returns whether a hit lies within the range of its ray.
 #[kernel]
 #[inline(always)]
 pub(crate) fn is_within(hit: Hit, ray: Ray) -> bool {
     hit.is_hit & ((hit.t >= ray.t_min) & (hit.t <= ray.t_max))
 }
 
-/// Whether a hit comes before another in the order of `(t, inst_id, prim_id)`. Where nothing is placed all
-/// instances are 0, and are not compared.
+/// Returns whether a hit comes before another in the order of `(t, inst_id, prim_id)`. Without
+/// instances, all instance ids are 0 and are not compared.
 #[kernel]
 #[inline(always)]
 pub(crate) fn precedes(#[host] is_placed: bool, hit: Hit, other: Hit) -> bool {
@@ -60,24 +61,25 @@ pub(crate) fn precedes(#[host] is_placed: bool, hit: Hit, other: Hit) -> bool {
     (hit.t < other.t) | ((hit.t == other.t) & is_first)
 }
 
-/// Whether a hit comes before `best`; any comes before a miss.
+/// Returns whether a hit comes before `best`; any comes before a miss.
 #[kernel]
 #[inline(always)]
 pub(crate) fn is_before(#[host] is_placed: bool, hit: Hit, best: Hit) -> bool {
     !best.is_hit | precedes(is_placed, hit, best)
 }
 
-/// Up to where boxes may hold a hit that comes before one at `t`, of a ray that ends at `t_max`: what
-/// rounding does to a hit, it does to no visit. See [`Primitive::SLACK`].
+/// Returns the distance up to which boxes may hold a hit that precedes one at `t`, of a ray that
+/// ends at `t_max`: rounding may change a hit, but must not cull it. See [`Primitive::SLACK`].
 #[kernel]
 #[inline(always)]
 pub(crate) fn limit_behind(t: f32, slack: f32, t_max: f32) -> f32 {
-    // In this order what is no number becomes the ray's end.
+    // In this order NaN becomes the ray's end.
     min(t_max, t + t.abs() * slack)
 }
 
-/// The least distance that is behind another, from where a primitive is asked for its next crossing.
-/// Distances nearer to 0 than the smallest normal number are one: a device may take them for 0.
+/// Returns the smallest distance greater than `t`, at which the next crossing of a primitive is
+/// searched. Distances nearer to 0 than the smallest normal number count as one: a device may flush
+/// them to 0.
 #[kernel(known = Behind)]
 #[inline(always)]
 pub(crate) fn behind(t: f32) -> f32 {
@@ -87,7 +89,7 @@ pub(crate) fn behind(t: f32) -> f32 {
     if is_small { f32::MIN_POSITIVE } else { next }
 }
 
-/// What machines know of [`behind()`]: how near it is, where its bits say nothing.
+/// Rounding bounds of [`behind()`], where its bit arithmetic says nothing.
 #[derive(Debug)]
 struct Behind;
 
@@ -95,7 +97,7 @@ impl KnownFunction for Behind {
     fn bound(&self, m: &Margin, args: &[Known]) -> Option<Vec<Known>> {
         let range = args[0].range;
         let next = |t: f64| f64::from(behind(t as f32)).max(t);
-        // What is nearer to 0 than the smallest normal number a device may take for 0.
+        // A device may flush to 0 anything smaller than the smallest normal number.
         let high = match next(range.high) {
             high if high < 0.0 && high > -f64::from(f32::MIN_POSITIVE) => 0.0,
             high => high,
@@ -105,7 +107,7 @@ impl KnownFunction for Behind {
     }
 }
 
-/// By how much boxes are widened, so that they hold what rounding makes of the primitives in them.
+/// Padding of boxes: makes them hold the rounded hits of the primitives in them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Padding {
     /// Relative to the distance from the ray's origin to the farthest corner of the scene: see
@@ -116,15 +118,15 @@ pub(crate) struct Padding {
 }
 
 impl Padding {
-    /// That of a tree over these primitives.
+    /// Returns the padding of a tree over these primitives.
     #[inline(always)]
     pub(crate) const fn of<P: Primitive>() -> Self {
         Self { slack: P::SLACK, origin: 0.0 }
     }
 }
 
-/// A ray, prepared for box tests: from where upper and lower faces are measured, and finite
-/// reciprocals of the direction.
+/// Ray prepared for box tests: the origins for upper and lower faces, and finite reciprocals of the
+/// direction.
 #[derive(Clone, Copy, Debug, Type)]
 pub(crate) struct Slabs {
     pub(crate) lower: Vec3,
@@ -133,13 +135,14 @@ pub(crate) struct Slabs {
 }
 
 impl Slabs {
-    /// [`slabs()`] of the tree under `root`, for one ray.
+    /// Prepares one ray for the tree under `root`, with [`slabs()`].
     #[inline(always)]
     pub(crate) fn of(ray: &Ray, root: &Node, padding: Padding) -> Self {
         slabs(padding.origin != 0.0, *ray, root.min, root.max, padding.slack, padding.origin)
     }
 
-    /// Where the ray, from `t_min` on, enters a node's box, if it does so at or before `limit`.
+    /// Returns the distance at which the ray, from `t_min` on, enters a node's box, if at or before
+    /// `limit`.
     #[inline(always)]
     pub(crate) fn enter(&self, node: &Node, t_min: f32, limit: f32) -> Option<f32> {
         let span = enter_leave(*self, node.min, node.max, t_min, limit);
@@ -147,8 +150,8 @@ impl Slabs {
     }
 }
 
-/// Prepares a ray for the tree whose root has the corners `low` and `high`, with a [`Padding`], of which
-/// `origin` is left out unless the tree `is_placed`.
+/// Prepares a ray for the tree whose root has the corners `low` and `high`, with a [`Padding`];
+/// `origin` is ignored unless the tree `is_placed`.
 #[kernel(known = WithoutNan)]
 #[inline(always)]
 pub(crate) fn slabs(
@@ -165,7 +168,7 @@ pub(crate) fn slabs(
     if is_placed {
         padding += largest(distant) * origin;
     }
-    // Where the origin is large against the scene the padding must still move it.
+    // Where the origin is large against the scene, the padding must still move it.
     let padding = distant * ULP + padding;
     Slabs {
         lower: ray.origin + padding,
@@ -174,8 +177,8 @@ pub(crate) fn slabs(
     }
 }
 
-/// Where a ray enters a box, not before `t_min`, and where it leaves it, not behind `t_max`: it meets
-/// the box if the first is not behind the second.
+/// Returns the distances at which a ray enters a box, not before `t_min`, and leaves it, not behind
+/// `t_max`: it hits the box if the first is not greater than the second.
 #[kernel(known = WithoutNan)]
 #[inline(always)]
 pub(crate) fn enter_leave(s: Slabs, low: Vec3, high: Vec3, t_min: f32, t_max: f32) -> Vec2 {
@@ -184,14 +187,14 @@ pub(crate) fn enter_leave(s: Slabs, low: Vec3, high: Vec3, t_min: f32, t_max: f3
     overlap(min(a, b), max(a, b), t_min, t_max)
 }
 
-/// From the last of the near planes, and of the range, to the first of the far ones.
+/// Intersects the slabs with the range: the last near plane, and the first far plane.
 #[kernel(known = WithoutNan)]
 #[inline(always)]
 pub(crate) fn overlap(near: Vec3, far: Vec3, t_min: f32, t_max: f32) -> Vec2 {
     vec2(max(max(near.x, near.y), max(t_min, near.z)), min(min(far.x, far.y), min(t_max, far.z)))
 }
 
-/// The reciprocal of every component, finite.
+/// Returns the reciprocal of every component, finite.
 #[kernel(known = WithoutNan)]
 #[inline(always)]
 pub(crate) fn finite_inverse(d: Vec3) -> Vec3 {
@@ -199,7 +202,7 @@ pub(crate) fn finite_inverse(d: Vec3) -> Vec3 {
     1.0 / vec3(at_least(d.x, least), at_least(d.y, least), at_least(d.z, least))
 }
 
-/// `x`, or what is of this size and has its sign.
+/// Returns `x`, or a number of this size with its sign if `x` is smaller.
 #[kernel]
 #[inline(always)]
 fn at_least(x: f32, size: f32) -> f32 {

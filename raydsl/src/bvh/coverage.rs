@@ -1,13 +1,13 @@
-//! Whether the leaves that hold a primitive's parts hold all of it.
+//! Coverage of split primitives by the leaves that hold their parts.
 //!
-//! A leaf's box is around parts of several primitives, and where they were cut is not known any
-//! more. What can be told is whether the boxes leave a gap along an axis in which the primitive has
-//! points, as [`Primitive::split_primitive`](crate::geometry::Primitive::split_primitive) says.
+//! A leaf's box bounds parts of several primitives, and the cuts are no longer known. The check is
+//! whether the boxes leave a gap along an axis in which the primitive has points, as
+//! [`Primitive::split_primitive`](crate::geometry::Primitive::split_primitive) says.
 
 use super::build::Source;
 use crate::geometry::Aabb;
 
-/// Whether `leaves`, boxes that hold parts of a primitive, leave out nothing of it along any axis.
+/// Returns whether `leaves`, boxes that hold parts of a primitive, cover it along every axis.
 pub(super) fn is_covered(source: &dyn Source, primitive: usize, leaves: &mut [Aabb]) -> bool {
     let whole = trimmed(source, primitive);
     (0..3).all(|axis| {
@@ -26,7 +26,7 @@ pub(super) fn is_covered(source: &dyn Source, primitive: usize, leaves: &mut [Aa
     })
 }
 
-/// A box around the primitive that is as tight as its parts are, which its own need not be.
+/// Returns a box around the primitive as tight as its parts, which its own need not be.
 fn trimmed(source: &dyn Source, primitive: usize) -> Aabb {
     let whole = source.bounds(primitive);
     (0..3).fold(whole, |all, axis| {
@@ -37,7 +37,7 @@ fn trimmed(source: &dyn Source, primitive: usize) -> Aabb {
     })
 }
 
-/// Whether the primitive has points between two planes, beyond what rounding makes of a plane.
+/// Returns whether the primitive has points between two planes, beyond the rounding of a plane.
 fn has_points(
     source: &dyn Source,
     primitive: usize,

@@ -1,12 +1,12 @@
-//! Hits in order, as many as are asked for.
+//! Ordered multi-hit queries in batches.
 //!
-//! A query finds the next few hits behind the last one, and another what follows when they have been
-//! taken. The crossings of a primitive are a chain: `intersect` of the ray, then of the ray from behind
-//! each crossing on. Every query follows it from the beginning, so that where a batch ends makes no
-//! difference. So nothing of a traversal is kept between two hits, hits come in one order whatever finds
-//! them, and one that is in several leaves comes once. (After Amstutz, Gribble, Guenther and Wald, "An
-//! Evaluation of Multi-Hit Ray Traversal in a BVH using Existing First-Hit/Any-Hit Kernels", JCGT 4(4),
-//! 2015.)
+//! A query finds the next few hits behind the last one; when those are consumed, another finds the
+//! following ones. The crossings of a primitive are a chain: `intersect` of the ray, then of the
+//! ray from behind each crossing on. Every query follows it from the beginning, so that batch
+//! boundaries make no difference. So no traversal state is kept between two hits, hits come in one
+//! order whatever finds them, and a hit in several leaves comes once. (After Amstutz, Gribble,
+//! Guenther and Wald, "An Evaluation of Multi-Hit Ray Traversal in a BVH using Existing
+//! First-Hit/Any-Hit Kernels", JCGT 4(4), 2015.)
 
 use core::iter::FusedIterator;
 
@@ -17,10 +17,10 @@ use super::{SceneView, View};
 use crate::geometry::{Hit, HitOn, HitRecord, Kinds, Primitive, Ray, RayOn};
 use crate::machine::{B, Branch, Cursor, F, KernelInfo, Loop, Machine, Scalar, Type, U, Var, op};
 
-/// How many hits one query finds.
+/// Number of hits that one query finds.
 const BATCH: usize = 4;
 
-/// The hits of a ray, in the order of `(t, inst_id, prim_id)`: see
+/// Iterator over the hits of a ray, in the order of `(t, inst_id, prim_id)`: see
 /// [`RayQuery::hits`](super::RayQuery::hits).
 pub struct Hits<'a, P: Primitive> {
     m: Scalar,
@@ -61,16 +61,16 @@ pub struct HitsOn<'a, M: Machine, P: Primitive> {
     pub(super) ray: RayOn<M>,
 }
 
-/// A hit, and from where on `intersect` was asked when it gave that.
+/// A hit, and the `t_min` of the `intersect` call that returned it.
 type Crossing<M> = (HitOn<M>, F<M>);
 
-/// How far a loop over hits has come.
+/// State of a loop over hits.
 pub struct State<M: Machine> {
-    /// Hits that are found and yet to come, in order; misses behind them.
+    /// Hits found but not yet consumed, in order, followed by misses.
     pending: Var<[Crossing<M>; BATCH]>,
-    /// The hit at which it stands; a miss before the first.
+    /// The current hit; a miss before the first.
     last: Var<Crossing<M>>,
-    /// Whether there may be hits behind those that are pending.
+    /// Whether there may be hits behind the pending ones.
     has_more: Var<B<M>>,
 }
 
@@ -95,6 +95,7 @@ impl<M: Machine, P: Primitive> Cursor<M> for HitsOn<'_, M, P> {
     #[inline(always)]
     fn advance(&self, m: &M, state: &State<M>) -> B<M> {
         let [first, ..] = state.pending.get(m);
+        // Refill the batch when it is empty.
         let is_due = m.bool_binary(op::And, m.bool_not(first.0.is_hit.0), state.has_more.get(m).0);
         let is_due = Branch::new(m, B(is_due));
         if is_due.then(m) {
@@ -103,6 +104,7 @@ impl<M: Machine, P: Primitive> Cursor<M> for HitsOn<'_, M, P> {
             state.has_more.set(m, found[BATCH - 1].0.is_hit);
         }
         is_due.end(m);
+        // Shift the first pending hit into `last`.
         let [first, others @ ..] = state.pending.get(m);
         let mut pending = [miss(m); BATCH];
         pending[..BATCH - 1].copy_from_slice(&others);
@@ -126,8 +128,8 @@ static NEXT_HITS: KernelInfo = KernelInfo {
     known: None,
 };
 
-/// The least hits behind `last`, or the least of all if that is a miss; misses behind them. A function
-/// of its own wherever it is called from.
+/// Returns the first hits behind `last`, or the first of all if that is a miss, followed by misses.
+/// Always compiled as a function of its own.
 #[inline(always)]
 fn next_hits<M: Machine, P: Primitive>(
     m: &M,
@@ -158,7 +160,7 @@ fn next_hits<M: Machine, P: Primitive>(
     )
 }
 
-/// A search for the next hits.
+/// Search for the next hits.
 struct Search<'s, 'a, M: Machine, P: Primitive> {
     m: &'s M,
     scene: &'s SceneView<'a, P>,
@@ -168,7 +170,7 @@ struct Search<'s, 'a, M: Machine, P: Primitive> {
 }
 
 impl<M: Machine, P: Primitive> Search<'_, '_, M, P> {
-    /// The last of the hits that are found.
+    /// Returns the last of the hits found.
     #[inline(always)]
     fn farthest(&self) -> HitOn<M> {
         self.found.get(self.m)[BATCH - 1].0
@@ -211,14 +213,14 @@ impl<M: Machine, P: Primitive> Search<'_, '_, M, P> {
         repeat.end(m);
     }
 
-    /// Whether a crossing behind this one may be among the next hits.
+    /// Returns whether a crossing behind this one may be among the next hits.
     #[inline(always)]
     fn goes_on(&self, hit: HitOn<M>) -> M::Bool {
         let is_near = is_before::on(self.m, is_placed(self.scene), hit, self.farthest());
         self.m.bool_binary(op::And, hit.is_hit.0, is_near.0)
     }
 
-    /// Where the ray crosses the primitive behind `hit`.
+    /// Returns where the ray crosses the primitive next, behind `hit`.
     #[inline(always)]
     fn next_crossing(&self, hit: HitOn<M>) -> Crossing<M> {
         let (m, scene) = (self.m, self.scene);
@@ -235,7 +237,7 @@ impl<M: Machine, P: Primitive> Search<'_, '_, M, P> {
         (HitOn { is_hit: is_within::on(m, next, ray), ..next }, t_min)
     }
 
-    /// Keeps a hit if it is behind the last one, and before some that is kept.
+    /// Keeps a hit if it is behind the last one and before one already kept.
     #[inline(always)]
     fn keep(&self, crossing: Crossing<M>) {
         let (is_placed, found) = (is_placed(self.scene), self.found.get(self.m));
@@ -257,7 +259,7 @@ static WITH_HIT: KernelInfo = KernelInfo {
     known: None,
 };
 
-/// What is found with one more hit, if that is behind `last` and before some that is there.
+/// Inserts a hit into `found` if it is behind `last` and before one already there.
 #[inline(always)]
 fn with_hit<M: Machine>(
     m: &M,
@@ -286,7 +288,8 @@ fn with_hit<M: Machine>(
     all.get(m)
 }
 
-/// Whether the hit is there already: a tree with spatial splits holds a primitive more than once.
+/// Returns whether the hit is already found: a tree with spatial splits refers to primitives more
+/// than once.
 #[inline(always)]
 fn is_among<M: Machine>(
     m: &M,

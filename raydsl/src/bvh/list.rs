@@ -1,4 +1,4 @@
-//! Lists of trees that are asked as one.
+//! Lists of trees queried as one scene.
 
 use std::borrow::Cow;
 
@@ -11,13 +11,13 @@ use super::{Bvh, Node, SceneView, View};
 use crate::geometry::{Hit, Kinds, Primitive};
 use crate::machine::{Capture, Machine, Owner, Parameter, Resource};
 
-/// Trees over primitives of one type that are asked as one: what moves and what stands still,
+/// List of trees over primitives of one type, queried as one scene: moving and static geometry, or
 /// the parts of a model.
 ///
-/// A query answers as one tree over all primitives would, with those of the first tree first, those
-/// of the second behind them, and so on: [`Hit::prim_id`] counts through the list. Rays are tested
-/// against every tree's box, so a list is for a few trees; on a GPU its trees lie in one buffer
-/// each for primitives, nodes and indices.
+/// A query returns the result of one tree over all primitives, with those of the first tree first,
+/// those of the second behind them, and so on: [`Hit::prim_id`] counts through the list. Rays are
+/// tested against every tree's box, so a list is for a few trees; on a GPU its trees lie in one
+/// buffer each for primitives, nodes and indices.
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -42,16 +42,16 @@ pub struct BvhList<'a, P: Primitive> {
     trees: Trees<'a, P, P::Shared>,
 }
 
-/// Why trees cannot be asked as one, and what to do about it.
+/// Error of joining trees in a list.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ListError {
-    /// More primitives than [`MAX_PRIMITIVES`] in all.
+    /// There are more primitives than [`MAX_PRIMITIVES`] in all.
     #[error("{count} primitives are too many for one list of trees: {limit} can be numbered")]
     TooManyPrimitives {
-        /// How many there are.
+        /// Number of primitives.
         count: usize,
-        /// How many there may be.
+        /// Maximum number of primitives.
         limit: usize,
     },
     /// The primitives of two trees share different slices.
@@ -68,11 +68,11 @@ pub enum ListError {
 }
 
 impl<'a, P: Primitive> BvhList<'a, P> {
-    /// A list of these trees. No tree at all is a valid scene.
+    /// Creates a list of these trees. An empty list is a valid scene.
     ///
     /// # Errors
     ///
-    /// More primitives than 32-bit numbers can name, or trees whose primitives share different
+    /// If there are more primitives than 32-bit ids, or trees whose primitives share different
     /// slices.
     pub fn new(trees: &'a [Bvh<'a, P>]) -> Result<Self, ListError> {
         let count: usize = trees.iter().map(|tree| tree.primitives().len()).sum();
@@ -93,7 +93,7 @@ impl<'a, P: Primitive> BvhList<'a, P> {
         Ok(Self { trees: Trees { parts, shared, owner: Owner::new(), kinds, walks } })
     }
 
-    /// Which tree holds the primitive that was hit, by its place in the list; none for a miss.
+    /// Returns the index of the tree that holds the hit primitive; `None` for a miss.
     pub fn tree_of(&self, hit: Hit) -> Option<usize> {
         hit.is_hit.then(|| tree_of(&self.trees.parts, hit.prim_id))
     }
@@ -107,12 +107,12 @@ impl<'a, P: Primitive> BvhList<'a, P> {
         self.trees.parts[tree].first
     }
 
-    /// How many trees.
+    /// Returns the number of trees.
     pub fn tree_count(&self) -> usize {
         self.trees.parts.len()
     }
 
-    /// What the primitives of all trees share.
+    /// Returns the data that the primitives of all trees share.
     pub fn shared(&self) -> &'a [P::Shared] {
         self.trees.shared
     }
@@ -121,7 +121,7 @@ impl<'a, P: Primitive> BvhList<'a, P> {
         self.trees
     }
 
-    /// The view that kernels work on.
+    /// Returns the view that kernels query.
     pub fn view(&self) -> SceneView<'_, P> {
         View::list(&self.trees)
     }
@@ -153,7 +153,7 @@ impl<P: Primitive> Parameter for BvhList<'_, P> {
     type On<'a, M: Machine> = SceneView<'a, P>;
 }
 
-/// What the primitives of these trees share; empty trees share anything.
+/// Returns the data that the primitives of these trees share; empty trees are compatible with any.
 fn shared_by_all<'a, P: Primitive>(trees: &[Bvh<'a, P>]) -> Result<&'a [P::Shared], ListError> {
     let mut found: Option<(usize, &'a [P::Shared])> = None;
     for (tree, bvh) in trees.iter().enumerate().filter(|(_, bvh)| !bvh.primitives().is_empty()) {
@@ -186,12 +186,12 @@ fn trees<'p, 'a, T, S>(
     })
 }
 
-/// Where the roots are among the nodes of all trees.
+/// Returns the root indices in the nodes of all trees.
 pub(super) fn roots<T, S>(parts: &[Part<'_, T, S>]) -> impl Iterator<Item = u32> {
     trees(parts).filter(|(_, tree, _)| !tree.nodes.is_empty()).map(|(_, _, [root, _])| root)
 }
 
-/// The nodes of all trees in one array.
+/// Returns the nodes of all trees in one array.
 pub(super) fn nodes<'a, T, S>(parts: &[Part<'a, T, S>]) -> Cow<'a, [u8]> {
     if let [part] = parts
         && let Some(tree) = part.tree()
@@ -207,7 +207,7 @@ pub(super) fn nodes<'a, T, S>(parts: &[Part<'a, T, S>]) -> Cow<'a, [u8]> {
     Cow::Owned(cast_slice(&moved.collect::<Vec<Node>>()).to_vec())
 }
 
-/// The index lists of all trees in one array, of ids that count through the list.
+/// Returns the index lists of all trees in one array, with ids that count through the list.
 pub(super) fn indices<'a, T, S>(parts: &[Part<'a, T, S>]) -> Cow<'a, [u8]> {
     if let [part @ Part { first: 0, .. }] = parts
         && let Some(tree) = part.tree()

@@ -1,4 +1,4 @@
-//! The methods that kernels call on scenes: queries, and what is asked about a hit.
+//! Methods of scenes in kernels: queries, and properties of a hit.
 
 use glam::Affine3;
 
@@ -192,7 +192,7 @@ where
     }
 }
 
-/// All rays, before any of them is asked about.
+/// Evaluates all rays before the query.
 #[inline(always)]
 fn rays<M: Machine, R: Coerce<M, RayOn<M>>, const N: usize>(
     m: &M,
@@ -204,7 +204,7 @@ fn rays<M: Machine, R: Coerce<M, RayOn<M>>, const N: usize>(
     )
 }
 
-/// Queries of a captured array, which is a value of the kernel: rays meet primitives in memory.
+/// Queries of a captured array. It is a value of the kernel, but rays need primitives in memory.
 pub struct PrimitivesOfValue<M>(core::marker::PhantomData<M>);
 
 const _: () = {
@@ -259,7 +259,7 @@ impl<M: Machine, P: Primitive> Method<{ name("primitive") }, M, (HitOn<M>,)> for
     #[inline(always)]
     fn call(self, m: &M, (hit,): (HitOn<M>,)) -> P::On<M> {
         let id = m.u32_select(hit.is_hit.0, hit.prim_id.0, m.u32(0));
-        // The hit may be that of another scene.
+        // The hit may belong to another scene.
         m.element(&self, U(id))
     }
 }
@@ -315,7 +315,7 @@ impl<'a, M: Machine, P: Primitive> Method<{ name("shared") }, M, ()> for SceneVi
     }
 }
 
-/// A slice of primitives is a scene.
+/// Implements the methods for slices of primitives, which are scenes too.
 macro_rules! of_slices {
     ($($name:literal)+) => {
         $(

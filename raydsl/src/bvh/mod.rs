@@ -2,12 +2,12 @@
 //!
 //! **Closest hit is a function of the ray and the primitives, not of the tree**: of all primitives
 //! whose `intersect` accepts, the one with the least `(t, id)`. Every traversal (one ray, packets,
-//! WGSL, a plain loop over a slice) returns exactly that, bit for bit. What makes it so:
+//! WGSL, a plain loop over a slice) returns exactly that, bit for bit. The reasons:
 //!
 //! * `intersect` sees the ray's own range, never the best `t` so far; the traversal alone
 //!   compares, and of equal `t` keeps the smaller id.
 //! * Boxes are widened, and nodes behind the best hit are culled, with a padding of
-//!   [`Primitive::SLACK`]: what rounding may do to a hit, it does to no visit.
+//!   [`Primitive::SLACK`]: rounding may change a hit, but never culls it.
 //! * Every layout runs the same arithmetic on the same members of a primitive.
 
 // The files:
@@ -87,9 +87,9 @@ pub use wide::counts::Counts;
 use crate::geometry::{Aabb, Kinds, Primitive};
 use crate::machine::{Capture, Machine, Owner, Parameter, Resource};
 
-/// A binary tree over primitives that the application owns.
+/// Bounding volume hierarchy over primitives that the application owns.
 ///
-/// What rays may ask of it is in [`RayQuery`].
+/// [`RayQuery`] has its queries.
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -114,16 +114,17 @@ struct Owned {
     owner: Owner,
     /// The number of refits.
     version: u32,
-    /// Its cost when it was built, if it has been refitted.
+    /// Cost when it was built, if it has been refitted.
     built_cost: Option<f64>,
 }
 
 impl<'a, P: Primitive<Shared = ()>> Bvh<'a, P> {
-    /// Builds a tree with the default configuration. No primitive at all is a valid scene.
+    /// Builds a tree with the default configuration. An empty slice is a valid scene.
     ///
     /// # Errors
     ///
-    /// A primitive whose bounds are not finite, or more primitives than 32-bit indices can name.
+    /// If the bounds of a primitive are not finite, or there are more primitives than 32-bit
+    /// indices.
     pub fn build(prims: &'a [P]) -> Result<Self, BuildError> {
         Self::build_with(prims, &BuildConfig::default())
     }
@@ -132,7 +133,7 @@ impl<'a, P: Primitive<Shared = ()>> Bvh<'a, P> {
     ///
     /// # Errors
     ///
-    /// As [`Bvh::build`]; also a configuration out of its ranges.
+    /// As [`Bvh::build`]; also for a configuration out of its ranges.
     pub fn build_with(prims: &'a [P], config: &BuildConfig) -> Result<Self, BuildError> {
         Self::build_sharing(prims, &[], config)
     }
@@ -155,7 +156,7 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     ///
     /// # Errors
     ///
-    /// As [`Bvh::build_with`]. An index that has no vertex makes bounds that are not finite.
+    /// As [`Bvh::build_with`]. An index without a vertex makes bounds that are not finite.
     pub fn build_sharing(
         prims: &'a [P],
         shared: &'a [P::Shared],
@@ -176,10 +177,10 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     /// trees are a lot of code: a program that calls this takes rustc some seconds more for each
     /// type of primitive.
     ///
-    /// The binary tree is not kept. It is made again on first use, by one thread while others wait
-    /// for it: for degenerate rays, whose components are too large or too small for the box tests
-    /// of the wide tree, scenes of instances, devices, the reference, refitting, and
-    /// [`Bvh::nodes`], which may be called to have it in time.
+    /// The binary tree is not kept. It is made again on first use, by one thread while others wait:
+    /// for degenerate rays, whose components are too large or too small for the box tests of the
+    /// wide tree, scenes of instances, devices, the reference, refitting, and [`Bvh::nodes`]. Call
+    /// the latter to have it in time.
     ///
     /// ```
     /// use raydsl::prelude::*;
@@ -218,12 +219,12 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         Self::build_told(prims, shared, config, Some(&mut observer), wide::walks())
     }
 
-    /// [`Bvh::build_sharing`], of which `observer` is told how much is done, from 0 to 1, and says
-    /// whether to go on. A scene without shared data passes `&[]`.
+    /// Builds a tree as [`Bvh::build_sharing`] does, and reports progress to `observer`, from 0 to
+    /// 1; its answer continues or cancels the build. A scene without shared data passes `&[]`.
     ///
-    /// It is told 0 before anything is done, never less than the last time, at most 200 steps
-    /// between, and 1 at the end. The calls come from any of the threads that build, one at a time.
-    /// The tree is the same as without an observer.
+    /// The observer gets 0 before anything is done, never less than the last time, at most 200
+    /// steps between, and 1 at the end. The calls come from any of the threads that build, one at a
+    /// time. The tree is the same as without an observer.
     ///
     /// ```
     /// use raydsl::prelude::*;

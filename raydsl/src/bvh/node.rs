@@ -1,10 +1,10 @@
-//! The node of the binary tree.
+//! Node of the binary tree.
 
 use glam::Vec3;
 
 use crate::geometry::Aabb;
 
-/// A node of the binary tree: 32 bytes, two to a cache line.
+/// Node of the binary tree: 32 bytes, two to a cache line.
 ///
 /// The children of an inner node are adjacent, the left one at [`Node::first`]; a leaf holds the
 /// range `first .. first + count` of the tree's index list.
@@ -22,23 +22,23 @@ pub struct Node {
 }
 
 impl Node {
-    /// An inner node over the two nodes at `left` and `left + 1`.
+    /// Creates an inner node over the two nodes at `left` and `left + 1`.
     pub fn inner(bounds: Aabb, left: u32) -> Self {
         Self { min: bounds.min, first: left, max: bounds.max, count: 0 }
     }
 
-    /// A leaf over `count > 0` entries of the index list from `first` on.
+    /// Creates a leaf over `count > 0` entries of the index list from `first` on.
     pub fn leaf(bounds: Aabb, first: u32, count: u32) -> Self {
         debug_assert!(count > 0);
         Self { min: bounds.min, first, max: bounds.max, count }
     }
 
-    /// Whether the node holds primitives.
+    /// Returns whether the node holds primitives.
     pub fn is_leaf(&self) -> bool {
         self.count > 0
     }
 
-    /// The node's box.
+    /// Returns the node's bounds.
     pub fn bounds(&self) -> Aabb {
         Aabb::new(self.min, self.max)
     }

@@ -1,4 +1,4 @@
-//! Slab tests of a SIMD packet, faster where all rays have directions in one octant; see
+//! Slab tests of a ray packet, faster where all directions lie in one octant; see
 //! [`super::contract`].
 
 use super::Node;

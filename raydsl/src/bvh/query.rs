@@ -1,6 +1,7 @@
-//! Lifted queries that ask the kernel about each hit: those with a condition, and of several hits.
+//! Lifted queries with a callback for each hit: those with a condition, and those for several hits.
 //!
-//! The machine visits the primitives; what is kept of them is said here once, for all machines.
+//! The machine visits the primitives; selecting the hits to keep is written here once, for all
+//! machines.
 
 use super::SceneView;
 use super::contract::{is_before, limit_behind};
@@ -47,7 +48,7 @@ pub(crate) fn record_on<M: Machine, P: Primitive>(
         hit,
         #[inline(always)]
         || {
-            // A recorder leaves out the kinds that the scene does not have.
+            // A recorder omits the kinds that the scene does not have.
             let kinds = if M::RUNS { Kinds::ALL } else { prims.kinds() };
             let prim = m.fetch(prims, U(hit.prim_id.0));
             let ray = match prims.placed() {
@@ -186,7 +187,7 @@ fn is_before_by<M: Machine>(
     let first = Var::<B<M>>::new(m, "is_first", B(m.bool(true)));
     let both = Branch::new(m, b.is_hit);
     if both.then(m) {
-        // If both hold, as with `<=`, or neither, it is a tie.
+        // Both (as with `<=`) or neither is a tie.
         let (closer, farther) = (is_closer(a, b).0, is_closer(b, a).0);
         let differ = m.bool_binary(op::Xor, closer, farther);
         first.set(m, B(m.bool_select(differ, closer, is_before::on(m, is_placed, a, b).0)));

@@ -1,4 +1,4 @@
-//! The queries of scenes, on the host.
+//! Host queries of scenes.
 
 use glam::{Affine3, Vec3};
 
@@ -8,9 +8,8 @@ use super::{
 use crate::geometry::{Hit, HitOn, Primitive, Ray, transform_normal_back};
 use crate::machine::{B, Data, Scalar, Slice, Type};
 
-/// The queries of a scene: of a slice, a tree ([`Bvh`]), a list of trees ([`BvhList`]), trees that
-/// are placed many times ([`Instances`]), or an acceleration structure of the application
-/// ([`Accelerated`]).
+/// Queries of a scene: a slice, a tree ([`Bvh`]), a list of trees ([`BvhList`]), trees placed many
+/// times ([`Instances`]), or an application-defined acceleration structure ([`Accelerated`]).
 ///
 /// A query of a slice tests every primitive, and is faster than a tree for a few dozen of them. The
 /// results do not depend on the scene's structure, and are the same as in kernels.
@@ -181,12 +180,13 @@ pub trait RayQuery {
         hits.map(|hit| Type::lane::<Scalar>(&hit, 0))
     }
 
-    /// Every hit within the ray's range, in the order of `(t, inst_id, prim_id)`: all crossings of
-    /// a primitive, a sphere's entry and its exit, up to [`Primitive::MAX_CROSSINGS`] of each.
+    /// Returns every hit within the ray's range, in the order of `(t, inst_id, prim_id)`: all
+    /// crossings of a primitive, a sphere's entry and its exit, up to [`Primitive::MAX_CROSSINGS`]
+    /// of each.
     ///
-    /// They are found as they are taken, four at a time. So a loop that stops early costs little
-    /// more than [`closest_hit`](RayQuery::closest_hit), one over all hits a traversal for four of
-    /// them. In kernels `for hit in scene.hits(ray)` is the same.
+    /// They are found on demand, four at a time. So a loop that stops early costs little more than
+    /// [`closest_hit`](RayQuery::closest_hit), one over all hits a traversal for four of them. In
+    /// kernels `for hit in scene.hits(ray)` is the same.
     ///
     /// ```
     /// use raydsl::prelude::*;

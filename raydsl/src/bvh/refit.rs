@@ -1,8 +1,7 @@
-//! Trees over primitives that move.
+//! Refitting of trees to moving primitives.
 //!
 //! A [`Bvh`] borrows its primitives, so nothing can move them while it lives. [`Bvh::detach`] ends
-//! the borrow and keeps the tree; [`DetachedBvh::refit`] gives it back over the primitives as they
-//! then are.
+//! the borrow and keeps the tree; [`DetachedBvh::refit`] returns it over the moved primitives.
 
 use thiserror::Error;
 
@@ -11,10 +10,10 @@ use super::wide::Walks;
 use super::{BuildError, Bvh, Owned, stats};
 use crate::geometry::{Kinds, Primitive};
 
-/// A tree without its primitives, which the application may change meanwhile.
+/// Tree without its primitives, which the application may change meanwhile.
 ///
-/// It cannot be asked anything before [`DetachedBvh::refit`] has taken the boxes from the
-/// primitives again.
+/// It cannot be queried before [`DetachedBvh::refit`] has computed its bounds from the primitives
+/// again.
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -40,37 +39,37 @@ use crate::geometry::{Kinds, Primitive};
 #[must_use = "without `refit` the tree is lost"]
 pub struct DetachedBvh<P: Primitive> {
     own: Owned,
-    /// How many primitives there were.
+    /// Number of primitives of the tree.
     count: usize,
     walks: Option<Walks<P, P::Shared>>,
 }
 
-/// Why a tree cannot be refitted, and what to do about it. The tree is lost: build one.
+/// Error of refitting a tree. The tree is lost: build one.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum RefitError {
     /// There are more primitives than before, or fewer.
     #[error("the tree is over {before} primitives, these are {now}: build a tree over them")]
     CountChanged {
-        /// How many primitives the tree was built over.
+        /// Number of primitives the tree was built over.
         before: usize,
-        /// How many are given.
+        /// Number of primitives given.
         now: usize,
     },
-    /// The bounds of a primitive are NaN, infinite or inverted; never another error.
+    /// The bounds of a primitive are NaN, infinite or inverted; never another build error.
     #[error(transparent)]
     Bounds(#[from] BuildError),
 }
 
 impl<P: Primitive> Bvh<'_, P> {
-    /// The tree without its primitives, so that they may be changed.
+    /// Detaches the tree from its primitives, so that they may be changed.
     pub fn detach(self) -> DetachedBvh<P> {
         let Tree { prims, own, walks, .. } = self.tree;
         DetachedBvh { own, count: prims.len(), walks }
     }
 
-    /// The tree over other primitives: [`Bvh::detach`] and [`DetachedBvh::refit`], for primitives
-    /// that are written to another place when they move.
+    /// Refits the tree to other primitives: [`Bvh::detach`] and [`DetachedBvh::refit`], for
+    /// primitives that are written to another place when they move.
     ///
     /// # Errors
     ///
@@ -82,7 +81,7 @@ impl<P: Primitive> Bvh<'_, P> {
         self.detach().refit(prims)
     }
 
-    /// [`Bvh::refit`] for primitives that share data.
+    /// Refits as [`Bvh::refit`] does, for primitives that share data.
     ///
     /// # Errors
     ///
@@ -95,13 +94,13 @@ impl<P: Primitive> Bvh<'_, P> {
         self.detach().refit_sharing(prims, shared)
     }
 
-    /// How much dearer rays have become since the tree was built:
-    /// [`Statistics::sah_cost`](super::Statistics::sah_cost) now, divided by what it was then.
-    /// 1 if the tree has never been refitted, infinite if rays cost nothing then.
+    /// Returns the growth of the expected ray cost since the tree was built:
+    /// [`Statistics::sah_cost`](super::Statistics::sah_cost) now, divided by its value then. 1 if
+    /// the tree has never been refitted, infinite if rays cost nothing then.
     ///
-    /// Time to build anew is when what rays lose exceeds what building costs, often at 1.5 to 2.
-    /// The cost is that of rays that meet the box of the tree: a single primitive that leaves all
-    /// others far behind enlarges that box, and lowers it. Takes one pass over the nodes.
+    /// Rebuild when the slowdown of rays exceeds the build time, often at 1.5 to 2. The cost is
+    /// that of rays that hit the box of the tree: a single primitive that leaves all others far
+    /// behind enlarges that box, and lowers it. Takes one pass over the nodes.
     pub fn cost_growth(&self) -> f64 {
         let Some(built) = self.tree.own.built_cost else { return 1.0 };
         let now = stats::sah_cost(self.nodes(), self.config());
@@ -110,28 +109,26 @@ impl<P: Primitive> Bvh<'_, P> {
 }
 
 impl<P: Primitive<Shared = ()>> DetachedBvh<P> {
-    /// The tree over its primitives as they are now: all boxes are taken from them again, and
-    /// nothing else changes. `prims` holds them in the order in which the tree was built, be it
-    /// the same memory or not.
+    /// Refits node bounds to moved primitives; nothing else changes. `prims` holds them in the
+    /// order in which the tree was built, in the same memory or not.
     ///
-    /// Takes a fraction of the time of building. Hits are those that a new tree would give, but
-    /// rays take longer the more primitives have left their neighbours: see [`Bvh::cost_growth`].
-    /// After Wald, Boulos and Shirley, *Ray tracing deformable scenes using dynamic bounding volume
-    /// hierarchies* (ACM Transactions on Graphics 26(1), 2007), section 3.2. A device that has the
-    /// tree gets its primitives, what they share and the nodes anew, but not the index list.
+    /// Takes a fraction of the time of building. Hits are those of a new tree, but rays take longer
+    /// the more primitives have left their neighbours: see [`Bvh::cost_growth`]. After Wald, Boulos
+    /// and Shirley, *Ray tracing deformable scenes using dynamic bounding volume hierarchies* (ACM
+    /// Transactions on Graphics 26(1), 2007), section 3.2. A device that has the tree gets its
+    /// primitives, their shared data and the nodes anew, but not the index list.
     ///
     /// # Errors
     ///
-    /// Another number of primitives than the tree was built over, or one whose bounds are not
-    /// finite.
+    /// If the number of primitives has changed, or the bounds of one are not finite.
     pub fn refit(self, prims: &[P]) -> Result<Bvh<'_, P>, RefitError> {
         self.refit_sharing(prims, &[])
     }
 }
 
 impl<P: Primitive> DetachedBvh<P> {
-    /// [`DetachedBvh::refit`] for primitives that share data, either or both of which have
-    /// changed. What is shared may have become longer or shorter.
+    /// Refits as [`DetachedBvh::refit`] does, for primitives that share data, either or both of
+    /// which have changed. The shared slice may have another length.
     ///
     /// # Errors
     ///
@@ -158,12 +155,12 @@ impl<P: Primitive> DetachedBvh<P> {
         Ok(Bvh { tree: Tree { prims, shared, own, kinds: Kinds::of(prims), walks } })
     }
 
-    /// How many primitives the tree is over.
+    /// Returns the number of primitives of the tree.
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether the tree is over nothing.
+    /// Returns whether the tree has no primitives.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }

@@ -1,41 +1,39 @@
-//! What a tree is like: its size, its shape, what a ray may expect of it.
+//! Tree statistics: size, shape and expected cost of a ray.
 
 use super::build::Tree;
 use super::{BuildConfig, Bvh, Node};
 use crate::geometry::{Aabb, Primitive};
 
-/// What a tree is like; [`Bvh::statistics`] counts it.
+/// Statistics of a tree, from [`Bvh::statistics`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Statistics {
-    /// What a ray through the box of the tree costs, by the surface area heuristic: every node and
-    /// primitive that it may expect to visit, times [`BuildConfig::traversal_cost`] and
-    /// [`BuildConfig::intersection_cost`] of the tree. The chance of a visit is the share that a
-    /// node's box has in the surface of the root's; if that has none, in its length; if it is a
-    /// point, every node is visited. 0 for an empty tree. After Goldsmith and Salmon, *Automatic
-    /// creation of object hierarchies for ray tracing* (IEEE CG&A 7(5), 1987).
+    /// Expected cost of a ray through the box of the tree, by the surface area heuristic: every
+    /// node and primitive that it may expect to visit, times [`BuildConfig::traversal_cost`] and
+    /// [`BuildConfig::intersection_cost`] of the tree. The probability of a visit is the node's
+    /// share of the root's surface area; if that is 0, of its length; if the root is a point, every
+    /// node is visited. 0 for an empty tree. After Goldsmith and Salmon, *Automatic creation of
+    /// object hierarchies for ray tracing* (IEEE CG&A 7(5), 1987).
     pub sah_cost: f64,
-    /// Inner nodes and leaves.
+    /// Number of inner nodes and leaves.
     pub nodes: usize,
-    /// Nodes that hold primitives.
+    /// Number of leaves.
     pub leaves: usize,
     /// Steps from the root to the deepest leaf, at most [`MAX_DEPTH`](super::MAX_DEPTH).
     pub depth: usize,
-    /// Primitives in a leaf, on average; 0 for an empty tree.
+    /// Mean number of primitives per leaf; 0 for an empty tree.
     pub mean_leaf_size: f64,
-    /// Primitives in the fullest leaf.
+    /// Number of primitives in the largest leaf.
     pub max_leaf_size: usize,
-    /// Bytes of the trees that there are, as [`Bvh::bytes`].
+    /// Size of the existing trees in bytes, as [`Bvh::bytes`].
     pub bytes: usize,
-    /// Entries in leaves for each primitive: 1 where every primitive is in one leaf, and for an
-    /// empty tree.
+    /// Leaf entries per primitive: 1 where every primitive is in one leaf, and for an empty tree.
     pub duplication: f64,
 }
 
 impl<P: Primitive> Bvh<'_, P> {
-    /// Counts what the binary tree is like; takes one pass over its nodes. Of a wide tree it has a
-    /// leaf for each block, and is made for this and not kept, unless something has asked for it
-    /// before.
+    /// Computes statistics of the binary tree in one pass over its nodes. For a wide tree it has a
+    /// leaf per block, and is made for this and not kept, unless it already exists.
     ///
     /// ```
     /// use raydsl::prelude::*;
@@ -74,7 +72,7 @@ impl<P: Primitive> Bvh<'_, P> {
     }
 }
 
-/// [`Statistics::sah_cost`].
+/// Returns [`Statistics::sah_cost`].
 pub(super) fn sah_cost(nodes: &[Node], config: &BuildConfig) -> f64 {
     let Some(root) = nodes.first() else { return 0.0 };
     let measure = measure(root.bounds());
@@ -88,7 +86,7 @@ pub(super) fn sah_cost(nodes: &[Node], config: &BuildConfig) -> f64 {
     nodes.iter().map(cost).sum::<f64>() / measure(root.bounds())
 }
 
-/// What the chance of a visit is proportional to in a tree with this root.
+/// Returns the measure proportional to the probability of a visit in a tree with this root.
 fn measure(root: Aabb) -> fn(Aabb) -> f64 {
     fn length(bounds: Aabb) -> f64 {
         bounds.edges_f64().iter().sum()
@@ -102,7 +100,7 @@ fn measure(root: Aabb) -> fn(Aabb) -> f64 {
     }
 }
 
-/// [`Statistics::depth`].
+/// Returns [`Statistics::depth`].
 pub(super) fn depth(nodes: &[Node]) -> usize {
     let mut depths = vec![0u8; nodes.len()];
     // Children come after their parents.

@@ -324,10 +324,10 @@ fn find<C: Count>(
     mut visit: impl FnMut(u32, &mut f32, &mut C) -> bool,
 ) -> bool {
     let mut stopped = false;
-    // Its own queries are answered at once.
+    // The queries of an accelerator are answered at once.
     let _no_yield = NoYield::begin();
     accelerator.candidates(ray, *limit, &mut |id| {
-        // It may continue regardless, or name a primitive that does not exist.
+        // It may ignore the limit, or pass an id that does not exist.
         if !stopped && (id as usize) < len {
             stopped = visit(id, limit, count);
         }
@@ -350,6 +350,7 @@ fn walk<C: Count>(
     let Some(root) = tree.nodes.first() else { return false };
     let slabs = Slabs::of(ray, root, padding);
     let enter = |node: &Node, limit| slabs.enter(node, ray.t_min, limit);
+    // Test the root.
     count.nodes(1);
     if enter(root, *limit).is_none() {
         return false;
@@ -357,6 +358,7 @@ fn walk<C: Count>(
     let mut stack = Stack::<f32>::new();
     let mut node: &Node = root;
     loop {
+        // Visit the primitives of a leaf.
         if node.is_leaf() {
             let (first, len) = (node.first as usize, node.count as usize);
             for &id in &tree.indices[first..first + len] {
@@ -365,10 +367,12 @@ fn walk<C: Count>(
                 }
             }
         } else {
+            // Test both children of an inner node.
             let children = &tree.nodes[node.first as usize..node.first as usize + 2];
             count.nodes(2);
             match (enter(&children[0], *limit), enter(&children[1], *limit)) {
                 (Some(left), Some(right)) => {
+                    // Push the farther child.
                     let near = usize::from(right < left);
                     stack.push(node.first + 1 - near as u32, left.max(right));
                     node = &children[near];
@@ -385,6 +389,7 @@ fn walk<C: Count>(
                 (None, None) => {}
             }
         }
+        // Pop the next node within the limit.
         node = loop {
             let Some((index, enter)) = stack.pop() else { return false };
             if enter <= *limit {

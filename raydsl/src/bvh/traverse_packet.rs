@@ -172,11 +172,13 @@ fn update_best<'a, L: Lanes, P: Primitive, W: Places<'a, L, P>>(
 ) {
     let (l, ray) = (m.lanes(), *candidate.ray);
     let hit = candidate.with_ids(l, P::Hit::hit_on(candidate.intersect(m, mask)));
+    // Intersect, and return early if no lane is hit.
     let t_max = F(min(l, ray.t_max.0, best.t));
     let hits = and(l, mask, is_within::on(m, hit, RayOn { t_max, ..ray }).0);
     if !l.any(hits) {
         return;
     }
+    // Update the lanes with a closer hit.
     let before = HitOn { t: F(best.t), prim_id: U(best.id), inst_id: U(best.inst), ..hit };
     let is_closer = and(l, hits, precedes::on(m, W::HAVE_INSTANCES, hit, before).0);
     best.t = l.f32_select(is_closer, hit.t.0, best.t);
@@ -534,6 +536,7 @@ fn walk_part<L: Lanes, P: Primitive>(
         (leaf, descent) = (Leaf { end: 0, ..leaf }, Some(Descent { tree, slabs }));
     }
     loop {
+        // Visit the primitives of the leaf, until no lane in it is active.
         for place in leaf.begin..leaf.end {
             let id = match &descent {
                 Some(descent) => {
@@ -602,12 +605,13 @@ impl<L: Lanes> Descent<'_, L> {
                     return Some(Leaf { begin, end: begin + node.count as usize, mask });
                 }
                 let children = &self.tree.nodes[node.first as usize..node.first as usize + 2];
+                // Test both children.
                 let (t0, hit0) = self.slabs.enter(l, &children[0], limit);
                 let (t1, hit1) = self.slabs.enter(l, &children[1], limit);
                 let (hit0, hit1) = (and(l, mask, hit0), and(l, mask, hit1));
                 let is_first = match (l.any(hit0), l.any(hit1)) {
                     (true, true) => {
-                        // The child that most lanes enter first is visited first.
+                        // Visit first the child that most lanes enter first.
                         let both = and(l, hit0, hit1);
                         let left = and(l, both, l.f32_compare(op::Le, t0, t1));
                         let is_first = 2 * l.bits(left).count_ones() >= l.bits(both).count_ones();

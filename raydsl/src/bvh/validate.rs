@@ -1,4 +1,4 @@
-//! Whether a tree is one.
+//! Validation of tree structure.
 
 use thiserror::Error;
 
@@ -7,103 +7,103 @@ use super::coverage::is_covered;
 use super::{Bvh, MAX_DEPTH, Node};
 use crate::geometry::{Aabb, Primitive};
 
-/// What is wrong with a tree; [`validate`] looks for it.
+/// Fault in a tree, found by [`validate`].
 ///
-/// A tree that the library built has none of these, unless primitives whose boxes come from cells
-/// or globals have changed since.
+/// A tree built by the library has none of these, unless primitives whose boxes come from cells or
+/// globals have changed since.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TreeFault {
     /// The children of an inner node are not all among the nodes.
     #[error("node {node}: the children {first} and the one behind are not among {nodes} nodes")]
     ChildOutOfRange {
-        /// The inner node.
+        /// Index of the inner node.
         node: usize,
-        /// Its left child.
+        /// Index of its left child.
         first: usize,
-        /// How many nodes there are.
+        /// Number of nodes.
         nodes: usize,
     },
     /// A child does not come after its parent: it may be its own ancestor.
     #[error("node {node}: its child {child} does not come after it")]
     ChildBeforeParent {
-        /// The inner node.
+        /// Index of the inner node.
         node: usize,
-        /// The child.
+        /// Index of the child.
         child: usize,
     },
     /// A node is the child of two nodes.
     #[error("node {node}: its child {child} is another node's, too")]
     SharedChild {
-        /// The second of the parents.
+        /// Index of the second parent.
         node: usize,
-        /// The child.
+        /// Index of the child.
         child: usize,
     },
-    /// A node is no one's child, and not the root.
+    /// A node has no parent, and is not the root.
     #[error("node {node} is not below the root")]
     Unreachable {
-        /// The node.
+        /// Index of the node.
         node: usize,
     },
-    /// A node is too far from the root for the stack of a traversal.
+    /// A node is too far from the root for the traversal stack.
     #[error("node {node} is {depth} steps from the root: {MAX_DEPTH} are allowed")]
     TooDeep {
-        /// The node.
+        /// Index of the node.
         node: usize,
         /// Its distance from the root.
         depth: usize,
     },
-    /// A bound of a box is NaN, infinite, or the lower one is above the upper one.
+    /// A bound of a box is NaN or infinite, or the lower one is above the upper one.
     #[error("node {node}: its box is not finite, or min > max")]
     InvalidBox {
-        /// The node.
+        /// Index of the node.
         node: usize,
     },
-    /// A box does not hold that of a child.
+    /// A node's box does not contain that of a child.
     #[error("node {node}: its box does not hold that of its child {child}")]
     ChildOutside {
-        /// The inner node.
+        /// Index of the inner node.
         node: usize,
-        /// The child.
+        /// Index of the child.
         child: usize,
     },
-    /// A box does not hold that of a primitive.
+    /// A leaf's box does not contain that of a primitive.
     #[error("node {node}: its box does not hold that of primitive {primitive}")]
     PrimitiveOutside {
-        /// The leaf.
+        /// Index of the leaf.
         node: usize,
-        /// The primitive.
+        /// The primitive id.
         primitive: usize,
     },
     /// The entries of a leaf are not all in the index list.
     #[error("node {node}: {count} entries from {first} on are not all in the list of {entries}")]
     EntryOutOfRange {
-        /// The leaf.
+        /// Index of the leaf.
         node: usize,
         /// Its first entry.
         first: usize,
-        /// How many entries it has.
+        /// Number of its entries.
         count: usize,
-        /// How many entries the list has.
+        /// Number of entries in the list.
         entries: usize,
     },
-    /// An entry of a leaf is no primitive.
+    /// An entry of a leaf is not a valid primitive id.
     #[error("node {node}: there is no primitive {primitive}, only {primitives}")]
     NoSuchPrimitive {
-        /// The leaf.
+        /// Index of the leaf.
         node: usize,
-        /// The number in the entry.
+        /// The id in the entry.
         primitive: usize,
-        /// How many primitives there are.
+        /// Number of primitives.
         primitives: usize,
     },
-    /// A primitive is in a leaf twice: rays would be tested twice.
+    /// A primitive is in a leaf twice: it would be intersected twice.
     #[error("node {node}: primitive {primitive} is in it twice")]
     Repeated {
-        /// The leaf.
+        /// Index of the leaf.
         node: usize,
-        /// The primitive.
+        /// The primitive id.
         primitive: usize,
     },
     /// A primitive is in several leaves, as parts, and a part is in none.
@@ -111,28 +111,28 @@ pub enum TreeFault {
         "the boxes of the leaves that hold parts of primitive {primitive} leave out some of it"
     )]
     PartMissing {
-        /// The primitive.
+        /// The primitive id.
         primitive: usize,
     },
-    /// A primitive is in no leaf: no ray would meet it.
+    /// A primitive is in no leaf: no ray would hit it.
     #[error("primitive {primitive} is in no leaf")]
     Missing {
-        /// The primitive.
+        /// The primitive id.
         primitive: usize,
     },
 }
 
-/// Checks that a tree is one, for tests and for tracking down a fault: that every primitive is in a
-/// leaf, every index in its range, every node but the root the child of one that comes before it,
-/// no leaf deeper than [`MAX_DEPTH`], no primitive twice in a leaf, and that every box holds the
+/// Validates the structure of a tree, for tests and for tracking down a fault: every primitive is
+/// in a leaf, every index in its range, every node but the root the child of one that comes before
+/// it, no leaf deeper than [`MAX_DEPTH`], no primitive twice in a leaf, and every box contains the
 /// boxes below it and those of its primitives.
 ///
 /// Where a primitive is in several leaves ([`BuildQuality::Best`](super::BuildQuality::Best)), each
-/// may hold a part of it. Then it is checked along each axis that no part is left out, as far as
+/// may hold a part of it. Then each axis is checked for missing parts, as far as
 /// [`Primitive::split_primitive`] tells.
 ///
-/// Takes one pass over the nodes, two bytes a node, and asks for the bounds of all primitives. Of a
-/// wide tree the binary one is made for it, as for [`Bvh::statistics`].
+/// Takes one pass over the nodes, two bytes a node, and computes the bounds of all primitives. For
+/// a wide tree the binary one is made, as for [`Bvh::statistics`].
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -146,15 +146,15 @@ pub enum TreeFault {
 ///
 /// # Errors
 ///
-/// The first fault, in the order of the nodes; primitives that are not, or not all, in leaves come
-/// last.
+/// The first fault, in the order of the nodes; primitives missing from leaves, in whole or in part,
+/// come last.
 pub fn validate<P: Primitive>(bvh: &Bvh<'_, P>) -> Result<(), TreeFault> {
     let source = Primitives { prims: bvh.primitives(), shared: bvh.shared() };
     let tree = bvh.tree.own.structure.peek();
     check(&tree.nodes, &tree.indices, bvh.primitives().len(), &source)
 }
 
-/// [`validate`], for the parts of a tree over `count` primitives.
+/// Validates the arrays of a tree over `count` primitives, as [`validate`] does.
 pub(super) fn check(
     nodes: &[Node],
     indices: &[u32],
@@ -172,7 +172,7 @@ pub(super) fn check(
     if let Some(root) = walk.depths.first_mut() {
         *root = Some(0);
     }
-    // No stack: whoever is visited has told its children, which come after it, how deep they are.
+    // No stack: a visited node has set the depth of its children, which come after it.
     for node in 0..nodes.len() {
         walk.visit(node)?;
     }
@@ -182,26 +182,26 @@ pub(super) fn check(
     walk.visit_parts()
 }
 
-/// Where a primitive was found.
+/// Leaves in which a primitive was found.
 #[derive(Clone, Copy, Default)]
 struct Found {
-    /// The last leaf that has it.
+    /// The last leaf with the primitive.
     leaf: Option<u32>,
-    /// Whether another one has it, too.
+    /// Whether another leaf has it, too.
     is_in_others: bool,
-    /// Whether a leaf's box holds all of it.
+    /// Whether a leaf's box contains all of it.
     is_whole: bool,
 }
 
-/// A walk over all nodes, one after another.
+/// Pass over all nodes in order.
 struct Walk<'a> {
     nodes: &'a [Node],
     indices: &'a [u32],
     source: &'a dyn Source,
-    /// How deep those nodes are of which a parent has been visited.
+    /// Depths of the nodes with a visited parent.
     depths: Vec<Option<u8>>,
     found: Vec<Found>,
-    /// Primitives, and leaves that do not hold all of them.
+    /// Primitives, each with a leaf that does not contain all of it.
     parts: Vec<(u32, u32)>,
 }
 
@@ -268,8 +268,8 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Looks at the primitives of which a leaf does not hold all. With one leaf alone that is a
-    /// fault; several may have a part each.
+    /// Checks the primitives that some leaf does not wholly contain. With a single leaf that is a
+    /// fault; several may contain a part each.
     fn visit_parts(&mut self) -> Result<(), TreeFault> {
         self.parts.sort_unstable();
         for parts in self.parts.chunk_by(|a, b| a.0 == b.0) {
@@ -290,7 +290,7 @@ impl Walk<'_> {
     }
 }
 
-/// Whether a node's box holds another; none holds one with a NaN.
+/// Returns whether a node's box contains another; none contains one with a NaN.
 fn holds(node: &Node, inner: Aabb) -> bool {
     let outer = node.bounds();
     outer.min.cmple(inner.min).all() && inner.max.cmple(outer.max).all()

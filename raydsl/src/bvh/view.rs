@@ -128,7 +128,7 @@ pub(crate) struct Trees<'a, T, S> {
     pub(super) walks: Option<Walks<T, S>>,
 }
 
-/// Primitives under an acceleration structure of the application.
+/// Primitives under an application-defined acceleration structure.
 pub(crate) struct Standing<'a, T, S> {
     pub(super) prims: &'a [T],
     pub(super) shared: &'a [S],
@@ -154,8 +154,8 @@ enum Scene<'a, T, S> {
     Standing(&'a Standing<'a, T, S>),
 }
 
-/// A scene as kernels see it: a slice, a tree over one, a list of trees. A value of the host on
-/// every machine.
+/// View of a scene in kernels: a slice, a tree over one, a list of trees, instances, or an
+/// application-defined structure. A host value on every machine.
 ///
 /// `S` is the type of the shared data of primitives; see [`Primitive::Shared`].
 pub struct View<'a, T, S = ()> {
@@ -230,7 +230,7 @@ impl<'a, T, S> View<'a, T, S> {
         }
     }
 
-    /// Returns whether a structure of the application finds the primitives.
+    /// Returns whether an application-defined structure finds the primitives.
     #[inline(always)]
     pub(crate) fn is_standing(&self) -> bool {
         matches!(self.scene, Scene::Standing(_))
@@ -492,7 +492,7 @@ impl<M: Machine, T, S> Value<M> for View<'_, T, S> {
 
     #[inline(always)]
     fn zip(_: &M, a: Self, b: Self, _: &mut impl Leaves<M>) -> Self {
-        // Nothing yet: a variable that has been declared.
+        // An empty slice is the zero value of a declared variable.
         let is_nothing = |v: &Self| v.is_slice() && v.elements().is_empty();
         if is_nothing(&a) {
             return b;

@@ -1,10 +1,10 @@
-//! Where a camera's right and up are.
+//! Orthonormal camera bases.
 
 use core::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 
-/// Three directions of unit length, perpendicular to each other.
+/// Orthonormal basis of a camera.
 pub(super) struct Basis {
     pub(super) right: Vec3,
     pub(super) up: Vec3,
@@ -12,11 +12,11 @@ pub(super) struct Basis {
 }
 
 impl Basis {
-    /// That of a view from `eye` to `center`; defined for all input that is finite.
+    /// Creates the basis of a view from `eye` to `center`; defined for all finite input.
     pub(super) fn new(eye: Vec3, center: Vec3, up: Vec3) -> Self {
         let (view, up) = (center.as_dvec3() - eye.as_dvec3(), up.as_dvec3());
         let forward = view.try_normalize().unwrap_or(DVec3::NEG_Z);
-        // What is left of the product of two that are parallel has no direction.
+        // The rounded product of two parallel vectors has no direction.
         let right = view.cross(up);
         let is_clear = right.length() > 1e-9 * view.length() * up.length();
         let right = if is_clear { right.normalize() } else { forward.any_orthonormal_vector() };
@@ -25,7 +25,7 @@ impl Basis {
     }
 }
 
-/// The size of a pixel at the distance 1, for a vertical field of view in radians.
+/// Returns the size of a pixel at distance 1, for a vertical field of view in radians.
 pub(super) fn pixel_size(fov_y: f32, height: u32) -> f64 {
     let fov = f64::from(fov_y).clamp(1e-6, PI - 1e-6);
     2.0 * (fov * 0.5).tan() / f64::from(height.max(1))

@@ -1,4 +1,4 @@
-//! The camera of a rasteriser.
+//! Cameras from the matrices of a rasteriser.
 
 use glam::{DMat4, DVec3, DVec4, Mat4, Vec2, Vec3, Vec4, dvec4};
 
@@ -7,12 +7,12 @@ use crate::geometry::Ray;
 use crate::machine::generic::min;
 use crate::{Type, kernel};
 
-/// Where the near and the far plane are in normalised device coordinates.
+/// Depths of the near and the far plane in normalised device coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthRange {
-    /// The near plane's.
+    /// Depth of the near plane.
     pub near: f32,
-    /// The far plane's.
+    /// Depth of the far plane.
     pub far: f32,
 }
 
@@ -25,7 +25,7 @@ impl DepthRange {
     pub const REVERSED: Self = Self { near: 1.0, far: 0.0 };
 }
 
-/// Why matrices make no camera.
+/// Error of creating a camera from matrices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CameraError {
@@ -43,9 +43,9 @@ pub enum CameraError {
     NearBehindEye,
 }
 
-/// A camera that is given by the matrices of a rasteriser, so that both kinds of pictures can be
-/// joined: rays go from the near plane to the far one, and [`MatrixRays::window_depth`] of what
-/// they hit is what the rasteriser writes into its depth buffer.
+/// Camera given by the matrices of a rasteriser, to combine both kinds of images: rays go from the
+/// near plane to the far one, and [`MatrixRays::window_depth`] of a hit point is the value that the
+/// rasteriser writes into its depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrix {
     clip: DMat4,
@@ -54,8 +54,8 @@ pub struct Matrix {
 }
 
 impl Matrix {
-    /// A camera of the matrices from the world to the view, and from there to clip space. The near
-    /// plane must lie in front of the eye.
+    /// Creates a camera from the world-to-view and view-to-clip matrices. The near plane must lie
+    /// in front of the eye.
     ///
     /// # Errors
     ///
@@ -64,9 +64,9 @@ impl Matrix {
     pub fn new(view: Mat4, proj: Mat4, depth: DepthRange) -> Result<Self, CameraError> {
         let clip = proj.as_dmat4() * view.as_dmat4();
         let world = clip.inverse();
-        // The inverse of a singular matrix is not finite, or none.
+        // The inverse of a singular matrix is not finite, or no inverse.
         let rest = (clip * world - DMat4::IDENTITY).to_cols_array();
-        // A NaN is not below, either.
+        // False for a NaN, too.
         let is_inverse = rest.iter().all(|v| v.abs() < 1e-3);
         if clip.determinant() == 0.0 || !is_inverse {
             return Err(CameraError::Singular);
@@ -74,7 +74,7 @@ impl Matrix {
         if !(depth.near - depth.far).is_normal() {
             return Err(CameraError::NoDepth);
         }
-        // The last coordinate of a point is one over that of its place in clip space.
+        // The last coordinate of a point is the reciprocal of that of its clip-space position.
         let in_front = |x: f64, y: f64| (world.row(3)).dot(dvec4(x, y, f64::from(depth.near), 1.0));
         let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
         if !corners.iter().all(|&(x, y)| in_front(x, y) > 0.0) {
@@ -84,34 +84,35 @@ impl Matrix {
     }
 }
 
-/// A [`Matrix`] camera prepared for a film.
+/// Ray generation of a [`Matrix`] camera for a film.
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
 #[repr(C)]
 pub struct MatrixRays {
-    /// The point of the near plane behind the film's corner (0, 0), homogeneous.
+    /// Point of the near plane behind the film's corner (0, 0), homogeneous.
     pub near_corner: Vec4,
-    /// What a pixel to the right adds to it.
+    /// Its change per pixel to the right.
     pub near_right: Vec4,
-    /// What a pixel up adds to it.
+    /// Its change per pixel up.
     pub near_up: Vec4,
-    /// From there to the far plane, in another length.
+    /// Direction from there to the far plane, scaled.
     pub way_corner: Vec3,
-    /// What a pixel to the right adds to it.
+    /// Its change per pixel to the right.
     pub way_right: Vec3,
-    /// What a pixel up adds to it.
+    /// Its change per pixel up.
     pub way_up: Vec3,
-    /// The last coordinate of the point of the far plane, and what pixels to the right and up add
-    /// to it.
+    /// Last coordinate of the point of the far plane, and its changes per pixel to the right and
+    /// up.
     pub far_w: Vec3,
     /// The eye, or the middle of the near plane where rays are parallel.
     pub eye: Vec3,
-    /// From a point, as seen from there, to its depth in the window, times the last coordinate.
+    /// Linear map from a point, relative to `eye`, to its window depth times the last coordinate.
     pub depth: Vec4,
-    /// From a point, as seen from there, to the last coordinate in clip space.
+    /// Linear map from a point, relative to `eye`, to the last coordinate in clip space.
     pub clip_w: Vec4,
 }
 
-/// A function of the film that is linear: at the corner, and what pixels to the right and up add.
+/// Converts a linear function of the film to its value at the corner, and its changes per pixel to
+/// the right and up.
 fn over_film<T: core::ops::Mul<f64, Output = T> + core::ops::Sub<Output = T> + Copy>(
     [middle, right, up]: [T; 3],
     width: u32,
@@ -128,14 +129,14 @@ impl Camera for Matrix {
         let DepthRange { near, far } = self.depth;
         let (near, far) = (f64::from(near), f64::from(far));
         let plane = |z: f64| self.world.z_axis * z + self.world.w_axis;
-        // All lines of sight have this point: the eye, or the direction of parallel ones.
+        // All lines of sight meet in this point: the eye, or the direction of parallel ones.
         let eye = self.world.z_axis * (far - near);
         let seen_from = |h: DVec4| (h.truncate() / h.w).as_vec3();
         let position = Some(seen_from(eye)).filter(|p| p.is_finite());
         let position = position.unwrap_or_else(|| seen_from(plane(near)));
         let axes = [plane(near), self.world.x_axis, self.world.y_axis];
         // From `near` to `near + eye`: the difference of the points times both last coordinates,
-        // where the products of the coordinates of `near` cancel. So it is as linear as `near` is.
+        // where the products of the coordinates of `near` cancel. So it is as linear as `near`.
         let way = axes.map(|n: DVec4| eye.truncate() * n.w - n.truncate() * eye.w);
         let far_w = [plane(far).w, self.world.x_axis.w, self.world.y_axis.w];
         let [near_corner, near_right, near_up] =
@@ -143,7 +144,7 @@ impl Camera for Matrix {
         let [way_corner, way_right, way_up] = over_film(way, width, height).map(|v| v.as_vec3());
         let (lowest, span) = (near.min(far), (near - far).abs());
         let depth = (self.clip.row(2) - self.clip.row(3) * lowest) / span;
-        // What a row gives for a point, as a function of the way there.
+        // Express a row as a function of the vector from `position`.
         let from_there =
             |row: DVec4| row.truncate().extend(row.dot(position.as_dvec3().extend(1.0))).as_vec4();
         MatrixRays {
@@ -163,7 +164,7 @@ impl Camera for Matrix {
 
 #[kernel]
 impl CameraRays for MatrixRays {
-    /// The ray from the near plane to the far one; its direction has unit length.
+    /// Returns the ray from the near plane to the far one; its direction has unit length.
     fn primary_ray(&self, x: f32, y: f32) -> Ray {
         let near = self.near_corner + self.near_right * x + self.near_up * y;
         let way = self.way_corner + self.way_right * x + self.way_up * y;
@@ -174,7 +175,7 @@ impl CameraRays for MatrixRays {
         Ray { origin: near.truncate() / near.w, direction: way / length, t_min: 0.0, t_max }
     }
 
-    /// The primary ray: there is no lens.
+    /// Returns the primary ray: there is no lens.
     fn lens_ray(&self, x: f32, y: f32, _u: Vec2) -> Ray {
         self.primary_ray(x, y)
     }
@@ -182,8 +183,8 @@ impl CameraRays for MatrixRays {
 
 #[kernel]
 impl MatrixRays {
-    /// The depth of a point in the window, from 0 to 1: what a rasteriser writes, with the usual
-    /// depth range of its viewport. For a hit it is `window_depth(ray.at(hit.t))`.
+    /// Returns the window depth of a point, from 0 to 1: the value that a rasteriser writes, with
+    /// the usual depth range of its viewport. For a hit it is `window_depth(ray.at(hit.t))`.
     #[inline]
     pub fn window_depth(&self, point: Vec3) -> f32 {
         // Large coordinates cancel here, where the difference is exact.

@@ -1,4 +1,4 @@
-//! Parallel rays.
+//! Orthographic camera: parallel primary rays.
 
 use glam::{Vec2, Vec3};
 
@@ -7,37 +7,37 @@ use super::{Camera, CameraRays};
 use crate::geometry::Ray;
 use crate::{Type, kernel};
 
-/// A camera whose rays are parallel: what is far away is as large as what is near.
+/// Orthographic camera: objects have the same size at any distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orthographic {
-    /// The middle of the film; what is behind it is not seen.
+    /// Middle of the film; geometry behind it is not seen.
     pub eye: Vec3,
-    /// What the middle of the film sees.
+    /// Point seen in the middle of the film.
     pub center: Vec3,
-    /// Which way is up.
+    /// Up direction.
     pub up: Vec3,
-    /// The film's height, in units of the scene.
+    /// Height of the film, in units of the scene.
     pub height: f32,
 }
 
 impl Orthographic {
-    /// A camera at `eye` that looks at `center`, and sees so much from the bottom to the top.
+    /// Creates a camera at `eye` that looks at `center`, with a film of this height.
     pub const fn new(eye: Vec3, center: Vec3, up: Vec3, height: f32) -> Self {
         Self { eye, center, up, height }
     }
 }
 
-/// An orthographic camera prepared for a film.
+/// Ray generation of an orthographic camera for a film.
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
 #[repr(C)]
 pub struct OrthographicRays {
-    /// The film's corner (0, 0).
+    /// Corner (0, 0) of the film.
     pub corner: Vec3,
-    /// One pixel to the right.
+    /// Step of one pixel to the right.
     pub right: Vec3,
-    /// One pixel up.
+    /// Step of one pixel up.
     pub up: Vec3,
-    /// The direction of all rays, with unit length.
+    /// Direction of all rays, with unit length.
     pub direction: Vec3,
 }
 
@@ -59,13 +59,13 @@ impl Camera for Orthographic {
 
 #[kernel]
 impl CameraRays for OrthographicRays {
-    /// The ray from the point (`x`, `y`) of the film.
+    /// Returns the ray from the point (`x`, `y`) of the film.
     fn primary_ray(&self, x: f32, y: f32) -> Ray {
         let origin = self.corner + self.right * x + self.up * y;
         Ray { origin, direction: self.direction, t_min: 0.0, t_max: f32::MAX }
     }
 
-    /// The primary ray: there is no lens.
+    /// Returns the primary ray: there is no lens.
     fn lens_ray(&self, x: f32, y: f32, _u: Vec2) -> Ray {
         self.primary_ray(x, y)
     }

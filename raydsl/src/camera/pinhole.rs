@@ -7,21 +7,22 @@ use super::{Camera, CameraRays};
 use crate::geometry::Ray;
 use crate::{Type, kernel};
 
-/// A camera that sees everything sharp.
+/// Pinhole camera: perspective projection, sharp at every distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pinhole {
-    /// Where the camera is.
+    /// Position of the camera.
     pub eye: Vec3,
-    /// What it looks at: the middle of the film.
+    /// Point that it looks at, in the middle of the film.
     pub center: Vec3,
-    /// Which way is up.
+    /// Up direction.
     pub up: Vec3,
     /// Vertical field of view in radians, in (0, pi).
     pub fov_y: f32,
 }
 
 impl Pinhole {
-    /// A camera at `eye` that looks at `center`; `fov_y` is the vertical field of view in radians.
+    /// Creates a camera at `eye` that looks at `center`; `fov_y` is the vertical field of view in
+    /// radians.
     pub const fn new(eye: Vec3, center: Vec3, up: Vec3, fov_y: f32) -> Self {
         Self { eye, center, up, fov_y }
     }
@@ -31,17 +32,17 @@ impl Pinhole {
     }
 }
 
-/// A pinhole camera prepared for a film.
+/// Ray generation of a pinhole camera for a film.
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
 #[repr(C)]
 pub struct PinholeRays {
-    /// Where all rays start.
+    /// Origin of all rays.
     pub origin: Vec3,
-    /// From the origin to the film's corner (0, 0).
+    /// Vector from the origin to the film's corner (0, 0).
     pub corner: Vec3,
-    /// One pixel to the right.
+    /// Step of one pixel to the right.
     pub right: Vec3,
-    /// One pixel up.
+    /// Step of one pixel up.
     pub up: Vec3,
 }
 
@@ -63,13 +64,13 @@ impl Camera for Pinhole {
 
 #[kernel]
 impl CameraRays for PinholeRays {
-    /// The ray through the point (`x`, `y`) of the film; its direction has unit length.
+    /// Returns the ray through the point (`x`, `y`) of the film; its direction has unit length.
     fn primary_ray(&self, x: f32, y: f32) -> Ray {
         let direction = (self.corner + self.right * x + self.up * y).normalize();
         Ray { origin: self.origin, direction, t_min: 0.0, t_max: f32::MAX }
     }
 
-    /// The primary ray: there is no lens.
+    /// Returns the primary ray: there is no lens.
     fn lens_ray(&self, x: f32, y: f32, _u: Vec2) -> Ray {
         self.primary_ray(x, y)
     }

@@ -1,37 +1,37 @@
-//! Two eyes.
+//! Stereo cameras.
 
 use super::basis::Basis;
 use super::{Camera, Pinhole, PinholeRays};
 
-/// Two cameras, one for each eye, that look the same way.
+/// Pair of cameras, one for each eye, with parallel views.
 ///
-/// Their films are moved against each other instead of turned towards each other, which would make
-/// the two pictures differ in height too (off-axis projection; Bourke, "Calculating Stereo Pairs",
-/// 1999). What is `zero_parallax` away is in the same place in both: it appears on the screen, what
-/// is nearer in front of it.
+/// Their films are shifted against each other (off-axis projection; Bourke, "Calculating Stereo
+/// Pairs", 1999): turning them towards each other would make the two images differ in height too.
+/// Objects `zero_parallax` away are in the same place in both: they appear on the screen, nearer
+/// ones in front of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stereo {
-    /// The camera between the eyes.
+    /// Camera between the eyes.
     pub pinhole: Pinhole,
-    /// How far apart the eyes are, in units of the scene.
+    /// Distance between the eyes, in units of the scene.
     pub eye_separation: f32,
-    /// How far away what both see in the same place is, along the view. Infinity is allowed; what
-    /// is not positive counts as infinity.
+    /// Distance along the view at which both eyes see a point in the same place. Infinity is
+    /// allowed; values that are not positive count as infinity.
     pub zero_parallax: f32,
 }
 
 impl Stereo {
-    /// Two eyes beside a pinhole camera.
+    /// Creates the two eyes beside a pinhole camera.
     pub const fn new(pinhole: Pinhole, eye_separation: f32, zero_parallax: f32) -> Self {
         Self { pinhole, eye_separation, zero_parallax }
     }
 
-    /// The left eye.
+    /// Returns the left eye.
     pub const fn left(&self) -> Eye {
         self.eye(-0.5 * self.eye_separation)
     }
 
-    /// The right eye.
+    /// Returns the right eye.
     pub const fn right(&self) -> Eye {
         self.eye(0.5 * self.eye_separation)
     }
@@ -44,11 +44,11 @@ impl Stereo {
 /// One of the two cameras of a [`Stereo`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eye {
-    /// The camera between the eyes.
+    /// Camera between the eyes.
     pub pinhole: Pinhole,
-    /// How far to the right this eye is.
+    /// Offset of this eye to the right.
     pub aside: f32,
-    /// The distance without parallax.
+    /// Distance without parallax.
     pub zero_parallax: f32,
 }
 

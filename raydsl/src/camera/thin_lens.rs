@@ -1,4 +1,4 @@
-//! A camera with a lens.
+//! Thin-lens camera: depth of field.
 
 use glam::{Vec2, Vec3};
 
@@ -8,40 +8,39 @@ use crate::geometry::Ray;
 use crate::sampling::sample_concentric_disk;
 use crate::{Type, kernel};
 
-/// A camera that sees sharp what lies in one plane, and all else the more blurred the wider its
-/// lens is.
+/// Thin-lens camera: sharp in one plane, and blurred elsewhere in proportion to the lens radius.
 ///
 /// An ideal lens (Potmesil and Chakravarty, "A Lens and Aperture Camera Model for Synthetic Image
 /// Generation", 1981): all rays through a point of the film meet in the plane of focus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinLens {
-    /// The camera without the lens: what is in focus is seen where this sees it.
+    /// Camera without the lens; points in focus appear where it sees them.
     pub pinhole: Pinhole,
-    /// The radius of the lens, in units of the scene; with 0 everything is sharp.
+    /// Radius of the lens, in units of the scene; with 0 everything is sharp.
     pub lens_radius: f32,
-    /// How far away the plane of focus is, along the view. Infinity is allowed; what is not
-    /// positive counts as infinity.
+    /// Distance of the plane of focus, along the view. Infinity is allowed; values that are not
+    /// positive count as infinity.
     pub focal_distance: f32,
 }
 
 impl ThinLens {
-    /// A camera with a lens in place of the hole.
+    /// Creates a camera with a lens in place of the pinhole.
     pub const fn new(pinhole: Pinhole, lens_radius: f32, focal_distance: f32) -> Self {
         Self { pinhole, lens_radius, focal_distance }
     }
 }
 
-/// A thin lens prepared for a film.
+/// Ray generation of a thin-lens camera for a film.
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
 #[repr(C)]
 pub struct ThinLensRays {
-    /// The rays through the middle of the lens.
+    /// Ray generation through the middle of the lens.
     pub middle: PinholeRays,
-    /// From the middle of the lens to its right edge.
+    /// Vector from the middle of the lens to its right edge.
     pub lens_right: Vec3,
-    /// From the middle of the lens to its upper edge.
+    /// Vector from the middle of the lens to its upper edge.
     pub lens_up: Vec3,
-    /// 1 / the distance of the plane of focus.
+    /// Reciprocal of the focal distance.
     pub nearness: f32,
 }
 
@@ -63,16 +62,16 @@ impl Camera for ThinLens {
 impl CameraRays for ThinLensRays {
     const HAS_LENS: bool = true;
 
-    /// The ray through the middle of the lens.
+    /// Returns the ray through the middle of the lens.
     fn primary_ray(&self, x: f32, y: f32) -> Ray {
         self.middle.primary_ray(x, y)
     }
 
-    /// The ray through a point of the lens: a uniform `u` gives a uniform one.
+    /// Returns the ray through a point of the lens, uniform for a uniform `u`.
     fn lens_ray(&self, x: f32, y: f32, u: Vec2) -> Ray {
         let at = sample_concentric_disk(u);
         let offset = self.lens_right * at.x + self.lens_up * at.y;
-        // To the point in focus, divided by its distance.
+        // Vector to the point in focus, divided by its distance.
         let through_middle = self.middle.corner + self.middle.right * x + self.middle.up * y;
         let direction = (through_middle - offset * self.nearness).normalize();
         Ray { origin: self.middle.origin + offset, direction, t_min: 0.0, t_max: f32::MAX }

@@ -1,8 +1,8 @@
-//! Axis-aligned bounding boxes (host side).
+//! Axis-aligned bounding boxes on the host.
 
 use glam::Vec3;
 
-/// An axis-aligned box `[min, max]`, closed on all sides.
+/// Axis-aligned bounding box `[min, max]`, closed on all sides.
 ///
 /// [`Aabb::EMPTY`] is the neutral element of [`Aabb::union`]; a box is *valid* when `min <= max`
 /// on every axis and no bound is NaN.
@@ -15,21 +15,21 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// The box that contains nothing.
+    /// Empty box.
     pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
-    /// The box spanned by two corners, `min <= max`.
+    /// Creates the box spanned by two corners, `min <= max`.
     pub const fn new(min: Vec3, max: Vec3) -> Self {
         Self { min, max }
     }
 
-    /// The smallest box around `points`.
+    /// Returns the smallest box around `points`.
     pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Self {
         points.into_iter().fold(Self::EMPTY, |b, p| Self::new(b.min.min(p), b.max.max(p)))
     }
 
-    /// The smallest `f32` box that contains the sphere around `center`: the faces are rounded
-    /// outwards, so the box is never too small and at most one ulp too large.
+    /// Returns the smallest `f32` box that contains the sphere around `center`: the faces are
+    /// rounded outwards, so the box is never too small and at most one ulp too large.
     pub fn from_sphere(center: Vec3, radius: f32) -> Self {
         let down = |x: f32| (x - radius).next_down();
         let up = |x: f32| (x + radius).next_up();
@@ -39,18 +39,18 @@ impl Aabb {
         )
     }
 
-    /// The smallest box around both.
+    /// Returns the smallest box around both.
     pub fn union(self, other: Self) -> Self {
         Self::new(self.min.min(other.min), self.max.max(other.max))
     }
 
-    /// The common part; not valid when there is none.
+    /// Returns the intersection of two boxes; not valid when they are disjoint.
     pub fn intersection(self, other: Self) -> Self {
         Self::new(self.min.max(other.min), self.max.min(other.max))
     }
 
-    /// The parts below and above the plane `axis = at`, both closed; a part that is not there is
-    /// not valid. A NaN in `at` gives the whole box twice. `axis` is 0, 1 or 2.
+    /// Splits the box into the parts below and above the plane `axis = at`, both closed; an empty
+    /// part is not valid. A NaN in `at` returns the whole box twice. `axis` is 0, 1 or 2.
     pub fn split(self, axis: usize, at: f32) -> (Self, Self) {
         let (mut below, mut above) = (self, self);
         below.max[axis] = if at < self.max[axis] { at } else { self.max[axis] };
@@ -58,44 +58,44 @@ impl Aabb {
         (below, above)
     }
 
-    /// Whether `min <= max` on every axis (false when a bound is NaN).
+    /// Returns whether `min <= max` on every axis (false when a bound is NaN).
     pub fn is_valid(self) -> bool {
         self.min.cmple(self.max).all()
     }
 
-    /// Whether every bound is a finite number.
+    /// Returns whether every bound is a finite number.
     pub fn is_finite(self) -> bool {
         self.min.is_finite() && self.max.is_finite()
     }
 
-    /// Edge lengths.
+    /// Returns the edge lengths.
     pub fn size(self) -> Vec3 {
         self.max - self.min
     }
 
-    /// The middle, formed so that it does not overflow.
+    /// Returns the center, computed without overflow.
     pub fn center(self) -> Vec3 {
         self.min * 0.5 + self.max * 0.5
     }
 
-    /// Half the surface area; 0 for a box that is not valid.
+    /// Returns half the surface area; 0 for a box that is not valid.
     pub fn half_area(self) -> f32 {
         let d = self.size().max(Vec3::ZERO);
         d.x * d.y + d.y * d.z + d.z * d.x
     }
 
-    /// [`Aabb::half_area`] of a valid box in `f64`, in which that of no finite box is infinite.
+    /// Returns [`Aabb::half_area`] of a valid box in `f64`, which is finite for every finite box.
     pub(crate) fn half_area_f64(self) -> f64 {
         let [x, y, z] = self.edges_f64();
         x * y + y * z + z * x
     }
 
-    /// [`Aabb::size`] in `f64`.
+    /// Returns [`Aabb::size`] in `f64`.
     pub(crate) fn edges_f64(self) -> [f64; 3] {
         core::array::from_fn(|axis| f64::from(self.max[axis]) - f64::from(self.min[axis]))
     }
 
-    /// Whether `point` lies in the closed box.
+    /// Returns whether `point` lies in the closed box.
     pub fn contains(self, point: Vec3) -> bool {
         self.min.cmple(point).all() && point.cmple(self.max).all()
     }

@@ -1,4 +1,4 @@
-//! Rays and boxes under affine maps.
+//! Affine transforms of rays and boxes.
 
 use glam::{Affine3, DAffine3, DMat3, DVec3, Vec3};
 
@@ -6,8 +6,8 @@ use super::{Aabb, Ray};
 use crate::kernel;
 use crate::machine::generic::{max, normalize, transform_point, transform_vector};
 
-/// The ray under an affine map. Its direction keeps the length that the map gives it, so a hit has
-/// the same `t` on both sides of the map.
+/// Transforms a ray by an affine map. Its direction is not normalized, so a hit has the same `t` on
+/// both sides of the map.
 #[kernel]
 pub fn transform_ray(ray: Ray, map: Affine3) -> Ray {
     Ray {
@@ -17,33 +17,33 @@ pub fn transform_ray(ray: Ray, map: Affine3) -> Ray {
     }
 }
 
-/// The unit normal, on the near side of a map, of a surface that has this normal on its far side:
-/// the transposed matrix takes it back, whatever the map does to lengths and angles.
+/// Transforms a unit normal from the far side of a map to the near side: multiplies by the
+/// transposed matrix, which is valid for any scale and shear, and normalizes.
 #[kernel]
 pub(crate) fn transform_normal_back(normal: Vec3, map: Affine3) -> Vec3 {
     let back = map.matrix3.transpose() * normal;
-    // Their squares would leave the range of `f32` at scales beyond 1e19.
+    // Squares of the components would leave the range of `f32` at scales beyond 1e19.
     normalize(back / max(max(back.x.abs(), back.y.abs()), back.z.abs()))
 }
 
-/// A map and its inverse, for geometry that is seen through the map.
+/// Affine map and its inverse, for placed geometry.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inverted {
-    /// From the outer space to that of the object, as rays are taken.
+    /// Transform from the outer space to that of the object, as applied to rays.
     pub(crate) to_object: Affine3,
-    /// The exact inverse of that, up to the rounding of `f64`.
+    /// Exact inverse of `to_object`, up to the rounding of `f64`.
     pub(crate) to_outer: DAffine3,
-    /// The largest factor by which `to_outer` stretches a direction.
+    /// Largest factor by which `to_outer` stretches a direction.
     pub(crate) stretch: f64,
-    /// The condition number: the largest stretch over the least one.
+    /// Condition number: the largest stretch over the least one.
     pub(crate) condition: f64,
 }
 
-/// What rays are taken by where an object is placed by `to_outer`; `None` if that is not finite or
-/// flattens the object.
+/// Returns the maps of an object placed by `to_outer`; `None` if it is not finite or flattens the
+/// object.
 pub(crate) fn inverted(to_outer: Affine3) -> Option<Inverted> {
-    // What is inverted again is the map of rays, with its rounding: the boxes must hold what rays
-    // meet.
+    // Invert the rounded map of rays again, not the original: the boxes must contain the hits of
+    // the transformed rays.
     let to_object = narrowed(wide(to_outer).inverse());
     let to_outer = wide(to_object).inverse();
     let stretch = stretch(to_outer.matrix3);
@@ -65,10 +65,10 @@ fn narrowed(a: DAffine3) -> Affine3 {
     Affine3 { matrix3, translation: a.translation.as_vec3() }
 }
 
-/// The largest singular value: the square root of the largest eigenvalue of `m^T m`, by rotations
-/// of Jacobi (Golub and Van Loan, *Matrix Computations*, section 8.5).
+/// Returns the largest singular value: the square root of the largest eigenvalue of `m^T m`, by
+/// Jacobi rotations (Golub and Van Loan, *Matrix Computations*, section 8.5).
 fn stretch(m: DMat3) -> f64 {
-    // Of this size squares neither overflow nor vanish.
+    // At this size squares neither overflow nor vanish.
     let size = m.to_cols_array().into_iter().fold(0.0, |size: f64, x| size.max(x.abs()));
     if size == 0.0 || !size.is_finite() {
         return size;
@@ -82,7 +82,7 @@ fn stretch(m: DMat3) -> f64 {
     size * a.diagonal().max_element().sqrt()
 }
 
-/// The rotation that makes the element `(p, q)` of a symmetric matrix 0.
+/// Returns the rotation that zeroes element `(p, q)` of a symmetric matrix.
 fn rotation(a: &DMat3, p: usize, q: usize) -> DMat3 {
     let mut by = DMat3::IDENTITY;
     if a.col(p)[q] != 0.0 {
@@ -95,14 +95,14 @@ fn rotation(a: &DMat3, p: usize, q: usize) -> DMat3 {
     by
 }
 
-/// A box around the image of a box, widened by `margin` on all sides.
+/// Returns a box around the image of a box, widened by `margin` on all sides.
 pub(crate) fn image(bounds: Aabb, map: &DAffine3, margin: f64) -> Aabb {
     let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
     let (center, half) = (0.5 * (low + high), 0.5 * (high - low));
     let m = map.matrix3;
     let reach = m.x_axis.abs() * half.x + m.y_axis.abs() * half.y + m.z_axis.abs() * half.z;
     let middle = map.transform_point3(center);
-    // A rounding of `f64` more than the formulas make.
+    // Add more than the `f64` rounding error of the formulas.
     let reach = reach + (middle.abs() + reach) * 1e-14 + DVec3::splat(margin);
     let outwards = |v: DVec3, to: fn(f32) -> f32| {
         let v = v.as_vec3();

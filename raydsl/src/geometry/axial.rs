@@ -1,4 +1,4 @@
-//! What cylinders and cones have in common: an axis, and what is along it and across.
+//! Axial decomposition of lines, shared by cylinders and cones.
 
 use core::f32::consts::TAU;
 
@@ -10,28 +10,28 @@ use crate::machine::generic::max;
 use crate::math::elementary::{atan2, sincos_2pi};
 use crate::{Type, kernel};
 
-/// A line, taken apart into what is along an axis and what is across.
+/// Line decomposed into components along an axis and across it.
 #[derive(Clone, Copy, Debug, Type)]
 pub(super) struct Axial {
-    /// The direction of the axis, with unit length.
+    /// Unit direction of the axis.
     pub(super) axis: Vec3,
-    /// Its length; 0 if it has none.
+    /// Length of the axis; 0 if it has none.
     pub(super) length: f32,
-    /// How far along the axis the line's point is, from where `offset` is measured.
+    /// Component of the line's point along the axis, from the beginning of `offset`.
     pub(super) along: f32,
-    /// The same of the line's direction.
+    /// Component of the line's direction along the axis.
     pub(super) step_along: f32,
-    /// From the axis to the line's point.
+    /// Perpendicular from the axis to the line's point.
     pub(super) across: Vec3,
-    /// The part of the line's direction that is perpendicular to the axis.
+    /// Component of the line's direction perpendicular to the axis.
     pub(super) step_across: Vec3,
 }
 
-/// The line through the point `offset` from the beginning of `axis`.
+/// Decomposes the line through the point `offset` from the beginning of `axis`.
 #[kernel]
 #[inline]
 pub(super) fn axial(line: Near, offset: Vec3, axis: Vec3) -> Axial {
-    // The axis may have any length whose square has no place in an `f32`.
+    // Scale first: the square of the axis's length may leave the range of `f32`.
     let size = largest(axis);
     let scaled = axis / size;
     let stretch = scaled.length();
@@ -48,18 +48,18 @@ pub(super) fn axial(line: Near, offset: Vec3, axis: Vec3) -> Axial {
     }
 }
 
-/// Where a line passes the axis at the distance of a radius or less.
+/// Intersection of a line with an infinite cylinder.
 #[derive(Clone, Copy, Debug, Type)]
 pub(super) struct Round {
-    /// Where it does.
+    /// Span of the line within the radius.
     pub(super) span: Span,
-    /// From the axis to the line where the two are closest.
+    /// Perpendicular from the axis to the line at their closest approach.
     pub(super) aside: Vec3,
-    /// From there to where it leaves.
+    /// Distance from there to the exit.
     pub(super) half: f32,
 }
 
-/// The line within an endless cylinder: `sphere::intersect` in the plane across the axis.
+/// Intersects the line with an infinite cylinder: `sphere::intersect` in the plane across the axis.
 #[kernel]
 #[inline]
 pub(super) fn round(line: Axial, radius: f32) -> Round {
@@ -82,7 +82,7 @@ pub(super) fn round(line: Axial, radius: f32) -> Round {
     Round { span, aside, half }
 }
 
-/// Which share of a turn around `axis`, of unit length, points at `v`: from 0 to 1.
+/// Returns the angle of `v` around the unit vector `axis`, as a share of a turn from 0 to 1.
 #[kernel]
 #[inline]
 pub(super) fn turn(axis: Vec3, v: Vec3) -> f32 {
@@ -91,7 +91,7 @@ pub(super) fn turn(axis: Vec3, v: Vec3) -> f32 {
     if turn < 0.0 { turn + 1.0 } else { turn }
 }
 
-/// The direction at this share of a turn around `axis`, with unit length.
+/// Returns the unit direction at this share of a turn around `axis`.
 #[kernel]
 #[inline]
 pub(super) fn at_turn(axis: Vec3, share: f32) -> Vec3 {
@@ -100,9 +100,9 @@ pub(super) fn at_turn(axis: Vec3, share: f32) -> Vec3 {
     x * around.cos + y * around.sin
 }
 
-/// Which of two parts a uniform number chooses, and what is left of it for the place there.
+/// Chooses one of two parts by a uniform number, and rescales it for reuse within the part.
 ///
-/// `first` is the first part's share of the whole. `y` is 0 for the first part, 1 for the second.
+/// `first` is the first part's share. `y` is 0 for the first part, 1 for the second.
 #[kernel]
 #[inline]
 pub(super) fn choose(u: f32, first: f32) -> Vec2 {

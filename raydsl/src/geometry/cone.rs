@@ -1,4 +1,4 @@
-//! Cones with a flat cap, of the centre of the base, the apex and the radius of the base.
+//! Cones with a flat cap, given by the centre of the base, the apex and the radius of the base.
 
 use core::f32::consts::PI;
 
@@ -13,39 +13,39 @@ use crate::machine::functions::vec2;
 use crate::machine::generic::{clamp, max, min};
 use crate::{Type, kernel};
 
-/// What a cone's hit may be off by, as a cylinder's: the ray is taken apart at the axis in the same
-/// way, and the quadratic has no cancellation but that in its data, which is as small as the ray's
-/// distance from the apex.
+/// Error bound of a cone's hit, equal to a cylinder's: the ray is decomposed along the axis in the
+/// same way, and the quadratic has no cancellation but that in its data, which is as small as the
+/// ray's distance from the apex.
 pub const SLACK: f32 = super::cylinder::SLACK;
 
-/// How often a ray crosses it at most; see
+/// Maximum number of crossings of a ray; see
 /// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 2;
 
-/// A leading coefficient below this is none; it belongs to a ray along the surface.
+/// A leading coefficient below this counts as 0; it belongs to a ray along the surface.
 const LEAST: f32 = 1e-12;
 
-/// A ray and what it meets of a cone.
+/// Intersection of a ray's line with a cone.
 #[derive(Clone, Copy, Debug, Type)]
 struct Meeting {
     line: Near,
-    /// From the apex, towards the base.
+    /// Decomposition from the apex, towards the base.
     view: Axial,
-    /// The radius at the distance 1 from the apex.
+    /// Radius at distance 1 from the apex.
     slope: f32,
-    /// Within the cone that ends in the apex and has no base.
+    /// Span within the infinite cone from the apex.
     side: Span,
     base: Span,
     inside: Span,
 }
 
-/// Where `line` is inside of the endless cone of this slope.
+/// Returns the span of `line` within the infinite cone of this slope.
 ///
 /// With `p` and `d` the parts across the axis and `z`, `w` those along it, the line is inside where
 /// `a s² + 2 b s + c <= 0`: `a = d² - k²w²`, `b = p·d - k² z w`, `c = p² - k²z²`. The discriminant
 /// `b² - a c` is `k² m² - a n²`, where `n` is the distance of the two lines across the axis and `m`
-/// what is left of it along: moments of the line, of which each can be formed on its own. The
-/// root without cancellation gives the other one (Vieta).
+/// the remaining component along it: moments of the line, each computed on its own. The root
+/// without cancellation yields the other one (Vieta).
 #[kernel]
 #[inline]
 fn within(line: Axial, slope: f32) -> Span {
@@ -56,7 +56,7 @@ fn within(line: Axial, slope: f32) -> Span {
     let b = line.across.dot(line.step_across) - rise * drop;
     let from_axis = line.across.length();
     let c = (from_axis - rise.abs()) * (from_axis + rise.abs());
-    // The line's direction across the axis, and what of the offset is along it and beside it.
+    // The line's direction across the axis, and the offset's components along and beside it.
     let ahead = if step > 0.0 { line.step_across / step } else { line.across * 0.0 };
     let beside = line.across - ahead * line.across.dot(ahead);
     let n = beside.length();
@@ -82,7 +82,7 @@ fn within(line: Axial, slope: f32) -> Span {
 #[inline]
 fn meet(ray: Ray, base: Vec3, apex: Vec3, radius: f32) -> Meeting {
     let axis = base - apex;
-    // Next to the apex the two roots are close to each other, and so they are to this point.
+    // Next to the apex the two roots are close to each other, and to this point.
     let line = near(ray, apex - ray.origin);
     let view = axial(line, line.offset, axis);
     let slope = radius / view.length;
@@ -93,7 +93,7 @@ fn meet(ray: Ray, base: Vec3, apex: Vec3, radius: f32) -> Meeting {
     Meeting { line, view, slope, side, base: between, inside: Span { is_met, ..meeting } }
 }
 
-/// Where a ray meets the cone: the nearer of its two intersections that lies in the ray's range.
+/// Intersects a ray with the cone: the nearer of the two intersections within the ray's range.
 ///
 /// A cone whose radius or height is 0 is never hit.
 #[kernel]
@@ -103,7 +103,7 @@ pub fn intersect(ray: Ray, base: Vec3, apex: Vec3, radius: f32) -> Hit {
     end_of(ray, m.line, m.inside)
 }
 
-/// Whether it is the base through which the ray enters or leaves.
+/// Returns whether the ray enters or leaves through the base.
 #[kernel]
 #[inline]
 fn is_through_base(m: Meeting, is_leaving: bool) -> bool {
@@ -117,10 +117,10 @@ fn is_through_base(m: Meeting, is_leaving: bool) -> bool {
     }
 }
 
-/// The normal where `ray` hits the cone, outwards; at the apex that of the base, turned round.
+/// Returns the outward normal where `ray` hits the cone; at the apex that of the base, reversed.
 ///
-/// It is off by at most 32 eps of what the distance from the axis is to the distance from the
-/// ray's origin, or to the height where that is larger.
+/// Its error is at most 32 eps times the distance from the axis, over the distance to the ray's
+/// origin or the height, whichever is larger.
 #[kernel]
 #[inline]
 pub fn normal(ray: Ray, hit: Hit, base: Vec3, apex: Vec3, radius: f32) -> Vec3 {
@@ -137,8 +137,9 @@ pub fn normal(ray: Ray, hit: Hit, base: Vec3, apex: Vec3, radius: f32) -> Vec3 {
     }
 }
 
-/// Where `ray` hits: the share of a turn around the axis, and the height from 0 at the base to 1 at
-/// the apex. The turn begins at `axis.any_orthonormal_pair().0`, where the axis points to the base.
+/// Returns the coordinates of the hit: the share of a turn around the axis, and the height from 0
+/// at the base to 1 at the apex. The turn begins at `axis.any_orthonormal_pair().0`, with the axis
+/// pointing to the base.
 #[kernel]
 #[inline]
 pub fn uv(ray: Ray, hit: Hit, base: Vec3, apex: Vec3, radius: f32) -> Vec2 {
@@ -148,21 +149,21 @@ pub fn uv(ray: Ray, hit: Hit, base: Vec3, apex: Vec3, radius: f32) -> Vec2 {
     vec2(turn(m.view.axis, m.view.across + m.view.step_across * s), clamp(height, 0.0, 1.0))
 }
 
-/// From the apex to the rim of the base.
+/// Returns the slant height, from the apex to the rim of the base.
 #[kernel]
 #[inline]
 fn slant(height: f32, radius: f32) -> f32 {
     (height * height + radius * radius).sqrt()
 }
 
-/// The area of the side and of the base.
+/// Returns the surface area of side and base.
 #[kernel]
 #[inline]
 pub fn area(base: Vec3, apex: Vec3, radius: f32) -> f32 {
     PI * radius * (slant((base - apex).length(), radius) + radius)
 }
 
-/// A point of the side or of the base; a uniform `u` in the unit square gives a uniform one.
+/// Samples a point of the side or of the base, uniformly for a uniform `u` in the unit square.
 #[kernel]
 #[inline]
 pub fn sample(u: Vec2, base: Vec3, apex: Vec3, radius: f32) -> SurfacePoint {
@@ -172,7 +173,7 @@ pub fn sample(u: Vec2, base: Vec3, apex: Vec3, radius: f32) -> SurfacePoint {
     let across = at_turn(unit, u.y);
     let slant = slant(height, radius);
     let part = choose(u.x, slant / (slant + radius));
-    // Of the side and of the base alike, a share `r` of the radius holds the share `r²` of the
+    // On the side and on the base alike, a share `r` of the radius contains the share `r²` of the
     // area.
     let share = part.x.sqrt();
     let own_error = (height + radius) * SLACK;
@@ -184,7 +185,7 @@ pub fn sample(u: Vec2, base: Vec3, apex: Vec3, radius: f32) -> SurfacePoint {
     }
 }
 
-/// The point that `ray` hits.
+/// Returns the point that `ray` hits.
 #[kernel]
 #[inline]
 pub fn surface_point(ray: Ray, hit: Hit, base: Vec3, apex: Vec3, radius: f32) -> SurfacePoint {
@@ -192,13 +193,13 @@ pub fn surface_point(ray: Ray, hit: Hit, base: Vec3, apex: Vec3, radius: f32) ->
     point_on_ray(ray, hit, normal(ray, hit, base, apex, radius), size, SLACK)
 }
 
-/// The smallest box around the cone, which is that of its base and its apex; at most two ulp too
+/// Returns the smallest box around the cone, that of its base and its apex; at most two ulp too
 /// large.
 pub fn get_bounds(base: Vec3, apex: Vec3, radius: f32) -> Aabb {
     around_disk(base, difference(apex, base), radius).union(Aabb::new(apex, apex))
 }
 
-/// The parts of the cone's box below and above the plane `axis = at`.
+/// Splits the cone's box at the plane `axis = at`; returns the parts below and above.
 pub fn split_primitive(axis: usize, at: f32, base: Vec3, apex: Vec3, radius: f32) -> (Aabb, Aabb) {
     get_bounds(base, apex, radius).split(axis, at)
 }

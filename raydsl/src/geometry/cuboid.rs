@@ -1,4 +1,4 @@
-//! Boxes whose faces are perpendicular to the axes, of their lower and their upper corner.
+//! Axis-aligned boxes, given by their lower and upper corners.
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
@@ -9,15 +9,14 @@ use crate::machine::functions::{vec2, vec3};
 use crate::machine::generic::clamp;
 use crate::{Type, kernel};
 
-/// What a box's hit may be off by: each face is met at a distance of four roundings, which are at
-/// most 4 eps of the distance to it.
+/// Error bound of a box's hit: the distance to each face takes four roundings, at most 4 eps of it.
 pub const SLACK: f32 = 1.0 / 2_097_152.0;
 
-/// How often a ray crosses it at most; see
+/// Maximum number of crossings of a ray; see
 /// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 2;
 
-/// A ray and what it meets of a box.
+/// Intersection of a ray's line with a box.
 #[derive(Clone, Copy, Debug, Type)]
 struct Meeting {
     line: Near,
@@ -40,9 +39,9 @@ fn meet(ray: Ray, min: Vec3, max: Vec3) -> Meeting {
     Meeting { line, x, y, z, inside: both(both(x, y), z) }
 }
 
-/// Where a ray meets the box: where it enters it or, from inside, where it leaves it.
+/// Intersects a ray with the box: at the entry or, from inside, at the exit.
 ///
-/// A flat box is hit as the rectangle that it is. A box with `min > max` on an axis is never hit.
+/// A flat box is hit like a rectangle. A box with `min > max` on an axis is never hit.
 #[kernel]
 #[inline]
 pub fn intersect(ray: Ray, min: Vec3, max: Vec3) -> Hit {
@@ -50,7 +49,7 @@ pub fn intersect(ray: Ray, min: Vec3, max: Vec3) -> Hit {
     end_of(ray, m.line, m.inside)
 }
 
-/// The axis that the face is perpendicular to through which the ray enters or leaves.
+/// Returns the axis perpendicular to the face through which the ray enters or leaves.
 #[kernel]
 #[inline]
 fn face(m: Meeting, is_leaving: bool) -> u32 {
@@ -68,7 +67,7 @@ fn face(m: Meeting, is_leaving: bool) -> u32 {
     }
 }
 
-/// The normal of the face that `ray` hits, outwards.
+/// Returns the outward normal of the face that `ray` hits.
 #[kernel]
 #[inline]
 pub fn normal(ray: Ray, hit: Hit, min: Vec3, max: Vec3) -> Vec3 {
@@ -93,15 +92,15 @@ pub fn normal(ray: Ray, hit: Hit, min: Vec3, max: Vec3) -> Vec3 {
     }
 }
 
-/// Which share of the length `size` is `x`.
+/// Returns `x` as a share of the length `size`.
 #[kernel]
 #[inline]
 fn share(x: f32, size: f32) -> f32 {
     if size > 0.0 { clamp(x / size, 0.0, 1.0) } else { 0.0 }
 }
 
-/// Where in its face `ray` hits, from 0 at `min` to 1 at `max`: along y and z in a face across x,
-/// along z and x in one across y, along x and y in one across z.
+/// Returns the coordinates of the hit in its face, from 0 at `min` to 1 at `max`: along y and z in
+/// a face across x, along z and x in one across y, along x and y in one across z.
 #[kernel]
 #[inline]
 pub fn uv(ray: Ray, hit: Hit, min: Vec3, max: Vec3) -> Vec2 {
@@ -121,7 +120,7 @@ pub fn uv(ray: Ray, hit: Hit, min: Vec3, max: Vec3) -> Vec2 {
     }
 }
 
-/// The area of the six faces.
+/// Returns the surface area of the six faces.
 #[kernel]
 #[inline]
 pub fn area(min: Vec3, max: Vec3) -> f32 {
@@ -129,12 +128,12 @@ pub fn area(min: Vec3, max: Vec3) -> f32 {
     2.0 * (size.x * size.y + size.y * size.z + size.z * size.x)
 }
 
-/// A point of a face; a uniform `u` in the unit square gives a uniform one.
+/// Samples a point of a face, uniformly for a uniform `u` in the unit square.
 #[kernel]
 #[inline]
 pub fn sample(u: Vec2, min: Vec3, max: Vec3) -> SurfacePoint {
     let size = max - min;
-    // Two faces each.
+    // Areas of the pairs of faces, halved.
     let (of_x, of_y, of_z) = (size.y * size.z, size.z * size.x, size.x * size.y);
     let at = u.x * (of_x + of_y + of_z);
     let is_x = at < of_x;
@@ -159,19 +158,19 @@ pub fn sample(u: Vec2, min: Vec3, max: Vec3) -> SurfacePoint {
     }
 }
 
-/// The point that `ray` hits.
+/// Returns the point that `ray` hits.
 #[kernel]
 #[inline]
 pub fn surface_point(ray: Ray, hit: Hit, min: Vec3, max: Vec3) -> SurfacePoint {
     point_on_ray(ray, hit, normal(ray, hit, min, max), largest(max - min), SLACK)
 }
 
-/// The box itself.
+/// Returns the box itself.
 pub fn get_bounds(min: Vec3, max: Vec3) -> Aabb {
     Aabb::new(min, max)
 }
 
-/// The parts of the box below and above the plane `axis = at`, exactly.
+/// Splits the box exactly at the plane `axis = at`; returns the parts below and above.
 pub fn split_primitive(axis: usize, at: f32, min: Vec3, max: Vec3) -> (Aabb, Aabb) {
     get_bounds(min, max).split(axis, at)
 }

@@ -1,4 +1,4 @@
-//! Cylinders with a flat cap at each end, of the two ends of the axis and a radius.
+//! Cylinders with a flat cap at each end, given by the two ends of the axis and a radius.
 
 use core::f32::consts::PI;
 
@@ -13,20 +13,20 @@ use crate::machine::functions::vec2;
 use crate::machine::generic::clamp;
 use crate::{Type, kernel};
 
-/// What a cylinder's hit may be off by, as a sphere's.
+/// Error bound of a cylinder's hit, relative as a sphere's.
 ///
-/// The ray is moved by 4 eps of the distance to the cylinder's middle when it is taken to its
-/// closest point (eps = 2^-24). From there on everything has the size of the cylinder. Taking the
-/// ray apart at the axis is off by 4 eps of that, and turns the ray by 4 eps, which matters as far
-/// as the cylinder is long; what follows has the form of `sphere::intersect`, without cancellation.
-/// Below 32 eps together; twice that is allowed.
+/// Moving the ray to its closest point shifts it by 4 eps of the distance to the cylinder's middle
+/// (eps = 2^-24). From there on everything has the size of the cylinder. The decomposition along
+/// the axis is off by 4 eps of that, and turns the ray by 4 eps, which matters as far as the
+/// cylinder is long; the rest has the form of `sphere::intersect`, without cancellation. Below 32
+/// eps together; twice that is allowed.
 pub const SLACK: f32 = 1.0 / 262_144.0;
 
-/// How often a ray crosses it at most; see
+/// Maximum number of crossings of a ray; see
 /// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 2;
 
-/// A ray and what it meets of a cylinder.
+/// Intersection of a ray's line with a cylinder.
 #[derive(Clone, Copy, Debug, Type)]
 struct Meeting {
     line: Near,
@@ -36,13 +36,13 @@ struct Meeting {
     inside: Span,
 }
 
-/// A convex body: the line is in it where it is in the endless cylinder and between the caps.
+/// Intersects a convex body: the span of the infinite cylinder with that between the caps.
 #[kernel]
 #[inline]
 fn meet(ray: Ray, p0: Vec3, p1: Vec3, radius: f32) -> Meeting {
     let axis = p1 - p0;
     let line = near(ray, (p0 - ray.origin) + axis * 0.5);
-    // From the middle, so that the offset is no larger than it must be.
+    // Measure from the middle, so that the offset is as small as possible.
     let view = axial(line, line.offset, axis);
     let round = round(view, radius);
     let caps = slab(view.along, view.step_along, -0.5 * view.length, 0.5 * view.length);
@@ -51,10 +51,9 @@ fn meet(ray: Ray, p0: Vec3, p1: Vec3, radius: f32) -> Meeting {
     Meeting { line, view, round, caps, inside: Span { is_met, ..meeting } }
 }
 
-/// Where a ray meets the cylinder: the nearer of its two intersections that lies in the ray's
-/// range.
+/// Intersects a ray with the cylinder: the nearer of the two intersections within the ray's range.
 ///
-/// A cylinder whose radius is 0, or whose ends are one point, is never hit.
+/// A cylinder whose radius is 0, or whose ends coincide, is never hit.
 #[kernel]
 #[inline]
 pub fn intersect(ray: Ray, p0: Vec3, p1: Vec3, radius: f32) -> Hit {
@@ -62,10 +61,10 @@ pub fn intersect(ray: Ray, p0: Vec3, p1: Vec3, radius: f32) -> Hit {
     end_of(ray, m.line, m.inside)
 }
 
-/// The normal where `ray` hits the cylinder, outwards.
+/// Returns the outward normal where `ray` hits the cylinder.
 ///
-/// As a sphere's it comes from the offset to the axis: it is off by at most 16 eps of what the
-/// radius is to the distance, or to the length where that is larger.
+/// As for a sphere it comes from the offset to the axis: its error is at most 16 eps times the
+/// radius, over the distance or the length, whichever is larger.
 #[kernel]
 #[inline]
 pub fn normal(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec3 {
@@ -85,8 +84,9 @@ pub fn normal(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec3 {
     }
 }
 
-/// Where `ray` hits: the share of a turn around the axis, and the height from 0 at `p0` to 1 at
-/// `p1`. The turn begins at `axis.any_orthonormal_pair().0`. On the caps the height is 0 or 1.
+/// Returns the coordinates of the hit: the share of a turn around the axis, and the height from 0
+/// at `p0` to 1 at `p1`. The turn begins at `axis.any_orthonormal_pair().0`. On the caps the height
+/// is 0 or 1.
 #[kernel]
 #[inline]
 pub fn uv(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec2 {
@@ -96,14 +96,14 @@ pub fn uv(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec2 {
     vec2(turn(m.view.axis, m.view.across + m.view.step_across * s), clamp(height, 0.0, 1.0))
 }
 
-/// The area of the side and of both caps.
+/// Returns the surface area of side and caps.
 #[kernel]
 #[inline]
 pub fn area(p0: Vec3, p1: Vec3, radius: f32) -> f32 {
     2.0 * PI * radius * ((p1 - p0).length() + radius)
 }
 
-/// A point of the side or of a cap; a uniform `u` in the unit square gives a uniform one.
+/// Samples a point of the side or of a cap, uniformly for a uniform `u` in the unit square.
 #[kernel]
 #[inline]
 pub fn sample(u: Vec2, p0: Vec3, p1: Vec3, radius: f32) -> SurfacePoint {
@@ -125,7 +125,7 @@ pub fn sample(u: Vec2, p0: Vec3, p1: Vec3, radius: f32) -> SurfacePoint {
     }
 }
 
-/// The point that `ray` hits.
+/// Returns the point that `ray` hits.
 #[kernel]
 #[inline]
 pub fn surface_point(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> SurfacePoint {
@@ -133,13 +133,13 @@ pub fn surface_point(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Sur
     point_on_ray(ray, hit, normal(ray, hit, p0, p1, radius), size, SLACK)
 }
 
-/// The smallest box around the cylinder, which is that of its caps; at most two ulp too large.
+/// Returns the smallest box around the cylinder, that of its caps; at most two ulp too large.
 pub fn get_bounds(p0: Vec3, p1: Vec3, radius: f32) -> Aabb {
     let axis = difference(p1, p0);
     around_disk(p0, axis, radius).union(around_disk(p1, axis, radius))
 }
 
-/// The parts of the cylinder's box below and above the plane `axis = at`.
+/// Splits the cylinder's box at the plane `axis = at`; returns the parts below and above.
 pub fn split_primitive(axis: usize, at: f32, p0: Vec3, p1: Vec3, radius: f32) -> (Aabb, Aabb) {
     get_bounds(p0, p1, radius).split(axis, at)
 }

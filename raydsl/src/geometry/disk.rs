@@ -1,4 +1,4 @@
-//! Disks, of a centre, a normal of any length and a radius.
+//! Disks, given by a centre, a normal of any length and a radius.
 
 use core::f32::consts::PI;
 
@@ -12,30 +12,31 @@ use super::{Aabb, Hit, Ray, SurfacePoint};
 use crate::kernel;
 use crate::machine::functions::vec2;
 
-/// What a disk's hit may be off by, as a sphere's.
+/// Error bound of a disk's hit, relative as a sphere's.
 ///
-/// The ray is moved by 4 eps of the distance to the centre when it is taken to its closest point
-/// (eps = 2^-24). From there on everything has the size of the disk: the two products with the
-/// normal are off by 3 eps each, which tilts it by as much, and the point by 4 eps. Below 16 eps
-/// together; twice that is allowed.
+/// Moving the ray to its closest point shifts it by 4 eps of the distance to the centre (eps =
+/// 2^-24). From there on everything has the size of the disk: the two products with the normal are
+/// off by 3 eps each, which tilts it by as much, and the point by 4 eps. Below 16 eps together;
+/// twice that is allowed.
 pub const SLACK: f32 = 1.0 / 524_288.0;
 
-/// How often a ray crosses it at most; see
+/// Maximum number of crossings of a ray; see
 /// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 1;
 
-/// From the ray's closest point to where it meets the plane, in lengths of the line's direction.
+/// Returns the distance from the ray's closest point to the plane, in lengths of the line's
+/// direction.
 ///
-/// In that plane the offset and the step have the same product with the normal. A ray within the
-/// plane gives what is no distance.
+/// In the plane the offset and the step have the same product with the normal. A ray within the
+/// plane yields NaN or infinity.
 #[kernel]
 #[inline]
 fn step_to_plane(line: Near, normal: Vec3) -> f32 {
     -line.offset.dot(normal) / line.direction.dot(normal)
 }
 
-/// Where a ray meets the disk, from either side: `hit.u` is the distance from the centre as a share
-/// of the radius. A ray within the plane misses it.
+/// Intersects a ray with the disk, from either side: `hit.u` is the distance from the centre as a
+/// share of the radius. A ray within the plane misses it.
 ///
 /// A disk whose radius or normal is 0 is never hit.
 #[kernel]
@@ -51,15 +52,15 @@ pub fn intersect(ray: Ray, center: Vec3, normal: Vec3, radius: f32) -> Hit {
     Hit { u: from_center / radius, ..Hit::new(is_hit, t) }
 }
 
-/// The normal with unit length, whichever side `ray` hits.
+/// Returns the unit normal, whichever side `ray` hits.
 #[kernel]
 #[inline]
 pub fn normal(_ray: Ray, _hit: Hit, _center: Vec3, normal: Vec3, _radius: f32) -> Vec3 {
     normal.normalize()
 }
 
-/// Where `ray` hits: the distance from the centre as a share of the radius, and the angle as a
-/// share of a turn, which begins at `normal.normalize().any_orthonormal_pair().0`.
+/// Returns the coordinates of the hit: the distance from the centre as a share of the radius, and
+/// the angle as a share of a turn, which begins at `normal.normalize().any_orthonormal_pair().0`.
 #[kernel]
 #[inline]
 pub fn uv(ray: Ray, hit: Hit, center: Vec3, normal: Vec3, _radius: f32) -> Vec2 {
@@ -68,14 +69,14 @@ pub fn uv(ray: Ray, hit: Hit, center: Vec3, normal: Vec3, _radius: f32) -> Vec2 
     vec2(hit.u, turn(normal.normalize(), from_center))
 }
 
-/// The area of one side.
+/// Returns the area of one side.
 #[kernel]
 #[inline]
 pub fn area(_center: Vec3, _normal: Vec3, radius: f32) -> f32 {
     PI * radius * radius
 }
 
-/// A point of the disk; a uniform `u` in the unit square gives a uniform one.
+/// Samples a point of the disk, uniformly for a uniform `u` in the unit square.
 #[kernel]
 #[inline]
 pub fn sample(u: Vec2, center: Vec3, normal: Vec3, radius: f32) -> SurfacePoint {
@@ -84,19 +85,19 @@ pub fn sample(u: Vec2, center: Vec3, normal: Vec3, radius: f32) -> SurfacePoint 
     rounded_point(center + from_center, unit, radius * SLACK)
 }
 
-/// The point that `ray` hits.
+/// Returns the point that `ray` hits.
 #[kernel]
 #[inline]
 pub fn surface_point(ray: Ray, hit: Hit, _center: Vec3, normal: Vec3, radius: f32) -> SurfacePoint {
     point_on_ray(ray, hit, normal.normalize(), radius, SLACK)
 }
 
-/// The smallest box around the disk, at most two ulp too large.
+/// Returns the smallest box around the disk, at most two ulp too large.
 pub fn get_bounds(center: Vec3, normal: Vec3, radius: f32) -> Aabb {
     around_disk(center, wide(normal), radius)
 }
 
-/// The parts of the disk's box below and above the plane `axis = at`.
+/// Splits the disk's box at the plane `axis = at`; returns the parts below and above.
 pub fn split_primitive(
     axis: usize,
     at: f32,

@@ -1,19 +1,19 @@
-//! What two edges span, at every scale: products of lengths alone would leave the range of `f32`
-//! for edges of 1e-12 or 1e12.
+//! Cross products of edges, scaled: products of lengths would leave the range of `f32` for edges of
+//! 1e-12 or 1e12.
 
 use glam::Vec3;
 
 use super::near::largest;
 use crate::kernel;
 
-/// The direction of `a × b`, with unit length.
+/// Returns the unit direction of `a × b`.
 #[kernel]
 #[inline]
 pub(super) fn across(a: Vec3, b: Vec3) -> Vec3 {
     (a / largest(a)).cross(b / largest(b)).normalize()
 }
 
-/// The length of `a × b`: the area of the parallelogram.
+/// Returns the length of `a × b`: the area of the parallelogram.
 #[kernel]
 #[inline]
 pub(super) fn spanned(a: Vec3, b: Vec3) -> f32 {

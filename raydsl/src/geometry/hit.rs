@@ -1,21 +1,21 @@
-//! Where a ray meets a primitive.
+//! Results of ray-primitive intersection.
 
 use crate::machine::{Branch, Machine, Scalar, Value, Var};
 use crate::{Type, kernel};
 
-/// What an intersection found; a miss is data too, with `is_hit == false`.
+/// Result of an intersection; a miss is a value too, with `is_hit == false`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 #[repr(C)]
 pub struct Hit {
-    /// Whether there is a hit; the other members mean nothing without one.
+    /// Whether there is a hit; the other members are meaningless without one.
     pub is_hit: bool,
     /// Distance along the ray in lengths of its direction.
     pub t: f32,
-    /// Which primitive: its index in the application's array, counted through all arrays of a list.
-    /// Traversal sets it.
+    /// Primitive id: the index in the application's array, counted through all arrays of a list.
+    /// Set by traversal.
     pub prim_id: u32,
-    /// Which instance of it, see [`Instances`](crate::bvh::Instances); 0 where there are none.
-    /// Traversal sets it.
+    /// Instance id, see [`Instances`](crate::bvh::Instances); 0 where there are none. Set by
+    /// traversal.
     pub inst_id: u32,
     /// First surface coordinate: the barycentric weight of a triangle's second vertex.
     pub u: f32,
@@ -25,20 +25,20 @@ pub struct Hit {
 
 #[kernel]
 impl Hit {
-    /// A hit if `is_hit`, at distance `t`.
+    /// Creates a hit at distance `t` if `is_hit`, else a miss.
     pub const fn new(is_hit: bool, t: f32) -> Self {
         Self { is_hit, t, prim_id: 0, inst_id: 0, u: 0.0, v: 0.0 }
     }
 
-    /// No hit.
+    /// Returns a miss.
     pub const fn miss() -> Self {
         Self::new(false, 0.0)
     }
 }
 
-/// What `intersect` of a primitive gives: [`Hit`], or a struct of your own that has a `Hit` in it.
+/// Result of a primitive's `intersect`: [`Hit`], or a user-defined struct with a `Hit` in it.
 ///
-/// `#[derive(HitRecord)]` writes this for a struct with one member of the type `Hit`. Traversal
+/// `#[derive(HitRecord)]` implements it for a struct with one member of the type `Hit`. Traversal
 /// compares the hits alone; the rest is computed once, for the closest one.
 ///
 /// ```
@@ -79,32 +79,32 @@ impl Hit {
     note = "write `#[derive(Clone, Copy, Type, HitRecord)]` on a struct with a member `hit: Hit`"
 )]
 pub trait HitRecord: Type {
-    /// The members on the way to the hit, as WGSL names them.
+    /// Path of members to the hit, as named in WGSL.
     #[doc(hidden)]
     const PATH: &'static [&'static str];
 
-    /// The hit in it.
+    /// Returns the hit in the record.
     fn hit(&self) -> Hit;
 
-    /// The same record with another hit in it.
+    /// Replaces the hit in the record.
     fn with_hit(self, hit: Hit) -> Self;
 
-    /// The record of `hit`; `again` intersects once more.
+    /// Completes the record of `hit`; `again` intersects once more.
     #[doc(hidden)]
     #[inline(always)]
     fn complete(hit: Hit, again: impl FnOnce() -> Self) -> Self {
         if hit.is_hit { again().with_hit(hit) } else { nothing::<Self>().with_hit(hit) }
     }
 
-    /// `hit`, lifted.
+    /// Lifted form of `hit`.
     #[doc(hidden)]
     fn hit_on<M: Machine>(record: Self::On<M>) -> HitOn<M>;
 
-    /// `with_hit`, lifted.
+    /// Lifted form of `with_hit`.
     #[doc(hidden)]
     fn with_hit_on<M: Machine>(record: Self::On<M>, hit: HitOn<M>) -> Self::On<M>;
 
-    /// `complete`, lifted.
+    /// Lifted form of `complete`.
     #[doc(hidden)]
     #[inline(always)]
     fn complete_on<M: Machine>(
@@ -123,7 +123,7 @@ pub trait HitRecord: Type {
     }
 }
 
-/// A record whose every member is 0.
+/// Returns a record of zeros.
 fn nothing<R: Type>() -> R {
     let m = Scalar::default();
     R::lane::<Scalar>(&Value::zero(&m), 0)

@@ -1,4 +1,4 @@
-//! Rays, hits, boxes and the shapes that rays meet.
+//! Rays, hits, boxes and shapes.
 
 mod aabb;
 pub(crate) mod affine;

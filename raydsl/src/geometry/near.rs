@@ -1,4 +1,4 @@
-//! A ray seen from close by: what the shapes have in common.
+//! Lines of rays near a shape: numerics shared by the shapes.
 
 use glam::Vec3;
 
@@ -6,34 +6,34 @@ use super::{Hit, Ray};
 use crate::machine::generic::{max, min};
 use crate::{Type, kernel};
 
-/// A step across smaller than this is none: `2^-30`, far below what rounding makes of it.
+/// Steps across below this count as 0: `2^-30`, far below their rounding error.
 pub(super) const PARALLEL: f32 = 1.0 / 1_073_741_824.0;
 
-/// The line of a ray, measured from its point that is closest to the middle of a shape.
+/// Line of a ray, parameterized from its point closest to the middle of a shape.
 ///
 /// Far from a shape the coordinates along the ray are large, and their squares cancel. From this
-/// point on everything has the size of the shape: the distance is rounded once, when it is formed,
-/// and that moves the ray by at most 4 eps of it (eps = 2^-24), as in `sphere::intersect`.
+/// point on everything has the size of the shape: the distance is rounded once, when it is
+/// computed, which moves the ray by at most 4 eps of it (eps = 2^-24), as in `sphere::intersect`.
 #[derive(Clone, Copy, Debug, Type)]
 pub(super) struct Near {
-    /// The ray's direction, made so that its largest component is 1.
+    /// Direction of the ray, scaled so that its largest component is 1.
     pub(super) direction: Vec3,
-    /// From the middle of the shape to the point.
+    /// Offset from the middle of the shape to the point.
     pub(super) offset: Vec3,
-    /// From the ray's origin to the point, in lengths of `direction`.
+    /// Distance from the ray's origin to the point, in lengths of `direction`.
     pub(super) distance: f32,
-    /// How many lengths of `direction` the ray's own has.
+    /// Length of the ray's own direction, in lengths of `direction`.
     pub(super) scale: f32,
 }
 
-/// The largest of the components, without their signs.
+/// Returns the largest absolute component.
 #[kernel]
 #[inline]
 pub(super) fn largest(v: Vec3) -> f32 {
     max(max(v.x.abs(), v.y.abs()), v.z.abs())
 }
 
-/// The line of `ray` near the point that lies `middle` from its origin.
+/// Creates the line of `ray` near the point that lies `middle` from its origin.
 #[kernel]
 #[inline]
 pub(super) fn near(ray: Ray, middle: Vec3) -> Near {
@@ -43,18 +43,18 @@ pub(super) fn near(ray: Ray, middle: Vec3) -> Near {
     Near { direction, offset: direction * distance - middle, distance, scale }
 }
 
-/// A part of a line, from where it enters something to where it leaves it.
+/// Interval of a line between entry and exit.
 #[derive(Clone, Copy, Debug, Type)]
 pub(super) struct Span {
-    /// Whether there is such a part.
+    /// Whether the interval is not empty.
     pub(super) is_met: bool,
-    /// Its beginning.
+    /// Parameter of the entry.
     pub(super) enter: f32,
-    /// Its end.
+    /// Parameter of the exit.
     pub(super) leave: f32,
 }
 
-/// Where `at + s * step` lies from `low` to `high`. What is not a number gives nothing.
+/// Returns the span where `at + s * step` lies between `low` and `high`; empty for NaN.
 #[kernel]
 #[inline]
 pub(super) fn slab(at: f32, step: f32, low: f32, high: f32) -> Span {
@@ -67,7 +67,7 @@ pub(super) fn slab(at: f32, step: f32, low: f32, high: f32) -> Span {
     Span { is_met: low <= high && enter <= leave, enter, leave }
 }
 
-/// The common part.
+/// Returns the intersection of two spans.
 #[kernel]
 #[inline]
 pub(super) fn both(a: Span, b: Span) -> Span {
@@ -75,14 +75,14 @@ pub(super) fn both(a: Span, b: Span) -> Span {
     Span { is_met: a.is_met && b.is_met && enter <= leave, enter, leave }
 }
 
-/// The distance along the ray, in lengths of its direction, of the point at `s`.
+/// Returns the distance along the ray of the point at `s`, in lengths of the ray's direction.
 #[kernel]
 #[inline]
 pub(super) fn distance_of(line: Near, s: f32) -> f32 {
     (line.distance + s) / line.scale
 }
 
-/// Whether it is the end of the span where the ray meets the solid: its beginning is before
+/// Returns whether the ray hits the solid at the end of the span, since the entry is before
 /// `t_min`.
 #[kernel]
 #[inline]
@@ -90,8 +90,8 @@ fn is_leaving(ray: Ray, line: Near, span: Span) -> bool {
     distance_of(line, span.enter) < ray.t_min
 }
 
-/// Whether a hit is at the end of the span, not at its beginning: whichever is nearer to it. A ray may
-/// have both for hits.
+/// Returns whether a hit is at the end of the span, not at its beginning: the nearer of the two. A
+/// ray may hit both.
 #[kernel]
 #[inline]
 pub(super) fn is_at_end(hit: Hit, line: Near, span: Span) -> bool {
@@ -99,8 +99,8 @@ pub(super) fn is_at_end(hit: Hit, line: Near, span: Span) -> bool {
     (hit.t - enter).abs() > (leave - hit.t).abs()
 }
 
-/// Where the ray meets a solid that its line is in for `span`: the nearer end of the two that lies
-/// in the ray's range.
+/// Returns the hit of a solid that the line is in for `span`: the nearer end within the ray's
+/// range.
 #[kernel]
 #[inline]
 pub(super) fn end_of(ray: Ray, line: Near, span: Span) -> Hit {

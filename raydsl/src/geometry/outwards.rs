@@ -1,18 +1,18 @@
-//! Sums rounded outwards, for boxes that are never too small.
+//! Sums rounded outwards, for conservative boxes.
 
 use glam::Vec3;
 
 use super::Aabb;
 
-/// `a + b`, and a bound of its error: 0 if it is exact.
+/// Returns `a + b` and a bound of its error: 0 if it is exact.
 pub(super) fn sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
-    // Subtracting the larger one is exact, so this tells whether the sum was (Dekker, 1971).
+    // Subtracting the larger one is exact, so this tests the sum (Dekker, 1971).
     let is_exact = sum - a == b && sum - b == a;
     (sum, if is_exact { 0.0 } else { sum.abs() * f64::EPSILON })
 }
 
-/// The largest `f32` that is at most `a + b`, or the one below it.
+/// Returns the largest `f32` that is at most `a + b`, or the one below it.
 pub(super) fn below(a: f64, b: f64) -> f32 {
     let (sum, error) = sum(a, b);
     let bound = sum - error;
@@ -20,31 +20,31 @@ pub(super) fn below(a: f64, b: f64) -> f32 {
     if f64::from(rounded) > bound { rounded.next_down() } else { rounded }
 }
 
-/// The least `f32` that is at least `a + b`, or the one above it.
+/// Returns the least `f32` that is at least `a + b`, or the one above it.
 pub(super) fn above(a: f64, b: f64) -> f32 {
     -below(-a, -b)
 }
 
-/// The same numbers with more digits.
+/// Converts to `f64`.
 pub(super) fn wide(v: Vec3) -> [f64; 3] {
     v.to_array().map(f64::from)
 }
 
-/// `b - a`.
+/// Returns `b - a` in `f64`.
 pub(super) fn difference(b: Vec3, a: Vec3) -> [f64; 3] {
     let (a, b) = (wide(a), wide(b));
     core::array::from_fn(|i| b[i] - a[i])
 }
 
-/// The smallest box around a point that may be off by `error`.
+/// Returns the smallest box around a point that may be off by `error`.
 pub(super) fn around(point: [f64; 3], error: f64) -> Aabb {
     let corner =
         |bound: fn(f64, f64) -> f32, error: f64| Vec3::from_array(point.map(|x| bound(x, error)));
     Aabb::new(corner(below, -error), corner(above, error))
 }
 
-/// A box around the disk: along each axis it reaches `radius` times the sine of the angle between
-/// the axis and the normal. Without a normal, around the sphere.
+/// Returns a box around the disk: along each axis it extends by `radius` times the sine of the
+/// angle between the axis and the normal. Without a normal, around the sphere.
 pub(super) fn around_disk(center: Vec3, normal: [f64; 3], radius: f32) -> Aabb {
     let square = normal.map(|n| n * n);
     let whole = square[0] + square[1] + square[2];

@@ -1,7 +1,7 @@
-//! Planes, of a normal of any length and an offset: where `normal · p = offset`.
+//! Planes, given by a normal of any length and an offset: where `normal · p = offset`.
 //!
-//! A plane has no finite box, so there is no tree over planes: `Bvh::build` gives
-//! [`BuildError::InfiniteBounds`](crate::bvh::BuildError::InfiniteBounds). Slices of them have
+//! A plane has no finite box, so there is no tree over planes: `Bvh::build` returns
+//! [`BuildError::InfiniteBounds`](crate::bvh::BuildError::InfiniteBounds). Slices of planes support
 //! every query.
 
 use glam::{Vec2, Vec3, vec2};
@@ -13,20 +13,20 @@ use super::{Aabb, Hit, Ray, SurfacePoint};
 use crate::kernel;
 use crate::machine::functions::vec2;
 
-/// What a plane's hit may be off by, relative to the distances of the plane and of the hit from the
+/// Error bound of a plane's hit, relative to the distances of the plane and of the hit from the
 /// world's origin and from the ray's: the two products are off by 3 eps each (eps = 2^-24).
 pub const SLACK: f32 = 1.0 / 2_097_152.0;
 
-/// How often a ray crosses it at most; see
+/// Maximum number of crossings of a ray; see
 /// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 1;
 
-/// Where a ray meets the plane, from either side. A ray within the plane misses it, and so does
+/// Intersects a ray with the plane, from either side. A ray within the plane misses it, and so does
 /// every ray if the normal is 0.
 #[kernel]
 #[inline]
 pub fn intersect(ray: Ray, normal: Vec3, offset: f32) -> Hit {
-    // With the length 1 of the largest component, so that the products neither over- nor underflow.
+    // Scale the largest component to 1, so that the products neither over- nor underflow.
     let scale = largest(ray.direction);
     let approach = (ray.direction / scale).dot(normal);
     let t = (offset - ray.origin.dot(normal)) / approach / scale;
@@ -34,17 +34,16 @@ pub fn intersect(ray: Ray, normal: Vec3, offset: f32) -> Hit {
     Hit::new(is_hit, t)
 }
 
-/// The normal with unit length, whichever side `ray` hits.
+/// Returns the unit normal, whichever side `ray` hits.
 #[kernel]
 #[inline]
 pub fn normal(_ray: Ray, _hit: Hit, normal: Vec3, _offset: f32) -> Vec3 {
     normal.normalize()
 }
 
-/// Where in the plane `ray` hits: coordinates along the two vectors of
-/// `normal.normalize().any_orthonormal_pair()`, from the point that is closest to the world's
-/// origin. They are lengths and not shares, since a plane has no end: `fract()` of them makes tiles
-/// of size 1.
+/// Returns the coordinates of the hit in the plane, along the two vectors of
+/// `normal.normalize().any_orthonormal_pair()`, from the point closest to the world's origin. They
+/// are lengths, not shares, since a plane has no end: `fract()` of them makes tiles of size 1.
 #[kernel]
 #[inline]
 pub fn uv(ray: Ray, hit: Hit, normal: Vec3, _offset: f32) -> Vec2 {
@@ -53,15 +52,15 @@ pub fn uv(ray: Ray, hit: Hit, normal: Vec3, _offset: f32) -> Vec2 {
     vec2(p.dot(x), p.dot(y))
 }
 
-/// Infinite, whatever the plane.
+/// Returns infinity.
 #[kernel]
 #[inline]
 pub fn area(_normal: Vec3, _offset: f32) -> f32 {
     f32::INFINITY
 }
 
-/// A point of the square of size 1 around the plane's point that is closest to the world's origin:
-/// uniform there for a uniform `u`, since nothing is uniform in all of a plane.
+/// Samples a point of the unit square around the plane's point closest to the world's origin,
+/// uniformly for a uniform `u`; a whole plane has no uniform distribution.
 #[kernel]
 #[inline]
 pub fn sample(u: Vec2, normal: Vec3, offset: f32) -> SurfacePoint {
@@ -72,8 +71,8 @@ pub fn sample(u: Vec2, normal: Vec3, offset: f32) -> SurfacePoint {
     rounded_point(position, unit, (foot.length() + position.length()) * SLACK)
 }
 
-/// The point that `ray` hits. It is as uncertain as it and the plane are far from the world's
-/// origin.
+/// Returns the point that `ray` hits. Its error grows with the distances of point and plane from
+/// the world's origin.
 #[kernel]
 #[inline]
 pub fn surface_point(ray: Ray, hit: Hit, normal: Vec3, offset: f32) -> SurfacePoint {
@@ -82,7 +81,7 @@ pub fn surface_point(ray: Ray, hit: Hit, normal: Vec3, offset: f32) -> SurfacePo
     point_on_ray(ray, hit, normal.normalize(), size, SLACK)
 }
 
-/// The infinite box; that of a plane across an axis is flat there.
+/// Returns the infinite box; for a plane across an axis it is flat there.
 pub fn get_bounds(normal: Vec3, offset: f32) -> Aabb {
     let mut bounds = Aabb::new(Vec3::NEG_INFINITY, Vec3::INFINITY);
     for i in 0..3 {
@@ -98,7 +97,7 @@ pub fn get_bounds(normal: Vec3, offset: f32) -> Aabb {
     bounds
 }
 
-/// The parts of the plane's box below and above the plane `axis = at`.
+/// Splits the plane's box at the plane `axis = at`; returns the parts below and above.
 pub fn split_primitive(axis: usize, at: f32, normal: Vec3, offset: f32) -> (Aabb, Aabb) {
     get_bounds(normal, offset).split(axis, at)
 }

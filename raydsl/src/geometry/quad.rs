@@ -1,4 +1,4 @@
-//! Quads, of four vertices in order.
+//! Quads, given by four vertices in order.
 
 use glam::{Vec2, Vec3, vec2};
 
@@ -8,27 +8,27 @@ use super::{Aabb, Hit, Ray, SurfacePoint, triangle};
 use crate::kernel;
 use crate::machine::functions::vec2;
 
-/// What a quad's hit may be off by: that of its triangles.
+/// Error bound of a quad's hit: that of its triangles.
 pub const SLACK: f32 = triangle::SLACK;
 
-/// How often a ray crosses it at most: twice if it is not flat. One through the diagonal of a flat quad
-/// may cross both halves, which meet there, at distances an ulp apart. See
+/// Maximum number of crossings of a ray: 2 if it is not flat. A ray through the diagonal of a flat
+/// quad may cross both halves there, at distances an ulp apart. See
 /// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 2;
 
-/// Where a ray meets the quad: both sides, edges and vertices included.
+/// Intersects a ray with the quad: both sides, edges and vertices included.
 ///
 /// It is the two triangles `v0 v1 v3` and `v2 v3 v1`, as Embree splits quads, so it need not be
 /// flat, and no ray passes between neighbours that share two vertices, nor between the two halves.
 /// `hit.u` runs from `v0` to `v1` and from `v3` to `v2`, `hit.v` from `v0` to `v3` and from `v1` to
 /// `v2`, without a step at the diagonal. A ray along the surface hits it somewhere between the
-/// edges that it passes.
+/// edges that it crosses.
 #[kernel]
 #[inline]
 pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3) -> Hit {
     let first = triangle::intersect(ray, v0, v1, v3);
     let second = triangle::intersect(ray, v2, v3, v1);
-    // A vertex that is no number is one of the whole quad, though each half has only three.
+    // A NaN vertex invalidates the whole quad, though each half has only three.
     let diagonal = v2 - v0;
     let is_whole = diagonal.dot(diagonal) >= 0.0;
     if second.is_hit && !(first.is_hit && first.t <= second.t) {
@@ -39,28 +39,29 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3) -> Hit {
     }
 }
 
-/// The normal of the half that `ray` hits, towards where the vertices run anticlockwise.
+/// Returns the normal of the half that `ray` hits, on the side where the vertices run
+/// anticlockwise.
 #[kernel]
 #[inline]
 pub fn normal(_ray: Ray, hit: Hit, v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3) -> Vec3 {
     if hit.u + hit.v <= 1.0 { across(v1 - v0, v3 - v0) } else { across(v3 - v2, v1 - v2) }
 }
 
-/// The two coordinates of the hit: 0, 0 at `v0`, 1, 0 at `v1`, 1, 1 at `v2`.
+/// Returns the coordinates of the hit: 0, 0 at `v0`, 1, 0 at `v1`, 1, 1 at `v2`.
 #[kernel]
 #[inline]
 pub fn uv(_ray: Ray, hit: Hit, _v0: Vec3, _v1: Vec3, _v2: Vec3, _v3: Vec3) -> Vec2 {
     vec2(hit.u, hit.v)
 }
 
-/// The area of one side.
+/// Returns the area of one side.
 #[kernel]
 #[inline]
 pub fn area(v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3) -> f32 {
     triangle::area(v0, v1, v3) + triangle::area(v2, v3, v1)
 }
 
-/// A point of the quad; a uniform `u` in the unit square gives a uniform one.
+/// Samples a point of the quad, uniformly for a uniform `u` in the unit square.
 #[kernel]
 #[inline]
 pub fn sample(u: Vec2, v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3) -> SurfacePoint {
@@ -74,8 +75,8 @@ pub fn sample(u: Vec2, v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3) -> SurfacePoint {
     SurfacePoint { error: 2.0 * point.error, ..point }
 }
 
-/// The point that `ray` hits, from the weights of the vertices of the half that it is in. The other
-/// half reaches twice as far.
+/// Returns the point that `ray` hits, from the barycentric weights in its half. The other half
+/// extends twice as far.
 #[kernel]
 #[inline]
 pub fn surface_point(ray: Ray, hit: Hit, v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3) -> SurfacePoint {
@@ -88,12 +89,13 @@ pub fn surface_point(ray: Ray, hit: Hit, v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3)
     SurfacePoint { error: 2.0 * half.error, ..half }
 }
 
-/// The box of the vertices.
+/// Returns the bounds of the vertices.
 pub fn get_bounds(v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3) -> Aabb {
     Aabb::from_points([v0, v1, v2, v3])
 }
 
-/// Boxes around the parts of the quad below and above the plane `axis = at`: those of its halves.
+/// Splits the quad at the plane `axis = at`; returns boxes around the parts of its halves below and
+/// above.
 pub fn split_primitive(
     axis: usize,
     at: f32,

@@ -4,36 +4,36 @@ use glam::Vec3;
 
 use crate::{Type, kernel};
 
-/// The half-line `origin + t * direction` for `t` in `[t_min, t_max]`.
+/// Ray segment `origin + t * direction` for `t` in `[t_min, t_max]`.
 ///
-/// The direction need not have unit length: `t` counts in its lengths. A ray with a NaN or an
+/// The direction need not have unit length: `t` is in lengths of it. A ray with a NaN or an
 /// infinite component misses everything.
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
 #[repr(C)]
 pub struct Ray {
-    /// Where the ray starts.
+    /// Origin.
     pub origin: Vec3,
-    /// Where it goes; not zero.
+    /// Direction; not zero.
     pub direction: Vec3,
-    /// The least distance that counts as a hit.
+    /// Minimum distance of a hit.
     pub t_min: f32,
-    /// The greatest distance that counts as a hit.
+    /// Maximum distance of a hit.
     pub t_max: f32,
 }
 
 #[kernel]
 impl Ray {
-    /// A ray without limits in front of its origin: `t` in `[0, f32::MAX]`.
+    /// Creates a ray without limits in front of its origin: `t` in `[0, f32::MAX]`.
     pub const fn new(origin: Vec3, direction: Vec3) -> Self {
         Self { origin, direction, t_min: 0.0, t_max: f32::MAX }
     }
 
-    /// The same ray with `t` in `[t_min, t_max]`.
+    /// Returns the ray with `t` in `[t_min, t_max]`.
     pub const fn with_range(self, t_min: f32, t_max: f32) -> Self {
         Self { t_min, t_max, ..self }
     }
 
-    /// The point at distance `t`.
+    /// Returns the point at distance `t`.
     pub fn at(&self, t: f32) -> Vec3 {
         self.origin + self.direction * t
     }

@@ -1,4 +1,4 @@
-//! Rectangles, of a corner and the two edges from it; parallelograms if those are not
+//! Rectangles, given by a corner and the two edges from it; parallelograms if those are not
 //! perpendicular.
 
 use glam::{Vec2, Vec3, vec2, vec3};
@@ -11,19 +11,19 @@ use super::{Aabb, Hit, Ray, SurfacePoint, quad, triangle};
 use crate::kernel;
 use crate::machine::functions::{vec2, vec3};
 
-/// What a rectangle's hit may be off by: a quad's, and two more roundings of each corner, which
-/// twice a quad's has room for.
+/// Error bound of a rectangle's hit: a quad's, and two more roundings of each corner, within twice
+/// a quad's.
 pub const SLACK: f32 = 2.0 * quad::SLACK;
 
-/// How often a ray crosses it at most; see
+/// Maximum number of crossings of a ray; see
 /// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 1;
 
-/// Where a ray meets the rectangle: both sides, edges and corners included. `hit.u` runs along
+/// Intersects a ray with the rectangle: both sides, edges and corners included. `hit.u` runs along
 /// `u_edge` and `hit.v` along `v_edge`.
 ///
-/// It is a quad whose corners are added up relative to the ray's origin, so they are rounded to the
-/// size of the rectangle and its distance, wherever in the world it is.
+/// It is a quad whose corners are summed relative to the ray's origin, so their error is relative
+/// to the size of the rectangle and its distance, wherever in the world it is.
 #[kernel]
 #[inline]
 pub fn intersect(ray: Ray, corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> Hit {
@@ -33,35 +33,36 @@ pub fn intersect(ray: Ray, corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> Hit {
     quad::intersect(from_origin, v0, v1, v1 + v_edge, v3)
 }
 
-/// The normal `u_edge × v_edge` with unit length, whichever side `ray` hits.
+/// Returns the unit normal of `u_edge × v_edge`, whichever side `ray` hits.
 #[kernel]
 #[inline]
 pub fn normal(_ray: Ray, _hit: Hit, _corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> Vec3 {
     across(u_edge, v_edge)
 }
 
-/// Which shares of the two edges lead from the corner to the hit.
+/// Returns the coordinates of the hit along the two edges, as shares.
 #[kernel]
 #[inline]
 pub fn uv(_ray: Ray, hit: Hit, _corner: Vec3, _u_edge: Vec3, _v_edge: Vec3) -> Vec2 {
     vec2(hit.u, hit.v)
 }
 
-/// The area of one side.
+/// Returns the area of one side.
 #[kernel]
 #[inline]
 pub fn area(_corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> f32 {
     spanned(u_edge, v_edge)
 }
 
-/// The point at the shares `u` of the edges; a uniform `u` in the unit square gives a uniform one.
+/// Samples the point at the shares `u` of the edges, uniformly for a uniform `u` in the unit
+/// square.
 #[kernel]
 #[inline]
 pub fn sample(u: Vec2, corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> SurfacePoint {
     at_shares(u.x, u.y, corner, u_edge, v_edge)
 }
 
-/// The point that `ray` hits, from the shares of the edges.
+/// Returns the point that `ray` hits, from the shares of the edges.
 #[kernel]
 #[inline]
 pub fn surface_point(
@@ -74,7 +75,7 @@ pub fn surface_point(
     at_shares(hit.u, hit.v, corner, u_edge, v_edge)
 }
 
-/// The point at these shares of the edges.
+/// Returns the point at these shares of the edges.
 #[kernel]
 #[inline]
 fn at_shares(u: f32, v: f32, corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> SurfacePoint {
@@ -82,8 +83,8 @@ fn at_shares(u: f32, v: f32, corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> Surfac
     rounded_point(corner + u_edge * u + v_edge * v, across(u_edge, v_edge), own_error)
 }
 
-/// The four corners in order, and what each coordinate may be off by: 0, unless the corner and the
-/// edges differ so much in size that `f64` cannot hold their sum.
+/// Returns the four corners in order, and an error bound of each coordinate: 0, unless the corner
+/// and the edges differ so much in size that `f64` cannot hold their sum.
 fn corners(corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> ([[f64; 3]; 4], f64) {
     let (corner, u, v) = (wide(corner), wide(u_edge), wide(v_edge));
     let mut worst = 0.0_f64;
@@ -98,14 +99,14 @@ fn corners(corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> ([[f64; 3]; 4], f64) {
     (corners, worst)
 }
 
-/// The smallest box around the rectangle, at most two ulp too large.
+/// Returns the smallest box around the rectangle, at most two ulp too large.
 pub fn get_bounds(corner: Vec3, u_edge: Vec3, v_edge: Vec3) -> Aabb {
     let (corners, error) = corners(corner, u_edge, v_edge);
     corners.into_iter().map(|c| around(c, error)).fold(Aabb::EMPTY, Aabb::union)
 }
 
-/// Boxes around the parts of the rectangle below and above the plane `axis = at`. Where edges cross
-/// the plane is computed in `f64` and rounded outwards.
+/// Splits the rectangle at the plane `axis = at`; returns boxes around the parts below and above.
+/// The crossings of edges with the plane are computed in `f64` and rounded outwards.
 pub fn split_primitive(
     axis: usize,
     at: f32,

@@ -1,4 +1,4 @@
-//! Spheres, of a centre and a radius.
+//! Spheres, given by a centre and a radius.
 
 use core::f32::consts::{PI, TAU};
 
@@ -11,32 +11,32 @@ use crate::machine::functions::{vec2, vec3};
 use crate::machine::generic::max;
 use crate::math::elementary::{acos, atan2, sincos_2pi};
 
-/// What a sphere's hit may be off by, relative to the distance from the ray's origin; see
+/// Error bound of a sphere's hit, relative to the distance from the ray's origin; see
 /// [`Primitive::SLACK`](super::Primitive::SLACK).
 ///
 /// With `f` the offset of the centre, the radicand `r² - |f - (f·d) d|²` is exact for a radius
-/// within 4 eps |f| of `r` (eps = 2^-24): the error of the perpendicular is that of two
-/// roundings of `f`, and the squares are not subtracted: with `l` its length the radicand is
-/// `(r - l) (r + l)`. 16 eps leave room for the closing sums.
+/// within 4 eps |f| of `r` (eps = 2^-24): the error of the perpendicular is that of two roundings
+/// of `f`, and the squares are not subtracted: with `l` its length the radicand is
+/// `(r - l) (r + l)`. 16 eps leave room for the final sums.
 pub const SLACK: f32 = 1.0 / 1_048_576.0;
 
-/// How often a ray crosses it at most; see
+/// Maximum number of crossings of a ray; see
 /// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 2;
 
-/// Where a ray meets a sphere: the nearer of its two intersections that lies in the ray's range.
+/// Intersects a ray with a sphere: the nearer of the two intersections within the ray's range.
 ///
-/// The discriminant is formed from the part of the offset that is perpendicular to the ray, as
-/// in Haines, Günther and Akenine-Möller, "Precision Improvements for Ray/Sphere Intersection",
-/// Ray Tracing Gems (2019), chapter 7. A sphere of radius 0 is never hit.
+/// The discriminant is computed from the part of the offset perpendicular to the ray, as in Haines,
+/// Günther and Akenine-Möller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing
+/// Gems (2019), chapter 7. A sphere of radius 0 is never hit.
 #[kernel]
 #[inline]
 pub fn intersect(ray: Ray, center: Vec3, radius: f32) -> Hit {
     let f = center - ray.origin;
     let d = ray.direction;
-    // One division, which is the ray's alone: loops over spheres do it once.
+    // The division depends on the ray alone: loops over spheres hoist it.
     let per_d2 = 1.0 / d.dot(d);
-    // Along the ray to the point closest to the centre, and from there to the centre.
+    // Project the centre on the ray, and drop the perpendicular.
     let closest = f.dot(d) * per_d2;
     let aside = f - d * closest;
     let distance = aside.length();
@@ -49,11 +49,11 @@ pub fn intersect(ray: Ray, center: Vec3, radius: f32) -> Hit {
     Hit::new(is_hit, t)
 }
 
-/// The normal where `ray` hits the sphere.
+/// Returns the normal where `ray` hits the sphere.
 ///
-/// It is formed from the offset to the centre, not from the point at `hit.t`, whose error is that
-/// of the distance: for a small sphere far away, larger than the sphere. It is off by at most 8 eps
-/// of what the radius is to the distance (eps = 2^-24).
+/// It is computed from the offset to the centre, not from the point at `hit.t`, whose error is that
+/// of the distance: for a small sphere far away, larger than the sphere. Its error is at most 8 eps
+/// times the radius over the distance (eps = 2^-24).
 #[kernel]
 #[inline]
 pub fn normal(ray: Ray, hit: Hit, center: Vec3, radius: f32) -> Vec3 {
@@ -65,14 +65,14 @@ pub fn normal(ray: Ray, hit: Hit, center: Vec3, radius: f32) -> Vec3 {
     let distance = aside.length();
     let radicand = (radius - distance) * (radius + distance);
     let half = (max(radicand, 0.0) * per_d2).sqrt();
-    // Of the two intersections the one that is nearer to the hit.
+    // Select the intersection nearer to the hit.
     let is_far = (hit.t - (closest - half)).abs() > (closest + half - hit.t).abs();
     let along = if is_far { half } else { -half };
     (d * along - aside).normalize()
 }
 
-/// Longitude and latitude of the point that `ray` hits, from 0 to 1: the axis is z, and `v` is 0 at
-/// its positive end.
+/// Returns longitude and latitude of the point that `ray` hits, from 0 to 1: the axis is z, and `v`
+/// is 0 at its positive end.
 #[kernel]
 #[inline]
 pub fn uv(ray: Ray, hit: Hit, center: Vec3, radius: f32) -> Vec2 {
@@ -81,15 +81,15 @@ pub fn uv(ray: Ray, hit: Hit, center: Vec3, radius: f32) -> Vec2 {
     vec2(if turn < 0.0 { turn + 1.0 } else { turn }, acos(n.z) / PI)
 }
 
-/// The area of the surface.
+/// Returns the surface area.
 #[kernel]
 #[inline]
 pub fn area(_center: Vec3, radius: f32) -> f32 {
     4.0 * PI * radius * radius
 }
 
-/// A point of the surface; a uniform `u` in the unit square gives a uniform one (Archimedes: equal
-/// heights have equal areas).
+/// Samples a point of the surface, uniformly for a uniform `u` in the unit square (Archimedes:
+/// equal heights have equal areas).
 #[kernel]
 #[inline]
 pub fn sample(u: Vec2, center: Vec3, radius: f32) -> SurfacePoint {
@@ -100,7 +100,7 @@ pub fn sample(u: Vec2, center: Vec3, radius: f32) -> SurfacePoint {
     of_normal(normal, center, radius)
 }
 
-/// The point that `ray` hits: the one whose normal the hit has, so that it lies on the sphere
+/// Returns the point that `ray` hits, from the normal of the hit, so that it lies on the sphere
 /// however far the ray came from.
 #[kernel]
 #[inline]
@@ -108,23 +108,23 @@ pub fn surface_point(ray: Ray, hit: Hit, center: Vec3, radius: f32) -> SurfacePo
     of_normal(normal(ray, hit, center, radius), center, radius)
 }
 
-/// The point with this normal. The normal is off by 3 eps, and the perpendicular of a ray from
-/// there by 4 of the radius (eps = 2^-24); twice that is allowed.
+/// Returns the point with this normal. The normal is off by 3 eps, and the perpendicular of a ray
+/// from there by 4 of the radius (eps = 2^-24); twice that is allowed.
 #[kernel]
 #[inline]
 fn of_normal(normal: Vec3, center: Vec3, radius: f32) -> SurfacePoint {
     rounded_point(center + normal * radius, normal, radius * SLACK)
 }
 
-/// The smallest box around the sphere, at most one ulp too large.
+/// Returns the smallest box around the sphere, at most one ulp too large.
 pub fn get_bounds(center: Vec3, radius: f32) -> Aabb {
     Aabb::from_sphere(center, radius)
 }
 
-/// Boxes around the parts of the sphere below and above the plane `axis = at`.
+/// Splits the sphere at the plane `axis = at`; returns boxes around the parts below and above.
 ///
-/// A part that does not hold the centre is as wide as the circle in the plane. That is computed in
-/// `f64` and rounded outwards.
+/// A part without the centre is as wide as the circle in the plane, which is computed in `f64` and
+/// rounded outwards.
 pub fn split_primitive(axis: usize, at: f32, center: Vec3, radius: f32) -> (Aabb, Aabb) {
     let whole = get_bounds(center, radius);
     let (below, above) = whole.split(axis, at);

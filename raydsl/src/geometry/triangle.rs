@@ -1,4 +1,4 @@
-//! Triangles, of three vertices.
+//! Triangles, given by three vertices.
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
@@ -12,25 +12,25 @@ use crate::machine::generic::{max, min};
 use crate::math::exact::{exact_cross, lost_by_difference};
 use crate::{kernel, primitive};
 
-/// What a triangle's hit may be off by, as a sphere's 16 eps: the sheared vertices carry at most
-/// 6 eps of the farthest coordinate, and weights, depths and distance nine roundings more.
+/// Error bound of a triangle's hit, like a sphere's 16 eps: the sheared vertices carry at most 6
+/// eps of the farthest coordinate, and weights, depths and distance nine roundings more.
 pub const SLACK: f32 = super::sphere::SLACK;
 
-/// How often a ray crosses it at most; see
+/// Maximum number of crossings of a ray; see
 /// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 1;
 
-/// 8 eps (eps = 2^-24): what a point is off by, and `intersect` from there, relative to the longest
+/// 8 eps (eps = 2^-24): error of a point and of `intersect` from there, relative to the longest
 /// edge. Weighted edges lose 3 eps, sheared vertices 4.
 const NEARBY: f32 = 1.0 / 2_097_152.0;
 
-/// 2^-60: products below which the bits that they lose are no numbers themselves, or nearly.
+/// 2^-60: products below this have rounding errors that are denormal or nearly so.
 const SMALL: f32 = 1.0 / 1_152_921_504_606_846_976.0;
 
-/// A triangle of three vertices, 36 bytes.
+/// Triangle of three vertices, 36 bytes.
 ///
-/// Vertices rather than edges are stored: neighbours share them bit for bit, which watertightness
-/// needs.
+/// Vertices rather than edges are stored: neighbours share them bit for bit, as watertightness
+/// requires.
 #[primitive(triangle(v0, v1, v2))]
 #[derive(Debug, PartialEq)]
 pub struct Triangle {
@@ -42,14 +42,14 @@ pub struct Triangle {
     pub v2: Vec3,
 }
 
-/// A triangle of three vertices that lie elsewhere, as in an index buffer: 12 bytes.
+/// Triangle of three indices into shared vertices, as in an index buffer: 12 bytes.
 ///
-/// The vertices are what the triangles of a tree share; see
+/// The vertices are the shared data of a tree; see
 /// [`Bvh::build_sharing`](crate::bvh::Bvh::build_sharing).
 #[primitive]
 #[derive(Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct IndexedTriangle {
-    /// The numbers of the vertices.
+    /// Indices of the vertices.
     pub vertices: [u32; 3],
 }
 
@@ -59,69 +59,69 @@ impl IndexedTriangle {
     const IS_SHORT: bool = true;
     const MAX_CROSSINGS: u32 = MAX_CROSSINGS;
 
-    /// Where `ray` meets it.
+    /// Intersects `ray` with the triangle.
     #[inline]
     pub fn intersect(&self, ray: Ray, vertices: &[Vec3]) -> Hit {
         let [v0, v1, v2] = self.vertices;
         intersect(ray, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
     }
 
-    /// The normal where `ray` hits it, with unit length; see [`normal()`].
+    /// Returns the unit normal where `ray` hits it; see [`normal()`].
     #[inline]
     pub fn normal(&self, ray: Ray, hit: Hit, vertices: &[Vec3]) -> Vec3 {
         let [v0, v1, v2] = self.vertices;
         normal(ray, hit, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
     }
 
-    /// Surface coordinates where `ray` hits it; see [`uv()`].
+    /// Returns the surface coordinates where `ray` hits it; see [`uv()`].
     #[inline]
     pub fn uv(&self, ray: Ray, hit: Hit, vertices: &[Vec3]) -> Vec2 {
         let [v0, v1, v2] = self.vertices;
         uv(ray, hit, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
     }
 
-    /// The point that `ray` hits; see [`surface_point()`].
+    /// Returns the point that `ray` hits; see [`surface_point()`].
     #[inline]
     pub fn surface_point(&self, ray: Ray, hit: Hit, vertices: &[Vec3]) -> SurfacePoint {
         let [v0, v1, v2] = self.vertices;
         surface_point(ray, hit, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
     }
 
-    /// The area of one side.
+    /// Returns the area of one side.
     #[inline]
     pub fn area(&self, vertices: &[Vec3]) -> f32 {
         let [v0, v1, v2] = self.vertices;
         area(vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
     }
 
-    /// A point of it; see [`sample()`].
+    /// Samples a point of it; see [`sample()`].
     #[inline]
     pub fn sample(&self, u: Vec2, vertices: &[Vec3]) -> SurfacePoint {
         let [v0, v1, v2] = self.vertices;
         sample(u, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
     }
 
-    /// The box of its vertices; not finite if one of them is not there.
+    /// Returns the bounds of its vertices; not finite if an index is out of range.
     pub fn get_bounds(&self, vertices: &[Vec3]) -> Aabb {
         self.on(vertices).map_or(Aabb::new(Vec3::NAN, Vec3::NAN), |t| t.get_bounds())
     }
 
-    /// Boxes around its parts below and above a plane.
+    /// Splits it at a plane; returns boxes around the parts below and above.
     pub fn split_primitive(&self, axis: usize, at: f32, vertices: &[Vec3]) -> (Aabb, Aabb) {
         self.on(vertices).map_or((Aabb::EMPTY, Aabb::EMPTY), |t| t.split_primitive(axis, at))
     }
 }
 
 impl IndexedTriangle {
-    /// The triangle with its vertices, if they are there.
+    /// Looks up the vertices; `None` if an index is out of range.
     pub fn on(&self, vertices: &[Vec3]) -> Option<Triangle> {
         let [v0, v1, v2] = self.vertices.map(|i| vertices.get(i as usize).copied());
         Some(Triangle { v0: v0?, v1: v1?, v2: v2? })
     }
 }
 
-/// The components of `v`, of which that along the axis `k` (0, 1 or 2) and the last have changed
-/// places: two selections fewer than a rotation, and all signs are the same or all are others.
+/// Swaps the components along the axis `k` (0, 1 or 2) and z: two selections fewer than a rotation,
+/// which keeps all signs or flips them all.
 #[kernel]
 #[inline]
 fn axis_last(v: Vec3, k: u32) -> Vec3 {
@@ -137,8 +137,8 @@ fn axis_last(v: Vec3, k: u32) -> Vec3 {
     vec3(x, y, z)
 }
 
-/// Whether three points whose edges have a cross product of 0, as rounded, lie on one line exactly.
-/// Where the edges themselves are rounded, nothing is known and the answer is no.
+/// Returns whether three points whose edges have a rounded cross product of 0 are exactly
+/// collinear. Where the edges themselves are rounded, nothing is known and the result is false.
 #[kernel]
 #[inline]
 fn is_line(v0: Vec3, v1: Vec3, v2: Vec3) -> bool {
@@ -147,7 +147,7 @@ fn is_line(v0: Vec3, v1: Vec3, v2: Vec3) -> bool {
     lost.x + lost.y + lost.z == 0.0
 }
 
-/// Whether a ray passes on one side of all edges, or through one.
+/// Returns whether a ray passes on one side of all edges, or through one.
 #[kernel]
 #[inline]
 fn is_inside(sides: Vec3) -> bool {
@@ -156,20 +156,20 @@ fn is_inside(sides: Vec3) -> bool {
     least >= 0.0 || greatest <= 0.0
 }
 
-/// Where a ray meets the triangle: both sides, edges and vertices included. One whose
-/// vertices lie on one line is never met.
+/// Intersects a ray with the triangle: both sides, edges and vertices included. A triangle with
+/// collinear vertices is never hit.
 ///
-/// The point at `t` lies on the triangle, to within [`SLACK`] of the farthest coordinate, also
-/// where the ray runs along it. So it lies in the box of one of the parts into which
-/// [`split_primitive`] cuts the triangle, which trees with spatial splits rely on.
+/// The point at `t` lies on the triangle, to within [`SLACK`] of the farthest coordinate, even for
+/// rays along its plane. So it lies in the box of one of the parts into which [`split_primitive`]
+/// cuts the triangle, as trees with spatial splits require.
 ///
-/// The watertight test of Woop, Benthin and Wald ("Watertight Ray/Triangle Intersection",
-/// JCGT 2013), divided by the determinant before it is scaled, so that it holds
-/// for coordinates from 1e-18 to 1e18 and directions of any usual length.
+/// The watertight test of Woop, Benthin and Wald ("Watertight Ray/Triangle Intersection", JCGT
+/// 2013), divided by the determinant before scaling, so that it holds for coordinates from 1e-18 to
+/// 1e18 and directions of any usual length.
 #[kernel]
 #[inline]
 pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
-    // The axis along which the ray runs fastest becomes z.
+    // Make the axis along which the ray runs fastest z.
     let ax = ray.direction.x.abs();
     let ay = ray.direction.y.abs();
     let az = ray.direction.z.abs();
@@ -193,16 +193,16 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
     let b_y = b.y - sy * b.z;
     let c_x = c.x - sx * c.z;
     let c_y = c.y - sy * c.z;
-    // On which side of each edge the ray passes. Rounding keeps the order of two products or
-    // makes them equal, so a sign is right or zero, and zero counts as inside.
+    // Test the side of each edge on which the ray passes. Rounding keeps the order of two products
+    // or makes them equal, so a sign is right or zero, and zero counts as inside.
     let xs = vec3(a_x, b_x, c_x);
     let ys = vec3(a_y, b_y, c_y);
     let mut sides = ys.cross(xs);
     if !is_inside(sides) {
         return Hit::miss();
     }
-    // Seen edge-on the signs are those of rounding errors: the ray must pass between the
-    // vertices all the same.
+    // Edge-on the signs are those of rounding errors: the ray must pass between the vertices all
+    // the same.
     let left = min(min(a_x, b_x), c_x);
     let right = max(max(a_x, b_x), c_x);
     let low = min(min(a_y, b_y), c_y);
@@ -212,15 +212,15 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
         return Hit::miss();
     }
     let mut sum = sides.x + sides.y + sides.z;
-    // A product loses eps of its size, and where products cancel that may say more about the
-    // depth than the vertices do: in a thin triangle whose plane the ray runs along. Then nothing
-    // may be lost. Signs stay right or zero, so no ray passes between a triangle whose signs are
-    // these and one whose signs are those above; a sum of 0 alone would say nothing.
+    // A product loses eps of its size, and where products cancel, that may affect the depth more
+    // than the vertices do: in a thin triangle with the ray in its plane. Then use exact products.
+    // Signs stay right or zero, so no ray passes between a triangle with these signs and one with
+    // those above; a sum of 0 alone would say nothing.
     let near = min(min(a.z, b.z), c.z);
     let far = max(max(a.z, b.z), c.z);
     let products = (c_x * b_y).abs() + (a_x * c_y).abs() + (b_x * a_y).abs();
     if 2.0 * sum.abs() <= products * ((far - near) / max(near.abs(), far.abs())) {
-        // Exact; what a product loses is itself too small below.
+        // Exact; scale products whose own rounding errors would underflow.
         let scale = if products < SMALL { 1.0 / SMALL } else { 1.0 };
         sides = exact_cross(ys * scale, xs * scale);
         sum = if is_inside(sides) { sides.x + sides.y + sides.z } else { 0.0 };
@@ -229,10 +229,10 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
         return Hit::miss();
     }
     let (u, v, w) = (sides.x / sum, sides.y / sum, sides.z / sum);
-    // A mean of the vertices' depths, as a distance.
+    // Interpolate the vertices' depths to a distance.
     let t = (u * a.z + v * b.z + w * c.z) * (1.0 / d.z);
-    // Vertices on one line have no inside: the signs are those of rounding errors. The area of a
-    // sliver may be rounded to nothing, and it closes a gap all the same.
+    // Collinear vertices have no inside: the signs are those of rounding errors. The area of a
+    // sliver may be rounded to 0, but it must close its gap all the same.
     let n = (v1 - v0).cross(v2 - v0);
     let is_flat = n.x == 0.0 && n.y == 0.0 && n.z == 0.0;
     let is_surface = !(is_flat && is_line(v0, v1, v2));
@@ -240,28 +240,29 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
     Hit { u: v, v: w, ..Hit::new(is_hit, t) }
 }
 
-/// The side from which the vertices run anticlockwise, with unit length; whichever side `ray` hits.
+/// Returns the unit normal on the side from which the vertices run anticlockwise, whichever side
+/// `ray` hits.
 #[kernel]
 #[inline]
 pub fn normal(_ray: Ray, _hit: Hit, v0: Vec3, v1: Vec3, v2: Vec3) -> Vec3 {
     across(v1 - v0, v2 - v0)
 }
 
-/// The barycentric weights of the second and the third vertex.
+/// Returns the barycentric weights of the second and the third vertex.
 #[kernel]
 #[inline]
 pub fn uv(_ray: Ray, hit: Hit, _v0: Vec3, _v1: Vec3, _v2: Vec3) -> Vec2 {
     vec2(hit.u, hit.v)
 }
 
-/// The area of one side.
+/// Returns the area of one side.
 #[kernel]
 #[inline]
 pub fn area(v0: Vec3, v1: Vec3, v2: Vec3) -> f32 {
     0.5 * spanned(v1 - v0, v2 - v0)
 }
 
-/// A point of the triangle; a uniform `u` in the unit square gives a uniform one. (Heitz, "A
+/// Samples a point of the triangle, uniformly for a uniform `u` in the unit square. (Heitz, "A
 /// Low-Distortion Map Between Triangle and Square", 2019.)
 #[kernel]
 #[inline]
@@ -270,7 +271,7 @@ pub fn sample(u: Vec2, v0: Vec3, v1: Vec3, v2: Vec3) -> SurfacePoint {
     weighted(weights.x, weights.y, v0, v1, v2)
 }
 
-/// The weights of the second and the third vertex of such a point.
+/// Samples the barycentric weights of the second and the third vertex of such a point.
 #[kernel]
 #[inline]
 pub fn sample_weights(u: Vec2) -> Vec2 {
@@ -281,18 +282,18 @@ pub fn sample_weights(u: Vec2) -> Vec2 {
     vec2(b1, b2)
 }
 
-/// The point that `ray` hits, from its barycentric weights.
+/// Returns the point that `ray` hits, from its barycentric weights.
 ///
-/// Its error does not grow with the distance from the ray's origin. In all the origin of a ray from
-/// here is moved by at most 4 ulp of the position and 8 eps of the longest edge (eps = 2^-24).
+/// Its error does not grow with the distance from the ray's origin. In all, the origin of a ray
+/// from here is moved by at most 4 ulp of the position and 8 eps of the longest edge (eps = 2^-24).
 #[kernel]
 #[inline]
 pub fn surface_point(_ray: Ray, hit: Hit, v0: Vec3, v1: Vec3, v2: Vec3) -> SurfacePoint {
     weighted(hit.u, hit.v, v0, v1, v2)
 }
 
-/// The point with the weights `b1` and `b2` of the second and the third vertex. The edges are added
-/// up first, so that their sum meets the larger coordinates of the world once.
+/// Returns the point with the weights `b1` and `b2` of the second and the third vertex. The edges
+/// are summed first, so that their sum is added to the larger world coordinates once.
 #[kernel]
 #[inline]
 fn weighted(b1: f32, b2: f32, v0: Vec3, v1: Vec3, v2: Vec3) -> SurfacePoint {
@@ -301,19 +302,19 @@ fn weighted(b1: f32, b2: f32, v0: Vec3, v1: Vec3, v2: Vec3) -> SurfacePoint {
     rounded_point(v0 + (e1 * b1 + e2 * b2), across(e1, e2), size * NEARBY)
 }
 
-/// The box of the vertices.
+/// Returns the bounds of the vertices.
 pub fn get_bounds(v0: Vec3, v1: Vec3, v2: Vec3) -> Aabb {
     Aabb::from_points([v0, v1, v2])
 }
 
-/// Boxes around the parts of the triangle below and above the plane `axis = at`. Where edges cross
-/// the plane is computed in `f64` and rounded outwards.
+/// Splits the triangle at the plane `axis = at`; returns boxes around the parts below and above.
+/// The crossings of edges with the plane are computed in `f64` and rounded outwards.
 pub fn split_primitive(axis: usize, at: f32, v0: Vec3, v1: Vec3, v2: Vec3) -> (Aabb, Aabb) {
     split_polygon(axis, at, get_bounds(v0, v1, v2), &[v0, v1, v2].map(wide), 0.0)
 }
 
-/// [`split_primitive`] of any flat polygon in the box `whole`, whose vertices may be off by
-/// `error`.
+/// Splits any flat polygon in the box `whole`, with vertices that may be off by `error`, as
+/// [`split_primitive`] does.
 pub(super) fn split_polygon(
     axis: usize,
     at: f32,
@@ -337,16 +338,16 @@ pub(super) fn split_polygon(
             above = above.union(crossing);
         }
     }
-    // What an error has moved across the plane goes back to it.
+    // Clip parts that the error has moved across the plane.
     (whole.split(axis, at).0.intersection(below), whole.split(axis, at).1.intersection(above))
 }
 
-/// A box around the point of the edge in the plane.
+/// Returns a box around the intersection of the edge with the plane.
 fn crossing(axis: usize, at: f32, a: [f64; 3], b: [f64; 3], error: f64) -> Aabb {
     let s = (f64::from(at) - a[axis]) / (b[axis] - a[axis]);
     let bounds = |sign: f64, step: fn(f32) -> f32| {
         let mut bound = core::array::from_fn(|i| {
-            // What `f64` may be off by, next to 0 more than a step of `f32`.
+            // Error bound of `f64`; next to 0 more than an ulp of `f32`.
             let error = error + (a[i].abs() + b[i].abs()) * f64::EPSILON * 4.0;
             step((a[i] + (b[i] - a[i]) * s + sign * error) as f32)
         });

@@ -1,4 +1,4 @@
-//! Tubes: cylinders that are open at both ends, of the two ends of the axis and a radius.
+//! Tubes: cylinders open at both ends, given by the two ends of the axis and a radius.
 
 use core::f32::consts::PI;
 
@@ -12,25 +12,25 @@ use crate::machine::functions::vec2;
 use crate::machine::generic::clamp;
 use crate::{Type, kernel};
 
-/// What a tube's hit may be off by: it is formed as a cylinder's.
+/// Error bound of a tube's hit, computed like a cylinder's.
 pub const SLACK: f32 = cylinder::SLACK;
 
-/// How often a ray crosses it at most; see
+/// Maximum number of crossings of a ray; see
 /// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 2;
 
-/// A ray and where it meets a tube.
+/// Intersection of a ray's line with a tube.
 #[derive(Clone, Copy, Debug, Type)]
 struct Meeting {
     line: Near,
     view: Axial,
     round: Round,
     is_met: bool,
-    /// The point, along the line.
+    /// Parameter of the hit along the line.
     s: f32,
 }
 
-/// Whether the point at `s` lies between the ends, and in the ray's range.
+/// Returns whether the point at `s` lies between the ends, and in the ray's range.
 #[kernel]
 #[inline]
 fn is_on(ray: Ray, line: Near, view: Axial, s: f32) -> bool {
@@ -49,15 +49,15 @@ fn meet(ray: Ray, p0: Vec3, p1: Vec3, radius: f32) -> Meeting {
     let is_leaving = !is_on(ray, line, view, round.span.enter);
     let s = if is_leaving { round.span.leave } else { round.span.enter };
     let is_some = round.span.is_met && radius > 0.0 && view.length > 0.0;
-    // A ray along the axis passes within or without.
+    // A ray along the axis stays inside or outside.
     let is_met = is_some && round.half < f32::MAX && is_on(ray, line, view, s);
     Meeting { line, view, round, is_met, s }
 }
 
-/// Where a ray meets the tube, from outside or inside: the nearer of its intersections that lies in
+/// Intersects a ray with the tube, from outside or inside: the nearest of its intersections within
 /// the ray's range.
 ///
-/// A tube whose radius is 0, or whose ends are one point, is never hit.
+/// A tube whose radius is 0, or whose ends coincide, is never hit.
 #[kernel]
 #[inline]
 pub fn intersect(ray: Ray, p0: Vec3, p1: Vec3, radius: f32) -> Hit {
@@ -65,7 +65,7 @@ pub fn intersect(ray: Ray, p0: Vec3, p1: Vec3, radius: f32) -> Hit {
     Hit::new(m.is_met, distance_of(m.line, m.s))
 }
 
-/// The normal where `ray` hits the tube, away from the axis; as precise as a cylinder's.
+/// Returns the normal where `ray` hits the tube, away from the axis; as precise as a cylinder's.
 #[kernel]
 #[inline]
 pub fn normal(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec3 {
@@ -75,8 +75,8 @@ pub fn normal(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec3 {
     (m.round.aside + m.view.step_across * half).normalize()
 }
 
-/// Where `ray` hits: the share of a turn around the axis, and the height from 0 at `p0` to 1 at
-/// `p1`. The turn begins at `axis.any_orthonormal_pair().0`.
+/// Returns the coordinates of the hit: the share of a turn around the axis, and the height from 0
+/// at `p0` to 1 at `p1`. The turn begins at `axis.any_orthonormal_pair().0`.
 #[kernel]
 #[inline]
 pub fn uv(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec2 {
@@ -87,14 +87,14 @@ pub fn uv(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Vec2 {
     vec2(turn(m.view.axis, m.view.across + m.view.step_across * s), clamp(height, 0.0, 1.0))
 }
 
-/// The area of the outer side.
+/// Returns the area of the outer side.
 #[kernel]
 #[inline]
 pub fn area(p0: Vec3, p1: Vec3, radius: f32) -> f32 {
     2.0 * PI * radius * (p1 - p0).length()
 }
 
-/// A point of the tube; a uniform `u` in the unit square gives a uniform one.
+/// Samples a point of the tube, uniformly for a uniform `u` in the unit square.
 #[kernel]
 #[inline]
 pub fn sample(u: Vec2, p0: Vec3, p1: Vec3, radius: f32) -> SurfacePoint {
@@ -104,7 +104,7 @@ pub fn sample(u: Vec2, p0: Vec3, p1: Vec3, radius: f32) -> SurfacePoint {
     rounded_point(p0 + (axis * u.x + across * radius), across, own_error)
 }
 
-/// The point that `ray` hits.
+/// Returns the point that `ray` hits.
 #[kernel]
 #[inline]
 pub fn surface_point(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> SurfacePoint {
@@ -112,12 +112,12 @@ pub fn surface_point(ray: Ray, hit: Hit, p0: Vec3, p1: Vec3, radius: f32) -> Sur
     point_on_ray(ray, hit, normal(ray, hit, p0, p1, radius), size, SLACK)
 }
 
-/// The smallest box around the tube, which is a cylinder's.
+/// Returns the smallest box around the tube, that of a cylinder.
 pub fn get_bounds(p0: Vec3, p1: Vec3, radius: f32) -> Aabb {
     cylinder::get_bounds(p0, p1, radius)
 }
 
-/// The parts of the tube's box below and above the plane `axis = at`.
+/// Splits the tube's box at the plane `axis = at`; returns the parts below and above.
 pub fn split_primitive(axis: usize, at: f32, p0: Vec3, p1: Vec3, radius: f32) -> (Aabb, Aabb) {
     get_bounds(p0, p1, radius).split(axis, at)
 }

@@ -1,4 +1,4 @@
-//! Numbers of the host whose code has at most 32 bits: what they are on a machine.
+//! Types of the host with a code of at most 32 bits, and their forms on a machine.
 
 macro_rules! code {
     ($(#[$doc:meta])* $name:ident, $twin:ident, $bits:ty, $schema:expr) => {
@@ -8,12 +8,12 @@ macro_rules! code {
         pub struct $name($bits);
 
         impl $name {
-            /// The number with this code.
+            /// Creates the number with this code.
             pub const fn from_bits(bits: $bits) -> Self {
                 Self(bits)
             }
 
-            /// The code.
+            /// Returns the code.
             pub const fn to_bits(self) -> $bits {
                 self.0
             }

@@ -1,6 +1,6 @@
-//! Arithmetic that keeps what rounding loses.
+//! Error-free transformations: exact rounding errors of sums and products.
 //!
-//! Where a device fuses products into sums, what is kept is less, and at worst nothing.
+//! Where a device fuses products into sums, the recovered error is smaller, and at worst 0.
 
 use glam::{Vec3, vec3};
 
@@ -10,15 +10,15 @@ use crate::machine::margin::{Interval, Known};
 use crate::machine::{KnownFunction, Margin};
 use crate::{Type, kernel};
 
-/// The same number, of which a compiler knows nothing: those of some drivers cancel `a - (a - b)`
-/// and reorder sums.
+/// Returns the same number, opaque to compilers: those of some drivers cancel `a - (a - b)` and
+/// reorder sums.
 #[kernel]
 #[inline]
 fn kept(a: Vec3) -> Vec3 {
     min(a, vec3(f32::MAX, f32::MAX, f32::MAX))
 }
 
-/// What `a - b` lost by rounding (Knuth, TAOCP 2, 4.2.2, theorem B).
+/// Returns the rounding error of `a - b` (Knuth, TAOCP 2, 4.2.2, theorem B).
 #[kernel]
 #[inline]
 pub(crate) fn lost_by_difference(a: Vec3, b: Vec3) -> Vec3 {
@@ -28,7 +28,7 @@ pub(crate) fn lost_by_difference(a: Vec3, b: Vec3) -> Vec3 {
     (a - rest) + (part - b)
 }
 
-/// The upper half of the bits of a number. (Veltkamp, 1968: as in Dekker, section 5.)
+/// Returns the upper half of a number's bits. (Veltkamp, 1968: as in Dekker, section 5.)
 #[kernel]
 #[inline]
 fn upper_half(a: Vec3) -> Vec3 {
@@ -36,8 +36,8 @@ fn upper_half(a: Vec3) -> Vec3 {
     wide - kept(wide - a)
 }
 
-/// What `a * b` lost by rounding, unless it underflows: products of halves are exact. (Dekker, "A
-/// Floating-Point Technique for Extending the Available Precision", 1971.)
+/// Returns the rounding error of `a * b`, unless it underflows: products of halves are exact.
+/// (Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971.)
 #[kernel]
 #[inline]
 fn lost_by_product(a: Vec3, b: Vec3) -> Vec3 {
@@ -48,14 +48,14 @@ fn lost_by_product(a: Vec3, b: Vec3) -> Vec3 {
     ((a_high * b_high - a * b) + a_high * b_low + a_low * b_high) + a_low * b_low
 }
 
-/// What is lost, rounded, and what rounding that loses.
+/// Rounding error as a rounded number and its own rounding error.
 #[derive(Clone, Copy, Debug, Type)]
 pub(crate) struct Lost {
     pub(crate) most: Vec3,
     pub(crate) rest: Vec3,
 }
 
-/// What the cross product loses by rounding its products.
+/// Returns the rounding error of the products in a cross product.
 #[kernel(known = LostByCross)]
 #[inline]
 pub(crate) fn lost_by_cross(a: Vec3, b: Vec3) -> Lost {
@@ -66,24 +66,24 @@ pub(crate) fn lost_by_cross(a: Vec3, b: Vec3) -> Lost {
     Lost { most: lost - lost_too, rest: lost_by_difference(lost, lost_too) }
 }
 
-/// What machines know of [`lost_by_cross()`]: it is small, where intervals would only widen.
+/// Rounding bounds of [`lost_by_cross()`]: it is small, where intervals would only widen.
 #[derive(Debug)]
 struct LostByCross;
 
-/// By what a factor is multiplied to tell its halves apart, rounded up.
+/// Factor that splits a number in halves, rounded up.
 const SPLIT: f64 = 4098.0;
-/// How many of the sums and products that find what one product loses may underflow.
+/// Number of sums and products in the error of one product that may underflow.
 const PARTS: f64 = 8.0;
 
 impl KnownFunction for LostByCross {
-    /// Nothing in `f64`. Each product loses at most its rounding; a device that fuses or reorders
-    /// what finds that may be off by as much again.
+    /// Returns 0 in `f64`. Each product loses at most its rounding error; a device that fuses or
+    /// reorders its computation may be off by as much again.
     fn bound(&self, m: &Margin, args: &[Known]) -> Option<Vec<Known>> {
         let size = |i: usize| args[i].range.magnitude();
         let product = |i: usize, j: usize| {
             let (a, b) = (size(i), size(3 + j));
-            // Halves of a factor are told apart by a multiple of it; beyond the largest number that
-            // is infinite, and the rest of it is no number.
+            // A factor is split in halves by a multiple of it; beyond the largest number that is
+            // infinite, and the rest is NaN.
             let largest = (SPLIT * a).max(SPLIT * b).max(a * b);
             if largest > f64::from(f32::MAX) {
                 return f64::INFINITY;
@@ -101,8 +101,8 @@ impl KnownFunction for LostByCross {
     }
 }
 
-/// The cross product with 2 ulp at most lost of each component, however much they cancel: their
-/// signs are those of the exact ones.
+/// Returns the cross product with at most 2 ulp lost of each component, however much they cancel:
+/// their signs are those of the exact ones.
 #[kernel]
 #[inline(never)]
 pub(crate) fn exact_cross(a: Vec3, b: Vec3) -> Vec3 {

@@ -1,4 +1,4 @@
-//! Numbers with few bits, elementary functions, and arithmetic that keeps what rounding loses.
+//! Low-precision numbers, elementary functions, and error-free transformations.
 
 mod code;
 pub mod elementary;

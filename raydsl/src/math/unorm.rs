@@ -25,13 +25,13 @@ macro_rules! unorm {
             /// 1.
             pub const ONE: Self = Self(<$bits>::MAX);
 
-            /// The nearest code to `v` clamped to `[0, 1]`; NaN gives 0.
+            /// Encodes `v`, clamped to `[0, 1]`, as the nearest code; NaN becomes 0.
             pub fn new(v: f32) -> Self {
                 // f64 holds every code exactly; `as` saturates and turns NaN into 0.
                 Self((f64::from(v) * f64::from(<$bits>::MAX) + 0.5).floor() as $bits)
             }
 
-            /// The number.
+            /// Returns the number.
             pub fn to_f32(self) -> f32 {
                 self.0 as f32 / <$bits>::MAX as f32
             }

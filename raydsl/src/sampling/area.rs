@@ -1,7 +1,7 @@
-//! Points of triangles and quads.
+//! Area sampling of triangles and quads.
 //!
 //! Shapes sample themselves: [`triangle::sample`](crate::geometry::triangle::sample()) and its like
-//! give points with normals. Here is what they are made of, and their densities.
+//! return points with normals. This module has their inverses and densities.
 
 use glam::{Vec2, Vec3, vec2};
 
@@ -14,8 +14,8 @@ use super::rng::ONE_MINUS_EPSILON;
 
 pub use crate::geometry::triangle::sample_weights as sample_triangle;
 
-/// The point of the unit square whose [`sample_triangle()`] has these weights of the second and the
-/// third vertex.
+/// Inverts [`sample_triangle()`]: returns the point of the unit square with these weights of the
+/// second and the third vertex.
 #[kernel]
 #[inline]
 pub fn invert_triangle(weights: Vec2) -> Vec2 {
@@ -25,22 +25,22 @@ pub fn invert_triangle(weights: Vec2) -> Vec2 {
     clamp(u, vec2(0.0, 0.0), vec2(ONE_MINUS_EPSILON, ONE_MINUS_EPSILON))
 }
 
-/// The density of [`triangle::sample()`](crate::geometry::triangle::sample()), per area.
+/// Returns the density of [`triangle::sample()`](crate::geometry::triangle::sample()), per area.
 #[kernel]
 #[inline]
 pub fn triangle_pdf(v0: Vec3, v1: Vec3, v2: Vec3) -> f32 {
     1.0 / triangle::area(v0, v1, v2)
 }
 
-/// The density of [`quad::sample()`](crate::geometry::quad::sample()), per area; the quad may be
-/// bent.
+/// Returns the density of [`quad::sample()`](crate::geometry::quad::sample()), per area; the quad
+/// may be bent.
 #[kernel]
 #[inline]
 pub fn quad_pdf(v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3) -> f32 {
     1.0 / quad::area(v0, v1, v2, v3)
 }
 
-/// A density per area, as one per solid angle: seen along `way`, from the point that is lit to the
+/// Converts a density per area to one per solid angle: along `way` from the lit point to the
 /// surface, whose normal has unit length. Infinite where the surface is seen edge-on.
 #[kernel]
 #[inline]

@@ -1,18 +1,20 @@
-//! Digits mirrored at the point.
+//! Radical inverses.
 
 use super::rng::ONE_MINUS_EPSILON;
 use super::unit_f32;
 use crate::kernel;
 use crate::machine::generic::min;
 
-/// The sequence of van der Corput: the bits of `i` mirrored at the point, of which 24 are kept.
+/// Returns the van der Corput sequence: the bits of `i` mirrored at the radix point, of which 24
+/// are kept.
 #[kernel]
 #[inline]
 pub fn van_der_corput(i: u32) -> f32 {
     unit_f32(i.reverse_bits())
 }
 
-/// The digits of `i` in a base, mirrored at the point: from 0 to below 1. A base below 2 gives 0.
+/// Returns the radical inverse: the digits of `i` in a base, mirrored at the radix point, from 0 to
+/// below 1. A base below 2 returns 0.
 ///
 /// Correctly rounded where the digits of `i` are a number up to 2^24, else at most 1.5 ulp off.
 /// (van der Corput, 1935; Halton, 1960.)
@@ -21,7 +23,7 @@ pub fn radical_inverse(base: u32, i: u32) -> f32 {
     if base < 2 {
         return 0.0;
     }
-    // As many digits as are an exact `f32` are one whole number.
+    // Collect as many digits as fit an exact `f32` in one integer.
     let mut mirrored = 0u32;
     let mut power = 1u32;
     let mut rest = i;
@@ -33,7 +35,8 @@ pub fn radical_inverse(base: u32, i: u32) -> f32 {
     min((mirrored as f32 + mirrored_digits(base, rest)) / power as f32, ONE_MINUS_EPSILON)
 }
 
-/// The same, from the most significant digit on: each division makes the errors before it smaller.
+/// Returns the radical inverse, from the most significant digit on: each division shrinks earlier
+/// errors.
 #[kernel]
 #[inline]
 fn mirrored_digits(base: u32, i: u32) -> f32 {

@@ -5,16 +5,16 @@ use glam::{UVec2, UVec4, uvec2, uvec4};
 use crate::kernel;
 use crate::machine::functions::{uvec2, uvec4};
 
-/// Four random words of four words.
+/// Hashes four words to four random words.
 ///
 /// `pcg4d` of Jarzynski and Olano, "Hash Functions for GPU Rendering" (JCGT 2020), listing 3.16: a
 /// linear congruential step, products of the words with each other, and a shift between them. It is
-/// a bijection, so that no two counters give the same four words. In their measurements it is on
-/// the front of speed against quality. One call gives as many numbers as a sample needs.
+/// a bijection, so that no two counters have the same four words. In their measurements it is on
+/// the front of speed against quality. One call yields as many numbers as a sample needs.
 ///
 /// A change of one of the lower 20 bits of any word changes each of the upper 24 bits of all words
-/// with a probability of a half, to within what 100,000 trials show. The higher bits reach fewer:
-/// bit 31 alone changes only the upper half. Counters belong into the lower bits.
+/// with a probability of a half, as far as 100,000 trials show. The higher bits reach fewer: bit 31
+/// alone changes only the upper half. Put counters into the lower bits.
 #[kernel]
 #[inline]
 pub fn pcg4d(v: UVec4) -> UVec4 {
@@ -31,14 +31,14 @@ pub fn pcg4d(v: UVec4) -> UVec4 {
     ))
 }
 
-/// A step of the linear congruential generator of "Numerical Recipes" (1992).
+/// Steps the linear congruential generator of "Numerical Recipes" (1992).
 #[kernel]
 #[inline]
 fn congruent(x: u32) -> u32 {
     x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223)
 }
 
-/// Adds to each word, one after the other, the product of two others.
+/// Adds to each word, one after another, the product of two others.
 #[kernel]
 #[inline]
 fn crossed(v: UVec4) -> UVec4 {
@@ -49,7 +49,7 @@ fn crossed(v: UVec4) -> UVec4 {
     uvec4(x, y, z, w)
 }
 
-/// Four random words of a counter and a key.
+/// Encrypts a counter with a key to four random words.
 ///
 /// Philox-4x32-10 of Salmon, Moraes, Dror and Shaw, "Parallel Random Numbers: As Easy as 1, 2, 3"
 /// (SC 2011): ten rounds of a cipher that passes every test of `TestU01`. It takes about ten times
@@ -76,7 +76,7 @@ pub fn philox4x32(counter: UVec4, key: UVec2) -> UVec4 {
     words
 }
 
-/// The upper word of the product of two words.
+/// Returns the upper word of the product of two words.
 #[kernel]
 #[inline]
 fn product_high(a: u32, b: u32) -> u32 {
@@ -97,7 +97,7 @@ fn product_high(a: u32, b: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// The vectors that come with Random123, the authors' library (`tests/kat_vectors`).
+    /// Test vectors of Random123, the authors' library (`tests/kat_vectors`).
     #[test]
     fn philox_gives_the_published_words() {
         let all = u32::MAX;
@@ -126,7 +126,7 @@ mod tests {
         }
     }
 
-    /// Each step can be taken back, which is what makes it a bijection.
+    /// Each step can be undone, so that it is a bijection.
     #[test]
     fn pcg4d_can_be_undone() {
         let undone = |v: UVec4| {

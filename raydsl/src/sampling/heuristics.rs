@@ -1,12 +1,12 @@
-//! Weights for samples that several strategies could have made.
+//! Multiple importance sampling: weights of samples from several strategies.
 
 use crate::kernel;
 
-/// The balance heuristic: the share of the first strategy, `n_f` samples of density `f`, where the
-/// second has `n_g` of density `g`.
+/// Returns the balance heuristic: the weight of the first strategy, `n_f` samples of density `f`,
+/// where the second has `n_g` of density `g`.
 ///
 /// Veach and Guibas, "Optimally Combining Sampling Techniques" (1995). 0 if `f` is 0, 1 if `f`
-/// alone is infinite; shares add up to 1 unless both are 0 or infinite, where they are 0 and NaN.
+/// alone is infinite; weights add up to 1 unless both are 0 or infinite, where they are 0 and NaN.
 #[kernel]
 #[inline]
 pub fn balance_heuristic(n_f: f32, f: f32, n_g: f32, g: f32) -> f32 {
@@ -14,10 +14,11 @@ pub fn balance_heuristic(n_f: f32, f: f32, n_g: f32, g: f32) -> f32 {
     if a > b { 1.0 / (1.0 + b / a) } else { share_of_less(a, b) }
 }
 
-/// The power heuristic with exponent 2: as [`balance_heuristic()`], of the densities' squares.
+/// Returns the power heuristic with exponent 2: as [`balance_heuristic()`], of the densities'
+/// squares.
 ///
-/// The ratio is squared, not the densities: those of small lights and of mirrors have squares that
-/// an `f32` does not hold.
+/// The ratio is squared, not the densities: those of small lights and of mirrors have squares
+/// outside the range of `f32`.
 #[kernel]
 #[inline]
 pub fn power_heuristic(n_f: f32, f: f32, n_g: f32, g: f32) -> f32 {

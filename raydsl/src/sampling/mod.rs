@@ -1,16 +1,16 @@
 //! Random numbers, sequences and warps, for kernels.
 //!
-//! * [`Rng`] gives random numbers, [`Sampler`] those of a pixel's samples, placed by a
+//! * [`Rng`] generates random numbers, [`Sampler`] those of a pixel's samples, placed by a
 //!   [`SampleMethod`].
-//! * Warps take them to [disks](sample_concentric_disk()),
+//! * Warps map them to [disks](sample_concentric_disk()),
 //!   [hemispheres](sample_cosine_hemisphere()), [cones](sample_cone()),
-//!   [triangles](sample_triangle()) and [tables](sample_table()); [`Frame`] takes directions to
-//!   surfaces.
-//! * [`balance_heuristic()`] and [`power_heuristic()`] weigh samples that several warps could have
-//!   made.
+//!   [triangles](sample_triangle()) and [tables](sample_table()); [`Frame`] transforms directions
+//!   to surfaces.
+//! * [`balance_heuristic()`] and [`power_heuristic()`] weight samples that several warps could have
+//!   generated.
 //!
-//! All are kernels. Integers are the same in every variant, on devices too. Floats are as
-//! everywhere: the same bits on the CPU, and what rounding allows in WGSL.
+//! All are kernels. Integers are the same in every variant, on devices too. Floats have the same
+//! bits on the CPU, and the rounding that WGSL allows on devices.
 
 mod area;
 mod digits;

@@ -1,4 +1,4 @@
-//! Random numbers from a counter.
+//! Counter-based random numbers.
 
 use glam::{UVec2, Vec2, Vec3, uvec4, vec2, vec3};
 
@@ -6,10 +6,10 @@ use super::pcg4d;
 use crate::machine::functions::{uvec4, vec2, vec3};
 use crate::{Type, kernel};
 
-/// The largest number below 1.
+/// Largest number below 1.
 pub const ONE_MINUS_EPSILON: f32 = 1.0 - 1.0 / 16_777_216.0;
 
-/// A number of the upper 24 bits: at least 0, and below 1 for every word.
+/// Converts the upper 24 bits to a number: at least 0, and below 1 for every word.
 ///
 /// Whole multiples of 2^-24, so that `1 - u` is exact and at least 2^-24, and its logarithm is
 /// finite. (A word times 2^-32 would be rounded to 1 for 128 words.)
@@ -19,14 +19,13 @@ pub fn unit_f32(bits: u32) -> f32 {
     (bits >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
-/// Random numbers: the same ones in every variant.
+/// Counter-based random number generator, with the same numbers in every variant.
 ///
-/// A counter and a key of 96 bits, made of pixel, sample and seed; each draw is one [`pcg4d()`] of
-/// both, of which it takes up to three words. There is nothing that must be kept from one sample to
-/// the next, and streams of other pixels or samples cannot overlap as those of a state that is
-/// stepped can.
+/// Its state is a counter and a key of 96 bits, made of pixel, sample and seed; each draw is one
+/// [`pcg4d()`] of both, and takes up to three words of it. No state is kept from one sample to the
+/// next, and streams of other pixels or samples cannot overlap, as those of a stepped state can.
 ///
-/// In kernels it goes through calls as `&mut Rng`:
+/// In kernels it is passed to calls as `&mut Rng`:
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -41,26 +40,26 @@ pub fn unit_f32(bits: u32) -> f32 {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Type)]
 #[repr(C)]
 pub struct Rng {
-    /// What sets this stream apart, the first word.
+    /// First word of the stream's key.
     pub a: u32,
-    /// The second word.
+    /// Second word.
     pub b: u32,
-    /// The third word.
+    /// Third word.
     pub c: u32,
-    /// How many draws there were.
+    /// Number of draws so far.
     pub counter: u32,
 }
 
 #[kernel]
 impl Rng {
-    /// The stream of a sample of a pixel: `sample` is its number, or that of the frame.
+    /// Creates the stream of a sample of a pixel: `sample` is its number, or that of the frame.
     #[inline]
     pub fn new(pixel: UVec2, sample: u32, seed: u32) -> Self {
         let key = pcg4d(uvec4(pixel.x, pixel.y, sample, seed));
         Self { a: key.x, b: key.y, c: key.z, counter: 0 }
     }
 
-    /// 32 random bits.
+    /// Draws 32 random bits.
     #[inline]
     pub fn next_u32(&mut self) -> u32 {
         let words = pcg4d(uvec4(self.a, self.b, self.c, self.counter));
@@ -68,13 +67,13 @@ impl Rng {
         words.x
     }
 
-    /// A number from 0 to below 1.
+    /// Draws a number from 0 to below 1.
     #[inline]
     pub fn next_f32(&mut self) -> f32 {
         unit_f32(self.next_u32())
     }
 
-    /// A point of the unit square.
+    /// Draws a point of the unit square.
     #[inline]
     pub fn next_2d(&mut self) -> Vec2 {
         let words = pcg4d(uvec4(self.a, self.b, self.c, self.counter));
@@ -82,7 +81,7 @@ impl Rng {
         vec2(unit_f32(words.x), unit_f32(words.y))
     }
 
-    /// A point of the unit cube.
+    /// Draws a point of the unit cube.
     #[inline]
     pub fn next_3d(&mut self) -> Vec3 {
         let words = pcg4d(uvec4(self.a, self.b, self.c, self.counter));
@@ -95,7 +94,7 @@ impl Rng {
 mod tests {
     use super::*;
 
-    /// The lower 8 bits do not matter, so these are all numbers that there are.
+    /// The lower 8 bits do not matter, so these are all possible numbers.
     #[test]
     fn every_word_gives_less_than_one() {
         for upper in 0..1u32 << 24 {

@@ -1,4 +1,4 @@
-//! Samples of pixels, by a method that the host chooses.
+//! Samples of pixels, by a method chosen on the host.
 
 use glam::{UVec2, UVec4, Vec2, uvec2, uvec4, vec2};
 
@@ -11,11 +11,11 @@ use crate::machine::host::HostCapture;
 use crate::machine::{Capture, Leaves, Machine, Schema, Value};
 use crate::{Type, kernel};
 
-/// How samples are placed. The host knows it, as a captured `bool`: WGSL has the method in use, and
-/// no trace of the others.
+/// Placement of samples. The host knows it, as a captured `bool`: WGSL contains the method in use,
+/// and no trace of the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SampleMethod {
-    /// Independent: errors fall as `n^-1/2`.
+    /// Independent samples: errors fall as `n^-1/2`.
     Random,
     /// One sample in each cell of a grid: errors of smooth integrands of two dimensions fall as
     /// `1 / n`. Best with all `count` samples.
@@ -64,9 +64,9 @@ impl<M: Machine> Capture<M> for SampleMethod {
     }
 }
 
-/// Gives a sample of a pixel its numbers, one dimension or two at a time.
+/// Generates the numbers of a pixel's sample, one or two dimensions at a time.
 ///
-/// The `i`-th call gives each sample its `i`-th coordinates. For a good distribution all samples of
+/// The `i`-th call returns each sample's `i`-th coordinates. For a good distribution all samples of
 /// a pixel make the same calls in the same order; where paths differ, set `dimension` at each
 /// bounce.
 ///
@@ -86,27 +86,28 @@ impl<M: Machine> Capture<M> for SampleMethod {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Type)]
 #[repr(C)]
 pub struct Sampler {
-    /// What sets the pixel apart.
+    /// Key of the pixel.
     pub key: UVec2,
-    /// The number of the sample in the pixel.
+    /// Index of the sample in the pixel.
     pub index: u32,
-    /// How many samples the pixel will have; only [`SampleMethod::Stratified`] asks. Samples beyond
-    /// belong to another set of as many.
+    /// Total number of samples of the pixel; only [`SampleMethod::Stratified`] uses it. Samples
+    /// beyond belong to another set of as many.
     pub count: u32,
-    /// The dimension that comes next.
+    /// Next dimension.
     pub dimension: u32,
 }
 
 #[kernel]
 impl Sampler {
-    /// The sample `index` of `count` in a pixel. Another `seed` gives other samples everywhere.
+    /// Creates the sample `index` of `count` in a pixel. Another `seed` yields other samples
+    /// everywhere.
     #[inline]
     pub fn new(pixel: UVec2, seed: u32, index: u32, count: u32) -> Self {
         let words = pcg4d(uvec4(pixel.x, pixel.y, seed, 0x5361_6d70));
         Self { key: uvec2(words.x, words.y), index, count, dimension: 0 }
     }
 
-    /// The next dimension: a number from 0 to below 1.
+    /// Returns the next dimension: a number from 0 to below 1.
     #[inline]
     pub fn next_1d(&mut self, #[host] method: SampleMethod) -> f32 {
         let dimension = self.dimension;
@@ -122,7 +123,7 @@ impl Sampler {
         }
     }
 
-    /// The next two dimensions: a point of the unit square.
+    /// Returns the next two dimensions: a point of the unit square.
     #[inline]
     pub fn next_2d(&mut self, #[host] method: SampleMethod) -> Vec2 {
         let dimension = self.dimension;
@@ -139,14 +140,14 @@ impl Sampler {
     }
 }
 
-/// Random words of this sample.
+/// Returns random words of this sample.
 #[kernel]
 #[inline]
 fn words_of(sampler: Sampler, dimension: u32) -> UVec4 {
     pcg4d(uvec4(sampler.key.x, sampler.key.y, dimension, sampler.index))
 }
 
-/// Random words that all samples of the pixel share: they count from the other end.
+/// Returns random words shared by all samples of the pixel: they count from the other end.
 #[kernel]
 #[inline]
 fn pattern(sampler: Sampler, dimension: u32, set: u32) -> UVec4 {

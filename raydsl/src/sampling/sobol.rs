@@ -1,4 +1,4 @@
-//! Sobol's sequence in two dimensions, scrambled.
+//! Scrambled Sobol sequences in one and two dimensions.
 
 use glam::{UVec2, UVec4, Vec2, uvec2, vec2};
 
@@ -6,11 +6,11 @@ use super::unit_f32;
 use crate::kernel;
 use crate::machine::functions::{uvec2, vec2};
 
-/// The `i`-th point of Sobol's sequence in the unit square, as words: a point's coordinate is a
+/// Returns the `i`-th point of the Sobol sequence in the unit square, as words: a coordinate is a
 /// word times 2^-32.
 ///
 /// A (0, 2)-sequence: of the points from a multiple of `2^m` on, each of the `2^m` boxes of one
-/// size that cut the square in halves holds one, whatever the box's shape. The first coordinate is
+/// size that halving the square yields holds one, whatever the box's shape. The first coordinate is
 /// that of [`van_der_corput()`](super::van_der_corput()). (Sobol, 1967.)
 #[kernel]
 #[inline]
@@ -18,13 +18,13 @@ pub fn sobol_2d(i: u32) -> UVec2 {
     uvec2(i.reverse_bits(), pascal(i).reverse_bits())
 }
 
-/// The bits of `i` times Pascal's triangle modulo 2, which is the matrix of Sobol's second
+/// Multiplies the bits of `i` by Pascal's triangle modulo 2, the matrix of the second Sobol
 /// dimension with the least bit first: bit `r` is the sum of all bits `k` for which `C(k, r)` is
 /// odd.
 ///
-/// By Lucas' theorem those have every bit of the number `r`, so that five exchanges of halves give
-/// the sums; a loop over direction numbers takes 32. (Ahmed, "An Implementation Algorithm of 2D
-/// Sobol Sequence Fast, Elegant, and Compact", 2024.)
+/// By Lucas' theorem those `k` have every bit of the number `r`, so that five exchanges of halves
+/// compute the sums; a loop over direction numbers takes 32. (Ahmed, "An Implementation Algorithm
+/// of 2D Sobol Sequence Fast, Elegant, and Compact", 2024.)
 #[kernel]
 #[inline]
 fn pascal(i: u32) -> u32 {
@@ -35,7 +35,7 @@ fn pascal(i: u32) -> u32 {
     d ^ ((d & 0xaaaa_aaaa) >> 1)
 }
 
-/// Changes each bit by a hash of the seed and of the bits below it.
+/// Flips each bit by a hash of the seed and of the bits below it.
 ///
 /// Laine and Karras, "Stratified Sampling for Stochastic Transparency" (2011), found hashes of this
 /// kind; these are the constants of Vegdahl, "Building a Better LK Hash" (2021).
@@ -48,8 +48,8 @@ fn laine_karras(x: u32, seed: u32) -> u32 {
     c ^ c.wrapping_mul(0x53a2_2864)
 }
 
-/// Scrambles a coordinate: whether halves, quarters and so on change places depends on the seed
-/// and on where they lie, and nets stay nets.
+/// Owen-scrambles a coordinate: whether halves, quarters and so on are swapped depends on the seed
+/// and on their position, and nets stay nets.
 ///
 /// Owen, "Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences" (1995), by a hash instead of a tree
 /// of random bits: Burley, "Practical Hash-based Owen Scrambling" (JCGT 2020).
@@ -59,7 +59,7 @@ pub fn owen_scramble(x: u32, seed: u32) -> u32 {
     laine_karras(x.reverse_bits(), seed).reverse_bits()
 }
 
-/// The `i`-th point of Sobol's sequence, scrambled and in an order of its own.
+/// Returns the `i`-th point of a shuffled and scrambled Sobol sequence.
 ///
 /// Four words of a hash choose the scrambling: `seeds.x` and `seeds.y` of the coordinates,
 /// `seeds.z` of the order. Points with other seeds may be combined to points of more dimensions,
@@ -75,7 +75,7 @@ pub fn scrambled_sobol_2d(i: u32, seeds: UVec4) -> Vec2 {
     vec2(unit_f32(x), unit_f32(y))
 }
 
-/// The same in one dimension.
+/// Returns the `i`-th number of a shuffled and scrambled Sobol sequence in one dimension.
 #[kernel]
 #[inline]
 pub fn scrambled_sobol_1d(i: u32, seeds: UVec4) -> f32 {
@@ -88,8 +88,8 @@ mod tests {
     use crate::sampling::pcg4d;
     use glam::uvec4;
 
-    /// The sum of direction numbers, as in the literature: each is the one before, halved and
-    /// added.
+    /// Returns the sum of direction numbers, as in the literature: each is the one before, halved
+    /// and added.
     fn by_direction_numbers(i: u32) -> u32 {
         let (mut sum, mut direction) = (0, 1u32 << 31);
         for k in 0..32 {
@@ -111,7 +111,7 @@ mod tests {
         assert_eq!(first, [0, 4, 6, 2, 5]);
     }
 
-    /// Every box of every shape holds one of `2^m` points.
+    /// Checks that every box of every shape holds one of `2^m` points.
     fn assert_net(points: &[Vec2], m: u32) {
         for columns in 0..=m {
             let mut seen = vec![false; points.len()];
@@ -142,7 +142,7 @@ mod tests {
         }
     }
 
-    /// What Owen asks for: a bit of the result depends on the bits above it, never on those below.
+    /// Owen's condition: a bit of the result depends on the bits above it, never on those below.
     #[test]
     fn scrambling_keeps_boxes_together() {
         for i in 0..1000u32 {

@@ -1,4 +1,4 @@
-//! Points in the cells of a grid.
+//! Stratified sampling: points in the cells of a grid.
 
 use glam::{UVec4, Vec2, vec2};
 
@@ -7,7 +7,7 @@ use crate::kernel;
 use crate::machine::functions::vec2;
 use crate::machine::generic::{max, min};
 
-/// Where the number `i` below `count` comes in a random order of `0..count`.
+/// Returns the position of `i` in a random permutation of `0..count`.
 ///
 /// Kensler, "Correlated Multi-Jittered Sampling" (Pixar Technical Memo 13-01, 2013): a hash that is
 /// a bijection of the next power of two is applied until the result is below `count`, less than
@@ -21,14 +21,14 @@ pub fn permuted(i: u32, count: u32, seed: u32) -> u32 {
     while x >= length {
         x = hash_within(x, mask, seed);
     }
-    // The sum modulo the length, which may itself be too large.
+    // Add modulo the length, which may itself be large.
     let turn = seed % length;
     let room = length - turn;
     if x >= room { x - room } else { x + turn }
 }
 
-/// A bijection of the numbers up to `mask`, which is a power of two less 1; the constants are
-/// Kensler's.
+/// Applies a bijection of the numbers up to `mask`, which is a power of two less 1; the constants
+/// are Kensler's.
 #[kernel]
 #[inline]
 fn hash_within(i: u32, mask: u32, seed: u32) -> u32 {
@@ -42,8 +42,8 @@ fn hash_within(i: u32, mask: u32, seed: u32) -> u32 {
     g ^ (g >> 5)
 }
 
-/// The `i`-th of `count` numbers, one in each `count`-th of the unit interval, in a random order.
-/// `jitter` says where in its part it lies.
+/// Returns the `i`-th of `count` numbers, one in each `count`-th of the unit interval, in a random
+/// order. `jitter` is its position in its part.
 #[kernel]
 #[inline]
 pub fn stratified_1d(i: u32, count: u32, seed: u32, jitter: f32) -> f32 {
@@ -51,19 +51,19 @@ pub fn stratified_1d(i: u32, count: u32, seed: u32, jitter: f32) -> f32 {
     min((part as f32 + jitter) / max(count, 1) as f32, ONE_MINUS_EPSILON)
 }
 
-/// The `i`-th of `count` points, of which each cell of a grid holds one, and so does each
-/// `count`-th of the height, and of the width where `count` is a square.
+/// Returns the `i`-th of `count` points, one in each cell of a grid and in each `count`-th of the
+/// height, and of the width where `count` is a square.
 ///
 /// Multi-jittered sampling (Chiu, Shirley and Wang, "Graphics Gems IV", 1994) for any `count`,
 /// without a table: each column and row has an order of its own. With one order for all of them, as
-/// Kensler has it, errors of smooth integrands fall as `count^-3/4`; so they do as `1 / count`. The
-/// seeds are those of the order, the columns, and what is within columns and rows; `jitter` says
-/// where in its part the point lies.
+/// in Kensler, errors of smooth integrands fall as `count^-3/4`; so they do as `1 / count`. The
+/// seeds are those of the order, the columns, and the positions within columns and rows; `jitter`
+/// is the point's position in its part.
 #[kernel]
 pub fn stratified_2d(i: u32, count: u32, seeds: UVec4, jitter: Vec2) -> Vec2 {
     let n = max(count, 1);
     let columns = square_root(n);
-    // Rounded up, in a way that does not overflow.
+    // Round up without overflow.
     let rows = (n - 1) / columns + 1;
     let s = permuted(i, n, seeds.x);
     let row = s / columns;
@@ -77,7 +77,7 @@ pub fn stratified_2d(i: u32, count: u32, seeds: UVec4, jitter: Vec2) -> Vec2 {
     vec2(min(x, ONE_MINUS_EPSILON), min(y, ONE_MINUS_EPSILON))
 }
 
-/// A hash of one word: Wellons' `lowbias32` (2018, constants of 2022).
+/// Hashes one word: Wellons' `lowbias32` (2018, constants of 2022).
 #[kernel]
 #[inline]
 fn mixed(x: u32) -> u32 {
@@ -86,8 +86,8 @@ fn mixed(x: u32) -> u32 {
     b ^ (b >> 15)
 }
 
-/// The integer part of the root. A device's `sqrt` may be rounded another way, which would choose
-/// another grid.
+/// Returns the integer part of the square root. A device's `sqrt` may be rounded another way, which
+/// would choose another grid.
 #[kernel]
 #[inline]
 fn square_root(n: u32) -> u32 {
@@ -124,7 +124,7 @@ mod tests {
         assert_eq!([square_root(1), square_root(u32::MAX)], [1, 65_535]);
     }
 
-    /// How many of `points` lie in each of `n` parts of the unit interval.
+    /// Counts the `points` in each of `n` parts of the unit interval.
     fn counts(points: impl Iterator<Item = f32>, n: u32) -> Vec<u32> {
         let mut all = vec![0; n as usize];
         for x in points {

@@ -1,4 +1,4 @@
-//! Densities that are constant in each cell of a table.
+//! Tabulated distributions: piecewise constant densities.
 
 use glam::{UVec2, Vec2, uvec2, vec2};
 
@@ -7,39 +7,39 @@ use crate::machine::functions::{uvec2, vec2};
 use crate::machine::generic::{clamp, max, min};
 use crate::{Type, kernel};
 
-/// Why weights make no distribution.
+/// Error of creating a distribution from weights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TableError {
-    /// There are none.
+    /// There are no weights.
     #[error("a distribution needs at least one weight")]
     Empty,
-    /// There are more than 2^22 cells side by side, which an `f32` hardly tells apart, or 2^31 in
-    /// all, which a kernel does not count.
+    /// There are more than 2^22 cells side by side, which an `f32` hardly resolves, or 2^31 in all,
+    /// which a kernel cannot count.
     #[error("{count} cells are too many: at most {limit}")]
     TooMany {
-        /// How many there are, side by side or in all.
+        /// Number of cells, side by side or in all.
         count: usize,
-        /// How many there may be.
+        /// Maximum number of cells.
         limit: usize,
     },
-    /// One is negative, infinite or NaN.
+    /// A weight is negative, infinite or NaN.
     #[error("weight number {0}, from 0 on, is negative or not finite")]
     NotAWeight(usize),
-    /// No sample could be made.
+    /// All weights are 0.
     #[error("all weights are 0")]
     AllZero,
-    /// Their number is not that of the cells.
+    /// The number of weights is not that of the cells.
     #[error("{found} weights for {} by {} cells", size.x, size.y)]
     Size {
-        /// The cells of a row, and the rows.
+        /// Cells per row, and rows.
         size: UVec2,
-        /// How many weights there are.
+        /// Number of weights.
         found: usize,
     },
 }
 
-/// Tabulated weights over the unit interval, to be sampled.
+/// Distribution over the unit interval from tabulated weights.
 ///
 /// Kernels capture [`cdf`](Self::cdf), a slice, and call [`sample_table()`] and [`table_pdf()`]
 /// with it:
@@ -61,10 +61,10 @@ pub struct Distribution1d {
 }
 
 impl Distribution1d {
-    /// A distribution of these weights, none negative; some may be 0.
+    /// Creates a distribution from these weights, none negative; some may be 0.
     ///
-    /// Sums are formed in `f64` and rounded once. A cell of less than 3e-8 of all weight may be
-    /// left with none.
+    /// Sums are computed in `f64` and rounded once. A cell with less than 3e-8 of the total weight
+    /// may end up with none.
     ///
     /// # Errors
     ///
@@ -76,18 +76,19 @@ impl Distribution1d {
         if sum > 0.0 { Ok(Self { cdf, sum }) } else { Err(TableError::AllZero) }
     }
 
-    /// The share of all cells before each one, and 1: what kernels capture.
+    /// Returns the cumulative distribution for kernels to capture: the share before each cell, and
+    /// 1.
     pub fn cdf(&self) -> &[f32] {
         &self.cdf
     }
 
-    /// The mean of the weights: the integral over the unit interval.
+    /// Returns the mean of the weights: the integral over the unit interval.
     pub fn integral(&self) -> f64 {
         self.sum / (self.cdf.len() - 1) as f64
     }
 }
 
-/// Tabulated weights over the unit square, such as the luminance of a picture, to be sampled.
+/// Distribution over the unit square from tabulated weights, such as the luminance of an image.
 ///
 /// Kernels capture [`cdf`](Self::cdf) and [`size`](Self::size), and call [`sample_table_2d()`] and
 /// [`table_2d_pdf()`] with them.
@@ -99,7 +100,7 @@ pub struct Distribution2d {
 }
 
 impl Distribution2d {
-    /// A distribution of rows of `size.x` weights; there are `size.y` rows, from y = 0 on.
+    /// Creates a distribution from `size.y` rows of `size.x` weights, from y = 0 on.
     ///
     /// Rounding is that of [`Distribution1d::new`], for rows and within each. A row of zeros is
     /// never sampled.
@@ -123,23 +124,24 @@ impl Distribution2d {
         if sum > 0.0 { Ok(Self { cdf, size, sum }) } else { Err(TableError::AllZero) }
     }
 
-    /// The share of all rows before each one, and 1; then the same of the cells of each row.
+    /// Returns the cumulative distributions: the share before each row, and 1; then the same for
+    /// the cells of each row.
     pub fn cdf(&self) -> &[f32] {
         &self.cdf
     }
 
-    /// The cells of a row, and the rows.
+    /// Returns the cells per row, and the rows.
     pub fn size(&self) -> UVec2 {
         self.size
     }
 
-    /// The mean of the weights: the integral over the unit square.
+    /// Returns the mean of the weights: the integral over the unit square.
     pub fn integral(&self) -> f64 {
         self.sum / (f64::from(self.size.x) * f64::from(self.size.y))
     }
 }
 
-/// How many cells may be side by side.
+/// Maximum number of cells side by side.
 const MOST_CELLS: usize = 1 << 22;
 
 fn check(weights: &[f32], side: usize) -> Result<(), TableError> {
@@ -157,7 +159,8 @@ fn check(weights: &[f32], side: usize) -> Result<(), TableError> {
     }
 }
 
-/// The shares before each weight, and 1; gives the sum. Weights that are all 0 have equal shares.
+/// Appends the share before each weight, and 1; returns the sum. Weights that are all 0 have equal
+/// shares.
 fn append_cdf(weights: impl ExactSizeIterator<Item = f64> + Clone, cdf: &mut Vec<f32>) -> f64 {
     let (count, sum) = (weights.len() as f64, weights.clone().sum::<f64>());
     let mut before = 0.0;
@@ -170,31 +173,31 @@ fn append_cdf(weights: impl ExactSizeIterator<Item = f64> + Clone, cdf: &mut Vec
     sum
 }
 
-/// A sample of a [`Distribution1d`].
+/// Sample of a [`Distribution1d`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 #[repr(C)]
 pub struct TableSample {
-    /// Where it is, from 0 to below 1.
+    /// Position, from 0 to below 1.
     pub x: f32,
-    /// Its density. It is that of the rounded table, so that estimates have no bias.
+    /// Density. It is that of the rounded table, so that estimates have no bias.
     pub pdf: f32,
-    /// The number of its cell, whose weight is not 0.
+    /// Index of its cell, whose weight is not 0.
     pub cell: u32,
 }
 
-/// A sample of a [`Distribution2d`].
+/// Sample of a [`Distribution2d`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 #[repr(C)]
 pub struct TableSample2d {
-    /// Where it is in the unit square.
+    /// Position in the unit square.
     pub point: Vec2,
-    /// Its density per area of the square.
+    /// Density per area of the square.
     pub pdf: f32,
-    /// Its column and its row, whose weight is not 0.
+    /// Column and row of its cell, whose weight is not 0.
     pub cell: UVec2,
 }
 
-/// The last of `count` cells, from `first` on, that begins at or before `u`.
+/// Returns the last of `count` cells, from `first` on, that begins at or before `u`.
 #[kernel]
 #[inline]
 fn cell_of(u: f32, cdf: &[f32], first: u32, count: u32) -> u32 {
@@ -219,37 +222,37 @@ fn sample_cells(u: f32, cdf: &[f32], first: u32, count: u32) -> TableSample {
     let start = cdf[(first + cell) as usize];
     let share = cdf[(first + cell + 1) as usize] - start;
     let x = (cell as f32 + (u - start) / share) / count as f32;
-    // Rounding must not lead to the next cell, whose density is another.
+    // Rounding must not move the sample to the next cell, whose density differs.
     let end = edge(cell + 1, count);
     let below_end = f32::from_bits(end.to_bits() - 1);
     TableSample { x: min(x, below_end), pdf: share * count as f32, cell }
 }
 
-/// Where a cell begins.
+/// Returns the beginning of a cell.
 #[kernel]
 #[inline]
 fn edge(cell: u32, count: u32) -> f32 {
     cell as f32 / count as f32
 }
 
-/// The cell that holds `x`; what lies beyond an end belongs to the cell there.
+/// Returns the cell that contains `x`, clamped to the first or the last one.
 #[kernel]
 #[inline]
 fn cell_at(x: f32, count: u32) -> u32 {
-    // The product may be rounded to a neighbour's.
+    // The product may be rounded to a neighbour's cell.
     let near = min((x * count as f32) as u32, count - 1);
     let low = if x < edge(near, count) { max(near, 1) - 1 } else { near };
     if x >= edge(low + 1, count) { min(low + 1, count - 1) } else { low }
 }
 
-/// The density of the cell `cell` among `count` from `first` on.
+/// Returns the density of the cell `cell` among `count` from `first` on.
 #[kernel]
 #[inline]
 fn density(cell: u32, cdf: &[f32], first: u32, count: u32) -> f32 {
     (cdf[(first + cell + 1) as usize] - cdf[(first + cell) as usize]) * count as f32
 }
 
-/// The number whose sample is `x`.
+/// Returns the number whose sample is `x`.
 #[kernel]
 #[inline]
 fn invert_cells(x: f32, cdf: &[f32], first: u32, count: u32) -> f32 {
@@ -260,14 +263,14 @@ fn invert_cells(x: f32, cdf: &[f32], first: u32, count: u32) -> f32 {
     min(start + within * share, ONE_MINUS_EPSILON)
 }
 
-/// A sample of a [`Distribution1d`]: as many steps as the number of cells has bits.
+/// Samples a [`Distribution1d`] in as many steps as the number of cells has bits.
 #[kernel]
 #[inline]
 pub fn sample_table(u: f32, cdf: &[f32]) -> TableSample {
     sample_cells(u, cdf, 0, cdf.len() as u32 - 1)
 }
 
-/// The density of a [`Distribution1d`] at `x`.
+/// Returns the density of a [`Distribution1d`] at `x`.
 #[kernel]
 #[inline]
 pub fn table_pdf(x: f32, cdf: &[f32]) -> f32 {
@@ -275,21 +278,21 @@ pub fn table_pdf(x: f32, cdf: &[f32]) -> f32 {
     density(cell_at(x, count), cdf, 0, count)
 }
 
-/// The number whose [`sample_table()`] is at `x`.
+/// Inverts [`sample_table()`]: returns the number whose sample is at `x`.
 #[kernel]
 #[inline]
 pub fn invert_table(x: f32, cdf: &[f32]) -> f32 {
     invert_cells(x, cdf, 0, cdf.len() as u32 - 1)
 }
 
-/// Where a row's cells begin.
+/// Returns the offset of a row's cells.
 #[kernel]
 #[inline]
 fn row_start(row: u32, size: UVec2) -> u32 {
     size.y + 1 + row * (size.x + 1)
 }
 
-/// A sample of a [`Distribution2d`]: `u.y` chooses the row, `u.x` the cell in it.
+/// Samples a [`Distribution2d`]: `u.y` chooses the row, `u.x` the cell in it.
 #[kernel]
 #[inline]
 pub fn sample_table_2d(u: Vec2, cdf: &[f32], size: UVec2) -> TableSample2d {
@@ -302,7 +305,7 @@ pub fn sample_table_2d(u: Vec2, cdf: &[f32], size: UVec2) -> TableSample2d {
     }
 }
 
-/// The density of a [`Distribution2d`] at a point.
+/// Returns the density of a [`Distribution2d`] at a point.
 #[kernel]
 #[inline]
 pub fn table_2d_pdf(point: Vec2, cdf: &[f32], size: UVec2) -> f32 {
@@ -311,7 +314,7 @@ pub fn table_2d_pdf(point: Vec2, cdf: &[f32], size: UVec2) -> f32 {
     of_row * density(cell_at(point.x, size.x), cdf, row_start(row, size), size.x)
 }
 
-/// The point whose [`sample_table_2d()`] is at `point`.
+/// Inverts [`sample_table_2d()`]: returns the point whose sample is at `point`.
 #[kernel]
 #[inline]
 pub fn invert_table_2d(point: Vec2, cdf: &[f32], size: UVec2) -> Vec2 {
@@ -346,7 +349,7 @@ mod tests {
     }
 
     /// A cell without weight is never chosen, whatever the number, and a sample's density is that
-    /// of where it is.
+    /// of its position.
     #[test]
     fn zeros_are_never_sampled() {
         let weights = [0.0, 0.0, 1.0, 0.0, 1e-30, 2.0, 0.0];

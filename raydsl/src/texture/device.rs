@@ -1,4 +1,4 @@
-//! Textures as the samplers of devices read them.
+//! Textures read by device samplers.
 
 use super::config::{Filter, Filtering};
 use super::texel::Texel;
@@ -6,14 +6,14 @@ use super::view::Texels;
 use crate::machine::wgsl::{TexelFormat, TextureLayout};
 use crate::machine::{F, Floats, Machine, Method, Type, Value, name};
 
-/// Texels along an axis of an image, and of a volume: what WebGPU guarantees.
+/// Maximum texels along an axis of an image, and of a volume, that WebGPU guarantees.
 const MAX_IMAGE: u32 = 8192;
 const MAX_VOLUME: u32 = 2048;
-/// A coordinate between two texels has at least 8 bits.
+/// Resolution of a coordinate between two texels: at least 8 bits.
 const WEIGHT: f32 = 1.0 / 256.0;
 
 impl<T: Texel> Texels<'_, T> {
-    /// What a device's sampler takes the texels for, if it can read them and is to.
+    /// Returns the sampler format of the texels, if a device is to sample them and can.
     fn format(&self) -> Option<TexelFormat> {
         let config = &self.config;
         if config.filtering == Filtering::Exact {
@@ -26,12 +26,13 @@ impl<T: Texel> Texels<'_, T> {
         is_fit.then(|| T::format(config.color_space)).flatten()
     }
 
-    /// Others are images: a row of texels is one of height 1.
+    /// Returns whether the texels are a volume. Others are images: a row of texels is one of height
+    /// 1.
     fn is_volume(&self) -> bool {
         self.size[2] > 1
     }
 
-    /// How a device's sampler reads the texels, if it can and is to.
+    /// Returns the sampler layout of the texels, if a device is to sample them and can.
     pub(crate) fn layout(&self) -> Option<TextureLayout> {
         Some(TextureLayout {
             is_volume: self.is_volume(),
@@ -44,20 +45,20 @@ impl<T: Texel> Texels<'_, T> {
         })
     }
 
-    /// A weight of the host's is what it is.
+    /// Returns a weight of the host unchanged.
     #[inline(always)]
     pub(super) fn near(&self, weight: f32) -> f32 {
         weight
     }
 
-    /// What has been read, as a sampler may have it.
+    /// Widens a value read from the texture by a sampler's error.
     #[inline(always)]
     pub(super) fn as_read<M: Machine>(
         &self,
         m: &M,
         v: <T::Value as Type>::On<M>,
     ) -> <T::Value as Type>::On<M> {
-        // Every float may be off by so much, and by this part of itself.
+        // Every float may be off by this absolute and relative error.
         let (absolute, relative) = match self.format() {
             None => return v,
             // Halves are rounded once more.
@@ -78,7 +79,7 @@ impl<T: Texel> Texels<'_, T> {
     }
 }
 
-/// A weight as a sampler may have it.
+/// Widens a weight by a sampler's error.
 #[diagnostic::do_not_recommend]
 impl<M: Machine, T: Texel> Method<{ name("near") }, M, (F<M>,)> for Texels<'_, T> {
     type Output = F<M>;

@@ -1,8 +1,8 @@
-//! The filters: kernels over a texture's texels. Packets have them in `packet`: what changes here
-//! changes there.
+//! Texture filters: kernels over a texture's texels. `packet` repeats them for packets: change both
+//! together.
 //!
-//! Each works on rows along the first axis, which are blended along the others. Filter and address
-//! modes are the host's, so a recorder writes down those of the texture alone.
+//! Each works on rows along the first axis, blended along the others. Filter and address modes are
+//! host values, so a recorder emits only those of the texture.
 
 use glam::{UVec2, UVec3, Vec2, Vec3};
 
@@ -12,8 +12,8 @@ use super::view::Texels;
 use crate::kernel;
 use crate::machine::generic::select;
 
-/// The first texel of part `i` of those of `size` texels from `first` on: of a row in an image, of
-/// an image in a volume.
+/// Returns the first texel of part `i`, of `size` texels each, from `first` on: of a row in an
+/// image, or of an image in a volume.
 #[kernel]
 fn part<T: Texel>(texels: &Texels<'_, T>, first: u32, size: u32, i: u32) -> u32 {
     if texels.has_border() {
@@ -24,7 +24,7 @@ fn part<T: Texel>(texels: &Texels<'_, T>, first: u32, size: u32, i: u32) -> u32 
     }
 }
 
-/// The texel `i` of a row, or the border.
+/// Returns texel `i` of a row, or the border.
 #[kernel]
 fn texel<T: Texel<Value = V>, V: TexelValue>(texels: &Texels<'_, T>, row: u32, i: u32) -> V {
     if texels.has_border() {
@@ -80,7 +80,7 @@ fn cubic_image<T: Texel<Value = V>, V: TexelValue>(
     b.blend4(a, c, d, y.w1, y.w3, y.w4)
 }
 
-/// The value at `x` of `size` texels from `first` on.
+/// Filters a row of `size` texels from `first` on at `x`.
 #[kernel]
 pub(super) fn filter1<T: Texel<Value = V>, V: TexelValue>(
     texels: &Texels<'_, T>,
@@ -97,7 +97,7 @@ pub(super) fn filter1<T: Texel<Value = V>, V: TexelValue>(
     }
 }
 
-/// The value at `uv` of an image that starts at `first`.
+/// Filters an image that starts at `first` at `uv`.
 #[kernel]
 pub(super) fn filter2<T: Texel<Value = V>, V: TexelValue>(
     texels: &Texels<'_, T>,
@@ -120,7 +120,7 @@ pub(super) fn filter2<T: Texel<Value = V>, V: TexelValue>(
     }
 }
 
-/// The value at `uvw` of a volume that starts at `first`.
+/// Filters a volume that starts at `first` at `uvw`.
 #[kernel]
 pub(super) fn filter3<T: Texel<Value = V>, V: TexelValue>(
     texels: &Texels<'_, T>,

@@ -1,4 +1,5 @@
-//! What kernels call: [`tex1()`], [`tex2()`], [`tex3()`] and their forms with a level of detail.
+//! Texture lookups in kernels: [`tex1()`], [`tex2()`], [`tex3()`] and their forms with a level of
+//! detail.
 
 #![allow(non_camel_case_types, reason = "they have the names of functions")]
 
@@ -75,35 +76,35 @@ macro_rules! functions {
 
 functions! {
     1 u: f32, F<M>, |u: F<M>| [u];
-    /// The value of a 1-D texture at `u`; of one with levels, at level 0. See [`tex2()`].
+    /// Returns the value of a 1-D texture at `u`; with levels, that of level 0. See [`tex2()`].
     tex1
-    /// The value of a 1-D texture at `u` and a level of detail. See [`tex2_level()`].
+    /// Returns the value of a 1-D texture at `u` and a level of detail. See [`tex2_level()`].
     tex1_level
 
     2 uv: Vec2, X2<F<M>>, |uv: X2<F<M>>| [uv.x, uv.y];
-    /// The value of a 2-D texture at `uv`; of one with levels, at level 0.
+    /// Returns the value of a 2-D texture at `uv`; with levels, that of level 0.
     ///
     /// The texture covers `[0, 1)` along each axis, and texel `i` of `n` has its centre at
-    /// `(i + 0.5) / n`. `u` runs along a row and `v` from row 0 on. What lies outside, and between
-    /// the centres, the texture's [`TextureConfig`](super::TextureConfig) says.
+    /// `(i + 0.5) / n`. `u` runs along a row and `v` from row 0 on. The texture's
+    /// [`TextureConfig`](super::TextureConfig) determines values outside, and between the centres.
     ///
-    /// The place between two texels is at most `2^-20 n` texels off, for `u` within `[-1, 2]`; an
-    /// `f32` cannot say more exactly where it is. From `2^23` on a coordinate is whole: its
-    /// fraction is 0. Where the texture repeats, a NaN and an infinite coordinate count as 0; where
-    /// it is clamped or has a border, an infinite one lies beyond that end, and a NaN before the
-    /// beginning. No coordinate reads outside of the texels.
+    /// The position between two texels is at most `2^-20 n` texels off, for `u` within `[-1, 2]`;
+    /// an `f32` is no more precise. From `2^23` on a coordinate is whole: its fraction is 0. Where
+    /// the texture repeats, NaN and infinite coordinates count as 0; where it is clamped or has a
+    /// border, an infinite one lies beyond that end, and a NaN before the beginning. No coordinate
+    /// reads outside of the texels.
     tex2
-    /// The value of a 2-D texture at `uv` and a level of detail: 0 is the texture as it was given,
+    /// Returns the value of a 2-D texture at `uv` and a level of detail: 0 is the original texture,
     /// 1 half as large, and so on.
     ///
-    /// The texture's [`LevelFilter`](super::LevelFilter) says what lies between two levels. A level
-    /// below 0 and NaN count as 0, and one beyond the last as the last one; a texture without
-    /// levels has level 0 alone. See [`Texture::with_levels`](super::Texture::with_levels).
+    /// The texture's [`LevelFilter`](super::LevelFilter) applies between two levels. A level below
+    /// 0 and NaN count as 0, and one beyond the last as the last one; a texture without levels has
+    /// level 0 alone. See [`Texture::with_levels`](super::Texture::with_levels).
     tex2_level
 
     3 uvw: Vec3, X3<F<M>>, |uvw: X3<F<M>>| [uvw.x, uvw.y, uvw.z];
-    /// The value of a 3-D texture at `uvw`; of one with levels, at level 0. See [`tex2()`].
+    /// Returns the value of a 3-D texture at `uvw`; with levels, that of level 0. See [`tex2()`].
     tex3
-    /// The value of a 3-D texture at `uvw` and a level of detail. See [`tex2_level()`].
+    /// Returns the value of a 3-D texture at `uvw` and a level of detail. See [`tex2_level()`].
     tex3_level
 }

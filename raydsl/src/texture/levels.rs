@@ -1,4 +1,4 @@
-//! Levels of detail, made by the box filter.
+//! Levels of detail (mipmaps), made by the box filter.
 
 use std::borrow::Cow;
 
@@ -6,14 +6,14 @@ use super::error::TextureError;
 use super::texel::{Texel, TexelValue};
 use super::texture::{Texture, count, within_limit};
 
-/// The numbers of a texture's level: axis 0 is that of the channels, the others are the texture's.
+/// Values of one level: axis 0 is that of the channels, the others are the texture's.
 pub(super) struct Grid {
     pub(super) values: Vec<f64>,
     pub(super) size: [usize; 4],
 }
 
 impl Grid {
-    /// The decoded texels of level 0.
+    /// Decodes the texels of level 0.
     pub(super) fn of<T: Texel, const D: usize>(
         texture: &Texture<'_, T, D>,
     ) -> Result<Self, TextureError> {
@@ -32,7 +32,7 @@ impl Grid {
         Ok(Self { values, size })
     }
 
-    /// The values of texels.
+    /// Iterates over the values of texels.
     pub(super) fn texels<V: TexelValue>(&self) -> impl Iterator<Item = V> {
         self.values.chunks_exact(self.size[0]).map(|texel| {
             let mut channels = [0.0; 4];
@@ -43,8 +43,7 @@ impl Grid {
         })
     }
 
-    /// The places of numbers that follow each other along an axis: how far apart they are, and the
-    /// first of each line.
+    /// Returns the stride of an axis, and iterates over the first index of each line along it.
     pub(super) fn lines(&self, axis: usize) -> (usize, impl Iterator<Item = usize> + use<>) {
         let step: usize = self.size[..axis].iter().product();
         let n = self.size[axis];
@@ -52,8 +51,8 @@ impl Grid {
         (step, (0..count).map(move |line| line / step * step * n + line % step))
     }
 
-    /// Leaves half as many texels along an axis, rounded down. Each is the mean over its share of
-    /// the axis, so the mean of all stays, odd sizes or not.
+    /// Halves the number of texels along an axis, rounded down. Each is the mean over its share of
+    /// the axis, so the overall mean stays, odd sizes or not.
     fn halve(&mut self, axis: usize) {
         let n = self.size[axis];
         if n == 1 {
@@ -62,8 +61,8 @@ impl Grid {
         let m = n / 2;
         let step: usize = self.size[..axis].iter().product();
         let slabs = self.values.len() / (step * n);
-        // In this order a mean lies no further than the first number it is of, so those that are
-        // still to be read are whole.
+        // In this order a mean is written no further than its first operand, so unread values are
+        // intact.
         let mut target = 0;
         for slab in 0..slabs {
             for i in 0..m {
@@ -77,7 +76,7 @@ impl Grid {
         self.size[axis] = m;
     }
 
-    /// The mean over part `i` of `m` of a line of `n` texels.
+    /// Returns the mean over part `i` of `m` of a line of `n` texels.
     fn mean(&self, first: usize, step: usize, n: usize, m: usize, i: usize) -> f64 {
         // In units of 1/m of a texel, which are whole.
         let (start, end) = (i * n, (i + 1) * n);
@@ -90,7 +89,7 @@ impl Grid {
     }
 }
 
-/// An empty list with room for so many values.
+/// Allocates an empty list with room for so many values.
 pub(super) fn room<T>(count: usize) -> Result<Vec<T>, TextureError> {
     let bytes = (count as u64).saturating_mul(size_of::<T>() as u64);
     let mut list = Vec::new();
@@ -99,8 +98,8 @@ pub(super) fn room<T>(count: usize) -> Result<Vec<T>, TextureError> {
 }
 
 impl<T: Texel, const D: usize> Texture<'_, T, D> {
-    /// The texture with levels of detail down to a single texel, each half as large along every
-    /// axis as the one before, rounded down. Their texels are copied: levels lie behind level 0.
+    /// Creates the texture with levels of detail down to a single texel, each half as large along
+    /// every axis as the one before, rounded down. The texels are copied: levels follow level 0.
     ///
     /// A texel of a level is the mean over its share of the level before (the box filter), computed
     /// in linear space and `f64`, and encoded as texels of its type are.

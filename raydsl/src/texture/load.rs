@@ -1,4 +1,4 @@
-//! Textures from picture files.
+//! Textures from image files.
 
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -15,35 +15,35 @@ use super::texel::Texel;
 use super::texture::{MAX_SIZE, Texture2};
 use crate::math::{F16, Unorm8, Unorm16};
 
-/// The most bytes that decoding a picture may take, and a decoded picture with its texels: 1 GiB.
+/// Memory limit of decoding an image, and of a decoded image with its texels: 1 GiB.
 const MAX_BYTES: u64 = 1 << 30;
 
-/// How many texels are converted at a time.
+/// Number of texels converted at a time.
 const PIECE: u32 = 1 << 16;
 
-/// Why a picture gives no texture, and what to do about it.
+/// Error of loading a texture from an image.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LoadError {
     /// The file cannot be read.
     #[error("cannot read {}: check the path and its permissions", path.display())]
     Unreadable {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Cause.
         source: std::io::Error,
     },
-    /// The file is broken, cut off, of a format that is not known or whose feature is off, or too
+    /// The file is broken, truncated, of an unknown format or one whose feature is off, or too
     /// large.
     #[error(
         "the picture cannot be decoded: {source}; files may have PNG's format and those of the \
          features `jpeg`, `hdr` and `exr`, and take 1 GiB at most while they are decoded"
     )]
     Undecodable {
-        /// What the decoder says.
+        /// Error of the decoder.
         source: image::ImageError,
     },
-    /// It would take too many bytes together with the texels that it is converted to.
+    /// The image would take too many bytes together with the texels it is converted to.
     #[error(
         "a picture of {} by {} takes {bytes} bytes with its texels, of at most {limit}: scale it \
          down, or load it with smaller texels or those of its own kind", size[0], size[1]
@@ -51,34 +51,35 @@ pub enum LoadError {
     TooLarge {
         /// Its width and height.
         size: [u32; 2],
-        /// What it takes decoded, and its texels.
+        /// Bytes of the decoded image and its texels.
         bytes: u64,
-        /// What both may take.
+        /// Maximum number of bytes of both.
         limit: u64,
     },
-    /// A picture of floats, and texels of 8 or 16 bits that hold numbers from 0 to 1.
+    /// The image has floats, and the texels have 8 or 16 bits for numbers from 0 to 1.
     #[error(
         "the picture has floats beyond what the texels hold: load it with texels of `f32`, `F16`, \
          `Vec2`, `Vec3` or `Vec4`"
     )]
     Floats,
-    /// The picture's size is that of no texture, or there is no memory for its texels.
+    /// The image's size is not valid for a texture, or there is no memory for its texels.
     #[error(transparent)]
     Texture(#[from] TextureError),
 }
 
-/// A texel that pictures can be loaded as: [`Unorm8`], [`Unorm16`], [`F16`], `f32` or an array of
+/// Texel type that images can be loaded as: [`Unorm8`], [`Unorm16`], [`F16`], `f32` or an array of
 /// one (grey), two (grey and opacity), three or four of them, and [`Vec2`], [`Vec3`] and [`Vec4`].
 pub trait PictureTexel: Texel {
     /// Whether it holds numbers from 0 to 1 only.
     const IS_SMALL: bool;
 
-    /// The picture's texels, converted where it has others.
+    /// Returns the image's texels, converted from other types.
     #[doc(hidden)]
     fn of_picture(picture: DynamicImage) -> Result<Vec<Self>, LoadError>;
 }
 
-/// `texel: is it small, (the kind of picture with such texels), conversion (and what it gives)`.
+/// Implements it:
+/// `texel: is it small, (the kind of image with such texels), conversion (and its map)`.
 macro_rules! picture_texel {
     ($($t:ty: $is_small:literal ($($own:ident)?) $into:ident $($from:expr)?;)+) => {
         $(
@@ -125,11 +126,11 @@ picture_texel! {
     [f32; 4]: false (ImageRgba32F) into_rgba32f;
     Vec2: false () to_luma_alpha32f;
     Vec3: false (ImageRgb32F) into_rgb32f;
-    // A list of floats may not lie where glam wants a `Vec4`.
+    // A list of floats may lack the alignment of glam's `Vec4`.
     Vec4: false () into_rgba32f |v: &[f32; 4]| Vec4::from(*v);
 }
 
-/// The same numbers as texels: in the same place, unless it has room for a part of a texel.
+/// Casts numbers to texels: in place, unless the capacity is not a whole number of texels.
 fn whole<N: Pod, T: Pod>(numbers: Vec<N>) -> Result<Vec<T>, TextureError> {
     bytemuck::allocation::try_cast_vec(numbers).or_else(|(_, numbers)| {
         let texels = bytemuck::cast_slice(&numbers);
@@ -139,7 +140,7 @@ fn whole<N: Pod, T: Pod>(numbers: Vec<N>) -> Result<Vec<T>, TextureError> {
     })
 }
 
-/// The texels of a picture that has others; `add` converts a piece of it.
+/// Converts the texels of an image with others; `add` converts a piece of it.
 fn converted<T>(
     picture: &DynamicImage,
     add: impl Fn(DynamicImage, &mut Vec<T>),
@@ -151,7 +152,7 @@ fn converted<T>(
         return Err(LoadError::TooLarge { size, bytes, limit: MAX_BYTES });
     }
     let mut texels = room(count as usize)?;
-    // The numbers that texels are made of lie in a list of their own: a short one.
+    // Convert in pieces, since the numbers that texels are made of are in a list of their own.
     let columns = width.clamp(1, PIECE);
     let rows = PIECE / columns;
     for y in (0..height).step_by(rows as usize) {
@@ -163,29 +164,29 @@ fn converted<T>(
 }
 
 impl<T: PictureTexel> Texture2<'static, T> {
-    /// The picture in a file: PNG, and with the features of these names `jpeg`, `hdr` and `exr`.
-    /// The format is found from the content.
+    /// Loads an image file: PNG, and with the features of these names `jpeg`, `hdr` and `exr`. The
+    /// format is detected from the content.
     ///
-    /// Texels of another kind than the picture's are converted; a float beyond what [`F16`] holds
-    /// becomes infinite. Of a picture with 8 or 16 bits the numbers are sRGB, of one with floats
-    /// they are linear: the colour space of `config` is replaced. For data that is no colour, as in
-    /// a normal map, see [`load_as`](Self::load_as).
+    /// Texels of another type than the image's are converted; a float beyond the range of [`F16`]
+    /// becomes infinite. The numbers of an image with 8 or 16 bits are sRGB, floats are linear: the
+    /// colour space of `config` is replaced. For data that is no colour, as in a normal map, see
+    /// [`load_as`](Self::load_as).
     ///
-    /// Row 0 is the top row of the picture as it is stored, so `v` runs downwards, as in glTF. Of
-    /// an OBJ file, where it runs upwards, take `1 - v`. The orientation that EXIF data of a camera
-    /// says, colour profiles and gamma values are ignored.
+    /// Row 0 is the top row of the image as stored, so `v` runs downwards, as in glTF. For an OBJ
+    /// file, where it runs upwards, take `1 - v`. EXIF orientation, colour profiles and gamma
+    /// values are ignored.
     ///
     /// # Errors
     ///
-    /// If the file cannot be read or decoded, has floats and the texels hold numbers from 0 to 1,
+    /// If the file cannot be read or decoded, has floats for texels that hold numbers from 0 to 1,
     /// or would take more than 1 GiB besides the file: decoded (of OpenEXR twice) or, where texels
-    /// are converted, the picture and its texels together.
+    /// are converted, the image and its texels together.
     pub fn load(path: impl AsRef<Path>, config: TextureConfig) -> Result<Self, LoadError> {
         Self::from_picture(&file(path.as_ref())?, config)
     }
 
-    /// The picture in a file, whose numbers mean what `color_space` says whatever their kind: for a
-    /// normal map [`ColorSpace::Linear`]. See [`load`](Self::load).
+    /// Loads an image file whose numbers are in `color_space`, whatever their type: for a normal
+    /// map [`ColorSpace::Linear`]. See [`load`](Self::load).
     ///
     /// # Errors
     ///
@@ -198,7 +199,7 @@ impl<T: PictureTexel> Texture2<'static, T> {
         Self::from_picture_as(&file(path.as_ref())?, color_space, config)
     }
 
-    /// The picture in the bytes of a file; see [`load`](Self::load).
+    /// Decodes an image from the bytes of a file; see [`load`](Self::load).
     ///
     /// # Errors
     ///
@@ -209,7 +210,8 @@ impl<T: PictureTexel> Texture2<'static, T> {
         Self::of_picture(picture, config.color_space(color_space))
     }
 
-    /// The picture in the bytes of a file, in a colour space; see [`load_as`](Self::load_as).
+    /// Decodes an image from the bytes of a file, in a colour space; see
+    /// [`load_as`](Self::load_as).
     ///
     /// # Errors
     ///
@@ -245,7 +247,7 @@ fn decoded(bytes: &[u8]) -> Result<DynamicImage, LoadError> {
         let mut limits = Limits::default();
         limits.max_image_width = Some(MAX_SIZE);
         limits.max_image_height = Some(MAX_SIZE);
-        // This decoder has a copy of the picture that it does not count.
+        // This decoder keeps a copy of the image that it does not count.
         let copies = if reader.format() == Some(ImageFormat::OpenExr) { 2 } else { 1 };
         limits.max_alloc = Some(MAX_BYTES / copies);
         reader.limits(limits);

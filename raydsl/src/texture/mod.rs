@@ -2,13 +2,12 @@
 //!
 //! A [`Texture`] reads texels of the application in place, or owns them; [`TextureRef`] is a light
 //! reference. Kernels capture either, take either as `&Texture2<T>` or `&TextureRef2<T>`, and read
-//! them with [`tex1()`], [`tex2()`], [`tex3()`]. [`TextureConfig`] says how: filter, address modes,
-//! border, colour space.
+//! them with [`tex1()`], [`tex2()`], [`tex3()`]. [`TextureConfig`] sets filter, address modes,
+//! border and colour space.
 //!
 //! The filters are kernels of this library; packets have the same arithmetic in functions of their
-//! own. So all variants on the CPU give the same bits, and WGSL reads texels from a buffer by the
-//! same formulas. [`Filtering::Device`] has the device's own sampler read them, whose weights have
-//! 8 bits.
+//! own. So all variants on the CPU return the same bits, and WGSL reads texels from a buffer by the
+//! same formulas. [`Filtering::Device`] uses the device's own sampler, whose weights have 8 bits.
 
 mod color;
 mod config;

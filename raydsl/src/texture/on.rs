@@ -1,10 +1,10 @@
-//! Lookups as operations: how each machine reads a texture.
+//! Texture lookups as operations, with their implementation on each machine.
 
 use super::texel::{Texel, TexelValue};
 use super::view::Texels;
 use crate::machine::{Data, F, Lanes, Margin, On, Operation, Packet, Recorder, Scalar};
 
-/// What a texture has at a place of `D` axes.
+/// Looks up a texture at a position of `D` axes.
 pub(super) struct Lookup<'t, 'a, T, const D: usize>(pub(super) &'t Texels<'a, T>);
 
 impl<T: Texel, const D: usize> Operation for Lookup<'_, '_, T, D> {
@@ -31,7 +31,7 @@ impl<T: Texel, const D: usize> Operation for Lookup<'_, '_, T, D> {
     }
 }
 
-/// What a texture has at a place of `D` axes and a level of detail.
+/// Looks up a texture at a position of `D` axes and a level of detail.
 pub(super) struct LookupAtLevel<'t, 'a, T, const D: usize>(pub(super) &'t Texels<'a, T>);
 
 impl<T: Texel, const D: usize> Operation for LookupAtLevel<'_, '_, T, D> {
@@ -75,8 +75,8 @@ impl<T: Texel, const D: usize> Operation for LookupAtLevel<'_, '_, T, D> {
     }
 }
 
-/// What a device's sampler gives. Nothing if no sampler reads these texels, or if there are too
-/// many textures.
+/// Samples the texture with the device's sampler; `None` if no sampler reads these texels, or if
+/// there are too many textures.
 fn sampled<T: Texel, const D: usize>(
     m: &Recorder,
     texels: &Texels<'_, T>,

@@ -1,10 +1,9 @@
-//! Textures in packets. Filter, address modes and levels are decided once for a place, not for each
-//! texel; and a filter is a function of its own, compiled once for a kind of texels and lanes,
+//! Textures in packets. Filter, address modes and levels are selected once per lookup, not per
+//! texel; and a filter is a function of its own, compiled once for a type of texels and lanes,
 //! however often kernels call it.
 //!
-//! This is the arithmetic of the kernels in `filter` and `sample` once more, which scalar code,
-//! WGSL and the reference have: the same operations in the same order, for the same bits. What
-//! changes there changes here.
+//! This repeats the arithmetic of the kernels in `filter` and `sample` for scalar code, WGSL and
+//! the reference: the same operations in the same order, for the same bits. Change both together.
 
 use super::config::{Address, ColorSpace, Filter};
 use super::sample::{level_start, level_within, size_at};
@@ -14,15 +13,15 @@ use super::view::Texels;
 use crate::Type;
 use crate::machine::{Entered, F, Floats, Lanes, Machine, Packet, U, Value, X3, fill, op};
 
-/// The machine that finds places: its kernels are inlined. Those that decode texels are not: the
-/// curve of sRGB makes them long.
+/// The machine that computes positions: its kernels are inlined. Those that decode texels are not:
+/// the sRGB curve makes them long.
 type Inner<L> = Packet<Entered<L>>;
 
-/// What texels of type `T` give.
+/// Value of texels of type `T`.
 type Given<L, T> = <<T as Texel>::Value as Type>::On<Packet<L>>;
 
 impl<T: Texel> Texels<'_, T> {
-    /// What the texture has at places of `D` axes.
+    /// Looks up the texture at positions of `D` axes.
     #[inline(always)]
     pub(crate) fn in_packet<L: Lanes, const D: usize>(
         &self,
@@ -32,7 +31,7 @@ impl<T: Texel> Texels<'_, T> {
         filtered(m, self, at, None)
     }
 
-    /// The same at levels of detail.
+    /// Looks up the texture at positions of `D` axes and levels of detail.
     #[inline(always)]
     pub(crate) fn in_packet_at_level<L: Lanes, const D: usize>(
         &self,
@@ -44,13 +43,13 @@ impl<T: Texel> Texels<'_, T> {
     }
 }
 
-/// The size of a level, and its first texel.
+/// Size of a level, and its first texel.
 struct Extent<L: Lanes> {
     size: [L::U32; 3],
     first: L::U32,
 }
 
-/// What a level has at a place; level 0 if no other is given.
+/// Filters a level at a position; level 0 if no other is given.
 #[inline(always)]
 fn filtered<L: Lanes, T: Texel, const D: usize>(
     m: &Packet<L>,
@@ -65,7 +64,7 @@ fn filtered<L: Lanes, T: Texel, const D: usize>(
     }
 }
 
-/// What one level has, or two neighbours have, by the texture's
+/// Filters one level, or blends two neighbours, by the texture's
 /// [`LevelFilter`](super::LevelFilter).
 #[inline(never)]
 fn leveled<L: Lanes, T: Texel, const D: usize>(
@@ -99,7 +98,7 @@ fn leveled<L: Lanes, T: Texel, const D: usize>(
 }
 
 impl<L: Lanes> Extent<L> {
-    /// That of a level.
+    /// Returns the extent of a level.
     #[inline(always)]
     fn of<T: Texel>(m: &Inner<L>, texels: &Texels<'_, T>, level: L::U32) -> Self {
         let l = m.lanes();
@@ -117,7 +116,8 @@ impl<L: Lanes> Extent<L> {
         )
     }
 
-    /// That of the level behind this one, which is `level`; this one again where it is the last.
+    /// Returns the extent of the level after this one, which is `level`; this one again if it is
+    /// the last.
     #[inline(always)]
     fn next<T: Texel>(
         &self,
@@ -138,7 +138,7 @@ impl<L: Lanes> Extent<L> {
     }
 }
 
-/// Runs a filter as a function that is compiled for the lanes' level.
+/// Runs a filter as a function compiled for the lanes' level.
 #[inline(always)]
 fn entered<L: Lanes, T: Texel>(
     m: &Packet<L>,
@@ -146,7 +146,7 @@ fn entered<L: Lanes, T: Texel>(
     extent: Option<&Extent<L>>,
     filter: impl FnOnce(&Places<'_, L, T>) -> Given<L, T>,
 ) -> Given<L, T> {
-    // A variable that has been declared and has no texture yet.
+    // A declared variable without a texture yet.
     if texels.all.is_empty() {
         return Value::zero(m);
     }
@@ -201,7 +201,8 @@ fn linear<L: Lanes, T: Texel, const D: usize>(
                 let found = pair::on(&places.inner, F(at[axis].0), size, address);
                 (taps[axis], shares[axis]) = ([found.first.0, found.second.0], found.share.0);
             }
-            // No loop over axes: so each of their loops has a known length, and is unrolled.
+            // Unrolled by hand, so that each loop along an axis has a known length and is unrolled
+            // too.
             let mut indices = [places.first; 8];
             if const { D > 2 } {
                 places.split(2, &taps[2], &mut indices, 1 << (D - 3));
@@ -223,7 +224,7 @@ fn linear<L: Lanes, T: Texel, const D: usize>(
     )
 }
 
-/// Makes one value of each two, of which the second has a share.
+/// Blends pairs of values; the second one has the share.
 #[inline(always)]
 fn join<M: Machine, V: Value<M>>(m: &M, share: M::F32, values: &mut [V; 8], count: usize) {
     for i in 0..count {
@@ -254,7 +255,7 @@ fn cubic<L: Lanes, T: Texel, const D: usize>(
                 weights[axis] = [found.w1.0, found.w3.0, found.w4.0];
                 taps[axis] = [found.first.0, found.second.0, found.third.0, found.fourth.0];
             }
-            // The rows along the first axis.
+            // Find the rows along the first axis.
             let mut rows = [places.first; 16];
             for axis in (1..D).rev() {
                 for i in (0..1 << (2 * (D - 1 - axis))).rev() {
@@ -286,16 +287,16 @@ fn cubic<L: Lanes, T: Texel, const D: usize>(
     )
 }
 
-/// A level of a texture, and where its texels are.
+/// Level of a texture, and the layout of its texels.
 struct Places<'t, L: Lanes, T: Texel> {
     m: &'t Packet<L>,
     inner: Inner<L>,
     texels: &'t Texels<'t, T>,
     size: [L::U32; 3],
     first: L::U32,
-    /// From a texel to the next along each axis.
+    /// Stride along each axis.
     steps: [L::U32; 3],
-    /// Whether a place may have no texel.
+    /// Whether a position may be outside.
     has_border: bool,
 }
 
@@ -315,13 +316,13 @@ impl<'t, L: Lanes, T: Texel> Places<'t, L, T> {
         Self { m, inner, texels, size, first, steps, has_border: texels.has_border() }
     }
 
-    /// The size and the address mode of an axis.
+    /// Returns the size and the address mode of an axis.
     #[inline(always)]
     fn axis(&self, axis: usize) -> (U<Inner<L>>, Address) {
         (U(self.size[axis]), self.texels.config.address[axis])
     }
 
-    /// The first texel of part `i` along an axis of what begins at `first`.
+    /// Returns the first texel of part `i` along an axis, from `first` on.
     #[inline(always)]
     fn part(&self, first: L::U32, axis: usize, i: L::U32) -> L::U32 {
         let l = self.m.lanes();
@@ -335,7 +336,7 @@ impl<'t, L: Lanes, T: Texel> Places<'t, L, T> {
         l.u32_select(l.mask_binary(op::Or, a, b), outside, inside)
     }
 
-    /// Makes two places of each along an axis: neighbours along the first one follow each other.
+    /// Splits each index in two along an axis: neighbours along the first axis are consecutive.
     #[inline(always)]
     fn split(&self, axis: usize, &[a, b]: &[L::U32; 2], indices: &mut [L::U32; 8], count: usize) {
         for i in (0..count).rev() {
@@ -345,8 +346,8 @@ impl<'t, L: Lanes, T: Texel> Places<'t, L, T> {
         }
     }
 
-    /// The values of the first `count` texels, or of the border where there is none. Lanes that do
-    /// not run have one too: whatever their coordinates, places are inside or [`OUTSIDE`].
+    /// Returns the values of the first `count` texels, or of the border outside. Inactive lanes
+    /// have one too: whatever their coordinates, indices are inside or [`OUTSIDE`].
     #[inline(always)]
     fn values<const N: usize>(&self, places: &[L::U32; N], count: usize) -> [Given<L, T>; N] {
         let mut values = [Given::<L, T>::zero(self.m); N];
@@ -361,7 +362,7 @@ impl<'t, L: Lanes, T: Texel> Places<'t, L, T> {
     }
 }
 
-/// [`Places::values`] of any texture, in a function that all filters share.
+/// Implements [`Places::values`] for any texture, in a function that all filters share.
 #[inline(never)]
 fn values_apart<L: Lanes, T: Texel>(
     m: &Packet<L>,
@@ -384,7 +385,7 @@ fn values_apart<L: Lanes, T: Texel>(
     );
 }
 
-/// The values of texels that there are.
+/// Returns the values of texels inside the texture.
 #[inline(always)]
 fn inside<L: Lanes, T: Texel>(
     m: &Packet<L>,
@@ -400,13 +401,13 @@ fn inside<L: Lanes, T: Texel>(
     T::decode_on(m, texel, space)
 }
 
-/// [`Blend::blend`](super::Blend::blend).
+/// Blends as [`Blend::blend`](super::Blend::blend).
 #[inline(always)]
 fn blend<M: Machine, V: Value<M>>(m: &M, a: V, b: V, share: M::F32) -> V {
     sum(m, a, way(m, b, a, share))
 }
 
-/// [`Blend::blend4`](super::Blend::blend4) of neighbours in their order.
+/// Blends as [`Blend::blend4`](super::Blend::blend4), with the neighbours in their order.
 #[inline(always)]
 fn blend4<M: Machine, V: Value<M>>(
     m: &M,
@@ -430,7 +431,7 @@ fn sum<M: Machine, V: Value<M>>(m: &M, a: V, b: V) -> V {
     )
 }
 
-/// `(to - from) * w`.
+/// Returns `(to - from) * w`.
 #[inline(always)]
 fn way<M: Machine, V: Value<M>>(m: &M, to: V, from: V, w: M::F32) -> V {
     V::zip(
@@ -444,7 +445,7 @@ fn way<M: Machine, V: Value<M>>(m: &M, to: V, from: V, w: M::F32) -> V {
     )
 }
 
-/// `a` where it is true, `b` elsewhere. Values of textures have floats only.
+/// Selects `a` where the condition is true, `b` elsewhere. Values of textures have floats only.
 #[inline(always)]
 fn select<M: Machine, V: Value<M>>(m: &M, condition: M::Bool, a: V, b: V) -> V {
     V::zip(

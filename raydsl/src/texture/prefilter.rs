@@ -1,9 +1,9 @@
-//! Coefficients whose B-spline goes through given values.
+//! B-spline prefilter: coefficients of interpolating splines.
 //!
 //! At the centre of a texel the cubic B-spline is `(a + 4 b + c) / 6` of it and its neighbours. To
-//! have the values there, a system with that row for each texel is solved along each axis in turn
-//! (Unser, "Splines: a perfect fit for signal and image processing", 1999): by elimination in
-//! `f64`, with the ends that the address mode says, so the result is exact but for its rounding.
+//! interpolate, a system with that row for each texel is solved along each axis in turn (Unser,
+//! "Splines: a perfect fit for signal and image processing", 1999): by elimination in `f64`, with
+//! the ends given by the address mode, so the result is exact but for its rounding.
 
 use std::borrow::Cow;
 
@@ -14,7 +14,7 @@ use super::texel::Texel;
 use super::texture::Texture;
 
 impl<T: Texel, const D: usize> Texture<'_, T, D> {
-    /// A texture with [`Filter::BSpline`] that goes through the texels of this one: an
+    /// Creates a texture with [`Filter::BSpline`] that passes through the texels of this one: an
     /// interpolating B-spline. It has coefficients of `f32`, linear whatever the colour space of
     /// the texels, and no levels.
     ///
@@ -40,7 +40,7 @@ impl<T: Texel, const D: usize> Texture<'_, T, D> {
 }
 
 impl Grid {
-    /// Replaces the values of every line along an axis by coefficients.
+    /// Replaces the values of every line along an axis with coefficients.
     fn solve(
         &mut self,
         axis: usize,
@@ -64,20 +64,20 @@ impl Grid {
     }
 }
 
-/// The system `c[i - 1] + 4 c[i] + c[i + 1] = line[i]` of an axis.
+/// Linear system `c[i - 1] + 4 c[i] + c[i + 1] = line[i]` of an axis.
 enum System {
-    /// A single texel, which is its own neighbour.
+    /// A single texel is its own neighbour.
     Single,
     /// The neighbour outside is the texel at the edge, or the other one of two.
     Inside(Tridiagonal),
     /// The neighbour outside is the border.
     Border(Tridiagonal),
     /// The last texel is the neighbour of the first: a correction of the system without those
-    /// corners (the formula of Sherman and Morrison).
+    /// corners (the Sherman-Morrison formula).
     Cyclic { without_corners: Tridiagonal, correction: Vec<f64> },
 }
 
-/// What is in the corners that [`System::Cyclic`] corrects; any other number would do.
+/// Corner element that [`System::Cyclic`] corrects; any other number would do.
 const CORNER: f64 = -4.0;
 
 impl System {
@@ -120,11 +120,12 @@ impl System {
     }
 }
 
-/// A system with 4 in the diagonal but for its ends, and `beside` next to it, eliminated once for
-/// all lines (Thomas' algorithm). The diagonal outweighs the rest, so there is no need to pivot.
+/// Tridiagonal system with 4 on the diagonal except at its ends, and `beside` next to it,
+/// eliminated once for all lines (Thomas' algorithm). It is diagonally dominant, so there is no
+/// need to pivot.
 struct Tridiagonal {
     beside: f64,
-    /// The diagonal after elimination.
+    /// Diagonal after elimination.
     pivots: Vec<f64>,
 }
 
@@ -152,7 +153,7 @@ impl Tridiagonal {
     }
 }
 
-/// So many zeroes.
+/// Allocates so many zeroes.
 fn zeroes(count: usize) -> Result<Vec<f64>, TextureError> {
     let mut list = room(count)?;
     list.resize(count, 0.0);

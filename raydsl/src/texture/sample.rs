@@ -1,5 +1,5 @@
-//! Kernels over texels: values at level 0, and at any level of detail. Packets have them in
-//! `packet`: what changes here changes there.
+//! Texture lookups at level 0, and at any level of detail. `packet` repeats them for packets:
+//! change both together.
 
 use glam::{UVec2, UVec3, Vec2, Vec3};
 
@@ -11,13 +11,13 @@ use crate::kernel;
 use crate::machine::generic::{max, min};
 use crate::machine::{F, Machine, X2, X3};
 
-/// How many texels an axis has at a level.
+/// Returns the number of texels of an axis at a level.
 #[kernel]
 pub(super) fn size_at(size: u32, level: u32) -> u32 {
     max(size >> level, 1u32)
 }
 
-/// The first texel of a level; one level is behind the other.
+/// Returns the first texel of a level; levels are consecutive.
 #[kernel]
 pub(super) fn level_start(size: UVec3, level: u32) -> u32 {
     let mut start = 0u32;
@@ -27,7 +27,7 @@ pub(super) fn level_start(size: UVec3, level: u32) -> u32 {
     start
 }
 
-/// A level within `0..=last`; what is no number becomes 0.
+/// Clamps a level to `0..=last`; NaN becomes 0.
 #[kernel]
 pub(super) fn level_within(level: f32, last: u32) -> f32 {
     min(max(0.0, level), last as f32)
@@ -107,7 +107,7 @@ leveled!(tex1_level tex1 at_level1 f32);
 leveled!(tex2_level tex2 at_level2 Vec2);
 leveled!(tex3_level tex3 at_level3 Vec3);
 
-/// The kernels of a number of axes.
+/// Selects the kernel for a number of axes.
 macro_rules! by_axes {
     ($d:ident: $one:expr, $two:expr, $three:expr) => {
         if const { $d == 1 } {
@@ -121,15 +121,16 @@ macro_rules! by_axes {
 }
 
 impl<T: Texel> Texels<'_, T> {
-    /// What the kernels find on a machine at a place of `D` axes. A function of its own: it has all
-    /// filters.
+    /// Runs the kernels on a machine at a position of `D` axes. A function of its own: it contains
+    /// all filters.
     #[inline(never)]
     pub(crate) fn by_kernels<M: Machine, const D: usize>(
         &self,
         m: &M,
         at: &[F<M>; D],
     ) -> <T::Value as Type>::On<M> {
-        // Not by constants: an array of one axis has no second element, where none is read.
+        // Indices are not constants: an array of one axis has no second element, though none is
+        // read.
         let x = |i: usize| at[i];
         by_axes!(D:
             tex1::on(m, *self, x(0)),
@@ -138,7 +139,7 @@ impl<T: Texel> Texels<'_, T> {
         )
     }
 
-    /// The same at a level of detail.
+    /// Runs the kernels at a position of `D` axes and a level of detail.
     #[inline(never)]
     pub(crate) fn by_kernels_at_level<M: Machine, const D: usize>(
         &self,
@@ -146,7 +147,8 @@ impl<T: Texel> Texels<'_, T> {
         at: &[F<M>; D],
         level: F<M>,
     ) -> <T::Value as Type>::On<M> {
-        // Not by constants: an array of one axis has no second element, where none is read.
+        // Indices are not constants: an array of one axis has no second element, though none is
+        // read.
         let x = |i: usize| at[i];
         by_axes!(D:
             tex1_level::on(m, *self, x(0), level),

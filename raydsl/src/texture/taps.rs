@@ -1,33 +1,33 @@
-//! From a coordinate along one axis to texels and weights.
+//! Filter taps: texels and weights for a coordinate along one axis.
 
 use super::config::{Address, Filter};
 use crate::Type;
 use crate::kernel;
 use crate::machine::generic::{max, min, select};
 
-/// In place of the number of a texel, or of a row's first: it is outside, the border is meant.
+/// Index of a texel, or of a row's first, that is outside: the border applies.
 pub(super) const OUTSIDE: u32 = u32::MAX;
 
-/// A coordinate brought near the texture, with the same meaning: within one period, or not far
-/// outside. Where the texture repeats, what is no number or infinite becomes 0.
+/// Reduces a coordinate to an equivalent one near the texture: within one period, or not far
+/// outside. Where the texture repeats, NaN and infinity become 0.
 #[kernel]
 fn reduced(x: f32, #[host] address: Address) -> f32 {
     if address == Address::Wrap {
         let c = select(x.is_finite(), x, 0.0);
-        // From 0 to 1, which it is for small negative numbers.
+        // From 0 to 1, which small negative numbers round to.
         c - c.floor()
     } else if address == Address::Mirror {
         let c = select(x.is_finite(), x, 0.0);
         c - 2.0 * (c * 0.5).floor()
     } else {
-        // Far enough that none of four texels is inside, were there a single one. In this order NaN
+        // Far enough that none of four texels is inside, even of a single one. In this order NaN
         // becomes -2.
         min(max(-2.0, x), 3.0)
     }
 }
 
-/// The texel at place `i` of an axis with `n`: as far outside as filters reach, and for mirrors
-/// within two periods.
+/// Returns the texel at position `i` of an axis with `n`: as far outside as filters reach, and for
+/// mirrors within two periods.
 #[kernel]
 fn texel_at(i: i32, n: i32, #[host] address: Address) -> u32 {
     let last = n - 1;
@@ -49,7 +49,7 @@ fn texel_at(i: i32, n: i32, #[host] address: Address) -> u32 {
     }
 }
 
-/// The texel that `x` lies in.
+/// Returns the texel that contains `x`.
 #[kernel]
 pub(super) fn nearest_texel(x: f32, size: u32, #[host] address: Address) -> u32 {
     let n = size as i32;
@@ -70,8 +70,8 @@ pub(super) struct Pair {
     pub(super) share: f32,
 }
 
-/// The neighbours of `x`. Both places come from one number: found apart, rounding could place them
-/// a whole texel from each other's share.
+/// Returns the neighbours of `x`. Index and share come from one number: computed apart, rounding
+/// could put them a whole texel off each other.
 #[kernel]
 pub(super) fn pair(x: f32, size: u32, #[host] address: Address) -> Pair {
     let n = size as i32;
@@ -85,7 +85,7 @@ pub(super) fn pair(x: f32, size: u32, #[host] address: Address) -> Pair {
     }
 }
 
-/// Four neighbours and the weights of all but the second; that one has the rest of 1.
+/// Four neighbours and the weights of all but the second, which has the rest of 1.
 #[derive(Clone, Copy, Debug, Type)]
 pub(super) struct Four {
     pub(super) first: u32,
@@ -97,7 +97,7 @@ pub(super) struct Four {
     pub(super) w4: f32,
 }
 
-/// The neighbours of `x` for a cubic filter.
+/// Returns the neighbours of `x` for a cubic filter.
 #[kernel]
 pub(super) fn four(x: f32, size: u32, #[host] address: Address, #[host] filter: Filter) -> Four {
     let n = size as i32;
@@ -116,7 +116,7 @@ pub(super) fn four(x: f32, size: u32, #[host] address: Address, #[host] filter: 
     }
 }
 
-/// The weights of the first, third and fourth of four neighbours.
+/// Weights of the first, third and fourth of four neighbours.
 #[derive(Clone, Copy, Debug, Type)]
 struct Weights {
     first: f32,
@@ -124,9 +124,9 @@ struct Weights {
     fourth: f32,
 }
 
-/// The weights where the share of the way from the second to the third is `a`, from 0 to 1.
+/// Returns the weights for the share `a` of the way from the second to the third, from 0 to 1.
 ///
-/// They are products of what is not negative, so no rounding gives one the wrong sign: expanded as
+/// They are products of non-negative factors, so rounding never flips a sign: expanded as
 /// `1 - 3a + 3a² - a³`, the first weight of the B-spline does become negative near `a = 1`.
 #[kernel]
 fn weights(a: f32, #[host] filter: Filter) -> Weights {

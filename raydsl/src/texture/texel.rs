@@ -1,4 +1,4 @@
-//! Texels, and what is read from them.
+//! Texels and their values.
 
 use glam::{Vec2, Vec3, Vec4};
 
@@ -9,14 +9,14 @@ use crate::machine::wgsl::TexelFormat;
 use crate::machine::{F, LaneMachine, Machine, Method, Type, U, X2, X3, X4, fill, name, op};
 use crate::math::{F16, Unorm8, Unorm8On, Unorm16};
 
-/// What filters do with values: they are folded as `a + w (b - a)`, so that a constant texture
-/// comes back with the same bits.
+/// Blending of values in filters, as `a + w (b - a)`, so that a constant texture returns the same
+/// bits.
 #[kernel]
 pub trait Blend {
-    /// `self + (to - self) * w`.
+    /// Returns `self + (to - self) * w`.
     fn blend(self, to: Self, w: f32) -> Self;
 
-    /// `self`, the second of four neighbours, and the differences to the others by their weights.
+    /// Returns `self`, the second of four neighbours, plus the weighted differences to the others.
     fn blend4(self, first: Self, third: Self, fourth: Self, w1: f32, w3: f32, w4: f32) -> Self;
 }
 
@@ -47,18 +47,18 @@ macro_rules! blend {
 
 blend!(f32, Vec2, Vec3, Vec4);
 
-/// What a texture gives: `f32`, `Vec2`, `Vec3` or `Vec4`, by the number of channels.
+/// Value of a texture: `f32`, `Vec2`, `Vec3` or `Vec4`, by the number of channels.
 pub trait TexelValue: Blend + Texel<Value = Self> {
-    /// How many channels.
+    /// Number of channels.
     const CHANNELS: usize;
 
-    /// The value of the first of these channels.
+    /// Creates the value from the first of these channels.
     fn from_channels(channels: [f32; 4]) -> Self;
 
-    /// The channels; those that it does not have are 0.
+    /// Returns the channels; missing ones are 0.
     fn to_channels(self) -> [f32; 4];
 
-    /// [`from_channels`](Self::from_channels) on a machine.
+    /// Lifted form of [`from_channels`](Self::from_channels).
     #[doc(hidden)]
     fn from_channels_on<M: Machine>(m: &M, channels: &[F<M>]) -> Self::On<M>;
 }
@@ -115,34 +115,34 @@ impl TexelValue for f32 {
     }
 }
 
-/// A texel: one to four channels of [`Unorm8`], [`Unorm16`], [`F16`] or `f32`.
+/// Texel: one to four channels of [`Unorm8`], [`Unorm16`], [`F16`] or `f32`.
 ///
 /// Arrays of one to four such numbers, the numbers themselves, and glam's vectors are texels. A
 /// texel is stored as the application has it; a device pads it to whole words of 4 bytes.
 pub trait Texel: Type {
-    /// What is read: a number for each channel.
+    /// Value of a texel: a number for each channel.
     type Value: TexelValue;
 
-    /// The value.
+    /// Decodes the texel.
     fn decode(self, space: ColorSpace) -> Self::Value;
 
-    /// The texel nearest to a value.
+    /// Encodes a value as the nearest texel.
     fn encode(value: Self::Value, space: ColorSpace) -> Self;
 
-    /// What samplers of devices call such texels, if every device has one that filters them.
+    /// Returns the sampler format of such texels, if every device can filter it.
     #[doc(hidden)]
     fn format(_space: ColorSpace) -> Option<TexelFormat> {
         None
     }
 
-    /// The texel that `f` gives for each lane.
+    /// Gathers the texel that `f` returns for each lane.
     #[doc(hidden)]
     #[inline(always)]
     fn gather<M: LaneMachine>(m: &M, f: impl Fn(usize) -> Self + Copy) -> Self::On<M> {
         Self::from_lanes(m, f)
     }
 
-    /// [`decode`](Self::decode) on a machine.
+    /// Lifted form of [`decode`](Self::decode).
     #[doc(hidden)]
     fn decode_on<M: Machine>(
         m: &M,
@@ -151,18 +151,18 @@ pub trait Texel: Type {
     ) -> <Self::Value as Type>::On<M>;
 }
 
-/// One channel of a texel.
+/// Channel of a texel.
 pub trait Channel: Type {
-    /// Its number.
+    /// Returns the channel's number.
     fn number(self) -> f32;
-    /// The nearest to `v`.
+    /// Returns the channel nearest to `v`.
     fn nearest(v: f32) -> Self;
-    /// [`Texel::format`] of this many.
+    /// Returns [`Texel::format`] of this many channels.
     #[doc(hidden)]
     fn format(_channels: usize, _space: ColorSpace) -> Option<TexelFormat> {
         None
     }
-    /// [`Texel::gather`] of an array.
+    /// Gathers arrays, as [`Texel::gather`].
     #[doc(hidden)]
     #[inline(always)]
     fn gather<M: LaneMachine, const N: usize>(
@@ -171,7 +171,7 @@ pub trait Channel: Type {
     ) -> [Self::On<M>; N] {
         <[Self; N]>::from_lanes(m, f)
     }
-    /// [`number`](Self::number) on a machine.
+    /// Lifted form of [`number`](Self::number).
     #[doc(hidden)]
     fn number_on<M: Machine>(m: &M, this: Self::On<M>) -> F<M>;
 }
@@ -229,7 +229,7 @@ small_channel! {
     Unorm8 (
         1 Linear R8Unorm, 2 Linear Rg8Unorm, 4 Linear Rgba8Unorm, 4 Srgb Rgba8UnormSrgb
     ) {
-        /// Read as whole words, which are then taken apart in all lanes at once.
+        /// Gathers whole words, which are then split in all lanes at once.
         #[inline(always)]
         fn gather<M: LaneMachine, const N: usize>(
             m: &M,
@@ -259,7 +259,7 @@ small_channel! {
     F16 (1 Linear R16Float, 2 Linear Rg16Float, 4 Linear Rgba16Float);
 }
 
-/// Whether channel `i` of `n` is opacity.
+/// Returns whether channel `i` of `n` is opacity.
 const fn is_opacity(i: usize, n: usize) -> bool {
     n.is_multiple_of(2) && i + 1 == n
 }
@@ -280,7 +280,7 @@ fn decoded_on<M: Machine, C: Channel>(m: &M, c: C::On<M>, is_encoded: bool) -> F
     if is_encoded { srgb_to_linear::on(m, v) } else { v }
 }
 
-/// Whether the channels of a texel are encoded.
+/// Returns whether each channel of a texel is encoded.
 #[inline(always)]
 fn encodings(space: ColorSpace, n: usize) -> [bool; 4] {
     core::array::from_fn(

@@ -9,14 +9,14 @@ use super::view::Texels;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{Capture, Leaves, Machine, Owner, Parameter, Resource, Schema, Type, Value};
 
-/// The most texels along an axis: up to here every whole number is an `f32`.
+/// Maximum number of texels along an axis: up to here every whole number is an `f32`.
 pub const MAX_SIZE: u32 = 1 << 24;
 
-/// The most texels of a texture with all its levels: kernels index with 32 bits, and one number is
-/// taken for the border.
+/// Maximum number of texels of a texture with all its levels: kernels index with 32 bits, and one
+/// index is reserved for the border.
 pub const MAX_TEXELS: u64 = u32::MAX as u64;
 
-/// A texture of `D` dimensions, 1, 2 or 3. It borrows texels from the application or owns them.
+/// Texture of `D` dimensions, 1, 2 or 3. It borrows texels from the application or owns them.
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -41,22 +41,23 @@ pub struct Texture<'a, T: Clone, const D: usize> {
     owner: Owner,
 }
 
-/// A 1-D texture.
+/// 1-D texture.
 pub type Texture1<'a, T> = Texture<'a, T, 1>;
-/// A 2-D texture.
+/// 2-D texture.
 pub type Texture2<'a, T> = Texture<'a, T, 2>;
-/// A 3-D texture.
+/// 3-D texture.
 pub type Texture3<'a, T> = Texture<'a, T, 3>;
 
 impl<'a, T: Texel, const D: usize> Texture<'a, T, D> {
-    /// A texture over a slice of the application's, or with a `Vec` of its own.
+    /// Creates a texture over a slice of the application, or with a `Vec` of its own.
     ///
-    /// The first axis runs fastest: texel `(x, y, z)` is number `(z * size[1] + y) * size[0] + x`.
+    /// The first axis runs fastest: texel `(x, y, z)` has the index
+    /// `(z * size[1] + y) * size[0] + x`.
     ///
     /// # Errors
     ///
     /// If an axis has no texels or more than [`MAX_SIZE`], all together have more than
-    /// [`MAX_TEXELS`], or there are not as many texels as the sizes say.
+    /// [`MAX_TEXELS`], or the number of texels does not match the sizes.
     pub fn new(
         texels: impl Into<Cow<'a, [T]>>,
         size: [u32; D],
@@ -67,7 +68,7 @@ impl<'a, T: Texel, const D: usize> Texture<'a, T, D> {
         Ok(Self::with_parts(texels, size, 1, config))
     }
 
-    /// A texture of texels that are as many as they must be.
+    /// Creates a texture of validated texels.
     pub(super) fn with_parts(
         texels: Cow<'a, [T]>,
         size: [u32; D],
@@ -77,28 +78,28 @@ impl<'a, T: Texel, const D: usize> Texture<'a, T, D> {
         Self { texels, size, levels, config, owner: Owner::new() }
     }
 
-    /// The texture, read in another way.
+    /// Replaces the settings.
     #[must_use]
     pub fn with_config(self, config: TextureConfig) -> Self {
         Self { config, ..self }
     }
 
-    /// How many texels each axis has.
+    /// Returns the number of texels along each axis.
     pub fn size(&self) -> [u32; D] {
         self.size
     }
 
-    /// How many levels of detail there are, at least 1.
+    /// Returns the number of levels of detail, at least 1.
     pub fn levels(&self) -> u32 {
         self.levels
     }
 
-    /// How it is read.
+    /// Returns the settings.
     pub fn config(&self) -> &TextureConfig {
         &self.config
     }
 
-    /// The texels of all levels, one level behind the other.
+    /// Returns the texels of all levels, one level after another.
     pub fn texels(&self) -> &[T] {
         &self.texels
     }
@@ -110,7 +111,7 @@ impl<T: Texel, const D: usize> Clone for Texture<'_, T, D> {
     }
 }
 
-/// Whether so many texels are a texture of this size.
+/// Validates the size of a texture with so many texels.
 fn check(size: &[u32], found: usize) -> Result<(), TextureError> {
     for (axis, &size) in size.iter().enumerate() {
         if size == 0 {
@@ -127,28 +128,28 @@ fn check(size: &[u32], found: usize) -> Result<(), TextureError> {
     Ok(())
 }
 
-/// The product of sizes of at most [`MAX_SIZE`].
+/// Returns the product of sizes of at most [`MAX_SIZE`].
 pub(super) fn count(size: &[u32]) -> u128 {
     size.iter().map(|&n| u128::from(n)).product()
 }
 
-/// A number of texels that kernels can index.
+/// Returns a number of texels if kernels can index them.
 pub(super) fn within_limit(count: u128) -> Result<u64, TextureError> {
     let too_many = TextureError::TooManyTexels { count, limit: MAX_TEXELS };
     u64::try_from(count).ok().filter(|n| *n <= MAX_TEXELS).ok_or(too_many)
 }
 
-/// A light reference to a texture, or a texture over a slice.
+/// Light reference to a texture, or a texture over a slice.
 #[derive(Debug)]
 pub struct TextureRef<'a, T, const D: usize> {
     pub(super) texels: Texels<'a, T>,
 }
 
-/// A reference to a 1-D texture.
+/// Reference to a 1-D texture.
 pub type TextureRef1<'a, T> = TextureRef<'a, T, 1>;
-/// A reference to a 2-D texture.
+/// Reference to a 2-D texture.
 pub type TextureRef2<'a, T> = TextureRef<'a, T, 2>;
-/// A reference to a 3-D texture.
+/// Reference to a 3-D texture.
 pub type TextureRef3<'a, T> = TextureRef<'a, T, 3>;
 
 impl<T, const D: usize> Clone for TextureRef<'_, T, D> {
@@ -161,8 +162,8 @@ impl<T, const D: usize> Clone for TextureRef<'_, T, D> {
 impl<T, const D: usize> Copy for TextureRef<'_, T, D> {}
 
 impl<'a, T: Texel, const D: usize> TextureRef<'a, T, D> {
-    /// A texture over a slice. A device is sent the texels whenever a kernel runs that reads them;
-    /// those of a [`Texture`] it keeps.
+    /// Creates a texture over a slice. A device is sent the texels whenever a kernel that reads
+    /// them runs; it keeps those of a [`Texture`].
     ///
     /// # Errors
     ///
@@ -186,42 +187,42 @@ impl<'a, T: Texel, const D: usize> TextureRef<'a, T, D> {
     ) -> Self {
         const { assert!(D >= 1 && D <= 3, "a texture has 1, 2 or 3 dimensions") };
         let size = core::array::from_fn(|i| size.get(i).copied().unwrap_or(1));
-        // Whether code for borders is recorded depends on the axes that there are.
+        // Code for borders is recorded only for existing axes.
         let address =
             core::array::from_fn(|i| if i < D { config.address[i] } else { Address::Clamp });
         let config = TextureConfig { address, ..config };
         Self { texels: Texels { all, size, levels, config, key, name: "texture" } }
     }
 
-    /// The same texels, read in another way.
+    /// Replaces the settings.
     #[must_use]
     pub fn with_config(self, config: TextureConfig) -> Self {
         let Texels { all, levels, key, .. } = self.texels;
         Self::with_parts(all, self.size(), levels, config, key)
     }
 
-    /// How many texels each axis has.
+    /// Returns the number of texels along each axis.
     pub fn size(&self) -> [u32; D] {
         core::array::from_fn(|i| self.texels.size[i])
     }
 
-    /// How many levels of detail there are, at least 1.
+    /// Returns the number of levels of detail, at least 1.
     pub fn levels(&self) -> u32 {
         self.texels.levels
     }
 
-    /// How it is read.
+    /// Returns the settings.
     pub fn config(&self) -> &TextureConfig {
         &self.texels.config
     }
 }
 
-/// A texture or a reference to one: what [`tex2()`](super::tex2()) and its like take.
+/// A texture or a reference to one, as accepted by [`tex2()`](super::tex2()) and its like.
 pub trait AsTextureRef<const D: usize> {
-    /// Its texels.
+    /// Type of its texels.
     type Texel: Texel;
 
-    /// The reference.
+    /// Returns the reference.
     fn as_texture_ref(&self) -> TextureRef<'_, Self::Texel, D>;
 }
 

@@ -1,8 +1,8 @@
-//! What kernels see of a texture: a value of the host on every machine.
+//! View of a texture in kernels: a host value on every machine.
 //!
 //! Texels are read in place. Filter, address modes and colour space are known while a kernel is
-//! recorded; sizes and the border are brought to the machine where they are used, so they are
-//! numbers of the uniform block.
+//! recorded; sizes and the border are captured where they are used, so they are numbers of the
+//! uniform block.
 
 use glam::{UVec2, UVec3, Vec4};
 
@@ -12,18 +12,18 @@ use crate::Type;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{Leaves, Machine, Method, Parameter, Schema, Slice, U, Value, X2, X3, name};
 
-/// The texels of a texture and how they are read, whatever its dimension.
+/// Texels of a texture and their settings, whatever its dimension.
 #[derive(Debug)]
 pub struct Texels<'a, T> {
     pub(super) all: &'a [T],
-    /// Of axes that the texture does not have, 1.
+    /// 1 for missing axes.
     pub(super) size: [u32; 3],
     pub(super) levels: u32,
-    /// Axes that the texture does not have are clamped.
+    /// Missing axes are clamped.
     pub(super) config: TextureConfig,
-    /// The name that a device has for the texels, if their owner is known.
+    /// Device key of the texels, if their owner is known.
     pub(super) key: Option<BufferKey>,
-    /// The name in the source.
+    /// Name in the source.
     pub(super) name: &'static str,
 }
 
@@ -43,25 +43,25 @@ impl<'a, T> Texels<'a, T> {
     }
 }
 
-/// What a texture has in the uniform block: `tiles_size`.
+/// Size in the uniform block: `tiles_size`.
 #[derive(Clone, Copy, Type)]
 struct Extent<S: Type> {
     size: S,
 }
 
-/// `tiles_border`.
+/// Border in the uniform block: `tiles_border`.
 #[derive(Clone, Copy, Type)]
 struct Border<V: TexelValue> {
     border: V,
 }
 
-/// `tiles_last_level`.
+/// Last level in the uniform block: `tiles_last_level`.
 #[derive(Clone, Copy, Type)]
 struct Levels {
     last_level: u32,
 }
 
-/// Methods of kernels: `name(self, arguments) -> type on the host, type on a machine`.
+/// Defines methods of kernels: `name(self, arguments) -> type on the host, type on a machine`.
 macro_rules! methods {
     ($(
         $(#[$doc:meta])*
@@ -95,7 +95,7 @@ macro_rules! methods {
     };
 }
 
-/// Those that are decided while a kernel is recorded.
+/// Defines methods whose result is known while a kernel is recorded.
 macro_rules! known {
     ($($(#[$doc:meta])* $name:ident ($this:ident) -> $host:ty { $e:expr })+) => {
         methods! {
@@ -105,7 +105,7 @@ macro_rules! known {
 }
 
 known! {
-    /// Whether a texel may be the border.
+    /// Returns whether a texel may be the border.
     has_border(t) -> bool { t.config.address.contains(&Address::Border) }
     has_levels(t) -> bool { t.levels > 1 }
     blends_levels(t) -> bool { t.config.level_filter == LevelFilter::Linear }
@@ -135,7 +135,7 @@ methods! {
 }
 
 impl<T: Texel> Texels<'_, T> {
-    /// The value of texel `i`, which there is.
+    /// Returns the value of texel `i`, which must exist.
     #[inline(always)]
     pub(super) fn value(&self, i: u32) -> T::Value {
         self.all[i as usize].decode(self.config.color_space)
@@ -153,7 +153,7 @@ impl<M: Machine, T: Texel> Method<{ name("value") }, M, (U<M>,)> for Texels<'_, 
     }
 }
 
-/// Whether two configurations are the same, borders of NaN too.
+/// Returns whether two configurations are the same, including borders of NaN.
 fn is_same_config(a: &TextureConfig, b: &TextureConfig) -> bool {
     let bits = |config: &TextureConfig| config.border.to_array().map(f32::to_bits);
     let rest = |config: &TextureConfig| TextureConfig { border: Vec4::ZERO, ..*config };
@@ -175,7 +175,7 @@ impl<M: Machine, T> Value<M> for Texels<'_, T> {
 
     #[inline(always)]
     fn zip(_: &M, a: Self, b: Self, _: &mut impl Leaves<M>) -> Self {
-        // Nothing yet: a variable that has been declared.
+        // An empty texture is the zero value of a declared variable.
         if a.all.is_empty() {
             return b;
         }

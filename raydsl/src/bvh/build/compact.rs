@@ -1,13 +1,13 @@
-//! The last step of a build with cuts: an index list without gaps, and the boxes of the leaves as
-//! the application knows them.
+//! Final step of a build with spatial splits: closes the gaps in the index list and restores
+//! unscaled leaf boxes.
 
 use super::reference::Reference;
 use super::scaling::Scale;
 use crate::bvh::Node;
 use crate::geometry::Aabb;
 
-/// Makes leaves, which refer to `places`, refer to the index list that is returned; and makes each
-/// box the union of what is below it.
+/// Redirects leaves from `places` to the returned index list, and recomputes inner boxes as the
+/// union of their children.
 pub(super) fn compact(nodes: &mut [Node], places: &[Reference], scale: Scale) -> Vec<u32> {
     let is_leaf = |node: &&Node| node.is_leaf();
     let count = nodes.iter().filter(is_leaf).map(|leaf| leaf.count as usize).sum();
@@ -18,7 +18,7 @@ pub(super) fn compact(nodes: &mut [Node], places: &[Reference], scale: Scale) ->
             set_box(leaf, scale.back(leaf.bounds()));
         }
     }
-    // Children come after their parents. A cut may have left less of a box than there was.
+    // Children come after their parents. A cut may have left a smaller box.
     for k in (0..nodes.len()).rev() {
         if nodes[k].is_leaf() {
             continue;
@@ -30,7 +30,7 @@ pub(super) fn compact(nodes: &mut [Node], places: &[Reference], scale: Scale) ->
     indices
 }
 
-/// Leaves get their entries in the order of a walk, as deep as the tree.
+/// Assigns index ranges to leaves in depth-first order; recurses as deep as the tree.
 fn number(nodes: &mut [Node], node: usize, places: &[Reference], indices: &mut Vec<u32>) {
     let Node { first, count, .. } = nodes[node];
     let first = first as usize;

@@ -1,55 +1,54 @@
-//! The builder's settings.
+//! Builder settings.
 
 use super::error::BuildError;
 
 /// Primitives per block of a wide tree.
 pub(in crate::bvh) const BLOCK: usize = 8;
 
-/// What a place that is left empty in a block costs, where a primitive costs 1. With 1 blocks are
-/// fullest, and rays a tenth slower in halls of large triangles; with 0 trees are a tenth larger.
+/// Cost of an empty slot in a block, where a primitive costs 1. With 1, blocks are fullest, and
+/// rays a tenth slower in halls of large triangles; with 0, trees are a tenth larger.
 const EMPTY_COST: f32 = 0.25;
 
-/// The most bins an axis can have.
+/// Maximum number of bins per axis.
 pub(super) const MAX_BINS: usize = 32;
 
-/// How a tree is built: how long that may take against how fast rays then are.
+/// Build quality: trades build time against traversal speed.
 ///
 /// Hits are the same with each. All are deterministic: the same boxes make the same tree, whatever
 /// the number of threads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum BuildQuality {
-    /// Primitives are sorted along a curve through space, and split where the bits of their places
-    /// on it differ: Lauterbach et al., *Fast BVH construction on GPUs* (2009). For scenes that
-    /// change from frame to frame.
+    /// Sorts primitives along a Morton curve and splits where the bits of their codes differ:
+    /// Lauterbach et al., *Fast BVH construction on GPUs* (2009). For scenes that change from frame
+    /// to frame.
     ///
-    /// Of a million primitives, with two threads, it took less than half the time of
-    /// [`BuildQuality::Balanced`], of ten million 0.64 of it. The expected cost of a ray was 6 %
+    /// For a million primitives with two threads, it took less than half the time of
+    /// [`BuildQuality::Balanced`]; for ten million, 0.64 of it. The expected cost of a ray was 6 %
     /// higher for small spheres all over a cube, and 21 % for the triangles of a hilly surface. It
     /// is several times as high if one primitive encloses all others: only centroids count, and the
     /// large box goes deep into the tree.
     Fast,
-    /// Each node is split at the best of up to 32 planes an axis by the surface area heuristic:
+    /// Splits each node at the best of up to 32 planes per axis by the surface area heuristic:
     /// Wald, *On fast construction of SAH-based bounding volume hierarchies* (2007). The default.
     #[default]
     Balanced,
-    /// As [`BuildQuality::Balanced`], and primitives are cut where that is cheaper: Stich,
-    /// Friedrich and Dietrich, *Spatial splits in bounding volume hierarchies* (2009). For scenes
-    /// that are built once and traced often, with primitives that are long, slanted or of very
-    /// different sizes. A leaf then has a part of a primitive, and a primitive may be in several
-    /// leaves.
+    /// As [`BuildQuality::Balanced`], but cuts primitives where that is cheaper: Stich, Friedrich
+    /// and Dietrich, *Spatial splits in bounding volume hierarchies* (2009). For scenes that are
+    /// built once and traced often, with primitives that are long, slanted or of very different
+    /// sizes. A leaf then refers to part of a primitive, and a primitive may be in several leaves.
     ///
-    /// Of three architectural scenes of 66 to 331 thousand triangles, the expected cost of a ray
+    /// On three architectural scenes of 66 to 331 thousand triangles, the expected cost of a ray
     /// was 5, 7 and 17 % lower than with [`BuildQuality::Balanced`], with 5 to 18 % more entries in
     /// leaves. Building took 5 to 18 times as long.
     Best,
 }
 
 impl BuildQuality {
-    /// All of them, the quickest to build first.
+    /// All qualities, fastest to build first.
     pub const ALL: [Self; 3] = [Self::Fast, Self::Balanced, Self::Best];
 
-    /// Its name in tables: `fast`, `balanced`, `best`.
+    /// Returns the name in tables: `fast`, `balanced`, `best`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Fast => "fast",
@@ -59,16 +58,16 @@ impl BuildQuality {
     }
 }
 
-/// The traversal of a wide tree by the rays of one query.
+/// Traversal order of a wide tree for the rays of one query.
 ///
 /// A query has the rays of a packet, of a gang, or of
 /// [`RayQuery::closest_hits`](crate::bvh::RayQuery::closest_hits) and `any_hits`. Hits are the same
 /// with each traversal. It has no effect on single rays of the host, binary trees, lists with such
-/// a tree, instances, devices, and queries with a condition or of several hits.
+/// a tree, instances, devices, and queries with a condition or for several hits.
 ///
 /// [`Traversal::Auto`] was within 6 % of the best of the others for every kind of ray in three
 /// architectural scenes, except bounces in one of them (9 %); a wrong choice is slower by factors.
-/// Set another where you know more about the rays than the library does, and have measured it.
+/// Set another only if you know more about the rays than the library does, and have measured it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Traversal {
@@ -98,7 +97,7 @@ impl Traversal {
     /// All traversals.
     pub const ALL: [Self; 4] = [Self::Auto, Self::Streams, Self::Packets, Self::Sorted];
 
-    /// Its name in tables: `auto`, `streams`, `packets`, `sorted`.
+    /// Returns the name in tables: `auto`, `streams`, `packets`, `sorted`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",
@@ -110,7 +109,7 @@ impl Traversal {
 }
 
 impl From<BuildQuality> for BuildConfig {
-    /// The default settings with this quality.
+    /// Returns the default settings with this quality.
     fn from(quality: BuildQuality) -> Self {
         Self { quality, ..Self::default() }
     }
@@ -118,54 +117,52 @@ impl From<BuildQuality> for BuildConfig {
 
 /// Settings of the builder; the defaults suit triangles and spheres.
 ///
-/// Only the ratio of the two costs matters. It decides when a small node stays a leaf: the
-/// estimated cost of a leaf of `n` primitives is `intersection_cost * n`, that of splitting it
-/// `traversal_cost` plus the cost of the children weighted by their share of its surface. In a wide
-/// tree places that a block leaves empty cost a quarter of a primitive, and
-/// [`BuildQuality::Fast`] and [`BuildQuality::Balanced`] split no eight primitives or fewer.
+/// Only the ratio of the two costs matters. It decides when a small node stays a leaf: a leaf of
+/// `n` primitives costs `intersection_cost * n`, an inner node `traversal_cost` plus the costs of
+/// the children weighted by their share of its surface area. In a wide tree an empty slot of a
+/// block costs a quarter of a primitive, and [`BuildQuality::Fast`] and [`BuildQuality::Balanced`]
+/// never split eight primitives or fewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuildConfig {
-    /// How the tree is built; default [`BuildQuality::Balanced`].
+    /// Build quality; default [`BuildQuality::Balanced`].
     pub quality: BuildQuality,
-    /// The traversal of a wide tree, which [`Bvh::set_traversal`](crate::bvh::Bvh::set_traversal)
-    /// changes later; default [`Traversal::Auto`].
+    /// Traversal of a wide tree, changed later by
+    /// [`Bvh::set_traversal`](crate::bvh::Bvh::set_traversal); default [`Traversal::Auto`].
     pub traversal: Traversal,
-    /// The fewest primitives over which [`Bvh::build_wide`](crate::bvh::Bvh::build_wide) makes a
-    /// wide tree instead of a binary one. Default 64: in rooms of `12 k^2` triangles, incoherent
-    /// rays in packets of 16 find the closest hit 0.5 times as fast in a wide tree of 12 triangles
-    /// as in a binary one, 0.9 times of 48, 1.2 times of 108 and 3 times of 7,000. Camera rays gain
-    /// at none of these sizes.
+    /// Minimum number of primitives for which [`Bvh::build_wide`](crate::bvh::Bvh::build_wide)
+    /// makes a wide tree instead of a binary one. Default 64: in rooms of `12 k^2` triangles,
+    /// incoherent rays in packets of 16 find the closest hit 0.5 times as fast in a wide tree of 12
+    /// triangles as in a binary one, 0.9 times of 48, 1.2 times of 108 and 3 times of 7,000. Camera
+    /// rays gain at none of these sizes.
     pub min_wide_size: u32,
-    /// The most primitives a leaf may hold, `1..=256`; default 4. In a wide tree it is 8, whatever
-    /// stands here.
+    /// Maximum number of primitives per leaf, `1..=256`; default 4. In a wide tree it is always 8.
     ///
-    /// An upper limit only: the costs decide what becomes a leaf. Against 4, on three scenes of
-    /// 66 to 331 thousand triangles, the expected cost of a ray is 0 to 1 % lower with 8 or 16 and
-    /// the tree 1 to 6 % smaller, while 2 costs 1 to 2 % and 1 costs 10 to 13 % and twice the
-    /// nodes. Primitives that nothing tells apart fill leaves up to the limit, which is why it
-    /// should not be large.
+    /// An upper limit only: the costs decide whether a node becomes a leaf. Against 4, on three
+    /// scenes of 66 to 331 thousand triangles, the expected cost of a ray is 0 to 1 % lower with 8
+    /// or 16 and the tree 1 to 6 % smaller, while 2 costs 1 to 2 % and 1 costs 10 to 13 % and twice
+    /// the nodes. Primitives with coincident centroids fill leaves up to the limit, so it should
+    /// not be large.
     pub max_leaf_size: u32,
-    /// The bins along each axis of a large node, `2..=32`; default 32.
+    /// Number of bins along each axis of a large node, `2..=32`; default 32.
     ///
-    /// Small nodes use fewer, `4 + n / 20`, since they have few primitives to tell apart; that is
-    /// why 32 take no longer than 16. The expected cost of a ray was 1 to 9 % lower.
+    /// Small nodes use fewer, `4 + n / 20`, since they have few primitives to separate; thus 32
+    /// take no longer than 16. The expected cost of a ray was 1 to 9 % lower.
     /// [`BuildQuality::Fast`] has no bins.
     pub bins: u32,
-    /// Cost of visiting an inner node, `0.0..=1e6`; default 1.
+    /// Cost of traversing an inner node, `0.0..=1e6`; default 1.
     pub traversal_cost: f32,
-    /// Cost of testing one primitive, `1e-6..=1e6`; default 1.
+    /// Cost of intersecting one primitive, `1e-6..=1e6`; default 1.
     pub intersection_cost: f32,
-    /// By how much [`BuildQuality::Best`] may lengthen the index list, relative to the number of
+    /// Maximum growth of the index list by [`BuildQuality::Best`], relative to the number of
     /// primitives, `0.0..=4.0`; default 0.3: at most 30 % more entries than primitives. The other
     /// qualities have one entry for each.
     ///
-    /// Each subtree gets its share by the number of its primitives and cannot pass on what it does
-    /// not need. With 0 nothing is cut, and the tree is that of [`BuildQuality::Balanced`].
+    /// Each subtree gets its share by the number of its primitives and cannot pass on the unused
+    /// rest. With 0 nothing is cut, and the tree is that of [`BuildQuality::Balanced`].
     pub max_duplication: f32,
-    /// How large the overlap of two children must be before [`BuildQuality::Best`] looks for a
-    /// plane to cut at, as a share of the surface of the whole scene, `0.0..=1.0`; default 1e-5,
-    /// which is what the paper recommends. A larger one builds faster, and cuts near the root
-    /// alone.
+    /// Minimum overlap of two children for which [`BuildQuality::Best`] looks for a spatial split,
+    /// as a share of the surface area of the whole scene, `0.0..=1.0`; default 1e-5, as the paper
+    /// recommends. A larger one builds faster, and cuts near the root alone.
     pub min_overlap: f32,
 }
 
@@ -185,11 +182,11 @@ impl Default for BuildConfig {
     }
 }
 
-/// What the builder is asked for.
+/// Settings of one build.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::bvh) struct Settings {
     pub(in crate::bvh) config: BuildConfig,
-    /// Whether its leaves become the blocks of a wide tree.
+    /// Whether the leaves become blocks of a wide tree.
     pub(in crate::bvh) is_wide: bool,
 }
 
@@ -202,19 +199,18 @@ impl core::ops::Deref for Settings {
 }
 
 impl Settings {
-    /// The most primitives that a leaf may hold.
+    /// Returns the maximum number of primitives per leaf.
     pub(super) fn leaf_size(&self) -> usize {
         if self.is_wide { BLOCK } else { self.max_leaf_size as usize }
     }
 
-    /// Whether so few primitives are a leaf, whatever a split would cost.
+    /// Returns whether `count` primitives form a leaf regardless of the cost of a split.
     pub(super) fn is_block(&self, count: usize) -> bool {
         self.is_wide && count <= BLOCK
     }
 
-    /// Returns the cost of testing `count` primitives, in units of one primitive. A block that is
-    /// not full takes as long as a full one; but splits for the sake of full blocks make larger
-    /// boxes.
+    /// Returns the cost of testing `count` primitives, in units of one primitive. A partly filled
+    /// block takes as long as a full one; but splitting for full blocks makes larger boxes.
     pub(super) fn test_cost(&self, count: usize) -> f32 {
         if !self.is_wide {
             return count as f32;
@@ -225,7 +221,7 @@ impl Settings {
 }
 
 impl BuildConfig {
-    /// Checks every field against its range.
+    /// Validates every field against its range.
     pub(super) fn check(&self) -> Result<(), BuildError> {
         let require = |ok: bool, field, value: f64, range| {
             if ok { Ok(()) } else { Err(BuildError::InvalidConfig { field, value, range }) }

@@ -1,21 +1,21 @@
-//! Why a tree cannot be built.
+//! Build errors.
 
 use thiserror::Error;
 
-/// Why a tree cannot be built, and what to do about it.
+/// Error of a tree build.
 ///
-/// Of several bad primitives the one with the smallest index is reported.
+/// Of several invalid primitives, the one with the smallest index is reported.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum BuildError {
-    /// More primitives than [`MAX_PRIMITIVES`](super::MAX_PRIMITIVES).
+    /// There are more primitives than [`MAX_PRIMITIVES`](super::MAX_PRIMITIVES).
     #[error(
         "{count} primitives are too many for one tree: split them into trees of at most {limit}"
     )]
     TooManyPrimitives {
-        /// How many there are.
+        /// Number of primitives.
         count: usize,
-        /// How many there may be.
+        /// Maximum number of primitives.
         limit: usize,
     },
     /// A bound is not a number.
@@ -24,7 +24,7 @@ pub enum BuildError {
          triangle has such bounds if a vertex is not there)"
     )]
     NanBounds {
-        /// The primitive.
+        /// Index of the primitive.
         index: usize,
     },
     /// A bound is infinite.
@@ -32,7 +32,7 @@ pub enum BuildError {
         "the bounds of primitive {index} are infinite: clip the primitive to a finite box or remove it"
     )]
     InfiniteBounds {
-        /// The primitive.
+        /// Index of the primitive.
         index: usize,
     },
     /// A lower bound is above the upper one.
@@ -40,7 +40,7 @@ pub enum BuildError {
         "the bounds of primitive {index} are inverted (min > max): order the corners or remove the primitive"
     )]
     InvertedBounds {
-        /// The primitive.
+        /// Index of the primitive.
         index: usize,
     },
     /// A field of the configuration is out of range.
@@ -50,10 +50,10 @@ pub enum BuildError {
         field: &'static str,
         /// Its value.
         value: f64,
-        /// The values it may have.
+        /// Its valid range.
         range: &'static str,
     },
-    /// The observer said so.
+    /// The observer cancelled the build.
     #[error("the build was stopped by its observer")]
     Cancelled,
 }

@@ -1,25 +1,24 @@
-//! The hierarchy of the Morton order: [`BuildQuality::Fast`](super::BuildQuality::Fast).
+//! Linear BVH over the Morton order: [`BuildQuality::Fast`](super::BuildQuality::Fast).
 //!
 //! After Lauterbach, Garland, Sengupta, Luebke and Manocha, *Fast BVH construction on GPUs*
 //! (Computer Graphics Forum 28(2), 2009), section 3: primitives sorted by their [Morton
-//! codes](super::morton) are split where the highest bit changes that is not the same for all of
-//! them, which a binary search finds, as in section 4 of Karras, *Maximizing parallelism in the
-//! construction of BVHs, octrees, and k-d trees* (High Performance Graphics, 2012). Boxes are
-//! taken on the way back up, and so is the decision of the surface area heuristic whether few
-//! enough primitives are better off in one leaf.
+//! codes](super::morton) are split at the highest bit in which the codes differ. A binary search
+//! finds it, as in section 4 of Karras, *Maximizing parallelism in the construction of BVHs,
+//! octrees, and k-d trees* (High Performance Graphics, 2012). Bounds are computed bottom-up,
+//! together with the SAH decision whether few enough primitives are cheaper in one leaf.
 //!
-//! # What bits do not tell apart
+//! # Equal codes
 //!
-//! A primitive far away makes the cells so large that all others may fall into one. Primitives of
-//! one code are therefore coded again, within the cube around themselves. That happens once on a
-//! way from the root to a leaf, which gives 42 bits an axis and at most doubles the time. What has
-//! one code after that is halved by index.
+//! A distant primitive makes the cells so large that all others may fall into one. Primitives with
+//! equal codes are therefore coded again, within their own bounding cube. That happens once on a
+//! path from the root to a leaf, which gives 42 bits an axis and at most doubles the time. Ranges
+//! with equal codes after that are halved by index.
 //!
 //! # Depth
 //!
 //! 63 bits twice, and up to 30 halvings where the bits end, make up to 156 levels. The budget of
 //! [`depth`] forbids that: a split that would leave the larger side too many primitives for the
-//! levels that remain is a split in halves instead, in the order that the primitives have.
+//! remaining levels is replaced by a split in halves, in the current order.
 
 use super::config::Settings;
 use super::morton::{self, Key};
@@ -29,7 +28,7 @@ use super::watch::Watch;
 use super::{depth, tasks};
 use crate::bvh::Node;
 
-/// Builds the tree over all `references`; also returns their indices in the order of the leaves.
+/// Builds the tree over all `references`; also returns their indices in leaf order.
 pub(super) fn grow(
     references: &[Reference],
     span: &Span,
@@ -43,21 +42,21 @@ pub(super) fn grow(
     (part, keys.into_iter().map(Key::index).collect())
 }
 
-/// What becomes a subtree.
+/// Range of keys that becomes a subtree.
 struct Range<'a> {
-    /// In order.
+    /// The keys, sorted.
     keys: &'a mut [Key],
-    /// The position of the first of them among all.
+    /// Position of the first key in the whole list.
     first: u32,
-    /// How many levels there may be below.
+    /// Number of levels allowed below.
     budget: u32,
-    /// Whether their codes are those within a smaller cube.
+    /// Whether the codes are relative to a smaller cube.
     is_recoded: bool,
 }
 
 impl Range<'_> {
-    /// Gives primitives of one code codes within their own cube; returns whether it did, and so may
-    /// have moved them.
+    /// Recodes a range of equal codes within its own bounding cube; returns whether it did, since
+    /// keys may then have moved.
     fn tell_apart(&mut self, references: &[Reference], config: &Settings) -> bool {
         let is_needed = !self.is_recoded
             && self.keys.len() > config.leaf_size()
@@ -69,7 +68,7 @@ impl Range<'_> {
         is_needed
     }
 
-    /// The two children of a range of at least two.
+    /// Splits a range of at least two keys into the two children.
     fn split(self) -> [Self; 2] {
         let Self { keys, first, budget, is_recoded } = self;
         let count = keys.len();
@@ -107,23 +106,23 @@ fn grow_part(mut range: Range, references: &[Reference], config: &Settings, watc
     Part::Fork { bounds: left.bounds().union(right.bounds()), children: Box::new([left, right]) }
 }
 
-/// A subtree in the making.
+/// Subtree under construction.
 struct Subtree<'a> {
     references: &'a [Reference],
     config: &'a Settings,
-    /// The position of its first key among all.
+    /// Position of its first key in the whole list.
     first: u32,
-    /// The boxes of its primitives, in the order of the keys. They may be anywhere in memory: one
-    /// loop that gets them all waits for several at a time, the recursion for one after another.
+    /// Boxes of its primitives, in key order. They may be anywhere in memory: one loop over all of
+    /// them overlaps several cache misses, the recursion would wait for each.
     boxes: Vec<Bounds>,
     nodes: Vec<Node>,
 }
 
-/// The root of a subtree.
+/// Root of a finished subtree.
 struct Grown {
     node: Node,
     bounds: Bounds,
-    /// The expected cost of what is in it, as in `BuildConfig`, times its area.
+    /// Expected cost of the subtree as in `BuildConfig`, times its area.
     cost: f64,
 }
 
@@ -137,7 +136,7 @@ impl<'a> Subtree<'a> {
         subtree
     }
 
-    /// Gets the boxes of a range.
+    /// Loads the boxes of a range.
     fn gather(&mut self, range: &Range) {
         let boxes = &mut self.boxes[(range.first - self.first) as usize..];
         for (bounds, key) in boxes.iter_mut().zip(&*range.keys) {
@@ -145,9 +144,10 @@ impl<'a> Subtree<'a> {
         }
     }
 
-    /// Appends the nodes below the range's own, which is returned.
+    /// Appends the nodes below the root of a range; returns the root.
     fn grow(&mut self, mut range: Range) -> Grown {
         let (first, count) = (range.first, range.keys.len() as u32);
+        // Make a leaf of a single key.
         if count == 1 {
             let bounds = self.boxes[(first - self.first) as usize];
             let cost = self.leaf_cost(count, area(bounds));
@@ -157,9 +157,10 @@ impl<'a> Subtree<'a> {
             self.gather(&range);
         }
         let below = self.nodes.len();
-        // Room for the children: what is below them comes after both.
+        // Reserve the children: their descendants come after both.
         self.nodes.extend([Node::inner(Bounds::EMPTY.to_aabb(), 0); 2]);
         let [left, right] = range.split().map(|child| self.grow(child));
+        // Collapse the subtree into a leaf where that is cheaper.
         let bounds = left.bounds.union(right.bounds);
         let area = area(bounds);
         let split_cost = f64::from(self.config.traversal_cost) * area + left.cost + right.cost;
@@ -179,12 +180,13 @@ impl<'a> Subtree<'a> {
     }
 }
 
-/// Half the area of a box.
+/// Returns half the surface area of a box.
 fn area(bounds: Bounds) -> f64 {
     bounds.to_aabb().half_area_f64()
 }
 
-/// The first key that has the highest bit in which codes differ; `None` if they are all the same.
+/// Returns the position of the first key with the highest differing bit set; `None` if all codes
+/// are equal.
 fn first_of_upper_half(keys: &[Key]) -> Option<usize> {
     let [first, .., last] = keys else { return None };
     let bit = (first.code() ^ last.code()).checked_ilog2()?;

@@ -1,28 +1,28 @@
-//! Building the binary tree.
+//! Binary tree builder.
 //!
-//! [`build`] makes a [`Tree`] over any primitives that have boxes, in one of three ways
+//! [`build`] makes a [`Tree`] over any primitives with bounds, in one of three ways
 //! ([`BuildQuality`]): by the binned surface area heuristic of Ingo Wald, *On fast construction of
-//! SAH-based bounding volume hierarchies* (IEEE Symposium on Interactive Ray Tracing, 2007); by
-//! the same and cuts through primitives, Stich et al., *Spatial splits in bounding volume
-//! hierarchies* (High Performance Graphics, 2009); or from a sort by Morton codes as of Lauterbach
-//! et al., *Fast BVH construction on GPUs* (Computer Graphics Forum, 2009). One idea a file:
+//! SAH-based bounding volume hierarchies* (IEEE Symposium on Interactive Ray Tracing, 2007); by the
+//! same with spatial splits, Stich et al., *Spatial splits in bounding volume hierarchies* (High
+//! Performance Graphics, 2009); or from a sort by Morton codes, Lauterbach et al., *Fast BVH
+//! construction on GPUs* (Computer Graphics Forum, 2009). One idea per file:
 //!
-//! * `source`: what the builder asks of primitives;
+//! * `source`: the builder's interface to primitives;
 //! * `reference`: the 32-byte copy of a primitive's box that is moved about while building, and
-//!   the checks on the input;
-//! * `scaling`: what keeps `f32` areas from overflowing and denormals out of the inner loops;
-//! * `binned_sah`, `partition`, `subtree`: where the heuristic splits, splitting, the recursion;
-//! * `chop`, `spatial_bins`, `spatial`, `compact`: cutting a reference and why no hit is lost by
-//!   it, where to cut, the recursion, the list without gaps;
+//!   input validation;
+//! * `scaling`: keeps `f32` areas from overflowing and denormals out of the inner loops;
+//! * `binned_sah`, `partition`, `subtree`: split selection, partitioning, the recursion;
+//! * `chop`, `spatial_bins`, `spatial`, `compact`: clipping references and why no hit is lost by
+//!   it, selection of spatial splits, the recursion, the list without gaps;
 //! * `morton`, `linear`: the codes and the sort, the recursion;
-//! * `depth`: how deep a tree may be;
-//! * `part`: pieces of a tree, and how they are put together;
-//! * `refit`: boxes from primitives that have moved;
-//! * `tasks`: threads, or their absence;
-//! * `watch`: telling how far a build is, and stopping it.
+//! * `depth`: the depth limit;
+//! * `part`: subtrees built separately, and their assembly;
+//! * `refit`: node bounds from moved primitives;
+//! * `tasks`: parallel or sequential execution;
+//! * `watch`: progress and cancellation.
 //!
-//! The tree is a function of the boxes, the cuts and the configuration alone: the number of
-//! threads, and whether there are any, or an observer, does not change a bit of it.
+//! The tree is a function of the boxes, the cuts and the configuration alone: neither the number of
+//! threads nor an observer changes a bit of it.
 
 mod binned_sah;
 mod chop;
@@ -64,39 +64,39 @@ use chop::Chopper;
 use reference::Reference;
 use watch::Watch;
 
-/// The largest depth of a leaf; the root has depth 0.
+/// Maximum depth of a leaf; the root has depth 0.
 ///
-/// Holds for every input by construction (the proof is in `depth`), so a traversal that pushes
-/// at most one entry a level never has more than this many on its stack.
+/// Holds for every input by construction (the proof is in `depth`), so a traversal that pushes at
+/// most one entry a level never has more than this many on its stack.
 pub const MAX_DEPTH: usize = 62;
 
-/// The largest number of primitives a tree can hold.
+/// Maximum number of primitives in a tree.
 ///
 /// Indices are `u32`, up to `2 n - 1` nodes are addressed by `u32` as well, and one bit of an
 /// index is used while building (see `reference`).
 pub const MAX_PRIMITIVES: usize = 1 << 30;
 
-/// A binary tree over primitives `0 .. n`.
+/// Binary tree over primitives `0 .. n`.
 ///
-/// The root is node 0. The children of an inner node are adjacent, and the nodes below a node are
-/// contiguous: first its two children, then what is below the left one, then what is below the
+/// The root is node 0. The children of an inner node are adjacent, and the descendants of a node
+/// are contiguous: first its two children, then the descendants of the left one, then those of the
 /// right one. Leaves refer to consecutive ranges of `indices` in that order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tree {
-    /// The nodes, the root first; empty when there are no primitives.
+    /// Nodes, the root first; empty when there are no primitives.
     pub nodes: Vec<Node>,
-    /// The primitives in the order of the leaves: a permutation of `0 .. n`. With
-    /// [`BuildQuality::Best`] some may be there more than once, never twice in a leaf.
+    /// Primitive ids in leaf order: a permutation of `0 .. n`. With [`BuildQuality::Best`] an id
+    /// may occur more than once, but never twice in a leaf.
     pub indices: Vec<u32>,
 }
 
 /// Builds the tree over `count` primitives with the boxes `bounds(0)`, ..., `bounds(count - 1)`.
 ///
 /// Boxes may be flat, points, coincident and of any finite size; the box of every node is the exact
-/// union of those below it, except that `-0.0` becomes `0.0`. With [`BuildQuality::Best`] what is
-/// cut is the boxes, and those of the leaves are around parts. `bounds` must be a pure function; it
-/// is called once or twice for each primitive (with cuts more often), in any order and from several
-/// threads. No primitives make an empty tree.
+/// union of those below it, except that `-0.0` becomes `0.0`. [`BuildQuality::Best`] cuts the
+/// boxes, and those of the leaves are around parts. `bounds` must be a pure function; it is called
+/// once or twice for each primitive (with cuts more often), in any order and from several threads.
+/// An empty input makes an empty tree.
 ///
 /// Takes `O(n log n)` time. Memory, the result included: 36 bytes a primitive and 32 a node
 /// while building, then 4 a primitive and up to 64 a node while the nodes are put together. With
@@ -118,10 +118,10 @@ pub fn build(
     build_watched(&source::Boxes(bounds), count, &settings, None)
 }
 
-/// Told how much of a build is done, from 0 to 1; answers whether to go on.
+/// Progress callback: gets the finished share of a build, from 0 to 1; returns whether to go on.
 pub(super) type Observer<'a> = dyn FnMut(f64) -> ControlFlow<()> + Send + 'a;
 
-/// [`build`] of primitives that can be cut, with an observer.
+/// Runs [`build`] on primitives that can be cut, with an observer.
 pub(super) fn build_watched(
     source: &dyn Source,
     count: usize,
@@ -137,7 +137,7 @@ pub(super) fn build_watched(
         BuildQuality::Fast | BuildQuality::Balanced => 0,
     };
     let watch = match observer {
-        // Each box is read, and each place is left to a subtree.
+        // Each box is read once, and each place passes to a finished subtree once.
         Some(tell) => Watch::begin(tell, 2 * count + spare),
         None => Watch::nobody(),
     };
@@ -154,11 +154,13 @@ fn grow(
     config: &Settings,
     watch: &Watch,
 ) -> Result<Tree, BuildError> {
+    // Read and validate the boxes, and scale them if necessary.
     let (mut references, mut span) = reference::collect(source, count, spare, watch)?;
     if count == 0 {
         return Ok(Tree::default());
     }
     let scale = scaling::normalise(&mut references[..count], &mut span);
+    // Grow the tree by quality.
     if config.quality == BuildQuality::Best {
         let chopper = Chopper { source, scale };
         let part = spatial::grow(&mut references, count, span, chopper, (config, watch));
@@ -176,8 +178,8 @@ fn grow(
         }
     };
     watch.check()?;
-    // The nodes are copied into one array next; the references are not needed for that, and
-    // giving them back first keeps the copy from raising the peak.
+    // Freeing the references before the nodes are copied into one array keeps the copy from raising
+    // the peak.
     drop(references);
     let mut tree = Tree { nodes: part.assemble(), indices };
     if !scale.is_one() {

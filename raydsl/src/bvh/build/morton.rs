@@ -1,10 +1,10 @@
-//! Morton codes: primitives in the order of a curve that fills space.
+//! Morton codes: the order of primitives along a space-filling curve.
 //!
-//! The cube around all centroids is cut into `2^21` cells an axis. The code of a cell is its three
-//! numbers with their bits interleaved, `z` above `y` above `x`, so that the highest bit says in
-//! which half of the cube the cell lies, the next one in which half of that half, and so on. It is
-//! a cube even where the scene is flat: then the bits of the flat axis are alike, and the others
-//! still cut where the scene is longest.
+//! The cube around all centroids is cut into `2^21` cells an axis. The code of a cell interleaves
+//! the bits of its three coordinates, `z` above `y` above `x`: the highest bit selects a half of
+//! the cube, the next one a half of that half, and so on. It is a cube even where the scene is
+//! flat: then the bits of the flat axis are alike, and the others still split where the scene is
+//! longest.
 
 use glam::{Vec4, Vec4Swizzles};
 
@@ -12,19 +12,19 @@ use super::binned_sah::CLOSE;
 use super::reference::{Bounds, Reference};
 use super::tasks;
 
-/// Bits of a cell's number along one axis: three times as many fit in a `u64`.
+/// Bits of a cell's coordinate along one axis: three times as many fit in a `u64`.
 const BITS: u32 = 21;
-/// The largest number of a cell along one axis.
+/// Largest coordinate of a cell along one axis.
 const LAST: u32 = (1 << BITS) - 1;
-/// `2^23`: adding it rounds a small number to an integer, which is left in the low mantissa bits.
+/// `2^23`: adding it rounds a small number to an integer in the low mantissa bits.
 const ROUND: f32 = 8_388_608.0;
-/// Keys that are made in one piece of work.
+/// Keys per piece of parallel work.
 const PIECE: usize = 1 << 14;
 
-/// Where a primitive stands in the order: by its code, then by its index.
+/// Sort key of a primitive: its code, then its index.
 ///
-/// No two are equal, so any sort is a stable one and gives one result. The index is in the lowest
-/// 32 bits, and the code above it: one number is compared faster than two.
+/// No two are equal, so any sort is stable and gives one result. The index is in the lowest 32 bits
+/// with the code above it: one number compares faster than two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Key(u128);
 
@@ -33,20 +33,20 @@ impl Key {
         Self(u128::from(code) << 32 | u128::from(index))
     }
 
-    /// The code of its centroid's cell.
+    /// Returns the code of the centroid's cell.
     #[inline]
     pub(super) fn code(self) -> u64 {
         (self.0 >> 32) as u64
     }
 
-    /// The primitive.
+    /// Returns the primitive id.
     #[inline]
     pub(super) fn index(self) -> u32 {
         self.0 as u32
     }
 }
 
-/// The keys of all `references`, in order.
+/// Returns the keys of all `references`, sorted.
 pub(super) fn keys(references: &[Reference], centroids: &Bounds) -> Vec<Key> {
     let cube = Cube::around(centroids);
     let mut keys = tasks::map(references, PIECE, |reference| {
@@ -56,7 +56,7 @@ pub(super) fn keys(references: &[Reference], centroids: &Bounds) -> Vec<Key> {
     keys
 }
 
-/// Codes some of the primitives anew, within the cube around their own centroids, and sorts them.
+/// Recodes some of the primitives within the cube around their own centroids, and sorts them.
 pub(super) fn order_again(keys: &mut [Key], references: &[Reference]) {
     let centroid = |key: Key| references[key.index() as usize].centroid();
     let centroids = keys.iter().map(|&key| centroid(key)).fold(Bounds::EMPTY, Bounds::with);
@@ -69,7 +69,7 @@ pub(super) fn order_again(keys: &mut [Key], references: &[Reference]) {
     tasks::sort(keys);
 }
 
-/// The cells.
+/// Grid of cells over the cube around the centroids.
 #[derive(Clone, Copy, Debug)]
 struct Cube {
     origin: Vec4,
@@ -78,20 +78,20 @@ struct Cube {
 }
 
 impl Cube {
-    /// The cube over the lowest corner of `centroids`; `None` when all centroids coincide.
+    /// Creates the cube over the lowest corner of `centroids`; `None` when all centroids coincide.
     fn around(centroids: &Bounds) -> Option<Self> {
         let extent = (centroids.hi - centroids.lo).xyz().max_element();
         if extent < CLOSE {
             return None;
         }
-        // As for bins: an origin that is moved by less than half a cell prevents products that are
-        // denormal, which are slow.
+        // As for bins: moving the origin by less than half a cell prevents denormal products, which
+        // are slow.
         let origin = centroids.lo - Vec4::splat(extent * 2e-7);
         Some(Self { origin, scale: Vec4::splat(LAST as f32 / extent) })
     }
 
-    /// The code of the cell that holds a centroid; 0 without a cube, when nothing tells centroids
-    /// apart.
+    /// Returns the code of the cell that holds a centroid; 0 without a cube, when all centroids
+    /// coincide.
     #[inline]
     fn code(cube: Option<&Self>, centroid: Vec4) -> u64 {
         cube.map_or(0, |cube| cube.code_within(centroid))
@@ -105,14 +105,14 @@ impl Cube {
     }
 }
 
-/// The low [`BITS`] bits of three numbers in turn, beginning with the lowest of the first.
+/// Interleaves the low [`BITS`] bits of three numbers, beginning with the lowest of the first.
 #[inline]
 fn interleaved([x, y, z]: [u32; 3]) -> u64 {
     spread(x) | spread(y) << 1 | spread(z) << 2
 }
 
-/// The low [`BITS`] bits of a number, two zeros between any two: each step moves the upper half of
-/// every group that is left.
+/// Spreads the low [`BITS`] bits of a number, two zeros between any two: each step moves the upper
+/// half of every remaining group.
 #[inline]
 fn spread(n: u32) -> u64 {
     let mut n = u64::from(n & LAST);

@@ -1,9 +1,8 @@
-//! Parts of a tree that were built apart, and how they are put together.
+//! Subtrees built separately, and their assembly into one tree.
 //!
-//! Subtrees are built independently of each other into arrays of their own, in which indices of
-//! nodes are relative to the array's beginning, and put together when all are done. Below a
-//! certain size a subtree is one piece of work and one array; that size changes who does the work
-//! but not the result.
+//! Subtrees are built independently into arrays of their own, with node indices relative to the
+//! array, and assembled at the end. Below a certain size a subtree is one piece of work and one
+//! array; that size changes the distribution of work but not the result.
 
 use super::reference::Bounds;
 use crate::bvh::Node;
@@ -11,16 +10,16 @@ use crate::bvh::Node;
 /// Subtrees of at most this many references are one piece of work.
 pub(super) const PIECE: usize = 1 << 12;
 
-/// A part of the finished tree.
+/// Part of the finished tree.
 pub(super) enum Part {
-    /// A whole subtree: its root and the nodes below, relative to their own beginning.
+    /// A whole subtree: its root and the nodes below, with indices relative to the latter.
     Whole { root: Node, below: Vec<Node> },
     /// An inner node and its children.
     Fork { bounds: Bounds, children: Box<[Part; 2]> },
 }
 
 impl Part {
-    /// All nodes in one array, the root first.
+    /// Assembles all nodes in one array, the root first.
     pub(super) fn assemble(self) -> Vec<Node> {
         let mut nodes = Vec::with_capacity(1 + self.len_below());
         let blank = Node { min: glam::Vec3::ZERO, first: 0, max: glam::Vec3::ZERO, count: 0 };
@@ -29,7 +28,7 @@ impl Part {
         nodes
     }
 
-    /// The box of the part's root.
+    /// Returns the bounds of the part's root.
     pub(super) fn bounds(&self) -> Bounds {
         match self {
             Self::Whole { root, .. } => Bounds::from_aabb(root.bounds()),
@@ -37,7 +36,7 @@ impl Part {
         }
     }
 
-    /// How many nodes there are below the part's root.
+    /// Returns the number of nodes below the part's root.
     fn len_below(&self) -> usize {
         match self {
             Self::Whole { below, .. } => below.len(),
@@ -45,7 +44,7 @@ impl Part {
         }
     }
 
-    /// Writes the part's root to `nodes[slot]` and appends the rest; frees the part on the way.
+    /// Writes the part's root to `nodes[slot]` and appends the rest; frees the part meanwhile.
     fn place(self, slot: usize, nodes: &mut Vec<Node>) {
         let base = nodes.len() as u32;
         match self {
@@ -65,7 +64,7 @@ impl Part {
     }
 }
 
-/// The node with the indices of its children counted from `base`.
+/// Offsets the child index of a node by `base`.
 fn rebased(mut node: Node, base: u32) -> Node {
     if !node.is_leaf() {
         node.first += base;

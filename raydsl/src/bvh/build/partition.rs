@@ -1,4 +1,4 @@
-//! Splitting a range of references in two.
+//! Partitions of a range of references.
 
 use glam::Vec4;
 
@@ -6,16 +6,16 @@ use super::binned_sah::{Grid, Plane};
 use super::reference::{Bounds, Reference, Span};
 use super::watch::Watch;
 
-/// How often a long loop asks whether it is still wanted.
+/// Iterations between two checks for cancellation.
 const PIECE: usize = 1 << 16;
 
-/// Moves what is left of `plane` to the front; returns how much that is and the boxes around the
-/// centroids of both sides.
+/// Moves the references left of `plane` to the front; returns their number and the centroid bounds
+/// of both sides.
 ///
-/// There is no branch in the loop: sides are as good as random, and half of the branches would be
-/// mispredicted. Both stores of the exchange are always done, and the boxes of both sides are
-/// always updated: the one the centroid does not belong to with an infinitely distant point that
-/// changes nothing.
+/// The loop is branch-free: sides are as good as random, so a branch would be unpredictable and
+/// half of them mispredicted. Both stores of the exchange always happen, and the bounds of both
+/// sides are always updated: the other side's with an infinitely distant point that changes
+/// nothing.
 pub(super) fn by_plane(
     references: &mut [Reference],
     grid: &Grid,
@@ -36,10 +36,12 @@ pub(super) fn by_plane(
             let lanes = grid.position(centroid).cmplt(limit).bitmask();
             let is_left = (lanes >> plane.axis & 1) as usize;
 
+            // Swap the reference with the first of the right side, and keep it there if it is left.
             references[k] = references[end];
             references[end] = reference;
             end += is_left;
 
+            // Grow the centroid bounds of its side.
             let (from_left, from_right) = (DISTANCE[1 - is_left], DISTANCE[is_left]);
             left.lo = left.lo.min(centroid + from_left);
             left.hi = left.hi.max(centroid - from_left);
@@ -52,7 +54,7 @@ pub(super) fn by_plane(
 
 /// Moves the lower half along the longest axis of the centroids to the front.
 ///
-/// For the rare node whose depth forbids an unbalanced split; indices break ties.
+/// For the rare node whose budget forbids an unbalanced split; indices break ties.
 pub(super) fn by_median(references: &mut [Reference], centroids: &Bounds) -> (usize, [Span; 2]) {
     let axis = (centroids.hi - centroids.lo).truncate().max_position();
     let middle = references.len() / 2;
@@ -63,7 +65,7 @@ pub(super) fn by_median(references: &mut [Reference], centroids: &Bounds) -> (us
     (middle, spans(references, middle))
 }
 
-/// Halves the range as it is, for primitives that nothing tells apart.
+/// Halves the range in its current order, for coincident centroids.
 pub(super) fn by_order(references: &[Reference]) -> (usize, [Span; 2]) {
     let middle = references.len() / 2;
     (middle, spans(references, middle))

@@ -1,4 +1,4 @@
-//! The copy of a primitive's box that the builder moves about.
+//! The builder's copy of a primitive's box and id.
 
 use glam::{Vec3, Vec4};
 
@@ -11,10 +11,10 @@ use crate::geometry::Aabb;
 /// Set in every stored index, see [`Reference`]; the indices are below it.
 const TAG: u32 = 0x4000_0000;
 
-/// Boxes that are read in one piece of work.
+/// Boxes per piece of parallel work.
 const PIECE: usize = 1 << 14;
 
-/// A box in two vector registers; the fourth lanes mean nothing.
+/// Box in two vector registers; the fourth lanes are unused.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     /// Lower corner.
@@ -24,32 +24,32 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// The box that contains nothing.
+    /// Empty box.
     pub(super) const EMPTY: Self = Self { lo: Vec4::INFINITY, hi: Vec4::NEG_INFINITY };
 
-    /// The smallest box around both.
+    /// Returns the smallest box around both.
     #[inline]
     pub(super) fn union(self, other: Self) -> Self {
         Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
 
-    /// The common part; not valid when there is none.
+    /// Returns the intersection of two boxes; invalid when they are disjoint.
     pub(super) fn intersection(self, other: Self) -> Self {
         Self { lo: self.lo.max(other.lo), hi: self.hi.min(other.hi) }
     }
 
-    /// The smallest box around this one and a point.
+    /// Returns the smallest box around this one and a point.
     #[inline]
     pub(super) fn with(self, point: Vec4) -> Self {
         Self { lo: self.lo.min(point), hi: self.hi.max(point) }
     }
 
-    /// A box as the rest of the crate knows it.
+    /// Converts from the crate's box type.
     pub(super) fn from_aabb(bounds: Aabb) -> Self {
         Self { lo: bounds.min.extend(0.0), hi: bounds.max.extend(0.0) }
     }
 
-    /// The box as the rest of the crate knows it.
+    /// Converts to the crate's box type.
     pub(super) fn to_aabb(self) -> Aabb {
         Aabb::new(self.lo.truncate(), self.hi.truncate())
     }
@@ -57,40 +57,39 @@ impl Bounds {
 
 /// A primitive's box and index, 32 bytes.
 ///
-/// The index sits in the fourth lane of `lo`, where every vector instruction on the box drags it
-/// along as an `f32`. As a plain number it would be a denormal one, which costs processors a
-/// microcode assist in each addition and multiplication (a factor of 2.8 on a whole build). The
-/// bit [`TAG`] makes it an ordinary number, or for some indices a NaN or infinity, which are as
-/// fast.
+/// The index sits in the fourth lane of `lo`, where every vector instruction on the box carries it
+/// along as an `f32`. A plain index would be denormal, which costs processors a microcode assist in
+/// each addition and multiplication (a factor of 2.8 on a whole build). The bit [`TAG`] makes it a
+/// normal number, or for some indices a NaN or infinity, which are as fast.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reference {
     bounds: Bounds,
 }
 
 impl Reference {
-    /// A reference to primitive `index` in a box. The index is below
+    /// Creates a reference to primitive `index` with a box. The index is below
     /// [`MAX_PRIMITIVES`](super::MAX_PRIMITIVES).
     pub(super) fn new(bounds: Aabb, index: usize) -> Self {
         let tag = f32::from_bits(TAG | index as u32);
-        // Adding zero turns -0.0 into 0.0. The minimum of the two zeros depends on the order of
-        // the operands, and so on how the work was cut; with one zero only it does not.
+        // Adding zero turns -0.0 into 0.0. The minimum of the two zeros depends on the order of the
+        // operands, and so on the division of work; with one zero only it does not.
         let (lo, hi) = (bounds.min + Vec3::ZERO, bounds.max + Vec3::ZERO);
         Self { bounds: Bounds { lo: lo.extend(tag), hi: hi.extend(0.0) } }
     }
 
-    /// The primitive.
+    /// Returns the primitive id.
     pub(super) fn index(&self) -> u32 {
         self.bounds.lo.w.to_bits() & !TAG
     }
 
-    /// The primitive's box.
+    /// Returns the reference's box.
     #[inline]
     pub(super) fn bounds(&self) -> Bounds {
         self.bounds
     }
 
-    /// Twice the middle of the box: the builder only compares centroids, so the factor does not
-    /// matter, and the sum needs no multiplication.
+    /// Returns twice the center of the box: the builder only compares centroids, so the factor does
+    /// not matter, and the sum needs no multiplication.
     #[inline]
     pub(super) fn centroid(&self) -> Vec4 {
         self.bounds.lo + self.bounds.hi
@@ -106,20 +105,20 @@ impl Reference {
     }
 }
 
-/// The boxes around a range of references.
+/// Bounds of a range of references.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Span {
-    /// Around the primitives.
+    /// Bounds of the primitives.
     pub(super) bounds: Bounds,
-    /// Around their (doubled) centroids.
+    /// Bounds of their (doubled) centroids.
     pub(super) centroids: Bounds,
 }
 
 impl Span {
-    /// Around nothing.
+    /// Span of no references.
     pub(super) const EMPTY: Self = Self { bounds: Bounds::EMPTY, centroids: Bounds::EMPTY };
 
-    /// Around both.
+    /// Returns the span of both ranges.
     pub(super) fn union(self, other: Self) -> Self {
         Self {
             bounds: self.bounds.union(other.bounds),
@@ -127,7 +126,7 @@ impl Span {
         }
     }
 
-    /// Around all `references`.
+    /// Returns the span of all `references`.
     pub(super) fn of(references: &[Reference]) -> Self {
         references.iter().fold(Self::EMPTY, |span, reference| Self {
             bounds: span.bounds.union(reference.bounds()),
@@ -136,7 +135,7 @@ impl Span {
     }
 }
 
-/// Reads and checks all boxes, with room for `spare` more references behind them.
+/// Reads and validates all boxes, with room for `spare` more references behind them.
 pub(super) fn collect(
     source: &dyn Source,
     count: usize,
@@ -160,16 +159,16 @@ pub(super) fn collect(
     Ok((references, span))
 }
 
-/// The box itself when a tree can hold it.
+/// Returns the box itself if it is valid and finite.
 pub(super) fn checked(bounds: Aabb, index: usize) -> Result<Aabb, BuildError> {
-    // One test for nearly all boxes; the rest is sorted out below.
+    // One test for nearly all boxes; invalid ones are classified below.
     if bounds.is_valid() && bounds.is_finite() {
         return Ok(bounds);
     }
     if bounds.min.is_nan() || bounds.max.is_nan() {
         return Err(BuildError::NanBounds { index });
     }
-    // An empty box has infinite bounds too, but that it is inverted says more.
+    // An empty box has infinite bounds too, but the inversion says more.
     if !bounds.is_valid() {
         return Err(BuildError::InvertedBounds { index });
     }

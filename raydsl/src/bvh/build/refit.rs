@@ -1,4 +1,4 @@
-//! Boxes from primitives, for a tree that exists.
+//! Refitting of node bounds to moved primitives.
 
 use std::convert::Infallible;
 
@@ -7,10 +7,11 @@ use super::{reference, tasks};
 use crate::bvh::Node;
 use crate::geometry::Aabb;
 
-/// Nodes whose leaves are one piece of work.
+/// Nodes per piece of parallel work.
 const PIECE: usize = 1 << 14;
 
-/// Sets the boxes of all nodes over `count` primitives; of several bad ones the first is the error.
+/// Refits the bounds of all nodes over `count` primitives; of several invalid ones the first is the
+/// error.
 pub(in crate::bvh) fn refit(
     nodes: &mut [Node],
     indices: &[u32],
@@ -19,12 +20,12 @@ pub(in crate::bvh) fn refit(
 ) -> Result<(), BuildError> {
     let checked = |index| reference::checked(bounds(index), index);
     set_boxes(nodes, indices, &checked).map_err(|error| {
-        // Leaves have an order of their own. There is time now to look for the first.
+        // Leaves have an order of their own. On the error path there is time to look for the first.
         (0..count).find_map(|index| checked(index).err()).unwrap_or(error)
     })
 }
 
-/// [`refit`] for primitives that have been checked.
+/// Refits like [`refit`], for validated primitives.
 pub(super) fn refit_checked(
     nodes: &mut [Node],
     indices: &[u32],
@@ -33,8 +34,8 @@ pub(super) fn refit_checked(
     let Ok(()) = set_boxes(nodes, indices, &|index| Ok::<_, Infallible>(bounds(index)));
 }
 
-/// Leaves take nearly all of the time, for their primitives may be anywhere in memory, and each can
-/// be done for itself. What is left is one pass over the nodes.
+/// Sets the bounds of all nodes: leaves in parallel, then inner nodes in one pass. Leaves take
+/// nearly all of the time, as their primitives may be anywhere in memory.
 fn set_boxes<E: Send>(
     nodes: &mut [Node],
     indices: &[u32],
@@ -67,7 +68,7 @@ fn set_leaf<E>(
     for &index in &indices[leaf.first as usize..][..leaf.count as usize] {
         all = all.union(bounds(index as usize)?);
     }
-    // As for references: only one zero.
+    // As for references: only one kind of zero.
     (leaf.min, leaf.max) = (all.min + glam::Vec3::ZERO, all.max + glam::Vec3::ZERO);
     Ok(())
 }

@@ -1,21 +1,21 @@
-//! What a tree is built from.
+//! Builder input: primitives as boxes.
 
 use crate::geometry::{Aabb, Primitive};
 
-/// Primitives, as the builder sees them: boxes, and boxes of their parts.
+/// Primitives as seen by the builder: boxes, and boxes of their parts.
 ///
 /// Both functions must be pure. They are called in any order and from several threads. The builder
-/// takes a trait object, so that it is compiled once, not for every kind of primitive.
+/// takes a trait object so that it is compiled once, not per kind of primitive.
 pub(in crate::bvh) trait Source: Sync {
-    /// A box around the whole primitive.
+    /// Returns a box around the whole primitive.
     fn bounds(&self, index: usize) -> Aabb;
 
-    /// Boxes around the parts of the primitive below and above the plane `axis = at`, as of
-    /// [`Primitive::split_primitive`].
+    /// Returns boxes around the parts of the primitive below and above the plane `axis = at`, as
+    /// [`Primitive::split_primitive`] does.
     fn split(&self, index: usize, axis: usize, at: f32) -> (Aabb, Aabb);
 }
 
-/// Primitives of which only the boxes are known.
+/// Primitives known only by their boxes.
 pub(in crate::bvh) struct Boxes<F>(pub(in crate::bvh) F);
 
 impl<F: Fn(usize) -> Aabb + Sync> Source for Boxes<F> {
@@ -28,7 +28,7 @@ impl<F: Fn(usize) -> Aabb + Sync> Source for Boxes<F> {
     }
 }
 
-/// A slice of primitives, and what they share.
+/// Slice of primitives and their shared data.
 pub(in crate::bvh) struct Primitives<'a, P: Primitive> {
     pub(in crate::bvh) prims: &'a [P],
     pub(in crate::bvh) shared: &'a [P::Shared],

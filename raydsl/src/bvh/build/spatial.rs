@@ -1,26 +1,26 @@
-//! Splits of space: [`BuildQuality::Best`](super::BuildQuality::Best).
+//! Spatial splits (SBVH): [`BuildQuality::Best`](super::BuildQuality::Best).
 //!
 //! After Stich, Friedrich and Dietrich, *Spatial splits in bounding volume hierarchies* (High
-//! Performance Graphics, 2009). A node is split between primitives, as [`subtree`](super::subtree)
-//! does, or at a plane, which cuts those that lie on both sides: both children then have a
-//! *reference* to the primitive, with the box of its part. That is what long and slanted primitives
-//! need, whose boxes overlap however they are grouped.
+//! Performance Graphics, 2009). A node is split between primitives, as in
+//! [`subtree`](super::subtree), or at a plane that cuts the primitives on both sides: both children
+//! then have a *reference* to the primitive, with the box of its part. This helps long and slanted
+//! primitives, whose boxes overlap however they are grouped.
 //!
-//! A plane is only looked for where the children of the other split overlap by more than a share of
-//! the root's surface (section 4.5), and taken if it costs less. A reference that is cheaper left
-//! whole on one side is (section 4.4, *reference unsplitting*).
+//! Spatial splits are only tried where the children of the object split overlap by more than a
+//! share of the root's surface area (section 4.5), and taken if they cost less. A reference stays
+//! whole on one side where that is cheaper (section 4.4, *reference unsplitting*).
 //!
-//! # The room for references
+//! # Room for references
 //!
-//! The references of a node lie at the front of a slice, and what is left of it is the node's room
-//! for more. The root's slice has `max_duplication` times as many spare places as there are
-//! primitives. Children share the slice: what is spare goes to them in proportion to how many
-//! references they have. No node can thus use more than its own share, whoever builds the other one
-//! and when; the number of references never exceeds the sum; and nothing is allocated on the way.
-//! When all is done the gaps are closed (see `compact`).
+//! The references of a node lie at the front of a slice, and the rest of the slice is the node's
+//! room for more. The root's slice has `max_duplication` times as many spare places as there are
+//! primitives. Children share the slice: spare places are divided in proportion to their
+//! references. No node can thus use more than its own share, whoever builds the other one and when;
+//! the number of references never exceeds the sum; and nothing is allocated during the build.
+//! Finally the gaps are closed (see `compact`).
 //!
-//! No node has two references to one primitive: a plane gives one to each child, and nothing is
-//! ever moved from a subtree to another.
+//! No node has two references to one primitive: a plane gives one to each child, and references
+//! never move between subtrees.
 
 use super::binned_sah::{Bins, Grid};
 use super::chop::{Chopper, Parts};
@@ -33,17 +33,17 @@ use super::{depth, partition, tasks};
 use crate::bvh::Node;
 use crate::geometry::Aabb;
 
-/// `2^-103`: differences of numbers of this size are ordinary ones.
+/// `2^-103`: differences of numbers of this size are normal numbers.
 const FINEST: f32 = f32::MIN_POSITIVE / f32::EPSILON;
 
-/// How many spare places the references of `count` primitives have.
+/// Returns the number of spare places for the references of `count` primitives.
 pub(super) fn spare(count: usize, config: &Settings) -> usize {
     let wanted = count as f64 * f64::from(config.max_duplication);
-    // The sum of both is limited as the number of primitives is.
+    // The sum of both has the same limit as the number of primitives.
     (wanted as usize).min(super::MAX_PRIMITIVES - count)
 }
 
-/// Builds the tree over the first `count` of `places`. Leaves refer to places.
+/// Builds the tree over the first `count` of `places`; leaves refer to places.
 pub(super) fn grow<'a>(
     places: &mut [Reference],
     count: usize,
@@ -56,16 +56,16 @@ pub(super) fn grow<'a>(
     builder.grow_part(Range { places, count, first: 0, span, budget })
 }
 
-/// What becomes a subtree.
+/// Range of references that becomes a subtree.
 struct Range<'a> {
-    /// The references, and room for more.
+    /// References, and room for more.
     places: &'a mut [Reference],
-    /// How many references there are.
+    /// Number of references.
     count: usize,
-    /// The position of the first of them among all places.
+    /// Position of the first reference among all places.
     first: u32,
     span: Span,
-    /// How many levels there may be below.
+    /// Number of levels allowed below.
     budget: u32,
 }
 
@@ -78,7 +78,7 @@ impl<'a> Range<'a> {
         Node::leaf(self.span.bounds.to_aabb(), self.first, self.count as u32)
     }
 
-    /// The children: the first `left` references, and the `right` behind them.
+    /// Splits into children: the first `left` references, and the `right` behind them.
     fn split(self, left: usize, right: usize, [left_span, right_span]: [Span; 2]) -> [Self; 2] {
         let Self { places, first, budget, .. } = self;
         let spare = places.len() - left - right;
@@ -95,17 +95,17 @@ impl<'a> Range<'a> {
     }
 }
 
-/// What `left` gets of `spare`.
+/// Returns the part of `spare` that goes to `left`.
 fn share(spare: usize, left: usize, right: usize) -> usize {
     (spare as u64 * left as u64 / (left + right) as u64) as usize
 }
 
-/// What all nodes have in common.
+/// State common to all nodes.
 struct Builder<'a, 'w> {
     chopper: Chopper<'a>,
     config: &'a Settings,
     watch: &'a Watch<'w>,
-    /// The box around everything.
+    /// Bounds of the whole scene.
     root: Bounds,
 }
 
@@ -132,7 +132,7 @@ impl Builder<'_, '_> {
         }
     }
 
-    /// The two children of a node, or the leaf that it is.
+    /// Splits a node into its two children; the error is a leaf, if it becomes one.
     fn split<'a>(&self, mut range: Range<'a>, bins: &mut Bins) -> Result<[Range<'a>; 2], Node> {
         let (count, span, budget) = (range.count, range.span, range.budget);
         if count == 1 {
@@ -142,6 +142,7 @@ impl Builder<'_, '_> {
         let Some(grid) = Grid::new(&span, count, self.config) else {
             return if may_be_leaf { Err(range.leaf()) } else { Ok(halves(range)) };
         };
+        // Find the cheapest object split, then a cheaper spatial one.
         bins.fill(range.references(), &grid);
         let Some(plane) = bins.best_plane(&grid) else { return Ok(halves(range)) };
         let sides = bins.sides(&plane, &grid);
@@ -151,10 +152,12 @@ impl Builder<'_, '_> {
         if may_be_leaf && !grid.pays(cost, &span, count) {
             return Err(range.leaf());
         }
+        // Cut the references, unless that would leave a side empty.
         if let Some((left, right)) = cut.and_then(|cut| self.cut(&mut range, &cut, &grid)) {
             let spans = [0..left, left..left + right].map(|side| Span::of(&range.places[side]));
             return Ok(range.split(left, right, spans));
         }
+        // Partition them at the plane, or by median where it would exceed the depth limit.
         let [(left, left_count), (right, right_count)] = sides;
         if !depth::allows(budget, left_count as usize, right_count as usize) {
             let (middle, spans) = partition::by_median(range.references(), &span.centroids);
@@ -163,7 +166,7 @@ impl Builder<'_, '_> {
         let (middle, centroids) =
             partition::by_plane(range.references(), &grid, &plane, self.watch);
         if middle != left_count as usize {
-            // Stopped in the middle: all of it is thrown away.
+            // Cancelled half way: the tree is thrown away.
             return Err(range.leaf());
         }
         let [left, right] = [(left, centroids[0]), (right, centroids[1])]
@@ -171,7 +174,7 @@ impl Builder<'_, '_> {
         Ok(range.split(middle, count - middle, [left, right]))
     }
 
-    /// The best plane to cut at, where the children of the other split overlap by `overlap`.
+    /// Returns the best spatial split of a node whose object split overlaps by `overlap`.
     fn best_cut(&self, range: &mut Range, overlap: Bounds, grid: &Grid) -> Option<Cut> {
         let is_worth_it = || {
             let overlap = overlap.to_aabb();
@@ -179,7 +182,7 @@ impl Builder<'_, '_> {
             overlap.is_valid() && overlap.half_area_f64() > least && self.is_fine()
         };
         let limits = Limits { room: range.places.len(), budget: range.budget };
-        // Every cut needs a place more.
+        // Every cut needs a spare place.
         if limits.room == range.count || !is_worth_it() {
             return None;
         }
@@ -190,15 +193,15 @@ impl Builder<'_, '_> {
         slabs.best_cut(grid)
     }
 
-    /// Whether primitives can be cut finely: next to the smallest numbers a cut has few bits, and
-    /// computing it takes many times as long.
+    /// Returns whether primitives can be cut finely: next to the smallest numbers a cut has few
+    /// bits, and computing it takes many times as long.
     fn is_fine(&self) -> bool {
         let Aabb { min, max } = self.root.to_aabb();
         self.chopper.scale.outside((max - min).max_element()) >= FINEST
     }
 
-    /// Cuts the references; returns how many are then on the left, at the front, and on the right,
-    /// behind them. `None`, and nothing has changed, if there would be none on a side.
+    /// Cuts the references; returns the numbers on the left, at the front, and on the right, behind
+    /// them. `None`, with nothing changed, if a side would be empty.
     fn cut(&self, range: &mut Range, cut: &Cut, grid: &Grid) -> Option<(usize, usize)> {
         let fates = self.fates(range.references(), cut, grid)?;
         let mut fates = fates.into_iter();
@@ -226,8 +229,7 @@ impl Builder<'_, '_> {
         Some((end, all - end))
     }
 
-    /// What becomes of the references on both sides, in their order; `None` if a side would be left
-    /// with nothing.
+    /// Returns the fates of the straddling references in order; `None` if a side would be empty.
     fn fates(&self, references: &[Reference], cut: &Cut, grid: &Grid) -> Option<Vec<Parts>> {
         let mut sides = cut.sides;
         let mut fates = Vec::new();
@@ -253,7 +255,7 @@ impl Builder<'_, '_> {
     }
 }
 
-/// Whether a reference on both sides is better left whole on one of them.
+/// Decides whether a straddling reference is cheaper whole on one side.
 fn unsplit(
     reference: &Reference,
     [left, right]: [Reference; 2],
@@ -277,7 +279,7 @@ fn unsplit(
     }
 }
 
-/// On which side of a plane a box is; flat ones in the plane are on the right.
+/// Side of a split plane; flat boxes in the plane are on the right.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Side {
     Left,
@@ -297,14 +299,14 @@ fn side(reference: &Reference, cut: &Cut) -> Side {
     }
 }
 
-/// Halves a range as it is, for references that nothing tells apart.
+/// Halves a range in its current order, for coincident centroids.
 fn halves(mut range: Range) -> [Range; 2] {
     let (middle, spans) = partition::by_order(range.references());
     let rest = range.count - middle;
     range.split(middle, rest, spans)
 }
 
-/// A subtree in the making.
+/// Subtree under construction.
 struct Subtree<'a, 'w> {
     builder: &'a Builder<'a, 'w>,
     bins: Bins,
@@ -312,13 +314,13 @@ struct Subtree<'a, 'w> {
 }
 
 impl Subtree<'_, '_> {
-    /// Appends the nodes below the range's own, which is returned.
+    /// Appends the nodes below the root of a range; returns the root.
     fn grow(&mut self, range: Range) -> Node {
         let bounds = range.span.bounds.to_aabb();
         match self.builder.split(range, &mut self.bins) {
             Ok(children) => {
                 let first = self.nodes.len();
-                // Room for the children: what is below them comes after both.
+                // Reserve the children: their descendants come after both.
                 self.nodes.extend([Node::inner(bounds, 0); 2]);
                 for (k, child) in children.into_iter().enumerate() {
                     self.nodes[first + k] = self.grow(child);

@@ -1,14 +1,14 @@
-//! Where to cut space: the binned surface area heuristic for spatial splits.
+//! Selection of spatial splits: binned SAH over slabs.
 //!
 //! After Stich, Friedrich and Dietrich 2009, section 4.3: the box of a node is cut into slabs of
 //! equal width along each axis, references are cut at the planes between the slabs, and each slab
 //! grows around the parts in it. A reference counts on the left of a plane if it enters in a slab
 //! on the left, and on the right if it leaves on the right.
 //!
-//! Cutting is what takes time, and a plane that cuts more references than there is room for cannot
-//! be taken. So references are counted first, which needs no cut, and then cut only at planes that
-//! can be taken. Large references that all overlap, which would be cut at every plane of every
-//! level, are hardly cut at all.
+//! Cutting dominates the time, and a plane that cuts more references than there is room for is
+//! infeasible. So references are first counted, without a cut, and then cut only at feasible
+//! planes. Large references that all overlap, which would be cut at every plane of every level, are
+//! hardly cut at all.
 
 use super::binned_sah::Grid;
 use super::chop::{Chopper, Parts};
@@ -16,14 +16,14 @@ use super::reference::{Bounds, Reference};
 use super::scaling::Scale;
 use super::{depth, tasks};
 
-/// The most slabs along an axis.
+/// Maximum number of slabs along an axis.
 const MAX_SLABS: usize = 16;
-/// Nodes at least this large are binned in pieces.
+/// Nodes of at least this many references are binned in pieces.
 const LARGE: usize = 1 << 14;
-/// The size of such a piece.
+/// References per piece.
 const PIECE: usize = 1 << 12;
 
-/// The planes along one axis.
+/// Planes along one axis.
 #[derive(Clone, Copy, Debug)]
 struct Planes {
     /// Plane `k` is between the slabs `k - 1` and `k`; the first is not used.
@@ -39,7 +39,7 @@ impl Planes {
         let (lo, hi) = (bounds.lo[axis], bounds.hi[axis]);
         let at = |k: usize| scale.plane(lo + (hi - lo) * (k as f32 / len as f32));
         let at: [f32; MAX_SLABS] = core::array::from_fn(at);
-        // Nothing is cut where the planes round to each other or to the faces.
+        // Do not cut an axis where planes round to each other or to the faces.
         let inner = &at[1..len];
         let is_apart = inner.is_sorted_by(|a, b| a < b) && lo < inner[0] && inner[len - 2] < hi;
         let per_length = len as f32 / (hi - lo);
@@ -47,14 +47,14 @@ impl Planes {
         Self { at, scale: if is_cut { per_length } else { 0.0 }, lo, len }
     }
 
-    /// The slabs in which the box begins and ends: it is on both sides of the planes from behind
-    /// the first to the second.
+    /// Returns the slabs in which the box begins and ends: it straddles the planes after the first
+    /// up to the second.
     #[inline]
     fn slabs(&self, bounds: &Bounds, axis: usize) -> (usize, usize) {
         let guess = |x: f32| (((x - self.lo) * self.scale) as usize).min(self.len - 1);
         let (lo, hi) = (bounds.lo[axis], bounds.hi[axis]);
         let (mut first, mut last) = (guess(lo), guess(hi));
-        // Rounding may be off by a slab, and the planes have the last word.
+        // Rounding may be off by a slab; the planes decide.
         while first > 0 && self.at[first] > lo {
             first -= 1;
         }
@@ -67,46 +67,46 @@ impl Planes {
         while last + 1 < self.len && self.at[last + 1] < hi {
             last += 1;
         }
-        // A flat box in a plane is above it.
+        // A flat box in a plane counts as above it.
         (first, last.max(first))
     }
 }
 
-/// How many references there may be on the two sides.
+/// Limits on the references of the two sides.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
-    /// In all, as there is room for.
+    /// Total number of places.
     pub(super) room: usize,
-    /// The node's budget of levels.
+    /// Budget of levels of the node.
     pub(super) budget: u32,
 }
 
-/// A plane to cut at.
+/// Candidate spatial split.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cut {
-    /// The axis it is perpendicular to.
+    /// Axis perpendicular to the plane.
     pub(super) axis: usize,
-    /// Where.
+    /// Position along the axis.
     pub(super) at: f32,
-    /// The references on both sides, weighted by the measure of the side.
+    /// Cost: the references of both sides, weighted by the measure of the side.
     pub(super) cost: f32,
-    /// The boxes of both sides, and how many references they have.
+    /// Bounds and reference count of both sides.
     pub(super) sides: [(Bounds, usize); 2],
 }
 
-/// How many references begin and end in each slab.
+/// Number of references that begin and end in each slab.
 type Counts = [[(u32, u32); MAX_SLABS]; 3];
 
-/// The slabs of one node.
+/// Slabs of one node.
 pub(super) struct Slabs {
     planes: [Planes; 3],
-    /// How many references there are below and above each plane that can be taken.
+    /// Number of references below and above each feasible plane.
     counts: [[Option<[usize; 2]>; MAX_SLABS]; 3],
     bounds: [[Bounds; MAX_SLABS]; 3],
 }
 
 impl Slabs {
-    /// The slabs of a node, with the references counted; `None` if no plane can be taken.
+    /// Creates the slabs of a node and counts the references; `None` if no plane is feasible.
     pub(super) fn new(
         references: &[Reference],
         bounds: &Bounds,
@@ -135,19 +135,19 @@ impl Slabs {
         is_any.then_some(Self { planes, counts, bounds: [[Bounds::EMPTY; MAX_SLABS]; 3] })
     }
 
-    /// Whether any plane perpendicular to this axis can be taken.
+    /// Returns whether any plane perpendicular to this axis is feasible.
     fn has_planes(&self, axis: usize) -> bool {
         self.counts[axis].iter().any(Option::is_some)
     }
 
-    /// Cuts all references.
+    /// Cuts all references at the feasible planes.
     pub(super) fn fill(&mut self, references: &[Reference], chopper: &Chopper) {
         if references.len() < LARGE {
             self.bounds = self.filled(references, chopper);
             return;
         }
         let pieces = tasks::map_pieces(references, PIECE, |_, piece| self.filled(piece, chopper));
-        // Minima and maxima: the order of the pieces does not matter.
+        // Minima and maxima do not depend on the order of the pieces.
         for piece in &pieces {
             for (all, of_piece) in self.bounds.iter_mut().flatten().zip(piece.iter().flatten()) {
                 *all = all.union(*of_piece);
@@ -165,7 +165,7 @@ impl Slabs {
         bounds
     }
 
-    /// Adds a reference to the slabs of an axis: what is below a plane to the slab before it.
+    /// Adds a reference to the slabs of an axis: its part below a plane goes to the slab before it.
     #[inline]
     fn add(
         &self,
@@ -182,7 +182,7 @@ impl Slabs {
             }
             let at = self.planes[axis].at[k];
             if !rest.straddles(axis, at) {
-                // What is left begins or ends within the slab.
+                // The rest begins or ends within the slab.
                 if rest.bounds().hi[axis] <= at {
                     bounds[k - 1] = bounds[k - 1].union(rest.bounds());
                     return;
@@ -204,7 +204,7 @@ impl Slabs {
         bounds[last] = bounds[last].union(rest.bounds());
     }
 
-    /// The cheapest plane.
+    /// Returns the cheapest feasible plane.
     pub(super) fn best_cut(&self, grid: &Grid) -> Option<Cut> {
         let mut best: Option<Cut> = None;
         for axis in (0..3).filter(|&axis| self.has_planes(axis)) {
@@ -214,13 +214,13 @@ impl Slabs {
                 below = below.union(self.bounds[axis][k - 1]);
                 let Some(counts) = self.counts[axis][k] else { continue };
                 let sides = [(below, counts[0]), (above, counts[1])];
-                // A primitive that has no points where its box is may leave nothing on a side.
+                // The parts of a primitive without points in its box may leave a side empty.
                 if sides.iter().any(|(bounds, _)| !bounds.to_aabb().is_valid()) {
                     continue;
                 }
                 let cost = sides.map(|(bounds, count)| grid.cost(bounds, count));
                 let cost = cost[0] + cost[1];
-                // In doubt the first axis and the lowest plane, always.
+                // Ties go to the first axis and the lowest plane.
                 if best.is_none_or(|best| cost < best.cost) {
                     best = Some(Cut { axis, at: self.planes[axis].at[k], cost, sides });
                 }
@@ -229,7 +229,7 @@ impl Slabs {
         best
     }
 
-    /// For each plane of an axis the box around what is above it.
+    /// Returns the bounds above each plane of an axis.
     fn bounds_above(&self, axis: usize) -> [Bounds; MAX_SLABS] {
         let mut above = self.bounds[axis];
         for k in (0..MAX_SLABS - 1).rev() {

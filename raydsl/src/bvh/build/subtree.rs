@@ -1,4 +1,4 @@
-//! The recursion of the surface area heuristic: from a range of references to nodes.
+//! Recursive binned-SAH build: from a range of references to nodes.
 
 use super::binned_sah::{Bins, Grid};
 use super::config::Settings;
@@ -8,7 +8,7 @@ use super::watch::Watch;
 use super::{depth, partition, tasks};
 use crate::bvh::Node;
 
-/// Builds the tree over all `references`, which are put in the order of the leaves.
+/// Builds the tree over all `references`, and puts them in leaf order.
 pub(super) fn grow(
     references: &mut [Reference],
     span: Span,
@@ -19,13 +19,13 @@ pub(super) fn grow(
     grow_part(Range { references, first: 0, span, budget }, config, watch)
 }
 
-/// What becomes a subtree.
+/// Range of references that becomes a subtree.
 struct Range<'a> {
     references: &'a mut [Reference],
-    /// The position of the first of them among all.
+    /// Position of the first reference in the whole list.
     first: u32,
     span: Span,
-    /// How many levels there may be below.
+    /// Number of levels allowed below.
     budget: u32,
 }
 
@@ -54,7 +54,7 @@ fn grow_part(range: Range, config: &Settings, watch: &Watch) -> Part {
     }
 }
 
-/// A subtree in the making.
+/// Subtree under construction.
 struct Subtree<'a, 'w> {
     config: &'a Settings,
     watch: &'a Watch<'w>,
@@ -63,13 +63,13 @@ struct Subtree<'a, 'w> {
 }
 
 impl Subtree<'_, '_> {
-    /// Appends the nodes below the range's own, which is returned.
+    /// Appends the nodes below the root of a range; returns the root.
     fn grow(&mut self, range: Range) -> Node {
         let bounds = range.span.bounds.to_aabb();
         match split(range, &mut self.bins, self.config, self.watch) {
             Ok(children) => {
                 let first = self.nodes.len();
-                // Room for the children: what is below them comes after both.
+                // Reserve the children: their descendants come after both.
                 self.nodes.extend([Node::inner(bounds, 0); 2]);
                 for (k, child) in children.into_iter().enumerate() {
                     self.nodes[first + k] = self.grow(child);
@@ -81,7 +81,7 @@ impl Subtree<'_, '_> {
     }
 }
 
-/// The two children of a node, or the leaf that it is.
+/// Splits a node into its two children; the error is a leaf, if it becomes one.
 fn split<'a>(
     range: Range<'a>,
     bins: &mut Bins,
@@ -101,8 +101,8 @@ fn split<'a>(
     ])
 }
 
-/// Orders the references in two parts; returns the length of the first and the boxes of both,
-/// or `None` when they are to be a leaf.
+/// Partitions the references in two; returns the length of the first part and the spans of both, or
+/// `None` for a leaf.
 fn divide(
     references: &mut [Reference],
     span: &Span,
@@ -132,7 +132,7 @@ fn divide(
     let (middle, [left_centroids, right_centroids]) =
         partition::by_plane(references, &grid, &plane, watch);
     if middle != left_count as usize {
-        // Stopped in the middle: all of it is thrown away.
+        // Cancelled half way: the tree is thrown away.
         return None;
     }
     let left = Span { bounds: left, centroids: left_centroids };

@@ -1,7 +1,7 @@
-//! Work in parallel where the `parallel` feature gives threads, one after the other where not.
+//! Parallel execution with the `parallel` feature, sequential without.
 //!
-//! What is cut into pieces here is cut by size alone, never by the number of threads, and results
-//! come back in the order of the pieces: the tree does not depend on who did which piece.
+//! Work is cut into pieces by size alone, never by the number of threads, and results come back in
+//! the order of the pieces: the tree does not depend on who did which piece.
 
 /// Runs both, possibly at the same time.
 #[cfg(feature = "parallel")]
@@ -37,7 +37,7 @@ pub(super) fn map_pieces<T: Sync, R: Send>(
     items.chunks(size).enumerate().map(|(k, piece)| f(k * size, piece)).collect()
 }
 
-/// [`map_pieces`] for pieces that are written.
+/// Maps pieces as [`map_pieces`] does, with mutable access.
 pub(in crate::bvh) fn map_pieces_mut<T: Send, R: Send>(
     items: &mut [T],
     size: usize,
@@ -70,7 +70,7 @@ pub(in crate::bvh) fn map<T: Sync, R: Send>(
     }
 }
 
-/// Sorts; equal items are the same, so that their order is of no account.
+/// Sorts without stability: equal items are identical.
 pub(super) fn sort<T: Ord + Send>(items: &mut [T]) {
     #[cfg(feature = "parallel")]
     rayon::slice::ParallelSliceMut::par_sort_unstable(items);

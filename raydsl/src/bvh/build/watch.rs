@@ -1,10 +1,10 @@
-//! Telling an observer how far a build is, and stopping when it says so.
+//! Progress and cancellation of a build.
 //!
-//! Work is counted in units that add up to a known sum whatever is found on the way: boxes read,
-//! and places for references whose subtree is done. Units are counted in an atomic number, a few
-//! thousand at a time, and the observer is called by whoever counts past the next step.
+//! Work is counted in units with a total known beforehand: boxes read, and places for references
+//! whose subtree is done. An atomic counter advances by a few thousand units at a time, and the
+//! thread that counts past the next step calls the observer.
 //!
-//! A stop is a flag that long loops look at. They leave early with whatever they have, which is
+//! A stop is a flag that long loops poll. They leave early with an incomplete result, which is
 //! thrown away: no code but [`Watch::finish`] has to know that a build can fail half way.
 
 use core::ops::ControlFlow;
@@ -16,29 +16,29 @@ use super::error::BuildError;
 /// The observer is called at most once for each of these steps, and at the beginning and the end.
 const STEPS: usize = 200;
 
-/// Who is told, and how far the build is.
+/// Progress of a build, and its observer.
 pub(super) struct Watch<'a> {
     observer: Option<Mutex<Observer<'a>>>,
-    /// Units of the whole build.
+    /// Total units of the build.
     total: usize,
     done: AtomicUsize,
     is_stopped: AtomicBool,
 }
 
-/// The observer, and the last step it was told.
+/// The observer, and the last step reported to it.
 struct Observer<'a> {
     tell: &'a mut (dyn FnMut(f64) -> ControlFlow<()> + Send),
     step: usize,
 }
 
 impl<'a> Watch<'a> {
-    /// No one is told.
+    /// Creates a watch without an observer.
     pub(super) const fn nobody() -> Self {
         let (done, is_stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
         Self { observer: None, total: 0, done, is_stopped }
     }
 
-    /// Tells `tell` that a build of `total` units begins.
+    /// Reports the start of a build of `total` units to `tell`.
     pub(super) fn begin(
         tell: &'a mut (dyn FnMut(f64) -> ControlFlow<()> + Send),
         total: usize,
@@ -48,7 +48,7 @@ impl<'a> Watch<'a> {
         Self { observer, total: total.max(1), done: AtomicUsize::new(0), is_stopped }
     }
 
-    /// Counts `units` that are done.
+    /// Counts `units` as done, and reports the next step if it is reached.
     pub(super) fn advance(&self, units: usize) {
         let Some(observer) = &self.observer else { return };
         let before = self.done.fetch_add(units, Ordering::Relaxed);
@@ -56,10 +56,10 @@ impl<'a> Watch<'a> {
         if step(before + units) == step(before) {
             return;
         }
-        // Whoever finds the observer busy goes on with its work: another step will follow.
+        // If another thread holds the observer, skip the report: another step will follow.
         let Ok(mut observer) = observer.try_lock() else { return };
         let step = step(self.done.load(Ordering::Relaxed));
-        // The last step is told by `finish`, and nothing after a stop.
+        // `finish` reports the last step; nothing is reported after a stop.
         if step > observer.step && step < STEPS && !self.is_stopped() {
             observer.step = step;
             if (observer.tell)(step as f64 / STEPS as f64).is_break() {
@@ -68,18 +68,18 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Whether what is being built will be thrown away.
+    /// Returns whether the build was cancelled and its result will be thrown away.
     #[inline]
     pub(super) fn is_stopped(&self) -> bool {
         self.is_stopped.load(Ordering::Relaxed)
     }
 
-    /// Whether the build was stopped: an error then.
+    /// Returns an error if the build was cancelled.
     pub(super) fn check(&self) -> Result<(), BuildError> {
         if self.is_stopped() { Err(BuildError::Cancelled) } else { Ok(()) }
     }
 
-    /// Tells that all is done, which may still be answered with a stop.
+    /// Reports the end of the build, which may still be answered with a stop.
     pub(super) fn finish(self) -> Result<(), BuildError> {
         self.check()?;
         let Some(observer) = self.observer else { return Ok(()) };

@@ -1,7 +1,7 @@
-//! The instances of a scene as a device has them: its trees and groups in one array each.
+//! Device buffers of a scene of instances: its trees and groups in one array each.
 //!
-//! The nodes of the groups stand behind those of the trees. Where a group's leaf would name a
-//! primitive, it names a place in a table instead, and says so in the highest bit.
+//! The nodes of the groups follow those of the trees. Leaves of a group hold indices into a table
+//! of places instead of primitive ids, and mark them with the highest bit.
 
 use std::borrow::Cow;
 
@@ -13,30 +13,30 @@ use crate::bvh::contract::Padding;
 use crate::bvh::{Node, list};
 use crate::machine::{Field, Schema, Type};
 
-/// What tells the number of a place from that of a primitive.
+/// Bit that distinguishes the index of a place from a primitive id.
 pub(crate) const IS_INSTANCE: u32 = 1 << 31;
 
-/// The root of a tree that has none.
+/// Root index of an empty tree.
 const NO_ROOT: u32 = u32::MAX;
 
-/// Where an object is. The first place is the scene's own.
+/// Placed object: its transform, tree and padding. The first place is the scene's own.
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct Place {
     to_object: [f32; 12],
-    /// The root of what is placed, or [`NO_ROOT`].
+    /// Root of the placed tree, or [`NO_ROOT`].
     root: u32,
-    /// The number of the first tree in it, among those of its group.
+    /// Index of its first tree, among those of its group.
     first: u32,
-    /// By how much boxes are widened in it: see `Padding`.
+    /// Padding of its boxes: see `Padding`.
     slack: f32,
     origin: f32,
-    /// Of a group, the places of its instances.
+    /// For a group, the places of its instances.
     items: u32,
     count: u32,
 }
 
-/// The structure of a place.
+/// Schema of a place.
 pub(crate) const PLACE_SCHEMA: &Schema = &Schema::Struct {
     name: "Place",
     fields: &[
@@ -52,19 +52,19 @@ pub(crate) const PLACE_SCHEMA: &Schema = &Schema::Struct {
 };
 
 impl<T, S> Placed<'_, T, S> {
-    /// Nodes and indices of the groups.
+    /// Returns the number of nodes and indices of the groups.
     pub(crate) fn group_len(&self) -> (u64, u64) {
         self.groups.iter().map(Placing::branches).fold((0, 0), |(nodes, indices), tree| {
             (nodes + tree.nodes.len() as u64, indices + tree.indices.len() as u64)
         })
     }
 
-    /// How many places there are.
+    /// Returns the number of places.
     pub(crate) fn place_count(&self) -> u64 {
         1 + self.groups.iter().map(|group| group.items.len() as u64).sum::<u64>()
     }
 
-    /// How many nodes and indices stand before those of the groups.
+    /// Returns the number of nodes and indices before those of the groups.
     fn len_of_trees(&self) -> [u32; 2] {
         let trees = self.trees.parts.iter().filter_map(|part| part.tree());
         trees.fold([0, 0], |[nodes, indices], tree| {
@@ -72,7 +72,7 @@ impl<T, S> Placed<'_, T, S> {
         })
     }
 
-    /// The nodes of all trees and groups.
+    /// Returns the nodes of all trees and groups.
     pub(crate) fn node_bytes(&self) -> Cow<'_, [u8]> {
         let mut bytes = list::nodes(&self.trees.parts).into_owned();
         let [mut nodes, mut indices] = self.len_of_trees();
@@ -88,7 +88,7 @@ impl<T, S> Placed<'_, T, S> {
         Cow::Owned(bytes)
     }
 
-    /// What the leaves of all trees and groups hold.
+    /// Returns the index lists of all trees and groups.
     pub(crate) fn index_bytes(&self) -> Cow<'_, [u8]> {
         let mut bytes = list::indices(&self.trees.parts).into_owned();
         let mut first = IS_INSTANCE + 1;
@@ -100,7 +100,7 @@ impl<T, S> Placed<'_, T, S> {
         Cow::Owned(bytes)
     }
 
-    /// The table of places.
+    /// Returns the table of places.
     pub(crate) fn place_bytes(&self) -> Cow<'_, [u8]> {
         let tree_roots = self.tree_roots();
         let groups = self.group_places();
@@ -117,7 +117,7 @@ impl<T, S> Placed<'_, T, S> {
         Cow::Owned(cast_slice(&places).to_vec())
     }
 
-    /// The place of a tree without a root.
+    /// Returns the place of a tree without a root.
     fn of_nothing(&self) -> Place {
         Place {
             to_object: Affine3::IDENTITY.to_cols_array(),
@@ -130,7 +130,7 @@ impl<T, S> Placed<'_, T, S> {
         }
     }
 
-    /// Every group as it is placed nowhere in particular.
+    /// Returns a template place of every group, without a transform.
     fn group_places(&self) -> Vec<Place> {
         let mut items = 1;
         let place = |(group, root): (&Placing, u32)| {
@@ -143,20 +143,21 @@ impl<T, S> Placed<'_, T, S> {
         self.groups.iter().zip(self.group_roots()).map(place).collect()
     }
 
-    /// The root of every tree among the nodes of all.
+    /// Returns the root index of every tree in the node array.
     fn tree_roots(&self) -> Vec<u32> {
         let lens = self.trees.parts.iter().map(|part| part.tree().map_or(0, |t| t.nodes.len()));
         roots(0, lens)
     }
 
-    /// The root of every group among the nodes of all.
+    /// Returns the root index of every group in the node array.
     fn group_roots(&self) -> Vec<u32> {
         let [first, _] = self.len_of_trees();
         roots(first, self.groups.iter().map(|group| group.branches().nodes.len()))
     }
 }
 
-/// The first of so many nodes each, from `first` on; [`NO_ROOT`] where there is none.
+/// Returns the root indices of trees with so many nodes each, from `first` on; [`NO_ROOT`] for
+/// empty ones.
 fn roots(first: u32, lens: impl Iterator<Item = usize>) -> Vec<u32> {
     let mut next = first;
     let root = |len: usize| {

@@ -1,39 +1,39 @@
-//! From instance to instance, for one ray.
+//! Single-ray traversal of instances.
 
 use super::placed::{Placing, STACK, Target};
 use crate::bvh::contract::{Slabs, is_finite};
 use crate::bvh::traverse::Stack;
 use crate::geometry::{Ray, transform_ray};
 
-/// A traversal of the groups of a scene, which stops at every tree that the ray may enter.
+/// Traversal of the groups of a scene that stops at every tree the ray may enter.
 ///
-/// The groups' trees have leaves of one instance each. The stack is one for all levels: a level
-/// ends where it is as short as it was when the level was entered.
+/// The groups' trees have leaves of one instance each. All levels share one stack: a level ends
+/// where the stack is as short as when the level was entered.
 pub(crate) struct Descent<'a> {
     groups: &'a [Placing],
     levels: Vec<Level<'a>>,
     stack: Stack<f32, STACK>,
-    /// Nodes whose box was tested.
+    /// Number of box tests.
     pub(crate) nodes: u32,
 }
 
-/// A group on the way.
+/// Group being traversed.
 struct Level<'a> {
     group: &'a Placing,
-    /// The instance id of the first tree in it.
+    /// Instance id of its first tree.
     first: u32,
-    /// The ray as the group sees it.
+    /// The ray in the space of the group.
     ray: Ray,
     slabs: Slabs,
-    /// How long the stack was.
+    /// Length of the stack when the group was entered.
     bottom: usize,
 }
 
-/// A tree in its place.
+/// Placed tree.
 pub(crate) struct Place {
     pub(crate) tree: u32,
     pub(crate) inst: u32,
-    /// The ray as the tree sees it.
+    /// The ray in the space of the tree.
     pub(crate) ray: Ray,
 }
 
@@ -48,7 +48,7 @@ impl<'a> Descent<'a> {
         descent
     }
 
-    /// Goes into a group if the ray may meet it.
+    /// Enters a group if the ray may hit its bounds.
     fn enter(&mut self, group: &'a Placing, first: u32, ray: Ray, limit: f32) {
         let Some(root) = group.branches().nodes.first() else { return };
         if !is_finite(ray) {
@@ -62,7 +62,7 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// The next tree that the ray may meet at or before `limit`.
+    /// Returns the next tree that the ray may enter at or before `limit`.
     pub(crate) fn next(&mut self, limit: f32) -> Option<Place> {
         while let Some(level) = self.levels.last() {
             let (group, first, ray) = (level.group, level.first, level.ray);
@@ -71,6 +71,7 @@ impl<'a> Descent<'a> {
                 continue;
             };
             let item = &group.items[index as usize];
+            // Transform the ray to the space of the object, then enter it.
             let (inst, ray) = (first + item.first, transform_ray(ray, item.to_object));
             match item.target {
                 Target::Tree(tree) if is_finite(ray) => return Some(Place { tree, inst, ray }),
@@ -81,7 +82,7 @@ impl<'a> Descent<'a> {
         None
     }
 
-    /// The next instance of the innermost group that the ray may meet.
+    /// Returns the next instance of the innermost group that the ray may enter.
     fn next_item(&mut self, limit: f32) -> Option<u32> {
         let level = self.levels.last()?;
         let tree = level.group.branches();
@@ -91,7 +92,7 @@ impl<'a> Descent<'a> {
                 continue;
             }
             let mut node = &tree.nodes[index as usize];
-            // Down to a leaf, the nearer child first.
+            // Descend to a leaf, the nearer child first.
             while !node.is_leaf() {
                 let children = &tree.nodes[node.first as usize..node.first as usize + 2];
                 self.nodes += 2;
@@ -101,6 +102,7 @@ impl<'a> Descent<'a> {
                 node = match enters {
                     [Some(left), Some(right)] => {
                         let near = usize::from(right < left);
+                        // Push the farther child.
                         self.stack.push(node.first + 1 - near as u32, left.max(right));
                         &children[near]
                     }

@@ -1,4 +1,4 @@
-//! Trees that stand in a scene many times.
+//! Instances: trees placed in a scene many times.
 
 mod buffers;
 mod descent;
@@ -19,18 +19,18 @@ pub(crate) use placed::{Placed, Placing, STACK, Target};
 use crate::geometry::{Aabb, Hit, Primitive};
 use crate::machine::{Capture, Machine, Parameter, Resource};
 
-/// The most levels of instances: a group of groups of trees has two.
+/// Maximum number of levels of instances: a group of groups of trees has two.
 pub const MAX_LEVELS: usize = 8;
 
-/// The largest condition number of a transform.
+/// Maximum condition number of a transform.
 pub const MAX_CONDITION: f64 = 1e7;
 
-/// Trees over primitives of one type, placed in a scene as often as one likes, turned, scaled and
-/// sheared. What is placed may itself be a [`Group`] of placed trees.
+/// Scene of instances: trees over primitives of one type, each placed any number of times, rotated,
+/// scaled and sheared. Objects to place may be trees or [`Group`]s of placed trees.
 ///
-/// A ray is taken to the space of each object whose box it meets, so that a tree is in memory once
-/// however often it is placed. The direction is not made unit length there: `t` means the same
-/// everywhere. A query answers as one of all copies would: the least `(t, inst_id, prim_id)`.
+/// A ray is transformed to the space of each object whose box it hits, so that a tree is in memory
+/// once however often it is placed. The direction is not normalized there: `t` means the same
+/// everywhere. A query returns the result over all copies: the least `(t, inst_id, prim_id)`.
 /// [`Hit::inst_id`] counts the placed trees, those of the first instance of the outermost group
 /// first; [`Hit::prim_id`] counts through the trees as in a [`BvhList`].
 ///
@@ -58,43 +58,43 @@ pub const MAX_CONDITION: f64 = 1e7;
 /// # Rounding
 ///
 /// Where a transform stretches directions by different amounts, rounding in the object is that much
-/// larger in the scene: [`Instances::amplification`] says how much. Boxes are widened by as much,
-/// so that hits do not depend on the tree over the instances.
+/// larger in the scene: [`Instances::amplification`] returns the factor. Boxes are widened by as
+/// much, so that hits do not depend on the tree over the instances.
 #[derive(Debug)]
 pub struct Instances<'a, P: Primitive> {
     placed: Placed<'a, P, P::Shared>,
-    /// What each group was made of.
+    /// The instances of each group.
     groups: Vec<Vec<Instance>>,
 }
 
-/// An object in its place.
+/// Placed object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instance {
-    /// What is placed.
+    /// The placed object.
     pub object: Object,
-    /// From the space of the object to that in which it is placed.
+    /// Transform from the space of the object to that of its group or scene.
     pub to_outer: Affine3,
 }
 
-/// What an [`Instance`] places.
+/// Object of an [`Instance`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Object {
-    /// A tree, by its place among the trees of the scene.
+    /// A tree, by its index in the scene.
     Tree(usize),
     /// All instances of a group.
     Group(Group),
 }
 
-/// Instances that can be placed as one, see [`Instances::group`].
+/// Group of instances that can be placed as one, see [`Instances::group`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Group {
-    /// The scene that has it.
+    /// Id of the owning scene.
     scene: u64,
     index: u32,
 }
 
 impl Instance {
-    /// An object in its place: a tree by its number, or a [`Group`].
+    /// Places an object: a tree by its index, or a [`Group`].
     pub fn new(object: impl Into<Object>, to_outer: Affine3) -> Self {
         Self { object: object.into(), to_outer }
     }
@@ -121,79 +121,79 @@ impl From<Group> for Object {
     }
 }
 
-/// Why instances cannot be placed, and what to do about it.
+/// Error of placing instances.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum InstanceError {
-    /// The trees cannot be asked as one.
+    /// The trees cannot form a list.
     #[error(transparent)]
     Trees(#[from] ListError),
-    /// A tree or a group that is not there.
+    /// There is no such tree or group.
     #[error("instance {instance} places {object}, which the scene does not have before it")]
     NoSuchObject {
-        /// Which instance of the group.
+        /// Index of the instance in its group.
         instance: usize,
-        /// What it places.
+        /// The object it places.
         object: Object,
     },
-    /// A group to be replaced that another scene has.
+    /// The group to be replaced belongs to another scene.
     #[error("the group belongs to another scene: keep what `group` of this one gave")]
     ForeignGroup,
-    /// A transform that is not finite or flattens its object.
+    /// A transform is not finite or flattens its object.
     #[error(
         "the transform of instance {instance} is not finite or flattens the object: give one with \
          an inverse"
     )]
     NoInverse {
-        /// Which instance of the group.
+        /// Index of the instance in its group.
         instance: usize,
     },
-    /// A transform that stretches one direction far more than another.
+    /// A transform stretches one direction far more than another.
     #[error(
         "the transform of instance {instance} stretches one direction {condition:.3e} times as much \
          as another: {limit:e} times is the most that `f32` can tell apart"
     )]
     IllConditioned {
-        /// Which instance of the group.
+        /// Index of the instance in its group.
         instance: usize,
         /// The condition number.
         condition: f64,
-        /// The largest condition number.
+        /// Maximum condition number.
         limit: f64,
     },
-    /// An instance so large or so far away that its box is not finite.
+    /// An instance is so large or so far away that its box is not finite.
     #[error("instance {instance} reaches beyond the largest `f32`: make it smaller")]
     TooLarge {
-        /// Which instance of the group.
+        /// Index of the instance in its group.
         instance: usize,
     },
-    /// More placed trees than 32-bit numbers can name.
+    /// There are more placed trees than 32-bit ids.
     #[error("the trees are placed {count} times in all: {limit} can be numbered")]
     TooMany {
-        /// How many there are.
+        /// Number of placed trees.
         count: u64,
-        /// How many there may be.
+        /// Maximum number of placed trees.
         limit: u64,
     },
-    /// More levels than [`MAX_LEVELS`], or trees too deep for them.
+    /// There are more levels than [`MAX_LEVELS`], or the trees are too deep for them.
     #[error(
         "the group has {levels} levels of instances and {depth} of nodes: {level_limit} and \
          {depth_limit} are the most; place the trees in fewer groups"
     )]
     TooDeep {
-        /// Levels of instances.
+        /// Number of levels of instances.
         levels: usize,
-        /// Levels of nodes in all of them.
+        /// Number of levels of nodes in all of them.
         depth: usize,
-        /// The most levels of instances.
+        /// Maximum number of levels of instances.
         level_limit: usize,
-        /// The most levels of nodes.
+        /// Maximum number of levels of nodes.
         depth_limit: usize,
     },
 }
 
 impl<'a, P: Primitive> Instances<'a, P> {
-    /// The scene of these instances of trees.
+    /// Creates a scene of these instances of trees.
     ///
     /// # Errors
     ///
@@ -204,19 +204,19 @@ impl<'a, P: Primitive> Instances<'a, P> {
         Ok(scene)
     }
 
-    /// A scene in which these trees can be placed, and nothing is yet.
+    /// Creates an empty scene in which these trees can be placed.
     ///
     /// # Errors
     ///
-    /// Trees that [`BvhList::new`] would not take.
+    /// As [`BvhList::new`].
     pub fn new(trees: &'a [Bvh<'a, P>]) -> Result<Self, InstanceError> {
         let trees = BvhList::new(trees)?.into_trees();
         let placed = Placed::new(trees, Padding::of::<P>(), instance_table::<P>());
         Ok(Self { placed, groups: Vec::new() })
     }
 
-    /// Adds a group of instances of trees and of earlier groups. Rays meet the group that was added
-    /// last, with all that is in it.
+    /// Adds a group of instances of trees and of earlier groups. Rays are traced against the group
+    /// added last, with everything in it.
     ///
     /// ```
     /// # use raydsl::prelude::*;
@@ -236,10 +236,9 @@ impl<'a, P: Primitive> Instances<'a, P> {
     ///
     /// # Errors
     ///
-    /// An object that is not there; a transform without an inverse, or with a condition number
-    /// above
-    /// [`MAX_CONDITION`]; boxes beyond `f32`; more instances, or levels of them, than can be
-    /// numbered. The scene is then as it was.
+    /// If an object does not exist; a transform has no inverse, or a condition number above
+    /// [`MAX_CONDITION`]; boxes exceed `f32`; or there are more instances, or levels of them, than
+    /// can be numbered. The scene is then unchanged.
     pub fn group(&mut self, instances: &[Instance]) -> Result<Group, InstanceError> {
         let group = self.make(instances, self.groups.len())?;
         self.placed.groups.push(group);
@@ -248,13 +247,13 @@ impl<'a, P: Primitive> Instances<'a, P> {
         Ok(Group { scene: self.id(), index: self.groups.len() as u32 - 1 })
     }
 
-    /// Replaces the instances of a group: they move, come and go. The groups that were added later
-    /// are built anew, since they may contain this one. Nothing of the trees is touched; a device
-    /// keeps their primitives, and is sent nodes, indices and places.
+    /// Replaces the instances of a group: they may move, appear and disappear. Later groups are
+    /// rebuilt, since they may contain this one. The trees stay as they are; a device keeps their
+    /// primitives, and is sent nodes, indices and places.
     ///
     /// # Errors
     ///
-    /// As [`Instances::group`]; also a group of another scene. The scene is then as it was.
+    /// As [`Instances::group`]; also for a group of another scene. The scene is then unchanged.
     pub fn set_group(&mut self, group: Group, instances: &[Instance]) -> Result<(), InstanceError> {
         let at = group.index as usize;
         if group.scene != self.id() {
@@ -277,12 +276,12 @@ impl<'a, P: Primitive> Instances<'a, P> {
         Ok(())
     }
 
-    /// The number that no other scene has.
+    /// Returns the unique id of the scene.
     fn id(&self) -> u64 {
         self.placed.trees.owner.id()
     }
 
-    /// The tree over a group, which may contain those before it.
+    /// Builds the tree over a group, which may contain earlier groups.
     fn make(&self, instances: &[Instance], groups: usize) -> Result<Placing, InstanceError> {
         let items =
             instances.iter().enumerate().map(|(instance, &Instance { object, to_outer })| {
@@ -302,18 +301,18 @@ impl<'a, P: Primitive> Instances<'a, P> {
         Placing::build(&self.placed, &items.collect::<Result<Vec<_>, _>>()?)
     }
 
-    /// How many trees are placed in the scene, each as often as it is: one more than the largest
+    /// Returns the number of placed trees, counting every copy: one more than the largest
     /// [`Hit::inst_id`].
     pub fn count(&self) -> u32 {
         self.placed.top().map_or(0, |top| top.size)
     }
 
-    /// How many groups there are.
+    /// Returns the number of groups.
     pub fn group_count(&self) -> usize {
         self.groups.len()
     }
 
-    /// The instances of a group.
+    /// Returns the instances of a group.
     ///
     /// # Panics
     ///
@@ -323,8 +322,8 @@ impl<'a, P: Primitive> Instances<'a, P> {
         &self.groups[group.index as usize]
     }
 
-    /// Which instance was hit, on every level: its place in the outermost group, then its place in
-    /// the group that is placed there, and so on. Empty for a miss.
+    /// Returns the instance that was hit on every level: its index in the outermost group, then its
+    /// index in the group placed there, and so on. Empty for a miss.
     pub fn path_of(&self, hit: Hit) -> Vec<usize> {
         let mut path = Vec::new();
         if hit.is_hit {
@@ -333,7 +332,7 @@ impl<'a, P: Primitive> Instances<'a, P> {
         path
     }
 
-    /// Which tree holds the primitive that was hit, by its place among the trees; none for a miss.
+    /// Returns the index of the tree that holds the hit primitive; `None` for a miss.
     pub fn tree_of(&self, hit: Hit) -> Option<usize> {
         hit.is_hit.then(|| super::list::tree_of(&self.placed.trees.parts, hit.prim_id))
     }
@@ -347,32 +346,31 @@ impl<'a, P: Primitive> Instances<'a, P> {
         self.placed.trees.parts[tree].first
     }
 
-    /// How much larger rounding in an object may be in the scene, at most: the largest product of
-    /// the transforms' condition numbers on a way to a tree. 1 where they turn, move and scale
-    /// evenly.
+    /// Returns an upper bound of the amplification of an object's rounding in the scene: the
+    /// largest product of the transforms' condition numbers on a path to a tree. 1 for rigid
+    /// transforms and uniform scales.
     pub fn amplification(&self) -> f64 {
         self.placed.top().map_or(1.0, |top| top.condition)
     }
 
-    /// A box around everything; empty without primitives. Wider than need be by what rounding may
-    /// do.
+    /// Returns the bounds of the scene, widened for rounding; empty without primitives.
     pub fn bounds(&self) -> Aabb {
         self.placed.top().map_or(Aabb::EMPTY, Placing::bounds)
     }
 
-    /// Bytes of the instances and of the trees over them; the trees and the primitives are the
-    /// application's.
+    /// Returns the size in bytes of the instances and of the trees over them; the application owns
+    /// the trees and the primitives.
     pub fn bytes(&self) -> usize {
         let groups = self.groups.iter().map(|group| size_of_val(&group[..]));
         groups.chain(self.placed.groups.iter().map(Placing::bytes)).sum()
     }
 
-    /// What the primitives of all trees share.
+    /// Returns the data that the primitives of all trees share.
     pub fn shared(&self) -> &'a [P::Shared] {
         self.placed.trees.shared
     }
 
-    /// The view that kernels work on.
+    /// Returns the view that kernels query.
     pub fn view(&self) -> SceneView<'_, P> {
         View::instances(&self.placed)
     }

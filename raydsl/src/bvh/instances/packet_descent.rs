@@ -7,7 +7,7 @@ use crate::bvh::traverse::Stack;
 use crate::geometry::{RayOn, transform_ray};
 use crate::machine::{Lanes, Packet, Type, op};
 
-/// A traversal of the groups of a scene, which stops at every tree that some ray may enter.
+/// Traversal of the groups of a scene that stops at every tree some ray may enter.
 pub(crate) struct PacketDescent<'a, L: Lanes> {
     groups: &'a [Placing],
     levels: Vec<Level<'a, L>>,
@@ -133,7 +133,8 @@ impl<'a, L: Lanes> PacketDescent<'a, L> {
                 let (hit0, hit1) = (and(l, mask, hit0), and(l, mask, hit1));
                 let both = and(l, hit0, hit1);
                 let left = and(l, both, l.f32_compare(op::Le, t0, t1));
-                // The child that more lanes enter first; the other is pushed if any lane enters it.
+                // Visit the child that more lanes enter first; push the other if any lane enters
+                // it.
                 let left_first = match (l.any(hit0), l.any(hit1)) {
                     (true, true) => 2 * l.bits(left).count_ones() >= l.bits(both).count_ones(),
                     (left, _) => left,

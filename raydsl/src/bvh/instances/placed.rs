@@ -1,4 +1,4 @@
-//! Where the instances of a scene are: what traversal sees of [`Instances`](super::Instances).
+//! Placed instances: the data that traversal of [`Instances`](super::Instances) reads.
 
 use glam::Affine3;
 
@@ -11,62 +11,62 @@ use crate::bvh::{Node, stats};
 use crate::geometry::affine::{self, Inverted};
 use crate::geometry::{Aabb, Ray, transform_ray};
 
-/// The most nodes that one ray may have to come back to, on all levels of instances together.
+/// Maximum stack entries of one ray, on all levels of instances together.
 pub(crate) const STACK: usize = 128;
 
-/// An padding with which every box is met.
+/// Padding with which every box is hit.
 const EVERYTHING: f64 = 16.0;
 
-/// Trees and the groups in which they are placed. Rays meet the last group.
+/// Trees and the groups in which they are placed. Rays are traced against the last group.
 #[derive(Debug)]
 pub(crate) struct Placed<'a, T, S> {
     pub(crate) trees: Trees<'a, T, S>,
-    /// By how much boxes are widened in the trees.
+    /// Padding of boxes in the trees.
     pub(crate) padding: Padding,
     /// The depth of each tree.
     depths: Vec<usize>,
     pub(crate) groups: Vec<Placing>,
-    /// How often the groups have changed.
+    /// Number of changes of the groups.
     pub(crate) version: u32,
-    /// How packets go through it.
+    /// Packet traversals of the instances.
     pub(crate) walks: InstanceTable,
 }
 
-/// The tree over the instances of a group.
+/// Tree over the instances of a group.
 #[derive(Debug)]
 pub(crate) struct Placing {
     pub(crate) items: Vec<Item>,
     nodes: Vec<Node>,
-    /// One entry a leaf.
+    /// Index list, with one entry per leaf.
     indices: Vec<u32>,
     pub(crate) padding: Padding,
-    /// How many trees are placed in it, each as often as it is.
+    /// Number of trees placed in the group, counting every copy.
     pub(super) size: u32,
-    /// Levels of instances.
+    /// Number of levels of instances.
     levels: usize,
-    /// Entries of a stack that reaches down to the leaves of the trees.
+    /// Stack entries needed down to the leaves of the trees.
     depth: usize,
     /// See [`Instances::amplification`](super::Instances::amplification).
     pub(super) condition: f64,
 }
 
-/// An instance.
+/// Instance prepared for traversal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Item {
     pub(crate) to_object: Affine3,
     pub(crate) target: Target,
-    /// The number of the first tree that is placed in it, among those of its group.
+    /// Index of its first tree, among those of its group.
     pub(crate) first: u32,
 }
 
-/// What an instance places, by its number.
+/// Object of an instance, by index.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Target {
     Tree(u32),
     Group(u32),
 }
 
-/// An instance, and what its box is made of.
+/// Validated instance, from which its box is computed.
 pub(crate) struct Placement {
     target: Target,
     map: Inverted,
@@ -87,7 +87,7 @@ impl Placement {
     }
 }
 
-/// What is placed, as the group sees it in which it is.
+/// Object as seen by the group that places it.
 struct Seen {
     bounds: Aabb,
     padding: Padding,
@@ -98,7 +98,7 @@ struct Seen {
 }
 
 impl Placing {
-    /// The tree over these instances.
+    /// Builds the tree over these instances.
     pub(super) fn build<T, S>(
         placed: &Placed<'_, T, S>,
         instances: &[Placement],
@@ -120,7 +120,7 @@ impl Placing {
         } else if instances.len() as u64 > most {
             return Err(InstanceError::TooMany { count: instances.len() as u64, limit: most });
         }
-        // Those that hold anything, and their boxes.
+        // Collect the boxes of non-empty instances.
         let (mut full, mut boxes) = (Vec::new(), Vec::new());
         for (instance, &Placement { target, map }) in instances.iter().enumerate() {
             let (seen, first) = (placed.see(target), group.size);
@@ -141,18 +141,18 @@ impl Placing {
         Ok(group)
     }
 
-    /// Takes an instance into account; its box.
+    /// Adds an instance to the group's limits; returns its box.
     ///
     /// Within the object a hit may lie beside its box by `slack` times the reach, along each axis:
     /// by `sqrt(3)` times that in any direction. The reach, a distance along an axis too, is at
-    /// most `sqrt(3)` times the one in the group. Seen from there both are larger by at most the
+    /// most `sqrt(3)` times the one in the group. Seen from the group both grow by at most the
     /// largest stretch of the map, and of its inverse: together by the condition number, so that
     /// the group needs `3 condition * slack`.
     ///
-    /// Taking a ray to the object rounds: of the origin, by a few units in the last place of the
-    /// sum `|M| |o| + |b|` of matrix and translation; of the direction likewise. That, and what is
-    /// relative to the origin within the object, divides into a part relative to the distance, one
-    /// relative to the ray's origin, and one that is known beforehand and widens the box.
+    /// Transforming a ray to the object rounds the origin by a few units in the last place of the
+    /// sum `|M| |o| + |b|` of matrix and translation, and the direction likewise. That error, and
+    /// the padding relative to the origin within the object, divide into a part relative to the
+    /// distance, one relative to the ray's origin, and a constant that widens the box.
     fn include(
         &mut self,
         instance: usize,
@@ -161,7 +161,7 @@ impl Placing {
     ) -> Result<Aabb, InstanceError> {
         let inner = seen.padding;
         let rounding = 16.0 * ULP;
-        // More than all is no use, and must stay a number.
+        // Padding beyond everything is useless, and it must stay finite.
         let larger = |x: f32| {
             let larger = 3.0 * map.condition * f64::from(x + rounding) * (1.0 + 1e-6);
             larger.min(EVERYTHING) as f32
@@ -197,7 +197,7 @@ impl Placing {
         size_of_val(&self.items[..]) + size_of_val(&self.nodes[..]) + size_of_val(&self.indices[..])
     }
 
-    /// The tree over the instances, whose leaves hold one each.
+    /// Returns the tree over the instances, with one instance per leaf.
     #[inline(always)]
     pub(crate) fn branches(&self) -> Branches<'_> {
         Branches { nodes: &self.nodes, indices: &self.indices }
@@ -211,14 +211,14 @@ impl<'a, T, S> Placed<'a, T, S> {
         Self { trees, padding, depths, groups: Vec::new(), version: 0, walks }
     }
 
-    /// The group that rays meet.
+    /// Returns the group that rays are traced against.
     #[inline(always)]
     pub(crate) fn top(&self) -> Option<&Placing> {
         self.groups.last()
     }
 
-    /// Calls `visit` for every level of an instance, the outermost first, with its place in its
-    /// group. Where there is no such instance, the last one stands for it.
+    /// Calls `visit` for every level of an instance, outermost first, with its index in its group.
+    /// An id beyond the last instance selects the last one.
     #[inline(always)]
     pub(crate) fn each_level(&self, inst: u32, mut visit: impl FnMut(usize, &Item)) {
         let (mut group, mut inst) = (self.top(), inst);
@@ -237,7 +237,7 @@ impl<'a, T, S> Placed<'a, T, S> {
         }
     }
 
-    /// From the space of the scene to that of an instance's tree.
+    /// Returns the transform from the space of the scene to that of an instance's tree.
     pub(crate) fn to_object(&self, inst: u32) -> Affine3 {
         let mut map = Affine3::IDENTITY;
         self.each_level(inst, |_, item| map = item.to_object * map);

@@ -1,9 +1,9 @@
-//! Queries of trees, where rounding leaves open what is hit.
+//! Tree queries under rounding: all hits that some rounding may select.
 //!
-//! Every primitive is asked in all ways in which its own decisions may go. Those that some variant
-//! may find the closest are the alternatives of one decision.
+//! Every primitive is intersected in all ways in which its own decisions may go. The hits that may
+//! be the closest in some variant are the alternatives of one decision.
 //!
-//! All but the asking is the same for every type of primitives, and compiled once.
+//! Only the intersection depends on the type of primitives; the rest is compiled once.
 
 use core::cell::Cell;
 use std::rc::Rc;
@@ -17,24 +17,24 @@ use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn, transform_ray};
 use crate::machine::margin::{Explored, Form, Interval, Known, Margin, Truth};
 use crate::machine::{B, Data, F, Machine, Type, U, V3};
 
-/// In how many ways one primitive is asked.
+/// Maximum number of variants in which one primitive is intersected.
 const WAYS: usize = 64;
 
 /// Primitives of any type, the trees over them if there are any, and a ray.
 pub(super) struct Scene<'a> {
     ray: RayOn<Margin>,
     parts: Vec<Part<'a>>,
-    /// The groups in which the parts are placed, if they are.
+    /// Groups in which the parts are placed, if they are.
     groups: Option<&'a [Placing]>,
-    /// Of the trees that are parts.
+    /// Padding of the trees that are parts.
     padding: Padding,
-    /// Where the ray meets a primitive.
+    /// Intersects the ray with a primitive.
     intersect: &'a dyn Fn(Name) -> HitOn<Margin>,
-    /// What tells a primitive from others: its bytes, and where it is placed.
+    /// Identifies a primitive: its bytes, and its placement.
     bytes: &'a dyn Fn(Name) -> Vec<u8>,
 }
 
-/// A primitive of a scene. The order is that of hits at one distance.
+/// Identity of a primitive. The order is that of hits at one distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Name {
     inst: u32,
@@ -48,7 +48,7 @@ struct Part<'a> {
     tree: Option<Branches<'a>>,
 }
 
-/// Does `query` with `prims` of any type. `found` is shown what the last primitive gave.
+/// Runs `query` on `prims` of any type. `found` receives the record of each intersected primitive.
 pub(super) fn query<P: Primitive, R>(
     m: &Margin,
     prims: &SceneView<'_, P>,
@@ -60,7 +60,7 @@ pub(super) fn query<P: Primitive, R>(
         let mut bytes = vec![0; P::SCHEMA.size()];
         prims.get(name.prim).write(&mut bytes);
         if let Some(placed) = prims.placed() {
-            // On every level: maps that differ may have one product.
+            // Include every level: different maps may have one product.
             placed.each_level(name.inst, |_, item| {
                 bytes.extend(item.to_object.to_cols_array().into_iter().flat_map(f32::to_le_bytes));
             });
@@ -87,7 +87,7 @@ pub(super) fn query<P: Primitive, R>(
     query(m, &scene)
 }
 
-/// The ray as the tree of an instance is asked about it.
+/// Returns the ray in the space of an instance's tree.
 pub(super) fn local_ray<T, S>(
     m: &Margin,
     scene: &View<'_, T, S>,
@@ -103,23 +103,23 @@ pub(super) fn local_ray<T, S>(
     ray
 }
 
-/// A float that outlives its run, and what that knew of its errors.
+/// A float that outlives its run, with the form of its errors.
 type Kept = (Known, Option<Rc<Form>>);
 
-/// How a primitive may be hit.
+/// Possible hit of a primitive.
 #[derive(Clone, Copy)]
 struct Found {
     name: Name,
     t: Known,
     u: Known,
     v: Known,
-    /// Whether it is hit in every way.
+    /// Whether it is hit in every variant.
     is_certain: bool,
-    /// Whether `f64` hits it.
+    /// Whether the `f64` reference hits it.
     is_reference: bool,
 }
 
-/// The ray as it is if nothing but itself is rounded.
+/// Returns the ray with only its own components rounded.
 pub(super) fn rounded(m: &Margin, ray: RayOn<Margin>) -> Ray {
     let number = |v: F<Margin>| m.get(v.0).value as f32;
     let vector = |v: V3<Margin>| Vec3::new(number(v.x), number(v.y), number(v.z));
@@ -131,11 +131,12 @@ pub(super) fn rounded(m: &Margin, ray: RayOn<Margin>) -> Ray {
     }
 }
 
-/// The least `(t, id)` hit.
+/// Returns the least `(t, id)` hit.
 pub(super) fn closest_hit(m: &Margin, scene: &Scene<'_>) -> HitOn<Margin> {
     let mut found = Vec::new();
     let fate = fate(m, scene.ray);
     let limit = Cell::new(m.get(scene.ray.t_max.0).range.high);
+    // Collect all possible hits; certain ones lower the limit.
     if fate != Fate::Misses {
         scene.walk(m, &limit, &mut |name| {
             let hits = scene.ask(m, name);
@@ -148,6 +149,7 @@ pub(super) fn closest_hit(m: &Margin, scene: &Scene<'_>) -> HitOn<Margin> {
     }
     let may_miss = fate != Fate::Runs || !found.iter().any(|h| h.is_certain);
     let candidates = scene.candidates(found);
+    // Put the reference's hit first among the candidates.
     let by_t = |a: &&Found, b: &&Found| a.t.value.total_cmp(&b.t.value).then(a.name.cmp(&b.name));
     let reference = candidates.iter().filter(|h| h.is_reference).min_by(by_t).map(|h| h.name);
     let mut hits: Vec<Option<Found>> = candidates.into_iter().map(Some).collect();
@@ -161,13 +163,13 @@ pub(super) fn closest_hit(m: &Margin, scene: &Scene<'_>) -> HitOn<Margin> {
     if let Some(at) = hits.iter().position(is_first) {
         hits.swap(0, at);
     }
-    // The closest hit is no farther than any that is certain.
+    // The closest hit is no farther than any certain one.
     let near = Interval::new(f64::NEG_INFINITY, limit.get(), false);
     let cut = |h: Found| Found { t: Known { range: h.t.range.narrowed(near), ..h.t }, ..h };
     hit_on(m, m.one_of(None, &hits).map(cut))
 }
 
-/// Whether anything is hit.
+/// Returns whether anything is hit.
 pub(super) fn any_hit(m: &Margin, scene: &Scene<'_>) -> Truth {
     let fate = fate(m, scene.ray);
     if fate == Fate::Misses {
@@ -186,7 +188,7 @@ pub(super) fn any_hit(m: &Margin, scene: &Scene<'_>) -> Truth {
     m.truth(is_reference, may_be, !is_certain)
 }
 
-/// Calls `meet` for every hit of the way that is followed, until it returns false.
+/// Calls `meet` for every hit of the current variant, until it returns false.
 pub(super) fn visit(
     m: &Margin,
     scene: &Scene<'_>,
@@ -213,7 +215,7 @@ pub(super) fn visit(
         } else {
             m.forms.truncate(forms);
         }
-        // What is kept of a hit is in variables.
+        // Kept data of a hit is in variables.
         m.floats.drop_since(floats);
         !goes_on
     });
@@ -231,7 +233,7 @@ fn hit_on(m: &Margin, found: Option<Found>) -> HitOn<Margin> {
     }
 }
 
-/// What becomes of a ray, which misses everything if a component is no finite number.
+/// Fate of a ray, which misses everything if a component is not finite.
 #[derive(Clone, Copy, PartialEq)]
 enum Fate {
     Runs,
@@ -253,12 +255,12 @@ fn fate(m: &Margin, ray: RayOn<Margin>) -> Fate {
 }
 
 impl Scene<'_> {
-    /// Whether there is a hit, within the ray's range.
+    /// Returns whether there is a hit within the ray's range.
     fn accepts(&self, m: &Margin, hit: &HitOn<Margin>) -> Truth {
         is_within::on(m, *hit, self.ray).0
     }
 
-    /// Every way in which one primitive is hit. Forms are kept for the results alone.
+    /// Explores all variants of intersecting one primitive. Forms are kept for the results alone.
     fn ways(&self, m: &Margin, name: Name) -> Explored<Option<[Kept; 3]>> {
         m.each_way(WAYS, &|| {
             let mark = m.forms.len();
@@ -273,9 +275,9 @@ impl Scene<'_> {
         })
     }
 
-    /// The hits of one primitive; ways that rounding cannot tell apart are one.
+    /// Returns the hits of one primitive; variants within rounding of each other are merged.
     fn ask(&self, m: &Margin, name: Name) -> Vec<Found> {
-        // Most are missed for certain, which intervals can tell.
+        // Most primitives are certain misses, which intervals alone can tell.
         let quick = m.forms.without(|| self.ways(m, name));
         if quick.is_complete && quick.results.iter().all(Option::is_none) {
             return Vec::new();
@@ -291,10 +293,11 @@ impl Scene<'_> {
             let Some(results) = result else { continue };
             let [t, u, v] =
                 results.map(|(v, form)| Known { form: m.forms.put(form), parts: None, ..v });
-            // What was accepted is a number between the ends of the ray.
+            // An accepted hit is a number within the range of the ray.
             let first = t_min.low.max(t.range.low);
             let last = t_max.high.min(t.range.high);
             let t = Known { range: Interval::new(first, last, false), ..t };
+            // Merge it with a hit found before if their ranges overlap.
             let near = found.iter_mut().find(|f| {
                 [(f.t, t), (f.u, u), (f.v, v)].iter().all(|(a, b)| a.range.overlaps(b.range))
             });
@@ -308,14 +311,14 @@ impl Scene<'_> {
                 }
             }
         }
-        // Of several hits that differ none is certain.
+        // Of several different hits none is certain.
         if let ([only], true) = (&mut found[..], is_certain) {
             only.is_certain = true;
         }
         found
     }
 
-    /// The hits that may be the closest.
+    /// Returns the hits that may be the closest.
     fn candidates(&self, found: Vec<Found>) -> Vec<Found> {
         let certain: Vec<Found> = found.iter().copied().filter(|h| h.is_certain).collect();
         let loses = |h: &Found, to: &Found| {
@@ -327,7 +330,7 @@ impl Scene<'_> {
         if near.len() < 2 {
             return near;
         }
-        // Copies of a primitive are hit alike, and the first one wins.
+        // Copies of a primitive have equal hits, and the first one wins.
         let bytes: Vec<Vec<u8>> = near.iter().map(|h| (self.bytes)(h.name)).collect();
         let is_copy = |(h, own): &(&Found, &Vec<u8>)| {
             near.iter().zip(&bytes).any(|(other, b)| other.name < h.name && b == *own)
@@ -351,7 +354,7 @@ impl Scene<'_> {
         }
     }
 
-    /// [`Scene::walk`] in a group whose first tree has the number `first`.
+    /// Runs [`Scene::walk`] in a group whose first tree has the index `first`.
     fn walk_group(
         &self,
         m: &Margin,
@@ -370,7 +373,7 @@ impl Scene<'_> {
             let mark = m.floats.mark();
             let ray = transform_ray::on(m, ray, Type::splat(m, item.to_object));
             let ends = match item.target {
-                // Coordinates that overflow on the way miss.
+                // Coordinates that overflow in the transform miss.
                 Target::Tree(_) if fate(m, ray) == Fate::Misses => false,
                 Target::Tree(tree) => {
                     self.walk_part(m, &self.parts[tree as usize], first, ray, limit, visit)
@@ -402,7 +405,7 @@ impl Scene<'_> {
     }
 }
 
-/// Visits what is in the leaves that the ray may meet at or before `limit`, until `visit` returns
+/// Visits the contents of leaves that the ray may hit at or before `limit`, until `visit` returns
 /// true.
 fn walk_tree(
     m: &Margin,
@@ -422,7 +425,7 @@ fn walk_tree(
         let (first, count) = (node.first as usize, node.count as usize);
         if !node.is_leaf() {
             let children = &tree.nodes[first..first + 2];
-            // The nearer one comes off the stack first.
+            // Push the farther child first, so that the nearer one is popped first.
             let is_left_near = beam.enters(&children[0]) <= beam.enters(&children[1]);
             let order = if is_left_near { [1, 0] } else { [0, 1] };
             stack.extend(order.map(|i| &children[i]));
@@ -465,7 +468,7 @@ mod tests {
         (nearest.t, last[0].t + last[1].t)
     }
 
-    /// What a query keeps of one primitive is gone before the next one.
+    /// Data that a query keeps of one primitive is freed before the next one.
     #[test]
     fn many_hits_take_little_memory() {
         let most = |count: u16| {

@@ -1,11 +1,11 @@
-//! Queries of scenes as operations: how each machine does them.
+//! Scene queries as operations, with their implementation on each machine.
 //!
 //! | machine | where |
 //! |---|---|
 //! | one lane | `bvh::traverse` |
 //! | packets | `bvh::traverse_packet`, of wide trees `bvh::wide` |
 //! | WGSL | [`wgsl`] |
-//! | bounds of rounding | [`margin`] |
+//!  rounding bounds | [`margin`] |
 
 mod beam;
 mod margin;
@@ -27,7 +27,7 @@ use crate::machine::{
 
 pub(crate) use wgsl::RecordedWalks;
 
-/// The least `(t, id)` hit of each of `N` rays.
+/// Finds the least `(t, id)` hit of each of `N` rays.
 pub struct ClosestHits<'s, 'a, P: Primitive, const N: usize>(pub &'s SceneView<'a, P>);
 
 impl<P: Primitive, const N: usize> Operation for ClosestHits<'_, '_, P, N> {
@@ -64,7 +64,7 @@ impl<P: Primitive, const N: usize> Operation for ClosestHits<'_, '_, P, N> {
     }
 }
 
-/// Whether each of `N` rays hits anything.
+/// Finds whether each of `N` rays hits anything.
 pub struct AnyHits<'s, 'a, P: Primitive, const N: usize>(pub &'s SceneView<'a, P>);
 
 impl<P: Primitive, const N: usize> Operation for AnyHits<'_, '_, P, N> {
@@ -97,7 +97,7 @@ impl<P: Primitive, const N: usize> Operation for AnyHits<'_, '_, P, N> {
     }
 }
 
-/// The least `(t, id)` hit, and what it costs a ray that is alone.
+/// Finds the least `(t, id)` hit, with its cost in single-ray traversal.
 pub(crate) struct ClosestHitWithCost<'s, 'a, P: Primitive>(pub(crate) &'s SceneView<'a, P>);
 
 impl<P: Primitive> Operation for ClosestHitWithCost<'_, '_, P> {
@@ -119,7 +119,7 @@ impl<P: Primitive> Operation for ClosestHitWithCost<'_, '_, P> {
 
     fn on_margin(&self, m: &Margin, ray: RayOn<Margin>) -> CountedHitOn<Margin> {
         let hit = margin::query(m, self.0, ray, |_| {}, margin::closest_hit);
-        // Boxes are tested in `f32`, and each test may go another way on a device.
+        // Boxes are tested in `f32`, and each test may differ on a device.
         if m.is_running() {
             m.lose();
         }
@@ -128,8 +128,8 @@ impl<P: Primitive> Operation for ClosestHitWithCost<'_, '_, P> {
     }
 }
 
-/// The hit of every primitive within a ray's range, with the primitive's number and its record, in any
-/// order. Nodes beyond the limit are left out.
+/// Visits every primitive hit within a ray's range, with its hit and record, in any order. Nodes
+/// beyond the limit are culled.
 pub(crate) struct AllHits<'s, 'a, P: Primitive>(pub(crate) &'s SceneView<'a, P>);
 
 impl<P: Primitive> Visit for AllHits<'_, '_, P> {
@@ -204,7 +204,7 @@ impl<P: Primitive> Visit for AllHits<'_, '_, P> {
     }
 }
 
-/// The ray as the tree of an instance is asked about it. A scene of instances has one.
+/// Transforms a ray to the space of an instance's tree. The scene must have instances.
 pub(crate) struct LocalRay<'s, 'a, T, S>(pub(crate) &'s View<'a, T, S>);
 
 impl<T: Type, S: Type> Operation for LocalRay<'_, '_, T, S> {
@@ -241,7 +241,7 @@ impl<T: Type, S: Type> Operation for LocalRay<'_, '_, T, S> {
     }
 }
 
-/// From the space of the scene to that of an instance's tree.
+/// Returns the transform from the space of the scene to that of an instance's tree.
 pub(crate) struct ToObject<'s, 'a, T, S>(pub(crate) &'s View<'a, T, S>);
 
 impl<T: Type, S: Type> Operation for ToObject<'_, '_, T, S> {
@@ -266,7 +266,8 @@ impl<T: Type, S: Type> Operation for ToObject<'_, '_, T, S> {
     }
 }
 
-/// How far behind a hit nodes are still visited, relative to its distance.
+/// Returns the distance behind a hit up to which nodes are still visited, relative to that of the
+/// hit.
 pub(crate) struct Slack<'s, 'a, P: Primitive>(pub(crate) &'s SceneView<'a, P>);
 
 impl<P: Primitive> Slack<'_, '_, P> {
@@ -291,7 +292,7 @@ impl<P: Primitive> Operation for Slack<'_, '_, P> {
 
     fn on_recorder(&self, m: &Recorder, (): ()) -> F<Recorder> {
         match self.0.placed() {
-            // Data, since it changes when instances move.
+            // A buffer value, since it changes when instances move.
             Some(_) => m.slack_of_places(self.0),
             None => F(m.f32(P::SLACK)),
         }

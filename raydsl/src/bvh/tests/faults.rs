@@ -1,9 +1,9 @@
-//! Trees that are none.
+//! Faulty trees that `validate` must reject.
 
 use super::*;
 use crate::bvh::{MAX_DEPTH, Node, TreeFault, build::Boxes, validate::check};
 
-/// A tree of four leaves over eight balls, or what becomes of it.
+/// Tree of four leaves over eight balls, to be damaged.
 struct Planted {
     nodes: Vec<Node>,
     indices: Vec<u32>,
@@ -26,12 +26,12 @@ impl Planted {
     }
 }
 
-/// The fault after `change`, and its text.
+/// Returns the fault after `change`.
 fn fault(change: impl FnOnce(&mut Planted)) -> TreeFault {
     let mut planted = Planted::new();
     let Planted { nodes, indices, balls } = &planted;
     assert_eq!(check(nodes, indices, 8, &Boxes(|k: usize| balls[k].get_bounds())), Ok(()));
-    // A root, its children at 1 and 2, theirs at 3 and 4, 5 and 6.
+    // A root, its children at 1 and 2, their children at 3 and 4, 5 and 6.
     let firsts = [0, 1, 2].map(|k| nodes[k].first);
     assert_eq!((nodes.len(), firsts), (7, [1, 3, 5]));
     change(&mut planted);

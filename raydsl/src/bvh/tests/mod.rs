@@ -1,4 +1,4 @@
-//! Tests of trees as the application has them.
+//! Tests of trees through the public API.
 
 mod faults;
 mod moving;
@@ -17,7 +17,7 @@ struct Ball {
     radius: f32,
 }
 
-/// A reproducible sequence of numbers (xorshift).
+/// Reproducible sequence of numbers (xorshift).
 struct Numbers(u64);
 
 impl Numbers {
@@ -25,7 +25,7 @@ impl Numbers {
         Self(seed ^ 0x9E37_79B9_7F4A_7C15)
     }
 
-    /// In `-1..1`.
+    /// Returns a number in `-1..1`.
     fn next(&mut self) -> f32 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
@@ -43,8 +43,8 @@ impl Numbers {
     }
 }
 
-/// Panics where a ray meets something else in the tree than among `all`, which are its primitives;
-/// returns how many rays hit.
+/// Checks that rays have the same hits in the tree as among `all`, its primitives; returns the
+/// number of rays with a hit.
 fn assert_as_brute_force<P, A>(bvh: &Bvh<'_, P>, all: &[A]) -> usize
 where
     P: Primitive<Hit = Hit>,

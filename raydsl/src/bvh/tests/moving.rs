@@ -1,4 +1,4 @@
-//! Trees over primitives that move.
+//! Refitting to moving primitives.
 
 use super::*;
 use crate::bvh::{BuildError, RefitError, buffers};
@@ -94,7 +94,7 @@ fn meshes_move_by_their_vertices() {
             triangles.iter().map(|t| t.on(&vertices).expect("few vertices")).collect();
         assert!(assert_as_brute_force(&bvh, &all) > 100);
     }
-    // A vertex is not there any more.
+    // A vertex no longer exists.
     let error = bvh.refit_sharing(&triangles, &vertices[..50]).expect_err("missing vertices");
     assert!(matches!(error, RefitError::Bounds(BuildError::NanBounds { .. })));
 }

@@ -1,11 +1,11 @@
-//! Builds that someone watches.
+//! Builds with an observer.
 
 use core::ops::ControlFlow;
 
 use super::*;
 use crate::bvh::BuildError;
 
-/// The tree, and what the observer was told.
+/// Returns the tree, and the progress reported to the observer.
 fn observed(
     balls: &[Ball],
     quality: BuildQuality,

@@ -1,4 +1,4 @@
-//! Trees that hold parts of primitives.
+//! Trees with split primitives.
 
 use super::*;
 use crate::bvh::{Node, Settings, TreeFault, build, validate::check};
@@ -19,7 +19,7 @@ impl Numbers {
         Triangle { v0, v1, v2 }
     }
 
-    /// Long thin triangles along diagonals, among small ones.
+    /// Returns long thin triangles along diagonals, among small ones.
     fn slanted(&mut self, count: usize) -> Vec<Triangle> {
         let mut one = |k: usize| {
             if !k.is_multiple_of(8) {
@@ -33,7 +33,7 @@ impl Numbers {
     }
 }
 
-/// Triangles that are hard to cut, or to cut rightly.
+/// Returns triangles that are hard to cut, or to cut correctly.
 fn soups() -> Vec<(&'static str, Vec<Triangle>)> {
     let mut numbers = Numbers::of(21);
     let slanted = numbers.slanted(400);
@@ -69,7 +69,7 @@ fn hits_are_those_of_brute_force() {
     }
 }
 
-/// Rays at points of the triangles, many of them along a triangle, as good as rounding allows.
+/// Returns rays at points of the triangles, many of them along a triangle, up to rounding.
 fn rays_at(triangles: &[Triangle], count: usize) -> Vec<Ray> {
     let mut numbers = Numbers::of(29);
     let mut one = |k: usize| {
@@ -179,7 +179,7 @@ fn a_part_that_is_lost_is_found() {
     let source = build::Primitives { prims: &triangles[..], shared: &[] };
     let entries = |primitive: u32| bvh.indices().iter().filter(|&&k| k == primitive).count();
     let cut = (0..300).find(|&k| entries(k) > 1).expect("a triangle that is cut");
-    // The leaves that have it shrink to a point.
+    // Its leaves shrink to a point.
     let mut nodes = bvh.nodes().to_vec();
     let has_it = |leaf: &Node| {
         leaf.is_leaf() && bvh.indices()[leaf.first as usize..][..leaf.count as usize].contains(&cut)
@@ -194,7 +194,7 @@ fn a_part_that_is_lost_is_found() {
     );
 }
 
-/// What a cut of a [`Liar`] answers.
+/// Answer of a [`Liar`] to a cut.
 #[derive(Clone, Copy)]
 enum Lie {
     NotNumbers,
@@ -204,7 +204,7 @@ enum Lie {
     Everything,
 }
 
-/// A source with parts that are none.
+/// Source with invalid parts.
 struct Liar {
     boxes: Vec<Aabb>,
     lie: Lie,
@@ -239,13 +239,13 @@ fn parts_that_are_none_lose_no_primitive() {
         let liar = Liar { boxes: boxes.clone(), lie };
         let tree =
             build::build_watched(&liar, 1000, &binary(best(1.0)), None).expect("finite bounds");
-        // The parts of the boxes themselves hold what there is.
+        // The parts of the boxes themselves contain the primitive.
         let source = build::Boxes(|k: usize| boxes[k]);
         assert_eq!(check(&tree.nodes, &tree.indices, 1000, &source), Ok(()));
     }
 }
 
-/// A device keeps the list: another order, or fewer entries, would be met with the wrong leaves.
+/// A device keeps the list: another order, or fewer entries, would not match its leaves.
 #[test]
 fn refitting_leaves_the_index_list() {
     let (before, after) = (Numbers::of(23).slanted(400), Numbers::of(24).slanted(400));

@@ -1,4 +1,4 @@
-//! What rays meet does not depend on how the tree was built.
+//! Independence of hits from the build settings.
 
 use super::*;
 
@@ -16,7 +16,7 @@ fn every_quality_answers_as_brute_force() {
     }
 }
 
-/// Balls that are hard for builders: each three times, so that the least index must win.
+/// Returns balls that are hard for builders: each three times, so that the least index must win.
 fn hostile() -> Vec<Vec<Ball>> {
     let mut numbers = Numbers::of(2);
     let balls = numbers.balls(200);

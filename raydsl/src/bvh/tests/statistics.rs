@@ -1,4 +1,4 @@
-//! What trees are like.
+//! Tree statistics.
 
 use super::*;
 

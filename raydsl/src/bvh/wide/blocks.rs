@@ -84,8 +84,8 @@ fn fill<P: Primitive>(block: &mut [Row], prims: &[P], ids: &[u32], bytes: &mut [
     }
 }
 
-/// The numbers, each once, and the first one again in what is left: a primitive that has been cut
-/// may be in two leaves that became one block.
+/// Returns the ids, each once, padded with the first one: a primitive with spatial splits may be in
+/// two leaves that became one block.
 fn each_once(ids: &[u32]) -> [u32; WIDTH] {
     let mut once = [ids[0]; WIDTH];
     let mut count = 0;
@@ -110,7 +110,7 @@ struct Spot {
     size: u8,
 }
 
-/// The most scalars that a primitive in blocks may have.
+/// Maximum number of scalars of a primitive in blocks.
 const MOST: usize = 256;
 
 /// Appends the scalars of a structure in order of declaration to the first `n` spots.

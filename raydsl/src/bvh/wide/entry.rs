@@ -9,10 +9,10 @@ use crate::bvh::contract::Padding;
 use crate::geometry::Aabb;
 use crate::machine::Lanes;
 
-/// The fewest rays for which an entry node is made: fewer are traced in less time.
+/// Minimum number of rays for an entry node: fewer are traced in less time.
 const FEWEST: u32 = 48;
 
-/// The most nodes that are opened for an entry node.
+/// Maximum number of nodes opened for an entry node.
 const OPENED: usize = 8;
 
 /// Makes a node of the boxes that the active rays may enter within their limits; none if there are
@@ -76,7 +76,7 @@ impl Entries {
         if others + count > WIDTH {
             return false;
         }
-        // The entries after it move.
+        // Move the entries after it.
         let behind = others - at;
         self.boxes.copy_within(self.count - behind..self.count, at + count);
         self.children.copy_within(self.count - behind..self.count, at + count);

@@ -21,17 +21,17 @@ use crate::bvh::contract::Padding;
 use crate::geometry::{Aabb, Primitive};
 use crate::machine::{Lanes, op};
 
-/// The fewest rays that are sorted: fewer are traced in less time unsorted.
+/// Minimum number of rays to sort: fewer are traced in less time unsorted.
 pub(super) const FEWEST: u32 = 512;
 
-/// The most rays that leave their packet where they enter a box, for the stream.
+/// Maximum number of rays that leave their packet at a box, for the stream.
 pub(super) const APART: u32 = 16;
 
 /// The limit of divergence: none, since rays are sorted, and divergent ones leave the packet.
 const SPREAD: f32 = f32::INFINITY;
 
-/// The most boxes that a ray may keep for the stream. Few in unit tests, so that stacks are full
-/// and rays have to stay in the packet.
+/// Maximum number of boxes that a ray may keep for the stream. Few in unit tests, so that stacks
+/// are full and rays have to stay in the packet.
 const KEPT: usize = if cfg!(test) { 3 } else { 40 };
 
 /// Finds whether each active ray hits anything, in some sequence. `e` are the lanes of the stream.
@@ -145,6 +145,7 @@ fn walk<R: Lanes, P: Primitive>(
     );
     let (mut at, mut top) = (0u32, 0);
     loop {
+        // Push the children that the beam enters.
         counts::one(Event::BeamNode);
         let node = &tree.nodes[at as usize];
         let (_, mask) = enter(e, node, beam);
@@ -156,6 +157,7 @@ fn walk<R: Lanes, P: Primitive>(
                 return;
             }
             top -= 1;
+            // Pop a child that some ray enters.
             let (node, slot) = (stack[top] as usize / WIDTH, stack[top] as usize % WIDTH);
             let node = &tree.nodes[node];
             let child = Child(node.children[slot]);
@@ -164,6 +166,7 @@ fn walk<R: Lanes, P: Primitive>(
                 continue;
             }
             let of_groups = || packet.octant.groups().zip(entering);
+            // Keep it for the stream if few rays enter it and their stacks have room.
             if count <= APART
                 && of_groups().all(|((group, _), active)| has_room(packet.rays, group, active))
             {
@@ -175,6 +178,7 @@ fn walk<R: Lanes, P: Primitive>(
             if !child.is_block() {
                 break child.0;
             }
+            // Intersect a block.
             counts::one(Event::BeamBlock);
             if !packet.any_hits(intersector, intersector.rows(child.index()), entering) {
                 return;

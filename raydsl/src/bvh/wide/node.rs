@@ -3,7 +3,7 @@
 use crate::bvh::build::BLOCK;
 use crate::geometry::Aabb;
 
-/// The most children of a node, and primitives of a block.
+/// Maximum number of children of a node, and of primitives of a block.
 pub(crate) const WIDTH: usize = BLOCK;
 
 /// A child of a node: another node, or a block of primitives.

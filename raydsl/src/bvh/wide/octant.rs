@@ -22,8 +22,8 @@ impl Octant {
         (0..groups).step_by(GROUPS).map(move |first| first..(first + GROUPS).min(groups))
     }
 
-    /// Takes the rays of one octant from the active rays of at most `GROUPS` groups; returns how
-    /// many rays.
+    /// Takes the rays of one octant from the active rays of at most `GROUPS` groups; returns their
+    /// number.
     #[inline(always)]
     pub(super) fn take(&mut self, rays: &mut Rays, groups: Range<usize>) -> u32 {
         debug_assert!(groups.len() <= GROUPS);

@@ -10,7 +10,7 @@ use crate::machine::{Lanes, op};
 const STEPS: u32 = 8;
 const KEYS: usize = (STEPS * STEPS * STEPS) as usize;
 
-/// The most groups that are sorted at once, so that they stay in the L2 cache.
+/// Maximum number of groups sorted at once, so that they stay in the L2 cache.
 const MOST: usize = 256;
 const _: () = assert!(MOST * GROUP <= 1 << 16, "a ray's index has 16 bits below its key");
 
@@ -34,7 +34,7 @@ pub(super) struct Portions {
 }
 
 impl Portions {
-    /// Calls `find` with the active rays in portions, and copies the results back: hits with
+    /// Calls `find` with the active rays in portions, and copies the results back: the hits with
     /// `CLOSEST`, else whether there is any.
     #[inline(always)]
     pub(super) fn each<const CLOSEST: bool, R: Lanes>(
@@ -97,6 +97,7 @@ impl Order {
     ) -> &[u32] {
         self.keys.clear();
         let mut begins = [0u32; KEYS];
+        // Compute keys and count the rays of each.
         let first = groups.start;
         for group in groups {
             let active = rays.masks[group].active;
@@ -112,10 +113,12 @@ impl Order {
                 self.keys.push(key << 16 | (GROUP * (group - first) + lane) as u32);
             }
         }
+        // Turn counts into offsets.
         let mut begin = 0;
         for count in &mut begins {
             begin += core::mem::replace(count, begin);
         }
+        // Place the rays in the order of their keys.
         self.places.resize(self.keys.len(), 0);
         for &key in &self.keys {
             let next = &mut begins[(key >> 16) as usize % KEYS];

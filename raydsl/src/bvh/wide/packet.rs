@@ -1,4 +1,4 @@
-//! Ray packets: coherent rays, traced together with interval culling.
+//! Ray packets: coherent rays, traced with interval culling.
 
 use super::Wide;
 use super::beam::{Beam, extent};
@@ -13,11 +13,12 @@ use crate::bvh::packet_slabs::{and, max, min};
 use crate::geometry::{Aabb, HitOn, HitRecord, Primitive, RayOn};
 use crate::machine::{Entered, F, Lanes, Packet, U, V3, op};
 
-/// The fewest rays of one octant that form a packet, unless they are most of the active rays.
+/// Minimum number of rays of one octant that form a packet, unless they are most of the active
+/// rays.
 const FEWEST: u32 = 12;
 
-/// The most that directions of a packet may differ along an axis, relative to the largest
-/// component: rays that diverge further visit fewer nodes in a stream.
+/// Maximum spread of a packet's directions along an axis, relative to the largest component: rays
+/// that diverge further visit fewer nodes in a stream.
 const SPREAD: f32 = 0.5;
 
 /// Scratch memory of packets, reused by the next query.
@@ -102,6 +103,7 @@ fn walk<R: Lanes, P: Primitive>(
     let (mut at, mut slot, mut top) = (Child::node(0), 0, 0);
     loop {
         if at.is_block() {
+            // Intersect a block, and lower the limit if any hit is nearer.
             counts::one(Event::BeamBlock);
             let node = &tree.nodes[slot / WIDTH];
             let is_nearer =
@@ -110,6 +112,7 @@ fn walk<R: Lanes, P: Primitive>(
                 beam.limit = extent(e, packet.rays, packet.octant, row::LIMIT).greatest;
             }
         } else {
+            // Push the children that the beam enters, the nearest last.
             counts::one(Event::BeamNode);
             let node = &tree.nodes[at.index()];
             let (near, mask) = enter(e, node, &beam);
@@ -120,7 +123,7 @@ fn walk<R: Lanes, P: Primitive>(
             e.u32_store(below, &mut stack[top..][..WIDTH]);
             e.u32_store(keys, &mut enters[top..][..WIDTH]);
             if entered > 0 {
-                // The nearest child, sorted last, is visited next instead of being pushed.
+                // The nearest child is visited next instead of being pushed.
                 top += entered - 1;
                 let first = nearest(e, near, mask);
                 slot = WIDTH * at.index() + first;
@@ -128,6 +131,7 @@ fn walk<R: Lanes, P: Primitive>(
                 continue;
             }
         }
+        // Pop the next child within the limit.
         let last = last_key(beam.limit);
         loop {
             if top == 0 {
@@ -143,7 +147,7 @@ fn walk<R: Lanes, P: Primitive>(
     }
 }
 
-/// A ray packet under way.
+/// Ray packet in traversal.
 pub(super) struct RayPacket<'a, R: Lanes> {
     r: R,
     m: Packet<Entered<R>>,

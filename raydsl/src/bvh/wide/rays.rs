@@ -52,13 +52,13 @@ pub(super) struct Row(pub(super) [u32; GROUP]);
 /// Masks of the rays of a group by their state.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ActiveMasks {
-    /// Rays that the query asks about.
+    /// Rays of the query.
     pub(super) queried: u32,
-    /// Those of `queried` that are still to be traced in the current tree.
+    /// Rays of `queried` that are still to be traced in the current tree.
     pub(super) active: u32,
-    /// Those of `queried` whose box tests may overflow, which fall back to the binary tree.
+    /// Rays of `queried` whose box tests may overflow; they fall back to the binary tree.
     pub(super) degenerate: u32,
-    /// Those of `queried` that form no packet, which fall back to the ray stream.
+    /// Rays of `queried` that form no packet; they fall back to the ray stream.
     pub(super) stream_fallback: u32,
     /// Rays whose direction is negative along each axis.
     pub(super) sides: [u32; 3],
@@ -197,7 +197,7 @@ impl Rays {
         first
     }
 
-    /// Replaces the rays by those of the host.
+    /// Replaces the rays with those of the host.
     pub(super) fn load(&mut self, rays: &[Ray]) {
         self.clear();
         self.add(1, rays.len());
@@ -222,7 +222,7 @@ impl Rays {
         }
     }
 
-    /// Activates all queried rays except degenerate ones; returns how many.
+    /// Activates all queried rays except degenerate ones; returns their number.
     pub(super) fn activate_all(&mut self) -> u32 {
         let mut count = 0;
         for masks in &mut self.masks {
@@ -232,8 +232,8 @@ impl Rays {
         count
     }
 
-    /// Replaces the rays by those at some places of `from`, with `CLOSEST` including their hits so
-    /// far, else without any.
+    /// Replaces the rays with those at some places of `from`, including their hits so far with
+    /// `CLOSEST`, else without any.
     pub(super) fn gather<const CLOSEST: bool>(&mut self, from: &Self, places: &[u32]) {
         self.clear();
         self.add(1, places.len());
@@ -351,6 +351,7 @@ impl Rays {
             |axis| load(l, &rows[row::DIRECTION + axis].0, from),
         );
         let (low, high) = (root.min.to_array(), root.max.to_array());
+        // Compute the reach of the box tests, and from it the padding.
         let mut reach = l.f32(0.0);
         let mut largest = l.f32(0.0);
         for axis in 0..3 {
@@ -365,6 +366,7 @@ impl Rays {
         let direction = V3::from_array(direction);
         let inverse = finite_inverse::on(&Packet::new(l), direction).array();
         let span = l.f32(root.min.abs().max(root.max.abs()).max_element());
+        // Store the slabs of each axis.
         let mut tame = l.mask(true);
         for axis in 0..3 {
             let o = origin[axis];

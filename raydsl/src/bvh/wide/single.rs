@@ -13,8 +13,8 @@ use crate::geometry::{Hit, Primitive, Ray};
 use crate::machine::{Entered, Lanes, Packet, Type};
 use crate::run::{LanesTask, with_wide_walks};
 
-/// Entries of the stack of a ray, enough for all but very deep trees. Fewer in unit tests, so that
-/// both cases are tested.
+/// Stack entries of a ray, enough for all but very deep trees. Fewer in unit tests, so that both
+/// cases are tested.
 const FEW: usize = if cfg!(test) { 24 } else { 96 };
 
 thread_local! {
@@ -150,6 +150,7 @@ fn walk<E: Lanes, P: Primitive>(
     let (mut at, mut top) = (Child::node(0), 0);
     loop {
         if at.is_block() {
+            // Intersect a block.
             counts::one(Event::Block);
             let block = intersector.rows(at.index());
             let best_t = match wanted {
@@ -164,6 +165,7 @@ fn walk<E: Lanes, P: Primitive>(
                 best.is_hit = true;
                 return beam.limit;
             }
+            // Report each hit, or keep the least.
             while hits != 0 {
                 let i = hits.trailing_zeros() as usize;
                 hits &= hits - 1;
@@ -186,6 +188,7 @@ fn walk<E: Lanes, P: Primitive>(
             }
             counts::some(Event::Nearer, is_nearer.into());
         } else {
+            // Push the children that the ray enters; any-hit queries need no order.
             counts::one(Event::Node);
             let node = &tree.nodes[at.index()];
             let (near, mask) = enter(e, node, &beam);
@@ -202,12 +205,13 @@ fn walk<E: Lanes, P: Primitive>(
                     first = entered.ilog2() as usize % WIDTH;
                     e.u32_store(e.u32_compress(children, mask), &mut stack[top..][..WIDTH]);
                 }
-                // The nearest child, sorted last, is visited next instead of being pushed.
+                // The nearest child, or the last one, is visited next instead of being pushed.
                 top += entered.count_ones() as usize - 1;
                 at = Child(node.children[first]);
                 continue;
             }
         }
+        // Pop the next child within the limit.
         let last = last_key(beam.limit);
         at = loop {
             if top == 0 {

@@ -97,10 +97,12 @@ impl RayStream {
                 v.resize(len, 0);
             }
         };
+        // Grow the scratch memory.
         at_least(&mut self.stacks, stride * count);
         at_least(&mut self.enters, if is_sorted { stride * count } else { 0 });
         at_least(&mut self.at_nodes, count + 1);
         at_least(&mut self.at_blocks, count + 1);
+        // Give each active ray an empty stack, with a sentinel below.
         let mut base = 0;
         for group in groups {
             for lane in lanes_of(rays.masks[group].active) {
@@ -190,6 +192,7 @@ impl Interleaved<'_> {
         while from < top as usize {
             let enters = load(e, self.enters, from);
             let stack = load(e, self.stacks, from);
+            // Compress the entries within the limit to the bottom.
             let begun = e.u32_binary(op::And, enters, e.u32(!7));
             let places = e.u32_from_fn(
                 #[inline(always)]
@@ -248,11 +251,13 @@ pub(super) fn trace_interleaved<const CLOSEST: bool, E: Lanes, P: Primitive>(
         || {
             let tree = intersector.tree;
             while interleaved.nodes.len + interleaved.blocks.len > 0 {
+                // Rays at nodes.
                 for i in 0..core::mem::take(&mut interleaved.nodes.len) {
                     let ray = interleaved.nodes.places[i];
                     let node = &tree.nodes[ray_at(all, ray).word(row::AT) as usize];
                     interleaved.step::<CLOSEST, E>(e, node, all, ray);
                 }
+                // Rays at blocks.
                 for i in 0..core::mem::take(&mut interleaved.blocks.len) {
                     counts::one(Event::Block);
                     let ray = interleaved.blocks.places[i];
@@ -262,6 +267,7 @@ pub(super) fn trace_interleaved<const CLOSEST: bool, E: Lanes, P: Primitive>(
                     let (ray_on, best) = (words_of.ray_on(&Packet::new(e)), words_of.float(row::T));
                     let (hit, mask) = intersector.intersect(e, block, ray_on, best);
                     let is_hit = e.any(mask);
+                    // Update the ray's hit, and cull its stack if that is nearer.
                     if !CLOSEST {
                         let found = words_of.word(row::FOUND) | u32::from(is_hit);
                         ray_at_mut(all, ray).set(row::FOUND, found);

@@ -44,7 +44,7 @@ fn triangles(count: u32) -> Vec<Triangle> {
 }
 
 /// Counts the primitives in the blocks below a child; returns the most pending children in the
-/// worst order of traversal.
+/// worst traversal order.
 fn walk(tree: &Wide, child: Child, bounds: Aabb, prims: &[Triangle], seen: &mut [u32]) -> usize {
     if child.is_block() {
         let block = tree.blocks.block::<Triangle>(child.index());
@@ -55,7 +55,7 @@ fn walk(tree: &Wide, child: Child, bounds: Aabb, prims: &[Triangle], seen: &mut 
         assert!(ids[count..].iter().all(|&id| id == ids[0]), "{ids:?}");
         once.iter().for_each(|&id| seen[id as usize] += 1);
         for (lane, &id) in ids.iter().enumerate() {
-            // Split primitives are there in part.
+            // Split primitives are in several blocks.
             let part = bounds.intersection(prims[id as usize].get_bounds());
             assert!(part.is_valid());
             let words: Vec<f32> =

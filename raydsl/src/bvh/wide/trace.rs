@@ -246,6 +246,7 @@ fn each_part<const CLOSEST: bool, R: Lanes, P: Primitive>(
                 let root = &tree.bounds();
                 let (intersector, e) = (leaf_intersector(scene, part, tree), r.eight());
                 if CLOSEST {
+                    // Closest hits: packets first, then the remaining rays as streams.
                     let Scratch { rays, stream, packet_scratch, .. } = &mut *scratch;
                     rays.prepare(r, root, Padding::of::<P>());
                     if tree.traversal != Traversal::Streams {

@@ -1,4 +1,4 @@
-//! Elementary functions in `f64`, by std, instead of their polynomials.
+//! Bounds of elementary functions, from std's `f64` functions instead of their polynomials.
 
 use core::f64::consts::{PI, TAU};
 
@@ -6,7 +6,7 @@ use super::function::Function;
 use crate::machine::Margin;
 use crate::machine::margin::{Interval, Known};
 
-/// What an elementary function gives for these floats.
+/// Returns the values and ranges of an elementary function for these floats.
 pub(super) fn of(m: &Margin, function: Function, args: &[Known]) -> Vec<Known> {
     match (function, args) {
         (Function::SinCos2Pi, [u]) => {
@@ -31,7 +31,8 @@ pub(super) fn of(m: &Margin, function: Function, args: &[Known]) -> Vec<Known> {
     }
 }
 
-/// Where a function of exact arguments is 0, infinite or NaN, it is so in every variant.
+/// Adds the rounding error to a result. Exact zeros, infinities and NaNs are the same in every
+/// variant.
 fn result(m: &Margin, value: f64, range: Interval) -> Known {
     if range.is_nan() || range.as_point().is_some_and(|v| v == 0.0 || v.is_infinite()) {
         return m.bounded(value, range);
@@ -39,8 +40,8 @@ fn result(m: &Margin, value: f64, range: Interval) -> Known {
     m.rounded(value, range, m.rounding().function())
 }
 
-/// The angles of the points of a rectangle. Across the negative axis of x they jump: on which
-/// side the point is, is a decision.
+/// Returns the range of angles of the points of a rectangle. They jump across the negative axis of
+/// x: the side of the point is a decision.
 fn angle(m: &Margin, y: Known, x: Known) -> Interval {
     let (up, across) = (y.range, x.range);
     if up.is_nan() || across.is_nan() {
@@ -61,7 +62,7 @@ fn angle(m: &Margin, y: Known, x: Known) -> Interval {
     Interval::around([corner(ends[0]), corner(ends[1])].concat(), nan)
 }
 
-/// The value, and the interval of values that an interval gives.
+/// Returns the value, and the interval of values over an interval.
 fn of_one(function: Function, v: f64, x: Interval) -> (f64, Interval) {
     let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
     let steady = |domain: (f64, f64), f: fn(f64) -> f64| (f(v), x.monotone(domain, f));
@@ -82,7 +83,7 @@ fn of_one(function: Function, v: f64, x: Interval) -> (f64, Interval) {
     }
 }
 
-/// A function from -1 to 1 whose slope is at most `slope`; NaN at the infinities.
+/// Bounds a function from -1 to 1 whose slope is at most `slope`; NaN at the infinities.
 fn wave(x: Interval, slope: f64, f: fn(f64) -> f64) -> Interval {
     if x.is_nan() || x.as_point().is_some_and(f64::is_infinite) {
         return Interval::NAN;
@@ -105,7 +106,7 @@ fn tangent(x: Interval) -> Interval {
     if x.as_point().is_some() {
         return Interval::point(x.low.tan());
     }
-    // Which branch between two poles.
+    // Index of the branch between two poles.
     let branch = |v: f64| (v / PI + 0.5).floor();
     if x.is_nan() {
         Interval::NAN
@@ -116,8 +117,8 @@ fn tangent(x: Interval) -> Interval {
     }
 }
 
-/// Powers of positive numbers rise or fall in each argument, so corners are extreme; so do whole
-/// powers of negative ones.
+/// Bounds powers by their corners: powers of positive numbers are monotone in each argument, and so
+/// are whole powers of negative ones.
 fn power(x: Interval, y: Interval) -> Interval {
     if let (Some(x), Some(y)) = (x.as_point(), y.as_point()) {
         return Interval::point(x.powf(y));
@@ -139,7 +140,7 @@ fn power(x: Interval, y: Interval) -> Interval {
     Interval::around(corners, false)
 }
 
-/// The sine of an angle in turns, exact at quarters.
+/// Returns the sine of an angle in turns, exact at quarters.
 fn turn_sin(u: f64) -> f64 {
     let r = u - u.round();
     match 4.0 * r {
@@ -149,7 +150,7 @@ fn turn_sin(u: f64) -> f64 {
     }
 }
 
-/// The cosine of an angle in turns, exact at quarters.
+/// Returns the cosine of an angle in turns, exact at quarters.
 fn turn_cos(u: f64) -> f64 {
     let r = u - u.round();
     match (4.0 * r).abs() {

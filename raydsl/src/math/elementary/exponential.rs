@@ -1,4 +1,4 @@
-//! `exp`, `exp2`, `expm1`.
+//! Exponential functions: `exp`, `exp2`, `expm1`.
 
 use core::f32::consts::LOG2_E;
 
@@ -7,12 +7,12 @@ use super::parts::{exp2_near_zero, power_of_two, scaled};
 use crate::kernel;
 use crate::machine::generic::clamp;
 
-/// The upper 13 bits of ln 2, so that the product with an exponent is exact.
+/// Upper 13 bits of ln 2, so that the product with an exponent is exact.
 pub(super) const LN_2_HIGH: f32 = 0.69311523;
-/// The rest of ln 2.
+/// Rest of ln 2.
 pub(super) const LN_2_LOW: f32 = 3.1946183e-5;
 
-/// `e^x`.
+/// Returns `e^x`.
 ///
 /// At most 0.98 ulp off. Infinity above 88.72, 0 below -103.97, 1 at both zeros.
 ///
@@ -21,7 +21,7 @@ pub(super) const LN_2_LOW: f32 = 3.1946183e-5;
 #[kernel(known = Function::Exp)]
 #[inline]
 pub fn exp(x: f32) -> f32 {
-    // What lies outside overflows or vanishes as the limits do.
+    // Arguments outside overflow or vanish like the limits.
     let y = clamp(x, -105.0, 90.0);
     let n = (y * LOG2_E + 0.5).floor();
     let r = (y - n * LN_2_HIGH) - n * LN_2_LOW;
@@ -30,7 +30,7 @@ pub fn exp(x: f32) -> f32 {
     scaled(1.0 + (r + r * r * p), n as i32)
 }
 
-/// `2^x`.
+/// Returns `2^x`.
 ///
 /// At most 1.09 ulp off, and exact where `x` is whole. Infinity from 128 on, 0 from -150 down.
 ///
@@ -43,7 +43,7 @@ pub fn exp2(x: f32) -> f32 {
     scaled(exp2_near_zero(y - n), n as i32)
 }
 
-/// `e^x - 1`, without the loss of `exp(x) - 1.0` near 0.
+/// Returns `e^x - 1`, without the loss of `exp(x) - 1.0` near 0.
 ///
 /// At most 1.45 ulp off. Infinity above 88.72, -1 far below 0, `x` itself next to 0 (-0 gives -0).
 ///
@@ -58,7 +58,7 @@ pub fn expm1(x: f32) -> f32 {
     let q = 0.04166649 + r * (0.008333206 + r * (0.0013932673 + r * 0.0001994595));
     let e = r + r * r * (0.5 + r * (0.16666667 + r * q));
     let whole = n as i32;
-    // From 2^25 on, the 1 that is taken away is below the last bit.
+    // From 2^25 on, the subtracted 1 is below the last bit.
     let rest = 1.0 - power_of_two(-whole.min(60));
     scaled(e + rest, whole).copysign(x)
 }

@@ -1,11 +1,11 @@
-//! What machines know of the elementary functions beyond their code.
+//! Elementary functions as known to machines: WGSL builtins and bounds.
 
 use super::bounds;
 use crate::machine::margin::Known;
 use crate::machine::record::ir::{Expr, Id, Type};
 use crate::machine::{KnownFunction, Machine, Margin, Recorder, op};
 
-/// An elementary function.
+/// Elementary functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Function {
     Sin,

@@ -1,4 +1,4 @@
-//! `asin`, `acos`, `atan`, `atan2`.
+//! Inverse trigonometric functions: `asin`, `acos`, `atan`, `atan2`.
 
 use core::f32::consts::{FRAC_PI_2, PI};
 
@@ -7,16 +7,16 @@ use super::parts::{is_nan, turned};
 use crate::kernel;
 use crate::machine::generic::{max, min};
 
-/// What pi / 2 is less than `FRAC_PI_2`.
+/// Excess of `FRAC_PI_2` over pi / 2.
 const FRAC_PI_2_EXCESS: f32 = 4.371139e-8;
-/// What pi is less than `PI`.
+/// Excess of `PI` over pi.
 const PI_EXCESS: f32 = 8.742278e-8;
-/// The upper 8 bits of pi / 4: up to four times that is exact.
+/// Upper 8 bits of pi / 4: multiples up to four are exact.
 const FRAC_PI_4_HIGH: f32 = 0.78515625;
-/// The rest of pi / 4.
+/// Rest of pi / 4.
 const FRAC_PI_4_LOW: f32 = 0.0002419134;
 
-/// The arc sine, from -pi / 2 to pi / 2.
+/// Returns the arc sine, from -pi / 2 to pi / 2.
 ///
 /// At most 2.36 ulp off. NaN outside -1 to 1; -0 gives -0.
 ///
@@ -34,7 +34,7 @@ pub fn asin(x: f32) -> f32 {
     if a <= 1.0 { v.copysign(x) } else { f32::NAN }
 }
 
-/// The arc cosine, from 0 to pi.
+/// Returns the arc cosine, from 0 to pi.
 ///
 /// At most 1.13 ulp off. NaN outside -1 to 1.
 ///
@@ -53,7 +53,7 @@ pub fn acos(x: f32) -> f32 {
     if a <= 1.0 { v } else { f32::NAN }
 }
 
-/// `asin(s)` from `s` and `z = s²`, up to 1/2.
+/// Returns `asin(s)` from `s` and `z = s²`, up to 1/2.
 #[kernel]
 #[inline]
 fn asin_series(s: f32, z: f32) -> f32 {
@@ -61,11 +61,11 @@ fn asin_series(s: f32, z: f32) -> f32 {
     s + s * z * (0.16666754 + z * (0.07495249 + z * p))
 }
 
-/// The arc tangent, from -pi / 2 to pi / 2.
+/// Returns the arc tangent, from -pi / 2 to pi / 2.
 ///
 /// At most 1.87 ulp off. ±pi / 2 at ±infinity; -0 gives -0.
 ///
-/// With `k` eighths of a turn taken off, `atan(x) = k pi/4 + atan(q)` with `|q| <= tan(pi/8)`: `q`
+/// With `k` eighths of a turn subtracted, `atan(x) = k pi/4 + atan(q)` with `|q| <= tan(pi/8)`: `q`
 /// is `x`, `(x - 1) / (x + 1)` or `-1 / x` (Cephes, `atanf.c`).
 #[kernel(known = Function::Atan)]
 #[inline]
@@ -81,13 +81,14 @@ pub fn atan(x: f32) -> f32 {
     atan_of_parts(k, above / below).copysign(x)
 }
 
-/// The angle of the point `(x, y)`, from -pi to pi, counted from the axis of x.
+/// Returns the angle of the point `(x, y)`, from -pi to pi, counted from the axis of x.
 ///
 /// At most 2.0 ulp off. Zeros, signs and infinities as in C (C17, F.10.1.4): ±0 for a `y` of ±0
 /// and a positive `x` or +0, ±pi for a negative `x` or -0, ±pi / 2 for an `x` of 0, multiples of
 /// pi / 4 where both are infinite.
 ///
-/// The arc tangent of the smaller part over the larger one, and the quadrant from the signs.
+/// Computes the arc tangent of the smaller part over the larger one, and the quadrant from the
+/// signs.
 #[kernel(known = Function::Atan2)]
 #[inline]
 pub fn atan2(y: f32, x: f32) -> f32 {
@@ -108,7 +109,7 @@ pub fn atan2(y: f32, x: f32) -> f32 {
     let above = if is_middle { short - long } else { short };
     let below = if is_middle { short + long } else { long };
     let q = above / below;
-    // From the octant to the half plane: mirrored at the diagonal, then at the axis of y.
+    // From the octant to the half plane: mirror at the diagonal, then at the axis of y.
     let k = is_middle as u32;
     let is_high = height > width;
     let k = if is_high { 2 - k } else { k };
@@ -119,7 +120,7 @@ pub fn atan2(y: f32, x: f32) -> f32 {
     if is_nan(x) || is_nan(y) { f32::NAN } else { angle.copysign(y) }
 }
 
-/// `k pi/4 + atan(q)` for a `k` up to 4 and `|q| <= tan(pi/8)`.
+/// Returns `k pi/4 + atan(q)` for a `k` up to 4 and `|q| <= tan(pi/8)`.
 #[kernel]
 #[inline]
 fn atan_of_parts(k: f32, q: f32) -> f32 {

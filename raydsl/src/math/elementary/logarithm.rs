@@ -1,16 +1,16 @@
-//! `log`, `log2`, `log1p`.
+//! Logarithms: `log`, `log2`, `log1p`.
 
 use super::exponential::{LN_2_HIGH, LN_2_LOW};
 use super::function::Function;
 use super::parts::{head, power_of_two, split};
 use crate::kernel;
 
-/// The upper 12 bits of 1 / ln 2.
+/// Upper 12 bits of 1 / ln 2.
 const LOG2_E_HIGH: f32 = 1.4423828;
-/// The rest of 1 / ln 2.
+/// Rest of 1 / ln 2.
 const LOG2_E_LOW: f32 = 0.0003122284;
 
-/// The natural logarithm.
+/// Returns the natural logarithm.
 ///
 /// At most 0.82 ulp off. -infinity at both zeros, NaN below, 0 at 1, infinity at infinity.
 ///
@@ -25,7 +25,7 @@ pub fn log(x: f32) -> f32 {
     if x > 0.0 && x <= f32::MAX { v } else { log_at_the_ends(x) }
 }
 
-/// The logarithm to base 2.
+/// Returns the logarithm to base 2.
 ///
 /// At most 0.87 ulp off, and exact at powers of 2. -infinity at both zeros, NaN below, infinity at
 /// infinity.
@@ -45,26 +45,26 @@ pub fn log2(x: f32) -> f32 {
     if x > 0.0 && x <= f32::MAX { v } else { log_at_the_ends(x) }
 }
 
-/// `log(1 + x)`, without the loss of `log(1.0 + x)` near 0.
+/// Returns `log(1 + x)`, without the loss of `log(1.0 + x)` near 0.
 ///
 /// At most 1.39 ulp off. -infinity at -1, NaN below, `x` itself next to 0 (-0 gives -0), infinity
 /// at infinity.
 ///
-/// The rounded `1 + x` only tells the exponent `k`. `f = 2^-k x + (2^-k - 1)` is then `2^-k (1 + x)
-/// - 1`: `x` itself for `k = 0`, else rounded once where the result is large.
+/// The rounded `1 + x` only determines the exponent `k`. `f = 2^-k x + (2^-k - 1)` is then
+/// `2^-k (1 + x) - 1`: `x` itself for `k = 0`, else rounded once where the result is large.
 #[kernel(known = Function::Log1p)]
 #[inline]
 pub fn log1p(x: f32) -> f32 {
     let y = 1.0 + x;
     let k = (y.to_bits().wrapping_sub(0x3f35_04f3) as i32) >> 23;
-    // Four times 2^-k, which is a normal number for k = 128 too.
+    // Four times 2^-k, a normal number for k = 128 too.
     let scale = power_of_two(2 - k);
     let f = x * scale * 0.25 + (scale * 0.25 - 1.0);
     let v = log_of_parts(f, k as f32).copysign(x);
     if x > -1.0 && x <= f32::MAX { v } else { log_at_the_ends(y) }
 }
 
-/// `log((1 + f) 2^k)`.
+/// Returns `log((1 + f) 2^k)`.
 #[kernel]
 #[inline]
 fn log_of_parts(f: f32, k: f32) -> f32 {
@@ -74,14 +74,14 @@ fn log_of_parts(f: f32, k: f32) -> f32 {
     k * LN_2_HIGH + (f - (half - small))
 }
 
-/// `2 atanh(s) / s - 2`, from `z = s²`.
+/// Returns `2 atanh(s) / s - 2` from `z = s²`.
 #[kernel]
 #[inline]
 fn log_rest(z: f32) -> f32 {
     z * (0.66666776 + z * (0.39977568 + z * 0.2987146))
 }
 
-/// The logarithms of 0, infinity, NaN and negative numbers.
+/// Returns the logarithms of 0, infinity, NaN and negative numbers.
 #[kernel]
 #[inline]
 fn log_at_the_ends(x: f32) -> f32 {

@@ -1,20 +1,20 @@
-//! `pow`.
+//! Power function: `pow`.
 
 use super::function::Function;
 use super::parts::{exp2_near_zero, head, is_nan, scaled, split};
 use crate::kernel;
 use crate::machine::generic::clamp;
 
-/// `x` to the power of `y`.
+/// Returns `x` to the power of `y`.
 ///
 /// At most 1.26 ulp off. The special values are those of C (C17, F.10.4.4) and of IEEE 754's `pow`:
 /// 1 where `x` is 1 or `y` is 0, whatever the other one is, and where `x` is -1 and `y` infinite;
 /// NaN for a negative `x` and a `y` that is not whole; signed zeros and infinities by whether `y`
 /// is odd.
 ///
-/// `2^(y log2(x))`, where the logarithm and its product with `y` are sums of two numbers, together
-/// about 35 bits, as in FreeBSD's msun, `e_powf.c`: with `s = (m - 1) / (m + 1)` of the mantissa
-/// `m` in two parts, `log(m) = 2/3 s (3 + s² + s⁴ G(s²))`.
+/// Computes `2^(y log2(x))`, where the logarithm and its product with `y` are sums of two numbers,
+/// together about 35 bits, as in FreeBSD's msun, `e_powf.c`: with `s = (m - 1) / (m + 1)` of the
+/// mantissa `m` in two parts, `log(m) = 2/3 s (3 + s² + s⁴ G(s²))`.
 #[kernel(known = Function::Pow)]
 #[inline]
 pub fn pow(x: f32, y: f32) -> f32 {
@@ -23,6 +23,7 @@ pub fn pow(x: f32, y: f32) -> f32 {
     let is_whole = b.floor() == b;
     let is_odd = is_whole && (b * 0.5).floor() != b * 0.5;
 
+    // Compute `s` of the mantissa in two parts.
     let parts = split(a);
     let m = parts.mantissa;
     let k = parts.exponent;
@@ -34,6 +35,7 @@ pub fn pow(x: f32, y: f32) -> f32 {
     let d_low = m - (d_high - 1.0);
     let s_low = ((f - s_high * d_high) - s_high * d_low) / d;
 
+    // Compute `s (3 + s² + s⁴ G(s²))` in two parts.
     let z = s * s;
     let z_high = s_high * s_high;
     let g = 0.6000023 + z * (0.42820632 + z * 0.35129592);
@@ -45,7 +47,7 @@ pub fn pow(x: f32, y: f32) -> f32 {
     let p_high = head(u + v);
     let p_low = v - (p_high - u);
 
-    // Times 2 / (3 ln 2), of which the first number has the upper 12 bits.
+    // Multiply by 2 / (3 ln 2), whose first part has the upper 12 bits.
     let q_high = 0.9616699 * p_high;
     let q_low = 0.00012677205 * p_high + p_low * 0.9617967;
     let log_high = head((q_low + q_high) + k);
@@ -66,7 +68,7 @@ pub fn pow(x: f32, y: f32) -> f32 {
     if is_usual { power } else { pow_at_the_ends(x, y, is_odd) }
 }
 
-/// Powers of 0, infinity and NaN, powers that are infinite or NaN, and roots of negative numbers.
+/// Returns powers of 0, infinity and NaN, infinite or NaN powers, and roots of negative numbers.
 #[kernel]
 #[inline]
 fn pow_at_the_ends(x: f32, y: f32, is_odd: bool) -> f32 {

@@ -1,4 +1,4 @@
-//! `sin`, `cos`, `tan`, `sincos_2pi`.
+//! Trigonometric functions: `sin`, `cos`, `tan`, `sincos_2pi`.
 
 use core::f32::consts::{FRAC_2_PI, FRAC_PI_2, TAU};
 
@@ -6,24 +6,24 @@ use super::function::Function;
 use super::parts::turned;
 use crate::{Type, kernel};
 
-/// The upper 11 bits of pi / 2: times a whole number below 2^13 they are exact.
+/// Upper 11 bits of pi / 2: products with whole numbers below 2^13 are exact.
 const FRAC_PI_2_1: f32 = 1.5703125;
-/// The next 11 bits of pi / 2.
+/// Next 11 bits of pi / 2.
 const FRAC_PI_2_2: f32 = 0.0004837513;
-/// The next 11 bits of pi / 2.
+/// Next 11 bits of pi / 2.
 const FRAC_PI_2_3: f32 = 7.5495336e-8;
-/// The rest of pi / 2.
+/// Rest of pi / 2.
 const FRAC_PI_2_4: f32 = 2.563344e-12;
-/// What pi / 2 is more than its upper 8 bits, which are `FRAC_PI_2_1`.
+/// Rest of pi / 2 after its upper 8 bits, which are `FRAC_PI_2_1`.
 const FRAC_PI_2_REST: f32 = 0.0004838268;
 
-/// The sine of an angle in radians.
+/// Returns the sine of an angle in radians.
 ///
 /// At most 1.64 ulp off, for every number, however large. NaN at the infinities; -0 gives -0.
 ///
 /// The angle is reduced to at most pi / 4: below 8192 by pi / 2 in four parts (Cody and Waite,
-/// 1980), else by the bits of 2 / pi that matter to it (Payne and Hanek, 1983). Packets skip what
-/// none of their lanes needs.
+/// 1980), else by the relevant bits of 2 / pi (Payne and Hanek, 1983). Packets skip a branch that
+/// no lane takes.
 #[kernel(known = Function::Sin)]
 #[inline]
 pub fn sin(x: f32) -> f32 {
@@ -31,7 +31,7 @@ pub fn sin(x: f32) -> f32 {
     turned(wave(angle, angle.quarters), x.to_bits())
 }
 
-/// The cosine of an angle in radians.
+/// Returns the cosine of an angle in radians.
 ///
 /// At most 1.71 ulp off, for every number, however large. NaN at the infinities.
 ///
@@ -43,7 +43,7 @@ pub fn cos(x: f32) -> f32 {
     wave(angle, angle.quarters.wrapping_add(1))
 }
 
-/// The tangent of an angle in radians.
+/// Returns the tangent of an angle in radians.
 ///
 /// At most 2.54 ulp off, for every number, however large. NaN at the infinities; -0 gives -0.
 ///
@@ -61,7 +61,7 @@ pub fn tan(x: f32) -> f32 {
     turned(v, x.to_bits())
 }
 
-/// A sine and a cosine.
+/// Sine and cosine of one angle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 #[repr(C)]
 pub struct SinCos {
@@ -71,14 +71,14 @@ pub struct SinCos {
     pub cos: f32,
 }
 
-/// The sine and the cosine of `2 pi u`: of an angle in turns.
+/// Returns the sine and the cosine of `2 pi u`: of an angle in turns.
 ///
-/// At most 1.60 ulp off, for every number. NaN at the infinities. Multiples of a quarter give
+/// At most 1.60 ulp off, for every number. NaN at the infinities. Multiples of a quarter return
 /// exact zeros and ones; a zero sine has the sign of `u`, a zero cosine is +0 (as IEEE 754's
 /// `sinPi` and `cosPi`).
 ///
-/// Turns are reduced without an error, which makes this both more accurate and faster than
-/// [`sin()`] of a product with 2 pi.
+/// Turns are reduced without an error, so this is both more accurate and faster than [`sin()`] of a
+/// product with 2 pi.
 #[kernel(known = Function::SinCos2Pi)]
 #[inline]
 pub fn sincos_2pi(u: f32) -> SinCos {
@@ -93,14 +93,14 @@ pub fn sincos_2pi(u: f32) -> SinCos {
     let is_odd = (quarters & 1) != 0;
     let sin = if is_odd { c } else { s };
     let cos = if is_odd { s } else { c };
-    // The sum makes +0 of -0.
+    // Adding 0 turns -0 into +0.
     let sin = turned(sin, quarters << 30) + 0.0;
     let cos = turned(cos, quarters.wrapping_add(1) << 30) + 0.0;
     SinCos { sin: turned(sin, u.to_bits()), cos }
 }
 
-/// An angle `rest - tail + quarters pi/2`, with `rest` from -pi / 4 to pi / 4, a `tail` below its
-/// last bits, and `quarters` modulo 4.
+/// Reduced angle `rest - tail + quarters pi/2`, with `rest` from -pi / 4 to pi / 4, a `tail` below
+/// its last bits, and `quarters` modulo 4.
 #[derive(Clone, Copy, Debug, Type)]
 #[repr(C)]
 struct Reduced {
@@ -109,7 +109,7 @@ struct Reduced {
     quarters: u32,
 }
 
-/// The sine of the `rest` after this many quarters of a turn.
+/// Returns the sine of the `rest` after this many quarters of a turn.
 #[kernel]
 #[inline]
 fn wave(angle: Reduced, quarters: u32) -> f32 {
@@ -123,7 +123,7 @@ fn wave(angle: Reduced, quarters: u32) -> f32 {
     turned(v, quarters << 30)
 }
 
-/// Reduces an angle that is not negative.
+/// Reduces a non-negative angle.
 #[kernel]
 #[inline]
 fn reduced(a: f32) -> Reduced {
@@ -136,12 +136,12 @@ fn reduced(a: f32) -> Reduced {
     }
 }
 
-/// Reduces an angle from 2^13 on; infinity and NaN give NaN.
+/// Reduces an angle from 2^13 on; infinity and NaN return NaN.
 ///
-/// With `a = m 2^e`, bits of 2 / pi that are worth a multiple of 4 in `a 2/pi` do not matter: 96
+/// With `a = m 2^e`, bits of 2 / pi that contribute a multiple of 4 to `a 2/pi` do not matter: 96
 /// bits are taken from the first one that does. The upper 64 bits of their product with `m` are two
-/// bits of quarters and 62 of a fraction. No number comes closer to a multiple of pi / 2 than
-/// about 2^-30 of it, so at least 30 bits remain.
+/// bits of quarters and 62 of a fraction. No number comes closer to a multiple of pi / 2 than about
+/// 2^-30 of it, so at least 30 bits remain.
 #[kernel]
 fn reduced_large(a: f32) -> Reduced {
     let bits = a.to_bits();
@@ -149,7 +149,7 @@ fn reduced_large(a: f32) -> Reduced {
     let first = (bits >> 23).wrapping_sub(120);
     let words = two_over_pi(first >> 5);
     let shift = first & 31;
-    // Two steps to the right, since one of 32 is not allowed.
+    // Two shifts to the right, since one by 32 is not allowed.
     let back = shift ^ 31;
     let w0 = (words.a << shift) | ((words.b >> 1) >> back);
     let w1 = (words.b << shift) | ((words.c >> 1) >> back);
@@ -160,7 +160,7 @@ fn reduced_large(a: f32) -> Reduced {
     let carry = (low < product) as u32;
     let high = m.wrapping_mul(w0).wrapping_add(upper_half(m, w1)).wrapping_add(carry);
 
-    // To the nearest quarter; the fraction is then a number with a sign.
+    // Round to the nearest quarter; the fraction is then signed.
     let quarters = high.wrapping_add(0x2000_0000) >> 30;
     let fraction = (high << 2) | (low >> 30);
     let flip = ((fraction as i32) >> 31) as u32;
@@ -174,7 +174,7 @@ fn reduced_large(a: f32) -> Reduced {
     Reduced { rest: if a <= f32::MAX { turned(rest, flip) } else { f32::NAN }, tail: 0.0, quarters }
 }
 
-/// The upper word of the product of a number of 24 bits and one of 32.
+/// Returns the upper word of the product of a number of 24 bits and one of 32.
 #[kernel]
 #[inline]
 fn upper_half(m: u32, w: u32) -> u32 {
@@ -199,7 +199,7 @@ struct Words {
     d: u32,
 }
 
-/// Four words of 2 / pi from the word `i` on, of which the first is the one before the point.
+/// Returns four words of 2 / pi from the word `i` on; the first is the one before the binary point.
 #[kernel]
 #[inline]
 fn two_over_pi(i: u32) -> Words {

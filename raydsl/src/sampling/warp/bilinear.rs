@@ -1,4 +1,4 @@
-//! Densities that are linear between corners.
+//! Bilinear densities.
 
 use glam::{Vec2, Vec4, vec2};
 
@@ -7,10 +7,10 @@ use crate::machine::functions::vec2;
 use crate::machine::generic::{max, min};
 use crate::sampling::rng::ONE_MINUS_EPSILON;
 
-/// A number from 0 to below 1 with a density from `a` at 0 to `b` at 1.
+/// Samples a number from 0 to below 1 with a linear density from `a` at 0 to `b` at 1.
 ///
-/// Without a difference of two large numbers, as "Physically Based Rendering", 4th edition, 2.3.2,
-/// has it. Two zeros count as ones. Only the ratio counts, so that squares neither overflow nor
+/// Without a difference of two large numbers, as in "Physically Based Rendering", 4th edition,
+/// 2.3.2. Two zeros count as ones. Weights are normalized, so that squares neither overflow nor
 /// vanish.
 #[kernel]
 #[inline]
@@ -22,22 +22,22 @@ fn sample_linear(u: f32, a: f32, b: f32) -> f32 {
     min(u * (a + b) / (a + root), ONE_MINUS_EPSILON)
 }
 
-/// The number whose [`sample_linear`] is `x`.
+/// Returns the number whose [`sample_linear`] is `x`.
 #[kernel]
 #[inline]
 fn invert_linear(x: f32, a: f32, b: f32) -> f32 {
     if a + b > 0.0 { min(x * (a * (2.0 - x) + b * x) / (a + b), ONE_MINUS_EPSILON) } else { x }
 }
 
-/// `a` at 0, `b` at 1.
+/// Interpolates linearly: `a` at 0, `b` at 1.
 #[kernel]
 #[inline]
 fn between(t: f32, a: f32, b: f32) -> f32 {
     (1.0 - t) * a + t * b
 }
 
-/// A point of the unit square, whose density is bilinear between weights at the corners: those at
-/// (0, 0), (1, 0), (0, 1) and (1, 1), none negative. All zeros count as ones.
+/// Samples a point of the unit square with a bilinear density between weights at the corners: those
+/// at (0, 0), (1, 0), (0, 1) and (1, 1), none negative. All zeros count as ones.
 ///
 /// For quads that light a point unevenly: the weights are cosines, or radiances.
 #[kernel]
@@ -49,7 +49,7 @@ pub fn sample_bilinear(u: Vec2, weights: Vec4) -> Vec2 {
     vec2(sample_linear(u.x, left, right), y)
 }
 
-/// The density of [`sample_bilinear()`], per area of the square.
+/// Returns the density of [`sample_bilinear()`], per area of the square.
 #[kernel]
 #[inline]
 pub fn bilinear_pdf(p: Vec2, weights: Vec4) -> f32 {
@@ -59,7 +59,7 @@ pub fn bilinear_pdf(p: Vec2, weights: Vec4) -> f32 {
     if sum > 0.0 { 4.0 * between(p.x, left, right) / sum } else { 1.0 }
 }
 
-/// The point whose [`sample_bilinear()`] is `p`.
+/// Inverts [`sample_bilinear()`]: returns the point whose sample is `p`.
 #[kernel]
 #[inline]
 pub fn invert_bilinear(p: Vec2, weights: Vec4) -> Vec2 {

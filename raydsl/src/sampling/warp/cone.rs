@@ -1,4 +1,4 @@
-//! Uniform directions: of a cone, of a hemisphere, of the sphere.
+//! Uniform directions of a cone, a hemisphere or the sphere.
 
 use core::f32::consts::{FRAC_1_PI, TAU};
 
@@ -11,16 +11,16 @@ use crate::machine::generic::{clamp, max, min};
 use crate::math::elementary::sincos_2pi;
 use crate::sampling::rng::ONE_MINUS_EPSILON;
 
-/// The density of [`sample_uniform_hemisphere()`].
+/// Density of [`sample_uniform_hemisphere()`].
 pub const UNIFORM_HEMISPHERE_PDF: f32 = 0.5 * FRAC_1_PI;
 
-/// The density of [`sample_uniform_sphere()`].
+/// Density of [`sample_uniform_sphere()`].
 pub const UNIFORM_SPHERE_PDF: f32 = 0.25 * FRAC_1_PI;
 
-/// `1 - cos a` of an angle up to a right one with this sine: how high a cone's cap is.
+/// Returns `1 - cos a` for an angle up to a right one with this sine: the height of a cone's cap.
 ///
-/// `s^2 / (1 + cos a)` instead of the difference, of which nothing is left at small angles. A ball
-/// of radius `r` at the distance `d` has the sine `r / d`; a sine above 1 counts as 1.
+/// `s^2 / (1 + cos a)` instead of the difference, which cancels at small angles. A ball of radius
+/// `r` at the distance `d` has the sine `r / d`; a sine above 1 counts as 1.
 #[kernel]
 #[inline]
 pub fn one_minus_cos(sine: f32) -> f32 {
@@ -28,8 +28,8 @@ pub fn one_minus_cos(sine: f32) -> f32 {
     s * s / (1.0 + ((1.0 - s) * (1.0 + s)).sqrt())
 }
 
-/// A uniform direction of a cone around z, whose cap has this height: [`one_minus_cos()`] of the
-/// angle between its axis and its side, above 0 to 2.
+/// Samples a uniform direction of a cone around z, whose cap has this height: [`one_minus_cos()`]
+/// of the angle between its axis and its side, above 0 to 2.
 #[kernel]
 #[inline]
 pub fn sample_cone(u: Vec2, height: f32) -> Vec3 {
@@ -39,14 +39,14 @@ pub fn sample_cone(u: Vec2, height: f32) -> Vec3 {
     vec3(r * around.cos, r * around.sin, 1.0 - below)
 }
 
-/// The density of directions in a cone.
+/// Returns the density of directions in a cone.
 #[kernel]
 #[inline]
 pub fn cone_pdf(height: f32) -> f32 {
     1.0 / (TAU * height)
 }
 
-/// The point whose [`sample_cone()`] is `direction`, which has unit length and lies in the cone.
+/// Inverts [`sample_cone()`] for a `direction` of unit length in the cone.
 #[kernel]
 #[inline]
 pub fn invert_cone(direction: Vec3, height: f32) -> Vec2 {
@@ -56,28 +56,28 @@ pub fn invert_cone(direction: Vec3, height: f32) -> Vec2 {
     vec2(clamp(below / height, 0.0, ONE_MINUS_EPSILON), turn_to(d.x, d.y))
 }
 
-/// A uniform direction of the hemisphere around z.
+/// Samples a uniform direction of the hemisphere around z.
 #[kernel]
 #[inline]
 pub fn sample_uniform_hemisphere(u: Vec2) -> Vec3 {
     sample_cone(u, 1.0)
 }
 
-/// The point whose [`sample_uniform_hemisphere()`] is `direction`.
+/// Inverts [`sample_uniform_hemisphere()`] for `direction`.
 #[kernel]
 #[inline]
 pub fn invert_uniform_hemisphere(direction: Vec3) -> Vec2 {
     invert_cone(direction, 1.0)
 }
 
-/// A uniform direction.
+/// Samples a uniform direction of the sphere.
 #[kernel]
 #[inline]
 pub fn sample_uniform_sphere(u: Vec2) -> Vec3 {
     sample_cone(u, 2.0)
 }
 
-/// The point whose [`sample_uniform_sphere()`] is `direction`.
+/// Inverts [`sample_uniform_sphere()`] for `direction`.
 #[kernel]
 #[inline]
 pub fn invert_uniform_sphere(direction: Vec3) -> Vec2 {

@@ -1,4 +1,4 @@
-//! The unit disk.
+//! Unit disk sampling.
 
 use core::f32::consts::FRAC_1_PI;
 
@@ -13,11 +13,11 @@ use crate::sampling::rng::ONE_MINUS_EPSILON;
 /// 4 / pi: eighths of a turn per radian.
 const EIGHTHS: f32 = 4.0 * FRAC_1_PI;
 
-/// The density of [`sample_concentric_disk()`], per area.
+/// Density of [`sample_concentric_disk()`], per area.
 pub const CONCENTRIC_DISK_PDF: f32 = FRAC_1_PI;
 
-/// A uniform point of the unit disk: squares around the middle become circles, so that what is
-/// near stays near. (.5, .5) gives (0, 0).
+/// Samples a uniform point of the unit disk: squares around the middle become circles, so that
+/// neighbours stay close. (.5, .5) maps to (0, 0).
 ///
 /// Shirley and Chiu, "A Low Distortion Map Between Disk and Square" (1997). The distance from the
 /// middle is at most 1, to within rounding.
@@ -36,14 +36,15 @@ pub fn sample_concentric_disk(u: Vec2) -> Vec2 {
     if is_wide { vec2(along, aside) } else { vec2(aside, along) }
 }
 
-/// The distance from the middle of what [`sample_concentric_disk()`] gives, exactly.
+/// Returns the exact distance from the middle of the point that [`sample_concentric_disk()`]
+/// returns.
 #[kernel]
 #[inline]
 pub(super) fn concentric_radius(u: Vec2) -> f32 {
     max((2.0 * u.x - 1.0).abs(), (2.0 * u.y - 1.0).abs())
 }
 
-/// The point of the unit square whose [`sample_concentric_disk()`] is `p`.
+/// Inverts [`sample_concentric_disk()`]: returns the point of the unit square that maps to `p`.
 #[kernel]
 #[inline]
 pub fn invert_concentric_disk(p: Vec2) -> Vec2 {

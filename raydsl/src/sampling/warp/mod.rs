@@ -1,8 +1,8 @@
-//! From the unit square to disks, hemispheres and the like.
+//! Warps from the unit square to disks, hemispheres and other domains.
 //!
-//! Of a warp, `sample_*` takes a uniform point to a sample, `*_pdf` gives the density of a sample,
-//! and `invert_*` the point that it comes from. Directions have their axis along z;
-//! [`Frame`](super::Frame) turns them elsewhere. Densities of directions are per solid angle.
+//! For each warp, `sample_*` maps a uniform point to a sample, `*_pdf` returns the density of a
+//! sample, and `invert_*` the point that maps to it. Directions have their axis along z;
+//! [`Frame`](super::Frame) rotates them elsewhere. Densities of directions are per solid angle.
 
 mod bilinear;
 mod cone;
@@ -28,11 +28,11 @@ use crate::kernel;
 use crate::machine::generic::min;
 use crate::math::elementary::atan2;
 
-/// Which share of a turn from x to y leads to (`x`, `y`): from 0 to below 1.
+/// Returns the angle of (`x`, `y`) as a share of a turn from x to y: from 0 to below 1.
 #[kernel]
 #[inline]
 fn turn_to(x: f32, y: f32) -> f32 {
     let turn = atan2(y, x) / TAU;
-    // What is hardly below 0 would be rounded to a whole turn.
+    // Angles barely below 0 would be rounded to a whole turn.
     min(if turn < 0.0 { turn + 1.0 } else { turn }, ONE_MINUS_EPSILON)
 }

@@ -1,16 +1,16 @@
-//! What is true of every tree that was built, beyond what `validate` asks of all trees.
+//! Invariants of every built tree, beyond those of `validate`.
 
 use super::super::source::Boxes;
 use super::super::{BuildConfig, BuildQuality, MAX_DEPTH, Tree};
 use crate::bvh::validate;
 use crate::geometry::Aabb;
 
-/// Panics when `tree` is not a tree over `boxes` as documented.
+/// Checks that `tree` over `boxes` is as documented; panics otherwise.
 pub(super) fn check(tree: &Tree, boxes: &[Aabb], config: &BuildConfig) {
     let Tree { nodes, indices } = tree;
     validate::check(nodes, indices, boxes.len(), &Boxes(|k: usize| boxes[k]))
         .expect("the tree is sound");
-    // All of them are in leaves, and those that were cut in several.
+    // All of them are in leaves, and cut ones in several.
     let is_cut = config.quality == BuildQuality::Best;
     let spare = if is_cut { (boxes.len() as f32 * config.max_duplication) as usize } else { 0 };
     assert!(indices.len() <= boxes.len() + spare, "{} of {}", indices.len(), boxes.len());
@@ -23,14 +23,14 @@ pub(super) fn check(tree: &Tree, boxes: &[Aabb], config: &BuildConfig) {
     assert_eq!(walk.next_index, indices.len(), "there are indices outside the leaves");
 }
 
-/// A depth-first walk.
+/// Depth-first traversal.
 struct Walk<'a> {
     tree: &'a Tree,
     boxes: &'a [Aabb],
     config: &'a BuildConfig,
-    /// Where the next pair of nodes must be.
+    /// Expected position of the next pair of nodes.
     next_node: usize,
-    /// Where the next leaf's range must begin.
+    /// Expected start of the next leaf's range.
     next_index: usize,
 }
 

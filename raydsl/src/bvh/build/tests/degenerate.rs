@@ -1,4 +1,4 @@
-//! Inputs that are harder than they look.
+//! Degenerate inputs.
 
 use glam::Vec3;
 
@@ -8,7 +8,7 @@ use crate::geometry::Aabb;
 
 const COUNT: usize = 20_000;
 
-/// The random boxes after `change`.
+/// Returns the random boxes after `change`.
 fn changed(change: impl Fn(Aabb) -> Aabb) -> Vec<Aabb> {
     Numbers::boxes(COUNT, 0.01).into_iter().map(change).collect()
 }

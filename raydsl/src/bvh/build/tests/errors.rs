@@ -1,4 +1,4 @@
-//! Refused inputs.
+//! Rejected inputs.
 
 use glam::Vec3;
 
@@ -6,7 +6,7 @@ use super::super::{BuildConfig, BuildError, MAX_PRIMITIVES, build};
 use super::Numbers;
 use crate::geometry::Aabb;
 
-/// The error for 40,000 random boxes (several pieces of work) with some replaced.
+/// Returns the error for 40,000 random boxes (several pieces of work) with some replaced.
 fn error_with(replaced: &[(usize, Aabb)]) -> BuildError {
     let mut boxes = Numbers::boxes(40_000, 0.1);
     for &(index, bounds) in replaced {

@@ -13,7 +13,7 @@ use glam::Vec3;
 use super::{BuildConfig, BuildQuality, Tree, build};
 use crate::geometry::Aabb;
 
-/// A reproducible sequence of numbers in `0..1` (xorshift).
+/// Reproducible sequence of numbers in `0..1` (xorshift).
 struct Numbers(u64);
 
 impl Numbers {
@@ -32,7 +32,7 @@ impl Numbers {
         Vec3::new(self.next(), self.next(), self.next())
     }
 
-    /// `count` boxes of edges up to `size` in the unit cube.
+    /// Returns `count` boxes with edges up to `size` in the unit cube.
     fn boxes(count: usize, size: f32) -> Vec<Aabb> {
         let mut numbers = Self::new();
         let mut one = || {
@@ -43,12 +43,12 @@ impl Numbers {
     }
 }
 
-/// The checked trees over `boxes` with the default configuration, one of each quality.
+/// Builds and checks trees over `boxes` with the default configuration, one of each quality.
 fn trees(boxes: &[Aabb]) -> [Tree; 3] {
     trees_with(boxes, &BuildConfig::default())
 }
 
-/// The checked trees over `boxes`, one of each quality.
+/// Builds and checks trees over `boxes`, one of each quality.
 fn trees_with(boxes: &[Aabb], config: &BuildConfig) -> [Tree; 3] {
     BuildQuality::ALL.map(|quality| {
         let config = BuildConfig { quality, ..*config };

@@ -1,10 +1,10 @@
-//! The number of threads changes nothing.
+//! Independence of the number of threads.
 
 use super::super::Tree;
 use super::{Numbers, trees};
 use crate::geometry::Aabb;
 
-/// The trees built by a pool of `threads`.
+/// Builds the trees in a pool of `threads`.
 fn trees_by(threads: usize, boxes: &[Aabb]) -> [Tree; 3] {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("threads can be started").install(|| trees(boxes))

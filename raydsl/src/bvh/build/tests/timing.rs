@@ -1,4 +1,4 @@
-//! How long building takes; prints figures, and fails where a hostile input takes too long.
+//! Build times; prints figures, and fails where a hostile input takes too long.
 //!
 //! `cargo test --release -p raydsl --lib build::tests::timing -- --ignored --nocapture`
 
@@ -13,7 +13,7 @@ use crate::geometry::Aabb;
 
 const COUNT: usize = 1_000_000;
 
-/// The least seconds of a few tries, and the tree.
+/// Returns the least seconds of a few tries, and the tree.
 fn timed(boxes: &[Aabb], config: &BuildConfig) -> (f64, Tree) {
     let once = || {
         let start = Instant::now();
@@ -24,7 +24,7 @@ fn timed(boxes: &[Aabb], config: &BuildConfig) -> (f64, Tree) {
     tries.min_by(|a, b| a.0.total_cmp(&b.0)).expect("there are tries")
 }
 
-/// The boxes of a million triangles of a surface with hills, in the order of rows.
+/// Returns the boxes of a million triangles of a hilly surface, row by row.
 fn mesh() -> Vec<Aabb> {
     let point = |x: usize, y: usize| {
         let (x, y) = (x as f32 / 1000.0, y as f32 / 500.0);
@@ -46,7 +46,7 @@ fn spheres() -> Vec<Aabb> {
     (0..COUNT).map(|_| one()).collect()
 }
 
-/// Inputs that are harder than they look.
+/// Returns degenerate inputs.
 fn hostile(spheres: &[Aabb]) -> Vec<(&'static str, Vec<Aabb>)> {
     let changed = |change: &dyn Fn(Aabb) -> Aabb| spheres.iter().map(|&b| change(b)).collect();
     let scaled = |by: f32| changed(&|b| Aabb::new(b.min * by, b.max * by));

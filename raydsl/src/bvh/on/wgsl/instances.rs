@@ -1,8 +1,8 @@
-//! Scenes of instances in WGSL.
+//! Traversal of instances in WGSL.
 //!
-//! One walk goes through groups and trees alike: the nodes of all lie in one buffer, and what a
-//! leaf names is a primitive, or a place in the table of places. It gives the next primitive, as
-//! the walk through a tree does, and with it the ray as its tree sees it.
+//! One traversal visits groups and trees alike: all nodes lie in one buffer, and leaves hold
+//! primitive ids or indices into the table of places. It returns the next primitive, as traversal
+//! of a tree does, together with the ray in the space of its tree.
 
 use super::visit::NONE;
 use super::{BoxTests, Described, Rules, TreeNames};
@@ -26,10 +26,10 @@ static CLOSEST: KernelInfo =
 static ANY: KernelInfo =
     KernelInfo { name: "any_hit", file: file!(), line: line!(), params: &["ray"], known: None };
 
-/// What is kept of the levels around: the groups, and what is around the outermost.
+/// Number of saved levels: the groups, and the level around the outermost.
 const LEVELS: usize = MAX_LEVELS + 1;
 
-/// A walk under way, on one level.
+/// State of a traversal on one level.
 pub(super) const LEVEL: &Schema = &Schema::Struct {
     name: "WalkLevel",
     fields: &[
@@ -41,7 +41,7 @@ pub(super) const LEVEL: &Schema = &Schema::Struct {
     size: 44,
 };
 
-/// The members of a walk under way.
+/// Members of the traversal state.
 const WALK: [Field; 11] = [
     Field { name: "here", offset: 0, schema: LEVEL },
     Field { name: "lower", offset: 44, schema: &Schema::Vector(&Schema::F32, 3) },
@@ -69,11 +69,11 @@ const WALK: [Field; 11] = [
 ];
 const WALK_SIZE: usize = 96 + 44 * LEVELS + 8 * STACK;
 
-/// A walk under way.
+/// Traversal state.
 pub(super) const DESCENT: &Schema =
     &Schema::Struct { name: "InstanceWalk", fields: &WALK, size: WALK_SIZE };
 
-/// A walk that counts the nodes that it tests.
+/// Traversal state with a count of tested nodes.
 const COUNTED_DESCENT: &Schema = &Schema::Struct {
     name: "CountedInstanceWalk",
     fields: &{
@@ -84,7 +84,7 @@ const COUNTED_DESCENT: &Schema = &Schema::Struct {
     size: WALK_SIZE + 4,
 };
 
-/// Whether a walk counts.
+/// Kind of traversal: plain, or counting tested nodes.
 #[derive(Clone, Copy, PartialEq)]
 enum Walk {
     Plain,
@@ -92,7 +92,7 @@ enum Walk {
 }
 
 impl Walk {
-    /// Its type.
+    /// Returns the schema of its state.
     fn schema(self) -> &'static Schema {
         match self {
             Self::Plain => DESCENT,
@@ -100,7 +100,7 @@ impl Walk {
         }
     }
 
-    /// The name of its type, and the end of the names of its functions.
+    /// Returns the name of its type, and the suffix of its function names.
     fn names(self) -> [&'static str; 2] {
         match self {
             Self::Plain => ["InstanceWalk", ""],
@@ -108,7 +108,7 @@ impl Walk {
         }
     }
 
-    /// The line that counts `n` tests of nodes.
+    /// Returns the statement that counts `n` node tests.
     fn count(self, n: u32) -> String {
         match self {
             Self::Plain => String::new(),
@@ -117,7 +117,7 @@ impl Walk {
     }
 }
 
-/// A primitive that the ray may meet.
+/// Candidate primitive that the ray may hit.
 pub(super) const CANDIDATE: &Schema = &Schema::Struct {
     name: "NextPrimitive",
     fields: &[
@@ -128,11 +128,11 @@ pub(super) const CANDIDATE: &Schema = &Schema::Struct {
     size: 40,
 };
 
-/// How scenes of instances are recorded. Only what makes such a scene refers to it: in other programs
-/// none of it is compiled.
+/// Recorded traversals of scenes of instances. Only constructors of such scenes refer to it: other
+/// programs do not compile it.
 pub(crate) struct RecordedWalks<P: Primitive> {
     pub(super) closest_hit: fn(&Recorder, &SceneView<'_, P>, RayOn<Recorder>) -> HitOn<Recorder>,
-    /// The function that also counts.
+    /// The counting variant.
     pub(super) closest_hit_with_cost: fn(&Recorder, &SceneView<'_, P>) -> usize,
     pub(super) any_hit: fn(&Recorder, &SceneView<'_, P>, RayOn<Recorder>) -> B<Recorder>,
 }
@@ -151,7 +151,7 @@ impl<P: Primitive> RecordedWalks<P> {
 }
 
 impl Recorder {
-    /// The least `(t, inst_id, prim_id)` hit: a function of its own.
+    /// Returns the least `(t, inst_id, prim_id)` hit, from a WGSL function of its own.
     pub(super) fn closest_placed_hit<P: Primitive>(
         &self,
         prims: &SceneView<'_, P>,
@@ -160,7 +160,7 @@ impl Recorder {
         self.call(&CLOSEST, (ray,), |m, (ray,)| closest_where(m, prims, ray, &|_| B(m.bool(true))))
     }
 
-    /// Whether there is a hit: a function of its own.
+    /// Returns whether there is a hit, from a WGSL function of its own.
     pub(super) fn any_placed_hit<P: Primitive>(
         &self,
         prims: &SceneView<'_, P>,
@@ -169,7 +169,8 @@ impl Recorder {
         self.call(&ANY, (ray,), |m, (ray,)| any_where(m, prims, ray, &|_| B(m.bool(true))))
     }
 
-    /// The least `(t, inst_id, prim_id)` hit, with the nodes and primitives that are tested for it.
+    /// Returns the function of the least `(t, inst_id, prim_id)` hit that counts tested nodes and
+    /// primitives.
     pub(super) fn closest_placed_hit_with_cost<P: Primitive>(
         &self,
         prims: &SceneView<'_, P>,
@@ -238,7 +239,7 @@ impl Recorder {
         repeat.end(self);
     }
 
-    /// `fn scene_places_at(i: u32) -> Place`, and the name of its buffer.
+    /// Returns `fn scene_places_at(i: u32) -> Place`, and the name of its buffer.
     fn places<T: HostType, S: HostType>(&self, scene: &View<'_, T, S>) -> (usize, String) {
         let len = scene.placed().map_or(0, |placed| placed.place_count());
         self.places_buffer(&Data::name(scene), scene.key_of(buffers::PLACES), len)
@@ -253,7 +254,8 @@ impl Recorder {
         self.places_buffer(&prims.name(), prims.key_of(buffers::PLACES), prims.place_count())
     }
 
-    /// The padding of the whole scene, which is data: it changes when instances move.
+    /// Returns the padding of the whole scene. It is a buffer value: it changes when instances
+    /// move.
     pub(in crate::bvh::on) fn slack_of_places<P: Primitive>(
         &self,
         prims: &SceneView<'_, P>,
@@ -263,7 +265,7 @@ impl Recorder {
         F(self.add(Expr::Member(scene, "slack"), Type::F32))
     }
 
-    /// The function that takes a ray to an object: its name.
+    /// Returns the name of the function that transforms a ray to an object.
     fn transform_function(&self) -> String {
         let function = self.function_of(|m| {
             transform_ray::on(m, RayOn::zero(m), <A3<Self> as Value<Self>>::zero(m))
@@ -271,7 +273,7 @@ impl Recorder {
         self.function_name(function)
     }
 
-    /// The ray as the tree of an instance is asked about it.
+    /// Returns the ray in the space of an instance's tree.
     pub(in crate::bvh::on) fn local_ray_of<T: HostType, S: HostType>(
         &self,
         scene: &View<'_, T, S>,
@@ -292,7 +294,7 @@ impl Recorder {
         self.take_apart(self.add(Expr::Call(function, vec![inst.0, ray]), Type::of(Ray::SCHEMA)))
     }
 
-    /// From the space of the scene to that of an instance's tree.
+    /// Returns the transform from the space of the scene to that of an instance's tree.
     pub(in crate::bvh::on) fn to_object_of<T: HostType, S: HostType>(
         &self,
         scene: &View<'_, T, S>,
@@ -316,7 +318,8 @@ impl Recorder {
         self.take_apart(self.add(Expr::Call(function, vec![inst.0]), Type::of(schema)))
     }
 
-    /// A function that goes down to an instance and does `body` with the `place` on each level.
+    /// Returns a function that descends to an instance and runs `body` with the `place` on each
+    /// level.
     fn levels_function<T: HostType, S: HostType>(
         &self,
         scene: &View<'_, T, S>,
@@ -344,7 +347,7 @@ impl Recorder {
         })
     }
 
-    /// `fn scene_walk(ray: Ray) -> InstanceWalk` and `fn scene_next(..) -> NextPrimitive`.
+    /// Returns `fn scene_walk(ray: Ray) -> InstanceWalk` and `fn scene_next(..) -> NextPrimitive`.
     fn descent_functions(&self, prims: &dyn Described, walk: Walk) -> (usize, usize) {
         let name = prims.primitives(self);
         let (_, places) = self.places_of(prims);
@@ -379,14 +382,14 @@ impl Recorder {
     }
 }
 
-/// A function that follows the levels of an instance.
+/// Text of a function that follows the levels of an instance.
 struct LevelsText<'a> {
     parameters: &'a str,
     result: &'a str,
-    /// What it gives, and what that is at first.
+    /// Result variable, and its initial value.
     variable: &'a str,
     from: &'a str,
-    /// What is done with the `place` on each level.
+    /// Statement run with the `place` on each level.
     body: &'a str,
 }
 
@@ -439,7 +442,7 @@ fn next_text(
     )
 }
 
-/// `a` after `b`.
+/// Composes two maps: `a` after `b`.
 #[crate::kernel]
 fn product(a: glam::Affine3, b: glam::Affine3) -> glam::Affine3 {
     a * b

@@ -1,6 +1,6 @@
-//! Queries in WGSL: the text around a primitive's recorded `intersect`.
+//! Queries in WGSL around a primitive's recorded `intersect`.
 //!
-//! The rules are those of [`contract`](crate::bvh::contract), which are recorded; the text calls them.
+//! The rules of [`contract`](crate::bvh::contract) are recorded as functions that the text calls.
 
 mod instances;
 mod visit;
@@ -20,17 +20,16 @@ use crate::machine::record::{from_template, member_name, zero_value};
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{B, Data, F, Machine, Recorder, Schema, Type, V3, Value};
 
-/// What the text of a query says of its scene: whatever the primitives are, the text is made in one
-/// place.
+/// Description of a scene for the text of a query, independent of the type of primitives.
 pub(super) trait Described {
-    /// The name of the buffer of primitives, which `m` gets.
+    /// Returns the name of the buffer of primitives, and adds the buffer to `m`.
     fn primitives(&self, m: &Recorder) -> String;
     fn slack(&self) -> f32;
     fn name(&self) -> Cow<'static, str>;
     fn key_of(&self, part: u32) -> BufferKey;
     fn is_list(&self) -> bool;
     fn has_tree(&self) -> bool;
-    /// How many nodes and how many indices.
+    /// Returns the number of nodes and of indices.
     fn tree_len(&self) -> (u64, u64);
     fn root_len(&self) -> u64;
     fn place_count(&self) -> u64;
@@ -67,12 +66,12 @@ impl<P: Primitive> Described for SceneView<'_, P> {
 }
 
 impl Recorder {
-    /// The name of the function that `call` records.
+    /// Returns the name of the function that `call` records.
     pub(super) fn name_of<R: Value<Self>>(&self, call: impl FnOnce(&Self) -> R) -> String {
         self.function_name(self.function_of(call))
     }
 
-    /// The names of the rules that text calls.
+    /// Returns the names of the rules that the text calls.
     pub(super) fn rules(&self) -> Rules {
         let zero = |m: &Self| F(m.f32(0.0));
         Rules {
@@ -87,7 +86,7 @@ impl Recorder {
         self.name_of(|m| is_before::on(m, is_placed, HitOn::zero(m), HitOn::zero(m)))
     }
 
-    /// The names of the tests of boxes.
+    /// Returns the names of the box tests.
     pub(super) fn box_tests(&self, is_placed: bool) -> BoxTests {
         let zero = |m: &Self| F(m.f32(0.0));
         BoxTests {
@@ -102,7 +101,8 @@ impl Recorder {
         }
     }
 
-    /// Records `P::intersect`: the text before and behind its arguments, which gives a `Hit`.
+    /// Records `P::intersect`; returns the text before and after its arguments, which yields a
+    /// `Hit`.
     pub(super) fn intersect<P: Primitive>(&self, prims: &SceneView<'_, P>) -> (String, String) {
         let f = self.function_of(|m| {
             let prim = <P::On<Self>>::zero(m);
@@ -112,8 +112,8 @@ impl Recorder {
         (self.function_name(f), path)
     }
 
-    /// What the least `(t, id)` hit does with a primitive that `call` meets, and how a walk lowers its
-    /// limit then.
+    /// Returns the test of a candidate by the closest-hit query, and the statement that lowers the
+    /// traversal's limit.
     fn closest_text(
         &self,
         prims: &dyn Described,
@@ -130,7 +130,7 @@ impl Recorder {
         (test, format!("limit = {limit_behind}(best.t, {:?}, ray.t_max);", prims.slack()))
     }
 
-    /// The least `(t, id)` hit of a ray.
+    /// Returns the least `(t, id)` hit of a ray.
     pub(in crate::bvh::on) fn closest_hit<P: Primitive>(
         &self,
         prims: &SceneView<'_, P>,
@@ -143,7 +143,7 @@ impl Recorder {
         self.call_query(function, ray, Hit::SCHEMA)
     }
 
-    /// The least `(t, id)` hit of a ray, and what it costs a ray that is alone.
+    /// Returns the least `(t, id)` hit of a ray, with its cost in single-ray traversal.
     pub(in crate::bvh::on) fn closest_hit_with_cost<P: Primitive>(
         &self,
         prims: &SceneView<'_, P>,
@@ -156,7 +156,7 @@ impl Recorder {
         self.call_query(function, ray, CountedHit::SCHEMA)
     }
 
-    /// Whether a ray hits anything.
+    /// Returns whether a ray hits anything.
     pub(in crate::bvh::on) fn any_hit<P: Primitive>(
         &self,
         prims: &SceneView<'_, P>,
@@ -203,7 +203,7 @@ impl Recorder {
         if !prims.is_list() {
             return self.query_function(prims, format!("{prims_name}_closest_hit"), &query);
         }
-        // One tree after another, each with the best hit so far.
+        // Query the trees in order, each with the best hit so far.
         let each = Query { declare: "var best = before;", continues: true, ..query };
         let each =
             self.tree_function(prims, format!("{prims_name}_closer_hit"), ", before: Hit", &each);
@@ -216,7 +216,7 @@ impl Recorder {
         })
     }
 
-    /// The least `(t, id)` hit, with the nodes and primitives that are tested for it.
+    /// Returns the function of the least `(t, id)` hit that counts tested nodes and primitives.
     fn closest_hit_with_cost_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
         self.buffer_of(prims);
         let call = self.intersect(prims);
@@ -243,7 +243,7 @@ impl Recorder {
         if !prims.is_list() {
             return self.query_function(prims, name, &query);
         }
-        // One tree after another, each with the best hit so far, and with what that cost.
+        // Query the trees in order, each with the best hit and the cost so far.
         let each = Query { declare: &declare("before"), continues: true, ..query };
         let each_name = format!("{prims_name}_closer_hit_with_cost");
         let each = self.tree_function(prims, each_name, ", before: CountedHit", &each);
@@ -292,7 +292,7 @@ impl Recorder {
         })
     }
 
-    /// The function of a query of a slice, or of one tree.
+    /// Returns the function of a query of a slice, or of one tree.
     fn query_function(&self, prims: &dyn Described, name: String, query: &Query<'_>) -> usize {
         let (prims_name, tree) = (prims.primitives(self), self.tree(prims));
         let is_finite = self.rules().is_finite;
@@ -302,7 +302,7 @@ impl Recorder {
         })
     }
 
-    /// The function of a query of the tree at one of the roots: its name.
+    /// Returns the name of the function of a query of the tree at one of the roots.
     fn tree_function(
         &self,
         prims: &dyn Described,
@@ -318,7 +318,7 @@ impl Recorder {
         self.function_name(function)
     }
 
-    /// The function of a query of a list, which asks one tree after another.
+    /// Returns the function of a query of a list, tree by tree.
     fn list_function(
         &self,
         prims: &dyn Described,
@@ -333,13 +333,14 @@ impl Recorder {
         })
     }
 
-    /// Where the roots of a list are among its nodes.
+    /// Returns the buffer of the root indices of a list.
     pub(super) fn roots_buffer(&self, prims: &dyn Described) -> String {
         let name = format!("{}_roots", prims.name());
         self.buffer(prims.key_of(buffers::ROOTS), &name, &Schema::U32, prims.root_len())
     }
 
-    /// The buffers of a tree, or of all trees of a list: nodes and index list. `None` for a slice.
+    /// Returns the buffers of a tree, or of all trees of a list: nodes and index list. `None` for a
+    /// slice.
     pub(super) fn tree(&self, prims: &dyn Described) -> Option<TreeNames> {
         if !prims.has_tree() {
             return None;
@@ -358,7 +359,7 @@ impl Recorder {
     }
 }
 
-/// The types that the text of a query names.
+/// Returns the types that the text of a query names.
 fn types_of(query: &Query<'_>) -> Vec<&'static Schema> {
     let counted = query.counts.then_some([Cost::SCHEMA, CountedHit::SCHEMA]);
     [Ray::SCHEMA, Hit::SCHEMA, NODE_SCHEMA]
@@ -367,7 +368,7 @@ fn types_of(query: &Query<'_>) -> Vec<&'static Schema> {
         .collect()
 }
 
-/// The names of a tree's buffers, and of what walks through it call.
+/// Names of a tree's buffers, and of the functions that its traversals call.
 pub(super) struct TreeNames {
     pub(super) nodes: String,
     pub(super) indices: String,
@@ -375,40 +376,40 @@ pub(super) struct TreeNames {
     pub(super) boxes: BoxTests,
 }
 
-/// The names of the functions of the [`contract`](crate::bvh::contract).
+/// Names of the functions of the [`contract`](crate::bvh::contract).
 pub(super) struct Rules {
     pub(super) is_finite: String,
     pub(super) is_within: String,
-    /// Of hits without instances.
+    /// For hits without instances.
     pub(super) is_before: String,
     pub(super) limit_behind: String,
 }
 
-/// The names of the functions that test boxes.
+/// Names of the box tests.
 pub(super) struct BoxTests {
     pub(super) slabs: String,
     pub(super) enter_leave: String,
 }
 
-/// What a query does with the primitives that it meets.
+/// Text fragments of a query.
 #[derive(Clone, Copy)]
 struct Query<'a> {
     result: &'a str,
     declare: &'a str,
-    /// The line that lowers the limit of a walk, beyond which no node is worth a visit.
+    /// Statement that lowers the limit of a traversal, beyond which nodes are culled.
     lower: &'a str,
-    /// Whether `best` may be a hit before anything is met.
+    /// Whether `best` may be a hit before the traversal.
     continues: bool,
-    /// A template with a line `$lower`, which only walks have.
+    /// Template with a line `$lower`, which only traversals have.
     test: &'a str,
     give: &'a str,
     slack: f32,
-    /// Whether the tests of nodes are counted, in `cost.nodes`.
+    /// Whether node tests are counted, in `cost.nodes`.
     counts: bool,
 }
 
 impl Query<'_> {
-    /// The line that counts `n` tests of nodes.
+    /// Returns the statement that counts `n` node tests.
     fn count(&self, n: u32) -> String {
         if self.counts { format!("cost.nodes = cost.nodes + {n}u;") } else { String::new() }
     }
@@ -430,8 +431,8 @@ fn linear(name: &str, query: &Query<'_>, prims: &str, is_finite: &str) -> String
     )
 }
 
-/// Depth-first from the node `first`; the nearer child first, the farther one on a stack with its
-/// distance.
+/// Returns a depth-first traversal from the node `first`: it visits the nearer child first and
+/// pushes the farther one with its distance.
 fn walk(name: &str, parameters: &str, first: &str, query: &Query<'_>, tree: &TreeNames) -> String {
     let Query { result, declare, lower, test, give, slack, .. } = query;
     let TreeNames { nodes, indices, rules, boxes } = tree;

@@ -1,5 +1,5 @@
-//! Queries whose hits the kernel sees one by one: the traversal is a struct that gives the next
-//! primitive, so that what is done with a hit stands in the kernel's own function.
+//! Queries with kernel code per hit: the traversal is a struct that yields the next primitive, so
+//! that the code stays in the kernel's own function.
 
 use super::{BoxTests, Described};
 use crate::bvh::contract::{Slabs, is_finite, is_within};
@@ -12,10 +12,10 @@ use crate::machine::{
     B, Branch, F, Field, Loop, Machine, Recorder, Schema, Type as HostType, U, Var, op,
 };
 
-/// No primitive is left.
+/// Id that means that no primitive is left.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// A traversal under way.
+/// Traversal state.
 pub(super) const TRAVERSAL: &Schema = &Schema::Struct {
     name: "Traversal",
     fields: &[
@@ -93,8 +93,8 @@ impl Recorder {
         repeat.end(self);
     }
 
-    /// Records a loop over the hits of a tree: of one at `root`, in a loop over all, or of the only
-    /// one.
+    /// Records a loop over the hits of a tree: the one at `root`, within a loop over all trees, or
+    /// the only one.
     fn visit_tree<P: Primitive>(
         &self,
         prims: &SceneView<'_, P>,
@@ -120,7 +120,7 @@ impl Recorder {
         repeat.end(self);
     }
 
-    /// Intersects one primitive, of an instance, and asks about the hit.
+    /// Intersects one primitive of an instance, and passes a hit to `meet`.
     pub(super) fn ask<P: Primitive>(
         &self,
         prims: &SceneView<'_, P>,
@@ -145,7 +145,7 @@ impl Recorder {
         is_met.end(self);
     }
 
-    /// `fn bvh_walk(ray: Ray, ..) -> Traversal` and `fn bvh_next(..) -> u32`.
+    /// Returns `fn bvh_walk(ray: Ray, ..) -> Traversal` and `fn bvh_next(..) -> u32`.
     fn walk_functions(&self, prims: &dyn Described) -> (usize, usize) {
         let name = prims.primitives(self);
         let Some(tree) = self.tree(prims) else { unreachable!("only trees are walked") };
