@@ -114,7 +114,7 @@ impl Parser<'_> {
             self.errors.at(
                 e.span(),
                 "a kernel's `for` runs over a range, the elements of a slice or an array, or hits",
-                "write `for i in 0u32..n`, `for x in list.iter()`, `for hit in scene.hits(ray)` or \
+                "write `for i in 0..n`, `for x in list.iter()`, `for hit in scene.hits(ray)` or \
                  an index: `list[i]`",
             );
             return None;

@@ -74,8 +74,6 @@ bodies! {
     question_mark: { g(x)? } "no `?`" "a miss is data";
     if_let: { if let Some(y) = g(x) { y } else { x } } "no `if let`" "compare the value";
     inner_closure: { let f = |y: f32| y; x } "no closures" "#[kernel] fn";
-    untyped_integer: { let mut i = 0; x } "mutable integer" "0u32";
-    untyped_range: { for i in 0..4 {} x } "counter needs a type" "0u32..8";
     rest_in_the_middle: { let [a, .., b] = [x, x, x]; a + b } "stands last" "write `_`";
     named_rest: { let [a, b @ ..] = [x, x, x]; a } "without a name" "write `_`";
     order_of_index: { let mut v = [x, x]; v[g(n)] += h(x); x } "comes first" "bind the index";
@@ -88,7 +86,6 @@ bodies! {
     variant_pattern: { match g(x) { Some(y) => y, _ => x } } "no `Some`" "a struct with a flag";
     names_in_alternatives: { match n { m | m => x } } "bind no names" "an arm for each";
     pattern_without_value: { let (a, b); x } "needs a value" "each name by itself";
-    untyped_in_tuple: { let (mut i, y) = (0, x); y } "mutable integer" "0u32";
     by_reference: { let (ref a, b) = g(x); b } "no `ref`" "copied";
     rest_in_front: { let (.., a) = g(x); a } "stands last" "write `_`";
     let_else: { let y = x else { return x; }; y } "no `let ... else`" "returns early";

@@ -6,7 +6,7 @@ use super::{B, Machine};
 #[diagnostic::on_unimplemented(
     message = "a kernel's `for` does not run over this",
     label = "these are no items of a kernel",
-    note = "write `for i in 0u32..n`, `for x in list.iter()` or `for hit in scene.hits(ray)`"
+    note = "write `for i in 0..n`, `for x in list.iter()` or `for hit in scene.hits(ray)`"
 )]
 pub trait Cursor<M: Machine> {
     /// What the loop's body sees.
