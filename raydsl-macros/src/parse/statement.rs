@@ -1,4 +1,4 @@
-//! Blocks and their statements.
+//! Parsing of blocks and their statements.
 
 use proc_macro2::TokenStream;
 use quote::ToTokens;
@@ -80,7 +80,7 @@ impl Parser<'_> {
         vec![Stmt::Let(Let { host, name, mutable, ty, init })]
     }
 
-    /// `let (a, b) = init`.
+    /// Parses `let (a, b) = init`.
     fn local_parts(&mut self, pat: &Pat, ty: Option<TokenStream>, init: Option<Expr>) -> Vec<Stmt> {
         let Some(init) = init else {
             self.errors.at(
@@ -99,7 +99,7 @@ impl Parser<'_> {
         self.destructure(pat, init, ty)
     }
 
-    /// What a variable begins with must say which type of integer it is.
+    /// Checks that a variable's initial value determines its integer type.
     fn typed_number(&mut self, init: &Expr) {
         let is_untyped = match &init.kind {
             Kind::Repeat { value, .. } => value.is_untyped_integer(),
@@ -116,7 +116,7 @@ impl Parser<'_> {
         }
     }
 
-    /// The same for each mutable name of a pattern.
+    /// Checks this for each mutable name of a pattern.
     fn typed_numbers(&mut self, pat: &Pat, init: &Expr) {
         if let (Pat::Tuple(pats), Kind::Tuple(items)) = (pat, &init.kind) {
             for (pat, item) in pats.elems.iter().zip(items) {

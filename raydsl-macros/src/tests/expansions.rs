@@ -1,4 +1,4 @@
-//! What the macros write, compared with `golden/*.rs`.
+//! Tests of the macros' output against `golden/*.rs`.
 
 use std::path::Path;
 

@@ -42,7 +42,7 @@ impl Efficiency {
         if !found.is_finite() {
             return None;
         }
-        // Returns the rest of the sum of squares around the mean without one run.
+        // The sum of squares around the mean without one run.
         let rest = |share: f64| (squares - share * n as f64 / (n - 1) as f64).max(0.0);
         let without = shares.iter().zip(runs).map(|(s, r)| log(rest(*s), seconds - r.0, n - 1));
         let half = student_t(n - 1) * jackknife(&without.collect::<Vec<_>>());

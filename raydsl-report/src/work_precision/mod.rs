@@ -1,10 +1,10 @@
 //! Work-precision diagrams: the error of methods and variants against run time.
 //!
-//! A [`Case`] computes something known by several [`Method`]s, each with a knob that makes it
-//! better and slower. [`WorkPrecision`] runs all of them on each [`Backend`], in turn, and makes a
-//! [`Report`]: a [`Curve`] for each method and backend with its [fitted order](Fit) and a
-//! [`Verdict`] on it, as tables, as numbers for programs, and as a [`Drawing`]. What was left out
-//! is listed with its reason.
+//! A [`Case`] computes a known quantity by several [`Method`]s, each with a knob that makes it more
+//! accurate and slower. [`WorkPrecision`] runs all of them on each [`Backend`], in turn, and
+//! returns a [`Report`]: a [`Curve`] for each method and backend with its [fitted order](Fit) and a
+//! [`Verdict`] on it, as tables, as JSON and CSV, and as a [`Drawing`]. Omissions are listed with
+//! their reasons.
 //!
 //! ```
 //! use raydsl::prelude::*;

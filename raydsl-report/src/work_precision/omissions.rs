@@ -67,7 +67,7 @@ fn unseen(case: &Measured) -> Option<String> {
     has_none.then(|| row(&case.name, "all", "all", "FLIP", "the estimates are no picture"))
 }
 
-/// Returns the count of a unit.
+/// A function that returns the count of a unit.
 type Unit = fn(&Work) -> Option<u64>;
 
 /// Returns a row for the units in which nothing of a case is counted.

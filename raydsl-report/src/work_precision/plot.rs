@@ -182,7 +182,7 @@ impl Axes {
         text: &str,
     ) -> ((f64, f64), Anchor) {
         let length = LETTER * text.chars().count() as f64;
-        // Returns the required shift.
+        // The required shift.
         let shift = |((x, y), anchor): ((f64, f64), Anchor)| {
             let left = match anchor {
                 Anchor::Start => x,

@@ -14,7 +14,7 @@ use crate::machine::wgsl::{Buffer, BufferKey, Window};
 /// memory while a large scene is uploaded.
 pub(super) const PIECE: usize = 64 << 20;
 
-/// Returns the bytes of a scene buffer by its key, given by the caller of a run.
+/// The function, given by the caller of a run, that returns the bytes of a scene buffer by its key.
 pub(super) type Source<'s, 'd> = &'s dyn Fn(BufferKey) -> Option<Cow<'d, [u8]>>;
 
 /// A window ready for binding.

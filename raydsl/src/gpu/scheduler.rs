@@ -19,7 +19,7 @@ use crate::render::{Effort, FilmArgs, Frame, Image, Observer, Pace, Renderer, Sh
 /// A visitor of the buffers that a kernel may read.
 type Visit<'a> = &'a mut dyn FnMut(&dyn Resource);
 
-/// Calls a visitor with each of them.
+/// A function that calls a visitor with each of them.
 type Resources<'a> = &'a dyn Fn(Visit<'_>);
 
 /// A renderer that runs the WGSL variant of kernels, for pictures and batches.

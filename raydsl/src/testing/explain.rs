@@ -114,8 +114,8 @@ pub fn spread(len: usize, count: usize) -> Vec<usize> {
     all
 }
 
-/// Returns the outcomes of an input, given the maximum number of paths. A trait object, so that its
-/// callers are compiled once, not for every kernel.
+/// A function from an input's index and a maximum number of paths to its outcomes. A trait object,
+/// so that its callers are compiled once, not for every kernel.
 pub type OutcomesOf<'a> = &'a (dyn Fn(usize, usize) -> Outcomes + Sync);
 
 /// Returns the outcomes of these inputs on the path of `f64`.
