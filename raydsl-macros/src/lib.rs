@@ -100,7 +100,7 @@ fn expand_kernels(
 ///
 /// The closure's captures are borrowed; the kernel lives as long as they do.
 ///
-/// `kernel!(counted |ray: Ray| ...)` also lifts it for the lanes that `report::utilisation` counts:
+/// `kernel!(counted |ray: Ray| ...)` also lifts it for `utilisation` of the crate `raydsl-report`:
 /// one more copy to compile.
 ///
 /// **Compile time**: each closure is compiled for packets of 4, 8 and 16 lanes, for WGSL and for

@@ -50,7 +50,7 @@ impl KnownFunction for WithoutNan {
     }
 }
 
-/// The [`KnownFunction`] of a kernel.
+/// The `KnownFunction` of a kernel.
 #[derive(Clone, Copy, Debug)]
 pub struct KnownBy(pub(crate) &'static dyn KnownFunction);
 
