@@ -157,7 +157,7 @@ fn derived_type() -> syn::Result<()> {
     Ok(())
 }
 
-/// The user's own function is there, untouched, in front of everything.
+/// Tests that the user's own function is unchanged and in front of everything.
 #[test]
 fn the_source_stays() {
     let f = quote!(

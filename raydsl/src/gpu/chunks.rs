@@ -42,7 +42,7 @@ pub(super) fn plan(windows: &[Span], max_bytes: u64, alignment: u64) -> Vec<Span
     chunks
 }
 
-/// Whether `window` may be appended to `chunk`.
+/// Returns whether `window` may be appended to `chunk`.
 fn continues(chunk: Span, window: Span, max_bytes: u64, alignment: u64) -> bool {
     let offset = chunk.len();
     chunk.end == window.start

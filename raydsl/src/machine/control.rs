@@ -95,9 +95,9 @@ pub trait Condition<M: Machine>: Copy {
     fn then(m: &M, state: &Self::State) -> bool;
     /// Returns whether to run the second arm.
     fn otherwise(m: &M, state: &Self::State) -> bool;
-    /// Like `then`, for an arm that is cheaper than testing whether any lane takes it.
+    /// Returns the same as `then`, for an arm that costs less than a test.
     fn then_small(m: &M, state: &Self::State) -> bool;
-    /// Like `otherwise`, for such an arm.
+    /// Returns the same as `otherwise`, for such an arm.
     fn otherwise_small(m: &M, state: &Self::State) -> bool;
     /// Joins the arms.
     fn end(m: &M, state: Self::State);
@@ -244,13 +244,13 @@ impl<M: Machine, C: Condition<M>> Branch<M, C> {
         C::otherwise(m, &self.state)
     }
 
-    /// Like [`Branch::then`], for an arm that costs less than a test.
+    /// Returns the same as [`Branch::then`], for an arm that costs less than a test.
     #[inline(always)]
     pub fn then_small(&self, m: &M) -> bool {
         C::then_small(m, &self.state)
     }
 
-    /// Like [`Branch::otherwise`], for an arm that costs less than a test.
+    /// Returns the same as [`Branch::otherwise`], for an arm that costs less than a test.
     #[inline(always)]
     pub fn otherwise_small(&self, m: &M) -> bool {
         C::otherwise_small(m, &self.state)

@@ -165,7 +165,7 @@ pub trait Machine: Sized + 'static {
     // Arithmetic.
     fn f32_unary<O: Op<F32Unary>>(&self, op: O, a: Self::F32) -> Self::F32;
     fn f32_binary<O: Op<F32Binary>>(&self, op: O, a: Self::F32, b: Self::F32) -> Self::F32;
-    /// Fused multiply-add: rounded once.
+    /// Returns `a * b + c`, fused: rounded once.
     fn f32_mul_add(&self, a: Self::F32, b: Self::F32, c: Self::F32) -> Self::F32;
     fn i32_binary<O: Op<IntBinary>>(&self, op: O, a: Self::I32, b: Self::I32) -> Self::I32;
     fn u32_binary<O: Op<IntBinary>>(&self, op: O, a: Self::U32, b: Self::U32) -> Self::U32;

@@ -7,7 +7,7 @@ pub enum Arithmetic {
     /// source are in the uniform buffer, where no driver can fold them into others.
     #[default]
     Strict,
-    /// As fast as the device can: `sin`, `cos`, `tan`, `asin`, `acos`, `atan`, `atan2`, `exp`,
+    /// The fastest on the device: `sin`, `cos`, `tan`, `asin`, `acos`, `atan`, `atan2`, `exp`,
     /// `exp2`, `log`, `log2`, `pow` and `sincos_2pi` are those of WGSL, whose errors are the
     /// driver's (WGSL asks of `sin` no more than an absolute error of 2^-11 in [-pi, pi]), and
     /// numbers are literals.

@@ -117,7 +117,7 @@ impl Arena {
     }
 }
 
-/// Panics: better an abort than another float's value.
+/// Panics, rather than using another float's value.
 #[cold]
 #[inline(never)]
 fn gone(float: Bounded) -> ! {

@@ -104,7 +104,7 @@ impl Decisions {
     }
 
     /// Runs `f` once per path through its decisions, breadth first from that of `f64`, for up to
-    /// `limit` runs. Decisions under way are not affected.
+    /// `limit` runs. Decisions of an outer run are not affected.
     pub(super) fn explore<R>(&self, limit: usize, mut f: impl FnMut() -> R) -> Explored<R> {
         let outer = self.script.take();
         let lost = self.lost.replace(false);

@@ -65,7 +65,7 @@ impl Truth {
     }
 }
 
-/// A loop under way.
+/// A loop being executed.
 #[derive(Debug)]
 pub struct Rounds {
     lane: ScalarLoop,
