@@ -1,9 +1,9 @@
 //! Looks at the machine code of packets: is it packed, and is every operation inlined?
 //!
-//! A lane operation that is not inlined is compiled for the plain target and called through
-//! memory: correct, and 25 to 70 times slower. No test notices, so this program disassembles
-//! itself. What is inspected are the functions that `traverse_packet` enters a level with, and those
-//! that they call on purpose.
+//! A lane operation that is not inlined is compiled for the plain target and called through memory:
+//! correct, and 25 to 70 times slower. No test notices, so this program disassembles itself. It
+//! inspects the functions with which `traverse_packet` enters a level, and those that they call on
+//! purpose.
 
 use std::collections::{BTreeMap, HashMap};
 use std::env;

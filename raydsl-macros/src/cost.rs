@@ -1,24 +1,24 @@
-//! What code costs, as far as its syntax says: the branch policy of packets.
+//! Cost model of code, by its syntax: the branch policy of packets.
 //!
 //! An `if` of a packet can test whether any ray takes an arm and skip it, or run the arm under a
-//! mask without asking. The test costs about as much as a few operations, and a misprediction when
+//! mask without a test. The test costs about as much as a few operations, and a misprediction when
 //! rays disagree; so arms that are *small* are not tested, and an `if` that only chooses between
 //! small values is a selection.
 
 use crate::model::{BinaryOp, Block, Expr, Kind, Step};
 use crate::ops;
 
-/// An arm of statements that costs no more runs untested.
+/// The maximum cost of an arm of statements that runs untested.
 const SMALL_ARM: u32 = 5;
 
-/// A value that costs no more is there whether or not it is taken.
+/// The maximum cost of a value that is evaluated whether or not it is taken.
 const SMALL_VALUE: u32 = 16;
 
-/// An integer division, a call, a loop: never small.
+/// The cost of an integer division, a call, a loop: never small.
 const LARGE: u32 = 1000;
 
 impl Expr {
-    /// Whether it costs less than asking whether it is needed.
+    /// Returns whether it costs less than a test whether it is needed.
     pub(crate) fn is_small(&self) -> bool {
         self.cost() <= SMALL_ARM
     }
@@ -50,13 +50,13 @@ impl Expr {
         self.kind.children().into_iter().fold(own, |sum, e| sum.saturating_add(e.cost()))
     }
 
-    /// Whether it is small and has no effect, so that it may be evaluated where another value is
-    /// wanted.
+    /// Returns whether it is small and has no side effect, so that it may be evaluated
+    /// speculatively.
     pub(crate) fn is_free(&self) -> bool {
         self.cost() <= SMALL_VALUE && self.has_no_effect()
     }
 
-    /// Whether it is an `if` that only chooses between small values.
+    /// Returns whether it is an `if` that only chooses between small values.
     pub(crate) fn is_selection(&self) -> bool {
         match &self.kind {
             Kind::If { coherent: false, c, then, otherwise: Some(other) } => {
@@ -85,7 +85,7 @@ impl Expr {
     }
 }
 
-/// A division may be one of integers, which is done lane by lane.
+/// Returns the cost of an operator. A division may be one of integers, which is done lane by lane.
 fn operator(op: BinaryOp) -> u32 {
     if op.may_trap { LARGE } else { 1 }
 }
@@ -95,18 +95,18 @@ fn assignment(steps: &[Step]) -> u32 {
 }
 
 impl Block {
-    /// Whether it costs less than asking whether it is needed.
+    /// Returns whether it costs less than a test whether it is needed.
     pub(crate) fn is_small(&self) -> bool {
         let cost = self.children().into_iter().fold(0u32, |sum, e| sum.saturating_add(e.cost()));
         cost <= SMALL_ARM
     }
 
-    /// Whether it is nothing but a value.
+    /// Returns whether it is only a value.
     fn is_value(&self) -> bool {
         self.stmts.is_empty() && self.tail.is_some()
     }
 
-    /// The value, if it is nothing else, small, and has no effect.
+    /// Returns the value, if it is nothing else, small, and has no side effect.
     pub(crate) fn free_value(&self) -> Option<&Expr> {
         self.tail.as_deref().filter(|e| self.stmts.is_empty() && e.is_free())
     }

@@ -1,9 +1,9 @@
-//! Errors, collected: a user sees all mistakes of a kernel at once.
+//! Diagnostics: errors are collected, so that a user sees all mistakes of a kernel at once.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
-/// An item that a macro leaves as it is, with an error at all of `place`.
+/// Returns an item unchanged, with an error that spans all of `place`.
 pub(crate) fn refused(
     item: &TokenStream,
     place: &TokenStream,
@@ -18,18 +18,18 @@ pub(crate) fn refused(
 /// Collects the errors of one macro call.
 ///
 /// A user must see every one of them: a collection that is dropped with errors in it panics. It is
-/// used up by [`into_tokens`](Self::into_tokens) and the like, or handed over to another.
+/// consumed by [`into_tokens`](Self::into_tokens) and the like, or appended to another.
 #[derive(Default)]
 #[must_use = "errors that are dropped are seen by nobody"]
 pub(crate) struct Errors {
     first: Option<syn::Error>,
     count: usize,
-    /// Whether the source has a mistake that rustc reports there.
+    /// Whether the source has a mistake that rustc reports.
     is_rustcs: bool,
 }
 
 impl Errors {
-    /// `what` is wrong at `span`; `help` says what to write instead.
+    /// Adds an error: `what` is wrong at `span`; `help` is the remedy.
     pub(crate) fn at(&mut self, span: Span, what: impl core::fmt::Display, help: &str) {
         self.push(syn::Error::new(span, format!("{what}\n  help: {help}")));
     }
@@ -42,24 +42,24 @@ impl Errors {
         }
     }
 
-    /// Notes a mistake that rustc reports in the user's own function or closure: the lifted code is
-    /// left out, which would repeat it.
+    /// Records a mistake that rustc reports in the user's own function or closure: the lifted code,
+    /// which would repeat it, is omitted.
     pub(crate) fn leave_to_rustc(&mut self) {
         self.is_rustcs = true;
     }
 
-    /// Takes over the errors of another collection.
+    /// Appends the errors of another collection.
     pub(crate) fn append(&mut self, mut other: Self) {
         self.is_rustcs |= other.is_rustcs;
         if let Some(e) = other.first.take() {
             self.push(e);
-            // It stands for all of them.
+            // The first error contains all of them.
             self.count += other.count - 1;
         }
     }
 
-    /// Takes over the errors of a collection that has found the same mistakes once more: those that
-    /// are here already say all, and are kept alone.
+    /// Appends the errors of a collection with the same mistakes found again: if there are errors
+    /// here already, only these are kept.
     pub(crate) fn append_repeated(&mut self, mut other: Self) {
         if self.first.is_none() {
             self.append(other);
@@ -68,7 +68,7 @@ impl Errors {
         }
     }
 
-    /// How many there are.
+    /// Returns the number of errors.
     pub(crate) fn count(&self) -> usize {
         self.count
     }
@@ -77,14 +77,14 @@ impl Errors {
         self.first.is_none() && !self.is_rustcs
     }
 
-    /// The errors as `compile_error!` calls, or nothing.
+    /// Returns the errors as `compile_error!` calls, or nothing.
     #[must_use = "tokens that are dropped are seen by nobody"]
     pub(crate) fn into_tokens(mut self) -> TokenStream {
         self.first.take().map(|e| e.into_compile_error()).unwrap_or_default()
     }
 
-    /// The errors as items and a type. The type has a mistake in it, so that rustc asks nothing
-    /// more of what is made of it; a `compile_error!` in its place would be a `()`.
+    /// Returns the errors as items and a type. The type has a mistake in it, so that rustc reports
+    /// nothing more about its uses; a `compile_error!` in its place would be a `()`.
     #[must_use = "tokens that are dropped are seen by nobody"]
     pub(crate) fn into_type(mut self) -> (TokenStream, TokenStream) {
         let mut all = self.first.take().into_iter().flatten().map(syn::Error::into_compile_error);
@@ -92,8 +92,8 @@ impl Errors {
         (all.collect(), quote!([f32; #first]))
     }
 
-    /// The errors as an expression: one of them stands for its value, of whatever type, so that
-    /// rustc asks nothing more of it.
+    /// Returns the errors as an expression: one of them is its value, of any type, so that rustc
+    /// reports nothing more about it.
     #[must_use = "tokens that are dropped are seen by nobody"]
     pub(crate) fn into_expression(mut self) -> TokenStream {
         let mut all = self.first.take().into_iter().flatten().map(syn::Error::into_compile_error);
@@ -125,7 +125,7 @@ mod tests {
         errors
     }
 
-    /// The message of a panic in `f`, if there is one.
+    /// Returns the message of a panic in `f`, if there is one.
     fn panic_of(f: impl FnOnce()) -> Option<String> {
         let payload = catch_unwind(AssertUnwindSafe(f)).err()?;
         let literal = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
@@ -161,7 +161,7 @@ mod tests {
         assert_eq!(errors.into_tokens().to_string().matches("no such thing").count(), 2);
     }
 
-    /// A drop while a panic unwinds ends nothing: the first panic is what a user sees.
+    /// Tests that a drop during unwinding does not abort: the first panic is what a user sees.
     #[test]
     fn a_panic_is_not_hidden_by_unread_errors() {
         let message = panic_of(|| {

@@ -3,9 +3,9 @@
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::{ToTokens, quote};
 
-/// Generic parameters, ready to be put between angle brackets: each list ends with a comma.
+/// Generic parameters, formatted for angle brackets: each list ends with a comma.
 ///
-/// Lifetimes are left out: values on a machine are copied.
+/// Lifetimes are omitted: values on a machine are copied.
 #[derive(Clone, Default)]
 pub(crate) struct Generics {
     /// With their bounds: `T: Light, const N: usize,`.
@@ -16,7 +16,7 @@ pub(crate) struct Generics {
     pub(crate) used: TokenStream,
     /// The types' names.
     pub(crate) types: Vec<Ident>,
-    /// Each parameter's name, and how it is declared without bounds.
+    /// Each parameter's name, and its declaration without bounds.
     names: Vec<(Ident, TokenStream)>,
     /// The predicates of a `where` clause.
     pub(crate) predicates: TokenStream,
@@ -63,7 +63,7 @@ impl Generics {
         self.predicates.extend(other.predicates.clone());
     }
 
-    /// The parameters that `tokens` mention.
+    /// Returns the parameters that `tokens` mention.
     pub(crate) fn mentioned_in(&self, tokens: &TokenStream) -> Self {
         let mut found = Self::default();
         for (name, bare) in self.names.iter().filter(|(name, _)| mentions(tokens, name)) {
@@ -73,7 +73,7 @@ impl Generics {
         found
     }
 
-    /// Whether `tokens` mention one of the types.
+    /// Returns whether `tokens` mention one of the types.
     pub(crate) fn has_type_in(&self, tokens: &TokenStream) -> bool {
         self.types.iter().any(|t| mentions(tokens, t))
     }
@@ -83,14 +83,14 @@ impl Generics {
     }
 }
 
-/// Whether an identifier is among the tokens.
+/// Returns whether an identifier is among the tokens.
 pub(crate) fn mentions(tokens: &TokenStream, name: &Ident) -> bool {
     let mut found = false;
     identifiers(tokens, &mut |i| found |= i == *name);
     found
 }
 
-/// Shows every identifier among the tokens.
+/// Visits every identifier among the tokens.
 pub(crate) fn identifiers(tokens: &TokenStream, visit: &mut dyn FnMut(Ident)) {
     for token in tokens.clone() {
         match token {

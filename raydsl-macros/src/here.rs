@@ -1,8 +1,8 @@
-//! Where generated code seems to stand: at the part of the source that it is made of.
+//! Spans of generated code: those of the source that it comes from.
 //!
-//! rustc shows errors in generated code at the spans of its tokens, and leaves out an error that
-//! another one at the same place implies. So everything that comes from one expression stands at
-//! one place: where a reader of the source would look for the mistake.
+//! rustc reports errors in generated code at the spans of its tokens, and omits an error that
+//! another one at the same place implies. So all code from one expression has one span: where a
+//! reader of the source would look for the mistake.
 
 use std::cell::Cell;
 
@@ -13,7 +13,7 @@ thread_local! {
     static HERE: Cell<Option<Span>> = const { Cell::new(None) };
 }
 
-/// Until it is dropped, generated code stands at a part of the source.
+/// A guard while which generated code has the span of a part of the source.
 pub(crate) struct At(Option<Span>);
 
 impl At {
@@ -28,37 +28,38 @@ impl Drop for At {
     }
 }
 
-/// The place for names that are resolved where the macro is called.
+/// Returns the span for names that are resolved at the macro's call.
 pub(crate) fn here() -> Span {
     located(Span::call_site())
 }
 
-/// A local of the macro's own: it cannot meet one of the user's.
+/// Returns a local of the macro's own, hygienic against the user's.
 pub(crate) fn own(name: &str) -> Ident {
     Ident::new(name, located(Span::mixed_site()))
 }
 
-/// A name of the library's.
+/// Returns a name of the library.
 pub(crate) fn word(name: &str) -> Ident {
     Ident::new(name, here())
 }
 
-/// The module with all that generated code uses, standing where the macro is called.
+/// Returns the module of the items for generated code, with the span of the macro's call.
 pub(crate) fn private() -> TokenStream {
     quote!(::raydsl::__private)
 }
 
-/// The module with all that generated code uses, standing [`here()`].
+/// Returns the module of the items for generated code, with the span [`here()`].
 pub(crate) fn private_here() -> TokenStream {
     quote_here!(::raydsl::__private)
 }
 
-/// Code stands where the type does.
+/// Sets the span of generated code to that of the type.
 pub(crate) fn of_type(ty: &TokenStream) -> At {
     At::new(ty.clone().into_iter().next().map_or_else(here, |t| t.span()))
 }
 
-/// Every token [`here()`]. What a macro calls its crate stays: its place says which crate it is.
+/// Sets the span of every token to [`here()`]. The macro's name for its crate keeps its span, which
+/// identifies the crate.
 pub(crate) fn in_one_place(tokens: TokenStream) -> TokenStream {
     let token = |mut token: TokenTree| {
         if let TokenTree::Group(g) = &token {
@@ -76,7 +77,7 @@ fn located(span: Span) -> Span {
     HERE.get().map_or(span, |at| span.located_at(at))
 }
 
-/// [`quote::quote!`], standing [`here()`].
+/// Works like [`quote::quote!`], with the span [`here()`].
 macro_rules! quote_here {
     ($($tokens:tt)*) => { ::quote::quote_spanned!($crate::here::here()=> $($tokens)*) };
 }

@@ -1,7 +1,8 @@
 //! Procedural macros of `raydsl`: `#[kernel]`, `kernel!`, `#[primitive]`, `#[derive(Type)]`.
 //!
-//! `parse` turns syn's syntax into `model`, `emit` turns the model into the lifted Rust, `items`
-//! and `twin` write the items around it. `ops` is the table of what a kernel may call.
+//! `parse` converts syn's syntax to `model`, `emit` lowers the model to the lifted Rust, `items`
+//! and `twin` expand the items around it. `ops` is the table of the operations that a kernel may
+//! call.
 
 mod cost;
 mod diag;
@@ -26,12 +27,12 @@ use diag::refused;
 
 /// Lifts a function, or every function of an `impl` or a trait, to all variants.
 ///
-/// The function itself stays untouched: it is the scalar variant. Beside it stands a type of the
-/// same name whose `on` runs the lifted body on any machine, and which gives the whole kernel as
-/// `Kernel::of::<name>()`.
+/// The function itself is unchanged: it is the scalar variant. Beside it there is a type of the
+/// same name whose `on` runs the lifted body on any machine; `Kernel::of::<name>()` is the whole
+/// kernel.
 ///
-/// Packets inline kernels into the traversal that calls them. One that says `#[inline(never)]`
-/// stays a function of its own, compiled once for each width: for what is long and seldom reached.
+/// Packets inline kernels into the traversal that calls them. A kernel with `#[inline(never)]` is a
+/// function of its own, compiled once for each width: for long code that is rarely reached.
 #[proc_macro_attribute]
 pub fn kernel(args: TokenStream, item: TokenStream) -> TokenStream {
     rewrite::with_readable_names(expand_kernel(args.into(), item.into())).into()
@@ -68,7 +69,7 @@ fn expand_kernel(
              or `#[kernels]` on the function around it",
         );
         let e = e.into_compile_error();
-        // For rustc's sake a kernel all the same: what is done with it is right.
+        // For rustc it is a kernel all the same: its uses are right.
         return quote!({ #e ::raydsl::prelude::kernel!(#item) });
     }
     let what = "`#[kernel]` stands on a function, an impl or a trait";
@@ -77,8 +78,8 @@ fn expand_kernel(
 
 /// Makes kernels of the closures marked `#[kernel]` inside a function, `impl`, trait or module.
 ///
-/// An attribute macro cannot stand on an expression by itself; with `#[kernels]` around it,
-/// `#[kernel] |ray: Ray| ...` is `kernel!(|ray: Ray| ...)`.
+/// An attribute macro cannot be on an expression by itself; within `#[kernels]`, `#[kernel] |ray:
+/// Ray| ...` is `kernel!(|ray: Ray| ...)`.
 #[proc_macro_attribute]
 pub fn kernels(args: TokenStream, item: TokenStream) -> TokenStream {
     expand_kernels(args.into(), item.into()).into()
@@ -97,16 +98,16 @@ fn expand_kernels(
 
 /// Makes a kernel of a closure: `kernel!(|ray: Ray| ...)`.
 ///
-/// What the closure captures is borrowed; the kernel lives as long as that.
+/// The closure's captures are borrowed; the kernel lives as long as they do.
 ///
-/// `kernel!(counted |ray: Ray| ...)` also lifts it for the lanes that `report::utilisation` counts:
+/// `kernel!(counted |ray: Ray| ...)` also lifts it for `utilisation` of the crate `raydsl-report`:
 /// one more copy to compile.
 ///
-/// **It takes rustc time**: each closure is compiled for packets of 4, 8 and 16 lanes, for WGSL and
-/// for the reference. While you edit one, name what you need in the environment:
-/// `RAYDSL_VARIANTS=packet8 cargo run --release`. The others are left out: their packets run the
-/// narrower copy that is there, or the scalar function; what needs WGSL or the reference panics and
-/// says so. More of it in the book, "Compile time".
+/// **Compile time**: each closure is compiled for packets of 4, 8 and 16 lanes, for WGSL and for
+/// the reference. While you edit one, name the variants you need in the environment:
+/// `RAYDSL_VARIANTS=packet8 cargo run --release`. The others are omitted: their packets run the
+/// next narrower copy, or the scalar function; code that needs WGSL or the reference panics with a
+/// message. See the book, "Compile time".
 #[proc_macro]
 pub fn kernel_closure(input: TokenStream) -> TokenStream {
     rewrite::with_readable_names(expand_closure(input.into())).into()
@@ -125,11 +126,11 @@ fn expand_closure(input: proc_macro2::TokenStream) -> proc_macro2::TokenStream {
     }
 }
 
-/// Makes a primitive of a struct, or gives it `intersect` and `get_bounds` in an `impl`.
+/// Makes a primitive of a struct, or of an `impl` with `intersect` and `get_bounds`.
 ///
-/// `#[primitive(disk(center, normal, radius))]` on a struct is all that is needed for a shape of
-/// the library: `sphere`, `triangle`, `quad`, `rectangle`, `disk`, `plane`, `cylinder`, `tube`,
-/// `cone` or `cuboid`. Each is a module of `raydsl::geometry`.
+/// `#[primitive(disk(center, normal, radius))]` on a struct suffices for a shape of the library:
+/// `sphere`, `triangle`, `quad`, `rectangle`, `disk`, `plane`, `cylinder`, `tube`, `cone` or
+/// `cuboid`. Each is a module of `raydsl::geometry`.
 #[proc_macro_attribute]
 pub fn primitive(args: TokenStream, item: TokenStream) -> TokenStream {
     rewrite::with_readable_names(expand_primitive(args.into(), item.into())).into()
@@ -165,7 +166,7 @@ fn expand_primitive(
     quote!(#twin #shape #errors)
 }
 
-/// Lets kernels use a struct of types that they know.
+/// Makes a struct of kernel types a kernel type itself.
 #[proc_macro_derive(Type)]
 pub fn derive_type(input: TokenStream) -> TokenStream {
     match syn::parse::<syn::DeriveInput>(input) {
@@ -174,7 +175,7 @@ pub fn derive_type(input: TokenStream) -> TokenStream {
     }
 }
 
-/// Lets `intersect` of a primitive give a struct with a `Hit` in it.
+/// Lets `intersect` of a primitive return a struct with a `Hit` in it.
 #[proc_macro_derive(HitRecord)]
 pub fn derive_hit_record(input: TokenStream) -> TokenStream {
     match syn::parse::<syn::DeriveInput>(input) {
@@ -185,16 +186,16 @@ pub fn derive_hit_record(input: TokenStream) -> TokenStream {
 
 /// Makes a `#[test]` of each variant from one function of a `Variant`.
 ///
-/// `fn agrees(variant: Variant)` gives `agrees_scalar`, `agrees_packet4`, `agrees_packet8`,
-/// `agrees_packet16` and `agrees_wgsl`. A variant that the machine lacks is skipped and says so;
+/// `fn agrees(variant: Variant)` expands to `agrees_scalar`, `agrees_packet4`, `agrees_packet8`,
+/// `agrees_packet16` and `agrees_wgsl`. A variant that the machine lacks is skipped with a message;
 /// with `RAYDSL_REQUIRE_GPU=1` in the environment a missing device is an error. `#[ignore]` and
-/// `#[should_panic]` go to the tests. The function may give a `Result<(), E>`.
+/// `#[should_panic]` apply to the tests. The function may return a `Result<(), E>`.
 #[proc_macro_attribute]
 pub fn variant_test(args: TokenStream, item: TokenStream) -> TokenStream {
     variant_test::variant_test(&args.into(), item.into()).into()
 }
 
-/// Makes a `#[test]` that the WGSL of a `#[kernel] fn` is valid: `wgsl_test!(sky)` gives
+/// Makes a `#[test]` that the WGSL of a `#[kernel] fn` is valid: `wgsl_test!(sky)` expands to
 /// `sky_has_valid_wgsl`. It needs no device, but raydsl's feature `validate` or `gpu`.
 #[proc_macro]
 pub fn wgsl_test(input: TokenStream) -> TokenStream {

@@ -1,4 +1,4 @@
-//! A kernel as the macro understands it: syn's syntax is behind us, tokens are still to come.
+//! Syntax tree of a kernel, between syn's syntax and the generated tokens.
 
 use proc_macro2::{Ident, Span, TokenStream};
 
@@ -14,11 +14,11 @@ pub(crate) struct Kernel {
     /// The declared result; `None` is `()` for a function and inferred for a closure.
     pub(crate) result: Option<TokenStream>,
     pub(crate) body: Block,
-    /// Whether it says `#[inline(never)]`.
+    /// Whether it has `#[inline(never)]`.
     pub(crate) is_apart: bool,
-    /// What machines know of it beyond its code.
+    /// The knowledge of machines about it beyond its code.
     pub(crate) known: Option<syn::Expr>,
-    /// Whether there is a mistake in its signature: then nothing can be made of it.
+    /// Whether there is a mistake in its signature, so that it cannot be lifted.
     pub(crate) is_broken: bool,
 }
 
@@ -28,11 +28,11 @@ pub(crate) struct Param {
     pub(crate) name: Ident,
     pub(crate) ty: TokenStream,
     pub(crate) mutable: bool,
-    /// `&mut`: what the kernel makes of it goes back to the caller.
+    /// Whether it is `&mut`: its final value is written back to the caller.
     pub(crate) by_mut: bool,
-    /// A slice or a tree, which kernels read in place.
+    /// Whether it is a slice or a tree, which kernels read in place.
     pub(crate) data: bool,
-    /// `#[host]`: known before the kernel runs.
+    /// Whether it is `#[host]`: known before the kernel runs.
     pub(crate) host: bool,
 }
 
@@ -52,7 +52,7 @@ pub(crate) enum Stmt {
 
 #[derive(Clone)]
 pub(crate) struct Let {
-    /// `#[host]`: known before the kernel runs.
+    /// Whether it is `#[host]`: known before the kernel runs.
     pub(crate) host: bool,
     /// `None` is the pattern `_`.
     pub(crate) name: Option<Ident>,
@@ -121,7 +121,7 @@ pub(crate) enum Kind {
     Method {
         receiver: Box<Expr>,
         name: Ident,
-        /// What stands behind `::`, as types.
+        /// The arguments behind `::`, as types.
         turbofish: Vec<TokenStream>,
         args: Vec<Expr>,
     },
@@ -133,12 +133,12 @@ pub(crate) enum Kind {
         base: Box<Expr>,
         member: TokenStream,
     },
-    /// An element of an array at a place that the source names.
+    /// An element of an array at an index written in the source.
     Index {
         base: Box<Expr>,
         index: TokenStream,
     },
-    /// An element of an array at a place that is computed.
+    /// An element of an array at a computed index.
     Element {
         base: Box<Expr>,
         index: Box<Expr>,
@@ -155,7 +155,7 @@ pub(crate) enum Kind {
     },
     Tuple(Vec<Expr>),
     If {
-        /// `#[coherent]`: the rays mostly agree, so its arms are tested.
+        /// Whether it is `#[coherent]`: the rays mostly agree, so its arms are tested.
         coherent: bool,
         c: Box<Expr>,
         then: Block,
@@ -176,7 +176,7 @@ pub(crate) enum Kind {
         range: Range,
         body: Block,
     },
-    /// A loop over what a cursor finds: its body binds the items by this name.
+    /// A loop over a cursor: its body binds the items by this name.
     ForItems {
         label: Option<String>,
         item: Ident,
@@ -200,7 +200,7 @@ pub(crate) enum Kind {
     Error,
 }
 
-/// What a `for` runs over.
+/// The range of a `for`.
 #[derive(Clone)]
 pub(crate) struct Range {
     pub(crate) start: Box<Expr>,
@@ -218,14 +218,14 @@ pub(crate) struct Place {
     pub(crate) steps: Vec<Step>,
 }
 
-/// From a value to a part of it.
+/// A step from a value to a part of it.
 #[derive(Clone)]
 pub(crate) enum Step {
     /// A member of a struct or a tuple.
     Member(TokenStream),
-    /// An element at a place that the source names.
+    /// An element at an index written in the source.
     Element(TokenStream),
-    /// An element at a place that is computed.
+    /// An element at a computed index.
     Computed(Expr),
 }
 
@@ -236,20 +236,20 @@ pub(crate) enum IntType {
     Usize,
 }
 
-/// The binary operators of arithmetic, by the name of their trait and method.
+/// A binary arithmetic operator, with the names of its trait and method.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct BinaryOp {
-    /// As the source has it.
+    /// The operator in the source.
     pub(crate) symbol: &'static str,
     pub(crate) operator: &'static str,
     pub(crate) method: &'static str,
-    /// Whether dead lanes could make it trap.
+    /// Whether inactive lanes could make it trap.
     pub(crate) may_trap: bool,
-    /// Whether integers may overflow in it: an error in running lanes, where it is checked.
+    /// Whether it may overflow integers: an error in running lanes, where it is checked.
     pub(crate) may_overflow: bool,
 }
 
-/// Whether a name is a constant's, by the convention that rustc warns about.
+/// Returns whether a name is a constant's, by rustc's naming convention.
 pub(crate) fn is_constant(name: &Ident) -> bool {
     name.to_string().starts_with(|c: char| c.is_ascii_uppercase())
 }
@@ -263,7 +263,7 @@ impl Kernel {
 }
 
 impl Kind {
-    /// The tokens of an integer of the source.
+    /// Returns the tokens of an integer of the source.
     pub(crate) fn int_tokens(&self) -> Option<&TokenStream> {
         match self {
             Self::Int { tokens, .. } => Some(tokens),
@@ -271,7 +271,7 @@ impl Kind {
         }
     }
 
-    /// Every expression directly under this one.
+    /// Returns every expression directly under this one.
     pub(crate) fn children(&self) -> Vec<&Expr> {
         match self {
             Self::Float(_)
@@ -345,7 +345,7 @@ impl Block {
 }
 
 impl Expr {
-    /// Whether running it can take lanes out of the code that follows.
+    /// Returns whether running it can stop lanes in the code that follows.
     pub(crate) fn ends_lanes(&self) -> bool {
         self.ends(&mut Vec::new(), 0)
     }
@@ -370,7 +370,7 @@ impl Expr {
         }
     }
 
-    /// Whether its value comes out of control flow, not of an expression.
+    /// Returns whether its value comes from control flow, not from an expression.
     pub(crate) fn is_structured(&self) -> bool {
         match &self.kind {
             Kind::If { .. } => true,
@@ -380,7 +380,7 @@ impl Expr {
         }
     }
 
-    /// What `break` gives to the loop with `label`, `depth` loops further out.
+    /// Collects the values of `break` for the loop with `label`, `depth` loops further out.
     fn break_values<'a>(&'a self, label: Option<&str>, depth: usize, found: &mut Vec<&'a Expr>) {
         match &self.kind {
             Kind::Break(None, Some(value)) if depth == 0 => found.push(value),
@@ -395,7 +395,7 @@ impl Expr {
         self.kind.children().iter().for_each(|e| e.break_values(label, depth, found));
     }
 
-    /// The expressions that may become its value.
+    /// Collects the expressions that may become its value.
     fn outcomes<'a>(&'a self, found: &mut Vec<&'a Expr>) {
         let of_block = |b: &'a Block, found: &mut Vec<&'a Expr>| {
             b.tail.iter().for_each(|e| e.outcomes(found));
@@ -414,7 +414,7 @@ impl Expr {
         }
     }
 
-    /// Whether it is an integer of the source whose type is for others to say.
+    /// Returns whether it is an integer of the source whose type is inferred.
     pub(crate) fn is_untyped_integer(&self) -> bool {
         match &self.kind {
             Kind::Int { suffix, .. } => suffix.is_none(),
@@ -446,7 +446,7 @@ impl Expr {
         matches!(&self.kind, Kind::Array(items) if items.iter().any(Self::has_typed_outcome))
     }
 
-    /// Whether it is, or lists, an integer of the source whose type is for others to say.
+    /// Returns whether it is, or lists, an integer of the source whose type is inferred.
     pub(crate) fn has_untyped_integer(&self) -> bool {
         match &self.kind {
             Kind::Tuple(items) | Kind::Array(items) => items.iter().any(Self::has_untyped_integer),
@@ -474,17 +474,18 @@ impl Expr {
         }
     }
 
-    /// Whether no way through it gives a value.
+    /// Returns whether no path through it has a value.
     pub(crate) fn has_no_outcome(&self) -> bool {
         self.all_outcomes().is_empty()
     }
 
-    /// Whether no lane goes on behind it.
+    /// Returns whether no lane runs on behind it.
     pub(crate) fn diverges(&self) -> bool {
         matches!(self.kind, Kind::Return(_) | Kind::Break(..) | Kind::Continue(_))
     }
 
-    /// Whether it may be evaluated where the source would not: it has no effect and cannot trap.
+    /// Returns whether it may be evaluated where the source would not: it has no side effect and
+    /// cannot trap.
     pub(crate) fn is_total(&self) -> bool {
         let this = match &self.kind {
             Kind::Binary { op, .. } => !op.may_trap,
@@ -510,7 +511,7 @@ impl Expr {
         this && self.kind.children().iter().all(|e| e.is_total())
     }
 
-    /// Whether it calls or assigns something, so that its place in the order of things matters.
+    /// Returns whether it calls or assigns something, so that its order matters.
     pub(crate) fn may_act(&self) -> bool {
         let this = matches!(
             self.kind,
@@ -523,7 +524,7 @@ impl Expr {
         this || self.kind.children().iter().any(|e| e.may_act())
     }
 
-    /// Whether it has arithmetic that is an error where an integer overflows.
+    /// Returns whether it has arithmetic for which integer overflow is an error.
     pub(crate) fn may_overflow(&self) -> bool {
         let this = match &self.kind {
             Kind::Binary { op, .. } => op.may_overflow,
@@ -542,7 +543,7 @@ impl Let {
 }
 
 impl Stmt {
-    /// `let name = init`.
+    /// Returns `let name = init`.
     pub(crate) fn bind(name: Ident, mutable: bool, init: Expr) -> Self {
         let (name, init) = (Some(name), Some(init));
         Self::Let(Let { host: false, name, mutable, ty: None, init })
@@ -562,7 +563,7 @@ impl Block {
         self.children().iter().any(|e| e.ends_lanes())
     }
 
-    /// What `break` gives to the loop with this label, whose body the block is.
+    /// Returns the values of `break` for the loop with this label, whose body the block is.
     fn break_values(&self, label: Option<&str>) -> Vec<&Expr> {
         let mut found = Vec::new();
         self.children().iter().for_each(|e| e.break_values(label, 0, &mut found));
@@ -594,7 +595,7 @@ impl Block {
             || self.children().into_iter().any(within)
     }
 
-    /// Whether something within leaves the block with this label.
+    /// Returns whether something inside leaves the block with this label.
     pub(crate) fn leaves(&self, label: &str) -> bool {
         fn leaves(e: &Expr, label: &str) -> bool {
             matches!(&e.kind, Kind::Break(Some(l), _) if l == label)
@@ -603,7 +604,7 @@ impl Block {
         self.children().into_iter().any(|e| leaves(e, label))
     }
 
-    /// The calls of a method of this name on `self`.
+    /// Returns the calls of a method of this name on `self`.
     pub(crate) fn calls_on_self(&self, method: &Ident) -> Vec<Span> {
         fn find(e: &Expr, method: &Ident, found: &mut Vec<Span>) {
             if let Kind::Method { receiver, name, .. } = &e.kind
@@ -619,7 +620,7 @@ impl Block {
         found
     }
 
-    /// Whether the function returns from within the block.
+    /// Returns whether the function returns from within the block.
     pub(crate) fn returns(&self) -> bool {
         fn returns(e: &Expr) -> bool {
             matches!(e.kind, Kind::Return(_)) || e.kind.children().into_iter().any(returns)

@@ -1,4 +1,4 @@
-//! What a kernel may call, and what it may not: one table.
+//! Table of the operations that a kernel may call, and those it may not.
 
 use crate::model::BinaryOp;
 
@@ -20,8 +20,8 @@ macro_rules! operators {
 }
 
 // The last two columns: `may_trap`, `may_overflow`. `+`, `-`, `*` and shifts are errors on overflow
-// where debug assertions are on; the packet machine masks those checks itself, so evaluating them
-// under a narrowed mask is safe. Division is not: its lanes must run.
+// with debug assertions; the packet machine masks those checks itself, so evaluating them under a
+// narrowed mask is safe. Division is not: its lanes must run.
 operators! {
     ADD = "+" "OpAdd" "add" false true;
     SUB = "-" "OpSub" "sub" false true;
@@ -35,9 +35,9 @@ operators! {
     SHR = ">>" "OpShr" "shr" false true;
 }
 
-/// An operator that a type of the user's may have.
+/// An operator that a user's type may have.
 pub(crate) struct Overloaded {
-    /// Its trait in the runtime; without `Op` it is that of std.
+    /// Its trait in the runtime; without `Op` it is std's.
     pub(crate) operator: &'static str,
     pub(crate) method: &'static str,
     /// The function of the trait `AddAssign` and its like.
@@ -60,14 +60,14 @@ pub(crate) const OVERLOADED: &[Overloaded] = overloaded![
     ADD "add_assign", SUB "sub_assign", MUL "mul_assign", DIV "div_assign", REM "rem_assign"
 ];
 
-/// The number of a text (FNV-1a, 64 bits), to make a name of it.
+/// Returns the hash of a text (FNV-1a, 64 bits), to form a name.
 pub(crate) fn hash(text: &str) -> u64 {
     let step = |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
     text.bytes().fold(0xcbf2_9ce4_8422_2325, step)
 }
 
-/// Elementary functions: std's differ from one machine to the next, so variants could not agree.
-/// The second column is what the prelude has instead, if anything.
+/// Elementary functions: std's differ between platforms, so variants could not agree. The second
+/// column is the prelude's replacement, if there is one.
 const ELEMENTARY: &[(&str, &str)] = &[
     ("sin", "sin(x)"),
     ("cos", "cos(x)"),
@@ -94,7 +94,7 @@ const ELEMENTARY: &[(&str, &str)] = &[
     ("tanh", ""),
 ];
 
-/// Other methods that kernels cannot have, with what to write instead.
+/// Other methods that kernels cannot have, with their replacements.
 const DENIED: &[(&str, &str)] = &[
     ("unwrap", "a value with a flag: kernels have no Option"),
     ("expect", "a value with a flag: kernels have no Option"),
@@ -103,7 +103,7 @@ const DENIED: &[(&str, &str)] = &[
     ("iter", "`for x in list.iter()`, or a `for` over a range"),
 ];
 
-/// Types of Rust that no kernel has, with what to write instead.
+/// Types of Rust that no kernel has, with their replacements.
 const REFUSED_TYPES: &[(&[&str], &str)] = &[
     (&["f64"], "compute in `f32`; `Kernel::reference` gives the result in `f64`"),
     (
@@ -116,20 +116,20 @@ const REFUSED_TYPES: &[(&[&str], &str)] = &[
     (&["Vec", "Box", "HashMap"], "capture a slice or take one as `&[f32]`: kernels have no heap"),
 ];
 
-/// What to write in place of the type `name`, if no kernel has it.
+/// Returns the replacement of the type `name`, if no kernel has it.
 pub(crate) fn refused_type(name: &str) -> Option<&'static str> {
     REFUSED_TYPES.iter().find(|r| r.0.contains(&name)).map(|r| r.1)
 }
 
-/// A method that kernels cannot have of a type of the library's.
+/// A method of a library type that kernels cannot have.
 pub(crate) struct Denied {
     pub(crate) what: String,
     pub(crate) help: String,
-    /// Whether rustc refuses it where the macro does not know the receiver's type.
+    /// Whether rustc refuses it if the macro does not know the receiver's type.
     pub(crate) seen_by_type: bool,
 }
 
-/// What is wrong with the method `name` and what to write instead, if kernels cannot have it.
+/// Returns the problem and the remedy of the method `name`, if kernels cannot have it.
 pub(crate) fn denied(name: &str) -> Option<Denied> {
     if let Some((_, ours)) = ELEMENTARY.iter().find(|e| e.0 == name) {
         let help = if ours.is_empty() {
@@ -145,13 +145,13 @@ pub(crate) fn denied(name: &str) -> Option<Denied> {
     Some(Denied { what, help: format!("write {instead}"), seen_by_type: false })
 }
 
-/// Types of Rust's and glam's that kernels have.
+/// Types of Rust and glam that kernels have.
 pub(crate) const LIBRARY: &[&str] = &[
     "f32", "i32", "u32", "usize", "bool", "Vec2", "Vec3", "Vec4", "IVec2", "IVec3", "IVec4",
     "UVec2", "UVec3", "UVec4", "BVec2", "BVec3", "BVec4", "Mat3", "Mat4", "Affine3", "Ray", "Hit",
 ];
 
-/// Whether the type is one of Rust's or glam's.
+/// Returns whether the type is one of Rust's or glam's.
 pub(crate) fn is_of_library(name: &str) -> bool {
     LIBRARY.contains(&name)
 }
@@ -173,7 +173,7 @@ const DATA: &[&str] = &[
     "Texels",
 ];
 
-/// Whether kernels read the type's data in place.
+/// Returns whether kernels read the type's data in place.
 pub(crate) fn is_data(name: &str) -> bool {
     DATA.contains(&name)
 }
@@ -216,7 +216,7 @@ const OF_ONE: &[&str] = &[
     "normalize",
 ];
 
-/// What to write in place of `f32::name(..)`, if `name` is a method.
+/// Returns the replacement of `f32::name(..)`, if `name` is a method.
 pub(crate) fn method_of_library(name: &str) -> Option<String> {
     if let Some((_, ours)) = ELEMENTARY.iter().find(|e| e.0 == name && !e.1.is_empty()) {
         return Some(format!("write `{ours}`, the function of raydsl's prelude"));
@@ -231,7 +231,7 @@ pub(crate) fn method_of_library(name: &str) -> Option<String> {
     Some(format!("write `{call}`"))
 }
 
-/// What to write in place of a function of std.
+/// Returns the replacement of a function of std.
 pub(crate) fn instead_of_std(name: &str) -> String {
     match name {
         "min" | "max" => format!("write `{name}(a, b)`, the function of raydsl's prelude"),
@@ -241,11 +241,11 @@ pub(crate) fn instead_of_std(name: &str) -> String {
     }
 }
 
-/// Functions of the prelude that packets run in a few operations, and in how many.
+/// Functions of the prelude that packets run in a few operations, and their number.
 const CHEAP_FUNCTIONS: &[(&str, u32)] =
     &[("min", 2), ("max", 2), ("clamp", 4), ("select", 1), ("vec2", 0), ("vec3", 0), ("vec4", 0)];
 
-/// Methods of numbers and vectors that packets run in a few operations, and in how many.
+/// Methods of numbers and vectors that packets run in a few operations, and their number.
 const CHEAP_METHODS: &[(&str, u32)] = &[
     ("abs", 1),
     ("sqrt", 12),
@@ -265,12 +265,12 @@ const CHEAP_METHODS: &[(&str, u32)] = &[
     ("wrapping_mul", 2),
 ];
 
-/// What a call of a function of the prelude costs, if little.
+/// Returns the cost of a call of a prelude function, if it is small.
 pub(crate) fn cheap_function(name: &str) -> Option<u32> {
     CHEAP_FUNCTIONS.iter().find(|f| f.0 == name).map(|f| f.1)
 }
 
-/// What a method costs, if little.
+/// Returns the cost of a method, if it is small.
 pub(crate) fn cheap_method(name: &str) -> Option<u32> {
     CHEAP_METHODS.iter().find(|f| f.0 == name).map(|f| f.1)
 }

@@ -1,10 +1,10 @@
-//! Rewriting of source that stays Rust.
+//! Rewriting of source that remains Rust.
 
 use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
 use quote::{ToTokens, quote};
 use syn::parse::Parser as _;
 
-/// Whether `#` and what follows are the attribute `#[name]`.
+/// Returns whether `#` and what follows are the attribute `#[name]`.
 fn is_attribute(hash: &TokenTree, brackets: &TokenTree, name: &str) -> bool {
     let TokenTree::Group(g) = brackets else { return false };
     matches!(hash, TokenTree::Punct(p) if p.as_char() == '#')
@@ -19,7 +19,8 @@ fn within_groups(token: TokenTree, f: fn(TokenStream) -> TokenStream) -> TokenTr
     TokenTree::Group(inside)
 }
 
-/// Source without the attributes `#[host]` and `#[coherent]`, which only the lowering understands.
+/// Returns the source without the attributes `#[host]` and `#[coherent]`, which only the lowering
+/// understands.
 pub(crate) fn without_markers(source: TokenStream) -> TokenStream {
     let tokens: Vec<TokenTree> = source.into_iter().collect();
     let mut out = TokenStream::new();
@@ -37,8 +38,8 @@ pub(crate) fn without_markers(source: TokenStream) -> TokenStream {
     out
 }
 
-/// The names of our type parameters, and what messages call them. The user's own, of whatever name,
-/// stand beside them.
+/// The names of generated type parameters, and their names in messages. The user's own, of any
+/// name, are beside them.
 const READABLE: [(&str, &str); 5] = [
     ("__M", "AnyMachine"),
     ("__Args", "AnyArguments"),
@@ -47,8 +48,8 @@ const READABLE: [(&str, &str); 5] = [
     ("__NAME", "ANY_NAME"),
 ];
 
-/// Generated code whose type parameters have names that read well in rustc's messages; while it is
-/// made, they begin with `__`, as do other names of ours.
+/// Returns generated code whose type parameters have readable names in rustc's messages; while it
+/// is generated, they begin with `__`, like other generated names.
 pub(crate) fn with_readable_names(generated: TokenStream) -> TokenStream {
     let token = |token| match token {
         TokenTree::Ident(i) => TokenTree::Ident(readable_name(i)),
@@ -68,7 +69,7 @@ fn readable_name(ident: Ident) -> Ident {
     }
 }
 
-/// `#[kernel] |ray: Ray| ...` becomes `kernel!(|ray: Ray| ...)`, at any depth.
+/// Replaces `#[kernel] |ray: Ray| ...` by `kernel!(|ray: Ray| ...)`, at any depth.
 pub(crate) fn kernel_closures(source: TokenStream) -> TokenStream {
     let tokens: Vec<TokenTree> = source.into_iter().collect();
     let mut out = TokenStream::new();
@@ -87,7 +88,7 @@ pub(crate) fn kernel_closures(source: TokenStream) -> TokenStream {
     out
 }
 
-/// The closure that `tokens` begin with, and how many tokens follow it.
+/// Returns the closure that `tokens` begin with, and the number of tokens after it.
 fn leading_closure(tokens: &[TokenTree]) -> Option<(TokenStream, usize)> {
     let begins = match tokens.first()? {
         TokenTree::Punct(p) => p.as_char() == '|',

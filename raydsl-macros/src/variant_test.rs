@@ -1,4 +1,4 @@
-//! `#[variant_test]` and `wgsl_test!`: tests of kernels.
+//! Expansion of `#[variant_test]` and `wgsl_test!`: tests of kernels.
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -6,7 +6,7 @@ use syn::spanned::Spanned as _;
 
 use crate::diag::{Errors, refused};
 
-/// The variants, and the ends of their tests' names.
+/// The variants, and the suffixes of their tests' names.
 const VARIANTS: [(&str, &str); 5] = [
     ("Scalar", "scalar"),
     ("Packet4", "packet4"),
@@ -18,7 +18,7 @@ const VARIANTS: [(&str, &str); 5] = [
 /// The attributes that belong to the tests, not to the function that they call.
 const OF_TESTS: [&str; 3] = ["ignore", "should_panic", "cfg"];
 
-/// The function, and a test for each variant that calls it.
+/// Returns the function, and a test for each variant that calls it.
 pub(crate) fn variant_test(args: &TokenStream, item: TokenStream) -> TokenStream {
     let Ok(mut f) = syn::parse2::<syn::ItemFn>(item.clone()) else {
         let help = "write `#[variant_test] fn agrees(variant: Variant) { ... }`";
@@ -62,7 +62,7 @@ fn check_signature(sig: &syn::Signature, errors: &mut Errors) {
     }
 }
 
-/// What `#[should_panic]` expects, if it stands there.
+/// Returns the text that `#[should_panic]` expects, if it is present.
 fn expected_panic(attributes: &[syn::Attribute]) -> Option<String> {
     let attribute = attributes.iter().find(|a| a.path().is_ident("should_panic"))?;
     // `#[should_panic = "text"]`
@@ -72,7 +72,7 @@ fn expected_panic(attributes: &[syn::Attribute]) -> Option<String> {
         return Some(text.value());
     }
     let mut expected = String::new();
-    // A mistake in the attribute is rustc's to report.
+    // A mistake in the attribute is reported by rustc.
     let _ = attribute.parse_nested_meta(|meta| {
         expected = meta.value()?.parse::<syn::LitStr>()?.value();
         Ok(())
@@ -80,8 +80,8 @@ fn expected_panic(attributes: &[syn::Attribute]) -> Option<String> {
     Some(expected)
 }
 
-/// The test of one variant. A function that gives a `Result` is skipped with `Ok(())`, and one that
-/// should panic with that panic.
+/// Returns the test of one variant. A function that returns a `Result` is skipped with `Ok(())`,
+/// and one that should panic with that panic.
 fn test(
     sig: &syn::Signature,
     attributes: &[syn::Attribute],
@@ -108,7 +108,7 @@ fn test(
     }
 }
 
-/// A test that the WGSL of a `#[kernel] fn` is valid.
+/// Returns a test that the WGSL of a `#[kernel] fn` is valid.
 pub(crate) fn wgsl_test(input: TokenStream) -> TokenStream {
     let kernel = match syn::parse2::<syn::Path>(input) {
         Ok(kernel) => kernel,

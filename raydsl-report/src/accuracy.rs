@@ -1,25 +1,25 @@
-//! Results against the reference.
+//! Accuracy of results against the reference.
 
 use raydsl::machine::{Leaf, Type, result_leaves};
 use raydsl::testing::ulp;
 
-/// How far results are from the reference in `f64`.
+/// The errors of results against the reference in `f64`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Accuracy {
     /// The largest error of a number, in ulp of the reference as an `f32`.
     pub max_ulp: f64,
-    /// The mean error of numbers in ulp. A difference of large numbers that is next to 0 has many
-    /// ulp, and rules the mean; compare [`Self::median_ulp`].
+    /// The mean error of numbers in ulp. A difference of large numbers that is near 0 has many ulp,
+    /// and dominates the mean; compare [`Self::median_ulp`].
     pub mean_ulp: f64,
-    /// The error in ulp that half of the numbers do not exceed.
+    /// The median error in ulp.
     pub median_ulp: f64,
-    /// Results with an integer that is not the reference's: they followed another path, and their
-    /// numbers do not count.
+    /// The number of results with an integer that differs from the reference's: they followed
+    /// another path, and their numbers do not count.
     pub other_paths: u64,
 }
 
 impl Accuracy {
-    /// Of results and their references, leaf by leaf.
+    /// Computes the errors of results against their references, leaf by leaf.
     pub(super) fn of<'a, R: Type>(pairs: impl Iterator<Item = (R, &'a [Leaf])>) -> Self {
         let (mut errors, mut other_paths) = (Vec::new(), 0);
         for (result, reference) in pairs {
@@ -39,7 +39,7 @@ impl Accuracy {
     }
 }
 
-/// The errors of a result's floats, if its integers are the reference's.
+/// Returns the errors of a result's floats, if its integers are the reference's.
 fn errors_of(result: &[Leaf], reference: &[Leaf]) -> Option<Vec<f64>> {
     let pairs = || result.iter().zip(reference);
     let is_float = |leaf: &Leaf| matches!(leaf, Leaf::Float { .. });
@@ -48,9 +48,9 @@ fn errors_of(result: &[Leaf], reference: &[Leaf]) -> Option<Vec<f64>> {
     same_path.then(|| floats.map(|(a, b)| error(a.value(), b.value())).collect())
 }
 
-/// The error of `found` in ulp of the reference.
+/// Returns the error of `found` in ulp of the reference.
 fn error(found: f64, reference: f64) -> f64 {
-    // A reference that no `f32` reaches is infinity to them.
+    // A reference beyond the range of `f32` is infinity in `f32`.
     let overflows = found.is_infinite() && f64::from(reference as f32) == found;
     if found == reference || overflows || found.is_nan() && reference.is_nan() {
         return 0.0;

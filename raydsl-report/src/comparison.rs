@@ -1,4 +1,4 @@
-//! Runs every variant of a kernel, and compares.
+//! Comparison of all variants of a kernel.
 
 use std::time::Instant;
 
@@ -11,7 +11,7 @@ use raydsl::machine::{F, Machine, Outcomes, Rounding, Type};
 use raydsl::render::{Image, Renderer, TiledScheduler};
 use raydsl::testing::{Agreement, Cause, Sample};
 
-/// Settings of a comparison.
+/// The settings of a comparison.
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -46,7 +46,7 @@ impl Default for Compare<'_> {
 }
 
 impl<'a> Compare<'a> {
-    /// Every variant, 640 by 480 pixels, 5 rounds.
+    /// Creates settings for every variant, 640 by 480 pixels, 5 rounds.
     pub fn new() -> Self {
         Self {
             width: 640,
@@ -62,40 +62,40 @@ impl<'a> Compare<'a> {
         }
     }
 
-    /// The film's size in pixels.
+    /// Sets the film's size in pixels.
     pub fn size(self, width: u32, height: u32) -> Self {
         Self { width, height, ..self }
     }
 
-    /// How many rounds are timed, after one that is not; at least 1.
+    /// Sets the number of timed rounds, after one that is not timed; at least 1.
     pub fn runs(self, runs: usize) -> Self {
         Self { runs: runs.max(1), ..self }
     }
 
-    /// How many ulp the numbers of the WGSL variant may be off besides: unless this is called,
-    /// whatever rounding accounts for is fine.
+    /// Sets a limit in ulp on the differences of the WGSL variant's numbers, in addition to the
+    /// bounds on rounding; no limit unless set.
     pub fn tolerance(self, ulp: u32) -> Self {
         Self { tolerance: Some(ulp), ..self }
     }
 
-    /// How many pixels are computed in `f64`, spread evenly over the film: they give the share of
-    /// uncertain ones and the error of every variant. 4096 unless this is called; a pixel takes
-    /// some two hundred times as long as in the scalar variant.
+    /// Sets the number of pixels computed in `f64`, spread evenly over the film: they give the
+    /// share of uncertain ones and the error of every variant. 4096 unless set; a pixel takes some
+    /// two hundred times as long as in the scalar variant.
     pub fn samples(self, samples: usize) -> Self {
         Self { samples, ..self }
     }
 
-    /// How the device rounds: [`Rounding::WGSL`] unless this is called.
+    /// Sets the device's rounding: [`Rounding::WGSL`] unless set.
     pub fn rounding(self, rounding: Rounding) -> Self {
         Self { rounding, ..self }
     }
 
-    /// Which variants run; the scalar one always does.
+    /// Sets the variants to run; the scalar one always runs.
     pub fn variants(self, variants: &Variants) -> Self {
         Self { variants: variants.clone(), ..self }
     }
 
-    /// The device for the WGSL variant; without this the best of the machine.
+    /// Sets the device for the WGSL variant; the best of the machine unless set.
     #[cfg(feature = "gpu")]
     pub fn gpu(self, gpu: &'a raydsl::gpu::GpuScheduler) -> Self {
         Self { gpu: Some(gpu), ..self }
@@ -108,7 +108,7 @@ impl<'a> Compare<'a> {
 
     /// Runs the variants in turn, round by round.
     ///
-    /// A variant that cannot run (no device, no WGSL in this build) has a row that says why.
+    /// A variant that cannot run (no device, no WGSL in this build) has a row with the reason.
     pub fn run<C: Camera, R: Type>(
         mut self,
         kernel: &Kernel<'_, (Ray,), R>,
@@ -185,31 +185,31 @@ impl<'a> Compare<'a> {
     }
 }
 
-/// One variant's part of a comparison.
+/// The row of one variant in a comparison.
 #[derive(Clone, Debug)]
 pub struct Row<R> {
-    /// Which variant.
+    /// The variant.
     pub variant: Variant,
     /// The instruction set that ran it; `wgsl` for the device.
     pub isa: &'static str,
-    /// Rays that run at once.
+    /// The number of rays that run at once.
     pub lanes: usize,
     /// Run times of a frame.
     pub times: Times,
-    /// What it rendered.
+    /// The rendered image.
     pub image: Image<R>,
-    /// How that agrees with the scalar variant.
+    /// The agreement with the scalar variant.
     pub agreement: Agreement,
-    /// How far it is from the reference in `f64`, at the sampled pixels.
+    /// The errors against the reference in `f64`, at the sampled pixels.
     pub accuracy: Accuracy,
-    /// Why the variant did not run, if it did not.
+    /// The reason why the variant did not run, if it did not.
     pub unavailable: Option<Missing>,
 }
 
-/// Why a variant did not run.
+/// The reason why a variant did not run.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Missing {
-    /// There is nothing to run it on: no device, or none in this build.
+    /// No device, or no GPU support in this build.
     NoDevice(String),
     /// The device refuses the kernel, or was lost. The comparison fails.
     Refused(String),
@@ -240,7 +240,8 @@ impl<R: Type> Row<R> {
         }
     }
 
-    /// The CPU's variants must have the same bits, so there nothing is explained.
+    /// Compares with the scalar variant. CPU variants must have the same bits, so nothing is
+    /// explained there.
     fn agreement_with(&self, scalar: &Self, outcomes: OutcomesOf<'_>) -> Agreement
     where
         R: Sync,
@@ -260,7 +261,7 @@ impl<R: Type> Row<R> {
         Accuracy::of(indices.iter().map(pixel).zip(references))
     }
 
-    /// Millions of camera rays a second.
+    /// Returns millions of camera rays per second.
     pub fn mrays_per_s(&self) -> f64 {
         let rays = f64::from(self.image.width()) * f64::from(self.image.height());
         let ms = self.times.median();
@@ -268,7 +269,7 @@ impl<R: Type> Row<R> {
     }
 }
 
-/// What [`Compare::run`] found.
+/// The result of [`Compare::run`].
 #[must_use = "a comparison that nobody reads finds nothing"]
 #[derive(Clone, Debug)]
 pub struct Comparison<R> {
@@ -276,45 +277,44 @@ pub struct Comparison<R> {
     pub rows: Vec<Row<R>>,
     /// The device that ran the WGSL variant.
     pub adapter: Option<String>,
-    /// How many ulp the numbers of the WGSL variant may be off, if there is a limit besides
-    /// rounding's.
+    /// The limit in ulp on the WGSL variant's numbers, if there is one besides rounding's.
     pub tolerance: Option<u32>,
-    /// How the device rounds.
+    /// The device's rounding.
     pub rounding: Rounding,
-    /// How many pixels were uncertain, of those computed in `f64`.
+    /// The number of pixels computed in `f64`, and of uncertain ones among them.
     pub sample: Sample,
 }
 
-/// What a comparison comes to.
+/// The verdict of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Verdict {
-    /// CPU variants have the same bits. Rounding accounts for every difference of WGSL, and numbers
-    /// are within [`Compare::tolerance`] if that was called.
+    /// CPU variants have the same bits. Rounding explains every difference of WGSL, and numbers are
+    /// within [`Compare::tolerance`] if it was set.
     Agree,
-    /// They do not.
+    /// A variant differs by more than that.
     Differ,
-    /// Those that ran do, and the device refuses the kernel, or was lost.
+    /// The variants that ran agree, but the device refuses the kernel, or was lost.
     Refused,
-    /// Rounding accounts for the differences, but more than 1 % of the sampled pixels are uncertain
-    /// or none was sampled: with so much open, that means little.
+    /// Rounding explains the differences, but more than 1 % of the sampled pixels are uncertain or
+    /// none was sampled, so this means little.
     NotMeaningful,
     /// No variant but the scalar one ran, or the film has no pixels.
     NothingCompared,
 }
 
 impl<R: Type> Comparison<R> {
-    /// The row of the scalar variant.
+    /// Returns the row of the scalar variant.
     pub fn scalar(&self) -> &Row<R> {
         &self.rows[0]
     }
 
-    /// Whether the verdict is [`Verdict::Agree`]. A variant for which there is no device does not
+    /// Returns whether the verdict is [`Verdict::Agree`]. A variant without a device does not
     /// count.
     pub fn agrees(&self) -> bool {
         self.verdict() == Verdict::Agree
     }
 
-    /// What the comparison comes to.
+    /// Returns the verdict.
     pub fn verdict(&self) -> Verdict {
         let is_refused = |r: &Row<R>| matches!(r.unavailable, Some(Missing::Refused(_)));
         let ran = || self.rows.iter().filter(|r| r.unavailable.is_none());
@@ -333,7 +333,7 @@ impl<R: Type> Comparison<R> {
         }
     }
 
-    /// Whether a variant that ran is as it should be.
+    /// Returns whether a variant that ran agrees.
     fn is_fine(&self, row: &Row<R>) -> bool {
         let found = &row.agreement;
         let within = self.tolerance.is_none_or(|most| found.max_ulp <= most);
@@ -343,12 +343,12 @@ impl<R: Type> Comparison<R> {
         }
     }
 
-    /// The table, at most 100 columns wide.
+    /// Returns the table, at most 100 columns wide.
     pub fn table(&self) -> String {
         super::table::table(self)
     }
 
-    /// The figures with those of the scene, as JSON.
+    /// Returns the figures and those of the scene, as JSON.
     pub fn json(&self, scene: &super::SceneInfo) -> serde_json::Value {
         super::json::json(self, scene)
     }

@@ -1,20 +1,20 @@
-//! The figures of a comparison, for programs.
+//! JSON of a comparison.
 
 use serde_json::{Value, json as value};
 
 use super::{Comparison, Missing, Row, Verdict};
 use raydsl::machine::Type;
 
-/// What a comparison does not know of its scene.
+/// Figures of the scene, unknown to a comparison.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneInfo {
-    /// A name.
+    /// The scene's name.
     pub scene: String,
-    /// How many primitives.
+    /// The number of primitives.
     pub primitives: u64,
-    /// How long the tree took to build, in milliseconds.
+    /// The build time of the tree, in milliseconds.
     pub build_ms: f64,
-    /// Bytes of the tree.
+    /// The tree's size in bytes.
     pub bvh_bytes: u64,
 }
 
@@ -52,7 +52,7 @@ pub(super) fn json<R: Type>(c: &Comparison<R>, scene: &SceneInfo) -> Value {
     })
 }
 
-/// A number; JSON knows no infinity, so that is a string.
+/// Returns a number; JSON has no infinity, so that becomes a string.
 fn number(v: f64) -> Value {
     if v.is_finite() { v.into() } else { v.to_string().into() }
 }

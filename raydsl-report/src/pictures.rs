@@ -1,26 +1,26 @@
-//! Pictures of a comparison.
+//! Picture files of a comparison.
 
 use std::path::Path;
 
 use super::Comparison;
 use raydsl::render::{Image, Shaded};
 
-/// What went wrong while writing.
+/// The error of writing files.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
-    /// The folder cannot be made, or a file not written.
+    /// The folder cannot be created, or a file cannot be written.
     #[error("cannot write {path}: {source}; choose another folder")]
     File {
-        /// Which file.
+        /// The file.
         path: String,
-        /// Why.
+        /// The cause.
         source: image::ImageError,
     },
 }
 
 impl Comparison<Shaded> {
-    /// Writes into `folder`: a picture for each variant that ran, and for each but the scalar one
-    /// the difference; `table.txt`.
+    /// Writes into `folder`: a picture for each variant that ran, a difference picture for each but
+    /// the scalar one, and `table.txt`.
     ///
     /// # Errors
     ///
@@ -46,8 +46,8 @@ impl Comparison<Shaded> {
     }
 }
 
-/// Where two pictures differ: the scalar one dimmed, red where an id differs, yellow where only
-/// numbers do.
+/// Returns the difference of two pictures: the scalar one dimmed, red where an id differs, yellow
+/// where only numbers do.
 fn difference(expected: &Image, found: &Image) -> Image {
     let mut shown = expected.clone();
     for (out, (a, b)) in

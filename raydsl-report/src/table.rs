@@ -10,7 +10,7 @@ const HEADER: &str = "variant    isa      lanes  ms/frame  Mrays/s  speed-up  ma
 
 const REFERENCE: &str = "variant    error (ulp): median        mean         max  other paths";
 
-/// The longest line of a table.
+/// The maximum length of a line.
 const WIDTH: usize = 100;
 
 pub(super) fn table<R: Type>(c: &Comparison<R>) -> String {
@@ -34,7 +34,7 @@ fn verdict(v: Verdict) -> &'static str {
     }
 }
 
-/// How far each variant is from the reference, and what is uncertain.
+/// Prints the errors of each variant against the reference, and the uncertain pixels.
 fn reference<R: Type>(c: &Comparison<R>) -> String {
     let mut text = format!("\n{REFERENCE}\n");
     for row in c.rows.iter().filter(|r| r.unavailable.is_none()) {
@@ -55,8 +55,7 @@ fn reference<R: Type>(c: &Comparison<R>) -> String {
     text
 }
 
-/// Words on as many lines as they need, behind what the first one begins with. A word that is
-/// longer than a line is cut.
+/// Wraps `words` behind `start`. A word that is longer than a line is cut.
 fn wrapped(start: &str, words: &str) -> String {
     const INDENT: usize = 13;
     let (mut text, mut column) = (start.to_owned(), start.chars().count());

@@ -1,4 +1,4 @@
-//! Run times that can be compared.
+//! Comparable run times.
 
 /// Run times of one variant, from rounds in which every variant ran once.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -8,7 +8,7 @@ pub struct Times {
 }
 
 impl Times {
-    /// The middle run time; 0 without runs.
+    /// Returns the median run time; 0 without runs.
     pub fn median(&self) -> f64 {
         let mut sorted = self.ms.clone();
         sorted.sort_by(f64::total_cmp);
@@ -19,7 +19,7 @@ impl Times {
         }
     }
 
-    /// How far the runs lie apart: (longest - shortest) / median.
+    /// Returns the spread of the runs: (longest - shortest) / median.
     pub fn spread(&self) -> f64 {
         let longest = self.ms.iter().copied().fold(0.0, f64::max);
         let shortest = self.ms.iter().copied().fold(f64::INFINITY, f64::min);
@@ -27,8 +27,8 @@ impl Times {
         if median > 0.0 { (longest - shortest) / median } else { 0.0 }
     }
 
-    /// How many times faster than `base`: the median of the ratios round by round, so that a
-    /// machine that slows down meanwhile slows both.
+    /// Returns the speed-up over `base`: the median of the ratios round by round, so that a machine
+    /// that slows down meanwhile slows both.
     pub fn speedup_over(&self, base: &Self) -> f64 {
         let ratios = base.ms.iter().zip(&self.ms).map(|(b, t)| b / t).collect();
         Self { ms: ratios }.median()

@@ -1,4 +1,4 @@
-//! How many lanes of a packet run, line by line.
+//! SIMD utilisation: running lanes of packets, line by line.
 
 use core::fmt;
 use std::collections::HashMap;
@@ -7,55 +7,55 @@ use std::path::Path;
 use raydsl::kernel::CountedKernel;
 use raydsl::machine::{Count, Place, Type};
 
-/// How many lanes run at each arm of an `if`, in each round of a loop, and in walks of trees.
+/// The running lanes at each arm of an `if`, in each iteration of a loop, and in traversals of
+/// trees.
 ///
-/// `Display` prints a table with the lines of the source, where their file is at hand.
+/// `Display` prints a table with the lines of the source, where their file is found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Utilisation {
     /// The kernel's name.
     pub kernel: &'static str,
-    /// How many lanes a packet has.
+    /// The number of lanes in a packet.
     pub lanes: usize,
-    /// How many packets ran.
+    /// The number of packets that ran.
     pub packets: u64,
-    /// The places that packets came by, in order of file and line.
+    /// The places that packets passed, ordered by file and line.
     pub lines: Vec<LineCount>,
 }
 
-/// What happened at one place.
+/// The counts at one place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LineCount {
-    /// Where. The file is empty for walks of trees, which are no lines of the user's.
+    /// The place. The file is empty for traversals of trees, which are not lines of the user's.
     pub place: Place,
-    /// How often a packet came by.
+    /// The number of packets that passed.
     pub rounds: u64,
-    /// How many lanes were running, summed over the rounds.
+    /// The number of running lanes, summed over the rounds.
     pub lanes: u64,
 }
 
 impl LineCount {
-    /// How many lanes were running on average.
+    /// Returns the mean number of running lanes.
     pub fn mean_lanes(&self) -> f64 {
         self.lanes as f64 / self.rounds.max(1) as f64
     }
 }
 
 impl Utilisation {
-    /// The part of a packet's lanes that ran at a place, from 0 to 1.
+    /// Returns the share of a packet's lanes that ran at a place, from 0 to 1.
     pub fn share(&self, line: &LineCount) -> f64 {
         line.mean_lanes() / self.lanes as f64
     }
 }
 
-/// Runs a kernel over `inputs` in packets of 8 lanes, and counts the lanes that run.
+/// Runs a kernel over `inputs` in packets of 8 lanes, and counts the running lanes.
 ///
-/// Where few of them do, packets cost as much as if all did: rays part there. Inputs are put into
-/// packets in their order, so give those of one packet as the program would. Calls of other kernels
-/// count at the lines of those.
+/// Packets cost as much with few running lanes as with all: rays diverge there. Inputs are put into
+/// packets in order, so group them as the program would. Calls of other kernels count at the lines
+/// of those kernels.
 ///
-/// It is slow, and needs a copy of the kernel that counts, which is compiled where the source asks
-/// for it: `kernel!(counted |ray: Ray| ..)`, or
-/// [`Kernel::counted_of`](raydsl::kernel::Kernel::counted_of).
+/// It is slow, and needs a copy of the kernel that counts, which is compiled only on request:
+/// `kernel!(counted |ray: Ray| ..)`, or [`Kernel::counted_of`](raydsl::kernel::Kernel::counted_of).
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -128,7 +128,7 @@ impl fmt::Display for Utilisation {
     }
 }
 
-/// The part of a line for which a table of 100 columns has room.
+/// Returns the part of a line that fits in a table of 100 columns.
 fn shortened(line: &str) -> String {
     const ROOM: usize = 66;
     let line = line.trim_end();
@@ -143,15 +143,15 @@ fn shortened(line: &str) -> String {
 struct Sources(HashMap<&'static str, Vec<String>>);
 
 impl Sources {
-    /// A line of a file; empty where the file is not at hand.
+    /// Returns a line of a file; empty if the file is not found.
     fn line(&mut self, file: &'static str, line: u32) -> &str {
         let lines = self.0.entry(file).or_insert_with(|| read(Path::new(file)));
         (line as usize).checked_sub(1).and_then(|i| lines.get(i)).map_or("", String::as_str)
     }
 }
 
-/// The lines of a file that is named from the working directory or from a folder around it: tests
-/// run in their package, but names start at the workspace.
+/// Returns the lines of a file, given relative to the working directory or to a folder around it:
+/// tests run in their package, but names start at the workspace.
 fn read(file: &Path) -> Vec<String> {
     let here = std::env::current_dir().unwrap_or_default();
     let text = here.ancestors().find_map(|folder| std::fs::read_to_string(folder.join(file)).ok());

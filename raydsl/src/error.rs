@@ -1,4 +1,4 @@
-//! Errors of the library are typed where they arise; this module names them in one place.
+//! Re-exports of the library's error types, which are defined where the errors arise.
 pub use crate::bvh::BuildError;
 pub use crate::camera::CameraError;
 #[cfg(feature = "gpu")]

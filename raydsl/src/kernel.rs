@@ -1,4 +1,4 @@
-//! A kernel with all its variants.
+//! Kernels with all their variants.
 
 use core::cell::Cell;
 use core::sync::atomic::{AtomicU64, Ordering};
@@ -19,7 +19,7 @@ pub type LiftedFn<'a, M, A, R> =
     Box<dyn Fn(&M, <A as Type>::On<M>) -> <R as Type>::On<M> + Send + Sync + 'a>;
 
 /// The lifted body of a closure, for every machine that it is lifted for. `RAYDSL_VARIANTS` may
-/// have left some out.
+/// have excluded some.
 #[expect(missing_docs, reason = "the members are named like their machines")]
 pub struct Lifted<'a, A: Type, R: Type> {
     pub native4: Option<LiftedFn<'a, Native4, A, R>>,
@@ -33,7 +33,7 @@ type Resources<'a> = Box<dyn Fn(&mut dyn FnMut(&dyn Resource)) + Send + Sync + '
 
 /// A kernel from `A` (a tuple of parameters) to `R`, with all its variants.
 ///
-/// It borrows what its closure captures.
+/// It borrows its closure's captures.
 pub struct Kernel<'a, A: Type, R: Type> {
     info: &'static KernelInfo,
     scalar: Box<dyn Fn(A) -> R + Send + Sync + 'a>,
@@ -43,13 +43,13 @@ pub struct Kernel<'a, A: Type, R: Type> {
     number: u64,
 }
 
-/// A number that no kernel had before.
+/// Returns a number that no kernel had before.
 fn new_number() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
-/// A kernel's scalar function, before its lifted copies; what `kernel!` starts with.
+/// A kernel's scalar function before its lifted copies are added; the first step of `kernel!`.
 #[doc(hidden)]
 pub struct ScalarKernel<'a, A, R> {
     info: &'static KernelInfo,
@@ -79,21 +79,21 @@ impl<'a, A: Type, R: Type> ScalarKernel<'a, A, R> {
 pub type PacketKernel<'k, L, A, R> =
     dyn Fn(&Packet<L>, <A as Type>::On<Packet<L>>) -> <R as Type>::On<Packet<L>> + Send + Sync + 'k;
 
-/// Something to do with packets of one kind; see [`Kernel::with_packets`].
+/// A task to run with packets of one kind; see [`Kernel::with_packets`].
 pub trait PacketTask<A: Type, R: Type> {
-    /// What it gives.
+    /// Its result.
     type Output;
 
-    /// Does it. `kernel` is the lifted body for packets of `lanes`.
+    /// Runs the task. `kernel` is the lifted body for packets of `lanes`.
     fn run<L: Lanes>(self, lanes: L, kernel: &PacketKernel<'_, L, A, R>) -> Self::Output;
 
-    /// Does it one lane at a time, where the machine has no such lanes, or `RAYDSL_VARIANTS` has
-    /// left out the lifted bodies.
+    /// Runs the task one lane at a time, if the machine has no such lanes, or `RAYDSL_VARIANTS` has
+    /// excluded the lifted bodies.
     fn scalar(self, kernel: &(dyn Fn(A) -> R + Send + Sync)) -> Self::Output;
 }
 
 impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
-    /// What `kernel!` calls first.
+    /// Creates a kernel from its scalar function; the first call of `kernel!`.
     #[doc(hidden)]
     pub fn scalar(
         info: &'static KernelInfo,
@@ -102,7 +102,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
         ScalarKernel { info, scalar: Box::new(scalar) }
     }
 
-    /// The kernel of a `#[kernel] fn`: `Kernel::of::<name>()`.
+    /// Creates the kernel of a `#[kernel] fn`: `Kernel::of::<name>()`.
     pub fn of<F: KernelFn<Args = A, Output = R>>() -> Self {
         Self {
             info: F::info(),
@@ -120,18 +120,20 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
         }
     }
 
-    /// The kernel of a `#[kernel] fn`, with the lanes that count: `Kernel::counted_of::<name>()`.
+    /// Creates the kernel of a `#[kernel] fn` with lanes that count:
+    /// `Kernel::counted_of::<name>()`.
     pub fn counted_of<F: KernelFn<Args = A, Output = R>>() -> CountedKernel<'a, A, R> {
         Self::of::<F>().counted(Box::new(F::lifted))
     }
 
-    /// With the copy that counts; what `kernel!(counted ..)` calls last.
+    /// Adds the copy that counts; the last call of `kernel!(counted ..)`.
     #[doc(hidden)]
     pub fn counted(self, counted: LiftedFn<'a, Counting, A, R>) -> CountedKernel<'a, A, R> {
         CountedKernel { kernel: self, counted }
     }
 
-    /// The same kernel with another arithmetic of its WGSL variant; the others stay as they are.
+    /// Returns the same kernel with another arithmetic of its WGSL variant; the others are
+    /// unchanged.
     ///
     /// ```
     /// use raydsl::prelude::*;
@@ -146,7 +148,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
         Self { arithmetic, number: new_number(), ..self }
     }
 
-    /// Where the kernel stands in the source.
+    /// Returns the source location and the parameter names.
     pub fn info(&self) -> &'static KernelInfo {
         self.info
     }
@@ -157,10 +159,10 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
         (self.scalar)(args)
     }
 
-    /// Hands the lifted body for `variant`'s packets to `task`.
+    /// Passes the lifted body for `variant`'s packets to `task`.
     ///
-    /// A width whose level the machine lacks, or whose copy `RAYDSL_VARIANTS` has left out, runs as
-    /// several packets of the next narrower one, or the scalar function where there is none.
+    /// A width whose level the machine lacks, or whose copy `RAYDSL_VARIANTS` has excluded, runs as
+    /// several packets of the next narrower one, or the scalar function if there is none.
     pub fn with_packets<T: PacketTask<A, R>>(&self, variant: Variant, task: T) -> T::Output {
         let Lifted { native4, native8, native16, .. } = &self.lifted;
         let Levels { narrow, middle, wide, .. } = Levels::detect();
@@ -186,10 +188,10 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
         self.run_in_gangs(variant, GANG, inputs, outputs);
     }
 
-    /// Runs the kernel as [`Kernel::run`], in gangs of so many lanes: packets that run as fibers,
+    /// Runs the kernel like [`Kernel::run`], in gangs of `lanes` lanes: packets that run as fibers,
     /// whose queries of [wide trees](crate::bvh::Bvh::build_wide) are answered in batches, since
-    /// traversals are faster with more rays. [`Kernel::run`] has gangs of [`GANG`]; with fewer
-    /// lanes than two packets have, each packet runs by itself. The outputs are the same.
+    /// traversals are faster with more rays. [`Kernel::run`] uses gangs of [`GANG`]; with fewer
+    /// lanes than in two packets, each packet runs by itself. The outputs are the same.
     ///
     /// Each of the at most 64 packets of a gang has a stack of its own, of 8 MiB of address space;
     /// a kernel that needs more aborts the program. There are gangs on Unix, on x86-64 and AArch64;
@@ -198,7 +200,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
     ///
     /// # Panics
     ///
-    /// As there.
+    /// As for [`Kernel::run`].
     pub fn run_in_gangs(&self, variant: Variant, lanes: usize, inputs: &[A], outputs: &mut [R]) {
         assert_eq!(inputs.len(), outputs.len(), "one output for each input");
         match variant {
@@ -212,27 +214,27 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
         }
     }
 
-    /// The result in `f64`: every scalar of `R` in order of declaration, integers and truth values
-    /// as the numbers that they are.
+    /// Returns the reference result in `f64`: every scalar of `R` in order of declaration, integers
+    /// and truth values as numbers.
     ///
-    /// Floats of `args` and of the scene widen exactly. Literals mean their decimal text, and what
-    /// has the value of a constant of [`core::f32::consts`] means that constant; other constants
-    /// widen. Elementary functions are std's of `f64`. `to_bits` acts on the value rounded to
-    /// `f32`, so generators of random numbers give the same ones.
+    /// Floats of `args` and of the scene widen exactly. Literals have the value of their decimal
+    /// text, and a constant equal to one of [`core::f32::consts`] has that constant's `f64` value;
+    /// other constants widen. Elementary functions are std's of `f64`. `to_bits` acts on the value
+    /// rounded to `f32`, so generators of random numbers give the same ones.
     ///
-    /// A loop that does not end within 260 thousand rounds in `f64` is left.
+    /// A loop that does not end within 260 thousand iterations in `f64` is abandoned.
     pub fn reference(&self, args: A) -> Vec<f64> {
         let outcomes = self.outcomes(args, Rounding::IEEE, 1);
         outcomes.reference().iter().copied().map(Leaf::value).collect()
     }
 
-    /// What the variants may give, whatever rounding does; see [`Outcomes`]. At most `limit` ways
-    /// are followed in which decisions may go.
+    /// Returns all possible results of the variants under rounding; see [`Outcomes`]. At most
+    /// `limit` paths through the decisions are followed.
     pub fn outcomes(&self, args: A, rounding: Rounding, limit: usize) -> Outcomes {
         Outcomes::of(rounding, limit, |m| self.on_margin(m, A::splat(m, args)))
     }
 
-    /// The lifted body on the machine of the reference, for arguments that are computed there: see
+    /// Runs the lifted body on the margin machine, for arguments computed there: see
     /// [`Outcomes::of`].
     pub fn on_margin(&self, m: &Margin, args: A::On<Margin>) -> R::On<Margin> {
         self.built(&self.lifted.margin, "reference")(m, args)
@@ -242,7 +244,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
         self.built(&self.lifted.recorder, "wgsl")
     }
 
-    /// A copy that must be there.
+    /// Returns a lifted copy, or panics if it was excluded.
     fn built<'c, F>(&self, copy: &'c Option<F>, name: &str) -> &'c F {
         copy.as_ref().unwrap_or_else(|| {
             let KernelInfo { name: kernel, file, line, .. } = self.info;
@@ -253,18 +255,19 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
         })
     }
 
-    /// The kernel as WGSL that reads its parameters from a buffer, for the limits that WebGPU
-    /// guarantees.
+    /// Returns the kernel as WGSL that reads its parameters from a buffer, for WebGPU's guaranteed
+    /// limits.
     pub fn wgsl(&self) -> String {
         self.record().module(&wgsl::Limits::default()).source
     }
 
-    /// A number that no other kernel of the process has: what it records is always the same.
+    /// Returns a number that no other kernel of the process has: it always identifies the same
+    /// recording.
     pub fn number(&self) -> u64 {
         self.number
     }
 
-    /// What is around the body where it runs over a buffer of parameters.
+    /// Returns the frame around the body when it runs over a buffer of parameters.
     #[cfg(feature = "gpu")]
     pub(crate) fn frame(&self) -> Frame {
         Frame::new(Recording::batch::<A, R>(self.arithmetic, |m, _| Value::zero(m)))
@@ -275,7 +278,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
         Recording::batch::<A, R>(self.arithmetic, |m, args| self.on_recorder()(m, args))
     }
 
-    /// Records what is done for each pixel of a film: `pixel` is given its coordinates and the
+    /// Records the computation for each pixel of a film: `pixel` receives its coordinates and the
     /// lifted body.
     pub fn record_grid<O: Type>(
         &self,
@@ -289,15 +292,15 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
         Recording::grid::<O>(self.arithmetic, |m, x, y| pixel(m, x, y, self.on_recorder()))
     }
 
-    /// Shows the buffers that the recorded kernel may read.
+    /// Visits the buffers that the recorded kernel may read.
     pub fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
         (self.resources)(visit);
     }
 }
 
-/// A kernel that is also lifted for lanes that count where they are, which
-/// `utilisation` of the crate `raydsl-report` asks: `kernel!(counted |ray: Ray| ..)`, or
-/// [`Kernel::counted_of`]. One more copy to compile.
+/// A kernel also lifted for lanes that count active lanes by place, for `utilisation` of the crate
+/// `raydsl-report`: `kernel!(counted |ray: Ray| ..)`, or [`Kernel::counted_of`]. It compiles one
+/// more copy.
 pub struct CountedKernel<'a, A: Type, R: Type> {
     kernel: Kernel<'a, A, R>,
     counted: LiftedFn<'a, Counting, A, R>,
@@ -312,15 +315,15 @@ impl<'a, A: Type, R: Type> core::ops::Deref for CountedKernel<'a, A, R> {
 }
 
 impl<A: Type, R: Type> CountedKernel<'_, A, R> {
-    /// How many lanes are lifted to count.
+    /// The number of lanes that count.
     pub const LANES: usize = Counting::LANES;
 
-    /// Runs packets of 8 lanes, of what every machine of the target has, and counts the lanes that
-    /// run: at each place that a packet comes by, in order of the places.
+    /// Runs packets of 8 lanes, of the target's baseline level, and counts the running lanes at
+    /// each place that a packet passes, ordered by place.
     pub fn count(&self, inputs: &[A]) -> Vec<(Place, Count)> {
         let mut outputs = vec![R::read(&vec![0; R::SCHEMA.size()]); inputs.len()];
         let lanes = Counted(Simd8(Levels::detect().least));
-        // One packet after the other: counts belong to whoever runs.
+        // One packet at a time: a fiber's counts would go to whichever packet runs.
         count(|| run_in_gangs(lanes, 0, &*self.counted, inputs, &mut outputs))
     }
 }
@@ -349,7 +352,7 @@ impl<A: Type, R: Type> PacketTask<A, R> for Batch<'_, A, R> {
 }
 
 /// Runs `kernel` over `inputs` in packets; the last one may be partly filled. The packets of a gang
-/// of so many lanes run as fibers, and their queries are batched.
+/// of `gang` lanes run as fibers, and their queries are batched.
 fn run_in_gangs<L: Lanes, A: Type, R: Type>(
     lanes: L,
     gang: usize,

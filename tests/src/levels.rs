@@ -31,8 +31,8 @@ enum AtRunTime {
     Sixteen(RunTime<16>),
 }
 
-/// Those of every level of this machine. It knows no task, so that tables of operations are compiled
-/// once, not for every test.
+/// Returns the lanes of every level of this machine. It is independent of tasks, so that tables of
+/// operations are compiled once, not for every test.
 fn at_run_time() -> Vec<(String, AtRunTime)> {
     struct All(Vec<(String, AtRunTime)>);
     impl Widths for All {
@@ -54,8 +54,8 @@ fn at_run_time() -> Vec<(String, AtRunTime)> {
     all.0
 }
 
-/// Does `task` with 4, 8 and 16 lanes of every level of this machine, in one kind of 16 lanes for all
-/// of them, of which those behind the width hold nothing: a kernel is compiled once for all.
+/// Runs `task` with 4, 8 and 16 lanes of every level of this machine, in lanes of one kind of width
+/// 16, whose lanes beyond the width are empty: a kernel is compiled once for all.
 pub fn each_level_padded(task: &mut dyn FnMut(&str, RunTime<16>, usize)) {
     struct Padded<'a>(&'a mut dyn FnMut(&str, RunTime<16>, usize));
     impl Widths for Padded<'_> {

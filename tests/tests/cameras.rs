@@ -296,7 +296,8 @@ fn matrices_that_make_no_camera() {
     assert_eq!(of(view, proj, flat), Err(CameraError::NoDepth));
     let nan = DepthRange { near: 0.5, far: f32::NAN };
     assert_eq!(of(view, proj, nan), Err(CameraError::NoDepth));
-    // A near plane behind the eye, or a range that the matrix was not made for: planes are mixed up.
+    // A near plane behind the eye, or a range that does not match the matrix: the planes are mixed
+    // up.
     let behind = Mat4::from_cols(proj.x_axis, proj.y_axis, proj.z_axis, -proj.w_axis);
     assert_eq!(of(view, behind, depth), Err(CameraError::NearBehindEye));
 }

@@ -1,9 +1,9 @@
 //! The contract of queries, against a loop in plain Rust: of the hits within the ray's range, ends
 //! included, the least by `(t, inst_id, prim_id)`, whatever finds them.
 //!
-//! No traversal of the library has a part in the oracle. Distances are computed without rounding, so
-//! copies and neighbours share them, and ranges begin or end at hits; that enough rays meet both is
-//! asserted.
+//! No traversal of the library takes part in the oracle. Distances are computed without rounding,
+//! so copies and neighbours share them, and ranges begin or end at hits; the tests assert that
+//! enough rays have both.
 
 use raydsl::bvh::{Accelerated, BuildError};
 use raydsl::kernel;
@@ -84,8 +84,8 @@ fn hits(scene: &[Placed<'_>], ray: Ray) -> Vec<Hit> {
     all
 }
 
-/// What the kernels ask: the closest hit, whether there is any, the first three, and of those with odd
-/// numbers the closest, whether there is any, and the first two.
+/// The results of the kernels' queries: the closest hit, whether there is any, the first three, and
+/// of those with odd primitive ids the closest, whether there is any, and the first two.
 type Answer = (Hit, bool, [Hit; 3], Hit, bool, [Hit; 2]);
 
 fn is_odd(hit: Hit) -> bool {

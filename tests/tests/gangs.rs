@@ -1,5 +1,5 @@
-//! Packets that wait for each other, where that is delicate: a query within a query, trees that are gone
-//! when a packet goes on, kernels that panic, and threads that end.
+//! Packets that wait for each other, in delicate cases: a query within a query, trees that are gone
+//! when a packet resumes, kernels that panic, and threads that end.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

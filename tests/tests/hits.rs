@@ -107,8 +107,8 @@ fn expected(scene: &[Placed<'_>], ray: Ray) -> Vec<Hit> {
     all
 }
 
-/// Of a loop over all hits: how many, a number that depends on their order, and the last; and the third
-/// hit, of a loop that stops there.
+/// The results of a loop over all hits: their count, a number that depends on their order, and the
+/// last; and the third hit, of a loop that stops there.
 type Answer = (u32, u32, Hit, Hit);
 
 fn word(sum: u32, hit: Hit) -> u32 {
@@ -491,8 +491,8 @@ struct Chest {
     max: Vec3,
 }
 
-/// Of each hit of a shape: whether its normal points with the ray, and whether the point of the surface
-/// lies where the ray is then.
+/// Returns for each hit of a shape whether its normal points along the ray, and whether the surface
+/// point lies on the ray at that distance.
 macro_rules! outwards {
     ($scene:ident) => {
         kernel!(|ray: Ray| {

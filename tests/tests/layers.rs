@@ -1,16 +1,16 @@
 //! The layers of the library: a module at the crate's root depends on those below it, not on those
 //! above.
 //!
-//! Every path of the sources is read: in `use` trees, in expressions and types, in the bodies of macros.
-//! Unit tests may depend on anything.
+//! The test reads every path of the sources: in `use` trees, in expressions and types, in the
+//! bodies of macros. Unit tests may depend on anything.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
-/// The layers, the top one first. A module may depend on those of lower layers, and on those of its own
-/// that do not depend on it.
+/// The layers, the top one first. A module may depend on those of lower layers, and on those of its
+/// own that do not depend on it.
 const LAYERS: [&[&str]; 10] = [
     &["__private", "error", "prelude"],
     &["gpu", "testing"],

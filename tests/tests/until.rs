@@ -529,8 +529,8 @@ fn an_observer_hears_of_the_error_and_stops() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A device is asked after each dispatch. What was broken off leaves the image as it was, and the film
-/// its whole passes.
+/// Tests that a device calls the observer after each dispatch. A stopped run leaves the image
+/// unchanged, and the film has its whole passes.
 #[cfg(feature = "gpu")]
 #[test]
 fn a_device_hears_the_observer() -> Result<(), Box<dyn Error>> {

@@ -8,8 +8,8 @@ use crate::rays::Workload;
 use crate::row::Row;
 use crate::{rounds, table};
 
-/// Runs each wanted row once, with the widest packets and with single rays, and prints what that took
-/// a ray.
+/// Runs each wanted row once, with the widest packets and with single rays, and prints the counts
+/// per ray.
 pub(crate) fn print(name: &str, trees: &[Tree<'_>], work: &Workload, only: &[Row]) {
     println!("{name}: counts a ray; of boxes and primitives against registers of rays, a register");
     println!(

@@ -59,7 +59,7 @@ struct Args {
     /// How rays go through trees with copies; each is a mode of its own.
     #[arg(long, value_delimiter = ',', default_value = "auto", value_parser = parse_traversal)]
     traversal: Vec<Traversal>,
-    /// Counts what the library's queries do, once, and measures nothing; needs the feature `counts`.
+    /// Counts the queries' work once, without measuring times; needs the feature `counts`.
     #[arg(long, conflicts_with_all = ["json", "threads", "rounds", "traversal"])]
     counts: bool,
     /// Cargo says so.

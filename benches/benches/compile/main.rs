@@ -1,8 +1,7 @@
-//! What a kernel costs to compile. Writes programs of a user of raydsl into a folder of its own,
-//! compiles what they depend on, and then measures how long the processors were busy with each
-//! program's own crate: rustc and its linker, as user and as system. Other programs change that less
-//! than the time of day; where they share the cores it still grows, up to twice, so compare what ran
-//! at the same time.
+//! Compile time of kernels. Writes programs of a user of raydsl into a folder of its own, compiles
+//! their dependencies, and then measures the CPU time of each program's own crate: rustc and its
+//! linker, user and system time. Other programs change that less than the wall time; where they
+//! share the cores it still grows, up to twice, so compare measurements taken at the same time.
 //!
 //! Rows with a copy's name are of programs that have the scalar function and this copy alone
 //! (`RAYDSL_VARIANTS`, which the macros read); "over scalar" is what the copy costs. Where the

@@ -22,7 +22,8 @@ pub(crate) struct Row {
     cpu_s: Option<f64>,
     /// These, less those of the scalar function alone.
     over_scalar_s: Option<f64>,
-    /// The middle half of the runs, as a share; of the seconds of the day where there are no others.
+    /// The interquartile range of the runs, as a share; of the wall seconds if there are no CPU
+    /// seconds.
     spread: f64,
     /// Seconds of the day, the median.
     wall_s: f64,

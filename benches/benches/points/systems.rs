@@ -7,7 +7,8 @@ use raydsl_benches::contest::{Cost, Outcome, pixels};
 use raydsl_benches::embree::{self, Embree, Mode, Quality, Question, Shape};
 use raydsl_benches::scenes::Point;
 
-/// The library's trees, and whether they are wide: `Best` cuts primitives, which balls of one size gain nothing from.
+/// The library's trees, and whether they are wide. `Best` splits primitives, from which balls of
+/// one size gain nothing.
 const TREES: [(&str, BuildQuality, bool); 3] = [
     ("balanced", BuildQuality::Balanced, false),
     ("fast", BuildQuality::Fast, false),

@@ -1,4 +1,4 @@
-//! Calls of kernels, associated functions and methods.
+//! Emission of calls of kernels, associated functions and methods.
 
 use proc_macro2::{Ident, Span, TokenStream};
 
@@ -21,7 +21,7 @@ impl Emitter<'_> {
         }
         let args = self.arguments(args);
         let values = &args.values;
-        // Type parameters that are named need not be inferred.
+        // Explicit type parameters need not be inferred.
         let is_named = path.to_string().ends_with('>');
         let on = word(if is_named { "on_values" } else { "on" });
         args.around(quote!(#path::#on(#m, #(#values),*)))
@@ -44,7 +44,7 @@ impl Emitter<'_> {
 
     fn arguments(&mut self, args: &[Expr]) -> Arguments {
         let mut all = Arguments::default();
-        // What is read before a call is read in order.
+        // Reads before a call keep their order.
         let is_part = |e: &Expr| matches!(&e.kind, Kind::RefMut(p) if !p.steps.is_empty());
         let in_order = args.iter().any(is_part);
         for arg in args {
@@ -67,7 +67,7 @@ impl Emitter<'_> {
         all
     }
 
-    /// An argument that no lane reads before the call.
+    /// Emits an argument that no lane reads before the call.
     fn unread(&mut self, arg: &Expr) -> Option<TokenStream> {
         let (p, m) = (private(), own("m"));
         match &arg.kind {
@@ -76,7 +76,7 @@ impl Emitter<'_> {
                 let local = self.local(name);
                 Some(quote!(&#local))
             }
-            // A number may be for a parameter of the host, and so may a constant.
+            // A number may be for a host parameter, and so may a constant.
             Kind::Int { tokens, .. } => Some(tokens.clone()),
             Kind::Name(name) if self.is_constant(name) => {
                 Some(quote!(#p::Constant(&#name).give(#m)))
@@ -87,7 +87,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// `&mut place`: the variable, or a copy of the part, which goes back behind the call.
+    /// Emits `&mut place`: the variable, or a copy of the part, written back behind the call.
     fn mut_argument(
         &mut self,
         place: &Place,
@@ -135,8 +135,8 @@ impl Emitter<'_> {
         Some(quote!(&#part))
     }
 
-    /// A method that takes `&mut self` changes the variable, or the part of one, that it is
-    /// called on; which methods do is for their traits to say.
+    /// Emits a method call. A method that takes `&mut self` changes the variable, or the part of
+    /// one, that it is called on; the methods' traits decide which methods do.
     pub(super) fn method(
         &mut self,
         receiver: &Expr,
@@ -172,13 +172,14 @@ impl Emitter<'_> {
         })
     }
 
-    /// Whether it is part of something that a method cannot change, though rustc's methods could.
+    /// Returns whether it is part of a value that a method cannot change, though rustc's methods
+    /// could.
     fn is_part_of_what_stays(&self, e: &Expr) -> bool {
         is_part_of_element(e) || self.is_part_of_outer(e) || self.is_alias(e)
     }
 
-    /// A receiver whose type is a type parameter: its trait has the lifted method, which takes a
-    /// variable for `&mut self` and for `&self` alike.
+    /// Returns a receiver whose type is a type parameter: its trait has the lifted method, which
+    /// takes a variable for both `&mut self` and `&self`.
     fn generic_receiver(&mut self, receiver: &Expr) -> Option<(Ident, TokenStream)> {
         let name = match &receiver.kind {
             Kind::Name(name) => name,
@@ -201,7 +202,7 @@ impl Emitter<'_> {
         ))
     }
 
-    /// Whether it is a variable outside of the closure, or a part of one.
+    /// Returns whether it is a variable outside of the closure, or a part of one.
     fn is_part_of_outer(&self, e: &Expr) -> bool {
         match &e.kind {
             Kind::Name(name) => self.is_outer(name) && self.lookup(name) != Some(Binding::Value),
@@ -212,7 +213,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// The variable that `e` is, or is a part of, and the steps from it.
+    /// Returns the variable that `e` is, or is a part of, and the steps from it.
     pub(super) fn variable_under(&self, e: &Expr) -> Option<(Ident, TokenStream)> {
         match &e.kind {
             Kind::Name(name) if self.is_outer(name) => None,
@@ -234,7 +235,7 @@ impl Emitter<'_> {
     }
 }
 
-/// The arguments of a call, and what stands around it for parts of variables that go by `&mut`.
+/// The arguments of a call, and the code around it for parts of variables passed by `&mut`.
 #[derive(Default)]
 struct Arguments {
     before: TokenStream,
@@ -253,7 +254,7 @@ impl Arguments {
     }
 }
 
-/// A call of a method whose receiver and arguments are written already.
+/// A method call whose receiver and arguments are emitted already.
 struct MethodCall<'a> {
     machine: &'a TokenStream,
     name: String,
@@ -272,7 +273,7 @@ impl MethodCall<'_> {
         quote!(#method::call({ #receiver }, #m, (#({ #values },)*)))
     }
 
-    /// The method takes no `&mut self`, or it is an error.
+    /// Emits a call on a computed element: an error if the method takes `&mut self`.
     fn on_element(&self) -> TokenStream {
         let (p, m, Self { machine, name, receiver, values }) = (private(), own("m"), self);
         quote!(#p::call_on_element::<{ #p::name(#name) }, #machine, _, _, _>(
@@ -285,7 +286,7 @@ impl MethodCall<'_> {
         quote!(#method::call_at({ #receiver }, &#local, #m, (#({ #values },)*)))
     }
 
-    /// A method that takes `&mut self` is given a copy of the part, which goes back behind it.
+    /// Emits a call on a part: a method that takes `&mut self` gets a copy, written back behind it.
     fn on_part(&self, local: &Ident, steps: &TokenStream) -> TokenStream {
         let (p, m, method) = (private(), own("m"), self.method());
         let Self { machine, name, receiver, values } = self;

@@ -1,4 +1,4 @@
-//! Statements and control flow.
+//! Emission of statements and structured control flow.
 
 use std::collections::HashMap;
 
@@ -9,7 +9,7 @@ use super::{Binding, Dest, Emitter, Loop, SlotType, own, private, shown};
 use crate::here::{At, quote_here as quote, word};
 use crate::model::{Block, Expr, Kind, Let, Stmt};
 
-/// Tells the machine where its lanes are.
+/// Emits a report of the lanes' place to the machine.
 pub(super) fn place(what: &str, span: Span) -> TokenStream {
     let (p, m) = (private(), own("m"));
     let line = quote_spanned!(span=> ::core::file!(), ::core::line!());
@@ -17,7 +17,7 @@ pub(super) fn place(what: &str, span: Span) -> TokenStream {
 }
 
 impl Emitter<'_> {
-    /// A block whose value goes to `dest`, with the checks that leave it once no lane is left.
+    /// Emits a block whose value goes to `dest`, with checks that leave it once no lane is left.
     pub(super) fn block(&mut self, block: &Block, dest: &Dest) -> TokenStream {
         self.scopes.push(HashMap::new());
         let (p, m) = (private(), own("m"));
@@ -30,7 +30,7 @@ impl Emitter<'_> {
         for (i, stmt) in block.stmts.iter().enumerate() {
             out.extend(self.stmt(stmt));
             if matches!(stmt, Stmt::Expr(e) if e.diverges()) {
-                // What follows is never reached; rustc says so for the user's own function.
+                // The rest is unreachable; rustc reports that in the user's own function.
                 out.extend(self.unreached(&block.stmts[i + 1..], block.tail.as_deref(), dest));
                 ended = true;
                 break;
@@ -48,7 +48,7 @@ impl Emitter<'_> {
         if checked { quote!(#label: { #out }) } else { quote!({ #out }) }
     }
 
-    /// What stands behind an exit: it never runs, but it says what type the block has.
+    /// Emits the code behind an exit: it never runs, but it determines the type of the block.
     fn unreached(&mut self, stmts: &[Stmt], tail: Option<&Expr>, dest: &Dest) -> TokenStream {
         let (Some(tail), Dest::Slot { .. }) = (tail, dest) else { return TokenStream::new() };
         let stmts: Vec<_> = stmts.iter().map(|s| self.stmt(s)).collect();
@@ -99,7 +99,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// Binds the name of a `let`, with what its first value says of it.
+    /// Binds the name of a `let`, with what its initial value determines about it.
     fn bind_let(&mut self, name: &Ident, l: &Let, init: &Expr) {
         let (is_alias, owner) = (self.is_alias(init), self.owner(init));
         let generic = self.generic_of(init);
@@ -210,7 +210,7 @@ impl Emitter<'_> {
     ) -> TokenStream {
         let (p, m) = (private(), own("m"));
         let branch = self.fresh("branch");
-        // What the host decides is decided for all rays alike.
+        // Host values are the same for all rays.
         let host = self.host_value(c);
         self.varying += usize::from(host.is_none());
         let is_varying = host.is_none();
@@ -269,7 +269,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// The body of a loop, which may leave it.
+    /// Emits the body of a loop, which may leave it.
     pub(super) fn loop_body(&mut self, inside: Loop, body: &Block) -> TokenStream {
         self.loops.push(inside);
         self.varying += 1;
@@ -290,7 +290,7 @@ impl Emitter<'_> {
             None => loops.next(),
             Some(l) => loops.find(|x| x.label.as_deref() == Some(l)),
         };
-        // A label that does not exist is rustc's to report, in the user's own function.
+        // An unknown label is reported by rustc, in the user's own function.
         let Some(Loop { ident, dest, .. }) = found else { return TokenStream::new() };
         let (m, how) = (own("m"), format_ident!("{how}"));
         let (ident, dest) = (ident.clone(), dest.clone());

@@ -1,4 +1,4 @@
-//! `for` over a range: how it counts, and when it ends; and over what a cursor finds.
+//! Emission of `for` loops over ranges and cursors.
 
 use std::collections::HashMap;
 
@@ -88,7 +88,7 @@ impl Emitter<'_> {
         }}
     }
 
-    /// Both bounds, as numbers of one type.
+    /// Emits both bounds, as numbers of one type.
     fn bounds(&mut self, range: &Range) -> TokenStream {
         let (mut start, end) = (self.value(&range.start), self.value(&range.end));
         let _at = At::new(range.start.span);
@@ -99,14 +99,14 @@ impl Emitter<'_> {
         quote!(#p::range(#m, { #start }, { #end }))
     }
 
-    /// The variable of a step that is written.
+    /// Emits the variable of an explicit step.
     fn step_of(&mut self, range: &Range) -> Option<TokenStream> {
         let (p, m, by) = (private(), own("m"), own("by"));
         let value = self.value(range.step.as_ref()?);
         Some(quote!(let #by = #p::step(#m, #value);))
     }
 
-    /// The user's name for the number that the loop has come to.
+    /// Emits the binding of the user's name to the loop's current number.
     fn bind_item(&mut self, name: &Ident, counting: &Counting<'_>) -> TokenStream {
         let step = counting.in_step.map(|_| counting.counter.clone());
         self.bind_counter(name, step);
@@ -115,13 +115,13 @@ impl Emitter<'_> {
     }
 }
 
-/// How a loop counts, and the names that its code is written with.
+/// The counting of a loop, and the names in its code.
 struct Counting<'a> {
     range: &'a Range,
     /// The machine's loop.
     repeat: Ident,
     counter: Ident,
-    /// A variable: whether the last number has been.
+    /// A variable: whether the last number has been used.
     done: Ident,
     /// The bounds, in the order of the source.
     begin: Ident,
@@ -130,13 +130,13 @@ struct Counting<'a> {
     in_step: Option<&'a TokenStream>,
 }
 
-/// When a loop ends.
+/// The termination of a loop.
 struct Ending {
-    /// What it needs in front of the loop.
+    /// Declarations in front of the loop.
     declare: TokenStream,
-    /// Whether there is a further number.
+    /// The test whether there is a further number.
     test: TokenStream,
-    /// What it notes behind the body.
+    /// The update behind the body.
     note: TokenStream,
 }
 
@@ -153,7 +153,8 @@ impl<'a> Counting<'a> {
         quote!(#counter.get(#m))
     }
 
-    /// `[low, high)` or `[low, high]`, upwards from `low` or downwards from `high`.
+    /// Returns the bounds of `[low, high)` or `[low, high]`, upwards from `low` or downwards from
+    /// `high`.
     fn window(&self) -> (TokenStream, TokenStream) {
         let (begin, end) = (&self.begin, &self.end);
         match self.range.reversed {
@@ -162,7 +163,7 @@ impl<'a> Counting<'a> {
         }
     }
 
-    /// The bounds, in the order of counting.
+    /// Returns the bounds, in the order of counting.
     fn first_and_last(&self) -> (&Ident, &Ident) {
         match self.range.reversed {
             true => (&self.end, &self.begin),
@@ -170,10 +171,10 @@ impl<'a> Counting<'a> {
         }
     }
 
-    /// The number that the body sees.
+    /// Emits the number that the body sees.
     fn item(&self) -> TokenStream {
         let (p, m, now) = (private(), own("m"), self.now());
-        // Downwards the counter begins at a bound that does not belong to the range.
+        // Downwards, the counter of an exclusive range is one above the number.
         let is_one_above = self.range.reversed && !self.range.inclusive;
         if is_one_above { quote!(#p::decrement(#m, #now)) } else { now }
     }
@@ -238,7 +239,8 @@ impl<'a> Counting<'a> {
         Ending { declare: nothing(), test, note: nothing() }
     }
 
-    /// The last number of a range that is inclusive or has steps may be the last of its type.
+    /// Emits a flag for the end: the last number of an inclusive range, or one with steps, may be
+    /// the last of its type.
     fn until_done(&self, test: TokenStream, is_last: TokenStream) -> Ending {
         let (p, m, repeat, done) = (private(), own("m"), &self.repeat, &self.done);
         Ending {

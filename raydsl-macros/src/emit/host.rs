@@ -1,4 +1,4 @@
-//! Values of the host: known before a kernel runs, and while it is recorded.
+//! Emission of host values: known before a kernel runs, and while it is recorded.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::format_ident;
@@ -7,13 +7,13 @@ use super::{Binding, Emitter, own, private};
 use crate::here::quote_here as quote;
 use crate::model::{Expr, Kind, Let};
 
-/// The local that holds a captured number as the host has it.
+/// Returns the local that holds a captured number as a host value.
 pub(crate) fn raw_capture(name: &Ident) -> Ident {
     format_ident!("__host_{name}")
 }
 
 impl Emitter<'_> {
-    /// `e` as plain Rust, if everything in it is known to the host.
+    /// Returns `e` as plain Rust, if everything in it is known to the host.
     pub(super) fn host_value(&mut self, e: &Expr) -> Option<TokenStream> {
         match &e.kind {
             Kind::Int { tokens, .. } | Kind::Float(tokens) | Kind::Path(tokens) => {
@@ -42,7 +42,7 @@ impl Emitter<'_> {
         Some(quote!((#a #symbol #b)))
     }
 
-    /// What stands in `host(..)`: it may also be a captured number.
+    /// Returns the argument of `host(..)`, which may also be a captured number.
     fn host_argument(&mut self, e: &Expr) -> Option<TokenStream> {
         let Kind::Name(name) = &e.kind else { return self.host_value(e) };
         if self.lookup(name).is_some() || !self.is_closure {
@@ -56,7 +56,7 @@ impl Emitter<'_> {
         Some(quote!(#raw))
     }
 
-    /// `host(x)` where a value is wanted.
+    /// Emits `host(x)` used as a value.
     pub(super) fn host_use(&mut self, e: &Expr) -> TokenStream {
         let (p, m) = (private(), own("m"));
         match self.host_argument(e) {
@@ -68,7 +68,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// `#[host] let`.
+    /// Emits `#[host] let`.
     pub(super) fn host_let(&mut self, l: &Let) -> TokenStream {
         let (Some(name), Some(init)) = (&l.name, &l.init) else { return TokenStream::new() };
         let Some(value) = self.host_value(init) else {
@@ -89,7 +89,7 @@ impl Emitter<'_> {
         );
     }
 
-    /// Assignment to a host variable: all lanes must take part.
+    /// Emits an assignment to a host variable: all lanes must take part.
     pub(super) fn host_assign(
         &mut self,
         name: &Ident,

@@ -1,4 +1,4 @@
-//! From the model to the lifted Rust: one small function a rule.
+//! Lowering from the model to the lifted Rust: one small function per rule.
 //!
 //! The lifted body is generic over a machine `m`. Its control flow is real Rust control flow,
 //! steered by the machine's hooks; see "How it works" in the book.
@@ -23,14 +23,14 @@ use crate::here::{At, in_one_place, of_type, own, private_here as private, quote
 use crate::model::{Block, Expr, Kernel, Kind, Param, is_constant};
 use owner::Owner;
 
-/// What a name stands for.
+/// The binding of a name.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Binding {
     /// A value.
     Value,
-    /// A variable: it is read and assigned through the machine.
+    /// A variable, read and assigned through the machine.
     Var,
-    /// A `&mut` parameter: a variable that calls are given as it is.
+    /// A `&mut` parameter: a variable passed on to calls as it is.
     Mut,
     /// A value of the host.
     Host,
@@ -44,11 +44,11 @@ struct Local {
     generic: Option<Ident>,
     /// The type parameter that is the type of its elements.
     elements: Option<Ident>,
-    /// Whether it is a `&mut` of the source, or a part of one, under another name.
+    /// Whether it is an alias: a `&mut` of the source, or a part of one, under another name.
     alias: bool,
-    /// For a counter that all rays have in step: the one that it is a value of.
+    /// For a counter that is the same in all rays: the counter that it is a value of.
     step: Option<Ident>,
-    /// Whose methods it has.
+    /// The origin of its methods.
     owner: Owner,
     /// Whether it is an integer without a suffix, which stays a number of the host.
     literal: bool,
@@ -56,41 +56,41 @@ struct Local {
     bare: bool,
 }
 
-/// Where the value of a control structure goes.
+/// The destination of a control structure's value.
 #[derive(Clone)]
 enum Dest {
-    /// Nowhere: it is a statement.
+    /// None: it is a statement.
     None,
-    /// To a variable.
+    /// A variable.
     Slot { var: Ident, ty: SlotType },
-    /// To the caller.
+    /// The caller.
     Return,
 }
 
-/// What is known of the type of a [`Dest::Slot`].
+/// The source of the type of a [`Dest::Slot`].
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum SlotType {
-    /// It is written in the source.
+    /// An annotation in the source.
     Written,
-    /// Other outcomes than bare integers say it.
+    /// An outcome other than bare integers.
     ByOthers,
-    /// Each outcome says it.
+    /// Every outcome.
     ByAll,
 }
 
 struct Loop {
     label: Option<String>,
     ident: Ident,
-    /// Where `break value` sends the value.
+    /// The destination of the value of `break value`.
     dest: Dest,
 }
 
-/// How a name is shown in WGSL; those that the macro makes up begin with `__`.
+/// Returns a name as shown in WGSL; names made up by the macro begin with `__`.
 fn shown(name: &Ident) -> String {
     name.to_string().trim_start_matches("__").to_owned()
 }
 
-/// Writes the body of one kernel for one machine.
+/// Emits the body of one kernel for one machine.
 pub(crate) struct Emitter<'a> {
     /// The machine's type: a parameter `__M`, or a concrete one for closures.
     machine: TokenStream,
@@ -98,7 +98,7 @@ pub(crate) struct Emitter<'a> {
     self_ty: Option<TokenStream>,
     kernel: &'a Kernel,
     is_closure: bool,
-    /// How many of the scopes lie around the closure that is being written; 0 outside of one.
+    /// The number of scopes around the closure being emitted; 0 outside of one.
     outer: usize,
     /// The type parameters in scope.
     generics: Generics,
@@ -106,9 +106,9 @@ pub(crate) struct Emitter<'a> {
     loops: Vec<Loop>,
     /// Free names of a closure, in order of first use.
     pub(crate) captures: Vec<Ident>,
-    /// Those of them that are also wanted as the host has them.
+    /// Those of them that are also needed as host values.
     pub(crate) host_captures: Vec<Ident>,
-    /// How many loops, and conditions that are not the host's, are open.
+    /// The number of open loops, and of open conditions that are not the host's.
     varying: usize,
     /// The `&mut` parameters.
     changed: Vec<Ident>,
@@ -116,7 +116,7 @@ pub(crate) struct Emitter<'a> {
     errors: &'a mut Errors,
 }
 
-/// `L` of `[L]` and `[L; N]`.
+/// Returns `L` of `[L]` and `[L; N]`.
 fn element_type(ty: &TokenStream) -> Option<TokenStream> {
     let Some(TokenTree::Group(g)) = ty.clone().into_iter().next() else { return None };
     let is_semicolon = |t: &TokenTree| matches!(t, TokenTree::Punct(p) if p.as_char() == ';');
@@ -150,7 +150,7 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// Whether mistakes were found.
+    /// Returns whether mistakes were found.
     pub(crate) fn has_errors(&self) -> bool {
         !self.errors.is_empty()
     }
@@ -161,7 +161,7 @@ impl<'a> Emitter<'a> {
         self
     }
 
-    /// The type of a parameter in lifted code.
+    /// Returns the type of a parameter in lifted code.
     pub(crate) fn param(&self, param: &Param) -> TokenStream {
         if !param.data {
             return self.on(&param.ty);
@@ -172,7 +172,7 @@ impl<'a> Emitter<'a> {
         quote!(<#ty as #p::Parameter>::On<'__a, #machine>)
     }
 
-    /// The twin of `ty`.
+    /// Returns the twin of `ty`.
     pub(crate) fn on(&self, ty: &TokenStream) -> TokenStream {
         let _at = of_type(ty);
         let (p, machine) = (private(), &self.machine);
@@ -187,7 +187,7 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// The statements and the value of the body; parameters are bound already.
+    /// Emits the statements and the value of the body; parameters are already bound.
     pub(crate) fn body(&mut self) -> TokenStream {
         let (p, m) = (private(), own("m"));
         let mut prologue = TokenStream::new();
@@ -206,7 +206,7 @@ impl<'a> Emitter<'a> {
             }
             self.bind_typed(&param.name, binding, Some(&param.ty));
         }
-        // The user may bind their names anew.
+        // The user may rebind their names.
         let changing: Vec<&Param> = self.kernel.params.iter().filter(|p| p.by_mut).collect();
         for (i, param) in changing.iter().enumerate() {
             let (alias, name) = (own(&format!("changed_{i}")), self.local(&param.name));
@@ -232,7 +232,7 @@ impl<'a> Emitter<'a> {
         };
         let ret = own("ret");
         let block = self.block(&kernel.body, &Dest::Return);
-        // Lanes that come to the end without a `return` give what they changed.
+        // Lanes that reach the end without a `return` return their changed parameters.
         let end = (!changing.is_empty() && kernel.result.is_none()).then(|| {
             let all = self.with_changed(quote!(()));
             quote!(#ret.give(#m, #all);)
@@ -240,29 +240,29 @@ impl<'a> Emitter<'a> {
         quote!(#prologue let #ret = #p::Ret::<#ty>::new(#m); #block #end #ret.take())
     }
 
-    /// The result, and beside it what became of the `&mut` parameters.
+    /// Emits the result, and beside it the final values of the `&mut` parameters.
     fn with_changed(&self, result: TokenStream) -> TokenStream {
         let (m, changed) = (own("m"), &self.changed);
         if changed.is_empty() { result } else { quote!((#result, #(#changed.get(#m),)*)) }
     }
 
-    /// The result type where none is written: inferred for a closure, `()` for a function.
+    /// Returns the result type if none is written: inferred for a closure, `()` for a function.
     fn no_result(&self) -> TokenStream {
         if self.is_inferred() { quote!(_) } else { quote!(()) }
     }
 
-    /// Whether a result whose type is not written is that of the body.
+    /// Returns whether a result type that is not written is that of the body.
     fn is_inferred(&self) -> bool {
         self.is_closure || self.outer > 0
     }
 
-    /// Whether the result of the closure may be an integer without a type of its own: then it has
+    /// Returns whether the result of the closure may be an integer without a type of its own: then it has
     /// that of the source's closure.
     fn gives_bare(&self) -> bool {
         self.is_closure && self.outer == 0 && self.kernel.gives_bare_integer()
     }
 
-    /// A closure as an argument. It may read what is around it.
+    /// Emits a closure as an argument. It may read the surrounding variables.
     fn closure(&mut self, kernel: &Kernel) -> TokenStream {
         let m = own("m");
         let mut inner = Emitter {
@@ -302,15 +302,15 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// Notes that the closure captures `name`.
+    /// Records that the closure captures `name`.
     fn capture(&mut self, name: &Ident) {
         if !self.captures.contains(name) {
             self.captures.push(name.clone());
         }
     }
 
-    /// The locals in scope that `code` mentions. A closure refers to each as a whole: rustc 1.95
-    /// cannot see that members captured one by one are `Copy`.
+    /// Returns the locals in scope that `code` mentions. A closure refers to each as a whole: rustc
+    /// 1.95 cannot see that members captured one by one are `Copy`.
     fn mentioned_in(&self, code: &TokenStream) -> Vec<Ident> {
         let names = self.scopes.iter().flat_map(HashMap::keys);
         let mut names: BTreeSet<&str> = names.map(String::as_str).collect();
@@ -319,7 +319,7 @@ impl<'a> Emitter<'a> {
         }
         let mut found: Vec<Ident> = Vec::new();
         identifiers(code, &mut |ident| {
-            // The tokens of the source: a name made anew would not have their hygiene.
+            // Uses the tokens of the source: a new name would not have their hygiene.
             if names.remove(ident.to_string().as_str()) {
                 found.push(ident);
             }
@@ -327,7 +327,7 @@ impl<'a> Emitter<'a> {
         found
     }
 
-    /// Whether a closure sees the variable, but may not change it.
+    /// Returns whether a closure can read the variable, but not change it.
     fn is_outer(&self, name: &Ident) -> bool {
         let name = name.to_string();
         let found = self.scopes.iter().rposition(|s| s.contains_key(&name));
@@ -341,7 +341,7 @@ impl<'a> Emitter<'a> {
             out.extend(self.stmt(stmt));
         }
         let Some(tail) = &block.tail else {
-            // That nothing gives the result is rustc's to report, in the user's own function.
+            // A missing result is reported by rustc, in the user's own function.
             let end = result.map(|_| quote!(::core::unreachable!()));
             return quote!(#out #end);
         };
@@ -391,12 +391,12 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// A name of the innermost scope.
+    /// Returns a name of the innermost scope.
     fn newest(&mut self, name: &Ident) -> Option<&mut Local> {
         self.scopes.last_mut()?.get_mut(&name.to_string())
     }
 
-    /// Whether it is a `&mut` parameter, another name of one, or a part of one.
+    /// Returns whether it is a `&mut` parameter, another name of one, or a part of one.
     fn is_alias(&self, e: &Expr) -> bool {
         match &e.kind {
             Kind::Name(name) => {
@@ -424,12 +424,12 @@ impl<'a> Emitter<'a> {
         self.scopes.iter().rev().find_map(|s| s.get(&name))
     }
 
-    /// Whether it is a constant of the source.
+    /// Returns whether it is a constant of the source.
     fn is_constant(&self, name: &Ident) -> bool {
         is_constant(name) && self.lookup(name).is_none()
     }
 
-    /// `self` cannot be the name of a local.
+    /// Returns the local of a name: `self` cannot be one.
     fn local(&self, name: &Ident) -> Ident {
         if name == "self" { own("this") } else { name.clone() }
     }

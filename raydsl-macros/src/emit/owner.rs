@@ -1,6 +1,6 @@
-//! Whose methods a value has, as far as the syntax says.
+//! Origin of a value's methods, by its syntax.
 //!
-//! A kernel refuses `x.exp()` of a number, while a user's own type may have a method of that name.
+//! A kernel refuses `x.exp()` for a number, while a user's own type may have a method of that name.
 
 use proc_macro2::{Ident, TokenStream, TokenTree};
 
@@ -8,12 +8,12 @@ use super::Emitter;
 use crate::model::{Expr, Kind};
 use crate::ops;
 
-/// Who made the type of a value.
+/// The origin of a value's type.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Owner {
-    /// It is a number, a vector or the like.
+    /// The library: a number, a vector or the like.
     Library,
-    /// It is written out, and none of the library's.
+    /// The user: a type written out, and none of the library's.
     User,
     Unknown,
 }
@@ -69,7 +69,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// The type parameter that is the type of `e`, and that of its elements.
+    /// Returns the type parameter that is the type of `e`, and that of its elements.
     pub(super) fn generic_of(&self, e: &Expr) -> (Option<Ident>, Option<Ident>) {
         match &e.kind {
             Kind::Name(name) => self
@@ -83,7 +83,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// Refuses a method that kernels do not have, where the receiver is no type of the user's.
+    /// Refuses a method that kernels do not have, if the receiver's type is not a user's.
     pub(super) fn refuse(&mut self, receiver: &Expr, name: &Ident) {
         let Some(denied) = ops::denied(&name.to_string()) else { return };
         let (what, mut help) = (denied.what, denied.help);
@@ -100,7 +100,7 @@ impl Emitter<'_> {
     }
 }
 
-/// A component of a vector: members of tuples and of `Ray` may be anything.
+/// Returns whether it is a component of a vector: members of tuples and of `Ray` may be anything.
 fn is_component(member: &TokenStream) -> bool {
     matches!(member.to_string().as_str(), "x" | "y" | "z" | "w")
 }

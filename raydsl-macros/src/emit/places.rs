@@ -1,4 +1,4 @@
-//! Assignment to variables and their parts.
+//! Emission of assignments to variables and their parts.
 
 use proc_macro2::{Ident, TokenStream};
 
@@ -7,7 +7,7 @@ use crate::here::quote_here as quote;
 use crate::model::{BinaryOp, Expr, Kind, Place, Step};
 
 impl Emitter<'_> {
-    /// A variable of the code around a closure.
+    /// Reports an assignment to a variable of the code around a closure.
     pub(super) fn not_ours(&mut self, name: &Ident) {
         self.errors.at(
             name.span(),
@@ -16,7 +16,7 @@ impl Emitter<'_> {
         );
     }
 
-    /// A variable of the kernel around a nested closure.
+    /// Reports an assignment to a variable of the kernel around a nested closure.
     pub(super) fn outside(&mut self, name: &Ident) {
         self.errors.at(
             name.span(),
@@ -42,7 +42,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// Whether it is a variable of the kernel; what rustc has nothing against is reported.
+    /// Returns whether it is a variable of the kernel; mistakes that rustc accepts are reported.
     fn may_assign(&mut self, name: &Ident) -> bool {
         if self.is_outer(name) {
             self.outside(name);
@@ -56,7 +56,7 @@ impl Emitter<'_> {
                 "assign to the `&mut` parameter itself: `s.x = ...`",
             ),
             None if self.is_closure => self.not_ours(name),
-            // Of the others rustc says so, in the user's own function.
+            // rustc reports the others, in the user's own function.
             Some(_) | None => {}
         }
         false
@@ -98,7 +98,7 @@ impl Emitter<'_> {
         })
     }
 
-    /// What evaluates the computed indices of a place, and its steps with them.
+    /// Emits the evaluation of a place's computed indices, and returns its steps with them.
     fn parts(&mut self, steps: &[Step]) -> (TokenStream, Vec<Part>) {
         let mut indices = TokenStream::new();
         let mut part = |step: &Step| match step {
@@ -115,7 +115,7 @@ impl Emitter<'_> {
     }
 }
 
-/// Whether it is a computed element of an array, or a part of one.
+/// Returns whether it is a computed element of an array, or a part of one.
 pub(super) fn is_part_of_element(e: &Expr) -> bool {
     match &e.kind {
         Kind::Element { .. } => true,
@@ -124,7 +124,7 @@ pub(super) fn is_part_of_element(e: &Expr) -> bool {
     }
 }
 
-/// The steps of a place none of which is computed.
+/// Returns the steps of a place if none is computed.
 pub(super) fn plain_steps(steps: &[Step]) -> Option<TokenStream> {
     steps
         .iter()
@@ -142,7 +142,7 @@ enum Part {
     Computed(Ident),
 }
 
-/// Changes the part of `place` at the end of `steps` to what `new` makes of its old value.
+/// Emits a change of the part of `place` at the end of `steps` to `new` of its old value.
 fn change(
     place: TokenStream,
     steps: &[Part],

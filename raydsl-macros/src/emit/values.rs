@@ -1,4 +1,4 @@
-//! Expressions.
+//! Emission of expressions.
 
 use std::collections::HashMap;
 
@@ -12,13 +12,13 @@ use super::{Binding, Dest, Emitter, SlotType, own, private};
 use crate::model::{BinaryOp, Block, Expr, IntType, Kind};
 
 impl Emitter<'_> {
-    /// A value, with a name for those who read generated code.
+    /// Emits a value, with a name for readers of generated code.
     pub(super) fn named_value(&mut self, e: &Expr, name: &str) -> TokenStream {
         let _at = At::new(e.span);
         self.structured(e, name, None).unwrap_or_else(|| self.plain_value(e))
     }
 
-    /// A value of the type `ty`, which is written in the source.
+    /// Emits a value of the type `ty`, which is written in the source.
     pub(super) fn wanted(&mut self, e: &Expr, name: &str, ty: &TokenStream) -> TokenStream {
         let _at = At::new(e.span);
         let (p, m) = (private(), own("m"));
@@ -28,7 +28,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// A value where its type is known. Elements of tuples and arrays become values of the machine
+    /// Emits a value of a known type. Elements of tuples and arrays become values of the machine
     /// one by one.
     pub(super) fn coerced(&mut self, e: &Expr) -> TokenStream {
         let _at = At::new(e.span);
@@ -54,7 +54,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// The value of a control structure goes through a variable.
+    /// Emits the value of a control structure, through a variable.
     pub(super) fn structured(
         &mut self,
         e: &Expr,
@@ -73,14 +73,14 @@ impl Emitter<'_> {
         Some(self.in_slot(e, name, &ty, slot))
     }
 
-    /// The value of a control structure of the type `ty`, which may be `_`.
+    /// Emits the value of a control structure of the type `ty`, which may be `_`.
     fn in_slot(&mut self, e: &Expr, name: &str, ty: &TokenStream, slot: SlotType) -> TokenStream {
         let (p, m) = (private(), own("m"));
         if e.is_selection() {
             return self.selection(e, name, ty, slot);
         }
         let var = self.fresh("value");
-        // What never has a value may be of any type.
+        // An expression that never has a value may have any type.
         let nothing = quote!(());
         let ty = if slot == SlotType::ByAll && e.has_no_outcome() { &nothing } else { ty };
         let code = self.into(e, &Dest::Slot { var: var.clone(), ty: slot });
@@ -91,7 +91,7 @@ impl Emitter<'_> {
         })
     }
 
-    /// An `if` that only chooses between small values: both are there, one is taken.
+    /// Emits an `if` that only chooses between small values: both are evaluated, one is taken.
     fn selection(&mut self, e: &Expr, name: &str, ty: &TokenStream, slot: SlotType) -> TokenStream {
         let (p, m) = (private(), own("m"));
         let inner = match &e.kind {
@@ -133,7 +133,7 @@ impl Emitter<'_> {
         self.named_value(e, "value")
     }
 
-    /// A value as a variable has it: numbers of the host become numbers of the machine.
+    /// Emits a value as a variable has it: numbers of the host become numbers of the machine.
     pub(super) fn varying(&mut self, e: &Expr, name: &str) -> TokenStream {
         let (p, m) = (private(), own("m"));
         let value = self.with_bare(e).unwrap_or_else(|| self.named_value(e, name));
@@ -174,7 +174,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// A value that does not come out of control flow.
+    /// Emits a value that does not come from control flow.
     pub(super) fn plain_value(&mut self, e: &Expr) -> TokenStream {
         let (p, m) = (private(), own("m"));
         let span = e.span;
@@ -212,7 +212,7 @@ impl Emitter<'_> {
             }
             Kind::Deref(a) => self.value(a),
             Kind::Host(inner) => self.host_use(inner),
-            // The arguments of calls see to the first two.
+            // The arguments of calls handle the first two.
             Kind::RefMut(_) | Kind::Closure(_) | Kind::Error => quote!(::core::unreachable!()),
             Kind::Field { base, member } => {
                 let base = self.value(base);
@@ -241,7 +241,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// A constant of the source.
+    /// Emits a constant of the source.
     fn constant(&self, path: impl ToTokens) -> TokenStream {
         let (p, m, machine) = (private(), own("m"), &self.machine);
         quote!(#p::Capture::<#machine>::constant(&#path, #m))
@@ -267,7 +267,8 @@ impl Emitter<'_> {
         quote!(#p::OpCompare::compare(#m, #p::op::#op, { #a }, { #b }))
     }
 
-    /// A computed element. An index that is the same for all rays is given as one number too.
+    /// Emits a computed element. An index that is the same for all rays is also passed as one
+    /// number.
     fn element(&mut self, base: &Expr, index: &Expr) -> TokenStream {
         let (p, m) = (private(), own("m"));
         let step = self.in_step(index);
@@ -282,7 +283,7 @@ impl Emitter<'_> {
         ))
     }
 
-    /// The elements of an array, of which one may say what type the others have.
+    /// Emits the elements of an array, one of which may determine the type of the others.
     fn array(&mut self, items: &[Expr]) -> TokenStream {
         let is_typed = items.iter().any(Expr::has_typed_outcome);
         let of_others = |e: &Expr| is_typed && !e.has_typed_outcome();
@@ -292,8 +293,8 @@ impl Emitter<'_> {
         quote!([#(#items,)*])
     }
 
-    /// An index that is the same for all rays, as one number: counters in step, and sums and
-    /// products of them.
+    /// Returns an index that is the same for all rays, as one number: uniform counters, and sums
+    /// and products of them.
     fn in_step(&self, e: &Expr) -> Option<TokenStream> {
         let number = |e: &Expr| e.kind.int_tokens().map(|n| quote!((#n as u32)));
         match &e.kind {
@@ -301,7 +302,7 @@ impl Emitter<'_> {
                 let step = self.find(name)?.step.as_ref()?;
                 Some(quote!(#step.bits()))
             }
-            // By way of a float the number might be another.
+            // A conversion through a float might change the number.
             Kind::Cast { value, ty } if ty.to_string() != "f32" => self.in_step(value),
             Kind::Binary { op, a, b } if matches!(op.symbol, "+" | "*") => {
                 let (x, y) = (self.in_step(a), self.in_step(b));
@@ -348,7 +349,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// `&&` and `||`: both sides at once where the right one is harmless, else an `if`.
+    /// Emits `&&` and `||`: both sides at once if the right one is harmless, else an `if`.
     pub(super) fn logic(&mut self, and: bool, a: &Expr, b: &Expr, span: Span) -> TokenStream {
         let (p, m) = (private(), own("m"));
         if b.is_total() {
@@ -386,7 +387,7 @@ impl Emitter<'_> {
         let p = private();
         let path = self.without_self(path);
         let machine = &self.machine.clone();
-        // An item within a function does not see the function's parameters.
+        // An item within a function cannot use the function's parameters.
         let mentioned = self.generics.mentioned_in(&path);
         let Generics { bare, used, .. } = &mentioned;
         let members: Vec<TokenStream> = fields
@@ -424,7 +425,7 @@ fn operator(op: BinaryOp, a: TokenStream, b: TokenStream) -> TokenStream {
     quote!(#p::#operator::#method(#m, { #a }, { #b }))
 }
 
-/// An integer of the source; without a suffix it is for others to say what type it has.
+/// Emits an integer of the source; without a suffix its type is inferred.
 fn integer(tokens: &TokenStream, suffix: Option<IntType>) -> TokenStream {
     let (p, m) = (private(), own("m"));
     match suffix {
@@ -435,7 +436,7 @@ fn integer(tokens: &TokenStream, suffix: Option<IntType>) -> TokenStream {
     }
 }
 
-/// A literal of `f32` with the suffix `f64`.
+/// Returns an `f32` literal with the suffix `f64`.
 fn in_f64(lit: &TokenStream) -> TokenStream {
     let text = lit.to_string().replace('_', "");
     let digits = text.strip_suffix("f32").unwrap_or(&text);

@@ -1,4 +1,4 @@
-//! `kernel!(|ray: Ray| ...)`.
+//! Expansion of `kernel!(|ray: Ray| ...)`.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, format_ident, quote};
@@ -16,9 +16,9 @@ use crate::rewrite::without_markers;
 struct Natural {
     /// Its alias in the runtime.
     alias: &'static str,
-    /// The member of `Lifted` that holds its copy.
+    /// The member of `Lifted` with its copy.
     member: &'static str,
-    /// What `RAYDSL_VARIANTS` calls it.
+    /// Its name in `RAYDSL_VARIANTS`.
     variant: &'static str,
 }
 
@@ -30,18 +30,18 @@ const NATURAL: [Natural; 5] = [
     Natural { alias: "Margin", member: "margin", variant: "reference" },
 ];
 
-/// The copy that counts lanes: made where the source asks for it.
+/// The copy that counts lanes, made only on request.
 const COUNTED: Natural = Natural { alias: "Counting", member: "counted", variant: "counted" };
 
-/// The environment variable that names the copies to make, for those who edit a kernel and wait for
-/// rustc: the others are left out.
+/// The environment variable with the copies to make, for those who edit a kernel and wait for
+/// rustc: the others are omitted.
 const VARIANTS: &str = "RAYDSL_VARIANTS";
 
-/// How many tokens a closure may have whose first copy is for a machine that rustc infers; see
-/// [`copies`].
+/// The maximum number of tokens of a closure whose first copy is for a machine that rustc infers;
+/// see [`copies`].
 const INFERRED: usize = 256;
 
-/// `kernel!(|ray: Ray| ...)` and `kernel!(counted |ray: Ray| ...)`.
+/// The input `kernel!(|ray: Ray| ...)` or `kernel!(counted |ray: Ray| ...)`.
 pub(crate) struct ClosureKernel {
     counted: Option<Ident>,
     closure: syn::ExprClosure,
@@ -57,7 +57,7 @@ impl syn::parse::Parse for ClosureKernel {
     }
 }
 
-/// `kernel!(|ray: Ray| ...)`.
+/// Expands `kernel!(|ray: Ray| ...)`.
 pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel) -> TokenStream {
     let mut errors = Errors::default();
     let wanted = wanted(std::env::var(VARIANTS).ok().as_deref(), &mut errors);
@@ -68,7 +68,7 @@ pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel)
     let machines: Vec<&Natural> =
         wanted.iter().copied().chain(counted.as_ref().map(|_| &COUNTED)).collect();
     let (copies, captured) = copies(&kernel, closure, &machines, &mut errors);
-    // The closure itself stays, so that rustc and editors see its types.
+    // The closure itself remains, so that rustc and editors see its types.
     let closure = without_markers(closure.to_token_stream());
     if !errors.is_empty() {
         let errors = errors.into_expression();
@@ -93,7 +93,7 @@ pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel)
     });
     quote! {{
         #info
-        // For cargo, which builds anew when it changes.
+        // For cargo, which rebuilds when it changes.
         const _: ::core::option::Option<&str> = ::core::option_env!(#VARIANTS);
         let #scalar = #closure;
         let #scalar = #p::Kernel::scalar(
@@ -112,7 +112,7 @@ pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel)
     }}
 }
 
-/// The machines that closures are lifted for: all, or those that the environment names.
+/// Returns the machines that closures are lifted for: all, or those named by the environment.
 fn wanted(names: Option<&str>, errors: &mut Errors) -> Vec<&'static Natural> {
     let Some(names) = names else { return NATURAL.iter().collect() };
     let names: Vec<&str> = names.split(',').map(str::trim).filter(|n| !n.is_empty()).collect();
@@ -128,13 +128,13 @@ fn wanted(names: Option<&str>, errors: &mut Errors) -> Vec<&'static Natural> {
     NATURAL.iter().filter(|n| names.contains(&n.variant)).collect()
 }
 
-/// A copy of the lifted closure for each machine, and the names that all capture.
+/// Returns a copy of the lifted closure for each machine, and the names that all capture.
 ///
-/// rustc would report a mistake once for each copy. The machine of the first copy of a short closure
-/// is therefore inferred, from a cast. Casts come after all else, so the errors of a copy for any
-/// machine imply those of the others, and rustc leaves these out. But all that the first copy asks of
-/// its machine is looked through again and again until the cast is reached: in a closure of sixty
-/// lines for 19 of 20 seconds. There each copy has its own errors.
+/// rustc would report a mistake once per copy. The machine of the first copy of a short closure is
+/// therefore inferred, from a cast. Casts are checked after everything else, so the errors of a
+/// copy for any machine imply those of the others, and rustc omits these. But rustc reconsiders all
+/// obligations of the first copy's machine again and again until the cast is reached: in a closure
+/// of sixty lines for 19 of 20 seconds. So each copy of a long closure has its own errors.
 fn copies(
     kernel: &Kernel,
     closure: &syn::ExprClosure,
@@ -161,7 +161,7 @@ fn copies(
     (copies, captured)
 }
 
-/// How many tokens there are, if no more than `most`.
+/// Returns the number of tokens, if it is no more than `most`.
 fn tokens(stream: TokenStream, most: usize) -> usize {
     let mut count = 0;
     for token in stream {
@@ -176,7 +176,8 @@ fn tokens(stream: TokenStream, most: usize) -> usize {
     count
 }
 
-/// The lifted closure for one machine, as the local `member`, and the names that it captures.
+/// Returns the lifted closure for one machine, as the local `member`, and the names that it
+/// captures.
 fn copy_for(
     machine: &TokenStream,
     member: &Ident,
@@ -216,7 +217,7 @@ fn copy_for(
     (quote!(#quiet let #member = #copy;), captured)
 }
 
-/// The captures as values of the machine.
+/// Returns the captures as values of the machine.
 fn brought(machine: &TokenStream, captured: &[Ident]) -> Vec<TokenStream> {
     let bring = |(i, name): (usize, &Ident)| {
         let _at = At::new(name.span());
@@ -226,7 +227,7 @@ fn brought(machine: &TokenStream, captured: &[Ident]) -> Vec<TokenStream> {
     captured.iter().enumerate().map(bring).collect()
 }
 
-/// The captures that are also wanted as the host has them.
+/// Returns the captures that are also needed as host values.
 fn raw_captures(names: &[Ident], captured: &[Ident]) -> Vec<TokenStream> {
     let raw = |name: &Ident| {
         let _at = At::new(name.span());
@@ -237,7 +238,7 @@ fn raw_captures(names: &[Ident], captured: &[Ident]) -> Vec<TokenStream> {
     names.iter().filter_map(raw).collect()
 }
 
-/// What shows the resources of the captures to the runtime.
+/// Returns the code that passes the captures' resources to the runtime.
 fn resources(captured: &[Ident]) -> Vec<TokenStream> {
     let visit = |(i, name): (usize, &Ident)| {
         let _at = At::new(name.span());
@@ -247,13 +248,13 @@ fn resources(captured: &[Ident]) -> Vec<TokenStream> {
     captured.iter().enumerate().map(visit).collect()
 }
 
-/// One of the captures, which are kept in a tuple.
+/// Returns one of the captures, which are stored in a tuple.
 fn capture(i: usize) -> TokenStream {
     let (captures, i) = (own("captures"), syn::Index::from(i));
     quote_here!({ #captures.#i })
 }
 
-/// A copy, boxed. The cast of the first one says what machine it is for.
+/// Returns a boxed copy. The cast of the first one determines its machine.
 fn boxed(machine: &Natural, is_first: bool) -> TokenStream {
     let (p, copy, alias) = (private(), own(machine.member), format_ident!("{}", machine.alias));
     let cast =

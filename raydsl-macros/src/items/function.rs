@@ -1,4 +1,4 @@
-//! `#[kernel] fn`.
+//! Expansion of `#[kernel] fn`.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{ToTokens, format_ident, quote};
@@ -11,8 +11,8 @@ use crate::model::{Kernel, Param};
 use crate::parse;
 use crate::rewrite::without_markers;
 
-/// `known = Function::Sin`: for the library's own functions, of which machines know more than the code
-/// says.
+/// The argument `known = Function::Sin`: for the library's own functions, about which machines know
+/// more than their code says.
 pub(crate) struct KnownBy(syn::Expr);
 
 impl syn::parse::Parse for KnownBy {
@@ -24,7 +24,8 @@ impl syn::parse::Parse for KnownBy {
     }
 }
 
-/// The function as it is, a type of the same name, and the lifted body as the type's `on`.
+/// Expands to the unchanged function, a type of the same name, and the lifted body as the type's
+/// `on`.
 pub(crate) fn kernel_fn(item: &syn::ItemFn, known: Option<&KnownBy>) -> TokenStream {
     let mut errors = Errors::default();
     let mut kernel = parse::function(&item.attrs, &item.sig, &item.block, None, &mut errors);
@@ -50,7 +51,7 @@ pub(crate) fn kernel_fn(item: &syn::ItemFn, known: Option<&KnownBy>) -> TokenStr
     let Generics { declared, bare, used, predicates, .. } = &kernel.generics;
     let (declared, bare, used) = (angled(declared), angled(bare), angled(used));
     if kernel.is_broken {
-        // The type stays, so that there is something to call.
+        // The type remains, so that there is something to call.
         let mistaken = mistaken(&kernel, errors);
         return quote! {
             #source
@@ -73,7 +74,8 @@ pub(crate) fn kernel_fn(item: &syn::ItemFn, known: Option<&KnownBy>) -> TokenStr
     }
 }
 
-/// A kernel whose signature has mistakes: what it gives is of a type that rustc asks nothing of.
+/// Expands a kernel whose signature has mistakes: its result has a type about which rustc reports
+/// nothing.
 fn mistaken(kernel: &Kernel, errors: Errors) -> TokenStream {
     let (p, name) = (private(), &kernel.name);
     let Generics { declared, used, predicates, .. } = &kernel.generics;
@@ -122,7 +124,7 @@ fn angled(list: &TokenStream) -> TokenStream {
     if list.is_empty() { TokenStream::new() } else { quote!(<#list>) }
 }
 
-/// A variant that cannot be made, for type parameters must be used.
+/// Returns a variant that cannot be constructed, since type parameters must be used.
 fn never(generics: &Generics) -> TokenStream {
     let types = &generics.types;
     if types.is_empty() {
@@ -134,7 +136,7 @@ fn never(generics: &Generics) -> TokenStream {
     }
 }
 
-/// Whether it can be run by itself: on values, for a value.
+/// Returns whether it can run by itself: on values, for a value.
 fn has_entry(kernel: &Kernel, sig: &syn::Signature) -> bool {
     let syn::ReturnType::Type(_, result) = &sig.output else { return false };
     if matches!(**result, syn::Type::Reference(_)) {
@@ -144,7 +146,7 @@ fn has_entry(kernel: &Kernel, sig: &syn::Signature) -> bool {
     !kernel.params.is_empty() && kernel.result.is_some() && kernel.params.iter().all(is_value)
 }
 
-/// `on` of a generic kernel: the types are inferred from the arguments.
+/// Returns `on` of a generic kernel: the types are inferred from the arguments.
 fn inferring_function(kernel: &Kernel, vis: &TokenStream) -> TokenStream {
     let (p, m, out, quiet) = (private(), own("m"), own("out"), quiet());
     let all: Vec<Passed> = kernel.params.iter().map(|param| passed(param, kernel)).collect();
@@ -167,11 +169,11 @@ fn inferring_function(kernel: &Kernel, vis: &TokenStream) -> TokenStream {
     }
 }
 
-/// How a parameter of [`inferring_function`] goes to `on_values`.
+/// A parameter of [`inferring_function`] passed on to `on_values`.
 struct Passed {
     param: TokenStream,
     value: TokenStream,
-    /// What stands before the call, and behind it.
+    /// The code before the call, and behind it.
     before: TokenStream,
     after: TokenStream,
 }
@@ -215,7 +217,7 @@ fn passed(param: &Param, kernel: &Kernel) -> Passed {
     }
 }
 
-/// The twin of a type on a machine of any type.
+/// Returns the twin of a type on any machine.
 fn on_any(ty: &TokenStream) -> TokenStream {
     let p = private();
     quote!(<#ty as #p::Type>::On<__M>)
@@ -264,7 +266,8 @@ fn entry(kernel: &Kernel, sig: &syn::Signature) -> TokenStream {
     }
 }
 
-/// An inherent item of a type that is private to its module is as visible as the type.
+/// Returns the visibility within a type private to its module: an inherent item is as visible as
+/// the type.
 fn visible_from_inside(vis: &syn::Visibility) -> TokenStream {
     match vis {
         syn::Visibility::Inherited => quote!(pub(self)),
@@ -272,7 +275,7 @@ fn visible_from_inside(vis: &syn::Visibility) -> TokenStream {
     }
 }
 
-/// The arguments of the user's own function: references where it takes references.
+/// Returns the arguments of the user's own function: references where it takes references.
 fn scalar_arguments(sig: &syn::Signature, fields: &[syn::Index]) -> Vec<TokenStream> {
     let inputs = sig.inputs.iter().zip(fields);
     inputs

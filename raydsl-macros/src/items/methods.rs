@@ -1,4 +1,4 @@
-//! `#[kernel]` on an `impl` or a trait.
+//! Expansion of `#[kernel]` on an `impl` or a trait.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, format_ident, quote};
@@ -12,7 +12,7 @@ use crate::model::{Kernel, Param};
 use crate::parse;
 use crate::rewrite::without_markers;
 
-/// The lifted functions of an `impl`, and what stands beside it.
+/// Expands to the lifted functions of an `impl`, and the items beside it.
 pub(crate) fn kernel_impl(
     item: &syn::ItemImpl,
     host_only: &[&str],
@@ -98,7 +98,7 @@ fn lifted_impl(item: &syn::ItemImpl, host_only: &[&str], errors: &mut Errors) ->
     lifted
 }
 
-/// The functions of an `impl` that are lifted.
+/// Returns the functions of an `impl` that are lifted.
 fn functions<'a>(
     items: &'a [syn::ImplItem],
     host_only: &[&str],
@@ -115,7 +115,7 @@ fn functions<'a>(
     lifted
 }
 
-/// What a method of kernels cannot have.
+/// Reports what a method of kernels cannot have.
 fn check(sig: &syn::Signature, attrs: &[syn::Attribute], errors: &mut Errors) {
     if let Some(cfg) = attrs.iter().find(|a| a.path().is_ident("cfg")) {
         errors.at(
@@ -134,7 +134,7 @@ fn check(sig: &syn::Signature, attrs: &[syn::Attribute], errors: &mut Errors) {
     }
 }
 
-/// In a trait's impl the call may be of the type's own method of that name.
+/// Reports recursion. In a trait's impl the call may be of the type's own method of that name.
 fn check_recursion(kernel: &Kernel, errors: &mut Errors) {
     for span in kernel.body.calls_on_self(&kernel.name) {
         errors.at(
@@ -145,14 +145,14 @@ fn check_recursion(kernel: &Kernel, errors: &mut Errors) {
     }
 }
 
-/// A method, for calls that know its name only.
+/// A method, for calls that only know its name.
 pub(super) struct Method<'a> {
     pub(super) self_ty: &'a TokenStream,
     /// The path of the lifted function.
     pub(super) called: TokenStream,
     pub(super) name: &'a str,
     pub(super) around: &'a Generics,
-    /// The trait that has it.
+    /// Its trait.
     pub(super) through: Option<&'a syn::Path>,
 }
 
@@ -163,7 +163,7 @@ impl Method<'_> {
         quote!(<#ty as #p::Type>::On<__M>)
     }
 
-    /// The type of an argument, and the generic parameter that it needs.
+    /// Returns the type of an argument, and the generic parameter that it needs.
     fn argument(&self, i: usize, param: &Param) -> (TokenStream, Option<TokenStream>) {
         let p = private();
         let ty = &param.ty;
@@ -182,7 +182,8 @@ impl Method<'_> {
         (quote!(#generic), Some(quote!(#generic: #p::Coerce<__M, #ty>)))
     }
 
-    /// Keeps the methods of two traits apart. Traits of one name may stand in two modules.
+    /// Returns a type that distinguishes the methods of two traits. Traits of one name may be in
+    /// two modules.
     fn via(&self) -> TokenStream {
         let p = private();
         let Some(path) = self.through else { return quote!(()) };
@@ -228,7 +229,7 @@ impl Method<'_> {
         }
     }
 
-    /// The call of a method that takes `self` or `&self`.
+    /// Emits the call of a method that takes `self` or `&self`.
     fn call(&self, names: &[&Ident], argument: &TokenStream, output: &TokenStream) -> TokenStream {
         let (p, m, this, called) = (private(), own("m"), own("this"), &self.called);
         quote! {
@@ -239,7 +240,7 @@ impl Method<'_> {
         }
     }
 
-    /// The calls of a method that takes `&mut self`: of a value, and of a variable.
+    /// Emits the calls of a method that takes `&mut self`: on a value, and on a variable.
     fn calls_by_mut(
         &self,
         names: &[&Ident],
@@ -269,7 +270,7 @@ impl Method<'_> {
     }
 }
 
-/// `#[kernel] trait`: every function gets a lifted one beside it.
+/// Expands `#[kernel] trait`: every function gets a lifted one beside it.
 pub(crate) fn kernel_trait(item: &syn::ItemTrait) -> TokenStream {
     let mut errors = Errors::default();
     let mut around = Generics::new(&item.generics);

@@ -1,4 +1,4 @@
-//! The items that the macros write: kernels and primitives.
+//! Expansion of items: kernels and primitives.
 
 mod closure;
 mod function;
@@ -23,15 +23,15 @@ use crate::here::{in_one_place, of_type, own, private, private_here, quote_here}
 use crate::model::{Kernel, Param};
 use crate::ops;
 
-/// A parameter in lifted code; `self` cannot name a local.
+/// Returns a parameter's name in lifted code; `self` cannot name a local.
 fn param_ident(name: &Ident) -> Ident {
     if name == "self" { own("this") } else { name.clone() }
 }
 
-/// The static description of a kernel.
+/// Returns the static description of a kernel.
 fn info(kernel: &Kernel, name: &str) -> TokenStream {
     let p = private();
-    // Values of the host are no arguments on a machine.
+    // Host values are no arguments on a machine.
     let values = kernel.params.iter().filter(|p| !p.host);
     let params: Vec<String> = values.map(|p| p.name.to_string()).collect();
     let known = match &kernel.known {
@@ -56,29 +56,29 @@ fn quiet() -> TokenStream {
     )])
 }
 
-/// Where a lifted function stands.
+/// The surroundings of a lifted function.
 struct Place<'a> {
     /// Its name.
     fn_name: &'a Ident,
-    /// What WGSL calls it.
+    /// Its name in WGSL.
     wgsl_name: &'a str,
     /// The type of the `impl` around it.
     self_ty: Option<&'a TokenStream>,
     /// The generic parameters of the item around it.
     around: &'a Generics,
     vis: &'a TokenStream,
-    /// Whether a `where` clause of its own belongs to it; that of a free kernel is the type's.
+    /// Whether it has a `where` clause of its own; that of a free kernel is the type's.
     is_method: bool,
 }
 
-/// The generic function that runs the lifted body on any machine.
+/// Returns the generic function that runs the lifted body on any machine.
 fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> TokenStream {
     let p = private();
     let mut seen = Errors::default();
     let emitter = Emitter::new(kernel, quote!(__M), place.self_ty.cloned(), false, &mut seen);
     let mut emitter = emitter.with_generics(place.around);
     let mut body = emitter.body();
-    // With a mistake in it the function is still there, so that its calls give no second error.
+    // With a mistake in it the function still exists, so that its calls give no second error.
     if emitter.has_errors() || !errors.is_empty() {
         body = quote!(::core::unreachable!());
     }
@@ -100,8 +100,8 @@ fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> T
     }
 }
 
-/// Gives the body to the machine, with its arguments. Values of the host are none: the body sees
-/// them as they are.
+/// Emits the machine's call of the body with its arguments. Host values are no arguments: the body
+/// uses them directly.
 fn call_of(body: &TokenStream, kernel: &Kernel, emitter: &Emitter<'_>) -> TokenStream {
     let (p, m) = (private(), own("m"));
     let values = || kernel.params.iter().filter(|p| !p.host);
@@ -124,7 +124,8 @@ fn call_of(body: &TokenStream, kernel: &Kernel, emitter: &Emitter<'_>) -> TokenS
     }
 }
 
-/// Of `&mut` parameters copies go in; what became of them comes out beside the result.
+/// Emits copies of the `&mut` parameters as arguments, and assigns their final values from beside
+/// the result.
 fn with_changes_set(call: TokenStream, kernel: &Kernel, emitter: &Emitter<'_>) -> TokenStream {
     let changed: Vec<&Param> = kernel.params.iter().filter(|p| p.by_mut && !p.host).collect();
     if changed.is_empty() {
@@ -144,8 +145,8 @@ fn with_changes_set(call: TokenStream, kernel: &Kernel, emitter: &Emitter<'_>) -
     }
 }
 
-/// That the user's own types in a signature are types of kernels. Where one is not, this is the
-/// error, and the code that takes it for one has no others.
+/// Returns assertions that the user's own types in a signature are types of kernels. If one is not,
+/// this is the error, and the code that uses it gives no others.
 fn asserted(kernel: &Kernel) -> TokenStream {
     let values = kernel.params.iter().filter(|p| !(p.data || p.host)).map(|p| &p.ty);
     let mut seen = Vec::new();
@@ -158,7 +159,7 @@ fn asserted(kernel: &Kernel) -> TokenStream {
     asserted.collect()
 }
 
-/// That a type of the user's own is one of kernels.
+/// Returns an assertion that a user's own type is one of kernels.
 fn asserted_type(ty: &TokenStream, generics: &Generics) -> TokenStream {
     if !is_users_own(ty) || generics.has_type_in(ty) {
         return TokenStream::new();
@@ -168,7 +169,7 @@ fn asserted_type(ty: &TokenStream, generics: &Generics) -> TokenStream {
     quote_here!(#ty: #p::Type,)
 }
 
-/// A path without parameters that names none of the library's types.
+/// Returns whether it is a path without parameters that names none of the library's types.
 fn is_users_own(ty: &TokenStream) -> bool {
     let parsed = syn::parse2::<syn::TypePath>(ty.clone());
     let Some(last) = parsed.ok().and_then(|t| t.path.segments.last().cloned()) else {
@@ -177,7 +178,7 @@ fn is_users_own(ty: &TokenStream) -> bool {
     last.arguments.is_none() && last.ident != "Self" && !ops::is_of_library(&last.ident.to_string())
 }
 
-/// The signature of a lifted function.
+/// Returns the signature of a lifted function.
 fn head(kernel: &Kernel, place: &Place<'_>, emitter: &Emitter<'_>) -> TokenStream {
     let (p, m) = (private(), own("m"));
     let Place { fn_name, vis, .. } = place;

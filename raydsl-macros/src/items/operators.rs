@@ -1,4 +1,4 @@
-//! `#[kernel] impl Add for Spectrum`, and the other operators of a user's own type.
+//! Expansion of `#[kernel] impl Add for Spectrum`, and the other operators of a user's own type.
 
 use proc_macro2::TokenStream;
 use quote::{ToTokens, format_ident, quote};
@@ -12,13 +12,13 @@ use crate::ops;
 use crate::parse;
 use crate::rewrite::without_markers;
 
-/// The function of an operator's trait, and the name that lifted code knows it by.
+/// The function of an operator's trait, and its name in lifted code.
 struct Operator {
     function: &'static str,
     symbol: String,
 }
 
-/// The operator whose trait of std `path` names.
+/// Returns the operator of the std trait `path`.
 fn operator(path: &syn::Path) -> Option<Operator> {
     let name = path.segments.last()?.ident.to_string();
     if name == "Neg" {
@@ -35,12 +35,13 @@ fn operator(path: &syn::Path) -> Option<Operator> {
     })
 }
 
-/// Whether the trait is an operator's.
+/// Returns whether the trait is an operator's.
 pub(super) fn is_operator(item: &syn::ItemImpl) -> bool {
     item.trait_.as_ref().is_some_and(|(path, _)| operator(path).is_some())
 }
 
-/// The `impl` as it is, the lifted function, and what lets lifted code find it.
+/// Expands to the unchanged `impl`, the lifted function, and the items by which lifted code finds
+/// it.
 pub(super) fn operator_impl(item: &syn::ItemImpl, errors: &mut Errors) -> TokenStream {
     let source = without_markers(item.to_token_stream());
     let lifted = lifted_operator(item, errors).unwrap_or_default();
@@ -52,7 +53,7 @@ fn lifted_operator(item: &syn::ItemImpl, errors: &mut Errors) -> Option<TokenStr
     let operator = operator(path)?;
     let right = right_operand(path);
     let are_values = check_operands(&item.self_ty, right.as_ref(), errors);
-    // Without the function rustc's own error is the one to read.
+    // Without the function rustc's own error is the better one.
     let f = item.items.iter().find_map(|i| match i {
         syn::ImplItem::Fn(f) if f.sig.ident == operator.function => Some(f),
         _ => None,
@@ -94,7 +95,7 @@ fn lifted_operator(item: &syn::ItemImpl, errors: &mut Errors) -> Option<TokenStr
             called: quote!(<#self_ty>::#fn_name),
             name: &operator.symbol,
             around: &around,
-            // There is one `Neg`; of `Mul` there is one for each type on the right.
+            // There is one `Neg`; there is a `Mul` for each type on the right.
             through: (operator.symbol != "-x").then_some(path),
         };
         method.implementation(&kernel)
@@ -105,7 +106,7 @@ fn lifted_operator(item: &syn::ItemImpl, errors: &mut Errors) -> Option<TokenStr
     })
 }
 
-/// Whether the operands are values: lifted code has no references to tell from them.
+/// Checks that the operands are values: lifted code cannot distinguish references from them.
 fn check_operands(left: &syn::Type, right: Option<&syn::Type>, errors: &mut Errors) -> bool {
     let is_reference = |ty: &&syn::Type| matches!(ty, syn::Type::Reference(_));
     let references: Vec<_> =
@@ -120,7 +121,7 @@ fn check_operands(left: &syn::Type, right: Option<&syn::Type>, errors: &mut Erro
     references.is_empty()
 }
 
-/// `f32 * Spectrum`, as a method of `Spectrum`.
+/// Returns `f32 * Spectrum`, as a method of `Spectrum`.
 fn on_the_right(
     operator: &Operator,
     number: &TokenStream,
@@ -156,7 +157,7 @@ fn on_the_right(
     }
 }
 
-/// What stands between the angle brackets of `Mul<f32>`.
+/// Returns the type between the angle brackets of `Mul<f32>`.
 fn right_operand(path: &syn::Path) -> Option<syn::Type> {
     let syn::PathArguments::AngleBracketed(args) = &path.segments.last()?.arguments else {
         return None;
@@ -167,8 +168,8 @@ fn right_operand(path: &syn::Path) -> Option<syn::Type> {
     })
 }
 
-/// The signature with the type that the `impl` gives for `Self::Output`: the lifted function stands
-/// outside of the trait.
+/// Returns the signature with the `impl`'s type for `Self::Output`: the lifted function is outside
+/// of the trait.
 fn with_output(sig: &syn::Signature, item: &syn::ItemImpl) -> syn::Signature {
     let mut sig = sig.clone();
     let output = item.items.iter().find_map(|i| match i {

@@ -1,4 +1,4 @@
-//! `#[primitive] impl T`.
+//! Expansion of `#[primitive] impl T`.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
@@ -9,7 +9,7 @@ use crate::diag::Errors;
 use crate::ops;
 use crate::parse::type_name;
 
-/// What runs on the host alone, when a tree is built.
+/// The functions that only run on the host, when a tree is built.
 const ON_HOST: [&str; 2] = ["get_bounds", "split_primitive"];
 
 const INTERSECT: &str = "fn intersect(&self, ray: Ray) -> Hit";
@@ -31,7 +31,7 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
         quote!(const #name: #ty = <#self_ty>::#name;)
     });
     let (record, shared) = (parts.record(), parts.shared());
-    // What a function does not ask for it is not given.
+    // A function only gets the shared slice if it takes it.
     let given =
         |f: Option<&Function<'_>>| f.is_some_and(|f| f.shared.is_some()).then(|| quote!(, shared));
     let (met, bounded) = (given(parts.intersect.as_ref()), given(parts.get_bounds.as_ref()));
@@ -79,7 +79,8 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
     }
 }
 
-/// A primitive with mistakes is one all the same, so that its trees give no second error.
+/// Expands a primitive with mistakes: it is a primitive all the same, so that its trees give no
+/// second error.
 fn mistaken(item: &syn::ItemImpl, parts: &Parts<'_>) -> TokenStream {
     if item.trait_.is_some() || !item.generics.params.is_empty() {
         return TokenStream::new();
@@ -118,7 +119,7 @@ fn mistaken(item: &syn::ItemImpl, parts: &Parts<'_>) -> TokenStream {
 const CONSTANTS: [(&str, &str); 3] =
     [("SLACK", "f32"), ("MAX_CROSSINGS", "u32"), ("IS_SHORT", "bool")];
 
-/// What an `impl` says of a primitive.
+/// The parts of a primitive in an `impl`.
 struct Parts<'a> {
     intersect: Option<Function<'a>>,
     get_bounds: Option<Function<'a>>,
@@ -148,7 +149,8 @@ impl<'a> Function<'a> {
         Self { sig, result, shared }
     }
 
-    /// The types of the parameters but that of what is shared, and that of the result.
+    /// Returns the types of the parameters without that of the shared slice, and that of the
+    /// result.
     fn types(&self) -> Vec<&'a syn::Type> {
         let parameters = self.sig.inputs.iter().filter_map(|arg| match arg {
             syn::FnArg::Typed(p) => Some(&*p.ty),
@@ -158,7 +160,7 @@ impl<'a> Function<'a> {
     }
 }
 
-/// `T` of `&[T]`.
+/// Returns `T` of `&[T]`.
 fn slice_of(ty: &syn::Type) -> Option<&syn::Type> {
     match ty {
         syn::Type::Reference(r) => match &*r.elem {
@@ -170,7 +172,7 @@ fn slice_of(ty: &syn::Type) -> Option<&syn::Type> {
 }
 
 impl<'a> Parts<'a> {
-    /// One error for each thing that is missing or of another form.
+    /// Reads the parts and reports one error for each that is missing or of another form.
     fn of(item: &'a syn::ItemImpl, errors: &mut Errors) -> Self {
         check_head(item, errors);
         let find = |name: &str| {
@@ -213,20 +215,20 @@ impl<'a> Parts<'a> {
         [&self.intersect, &self.get_bounds, &self.split].into_iter().flatten()
     }
 
-    /// The type of the record that `intersect` gives.
+    /// Returns the type of the record that `intersect` returns.
     fn record(&self) -> TokenStream {
         let p = private();
         let record = self.intersect.as_ref().and_then(|f| f.result);
         record.map_or_else(|| quote!(#p::Hit), |ty| quote!(#ty))
     }
 
-    /// The type of what the primitives of a scene share.
+    /// Returns the type of the data that the primitives of a scene share.
     fn shared(&self) -> TokenStream {
         let shared = self.functions().find_map(|f| f.shared);
         shared.map_or_else(|| quote!(()), |ty| quote!(#ty))
     }
 
-    /// All functions are given the same slice.
+    /// Checks that all functions take the same slice.
     fn check_shared(&self, errors: &mut Errors) {
         let mut types = self.functions().filter_map(|f| f.shared);
         let Some(first) = types.next() else { return };
@@ -241,7 +243,7 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// A primitive is a struct without parameters, in an impl of its own.
+/// Checks that a primitive is a struct without parameters, in an impl of its own.
 fn check_head(item: &syn::ItemImpl, errors: &mut Errors) {
     if let Some((path, _)) = &item.trait_ {
         errors.at(
@@ -255,7 +257,7 @@ fn check_head(item: &syn::ItemImpl, errors: &mut Errors) {
     }
 }
 
-/// `&self`, the types of the parameters, and that of the result.
+/// Checks `&self`, the types of the parameters, and that of the result.
 fn check_signature(function: &Function<'_>, signature: &str, errors: &mut Errors) {
     let sig = function.sig;
     let is_ref =
@@ -276,8 +278,8 @@ fn check_signature(function: &Function<'_>, signature: &str, errors: &mut Errors
     }
 }
 
-/// Whether the types may be those of `signature`. Names that are not known may be aliases, or a
-/// record of the user's.
+/// Returns whether the types may be those of `signature`. Unknown names may be aliases, or a record
+/// of the user's.
 fn has_types(function: &Function<'_>, signature: &str) -> bool {
     let wanted = syn::parse_str::<syn::Signature>(signature).expect("a signature");
     let (written, wanted) = (function.types(), Function::of(&wanted).types());

@@ -1,4 +1,5 @@
-//! `#[primitive(sphere(center, radius))] struct T`: a primitive of a shape of the library.
+//! Expansion of `#[primitive(sphere(center, radius))] struct T`: a primitive of a shape of the
+//! library.
 
 use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
 use quote::{ToTokens, quote};
@@ -7,7 +8,7 @@ use syn::punctuated::Punctuated;
 
 use crate::diag::Errors;
 
-/// The shapes and what each is made of. Each is a module of `raydsl::geometry`.
+/// The shapes and their parameters. Each is a module of `raydsl::geometry`.
 const SHAPES: &[(&str, &[&str])] = &[
     ("sphere", &["center", "radius"]),
     ("triangle", &["v0", "v1", "v2"]),
@@ -21,7 +22,7 @@ const SHAPES: &[(&str, &[&str])] = &[
     ("cuboid", &["min", "max"]),
 ];
 
-/// `sphere(center, radius.to_f32())`.
+/// A shape with its arguments, such as `sphere(center, radius.to_f32())`.
 pub(crate) struct Shape {
     name: Ident,
     arguments: Punctuated<syn::Expr, syn::Token![,]>,
@@ -38,7 +39,7 @@ impl Parse for Shape {
 }
 
 impl Shape {
-    /// The shape in the parentheses of the attribute.
+    /// Parses the shape in the parentheses of the attribute.
     pub(crate) fn of(args: TokenStream, errors: &mut Errors) -> Option<Self> {
         let help = "write for example `#[primitive(sphere(center, radius))]`, or `#[primitive]` \
                     and an impl of your own";
@@ -72,7 +73,7 @@ impl Shape {
         Some(self)
     }
 
-    /// The `impl` that a user would write.
+    /// Returns the `impl` that a user would write.
     fn implementation(&self, ty: &Ident, members: &[&Ident]) -> syn::ItemImpl {
         let shape = &self.name;
         let shape = quote!(::raydsl::geometry::#shape);
@@ -100,7 +101,7 @@ impl Shape {
     }
 }
 
-/// Where a ray hits a shape, and what is there.
+/// Returns the functions that intersect a shape and compute its surface points.
 fn hits(shape: &TokenStream, arguments: &TokenStream) -> TokenStream {
     quote! {
         #[doc = "Where `ray` meets it."]
@@ -138,7 +139,7 @@ fn hits(shape: &TokenStream, arguments: &TokenStream) -> TokenStream {
     }
 }
 
-/// How large a shape is, and points of it.
+/// Returns the functions for the area of a shape and for points on it.
 fn surface(shape: &TokenStream, arguments: &TokenStream) -> TokenStream {
     quote! {
         #[doc = "The area of its surface."]
@@ -153,7 +154,7 @@ fn surface(shape: &TokenStream, arguments: &TokenStream) -> TokenStream {
     }
 }
 
-/// The boxes around a shape and around its parts.
+/// Returns the functions for the bounding boxes of a shape and of its parts.
 fn boxes(shape: &TokenStream, arguments: &TokenStream) -> TokenStream {
     quote! {
         #[doc = "A box around it."]
@@ -172,13 +173,13 @@ fn boxes(shape: &TokenStream, arguments: &TokenStream) -> TokenStream {
     }
 }
 
-/// `self.radius` in place of the member `radius`.
+/// Returns `self.radius` in place of the member `radius`.
 fn of_self(tokens: TokenStream, members: &[&Ident]) -> TokenStream {
     let mut out = TokenStream::new();
     let mut is_member = false;
     let mut tokens = tokens.into_iter().peekable();
     while let Some(token) = tokens.next() {
-        // A name before parentheses or `::` is a function's or a type's.
+        // A name before parentheses or `::` is that of a function or a type.
         let is_called = match tokens.peek() {
             Some(TokenTree::Group(g)) => g.delimiter() == Delimiter::Parenthesis,
             Some(TokenTree::Punct(p)) => p.as_char() == ':',
@@ -205,7 +206,7 @@ fn of_self(tokens: TokenStream, members: &[&Ident]) -> TokenStream {
     out
 }
 
-/// The struct of a primitive of this shape, with all that it needs.
+/// Expands the struct of a primitive of this shape.
 pub(crate) fn with_shape(shape: &Shape, item: &syn::DeriveInput) -> TokenStream {
     let members: Vec<&Ident> = match &item.data {
         syn::Data::Struct(s) => s.fields.iter().filter_map(|f| f.ident.as_ref()).collect(),

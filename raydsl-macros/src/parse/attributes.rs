@@ -5,22 +5,22 @@ use syn::spanned::Spanned;
 
 use super::Parser;
 
-/// `#[host]`.
+/// Returns whether it is `#[host]`.
 pub(super) fn is_host(a: &syn::Attribute) -> bool {
     a.path().is_ident("host")
 }
 
-/// `#[inline(never)]`.
+/// Returns whether it is `#[inline(never)]`.
 pub(super) fn is_never_inlined(a: &syn::Attribute) -> bool {
     a.path().is_ident("inline") && a.parse_args::<Ident>().is_ok_and(|how| how == "never")
 }
 
-/// `#[coherent]`.
+/// Returns whether it is `#[coherent]`.
 pub(super) fn is_coherent(a: &syn::Attribute) -> bool {
     a.path().is_ident("coherent")
 }
 
-/// The attributes of an expression.
+/// Returns the attributes of an expression.
 pub(super) fn attributes(e: &syn::Expr) -> &[syn::Attribute] {
     macro_rules! all {
         ($($kind:ident)+) => {
@@ -38,7 +38,7 @@ pub(super) fn attributes(e: &syn::Expr) -> &[syn::Attribute] {
 }
 
 impl Parser<'_> {
-    /// The lifted code would not know of a `#[cfg]`.
+    /// Refuses attributes that the lifted code would ignore, such as `#[cfg]`.
     pub(super) fn no_attributes(&mut self, attrs: &[syn::Attribute]) {
         let is_known =
             |a: &&syn::Attribute| a.path().is_ident("allow") || is_host(a) || is_coherent(a);

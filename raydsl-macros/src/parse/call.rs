@@ -1,4 +1,4 @@
-//! Calls of functions and methods.
+//! Parsing of function and method calls.
 
 use quote::{ToTokens, quote};
 use syn::spanned::Spanned;
@@ -9,7 +9,7 @@ use super::types::{generic_argument, is_type_name};
 use crate::model::{Expr, Kind};
 
 impl Parser<'_> {
-    /// Arguments may be `&mut`.
+    /// Parses arguments, which may be `&mut`.
     fn arguments<'b>(&mut self, args: impl IntoIterator<Item = &'b syn::Expr>) -> Vec<Expr> {
         args.into_iter()
             .map(|e| match e {
@@ -70,7 +70,7 @@ impl Parser<'_> {
     }
 }
 
-/// `<Type as Trait>::function(..)`.
+/// Returns a call of `<Type as Trait>::function(..)`.
 fn associated(ty: &syn::Type, mut path: syn::Path, args: Vec<Expr>) -> Kind {
     let Some(last) = path.segments.pop() else { return Kind::Error };
     path.segments.pop_punct();

@@ -1,4 +1,4 @@
-//! Expressions.
+//! Parsing of expressions.
 
 use proc_macro2::Span;
 use quote::ToTokens;
@@ -21,7 +21,7 @@ fn lifetime(l: &Option<syn::Lifetime>) -> Option<String> {
     l.as_ref().map(|l| l.ident.to_string())
 }
 
-/// Where a mistake in `e` is shown: at the operator or the name, which is where rustc shows it.
+/// Returns the span for a mistake in `e`: the operator or the name, as in rustc.
 fn shown_at(e: &syn::Expr) -> Span {
     match e {
         syn::Expr::Binary(b) => b.op.span(),
@@ -40,7 +40,7 @@ pub(super) fn inside_parens(mut e: &syn::Expr) -> &syn::Expr {
     e
 }
 
-/// A labelled block is a loop that goes round once: only its label can leave it (E0695).
+/// Returns a labelled block as a loop of one iteration: only its label can leave it (E0695).
 pub(super) fn run_once(label: Option<String>, mut block: Block, span: Span) -> Kind {
     let exit = Kind::Break(label.clone(), block.tail.take());
     block.stmts.push(Stmt::Expr(Expr { kind: exit, span }));
@@ -102,14 +102,14 @@ impl Parser<'_> {
             syn::Expr::Continue(c) => Kind::Continue(lifetime(&c.label)),
             syn::Expr::Return(r) => self.return_of(r.expr.as_deref()),
             syn::Expr::Assign(a) => self.assign(a),
-            // Values are copied: a reference is the value, and so is what it refers to.
+            // Values are copied: a reference is the value, and so is its referent.
             syn::Expr::Reference(r) if r.mutability.is_none() => self.expr(&r.expr).kind,
             syn::Expr::Macro(m) => self.macro_call(&m.mac),
             other => self.unsupported(other),
         }
     }
 
-    /// In a nested closure `return` leaves the closure.
+    /// Parses `return`, which in a nested closure leaves the closure.
     fn return_of(&mut self, value: Option<&syn::Expr>) -> Kind {
         let value = value.map(|e| self.boxed(e));
         match self.is_nested {

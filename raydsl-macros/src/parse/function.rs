@@ -1,4 +1,4 @@
-//! Functions and closures: their parameters and results.
+//! Parsing of functions and closures: their parameters and results.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{ToTokens, quote};
@@ -16,7 +16,7 @@ use crate::model::{Block, Expr, Kernel, Kind, Param, Stmt};
 /// The label of a nested closure: its `return` leaves the closure, not the kernel around it.
 pub(super) const NESTED: &str = "__closure";
 
-/// A function or method; `self_ty` is the type of the `impl`.
+/// Parses a function or method; `self_ty` is the type of the `impl`.
 pub(crate) fn function(
     attrs: &[syn::Attribute],
     sig: &syn::Signature,
@@ -40,7 +40,7 @@ pub(crate) fn function(
     Kernel { name, generics, params, result, body, is_apart, known: None, is_broken }
 }
 
-/// A kernel is neither `async` nor `unsafe`.
+/// Checks that a kernel is neither `async` nor `unsafe`.
 fn check_qualifiers(sig: &syn::Signature, errors: &mut Errors) {
     for (bad, what) in [
         (sig.asyncness.as_ref().map(Spanned::span), "async"),
@@ -52,12 +52,12 @@ fn check_qualifiers(sig: &syn::Signature, errors: &mut Errors) {
     }
 }
 
-/// A closure literal; its parameters must have types.
+/// Parses a closure literal; its parameters must have types.
 pub(crate) fn closure(c: &syn::ExprClosure, name: &str, errors: &mut Errors) -> Kernel {
     Parser::new(&c.attrs, errors).closure(c, name)
 }
 
-/// `self`, `&self` and `&mut self`.
+/// Parses `self`, `&self` and `&mut self`.
 fn receiver(r: &syn::Receiver, self_ty: Option<&syn::Type>) -> Param {
     let by_mut = matches!(r.kind, syn::ReceiverKind::Reference(_, _, Some(_)));
     let mutable = r.mutability.is_some() && !by_mut;
@@ -67,7 +67,7 @@ fn receiver(r: &syn::Receiver, self_ty: Option<&syn::Type>) -> Param {
 }
 
 impl Parser<'_> {
-    /// A result that is written, and is not `()`.
+    /// Returns a result type that is written, and is not `()`.
     fn result(&mut self, output: &syn::ReturnType) -> Option<TokenStream> {
         match output {
             syn::ReturnType::Default => None,
@@ -76,7 +76,7 @@ impl Parser<'_> {
         }
     }
 
-    /// What a function gives is no `&mut`.
+    /// Checks that a function's result is not `&mut`.
     fn check_result(&mut self, output: &syn::ReturnType) {
         let syn::ReturnType::Type(_, ty) = output else { return };
         if is_mut_reference(ty) {
@@ -136,7 +136,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A parameter whose pattern names its parts; the prologue binds them.
+    /// Parses a parameter whose pattern names its parts; the prologue binds them.
     fn parts_param(
         &mut self,
         pat: &Pat,
@@ -157,7 +157,7 @@ impl Parser<'_> {
         Param { name, ty, mutable: false, by_mut: false, data: false, host: false }
     }
 
-    /// A closure that is a kernel, or an argument of one's operations.
+    /// Parses a closure that is a kernel, or an argument of one's operations.
     fn closure(&mut self, c: &syn::ExprClosure, name: &str) -> Kernel {
         let (mut params, mut prologue) = (Vec::new(), Vec::new());
         for pat in &c.inputs {
@@ -194,7 +194,7 @@ impl Parser<'_> {
         Kernel { name, generics, params, result, body, is_apart, known: None, is_broken }
     }
 
-    /// A closure as an argument. With a `return` its body is a labelled block.
+    /// Parses a closure as an argument. With a `return` its body is a labelled block.
     pub(super) fn nested(&mut self, c: &syn::ExprClosure) -> Kind {
         if self.is_nested {
             return self.error(

@@ -1,4 +1,4 @@
-//! `for`.
+//! Parsing of `for` loops.
 
 use quote::quote;
 use syn::Pat;
@@ -8,15 +8,15 @@ use super::Parser;
 use super::expression::{inside_parens, label};
 use crate::model::{Block, Expr, Kind, Range, Stmt};
 
-/// The slice or array that a `for` goes through, and whether it counts.
+/// The slice or array that a `for` iterates over, and whether it counts.
 struct Items<'a> {
     list: &'a syn::Expr,
     enumerated: bool,
-    /// The list itself, not a reference to it: the loop runs over a copy.
+    /// Whether it is the list itself, not a reference to it: the loop runs over a copy.
     by_value: bool,
 }
 
-/// `list.iter()`, `&list`, `list.into_iter()` and `list`, and each with `.enumerate()`.
+/// Recognises `list.iter()`, `&list`, `list.into_iter()` and `list`, and each with `.enumerate()`.
 fn items(e: &syn::Expr) -> Option<Items<'_>> {
     match inside_parens(e) {
         syn::Expr::MethodCall(c) if c.method == "iter" && c.args.is_empty() => {
@@ -40,12 +40,13 @@ fn items(e: &syn::Expr) -> Option<Items<'_>> {
     }
 }
 
-/// `scene.hits(ray)`: what finds its items one after another.
+/// Returns whether it is a cursor such as `scene.hits(ray)`, which finds its items one after
+/// another.
 fn is_cursor(e: &syn::Expr) -> bool {
     matches!(inside_parens(e), syn::Expr::MethodCall(c) if c.method == "hits")
 }
 
-/// What stands before every `.rev()`, and whether their number is odd.
+/// Returns the expression before every `.rev()`, and whether their number is odd.
 fn without_reversals(mut range: &syn::Expr) -> (&syn::Expr, bool) {
     let mut reversed = false;
     while let syn::Expr::MethodCall(c) = range
@@ -75,7 +76,7 @@ impl Parser<'_> {
         Kind::For { label: label(&f.label), var, range, body }
     }
 
-    /// A loop with a mistake in its head: the body may have some too.
+    /// Parses a loop with a mistake in its head: the body may have some too.
     fn body_alone(&mut self, f: &syn::ExprForLoop) -> Kind {
         let item = Expr { kind: Kind::Error, span: f.pat.span() };
         let mut stmts = self.bind_item(&f.pat, item);
@@ -84,7 +85,7 @@ impl Parser<'_> {
         Kind::Loop { label: label(&f.label), body: Block { stmts, ..body } }
     }
 
-    /// The name that a loop counts with, and what the body makes of it.
+    /// Returns the name that a loop counts with, and the statement that binds it in the body.
     fn counter(&mut self, mut pat: &Pat) -> Option<(Option<syn::Ident>, Option<Stmt>)> {
         while let Pat::Paren(p) = pat {
             pat = &p.pat;
@@ -106,7 +107,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `a..b`, `a..=b`, and each with `.rev()` or `.step_by(n)`.
+    /// Parses `a..b`, `a..=b`, and each with `.rev()` or `.step_by(n)`.
     fn range(&mut self, e: &syn::Expr) -> Option<Range> {
         let (range, step) = self.without_steps(inside_parens(e))?;
         let (range, reversed) = without_reversals(range);
@@ -124,7 +125,7 @@ impl Parser<'_> {
         Some(Range { start, end, inclusive, reversed, step })
     }
 
-    /// What stands before `.step_by(n)`, and `n`.
+    /// Returns the expression before `.step_by(n)`, and `n`.
     fn without_steps<'e>(
         &mut self,
         e: &'e syn::Expr,
@@ -148,7 +149,7 @@ impl Parser<'_> {
         Some((range, Some(step)))
     }
 
-    /// The bounds of a range.
+    /// Returns the bounds of a range.
     fn bounds(&mut self, r: &syn::ExprRange) -> Option<(Box<Expr>, Box<Expr>)> {
         let (Some(start), Some(end)) = (&r.start, &r.end) else {
             self.errors.at(
@@ -161,8 +162,8 @@ impl Parser<'_> {
         Some((self.boxed(start), self.boxed(end)))
     }
 
-    /// A loop over the elements: `for x in list` is `for i in 0..list.len() { let x = list[i]; ..
-    /// }`.
+    /// Parses a loop over elements: `for x in list` is `for i in 0..list.len() { let x = list[i];
+    /// .. }`.
     fn for_each(&mut self, f: &syn::ExprForLoop, items: Items<'_>) -> Kind {
         let span = f.expr.span();
         let boxed = |kind| Box::new(Expr { kind, span });
@@ -202,7 +203,7 @@ impl Parser<'_> {
         Kind::Block(Block { stmts: copy, tail: None })
     }
 
-    /// A loop over what a cursor finds.
+    /// Parses a loop over a cursor.
     fn for_items(&mut self, f: &syn::ExprForLoop) -> Kind {
         let (items, item) = (self.boxed(&f.expr), self.temporary("item"));
         let value = Expr { kind: Kind::Name(item.clone()), span: f.pat.span() };
@@ -212,7 +213,7 @@ impl Parser<'_> {
         Kind::ForItems { label: label(&f.label), item, items, body: Block { stmts, tail } }
     }
 
-    /// What the pattern of a loop over elements binds.
+    /// Returns the bindings of the pattern of a loop over elements.
     fn bind_item(&mut self, pat: &Pat, item: Expr) -> Vec<Stmt> {
         match pat {
             Pat::Ident(p) if p.by_ref.is_none() && p.subpat.is_none() => {

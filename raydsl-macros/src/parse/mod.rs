@@ -1,4 +1,4 @@
-//! From syn's syntax to the model. The only module that knows syn's expressions.
+//! Parser from syn's syntax to the model. Only this module knows syn's expressions.
 
 mod attributes;
 mod call;
@@ -22,9 +22,9 @@ use attributes::is_coherent;
 
 struct Parser<'a> {
     errors: &'a mut Errors,
-    /// How many names have been made up.
+    /// The number of temporary names.
     temporaries: usize,
-    /// Whether a closure within the kernel is being read.
+    /// Whether a closure within the kernel is being parsed.
     is_nested: bool,
     /// Whether the whole kernel is `#[coherent]`.
     is_coherent: bool,
@@ -36,7 +36,7 @@ impl<'a> Parser<'a> {
         Self { errors, temporaries: 0, is_nested: false, is_coherent }
     }
 
-    /// A name that the source cannot have.
+    /// Returns a name that the source cannot have.
     fn temporary(&mut self, hint: &str) -> Ident {
         self.temporaries += 1;
         Ident::new(&format!("__{hint}_{}", self.temporaries), Span::mixed_site())

@@ -1,4 +1,4 @@
-//! Patterns: what they test and what they bind.
+//! Parsing of patterns: their tests and bindings.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{ToTokens as _, quote};
@@ -30,7 +30,7 @@ fn both(a: Option<Expr>, b: Option<Expr>) -> Option<Expr> {
     }
 }
 
-/// The enum that a variant's path names.
+/// Returns the enum of a variant's path.
 fn enum_of(path: &syn::Path) -> Option<TokenStream> {
     let mut ty = path.clone();
     ty.segments.pop();
@@ -38,14 +38,14 @@ fn enum_of(path: &syn::Path) -> Option<TokenStream> {
     (!ty.segments.is_empty()).then(|| ty.to_token_stream())
 }
 
-/// Whether this is a kind of an enum of kernels: one of `Option` and `Result` is none.
+/// Returns whether this is a variant of an enum of kernels, unlike those of `Option` and `Result`.
 fn is_variant(path: &syn::Path) -> bool {
     let of_std = ["Some", "Ok", "Err"];
     let last = path.segments.last();
     path.segments.len() > 1 && !last.is_some_and(|s| of_std.iter().any(|name| s.ident == name))
 }
 
-/// `..` and `name @ ..`.
+/// Returns whether it is `..` or `name @ ..`.
 fn is_rest(p: &Pat) -> bool {
     match p {
         Pat::Rest(_) => true,
@@ -54,7 +54,7 @@ fn is_rest(p: &Pat) -> bool {
     }
 }
 
-/// A member of `from`; that of a tuple in the source is the element itself.
+/// Returns a member of `from`; for a tuple in the source that is the element itself.
 fn member(from: &Expr, member: TokenStream, span: Span) -> Expr {
     if let Kind::Tuple(items) = &from.kind
         && let Ok(i) = member.to_string().parse::<usize>()
@@ -66,8 +66,8 @@ fn member(from: &Expr, member: TokenStream, span: Span) -> Expr {
 }
 
 impl Parser<'_> {
-    /// The condition under which `pat` matches `from`, none if it always does; `lets` is given
-    /// what it binds.
+    /// Returns the condition under which `pat` matches `from`, `None` if it always does; its
+    /// bindings are added to `lets`.
     fn pattern(&mut self, pat: &Pat, from: &Expr, lets: &mut Vec<Stmt>) -> Option<Expr> {
         let span = pat.span();
         match pat {
@@ -124,7 +124,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `1..=3`
+    /// Returns the condition of `1..=3`.
     fn range_pattern(&mut self, r: &syn::PatRange, from: &Expr) -> Option<Expr> {
         let span = r.span();
         let start = r.start.as_ref().map(|e| self.expr(e));
@@ -136,7 +136,7 @@ impl Parser<'_> {
         )
     }
 
-    /// `1 | 2`
+    /// Returns the condition of `1 | 2`.
     fn or_pattern(&mut self, or: &syn::PatOr, from: &Expr, lets: &mut Vec<Stmt>) -> Option<Expr> {
         let count = lets.len();
         let tests: Vec<_> = or.cases.iter().map(|p| self.pattern(p, from, lets)).collect();
@@ -152,7 +152,7 @@ impl Parser<'_> {
         tests.into_iter().reduce(|a, b| logic(false, a, b))
     }
 
-    /// `(a, _, ..)`
+    /// Returns the condition of `(a, _, ..)`.
     fn tuple_pattern(
         &mut self,
         t: &syn::PatTuple,
@@ -176,7 +176,7 @@ impl Parser<'_> {
         test
     }
 
-    /// `[a, _, ..]`
+    /// Returns the condition of `[a, _, ..]`.
     fn slice_pattern(
         &mut self,
         s: &syn::PatSlice,
@@ -206,7 +206,7 @@ impl Parser<'_> {
         test
     }
 
-    /// `Shape::Ball(ball)`: a kind of an enum of primitives.
+    /// Returns the condition of `Shape::Ball(ball)`: a variant of an enum of primitives.
     fn variant(
         &mut self,
         pat: &syn::PatTupleStruct,
@@ -229,8 +229,8 @@ impl Parser<'_> {
         Some(ask("is"))
     }
 
-    /// A value that patterns read more than once; what is not a name yet is given one, and so is
-    /// a name that a pattern binds anew.
+    /// Returns a value that patterns read more than once; it gets a name unless it is one, and also
+    /// if a pattern rebinds that name.
     fn read_often(&mut self, e: Expr, bound: &TokenStream, lets: &mut Vec<Stmt>) -> Expr {
         match e.kind {
             Kind::Name(ref name) if !mentions(bound, name) => e,
@@ -247,14 +247,15 @@ impl Parser<'_> {
         }
     }
 
-    /// `let PATTERN = init`.
+    /// Parses `let PATTERN = init`.
     pub(super) fn destructure(
         &mut self,
         pat: &Pat,
         init: Expr,
         ty: Option<TokenStream>,
     ) -> Vec<Stmt> {
-        // Elements of a tuple are evaluated before the first name is bound, which may be theirs.
+        // Elements of a tuple are evaluated before the first name is bound, which may be one of
+        // theirs.
         let mut lets = Vec::new();
         let ident = self.temporary("parts");
         let from = name(&ident);
@@ -269,13 +270,13 @@ impl Parser<'_> {
         lets
     }
 
-    /// The names of a parameter's pattern.
+    /// Binds the names of a parameter's pattern.
     pub(super) fn irrefutable(&mut self, pat: &Pat, from: &Expr, lets: &mut Vec<Stmt>) {
-        // A pattern that does not always match is rustc's to report, in the user's own function.
+        // A refutable pattern is reported by rustc, in the user's own function.
         let _ = self.pattern(pat, from, lets);
     }
 
-    /// `match`, as a chain of `if`.
+    /// Parses `match`, as a chain of `if`.
     pub(super) fn matching(&mut self, m: &syn::ExprMatch) -> Kind {
         let coherent = self.is_coherent || m.attrs.iter().any(is_coherent);
         let mut stmts = Vec::new();
@@ -313,7 +314,7 @@ impl Parser<'_> {
         Kind::Block(Block { stmts, tail: Some(Box::new(chain)) })
     }
 
-    /// When an arm is taken, none if always, and what it does.
+    /// Returns the condition of an arm, `None` if it is always taken, and its body.
     fn arm(&mut self, arm: &syn::Arm, from: &Expr) -> (Option<Expr>, Block) {
         self.no_attributes(&arm.attrs);
         let (pat, guard) = match &arm.pat {
@@ -333,7 +334,7 @@ impl Parser<'_> {
         (test, block)
     }
 
-    /// What follows `if` in an arm: it sees what the pattern binds.
+    /// Parses the guard of an arm, which sees the pattern's bindings.
     fn guard(&mut self, guard: &syn::Expr, lets: &[Stmt]) -> Expr {
         let span = guard.span();
         let guard = self.expr(guard);

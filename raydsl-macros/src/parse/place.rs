@@ -1,4 +1,4 @@
-//! Assignments, and the variables and parts of variables that they change.
+//! Parsing of assignments, and of the variables and parts of variables that they change.
 
 use quote::ToTokens;
 use syn::spanned::Spanned;
@@ -20,7 +20,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `(a, b) = (b, a)`: all of the right side comes first.
+    /// Parses `(a, b) = (b, a)`: the whole right side is evaluated first.
     fn assign_tuple(&mut self, left: &syn::ExprTuple, right: &syn::Expr) -> Kind {
         let (span, parts) = (right.span(), self.temporary("parts"));
         let mut stmts = vec![Stmt::bind(parts.clone(), false, self.expr(right))];
@@ -38,7 +38,7 @@ impl Parser<'_> {
         Kind::Block(Block { stmts, tail: None })
     }
 
-    /// `a += b`.
+    /// Parses `a += b`.
     pub(super) fn op_assign(&mut self, op: BinaryOp, b: &syn::ExprBinary) -> Kind {
         let (place, value) = (self.place(&b.left), self.boxed(&b.right));
         let Some(place) = place else { return value.kind };
@@ -81,7 +81,7 @@ impl Parser<'_> {
         }
     }
 
-    /// What stands between brackets.
+    /// Parses an index between brackets.
     pub(super) fn step(&mut self, index: &syn::Expr) -> Option<Step> {
         match index {
             syn::Expr::Lit(syn::ExprLit { lit: Lit::Int(n), .. })
@@ -103,7 +103,7 @@ impl Parser<'_> {
     }
 }
 
-/// The operator of `+=` and its like.
+/// Returns the operator of `+=` and its like.
 pub(super) fn assignment(op: &BinOp) -> Option<BinaryOp> {
     Some(match op {
         BinOp::AddAssign(_) => ops::ADD,

@@ -1,4 +1,4 @@
-//! What no kernel has, and which the source alone tells from the rest.
+//! Refusal of constructs that no kernel has, recognised by their syntax.
 
 use proc_macro2::Ident;
 use quote::ToTokens;
@@ -47,12 +47,12 @@ const OF_ITERATORS: &[&str] = &[
     "zip",
 ];
 
-/// A variant of `Option` or of `Result`.
+/// Returns whether it is a variant of `Option` or of `Result`.
 pub(super) fn is_absent(name: &Ident) -> bool {
     ["Some", "None", "Ok", "Err"].iter().any(|n| name == n)
 }
 
-/// Whether `e` is made by methods of iterators: `list.iter()`, `(0..n).map(..)`.
+/// Returns whether `e` is made by methods of iterators: `list.iter()`, `(0..n).map(..)`.
 fn is_iterator(e: &syn::Expr) -> bool {
     match inside_parens(e) {
         syn::Expr::Range(_) => true,
@@ -64,7 +64,7 @@ fn is_iterator(e: &syn::Expr) -> bool {
     }
 }
 
-/// Whether it is a function of the prelude that gives a struct where readers of std expect a tuple.
+/// Returns whether it is a function of the prelude that returns a struct where std returns a tuple.
 pub(super) fn gives_struct(value: &Kind) -> bool {
     matches!(value, Kind::Call { path, .. } if path.to_string() == "sincos_2pi")
 }
@@ -78,14 +78,14 @@ fn is_closure(e: &syn::Expr) -> bool {
 }
 
 impl Parser<'_> {
-    /// `Some(x)`, `None` and their like.
+    /// Refuses `Some(x)`, `None` and their like.
     pub(super) fn absent(&mut self, name: &Ident) -> Kind {
         let ty = if name == "Some" || name == "None" { "Option" } else { "Result" };
         let help = ops::refused_type(ty).unwrap_or_default();
         self.error(name.span(), format!("a kernel has no `{ty}`"), help)
     }
 
-    /// `values.iter().sum()` and `values.map(|x| ..)`: what is wrong is not in the arguments.
+    /// Refuses `values.iter().sum()` and `values.map(|x| ..)`: the mistake is not in the arguments.
     pub(super) fn refused_iteration(&mut self, c: &syn::ExprMethodCall) -> Option<Kind> {
         let takes_closure = c.args.iter().any(is_closure);
         if !is_of_iterators(&c.method) || !(takes_closure || is_iterator(&c.receiver)) {
@@ -103,7 +103,7 @@ impl Parser<'_> {
         Some(self.error(c.method.span(), what, help))
     }
 
-    /// A function of std, or one that is given a closure.
+    /// Refuses a function of std, or one with a closure argument.
     pub(super) fn refused_call(&mut self, c: &syn::ExprCall) -> Option<Kind> {
         if let Some(closure) = c.args.iter().find(|e| is_closure(e)) {
             let help =
@@ -133,7 +133,7 @@ impl Parser<'_> {
         Some(self.error(last.span(), what, &help))
     }
 
-    /// An expression of no form that kernels have.
+    /// Refuses an expression of a form that kernels do not have.
     pub(super) fn unsupported(&mut self, e: &syn::Expr) -> Kind {
         let (what, help) = match e {
             syn::Expr::Closure(_) => {
@@ -154,7 +154,7 @@ impl Parser<'_> {
         self.error(e.span(), format!("a kernel has no {what}"), help)
     }
 
-    /// A call of a macro.
+    /// Refuses a call of a macro.
     pub(super) fn macro_call(&mut self, m: &syn::Macro) -> Kind {
         let name = m.path.segments.last().map(|s| s.ident.to_string()).unwrap_or_default();
         let help = match name.as_str() {

@@ -1,4 +1,4 @@
-//! Blocks and their statements.
+//! Parsing of blocks and their statements.
 
 use proc_macro2::TokenStream;
 use quote::ToTokens;
@@ -78,7 +78,7 @@ impl Parser<'_> {
         vec![Stmt::Let(Let { host, name, mutable, ty, init })]
     }
 
-    /// `let (a, b) = init`.
+    /// Parses `let (a, b) = init`.
     fn local_parts(&mut self, pat: &Pat, ty: Option<TokenStream>, init: Option<Expr>) -> Vec<Stmt> {
         let Some(init) = init else {
             self.errors.at(

@@ -1,4 +1,4 @@
-//! Types: which of them kernels have.
+//! Parsing of types, and refusal of those that kernels do not have.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{ToTokens, quote};
@@ -7,7 +7,7 @@ use syn::spanned::Spanned;
 use super::Parser;
 use crate::ops;
 
-/// The last name of a type that is a path.
+/// Returns the last name of a type that is a path.
 pub(crate) fn type_name(ty: &syn::Type) -> Option<String> {
     match ty {
         syn::Type::Path(t) => t.path.segments.last().map(|s| s.ident.to_string()),
@@ -15,7 +15,7 @@ pub(crate) fn type_name(ty: &syn::Type) -> Option<String> {
     }
 }
 
-/// A type that no kernel can have: where it is, what it is, and what to write instead.
+/// Returns a type that no kernel can have: its span, its description, and its replacement.
 pub(crate) fn refused_type(ty: &syn::Type) -> Option<(Span, String, &'static str)> {
     match ty {
         syn::Type::Reference(r) => refused_type(&r.elem),
@@ -38,7 +38,7 @@ pub(crate) fn refused_type(ty: &syn::Type) -> Option<(Span, String, &'static str
     }
 }
 
-/// The type without references: values on a machine are copied.
+/// Returns the type without references: values on a machine are copied.
 fn value_type(ty: &syn::Type) -> TokenStream {
     match ty {
         syn::Type::Reference(r) => value_type(&r.elem),
@@ -54,7 +54,7 @@ pub(super) fn without_references(mut ty: &syn::Type) -> &syn::Type {
     ty
 }
 
-/// `&mut T`.
+/// Returns whether it is `&mut T`.
 pub(super) fn is_mut_reference(ty: &syn::Type) -> bool {
     matches!(ty, syn::Type::Reference(r) if r.mutability.is_some())
 }
@@ -63,7 +63,7 @@ pub(super) fn is_unit(ty: &syn::Type) -> bool {
     matches!(ty, syn::Type::Tuple(t) if t.elems.is_empty())
 }
 
-/// Slices, trees and textures are not copied.
+/// Returns whether it is a slice, a tree or a texture, which are not copied.
 pub(super) fn is_data(ty: &syn::Type) -> bool {
     match ty {
         syn::Type::Reference(r) => is_data(&r.elem),
@@ -73,14 +73,14 @@ pub(super) fn is_data(ty: &syn::Type) -> bool {
     }
 }
 
-/// Whether a path segment names a type rather than a module.
+/// Returns whether a path segment names a type rather than a module.
 pub(super) fn is_type_name(ident: &Ident) -> bool {
     let name = ident.to_string();
     name.starts_with(|c: char| c.is_ascii_uppercase())
         || matches!(name.as_str(), "f32" | "i32" | "u32" | "usize" | "bool")
 }
 
-/// A generic argument as a type; numbers have a type of their own.
+/// Returns a generic argument as a type; numbers have a type of their own.
 pub(super) fn generic_argument(arg: &syn::GenericArgument) -> TokenStream {
     let constant = |n: &dyn ToTokens| quote!(::raydsl::__private::Const<{ #n }>);
     match arg {
@@ -96,7 +96,7 @@ pub(super) fn generic_argument(arg: &syn::GenericArgument) -> TokenStream {
 }
 
 impl Parser<'_> {
-    /// The type without references; some are known to be none of kernels.
+    /// Returns the type without references; refuses known types that kernels do not have.
     pub(super) fn ty(&mut self, ty: &syn::Type) -> TokenStream {
         if let Some((span, what, help)) = refused_type(ty) {
             self.errors.at(span, format!("a kernel has no {what}"), help);

@@ -1,11 +1,11 @@
-//! A mistake gives one error, which says what to write instead.
+//! Tests that a mistake gives one error, with its remedy.
 
 use proc_macro2::TokenStream;
 use quote::quote;
 
 use crate::{expand_closure, expand_kernel, expand_primitive, twin};
 
-/// The texts of the `compile_error!` calls in `tokens`.
+/// Returns the texts of the `compile_error!` calls in `tokens`.
 fn errors(tokens: TokenStream) -> Vec<String> {
     fn walk(tokens: TokenStream, found: &mut Vec<String>) {
         let all: Vec<_> = tokens.into_iter().collect();
@@ -28,7 +28,7 @@ fn text(literal: TokenStream) -> String {
     syn::parse2::<syn::LitStr>(literal).map(|l| l.value()).unwrap_or_default()
 }
 
-/// Exactly one error, with a remedy.
+/// Asserts that there is exactly one error, with a remedy.
 #[track_caller]
 fn assert_one(tokens: TokenStream, what: &str, help: &str) {
     let found = errors(tokens);
@@ -39,7 +39,7 @@ fn assert_one(tokens: TokenStream, what: &str, help: &str) {
     assert!(!rest.is_empty() && !found[0].contains("__"), "{}", found[0]);
 }
 
-/// A mistake in the body of a kernel: `fn`, method and closure say the same.
+/// Asserts the error of a mistake in the body of a kernel: the same for `fn`, method and closure.
 #[track_caller]
 fn assert_body(body: TokenStream, what: &str, help: &str) {
     let f = quote!(fn f(x: f32, n: u32) -> f32 { #body });
@@ -180,7 +180,7 @@ fn signatures() {
     );
 }
 
-/// Nothing may change through a second name of a `&mut` parameter.
+/// Tests that nothing may change through an alias of a `&mut` parameter.
 #[test]
 fn second_names() {
     let f = quote!(
@@ -364,7 +364,7 @@ fn arguments_of_attributes() {
     assert_one(expand_primitive(quote!(fast), s), "takes a shape, or nothing", "#[primitive]");
 }
 
-/// Names that only types of the user's may have.
+/// Tests names that only user types may have.
 #[test]
 fn names_of_methods() {
     for own in [
@@ -410,7 +410,7 @@ fn operators_of_references() {
     assert_one(expand_kernel(quote!(), i), "takes values", "`impl Add for Spectrum`");
 }
 
-/// All mistakes of a kernel are reported at once, each once.
+/// Tests that all mistakes of a kernel are reported at once, each once.
 #[test]
 fn several_at_once() {
     let f = quote! {
@@ -436,7 +436,8 @@ fn several_at_once() {
     assert_eq!(found.len(), 3, "{found:#?}");
 }
 
-/// With an error the user's item is still there, so that nothing else is reported missing.
+/// Tests that with an error the user's item is still there, so that nothing else is reported
+/// missing.
 #[test]
 fn the_item_stays() {
     let f = quote!(

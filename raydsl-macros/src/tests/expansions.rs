@@ -1,4 +1,4 @@
-//! What the macros write, compared with `golden/*.rs`.
+//! Tests of the macros' output against `golden/*.rs`.
 
 use std::path::Path;
 
@@ -157,7 +157,7 @@ fn derived_type() -> syn::Result<()> {
     Ok(())
 }
 
-/// The user's own function is there, untouched, in front of everything.
+/// Tests that the user's own function is unchanged and in front of everything.
 #[test]
 fn the_source_stays() {
     let f = quote!(

@@ -1,4 +1,4 @@
-//! The macros in process: golden expansions, and one clear error for every mistake.
+//! Tests of the macros in process: golden expansions, and one clear error for every mistake.
 //!
 //! `RAYDSL_BLESS=1` rewrites `golden/*.rs`; read the difference before committing it.
 

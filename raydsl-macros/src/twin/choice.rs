@@ -1,6 +1,6 @@
-//! `#[primitive] enum`: one of several kinds of primitives, without virtual calls.
+//! Expansion of `#[primitive] enum`: one of several kinds of primitives, without virtual calls.
 //!
-//! The twin is the number of the kind and the scalars of its primitive, a word each.
+//! The twin is the discriminant of the variant and the scalars of its primitive, one word each.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -13,10 +13,10 @@ use crate::diag::Errors;
 use crate::generics::Generics;
 use crate::here::private;
 
-/// The bits of the set of kinds that a scene has.
+/// The number of bits in the set of a scene's variants.
 const MOST_KINDS: usize = 64;
 
-/// The enum, its twin, and its implementation of `Primitive`.
+/// Returns the enum, its twin, and its implementation of `Primitive`.
 pub(super) fn choice(item: &syn::DeriveInput, e: &syn::DataEnum) -> TokenStream {
     let mut errors = Errors::default();
     let kinds = kinds(item, e, &mut errors);
@@ -45,7 +45,7 @@ struct Kind {
     ty: syn::Type,
 }
 
-/// Each variant has one field, its primitive.
+/// Returns the variants, each of which has one field, its primitive.
 fn kinds(item: &syn::DeriveInput, e: &syn::DataEnum, errors: &mut Errors) -> Vec<Kind> {
     if let Some(g) = item.generics.params.first() {
         errors.at(g.span(), "a primitive cannot be generic", "write an enum for each type");
@@ -77,7 +77,7 @@ fn kinds(item: &syn::DeriveInput, e: &syn::DataEnum, errors: &mut Errors) -> Vec
 
 struct Choice<'a> {
     item: &'a syn::DeriveInput,
-    /// The struct that stands for the enum where its layout matters.
+    /// The struct that represents the enum where its layout matters.
     data: Ident,
     kinds: Vec<Kind>,
 }
@@ -100,7 +100,7 @@ impl Choice<'_> {
         (0..self.kinds.len() as u32).collect()
     }
 
-    /// How many words the largest kind has.
+    /// Returns the number of words of the largest variant.
     fn words(&self) -> TokenStream {
         let (p, types) = (private(), self.types());
         quote!({
@@ -115,7 +115,7 @@ impl Choice<'_> {
         })
     }
 
-    /// The struct of the kind's number and its words, and its twin.
+    /// Returns the struct of the discriminant and the words, and its twin.
     fn twin(&self) -> TokenStream {
         let (vis, data, name) = (&self.item.vis, &self.data, &self.item.ident);
         let doc = format!("A [`{name}`] as its kind's number and a word for each scalar.");
@@ -137,7 +137,7 @@ impl Choice<'_> {
         quote!(#data #twin)
     }
 
-    /// What patterns and expressions of kernels say of a variant.
+    /// Returns the functions for variants in patterns and expressions of kernels.
     fn lifted_variants(&self) -> TokenStream {
         let (p, name, twin) = (private(), &self.item.ident, self.twin_name());
         let (names, types, numbers) = (self.names(), self.types(), self.numbers());
@@ -177,7 +177,7 @@ impl Choice<'_> {
         }
     }
 
-    /// Between the enum and the struct that stands for it.
+    /// Returns the conversions between the enum and the struct that represents it.
     fn conversions(&self) -> TokenStream {
         let (p, name, data) = (private(), &self.item.ident, &self.data);
         let (names, types, numbers) = (self.names(), self.types(), self.numbers());
@@ -202,7 +202,7 @@ impl Choice<'_> {
         }
     }
 
-    /// The enum as a type of kernels.
+    /// Returns the implementation of the enum as a type of kernels.
     fn type_impl(&self) -> TokenStream {
         let (p, name, data) = (private(), &self.item.ident, &self.data);
         let twin = self.twin_name();
@@ -267,13 +267,13 @@ impl Choice<'_> {
         }
     }
 
-    /// What the first kind calls a hit, and the others with it.
+    /// Returns the hit record of the first variant, which all share.
     fn record(&self) -> TokenStream {
         let (p, first) = (private(), &self.kinds[0].ty);
         quote!(<#first as #p::Primitive>::Hit)
     }
 
-    /// What the primitives of a scene share.
+    /// Returns the type of the data that the primitives of a scene share.
     fn shared(&self) -> TokenStream {
         let (p, first) = (private(), &self.kinds[0].ty);
         quote!(<#first as #p::Primitive>::Shared)
@@ -306,7 +306,7 @@ impl Choice<'_> {
         }
     }
 
-    /// What asks the one kind that a primitive of the host is of.
+    /// Returns the functions of the host, which call those of a primitive's variant.
     fn host_functions(&self) -> TokenStream {
         let (p, record, shared) = (private(), self.record(), self.shared());
         let (names, types, numbers) = (self.names(), self.types(), self.numbers());
@@ -348,7 +348,8 @@ impl Choice<'_> {
         }
     }
 
-    /// Intersection on a machine: with primitives of any kind, of one kind, and of some.
+    /// Returns intersection on a machine: with primitives of any variant, of one variant, and of
+    /// some.
     fn machine_functions(&self) -> TokenStream {
         let (p, record, shared) = (private(), self.record(), self.shared());
         let (names, types, twin) = (self.names(), self.types(), self.twin_name());
@@ -393,8 +394,8 @@ impl Choice<'_> {
         }
     }
 
-    /// The body of `intersect_among_on`: each of the kinds in turn, with the rays whose primitive
-    /// is of it.
+    /// Returns the body of `intersect_among_on`: each variant in turn, with the rays whose
+    /// primitive is of that variant.
     fn intersect_among(&self) -> TokenStream {
         let (p, types, numbers) = (private(), self.types(), self.numbers());
         let wgsl_name = format!("{}_intersect", self.item.ident);

@@ -1,4 +1,4 @@
-//! The twin of an enum without fields: the number of its variant.
+//! The twin of an enum without fields: the discriminant of its variant.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -9,7 +9,7 @@ use crate::diag::Errors;
 use crate::generics::Generics;
 use crate::here::private;
 
-/// The names of the variants.
+/// Returns the names of the variants.
 pub(super) fn variants(e: &syn::DataEnum, errors: &mut Errors) -> Vec<Ident> {
     for v in e.variants.iter().filter(|v| !matches!(v.fields, syn::Fields::Unit)) {
         errors.at(
@@ -28,7 +28,7 @@ pub(super) fn variants(e: &syn::DataEnum, errors: &mut Errors) -> Vec<Ident> {
     e.variants.iter().map(|v| v.ident.clone()).collect()
 }
 
-/// The twin and the implementations that connect it with the host's.
+/// Returns the twin and the implementations that connect it with the host's type.
 pub(super) fn twin(item: &syn::DeriveInput, variants: &[Ident]) -> TokenStream {
     let name = &item.ident;
     let enumeration = Enumeration { item, twin: format_ident!("{name}On"), variants };
@@ -58,7 +58,7 @@ impl Enumeration<'_> {
         self.variants.split_first().expect("there is a variant")
     }
 
-    /// That the numbers of the variants are numbers of kernels.
+    /// Returns an assertion that the discriminants fit in the numbers of kernels.
     fn fits(&self) -> TokenStream {
         let (name, variants) = (&self.item.ident, self.variants);
         quote! {
@@ -74,7 +74,7 @@ impl Enumeration<'_> {
         }
     }
 
-    /// The twin, which is `Copy`.
+    /// Returns the twin, which is `Copy`.
     fn declaration(&self) -> TokenStream {
         let (p, twin, vis) = (private(), &self.twin, &self.item.vis);
         let doc = format!("[`{}`] on a machine: the number of its variant.", self.item.ident);
@@ -108,7 +108,7 @@ impl Enumeration<'_> {
         }
     }
 
-    /// The twin as a value of a machine.
+    /// Returns the implementation of the twin as a value of a machine.
     fn value_impl(&self) -> TokenStream {
         let (p, name, twin) = (private(), &self.item.ident, &self.twin);
         let (first, _) = self.first_and_others();
@@ -129,7 +129,7 @@ impl Enumeration<'_> {
         }
     }
 
-    /// Comparisons, and casts to the types of integers.
+    /// Returns comparisons, and casts to integer types.
     fn operations(&self) -> TokenStream {
         let (p, twin) = (private(), &self.twin);
         let integers = [quote!(u32), quote!(i32), quote!(usize)];
@@ -159,7 +159,7 @@ impl Enumeration<'_> {
         }
     }
 
-    /// The enum as a type of kernels.
+    /// Returns the implementation of the enum as a type of kernels.
     fn type_impl(&self) -> TokenStream {
         let (p, name, twin) = (private(), &self.item.ident, &self.twin);
         quote! {
@@ -204,7 +204,7 @@ impl Enumeration<'_> {
     }
 }
 
-/// How kernels capture a value of the host.
+/// Returns the implementation of the capture of a host value.
 fn capture(name: &Ident, twin: &Ident) -> TokenStream {
     let p = private();
     quote! {

@@ -1,4 +1,4 @@
-//! A type with mistakes. It has a twin all the same, so that its uses give no second error.
+//! The twin of a type with mistakes, so that its uses give no second error.
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -7,7 +7,7 @@ use crate::diag::Errors;
 use crate::here::private;
 use crate::parse;
 
-/// The errors, with implementations whose twin is a type that rustc asks nothing of.
+/// Returns the errors, with implementations whose twin is a type about which rustc reports nothing.
 pub(super) fn mistaken(item: &syn::DeriveInput, errors: Errors) -> TokenStream {
     if !can_have_twin(item) {
         return errors.into_tokens();
@@ -61,12 +61,12 @@ pub(super) fn mistaken(item: &syn::DeriveInput, errors: Errors) -> TokenStream {
     }
 }
 
-/// Whether it may be `Copy`, and has no lifetimes.
+/// Returns whether it may be `Copy`, and has no lifetimes.
 pub(super) fn can_have_twin(item: &syn::DeriveInput) -> bool {
     item.generics.params.is_empty() && item_is_copied(item)
 }
 
-/// Whether the members may be `Copy`, as far as the names of their types say.
+/// Returns whether the members may be `Copy`, judging by the names of their types.
 fn item_is_copied(item: &syn::DeriveInput) -> bool {
     let copied = |fields: &syn::Fields| fields.iter().all(|f| is_copied(&f.ty));
     match &item.data {

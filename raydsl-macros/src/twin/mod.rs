@@ -1,4 +1,4 @@
-//! The twin of a struct or an enum: what stands for its values on a machine.
+//! The twin of a struct or an enum: its values on a machine.
 
 mod choice;
 mod enumeration;
@@ -18,7 +18,7 @@ use crate::parse;
 
 pub(crate) use record::hit_record;
 
-/// `#[derive(Type)]`.
+/// Expands `#[derive(Type)]`.
 pub(crate) fn derive(item: &syn::DeriveInput) -> TokenStream {
     let mut errors = Errors::default();
     if let syn::Data::Enum(e) = &item.data {
@@ -40,7 +40,7 @@ pub(crate) fn derive(item: &syn::DeriveInput) -> TokenStream {
     quote!(#twin #errors)
 }
 
-/// Bounds that say nothing of kernels.
+/// Bounds that do not imply a type of kernels.
 const OTHER_BOUNDS: &[&str] = &[
     "Clone",
     "Copy",
@@ -56,8 +56,8 @@ const OTHER_BOUNDS: &[&str] = &[
     "Sync",
 ];
 
-/// A type parameter that is a member's type must be a type of kernels. Where nothing says so, the
-/// twin has the bound all the same, so that there is one error.
+/// Requires a type parameter that is a member's type to be a type of kernels. If it is not bounded
+/// so, the twin has the bound all the same, so that there is one error.
 fn bound_parameters(generics: &mut syn::Generics, fields: &[syn::Field], errors: &mut Errors) {
     let says_nothing = |b: &syn::TypeParamBound| match b {
         syn::TypeParamBound::Trait(t) => {
@@ -81,7 +81,7 @@ fn bound_parameters(generics: &mut syn::Generics, fields: &[syn::Field], errors:
     }
 }
 
-/// `#[primitive] struct`, or `enum` of primitives.
+/// Expands `#[primitive] struct`, or `enum` of primitives.
 pub(crate) fn primitive_item(item: &syn::DeriveInput) -> TokenStream {
     let mut errors = Errors::default();
     if let syn::Data::Enum(e) = &item.data {
@@ -109,7 +109,7 @@ pub(crate) fn primitive_item(item: &syn::DeriveInput) -> TokenStream {
     }
 }
 
-/// That a primitive has no gaps between its members.
+/// Returns an assertion that a primitive has no gaps between its members.
 fn dense(name: &syn::Ident, fields: &[syn::Field]) -> TokenStream {
     let types = fields.iter().map(|f| &f.ty);
     quote_spanned! {name.span()=>
@@ -123,14 +123,14 @@ fn dense(name: &syn::Ident, fields: &[syn::Field]) -> TokenStream {
     }
 }
 
-/// That a primitive is copied, where the user has not written it.
+/// Returns the derives by which a primitive is copied, if the user has not written them.
 fn copies(item: &syn::DeriveInput) -> TokenStream {
     let clone = (!derives(item, "Clone")).then(|| quote!(#[derive(Clone)]));
     let copy = (!derives(item, "Copy")).then(|| quote!(#[derive(Copy)]));
     quote!(#clone #copy)
 }
 
-/// Whether the user derives a trait.
+/// Returns whether the user derives a trait.
 fn derives(item: &syn::DeriveInput, what: &str) -> bool {
     let found = |a: &syn::Attribute| {
         let check = |m: syn::meta::ParseNestedMeta<'_>| {
@@ -141,7 +141,7 @@ fn derives(item: &syn::DeriveInput, what: &str) -> bool {
     item.attrs.iter().any(found)
 }
 
-/// Members of types that no kernel has.
+/// Refuses members of types that no kernel has.
 fn check_types(fields: &[syn::Field], errors: &mut Errors) {
     for (span, what, help) in fields.iter().filter_map(|f| parse::refused_type(&f.ty)) {
         errors.at(span, format!("a type of the kernel language has no {what}"), help);

@@ -1,4 +1,4 @@
-//! The operators of a twin, which are those of the host's type.
+//! The operators of a twin, the same as the host type's.
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -7,7 +7,7 @@ use crate::generics::Generics;
 use crate::here::private;
 use crate::ops::{self, Overloaded};
 
-/// Forwards every operator to what `#[kernel] impl Add for Type` and the like make of it.
+/// Forwards every operator to the method that `#[kernel] impl Add for Type` and the like expand to.
 pub(super) fn operators(
     twin: &TokenStream,
     host: &TokenStream,
@@ -28,7 +28,7 @@ pub(super) fn operators(
     }
 }
 
-/// `a + b` and its like.
+/// Returns `a + b` and its like.
 fn binary(
     op: &Overloaded,
     twin: &TokenStream,
@@ -58,7 +58,7 @@ fn binary(
     }
 }
 
-/// `-a`.
+/// Returns `-a`.
 fn negated(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> TokenStream {
     let p = private();
     let Generics { declared, predicates, .. } = generics;
@@ -78,7 +78,7 @@ fn negated(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> Token
     }
 }
 
-/// `a += b` and its like.
+/// Returns `a += b` and its like.
 fn assigned(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> TokenStream {
     let p = private();
     let Generics { declared, predicates, .. } = generics;

@@ -1,4 +1,4 @@
-//! `#[derive(HitRecord)]`.
+//! Expansion of `#[derive(HitRecord)]`.
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -8,7 +8,7 @@ use crate::diag::Errors;
 use crate::generics::Generics;
 use crate::here::private;
 
-/// A struct with one member of the type `Hit`.
+/// Expands a struct with one member of the type `Hit`.
 pub(crate) fn hit_record(item: &syn::DeriveInput) -> TokenStream {
     let mut errors = Errors::default();
     let fields = named_fields(item, &mut errors);

@@ -1,4 +1,4 @@
-//! What the twins of structs and of enums have in common.
+//! Code common to the twins of structs and enums.
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -7,7 +7,8 @@ use super::operators;
 use crate::generics::Generics;
 use crate::here::private;
 
-/// How a twin is kept in variables, and its methods, which are those of the host's type.
+/// Returns the implementations of a twin in variables, and of its methods, the same as the host
+/// type's.
 pub(super) fn methods(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> TokenStream {
     let p = private();
     let Generics { declared, predicates, .. } = generics;
@@ -66,7 +67,7 @@ pub(super) fn methods(twin: &TokenStream, host: &TokenStream, generics: &Generic
     }
 }
 
-/// How kernels capture a value of the host, and read it where it is a constant.
+/// Returns the implementations of the capture of a host value, and of its use as a constant.
 pub(super) fn capture(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> TokenStream {
     let p = private();
     let Generics { declared, predicates, .. } = generics;

@@ -7,13 +7,13 @@ use super::shared::{capture, methods};
 use crate::generics::Generics;
 use crate::here::private;
 
-/// The twin struct and the implementations that connect it with the host's.
+/// Returns the twin struct and the implementations that connect it with the host's type.
 pub(super) fn twin(item: &syn::DeriveInput, fields: &[syn::Field]) -> TokenStream {
     let structure = Structure::new(item, fields);
     structure.twin(&structure.host)
 }
 
-/// [`twin()`], with the methods of `owner`.
+/// Returns [`twin()`], with the methods of `owner`.
 pub(super) fn twin_of(
     item: &syn::DeriveInput,
     fields: &[syn::Field],
@@ -65,7 +65,7 @@ impl<'a> Structure<'a> {
         }
     }
 
-    /// The twin, which is `Copy`.
+    /// Returns the twin, which is `Copy`.
     fn declaration(&self) -> TokenStream {
         let (p, twin, name, vis) = (private(), &self.twin, &self.name, &self.item.vis);
         let Generics { declared, predicates, .. } = &self.generics;
@@ -107,7 +107,7 @@ impl<'a> Structure<'a> {
         }
     }
 
-    /// The twin as a value of a machine.
+    /// Returns the implementation of the twin as a value of a machine.
     fn value_impl(&self) -> TokenStream {
         let (p, twin, names, schema) = (private(), &self.twin, self.names(), self.schema());
         let Generics { declared, predicates, .. } = &self.generics;
@@ -128,7 +128,7 @@ impl<'a> Structure<'a> {
         }
     }
 
-    /// The host's type as one of kernels.
+    /// Returns the implementation of the host's type as one of kernels.
     fn type_impl(&self) -> TokenStream {
         let (p, host, twin, name) = (private(), &self.host, &self.twin, &self.name);
         let Generics { declared, predicates, .. } = &self.generics;
@@ -170,7 +170,7 @@ impl<'a> Structure<'a> {
         }
     }
 
-    /// The functions that write a value of the host to bytes, and read one.
+    /// Returns the functions that write a host value to bytes, and read one.
     fn bytes(&self) -> TokenStream {
         let (p, names) = (private(), self.names());
         let host = &self.host;

@@ -1,4 +1,4 @@
-//! What is measured.
+//! Cases to measure, and their methods and backends.
 
 use std::time::Duration;
 
@@ -9,18 +9,18 @@ use crate::Missing;
 use raydsl::kernel::Variant;
 use raydsl::sampling::SampleMethod;
 
-/// What runs a kernel: a [`Variant`], or the reference machine in `f64`.
+/// A backend that runs a kernel: a [`Variant`], or the reference machine in `f64`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Backend {
     /// A variant.
     Variant(Variant),
-    /// The same kernel in `f64`, one sample after the other: some two hundred times as slow as the
-    /// scalar variant.
+    /// The same kernel in `f64`, one sample at a time: some two hundred times as slow as the scalar
+    /// variant.
     F64,
 }
 
 impl Backend {
-    /// `scalar`, `packet4`, `packet8`, `packet16`, `wgsl`, `f64`.
+    /// Every backend: `scalar`, `packet4`, `packet8`, `packet16`, `wgsl`, `f64`.
     pub const ALL: [Self; 6] = [
         Self::Variant(Variant::Scalar),
         Self::Variant(Variant::Packet4),
@@ -30,7 +30,7 @@ impl Backend {
         Self::F64,
     ];
 
-    /// The variant's name, or `f64`.
+    /// Returns the variant's name, or `f64`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Variant(variant) => variant.name(),
@@ -38,12 +38,12 @@ impl Backend {
         }
     }
 
-    /// The one of this name.
+    /// Returns the backend of this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|b| b.name() == name)
     }
 
-    /// How many rays run at once on this machine.
+    /// Returns the number of rays that run at once on this machine.
     pub fn lanes(self) -> usize {
         match self {
             Self::Variant(variant) => variant.isa().1,
@@ -52,8 +52,9 @@ impl Backend {
     }
 }
 
-/// One way to compute a case's result. Of a [`SampleMethod`] it has the name `random`, `stratified`
-/// or `sobol`; of a text that name, for methods of your own, such as rules of quadrature.
+/// One method to compute a case's result. Converted from a [`SampleMethod`] its name is `random`,
+/// `stratified` or `sobol`; converted from a text it has that name, for methods of your own, such
+/// as quadrature rules.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Method {
     pub(super) name: String,
@@ -61,12 +62,12 @@ pub struct Method {
 }
 
 impl Method {
-    /// The name.
+    /// Returns the name.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// How samples are placed; [`SampleMethod::Sobol`] for a method of your own.
+    /// Returns the sampling method; [`SampleMethod::Sobol`] for a method of your own.
     pub fn sampling(&self) -> SampleMethod {
         self.sampling
     }
@@ -89,25 +90,26 @@ impl From<&str> for Method {
     }
 }
 
-/// The exponents of the knob with which an error may fall: from `steepest` to `flattest`.
+/// The order of convergence: the range of the knob's exponents in the error, from `steepest` to
+/// `flattest`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Order {
-    /// The least exponent that theory allows.
+    /// The smallest exponent that theory allows.
     pub steepest: f64,
-    /// The greatest.
+    /// The largest exponent that theory allows.
     pub flattest: f64,
 }
 
 impl Order {
-    /// Independent samples: -0.5, to within 0.05.
+    /// The order of independent samples: -0.5, to within 0.05.
     pub const RANDOM: Self = Self::near(-0.5, 0.05);
 
-    /// This exponent, to within `slack`.
+    /// Returns the order `order`, to within `slack`.
     pub const fn near(order: f64, slack: f64) -> Self {
         Self { steepest: order - slack, flattest: order + slack }
     }
 
-    /// This exponent, or any below it.
+    /// Returns the order `flattest`, or any below it.
     pub const fn at_most(flattest: f64) -> Self {
         Self { steepest: f64::NEG_INFINITY, flattest }
     }
@@ -116,8 +118,8 @@ impl Order {
 pub(super) type Estimate<'a> = dyn Fn(&Run<'_>) -> Result<Estimates, Missing> + 'a;
 pub(super) type Count<'a> = dyn Fn(&Run<'_>) -> Work + 'a;
 
-/// Something that is computed by several methods, each with a knob that makes it better and slower,
-/// and what should come out.
+/// A quantity computed by several methods, each with a knob that makes it more accurate and slower,
+/// and its reference.
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -160,7 +162,8 @@ impl core::fmt::Debug for Case<'_> {
 }
 
 impl<'a> Case<'a> {
-    /// A case without methods. `estimate` computes it as the [`Run`] says, and is what is timed.
+    /// Creates a case without methods. `estimate` computes it according to the [`Run`], and is the
+    /// code that is timed.
     pub fn new(
         name: impl Into<String>,
         reference: Reference,
@@ -177,55 +180,55 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// What the knob is called: `spp` (samples of each pixel) unless this is called. A case whose
-    /// knob is no count of samples says by [`Run::with_samples`] how many there are.
+    /// Sets the knob's name: `spp` (samples per pixel) unless set. A case whose knob is not a
+    /// number of samples gives that number by [`Run::with_samples`].
     pub fn knob(self, name: impl Into<String>) -> Self {
         Self { knob: name.into(), ..self }
     }
 
-    /// Adds a method and the order that theory gives it, if it gives one.
+    /// Adds a method and its theoretical order, if there is one.
     pub fn method(mut self, method: impl Into<Method>, order: Option<Order>) -> Self {
         self.methods.push((method.into(), order));
         self
     }
 
-    /// What a run does, counted apart from the runs that are timed: `count` is called once for each
-    /// method and value of the knob, with the first seed, after them all. It replaces
+    /// Counts the work of a run separately from the timed runs: `count` is called once for each
+    /// method and value of the knob, with the first seed, after all of them. It replaces
     /// [`Estimates::work`](super::Estimates::work), and its time is no part of the case's.
     ///
-    /// [`Run::film_work`] and [`Run::integral_work`] count what the queries `closest_hit_with_cost`
-    /// and `any_hit_with_cost` say.
+    /// [`Run::film_work`] and [`Run::integral_work`] add up the costs that the queries
+    /// `closest_hit_with_cost` and `any_hit_with_cost` return.
     pub fn counted(self, count: impl Fn(&Run<'_>) -> Work + 'a) -> Self {
         Self { count: Some(Box::new(count)), ..self }
     }
 
-    /// How long it took to build what the runs use, such as a tree. It stands in the files, and is
-    /// no part of a run's time.
+    /// Sets the build time of the data that runs use, such as a tree. It is written to the files,
+    /// and is no part of a run's time.
     pub fn built_in(self, time: Duration) -> Self {
         Self { build: Some(time), ..self }
     }
 
-    /// The name.
+    /// Returns the name.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What its knob is called.
+    /// Returns the knob's name.
     pub fn knob_name(&self) -> &str {
         &self.knob
     }
 
-    /// Its methods in their order.
+    /// Returns its methods in order.
     pub fn methods(&self) -> impl Iterator<Item = &Method> {
         self.methods.iter().map(|(method, _)| method)
     }
 
-    /// What it is compared with.
+    /// Returns the reference.
     pub fn reference(&self) -> &Reference {
         &self.reference
     }
 
-    /// Computes it once.
+    /// Computes the case once.
     ///
     /// # Errors
     ///

@@ -1,9 +1,9 @@
-//! How long processors work.
+//! CPU time of the process.
 
-/// Measures the processors' time of this process, from [`Self::start`] on.
+/// A clock of this process's CPU time, from [`Self::start`] on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CpuClock {
-    /// None where the system refuses.
+    /// `None` if the system refuses.
     #[cfg(feature = "cpu_time")]
     start: Option<cpu_time::ProcessTime>,
 }
@@ -16,7 +16,7 @@ impl CpuClock {
         }
     }
 
-    /// User's and system's, of all threads; none without the feature `cpu_time`.
+    /// Returns user and system time of all threads; `None` without the feature `cpu_time`.
     pub(super) fn seconds(self) -> Option<f64> {
         #[cfg(feature = "cpu_time")]
         return self.start?.try_elapsed().ok().map(|time| time.as_secs_f64());
@@ -31,7 +31,8 @@ mod tests {
 
     use super::*;
 
-    /// Tests beside this one make it run faster, never slower: it is the whole process's clock.
+    /// Tests that work is counted. Tests running beside this one make the clock faster, never
+    /// slower: it is that of the whole process.
     #[test]
     fn work_is_counted() {
         let (clock, start) = (CpuClock::start(), Instant::now());
@@ -40,7 +41,7 @@ mod tests {
             sum = core::hint::black_box(sum + 1);
         }
         let worked = clock.seconds();
-        // On a machine that is shared, this thread may have had little of that time.
+        // On a shared machine, this thread may have had little of that time.
         assert!(worked.is_some_and(|s| s > 1e-3), "{worked:?} after {sum} steps");
     }
 }

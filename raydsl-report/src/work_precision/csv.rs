@@ -1,12 +1,12 @@
-//! `points.csv`.
+//! Writer of `points.csv`.
 
 use super::curve::{Curve, Point, Repetition};
 #[cfg(feature = "flip")]
 use super::flip::Flip;
 use super::{Environment, Measured, Omitted, Report};
 
-/// The columns of [`Report::csv`]: what is the same for a curve, what there is of a run, and where
-/// it was measured.
+/// The columns of [`Report::csv`]: those common to a curve, those of a run, and those of the
+/// machine.
 const OF_CURVE: &[&str] = &[
     "case",
     "reference_kind",
@@ -80,11 +80,11 @@ const OF_RUN: &[&str] = &[
 const OF_MACHINE: &[&str] = &["features", "version", "commit", "cpu", "gpu", "driver", "status"];
 
 impl Report {
-    /// A header and a row for each run; and one for each point that was not run, whose status says
-    /// why, and for each case that was left out. Times are seconds; those that begin with `t_`,
-    /// `error` (the root of the mean square error) with its 95 % interval, `rmse_p10`, `rmse_p90`
-    /// and the efficiency are of all runs of the point. `rounding` is the difference to the same
-    /// samples in `f64`, `code` the hash of the kernel's WGSL. What is not known is empty.
+    /// Returns a header and a row for each run; and one for each point that was not run, with the
+    /// reason in its status, and for each omitted case. Times are seconds; those that begin with
+    /// `t_`, `error` (the root of the mean square error) with its 95 % interval, `rmse_p10`,
+    /// `rmse_p90` and the efficiency are of all runs of the point. `rounding` is the difference to
+    /// the same samples in `f64`, `code` the hash of the kernel's WGSL. Unknown values are empty.
     pub fn csv(&self) -> String {
         let header = [OF_CURVE, OF_RUN, OF_MACHINE].concat().join(",");
         let mut lines = vec![header];
@@ -98,7 +98,7 @@ impl Report {
     }
 }
 
-/// A case that was not measured.
+/// Returns the row of an omitted case.
 fn left_out(environment: &Environment, omitted: &Omitted) -> String {
     let mut cells = vec![String::new(); OF_CURVE.len() + OF_RUN.len()];
     cells[0] = quoted(&omitted.case);
@@ -127,7 +127,7 @@ fn rows(environment: &Environment, case: &Measured, curve: &Curve) -> Vec<String
     curve.points.iter().flat_map(of_point).collect()
 }
 
-/// Up to the knob's value.
+/// Returns the cells up to the knob's value.
 fn of_curve(case: &Measured, curve: &Curve) -> Vec<String> {
     let (fit, expected) = (curve.fit, curve.expected);
     vec![
@@ -230,7 +230,7 @@ fn first_line(text: &str) -> &str {
     text.lines().next().unwrap_or_default()
 }
 
-/// As RFC 4180 asks for it.
+/// Quotes a cell according to RFC 4180.
 fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

@@ -1,4 +1,4 @@
-//! What repetitions of one method on one backend come to.
+//! Curves: the results of one method on one backend over the knob.
 
 use super::case::{Backend, Method, Order};
 use super::efficiency::Efficiency;
@@ -10,22 +10,22 @@ use super::reference::Reference;
 use super::work::Work;
 use crate::{Missing, Times};
 
-/// What a point is good for.
+/// The status of a point or a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Status {
-    /// It counts.
+    /// It is valid.
     Ok,
-    /// Its error is not above what the reference, or rounding, is uncertain by: no order is fitted
+    /// Its error is not above the uncertainty of the reference, or of rounding: no order is fitted
     /// to it, and it is drawn dotted.
     Floor,
-    /// Estimates were no finite numbers.
+    /// Estimates were not finite.
     Diverged,
-    /// It would have taken longer than the time allows, and was not run.
+    /// It would have exceeded the time budget, and was not run.
     Budget,
 }
 
 impl Status {
-    /// `ok`, `floor`, `diverged` or `budget`.
+    /// Returns `ok`, `floor`, `diverged` or `budget`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Ok => "ok",
@@ -39,28 +39,28 @@ impl Status {
 /// One timed run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Repetition {
-    /// Its seed.
+    /// The seed.
     pub seed: u32,
-    /// How long it took, in seconds.
+    /// The run time, in seconds.
     pub seconds: f64,
-    /// How long processors worked for it, in seconds, by user and system and of all threads of this
-    /// process: those of a driver that computes on the CPU too. None without `cpu_time`, a feature.
+    /// The CPU time, in seconds: user and system time of all threads of this process, including
+    /// those of a driver that computes on the CPU. `None` without the feature `cpu_time`.
     pub cpu_seconds: Option<f64>,
     /// Samples in all.
     pub samples: u64,
-    /// What the kernel counted, in all.
+    /// The kernel's own count, in all.
     pub counted: Option<u64>,
-    /// What the run says that it did.
+    /// The work reported by the run.
     pub work: Work,
     /// The error.
     pub metrics: Metrics,
-    /// Of estimates that are a picture: how different from the reference it looks, as grey light.
+    /// The FLIP difference to the reference, in LDR, if the estimates are a picture.
     #[cfg(feature = "flip")]
     pub flip: Option<Flip>,
-    /// The same without an end to the light.
+    /// The FLIP difference in HDR.
     #[cfg(feature = "flip")]
     pub hdr_flip: Option<Flip>,
-    /// What it is good for.
+    /// The status.
     pub status: Status,
     /// The estimates.
     pub values: Vec<f64>,
@@ -71,29 +71,30 @@ pub struct Repetition {
 pub struct Point {
     /// The knob's value.
     pub knob: u32,
-    /// Its runs, with a seed each; none where the time did not allow one.
+    /// Its runs, each with another seed; none if the time budget did not allow one.
     pub repetitions: Vec<Repetition>,
-    /// The root of the mean square difference to the same samples in `f64`, if that was run.
+    /// The root of the mean square difference to the same samples in `f64`, if those were run.
     pub rounding: Option<f64>,
-    /// What a run of the first seed does, if the case [counts it apart](super::Case::counted).
+    /// The work of a run with the first seed, if the case [counts it
+    /// separately](super::Case::counted).
     pub counted_apart: Option<Work>,
 }
 
 impl Point {
-    /// Without a run so far.
+    /// Creates a point without runs.
     pub(super) fn new(knob: u32) -> Self {
         Self { knob, repetitions: Vec::new(), rounding: None, counted_apart: None }
     }
 
-    /// The root of the mean square error over all repetitions that gave finite numbers. Mean
-    /// squares of two halves are added with their signs: only their mean is cut off at 0.
+    /// Returns the root of the mean square error over all repetitions with finite estimates. Mean
+    /// squares of two halves are summed with their signs: only their mean is clamped at 0.
     pub fn rmse(&self) -> f64 {
         let squares: Vec<f64> = self.finite().map(|r| r.metrics.mse).collect();
         root(squares.iter().sum::<f64>() / squares.len() as f64)
     }
 
-    /// The 95 % interval of [`Self::rmse`]: the roots of that of the mean square, by Student's t
-    /// over the repetitions. None of fewer than two that gave finite numbers.
+    /// Returns the 95 % interval of [`Self::rmse`]: the roots of that of the mean square, by
+    /// Student's t over the repetitions. `None` for fewer than two with finite estimates.
     pub fn rmse_interval(&self) -> Option<[f64; 2]> {
         let squares: Vec<f64> = self.finite().map(|r| r.metrics.mse).collect();
         let n = squares.len();
@@ -106,7 +107,8 @@ impl Point {
         Some([root(mean - half), root(mean + half)])
     }
 
-    /// The mean error over all repetitions, in standard errors; 0 where there is no error at all.
+    /// Returns the mean error over all repetitions, in standard errors; 0 if there is no error at
+    /// all.
     pub fn bias_z(&self) -> f64 {
         let bias: f64 = self.finite().map(|r| r.metrics.bias).sum();
         let variance: f64 = self.finite().map(|r| r.metrics.bias_error.powi(2)).sum();
@@ -117,54 +119,54 @@ impl Point {
         self.repetitions.iter().filter(|r| r.status != Status::Diverged)
     }
 
-    /// The shortest time, in seconds; infinite without a run.
+    /// Returns the shortest time, in seconds; infinite without a run.
     pub fn t_min(&self) -> f64 {
         self.repetitions.iter().map(|r| r.seconds).fold(f64::INFINITY, f64::min)
     }
 
-    /// What processors worked, in seconds, over all of its runs together; none without a run, or
+    /// Returns the CPU time, in seconds, over all of its runs together; `None` without a run, or
     /// without the feature `cpu_time`.
     pub fn cpu_seconds(&self) -> Option<f64> {
         let all = self.repetitions.iter().map(|r| r.cpu_seconds).sum::<Option<f64>>();
         all.filter(|_| !self.repetitions.is_empty())
     }
 
-    /// The middle time, in seconds; 0 without a run.
+    /// Returns the median time, in seconds; 0 without a run.
     pub fn t_median(&self) -> f64 {
         Times { ms: self.repetitions.iter().map(|r| r.seconds).collect() }.median()
     }
 
-    /// The time, in seconds, that this share of the runs, from 0 to 1, does not exceed, linear
-    /// between neighbours; NaN without a run.
+    /// Returns the quantile `share`, from 0 to 1, of the run times, in seconds, interpolated
+    /// linearly; NaN without a run.
     pub fn t_quantile(&self, share: f64) -> f64 {
         quantile(self.repetitions.iter().map(|r| r.seconds), share)
     }
 
-    /// The root of the mean square error that this share of the runs, from 0 to 1, does not
-    /// exceed, linear between neighbours; NaN without a run that gave finite numbers.
+    /// Returns the quantile `share`, from 0 to 1, of the runs' root mean square errors,
+    /// interpolated linearly; NaN without a run with finite estimates.
     pub fn rmse_quantile(&self, share: f64) -> f64 {
         quantile(self.finite().map(|r| r.metrics.rmse), share)
     }
 
-    /// One over variance and time, of three runs or more that gave finite numbers.
+    /// Returns one over variance and time, of three runs or more with finite estimates.
     pub fn efficiency(&self) -> Option<Efficiency> {
         let runs: Vec<(f64, &[f64])> =
             self.finite().map(|r| (r.seconds, r.values.as_slice())).collect();
         Efficiency::of(&runs)
     }
 
-    /// What a run does: [`Self::counted_apart`], or what the first run says.
+    /// Returns the work of a run: [`Self::counted_apart`], or that reported by the first run.
     pub fn work(&self) -> Work {
         let first = self.repetitions.first().map(|r| r.work);
         self.counted_apart.or(first).unwrap_or_default()
     }
 
-    /// Samples of one run; 0 without one.
+    /// Returns the samples of one run; 0 without one.
     pub fn samples(&self) -> u64 {
         self.repetitions.first().map_or(0, |r| r.samples)
     }
 
-    /// The worst that a run of it was; [`Status::Budget`] without a run.
+    /// Returns the worst status of a run; [`Status::Budget`] without a run.
     pub fn status(&self) -> Status {
         let has = |status| self.repetitions.iter().any(|r| r.status == status);
         match self.repetitions.len() {
@@ -176,27 +178,27 @@ impl Point {
     }
 }
 
-/// How the measured order compares with theory's.
+/// The verdict on the measured order of convergence against theory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Verdict {
-    /// The 95 % interval meets the expected orders.
+    /// The 95 % interval overlaps the expected orders.
     AsExpected,
-    /// The error falls more slowly than theory says.
+    /// The error decreases more slowly than theory predicts.
     TooSlow,
-    /// It falls faster: the theory does not fit the case.
+    /// It decreases faster: the theory does not fit the case.
     Steeper,
     /// The interval is wider than 0.5, or there are too few points above the floor.
     Unclear,
-    /// Theory says nothing of the method.
+    /// There is no theoretical order of the method.
     NoTheory,
-    /// Estimates were no finite numbers.
+    /// Estimates were not finite.
     Diverged,
     /// It was not run.
     NotRun,
 }
 
 impl Verdict {
-    /// A word or two.
+    /// Returns a word or two.
     pub const fn name(self) -> &'static str {
         match self {
             Self::AsExpected => "expected",
@@ -210,8 +212,7 @@ impl Verdict {
     }
 }
 
-/// How many times faster one backend is than another, at the largest value of the knob that both
-/// ran.
+/// The speed-up of one backend over another, at the largest value of the knob that both ran.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Speedup {
     /// The geometric mean of the ratios round by round.
@@ -223,7 +224,7 @@ pub struct Speedup {
 }
 
 impl Speedup {
-    /// Of pairs of times, the base's first. None of fewer than two.
+    /// Computes the speed-up from pairs of times, the base's first. `None` for fewer than two.
     pub fn of(pairs: &[(f64, f64)]) -> Option<Self> {
         let logs: Vec<f64> =
             pairs.iter().filter(|p| p.0 > 0.0 && p.1 > 0.0).map(|p| (p.0 / p.1).ln()).collect();
@@ -238,7 +239,7 @@ impl Speedup {
         Some(Self { ratio, low, high })
     }
 
-    /// Whether it may be claimed: the interval does not contain 1.
+    /// Returns whether it is significant: the interval does not contain 1.
     pub fn is_claimed(&self) -> bool {
         self.low > 1.0 || self.high < 1.0
     }
@@ -249,9 +250,9 @@ impl Speedup {
 pub struct Curve {
     /// The method.
     pub method: Method,
-    /// What ran it.
+    /// The backend.
     pub backend: Backend,
-    /// The orders that theory gives it.
+    /// The theoretical order.
     pub expected: Option<Order>,
     /// A point for each value of the knob.
     pub points: Vec<Point>,
@@ -259,22 +260,22 @@ pub struct Curve {
     pub fit: Option<Fit>,
     /// The speed-up over the first backend of the same method.
     pub speedup: Option<Speedup>,
-    /// Why it was not run, if it was not.
+    /// The reason why it was not run, if it was not.
     pub missing: Option<Missing>,
     /// Seconds of the run before all others, with the first value of the knob: it warms caches and
-    /// compiles pipelines, and counts in nothing else.
+    /// compiles pipelines, and is used for nothing else.
     pub first_run: Option<f64>,
-    /// Seconds of [`Self::first_run`] in which WGSL was made ready for the device, by
-    /// `gpu::Context::compile_time`. 0 on the CPU, whose variants the Rust compiler made, and where
-    /// an earlier curve had the same text. None without a run.
+    /// Seconds of [`Self::first_run`] spent on compiling WGSL for the device, by
+    /// `gpu::Context::compile_time`. 0 on the CPU, whose variants are compiled by rustc, and where
+    /// an earlier curve had the same text. `None` without a run.
     pub compile: Option<f64>,
-    /// A hash of the WGSL of the kernels, whatever ran them: FNV-1a, 64 bits. None if none was run
-    /// by [`Run`](super::Run).
+    /// A hash of the WGSL of the kernels, on every backend: FNV-1a, 64 bits. `None` if
+    /// [`Run`](super::Run) ran no kernel.
     pub code: Option<u64>,
 }
 
 impl Curve {
-    /// Without points.
+    /// Creates a curve without points.
     pub(super) fn new(method: Method, backend: Backend, expected: Option<Order>) -> Self {
         Self {
             method,
@@ -290,7 +291,7 @@ impl Curve {
         }
     }
 
-    /// Points (x, error) with a finite error, in the order of x.
+    /// Returns the points (x, error) with a finite error, ordered by x.
     fn errors(&self, x: impl Fn(&Point) -> f64) -> Vec<(f64, f64)> {
         let ran = self.points.iter().filter(|p| p.rmse().is_finite());
         let mut points: Vec<_> = ran.map(|p| (x(p), p.rmse())).collect();
@@ -298,18 +299,18 @@ impl Curve {
         points
     }
 
-    /// The median time, in seconds, after which the error is no larger than `limit`.
+    /// Returns the median time, in seconds, after which the error is no larger than `limit`.
     pub fn time_to_error(&self, limit: f64) -> Reached {
         first_below(&self.errors(Point::t_median), limit)
     }
 
-    /// The error after this many seconds.
+    /// Returns the error after this many seconds.
     pub fn error_at_time(&self, seconds: f64) -> Reached {
         value_at(&self.errors(Point::t_median), seconds)
     }
 
-    /// Fits the order to all repetitions of the points that count. Of a point near the floor all
-    /// are left out: those that happen to lie above it would make the curve look flatter.
+    /// Fits the order to all repetitions of the valid points. A point with a run at the floor is
+    /// omitted as a whole: the runs that happen to lie above it would make the curve look flatter.
     pub(super) fn fit(&mut self) {
         let all = |point: &Point| {
             let knob = f64::from(point.knob);
@@ -320,7 +321,7 @@ impl Curve {
         self.fit = Fit::of(&points);
     }
 
-    /// The fitted order against theory's.
+    /// Returns the verdict on the fitted order against theory's.
     pub fn verdict(&self) -> Verdict {
         let is = |status| self.points.iter().any(|p| p.status() == status);
         if self.missing.is_some() {
@@ -340,8 +341,8 @@ impl Curve {
     }
 }
 
-/// The number that a share of all numbers does not exceed, linear between neighbours in their order
-/// (Hyndman and Fan, "Sample Quantiles in Statistical Packages", 1996, definition 7); NaN of none.
+/// Returns the quantile `share`, interpolated linearly between neighbours (Hyndman and Fan, "Sample
+/// Quantiles in Statistical Packages", 1996, definition 7); NaN of an empty set.
 pub(super) fn quantile(numbers: impl Iterator<Item = f64>, share: f64) -> f64 {
     let mut sorted: Vec<f64> = numbers.collect();
     sorted.sort_by(f64::total_cmp);
@@ -351,8 +352,8 @@ pub(super) fn quantile(numbers: impl Iterator<Item = f64>, share: f64) -> f64 {
     if below == above { below } else { below + (above - below) * place.fract() }
 }
 
-/// The error that rounding to `f32` leaves in an estimate of this reference: one rounding of the
-/// result and one of the running mean, 2^-24 each, of the root of its mean square.
+/// Returns the rounding error of `f32` in an estimate of this reference: one rounding of the result
+/// and one of the running mean, 2^-24 each, of the root of its mean square.
 pub(super) fn rounding_floor(reference: &Reference) -> f64 {
     reference.size() * f64::from(f32::EPSILON)
 }
@@ -404,7 +405,7 @@ mod tests {
         assert!(quantile([].into_iter(), 0.5).is_nan());
     }
 
-    /// The third run of three gave no number: it has a time, and no error.
+    /// Tests three runs, the third of which gave no number: it has a time, and no error.
     #[test]
     fn quantiles_of_a_point() {
         let mut all = point(8, 0.5, Status::Ok);
@@ -422,7 +423,8 @@ mod tests {
         assert_eq!((all.rmse_quantile(0.5), all.rmse_quantile(1.0)), (0.375, 0.5));
     }
 
-    /// Mean squares of -1, 2 and 5: their mean is 2, with the first at 0 it would be 7/3.
+    /// Tests mean squares of -1, 2 and 5: their mean is 2; with the first clamped at 0 it would be
+    /// 7/3.
     #[test]
     fn squares_are_cut_off_once() {
         let mut all = point(8, 1.0, Status::Ok);
@@ -450,7 +452,7 @@ mod tests {
         assert_eq!((one.work().rays, one.work().nodes), (None, Some(3)));
     }
 
-    /// Errors of order -1 that stop falling at 1e-3.
+    /// Returns errors of order -1 that stop decreasing at 1e-3.
     fn with_floor(status: Status) -> Vec<Point> {
         let law = |i: u32| {
             let error = (1.0 / f64::from(1u32 << i)).max(1e-3);
@@ -467,7 +469,7 @@ mod tests {
         assert!(bent.order > -0.85 && bent.points == 13, "{bent:?}");
     }
 
-    /// Of the last point one run lies above the floor, three times as high as the curve.
+    /// Tests a last point with one run above the floor, three times as high as the curve.
     #[test]
     fn a_point_that_touches_the_floor_is_not_fitted() {
         let mut points: Vec<_> =

@@ -1,11 +1,11 @@
-//! Lines, symbols and text, and their SVG.
+//! Drawings of lines, symbols and text, and their SVG.
 
 use core::fmt::Write;
 
-/// Red, green and blue.
+/// A colour: red, green and blue.
 pub type Color = [u8; 3];
 
-/// What of a text stands at its place.
+/// The part of a text at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Anchor {
     /// Its left end.
@@ -29,7 +29,7 @@ pub enum Symbol {
 }
 
 impl Symbol {
-    /// Its corners, anticlockwise with y upwards, within the circle of radius 1.
+    /// Returns its corners, anticlockwise with y upwards, within the circle of radius 1.
     pub fn corners(self) -> Vec<(f64, f64)> {
         let (count, first) = match self {
             Self::Circle => (24, 0.0),
@@ -48,59 +48,60 @@ impl Symbol {
     }
 }
 
-/// A part of a drawing. Places have x to the right and y downwards; lengths are pixels of the SVG.
+/// An element of a drawing. Positions have x to the right and y downwards; lengths are pixels of
+/// the SVG.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
-    /// Straight lines from point to point.
+    /// A polyline.
     Line {
         /// The points.
         points: Vec<(f64, f64)>,
         /// The colour.
         color: Color,
-        /// How wide the line is.
+        /// The line width.
         width: f64,
-        /// The length of dashes and of the gaps between, if it has some.
+        /// The length of dashes and of the gaps between, if it is dashed.
         dash: Option<f64>,
     },
     /// A filled symbol.
     Symbol {
-        /// Its middle.
+        /// The centre.
         at: (f64, f64),
         /// Its shape.
         symbol: Symbol,
         /// The colour.
         color: Color,
-        /// The radius of the circle around it.
+        /// The radius of its circumcircle.
         radius: f64,
     },
     /// Text of a fixed pitch, each letter 8 wide.
     Text {
-        /// Where its [`Anchor`] is, at the middle of its height.
+        /// The position of its [`Anchor`], at the middle of its height.
         at: (f64, f64),
         /// The text.
         text: String,
         /// The colour.
         color: Color,
-        /// What stands at `at`.
+        /// The part of the text at `at`.
         anchor: Anchor,
         /// Whether it runs upwards.
         is_turned: bool,
     },
 }
 
-/// A picture on white.
+/// A drawing on white.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
     /// Width.
     pub width: u32,
     /// Height.
     pub height: u32,
-    /// What is on it, from back to front.
+    /// Its elements, from back to front.
     pub marks: Vec<Mark>,
 }
 
 impl Drawing {
-    /// The text of an SVG file.
+    /// Returns the text of an SVG file.
     pub fn svg(&self) -> String {
         let (w, h) = (self.width, self.height);
         let mut text = format!(
@@ -171,7 +172,7 @@ fn escaped(text: &str) -> String {
         '<' => "&lt;".to_owned(),
         '>' => "&gt;".to_owned(),
         '"' => "&quot;".to_owned(),
-        // XML has no other control characters.
+        // XML allows no other control characters.
         c if c.is_control() && !matches!(c, '\t' | '\n' | '\r') => "?".to_owned(),
         c => c.to_string(),
     };

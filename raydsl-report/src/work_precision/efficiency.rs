@@ -1,31 +1,31 @@
-//! How much a second of a method is worth.
+//! Efficiency of a Monte Carlo method.
 
 use super::fit::student_t;
 
 /// The efficiency of a method: 1 / (variance x time), per second and squared unit of the estimates.
 ///
-/// It does not change with the number of samples of independent ones, and grows with it where
-/// samples are placed better than that. Of two methods without bias, the one with twice the
-/// efficiency needs half of the time for the same error. (Veach, "Robust Monte Carlo Methods for
-/// Light Transport Simulation", 1997, section 2.4.2.)
+/// It is constant in the number of independent samples, and grows with it for better sample
+/// placement. Of two unbiased methods, the one with twice the efficiency needs half the time for
+/// the same error. (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997,
+/// section 2.4.2.)
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Efficiency {
     /// The efficiency.
     pub value: f64,
-    /// The lower end of its 95 % interval, by Student's t of the logarithm that runs left out one
-    /// by one give (the jackknife). 0 where it is not known.
+    /// The lower end of its 95 % interval, by Student's t of the jackknife on its logarithm. 0 if
+    /// unknown.
     pub low: f64,
-    /// The upper end, infinite where it is not known.
+    /// The upper end, infinite if unknown.
     pub high: f64,
 }
 
 impl Efficiency {
-    /// Of runs with other seeds: the seconds of each, and its estimates. The variance is that of an
-    /// estimate between runs, in the mean of all estimates, and needs no reference; the time is the
-    /// mean one.
+    /// Computes the efficiency from runs with different seeds: the seconds of each, and its
+    /// estimates. The variance is that of an estimate between runs, averaged over all estimates,
+    /// and needs no reference; the time is the mean one.
     ///
-    /// None of fewer than three runs, of estimates that are no finite numbers or not as many in
-    /// each run, and where runs do not differ: a method without random numbers has no variance.
+    /// Returns `None` for fewer than three runs, for estimates that are not finite or differ in
+    /// number between runs, and if runs do not differ: a deterministic method has no variance.
     pub fn of(runs: &[(f64, &[f64])]) -> Option<Self> {
         let n = runs.len();
         let width = runs.first().map_or(0, |r| r.1.len());
@@ -42,7 +42,7 @@ impl Efficiency {
         if !found.is_finite() {
             return None;
         }
-        // What is left of the sum of squares around the mean once a run is out of both.
+        // The sum of squares around the mean without one run.
         let rest = |share: f64| (squares - share * n as f64 / (n - 1) as f64).max(0.0);
         let without = shares.iter().zip(runs).map(|(s, r)| log(rest(*s), seconds - r.0, n - 1));
         let half = student_t(n - 1) * jackknife(&without.collect::<Vec<_>>());
@@ -51,7 +51,7 @@ impl Efficiency {
     }
 }
 
-/// Of each run the squared distance of its estimates to their means over all runs, in the mean.
+/// Returns for each run the mean squared deviation of its estimates from their means over all runs.
 fn squares(runs: &[(f64, &[f64])], width: usize) -> Vec<f64> {
     let mut shares = vec![0.0; runs.len()];
     for i in 0..width {
@@ -63,14 +63,14 @@ fn squares(runs: &[(f64, &[f64])], width: usize) -> Vec<f64> {
     shares
 }
 
-/// The standard error of something, from what it is without each run. (Efron and Tibshirani, "An
-/// Introduction to the Bootstrap", 1993, section 11.)
+/// Returns the jackknife standard error from the values without each run. (Efron and Tibshirani,
+/// "An Introduction to the Bootstrap", 1993, section 11.)
 fn jackknife(without: &[f64]) -> f64 {
     let n = without.len() as f64;
     let mean = without.iter().sum::<f64>() / n;
     let squares: f64 = without.iter().map(|v| (v - mean).powi(2)).sum();
     let error = ((n - 1.0) / n * squares).sqrt();
-    // Two equal runs that are left have no variance, and no logarithm of it.
+    // Two equal remaining runs have no variance, and no logarithm of it.
     if error.is_nan() { f64::INFINITY } else { error }
 }
 
@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn by_hand() {
-        // Variances 1 and 4 of the two estimates; 2 seconds in the mean.
+        // Variances 1 and 4 of the two estimates; 2 seconds on average.
         let found = of(&[(1.0, &[1.0, 4.0]), (2.0, &[2.0, 6.0]), (3.0, &[3.0, 8.0])]);
         assert!((found.value - 1.0 / (2.5 * 2.0)).abs() < 1e-15, "{found:?}");
         // Without the first run the variances are 0.5 and 2, and 2.5 seconds; without the second 2
@@ -112,8 +112,9 @@ mod tests {
         assert_eq!((open.low, open.high), (0.0, f64::INFINITY));
     }
 
-    /// Of many measurements of normal numbers whose variance is known, 95 % of the intervals hold
-    /// the efficiency; without Student's t, or without the time, it would be fewer.
+    /// Tests that of many measurements of normal numbers with a known variance, 95 % of the
+    /// intervals contain the efficiency; without Student's t, or without the time, it would be
+    /// fewer.
     #[test]
     fn intervals_cover() {
         let mut state = 1u64;
@@ -122,7 +123,7 @@ mod tests {
             (state >> 11) as f64 / (1u64 << 53) as f64
         };
         let mut normal = || (0..12).map(|_| uniform()).sum::<f64>() - 6.0;
-        // Standard deviations 1, 2, 3, 1, 2, 3 ..; times around 1 of a standard deviation of 0.1.
+        // Standard deviations 1, 2, 3, 1, 2, 3 ..; times around 1 with a standard deviation of 0.1.
         let exact = 3.0 / 14.0;
         let trials = 1500;
         let mut inside = 0;

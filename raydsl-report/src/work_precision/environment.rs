@@ -1,4 +1,4 @@
-//! What a report was measured on.
+//! The environment of a measurement.
 
 use super::case::Backend;
 #[cfg(feature = "gpu")]
@@ -7,23 +7,23 @@ use raydsl::kernel::Variant;
 /// The machine and the build.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Environment {
-    /// The processor's name, or its architecture if the system does not tell.
+    /// The processor's name, or its architecture if the system does not report the name.
     pub cpu: String,
     /// The operating system.
     pub os: &'static str,
     /// The device of the WGSL variant.
     pub gpu: Option<String>,
-    /// How it is reached: the interface, and the driver's name and version as far as they are told.
+    /// The interface, and the driver's name and version if known.
     pub driver: Option<String>,
     /// Each backend, the instruction set that runs it, and its lanes.
     pub backends: Vec<(&'static str, &'static str, usize)>,
-    /// Threads that runs on the CPU take.
+    /// The number of threads of runs on the CPU.
     pub threads: u32,
-    /// Whether debug assertions are on: then times mean little.
+    /// Whether debug assertions are enabled: then times mean little.
     pub has_debug_assertions: bool,
     /// The version of raydsl.
     pub version: &'static str,
-    /// The features that raydsl was built with, in the order of the alphabet.
+    /// The features that raydsl was built with, in alphabetical order.
     pub features: Vec<&'static str>,
     /// The commit of the source, or `unknown`: see
     /// [`WorkPrecision::commit`](super::WorkPrecision::commit).
@@ -62,7 +62,7 @@ impl Environment {
     }
 }
 
-/// A device's name, and how it is reached.
+/// Returns a device's name, and its interface and driver.
 #[cfg(feature = "gpu")]
 fn device(info: &wgpu::AdapterInfo) -> (String, String) {
     let interface = format!("{:?}", info.backend);
@@ -82,7 +82,7 @@ fn features() -> Vec<&'static str> {
     all.into_iter().filter(|f| f.1).map(|f| f.0).collect()
 }
 
-/// The processor's name, where Linux tells it.
+/// Returns the processor's name, if Linux reports it.
 fn cpu() -> Option<String> {
     let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = text.lines().find(|l| l.starts_with("model name"))?;

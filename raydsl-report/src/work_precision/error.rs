@@ -1,21 +1,21 @@
-//! What cannot be measured, and why.
+//! Errors of measurements.
 
 use std::path::PathBuf;
 
-/// The largest value of a knob: 2^24. Up to there a count of samples is a float without an error.
+/// The largest value of a knob: 2^24. Up to there a number of samples is exact as a float.
 pub const MAX_KNOB: u32 = 1 << 24;
 
-/// Why there is no [`Report`](super::Report), or none on disk.
+/// The reason why there is no [`Report`](super::Report), or none on disk.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WorkPrecisionError {
-    /// A list that must not be empty is.
+    /// A required list is empty.
     #[error("there is no {what} to measure; give at least one")]
     Nothing {
-        /// What is missing.
+        /// The list.
         what: &'static str,
     },
-    /// A case's name is that of another one, or empty.
+    /// A case's name is empty or used by another case.
     #[error("case `{case}`: its name is empty or that of another case; rename it")]
     Name {
         /// The case.
@@ -26,7 +26,7 @@ pub enum WorkPrecisionError {
         "the knob's value {value} is out of order; give values that rise, from 1 to {MAX_KNOB}"
     )]
     Knob {
-        /// The value that is wrong.
+        /// The wrong value.
         value: u32,
     },
     /// The film has no pixels, or more than 2^24.
@@ -37,14 +37,14 @@ pub enum WorkPrecisionError {
         /// Rows.
         height: u32,
     },
-    /// The reference is no number.
+    /// The reference has a number that is not finite.
     #[error("case `{case}`: number {index} of its reference is {value}; give finite numbers")]
     Reference {
         /// The case.
         case: String,
-        /// Which number.
+        /// The index of the number.
         index: usize,
-        /// What it is.
+        /// The number.
         value: f64,
     },
     /// The reference's uncertainty is NaN, infinite or negative.
@@ -52,10 +52,10 @@ pub enum WorkPrecisionError {
     Uncertainty {
         /// The case.
         case: String,
-        /// What was given.
+        /// The given value.
         value: f64,
     },
-    /// A run gave another number of estimates than the reference has.
+    /// A run's number of estimates differs from the reference's.
     #[error(
         "case `{case}`, {method} at {knob}: {found} estimates, but the reference has {expected} \
          numbers; give one number for all, or one for each pixel"
@@ -67,9 +67,9 @@ pub enum WorkPrecisionError {
         method: String,
         /// The knob's value.
         knob: u32,
-        /// Estimates.
+        /// The number of estimates.
         found: usize,
-        /// Numbers of the reference.
+        /// The number of the reference's values.
         expected: usize,
     },
     /// A file cannot be written.
@@ -77,7 +77,7 @@ pub enum WorkPrecisionError {
     File {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: std::io::Error,
     },
 }

@@ -1,4 +1,4 @@
-//! The table of errors for people, with their formulas.
+//! Text table of errors, with their formulas.
 
 use core::fmt::Write;
 
@@ -13,10 +13,11 @@ const HEADER: &str = "method     backend      knob    rmse rel_mse trimmed    mr
                       efficiency (95 %)";
 
 impl Report {
-    /// A table for each case, and the formula of each column; no line longer than 100 columns.
+    /// Returns a table for each case, and the formula of each column; no line is longer than 100
+    /// columns.
     ///
-    /// Errors are the mean over the runs at the largest value of the knob that was run, but for the
-    /// root of the mean square error, which is that of all runs. `trimmed` is `rel_mse` without the
+    /// Errors are the mean over the runs at the largest value of the knob that was run, except the
+    /// root of the mean square error, which is over all runs. `trimmed` is `rel_mse` without the
     /// worst 0.1 %. The [`Efficiency`] is of the same runs, `-` if it has none. With the feature
     /// `flip`, FLIP of pictures follows below.
     pub fn errors(&self) -> String {
@@ -41,7 +42,7 @@ fn table(case: &Measured) -> String {
     text
 }
 
-/// How different pictures look, in the mean over the same runs.
+/// Prints the FLIP differences, averaged over the same runs.
 #[cfg(feature = "flip")]
 fn flips(case: &Measured, text: &mut String) {
     let of_curve = |curve: &Curve| {
@@ -94,7 +95,7 @@ fn interval(found: Efficiency) -> String {
     format!("{:.1e} ({:.1e} .. {:.1e})", found.value, found.low, found.high)
 }
 
-/// A name and its formula, which goes on below itself where it is long.
+/// Prints a name and its formula, wrapped below itself if it is long.
 fn wrapped(name: &str, formula: &str) -> String {
     let mut text = format!("{name:<16}");
     let mut column = text.len();

@@ -1,4 +1,4 @@
-//! A report on disk.
+//! Report files.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use super::{Report, WorkPrecisionError};
 impl Report {
     /// Writes into `folder`: `points.csv`, `report.json`, `table.txt`, `errors.txt`,
     /// `omissions.md`, and a plot for each case, `work_precision.svg` if there is one case and
-    /// `work_precision_NAME.svg` otherwise. Gives the paths of the plots without their extension,
+    /// `work_precision_NAME.svg` otherwise. Returns the paths of the plots without their extension,
     /// in the order of the cases.
     ///
     /// # Errors
@@ -41,7 +41,7 @@ impl Report {
     }
 }
 
-/// A name of letters, digits, `-` and `_`.
+/// Returns a name of letters, digits, `-` and `_`.
 fn file_name(name: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
     name.chars().map(plain).collect()

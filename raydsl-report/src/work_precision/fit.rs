@@ -1,4 +1,4 @@
-//! Lines through points of a log-log plot.
+//! Least squares fits on log-log plots.
 
 /// A power law `error = c knob^order` fitted to points, by least squares of the logarithms.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,14 +9,14 @@ pub struct Fit {
     pub low: f64,
     /// The upper end.
     pub high: f64,
-    /// How many points it is of. Points that repeat another one to the bit are not counted: a
-    /// method without random numbers learns nothing from a repetition.
+    /// The number of points. Bit-identical repetitions of a point are not counted: a deterministic
+    /// method learns nothing from a repetition.
     pub points: usize,
 }
 
 impl Fit {
-    /// Of points (knob, error), all positive. None if fewer than three are different, or all have
-    /// one knob: two points leave no residual to judge them by.
+    /// Fits points (knob, error), all positive. `None` if fewer than three are different, or all
+    /// have one knob: two points leave no residual to judge them by.
     pub fn of(points: &[(f64, f64)]) -> Option<Self> {
         let is_positive = |v: f64| v > 0.0 && v.is_finite();
         let mut logs: Vec<(f64, f64)> = points
@@ -42,7 +42,7 @@ impl Fit {
     }
 }
 
-/// 97.5 % of Student's t distribution of so many degrees of freedom lie below this.
+/// Returns the 97.5 % quantile of Student's t distribution with `freedom` degrees of freedom.
 pub(super) fn student_t(freedom: usize) -> f64 {
     const TABLE: [f64; 12] =
         [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179];
@@ -58,20 +58,20 @@ pub(super) fn student_t(freedom: usize) -> f64 {
     z + first / v + second / v.powi(2) + third / v.powi(3)
 }
 
-/// Where a curve meets a limit.
+/// The point where a curve reaches a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reached {
-    /// There, interpolated between two points.
+    /// This value, interpolated between two points.
     At(f64),
-    /// There or before: the first point is already past the limit. Of errors at a time, at most
-    /// this: the last point took less time.
+    /// At most this value: the first point is already past the limit. For errors at a time, the
+    /// last point took less time.
     AtMost(f64),
-    /// Nowhere on the curve: the limit was not reached. Curves are not extrapolated.
+    /// The curve does not reach the limit. Curves are not extrapolated.
     Never,
 }
 
-/// The least x, by straight lines between points (x, y) of a log-log plot in the order of x, where
-/// y falls to `limit`.
+/// Returns the least x at which y decreases to `limit`, by linear interpolation between points (x,
+/// y) of a log-log plot ordered by x.
 pub(super) fn first_below(points: &[(f64, f64)], limit: f64) -> Reached {
     match points.iter().position(|p| p.1 <= limit) {
         None => Reached::Never,
@@ -83,7 +83,7 @@ pub(super) fn first_below(points: &[(f64, f64)], limit: f64) -> Reached {
     }
 }
 
-/// The y at `x` of the same lines.
+/// Returns y at `x` on the same lines.
 pub(super) fn value_at(points: &[(f64, f64)], x: f64) -> Reached {
     match points.iter().position(|p| p.0 >= x) {
         None => points.last().map_or(Reached::Never, |p| Reached::AtMost(p.1)),
@@ -93,9 +93,9 @@ pub(super) fn value_at(points: &[(f64, f64)], x: f64) -> Reached {
     }
 }
 
-/// The second coordinate on the line through `a` and `b`, in logarithms.
+/// Returns the second coordinate on the line through `a` and `b`, in logarithms.
 fn between(a: (f64, f64), b: (f64, f64), at: f64) -> f64 {
-    // An error of 0 has no logarithm: the curve falls to it at its end.
+    // An error of 0 has no logarithm: the curve drops to it at its end.
     if at <= 0.0 || a.0 <= 0.0 || b.0 <= 0.0 || a.0 == b.0 {
         return b.1;
     }
@@ -118,7 +118,7 @@ mod tests {
         }
     }
 
-    /// Of many noisy curves of one order, 95 % of the intervals hold it.
+    /// Tests that of many noisy curves of one order, 95 % of the intervals contain it.
     #[test]
     fn intervals_cover() {
         let mut state = 1u64;

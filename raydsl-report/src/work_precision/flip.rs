@@ -1,4 +1,4 @@
-//! How different two pictures look.
+//! FLIP: the perceived difference of two pictures.
 
 use glam::{Vec3, Vec4};
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8};
@@ -8,19 +8,19 @@ use super::reference::Reference;
 use super::run::Estimates;
 use raydsl::render::{Display, Image, ToneMap};
 
-/// The light that [`filmic`](raydsl::render::filmic()) shows as 0.85. Exposures bring the
-/// reference's brightest pixel there, and its median one.
+/// The light that [`filmic`](raydsl::render::filmic()) shows as 0.85. Exposures map the reference's
+/// brightest pixel to it, and its median one.
 const SHOULDER: f32 = 1.271_321;
 
-/// The most pixels of a picture.
+/// The maximum number of pixels in a picture.
 const MAX_PIXELS: u64 = 1 << 28;
 
-/// FLIP: how different two pictures look that a viewer sees in turn at one place, from 0, not at
-/// all, to 1, at each pixel. (Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild,
-/// "FLIP: A Difference Evaluator for Alternating Images", HPG 2020, by its authors' program.)
+/// The FLIP difference of two pictures that a viewer alternates between, from 0 (equal) to 1 at
+/// each pixel. (Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, "FLIP: A
+/// Difference Evaluator for Alternating Images", HPG 2020, by its authors' program.)
 ///
 /// The viewer sees 67 pixels per degree, which is a 4K screen, 0.7 m wide, from 0.7 m away. Alpha
-/// is not looked at; light that is no number is magenta.
+/// is ignored; NaN is shown as magenta.
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -35,13 +35,13 @@ const MAX_PIXELS: u64 = 1 << 28;
 pub struct Flip {
     /// The mean of all pixels.
     pub mean: f64,
-    /// What half of the pixels do not exceed.
+    /// The median of all pixels.
     pub median: f64,
-    /// What 95 % of the pixels do not exceed.
+    /// The 95 % quantile of all pixels.
     pub p95: f64,
 }
 
-/// Why two pictures are not compared.
+/// The reason why two pictures cannot be compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FlipError {
@@ -67,7 +67,7 @@ pub enum FlipError {
 }
 
 impl Flip {
-    /// Of linear light as a screen shows it: clamped to 1, in sRGB of 8 bits.
+    /// Compares linear light as shown on a screen: clamped to 1, in sRGB of 8 bits.
     ///
     /// # Errors
     ///
@@ -77,9 +77,9 @@ impl Flip {
         Ok(Self::of(&differences(Display::new(), reference, picture)))
     }
 
-    /// Of linear light without an end: the largest difference that each pixel has over exposures
-    /// about a stop apart, each tone mapped by [`filmic`](raydsl::render::filmic()). The first shows
-    /// the reference's brightest pixel well, the last its median one. (Andersson, Nilsson, Shirley
+    /// Compares unbounded linear light: the largest difference of each pixel over exposures about a
+    /// stop apart, each tone mapped by [`filmic`](raydsl::render::filmic()). The first exposes for
+    /// the reference's brightest pixel, the last for its median one. (Andersson, Nilsson, Shirley
     /// and Akenine-Möller, "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics
     /// 2021.)
     ///
@@ -106,8 +106,8 @@ impl Flip {
     }
 }
 
-/// FLIP, LDR's and HDR's, of estimates that are a picture; none if they are not, or are not as many
-/// as its pixels.
+/// Returns the LDR and the HDR FLIP of estimates that are a picture; `None` if they are not, or
+/// differ in number from its pixels.
 pub(super) fn of_picture(estimates: &Estimates, reference: &Reference) -> Option<(Flip, Flip)> {
     let (width, height) = estimates.picture?;
     let is_whole = u64::from(width) * u64::from(height) == estimates.values.len() as u64;
@@ -132,7 +132,7 @@ fn check(reference: &Image<Vec4>, picture: &Image<Vec4>) -> Result<(), FlipError
     Ok(())
 }
 
-/// Of each pixel, as `display` shows it.
+/// Returns the difference of each pixel, as `display` shows it.
 fn differences(display: Display, reference: &Image<Vec4>, picture: &Image<Vec4>) -> Vec<f32> {
     let shown = |image: &Image<Vec4>| {
         let pixels = display.show(image);
@@ -143,12 +143,12 @@ fn differences(display: Display, reference: &Image<Vec4>, picture: &Image<Vec4>)
     nv_flip::flip(shown(reference), shown(picture), DEFAULT_PIXELS_PER_DEGREE).to_vec()
 }
 
-/// In stops, rising, as many as the authors' program takes: those of the range, rounded up, and two
-/// at least.
+/// Returns exposures in stops, increasing, as many as in the authors' program: the range rounded
+/// up, and at least two.
 fn exposures(reference: &Image<Vec4>) -> impl Iterator<Item = f32> {
     let luminance = |p: &Vec4| p.truncate().dot(Vec3::new(0.2126, 0.7152, 0.0722));
     let lit = || reference.pixels().iter().map(luminance).filter(|l| *l > 0.0 && l.is_finite());
-    // Without light, any exposure does.
+    // Without light, any exposure will do.
     let brightest = lit().fold(0.0, f32::max);
     let median = quantile(lit().map(f64::from), 0.5) as f32;
     let stops = |light: f32| if light > 0.0 { (SHOULDER / light).log2() } else { 0.0 };
@@ -166,7 +166,7 @@ mod tests {
         Image::filled(24, 16, Vec3::splat(light).extend(1.0))
     }
 
-    /// A smooth picture from 0 to `most`.
+    /// Returns a smooth picture from 0 to `most`.
     fn ramp(most: f32) -> Image<Vec4> {
         let light = |x: u32, y: u32| most * (x + 24 * y) as f32 / 383.0;
         Image::from_fn(24, 16, |x, y| Vec3::splat(light(x, y)).extend(1.0))
@@ -185,9 +185,9 @@ mod tests {
         }
     }
 
-    /// By the formulas of the paper: of distances to the power of 0.7, that of black and white is
-    /// 100^0.7 = 25.12, and the largest, of green and blue, 41.28; what is above 0.4 of that goes
-    /// to the last 0.05. Pictures without edges have nothing else.
+    /// Tests the formulas of the paper: of distances to the power of 0.7, that of black and white
+    /// is 100^0.7 = 25.12, and the largest, of green and blue, 41.28; the part above 0.4 of that
+    /// maps to the last 0.05. Pictures without edges have no other difference.
     #[test]
     fn black_against_white_is_nearly_1() {
         let found = Flip::ldr(&grey(0.0), &grey(1.0)).expect("two pictures");
@@ -208,7 +208,8 @@ mod tests {
         }
     }
 
-    /// A screen that clamps shows the same white for 10 and 20; a darker exposure does not.
+    /// Tests that a screen that clamps shows the same white for 10 and 20; a darker exposure does
+    /// not.
     #[test]
     fn only_hdr_sees_what_is_clamped() {
         let [ldr, hdr] = both(&grey(10.0), &grey(20.0));
@@ -216,7 +217,7 @@ mod tests {
         assert!(hdr.mean > 0.05, "{hdr:?}");
     }
 
-    /// A white strip along a side looks different, and so does what is next to it, but not the
+    /// Tests that a white strip along a side looks different, and so do its neighbours, but not the
     /// rest.
     #[test]
     fn quantiles_are_of_pixels() {

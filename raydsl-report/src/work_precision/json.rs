@@ -1,4 +1,4 @@
-//! `report.json`.
+//! Writer of `report.json`.
 
 use serde_json::{Value, json};
 
@@ -8,14 +8,14 @@ use super::fit::Reached;
 use super::work::Work;
 use super::{FORMULAS, Measured, Report};
 
-/// Errors whose times are told.
+/// The errors for which times are reported.
 pub(super) const ERRORS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
 
-/// Times, in seconds, whose errors are told.
+/// The times, in seconds, for which errors are reported.
 pub(super) const TIMES: [f64; 3] = [0.1, 1.0, 10.0];
 
 impl Report {
-    /// Everything, for programs. Numbers that are not finite are strings.
+    /// Returns the whole report as JSON. Numbers that are not finite are strings.
     pub fn json(&self) -> Value {
         let e = &self.environment;
         let backend = |(name, isa, lanes): &(&str, &str, usize)| json!([name, isa, lanes]);
@@ -121,7 +121,7 @@ fn point(point: &Point) -> Value {
     })
 }
 
-/// What was not counted is null.
+/// Returns the work as JSON; units that were not counted are null.
 fn work(work: &Work) -> Value {
     json!({
         "rays": work.rays,
@@ -158,7 +158,7 @@ fn repetition(r: &Repetition) -> Value {
     found
 }
 
-/// Null where the estimates are no picture.
+/// Adds FLIP to a repetition; null if the estimates are not a picture.
 #[cfg(feature = "flip")]
 fn with_flip(mut found: Value, r: &Repetition) -> Value {
     let numbers = |f: super::Flip| json!({ "mean": f.mean, "median": f.median, "p95": f.p95 });

@@ -1,4 +1,4 @@
-//! The runs themselves.
+//! Measurement of the runs.
 
 use std::time::{Duration, Instant};
 
@@ -12,17 +12,17 @@ use crate::Missing;
 #[cfg(feature = "gpu")]
 use raydsl::gpu::GpuScheduler;
 
-/// A curve while it is measured.
+/// A curve being measured.
 struct Series {
     curve: Curve,
-    /// Seconds that its runs took so far.
+    /// Seconds of its runs so far.
     spent: f64,
     /// The knob's value and the seconds of the last run.
     last: Option<(u32, f64)>,
 }
 
 impl Series {
-    /// Whether a run at `knob` is likely to end within `share` seconds in all.
+    /// Returns whether a run at `knob` is likely to end within `share` seconds in all.
     fn may_run(&self, knob: u32, share: f64) -> bool {
         let Some((last, seconds)) = self.last else { return true };
         self.spent + seconds * f64::from(knob) / f64::from(last) <= share
@@ -82,7 +82,7 @@ impl WorkPrecision<'_> {
         self.knobs.iter().map(|k| Point::new(*k)).collect()
     }
 
-    /// A curve for each method and backend, without points.
+    /// Returns a curve for each method and backend, without points.
     fn series(&self, case: &Case<'_>) -> Vec<Series> {
         let chosen = case.methods.iter().filter(|(m, _)| self.is_chosen(m));
         let of_method = |(method, expected): &(super::Method, Option<super::Order>)| {
@@ -94,7 +94,7 @@ impl WorkPrecision<'_> {
     }
 }
 
-/// What runs a case.
+/// The case with the device that runs it.
 struct Runner<'r, 'c> {
     case: &'r Case<'c>,
     size: (u32, u32),
@@ -104,7 +104,7 @@ struct Runner<'r, 'c> {
 }
 
 impl Runner<'_, '_> {
-    /// The run before all others, at the first value of the knob.
+    /// Runs a curve once before all others, at the first value of the knob.
     fn warm_up(&self, curve: &mut Curve, knob: u32) -> Result<(), WorkPrecisionError> {
         let (code, before) = (CodeHash::default(), self.compile_time());
         match self.once(&self.run(curve, knob, 0, Some(&code)))? {
@@ -118,7 +118,7 @@ impl Runner<'_, '_> {
         Ok(())
     }
 
-    /// What the device's pipelines have taken so far.
+    /// Returns the compilation time of the device's pipelines so far.
     fn compile_time(&self) -> Duration {
         #[cfg(feature = "gpu")]
         return self.gpu.map_or(Duration::ZERO, |gpu| gpu.context().compile_time());
@@ -126,7 +126,7 @@ impl Runner<'_, '_> {
         Duration::ZERO
     }
 
-    /// Counts apart what the runs of each method do. All backends take the same samples.
+    /// Counts the work of each method's runs separately. All backends take the same samples.
     fn count(&self, curves: &mut [Curve]) {
         let Some(count) = &self.case.count else { return };
         for i in 0..curves.len() {
@@ -177,7 +177,7 @@ impl Runner<'_, '_> {
         Ok(())
     }
 
-    /// One timed run.
+    /// Runs the case once, timed.
     fn once(&self, run: &Run<'_>) -> Result<Result<Repetition, Missing>, WorkPrecisionError> {
         let cpu = CpuClock::start();
         let start = Instant::now();
@@ -233,7 +233,7 @@ impl Runner<'_, '_> {
     }
 }
 
-/// Notes how far every point is from the same samples in `f64`.
+/// Sets the distance of every point from the same samples in `f64`.
 fn compare_with_f64(curves: &mut [Curve]) {
     let exact: Vec<Curve> = curves.iter().filter(|c| c.backend == Backend::F64).cloned().collect();
     for curve in curves.iter_mut().filter(|c| c.backend != Backend::F64) {
@@ -244,7 +244,7 @@ fn compare_with_f64(curves: &mut [Curve]) {
     }
 }
 
-/// The root of the mean square difference over the seeds that both have.
+/// Returns the root of the mean square difference over the seeds that both have.
 fn distance(a: &Point, b: &Point) -> Option<f64> {
     let same = |r: &Repetition| b.repetitions.iter().find(|s| s.seed == r.seed).cloned();
     let pairs = a.repetitions.iter().filter_map(|r| same(r).map(|s| (r, s)));
@@ -257,7 +257,7 @@ fn distance(a: &Point, b: &Point) -> Option<f64> {
     (!squares.is_empty()).then(|| mean.sqrt())
 }
 
-/// Notes speed-ups over the curve of the same method on `first`.
+/// Sets the speed-ups over the curve of the same method on `first`.
 fn compare_with_first(curves: &mut [Curve], first: Backend) {
     let bases: Vec<Curve> = curves.iter().filter(|c| c.backend == first).cloned().collect();
     for curve in curves.iter_mut().filter(|c| c.backend != first) {
@@ -269,7 +269,7 @@ fn compare_with_first(curves: &mut [Curve], first: Backend) {
     }
 }
 
-/// The times of the rounds that both ran.
+/// Returns the times of the rounds that both ran.
 fn times(base: &Point, point: &Point) -> Vec<(f64, f64)> {
     let other = |r: &Repetition| point.repetitions.iter().find(|s| s.seed == r.seed);
     let pair = |r: &Repetition| other(r).map(|s| (r.seconds, s.seconds));

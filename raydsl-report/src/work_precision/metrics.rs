@@ -1,8 +1,8 @@
-//! How far estimates are from a reference.
+//! Error metrics of estimates against a reference.
 
 use super::reference::Reference;
 
-/// What is added in relative errors to the reference, or to its square.
+/// Added to the reference, or to its square, in relative errors.
 const EPSILON: f64 = 1e-2;
 
 /// The names of metrics and their formulas: n finite estimates x of references r, d = x - r.
@@ -38,31 +38,31 @@ pub const FORMULAS: &[(&str, &str)] = &[
     ),
 ];
 
-/// The error of a run, by each of [`FORMULAS`].
+/// The errors of a run, by each of [`FORMULAS`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Metrics {
     /// The mean error.
     pub bias: f64,
     /// The standard error of [`Self::bias`]; 0 for fewer than two estimates.
     pub bias_error: f64,
-    /// The mean square error: of two halves of a reference an estimate without bias, below 0 where
-    /// the halves lie on either side. What goes into a mean over runs.
+    /// The mean square error: with two halves of a reference an unbiased estimate, negative if the
+    /// halves lie on either side. The mean over runs uses it.
     pub mse: f64,
-    /// The root of [`Self::mse`], 0 where that is negative.
+    /// The root of [`Self::mse`], 0 if that is negative.
     pub rmse: f64,
     /// The mean absolute error.
     pub mae: f64,
     /// The largest absolute error.
     pub max: f64,
-    /// The absolute error that 99 % do not exceed.
+    /// The 99 % quantile of the absolute errors.
     pub p99: f64,
     /// The mean of the squared error over the squared reference plus 0.01.
     pub rel_mse: f64,
-    /// The same without the worst 0.1 %.
+    /// [`Self::rel_mse`] without the worst 0.1 %.
     pub rel_mse_trimmed: f64,
     /// The mean of the squared ratio of the error to the size of the reference plus 0.01: the
-    /// relative error of pbrt-v4's `Image::MRSE`, which weighs dark pixels more than
-    /// [`Self::rel_mse`] does.
+    /// relative error of pbrt-v4's `Image::MRSE`, which weights dark pixels more than
+    /// [`Self::rel_mse`].
     pub mrse: f64,
     /// Estimates that are NaN.
     pub nan: u64,
@@ -73,8 +73,8 @@ pub struct Metrics {
 }
 
 impl Metrics {
-    /// Of estimates, one for each number of the reference or any number of one reference. Without a
-    /// finite estimate all errors are NaN.
+    /// Computes the errors of estimates, one for each value of the reference or any number for a
+    /// single value. Without a finite estimate all errors are NaN.
     pub fn of(estimates: &[f64], reference: &Reference) -> Self {
         let mut found = Self {
             nan: count(estimates, |x| x.is_nan()),
@@ -105,23 +105,23 @@ impl Metrics {
         found
     }
 
-    /// The mean error in standard errors; 0 where there is no error at all.
+    /// Returns the mean error in standard errors; 0 if there is no error at all.
     pub fn bias_z(&self) -> f64 {
         if self.bias == 0.0 { 0.0 } else { self.bias / self.bias_error }
     }
 
-    /// Whether an estimate was no finite number, or none was one.
+    /// Returns whether any estimate was not finite, or there was none.
     pub fn is_diverged(&self) -> bool {
         self.nan + self.inf > 0 || !self.rmse.is_finite()
     }
 }
 
-/// The error of one estimate.
+/// The errors of one estimate.
 struct Error {
     d: f64,
     square: f64,
     relative: f64,
-    /// The error over the reference, kept from 0.
+    /// The error over the reference, kept away from 0.
     ratio: f64,
 }
 
@@ -133,7 +133,7 @@ impl Error {
     }
 }
 
-/// Of a mean square, which may be negative; NaN of NaN.
+/// Returns the root of a mean square, which may be negative; NaN of NaN.
 pub(super) fn root(square: f64) -> f64 {
     if square < 0.0 { 0.0 } else { square.sqrt() }
 }
@@ -142,7 +142,7 @@ fn count(estimates: &[f64], is: impl Fn(f64) -> bool) -> u64 {
     estimates.iter().filter(|x| is(**x)).count() as u64
 }
 
-/// NaN of nothing.
+/// Returns the mean; NaN of an empty set.
 fn mean(numbers: impl Iterator<Item = f64>) -> f64 {
     let (sum, n) = numbers.fold((0.0, 0u64), |(sum, n), x| (sum + x, n + 1));
     sum / n as f64
@@ -157,7 +157,7 @@ fn standard_error(numbers: impl ExactSizeIterator<Item = f64>, mean: f64) -> f64
     (squares / (n - 1) as f64 / n as f64).sqrt()
 }
 
-/// The mean without the worst 0.1 %, at least one; of one number alone, that number.
+/// Returns the mean without the worst 0.1 %, at least one; of a single number, that number.
 fn trimmed(mut errors: Vec<f64>) -> f64 {
     errors.sort_by(f64::total_cmp);
     let worst = errors.len().div_ceil(1000);
@@ -181,8 +181,8 @@ mod tests {
         assert!((found.bias_z() - 0.25 / error).abs() < 1e-12);
     }
 
-    /// Half of the pixels dark, half bright, each off by a tenth of itself: relative errors of
-    /// other forms differ by what they are kept from 0 with.
+    /// Tests pixels half dark, half bright, each off by a tenth of itself: relative errors of other
+    /// forms differ by their offsets from 0.
     #[test]
     fn relative_errors_are_of_their_own_forms() {
         let exact = [1e-3, 1.0, -1e-3, -1.0];
@@ -195,7 +195,7 @@ mod tests {
         assert!((found.rel_mse / rel_mse - 1.0).abs() < 1e-12, "{found:?}");
     }
 
-    /// The figures of one firefly among a hundred thousand pixels.
+    /// Tests the figures of one firefly among a hundred thousand pixels.
     #[test]
     fn a_firefly_rules_the_mean_and_not_the_trimmed_one() {
         let mut estimates = vec![1.01; 100_000];
@@ -205,7 +205,8 @@ mod tests {
         assert!((found.p99 - 0.01).abs() < 1e-12 && found.max == 999.0);
     }
 
-    /// On the side of both halves the square counts, between them it is taken away again.
+    /// Tests that the square counts on one side of both halves, and is subtracted again between
+    /// them.
     #[test]
     fn a_mean_square_keeps_its_sign() {
         let halves = Reference::halves([1.0], [3.0]);
@@ -225,7 +226,7 @@ mod tests {
         assert!(Metrics::of(&[], &Reference::closed_form(1.0)).is_diverged());
     }
 
-    /// One noisy reference adds its variance to the error, two halves do not.
+    /// Tests that one noisy reference adds its variance to the error, and two halves do not.
     #[test]
     fn halves_take_their_noise_out() {
         let noise = |i: u32, k: u32| f64::from((i * k + 7) % 1009) / 1009.0 - 0.5;

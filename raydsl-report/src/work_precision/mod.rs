@@ -1,10 +1,10 @@
-//! Error against run time: which method, on which variant, gives an error soonest?
+//! Work-precision diagrams: the error of methods and variants against run time.
 //!
-//! A [`Case`] computes something known by several [`Method`]s, each with a knob that makes it
-//! better and slower. [`WorkPrecision`] runs all of them on each [`Backend`], in turn, and makes a
-//! [`Report`]: a [`Curve`] for each method and backend with its [fitted order](Fit) and a
-//! [`Verdict`] on it, as tables, as numbers for programs, and as a [`Drawing`]. What was left out
-//! is listed with its reason.
+//! A [`Case`] computes a known quantity by several [`Method`]s, each with a knob that makes it more
+//! accurate and slower. [`WorkPrecision`] runs all of them on each [`Backend`], in turn, and
+//! returns a [`Report`]: a [`Curve`] for each method and backend with its [fitted order](Fit) and a
+//! [`Verdict`] on it, as tables, as JSON and CSV, and as a [`Drawing`]. Omissions are listed with
+//! their reasons.
 //!
 //! ```
 //! use raydsl::prelude::*;
@@ -28,8 +28,8 @@
 //! # Ok::<(), WorkPrecisionError>(())
 //! ```
 //!
-//! The rules of the form are those of work-precision diagrams as in Hairer, Nørsett and Wanner,
-//! "Solving Ordinary Differential Equations I" (1993), section II.10.
+//! The form follows the work-precision diagrams in Hairer, Nørsett and Wanner, "Solving Ordinary
+//! Differential Equations I" (1993), section II.10.
 
 mod case;
 mod cpu_clock;
@@ -72,7 +72,7 @@ pub use work::Work;
 
 use raydsl::kernel::Variant;
 
-/// Settings of a measurement.
+/// The settings of a measurement.
 pub struct WorkPrecision<'a> {
     knobs: Vec<u32>,
     methods: Option<Vec<String>>,
@@ -94,8 +94,9 @@ impl Default for WorkPrecision<'_> {
 }
 
 impl<'a> WorkPrecision<'a> {
-    /// All methods on the scalar variant, packets of 8 and 16 and WGSL, with 16, 64, 256, 1024 and
-    /// 4096 for the knob, 5 repetitions, 16 by 16 pixels and at most 30 seconds for each case.
+    /// Creates settings for all methods on the scalar variant, packets of 8 and 16 and WGSL, with
+    /// 16, 64, 256, 1024 and 4096 for the knob, 5 repetitions, 16 by 16 pixels and at most 30
+    /// seconds for each case.
     pub fn new() -> Self {
         let variants = [Variant::Scalar, Variant::Packet8, Variant::Packet16, Variant::Wgsl];
         Self {
@@ -113,70 +114,68 @@ impl<'a> WorkPrecision<'a> {
         }
     }
 
-    /// The knob's values: rising, from 1 to [`MAX_KNOB`].
+    /// Sets the knob's values: increasing, from 1 to [`MAX_KNOB`].
     pub fn knobs(self, knobs: &[u32]) -> Self {
         Self { knobs: knobs.to_vec(), ..self }
     }
 
-    /// Only the methods of these names; a case's others are listed as left out.
+    /// Selects the methods of these names; a case's others are listed as omitted.
     pub fn methods(self, names: &[&str]) -> Self {
         Self { methods: Some(names.iter().map(|n| (*n).to_owned()).collect()), ..self }
     }
 
-    /// What runs the kernels. Speed-ups are those over the first one.
+    /// Sets the backends. Speed-ups are over the first one.
     pub fn backends(self, backends: &[Backend]) -> Self {
         Self { backends: backends.to_vec(), ..self }
     }
 
-    /// How often each point is run, with another seed each time; at least once.
+    /// Sets the number of runs of each point, each with another seed; at least one.
     pub fn repetitions(self, repetitions: u32) -> Self {
         Self { repetitions: repetitions.max(1), ..self }
     }
 
-    /// How long the runs of one case may take; each curve has an equal share, and its first point
-    /// is run in any case.
+    /// Sets the time budget of a case; each curve has an equal share, and its first point is run in
+    /// any case.
     pub fn time(self, time: Duration) -> Self {
         Self { time, ..self }
     }
 
-    /// The film's size: of an integral, how many independent estimates a run has.
+    /// Sets the film's size: for an integral, the number of independent estimates in a run.
     pub fn size(self, width: u32, height: u32) -> Self {
         Self { size: (width, height), ..self }
     }
 
-    /// The commit of the source that is measured, for the files; `unknown` unless this is called.
-    /// Nothing here looks for it.
+    /// Sets the commit of the measured source, for the files; `unknown` unless set. It is not
+    /// detected.
     pub fn commit(self, commit: impl Into<String>) -> Self {
         Self { commit: Some(commit.into()), ..self }
     }
 
-    /// Notes a case that is not measured, and why: the files name it among what is left out.
+    /// Records a case that is not measured, and why: the files list it as omitted.
     pub fn omit(mut self, case: impl Into<String>, why: impl Into<String>) -> Self {
         self.omitted.push(Omitted { case: case.into(), why: why.into() });
         self
     }
 
-    /// The device for WGSL; without this the best of the machine.
+    /// Sets the device for WGSL; the best of the machine unless set.
     #[cfg(feature = "gpu")]
     pub fn gpu(self, gpu: &'a raydsl::gpu::GpuScheduler) -> Self {
         Self { gpu: Some(gpu), ..self }
     }
 
-    /// Calls `progress` with the name of every case and the number of the repetition before it
-    /// runs.
+    /// Calls `progress` with the name of every case and the index of the repetition before it runs.
     pub fn progress(self, progress: impl FnMut(&str) + 'a) -> Self {
         Self { progress: Box::new(progress), ..self }
     }
 
-    /// Measures: first every curve's first point once, which warms caches and compiles pipelines
-    /// and is not timed; then all repetitions, methods and backends taking turns.
+    /// Measures the cases: first every curve's first point once, which warms caches and compiles
+    /// pipelines and is not timed; then all repetitions, with methods and backends in turn.
     ///
-    /// A backend that cannot run has a curve that says why.
+    /// A backend that cannot run has a curve with the reason.
     ///
     /// # Errors
     ///
-    /// Settings or references that make no measurement, and estimates that do not fit the
-    /// reference.
+    /// If settings or references are invalid, or estimates do not fit the reference.
     pub fn run(mut self, cases: &[Case<'_>]) -> Result<Report, WorkPrecisionError> {
         self.check(cases)?;
         #[cfg(feature = "gpu")]
@@ -245,17 +244,17 @@ impl<'a> WorkPrecision<'a> {
     }
 }
 
-/// What [`WorkPrecision::run`] found.
+/// The result of [`WorkPrecision::run`].
 #[must_use = "a report that nobody reads finds nothing"]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// What it was measured on.
+    /// The environment.
     pub environment: Environment,
     /// The film's size.
     pub size: (u32, u32),
-    /// The cases in their order.
+    /// The cases in order.
     pub cases: Vec<Measured>,
-    /// Cases that were [left out](WorkPrecision::omit).
+    /// The [omitted](WorkPrecision::omit) cases.
     pub omitted: Vec<Omitted>,
 }
 
@@ -264,28 +263,28 @@ pub struct Report {
 pub struct Omitted {
     /// Its name.
     pub case: String,
-    /// Why, in a line.
+    /// The reason, in a line.
     pub why: String,
 }
 
-/// What was found of one case.
+/// The results of one case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
     /// Its name.
     pub name: String,
-    /// What its knob is called.
+    /// The knob's name.
     pub knob: String,
-    /// Where its reference comes from.
+    /// The kind of its reference.
     pub kind: ReferenceKind,
-    /// How far the reference may be off.
+    /// The uncertainty of the reference.
     pub uncertainty: f64,
-    /// The error that rounding to `f32` leaves: two roundings of 2^-24 each of the root of the
-    /// reference's mean square.
+    /// The rounding error of `f32`: two roundings of 2^-24 each of the root of the reference's mean
+    /// square.
     pub rounding_floor: f64,
-    /// Seconds that it took to build what its runs use, if the case says so.
+    /// The build time in seconds of the data that runs use, if the case gives it.
     pub build: Option<f64>,
     /// A curve for each method and backend.
     pub curves: Vec<Curve>,
-    /// Methods of the case that were not asked for.
+    /// Methods of the case that were not selected.
     pub not_asked_for: Vec<String>,
 }

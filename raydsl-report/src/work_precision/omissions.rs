@@ -1,4 +1,4 @@
-//! `omissions.md`.
+//! Writer of `omissions.md`.
 
 use core::fmt::Write;
 
@@ -6,7 +6,7 @@ use super::curve::{Curve, Point, Status, Verdict};
 use super::work::Work;
 use super::{Measured, Omitted, Report};
 
-/// What no file of a report has, and why.
+/// Data that no file of a report has, and why.
 const NOWHERE: &[(&str, &str)] = &[
     #[cfg(not(feature = "flip"))]
     (
@@ -30,8 +30,8 @@ const NOWHERE: &[(&str, &str)] = &[
 ];
 
 impl Report {
-    /// Everything that was left out of the tables, fits and curves, and what no report has, with
-    /// why, as Markdown.
+    /// Returns everything omitted from the tables, fits and curves, and data that no report has,
+    /// with reasons, as Markdown.
     pub fn omissions(&self) -> String {
         let whole = |o: &Omitted| row(&o.case, "all", "all", "the case", &o.why);
         let mut rows: Vec<String> = self.omitted.iter().map(whole).collect();
@@ -59,7 +59,7 @@ fn of_case(case: &Measured) -> Vec<String> {
     rows
 }
 
-/// FLIP of what is no picture.
+/// Returns a row for the missing FLIP of estimates that are not a picture.
 #[cfg(feature = "flip")]
 fn unseen(case: &Measured) -> Option<String> {
     let mut runs = case.curves.iter().flat_map(|c| &c.points).flat_map(|p| &p.repetitions);
@@ -67,10 +67,10 @@ fn unseen(case: &Measured) -> Option<String> {
     has_none.then(|| row(&case.name, "all", "all", "FLIP", "the estimates are no picture"))
 }
 
-/// How much of a unit was counted.
+/// A function that returns the count of a unit.
 type Unit = fn(&Work) -> Option<u64>;
 
-/// Units in which nothing of a case is counted.
+/// Returns a row for the units in which nothing of a case is counted.
 fn uncounted(case: &Measured) -> Option<String> {
     let points = || case.curves.iter().flat_map(|c| &c.points).map(Point::work);
     let units: [(&str, Unit); 4] = [

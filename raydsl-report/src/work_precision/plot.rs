@@ -6,7 +6,7 @@ use super::curve::{Curve, Point, Status};
 use super::drawing::{Anchor, Color, Drawing, Mark, Symbol};
 use raydsl::kernel::Variant;
 
-/// The colours of methods, which the colour-blind can tell apart. (Okabe and Ito, "Color Universal
+/// The colours of methods, chosen for colour-blind readers. (Okabe and Ito, "Color Universal
 /// Design", 2008.)
 const COLORS: [Color; 6] =
     [[213, 94, 0], [0, 114, 178], [0, 158, 115], [204, 121, 167], [230, 159, 0], [86, 180, 233]];
@@ -23,18 +23,18 @@ const TOP: f64 = 48.0;
 const BOTTOM: f64 = 456.0;
 const LEGEND: f64 = LEFTS[1] + PANEL + 24.0;
 
-/// How wide and high a letter is.
+/// The width and height of a letter.
 const LETTER: f64 = 8.0;
-/// Between a text and an axis.
+/// The distance between a text and an axis.
 const MARGIN: f64 = 3.0;
-/// Of symbols.
+/// The radius of symbols.
 const RADIUS: f64 = 4.5;
-/// Half of the stroke at the end of a bar.
+/// Half the length of the cap at the end of a bar.
 const CAP: f64 = 3.0;
-/// The shares of all runs between which bars go.
+/// The quantiles of all runs at the ends of bars.
 const BAR: [f64; 2] = [0.1, 0.9];
 
-/// A floor is on the plot if it is within so many decades of the least error.
+/// The distance in decades from the least error within which a floor is on the plot.
 const REACH: f64 = 2.0;
 
 fn symbol(backend: Backend) -> Symbol {
@@ -49,14 +49,14 @@ fn symbol(backend: Backend) -> Symbol {
 }
 
 impl Measured {
-    /// The diagram, with logarithmic axes: at the left the root of the mean square error over the
-    /// time of a run, for each method (a colour) and backend (a symbol). Symbols are at the medians
-    /// of the repetitions; bars go from the tenth to the ninetieth of a hundred of them. At the
-    /// right the same over what was done, which is no matter of the machine, with triangles of the
-    /// orders that theory gives. What lies at a floor is dotted. A floor that is two decades or
-    /// more below all errors is told above the panels.
+    /// Returns the diagram, with logarithmic axes: at the left the root of the mean square error
+    /// over the time of a run, for each method (a colour) and backend (a symbol). Symbols are at
+    /// the medians of the repetitions; bars span the 10 % to 90 % quantiles. At the right the same
+    /// over the work, independent of the machine, with triangles of the theoretical orders. Points
+    /// at a floor are dotted. A floor two decades or more below all errors is noted above the
+    /// panels.
     ///
-    /// What was done is the first of these that was counted of every point: what kernels count,
+    /// The work is the first of these that was counted for every point: the kernels' own counts,
     /// texture fetches, tests of nodes and primitives, rays; else samples.
     pub fn plot(&self) -> Drawing {
         let mut plot = Plot { case: self, marks: Vec::new(), methods: methods(self) };
@@ -87,7 +87,7 @@ impl Measured {
     }
 }
 
-/// The names of methods in their order; their places choose colours.
+/// Returns the names of methods in order; their indices choose colours.
 fn methods(case: &Measured) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for curve in &case.curves {
@@ -102,19 +102,19 @@ fn ran(point: &Point) -> bool {
     !point.repetitions.is_empty() && error(point).is_finite()
 }
 
-/// Where a point is drawn: the median of its runs.
+/// Returns the drawn error of a point: the median of its runs.
 fn error(point: &Point) -> f64 {
     point.rmse_quantile(0.5)
 }
 
-/// What the right panel's axis counts.
+/// The unit of the right panel's axis.
 struct Unit {
     name: &'static str,
-    /// Of one run of a point; 0 if it is not known.
+    /// Returns the work of one run of a point; 0 if unknown.
     of: fn(&Point) -> f64,
 }
 
-/// The first unit that is known of every point, in the order of how much it says.
+/// Returns the first unit known for every point, the most informative first.
 fn unit(curves: &[&Curve]) -> Unit {
     let units = [
         Unit { name: "counted in all", of: |p| float(p.repetitions[0].counted) },
@@ -140,13 +140,13 @@ fn shown(case: &Measured) -> Vec<&Curve> {
     case.curves.iter().filter(|c| c.points.iter().any(ran)).collect()
 }
 
-/// Of each method the first backend: the others take the same samples.
+/// Returns the first backend of each method: the others take the same samples.
 fn firsts<'c>(curves: &[&'c Curve]) -> Vec<&'c Curve> {
     let is_first = |i: usize| curves[..i].iter().all(|c| c.method != curves[i].method);
     (0..curves.len()).filter(|i| is_first(*i)).map(|i| curves[i]).collect()
 }
 
-/// The whole powers of ten around positive numbers; one decade if there is none.
+/// Returns the whole powers of ten around positive numbers; one decade if there is none.
 fn decades(values: impl Iterator<Item = f64>) -> (i32, i32) {
     let logs = values.filter(|v| *v > 0.0 && v.is_finite()).map(f64::log10);
     let (low, high) =
@@ -174,14 +174,15 @@ impl Axes {
         (self.left + PANEL * share(x, self.xs), BOTTOM - height * share(y, self.ys))
     }
 
-    /// The first place at which the whole text is in the panel; if none is, the last, moved there.
+    /// Returns the first position at which the whole text is in the panel; if there is none, the
+    /// last, moved inside.
     fn first_inside<const N: usize>(
         &self,
         places: [((f64, f64), Anchor); N],
         text: &str,
     ) -> ((f64, f64), Anchor) {
         let length = LETTER * text.chars().count() as f64;
-        // How far it must go.
+        // The required shift.
         let shift = |((x, y), anchor): ((f64, f64), Anchor)| {
             let left = match anchor {
                 Anchor::Start => x,
@@ -231,7 +232,7 @@ impl Plot<'_> {
         COLORS[at % COLORS.len()]
     }
 
-    /// The decades of errors, the floors that are on them, and a note of those that are below.
+    /// Returns the decades of errors, the floors within them, and a note of those below.
     fn heights(&self, curves: &[&Curve]) -> ((i32, i32), Vec<(&'static str, f64)>, String) {
         let points = curves.iter().flat_map(|c| c.points.iter().filter(|p| ran(p)));
         let ends = |p: &Point| [BAR[0], 0.5, BAR[1]].map(|share| p.rmse_quantile(share));
@@ -307,8 +308,8 @@ impl Plot<'_> {
         }
     }
 
-    /// From the tenth to the ninetieth of a hundred runs: of the error, and where the axis is that
-    /// of time, of the time.
+    /// Draws the bars from the 10 % to the 90 % quantile of the runs: of the error, and of the time
+    /// if the axis is time.
     fn bars(&mut self, axes: &Axes, point: &Point, x: f64, has_times: bool, color: Color) {
         let [low, high] = BAR.map(|share| axes.place(x, point.rmse_quantile(share)));
         self.bar(low, high, color);
@@ -318,7 +319,7 @@ impl Plot<'_> {
         }
     }
 
-    /// A line with a stroke across each end, unless the symbol would hide it.
+    /// Draws a line with a cap at each end, unless the symbol would hide it.
     fn bar(&mut self, a: (f64, f64), b: (f64, f64), color: Color) {
         let length = (b.0 - a.0).hypot(b.1 - a.1);
         if length <= 2.0 * RADIUS {
@@ -332,8 +333,8 @@ impl Plot<'_> {
         }
     }
 
-    /// The order that theory gives a method: the first method's above its curve, the others' below
-    /// theirs, each at another place.
+    /// Draws the theoretical order of a method: the first method's above its curve, the others'
+    /// below theirs, each at another position.
     fn triangle(&mut self, axes: &Axes, curve: &Curve, x: fn(&Point) -> f64, k: usize) {
         let points: Vec<&Point> = curve.points.iter().filter(|p| ran(p)).collect();
         let (Some(order), true) = (curve.expected.map(drawn), points.len() > 1) else { return };
@@ -354,7 +355,7 @@ impl Plot<'_> {
         let corners = [(x0, y0), (x1, y1), right_angle, (x0, y0)].map(|(x, y)| axes.place(x, y));
         self.line(&corners, color, 1.0, None);
         let text = format!("{order:.2}");
-        // Beside the upright leg, or where that is too near to an axis, along the level one.
+        // Beside the vertical leg, or if that is too near to an axis, along the horizontal one.
         let ((upright, level), middle) = (corners[2], mean(corners[0], corners[1]));
         let (aside, anchor) = if is_above { (4.0, Anchor::Start) } else { (-4.0, Anchor::End) };
         let beyond = if is_above { -9.0 } else { 9.0 };
@@ -364,7 +365,7 @@ impl Plot<'_> {
         self.colored(at, &text, anchor, color);
     }
 
-    /// Which colour is which method, with its order, and which symbol is which backend.
+    /// Draws the legend: the colour of each method, with its order, and the symbol of each backend.
     fn legend(&mut self, curves: &[&Curve]) {
         let mut y = TOP + 8.0;
         for curve in firsts(curves) {
@@ -395,7 +396,7 @@ impl Plot<'_> {
     }
 }
 
-/// The order of a triangle: the middle of a range, or its end.
+/// Returns the order of a triangle: the middle of a range, or its end.
 fn drawn(order: Order) -> f64 {
     if order.steepest.is_finite() {
         0.5 * (order.steepest + order.flattest)

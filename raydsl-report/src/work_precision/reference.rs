@@ -1,22 +1,22 @@
-//! What estimates are compared with.
+//! Reference results of a case.
 
 use super::error::WorkPrecisionError;
 
-/// Where a reference comes from, the strongest first.
+/// The origin of a reference, the strongest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum ReferenceKind {
     /// R0: a closed form.
     ClosedForm,
-    /// R1: a quadrature that was done in advance.
+    /// R1: a quadrature done in advance.
     Quadrature,
     /// R2: the same kernel in `f64`, with a finer knob.
     F64,
-    /// R3: two independent renderings that have converged.
+    /// R3: two converged independent renderings.
     Halves,
 }
 
 impl ReferenceKind {
-    /// `R0`, `R1`, `R2` or `R3`.
+    /// Returns `R0`, `R1`, `R2` or `R3`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::ClosedForm => "R0",
@@ -26,7 +26,7 @@ impl ReferenceKind {
         }
     }
 
-    /// What the name stands for.
+    /// Returns the meaning of the name.
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::ClosedForm => "closed form",
@@ -37,37 +37,38 @@ impl ReferenceKind {
     }
 }
 
-/// The right result of a case, and how sure that is: one number for all pixels, or one for each,
-/// row by row from the bottom.
+/// The exact result of a case, and its uncertainty: one value for all pixels, or one for each, row
+/// by row from the bottom.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     kind: ReferenceKind,
     values: Vec<f64>,
-    /// The other half, of [`ReferenceKind::Halves`].
+    /// The other half, for [`ReferenceKind::Halves`].
     other: Option<Vec<f64>>,
     uncertainty: f64,
 }
 
 impl Reference {
-    /// A closed form: the same number for each pixel, without an error.
+    /// Creates a reference from a closed form: the same value for each pixel, without an error.
     pub fn closed_form(value: f64) -> Self {
         Self::new(ReferenceKind::ClosedForm, vec![value], 0.0)
     }
 
-    /// Results of a quadrature, one or one for each pixel, and a bound of their error.
+    /// Creates a reference from a quadrature, one value or one for each pixel, and a bound on their
+    /// error.
     pub fn quadrature(values: impl Into<Vec<f64>>, uncertainty: f64) -> Self {
         Self::new(ReferenceKind::Quadrature, values.into(), uncertainty)
     }
 
-    /// Results of the same kernel in `f64`, one or one for each pixel, and a bound of their error:
-    /// the distance to the next finer ones, say.
+    /// Creates a reference from the same kernel in `f64`, one value or one for each pixel, and a
+    /// bound on their error: for example the distance to the next finer ones.
     pub fn f64(values: impl Into<Vec<f64>>, uncertainty: f64) -> Self {
         Self::new(ReferenceKind::F64, values.into(), uncertainty)
     }
 
-    /// Two renderings with other samples each. The squared error of an estimate x is then
-    /// (x - a)(x - b), in the mean without the noise of either. Their uncertainty is the standard
-    /// error of their mean, half of the root of the mean of (a - b)^2.
+    /// Creates a reference from two renderings with different samples. The squared error of an
+    /// estimate x is then (x - a)(x - b), on average without the noise of either. Their uncertainty
+    /// is the standard error of their mean, half of the root of the mean of (a - b)^2.
     pub fn halves(a: impl Into<Vec<f64>>, b: impl Into<Vec<f64>>) -> Self {
         let (a, b) = (a.into(), b.into());
         let squares: f64 = a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum();
@@ -81,32 +82,32 @@ impl Reference {
         Self { kind, values, other: None, uncertainty }
     }
 
-    /// Where it comes from.
+    /// Returns the kind.
     pub fn kind(&self) -> ReferenceKind {
         self.kind
     }
 
-    /// How far it may be off.
+    /// Returns the uncertainty.
     pub fn uncertainty(&self) -> f64 {
         self.uncertainty
     }
 
-    /// How many numbers it has: 1, or one for each pixel.
+    /// Returns the number of values: 1, or one for each pixel.
     pub fn len(&self) -> usize {
         self.values.len()
     }
 
-    /// Whether it has none.
+    /// Returns whether it has no values.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
 
-    /// Whether it fits `count` estimates.
+    /// Returns whether it fits `count` estimates.
     pub(super) fn fits(&self, count: usize) -> bool {
         count > 0 && (self.len() == 1 || self.len() == count)
     }
 
-    /// The reference of estimate `i`, and its two halves.
+    /// Returns the reference of estimate `i`, and its two halves.
     pub(super) fn at(&self, i: usize) -> (f64, [f64; 2]) {
         let i = if self.len() == 1 { 0 } else { i };
         let a = self.values[i];
@@ -114,13 +115,13 @@ impl Reference {
         (0.5 * (a + b), [a, b])
     }
 
-    /// The root of the mean square.
+    /// Returns the root of the mean square.
     pub(super) fn size(&self) -> f64 {
         let squares: f64 = self.values.iter().map(|v| v * v).sum();
         (squares / self.len().max(1) as f64).sqrt()
     }
 
-    /// Refuses what is no reference.
+    /// Checks that the reference is valid.
     pub(super) fn check(&self, case: &str) -> Result<(), WorkPrecisionError> {
         let case = || case.to_owned();
         if self.is_empty() {

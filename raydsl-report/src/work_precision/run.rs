@@ -1,4 +1,4 @@
-//! One computation of a case.
+//! Runs: single computations of a case.
 
 use core::cell::Cell;
 use std::time::{Duration, Instant};
@@ -14,28 +14,28 @@ use raydsl::kernel::{Kernel, Variant};
 use raydsl::render::{Film, FilmArgs, PixelSampler, Radiance, Renderer, Sampling, SimpleScheduler};
 use raydsl::sampling::Sampler;
 
-/// What a computation gave, and what it cost besides time.
+/// The result of a run, and its cost besides time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Estimates {
-    /// The estimates: one for each pixel, row by row from the bottom, or however many there are.
+    /// The estimates: one for each pixel, row by row from the bottom, or any number of them.
     pub values: Vec<f64>,
     /// Samples taken in all.
     pub samples: u64,
-    /// What the kernel counts itself, in all: steps, look-ups of a density.
+    /// The kernel's own count, in all: steps, look-ups of a density.
     pub counted: Option<u64>,
-    /// Rays and what else is known to have been done, in all.
+    /// The rays and other known work, in all.
     pub work: Work,
-    /// Columns and rows, if the values are a picture's. Those of [`Run::film`] are.
+    /// Columns and rows, if the values are a picture, as those of [`Run::film`] are.
     pub picture: Option<(u32, u32)>,
 }
 
 impl Estimates {
-    /// Of numbers and the samples that they took in all.
+    /// Creates estimates from numbers and their total samples.
     pub fn new(values: Vec<f64>, samples: u64) -> Self {
         Self { values, samples, counted: None, work: Work::default(), picture: None }
     }
 
-    /// Every sample traces so many rays.
+    /// Sets the number of rays that every sample traces.
     #[must_use]
     pub fn rays_per_sample(self, rays: u64) -> Self {
         let rays = Some(self.samples.saturating_mul(rays));
@@ -43,28 +43,27 @@ impl Estimates {
     }
 }
 
-/// How a case is to be computed: by which method, on what, with which value of the knob and which
-/// seed.
+/// The settings of a run: the method, the backend, the value of the knob and the seed.
 ///
-/// [`Run::film`] and [`Run::integral`] run a kernel so; a case that does something else asks for
-/// the parts and makes [`Estimates`] of its own.
+/// [`Run::film`] and [`Run::integral`] run a kernel with them; a case of another kind reads the
+/// settings and returns [`Estimates`] of its own.
 #[derive(Clone, Copy, Debug)]
 pub struct Run<'a> {
     pub(super) method: &'a Method,
     pub(super) backend: Backend,
     pub(super) knob: u32,
-    /// Of each pixel, if the knob does not say it.
+    /// Samples per pixel, if the knob does not give them.
     pub(super) samples: Option<u32>,
     pub(super) seed: u32,
     pub(super) size: (u32, u32),
-    /// Where to note the kernels' text, if it is asked for.
+    /// The hash of the kernels' text, if it is wanted.
     pub(super) code: Option<&'a CodeHash>,
     #[cfg(feature = "gpu")]
     pub(super) gpu: Option<&'a raydsl::gpu::GpuScheduler>,
 }
 
 impl<'a> Run<'a> {
-    /// A run of one pixel, with seed 0 and without a device.
+    /// Creates a run of one pixel, with seed 0 and without a device.
     pub fn new(method: &'a Method, backend: Backend, knob: u32) -> Self {
         Self {
             method,
@@ -79,60 +78,60 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// With another seed.
+    /// Sets the seed.
     #[must_use]
     pub fn seeded(self, seed: u32) -> Self {
         Self { seed, ..self }
     }
 
-    /// With a film of this size.
+    /// Sets the film's size.
     #[must_use]
     pub fn sized(self, width: u32, height: u32) -> Self {
         Self { size: (width, height), ..self }
     }
 
-    /// With so many samples of each pixel, at least one, whatever the knob says: for a knob that
-    /// counts steps, and 1 for a method without random numbers.
+    /// Sets the samples per pixel, at least one, regardless of the knob: for a knob that counts
+    /// steps, and 1 for a deterministic method.
     #[must_use]
     pub fn with_samples(self, samples: u32) -> Self {
         Self { samples: Some(samples.max(1)), ..self }
     }
 
-    /// With a device for [`Variant::Wgsl`].
+    /// Sets a device for [`Variant::Wgsl`].
     #[cfg(feature = "gpu")]
     #[must_use]
     pub fn on(self, gpu: &'a raydsl::gpu::GpuScheduler) -> Self {
         Self { gpu: Some(gpu), ..self }
     }
 
-    /// The method.
+    /// Returns the method.
     pub fn method(&self) -> &Method {
         self.method
     }
 
-    /// What runs it.
+    /// Returns the backend.
     pub fn backend(&self) -> Backend {
         self.backend
     }
 
-    /// The knob's value: samples of each pixel, steps ...
+    /// Returns the knob's value: samples per pixel, steps ...
     pub fn knob(&self) -> u32 {
         self.knob
     }
 
-    /// Each repetition has another one.
+    /// Returns the seed, different in each repetition.
     pub fn seed(&self) -> u32 {
         self.seed
     }
 
-    /// The film's size.
+    /// Returns the film's size.
     pub fn size(&self) -> (u32, u32) {
         self.size
     }
 
-    /// Renders a film, with as many samples of each pixel as the knob says, or
-    /// [`Run::with_samples`], jittered by the method, on one thread of the CPU or on the device.
-    /// Estimates are the red channels of its pixels.
+    /// Renders a film, with the samples per pixel of the knob, or of [`Run::with_samples`],
+    /// jittered by the method, on one thread of the CPU or on the device. Estimates are the red
+    /// channels of its pixels.
     ///
     /// # Errors
     ///
@@ -145,7 +144,7 @@ impl<'a> Run<'a> {
         Ok(self.picture(&self.means(camera, kernel, PixelSampler::Jittered)?))
     }
 
-    /// The same of a kernel that gives the light in red, and in green what it counted on the way:
+    /// Renders a film with a kernel that returns the light in red, and its own count in green:
     /// nodes visited, steps, look-ups.
     ///
     /// # Errors
@@ -161,8 +160,8 @@ impl<'a> Run<'a> {
         Ok(Estimates { counted: Some(counted.round() as u64), ..self.picture(&means) })
     }
 
-    /// Runs a kernel that looks at nothing but its sampler: every pixel is an estimate of one
-    /// integral of its own samples, which all go to the kernel. Its ray is the same everywhere.
+    /// Runs a kernel that uses its sampler only: every pixel is an estimate of one integral from
+    /// its own samples, all of whose dimensions the kernel gets. Its ray is the same everywhere.
     ///
     /// # Errors
     ///
@@ -174,14 +173,14 @@ impl<'a> Run<'a> {
         Ok(self.red(&self.means(&integral_camera(), kernel, PixelSampler::Center)?))
     }
 
-    /// Counts what [`Run::film`] does: runs `count` on the host for the ray and the sampler of each
-    /// of its samples, and adds up. For what a kernel cannot count itself, or is not to count while
-    /// it is timed; see [`Case::counted`](super::Case::counted).
+    /// Counts the work of [`Run::film`]: runs `count` on the host for the ray and the sampler of
+    /// each of its samples, and adds up. For work that a kernel cannot count itself, or should not
+    /// while it is timed; see [`Case::counted`](super::Case::counted).
     pub fn film_work<C: Camera>(&self, camera: &C, count: impl Fn(Ray, Sampler) -> Work) -> Work {
         self.each_sample(camera, PixelSampler::Jittered, count)
     }
 
-    /// Counts what [`Run::integral`] does, in the same way.
+    /// Counts the work of [`Run::integral`], in the same way.
     pub fn integral_work(&self, count: impl Fn(Sampler) -> Work) -> Work {
         self.each_sample(&integral_camera(), PixelSampler::Center, |_, sampler| count(sampler))
     }
@@ -204,7 +203,7 @@ impl<'a> Run<'a> {
         samples.map(one).fold(Work::default(), |all, work| all + work)
     }
 
-    /// Of each pixel.
+    /// Returns the samples per pixel.
     fn samples(&self) -> u32 {
         self.samples.unwrap_or(self.knob)
     }
@@ -222,7 +221,7 @@ impl<'a> Run<'a> {
         Estimates { picture: Some(self.size), ..self.red(means) }
     }
 
-    /// The mean colour of each pixel.
+    /// Returns the mean colour of each pixel.
     fn means<C: Camera, A: FilmArgs, R: Radiance>(
         &self,
         camera: &C,
@@ -274,7 +273,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Of integrals, which do not look at their ray.
+/// Returns the camera of integrals, which ignore their ray.
 fn integral_camera() -> Orthographic {
     Orthographic::new(Vec3::Z, Vec3::ZERO, Vec3::Y, 1.0)
 }
@@ -284,7 +283,7 @@ fn integral_camera() -> Orthographic {
 #[derive(Debug, Default)]
 pub(super) struct CodeHash {
     hash: Cell<Option<u64>>,
-    /// How long it took to write the text, which is no part of the run.
+    /// The time it took to write the text, which is no part of the run.
     took: Cell<Duration>,
 }
 
@@ -297,7 +296,7 @@ impl CodeHash {
         self.took.set(self.took.get() + start.elapsed());
     }
 
-    /// None if the run used no kernel.
+    /// Returns the hash; `None` if the run used no kernel.
     pub(super) fn hash(&self) -> Option<u64> {
         self.hash.get()
     }
@@ -311,7 +310,7 @@ impl CodeHash {
 mod tests {
     use super::*;
 
-    /// Values of the algorithm's authors.
+    /// Tests values given by the algorithm's authors.
     #[test]
     fn hashes_are_fnv_1a() {
         let of = |texts: &[&str]| {

@@ -1,4 +1,4 @@
-//! The table for people.
+//! Text table of a report.
 
 use core::fmt::Write;
 
@@ -7,16 +7,17 @@ use super::curve::{Curve, Speedup};
 use super::fit::Reached;
 use super::{Measured, Report};
 
-/// The longest line of a table.
+/// The maximum length of a line.
 pub(super) const WIDTH: usize = 100;
 
 impl Report {
-    /// A table for each case, no line longer than 100 columns.
+    /// Returns a table for each case, no line longer than 100 columns.
     ///
     /// Times are medians, in seconds, after which the root of the mean square error, over all runs,
     /// is no larger than 1e-2 and 1e-3; `<` stands before those of a curve's first point, `-` where
-    /// the curve does not get there. Then the fitted order with its 95 % interval, theory's, the
-    /// speed-up over the first backend if it is one, and the verdict on the order.
+    /// the curve does not reach the error. The fitted order with its 95 % interval follows, then
+    /// theory's, the speed-up over the first backend if it is significant, and the verdict on the
+    /// order.
     pub fn table(&self) -> String {
         let mut text = self.cases.iter().map(table).collect::<Vec<_>>().join("\n");
         if self.environment.has_debug_assertions {
@@ -43,7 +44,7 @@ fn table(case: &Measured) -> String {
     text
 }
 
-/// A line that is not too long, with its end.
+/// Returns a line, cut if it is too long, with its end.
 pub(super) fn cut(line: &str) -> String {
     line.chars().take(WIDTH).collect::<String>().trim_end().to_owned() + "\n"
 }
@@ -76,7 +77,7 @@ fn seconds(reached: Reached) -> String {
     }
 }
 
-/// `-0.55..-0.45`, or `<= -0.70`.
+/// Prints an order as `-0.55..-0.45`, or `<= -0.70`.
 pub(super) fn range(order: Order) -> String {
     if order.steepest.is_finite() {
         format!("{:.2}..{:.2}", order.steepest, order.flattest)
@@ -85,7 +86,7 @@ pub(super) fn range(order: Order) -> String {
     }
 }
 
-/// A speed-up whose interval holds 1 is none.
+/// Prints a speed-up, or no claim if its interval contains 1.
 fn claim(speedup: Speedup) -> String {
     if speedup.is_claimed() { format!("{:.2}x", speedup.ratio) } else { "no claim".to_owned() }
 }

@@ -1,10 +1,11 @@
-//! What computations do, in units that no machine changes.
+//! Work of computations, in units independent of the machine.
 
 use core::ops::Add;
 
 use raydsl::bvh::Cost;
 
-/// What a computation did, in units that no machine changes. What was not counted is `None`.
+/// The work of a computation, in units independent of the machine. Units that were not counted are
+/// `None`.
 ///
 /// ```
 /// use raydsl_report::work_precision::Work;
@@ -22,22 +23,22 @@ pub struct Work {
     pub nodes: Option<u64>,
     /// Primitives that were intersected.
     pub primitives: Option<u64>,
-    /// Calls of a texture's filter, however many texels each reads.
+    /// Calls of a texture's filter, regardless of the number of texels read.
     pub texture_fetches: Option<u64>,
 }
 
 impl Work {
-    /// Counted, and 0 of each: for kernels that send no rays and look nothing up.
+    /// Counted work of 0 in each unit: for kernels that trace no rays and look nothing up.
     pub const NOTHING: Self =
         Self { rays: Some(0), nodes: Some(0), primitives: Some(0), texture_fetches: Some(0) };
 
-    /// Whether nothing was counted.
+    /// Returns whether nothing was counted.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 }
 
-/// One ray, and what it cost in its tree.
+/// Converts the cost of one ray in its tree.
 impl From<Cost> for Work {
     fn from(cost: Cost) -> Self {
         let (nodes, primitives) = (u64::from(cost.nodes), u64::from(cost.primitives));
@@ -46,7 +47,7 @@ impl From<Cost> for Work {
     }
 }
 
-/// Unit by unit; what only one of them counts is that one's.
+/// Adds unit by unit; a unit counted in only one of them keeps that count.
 impl Add for Work {
     type Output = Self;
 

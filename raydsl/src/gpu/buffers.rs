@@ -1,4 +1,4 @@
-//! Scene buffers on the device: each uploaded once.
+//! Storage buffers of scenes on the device, each uploaded once.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -10,14 +10,14 @@ use super::window::{GpuWindow, WindowError};
 use crate::machine::owner;
 use crate::machine::wgsl::{Buffer, BufferKey, Window};
 
-/// Bytes of one transfer: wgpu stages each in a buffer of its own, so this, twice, bounds
-/// the extra memory while a large scene is uploaded.
+/// Bytes per transfer: wgpu stages each in a buffer of its own, so twice this bounds the extra
+/// memory while a large scene is uploaded.
 pub(super) const PIECE: usize = 64 << 20;
 
-/// The bytes of a scene buffer by its key, as the caller of a run has them.
+/// The function, given by the caller of a run, that returns the bytes of a scene buffer by its key.
 pub(super) type Source<'s, 'd> = &'s dyn Fn(BufferKey) -> Option<Cow<'d, [u8]>>;
 
-/// A window ready to be bound.
+/// A window ready for binding.
 pub(super) struct Bound {
     pub(super) binding: u32,
     pub(super) buffer: wgpu::Buffer,
@@ -25,11 +25,11 @@ pub(super) struct Bound {
     pub(super) size: u64,
 }
 
-/// Part of a scene buffer in one wgpu buffer.
+/// A part of a scene buffer in one wgpu buffer.
 struct Chunk {
     span: Span,
     buffer: wgpu::Buffer,
-    /// Where the span starts in the buffer; not 0 only in buffers of the application.
+    /// The start of the span in the buffer; not 0 only in buffers of the application.
     offset: u64,
 }
 
@@ -40,29 +40,29 @@ struct Upload {
     chunks: Vec<Chunk>,
 }
 
-/// All scene buffers on the device, by owner and part.
+/// The scene buffers on the device, by owner and part.
 #[derive(Default)]
 pub(super) struct Uploads {
     parts: HashMap<(u64, u32), Upload>,
-    /// Slices that live in the application's buffers. A part of such a slice may have its address,
-    /// so they are kept by the whole key.
+    /// Slices in the application's buffers. A part of such a slice may have its address, so they
+    /// are stored by the whole key.
     windows: HashMap<BufferKey, Upload>,
     uploaded: u64,
 }
 
 impl Uploads {
-    /// Bytes sent so far.
+    /// Returns the bytes uploaded so far.
     pub(super) fn uploaded(&self) -> u64 {
         self.uploaded
     }
 
-    /// Bytes of what was sent and is still here.
+    /// Returns the uploaded bytes that are still on the device.
     pub(super) fn kept(&self) -> u64 {
         let own = self.parts.values().filter(|upload| !upload.external);
         own.flat_map(|upload| &upload.chunks).map(|chunk| chunk.span.len()).sum()
     }
 
-    /// Drops what belongs to trees and lists that are no more.
+    /// Drops the buffers of dropped trees and lists.
     pub(super) fn forget_gone(&mut self) {
         let own = self.parts.iter().filter(|(_, upload)| !upload.external);
         let gone = owner::gone(own.map(|((id, _), _)| *id));
@@ -74,10 +74,10 @@ impl Uploads {
         self.parts.retain(|&(owner, _), _| owner != id);
     }
 
-    /// The windows of `buffer`, uploading what the device does not have.
+    /// Returns the bindings of `buffer`'s windows, uploading missing data.
     ///
-    /// Kernels may cut the same buffer differently. A window that no chunk holds adds
-    /// chunks and leaves those of the other kernels in place.
+    /// Kernels may split the same buffer differently. A window that no chunk holds adds chunks and
+    /// leaves those of the other kernels in place.
     pub(super) fn bind(
         &mut self,
         gpu: &Gpu,
@@ -112,7 +112,7 @@ impl Uploads {
         })
     }
 
-    /// Reads the slice of `key` from a window, which has been checked.
+    /// Reads the slice of `key` from a window, already checked.
     pub(super) fn enter_window(
         &mut self,
         key: BufferKey,
@@ -133,7 +133,7 @@ impl Uploads {
         self.windows.remove(&key);
     }
 
-    /// The entry for a key; another version is dropped first, to free its memory for this.
+    /// Returns the entry for a key; another version is dropped first, to free its memory.
     fn current(&mut self, key: BufferKey) -> &mut Upload {
         let fresh = || Upload { version: key.version, external: false, chunks: Vec::new() };
         let upload = self.parts.entry((key.id, key.part)).or_insert_with(fresh);
@@ -143,7 +143,7 @@ impl Uploads {
         upload
     }
 
-    /// Takes the application's buffer for `key` after checking that it can be bound.
+    /// Uses the application's buffer for `key` after checking that it can be bound.
     pub(super) fn name_external(
         &mut self,
         caps: &Caps,
@@ -167,7 +167,7 @@ impl Uploads {
 }
 
 impl Upload {
-    /// A binding for each window of `buffer`, if there are chunks that hold them.
+    /// Returns a binding for each window of `buffer`, if there are chunks that hold them.
     fn bound(&self, buffer: &Buffer, spans: &[Span], alignment: u64) -> Option<Vec<Bound>> {
         let bound = buffer.windows.iter().zip(spans).map(|(window, &span)| {
             let (chunk, offset) = self.locate(span, alignment)?;
@@ -181,7 +181,7 @@ impl Upload {
         bound.collect()
     }
 
-    /// The chunk that holds a span, and where in its buffer the span starts.
+    /// Returns the chunk that holds a span, and the span's offset in its buffer.
     fn locate(&self, span: Span, alignment: u64) -> Option<(&Chunk, u64)> {
         self.chunks.iter().find_map(|chunk| {
             let holds = chunk.span.holds(span);
@@ -191,7 +191,7 @@ impl Upload {
     }
 }
 
-/// The bytes of each window, checked against the buffer and the limit of a binding.
+/// Returns the span of each window, checked against the buffer and the limit of a binding.
 fn spans(buffer: &Buffer, max_binding: u64) -> Result<Vec<Span>, GpuError> {
     let malformed = |what: &str| GpuError::BadModule {
         reason: format!("{what} of the scene buffer {}", buffer.name),
@@ -222,7 +222,7 @@ fn spans(buffer: &Buffer, max_binding: u64) -> Result<Vec<Span>, GpuError> {
     Ok(spans)
 }
 
-/// Bytes to bind for a span: one element at least, for WebGPU has no empty bindings.
+/// Returns the bytes to bind for a span: at least one element, since WebGPU has no empty bindings.
 fn binding_bytes(span: Span, stride: u32) -> u64 {
     span.len().max(u64::from(stride))
 }
@@ -252,7 +252,7 @@ fn send_all(
 fn send(gpu: &Gpu, scene: &Buffer, span: Span, bytes: &[u8]) -> Result<Chunk, GpuError> {
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
     let buffer = gpu.buffer(&scene.name, binding_bytes(span, scene.stride), usage)?;
-    // In range: the span ends within `len * stride`, which `bytes` has.
+    // In range: the span ends within `len * stride`, the length of `bytes`.
     let bytes = &bytes[span.start as usize..span.end as usize];
     let mut in_flight = None;
     for (number, piece) in bytes.chunks(PIECE).enumerate() {
@@ -268,7 +268,7 @@ fn send(gpu: &Gpu, scene: &Buffer, span: Span, bytes: &[u8]) -> Result<Chunk, Gp
     Ok(Chunk { span, buffer, offset: 0 })
 }
 
-/// Why a buffer of the application cannot be bound, if it cannot.
+/// Returns why a buffer of the application cannot be bound, if it cannot.
 fn unusable(caps: &Caps, buffer: &wgpu::Buffer, offset: u64, size: u64) -> Option<String> {
     if !buffer.usage().contains(wgpu::BufferUsages::STORAGE) {
         return Some("create it with BufferUsages::STORAGE".to_owned());
@@ -286,7 +286,7 @@ fn unusable(caps: &Caps, buffer: &wgpu::Buffer, offset: u64, size: u64) -> Optio
     }
 }
 
-/// An application's buffer that the windows of this kernel do not fit.
+/// Returns the error for an application's buffer that the windows of this kernel do not fit.
 fn too_small_or_crooked(buffer: &Buffer, alignment: u64) -> GpuError {
     let needed = buffer.len.saturating_mul(u64::from(buffer.stride));
     GpuError::ExternalBuffer {

@@ -1,4 +1,4 @@
-//! Which bytes of a scene buffer share one wgpu buffer.
+//! Partition of a scene buffer into wgpu buffers.
 
 /// Bytes `start..end` of a scene buffer.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -8,12 +8,12 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// Number of bytes.
+    /// Returns the number of bytes.
     pub(super) fn len(self) -> u64 {
         self.end - self.start
     }
 
-    /// Whether all of `other` lies within. An empty span holds nothing but itself: a window
+    /// Returns whether `other` lies within. An empty span holds nothing but itself: a window
     /// without elements gets a buffer of its own.
     pub(super) fn holds(self, other: Span) -> bool {
         if self.len() == 0 || other.len() == 0 {
@@ -42,7 +42,7 @@ pub(super) fn plan(windows: &[Span], max_bytes: u64, alignment: u64) -> Vec<Span
     chunks
 }
 
-/// Whether `window` may be appended to `chunk`.
+/// Returns whether `window` may be appended to `chunk`.
 fn continues(chunk: Span, window: Span, max_bytes: u64, alignment: u64) -> bool {
     let offset = chunk.len();
     chunk.end == window.start

@@ -10,12 +10,12 @@ pub(super) const STAMPS: u64 = 16;
 pub(super) struct Clock {
     queries: wgpu::QuerySet,
     resolved: wgpu::Buffer,
-    /// Nanoseconds of a tick.
+    /// Nanoseconds per tick.
     period: f64,
 }
 
 impl Clock {
-    /// The device must have `TIMESTAMP_QUERY`.
+    /// Creates the queries. The device must have `TIMESTAMP_QUERY`.
     pub(super) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
         let queries = gpu.guarded("the timestamps", || {
@@ -32,7 +32,7 @@ impl Clock {
         })
     }
 
-    /// What a compute pass is given to be timed.
+    /// Returns the timestamp writes of a compute pass.
     pub(super) fn writes(&self) -> wgpu::ComputePassTimestampWrites<'_> {
         wgpu::ComputePassTimestampWrites {
             query_set: &self.queries,
@@ -47,7 +47,7 @@ impl Clock {
         encoder.copy_buffer_to_buffer(&self.resolved, 0, staging, at, STAMPS);
     }
 
-    /// The time between two timestamps. Some drivers let the clock run backwards at times.
+    /// Returns the time between two timestamps. Some drivers let the clock run backwards at times.
     pub(super) fn milliseconds(&self, stamps: &[u8]) -> f64 {
         let ticks = |at: usize| bytemuck::pod_read_unaligned::<u64>(&stamps[at..at + 8]);
         ticks(8).saturating_sub(ticks(0)) as f64 * self.period * 1e-6

@@ -1,4 +1,4 @@
-//! The device with its caches: what an application holds.
+//! The device with its caches, held by an application.
 
 use std::fmt;
 use std::sync::Mutex;
@@ -15,7 +15,7 @@ use crate::machine::wgsl::{BufferKey, Limits};
 
 /// A device, the scene buffers uploaded to it and the pipelines compiled for it.
 ///
-/// Make one and keep it; it may be shared between threads. Dropping a context that owns its
+/// Create one and keep it; it may be shared between threads. Dropping a context that owns its
 /// device waits for the work still in flight.
 pub struct Context {
     pub(super) gpu: Gpu,
@@ -25,14 +25,14 @@ pub struct Context {
     pub(super) textures: Mutex<Textures>,
     pub(super) pipelines: Mutex<Pipelines>,
     pub(super) modules: Mutex<Modules>,
-    /// Buffers of finished dispatches, for the next ones.
+    /// Buffers of finished dispatches, reused by the next ones.
     pub(super) idle: Mutex<Vec<Slot>>,
 }
 
 impl Context {
-    /// Opens the fastest adapter there is, a software one if there is no other.
+    /// Opens the fastest adapter, or a software one if there is no other.
     ///
-    /// The environment variables `WGPU_BACKEND` and `WGPU_VALIDATION` are heeded.
+    /// The environment variables `WGPU_BACKEND` and `WGPU_VALIDATION` are honoured.
     pub fn new() -> Result<Self, GpuError> {
         let adapter = pollster::block_on(adapter())?;
         let (device, queue) = pollster::block_on(device(&adapter))?;
@@ -43,10 +43,9 @@ impl Context {
 
     /// Uses a device and a queue of the application, with that device's limits.
     ///
-    /// Its callbacks for errors and for loss are left alone. Ask for
-    /// `Features::TIMESTAMP_QUERY` when making the device to get device times, and for the
-    /// adapter's storage limits to get large windows. Without `adapter_info` the device's
-    /// own is taken.
+    /// Its callbacks for errors and for device loss are left alone. Request
+    /// `Features::TIMESTAMP_QUERY` when creating the device to get device times, and the adapter's
+    /// storage limits to get large windows. Without `adapter_info` the device's own is used.
     pub fn from_wgpu(
         adapter_info: Option<wgpu::AdapterInfo>,
         device: wgpu::Device,
@@ -65,18 +64,18 @@ impl Context {
         }
     }
 
-    /// Makes bindings smaller than the device would allow, so that windows and tiles are
-    /// exercised by small data. Never below 256 bytes and never above the device's limit.
+    /// Lowers the limit on a binding's size, so that small data exercise windows and tiles. It is
+    /// never below 256 bytes and never above the device's limit.
     pub fn with_max_binding_bytes(mut self, bytes: u64) -> Self {
         let caps = &mut self.gpu.caps;
         caps.max_binding = (bytes & !3).max(256).min(caps.max_binding);
         self
     }
 
-    /// How long to wait for one dispatch before giving up; 60 s unless set.
+    /// Sets the timeout of one dispatch; 60 s unless set.
     ///
-    /// A timeout comes back as an error at once, but dropping the device afterwards still
-    /// waits for the driver: wgpu has no way to cancel work.
+    /// A timeout is returned as an error at once, but dropping the device afterwards still waits
+    /// for the driver: wgpu has no way to cancel work.
     pub fn with_timeout(mut self, timeout: Duration) -> Self {
         self.gpu.timeout = timeout;
         self
@@ -95,7 +94,7 @@ impl Context {
         self
     }
 
-    /// Name of the adapter, with its driver.
+    /// Returns the name of the adapter, with its driver.
     pub fn adapter_name(&self) -> String {
         let info = &self.adapter;
         if info.driver.is_empty() {
@@ -104,22 +103,22 @@ impl Context {
         format!("{} ({:?}, {})", info.name, info.backend, info.driver)
     }
 
-    /// What wgpu knows of the adapter.
+    /// Returns wgpu's information about the adapter.
     pub fn adapter_info(&self) -> &wgpu::AdapterInfo {
         &self.adapter
     }
 
-    /// The device, for the application's own buffers.
+    /// Returns the device, for the application's own buffers.
     pub fn device(&self) -> &wgpu::Device {
         &self.gpu.device
     }
 
-    /// The queue, for the application's own buffers.
+    /// Returns the queue, for the application's own buffers.
     pub fn queue(&self) -> &wgpu::Queue {
         &self.gpu.queue
     }
 
-    /// The limits to record kernels with.
+    /// Returns the limits for recording kernels.
     pub fn limits(&self) -> Limits {
         Limits {
             max_binding_bytes: self.gpu.caps.max_binding,
@@ -127,53 +126,54 @@ impl Context {
         }
     }
 
-    /// Bytes of scene data sent to the device so far.
+    /// Returns the bytes of scene data uploaded to the device so far.
     pub fn uploaded_bytes(&self) -> u64 {
         lock(&self.uploads).uploaded() + lock(&self.textures).uploaded()
     }
 
-    /// Bytes of scene data that the device keeps: what was sent and belongs to trees that still
-    /// are.
+    /// Returns the bytes of scene data that the device keeps: those uploaded for trees that still
+    /// exist.
     pub fn scene_bytes(&self) -> u64 {
         lock(&self.uploads).kept() + lock(&self.textures).kept()
     }
 
-    /// Kernels recorded so far: one that runs again is not recorded again.
+    /// Returns the number of kernels recorded so far: one that runs again is not recorded again.
     pub fn recorded(&self) -> u64 {
         lock(&self.modules).recorded()
     }
 
-    /// Programs printed as WGSL so far: kernels that record the same have one text.
+    /// Returns the number of programs printed as WGSL so far: kernels with equal recordings share
+    /// one text.
     pub fn printed(&self) -> u64 {
         lock(&self.modules).printed()
     }
 
-    /// Shaders compiled so far.
+    /// Returns the number of shaders compiled so far.
     pub fn compiled(&self) -> u64 {
         lock(&self.pipelines).compiled()
     }
 
-    /// How long their compilation took: to parse, validate and translate the text, and whatever the
-    /// driver does with it at once. What the driver puts off until the first dispatch is in that
+    /// Returns the total compilation time: parsing, validating and translating the text, and the
+    /// driver's immediate work on it. Work that the driver defers to the first dispatch is in that
     /// dispatch's time.
     pub fn compile_time(&self) -> Duration {
         lock(&self.pipelines).compile_time()
     }
 
-    /// Frees the scene buffers of one owner; they are uploaded again when asked for.
+    /// Frees the scene buffers of one owner; they are uploaded again when needed.
     pub fn forget(&self, id: u64) {
         lock(&self.uploads).forget(id);
         lock(&self.textures).forget(id);
     }
 
-    /// Frees the scene buffers of trees that are no more.
+    /// Frees the scene buffers of dropped trees.
     pub(super) fn forget_gone(&self) {
         lock(&self.uploads).forget_gone();
         lock(&self.textures).forget_gone();
     }
 
-    /// Names a buffer of the application as the contents of `key`: `size` bytes from
-    /// `offset`. Nothing is uploaded and nothing is copied.
+    /// Uses a buffer of the application as the contents of `key`: `size` bytes from `offset`.
+    /// Nothing is uploaded and nothing is copied.
     ///
     /// The buffer must belong to this context's device. It replaces an earlier version of
     /// the same part, and is itself dropped when a kernel asks for another version.
@@ -198,10 +198,10 @@ impl fmt::Debug for Context {
     }
 }
 
-/// The fastest adapter; wgpu sorts software last.
+/// Returns the fastest adapter; wgpu sorts software adapters last.
 async fn adapter() -> Result<wgpu::Adapter, GpuError> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    // Indirect calls, which are never made here, cost pipelines at start and, worse, hold
+    // Indirect calls, which are never made here, cost pipelines at start and, worse, limit
     // max_buffer_size to 4 GiB.
     descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
     let instance = wgpu::Instance::new(descriptor.with_env());
@@ -219,7 +219,7 @@ async fn adapter() -> Result<wgpu::Adapter, GpuError> {
         .map_err(|error| GpuError::NoAdapter { reason: one_line(&error.to_string()) })
 }
 
-/// A device with all the storage the adapter offers.
+/// Requests a device with all the storage that the adapter offers.
 async fn device(adapter: &wgpu::Adapter) -> Result<(wgpu::Device, wgpu::Queue), GpuError> {
     let request = adapter.request_device(&wgpu::DeviceDescriptor {
         label: Some("raydsl"),
@@ -233,7 +233,7 @@ async fn device(adapter: &wgpu::Adapter) -> Result<(wgpu::Device, wgpu::Queue), 
     })
 }
 
-/// The defaults, the adapter's own values where kernels need them.
+/// Returns the default limits, with the adapter's own values where kernels need them.
 fn wanted_limits(offered: &wgpu::Limits) -> wgpu::Limits {
     wgpu::Limits {
         max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,

@@ -1,4 +1,4 @@
-//! One device and its queue, with every failure turned into a [`GpuError`].
+//! A device and its queue, with every failure converted to a [`GpuError`].
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::error::{GpuError, one_line};
 
-/// The limits that matter here, read once.
+/// The relevant limits, read once.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Caps {
     /// Largest storage binding, a multiple of 4; lowered by `with_max_binding_bytes`.
@@ -19,7 +19,7 @@ pub(super) struct Caps {
     pub(super) max_uniform: u64,
     /// Alignment of a storage binding's offset.
     pub(super) alignment: u64,
-    /// Workgroups of one dispatch in x or y.
+    /// Workgroups per dispatch in x or y.
     pub(super) max_groups: u32,
     /// Whether compute passes can be timed by the device.
     pub(super) timestamps: bool,
@@ -31,7 +31,7 @@ const UNIFORM_BINDINGS: u32 = 2;
 impl Caps {
     fn of(device: &wgpu::Device) -> Self {
         let limits = device.limits();
-        // wgpu 30 limits uniform and storage buffers together as well, to 28 by default.
+        // wgpu 30 also limits the sum of uniform and storage buffers, to 28 by default.
         let together = limits
             .max_buffers_and_acceleration_structures_per_shader_stage
             .saturating_sub(UNIFORM_BINDINGS);
@@ -47,12 +47,12 @@ impl Caps {
     }
 }
 
-/// What the device reported outside any error scope.
+/// Errors that the device reported outside any error scope.
 #[derive(Default, Debug)]
 struct Faults {
-    /// Why the device was lost; stays.
+    /// The reason of a device loss, which is permanent.
     lost: Mutex<Option<String>>,
-    /// The first uncaptured error; given to the next caller.
+    /// The first uncaptured error, returned to the next caller.
     stray: Mutex<Option<GpuError>>,
 }
 
@@ -75,7 +75,7 @@ impl Gpu {
         Self { device, queue, caps, timeout: Duration::from_secs(60), faults: Arc::default() }
     }
 
-    /// Installs callbacks on a device of our own: the default one panics.
+    /// Installs callbacks on a device created by this crate: wgpu's default one panics.
     pub(super) fn watch(&self) {
         let faults = Arc::clone(&self.faults);
         self.device.set_device_lost_callback(move |reason, text| {
@@ -88,7 +88,7 @@ impl Gpu {
         }));
     }
 
-    /// The error that the device has on record, if any.
+    /// Returns the recorded error of the device, if any.
     pub(super) fn check(&self) -> Result<(), GpuError> {
         if let Some(reason) = lock(&self.faults.lost).clone() {
             return Err(GpuError::DeviceLost { reason });
@@ -99,7 +99,7 @@ impl Gpu {
         }
     }
 
-    /// Does `work` inside error scopes and returns what they caught.
+    /// Runs `work` inside error scopes and returns the errors caught.
     ///
     /// Scopes belong to a thread, so `work` must stay on this one.
     pub(super) fn guarded<T>(&self, what: &str, work: impl FnOnce() -> T) -> Result<T, GpuError> {
@@ -110,14 +110,14 @@ impl Gpu {
         }
     }
 
-    /// Does `work` inside one error scope of each kind.
+    /// Runs `work` inside one error scope of each kind.
     fn scoped<T>(&self, work: impl FnOnce() -> T) -> (T, Option<wgpu::Error>) {
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let made = work();
-        // All three are popped whatever they hold, innermost first. Memory is named first:
-        // the other errors are then mostly its consequences.
+        // All three are popped in any case, innermost first. Out of memory is reported first: the
+        // other errors are then mostly its consequences.
         let caught = [
             pollster::block_on(memory.pop()),
             pollster::block_on(internal.pop()),
@@ -126,14 +126,14 @@ impl Gpu {
         (made, caught.into_iter().flatten().next())
     }
 
-    /// The loss of the device where that is why a call was refused.
+    /// Replaces an error by the loss of the device, if that is why a call was refused.
     ///
-    /// A lost device makes invalid objects without a word, and only their use is an error.
+    /// A lost device creates invalid objects silently, and only their use is an error.
     fn cause(&self, error: GpuError) -> GpuError {
         if !matches!(error, GpuError::Rejected { .. }) || self.answers() {
             return error;
         }
-        // The callback that knows the reason is called from a poll.
+        // The callback with the reason is called from a poll.
         let _ = catch_unwind(AssertUnwindSafe(|| self.device.poll(wgpu::PollType::Poll)));
         match self.check() {
             Err(known @ GpuError::DeviceLost { .. }) => known,
@@ -141,7 +141,7 @@ impl Gpu {
         }
     }
 
-    /// Whether the device still makes and takes a small buffer.
+    /// Returns whether the device still creates a small buffer.
     fn answers(&self) -> bool {
         let (_, refused) = self.scoped(|| {
             let probe = self.device.create_buffer(&wgpu::BufferDescriptor {
@@ -155,7 +155,7 @@ impl Gpu {
         refused.is_none()
     }
 
-    /// A buffer of at least `bytes` bytes, rounded up to a multiple of 4 and never empty.
+    /// Creates a buffer of at least `bytes` bytes, rounded up to a multiple of 4 and never empty.
     pub(super) fn buffer(
         &self,
         name: &str,
@@ -180,9 +180,9 @@ impl Gpu {
     pub(super) fn wait(&self, index: wgpu::SubmissionIndex) -> Result<(), GpuError> {
         let poll =
             wgpu::PollType::Wait { submission_index: Some(index), timeout: Some(self.timeout) };
-        // wgpu panics in `poll` when the driver reports a lost device during the wait; it
-        // has recorded the loss before and its state is consistent, so the panic can be
-        // taken as the report it is.
+        // wgpu panics in `poll` when the driver reports a lost device during the wait; it has
+        // recorded the loss before and its state is consistent, so the panic can be treated as a
+        // report.
         let polled = catch_unwind(AssertUnwindSafe(|| self.device.poll(poll)));
         self.check()?;
         match polled {
@@ -190,20 +190,20 @@ impl Gpu {
             Ok(Err(wgpu::PollError::Timeout)) => {
                 Err(GpuError::Timeout { seconds: self.timeout.as_secs_f64() })
             }
-            // The submission never was accepted, which no error scope explained: wgpu keeps
-            // silent about calls on a lost device.
+            // The submission was never accepted, without an error in a scope: wgpu ignores calls on
+            // a lost device.
             Ok(Err(error)) => Err(lost(&error.to_string())),
             Err(_) => Err(lost("the driver failed while waiting")),
         }
     }
 }
 
-/// The loss of the device, where no callback told the reason.
+/// Returns the error for the loss of the device without a reason from a callback.
 pub(super) fn lost(reason: &str) -> GpuError {
     GpuError::DeviceLost { reason: reason.to_owned() }
 }
 
-/// wgpu's error as ours.
+/// Converts wgpu's error to a [`GpuError`].
 pub(super) fn typed(error: wgpu::Error, what: &str) -> GpuError {
     let what = what.to_owned();
     match error {
@@ -214,7 +214,7 @@ pub(super) fn typed(error: wgpu::Error, what: &str) -> GpuError {
     }
 }
 
-/// Locks a mutex; a panic elsewhere has not broken what the caches hold.
+/// Locks a mutex; a panic elsewhere has not left a cache inconsistent.
 pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

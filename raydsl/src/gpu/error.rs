@@ -1,4 +1,4 @@
-//! What can go wrong on the device side, each with its remedy.
+//! Errors of the GPU runtime, each with its remedy.
 
 use super::window::WindowError;
 use crate::machine::wgsl::BufferKey;
@@ -13,10 +13,10 @@ pub enum GpuError {
          ({reason})"
     )]
     NoAdapter {
-        /// Which backends were asked, in wgpu's words.
+        /// The backends tried, in wgpu's words.
         reason: String,
     },
-    /// The adapter is there but gave no device.
+    /// The adapter did not create a device.
     #[error(
         "the adapter {adapter} refused to make a device ({reason}): update its driver, or pass \
          your own device to Context::from_wgpu"
@@ -37,7 +37,7 @@ pub enum GpuError {
         /// That line of the source, trimmed.
         text: String,
     },
-    /// The module is valid WGSL but no pipeline could be made of it.
+    /// The module is valid WGSL but no pipeline could be created from it.
     #[error("no pipeline could be made of the shader: {message}")]
     PipelineFailed {
         /// The message of wgpu or of the driver.
@@ -49,9 +49,9 @@ pub enum GpuError {
          windows (Context::with_max_binding_bytes) or a device with a higher limit"
     )]
     BufferTooLarge {
-        /// What the buffer is for.
+        /// The purpose of the buffer.
         name: String,
-        /// Bytes asked for.
+        /// The requested bytes.
         bytes: u64,
         /// The device's limit.
         limit: u64,
@@ -62,9 +62,9 @@ pub enum GpuError {
          with this context's limits()"
     )]
     BindingTooLarge {
-        /// What is bound.
+        /// The bound resource.
         name: String,
-        /// Bytes asked for.
+        /// The requested bytes.
         bytes: u64,
         /// The limit of this context.
         limit: u64,
@@ -82,13 +82,13 @@ pub enum GpuError {
         /// The device's limit.
         limit: u32,
     },
-    /// More storage buffers than one shader stage may have.
+    /// The kernel needs more storage buffers than a shader stage may have.
     #[error(
         "the kernel needs {needed} storage buffers but max_storage_buffers_per_shader_stage is \
          {limit}: use fewer scene buffers or larger windows"
     )]
     TooManyBuffers {
-        /// Scene windows, inputs and outputs together.
+        /// The number of scene windows, inputs and outputs together.
         needed: u64,
         /// The device's limit.
         limit: u32,
@@ -99,13 +99,13 @@ pub enum GpuError {
          used (Context::forget) or split the data"
     )]
     OutOfMemory {
-        /// What was being made.
+        /// The object being created.
         what: String,
     },
-    /// The device is gone.
+    /// The device was lost.
     #[error("the device was lost ({reason}): make a new Context and upload the scene again")]
     DeviceLost {
-        /// The driver's reason, where it gave one.
+        /// The driver's reason, if it gave one.
         reason: String,
     },
     /// The device did not answer in time.
@@ -117,7 +117,7 @@ pub enum GpuError {
         /// The time allowed.
         seconds: f64,
     },
-    /// The caller knows no bytes for a buffer that the kernel reads.
+    /// The caller gave no bytes for a buffer that the kernel reads.
     #[error("there is no data for the scene buffer {name} ({key:?}): is its owner still alive?")]
     MissingData {
         /// The buffer's name in the kernel.
@@ -125,14 +125,14 @@ pub enum GpuError {
         /// The buffer's key.
         key: BufferKey,
     },
-    /// Bytes were given, but not as many as are needed.
+    /// The given bytes have the wrong length.
     #[error("{what} has {bytes} bytes but {needed} are needed")]
     WrongLength {
-        /// Which bytes.
+        /// The name of the bytes.
         what: String,
-        /// How many were given.
+        /// The number of bytes given.
         bytes: u64,
-        /// How many are needed.
+        /// The number of bytes needed.
         needed: u64,
     },
     /// A buffer of the application cannot serve as a scene buffer.
@@ -140,7 +140,7 @@ pub enum GpuError {
     ExternalBuffer {
         /// The key it was given for.
         key: BufferKey,
-        /// What to change.
+        /// The remedy.
         reason: String,
     },
     /// A window of the application's buffer cannot stand for a slice.
@@ -148,39 +148,39 @@ pub enum GpuError {
     Window {
         /// The type of the slice's elements.
         element: &'static str,
-        /// What is wrong, and what to change.
+        /// The problem and its remedy.
         #[source]
         problem: WindowError,
     },
-    /// The grid has more pixels than a shader can number.
+    /// The grid has more pixels than a 32-bit index can hold.
     #[error("a grid of {0} x {1} pixels has more than 2^32 - 1 of them: run it in parts", size[0], size[1])]
     GridTooLarge {
-        /// The grid asked for.
+        /// The requested grid.
         size: [u32; 2],
     },
-    /// A module that does not keep to the interface.
+    /// A module violates the interface.
     #[error("the kernel module is malformed: {reason}")]
     BadModule {
-        /// Which rule it breaks.
+        /// The violated rule.
         reason: String,
     },
-    /// An error that cannot be asked for.
+    /// The requested error target is invalid.
     #[error(transparent)]
     Until(#[from] crate::render::UntilError),
     /// wgpu refused a call; a defect of this crate or of the driver.
     #[error("wgpu refused {what}: {message}")]
     Rejected {
-        /// What was being done.
+        /// The operation being performed.
         what: String,
         /// wgpu's message on one line.
         message: String,
     },
 }
 
-/// A message of several lines on one.
+/// Joins a message of several lines to one.
 ///
-/// wgpu nests causes by lines and naga draws the source around its message; only what says
-/// something is kept, the source line is quoted apart.
+/// wgpu nests causes by lines and naga draws the source around its message; only the words are
+/// kept, as the source line is quoted separately.
 pub(super) fn one_line(message: &str) -> String {
     let words = message
         .lines()
@@ -189,10 +189,10 @@ pub(super) fn one_line(message: &str) -> String {
     words.collect::<Vec<_>>().join("; ")
 }
 
-/// Lines with which wgpu introduces the causes.
+/// Lines that wgpu prints before the causes.
 const FRAMES: [&str; 3] = ["Validation Error", "Internal Error", "Caused by:"];
 
-/// Whether a line of naga's report shows the source instead of saying something.
+/// Returns whether a line of naga's report draws the source instead of a message.
 fn is_drawing(line: &str) -> bool {
     let rest = line.trim_start_matches(|c: char| c.is_ascii_digit() || c == ' ');
     rest.starts_with(['│', '┌', '╭', '╰', '|', '·'])

@@ -1,10 +1,10 @@
-//! Runs generated WGSL through wgpu.
+//! GPU runtime: generated WGSL run through wgpu.
 //!
-//! A [`Context`] owns, or borrows from the application, one device and its queue. Scene
-//! buffers are uploaded once and kept ([`BufferKey`](crate::machine::wgsl::BufferKey)),
-//! pipelines are compiled once and kept, and [`Context::run`] cuts a grid into dispatches
-//! that fit the device's limits and stay short. Whatever goes wrong comes back as a
-//! [`GpuError`]: wgpu's own default, a panic, is never left in place.
+//! A [`Context`] owns, or borrows from the application, one device and its queue. Scene buffers are
+//! uploaded once and kept ([`BufferKey`](crate::machine::wgsl::BufferKey)), pipelines are compiled
+//! once and kept, and [`Context::run`] splits a grid into dispatches that fit the device's limits
+//! and stay short. Every failure is returned as a [`GpuError`]: wgpu's own default, a panic, is
+//! never left in place.
 
 mod buffers;
 mod chunks;

@@ -1,4 +1,4 @@
-//! Compiled kernels, each compiled once.
+//! Compute pipelines of kernels, each compiled once.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -9,13 +9,13 @@ use super::device::Gpu;
 use super::error::{GpuError, one_line};
 use super::tiles::FIRST_GOAL;
 
-/// Which runtime checks wgpu adds to a shader.
+/// The runtime checks that wgpu adds to a shader.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub enum Checks {
-    /// All of them: no shader can reach memory outside its buffers.
+    /// All checks: no shader can access memory outside its buffers.
     #[default]
     Full,
-    /// No bounds checks: the shader keeps its indices within bounds by itself.
+    /// No bounds checks: the shader keeps its indices within bounds itself.
     Trusted,
 }
 
@@ -24,7 +24,7 @@ pub(super) struct Pipeline {
     pub(super) compute: wgpu::ComputePipeline,
     pub(super) layout: wgpu::BindGroupLayout,
     bindings: Bindings,
-    /// Samples of one dispatch, as the last run left them: the next starts there.
+    /// Samples per dispatch at the end of the last run: the next one starts there.
     pub(super) goal: AtomicU64,
 }
 
@@ -42,34 +42,35 @@ pub(super) struct Sampled {
     pub(super) is_volume: bool,
 }
 
-/// All of a kernel's bindings but the uniform ones, which are always the same.
+/// All bindings of a kernel but the uniform buffers, which are always the same.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(super) struct Bindings {
     pub(super) storage: Vec<Storage>,
     pub(super) sampled: Vec<Sampled>,
 }
 
-/// The kernels compiled so far, by their text.
+/// The pipelines compiled so far, by their text.
 #[derive(Default)]
 pub(super) struct Pipelines {
-    /// The text nearly always fixes the bindings; where it does not, one entry for each.
+    /// Pipelines by text. It nearly always determines the bindings; if not, there is one entry for
+    /// each.
     by_source: HashMap<String, Vec<Arc<Pipeline>>>,
     compiled: u64,
     compile_time: Duration,
 }
 
 impl Pipelines {
-    /// Shaders compiled so far.
+    /// Returns the number of shaders compiled so far.
     pub(super) fn compiled(&self) -> u64 {
         self.compiled
     }
 
-    /// How long that took.
+    /// Returns the total compilation time.
     pub(super) fn compile_time(&self) -> Duration {
         self.compile_time
     }
 
-    /// The pipeline of a text, compiled if it is new.
+    /// Returns the pipeline of a text, compiled if it is new.
     pub(super) fn get(
         &mut self,
         gpu: &Gpu,
@@ -91,10 +92,10 @@ impl Pipelines {
     }
 }
 
-/// Makes a pipeline of a text.
+/// Compiles a pipeline from a text.
 ///
-/// The layout lists every binding of the module, used or not: a layout deduced from the
-/// shader would leave out what the shader happens not to read, and bind groups would differ.
+/// The layout lists every binding of the module, used or not: a layout deduced from the shader
+/// would omit unused bindings, and bind groups would differ.
 fn compile(
     gpu: &Gpu,
     checks: Checks,
@@ -178,7 +179,7 @@ fn entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None }
 }
 
-/// Parses and validates a text, quoting the line at fault.
+/// Parses and validates a text; an error quotes the line at fault.
 fn shader(gpu: &Gpu, checks: Checks, source: &str) -> Result<wgpu::ShaderModule, GpuError> {
     let mut report = None;
     let made = gpu.guarded("the shader", || {
@@ -205,19 +206,18 @@ fn shader_module(device: &wgpu::Device, checks: Checks, source: &str) -> wgpu::S
                 ..wgpu::ShaderRuntimeChecks::checked()
             };
             // SAFETY: only the bounds checks are off, and `Context::with_checks`, the one way to
-            // `Trusted`, has its caller promise modules that stay within bounds without them;
-            // recorded kernels clamp each index of a buffer and of an array, their stacks have a
-            // place for every level that a tree may have, and they leave when their pixel is
-            // outside `job.count`. Loop bounding stays on: without it a loop that never ends, which
-            // a kernel's own `while` can be for some input, lets the driver assume anything, clamps
-            // included. Integer division keeps its guards for the same reason: a kernel may divide
-            // by zero.
+            // `Trusted`, requires modules that stay within bounds without them; recorded kernels
+            // clamp each index of a buffer and of an array, their stacks have a place for every
+            // level that a tree may have, and they leave when their pixel is outside `job.count`.
+            // Loop bounding stays on: an infinite loop, possible in a kernel's own `while`, would
+            // otherwise let the driver assume anything, clamps included. Integer division keeps its
+            // guards for the same reason: a kernel may divide by zero.
             unsafe { device.create_shader_module_trusted(descriptor, trusted) }
         }
     }
 }
 
-/// The error for a text that naga refused.
+/// Returns the error for a text that naga refused.
 fn invalid(source: &str, report: Option<wgpu::CompilationInfo>, fallback: String) -> GpuError {
     let messages = report.map(|report| report.messages).unwrap_or_default();
     let fault = messages

@@ -1,4 +1,4 @@
-//! Runs a recorded kernel over a grid.
+//! Dispatch of a recorded kernel over a grid.
 
 use std::borrow::Cow;
 use std::collections::VecDeque;
@@ -19,16 +19,16 @@ use super::window::GpuWindow;
 use crate::machine::wgsl::{BufferKey, Module};
 use crate::render::{Effort, timing_of};
 
-/// Dispatches on their way at once: one computes while the other's outputs come back.
+/// Dispatches in flight: one computes while the other's outputs are read back.
 const IN_FLIGHT: usize = 2;
-/// Inputs or outputs of one dispatch at most: several dispatches overlap better with their
-/// transfers than one large one, and the buffers stay small beside the scene.
+/// The limit on a dispatch's inputs or outputs in bytes: several dispatches overlap better with
+/// their transfers than one large one, and the buffers stay small beside the scene.
 const TILE_BYTES: u64 = 64 << 20;
 
-/// Is told the share of a run that is done, and says whether to go on.
+/// A callback that receives the completed share of a run and returns whether to go on.
 pub(super) type Teller<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 
-/// A grid that is run: its size, what a pixel costs, and who is told how far it is.
+/// A grid to run: its size, the cost of a pixel, and the progress callback.
 pub(super) struct Grid<'a> {
     pub(super) size: [u32; 2],
     pub(super) effort: Effort,
@@ -36,28 +36,28 @@ pub(super) struct Grid<'a> {
 }
 
 impl Grid<'_> {
-    /// One sample a pixel, of which no one is told.
+    /// Creates a grid with one sample per pixel and no progress callback.
     pub(super) const fn of(size: [u32; 2]) -> Self {
         Self { size, effort: Effort::ONE, teller: None }
     }
 }
 
-/// Where the outputs of a run go.
+/// The destination of a run's outputs.
 pub(super) enum Outputs<'a> {
-    /// To the host, `output_stride` bytes for each pixel.
+    /// The host, `output_stride` bytes per pixel.
     Host(&'a mut [u8]),
-    /// To a checked window of the application; nothing comes back.
+    /// A checked window of the application; nothing is read back.
     Device(&'a GpuWindow),
 }
 
-/// How long a run took.
+/// The time of a run.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Timing {
-    /// The compute passes alone, by the device's clock, where it has one.
+    /// The compute passes alone, by the device's clock, if it has one.
     pub device_ms: Option<f64>,
-    /// The whole call: uploads, compilation and readback included.
+    /// The whole call, including uploads, compilation and readback.
     pub wall_ms: f64,
-    /// Number of dispatches the grid was cut into.
+    /// The number of dispatches of the grid.
     pub dispatches: u32,
 }
 
@@ -73,15 +73,15 @@ impl core::ops::AddAssign for Timing {
 }
 
 impl Context {
-    /// Runs `module` once for each pixel of a grid of `size`, or for each element of a batch
-    /// of `size` (n, 1), and waits for the outputs.
+    /// Runs `module` once per pixel of a grid of `size`, or per element of a batch of `size` (n,
+    /// 1), and waits for the outputs.
     ///
-    /// `data` gives the bytes of the scene buffers that are not on the device yet; it must
-    /// not call this context, whose cache is locked meanwhile.
+    /// `data` returns the bytes of the scene buffers that are not on the device yet; it must not
+    /// call this context, whose cache is locked meanwhile.
     ///
-    /// `inputs` and `outputs` are in row order, `input_stride` and `output_stride` bytes for
-    /// each pixel; `outputs` must have exactly that length. After an error its contents are
-    /// those of the dispatches that came through.
+    /// `inputs` and `outputs` are in row order, `input_stride` and `output_stride` bytes per pixel;
+    /// `outputs` must have exactly that length. After an error it holds the results of the
+    /// completed dispatches.
     pub fn run<'a>(
         &self,
         module: &Module,
@@ -94,8 +94,8 @@ impl Context {
         self.run_to(module, data, inputs, Grid::of(size), outputs).map(timing_of)
     }
 
-    /// [`Context::run`], with the outputs where the caller wants them, unless it is told to break
-    /// off.
+    /// Does the same as [`Context::run`] with a chosen destination of the outputs, unless the
+    /// progress callback stops it.
     pub(super) fn run_to<'a>(
         &self,
         module: &Module,
@@ -142,7 +142,7 @@ impl Context {
         })
     }
 
-    /// Checks the module's numbers and the caller's slices against each other.
+    /// Checks the module's sizes and the caller's slices against each other.
     fn check_lengths(&self, module: &Module, pixels: u64, inputs: &[u8]) -> Result<(), GpuError> {
         let bad = |reason: &str| Err(GpuError::BadModule { reason: reason.to_owned() });
         if module.output_stride == 0 {
@@ -160,7 +160,7 @@ impl Context {
         expect("inputs", inputs, pixels, module.input_stride)
     }
 
-    /// Elements of the inputs and outputs that fit one dispatch.
+    /// Returns how many elements of the inputs and outputs fit in one dispatch.
     fn max_elements(&self, module: &Module) -> Result<u64, GpuError> {
         let caps = &self.gpu.caps;
         let stride = u64::from(module.input_stride.max(module.output_stride));
@@ -171,12 +171,12 @@ impl Context {
                 limit: caps.max_binding,
             });
         }
-        // The staging buffer holds the timestamps too.
+        // The staging buffer also holds the timestamps.
         let budget = caps.max_binding.min(caps.max_buffer.saturating_sub(64));
         Ok((budget.min(TILE_BYTES) / stride).max(1))
     }
 
-    /// The compiled kernel.
+    /// Returns the compiled kernel.
     fn pipeline(&self, module: &Module) -> Result<Arc<Pipeline>, GpuError> {
         let sampled = module.textures.iter().map(|texture| Sampled {
             binding: texture.binding,
@@ -192,7 +192,7 @@ impl Context {
         pipelines.get(&self.gpu, self.checks, &module.source, &bindings)
     }
 
-    /// The kernel's parameters on the device.
+    /// Uploads the kernel's uniform buffer.
     fn uniforms(&self, module: &Module) -> Result<wgpu::Buffer, GpuError> {
         let bytes = module.uniforms.len() as u64;
         let limit = self.gpu.caps.max_uniform;
@@ -211,7 +211,7 @@ impl Context {
         Ok(buffer)
     }
 
-    /// The windows of all scene buffers, uploaded where needed.
+    /// Returns the bindings of all scene buffers' windows, uploading where needed.
     fn scene(&self, module: &Module, data: Source<'_, '_>) -> Result<Vec<Bound>, GpuError> {
         let mut uploads = lock(&self.uploads);
         let mut scene = Vec::new();
@@ -221,7 +221,7 @@ impl Context {
         Ok(scene)
     }
 
-    /// All textures for the sampler, uploaded where needed.
+    /// Returns the bindings of all sampled textures, uploading where needed.
     fn textures(
         &self,
         module: &Module,
@@ -231,8 +231,8 @@ impl Context {
         module.textures.iter().map(|texture| textures.bind(&self.gpu, texture, data)).collect()
     }
 
-    /// Sends the tiles off, a few in flight, and learns how large they should be. What is in flight
-    /// comes in, even where no more is wanted.
+    /// Submits the tiles, a few in flight, and adapts their size. Tiles in flight are completed
+    /// even after a stop.
     fn dispatch_all(
         &self,
         pass: &Pass<'_>,
@@ -248,7 +248,7 @@ impl Context {
         let mut in_flight: VecDeque<InFlight> = VecDeque::with_capacity(IN_FLIGHT);
         let mut end = ControlFlow::Continue(());
         while let Some(tile) = tiler.next(progress.goal / u64::from(effort.samples.max(1))) {
-            // The beginning and the end are told by others.
+            // The callers report the beginning and the end.
             if progress.done > 0
                 && let Some(teller) = &mut teller
                 && teller(progress.done as f64 / all as f64).is_break()
@@ -278,7 +278,7 @@ impl Context {
         Ok(end)
     }
 
-    /// Takes the outputs of a dispatch and puts its buffers by.
+    /// Copies the outputs of a dispatch and keeps its buffers for reuse.
     fn retire(
         &self,
         dispatch: InFlight,
@@ -294,20 +294,20 @@ impl Context {
     }
 }
 
-/// What a run has learnt so far.
+/// The progress of a run.
 struct Progress<'a> {
-    /// Samples of one dispatch.
+    /// Samples per dispatch.
     goal: u64,
     effort: Effort,
     last_end: Option<Instant>,
     timing: &'a mut Timing,
-    /// Pixels that have come in.
+    /// Completed pixels.
     done: u64,
 }
 
 impl Progress<'_> {
-    /// Accounts for a finished dispatch. Without timestamps it took from its submission, or
-    /// from the end of the one before it, until now.
+    /// Records a finished dispatch. Without timestamps its time runs from its submission, or from
+    /// the end of the dispatch before it, until now.
     fn note(&mut self, since: Instant, finished: &Finished) {
         let now = Instant::now();
         let begin = self.last_end.map_or(since, |end| end.max(since));
@@ -320,12 +320,12 @@ impl Progress<'_> {
         let pixels = finished.tile.invocations();
         self.done += pixels;
         let goal = next_goal(self.goal, pixels * u64::from(self.effort.samples), ms);
-        // Pixels that have all they need are quick, and say nothing of their neighbours.
+        // Pixels that have all their samples are fast, and do not predict their neighbours.
         self.goal = if self.effort.is_even { goal } else { goal.min(self.goal) };
     }
 }
 
-/// Number of pixels, which shaders count in a u32.
+/// Returns the number of pixels, which shaders count in a u32.
 fn pixels(size: [u32; 2]) -> Result<u64, GpuError> {
     let pixels = u64::from(size[0]) * u64::from(size[1]);
     if pixels > u64::from(u32::MAX) {
@@ -347,7 +347,7 @@ fn expect(what: &str, bytes: &[u8], pixels: u64, stride: u32) -> Result<(), GpuE
     })
 }
 
-/// The module's storage bindings: inputs, outputs, windows.
+/// Returns the module's storage bindings: inputs, outputs, windows.
 fn storage(module: &Module) -> Vec<Storage> {
     let windows = module.buffers.iter().flat_map(|buffer| &buffer.windows);
     let read = windows.map(|window| window.binding);

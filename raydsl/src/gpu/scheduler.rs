@@ -1,4 +1,4 @@
-//! Runs kernels on a device.
+//! A renderer that runs kernels on a device.
 
 use std::borrow::Cow;
 use std::ops::ControlFlow;
@@ -16,23 +16,23 @@ use crate::machine::{
 };
 use crate::render::{Effort, FilmArgs, Frame, Image, Observer, Pace, Renderer, Shot, timing_of};
 
-/// Who is shown the buffers that a kernel may read.
+/// A visitor of the buffers that a kernel may read.
 type Visit<'a> = &'a mut dyn FnMut(&dyn Resource);
 
-/// Shows them.
+/// A function that calls a visitor with each of them.
 type Resources<'a> = &'a dyn Fn(Visit<'_>);
 
-/// Runs the WGSL variant of kernels: pictures and batches.
+/// A renderer that runs the WGSL variant of kernels, for pictures and batches.
 ///
 /// Trees are uploaded once and kept; text is compiled once and kept. The numbers that a kernel
-/// captures are in a uniform block, so that new numbers compile nothing.
+/// captures are in a uniform buffer, so that new numbers compile nothing.
 #[derive(Debug)]
 pub struct GpuScheduler {
     context: Context,
 }
 
 impl GpuScheduler {
-    /// Takes the best adapter of this machine.
+    /// Uses the best adapter of this machine.
     ///
     /// # Errors
     ///
@@ -41,19 +41,19 @@ impl GpuScheduler {
         Ok(Self::with_context(Context::new()?))
     }
 
-    /// Takes a context, for example of the application's own device and queue.
+    /// Uses a context, for example of the application's own device and queue.
     pub fn with_context(context: Context) -> Self {
         Self { context }
     }
 
-    /// The device with its caches.
+    /// Returns the device with its caches.
     pub fn context(&self) -> &Context {
         &self.context
     }
 
     /// Renders a frame of `width` by `height` pixels into the application's buffer: row by row from
-    /// the bottom, each result as it lies in memory. Nothing comes back to the host, and what is
-    /// submitted to the queue afterwards finds it there.
+    /// the bottom, each result in its memory layout. Nothing is read back to the host, and later
+    /// submissions to the queue see it.
     ///
     /// ```no_run
     /// # use raydsl::prelude::*;
@@ -105,7 +105,7 @@ impl GpuScheduler {
         self.known_module(kernel.number(), KernelFrame::new(frame), &record)
     }
 
-    /// The module of a kernel in a frame, which `record` records where it is not known.
+    /// Returns the module of a kernel in a frame; `record` records it if it is new.
     fn known_module(
         &self,
         kernel: u64,
@@ -115,7 +115,7 @@ impl GpuScheduler {
         lock(&self.context.modules).get(self.context.limits(), kernel, frame, record)
     }
 
-    /// Runs a module; if it was broken off, `outputs` are what they were.
+    /// Runs a module; if it is stopped, `outputs` are unchanged.
     fn run<O: Type>(
         &self,
         resources: Resources<'_>,
@@ -146,7 +146,7 @@ impl GpuScheduler {
         self.context.forget_gone();
         let data = |key| bytes_of(resources, key).map(Cow::Owned);
         let end = self.context.run_to(module, &data, inputs, grid, outputs);
-        // The address of a slice names its data only while it is borrowed.
+        // The address of a slice identifies its data only while it is borrowed.
         let buffers = module.buffers.iter().map(|buffer| buffer.key);
         let keys = buffers.chain(module.textures.iter().map(|texture| texture.key));
         for key in keys.filter(|key| crate::machine::is_borrowed(*key)) {
@@ -206,13 +206,13 @@ impl Renderer for GpuScheduler {
     }
 }
 
-/// A result in place of a kernel's.
+/// Returns a placeholder for a kernel's result.
 fn no_body<V: Value<Recorder>>(m: &Recorder) -> V {
     m.begin_body();
     V::zero(m)
 }
 
-/// The bytes of a buffer, made only where the device does not have them yet.
+/// Returns the bytes of a buffer, created only if the device does not have them yet.
 fn bytes_of(resources: Resources<'_>, key: BufferKey) -> Option<Vec<u8>> {
     let mut found = None;
     resources(&mut |resource| {

@@ -1,4 +1,4 @@
-//! One dispatch: its buffers, its submission and the return of its outputs.
+//! A dispatch: its buffers, its submission and the readback of its outputs.
 
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Instant;
@@ -16,10 +16,10 @@ use crate::machine::wgsl::Module;
 /// Bytes of WGSL's `struct Job`.
 const JOB: u64 = 32;
 
-/// What all dispatches of one run share.
+/// The data shared by all dispatches of one run.
 pub(super) struct Pass<'a> {
     pub(super) module: &'a Module,
-    /// Where the outputs go, if they stay on the device.
+    /// The destination of the outputs, if they stay on the device.
     pub(super) target: Option<&'a GpuWindow>,
     pub(super) pipeline: &'a Pipeline,
     pub(super) uniforms: wgpu::Buffer,
@@ -38,27 +38,27 @@ pub(super) struct Slot {
     clock: Option<Clock>,
 }
 
-/// A dispatch on its way.
+/// A dispatch in flight.
 pub(super) struct InFlight {
     slot: Slot,
     staging: wgpu::Buffer,
     tile: Tile,
     index: wgpu::SubmissionIndex,
     mapped: Receiver<bool>,
-    /// When it was submitted.
+    /// The time of submission.
     pub(super) since: Instant,
 }
 
-/// A dispatch that is over.
+/// A finished dispatch.
 pub(super) struct Finished {
     pub(super) slot: Slot,
     pub(super) tile: Tile,
-    /// Time of the compute pass, where the device tells.
+    /// The time of the compute pass, if the device measures it.
     pub(super) device_ms: Option<f64>,
 }
 
 impl Slot {
-    /// An empty slot.
+    /// Creates an empty slot.
     pub(super) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let clock = gpu.caps.timestamps.then(|| Clock::new(gpu)).transpose()?;
@@ -71,7 +71,7 @@ impl Slot {
         })
     }
 
-    /// Uploads the tile's inputs and sends its dispatch off.
+    /// Uploads the tile's inputs and submits its dispatch.
     pub(super) fn submit(
         mut self,
         gpu: &Gpu,
@@ -119,7 +119,7 @@ impl Slot {
             let commands = self.record(gpu, pass, tile, &group, &outputs, &staging);
             let index = gpu.queue.submit([commands]);
             staging.map_async(wgpu::MapMode::Read, 0..packed + STAMPS, move |result| {
-                // Nobody listens any more after an error elsewhere.
+                // The receiver is gone after an error elsewhere.
                 let _ = report.send(result.is_ok());
             });
             index
@@ -127,7 +127,7 @@ impl Slot {
         Ok(InFlight { slot: self, staging, tile, index, mapped, since: Instant::now() })
     }
 
-    /// Queues the job block and the inputs, which travel with the next submission.
+    /// Queues the job and the inputs, which are transferred with the next submission.
     fn write(&self, gpu: &Gpu, pass: &Pass<'_>, tile: Tile, inputs: Option<&wgpu::Buffer>) {
         let width = pass.size[0];
         // Fits: `run` refuses grids of 2^32 pixels and more.
@@ -145,7 +145,7 @@ impl Slot {
         }
     }
 
-    /// The bind group of a dispatch. Inputs and outputs are bound with their exact sizes,
+    /// Creates the bind group of a dispatch. Inputs and outputs are bound with their exact sizes,
     /// so that a checked shader is checked against the tile and not against old contents.
     fn bind(
         &self,
@@ -177,8 +177,8 @@ impl Slot {
         })
     }
 
-    /// Dispatch, copy of the outputs to the staging buffer or the application's, timestamps behind
-    /// them.
+    /// Records the dispatch, the copy of the outputs to the staging buffer or the application's,
+    /// and then the timestamps.
     fn record(
         &self,
         gpu: &Gpu,
@@ -220,7 +220,7 @@ impl Slot {
 }
 
 impl InFlight {
-    /// Waits for the dispatch and copies its outputs to their places in the grid.
+    /// Waits for the dispatch and copies its outputs into the grid.
     pub(super) fn finish(
         self,
         gpu: &Gpu,
@@ -228,7 +228,7 @@ impl InFlight {
         outputs: &mut [u8],
     ) -> Result<Finished, GpuError> {
         gpu.wait(self.index)?;
-        // The work is done, but another thread's poll may be the one that reports it.
+        // The work is done, but another thread's poll may be the one to report it.
         match self.mapped.recv_timeout(gpu.timeout) {
             Ok(true) => {}
             Ok(false) | Err(_) => {
@@ -259,8 +259,8 @@ impl InFlight {
     }
 }
 
-/// Bytes of a tile's outputs that come back, without the gaps between its rows, to the alignment of
-/// a map.
+/// Returns the bytes of a tile's outputs that are read back, without the gaps between its rows,
+/// rounded up to the alignment of a map.
 fn packed_bytes(pass: &Pass<'_>, tile: Tile) -> u64 {
     if pass.target.is_some() {
         return 0;
@@ -269,7 +269,7 @@ fn packed_bytes(pass: &Pass<'_>, tile: Tile) -> u64 {
     bytes.next_multiple_of(wgpu::MAP_ALIGNMENT)
 }
 
-/// The buffer in `kept` if it is large enough, else a new one with room to spare.
+/// Returns the buffer in `kept` if it is large enough, else a new one with spare capacity.
 fn room(
     kept: &mut Option<wgpu::Buffer>,
     gpu: &Gpu,
@@ -282,7 +282,7 @@ fn room(
     }
     let largest = gpu.caps.max_buffer & !3;
     let roomy = bytes.next_power_of_two().min(largest).max(bytes);
-    // Free the small one first.
+    // Frees the small one first.
     *kept = None;
     let buffer = gpu.buffer(name, roomy, usage)?;
     *kept = Some(buffer.clone());

@@ -1,4 +1,4 @@
-//! Textures for the device's own sampler: each uploaded once.
+//! Sampled textures on the device, each uploaded once.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -10,7 +10,7 @@ use crate::machine::owner;
 use crate::machine::wgsl::{TexelFormat, Texture, TextureLayout};
 use crate::texture::Address;
 
-/// A texture and its sampler, ready to be bound.
+/// A texture and its sampler, ready for binding.
 pub(super) struct BoundTexture {
     pub(super) binding: u32,
     pub(super) view: wgpu::TextureView,
@@ -24,12 +24,12 @@ struct Upload {
     bytes: u64,
 }
 
-/// What tells the textures of one owner apart: the part, and what its texels are.
+/// The key of an owner's texture: the part, and the format of its texels.
 type Name = (u64, u32, TexelFormat);
-/// What tells samplers apart.
+/// The key of a sampler.
 type Reading = ([Address; 3], bool);
 
-/// All textures on the device, and the samplers.
+/// All textures and samplers on the device.
 #[derive(Default)]
 pub(super) struct Textures {
     uploads: HashMap<Name, Upload>,
@@ -38,28 +38,28 @@ pub(super) struct Textures {
 }
 
 impl Textures {
-    /// Bytes sent so far.
+    /// Returns the bytes uploaded so far.
     pub(super) fn uploaded(&self) -> u64 {
         self.uploaded
     }
 
-    /// Bytes of what is still here.
+    /// Returns the uploaded bytes that are still on the device.
     pub(super) fn kept(&self) -> u64 {
         self.uploads.values().map(|upload| upload.bytes).sum()
     }
 
-    /// Drops those whose owners are no more.
+    /// Drops the textures of dropped owners.
     pub(super) fn forget_gone(&mut self) {
         let gone = owner::gone(self.uploads.keys().map(|(id, ..)| *id));
         self.uploads.retain(|(id, ..), _| !gone.contains(id));
     }
 
-    /// Drops those of one owner.
+    /// Drops the textures of one owner.
     pub(super) fn forget(&mut self, id: u64) {
         self.uploads.retain(|(owner, ..), _| *owner != id);
     }
 
-    /// A texture and its sampler, uploaded if the device does not have it.
+    /// Returns a texture and its sampler, uploaded if the device does not have it.
     pub(super) fn bind(
         &mut self,
         gpu: &Gpu,
@@ -72,7 +72,7 @@ impl Textures {
         let view = match known {
             Some(upload) => upload.view.clone(),
             None => {
-                // Its memory is free for this.
+                // Frees its memory first.
                 self.uploads.remove(&name);
                 let bytes = texels(texture, source)?;
                 let sent = bytes.len() as u64;
@@ -113,7 +113,7 @@ impl Textures {
     }
 }
 
-/// The texels of all levels, one directly behind the other.
+/// Returns the texels of all levels, one directly behind another.
 fn texels<'d>(texture: &Texture, source: Source<'_, 'd>) -> Result<Cow<'d, [u8]>, GpuError> {
     let Texture { key, name, layout, .. } = texture;
     let bytes =
@@ -147,7 +147,7 @@ fn texel_count(size: [u32; 3]) -> u64 {
     size.iter().map(|&n| u64::from(n)).product()
 }
 
-/// Uploads all levels in pieces, two of them in flight at most.
+/// Uploads all levels in pieces, at most two of them in flight.
 fn send(gpu: &Gpu, texture: &Texture, bytes: &[u8]) -> Result<wgpu::TextureView, GpuError> {
     let Texture { name, layout, .. } = texture;
     let limits = gpu.device.limits();
@@ -204,7 +204,7 @@ fn descriptor(texture: &Texture) -> wgpu::TextureDescriptor<'_> {
     }
 }
 
-/// Rows of an image, or images of a volume, that are sent together.
+/// Rows of an image, or images of a volume, uploaded together.
 struct Piece<'b> {
     bytes: &'b [u8],
     origin: wgpu::Origin3d,
@@ -223,7 +223,7 @@ impl Piece<'_> {
     }
 }
 
-/// Cuts a level along its last axis.
+/// Splits a level along its last axis.
 fn pieces<'b>(
     layout: &TextureLayout,
     level: &Level,
@@ -270,7 +270,7 @@ fn address_mode(address: Address) -> wgpu::AddressMode {
     match address {
         Address::Wrap => wgpu::AddressMode::Repeat,
         Address::Mirror => wgpu::AddressMode::MirrorRepeat,
-        // The recorder leaves those with a border to the library's code.
+        // The recorder leaves textures with a border to the library's code.
         Address::Clamp | Address::Border => wgpu::AddressMode::ClampToEdge,
     }
 }

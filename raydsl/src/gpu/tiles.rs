@@ -1,15 +1,15 @@
-//! Cuts a grid into dispatches that fit the device and stay short.
+//! Partition of a grid into dispatches that fit the device and stay short.
 
-/// Samples of the very first dispatch of a kernel: one for each invocation, unless it takes more.
+/// Samples of the very first dispatch of a kernel: one per invocation, unless it takes more.
 pub(super) const FIRST_GOAL: u64 = 1 << 16;
-/// No dispatch is made smaller for its time.
+/// The minimum goal: no dispatch is made smaller because of its time.
 const LEAST_GOAL: u64 = 256;
-/// No dispatch is made larger, however fast.
+/// The maximum goal: no dispatch is made larger, however fast.
 const LARGEST_GOAL: u64 = 1 << 28;
-/// What a dispatch should take at most: far below the 2 s at which watchdogs fire.
+/// The maximum time of a dispatch: far below the 2 s at which watchdogs fire.
 const TARGET_MS: f64 = 50.0;
 
-/// A rectangle of pixels: one dispatch.
+/// A rectangle of pixels, one dispatch.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct Tile {
     pub(super) first: [u32; 2],
@@ -17,17 +17,18 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    /// Number of pixels.
+    /// Returns the number of pixels.
     pub(super) fn invocations(self) -> u64 {
         u64::from(self.count[0]) * u64::from(self.count[1])
     }
 
-    /// Elements from its first pixel to its last in a grid of this width.
+    /// Returns the number of elements from its first pixel to its last in a grid of this width.
     pub(super) fn span(self, width: u32) -> u64 {
         u64::from(self.count[1] - 1) * u64::from(width) + u64::from(self.count[0])
     }
 
-    /// Runs of consecutive elements: (first in the grid, length), the same for every one.
+    /// Returns the runs of consecutive elements: (first in the grid, length), all of the same
+    /// length.
     ///
     /// A tile of whole rows is one run.
     pub(super) fn runs(self, width: u32) -> impl Iterator<Item = (u64, u64)> {
@@ -39,21 +40,21 @@ impl Tile {
     }
 }
 
-/// Walks a grid in bands of rows, and where a band is still too much, in parts of a band.
+/// Iterates over a grid in bands of rows, and if a band is still too large, in parts of a band.
 pub(super) struct Tiler {
     size: [u32; 2],
     workgroup: [u32; 2],
-    /// Elements that fit the input and output bindings.
+    /// Elements that fit in the input and output bindings.
     max_elements: u64,
-    /// Pixels that the number of workgroups allows in x and y.
+    /// Pixels that the limit on workgroups allows in x and y.
     max_extent: [u64; 2],
     at: [u32; 2],
-    /// Rows of the band being walked.
+    /// Rows of the current band.
     band: u32,
 }
 
 impl Tiler {
-    /// A walk over a grid. `workgroup`, `max_elements` and `max_groups` are not 0.
+    /// Starts at a grid's first pixel. `workgroup`, `max_elements` and `max_groups` are not 0.
     pub(super) fn new(
         size: [u32; 2],
         workgroup: [u32; 2],
@@ -70,7 +71,7 @@ impl Tiler {
         }
     }
 
-    /// The next tile, of about `goal` invocations.
+    /// Returns the next tile, of about `goal` invocations.
     pub(super) fn next(&mut self, goal: u64) -> Option<Tile> {
         if self.at[1] >= self.size[1] || self.size[0] == 0 {
             return None;
@@ -86,9 +87,9 @@ impl Tiler {
         Some(tile)
     }
 
-    /// Rows of the next band.
+    /// Returns the rows of the next band.
     ///
-    /// A row of workgroups at least, since fewer rows leave threads idle and save no time,
+    /// It is at least a row of workgroups, since fewer rows leave threads idle and save no time,
     /// unless the bindings hold less.
     fn rows(&self, goal: u64) -> u32 {
         let width = u64::from(self.size[0]);
@@ -100,11 +101,11 @@ impl Tiler {
         whole_groups(wanted, group).min(left) as u32
     }
 
-    /// Columns of the next tile of the band.
+    /// Returns the columns of the next tile of the band.
     fn columns(&self, goal: u64) -> u32 {
         let left = u64::from(self.size[0] - self.at[0]);
         let group = u64::from(self.workgroup[0]);
-        // Several rows are only taken where whole rows fit the bindings.
+        // A band has several rows only if whole rows fit in the bindings.
         let fitting = if self.band == 1 { self.max_elements } else { left };
         let wanted = (goal / u64::from(self.band)).max(group);
         let most = wanted.min(fitting).min(self.max_extent[0]);
@@ -115,7 +116,7 @@ impl Tiler {
     }
 }
 
-/// `count` rounded down to whole workgroups where there is at least one; never 0.
+/// Returns `count` rounded down to whole workgroups if there is at least one; never 0.
 fn whole_groups(count: u64, group: u64) -> u64 {
     if count < group {
         return count.max(1);
@@ -123,11 +124,10 @@ fn whole_groups(count: u64, group: u64) -> u64 {
     count - count % group
 }
 
-/// The next goal after a dispatch of `samples` took `ms`.
+/// Returns the next goal after a dispatch of `samples` took `ms`.
 ///
-/// Both steps look at the dispatch that was measured and not at the goal of now, which
-/// later dispatches already in flight have not shown yet: learning twice from old tiles
-/// changes nothing.
+/// Both branches use the measured dispatch and not the current goal, whose effect the dispatches in
+/// flight have not shown yet: learning twice from old tiles changes nothing.
 pub(super) fn next_goal(goal: u64, samples: u64, ms: f64) -> u64 {
     let next = if ms > TARGET_MS {
         goal.min((samples as f64 * TARGET_MS / ms) as u64)
@@ -143,7 +143,7 @@ pub(super) fn next_goal(goal: u64, samples: u64, ms: f64) -> u64 {
 mod tests {
     use super::*;
 
-    /// Walks the grid and checks that every pixel is in one tile and all limits hold.
+    /// Tiles the grid and checks that every pixel is in one tile and all limits hold.
     fn walk(size: [u32; 2], group: [u32; 2], max_elements: u64, groups: u32, goal: u64) -> usize {
         let mut tiler = Tiler::new(size, group, max_elements, groups);
         let mut seen = vec![0u8; (size[0] * size[1]) as usize];

@@ -1,4 +1,4 @@
-//! Slices and primitives that live in the application's own buffers.
+//! Windows: slices and primitives stored in the application's own buffers.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -12,22 +12,22 @@ use crate::geometry::Primitive;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{Data, Slice, Type, borrowed_key, stride};
 
-/// Part of a buffer of the application: `size` bytes from `offset`.
+/// A part of a buffer of the application: `size` bytes from `offset`.
 #[derive(Clone, Debug)]
 pub struct GpuWindow {
-    /// A buffer of the context's device, made with `BufferUsages::STORAGE`.
+    /// A buffer of the context's device, created with `BufferUsages::STORAGE`.
     pub buffer: wgpu::Buffer,
-    /// Where the first element lies: a multiple of `min_storage_buffer_offset_alignment`.
+    /// The offset of the first element: a multiple of `min_storage_buffer_offset_alignment`.
     pub offset: u64,
-    /// Bytes of all elements: one behind the other, as they lie in the slice.
+    /// The bytes of all elements, one after another in the slice's memory layout.
     pub size: u64,
 }
 
-/// Data of the application that a [`GpuWindow`] may stand for: a slice, the primitives of a tree,
-/// or of the trees of a list or a scene of instances (those of the first tree first), or what
-/// primitives share, as in `bvh.view().shared()`.
+/// Host data that a [`GpuWindow`] may replace: a slice, the primitives of a tree, or of the trees
+/// of a list or a scene of instances (those of the first tree first), or data that primitives
+/// share, as in `bvh.view().shared()`.
 pub trait OnHost {
-    /// One element.
+    /// The element type.
     type Element: Type;
 
     #[doc(hidden)]
@@ -106,7 +106,7 @@ impl<P: Primitive> OnHost for Instances<'_, P> {
     }
 }
 
-/// Why a window cannot stand for a slice.
+/// The reason why a window cannot replace a slice.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WindowError {
@@ -116,7 +116,7 @@ pub enum WindowError {
     /// The buffer cannot be written to.
     #[error("the buffer has no BufferUsages::COPY_DST: create it with that, and with STORAGE")]
     NotCopyDst,
-    /// The window begins where no binding may.
+    /// The window's offset is not aligned for a binding.
     #[error(
         "its offset {offset} is no multiple of {limit}, the device's \
          min_storage_buffer_offset_alignment: put the first element at a multiple of that"
@@ -124,10 +124,10 @@ pub enum WindowError {
     Unaligned {
         /// The window's offset.
         offset: u64,
-        /// What it must be a multiple of.
+        /// The required alignment.
         limit: u64,
     },
-    /// The window ends behind its buffer.
+    /// The window extends past its buffer.
     #[error("{size} bytes from {offset} on run past the buffer's end at {limit}: make it larger")]
     PastEnd {
         /// The window's offset.
@@ -137,7 +137,7 @@ pub enum WindowError {
         /// The buffer's size.
         limit: u64,
     },
-    /// The window has not the size of the slice.
+    /// The window does not have the size of the slice.
     #[error(
         "it has {size} bytes, but the data is {len} elements of {stride} bytes, together {needed}: \
          give a window of that size, with the elements as they lie in memory"
@@ -145,31 +145,31 @@ pub enum WindowError {
     WrongSize {
         /// The window's size.
         size: u64,
-        /// Elements of the slice.
+        /// The number of elements of the slice.
         len: u64,
         /// Bytes from one element to the next.
         stride: u64,
-        /// Bytes of them all.
+        /// The bytes of all elements.
         needed: u64,
     },
-    /// A slice without elements needs no buffer, and has no address of its own.
+    /// The slice is empty: it needs no buffer, and has no address of its own.
     #[error("the data is empty: kernels read nothing of it, leave the window out")]
     Empty,
-    /// The slice has a window already.
+    /// The slice already has a window.
     #[error("the data has a window already: drop that one first")]
     Taken,
-    /// The device does not take the buffer.
+    /// The device refuses the buffer.
     #[error(
         "the device does not take the buffer ({message}): create it with Context::device(), and do \
          not destroy it"
     )]
     Foreign {
-        /// What wgpu says.
+        /// wgpu's message.
         message: String,
     },
 }
 
-/// While it lives, kernels read the slice from the application's buffer; see
+/// A guard while which kernels read the slice from the application's buffer; see
 /// [`GpuScheduler::with_gpu`].
 #[must_use = "the window is in use while this lives"]
 pub struct OnGpu<'a> {
@@ -191,17 +191,17 @@ impl fmt::Debug for OnGpu<'_> {
 }
 
 impl GpuScheduler {
-    /// Lets kernels that read `data` read `window` instead, as long as the result lives. Nothing
-    /// of the data is uploaded; of a tree, its nodes and indices are.
+    /// Makes kernels that read `data` read `window` instead, as long as the result lives. Nothing
+    /// of the data is uploaded, except a tree's nodes and indices.
     ///
-    /// The window must hold what the data holds, as it lies in memory; this is not checked. The
-    /// variants of the CPU go on to read the data. Another slice of the same elements, a part for
-    /// instance, is not meant and is uploaded as ever, and so is a slice that a tree stands over
-    /// where a kernel captures it for itself.
+    /// The window must hold the same data, in the same memory layout; this is not checked. The CPU
+    /// variants still read the host's data. Another slice of the same elements, such as a part, is
+    /// not replaced and is uploaded as usual, and so is a slice under a tree if a kernel captures
+    /// the slice itself.
     ///
-    /// Make the buffer with [`Context::device`]. A buffer of another device of the same
-    /// `wgpu::Instance` is always refused. Instances number their buffers on their own, so a buffer
-    /// of another instance is refused only where its number is not in use.
+    /// Create the buffer with [`Context::device`]. A buffer of another device of the same
+    /// `wgpu::Instance` is always refused. Instances number their buffers independently, so a
+    /// buffer of another instance is refused only if its number is not in use.
     ///
     /// # Errors
     ///
@@ -224,7 +224,7 @@ impl GpuScheduler {
     }
 }
 
-/// Whether `len` elements of `T` can be written to the window.
+/// Checks that `len` elements of `T` can be written to the window.
 pub(super) fn check_target<T: Type>(
     gpu: &Gpu,
     len: u64,
@@ -237,7 +237,7 @@ pub(super) fn check_target<T: Type>(
         .map_err(|problem| GpuError::Window { element: core::any::type_name::<T>(), problem })
 }
 
-/// Whether the window can stand for `len` elements of `stride` bytes.
+/// Checks that the window can replace `len` elements of `stride` bytes.
 fn check(gpu: &Gpu, len: u64, stride: u64, window: &GpuWindow) -> Result<(), WindowError> {
     let GpuWindow { buffer, offset, size } = window;
     let (offset, size, limit) = (*offset, *size, gpu.caps.alignment);
@@ -260,7 +260,8 @@ fn check(gpu: &Gpu, len: u64, stride: u64, window: &GpuWindow) -> Result<(), Win
     try_binding(gpu, buffer, offset, size.min(gpu.caps.max_binding & !3))
 }
 
-/// Binds the window once: wgpu alone knows whose the buffer is, and whether it still is there.
+/// Binds the window once: only wgpu knows which device the buffer belongs to, and whether it still
+/// exists.
 fn try_binding(
     gpu: &Gpu,
     buffer: &wgpu::Buffer,
@@ -286,7 +287,7 @@ fn try_binding(
             offset,
             size: wgpu::BufferSize::new(size),
         });
-        // A number that the device's instance of wgpu does not know makes wgpu panic.
+        // wgpu panics for a number unknown to the device's instance.
         catch_unwind(AssertUnwindSafe(|| {
             gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("a window"),

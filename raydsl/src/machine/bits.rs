@@ -1,4 +1,4 @@
-//! Counting and turning the bits of a `u32` by sums, masks and shifts.
+//! Bit counting and bit reversal of a `u32` by sums, masks and shifts.
 //!
 //! After Warren, "Hacker's Delight" (2013), chapters 5 and 7.
 

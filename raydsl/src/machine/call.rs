@@ -1,10 +1,10 @@
-//! Kernels as functions of a machine.
+//! Kernels as functions generic over the machine.
 
 use super::margin::Known;
 use super::record::ir::Id;
 use super::{Machine, Margin, Recorder, Type};
 
-/// Where a kernel stands in the source, and the names of its parameters.
+/// The source location of a kernel and the names of its parameters.
 #[derive(Debug)]
 pub struct KernelInfo {
     /// The function's name, or `Type_method`.
@@ -15,31 +15,32 @@ pub struct KernelInfo {
     pub line: u32,
     /// The parameters' names.
     pub params: &'static [&'static str],
-    /// What machines know of it beyond its code.
+    /// Knowledge about the function beyond its code.
     pub known: Option<KnownBy>,
 }
 
-/// A function of which machines know more than its code says: `sin` is in WGSL, and in std for
-/// `f64`.
+/// A function about which machines know more than its code says: `sin` is a builtin of WGSL, and in
+/// std for `f64`.
 pub(crate) trait KnownFunction: core::fmt::Debug + Sync {
-    /// Records what WGSL itself has for it, for code that need not be the same as on the CPU.
+    /// Records a call of WGSL's builtin, for code that need not give the same bits as the CPU.
     fn record_builtin(&self, _m: &Recorder, _args: &[Id]) -> Option<Vec<Id>> {
         None
     }
 
-    /// Its results in `f64`, with bounds of what rounding may do, if its code does not say them.
+    /// Returns the results in `f64` with bounds on their rounding errors, or `None` if its code
+    /// gives them.
     fn bound(&self, _m: &Margin, _args: &[Known]) -> Option<Vec<Known>> {
         None
     }
 
-    /// Whether it does not matter what `min` and `max` in it give for a NaN, so that WGSL's own
-    /// serve.
+    /// Returns whether the results of `min` and `max` for a NaN are irrelevant in it, so that
+    /// WGSL's own serve.
     fn is_without_nan(&self) -> bool {
         false
     }
 }
 
-/// A function that is asked about numbers alone, or whose results for a NaN nobody uses.
+/// A function called with numbers only, or whose results for a NaN nobody uses.
 #[derive(Debug)]
 pub(crate) struct WithoutNan;
 
@@ -49,7 +50,7 @@ impl KnownFunction for WithoutNan {
     }
 }
 
-/// Who knows more of a kernel.
+/// The `KnownFunction` of a kernel.
 #[derive(Clone, Copy, Debug)]
 pub struct KnownBy(pub(crate) &'static dyn KnownFunction);
 
@@ -60,18 +61,18 @@ pub struct KnownBy(pub(crate) &'static dyn KnownFunction);
     note = "a kernel that runs by itself is a `#[kernel] fn` with one parameter or more, none of them `&mut`, `#[host]`, a slice or a tree, and gives a value"
 )]
 pub trait KernelFn: 'static {
-    /// The parameters, as a tuple.
+    /// The parameter types, as a tuple.
     type Args: Type;
-    /// The result.
+    /// The result type.
     type Output: Type;
 
-    /// Where it stands in the source.
+    /// Returns its source location and parameter names.
     fn info() -> &'static KernelInfo;
 
-    /// The user's own function.
+    /// Calls the user's own function.
     fn scalar(args: Self::Args) -> Self::Output;
 
-    /// The lifted body on machine `m`.
+    /// Runs the lifted body on machine `m`.
     fn lifted<M: Machine>(
         m: &M,
         args: <Self::Args as Type>::On<M>,

@@ -1,4 +1,4 @@
-//! What a kernel may take from the code around it.
+//! Captures: values of the surrounding code that a kernel uses.
 
 use std::borrow::Cow;
 
@@ -11,7 +11,7 @@ use super::{F, Machine, Type, Value, wgsl::BufferKey};
 
 /// Data that recorded kernels read from buffers.
 pub trait Resource {
-    /// The bytes behind `key`, if they belong to this resource.
+    /// Returns the bytes behind `key`, if they belong to this resource.
     fn bytes(&self, key: BufferKey) -> Option<Cow<'_, [u8]>>;
 }
 
@@ -22,30 +22,30 @@ pub trait Resource {
     note = "a member of a struct that is no such type is captured by a name: `let spans = &scene.spans;`"
 )]
 pub trait Capture<M: Machine> {
-    /// What stands for it inside the kernel.
+    /// Its type inside the kernel.
     type On<'c>: Value<M>
     where
         Self: 'c;
 
-    /// Brings the value to the machine under the name that it has in the source.
+    /// Brings the value to the machine under its name in the source.
     fn capture<'c>(&'c self, m: &M, name: &'static str) -> Self::On<'c>;
 
     /// Brings a constant of the source to the machine.
     fn constant<'c>(&'c self, m: &M) -> Self::On<'c>;
 
-    /// Shows the buffers that recorded code may read.
+    /// Visits the buffers that recorded code may read.
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
         let _ = visit;
     }
 }
 
-/// What a kernel may take by `&`: a value, which is copied, or data that it reads in place.
+/// A type that a kernel may take by `&`: a value, which is copied, or data that it reads in place.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot take a `&{Self}`",
     note = "values of the kernel language, slices of them, trees and textures can be parameters"
 )]
 pub trait Parameter {
-    /// What stands for it inside the kernel.
+    /// Its type inside the kernel.
     type On<'a, M: Machine>: Value<M>;
 }
 
@@ -96,7 +96,7 @@ macro_rules! capture_number {
     };
 }
 
-/// A constant is told from a captured number: it may have more digits than an `f32`.
+/// Distinguishes a constant from a captured number: it may have more digits than an `f32`.
 #[diagnostic::do_not_recommend]
 impl<M: Machine> Capture<M> for f32 {
     type On<'c> = F<M>;
@@ -117,8 +117,8 @@ capture_number!(
     BVec4, Mat3, Mat4, Affine3,
 );
 
-/// An array is a value: its elements are numbers of the kernel, and a computed index chooses among
-/// them. A table is better captured as a slice.
+/// Captures an array as a value: its elements are numbers of the kernel, and a computed index
+/// selects one. A table is better captured as a slice.
 #[diagnostic::do_not_recommend]
 impl<M: Machine, T: Type, const N: usize> Capture<M> for [T; N] {
     type On<'c> = [T::On<M>; N];
@@ -134,7 +134,7 @@ impl<M: Machine, T: Type, const N: usize> Capture<M> for [T; N] {
     }
 }
 
-/// A captured `bool` stays a value of the host: a branch on it is decided while recording.
+/// Leaves a captured `bool` a value of the host: a branch on it is decided while recording.
 #[diagnostic::do_not_recommend]
 impl<M: Machine> Capture<M> for bool {
     type On<'c> = bool;

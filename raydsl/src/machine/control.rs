@@ -1,16 +1,16 @@
-//! Variables and branches of lifted code.
+//! Structured control flow of lifted code: variables, branches and loops.
 
 use core::cell::Cell;
 
 use super::{B, Machine, Value};
 
-/// A `let mut` of a kernel: reading takes a snapshot, assignment reaches the running lanes only.
+/// A `let mut` of a kernel: a read takes a snapshot, an assignment reaches the running lanes only.
 pub struct Var<V: Copy> {
     state: Cell<V>,
 }
 
 impl<V: Copy> Var<V> {
-    /// A variable that holds `v`.
+    /// Creates a variable that holds `v`.
     #[inline(always)]
     pub fn new<M: Machine>(m: &M, name: &'static str, v: V) -> Self
     where
@@ -19,7 +19,7 @@ impl<V: Copy> Var<V> {
         Self { state: Cell::new(m.var_new(name, v)) }
     }
 
-    /// A variable that is assigned before it is read.
+    /// Creates a variable that is assigned before it is read.
     #[inline(always)]
     pub fn declare<M: Machine>(m: &M, name: &'static str) -> Self
     where
@@ -28,7 +28,7 @@ impl<V: Copy> Var<V> {
         Self { state: Cell::new(m.var_declare(name)) }
     }
 
-    /// The value now.
+    /// Returns the current value.
     #[inline(always)]
     pub fn get<M: Machine>(&self, m: &M) -> V
     where
@@ -53,7 +53,7 @@ pub struct Ret<V: Copy> {
 }
 
 impl<V: Copy> Ret<V> {
-    /// No lane has returned.
+    /// Creates the slot, before any lane has returned.
     #[inline(always)]
     pub fn new<M: Machine>(m: &M) -> Self
     where
@@ -62,7 +62,7 @@ impl<V: Copy> Ret<V> {
         Self { slot: Cell::new(m.give_slot()) }
     }
 
-    /// `return v` in the running lanes, which stop.
+    /// Lowers `return v`: stores `v` for the running lanes and stops them.
     #[inline(always)]
     pub fn give<M: Machine>(&self, m: &M, v: V)
     where
@@ -71,14 +71,14 @@ impl<V: Copy> Ret<V> {
         m.give(&self.slot, v);
     }
 
-    /// What the lanes returned.
+    /// Returns the value that each lane returned.
     #[inline(always)]
     pub fn take(self) -> V {
         self.slot.get()
     }
 }
 
-/// What an `if` or a `while` may ask: a truth value of the machine, or of the host.
+/// The condition of an `if` or a `while`: a truth value of the machine or of the host.
 ///
 /// A host condition is decided while the kernel is recorded: the arm not taken leaves no trace.
 #[diagnostic::on_unimplemented(
@@ -91,18 +91,18 @@ pub trait Condition<M: Machine>: Copy {
     type State;
     /// Begins an `if`.
     fn begin(self, m: &M) -> Self::State;
-    /// Whether to run the first arm.
+    /// Returns whether to run the first arm.
     fn then(m: &M, state: &Self::State) -> bool;
-    /// Whether to run the second arm.
+    /// Returns whether to run the second arm.
     fn otherwise(m: &M, state: &Self::State) -> bool;
-    /// As `then`, for an arm that is cheaper than the question whether any lane takes it.
+    /// Returns the same as `then`, for an arm that costs less than a test.
     fn then_small(m: &M, state: &Self::State) -> bool;
-    /// As `otherwise`, for such an arm.
+    /// Returns the same as `otherwise`, for such an arm.
     fn otherwise_small(m: &M, state: &Self::State) -> bool;
     /// Joins the arms.
     fn end(m: &M, state: Self::State);
-    /// One of two values, for a variable of that name; `calls` says that functions are called for
-    /// them, whatever those do.
+    /// Selects one of two values, for a variable called `name`. `calls` says that they call
+    /// functions, so each is evaluated for its own lanes only.
     fn choose<V: Value<M>>(
         self,
         m: &M,
@@ -226,31 +226,31 @@ pub struct Branch<M: Machine, C: Condition<M>> {
 }
 
 impl<M: Machine, C: Condition<M>> Branch<M, C> {
-    /// Begins.
+    /// Begins the `if`.
     #[inline(always)]
     pub fn new(m: &M, c: C) -> Self {
         Self { state: c.begin(m) }
     }
 
-    /// Whether to run the first arm.
+    /// Returns whether to run the first arm.
     #[inline(always)]
     pub fn then(&self, m: &M) -> bool {
         C::then(m, &self.state)
     }
 
-    /// Whether to run the second arm.
+    /// Returns whether to run the second arm.
     #[inline(always)]
     pub fn otherwise(&self, m: &M) -> bool {
         C::otherwise(m, &self.state)
     }
 
-    /// As [`Branch::then`], for an arm that costs less than a test.
+    /// Returns the same as [`Branch::then`], for an arm that costs less than a test.
     #[inline(always)]
     pub fn then_small(&self, m: &M) -> bool {
         C::then_small(m, &self.state)
     }
 
-    /// As [`Branch::otherwise`], for an arm that costs less than a test.
+    /// Returns the same as [`Branch::otherwise`], for an arm that costs less than a test.
     #[inline(always)]
     pub fn otherwise_small(&self, m: &M) -> bool {
         C::otherwise_small(m, &self.state)
@@ -265,44 +265,44 @@ impl<M: Machine, C: Condition<M>> Branch<M, C> {
 
 /// A loop of lifted code.
 ///
-/// What outlives a round is in a [`Var`] or a [`Ret`]: all else that the round has made may be gone
-/// after it.
+/// Values that outlive an iteration are in a [`Var`] or a [`Ret`]: everything else that an
+/// iteration computed may be gone after it.
 pub struct Loop<M: Machine> {
     state: M::Loop,
 }
 
 impl<M: Machine> Loop<M> {
-    /// Begins.
+    /// Begins the loop.
     #[inline(always)]
     pub fn new(m: &M) -> Self {
         Self { state: m.loop_begin() }
     }
 
-    /// Tests the condition; whether any lane goes on.
+    /// Tests the condition and returns whether any lane goes on.
     #[inline(always)]
     pub fn test(&self, m: &M, c: impl Condition<M>) -> bool {
         c.test(m, &self.state)
     }
 
-    /// `break` in the running lanes.
+    /// Lowers `break`, for the running lanes.
     #[inline(always)]
     pub fn leave(&self, m: &M) {
         m.loop_break(&self.state);
     }
 
-    /// `continue` in the running lanes.
+    /// Lowers `continue`, for the running lanes.
     #[inline(always)]
     pub fn skip(&self, m: &M) {
         m.loop_continue(&self.state);
     }
 
-    /// The end of the body.
+    /// Ends the body: lanes that said `continue` run again.
     #[inline(always)]
     pub fn continuing(&self, m: &M) {
         m.loop_continuing(&self.state);
     }
 
-    /// Whether to go round again.
+    /// Returns whether to run another iteration.
     #[inline(always)]
     pub fn again(&self, m: &M) -> bool {
         m.loop_again(&self.state)

@@ -1,4 +1,4 @@
-//! Lanes that can be asked where they are.
+//! Lanes that count their utilisation at each place in the source.
 
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicUsize, Ordering};
@@ -11,26 +11,27 @@ pub struct Place {
     pub file: &'static str,
     /// The line.
     pub line: u32,
-    /// `if`, `else` or `loop`, or what the library does there.
+    /// `if`, `else` or `loop`, or the library's name for its own step.
     pub what: &'static str,
 }
 
-/// The lanes of `L`, whose running ones are counted while `count` is under way.
+/// The lanes of `L`, with the running ones counted during a call of `count`.
 #[derive(Clone, Copy, Debug)]
 pub struct Counted<L>(pub L);
 
-/// How often packets came by, and how many lanes were running in all of them together.
+/// Packets that passed a place, and running lanes summed over them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Count {
-    /// How often a packet came by.
+    /// The number of packets that passed.
     pub rounds: u64,
-    /// How many lanes were running, summed over the rounds.
+    /// The number of running lanes, summed over the rounds.
     pub lanes: u64,
 }
 
 type Counts = HashMap<Place, Count>;
 
-/// How many threads count. Looked at before the thread's own counters, which cost more.
+/// The number of threads that count. It is tested before the thread's own counters, which cost
+/// more.
 static COUNTING: AtomicUsize = AtomicUsize::new(0);
 
 thread_local! {
@@ -55,9 +56,9 @@ pub(super) fn add(place: Place, bits: u64) {
     });
 }
 
-/// Runs `f`; the lanes that it ran on this thread, at each place, in order of the places.
+/// Runs `f` and returns the counts of this thread at each place, ordered by place.
 pub(crate) fn count(f: impl FnOnce()) -> Vec<(Place, Count)> {
-    /// Ends the count even where `f` panics.
+    /// Ends the count even if `f` panics.
     struct Counting;
     impl Drop for Counting {
         fn drop(&mut self) {

@@ -1,20 +1,20 @@
-//! The counters of `for`.
+//! Loop counters of `for`.
 
 use core::cell::Cell;
 
 use super::{B, I, Loop, Machine, OpCompare, U, Usize, Value, Var, op};
 
-/// The type of a counter.
+/// A counter type.
 pub trait Counter<M: Machine>: Value<M> + OpCompare<M, Self, Output = B<M>> {
-    /// Its 32 bits.
+    /// Returns its 32 bits.
     fn bits(self, m: &M) -> M::U32;
-    /// The counter with these bits.
+    /// Returns the counter with these bits.
     fn of_bits(m: &M, bits: M::U32) -> Self;
-    /// Whether `a < b`, as numbers of this type.
+    /// Returns whether `a < b`, as numbers of this type.
     fn is_less(a: u32, b: u32) -> bool;
-    /// One more; the bound stops it before it overflows.
+    /// Returns the counter plus one; the loop's bound prevents overflow.
     fn next(self, m: &M) -> Self;
-    /// One less.
+    /// Returns the counter minus one.
     fn previous(self, m: &M) -> Self;
 }
 
@@ -74,27 +74,27 @@ macro_rules! unsigned_counter {
 
 unsigned_counter!(U, Usize);
 
-/// The next value of a counter.
+/// Returns the next value of a counter.
 #[inline(always)]
 pub fn increment<M: Machine, C: Counter<M>>(m: &M, a: C) -> C {
     a.next(m)
 }
 
-/// The value of a counter before this one.
+/// Returns the previous value of a counter.
 #[inline(always)]
 pub fn decrement<M: Machine, C: Counter<M>>(m: &M, a: C) -> C {
     a.previous(m)
 }
 
-/// A counter that all lanes begin with the same number: in every round it is one number, however
-/// many lanes are left. A recorded loop has a variable for it.
+/// A uniform counter, which starts at the same number in all lanes: in every iteration it is one
+/// number, however many lanes are left. A recorded loop has a variable for it.
 pub struct Steps<C: Copy> {
     recorded: Option<Var<C>>,
     now: Cell<u32>,
 }
 
 impl<C: Copy> Steps<C> {
-    /// Begins at `first`, whose bits are `bits`.
+    /// Creates a counter at `first`, whose bits are `bits`.
     #[inline(always)]
     pub fn new<M: Machine>(m: &M, name: &'static str, first: C, bits: u32) -> Self
     where
@@ -104,7 +104,7 @@ impl<C: Copy> Steps<C> {
         Self { recorded, now: Cell::new(bits) }
     }
 
-    /// The counter.
+    /// Returns the counter.
     #[inline(always)]
     pub fn get<M: Machine>(&self, m: &M) -> C
     where
@@ -116,13 +116,14 @@ impl<C: Copy> Steps<C> {
         }
     }
 
-    /// The counter of the running lanes, as its bits; for a recorded loop the first one's.
+    /// Returns the bits of the running lanes' counter; in a recorded loop those of the first
+    /// iteration.
     #[inline(always)]
     pub fn bits(&self) -> u32 {
         self.now.get()
     }
 
-    /// On to the next round.
+    /// Advances to the next iteration.
     #[inline(always)]
     pub fn advance<M: Machine>(&self, m: &M)
     where
@@ -135,14 +136,14 @@ impl<C: Copy> Steps<C> {
     }
 }
 
-/// The end of a range, which is one number for all lanes more often than not.
+/// The end of a range, which is usually the same number in all lanes.
 pub struct Stop<C> {
     value: C,
     bits: Option<u32>,
 }
 
 impl<C: Copy> Stop<C> {
-    /// Before this number.
+    /// Creates the exclusive end `value`.
     #[inline(always)]
     pub fn new<M: Machine>(m: &M, value: C) -> Self
     where
@@ -151,7 +152,7 @@ impl<C: Copy> Stop<C> {
         Self { value, bits: m.u32_same(&value.bits(m)) }
     }
 
-    /// Tests whether a counter in step goes on; whether any lane does.
+    /// Tests a uniform counter against the end and returns whether any lane goes on.
     #[inline(always)]
     pub fn is_after<M: Machine>(&self, m: &M, repeat: &Loop<M>, steps: &Steps<C>) -> bool
     where

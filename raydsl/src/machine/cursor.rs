@@ -1,26 +1,26 @@
-//! What a `for` of a kernel takes one by one.
+//! Cursors: the items that a kernel's `for` visits one after another.
 
 use super::{B, Machine};
 
-/// Items that are found one after another, lifted: what `for hit in scene.hits(ray)` runs over.
+/// A lifted sequence of items, found one after another: `for hit in scene.hits(ray)` runs over one.
 #[diagnostic::on_unimplemented(
     message = "a kernel's `for` does not run over this",
     label = "these are no items of a kernel",
     note = "write `for i in 0..n`, `for x in list.iter()` or `for hit in scene.hits(ray)`"
 )]
 pub trait Cursor<M: Machine> {
-    /// What the loop's body sees.
+    /// The item as the loop's body sees it.
     type Item: Copy;
 
-    /// Where it stands, in variables.
+    /// Its position, in variables.
     type State;
 
-    /// Before the first item.
+    /// Creates the state before the first item.
     fn begin(&self, m: &M) -> Self::State;
 
-    /// Goes to the next item in the running lanes; whether there is one.
+    /// Goes to the next item in the running lanes and returns whether there is one.
     fn advance(&self, m: &M, state: &Self::State) -> B<M>;
 
-    /// The item at which it stands.
+    /// Returns the current item.
     fn item(&self, m: &M, state: &Self::State) -> Self::Item;
 }

@@ -1,4 +1,4 @@
-//! Data that kernels read in place: slices of the host, and whatever else has elements.
+//! Data that kernels read in place: slices of the host and anything else with elements.
 
 use std::borrow::Cow;
 
@@ -7,30 +7,30 @@ use super::{Capture, Leaves, Machine, Parameter, Resource, Schema, Type, Value, 
 
 /// Elements in the host's memory: a value of the host on every machine.
 pub trait Data: Copy {
-    /// One element.
+    /// The element type.
     type Element: Type;
 
-    /// How many elements.
+    /// Returns the number of elements.
     fn count(&self) -> usize;
 
-    /// The element `index`.
+    /// Returns the element `index`.
     ///
     /// # Panics
     ///
     /// If there is no such element.
     fn get(&self, index: u32) -> Self::Element;
 
-    /// What names the elements among the buffers of a device.
+    /// Returns the key of the elements among a device's buffers.
     fn key(&self) -> BufferKey;
 
-    /// The name in the source.
+    /// Returns the name in the source.
     fn name(&self) -> Cow<'static, str>;
 }
 
-/// A slice as kernels see it.
+/// A slice as seen by kernels.
 pub struct Slice<'a, T> {
     elements: &'a [T],
-    /// The key of elements whose owner is known: a device keeps them as long as the owner lives.
+    /// The key of elements with a known owner: a device keeps them as long as the owner lives.
     key: Option<BufferKey>,
     name: &'static str,
     suffix: &'static str,
@@ -52,43 +52,43 @@ impl<T> core::fmt::Debug for Slice<'_, T> {
 }
 
 impl<'a, T> Slice<'a, T> {
-    /// A slice that is borrowed while kernels run.
+    /// Creates a slice that is borrowed while kernels run.
     #[inline(always)]
     pub(crate) fn new(elements: &'a [T], name: &'static str) -> Self {
         Self { elements, key: None, name, suffix: "" }
     }
 
-    /// A slice under the key that its owner gives it.
+    /// Creates a slice under the key that its owner gives it.
     #[inline(always)]
     pub(crate) fn owned(elements: &'a [T], key: Option<BufferKey>, name: &'static str) -> Self {
         Self { key, ..Self::new(elements, name) }
     }
 
-    /// The slice with this behind its name.
+    /// Returns the slice with `suffix` appended to its name.
     #[inline(always)]
     pub(crate) fn suffixed(self, suffix: &'static str) -> Self {
         Self { suffix, ..self }
     }
 
-    /// The elements.
+    /// Returns the elements.
     #[inline(always)]
     pub fn elements(&self) -> &'a [T] {
         self.elements
     }
 
-    /// How many elements.
+    /// Returns the number of elements.
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.elements.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no elements.
     #[inline(always)]
     pub fn is_empty(&self) -> bool {
         self.elements.is_empty()
     }
 
-    /// The name in the source of what it is a part of.
+    /// Returns the source name of the value that it is a part of.
     #[inline(always)]
     pub(crate) fn source_name(&self) -> &'static str {
         self.name
@@ -108,7 +108,7 @@ impl<T: Type> Data for Slice<'_, T> {
         self.elements[index as usize]
     }
 
-    /// That of their owner, or their address and length.
+    /// Returns the owner's key, or one made of address and length.
     fn key(&self) -> BufferKey {
         self.key.unwrap_or_else(|| borrowed_key(self.elements))
     }
@@ -121,20 +121,21 @@ impl<T: Type> Data for Slice<'_, T> {
     }
 }
 
-/// The key of borrowed data: its address and length, which name it while the borrow lasts.
+/// Returns the key of borrowed data: its address and length, which identify it while the borrow
+/// lasts.
 pub(crate) fn borrowed_key<T>(elements: &[T]) -> BufferKey {
     let address = elements.as_ptr() as usize as u64;
     let (version, part) = (elements.len() as u32, size_of::<T>() as u32);
     BufferKey { id: address | 1 << 63, version, part }
 }
 
-/// Whether a key names borrowed data.
+/// Returns whether a key identifies borrowed data.
 #[cfg(feature = "gpu")]
 pub(crate) fn is_borrowed(key: BufferKey) -> bool {
     key.id >> 63 == 1
 }
 
-/// The bytes of elements in the host's layout.
+/// Returns the bytes of elements in the host's layout.
 pub(crate) fn bytes_of<T: Type>(elements: &[T]) -> Vec<u8> {
     let stride = stride(T::SCHEMA);
     let mut bytes = vec![0; stride * elements.len()];
@@ -160,7 +161,7 @@ impl<M: Machine, T> Value<M> for Slice<'_, T> {
 
     #[inline(always)]
     fn zip(_: &M, a: Self, b: Self, _: &mut impl Leaves<M>) -> Self {
-        // Nothing yet: a variable that has been declared.
+        // A variable that was declared and not assigned yet.
         if a.is_empty() {
             return b;
         }
@@ -221,7 +222,7 @@ impl<M: Machine, T: Type> Capture<M> for Vec<T> {
     }
 }
 
-/// What kernels do with [`Data`]: its elements by `[]`, `len()` and `is_empty()`.
+/// Implements the kernel operations of [`Data`]: its elements by `[]`, `len()` and `is_empty()`.
 macro_rules! read_in_place {
     ([$($g:tt)*] $data:ty) => {
         #[diagnostic::do_not_recommend]

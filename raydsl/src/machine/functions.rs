@@ -1,7 +1,7 @@
 //! Functions and associated functions of lifted code: `vec3(..)`, `Vec3::splat(..)`.
 //!
 //! The type `vec3` stands beside glam's function `vec3`, in the namespace of types: `vec3::on` is
-//! the lifted function. What takes several types of arguments is in [`super::generic`].
+//! the lifted function. Functions over several argument types are in [`super::generic`].
 
 #![allow(non_camel_case_types, reason = "they have the names of functions")]
 
@@ -63,7 +63,7 @@ pub trait VectorFunctions: Sized {
         m: &M,
         v: impl Coerce<M, <Self::Component as Type>::On<M>>,
     ) -> Self::Twin<M>;
-    /// `if_true` where the component of `mask` holds.
+    /// Selects the components of `if_true` where `mask` holds.
     fn select_on<M: Machine>(
         m: &M,
         mask: impl Coerce<M, <Self::Twin<M> as Vector<M>>::Of<B<M>>>,
@@ -132,7 +132,7 @@ vector_functions!(X4 Vec4New (x y z w): Vec4 f32, IVec4 i32, UVec4 u32, BVec4 bo
 
 /// Associated functions of `f32`, lifted.
 pub trait F32Functions {
-    /// `f32::from_bits`.
+    /// Lifts `f32::from_bits`.
     fn from_bits_on<M: Machine>(m: &M, bits: impl Coerce<M, U<M>>) -> F<M>;
 }
 

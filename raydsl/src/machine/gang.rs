@@ -1,4 +1,4 @@
-//! Packets wider than a register: several registers a value.
+//! Gangs: packets wider than a register, with several registers per value.
 
 use fearless_simd::Level;
 
@@ -7,8 +7,8 @@ use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Lanes, Op, fill
 /// `K` registers of `L`: `K` times as many lanes of the same level, at most 64.
 ///
 /// `Gang<Simd8<Avx2>, 4>` has 32 lanes of AVX2. Lane `i` is lane `i % L::N` of register `i / L::N`.
-/// A decision is made once for the whole gang, so a wide gang goes through less control flow, and
-/// more of its lanes stand idle where they part.
+/// A decision is made once for the whole gang, so a wide gang executes less control flow, but more
+/// of its lanes idle where they diverge.
 ///
 /// ```
 /// use raydsl::machine::{Gang, Lanes, One};
@@ -21,7 +21,7 @@ use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Lanes, Op, fill
 #[derive(Clone, Copy, Debug)]
 pub struct Gang<L, const K: usize>(pub L);
 
-/// The operations that act on each register alone.
+/// Implements the operations that act on each register alone.
 macro_rules! each_register {
     ($($name:ident($($a:ident: $register:ident),+) -> $result:ident;)+) => {
         $(
@@ -47,7 +47,7 @@ macro_rules! each_register {
     };
 }
 
-/// The same number in every lane, a number for each lane, and the number of one lane.
+/// Implements a splat, a value per lane, and the value of one lane.
 macro_rules! numbers {
     ($($t:ident $register:ident $from_fn:ident $lane:ident;)+) => {
         $(
@@ -178,7 +178,8 @@ mod tests {
     use super::*;
     use crate::machine::One;
 
-    /// Masks of 64 lanes use every bit of a word, and shifts by 64 would be errors.
+    /// Tests that masks of 64 lanes use every bit of a word and that nothing shifts by 64, an
+    /// error.
     #[test]
     fn sixty_four_lanes() {
         type All = Gang<Gang<One, 4>, 16>;

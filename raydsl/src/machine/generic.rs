@@ -1,7 +1,7 @@
-//! Functions of the prelude for several types: `min`, `select`, `dot`, `inverse` and their like.
+//! Prelude functions over several types: `min`, `select`, `dot`, `inverse` and their like.
 //!
 //! Each is a generic function of the host, and beside it a type of the same name whose `on` is the
-//! lifted function. The order of every sum is the one that is documented, on every machine.
+//! lifted function. Every sum has its documented order on every machine.
 
 #![allow(non_camel_case_types, reason = "they have the names of functions")]
 
@@ -20,11 +20,11 @@ use super::{
     B, BoolBinary, Coerce, F, F32Binary, I, Machine, Op, U, V3, Value, Varying, X2, X3, X4, op,
 };
 
-/// What [`min()`], [`max()`] and [`clamp()`] take: numbers, and vectors of numbers.
+/// The types of [`min()`], [`max()`] and [`clamp()`]: numbers and vectors of numbers.
 pub trait Ordered: Copy {
-    /// `if b < a { b } else { a }`, for each component.
+    /// Returns `if b < a { b } else { a }`, for each component.
     fn least(a: Self, b: Self) -> Self;
-    /// `if a < b { b } else { a }`, for each component.
+    /// Returns `if a < b { b } else { a }`, for each component.
     fn greatest(a: Self, b: Self) -> Self;
 }
 
@@ -66,38 +66,38 @@ ordered!(
     UVec2(x y), UVec3(x y z), UVec4(x y z w)
 );
 
-/// The smaller number, for vectors of each component: `if b < a { b } else { a }`, so a NaN `b`
-/// gives `a`.
+/// Returns the smaller number, for vectors of each component: `if b < a { b } else { a }`, so a NaN
+/// `b` gives `a`.
 #[inline(always)]
 pub fn min<T: Ordered>(a: T, b: T) -> T {
     T::least(a, b)
 }
 
-/// The larger number, for vectors of each component: `if a < b { b } else { a }`, so a NaN `b`
-/// gives `a`.
+/// Returns the larger number, for vectors of each component: `if a < b { b } else { a }`, so a NaN
+/// `b` gives `a`.
 #[inline(always)]
 pub fn max<T: Ordered>(a: T, b: T) -> T {
     T::greatest(a, b)
 }
 
-/// `x` between `low` and `high`: `min(max(x, low), high)`.
+/// Clamps `x` to `low` and `high`: `min(max(x, low), high)`.
 #[inline(always)]
 pub fn clamp<T: Ordered>(x: T, low: T, high: T) -> T {
     min(max(x, low), high)
 }
 
-/// `a` where `c` holds, else `b`. Both are evaluated: for sides that are cheap this is quicker in
-/// packets than an `if`.
+/// Returns `a` where `c` holds, else `b`. Both are evaluated: in packets this is faster than an
+/// `if` for cheap sides.
 #[inline(always)]
 pub fn select<T>(c: bool, a: T, b: T) -> T {
     if c { a } else { b }
 }
 
-/// The masks of glam's comparisons.
+/// The mask types of glam's comparisons.
 pub trait MaskVector: Copy {
-    /// Whether a component holds.
+    /// Returns whether any component holds.
     fn has_any(self) -> bool;
-    /// Whether all components hold.
+    /// Returns whether all components hold.
     fn has_all(self) -> bool;
 }
 
@@ -121,14 +121,14 @@ macro_rules! mask_vector {
 
 mask_vector!(BVec2, BVec3, BVec4, BVec4A);
 
-/// Whether a component of a mask holds, as in `any(a.cmplt(b))`. It looks at one ray alone, never
-/// at others of a packet.
+/// Returns whether any component of a mask holds, as in `any(a.cmplt(b))`. It concerns one ray
+/// alone, never others of a packet.
 #[inline(always)]
 pub fn any(mask: impl MaskVector) -> bool {
     mask.has_any()
 }
 
-/// Whether all components of a mask hold.
+/// Returns whether all components of a mask hold.
 #[inline(always)]
 pub fn all(mask: impl MaskVector) -> bool {
     mask.has_all()
@@ -136,9 +136,9 @@ pub fn all(mask: impl MaskVector) -> bool {
 
 /// A vector with a [`dot()`] product.
 pub trait Dot: Copy {
-    /// A component.
+    /// The component type.
     type Component;
-    /// The sum of products from the first component to the last.
+    /// Returns the sum of products from the first component to the last.
     fn dot_in_order(self, b: Self) -> Self::Component;
 }
 
@@ -169,8 +169,8 @@ dot! {
     UVec4 u32: x y z w;
 }
 
-/// The sum of products, added from `x` to the last component. For `Vec2` and `Vec3` it is glam's;
-/// `Vec4::dot` adds in another order on some machines, so kernels do not have it:
+/// Returns the dot product, summed from `x` to the last component. For `Vec2` and `Vec3` it is
+/// glam's; `Vec4::dot` sums in another order on some machines, so kernels do not have it:
 ///
 /// ```compile_fail,E0277
 /// use raydsl::kernel;
@@ -186,19 +186,19 @@ pub fn dot<V: Dot>(a: V, b: V) -> V::Component {
     a.dot_in_order(b)
 }
 
-/// `dot(v, v).sqrt()`.
+/// Returns the length: `dot(v, v).sqrt()`.
 #[inline(always)]
 pub fn length<V: Dot<Component = f32>>(v: V) -> f32 {
     dot(v, v).sqrt()
 }
 
-/// `length(a - b)`.
+/// Returns the distance between two points: `length(a - b)`.
 #[inline(always)]
 pub fn distance<V: Dot<Component = f32> + Sub<Output = V>>(a: V, b: V) -> f32 {
     length(a - b)
 }
 
-/// `v * (1.0 / length(v))`: not finite for a vector of length 0.
+/// Returns `v * (1.0 / length(v))`: not finite for a vector of length 0.
 #[inline(always)]
 pub fn normalize<V: Dot<Component = f32> + Mul<f32, Output = V>>(v: V) -> V {
     v * (1.0 / length(v))
@@ -206,7 +206,7 @@ pub fn normalize<V: Dot<Component = f32> + Mul<f32, Output = V>>(v: V) -> V {
 
 /// A matrix with an [`inverse()`].
 pub trait Invertible: Copy {
-    /// The inverse; not finite if there is none.
+    /// Returns the inverse; not finite if there is none.
     fn inverted(self) -> Self;
 }
 
@@ -231,9 +231,9 @@ impl Invertible for Mat4 {
     }
 }
 
-/// The inverse of a matrix; not finite if there is none. For `Mat3` and `Affine3` it is glam's.
-/// `Mat4::inverse` differs from one machine to the next; this is Lengyel's ("Foundations of Game
-/// Engine Development", volume 1, 2016, section 1.7), by cross products of its columns.
+/// Returns the inverse of a matrix; not finite if there is none. For `Mat3` and `Affine3` it is
+/// glam's. `Mat4::inverse` differs from one machine to the next; this is Lengyel's ("Foundations of
+/// Game Engine Development", volume 1, 2016, section 1.7), by cross products of its columns.
 #[inline(always)]
 pub fn inverse<T: Invertible>(m: T) -> T {
     m.inverted()
@@ -241,7 +241,7 @@ pub fn inverse<T: Invertible>(m: T) -> T {
 
 /// A matrix with a [`determinant()`].
 pub trait Square: Copy {
-    /// The determinant.
+    /// Returns the determinant.
     fn determined(self) -> f32;
 }
 
@@ -259,17 +259,17 @@ impl Square for Mat4 {
     }
 }
 
-/// The determinant of a matrix. For `Mat3` it is glam's, for `Mat4` that of [`inverse()`].
+/// Returns the determinant of a matrix. For `Mat3` it is glam's, for `Mat4` that of [`inverse()`].
 #[inline(always)]
 pub fn determinant<T: Square>(m: T) -> f32 {
     m.determined()
 }
 
-/// What points and directions are transformed by.
+/// A transform of points and directions.
 pub trait Transform: Copy {
-    /// The point moved.
+    /// Transforms a point.
     fn point(self, p: Vec3) -> Vec3;
-    /// The direction turned and scaled.
+    /// Transforms a direction, without translation.
     fn vector(self, v: Vec3) -> Vec3;
 }
 
@@ -293,14 +293,14 @@ macro_rules! transform {
 
 transform!(Mat4, Affine3);
 
-/// The point `p` under an affine transform, a `Mat4` with last row `0 0 0 1` or an `Affine3`:
-/// glam's `transform_point3`.
+/// Transforms the point `p` by an affine transform, a `Mat4` with last row `0 0 0 1` or an
+/// `Affine3`: glam's `transform_point3`.
 #[inline(always)]
 pub fn transform_point<T: Transform>(t: T, p: Vec3) -> Vec3 {
     t.point(p)
 }
 
-/// The direction `v` under an affine transform, which does not move it: glam's
+/// Transforms the direction `v` by an affine transform, without translation: glam's
 /// `transform_vector3`.
 #[inline(always)]
 pub fn transform_vector<T: Transform>(t: T, v: Vec3) -> Vec3 {
@@ -316,9 +316,9 @@ pub fn transform_vector<T: Transform>(t: T, v: Vec3) -> Vec3 {
     note = "convert a number with `as`, as in `max(x, n as f32)`"
 )]
 pub trait Alike<M: Machine, R> {
-    /// The type on the machine.
+    /// The common type on the machine.
     type Value: Value<M>;
-    /// Converts both.
+    /// Converts both arguments.
     fn alike(self, m: &M, r: R) -> (Self::Value, Self::Value);
 }
 
@@ -360,7 +360,7 @@ alike!(i32 I, u32 U, bool B);
     label = "neither a number nor a vector of numbers"
 )]
 pub trait OrderedOn<M: Machine>: Value<M> {
-    /// `min`, or `max`.
+    /// Returns the minimum or the maximum.
     fn extreme<O: Op<F32Binary>>(m: &M, op: O, a: Self, b: Self) -> Self;
 }
 
@@ -391,7 +391,7 @@ ordered_on!(F, I, U; X2, X3, X4);
 
 /// [`Invertible`] on a machine.
 pub trait InvertibleOn<M: Machine>: Value<M> {
-    /// The inverse.
+    /// Returns the inverse.
     fn inverted(m: &M, a: Self) -> Self;
 }
 
@@ -418,7 +418,7 @@ impl<M: Machine> InvertibleOn<M> for M4<M> {
 
 /// [`Square`] on a machine.
 pub trait SquareOn<M: Machine>: Value<M> {
-    /// The determinant.
+    /// Returns the determinant.
     fn determined(m: &M, a: Self) -> F<M>;
 }
 
@@ -438,9 +438,9 @@ impl<M: Machine> SquareOn<M> for M4<M> {
 
 /// [`Transform`] on a machine.
 pub trait TransformOn<M: Machine>: Value<M> {
-    /// The point moved.
+    /// Transforms a point.
     fn point(m: &M, t: Self, p: V3<M>) -> V3<M>;
-    /// The direction turned and scaled.
+    /// Transforms a direction, without translation.
     fn vector(m: &M, t: Self, v: V3<M>) -> V3<M>;
 }
 

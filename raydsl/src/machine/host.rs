@@ -1,13 +1,13 @@
-//! Values of the host within kernels: known before the kernel runs and while it is recorded.
+//! Host values within kernels: known before the kernel runs and while it is recorded.
 
 use super::{Capture, Coerce, F, Machine};
 
-/// Marks a number as the host's: inside a kernel, what depends on it alone is decided before the
-/// kernel runs, and in generated code only what was decided for is left.
+/// Marks a number as the host's, to specialise the kernel for it: branches and loops that depend on
+/// it alone are decided before the kernel runs, and generated code has only the arms taken.
 ///
-/// Its argument is a captured number, a constant, or made of such; a `let` or a parameter with
-/// `#[host]` holds such a value. A kernel recorded with another value is another kernel: numbers
-/// that change from frame to frame are better left to the machine.
+/// Its argument is a captured number, a constant, or computed from such; a `let` or a parameter
+/// with `#[host]` holds such a value. A kernel recorded with another value is another kernel:
+/// numbers that change from frame to frame are better left to the machine.
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -30,15 +30,15 @@ pub fn host<T>(x: T) -> T {
     x
 }
 
-/// A captured value that kernels may have as the host's.
+/// A captured value that a kernel may use as a host value.
 #[diagnostic::on_unimplemented(
     message = "`host(..)` takes numbers and truth values",
     label = "not a number of the host"
 )]
 pub trait HostCapture {
-    /// The value.
+    /// The value's type.
     type Value: Copy;
-    /// The value as the host has it.
+    /// Returns the host value.
     fn host(&self) -> Self::Value;
 }
 
@@ -52,11 +52,11 @@ impl<T: HostCapture + ?Sized> HostCapture for &T {
     }
 }
 
-/// A value of the host where one of the machine meets it.
+/// A host value used together with a value of the machine.
 pub trait HostUse<M: Machine> {
-    /// What it is on the machine; integers stay the host's until they meet others.
+    /// Its type on the machine; integers remain host values until combined with others.
     type Used;
-    /// The value.
+    /// Returns the value.
     fn value(self, m: &M) -> Self::Used;
 }
 
@@ -107,14 +107,15 @@ impl<M: Machine> HostUse<M> for f32 {
     }
 }
 
-/// A constant of the source as an argument. An integer stays the host's: the parameter may be.
+/// A constant of the source as an argument. An integer remains a host value, as the parameter may
+/// be one.
 pub struct Constant<'c, T>(pub &'c T);
 
 macro_rules! constant_of_the_host {
     ($($host:ty),+) => {
         $(
             impl Constant<'_, $host> {
-                /// The constant; this comes before [`GiveConstant::give`].
+                /// Returns the constant; method resolution prefers this to [`GiveConstant::give`].
                 #[inline(always)]
                 pub fn give<M: Machine>(self, _: &M) -> $host {
                     *self.0
@@ -126,11 +127,11 @@ macro_rules! constant_of_the_host {
 
 constant_of_the_host!(i32, u32, usize, bool);
 
-/// Constants of other types become values of the machine.
+/// Converts constants of other types to values of the machine.
 pub trait GiveConstant<M: Machine> {
-    /// The value.
+    /// The converted type.
     type Given;
-    /// Converts.
+    /// Converts the constant.
     fn give(self, m: &M) -> Self::Given;
 }
 

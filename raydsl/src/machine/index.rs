@@ -1,19 +1,19 @@
-//! Elements of arrays at places that are computed.
+//! Array elements at computed indices.
 //!
-//! An array on a machine is its elements, so an index is a choice among them: the last element
-//! whose number it reaches. An index out of range is an error of the kernel. With debug assertions
-//! it panics and names the lane; without, it means the last element, in every variant.
+//! An array on a machine is a list of its elements, so an index is a chain of selections: the last
+//! element whose index it reaches. An index out of range is an error of the kernel. With debug
+//! assertions it panics and names the lane; without, it means the last element, in every variant.
 
 use super::{Coerce, Data, Leaves, Machine, Type, U, Usize, Value, Varying, op};
 
-/// An integer that indexes.
+/// An integer that can be an index.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot index by this value",
     label = "not a `usize`",
     note = "write `a[i as usize]`"
 )]
 pub trait Index<M: Machine> {
-    /// The index as 32 bits.
+    /// Returns the index as 32 bits.
     fn index(self, m: &M) -> U<M>;
 }
 
@@ -33,19 +33,19 @@ impl<M: Machine> Index<M> for usize {
     }
 }
 
-/// What can be indexed.
+/// A value that can be indexed.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot index this value",
     label = "neither an array nor a slice of types that kernels understand"
 )]
 pub trait Indexed<M: Machine> {
-    /// An element.
+    /// The element type.
     type Element;
-    /// The element at `i`.
+    /// Returns the element at `i`.
     fn element(self, m: &M, i: U<M>) -> Self::Element;
-    /// The element at a place that the source names.
+    /// Returns the element at an index written in the source.
     fn at(self, m: &M, i: usize) -> Self::Element;
-    /// The element at a place that is the same for all running lanes.
+    /// Returns the element at an index that is the same in all running lanes.
     fn in_step(self, m: &M, i: u32) -> Self::Element;
 }
 
@@ -82,7 +82,7 @@ impl<M: Machine, V: Varying<M> + Copy, const N: usize> Indexed<M> for [V; N] {
     }
 }
 
-/// The element at a place that is the same for all running lanes.
+/// Returns the element at an index that is the same in all running lanes.
 #[inline(always)]
 pub(crate) fn element_in_step<M: Machine, D: Data>(
     m: &M,
@@ -91,14 +91,14 @@ pub(crate) fn element_in_step<M: Machine, D: Data>(
 ) -> <D::Element as Type>::On<M> {
     let len = data.count() as u32;
     m.check_index(&m.u32(i), len);
-    // Of no elements none stands for another.
+    // An empty slice has no last element to return.
     if len == 0 {
         return Value::zero(m);
     }
     D::Element::splat(m, data.get(i.min(len - 1)))
 }
 
-/// `array` with `v` at `i`.
+/// Returns `array` with `v` at `i`.
 #[inline(always)]
 pub fn with_element<M: Machine, V: Value<M>, const N: usize>(
     m: &M,
@@ -113,7 +113,7 @@ pub fn with_element<M: Machine, V: Value<M>, const N: usize>(
     array.map(
         #[inline(always)]
         |old| {
-            // The last element also stands for what is out of range.
+            // The last element also serves indices out of range.
             let number = m.u32(k as u32);
             k += 1;
             let here = if k < N {
@@ -143,7 +143,7 @@ macro_rules! choose {
 
 choose!(f32 F32 f32_select, i32 I32 i32_select, u32 U32 u32_select, bool Bool bool_select);
 
-/// `a` in the lanes that have `c`, else `b`.
+/// Returns `a` in the lanes that have `c`, else `b`.
 #[inline(always)]
 pub(crate) fn choose<M: Machine, V: Value<M>>(m: &M, c: M::Bool, a: V, b: V) -> V {
     V::zip(m, a, b, &mut Choose(c))

@@ -1,4 +1,4 @@
-//! The inverse and the determinant of a `Mat4`: glam's have another order on other machines.
+//! The inverse and the determinant of a `Mat4`, in one order: glam's order depends on the platform.
 //!
 //! After Lengyel, "Foundations of Game Engine Development", volume 1 (2016), section 1.7: the
 //! minors of two columns each are cross products.
@@ -8,7 +8,7 @@ use glam::{Mat4, vec4};
 use super::functions::vec4;
 use crate::kernel;
 
-/// The determinant.
+/// Returns the determinant.
 #[kernel]
 #[inline]
 pub(crate) fn determinant_mat4(m: Mat4) -> f32 {
@@ -19,7 +19,7 @@ pub(crate) fn determinant_mat4(m: Mat4) -> f32 {
     a.cross(b).dot(v) + c.cross(d).dot(u)
 }
 
-/// The inverse; not finite if there is none.
+/// Returns the inverse; not finite if there is none.
 #[kernel]
 #[inline]
 pub(crate) fn inverse_mat4(m: Mat4) -> Mat4 {

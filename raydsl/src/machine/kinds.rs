@@ -1,33 +1,33 @@
-//! Which kinds of an enum there are.
+//! Sets of an enum's kinds.
 
 /// A set of the kinds of an enum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kinds(u64);
 
 impl Kinds {
-    /// Every kind.
+    /// The set of every kind.
     pub const ALL: Self = Self(u64::MAX);
 
-    /// No kind.
+    /// The empty set.
     pub const NONE: Self = Self(0);
 
-    /// One kind.
+    /// Returns the set of one kind.
     pub const fn one(kind: u32) -> Self {
         Self(1 << kind)
     }
 
-    /// Those of both.
+    /// Returns the union of both sets.
     #[must_use]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Whether `kind` is among them.
+    /// Returns whether `kind` is in the set.
     pub const fn has(self, kind: u32) -> bool {
         self.0 >> kind & 1 == 1
     }
 
-    /// Whether there is no other than `kind`.
+    /// Returns whether `kind` is the only kind in the set.
     pub const fn is_only(self, kind: u32) -> bool {
         self.0 == 1 << kind
     }

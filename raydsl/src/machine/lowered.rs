@@ -1,4 +1,4 @@
-//! What lifted code calls for the parts of Rust that are no methods: literals, casts, elements,
+//! Lowering targets for the parts of Rust that are not methods: literals, casts, elements,
 //! counters.
 
 use super::index::{Index, Indexed};
@@ -7,31 +7,31 @@ use super::{
     Usize, Value, op,
 };
 
-/// A literal, as the two numbers nearest to its text.
+/// Lowers a literal, given as the two numbers nearest to its text.
 #[inline(always)]
 pub fn literal<M: Machine>(m: &M, v: f32, exact: f64) -> F<M> {
     F(m.f32_literal(v, exact))
 }
 
-/// A literal with the suffix `i32`.
+/// Lowers a literal with the suffix `i32`.
 #[inline(always)]
 pub fn i32<M: Machine>(m: &M, v: i32) -> I<M> {
     I(m.i32(v))
 }
 
-/// A literal with the suffix `u32`.
+/// Lowers a literal with the suffix `u32`.
 #[inline(always)]
 pub fn u32<M: Machine>(m: &M, v: u32) -> U<M> {
     U(m.u32(v))
 }
 
-/// A literal with the suffix `usize`.
+/// Lowers a literal with the suffix `usize`.
 #[inline(always)]
 pub fn usize<M: Machine>(m: &M, v: usize) -> Usize<M> {
     Type::splat(m, v)
 }
 
-/// The structure of an enum of so many bytes.
+/// Returns the schema of an enum of `bytes` bytes.
 pub const fn number_schema(bytes: usize) -> &'static Schema {
     match bytes {
         1 => &Schema::Small { bytes: 1 },
@@ -40,13 +40,13 @@ pub const fn number_schema(bytes: usize) -> &'static Schema {
     }
 }
 
-/// Writes the number of a variant.
+/// Writes the discriminant of a variant.
 pub fn write_number(number: u32, bytes: usize, out: &mut [u8]) {
     let n = bytes.min(4);
     out[..n].copy_from_slice(&number.to_le_bytes()[..n]);
 }
 
-/// Reads the number of a variant.
+/// Reads the discriminant of a variant.
 pub fn read_number(size: usize, bytes: &[u8]) -> u32 {
     let mut number = [0; 4];
     let n = size.min(4);
@@ -54,19 +54,20 @@ pub fn read_number(size: usize, bytes: &[u8]) -> u32 {
     u32::from_le_bytes(number)
 }
 
-/// What runs next, for lanes that count; see [`CountedKernel`](crate::kernel::CountedKernel).
+/// Reports the place that runs next, for lanes that count; see
+/// [`CountedKernel`](crate::kernel::CountedKernel).
 #[inline(always)]
 pub fn here<M: Machine>(m: &M, what: &'static str, file: &'static str, line: u32) {
     m.at(super::Place { what, file, line });
 }
 
-/// `a as T`.
+/// Lowers `a as T`.
 #[inline(always)]
 pub fn cast<M: Machine, A: OpCast<M, T>, T: Type>(m: &M, a: A) -> T::On<M> {
     A::cast(m, a)
 }
 
-/// The right side of `&&` or `||`, evaluated for the lanes where the left side is `when`.
+/// Evaluates the right side of `&&` or `||` for the lanes where the left side is `when`.
 #[inline(always)]
 pub fn guarded<M: Machine, C: Coerce<M, B<M>>, R>(
     m: &M,
@@ -77,7 +78,7 @@ pub fn guarded<M: Machine, C: Coerce<M, B<M>>, R>(
     m.guarded(c.coerce(m).0, when, f)
 }
 
-/// One of two values, by a condition of the machine or of the host.
+/// Selects one of two values by a condition of the machine or of the host.
 #[inline(always)]
 pub fn choose<M: Machine, V: Value<M>, C: Condition<M>>(
     m: &M,
@@ -90,19 +91,19 @@ pub fn choose<M: Machine, V: Value<M>, C: Condition<M>>(
     c.choose(m, name, calls, a, b)
 }
 
-/// The bounds of a `for`.
+/// Returns the bounds of a `for`.
 #[inline(always)]
 pub fn range<M: Machine, S: Bounds<M, E>, E>(m: &M, start: S, end: E) -> (S::Counter, S::Counter) {
     S::bounds(m, start, end)
 }
 
-/// Whether a counter goes on.
+/// Returns whether a counter is below its end.
 #[inline(always)]
 pub fn less<M: Machine, C: OpCompare<M, C, Output = B<M>>>(m: &M, a: C, b: C) -> B<M> {
     C::compare(m, op::Lt, a, b)
 }
 
-/// Whether an inclusive range goes on: its last number has not been had, and `a <= b`.
+/// Returns whether an inclusive range goes on: its last number has not been used, and `a <= b`.
 #[inline(always)]
 pub fn goes_on<M: Machine, C: OpCompare<M, C, Output = B<M>>>(
     m: &M,
@@ -114,7 +115,7 @@ pub fn goes_on<M: Machine, C: OpCompare<M, C, Output = B<M>>>(
     B(m.bool_binary(op::And, m.bool_not(done.0), within.0))
 }
 
-/// The steps of `.step_by(n)`. Rust panics for none; here one is taken, so that the loop ends.
+/// Returns the step of `.step_by(n)`. Rust panics for 0; here it becomes 1, so that the loop ends.
 #[inline(always)]
 pub fn step<M: Machine>(m: &M, n: impl Coerce<M, Usize<M>>) -> U<M> {
     let n = n.coerce(m).0;
@@ -122,7 +123,7 @@ pub fn step<M: Machine>(m: &M, n: impl Coerce<M, Usize<M>>) -> U<M> {
     U(m.u32_select(none, m.u32(1), n))
 }
 
-/// Whether a range with steps goes on: its last number has not been had.
+/// Returns whether a range with steps goes on: its last number has not been used.
 #[inline(always)]
 pub fn goes_on_to<M: Machine, C: OpCompare<M, C, Output = B<M>>>(
     m: &M,
@@ -135,34 +136,34 @@ pub fn goes_on_to<M: Machine, C: OpCompare<M, C, Output = B<M>>>(
     B(m.bool_binary(op::And, m.bool_not(done.0), within.0))
 }
 
-/// Whether no step is left before the end, which `a` has not passed: so nothing overflows.
+/// Returns whether no step is left before the end, which `a` has not passed: so nothing overflows.
 #[inline(always)]
 pub fn is_last<M: Machine, C: Counter<M>>(m: &M, a: C, end: C, by: U<M>, inclusive: bool) -> B<M> {
     let left = m.u32_binary(op::WrappingSub, end.bits(m), a.bits(m));
     B(if inclusive { m.u32_compare(op::Lt, left, by.0) } else { m.u32_compare(op::Le, left, by.0) })
 }
 
-/// The value of a counter some steps on.
+/// Returns the value of a counter advanced by `by`.
 #[inline(always)]
 pub fn advance<M: Machine, C: Counter<M>>(m: &M, a: C, by: U<M>) -> C {
     C::of_bits(m, m.u32_binary(op::WrappingAdd, a.bits(m), by.0))
 }
 
-/// Whether a counter has its last value.
+/// Returns whether a counter has its last value.
 #[inline(always)]
 pub fn equal<M: Machine, C: OpCompare<M, C, Output = B<M>>>(m: &M, a: C, b: C) -> B<M> {
     C::compare(m, op::Eq, a, b)
 }
 
-/// `a[i as usize]`.
+/// Lowers `a[i as usize]`.
 #[inline(always)]
 pub fn element<M: Machine, A: Indexed<M>>(m: &M, a: A, i: impl Index<M>) -> A::Element {
     let i = i.index(m);
     a.element(m, i)
 }
 
-/// `a[i]` where `i` is the same for all running lanes; `index` is the value that a recorded loop
-/// has for it.
+/// Lowers `a[i]` where `i` is the same in all running lanes; `index` gives its value in a recorded
+/// loop.
 #[inline(always)]
 pub fn element_in_step<M: Machine, A: Indexed<M>, I: Index<M>>(
     m: &M,
@@ -174,13 +175,13 @@ pub fn element_in_step<M: Machine, A: Indexed<M>, I: Index<M>>(
         return a.element(m, index().index(m));
     }
     if cfg!(debug_assertions) {
-        // What Rust would refuse on the way to the index is refused here too.
+        // Type errors in the index expression are reported here too.
         let _ = index();
     }
     a.in_step(m, step)
 }
 
-/// `a[3]`.
+/// Lowers `a[3]`.
 #[inline(always)]
 pub fn at<M: Machine, A: Indexed<M>>(m: &M, a: A, i: usize) -> A::Element {
     a.at(m, i)

@@ -1,4 +1,4 @@
-//! The twins of glam's `Mat3`, `Mat4` and `Affine3`: their columns.
+//! Matrices: the twins of glam's `Mat3`, `Mat4` and `Affine3`, stored as columns.
 //!
 //! Products are sums of scaled columns from the first to the last, as glam has them on every
 //! platform; nothing is fused. WGSL has matrices too, but leaves the order of its sums open, so
@@ -96,7 +96,7 @@ columns!(Mat3 => M3 { x_axis: Vec3, y_axis: Vec3, z_axis: Vec3 });
 columns!(Mat4 => M4 { x_axis: Vec4, y_axis: Vec4, z_axis: Vec4, w_axis: Vec4 });
 columns!(Affine3 => A3 { matrix3: Mat3, translation: Vec3 });
 
-/// `column * v + sum`, or the first of the sum.
+/// Adds `column * v` to the sum, or begins it.
 macro_rules! sum_of_columns {
     ($m:ident: $v:ident; $first:expr, $s:expr $(; $next:expr, $t:expr)*) => {{
         let sum = $v::binary($m, op::Mul, $first, $v::splat($s));
@@ -177,7 +177,8 @@ impl<M: Machine> M4<M> {
         }
     }
 
-    /// The sum of the first three columns, each times a component of `v`: without their last row.
+    /// Returns the sum of the first three columns without their last row, each scaled by a
+    /// component of `v`.
     #[inline(always)]
     fn upper(self, m: &M, v: V3<M>) -> V3<M> {
         let (a, b, c) = (xyz(self.x_axis), xyz(self.y_axis), xyz(self.z_axis));

@@ -1,12 +1,11 @@
-//! The methods of lifted code.
+//! Method calls of lifted code.
 //!
-//! A method of the source becomes `Method::<{ name("dot") }, M, _>::call(v, m, (w,))`: the name is
-//! part of the trait, so that the methods of a user's types and those of the library meet without
-//! an import.
+//! A method call of the source becomes `Method::<{ name("dot") }, M, _>::call(v, m, (w,))`: the
+//! name is part of the trait, so that methods of the user's types and the library's need no import.
 
 use super::{Coerce, Machine, Usize, Var, op};
 
-/// The number of a method's name (FNV-1a, 64 bits).
+/// Returns the hash of a method's name (FNV-1a, 64 bits).
 pub const fn name(text: &str) -> u64 {
     let bytes = text.as_bytes();
     let mut hash = 0xcbf2_9ce4_8422_2325u64;
@@ -18,7 +17,7 @@ pub const fn name(text: &str) -> u64 {
     hash
 }
 
-/// A method that kernels may call, on a machine.
+/// A method that kernels may call on a machine.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot call this method with these arguments",
     label = "not an operation of the kernel language",
@@ -28,13 +27,13 @@ pub const fn name(text: &str) -> u64 {
             the type: `let light: L = self.light;`"
 )]
 pub trait Method<const NAME: u64, M: Machine, A, Via = ()> {
-    /// The result.
+    /// The result type.
     type Output;
     /// Whether it takes `&mut self`.
     const IS_MUT: bool = false;
     /// Calls the method.
     fn call(self, m: &M, args: A) -> Self::Output;
-    /// Calls the method on a variable, whose value is `self`.
+    /// Calls the method on a variable with the value `self`.
     #[inline(always)]
     fn call_at(self, variable: &Var<Self>, m: &M, args: A) -> Self::Output
     where
@@ -45,7 +44,7 @@ pub trait Method<const NAME: u64, M: Machine, A, Via = ()> {
     }
 }
 
-/// Whether a method takes `&mut self`.
+/// Returns whether a method takes `&mut self`.
 #[inline(always)]
 pub fn is_mut<const NAME: u64, M: Machine, T: Method<NAME, M, A, Via>, A, Via>(
     _: &M,
@@ -55,8 +54,8 @@ pub fn is_mut<const NAME: u64, M: Machine, T: Method<NAME, M, A, Via>, A, Via>(
     T::IS_MUT
 }
 
-/// Calls a method on an element whose place is computed. The call has a copy of the element, so a
-/// method that changes it would change nothing.
+/// Calls a method on an element at a computed index. The call has a copy of the element, so a
+/// method with `&mut self` is refused: it would change nothing.
 ///
 /// ```compile_fail,E0080
 /// use raydsl::kernel;
@@ -99,14 +98,14 @@ pub fn call_on_element<const NAME: u64, M: Machine, T: Method<NAME, M, A, Via>, 
     element.call(m, args)
 }
 
-/// A number between `::<` and `>`.
+/// A number as a const generic argument.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Const<const N: usize>;
 
-/// A method of a struct's kernels; the derived twin forwards [`Method`] to it.
+/// A method in a `#[kernel] impl` of a struct; the derived twin forwards [`Method`] to it.
 ///
-/// `Via` is [`Through`] the trait that has the method: two traits of one type may have methods of
-/// one name. Calls do not name it; where one impl alone fits, rustc finds it.
+/// `Via` is [`Through`] the method's trait: two traits of one type may have methods of one name.
+/// Calls do not name it; if only one impl fits, rustc finds it.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot call this method of `{Self}` with these arguments",
     label = "not a kernel",
@@ -116,13 +115,13 @@ pub struct Const<const N: usize>;
 pub trait HostMethod<const NAME: u64, M: Machine, A, Via = ()> {
     /// The struct's twin.
     type This: Copy;
-    /// The result.
+    /// The result type.
     type Output;
     /// Whether it takes `&mut self`.
     const IS_MUT: bool = false;
     /// Calls the method.
     fn call(this: Self::This, m: &M, args: A) -> Self::Output;
-    /// Calls the method on a variable, whose value is `this`.
+    /// Calls the method on a variable with the value `this`.
     #[inline(always)]
     fn call_at(this: Self::This, variable: &Var<Self::This>, m: &M, args: A) -> Self::Output {
         let _ = variable;
@@ -130,10 +129,11 @@ pub trait HostMethod<const NAME: u64, M: Machine, A, Via = ()> {
     }
 }
 
-/// An `impl` of a trait, by the number of its name, which has a method.
+/// An `impl` of a trait, identified by the hash of the trait's name.
 pub struct Through<const TRAIT: u64>;
 
-/// `method!([generics] Type, "name", |m, self, argument: Type, ..| -> Result { .. })`.
+/// Implements a method: `method!([generics] Type, "name", |m, self, argument: Type, ..| -> Result {
+/// .. })`.
 macro_rules! method {
     ([$($g:tt)*] $t:ty, $name:literal, |$m:ident, $s:ident| -> $out:ty { $e:expr }) => {
         #[diagnostic::do_not_recommend]
@@ -184,8 +184,8 @@ macro_rules! method {
     };
 }
 
-/// Methods that a type of glam's or std's has, but not with one result on every machine. The impl
-/// asks for a bound that never holds, whose message is the error: it names the remedy.
+/// Refuses methods of glam or std whose result differs between machines. The impl asks for a bound
+/// that never holds; its message is the error, with the remedy.
 macro_rules! denied {
     ($t:ty: $($marker:ident $what:literal $write:literal $($name:literal)+ -> $out:ty;)+) => {
         $(

@@ -8,23 +8,30 @@
 //! what rounding may do to the variants.
 //!
 //! A machine offers arithmetic on lanes and *control hooks*: an `if` or a loop of the source calls
-//! them, and what they return steers real Rust control flow. The scalar machine returns the
-//! condition itself, a packet whether any lane is left, the recorder always `true`.
+//! them, and their results steer real Rust control flow. The scalar machine returns the condition
+//! itself, a packet whether any lane is left, the recorder always `true`.
 
 // The files:
 //
-// * `scalar`, `packet`, `record`, `margin`: the machines.
-// * `lanes`, `gang`, `counted`: the lanes of packets: one register, several, with counters.
-// * `control`, `counter`: variables, branches and loops of lifted code.
-// * `types`, `schema`, `twin`, `value`, `words`, `kinds`: types of the host, and their twins on a
-//   machine.
-// * `vector`, `matrix`: the twins of glam's types.
-// * `op`, `ops`, `operand`, `bits`: operations as types, and the operators of lifted code.
+// * `scalar`: one lane of plain numbers, to check the rewriting.
+// * `packet`: SIMD packets with masked control flow.
+// * `lanes`, `gang`, `counted`: the lanes of packets: one register, several, with counters
+//   (Batcher, "Sorting Networks and Their Applications", 1968, for sorting within a register).
+// * `record`, `wgsl`: the recorder, its intermediate representation, and the WGSL module.
+// * `margin`: the `f64` reference with bounds on rounding errors (Higham, "Accuracy and Stability
+//   of Numerical Algorithms", 2002; Stolfi and de Figueiredo, "Self-Validated Numerical Methods and
+//   Applications", 1997).
+// * `control`, `counter`: structured control flow of lifted code: variables, branches, loops.
+// * `types`, `schema`, `twin`, `value`: host types, their layouts, and their twins on a machine.
+// * `words`, `kinds`: the storage of an enum's variants, and the variants a scene has.
+// * `vector`, `matrix`, `inverse`: the twins of glam's types.
+// * `op`, `ops`, `operand`, `bits`: operations as types, and the operators of lifted code (Warren,
+//   "Hacker's Delight", 2013, for bit counting).
 // * `methods`, `functions`, `generic`: methods and functions of lifted code.
-// * `data`, `index`, `capture`, `owner`: slices, their elements, captures of a kernel, and owners.
-// * `operation`: operations of other modules on machines.
-// * `call`, `lowered`, `host`: functions that generated code calls.
-// * `wgsl`: the result of recording.
+// * `data`, `index`, `cursor`: slices, their elements, and the items of `for`.
+// * `capture`, `host`, `owner`: captures of a kernel, host values, liveness of scene data.
+// * `operation`: extension points for other modules.
+// * `call`, `lowered`: kernels as functions, and the functions that lifted code calls.
 
 mod bare;
 mod bits;
@@ -96,7 +103,7 @@ pub(crate) use value::Floats;
 pub use value::{B, F, I, U, Usize, Value};
 pub use vector::{V2, V3, V4, X2, X3, X4};
 
-/// What only generated code names; see `crate::__private`.
+/// Items named only by generated code; see `crate::__private`.
 pub(crate) mod generated {
     pub use super::bare::{Bare, bare};
     pub use super::call::KnownBy;
@@ -116,27 +123,27 @@ pub(crate) mod generated {
     pub use super::words::{host_of_words, is_kind, of_kind, of_words, to_words, to_words_on};
 }
 
-/// What lifted kernel bodies run on: arithmetic on lanes, and hooks for control flow.
+/// A machine that lifted kernel bodies run on: arithmetic on lanes, and hooks for control flow.
 ///
 /// The associated types are the representations of one value of each scalar type: a number for
 /// [`Scalar`], a SIMD register for a [`Packet`], the handle of an expression for [`Recorder`].
 #[expect(missing_docs, reason = "arithmetic is documented at the enums of operations")]
 pub trait Machine: Sized + 'static {
-    /// One `f32` a lane.
+    /// One `f32` per lane.
     type F32: Copy + 'static;
-    /// One `i32` a lane.
+    /// One `i32` per lane.
     type I32: Copy + 'static;
-    /// One `u32` a lane.
+    /// One `u32` per lane.
     type U32: Copy + 'static;
-    /// One `bool` a lane.
+    /// One `bool` per lane.
     type Bool: Copy + 'static;
-    /// The state of an `if` under way.
+    /// The state of an `if` being executed.
     type Branch;
-    /// The state of a loop under way.
+    /// The state of a loop being executed.
     type Loop;
-    /// Whether lifted code runs round by round: then a counter is one number in all lanes.
+    /// Whether lifted code runs every iteration: then a counter is one number in all lanes.
     const RUNS: bool = true;
-    /// Whether it has operations on whole vectors; else they go component by component.
+    /// Whether it has operations on whole vectors; otherwise they go component by component.
     const HAS_VECTORS: bool = false;
 
     // Constants, the same in every lane.
@@ -145,13 +152,13 @@ pub trait Machine: Sized + 'static {
     fn u32(&self, v: u32) -> Self::U32;
     fn bool(&self, v: bool) -> Self::Bool;
 
-    /// A literal: the `f32` and the `f64` nearest to its decimal text.
+    /// Returns a literal: the `f32` and the `f64` nearest to its decimal text.
     #[inline(always)]
     fn f32_literal(&self, v: f32, _exact: f64) -> Self::F32 {
         self.f32(v)
     }
 
-    /// A constant of the source that is named by a path.
+    /// Returns a constant of the source that is named by a path.
     #[inline(always)]
     fn f32_constant(&self, v: f32) -> Self::F32 {
         self.f32(v)
@@ -160,7 +167,7 @@ pub trait Machine: Sized + 'static {
     // Arithmetic.
     fn f32_unary<O: Op<F32Unary>>(&self, op: O, a: Self::F32) -> Self::F32;
     fn f32_binary<O: Op<F32Binary>>(&self, op: O, a: Self::F32, b: Self::F32) -> Self::F32;
-    /// Fused: rounded once.
+    /// Returns `a * b + c`, fused: rounded once.
     fn f32_mul_add(&self, a: Self::F32, b: Self::F32, c: Self::F32) -> Self::F32;
     fn i32_binary<O: Op<IntBinary>>(&self, op: O, a: Self::I32, b: Self::I32) -> Self::I32;
     fn u32_binary<O: Op<IntBinary>>(&self, op: O, a: Self::U32, b: Self::U32) -> Self::U32;
@@ -190,8 +197,8 @@ pub trait Machine: Sized + 'static {
     fn f32_from_bits(&self, a: Self::U32) -> Self::F32;
     fn bool_to_u32(&self, a: Self::Bool) -> Self::U32;
 
-    /// The size of `a` compared with infinity, by its bits. Unlike `a != a` that also holds for
-    /// GPUs, which may take NaN for granted not to be.
+    /// Compares the absolute value of `a` with infinity, by its bits. Unlike `a != a` this also
+    /// works on GPUs, which may assume that there is no NaN.
     #[inline(always)]
     fn f32_beside_infinity<O: Op<Compare>>(&self, op: O, a: Self::F32) -> Self::Bool {
         let bits = self.u32_to_i32(self.f32_to_bits(a));
@@ -199,13 +206,13 @@ pub trait Machine: Sized + 'static {
         self.i32_compare(op, size, self.i32(0x7f80_0000))
     }
 
-    /// Whether the sign is `-`, of zeros and NaN too; with [`op::Ge`] whether it is not.
+    /// Returns whether the sign is `-`, of zeros and NaN too; with [`op::Ge`] whether it is not.
     #[inline(always)]
     fn f32_sign_bit<O: Op<Compare>>(&self, op: O, a: Self::F32) -> Self::Bool {
         self.i32_compare(op, self.u32_to_i32(self.f32_to_bits(a)), self.i32(0))
     }
 
-    /// The number `a` with the sign of `sign`.
+    /// Returns the number `a` with the sign of `sign`.
     #[inline(always)]
     fn f32_copysign(&self, a: Self::F32, sign: Self::F32) -> Self::F32 {
         let bits = |x, mask| self.u32_binary(op::And, self.f32_to_bits(x), self.u32(mask));
@@ -213,7 +220,8 @@ pub trait Machine: Sized + 'static {
         self.f32_from_bits(self.u32_binary(op::Or, size, sign))
     }
 
-    /// An operation on every component of two vectors; a machine may have vectors of its own.
+    /// Applies an operation to every component of two vectors; a machine may have vectors of its
+    /// own.
     #[inline(always)]
     fn vector_binary<O: Op<F32Binary>, const N: usize>(
         &self,
@@ -227,7 +235,7 @@ pub trait Machine: Sized + 'static {
         )
     }
 
-    /// An operation on every component of a vector.
+    /// Applies an operation to every component of a vector.
     #[inline(always)]
     fn vector_unary<O: Op<F32Unary>, const N: usize>(
         &self,
@@ -240,7 +248,7 @@ pub trait Machine: Sized + 'static {
         )
     }
 
-    /// An operation on every component of two vectors of `i32`.
+    /// Applies an operation to every component of two vectors of `i32`.
     #[inline(always)]
     fn i32_vector_binary<O: Op<IntBinary>, const N: usize>(
         &self,
@@ -254,7 +262,7 @@ pub trait Machine: Sized + 'static {
         )
     }
 
-    /// An operation on every component of two vectors of `u32`.
+    /// Applies an operation to every component of two vectors of `u32`.
     #[inline(always)]
     fn u32_vector_binary<O: Op<IntBinary>, const N: usize>(
         &self,
@@ -268,13 +276,13 @@ pub trait Machine: Sized + 'static {
         )
     }
 
-    /// Counts and turns bits.
+    /// Counts or reverses bits.
     #[inline(always)]
     fn u32_unary<O: Op<U32Unary>>(&self, op: O, a: Self::U32) -> Self::U32 {
         bits::u32_unary(self, op, a)
     }
 
-    // Control flow. Every hook that returns `bool` says whether to run the code that follows.
+    // Control flow. Every hook that returns `bool` returns whether to run the code that follows.
 
     /// Begins an `if`.
     fn branch(&self, c: Self::Bool) -> Self::Branch;
@@ -282,7 +290,7 @@ pub trait Machine: Sized + 'static {
     fn branch_then(&self, t: &Self::Branch) -> bool;
     /// Leaves the first arm and enters the second.
     fn branch_else(&self, t: &Self::Branch) -> bool;
-    /// Enters the first arm, which is cheap: a packet need not ask whether any lane takes it.
+    /// Enters the first arm, which is cheap: a packet need not test whether any lane takes it.
     #[inline(always)]
     fn branch_then_small(&self, t: &Self::Branch) -> bool {
         self.branch_then(t)
@@ -295,9 +303,8 @@ pub trait Machine: Sized + 'static {
     /// Joins the arms.
     fn branch_end(&self, t: Self::Branch);
 
-    /// `a()` in the lanes that have `c`, `b()` in the others. Without `calls` neither has an
-    /// effect; with them each is evaluated for its lanes only, into a variable
-    /// of that name.
+    /// Selects `a()` in the lanes that have `c`, `b()` in the others. Without `calls` neither has a
+    /// side effect; with them each is evaluated for its lanes only, into a variable called `name`.
     #[inline(always)]
     fn choose<V: Value<Self>>(
         &self,
@@ -327,57 +334,57 @@ pub trait Machine: Sized + 'static {
     fn loop_begin(&self) -> Self::Loop;
     /// Tests a `while` condition: lanes where it fails leave the loop.
     fn loop_test(&self, t: &Self::Loop, c: Self::Bool) -> bool;
-    /// `break`.
+    /// Executes `break` for the running lanes.
     fn loop_break(&self, t: &Self::Loop);
-    /// `continue`.
+    /// Executes `continue` for the running lanes.
     fn loop_continue(&self, t: &Self::Loop);
-    /// After the body: lanes that said `continue` are back, the increment of a `for` follows.
+    /// Ends the body: lanes that said `continue` run again, and the increment of a `for` follows.
     fn loop_continuing(&self, t: &Self::Loop);
-    /// Whether to go round again.
+    /// Returns whether to run another iteration.
     fn loop_again(&self, t: &Self::Loop) -> bool;
-    /// Leaves the loop: lanes that left it go on behind it.
+    /// Leaves the loop: lanes that left it run on behind it.
     fn loop_end(&self, t: Self::Loop);
 
-    /// Whether what follows an early exit is to run: if any lane is left, or that is not worth
-    /// asking.
+    /// Returns whether to run the code behind an early exit: if any lane is left, or a test costs
+    /// more.
     fn alive(&self) -> bool;
-    /// Whether any running lane has `c`; the recorder says yes.
+    /// Returns whether any running lane has `c`; the recorder returns true.
     fn any(&self, c: Self::Bool) -> bool;
-    /// The number that all lanes have, if it is quickly found.
+    /// Returns the number that all lanes have, if it is found quickly.
     #[inline(always)]
     fn u32_same(&self, _a: &Self::U32) -> Option<u32> {
         None
     }
 
-    /// Says where in the source the running lanes are: in an arm of an `if`, in a round of a loop.
+    /// Reports where in the source the running lanes are: in an arm of an `if`, in an iteration.
     #[inline(always)]
     fn at(&self, _place: Place) {}
 
-    /// Evaluates the right side of `&&` or `||`, which only lanes where the left side `c` is
-    /// `when` would reach: in the others, an overflow there is no error.
+    /// Evaluates the right side of `&&` or `||`, reached only by lanes where the left side `c` is
+    /// `when`: in the others, an overflow there is no error.
     #[inline(always)]
     fn guarded<R>(&self, _c: Self::Bool, _when: bool, f: impl FnOnce() -> R) -> R {
         f()
     }
 
-    /// With debug assertions, panics where a running lane's index is not less than `len`.
+    /// Panics, with debug assertions, if a running lane's index is not less than `len`.
     #[inline(always)]
     fn check_index(&self, _index: &Self::U32, _len: u32) {}
 
     // Variables. `V` is a twin; the hooks work leaf by leaf.
 
-    /// The state of a new variable that holds `v`.
+    /// Creates the state of a variable that holds `v`.
     fn var_new<V: Value<Self>>(&self, name: &'static str, v: V) -> V;
-    /// The state of a new variable without a value.
+    /// Creates the state of a variable without a value.
     fn var_declare<V: Value<Self>>(&self, name: &'static str) -> V;
-    /// A snapshot of a variable's value.
+    /// Returns a snapshot of a variable's value.
     fn var_get<V: Value<Self>>(&self, state: V) -> V;
-    /// The state after the running lanes were assigned `v`.
+    /// Returns the state after assigning `v` in the running lanes.
     fn var_set<V: Value<Self>>(&self, state: V, v: V) -> V;
 
-    /// `return v`: stores the value for the running lanes and stops them.
+    /// Executes `return v`: stores the value for the running lanes and stops them.
     fn give<V: Value<Self>>(&self, slot: &core::cell::Cell<V>, v: V);
-    /// The place for the value of a function with early returns.
+    /// Creates the slot for the value of a function with early returns.
     fn give_slot<V: Value<Self>>(&self) -> V;
 
     /// Runs a kernel's body on this machine. `args` is a tuple of values.
@@ -388,8 +395,8 @@ pub trait Machine: Sized + 'static {
         body: impl FnOnce(&Self, A) -> R,
     ) -> R;
 
-    /// [`call`](Self::call) of a kernel that says `#[inline(never)]`: packets inline others where
-    /// they are called from a traversal.
+    /// Runs a kernel marked `#[inline(never)]` like [`call`](Self::call): packets inline others
+    /// where they are called from a traversal.
     #[inline(always)]
     fn call_apart<A: Value<Self>, R: Value<Self>>(
         &self,
@@ -400,26 +407,26 @@ pub trait Machine: Sized + 'static {
         self.call(info, args, body)
     }
 
-    /// A captured number, vector or struct of the host.
+    /// Captures a number, vector or struct of the host.
     #[inline(always)]
     fn capture<T: Type>(&self, _name: &'static str, v: T) -> T::On<Self> {
         T::splat(self, v)
     }
 
-    /// Gives a value the name that it has in the source, for those who read generated code.
+    /// Gives a value its name in the source, for readers of generated code.
     #[inline(always)]
     fn named<V: Value<Self>>(&self, _name: &'static str, v: V) -> V {
         v
     }
 
-    /// Does an operation of another module, in this machine's way.
+    /// Performs an operation of another module by its implementation for this machine.
     fn perform<O: Operation>(
         &self,
         operation: &O,
         input: On<O::Input, Self>,
     ) -> On<O::Output, Self>;
 
-    /// Finds items one after another, in this machine's way; see [`Visit`].
+    /// Visits items one after another by their implementation for this machine; see [`Visit`].
     fn visit<T: Visit>(
         &self,
         items: &T,
@@ -428,7 +435,7 @@ pub trait Machine: Sized + 'static {
         visit: impl Fn(On<T::Item, Self>) -> B<Self>,
     );
 
-    /// `[f(0), f(1), ..]`; a loop in generated code.
+    /// Returns `[f(0), f(1), ..]`; a loop in generated code.
     #[inline(always)]
     fn each<V: Value<Self>, const N: usize>(&self, mut f: impl FnMut(U<Self>) -> V) -> [V; N] {
         fill(
@@ -437,13 +444,13 @@ pub trait Machine: Sized + 'static {
         )
     }
 
-    /// How many elements there are.
+    /// Returns the number of elements.
     #[inline(always)]
     fn len<D: Data>(&self, data: &D) -> U<Self> {
         U(self.u32(data.count() as u32))
     }
 
-    /// The element `index`; the last one where there is none.
+    /// Returns the element `index`; the last one if it is out of range.
     #[inline(always)]
     fn element<D: Data>(&self, data: &D, index: U<Self>) -> <D::Element as Type>::On<Self> {
         let count = data.count() as u32;
@@ -453,19 +460,19 @@ pub trait Machine: Sized + 'static {
         self.fetch(data, U(self.u32_select(within, index.0, last)))
     }
 
-    /// `code / max`, of a code up to `max`.
+    /// Returns `code / max`, for a code up to `max`.
     #[inline(always)]
     fn unorm(&self, code: Self::U32, max: u32) -> Self::F32 {
         self.f32_binary(op::Div, self.u32_to_f32(code), self.f32(max as f32))
     }
 
-    /// A number that a device may have otherwise: off by `absolute` and this part of itself. Where
-    /// it is computed as written, it is what it is.
+    /// Returns `v`, where a device's value may differ by `absolute` and `relative` times itself.
+    /// Machines that compute it as written return it unchanged.
     #[inline(always)]
     fn off_by(&self, v: Self::F32, _absolute: f32, _relative: f32) -> Self::F32 {
         v
     }
 
-    /// The element `index`, which there is.
+    /// Returns the element `index`, which is in range.
     fn fetch<D: Data>(&self, data: &D, index: U<Self>) -> <D::Element as Type>::On<Self>;
 }

@@ -1,16 +1,15 @@
-//! Operations as types, so that each is known when code is made.
+//! Operations as types, to select each at compile time.
 //!
-//! A kernel is inlined whole before an optimiser looks at it: were operations values, all of them
-//! would be compiled wherever there is one, to be thrown away.
+//! A kernel is inlined whole before an optimiser sees it: if operations were values, the code of
+//! all of them would be compiled at every use, only to be thrown away.
 
 /// One of the operations of `Kind`.
 pub trait Op<Kind>: Copy + 'static {
-    /// As a value.
+    /// The operation as a value.
     const OP: Kind;
 }
 
-/// A `match` on an operation that is known when code is made: only the arm that is taken is
-/// compiled.
+/// Matches on an operation known at compile time: only the arm taken is compiled.
 macro_rules! known {
     ($op:path; $($pattern:pat => $result:expr,)+) => {
         $(if const { matches!($op, $pattern) } { $result } else)+ { unreachable!() }
@@ -18,7 +17,7 @@ macro_rules! known {
 }
 pub(crate) use known;
 
-/// A `match` on an operation that is known at run time only: `$known` is its type's value in
+/// Matches on an operation known at run time only: `$known` is the type of that operation in
 /// `$result`. For tests.
 #[doc(hidden)]
 #[macro_export]
@@ -47,7 +46,7 @@ macro_rules! __at_run_time {
     };
 }
 
-/// Kinds of operations: an enum of each, whose variants are types as well.
+/// Declares kinds of operations: an enum of each, whose variants are types as well.
 macro_rules! kinds {
     ($($(#[$about:meta])* $kind:ident { $($(#[$doc:meta])* $name:ident,)+ })+) => {
         $(
@@ -59,7 +58,7 @@ macro_rules! kinds {
             }
 
             impl $kind {
-                /// All of them.
+                /// All operations of the kind.
                 pub const ALL: &[Self] = &[$(Self::$name,)+];
             }
 
@@ -90,8 +89,8 @@ kinds! {
 
     /// An operation on two integers of one type.
     ///
-    /// `Add`, `Sub`, `Mul`, `Shl`, `Shr`, `Div` and `Rem` are the operators of Rust: where Rust would
-    /// panic, a packet built with debug assertions panics too and names the lane. Without them every
+    /// `Add`, `Sub`, `Mul`, `Shl`, `Shr`, `Div` and `Rem` are Rust's operators: where Rust would
+    /// panic, a packet built with debug assertions panics too, naming the lane. Without them every
     /// machine gives one result: sums wrap, a shift uses its amount modulo 32, `x / 0` is `x` and
     /// `x % 0` is 0 (the rules of WGSL).
     IntBinary {
@@ -140,7 +139,7 @@ types! {
 }
 
 impl F32Unary {
-    /// The operation itself.
+    /// Applies the operation.
     pub(super) fn of(self, a: f32) -> f32 {
         match self {
             Self::Neg => -a,
@@ -152,7 +151,7 @@ impl F32Unary {
         }
     }
 
-    /// How WGSL writes it.
+    /// Returns the operation's name in WGSL.
     pub(super) fn wgsl(self) -> &'static str {
         match self {
             Self::Neg => "-",
@@ -166,7 +165,7 @@ impl F32Unary {
 }
 
 impl F32Binary {
-    /// The operation itself.
+    /// Applies the operation.
     pub(super) fn of(self, a: f32, b: f32) -> f32 {
         match self {
             Self::Add => a + b,
@@ -181,7 +180,7 @@ impl F32Binary {
 }
 
 impl U32Unary {
-    /// The operation itself.
+    /// Applies the operation.
     pub(super) fn of(self, a: u32) -> u32 {
         match self {
             Self::CountOnes => a.count_ones(),
@@ -191,7 +190,7 @@ impl U32Unary {
         }
     }
 
-    /// How WGSL writes it.
+    /// Returns the operation's name in WGSL.
     pub(super) fn wgsl(self) -> &'static str {
         match self {
             Self::CountOnes => "countOneBits",
@@ -203,7 +202,7 @@ impl U32Unary {
 }
 
 impl Compare {
-    /// The operation itself.
+    /// Applies the comparison.
     pub(super) fn of<T: PartialOrd>(self, a: T, b: T) -> bool {
         match self {
             Self::Eq => a == b,
@@ -215,7 +214,7 @@ impl Compare {
         }
     }
 
-    /// How WGSL writes it.
+    /// Returns the operator in WGSL.
     pub(super) fn wgsl(self) -> &'static str {
         match self {
             Self::Eq => "==",
@@ -229,7 +228,7 @@ impl Compare {
 }
 
 impl BoolBinary {
-    /// The operation itself.
+    /// Applies the operation.
     pub(super) fn of(self, a: bool, b: bool) -> bool {
         match self {
             Self::And => a & b,

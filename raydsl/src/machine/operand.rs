@@ -1,4 +1,4 @@
-//! Operators of the user's own types.
+//! Operators of user types.
 //!
 //! `#[kernel] impl Add for Spectrum` gives `Spectrum` a method named `+`. Its twin forwards the
 //! operators to it: those with the twin on the left by impls that the derive writes, those with a
@@ -10,26 +10,26 @@ use super::{
     OpShl, OpShr, OpSub, U, Usize, X2, X3, X4, name,
 };
 
-/// The twin of a struct, which may stand on the right of an operator with a number on the left.
+/// The twin of a struct that may be the right operand of a number.
 ///
-/// It has no parameters, so that nobody can claim it for a number.
+/// It has no parameters, so that nobody can implement it for a number.
 pub trait RightOperand {
-    /// The struct.
+    /// The struct on the host.
     type Host;
 }
 
-/// What `a += b` and its like make of `a`.
+/// Compound assignment: `a += b` and its like.
 #[diagnostic::on_unimplemented(
     message = "a kernel has no operator for these operands",
     label = "not an operation of the kernel language",
     note = "a type of your own needs a `#[kernel] impl AddAssign` or its like"
 )]
 pub trait Assigned<const NAME: u64, M: Machine, R, Via = ()>: Sized {
-    /// The new value of `a`.
+    /// Returns the new value of `a`.
     fn assigned(m: &M, a: Self, b: R) -> Self;
 }
 
-/// A type of the library's, for which `a += b` is `a = a + b`.
+/// A type of the library, for which `a += b` is `a = a + b`.
 pub trait Plain {}
 
 macro_rules! plain {

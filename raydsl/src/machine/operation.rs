@@ -1,25 +1,25 @@
-//! What other modules do on machines.
+//! Extension points: operations of other modules on machines.
 //!
-//! A machine knows arithmetic, control flow, variables and data. A query of a scene or a texture's
-//! sampler is done in another way on each: the module that has it says how, in one place.
+//! A machine implements arithmetic, control flow, variables and data. A scene query or a texture
+//! sampler has an implementation per machine, all in one place in the module that owns it.
 
 use super::{B, F, Lanes, Margin, Packet, Recorder, Scalar, Type};
 
 /// The twin of a type of the host on a machine.
 pub type On<T, M> = <T as Type>::On<M>;
 
-/// Something that every machine does in a way of its own, by
+/// An operation with an implementation per machine, run by
 /// [`Machine::perform`](super::Machine::perform).
 pub trait Operation {
-    /// The operands, as a type of the host.
+    /// The operand type on the host.
     type Input: Type;
-    /// The result, as a type of the host.
+    /// The result type on the host.
     type Output: Type;
 
-    /// Does it with one lane.
+    /// Performs it for one lane.
     fn on_scalar(&self, m: &Scalar, input: On<Self::Input, Scalar>) -> On<Self::Output, Scalar>;
 
-    /// Does it in a packet: for its running lanes. The operands of others may be anything.
+    /// Performs it for the running lanes of a packet. The operands of other lanes are arbitrary.
     fn on_packet<L: Lanes>(
         &self,
         m: &Packet<L>,
@@ -33,22 +33,22 @@ pub trait Operation {
         input: On<Self::Input, Recorder>,
     ) -> On<Self::Output, Recorder>;
 
-    /// Does it in `f64`, with bounds of what rounding may do.
+    /// Computes it in `f64`, with bounds on rounding errors.
     fn on_margin(&self, m: &Margin, input: On<Self::Input, Margin>) -> On<Self::Output, Margin>;
 }
 
-/// Items that are found one after another, by [`Machine::visit`](super::Machine::visit).
+/// Items found one after another by [`Machine::visit`](super::Machine::visit).
 ///
-/// `visit` is given each item in the lanes that have it, and says which of them go on. `limit` says
-/// up to where items are still wanted. What outlives an item is in variables, as for rounds of a
-/// [`Loop`](super::Loop).
+/// `visit` receives each item in the lanes that have it and returns the lanes that go on. `limit`
+/// returns the bound up to which items are still wanted. Values that outlive an item are in
+/// variables, as for iterations of a [`Loop`](super::Loop).
 pub trait Visit {
-    /// The operands, as a type of the host.
+    /// The operand type on the host.
     type Input: Type;
-    /// What is found, as a type of the host.
+    /// The item type on the host.
     type Item: Type;
 
-    /// Does it with one lane.
+    /// Visits items with one lane.
     fn on_scalar(
         &self,
         m: &Scalar,
@@ -57,7 +57,7 @@ pub trait Visit {
         visit: impl Fn(On<Self::Item, Scalar>) -> B<Scalar>,
     );
 
-    /// Does it in a packet: for its running lanes. The operands of others may be anything.
+    /// Visits items with the running lanes of a packet. The operands of other lanes are arbitrary.
     fn on_packet<L: Lanes>(
         &self,
         m: &Packet<L>,
@@ -66,7 +66,7 @@ pub trait Visit {
         visit: impl Fn(On<Self::Item, Packet<L>>) -> B<Packet<L>>,
     );
 
-    /// Records it.
+    /// Records the visit.
     fn on_recorder(
         &self,
         m: &Recorder,
@@ -75,7 +75,7 @@ pub trait Visit {
         visit: impl Fn(On<Self::Item, Recorder>) -> B<Recorder>,
     );
 
-    /// Does it in `f64`, with bounds of what rounding may do.
+    /// Visits items in `f64`, with bounds on rounding errors.
     fn on_margin(
         &self,
         m: &Margin,

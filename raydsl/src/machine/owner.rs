@@ -1,4 +1,4 @@
-//! Who owns scene data, and whether they still do: a device keeps what it was sent until then.
+//! Liveness of scene data's owners: a device keeps uploaded data as long as its owner lives.
 
 use core::sync::atomic::{AtomicU64, Ordering};
 use std::collections::HashSet;
@@ -6,14 +6,14 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 static NEXT: AtomicU64 = AtomicU64::new(1);
 
-/// The numbers of all owners that there are.
+/// Locks the set of the ids of all living owners.
 fn living() -> MutexGuard<'static, Option<HashSet<u64>>> {
     static LIVING: Mutex<Option<HashSet<u64>>> = Mutex::new(None);
-    // The set is whole between any two operations.
+    // The set is consistent between any two operations.
     LIVING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A number that no other owner of scene data has, or ever has had.
+/// An id of an owner of scene data, unique in the process and never reused.
 #[derive(Debug)]
 pub(crate) struct Owner(u64);
 
@@ -38,7 +38,7 @@ impl Drop for Owner {
     }
 }
 
-/// Those of these numbers whose owners are gone.
+/// Returns those of `ids` whose owners are gone.
 #[cfg(feature = "gpu")]
 pub(crate) fn gone(ids: impl Iterator<Item = u64>) -> Vec<u64> {
     let next = NEXT.load(Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! SIMD packets: one register a value, a mask of running lanes.
+//! SIMD packets with masked control flow: one register per value and an active mask.
 
 use core::cell::Cell;
 use core::mem::MaybeUninit;
@@ -7,62 +7,62 @@ use super::*;
 
 /// A machine of [`Lanes::N`] lanes with masked control flow.
 ///
-/// The mask algebra: an `if` holds one mask, the lanes that are not running now. `begin` splits
-/// the running lanes by the condition, `else` swaps the halves, `end` joins what is left of them.
-/// `return`, `break` and `continue` only take lanes out of `active`; loops and the end of the
-/// function put them back.
+/// The mask algebra: an `if` holds one mask, the lanes of the arm that is not running. `begin`
+/// splits the running lanes by the condition, `else` swaps the halves, `end` joins their remaining
+/// lanes. `return`, `break` and `continue` only remove lanes from the active mask; loops and the
+/// end of the function restore them.
 #[derive(Clone)]
 pub struct Packet<L: Lanes> {
     lanes: L,
     active: Cell<L::Mask>,
 }
 
-/// The lanes that left a loop, and those that skip to its next round.
+/// The lanes that left a loop, and those that skip to its next iteration.
 pub struct PacketLoop<L: Lanes> {
     exited: Cell<L::Mask>,
     continued: Cell<L::Mask>,
 }
 
 impl<L: Lanes> Packet<L> {
-    /// All lanes running.
+    /// Creates a packet with all lanes running.
     #[inline(always)]
     pub fn new(lanes: L) -> Self {
         Self { lanes, active: Cell::new(lanes.mask(true)) }
     }
 
-    /// The first `count` lanes running.
+    /// Creates a packet with the first `count` lanes running.
     #[inline(always)]
     pub fn with_count(lanes: L, count: usize) -> Self {
         let bits = if count >= 64 { u64::MAX } else { (1 << count) - 1 };
         Self::with_bits(lanes, bits)
     }
 
-    /// The lanes whose bits are set running.
+    /// Creates a packet with the lanes of the set bits running.
     #[inline(always)]
     pub fn with_bits(lanes: L, bits: u64) -> Self {
         let all = if L::N >= 64 { u64::MAX } else { (1 << L::N) - 1 };
         Self { lanes, active: Cell::new(lanes.mask_from_bits(bits & all)) }
     }
 
-    /// The lanes of `active` running.
+    /// Creates a packet with the active mask `active`.
     #[inline(always)]
     pub(crate) fn with_mask(lanes: L, active: L::Mask) -> Self {
         Self { lanes, active: Cell::new(active) }
     }
 
-    /// The lane operations.
+    /// Returns the lane operations.
     #[inline(always)]
     pub fn lanes(&self) -> L {
         self.lanes
     }
 
-    /// The running lanes.
+    /// Returns the active mask.
     #[inline(always)]
     pub fn active(&self) -> L::Mask {
         self.active.get()
     }
 
-    /// Runs `f` with the running lanes that also have `mask`.
+    /// Runs `f` under the active mask `mask`.
     #[inline(always)]
     pub(crate) fn with_active<R>(&self, mask: L::Mask, f: impl FnOnce() -> R) -> R {
         let old = self.active.replace(mask);
@@ -81,7 +81,7 @@ impl<L: Lanes> Packet<L> {
         self.lanes.mask_binary(op::Or, a, b)
     }
 
-    /// What `of_lane` gives for each running lane; `other` in those that do not run.
+    /// Returns `of_lane` of each running lane, and `other` in the rest.
     #[inline(always)]
     pub(crate) fn of_running<T: Type>(
         &self,
@@ -95,8 +95,8 @@ impl<L: Lanes> Packet<L> {
         )
     }
 
-    /// What `of_lane` gives for each lane, which it is asked for once: a value with many members is
-    /// taken apart from where it then lies.
+    /// Returns `of_lane` of each lane, called once per lane: a value with many members is split
+    /// from its place in memory.
     #[inline(always)]
     fn of_each<T: Type>(&self, of_lane: impl Fn(usize) -> T) -> T::On<Self> {
         const { assert!(L::N <= 64) };
@@ -120,15 +120,15 @@ impl<L: Lanes> Packet<L> {
         self.lanes.any(self.active.get())
     }
 
-    /// Takes the running lanes out.
+    /// Stops all running lanes and returns them.
     #[inline(always)]
     fn stop(&self) -> L::Mask {
         self.active.replace(self.lanes.mask(false))
     }
 
-    /// Panics for the first running lane in which Rust would.
+    /// Panics for the first running lane in which Rust would panic.
     ///
-    /// Not inlined: a lane at a time at every operator, it would be most of the code.
+    /// Not inlined: its loop over lanes at every operator would be most of the code.
     #[inline(never)]
     fn check(&self, op: IntBinary, is_error: &dyn Fn(usize) -> bool) {
         let active = self.lanes.bits(self.active.get());
@@ -140,7 +140,7 @@ impl<L: Lanes> Packet<L> {
     }
 }
 
-/// The checks of both types of integers.
+/// Implements the checks of both integer types.
 impl<L: Lanes> Packet<L> {
     #[inline(never)]
     fn check_i32(&self, op: IntBinary, a: &L::I32, b: &L::I32) {
@@ -168,7 +168,7 @@ impl<L: Lanes> Packet<L> {
     }
 }
 
-/// Whether there are operands for which Rust panics.
+/// Returns whether Rust panics for some operands.
 const fn is_checked(op: IntBinary) -> bool {
     use IntBinary::{Add, Div, Mul, Rem, Shl, Shr, Sub};
     cfg!(debug_assertions) && matches!(op, Add | Sub | Mul | Div | Rem | Shl | Shr)
@@ -177,18 +177,18 @@ const fn is_checked(op: IntBinary) -> bool {
 const UNORM8: [f32; 2] = reciprocal(0xff);
 const UNORM16: [f32; 2] = reciprocal(0xffff);
 
-/// `1 / max` as a sum. The first number is so short that its product with a code up to `max` is
-/// exact, and the other so small that `code * high + code * low` is `code / max` for each code: a
-/// test tries all. Divisions take as long as ten products.
+/// Returns `1 / max` as a sum of two numbers. The first is so short that its product with a code up
+/// to `max` is exact, and the second so small that `code * high + code * low` is `code / max` for
+/// each code: a test tries all. Divisions take as long as ten products.
 const fn reciprocal(max: u32) -> [f32; 2] {
     let whole = 1.0 / max as f64;
-    // An f32 has 24 bits, a code takes so many of them, and an f64 has 53.
+    // An f32 has 24 bits, a code takes some of them, and an f64 has 53.
     let bits = 24 - (u32::BITS - max.leading_zeros());
     let high = f64::from_bits(whole.to_bits() & (u64::MAX << (53 - bits)));
     [high as f32, (whole - high) as f32]
 }
 
-/// A kernel's body as a function of its own, compiled for the level once for all of its calls.
+/// Runs a kernel's body as a function of its own, compiled for the level once for all of its calls.
 #[inline(never)]
 fn apart<L: Lanes, A, R>(m: &Packet<L>, args: A, body: impl FnOnce(&Packet<L>, A) -> R) -> R {
     m.lanes.enter_again(
@@ -491,7 +491,7 @@ impl<L: Lanes> Machine for Packet<L> {
     }
     #[inline(always)]
     fn f32_beside_infinity<O: Op<Compare>>(&self, op: O, a: L::F32) -> L::Mask {
-        // Floats stay floats: a mask of integers would cross over.
+        // Compares as floats: a mask of integers would have to be converted.
         let l = self.lanes;
         let (size, infinity) = (l.f32_unary(op::Abs, a), l.f32(f32::INFINITY));
         match O::OP {
@@ -571,12 +571,12 @@ impl<L: Lanes> Machine for Packet<L> {
         }
         let first = self.lanes.bits(active).trailing_zeros() as usize % L::N;
         let first = L::u32_lane(&index.0, first);
-        // The counter of a loop is one number in all lanes.
+        // A loop's counter is the same in all lanes.
         let same = self.lanes.u32_compare(op::Eq, index.0, self.lanes.u32(first));
         if !self.lanes.any(self.and(active, self.lanes.mask_not(same))) {
             return D::Element::splat(self, data.get(first));
         }
-        // A lane that does not run may hold any index.
+        // A lane that is not running may hold any index.
         let index = self.lanes.u32_select(active, index.0, self.lanes.u32(first));
         self.of_each(
             #[inline(always)]

@@ -1,10 +1,10 @@
-//! The machine with one lane and plain numbers.
+//! The scalar machine: one lane of plain numbers.
 
 use core::cell::Cell;
 
 use super::*;
 
-/// One lane, plain Rust numbers: a cross-check of the lowering.
+/// A machine of one lane with plain Rust numbers: a cross-check of the lowering.
 ///
 /// The scalar *variant* of a kernel is the user's own function; this machine runs the lifted body
 /// and must agree with it.
@@ -19,7 +19,7 @@ impl Default for Scalar {
     }
 }
 
-/// The lanes that left a loop, and those that skip to its next round.
+/// The lanes that left a loop, and those that skip to its next iteration.
 #[derive(Debug, Default)]
 pub struct ScalarLoop {
     exited: Cell<bool>,
@@ -28,7 +28,8 @@ pub struct ScalarLoop {
 
 macro_rules! int_binary {
     ($name:ident, $t:ty) => {
-        /// The defined result of every operation; `None` where Rust calls it an error.
+        /// Returns Rust's result, `None` where it panics, and the defined result of every
+        /// operation.
         #[inline(always)]
         pub(super) fn $name(op: IntBinary, a: $t, b: $t) -> (Option<$t>, $t) {
             let shift = b as u32 & 31;
@@ -55,7 +56,7 @@ macro_rules! int_binary {
 int_binary!(i32_binary, i32);
 int_binary!(u32_binary, u32);
 
-/// Names an error of a kernel's integers.
+/// Panics with the error of a kernel's integer operation.
 #[cold]
 #[inline(never)]
 #[track_caller]
@@ -69,7 +70,7 @@ pub(super) fn integer_error(op: IntBinary, lane: usize) -> ! {
     panic!("integer {what} in lane {lane} of a kernel; use wrapping_* where it is meant")
 }
 
-/// An index out of range in a running lane.
+/// Panics for an index out of range in a running lane.
 #[cold]
 #[inline(never)]
 #[track_caller]

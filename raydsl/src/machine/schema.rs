@@ -1,9 +1,9 @@
-//! What the twins of a type look like: names, members, offsets.
+//! Type layouts: names, members and offsets.
 
-/// The structure of a [`Type`](super::Type), as the recorder and the GPU need to know it.
+/// The layout of a [`Type`](super::Type), for the recorder and the GPU.
 ///
-/// *Value* structure is how a kernel sees it (an 8-bit unorm is a `u32` in WGSL), *storage* is how
-/// it lies in the host's memory (one byte); both are described at once.
+/// It describes both the *value* in a kernel (an 8-bit unorm is a `u32` in WGSL) and its *storage*
+/// in the host's memory (one byte).
 #[derive(Debug, PartialEq)]
 pub enum Schema {
     /// `f32`.
@@ -19,13 +19,13 @@ pub enum Schema {
         /// Bytes in memory: 1 or 2.
         bytes: usize,
     },
-    /// A vector of glam's: that many scalars (the first part) without a gap.
+    /// A vector of glam: that many scalars (of the first part) without a gap.
     Vector(&'static Schema, usize),
     /// `[T; N]`.
     Array {
-        /// The element.
+        /// The element's layout.
         element: &'static Schema,
-        /// How many.
+        /// The number of elements.
         count: usize,
         /// Bytes from one to the next.
         stride: usize,
@@ -50,12 +50,12 @@ pub struct Field {
     pub name: &'static str,
     /// Its distance in bytes from the start of the struct.
     pub offset: usize,
-    /// Its structure.
+    /// Its layout.
     pub schema: &'static Schema,
 }
 
 impl Schema {
-    /// How many scalars a value has.
+    /// Returns the number of scalars in a value.
     pub const fn leaves(&self) -> usize {
         match self {
             Self::F32 | Self::I32 | Self::U32 | Self::Bool | Self::Small { .. } => 1,
@@ -73,7 +73,7 @@ impl Schema {
         }
     }
 
-    /// Bytes of one value in the host's memory, padding at the end included.
+    /// Returns the bytes of one value in the host's memory, including padding at the end.
     pub const fn size(&self) -> usize {
         match self {
             Self::F32 | Self::I32 | Self::U32 => 4,

@@ -1,7 +1,7 @@
-//! From a value of a machine to the type of the host that it stands for.
+//! Type inference from twins: the host type of a value on a machine.
 //!
-//! `<T as Type>::On<M>` leads from a type to its twin, and rustc cannot go back: the type
-//! parameters of a generic kernel are inferred from its arguments through [`Inferred`].
+//! `<T as Type>::On<M>` maps a type to its twin, and rustc cannot invert it: the type parameters of
+//! a generic kernel are inferred from its arguments through [`Inferred`].
 
 use glam::{
     Affine3, BVec2, BVec3, BVec4, IVec2, IVec3, IVec4, Mat3, Mat4, UVec2, UVec3, UVec4, Vec2, Vec3,
@@ -11,22 +11,22 @@ use glam::{
 use super::matrix::{A3, M3, M4};
 use super::{B, F, I, Machine, Type, U, Usize, Value, Var, X2, X3, X4};
 
-/// An argument that says what type of the host it has.
+/// An argument with a known host type.
 #[diagnostic::on_unimplemented(
     message = "the type parameters of this kernel cannot be inferred from its arguments",
     label = "of an unknown type",
     note = "name them, as in `f::<L>(light)`"
 )]
 pub trait Inferred<M: Machine> {
-    /// The type.
+    /// The host type.
     type Host: Type;
-    /// The value of the machine.
+    /// Returns the value on the machine.
     fn give(self, m: &M) -> <Self::Host as Type>::On<M>;
 }
 
-/// A value of the machine that stands for a type of the host: `<Host as Type>::On<M>` is `Self`.
+/// A value on a machine that is the twin of a host type: `<Host as Type>::On<M>` is `Self`.
 pub trait Twin<M: Machine>: Value<M> + Inferred<M> {
-    /// The same value, given as the twin of its host.
+    /// Converts the twin of the host type to `Self`, the same value.
     fn from_host(v: <Self::Host as Type>::On<M>) -> Self;
 }
 

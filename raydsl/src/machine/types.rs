@@ -1,4 +1,4 @@
-//! Types of the host that kernels understand, and how they travel to lanes and back.
+//! Host types that kernels understand, and their conversion to lanes and back.
 
 use glam::{BVec2, BVec3, BVec4, IVec2, IVec3, IVec4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 
@@ -13,17 +13,17 @@ use super::{B, F, Field, I, Machine, Schema, U, Usize, Value, Varying, X2, X3, X
     note = "derive it for a struct of such types: #[derive(Clone, Copy, raydsl::Type)]"
 )]
 pub trait Type: Copy + Send + Sync + 'static {
-    /// The twin: what stands for a value of this type on machine `M`.
+    /// The twin: the type of such a value on machine `M`.
     type On<M: Machine>: Value<M> + Varying<M, Value = Self::On<M>>;
 
-    /// The structure of the type.
+    /// The layout of the type.
     const SCHEMA: &'static Schema;
 
-    /// The same value in every lane.
+    /// Returns the same value in every lane.
     fn splat<M: Machine>(m: &M, v: Self) -> Self::On<M>;
-    /// A value for each lane.
+    /// Returns a value per lane.
     fn from_lanes<M: LaneMachine>(m: &M, f: impl Fn(usize) -> Self + Copy) -> Self::On<M>;
-    /// The value of one lane.
+    /// Returns the value of one lane.
     fn lane<M: LaneMachine>(v: &Self::On<M>, lane: usize) -> Self;
     /// Writes the value in the host's layout to the start of `out` (little-endian).
     fn write(&self, out: &mut [u8]);
@@ -34,7 +34,7 @@ pub trait Type: Copy + Send + Sync + 'static {
 /// A machine whose lanes hold numbers: all but the recorder.
 #[expect(missing_docs, reason = "two methods a scalar type")]
 pub trait LaneMachine: Machine {
-    /// How many lanes.
+    /// The number of lanes.
     const LANES: usize;
     fn f32_from_fn(&self, f: impl FnMut(usize) -> f32) -> Self::F32;
     fn i32_from_fn(&self, f: impl FnMut(usize) -> i32) -> Self::I32;
@@ -94,7 +94,7 @@ scalar_type!(i32, I, I32, i32, i32_from_fn, i32_lane);
 scalar_type!(u32, U, U32, u32, u32_from_fn, u32_lane);
 scalar_type!(bool, B, Bool, bool, bool_from_fn, bool_lane);
 
-/// A kernel counts and indexes with 32 bits; what a host's `usize` has above them is lost.
+/// Indexes with 32 bits in a kernel; the upper bits of a host's `usize` are lost.
 #[diagnostic::do_not_recommend]
 impl Type for usize {
     type On<M: Machine> = Usize<M>;
@@ -222,7 +222,7 @@ impl<T: Type, const N: usize> Type for [T; N] {
     }
 }
 
-/// Nothing.
+/// The unit type, without data.
 #[diagnostic::do_not_recommend]
 impl Type for () {
     type On<M: Machine> = ();

@@ -1,4 +1,4 @@
-//! Values on a machine: the wrappers of the scalar types, and what every twin can do.
+//! Values on a machine: wrappers of the scalar types, and the operations of every twin.
 
 use super::{Machine, Schema, fill};
 
@@ -45,7 +45,7 @@ scalar_wrapper!(
     U(U32), u32, U32
 );
 scalar_wrapper!(
-    /// A `usize` on machine `M`: a kernel's have 32 bits.
+    /// A `usize` on machine `M`, of 32 bits in a kernel.
     Usize(U32), u32, U32
 );
 scalar_wrapper!(
@@ -53,27 +53,27 @@ scalar_wrapper!(
     B(Bool), bool, Bool
 );
 
-/// A value on machine `M`: the twin of a [`Type`](super::Type), or a host value that rides along.
+/// A value on machine `M`: the twin of a [`Type`](super::Type), or a host value carried along.
 ///
-/// A twin is a tree whose leaves are scalars of the machine; everything a machine does to whole
-/// values (blend, store, name) goes through [`Value::zip`].
+/// A twin is a tree whose leaves are scalars of the machine; a machine's operations on whole values
+/// (blend, store, name) go through [`Value::zip`].
 #[diagnostic::on_unimplemented(
     message = "a variable of a kernel cannot hold this",
     label = "not a value of the kernel language",
     note = "what a loop runs over stands in its head: `for hit in scene.hits(ray)`"
 )]
 pub trait Value<M: Machine>: Copy {
-    /// The structure; [`Schema::Host`] if there are no leaves.
+    /// The layout; [`Schema::Host`] if there are no leaves.
     const SCHEMA: &'static Schema;
 
-    /// Zeroes in every leaf.
+    /// Returns a value with zero in every leaf.
     fn zero(m: &M) -> Self;
 
     /// Combines two values leaf by leaf, in order of declaration.
     fn zip(m: &M, a: Self, b: Self, f: &mut impl Leaves<M>) -> Self;
 }
 
-/// What [`Value::zip`] does at each leaf.
+/// The operation of [`Value::zip`] at each leaf.
 #[expect(missing_docs, reason = "one method a scalar type")]
 pub trait Leaves<M: Machine> {
     fn f32(&mut self, m: &M, a: M::F32, b: M::F32) -> M::F32;
@@ -82,7 +82,7 @@ pub trait Leaves<M: Machine> {
     fn bool(&mut self, m: &M, a: M::Bool, b: M::Bool) -> M::Bool;
 }
 
-/// Does something to the floats of values; other leaves stay those of the first value.
+/// Applies a function to the floats of values; other leaves stay those of the first value.
 pub(crate) struct Floats<F>(pub(crate) F);
 
 impl<M: Machine, F: FnMut(&M, M::F32, M::F32) -> M::F32> Leaves<M> for Floats<F> {
@@ -137,7 +137,7 @@ macro_rules! host_value {
 
 host_value!(bool, i32, u32, usize);
 
-/// An array has no structure of its own here: its type describes it.
+/// Leaves the stride 0: an array's layout is described by its type.
 impl<M: Machine, V: Value<M>, const N: usize> Value<M> for [V; N] {
     const SCHEMA: &'static Schema = &Schema::Array { element: V::SCHEMA, count: N, stride: 0 };
 

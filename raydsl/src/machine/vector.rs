@@ -1,7 +1,7 @@
 //! The twins of glam's vectors, of floats, integers and truth values alike.
 //!
-//! One struct a size, generic over the component, so that what holds for every component is
-//! written once. [`Vector`] lets an operation be written once for all sizes.
+//! One struct per size, generic over the component, implements every component type once.
+//! [`Vector`] lets an operation be written once for all sizes.
 
 use super::op::known;
 use super::{
@@ -16,7 +16,7 @@ pub type V3<M> = X3<F<M>>;
 /// `Vec4` on machine `M`.
 pub type V4<M> = X4<F<M>>;
 
-/// What a vector may consist of.
+/// The component type of a vector.
 pub trait Component<M: Machine>: Value<M> + Varying<M, Value = Self> {}
 
 #[diagnostic::do_not_recommend]
@@ -28,37 +28,37 @@ impl<M: Machine> Component<M> for U<M> {}
 #[diagnostic::do_not_recommend]
 impl<M: Machine> Component<M> for B<M> {}
 
-/// A number, with arithmetic for one and for several at once.
+/// A number type with arithmetic on one number and on several at once.
 #[diagnostic::on_unimplemented(
     message = "a kernel has no operator for these operands",
     label = "not an operation of the kernel language"
 )]
 pub trait Arithmetic<M: Machine>: Component<M> {
-    /// `+`, `-`, `*`, `/`; of integers, the others too.
+    /// Applies `+`, `-`, `*` or `/`; for integers, the others too.
     fn binary<O: Op<IntBinary>>(m: &M, op: O, a: Self, b: Self) -> Self;
-    /// The same on every component.
+    /// Applies `binary` to every component.
     fn binary_each<O: Op<IntBinary>, const N: usize>(
         m: &M,
         op: O,
         a: [Self; N],
         b: [Self; N],
     ) -> [Self; N];
-    /// A comparison.
+    /// Compares two numbers.
     fn compare<O: Op<Compare>>(m: &M, op: O, a: Self, b: Self) -> B<M>;
-    /// Component by component the lesser or the greater: [`op::Min`] or [`op::Max`].
+    /// Returns the lesser or the greater of each component: [`op::Min`] or [`op::Max`].
     fn extreme_each<O: Op<F32Binary>, const N: usize>(
         m: &M,
         op: O,
         a: [Self; N],
         b: [Self; N],
     ) -> [Self; N];
-    /// The same for one number.
+    /// Returns the lesser or the greater of two numbers.
     fn extreme<O: Op<F32Binary>>(m: &M, op: O, a: Self, b: Self) -> Self;
-    /// `-a`.
+    /// Returns `-a`.
     fn neg(m: &M, a: Self) -> Self;
 }
 
-/// The operators of integers alone.
+/// A number type with the operators that only integers have.
 #[diagnostic::on_unimplemented(
     message = "a kernel has no such operator for these operands",
     label = "an operation of integers",
@@ -66,36 +66,36 @@ pub trait Arithmetic<M: Machine>: Component<M> {
             `floor` for a remainder that is never negative"
 )]
 pub trait Integer<M: Machine>: Arithmetic<M> {
-    /// Whether there are negative ones.
+    /// Whether it has negative numbers.
     const SIGNED: bool;
-    /// The number `v`.
+    /// Returns the number `v`.
     fn number(m: &M, v: i32) -> Self;
-    /// `if c { a } else { b }`.
+    /// Returns `if c { a } else { b }`.
     fn choose(m: &M, c: B<M>, a: Self, b: Self) -> Self;
-    /// The bits.
+    /// Returns the bits.
     fn to_u32(self, m: &M) -> U<M>;
-    /// The number of these bits.
+    /// Returns the number with these bits.
     fn from_u32(m: &M, bits: U<M>) -> Self;
 }
 
-/// What has `&`, `|`, `^`.
+/// A component type with `&`, `|` and `^`.
 #[diagnostic::on_unimplemented(
     message = "a kernel has no such operator for these operands",
     label = "an operation of integers and truth values"
 )]
 pub trait Bits<M: Machine>: Component<M> {
-    /// The operator on every component.
+    /// Applies the operator to every component.
     fn bits_each<O: Op<IntBinary>, const N: usize>(
         m: &M,
         op: O,
         a: [Self; N],
         b: [Self; N],
     ) -> [Self; N];
-    /// `!` of one component.
+    /// Returns `!` of one component.
     fn not(m: &M, a: Self) -> Self;
 }
 
-/// The operation on floats; integers alone have the others.
+/// The operation on floats, if it is not one of integers alone.
 #[derive(Clone, Copy)]
 struct OfFloats<O>(O);
 
@@ -109,7 +109,7 @@ impl<O: Op<IntBinary>> Op<F32Binary> for OfFloats<O> {
     };
 }
 
-/// The operation on truth values.
+/// The operation on truth values, if there is one.
 #[derive(Clone, Copy)]
 struct OfTruths<O>(O);
 
@@ -295,7 +295,7 @@ macro_rules! integer {
 integer!(I true i32_binary i32_vector_binary i32_compare i32_select i32_not;
     |m, a| neg I(m.i32_neg(a.0)); number |v| I(m.i32(v));
     to U(m.i32_to_u32(a.0)); from I(m.u32_to_i32(a.0)));
-// A `u32` has no `-`: nothing calls it.
+// A `u32` has no `-`: nothing calls this.
 integer!(U false u32_binary u32_vector_binary u32_compare u32_select u32_not;
     |m, a| neg U(m.u32_binary(op::WrappingSub, m.u32(0), a.0)); number |v| U(m.u32(v as u32));
     to { let _ = m; a }; from { let _ = m; a });
@@ -321,11 +321,11 @@ impl<M: Machine> Bits<M> for B<M> {
     }
 }
 
-/// A vector, whatever the machine. Without a parameter, so that rustc knows that a user's twin is
-/// none: then impls for all vectors and those of the derive do not overlap.
+/// A vector on any machine. Without a parameter, so that rustc knows that a user's twin does not
+/// implement it: then impls for all vectors and those of the derive do not overlap.
 pub trait IsVector {}
 
-/// A number or a truth value, of the host or a machine: no vector.
+/// A number or a truth value, of the host or a machine, and not a vector.
 pub trait IsScalar {}
 
 impl<M: Machine> IsScalar for F<M> {}
@@ -339,44 +339,44 @@ impl IsScalar for bool {}
 
 /// A vector of any size.
 ///
-/// What works on every component goes from one to the next, and what it calls is `Copy`: a closure
-/// that is dropped has a landing pad at each call, and arrays pass through memory. Both are gone
-/// once optimised, but a packet's operation is eight calls deep, and all of it is compiled first.
+/// Componentwise functions are written out, and their callbacks are `Copy`: a closure that is
+/// dropped has a landing pad at each call, and arrays pass through memory. Both vanish in
+/// optimisation, but a packet's operation is eight calls deep, and all of it is compiled first.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot call this method with these arguments",
     label = "not an operation of the kernel language"
 )]
 pub trait Vector<M: Machine>: Value<M> {
-    /// What it consists of.
+    /// The component type.
     type Component: Component<M>;
-    /// A vector of the same size of something else.
+    /// The vector of the same size with another component type.
     type Of<E: Component<M>>: Vector<M, Component = E>;
 
-    /// `v` in every component.
+    /// Returns `v` in every component.
     fn of_one(v: Self::Component) -> Self;
-    /// `f` of every component.
+    /// Applies `f` to every component.
     fn each<E: Component<M>>(self, f: impl Fn(Self::Component) -> E + Copy) -> Self::Of<E>;
-    /// `f` of every pair of components.
+    /// Applies `f` to every pair of components.
     fn both<D: Component<M>, E: Component<M>>(
         self,
         b: Self::Of<D>,
         f: impl Fn(Self::Component, D) -> E + Copy,
     ) -> Self::Of<E>;
-    /// The components put together from the first to the last.
+    /// Folds the components from the first to the last.
     fn fold(
         self,
         f: impl Fn(Self::Component, Self::Component) -> Self::Component + Copy,
     ) -> Self::Component;
-    /// The components put together from the last to the first.
+    /// Folds the components from the last to the first.
     fn fold_back(
         self,
         f: impl Fn(Self::Component, Self::Component) -> Self::Component + Copy,
     ) -> Self::Component;
-    /// Arithmetic on every component.
+    /// Applies an arithmetic operation to every component.
     fn arithmetic<O: Op<IntBinary>>(m: &M, op: O, a: Self, b: Self) -> Self
     where
         Self::Component: Arithmetic<M>;
-    /// [`Arithmetic::extreme_each`].
+    /// Applies [`Arithmetic::extreme_each`].
     fn extreme<O: Op<F32Binary>>(m: &M, op: O, a: Self, b: Self) -> Self
     where
         Self::Component: Arithmetic<M>;
@@ -384,9 +384,9 @@ pub trait Vector<M: Machine>: Value<M> {
 
 /// A vector of floats.
 pub trait Floats<M: Machine>: Vector<M, Component = F<M>, Of<F<M>> = Self> {
-    /// An operation on every component of two vectors.
+    /// Applies an operation to every component of two vectors.
     fn binary<O: Op<F32Binary>>(m: &M, op: O, a: Self, b: Self) -> Self;
-    /// An operation on every component.
+    /// Applies an operation to every component.
     fn unary<O: Op<F32Unary>>(m: &M, op: O, a: Self) -> Self;
 }
 
@@ -396,20 +396,20 @@ pub trait Floats<M: Machine>: Vector<M, Component = F<M>, Of<F<M>> = Self> {
     label = "not an operation of the kernel language"
 )]
 pub trait Broadcast<M: Machine, R>: Sized {
-    /// Converts.
+    /// Converts the operand.
     fn broadcast(m: &M, r: R) -> Self;
 }
 
 /// The right side of a shift, which may have another integer type, as a vector.
 #[diagnostic::on_unimplemented(message = "a kernel cannot shift this by that")]
 pub trait Amounts<M: Machine, R>: Sized {
-    /// Converts.
+    /// Converts the operand.
     fn amounts(m: &M, r: R) -> Self;
 }
 
-/// By how much to shift a number of type `E`.
+/// The amount by which to shift a number of type `E`.
 pub trait Amount<M: Machine, E> {
-    /// Converts.
+    /// Converts the amount.
     fn amount(self, m: &M) -> E;
 }
 
@@ -619,7 +619,7 @@ vector!(X2, 2, x 0, y 1; x y; y x);
 vector!(X3, 3, x 0, y 1, z 2; x y z; z y x);
 vector!(X4, 4, x 0, y 1, z 2, w 3; x y z w; w z y x);
 
-/// `as` on every component.
+/// Applies `as` to every component.
 #[inline(always)]
 pub(crate) fn cast_each<M, V, T>(m: &M, v: V) -> V::Of<T::On<M>>
 where

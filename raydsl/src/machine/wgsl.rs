@@ -1,30 +1,30 @@
-//! What recording a kernel produces: WGSL text and the data that it reads. Knows nothing of wgpu.
+//! The result of recording a kernel: WGSL text and the data that it reads, independent of wgpu.
 
-/// How generated code computes.
+/// The arithmetic of generated code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Arithmetic {
-    /// As the other variants do: elementary functions are the library's, and the numbers of the
-    /// source stand in the uniform block, where no driver can fold them into others.
+    /// Like the other variants: elementary functions are the library's, and the numbers of the
+    /// source are in the uniform buffer, where no driver can fold them into others.
     #[default]
     Strict,
-    /// As the device likes it best: `sin`, `cos`, `tan`, `asin`, `acos`, `atan`, `atan2`, `exp`,
+    /// The fastest on the device: `sin`, `cos`, `tan`, `asin`, `acos`, `atan`, `atan2`, `exp`,
     /// `exp2`, `log`, `log2`, `pow` and `sincos_2pi` are those of WGSL, whose errors are the
     /// driver's (WGSL asks of `sin` no more than an absolute error of 2^-11 in [-pi, pi]), and
-    /// numbers are written where they stand.
+    /// numbers are literals.
     Fast,
 }
 
 /// A complete WGSL module with the entry point `main`.
 ///
-/// Everything lies in bind group 0: the kernel's numbers at binding 0, the `Job` at 1, inputs at
-/// 2, outputs at 3, windows of the scene's buffers from 4 on, and then the textures.
+/// All bindings are in bind group 0: the kernel's numbers at binding 0, the `Job` at 1, inputs at
+/// 2, outputs at 3, windows of the scene's buffers from 4 on, then the textures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Module {
     /// The text.
     pub source: String,
-    /// Threads of a workgroup in x and y.
+    /// Threads per workgroup in x and y.
     pub workgroup: [u32; 2],
-    /// Bytes of the uniform block of captured numbers; a multiple of 16, never empty.
+    /// Bytes of the uniform buffer of captured numbers; a multiple of 16, never empty.
     pub uniforms: Vec<u8>,
     /// Bytes that an invocation reads from the inputs; 0 if there are none.
     pub input_stride: u32,
@@ -36,80 +36,80 @@ pub struct Module {
     pub textures: Vec<Texture>,
 }
 
-/// A buffer of the scene, in as many windows as bindings of limited size need.
+/// A buffer of the scene, split into as many windows as the size limit of a binding needs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Buffer {
-    /// Which data.
+    /// The key of its data.
     pub key: BufferKey,
     /// The name in the text.
     pub name: String,
-    /// Bytes of an element.
+    /// Bytes per element.
     pub stride: u32,
     /// Number of elements.
     pub len: u64,
-    /// The bindings that together hold it; one, with no element, for an empty buffer.
+    /// The bindings that together hold it; for an empty buffer one binding without elements.
     pub windows: Vec<Window>,
 }
 
-/// A part of a buffer that is one binding.
+/// A part of a buffer, bound as one binding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     /// The binding's number.
     pub binding: u32,
     /// The first element.
     pub first: u64,
-    /// How many elements.
+    /// The number of elements.
     pub count: u64,
 }
 
 /// A texture that the device's own sampler reads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// Which texels: those of all levels, one level behind the other.
+    /// The key of its texels: those of all levels, one level after another.
     pub key: BufferKey,
     /// The name in the text.
     pub name: String,
     /// The binding's number; the next one is that of the sampler.
     pub binding: u32,
-    /// What the texels are and how they are read.
+    /// The texel format and sampling.
     pub layout: TextureLayout,
 }
 
-/// What lies outside of `[0, 1)` along an axis.
+/// The address mode: the texels outside of `[0, 1)` along an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Address {
-    /// The texture again and again.
+    /// Repeats the texture.
     #[default]
     Wrap,
-    /// The texture again and again, every second time mirrored: `GL_MIRRORED_REPEAT`.
+    /// Repeats the texture, mirrored every second time: `GL_MIRRORED_REPEAT`.
     Mirror,
-    /// The texel at the edge.
+    /// Repeats the texel at the edge.
     Clamp,
-    /// The border's colour; filters blend with it. A texel that is outside along one axis is
-    /// outside, whatever the others say.
+    /// Gives the border's colour; filters blend with it. A texel that is outside along one axis is
+    /// outside, whatever the other axes say.
     Border,
 }
 
-/// What the texels of a texture are, and how a sampler reads them: linearly between texels.
+/// The layout of a texture and its sampling: linear between texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TextureLayout {
-    /// Whether it is a volume; if not, an image.
+    /// Whether it is a volume; otherwise it is an image.
     pub is_volume: bool,
     /// Texels along each axis; 1 along the third axis of an image.
     pub size: [u32; 3],
     /// Levels of detail, at least 1.
     pub levels: u32,
-    /// What a texel is.
+    /// The texel format.
     pub format: TexelFormat,
     /// Bytes from one texel to the next, as [`BufferKey`] names them.
     pub stride: u32,
-    /// What lies outside: never the border.
+    /// The address mode along each axis: never the border.
     pub address: [Address; 3],
     /// Whether levels are blended.
     pub blends_levels: bool,
 }
 
-/// Texels that every device of WebGPU filters.
+/// Texel formats that every WebGPU device filters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[expect(missing_docs, reason = "they are named as WebGPU names them")]
 pub enum TexelFormat {
@@ -123,7 +123,7 @@ pub enum TexelFormat {
 }
 
 impl TexelFormat {
-    /// Bytes of a texel.
+    /// Returns the bytes of a texel.
     pub fn bytes(self) -> u32 {
         match self {
             Self::R8Unorm => 1,
@@ -134,28 +134,28 @@ impl TexelFormat {
     }
 }
 
-/// Names data of the host: the same key means the same bytes.
+/// Identifies data of the host: the same key means the same bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct BufferKey {
     /// The owner, unique in the process.
     pub id: u64,
-    /// Grows when the owner's data change.
+    /// The version, which grows when the owner's data change.
     pub version: u32,
-    /// Which of the owner's arrays.
+    /// The index among the owner's arrays.
     pub part: u32,
 }
 
-/// How large a binding may be and how many there may be: decides the windows.
+/// The limits on the size and the number of bindings, which decide the windows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Bytes of one binding.
     pub max_binding_bytes: u64,
-    /// Storage buffers of a shader stage.
+    /// Storage buffers per shader stage.
     pub max_storage_buffers: u32,
 }
 
 impl Default for Limits {
-    /// What WebGPU guarantees: 128 MiB and 8 buffers.
+    /// Returns WebGPU's guaranteed limits: 128 MiB and 8 buffers.
     fn default() -> Self {
         Self { max_binding_bytes: 128 << 20, max_storage_buffers: 8 }
     }

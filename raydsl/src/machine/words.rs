@@ -1,15 +1,15 @@
-//! Values as words of 32 bits, one a scalar: how an enum of primitives keeps its kinds.
+//! Values as 32-bit words, one per scalar: the storage of an enum's variants.
 
 use super::{B, Branch, Kinds, Leaves, Machine, Scalar, Type, U, Value, op};
 
-/// The words of a value; those beyond its scalars are 0.
+/// Converts a value to words; those beyond its scalars are 0.
 #[inline(always)]
 pub fn to_words<T: Type, const N: usize>(v: T) -> [u32; N] {
     let m = Scalar::default();
     to_words_on::<Scalar, T, N>(&m, T::splat(&m, v)).map(|w| w.0)
 }
 
-/// [`to_words`] on any machine.
+/// Converts like [`to_words`], on any machine.
 #[inline(always)]
 pub fn to_words_on<M: Machine, T: Type, const N: usize>(m: &M, v: T::On<M>) -> [U<M>; N] {
     let mut writer = Writer { words: [U(m.u32(0)); N], next: 0 };
@@ -17,26 +17,26 @@ pub fn to_words_on<M: Machine, T: Type, const N: usize>(m: &M, v: T::On<M>) -> [
     writer.words
 }
 
-/// The value of these words.
+/// Converts words to a value.
 #[inline(always)]
 pub fn of_words<M: Machine, T: Type, const N: usize>(m: &M, words: [U<M>; N]) -> T::On<M> {
     let zero = T::On::zero(m);
     T::On::zip(m, zero, zero, &mut Reader { words, next: 0 })
 }
 
-/// The value of these words, on the host.
+/// Converts words to a value of the host.
 pub fn host_of_words<T: Type, const N: usize>(words: [u32; N]) -> T {
     T::lane::<Scalar>(&of_words::<Scalar, T, N>(&Scalar::default(), words.map(U)), 0)
 }
 
-/// Where the kind is `number`.
+/// Returns whether the kind is `number`.
 #[inline(always)]
 pub fn is_kind<M: Machine>(m: &M, kind: U<M>, number: u32) -> B<M> {
     B(m.u32_compare(op::Eq, kind.0, m.u32(number)))
 }
 
-/// Runs `then` where the kind is `number`; not at all if no primitive of the scene is of that kind,
-/// and unasked if all are.
+/// Runs `then` where the kind is `number`: never if no primitive of the scene has that kind, and
+/// without a test if all have it.
 #[inline(always)]
 pub fn of_kind<M: Machine>(m: &M, kinds: Kinds, kind: U<M>, number: u32, then: impl FnOnce()) {
     if !kinds.has(number) {

@@ -1,13 +1,13 @@
-//! Samples where they are needed: a number for each block of a film.
+//! Sample allocation: a number of samples for each block of a film.
 
 use glam::UVec2;
 
 use crate::kernel;
 
-/// Edge of a block in pixels. Packets of all widths lie in one.
+/// The edge of a block in pixels. It is a multiple of the edge of packets of every width.
 pub(crate) const BLOCK: u32 = 16;
 
-/// How many samples the pixels of each block of a film get, row by row from the bottom.
+/// The number of samples per pixel of each block of a film, row by row from the bottom.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Allocation {
     /// Blocks in a row.
@@ -16,33 +16,33 @@ pub(crate) struct Allocation {
 }
 
 impl Allocation {
-    /// `samples` has one number for each block of a film of this width.
+    /// Creates an allocation; `samples` has one number for each block of a film of this width.
     pub(crate) fn new(width: u32, samples: Vec<u32>) -> Self {
         Self { columns: width.div_ceil(BLOCK), samples }
     }
 
-    /// Blocks in a row.
+    /// Returns the number of blocks in a row.
     pub(crate) fn columns(&self) -> u32 {
         self.columns
     }
 
-    /// Of each block.
+    /// Returns the number of samples of each block.
     pub(crate) fn samples(&self) -> &[u32] {
         &self.samples
     }
 
-    /// The least that a pixel gets.
+    /// Returns the smallest number of samples of a pixel.
     pub(crate) fn least(&self) -> u32 {
         self.samples.iter().copied().min().unwrap_or(0)
     }
 
-    /// The most that a pixel gets.
+    /// Returns the largest number of samples of a pixel.
     pub(crate) fn most(&self) -> u32 {
         self.samples.iter().copied().max().unwrap_or(0)
     }
 }
 
-/// How many samples a pixel gets in all, and where those end that it takes before `end`.
+/// Returns the number of samples of a pixel in all, and how many of them come before `end`.
 #[kernel]
 #[inline]
 pub(super) fn part_of(samples: &[u32], columns: u32, pixel: UVec2, end: u32) -> (u32, u32) {

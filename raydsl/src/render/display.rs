@@ -1,4 +1,4 @@
-//! From light to what a screen shows.
+//! Display transform: exposure, tone mapping and transfer function.
 
 use glam::{Vec3, Vec4, vec3, vec4};
 
@@ -7,35 +7,36 @@ use crate::kernel;
 use crate::math::Unorm8;
 use crate::texture::linear_to_srgb;
 
-/// Brighter light is shown as this: its square is still a number.
+/// The brightest light that is distinguished: its square is still finite.
 const BRIGHTEST: f32 = 1e9;
 
-/// How a range without an end is brought to the one of a screen.
+/// The mapping from unbounded light to a screen's range.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ToneMap {
-    /// What is brighter than 1 is 1.
+    /// Clamps at 1.
     #[default]
     Clamp,
-    /// Each channel by [`reinhard()`], with this white.
+    /// Maps each channel by [`reinhard()`], with this white.
     Reinhard {
-        /// What becomes 1; at least 1e-6.
+        /// The light that becomes 1; at least 1e-6.
         white: f32,
     },
-    /// Each channel by [`filmic()`].
+    /// Maps each channel by [`filmic()`].
     Filmic,
 }
 
-/// How numbers stand for light in the picture.
+/// The transfer function from light to picture values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Transfer {
-    /// In proportion to it.
+    /// Linear.
     Linear,
-    /// By sRGB's curve, as picture files and screens expect.
+    /// The sRGB curve, as picture files and screens expect.
     #[default]
     Srgb,
 }
 
-/// How linear light becomes a picture of 8 bits: exposure, then tone map, then transfer.
+/// A display transform from linear light to a picture of 8 bits: exposure, then tone map, then
+/// transfer.
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -49,40 +50,40 @@ pub enum Transfer {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Display {
-    /// Stops: each doubles the light.
+    /// The exposure in stops: each doubles the light.
     pub exposure: f32,
-    /// How bright light is brought down.
+    /// The tone mapping operator.
     pub tone_map: ToneMap,
-    /// How numbers stand for light.
+    /// The transfer function.
     pub transfer: Transfer,
 }
 
 impl Display {
-    /// As bright as it is, clamped, in sRGB.
+    /// Creates a transform with exposure 0, clamping, in sRGB.
     pub const fn new() -> Self {
         Self { exposure: 0.0, tone_map: ToneMap::Clamp, transfer: Transfer::Srgb }
     }
 
-    /// Doubles the light `stops` times; halves it where they are negative.
+    /// Sets the exposure: doubles the light `stops` times; halves it where they are negative.
     #[must_use]
     pub const fn exposure(self, stops: f32) -> Self {
         Self { exposure: stops, ..self }
     }
 
-    /// Brings bright light down.
+    /// Sets the tone mapping operator.
     #[must_use]
     pub const fn tone_map(self, tone_map: ToneMap) -> Self {
         Self { tone_map, ..self }
     }
 
-    /// How numbers stand for light.
+    /// Sets the transfer function.
     #[must_use]
     pub const fn transfer(self, transfer: Transfer) -> Self {
         Self { transfer, ..self }
     }
 
-    /// The colour on the screen, 0 to 1; alpha is clamped alone. Magenta where the light is no
-    /// number, so that it is not overlooked.
+    /// Returns the colour on the screen, 0 to 1; alpha is only clamped. A NaN becomes magenta, to
+    /// be noticed.
     pub fn color(&self, light: Vec4) -> Vec4 {
         if light.is_nan() {
             return vec4(1.0, 0.0, 1.0, 1.0);
@@ -91,7 +92,7 @@ impl Display {
         let exposed = exposed.clamp(Vec3::ZERO, Vec3::splat(BRIGHTEST));
         let mapped = match self.tone_map {
             ToneMap::Clamp => exposed,
-            // With less, its square would be none.
+            // With a smaller white, its square would be 0.
             ToneMap::Reinhard { white } => reinhard(exposed, white.max(1e-6)),
             ToneMap::Filmic => filmic(exposed),
         };
@@ -105,22 +106,24 @@ impl Display {
         shown.extend(light.w.clamp(0.0, 1.0))
     }
 
-    /// The picture of 8 bits a channel, each the nearest.
+    /// Returns the picture with 8 bits per channel, rounded to nearest.
     pub fn show(&self, light: &Image<Vec4>) -> Image<[Unorm8; 4]> {
         light.map(|&p| self.color(p).to_array().map(Unorm8::new))
     }
 }
 
-/// `x (1 + x / white^2) / (1 + x)` of each channel: `white` becomes 1. (Reinhard, Stark, Shirley
-/// and Ferwerda, "Photographic Tone Reproduction for Digital Images", SIGGRAPH 2002, equation 4.)
+/// Maps each channel by `x (1 + x / white^2) / (1 + x)`: `white` becomes 1. (Reinhard, Stark,
+/// Shirley and Ferwerda, "Photographic Tone Reproduction for Digital Images", SIGGRAPH 2002,
+/// equation 4.)
 #[kernel]
 #[inline]
 pub fn reinhard(light: Vec3, white: f32) -> Vec3 {
     light * (light / (white * white) + 1.0) / (light + 1.0)
 }
 
-/// A curve like that of film: dark and bright are compressed. (Narkowicz, "ACES Filmic Tone Mapping
-/// Curve", 2015: a fit of the reference of the Academy.) 1 and above from about 7 on.
+/// Maps each channel by a filmic curve, which compresses shadows and highlights. (Narkowicz, "ACES
+/// Filmic Tone Mapping Curve", 2015: a fit of the reference of the Academy.) It is 1 and above from
+/// about 7 on.
 #[kernel]
 #[inline]
 pub fn filmic(light: Vec3) -> Vec3 {

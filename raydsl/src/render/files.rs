@@ -1,7 +1,7 @@
-//! Pictures as files.
+//! Picture files.
 //!
-//! 8-bit PNG for what is to be looked at, PFM (and EXR, with the feature `exr`) for what is to be
-//! worked with: light, distances.
+//! 8-bit PNG is for viewing, PFM (and EXR, with the feature `exr`) for further processing of light
+//! and distances.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -43,7 +43,7 @@ fn write_pfm<R: crate::Type, const N: usize>(
     channels: impl Fn(&R) -> [f32; N],
 ) -> io::Result<()> {
     let mut file = BufWriter::new(File::create(path)?);
-    // A scale below 0 says that the numbers are little-endian.
+    // A negative scale means little-endian.
     write!(file, "{magic}\n{} {}\n-1.0\n", image.width(), image.height())?;
     for value in image.pixels().iter().flat_map(channels) {
         file.write_all(&value.to_le_bytes())?;
@@ -83,7 +83,7 @@ impl Image<Vec4> {
     }
 }
 
-/// Files begin with the topmost row.
+/// Iterates over the rows of pixels from the topmost, as in files.
 #[cfg(feature = "image")]
 fn from_the_top<R: crate::Type>(image: &Image<R>) -> impl Iterator<Item = R> {
     image.rows().rev().flatten().copied()

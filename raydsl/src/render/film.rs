@@ -1,4 +1,4 @@
-//! Pictures that get better with every pass.
+//! Films: pictures refined pass by pass.
 
 use glam::{DVec4, Vec4};
 
@@ -18,46 +18,46 @@ pub struct Film {
 }
 
 impl Film {
-    /// A film of `width` by `height` pixels without samples.
+    /// Creates a film of `width` by `height` pixels without samples.
     pub fn new(width: u32, height: u32) -> Self {
         let pixels = vec![Sums::default(); width as usize * height as usize];
         Self { width, height, pixels, samples: 0 }
     }
 
-    /// The number of columns.
+    /// Returns the number of columns.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// The number of rows.
+    /// Returns the number of rows.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// Samples of each pixel so far, the most of any if they do not all have the same number. The
-    /// next pass begins with the one of this number.
+    /// Returns the number of samples of each pixel so far, the largest if they differ. The next
+    /// pass begins with the sample of this index.
     pub fn samples(&self) -> u32 {
         self.samples
     }
 
-    /// How many samples each pixel has. They differ where [`Until::adaptive`](super::Until::adaptive)
-    /// chose them.
+    /// Returns the number of samples of each pixel. They differ if
+    /// [`Until::adaptive`](super::Until::adaptive) chose them.
     pub fn sample_counts(&self) -> Image<u32> {
         self.map(|sums| u32::try_from(sums.count).unwrap_or(u32::MAX))
     }
 
-    /// The samples of all pixels.
+    /// Returns the number of samples of all pixels together.
     pub(super) fn total_samples(&self) -> u64 {
         self.pixels.iter().map(|sums| sums.count).sum()
     }
 
-    /// Forgets all samples, as when the camera has moved.
+    /// Clears all samples, for example after the camera has moved.
     pub fn clear(&mut self) {
         self.pixels.fill(Sums::default());
         self.samples = 0;
     }
 
-    /// Adds what a pass gave, of `samples` samples a pixel.
+    /// Adds the result of a pass, of `samples` samples per pixel.
     pub(crate) fn join(&mut self, pass: &Image<Moments>, samples: u32) {
         for (sums, moments) in self.pixels.iter_mut().zip(pass.pixels()) {
             sums.join(moments);
@@ -65,8 +65,8 @@ impl Film {
         self.samples = self.samples.saturating_add(samples);
     }
 
-    /// Adds all samples of another film of the same size, which must be other samples. `each` sees
-    /// what a pixel was, what it has become, and what was added.
+    /// Adds all samples of another film of the same size, which must be different samples. `each`
+    /// receives a pixel before and after, and the added samples.
     pub(super) fn merge(&mut self, other: &Self, mut each: impl FnMut(&Sums, &Sums, &Sums)) {
         for (sums, more) in self.pixels.iter_mut().zip(&other.pixels) {
             let before = *sums;
@@ -76,18 +76,19 @@ impl Film {
         self.samples = self.samples.saturating_add(other.samples);
     }
 
-    /// What is known of each pixel.
+    /// Returns the moments of each pixel.
     pub(super) fn sums(&self) -> &[Sums] {
         &self.pixels
     }
 
-    /// The means: red, green, blue and alpha. Black without samples; a pixel one of whose samples
-    /// was no number is none.
+    /// Returns the means: red, green, blue and alpha. They are black without samples, and NaN where
+    /// a sample was NaN.
     pub fn image(&self) -> Image<Vec4> {
         self.map(|sums| sums.mean.as_vec4())
     }
 
-    /// The variance of one sample, unbiased (divided by n - 1); 0 where there are fewer than two.
+    /// Returns the variance of one sample, unbiased (divided by n - 1); 0 where there are fewer
+    /// than two.
     pub fn variance(&self) -> Image<Vec4> {
         self.map(|sums| match sums.count {
             0 | 1 => Vec4::ZERO,
@@ -95,8 +96,8 @@ impl Film {
         })
     }
 
-    /// The standard error of each mean, if the samples are independent; other sequences are mostly
-    /// closer than that. 0 where there are fewer than two samples.
+    /// Returns the standard error of each mean, if the samples are independent; other sequences are
+    /// usually closer than that. It is 0 where there are fewer than two samples.
     pub fn standard_error(&self) -> Image<Vec4> {
         self.map(|sums| match sums.count {
             0 | 1 => Vec4::ZERO,
@@ -107,12 +108,12 @@ impl Film {
         })
     }
 
-    /// How many pixels had a sample that was no number.
+    /// Returns the number of pixels with a NaN sample.
     pub fn nan_pixels(&self) -> usize {
         self.pixels.iter().filter(|sums| sums.mean.is_nan()).count()
     }
 
-    /// The means, row by row from the bottom, before they are rounded to `f32`.
+    /// Returns the means, row by row from the bottom, before rounding to `f32`.
     pub fn means(&self) -> impl Iterator<Item = DVec4> {
         self.pixels.iter().map(|sums| sums.mean)
     }

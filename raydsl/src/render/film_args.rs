@@ -1,4 +1,4 @@
-//! What a kernel is given for a sample of a pixel.
+//! Kernel arguments for a sample of a pixel.
 
 use glam::UVec2;
 
@@ -6,17 +6,17 @@ use crate::geometry::{Ray, RayOn};
 use crate::machine::{Machine, Type};
 use crate::sampling::{Sampler, SamplerOn};
 
-/// What a kernel for pictures takes: a ray, and if it asks for them the pixel that the ray is for,
-/// and the numbers of this sample.
+/// The parameters of a kernel for pictures: a ray, and optionally its pixel and a sampler for this
+/// sample.
 ///
 /// `kernel!(|ray: Ray| ..)`, `kernel!(|ray: Ray, sampler: Sampler| ..)`, `kernel!(|ray: Ray, pixel:
 /// UVec2| ..)`, `kernel!(|ray: Ray, pixel: UVec2, sampler: Sampler| ..)`. Pixel (0, 0) is at the
-/// lower left. What a kernel does not take is not computed.
+/// lower left. Arguments that a kernel does not take are not computed.
 pub trait FilmArgs: Type {
-    /// The arguments.
+    /// Returns the arguments.
     fn of(ray: Ray, pixel: UVec2, sampler: impl FnOnce() -> Sampler) -> Self;
 
-    /// [`FilmArgs::of`], lifted.
+    /// Lifts [`FilmArgs::of`].
     #[doc(hidden)]
     fn on_film<M: Machine>(
         ray: RayOn<M>,

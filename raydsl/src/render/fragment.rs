@@ -1,10 +1,10 @@
-//! Pictures of several makers in one.
+//! Compositing of pictures from several renderers.
 
 use glam::Vec4;
 
 use crate::{Type, kernel};
 
-/// What one maker, be it rays or a rasteriser, has for a pixel.
+/// The colour and depth of a pixel from one renderer, a ray tracer or a rasteriser.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 #[repr(C)]
 pub struct Fragment {
@@ -16,16 +16,16 @@ pub struct Fragment {
     pub depth: f32,
 }
 
-/// `front` over `back`; both are colours times their alpha. (Porter and Duff, "Compositing Digital
-/// Images", SIGGRAPH 1984, table 4.3.)
+/// Composites `front` over `back`; both are colours times their alpha. (Porter and Duff,
+/// "Compositing Digital Images", SIGGRAPH 1984, table 4.3.)
 #[kernel]
 #[inline]
 pub fn over(front: Vec4, back: Vec4) -> Vec4 {
     front + back * (1.0 - front.w)
 }
 
-/// Two makers' fragments of one pixel: the nearer, which has the smaller depth, is over the
-/// farther; of equal depths, `a` is.
+/// Composites the fragments of one pixel from two renderers: the nearer, with the smaller depth,
+/// over the farther; for equal depths `a` over `b`.
 #[kernel]
 #[inline]
 pub fn composite(a: Fragment, b: Fragment) -> Fragment {
@@ -36,7 +36,7 @@ pub fn composite(a: Fragment, b: Fragment) -> Fragment {
     }
 }
 
-/// [`composite()`] where the greater depth is the nearer, as with
+/// Does the same as [`composite()`] where the greater depth is the nearer, as with
 /// [`DepthRange::REVERSED`](crate::camera::DepthRange::REVERSED).
 #[kernel]
 #[inline]

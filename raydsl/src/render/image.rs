@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::Type;
 use crate::machine::Type as KernelType;
 
-/// What a kernel says of a pixel.
+/// A shaded pixel: colour, depth and id.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 #[repr(C)]
 pub struct Shaded {
@@ -13,7 +13,7 @@ pub struct Shaded {
     pub color: Vec3,
     /// Distance along the ray.
     pub depth: f32,
-    /// What was seen: a primitive's id, or whatever the kernel means by it.
+    /// The id of the visible primitive, or any id of the kernel's choice.
     pub id: u32,
 }
 
@@ -26,65 +26,67 @@ pub struct Image<R = Shaded> {
 }
 
 impl<R: KernelType> Image<R> {
-    /// An image of `width` by `height` pixels, all `value`.
+    /// Creates an image of `width` by `height` pixels, all `value`.
     pub fn filled(width: u32, height: u32, value: R) -> Self {
         let area = (width as usize).checked_mul(height as usize);
         let area = area.expect("an image has no more pixels than the machine has addresses");
         Self { width, height, pixels: vec![value; area] }
     }
 
-    /// An image of `width` by `height` pixels: `pixel` is given the column and the row.
+    /// Creates an image of `width` by `height` pixels from `pixel`, called with the column and the
+    /// row.
     pub fn from_fn(width: u32, height: u32, mut pixel: impl FnMut(u32, u32) -> R) -> Self {
         let rows = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         Self { width, height, pixels: rows.map(|(x, y)| pixel(x, y)).collect() }
     }
 
-    /// An image of the same size: what `pixel` makes of each pixel. One channel of a record, say.
+    /// Returns an image of the same size with `pixel` applied to each pixel, for example one
+    /// channel of a record.
     pub fn map<S: KernelType>(&self, pixel: impl FnMut(&R) -> S) -> Image<S> {
         let (width, height) = (self.width, self.height);
         Image { width, height, pixels: self.pixels.iter().map(pixel).collect() }
     }
 
-    /// The pixel of a column and a row, if it is there.
+    /// Returns the pixel in a column and a row, if it exists.
     pub fn get(&self, x: u32, y: u32) -> Option<&R> {
         let index = y as usize * self.width as usize + x as usize;
         (x < self.width).then(|| self.pixels.get(index)).flatten()
     }
 
-    /// The rows, from the bottom.
+    /// Returns the rows, from the bottom.
     pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[R]> {
         self.pixels.chunks(self.width.max(1) as usize)
     }
 
-    /// The number of columns.
+    /// Returns the number of columns.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// The number of rows.
+    /// Returns the number of rows.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// The pixels, row by row from the bottom.
+    /// Returns the pixels, row by row from the bottom.
     pub fn pixels(&self) -> &[R] {
         &self.pixels
     }
 
-    /// The pixels, row by row from the bottom.
+    /// Returns the pixels, row by row from the bottom.
     pub fn pixels_mut(&mut self) -> &mut [R] {
         &mut self.pixels
     }
 }
 
 impl Image<Shaded> {
-    /// A black image.
+    /// Creates a black image.
     pub fn new(width: u32, height: u32) -> Self {
         Self::filled(width, height, Shaded::default())
     }
 
-    /// The colours as 8-bit RGB, row by row from the *top*, as picture files want them. A NaN is
-    /// shown as magenta, so that it is not overlooked.
+    /// Returns the colours as 8-bit RGB, row by row from the *top*, as in picture files. A NaN
+    /// becomes magenta, to be noticed.
     pub fn to_rgb8(&self) -> Vec<u8> {
         let row = |y: u32| {
             let start = y as usize * self.width as usize;

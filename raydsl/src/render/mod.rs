@@ -1,8 +1,8 @@
-//! From kernels to pictures.
+//! Rendering of pictures with kernels.
 //!
-//! A [`Renderer`], a [`Scheduler`] of the CPU or a device, makes a frame (one ray through the
-//! middle of each pixel) or a pass (some samples of each pixel, added to a [`Film`]); a camera gives
-//! the rays.
+//! A [`Renderer`], a [`Scheduler`] of the CPU or a device, renders a frame (one ray through the
+//! centre of each pixel) or a pass (some samples of each pixel, added to a [`Film`]); a camera
+//! generates the rays.
 
 mod allocation;
 mod display;

@@ -1,29 +1,29 @@
-//! Mean and variance of colours that come one after the other.
+//! Running mean and variance of colours.
 
 use glam::{DVec4, Vec4, vec4};
 
 use crate::machine::functions::vec4;
 use crate::{Type, kernel};
 
-/// What is known of a pixel after some samples: how many, their mean, and the sum of the squared
-/// distances from it, for each of red, green, blue and alpha.
+/// The moments of a pixel's samples: the count, the mean, and the sum of the squared deviations
+/// from it, for each of red, green, blue and alpha.
 ///
-/// A pass over a film gives one for each pixel. Passes are joined in `f64` by a
-/// [`Film`](super::Film), so that a million samples of a pixel count as much as the first ones.
+/// A pass over a film returns one for each pixel. Passes are joined in `f64` by a
+/// [`Film`](super::Film), so that the millionth sample of a pixel has the same weight as the first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 #[repr(C)]
 pub struct Moments {
     /// Number of samples.
     pub count: u32,
-    /// Their mean.
+    /// The mean.
     pub mean: Vec4,
-    /// The sum of their squared distances from the mean.
+    /// The sum of the squared deviations from the mean.
     pub m2: Vec4,
 }
 
 #[kernel]
 impl Moments {
-    /// Of no samples.
+    /// Returns the moments of no samples.
     #[inline]
     pub fn none() -> Self {
         let zero = vec4(0.0, 0.0, 0.0, 0.0);
@@ -50,14 +50,14 @@ pub(super) struct Sums {
 }
 
 impl Sums {
-    /// Adds a pass.
+    /// Adds the moments of a pass.
     pub(super) fn join(&mut self, pass: &Moments) {
         let (mean, m2) = (pass.mean.as_dvec4(), pass.m2.as_dvec4());
         self.merge(&Self { count: u64::from(pass.count), mean, m2 });
     }
 
-    /// Adds other samples. (Chan, Golub and LeVeque, "Updating Formulae and a Pairwise Algorithm
-    /// for Computing Sample Variances", 1979, formula 2.1.)
+    /// Merges the moments of other samples. (Chan, Golub and LeVeque, "Updating Formulae and a
+    /// Pairwise Algorithm for Computing Sample Variances", 1979, formula 2.1.)
     pub(super) fn merge(&mut self, other: &Self) {
         if other.count == 0 {
             return;
@@ -74,7 +74,7 @@ impl Sums {
 mod tests {
     use super::*;
 
-    /// A sum of squares less the square of the sum would give 509.75 for this.
+    /// Tests a case in which the sum of squares minus the square of the sum would give 509.75.
     #[test]
     fn a_small_variance_around_a_large_mean() {
         // Evenly from 999.5 to 1000.5.
@@ -96,8 +96,8 @@ mod tests {
         assert!((sums.mean.x - mean).abs() < 1e-4, "{} {mean}", sums.mean.x);
     }
 
-    /// The hundred millionth sample counts as much as the first: a sum of `f32` would stand still at
-    /// 2^24.
+    /// Tests that the hundred millionth sample has the same weight as the first: a sum of `f32`
+    /// would stall at 2^24.
     #[test]
     fn a_hundred_million_samples() {
         let pass = |shift: f32| {
@@ -115,13 +115,13 @@ mod tests {
         assert_eq!(sums.count, 100_000_000);
         let mean = (63.0 + 64.0) / 4.0 / 64.0;
         assert!((sums.mean.x / mean - 1.0).abs() < 1e-6, "{}", sums.mean.x);
-        // Of 0 ..= 127, over 128^2.
+        // The variance of 0 ..= 127, over 128^2.
         let variance = (128.0 * 128.0 - 1.0) / 12.0 / (128.0 * 128.0);
         let found = sums.m2.x / (sums.count - 1) as f64;
         assert!((found / variance - 1.0).abs() < 1e-6, "{found} {variance}");
     }
 
-    /// However parts are put together, the mean is the same to two units in the last place.
+    /// Tests that the mean is the same to two units in the last place in any order of merging.
     #[test]
     fn the_order_of_joining_hardly_matters() {
         let part = |i: u32| {

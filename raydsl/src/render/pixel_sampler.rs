@@ -1,4 +1,4 @@
-//! Where in its pixel a sample lies, and which numbers it gets.
+//! Sample positions in a pixel, and the random numbers of samples.
 
 use glam::{Vec2, vec2};
 
@@ -6,28 +6,28 @@ use crate::kernel;
 use crate::machine::functions::vec2;
 use crate::sampling::{SampleMethod, Sampler};
 
-/// Where the samples of a pixel lie in it.
+/// The sample positions in a pixel.
 ///
 /// The fixed patterns are the standard ones of Direct3D for 2, 4 and 8 samples: each row and each
-/// column of the pixel has one. Further samples go round them again.
+/// column of the pixel has one. Further samples repeat the pattern.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum PixelSampler {
-    /// In the middle.
+    /// The centre.
     Center,
-    /// At two fixed places.
+    /// Two fixed positions.
     Two,
-    /// At four fixed places.
+    /// Four fixed positions.
     Four,
-    /// At eight fixed places.
+    /// Eight fixed positions.
     Eight,
-    /// Anywhere, by [`Sampling::method`].
+    /// Random positions, by [`Sampling::method`].
     #[default]
     Jittered,
 }
 
 impl PixelSampler {
-    /// Samples after which the places begin anew: a mean over whole rounds weighs all parts of the
-    /// pixel alike.
+    /// Returns the number of samples after which the positions repeat: a mean over whole periods
+    /// weights all parts of the pixel equally.
     pub const fn period(self) -> u32 {
         match self {
             Self::Center | Self::Jittered => 1,
@@ -38,7 +38,7 @@ impl PixelSampler {
     }
 }
 
-/// How the samples of pixels are made.
+/// The sampling of a film's pixels.
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -49,43 +49,44 @@ impl PixelSampler {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sampling {
-    /// Where samples lie in their pixel. Jittered unless set.
+    /// The sample positions in a pixel. Jittered unless set.
     pub pixels: PixelSampler,
-    /// How numbers for the place in the pixel, and on a lens, are made. Sobol unless set.
+    /// The method for positions in the pixel and on a lens. Sobol unless set.
     pub method: SampleMethod,
-    /// Another seed gives other samples everywhere. 0 unless set.
+    /// The seed; another one gives other samples everywhere. 0 unless set.
     pub seed: u32,
-    /// How many samples each pixel will have in all: stratified ones must know. At least 1.
+    /// The number of samples of each pixel in all, which stratification needs. At least 1.
     pub planned: u32,
 }
 
 impl Sampling {
-    /// Jittered Sobol samples, `planned` of them for each pixel.
+    /// Creates jittered Sobol sampling with `planned` samples per pixel.
     pub const fn new(planned: u32) -> Self {
         let planned = if planned == 0 { 1 } else { planned };
         Self { pixels: PixelSampler::Jittered, method: SampleMethod::Sobol, seed: 0, planned }
     }
 
-    /// Where samples lie in their pixel.
+    /// Sets the sample positions in a pixel.
     #[must_use]
     pub const fn pixels(self, pixels: PixelSampler) -> Self {
         Self { pixels, ..self }
     }
 
-    /// How numbers are made.
+    /// Sets the sampling method.
     #[must_use]
     pub const fn method(self, method: SampleMethod) -> Self {
         Self { method, ..self }
     }
 
-    /// Which samples of all possible ones.
+    /// Sets the seed.
     #[must_use]
     pub const fn seed(self, seed: u32) -> Self {
         Self { seed, ..self }
     }
 }
 
-/// The first of two fixed samples, and the second, in a pixel of width 1; and so on.
+/// Returns the position of sample `index` of two, in a pixel of width 1. The functions below do so
+/// for four and eight.
 #[kernel]
 #[inline]
 fn of_two(index: u32) -> Vec2 {
@@ -115,8 +116,8 @@ fn of_eight(index: u32) -> Vec2 {
     places[(index % 8) as usize] * 0.0625
 }
 
-/// The place in the pixel of the sample: from (0, 0) at its lower left to below (1, 1). Jittered
-/// samples take two dimensions of `sampler`, the others none.
+/// Returns the position of the sample in the pixel: from (0, 0) at its lower left to below (1, 1).
+/// Jittered samples take two dimensions of `sampler`, the others none.
 #[kernel]
 #[inline]
 pub(super) fn pixel_place(

@@ -1,4 +1,4 @@
-//! What of a kernel's result is light.
+//! The colour of a kernel's result.
 
 use glam::{Vec3, Vec4, vec4};
 
@@ -8,11 +8,12 @@ use crate::machine::functions::vec4;
 
 /// A result with a colour, whose samples can be averaged.
 ///
-/// For one of your own, `#[kernel] impl Radiance for MyPixel`. What is no colour (a distance, an
-/// id) is not averaged: take it from a frame, whose rays go through the middle of the pixels.
+/// For a type of your own, write `#[kernel] impl Radiance for MyPixel`. Members other than the
+/// colour (a distance, an id) are not averaged: take them from a frame, whose rays go through the
+/// centres of the pixels.
 #[kernel]
 pub trait Radiance {
-    /// Red, green, blue and alpha.
+    /// Returns red, green, blue and alpha.
     fn rgba(&self) -> Vec4;
 }
 

@@ -1,4 +1,4 @@
-//! What a film's samples are, one by one, and in `f64`.
+//! Reference values of a film: single samples, and means in `f64`.
 
 use glam::{DVec4, UVec2, uvec2};
 
@@ -11,16 +11,16 @@ use crate::machine::{Machine, Outcomes, Rounding, U, X2};
 use crate::sampling::Sampler;
 
 impl Sampling {
-    /// The ray of a pixel's sample of this number, and the sampler that its kernel is given: the
-    /// same in every variant.
+    /// Returns the ray of a pixel's sample `index`, and the sampler passed to the kernel: the same
+    /// in every variant.
     pub fn sample<C: CameraRays>(&self, rays: &C, pixel: UVec2, index: u32) -> (Ray, Sampler) {
         let Self { pixels, method, seed, planned } = *self;
         let (at, lens, sampler) = places(pixel, seed, index, planned, pixels, method, C::HAS_LENS);
         (rays.lens_ray(at.x, at.y, lens), sampler)
     }
 
-    /// The mean of the first `samples` samples of every pixel, each computed in `f64`: what the
-    /// rounding of a film is measured against. Pixels are row by row from the bottom. It takes some
+    /// Returns the mean of the first `samples` samples of every pixel, each computed in `f64`, the
+    /// reference for a film's rounding errors. Pixels are row by row from the bottom. It takes some
     /// two hundred times as long as the film.
     pub fn means_in_f64<C: Camera, A: FilmArgs, R: Radiance>(
         &self,
@@ -36,7 +36,7 @@ impl Sampling {
                 let pixel = X2 { x: U(m.u32(pixel.x)), y: U(m.u32(pixel.y)) };
                 pass.pixel_on(m, pixel, &|m, args| kernel.on_margin(m, args))
             });
-            // Moments: how many, then their mean.
+            // The leaves of moments: the count, then the mean.
             let mean = |i: usize| outcomes.reference()[1 + i].value();
             DVec4::new(mean(0), mean(1), mean(2), mean(3))
         };

@@ -1,4 +1,4 @@
-//! What renders pictures, whether on the CPU or on a device.
+//! The trait of renderers, on the CPU or on a device.
 
 use core::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -13,65 +13,66 @@ use crate::camera::Camera;
 use crate::kernel::Kernel;
 use crate::machine::Type;
 
-/// The samples of a pixel that one pass takes at most: in between, the observer may stop it.
+/// The maximum number of samples per pixel in one pass: the observer may stop in between.
 const LARGEST_PASS: u32 = 64;
 
-/// A pass on a device takes about this share of the time of a budget.
+/// The number of passes of a device in a time budget.
 #[cfg(feature = "gpu")]
 const PASSES_OF_A_BUDGET: u32 = 50;
 
-/// Samples that a film gets.
+/// The samples to add to a film.
 #[derive(Clone, Copy)]
 pub(crate) struct Samples<'a> {
     pub(crate) sampling: &'a Sampling,
-    /// Of each pixel; if they are allocated, the most of any.
+    /// The number per pixel; if they are allocated, the largest.
     pub(crate) each: u32,
-    /// How many each block gets in all, where they do not all get the same.
+    /// The total of each block, if they differ.
     pub(crate) allocation: Option<&'a Allocation>,
 }
 
 impl Samples<'_> {
-    /// The least that a pixel gets.
+    /// Returns the smallest number of samples of a pixel.
     fn least(&self) -> u32 {
         self.allocation.map_or(self.each, Allocation::least)
     }
 }
 
-/// What a pixel costs.
+/// The cost of a pixel.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// At most so many samples.
+    /// The maximum number of samples.
     pub samples: u32,
-    /// Whether all pixels take that many: only then a run tells how long others will take.
+    /// Whether all pixels take that many: only then does a run predict the time of others.
     pub is_even: bool,
 }
 
 impl Effort {
-    /// One sample.
+    /// The cost of one sample.
     pub(crate) const ONE: Self = Self { samples: 1, is_even: true };
 }
 
-/// How many samples of each pixel the next pass takes.
+/// The number of samples per pixel in the next pass.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
     pass: u32,
-    /// How long a pass should take at most.
+    /// The maximum time of a pass.
     slice: Duration,
 }
 
 impl Pace {
-    /// Passes as long as they may be.
+    /// Passes of the maximum length.
     pub(crate) const LONGEST: Self = Self { pass: LARGEST_PASS, slice: Duration::MAX };
 
-    /// Passes that are short beside a budget of time, for what loses a pass when it is broken off.
+    /// Returns passes that are short beside a time budget, for renderers that lose a pass when
+    /// stopped.
     #[cfg(feature = "gpu")]
     pub(crate) fn within(budget: Duration) -> Self {
         Self { pass: 1, slice: budget / PASSES_OF_A_BUDGET }
     }
 
-    /// Makes the next passes shorter where one took long, and longer where there is room.
+    /// Makes the next passes shorter if one took too long, and longer if there is time.
     fn learn(&mut self, took: Duration) {
         if took > self.slice {
             self.pass = (self.pass / 2).max(1);
@@ -81,11 +82,11 @@ impl Pace {
     }
 }
 
-/// Renders pictures and films with a kernel, and runs kernels over batches.
+/// A renderer: renders pictures and films with a kernel, and runs kernels over batches.
 ///
 /// Every [`Scheduler`](super::Scheduler) of the CPU is one, and so is
-/// [`GpuScheduler`](crate::gpu::GpuScheduler). Where nothing may go wrong, as on the CPU, an
-/// [`Outcome`](Renderer::Outcome) is the value itself; a device gives a `Result`.
+/// [`GpuScheduler`](crate::gpu::GpuScheduler). An [`Outcome`](Renderer::Outcome) is the value
+/// itself if nothing can fail, as on the CPU; a device returns a `Result`.
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -99,27 +100,27 @@ impl Pace {
 /// horizon(&TiledScheduler::new());
 /// ```
 pub trait Renderer {
-    /// How long it took, as far as that is known: nothing is of the CPU.
+    /// The time of a run, if it is measured: it is not on the CPU.
     type Timing: Default;
 
-    /// What may go wrong.
+    /// The error of a failed run.
     type Error;
 
-    /// What may go wrong, or cannot be asked for.
+    /// The error of a failed run, or of an invalid target.
     type UntilError: From<UntilError> + From<Self::Error>;
 
-    /// A value, or what went wrong in its place.
+    /// A value, or the error in its place.
     type Outcome<T>;
 
-    /// Counts what another run took.
+    /// Adds the time of another run.
     #[doc(hidden)]
     fn add_timing(total: &mut Self::Timing, timing: Self::Timing);
 
     #[doc(hidden)]
     fn outcome<T>(result: Result<T, Self::Error>) -> Self::Outcome<T>;
 
-    /// Runs `shot` for every pixel of `image`, telling `observer` the share that is done, between its
-    /// ends.
+    /// Runs `shot` for every pixel of `image`, reporting the completed share to `observer`,
+    /// excluding the beginning and the end.
     #[doc(hidden)]
     fn shoot<S: Shot>(
         &self,
@@ -129,7 +130,7 @@ pub trait Renderer {
         observer: Option<Observer<'_>>,
     ) -> Result<ControlFlow<Self::Timing, Self::Timing>, Self::Error>;
 
-    /// How long passes over a film are that has this budget of time.
+    /// Returns the length of passes over a film with this time budget.
     #[doc(hidden)]
     fn pace(&self, _budget: Duration) -> Pace {
         Pace::LONGEST
@@ -151,12 +152,11 @@ pub trait Renderer {
         outputs: &mut [R],
     ) -> Self::Outcome<Self::Timing>;
 
-    /// Renders a frame: `image`'s size is the film's, and one ray goes through the middle of each
-    /// pixel.
+    /// Renders a frame of the size of `image`, with one ray through the centre of each pixel.
     ///
     /// # Errors
     ///
-    /// If a device refuses or is lost; `image` is then what it was.
+    /// If a device refuses or is lost; `image` is then unchanged.
     fn frame<C: Camera, A: FilmArgs, R: Type>(
         &self,
         camera: &C,
@@ -168,13 +168,13 @@ pub trait Renderer {
         Self::outcome(end.map(timing_of))
     }
 
-    /// [`Renderer::frame`], telling `observer` the share that is done: on a device after each
-    /// dispatch, which takes about 50 ms. It may break off: on the CPU the pixels so far are in
-    /// `image`, the others as they were; of a device nothing comes back.
+    /// Renders a frame like [`Renderer::frame`] and reports the completed share to `observer`: on a
+    /// device after each dispatch, which takes about 50 ms. The observer may stop the run: on the
+    /// CPU `image` then has the completed pixels, the others unchanged; a device returns nothing.
     ///
     /// # Errors
     ///
-    /// As there.
+    /// As for [`Renderer::frame`].
     fn frame_observed<C: Camera, A: FilmArgs, R: Type>(
         &self,
         camera: &C,
@@ -188,7 +188,7 @@ pub trait Renderer {
         let rays = camera.begin_frame(image.width(), image.height());
         let end = self.shoot(&Frame { rays, kernel }, Effort::ONE, image, Some(&mut *observer));
         if matches!(end, Ok(ControlFlow::Continue(_))) {
-            // The picture is there, whatever the answer.
+            // The picture is complete, whatever the observer returns.
             let _ = observer(1.0);
         }
         Self::outcome(end)
@@ -196,12 +196,12 @@ pub trait Renderer {
 
     /// Adds `samples` samples to every pixel of `film`.
     ///
-    /// Samples are counted: two calls for 8 give what one for 16 gives, to within the rounding of
-    /// a pass of at most 64 samples, which are added up where they are taken.
+    /// Samples are numbered: two calls for 8 give the result of one for 16, up to the rounding of a
+    /// pass of at most 64 samples, which are summed where they are taken.
     ///
     /// # Errors
     ///
-    /// If a device refuses or is lost; `film` then has the passes that came through.
+    /// If a device refuses or is lost; `film` then has the completed passes.
     fn accumulate<C: Camera, A: FilmArgs, R: Radiance>(
         &self,
         camera: &C,
@@ -216,12 +216,12 @@ pub trait Renderer {
         Self::outcome(passes.add(&plan, film, go_on).map(timing_of))
     }
 
-    /// [`Renderer::accumulate`], telling `observer` the share that is done. It may break off: the film
-    /// then has the passes that were finished.
+    /// Adds samples like [`Renderer::accumulate`] and reports the completed share to `observer`,
+    /// which may stop the run: the film then has the completed passes.
     ///
     /// # Errors
     ///
-    /// As there.
+    /// As for [`Renderer::accumulate`].
     fn accumulate_observed<C: Camera, A: FilmArgs, R: Radiance>(
         &self,
         camera: &C,
@@ -236,16 +236,16 @@ pub trait Renderer {
         Self::outcome(passes.add(&plan, film, observer))
     }
 
-    /// Renders until an error is reached, or a budget is spent. `film` gives the size; what it had
-    /// is forgotten, and it then has the best picture so far.
+    /// Renders until a target error is reached, or a budget is spent. `film` gives the size; its
+    /// samples are cleared, and it then has the best picture so far.
     ///
-    /// Samples are taken by [`REPLICATIONS`](super::REPLICATIONS) independent replications, whose
-    /// means scatter as the error does, however the samples of each depend on each other. A pilot
-    /// chooses the number of samples; fresh samples make the picture and its error, so that the
-    /// choice does not flatter them (Stein, "A Two-Sample Test for a Linear Hypothesis Whose Power
-    /// is Independent of the Variance", 1945). Random numbers of the kernel must come from the
-    /// `Sampler` that it is given: others are the same in all replications, and their error is not
-    /// seen. Fixed places in pixels are taken in whole rounds.
+    /// Samples are taken in [`REPLICATIONS`](super::REPLICATIONS) independent replications, whose
+    /// means scatter like the error, even if the samples of each are correlated. A pilot chooses
+    /// the number of samples; fresh samples make the picture and its error estimate, so that the
+    /// choice does not bias them (Stein, "A Two-Sample Test for a Linear Hypothesis Whose Power is
+    /// Independent of the Variance", 1945). Random numbers of the kernel must come from its
+    /// `Sampler`: others are the same in all replications, and their error is not measured. Fixed
+    /// positions in pixels are used in whole periods.
     ///
     /// ```
     /// use raydsl::prelude::*;
@@ -267,13 +267,13 @@ pub trait Renderer {
     /// # Ok::<(), raydsl::render::UntilError>(())
     /// ```
     ///
-    /// On a device the clock is looked at after each dispatch, and a pass over the film takes about a
-    /// fiftieth of the time: what is broken off in one is lost.
+    /// On a device the clock is checked after each dispatch, and a pass over the film takes about a
+    /// fiftieth of the time: an interrupted pass is lost.
     ///
     /// # Errors
     ///
-    /// What cannot be asked for: a tolerance, a budget, or a film of nothing; or if a device refuses or
-    /// is lost, and `film` then has the best picture so far.
+    /// If the tolerance or the budget is invalid, or the film has no pixels; or if a device refuses
+    /// or is lost, and `film` then has the best picture so far.
     fn render_until<C: Camera, A: FilmArgs, R: Radiance>(
         &self,
         camera: &C,
@@ -286,11 +286,12 @@ pub trait Renderer {
         self.render_until_observed(camera, kernel, sampling, film, until, go_on)
     }
 
-    /// [`Renderer::render_until`], telling `observer` how far it is. It may break off.
+    /// Renders like [`Renderer::render_until`] and reports progress to `observer`, which may stop
+    /// the run.
     ///
     /// # Errors
     ///
-    /// As there.
+    /// As for [`Renderer::render_until`].
     fn render_until_observed<C: Camera, A: FilmArgs, R: Radiance>(
         &self,
         camera: &C,
@@ -307,14 +308,14 @@ pub trait Renderer {
     }
 }
 
-/// What a run took, also one that was broken off.
+/// Returns the timing of a run, complete or stopped.
 pub(crate) fn timing_of<T>(end: ControlFlow<T, T>) -> T {
     match end {
         ControlFlow::Continue(timing) | ControlFlow::Break(timing) => timing,
     }
 }
 
-/// A renderer with what it is to render, pass by pass.
+/// A renderer with its camera and kernel, run pass by pass.
 struct Passes<'a, T: ?Sized, C, A: Type, R: Type> {
     renderer: &'a T,
     camera: &'a C,
@@ -329,7 +330,7 @@ where
     A: FilmArgs,
     R: Radiance,
 {
-    /// Adds samples to a film. What broke off in a pass does not count.
+    /// Adds samples to a film. A stopped pass adds none.
     fn add(
         &mut self,
         samples: &Samples<'_>,
@@ -349,7 +350,7 @@ where
             let rays = self.camera.begin_frame(film.width(), film.height());
             let (kernel, sampling, first) = (self.kernel, *sampling, film.samples());
             let pass = Pass { rays, kernel, sampling, first, count, allocation };
-            // Where some blocks have all they need, a pass is shorter than others will be.
+            // If some blocks have all their samples, a pass is shorter than others will be.
             let is_even = samples.least() >= done + count;
             let mut tell =
                 |share: f64| observer((f64::from(done) + share * f64::from(count)) / all);

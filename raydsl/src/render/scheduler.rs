@@ -1,4 +1,4 @@
-//! What runs kernels over films and batches on the CPU.
+//! Schedulers: kernels over films and batches on the CPU.
 
 use core::convert::Infallible;
 use core::ops::ControlFlow;
@@ -10,10 +10,12 @@ use super::{Image, UntilError};
 use crate::kernel::Kernel;
 use crate::machine::Type;
 
-/// Runs a kernel for every pixel of a film, or for every element of a batch, on the CPU.
+/// A scheduler, which runs a kernel on the CPU for every pixel of a film, or for every element of a
+/// batch.
 ///
-/// The result is the same for every scheduler, number of threads and CPU variant. One of your own
-/// has [`Scheduler::run`], which hands out tiles, and [`Scheduler::run_batch`]; it is a [`Renderer`] then:
+/// The result is the same for every scheduler, number of threads and CPU variant. A scheduler of
+/// your own implements [`Scheduler::run`], which distributes tiles, and [`Scheduler::run_batch`];
+/// it is then a [`Renderer`]:
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -60,8 +62,8 @@ use crate::machine::Type;
 /// assert_eq!(a, b);
 /// ```
 pub trait Scheduler {
-    /// Runs `shot` for every pixel of `image`, counting pixels with `watch` and leaving early when
-    /// that is stopped.
+    /// Runs `shot` for every pixel of `image`, reports completed pixels to `watch` and returns
+    /// early when it is stopped.
     fn run<S: Shot>(&self, shot: &S, image: &mut Image<S::Output>, watch: &Watch<'_>);
 
     /// Runs a kernel over `inputs`; `outputs` has the same length.
@@ -77,7 +79,7 @@ pub trait Scheduler {
     );
 }
 
-/// Nothing goes wrong on the CPU, and nobody asks how long it took.
+/// On the CPU nothing fails, and no time is measured.
 impl<T: Scheduler + ?Sized> Renderer for T {
     type Timing = ();
     type Error = Infallible;

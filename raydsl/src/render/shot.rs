@@ -1,4 +1,4 @@
-//! What is done for each pixel of a film.
+//! The computation for each pixel of a film.
 
 use glam::{UVec2, Vec2, vec2};
 
@@ -13,32 +13,32 @@ use crate::machine::functions::vec2;
 use crate::machine::{Capture, Loop, Machine, Recorder, Resource, Steps, Stop, Type, U, Var, X2};
 use crate::sampling::{SampleMethod, Sampler};
 
-/// What is done for each pixel of a film, by every variant: a frame's ray, or the samples of a
+/// The computation for each pixel of a film in every variant: a frame's ray, or the samples of a
 /// pass.
 ///
-/// A scheduler runs it; see [`Scheduler::run`](super::Scheduler::run). It is made by the
-/// scheduler's methods.
+/// A scheduler runs it; see [`Scheduler::run`](super::Scheduler::run). The scheduler's methods
+/// create it.
 pub trait Shot: Sync {
-    /// What the kernel takes.
+    /// The parameters of the kernel.
     type Args: FilmArgs;
-    /// What the kernel gives.
+    /// The result of the kernel.
     type Result: Type;
-    /// What there is for each pixel.
+    /// The result for each pixel.
     type Output: Type;
 
-    /// The kernel.
+    /// Returns the kernel.
     fn kernel(&self) -> &Kernel<'_, Self::Args, Self::Result>;
 
-    /// Shows the buffers that it may read on a device.
+    /// Visits the buffers that it may read on a device.
     #[doc(hidden)]
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
         self.kernel().resources(visit);
     }
 
-    /// Runs it for a pixel by the user's own function.
+    /// Computes a pixel by the user's own function.
     fn pixel(&self, pixel: UVec2) -> Self::Output;
 
-    /// Runs it on a machine, where `body` is the lifted body of the kernel.
+    /// Computes a pixel on a machine, where `body` is the lifted body of the kernel.
     #[doc(hidden)]
     fn pixel_on<M: Machine>(
         &self,
@@ -52,7 +52,7 @@ pub trait Shot: Sync {
 pub type Body<'k, M, S> =
     dyn Fn(&M, <<S as Shot>::Args as Type>::On<M>) -> <<S as Shot>::Result as Type>::On<M> + 'k;
 
-/// Where on the film and on the lens a sample is, and the sampler after it.
+/// Returns the position of a sample on the film and on the lens, and the sampler after it.
 #[kernel]
 #[inline]
 pub(crate) fn places(
@@ -70,7 +70,8 @@ pub(crate) fn places(
     (pixel.as_vec2() + place, lens, sampler)
 }
 
-/// One ray through the middle of each pixel; for what asks for numbers, the first sample of one.
+/// One ray through the centre of each pixel; a sampler, if used, is that of the first sample of
+/// one.
 pub(crate) struct Frame<'a, C, A: Type, R: Type> {
     pub(crate) rays: C,
     pub(crate) kernel: &'a Kernel<'a, A, R>,
@@ -99,7 +100,7 @@ impl<C: CameraRays, A: FilmArgs, R: Type> Shot for Frame<'_, C, A, R> {
     }
 }
 
-/// The middle of a pixel.
+/// Returns the centre of a pixel.
 #[kernel]
 #[inline]
 fn pixel_centre(pixel: UVec2) -> Vec2 {
@@ -111,11 +112,12 @@ pub(crate) struct Pass<'a, C, A: Type, R: Type> {
     pub(crate) rays: C,
     pub(crate) kernel: &'a Kernel<'a, A, R>,
     pub(crate) sampling: Sampling,
-    /// The number of the first sample.
+    /// The index of the first sample.
     pub(crate) first: u32,
-    /// How many.
+    /// The number of samples.
     pub(crate) count: u32,
-    /// Some blocks may need fewer: a pixel takes those whose number is below what it is given here.
+    /// The allocation, if blocks differ: a pixel takes the samples whose index is below its number
+    /// there.
     pub(crate) allocation: Option<&'a Allocation>,
 }
 

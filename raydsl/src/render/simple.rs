@@ -1,4 +1,4 @@
-//! One pixel, or one packet, after the other.
+//! A scheduler for one thread.
 
 use super::tile::TILE;
 use super::watch::Watch;
@@ -6,7 +6,7 @@ use super::{Image, Scheduler, Shot};
 use crate::kernel::{Kernel, Variant};
 use crate::machine::Type;
 
-/// Runs on the calling thread, each packet on its own.
+/// A scheduler that runs on the calling thread, without gangs of packets.
 #[derive(Clone, Copy, Debug)]
 pub struct SimpleScheduler {
     variant: Variant,

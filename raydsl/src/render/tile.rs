@@ -1,4 +1,4 @@
-//! The pixels of a rectangle, by one variant.
+//! Tiles of an image, and their rendering by one variant.
 
 use core::cell::RefCell;
 use core::iter::FusedIterator;
@@ -13,42 +13,42 @@ use crate::kernel::{GANG, PacketKernel, PacketTask, Variant};
 use crate::machine::{Lanes, Packet, Type, U, X2, op};
 use crate::run::fibers;
 
-/// Edge of a tile in pixels, unless a scheduler has another.
+/// The edge of a tile in pixels, unless a scheduler has another.
 pub(super) const TILE: u32 = 16;
 
-/// Rows of tiles in a band: tiles that follow each other lie near each other, both ways.
+/// Rows of tiles in a band: consecutive tiles are close to each other in both directions.
 const BAND: u32 = 8;
 
-/// Rows of pixels in a band of packets: those of a gang of 64 lanes cover a square.
+/// Rows of pixels in a band of packets: the packets of a gang of 64 lanes cover a square.
 const GANG_EDGE: u32 = 8;
 
-/// A rectangle of a film, and its pixels: what a scheduler hands out. See [`Image::tiles`].
+/// A rectangle of a film with its pixels, the unit of work of a scheduler. See [`Image::tiles`].
 pub struct Tile<'a, R> {
     x: u32,
     y: u32,
     width: u32,
     height: u32,
-    /// Its lower left pixel, and how many pixels lie between its rows.
+    /// Its lower left pixel, and the number of pixels from one row to the next.
     first: NonNull<R>,
     stride: usize,
     image: PhantomData<&'a mut [R]>,
 }
 
-// SAFETY: a tile is a rectangle of an image that is borrowed for it alone, as `&mut [R]` would be.
+// SAFETY: a tile is a rectangle of an image that is borrowed exclusively, like `&mut [R]`.
 unsafe impl<R: Send> Send for Tile<'_, R> {}
 // SAFETY: as above.
 unsafe impl<R: Sync> Sync for Tile<'_, R> {}
 
-/// The tiles of an image, one after the other; see [`Image::tiles`].
+/// An iterator over the tiles of an image; see [`Image::tiles`].
 #[derive(Debug)]
 pub struct Tiles<'a, R> {
     grid: Grid<R>,
-    /// Those that are to come.
+    /// The indices of the remaining tiles.
     numbers: Range<usize>,
     image: PhantomData<&'a mut [R]>,
 }
 
-/// How an image is cut.
+/// The tile grid of an image.
 #[derive(Debug)]
 struct Grid<R> {
     pixels: NonNull<R>,
@@ -58,30 +58,30 @@ struct Grid<R> {
     edge: u32,
 }
 
-// SAFETY: what it points to is only reached by `Grid::tile`, whose caller answers for that.
+// SAFETY: its pixels are only accessed through `Grid::tile`, whose caller guarantees safety.
 unsafe impl<R: Send> Send for Grid<R> {}
-// SAFETY: as above; tiles of other threads are sent to them.
+// SAFETY: as above; tiles are sent to other threads.
 unsafe impl<R: Send> Sync for Grid<R> {}
 
 impl<R: Type> Image<R> {
-    /// Cuts the image into tiles of `edge` by `edge` pixels; those at the end of rows and columns
+    /// Splits the image into tiles of `edge` by `edge` pixels; those at the end of rows and columns
     /// may be smaller. An edge of 0 is taken as 1.
     ///
     /// They come in an order that keeps caches warm: column by column in bands of eight rows of
-    /// tiles, from the bottom. Nothing is allocated for them.
+    /// tiles, from the bottom. This allocates nothing.
     pub fn tiles(&mut self, edge: u32) -> Tiles<'_, R> {
         let (width, height, edge) = (self.width(), self.height(), edge.max(1));
         let pixels = self.pixels_mut();
         let area = (width as usize).checked_mul(height as usize);
         assert_eq!(Some(pixels.len()), area, "an image has all its pixels");
         let grid = Grid { pixels: NonNull::from(pixels).cast(), width, height, edge };
-        // No more than there are pixels.
+        // At most the number of pixels.
         let numbers = 0..grid.blocks().count();
         Tiles { grid, numbers, image: PhantomData }
     }
 }
 
-/// What a rectangle is cut into.
+/// The partition of a rectangle into blocks.
 #[derive(Clone, Copy, Debug)]
 struct Blocks {
     columns: u32,
@@ -93,8 +93,8 @@ impl Blocks {
         self.columns as usize * self.lines as usize
     }
 
-    /// The column and the line of a block, another one for each number below their count: column by
-    /// column in bands of `band` lines.
+    /// Returns the column and the line of a block, unique for each index below their count: column
+    /// by column in bands of `band` lines.
     fn place(self, number: usize, band: u32) -> UVec2 {
         // A band may have more blocks than 32 bits can count.
         let (number, of_band) = (number as u64, u64::from(self.columns) * u64::from(band));
@@ -111,12 +111,13 @@ impl<R> Grid<R> {
         Blocks { columns: width.div_ceil(edge), lines: height.div_ceil(edge) }
     }
 
-    /// A tile.
+    /// Returns the tile of an index.
     ///
     /// # Safety
     ///
-    /// The image of this grid is borrowed mutably for `'a`; the number is below that of its tiles, and
-    /// the tile of it given to no one else. Tiles of different numbers have no pixel in common.
+    /// The image of this grid is borrowed mutably for `'a`; the index is below the number of its
+    /// tiles, and its tile is given out only once. Tiles of different indices have no pixel in
+    /// common.
     unsafe fn tile<'a>(&self, number: usize) -> Tile<'a, R> {
         let UVec2 { x, y } = self.blocks().place(number, BAND) * self.edge;
         let (width, height) = (self.edge.min(self.width - x), self.edge.min(self.height - y));
@@ -135,18 +136,18 @@ impl<'a, R> Tiles<'a, R> {
         R: Send,
     {
         let Self { grid, numbers, .. } = self;
-        // SAFETY: the image is borrowed for 'a, and each number of a tile comes once.
+        // SAFETY: the image is borrowed for 'a, and each index of a tile comes once.
         each_number(numbers, &|number| f(unsafe { grid.tile(number) }));
     }
 }
 
-/// Runs `f` for each number once, on all threads of the current rayon pool if there are any. `f` is a
-/// trait object, so that rayon's part is compiled once, not for every type of pixels.
+/// Runs `f` once for each index, on all threads of the current rayon pool if there are any. `f` is
+/// a trait object, so that rayon's code is compiled once, not for every type of pixels.
 fn each_number(numbers: Range<usize>, f: &(dyn Fn(usize) + Sync)) {
     #[cfg(feature = "parallel")]
     {
         use rayon::prelude::*;
-        // Any tile may be stolen: what rayon takes to be small enough is up to a quarter of a frame for
+        // Any tile may be stolen: rayon's default splitting stops at up to a quarter of a frame for
         // two threads.
         numbers.into_par_iter().with_max_len(1).for_each(f);
     }
@@ -158,7 +159,7 @@ impl<'a, R> Iterator for Tiles<'a, R> {
     type Item = Tile<'a, R>;
 
     fn next(&mut self) -> Option<Tile<'a, R>> {
-        // SAFETY: the image is borrowed for 'a, and each number of a tile comes once.
+        // SAFETY: the image is borrowed for 'a, and each index of a tile comes once.
         self.numbers.next().map(|number| unsafe { self.grid.tile(number) })
     }
 
@@ -169,7 +170,7 @@ impl<'a, R> Iterator for Tiles<'a, R> {
 
 impl<R> DoubleEndedIterator for Tiles<'_, R> {
     fn next_back(&mut self) -> Option<Self::Item> {
-        // SAFETY: the image is borrowed for 'a, and each number of a tile comes once.
+        // SAFETY: the image is borrowed for 'a, and each index of a tile comes once.
         self.numbers.next_back().map(|number| unsafe { self.grid.tile(number) })
     }
 }
@@ -185,39 +186,39 @@ impl<R> core::fmt::Debug for Tile<'_, R> {
 }
 
 impl<R> Tile<'_, R> {
-    /// The column and the row of its lower left pixel.
+    /// Returns the column and the row of its lower left pixel.
     pub fn origin(&self) -> UVec2 {
         uvec2(self.x, self.y)
     }
 
-    /// Its width and height.
+    /// Returns its width and height.
     pub fn size(&self) -> UVec2 {
         uvec2(self.width, self.height)
     }
 
-    /// The number of pixels.
+    /// Returns the number of pixels.
     pub fn area(&self) -> usize {
         self.width as usize * self.height as usize
     }
 
-    /// Its pixels in a row, which is below its height.
+    /// Returns a row of its pixels; `row` is below its height.
     fn row(&mut self, row: u32) -> &mut [R] {
         assert!(row < self.height, "row {row} of a tile that has {}", self.height);
-        // SAFETY: a row of the tile is one of its image's, cut to its width; the tile has it alone
-        // and is borrowed as long as the slice.
+        // SAFETY: a row of the tile is one of its image's, cut to its width; the tile borrows it
+        // exclusively, as long as the slice.
         unsafe {
             let first = self.first.add(row as usize * self.stride);
             core::slice::from_raw_parts_mut(first.as_ptr(), self.width as usize)
         }
     }
 
-    /// Runs a shot for its pixels, by a variant of the CPU; [`Variant::Wgsl`] needs a device and
-    /// panics here.
+    /// Renders its pixels with a variant of the CPU; [`Variant::Wgsl`] needs a device and panics
+    /// here.
     pub fn render<S: Shot<Output = R>>(&mut self, shot: &S, variant: Variant) {
         self.render_in_gangs(shot, variant, GANG);
     }
 
-    /// [`Tile::render`] with gangs of so many lanes; see
+    /// Renders like [`Tile::render`] with gangs of `lanes` lanes; see
     /// [`Kernel::run_in_gangs`](crate::kernel::Kernel::run_in_gangs).
     pub fn render_in_gangs<S: Shot<Output = R>>(
         &mut self,
@@ -250,7 +251,7 @@ struct Packets<'a, 'r, S: Shot> {
     tile: &'a mut Tile<'r, S::Output>,
 }
 
-/// The rectangle of pixels that a packet of `n` lanes covers.
+/// Returns the rectangle of pixels that a packet of `n` lanes covers.
 const fn block(n: usize) -> (u32, u32) {
     match n {
         4 => (2, 2),
@@ -303,13 +304,13 @@ impl<S: Shot> PacketTask<S::Args, S::Result> for Packets<'_, '_, S> {
     }
 }
 
-/// The pixels that lie `offsets` from `start`.
+/// Returns the pixels at `offsets` from `start`.
 #[inline(always)]
 fn from<L: Lanes>(l: L, start: u32, offsets: L::U32) -> U<Packet<L>> {
     U(l.u32_binary(op::WrappingAdd, l.u32(start), offsets))
 }
 
-/// The lanes of a block of `bw` columns that lie in its first `width` columns and `height` lines.
+/// Returns the lanes of a block of `bw` columns in its first `width` columns and `height` lines.
 #[inline(always)]
 fn lanes_within(width: u32, height: u32, bw: u32) -> u64 {
     let line = (1 << width) - 1;
@@ -322,7 +323,8 @@ mod tests {
 
     use super::*;
 
-    /// The first tile waits until all others are done: a tile that is slow holds up no other one.
+    /// Tests work stealing: the first tile waits until all others are done, so a slow tile delays
+    /// no other.
     #[cfg(feature = "parallel")]
     #[test]
     fn any_tile_is_stolen_from_a_slow_one() {
@@ -377,7 +379,7 @@ mod tests {
         }
     }
 
-    /// Where a band has more tiles than 32 bits can count, too; nothing is that large here.
+    /// Tests also bands with more tiles than 32 bits can count; no image is allocated.
     #[test]
     #[cfg(target_pointer_width = "64")]
     fn numbers_of_tiles_lead_to_different_places() {

@@ -1,4 +1,4 @@
-//! Tiles on all threads.
+//! A parallel scheduler over tiles.
 
 use super::tile::TILE;
 use super::watch::Watch;
@@ -6,12 +6,12 @@ use super::{Image, Scheduler, Shot};
 use crate::kernel::{GANG, Kernel, Variant};
 use crate::machine::Type;
 
-/// Elements of a batch that a thread takes at once.
+/// Batch elements per parallel task.
 #[cfg(feature = "parallel")]
 const BATCH: usize = 1024;
 
-/// Runs tiles, on all threads of the current rayon pool with the feature
-/// `parallel`, else on the calling one. The image is the same either way.
+/// A scheduler that renders tiles in parallel on the current rayon pool with the feature
+/// `parallel`, else one after another on the calling thread. The image is the same either way.
 #[derive(Clone, Copy, Debug)]
 pub struct TiledScheduler {
     variant: Variant,
@@ -26,24 +26,23 @@ impl Default for TiledScheduler {
 }
 
 impl TiledScheduler {
-    /// Runs the widest packets of this machine.
+    /// Creates a scheduler for the widest packets of this machine.
     pub fn new() -> Self {
         Self { variant: Variant::widest(), edge: TILE, gang: GANG }
     }
 
-    /// Runs another variant of the CPU; [`Variant::Wgsl`] needs a device and panics here.
+    /// Sets the CPU variant; [`Variant::Wgsl`] needs a device and panics here.
     pub const fn variant(self, variant: Variant) -> Self {
         Self { variant, ..self }
     }
 
-    /// Gangs of `lanes`, whose packets wait for each other so that trees are asked about more rays at
-    /// once: [`GANG`] unless this is called, and packets on their own with 0. See
-    /// [`Kernel::run_in_gangs`].
+    /// Sets the lanes of a gang, whose packets answer queries of wide trees in batches: [`GANG`]
+    /// unless set, and 0 for packets without gangs. See [`Kernel::run_in_gangs`].
     pub const fn gang(self, lanes: usize) -> Self {
         Self { gang: lanes, ..self }
     }
 
-    /// Tiles of `edge` by `edge` pixels: 16 unless this is called.
+    /// Sets the edge of a tile in pixels: 16 unless set.
     pub const fn tile(self, edge: u32) -> Self {
         Self { edge, ..self }
     }
@@ -51,6 +50,7 @@ impl TiledScheduler {
 
 impl Scheduler for TiledScheduler {
     fn run<S: Shot>(&self, shot: &S, image: &mut Image<S::Output>, watch: &Watch<'_>) {
+        // Each tile is one task; after a stop the remaining tiles are skipped.
         image.tiles(self.edge).for_each_parallel(|mut tile| {
             if !watch.is_stopped() {
                 tile.render_in_gangs(shot, self.variant, self.gang);
@@ -69,6 +69,7 @@ impl Scheduler for TiledScheduler {
         #[cfg(feature = "parallel")]
         {
             use rayon::prelude::*;
+            // Each task has `BATCH` elements, and any of them may be stolen.
             let parts = inputs.par_chunks(BATCH).zip(outputs.par_chunks_mut(BATCH));
             parts.with_max_len(1).for_each(|(inputs, outputs)| {
                 kernel.run_in_gangs(self.variant, self.gang, inputs, outputs)

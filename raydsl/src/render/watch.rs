@@ -1,15 +1,15 @@
-//! Telling an observer how far a picture is, and stopping when it says so.
+//! Progress reports to an observer, which may stop the run.
 
 use core::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// What an observer of a picture is: it is told the share that is done, from 0 to 1, and says
-/// whether to go on.
+/// An observer of a picture: it receives the completed share, from 0 to 1, and returns whether to
+/// go on.
 pub type Observer<'a> = &'a mut (dyn FnMut(f64) -> ControlFlow<()> + Send);
 
-/// Who is told how far a shot is. A scheduler of one's own counts pixels, and stops where it is
-/// told to.
+/// Reports the progress of a shot to an observer. A scheduler of your own counts pixels with it,
+/// and returns when it is stopped.
 pub struct Watch<'a> {
     observer: Option<Mutex<Observer<'a>>>,
     total: usize,
@@ -24,23 +24,24 @@ impl core::fmt::Debug for Watch<'_> {
 }
 
 impl<'a> Watch<'a> {
-    /// No one is told.
+    /// Creates a watch without an observer.
     pub(super) const fn nobody() -> Self {
         let (done, is_stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
         Self { observer: None, total: 1, done, is_stopped }
     }
 
-    /// `observer` is told how much of a shot of `total` pixels is done, between its ends.
+    /// Creates a watch that reports the completed share of `total` pixels, excluding the beginning
+    /// and the end.
     pub(super) fn new(observer: Observer<'a>, total: usize) -> Self {
         let (done, is_stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
         Self { observer: Some(Mutex::new(observer)), total: total.max(1), done, is_stopped }
     }
 
-    /// Counts `pixels` that are done.
+    /// Counts `pixels` as completed.
     pub fn advance(&self, pixels: usize) {
         let Some(observer) = &self.observer else { return };
         self.done.fetch_add(pixels, Ordering::Relaxed);
-        // Whoever finds the observer busy goes on with its work: another tile will follow.
+        // A thread that finds the observer busy goes on with its work: another tile will follow.
         let Ok(mut observer) = observer.try_lock() else { return };
         let done = self.done.load(Ordering::Relaxed);
         if done < self.total
@@ -51,7 +52,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Whether the observer wants no more.
+    /// Returns whether the observer stopped the run.
     pub fn is_stopped(&self) -> bool {
         self.is_stopped.load(Ordering::Relaxed)
     }

@@ -5,11 +5,11 @@ use fearless_simd::Level;
 use super::Variant;
 use crate::machine::{Counted, Lanes, Packet, Simd4, Simd8, Simd16};
 
-/// The machines for which closures are lifted: the natural widths of the target's levels.
+/// The machines that closures are lifted for: the natural widths of the target's levels.
 mod native {
     use super::{Counted, Packet, Simd4, Simd8, Simd16};
 
-    /// The levels of 4, 8 and 16 lanes, and the one that every machine of the target has.
+    /// The levels of 4, 8 and 16 lanes, and the baseline level of the target.
     #[cfg(target_arch = "x86_64")]
     pub(crate) mod level {
         pub(crate) use fearless_simd::{
@@ -31,13 +31,13 @@ mod native {
         };
     }
 
-    /// Four lanes: SSE4.2, NEON, or no instructions of this kind at all.
+    /// Four lanes: SSE4.2, NEON, or the scalar fallback.
     pub(crate) type Lanes4 = Simd4<level::Narrow>;
     /// Eight lanes: AVX2, NEON.
     pub(crate) type Lanes8 = Simd8<level::Middle>;
     /// Sixteen lanes: AVX-512, NEON.
     pub(crate) type Lanes16 = Simd16<level::Wide>;
-    /// Packets of four lanes: SSE4.2, NEON, or no instructions of this kind at all.
+    /// Packets of four lanes: SSE4.2, NEON, or the scalar fallback.
     pub type Native4 = Packet<Lanes4>;
     /// Packets of eight lanes: AVX2, NEON.
     pub type Native8 = Packet<Lanes8>;
@@ -50,7 +50,7 @@ mod native {
 pub use native::{Counting, Native4, Native8, Native16};
 pub(crate) use native::{Lanes4, Lanes8, Lanes16};
 
-/// The tokens of the levels of this machine.
+/// The level tokens of this machine.
 #[derive(Clone, Copy)]
 pub(crate) struct Levels {
     pub(crate) least: native::level::Least,
@@ -106,8 +106,8 @@ pub(crate) fn has_wide_walks() -> bool {
     Levels::detect().middle.is_some()
 }
 
-/// Runs a task with the lanes that traverse wide trees at a level, or at this machine's level where
-/// that one has none; none if the machine has none either.
+/// Runs a task with the lanes that traverse wide trees at a level, or at this machine's level if
+/// that one has none; returns `None` if the machine has none either.
 ///
 /// The lanes do not depend on the width of a packet: a traversal is a lot of code, and every copy
 /// of it costs compile time.
@@ -151,7 +151,7 @@ mod tests {
             .map(|variant| levels.with_lanes(variant, Name))
     }
 
-    /// Each level as the highest of a machine.
+    /// Tests each level as the highest of a machine.
     #[test]
     fn widths_that_a_machine_lacks_run_as_the_next_narrower_ones() {
         let best = Level::new();

@@ -1,5 +1,5 @@
-//! How kernels run on this machine: the variants, their instruction sets, and the fibers that batch
-//! queries of packets.
+//! Execution of kernels on this machine: the variants, their instruction sets, and the fibers that
+//! batch queries of packets.
 
 #[cfg_attr(
     not(all(

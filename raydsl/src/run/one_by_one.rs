@@ -1,4 +1,4 @@
-//! Replacement of fibers on targets without them: packets answer their own queries.
+//! Fallback for targets without fibers: packets answer their own queries.
 
 use super::{Key, Scratch};
 

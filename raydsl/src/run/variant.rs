@@ -1,4 +1,4 @@
-//! The ways to run a kernel.
+//! Variants: the ways to run a kernel.
 
 use super::LanesTask;
 use super::levels::Levels;
@@ -24,7 +24,7 @@ impl Variant {
     pub const ALL: [Self; 5] =
         [Self::Scalar, Self::Packet4, Self::Packet8, Self::Packet16, Self::Wgsl];
 
-    /// `scalar`, `packet4`, `packet8`, `packet16` or `wgsl`.
+    /// Returns `scalar`, `packet4`, `packet8`, `packet16` or `wgsl`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Scalar => "scalar",
@@ -87,7 +87,7 @@ impl Variant {
         }
     }
 
-    /// Runs a task with the lanes of the variant's packets; none if the machine has none.
+    /// Runs a task with the lanes of the variant's packets; returns `None` if the machine has none.
     pub(crate) fn with_lanes<T: LanesTask>(self, task: T) -> Option<T::Output> {
         Levels::detect().with_lanes(self, task)
     }

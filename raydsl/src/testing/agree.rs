@@ -1,4 +1,4 @@
-//! Every variant against the scalar one.
+//! Comparison of every variant with the scalar one.
 
 use core::fmt;
 
@@ -9,32 +9,32 @@ use super::{can_run, try_run, unwritten, validate};
 use crate::kernel::{Kernel, Variant};
 use crate::machine::{Leaf, Rounding, Type, result_leaves};
 
-/// In how many ways the decisions of a result that is shown are turned.
+/// The limit on paths through the decisions of a printed result.
 const WAYS: usize = 64;
 
-/// How many results the table shows.
+/// The number of results in the table.
 const ROWS: usize = 10;
 
-/// Variants that disagree with the scalar one, and where: a table for people.
+/// A table of the variants that disagree with the scalar one, and their differing results.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Disagreement {
-    /// The kernel, and where it stands in the source.
+    /// The kernel and its source location.
     kernel: String,
     /// A line for each variant that disagrees.
     summaries: Vec<String>,
     rows: Vec<Row>,
 }
 
-/// One result that differs.
+/// A differing result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Row {
     variant: &'static str,
     index: usize,
-    /// The first number that is wrong.
+    /// The path of the first wrong number.
     place: String,
     expected: String,
     found: String,
-    /// What rounding allows there, if that is known.
+    /// The values that rounding allows there, if known.
     allowed: String,
     input: String,
 }
@@ -74,18 +74,18 @@ impl fmt::Display for Disagreement {
     }
 }
 
-/// What one variant gave that it should not have.
+/// The wrong results of one variant.
 struct Wrong<R> {
     variant: Variant,
     summary: String,
-    /// The results and which of them are wrong, in order.
+    /// The results, and the indices of the wrong ones, in order.
     found: Vec<R>,
     indices: Vec<usize>,
 }
 
-/// Runs a kernel over `inputs` in every variant; what
-/// [`assert_variants_agree!`](crate::assert_variants_agree) does. The device may round as
-/// `rounding` says.
+/// Runs a kernel over `inputs` in every variant, for
+/// [`assert_variants_agree!`](crate::assert_variants_agree). The device may round according to
+/// `rounding`.
 ///
 /// # Errors
 ///
@@ -93,7 +93,7 @@ struct Wrong<R> {
 ///
 /// # Panics
 ///
-/// If there are no inputs, or no device where `RAYDSL_REQUIRE_GPU` is `1`.
+/// If there are no inputs, or no device and `RAYDSL_REQUIRE_GPU` is `1`.
 pub fn variants_agree<A: Type, R: Type>(
     kernel: &Kernel<'_, A, R>,
     inputs: &[A],
@@ -126,7 +126,8 @@ pub fn variants_agree<A: Type, R: Type>(
     })
 }
 
-/// A narrower packet, or the scalar function, stands in for a width that this machine lacks.
+/// Compares a packet variant. A narrower packet, or the scalar function, replaces a width that this
+/// machine lacks.
 fn packet<A: Type, R: Type>(
     kernel: &Kernel<'_, A, R>,
     variant: Variant,
@@ -183,7 +184,7 @@ fn wgsl<A: Type, R: Type>(
     (!summary.is_empty()).then_some(Wrong { variant, summary, found, indices })
 }
 
-/// `outside` is the leaf that rounding does not account for, and what it allows there.
+/// Returns the row of a result. `outside` is the leaf beyond the rounding error, and its bounds.
 fn row<A: Type, R: Type>(
     variant: Variant,
     index: usize,
@@ -207,7 +208,7 @@ fn row<A: Type, R: Type>(
     }
 }
 
-/// What rounding allows a number to be.
+/// Prints the values that rounding allows for a number.
 fn allowed(leaf: Leaf) -> String {
     match leaf {
         Leaf::Whole(v) => v.to_string(),

@@ -1,12 +1,12 @@
-//! Two results, number by number.
+//! Agreement of results, number by number.
 
 use super::Cause;
 use crate::machine::{Schema, Type};
 
-/// Upper ends of the histogram's buckets in ulp; the last bucket holds the rest.
+/// Upper bounds of the histogram's buckets in ulp; the last bucket holds the rest.
 pub const BUCKETS: [u32; 8] = [0, 1, 2, 4, 16, 256, 65_536, u32::MAX];
 
-/// How the results of a variant agree with those of the scalar one.
+/// The agreement of a variant's results with those of the scalar one.
 #[must_use]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Agreement {
@@ -14,15 +14,15 @@ pub struct Agreement {
     pub results: u64,
     /// Results that differ in any bit; +0 equals -0 and NaN equals NaN.
     pub differing: u64,
-    /// The largest distance of two `f32`, in steps from one number to the next.
+    /// The largest distance of two `f32`, in ulp.
     pub max_ulp: u32,
-    /// How many `f32` lie within each of [`BUCKETS`].
+    /// The number of `f32` within each of [`BUCKETS`].
     pub histogram: [u64; BUCKETS.len()],
     /// Results that differ by more than rounding: those of [`Self::explained`] and those of
-    /// [`Self::unexplained`]. In [`Self::of`], which knows no bounds, those in which an integer or
-    /// a truth value differs (another primitive, hit for miss) or a number is NaN in one only.
+    /// [`Self::unexplained`]. In [`Self::of`], which has no bounds, those in which an integer or a
+    /// truth value differs (another primitive, hit for miss) or a number is NaN in one only.
     pub hit_mismatches: u64,
-    /// Mismatches that come of an uncertain decision. Their numbers count in neither
+    /// Mismatches explained by an uncertain decision. Their numbers count in neither
     /// [`Self::max_ulp`] nor [`Self::histogram`].
     pub explained: u64,
     /// The other mismatches.
@@ -31,7 +31,7 @@ pub struct Agreement {
 
 impl Agreement {
     /// Compares `results` with those of the scalar variant, `expected`. Where integers agree,
-    /// numbers may differ; nothing is explained.
+    /// floats may differ; nothing is explained.
     ///
     /// # Panics
     ///
@@ -46,7 +46,7 @@ impl Agreement {
         )
     }
 
-    /// Compares `results` with those of the scalar variant, `expected`. `cause` is asked why the
+    /// Compares `results` with those of the scalar variant, `expected`. `cause` returns why the
     /// results of an index differ; it is also told whether an integer does.
     pub fn judged<R: Type>(
         expected: &[R],
@@ -75,7 +75,7 @@ impl Agreement {
         agreement
     }
 
-    /// Whether every result has the same bits.
+    /// Returns whether every result has the same bits.
     pub fn is_bit_identical(&self) -> bool {
         self.differing == 0
     }
@@ -102,13 +102,13 @@ impl Agreement {
     }
 }
 
-/// The distance of neighbouring `f32` at `v`.
+/// Returns the distance of neighbouring `f32` at `v`.
 pub fn ulp(v: f64) -> f64 {
     let exponent = (v.to_bits() >> 52 & 0x7ff) as i32 - 1023;
     2f64.powi(exponent.clamp(-126, 127) - 23)
 }
 
-/// The indices at which two lists of results differ in any bit.
+/// Returns the indices at which two lists of results differ in any bit.
 pub(super) fn differing<R: Type>(expected: &[R], results: &[R]) -> Vec<usize> {
     let size = R::SCHEMA.size();
     let (mut a, mut b) = (vec![0; size], vec![0; size]);
@@ -177,7 +177,7 @@ fn float(bytes: &[u8]) -> f32 {
     f32::from_le_bytes(b)
 }
 
-/// How many numbers lie between `a` and `b`; a NaN is as far as can be from any number.
+/// Returns the distance of `a` and `b` in ulp; a NaN has the greatest distance from any number.
 fn ulp_distance(a: f32, b: f32) -> u32 {
     if a == b || (a.is_nan() && b.is_nan()) {
         return 0;
@@ -185,7 +185,7 @@ fn ulp_distance(a: f32, b: f32) -> u32 {
     if a.is_nan() || b.is_nan() {
         return u32::MAX;
     }
-    // The bits of a float, as an integer in the order of the numbers.
+    // Maps the bits of a float to an integer in the order of the numbers.
     let ordered = |x: f32| {
         let bits = i64::from(x.to_bits() & 0x7fff_ffff);
         if x.is_sign_negative() { -bits } else { bits }

@@ -1,34 +1,36 @@
-//! Why results differ: rounding, a decision that rounding leaves open, or a mistake.
+//! Causes of differing results: rounding, a decision that rounding leaves open, or a mistake.
 
 use super::agreement::{differing, ulp};
 use crate::kernel::Kernel;
 use crate::machine::{Leaf, Outcomes, Rounding, Type, result_leaves};
 
-/// How many inputs a sample has, unless it is told otherwise.
+/// The default number of inputs in a sample.
 pub const SAMPLES: usize = 4096;
 
-/// In how many ways the decisions of one input are turned.
+/// The limit on paths through the decisions of one input.
 const WAYS: usize = 64;
 
-/// Why a result differs from that of the scalar variant.
+/// The cause of a difference from the scalar variant's result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Cause {
-    /// It does not: +0 equals -0 and NaN equals NaN.
+    /// No difference: +0 equals -0 and NaN equals NaN.
     Same,
-    /// Both follow the path of `f64`, and lie within the bounds of the rounding error.
+    /// Rounding: both follow the path of `f64`, and lie within the bounds of the rounding error.
     Rounding,
-    /// The path met a decision whose sides lie within the rounding error of each other, and both
-    /// results are within the bounds of one of its outcomes: the mismatch is *explained*.
+    /// An open decision: its sides lie within the rounding error of each other, and both results
+    /// are within the bounds of one of its outcomes: the mismatch is *explained*.
     Decision,
-    /// More ways were open than are followed, and those that were do not explain it; or the bounds
-    /// say nothing, since a number that differs may be infinite or NaN. It counts as unexplained.
+    /// Unknown: more paths were open than are followed, and those followed do not explain it; or
+    /// the bounds are void, since a number that differs may be infinite or NaN. It counts as
+    /// unexplained.
     Undecided,
-    /// Rounding does not account for it.
+    /// A mistake: rounding does not explain it.
     Unexplained,
 }
 
 impl Cause {
-    /// Why `found` differs from `expected`; `outcomes` follows up to so many ways.
+    /// Returns why `found` differs from `expected`; `outcomes` follows up to its argument's number
+    /// of paths.
     fn of(expected: &[Leaf], found: &[Leaf], outcomes: &dyn Fn(usize) -> Outcomes) -> Self {
         let both = |all: &Outcomes| all.contains_leaves(expected) && all.contains_leaves(found);
         let first = outcomes(1);
@@ -48,8 +50,8 @@ impl Cause {
     }
 }
 
-/// Whether the bounds limit every number that differs: an interval that ends in infinity holds
-/// mistakes too, and so does one that may be NaN.
+/// Returns whether the bounds limit every number that differs: an interval that ends in infinity
+/// contains mistakes too, and so does one that may be NaN.
 fn is_limited(bounds: &[Leaf], expected: &[Leaf], found: &[Leaf]) -> bool {
     let differs = |a: f64, b: f64| a != b && !(a.is_nan() && b.is_nan());
     bounds
@@ -58,31 +60,31 @@ fn is_limited(bounds: &[Leaf], expected: &[Leaf], found: &[Leaf]) -> bool {
         .all(|(bound, (a, b))| bound.width() < f64::INFINITY || !differs(a.value(), b.value()))
 }
 
-/// Some inputs, spread evenly, and how many of them are uncertain.
+/// A sample of evenly spread inputs, and the number of uncertain ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
-    /// How many inputs were looked at.
+    /// The number of inputs in the sample.
     pub inputs: u64,
-    /// Those whose path in `f64` met a decision whose sides lie within the rounding error, or whose
-    /// bounds hold nearly anything: see [`Outcomes::is_vague`].
+    /// The inputs whose path in `f64` has a decision whose sides lie within the rounding error, or
+    /// whose bounds contain nearly everything: see [`Outcomes::is_vague`].
     pub uncertain: u64,
-    /// How wide the bounds are: the width in ulp that half of the floats do not exceed.
+    /// The median width of the bounds of all floats, in ulp.
     pub median_width_ulp: f64,
 }
 
 impl Sample {
-    /// The part that is uncertain, from 0 to 1.
+    /// Returns the uncertain share, from 0 to 1.
     pub fn share(&self) -> f64 {
         self.uncertain as f64 / self.inputs.max(1) as f64
     }
 
-    /// Whether explanations mean something: inputs were looked at, and at most 1 % is uncertain.
-    /// Where much is uncertain, much could be explained.
+    /// Returns whether explanations are meaningful: the sample is not empty, and at most 1 % is
+    /// uncertain. Otherwise too much could be explained.
     pub fn is_meaningful(&self) -> bool {
         self.inputs > 0 && self.share() <= 0.01
     }
 
-    /// What the outcomes of a sample's inputs come to.
+    /// Summarises the outcomes of a sample's inputs.
     pub fn of(sampled: &[Outcomes]) -> Self {
         let uncertain = sampled.iter().filter(|o| o.is_uncertain() || o.is_vague()).count();
         let floats = sampled.iter().flat_map(|o| o.reference());
@@ -99,7 +101,7 @@ impl Sample {
     }
 }
 
-/// `count` of the indices below `len`, spread evenly: multiples of the golden ratio.
+/// Returns `count` of the indices below `len`, spread evenly: multiples of the golden ratio.
 pub fn spread(len: usize, count: usize) -> Vec<usize> {
     if count >= len {
         return (0..len).collect();
@@ -112,16 +114,16 @@ pub fn spread(len: usize, count: usize) -> Vec<usize> {
     all
 }
 
-/// Gives the outcomes of an input, following at most so many ways. A trait object, so that its
-/// callers are compiled once, not for every kernel.
+/// A function from an input's index and a maximum number of paths to its outcomes. A trait object,
+/// so that its callers are compiled once, not for every kernel.
 pub type OutcomesOf<'a> = &'a (dyn Fn(usize, usize) -> Outcomes + Sync);
 
-/// The outcomes of these inputs on the paths that `f64` takes.
+/// Returns the outcomes of these inputs on the path of `f64`.
 pub fn sampled(indices: &[usize], outcomes: OutcomesOf<'_>) -> Vec<Outcomes> {
     each(indices, &|i| outcomes(i, 1))
 }
 
-/// `f` of every index in `indices`, on all processors where the feature `parallel` is on.
+/// Applies `f` to every index in `indices`, on all processors with the feature `parallel`.
 fn each<T: Send>(indices: &[usize], f: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
     #[cfg(feature = "parallel")]
     {
@@ -132,7 +134,7 @@ fn each<T: Send>(indices: &[usize], f: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
     indices.iter().map(|i| f(*i)).collect()
 }
 
-/// Why results differ at `indices`.
+/// Returns the causes of differing results at `indices`.
 pub fn causes<R: Type>(
     expected: &[R],
     found: &[R],
@@ -142,7 +144,7 @@ pub fn causes<R: Type>(
     causes_at(&differing(expected, found), &results, outcomes)
 }
 
-/// [`causes`] of the inputs that differ, from the leaves of both results.
+/// Returns the [`causes`] of the inputs that differ, from the leaves of both results.
 fn causes_at(
     indices: &[usize],
     results: &(dyn Fn(usize) -> [Vec<Leaf>; 2] + Sync),
@@ -154,32 +156,34 @@ fn causes_at(
     })
 }
 
-/// How results differ from the scalar variant's, and why.
+/// The differences from the scalar variant's results, and their causes.
 #[must_use = "an explanation that nobody reads explains nothing"]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Explanation {
     /// The inputs at which results differ in any bit, in order, and the causes.
     pub causes: Vec<(usize, Cause)>,
-    /// How many inputs are uncertain, of at most 4096. Explanations mean little where many are.
+    /// A sample of at most 4096 inputs for the share of uncertain ones. Explanations mean little if
+    /// many are.
     pub sample: Sample,
 }
 
 impl Explanation {
-    /// How many results differ for this cause.
+    /// Returns the number of results that differ for this cause.
     pub fn count(&self, cause: Cause) -> usize {
         self.causes.iter().filter(|(_, c)| *c == cause).count()
     }
 
-    /// How many results rounding does not account for, [`Cause::Undecided`] ones included.
+    /// Returns the number of results that rounding does not explain, including [`Cause::Undecided`]
+    /// ones.
     pub fn unexplained(&self) -> usize {
         self.count(Cause::Unexplained) + self.count(Cause::Undecided)
     }
 }
 
-/// Explains the results of a variant of your own: `outputs` are its results for `inputs`, and those
-/// of the kernel's scalar variant are what they are compared with.
+/// Explains the results of a variant of your own: compares `outputs`, its results for `inputs`,
+/// with those of the kernel's scalar variant.
 ///
-/// The kernel runs in `f64` with a bound of the rounding error; see the chapter "What the numbers
+/// The kernel runs in `f64` with a bound on the rounding error; see the chapter "What the numbers
 /// promise" of the book. That takes some two hundred times as long as a run, for every differing
 /// result and for a sample of 4096 inputs; a differing one whose decisions are open up to 64 times
 /// as long again.
@@ -232,7 +236,7 @@ mod tests {
         let sample = |inputs, uncertain| Sample { inputs, uncertain, ..Sample::default() };
         assert!(sample(1000, 10).is_meaningful());
         assert!(!sample(1000, 11).is_meaningful());
-        // Nothing was looked at.
+        // The sample is empty.
         assert!(!Sample::default().is_meaningful());
     }
 }

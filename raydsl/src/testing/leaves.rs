@@ -1,4 +1,4 @@
-//! The scalars of a value, for people.
+//! Printing of a value's scalars.
 
 use core::fmt::Write as _;
 
@@ -7,9 +7,9 @@ use crate::machine::{Schema, Type};
 /// One scalar of a value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Leaf {
-    /// Where it is, as in `color.x`; empty for a value that is one scalar.
+    /// Its path, as in `color.x`; empty for a value that is one scalar.
     pub(super) path: String,
-    /// What it is.
+    /// Its value.
     pub(super) number: Number,
 }
 
@@ -22,7 +22,7 @@ pub(super) enum Number {
 }
 
 impl Number {
-    /// Whether comparisons take both for the same: +0 equals -0, NaN equals NaN.
+    /// Returns whether both compare equal: +0 equals -0, NaN equals NaN.
     pub(super) fn is_same(self, other: Self) -> bool {
         match (self, other) {
             (Self::F32(a), Self::F32(b)) => a == b || a.is_nan() && b.is_nan(),
@@ -30,7 +30,7 @@ impl Number {
         }
     }
 
-    /// The value and its bits.
+    /// Prints the value and its bits.
     pub(super) fn with_bits(self) -> String {
         let bits = match self {
             Self::F32(v) => v.to_bits(),
@@ -51,7 +51,7 @@ impl Number {
     }
 }
 
-/// All scalars in order of declaration.
+/// Returns all scalars in order of declaration.
 pub(super) fn leaves<T: Type>(v: &T) -> Vec<Leaf> {
     let bytes = bytes_of(v);
     let mut all = Vec::new();
@@ -75,7 +75,7 @@ fn number(schema: &Schema, bytes: &[u8]) -> Number {
     }
 }
 
-/// The name of a member; a tuple's members are numbers.
+/// Returns the name of a member; a tuple's members are numbers.
 fn member(name: &str) -> &str {
     name.strip_prefix('_').filter(|n| n.parse::<u32>().is_ok()).unwrap_or(name)
 }
@@ -106,7 +106,7 @@ fn collect(schema: &Schema, bytes: &[u8], path: &str, all: &mut Vec<Leaf>) {
     }
 }
 
-/// A value in one line, as in `(0.5, [1.0, 2.0, 3.0])`; its type need not be `Debug`.
+/// Prints a value in one line, as in `(0.5, [1.0, 2.0, 3.0])`; its type need not be `Debug`.
 pub(super) fn one_line<T: Type>(v: &T) -> String {
     let mut text = String::new();
     write_value(T::SCHEMA, &bytes_of(v), &mut text);

@@ -1,4 +1,4 @@
-//! Tests of kernels: one line runs every variant and compares.
+//! Kernel tests, which run and compare every variant.
 //!
 //! * [`assert_variants_agree!`](crate::assert_variants_agree) runs a kernel over inputs in every
 //!   variant.
@@ -6,8 +6,8 @@
 //! * [`wgsl_test!`](crate::wgsl_test) makes a `#[test]` that a kernel's WGSL is valid. It needs no
 //!   device.
 //!
-//! What a machine lacks is skipped, and says so on standard error. With `RAYDSL_REQUIRE_GPU=1` in
-//! the environment a missing device is an error: for runs that must have one.
+//! Variants that a machine lacks are skipped, with a message on standard error. With
+//! `RAYDSL_REQUIRE_GPU=1` in the environment a missing device is an error.
 
 mod agree;
 mod agreement;
@@ -25,7 +25,7 @@ pub use explain::{Cause, Explanation, Sample, explain};
 pub use explain::{OutcomesOf, SAMPLES, causes, sampled, spread};
 pub use wgsl::{InvalidWgsl, assert_valid_wgsl, validate};
 
-/// Whether `variant` runs on this machine; `test` is named where it does not.
+/// Returns whether `variant` runs on this machine; if not, a message names `test`.
 ///
 /// # Panics
 ///
@@ -54,7 +54,7 @@ fn device(test: &str) -> bool {
     missing_device(test, "raydsl was built without the feature `gpu`")
 }
 
-/// Skips loudly, or fails where a device is required.
+/// Skips with a message, or fails if a device is required.
 fn missing_device(test: &str, error: &str) -> bool {
     let required = std::env::var("RAYDSL_REQUIRE_GPU").is_ok_and(|v| v == "1");
     assert!(!required, "RAYDSL_REQUIRE_GPU=1, but {test} has no device: {error}");
@@ -62,7 +62,7 @@ fn missing_device(test: &str, error: &str) -> bool {
     false
 }
 
-/// The device of this process' tests, or why there is none.
+/// Returns the device of this process' tests, or why there is none.
 #[cfg(feature = "gpu")]
 fn shared() -> Result<&'static crate::gpu::GpuScheduler, &'static str> {
     use crate::gpu::GpuScheduler;
@@ -71,7 +71,7 @@ fn shared() -> Result<&'static crate::gpu::GpuScheduler, &'static str> {
     gpu.as_ref().map_err(String::as_str)
 }
 
-/// The results of any variant that [`can_run`].
+/// Runs any variant for which [`can_run`] returns true, and returns the results.
 ///
 /// # Panics
 ///
@@ -83,7 +83,7 @@ pub fn run<A: Type, R: Type>(kernel: &Kernel<'_, A, R>, variant: Variant, inputs
     }
 }
 
-/// A value that a result is not by chance: its bytes are a pattern.
+/// Returns a value that no result has by chance: its bytes are a pattern.
 fn unwritten<R: Type>() -> R {
     let pattern = (0..R::SCHEMA.size()).map(|i| if i % 4 == 3 { 0x5a } else { 0xa5 });
     R::read(&pattern.collect::<Vec<u8>>())
@@ -94,7 +94,7 @@ fn try_run<A: Type, R: Type>(
     variant: Variant,
     inputs: &[A],
 ) -> Result<Vec<R>, String> {
-    // No variant must leave a result out, so they are no zeros before.
+    // A variant that omits a result must not find the right zeros here.
     let mut found = vec![unwritten(); inputs.len()];
     if variant == Variant::Wgsl {
         on_device(kernel, inputs, &mut found)?;
@@ -124,14 +124,13 @@ fn on_device<A: Type, R: Type>(_: &Kernel<'_, A, R>, _: &[A], _: &mut [R]) -> Re
 /// The first argument is a reference to a [`Kernel`], or the name of a `#[kernel] fn`; the second a
 /// slice of its parameters, as tuples.
 ///
-/// * Packets must give the bits of the scalar function; +0 equals -0, and NaN equals NaN.
-/// * The WGSL must be valid. Where there is a device its results may differ by rounding, and in
-///   decisions that rounding leaves open, as [`explain`] tells. How
-///   it rounds is what WGSL allows, [`Rounding::WGSL`](crate::machine::Rounding::WGSL), unless a
-///   third argument says something else.
+/// * Packets must return the bits of the scalar function; +0 equals -0, and NaN equals NaN.
+/// * The WGSL must be valid. On a device its results may differ by rounding, and in decisions that
+///   rounding leaves open, according to [`explain`]. The rounding is that allowed by WGSL,
+///   [`Rounding::WGSL`](crate::machine::Rounding::WGSL), unless given as a third argument.
 ///
-/// The panic shows up to ten results that differ: variant, index, the first number that is wrong,
-/// what was expected and found as a value and in bits, what rounding allows, and the input.
+/// The panic message lists up to ten differing results: variant, index, the first wrong number, the
+/// expected and the found value with their bits, the values that rounding allows, and the input.
 ///
 /// ```
 /// use raydsl::prelude::*;

@@ -1,13 +1,13 @@
-//! Whether generated WGSL is valid, asked without a device.
+//! Validation of generated WGSL without a device.
 
 use crate::kernel::Kernel;
 use crate::machine::{KernelFn, Type};
 
-/// Why WGSL is not valid: naga's message and the text it complains of.
+/// The error for invalid WGSL: naga's message and the text.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}\n{source_text}")]
 pub struct InvalidWgsl {
-    /// What naga says, with the lines concerned.
+    /// naga's message, with the lines concerned.
     pub message: String,
     /// The whole text.
     pub source_text: String,
@@ -42,7 +42,7 @@ fn check(_: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// What [`wgsl_test!`](crate::wgsl_test) runs.
+/// Implements [`wgsl_test!`](crate::wgsl_test).
 ///
 /// # Panics
 ///
@@ -54,8 +54,8 @@ pub fn assert_valid_wgsl<F: KernelFn>() {
     }
 }
 
-/// The test of `wgsl_test!`. Which features raydsl has is known here, not where the macro is
-/// called.
+/// Implements the test of `wgsl_test!`. The features of raydsl are known here, not where the macro
+/// is called.
 #[cfg(feature = "validate")]
 #[doc(hidden)]
 #[macro_export]
@@ -68,7 +68,7 @@ macro_rules! __wgsl_test {
     };
 }
 
-/// Without naga nothing would be tested, so the test says that it is ignored.
+/// Ignores the test without naga, since nothing would be tested.
 #[cfg(not(feature = "validate"))]
 #[doc(hidden)]
 #[macro_export]

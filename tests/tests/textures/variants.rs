@@ -165,7 +165,8 @@ fn leveled(texture: &Texture2<'_, Unorm16>) {
     agree!(|p| tex2_level(texture, vec2(p.x, p.y), p.z));
 }
 
-/// Levels of textures of one and three axes, with a border and in sRGB, as `two_dimensions` has them.
+/// Tests levels of textures of one and three axes, with a border and in sRGB, like
+/// `two_dimensions`.
 #[test]
 fn levels_of_lines_and_volumes() -> Result<(), TextureError> {
     let mut rng = Rng::new(47);

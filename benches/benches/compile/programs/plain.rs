@@ -1,5 +1,5 @@
-// What ordinary Rust costs: `first_kernel` without a closure of raydsl. Its body is a plain closure,
-// which asks the same tree for one ray after another.
+// The compile time of ordinary Rust: `first_kernel` without a closure of raydsl. Its body is a
+// plain closure, which queries the same tree for one ray after another.
 
 fn main() -> Result<(), Box<dyn Error>> {
     let points = sunflower(2000);

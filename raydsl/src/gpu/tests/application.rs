@@ -1,4 +1,4 @@
-//! The application's own device, queue and buffers.
+//! Tests with the application's own device, queue and buffers.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -11,7 +11,7 @@ const SIZE: [u32; 2] = [64, 65];
 const PIXELS: u32 = SIZE[0] * SIZE[1];
 const KEY: BufferKey = BufferKey { id: 1, version: 0, part: 2 };
 
-/// A device as an application might have it: no features, low limits.
+/// Creates a device like an application's: no features, low limits.
 fn own_device() -> Option<(wgpu::Device, wgpu::Queue)> {
     super::context()?;
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
@@ -59,7 +59,7 @@ fn its_device_and_limits_are_used() -> Result<(), GpuError> {
     assert!(!context.adapter_name().is_empty());
     assert_eq!(context.limits().max_binding_bytes, 1 << 20);
     assert_eq!(context.limits().max_storage_buffers, 7);
-    // 5 MiB in buffers of 2 MiB at most.
+    // 5 MiB in buffers of at most 2 MiB.
     let scene = scene(5 << 18);
     assert_eq!(run(&context, 5 << 18, 1 << 18, Some(&scene))?, gathered(&scene, PIXELS, 1));
     assert_eq!(context.uploaded_bytes(), 5 << 20);

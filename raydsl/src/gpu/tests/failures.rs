@@ -1,4 +1,4 @@
-//! Whatever goes wrong is an error: no panic, no hang.
+//! Tests that every failure is an error: no panic, no hang.
 
 use std::time::Duration;
 
@@ -35,7 +35,7 @@ fn broken_wgsl_is_quoted() {
         other => panic!("{other:?}"),
     }
     assert_eq!(context.compiled(), 0);
-    // The context is as good as before.
+    // The context still works.
     assert_eq!(run(&context, &grind(1), 0), Ok(()));
 }
 
@@ -160,7 +160,7 @@ fn a_lost_device_of_the_application_is_an_error() {
         return;
     };
     let (device, queue) = (context.device().clone(), context.queue().clone());
-    // As an application's device: its callback tells that other context only.
+    // Like an application's device: its callback reports to that other context only.
     lose(&Context::from_wgpu(None, device, queue));
 }
 
@@ -180,7 +180,7 @@ fn stray_errors_reach_the_next_run() {
     let Some(context) = super::context() else {
         return;
     };
-    // Outside every scope: wgpu's default would panic.
+    // Outside every scope, where wgpu's default would panic.
     let _ = context.device().create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: 1 << 60,

@@ -1,4 +1,4 @@
-//! Grids and batches of all shapes, cut into dispatches.
+//! Tests of grids and batches of all shapes, split into dispatches.
 
 use std::time::Instant;
 
@@ -26,7 +26,7 @@ fn inputs_and_outputs_may_exceed_a_window() -> Result<(), GpuError> {
     let Some(context) = super::context() else {
         return Ok(());
     };
-    // 4096 elements of output for each dispatch.
+    // 4096 elements of output per dispatch.
     let context = context.with_max_binding_bytes(1 << 16);
     let images = spread([8, 8], 7);
     for size in [[700, 300], [5000, 9], [1, 9000], [4097, 3], [64, 64]] {
@@ -45,7 +45,7 @@ fn batches_may_exceed_the_number_of_workgroups() -> Result<(), GpuError> {
     let Some(context) = super::context() else {
         return Ok(());
     };
-    // One thread each: 65535 elements in x at most.
+    // One thread per workgroup: at most 65535 elements in x.
     let module = spread([1, 1], 7);
     let timing = check_spread(&context, &module, [200_000, 1])?;
     assert!(timing.dispatches >= 4, "{timing:?}");
@@ -77,8 +77,8 @@ fn fast_dispatches_grow_and_slow_ones_shrink() -> Result<(), GpuError> {
         assert!(outputs == ground(512 * 512, rounds), "{rounds}");
         Ok::<_, GpuError>(timing)
     };
-    // What is asked of the goal follows from the times told, so that a busy machine cannot
-    // make this fail.
+    // The assertion on the goal uses the measured times, so that a busy machine cannot make it
+    // fail.
     let told = |timing: &Timing| timing.device_ms.unwrap_or(timing.wall_ms);
     let fast = (0..6).map(|_| run(1)).collect::<Result<Vec<_>, _>>()?;
     let (first, last) = (fast[0], fast[5]);
@@ -86,7 +86,7 @@ fn fast_dispatches_grow_and_slow_ones_shrink() -> Result<(), GpuError> {
     if fast.iter().all(|timing| told(timing) < 25.0) {
         assert_eq!(last.dispatches, 1, "{first:?}");
     }
-    // A kernel is known by its text, so the goal learnt above is where this one starts.
+    // A kernel is identified by its text, so this one starts with the goal learnt above.
     let slow = run(3000)?;
     if slow.dispatches == 1 && told(&slow) > 100.0 {
         let shorter = run(3000)?;

@@ -1,15 +1,15 @@
-//! The modules under test and what they should compute.
+//! The modules under test and their expected results.
 
 use crate::machine::wgsl::{Buffer, BufferKey, Module, Window};
 
-/// What every module starts with; `{columns}` and `{rows}` are filled in.
+/// The head of every module; `{columns}` and `{rows}` are filled in.
 const HEAD: &str = "
 struct Job { size: vec2<u32>, first: vec2<u32>, count: vec2<u32>, base: u32, pad: u32 }
 @group(0) @binding(0) var<uniform> params: vec4<u32>;
 @group(0) @binding(1) var<uniform> job: Job;
 ";
 
-/// The entry point around `body`, which has `pixel` and `linear` and sets `element`.
+/// Returns the entry point around `body`, which has `pixel` and `linear` and sets `element`.
 fn entry(workgroup: [u32; 2], body: &str) -> String {
     let [columns, rows] = workgroup;
     format!(
@@ -25,12 +25,12 @@ fn main(@builtin(global_invocation_id) gid: vec3<u32>) {{
     )
 }
 
-/// The bytes of a parameter block.
+/// Returns the bytes of a parameter block.
 pub(super) fn params(first: u32, second: u32) -> Vec<u8> {
     bytemuck::cast_slice(&[first, second, 0, 0]).to_vec()
 }
 
-/// A pseudo-random index, the same in WGSL and here.
+/// Returns a pseudo-random index, the same in WGSL and here.
 pub(super) fn hash(value: u32) -> u32 {
     let mixed = value.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     let word = ((mixed >> ((mixed >> 28) + 4)) ^ mixed).wrapping_mul(277_803_737);
@@ -45,7 +45,7 @@ fn hash(value: u32) -> u32 {
 }
 ";
 
-/// A scene buffer of `len` u32 in windows of `window` elements, from binding 4 on.
+/// Returns a scene buffer of `len` u32 in windows of `window` elements, from binding 4 on.
 pub(super) fn scene_buffer(key: BufferKey, len: u64, window: u64) -> Buffer {
     let firsts = (0..len).step_by(window as usize);
     let windows = firsts.enumerate().map(|(number, first)| Window {
@@ -56,7 +56,8 @@ pub(super) fn scene_buffer(key: BufferKey, len: u64, window: u64) -> Buffer {
     Buffer { key, name: "scene".to_owned(), stride: 4, len, windows: windows.collect() }
 }
 
-/// `output = scene[hash(linear) % len] + params.x`, through one accessor with a `switch`.
+/// Returns a module for `output = scene[hash(linear) % len] + params.x`, through one accessor with
+/// a `switch`.
 pub(super) fn gather(key: BufferKey, len: u64, window: u64, add: u32) -> Module {
     let buffer = scene_buffer(key, len, window);
     let mut source = HEAD.to_owned() + HASH;
@@ -94,13 +95,14 @@ pub(super) fn gather(key: BufferKey, len: u64, window: u64, add: u32) -> Module 
     }
 }
 
-/// What [`gather`] should give.
+/// Returns the expected result of [`gather`].
 pub(super) fn gathered(scene: &[u32], pixels: u32, add: u32) -> Vec<u32> {
     let load = |linear| scene[hash(linear) as usize % scene.len()];
     (0..pixels).map(|linear| load(linear).wrapping_add(add)).collect()
 }
 
-/// `output = (input * params.x, pixel.x, pixel.y, linear)`: four words for one.
+/// Returns a module for `output = (input * params.x, pixel.x, pixel.y, linear)`: four words for
+/// one.
 pub(super) fn spread(workgroup: [u32; 2], factor: u32) -> Module {
     let storage = "
 @group(0) @binding(2) var<storage, read> inputs: array<u32>;
@@ -119,7 +121,7 @@ pub(super) fn spread(workgroup: [u32; 2], factor: u32) -> Module {
     }
 }
 
-/// What [`spread`] should give.
+/// Returns the expected result of [`spread`].
 pub(super) fn spreaded(inputs: &[u32], width: u32, factor: u32) -> Vec<[u32; 4]> {
     let elements = inputs.iter().zip(0u32..);
     elements
@@ -129,7 +131,7 @@ pub(super) fn spreaded(inputs: &[u32], width: u32, factor: u32) -> Vec<[u32; 4]>
         .collect()
 }
 
-/// Hashes each pixel's number `params.x` times: work of any length.
+/// Returns a module that hashes each pixel's index `params.x` times: work of any length.
 pub(super) fn grind(rounds: u32) -> Module {
     let storage = "@group(0) @binding(3) var<storage, read_write> outputs: array<u32>;\n";
     let body = "var value = linear;
@@ -146,7 +148,7 @@ pub(super) fn grind(rounds: u32) -> Module {
     }
 }
 
-/// What [`grind`] should give.
+/// Returns the expected result of [`grind`].
 pub(super) fn ground(pixels: u32, rounds: u32) -> Vec<u32> {
     let grind = |linear| (0..rounds).fold(linear, |value, _| hash(value));
     (0..pixels).map(grind).collect()

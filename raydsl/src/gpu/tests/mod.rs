@@ -1,4 +1,4 @@
-//! Hand-written modules that keep to the interface, run on whatever adapter there is.
+//! Tests with hand-written modules that follow the interface, on any adapter.
 
 mod application;
 mod failures;
@@ -10,7 +10,7 @@ use std::io::Write;
 
 use super::{Context, GpuError};
 
-/// A context, or `None` with a loud line where the machine has no adapter.
+/// Returns a context, or `None` with a message on standard error if the machine has no adapter.
 ///
 /// `RAYDSL_REQUIRE_GPU=1` turns the skip into a failure.
 fn context() -> Option<Context> {
@@ -19,7 +19,7 @@ fn context() -> Option<Context> {
         Err(error @ GpuError::NoAdapter { .. }) => {
             let required = std::env::var("RAYDSL_REQUIRE_GPU").is_ok_and(|value| value == "1");
             assert!(!required, "RAYDSL_REQUIRE_GPU=1, but {error}");
-            // Not eprintln!, which the test harness swallows when a test passes.
+            // Not eprintln!, which the test harness captures when a test passes.
             let _ = writeln!(std::io::stderr(), "SKIPPED: no GPU adapter");
             None
         }

@@ -1,4 +1,4 @@
-//! Scene buffers: windows, the cache, versions.
+//! Tests of scene buffers: windows, the cache, versions.
 
 use super::kernels::{gather, gathered, hash};
 use crate::gpu::{Checks, Context, GpuError};
@@ -90,7 +90,7 @@ fn a_new_version_evicts_the_old_one() -> Result<(), GpuError> {
     assert_eq!(run(&context, &second, Some(&new))?, gathered(&new, PIXELS, 0));
     assert_eq!(context.uploaded_bytes(), 8000);
     assert_eq!(run(&context, &second, None)?, gathered(&new, PIXELS, 0));
-    // The old one is gone: its bytes are asked for again.
+    // The old version is dropped: its bytes are requested again.
     let missing = run(&context, &first, None);
     assert!(
         matches!(&missing, Err(GpuError::MissingData { key: asked, .. }) if *asked == key(1)),
@@ -136,7 +136,7 @@ fn trusted_shaders_give_the_same_bits() -> Result<(), GpuError> {
     let Some(context) = super::context() else {
         return Ok(());
     };
-    // SAFETY: `gather` clamps its index, and `main` leaves outside `job.count`.
+    // SAFETY: `gather` clamps its index, and `main` returns outside `job.count`.
     let context = unsafe { context.with_checks(Checks::Trusted) };
     let context = context.with_max_binding_bytes(1 << 20);
     let scene = scene(LEN, 8);

@@ -1,4 +1,4 @@
-//! Lanes that do something of their own where others enter a level, or count.
+//! Wrappers of lanes that change how they enter a level or count.
 
 use fearless_simd::Level;
 
@@ -7,7 +7,7 @@ use crate::machine::{
     BoolBinary, Compare, Counted, F32Binary, F32Unary, IntBinary, Op, Place, counted,
 };
 
-/// Lanes whose instruction set the code around is compiled for already.
+/// Lanes for code that is already compiled for their instruction set.
 ///
 /// Kernels that run on them are inlined instead of entering the level again; that is for the
 /// innermost loops, which must not pass registers through memory.
@@ -48,7 +48,7 @@ macro_rules! delegate {
     };
 }
 
-/// Lanes around others: what is not given here is theirs.
+/// Implements [`Lanes`] for a wrapper, forwarding every item not given here.
 macro_rules! lanes_around {
     (<L $(, const $n:ident: $t:ty)?> $name:ty { $($own:tt)* }) => {
         impl<L: Lanes $(, const $n: $t)?> Lanes for $name {

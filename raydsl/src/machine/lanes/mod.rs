@@ -19,10 +19,10 @@ pub use simd::{Simd4, Simd8, Simd16};
 
 use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Op, Place, op};
 
-/// Registers of one width, and what can be done with them. `self` is the proof of the level.
+/// Registers of one width and their operations. `self` is the proof of the level.
 #[expect(missing_docs, reason = "the operations are documented at their enums")]
 pub trait Lanes: Copy + Send + Sync + 'static {
-    /// How many lanes.
+    /// The number of lanes.
     const N: usize;
     type F32: Copy + 'static;
     type I32: Copy + 'static;
@@ -30,32 +30,33 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     type Mask: Copy + 'static;
     /// Whether a kernel continues after an early exit even if no lane is left.
     const STRAIGHT: bool = false;
-    /// Whether traversals for these lanes are reached through tables, where kernels are lifted for
-    /// them, so that they are compiled only where they may be needed.
+    /// Whether kernels lifted for these lanes reach traversals through tables, so that traversals
+    /// are compiled only where they may be needed.
     const HAS_TABLES: bool = false;
-    /// Eight lanes of the same level: as many as a node of a wide tree has children, and a block
-    /// of its leaves primitives.
+    /// Eight lanes of the same level: a node of a wide tree has as many children, and a leaf block
+    /// as many primitives.
     type Eight: Lanes;
 
-    /// The lanes of [`Lanes::Eight`].
+    /// Returns the lanes of [`Lanes::Eight`].
     fn eight(self) -> Self::Eight;
-    /// The level of the instruction set, if they are of one.
+    /// Returns the instruction set level, if the lanes belong to one.
     #[inline(always)]
     fn level(self) -> Option<Level> {
         None
     }
 
-    /// The instruction set's name, as reports print it.
+    /// Returns the instruction set's name for reports.
     fn isa(self) -> &'static str;
     /// Runs `f` compiled for the instruction set.
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R;
-    /// The same for a function of its own that is called from code that runs so already.
+    /// Runs `f` as a function of its own, called from code already compiled for the instruction
+    /// set.
     #[inline(always)]
     fn enter_again<R>(self, f: impl FnOnce() -> R) -> R {
         self.vectorize(f)
     }
-    /// The lanes of `active` are at a place of the source. Only [`Counted`](super::Counted)
-    /// listens.
+    /// Reports that the lanes of `active` are at a place of the source. Only
+    /// [`Counted`](super::Counted) uses it.
     #[inline(always)]
     fn at(self, _place: Place, _active: Self::Mask) {}
 
@@ -67,13 +68,13 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn f32_unary<O: Op<F32Unary>>(self, op: O, a: Self::F32) -> Self::F32;
     fn f32_binary<O: Op<F32Binary>>(self, op: O, a: Self::F32, b: Self::F32) -> Self::F32;
     fn f32_mul_add(self, a: Self::F32, b: Self::F32, c: Self::F32) -> Self::F32;
-    /// `a * b + c`, rounded once where that is one instruction, else twice. Not for kernels, whose
-    /// results are the same on all levels.
+    /// Returns `a * b + c`, rounded once where that is one instruction, else twice. Not for
+    /// kernels, whose results are the same on all levels.
     #[inline(always)]
     fn f32_mul_add_fast(self, a: Self::F32, b: Self::F32, c: Self::F32) -> Self::F32 {
         self.f32_binary(op::Add, self.f32_binary(op::Mul, a, b), c)
     }
-    /// Sums, products, bits, shifts; the rest is done lane by lane.
+    /// Computes sums, products, bits and shifts with vector instructions, the rest lane by lane.
     fn i32_binary<O: Op<IntBinary>>(self, op: O, a: Self::I32, b: Self::I32) -> Self::I32;
     fn u32_binary<O: Op<IntBinary>>(self, op: O, a: Self::U32, b: Self::U32) -> Self::U32;
     fn mask_binary<O: Op<BoolBinary>>(self, op: O, a: Self::Mask, b: Self::Mask) -> Self::Mask;
@@ -85,7 +86,7 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn i32_select(self, c: Self::Mask, a: Self::I32, b: Self::I32) -> Self::I32;
     fn u32_select(self, c: Self::Mask, a: Self::U32, b: Self::U32) -> Self::U32;
     fn any(self, a: Self::Mask) -> bool;
-    /// One bit a lane, lane 0 the lowest.
+    /// Returns one bit per lane, lane 0 the lowest.
     fn bits(self, a: Self::Mask) -> u64;
     fn mask_from_bits(self, bits: u64) -> Self::Mask;
 
@@ -106,7 +107,7 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn u32_lane(a: &Self::U32, lane: usize) -> u32;
     fn mask_lane(a: &Self::Mask, lane: usize) -> bool;
 
-    /// The lanes of `mask` in their order, from the first lane on; what is behind them is not said.
+    /// Packs the lanes of `mask` to the front, in order; the lanes behind them are unspecified.
     #[inline(always)]
     fn u32_compress(self, a: Self::U32, mask: Self::Mask) -> Self::U32 {
         let (mut packed, mut n) = ([0; 64], 0);
@@ -116,29 +117,29 @@ pub trait Lanes: Copy + Send + Sync + 'static {
         }
         self.u32_from_fn(|lane| packed[lane])
     }
-    /// The largest first.
+    /// Sorts the lanes in descending order.
     #[inline(always)]
     fn u32_sort_descending(self, a: Self::U32) -> Self::U32 {
         shuffle::sort_by_insertion(self, a)
     }
-    /// The smallest lane.
+    /// Returns the smallest lane.
     #[inline(always)]
     fn u32_least(self, a: Self::U32) -> u32 {
         shuffle::least_by_lane(self, a)
     }
-    /// In each lane what `a` has in the lane that `from` names, modulo the number of lanes.
+    /// Returns in each lane the lane of `a` that `from` names, modulo the number of lanes.
     #[inline(always)]
     fn u32_permute(self, a: Self::U32, from: Self::U32) -> Self::U32 {
         shuffle::permute_by_lane(self, a, from)
     }
-    /// The lanes in order, at the beginning of `out`.
+    /// Stores the lanes in order at the start of `out`.
     #[inline(always)]
     fn f32_store(self, a: Self::F32, out: &mut [f32]) {
         for (lane, out) in out[..Self::N].iter_mut().enumerate() {
             *out = Self::f32_lane(&a, lane);
         }
     }
-    /// The lanes in order, at the beginning of `out`.
+    /// Stores the lanes in order at the start of `out`.
     #[inline(always)]
     fn u32_store(self, a: Self::U32, out: &mut [u32]) {
         for (lane, out) in out[..Self::N].iter_mut().enumerate() {
@@ -147,19 +148,18 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     }
 }
 
-/// `[f(0), f(1), ..]`. Unlike the array functions of `core` it is always inlined: what is not
-/// inlined is not compiled for the level, and there every operation is a call. Up to four elements,
-/// as vectors have, it is no loop that an optimiser must unroll; more are one, so that `f` stands
-/// in one place.
+/// Returns `[f(0), f(1), ..]`. Unlike the array functions of `core` it is always inlined: code that
+/// is not inlined is not compiled for the level, and there every operation is a call. Up to four
+/// elements, as in vectors, are unrolled by hand; more are a loop, so that `f` is compiled once.
 #[inline(always)]
 pub(crate) fn fill<T: Copy, const N: usize>(f: impl FnMut(usize) -> T) -> [T; N] {
-    // Not dropped, or each call of it has a landing pad.
+    // Not dropped, or each call of it would have a landing pad.
     let f = &mut *ManuallyDrop::new(f);
     let mut all = [const { MaybeUninit::uninit() }; N];
     macro_rules! element {
         ($($i:literal)+) => {
             $(if const { $i < N } {
-                // SAFETY: it is an element.
+                // SAFETY: the index is that of an element.
                 unsafe { all.get_unchecked_mut($i) }.write(f($i));
             })+
         };

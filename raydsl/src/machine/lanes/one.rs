@@ -1,9 +1,10 @@
-//! One lane.
+//! Lanes of width one.
 
 use super::Lanes;
 use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, Gang, IntBinary, Op, scalar};
 
-/// One lane with masks: `Packet<One>` against the untouched source is the oracle of the lowering.
+/// One lane with masks: running `Packet<One>` against the untouched source is the oracle of the
+/// lowering.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct One;
 

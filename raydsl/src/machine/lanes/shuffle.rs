@@ -1,11 +1,11 @@
-//! Eight lanes that change places.
+//! Permutations and sorting of eight lanes.
 
 use fearless_simd::{Simd, u32x8};
 
 use super::{Lanes, Simd8};
 
-/// The lanes, the largest first: a bitonic network. (Batcher, "Sorting Networks and Their
-/// Applications", AFIPS 1968.)
+/// Sorts the lanes in descending order by a bitonic network (Batcher, "Sorting Networks and Their
+/// Applications", AFIPS 1968).
 #[inline(always)]
 pub(super) fn sort_descending<S: Simd>(lanes: Simd8<S>, a: u32x8<S>) -> u32x8<S> {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -15,7 +15,7 @@ pub(super) fn sort_descending<S: Simd>(lanes: Simd8<S>, a: u32x8<S>) -> u32x8<S>
     sort_by_insertion(lanes, a)
 }
 
-/// The smallest lane.
+/// Returns the smallest lane.
 #[inline(always)]
 pub(super) fn least<S: Simd>(lanes: Simd8<S>, a: u32x8<S>) -> u32 {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -25,7 +25,7 @@ pub(super) fn least<S: Simd>(lanes: Simd8<S>, a: u32x8<S>) -> u32 {
     least_by_lane(lanes, a)
 }
 
-/// The same on any lanes.
+/// Returns the smallest lane, for any lanes.
 #[inline(always)]
 pub(super) fn least_by_lane<L: Lanes>(_: L, a: L::U32) -> u32 {
     (0..L::N).fold(
@@ -35,7 +35,7 @@ pub(super) fn least_by_lane<L: Lanes>(_: L, a: L::U32) -> u32 {
     )
 }
 
-/// In each lane what `a` has in the lane that `from` names, modulo 8.
+/// Returns in each lane the lane of `a` that `from` names, modulo 8.
 #[inline(always)]
 pub(super) fn permute<S: Simd>(lanes: Simd8<S>, a: u32x8<S>, from: u32x8<S>) -> u32x8<S> {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -45,7 +45,7 @@ pub(super) fn permute<S: Simd>(lanes: Simd8<S>, a: u32x8<S>, from: u32x8<S>) -> 
     permute_by_lane(lanes, a, from)
 }
 
-/// The same on any lanes.
+/// Sorts any lanes in descending order.
 #[inline(always)]
 pub(super) fn sort_by_insertion<L: Lanes>(lanes: L, a: L::U32) -> L::U32 {
     let mut sorted = [0; 64];
@@ -61,7 +61,7 @@ pub(super) fn sort_by_insertion<L: Lanes>(lanes: L, a: L::U32) -> L::U32 {
     lanes.u32_from_fn(|lane| sorted[lane])
 }
 
-/// The same on any lanes, modulo their number.
+/// Permutes any lanes, modulo their number.
 #[inline(always)]
 pub(super) fn permute_by_lane<L: Lanes>(lanes: L, a: L::U32, from: L::U32) -> L::U32 {
     lanes.u32_from_fn(|lane| L::u32_lane(&a, L::u32_lane(&from, lane) as usize % L::N))
@@ -81,8 +81,8 @@ mod x86 {
     };
     use fearless_simd::{Avx2, Simd, SimdInto, u32x8};
 
-    /// One step of the network: each lane meets its partner, and those of the mask keep the
-    /// smaller number.
+    /// Performs one step of the network: each lane is compared with its partner, and the lanes of
+    /// the mask keep the smaller number.
     macro_rules! step {
         ($a:ident, $partner:expr, $smaller:literal) => {{
             let b = $partner;
@@ -136,9 +136,9 @@ mod x86 {
 mod tests {
     use super::*;
 
-    /// Every order of zeroes and ones is sorted, and so every order of anything (Knuth, "The Art of
-    /// Computer Programming", volume 3, section 5.3.4); and what a permutation gives is what the
-    /// lanes name.
+    /// Tests that every order of zeroes and ones is sorted, and so every order of anything (the 0-1
+    /// principle: Knuth, "The Art of Computer Programming", volume 3, section 5.3.4), and that a
+    /// permutation returns the lanes named.
     fn check<L: Lanes>(l: L) {
         for bits in 0..256u32 {
             let of = |lane: usize| (bits >> lane & 1) * u32::MAX;

@@ -1,4 +1,4 @@
-//! Registers of an instruction set.
+//! SIMD registers of an instruction set.
 
 use fearless_simd::{
     Bytes, Level, Select, Simd, SimdBase, SimdCvtFloat, SimdCvtTruncate, SimdFloat, SimdMask,
@@ -10,7 +10,7 @@ use super::{Lanes, fill, shuffle};
 use crate::machine::op::known;
 use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Op, scalar};
 
-/// The name of a level, as reports print it.
+/// Returns the name of a level for reports.
 fn isa_name(level: Level) -> &'static str {
     #[allow(unreachable_patterns, reason = "which levels exist depends on the target")]
     match level {
@@ -30,8 +30,8 @@ fn isa_name(level: Level) -> &'static str {
     }
 }
 
-/// Whether a level's `x.min(y)` is `if x < y { x } else { y }` for every pair of numbers, as it is
-/// on x86, and `max` likewise.
+/// Returns whether a level's `x.min(y)` is `if x < y { x } else { y }` for every pair of numbers,
+/// as on x86, and `max` likewise.
 #[inline(always)]
 fn has_ordered_min(level: Level) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -133,7 +133,7 @@ macro_rules! simd_lanes {
             }
             #[inline(always)]
             fn f32_binary<O: Op<F32Binary>>(self, _: O, a: $f<S>, b: $f<S>) -> $f<S> {
-                // Where the instruction is `if b < a { b } else { a }`, NaN and zeros included.
+                // Whether the instruction is `if b < a { b } else { a }`, NaN and zeros included.
                 let is_ordered = || has_ordered_min(self.0.level());
                 known!(O::OP;
                     F32Binary::Add => a + b,

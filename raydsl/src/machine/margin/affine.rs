@@ -1,21 +1,21 @@
-//! Errors that are the same error: affine arithmetic.
+//! Affine arithmetic: correlated rounding errors.
 //!
 //! Stolfi and de Figueiredo, "Self-Validated Numerical Methods and Applications" (1997), chapter 3.
-//! An interval forgets where an error came from, so `x - x` is as wide as two errors. Here each
-//! rounding is a symbol between -1 and 1, and a value knows how much of each it carries.
+//! An interval forgets the origin of an error, so `x - x` is as wide as two errors. Here each
+//! rounding is a symbol between -1 and 1, and a value has a weight for each symbol.
 
 use core::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 use super::interval::Interval;
 
-/// Terms of a form before the least of them are put together.
+/// The number of terms of a form above which the least are merged.
 const TERMS: usize = 48;
-/// Forms that are kept; values beyond have their interval alone.
+/// The number of stored forms; values beyond have their interval alone.
 const FORMS: usize = 1 << 14;
 
-/// `center + terms + rest`: terms are symbols between -1 and 1 with their weights, in order of
-/// their numbers; the rest is on its own.
+/// An affine form `center + terms + rest`: terms are symbols between -1 and 1 with weights, ordered
+/// by symbol; the rest is an uncorrelated error.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Form {
     center: f64,
@@ -24,7 +24,7 @@ pub(crate) struct Form {
 }
 
 impl Form {
-    /// One number.
+    /// Returns the form of one exact number.
     fn point(center: f64) -> Self {
         Self { center, terms: Vec::new(), rest: 0.0 }
     }
@@ -33,19 +33,19 @@ impl Form {
         self.rest + self.terms.iter().map(|(_, w)| w.abs()).sum::<f64>()
     }
 
-    /// What this arithmetic, which is done in `f64`, may be off.
+    /// Bounds the error of this arithmetic itself, which runs in `f64`.
     fn slop(&self) -> f64 {
         (self.center.abs() + self.radius()) * 2f64.powi(-48)
     }
 
-    /// Where the value lies.
+    /// Returns the interval of the form.
     pub(super) fn range(&self) -> Interval {
         let radius = self.radius() + self.slop();
-        // A sum says nothing of the sign of a zero.
+        // A sum does not determine the sign of a zero.
         Interval::new(self.center - radius, self.center + radius, false).with_any_zero()
     }
 
-    /// `a * self + b * other`.
+    /// Returns `a * self + b * other`.
     fn combined(&self, a: f64, other: &Self, b: f64) -> Self {
         let mut terms = Vec::with_capacity(self.terms.len() + other.terms.len() + 1);
         let (mut left, mut right) = (self.terms.iter().peekable(), other.terms.iter().peekable());
@@ -83,10 +83,10 @@ impl Form {
         all
     }
 
-    /// `self / other`, unless `other` may be 0.
+    /// Returns `self / other`, unless `other` may be 0.
     pub(super) fn div(&self, other: &Self) -> Option<Self> {
         let (c, r) = (other.center, other.radius());
-        // 1/c - (y - c)/c², and what that is off by.
+        // 1/c - (y - c)/c², and its error.
         (r < c.abs()).then(|| {
             let mut inverse = other.combined(-1.0 / (c * c), &Self::point(0.0), 0.0);
             inverse.center = 1.0 / c;
@@ -95,7 +95,7 @@ impl Form {
         })
     }
 
-    /// The square root of a positive number.
+    /// Returns the square root of a positive number.
     pub(super) fn sqrt(&self) -> Option<Self> {
         let (c, r) = (self.center, self.radius());
         (r < c).then(|| {
@@ -107,7 +107,7 @@ impl Form {
         })
     }
 
-    /// With an error of its own.
+    /// Adds an error under a new symbol.
     fn with_error(mut self, symbol: u32, error: f64) -> Self {
         self.terms.push((symbol, error + self.slop()));
         if self.terms.len() > TERMS {
@@ -125,7 +125,7 @@ impl Form {
     }
 }
 
-/// The number of a form; [`Handle::NONE`] where there is only an interval.
+/// The index of a form; [`Handle::NONE`] for a value with only an interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Handle(u32);
 
@@ -133,12 +133,12 @@ impl Handle {
     pub(super) const NONE: Self = Self(u32::MAX);
 }
 
-/// The forms of a machine's values.
+/// The affine forms of a machine's values.
 #[derive(Debug, Default)]
 pub(crate) struct Forms {
     all: RefCell<Vec<Rc<Form>>>,
     symbols: Cell<u32>,
-    /// Whether there are only intervals for now.
+    /// Whether forms are disabled, leaving intervals alone.
     off: Cell<bool>,
 }
 
@@ -151,12 +151,12 @@ impl Forms {
         self.all.borrow().len()
     }
 
-    /// Forgets all but the first `len` forms.
+    /// Drops all but the first `len` forms.
     pub(crate) fn truncate(&self, len: usize) {
         self.all.borrow_mut().truncate(len);
     }
 
-    /// Does `f` with intervals alone, which is faster.
+    /// Runs `f` with intervals alone, which is faster.
     pub(crate) fn without<R>(&self, f: impl FnOnce() -> R) -> R {
         let off = self.off.replace(true);
         let result = f();
@@ -164,7 +164,7 @@ impl Forms {
         result
     }
 
-    /// The form of a value; one that has none is an error of its own.
+    /// Returns the form of a value; one without a form gets an error symbol of its own.
     pub(crate) fn get(&self, handle: Handle, range: Interval) -> Option<Rc<Form>> {
         if self.off.get() {
             return None;
@@ -180,7 +180,7 @@ impl Forms {
         Some(Rc::new(if half > 0.0 { form.with_error(self.symbol(), half) } else { form }))
     }
 
-    /// Keeps a form.
+    /// Stores a form.
     pub(crate) fn put(&self, form: Option<Rc<Form>>) -> Handle {
         let mut all = self.all.borrow_mut();
         match form {
@@ -192,7 +192,7 @@ impl Forms {
         }
     }
 
-    /// Keeps a form that was rounded: `error` is a new one.
+    /// Stores a form that was rounded, with `error` under a new symbol.
     pub(super) fn put_rounded(&self, form: Option<Form>, error: f64) -> Handle {
         self.put(form.map(|f| Rc::new(f.with_error(self.symbol(), error))))
     }

@@ -1,15 +1,14 @@
-//! Where the machine keeps its floats.
+//! Arena of the machine's floats.
 //!
-//! What is known of a float takes some ninety bytes. Lifted code hands its floats from one layer to
-//! the next, and the compiler looks for copies that it can leave out among all of them: for a long
-//! kernel that took most of its time. So a float is a handle of eight bytes, and what is known of
-//! it lies here.
+//! The data of a float take some ninety bytes. Lifted code passes its floats from one layer to the
+//! next, and the compiler looks for copies to elide among all of them: for a long kernel that took
+//! most of its time. So a float is a handle of eight bytes, and its data are in the arena.
 //!
-//! Nothing is dropped by itself. A loop notes how long the arena is where it begins, and what a
-//! round has added is dropped at its end. That is all that the round has made: what outlives it was
+//! Nothing is dropped by itself. A loop notes the length of the arena at its start, and drops an
+//! iteration's entries at the iteration's end. This is safe because values that outlive it were
 //! given to variables, and those have *slots*, entries in front of the loop's that are overwritten.
-//! So do the values of functions with early returns. Runs of decisions and primitives that are
-//! visited end in the same way.
+//! The values of functions with early returns have slots too. Runs of decisions and visited
+//! primitives end in the same way.
 
 use core::cell::{Cell, RefCell};
 
@@ -17,10 +16,10 @@ use super::affine::Handle;
 use super::interval::Interval;
 use super::sums::Parts;
 
-/// A float on [`Margin`](super::Margin): which of the machine's it is.
+/// A float on [`Margin`](super::Margin): a handle of an entry in its arena.
 ///
-/// Its place, and above that a serial number, which tells it from others that were there: one word
-/// for the compiler.
+/// It consists of the entry's index and above that a serial number that distinguishes it from
+/// earlier entries there: one word for the compiler.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounded(u64);
 
@@ -38,16 +37,17 @@ impl Bounded {
     }
 }
 
-/// What is known of a float: its `f64` value, and where the `f32` one lies.
+/// The data of a float: its `f64` value and bounds on the `f32` one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Known {
     pub(crate) value: f64,
     pub(crate) range: Interval,
-    /// Values of one number are the same value.
+    /// The value number: floats with the same id are the same value.
     pub(crate) id: u64,
-    /// Which errors it carries.
+    /// Its affine form, the errors that it carries.
     pub(crate) form: Handle,
-    /// What a device that reorders sums may take it apart into, if it is a sum or a product.
+    /// The addends into which a device that reorders sums may split it, if it is a sum or a
+    /// product.
     pub(crate) parts: Option<Parts>,
 }
 
@@ -57,7 +57,7 @@ struct Entry {
     serial: u32,
 }
 
-/// How long the arena was.
+/// A length of the arena.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mark(usize);
 
@@ -65,16 +65,16 @@ pub(crate) struct Mark(usize);
 #[derive(Debug, Default)]
 pub(crate) struct Arena {
     entries: RefCell<Vec<Entry>>,
-    /// The serial number of the next entry. After four thousand million the numbers come again,
-    /// and one handle in as many that is out of date would not be noticed.
+    /// The serial number of the next entry. It wraps after four thousand million, and one stale
+    /// handle in as many would not be noticed.
     next: Cell<u32>,
-    /// How long the arena was at most.
+    /// The greatest length of the arena so far.
     #[cfg(test)]
     most: Cell<usize>,
 }
 
 impl Arena {
-    /// Keeps a float.
+    /// Stores a float.
     pub(super) fn put(&self, known: Known) -> Bounded {
         let serial = self.next.replace(self.next.get().wrapping_add(1));
         let mut entries = self.entries.borrow_mut();
@@ -85,7 +85,7 @@ impl Arena {
         float
     }
 
-    /// What is known of a float.
+    /// Returns the data of a float.
     pub(super) fn get(&self, float: Bounded) -> Known {
         match self.entries.borrow().get(float.at()) {
             Some(entry) if entry.serial == float.serial() => entry.known,
@@ -105,19 +105,19 @@ impl Arena {
         Mark(self.entries.borrow().len())
     }
 
-    /// Drops all that was kept since `mark`.
+    /// Drops everything stored since `mark`.
     pub(crate) fn drop_since(&self, mark: Mark) {
         self.entries.borrow_mut().truncate(mark.0);
     }
 
-    /// The greatest number of floats that there have been at once.
+    /// Returns the greatest number of floats stored at once.
     #[cfg(test)]
     pub(crate) fn most(&self) -> usize {
         self.most.get()
     }
 }
 
-/// Better an end than another float's value.
+/// Panics, rather than using another float's value.
 #[cold]
 #[inline(never)]
 fn gone(float: Bounded) -> ! {
@@ -164,7 +164,7 @@ mod tests {
         m.f32_binary(op::Add, kept, kept);
     }
 
-    /// Another float may be where it was.
+    /// Tests that a stale handle is detected when another float has taken its place.
     #[test]
     #[should_panic(expected = "dropped before its last use")]
     fn another_float_is_not_taken_for_one_that_is_gone() {

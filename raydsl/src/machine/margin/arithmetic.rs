@@ -1,4 +1,4 @@
-//! The arithmetic of the machine.
+//! Arithmetic of the margin machine.
 
 use std::rc::Rc;
 
@@ -9,12 +9,12 @@ use super::sums::Parts;
 use super::{Margin, rounding};
 use crate::machine::F32Binary;
 
-/// How many integers an open conversion may give before the run is given up.
+/// The number of integers an open conversion may give before the run is abandoned.
 const ALTERNATIVES: usize = 16;
 
 impl Margin {
-    /// One of some alternatives, the first of which is that of `f64`. Without any the run is lost,
-    /// and `value` stands in.
+    /// Chooses one of some alternatives, the first of which is that of `f64`. Without any the run
+    /// is lost, and `value` is used.
     pub(crate) fn one_of<T: Copy>(&self, value: T, alternatives: &[T]) -> T {
         let chosen = match alternatives {
             [first, _, ..] if !self.is_running() => Some(first),
@@ -27,8 +27,8 @@ impl Margin {
         })
     }
 
-    /// A conversion to integers that rises: each integer that is possible. `order` and `back` count
-    /// them; `nans` are those that a NaN may give.
+    /// Decides a monotonically increasing conversion to integers among all possible integers.
+    /// `order` and `back` map them to consecutive numbers; `nans` are the results for a NaN.
     pub(super) fn integer<T: Copy + PartialEq>(
         &self,
         a: Known,
@@ -53,14 +53,14 @@ impl Margin {
             let more: Vec<T> = nans.iter().copied().filter(|n| !possible.contains(n)).collect();
             possible.extend(more);
         }
-        // The integer of `f64` first; a path that `f64` does not take may lack it.
+        // Puts the integer of `f64` first; a path other than that of `f64` may lack it.
         if let Some(at) = possible.iter().position(|v| *v == value) {
             possible.swap(0, at);
         }
         self.one_of(value, &possible)
     }
 
-    /// A function in steps that rises: a decision where few steps are possible.
+    /// Applies an increasing step function: a decision if few steps are possible.
     pub(super) fn stepped(&self, a: Known, f: impl Fn(f64) -> f64) -> Known {
         let value = f(a.value);
         if a.range.is_nan() {
@@ -77,7 +77,7 @@ impl Margin {
         let steps = (0..=(last - first) as u32).map(|k| first + f64::from(k));
         all.extend(steps.filter(|v| *v != value));
         let step = self.one_of(value, &all);
-        // A zero within is of either sign, one at an end of that end's.
+        // A zero inside is of either sign, a zero at an end of that end's sign.
         let [low, high] = [(first, -0.0), (last, 0.0)].map(|(end, zero)| {
             if step != 0.0 {
                 step
@@ -90,10 +90,10 @@ impl Margin {
         self.bounded(step, Interval::new(low, high, false))
     }
 
-    /// `|a|`.
+    /// Returns `|a|`.
     pub(super) fn size(&self, a: Known) -> Known {
         let size = match a.range {
-            // The same number, whatever the signs of zeros.
+            // The same number, apart from the signs of zeros.
             r if r.low >= 0.0 && !r.is_nan() => a,
             r if r.high <= 0.0 && !r.is_nan() => self.negated(a),
             _ => self.bounded(a.value, a.range),
@@ -101,17 +101,18 @@ impl Margin {
         Known { value: a.value.abs(), range: a.range.abs(), ..size }
     }
 
-    /// A float that is `value` in `f64`, and a rounded one of `range` in `f32`.
+    /// Returns a float that is `value` in `f64`, and a rounded number of `range` in `f32`.
     pub(crate) fn rounded(&self, value: f64, range: Interval, by: Rounded) -> Known {
         self.computed(value, range, None, by)
     }
 
-    /// A float that is `value` in `f64`, and in `f32` what `range` and `form` say, rounded.
+    /// Returns a float that is `value` in `f64`, and in `f32` a rounded number of `range` and
+    /// `form`.
     fn computed(&self, value: f64, range: Interval, form: Option<Form>, by: Rounded) -> Known {
         self.computed_within(value, range, form, by, 0.0)
     }
 
-    /// The same, with a further error of up to `extra`.
+    /// Returns the same as `computed`, with a further error of up to `extra`.
     pub(super) fn computed_within(
         &self,
         value: f64,
@@ -134,7 +135,7 @@ impl Margin {
         Known { form: self.forms.put_rounded(form, error), ..rounded }
     }
 
-    /// What an operation makes of two forms, if both are known.
+    /// Combines two forms by an operation, if both are known.
     pub(super) fn both(
         &self,
         a: Known,
@@ -144,7 +145,7 @@ impl Margin {
         Some(f(&*self.forms.get(a.form, a.range)?, &*self.forms.get(b.form, b.range)?))
     }
 
-    /// `-a`.
+    /// Returns `-a`.
     pub(super) fn negated(&self, a: Known) -> Known {
         let negated =
             |form| self.forms.put(self.forms.get(form, a.range).map(|f| Rc::new(f.neg())));
@@ -152,7 +153,7 @@ impl Margin {
         Known { form: negated(a.form), parts, ..self.bounded(-a.value, a.range.neg()) }
     }
 
-    /// The square root.
+    /// Returns the square root.
     pub(super) fn root(&self, a: Known) -> Known {
         if self.rounding.is_strict
             && let Some(exact) = a.range.as_point().and_then(rounding::exact_root)
@@ -163,7 +164,7 @@ impl Margin {
         self.computed(a.value.sqrt(), a.range.sqrt(), form, self.rounding.root())
     }
 
-    /// `a op b`.
+    /// Returns `a op b`.
     pub(super) fn binary(&self, op: F32Binary, a: Known, b: Known) -> Known {
         let (x, y) = (a.value, b.value);
         if let Some(exact) = self.exact(op, a, b) {
@@ -171,7 +172,8 @@ impl Margin {
         }
         let same = a.id == b.id;
         let sum = self.rounding.sum();
-        // The same number, but for the sign of a zero. A sum that cancels may not in another order.
+        // The same number, apart from the sign of a zero. Another order of a cancelling sum may
+        // differ.
         let is_zero = |v: Known| v.range.is_zero() && v.parts.is_none();
         let kept = |v: Known, value| Known { value, range: v.range.with_any_zero(), ..v };
         match op {
@@ -209,22 +211,23 @@ impl Margin {
         }
     }
 
-    /// The result of an operation that no variant rounds.
+    /// Returns the result of an operation that no variant rounds.
     fn exact(&self, op: F32Binary, a: Known, b: Known) -> Option<f64> {
         let (x, y) = (a.range.as_point()?, b.range.as_point()?);
         let result = rounding::exact(op, x, y)?;
         let is_safe = match op {
             _ if self.rounding.is_strict => true,
-            // Sums know of their parts, and quotients may be products.
+            // Sums track their addends, and quotients may be computed as products.
             F32Binary::Add | F32Binary::Sub | F32Binary::Div => false,
             _ => !(result as f32).is_subnormal(),
         };
         is_safe.then_some(result)
     }
 
-    /// The smaller or the larger of two, which needs no decision: it is near either's ends.
+    /// Returns the smaller or the larger of two numbers. This needs no decision: the interval
+    /// follows from both.
     fn least(&self, a: Known, b: Known, value: f64, range: Interval) -> Known {
-        // The operand itself, where it is certain which one it is.
+        // The operand itself, if it is certain which one it is.
         match range {
             r if a.range.overlaps(b.range) || r.nan => self.bounded(value, r),
             r if r == a.range => Known { value, ..a },
@@ -233,7 +236,7 @@ impl Margin {
         }
     }
 
-    /// An integer as a float.
+    /// Converts an integer to a float.
     pub(super) fn converted(&self, value: f64, short: f32) -> Known {
         if f64::from(short) == value {
             return self.point(value);
@@ -242,10 +245,10 @@ impl Margin {
     }
 }
 
-/// The `f64` number that a constant of [`core::f32::consts`] stands for.
+/// Returns the `f64` number denoted by a constant of [`core::f32::consts`].
 ///
-/// It is told by its value, so that it may come by any path. A constant of the user's that has the
-/// same bits by chance (18 numbers among four thousand million) would be taken for it, which moves
+/// It is recognised by its value, so it may come by any path. A user's constant that has the same
+/// bits by chance (18 numbers among four thousand million) would be mistaken for it, which moves
 /// the reference by less than the rounding of that constant.
 pub(super) fn constant(v: f32) -> f64 {
     use core::{f32::consts as short, f64::consts as long};
@@ -261,12 +264,12 @@ pub(super) fn constant(v: f32) -> f64 {
     known.into_iter().find_map(|(s, l)| (s == v).then_some(l)).unwrap_or(f64::from(v))
 }
 
-/// The bits of a float, as an integer in the order of the numbers; -0 comes before +0.
+/// Maps the bits of a float to an integer in the order of the numbers; -0 comes before +0.
 pub(super) fn ordered(bits: u32) -> i64 {
     if bits >> 31 == 0 { i64::from(bits) } else { -i64::from(bits & 0x7fff_ffff) - 1 }
 }
 
-/// The float's bits that [`ordered`] makes `ordered`.
+/// Inverts [`ordered`]: returns the bits of the float.
 pub(super) fn bits_of(ordered: i64) -> u32 {
     if ordered >= 0 { ordered as u32 } else { (-ordered - 1) as u32 | 0x8000_0000 }
 }

@@ -1,10 +1,10 @@
-//! Kernels whose bounds were wrong once.
+//! Regression tests of kernels whose bounds were once wrong.
 
 use super::*;
 use crate::math::elementary::sincos_2pi;
 use crate::prelude::{Kernel, kernel};
 
-/// Asserts that what the kernel gives is within an outcome, and returns all.
+/// Asserts that the kernel's result is within an outcome, and returns all outcomes.
 #[track_caller]
 fn held<A: Type + core::fmt::Debug, R: Type>(kernel: &Kernel<'_, A, R>, args: A) -> Outcomes {
     let outcomes = kernel.outcomes(args, Rounding::IEEE, 64);
@@ -47,7 +47,7 @@ fn waves_reach_their_zeros() {
     }
 }
 
-/// On a way that `f64` does not take, a loop may never end.
+/// Tests that a loop that never ends on a path other than that of `f64` is abandoned.
 #[test]
 fn loops_that_do_not_end_are_left_soon() {
     let falls = kernel!(|x: f32| {
@@ -64,7 +64,7 @@ fn loops_that_do_not_end_are_left_soon() {
     assert!(!found.is_complete() && rounds < 300e3, "{rounds}");
 }
 
-/// What a device may make of a kernel.
+/// Returns the outcomes of a kernel on a device.
 #[track_caller]
 fn on_device<A: Type, R: Type>(kernel: &Kernel<'_, A, R>, args: A) -> Outcomes {
     kernel.outcomes(args, Rounding::WGSL, 64)
@@ -106,7 +106,7 @@ fn a_device_may_add_in_any_order() {
     let cancels = kernel!(|x: f32, y: f32, z: f32| (x * x + y * z) - 0.05);
     let found = on_device(&cancels, (187.5, 187.5, -187.5));
     assert!(found.contains(187.5f32 * 187.5 + (187.5 * -187.5 - 0.05)), "{found:?}");
-    // A long sum is off by its length, not by the square of it.
+    // The error of a long sum grows with its length, not with the square of it.
     let long = kernel!(|x: f32| {
         let mut sum = 0.0;
         for _ in 0..1000u32 {
@@ -118,7 +118,7 @@ fn a_device_may_add_in_any_order() {
     assert!(width < 2.1 * 1e6 * 2f64.powi(-23), "{width}");
 }
 
-/// What is asked of the bits alone does not leave the path open.
+/// Tests that classification by bits alone leaves no decision open.
 #[test]
 fn classes_and_signs_come_of_the_range() {
     let finite = kernel!(|x: f32| (x * 1.7 + 0.3).is_finite());

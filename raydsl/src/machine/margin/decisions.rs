@@ -1,31 +1,32 @@
-//! Decisions that rounding leaves open, and all the ways in which they may go.
+//! Decisions left open by rounding, and the exploration of all their outcomes.
 
 use core::cell::{Cell, RefCell};
 use std::collections::{HashMap, VecDeque};
 
-/// Rounds of loops in all runs of one input, before it is given up.
+/// The limit on loop iterations in all runs of one input.
 const ROUNDS: u64 = 1 << 18;
-/// Rounds of loops in all runs but the first: a way that `f64` does not take may never end.
+/// The limit on loop iterations in all runs but the first: a path other than that of `f64` may
+/// never end.
 const ROUNDS_ASIDE: u64 = 1 << 16;
 
-/// The decisions of one run, numbered in the order in which it meets them.
+/// The decisions of one run, in order.
 #[derive(Debug, Default)]
 struct Script {
-    /// What the first ones are to be.
+    /// The alternatives planned for the first decisions.
     planned: Vec<u32>,
-    /// What was chosen, and among how many.
+    /// The alternatives chosen, each with the number of alternatives.
     made: Vec<(u32, u32)>,
     /// Truth values that were decided: whether they are the opposite of the `f64` ones.
     flips: HashMap<u64, bool>,
 }
 
-/// What a machine needs to know of its decisions.
+/// The state of a machine's decisions.
 #[derive(Debug)]
 pub(super) struct Decisions {
     script: RefCell<Script>,
-    /// The next number that is not in use.
+    /// The next unused id.
     next: Cell<u64>,
-    /// Rounds of loops that are left.
+    /// Loop iterations left.
     rounds: Cell<u64>,
     /// Whether something was open that cannot be followed.
     lost: Cell<bool>,
@@ -42,28 +43,28 @@ impl Default for Decisions {
     }
 }
 
-/// The results of every way in which the decisions of a function may go.
+/// The results of a function on every path that its decisions may take.
 pub(crate) struct Explored<R> {
-    /// The first one follows `f64`.
+    /// The results, the first of which follows `f64`.
     pub(crate) results: Vec<R>,
-    /// Whether the first one met something that was open.
+    /// Whether the first run had an open decision.
     pub(super) is_uncertain: bool,
-    /// Whether these are all.
+    /// Whether all paths were run.
     pub(crate) is_complete: bool,
 }
 
 impl Decisions {
-    /// A number that no other value has.
+    /// Returns an id that no other value has.
     pub(super) fn fresh(&self) -> u64 {
         self.next.replace(self.next.get() + 1)
     }
 
-    /// Something is open in more ways than can be followed.
+    /// Marks the run as incomplete: too many alternatives were open.
     pub(super) fn lose(&self) {
         self.lost.set(true);
     }
 
-    /// Chooses among `count` alternatives, of which number 0 is that of `f64`.
+    /// Chooses among `count` alternatives, of which index 0 is that of `f64`.
     pub(super) fn choose(&self, count: usize) -> usize {
         let script = &mut *self.script.borrow_mut();
         let chosen = script.planned.get(script.made.len()).copied().unwrap_or(0);
@@ -71,7 +72,8 @@ impl Decisions {
         chosen as usize
     }
 
-    /// Whether the truth value `id` is the opposite of the `f64` one; it stays what it was.
+    /// Returns whether the truth value `id` is the opposite of the `f64` one; the decision is
+    /// remembered.
     pub(super) fn flip(&self, id: u64) -> bool {
         let known = self.script.borrow().flips.get(&id).copied();
         known.unwrap_or_else(|| {
@@ -81,17 +83,17 @@ impl Decisions {
         })
     }
 
-    /// Whether the truth value `id` was decided, and how.
+    /// Returns the decision on the truth value `id`, if there was one.
     pub(super) fn known(&self, id: u64) -> Option<bool> {
         self.script.borrow().flips.get(&id).copied()
     }
 
-    /// The path of `f64` is done; the others have fewer rounds.
+    /// Ends the path of `f64`; the others have fewer loop iterations.
     pub(super) fn turn_aside(&self) {
         self.rounds.set(self.rounds.get().min(ROUNDS_ASIDE));
     }
 
-    /// A round of a loop; false when there have been too many.
+    /// Counts an iteration of a loop and returns whether the limit allows it.
     pub(super) fn round(&self) -> bool {
         let left = self.rounds.get();
         if left == 0 {
@@ -101,8 +103,8 @@ impl Decisions {
         left > 0
     }
 
-    /// Runs `f` for each way in which its decisions may go, those with few changes first, up to
-    /// `limit` runs. Decisions under way are left alone.
+    /// Runs `f` once per path through its decisions, breadth first from that of `f64`, for up to
+    /// `limit` runs. Decisions of an outer run are not affected.
     pub(super) fn explore<R>(&self, limit: usize, mut f: impl FnMut() -> R) -> Explored<R> {
         let outer = self.script.take();
         let lost = self.lost.replace(false);
@@ -119,7 +121,7 @@ impl Decisions {
             is_uncertain |= !made.is_empty() || self.lost.get();
             let chosen = |n: usize| made[..n].iter().map(|(c, _)| *c);
             for (at, (_, count)) in made.iter().enumerate().skip(first) {
-                // More could not be run.
+                // The limit allows no more.
                 if waiting.len() > limit {
                     break;
                 }

@@ -1,14 +1,15 @@
-//! Random programs of the machine's operations: what `f32` gives lies within an outcome.
+//! Fuzz test of the machine's operations: the `f32` result of a random program lies within an
+//! outcome.
 
 use super::*;
 use crate::__at_run_time as at_run_time;
 use crate::math::elementary as math;
 use crate::math::exact::lost_by_cross;
 
-/// How many programs run, unless `RAYDSL_MARGIN_FUZZ` says otherwise.
+/// The number of programs, unless `RAYDSL_MARGIN_FUZZ` gives another.
 const PROGRAMS: u32 = 200_000;
 
-/// Numbers with which arithmetic goes wrong first.
+/// Numbers most likely to break arithmetic.
 const SPECIAL: [f32; 32] = [
     0.0,
     -0.0,
@@ -44,7 +45,7 @@ const SPECIAL: [f32; 32] = [
     1.1,
 ];
 
-/// `SplitMix64`.
+/// The `SplitMix64` generator.
 struct Random(u64);
 
 impl Random {
@@ -73,7 +74,7 @@ impl Random {
     }
 }
 
-/// One operation on values that came before, by their numbers.
+/// One operation on earlier values, given by their indices.
 #[derive(Clone, Copy, Debug)]
 enum Op {
     Number(f32),
@@ -85,18 +86,18 @@ enum Op {
     SelectBoth(BoolBinary, [usize; 4]),
     ToI32(usize),
     ToU32(usize),
-    /// 1 where the value is beside infinity as a comparison says, else 0.
+    /// 1 if comparing the value's size with infinity succeeds, else 0.
     Beside(Compare, usize),
     /// The bits, moved by some steps.
     Bits(usize, u32),
     CopySign([usize; 2]),
     Elementary(usize, [usize; 2]),
-    /// What a cross product of vectors of one number each loses.
+    /// The rounding error of a cross product of vectors of one number each.
     LostByCross([usize; 4]),
 }
 
 impl Op {
-    /// An operation on some of `len` values.
+    /// Returns a random operation on some of `len` values.
     fn random(r: &mut Random, len: usize) -> Self {
         let [a, b, c, d] = core::array::from_fn(|_| r.below(len));
         match r.below(22) {
@@ -176,7 +177,7 @@ fn elementary<M: Machine>(m: &M, k: usize, a: F<M>, b: F<M>) -> F<M> {
     }
 }
 
-/// Every value of a program, its inputs first.
+/// Returns every value of a program, its inputs first.
 fn run<M: Machine>(m: &M, inputs: &[f32], program: &[Op]) -> Vec<M::F32> {
     let mut values: Vec<M::F32> = inputs.iter().map(|x| m.f32(*x)).collect();
     for op in program {
@@ -185,8 +186,8 @@ fn run<M: Machine>(m: &M, inputs: &[f32], program: &[Op]) -> Vec<M::F32> {
     values
 }
 
-/// Whether a result lies within an outcome, the signs of zeros included: a leaf's own comparison
-/// takes both for the same.
+/// Returns whether a result lies within an outcome, including the signs of zeros: a leaf's own
+/// comparison treats both as equal.
 fn is_within(outcomes: &Outcomes, result: f32) -> bool {
     outcomes.iter().any(|leaves| match leaves {
         [Leaf::Float { low, high, may_be_nan, .. }] => {
@@ -198,8 +199,8 @@ fn is_within(outcomes: &Outcomes, result: f32) -> bool {
     })
 }
 
-/// Sums in the order of the source, used twice, against another order in `f32` with products that
-/// are fused or not.
+/// Tests sums in the order of the source, used twice, against another order in `f32` with products
+/// fused or not.
 #[test]
 fn sums_in_any_order_stay_within_their_outcomes() {
     let mut r = Random(11);
@@ -232,7 +233,7 @@ fn sums_in_any_order_stay_within_their_outcomes() {
     assert_eq!(wrong, 0);
 }
 
-/// The sum of products in any order.
+/// Returns the sum of products in any order.
 fn added(r: &mut Random, terms: &[[f32; 2]]) -> f32 {
     match terms {
         [] => 0.0,

@@ -1,12 +1,13 @@
-//! Intervals that contain a result, whatever rounding did.
+//! Interval arithmetic: bounds that contain a result for any rounding.
 //!
-//! Moore, Kearfott and Cloud, "Introduction to Interval Analysis" (2009), with NaN kept apart: an
-//! interval says which numbers a result may be, and whether it may be none.
+//! Moore, Kearfott and Cloud, "Introduction to Interval Analysis" (2009), with NaN separate: an
+//! interval holds the possible numbers of a result, and whether it may be NaN.
 
-/// Every number from `low` to `high` (infinities included) may be the result, and NaN if `nan`.
+/// An interval: the result may be every number from `low` to `high` (infinities included), and NaN
+/// if `nan`.
 ///
-/// The ends are those of a total order in which -0 comes before +0: an interval that ends in a zero
-/// says of which sign, since a quotient by it is an infinity of that sign.
+/// The ends are ordered totally, with -0 before +0: an interval that ends in a zero determines its
+/// sign, since a quotient by it is an infinity of that sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Interval {
     pub(crate) low: f64,
@@ -14,7 +15,7 @@ pub(crate) struct Interval {
     pub(crate) nan: bool,
 }
 
-/// How far a rounded result may lie from the exact one: this part of it, and this much.
+/// The greatest error of a rounded result: relative and absolute.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rounded {
     pub(super) relative: f64,
@@ -22,17 +23,17 @@ pub(crate) struct Rounded {
 }
 
 impl Interval {
-    /// NaN, and nothing else.
+    /// The interval of NaN alone.
     pub(crate) const NAN: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, nan: true };
-    /// Nothing is known.
+    /// The interval of every number and NaN.
     pub(crate) const ALL: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY, nan: true };
 
-    /// This number alone.
+    /// Returns the interval of one number.
     pub(crate) fn point(v: f64) -> Self {
         if v.is_nan() { Self::NAN } else { Self { low: v, high: v, nan: false } }
     }
 
-    /// From `low` to `high`; an end that is NaN is no limit.
+    /// Returns the interval from `low` to `high`; an end that is NaN is unbounded.
     pub(crate) fn new(low: f64, high: f64, nan: bool) -> Self {
         Self {
             low: if low.is_nan() { f64::NEG_INFINITY } else { low },
@@ -41,7 +42,7 @@ impl Interval {
         }
     }
 
-    /// The smallest interval around some numbers; a NaN among them is no limit.
+    /// Returns the smallest interval around some numbers; a NaN among them is no limit.
     pub(crate) fn around(numbers: impl IntoIterator<Item = f64>, nan: bool) -> Self {
         let mut all = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, nan };
         for v in numbers {
@@ -53,28 +54,28 @@ impl Interval {
         all
     }
 
-    /// Whether it is NaN for certain.
+    /// Returns whether the result is certainly NaN.
     pub(crate) fn is_nan(self) -> bool {
         self.low > self.high
     }
 
-    /// The number, if only one is possible. Zeros of either sign are two.
+    /// Returns the number, if only one is possible. Zeros of either sign are two numbers.
     pub(crate) fn as_point(self) -> Option<f64> {
         (self.low.to_bits() == self.high.to_bits() && !self.nan).then_some(self.low)
     }
 
-    /// Whether it is 0 for certain, of whatever sign.
+    /// Returns whether the result is certainly 0, of either sign.
     pub(super) fn is_zero(self) -> bool {
         self.low == 0.0 && self.high == 0.0 && !self.nan
     }
 
-    /// Whether its sign is known, and which: true for `-`. A NaN may have either.
+    /// Returns the sign, if it is certain: true for `-`. A NaN may have either.
     pub(crate) fn is_negative(self) -> Option<bool> {
         let (low, high) = (self.low.is_sign_negative(), self.high.is_sign_negative());
         (low == high && !self.nan).then_some(low)
     }
 
-    /// The same, where the sign of a zero at an end is not known.
+    /// Returns the interval with zeros of either sign at its ends.
     pub(super) fn with_any_zero(self) -> Self {
         Self {
             low: if self.low == 0.0 { -0.0 } else { self.low },
@@ -83,7 +84,7 @@ impl Interval {
         }
     }
 
-    /// The same with each end moved apart by `by`.
+    /// Returns the interval with each end moved outwards by `by`.
     pub(super) fn widened(self, by: f64) -> Self {
         if self.is_nan() || by == 0.0 {
             return self;
@@ -91,7 +92,7 @@ impl Interval {
         Self::new(self.low - by, self.high + by, self.nan)
     }
 
-    /// The largest size of a number in it.
+    /// Returns the largest absolute value in the interval.
     pub(crate) fn magnitude(self) -> f64 {
         if self.is_nan() { 0.0 } else { self.low.abs().max(self.high.abs()) }
     }
@@ -100,7 +101,7 @@ impl Interval {
         if v.is_nan() { self.nan } else { self.low <= v && v <= self.high }
     }
 
-    /// Whether infinity or NaN is possible.
+    /// Returns whether infinity or NaN is possible.
     pub(crate) fn may_break(self) -> bool {
         self.nan || !self.low.is_finite() || !self.high.is_finite()
     }
@@ -109,12 +110,12 @@ impl Interval {
         self.low <= other.high && other.low <= self.high
     }
 
-    /// The numbers that lie in both.
+    /// Returns the intersection with `to`.
     pub(crate) fn narrowed(self, to: Self) -> Self {
         Self { low: greatest(self.low, to.low), high: least(self.high, to.high), nan: self.nan }
     }
 
-    /// The smallest interval that contains both.
+    /// Returns the smallest interval that contains both.
     pub(crate) fn hull(self, other: Self) -> Self {
         Self {
             low: least(self.low, other.low),
@@ -123,7 +124,7 @@ impl Interval {
         }
     }
 
-    /// What may become of it when it is rounded to `f32`, which overflows.
+    /// Returns the interval after rounding to `f32`, which may overflow.
     pub(super) fn rounded(self, by: Rounded) -> Self {
         if self.is_nan() {
             return self;
@@ -173,7 +174,7 @@ impl Interval {
         self.add(b.neg())
     }
 
-    /// Whether 0 and an infinity are possible: their product and quotients are NaN.
+    /// Returns whether 0 and an infinity are possible: their product and quotients are NaN.
     fn zero_meets_infinity(self, b: Self) -> bool {
         let infinite = |x: Self| x.low.is_infinite() || x.high.is_infinite();
         self.contains(0.0) && infinite(b) || b.contains(0.0) && infinite(self)
@@ -183,7 +184,7 @@ impl Interval {
         if self.is_nan() || b.is_nan() {
             return Self::NAN;
         }
-        // A number next to 0 times one without limit is next to 0 or without limit.
+        // A number near 0 times one without bound is near 0 or unbounded.
         let product = |x: f64, y: f64| {
             let sign = if x.is_sign_negative() == y.is_sign_negative() { 0.0 } else { -0.0 };
             if x == 0.0 || y == 0.0 { sign } else { x * y }
@@ -197,7 +198,7 @@ impl Interval {
         Self::around(corners, self.nan || b.nan || self.zero_meets_infinity(b))
     }
 
-    /// The product with itself.
+    /// Returns the square.
     pub(super) fn square(self) -> Self {
         let size = self.abs();
         if size.is_nan() {
@@ -229,25 +230,25 @@ impl Interval {
         Self { low: low.sqrt(), high: self.high.sqrt(), nan: self.nan || self.low < 0.0 }
     }
 
-    /// `if b < a { b } else { a }`, so a NaN `b` gives `a`.
+    /// Returns `if b < a { b } else { a }`, so a NaN `b` gives `a`.
     pub(super) fn min(self, b: Self) -> Self {
         if self.is_nan() || b.is_nan() {
             return self;
         }
         let high = if b.nan { self.high } else { least(self.high, b.high) };
-        // -0 is not less than +0, which stays then.
+        // -0 is not less than +0, so +0 remains.
         let has_zero = self.low.total_cmp(&0.0).is_le() && self.high.total_cmp(&0.0).is_ge();
         let high = if high == 0.0 && has_zero { 0.0 } else { high };
-        // With a NaN in `self` the comparison fails, and the NaN stays.
+        // With a NaN in `self` the comparison fails, and the NaN remains.
         Self { low: least(self.low, b.low), high, nan: self.nan }
     }
 
-    /// `if a < b { b } else { a }`.
+    /// Returns `if a < b { b } else { a }`.
     pub(super) fn max(self, b: Self) -> Self {
         self.neg().min(b.neg()).neg()
     }
 
-    /// `f` of it, for a function that rises or falls everywhere in `domain` and is NaN outside.
+    /// Applies `f`, a function that is monotone in `domain` and NaN outside.
     pub(crate) fn monotone(self, domain: (f64, f64), f: impl Fn(f64) -> f64) -> Self {
         if self.is_nan() || self.high < domain.0 || self.low > domain.1 {
             return Self::NAN;
@@ -258,12 +259,12 @@ impl Interval {
     }
 }
 
-/// The smaller of two numbers, of which -0 is smaller than +0.
+/// Returns the smaller of two numbers, with -0 smaller than +0.
 fn least(a: f64, b: f64) -> f64 {
     if a.total_cmp(&b).is_le() { a } else { b }
 }
 
-/// The larger of two numbers, of which -0 is smaller than +0.
+/// Returns the larger of two numbers, with -0 smaller than +0.
 fn greatest(a: f64, b: f64) -> f64 {
     if a.total_cmp(&b).is_ge() { a } else { b }
 }

@@ -1,22 +1,22 @@
-//! What is done to the floats of whole values.
+//! Operations on the floats of whole values.
 //!
-//! Each leaf is one call, which is compiled here once.
+//! Each leaf is one call, compiled once here.
 
 use super::arena::Bounded;
 use super::interval::Interval;
 use super::{Margin, Truth};
 use crate::machine::Leaves;
 
-/// Takes the floats out of a value.
+/// Collects the floats of a value.
 pub(super) struct Take(pub(super) Vec<Bounded>);
 
-/// Gives a value floats.
+/// Replaces the floats of a value.
 pub(super) struct Give(pub(super) std::vec::IntoIter<Bounded>);
 
-/// Copies the floats, so that they can be slots, or stay when slots are overwritten.
+/// Copies the floats, so that they can be slots, or survive when slots are overwritten.
 pub(super) struct Copied;
 
-/// Overwrites the slots of the second value by the first one.
+/// Overwrites the slots of the second value with the first one.
 pub(super) struct Assigned;
 
 macro_rules! floats {

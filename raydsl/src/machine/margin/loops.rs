@@ -1,11 +1,11 @@
-//! What outlives the rounds of loops, and how many floats there are for all of them.
+//! Tests of values that outlive loop iterations, and of the number of floats stored.
 
 use super::*;
 use crate::kernel;
 use crate::machine::KernelFn;
 use crate::prelude::{Vec3, Vec4, vec3, vec4};
 
-/// What the kernel gives in `f64`, and the greatest number of floats on the way.
+/// Returns the kernel's `f64` results and the greatest number of floats on the way.
 fn followed<F: KernelFn>(args: F::Args) -> (Vec<f64>, usize) {
     counted(|m| F::lifted(m, Type::splat(m, args)))
 }
@@ -20,8 +20,8 @@ fn counted<V: Value<Margin>>(f: impl Fn(&Margin) -> V) -> (Vec<f64>, usize) {
     (outcomes.reference().iter().map(|leaf| leaf.value()).collect(), most.get())
 }
 
-/// Asserts that the kernel gives these numbers in `f64`, and that its outcomes hold what it gives
-/// in `f32`.
+/// Asserts that the kernel returns these numbers in `f64`, and that its outcomes contain its `f32`
+/// results.
 #[track_caller]
 fn gives<F: KernelFn>(args: F::Args, expected: &[f64]) {
     assert_eq!(followed::<F>(args).0, expected);
@@ -142,7 +142,7 @@ fn a_return_within_a_loop() {
     }
 }
 
-/// `old` and `whole` are what the variables were, not what they are.
+/// Reads the earlier values of variables into `old` and `whole`.
 #[kernel]
 fn read_before_assigned(x: f32, n: u32) -> Vec4 {
     let mut a = x;
@@ -178,7 +178,7 @@ fn what_was_read_does_not_change() {
     }
 }
 
-/// `kept` is a new variable in each round, and not always assigned again.
+/// Declares `kept` anew in each iteration, without always assigning it again.
 #[kernel]
 fn declared_within(x: f32, n: u32) -> f32 {
     let mut sum = 0.0;
@@ -219,7 +219,7 @@ fn variables_of_a_round() {
     }
 }
 
-/// `break` with a value, from a block too, and as an argument.
+/// Breaks with a value, also from a block, and as an argument.
 #[kernel]
 fn broken_off(x: f32, n: u32) -> f32 {
     let mut a = x;
@@ -326,7 +326,7 @@ fn states_of_many_leaves() {
     }
 }
 
-/// Rounds in which a comparison is open: every way has its own variables.
+/// Leaves a comparison open in each iteration: every path has its own variables.
 #[kernel]
 fn open_rounds(x: f32) -> (f32, f32) {
     let mut up = 0.0;
@@ -346,7 +346,7 @@ fn open_rounds(x: f32) -> (f32, f32) {
 fn each_way_has_its_own_variables() {
     let outcomes = Outcomes::of(Rounding::IEEE, 64, |m| open_rounds::lifted(m, (F(m.f32(0.7)),)));
     assert!(outcomes.is_complete() && outcomes.is_uncertain());
-    // The comparison of the first round is open, the others are not.
+    // The comparison of the first iteration is open, the others are not.
     let x = f64::from(0.7f32);
     let goes = |first: bool| {
         let (mut up, mut last) = (0.0, x);

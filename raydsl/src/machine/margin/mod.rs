@@ -1,18 +1,17 @@
-//! The machine that computes in `f64` and knows what `f32` may make of it.
+//! The margin machine: an `f64` reference with bounds on the `f32` results.
 //!
-//! Each float is the `f64` result, which is the *reference*, together with an interval that holds
-//! the `f32` result of every variant: the running error analysis of Higham, "Accuracy and
-//! Stability of Numerical Algorithms" (2002), section 3.3, with the bound on either side of the
-//! value kept apart, and affine forms where errors cancel. Integers and truth values are what they
-//! are.
+//! Each float is the `f64` result, which is the *reference*, together with an interval that
+//! contains the `f32` result of every variant: the running error analysis of Higham, "Accuracy and
+//! Stability of Numerical Algorithms" (2002), section 3.3, with separate bounds on either side of
+//! the value, and affine forms where errors cancel. Integers and truth values are exact.
 //!
-//! A comparison is *open* when its sides overlap. Truth values are those of Kleene's three-valued
-//! logic until an `if`, a loop, a selection or a result needs to know: that is a **decision**. A
-//! run follows `f64`; [`Outcomes`] come of further runs with decisions turned.
+//! A comparison is *open* when the intervals of its sides overlap. Truth values are those of
+//! Kleene's three-valued logic until an `if`, a loop, a selection or a result needs one: that is a
+//! **decision**. A run follows `f64`; [`Outcomes`] come from further runs with decisions changed.
 //!
-//! What is known of a float is large and lies in the machine's [`arena`]; lifted code moves
-//! handles. That code is compiled once more for every kernel, so an operation in it is one call:
-//! methods that are generic over the operation pass it on as a value.
+//! The data of a float are large and stay in the machine's [`arena`]; lifted code moves handles.
+//! That code is compiled once more for every kernel, so an operation in it is one call: methods
+//! that are generic over the operation pass it on as a value.
 
 mod affine;
 mod arena;
@@ -52,7 +51,7 @@ pub use rounding::Rounding;
 #[derive(Clone, Copy, Debug)]
 pub struct Truth {
     value: bool,
-    /// The number of the open truth value that this one depends on; 0 if it is certain.
+    /// The id of the open truth value that this one depends on; 0 if it is certain.
     open: u64,
 }
 
@@ -66,15 +65,15 @@ impl Truth {
     }
 }
 
-/// A loop under way.
+/// A loop being executed.
 #[derive(Debug)]
 pub struct Rounds {
     lane: ScalarLoop,
-    /// Where the floats of a round begin.
+    /// The start of an iteration's floats.
     begin: Mark,
 }
 
-/// The machine of one lane that computes in `f64` with a bound of the rounding error of `f32`.
+/// A machine of one lane that computes in `f64` and bounds the rounding error of `f32`.
 #[derive(Debug)]
 pub struct Margin {
     lane: Scalar,
@@ -85,7 +84,7 @@ pub struct Margin {
 }
 
 impl Margin {
-    /// A machine for variants that round like this.
+    /// Creates a machine for variants with this rounding.
     pub fn new(rounding: Rounding) -> Self {
         Self {
             lane: Scalar::default(),
@@ -96,28 +95,28 @@ impl Margin {
         }
     }
 
-    /// Keeps a float.
+    /// Stores a float.
     pub(crate) fn put(&self, known: Known) -> Bounded {
         self.floats.put(known)
     }
 
-    /// What is known of a float.
+    /// Returns the data of a float.
     pub(crate) fn get(&self, float: Bounded) -> Known {
         self.floats.get(float)
     }
 
-    /// How its variants round.
+    /// Returns the rounding of its variants.
     pub(crate) fn rounding(&self) -> Rounding {
         self.rounding
     }
 
-    /// Whether the way that is followed takes the other of two alternatives, of which `f64` takes
+    /// Decides between two alternatives and returns whether the path takes the second; `f64` takes
     /// the first.
     pub(crate) fn chooses_other(&self) -> bool {
         self.is_running() && self.decisions.choose(2) == 1
     }
 
-    /// What is known of a float with a number of its own.
+    /// Returns the data of a float with a new id.
     pub(crate) fn bounded(&self, value: f64, range: Interval) -> Known {
         Known { value, range, id: self.decisions.fresh(), form: Handle::NONE, parts: None }
     }
@@ -126,12 +125,12 @@ impl Margin {
         self.bounded(v, Interval::point(v))
     }
 
-    /// A number of the input or of the scene.
+    /// Returns the data of a number of the input or of the scene.
     fn taken(&self, v: f32) -> Known {
         self.bounded(f64::from(v), self.rounding.taken(v))
     }
 
-    /// Something is open that cannot be followed.
+    /// Marks the run as incomplete: something is open that cannot be followed.
     pub(crate) fn lose(&self) {
         self.decisions.lose();
     }
@@ -140,8 +139,8 @@ impl Margin {
         self.lane.active.get()
     }
 
-    /// Runs `f` for each way in which its decisions may go, up to `limit`. The floats of a run are
-    /// gone after it, so its result has none.
+    /// Runs `f` once per path through its decisions, up to `limit`. The floats of a run are dropped
+    /// after it, so its result has none.
     pub(crate) fn each_way<R>(&self, limit: usize, f: &dyn Fn() -> R) -> Explored<R> {
         let active = self.lane.active.replace(true);
         let explored = self.decisions.explore(limit, || {
@@ -155,7 +154,7 @@ impl Margin {
         explored
     }
 
-    /// A truth value that the sides of a comparison leave open, if they do.
+    /// Returns the truth value of a comparison, open if both results are possible.
     pub(crate) fn truth(&self, value: bool, may_be_true: bool, may_be_false: bool) -> Truth {
         match (may_be_true, may_be_false) {
             (true, true) => Truth { value, open: self.decisions.fresh() },
@@ -163,7 +162,7 @@ impl Margin {
         }
     }
 
-    /// Decides.
+    /// Decides a truth value.
     pub(crate) fn decided(&self, t: Truth) -> bool {
         if t.open == 0 || !self.is_running() {
             return t.value;
@@ -171,7 +170,7 @@ impl Margin {
         t.value ^ self.decisions.flip(t.open)
     }
 
-    /// Whether the sign is `-`.
+    /// Returns whether the sign is `-`.
     fn is_negative(&self, a: Known) -> Truth {
         match a.range.is_negative() {
             Some(known) => Truth::certain(known),
@@ -179,7 +178,7 @@ impl Margin {
         }
     }
 
-    /// What is known of a truth value by now.
+    /// Returns a truth value with earlier decisions applied.
     fn known(&self, t: Truth) -> Truth {
         match self.decisions.known(t.open) {
             Some(flip) if t.open != 0 => Truth::certain(t.value ^ flip),
@@ -233,7 +232,7 @@ impl Machine for Margin {
 
     fn f32_mul_add(&self, a: Bounded, b: Bounded, c: Bounded) -> Bounded {
         let (a, b, c) = (self.get(a), self.get(b), self.get(c));
-        // As two operations, since a device need not fuse them; `f64` does.
+        // Bounded as two operations, since a device need not fuse them; `f64` does.
         let product = self.binary(F32Binary::Mul, a, b);
         let sum = self.binary(F32Binary::Add, product, c);
         self.put(self.bounded(a.value.mul_add(b.value, c.value), sum.range))
@@ -327,7 +326,7 @@ impl Machine for Margin {
 
     fn f32_to_bits(&self, a: Bounded) -> u32 {
         let a = self.get(a);
-        // The sign of a NaN is the processor's, and its other bits tell where it came from.
+        // The sign of a NaN depends on the processor, and its other bits on its origin.
         if a.range.nan && self.is_running() {
             self.decisions.lose();
         }
@@ -405,7 +404,7 @@ impl Machine for Margin {
     }
 
     fn loop_end(&self, l: Rounds) {
-        // The last round may have ended at its beginning, behind the test.
+        // The last iteration may have ended at the loop's test.
         self.floats.drop_since(l.begin);
         self.lane.loop_end(l.lane);
     }
@@ -448,7 +447,7 @@ impl Machine for Margin {
 
     #[inline]
     fn give_slot<V: Value<Self>>(&self) -> V {
-        // The zeros of an array are one and the same, and slots are not.
+        // The zeros of an array share one entry; slots must not.
         let zero = V::zero(self);
         V::zip(self, zero, zero, &mut Copied)
     }

@@ -94,7 +94,7 @@ impl Margin {
             BoolBinary::And if a.is(false) || b.is(false) => Truth::certain(false),
             BoolBinary::Or if a.is(true) || b.is(true) => Truth::certain(true),
             _ if a.open == 0 && b.open == 0 => Truth::certain(value),
-            // The other one decides: it, or its opposite.
+            // The other one decides: the result is that one, or its opposite.
             _ if a.open == 0 => Truth { value, open: b.open },
             _ if b.open == 0 => Truth { value, open: a.open },
             _ => self.truth(value, true, true),
@@ -103,7 +103,8 @@ impl Margin {
 }
 
 impl Margin {
-    /// What the function gives for these floats, if more is known of it than its code says.
+    /// Returns the function's bounds on its results for these floats, if they are better than its
+    /// code's.
     #[inline(never)]
     pub(super) fn results(&self, of: KnownBy, args: &[Bounded]) -> Option<Vec<Bounded>> {
         let args: Vec<Known> = args.iter().map(|a| self.get(*a)).collect();

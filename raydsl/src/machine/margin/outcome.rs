@@ -1,4 +1,4 @@
-//! What a kernel may give, rounding considered.
+//! Outcomes: the possible results of a kernel under rounding.
 
 use core::cell::Cell;
 
@@ -14,9 +14,9 @@ pub enum Leaf {
     Float {
         /// Its `f64` reference.
         value: f64,
-        /// The least `f32` result that rounding may lead to.
+        /// The least possible `f32` result.
         low: f64,
-        /// The greatest.
+        /// The greatest possible `f32` result.
         high: f64,
         /// Whether it may be NaN; if `low > high` it is NaN for certain.
         may_be_nan: bool,
@@ -26,7 +26,7 @@ pub enum Leaf {
 }
 
 impl Leaf {
-    /// The reference.
+    /// Returns the reference.
     pub fn value(self) -> f64 {
         match self {
             Self::Float { value, .. } => value,
@@ -34,8 +34,8 @@ impl Leaf {
         }
     }
 
-    /// How far apart the results are that rounding may lead to; 0 for integers and where it is NaN
-    /// for certain, infinity where there is no limit or NaN is one of them.
+    /// Returns the width of the interval of possible results; 0 for integers and a certain NaN,
+    /// infinity for an unbounded interval or a possible NaN.
     pub fn width(self) -> f64 {
         match self {
             Self::Float { low, high, may_be_nan, .. } if low <= high => {
@@ -52,7 +52,7 @@ impl Leaf {
         }
     }
 
-    /// Whether `result`, a leaf without an error, may come of it.
+    /// Returns whether `result`, a leaf without an error, is possible.
     pub(crate) fn contains(self, result: Self) -> bool {
         match self {
             Self::Float { low, high, may_be_nan, .. } => {
@@ -64,8 +64,8 @@ impl Leaf {
     }
 }
 
-/// Everything that a kernel may give for one input, whatever rounding does: one outcome for each
-/// way in which its uncertain decisions may go.
+/// All possible results of a kernel for one input under any rounding: one outcome per path through
+/// its uncertain decisions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcomes {
     outcomes: Vec<Vec<Leaf>>,
@@ -74,7 +74,7 @@ pub struct Outcomes {
 }
 
 impl Outcomes {
-    /// Those of `f`, up to `limit` ways.
+    /// Computes the outcomes of `f`, on up to `limit` paths.
     pub fn of<V: Value<Margin>>(
         rounding: Rounding,
         limit: usize,
@@ -100,31 +100,31 @@ impl Outcomes {
         }
     }
 
-    /// The outcome on the path that `f64` takes; its values are the reference.
+    /// Returns the outcome on the path of `f64`; its values are the reference.
     pub fn reference(&self) -> &[Leaf] {
         &self.outcomes[0]
     }
 
-    /// Whether the path that `f64` takes met a decision whose sides lie within the rounding error.
+    /// Returns whether the path of `f64` had a decision whose sides lie within the rounding error.
     pub fn is_uncertain(&self) -> bool {
         self.is_uncertain
     }
 
-    /// Whether every way was followed: no more than the limit, and no integer that was open in too
-    /// many ways.
+    /// Returns whether every path was followed: there were no more than the limit, and no integer
+    /// was open in too many ways.
     pub fn is_complete(&self) -> bool {
         self.is_complete
     }
 
-    /// Whether a result may be nearly anything on the path that `f64` takes: a float has no limit,
-    /// may be NaN, or its interval is wider than 2^-10 of the result's largest number. Then most
+    /// Returns whether a result on the path of `f64` is nearly arbitrary: a float is unbounded, may
+    /// be NaN, or has an interval wider than 2^-10 of the result's largest number. Then most
     /// mistakes are within the bounds too.
     pub fn is_vague(&self) -> bool {
         let sizes = self.reference().iter().map(|leaf| match leaf {
             Leaf::Float { low, high, .. } if low <= high => low.abs().max(high.abs()),
             _ => 0.0,
         });
-        // Next to 0, where denormals may be flushed, every rounding is wide.
+        // Near 0, where denormals may be flushed, every rounding is wide.
         let least = 16.0 * f64::from(f32::MIN_POSITIVE);
         let limit = (sizes.fold(0.0, f64::max) / 1024.0).max(least);
         self.reference().iter().any(|leaf| {
@@ -133,8 +133,8 @@ impl Outcomes {
         })
     }
 
-    /// The number of the first leaf of `result` that lies outside of the outcome that is nearest to
-    /// it, the one with the fewest such leaves, and what was allowed there.
+    /// Returns the index of the first leaf of `result` outside of the nearest outcome, the one with
+    /// the fewest such leaves, and the leaf allowed there.
     pub(crate) fn outside(&self, result: &[Leaf]) -> Option<(usize, Leaf)> {
         let outside = |o: &&Vec<Leaf>| -> Vec<usize> {
             let pairs = o.iter().zip(result).enumerate();
@@ -145,24 +145,24 @@ impl Outcomes {
         Some((first, nearest[first]))
     }
 
-    /// The outcomes that were followed, the reference's first.
+    /// Returns the outcomes that were followed, the reference's first.
     pub fn iter(&self) -> impl Iterator<Item = &[Leaf]> {
         self.outcomes.iter().map(Vec::as_slice)
     }
 
-    /// Whether `result` is within the bounds of an outcome: integers equal, floats between their
-    /// ends.
+    /// Returns whether `result` is within the bounds of an outcome: integers equal, floats between
+    /// their ends.
     pub fn contains<R: Type>(&self, result: R) -> bool {
         self.contains_leaves(&result_leaves(result))
     }
 
-    /// [`Outcomes::contains`] of the leaves of a result.
+    /// Does the same as [`Outcomes::contains`] for the leaves of a result.
     pub(crate) fn contains_leaves(&self, result: &[Leaf]) -> bool {
         self.outcomes.iter().any(|o| o.iter().zip(result).all(|(may, found)| may.contains(*found)))
     }
 }
 
-/// The leaves of a result of the host.
+/// Returns the leaves of a result of the host.
 pub fn result_leaves<R: Type>(result: R) -> Vec<Leaf> {
     let m = Margin::new(Rounding::IEEE);
     leaves(&m, R::splat(&m, result))

@@ -1,9 +1,9 @@
-//! How variants round.
+//! Rounding models of the variants.
 
 use super::F32Binary;
 use super::interval::{Interval, Rounded};
 
-/// How far the operations of a variant may be off, each relative to its exact result.
+/// The rounding errors of a variant's operations, each relative to its exact result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounding {
     /// `+ - *` and conversions of integers.
@@ -14,11 +14,12 @@ pub struct Rounding {
     pub root: f64,
     /// The elementary functions of [`crate::math::elementary`].
     pub elementary: f64,
-    /// What any of them may be off besides, next to 0.
+    /// The absolute error of any of them in addition, near 0.
     pub least: f64,
-    /// Whether the operations are those of the source, one by one, and a result that `f32` holds is
-    /// exact. If not, sums may be added in any order, a product in a sum may be fused into it, a
-    /// quotient or a root of whole numbers may be off like any other, and denormals may be 0.
+    /// Whether the operations are those of the source, one by one, and a result representable in
+    /// `f32` is exact. If not, sums may be evaluated in any order, a product in a sum may be fused
+    /// into it, a quotient or a root of whole numbers may be rounded like any other, and denormals
+    /// may be 0.
     pub is_strict: bool,
 }
 
@@ -37,10 +38,10 @@ impl Rounding {
         is_strict: true,
     };
 
-    /// What WGSL asks of a device: either neighbour of a sum or product, 2.5 ulp of a quotient
-    /// whose divisor is between 2^-126 and 2^126, `sqrt` as `1 / inverseSqrt`, denormals as 0, sums
-    /// in any order. For elementary functions, which are chains of these, 16 ulp are an estimate.
-    /// Not in it: products whose other order would overflow.
+    /// WGSL's requirements on a device: either neighbour of a sum or product, 2.5 ulp for a
+    /// quotient whose divisor is between 2^-126 and 2^126, `sqrt` as `1 / inverseSqrt`, denormals
+    /// as 0, sums in any order. For elementary functions, which are chains of these, 16 ulp are an
+    /// estimate. Not covered: products whose other order would overflow.
     pub const WGSL: Self = Self {
         sum: ULP,
         quotient: 2.5 * ULP,
@@ -50,7 +51,8 @@ impl Rounding {
         is_strict: false,
     };
 
-    /// The interval's own ends are rounded in `f64`, and so is the reference.
+    /// Returns the bound for an operation; it includes the rounding of the interval's ends and the
+    /// reference in `f64`.
     fn rounded(self, relative: f64) -> Rounded {
         Rounded { relative: relative * (1.0 + 1.0 / (1 << 20) as f64), absolute: self.least }
     }
@@ -59,7 +61,7 @@ impl Rounding {
         self.rounded(self.sum)
     }
 
-    /// A product; one with a power of two is exact, but next to 0.
+    /// Returns the bound for a product; one with a power of two is exact, except near 0.
     pub(super) fn product(self, a: Interval, b: Interval) -> Rounded {
         let exact = is_power_of_two(a) || is_power_of_two(b);
         self.rounded(if exact { 0.0 } else { self.sum })
@@ -69,13 +71,13 @@ impl Rounding {
         self.rounded(if self.is_strict && is_power_of_two(by) { 0.0 } else { self.quotient })
     }
 
-    /// Whether a quotient by this has a bound.
+    /// Returns whether a quotient by this has a bound.
     pub(super) fn divides(self, by: Interval) -> bool {
         let (size, limit) = (by.abs(), 1.0 / f64::from(f32::MIN_POSITIVE));
         self.is_strict || size.low >= 1.0 / limit && size.high <= limit
     }
 
-    /// Where a number of the input or of the scene may lie.
+    /// Returns the interval of a number of the input or of the scene.
     pub(super) fn taken(self, v: f32) -> Interval {
         let number = Interval::point(f64::from(v));
         let flushed = !self.is_strict && v.is_subnormal();
@@ -95,7 +97,7 @@ fn is_power_of_two(x: Interval) -> bool {
     x.as_point().is_some_and(|v| v.is_normal() && v.to_bits() & ((1 << 52) - 1) == 0)
 }
 
-/// The result of an operation on two numbers of `f32`, if `f32` holds it, or if it is NaN.
+/// Returns the result of an operation on two `f32` numbers, if it is representable in `f32` or NaN.
 pub(super) fn exact(op: F32Binary, x: f64, y: f64) -> Option<f64> {
     let (a, b) = (x as f32, y as f32);
     if f64::from(a) != x || f64::from(b) != y {
@@ -112,7 +114,7 @@ pub(super) fn exact(op: F32Binary, x: f64, y: f64) -> Option<f64> {
     if short.is_nan() {
         return Some(f64::NAN);
     }
-    // The product of two `f32` is exact in `f64`; what a sum loses is Knuth's.
+    // The product of two `f32` is exact in `f64`; the error of a sum is Knuth's.
     let is_exact = !short.is_finite()
         || match op {
             F32Binary::Add => lost(x, y) == 0.0,
@@ -123,14 +125,14 @@ pub(super) fn exact(op: F32Binary, x: f64, y: f64) -> Option<f64> {
     (f64::from(short) == long && is_exact).then_some(long)
 }
 
-/// What `x + y` loses to rounding (Knuth's `TwoSum`).
+/// Returns the rounding error of `x + y` (Knuth's `TwoSum`).
 fn lost(x: f64, y: f64) -> f64 {
     let sum = x + y;
     let part = sum - x;
     (x - (sum - part)) + (y - part)
 }
 
-/// The square root, if `f32` holds it, or if it is NaN.
+/// Returns the square root, if it is representable in `f32` or NaN.
 pub(super) fn exact_root(x: f64) -> Option<f64> {
     let (short, long) = ((x as f32).sqrt(), x.sqrt());
     if long.is_nan() {

@@ -1,9 +1,9 @@
-//! Sums that a device may add in another order, with products that it may fuse.
+//! Bounds on sums that a device may reorder, with products that it may fuse.
 //!
-//! Whatever the order, a sum of `n` addends is off by at most `n - 1` times the rounding of the sum
+//! In any order, the error of a sum of `n` addends is at most `n - 1` times the rounding of the sum
 //! of their sizes (Higham, "Accuracy and Stability of Numerical Algorithms", 2002, section 4.2). So
-//! a sum carries the form of its addends without the roundings between them. What uses it may have
-//! added in another order than the next use, so their errors are not the same one.
+//! a sum carries the form of its addends without the roundings between them. Each use of it may
+//! have another order of evaluation than the next, so their errors are not correlated.
 
 use std::rc::Rc;
 
@@ -13,16 +13,16 @@ use super::interval::{Interval, Rounded};
 use super::{Margin, rounding};
 use crate::machine::F32Binary;
 
-/// What a value is the sum of.
+/// The addends of a value.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Parts {
-    /// How many addends.
+    /// The number of addends.
     pub(super) count: f64,
     /// The sum of their sizes.
     pub(super) bulk: f64,
-    /// What the products among them were rounded by: those that are fused are not.
+    /// The roundings of the products among them: fused products have none.
     pub(super) error: f64,
-    /// What they sum to if nothing is rounded.
+    /// The form of their sum without rounding.
     pub(super) form: Handle,
 }
 
@@ -32,7 +32,7 @@ impl Margin {
         v.parts.unwrap_or(one)
     }
 
-    /// The parts of a product, where devices may fuse it.
+    /// Returns the addends of a product, where devices may fuse it.
     pub(super) fn parts_of_product(
         &self,
         range: Interval,
@@ -47,7 +47,7 @@ impl Margin {
         Some(Parts { count: 1.0, bulk, error, form: self.forms.put(form.map(Rc::new)) })
     }
 
-    /// `a + b` or `a - b`, whatever the order of all their addends.
+    /// Returns `a + b` or `a - b`, for any order of all their addends.
     pub(super) fn sum_in_any_order(&self, op: F32Binary, a: Known, b: Known) -> Known {
         let (p, q) = (self.parts(a), self.parts(b));
         let (count, bulk, error) = (p.count + q.count, p.bulk + q.bulk, p.error + q.error);
@@ -66,10 +66,10 @@ impl Margin {
         let any_order = (count - 1.0) * (by.relative * bulk + by.absolute) + error;
         let extra = if is_pair { 0.0 } else { any_order };
         let range = if is_sum { a.range.add(b.range) } else { a.range.sub(b.range) };
-        // In another order they may overflow.
+        // Another order may overflow.
         let overflows = !is_pair && bulk > f64::from(f32::MAX);
         let range = if overflows && !range.is_nan() { Interval::ALL } else { range };
-        // The form does not know that an addend may be infinite.
+        // The form does not represent an infinite addend.
         let form = self
             .forms
             .get(p.form, a.range)

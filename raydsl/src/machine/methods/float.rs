@@ -5,7 +5,7 @@ use super::super::{
 };
 use super::{Method, name};
 
-/// std's `min` and `max`: where one operand is NaN they give the other.
+/// Returns std's `min` or `max`: if one operand is NaN they return the other.
 #[inline(always)]
 fn number_of<M: Machine, O: Op<F32Binary>>(m: &M, op: O, a: F<M>, b: F<M>) -> F<M> {
     let chosen = m.f32_binary(op, a.0, b.0);
@@ -80,9 +80,10 @@ pub(super) fn signum<M: Machine>(m: &M, a: F<M>) -> F<M> {
     select(m, beside_infinity(m, op::Gt, a), a, one)
 }
 
-/// To the nearest whole number, halves away from zero.
+/// Rounds to the nearest whole number, halves away from zero.
 ///
-/// What `trunc` takes away is exact, and 0 from 2^23 on. WGSL's `round` would give the even number.
+/// The part removed by `trunc` is exact, and 0 from 2^23 on. WGSL's `round` would return the even
+/// number.
 #[inline(always)]
 pub(super) fn round<M: Machine>(m: &M, a: F<M>) -> F<M> {
     let whole = unary(m, op::Trunc, a);
@@ -101,7 +102,7 @@ pub(super) fn fract_gl<M: Machine>(m: &M, a: F<M>) -> F<M> {
     sub(m, a, unary(m, op::Floor, a))
 }
 
-/// `a (1 - s) + b s`.
+/// Returns `a (1 - s) + b s`.
 #[inline(always)]
 fn lerp<M: Machine>(m: &M, a: F<M>, b: F<M>, s: F<M>) -> F<M> {
     add(m, mul(m, a, sub(m, number(m, 1.0), s)), mul(m, b, s))
@@ -254,7 +255,7 @@ impl<M: Machine> Signed<M> for F<M> {
 }
 
 impl<M: Machine> Signed<M> for I<M> {
-    /// The number without a positive counterpart is an error, as in Rust.
+    /// Panics for the number without a positive counterpart, as in Rust.
     #[inline(always)]
     fn abs(m: &M, a: Self) -> Self {
         let negative = m.i32_compare(op::Lt, a.0, m.i32(0));

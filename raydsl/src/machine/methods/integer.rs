@@ -18,7 +18,7 @@ fn is_negative<M: Machine, E: Integer<M>>(m: &M, a: E) -> B<M> {
     E::compare(m, op::Lt, a, E::number(m, 0))
 }
 
-/// A shift by the amount modulo 32.
+/// Shifts by the amount modulo 32.
 #[inline(always)]
 fn wrapping_shift<M: Machine, E: Integer<M>, O: Op<IntBinary>>(m: &M, op: O, a: E, n: U<M>) -> E {
     E::binary(m, op, a, E::from_u32(m, and(m, n, 31)))
@@ -52,9 +52,10 @@ fn wrapping_neg<M: Machine, E: Integer<M>>(m: &M, a: E) -> E {
     E::binary(m, op::WrappingSub, E::number(m, 0), a)
 }
 
-/// Sums and differences that stop at the ends of the range.
+/// Integers with saturating sums and differences.
 pub(crate) trait Saturating<M: Machine>: Integer<M> {
-    /// Where `a + b` or `a - b`, which wrapped to `sum`, left the range, and at which end.
+    /// Returns where `a + b` or `a - b`, wrapped to `sum`, overflowed, and the bound it saturates
+    /// to.
     fn overflow<O: Op<IntBinary>>(m: &M, op: O, a: Self, b: Self, sum: Self) -> (B<M>, Self);
 }
 
@@ -72,8 +73,8 @@ impl<M: Machine> Saturating<M> for I<M> {
     #[inline(always)]
     fn overflow<O: Op<IntBinary>>(m: &M, _: O, a: Self, b: Self, sum: Self) -> (B<M>, Self) {
         let differs = |x: Self, y: Self| Self::binary(m, op::Xor, x, y);
-        // The sum has another sign than both operands; the difference another than `a`, which
-        // has another than `b`.
+        // In an overflow, the sum differs in sign from both operands; the difference differs from
+        // `a`, which differs from `b`.
         let second = known!(O::OP;
             IntBinary::WrappingAdd => differs(b, sum),
             _ => differs(a, b),
@@ -91,7 +92,7 @@ fn saturating<M: Machine, E: Saturating<M>, O: Op<IntBinary>>(m: &M, op: O, a: E
     E::choose(m, c, end, sum)
 }
 
-/// The remainder that is not negative, and the quotient that goes with it.
+/// Returns the Euclidean remainder, which is never negative.
 #[inline(always)]
 fn rem_euclid<M: Machine, E: Integer<M>>(m: &M, a: E, b: E) -> E {
     let rest = E::binary(m, op::Rem, a, b);

@@ -32,7 +32,7 @@ of_matrices! {
     A3 "inverse", |m, a| -> A3<M> { inverse_affine(m, a) };
 }
 
-/// By cofactors, as glam has it on every platform.
+/// Inverts by cofactors, as glam does on every platform.
 #[inline(always)]
 pub(crate) fn inverse<M: Machine>(m: &M, a: M3<M>) -> M3<M> {
     let yz = cross(m, a.y_axis, a.z_axis);

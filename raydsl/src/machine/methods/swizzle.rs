@@ -15,7 +15,7 @@ macro_rules! swizzle {
             }
         }
     };
-    // Every pair, and every longer one that begins with it.
+    // Implements every pair, and every longer swizzle that begins with it.
     (@pairs $from:ident ($($a:ident)+) $all:tt) => {
         $(swizzle!(@second $from $a $all $all);)+
     };

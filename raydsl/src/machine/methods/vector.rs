@@ -1,9 +1,9 @@
 //! Methods of glam's vectors, each in glam's order of operations.
 //!
-//! What glam computes alike on every platform is here for all vectors. `Vec4` lies in a register
-//! of SSE2, NEON or wasm, where its sums over components have another order than in scalar code,
-//! and its `min` another result for NaN: those methods are denied, and the error names what the
-//! prelude has instead.
+//! Operations that glam computes alike on every platform are here for all vectors. `Vec4` is stored
+//! in a register of SSE2, NEON or wasm, where its sums over components have another order than in
+//! scalar code, and its `min` another result for NaN: those methods are denied, and the error names
+//! the prelude's replacement.
 
 use core::cell::Cell;
 
@@ -17,7 +17,7 @@ use super::float::{
 };
 use super::{Method, name};
 
-/// The sum of products, left to right.
+/// Returns the sum of products, left to right.
 #[inline(always)]
 pub(crate) fn dot<M, C, V>(m: &M, a: V, b: V) -> C
 where
@@ -89,7 +89,7 @@ fn normalize_or<M: Machine, V: Floats<M>>(m: &M, a: V, fallback: V) -> V {
     choose(m, is_usable(m, scale), scaled(m, a, scale), fallback)
 }
 
-/// Whether it is the reciprocal of a length that is neither 0 nor infinite.
+/// Returns whether `scale` is the reciprocal of a length that is neither 0 nor infinite.
 #[inline(always)]
 fn is_usable<M: Machine>(m: &M, scale: F<M>) -> B<M> {
     let finite = beside_infinity(m, op::Lt, scale);
@@ -114,7 +114,7 @@ fn refract<M: Machine, V: Floats<M>>(m: &M, a: V, normal: V, eta: F<M>) -> V {
     choose(m, compare(m, op::Ge, k, number(m, 0.0)), bent, V::zero(m))
 }
 
-/// `limit * (a / length)` where the comparison of the squares holds.
+/// Returns `limit * (a / length)` where the comparison of the squares holds.
 #[inline(always)]
 fn limit_length<M: Machine, V: Floats<M>, O: Op<Compare>>(
     m: &M,
@@ -168,7 +168,7 @@ each! {
     "signum" Signed |m, x| -> same { C::signum(m, x) };
 }
 
-/// Floats of any number of components.
+/// Implements methods of float vectors of any size.
 macro_rules! floats {
     ($($name:literal, |$m:ident, $s:ident $(, $a:ident: $at:ty)*| -> $out:ty { $e:expr };)+) => {
         $(method!([V: IsVector + Floats<M>] V, $name, |$m, $s $(, $a: $at)*| -> $out { $e });)+
@@ -219,7 +219,8 @@ floats! {
     };
 }
 
-/// Sums over components, least and greatest ones: of every vector but `Vec4`.
+/// Implements sums over components and the least and greatest component: for every vector but
+/// `Vec4`.
 macro_rules! in_order {
     ($([$($g:tt)*] $v:ty, $c:ty;)+) => {
         $(
@@ -342,7 +343,8 @@ method!([] V3<M>, "any_orthogonal_vector", |m, a| -> V3<M> {{
 method!([] V3<M>, "any_orthonormal_vector", |m, a| -> V3<M> { orthonormal_pair(m, a).1 });
 method!([] V3<M>, "any_orthonormal_pair", |m, a| -> (V3<M>, V3<M>) { orthonormal_pair(m, a) });
 
-/// Duff and others, "Building an Orthonormal Basis, Revisited", JCGT 2017, as glam has it.
+/// Builds an orthonormal basis as glam does, after Duff and others, "Building an Orthonormal Basis,
+/// Revisited", JCGT 2017.
 #[inline(always)]
 fn orthonormal_pair<M: Machine>(m: &M, v: V3<M>) -> (V3<M>, V3<M>) {
     let sign = Signed::signum(m, v.z);
@@ -447,7 +449,7 @@ conversions! {
     X4: "as_vec4" F f32, "as_ivec4" I i32, "as_uvec4" U u32;
 }
 
-// What `Vec4` has another result for on another machine.
+// Methods of `Vec4` whose result differs on another machine.
 
 denied! { V4<M>:
     DotInOrder "`Vec4::dot` adds in another order on other machines"

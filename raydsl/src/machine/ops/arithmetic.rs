@@ -1,5 +1,5 @@
-//! Operators that compute: each for two values of the machine, and where a literal may stand for
-//! one or both of the host.
+//! Arithmetic operators: each for two values of the machine, and for host values on one or both
+//! sides where a literal may be an operand.
 
 use super::{
     Coerce, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpDiv, OpMul, OpNeg, OpNot, OpOr, OpRem,
@@ -36,7 +36,7 @@ macro_rules! f32_operators {
 
 f32_operators!(OpAdd::add Add, OpSub::sub Sub, OpMul::mul Mul, OpDiv::div Div);
 
-/// What the error of `%` of floats is about.
+/// Carries the error message for `%` of floats.
 pub struct RemainderOfFloats<M>(core::marker::PhantomData<M>);
 
 const _: () = {
@@ -155,7 +155,7 @@ macro_rules! number_with_vector {
             number_with_vector!(@one $t, $component, $trait $method $op, X4);
         )+)+
     };
-    // Each vector by itself: an impl for all of them would claim what is none, and give it a
+    // Each vector by itself: an impl for all of them would also claim other types, and give them a
     // result.
     (@one $t:ty, $component:ident, $trait:ident $method:ident $op:ident, $vector:ident) => {
         #[diagnostic::do_not_recommend]
@@ -179,7 +179,7 @@ number_with_vector! {
     u32 => U: OpAdd::add Add, OpSub::sub Sub, OpMul::mul Mul, OpDiv::div Div, OpRem::rem Rem;
 }
 
-// Truth values: `&&` and `&` differ only in what the macro does with the right side.
+// Truth values: `&&` and `&` differ only in the macro's treatment of the right side.
 
 macro_rules! bool_operators {
     ($($trait:ident :: $method:ident $op:ident $symbol:tt),+) => {

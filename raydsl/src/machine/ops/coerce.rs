@@ -1,15 +1,15 @@
-//! Values of the host where values of the machine are wanted.
+//! Coercion of host values to values of the machine.
 
 use crate::machine::{B, F, I, Machine, Type, U, Usize, Value, Var};
 
-/// A value of the host, or one of the machine already, where the machine's type `T` is wanted.
+/// A value of the host or of the machine that converts to the machine's type `T`.
 #[diagnostic::on_unimplemented(
     message = "this value does not have the type that is wanted here",
     label = "a value of another type",
     note = "convert a number with `as`, as in `n as f32`"
 )]
 pub trait Coerce<M: Machine, T> {
-    /// Converts.
+    /// Converts the value.
     fn coerce(self, m: &M) -> T;
 }
 
@@ -21,7 +21,7 @@ impl<M: Machine, V: Value<M>> Coerce<M, V> for V {
     }
 }
 
-/// A `&mut` parameter where a value is wanted.
+/// Reads a `&mut` parameter used as a value.
 #[diagnostic::do_not_recommend]
 impl<M: Machine, V: Value<M>> Coerce<M, V> for &Var<V> {
     #[inline(always)]
@@ -54,16 +54,16 @@ impl<M: Machine> Coerce<M, Usize<M>> for usize {
     }
 }
 
-/// What a variable holds: a value of the machine, whether or not the source's was one of the host.
+/// A value that a variable can hold, converted to the machine whether or not it is one of the host.
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot keep this value in a variable",
     label = "neither a number nor a value made of numbers",
     note = "name data that kernels read where it is used: `points[i]`, `bvh.closest_hit(ray)`"
 )]
 pub trait Varying<M: Machine> {
-    /// The value of the machine.
+    /// The type on the machine.
     type Value: Value<M>;
-    /// Converts.
+    /// Converts the value.
     fn varying(self, m: &M) -> Self::Value;
 }
 
@@ -147,7 +147,7 @@ impl<M: Machine> Varying<M> for () {
     fn varying(self, _: &M) {}
 }
 
-/// The two bounds of a `for`, as values of one type.
+/// The two bounds of a `for`, converted to one type.
 #[diagnostic::on_unimplemented(
     message = "the bounds of a kernel's `for` are two integers of one type",
     label = "not an integer of the other bound's type",
@@ -156,7 +156,7 @@ impl<M: Machine> Varying<M> for () {
 pub trait Bounds<M: Machine, E> {
     /// The counter's type.
     type Counter: Value<M>;
-    /// Converts both.
+    /// Converts both bounds.
     fn bounds(m: &M, start: Self, end: E) -> (Self::Counter, Self::Counter);
 }
 

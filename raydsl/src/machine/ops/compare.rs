@@ -1,4 +1,4 @@
-//! Comparisons.
+//! Comparison operators.
 
 use super::OpCompare;
 use crate::machine::op::known;
@@ -42,7 +42,7 @@ compare_int!(I, i32, i32_compare);
 compare_int!(U, u32, u32_compare);
 compare_int!(Usize, usize, u32_compare);
 
-/// `==` and `!=`; an order of truth values (`false < true`) is spelled out.
+/// Compares truth values: `==` and `!=`, and an order (`false < true`) spelled out.
 #[inline(always)]
 fn compare_bool<M: Machine, O: Op<Compare>>(m: &M, _: O, a: M::Bool, b: M::Bool) -> B<M> {
     let not = |x| m.bool_not(x);
@@ -61,7 +61,7 @@ compare!(B<M>, bool, B<M>, |m, op, a, b| compare_bool(m, op, a.0, m.bool(b)));
 compare!(bool, B<M>, B<M>, |m, op, a, b| compare_bool(m, op, m.bool(a), b.0));
 compare!(bool, bool, bool, |_m, op, a, b| compare_host(op, a, b));
 
-/// What vectors of it need for `==` and `!=`.
+/// A component type of vectors with `==` and `!=`.
 pub trait Equal<M: Machine>: Component<M> {
     /// Compares two components.
     fn equal<O: Op<Compare>>(m: &M, op: O, a: Self, b: Self) -> B<M>;
@@ -85,7 +85,7 @@ equal!(F, I, U, B);
 macro_rules! vectors {
     ($($v:ident),+) => {
         $(
-            /// `==` and `!=` of whole vectors.
+            /// Compares whole vectors by `==` and `!=`.
             #[diagnostic::do_not_recommend]
             impl<M: Machine, E: Equal<M>> OpCompare<M, $v<E>> for $v<E> {
                 type Output = B<M>;

@@ -1,8 +1,8 @@
 //! The operators of lifted code.
 //!
-//! One trait an operator: the receiver, the right side and the result are looked up by rustc, so
-//! the macro needs no types. Integers that appear in the source as literals stay numbers of the
-//! host until they meet a value of the machine; `f32` literals become values at once.
+//! There is one trait per operator: rustc resolves the receiver, the right side and the result, so
+//! the macro needs no types. Integer literals of the source remain host values until combined with
+//! a value of the machine; `f32` literals become values at once.
 
 mod arithmetic;
 mod cast;
@@ -26,7 +26,7 @@ macro_rules! binary_traits {
                         `#[kernel] impl Add for Spectrum`"
             )]
             pub trait $trait<M: Machine, R, Via = ()> {
-                /// The type of the result.
+                /// The result type.
                 type Output;
                 /// Applies the operator.
                 fn $method(m: &M, a: Self, b: R) -> Self::Output;
@@ -78,9 +78,9 @@ pub trait OpNot<M: Machine> {
     note = "convert one with `as`, as in `x < n as f32`; compare the members of a struct one by one"
 )]
 pub trait OpCompare<M: Machine, R> {
-    /// What a comparison gives.
+    /// The result type.
     type Output;
-    /// Compares.
+    /// Compares the operands.
     fn compare<O: Op<Compare>>(m: &M, op: O, a: Self, b: R) -> Self::Output;
 }
 

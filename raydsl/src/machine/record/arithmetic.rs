@@ -1,11 +1,11 @@
-//! Arithmetic of the [`Recorder`]: what is known is computed, the rest becomes an expression.
+//! Arithmetic of the [`Recorder`]: constant folding, and expressions for the rest.
 
 use super::Recorder;
 use super::ir::{Expr, Id, Type};
 use crate::machine::scalar;
 use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Machine, U32Unary};
 
-/// Whether dividing by `v` and multiplying by its reciprocal give the same bits.
+/// Returns whether dividing by `v` and multiplying by its reciprocal give the same bits.
 fn is_power_of_two(v: f32) -> bool {
     v.is_normal() && v.to_bits() & 0x007f_ffff == 0
 }
@@ -27,7 +27,7 @@ impl Recorder {
         self.add(Expr::F32Binary(op, a, b), ty)
     }
 
-    /// A vector operand: the number itself where all components are one number.
+    /// Returns a vector operand: the number itself if all components are one number.
     pub(super) fn operand(&self, v: &[Id]) -> Id {
         if v.iter().all(|x| *x == v[0]) && v.len() > 1 { v[0] } else { self.vector(v) }
     }
@@ -50,7 +50,7 @@ impl Recorder {
         if let (Some(a), Some(b)) = (self.i32_literal(a), self.i32_literal(b)) {
             return self.i32(scalar::i32_binary(op, a, b).1);
         }
-        // WGSL refuses a literal 0 there, even in code that never runs.
+        // WGSL refuses a literal 0 divisor, even in code that never runs.
         match (op, self.i32_literal(b)) {
             (IntBinary::Div, Some(0)) => return a,
             (IntBinary::Rem, Some(0)) => return self.i32(0),
@@ -72,7 +72,7 @@ impl Recorder {
     }
 
     pub(super) fn truth_binary(&self, op: BoolBinary, a: Id, b: Id) -> Id {
-        // What the host decides prunes what depends on it.
+        // A condition decided by the host prunes the expressions that depend on it.
         for (known, other) in [(a, b), (b, a)] {
             match (op, self.truth(known)) {
                 (BoolBinary::And, Some(true)) | (BoolBinary::Or, Some(false)) => return other,
@@ -113,14 +113,14 @@ impl Recorder {
         self.add(Expr::U32Unary(op, a), Type::U32)
     }
 
-    /// `a[i] = op(a[i], b[i])`: vectors of any length, so that it is compiled once.
+    /// Computes `a[i] = op(a[i], b[i])` for vectors of any length, compiled once.
     pub(super) fn float_vectors(&self, op: F32Binary, a: &mut [Id], b: &[Id]) {
         if a.iter().chain(b).all(|x| self.literal(*x).is_some()) {
             a.iter_mut().zip(b).for_each(|(a, b)| *a = self.float_binary(op, *a, *b));
             return;
         }
         let (mut x, mut y) = (self.operand(a), self.operand(b));
-        // `min` and `max` are selects by component; two splats still are a vector.
+        // `min` and `max` are selects by component; two splats are still a vector.
         let selects = matches!(op, F32Binary::Min | F32Binary::Max);
         if selects || !(self.is_vector(x) || self.is_vector(y)) {
             (x, y) = (self.vector(a), self.vector(b));
@@ -139,8 +139,8 @@ impl Recorder {
         self.components(v, a);
     }
 
-    /// Arithmetic on integer vectors; a shift goes component by component, as its amount must have
-    /// another type.
+    /// Records arithmetic on integer vectors; a shift goes component by component, as its amount
+    /// must have another type.
     pub(super) fn int_vectors(&self, op: IntBinary, ty: Type, a: &mut [Id], b: &[Id]) {
         let is_number = |x: &Id| matches!(self.node(*x).expr, Expr::I32(_) | Expr::U32(_));
         let is_shift = matches!(op, IntBinary::Shl | IntBinary::Shr);
@@ -153,7 +153,7 @@ impl Recorder {
             return;
         }
         let (mut x, mut y) = (self.operand(a), self.operand(b));
-        // Operators of bits want two vectors.
+        // Bitwise operators need two vectors.
         let bits = matches!(op, IntBinary::And | IntBinary::Or | IntBinary::Xor);
         if bits || !(self.is_vector(x) || self.is_vector(y)) {
             (x, y) = (self.vector(a), self.vector(b));

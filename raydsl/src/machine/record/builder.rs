@@ -1,4 +1,4 @@
-//! A function while it is recorded.
+//! Construction of a function's intermediate representation.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,7 @@ use super::ir::{Expr, Id, Node, Recorded, Stmt, Type, VarId, Variable};
 use super::names::unique;
 use crate::machine::KernelInfo;
 
-/// A function under way.
+/// A function being recorded.
 #[derive(Clone)]
 pub(super) struct Builder {
     pub(super) function: Recorded,
@@ -14,16 +14,16 @@ pub(super) struct Builder {
     pub(super) next_block: u32,
     pub(super) loops: Vec<LoopState>,
     pub(super) next_loop: u32,
-    /// The trivial expressions: each is one node for each of its types.
+    /// The trivial expressions: each is one node per type.
     trivial: HashMap<Expr, Vec<Id>>,
-    /// The variable that says which labelled loop is being left.
+    /// The variable that holds the labelled loop being left.
     pub(super) leave: Option<VarId>,
 }
 
 #[derive(Clone)]
 pub(super) struct LoopState {
     pub(super) number: u32,
-    /// Labelled exits that pass through this loop: the loop they are meant for, and `continue`.
+    /// Labelled exits that pass through this loop: the target loop, and whether it is `continue`.
     pub(super) passing: Vec<(u32, bool)>,
 }
 
@@ -74,12 +74,12 @@ impl Builder {
         &mut self.function.nodes[id.0 as usize]
     }
 
-    /// Notes that `id` is used now: what it loads must not have changed, and it is only written
-    /// in place if that place is in its own block.
+    /// Records a use of `id`: its loads must not have changed, and it may be printed at its use
+    /// only in its own block.
     pub(super) fn used(&mut self, id: Id) -> Vec<Id> {
         let here = self.block();
-        // A part of a value is written as the value and its member: the value must not be
-        // evaluated again in an inner block.
+        // A part of a value is printed as the value and its member: the value must not be evaluated
+        // again in an inner block.
         let mut whole = id;
         while let Expr::Member(a, _) | Expr::Element(a, _) =
             self.function.nodes[whole.0 as usize].expr

@@ -1,4 +1,4 @@
-//! Modules that have been printed: a kernel is recorded once, and a program printed once.
+//! Module cache: a kernel is recorded once, and a program printed once.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use super::module::{self, Printed, window_count};
 use super::{Captured, Recorder, Recording};
 use crate::machine::wgsl::{Limits, Module, Texture};
 
-/// How many kernels, and how many programs, are kept: those that were used last.
+/// The capacity for kernels and for programs: the most recently used are kept.
 const KEPT: usize = 64;
 
 /// A program and its text.
@@ -18,18 +18,18 @@ struct Program {
     printed: Printed,
 }
 
-/// A kernel that was recorded.
+/// A kernel with its recording.
 struct Known {
-    /// Its number.
+    /// Its id.
     kernel: u64,
-    /// What is around its body.
+    /// The frame around its body.
     frame: Frame,
     recording: Recording,
     program: Arc<Program>,
 }
 
 impl Recorder {
-    /// Notes that what comes now is the body of a kernel, which captures the same in every frame.
+    /// Marks the start of a kernel's body, whose captures are the same in every frame.
     pub(crate) fn begin_body(&self) {
         let mut state = self.state.borrow_mut();
         state.before_body =
@@ -38,8 +38,8 @@ impl Recorder {
 }
 
 impl Recording {
-    /// Whether it has the same text under `limits`: only the numbers in the uniform block, and the
-    /// data in the buffers, may be others.
+    /// Returns whether both have the same text under `limits`: only the numbers in the uniform
+    /// buffer and the data in the storage buffers may differ.
     fn has_same_program(&self, other: &Self, limits: &Limits) -> bool {
         let (a, b) = (&self.state, &other.state);
         let same_uniform = |(a, b): (&Uniform, &Uniform)| a.name == b.name && a.ty == b.ty;
@@ -59,18 +59,18 @@ impl Recording {
     }
 }
 
-/// What is recorded around the body of a kernel, without the body. It tells whatever may differ from
-/// one run of a kernel to the next, and is small beside it.
+/// The recording around a kernel's body, without the body. It contains whatever may differ between
+/// two runs of a kernel, and is small beside it.
 pub(crate) struct Frame(Recording);
 
 impl Frame {
-    /// `recording` has called [`Recorder::begin_body`] where it left
-    /// out the body.
+    /// Creates a frame from `recording`, which called [`Recorder::begin_body`] in place of the
+    /// body.
     pub(crate) fn new(recording: Recording) -> Self {
         Self(recording)
     }
 
-    /// Has `recording`, of the body in such a frame, begin with what this one captures.
+    /// Makes `recording`, of the body in such a frame, begin with the captures of this one.
     fn enter(&self, recording: &mut Recording) {
         let (from, to) = (&self.0.state, &mut recording.state);
         let count = from.before_body;
@@ -81,9 +81,9 @@ impl Frame {
 
 /// The modules of kernels that ran before, on one device.
 ///
-/// The program that a kernel records depends on its code, on what it captures, which stays the same
-/// while it lives, and on values of the host in the frame around it. Kernels of one program, such as
-/// those of one closure that is made anew for each picture, have one text.
+/// The program of a kernel depends on its code, on its captures, which stay the same while it
+/// lives, and on host values in the frame around it. Kernels of one program, such as those of one
+/// closure made anew for each picture, share one text.
 #[derive(Default)]
 pub(crate) struct Modules {
     known: VecDeque<Known>,
@@ -93,18 +93,18 @@ pub(crate) struct Modules {
 }
 
 impl Modules {
-    /// Kernels recorded so far.
+    /// Returns the number of kernels recorded so far.
     pub(crate) fn recorded(&self) -> u64 {
         self.recorded
     }
 
-    /// Programs printed so far.
+    /// Returns the number of programs printed so far.
     pub(crate) fn printed(&self) -> u64 {
         self.printed
     }
 
-    /// The module of a kernel, by its number, in a frame; `record` records both. The limits are the
-    /// device's.
+    /// Returns the module of a kernel, given its id, in a frame; `record` records both. The limits
+    /// are the device's.
     pub(crate) fn get(
         &mut self,
         limits: Limits,
@@ -132,7 +132,7 @@ impl Modules {
         module
     }
 
-    /// The program of a recording, printed if it is new.
+    /// Returns the program of a recording, printed if it is new.
     fn program(&mut self, limits: Limits, recording: &Recording) -> Arc<Program> {
         let is_same = |p: &Arc<Program>| {
             p.limits == limits && p.recording.has_same_program(recording, &limits)
@@ -148,7 +148,7 @@ impl Modules {
     }
 }
 
-/// Adds the newest; the oldest goes where there are too many.
+/// Adds the newest element, evicting the oldest if there are too many.
 fn keep<T>(all: &mut VecDeque<T>, newest: T) {
     if all.len() == KEPT {
         all.pop_front();

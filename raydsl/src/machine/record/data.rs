@@ -1,10 +1,11 @@
-//! Data of the host in WGSL: a buffer, and the functions that read it.
+//! Host data in WGSL: a storage buffer and its accessor functions.
 
 use super::Recorder;
 use crate::machine::{Data, Schema, Type};
 
 impl Recorder {
-    /// `fn points_at(i: u32) -> ColorSphere`; the accessor itself is printed with the buffer.
+    /// Returns the function `fn points_at(i: u32) -> ColorSphere`; the accessor itself is printed
+    /// with the buffer.
     pub(crate) fn fetch_function<D: Data>(&self, data: &D) -> usize {
         self.at_function(&self.buffer_of(data), D::Element::SCHEMA)
     }
@@ -13,7 +14,7 @@ impl Recorder {
         self.text_function(format!("{buffer}_at"), vec![schema], &|_| String::new())
     }
 
-    /// `fn points_len() -> u32`.
+    /// Returns the function `fn points_len() -> u32`.
     pub(crate) fn len_function<D: Data>(&self, data: &D) -> usize {
         self.len_of_buffer(&self.buffer_of(data))
     }
@@ -24,13 +25,14 @@ impl Recorder {
         })
     }
 
-    /// `fn points_element(i: u32) -> ColorSphere`, for any `i`; it too is printed with the buffer.
+    /// Returns the function `fn points_element(i: u32) -> ColorSphere`, for any `i`; it too is
+    /// printed with the buffer.
     pub(crate) fn element_function<D: Data>(&self, data: &D) -> usize {
         let name = format!("{}_element", self.buffer_of(data));
         self.text_function(name, vec![D::Element::SCHEMA], &|_| String::new())
     }
 
-    /// The name of the buffer of elements.
+    /// Returns the name of the buffer of elements.
     pub(crate) fn buffer_of<D: Data>(&self, data: &D) -> String {
         self.buffer(data.key(), &data.name(), D::Element::SCHEMA, data.count() as u64)
     }

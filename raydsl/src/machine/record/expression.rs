@@ -1,4 +1,4 @@
-//! Expressions as text, with the parentheses that WGSL asks for.
+//! Printing of expressions, with the parentheses that WGSL requires.
 
 use super::function::Text;
 use super::ir::{Conversion, Expr, Id, Recorded, Type};
@@ -6,7 +6,7 @@ use super::names::member_name;
 use super::types::Names;
 use crate::machine::{BoolBinary, F32Binary, F32Unary, IntBinary};
 
-/// How tightly an expression binds; an operand that binds less is put in parentheses.
+/// Operator precedence; an operand of lower precedence gets parentheses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Bind {
     Or,
@@ -18,11 +18,11 @@ enum Bind {
     Primary,
 }
 
-/// A literal of type `f32`: without the suffix WGSL would compute with two of them in `f64`.
+/// Prints a literal of type `f32`: without the suffix WGSL would evaluate two of them in `f64`.
 fn f32_text(bits: u32) -> String {
     let v = f32::from_bits(bits);
     if v.abs() == f32::MAX {
-        // Its shortest decimal lies above it, and a strict reader of WGSL refuses that.
+        // Its shortest decimal is greater than it, and a strict WGSL parser rejects that.
         return format!("{v:.1}f");
     }
     format!("{v:?}f")
@@ -37,17 +37,18 @@ pub(super) struct Expressions<'a> {
 }
 
 impl Expressions<'_> {
-    /// `id` where anything may stand.
+    /// Prints `id` where any precedence is allowed.
     pub(super) fn any(&self, id: Id, names: &mut Names) -> String {
         self.expr(id, names).0
     }
 
-    /// `id` in a list: comparisons and shifts there would look like a list of a template.
+    /// Prints `id` as an item of a list: comparisons and shifts there would parse as a template
+    /// list.
     fn item(&self, id: Id, names: &mut Names) -> String {
         self.at_least(id, Bind::Sum, names)
     }
 
-    /// The definition of an expression that has a name.
+    /// Prints the definition of an expression that has a name.
     pub(super) fn definition(&self, id: Id, names: &mut Names) -> String {
         self.spell(id, names).0
     }
@@ -129,7 +130,7 @@ impl Expressions<'_> {
         }
     }
 
-    /// The vector that all `parts` are components of, and which ones.
+    /// Returns the vector that all `parts` are components of, and the swizzle.
     fn swizzle(&self, parts: &[Id], ty: Type) -> Option<(Id, String)> {
         let member = |id: &Id| match &self.function.nodes[id.0 as usize].expr {
             Expr::Member(a, name) if self.locals[id.0 as usize].is_none() => Some((*a, *name)),
@@ -192,7 +193,7 @@ impl Expressions<'_> {
         let product = |s, t: &mut Names| {
             self.infix(s, Bind::Product, (a, Bind::Product), (b, Bind::Unary), t)
         };
-        // Bit operators do not mix with others without parentheses.
+        // WGSL does not mix bitwise operators with others without parentheses.
         let bits = |s, t: &mut Names| {
             let text = self.infix(s, Bind::Or, (a, Bind::Unary), (b, Bind::Unary), t).0;
             (text, Bind::Or)
@@ -211,7 +212,7 @@ impl Expressions<'_> {
         }
     }
 
-    /// A shift by the amount modulo 32.
+    /// Prints a shift by the amount modulo 32.
     fn shift(&self, symbol: &str, a: Id, b: Id, names: &mut Names) -> (String, Bind) {
         let a = self.at_least(a, Bind::Unary, names);
         let amount = match self.function.nodes[b.0 as usize].expr {

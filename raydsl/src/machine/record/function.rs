@@ -1,4 +1,4 @@
-//! Recorded functions as text.
+//! Printing of recorded functions.
 
 use core::fmt::Write;
 
@@ -9,7 +9,7 @@ use super::names::{safe_name, unique};
 use super::types::Names;
 use crate::machine::F32Binary;
 
-/// What the expressions of every function may refer to.
+/// The declarations that expressions of every function may refer to.
 pub(super) struct Text<'a> {
     pub(super) state: &'a State,
 }
@@ -31,7 +31,7 @@ impl Text<'_> {
         self.local(&f.vars[v.0 as usize].name)
     }
 
-    /// A local's name: one that is also a function's or a buffer's would hide it.
+    /// Returns the name of a local, changed if it would shadow a function or a buffer.
     pub(super) fn local(&self, name: &str) -> String {
         let hides = self.state.functions.iter().any(|f| f.name() == name)
             || self.state.buffers.iter().any(|b| b.name == name);
@@ -46,7 +46,7 @@ pub(super) struct FunctionPrinter<'a> {
     uses: Vec<u32>,
     locals: Vec<Option<String>>,
     taken: Vec<String>,
-    /// Variables that are written as a `let`.
+    /// Variables printed as a `let`.
     constant: Vec<VarId>,
     out: String,
 }
@@ -68,7 +68,7 @@ impl<'a> FunctionPrinter<'a> {
         p
     }
 
-    /// Counts how often each expression would be written.
+    /// Counts how often each expression would be printed.
     fn count(&mut self, id: Id) {
         let i = id.0 as usize;
         self.uses[i] += 1;
@@ -76,7 +76,7 @@ impl<'a> FunctionPrinter<'a> {
         if self.uses[i] > 1 && !node.expr.is_trivial() {
             return;
         }
-        // `min` and `max` as selects write their operands twice.
+        // `min` and `max` as selects print their operands twice.
         let twice = !self.function.is_without_nan
             && matches!(node.expr, Expr::F32Binary(F32Binary::Min | F32Binary::Max, ..));
         for operand in node.expr.operands() {
@@ -87,8 +87,8 @@ impl<'a> FunctionPrinter<'a> {
         }
     }
 
-    /// Finds variables that are assigned once, right in the block that declares them: those are
-    /// no variables.
+    /// Finds variables that are assigned once, right in the block that declares them: these are
+    /// constants.
     fn find_single_stores(&mut self, block: &[Stmt]) {
         fn stores(block: &[Stmt], v: VarId) -> usize {
             let inner = |s: &Stmt| match s {
@@ -139,13 +139,13 @@ impl<'a> FunctionPrinter<'a> {
         }
     }
 
-    /// Whether the expression gets a `let` where it was recorded.
+    /// Returns whether the expression gets a `let` where it was recorded.
     fn has_let(&self, id: Id) -> bool {
         let node = &self.function.nodes[id.0 as usize];
         let uses = self.uses[id.0 as usize];
         match node.expr {
             _ if uses == 0 || node.expr.is_trivial() => false,
-            // A variable that does not change meanwhile is read where it is used.
+            // A variable that does not change meanwhile is read at its use.
             Expr::Load(_) => node.pinned,
             _ => uses > 1 || node.pinned || node.name.is_some(),
         }
@@ -186,7 +186,7 @@ impl<'a> FunctionPrinter<'a> {
     fn block(&mut self, block: &[Stmt], depth: usize, names: &mut Names) {
         for stmt in block {
             self.stmt(stmt, depth, names);
-            // What follows is never reached.
+            // The remaining statements are unreachable.
             if matches!(stmt, Stmt::Return(_) | Stmt::Break | Stmt::Continue) {
                 break;
             }
@@ -252,7 +252,8 @@ impl<'a> FunctionPrinter<'a> {
         self.else_chain(then, other, depth, names);
     }
 
-    /// The arms of an `if` whose head stands already; an `if` alone in an `else` goes on with it.
+    /// Prints the arms of an `if` whose head is printed already; a sole `if` in an `else` becomes
+    /// `else if`.
     fn else_chain(&mut self, then: &[Stmt], other: &[Stmt], depth: usize, names: &mut Names) {
         self.block(then, depth + 1, names);
         let visible: Vec<&Stmt> =
@@ -269,7 +270,7 @@ impl<'a> FunctionPrinter<'a> {
         self.line(depth, "}");
     }
 
-    /// A loop, as `while` or `for` where it has that form.
+    /// Prints a loop, as `while` or `for` where it has that form.
     fn loop_stmt(&mut self, body: &[Stmt], continuing: &[Stmt], depth: usize, names: &mut Names) {
         let visible = |p: &Self, s: &&Stmt| !matches!(s, Stmt::Let(id) if !p.has_let(*id));
         let first = body.iter().position(|s| visible(self, &s));

@@ -1,52 +1,53 @@
-//! The recorded program: functions of structured statements over a table of expressions.
+//! Intermediate representation: functions of structured statements over a table of expressions.
 //!
-//! **A function** has parameters, variables, a table of nodes, and a body. A [`Node`] is an expression
-//! over earlier nodes, named by its [`Id`]; nodes are never changed but for the marks of the printer.
-//! Vectors and structs are taken apart into scalars as values of the machine and put together again
-//! where all parts come from one value. Trivial expressions (numbers, parameters, members) are one node
-//! wherever they occur.
+//! **A function** has parameters, variables, a table of nodes, and a body. A [`Node`] is an
+//! expression over earlier nodes, identified by its [`Id`]; nodes are immutable but for the
+//! printer's flags. Vectors and structs are split into scalars as values of the machine and
+//! reassembled where all parts come from one value. Trivial expressions (numbers, parameters,
+//! members) are shared: one node wherever they occur.
 //!
-//! **Evaluation.** Every node that is not trivial has a [`Stmt::Let`] where it was recorded: there it is
-//! evaluated, once, in the order of the statements. Expressions have no effects, but [`Expr::Call`] of a
-//! function that is given an [`Expr::Address`], which may change that variable. So a printer may write a
-//! node in place of its name wherever nothing tells the two apart:
+//! **Evaluation.** Every node that is not trivial has a [`Stmt::Let`] where it was recorded: there
+//! it is evaluated, once, in the order of the statements. Expressions have no side effects, except
+//! an [`Expr::Call`] of a function that takes an [`Expr::Address`] and may change that variable. So
+//! a printer may write a node in place of its name wherever the result is the same:
 //!
-//! * It is *pinned* if it is used in another block than its own, where it might be evaluated more often
-//!   or under another condition.
+//! * It is *pinned* if it is used in another block than its own, where it might be evaluated more
+//!   often or under another condition.
 //! * A [`Expr::Load`] is the value of a variable at its place. Variables count their stores in
-//!   `version`, and a loop counts as a store to every variable, since its body may come again. A use
+//!   `version`, and a loop counts as a store to every variable, since its body may run again. A use
 //!   of a load whose version has passed pins the load.
-//! * Otherwise it is printed where it is used, if that is once, and gets a `let` if it is more often.
+//! * Otherwise it is printed at its use, if there is one use, and gets a `let` if there are more.
 //!
-//! **Control flow** is structured. [`Stmt::If`] and [`Stmt::Loop`] have blocks; [`Stmt::BreakUnless`],
-//! [`Stmt::Break`] and [`Stmt::Continue`] concern the innermost loop, whose `continuing` block runs
-//! before every further round, after a `Continue` too. An exit through several loops is a number in the
-//! variable `leave`, tested behind each of them. [`Stmt::Return`] leaves the function.
+//! **Control flow** is structured. [`Stmt::If`] and [`Stmt::Loop`] have blocks;
+//! [`Stmt::BreakUnless`], [`Stmt::Break`] and [`Stmt::Continue`] apply to the innermost loop, whose
+//! `continuing` block runs before every further iteration, after a `Continue` too. An exit through
+//! several loops is a number in the variable `leave`, tested behind each of them. [`Stmt::Return`]
+//! leaves the function.
 //!
-//! **Arithmetic** is that of the scalar source, operation by operation: floats as IEEE 754 says, where the
-//! device does; `wrapping_` operations of integers wrap, and so do those that would panic; a quotient by
-//! 0 and shifts beyond the width are defined as in the book, "What the numbers promise"; conversions
-//! saturate. `min` and `max` are `if b < a { b } else { a }` and its like, also for a NaN, unless the
-//! function is without any (`KnownFunction::is_without_nan`). Operations on numbers alone are done
-//! while recording.
+//! **Arithmetic** is that of the scalar source, operation by operation: floats follow IEEE 754
+//! where the device does; `wrapping_` operations of integers wrap, and so do those that would
+//! panic; a quotient by 0 and shifts beyond the width are defined as in the book, "What the numbers
+//! promise"; conversions saturate. `min` and `max` are `if b < a { b } else { a }` and its like,
+//! also for a NaN, unless the function is without any (`KnownFunction::is_without_nan`). Operations
+//! on numbers alone are folded while recording.
 //!
-//! **What is data**: captured numbers are members of the uniform block ([`Expr::Uniform`]), scenes and
-//! slices are read by functions over their buffers. Both may change without a new program; what decides
-//! the program itself are values of the host, and the kinds and layouts of what is captured.
+//! **Data**: captured numbers are members of the uniform buffer ([`Expr::Uniform`]), scenes and
+//! slices are read by functions over their storage buffers. Both may change without a new program;
+//! the program itself depends on host values, and on the kinds and layouts of the captures.
 
 use crate::machine::{
     BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Schema, U32Unary, wgsl::BufferKey,
 };
 
-/// An expression of the function that is being recorded.
+/// An expression of the function being recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Id(pub(super) u32);
 
-/// A variable of the function that is being recorded.
+/// A variable of the function being recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct VarId(pub(super) u32);
 
-/// What a vector consists of.
+/// The component type of a vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scalar {
     F32,
@@ -89,7 +90,7 @@ impl Type {
         }
     }
 
-    /// A vector of `n` such scalars.
+    /// Returns the vector type of `n` such scalars.
     pub(super) fn times(self, n: usize) -> Self {
         match self {
             Self::I32 => Self::Vector(Scalar::I32, n),
@@ -99,7 +100,7 @@ impl Type {
         }
     }
 
-    /// What it is a vector of.
+    /// Returns the component type of a vector.
     pub(super) fn component(self) -> Self {
         match self {
             Self::Vector(Scalar::F32, _) => Self::F32,
@@ -121,7 +122,7 @@ impl PartialEq for Type {
     }
 }
 
-/// How a scalar becomes another.
+/// A conversion between scalar types.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Conversion {
     /// `T(x)`.
@@ -159,13 +160,13 @@ pub(crate) enum Expr {
     Select(Id, Id, Id),
     Convert(Conversion, Id),
     Call(usize, Vec<Id>),
-    /// A function of WGSL.
+    /// A builtin function of WGSL.
     Builtin(&'static str, Vec<Id>),
     Compose(Vec<Id>),
 }
 
 impl Expr {
-    /// Whether it is so short that it never needs a name.
+    /// Returns whether it is too short to need a name.
     pub(super) fn is_trivial(&self) -> bool {
         matches!(
             self,
@@ -181,7 +182,7 @@ impl Expr {
         )
     }
 
-    /// Its operands, in order.
+    /// Returns its operands, in order.
     pub(super) fn operands(&self) -> impl Iterator<Item = Id> + '_ {
         let (few, many): ([Option<Id>; 3], &[Id]) = match self {
             Self::F32(_)
@@ -211,26 +212,26 @@ impl Expr {
     }
 }
 
-/// An expression and what the printer must know of it.
+/// An expression with the printer's data.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Node {
     pub(super) expr: Expr,
     pub(super) ty: Type,
-    /// The name that it has in the source.
+    /// Its name in the source.
     pub(super) name: Option<&'static str>,
-    /// It must be evaluated where it was recorded, not where it is used.
+    /// Whether it must be evaluated where it was recorded, not at its use.
     pub(super) pinned: bool,
     /// The block in which it was recorded.
     pub(super) block: u32,
-    /// The loads under it that would be repeated if it was written where it is used.
+    /// The loads under it that would be repeated if it was printed at its use.
     pub(super) loads: Vec<Id>,
-    /// Of a load: the variable's version when it was recorded.
+    /// For a load: the variable's version when it was recorded.
     pub(super) version: u32,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Stmt {
-    /// Where an expression was recorded.
+    /// The place where an expression was recorded.
     Let(Id),
     Var(VarId, Option<Id>),
     Store(VarId, Id),
@@ -253,7 +254,7 @@ pub(super) enum Stmt {
 pub(super) struct Variable {
     pub(super) name: String,
     pub(super) ty: Type,
-    /// Grows with every store and at the start of every loop.
+    /// The version, which grows with every store and at the start of every loop.
     pub(super) version: u32,
 }
 
@@ -261,7 +262,7 @@ pub(super) struct Variable {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Function {
     Recorded(Recorded),
-    /// WGSL text, with the types it names.
+    /// WGSL text, with the types that it names.
     Text {
         name: String,
         text: String,
@@ -270,12 +271,12 @@ pub(super) enum Function {
 }
 
 impl Function {
-    /// Whether it is the library's text; a user's function may have any name.
+    /// Returns whether it is the library's text; a user's function may have any name.
     pub(super) fn is_text(&self) -> bool {
         matches!(self, Self::Text { .. })
     }
 
-    /// The types that its text has by their names.
+    /// Returns the types that its text refers to by name.
     pub(super) fn named_types(&self) -> impl Iterator<Item = &'static Schema> + '_ {
         let types = match self {
             Self::Text { text, types, .. } if !text.is_empty() => &types[..],
@@ -297,7 +298,7 @@ pub(super) struct Recorded {
     /// The name in the source; `name` may differ where several kernels share it.
     pub(super) source_name: &'static str,
     pub(super) name: String,
-    /// Where it stands in the Rust source.
+    /// Its source location.
     pub(super) file: &'static str,
     pub(super) line: u32,
     /// Whether `min` and `max` in it are WGSL's own; see `KnownFunction::is_without_nan`.
@@ -310,7 +311,7 @@ pub(super) struct Recorded {
 }
 
 impl Recorded {
-    /// Equal but for the name.
+    /// Returns whether both functions are equal but for the name.
     pub(super) fn same_code(&self, other: &Self) -> bool {
         self.source_name == other.source_name
             && self.params == other.params
@@ -321,12 +322,12 @@ impl Recorded {
     }
 }
 
-/// A member of the uniform block.
+/// A member of the uniform buffer.
 #[derive(Clone, Debug)]
 pub(super) struct Uniform {
     pub(super) name: String,
     pub(super) ty: Type,
-    /// The four-byte words of the value.
+    /// The value as four-byte words.
     pub(super) words: Vec<u32>,
 }
 

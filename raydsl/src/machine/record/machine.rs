@@ -1,4 +1,4 @@
-//! The hooks of the [`Recorder`].
+//! The [`Recorder`]'s implementation of the machine's hooks.
 
 use core::cell::Cell;
 
@@ -12,7 +12,7 @@ use crate::machine::{
     op,
 };
 
-/// `lit_0_125`: the name of a literal in the uniform block.
+/// Returns the name of a literal in the uniform buffer, such as `lit_0_125`.
 fn literal_name(v: f32) -> String {
     let digits: String = format!("{v:?}")
         .chars()
@@ -26,8 +26,8 @@ fn literal_name(v: f32) -> String {
 }
 
 impl Recorder {
-    /// Drivers fold and reorder arithmetic with constants; with a number of the uniform block they
-    /// cannot. A factor that is a power of two may stay: it is exact in any order.
+    /// Moves a number to the uniform buffer, so that drivers cannot fold it or reorder arithmetic
+    /// with it. A factor that is a power of two may stay: it is exact in any order.
     pub(super) fn opaque(&self, id: Id) -> Id {
         if self.arithmetic == wgsl::Arithmetic::Fast {
             return id;
@@ -46,10 +46,10 @@ impl Recorder {
         }
     }
 
-    /// The number that `id` is in the source.
+    /// Returns the number of the source that `id` is, if it is one.
     ///
-    /// Operations on literals alone are done here: WGSL would do them in other ways, or refuse a
-    /// result that is not finite.
+    /// Operations on literals alone are folded here: WGSL would evaluate them differently, or
+    /// refuse a result that is not finite.
     pub(super) fn literal(&self, id: Id) -> Option<f32> {
         match self.node(id).expr {
             Expr::F32(bits) => Some(f32::from_bits(bits)),
@@ -57,8 +57,8 @@ impl Recorder {
         }
     }
 
-    /// The integer that `id` is in the source. WGSL refuses operations on constants that overflow,
-    /// so these are done here as well.
+    /// Returns the integer of the source that `id` is, if it is one. WGSL refuses operations on
+    /// constants that overflow, so these are folded here as well.
     pub(super) fn i32_literal(&self, id: Id) -> Option<i32> {
         match self.node(id).expr {
             Expr::I32(v) => Some(v),
@@ -73,7 +73,7 @@ impl Recorder {
         }
     }
 
-    /// The truth value that `id` always has.
+    /// Returns the truth value that `id` always has, if there is one.
     pub(super) fn truth(&self, id: Id) -> Option<bool> {
         match self.node(id).expr {
             Expr::Bool(v) => Some(v),
@@ -89,7 +89,7 @@ impl Recorder {
         }
     }
 
-    /// The variable `leave`, which says what labelled loop is being left.
+    /// Returns the variable `leave`, which holds the labelled loop being left.
     fn leave(&self) -> VarId {
         self.builder(|b| {
             if let Some(v) = b.leave {
@@ -122,7 +122,7 @@ impl Recorder {
         });
     }
 
-    /// Behind an inner loop: goes on leaving where a labelled exit passed through it.
+    /// Continues a labelled exit behind an inner loop that it passed through.
     fn pass_on(&self, passing: Vec<(u32, bool)>) {
         for (number, again) in passing {
             let leave = self.leave();
@@ -152,7 +152,7 @@ impl Recorder {
 
 /// Variables: the state of one is the leaves that read its cells.
 ///
-/// What is not generic here is compiled once: hooks take values apart, and hand leaves over.
+/// The functions that are not generic are compiled once: hooks split values, and pass leaves on.
 impl Recorder {
     fn cells(name: &str, schema: &'static Schema) -> Vec<storage::Cell> {
         let mut cells = Vec::new();
@@ -160,7 +160,7 @@ impl Recorder {
         cells
     }
 
-    /// The leaves that read `v`.
+    /// Returns the leaves that read `v`.
     fn read(&self, v: VarId, ty: Type) -> Vec<Id> {
         let load = self.add(Expr::Load(v), ty);
         match ty {
@@ -194,7 +194,7 @@ impl Recorder {
         state
     }
 
-    /// The variables behind a state, with their types.
+    /// Returns the variables behind a state, with their types.
     fn vars_of(&self, schema: &'static Schema, state: Vec<Id>) -> Vec<(VarId, Type)> {
         let mut leaves = state.into_iter();
         let cells = Self::cells("", schema);
@@ -213,7 +213,7 @@ impl Recorder {
         vars.collect()
     }
 
-    /// The leaves that read a variable now.
+    /// Returns the leaves that read a variable now.
     fn read_all(&self, schema: &'static Schema, state: Vec<Id>) -> Vec<Id> {
         let vars = self.vars_of(schema, state).into_iter();
         vars.flat_map(|(v, ty)| self.read(v, ty)).collect()
@@ -241,7 +241,7 @@ impl Recorder {
         }
     }
 
-    /// One of two vectors.
+    /// Selects one of two vectors.
     fn select_vector(&self, c: Id, a: &[Id], b: &[Id]) -> Id {
         let (a, b) = (self.vector(a), self.vector(b));
         let ty = self.node(a).ty;
@@ -257,7 +257,7 @@ impl Recorder {
     fn name_leaves(&self, name: &'static str, leaves: &[Id]) {
         let whole = leaves.first().map(|l| self.node(*l).expr);
         self.builder(|b| {
-            // All parts of one value: the value is what has the name.
+            // If all are parts of one value, that value gets the name.
             let owner = match whole {
                 Some(Expr::Member(a, _) | Expr::Element(a, _)) if leaves.len() > 1 => Some(a),
                 _ if leaves.len() == 1 => Some(leaves[0]),
@@ -276,7 +276,7 @@ impl Recorder {
         });
     }
 
-    /// A call of a recorded function, and the leaves of what it gives.
+    /// Records a call of a recorded function and returns the leaves of its result.
     fn call_of(&self, function: usize, operands: Vec<Id>, result: &'static Schema) -> Vec<Id> {
         let ty = Type::of(result);
         let call = self.add(Expr::Call(function, operands), ty);
@@ -300,7 +300,7 @@ impl Machine for Recorder {
         if v.is_finite() {
             return self.add(Expr::F32(v.to_bits()), Type::F32);
         }
-        // WGSL has no literal for these.
+        // WGSL has no literal for infinity and NaN.
         let name = if v.is_nan() { "nan" } else { "infinity" };
         self.uniform(name, Type::F32, vec![v.to_bits()])
     }
@@ -504,8 +504,8 @@ impl Machine for Recorder {
         match (self.truth(c.0), V::SCHEMA) {
             (Some(true), _) => a(),
             (Some(false), _) => b(),
-            // As a statement a struct reads better than as a selection of each member, and what is
-            // called is called where it is wanted.
+            // As a statement a struct reads better than as a selection of each member, and calls
+            // run for their own lanes only.
             (None, schema)
                 if calls || matches!(schema, Schema::Struct { .. } | Schema::Array { .. }) =>
             {
@@ -544,7 +544,7 @@ impl Machine for Recorder {
 
     fn loop_begin(&self) -> RecordedLoop {
         self.builder(|b| {
-            // What was loaded before the loop may have changed in its second round.
+            // Loads before the loop may be stale in its second iteration.
             for v in &mut b.function.vars {
                 v.version += 1;
             }
@@ -630,7 +630,7 @@ impl Machine for Recorder {
         let size = self.u32_binary(op::And, self.f32_to_bits(a), self.u32(0x7fff_ffff));
         self.unsigned_compare(O::OP, size, self.u32(0x7f80_0000))
     }
-    // Inlined, so that with an edit the code of kernels is compiled again, and not all of the recorder.
+    // Inlined, so that an edit recompiles the code of kernels, and not all of the recorder.
     #[inline]
     fn call<A: Value<Self>, R: Value<Self>>(
         &self,

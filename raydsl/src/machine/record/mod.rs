@@ -1,8 +1,8 @@
-//! The machine that writes WGSL.
+//! The recorder: a machine that writes WGSL.
 //!
 //! Running a lifted body on the [`Recorder`] builds a small structured program; its values are
-//! handles of expressions. Vectors and structs fall into their scalars on the way and are put
-//! together again where all parts come from one value, so the text reads like the source.
+//! handles of expressions. Vectors and structs are split into scalars on the way and reassembled
+//! where all parts come from one value, so the text reads like the source.
 
 mod arithmetic;
 mod builder;
@@ -43,17 +43,17 @@ pub struct Recorder {
 
 #[derive(Clone, Default)]
 struct State {
-    /// The functions under way, the innermost last.
+    /// The functions being recorded, the innermost last.
     open: Vec<Builder>,
     functions: Vec<Function>,
     uniforms: Vec<Uniform>,
     buffers: Vec<SceneBuffer>,
     textures: Vec<wgsl::Texture>,
-    /// What was captured before the body of a kernel was called.
+    /// The captures recorded before the body of a kernel was called.
     before_body: Captured,
 }
 
-/// How many uniforms and buffers there are.
+/// A number of uniforms and of buffers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Captured {
     uniforms: usize,
@@ -61,28 +61,28 @@ pub(crate) struct Captured {
 }
 
 impl State {
-    /// Names of types, with those that hand-written text has.
+    /// Returns the names of types, including those in hand-written text.
     fn names(&self) -> types::Names {
         types::Names::new(self.functions.iter().flat_map(Function::named_types))
     }
 
-    /// Whether a function, a buffer, or something that belongs to a buffer has the name.
+    /// Returns whether a function, a buffer, or a function of a buffer has the name.
     fn is_taken(&self, name: &str) -> bool {
         self.functions.iter().any(|f| f.name() == name)
             || self.buffers.iter().any(|b| belongs_to(name, &b.name))
             || self.textures.iter().any(|t| belongs_to(name, &t.name))
     }
 
-    /// Whether a buffer cannot have the name: something has it, or a name that goes with it.
+    /// Returns whether a buffer cannot have the name, because it or a derived name is taken.
     fn is_taken_for_buffer(&self, name: &str) -> bool {
-        // The parameter of a buffer's functions would hide a buffer of its name.
+        // The parameter of a buffer's functions would shadow a buffer of its name.
         name == "i"
             || self.is_taken(name)
             || self.functions.iter().any(|f| belongs_to(f.name(), name))
     }
 }
 
-/// Whether `name` is a buffer's, or that of a function that goes with it.
+/// Returns whether `name` is a buffer's, or that of one of its functions.
 fn belongs_to(name: &str, buffer: &str) -> bool {
     const FUNCTIONS: [&str; 15] = [
         "_at",
@@ -106,13 +106,13 @@ fn belongs_to(name: &str, buffer: &str) -> bool {
     })
 }
 
-/// An `if` under way.
+/// An `if` being recorded.
 pub struct RecordedBranch {
     c: Id,
     then: RefCell<Option<Vec<Stmt>>>,
 }
 
-/// A loop under way.
+/// A loop being recorded.
 pub struct RecordedLoop {
     number: u32,
     body: RefCell<Option<Vec<Stmt>>>,
@@ -132,7 +132,7 @@ impl Recorder {
         f(builder)
     }
 
-    /// Adds an expression to the function under way.
+    /// Adds an expression to the function being recorded.
     pub(crate) fn add(&self, expr: Expr, ty: Type) -> Id {
         self.builder(|b| b.add(expr, ty))
     }
@@ -141,7 +141,7 @@ impl Recorder {
         self.builder(|b| b.node(id).clone())
     }
 
-    /// The parts of a structured expression, as leaves in order.
+    /// Collects the parts of a structured expression, as leaves in order.
     fn parts(&self, schema: &'static Schema, id: Id, out: &mut Vec<Id>) {
         match schema {
             Schema::Vector(element, n) => {
@@ -166,7 +166,7 @@ impl Recorder {
         }
     }
 
-    /// The twin whose leaves are the parts of `id`.
+    /// Returns the twin whose leaves are the parts of `id`.
     pub(crate) fn take_apart<V: Value<Self>>(&self, id: Id) -> V {
         let mut leaves = Vec::with_capacity(V::SCHEMA.leaves());
         self.parts(V::SCHEMA, id, &mut leaves);
@@ -202,7 +202,8 @@ impl Recorder {
         collect.0
     }
 
-    /// The expression of a whole value: the one that all its leaves are parts of, else a new one.
+    /// Returns the expression of a whole value: the one that all its leaves are parts of, else a
+    /// new one.
     pub(crate) fn put_together(
         &self,
         schema: &'static Schema,
@@ -260,7 +261,7 @@ impl Recorder {
         existing.unwrap_or_else(|| self.add(Expr::Compose(parts), ty))
     }
 
-    /// The expressions of a tuple's elements that have any leaves.
+    /// Returns the expressions of a tuple's elements that have any leaves.
     fn arguments(&self, schema: &'static Schema, leaves: Vec<Id>) -> Vec<Id> {
         let mut leaves = leaves.into_iter();
         let Schema::Struct { fields, .. } = schema else { return Vec::new() };
@@ -271,12 +272,12 @@ impl Recorder {
             .collect()
     }
 
-    /// Begins a function whose parameters are the tuple `A`; gives the parameters.
+    /// Begins a function whose parameters are the tuple `A` and returns the parameters.
     fn begin<A: Value<Self>>(&self, info: &'static KernelInfo, host: A) -> A {
         self.with_leaves(host, &self.begin_function(info, A::SCHEMA))
     }
 
-    /// Begins a function with the parameters of a tuple; gives their leaves.
+    /// Begins a function with the parameters of a tuple and returns their leaves.
     fn begin_function(&self, info: &'static KernelInfo, tuple: &'static Schema) -> Vec<Id> {
         let mut state = self.state.borrow_mut();
         let depth = state
@@ -313,7 +314,7 @@ impl Recorder {
         leaves
     }
 
-    /// `host` with its leaves replaced; host values in it stay.
+    /// Returns `host` with its leaves replaced; host values in it stay.
     fn with_leaves<V: Value<Self>>(&self, host: V, leaves: &[Id]) -> V {
         struct Replace<'a>(core::slice::Iter<'a, Id>);
         impl Replace<'_> {
@@ -338,8 +339,8 @@ impl Recorder {
         V::zip(self, host, host, &mut Replace(leaves.iter()))
     }
 
-    /// Ends the function under way with `result` and gives its number, that of an equal one if
-    /// there is one.
+    /// Ends the function being recorded with `result` and returns its index, or that of an equal
+    /// function.
     fn end<R: Value<Self>>(&self, result: R) -> usize {
         self.end_function(R::SCHEMA, self.leaves_of(result))
     }
@@ -381,18 +382,20 @@ impl Recorder {
         });
     }
 
-    /// A captured number of the uniform block: not one of another frame, though they are equal now.
+    /// Returns a captured number of the uniform buffer, not shared with another frame's number that
+    /// is equal now.
     fn captured_uniform(&self, name: &str, ty: Type, words: Vec<u32>) -> Id {
         let first = self.state.borrow().before_body.uniforms;
         self.uniform_since(first, name, ty, words)
     }
 
-    /// A constant that stands in the uniform block.
+    /// Returns a constant in the uniform buffer.
     fn uniform(&self, name: &str, ty: Type, words: Vec<u32>) -> Id {
         self.uniform_since(0, name, ty, words)
     }
 
-    /// A number of the uniform block: one that is there, from the `first` on, or a new one.
+    /// Returns a number of the uniform buffer: an existing one, from index `first` on, or a new
+    /// one.
     fn uniform_since(&self, first: usize, name: &str, ty: Type, words: Vec<u32>) -> Id {
         let n = {
             let mut state = self.state.borrow_mut();
@@ -403,7 +406,7 @@ impl Recorder {
                 .position(|u| u.name == name && u.ty == ty && u.words == words);
             same.map(|i| first + i).unwrap_or_else(|| {
                 let taken = |n: &str| state.uniforms.iter().any(|u| u.name == n);
-                // The lengths of buffers are in the same block.
+                // The lengths of buffers are in the same uniform buffer.
                 let prefix = if name.starts_with("len_of_") { "captured_" } else { "" };
                 let name = unique(&safe_name(&format!("{prefix}{name}")), taken);
                 state.uniforms.push(Uniform { name, ty, words });
@@ -413,7 +416,7 @@ impl Recorder {
         self.add(Expr::Uniform(n), ty)
     }
 
-    /// Names a buffer of the scene; the same key is the same buffer.
+    /// Returns the name of a buffer of the scene; the same key is the same buffer.
     pub(crate) fn buffer(
         &self,
         key: wgsl::BufferKey,
@@ -436,13 +439,13 @@ impl Recorder {
 pub struct Recording {
     state: State,
     entry: usize,
-    /// Structure of what an invocation reads; none for a grid of pixels.
+    /// The layout of an invocation's input; `None` for a grid of pixels.
     input: Option<&'static Schema>,
     output: &'static Schema,
 }
 
 impl Recording {
-    /// Records a kernel that is given each pixel's coordinates.
+    /// Records a kernel that takes each pixel's coordinates.
     pub fn grid<R: super::Type>(
         arithmetic: wgsl::Arithmetic,
         kernel: impl FnOnce(&Recorder, super::U<Recorder>, super::U<Recorder>) -> R::On<Recorder>,
@@ -457,7 +460,7 @@ impl Recording {
         Self::record(arithmetic, &INFO, None, R::SCHEMA, |m, (x, y)| kernel(m, x, y))
     }
 
-    /// Records a kernel that is given the elements of an input buffer.
+    /// Records a kernel that takes the elements of an input buffer.
     pub fn batch<A: super::Type, R: super::Type>(
         arithmetic: wgsl::Arithmetic,
         kernel: impl FnOnce(&Recorder, A::On<Recorder>) -> R::On<Recorder>,
@@ -480,7 +483,7 @@ impl Recording {
         kernel: impl FnOnce(&Recorder, A) -> R,
     ) -> Self {
         let m = Recorder { arithmetic, ..Recorder::default() };
-        // Zeroes need a function to stand in while the parameters are made.
+        // Zeroes need a function to be recorded in while the parameters are made.
         m.state.borrow_mut().open.push(Builder::new(info));
         let zero = A::zero(&m);
         m.state.borrow_mut().open.clear();
@@ -490,13 +493,13 @@ impl Recording {
         Self { state: m.state.into_inner(), entry, input, output }
     }
 
-    /// The text, with scene buffers split into windows as `limits` asks.
+    /// Returns the module, with scene buffers split into windows according to `limits`.
     pub fn module(&self, limits: &wgsl::Limits) -> wgsl::Module {
         module::module(self, limits).module
     }
 }
 
-/// Whether nothing behind the statements is reached: what would be returned there is not said.
+/// Returns whether every path through the statements returns.
 fn always_returns(block: &[Stmt]) -> bool {
     match block.last() {
         Some(Stmt::Return(_)) => true,

@@ -1,4 +1,4 @@
-//! The whole module: types, bindings, functions, entry point.
+//! Printing of the whole module: types, bindings, functions, entry point.
 
 use core::fmt::Write;
 use std::collections::HashSet;
@@ -13,7 +13,7 @@ use crate::machine::{
     wgsl::{Buffer, Limits, Module, Texture, Window},
 };
 
-/// The workgroup: a square, so that the rays of neighbouring pixels run together.
+/// The workgroup size: a square, so that the rays of neighbouring pixels run together.
 const WORKGROUP: [u32; 2] = [8, 8];
 
 const JOB: &str = "\
@@ -46,17 +46,17 @@ fn saturate_u32(x: f32) -> u32 {
 }
 ";
 
-/// A module, and what its numbers and data are those of: the text stays where those change.
+/// A module with the sources of its numbers and data: the text is reused where those change.
 #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "only a device runs modules"))]
 pub(super) struct Printed {
     pub(super) module: Module,
     uniforms: Vec<Number>,
-    /// The recorded buffers and textures that the text has, in its order.
+    /// Indices of the recorded buffers and textures in the text, in its order.
     buffers: Vec<usize>,
     textures: Vec<usize>,
 }
 
-/// What stands in the uniform block.
+/// A member of the uniform buffer.
 #[derive(Clone, Copy)]
 enum Number {
     /// A recorded uniform.
@@ -80,7 +80,8 @@ impl Number {
 
 #[cfg(feature = "gpu")]
 impl Printed {
-    /// The module with the numbers and data of a recording of the same program, for the same limits.
+    /// Returns the module with the numbers and data of a recording of the same program, for the
+    /// same limits.
     pub(super) fn of(&self, recording: &Recording, limits: &Limits) -> Module {
         let state = &recording.state;
         let uniforms: Vec<Uniform> = self.uniforms.iter().map(|n| n.uniform(state)).collect();
@@ -98,7 +99,7 @@ impl Printed {
     }
 }
 
-/// The declaration of the uniform block.
+/// Prints the declaration of the uniform buffer.
 fn uniform_block(uniforms: &[Uniform], names: &mut Names) -> String {
     let mut text = "struct Params {\n".to_owned();
     for u in uniforms {
@@ -110,7 +111,7 @@ fn uniform_block(uniforms: &[Uniform], names: &mut Names) -> String {
     text + "}\n"
 }
 
-/// The bytes of the uniform block.
+/// Returns the bytes of the uniform buffer.
 fn uniform_bytes(uniforms: &[Uniform]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for u in uniforms {
@@ -126,7 +127,7 @@ fn uniform_bytes(uniforms: &[Uniform]) -> Vec<u8> {
     bytes
 }
 
-/// How many windows a buffer has.
+/// Returns the number of windows of a buffer.
 #[cfg(feature = "gpu")]
 pub(super) fn window_count(buffer: &SceneBuffer, limits: &Limits) -> usize {
     let stride = storage::stride(buffer.schema) as u64;
@@ -146,7 +147,7 @@ fn windows(len: u64, stride: u64, max: u64, first_binding: u32) -> Vec<Window> {
         .collect()
 }
 
-/// A stored type: the name of its struct, and whether that is the value's own.
+/// Returns the name of a stored type's struct, and whether that is the value's own.
 fn stored_type(schema: &'static Schema, names: &mut Names) -> (String, bool) {
     let stored = Stored::new(schema);
     let name = match schema {
@@ -174,7 +175,7 @@ fn stored_type(schema: &'static Schema, names: &mut Names) -> (String, bool) {
     (names.stored(&name, |name| stored.declaration(name)), false)
 }
 
-/// The bindings of a scene buffer and the accessor that hides its windows.
+/// Prints the bindings of a scene buffer and the accessor that hides its windows.
 fn buffer_text(buffer: &Buffer, schema: &'static Schema, names: &mut Names) -> String {
     let (element, same) = stored_type(schema, names);
     let value = names.ty(Type::of(schema));
@@ -215,7 +216,7 @@ fn buffer_text(buffer: &Buffer, schema: &'static Schema, names: &mut Names) -> S
     text
 }
 
-/// The accessor for an index that a kernel computed.
+/// Prints the accessor for an index that a kernel computed.
 fn element_text(name: &str, value: &str) -> String {
     format!(
         "\n/// The last element stands for those out of range.\n\
@@ -224,7 +225,7 @@ fn element_text(name: &str, value: &str) -> String {
     )
 }
 
-/// The identifiers of a text.
+/// Returns the identifiers of a text.
 fn identifiers(text: &str) -> HashSet<&str> {
     text.split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(|w| !w.is_empty()).collect()
 }
@@ -241,8 +242,8 @@ fn function_text(state: &State, i: usize, names: &mut Names) -> String {
     }
 }
 
-/// The functions that the entry needs, callees first. The text decides: what was recorded behind a
-/// condition of the host that never holds is not in it.
+/// Returns the functions that the entry needs, callees first. It follows the text: calls recorded
+/// behind a condition of the host that never holds are not in it.
 fn reachable(state: &State, entry: usize) -> Vec<usize> {
     fn visit(state: &State, i: usize, seen: &mut Vec<usize>, under_way: &mut Vec<usize>) {
         if seen.contains(&i) || under_way.contains(&i) {
@@ -337,7 +338,7 @@ pub(super) fn module(recording: &Recording, limits: &Limits) -> Printed {
     let mut binding = 4;
     for (i, b) in state.buffers.iter().enumerate() {
         let has_elements = words.contains(format!("{}_element", b.name).as_str());
-        // A kernel may ask for the length and for no element.
+        // A kernel may use the length and no element.
         let length = format!("len_of_{}", b.name);
         if has_elements || words.contains(length.as_str()) {
             numbers.push(Number::Length(i));

@@ -1,4 +1,4 @@
-//! Names that are legal and free in WGSL.
+//! Identifiers that are legal and free in WGSL.
 
 /// Words that WGSL reserves.
 const RESERVED: &[&str] = &[
@@ -251,7 +251,7 @@ const TAKEN: &[&str] = &[
     "leave",
 ];
 
-/// `name`, changed where WGSL does not allow it.
+/// Returns `name`, changed where WGSL does not allow it.
 pub(super) fn safe_name(name: &str) -> String {
     let mut safe: String =
         name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
@@ -264,7 +264,7 @@ pub(super) fn safe_name(name: &str) -> String {
     safe
 }
 
-/// `name`, or with the first number that makes it new.
+/// Returns `name`, or with the first number that makes it unique.
 pub(super) fn unique(name: &str, taken: impl Fn(&str) -> bool) -> String {
     if !taken(name) {
         return name.to_owned();
@@ -272,13 +272,13 @@ pub(super) fn unique(name: &str, taken: impl Fn(&str) -> bool) -> String {
     (1..).map(|n| format!("{name}_{n}")).find(|n| !taken(n)).unwrap_or_default()
 }
 
-/// The name of a function with its file's: there is another of that name.
+/// Returns the name of a function prefixed with its file's, if the name alone is taken.
 pub(super) fn qualified(name: &str, file: &str) -> String {
     let stem = std::path::Path::new(file).file_stem().and_then(|s| s.to_str()).unwrap_or_default();
     if stem.is_empty() { name.to_owned() } else { safe_name(&format!("{stem}_{name}")) }
 }
 
-/// The name of a member: only reserved words are not allowed there.
+/// Returns the name of a member: only reserved words are not allowed there.
 pub(crate) fn member_name(name: &str) -> String {
     if RESERVED.contains(&name) { format!("{name}_") } else { name.to_owned() }
 }

@@ -1,8 +1,8 @@
-//! How values lie in buffers: the host's layout, told in WGSL.
+//! Storage layout of values in buffers: the host's layout in WGSL.
 //!
-//! WGSL aligns a `vec3<f32>` to 16 bytes and knows no bytes, so a struct of the host is described
-//! word by word: a vector where its offset and the stride allow one, single numbers elsewhere,
-//! and small members packed into a `u32`.
+//! WGSL aligns a `vec3<f32>` to 16 bytes and has no byte type, so a struct of the host is described
+//! word by word: a vector where its offset and the stride allow one, single numbers elsewhere, and
+//! small members packed into a `u32`.
 
 use core::fmt::Write;
 use std::borrow::Cow;
@@ -15,15 +15,15 @@ use crate::machine::{Compare, Schema};
 
 const COMPONENTS: [&str; 4] = ["x", "y", "z", "w"];
 
-/// A variable's part of a value: a scalar, or a vector as a whole.
+/// A variable's part of a value: a scalar or a whole vector.
 pub(super) struct Cell {
     pub(super) name: String,
     pub(super) ty: Type,
-    /// How many leaves it has.
+    /// The number of its leaves.
     pub(super) leaves: usize,
 }
 
-/// The variables that a value `name` is kept in, in the order of its leaves: `hit_t`, `color`.
+/// Collects the variables that hold the value `name`, in the order of its leaves: `hit_t`, `color`.
 pub(super) fn cells(name: &str, schema: &'static Schema, out: &mut Vec<Cell>) {
     match schema {
         Schema::Host => {}
@@ -50,7 +50,7 @@ fn word(bytes: &[u8]) -> u32 {
     u32::from_le_bytes(w)
 }
 
-/// Makes members of the uniform block of a captured value and collects its leaves.
+/// Adds a captured value to the uniform buffer and collects its leaves.
 pub(super) fn uniforms(
     m: &Recorder,
     name: &str,
@@ -126,7 +126,7 @@ fn collect(name: &str, offset: usize, schema: &'static Schema, out: &mut Vec<Lea
                 collect(&join(f.name), offset + f.offset, f.schema, out);
             }
         }
-        // Bytes: they lie between others as single truth values do.
+        // A vector of bytes, stored like single truth values.
         Schema::Vector(Schema::Bool, n) => {
             for (i, c) in COMPONENTS.iter().enumerate().take(*n) {
                 collect(&join(c), offset + i, &Schema::Bool, out);
@@ -140,7 +140,7 @@ fn collect(name: &str, offset: usize, schema: &'static Schema, out: &mut Vec<Lea
     }
 }
 
-/// How a member of whole words is written; of others, nothing.
+/// Returns the WGSL type of a member of whole words, and an empty string for others.
 fn word_type(schema: &Schema) -> Cow<'static, str> {
     match schema {
         Schema::F32 => "f32".into(),
@@ -160,7 +160,7 @@ struct Member {
     size: usize,
 }
 
-/// The stored form of a type.
+/// The storage form of a type.
 pub(super) struct Stored {
     members: Vec<Member>,
     leaves: Vec<Leaf>,
@@ -168,7 +168,7 @@ pub(super) struct Stored {
     pub(super) stride: usize,
 }
 
-/// Bytes of a stored value: the host's size rounded up to whole words.
+/// Returns the bytes of a stored value: the host's size rounded up to whole words.
 pub(crate) fn stride(schema: &Schema) -> usize {
     schema.size().next_multiple_of(4).max(4)
 }
@@ -221,13 +221,13 @@ impl Stored {
         self.members = fill_gaps(members, self.stride);
     }
 
-    /// The member that holds the byte at `offset`.
+    /// Returns the member that holds the byte at `offset`.
     fn member_at(&self, offset: usize) -> &Member {
         let at = self.members.partition_point(|m| m.offset <= offset);
         &self.members[at - 1]
     }
 
-    /// Whether the value's own struct has the same layout.
+    /// Returns whether the value's own struct has the same layout.
     pub(super) fn is_value(&self, schema: &Schema) -> bool {
         let Schema::Struct { fields, .. } = schema else { return false };
         fields.len() == self.members.len()
@@ -237,7 +237,7 @@ impl Stored {
             })
     }
 
-    /// The declaration of the stored struct.
+    /// Prints the declaration of the stored struct.
     pub(super) fn declaration(&self, name: &str) -> String {
         let mut text = format!("struct {name} {{\n");
         for m in &self.members {
@@ -246,7 +246,7 @@ impl Stored {
         text + "}\n"
     }
 
-    /// The value that lies in the stored struct `s`.
+    /// Prints the value in the stored struct `s`.
     pub(super) fn load(&self, schema: &'static Schema, s: &str, names: &mut Names) -> String {
         self.load_at(schema, 0, s, names)
     }
@@ -296,7 +296,7 @@ impl Stored {
         }
     }
 
-    /// The word with the byte at `offset` shifted to its low end.
+    /// Prints the word with the byte at `offset`, shifted to its low end.
     fn shifted(&self, offset: usize, s: &str) -> String {
         let m = self.member_at(offset);
         match 8 * (offset - m.offset) {
@@ -305,7 +305,7 @@ impl Stored {
         }
     }
 
-    /// The stored struct `name` of the value `v`.
+    /// Prints the stored struct `name` of the value `v`.
     pub(super) fn store(&self, schema: &'static Schema, name: &str, v: &str) -> String {
         let mut values = Vec::new();
         leaf_values(schema, 0, v, &mut values);
@@ -333,7 +333,7 @@ impl Stored {
     }
 }
 
-/// Adds a small leaf to the word that it lies in.
+/// Adds a small leaf to its word.
 fn place_small(members: &mut Vec<Member>, leaf: &Leaf) {
     let word = leaf.offset & !3;
     match members.last_mut() {
@@ -372,7 +372,7 @@ fn fill_gaps(members: Vec<Member>, stride: usize) -> Vec<Member> {
     filled
 }
 
-/// Every scalar of the value `v`: its offset, whether it is smaller than a word, its text.
+/// Collects every scalar of the value `v`: its offset, whether it is smaller than a word, its text.
 fn leaf_values(
     schema: &'static Schema,
     offset: usize,

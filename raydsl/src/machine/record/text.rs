@@ -1,4 +1,4 @@
-//! Functions that are written as text, beside those that are recorded.
+//! Hand-written WGSL functions in a recording.
 
 use super::ir::{Expr, Function, Id, Stmt, Type, VarId};
 use super::{Builder, Recorder};
@@ -8,8 +8,8 @@ static SCRATCH: KernelInfo =
     KernelInfo { name: "scratch", file: file!(), line: line!(), params: &[], known: None };
 
 impl Recorder {
-    /// The number of the function of this name that is text, made if there is none. `types` are those that
-    /// its text has by their names.
+    /// Returns the index of the text function `name`, adding it if there is none. `types` are those
+    /// that its text refers to by name.
     pub(crate) fn text_function(
         &self,
         name: String,
@@ -25,14 +25,15 @@ impl Recorder {
         state.functions.len() - 1
     }
 
-    /// The number of the function that `call` records, without a call of it.
+    /// Returns the index of the function that `call` records, without recording a call of it.
     pub(crate) fn function_of<R: Value<Self>>(&self, call: impl FnOnce(&Self) -> R) -> usize {
         self.state.borrow_mut().open.push(Builder::new(&SCRATCH));
         call(self);
         self.called()
     }
 
-    /// The number of the function that is called last in the function under way, which goes.
+    /// Returns the index of the last function called by the function being recorded, which is
+    /// discarded.
     fn called(&self) -> usize {
         let scratch = self.state.borrow_mut().open.pop();
         let called =
@@ -43,12 +44,12 @@ impl Recorder {
         called.expect("what is recorded calls a kernel, which records a function")
     }
 
-    /// The name of a function.
+    /// Returns the name of a function.
     pub(crate) fn function_name(&self, i: usize) -> String {
         self.state.borrow().functions[i].name().to_owned()
     }
 
-    /// A variable that begins with a value.
+    /// Declares a variable with an initial value.
     pub(crate) fn declare(&self, name: &'static str, value: Id, schema: &'static Schema) -> VarId {
         self.builder(|b| {
             let variable = b.new_var(name, Type::Of(schema));
@@ -58,7 +59,7 @@ impl Recorder {
         })
     }
 
-    /// Has a value computed where it stands, under this name.
+    /// Evaluates a value where it was recorded, under this name.
     pub(crate) fn pin(&self, id: Id, name: &'static str) {
         self.builder(|b| {
             let node = b.node(id);
@@ -66,14 +67,15 @@ impl Recorder {
         });
     }
 
-    /// A value in one piece.
+    /// Returns the expression of a whole value.
     pub(crate) fn whole<V: Value<Self>>(&self, v: V) -> Id {
         self.put_together(V::SCHEMA, &mut self.leaves_of(v).into_iter())
     }
 }
 
-/// WGSL with the `$names` in it replaced, `${names}` where a name goes on behind. A line of one name
-/// alone is as many lines as the value has, none if that is empty, and has its indentation.
+/// Returns WGSL with the `$names` in it replaced, `${names}` where an identifier continues behind.
+/// A line of one name alone becomes as many lines as the value has, none if that is empty, with its
+/// indentation.
 ///
 /// # Panics
 ///

@@ -1,4 +1,4 @@
-//! Textures that the device's own sampler reads.
+//! Textures sampled by the device.
 
 use core::fmt::Write;
 
@@ -8,14 +8,14 @@ use super::names::{safe_name, unique};
 use crate::machine::Machine;
 use crate::machine::wgsl::{BufferKey, Texture, TextureLayout};
 
-/// Sampled textures, and samplers, of a shader stage: what WebGPU guarantees.
+/// Sampled textures and samplers per shader stage that WebGPU guarantees.
 const MOST: usize = 16;
 
 impl Recorder {
-    /// What a device's sampler gives: `tiles_sample(at, level)`, taken apart; at level 0 if no other is
-    /// given. Nothing if there are too many textures.
+    /// Returns the leaves of `tiles_sample(at, level)`, the device's sampler; at level 0 if no
+    /// other is given. Returns `None` if there are too many textures.
     ///
-    /// Axes that `at` does not have are read in the middle.
+    /// Axes missing in `at` are sampled in the middle.
     pub(crate) fn sample(
         &self,
         key: BufferKey,
@@ -41,7 +41,7 @@ impl Recorder {
         Some(["x", "y", "z", "w"].map(|c| self.add(Expr::Member(call, c), Type::F32)))
     }
 
-    /// Names a texture; the same texels read in the same way are the same texture.
+    /// Returns the name of a texture; the same texels sampled in the same way are the same texture.
     fn texture(&self, key: BufferKey, name: &str, layout: &TextureLayout) -> Option<String> {
         let mut state = self.state.borrow_mut();
         if let Some(t) = state.textures.iter().find(|t| t.key == key && t.layout == *layout) {
@@ -57,7 +57,7 @@ impl Recorder {
     }
 }
 
-/// The two bindings of a texture.
+/// Prints the two bindings of a texture.
 pub(super) fn bindings(texture: &Texture) -> String {
     let Texture { name, binding, layout, .. } = texture;
     let kind = if layout.is_volume { "3d" } else { "2d" };

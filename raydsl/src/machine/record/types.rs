@@ -1,4 +1,4 @@
-//! The types of the generated text, declared as they are asked for.
+//! Types of the generated text, declared on demand.
 
 use core::fmt::Write;
 
@@ -6,18 +6,18 @@ use super::ir::Type;
 use super::names::{member_name, safe_name, unique};
 use crate::machine::Schema;
 
-/// The names of types, declared as they are asked for.
+/// The names of types, declared on demand.
 #[derive(Default)]
 pub(super) struct Names {
     structs: Vec<(String, &'static Schema)>,
-    /// Those of them that the text uses.
+    /// The names that the text uses.
     used: Vec<String>,
     pub(super) helpers: Vec<&'static str>,
-    /// How values lie in buffers: the name of a struct and its declaration.
+    /// The storage structs: the name of each and its declaration.
     stored: Vec<(String, String)>,
 }
 
-/// The same type to a kernel, wherever its members lie in memory.
+/// Returns whether both are the same type to a kernel, regardless of their memory layout.
 fn same_type(a: &Schema, b: &Schema) -> bool {
     match (a, b) {
         (Schema::Struct { name: n, fields: f, .. }, Schema::Struct { name: m, fields: g, .. }) => {
@@ -34,7 +34,8 @@ fn same_type(a: &Schema, b: &Schema) -> bool {
 }
 
 impl Names {
-    /// Text that was written by hand has types by these names: a user's of the same name gets another.
+    /// Reserves the type names that hand-written text uses: a user's type of the same name gets
+    /// another.
     pub(super) fn new(named: impl Iterator<Item = &'static Schema>) -> Self {
         let mut names = Self::default();
         for schema in named {
@@ -53,7 +54,7 @@ impl Names {
         }
     }
 
-    /// How the type is written.
+    /// Returns the type as WGSL.
     pub(super) fn ty(&mut self, ty: Type) -> String {
         match ty {
             Type::F32 => "f32".to_owned(),
@@ -76,7 +77,7 @@ impl Names {
             return name.clone();
         }
         let Schema::Struct { name, fields, .. } = schema else { return "u32".to_owned() };
-        // The members' types first: a name is given once all it needs are declared.
+        // Declares the members' types first: a struct is declared after all it needs.
         for f in fields.iter().filter(|f| f.schema.leaves() > 0) {
             self.ty(Type::of(f.schema));
         }
@@ -90,7 +91,7 @@ impl Names {
         name
     }
 
-    /// The name of a stored struct, declared once; two layouts of one type have two names.
+    /// Returns the name of a stored struct, declared once; two layouts of one type have two names.
     pub(super) fn stored(&mut self, name: &str, declare: impl Fn(&str) -> String) -> String {
         let mut candidate = name.to_owned();
         let mut n = 0;
@@ -108,7 +109,7 @@ impl Names {
         candidate
     }
 
-    /// The declarations of the stored structs.
+    /// Returns the declarations of the stored structs.
     pub(super) fn stored_declarations(&self) -> String {
         self.stored.iter().map(|(_, text)| format!("{text}\n")).collect()
     }
@@ -132,7 +133,7 @@ impl Names {
     }
 }
 
-/// The zero value of a struct, as an expression.
+/// Returns the zero value of a struct, as an expression.
 pub(crate) fn zero_value(schema: &'static Schema) -> String {
     match schema {
         Schema::Struct { name, .. } => format!("{}()", safe_name(name)),

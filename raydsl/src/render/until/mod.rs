@@ -1,4 +1,4 @@
-//! Samples until an error is reached, or a budget is spent.
+//! Rendering until a target error is reached, or a budget is spent.
 
 mod quantile;
 mod replications;
@@ -12,12 +12,12 @@ pub(crate) use run::{Accumulate, run};
 
 use super::{Film, Sampling};
 
-/// Independent replications of each estimate: the error is told by how far they lie apart.
+/// The number of independent replications per estimate: their spread measures the error.
 pub const REPLICATIONS: u32 = 8;
 
-/// How the error of a film is measured. Red, green and blue count, alpha does not.
+/// The error metric of a film. Red, green and blue count, alpha does not.
 ///
-/// Errors are distances from what infinitely many samples would give.
+/// Errors are distances from the limit of infinitely many samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Metric {
     /// The root of the mean squared error, over all pixels and channels.
@@ -25,12 +25,12 @@ pub enum Metric {
     Rmse,
     /// The mean of `error^2 / (value^2 + 0.01)`, over all pixels and channels: 1e-4 is about 1 %.
     RelMse,
-    /// The error of the mean of the whole picture: of a measurement, where pixels do not matter.
+    /// The error of the mean of the whole picture: for a measurement, where pixels do not matter.
     Mean,
 }
 
 impl Metric {
-    /// The metric of a root of a mean square, and the root that a metric is of.
+    /// Converts a root of a mean square to the metric, and the other way round.
     fn of_root(self, root: f64) -> f64 {
         if self == Self::RelMse { root * root } else { root }
     }
@@ -40,99 +40,97 @@ impl Metric {
     }
 }
 
-/// The error that is asked for.
+/// The target error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
-    /// How it is measured.
+    /// The error metric.
     pub metric: Metric,
-    /// What it must not exceed: above 0, in the metric's unit.
+    /// The greatest error allowed: above 0, in the metric's unit.
     pub tolerance: f64,
-    /// How sure that must be: from 0.5 to 0.9999.
+    /// The confidence with which the error is below it: from 0.5 to 0.9999.
     pub confidence: f64,
-    /// Samples a pixel of the pilot, from which the number of samples is chosen, and the least
-    /// number of those that count: at least 1. What fewer than ten of them meet in the whole
-    /// picture may be overlooked.
+    /// The pilot's samples per pixel, from which the number of samples is chosen, and the minimum
+    /// of samples that count: at least 1. Events that fewer than ten of them find in the whole
+    /// picture may be missed.
     pub pilot: u32,
 }
 
 impl Target {
-    /// With a confidence of 95 % and a pilot of 1024 samples a pixel.
+    /// Creates a target with a confidence of 95 % and a pilot of 1024 samples per pixel.
     pub const fn new(metric: Metric, tolerance: f64) -> Self {
         Self { metric, tolerance, confidence: 0.95, pilot: 1024 }
     }
 
-    /// How sure it must be.
+    /// Sets the confidence.
     #[must_use]
     pub const fn confidence(self, confidence: f64) -> Self {
         Self { confidence, ..self }
     }
 
-    /// Samples a pixel of the pilot. Few are enough where many pixels have about the same variance;
-    /// a single pixel that is rarely bright needs many.
+    /// Sets the pilot's samples per pixel. Few suffice where many pixels have about the same
+    /// variance; a single pixel that is rarely bright needs many.
     #[must_use]
     pub const fn pilot(self, samples: u32) -> Self {
         Self { pilot: samples, ..self }
     }
 }
 
-/// What may be spent.
+/// The limits on time and samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
-    /// By the clock. What the run seems to need after its last sample, at most a tenth, is kept
-    /// for that: a run that is out of time may end as much earlier.
+    /// The time limit. The estimated time after the last sample, at most a tenth, is reserved: a
+    /// run that is out of time may end earlier by that much.
     pub time: Duration,
-    /// Samples a pixel in all, those of pilots too; on the average where [`Until::adaptive`] has
-    /// chosen them.
+    /// Samples per pixel in all, including pilots; on average if [`Until::adaptive`] chose them.
     pub samples: u32,
 }
 
 impl Budget {
-    /// As much time as this, and any number of samples.
+    /// Creates a budget of this time, and any number of samples.
     pub const fn of_time(time: Duration) -> Self {
         Self { time, samples: u32::MAX }
     }
 
-    /// As many samples of each pixel as these, however long they take.
+    /// Creates a budget of this number of samples per pixel, without a time limit.
     pub const fn of_samples(samples: u32) -> Self {
         Self { time: Duration::MAX, samples }
     }
 
-    /// No more samples of each pixel than these.
+    /// Sets the maximum number of samples per pixel.
     #[must_use]
     pub const fn samples(self, samples: u32) -> Self {
         Self { samples, ..self }
     }
 }
 
-/// An error to reach and what may be spent on it; see
-/// [`Renderer::render_until`](super::Renderer::render_until).
+/// A target error and a budget; see [`Renderer::render_until`](super::Renderer::render_until).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Until {
-    /// The error.
+    /// The target error.
     pub target: Target,
-    /// What may be spent.
+    /// The budget.
     pub budget: Budget,
-    /// Whether blocks of 16 by 16 pixels get samples as they need them; see [`Until::adaptive`].
+    /// Whether samples are allocated to blocks of 16 by 16 pixels by need; see [`Until::adaptive`].
     pub adaptive: bool,
 }
 
 impl Until {
-    /// Until `target` is reached or `budget` is spent, with as many samples of one pixel as of
-    /// another.
+    /// Creates a run until `target` is reached or `budget` is spent, with the same number of
+    /// samples in every pixel.
     pub const fn new(target: Target, budget: Budget) -> Self {
         Self { target, budget, adaptive: false }
     }
 
-    /// Gives more samples to blocks of 16 by 16 pixels whose samples differ more: as many as make
-    /// the error of the whole picture least (Neyman, "On the Two Different Aspects of the
-    /// Representative Method", 1934, section III), but nowhere less than an eighth of the mean.
-    /// The pilot tells where that is. [`Film::sample_counts`] has the numbers that it came to.
+    /// Allocates more samples to blocks of 16 by 16 pixels with more variance: the allocation that
+    /// minimises the error of the whole picture (Neyman, "On the Two Different Aspects of the
+    /// Representative Method", 1934, section III), but nowhere less than an eighth of the mean. It
+    /// follows from the pilot. [`Film::sample_counts`] returns the resulting numbers.
     #[must_use]
     pub const fn adaptive(self) -> Self {
         Self { adaptive: true, ..self }
     }
 
-    /// Whether this can be asked of a film.
+    /// Checks that the target and the budget are valid for a film.
     pub(crate) fn check(&self, film: &Film, sampling: &Sampling) -> Result<(), UntilError> {
         let Self { target, budget, .. } = *self;
         if !(target.tolerance > 0.0 && target.tolerance.is_finite()) {
@@ -158,26 +156,26 @@ impl Until {
     }
 }
 
-/// Why an error cannot be asked for.
+/// The reason why a target or a budget is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum UntilError {
-    /// The tolerance is no positive number.
+    /// The tolerance is not a positive number.
     #[error("the tolerance is {tolerance}: give a number above 0")]
     Tolerance {
-        /// What was given.
+        /// The given tolerance.
         tolerance: f64,
     },
     /// The confidence is out of range.
     #[error("the confidence is {confidence}: give a number from 0.5 to 0.9999, as 0.95")]
     Confidence {
-        /// What was given.
+        /// The given confidence.
         confidence: f64,
     },
     /// The pilot has no samples.
     #[error("the pilot has no samples: give it at least 1, as 1024")]
     NoPilot,
-    /// There is no time.
+    /// The time budget is zero.
     #[error("the budget has no time: give a duration above 0")]
     NoTime,
     /// There are fewer samples than replications.
@@ -186,9 +184,9 @@ pub enum UntilError {
          {REPLICATIONS} replications, and for each of the places in a pixel, if those are fixed"
     )]
     TooFewSamples {
-        /// What was given.
+        /// The given samples.
         samples: u32,
-        /// The least that there may be.
+        /// The minimum.
         needed: u32,
     },
     /// The film has no pixels.
@@ -207,72 +205,74 @@ impl From<core::convert::Infallible> for UntilError {
     }
 }
 
-/// Why no more samples were taken.
+/// The reason why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// The error is within the tolerance, as surely as asked.
+    /// The error is within the tolerance, with the target's confidence.
     Converged,
     /// The time is spent.
     OutOfTime,
     /// The samples are spent.
     OutOfSamples,
-    /// `f32` cannot hold colours that well, or no pixel is a number: no number of samples would do.
+    /// `f32` cannot represent colours that accurately, or every pixel is NaN: no number of samples
+    /// suffices.
     Unresolvable {
-        /// The least error that rounding leaves, in the metric's unit. A tolerance must be above
-        /// twice that. What a kernel's own arithmetic rounds comes on top.
+        /// The rounding error floor, in the metric's unit. A tolerance must be above twice that.
+        /// The rounding of a kernel's own arithmetic comes on top.
         floor: f64,
     },
-    /// The observer wanted no more.
+    /// The observer stopped the run.
     Stopped,
 }
 
-/// An error, and how well it is known.
+/// An error estimate with its confidence bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// The most likely size of the error; infinite before there are two replications.
+    /// The most likely error; infinite before there are two replications.
     pub error: f64,
-    /// It is at least this, with the target's confidence.
+    /// The lower bound, with the target's confidence.
     pub low: f64,
-    /// It is at most this, with the target's confidence.
+    /// The upper bound, with the target's confidence.
     pub high: f64,
 }
 
 impl Estimate {
-    /// Of nothing.
+    /// The estimate of no samples.
     pub(crate) const UNKNOWN: Self = Self { error: f64::INFINITY, low: 0.0, high: f64::INFINITY };
 }
 
-/// How far it is.
+/// The progress of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// The error of the best picture so far.
     pub estimate: Estimate,
-    /// Its samples a pixel, on the average.
+    /// Its samples per pixel, on average.
     pub samples: u32,
-    /// Samples a pixel that were taken in all, on the average.
+    /// Samples per pixel taken in all, on average.
     pub spent: u32,
-    /// Since the beginning.
+    /// The time since the beginning.
     pub elapsed: Duration,
-    /// Of the budget's time.
+    /// The time left of the budget.
     pub time_left: Duration,
 }
 
-/// What became of it.
+/// The result of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reached {
-    /// Why it ended.
+    /// The reason why it ended.
     pub outcome: Outcome,
     /// The error of the picture in the film.
     pub estimate: Estimate,
-    /// Samples a pixel of it, on the average; [`Film::sample_counts`] has those of each.
+    /// The picture's samples per pixel, on average; [`Film::sample_counts`] has those of each
+    /// pixel.
     pub samples: u32,
-    /// Samples a pixel that were taken in all, those of pilots too, on the average.
+    /// Samples per pixel taken in all, including pilots, on average.
     pub spent: u32,
-    /// How long it took.
+    /// The time of the run.
     pub elapsed: Duration,
-    /// Pixels with a sample that was no number. They are not in the error.
+    /// Pixels with a NaN sample, which are not in the error.
     pub nan_pixels: usize,
 }
 
-/// Who is told how far it is, and says whether to go on.
+/// An observer that receives the progress and returns whether to go on.
 pub type ProgressObserver<'a> = &'a mut (dyn FnMut(&Progress) -> ControlFlow<()> + Send);

@@ -2,10 +2,10 @@
 
 use core::f64::consts::PI;
 
-/// The number that a variable of F with `d1` and `d2` degrees of freedom, above 0, is at most with
-/// probability `p`.
+/// Returns the `p` quantile of F with `d1` and `d2` degrees of freedom, above 0.
 pub(super) fn f_quantile(p: f64, d1: f64, d2: f64) -> f64 {
-    // d1 F / (d1 F + d2) has a beta distribution. The side that is farther from 1 is searched for.
+    // d1 F / (d1 F + d2) has a beta distribution. The search is for the side that is farther from
+    // 1.
     let (a, b) = (0.5 * d1, 0.5 * d2);
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..200 {
@@ -24,7 +24,7 @@ pub(super) fn f_quantile(p: f64, d1: f64, d2: f64) -> f64 {
     d2 * (1.0 - rest) / (d1 * rest)
 }
 
-/// The regularised incomplete beta function.
+/// Returns the regularised incomplete beta function.
 fn beta(a: f64, b: f64, x: f64) -> f64 {
     if x <= 0.0 || x >= 1.0 {
         return if x <= 0.0 { 0.0 } else { 1.0 };
@@ -37,8 +37,8 @@ fn beta(a: f64, b: f64, x: f64) -> f64 {
     }
 }
 
-/// Its continued fraction, by Lentz's method. (Press and others, "Numerical Recipes", 3rd edition,
-/// 2007, section 6.4.)
+/// Returns its continued fraction, by Lentz's method. (Press and others, "Numerical Recipes", 3rd
+/// edition, 2007, section 6.4.)
 fn fraction(a: f64, b: f64, x: f64) -> f64 {
     let away = |v: f64| if v.abs() < 1e-300 { 1e-300 } else { v };
     let mut c = 1.0;
@@ -62,8 +62,8 @@ fn fraction(a: f64, b: f64, x: f64) -> f64 {
     h
 }
 
-/// The logarithm of the gamma function, for arguments above 0. (Lanczos 1964, with Godfrey's
-/// coefficients for g = 7.)
+/// Returns the logarithm of the gamma function, for arguments above 0. (Lanczos 1964, with
+/// Godfrey's coefficients for g = 7.)
 fn ln_gamma(x: f64) -> f64 {
     const C: [f64; 8] = [
         676.520_368_121_885_1,
@@ -85,7 +85,8 @@ fn ln_gamma(x: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Of tables of Student's t and of F (NIST/SEMATECH e-Handbook, 1.3.6.7), and closed forms.
+    /// Tests against tables of Student's t and of F (NIST/SEMATECH e-Handbook, 1.3.6.7), and closed
+    /// forms.
     #[test]
     fn quantiles_of_tables() {
         let t = |p: f64, d: f64| f_quantile(p, 1.0, d).sqrt();

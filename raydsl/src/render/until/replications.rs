@@ -1,4 +1,4 @@
-//! Independent estimates of one picture, and what their spread says of their mean.
+//! Independent replications of a picture, and the error of their mean.
 
 use glam::DVec3;
 
@@ -6,57 +6,57 @@ use super::quantile::f_quantile;
 use super::{Estimate, Film, Metric, REPLICATIONS};
 use crate::render::moments::Sums;
 
-/// What rounding leaves of a number: half an ulp where it is made, half an ulp where it is
-/// averaged.
+/// The relative rounding error of a number: half an ulp where it is computed, half an ulp where it
+/// is averaged.
 const ROUNDING: f64 = 1.0 / (1 << 23) as f64;
 
-/// Replications that lie no farther apart than this, in relation to their mean, agree: what is left
-/// is rounding of different orders.
+/// The spread, relative to their mean, up to which replications agree: it is the rounding of
+/// different orders.
 const AGREEMENT: f64 = 4.0 * ROUNDING;
 
-/// Added to the square of a value that an error is put in relation to.
+/// Added to the square of the value in a relative error.
 const RELATIVE_EPSILON: f64 = 1e-2;
 
-/// Replications of a film, of `each` samples a pixel, on the average if they are allocated.
+/// Replications of a film, of `each` samples per pixel, on average if they are allocated.
 pub(super) struct Replications {
-    /// The samples of all; none before there is one.
+    /// The samples of all replications; `None` before the first.
     film: Option<Film>,
-    /// Samples a pixel of each.
+    /// Samples per pixel of a replication.
     pub(super) each: u32,
-    /// How many there are.
+    /// The number of replications.
     pub(super) count: u32,
-    /// Of each pixel, the sum of the squared distances of their means from the mean; of one
-    /// replication, nothing.
+    /// For each pixel, the sum of the squared deviations of the replications' means from their
+    /// mean; empty for one replication.
     apart: Vec<DVec3>,
-    /// The mean of the whole picture, by each.
+    /// The mean of the whole picture in each replication.
     means: Vec<f64>,
 }
 
 /// The error of a pixel's mean.
 pub(super) struct PixelError {
-    /// The mean of its square, as it is expected.
+    /// The expected value of its square.
     pub(super) variance: f64,
-    /// The square of what rounding leaves.
+    /// The square of the rounding error.
     pub(super) rounding: f64,
-    /// Of how many samples it is.
+    /// The number of its samples.
     pub(super) samples: u64,
 }
 
-/// A mean squared error as it is expected, and over how many independent pixels it is.
+/// An expected mean squared error, and the number of independent pixels in it.
 struct Spread {
     mean_square: f64,
     pixels: f64,
-    /// What rounding leaves, as a root of a mean square.
+    /// The rounding error floor, as a root of a mean square.
     floor: f64,
 }
 
 impl Replications {
-    /// None yet. Films are large: nothing is kept before there is something to keep.
+    /// Returns an empty set. Films are large: none is allocated before the first replication.
     pub(super) fn none(each: u32) -> Self {
         Self { film: None, each, count: 0, apart: Vec::new(), means: Vec::new() }
     }
 
-    /// Adds one. (Welford's step, for the mean of each pixel.)
+    /// Adds a replication. (Welford's step, for the mean of each pixel.)
     pub(super) fn join(&mut self, one: Film) {
         let finite = one.sums().iter().map(|s| s.mean.truncate()).filter(|m| m.is_finite());
         let (sum, count) = finite.fold((0.0, 0u64), |(s, n), m| (s + m.element_sum() / 3.0, n + 1));
@@ -76,7 +76,7 @@ impl Replications {
         });
     }
 
-    /// The samples of all, if there are any.
+    /// Returns the samples of all replications, if there are any.
     pub(super) fn into_film(self) -> Option<Film> {
         self.film
     }
@@ -85,7 +85,7 @@ impl Replications {
         self.film.as_ref().map_or(&[], Film::sums)
     }
 
-    /// Samples a pixel in all, on the average.
+    /// Returns the samples per pixel in all, on average.
     pub(super) fn samples(&self) -> u32 {
         self.film.as_ref().map_or(0, |film| {
             let pixels = film.sums().len().max(1) as u64;
@@ -93,7 +93,8 @@ impl Replications {
         })
     }
 
-    /// How much the error is worth before it is known: the squared quantile, over the samples.
+    /// Returns the expected size of the error before it is known: the squared quantile, over the
+    /// samples.
     pub(super) fn expected(&self, confidence: f64) -> f64 {
         match self.count {
             0 => f64::INFINITY,
@@ -102,9 +103,9 @@ impl Replications {
         }
     }
 
-    /// The error of the mean of all, as a root of a mean square, and what rounding leaves of it.
-    /// The number of independent pixels makes the squared error in units of the estimated one a
-    /// variable of F.
+    /// Returns the error of the mean of all, as a root of a mean square, and its rounding error
+    /// floor. The squared error in units of the estimated one has an F distribution, with the
+    /// number of independent pixels as its degrees of freedom.
     pub(super) fn estimate(&self, metric: Metric, confidence: f64) -> (Estimate, f64) {
         let spread = self.spread(metric);
         if self.count < 2 {
@@ -128,7 +129,7 @@ impl Replications {
         }
     }
 
-    /// The variance of the mean of all replications, by how far they lie apart; `unseen` where they
+    /// Returns the variance of the mean of all replications from their spread, or `unseen` if they
     /// agree.
     fn of_means(&self, sum_of_squares: f64, mean: f64, unseen: impl FnOnce() -> f64) -> f64 {
         let n = f64::from(self.count);
@@ -142,14 +143,14 @@ impl Replications {
         }
     }
 
-    /// The squared error that replications of a pixel share where they agree. Evenly spread samples
-    /// meet what is rare equally often in all of them, as 5 times where 5.12 are due: then each is
-    /// off by a part of one sample's weight, at most by `1 - f` of it if a share `f` of all
-    /// replications gives the same. All of `n` do so with a probability of `f^n`; with every `f` as
-    /// likely as any other beforehand, the mean of `(1 - f)^2` is `2 / ((n + 2) (n + 3))`.
+    /// Returns the squared error common to replications that agree in a pixel. Evenly spread
+    /// samples find a rare event equally often in all of them, such as 5 times instead of 5.12:
+    /// then each is off by a part of one sample's weight, at most by `1 - f` of it if a share `f`
+    /// of all replications gives the same. All of `n` do so with a probability of `f^n`; with a
+    /// uniform prior of `f`, the mean of `(1 - f)^2` is `2 / ((n + 2) (n + 3))`.
     ///
-    /// The weight is that of samples which are all or nothing, `E[x^2] / E[x]`; but no more than
-    /// what one sample among all can have, given their variance.
+    /// The weight is that of samples which are all or nothing, `E[x^2] / E[x]`, limited to the
+    /// greatest possible one of a single sample, given their variance.
     fn unseen(&self, sums: &Sums) -> DVec3 {
         let (mean, m2) = (sums.mean.truncate(), sums.m2.truncate());
         let (all, n) = (sums.count as f64, f64::from(self.count));
@@ -175,8 +176,7 @@ impl Replications {
         Spread { mean_square: self.of_means(squares, mean, unseen), pixels: 1.0, floor }
     }
 
-    /// What is known of each pixel's error, in the metric's weights; nothing of those that are no
-    /// numbers.
+    /// Returns the error of each pixel, in the metric's weights; `None` for NaN pixels.
     pub(super) fn pixels(&self, metric: Metric) -> impl Iterator<Item = Option<PixelError>> {
         let weigh = move |square: f64, value: f64| match metric {
             Metric::Rmse | Metric::Mean => square,
@@ -203,9 +203,9 @@ impl Replications {
         })
     }
 
-    /// The channels of a pixel may go together, so a pixel counts once. Pixels with more variance
-    /// than others count for fewer (Satterthwaite, "An Approximate Distribution of Estimates of
-    /// Variance Components", 1946).
+    /// Returns the spread over pixels. The channels of a pixel may be correlated, so a pixel counts
+    /// once. Pixels with more variance than others count for fewer (Satterthwaite, "An Approximate
+    /// Distribution of Estimates of Variance Components", 1946).
     fn spread_of_pixels(&self, metric: Metric) -> Spread {
         let (mut pixels, mut sum, mut squares, mut rounding) = (0u64, 0.0, 0.0, 0.0);
         for pixel in self.pixels(metric).flatten() {
@@ -224,16 +224,16 @@ impl Replications {
     }
 }
 
-/// How many equal ones a sum of variances amounts to: `(sum v)^2 / sum v^2` of the true variances,
-/// from their estimates by `n` values each. Without the correction, the scatter of the estimates
-/// would count too.
+/// Returns the effective number of equal terms in a sum of variances: `(sum v)^2 / sum v^2` of the
+/// true variances, from their estimates by `n` values each. Without the correction, the scatter of
+/// the estimates would count too.
 fn independent(sum: f64, squares: f64, n: f64) -> f64 {
     let true_squares = squares * (n - 1.0) / (n + 1.0);
     let true_sum = sum * sum - 2.0 * squares / (n + 1.0);
     if true_squares > 0.0 { true_sum / true_squares } else { 1.0 }
 }
 
-/// Whether all replications are there.
+/// Returns whether a stage has all replications.
 pub(super) fn is_complete(stage: &Replications) -> bool {
     stage.count == REPLICATIONS
 }
@@ -245,7 +245,7 @@ mod tests {
     use super::*;
     use crate::render::{Image, Moments};
 
-    /// A film of one pixel with `hits` samples of 100 among `each`.
+    /// Returns a film of one pixel with `hits` samples of 100 among `each`.
     fn rare(hits: u32, each: u32) -> Film {
         let mut film = Film::new(1, 1);
         let mut moments = Moments::none();
@@ -254,8 +254,8 @@ mod tests {
         film
     }
 
-    /// 5 rare samples in each of eight replications of 512, where 5.12 are due: they agree, and the
-    /// error is known all the same.
+    /// Tests 5 rare samples in each of eight replications of 512, where 5.12 are expected: they
+    /// agree, and the error is still bounded.
     #[test]
     fn replications_that_agree_do_not_deceive() {
         let mut all = Replications::none(512);

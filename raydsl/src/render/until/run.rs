@@ -1,4 +1,4 @@
-//! Pilots, and fresh samples whose number they choose.
+//! Pilot stages, and stages of fresh samples in the number that the pilots choose.
 
 use core::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -14,27 +14,28 @@ use crate::render::watch::Observer;
 use crate::render::{Film, Sampling};
 use crate::sampling::pcg4d;
 
-/// The first stage has a sample a replication, so that there is a picture soon; up to the pilot
-/// each has this many times those of the one before.
+/// The growth of stages up to the pilot. The first has one sample per replication, so that there is
+/// a picture soon.
 const RAMP: u32 = 8;
-/// Fresh samples are at most this many times those of the stage before: how fast errors fall beyond
-/// is not known from it.
+/// The maximum growth of fresh samples from one stage to the next, which does not predict the
+/// error's decrease beyond that.
 const GROWTH: f64 = 4.0;
-/// The share of the tolerance that is aimed at.
+/// The targeted share of the tolerance.
 const AIM: f64 = 0.8;
-/// The share of the doubt that the first stage that may end it has; each further one has half of
-/// the rest.
+/// The share of the error probability (1 - confidence) for the first stage that may end the run;
+/// each further one has half of the rest.
 const FIRST_SHARE: f64 = 0.8;
 
-/// This part of a budget's time, at most, is kept for what follows the last sample.
+/// The reciprocal of the largest part of a time budget that is reserved for the work after the last
+/// sample.
 const MOST_FOR_END: u32 = 10;
 
-/// Adds samples to an empty film. The observer may break off.
+/// Adds samples to an empty film. The observer may stop it.
 pub(crate) trait Accumulate {
-    /// What may go wrong.
+    /// The error of a failed run.
     type Error;
 
-    /// Adds `samples`.
+    /// Adds `samples` to `film`.
     fn accumulate(
         &mut self,
         samples: &Samples<'_>,
@@ -43,24 +44,24 @@ pub(crate) trait Accumulate {
     ) -> Result<ControlFlow<()>, Self::Error>;
 }
 
-/// A stage: replications of samples that no other stage has.
+/// A stage: replications with samples that no other stage has.
 #[derive(Clone, Copy)]
 struct Plan {
-    /// Samples of a replication.
+    /// Samples per pixel of a replication.
     each: u32,
-    /// The share of the doubt that its error may use, if it may end the run.
+    /// The share of the error probability for its estimate, if it may end the run.
     doubt: Option<f64>,
 }
 
-/// What became of a stage.
+/// The result of a stage.
 struct Stage {
-    /// All its replications are there, and it is the best so far.
+    /// Whether all its replications are complete and it is the best so far.
     is_best: bool,
-    /// What ended the run, if something did.
+    /// The outcome that ended the run, if any.
     cut: Option<Outcome>,
 }
 
-/// Renders into `film` until it is good enough. `until` has been checked.
+/// Renders into `film` until the target is reached. `until` has been checked.
 pub(crate) fn run<R: Accumulate>(
     until: &Until,
     sampling: &Sampling,
@@ -87,7 +88,7 @@ pub(crate) fn run<R: Accumulate>(
     let end = run.stages(renderer);
     let (spent, best) = (run.spent_each(), run.best);
     let samples = best.samples();
-    // Whatever went wrong, the best picture so far is kept.
+    // The best picture so far is kept even after an error.
     match best.into_film() {
         Some(best) => *film = best,
         None if film.samples() > 0 => film.clear(),
@@ -111,16 +112,17 @@ struct Run<'a> {
     size: (u32, u32),
     begin: Instant,
     observer: ProgressObserver<'a>,
-    /// The stage whose error is expected to be the smallest.
+    /// The stage with the smallest expected error.
     best: Replications,
-    /// How the samples of the next stage are shared among the blocks of the film.
+    /// The allocation of the next stage's samples to the blocks of the film.
     shares: Option<Shares>,
-    /// Samples of all pixels.
+    /// Samples of all pixels taken.
     spent: u64,
     stages: u32,
-    /// When the clock was looked at last.
+    /// The time of the last look at the clock.
     looked: Instant,
-    /// How long it was not looked at between two replications: so long it may take to end.
+    /// The time without a look at the clock between the last two replications: the run may take
+    /// as long to end.
     between: Duration,
 }
 
@@ -151,35 +153,37 @@ impl Run<'_> {
         }
     }
 
-    /// The tolerance, as a root of a mean square.
+    /// Returns the tolerance, as a root of a mean square.
     fn tolerance(&self) -> f64 {
         let target = self.until.target;
         target.metric.root(target.tolerance)
     }
 
-    /// The error of the best picture; with the doubt that is left for it, if that counts.
+    /// Returns the error of the best picture, at the share of the error probability `doubt`, if it
+    /// may end the run.
     fn estimate(&self, doubt: Option<f64>) -> (Estimate, f64) {
         let target = self.until.target;
         let share = doubt.unwrap_or(1.0);
         self.best.estimate(target.metric, 1.0 - (1.0 - target.confidence) * share)
     }
 
-    /// In the metric's unit.
+    /// Converts an estimate to the metric's unit.
     fn reported(&self, root: Estimate) -> Estimate {
         let of = |v: f64| self.until.target.metric.of_root(v);
         Estimate { error: of(root.error), low: of(root.low), high: of(root.high) }
     }
 
-    /// What follows a stage whose error is at most `high`. Its own samples chose this, so they do
-    /// not count for what follows.
+    /// Returns the stage after one whose error is at most `high`. Its samples made this choice, so
+    /// they do not count for the next.
     fn next(&self, last: Plan, pilot: u32, high: f64, floor: f64, left: &mut f64) -> Plan {
         if last.each < pilot {
             return Plan { each: last.each.saturating_mul(RAMP).min(pilot), doubt: None };
         }
         let ratio = high / (AIM * (self.tolerance() - floor));
-        // Errors of independent samples fall with the root of their number; others fall faster.
+        // Errors of independent samples decrease with the root of their number; others decrease
+        // faster.
         let need = ratio * ratio * self.shares.as_ref().map_or(1.0, |shares| shares.gain);
-        // Where the last ones were to be enough and were not, more are needed.
+        // If the last stage was planned to suffice and did not, more samples are needed.
         let least = if last.doubt.is_some() { 2.0 } else { 1.0 };
         let times = need.ceil().clamp(least, GROWTH) as u32;
         let doubt = (need <= GROWTH).then(|| {
@@ -191,10 +195,10 @@ impl Run<'_> {
         Plan { each: last.each.saturating_mul(times), doubt }
     }
 
-    /// Renders the replications of a stage, as far as the budget goes.
+    /// Renders the replications of a stage, as far as the budget allows.
     fn stage<R: Accumulate>(&mut self, plan: Plan, renderer: &mut R) -> Result<Stage, R::Error> {
         let affordable = self.until.budget.samples.saturating_sub(self.spent_each()) / REPLICATIONS;
-        // Half a round of fixed places would weigh some parts of a pixel more than others.
+        // Half a period of fixed positions would weight some parts of a pixel more than others.
         let period = self.sampling.pixels.period();
         let affordable = affordable - affordable % period;
         if affordable == 0 {
@@ -241,26 +245,26 @@ impl Run<'_> {
         u64::from(self.size.0) * u64::from(self.size.1)
     }
 
-    /// Samples a pixel that were taken in all, on the average.
+    /// Returns the samples per pixel taken in all, on average.
     fn spent_each(&self) -> u32 {
         u32::try_from(self.spent.div_ceil(self.pixels())).unwrap_or(u32::MAX)
     }
 
-    /// Whether the error of a stage is expected to be smaller than that of the best one. How large
-    /// it seems to be is not asked: that would choose what is flattered.
+    /// Returns whether the expected error of a stage is smaller than that of the best one. The
+    /// estimated error is not used: that would bias the choice.
     fn is_better(&self, stage: &Replications) -> bool {
         let confidence = self.until.target.confidence;
         stage.expected(confidence) < self.best.expected(confidence)
     }
 
-    /// Samples of their own for each replication of each stage.
+    /// Returns the sampling of a replication, different for each replication of each stage.
     fn sampling_of(&self, replication: u32, planned: u32) -> Sampling {
         let key = UVec4::new(self.sampling.seed, self.stages, replication, 0x0075_6e74);
         Sampling { seed: pcg4d(key).x, planned, ..*self.sampling }
     }
 
-    /// Renders one replication, looking at the clock and asking the observer meanwhile. Whether it is
-    /// whole, and what ended the run, if something did: at its end, both may be.
+    /// Renders one replication, checking the clock and asking the observer meanwhile. Returns
+    /// whether it is complete, and the outcome that ended the run, if any: there may be both.
     fn replication<R: Accumulate>(
         &mut self,
         samples: &Samples<'_>,

@@ -1,31 +1,31 @@
-//! Which blocks of a film need more samples than others.
+//! Adaptive sampling: the blocks of a film that need more samples than others.
 
 use super::Metric;
 use super::replications::Replications;
 use crate::render::allocation::{Allocation, BLOCK};
 
-/// No block gets less than this share of what it would get if all got the same: what a pilot did
-/// not meet there may still be found.
+/// The smallest share of the mean that a block gets: events missed there by the pilot may still be
+/// found.
 const LEAST: f64 = 1.0 / 8.0;
 
-/// How the samples of a film are shared among its blocks.
+/// The shares of a film's samples among its blocks.
 pub(super) struct Shares {
     width: u32,
-    /// Of each block, in relation to the mean over all pixels.
+    /// The weight of each block, relative to the mean over all pixels.
     weights: Vec<f64>,
-    /// The mean squared error of as many samples shared like this, in relation to that of the
-    /// replications that it was chosen by.
+    /// The mean squared error of as many samples allocated like this, relative to that of the
+    /// replications it was chosen by.
     pub(super) gain: f64,
 }
 
-/// What is known of the pixels of a block.
+/// The error of a block's pixels.
 #[derive(Clone, Copy, Default)]
 struct Block {
-    /// How many there are.
+    /// The number of pixels.
     area: f64,
     /// The sum of the squared errors of their means.
     error: f64,
-    /// The sum of what one sample has of that.
+    /// The sum of the variances of one sample in them.
     variance: f64,
 }
 
@@ -38,20 +38,20 @@ impl Block {
         }
     }
 
-    /// Of one pixel.
+    /// Returns the mean variance of a pixel.
     fn mean_variance(self) -> f64 {
         if self.area > 0.0 { self.variance / self.area } else { 0.0 }
     }
 }
 
 impl Shares {
-    /// What makes the error of a film least, by the errors that replications of it have. None if
-    /// they have none.
+    /// Returns the shares that minimise the error of a film, from the errors of its replications;
+    /// `None` if these are 0 or not finite.
     pub(super) fn of(replications: &Replications, metric: Metric, width: u32) -> Option<Self> {
         let columns = width.div_ceil(BLOCK) as usize;
         let blocks = blocks(replications, metric, width);
         let all = blocks.iter().copied().fold(Block::default(), Block::join);
-        // What is next to a place that needs many may have something of it.
+        // Neighbours of a block that needs many samples may need some too.
         let pooled = |i: usize| {
             let around = neighbours(i, columns, blocks.len()).map(|i| blocks[i]);
             let around = around.fold(Block::default(), Block::join);
@@ -74,9 +74,9 @@ impl Shares {
         Some(Self { width, weights, gain })
     }
 
-    /// The samples of each block if `each` are the mean, in whole rounds of `period`.
+    /// Returns the samples of each block for a mean of `each`, in whole periods.
     pub(super) fn allocation(&self, each: u32, period: u32) -> Allocation {
-        // One round at least, and no more than the mean in all.
+        // At least one period, and no more than the mean in all.
         let rest = f64::from((each / period).saturating_sub(1));
         let samples = self
             .weights
@@ -86,7 +86,7 @@ impl Shares {
     }
 }
 
-/// Row by row.
+/// Returns the blocks, row by row.
 fn blocks(replications: &Replications, metric: Metric, width: u32) -> Vec<Block> {
     let columns = width.div_ceil(BLOCK) as usize;
     let (mut blocks, mut x, mut y) = (Vec::new(), 0, 0);
@@ -106,7 +106,7 @@ fn blocks(replications: &Replications, metric: Metric, width: u32) -> Vec<Block>
     blocks
 }
 
-/// A block and those around it.
+/// Returns the indices of a block and its neighbours.
 fn neighbours(i: usize, columns: usize, count: usize) -> impl Iterator<Item = usize> {
     let (x, y) = (i % columns, i / columns);
     let rows = count.div_ceil(columns);
@@ -121,7 +121,7 @@ mod tests {
     use super::*;
     use crate::render::{Film, Image, Moments};
 
-    /// Replications whose pixels scatter by `spread(x, y)`.
+    /// Returns replications whose pixels scatter by `spread(x, y)`.
     fn replications(width: u32, height: u32, spread: impl Fn(u32, u32) -> f32) -> Replications {
         let mut all = Replications::none(16);
         for r in 0..8 {
@@ -148,8 +148,8 @@ mod tests {
         assert!(Shares::of(&replications(40, 40, |_, _| 0.0), Metric::Rmse, 40).is_none());
     }
 
-    /// Nine in ten columns are quiet: they keep an eighth, and those beside the others have a part
-    /// of their need. The mean is what was asked for.
+    /// Tests that where nine in ten columns are quiet, these keep an eighth, and those next to the
+    /// others get a part of their need. The mean is the requested one.
     #[test]
     fn what_scatters_gets_more() {
         let (width, height) = (160, 32);
