@@ -103,6 +103,13 @@ pub(crate) enum Kind {
         value: Box<Expr>,
         ty: TokenStream,
     },
+    /// Whether a value is of a variant without fields: `path` is `ty::name`.
+    Is {
+        value: Box<Expr>,
+        path: TokenStream,
+        ty: TokenStream,
+        name: Ident,
+    },
     /// `*x`: the value of a `&mut` parameter.
     Deref(Box<Expr>),
     /// `&mut place`, as an argument.
@@ -249,6 +256,12 @@ pub(crate) struct BinaryOp {
     pub(crate) may_overflow: bool,
 }
 
+/// Returns whether an associated function is one that a derive writes: it tests a variant or returns
+/// a part of it.
+pub(crate) fn is_part(name: &Ident) -> bool {
+    name.to_string().starts_with("__")
+}
+
 /// Returns whether a name is a constant's, by rustc's naming convention.
 pub(crate) fn is_constant(name: &Ident) -> bool {
     name.to_string().starts_with(|c: char| c.is_ascii_uppercase())
@@ -292,6 +305,7 @@ impl Kind {
             | Self::Return(Some(a))
             | Self::Break(_, Some(a))
             | Self::Cast { value: a, .. }
+            | Self::Is { value: a, .. }
             | Self::Repeat { value: a, .. }
             | Self::Field { base: a, .. }
             | Self::Index { base: a, .. } => vec![a],
@@ -489,6 +503,7 @@ impl Expr {
     pub(crate) fn is_total(&self) -> bool {
         let this = match &self.kind {
             Kind::Binary { op, .. } => !op.may_trap,
+            Kind::Associated { name, .. } if is_part(name) => true,
             Kind::Call { .. }
             | Kind::Associated { .. }
             | Kind::Method { .. }
@@ -513,14 +528,14 @@ impl Expr {
 
     /// Returns whether it calls or assigns something, so that its order matters.
     pub(crate) fn may_act(&self) -> bool {
-        let this = matches!(
-            self.kind,
+        let this = match &self.kind {
+            Kind::Associated { name, .. } => !is_part(name),
             Kind::Call { .. }
-                | Kind::Associated { .. }
-                | Kind::Method { .. }
-                | Kind::Assign { .. }
-                | Kind::OpAssign { .. }
-        );
+            | Kind::Method { .. }
+            | Kind::Assign { .. }
+            | Kind::OpAssign { .. } => true,
+            _ => false,
+        };
         this || self.kind.children().iter().any(|e| e.may_act())
     }
 

@@ -96,8 +96,8 @@ const ELEMENTARY: &[(&str, &str)] = &[
 
 /// Other methods that kernels cannot have, with their replacements.
 const DENIED: &[(&str, &str)] = &[
-    ("unwrap", "a value with a flag: kernels have no Option"),
-    ("expect", "a value with a flag: kernels have no Option"),
+    ("unwrap", "`unwrap_or(x)`, or `if let Some(x) = ..`: a kernel cannot stop"),
+    ("expect", "`unwrap_or(x)`, or `if let Some(x) = ..`: a kernel cannot stop"),
     ("to_string", "nothing: kernels have no strings"),
     ("clone", "the value itself: kernel types are Copy"),
     ("iter", "`for x in list.iter()`, or a `for` over a range"),
@@ -111,7 +111,7 @@ const REFUSED_TYPES: &[(&[&str], &str)] = &[
         "use `u32`, `i32` or `usize`, which has 32 bits in a kernel; for small members of structs \
          there are `Unorm8` and `Unorm16`",
     ),
-    (&["Option", "Result"], "give a value that says what happened, as `Hit` has `is_hit`"),
+    (&["Result"], "give a value that says what happened, as `Hit` has `is_hit`"),
     (&["String", "str", "char"], "keep text outside the kernel"),
     (&["Vec", "Box", "HashMap"], "capture a slice or take one as `&[f32]`: kernels have no heap"),
 ];

@@ -5,7 +5,7 @@ use proc_macro2::{Ident, Span, TokenStream};
 use super::places::{is_part_of_element, plain_steps};
 use super::{Binding, Emitter, own, private, shown};
 use crate::here::{At, quote_here as quote, word};
-use crate::model::{Expr, Kind, Place};
+use crate::model::{Expr, Kind, Place, is_part};
 
 impl Emitter<'_> {
     pub(super) fn call(&mut self, path: &TokenStream, args: &[Expr], span: Span) -> TokenStream {
@@ -36,10 +36,15 @@ impl Emitter<'_> {
         let _at = At::new(name.span());
         let m = own("m");
         let ty = self.without_self(ty);
+        // The parameters of a variant's enum are inferred, as in the source.
+        let is_variant = is_part(name) || name.to_string().starts_with(char::is_uppercase);
+        let is_path = !ty.to_string().contains('<');
         let name = word(&format!("{name}_on"));
         let args = self.arguments(args);
         let values = &args.values;
-        args.around(quote!(<#ty>::#name(#m, #(#values),*)))
+        let function =
+            if is_variant && is_path { quote!(#ty::#name) } else { quote!(<#ty>::#name) };
+        args.around(quote!(#function(#m, #(#values),*)))
     }
 
     fn arguments(&mut self, args: &[Expr]) -> Arguments {

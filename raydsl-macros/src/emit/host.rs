@@ -31,6 +31,10 @@ impl Emitter<'_> {
             }
             Kind::Binary { op, a, b } => self.host_binary(op.symbol, a, b),
             Kind::Compare { op, a, b } => self.host_binary(comparison(op), a, b),
+            Kind::Is { value, path, .. } => {
+                let value = self.host_value(value)?;
+                Some(quote!((#value == #path)))
+            }
             Kind::Logic { and, a, b } => self.host_binary(if *and { "&&" } else { "||" }, a, b),
             _ => None,
         }

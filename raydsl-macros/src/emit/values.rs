@@ -201,6 +201,10 @@ impl Emitter<'_> {
             }
             Kind::Logic { and, a, b } => self.logic(*and, a, b, span),
             Kind::Compare { op, a, b } => self.comparison(op, a, b),
+            Kind::Is { value, ty, name, .. } => {
+                let test = Ident::new(&format!("__is_{name}"), name.span());
+                self.associated(ty, &test, core::slice::from_ref(value))
+            }
             Kind::Cast { value, ty } => {
                 let value = self.value(value);
                 quote!(#p::cast::<_, _, #ty>(#m, #value))

@@ -4,6 +4,7 @@ use quote::{ToTokens, quote};
 use syn::spanned::Spanned;
 
 use super::Parser;
+use super::pattern::variant_of;
 use super::refused::is_absent;
 use super::types::{generic_argument, is_type_name};
 use crate::model::{Expr, Kind};
@@ -36,6 +37,11 @@ impl Parser<'_> {
         }
         let segments: Vec<&syn::PathSegment> = p.path.segments.iter().collect();
         let Some((last, init)) = segments.split_last() else { return Kind::Error };
+        if last.ident == "Some"
+            && let Some(some) = variant_of(&p.path)
+        {
+            return some.value(args, c.span()).kind;
+        }
         match init.last() {
             Some(owner) if is_type_name(&owner.ident) => {
                 let mut ty = p.path.clone();

@@ -8,6 +8,7 @@ use syn::{BinOp, Lit, UnOp};
 use super::Parser;
 use super::attributes::{attributes, is_coherent};
 use super::function::NESTED;
+use super::pattern::{has_let, variant_of};
 use super::place::assignment;
 use super::refused::is_absent;
 use crate::model::{BinaryOp, Block, Expr, IntType, Kind, Step, Stmt};
@@ -79,6 +80,7 @@ impl Parser<'_> {
             syn::Expr::Struct(s) => self.structure(s),
             syn::Expr::Tuple(t) => Kind::Tuple(self.exprs(&t.elems)),
             syn::Expr::If(i) => self.conditional(i),
+            syn::Expr::While(w) if has_let(&w.cond) => self.while_let(w),
             syn::Expr::While(w) => Kind::While {
                 label: label(&w.label),
                 c: self.boxed(&w.cond),
@@ -158,6 +160,10 @@ impl Parser<'_> {
             return self.absent(&last.ident);
         }
         match p.path.get_ident() {
+            Some(ident) if ident == "None" => match variant_of(&p.path) {
+                Some(none) => none.value(vec![], p.span()).kind,
+                None => Kind::Error,
+            },
             Some(ident) => Kind::Name(ident.clone()),
             None => Kind::Path(p.to_token_stream()),
         }
@@ -205,6 +211,11 @@ impl Parser<'_> {
 
     fn structure(&mut self, s: &syn::ExprStruct) -> Kind {
         s.fields.iter().for_each(|f| self.no_attributes(&f.attrs));
+        if let Some(variant) = variant_of(&s.path) {
+            let named = |f: &syn::FieldValue| f.member.to_token_stream().to_string();
+            let values = s.fields.iter().map(|f| (named(f), self.expr(&f.expr))).collect();
+            return variant.structure(values, s.span()).kind;
+        }
         let fields =
             s.fields.iter().map(|f| (f.member.to_token_stream(), self.expr(&f.expr))).collect();
         let rest = s.rest.as_ref().map(|e| self.boxed(e));
@@ -212,6 +223,9 @@ impl Parser<'_> {
     }
 
     fn conditional(&mut self, i: &syn::ExprIf) -> Kind {
+        if has_let(&i.cond) {
+            return self.conditional_let(i);
+        }
         Kind::If {
             coherent: self.is_coherent || i.attrs.iter().any(is_coherent),
             c: self.boxed(&i.cond),

@@ -7,7 +7,11 @@ use syn::spanned::Spanned;
 
 use super::Parser;
 use super::attributes::is_coherent;
+use super::expression::{inside_parens, label};
+use super::refused::is_absent;
+use super::types::is_type_name;
 use crate::generics::mentions;
+use crate::here::private;
 use crate::model::{Block, Expr, Kind, Let, Stmt, is_constant};
 
 fn name(name: &Ident) -> Expr {
@@ -23,6 +27,23 @@ fn logic(and: bool, a: Expr, b: Expr) -> Expr {
     Expr { kind: Kind::Logic { and, a: Box::new(a), b: Box::new(b) }, span }
 }
 
+/// Returns `if c { a } else { b }`.
+fn one_of(c: Expr, a: Expr, b: Expr) -> Expr {
+    let span = c.span;
+    let then = Block { stmts: vec![], tail: Some(Box::new(a)) };
+    let otherwise = Some(Box::new(b));
+    Expr { kind: Kind::If { coherent: false, c: Box::new(c), then, otherwise }, span }
+}
+
+/// Returns whether a condition has a `let`.
+pub(super) fn has_let(e: &syn::Expr) -> bool {
+    match inside_parens(e) {
+        syn::Expr::Let(_) => true,
+        syn::Expr::Binary(b) => has_let(&b.left) || has_let(&b.right),
+        _ => false,
+    }
+}
+
 fn both(a: Option<Expr>, b: Option<Expr>) -> Option<Expr> {
     match (a, b) {
         (Some(a), Some(b)) => Some(logic(true, a, b)),
@@ -30,19 +51,69 @@ fn both(a: Option<Expr>, b: Option<Expr>) -> Option<Expr> {
     }
 }
 
-/// Returns the enum of a variant's path.
-fn enum_of(path: &syn::Path) -> Option<TokenStream> {
+/// A variant of an enum, as a path names it.
+pub(super) struct Variant {
+    /// The enum.
+    ty: TokenStream,
+    name: Ident,
+}
+
+/// Returns the variant that a path names: `Shape::Ball`, `Some`.
+pub(super) fn variant_of(path: &syn::Path) -> Option<Variant> {
+    let (last, owner) = {
+        let mut segments = path.segments.iter().rev();
+        (&segments.next()?.ident, segments.next())
+    };
+    let name = last.clone();
+    if last == "Some" || last == "None" {
+        let p = private();
+        return Some(Variant { ty: quote!(#p::Options), name });
+    }
+    if !is_type_name(&owner?.ident) || is_absent(last) || !is_camel_case(last) {
+        return None;
+    }
     let mut ty = path.clone();
     ty.segments.pop();
     ty.segments.pop_punct();
-    (!ty.segments.is_empty()).then(|| ty.to_token_stream())
+    Some(Variant { ty: ty.to_token_stream(), name })
 }
 
-/// Returns whether this is a variant of an enum of kernels, unlike those of `Option` and `Result`.
-fn is_variant(path: &syn::Path) -> bool {
-    let of_std = ["Some", "Ok", "Err"];
-    let last = path.segments.last();
-    path.segments.len() > 1 && !last.is_some_and(|s| of_std.iter().any(|name| s.ident == name))
+/// Returns whether a name is a variant's, by its letters, and not a constant's.
+fn is_camel_case(name: &Ident) -> bool {
+    let text = name.to_string();
+    text.starts_with(|c: char| c.is_ascii_uppercase())
+        && (text.len() == 1 || text.contains(|c: char| c.is_ascii_lowercase()))
+}
+
+impl Variant {
+    /// Returns a call of one of the functions that the derive writes for the variant.
+    fn call(&self, name: &str, args: Vec<Expr>, span: Span) -> Expr {
+        let name = Ident::new(name, self.name.span());
+        Expr { kind: Kind::Associated { ty: self.ty.clone(), name, args }, span }
+    }
+
+    /// Returns whether a value is of this variant.
+    fn is(&self, value: &Expr, span: Span) -> Expr {
+        self.call(&format!("__is_{}", self.name), vec![value.clone()], span)
+    }
+
+    /// Returns a field of a value of this variant.
+    fn field(&self, value: &Expr, field: &str, span: Span) -> Expr {
+        self.call(&format!("__{}_{field}", self.name), vec![value.clone()], span)
+    }
+
+    /// Returns a value of this variant without fields, or with fields that are not named.
+    pub(super) fn value(&self, args: Vec<Expr>, span: Span) -> Expr {
+        self.call(&self.name.to_string(), args, span)
+    }
+
+    /// Returns a value of this variant with named fields.
+    pub(super) fn structure(&self, fields: Vec<(String, Expr)>, span: Span) -> Expr {
+        let empty = self.call(&format!("__new_{}", self.name), vec![], span);
+        fields.into_iter().fold(empty, |value, (field, e)| {
+            self.call(&format!("__set_{}_{field}", self.name), vec![value, e], span)
+        })
+    }
 }
 
 /// Returns whether it is `..` or `name @ ..`.
@@ -76,12 +147,20 @@ impl Parser<'_> {
                 self.errors.at(span, "a kernel has no `ref`", "bind the value: it is copied");
                 None
             }
+            Pat::Ident(p) if p.ident == "None" => {
+                let variant = variant_of(&p.ident.clone().into())?;
+                Some(variant.is(from, span))
+            }
             Pat::Ident(p) if is_constant(&p.ident) => {
                 Some(compare("Eq", from, name(&p.ident), span))
             }
             Pat::Ident(p) => {
                 lets.push(Stmt::bind(p.ident.clone(), p.mutability.is_some(), from.clone()));
                 p.subpat.as_ref().and_then(|(_, sub)| self.pattern(sub, from, lets))
+            }
+            Pat::Path(p) if let Some(Variant { ty, name }) = variant_of(&p.path) => {
+                let (value, path) = (Box::new(from.clone()), p.to_token_stream());
+                Some(Expr { kind: Kind::Is { value, path, ty, name }, span })
             }
             Pat::Path(p) => {
                 let constant = Expr { kind: Kind::Path(p.to_token_stream()), span };
@@ -98,18 +177,29 @@ impl Parser<'_> {
             Pat::Reference(r) => self.pattern(&r.pat, from, lets),
             Pat::Type(t) => self.pattern(&t.pat, from, lets),
             Pat::Tuple(t) => self.tuple_pattern(t, from, lets),
+            Pat::Struct(s) if let Some(variant) = variant_of(&s.path) => {
+                let mut test = Some(variant.is(from, span));
+                for f in &s.fields {
+                    let field = f.member.to_token_stream().to_string();
+                    let item = variant.field(from, &field, f.span());
+                    test = both(test, self.pattern(&f.pat, &item, lets));
+                }
+                test
+            }
             Pat::Struct(s) => s.fields.iter().fold(None, |test, f| {
                 let item = member(from, f.member.to_token_stream(), f.span());
                 both(test, self.pattern(&f.pat, &item, lets))
             }),
             Pat::Slice(s) => self.slice_pattern(s, from, lets),
-            Pat::TupleStruct(t) if is_variant(&t.path) => self.variant(t, from, lets),
+            Pat::TupleStruct(t) if let Some(variant) = variant_of(&t.path) => {
+                self.variant(&variant, t, from, lets)
+            }
             Pat::TupleStruct(t) => {
                 self.errors.at(
                     t.span(),
                     format!("a kernel has no `{}`", t.path.to_token_stream()),
-                    "a value that may be missing is a struct with a flag, as `Hit` has `is_hit`; a \
-                     kind of an enum of primitives is written `Shape::Ball(ball)`",
+                    "a variant is written with its enum, as in `Shape::Ball(ball)`; a value that may \
+                     be missing is an `Option`: `Some(x)`",
                 );
                 None
             }
@@ -136,19 +226,39 @@ impl Parser<'_> {
         )
     }
 
-    /// Returns the condition of `1 | 2`.
+    /// Returns the condition of `1 | 2`. What all of the patterns bind, the first that matches
+    /// binds.
     fn or_pattern(&mut self, or: &syn::PatOr, from: &Expr, lets: &mut Vec<Stmt>) -> Option<Expr> {
-        let count = lets.len();
-        let tests: Vec<_> = or.cases.iter().map(|p| self.pattern(p, from, lets)).collect();
-        if lets.len() > count {
-            lets.truncate(count);
-            self.errors.at(
-                or.span(),
-                "a kernel's patterns joined by `|` bind no names",
-                "write an arm for each, or bind the whole: `n @ (1 | 2)`",
-            );
+        let mut cases = Vec::new();
+        for pat in &or.cases {
+            let mut bound = Vec::new();
+            let test = self.pattern(pat, from, &mut bound);
+            let always = test.is_none();
+            cases.push((test, bound));
+            if always {
+                break;
+            }
         }
-        let tests = tests.into_iter().collect::<Option<Vec<_>>>()?;
+        let (last_test, last) = cases.pop()?;
+        for stmt in last {
+            let Stmt::Let(Let { name: Some(name), mutable, init: Some(init), .. }) = stmt else {
+                continue;
+            };
+            let init = cases.iter().rev().fold(init, |otherwise, (test, bound)| {
+                let found = bound.iter().find_map(|stmt| match stmt {
+                    Stmt::Let(Let { name: Some(n), init: Some(e), .. }) if *n == name => Some(e),
+                    _ => None,
+                });
+                // Where one does not bind the name, rustc says so in the user's own function.
+                match (test, found) {
+                    (Some(test), Some(e)) => one_of(test.clone(), e.clone(), otherwise),
+                    _ => otherwise,
+                }
+            });
+            lets.push(Stmt::bind(name, mutable, init));
+        }
+        let tests = cases.into_iter().map(|(test, _)| test).chain([last_test]);
+        let tests = tests.collect::<Option<Vec<_>>>()?;
         tests.into_iter().reduce(|a, b| logic(false, a, b))
     }
 
@@ -206,27 +316,122 @@ impl Parser<'_> {
         test
     }
 
-    /// Returns the condition of `Shape::Ball(ball)`: a variant of an enum of primitives.
+    /// Returns the condition of `Shape::Ball(centre, radius)`.
     fn variant(
         &mut self,
+        variant: &Variant,
         pat: &syn::PatTupleStruct,
         from: &Expr,
         lets: &mut Vec<Stmt>,
     ) -> Option<Expr> {
-        let span = pat.span();
-        let (Some(kind), Some(ty)) = (pat.path.segments.last(), enum_of(&pat.path)) else {
-            return None;
-        };
-        let ask = |what: &str| {
-            let name = Ident::new(&format!("__{what}_{}", kind.ident), kind.ident.span());
-            let (ty, args) = (ty.clone(), vec![from.clone()]);
-            Expr { kind: Kind::Associated { ty, name, args }, span }
-        };
-        if let Some(prim) = pat.elems.first() {
-            let prim_test = self.pattern(prim, &ask("as"), lets);
-            return both(Some(ask("is")), prim_test);
+        let mut test = Some(variant.is(from, pat.span()));
+        for (i, p) in pat.elems.iter().enumerate() {
+            if matches!(p, Pat::Rest(_)) && i + 1 < pat.elems.len() {
+                self.errors.at(
+                    p.span(),
+                    "`..` stands last in a kernel's pattern of a variant",
+                    "write `_` for each field before the ones that you name",
+                );
+                return None;
+            }
+            let item = variant.field(from, &i.to_string(), p.span());
+            test = both(test, self.pattern(p, &item, lets));
         }
-        Some(ask("is"))
+        test
+    }
+
+    /// Parses a condition that may have `let PATTERN = e`, alone or joined by `&&`. What it binds is
+    /// added to `lets`, for the code behind it; what must be evaluated before it, to `before`.
+    pub(super) fn condition(
+        &mut self,
+        e: &syn::Expr,
+        before: &mut Vec<Stmt>,
+        lets: &mut Vec<Stmt>,
+    ) -> Expr {
+        match inside_parens(e) {
+            syn::Expr::Let(l) => {
+                let from = self.expr(&l.expr);
+                let from = self.read_often(from, &l.pat.to_token_stream(), before);
+                let test = self.pattern(&l.pat, &from, lets);
+                test.unwrap_or(Expr { kind: Kind::Bool(true), span: l.span() })
+            }
+            syn::Expr::Binary(b) if matches!(b.op, syn::BinOp::And(_)) && has_let(e) => {
+                let left = self.condition(&b.left, before, lets);
+                let (mut inner, mut bound) = (Vec::new(), Vec::new());
+                let right = self.condition(&b.right, &mut inner, &mut bound);
+                // The right side sees what the left one binds, and is not evaluated before it.
+                let mut stmts = lets.clone();
+                stmts.extend(inner.iter().cloned());
+                lets.extend(inner);
+                lets.extend(bound);
+                let right = if stmts.is_empty() {
+                    right
+                } else {
+                    let span = right.span;
+                    let block = Block { stmts, tail: Some(Box::new(right)) };
+                    Expr { kind: Kind::Block(block), span }
+                };
+                logic(true, left, right)
+            }
+            e => self.expr(e),
+        }
+    }
+
+    /// Parses `if let PATTERN = e { .. } else { .. }`.
+    pub(super) fn conditional_let(&mut self, i: &syn::ExprIf) -> Kind {
+        let (mut before, mut lets) = (Vec::new(), Vec::new());
+        let coherent = self.is_coherent || i.attrs.iter().any(is_coherent);
+        let c = Box::new(self.condition(&i.cond, &mut before, &mut lets));
+        let mut then = self.block(&i.then_branch);
+        then.stmts.splice(0..0, lets);
+        let otherwise = i.else_branch.as_ref().map(|(_, e)| self.boxed(e));
+        let kind = Kind::If { coherent, c, then, otherwise };
+        if before.is_empty() {
+            return kind;
+        }
+        let tail = Some(Box::new(Expr { kind, span: i.span() }));
+        Kind::Block(Block { stmts: before, tail })
+    }
+
+    /// Parses `while let PATTERN = e { .. }`.
+    pub(super) fn while_let(&mut self, w: &syn::ExprWhile) -> Kind {
+        let (mut stmts, mut lets) = (Vec::new(), Vec::new());
+        let (span, coherent) = (w.span(), self.is_coherent);
+        let c = Box::new(self.condition(&w.cond, &mut stmts, &mut lets));
+        let mut then = self.block(&w.body);
+        then.stmts.splice(0..0, lets);
+        let exit = Expr { kind: Kind::Break(None, None), span };
+        let exit = Block { stmts: vec![Stmt::Expr(exit)], tail: None };
+        let otherwise = Some(Box::new(Expr { kind: Kind::Block(exit), span }));
+        let kind = Kind::If { coherent, c, then, otherwise };
+        stmts.push(Stmt::Expr(Expr { kind, span }));
+        Kind::Loop { label: label(&w.label), body: Block { stmts, tail: None } }
+    }
+
+    /// Parses `let PATTERN = init else { .. };`.
+    pub(super) fn let_else(
+        &mut self,
+        pat: &Pat,
+        init: &syn::Expr,
+        diverging: &syn::Expr,
+    ) -> Vec<Stmt> {
+        let (mut stmts, mut lets) = (Vec::new(), Vec::new());
+        let span = pat.span();
+        let from = self.expr(init);
+        let from = self.read_often(from, &pat.to_token_stream(), &mut stmts);
+        let test = self.pattern(pat, &from, &mut lets);
+        let body = self.expr(diverging);
+        if let Some(test) = test {
+            let then = match body.kind {
+                Kind::Block(block) => block,
+                kind => Block { stmts: vec![Stmt::Expr(Expr { kind, span })], tail: None },
+            };
+            let c = Box::new(Expr { kind: Kind::Not(Box::new(test)), span });
+            let kind = Kind::If { coherent: self.is_coherent, c, then, otherwise: None };
+            stmts.push(Stmt::Expr(Expr { kind, span }));
+        }
+        stmts.extend(lets);
+        stmts
     }
 
     /// Returns a value that patterns read more than once; it gets a name unless it is one, and also

@@ -47,9 +47,9 @@ const OF_ITERATORS: &[&str] = &[
     "zip",
 ];
 
-/// Returns whether it is a variant of `Option` or of `Result`.
+/// Returns whether it is a variant of `Result`.
 pub(super) fn is_absent(name: &Ident) -> bool {
-    ["Some", "None", "Ok", "Err"].iter().any(|n| name == n)
+    ["Ok", "Err"].iter().any(|n| name == n)
 }
 
 /// Returns whether `e` is made by methods of iterators: `list.iter()`, `(0..n).map(..)`.
@@ -78,11 +78,10 @@ fn is_closure(e: &syn::Expr) -> bool {
 }
 
 impl Parser<'_> {
-    /// Refuses `Some(x)`, `None` and their like.
+    /// Refuses `Ok(x)` and `Err(e)`.
     pub(super) fn absent(&mut self, name: &Ident) -> Kind {
-        let ty = if name == "Some" || name == "None" { "Option" } else { "Result" };
-        let help = ops::refused_type(ty).unwrap_or_default();
-        self.error(name.span(), format!("a kernel has no `{ty}`"), help)
+        let help = ops::refused_type("Result").unwrap_or_default();
+        self.error(name.span(), "a kernel has no `Result`", help)
     }
 
     /// Refuses `values.iter().sum()` and `values.map(|x| ..)`: the mistake is not in the arguments.
@@ -145,7 +144,7 @@ impl Parser<'_> {
             }
             syn::Expr::Range(_) => ("ranges outside `for`", "write `for i in a..b`"),
             syn::Expr::Let(_) => {
-                ("`if let` and `while let`", "compare the value: kernels have no Option")
+                ("`let` within a condition but beside `&&`", "write an `if let` for each")
             }
             syn::Expr::Unsafe(_) => ("`unsafe`", "write safe code"),
             syn::Expr::Await(_) | syn::Expr::Async(_) => ("`async`", "write plain code"),

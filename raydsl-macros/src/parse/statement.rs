@@ -51,13 +51,10 @@ impl Parser<'_> {
             Pat::Type(t) => (&*t.pat, Some(self.ty(&t.ty))),
             pat => (pat, None),
         };
-        if let Some((_, e)) = l.init.as_ref().and_then(|init| init.diverge.as_ref()) {
-            self.errors.at(
-                e.span(),
-                "a kernel has no `let ... else`",
-                "write an `if` that returns early",
-            );
-            return Vec::new();
+        if let Some(init) = &l.init
+            && let Some((_, diverging)) = &init.diverge
+        {
+            return self.let_else(&l.pat, &init.expr, diverging);
         }
         let init = l.init.as_ref().map(|init| self.expr(&init.expr));
         let (name, mutable) = match pat {

@@ -142,7 +142,7 @@ impl Choice<'_> {
         let (p, name, twin) = (private(), &self.item.ident, self.twin_name());
         let (names, types, numbers) = (self.names(), self.types(), self.numbers());
         let asks: Vec<Ident> = names.iter().map(|n| format_ident!("__is_{n}_on")).collect();
-        let takes: Vec<Ident> = names.iter().map(|n| format_ident!("__as_{n}_on")).collect();
+        let takes: Vec<Ident> = names.iter().map(|n| format_ident!("__{n}_0_on")).collect();
         let makes: Vec<Ident> = names.iter().map(|n| format_ident!("{n}_on")).collect();
         quote! {
             #[doc(hidden)]

@@ -2,7 +2,6 @@
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
-use syn::spanned::Spanned;
 
 use super::shared::methods;
 use crate::diag::Errors;
@@ -11,13 +10,6 @@ use crate::here::private;
 
 /// Returns the names of the variants.
 pub(super) fn variants(e: &syn::DataEnum, errors: &mut Errors) -> Vec<Ident> {
-    for v in e.variants.iter().filter(|v| !matches!(v.fields, syn::Fields::Unit)) {
-        errors.at(
-            v.span(),
-            "an enum of the kernel language has no fields",
-            "write a struct with a member that says which kind it is",
-        );
-    }
     if e.variants.len() < 2 {
         errors.at(
             e.brace_token.span.join(),
@@ -37,6 +29,7 @@ pub(super) fn twin(item: &syn::DeriveInput, variants: &[Ident]) -> TokenStream {
         enumeration.fits(),
         enumeration.declaration(),
         enumeration.of_number(),
+        enumeration.tests(),
         enumeration.value_impl(),
         methods(&quote!(#twin<__M>), &quote!(#name), &Generics::default()),
         enumeration.operations(),
@@ -92,6 +85,24 @@ impl Enumeration<'_> {
             }
 
             impl<__M: #p::Machine> Copy for #twin<__M> {}
+        }
+    }
+
+    /// Returns the functions for variants in patterns and expressions of kernels.
+    fn tests(&self) -> TokenStream {
+        let (p, name, twin, variants) = (private(), &self.item.ident, &self.twin, self.variants);
+        let tests = variants.iter().map(|v| format_ident!("__is_{v}_on"));
+        quote! {
+            #[doc(hidden)]
+            #[allow(non_snake_case, dead_code, reason = "named as the variants")]
+            impl #name {
+                #(
+                    #[inline(always)]
+                    pub fn #tests<__M: #p::Machine>(m: &__M, value: #twin<__M>) -> #p::B<__M> {
+                        #p::is_kind(m, value.number, Self::#variants as u32)
+                    }
+                )*
+            }
         }
     }
 

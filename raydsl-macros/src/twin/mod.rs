@@ -7,6 +7,7 @@ mod operators;
 mod record;
 mod shared;
 mod structure;
+mod sum;
 
 use proc_macro2::TokenStream;
 use quote::{ToTokens, quote, quote_spanned};
@@ -21,6 +22,15 @@ pub(crate) use record::hit_record;
 /// Expands `#[derive(Type)]`.
 pub(crate) fn derive(item: &syn::DeriveInput) -> TokenStream {
     let mut errors = Errors::default();
+    if let syn::Data::Enum(e) = &item.data
+        && e.variants.iter().any(|v| !v.fields.is_empty())
+    {
+        let sum = sum::Sum::new(item, e, &mut errors);
+        if errors.is_empty() {
+            return sum.twin();
+        }
+        return mistaken::mistaken(item, errors);
+    }
     if let syn::Data::Enum(e) = &item.data {
         let variants = enumeration::variants(e, &mut errors);
         if errors.is_empty() {

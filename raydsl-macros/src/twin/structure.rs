@@ -94,15 +94,19 @@ impl<'a> Structure<'a> {
         let (p, host, types) = (private(), &self.host, self.types());
         let (name, names) = (self.item.ident.to_string(), self.names());
         let texts = names.iter().map(ToString::to_string);
+        let numbers = 0..names.len();
+        let offsets = quote!([#(::core::mem::offset_of!(#host, #names)),*]);
+        let sizes = quote!([#(::core::mem::size_of::<#types>()),*]);
+        let schemas = quote!([#(<#types as #p::Type>::SCHEMA),*]);
         quote! {
             &#p::Schema::Struct {
                 name: #name,
                 fields: &[#(#p::Field {
                     name: #texts,
-                    offset: ::core::mem::offset_of!(#host, #names),
+                    offset: #p::offsets(#offsets, #sizes, #schemas)[#numbers],
                     schema: <#types as #p::Type>::SCHEMA,
                 }),*],
-                size: ::core::mem::size_of::<#host>(),
+                size: #p::size_of_members(::core::mem::size_of::<#host>(), #sizes, #schemas),
             }
         }
     }
@@ -173,9 +177,9 @@ impl<'a> Structure<'a> {
     /// Returns the functions that write a host value to bytes, and read one.
     fn bytes(&self) -> TokenStream {
         let (p, names) = (private(), self.names());
-        let host = &self.host;
-        let offsets: Vec<_> =
-            names.iter().map(|name| quote!(::core::mem::offset_of!(#host, #name))).collect();
+        let offsets: Vec<_> = (0..names.len())
+            .map(|i| quote!(const { #p::offset_of(<Self as #p::Type>::SCHEMA, #i) }))
+            .collect();
         quote! {
             fn write(&self, out: &mut [u8]) {
                 #(#p::Type::write(&self.#names, &mut out[#offsets..]);)*

@@ -59,6 +59,7 @@ pub mod op;
 mod operand;
 mod operation;
 mod ops;
+mod option;
 pub(crate) mod owner;
 mod packet;
 pub(crate) mod record;
@@ -117,6 +118,8 @@ pub(crate) mod generated {
         Bounds, Coerce, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv, OpMul,
         OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Varying,
     };
+    pub use super::option::{OptionOn, Options, zero_of};
+    pub use super::schema::{offset_of, offsets, size_of_members};
     pub use super::twin::{Inferred, Twin};
     pub use super::types::LaneMachine;
     pub use super::value::Leaves;

@@ -2,6 +2,7 @@
 
 use glam::{BVec2, BVec3, BVec4, IVec2, IVec3, IVec4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 
+use super::schema::{offset_of, offsets, size_of_members, stride_of};
 use super::{B, F, Field, I, Machine, Schema, U, Usize, Value, Varying, X2, X3, X4, fill};
 
 /// A type that kernels may use: it has a twin on every machine.
@@ -179,7 +180,7 @@ impl<T: Type, const N: usize> Type for [T; N] {
     type On<M: Machine> = [T::On<M>; N];
 
     const SCHEMA: &'static Schema =
-        &Schema::Array { element: T::SCHEMA, count: N, stride: size_of::<T>() };
+        &Schema::Array { element: T::SCHEMA, count: N, stride: stride_of::<T>() };
 
     #[inline(always)]
     fn splat<M: Machine>(m: &M, v: Self) -> Self::On<M> {
@@ -212,13 +213,13 @@ impl<T: Type, const N: usize> Type for [T; N] {
     }
 
     fn write(&self, out: &mut [u8]) {
-        for (x, chunk) in self.iter().zip(out.chunks_exact_mut(size_of::<T>())) {
+        for (x, chunk) in self.iter().zip(out.chunks_exact_mut(stride_of::<T>())) {
             x.write(chunk);
         }
     }
 
     fn read(bytes: &[u8]) -> Self {
-        core::array::from_fn(|i| T::read(&bytes[i * size_of::<T>()..]))
+        core::array::from_fn(|i| T::read(&bytes[i * stride_of::<T>()..]))
     }
 }
 
@@ -243,8 +244,21 @@ impl Type for () {
     fn read(_: &[u8]) {}
 }
 
+/// Where the elements of a tuple lie.
+trait Places<const N: usize> {
+    const PLACES: [usize; N];
+}
+
 macro_rules! tuple_type {
     ($($name:ident . $index:tt),+) => {
+        impl<$($name: Type),+> Places<{ [$($index),+].len() }> for ($($name,)+) {
+            const PLACES: [usize; [$($index),+].len()] = offsets(
+                [$(core::mem::offset_of!(Self, $index)),+],
+                [$(size_of::<$name>()),+],
+                [$($name::SCHEMA),+],
+            );
+        }
+
         impl<$($name: Type),+> Type for ($($name,)+) {
             type On<M: Machine> = ($($name::On<M>,)+);
 
@@ -252,10 +266,14 @@ macro_rules! tuple_type {
                 name: "Tuple",
                 fields: &[$(Field {
                     name: concat!("_", stringify!($index)),
-                    offset: core::mem::offset_of!(Self, $index),
+                    offset: Self::PLACES[$index],
                     schema: $name::SCHEMA,
                 }),+],
-                size: size_of::<Self>(),
+                size: size_of_members(
+                    size_of::<Self>(),
+                    [$(size_of::<$name>()),+],
+                    [$($name::SCHEMA),+],
+                ),
             };
 
             #[inline(always)]
@@ -274,11 +292,11 @@ macro_rules! tuple_type {
             }
 
             fn write(&self, out: &mut [u8]) {
-                $(self.$index.write(&mut out[core::mem::offset_of!(Self, $index)..]);)+
+                $(self.$index.write(&mut out[const { offset_of(Self::SCHEMA, $index) }..]);)+
             }
 
             fn read(bytes: &[u8]) -> Self {
-                ($($name::read(&bytes[core::mem::offset_of!(Self, $index)..]),)+)
+                ($($name::read(&bytes[const { offset_of(Self::SCHEMA, $index) }..]),)+)
             }
         }
     };

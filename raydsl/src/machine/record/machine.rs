@@ -655,7 +655,7 @@ impl Machine for Recorder {
     }
 
     fn capture<T: crate::machine::Type>(&self, name: &'static str, v: T) -> T::On<Self> {
-        let mut bytes = vec![0; size_of::<T>()];
+        let mut bytes = vec![0; T::SCHEMA.size().max(size_of::<T>())];
         v.write(&mut bytes);
         self.of_leaves(&self.captured(name, T::SCHEMA, &bytes))
     }
