@@ -12,6 +12,10 @@ fn main() {
             let hit = bvh.closest_hit(ray);
             if hit.is_hit { bvh.primitive(hit).rgb() } else { background }
         };
+        let scalar = ::raydsl::__private::Kernel::scalar(
+            &__INFO,
+            move |(ray,): (Ray,)| scalar(ray),
+        );
         let captures = (&bvh, &background);
         #[allow(
             unused,
@@ -529,7 +533,7 @@ fn main() {
                 },
             )
         };
-        ::raydsl::__private::Kernel::scalar(&__INFO, move |(ray,): (Ray,)| scalar(ray))
+        scalar
             .lifted(
                 ::raydsl::__private::Lifted {
                     native4: ::core::option::Option::Some(

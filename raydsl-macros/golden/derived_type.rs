@@ -11,24 +11,21 @@ impl<__M: ::raydsl::__private::Machine> Clone for SampleOn<__M> {
     }
 }
 impl<__M: ::raydsl::__private::Machine> Copy for SampleOn<__M> {}
+#[doc(hidden)]
+impl Sample {
+    const __PLACES: ::raydsl::__private::Places<2usize> = ::raydsl::__private::Places::new(
+        ::core::mem::size_of::<Self>(),
+        [::core::mem::offset_of!(Self, value), ::core::mem::offset_of!(Self, count)],
+        [::core::mem::size_of::<f32>(), ::core::mem::size_of::<u32>()],
+        [
+            <f32 as ::raydsl::__private::Type>::SCHEMA,
+            <u32 as ::raydsl::__private::Type>::SCHEMA,
+        ],
+    );
+}
 impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::Value<__M>
 for SampleOn<__M> {
-    const SCHEMA: &'static ::raydsl::__private::Schema = &::raydsl::__private::Schema::Struct {
-        name: "Sample",
-        fields: &[
-            ::raydsl::__private::Field {
-                name: "value",
-                offset: ::core::mem::offset_of!(Sample < >, value),
-                schema: <f32 as ::raydsl::__private::Type>::SCHEMA,
-            },
-            ::raydsl::__private::Field {
-                name: "count",
-                offset: ::core::mem::offset_of!(Sample < >, count),
-                schema: <u32 as ::raydsl::__private::Type>::SCHEMA,
-            },
-        ],
-        size: ::core::mem::size_of::<Sample>(),
-    };
+    const SCHEMA: &'static ::raydsl::__private::Schema = <Sample as ::raydsl::__private::Type>::SCHEMA;
     #[inline(always)]
     fn zero(m: &__M) -> Self {
         Self {
@@ -335,16 +332,16 @@ impl ::raydsl::__private::Type for Sample {
         fields: &[
             ::raydsl::__private::Field {
                 name: "value",
-                offset: ::core::mem::offset_of!(Sample < >, value),
+                offset: Self::__PLACES.offsets[0usize],
                 schema: <f32 as ::raydsl::__private::Type>::SCHEMA,
             },
             ::raydsl::__private::Field {
                 name: "count",
-                offset: ::core::mem::offset_of!(Sample < >, count),
+                offset: Self::__PLACES.offsets[1usize],
                 schema: <u32 as ::raydsl::__private::Type>::SCHEMA,
             },
         ],
-        size: ::core::mem::size_of::<Sample>(),
+        size: Self::__PLACES.size,
     };
     #[inline(always)]
     fn splat<__M: ::raydsl::__private::Machine>(m: &__M, v: Self) -> SampleOn<__M> {
@@ -384,20 +381,20 @@ impl ::raydsl::__private::Type for Sample {
     fn write(&self, out: &mut [u8]) {
         ::raydsl::__private::Type::write(
             &self.value,
-            &mut out[::core::mem::offset_of!(Sample < >, value)..],
+            &mut out[Self::__PLACES.offsets[0usize]..],
         );
         ::raydsl::__private::Type::write(
             &self.count,
-            &mut out[::core::mem::offset_of!(Sample < >, count)..],
+            &mut out[Self::__PLACES.offsets[1usize]..],
         );
     }
     fn read(bytes: &[u8]) -> Self {
         Self {
             value: ::raydsl::__private::Type::read(
-                &bytes[::core::mem::offset_of!(Sample < >, value)..],
+                &bytes[Self::__PLACES.offsets[0usize]..],
             ),
             count: ::raydsl::__private::Type::read(
-                &bytes[::core::mem::offset_of!(Sample < >, count)..],
+                &bytes[Self::__PLACES.offsets[1usize]..],
             ),
         }
     }

@@ -22,29 +22,30 @@ impl<__M: ::raydsl::__private::Machine> Clone for ColorSphereOn<__M> {
     }
 }
 impl<__M: ::raydsl::__private::Machine> Copy for ColorSphereOn<__M> {}
+#[doc(hidden)]
+impl ColorSphere {
+    const __PLACES: ::raydsl::__private::Places<3usize> = ::raydsl::__private::Places::new(
+        ::core::mem::size_of::<Self>(),
+        [
+            ::core::mem::offset_of!(Self, center),
+            ::core::mem::offset_of!(Self, radius),
+            ::core::mem::offset_of!(Self, color),
+        ],
+        [
+            ::core::mem::size_of::<Vec3>(),
+            ::core::mem::size_of::<Unorm8>(),
+            ::core::mem::size_of::<[Unorm8; 3]>(),
+        ],
+        [
+            <Vec3 as ::raydsl::__private::Type>::SCHEMA,
+            <Unorm8 as ::raydsl::__private::Type>::SCHEMA,
+            <[Unorm8; 3] as ::raydsl::__private::Type>::SCHEMA,
+        ],
+    );
+}
 impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::Value<__M>
 for ColorSphereOn<__M> {
-    const SCHEMA: &'static ::raydsl::__private::Schema = &::raydsl::__private::Schema::Struct {
-        name: "ColorSphere",
-        fields: &[
-            ::raydsl::__private::Field {
-                name: "center",
-                offset: ::core::mem::offset_of!(ColorSphere < >, center),
-                schema: <Vec3 as ::raydsl::__private::Type>::SCHEMA,
-            },
-            ::raydsl::__private::Field {
-                name: "radius",
-                offset: ::core::mem::offset_of!(ColorSphere < >, radius),
-                schema: <Unorm8 as ::raydsl::__private::Type>::SCHEMA,
-            },
-            ::raydsl::__private::Field {
-                name: "color",
-                offset: ::core::mem::offset_of!(ColorSphere < >, color),
-                schema: <[Unorm8; 3] as ::raydsl::__private::Type>::SCHEMA,
-            },
-        ],
-        size: ::core::mem::size_of::<ColorSphere>(),
-    };
+    const SCHEMA: &'static ::raydsl::__private::Schema = <ColorSphere as ::raydsl::__private::Type>::SCHEMA;
     #[inline(always)]
     fn zero(m: &__M) -> Self {
         Self {
@@ -360,21 +361,21 @@ impl ::raydsl::__private::Type for ColorSphere {
         fields: &[
             ::raydsl::__private::Field {
                 name: "center",
-                offset: ::core::mem::offset_of!(ColorSphere < >, center),
+                offset: Self::__PLACES.offsets[0usize],
                 schema: <Vec3 as ::raydsl::__private::Type>::SCHEMA,
             },
             ::raydsl::__private::Field {
                 name: "radius",
-                offset: ::core::mem::offset_of!(ColorSphere < >, radius),
+                offset: Self::__PLACES.offsets[1usize],
                 schema: <Unorm8 as ::raydsl::__private::Type>::SCHEMA,
             },
             ::raydsl::__private::Field {
                 name: "color",
-                offset: ::core::mem::offset_of!(ColorSphere < >, color),
+                offset: Self::__PLACES.offsets[2usize],
                 schema: <[Unorm8; 3] as ::raydsl::__private::Type>::SCHEMA,
             },
         ],
-        size: ::core::mem::size_of::<ColorSphere>(),
+        size: Self::__PLACES.size,
     };
     #[inline(always)]
     fn splat<__M: ::raydsl::__private::Machine>(m: &__M, v: Self) -> ColorSphereOn<__M> {
@@ -421,27 +422,27 @@ impl ::raydsl::__private::Type for ColorSphere {
     fn write(&self, out: &mut [u8]) {
         ::raydsl::__private::Type::write(
             &self.center,
-            &mut out[::core::mem::offset_of!(ColorSphere < >, center)..],
+            &mut out[Self::__PLACES.offsets[0usize]..],
         );
         ::raydsl::__private::Type::write(
             &self.radius,
-            &mut out[::core::mem::offset_of!(ColorSphere < >, radius)..],
+            &mut out[Self::__PLACES.offsets[1usize]..],
         );
         ::raydsl::__private::Type::write(
             &self.color,
-            &mut out[::core::mem::offset_of!(ColorSphere < >, color)..],
+            &mut out[Self::__PLACES.offsets[2usize]..],
         );
     }
     fn read(bytes: &[u8]) -> Self {
         Self {
             center: ::raydsl::__private::Type::read(
-                &bytes[::core::mem::offset_of!(ColorSphere < >, center)..],
+                &bytes[Self::__PLACES.offsets[0usize]..],
             ),
             radius: ::raydsl::__private::Type::read(
-                &bytes[::core::mem::offset_of!(ColorSphere < >, radius)..],
+                &bytes[Self::__PLACES.offsets[1usize]..],
             ),
             color: ::raydsl::__private::Type::read(
-                &bytes[::core::mem::offset_of!(ColorSphere < >, color)..],
+                &bytes[Self::__PLACES.offsets[2usize]..],
             ),
         }
     }

@@ -52,12 +52,13 @@ impl<'a> Structure<'a> {
     }
 
     fn twin(&self, owner: &TokenStream) -> TokenStream {
-        let (declaration, value) = (self.declaration(), self.value_impl());
+        let (declaration, places, value) = (self.declaration(), self.places(), self.value_impl());
         let methods = methods(&self.twin, owner, &self.generics);
         let r#type = self.type_impl();
         let capture = capture(&self.twin, &self.host, &self.generics);
         quote! {
             #declaration
+            #places
             #value
             #methods
             #r#type
@@ -90,34 +91,49 @@ impl<'a> Structure<'a> {
         }
     }
 
+    /// Returns where the members lie.
+    fn places(&self) -> TokenStream {
+        let (p, host, types, names) = (private(), &self.host, self.types(), self.names());
+        let Generics { declared, predicates, .. } = &self.generics;
+        let count = names.len();
+        quote! {
+            #[doc(hidden)]
+            impl<#declared> #host where #predicates {
+                const __PLACES: #p::Places<#count> = #p::Places::new(
+                    ::core::mem::size_of::<Self>(),
+                    [#(::core::mem::offset_of!(Self, #names)),*],
+                    [#(::core::mem::size_of::<#types>()),*],
+                    [#(<#types as #p::Type>::SCHEMA),*],
+                );
+            }
+        }
+    }
+
     fn schema(&self) -> TokenStream {
-        let (p, host, types) = (private(), &self.host, self.types());
+        let (p, types) = (private(), self.types());
         let (name, names) = (self.item.ident.to_string(), self.names());
         let texts = names.iter().map(ToString::to_string);
         let numbers = 0..names.len();
-        let offsets = quote!([#(::core::mem::offset_of!(#host, #names)),*]);
-        let sizes = quote!([#(::core::mem::size_of::<#types>()),*]);
-        let schemas = quote!([#(<#types as #p::Type>::SCHEMA),*]);
         quote! {
             &#p::Schema::Struct {
                 name: #name,
                 fields: &[#(#p::Field {
                     name: #texts,
-                    offset: #p::offsets(#offsets, #sizes, #schemas)[#numbers],
+                    offset: Self::__PLACES.offsets[#numbers],
                     schema: <#types as #p::Type>::SCHEMA,
                 }),*],
-                size: #p::size_of_members(::core::mem::size_of::<#host>(), #sizes, #schemas),
+                size: Self::__PLACES.size,
             }
         }
     }
 
     /// Returns the implementation of the twin as a value of a machine.
     fn value_impl(&self) -> TokenStream {
-        let (p, twin, names, schema) = (private(), &self.twin, self.names(), self.schema());
+        let (p, twin, names, host) = (private(), &self.twin, self.names(), &self.host);
         let Generics { declared, predicates, .. } = &self.generics;
         quote! {
             impl<__M: #p::Machine, #declared> #p::Value<__M> for #twin where #predicates {
-                const SCHEMA: &'static #p::Schema = #schema;
+                const SCHEMA: &'static #p::Schema = <#host as #p::Type>::SCHEMA;
 
                 #[inline(always)]
                 fn zero(m: &__M) -> Self {
@@ -177,9 +193,8 @@ impl<'a> Structure<'a> {
     /// Returns the functions that write a host value to bytes, and read one.
     fn bytes(&self) -> TokenStream {
         let (p, names) = (private(), self.names());
-        let offsets: Vec<_> = (0..names.len())
-            .map(|i| quote!(const { #p::offset_of(<Self as #p::Type>::SCHEMA, #i) }))
-            .collect();
+        let offsets: Vec<_> =
+            (0..names.len()).map(|i| quote!(Self::__PLACES.offsets[#i])).collect();
         quote! {
             fn write(&self, out: &mut [u8]) {
                 #(#p::Type::write(&self.#names, &mut out[#offsets..]);)*

@@ -119,7 +119,7 @@ pub(crate) mod generated {
         OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Varying,
     };
     pub use super::option::{OptionOn, Options, zero_of};
-    pub use super::schema::{offset_of, offsets, size_of_members};
+    pub use super::schema::Places;
     pub use super::twin::{Inferred, Twin};
     pub use super::types::LaneMachine;
     pub use super::value::Leaves;

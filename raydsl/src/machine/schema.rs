@@ -87,64 +87,38 @@ impl Schema {
     }
 }
 
-/// Returns where members lie, given the host's offsets and sizes of them: there, unless a member's
-/// layout is larger than the host's, as that of an enum with fields may be. Then members follow each
-/// other in whole words.
-pub const fn offsets<const N: usize>(
-    host: [usize; N],
-    sizes: [usize; N],
-    schemas: [&Schema; N],
-) -> [usize; N] {
-    if fits(sizes, schemas) {
-        return host;
-    }
-    let (mut all, mut end, mut i) = ([0; N], 0, 0);
-    while i < N {
-        all[i] = end;
-        end += schemas[i].size().next_multiple_of(4);
-        i += 1;
-    }
-    all
+/// Where the members of a struct or a tuple lie in buffers.
+#[derive(Clone, Copy, Debug)]
+pub struct Places<const N: usize> {
+    /// The offset of each member in bytes.
+    pub offsets: [usize; N],
+    /// Bytes from one value to the next.
+    pub size: usize,
 }
 
-/// Returns the bytes of a struct or a tuple of the size `host`; see [`offsets`].
-pub const fn size_of_members<const N: usize>(
-    host: usize,
-    sizes: [usize; N],
-    schemas: [&Schema; N],
-) -> usize {
-    if fits(sizes, schemas) {
-        return host;
-    }
-    let (mut end, mut i) = (0, 0);
-    while i < N {
-        end += schemas[i].size().next_multiple_of(4);
-        i += 1;
-    }
-    end
-}
-
-const fn fits<const N: usize>(sizes: [usize; N], schemas: [&Schema; N]) -> bool {
-    let mut i = 0;
-    while i < N {
-        if schemas[i].size() > sizes[i] {
-            return false;
+impl<const N: usize> Places<N> {
+    /// Returns the host's places, `size` and `offsets`, unless the layout of a member is larger than
+    /// its host's size, as that of an enum with fields may be. Then members follow each other in
+    /// whole words.
+    pub const fn new(
+        size: usize,
+        offsets: [usize; N],
+        sizes: [usize; N],
+        schemas: [&Schema; N],
+    ) -> Self {
+        let (mut all, mut end, mut fits, mut i) = ([0; N], 0, true, 0);
+        while i < N {
+            all[i] = end;
+            end += schemas[i].size().next_multiple_of(4);
+            fits &= schemas[i].size() <= sizes[i];
+            i += 1;
         }
-        i += 1;
+        if fits { Self { offsets, size } } else { Self { offsets: all, size: end } }
     }
-    true
 }
 
 /// Returns the bytes from one element of an array to the next.
 pub(super) const fn stride_of<T: super::Type>() -> usize {
     let (host, own) = (size_of::<T>(), T::SCHEMA.size());
     if own > host { own.next_multiple_of(4) } else { host }
-}
-
-/// Returns where the member `i` of a struct or a tuple lies.
-pub const fn offset_of(schema: &Schema, i: usize) -> usize {
-    match schema {
-        Schema::Struct { fields, .. } => fields[i].offset,
-        _ => 0,
-    }
 }

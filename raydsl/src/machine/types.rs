@@ -2,7 +2,7 @@
 
 use glam::{BVec2, BVec3, BVec4, IVec2, IVec3, IVec4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 
-use super::schema::{offset_of, offsets, size_of_members, stride_of};
+use super::schema::{Places, stride_of};
 use super::{B, F, Field, I, Machine, Schema, U, Usize, Value, Varying, X2, X3, X4, fill};
 
 /// A type that kernels may use: it has a twin on every machine.
@@ -244,15 +244,16 @@ impl Type for () {
     fn read(_: &[u8]) {}
 }
 
-/// Where the elements of a tuple lie.
-trait Places<const N: usize> {
-    const PLACES: [usize; N];
+/// A tuple's places.
+trait Tuple<const N: usize> {
+    const PLACES: Places<N>;
 }
 
 macro_rules! tuple_type {
     ($($name:ident . $index:tt),+) => {
-        impl<$($name: Type),+> Places<{ [$($index),+].len() }> for ($($name,)+) {
-            const PLACES: [usize; [$($index),+].len()] = offsets(
+        impl<$($name: Type),+> Tuple<{ [$($index),+].len() }> for ($($name,)+) {
+            const PLACES: Places<{ [$($index),+].len() }> = Places::new(
+                size_of::<Self>(),
                 [$(core::mem::offset_of!(Self, $index)),+],
                 [$(size_of::<$name>()),+],
                 [$($name::SCHEMA),+],
@@ -266,14 +267,10 @@ macro_rules! tuple_type {
                 name: "Tuple",
                 fields: &[$(Field {
                     name: concat!("_", stringify!($index)),
-                    offset: Self::PLACES[$index],
+                    offset: Self::PLACES.offsets[$index],
                     schema: $name::SCHEMA,
                 }),+],
-                size: size_of_members(
-                    size_of::<Self>(),
-                    [$(size_of::<$name>()),+],
-                    [$($name::SCHEMA),+],
-                ),
+                size: Self::PLACES.size,
             };
 
             #[inline(always)]
@@ -292,11 +289,11 @@ macro_rules! tuple_type {
             }
 
             fn write(&self, out: &mut [u8]) {
-                $(self.$index.write(&mut out[const { offset_of(Self::SCHEMA, $index) }..]);)+
+                $(self.$index.write(&mut out[Self::PLACES.offsets[$index]..]);)+
             }
 
             fn read(bytes: &[u8]) -> Self {
-                ($($name::read(&bytes[const { offset_of(Self::SCHEMA, $index) }..]),)+)
+                ($($name::read(&bytes[Self::PLACES.offsets[$index]..]),)+)
             }
         }
     };
