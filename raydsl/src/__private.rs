@@ -2,7 +2,7 @@
 
 pub use crate::geometry::{Aabb, Hit, HitOn, HitRecord, Kinds, Primitive, Ray, RayOn};
 pub use crate::kernel::{Counting, Kernel, Lifted, Native4, Native8, Native16};
-pub use crate::machine::generated::*;
+pub use crate::machine::lifted::*;
 pub use crate::machine::{
     B, Capture, Compare, F, Field, KernelFn, KernelInfo, Lanes, Machine, Margin, Op, Recorder,
     Resource, Schema, Slice, Type, Value, op,
@@ -14,12 +14,8 @@ pub mod operations {
         Affine3Functions as _, F32Functions as _, Mat3Functions as _, Mat4Functions as _,
         Vec2New as _, Vec3New as _, Vec4New as _, VectorFunctions as _,
     };
-    pub use crate::machine::host::GiveConstant as _;
+    pub use crate::machine::lifted::GiveConstant as _;
 }
-
-pub use crate::machine::host::{Constant, HostCapture, HostUse};
-pub use crate::machine::index::with_element;
-pub use crate::machine::lowered::*;
 
 /// What the crate `raydsl-report` uses besides.
 pub mod report {

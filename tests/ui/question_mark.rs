@@ -6,7 +6,7 @@ fn maybe(x: f32) -> Option<f32> {
 }
 
 #[kernel]
-fn shade(x: f32) -> Option<f32> { //~ macro
+fn shade(x: f32) -> Option<f32> {
     let y = maybe(x)?; //~ macro
     maybe(y)
 }

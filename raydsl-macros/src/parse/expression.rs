@@ -159,11 +159,12 @@ impl Parser<'_> {
         if let Some(last) = p.path.segments.last().filter(|s| is_absent(&s.ident)) {
             return self.absent(&last.ident);
         }
+        if p.path.segments.last().is_some_and(|s| s.ident == "None")
+            && let Some(none) = variant_of(&p.path)
+        {
+            return none.value(vec![], p.span()).kind;
+        }
         match p.path.get_ident() {
-            Some(ident) if ident == "None" => match variant_of(&p.path) {
-                Some(none) => none.value(vec![], p.span()).kind,
-                None => Kind::Error,
-            },
             Some(ident) => Kind::Name(ident.clone()),
             None => Kind::Path(p.to_token_stream()),
         }

@@ -78,16 +78,6 @@ impl<M: Machine, K: Integer> Inferred<M> for Bare<M, K> {
     }
 }
 
-// Literals beside it have its type.
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, K: Integer> Coerce<M, Bare<M, K>> for K {
-    #[inline(always)]
-    fn coerce(self, m: &M) -> Bare<M, K> {
-        bare(m, self)
-    }
-}
-
 #[diagnostic::do_not_recommend]
 impl<M: Machine, K: Integer> Index<M> for Bare<M, K>
 where
@@ -191,7 +181,11 @@ macro_rules! beside {
     ($each:ident!($($args:tt)*)) => {
         $each!($($args)* [K: Integer] Bare<M, K>, Bare<M, K>, |m, a, b| (a.0, b.0), Bare<M, K>);
         $each!($($args)* [K: Integer] Bare<M, K>, K, |m, a, b| (a.0, K::splat(m, b)), Bare<M, K>);
-        $each!($($args)* [K: Integer] K, Bare<M, K>, |m, a, b| (K::splat(m, a), b.0), Bare<M, K>);
+        $each!($($args)* [] i32, Bare<M, i32>, |m, a, b| (I(m.i32(a)), b.0), Bare<M, i32>);
+        $each!($($args)* [] u32, Bare<M, u32>, |m, a, b| (U(m.u32(a)), b.0), Bare<M, u32>);
+        $each!($($args)* [] usize, Bare<M, usize>, |m, a, b| {
+            (<usize as Type>::splat(m, a), b.0)
+        }, Bare<M, usize>);
         $each!($($args)* [] Bare<M, i32>, I<M>, |m, a, b| (a.0, b), Bare<M, i32>);
         $each!($($args)* [] I<M>, Bare<M, i32>, |m, a, b| (a, b.0), I<M>);
         $each!($($args)* [] Bare<M, u32>, U<M>, |m, a, b| (a.0, b), Bare<M, u32>);
@@ -291,6 +285,15 @@ macro_rules! integers {
                 #[inline(always)]
                 fn bits<M: Machine>(m: &M, v: $twin<M>) -> U<M> {
                     U(Counter::bits(v, m))
+                }
+            }
+
+            // A literal beside it has its type.
+            #[diagnostic::do_not_recommend]
+            impl<M: Machine> Coerce<M, Bare<M, $host>> for $host {
+                #[inline(always)]
+                fn coerce(self, m: &M) -> Bare<M, $host> {
+                    bare(m, self)
                 }
             }
 

@@ -82,11 +82,11 @@ pub(crate) use data::is_borrowed;
 pub use data::{Data, Slice};
 pub(crate) use data::{borrowed_key, bytes_of, read_in_place};
 pub use gang::Gang;
-pub(crate) use generated::*;
 pub(crate) use index::{Index, Indexed, element_in_step};
 pub use kinds::Kinds;
 pub(crate) use lanes::{Entered, fill};
 pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
+pub(crate) use lifted::*;
 pub use margin::{Leaf, Margin, Outcomes, Rounding, result_leaves};
 pub(crate) use matrix::A3;
 pub use op::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Op, U32Unary};
@@ -104,8 +104,12 @@ pub(crate) use value::Floats;
 pub use value::{B, F, I, U, Usize, Value};
 pub use vector::{V2, V3, V4, X2, X3, X4};
 
-/// Items named only by generated code; see `crate::__private`.
-pub(crate) mod generated {
+/// Everything that only generated code is written with.
+pub mod lifted {
+    pub use super::host::{Constant, GiveConstant, HostCapture, HostUse};
+    pub use super::index::{Index, Indexed, with_element};
+    pub use super::lowered::*;
+
     pub use super::bare::{Bare, bare};
     pub use super::call::KnownBy;
     pub use super::capture::Parameter;
