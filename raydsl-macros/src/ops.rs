@@ -216,6 +216,11 @@ const OF_ONE: &[&str] = &[
     "normalize",
 ];
 
+/// Returns whether `f32::name(..)` is the method `name` of its first argument.
+pub(crate) fn is_plain_method(name: &str) -> bool {
+    matches!(name, "clamp" | "mul_add") || OF_TWO.contains(&name) || OF_ONE.contains(&name)
+}
+
 /// Returns the replacement of `f32::name(..)`, if `name` is a method.
 pub(crate) fn method_of_library(name: &str) -> Option<String> {
     if let Some((_, ours)) = ELEMENTARY.iter().find(|e| e.0 == name && !e.1.is_empty()) {

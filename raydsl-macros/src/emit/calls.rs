@@ -2,7 +2,7 @@
 
 use proc_macro2::{Ident, Span, TokenStream};
 
-use super::places::{is_part_of_element, plain_steps};
+use super::places::{change, is_part_of_element, part_of, plain_steps};
 use super::{Binding, Emitter, own, private, shown};
 use crate::here::{At, quote_here as quote, word};
 use crate::model::{Expr, Kind, Place, is_part};
@@ -107,17 +107,25 @@ impl Emitter<'_> {
         if self.lookup(&place.name).is_none() && self.is_closure {
             self.not_ours(&place.name);
         }
-        let Some(steps) = plain_steps(&place.steps) else {
-            self.errors.at(
-                span,
-                "a kernel has no `&mut` to a computed element",
-                "copy the element to a variable, and assign it back after the call",
-            );
-            return None;
-        };
+        let _at = At::new(span);
         let (p, m) = (private(), own("m"));
         let (part, whole) = (self.fresh("part"), own("whole"));
         let text = shown(&place.name);
+        let Some(steps) = plain_steps(&place.steps) else {
+            let (indices, steps) = self.parts(&place.steps);
+            let (old, back) = (part_of(quote!(#local.get(#m)), &steps), quote!(#part.get(#m)));
+            let change = change(quote!(#whole), &steps, &|_| back.clone(), 0);
+            around.before.extend(quote! {
+                #indices
+                let #part = #p::Var::new(#m, #text, #old);
+            });
+            around.after.extend(quote!({
+                let mut #whole = #local.get(#m);
+                #change
+                #local.set(#m, #whole);
+            }));
+            return Some(quote!(&#part));
+        };
         if steps.is_empty() && self.find(&place.name).is_some_and(|local| local.bare) {
             // The function says which integer it is.
             around.before.extend(quote! {

@@ -99,7 +99,7 @@ impl Emitter<'_> {
     }
 
     /// Emits the evaluation of a place's computed indices, and returns its steps with them.
-    fn parts(&mut self, steps: &[Step]) -> (TokenStream, Vec<Part>) {
+    pub(super) fn parts(&mut self, steps: &[Step]) -> (TokenStream, Vec<Part>) {
         let mut indices = TokenStream::new();
         let mut part = |step: &Step| match step {
             Step::Member(member) => Part::Plain(quote!(.#member)),
@@ -137,13 +137,13 @@ pub(super) fn plain_steps(steps: &[Step]) -> Option<TokenStream> {
 }
 
 /// A step of a place, with computed indices already evaluated.
-enum Part {
+pub(super) enum Part {
     Plain(TokenStream),
     Computed(Ident),
 }
 
 /// Emits a change of the part of `place` at the end of `steps` to `new` of its old value.
-fn change(
+pub(super) fn change(
     place: TokenStream,
     steps: &[Part],
     new: &dyn Fn(TokenStream) -> TokenStream,
@@ -165,4 +165,13 @@ fn change(
             })
         }
     }
+}
+
+/// Emits the part of `place` at the end of `steps`.
+pub(super) fn part_of(place: TokenStream, steps: &[Part]) -> TokenStream {
+    let (p, m) = (private(), own("m"));
+    steps.iter().fold(place, |place, step| match step {
+        Part::Plain(step) => quote!(#place #step),
+        Part::Computed(i) => quote!(#p::element(#m, #place, #i)),
+    })
 }

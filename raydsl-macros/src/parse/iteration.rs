@@ -1,5 +1,6 @@
 //! Parsing of `for` loops.
 
+use proc_macro2::Span;
 use quote::quote;
 use syn::Pat;
 use syn::spanned::Spanned;
@@ -7,41 +8,111 @@ use syn::spanned::Spanned;
 use super::Parser;
 use super::expression::{inside_parens, label};
 use crate::model::{Block, Expr, Kind, Range, Stmt};
+use crate::ops;
 
-/// The slice or array that a `for` iterates over, and whether it counts.
-struct Items<'a> {
-    list: &'a syn::Expr,
-    enumerated: bool,
-    /// Whether it is the list itself, not a reference to it: the loop runs over a copy.
-    by_value: bool,
+/// What a `for` goes through, element by element.
+enum Sequence<'a> {
+    /// A slice or an array. By value the loop runs over a copy.
+    List { list: &'a syn::Expr, by_value: bool },
+    /// `.enumerate()`.
+    Enumerated(Box<Self>),
+    /// `.rev()`.
+    Reversed(Box<Self>),
+    /// `.zip(..)`.
+    Zipped(Box<Self>, Box<Self>),
 }
 
-/// Recognises `list.iter()`, `&list`, `list.into_iter()` and `list`, and each with `.enumerate()`.
-fn items(e: &syn::Expr) -> Option<Items<'_>> {
+/// A sequence whose lists are expressions of the kernel.
+enum Elements {
+    List(Expr),
+    Enumerated(Box<Self>),
+    Reversed(Box<Self>),
+    Zipped(Box<Self>, Box<Self>),
+}
+
+/// Returns the sequence of `list.iter()`, `&list`, `list.into_iter()` and `list`, and of each with
+/// `.enumerate()`, `.rev()` and `.zip(..)`.
+fn sequence(e: &syn::Expr) -> Option<Sequence<'_>> {
+    let by_reference = |list| Some(Sequence::List { list, by_value: false });
     match inside_parens(e) {
         syn::Expr::MethodCall(c) if c.method == "iter" && c.args.is_empty() => {
-            Some(Items { list: &c.receiver, enumerated: false, by_value: false })
+            by_reference(&*c.receiver)
         }
         syn::Expr::MethodCall(c) if c.method == "into_iter" && c.args.is_empty() => {
             let is_range = matches!(inside_parens(&c.receiver), syn::Expr::Range(_));
-            (!is_range).then_some(Items { list: &c.receiver, enumerated: false, by_value: true })
+            (!is_range).then_some(Sequence::List { list: &c.receiver, by_value: true })
         }
-        syn::Expr::MethodCall(c) if c.method == "enumerate" && c.args.is_empty() => {
-            let inner = items(&c.receiver)?;
-            (!inner.enumerated).then_some(Items { enumerated: true, ..inner })
+        syn::Expr::MethodCall(c) if c.args.is_empty() && is_call_of_iter(&c.receiver) => {
+            let inner = || sequence(&c.receiver).map(Box::new);
+            match c.method.to_string().as_str() {
+                "enumerate" => Some(Sequence::Enumerated(inner()?)),
+                "rev" => Some(Sequence::Reversed(inner()?)),
+                _ => None,
+            }
         }
-        syn::Expr::Reference(r) if r.mutability.is_none() => {
-            Some(Items { list: inside_parens(&r.expr), enumerated: false, by_value: false })
+        syn::Expr::MethodCall(c) if c.method == "zip" && c.args.len() == 1 => {
+            let (first, second) = (sequence(&c.receiver)?, sequence(&c.args[0])?);
+            Some(Sequence::Zipped(Box::new(first), Box::new(second)))
         }
+        syn::Expr::Reference(r) if r.mutability.is_none() => by_reference(inside_parens(&r.expr)),
         list @ (syn::Expr::Path(_) | syn::Expr::Field(_) | syn::Expr::Array(_)) => {
-            Some(Items { list, enumerated: false, by_value: true })
+            Some(Sequence::List { list, by_value: true })
         }
         _ => None,
     }
 }
 
-/// Returns whether it is a cursor such as `scene.hits(ray)`, which finds its items one after
-/// another.
+/// Returns whether it ends in a call of an iterator's method: `list.iter().rev()`.
+fn is_call_of_iter(e: &syn::Expr) -> bool {
+    let names = ["iter", "into_iter", "enumerate", "rev", "zip"];
+    matches!(inside_parens(e), syn::Expr::MethodCall(c) if names.iter().any(|n| c.method == n))
+}
+
+fn method(receiver: Expr, name: &str, args: Vec<Expr>) -> Expr {
+    let (span, name) = (receiver.span, syn::Ident::new(name, receiver.span));
+    let kind = Kind::Method { receiver: Box::new(receiver), name, turbofish: vec![], args };
+    Expr { kind, span }
+}
+
+fn minus(a: Expr, b: Expr) -> Expr {
+    let span = a.span;
+    Expr { kind: Kind::Binary { op: ops::SUB, a: Box::new(a), b: Box::new(b) }, span }
+}
+
+impl Elements {
+    /// Returns the number of elements.
+    fn len(&self) -> Expr {
+        match self {
+            Self::List(list) => method(list.clone(), "len", vec![]),
+            Self::Enumerated(inner) | Self::Reversed(inner) => inner.len(),
+            Self::Zipped(a, b) => method(a.len(), "min", vec![b.len()]),
+        }
+    }
+
+    /// Returns the element of a number.
+    fn at(&self, index: Expr) -> Expr {
+        let span = index.span;
+        match self {
+            Self::List(list) => {
+                let kind = Kind::Element { base: Box::new(list.clone()), index: Box::new(index) };
+                Expr { kind, span }
+            }
+            Self::Enumerated(inner) => {
+                let items = vec![index.clone(), inner.at(index)];
+                Expr { kind: Kind::Tuple(items), span }
+            }
+            Self::Reversed(inner) => {
+                let one = Kind::Int { tokens: quote!(1), suffix: None };
+                inner.at(minus(minus(inner.len(), Expr { kind: one, span }), index))
+            }
+            Self::Zipped(a, b) => {
+                let items = vec![a.at(index.clone()), b.at(index)];
+                Expr { kind: Kind::Tuple(items), span }
+            }
+        }
+    }
+}
+
 fn is_cursor(e: &syn::Expr) -> bool {
     matches!(inside_parens(e), syn::Expr::MethodCall(c) if c.method == "hits")
 }
@@ -60,8 +131,8 @@ fn without_reversals(mut range: &syn::Expr) -> (&syn::Expr, bool) {
 
 impl Parser<'_> {
     pub(super) fn for_loop(&mut self, f: &syn::ExprForLoop) -> Kind {
-        if let Some(items) = items(&f.expr) {
-            return self.for_each(f, items);
+        if let Some(sequence) = sequence(&f.expr) {
+            return self.for_each(f, &sequence);
         }
         if is_cursor(&f.expr) {
             return self.for_items(f);
@@ -164,43 +235,46 @@ impl Parser<'_> {
 
     /// Parses a loop over elements: `for x in list` is `for i in 0..list.len() { let x = list[i];
     /// .. }`.
-    fn for_each(&mut self, f: &syn::ExprForLoop, items: Items<'_>) -> Kind {
+    fn for_each(&mut self, f: &syn::ExprForLoop, sequence: &Sequence<'_>) -> Kind {
         let span = f.expr.span();
         let boxed = |kind| Box::new(Expr { kind, span });
-        let (mut list, index) = (self.boxed(items.list), self.temporary("i"));
-        let mut copy = Vec::new();
-        if items.by_value {
-            let ident = self.temporary("items");
-            copy.push(Stmt::bind(ident.clone(), false, *list));
-            list = boxed(Kind::Name(ident));
-        }
-        let name = || Expr { kind: Kind::Name(index.clone()), span };
-        let element = Kind::Element { base: list.clone(), index: Box::new(name()) };
-        let element = Expr { kind: element, span };
-        let item = if items.enumerated {
-            Expr { kind: Kind::Tuple(vec![name(), element]), span }
-        } else {
-            element
-        };
+        let (mut copies, index) = (Vec::new(), self.temporary("i"));
+        let elements = self.elements(sequence, &mut copies, span);
+        let item = elements.at(Expr { kind: Kind::Name(index.clone()), span });
         let mut stmts = self.bind_item(&f.pat, item);
         let Block { stmts: body, tail } = self.block(&f.body);
         stmts.extend(body);
-        let len = Kind::Method {
-            receiver: list,
-            name: syn::Ident::new("len", span),
-            turbofish: vec![],
-            args: vec![],
-        };
         let zero = Kind::Int { tokens: quote!(0), suffix: None };
-        let (start, end) = (boxed(zero), boxed(len));
+        let (start, end) = (boxed(zero), Box::new(elements.len()));
         let range = Range { start, end, inclusive: false, reversed: false, step: None };
         let body = Block { stmts, tail };
         let repeat = Kind::For { label: label(&f.label), var: Some(index), range, body };
-        if copy.is_empty() {
+        if copies.is_empty() {
             return repeat;
         }
-        copy.push(Stmt::Expr(Expr { kind: repeat, span }));
-        Kind::Block(Block { stmts: copy, tail: None })
+        copies.push(Stmt::Expr(Expr { kind: repeat, span }));
+        Kind::Block(Block { stmts: copies, tail: None })
+    }
+
+    /// Parses the lists of a sequence. Those that are gone through by value are copied first.
+    fn elements(
+        &mut self,
+        sequence: &Sequence<'_>,
+        copies: &mut Vec<Stmt>,
+        span: Span,
+    ) -> Elements {
+        let mut inner = |this: &mut Self, inner| Box::new(this.elements(inner, copies, span));
+        match sequence {
+            Sequence::List { list, by_value: false } => Elements::List(self.expr(list)),
+            Sequence::List { list, by_value: true } => {
+                let (list, ident) = (self.expr(list), self.temporary("items"));
+                copies.push(Stmt::bind(ident.clone(), false, list));
+                Elements::List(Expr { kind: Kind::Name(ident), span })
+            }
+            Sequence::Enumerated(sequence) => Elements::Enumerated(inner(self, sequence)),
+            Sequence::Reversed(sequence) => Elements::Reversed(inner(self, sequence)),
+            Sequence::Zipped(a, b) => Elements::Zipped(inner(self, a), inner(self, b)),
+        }
     }
 
     /// Parses a loop over a cursor.

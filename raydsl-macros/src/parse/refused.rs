@@ -118,6 +118,16 @@ impl Parser<'_> {
         let segments: Vec<&Ident> = path.path.segments.iter().map(|s| &s.ident).collect();
         let (last, init) = segments.split_last()?;
         let (what, help) = match init {
+            [.., owner]
+                if ops::is_of_library(&owner.to_string())
+                    && ops::is_plain_method(&last.to_string())
+                    && !c.args.is_empty() =>
+            {
+                let mut args = c.args.iter().map(|e| self.expr(e));
+                let receiver = Box::new(args.next()?);
+                let (name, turbofish, args) = ((*last).clone(), vec![], args.collect());
+                return Some(Kind::Method { receiver, name, turbofish, args });
+            }
             [.., owner] if ops::is_of_library(&owner.to_string()) => {
                 let help = ops::method_of_library(&last.to_string())?;
                 (format!("a kernel calls `{last}` of `{owner}` as a method or a function"), help)

@@ -78,8 +78,6 @@ bodies! {
     order_of_index: { let mut v = [x, x]; v[g(n)] += h(x); x } "comes first" "bind the index";
     no_range: { for i in list() {} x } "runs over a range" "list.iter()";
     mutable_reference: { let y = &mut x; *y } "`&mut` outside the arguments" "variable itself";
-    mutable_element: { let mut t = [x, x]; g(&mut t[n as usize]) }
-        "computed element" "after the call";
     half_range: { for i in 0u32.. {} x } "two bounds" "a..=b";
     empty_match: { match n {} } "needs an arm" "_ => value";
     pattern_without_value: { let (a, b); x } "needs a value" "each name by itself";
@@ -89,7 +87,6 @@ bodies! {
     result: { Ok::<f32, u32>(x) } "no `Result`" "says what happened";
     mapped: { [x, x].map(|y| y * 2.0)[0] } "no `map`" "write a `for`";
     summed: { values.iter().map(|y| y * 2.0).sum() } "no `sum`" "sum += x";
-    minimum_of_type: { f32::min(x, 1.0) } "`min` of `f32`" "write `a.min(b)`";
     sine_of_type: { f32::sin(x) } "`sin` of `f32`" "write `sin(x)`";
     maximum_of_std: { std::cmp::max(n, 2) as f32 } "no `std::cmp::max`" "write `max(a, b)`";
     swapped: { core::mem::swap(x, y); x } "no `core::mem::swap`" "(b, a)";

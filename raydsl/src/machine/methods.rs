@@ -228,6 +228,27 @@ pub(crate) use vector::{cross, dot, normalize};
 
 // Sizes
 
+/// The lengths of arrays are numbers of the host.
+#[diagnostic::do_not_recommend]
+impl<M: Machine> Method<{ name("min") }, M, (Self,)> for usize {
+    type Output = Self;
+
+    #[inline(always)]
+    fn call(self, _: &M, (other,): (Self,)) -> Self {
+        Ord::min(self, other)
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine> Method<{ name("min") }, M, (Usize<M>,)> for usize {
+    type Output = Usize<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (other,): (Usize<M>,)) -> Usize<M> {
+        Method::<{ name("min") }, M, (Self,)>::call(other, m, (self,))
+    }
+}
+
 method!([] Usize<M>, "min", |m, a, b: Usize<M>| -> Usize<M> {
     Usize(m.u32_select(m.u32_compare(op::Lt, b.0, a.0), b.0, a.0))
 });
