@@ -52,6 +52,8 @@ pub(crate) enum Stmt {
 
 #[derive(Clone)]
 pub(crate) struct Let {
+    /// Whether a pattern binds it: then a part of a reference is a reference.
+    pub(crate) is_pattern: bool,
     /// Whether it is `#[host]`: known before the kernel runs.
     pub(crate) host: bool,
     /// `None` is the pattern `_`.
@@ -561,7 +563,7 @@ impl Stmt {
     /// Returns `let name = init`.
     pub(crate) fn bind(name: Ident, mutable: bool, init: Expr) -> Self {
         let (name, init) = (Some(name), Some(init));
-        Self::Let(Let { host: false, name, mutable, ty: None, init })
+        Self::Let(Let { host: false, is_pattern: true, name, mutable, ty: None, init })
     }
 
     pub(crate) fn ends_lanes(&self) -> bool {
@@ -600,6 +602,12 @@ impl Block {
                 | Kind::ForItems { body, .. }
                 | Kind::Block(body) => of_block(body),
                 Kind::Array(_) | Kind::Repeat { .. } => e.is_bare(),
+                Kind::Associated { name, args, .. } => {
+                    name == "Some" && args.iter().any(Expr::is_bare)
+                }
+                Kind::Method { name, args, .. } => {
+                    name == "unwrap_or" && args.iter().any(Expr::is_bare)
+                }
                 _ => false,
             };
             this || e.kind.children().into_iter().any(within)

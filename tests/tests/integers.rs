@@ -3,6 +3,12 @@
 //! The scalar variant is the user's own function, so every kernel here is compared with what rustc
 //! inferred.
 
+#![allow(
+    clippy::needless_range_loop,
+    clippy::never_loop,
+    reason = "counters that index, and values of loops, are what is tested"
+)]
+
 use raydsl::prelude::*;
 use raydsl::{assert_variants_agree, kernel};
 

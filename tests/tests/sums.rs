@@ -125,7 +125,7 @@ fn roots(x: f32, y: f32) -> f32 {
     let Some(first) = root(x) else {
         return -1.0;
     };
-    let second = if let Some(r) = root(y) { r } else { 0.5 };
+    let second = if let Some(r) = root(y) { r * 2.0 } else { 0.5 };
     let mut left = Some(first);
     let mut sum = 0.0;
     while let Some(value) = left {

@@ -39,8 +39,12 @@ impl Emitter<'_> {
         // The parameters of a variant's enum are inferred, as in the source.
         let is_variant = is_part(name) || name.to_string().starts_with(char::is_uppercase);
         let is_path = !ty.to_string().contains('<');
+        let bare = if name == "Some" { args.first().and_then(|e| self.with_bare(e)) } else { None };
         let name = word(&format!("{name}_on"));
-        let args = self.arguments(args);
+        let mut args = self.arguments(args);
+        if let Some(bare) = bare {
+            args.values = vec![bare];
+        }
         let values = &args.values;
         let function =
             if is_variant && is_path { quote!(#ty::#name) } else { quote!(<#ty>::#name) };
@@ -166,7 +170,11 @@ impl Emitter<'_> {
         }
         let variable = self.variable_under(receiver);
         let mut value = self.value(receiver);
+        let bare = args.first().filter(|_| name == "unwrap_or").and_then(|e| self.with_bare(e));
         let mut args = self.arguments(args);
+        if let Some(bare) = bare {
+            args.values = vec![bare];
+        }
         if !args.before.is_empty() {
             let (first, before) = (self.fresh("receiver"), &args.before);
             args.before = quote!(let #first = #value; #before);

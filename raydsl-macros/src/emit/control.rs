@@ -101,7 +101,10 @@ impl Emitter<'_> {
 
     /// Binds the name of a `let`, with what its initial value determines about it.
     fn bind_let(&mut self, name: &Ident, l: &Let, init: &Expr) {
-        let (is_alias, owner) = (self.is_alias(init), self.owner(init));
+        // A part of a `&mut` is copied, unless a pattern takes it.
+        let is_part = matches!(init.kind, Kind::Field { .. } | Kind::Index { .. });
+        let is_alias = self.is_alias(init) && (l.is_pattern || !is_part);
+        let owner = self.owner(init);
         let generic = self.generic_of(init);
         if is_alias && l.mutable && matches!(&init.kind, Kind::Name(_)) {
             self.errors.at(
@@ -168,6 +171,8 @@ impl Emitter<'_> {
             }
             Dest::Slot { var, .. } => {
                 let value = self.varying(e, "value");
+                let is_first = self.given.insert(var.to_string());
+                let value = if is_first { value } else { self.like_others(value) };
                 quote!(#var.set(#m, #value);)
             }
             Dest::Return => self.give(e),

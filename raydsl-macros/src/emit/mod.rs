@@ -13,7 +13,7 @@ mod values;
 
 pub(crate) use host::raw_capture;
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 
@@ -112,6 +112,11 @@ pub(crate) struct Emitter<'a> {
     varying: usize,
     /// The `&mut` parameters.
     changed: Vec<Ident>,
+    /// Whether the type of an integer in the kernel is inferred: then values that must be of one type
+    /// take that of the first.
+    has_bare: bool,
+    /// The variables of values that have had an outcome.
+    given: HashSet<String>,
     next: usize,
     errors: &'a mut Errors,
 }
@@ -145,6 +150,8 @@ impl<'a> Emitter<'a> {
             host_captures: vec![],
             varying: 0,
             changed: vec![],
+            has_bare: kernel.body.has_bare_integer(),
+            given: HashSet::new(),
             next: 0,
             errors,
         }
@@ -278,6 +285,8 @@ impl<'a> Emitter<'a> {
             host_captures: core::mem::take(&mut self.host_captures),
             varying: 1,
             changed: vec![],
+            has_bare: self.has_bare || kernel.body.has_bare_integer(),
+            given: HashSet::new(),
             next: self.next,
             errors: self.errors,
         };

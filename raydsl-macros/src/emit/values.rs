@@ -114,8 +114,11 @@ impl Emitter<'_> {
         };
         let calls = then.may_act() || other.may_act();
         let c = self.host_value(c).unwrap_or_else(|| self.value(c));
-        let (then, other) =
-            (self.selection(then, name, ty, slot), self.selection(other, name, ty, slot));
+        let has_type = |e: &Expr| slot == SlotType::ByAll || e.has_typed_outcome();
+        let says_type = slot != SlotType::Written && has_type(then) && has_type(other);
+        let then = self.selection(then, name, ty, slot);
+        let other = self.selection(other, name, ty, slot);
+        let other = if says_type { self.like_others(other) } else { other };
         let (seen, others) = (self.mentioned_in(&then), self.mentioned_in(&other));
         quote! {
             #p::choose::<_, #ty, _>(
@@ -140,6 +143,12 @@ impl Emitter<'_> {
         quote!(#p::Varying::varying(#value, #m))
     }
 
+    /// Emits a value that must have the type of others before it.
+    pub(super) fn like_others(&self, value: TokenStream) -> TokenStream {
+        let (p, m) = (private(), own("m"));
+        if self.has_bare { quote!(#p::Coerce::coerce(#value, #m)) } else { value }
+    }
+
     /// A tuple whose parts get names: integers without a suffix may become variables.
     pub(super) fn tuple(&mut self, e: &Expr) -> TokenStream {
         self.with_bare(e).unwrap_or_else(|| self.value(e))
@@ -147,7 +156,7 @@ impl Emitter<'_> {
 
     /// An integer without a suffix, or a list or a tuple that has some: its type is inferred from
     /// what is done with it.
-    fn with_bare(&mut self, e: &Expr) -> Option<TokenStream> {
+    pub(super) fn with_bare(&mut self, e: &Expr) -> Option<TokenStream> {
         let _at = At::new(e.span);
         let (p, m) = (private(), own("m"));
         if let Some(integer) = e.integer_tokens() {
@@ -290,10 +299,21 @@ impl Emitter<'_> {
     /// Emits the elements of an array, one of which may determine the type of the others.
     fn array(&mut self, items: &[Expr]) -> TokenStream {
         let is_typed = items.iter().any(Expr::has_typed_outcome);
-        let of_others = |e: &Expr| is_typed && !e.has_typed_outcome();
-        let items =
-            items.iter().map(|e| if of_others(e) { self.coerced(e) } else { self.value(e) });
-        let items: Vec<_> = items.collect();
+        let mut has_type = false;
+        let items: Vec<_> = items
+            .iter()
+            .map(|e| {
+                if is_typed && !e.has_typed_outcome() {
+                    return self.coerced(e);
+                }
+                let value = self.value(e);
+                if core::mem::replace(&mut has_type, true) {
+                    self.like_others(value)
+                } else {
+                    value
+                }
+            })
+            .collect();
         quote!([#(#items,)*])
     }
 

@@ -466,6 +466,7 @@ impl Parser<'_> {
         let from = name(&ident);
         lets.push(Stmt::Let(Let {
             host: false,
+            is_pattern: true,
             name: Some(ident),
             mutable: false,
             ty,

@@ -72,7 +72,7 @@ impl Parser<'_> {
                 "give it one: `let n = 4u32;`",
             );
         }
-        vec![Stmt::Let(Let { host, name, mutable, ty, init })]
+        vec![Stmt::Let(Let { host, is_pattern: false, name, mutable, ty, init })]
     }
 
     /// Parses `let (a, b) = init`.

@@ -215,3 +215,59 @@ fn at_least(x: f32, size: f32) -> f32 {
 fn largest(v: Vec3) -> f32 {
     max(max(v.x, v.y), v.z)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Distances of every size and sign.
+    fn distances() -> impl Iterator<Item = f32> {
+        let sizes = (-140..128).map(|e| 1.375 * 2f32.powi(e));
+        sizes.flat_map(|t| [t, -t]).chain([0.0, -0.0, 1.0, -1.0, f32::MAX, f32::MIN_POSITIVE])
+    }
+
+    #[test]
+    fn the_next_distance_is_the_next_number() {
+        for t in distances().filter(|t| t.abs() > f32::MIN_POSITIVE && *t < f32::MAX) {
+            assert_eq!(behind(t), t.next_up(), "{t}");
+        }
+        for t in distances().filter(|t| t.abs() < f32::MIN_POSITIVE) {
+            assert_eq!(behind(t), f32::MIN_POSITIVE, "{t}");
+        }
+    }
+
+    #[test]
+    fn the_limit_lies_behind_a_hit_by_its_slack() {
+        for t in distances().filter(|t| t.abs() > 1e-30 && t.abs() < 1e30) {
+            for slack in [0.0, 1e-6, 0.25] {
+                let exact = f64::from(t) + f64::from(t).abs() * f64::from(slack);
+                let found = f64::from(limit_behind(t, slack, f32::INFINITY));
+                assert!((found - exact).abs() <= f64::from(t).abs() * 1.2e-7, "{t} {slack}");
+                assert!(slack < 1e-7 || found > f64::from(t), "{t} {slack}");
+            }
+            assert_eq!(limit_behind(t, 0.5, t), t, "the ray's end is the limit");
+        }
+        assert_eq!(limit_behind(f32::NAN, 0.5, 3.0), 3.0);
+    }
+
+    #[test]
+    fn reciprocals_are_finite_and_keep_their_signs() {
+        for d in [
+            vec3(0.0, -0.0, 1.0),
+            vec3(1e-30, -1e-30, 2.0),
+            vec3(f32::MIN_POSITIVE / 8.0, 0.0, -0.0),
+            vec3(-3.0, 0.5, 1e-19),
+            vec3(1e30, -1.0, 0.0),
+        ] {
+            let inverse = finite_inverse(d);
+            assert!(inverse.is_finite(), "{d}: {inverse}");
+            let size = d.abs().max_element().max(f32::MIN_POSITIVE);
+            for (d, inverse) in d.to_array().into_iter().zip(inverse.to_array()) {
+                assert!(d == 0.0 || (d < 0.0) == (inverse < 0.0), "{d}: {inverse}");
+                if d.abs() >= f32::MIN_POSITIVE && d.abs() > size * 1e-17 {
+                    assert_eq!(inverse, 1.0 / d);
+                }
+            }
+        }
+    }
+}

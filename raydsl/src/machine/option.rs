@@ -3,8 +3,8 @@
 use core::marker::PhantomData;
 
 use super::{
-    B, Coerce, Field, Inferred, LaneMachine, Leaves, Machine, Method, Scalar, Schema, Twin, Type,
-    Value, Varying, index, name,
+    B, Field, Inferred, LaneMachine, Leaves, Machine, Method, Scalar, Schema, Twin, Type, Value,
+    Varying, index, name,
 };
 
 /// Returns a value of the host whose scalars are 0.
@@ -182,13 +182,13 @@ impl<M: Machine, T: Type> Method<{ name("is_none") }, M, ()> for OptionOn<M, T> 
 }
 
 #[diagnostic::do_not_recommend]
-impl<M: Machine, T: Type, V: Coerce<M, T::On<M>>> Method<{ name("unwrap_or") }, M, (V,)>
+impl<M: Machine, T: Type, V: Inferred<M, Host = T>> Method<{ name("unwrap_or") }, M, (V,)>
     for OptionOn<M, T>
 {
     type Output = T::On<M>;
 
     #[inline(always)]
     fn call(self, m: &M, (other,): (V,)) -> T::On<M> {
-        index::choose(m, self.is_some.0, self.value, other.coerce(m))
+        index::choose(m, self.is_some.0, self.value, other.give(m))
     }
 }

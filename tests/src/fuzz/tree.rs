@@ -21,6 +21,10 @@ pub enum Ty {
     UVec2,
     BVec3,
     Kind,
+    /// An enum with fields.
+    Shape,
+    /// `Option<u32>`.
+    Maybe,
     /// `(f32, u32)`.
     Pair,
     /// `[f32; 4]`.
@@ -56,6 +60,8 @@ impl Ty {
             Self::UVec2 => "UVec2",
             Self::BVec3 => "BVec3",
             Self::Kind => "Kind",
+            Self::Shape => "Shape",
+            Self::Maybe => "Option<u32>",
             Self::Pair => "(f32, u32)",
             Self::Row => "[f32; 4]",
             Self::Counts => "[u32; 3]",
@@ -84,6 +90,8 @@ impl Ty {
             Self::UVec2 => "UVec2::X",
             Self::BVec3 => "BVec3::splat(true)",
             Self::Kind => "Kind::Red",
+            Self::Shape => "Shape::Nothing",
+            Self::Maybe => "Some(1u32)",
             Self::Pair => "(1.0f32, 1u32)",
             Self::Row => "[1.0f32; 4]",
             Self::Counts => "[1u32; 3]",
@@ -109,6 +117,7 @@ impl Ty {
                 | Self::UVec2
                 | Self::BVec3
                 | Self::Kind
+                | Self::Maybe
                 | Self::Counts
         )
     }

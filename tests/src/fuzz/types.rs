@@ -39,6 +39,26 @@ pub enum Kind {
     Blue,
 }
 
+/// An enum with fields, named and not, and one in it.
+#[derive(Clone, Copy, Debug, Type)]
+pub enum Shape {
+    /// Two fields.
+    Ball(f32, u32),
+    /// Named fields.
+    Block {
+        /// A vector.
+        low: Vec3,
+        /// An enum.
+        kind: Kind,
+        /// A struct.
+        inner: Small,
+    },
+    /// A field of the type of another variant's.
+    Word(u32),
+    /// No fields.
+    Nothing,
+}
+
 /// What a generated kernel gives.
 #[derive(Clone, Copy, Debug, Type)]
 pub struct Outcome {
@@ -152,6 +172,81 @@ impl Kind {
             Kind::Blue => 8.0,
         }
     }
+}
+
+#[kernel]
+impl Shape {
+    /// One for each number.
+    pub fn of(n: u32) -> Self {
+        match n % 4 {
+            0 => Shape::Ball((n & 15) as f32 * 0.5, n),
+            1 => Self::Block { kind: Kind::of(n >> 2), low: Vec3::X, inner: Small::of(n) },
+            2 => Shape::Word(n ^ 9),
+            _ => Shape::Nothing,
+        }
+    }
+
+    /// A number for each, in a loop that changes the variant.
+    pub fn walked(self, rounds: u32) -> f32 {
+        let (mut shape, mut sum) = (self, 0.0);
+        for i in 0..rounds & 3 {
+            shape = match shape {
+                Shape::Ball(r, n) if r < 2.0 => Shape::Word(n),
+                Shape::Ball(r, _) => {
+                    Shape::Block { low: Vec3::splat(r), kind: Kind::Blue, inner: Small::of(i) }
+                }
+                Shape::Block { low, inner: Small { m, t: true, .. }, .. } => Shape::Ball(low.x, m),
+                Shape::Block { inner, kind, .. } => {
+                    sum += kind.share();
+                    Shape::Word(inner.m >> 1)
+                }
+                Shape::Word(0) => return sum,
+                Shape::Word(n) => Shape::Ball((n & 7) as f32, n >> 1),
+                Shape::Nothing => continue,
+            };
+            sum += shape.size();
+        }
+        sum
+    }
+
+    /// A number for each.
+    pub fn size(&self) -> f32 {
+        match *self {
+            Shape::Ball(r, _) | Shape::Block { low: Vec3 { x: r, .. }, .. } => r,
+            Shape::Word(n) => (n & 31) as f32,
+            Shape::Nothing => -1.0,
+        }
+    }
+
+    /// A word, where there is one.
+    pub fn word(self) -> Option<u32> {
+        if let Shape::Ball(_, n) | Shape::Word(n) = self {
+            return Some(n);
+        }
+        None
+    }
+}
+
+/// The smaller half of a number that is even.
+#[kernel]
+pub fn half(n: u32) -> Option<u32> {
+    if n % 2 == 1 { None } else { Some(n / 2) }
+}
+
+/// A number halved while it is even, at most so often.
+#[kernel]
+pub fn halved(first: Option<u32>, most: u32) -> Option<u32> {
+    let Some(mut n) = first else {
+        return None;
+    };
+    let mut left = most & 7;
+    while let Some(next) = half(n)
+        && left > 0
+    {
+        n = next;
+        left -= 1;
+    }
+    Some(n)
 }
 
 #[kernel]

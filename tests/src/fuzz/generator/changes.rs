@@ -46,6 +46,8 @@ pub(super) const fn compound(ty: Ty) -> &'static [&'static str] {
         Ty::Counts => &["add_to({u}, &mut {p}[1]);"],
         Ty::Row => &["{p}[2] += {f};"],
         Ty::Both => &["{p}[0].rise({f});"],
+        Ty::Shape => &["{p} = Shape::Word({u});", "{p} = Shape::Ball({f}, 1);"],
+        Ty::Maybe => &["{p} = None;", "{p} = Some({u});"],
         Ty::BVec3 | Ty::Kind | Ty::Pair | Ty::Nested | Ty::List | Ty::Outcome => &[],
     }
 }

@@ -184,6 +184,28 @@ pub(super) const KIND: &[&str] = &[
     "(match {u} { 0 => Kind::Red, 1..=9 => {e}, _ => Kind::Green })",
 ];
 
+/// Of the enum with fields.
+pub(super) const SHAPE: &[&str] = &[
+    "Shape::Ball({f}, {u})",
+    "Shape::Ball({f}, 7)",
+    "(Shape::Block { low: {v}, kind: {e}, inner: {s} })",
+    "(Shape::Block { inner: {s}, kind: {e}, low: {v} })",
+    "Shape::Word({u})",
+    "Shape::of({u})",
+    "(if {b} { {k} } else { Shape::Nothing })",
+    "(match {k} { Shape::Ball(r, n) => Shape::Word(n ^ r as u32), Shape::Nothing => Shape::Ball(1.0, 3), other => other })",
+];
+
+/// Of `Option<u32>`.
+pub(super) const MAYBE: &[&str] = &[
+    "Some({u})",
+    "(if {b} { Some({u}) } else { None })",
+    "half({u})",
+    "halved({l}, {u})",
+    "!{k}.word()",
+    "(match {l} { Some(n) if n > 3 => Some(n - 1), Some(_) => None, None => Some(2) })",
+];
+
 /// Of `(f32, u32)`.
 pub(super) const PAIR: &[&str] =
     &["({f}, {u})", "({f}, {u})", "({t}.0, {u})", "swapped({t}, {f})", "!{s}.parts({u})"];

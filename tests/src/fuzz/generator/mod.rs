@@ -104,10 +104,11 @@ impl Generator<'_> {
 
     fn any_type(&mut self) -> Ty {
         use Ty::*;
-        const NUMBERS: &[Ty] = &[U32, U32, I32, I32, Bool, Size, IVec3, UVec2, BVec3, Kind, Counts];
+        const NUMBERS: &[Ty] =
+            &[U32, U32, I32, I32, Bool, Size, IVec3, UVec2, BVec3, Kind, Counts, Maybe];
         const ALL: &[Ty] = &[
             F32, F32, F32, U32, U32, I32, Bool, Size, Vec2, Vec3, Vec3, Vec4, IVec3, UVec2, BVec3,
-            Kind, Pair, Row, Counts, Both, Small, Small, Nested,
+            Kind, Pair, Row, Counts, Both, Small, Small, Nested, Shape, Shape, Maybe,
         ];
         match self.rng.below(12) {
             0 if self.traits.own => Own,

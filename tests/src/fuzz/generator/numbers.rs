@@ -2,6 +2,11 @@
 
 /// Of `f32`.
 pub(super) const F32: &[&str] = &[
+    "!{k}.size()",
+    "!{k}.walked({u})",
+    "(match {k} { Shape::Ball(r, _) => r, Shape::Block { low, kind, .. } => low.y + kind.share(), _ => 0.5 })",
+    "(if let Shape::Ball(r, 0..=99) = {k} { r } else { 1.5 })",
+    "({ let row = {r}; let mut at = 0; if {b} { at = 3; } row[at] })",
     "({f} + {f})",
     "({f} + {f})",
     "({f} - {f})",
@@ -87,6 +92,12 @@ pub(super) const F32: &[&str] = &[
 
 /// Of `u32`.
 pub(super) const U32: &[&str] = &[
+    "{l}.unwrap_or({u})",
+    "(if let Some(n) = {l} { n } else { {u} })",
+    "(match ({l}, {l}) { (Some(n), Some(k)) => n ^ k, (Some(n), None) | (None, Some(n)) => n, (None, None) => 4 })",
+    "(match {k} { Shape::Word(n) | Shape::Ball(_, n) => n, Shape::Block { inner: Small { m, .. }, .. } => m, Shape::Nothing => 0 })",
+    "({ let word = {u}; let mut bits = 1; for step in 0..3 { bits ^= word >> step; } bits })",
+    "({ let word = {u}; let mut turns = 0; while turns < 5 && turns != word { turns += 1; } turns })",
     "{u}.wrapping_add({u})",
     "{u}.wrapping_sub({u})",
     "{u}.wrapping_mul({u})",
@@ -215,6 +226,9 @@ pub(super) const I32: &[&str] = &[
 
 /// Of `bool`.
 pub(super) const BOOL: &[&str] = &[
+    "{l}.is_some()",
+    "{l}.is_none()",
+    "(if let Shape::Nothing | Shape::Word(_) = {k} { true } else { {b} })",
     "({f} < {f})",
     "({f} <= {f})",
     "({f} > {f})",

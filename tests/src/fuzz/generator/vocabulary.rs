@@ -18,6 +18,8 @@ pub(super) const fn templates(ty: Ty) -> &'static [&'static str] {
         Ty::UVec2 => composites::UVEC2,
         Ty::BVec3 => composites::BVEC3,
         Ty::Kind => composites::KIND,
+        Ty::Shape => composites::SHAPE,
+        Ty::Maybe => composites::MAYBE,
         Ty::Pair => composites::PAIR,
         Ty::Row => composites::ROW,
         Ty::Counts => composites::COUNTS,
@@ -46,6 +48,8 @@ pub(super) const fn of_letter(letter: char) -> Option<Ty> {
         'd' => Ty::UVec2,
         'm' => Ty::BVec3,
         'e' => Ty::Kind,
+        'k' => Ty::Shape,
+        'l' => Ty::Maybe,
         't' => Ty::Pair,
         'r' => Ty::Row,
         'c' => Ty::Counts,
@@ -119,6 +123,8 @@ pub(super) const fn literals(ty: Ty) -> &'static [&'static str] {
         Ty::UVec2 => &["UVec2::X", "uvec2(7, 300)"],
         Ty::BVec3 => &["bvec3(true, false, true)", "BVec3::splat(false)"],
         Ty::Kind => &["Kind::Red", "Kind::Green", "Kind::Blue"],
+        Ty::Shape => &["Shape::Nothing", "Shape::Ball(0.5, 3)", "Shape::of(5u32)"],
+        Ty::Maybe => &["Some(3u32)", "halved(Some(8), 1u32)", "half(6u32)"],
         Ty::Pair => &["(2.5f32, 3u32)", "(-1.0f32, 0u32)"],
         Ty::Row => &["[1.0f32, -2.0, 0.25, 8.0]", "[0.5f32; 4]"],
         Ty::Counts => &["[1u32, 2, 3]", "[9u32; 3]"],
@@ -152,6 +158,8 @@ pub(super) const fn members(ty: Ty) -> &'static [(&'static str, Ty)] {
         | Ty::Size
         | Ty::BVec3
         | Ty::Kind
+        | Ty::Shape
+        | Ty::Maybe
         | Ty::Row
         | Ty::Counts
         | Ty::Both
