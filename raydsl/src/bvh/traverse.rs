@@ -1,4 +1,5 @@
-//! Single-ray traversal of binary trees: the reference of every other traversal.
+//! Single-ray traversal of binary trees: the reference of every other traversal. [`visit`] also
+//! enters wide trees.
 
 use core::mem::MaybeUninit;
 

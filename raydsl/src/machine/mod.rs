@@ -22,6 +22,7 @@
 //   of Numerical Algorithms", 2002; Stolfi and de Figueiredo, "Self-Validated Numerical Methods and
 //   Applications", 1997).
 // * `control`, `counter`: structured control flow of lifted code: variables, branches, loops.
+// * `bare`, `option`: integers whose type rustc infers, and `Option`.
 // * `types`, `schema`, `twin`, `value`: host types, their layouts, and their twins on a machine.
 // * `words`, `kinds`: the storage of an enum's variants, and the variants a scene has.
 // * `vector`, `matrix`, `inverse`: the twins of glam's types.

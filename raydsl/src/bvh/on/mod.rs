@@ -5,7 +5,7 @@
 //! | one lane | `bvh::traverse` |
 //! | packets | `bvh::traverse_packet`, of wide trees `bvh::wide` |
 //! | WGSL | [`wgsl`] |
-//!  rounding bounds | [`margin`] |
+//! | rounding bounds | [`margin`] |
 
 mod beam;
 mod margin;
