@@ -233,11 +233,11 @@ pub fn half(n: u32) -> Option<u32> {
     if n % 2 == 1 { None } else { Some(n / 2) }
 }
 
-/// A number halved while it is even, at most so often.
+/// A number halved while it is even, at most so often; how often, where there is none.
 #[kernel]
 pub fn halved(first: Option<u32>, most: u32) -> Option<u32> {
     let Some(mut n) = first else {
-        return None;
+        return Some(most);
     };
     let mut left = most & 7;
     while let Some(next) = half(n)
