@@ -43,6 +43,7 @@ const OWNERS: &[(&str, Option<&str>)] = &[
 fn owner(receiver: &str) -> Option<&'static str> {
     const RECEIVERS: &[(&str, &str)] = &[
         ("Usize<M>", "`usize`"),
+        ("usize", "`usize`"),
         ("I<M>", "`i32`"),
         ("U<M>", "`u32`"),
         ("V2<M>", "`Vec2`"),
