@@ -1,4 +1,4 @@
-//! Single-ray traversal of binary trees: the reference of every other traversal. [`visit`] also
+//! Single-ray traversal of binary trees: the reference of every other traversal. `visit` also
 //! enters wide trees.
 
 use core::mem::MaybeUninit;
