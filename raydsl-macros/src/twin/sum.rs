@@ -125,9 +125,7 @@ impl Sum {
         let (vis, data) = (&self.item.vis, self.data_name());
         let doc = format!("[`{}`] as the number of its variant and its fields.", self.item.ident);
         let (names, types): (Vec<_>, Vec<_>) = self.slots.iter().cloned().unzip();
-        let (params, _, clause) = self.item.generics.split_for_impl();
-        let declared = &self.item.generics.params;
-        let _ = params;
+        let (declared, clause) = (&self.item.generics.params, &self.item.generics.where_clause);
         let data: syn::DeriveInput = syn::parse_quote! {
             #[doc = #doc]
             #[derive(Clone, Copy)]

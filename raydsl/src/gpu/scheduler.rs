@@ -206,7 +206,7 @@ impl Renderer for GpuScheduler {
     }
 }
 
-/// Returns a placeholder for a kernel's result.
+/// Returns a zero for the result of a kernel whose body another module holds.
 fn no_body<V: Value<Recorder>>(m: &Recorder) -> V {
     m.begin_body();
     V::zero(m)
