@@ -137,8 +137,18 @@ fn roots(x: f32, y: f32) -> f32 {
         (Some(a), None) | (None, Some(a)) => a,
         (None, None) => 9.0,
     };
+    let other = root(y);
+    let fourth = if let Some(a) = root(x - 0.5)
+        && a < 1.2
+        && let Some(b) = other
+        && b > a
+    {
+        a * b
+    } else {
+        3.0
+    };
     let count = if root(y).is_some() { 2 } else { 1 };
-    first + second + sum + third + root(y).unwrap_or(4.0) + count as f32
+    first + second + sum + third + fourth + root(y).unwrap_or(4.0) + count as f32
 }
 
 #[kernel]

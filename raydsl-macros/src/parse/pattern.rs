@@ -44,6 +44,17 @@ pub(super) fn has_let(e: &syn::Expr) -> bool {
     }
 }
 
+/// Returns whether it is a variable or its fields: evaluated twice, it is the same.
+fn is_place(e: &syn::Expr) -> bool {
+    match inside_parens(e) {
+        syn::Expr::Path(_) => true,
+        syn::Expr::Field(f) => is_place(&f.base),
+        syn::Expr::Reference(r) => is_place(&r.expr),
+        syn::Expr::Unary(u) => matches!(u.op, syn::UnOp::Deref(_)) && is_place(&u.expr),
+        _ => false,
+    }
+}
+
 fn both(a: Option<Expr>, b: Option<Expr>) -> Option<Expr> {
     match (a, b) {
         (Some(a), Some(b)) => Some(logic(true, a, b)),
@@ -357,6 +368,7 @@ impl Parser<'_> {
             }
             syn::Expr::Binary(b) if matches!(b.op, syn::BinOp::And(_)) && has_let(e) => {
                 let left = self.condition(&b.left, before, lets);
+                self.check_chained(&b.right);
                 let (mut inner, mut bound) = (Vec::new(), Vec::new());
                 let right = self.condition(&b.right, &mut inner, &mut bound);
                 // The right side sees what the left one binds, and is not evaluated before it.
@@ -374,6 +386,20 @@ impl Parser<'_> {
                 logic(true, left, right)
             }
             e => self.expr(e),
+        }
+    }
+
+    /// Refuses a `let` behind `&&` whose value may change something: the test and the code behind it
+    /// evaluate the value each.
+    fn check_chained(&mut self, e: &syn::Expr) {
+        if let syn::Expr::Let(l) = inside_parens(e)
+            && !is_place(&l.expr)
+        {
+            self.errors.at(
+                l.expr.span(),
+                "a `let` behind `&&` takes a variable or its fields in a kernel",
+                "put an `if let` inside another, or bind the value before the `if`",
+            );
         }
     }
 

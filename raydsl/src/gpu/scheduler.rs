@@ -206,7 +206,7 @@ impl Renderer for GpuScheduler {
     }
 }
 
-/// Returns a zero for the result of a kernel whose body another module holds.
+/// Returns a zero as the result of a kernel in a frame recorded without the kernel's body.
 fn no_body<V: Value<Recorder>>(m: &Recorder) -> V {
     m.begin_body();
     V::zero(m)
