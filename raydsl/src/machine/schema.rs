@@ -73,6 +73,25 @@ impl Schema {
         }
     }
 
+    /// Returns whether a value has leaves and each is an `f32`.
+    pub(crate) const fn is_of_floats(&self) -> bool {
+        match self {
+            Self::F32 => true,
+            Self::Vector(element, _) => element.is_of_floats(),
+            Self::Struct { fields, .. } => {
+                let mut i = 0;
+                while i < fields.len() {
+                    if !fields[i].schema.is_of_floats() {
+                        return false;
+                    }
+                    i += 1;
+                }
+                i > 0
+            }
+            _ => false,
+        }
+    }
+
     /// Returns the bytes of one value in the host's memory, including padding at the end.
     pub const fn size(&self) -> usize {
         match self {

@@ -60,9 +60,21 @@ impl Image<[crate::math::Unorm8; 4]> {
     /// If the file cannot be written.
     pub fn write_png(&self, path: impl AsRef<Path>) -> Result<(), image::ImageError> {
         let bytes: Vec<u8> = from_the_top(self).flatten().map(|c| c.to_bits()).collect();
-        let format = image::ExtendedColorType::Rgba8;
-        image::save_buffer(path, &bytes, self.width(), self.height(), format)
+        let size = (self.width(), self.height());
+        write_png(path.as_ref(), &bytes, size, image::ExtendedColorType::Rgba8)
     }
+}
+
+/// Writes a PNG. Generic over nothing, so that the encoder is compiled here and not by every crate
+/// that writes a picture.
+#[cfg(feature = "image")]
+pub(super) fn write_png(
+    path: &Path,
+    bytes: &[u8],
+    (width, height): (u32, u32),
+    format: image::ExtendedColorType,
+) -> Result<(), image::ImageError> {
+    image::save_buffer(path, bytes, width, height, format)
 }
 
 #[cfg(feature = "exr")]
@@ -79,8 +91,13 @@ impl Image<Vec4> {
             let kind = image::error::ParameterErrorKind::DimensionMismatch;
             image::ImageError::Parameter(image::error::ParameterError::from_kind(kind))
         })?;
-        buffer.save_with_format(path, image::ImageFormat::OpenExr)
+        write_exr(path.as_ref(), &buffer)
     }
+}
+
+#[cfg(feature = "exr")]
+fn write_exr(path: &Path, buffer: &image::Rgba32FImage) -> Result<(), image::ImageError> {
+    buffer.save_with_format(path, image::ImageFormat::OpenExr)
 }
 
 /// Iterates over the rows of pixels from the topmost, as in files.

@@ -112,6 +112,6 @@ impl Image<Shaded> {
     #[cfg(feature = "image")]
     pub fn write_png(&self, path: impl AsRef<std::path::Path>) -> Result<(), image::ImageError> {
         let format = image::ExtendedColorType::Rgb8;
-        image::save_buffer(path, &self.to_rgb8(), self.width, self.height, format)
+        super::files::write_png(path.as_ref(), &self.to_rgb8(), (self.width, self.height), format)
     }
 }

@@ -94,13 +94,23 @@ fn ask<L: Lanes>(
     answer: &dyn Fn(&mut Scratch),
     read: &mut dyn FnMut(&Scratch, usize),
 ) {
-    let load = |scratch: &mut Scratch| {
+    let mut load = |scratch: &mut Scratch| {
         m.lanes().enter_again(
             #[inline(always)]
             || load(m, &mut scratch.rays, rays),
         )
     };
-    if fibers::ask(key, load, answer, &mut *read) {
+    ask_batched(key, &mut load, answer, read);
+}
+
+/// Does [`ask`]'s part that no kind of packet changes, compiled once.
+fn ask_batched(
+    key: run::Key,
+    load: &mut dyn FnMut(&mut Scratch) -> usize,
+    answer: &dyn Fn(&mut Scratch),
+    read: &mut dyn FnMut(&Scratch, usize),
+) {
+    if fibers::ask(key, &mut *load, answer, &mut *read) {
         return;
     }
     with_scratch(|scratch| {

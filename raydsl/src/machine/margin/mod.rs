@@ -458,7 +458,10 @@ impl Machine for Margin {
         args: A,
         body: impl FnOnce(&Self, A) -> R,
     ) -> R {
-        if let Some(known) = info.known {
+        // Known functions are of floats: others are spared this.
+        if const { A::SCHEMA.is_of_floats() }
+            && let Some(known) = info.known
+        {
             let mut floats = Take(Vec::new());
             A::zip(self, args, args, &mut floats);
             if let Some(results) = self.results(known, &floats.0) {

@@ -4,12 +4,11 @@ use core::cell::Cell;
 
 use super::ir::{Conversion, Expr, Id, Stmt, Type, VarId};
 use super::{RecordedBranch, RecordedLoop, Recorder, storage};
-use crate::machine::index::{choose, with_element};
+use crate::machine::index::with_element;
 use crate::machine::wgsl;
 use crate::machine::{
-    B, BoolBinary, Branch, Compare, Data, F, F32Binary, F32Unary, IntBinary, KernelInfo, Loop,
-    Machine, On, Op, Operation, Schema, Type as MachineType, U, U32Unary, Usize, Value, Var, Visit,
-    op,
+    B, BoolBinary, Compare, Data, F, F32Binary, F32Unary, IntBinary, KernelInfo, Loop, Machine, On,
+    Op, Operation, Schema, Type as MachineType, U, U32Unary, Usize, Value, Var, Visit, op,
 };
 
 /// Returns the name of a literal in the uniform buffer, such as `lit_0_125`.
@@ -276,6 +275,62 @@ impl Recorder {
         });
     }
 
+    /// Selects what `arm(true)` records where `c` holds, else what `arm(false)` does.
+    fn choose_leaves(
+        &self,
+        name: &'static str,
+        calls: bool,
+        c: Id,
+        schema: &'static Schema,
+        arm: &mut dyn FnMut(bool) -> Vec<Id>,
+    ) -> Vec<Id> {
+        if let Some(known) = self.truth(c) {
+            return arm(known);
+        }
+        // As a statement a struct reads better than as a selection of each member, and calls run
+        // for their own lanes only.
+        if calls || matches!(schema, Schema::Struct { .. } | Schema::Array { .. }) {
+            let cells = self.new_cells(name, schema, None);
+            let branch = self.branch(c);
+            self.branch_then(&branch);
+            self.store_all(schema, cells.clone(), arm(true));
+            self.branch_else(&branch);
+            self.store_all(schema, cells.clone(), arm(false));
+            self.branch_end(branch);
+            return self.read_all(schema, cells);
+        }
+        let (a, b) = (arm(true), arm(false));
+        if let Schema::Vector(..) = schema {
+            let mut leaves = Vec::with_capacity(a.len());
+            self.parts(schema, self.select_vector(c, &a, &b), &mut leaves);
+            return leaves;
+        }
+        a.iter().zip(&b).map(|(&a, &b)| self.select(c, a, b, self.node(a).ty)).collect()
+    }
+
+    /// Records a function's `body`, unless WGSL has it built in, and calls it.
+    fn call_leaves(
+        &self,
+        info: &'static KernelInfo,
+        (args, result): (&'static Schema, &'static Schema),
+        leaves: Vec<Id>,
+        body: &mut dyn FnMut(&[Id]) -> Vec<Id>,
+    ) -> Vec<Id> {
+        if self.arithmetic == wgsl::Arithmetic::Fast
+            && let Some(known) = info.known
+            && let Some(result) = known.0.record_builtin(self, &leaves)
+        {
+            return result;
+        }
+        let operands = self.arguments(args, leaves);
+        let params = self.begin_function(info, args);
+        let function = self.end_function(result, body(&params));
+        if result.leaves() == 0 {
+            return Vec::new();
+        }
+        self.call_of(function, operands, result)
+    }
+
     /// Records a call of a recorded function and returns the leaves of its result.
     fn call_of(&self, function: usize, operands: Vec<Id>, result: &'static Schema) -> Vec<Id> {
         let ty = Type::of(result);
@@ -492,6 +547,7 @@ impl Machine for Recorder {
         t.then.replace(Some(then));
         true
     }
+    // Small, like `call`: every use in a kernel is a copy of it.
     #[inline]
     fn choose<V: Value<Self>>(
         &self,
@@ -501,32 +557,14 @@ impl Machine for Recorder {
         a: impl FnOnce() -> V,
         b: impl FnOnce() -> V,
     ) -> V {
-        match (self.truth(c.0), V::SCHEMA) {
-            (Some(true), _) => a(),
-            (Some(false), _) => b(),
-            // As a statement a struct reads better than as a selection of each member, and calls
-            // run for their own lanes only.
-            (None, schema)
-                if calls || matches!(schema, Schema::Struct { .. } | Schema::Array { .. }) =>
-            {
-                let value = Var::declare(self, name);
-                let branch = Branch::new(self, c);
-                branch.then(self);
-                value.set(self, a());
-                branch.otherwise(self);
-                value.set(self, b());
-                branch.end(self);
-                value.get(self)
-            }
-            (None, Schema::Vector(..)) => {
-                let (a, b) = (self.leaves_of(a()), self.leaves_of(b()));
-                self.take_apart(self.select_vector(c.0, &a, &b))
-            }
-            (None, _) => {
-                let (a, b) = (a(), b());
-                choose(self, c.0, a, b)
-            }
-        }
+        let (mut a, mut b, mut value) = (Some(a), Some(b), None);
+        let mut arm = |first: bool| {
+            let v = if first { a.take().map(|a| a()) } else { b.take().map(|b| b()) };
+            let v = v.expect("each arm is recorded once");
+            self.leaves_of(*value.insert(v))
+        };
+        let leaves = self.choose_leaves(name, calls, c.0, V::SCHEMA, &mut arm);
+        self.with_leaves(value.expect("an arm is recorded"), &leaves)
     }
     fn branch_end(&self, t: RecordedBranch) {
         if self.truth(t.c).is_some() {
@@ -638,20 +676,14 @@ impl Machine for Recorder {
         args: A,
         body: impl FnOnce(&Self, A) -> R,
     ) -> R {
-        if self.arithmetic == wgsl::Arithmetic::Fast
-            && let Some(known) = info.known
-            && let Some(result) = known.0.record_builtin(self, &self.leaves_of(args))
-        {
-            return self.of_leaves(&result);
-        }
-        let operands = self.arguments(A::SCHEMA, self.leaves_of(args));
-        let params = self.begin(info, args);
-        let result = body(self, params);
-        let function = self.end(result);
-        if R::SCHEMA.leaves() == 0 {
-            return result;
-        }
-        self.of_leaves(&self.call_of(function, operands, R::SCHEMA))
+        let (mut body, mut result) = (Some(body), None);
+        let mut record = |params: &[Id]| {
+            let body = body.take().expect("a body is recorded once");
+            self.leaves_of(*result.insert(body(self, self.with_leaves(args, params))))
+        };
+        let schemas = (A::SCHEMA, R::SCHEMA);
+        let leaves = self.call_leaves(info, schemas, self.leaves_of(args), &mut record);
+        self.with_leaves(result.unwrap_or_else(|| R::zero(self)), &leaves)
     }
 
     fn capture<T: crate::machine::Type>(&self, name: &'static str, v: T) -> T::On<Self> {
