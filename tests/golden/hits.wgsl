@@ -171,7 +171,7 @@ fn enter_leave(s: Slabs, low: vec3<f32>, high: vec3<f32>, t_min: f32, t_max: f32
 }
 
 /// A traversal that has yet to begin.
-fn bvh_walk(ray: Ray) -> Traversal {
+fn bvh_begin(ray: Ray) -> Traversal {
     var w = Traversal();
     if (params.len_of_bvh_nodes == 0u || !is_finite(ray)) {
         return w;
@@ -375,9 +375,9 @@ fn next_hits(ray: Ray, last: Hit) -> array<Tuple, 4> {
     var found_3_0_u: f32 = 0.0f;
     var found_3_0_v: f32 = 0.0f;
     var found_3_1: f32 = 0.0f;
-    var walk: Traversal = bvh_walk(ray);
+    var traversal: Traversal = bvh_begin(ray);
     loop {
-        let id = bvh_next(&walk, ray.t_min, select(ray.t_max, limit_behind(found_3_0_t, 9.536743e-7f, ray.t_max), found_3_0_is_hit));
+        let id = bvh_next(&traversal, ray.t_min, select(ray.t_max, limit_behind(found_3_0_t, 9.536743e-7f, ray.t_max), found_3_0_is_hit));
         if (!(id != 4294967295u)) { break; }
         let candidate = ColorSphere_intersect(bvh_at(id), ray);
         if (is_within(candidate, ray)) {

@@ -20,15 +20,15 @@ struct Slabs {
     inverse: vec3<f32>,
 }
 
-struct WalkLevel {
+struct TraversalLevel {
     ray: Ray,
     place: u32,
     first: u32,
     bottom: u32,
 }
 
-struct InstanceWalk {
-    here: WalkLevel,
+struct InstanceTraversal {
+    here: TraversalLevel,
     lower: vec3<f32>,
     upper: vec3<f32>,
     inverse: vec3<f32>,
@@ -36,7 +36,7 @@ struct InstanceWalk {
     last: u32,
     top: u32,
     level: u32,
-    levels: array<WalkLevel, 9>,
+    levels: array<TraversalLevel, 9>,
     nodes: array<u32, 128>,
     enters: array<f32, 128>,
 }
@@ -243,8 +243,8 @@ fn enter_leave(s: Slabs, low: vec3<f32>, high: vec3<f32>, t_min: f32, t_max: f32
     return overlap(min(a, b), max(a, b), t_min, t_max);
 }
 
-/// Goes into what is placed if the ray, as it is seen there, may meet it.
-fn scene_enter(w: ptr<function, InstanceWalk>, index: u32, ray: Ray, limit: f32) {
+/// Goes into what is placed if the ray, as it is seen there, may hit it.
+fn scene_enter(w: ptr<function, InstanceTraversal>, index: u32, ray: Ray, limit: f32) {
     let place = scene_places_at(index);
     if (place.root == 4294967295u || !is_finite(ray)) {
         return;
@@ -257,7 +257,7 @@ fn scene_enter(w: ptr<function, InstanceWalk>, index: u32, ray: Ray, limit: f32)
     }
     (*w).levels[(*w).level] = (*w).here;
     (*w).level = (*w).level + 1u;
-    (*w).here = WalkLevel(ray, index, (*w).here.first + place.first, (*w).top);
+    (*w).here = TraversalLevel(ray, index, (*w).here.first + place.first, (*w).top);
     (*w).lower = s.lower;
     (*w).upper = s.upper;
     (*w).inverse = s.inverse;
@@ -266,9 +266,9 @@ fn scene_enter(w: ptr<function, InstanceWalk>, index: u32, ray: Ray, limit: f32)
     (*w).top = (*w).top + 1u;
 }
 
-/// A walk that has yet to begin.
-fn scene_walk(ray: Ray) -> InstanceWalk {
-    var w = InstanceWalk();
+/// A traversal that has yet to begin.
+fn scene_begin(ray: Ray) -> InstanceTraversal {
+    var w = InstanceTraversal();
     scene_enter(&w, 0u, ray, ray.t_max);
     return w;
 }
@@ -277,8 +277,8 @@ fn transform_ray(ray: Ray, map: Affine3) -> Ray {
     return Ray(map.matrix3.x_axis * ray.origin.x + map.matrix3.y_axis * ray.origin.y + map.matrix3.z_axis * ray.origin.z + map.translation, map.matrix3.x_axis * ray.direction.x + map.matrix3.y_axis * ray.direction.y + map.matrix3.z_axis * ray.direction.z, ray.t_min, ray.t_max);
 }
 
-/// The next primitive that the ray may meet at or before `limit`; 4294967295u when none is left.
-fn scene_next(w: ptr<function, InstanceWalk>, limit: f32) -> NextPrimitive {
+/// The next primitive that the ray may hit at or before `limit`; 4294967295u when none is left.
+fn scene_next(w: ptr<function, InstanceTraversal>, limit: f32) -> NextPrimitive {
     loop {
         if ((*w).next < (*w).last) {
             let id = scene_ids_at((*w).next);
@@ -497,9 +497,9 @@ fn closest_hit(ray: Ray) -> Hit {
     var best_inst_id: u32 = 0u;
     var best_u: f32 = 0.0f;
     var best_v: f32 = 0.0f;
-    var walk: InstanceWalk = scene_walk(ray);
+    var traversal: InstanceTraversal = scene_begin(ray);
     loop {
-        let next = scene_next(&walk, select(ray.t_max, limit_behind(best_t, scene_places_at(0u).slack, ray.t_max), best_is_hit));
+        let next = scene_next(&traversal, select(ray.t_max, limit_behind(best_t, scene_places_at(0u).slack, ray.t_max), best_is_hit));
         if (!(next.id != 4294967295u)) { break; }
         let candidate = Triangle_intersect(scene_at(next.id), next.ray);
         if (is_within(candidate, next.ray)) {
@@ -595,9 +595,9 @@ fn transform_normal_back(normal_: vec3<f32>, map: Affine3) -> vec3<f32> {
 
 fn any_hit(ray: Ray) -> bool {
     var found: bool = false;
-    var walk: InstanceWalk = scene_walk(ray);
+    var traversal: InstanceTraversal = scene_begin(ray);
     loop {
-        let next = scene_next(&walk, ray.t_max);
+        let next = scene_next(&traversal, ray.t_max);
         if (!(next.id != 4294967295u)) { break; }
         let candidate = Triangle_intersect(scene_at(next.id), next.ray);
         if (is_within(candidate, next.ray)) {

@@ -413,7 +413,7 @@ fn meshes_roots_len() -> u32 {
 }
 
 /// A traversal that has yet to begin.
-fn meshes_walk(ray: Ray, first: u32) -> Traversal {
+fn meshes_begin(ray: Ray, first: u32) -> Traversal {
     var w = Traversal();
     if (params.len_of_meshes_nodes == 0u || !is_finite(ray)) {
         return w;
@@ -546,9 +546,9 @@ fn kernel(ray: Ray) -> Tuple {
     var hits_0_v: f32 = 0.0f;
     var tree: u32 = 0u;
     for (; tree < meshes_roots_len(); tree = tree + 1u) {
-        var walk: Traversal = meshes_walk(ray, meshes_roots_at(tree));
+        var traversal: Traversal = meshes_begin(ray, meshes_roots_at(tree));
         loop {
-            let id = meshes_next(&walk, ray.t_min, ray.t_max);
+            let id = meshes_next(&traversal, ray.t_min, ray.t_max);
             if (!(id != 4294967295u)) { break; }
             let candidate = IndexedTriangle_intersect(meshes_at(id), ray);
             if (is_within(candidate, ray)) {

@@ -190,9 +190,9 @@ mod types_of_queries {
         Slabs of_slabs
         Traversal of_traversal
         Place of_place
-        WalkLevel of_level
-        InstanceWalk of_walk
-        CountedInstanceWalk of_counted_walk
+        TraversalLevel of_level
+        InstanceTraversal of_traversal
+        CountedInstanceTraversal of_counted_traversal
         NextPrimitive of_next
         Cost of_cost
         CountedHit of_counted

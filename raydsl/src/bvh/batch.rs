@@ -12,9 +12,9 @@ const PACKETS: usize = 8;
 
 /// Finds the record of the least `(t, id)` hit of each ray.
 pub(super) fn closest_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray]) -> Vec<P::Hit> {
-    if let Some(walks) = scene.walks() {
+    if let Some(queries) = scene.queries() {
         let mut hits = Vec::with_capacity(rays.len());
-        trace::each_closest((scene, walks), rays, |ray, hit| {
+        trace::each_closest((scene, queries), rays, |ray, hit| {
             hits.push(traverse::complete(scene, *ray, hit));
         });
         return hits;
@@ -25,9 +25,9 @@ pub(super) fn closest_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray])
 
 /// Returns whether each ray hits anything.
 pub(super) fn any_hits<P: Primitive>(scene: &SceneView<'_, P>, rays: &[Ray]) -> Vec<bool> {
-    if let Some(walks) = scene.walks() {
+    if let Some(queries) = scene.queries() {
         let mut hits = Vec::with_capacity(rays.len());
-        trace::each_any((scene, walks), rays, |is_hit| hits.push(is_hit));
+        trace::each_any((scene, queries), rays, |is_hit| hits.push(is_hit));
         return hits;
     }
     let hits = Variant::widest().with_lanes(Any { scene, rays });

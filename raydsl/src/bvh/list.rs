@@ -89,8 +89,8 @@ impl<'a, P: Primitive> BvhList<'a, P> {
         let parts = trees.iter().map(part).collect();
         let kinds = trees.iter().fold(Kinds::NONE, |all, tree| all.union(tree.tree.kinds));
         let is_wide = trees.iter().all(Bvh::is_wide);
-        let walks = trees.first().filter(|_| is_wide).and_then(|tree| tree.tree.walks);
-        Ok(Self { trees: Trees { parts, shared, owner: Owner::new(), kinds, walks } })
+        let queries = trees.first().filter(|_| is_wide).and_then(|tree| tree.tree.queries);
+        Ok(Self { trees: Trees { parts, shared, owner: Owner::new(), kinds, queries } })
     }
 
     /// Returns the index of the tree that holds the hit primitive; `None` for a miss.

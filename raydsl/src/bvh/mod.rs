@@ -64,7 +64,7 @@ pub use instances::{Group, Instance, InstanceError, Instances, MAX_CONDITION, MA
 pub(crate) use instances::{IS_INSTANCE, PLACE_SCHEMA, Placed, Placing, STACK, Target};
 pub use list::{BvhList, ListError};
 pub use node::Node;
-pub(crate) use on::RecordedWalks;
+pub(crate) use on::RecordedQueries;
 #[doc(hidden)]
 pub use on::{AnyHits, ClosestHits};
 pub(crate) use query::{RecordOn, any_where, closest_where, record_on};
@@ -80,7 +80,7 @@ pub use validate::{TreeFault, validate};
 use view::Tree;
 pub(crate) use view::{Branches, NODE_SCHEMA, Part, buffers};
 pub use view::{SceneView, View};
-use wide::Walks;
+use wide::WideQueries;
 #[cfg(feature = "counts")]
 pub use wide::counts::Counts;
 
@@ -202,7 +202,7 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         shared: &'a [P::Shared],
         config: &BuildConfig,
     ) -> Result<Self, BuildError> {
-        Self::build_told(prims, shared, config, None, wide::walks())
+        Self::build_told(prims, shared, config, None, wide::queries())
     }
 
     /// Builds a wide tree as [`Bvh::build_wide`], with an observer as [`Bvh::build_observed`].
@@ -216,7 +216,7 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         config: &BuildConfig,
         mut observer: impl FnMut(f64) -> ControlFlow<()> + Send,
     ) -> Result<Self, BuildError> {
-        Self::build_told(prims, shared, config, Some(&mut observer), wide::walks())
+        Self::build_told(prims, shared, config, Some(&mut observer), wide::queries())
     }
 
     /// Builds a tree as [`Bvh::build_sharing`] does, and reports progress to `observer`, from 0 to
@@ -264,7 +264,7 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         shared: &'a [P::Shared],
         config: &BuildConfig,
         observer: Option<&mut build::Observer>,
-        walks: Option<Walks<P, P::Shared>>,
+        queries: Option<WideQueries<P, P::Shared>>,
     ) -> Result<Self, BuildError> {
         const {
             assert!(
@@ -273,10 +273,11 @@ impl<'a, P: Primitive> Bvh<'a, P> {
             );
         }
         let source = build::Primitives { prims, shared };
-        let walks = walks.filter(|_| prims.len() >= config.min_wide_size as usize);
-        let settings = Settings { config: *config, is_wide: walks.is_some() };
+        let queries = queries.filter(|_| prims.len() >= config.min_wide_size as usize);
+        let settings = Settings { config: *config, is_wide: queries.is_some() };
         let tree = build::build_watched(&source, prims.len(), &settings, observer)?;
-        let wide = walks.map(|walks| (walks.collapse)(&tree, prims, shared, config.traversal));
+        let wide =
+            queries.map(|queries| (queries.collapse)(&tree, prims, shared, config.traversal));
         let own = Owned {
             structure: Structure::of(tree, wide),
             config: *config,
@@ -284,7 +285,7 @@ impl<'a, P: Primitive> Bvh<'a, P> {
             version: 0,
             built_cost: None,
         };
-        Ok(Self { tree: Tree { prims, shared, own, kinds: Kinds::of(prims), walks } })
+        Ok(Self { tree: Tree { prims, shared, own, kinds: Kinds::of(prims), queries } })
     }
 
     /// Returns the primitives, which the application owns.
@@ -299,7 +300,7 @@ impl<'a, P: Primitive> Bvh<'a, P> {
 
     /// Returns whether the tree is wide, as [`Bvh::build_wide`] makes it.
     pub fn is_wide(&self) -> bool {
-        self.tree.walks.is_some()
+        self.tree.queries.is_some()
     }
 
     /// Returns the nodes of the binary tree, root first, with adjacent children. The binary tree of

@@ -6,7 +6,7 @@
 use thiserror::Error;
 
 use super::view::Tree;
-use super::wide::Walks;
+use super::wide::WideQueries;
 use super::{BuildError, Bvh, Owned, stats};
 use crate::geometry::{Kinds, Primitive};
 
@@ -41,7 +41,7 @@ pub struct DetachedBvh<P: Primitive> {
     own: Owned,
     /// Number of primitives of the tree.
     count: usize,
-    walks: Option<Walks<P, P::Shared>>,
+    queries: Option<WideQueries<P, P::Shared>>,
 }
 
 /// Error of refitting a tree. The tree is lost: build one.
@@ -64,8 +64,8 @@ pub enum RefitError {
 impl<P: Primitive> Bvh<'_, P> {
     /// Detaches the tree from its primitives, so that they may be changed.
     pub fn detach(self) -> DetachedBvh<P> {
-        let Tree { prims, own, walks, .. } = self.tree;
-        DetachedBvh { own, count: prims.len(), walks }
+        let Tree { prims, own, queries, .. } = self.tree;
+        DetachedBvh { own, count: prims.len(), queries }
     }
 
     /// Refits the tree to other primitives: [`Bvh::detach`] and [`DetachedBvh::refit`], for
@@ -138,21 +138,21 @@ impl<P: Primitive> DetachedBvh<P> {
         prims: &'b [P],
         shared: &'b [P::Shared],
     ) -> Result<Bvh<'b, P>, RefitError> {
-        let Self { own, count: before, walks } = self;
+        let Self { own, count: before, queries } = self;
         if prims.len() != before {
             return Err(RefitError::CountChanged { before, now: prims.len() });
         }
         let cost = || stats::sah_cost(&own.structure.binary().nodes, &own.config);
         let built_cost = own.built_cost.unwrap_or_else(cost);
         let traversal = own.config.traversal;
-        let collapse = |tree: &_| Some((walks?.collapse)(tree, prims, shared, traversal));
+        let collapse = |tree: &_| Some((queries?.collapse)(tree, prims, shared, traversal));
         let own = Owned {
             structure: own.structure.refit(prims, shared, collapse)?,
             version: own.version.wrapping_add(1),
             built_cost: Some(built_cost),
             ..own
         };
-        Ok(Bvh { tree: Tree { prims, shared, own, kinds: Kinds::of(prims), walks } })
+        Ok(Bvh { tree: Tree { prims, shared, own, kinds: Kinds::of(prims), queries } })
     }
 
     /// Returns the number of primitives of the tree.

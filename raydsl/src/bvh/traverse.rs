@@ -122,7 +122,7 @@ pub fn closest_hit<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> P::Hit {
 /// Finds the [`closest_hit`] without the rest of the record.
 #[inline]
 pub(crate) fn nearest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> Hit {
-    let of_wide = prims.walks().and_then(|walks| (walks.closest_of_one)(prims, ray));
+    let of_wide = prims.queries().and_then(|queries| (queries.closest_of_one)(prims, ray));
     of_wide.unwrap_or_else(|| nearest_fallback(prims, ray))
 }
 
@@ -162,7 +162,7 @@ pub(crate) fn nearest_counted<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) 
 fn closest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Count) -> Hit {
     let mut best = Hit::miss();
     let slack = prims.padding().slack;
-    walk_all(prims, ray, count, |candidate, limit| {
+    traverse_all(prims, ray, count, |candidate, limit| {
         let hit = candidate.intersect().hit();
         // Most are misses, whose ids are not needed.
         if is_within(hit, ray) {
@@ -180,7 +180,7 @@ fn closest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Co
 /// Finds whether `ray` hits any of `prims`.
 #[inline]
 pub fn any_hit<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> bool {
-    let of_wide = prims.walks().and_then(|walks| (walks.any_of_one)(prims, ray));
+    let of_wide = prims.queries().and_then(|queries| (queries.any_of_one)(prims, ray));
     of_wide.unwrap_or_else(|| any_fallback(prims, ray))
 }
 
@@ -199,7 +199,7 @@ pub fn any_hit_with_cost<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> (b
 
 #[inline(always)]
 fn any<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Count) -> bool {
-    walk_all(prims, ray, count, |candidate, _| is_within(candidate.intersect().hit(), ray))
+    traverse_all(prims, ray, count, |candidate, _| is_within(candidate.intersect().hit(), ray))
 }
 
 /// Calls `meet` for every hit within the ray's range until it returns false. It may lower the limit
@@ -215,9 +215,9 @@ pub(crate) fn visit<P: Primitive>(
         let hit = candidate.with_ids(record.hit());
         is_within(hit, ray) && !meet(hit, record.with_hit(hit), limit)
     };
-    if let Some(walks) = prims.walks() {
+    if let Some(queries) = prims.queries() {
         let (mut limit, mut is_over) = (ray.t_max, false);
-        let found = (walks.candidates)(prims, ray, &mut |part, id| {
+        let found = (queries.candidates)(prims, ray, &mut |part, id| {
             is_over = is_last(&Candidate { part, ray: &ray, inst: 0, id }, &mut limit);
             if is_over { f32::NEG_INFINITY } else { limit }
         });
@@ -225,14 +225,14 @@ pub(crate) fn visit<P: Primitive>(
             return !is_over;
         }
     }
-    !walk_all(prims, ray, &mut Uncounted, is_last)
+    !traverse_all(prims, ray, &mut Uncounted, is_last)
 }
 
 /// Visits the primitives of a scene that the ray may hit, until `visit` returns true; returns
 /// whether it did. `visit` may lower the limit of the distance. A ray with a component that is not
 /// finite hits nothing.
 #[inline(always)]
-fn walk_all<P: Primitive, C: Count>(
+fn traverse_all<P: Primitive, C: Count>(
     prims: &SceneView<'_, P>,
     ray: Ray,
     count: &mut C,
@@ -242,7 +242,7 @@ fn walk_all<P: Primitive, C: Count>(
     let mut limit = ray.t_max;
     let mut places = Places::new(prims, ray);
     while let Some((part, inst, ray)) = places.next(limit, count) {
-        if walk_part(&part, inst, &ray, &mut limit, count, &mut visit) {
+        if traverse_part(&part, inst, &ray, &mut limit, count, &mut visit) {
             return true;
         }
     }
@@ -290,9 +290,9 @@ impl<'a, P: Primitive> Places<'a, P> {
     }
 }
 
-/// Does [`walk_all`] in one part.
+/// Does [`traverse_all`] in one part.
 #[inline(always)]
-fn walk_part<P: Primitive, C: Count>(
+fn traverse_part<P: Primitive, C: Count>(
     part: &Part<'_, P, P::Shared>,
     inst: u32,
     ray: &Ray,
@@ -307,7 +307,7 @@ fn walk_part<P: Primitive, C: Count>(
     let len = part.prims.len();
     match part.finder {
         Finder::Trees(trees) => {
-            walk(trees.branches(), ray, Padding::of::<P>(), limit, count, visit)
+            traverse(trees.branches(), ray, Padding::of::<P>(), limit, count, visit)
         }
         Finder::Accelerator(accelerator) => find(accelerator, len, ray, limit, count, visit),
         Finder::Nothing => (0..len as u32).any(|id| visit(id, limit, count)),
@@ -340,7 +340,7 @@ fn find<C: Count>(
 /// Visits the primitives in the leaves that the ray enters, nearer children first, until `visit`
 /// returns true; returns whether it did.
 #[inline(always)]
-fn walk<C: Count>(
+fn traverse<C: Count>(
     tree: Branches<'_>,
     ray: &Ray,
     padding: Padding,

@@ -8,7 +8,9 @@ use super::instances::PacketDescent;
 use super::packet_slabs::{PacketSlabs, and, min, or, without};
 use super::traverse::Stack;
 use super::view::Branches;
-use super::{CountedHit, CountedHitOn, Part, Placed, RecordOn, RecordedWalks, SceneView, traverse};
+use super::{
+    CountedHit, CountedHitOn, Part, Placed, RecordOn, RecordedQueries, SceneView, traverse,
+};
 use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn};
 use crate::machine::{B, Entered, F, Lanes, Packet, Place, Slice, Type, U, V3, Value, op};
 use crate::run::{Lanes4, Lanes8, Lanes16};
@@ -90,8 +92,8 @@ pub(crate) fn closest_hit<L: Lanes, P: Primitive>(
                 return each_lane(m, Hit::miss(), ray, |ray| traverse::nearest(prims, ray));
             }
             if let Some(placed) = prims.placed() {
-                return match InstanceWalks::<L, P>::of(placed) {
-                    Some(walks) => (walks.closest_hit)(m, prims, &ray),
+                return match InstanceQueries::<L, P>::of(placed) {
+                    Some(queries) => (queries.closest_hit)(m, prims, &ray),
                     None => each_lane(m, Hit::miss(), ray, |ray| traverse::nearest(prims, ray)),
                 };
             }
@@ -140,7 +142,7 @@ fn closest_hit_inside<'a, L: Lanes, P: Primitive, W: Places<'a, Entered<L>, P>>(
         limit: ray.t_max.0,
         slack: prims.padding().slack,
     };
-    walk_all(
+    traverse_all(
         m,
         prims,
         &ray,
@@ -206,8 +208,8 @@ pub(crate) fn any_hit<L: Lanes, P: Primitive>(
                 return each_lane(m, false, ray, |ray| traverse::any_hit(prims, ray));
             }
             if let Some(placed) = prims.placed() {
-                return match InstanceWalks::<L, P>::of(placed) {
-                    Some(walks) => (walks.any_hit)(m, prims, &ray),
+                return match InstanceQueries::<L, P>::of(placed) {
+                    Some(queries) => (queries.any_hit)(m, prims, &ray),
                     None => each_lane(m, false, ray, |ray| traverse::any_hit(prims, ray)),
                 };
             }
@@ -227,7 +229,7 @@ fn any_hit_inside<'a, L: Lanes, P: Primitive, W: Places<'a, Entered<L>, P>>(
     let m = &Packet::with_mask(Entered::new(m.lanes()), m.active());
     let (l, ray) = (m.lanes(), inner_ray(ray));
     let mut found = l.mask(false);
-    walk_all(
+    traverse_all(
         m,
         prims,
         &ray,
@@ -252,11 +254,11 @@ pub(crate) fn visit<'a, L: Lanes, P: Primitive>(
     limit: impl Fn() -> F<Packet<L>>,
     meet: impl Fn(HitOn<Packet<L>>, RecordOn<Packet<L>, P>) -> B<Packet<L>>,
 ) {
-    if prims.is_standing() || prims.walks().is_some() {
+    if prims.is_standing() || prims.queries().is_some() {
         return visit_each_lane(m, prims, ray, &limit, &meet);
     }
     let l = m.lanes();
-    walk_all(
+    traverse_all(
         m,
         prims,
         &ray,
@@ -330,7 +332,7 @@ const PRIMITIVES: Place = Place { what: "primitives in leaves", file: "", line: 
 /// may lower the limits of lanes, and returns the lanes that stay active. Rays with a component
 /// that is not finite hit nothing.
 #[inline(always)]
-fn walk_all<'a, L: Lanes, P: Primitive, W: Places<'a, L, P>>(
+fn traverse_all<'a, L: Lanes, P: Primitive, W: Places<'a, L, P>>(
     m: &Packet<L>,
     prims: &SceneView<'a, P>,
     ray: &RayOn<Packet<L>>,
@@ -346,7 +348,7 @@ fn walk_all<'a, L: Lanes, P: Primitive, W: Places<'a, L, P>>(
         && let Some((part, inst, ray, mask)) = places.next(l, active, limit)
     {
         let mut still_active = mask;
-        walk_part(
+        traverse_part(
             m,
             &part,
             &ray,
@@ -445,14 +447,14 @@ impl<'a, L: Lanes, P: Primitive> Places<'a, L, P> for Either<'a, L, P> {
 /// They are as much code as those of single trees. Only the tables of
 /// [`Instances`](super::Instances) refer to them: a program without instances is compiled without
 /// them.
-struct InstanceWalks<L: Lanes, P: Primitive> {
+struct InstanceQueries<L: Lanes, P: Primitive> {
     closest_hit: InstanceQuery<L, P, HitOn<Packet<L>>>,
     any_hit: InstanceQuery<L, P, B<Packet<L>>>,
 }
 
 type InstanceQuery<L, P, R> = fn(&Packet<L>, &SceneView<'_, P>, &RayOn<Packet<L>>) -> R;
 
-/// The [`InstanceWalks`] of some kinds of lanes, and [`RecordedWalks`].
+/// The [`InstanceQueries`] of some kinds of lanes, and [`RecordedQueries`].
 pub(crate) type InstanceTable = &'static [&'static (dyn Any + Send + Sync)];
 
 /// Returns the traversals for all lanes of kernels, and for recorders.
@@ -460,16 +462,16 @@ pub(crate) fn instance_table<P: Primitive>() -> InstanceTable {
     struct Of<P>(PhantomData<P>);
     impl<P: Primitive> Of<P> {
         const TABLE: InstanceTable = &[
-            &InstanceWalks::<Lanes4, P>::NEW,
-            &InstanceWalks::<Lanes8, P>::NEW,
-            &InstanceWalks::<Lanes16, P>::NEW,
-            &RecordedWalks::<P>::NEW,
+            &InstanceQueries::<Lanes4, P>::NEW,
+            &InstanceQueries::<Lanes8, P>::NEW,
+            &InstanceQueries::<Lanes16, P>::NEW,
+            &RecordedQueries::<P>::NEW,
         ];
     }
     Of::<P>::TABLE
 }
 
-impl<L: Lanes, P: Primitive> InstanceWalks<L, P> {
+impl<L: Lanes, P: Primitive> InstanceQueries<L, P> {
     const NEW: Self =
         Self { closest_hit: closest_hit_placed::<L, P>, any_hit: any_hit_placed::<L, P> };
 
@@ -477,7 +479,7 @@ impl<L: Lanes, P: Primitive> InstanceWalks<L, P> {
     #[inline(always)]
     fn of<'w>(placed: &Placed<'w, P, P::Shared>) -> Option<&'w Self> {
         if const { L::HAS_TABLES } {
-            placed.walks.iter().find_map(|walks| walks.downcast_ref())
+            placed.queries.iter().find_map(|queries| queries.downcast_ref())
         } else {
             Some(const { &Self::NEW })
         }
@@ -512,10 +514,10 @@ fn any_hit_placed<L: Lanes, P: Primitive>(
     )
 }
 
-/// Does [`walk_all`] in one part: visits the primitives in the leaves that some active lane enters,
+/// Does [`traverse_all`] in one part: visits the primitives in the leaves that some active lane enters,
 /// until no lane is active.
 #[inline(always)]
-fn walk_part<L: Lanes, P: Primitive>(
+fn traverse_part<L: Lanes, P: Primitive>(
     m: &Packet<L>,
     part: &Part<'_, P, P::Shared>,
     ray: &RayOn<Packet<L>>,

@@ -7,7 +7,7 @@ use glam::Affine3;
 use super::contract::Padding;
 use super::instances::Placed;
 use super::structure::Structure;
-use super::wide::{Walks, Wide};
+use super::wide::{Wide, WideQueries};
 use super::{Accelerator, Node, Owned, list};
 use crate::geometry::{Kinds, Primitive, Ray};
 use crate::machine::{
@@ -106,7 +106,7 @@ pub(crate) struct Tree<'a, T, S> {
     pub(super) own: Owned,
     pub(super) kinds: Kinds,
     /// The traversals of wide trees, if the tree is wide.
-    pub(super) walks: Option<Walks<T, S>>,
+    pub(super) queries: Option<WideQueries<T, S>>,
 }
 
 impl<T, S> Tree<'_, T, S> {
@@ -125,7 +125,7 @@ pub(crate) struct Trees<'a, T, S> {
     pub(super) owner: Owner,
     pub(super) kinds: Kinds,
     /// The traversals of wide trees, if all trees are wide.
-    pub(super) walks: Option<Walks<T, S>>,
+    pub(super) queries: Option<WideQueries<T, S>>,
 }
 
 /// Primitives under an application-defined acceleration structure.
@@ -244,10 +244,10 @@ impl<'a, T, S> View<'a, T, S> {
 
     /// Returns the traversals of wide trees, if all trees of the scene are wide.
     #[inline(always)]
-    pub(crate) fn walks(&self) -> Option<&'a Walks<T, S>> {
+    pub(crate) fn queries(&self) -> Option<&'a WideQueries<T, S>> {
         match self.scene {
-            Scene::Tree(tree) => tree.walks.as_ref(),
-            Scene::List(trees) => trees.walks.as_ref(),
+            Scene::Tree(tree) => tree.queries.as_ref(),
+            Scene::List(trees) => trees.queries.as_ref(),
             Scene::Slice(_) | Scene::Instances(_) | Scene::Standing(_) => None,
         }
     }

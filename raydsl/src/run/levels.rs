@@ -102,7 +102,7 @@ impl Levels {
 }
 
 /// Returns whether this machine has lanes that traverse wide trees: AVX-512, AVX2 or NEON.
-pub(crate) fn has_wide_walks() -> bool {
+pub(crate) fn has_wide_lanes() -> bool {
     Levels::detect().middle.is_some()
 }
 
@@ -111,7 +111,7 @@ pub(crate) fn has_wide_walks() -> bool {
 ///
 /// The lanes do not depend on the width of a packet: a traversal is a lot of code, and every copy
 /// of it costs compile time.
-pub(crate) fn with_wide_walks<T: LanesTask>(level: Option<Level>, task: T) -> Option<T::Output> {
+pub(crate) fn with_wide_lanes<T: LanesTask>(level: Option<Level>, task: T) -> Option<T::Output> {
     let levels = level.filter(|level| !level.is_fallback()).map(Levels::of);
     let levels = levels.filter(|levels| levels.middle.is_some()).unwrap_or_else(Levels::detect);
     #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]

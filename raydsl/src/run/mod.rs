@@ -18,7 +18,7 @@ use core::any::Any;
 
 pub use levels::{Counting, Native4, Native8, Native16};
 pub(crate) use levels::{
-    Lanes4, Lanes8, Lanes16, LanesTask, Levels, has_wide_walks, with_wide_walks,
+    Lanes4, Lanes8, Lanes16, LanesTask, Levels, has_wide_lanes, with_wide_lanes,
 };
 pub use variant::{Variant, Variants};
 

@@ -29,7 +29,7 @@ pub(crate) struct Placed<'a, T, S> {
     /// Number of changes of the groups.
     pub(crate) version: u32,
     /// Packet traversals of the instances.
-    pub(crate) walks: InstanceTable,
+    pub(crate) queries: InstanceTable,
 }
 
 /// Tree over the instances of a group.
@@ -205,10 +205,10 @@ impl Placing {
 }
 
 impl<'a, T, S> Placed<'a, T, S> {
-    pub(super) fn new(trees: Trees<'a, T, S>, padding: Padding, walks: InstanceTable) -> Self {
+    pub(super) fn new(trees: Trees<'a, T, S>, padding: Padding, queries: InstanceTable) -> Self {
         let nodes = trees.parts.iter().map(|part| part.tree().map_or(&[][..], |tree| tree.nodes));
         let depths = nodes.map(stats::depth).collect();
-        Self { trees, padding, depths, groups: Vec::new(), version: 0, walks }
+        Self { trees, padding, depths, groups: Vec::new(), version: 0, queries }
     }
 
     /// Returns the group that rays are traced against.

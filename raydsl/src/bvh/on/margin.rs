@@ -138,7 +138,7 @@ pub(super) fn closest_hit(m: &Margin, scene: &Scene<'_>) -> HitOn<Margin> {
     let limit = Cell::new(m.get(scene.ray.t_max.0).range.high);
     // Collect all possible hits; certain ones lower the limit.
     if fate != Fate::Misses {
-        scene.walk(m, &limit, &mut |name| {
+        scene.traverse(m, &limit, &mut |name| {
             let hits = scene.ask(m, name);
             for hit in hits.iter().filter(|h| h.is_certain) {
                 limit.set(limit.get().min(hit.t.range.high));
@@ -177,7 +177,7 @@ pub(super) fn any_hit(m: &Margin, scene: &Scene<'_>) -> Truth {
     }
     let (mut may_be, mut is_certain, mut is_reference) = (false, false, false);
     let limit = Cell::new(m.get(scene.ray.t_max.0).range.high);
-    scene.walk(m, &limit, &mut |name| {
+    scene.traverse(m, &limit, &mut |name| {
         for hit in scene.ask(m, name) {
             may_be = true;
             is_certain |= hit.is_certain && fate == Fate::Runs;
@@ -204,7 +204,7 @@ pub(super) fn visit(
         return;
     }
     let end = Cell::new(m.get(scene.ray.t_max.0).range.high);
-    scene.walk(m, &end, &mut |name| {
+    scene.traverse(m, &end, &mut |name| {
         let (floats, forms) = (m.floats.mark(), m.forms.len());
         let hit = (scene.intersect)(name);
         let is_accepted = m.decided(scene.accepts(m, &hit));
@@ -340,22 +340,22 @@ impl Scene<'_> {
 
     /// Visits the primitives that some variant may hit at or before `limit`, until `visit` returns
     /// true.
-    fn walk(&self, m: &Margin, limit: &Cell<f64>, visit: &mut dyn FnMut(Name) -> bool) {
+    fn traverse(&self, m: &Margin, limit: &Cell<f64>, visit: &mut dyn FnMut(Name) -> bool) {
         match self.groups {
             None => {
-                let each = |part| self.walk_part(m, part, 0, self.ray, limit, visit);
+                let each = |part| self.traverse_part(m, part, 0, self.ray, limit, visit);
                 let _ = self.parts.iter().any(each);
             }
             Some(groups) => {
                 if let Some(top) = groups.last() {
-                    self.walk_group(m, top, 0, self.ray, limit, visit);
+                    self.traverse_group(m, top, 0, self.ray, limit, visit);
                 }
             }
         }
     }
 
-    /// Runs [`Scene::walk`] in a group whose first tree has the index `first`.
-    fn walk_group(
+    /// Runs [`Scene::traverse`] in a group whose first tree has the index `first`.
+    fn traverse_group(
         &self,
         m: &Margin,
         group: &Placing,
@@ -367,7 +367,7 @@ impl Scene<'_> {
         if fate(m, ray) == Fate::Misses {
             return false;
         }
-        walk_tree(m, group.branches(), ray, group.padding, limit, &mut |index| {
+        traverse_tree(m, group.branches(), ray, group.padding, limit, &mut |index| {
             let item = &group.items[index as usize];
             let first = first + item.first;
             let mark = m.floats.mark();
@@ -376,11 +376,11 @@ impl Scene<'_> {
                 // Coordinates that overflow in the transform miss.
                 Target::Tree(_) if fate(m, ray) == Fate::Misses => false,
                 Target::Tree(tree) => {
-                    self.walk_part(m, &self.parts[tree as usize], first, ray, limit, visit)
+                    self.traverse_part(m, &self.parts[tree as usize], first, ray, limit, visit)
                 }
                 Target::Group(group) => {
                     let groups = self.groups.unwrap_or(&[]);
-                    self.walk_group(m, &groups[group as usize], first, ray, limit, visit)
+                    self.traverse_group(m, &groups[group as usize], first, ray, limit, visit)
                 }
             };
             m.floats.drop_since(mark);
@@ -388,7 +388,7 @@ impl Scene<'_> {
         })
     }
 
-    fn walk_part(
+    fn traverse_part(
         &self,
         m: &Margin,
         part: &Part<'_>,
@@ -399,7 +399,7 @@ impl Scene<'_> {
     ) -> bool {
         let mut visit = |id| visit(Name { inst, prim: part.first + id });
         match part.tree {
-            Some(tree) => walk_tree(m, tree, ray, self.padding, limit, &mut visit),
+            Some(tree) => traverse_tree(m, tree, ray, self.padding, limit, &mut visit),
             None => (0..part.len).any(visit),
         }
     }
@@ -407,7 +407,7 @@ impl Scene<'_> {
 
 /// Visits the contents of leaves that the ray may hit at or before `limit`, until `visit` returns
 /// true.
-fn walk_tree(
+fn traverse_tree(
     m: &Margin,
     tree: Branches<'_>,
     ray: RayOn<Margin>,

@@ -25,7 +25,7 @@ use crate::machine::{
     Visit, fill,
 };
 
-pub(crate) use wgsl::RecordedWalks;
+pub(crate) use wgsl::RecordedQueries;
 
 /// Finds the least `(t, id)` hit of each of `N` rays.
 pub struct ClosestHits<'s, 'a, P: Primitive, const N: usize>(pub &'s SceneView<'a, P>);
@@ -44,9 +44,9 @@ impl<P: Primitive, const N: usize> Operation for ClosestHits<'_, '_, P, N> {
         m: &Packet<L>,
         rays: [RayOn<Packet<L>>; N],
     ) -> [HitOn<Packet<L>>; N] {
-        if let Some(walks) = self.0.walks() {
+        if let Some(queries) = self.0.queries() {
             let mut hits = [HitOn::zero(m); N];
-            trace::closest_hits(m, (self.0, walks), &rays, &mut hits);
+            trace::closest_hits(m, (self.0, queries), &rays, &mut hits);
             return hits;
         }
         fill(
@@ -77,9 +77,9 @@ impl<P: Primitive, const N: usize> Operation for AnyHits<'_, '_, P, N> {
 
     #[inline(always)]
     fn on_packet<L: Lanes>(&self, m: &Packet<L>, rays: [RayOn<Packet<L>>; N]) -> [B<Packet<L>>; N] {
-        if let Some(walks) = self.0.walks() {
+        if let Some(queries) = self.0.queries() {
             let mut hits = [B(m.lanes().mask(false)); N];
-            trace::any_hits(m, (self.0, walks), &rays, &mut hits);
+            trace::any_hits(m, (self.0, queries), &rays, &mut hits);
             return hits;
         }
         fill(

@@ -88,7 +88,7 @@ fn trace_packets<R: Lanes, P: Primitive>(
         };
         if let Some(beam) = beam {
             counts::some(Event::BeamRay, size);
-            walk(r, intersector, rays, interleaved, packet_scratch, &beam);
+            traverse(r, intersector, rays, interleaved, packet_scratch, &beam);
         } else {
             for (group, members) in octant.groups() {
                 keep(rays, interleaved, group, members, Child::node(0));
@@ -126,7 +126,7 @@ fn has_room(rays: &Rays, group: usize, members: u32) -> bool {
 
 /// Traces a packet through the tree, and keeps for the stream the boxes that few of its rays enter.
 #[inline(always)]
-fn walk<R: Lanes, P: Primitive>(
+fn traverse<R: Lanes, P: Primitive>(
     r: R,
     intersector: &LeafIntersector<'_, P>,
     rays: &mut Rays,

@@ -12,6 +12,7 @@ mod node;
 mod octant;
 mod order;
 mod packet;
+mod queries;
 mod rays;
 pub(crate) mod single;
 mod step;
@@ -19,14 +20,13 @@ mod stream;
 #[cfg(test)]
 mod tests;
 pub(crate) mod trace;
-mod walks;
 
 use super::build::Tree;
 use super::{Node, Traversal};
 use crate::geometry::{Aabb, Primitive};
 use blocks::Blocks;
 use node::WideNode;
-pub(crate) use walks::{Walks, walks};
+pub(crate) use queries::{WideQueries, queries};
 
 /// A wide tree with a copy of the primitives in its leaves; see
 /// [`Bvh::build_wide`](super::Bvh::build_wide).

@@ -73,7 +73,7 @@ pub(super) fn closest_hit<R: Lanes, P: Primitive>(
             };
             if let Some(beam) = beam {
                 counts::some(Event::BeamRay, size);
-                walk(r, intersector, rays, packet_scratch, beam);
+                traverse(r, intersector, rays, packet_scratch, beam);
                 continue;
             }
             for (group, members) in octant.groups() {
@@ -88,7 +88,7 @@ pub(super) fn closest_hit<R: Lanes, P: Primitive>(
 
 /// Traces a packet through the tree.
 #[inline(always)]
-fn walk<R: Lanes, P: Primitive>(
+fn traverse<R: Lanes, P: Primitive>(
     r: R,
     intersector: &LeafIntersector<'_, P>,
     rays: &mut Rays,

@@ -11,7 +11,7 @@ use crate::bvh::contract::{Padding, is_before, is_finite, limit_behind};
 use crate::bvh::{Part, SceneView};
 use crate::geometry::{Hit, Primitive, Ray};
 use crate::machine::{Entered, Lanes, Packet, Type};
-use crate::run::{LanesTask, with_wide_walks};
+use crate::run::{LanesTask, with_wide_lanes};
 
 /// Stack entries of a ray, enough for all but very deep trees. Fewer in unit tests, so that both
 /// cases are tested.
@@ -82,20 +82,20 @@ fn ask<P: Primitive>(
     let pending = scene.parts().filter_map(|part| part.wide()).map(|tree| tree.pending).max();
     let room = pending? + 1 + WIDTH;
     // Called in one place, since every copy of a traversal costs compile time.
-    let mut walk = |stacks: &mut [u32]| {
+    let mut traverse_with = |stacks: &mut [u32]| {
         let (children, enters) = stacks.split_at_mut(stacks.len() / 2);
         let pending = Pending { children, enters };
-        with_wide_walks(None, Ask { scene, ray, wanted, pending, visit: &mut *visit })?
+        with_wide_lanes(None, Ask { scene, ray, wanted, pending, visit: &mut *visit })?
     };
     if room <= FEW {
-        return walk(&mut [0; 2 * FEW]);
+        return traverse_with(&mut [0; 2 * FEW]);
     }
     // A primitive may query another scene meanwhile, which allocates its own stacks then.
     let mut stacks = DEEP.take();
     if stacks.len() < 2 * room {
         stacks.resize(2 * room, 0);
     }
-    let found = walk(&mut stacks);
+    let found = traverse_with(&mut stacks);
     DEEP.set(stacks);
     found
 }
@@ -126,7 +126,7 @@ fn each_part<E: Lanes, P: Primitive>(
         let Some(tree) = part.wide().filter(|tree| !tree.is_empty()) else { continue };
         let beam = Beam::of_one(&ray, limit, &tree.bounds(), Padding::of::<P>())?;
         let intersector = leaf_intersector(scene, part, tree);
-        limit = walk(e, &intersector, (&ray, wanted), beam, &mut pending, &mut best, visit);
+        limit = traverse(e, &intersector, (&ray, wanted), beam, &mut pending, &mut best, visit);
         if wanted == Wanted::Any && best.is_hit || limit == f32::NEG_INFINITY {
             break;
         }
@@ -135,7 +135,7 @@ fn each_part<E: Lanes, P: Primitive>(
 }
 
 #[inline(always)]
-fn walk<E: Lanes, P: Primitive>(
+fn traverse<E: Lanes, P: Primitive>(
     e: E,
     intersector: &LeafIntersector<'_, P>,
     (ray, wanted): (&Ray, Wanted),

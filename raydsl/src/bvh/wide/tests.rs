@@ -45,7 +45,13 @@ fn triangles(count: u32) -> Vec<Triangle> {
 
 /// Counts the primitives in the blocks below a child; returns the most pending children in the
 /// worst traversal order.
-fn walk(tree: &Wide, child: Child, bounds: Aabb, prims: &[Triangle], seen: &mut [u32]) -> usize {
+fn traverse(
+    tree: &Wide,
+    child: Child,
+    bounds: Aabb,
+    prims: &[Triangle],
+    seen: &mut [u32],
+) -> usize {
     if child.is_block() {
         let block = tree.blocks.block::<Triangle>(child.index());
         let ids = block[block.len() - 1].0;
@@ -78,7 +84,7 @@ fn walk(tree: &Wide, child: Child, bounds: Aabb, prims: &[Triangle], seen: &mut 
         let own = Aabb::new(corner(0).into(), corner(1).into());
         assert_eq!(own.union(bounds), bounds, "a child is in its parent");
         children += 1;
-        deepest = deepest.max(walk(tree, below, own, prims, seen));
+        deepest = deepest.max(traverse(tree, below, own, prims, seen));
     }
     assert!(children > 0);
     (children - 1 + deepest).max(children)
@@ -93,7 +99,7 @@ fn blocks_hold_every_primitive_and_stacks_are_deep_enough() {
             let bvh = Bvh::build_wide(&prims, &[], &config).expect("finite bounds");
             let tree = bvh.tree.own.structure.wide().expect("a wide tree was asked for");
             let mut seen = vec![0; prims.len()];
-            let pending = walk(tree, Child::node(0), bvh.bounds(), &prims, &mut seen);
+            let pending = traverse(tree, Child::node(0), bvh.bounds(), &prims, &mut seen);
             assert!(pending <= tree.pending, "{pending} of {}", tree.pending);
             let most = if quality == BuildQuality::Best { u32::MAX } else { 1 };
             assert!(seen.iter().all(|&n| n >= 1 && n <= most), "{count} {quality:?}");

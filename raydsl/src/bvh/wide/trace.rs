@@ -9,16 +9,16 @@ use super::entry;
 use super::hybrid;
 use super::order::{Portions, Sequence};
 use super::packet::{self, PacketScratch};
+use super::queries::WideQueries;
 use super::rays::{GROUP, Rays, lanes_of, load_words, place, ray_at, ray_at_mut, row};
 use super::step::LeafIntersector;
 use super::stream::{self, RayStream};
-use super::walks::Walks;
 use crate::bvh::contract::{Padding, is_finite};
 use crate::bvh::packet_slabs::and;
 use crate::bvh::{Part, SceneView, Traversal, View, traverse};
 use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn};
 use crate::machine::{B, Entered, F, Lanes, Packet, U, op};
-use crate::run::{self, LanesTask, Scratch as _, fibers, with_wide_walks};
+use crate::run::{self, LanesTask, Scratch as _, fibers, with_wide_lanes};
 
 /// Scratch memory of a query, which a thread keeps for the next one.
 #[derive(Debug, Default)]
@@ -42,13 +42,13 @@ thread_local! {
 #[inline(always)]
 pub(crate) fn closest_hits<L: Lanes, T, S>(
     m: &Packet<L>,
-    (scene, walks): (&View<'_, T, S>, &Walks<T, S>),
+    (scene, queries): (&View<'_, T, S>, &WideQueries<T, S>),
     rays: &[RayOn<Packet<L>>],
     hits: &mut [HitOn<Packet<L>>],
 ) {
     let l = m.lanes();
-    let key = (walks.closest as *const () as usize, scene.address());
-    let answer = |scratch: &mut Scratch| (walks.closest)(l.level(), scene, scratch);
+    let key = (queries.closest as *const () as usize, scene.address());
+    let answer = |scratch: &mut Scratch| (queries.closest)(l.level(), scene, scratch);
     ask(m, key, rays, &answer, &mut |scratch, first| {
         l.enter_again(
             #[inline(always)]
@@ -65,13 +65,13 @@ pub(crate) fn closest_hits<L: Lanes, T, S>(
 #[inline(always)]
 pub(crate) fn any_hits<L: Lanes, T, S>(
     m: &Packet<L>,
-    (scene, walks): (&View<'_, T, S>, &Walks<T, S>),
+    (scene, queries): (&View<'_, T, S>, &WideQueries<T, S>),
     rays: &[RayOn<Packet<L>>],
     hits: &mut [B<Packet<L>>],
 ) {
     let l = m.lanes();
-    let key = (walks.any as *const () as usize, scene.address());
-    let answer = |scratch: &mut Scratch| (walks.any)(l.level(), scene, scratch);
+    let key = (queries.any as *const () as usize, scene.address());
+    let answer = |scratch: &mut Scratch| (queries.any)(l.level(), scene, scratch);
     ask(m, key, rays, &answer, &mut |scratch, first| {
         l.enter_again(
             #[inline(always)]
@@ -126,14 +126,14 @@ const BATCH: usize = 2048;
 
 /// Calls `found` with the least `(t, id)` hit of each ray.
 pub(crate) fn each_closest<T, S>(
-    (scene, walks): (&View<'_, T, S>, &Walks<T, S>),
+    (scene, queries): (&View<'_, T, S>, &WideQueries<T, S>),
     rays: &[Ray],
     mut found: impl FnMut(&Ray, Hit),
 ) {
     with_scratch(|scratch| {
         for rays in rays.chunks(BATCH) {
             scratch.rays.load(rays);
-            (walks.closest)(None, scene, scratch);
+            (queries.closest)(None, scene, scratch);
             for (i, ray) in rays.iter().enumerate() {
                 found(ray, ray_at(scratch.rays.words(), place(i)).hit());
             }
@@ -143,14 +143,14 @@ pub(crate) fn each_closest<T, S>(
 
 /// Calls `found` with whether each ray hits anything.
 pub(crate) fn each_any<T, S>(
-    (scene, walks): (&View<'_, T, S>, &Walks<T, S>),
+    (scene, queries): (&View<'_, T, S>, &WideQueries<T, S>),
     rays: &[Ray],
     mut found: impl FnMut(bool),
 ) {
     with_scratch(|scratch| {
         for rays in rays.chunks(BATCH) {
             scratch.rays.load(rays);
-            (walks.any)(None, scene, scratch);
+            (queries.any)(None, scene, scratch);
             for i in 0..rays.len() {
                 found(ray_at(scratch.rays.words(), place(i)).word(row::FOUND) != 0);
             }
@@ -215,7 +215,7 @@ pub(super) fn answer<const CLOSEST: bool, P: Primitive>(
             }
         }
     }
-    let done = with_wide_walks(level, Answer::<CLOSEST, P> { scene, scratch: &mut *scratch });
+    let done = with_wide_lanes(level, Answer::<CLOSEST, P> { scene, scratch: &mut *scratch });
     debug_assert!(done.is_some(), "wide trees are built only where the machine can traverse them");
     fallback::<CLOSEST, P>(scene, &mut scratch.rays);
 }

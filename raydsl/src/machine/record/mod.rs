@@ -92,7 +92,7 @@ fn belongs_to(name: &str, buffer: &str) -> bool {
         "_closer_hit",
         "_any_hit",
         "_any_hit_in",
-        "_walk",
+        "_begin",
         "_next",
         "_enter",
         "_local_ray",

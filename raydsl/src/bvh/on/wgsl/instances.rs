@@ -31,7 +31,7 @@ const LEVELS: usize = MAX_LEVELS + 1;
 
 /// State of a traversal on one level.
 pub(super) const LEVEL: &Schema = &Schema::Struct {
-    name: "WalkLevel",
+    name: "TraversalLevel",
     fields: &[
         Field { name: "ray", offset: 0, schema: Ray::SCHEMA },
         Field { name: "place", offset: 32, schema: &Schema::U32 },
@@ -42,7 +42,7 @@ pub(super) const LEVEL: &Schema = &Schema::Struct {
 };
 
 /// Members of the traversal state.
-const WALK: [Field; 11] = [
+const TRAVERSAL: [Field; 11] = [
     Field { name: "here", offset: 0, schema: LEVEL },
     Field { name: "lower", offset: 44, schema: &Schema::Vector(&Schema::F32, 3) },
     Field { name: "upper", offset: 56, schema: &Schema::Vector(&Schema::F32, 3) },
@@ -67,31 +67,31 @@ const WALK: [Field; 11] = [
         schema: &Schema::Array { element: &Schema::F32, count: STACK, stride: 4 },
     },
 ];
-const WALK_SIZE: usize = 96 + 44 * LEVELS + 8 * STACK;
+const TRAVERSAL_SIZE: usize = 96 + 44 * LEVELS + 8 * STACK;
 
 /// Traversal state.
 pub(super) const DESCENT: &Schema =
-    &Schema::Struct { name: "InstanceWalk", fields: &WALK, size: WALK_SIZE };
+    &Schema::Struct { name: "InstanceTraversal", fields: &TRAVERSAL, size: TRAVERSAL_SIZE };
 
 /// Traversal state with a count of tested nodes.
 const COUNTED_DESCENT: &Schema = &Schema::Struct {
-    name: "CountedInstanceWalk",
+    name: "CountedInstanceTraversal",
     fields: &{
-        let [a, b, c, d, e, f, g, h, i, j, k] = WALK;
-        let tested = Field { name: "tested", offset: WALK_SIZE, schema: &Schema::U32 };
+        let [a, b, c, d, e, f, g, h, i, j, k] = TRAVERSAL;
+        let tested = Field { name: "tested", offset: TRAVERSAL_SIZE, schema: &Schema::U32 };
         [a, b, c, d, e, f, g, h, i, j, k, tested]
     },
-    size: WALK_SIZE + 4,
+    size: TRAVERSAL_SIZE + 4,
 };
 
 /// Kind of traversal: plain, or counting tested nodes.
 #[derive(Clone, Copy, PartialEq)]
-enum Walk {
+enum Traversal {
     Plain,
     Counted,
 }
 
-impl Walk {
+impl Traversal {
     /// Returns the schema of its state.
     fn schema(self) -> &'static Schema {
         match self {
@@ -103,8 +103,8 @@ impl Walk {
     /// Returns the name of its type, and the suffix of its function names.
     fn names(self) -> [&'static str; 2] {
         match self {
-            Self::Plain => ["InstanceWalk", ""],
-            Self::Counted => ["CountedInstanceWalk", "_with_cost"],
+            Self::Plain => ["InstanceTraversal", ""],
+            Self::Counted => ["CountedInstanceTraversal", "_with_cost"],
         }
     }
 
@@ -130,14 +130,14 @@ pub(super) const CANDIDATE: &Schema = &Schema::Struct {
 
 /// Recorded traversals of scenes of instances. Only constructors of such scenes refer to it: other
 /// programs do not compile it.
-pub(crate) struct RecordedWalks<P: Primitive> {
+pub(crate) struct RecordedQueries<P: Primitive> {
     pub(super) closest_hit: fn(&Recorder, &SceneView<'_, P>, RayOn<Recorder>) -> HitOn<Recorder>,
     /// The counting variant.
     pub(super) closest_hit_with_cost: fn(&Recorder, &SceneView<'_, P>) -> usize,
     pub(super) any_hit: fn(&Recorder, &SceneView<'_, P>, RayOn<Recorder>) -> B<Recorder>,
 }
 
-impl<P: Primitive> RecordedWalks<P> {
+impl<P: Primitive> RecordedQueries<P> {
     pub(crate) const NEW: Self = Self {
         closest_hit: Recorder::closest_placed_hit::<P>,
         closest_hit_with_cost: Recorder::closest_placed_hit_with_cost::<P>,
@@ -145,7 +145,7 @@ impl<P: Primitive> RecordedWalks<P> {
     };
 
     pub(super) fn of<'a>(placed: &Placed<'a, P, P::Shared>) -> &'a Self {
-        let found = placed.walks.iter().find_map(|walks| walks.downcast_ref());
+        let found = placed.queries.iter().find_map(|queries| queries.downcast_ref());
         found.expect("instances know how they are recorded")
     }
 }
@@ -186,7 +186,7 @@ impl Recorder {
         (intersect, path): &(String, String),
     ) -> usize {
         let prims_name = prims.primitives(self);
-        let (start, next) = self.descent_functions(prims, Walk::Counted);
+        let (start, next) = self.descent_functions(prims, Traversal::Counted);
         let (start, next) = (self.function_name(start), self.function_name(next));
         let (_, places) = self.places_of(prims);
         let zero = zero_value(CountedHit::SCHEMA);
@@ -222,12 +222,12 @@ impl Recorder {
         limit: &impl Fn() -> F<Self>,
         meet: &impl Fn(HitOn<Self>, RecordOn<Self, P>) -> B<Self>,
     ) {
-        let (start, next) = self.descent_functions(prims, Walk::Plain);
+        let (start, next) = self.descent_functions(prims, Traversal::Plain);
         let start = self.add(Expr::Call(start, vec![self.whole(ray)]), Type::Of(DESCENT));
-        let walk = self.declare("walk", start, DESCENT);
+        let traversal = self.declare("traversal", start, DESCENT);
         let repeat = Loop::new(self);
-        let walk = self.add(Expr::Address(walk), Type::Of(DESCENT));
-        let found = self.add(Expr::Call(next, vec![walk, limit().0]), Type::Of(CANDIDATE));
+        let traversal = self.add(Expr::Address(traversal), Type::Of(DESCENT));
+        let found = self.add(Expr::Call(next, vec![traversal, limit().0]), Type::Of(CANDIDATE));
         self.pin(found, "next");
         let member = |name, ty| self.add(Expr::Member(found, name), ty);
         let (id, inst) = (member("id", Type::U32), member("inst", Type::U32));
@@ -347,18 +347,18 @@ impl Recorder {
         })
     }
 
-    /// Returns `fn scene_walk(ray: Ray) -> InstanceWalk` and `fn scene_next(..) -> NextPrimitive`.
-    fn descent_functions(&self, prims: &dyn Described, walk: Walk) -> (usize, usize) {
+    /// Returns `fn scene_begin(ray: Ray) -> InstanceTraversal` and `fn scene_next(..) -> NextPrimitive`.
+    fn descent_functions(&self, prims: &dyn Described, traversal: Traversal) -> (usize, usize) {
         let name = prims.primitives(self);
         let (_, places) = self.places_of(prims);
         let Some(tree) = self.tree(prims) else { unreachable!("instances are of trees") };
         let transform = self.transform_function();
-        let [walk_type, suffix] = walk.names();
+        let [traversal_type, suffix] = traversal.names();
         let types = || {
             vec![
                 Ray::SCHEMA,
                 LEVEL,
-                walk.schema(),
+                traversal.schema(),
                 CANDIDATE,
                 PLACE_SCHEMA,
                 NODE_SCHEMA,
@@ -366,17 +366,17 @@ impl Recorder {
             ]
         };
         let enter = self.text_function(format!("{name}_enter{suffix}"), types(), &|name| {
-            enter_text(name, &places, &tree, walk)
+            enter_text(name, &places, &tree, traversal)
         });
         let enter = self.function_name(enter);
-        let start = self.text_function(format!("{name}_walk{suffix}"), types(), &|name| {
+        let start = self.text_function(format!("{name}_begin{suffix}"), types(), &|name| {
             from_template(
                 include_str!("placed_begin.wgsl"),
-                &[("name", name), ("walk_type", walk_type), ("enter", &enter)],
+                &[("name", name), ("traversal_type", traversal_type), ("enter", &enter)],
             )
         });
         let next = self.text_function(format!("{name}_next{suffix}"), types(), &|name| {
-            next_text(name, &places, &tree, [&enter, &transform], walk)
+            next_text(name, &places, &tree, [&enter, &transform], traversal)
         });
         (start, next)
     }
@@ -393,22 +393,22 @@ struct LevelsText<'a> {
     body: &'a str,
 }
 
-fn enter_text(name: &str, places: &str, tree: &TreeNames, walk: Walk) -> String {
-    let [walk_type, _] = walk.names();
+fn enter_text(name: &str, places: &str, tree: &TreeNames, traversal: Traversal) -> String {
+    let [traversal_type, _] = traversal.names();
     let TreeNames { nodes, rules, boxes, .. } = tree;
     let BoxTests { slabs, enter_leave } = boxes;
     from_template(
         include_str!("placed_enter.wgsl"),
         &[
             ("name", name),
-            ("walk_type", walk_type),
+            ("traversal_type", traversal_type),
             ("places", places),
             ("nodes", nodes),
             ("NONE", &NONE.to_string()),
             ("is_finite", &rules.is_finite),
             ("slabs", slabs),
             ("enter_leave", enter_leave),
-            ("root_count", &walk.count(1)),
+            ("root_count", &traversal.count(1)),
         ],
     )
 }
@@ -418,15 +418,15 @@ fn next_text(
     places: &str,
     tree: &TreeNames,
     [enter, transform]: [&str; 2],
-    walk: Walk,
+    traversal: Traversal,
 ) -> String {
-    let [walk_type, _] = walk.names();
+    let [traversal_type, _] = traversal.names();
     let TreeNames { nodes, indices: ids, boxes: BoxTests { slabs, enter_leave }, .. } = tree;
     from_template(
         include_str!("placed_next.wgsl"),
         &[
             ("name", name),
-            ("walk_type", walk_type),
+            ("traversal_type", traversal_type),
             ("places", places),
             ("nodes", nodes),
             ("ids", ids),
@@ -437,7 +437,7 @@ fn next_text(
             ("enter", enter),
             ("slabs", slabs),
             ("enter_leave", enter_leave),
-            ("child_count", &walk.count(2)),
+            ("child_count", &traversal.count(2)),
         ],
     )
 }

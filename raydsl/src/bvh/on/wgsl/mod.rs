@@ -7,7 +7,7 @@ mod visit;
 
 use std::borrow::Cow;
 
-pub(crate) use instances::RecordedWalks;
+pub(crate) use instances::RecordedQueries;
 
 use crate::bvh::contract::{
     SlabsOn, enter_leave, is_before, is_finite, is_within, limit_behind, slabs,
@@ -137,7 +137,7 @@ impl Recorder {
         ray: RayOn<Self>,
     ) -> HitOn<Self> {
         if let Some(placed) = prims.placed() {
-            return (RecordedWalks::of(placed).closest_hit)(self, prims, ray);
+            return (RecordedQueries::of(placed).closest_hit)(self, prims, ray);
         }
         let function = self.closest_hit_function(prims);
         self.call_query(function, ray, Hit::SCHEMA)
@@ -150,7 +150,7 @@ impl Recorder {
         ray: RayOn<Self>,
     ) -> CountedHitOn<Self> {
         let function = match prims.placed() {
-            Some(placed) => (RecordedWalks::of(placed).closest_hit_with_cost)(self, prims),
+            Some(placed) => (RecordedQueries::of(placed).closest_hit_with_cost)(self, prims),
             None => self.closest_hit_with_cost_function(prims),
         };
         self.call_query(function, ray, CountedHit::SCHEMA)
@@ -163,7 +163,7 @@ impl Recorder {
         ray: RayOn<Self>,
     ) -> B<Self> {
         if let Some(placed) = prims.placed() {
-            return (RecordedWalks::of(placed).any_hit)(self, prims, ray);
+            return (RecordedQueries::of(placed).any_hit)(self, prims, ray);
         }
         let function = self.any_hit_function(prims);
         self.call_query(function, ray, &Schema::Bool)
@@ -298,7 +298,7 @@ impl Recorder {
         let is_finite = self.rules().is_finite;
         self.text_function(name, types_of(query), &|name| match &tree {
             None => linear(name, query, &prims_name, &is_finite),
-            Some(tree) => walk(name, "ray: Ray", "0u", query, tree),
+            Some(tree) => traverse(name, "ray: Ray", "0u", query, tree),
         })
     }
 
@@ -313,7 +313,7 @@ impl Recorder {
         let Some(tree) = self.tree(prims) else { unreachable!("a list has trees") };
         let parameters = format!("ray: Ray, first: u32{more}");
         let function = self.text_function(name, types_of(query), &|name| {
-            walk(name, &parameters, "first", query, &tree)
+            traverse(name, &parameters, "first", query, &tree)
         });
         self.function_name(function)
     }
@@ -433,7 +433,13 @@ fn linear(name: &str, query: &Query<'_>, prims: &str, is_finite: &str) -> String
 
 /// Returns a depth-first traversal from the node `first`: it visits the nearer child first and
 /// pushes the farther one with its distance.
-fn walk(name: &str, parameters: &str, first: &str, query: &Query<'_>, tree: &TreeNames) -> String {
+fn traverse(
+    name: &str,
+    parameters: &str,
+    first: &str,
+    query: &Query<'_>,
+    tree: &TreeNames,
+) -> String {
     let Query { result, declare, lower, test, give, slack, .. } = query;
     let TreeNames { nodes, indices, rules, boxes } = tree;
     let begin = match query.continues {
@@ -442,7 +448,7 @@ fn walk(name: &str, parameters: &str, first: &str, query: &Query<'_>, tree: &Tre
         false => "var limit = ray.t_max;".to_owned(),
     };
     from_template(
-        include_str!("walk.wgsl"),
+        include_str!("traversal.wgsl"),
         &[
             ("name", name),
             ("parameters", parameters),

@@ -1,6 +1,6 @@
-/// A walk that has yet to begin.
-fn $name(ray: Ray) -> $walk_type {
-    var w = $walk_type();
+/// A traversal that has yet to begin.
+fn $name(ray: Ray) -> $traversal_type {
+    var w = $traversal_type();
     $enter(&w, 0u, ray, ray.t_max);
     return w;
 }

@@ -1,5 +1,5 @@
-/// Goes into what is placed if the ray, as it is seen there, may meet it.
-fn $name(w: ptr<function, $walk_type>, index: u32, ray: Ray, limit: f32) {
+/// Goes into what is placed if the ray, as it is seen there, may hit it.
+fn $name(w: ptr<function, $traversal_type>, index: u32, ray: Ray, limit: f32) {
     let place = ${places}_at(index);
     if (place.root == ${NONE}u || !$is_finite(ray)) {
         return;
@@ -13,7 +13,7 @@ fn $name(w: ptr<function, $walk_type>, index: u32, ray: Ray, limit: f32) {
     }
     (*w).levels[(*w).level] = (*w).here;
     (*w).level = (*w).level + 1u;
-    (*w).here = WalkLevel(ray, index, (*w).here.first + place.first, (*w).top);
+    (*w).here = TraversalLevel(ray, index, (*w).here.first + place.first, (*w).top);
     (*w).lower = s.lower;
     (*w).upper = s.upper;
     (*w).inverse = s.inverse;

@@ -1,5 +1,5 @@
-/// The next primitive that the ray may meet at or before `limit`; ${NONE}u when none is left.
-fn $name(w: ptr<function, $walk_type>, limit: f32) -> NextPrimitive {
+/// The next primitive that the ray may hit at or before `limit`; ${NONE}u when none is left.
+fn $name(w: ptr<function, $traversal_type>, limit: f32) -> NextPrimitive {
     loop {
         if ((*w).next < (*w).last) {
             let id = ${ids}_at((*w).next);

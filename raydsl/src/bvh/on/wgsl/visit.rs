@@ -103,13 +103,13 @@ impl Recorder {
         limit: &impl Fn() -> F<Self>,
         meet: &impl Fn(HitOn<Self>, RecordOn<Self, P>) -> B<Self>,
     ) {
-        let (start, next) = self.walk_functions(prims);
+        let (start, next) = self.traverse_functions(prims);
         let arguments = [self.whole(ray)].into_iter().chain(root.map(|r| r.0)).collect();
         let start = self.add(Expr::Call(start, arguments), Type::Of(TRAVERSAL));
-        let walk = self.declare("walk", start, TRAVERSAL);
+        let traversal = self.declare("traversal", start, TRAVERSAL);
         let repeat = Loop::new(self);
         let arguments =
-            vec![self.add(Expr::Address(walk), Type::Of(TRAVERSAL)), ray.t_min.0, limit().0];
+            vec![self.add(Expr::Address(traversal), Type::Of(TRAVERSAL)), ray.t_min.0, limit().0];
         let id = self.add(Expr::Call(next, arguments), Type::U32);
         self.pin(id, "id");
         repeat.test(self, B(self.u32_compare(op::Ne, id, self.u32(NONE))));
@@ -145,17 +145,17 @@ impl Recorder {
         is_met.end(self);
     }
 
-    /// Returns `fn bvh_walk(ray: Ray, ..) -> Traversal` and `fn bvh_next(..) -> u32`.
-    fn walk_functions(&self, prims: &dyn Described) -> (usize, usize) {
+    /// Returns `fn bvh_begin(ray: Ray, ..) -> Traversal` and `fn bvh_next(..) -> u32`.
+    fn traverse_functions(&self, prims: &dyn Described) -> (usize, usize) {
         let name = prims.primitives(self);
-        let Some(tree) = self.tree(prims) else { unreachable!("only trees are walked") };
+        let Some(tree) = self.tree(prims) else { unreachable!("only trees are traversed") };
         let (nodes, ids, slack) = (&tree.nodes, &tree.indices, prims.slack());
         let (is_finite, boxes) = (&tree.rules.is_finite, &tree.boxes);
         let BoxTests { slabs, enter_leave } = boxes;
         let (parameter, first) =
             if prims.is_list() { (", first: u32", "first") } else { ("", "0u") };
         let start = self.text_function(
-            format!("{name}_walk"),
+            format!("{name}_begin"),
             vec![<Ray as HostType>::SCHEMA, TRAVERSAL, NODE_SCHEMA],
             &|name| {
                 from_template(

@@ -9,14 +9,14 @@ use super::{Wide, single, trace};
 use crate::bvh::build::Tree;
 use crate::bvh::{Part, SceneView, Traversal, View};
 use crate::geometry::{Hit, Primitive, Ray};
-use crate::run::has_wide_walks;
+use crate::run::has_wide_lanes;
 
 /// The builder and the traversals of wide trees over primitives of type `T`.
 ///
 /// Traversals are most of the code of a program with queries. Only these pointers refer to them,
 /// and only [`Bvh::build_wide`](crate::bvh::Bvh::build_wide) makes these pointers: a program that
 /// does not call it is compiled without wide traversals.
-pub(crate) struct Walks<T, S> {
+pub(crate) struct WideQueries<T, S> {
     /// Collapses a binary tree.
     pub(in crate::bvh) collapse: fn(&Tree, &[T], &[S], Traversal) -> Wide,
     /// Finds the least `(t, id)` hits of rays.
@@ -40,23 +40,23 @@ pub(in crate::bvh) type Candidates<T, S> =
 /// Answers a query of the rays in scratch memory, with the lanes of a level.
 pub(super) type Answer<T, S> = fn(Option<Level>, &View<'_, T, S>, &mut Scratch);
 
-impl<T, S> Clone for Walks<T, S> {
+impl<T, S> Clone for WideQueries<T, S> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<T, S> Copy for Walks<T, S> {}
+impl<T, S> Copy for WideQueries<T, S> {}
 
-impl<T, S> fmt::Debug for Walks<T, S> {
+impl<T, S> fmt::Debug for WideQueries<T, S> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Walks")
+        f.write_str("WideQueries")
     }
 }
 
 /// Returns the traversals for a type of primitives; none if this machine has no lanes for them.
-pub(crate) fn walks<P: Primitive>() -> Option<Walks<P, P::Shared>> {
-    has_wide_walks().then_some(Walks {
+pub(crate) fn queries<P: Primitive>() -> Option<WideQueries<P, P::Shared>> {
+    has_wide_lanes().then_some(WideQueries {
         collapse: Wide::of::<P>,
         closest: trace::answer::<true, P>,
         any: trace::answer::<false, P>,
