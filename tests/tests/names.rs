@@ -191,8 +191,8 @@ mod types_of_queries {
         Traversal of_traversal
         Place of_place
         TraversalLevel of_level
-        InstanceTraversal of_traversal
-        CountedInstanceTraversal of_counted_traversal
+        InstanceTraversal of_descent
+        CountedInstanceTraversal of_counted_descent
         NextPrimitive of_next
         Cost of_cost
         CountedHit of_counted

@@ -144,13 +144,7 @@ mod tests {
     use super::*;
 
     /// Tiles the grid and checks that every pixel is in one tile and all limits hold.
-    fn traverse(
-        size: [u32; 2],
-        group: [u32; 2],
-        max_elements: u64,
-        groups: u32,
-        goal: u64,
-    ) -> usize {
+    fn walk(size: [u32; 2], group: [u32; 2], max_elements: u64, groups: u32, goal: u64) -> usize {
         let mut tiler = Tiler::new(size, group, max_elements, groups);
         let mut seen = vec![0u8; (size[0] * size[1]) as usize];
         let mut tiles = 0;
@@ -176,8 +170,8 @@ mod tests {
             for group in [[8, 8], [64, 1], [1, 1]] {
                 for max_elements in [1, 100, 4096, 1 << 20] {
                     for goal in [1, 256, 5000, 1 << 20] {
-                        traverse(size, group, max_elements, 65535, goal);
-                        traverse(size, group, max_elements, 3, goal);
+                        walk(size, group, max_elements, 65535, goal);
+                        walk(size, group, max_elements, 3, goal);
                     }
                 }
             }
@@ -186,8 +180,8 @@ mod tests {
 
     #[test]
     fn a_grid_that_fits_is_one_dispatch() {
-        assert_eq!(traverse([640, 480], [8, 8], 1 << 20, 65535, 640 * 480 * 8 / 8), 1);
-        assert_eq!(traverse([100_000, 1], [64, 1], 1 << 20, 65535, 1 << 20), 1);
+        assert_eq!(walk([640, 480], [8, 8], 1 << 20, 65535, 640 * 480 * 8 / 8), 1);
+        assert_eq!(walk([100_000, 1], [64, 1], 1 << 20, 65535, 1 << 20), 1);
     }
 
     #[test]
