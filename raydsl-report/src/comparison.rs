@@ -3,13 +3,14 @@
 use std::time::Instant;
 
 use super::{Accuracy, Times};
-use raydsl::__private::report::{OutcomesOf, SAMPLES, causes, sampled, spread};
-use raydsl::camera::{Camera, CameraRays};
-use raydsl::geometry::Ray;
+use raydsl::__private::report::{OutcomesOf, SAMPLES, causes, outcomes_of_frame, sampled, spread};
+use raydsl::camera::Camera;
 use raydsl::kernel::{Kernel, Variant, Variants};
-use raydsl::machine::{F, Machine, Outcomes, Rounding, Type};
-use raydsl::render::{Image, Renderer, TiledScheduler};
-use raydsl::testing::{Agreement, Cause, Sample};
+use raydsl::machine::{Outcomes, Rounding, Type};
+use raydsl::render::{Film, FilmArgs, Image, Radiance, Renderer, TiledScheduler};
+use raydsl::testing::{
+    Agreement, Cause, MeansAgreement, MeansTest, MeansVerdict, PairedMeans, Sample,
+};
 
 /// The settings of a comparison.
 ///
@@ -33,6 +34,7 @@ pub struct Compare<'a> {
     tolerance: Option<u32>,
     samples: usize,
     rounding: Rounding,
+    means: MeansTest,
     variants: Variants,
     #[cfg(feature = "gpu")]
     gpu: Option<&'a raydsl::gpu::GpuScheduler>,
@@ -55,6 +57,7 @@ impl<'a> Compare<'a> {
             tolerance: None,
             samples: SAMPLES,
             rounding: Rounding::WGSL,
+            means: MeansTest::new(),
             variants: Variants::all(),
             #[cfg(feature = "gpu")]
             gpu: None,
@@ -80,7 +83,9 @@ impl<'a> Compare<'a> {
 
     /// Sets the number of pixels computed in `f64`, spread evenly over the film: they give the
     /// share of uncertain ones and the error of every variant. 4096 unless set; a pixel takes some
-    /// two hundred times as long as in the scalar variant.
+    /// two hundred times as long as in the scalar variant. [`Compare::run_film`] explains a 64th as
+    /// many differences, each of which may take 64 times as long, and counts the others as
+    /// undecided.
     pub fn samples(self, samples: usize) -> Self {
         Self { samples, ..self }
     }
@@ -88,6 +93,12 @@ impl<'a> Compare<'a> {
     /// Sets the device's rounding: [`Rounding::WGSL`] unless set.
     pub fn rounding(self, rounding: Rounding) -> Self {
         Self { rounding, ..self }
+    }
+
+    /// Sets the samples whose means [`Compare::run_film`] compares, and which bias it finds:
+    /// [`MeansTest::new`] unless set.
+    pub fn means(self, means: MeansTest) -> Self {
+        Self { means, ..self }
     }
 
     /// Sets the variants to run; the scalar one always runs.
@@ -106,42 +117,91 @@ impl<'a> Compare<'a> {
         Self { progress: Box::new(progress), ..self }
     }
 
-    /// Runs the variants in turn, round by round.
+    /// Runs the variants in turn, round by round, and compares frames: one ray through the centre of
+    /// each pixel, and the first sample of a kernel's `Sampler`.
     ///
     /// A variant that cannot run (no device, no WGSL in this build) has a row with the reason.
-    pub fn run<C: Camera, R: Type>(
-        mut self,
-        kernel: &Kernel<'_, (Ray,), R>,
+    pub fn run<C: Camera, A: FilmArgs, R: Type>(
+        self,
+        kernel: &Kernel<'_, A, R>,
         camera: &C,
+    ) -> Comparison<R> {
+        self.run_and(kernel, camera, usize::MAX, |_, _, _| None)
+    }
+
+    /// Compares frames as [`Compare::run`] does, and the means of films besides: the films of CPU
+    /// variants must have the same bits, and those of the WGSL variant agree by a [`MeansTest`].
+    /// This decides where rounding leaves too many decisions open for a verdict on frames, as in a
+    /// path tracer. Every variant takes [`MeansTest::replications`] times [`MeansTest::samples`]
+    /// samples of each pixel.
+    pub fn run_film<C: Camera, A: FilmArgs, R: Radiance>(
+        self,
+        kernel: &Kernel<'_, A, R>,
+        camera: &C,
+    ) -> Comparison<R> {
+        let explained = self.samples.div_ceil(64);
+        self.run_and(kernel, camera, explained, |settings, rows, gpu| {
+            let test = settings.means;
+            let new = || Film::new(settings.width, settings.height);
+            let mut means = PairedMeans::new(&test, settings.width, settings.height);
+            let (mut expected, mut found) = (new(), new());
+            for sampling in test.replications() {
+                let samples = sampling.planned;
+                let cpu = |variant, film: &mut Film| {
+                    film.clear();
+                    let tiled = TiledScheduler::new().variant(variant);
+                    tiled.accumulate(camera, kernel, &sampling, film, samples);
+                };
+                cpu(Variant::Scalar, &mut expected);
+                for row in rows.iter_mut().filter(|r| r.unavailable.is_none()) {
+                    match row.variant {
+                        Variant::Scalar => {}
+                        Variant::Wgsl => {
+                            found.clear();
+                            row.unavailable = gpu.film(camera, kernel, &sampling, &mut found).err();
+                            if row.unavailable.is_none() {
+                                means.add(&expected, &found);
+                            }
+                        }
+                        variant => {
+                            cpu(variant, &mut found);
+                            row.differing_means += differing(&expected, &found);
+                        }
+                    }
+                }
+            }
+            let ran = |r: &Row<R>| r.variant == Variant::Wgsl && r.unavailable.is_none();
+            rows.iter().any(ran).then(|| means.agreement())
+        })
+    }
+
+    /// Compares frames and explains at most `explained` differences of each variant; then compares
+    /// by `means`.
+    fn run_and<C: Camera, A: FilmArgs, R: Type>(
+        mut self,
+        kernel: &Kernel<'_, A, R>,
+        camera: &C,
+        explained: usize,
+        means: impl FnOnce(&Self, &mut [Row<R>], &Device<'_>) -> Option<MeansAgreement>,
     ) -> Comparison<R> {
         #[cfg(feature = "gpu")]
         let own = self.own_gpu();
         #[cfg(feature = "gpu")]
-        let gpu = match (&own, self.gpu) {
+        let device = Device(match (&own, self.gpu) {
             (_, Some(gpu)) => Ok(gpu),
             (Some(Ok(gpu)), None) => Ok(gpu),
             (Some(Err(e)), None) => Err(Missing::NoDevice(e.clone())),
             (None, None) => Err(Missing::NoDevice("not asked for".to_owned())),
-        };
-        let mut rows: Vec<Row<R>> = self.variants.iter().map(|v| Row::new(v, &self)).collect();
-        #[cfg(feature = "gpu")]
-        let adapter = gpu.as_ref().ok().map(|g| g.context().adapter_name());
+        });
         #[cfg(not(feature = "gpu"))]
-        let adapter = None;
+        let device = Device(core::marker::PhantomData);
+        let mut rows: Vec<Row<R>> = self.variants.iter().map(|v| Row::new(v, &self)).collect();
         for round in 0..=self.runs {
             for row in rows.iter_mut().filter(|r| r.unavailable.is_none()) {
                 (self.progress)(row.variant.name());
                 let start = Instant::now();
                 let outcome = match row.variant {
-                    #[cfg(feature = "gpu")]
-                    Variant::Wgsl => gpu.clone().and_then(|g| {
-                        let frame = g.frame(camera, kernel, &mut row.image);
-                        frame.map(drop).map_err(|e| Missing::Refused(e.to_string()))
-                    }),
-                    #[cfg(not(feature = "gpu"))]
-                    Variant::Wgsl => Err(Missing::NoDevice(
-                        "raydsl-report was built without the feature `gpu`".to_owned(),
-                    )),
+                    Variant::Wgsl => device.frame(camera, kernel, &mut row.image),
                     cpu => {
                         TiledScheduler::new().variant(cpu).frame(camera, kernel, &mut row.image);
                         Ok(())
@@ -154,19 +214,16 @@ impl<'a> Compare<'a> {
                 row.unavailable = outcome.err();
             }
         }
+        let means = means(&self, &mut rows, &device);
         let rays = camera.begin_frame(self.width, self.height);
         let (width, rounding) = (self.width, self.rounding);
         let pixel = |i: usize, limit| {
-            let (x, y) = (i as u32 % width, i as u32 / width);
-            Outcomes::of(rounding, limit, |m| {
-                let [x, y] = [x, y].map(|c| F(m.f32(c as f32 + 0.5)));
-                let ray = C::Rays::primary_ray_on(m, m.capture("camera", rays), x, y);
-                kernel.on_margin(m, (ray,))
-            })
+            let pixel = glam::uvec2(i as u32 % width, i as u32 / width);
+            outcomes_of_frame(&rays, kernel, pixel, rounding, limit)
         };
         if let Some((scalar, others)) = rows.split_first_mut() {
             for row in others.iter_mut().filter(|r| r.unavailable.is_none()) {
-                row.agreement = row.agreement_with(scalar, &pixel);
+                row.agreement = row.agreement_with(scalar, &pixel, explained);
             }
         }
         let indices = spread(self.width as usize * self.height as usize, self.samples);
@@ -174,14 +231,86 @@ impl<'a> Compare<'a> {
         for row in &mut rows {
             row.accuracy = row.accuracy_at(&indices, &sampled);
         }
-        let sample = Sample::of(&sampled);
-        Comparison { rows, adapter, tolerance: self.tolerance, rounding, sample }
+        let (sample, adapter) = (Sample::of(&sampled), device.adapter());
+        Comparison { rows, adapter, tolerance: self.tolerance, rounding, sample, means }
     }
 
     #[cfg(feature = "gpu")]
     fn own_gpu(&self) -> Option<Result<raydsl::gpu::GpuScheduler, String>> {
         let wanted = self.variants.iter().any(|v| v == Variant::Wgsl) && self.gpu.is_none();
         wanted.then(|| raydsl::gpu::GpuScheduler::new().map_err(|e| e.to_string()))
+    }
+}
+
+/// Returns the number of pixels whose means have other bits; NaN equals NaN.
+fn differing(expected: &Film, found: &Film) -> u64 {
+    let same = |a: f64, b: f64| a == b || a.is_nan() && b.is_nan();
+    let pairs = expected.means().zip(found.means());
+    pairs.filter(|(a, b)| !(0..4).all(|i| same(a[i], b[i]))).count() as u64
+}
+
+/// The device of the WGSL variant, or why there is none.
+#[cfg(feature = "gpu")]
+struct Device<'g>(Result<&'g raydsl::gpu::GpuScheduler, Missing>);
+
+#[cfg(feature = "gpu")]
+impl Device<'_> {
+    fn adapter(&self) -> Option<String> {
+        self.0.as_ref().ok().map(|gpu| gpu.context().adapter_name())
+    }
+
+    fn frame<C: Camera, A: FilmArgs, R: Type>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        image: &mut Image<R>,
+    ) -> Result<(), Missing> {
+        let frame = self.0.clone()?.frame(camera, kernel, image);
+        frame.map(drop).map_err(|e| Missing::Refused(e.to_string()))
+    }
+
+    fn film<C: Camera, A: FilmArgs, R: Radiance>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        sampling: &raydsl::render::Sampling,
+        film: &mut Film,
+    ) -> Result<(), Missing> {
+        let end = self.0.clone()?.accumulate(camera, kernel, sampling, film, sampling.planned);
+        end.map(drop).map_err(|e| Missing::Refused(e.to_string()))
+    }
+}
+
+#[cfg(not(feature = "gpu"))]
+struct Device<'g>(core::marker::PhantomData<&'g ()>);
+
+#[cfg(not(feature = "gpu"))]
+impl Device<'_> {
+    fn adapter(&self) -> Option<String> {
+        None
+    }
+
+    fn none(&self) -> Result<(), Missing> {
+        Err(Missing::NoDevice("raydsl-report was built without the feature `gpu`".to_owned()))
+    }
+
+    fn frame<C, A: Type, R: Type>(
+        &self,
+        _: &C,
+        _: &Kernel<'_, A, R>,
+        _: &mut Image<R>,
+    ) -> Result<(), Missing> {
+        self.none()
+    }
+
+    fn film<C, A: Type, R: Type>(
+        &self,
+        _: &C,
+        _: &Kernel<'_, A, R>,
+        _: &raydsl::render::Sampling,
+        _: &mut Film,
+    ) -> Result<(), Missing> {
+        self.none()
     }
 }
 
@@ -200,6 +329,9 @@ pub struct Row<R> {
     pub image: Image<R>,
     /// The agreement with the scalar variant.
     pub agreement: Agreement,
+    /// The means of pixels, over all replications, that differ from the scalar variant's in a bit;
+    /// for variants of the CPU, and only by [`Compare::run_film`].
+    pub differing_means: u64,
     /// The errors against the reference in `f64`, at the sampled pixels.
     pub accuracy: Accuracy,
     /// The reason why the variant did not run, if it did not.
@@ -235,6 +367,7 @@ impl<R: Type> Row<R> {
             times: Times::default(),
             image,
             agreement,
+            differing_means: 0,
             accuracy: Accuracy::default(),
             unavailable: None,
         }
@@ -242,7 +375,7 @@ impl<R: Type> Row<R> {
 
     /// Compares with the scalar variant. CPU variants must have the same bits, so nothing is
     /// explained there.
-    fn agreement_with(&self, scalar: &Self, outcomes: OutcomesOf<'_>) -> Agreement
+    fn agreement_with(&self, scalar: &Self, outcomes: OutcomesOf<'_>, explained: usize) -> Agreement
     where
         R: Sync,
     {
@@ -250,7 +383,7 @@ impl<R: Type> Row<R> {
         if self.variant != Variant::Wgsl {
             return Agreement::judged(expected, found, |_, _| Cause::Unexplained);
         }
-        let causes = causes(expected, found, outcomes);
+        let causes = causes(expected, found, outcomes, explained);
         let cause = |i: usize| causes.binary_search_by_key(&i, |(at, _)| *at);
         Agreement::judged(expected, found, |i, _| cause(i).map_or(Cause::Same, |at| causes[at].1))
     }
@@ -269,7 +402,7 @@ impl<R: Type> Row<R> {
     }
 }
 
-/// The result of [`Compare::run`].
+/// The result of [`Compare::run`] or [`Compare::run_film`].
 #[must_use = "a comparison that nobody reads finds nothing"]
 #[derive(Clone, Debug)]
 pub struct Comparison<R> {
@@ -283,6 +416,8 @@ pub struct Comparison<R> {
     pub rounding: Rounding,
     /// The number of pixels computed in `f64`, and of uncertain ones among them.
     pub sample: Sample,
+    /// The agreement of the WGSL variant's means, if [`Compare::run_film`] ran it.
+    pub means: Option<MeansAgreement>,
 }
 
 /// The verdict of a comparison.
@@ -291,12 +426,15 @@ pub enum Verdict {
     /// CPU variants have the same bits. Rounding explains every difference of WGSL, and numbers are
     /// within [`Compare::tolerance`] if it was set.
     Agree,
+    /// CPU variants have the same bits. Rounding leaves too many decisions of WGSL open for a verdict
+    /// on single samples, but the means agree, and nothing else is known to differ.
+    MeansAgree,
     /// A variant differs by more than that.
     Differ,
     /// The variants that ran agree, but the device refuses the kernel, or was lost.
     Refused,
     /// Rounding explains the differences, but more than 1 % of the sampled pixels are uncertain or
-    /// none was sampled, so this means little.
+    /// none was sampled, so this means little; and means were not compared, or from too few samples.
     NotMeaningful,
     /// No variant but the scalar one ran, or the film has no pixels.
     NothingCompared,
@@ -308,38 +446,45 @@ impl<R: Type> Comparison<R> {
         &self.rows[0]
     }
 
-    /// Returns whether the verdict is [`Verdict::Agree`]. A variant without a device does not
-    /// count.
+    /// Returns whether the verdict is [`Verdict::Agree`] or [`Verdict::MeansAgree`]. A variant
+    /// without a device does not count.
     pub fn agrees(&self) -> bool {
-        self.verdict() == Verdict::Agree
+        matches!(self.verdict(), Verdict::Agree | Verdict::MeansAgree)
     }
 
     /// Returns the verdict.
     pub fn verdict(&self) -> Verdict {
         let is_refused = |r: &Row<R>| matches!(r.unavailable, Some(Missing::Refused(_)));
         let ran = || self.rows.iter().filter(|r| r.unavailable.is_none());
-        if !ran().all(|r| self.is_fine(r)) {
+        let means = self.means.as_ref().map(MeansAgreement::verdict);
+        let undecided = ran().any(|r| r.agreement.undecided > 0);
+        if !ran().all(|r| self.is_fine(r)) || means == Some(MeansVerdict::Differ) {
+            return Verdict::Differ;
+        }
+        if undecided && means.is_none() {
             return Verdict::Differ;
         }
         if self.rows.iter().any(is_refused) {
             return Verdict::Refused;
         }
         let forgiven = ran().any(|r| !r.agreement.is_bit_identical());
+        let is_open = undecided || forgiven && !self.sample.is_meaningful();
         match ran().count() {
             0 | 1 => Verdict::NothingCompared,
             _ if self.scalar().image.pixels().is_empty() => Verdict::NothingCompared,
-            _ if forgiven && !self.sample.is_meaningful() => Verdict::NotMeaningful,
+            _ if is_open && means == Some(MeansVerdict::Agree) => Verdict::MeansAgree,
+            _ if is_open => Verdict::NotMeaningful,
             _ => Verdict::Agree,
         }
     }
 
-    /// Returns whether a variant that ran agrees.
+    /// Returns whether nothing is known to be wrong with a variant that ran.
     fn is_fine(&self, row: &Row<R>) -> bool {
         let found = &row.agreement;
         let within = self.tolerance.is_none_or(|most| found.max_ulp <= most);
         match row.variant {
             Variant::Wgsl => found.unexplained == 0 && within,
-            _ => found.is_bit_identical(),
+            _ => found.is_bit_identical() && row.differing_means == 0,
         }
     }
 
@@ -355,8 +500,8 @@ impl<R: Type> Comparison<R> {
 }
 
 /// Runs a kernel in `variants` at 640 by 480 pixels and compares; see [`Compare`] for settings.
-pub fn compare<C: Camera, R: Type>(
-    kernel: &Kernel<'_, (Ray,), R>,
+pub fn compare<C: Camera, A: FilmArgs, R: Type>(
+    kernel: &Kernel<'_, A, R>,
     camera: &C,
     variants: Variants,
 ) -> Comparison<R> {

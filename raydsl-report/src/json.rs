@@ -4,6 +4,7 @@ use serde_json::{Value, json as value};
 
 use super::{Comparison, Missing, Row, Verdict};
 use raydsl::machine::Type;
+use raydsl::testing::{MeansAgreement, MeansVerdict, Scale};
 
 /// Figures of the scene, unknown to a comparison.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,6 +34,7 @@ pub(super) fn json<R: Type>(c: &Comparison<R>, scene: &SceneInfo) -> Value {
         "bvh_bytes": scene.bvh_bytes,
         "verdict": match c.verdict() {
             Verdict::Agree => "agree",
+            Verdict::MeansAgree => "means agree",
             Verdict::Differ => "differ",
             Verdict::Refused => "refused",
             Verdict::NotMeaningful => "not meaningful",
@@ -48,7 +50,37 @@ pub(super) fn json<R: Type>(c: &Comparison<R>, scene: &SceneInfo) -> Value {
         "sampled": c.sample.inputs,
         "uncertain_share": c.sample.share(),
         "median_width_ulp": number(c.sample.median_width_ulp),
+        "means": c.means.as_ref().map(means),
         "variants": variants,
+    })
+}
+
+fn means(m: &MeansAgreement) -> Value {
+    let scale = |s: &Scale| {
+        value!({
+            "sums": s.tests,
+            "z": number(s.z),
+            "limit": s.limit,
+            "pixel": [s.pixel.x, s.pixel.y],
+            "channel": s.channel,
+            "finds_bias_in_half": number(s.median),
+            "finds_bias_in_all": number(s.worst),
+        })
+    };
+    let scales = |[picture, blocks, pixels]: &[Scale; 3]| value!({ "picture": scale(picture), "blocks": scale(blocks), "pixels": scale(pixels) });
+    value!({
+        "verdict": match m.verdict() {
+            MeansVerdict::Agree => "agree",
+            MeansVerdict::Differ => "differ",
+            MeansVerdict::TooFewSamples => "too few samples",
+        },
+        "replications": m.replications,
+        "samples": m.test.samples,
+        "bias": m.test.bias,
+        "false_alarm": m.test.false_alarm,
+        "nonfinite": m.nonfinite,
+        "light": scales(&m.light),
+        "ratio": scales(&m.ratio),
     })
 }
 
@@ -75,7 +107,9 @@ fn row<R: Type>(row: &Row<R>, scalar: &Row<R>) -> Value {
         "max_ulp": row.agreement.max_ulp,
         "hit_mismatches": row.agreement.hit_mismatches,
         "explained": row.agreement.explained,
+        "undecided": row.agreement.undecided,
         "unexplained": row.agreement.unexplained,
+        "differing_means": row.differing_means,
         "max_error_ulp": number(row.accuracy.max_ulp),
         "mean_error_ulp": number(row.accuracy.mean_ulp),
         "median_error_ulp": number(row.accuracy.median_ulp),

@@ -5,8 +5,8 @@ use core::fmt::Write;
 use super::{Comparison, Missing, Row, Verdict};
 use raydsl::machine::Type;
 
-const HEADER: &str = "variant    isa      lanes  ms/frame  Mrays/s  speed-up  max ulp  mismatches  \
-                      explained  unexplained";
+const HEADER: &str = "variant    isa      lanes  ms/frame  Mrays/s  speed-up  max ulp   explained  \
+                      undecided  unexplained";
 
 const REFERENCE: &str = "variant    error (ulp): median        mean         max  other paths";
 
@@ -21,16 +21,31 @@ pub(super) fn table<R: Type>(c: &Comparison<R>) -> String {
     if c.sample.inputs > 0 {
         text += &reference(c);
     }
+    text += &films(c);
     text + verdict(c.verdict()) + "\n"
 }
 
 fn verdict(v: Verdict) -> &'static str {
     match v {
         Verdict::Agree => "the variants agree",
+        Verdict::MeansAgree => "the variants agree, WGSL in its means: too many decisions are open",
         Verdict::Differ => "the variants differ",
         Verdict::Refused => "the variants that ran agree; one was refused",
         Verdict::NotMeaningful => "not meaningful: more than 1 % is open, or nothing was sampled",
         Verdict::NothingCompared => "nothing was compared",
+    }
+}
+
+/// Prints the agreement of films, if there are some.
+fn films<R: Type>(c: &Comparison<R>) -> String {
+    let mut text = String::new();
+    for row in c.rows.iter().filter(|r| r.differing_means > 0) {
+        let (name, n) = (row.variant.name(), row.differing_means);
+        let _ = writeln!(text, "{name}: {n} means of pixels have other bits");
+    }
+    match &c.means {
+        Some(means) => format!("{text}\nmeans of films in WGSL\n{means}"),
+        None => text,
     }
 }
 
@@ -95,8 +110,8 @@ fn line<R: Type>(row: &Row<R>, scalar: &Row<R>) -> String {
         row.times.median(),
         row.mrays_per_s(),
         format!("{:.2}x", row.times.speedup_over(&scalar.times)),
-        a.hit_mismatches,
         a.explained,
+        a.undecided,
         a.unexplained,
     );
     text

@@ -19,5 +19,6 @@ pub mod operations {
 
 /// What the crate `raydsl-report` uses besides.
 pub mod report {
+    pub use crate::render::outcomes_of_frame;
     pub use crate::testing::{OutcomesOf, SAMPLES, causes, sampled, spread};
 }

@@ -3,10 +3,14 @@
 use std::error::Error;
 use std::f32::consts::FRAC_PI_3;
 
-use raydsl::kernel;
-use raydsl::machine::{KernelFn, Rounding};
+use raydsl::kernel::Lifted;
+use raydsl::machine::{KernelFn, KernelInfo, Rounding};
 use raydsl::prelude::*;
-use raydsl::testing::{Cause, Explanation, Sample, explain};
+use raydsl::testing::{
+    Cause, Explanation, FilmTest, MeansTest, MeansVerdict, PairedMeans, Sample, explain,
+    variants_agree,
+};
+use raydsl::{assert_variants_agree, kernel};
 use raydsl_report::{Compare, Missing, Verdict};
 use raydsl_tests::check::recorded;
 use raydsl_tests::gpu::gpu;
@@ -334,4 +338,168 @@ fn every_variant_of_sibenik_agrees() -> Result<(), Box<dyn Error>> {
     // Some walls of the model are there twice, in two triangulations: they stay open.
     assert!(agrees("sibenik", &kernel, &camera).is_meaningful());
     Ok(())
+}
+
+// Paths: single samples say little, since one decision changes all that follows.
+
+/// The light of one path among four balls. The origin is shifted by `shift`: rounding decides
+/// anew, right in the mean. All light is `gain` times as bright, and a path ends too late by
+/// `late`.
+#[kernel]
+fn bounced(first: Ray, mut sampler: Sampler, shift: f32, gain: f32, late: f32) -> Vec3 {
+    let method = SampleMethod::Sobol;
+    let mut ray = first;
+    ray.origin += vec3(shift, shift, -shift);
+    let mut throughput = vec3(1.0, 1.0, 1.0);
+    for bounce in 0..12u32 {
+        let mut best = 1e30;
+        let mut center = Vec3::ZERO;
+        for i in 0..4u32 {
+            let x = (i % 2) as f32;
+            let y = (i / 2) as f32;
+            let c = vec3(2.0 * x - 1.0, 2.0 * y - 1.0, 0.7 * x * y);
+            let hit = sphere::intersect(ray, c, 0.97);
+            if hit.is_hit && hit.t < best {
+                best = hit.t;
+                center = c;
+            }
+        }
+        if best == 1e30 {
+            let sky = 0.1 + 0.9 * max(ray.direction.y, 0.0);
+            return throughput * vec3(sky, 0.5, 1.0 - 0.5 * sky) * gain;
+        }
+        let position = ray.at(best);
+        let normal = (position - center).normalize();
+        throughput *= vec3(0.9, 0.7, 0.5);
+        if bounce > 2 {
+            let chance = throughput.x;
+            if sampler.next_1d(method) >= chance + late {
+                break;
+            }
+            throughput /= chance;
+        }
+        let u = sampler.next_2d(method);
+        let direction = Frame::around(normal).to_world(sample_cosine_hemisphere(u));
+        ray = Ray { origin: position + normal * 1e-4, direction, t_min: 0.0, t_max: 1e30 };
+    }
+    vec3(0.0, 0.0, 0.0)
+}
+
+#[kernel]
+fn path(ray: Ray, sampler: Sampler) -> Vec3 {
+    bounced(ray, sampler, 0.0, 1.0, 0.0)
+}
+
+#[kernel]
+fn path_rounded_otherwise(ray: Ray, sampler: Sampler) -> Vec3 {
+    bounced(ray, sampler, 1e-5, 1.0, 0.0)
+}
+
+#[kernel]
+fn brighter_path(ray: Ray, sampler: Sampler) -> Vec3 {
+    bounced(ray, sampler, 1e-5, 1.01, 0.0)
+}
+
+#[kernel]
+fn longer_path(ray: Ray, sampler: Sampler) -> Vec3 {
+    bounced(ray, sampler, 1e-5, 1.0, 0.1)
+}
+
+/// `path`, with another kernel's WGSL.
+macro_rules! path_with_wgsl_of {
+    ($wgsl:ident) => {{
+        static INFO: KernelInfo =
+            KernelInfo { name: "path", file: "f.rs", line: 7, params: &[], known: None };
+        let lifted = Lifted {
+            native4: Some(Box::new(path::lifted)),
+            native8: Some(Box::new(path::lifted)),
+            native16: Some(Box::new(path::lifted)),
+            recorder: Some(Box::new($wgsl::lifted)),
+            margin: Some(Box::new(path::lifted)),
+        };
+        Kernel::scalar(&INFO, path::scalar).lifted(lifted, |_| {})
+    }};
+}
+
+fn balls() -> Pinhole {
+    Pinhole::new(vec3(0.5, 0.3, 6.0), Vec3::ZERO, Vec3::Y, 0.7)
+}
+
+/// A comparison of films that a test can afford.
+fn films<R: Radiance>(kernel: &Kernel<'_, (Ray, Sampler), R>) -> raydsl_report::Comparison<R> {
+    let found = Compare::new().size(32, 24).runs(1).samples(64).run_film(kernel, &balls());
+    println!("{}", found.table());
+    assert!(found.table().lines().all(|l| l.chars().count() <= 100));
+    assert!(found.rows.iter().all(|r| r.differing_means == 0));
+    found
+}
+
+#[test]
+fn paths_agree_in_their_means() {
+    let right = films(&Kernel::of::<path>());
+    let Some(means) = right.means else { return };
+    assert!(right.agrees());
+    assert!(means.light[0].worst <= 0.01, "it would find one per cent:\n{means}");
+    // A device that rounds in another way: single samples say little.
+    let other = films(&path_with_wgsl_of!(path_rounded_otherwise));
+    assert!(other.scalar().agreement.is_bit_identical());
+    let means = other.means.map(|m| m.verdict());
+    assert_eq!(means, Some(MeansVerdict::Agree));
+    let json = other.json(&raydsl_report::SceneInfo::default());
+    assert_eq!(json["means"]["verdict"], "agree");
+}
+
+#[test]
+fn biased_paths_differ() {
+    for kernel in [path_with_wgsl_of!(brighter_path), path_with_wgsl_of!(longer_path)] {
+        let found = films(&kernel);
+        let Some(means) = found.means else { return };
+        assert_eq!(found.verdict(), Verdict::Differ);
+        assert_eq!(means.verdict(), MeansVerdict::Differ, "{means}");
+    }
+}
+
+/// The same over many seeds, on the CPU.
+#[test]
+fn any_seed_finds_a_bias_and_nothing_else() {
+    let test = |seed| MeansTest::new().sampling(Sampling::new(4).seed(seed));
+    let verdict = |kernel: &Kernel<'_, (Ray, Sampler), Vec3>, seed: u32| {
+        let (expected, test) = (Kernel::of::<path>(), test(seed));
+        let mut means = PairedMeans::new(&test, 24, 24);
+        for sampling in test.replications() {
+            let film = |kernel| {
+                let mut film = Film::new(24, 24);
+                let n = sampling.planned;
+                TiledScheduler::new().accumulate(&balls(), kernel, &sampling, &mut film, n);
+                film
+            };
+            means.add(&film(&expected), &film(kernel));
+        }
+        means.agreement()
+    };
+    for seed in 0..12 {
+        let right = verdict(&Kernel::of::<path_rounded_otherwise>(), seed);
+        assert_eq!(right.verdict(), MeansVerdict::Agree, "{seed}\n{right}");
+        assert!(right.light[2].z > 0.0, "some paths go another way:\n{right}");
+        for mutant in [Kernel::of::<brighter_path>(), Kernel::of::<longer_path>()] {
+            let wrong = verdict(&mutant, seed);
+            assert_eq!(wrong.verdict(), MeansVerdict::Differ, "{seed}\n{wrong}");
+        }
+    }
+}
+
+#[test]
+fn assertions_take_films() {
+    assert_variants_agree!(path, &FilmTest::new(&balls(), 16, 16));
+    if gpu().is_none() {
+        return;
+    }
+    let camera = balls();
+    let film = FilmTest::new(&camera, 24, 24);
+    let (other, biased) =
+        (path_with_wgsl_of!(path_rounded_otherwise), path_with_wgsl_of!(brighter_path));
+    assert_eq!(variants_agree(&other, &film, Rounding::WGSL), Ok(()));
+    let error = variants_agree(&biased, &film, Rounding::WGSL).expect_err("a bias of 1 %");
+    println!("{error}");
+    assert!(error.to_string().contains("the means differ"));
 }

@@ -32,6 +32,8 @@ pub use image::{Image, Shaded, ShadedOn};
 pub use moments::{Moments, MomentsOn};
 pub use pixel_sampler::{PixelSampler, Sampling};
 pub use radiance::Radiance;
+#[doc(hidden)]
+pub use reference::outcomes_of_frame;
 pub use renderer::Renderer;
 #[cfg(feature = "gpu")]
 pub(crate) use renderer::timing_of;

@@ -2,12 +2,12 @@
 
 use glam::{DVec4, UVec2, uvec2};
 
-use super::shot::{Pass, Shot, places};
+use super::shot::{Frame, Pass, Shot, places};
 use super::{FilmArgs, Radiance, Sampling};
 use crate::camera::{Camera, CameraRays};
 use crate::geometry::Ray;
 use crate::kernel::Kernel;
-use crate::machine::{Machine, Outcomes, Rounding, U, X2};
+use crate::machine::{Machine, Outcomes, Rounding, Type, U, X2};
 use crate::sampling::Sampler;
 
 impl Sampling {
@@ -47,4 +47,19 @@ impl Sampling {
         };
         pixels.map(mean).collect()
     }
+}
+
+/// Returns the possible results of a frame's pixel under rounding, for the crate `raydsl-report`.
+pub fn outcomes_of_frame<C: CameraRays, A: FilmArgs, R: Type>(
+    rays: &C,
+    kernel: &Kernel<'_, A, R>,
+    pixel: UVec2,
+    rounding: Rounding,
+    limit: usize,
+) -> Outcomes {
+    let frame = Frame { rays: *rays, kernel };
+    Outcomes::of(rounding, limit, |m| {
+        let pixel = X2 { x: U(m.u32(pixel.x)), y: U(m.u32(pixel.y)) };
+        frame.pixel_on(m, pixel, &|m, args| kernel.on_margin(m, args))
+    })
 }

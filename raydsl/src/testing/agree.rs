@@ -3,14 +3,19 @@
 use core::fmt;
 
 use super::agreement::differing;
-use super::explain::{Cause, explain};
+use super::explain::{Cause, explain_some};
+use super::film_test::Inputs;
 use super::leaves::{leaves, one_line};
-use super::{can_run, try_run, unwritten, validate};
+use super::{MeansAgreement, MeansVerdict, can_run, try_run, unwritten, validate};
 use crate::kernel::{Kernel, Variant};
 use crate::machine::{Leaf, Rounding, Type, result_leaves};
 
 /// The limit on paths through the decisions of a printed result.
 const WAYS: usize = 64;
+
+/// The limit on differences that are explained where the means decide too: those of long paths take
+/// long.
+const EXPLAINED: usize = 16;
 
 /// The number of results in the table.
 const ROWS: usize = 10;
@@ -83,9 +88,12 @@ struct Wrong<R> {
     indices: Vec<usize>,
 }
 
+/// Compares a kernel's pictures in the device's variant and on the CPU.
+pub(super) type Means<'a> = &'a dyn Fn() -> Result<MeansAgreement, String>;
+
 /// Runs a kernel over `inputs` in every variant, for
-/// [`assert_variants_agree!`](crate::assert_variants_agree). The device may round according to
-/// `rounding`.
+/// [`assert_variants_agree!`](crate::assert_variants_agree): a slice of parameters, or a
+/// [`FilmTest`](super::FilmTest). The device may round according to `rounding`.
 ///
 /// # Errors
 ///
@@ -96,15 +104,27 @@ struct Wrong<R> {
 /// If there are no inputs, or no device and `RAYDSL_REQUIRE_GPU` is `1`.
 pub fn variants_agree<A: Type, R: Type>(
     kernel: &Kernel<'_, A, R>,
+    inputs: &(impl Inputs<A, R> + ?Sized),
+    rounding: Rounding,
+) -> Result<(), Disagreement> {
+    match inputs.means(kernel) {
+        Some(means) => agree(kernel, &inputs.inputs(), rounding, Some(&*means)),
+        None => agree(kernel, &inputs.inputs(), rounding, None),
+    }
+}
+
+fn agree<A: Type, R: Type>(
+    kernel: &Kernel<'_, A, R>,
     inputs: &[A],
     rounding: Rounding,
+    means: Option<Means<'_>>,
 ) -> Result<(), Disagreement> {
     assert!(!inputs.is_empty(), "without inputs nothing is compared");
     let expected: Vec<R> = inputs.iter().map(|a| kernel.call(*a)).collect();
     let packets = [Variant::Packet4, Variant::Packet8, Variant::Packet16];
     let mut wrong: Vec<Wrong<R>> =
         packets.into_iter().filter_map(|v| packet(kernel, v, inputs, &expected)).collect();
-    wrong.extend(wgsl(kernel, inputs, rounding));
+    wrong.extend(wgsl(kernel, inputs, rounding, means));
     if wrong.is_empty() {
         return Ok(());
     }
@@ -150,6 +170,7 @@ fn wgsl<A: Type, R: Type>(
     kernel: &Kernel<'_, A, R>,
     inputs: &[A],
     rounding: Rounding,
+    means: Option<Means<'_>>,
 ) -> Option<Wrong<R>> {
     let variant = Variant::Wgsl;
     let failed = |summary| Wrong { variant, summary, found: Vec::new(), indices: Vec::new() };
@@ -163,8 +184,20 @@ fn wgsl<A: Type, R: Type>(
         Ok(found) => found,
         Err(e) => return Some(failed(format!("wgsl: {e}"))),
     };
-    let why = explain(kernel, inputs, &found, rounding);
-    let is_wrong = |cause| matches!(cause, Cause::Unexplained | Cause::Undecided);
+    let means = match means.map(|means| means()).transpose() {
+        Ok(means) => means,
+        Err(e) => return Some(failed(format!("wgsl: {e}"))),
+    };
+    let most = if means.is_some() { EXPLAINED } else { usize::MAX };
+    let why = explain_some(kernel, inputs, &found, rounding, most);
+    let verdict = means.as_ref().map(MeansAgreement::verdict);
+    // Where rounding decides too much for single results, the means of a picture say more.
+    let by_means = verdict == Some(MeansVerdict::Agree);
+    let is_wrong = |cause| match cause {
+        Cause::Unexplained => true,
+        Cause::Undecided => !by_means,
+        _ => false,
+    };
     let wrong = why.causes.iter().filter(|(_, cause)| is_wrong(*cause));
     let indices: Vec<usize> = wrong.map(|(i, _)| *i).collect();
     let mut found_out = Vec::new();
@@ -173,13 +206,18 @@ fn wgsl<A: Type, R: Type>(
         found_out.push(format!("wgsl: rounding does not account for {wrong} of {all} results"));
     }
     let forgiven = why.causes.len() - indices.len();
-    if forgiven > 0 && !why.sample.is_meaningful() {
+    if forgiven > 0 && !why.sample.is_meaningful() && !by_means {
         let (uncertain, all) = (why.sample.uncertain, why.sample.inputs);
         found_out.push(format!(
             "wgsl: rounding would account for {forgiven} results that differ; but {uncertain} of \
              {all} inputs are uncertain, so that means little"
         ));
     }
+    let of_means = means.filter(|_| verdict == Some(MeansVerdict::Differ) || !found_out.is_empty());
+    found_out.extend(of_means.iter().flat_map(|m| {
+        let lines: Vec<String> = m.to_string().lines().map(str::to_owned).collect();
+        lines
+    }));
     let summary = found_out.join("\n  ");
     (!summary.is_empty()).then_some(Wrong { variant, summary, found, indices })
 }

@@ -18,14 +18,17 @@ pub struct Agreement {
     pub max_ulp: u32,
     /// The number of `f32` within each of [`BUCKETS`].
     pub histogram: [u64; BUCKETS.len()],
-    /// Results that differ by more than rounding: those of [`Self::explained`] and those of
-    /// [`Self::unexplained`]. In [`Self::of`], which has no bounds, those in which an integer or a
+    /// Results that differ by more than rounding: those of [`Self::explained`], of
+    /// [`Self::undecided`] and of [`Self::unexplained`]. In [`Self::of`], which has no bounds, those in which an integer or a
     /// truth value differs (another primitive, hit for miss) or a number is NaN in one only.
     pub hit_mismatches: u64,
     /// Mismatches explained by an uncertain decision. Their numbers count in neither
     /// [`Self::max_ulp`] nor [`Self::histogram`].
     pub explained: u64,
-    /// The other mismatches.
+    /// Mismatches with more uncertain decisions than are followed, or without bounds. Their numbers
+    /// do not count either.
+    pub undecided: u64,
+    /// The other mismatches: mistakes.
     pub unexplained: u64,
 }
 
@@ -61,6 +64,7 @@ impl Agreement {
             histogram: [0; BUCKETS.len()],
             hit_mismatches: 0,
             explained: 0,
+            undecided: 0,
             unexplained: 0,
         };
         let size = R::SCHEMA.size();
@@ -89,7 +93,12 @@ impl Agreement {
                 self.explained += 1;
                 return;
             }
-            Cause::Undecided | Cause::Unexplained => {
+            Cause::Undecided => {
+                self.hit_mismatches += 1;
+                self.undecided += 1;
+                return;
+            }
+            Cause::Unexplained => {
                 self.hit_mismatches += 1;
                 self.unexplained += 1;
             }

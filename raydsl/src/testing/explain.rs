@@ -134,14 +134,20 @@ fn each<T: Send>(indices: &[usize], f: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
     indices.iter().map(|i| f(*i)).collect()
 }
 
-/// Returns the causes of differing results at `indices`.
+/// Returns the causes of differing results. At most `most` of them are explained, spread evenly; the
+/// others are undecided.
 pub fn causes<R: Type>(
     expected: &[R],
     found: &[R],
     outcomes: OutcomesOf<'_>,
+    most: usize,
 ) -> Vec<(usize, Cause)> {
     let results = |i: usize| [result_leaves(expected[i]), result_leaves(found[i])];
-    causes_at(&differing(expected, found), &results, outcomes)
+    let all = differing(expected, found);
+    let explained: Vec<usize> = spread(all.len(), most).into_iter().map(|i| all[i]).collect();
+    let causes = causes_at(&explained, &results, outcomes);
+    let cause = |i: &usize| causes.binary_search_by_key(i, |(at, _)| *at).map(|at| causes[at].1);
+    all.iter().map(|i| (*i, cause(i).unwrap_or(Cause::Undecided))).collect()
 }
 
 /// Returns the [`causes`] of the inputs that differ, from the leaves of both results.
@@ -211,11 +217,22 @@ pub fn explain<A: Type, R: Type>(
     outputs: &[R],
     rounding: Rounding,
 ) -> Explanation {
+    explain_some(kernel, inputs, outputs, rounding, usize::MAX)
+}
+
+/// Explains at most `most` differences, as [`explain`] does; the others are undecided.
+pub(super) fn explain_some<A: Type, R: Type>(
+    kernel: &Kernel<'_, A, R>,
+    inputs: &[A],
+    outputs: &[R],
+    rounding: Rounding,
+    most: usize,
+) -> Explanation {
     assert_eq!(inputs.len(), outputs.len(), "one output for each input");
     let expected: Vec<R> = inputs.iter().map(|a| kernel.call(*a)).collect();
     let outcomes = |i: usize, limit| kernel.outcomes(inputs[i], rounding, limit);
     Explanation {
-        causes: causes(&expected, outputs, &outcomes),
+        causes: causes(&expected, outputs, &outcomes, most),
         sample: Sample::of(&sampled(&spread(inputs.len(), SAMPLES), &outcomes)),
     }
 }

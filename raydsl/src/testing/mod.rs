@@ -12,7 +12,9 @@
 mod agree;
 mod agreement;
 mod explain;
+mod film_test;
 mod leaves;
+mod means;
 mod wgsl;
 
 use crate::kernel::{Kernel, Variant};
@@ -23,6 +25,10 @@ pub use agreement::{Agreement, BUCKETS, ulp};
 pub use explain::{Cause, Explanation, Sample, explain};
 #[doc(hidden)]
 pub use explain::{OutcomesOf, SAMPLES, causes, sampled, spread};
+#[doc(hidden)]
+pub use film_test::MeansOf;
+pub use film_test::{FilmTest, Inputs};
+pub use means::{MeansAgreement, MeansTest, MeansVerdict, PairedMeans, Scale};
 pub use wgsl::{InvalidWgsl, assert_valid_wgsl, validate};
 
 /// Returns whether `variant` runs on this machine; if not, a message names `test`.
@@ -122,12 +128,15 @@ fn on_device<A: Type, R: Type>(_: &Kernel<'_, A, R>, _: &[A], _: &mut [R]) -> Re
 /// Panics unless every variant of a kernel agrees with the scalar one.
 ///
 /// The first argument is a reference to a [`Kernel`], or the name of a `#[kernel] fn`; the second a
-/// slice of its parameters, as tuples.
+/// slice of its parameters, as tuples, or for a kernel that renders films a
+/// [`FilmTest`](crate::testing::FilmTest).
 ///
 /// * Packets must return the bits of the scalar function; +0 equals -0, and NaN equals NaN.
 /// * The WGSL must be valid. On a device its results may differ by rounding, and in decisions that
 ///   rounding leaves open, according to [`explain`]. The rounding is that allowed by WGSL,
 ///   [`Rounding::WGSL`](crate::machine::Rounding::WGSL), unless given as a third argument.
+///   On a film, where too many decisions are open for that, its means must agree: see
+///   [`MeansTest`](crate::testing::MeansTest).
 ///
 /// The panic message lists up to ten differing results: variant, index, the first wrong number, the
 /// expected and the found value with their bits, the values that rounding allows, and the input.
