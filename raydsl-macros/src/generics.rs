@@ -3,6 +3,8 @@
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::{ToTokens, quote};
 
+use crate::model::Signature;
+
 /// Generic parameters, formatted for angle brackets: each list ends with a comma.
 ///
 /// Lifetimes are omitted: values on a machine are copied.
@@ -24,9 +26,16 @@ pub(crate) struct Generics {
 
 impl Generics {
     pub(crate) fn new(generics: &syn::Generics) -> Self {
+        Self::without(generics, &[])
+    }
+
+    /// Returns the parameters that are not closures, which are no types of kernels.
+    pub(crate) fn without(generics: &syn::Generics, closures: &[(Ident, Signature)]) -> Self {
         let mut all = Self::default();
+        let is_closure = |name: &str| closures.iter().any(|c| c.0 == name);
         for param in &generics.params {
             match param {
+                syn::GenericParam::Type(t) if is_closure(&t.ident.to_string()) => {}
                 syn::GenericParam::Type(t) => {
                     let (name, bounds) = (&t.ident, &t.bounds);
                     all.declared.extend(quote!(#name: #bounds,));
@@ -46,7 +55,16 @@ impl Generics {
             }
         }
         let clause = generics.where_clause.iter().flat_map(|w| &w.predicates);
-        for p in clause.filter(|p| !matches!(p, syn::WherePredicate::Lifetime(_))) {
+        for p in clause {
+            match p {
+                syn::WherePredicate::Lifetime(_) => continue,
+                syn::WherePredicate::Type(t)
+                    if is_closure(&t.bounded_ty.to_token_stream().to_string()) =>
+                {
+                    continue;
+                }
+                _ => {}
+            }
             let p = p.to_token_stream();
             all.predicates.extend(quote!(#p,));
         }

@@ -18,6 +18,9 @@ pub(crate) struct Kernel {
     pub(crate) is_apart: bool,
     /// The knowledge of machines about it beyond its code.
     pub(crate) known: Option<syn::Expr>,
+    /// Whether it is an argument of a user's kernel, which takes it as an `Fn`: rustc knows that it
+    /// changes nothing outside.
+    pub(crate) is_fn: bool,
     /// Whether there is a mistake in its signature, so that it cannot be lifted.
     pub(crate) is_broken: bool,
 }
@@ -34,6 +37,15 @@ pub(crate) struct Param {
     pub(crate) data: bool,
     /// Whether it is `#[host]`: known before the kernel runs.
     pub(crate) host: bool,
+    /// What it takes and gives, if it is a closure.
+    pub(crate) function: Option<Signature>,
+}
+
+/// The types of a closure that is a parameter, without references.
+#[derive(Clone)]
+pub(crate) struct Signature {
+    pub(crate) params: Vec<TokenStream>,
+    pub(crate) result: TokenStream,
 }
 
 #[derive(Clone)]
@@ -269,7 +281,20 @@ pub(crate) fn is_constant(name: &Ident) -> bool {
     name.to_string().starts_with(|c: char| c.is_ascii_uppercase())
 }
 
+impl Param {
+    /// Whether it has no written type, as in the closure `|x| x * x`.
+    pub(crate) fn is_inferred(&self) -> bool {
+        self.ty.to_string() == "_"
+    }
+}
+
 impl Kernel {
+    /// Whether it takes a closure. Its body is then a part of the caller's, whose variables the
+    /// closure may read.
+    pub(crate) fn takes_function(&self) -> bool {
+        self.params.iter().any(|p| p.function.is_some())
+    }
+
     /// Whether the result of a closure may be an integer whose type is inferred: then it is that of
     /// the source.
     pub(crate) fn gives_bare_integer(&self) -> bool {

@@ -19,12 +19,24 @@ impl Emitter<'_> {
             );
             return quote!(::core::unreachable!());
         }
+        if let Some((function, result)) = self.function_called(path) {
+            let args: Vec<_> = args.iter().map(|e| self.coerced(e)).collect();
+            let (p, machine, result) = (private(), self.machine.clone(), self.on(&result));
+            return quote!(#p::Coerce::<#machine, #result>::coerce(#function(#m, #(#args),*), #m));
+        }
         let args = self.arguments(args);
         let values = &args.values;
         // Explicit type parameters need not be inferred.
         let is_named = path.to_string().ends_with('>');
         let on = word(if is_named { "on_values" } else { "on" });
         args.around(quote!(#path::#on(#m, #(#values),*)))
+    }
+
+    /// Returns the parameter that is called, if it is one, and the type that it gives.
+    pub(super) fn function_called(&self, path: &TokenStream) -> Option<(Ident, TokenStream)> {
+        let name = syn::parse2::<Ident>(path.clone()).ok()?;
+        let result = self.find(&name)?.gives.clone()?;
+        Some((name, result))
     }
 
     pub(super) fn associated(
@@ -81,6 +93,9 @@ impl Emitter<'_> {
         let (p, m) = (private(), own("m"));
         match &arg.kind {
             Kind::Closure(kernel) => Some(self.closure(kernel)),
+            Kind::Name(name) if self.lookup(name) == Some(Binding::Function) => {
+                Some(quote!(&#name))
+            }
             Kind::Name(name) if self.lookup(name) == Some(Binding::Mut) && !self.is_outer(name) => {
                 let local = self.local(name);
                 Some(quote!(&#local))
@@ -205,7 +220,7 @@ impl Emitter<'_> {
         let name = match &receiver.kind {
             Kind::Name(name) => name,
             Kind::Deref(inner) => return self.generic_receiver(inner),
-            Kind::Element { .. } | Kind::Index { .. } => {
+            Kind::Element { .. } | Kind::Index { .. } | Kind::Call { .. } => {
                 let generic = self.generic_of(receiver).0?;
                 return Some((generic, self.value(receiver)));
             }
@@ -217,7 +232,7 @@ impl Emitter<'_> {
         Some((
             generic,
             match local.binding {
-                Binding::Value | Binding::Host => quote!(#ident),
+                Binding::Value | Binding::Host | Binding::Function => quote!(#ident),
                 Binding::Var | Binding::Mut => quote!(&#ident),
             },
         ))
@@ -240,7 +255,7 @@ impl Emitter<'_> {
             Kind::Name(name) if self.is_outer(name) => None,
             Kind::Name(name) => match self.lookup(name)? {
                 Binding::Var | Binding::Mut => Some((self.local(name), TokenStream::new())),
-                Binding::Value | Binding::Host => None,
+                Binding::Value | Binding::Host | Binding::Function => None,
             },
             Kind::Deref(a) => self.variable_under(a),
             Kind::Field { base, member } => {

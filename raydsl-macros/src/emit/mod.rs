@@ -34,6 +34,8 @@ enum Binding {
     Mut,
     /// A value of the host.
     Host,
+    /// A closure.
+    Function,
 }
 
 /// A name in scope.
@@ -54,6 +56,8 @@ struct Local {
     literal: bool,
     /// Whether it is a variable that began as one: its type is inferred.
     bare: bool,
+    /// The type that it gives, if it is a closure.
+    gives: Option<TokenStream>,
 }
 
 /// The destination of a control structure's value.
@@ -203,6 +207,7 @@ impl<'a> Emitter<'a> {
             let name = self.local(&param.name);
             let text = param.name.to_string();
             let binding = match param {
+                Param { function: Some(_), .. } => Binding::Function,
                 Param { host: true, .. } => Binding::Host,
                 Param { by_mut: true, .. } => Binding::Mut,
                 Param { mutable: true, .. } => Binding::Var,
@@ -211,7 +216,11 @@ impl<'a> Emitter<'a> {
             if matches!(binding, Binding::Var | Binding::Mut) {
                 prologue.extend(quote!(let #name = #p::Var::new(#m, #text, #name);));
             }
-            self.bind_typed(&param.name, binding, Some(&param.ty));
+            let ty = (!param.is_inferred() && param.function.is_none()).then_some(&param.ty);
+            self.bind_typed(&param.name, binding, ty);
+            if let (Some(local), Some(f)) = (self.newest(&param.name), &param.function) {
+                local.gives = Some(f.result.clone());
+            }
         }
         // The user may rebind their names.
         let changing: Vec<&Param> = self.kernel.params.iter().filter(|p| p.by_mut).collect();
@@ -292,7 +301,8 @@ impl<'a> Emitter<'a> {
         };
         inner.scopes.push(HashMap::new());
         let body = inner.body();
-        let types: Vec<_> = kernel.params.iter().map(|p| inner.on(&p.ty)).collect();
+        let on = |p: &Param| if p.is_inferred() { p.ty.clone() } else { inner.on(&p.ty) };
+        let types: Vec<_> = kernel.params.iter().map(on).collect();
         let (captures, host_captures, next) = (
             core::mem::take(&mut inner.captures),
             core::mem::take(&mut inner.host_captures),
@@ -379,12 +389,7 @@ impl<'a> Emitter<'a> {
     /// Binds a name; of its type only a type parameter matters.
     fn bind_typed(&mut self, name: &Ident, binding: Binding, ty: Option<&TokenStream>) {
         let owner = ty.map_or(Owner::Unknown, Owner::of_type);
-        let parameter = |ty: &TokenStream| {
-            let ty = ty.to_string();
-            self.generics.types.iter().find(|g| **g == ty).cloned()
-        };
-        let generic = ty.and_then(parameter);
-        let elements = ty.and_then(element_type).and_then(|ty| parameter(&ty));
+        let (generic, elements) = ty.map_or((None, None), |ty| self.generics_in(ty));
         let local = Local {
             binding,
             generic,
@@ -394,10 +399,20 @@ impl<'a> Emitter<'a> {
             owner,
             literal: false,
             bare: false,
+            gives: None,
         };
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name.to_string(), local);
         }
+    }
+
+    /// Returns the type parameter that a type is, and that of its elements.
+    fn generics_in(&self, ty: &TokenStream) -> (Option<Ident>, Option<Ident>) {
+        let parameter = |ty: &TokenStream| {
+            let ty = ty.to_string();
+            self.generics.types.iter().find(|g| **g == ty).cloned()
+        };
+        (parameter(ty), element_type(ty).and_then(|ty| parameter(&ty)))
     }
 
     /// Returns a name of the innermost scope.

@@ -81,6 +81,10 @@ impl Emitter<'_> {
             Kind::Element { base, .. } | Kind::Index { base, .. } => {
                 (self.generic_of(base).1, None)
             }
+            Kind::Call { path, .. } => match self.function_called(path) {
+                Some((_, result)) => self.generics_in(&result),
+                None => (None, None),
+            },
             _ => (None, None),
         }
     }

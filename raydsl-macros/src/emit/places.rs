@@ -18,6 +18,9 @@ impl Emitter<'_> {
 
     /// Reports an assignment to a variable of the kernel around a nested closure.
     pub(super) fn outside(&mut self, name: &Ident) {
+        if self.kernel.is_fn {
+            return;
+        }
         self.errors.at(
             name.span(),
             format!("a closure may read `{name}`, which lies outside of it, but not change it"),

@@ -357,6 +357,14 @@ impl Emitter<'_> {
                 quote!(#local)
             }
             Some(Binding::Host) => quote!(#p::HostUse::value(#name, #m)),
+            Some(Binding::Function) => {
+                self.errors.at(
+                    name.span(),
+                    format!("the closure `{name}` is no value of a kernel"),
+                    &format!("call it, `{name}(x)`, or pass it to a kernel that takes one"),
+                );
+                quote!(::core::unreachable!())
+            }
             None if self.is_constant(name) || !self.is_closure => self.constant(name),
             None if name == "self" => {
                 self.errors.at(

@@ -3,7 +3,10 @@
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 
-use super::{Place, asserted, info, lifted_function, own, param_ident, private, quiet};
+use super::{
+    Place, asserted, closure_bound, closure_results, info, lifted_function, own, param_ident,
+    private, quiet,
+};
 use crate::diag::Errors;
 use crate::generics::Generics;
 use crate::here::{of_type, private_here, quote_here};
@@ -142,25 +145,27 @@ fn has_entry(kernel: &Kernel, sig: &syn::Signature) -> bool {
     if matches!(**result, syn::Type::Reference(_)) {
         return false;
     }
-    let is_value = |p: &Param| !(p.by_mut || p.host || p.data);
+    let is_value = |p: &Param| !(p.by_mut || p.host || p.data || p.function.is_some());
     !kernel.params.is_empty() && kernel.result.is_some() && kernel.params.iter().all(is_value)
 }
 
 /// Returns `on` of a generic kernel: the types are inferred from the arguments.
 fn inferring_function(kernel: &Kernel, vis: &TokenStream) -> TokenStream {
     let (p, m, out, quiet) = (private(), own("m"), own("out"), quiet());
-    let all: Vec<Passed> = kernel.params.iter().map(|param| passed(param, kernel)).collect();
+    let all: Vec<Passed> =
+        kernel.params.iter().enumerate().map(|(i, param)| passed(i, param, kernel)).collect();
     let params = all.iter().map(|passed| &passed.param);
     let values = all.iter().map(|passed| &passed.value);
     let before = all.iter().map(|passed| &passed.before);
     let after = all.iter().map(|passed| &passed.after);
     let lifetime = kernel.params.iter().any(|p| p.data).then(|| quote!('__a,));
     let result = kernel.result.as_ref().map(on_any).unwrap_or_else(|| quote!(()));
+    let results = closure_results(kernel, &on_any);
     quote! {
         #[doc(hidden)]
         #[inline(always)]
         #quiet
-        #vis fn on<#lifetime __M: #p::Machine>(#m: &__M, #(#params,)*) -> #result {
+        #vis fn on<#lifetime __M: #p::Machine, #results>(#m: &__M, #(#params,)*) -> #result {
             #(#before)*
             let #out = Self::on_values(#m, #(#values,)*);
             #(#after)*
@@ -178,7 +183,7 @@ struct Passed {
     after: TokenStream,
 }
 
-fn passed(param: &Param, kernel: &Kernel) -> Passed {
+fn passed(i: usize, param: &Param, kernel: &Kernel) -> Passed {
     let (p, m) = (private(), own("m"));
     let (name, ty) = (param_ident(&param.name), &param.ty);
     let as_it_is = |param| Passed {
@@ -187,6 +192,10 @@ fn passed(param: &Param, kernel: &Kernel) -> Passed {
         before: TokenStream::new(),
         after: TokenStream::new(),
     };
+    if let Some(function) = &param.function {
+        let bound = closure_bound(i, function, &on_any);
+        return as_it_is(quote!(#name: impl #bound));
+    }
     if param.host {
         return as_it_is(quote!(#name: #ty));
     }

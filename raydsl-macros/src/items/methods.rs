@@ -4,7 +4,10 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use syn::spanned::Spanned;
 
-use super::{Place, asserted_type, head, lifted_function, operators, own, private, quiet};
+use super::{
+    Place, asserted_type, closure_bound, head, lifted_function, operators, own, private, quiet,
+    result_of,
+};
 use crate::diag::Errors;
 use crate::emit::Emitter;
 use crate::generics::Generics;
@@ -124,8 +127,12 @@ fn check(sig: &syn::Signature, attrs: &[syn::Attribute], errors: &mut Errors) {
             "put the method in an impl of its own, with the `#[cfg]` on the impl",
         );
     }
-    let own = Generics::new(&sig.generics);
-    if !own.is_empty() {
+    let clause = sig.generics.where_clause.as_ref();
+    let is_closure = |p: &syn::GenericParam| match p {
+        syn::GenericParam::Type(t) => parse::is_function(t, clause),
+        p => matches!(p, syn::GenericParam::Lifetime(_)),
+    };
+    if !sig.generics.params.iter().all(is_closure) {
         errors.at(
             sig.generics.span(),
             "a method of kernels has no type parameters of its own",
@@ -167,6 +174,13 @@ impl Method<'_> {
     fn argument(&self, i: usize, param: &Param) -> (TokenStream, Option<TokenStream>) {
         let p = private();
         let ty = &param.ty;
+        if let Some(function) = &param.function {
+            let (generic, twin) = (format_ident!("__A{i}"), |ty: &TokenStream| self.twin(ty));
+            let (name, result) = (result_of(i), twin(&function.result));
+            let bound = closure_bound(i, function, &twin);
+            let generics = quote!(#generic: #bound, #name: #p::Coerce<__M, #result>);
+            return (quote!(#generic), Some(generics));
+        }
         if param.host {
             return (quote!(#ty), None);
         }

@@ -14,13 +14,13 @@ pub(crate) use primitive::primitive_impl;
 pub(crate) use shape::{Shape, with_shape};
 
 use proc_macro2::{Ident, TokenStream};
-use quote::quote;
+use quote::{format_ident, quote};
 
 use crate::diag::Errors;
 use crate::emit::Emitter;
 use crate::generics::Generics;
 use crate::here::{in_one_place, of_type, own, private, private_here, quote_here};
-use crate::model::{Kernel, Param};
+use crate::model::{Kernel, Param, Signature};
 use crate::ops;
 
 /// Returns a parameter's name in lifted code; `self` cannot name a local.
@@ -104,7 +104,7 @@ fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> T
 /// uses them directly.
 fn call_of(body: &TokenStream, kernel: &Kernel, emitter: &Emitter<'_>) -> TokenStream {
     let (p, m) = (private(), own("m"));
-    let values = || kernel.params.iter().filter(|p| !p.host);
+    let values = || kernel.params.iter().filter(|p| !p.host && p.function.is_none());
     let names: Vec<Ident> = values().map(|p| param_ident(&p.name)).collect();
     let types: Vec<TokenStream> = values().map(|p| emitter.param(p)).collect();
     let arguments = values().zip(&names).zip(&types).map(|((param, name), ty)| {
@@ -112,6 +112,10 @@ fn call_of(body: &TokenStream, kernel: &Kernel, emitter: &Emitter<'_>) -> TokenS
         let (p, m) = (private_here(), own("m"));
         quote_here!(#p::Coerce::<__M, #ty>::coerce(#name, #m))
     });
+    // In WGSL a closure reads the variables of the function around it.
+    if kernel.takes_function() {
+        return quote!({ #(let #names: #types = #arguments;)* #body });
+    }
     let call = if kernel.is_apart { quote!(call_apart) } else { quote!(call) };
     quote! {
         #p::Machine::#call(
@@ -148,7 +152,8 @@ fn with_changes_set(call: TokenStream, kernel: &Kernel, emitter: &Emitter<'_>) -
 /// Returns assertions that the user's own types in a signature are types of kernels. If one is not,
 /// this is the error, and the code that uses it gives no others.
 fn asserted(kernel: &Kernel) -> TokenStream {
-    let values = kernel.params.iter().filter(|p| !(p.data || p.host)).map(|p| &p.ty);
+    let is_value = |p: &&Param| !(p.data || p.host || p.function.is_some());
+    let values = kernel.params.iter().filter(is_value).map(|p| &p.ty);
     let mut seen = Vec::new();
     let asserted = values.chain(&kernel.result).filter_map(|ty| {
         let text = ty.to_string();
@@ -178,13 +183,44 @@ fn is_users_own(ty: &TokenStream) -> bool {
     last.arguments.is_none() && last.ident != "Self" && !ops::is_of_library(&last.ident.to_string())
 }
 
+/// Returns the bound of parameter `i`, which is a closure; `on` gives the twin of a type.
+fn closure_bound(
+    i: usize,
+    function: &Signature,
+    on: &dyn Fn(&TokenStream) -> TokenStream,
+) -> TokenStream {
+    let (params, result) = (function.params.iter().map(on), result_of(i));
+    quote!(Fn(&__M, #(#params),*) -> #result)
+}
+
+/// Returns the type parameter for what the closure that is parameter `i` gives.
+fn result_of(i: usize) -> Ident {
+    format_ident!("__R{i}")
+}
+
+/// Returns the type parameters for what closures give: values that become those of the machine.
+fn closure_results(kernel: &Kernel, on: &dyn Fn(&TokenStream) -> TokenStream) -> TokenStream {
+    let p = private();
+    let params = kernel.params.iter().enumerate();
+    params
+        .filter_map(|(i, param)| Some((i, param.function.as_ref()?)))
+        .map(|(i, function)| {
+            let (name, result) = (result_of(i), on(&function.result));
+            quote!(#name: #p::Coerce<__M, #result>,)
+        })
+        .collect()
+}
+
 /// Returns the signature of a lifted function.
 fn head(kernel: &Kernel, place: &Place<'_>, emitter: &Emitter<'_>) -> TokenStream {
     let (p, m) = (private(), own("m"));
     let Place { fn_name, vis, .. } = place;
-    let params = kernel.params.iter().map(|param| {
+    let params = kernel.params.iter().enumerate().map(|(i, param)| {
         let (name, ty) = (param_ident(&param.name), emitter.param(param));
-        if param.host {
+        if let Some(function) = &param.function {
+            let bound = closure_bound(i, function, &|ty| emitter.on(ty));
+            quote!(#name: impl #bound)
+        } else if param.host {
             let ty = &param.ty;
             quote!(#name: #ty)
         } else if param.data {
@@ -199,9 +235,10 @@ fn head(kernel: &Kernel, place: &Place<'_>, emitter: &Emitter<'_>) -> TokenStrea
     let lifetime = kernel.params.iter().any(|p| p.data).then(|| quote!('__a,));
     let predicates = &kernel.generics.predicates;
     let asserted = asserted(kernel);
+    let results = closure_results(kernel, &|ty| emitter.on(ty));
     let clause = if place.is_method { quote!(where #predicates) } else { quote!(where #asserted) };
     quote! {
-        #vis fn #fn_name<#lifetime __M: #p::Machine>(#m: &__M, #(#params,)*) -> #result
+        #vis fn #fn_name<#lifetime __M: #p::Machine, #results>(#m: &__M, #(#params,)*) -> #result
         #clause
     }
 }

@@ -4,22 +4,29 @@ use quote::{ToTokens, quote};
 use syn::spanned::Spanned;
 
 use super::Parser;
+use super::closure::{Types, closure_in};
 use super::pattern::variant_of;
 use super::refused::is_absent;
 use super::types::{generic_argument, is_type_name};
 use crate::model::{Expr, Kind};
 
 impl Parser<'_> {
-    /// Parses arguments, which may be `&mut`.
-    fn arguments<'b>(&mut self, args: impl IntoIterator<Item = &'b syn::Expr>) -> Vec<Expr> {
+    /// Parses arguments, which may be `&mut` and closures.
+    fn arguments<'b>(
+        &mut self,
+        args: impl IntoIterator<Item = &'b syn::Expr>,
+        types: Types,
+    ) -> Vec<Expr> {
         args.into_iter()
             .map(|e| match e {
                 syn::Expr::Reference(r) if r.mutability.is_some() => {
                     let kind = self.place(&r.expr).map_or(Kind::Error, Kind::RefMut);
                     Expr { kind, span: e.span() }
                 }
-                syn::Expr::Closure(c) => Expr { kind: self.nested(c), span: e.span() },
-                e => self.expr(e),
+                e => match closure_in(e) {
+                    Some(c) => Expr { kind: self.nested(c, types), span: e.span() },
+                    None => self.expr(e),
+                },
             })
             .collect()
     }
@@ -28,7 +35,7 @@ impl Parser<'_> {
         if let Some(refused) = self.refused_call(c) {
             return refused;
         }
-        let args = self.arguments(&c.args);
+        let args = self.arguments(&c.args, Types::Inferred);
         let syn::Expr::Path(p) = &*c.func else {
             return self.error(c.func.span(), "only a kernel can be called", "call it by its name");
         };
@@ -71,7 +78,7 @@ impl Parser<'_> {
             receiver: self.boxed(&c.receiver),
             name: c.method.clone(),
             turbofish: generic.map(generic_argument).collect(),
-            args: self.arguments(&c.args),
+            args: self.arguments(&c.args, Types::Written),
         }
     }
 }

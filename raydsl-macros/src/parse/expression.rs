@@ -7,7 +7,6 @@ use syn::{BinOp, Lit, UnOp};
 
 use super::Parser;
 use super::attributes::{attributes, is_coherent};
-use super::function::NESTED;
 use super::pattern::{has_let, variant_of};
 use super::place::assignment;
 use super::refused::is_absent;
@@ -111,12 +110,12 @@ impl Parser<'_> {
         }
     }
 
-    /// Parses `return`, which in a nested closure leaves the closure.
+    /// Parses `return`, which in a closure leaves the closure.
     fn return_of(&mut self, value: Option<&syn::Expr>) -> Kind {
         let value = value.map(|e| self.boxed(e));
-        match self.is_nested {
-            true => Kind::Break(Some(NESTED.to_owned()), value),
-            false => Kind::Return(value),
+        match self.returns_to {
+            Some(label) => Kind::Break(Some(label.to_owned()), value),
+            None => Kind::Return(value),
         }
     }
 

@@ -1,4 +1,4 @@
-//! Parsing of functions and closures: their parameters and results.
+//! Parsing of functions: their parameters and results.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{ToTokens, quote};
@@ -13,8 +13,8 @@ use crate::diag::Errors;
 use crate::generics::Generics;
 use crate::model::{Block, Expr, Kernel, Kind, Param, Stmt};
 
-/// The label of a nested closure: its `return` leaves the closure, not the kernel around it.
-pub(super) const NESTED: &str = "__closure";
+/// The label of the body of a kernel that takes closures, which is a part of its callers.
+const BODY: &str = "__body";
 
 /// Parses a function or method; `self_ty` is the type of the `impl`.
 pub(crate) fn function(
@@ -27,17 +27,39 @@ pub(crate) fn function(
     let before = errors.count();
     check_qualifiers(sig, errors);
     let mut parser = Parser::new(attrs, errors);
+    parser.functions = parser.function_parameters(&sig.generics);
     let mut prologue = Vec::new();
-    let params = sig.inputs.iter().map(|arg| parser.param(arg, self_ty, &mut prologue)).collect();
+    let params: Vec<Param> =
+        sig.inputs.iter().map(|arg| parser.param(arg, self_ty, &mut prologue)).collect();
+    let is_apart = attrs.iter().any(is_never_inlined);
+    let takes_function = params.iter().any(|p| p.function.is_some());
+    if let Some(never) = attrs.iter().find(|a| takes_function && is_never_inlined(a)) {
+        let help = "remove `#[inline(never)]`";
+        parser.errors.at(
+            never.span(),
+            "a kernel that takes a closure is a part of its callers",
+            help,
+        );
+    }
     parser.check_result(&sig.output);
     let result = parser.result(&sig.output);
     let is_broken = parser.errors.count() > before;
-    let mut body = parser.block(body);
+    parser.returns_to = takes_function.then_some(BODY);
+    let span = body.span();
+    let mut body = within(BODY, parser.block(body), span);
     body.stmts.splice(0..0, prologue);
-    let generics = Generics::new(&sig.generics);
-    let is_apart = attrs.iter().any(is_never_inlined);
+    let generics = Generics::without(&sig.generics, &parser.functions);
     let name = sig.ident.clone();
-    Kernel { name, generics, params, result, body, is_apart, known: None, is_broken }
+    Kernel { name, generics, params, result, body, is_apart, known: None, is_fn: false, is_broken }
+}
+
+/// Returns a body whose `return`s are exits to a label, as a labelled block if it has any.
+pub(super) fn within(label: &str, body: Block, span: Span) -> Block {
+    if !body.leaves(label) {
+        return body;
+    }
+    let kind = run_once(Some(label.to_owned()), body, span);
+    Block { stmts: vec![], tail: Some(Box::new(Expr { kind, span })) }
 }
 
 /// Checks that a kernel is neither `async` nor `unsafe`.
@@ -52,23 +74,18 @@ fn check_qualifiers(sig: &syn::Signature, errors: &mut Errors) {
     }
 }
 
-/// Parses a closure literal; its parameters must have types.
-pub(crate) fn closure(c: &syn::ExprClosure, name: &str, errors: &mut Errors) -> Kernel {
-    Parser::new(&c.attrs, errors).closure(c, name)
-}
-
 /// Parses `self`, `&self` and `&mut self`.
 fn receiver(r: &syn::Receiver, self_ty: Option<&syn::Type>) -> Param {
     let by_mut = matches!(r.kind, syn::ReceiverKind::Reference(_, _, Some(_)));
     let mutable = r.mutability.is_some() && !by_mut;
     let ty = self_ty.map(ToTokens::to_token_stream).unwrap_or_else(|| quote!(Self));
     let name = Ident::new("self", r.self_token.span);
-    Param { name, ty, mutable, by_mut, data: false, host: false }
+    Param { name, ty, mutable, by_mut, data: false, host: false, function: None }
 }
 
 impl Parser<'_> {
     /// Returns a result type that is written, and is not `()`.
-    fn result(&mut self, output: &syn::ReturnType) -> Option<TokenStream> {
+    pub(super) fn result(&mut self, output: &syn::ReturnType) -> Option<TokenStream> {
         match output {
             syn::ReturnType::Default => None,
             syn::ReturnType::Type(_, ty) if is_unit(ty) => None,
@@ -77,7 +94,7 @@ impl Parser<'_> {
     }
 
     /// Checks that a function's result is not `&mut`.
-    fn check_result(&mut self, output: &syn::ReturnType) {
+    pub(super) fn check_result(&mut self, output: &syn::ReturnType) {
         let syn::ReturnType::Type(_, ty) = output else { return };
         if is_mut_reference(ty) {
             self.errors.at(
@@ -100,12 +117,15 @@ impl Parser<'_> {
         }
     }
 
-    fn typed_param(&mut self, typed: &syn::PatType, prologue: &mut Vec<Stmt>) -> Param {
+    pub(super) fn typed_param(&mut self, typed: &syn::PatType, prologue: &mut Vec<Stmt>) -> Param {
         let syn::PatType { attrs, pat, ty, .. } = typed;
         self.no_attributes(attrs);
         let by_mut = is_mut_reference(ty);
         let host = attrs.iter().any(is_host);
         let shared = matches!(&**ty, syn::Type::Reference(_)) && !by_mut;
+        if let Some(function) = self.closure_type(ty) {
+            return self.function_param(pat, ty, function);
+        }
         if let syn::Type::ImplTrait(t) = without_references(ty) {
             self.errors.at(
                 t.span(),
@@ -122,6 +142,7 @@ impl Parser<'_> {
                 by_mut,
                 data: shared && is_data(written),
                 host,
+                function: None,
             },
             pat => {
                 if host {
@@ -137,7 +158,7 @@ impl Parser<'_> {
     }
 
     /// Parses a parameter whose pattern names its parts; the prologue binds them.
-    fn parts_param(
+    pub(super) fn parts_param(
         &mut self,
         pat: &Pat,
         ty: TokenStream,
@@ -154,63 +175,7 @@ impl Parser<'_> {
         let name = self.temporary("parts");
         let from = Expr { kind: Kind::Name(name.clone()), span: pat.span() };
         self.irrefutable(pat, &from, prologue);
-        Param { name, ty, mutable: false, by_mut: false, data: false, host: false }
-    }
-
-    /// Parses a closure that is a kernel, or an argument of one's operations.
-    fn closure(&mut self, c: &syn::ExprClosure, name: &str) -> Kernel {
-        let (mut params, mut prologue) = (Vec::new(), Vec::new());
-        for pat in &c.inputs {
-            let Pat::Type(typed) = pat else {
-                self.errors.at(
-                    pat.span(),
-                    "a parameter of a kernel needs a type",
-                    "write for example `|ray: Ray|`",
-                );
-                continue;
-            };
-            let param = self.typed_param(typed, &mut prologue);
-            if param.by_mut {
-                self.errors.at(
-                    typed.ty.span(),
-                    "a closure kernel has no `&mut` parameters: nothing would see the change",
-                    "return the new value",
-                );
-            }
-            params.push(param);
-        }
-        if let Some(asyncness) = &c.asyncness {
-            self.errors.at(asyncness.span(), "a kernel cannot be `async`", "remove `async`");
-        }
-        self.check_result(&c.output);
-        let result = self.result(&c.output);
-        let mut body = match &*c.body {
-            syn::Expr::Block(b) if b.label.is_none() => self.block(&b.block),
-            e => Block { stmts: vec![], tail: Some(Box::new(self.expr(e))) },
-        };
-        body.stmts.splice(0..0, prologue);
-        let name = Ident::new(name, Span::call_site());
-        let (generics, is_apart, is_broken) = (Generics::default(), false, false);
-        Kernel { name, generics, params, result, body, is_apart, known: None, is_broken }
-    }
-
-    /// Parses a closure as an argument. With a `return` its body is a labelled block.
-    pub(super) fn nested(&mut self, c: &syn::ExprClosure) -> Kind {
-        if self.is_nested {
-            return self.error(
-                c.span(),
-                "a kernel has no closures within closures",
-                "write the inner one as a `#[kernel] fn`",
-            );
-        }
-        self.is_nested = true;
-        let mut kernel = self.closure(c, "closure");
-        self.is_nested = false;
-        if kernel.body.leaves(NESTED) {
-            let span = c.span();
-            let kind = run_once(Some(NESTED.to_owned()), kernel.body, span);
-            kernel.body = Block { stmts: vec![], tail: Some(Box::new(Expr { kind, span })) };
-        }
-        Kind::Closure(Box::new(kernel))
+        let function = None;
+        Param { name, ty, mutable: false, by_mut: false, data: false, host: false, function }
     }
 }

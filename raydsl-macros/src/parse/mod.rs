@@ -2,6 +2,7 @@
 
 mod attributes;
 mod call;
+mod closure;
 mod expression;
 mod function;
 mod iteration;
@@ -11,21 +12,24 @@ mod refused;
 mod statement;
 mod types;
 
-pub(crate) use function::{closure, function};
+pub(crate) use closure::{closure, is_function};
+pub(crate) use function::function;
 pub(crate) use types::{refused_type, type_name};
 
 use proc_macro2::{Ident, Span};
 
 use crate::diag::Errors;
-use crate::model::Kind;
+use crate::model::{Kind, Signature};
 use attributes::is_coherent;
 
 struct Parser<'a> {
     errors: &'a mut Errors,
     /// The number of temporary names.
     temporaries: usize,
-    /// Whether a closure within the kernel is being parsed.
-    is_nested: bool,
+    /// The label that a `return` leaves, in code that is a part of another function.
+    returns_to: Option<&'static str>,
+    /// The type parameters of the kernel that are closures.
+    functions: Vec<(Ident, Signature)>,
     /// Whether the whole kernel is `#[coherent]`.
     is_coherent: bool,
 }
@@ -33,7 +37,7 @@ struct Parser<'a> {
 impl<'a> Parser<'a> {
     fn new(attrs: &[syn::Attribute], errors: &'a mut Errors) -> Self {
         let is_coherent = attrs.iter().any(is_coherent);
-        Self { errors, temporaries: 0, is_nested: false, is_coherent }
+        Self { errors, temporaries: 0, returns_to: None, functions: Vec::new(), is_coherent }
     }
 
     /// Returns a name that the source cannot have.

@@ -102,15 +102,8 @@ impl Parser<'_> {
         Some(self.error(c.method.span(), what, help))
     }
 
-    /// Refuses a function of std, or one with a closure argument.
+    /// Refuses a function of std.
     pub(super) fn refused_call(&mut self, c: &syn::ExprCall) -> Option<Kind> {
-        if let Some(closure) = c.args.iter().find(|e| is_closure(e)) {
-            let help =
-                "give it a value of a type with a `#[kernel]` trait: `fn f<S: Shader>(s: S)`";
-            let refused = self.error(closure.span(), "a kernel takes no closures", help);
-            c.args.iter().filter(|e| !is_closure(e)).for_each(|e| drop(self.expr(e)));
-            return Some(refused);
-        }
         let syn::Expr::Path(path) = &*c.func else { return None };
         if path.qself.is_some() {
             return None;
@@ -146,7 +139,7 @@ impl Parser<'_> {
     pub(super) fn unsupported(&mut self, e: &syn::Expr) -> Kind {
         let (what, help) = match e {
             syn::Expr::Closure(_) => {
-                ("closures but as arguments", "write a `#[kernel] fn` and call it")
+                ("closures but as arguments", "write it as the argument, or a `#[kernel] fn`")
             }
             syn::Expr::Try(_) => ("`?`", "give a value that says what happened: a miss is data"),
             syn::Expr::Reference(_) => {

@@ -19,7 +19,8 @@ pub trait Resource {
 #[diagnostic::on_unimplemented(
     message = "a kernel cannot capture a `{Self}`",
     note = "numbers, vectors, types with #[derive(Type)], arrays and slices of them, trees and textures can be captured",
-    note = "a member of a struct that is no such type is captured by a name: `let spans = &scene.spans;`"
+    note = "a member of a struct that is no such type is captured by a name: `let spans = &scene.spans;`",
+    note = "a function is passed to a kernel in a closure: `|x| half(x)`"
 )]
 pub trait Capture<M: Machine> {
     /// Its type inside the kernel.

@@ -362,6 +362,43 @@ pub fn add_to(n: u32, to: &mut u32) -> u32 {
     old
 }
 
+/// Calls a closure in a loop that it may end.
+#[kernel]
+pub fn swept(f: impl Fn(f32, u32) -> f32, from: f32, rounds: u32) -> f32 {
+    let mut x = from;
+    for i in 0..rounds & 3 {
+        let next = f(x, i);
+        if next == x {
+            return f(next, rounds);
+        }
+        x = next;
+    }
+    x
+}
+
+/// Calls a closure in one of two arms, and changes another number.
+#[kernel]
+pub fn found<F>(is_found: F, n: u32) -> u32
+where
+    F: Fn(u32, Kind) -> bool,
+{
+    let mut tries = 0u32;
+    for i in 0..3u32 {
+        if is_found(n.wrapping_add(i), Kind::Blue) {
+            return i;
+        }
+        add_to(i, &mut tries);
+    }
+    if is_found(tries, Kind::Red) { n } else { tries }
+}
+
+/// Passes a closure on, in one that calls it.
+#[kernel]
+pub fn refined(s: Small, f: &impl Fn(Small) -> Small) -> Small {
+    let y = swept(|x, i| f(Small { y: x, m: i, ..s }).y, s.y, s.m);
+    f(Small { y, ..s })
+}
+
 /// A slice of numbers.
 pub static FLOATS: [f32; 9] = [0.5, -1.0, 2.0, 8.25, -0.125, 3.0, 1.0, 1e6, -7.5];
 /// A slice of integers.

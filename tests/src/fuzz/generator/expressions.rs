@@ -15,7 +15,8 @@ impl Generator<'_> {
         }
         let may_block = !self.plain && self.nest < 4;
         match self.rng.below(100) {
-            0..20 => self.leaf(ty),
+            0..17 => self.leaf(ty),
+            17..20 => self.closure_call(ty).unwrap_or_else(|| self.leaf(ty)),
             20..32 => self.call(ty, depth).unwrap_or_else(|| self.leaf(ty)),
             32..37 if may_block => self.value_if(ty),
             37..40 if may_block => self.value_match(ty),

@@ -18,6 +18,7 @@
 
 mod branches;
 mod changes;
+mod closures;
 mod composites;
 mod expressions;
 mod functions;

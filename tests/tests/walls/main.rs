@@ -1,6 +1,8 @@
 //! Ordinary Rust that kernels take: loops over several lists, functions of types, parts of variables
 //! by reference, and traits on enums with fields.
 
+mod closures;
+
 use raydsl::prelude::*;
 use raydsl::{Type, assert_variants_agree, kernel};
 
