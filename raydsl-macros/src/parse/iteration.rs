@@ -1,13 +1,13 @@
 //! Parsing of `for` loops.
 
 use proc_macro2::Span;
-use quote::quote;
+use quote::{ToTokens as _, quote};
 use syn::Pat;
 use syn::spanned::Spanned;
 
 use super::Parser;
 use super::expression::{inside_parens, label};
-use crate::model::{Block, Expr, Kind, Range, Stmt};
+use crate::model::{Block, Expr, Kind, Let, Range, Stmt};
 use crate::ops;
 
 /// What a `for` goes through, element by element.
@@ -25,6 +25,12 @@ enum Sequence<'a> {
 /// A sequence whose lists are expressions of the kernel.
 enum Elements {
     List(Expr),
+    /// A part of a list: `&list[a..b]`.
+    Part {
+        list: Expr,
+        first: Expr,
+        len: Expr,
+    },
     Enumerated(Box<Self>),
     Reversed(Box<Self>),
     Zipped(Box<Self>, Box<Self>),
@@ -79,11 +85,41 @@ fn minus(a: Expr, b: Expr) -> Expr {
     Expr { kind: Kind::Binary { op: ops::SUB, a: Box::new(a), b: Box::new(b) }, span }
 }
 
+fn plus(a: Expr, b: Expr) -> Expr {
+    let span = a.span;
+    Expr { kind: Kind::Binary { op: ops::ADD, a: Box::new(a), b: Box::new(b) }, span }
+}
+
+fn element(list: &Expr, index: Expr) -> Expr {
+    let span = index.span;
+    let kind = Kind::Element { base: Box::new(list.clone()), index: Box::new(index) };
+    Expr { kind, span }
+}
+
+/// Returns an integer of the source.
+fn number(n: u32, span: Span) -> Expr {
+    let tokens = syn::LitInt::new(&n.to_string(), span).to_token_stream();
+    Expr { kind: Kind::Int { tokens, suffix: None }, span }
+}
+
+/// Returns the list and the range of `list[a..b]`.
+fn part_of(e: &syn::Expr) -> Option<(&syn::Expr, &syn::ExprRange)> {
+    match inside_parens(e) {
+        syn::Expr::Index(i) => match inside_parens(&i.index) {
+            syn::Expr::Range(range) => Some((&i.expr, range)),
+            _ => None,
+        },
+        syn::Expr::Reference(r) if r.mutability.is_none() => part_of(&r.expr),
+        _ => None,
+    }
+}
+
 impl Elements {
     /// Returns the number of elements.
     fn len(&self) -> Expr {
         match self {
             Self::List(list) => method(list.clone(), "len", vec![]),
+            Self::Part { len, .. } => len.clone(),
             Self::Enumerated(inner) | Self::Reversed(inner) => inner.len(),
             Self::Zipped(a, b) => method(a.len(), "min", vec![b.len()]),
         }
@@ -93,18 +129,13 @@ impl Elements {
     fn at(&self, index: Expr) -> Expr {
         let span = index.span;
         match self {
-            Self::List(list) => {
-                let kind = Kind::Element { base: Box::new(list.clone()), index: Box::new(index) };
-                Expr { kind, span }
-            }
+            Self::List(list) => element(list, index),
+            Self::Part { list, first, .. } => element(list, plus(first.clone(), index)),
             Self::Enumerated(inner) => {
                 let items = vec![index.clone(), inner.at(index)];
                 Expr { kind: Kind::Tuple(items), span }
             }
-            Self::Reversed(inner) => {
-                let one = Kind::Int { tokens: quote!(1), suffix: None };
-                inner.at(minus(minus(inner.len(), Expr { kind: one, span }), index))
-            }
+            Self::Reversed(inner) => inner.at(minus(minus(inner.len(), number(1, span)), index)),
             Self::Zipped(a, b) => {
                 let items = vec![a.at(index.clone()), b.at(index)];
                 Expr { kind: Kind::Tuple(items), span }
@@ -237,15 +268,13 @@ impl Parser<'_> {
     /// .. }`.
     fn for_each(&mut self, f: &syn::ExprForLoop, sequence: &Sequence<'_>) -> Kind {
         let span = f.expr.span();
-        let boxed = |kind| Box::new(Expr { kind, span });
         let (mut copies, index) = (Vec::new(), self.temporary("i"));
         let elements = self.elements(sequence, &mut copies, span);
         let item = elements.at(Expr { kind: Kind::Name(index.clone()), span });
         let mut stmts = self.bind_item(&f.pat, item);
         let Block { stmts: body, tail } = self.block(&f.body);
         stmts.extend(body);
-        let zero = Kind::Int { tokens: quote!(0), suffix: None };
-        let (start, end) = (boxed(zero), Box::new(elements.len()));
+        let (start, end) = (Box::new(number(0, span)), Box::new(elements.len()));
         let range = Range { start, end, inclusive: false, reversed: false, step: None };
         let body = Block { stmts, tail };
         let repeat = Kind::For { label: label(&f.label), var: Some(index), range, body };
@@ -265,7 +294,10 @@ impl Parser<'_> {
     ) -> Elements {
         let mut inner = |this: &mut Self, inner| Box::new(this.elements(inner, copies, span));
         match sequence {
-            Sequence::List { list, by_value: false } => Elements::List(self.expr(list)),
+            Sequence::List { list, by_value: false } => match part_of(list) {
+                Some((list, range)) => self.part(list, range, copies),
+                None => Elements::List(self.expr(list)),
+            },
             Sequence::List { list, by_value: true } => {
                 let (list, ident) = (self.expr(list), self.temporary("items"));
                 copies.push(Stmt::bind(ident.clone(), false, list));
@@ -275,6 +307,40 @@ impl Parser<'_> {
             Sequence::Reversed(sequence) => Elements::Reversed(inner(self, sequence)),
             Sequence::Zipped(a, b) => Elements::Zipped(inner(self, a), inner(self, b)),
         }
+    }
+
+    /// Parses a part of a list; its bounds are computed once, in front of the loop.
+    fn part(
+        &mut self,
+        list: &syn::Expr,
+        range: &syn::ExprRange,
+        copies: &mut Vec<Stmt>,
+    ) -> Elements {
+        let (list, span) = (self.expr(list), range.span());
+        let mut bind = |this: &mut Self, value| {
+            let name = this.temporary("bound");
+            let (init, ty) = (Some(value), Some(quote!(usize)));
+            let (host, mutable, name_of) = (false, false, Some(name.clone()));
+            let l = Let { is_pattern: false, host, name: name_of, mutable, ty, init };
+            copies.push(Stmt::Let(l));
+            Expr { kind: Kind::Name(name), span }
+        };
+        let first = match range.start.as_deref().map(|e| self.expr(e)) {
+            None => number(0, span),
+            // The same for all rays.
+            Some(e) if e.is_untyped_integer() => e,
+            Some(e) => bind(self, e),
+        };
+        let end = match range.end.as_deref().map(|e| self.expr(e)) {
+            None => method(list.clone(), "len", vec![]),
+            Some(e) if matches!(range.limits, syn::RangeLimits::Closed(_)) => {
+                plus(e, number(1, span))
+            }
+            Some(e) => e,
+        };
+        let end = bind(self, end);
+        let len = bind(self, method(end, "saturating_sub", vec![first.clone()]));
+        Elements::Part { list, first, len }
     }
 
     /// Parses a loop over a cursor.

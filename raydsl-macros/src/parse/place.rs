@@ -93,8 +93,9 @@ impl Parser<'_> {
             syn::Expr::Range(r) => {
                 self.errors.at(
                     r.span(),
-                    "a kernel has no slices of slices",
-                    "index the whole: `all[first + i]`",
+                    "a kernel has a part of a list as the items of a `for` only",
+                    "write `for x in &all[a..b]`, or pass the whole and the bounds, and index it: \
+                     `all[first + i]`",
                 );
                 None
             }

@@ -2,6 +2,7 @@
 //! by reference, and traits on enums with fields.
 
 mod closures;
+mod loops;
 
 use raydsl::prelude::*;
 use raydsl::{Type, assert_variants_agree, kernel};
