@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 use raydsl::camera::{Camera, CameraRays};
 use raydsl::prelude::*;
 use raydsl::render::{Shot, Watch};
+use raydsl::{Type, kernel};
 use raydsl_tests::gpu::gpu;
 use raydsl_tests::scenes::spheres;
 
@@ -284,4 +285,171 @@ fn films_of_any_size() {
         assert_eq!(film.image().pixels().len(), width as usize * height as usize);
         assert_eq!((film.samples(), film.nan_pixels()), (2, 0));
     }
+}
+
+/// A result of many channels.
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
+#[repr(C)]
+struct Pixel {
+    light: Vec3,
+    depth: f32,
+    albedo: [f32; 3],
+    id: u32,
+    is_hit: bool,
+}
+
+#[kernel]
+impl Radiance for Pixel {
+    fn rgba(&self) -> Vec4 {
+        self.light.extend(self.depth)
+    }
+}
+
+macro_rules! pixel {
+    ($bvh:ident) => {
+        kernel!(|ray: Ray, sampler: Sampler| {
+            let mut sampler = sampler;
+            let u = sampler.next_2d(host(SampleMethod::Random));
+            let hit = $bvh.closest_hit(ray);
+            let mut depth = 2.5;
+            if hit.is_hit {
+                depth = hit.t;
+            }
+            let light = vec3(u.x, u.y, 1.0) * depth;
+            let albedo = [u.x * 0.5, 0.25, u.y * u.y];
+            Pixel { light, depth, albedo, id: hit.prim_id, is_hit: hit.is_hit }
+        })
+    };
+}
+
+/// Every number of a result has its mean and its error, the same in every variant and tile.
+#[test]
+fn channels_of_every_variant() -> Result<(), Box<dyn Error>> {
+    let balls = spheres(800);
+    let bvh = Bvh::build(&balls)?;
+    let kernel = pixel!(bvh);
+    let sampling = Sampling::new(70).seed(5);
+    let mut expected = Film::<Pixel>::of_channels(37, 21);
+    SimpleScheduler::new().variant(Variant::Scalar).accumulate(
+        &camera(),
+        &kernel,
+        &sampling,
+        &mut expected,
+        70,
+    );
+    let (means, errors) = (expected.channels(), expected.channel_errors());
+    // The same in `f64`, sample by sample.
+    let rays = camera().begin_frame(37, 21);
+    let mut most = 0.0f64;
+    for (x, y) in [(0, 0), (18, 10), (17, 9), (36, 20)] {
+        let sample = |i: u32| {
+            let (ray, sampler) = sampling.sample(&rays, uvec2(x, y), i);
+            kernel.call((ray, sampler))
+        };
+        let all: Vec<Pixel> = (0..70).map(sample).collect();
+        let channel = |of: fn(&Pixel) -> f32, mean: f32, error: f32| {
+            let value = |p: &Pixel| f64::from(of(p));
+            let exact = all.iter().map(value).sum::<f64>() / 70.0;
+            let squares = all.iter().map(|p| (value(p) - exact).powi(2)).sum::<f64>();
+            let exact_error = (squares / 69.0 / 70.0).sqrt();
+            assert!((f64::from(mean) - exact).abs() <= 2e-6 * exact.abs(), "{mean} {exact}");
+            let off = (f64::from(error) - exact_error).abs();
+            assert!(off <= 1e-4 * exact_error + 1e-6 * exact.abs(), "{error} {exact_error}");
+            exact_error
+        };
+        let (mean, error) = (means.get(x, y).ok_or("inside")?, errors.get(x, y).ok_or("inside")?);
+        channel(|p| p.light.y, mean.light.y, error.light.y);
+        channel(|p| p.albedo[2], mean.albedo[2], error.albedo[2]);
+        channel(|p| p.albedo[1], mean.albedo[1], error.albedo[1]);
+        most = most.max(channel(|p| p.depth, mean.depth, error.depth));
+        let last = all.last().ok_or("samples")?;
+        assert_eq!((mean.id, mean.is_hit), (last.id, last.is_hit));
+        assert_eq!((error.id, error.is_hit), (0, false));
+    }
+    assert!(most > 0.0, "an edge has a mean of two depths");
+    // The colour is the one of a film of colours.
+    let mut colors = Film::new(37, 21);
+    SimpleScheduler::new().accumulate(&camera(), &kernel, &sampling, &mut colors, 70);
+    assert_eq!(colors.image(), expected.image());
+    assert_eq!(colors.standard_error(), expected.standard_error());
+    for variant in CPU {
+        for edge in [7, 16] {
+            let mut film = Film::<Pixel>::of_channels(37, 21);
+            let tiled = TiledScheduler::new().variant(variant).tile(edge);
+            tiled.accumulate(&camera(), &kernel, &sampling, &mut film, 30);
+            tiled.accumulate(&camera(), &kernel, &sampling, &mut film, 40);
+            let same = |a: f32, b: f32| (a - b).abs() <= 1e-5 * b.abs();
+            let found = film.channels();
+            let pairs = found.pixels().iter().zip(means.pixels());
+            for (a, b) in pairs {
+                assert!(same(a.depth, b.depth) && same(a.light.x, b.light.x), "{a:?} {b:?}");
+                assert_eq!((a.id, a.is_hit), (b.id, b.is_hit));
+            }
+            let mut film = Film::<Pixel>::of_channels(37, 21);
+            tiled.accumulate(&camera(), &kernel, &sampling, &mut film, 70);
+            assert!(film == expected, "{variant:?}");
+        }
+    }
+    if let Some(gpu) = gpu() {
+        let mut found = Film::<Pixel>::of_channels(37, 21);
+        gpu.accumulate(&camera(), &kernel, &sampling, &mut found, 70)?;
+        assert!(found == expected, "WGSL");
+    }
+    Ok(())
+}
+
+/// A tuple is a result like any other; its colour is that of its first member.
+#[test]
+fn channels_of_a_tuple() -> Result<(), Box<dyn Error>> {
+    let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+        let mut sampler = sampler;
+        let u = sampler.next_1d(host(SampleMethod::Sobol));
+        (vec3(u, 1.0, 0.0), ray.direction, u * u)
+    });
+    let sampling = Sampling::new(256);
+    let mut film = Film::<(Vec3, Vec3, f32)>::of_channels(8, 8);
+    TiledScheduler::new().accumulate(&camera(), &kernel, &sampling, &mut film, 256);
+    for (pixel, (color, direction, square)) in
+        film.image().pixels().iter().zip(film.channels().pixels())
+    {
+        assert_eq!(*pixel, color.extend(1.0));
+        assert!((direction.length() - 1.0).abs() < 0.1);
+        assert!((square - 1.0 / 3.0).abs() < 2e-3, "{square}");
+    }
+    if let Some(gpu) = gpu() {
+        let mut found = Film::<(Vec3, Vec3, f32)>::of_channels(8, 8);
+        gpu.accumulate(&camera(), &kernel, &sampling, &mut found, 256)?;
+        assert_eq!(found.image(), film.image());
+    }
+    Ok(())
+}
+
+/// A run to a target error keeps the channels of the picture that it returns.
+#[test]
+fn channels_to_a_target_error() -> Result<(), Box<dyn Error>> {
+    use raydsl::render::{Budget, Metric, Target, Until};
+    let kernel = kernel!(|_ray: Ray, sampler: Sampler| {
+        let mut sampler = sampler;
+        let u = sampler.next_1d(host(SampleMethod::Random));
+        (u, 3.0 * u)
+    });
+    let target = Target::new(Metric::Rmse, 0.01).pilot(64);
+    let until = Until::new(target, Budget::of_samples(100_000)).adaptive();
+    let mut film = Film::<(f32, f32)>::of_channels(20, 20);
+    // What was there is cleared.
+    TiledScheduler::new().accumulate(&camera(), &kernel, &Sampling::new(3), &mut film, 3);
+    let sampling = Sampling::new(1);
+    let reached =
+        TiledScheduler::new().render_until(&camera(), &kernel, &sampling, &mut film, &until)?;
+    assert!(reached.samples > 64 && reached.samples.abs_diff(film.samples()) < 2000);
+    let (means, errors) = (film.channels(), film.channel_errors());
+    for (i, (mean, error)) in means.pixels().iter().zip(errors.pixels()).enumerate() {
+        assert_eq!(mean.0, film.image().pixels()[i].x);
+        assert!((mean.1 / mean.0 - 3.0).abs() < 1e-5 && (error.1 / error.0 - 3.0).abs() < 1e-3);
+        assert!(error.0 > 0.0 && (mean.0 - 0.5).abs() < 6.0 * error.0, "{mean:?} {error:?}");
+    }
+    let variances = film.channel_variances();
+    let mean = variances.pixels().iter().map(|v| f64::from(v.0)).sum::<f64>() / 400.0;
+    assert!((mean * 12.0 - 1.0).abs() < 0.05, "{mean}");
+    Ok(())
 }

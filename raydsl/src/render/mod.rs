@@ -5,6 +5,7 @@
 //! generates the rays.
 
 mod allocation;
+mod channels;
 mod display;
 mod files;
 mod film;
@@ -19,11 +20,13 @@ mod renderer;
 mod scheduler;
 mod shot;
 mod simple;
+mod store;
 mod tile;
 mod tiled;
 mod until;
 mod watch;
 
+pub use channels::Kept;
 pub use display::{Display, ToneMap, Transfer, filmic, reinhard};
 pub use film::Film;
 pub use film_args::FilmArgs;

@@ -1,5 +1,7 @@
 //! Reference values of a film: single samples, and means in `f64`.
 
+use core::marker::PhantomData;
+
 use glam::{DVec4, UVec2, uvec2};
 
 use super::shot::{Frame, Pass, Shot, places};
@@ -31,7 +33,8 @@ impl Sampling {
     ) -> Vec<DVec4> {
         let rays = camera.begin_frame(width, height);
         let sample = |pixel: UVec2, first: u32| {
-            let pass = Pass { rays, kernel, sampling: *self, first, count: 1, allocation: None };
+            let (count, allocation, kept) = (1, None, PhantomData::<fn()>);
+            let pass = Pass { rays, kernel, sampling: *self, first, count, allocation, kept };
             let outcomes = Outcomes::of(Rounding::IEEE, 1, |m| {
                 let pixel = X2 { x: U(m.u32(pixel.x)), y: U(m.u32(pixel.y)) };
                 pass.pixel_on(m, pixel, &|m, args| kernel.on_margin(m, args))

@@ -1,14 +1,17 @@
 //! The trait of renderers, on the CPU or on a device.
 
+use core::marker::PhantomData;
 use core::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use super::allocation::Allocation;
+use super::channels::Kept;
 use super::film_args::FilmArgs;
 use super::shot::{Frame, Pass, Shot};
+use super::store::Store;
 use super::until::{Accumulate, ProgressObserver, Reached, Until, UntilError, run};
 use super::watch::Observer;
-use super::{Film, Image, Moments, Radiance, Sampling};
+use super::{Film, Image, Radiance, Sampling};
 use crate::camera::Camera;
 use crate::kernel::Kernel;
 use crate::machine::Type;
@@ -194,7 +197,8 @@ pub trait Renderer {
         Self::outcome(end)
     }
 
-    /// Adds `samples` samples to every pixel of `film`.
+    /// Adds `samples` samples to every pixel of `film`: their colours, and for a film
+    /// [of channels](Film::of_channels) every number of the results.
     ///
     /// Samples are numbered: two calls for 8 give the result of one for 16, up to the rounding of a
     /// pass of at most 64 samples, which are summed where they are taken.
@@ -202,18 +206,20 @@ pub trait Renderer {
     /// # Errors
     ///
     /// If a device refuses or is lost; `film` then has the completed passes.
-    fn accumulate<C: Camera, A: FilmArgs, R: Radiance>(
+    fn accumulate<C: Camera, A: FilmArgs, R: Radiance, K: Kept<R>>(
         &self,
         camera: &C,
         kernel: &Kernel<'_, A, R>,
         sampling: &Sampling,
-        film: &mut Film,
+        film: &mut Film<K>,
         samples: u32,
     ) -> Self::Outcome<Self::Timing> {
         let plan = Samples { sampling, each: samples, allocation: None };
         let go_on: Observer<'_> = &mut |_| ControlFlow::Continue(());
-        let mut passes = Passes { renderer: self, camera, kernel, pace: Pace::LONGEST };
-        Self::outcome(passes.add(&plan, film, go_on).map(timing_of))
+        let pace = Pace::LONGEST;
+        let mut passes =
+            Passes { renderer: self, camera, kernel, pace, kept: PhantomData::<fn() -> K> };
+        Self::outcome(passes.add(&plan, &mut film.store, go_on).map(timing_of))
     }
 
     /// Adds samples like [`Renderer::accumulate`] and reports the completed share to `observer`,
@@ -222,18 +228,20 @@ pub trait Renderer {
     /// # Errors
     ///
     /// As for [`Renderer::accumulate`].
-    fn accumulate_observed<C: Camera, A: FilmArgs, R: Radiance>(
+    fn accumulate_observed<C: Camera, A: FilmArgs, R: Radiance, K: Kept<R>>(
         &self,
         camera: &C,
         kernel: &Kernel<'_, A, R>,
         sampling: &Sampling,
-        film: &mut Film,
+        film: &mut Film<K>,
         samples: u32,
         observer: Observer<'_>,
     ) -> Self::Outcome<ControlFlow<Self::Timing, Self::Timing>> {
         let plan = Samples { sampling, each: samples, allocation: None };
-        let mut passes = Passes { renderer: self, camera, kernel, pace: Pace::LONGEST };
-        Self::outcome(passes.add(&plan, film, observer))
+        let pace = Pace::LONGEST;
+        let mut passes =
+            Passes { renderer: self, camera, kernel, pace, kept: PhantomData::<fn() -> K> };
+        Self::outcome(passes.add(&plan, &mut film.store, observer))
     }
 
     /// Renders until a target error is reached, or a budget is spent. `film` gives the size; its
@@ -274,12 +282,12 @@ pub trait Renderer {
     ///
     /// If the tolerance or the budget is invalid, or the film has no pixels; or if a device refuses
     /// or is lost, and `film` then has the best picture so far.
-    fn render_until<C: Camera, A: FilmArgs, R: Radiance>(
+    fn render_until<C: Camera, A: FilmArgs, R: Radiance, K: Kept<R>>(
         &self,
         camera: &C,
         kernel: &Kernel<'_, A, R>,
         sampling: &Sampling,
-        film: &mut Film,
+        film: &mut Film<K>,
         until: &Until,
     ) -> Result<Reached, Self::UntilError> {
         let go_on: ProgressObserver<'_> = &mut |_| ControlFlow::Continue(());
@@ -292,19 +300,20 @@ pub trait Renderer {
     /// # Errors
     ///
     /// As for [`Renderer::render_until`].
-    fn render_until_observed<C: Camera, A: FilmArgs, R: Radiance>(
+    fn render_until_observed<C: Camera, A: FilmArgs, R: Radiance, K: Kept<R>>(
         &self,
         camera: &C,
         kernel: &Kernel<'_, A, R>,
         sampling: &Sampling,
-        film: &mut Film,
+        film: &mut Film<K>,
         until: &Until,
         observer: ProgressObserver<'_>,
     ) -> Result<Reached, Self::UntilError> {
-        until.check(film, sampling)?;
+        until.check(film.width(), film.height(), sampling)?;
         let pace = self.pace(until.budget.time);
-        let mut passes = Passes { renderer: self, camera, kernel, pace };
-        Ok(run(until, sampling, film, observer, &mut passes)?)
+        let mut passes =
+            Passes { renderer: self, camera, kernel, pace, kept: PhantomData::<fn() -> K> };
+        Ok(run(until, sampling, &mut film.store, observer, &mut passes)?)
     }
 }
 
@@ -316,25 +325,27 @@ pub(crate) fn timing_of<T>(end: ControlFlow<T, T>) -> T {
 }
 
 /// A renderer with its camera and kernel, run pass by pass.
-struct Passes<'a, T: ?Sized, C, A: Type, R: Type> {
+struct Passes<'a, T: ?Sized, C, A: Type, R: Type, K> {
     renderer: &'a T,
     camera: &'a C,
     kernel: &'a Kernel<'a, A, R>,
     pace: Pace,
+    kept: PhantomData<fn() -> K>,
 }
 
-impl<T, C, A, R> Passes<'_, T, C, A, R>
+impl<T, C, A, R, K> Passes<'_, T, C, A, R, K>
 where
     T: Renderer + ?Sized,
     C: Camera,
     A: FilmArgs,
     R: Radiance,
+    K: Kept<R>,
 {
     /// Adds samples to a film. A stopped pass adds none.
     fn add(
         &mut self,
         samples: &Samples<'_>,
-        film: &mut Film,
+        film: &mut Store,
         observer: Observer<'_>,
     ) -> Result<ControlFlow<T::Timing, T::Timing>, T::Error> {
         let mut timing = T::Timing::default();
@@ -343,13 +354,14 @@ where
         }
         let Samples { sampling, each, allocation } = *samples;
         let all = f64::from(each);
-        let mut image = Image::filled(film.width(), film.height(), Moments::none());
+        let mut image = Image::filled(film.width(), film.height(), K::none());
         let mut done = 0;
         while done < each {
             let count = self.pace.pass.min(each - done);
             let rays = self.camera.begin_frame(film.width(), film.height());
             let (kernel, sampling, first) = (self.kernel, *sampling, film.samples());
-            let pass = Pass { rays, kernel, sampling, first, count, allocation };
+            let kept = PhantomData::<fn() -> K>;
+            let pass = Pass { rays, kernel, sampling, first, count, allocation, kept };
             // If some blocks have all their samples, a pass is shorter than others will be.
             let is_even = samples.least() >= done + count;
             let mut tell =
@@ -365,7 +377,7 @@ where
             if is_even {
                 self.pace.learn(begin.elapsed());
             }
-            film.join(&image, count);
+            K::join(&image, count, film);
             done += count;
             let answer = observer(f64::from(done) / all);
             if done < each && answer.is_break() {
@@ -376,19 +388,20 @@ where
     }
 }
 
-impl<T, C, A, R> Accumulate for Passes<'_, T, C, A, R>
+impl<T, C, A, R, K> Accumulate for Passes<'_, T, C, A, R, K>
 where
     T: Renderer + ?Sized,
     C: Camera,
     A: FilmArgs,
     R: Radiance,
+    K: Kept<R>,
 {
     type Error = T::Error;
 
     fn accumulate(
         &mut self,
         samples: &Samples<'_>,
-        film: &mut Film,
+        film: &mut Store,
         observer: Observer<'_>,
     ) -> Result<ControlFlow<()>, T::Error> {
         Ok(match self.add(samples, film, observer)? {

@@ -1,16 +1,21 @@
 //! The computation for each pixel of a film.
 
+use core::marker::PhantomData;
+
 use glam::{UVec2, Vec2, vec2};
 
 use super::allocation::{Allocation, part_of};
+use super::channels::Kept;
 use super::film_args::FilmArgs;
 use super::pixel_sampler::pixel_place;
-use super::{Moments, MomentsOn, PixelSampler, Radiance, Sampling};
+use super::{PixelSampler, Radiance, Sampling};
 use crate::camera::CameraRays;
 use crate::kernel;
 use crate::kernel::Kernel;
 use crate::machine::functions::vec2;
-use crate::machine::{Capture, Loop, Machine, Recorder, Resource, Steps, Stop, Type, U, Var, X2};
+use crate::machine::{
+    Capture, Loop, Machine, Recorder, Resource, Steps, Stop, Type, U, Value, Var, X2,
+};
 use crate::sampling::{SampleMethod, Sampler};
 
 /// The computation for each pixel of a film in every variant: a frame's ray, or the samples of a
@@ -107,8 +112,8 @@ fn pixel_centre(pixel: UVec2) -> Vec2 {
     pixel.as_vec2() + 0.5
 }
 
-/// Some samples of each pixel.
-pub(crate) struct Pass<'a, C, A: Type, R: Type> {
+/// Some samples of each pixel, of which a film keeps `K`.
+pub(crate) struct Pass<'a, C, A: Type, R: Type, K = ()> {
     pub(crate) rays: C,
     pub(crate) kernel: &'a Kernel<'a, A, R>,
     pub(crate) sampling: Sampling,
@@ -119,12 +124,13 @@ pub(crate) struct Pass<'a, C, A: Type, R: Type> {
     /// The allocation, if blocks differ: a pixel takes the samples whose index is below its number
     /// there.
     pub(crate) allocation: Option<&'a Allocation>,
+    pub(crate) kept: PhantomData<fn() -> K>,
 }
 
-impl<C: CameraRays, A: FilmArgs, R: Radiance> Shot for Pass<'_, C, A, R> {
+impl<C: CameraRays, A: FilmArgs, R: Radiance, K: Kept<R>> Shot for Pass<'_, C, A, R, K> {
     type Args = A;
     type Result = R;
-    type Output = Moments;
+    type Output = K::Moments;
 
     fn kernel(&self) -> &Kernel<'_, A, R> {
         self.kernel
@@ -137,19 +143,19 @@ impl<C: CameraRays, A: FilmArgs, R: Radiance> Shot for Pass<'_, C, A, R> {
         }
     }
 
-    fn pixel(&self, pixel: UVec2) -> Moments {
+    fn pixel(&self, pixel: UVec2) -> K::Moments {
         let Sampling { pixels, method, seed, planned } = self.sampling;
         let end = self.first.saturating_add(self.count);
         let (planned, end) = match self.allocation {
             Some(a) => part_of(a.samples(), a.columns(), pixel, end),
             None => (planned, end),
         };
-        let mut moments = Moments::none();
+        let mut moments = K::none();
         for index in self.first..end {
             let (at, lens, sampler) =
                 places(pixel, seed, index, planned, pixels, method, C::HAS_LENS);
             let ray = self.rays.lens_ray(at.x, at.y, lens);
-            moments.add(self.kernel.call(A::of(ray, pixel, || sampler)).rgba());
+            K::add(&mut moments, self.kernel.call(A::of(ray, pixel, || sampler)));
         }
         moments
     }
@@ -160,7 +166,7 @@ impl<C: CameraRays, A: FilmArgs, R: Radiance> Shot for Pass<'_, C, A, R> {
         m: &M,
         pixel: X2<U<M>>,
         body: &Body<'_, M, Self>,
-    ) -> MomentsOn<M> {
+    ) -> <K::Moments as Type>::On<M> {
         let Sampling { pixels, method, seed, planned } = self.sampling;
         let rays = m.capture("camera", self.rays);
         let seed = m.capture("seed", seed);
@@ -174,7 +180,7 @@ impl<C: CameraRays, A: FilmArgs, R: Radiance> Shot for Pass<'_, C, A, R> {
             None => (m.capture("planned", planned), end),
         };
         let end = Stop::new(m, end);
-        let moments = Var::new(m, "moments", Moments::none_on(m));
+        let moments = Var::new(m, "moments", Value::zero(m));
         let index = Steps::new(m, "sample", first, self.first);
         let samples = Loop::new(m);
         while end.is_after(m, &samples, &index) {
@@ -183,7 +189,7 @@ impl<C: CameraRays, A: FilmArgs, R: Radiance> Shot for Pass<'_, C, A, R> {
                 places::on(m, pixel, seed, index_now, planned, pixels, method, C::HAS_LENS);
             let ray = C::lens_ray_on(m, rays, at.x, at.y, lens);
             let result = body(m, A::on_film(ray, pixel, || sampler));
-            Moments::add_on(m, &moments, R::rgba_on(m, result));
+            K::add_on(m, &moments, result);
             samples.continuing(m);
             index.advance(m);
             if !samples.again(m) {
@@ -209,6 +215,14 @@ mod tests {
         recording.module(&Limits::default()).source
     }
 
+    fn pass_of<'a, C, R: Type>(
+        rays: C,
+        kernel: &'a Kernel<'a, (Ray,), R>,
+        sampling: Sampling,
+    ) -> Pass<'a, C, (Ray,), R> {
+        Pass { rays, kernel, sampling, first: 0, count: 8, allocation: None, kept: PhantomData }
+    }
+
     #[test]
     fn what_is_not_asked_for_leaves_no_trace() {
         let pinhole = Pinhole::new(Vec3::Z, Vec3::ZERO, Vec3::Y, 1.0);
@@ -223,15 +237,13 @@ mod tests {
         let centred = sampling.pixels(PixelSampler::Center);
         let pass = |sampling| {
             let rays = pinhole.begin_frame(4, 4);
-            wgsl(&Pass { rays, kernel: &kernel, sampling, first: 0, count: 8, allocation: None })
+            wgsl(&pass_of(rays, &kernel, sampling))
         };
         assert!(pass(sampling).contains("sobol") && !pass(sampling).contains("permuted"));
         assert!(pass(stratified).contains("permuted") && !pass(stratified).contains("sobol"));
         assert!(!pass(centred).contains("sobol") && !pass(centred).contains("disk"));
         let rays = lens.begin_frame(4, 4);
-        let pass =
-            Pass { rays, kernel: &kernel, sampling: centred, first: 0, count: 8, allocation: None };
-        let blurred = wgsl(&pass);
+        let blurred = wgsl(&pass_of(rays, &kernel, centred));
         assert!(blurred.contains("sobol") && blurred.contains("disk"), "{blurred}");
     }
 }

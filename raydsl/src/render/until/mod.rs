@@ -10,7 +10,7 @@ use std::time::Duration;
 
 pub(crate) use run::{Accumulate, run};
 
-use super::{Film, Sampling};
+use super::Sampling;
 
 /// The number of independent replications per estimate: their spread measures the error.
 pub const REPLICATIONS: u32 = 8;
@@ -124,14 +124,19 @@ impl Until {
     /// Allocates more samples to blocks of 16 by 16 pixels with more variance: the allocation that
     /// minimises the error of the whole picture (Neyman, "On the Two Different Aspects of the
     /// Representative Method", 1934, section III), but nowhere less than an eighth of the mean. It
-    /// follows from the pilot. [`Film::sample_counts`] returns the resulting numbers.
+    /// follows from the pilot. [`Film::sample_counts`](super::Film::sample_counts) returns the resulting numbers.
     #[must_use]
     pub const fn adaptive(self) -> Self {
         Self { adaptive: true, ..self }
     }
 
     /// Checks that the target and the budget are valid for a film.
-    pub(crate) fn check(&self, film: &Film, sampling: &Sampling) -> Result<(), UntilError> {
+    pub(crate) fn check(
+        &self,
+        width: u32,
+        height: u32,
+        sampling: &Sampling,
+    ) -> Result<(), UntilError> {
         let Self { target, budget, .. } = *self;
         if !(target.tolerance > 0.0 && target.tolerance.is_finite()) {
             return Err(UntilError::Tolerance { tolerance: target.tolerance });
@@ -149,8 +154,8 @@ impl Until {
         if budget.samples < needed {
             return Err(UntilError::TooFewSamples { samples: budget.samples, needed });
         }
-        if film.width() == 0 || film.height() == 0 {
-            return Err(UntilError::NoPixels { width: film.width(), height: film.height() });
+        if width == 0 || height == 0 {
+            return Err(UntilError::NoPixels { width, height });
         }
         Ok(())
     }
@@ -263,7 +268,7 @@ pub struct Reached {
     pub outcome: Outcome,
     /// The error of the picture in the film.
     pub estimate: Estimate,
-    /// The picture's samples per pixel, on average; [`Film::sample_counts`] has those of each
+    /// The picture's samples per pixel, on average; [`Film::sample_counts`](super::Film::sample_counts) has those of each
     /// pixel.
     pub samples: u32,
     /// Samples per pixel taken in all, including pilots, on average.

@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::quantile::f_quantile;
-use super::{Estimate, Film, Metric, REPLICATIONS};
+use super::{Estimate, Metric, REPLICATIONS};
 use crate::render::moments::Sums;
+use crate::render::store::Store;
 
 /// The relative rounding error of a number: half an ulp where it is computed, half an ulp where it
 /// is averaged.
@@ -20,7 +21,7 @@ const RELATIVE_EPSILON: f64 = 1e-2;
 /// Replications of a film, of `each` samples per pixel, on average if they are allocated.
 pub(super) struct Replications {
     /// The samples of all replications; `None` before the first.
-    film: Option<Film>,
+    film: Option<Store>,
     /// Samples per pixel of a replication.
     pub(super) each: u32,
     /// The number of replications.
@@ -57,7 +58,7 @@ impl Replications {
     }
 
     /// Adds a replication. (Welford's step, for the mean of each pixel.)
-    pub(super) fn join(&mut self, one: Film) {
+    pub(super) fn join(&mut self, one: Store) {
         let finite = one.sums().iter().map(|s| s.mean.truncate()).filter(|m| m.is_finite());
         let (sum, count) = finite.fold((0.0, 0u64), |(s, n), m| (s + m.element_sum() / 3.0, n + 1));
         self.means.push(if count == 0 { f64::NAN } else { sum / count as f64 });
@@ -77,12 +78,12 @@ impl Replications {
     }
 
     /// Returns the samples of all replications, if there are any.
-    pub(super) fn into_film(self) -> Option<Film> {
+    pub(super) fn into_film(self) -> Option<Store> {
         self.film
     }
 
     fn sums(&self) -> &[Sums] {
-        self.film.as_ref().map_or(&[], Film::sums)
+        self.film.as_ref().map_or(&[], Store::sums)
     }
 
     /// Returns the samples per pixel in all, on average.
@@ -246,8 +247,8 @@ mod tests {
     use crate::render::{Image, Moments};
 
     /// Returns a film of one pixel with `hits` samples of 100 among `each`.
-    fn rare(hits: u32, each: u32) -> Film {
-        let mut film = Film::new(1, 1);
+    fn rare(hits: u32, each: u32) -> Store {
+        let mut film = Store::new(1, 1);
         let mut moments = Moments::none();
         (0..each).for_each(|i| moments.add(Vec4::splat(if i < hits { 100.0 } else { 0.0 })));
         film.join(&Image::filled(1, 1, moments), each);

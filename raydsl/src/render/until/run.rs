@@ -8,10 +8,11 @@ use glam::UVec4;
 use super::replications::{Replications, is_complete};
 use super::shares::Shares;
 use super::{Estimate, Outcome, Progress, ProgressObserver, REPLICATIONS, Reached, Until};
+use crate::render::Sampling;
 use crate::render::allocation::Allocation;
 use crate::render::renderer::Samples;
+use crate::render::store::Store;
 use crate::render::watch::Observer;
-use crate::render::{Film, Sampling};
 use crate::sampling::pcg4d;
 
 /// The growth of stages up to the pilot. The first has one sample per replication, so that there is
@@ -39,7 +40,7 @@ pub(crate) trait Accumulate {
     fn accumulate(
         &mut self,
         samples: &Samples<'_>,
-        film: &mut Film,
+        film: &mut Store,
         observer: Observer<'_>,
     ) -> Result<ControlFlow<()>, Self::Error>;
 }
@@ -65,7 +66,7 @@ struct Stage {
 pub(crate) fn run<R: Accumulate>(
     until: &Until,
     sampling: &Sampling,
-    film: &mut Film,
+    film: &mut Store,
     observer: ProgressObserver<'_>,
     renderer: &mut R,
 ) -> Result<Reached, R::Error> {
@@ -76,6 +77,7 @@ pub(crate) fn run<R: Accumulate>(
         until,
         sampling,
         size,
+        empty: film.cleared(),
         begin,
         observer,
         best,
@@ -110,6 +112,8 @@ struct Run<'a> {
     sampling: &'a Sampling,
     /// Columns and rows.
     size: (u32, u32),
+    /// A film without samples.
+    empty: Store,
     begin: Instant,
     observer: ProgressObserver<'a>,
     /// The stage with the smallest expected error.
@@ -211,7 +215,7 @@ impl Run<'_> {
         let mut cut = None;
         let mut end = Ok(());
         for replication in 0..REPLICATIONS {
-            let mut one = Film::new(self.size.0, self.size.1);
+            let mut one = self.empty.clone();
             let sampling = self.sampling_of(replication, each);
             let allocation = allocation.as_ref();
             let samples = Samples { sampling: &sampling, each: most, allocation };
@@ -268,7 +272,7 @@ impl Run<'_> {
     fn replication<R: Accumulate>(
         &mut self,
         samples: &Samples<'_>,
-        film: &mut Film,
+        film: &mut Store,
         stage: &Replications,
         renderer: &mut R,
     ) -> Result<(bool, Option<Outcome>), R::Error> {

@@ -119,7 +119,8 @@ mod tests {
     use glam::Vec4;
 
     use super::*;
-    use crate::render::{Film, Image, Moments};
+    use crate::render::store::Store;
+    use crate::render::{Image, Moments};
 
     /// Returns replications whose pixels scatter by `spread(x, y)`.
     fn replications(width: u32, height: u32, spread: impl Fn(u32, u32) -> f32) -> Replications {
@@ -130,7 +131,7 @@ mod tests {
                 let mean = Vec4::splat(1.0 + sign * spread(x, y));
                 Moments { count: 16, mean, m2: Vec4::ZERO }
             });
-            let mut film = Film::new(width, height);
+            let mut film = Store::new(width, height);
             film.join(&image, 16);
             all.join(film);
         }
