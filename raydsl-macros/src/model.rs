@@ -5,6 +5,12 @@ use proc_macro2::{Ident, Span, TokenStream};
 use crate::generics::Generics;
 use crate::here::quote_here as quote;
 
+/// The most parameters of a kernel that runs by itself.
+pub(crate) const MOST_OF_ENTRY: usize = 8;
+
+/// The most parameters of a kernel that others call: its arguments on a machine are a tuple.
+pub(crate) const MOST: usize = 16;
+
 /// A function, method or closure to lift.
 #[derive(Clone)]
 pub(crate) struct Kernel {

@@ -103,6 +103,28 @@ const DENIED: &[(&str, &str)] = &[
     ("iter", "`for x in list.iter()`, or a `for` over a range"),
 ];
 
+/// Methods of arrays, slices and lists that kernels do not have, with their replacements.
+const OF_LISTS: &[(&[&str], &str)] = &[
+    (&["fill"], "a new array: `xs = [0.0; 4];`"),
+    (
+        &["sort", "sort_by", "sort_by_key", "sort_unstable", "sort_unstable_by", "reverse"],
+        "a loop with `xs.swap(i, j)`",
+    ),
+    (
+        &["contains", "starts_with", "binary_search", "position"],
+        "a `for` with a variable: `for x in xs.iter() { found |= *x == y; }`",
+    ),
+    (&["first"], "`xs[0]`"),
+    (&["last"], "`xs[xs.len() - 1]`"),
+    (&["get", "get_mut"], "`if i < xs.len() { xs[i] } else { .. }`"),
+    (
+        &["push", "pop", "insert", "remove", "extend", "truncate", "clear"],
+        "an array and a count: `xs[n] = x; n += 1;`",
+    ),
+    (&["iter_mut"], "a `for` over the indices: `for i in 0..xs.len() { xs[i] += 1.0; }`"),
+    (&["chunks", "windows", "split_at", "concat", "to_vec"], "a `for` over the indices"),
+];
+
 /// Types of Rust that no kernel has, with their replacements.
 const REFUSED_TYPES: &[(&[&str], &str)] = &[
     (&["f64"], "compute in `f32`; `Kernel::reference` gives the result in `f64`"),
@@ -139,6 +161,10 @@ pub(crate) fn denied(name: &str) -> Option<Denied> {
         };
         let what = format!("`{name}` of std differs from one machine to the next");
         return Some(Denied { what, help, seen_by_type: true });
+    }
+    if let Some((_, instead)) = OF_LISTS.iter().find(|l| l.0.contains(&name)) {
+        let what = format!("a kernel has no `{name}` of arrays and slices");
+        return Some(Denied { what, help: format!("write {instead}"), seen_by_type: true });
     }
     let (_, instead) = DENIED.iter().find(|d| d.0 == name)?;
     let what = format!("a kernel has no `{name}`");
@@ -240,7 +266,6 @@ pub(crate) fn method_of_library(name: &str) -> Option<String> {
 pub(crate) fn instead_of_std(name: &str) -> String {
     match name {
         "min" | "max" => format!("write `{name}(a, b)`, the function of raydsl's prelude"),
-        "swap" => "write `(a, b) = (b, a)`".to_owned(),
         "replace" | "take" => "copy the value to a variable, and assign the new one".to_owned(),
         _ => "write it with the functions of raydsl's prelude, or as a `#[kernel] fn`".to_owned(),
     }

@@ -8,7 +8,7 @@ use super::{info, own, private, quiet};
 use crate::diag::Errors;
 use crate::emit::{Emitter, raw_capture};
 use crate::here::{At, private_here, quote_here};
-use crate::model::Kernel;
+use crate::model::{Kernel, MOST_OF_ENTRY};
 use crate::parse;
 use crate::rewrite::without_markers;
 
@@ -64,6 +64,13 @@ pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel)
     let kernel = parse::closure(closure, "kernel", &mut errors);
     if kernel.params.is_empty() && errors.is_empty() {
         errors.at(closure.span(), "a kernel needs a parameter", "write for example `|ray: Ray|`");
+    }
+    if kernel.params.len() > MOST_OF_ENTRY {
+        errors.at(
+            closure.span(),
+            format!("a kernel that runs by itself has at most {MOST_OF_ENTRY} parameters"),
+            "put some of them into a struct with `#[derive(Clone, Copy, Type)]`",
+        );
     }
     let machines: Vec<&Natural> =
         wanted.iter().copied().chain(counted.as_ref().map(|_| &COUNTED)).collect();

@@ -10,7 +10,7 @@ use super::{
 use crate::diag::Errors;
 use crate::generics::Generics;
 use crate::here::{of_type, private_here, quote_here};
-use crate::model::{Kernel, Param};
+use crate::model::{Kernel, MOST_OF_ENTRY, Param};
 use crate::parse;
 use crate::rewrite::without_markers;
 
@@ -146,7 +146,9 @@ fn has_entry(kernel: &Kernel, sig: &syn::Signature) -> bool {
         return false;
     }
     let is_value = |p: &Param| !(p.by_mut || p.host || p.data || p.function.is_some());
-    !kernel.params.is_empty() && kernel.result.is_some() && kernel.params.iter().all(is_value)
+    (1..=MOST_OF_ENTRY).contains(&kernel.params.len())
+        && kernel.result.is_some()
+        && kernel.params.iter().all(is_value)
 }
 
 /// Returns `on` of a generic kernel: the types are inferred from the arguments.

@@ -11,7 +11,7 @@ use super::expression::run_once;
 use super::types::{is_data, is_mut_reference, is_unit, without_references};
 use crate::diag::Errors;
 use crate::generics::Generics;
-use crate::model::{Block, Expr, Kernel, Kind, Param, Stmt};
+use crate::model::{Block, Expr, Kernel, Kind, MOST, Param, Stmt};
 
 /// The label of the body of a kernel that takes closures, which is a part of its callers.
 const BODY: &str = "__body";
@@ -39,6 +39,13 @@ pub(crate) fn function(
             never.span(),
             "a kernel that takes a closure is a part of its callers",
             help,
+        );
+    }
+    if params.len() > MOST {
+        parser.errors.at(
+            sig.inputs[MOST].span(),
+            format!("a kernel has at most {MOST} parameters"),
+            "put some of them into a struct with `#[derive(Clone, Copy, Type)]`",
         );
     }
     parser.check_result(&sig.output);

@@ -1,5 +1,6 @@
 //! Parsing of assignments, and of the variables and parts of variables that they change.
 
+use proc_macro2::Span;
 use quote::ToTokens;
 use syn::spanned::Spanned;
 use syn::{BinOp, Lit, UnOp};
@@ -29,13 +30,38 @@ impl Parser<'_> {
                 continue;
             }
             let Some(place) = self.place(e) else { return Kind::Error };
-            let base = Box::new(Expr { kind: Kind::Name(parts.clone()), span });
-            let index = syn::Index { index: i as u32, span: e.span() };
-            let part = Kind::Field { base, member: index.to_token_stream() };
-            let value = Box::new(Expr { kind: part, span });
-            stmts.push(Stmt::Expr(Expr { kind: Kind::Assign { place, value }, span }));
+            stmts.push(self.assign_part(place, &parts, i as u32, span));
         }
         Kind::Block(Block { stmts, tail: None })
+    }
+
+    /// Parses `mem::swap(&mut a, &mut b)`: both are read before they are assigned.
+    pub(super) fn exchange(&mut self, c: &syn::ExprCall) -> Kind {
+        let (span, parts) = (c.span(), self.temporary("parts"));
+        let places: Vec<&syn::Expr> = c.args.iter().map(without_mut).collect();
+        let values = places.iter().map(|e| self.expr(e)).collect();
+        let values = Expr { kind: Kind::Tuple(values), span };
+        let mut stmts = vec![Stmt::bind(parts.clone(), false, values)];
+        for (e, i) in places.iter().zip([1, 0]) {
+            let Some(place) = self.place(e) else { return Kind::Error };
+            if place.steps.iter().any(|s| matches!(s, Step::Computed(e) if e.may_act())) {
+                return self.error(
+                    e.span(),
+                    "the index of an element that is exchanged is evaluated twice",
+                    "bind the index first: `let i = ...;`",
+                );
+            }
+            stmts.push(self.assign_part(place, &parts, i, span));
+        }
+        Kind::Block(Block { stmts, tail: None })
+    }
+
+    /// Returns the assignment of an element of a tuple to a place.
+    fn assign_part(&self, place: Place, parts: &syn::Ident, i: u32, span: Span) -> Stmt {
+        let base = Box::new(Expr { kind: Kind::Name(parts.clone()), span });
+        let member = syn::Index { index: i, span }.to_token_stream();
+        let value = Box::new(Expr { kind: Kind::Field { base, member }, span });
+        Stmt::Expr(Expr { kind: Kind::Assign { place, value }, span })
     }
 
     /// Parses `a += b`.
@@ -101,6 +127,14 @@ impl Parser<'_> {
             }
             index => Some(Step::Computed(self.expr(index))),
         }
+    }
+}
+
+/// Returns the place in `&mut place`; what is a reference is the place itself.
+fn without_mut(e: &syn::Expr) -> &syn::Expr {
+    match e {
+        syn::Expr::Reference(r) => &r.expr,
+        e => e,
     }
 }
 

@@ -123,7 +123,10 @@ impl Parser<'_> {
             }
             [.., owner] if ops::is_of_library(&owner.to_string()) => {
                 let help = ops::method_of_library(&last.to_string())?;
-                (format!("a kernel calls `{last}` of `{owner}` as a method or a function"), help)
+                (format!("a kernel has no `{owner}::{last}`"), help)
+            }
+            [.., module] if *module == "mem" && *last == "swap" && c.args.len() == 2 => {
+                return Some(self.exchange(c));
             }
             [first, ..] if *first == "std" || *first == "core" => {
                 let path = path.to_token_stream().to_string().replace(' ', "");

@@ -87,9 +87,10 @@ bodies! {
     result: { Ok::<f32, u32>(x) } "no `Result`" "says what happened";
     mapped: { [x, x].map(|y| y * 2.0)[0] } "no `map`" "write a `for`";
     summed: { values.iter().map(|y| y * 2.0).sum() } "no `sum`" "sum += x";
-    sine_of_type: { f32::sin(x) } "`sin` of `f32`" "write `sin(x)`";
+    sine_of_type: { f32::sin(x) } "no `f32::sin`" "write `sin(x)`";
     maximum_of_std: { std::cmp::max(n, 2) as f32 } "no `std::cmp::max`" "write `max(a, b)`";
-    swapped: { core::mem::swap(x, y); x } "no `core::mem::swap`" "(b, a)";
+    swapped: { core::mem::swap(&mut v[g(n)], &mut v[0]); x } "evaluated twice" "bind the index";
+    filled: { let mut v = [x, x]; v.fill(1.0); x } "no `fill`" "new array";
     inner_function: { fn g() {} x } "cannot stand inside a kernel" "move it out";
     assignment_to_a_call: { g(x) = 1.0; x } "cannot assign to this" "a variable";
     unsafe_block: { unsafe { x } } "no `unsafe`" "safe code";

@@ -58,7 +58,7 @@ pub struct KnownBy(pub(crate) &'static dyn KnownFunction);
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no kernel that runs by itself",
     label = "other kernels can call it",
-    note = "a kernel that runs by itself is a `#[kernel] fn` with one parameter or more, none of them `&mut`, `#[host]`, a slice, a tree or a closure, and gives a value"
+    note = "a kernel that runs by itself is a `#[kernel] fn` with one to eight parameters, none of them `&mut`, `#[host]`, a slice, a tree or a closure, and gives a value"
 )]
 pub trait KernelFn: 'static {
     /// The parameter types, as a tuple.

@@ -271,6 +271,31 @@ method!([] Usize<M>, "saturating_sub", |m, a, b: Usize<M>| -> Usize<M> {
 
 // Arrays
 
+/// Exchanges two elements of a variable.
+#[diagnostic::do_not_recommend]
+impl<M, V, I, J, const N: usize> Method<{ name("swap") }, M, (I, J)> for [V; N]
+where
+    M: Machine,
+    V: super::Value<M> + super::Varying<M, Value = V> + Coerce<M, V>,
+    I: super::Index<M>,
+    J: super::Index<M>,
+{
+    type Output = ();
+    const IS_MUT: bool = true;
+
+    /// Changes nothing: a copy has no name.
+    #[inline(always)]
+    fn call(self, _: &M, _: (I, J)) {}
+
+    #[inline(always)]
+    fn call_at(self, variable: &Var<Self>, m: &M, (i, j): (I, J)) {
+        let (i, j) = (Usize(i.index(m).0), Usize(j.index(m).0));
+        let (a, b) = (super::lowered::element(m, self, i), super::lowered::element(m, self, j));
+        let changed = super::index::with_element(m, self, i, b);
+        variable.set(m, super::index::with_element(m, changed, j, a));
+    }
+}
+
 #[diagnostic::do_not_recommend]
 impl<M: Machine, V: super::Value<M>, const N: usize> Method<{ name("len") }, M, ()> for [V; N] {
     type Output = usize;

@@ -189,3 +189,12 @@ tuple_value!(A.0, B.1, C.2, D.3, E.4);
 tuple_value!(A.0, B.1, C.2, D.3, E.4, G.5);
 tuple_value!(A.0, B.1, C.2, D.3, E.4, G.5, H.6);
 tuple_value!(A.0, B.1, C.2, D.3, E.4, G.5, H.6, J.7);
+// Arguments of kernels that others call; a type of kernels has eight at most.
+tuple_value!(A.0, B.1, C.2, D.3, E.4, G.5, H.6, J.7, L.8);
+tuple_value!(A.0, B.1, C.2, D.3, E.4, G.5, H.6, J.7, L.8, N.9);
+tuple_value!(A.0, B.1, C.2, D.3, E.4, G.5, H.6, J.7, L.8, N.9, O.10);
+tuple_value!(A.0, B.1, C.2, D.3, E.4, G.5, H.6, J.7, L.8, N.9, O.10, P.11);
+tuple_value!(A.0, B.1, C.2, D.3, E.4, G.5, H.6, J.7, L.8, N.9, O.10, P.11, Q.12);
+tuple_value!(A.0, B.1, C.2, D.3, E.4, G.5, H.6, J.7, L.8, N.9, O.10, P.11, Q.12, S.13);
+tuple_value!(A.0, B.1, C.2, D.3, E.4, G.5, H.6, J.7, L.8, N.9, O.10, P.11, Q.12, S.13, T.14);
+tuple_value!(A.0, B.1, C.2, D.3, E.4, G.5, H.6, J.7, L.8, N.9, O.10, P.11, Q.12, S.13, T.14, V.15);

@@ -1,6 +1,7 @@
 //! Ordinary Rust that kernels take: loops over several lists, functions of types, parts of variables
 //! by reference, and traits on enums with fields.
 
+mod calls;
 mod closures;
 mod loops;
 
