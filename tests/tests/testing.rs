@@ -202,3 +202,18 @@ fn the_macro_panics() {
 fn no_inputs_are_no_test() {
     assert_variants_agree!(falloff, &[]);
 }
+
+/// Without debug assertions packets and WGSL read the last element.
+#[test]
+fn an_index_out_of_range_is_found() -> Result<(), String> {
+    let table = vec![0.5f32, 1.5, 2.5];
+    let kernel = kernel!(|i: u32| table[i as usize * 2]);
+    let (line, inputs) = (line!() - 1, [(0,), (1,), (2,)]);
+    let error = variants_agree(&kernel, &inputs, Rounding::WGSL).err().ok_or("it agrees")?;
+    let text = error.to_string();
+    assert!(text.contains("the source panics for input 2, (2)"), "{text}");
+    assert!(text.contains(&format!("testing.rs:{line}: index out of bounds")), "{text}");
+    assert!(text.contains("the len is 3 but the index is 4"), "{text}");
+    assert!(variants_agree(&kernel, &inputs[..2], Rounding::WGSL).is_ok());
+    Ok(())
+}

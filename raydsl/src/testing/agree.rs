@@ -6,9 +6,10 @@ use super::agreement::differing;
 use super::explain::{Cause, explain_some};
 use super::film_test::Inputs;
 use super::leaves::{leaves, one_line};
+use super::panics::caught;
 use super::{MeansAgreement, MeansVerdict, can_run, try_run, unwritten, validate};
 use crate::kernel::{Kernel, Variant};
-use crate::machine::{Leaf, Rounding, Type, result_leaves};
+use crate::machine::{KernelInfo, Leaf, Rounding, Type, result_leaves};
 
 /// The limit on paths through the decisions of a printed result.
 const WAYS: usize = 64;
@@ -120,7 +121,13 @@ fn agree<A: Type, R: Type>(
     means: Option<Means<'_>>,
 ) -> Result<(), Disagreement> {
     assert!(!inputs.is_empty(), "without inputs nothing is compared");
-    let expected: Vec<R> = inputs.iter().map(|a| kernel.call(*a)).collect();
+    let expected: Vec<R> = match scalar(kernel, inputs) {
+        Ok(expected) => expected,
+        Err(summary) => {
+            let kernel = described(kernel.info());
+            return Err(Disagreement { kernel, rows: Vec::new(), summaries: vec![summary] });
+        }
+    };
     let packets = [Variant::Packet4, Variant::Packet8, Variant::Packet16];
     let mut wrong: Vec<Wrong<R>> =
         packets.into_iter().filter_map(|v| packet(kernel, v, inputs, &expected)).collect();
@@ -128,7 +135,6 @@ fn agree<A: Type, R: Type>(
     if wrong.is_empty() {
         return Ok(());
     }
-    let info = kernel.info();
     let each = ROWS / wrong.len();
     let rows = wrong.iter().flat_map(|w| {
         w.indices.iter().take(each).map(|i| {
@@ -140,10 +146,27 @@ fn agree<A: Type, R: Type>(
         })
     });
     Err(Disagreement {
-        kernel: format!("`{}` ({}:{})", info.name, info.file, info.line),
+        kernel: described(kernel.info()),
         rows: rows.collect(),
         summaries: wrong.iter().map(|w| w.summary.clone()).collect(),
     })
+}
+
+fn described(info: &KernelInfo) -> String {
+    format!("`{}` ({}:{})", info.name, info.file, info.line)
+}
+
+/// Runs the source for all inputs. Where it panics, as for an index out of range, the other variants
+/// may go on without a word.
+fn scalar<A: Type, R: Type>(kernel: &Kernel<'_, A, R>, inputs: &[A]) -> Result<Vec<R>, String> {
+    let mut expected = Vec::with_capacity(inputs.len());
+    for (i, input) in inputs.iter().enumerate() {
+        let result = caught(|| kernel.call(*input)).map_err(|panic| {
+            format!("scalar: the source panics for input {i}, {}\n  {panic}", one_line(input))
+        })?;
+        expected.push(result);
+    }
+    Ok(expected)
 }
 
 /// Compares a packet variant. A narrower packet, or the scalar function, replaces a width that this

@@ -15,6 +15,7 @@ mod explain;
 mod film_test;
 mod leaves;
 mod means;
+mod panics;
 mod wgsl;
 
 use crate::kernel::{Kernel, Variant};
