@@ -7,7 +7,8 @@ use syn::{BinOp, Lit, UnOp};
 
 use super::Parser;
 use super::attributes::{attributes, is_coherent};
-use super::pattern::{has_let, variant_of};
+use super::condition::has_let;
+use super::pattern::variant_of;
 use super::place::assignment;
 use super::refused::is_absent;
 use crate::model::{BinaryOp, Block, Expr, IntType, Kind, Step, Stmt};

@@ -39,6 +39,12 @@ enum Elements {
 /// Returns the sequence of `list.iter()`, `&list`, `list.into_iter()` and `list`, and of each with
 /// `.enumerate()`, `.rev()` and `.zip(..)`.
 fn sequence(e: &syn::Expr) -> Option<Sequence<'_>> {
+    let (e, is_reversed) = without_reversals(inside_parens(e));
+    let all = forwards(e)?;
+    Some(if is_reversed { Sequence::Reversed(Box::new(all)) } else { all })
+}
+
+fn forwards(e: &syn::Expr) -> Option<Sequence<'_>> {
     let by_reference = |list| Some(Sequence::List { list, by_value: false });
     match inside_parens(e) {
         syn::Expr::MethodCall(c) if c.method == "iter" && c.args.is_empty() => {
@@ -49,12 +55,11 @@ fn sequence(e: &syn::Expr) -> Option<Sequence<'_>> {
             (!is_range).then_some(Sequence::List { list: &c.receiver, by_value: true })
         }
         syn::Expr::MethodCall(c) if c.args.is_empty() && is_call_of_iter(&c.receiver) => {
-            let inner = || sequence(&c.receiver).map(Box::new);
-            match c.method.to_string().as_str() {
-                "enumerate" => Some(Sequence::Enumerated(inner()?)),
-                "rev" => Some(Sequence::Reversed(inner()?)),
-                _ => None,
-            }
+            let is_enumerated = c.method == "enumerate";
+            is_enumerated
+                .then(|| sequence(&c.receiver).map(Box::new))
+                .flatten()
+                .map(Sequence::Enumerated)
         }
         syn::Expr::MethodCall(c) if c.method == "zip" && c.args.len() == 1 => {
             let (first, second) = (sequence(&c.receiver)?, sequence(&c.args[0])?);

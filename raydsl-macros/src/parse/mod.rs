@@ -3,6 +3,7 @@
 mod attributes;
 mod call;
 mod closure;
+mod condition;
 mod expression;
 mod function;
 mod iteration;

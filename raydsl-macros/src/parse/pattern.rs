@@ -7,14 +7,13 @@ use syn::spanned::Spanned;
 
 use super::Parser;
 use super::attributes::is_coherent;
-use super::expression::{inside_parens, label};
 use super::refused::is_absent;
 use super::types::is_type_name;
 use crate::generics::mentions;
 use crate::here::private;
 use crate::model::{Block, Expr, Kind, Let, Stmt, is_constant};
 
-fn name(name: &Ident) -> Expr {
+pub(super) fn name(name: &Ident) -> Expr {
     Expr { kind: Kind::Name(name.clone()), span: name.span() }
 }
 
@@ -22,7 +21,7 @@ fn compare(op: &'static str, a: &Expr, b: Expr, span: Span) -> Expr {
     Expr { kind: Kind::Compare { op, a: Box::new(a.clone()), b: Box::new(b) }, span }
 }
 
-fn logic(and: bool, a: Expr, b: Expr) -> Expr {
+pub(super) fn logic(and: bool, a: Expr, b: Expr) -> Expr {
     let span = a.span;
     Expr { kind: Kind::Logic { and, a: Box::new(a), b: Box::new(b) }, span }
 }
@@ -33,26 +32,6 @@ fn one_of(c: Expr, a: Expr, b: Expr) -> Expr {
     let then = Block { stmts: vec![], tail: Some(Box::new(a)) };
     let otherwise = Some(Box::new(b));
     Expr { kind: Kind::If { coherent: false, c: Box::new(c), then, otherwise }, span }
-}
-
-/// Returns whether a condition has a `let`.
-pub(super) fn has_let(e: &syn::Expr) -> bool {
-    match inside_parens(e) {
-        syn::Expr::Let(_) => true,
-        syn::Expr::Binary(b) => has_let(&b.left) || has_let(&b.right),
-        _ => false,
-    }
-}
-
-/// Returns whether it is a variable or its fields: evaluated twice, it is the same.
-fn is_place(e: &syn::Expr) -> bool {
-    match inside_parens(e) {
-        syn::Expr::Path(_) => true,
-        syn::Expr::Field(f) => is_place(&f.base),
-        syn::Expr::Reference(r) => is_place(&r.expr),
-        syn::Expr::Unary(u) => matches!(u.op, syn::UnOp::Deref(_)) && is_place(&u.expr),
-        _ => false,
-    }
 }
 
 fn both(a: Option<Expr>, b: Option<Expr>) -> Option<Expr> {
@@ -150,7 +129,7 @@ fn member(from: &Expr, member: TokenStream, span: Span) -> Expr {
 impl Parser<'_> {
     /// Returns the condition under which `pat` matches `from`, `None` if it always does; its
     /// bindings are added to `lets`.
-    fn pattern(&mut self, pat: &Pat, from: &Expr, lets: &mut Vec<Stmt>) -> Option<Expr> {
+    pub(super) fn pattern(&mut self, pat: &Pat, from: &Expr, lets: &mut Vec<Stmt>) -> Option<Expr> {
         let span = pat.span();
         match pat {
             Pat::Wild(_) | Pat::Rest(_) => None,
@@ -351,118 +330,14 @@ impl Parser<'_> {
         test
     }
 
-    /// Parses a condition that may have `let PATTERN = e`, alone or joined by `&&`. What it binds is
-    /// added to `lets`, for the code behind it; what must be evaluated before it, to `before`.
-    pub(super) fn condition(
-        &mut self,
-        e: &syn::Expr,
-        before: &mut Vec<Stmt>,
-        lets: &mut Vec<Stmt>,
-    ) -> Expr {
-        match inside_parens(e) {
-            syn::Expr::Let(l) => {
-                let from = self.expr(&l.expr);
-                let from = self.read_often(from, &l.pat.to_token_stream(), before);
-                let test = self.pattern(&l.pat, &from, lets);
-                test.unwrap_or(Expr { kind: Kind::Bool(true), span: l.span() })
-            }
-            syn::Expr::Binary(b) if matches!(b.op, syn::BinOp::And(_)) && has_let(e) => {
-                let left = self.condition(&b.left, before, lets);
-                self.check_chained(&b.right);
-                let (mut inner, mut bound) = (Vec::new(), Vec::new());
-                let right = self.condition(&b.right, &mut inner, &mut bound);
-                // The right side sees what the left one binds, and is not evaluated before it.
-                let mut stmts = lets.clone();
-                stmts.extend(inner.iter().cloned());
-                lets.extend(inner);
-                lets.extend(bound);
-                let right = if stmts.is_empty() {
-                    right
-                } else {
-                    let span = right.span;
-                    let block = Block { stmts, tail: Some(Box::new(right)) };
-                    Expr { kind: Kind::Block(block), span }
-                };
-                logic(true, left, right)
-            }
-            e => self.expr(e),
-        }
-    }
-
-    /// Refuses a `let` behind `&&` whose value may change something: the test and the code behind it
-    /// evaluate the value each.
-    fn check_chained(&mut self, e: &syn::Expr) {
-        if let syn::Expr::Let(l) = inside_parens(e)
-            && !is_place(&l.expr)
-        {
-            self.errors.at(
-                l.expr.span(),
-                "a `let` behind `&&` takes a variable or its fields in a kernel",
-                "put an `if let` inside another, or bind the value before the `if`",
-            );
-        }
-    }
-
-    /// Parses `if let PATTERN = e { .. } else { .. }`.
-    pub(super) fn conditional_let(&mut self, i: &syn::ExprIf) -> Kind {
-        let (mut before, mut lets) = (Vec::new(), Vec::new());
-        let coherent = self.is_coherent || i.attrs.iter().any(is_coherent);
-        let c = Box::new(self.condition(&i.cond, &mut before, &mut lets));
-        let mut then = self.block(&i.then_branch);
-        then.stmts.splice(0..0, lets);
-        let otherwise = i.else_branch.as_ref().map(|(_, e)| self.boxed(e));
-        let kind = Kind::If { coherent, c, then, otherwise };
-        if before.is_empty() {
-            return kind;
-        }
-        let tail = Some(Box::new(Expr { kind, span: i.span() }));
-        Kind::Block(Block { stmts: before, tail })
-    }
-
-    /// Parses `while let PATTERN = e { .. }`.
-    pub(super) fn while_let(&mut self, w: &syn::ExprWhile) -> Kind {
-        let (mut stmts, mut lets) = (Vec::new(), Vec::new());
-        let (span, coherent) = (w.span(), self.is_coherent);
-        let c = Box::new(self.condition(&w.cond, &mut stmts, &mut lets));
-        let mut then = self.block(&w.body);
-        then.stmts.splice(0..0, lets);
-        let exit = Expr { kind: Kind::Break(None, None), span };
-        let exit = Block { stmts: vec![Stmt::Expr(exit)], tail: None };
-        let otherwise = Some(Box::new(Expr { kind: Kind::Block(exit), span }));
-        let kind = Kind::If { coherent, c, then, otherwise };
-        stmts.push(Stmt::Expr(Expr { kind, span }));
-        Kind::Loop { label: label(&w.label), body: Block { stmts, tail: None } }
-    }
-
-    /// Parses `let PATTERN = init else { .. };`.
-    pub(super) fn let_else(
-        &mut self,
-        pat: &Pat,
-        init: &syn::Expr,
-        diverging: &syn::Expr,
-    ) -> Vec<Stmt> {
-        let (mut stmts, mut lets) = (Vec::new(), Vec::new());
-        let span = pat.span();
-        let from = self.expr(init);
-        let from = self.read_often(from, &pat.to_token_stream(), &mut stmts);
-        let test = self.pattern(pat, &from, &mut lets);
-        let body = self.expr(diverging);
-        if let Some(test) = test {
-            let then = match body.kind {
-                Kind::Block(block) => block,
-                kind => Block { stmts: vec![Stmt::Expr(Expr { kind, span })], tail: None },
-            };
-            let c = Box::new(Expr { kind: Kind::Not(Box::new(test)), span });
-            let kind = Kind::If { coherent: self.is_coherent, c, then, otherwise: None };
-            stmts.push(Stmt::Expr(Expr { kind, span }));
-        }
-        stmts.extend(lets);
-        stmts
-    }
-
     /// Returns a value that patterns read more than once; it gets a name unless it is one, and also
     /// if a pattern rebinds that name.
-    fn read_often(&mut self, e: Expr, bound: &TokenStream, lets: &mut Vec<Stmt>) -> Expr {
+    pub(super) fn read_often(
+        &mut self,
+        e: Expr,
+        bound: &TokenStream,
+        lets: &mut Vec<Stmt>,
+    ) -> Expr {
         match e.kind {
             Kind::Name(ref name) if !mentions(bound, name) => e,
             Kind::Tuple(items) => {

@@ -96,7 +96,6 @@ bodies! {
     unsafe_block: { unsafe { x } } "no `unsafe`" "safe code";
     attribute_in_parentheses: { (#[cfg(any())] x) } "attributes on statements" "remove";
     attribute_behind_reference: { g(&#[cold] x) } "attributes on statements" "remove";
-    let_behind_and: { if let Some(a) = g(x) && let Some(b) = h(a) { b } else { x } } "a variable or its fields" "inside another";
     statement_attribute: { #[cold] if x > 0.0 { } x } "attributes on statements" "remove";
 }
 

@@ -3,6 +3,7 @@
 
 mod calls;
 mod closures;
+mod conditions;
 mod loops;
 
 use raydsl::prelude::*;
