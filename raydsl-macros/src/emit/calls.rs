@@ -10,6 +10,13 @@ use crate::model::{Expr, Kind, Place, is_part};
 impl Emitter<'_> {
     pub(super) fn call(&mut self, path: &TokenStream, args: &[Expr], span: Span) -> TokenStream {
         let m = own("m");
+        if let Some((function, result)) = self.function_called(path) {
+            let args: Vec<_> = args.iter().map(|e| self.coerced(e)).collect();
+            let call = quote!(#function(#m, #(#args),*));
+            let Some(result) = result else { return call };
+            let (p, machine, result) = (private(), self.machine.clone(), self.on(&result));
+            return quote!(#p::Coerce::<#machine, #result>::coerce(#call, #m));
+        }
         let is_method = self.kernel.params.first().is_some_and(|p| p.name == "self");
         if self.kernel.name == path.to_string() && !self.is_closure && !is_method {
             self.errors.at(
@@ -19,11 +26,6 @@ impl Emitter<'_> {
             );
             return quote!(::core::unreachable!());
         }
-        if let Some((function, result)) = self.function_called(path) {
-            let args: Vec<_> = args.iter().map(|e| self.coerced(e)).collect();
-            let (p, machine, result) = (private(), self.machine.clone(), self.on(&result));
-            return quote!(#p::Coerce::<#machine, #result>::coerce(#function(#m, #(#args),*), #m));
-        }
         let args = self.arguments(args);
         let values = &args.values;
         // Explicit type parameters need not be inferred.
@@ -32,11 +34,14 @@ impl Emitter<'_> {
         args.around(quote!(#path::#on(#m, #(#values),*)))
     }
 
-    /// Returns the parameter that is called, if it is one, and the type that it gives.
-    pub(super) fn function_called(&self, path: &TokenStream) -> Option<(Ident, TokenStream)> {
+    /// Returns the closure that is called, if it is one, and the type that a parameter gives.
+    pub(super) fn function_called(
+        &self,
+        path: &TokenStream,
+    ) -> Option<(Ident, Option<TokenStream>)> {
         let name = syn::parse2::<Ident>(path.clone()).ok()?;
-        let result = self.find(&name)?.gives.clone()?;
-        Some((name, result))
+        let local = self.find(&name)?;
+        (local.binding == Binding::Function).then(|| (name, local.gives.clone()))
     }
 
     pub(super) fn associated(

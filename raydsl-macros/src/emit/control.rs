@@ -73,6 +73,12 @@ impl Emitter<'_> {
             let value = l.init.as_ref().map(|e| self.value(e));
             return quote!(let _ = #value;);
         };
+        if let Some(Expr { kind: Kind::Closure(kernel), .. }) = &l.init {
+            let closure = self.closure(kernel);
+            self.bind(name, Binding::Function);
+            // Attributes are for the arguments of calls.
+            return quote!(let #name = #p::named(#closure););
+        }
         let text = shown(name);
         let ty = l.ty.as_ref().map(|t| self.on(t));
         let Some(init) = &l.init else {

@@ -56,7 +56,7 @@ struct Local {
     literal: bool,
     /// Whether it is a variable that began as one: its type is inferred.
     bare: bool,
-    /// The type that it gives, if it is a closure.
+    /// The type that it gives, if it is a parameter that is a closure.
     gives: Option<TokenStream>,
 }
 
@@ -303,6 +303,8 @@ impl<'a> Emitter<'a> {
         let body = inner.body();
         let on = |p: &Param| if p.is_inferred() { p.ty.clone() } else { inner.on(&p.ty) };
         let types: Vec<_> = kernel.params.iter().map(on).collect();
+        let result = kernel.result.as_ref().map(|ty| inner.on(ty));
+        let result = result.map(|ty| quote!(-> #ty));
         let (captures, host_captures, next) = (
             core::mem::take(&mut inner.captures),
             core::mem::take(&mut inner.host_captures),
@@ -314,7 +316,7 @@ impl<'a> Emitter<'a> {
         let seen = self.mentioned_in(&body);
         quote! {
             #[inline(always)]
-            |#m: &#machine, #(#names: #types),*| {
+            |#m: &#machine, #(#names: #types),*| #result {
                 #(let _ = &#seen;)*
                 #body
             }

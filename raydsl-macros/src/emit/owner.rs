@@ -82,8 +82,8 @@ impl Emitter<'_> {
                 (self.generic_of(base).1, None)
             }
             Kind::Call { path, .. } => match self.function_called(path) {
-                Some((_, result)) => self.generics_in(&result),
-                None => (None, None),
+                Some((_, Some(result))) => self.generics_in(&result),
+                _ => (None, None),
             },
             _ => (None, None),
         }

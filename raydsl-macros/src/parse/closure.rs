@@ -10,7 +10,7 @@ use super::function::within;
 use super::types::{is_data, is_mut_reference, is_unit, without_references};
 use crate::diag::Errors;
 use crate::generics::Generics;
-use crate::model::{Block, Kernel, Kind, Param, Signature, Stmt};
+use crate::model::{Block, Expr, Kernel, Kind, Param, Signature, Stmt};
 
 /// The label of a closure within a kernel: its `return` leaves the closure, not the kernel.
 const CLOSURE: &str = "__closure";
@@ -203,6 +203,18 @@ impl Parser<'_> {
         Some(Param { name, ty, mutable, by_mut: false, data: false, host: false, function: None })
     }
 
+    /// Parses a closure that a variable names.
+    pub(super) fn named_closure(&mut self, c: &syn::ExprClosure) -> Expr {
+        if let Some(copies) = &c.capture {
+            self.errors.at(
+                copies.span(),
+                "a closure of a kernel has no `move`: it reads the variables around it",
+                "remove `move`, and copy what changes to a variable before it",
+            );
+        }
+        Expr { kind: self.nested(c, Types::Written), span: c.span() }
+    }
+
     /// Parses a closure as an argument. With a `return` its body is a labelled block.
     pub(super) fn nested(&mut self, c: &syn::ExprClosure, types: Types) -> Kind {
         let around = self.returns_to.replace(CLOSURE);
@@ -213,7 +225,7 @@ impl Parser<'_> {
     }
 }
 
-/// Returns the closure that an argument is, or refers to.
+/// Returns the closure that an expression is, or refers to.
 pub(super) fn closure_in(e: &syn::Expr) -> Option<&syn::ExprClosure> {
     match e {
         syn::Expr::Closure(c) => Some(c),

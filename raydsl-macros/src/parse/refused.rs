@@ -141,9 +141,10 @@ impl Parser<'_> {
     /// Refuses an expression of a form that kernels do not have.
     pub(super) fn unsupported(&mut self, e: &syn::Expr) -> Kind {
         let (what, help) = match e {
-            syn::Expr::Closure(_) => {
-                ("closures but as arguments", "write it as the argument, or a `#[kernel] fn`")
-            }
+            syn::Expr::Closure(_) => (
+                "closures but as arguments and in a `let`",
+                "write `let f = |x: f32| x * x;`, and `f(x)`",
+            ),
             syn::Expr::Try(_) => ("`?`", "give a value that says what happened: a miss is data"),
             syn::Expr::Reference(_) => {
                 ("`&mut` outside the arguments of a call", "write the variable itself")

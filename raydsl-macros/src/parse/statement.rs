@@ -7,6 +7,7 @@ use syn::spanned::Spanned;
 
 use super::Parser;
 use super::attributes::is_host;
+use super::closure::closure_in;
 use super::refused::gives_struct;
 use crate::model::{Block, Expr, Let, Stmt};
 
@@ -56,7 +57,10 @@ impl Parser<'_> {
         {
             return self.let_else(&l.pat, &init.expr, diverging);
         }
-        let init = l.init.as_ref().map(|init| self.expr(&init.expr));
+        let init = l.init.as_ref().map(|init| match closure_in(&init.expr) {
+            Some(c) if matches!(pat, Pat::Ident(_)) => self.named_closure(c),
+            _ => self.expr(&init.expr),
+        });
         let (name, mutable) = match pat {
             Pat::Ident(p) if p.by_ref.is_none() && p.subpat.is_none() => {
                 (Some(p.ident.clone()), p.mutability.is_some())

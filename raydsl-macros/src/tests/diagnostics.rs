@@ -72,7 +72,9 @@ bodies! {
     printing: { println!("{x}"); x } "`println!`" "return the value";
     assertion: { assert!(x > 0.0); x } "`assert!`" "cannot stop";
     question_mark: { g(x)? } "no `?`" "a miss is data";
-    inner_closure: { let f = |y: f32| y; x } "no closures" "as the argument";
+    inner_closure: { let f = (|y: f32| y, x); x } "no closures" "let f =";
+    moving_closure: { let f = move |y: f32| y * x; f(x) } "no `move`" "remove `move`";
+    closure_without_type: { let f = |y| y * x; f(x) } "needs a type" "|ray: Ray|";
     rest_in_the_middle: { let [a, .., b] = [x, x, x]; a + b } "stands last" "write `_`";
     named_rest: { let [a, b @ ..] = [x, x, x]; a } "without a name" "write `_`";
     order_of_index: { let mut v = [x, x]; v[g(n)] += h(x); x } "comes first" "bind the index";

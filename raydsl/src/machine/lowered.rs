@@ -31,6 +31,12 @@ pub fn usize<M: Machine>(m: &M, v: usize) -> Usize<M> {
     Type::splat(m, v)
 }
 
+/// Lowers a closure that a variable names.
+#[inline(always)]
+pub fn named<F>(closure: F) -> F {
+    closure
+}
+
 /// Returns the schema of an enum of `bytes` bytes.
 pub const fn number_schema(bytes: usize) -> &'static Schema {
     match bytes {

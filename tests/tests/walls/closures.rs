@@ -153,6 +153,41 @@ fn folded<T: Profile>(start: T, next: impl Fn(T) -> T, x: f32) -> f32 {
     next(next(start)).height(x)
 }
 
+/// Closures with names, that call each other, are passed on, and return early.
+#[kernel]
+fn named(a: f32, b: f32) -> f32 {
+    let mut k = a;
+    k += 1.5;
+    let bent = |x: f32| {
+        if x < b {
+            return x * k;
+        }
+        let y = x - k;
+        y * 0.5
+    };
+    let count = |i: u32, by: u32| -> u32 { i * by + 1 };
+    let both = |x: f32, i: u32| bent(x) + count(i, 2) as f32;
+    let wave = |h: f32| Wave { height: h, length: a };
+    let mut sum = integrate(bent, a * 1.013, b + 2.0017, 5) + integrate(|x| both(x, 3), 0.0, b, 2);
+    for i in 0..3u32 {
+        sum += both(sum, i);
+    }
+    sum + wave(b).at(bent(1.01)) + mean(&bent, a)
+}
+
+#[test]
+fn with_names() {
+    let inputs: Vec<(f32, f32)> =
+        pairs().into_iter().map(|(x, y)| (x * 1.013 + 0.0021, y * 0.987 - 0.0047)).collect();
+    assert_variants_agree!(named, &inputs);
+    let factor = 0.75;
+    let kernel = kernel!(|a: f32, b: f32| {
+        let scaled = |x: f32| x * factor + b;
+        scaled(a) + integrate(scaled, a, b, 3)
+    });
+    assert_variants_agree!(&kernel, &inputs);
+}
+
 #[test]
 fn in_kernels() {
     assert_variants_agree!(all, &pairs());
