@@ -117,10 +117,7 @@ const OF_LISTS: &[(&[&str], &str)] = &[
     (&["first"], "`xs[0]`"),
     (&["last"], "`xs[xs.len() - 1]`"),
     (&["get", "get_mut"], "`if i < xs.len() { xs[i] } else { .. }`"),
-    (
-        &["push", "pop", "insert", "remove", "extend", "truncate", "clear"],
-        "an array and a count: `xs[n] = x; n += 1;`",
-    ),
+    (&["push", "pop", "insert", "remove", "clear"], "an array and a count: `xs[n] = x; n += 1;`"),
     (&["iter_mut"], "a `for` over the indices: `for i in 0..xs.len() { xs[i] += 1.0; }`"),
     (&["chunks", "windows", "split_at", "concat", "to_vec"], "a `for` over the indices"),
 ];

@@ -77,7 +77,7 @@ impl Emitter<'_> {
             let closure = self.closure(kernel);
             self.bind(name, Binding::Function);
             // Attributes are for the arguments of calls.
-            return quote!(let #name = #p::named(#closure););
+            return quote!(let #name = #p::with_name(#closure););
         }
         let text = shown(name);
         let ty = l.ty.as_ref().map(|t| self.on(t));

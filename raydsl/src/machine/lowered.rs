@@ -33,7 +33,7 @@ pub fn usize<M: Machine>(m: &M, v: usize) -> Usize<M> {
 
 /// Lowers a closure that a variable names.
 #[inline(always)]
-pub fn named<F>(closure: F) -> F {
+pub fn with_name<F>(closure: F) -> F {
     closure
 }
 
