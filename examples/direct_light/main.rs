@@ -8,10 +8,11 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::{env, fs};
 
-use raydsl::integrators::{DirectionalLight, PointLight, Surface, direct_light};
+use raydsl::integrators::{DirectionalLight, PointLight, direct_light};
 use raydsl::kernel;
 use raydsl::prelude::*;
 use raydsl::render::Display;
+use raydsl::shading::Surface;
 
 // ANCHOR: surface
 /// A ball of one colour. Four bytes leave no gap.

@@ -4,8 +4,9 @@
 use core::error::Error;
 use std::time::Instant;
 
-use raydsl::integrators::{Surface, ambient_occlusion, facing};
+use raydsl::integrators::ambient_occlusion;
 use raydsl::prelude::*;
+use raydsl::shading::Surface;
 use raydsl_report::Missing;
 use raydsl_report::work_precision::{
     Backend, Case, Estimates, Method, Order, Reference, Run, Work,

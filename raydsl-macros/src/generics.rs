@@ -18,6 +18,8 @@ pub(crate) struct Generics {
     pub(crate) used: TokenStream,
     /// The types' names.
     pub(crate) types: Vec<Ident>,
+    /// The types that are scenes, and their bounds.
+    pub(crate) scenes: Vec<(Ident, TokenStream)>,
     /// Each parameter's name, and its declaration without bounds.
     names: Vec<(Ident, TokenStream)>,
     /// The predicates of a `where` clause.
@@ -39,7 +41,12 @@ impl Generics {
                 syn::GenericParam::Type(t) => {
                     let (name, bounds) = (&t.ident, &t.bounds);
                     all.declared.extend(quote!(#name: #bounds,));
-                    all.bare.extend(quote!(#name,));
+                    let unsized_too = bounds.iter().any(is_maybe_sized).then(|| quote!(: ?Sized));
+                    all.bare.extend(quote!(#name #unsized_too,));
+                    if bounds.iter().any(is_of_scenes) {
+                        let bounds = bounds.iter().filter(|b| !is_maybe_sized(b));
+                        all.scenes.push((name.clone(), quote!(#(#bounds)+*)));
+                    }
                     all.used.extend(quote!(#name,));
                     all.types.push(name.clone());
                     all.names.push((name.clone(), quote!(#name)));
@@ -77,6 +84,7 @@ impl Generics {
         self.bare.extend(other.bare.clone());
         self.used.extend(other.used.clone());
         self.types.extend_from_slice(&other.types);
+        self.scenes.extend_from_slice(&other.scenes);
         self.names.extend_from_slice(&other.names);
         self.predicates.extend(other.predicates.clone());
     }
@@ -99,6 +107,21 @@ impl Generics {
     pub(crate) fn is_empty(&self) -> bool {
         self.used.is_empty()
     }
+}
+
+/// Returns whether a bound is `?Sized`.
+fn is_maybe_sized(bound: &syn::TypeParamBound) -> bool {
+    bound.to_token_stream().to_string().starts_with('?')
+}
+
+/// Returns whether a bound says that the type is a scene: `RayQuery`, `Scene`, or a trait whose name
+/// ends so. A reference to such a type is data, which kernels read in place.
+fn is_of_scenes(bound: &syn::TypeParamBound) -> bool {
+    let syn::TypeParamBound::Trait(t) = bound else { return false };
+    t.path.segments.last().is_some_and(|last| {
+        let name = last.ident.to_string();
+        name == "RayQuery" || name.ends_with("Scene")
+    })
 }
 
 /// Returns whether an identifier is among the tokens.

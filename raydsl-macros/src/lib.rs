@@ -184,6 +184,29 @@ pub fn derive_hit_record(input: TokenStream) -> TokenStream {
     }
 }
 
+/// Makes a struct of scenes a scene to query, in kernels and on the host.
+///
+/// The members may have different primitives, with one record of hits. Instance ids count through
+/// them in the order of declaration.
+#[proc_macro_derive(RayQuery)]
+pub fn derive_ray_query(input: TokenStream) -> TokenStream {
+    derived_scene(input, false)
+}
+
+/// Makes a struct of scenes a scene that integrators can shade: what `#[derive(RayQuery)]` does, and
+/// the points that rays hit.
+#[proc_macro_derive(Scene)]
+pub fn derive_scene(input: TokenStream) -> TokenStream {
+    derived_scene(input, true)
+}
+
+fn derived_scene(input: TokenStream, shaded: bool) -> TokenStream {
+    match syn::parse::<syn::DeriveInput>(input) {
+        Ok(item) => rewrite::with_readable_names(items::scene(&item, shaded)).into(),
+        Err(e) => e.into_compile_error().into(),
+    }
+}
+
 /// Makes a `#[test]` of each variant from one function of a `Variant`.
 ///
 /// `fn agrees(variant: Variant)` expands to `agrees_scalar`, `agrees_packet4`, `agrees_packet8`,

@@ -42,6 +42,8 @@ pub(crate) struct Param {
     pub(crate) by_mut: bool,
     /// Whether it is a slice or a tree, which kernels read in place.
     pub(crate) data: bool,
+    /// Whether it is a reference to a type parameter that is a scene.
+    pub(crate) scene: bool,
     /// Whether it is `#[host]`: known before the kernel runs.
     pub(crate) host: bool,
     /// What it takes and gives, if it is a closure.

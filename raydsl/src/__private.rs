@@ -1,12 +1,16 @@
 //! The only names that generated code uses. Not for people: anything here may change.
 
-pub use crate::geometry::{Aabb, Hit, HitOn, HitRecord, Kinds, Primitive, Ray, RayOn};
+pub use crate::bvh::{Joined, RayQuery, RayQueryOn, SceneArgument};
+pub use crate::geometry::{
+    Aabb, Hit, HitOn, HitRecord, Kinds, Primitive, Ray, RayOn, SurfacePointOn,
+};
 pub use crate::kernel::{Counting, Kernel, Lifted, Native4, Native8, Native16};
 pub use crate::machine::lifted::*;
 pub use crate::machine::{
     B, Capture, Compare, F, Field, KernelFn, KernelInfo, Lanes, Machine, Margin, Op, Recorder,
     Resource, Schema, Slice, Type, Value, op,
 };
+pub use crate::shading::{Scene, ShadingPointOn};
 
 /// Traits of associated functions.
 pub mod operations {

@@ -16,12 +16,14 @@ pub mod prelude;
 pub mod render;
 mod run;
 pub mod sampling;
+pub mod shading;
 pub mod testing;
 pub mod texture;
 
 #[doc(hidden)]
 pub mod __private;
 
+pub use bvh::RayQuery;
 pub use geometry::HitRecord;
 pub use machine::Type;
 /// One body, a test for each variant.
@@ -57,6 +59,7 @@ pub use raydsl_macros::variant_test;
 /// # raydsl::testing::assert_valid_wgsl::<twice>();
 /// ```
 pub use raydsl_macros::wgsl_test;
-pub use raydsl_macros::{HitRecord, Type, primitive};
+pub use raydsl_macros::{HitRecord, RayQuery, Scene, Type, primitive};
 /// `#[kernel]` on a function or an impl; the closure macro `kernel!` is in the [`prelude`].
 pub use raydsl_macros::{kernel, kernels};
+pub use shading::Scene;

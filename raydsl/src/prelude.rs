@@ -7,7 +7,7 @@ pub use glam::{
 };
 
 pub use crate::bvh::{
-    BuildConfig, BuildQuality, Bvh, BvhList, Instance, Instances, RayQuery, Traversal,
+    BuildConfig, BuildQuality, Bvh, BvhList, Instance, Instances, PrimitiveScene, Traversal,
 };
 pub use crate::camera::{
     Camera, CameraRays, DepthRange, Matrix, Orthographic, Pinhole, Stereo, ThinLens,
@@ -45,9 +45,10 @@ pub use crate::sampling::{
     sample_uniform_hemisphere, sample_uniform_sphere, solid_angle_pdf, table_2d_pdf, table_pdf,
     triangle_pdf,
 };
+pub use crate::shading::{ShadingPoint, facing};
 pub use crate::texture::{
     Texture1, Texture2, Texture3, TextureConfig, TextureRef1, TextureRef2, TextureRef3,
     linear_to_srgb, srgb_to_linear, tex1, tex1_level, tex2, tex2_level, tex3, tex3_level,
 };
-pub use crate::{HitRecord, Type, primitive};
+pub use crate::{HitRecord, RayQuery, Scene, Type, primitive};
 pub use raydsl_macros::kernel_closure as kernel;

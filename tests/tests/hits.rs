@@ -152,7 +152,7 @@ macro_rules! asked {
 }
 
 #[track_caller]
-fn assert_hits<S: RayQuery<Primitive = Deck> + ?Sized>(
+fn assert_hits<S: PrimitiveScene<Primitive = Deck> + ?Sized>(
     who: &str,
     scene: &S,
     kernel: &Kernel<'_, (Ray,), Answer>,

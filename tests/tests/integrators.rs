@@ -5,10 +5,11 @@ use std::error::Error;
 use glam::DVec3;
 use raydsl::bvh::{Cost, Node};
 use raydsl::integrators::{
-    DirectionalLight, PointLight, Surface, ambient_occlusion, aovs, bvh_cost, bvh_cost_color,
-    direct_light, heat_color,
+    DirectionalLight, PointLight, ambient_occlusion, aovs, bvh_cost, bvh_cost_color, direct_light,
+    heat_color,
 };
 use raydsl::prelude::*;
+use raydsl::shading::Surface;
 use raydsl::testing::run;
 use raydsl::{assert_variants_agree, kernel};
 use raydsl_tests::gpu::gpu;

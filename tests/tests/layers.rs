@@ -11,11 +11,12 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 /// The layers, the top one first. A module may depend on those of lower layers, and on those of its
 /// own that do not depend on it.
-const LAYERS: [&[&str]; 10] = [
+const LAYERS: [&[&str]; 11] = [
     &["__private", "error", "prelude"],
     &["gpu", "testing"],
     &["render"],
     &["integrators"],
+    &["shading"],
     &["bvh", "camera", "sampling", "texture"],
     &["geometry"],
     &["math"],

@@ -1,7 +1,6 @@
 //! The rays, which are the same for all systems.
 
 use raydsl::camera::Camera;
-use raydsl::integrators::facing;
 use raydsl::kernel as kernel_fn;
 use raydsl::prelude::*;
 use raydsl::sampling::{pcg4d, unit_f32};

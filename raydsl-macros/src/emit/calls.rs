@@ -184,7 +184,8 @@ impl Emitter<'_> {
         self.refuse(receiver, name);
         if let Some((generic, this)) = self.generic_receiver(receiver) {
             let function = word(&format!("{name}_on"));
-            let args = self.arguments(args);
+            let mut args = self.arguments(args);
+            args.values.splice(0..0, numbers(turbofish));
             let (m, values) = (own("m"), &args.values);
             return args.around(quote!(<#generic>::#function(#m, #this, #(#values),*)));
         }
@@ -200,9 +201,7 @@ impl Emitter<'_> {
             args.before = quote!(let #first = #value; #before);
             value = quote!(#first);
         }
-        let generic =
-            turbofish.iter().map(|ty| quote!(<#ty as ::core::default::Default>::default()));
-        args.values.splice(0..0, generic);
+        args.values.splice(0..0, numbers(turbofish));
         let (machine, name) = (&self.machine, name.to_string());
         let call = MethodCall { machine, name, receiver: value, values: &args.values };
         args.around(match variable {
@@ -274,6 +273,11 @@ impl Emitter<'_> {
             _ => None,
         }
     }
+}
+
+/// Returns the arguments behind `::` as values.
+fn numbers(turbofish: &[TokenStream]) -> Vec<TokenStream> {
+    turbofish.iter().map(|ty| quote!(<#ty as ::core::default::Default>::default())).collect()
 }
 
 /// The arguments of a call, and the code around it for parts of variables passed by `&mut`.

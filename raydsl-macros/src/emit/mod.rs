@@ -174,6 +174,10 @@ impl<'a> Emitter<'a> {
 
     /// Returns the type of a parameter in lifted code.
     pub(crate) fn param(&self, param: &Param) -> TokenStream {
+        if param.scene {
+            let ty = &param.ty;
+            return quote!(&#ty);
+        }
         if !param.data {
             return self.on(&param.ty);
         }

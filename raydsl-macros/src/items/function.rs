@@ -135,7 +135,7 @@ fn never(generics: &Generics) -> TokenStream {
     }
     quote! {
         #[doc(hidden)]
-        __Never(::core::convert::Infallible, ::core::marker::PhantomData<(#(fn() -> #types,)*)>)
+        __Never(::core::convert::Infallible, #(::core::marker::PhantomData<fn(&#types)>,)*)
     }
 }
 
@@ -145,7 +145,7 @@ fn has_entry(kernel: &Kernel, sig: &syn::Signature) -> bool {
     if matches!(**result, syn::Type::Reference(_)) {
         return false;
     }
-    let is_value = |p: &Param| !(p.by_mut || p.host || p.data || p.function.is_some());
+    let is_value = |p: &Param| !(p.by_mut || p.host || p.data || p.scene || p.function.is_some());
     (1..=MOST_OF_ENTRY).contains(&kernel.params.len())
         && kernel.result.is_some()
         && kernel.params.iter().all(is_value)
@@ -200,6 +200,9 @@ fn passed(i: usize, param: &Param, kernel: &Kernel) -> Passed {
     }
     if param.host {
         return as_it_is(quote!(#name: #ty));
+    }
+    if param.scene {
+        return as_it_is(quote!(#name: impl #p::SceneArgument<Scene = #ty>));
     }
     if param.data {
         return as_it_is(quote!(#name: <#ty as #p::Parameter>::On<'__a, __M>));

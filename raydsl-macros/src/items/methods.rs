@@ -128,14 +128,16 @@ fn check(sig: &syn::Signature, attrs: &[syn::Attribute], errors: &mut Errors) {
         );
     }
     let clause = sig.generics.where_clause.as_ref();
-    let is_closure = |p: &syn::GenericParam| match p {
-        syn::GenericParam::Type(t) => parse::is_function(t, clause),
+    let own = Generics::new(&sig.generics);
+    let is_scene = |name: &Ident| own.scenes.iter().any(|(scene, _)| scene == name);
+    let is_inferred = |p: &syn::GenericParam| match p {
+        syn::GenericParam::Type(t) => parse::is_function(t, clause) || is_scene(&t.ident),
         p => matches!(p, syn::GenericParam::Lifetime(_)),
     };
-    if !sig.generics.params.iter().all(is_closure) {
+    if !sig.generics.params.iter().all(is_inferred) {
         errors.at(
             sig.generics.span(),
-            "a method of kernels has no type parameters of its own",
+            "a method of kernels has no type parameters of its own but scenes: `S: Scene`",
             "give them to the impl or the trait, or write a `#[kernel] fn`",
         );
     }
@@ -188,7 +190,12 @@ impl Method<'_> {
             let ty = self.twin(ty);
             return (quote!(&'__a #p::Var<#ty>), None);
         }
+        if param.scene {
+            let generic = format_ident!("__A{i}");
+            return (quote!(#generic), Some(quote!(#generic: #p::SceneArgument)));
+        }
         if param.data {
+            let ty = lent(ty.clone());
             return (quote!(<#ty as #p::Parameter>::On<'__a, __M>), None);
         }
         let ty = self.twin(ty);
@@ -215,6 +222,15 @@ impl Method<'_> {
         let (arguments, generics): (Vec<_>, Vec<_>) =
             rest.iter().enumerate().map(|(i, param)| self.argument(i, param)).unzip();
         let generics = generics.into_iter().flatten();
+        // What the method asks of its scenes.
+        let of_scenes =
+            rest.iter().enumerate().filter(|(_, param)| param.scene).map(|(i, param)| {
+                let (generic, ty) = (format_ident!("__A{i}"), param.ty.to_string());
+                let bounds =
+                    kernel.generics.scenes.iter().find(|(name, _)| *name == ty).map(|s| &s.1);
+                quote!(<#generic as #p::SceneArgument>::Scene: #bounds,)
+            });
+        let of_scenes: TokenStream = of_scenes.collect();
         let asserted = asserted_type(self_ty, around);
         let lifetime = rest.iter().any(|q| q.by_mut || q.data).then(|| quote!('__a,));
         let result = kernel.result.as_ref().map(|ty| self.twin(ty)).unwrap_or_else(|| quote!(()));
@@ -234,6 +250,7 @@ impl Method<'_> {
             where
                 #predicates
                 #asserted
+                #of_scenes
             {
                 type This = <Self as #p::Type>::On<__M>;
                 type Output = #result;
@@ -282,6 +299,21 @@ impl Method<'_> {
             }
         }
     }
+}
+
+/// Returns a type whose lifetimes are that of the call.
+fn lent(ty: TokenStream) -> TokenStream {
+    let Ok(mut ty) = syn::parse2::<syn::TypePath>(ty.clone()) else { return ty };
+    for segment in &mut ty.path.segments {
+        if let syn::PathArguments::AngleBracketed(arguments) = &mut segment.arguments {
+            for arg in &mut arguments.args {
+                if let syn::GenericArgument::Lifetime(lifetime) = arg {
+                    *lifetime = syn::parse_quote!('__a);
+                }
+            }
+        }
+    }
+    ty.into_token_stream()
 }
 
 /// Expands `#[kernel] trait`: every function gets a lifted one beside it.

@@ -5,12 +5,14 @@ mod function;
 mod methods;
 mod operators;
 mod primitive;
+mod scene;
 mod shape;
 
 pub(crate) use closure::{ClosureKernel, kernel_closure};
 pub(crate) use function::{KnownBy, kernel_fn};
 pub(crate) use methods::{kernel_impl, kernel_trait};
 pub(crate) use primitive::primitive_impl;
+pub(crate) use scene::scene;
 pub(crate) use shape::{Shape, with_shape};
 
 use proc_macro2::{Ident, TokenStream};
@@ -110,6 +112,9 @@ fn call_of(body: &TokenStream, kernel: &Kernel, emitter: &Emitter<'_>) -> TokenS
     let arguments = values().zip(&names).zip(&types).map(|((param, name), ty)| {
         let _at = of_type(&param.ty);
         let (p, m) = (private_here(), own("m"));
+        if param.scene {
+            return quote_here!(#p::SceneArgument::scene(&#name));
+        }
         quote_here!(#p::Coerce::<__M, #ty>::coerce(#name, #m))
     });
     // In WGSL a closure reads the variables of the function around it.
@@ -152,7 +157,7 @@ fn with_changes_set(call: TokenStream, kernel: &Kernel, emitter: &Emitter<'_>) -
 /// Returns assertions that the user's own types in a signature are types of kernels. If one is not,
 /// this is the error, and the code that uses it gives no others.
 fn asserted(kernel: &Kernel) -> TokenStream {
-    let is_value = |p: &&Param| !(p.data || p.host || p.function.is_some());
+    let is_value = |p: &&Param| !(p.data || p.scene || p.host || p.function.is_some());
     let values = kernel.params.iter().filter(is_value).map(|p| &p.ty);
     let mut seen = Vec::new();
     let asserted = values.chain(&kernel.result).filter_map(|ty| {
@@ -223,6 +228,9 @@ fn head(kernel: &Kernel, place: &Place<'_>, emitter: &Emitter<'_>) -> TokenStrea
         } else if param.host {
             let ty = &param.ty;
             quote!(#name: #ty)
+        } else if param.scene {
+            let ty = &param.ty;
+            quote!(#name: impl #p::SceneArgument<Scene = #ty>)
         } else if param.data {
             quote!(#name: #ty)
         } else if param.by_mut {
@@ -233,12 +241,17 @@ fn head(kernel: &Kernel, place: &Place<'_>, emitter: &Emitter<'_>) -> TokenStrea
     });
     let result = kernel.result.as_ref().map(|t| emitter.on(t)).unwrap_or_else(|| quote!(()));
     let lifetime = kernel.params.iter().any(|p| p.data).then(|| quote!('__a,));
-    let predicates = &kernel.generics.predicates;
+    let Generics { declared, predicates, .. } = &kernel.generics;
+    // The parameters of a free kernel are those of its type.
+    let declared = place.is_method.then_some(declared);
     let asserted = asserted(kernel);
     let results = closure_results(kernel, &|ty| emitter.on(ty));
     let clause = if place.is_method { quote!(where #predicates) } else { quote!(where #asserted) };
     quote! {
-        #vis fn #fn_name<#lifetime __M: #p::Machine, #results>(#m: &__M, #(#params,)*) -> #result
+        #vis fn #fn_name<#lifetime __M: #p::Machine, #declared #results>(
+            #m: &__M,
+            #(#params,)*
+        ) -> #result
         #clause
     }
 }

@@ -145,7 +145,16 @@ impl Parser<'_> {
             }
         };
         let (ty, function) = (ty.to_token_stream(), Some(function));
-        Param { name, ty, mutable: false, by_mut: false, data: false, host: false, function }
+        Param {
+            name,
+            ty,
+            mutable: false,
+            by_mut: false,
+            data: false,
+            scene: false,
+            host: false,
+            function,
+        }
     }
 
     /// Parses a closure that is a kernel, or an argument of a call.
@@ -200,7 +209,16 @@ impl Parser<'_> {
         let ty = quote!(_);
         let Pat::Ident(p) = pat else { return Some(self.parts_param(pat, ty, false, prologue)) };
         let (name, mutable) = (p.ident.clone(), p.mutability.is_some());
-        Some(Param { name, ty, mutable, by_mut: false, data: false, host: false, function: None })
+        Some(Param {
+            name,
+            ty,
+            mutable,
+            by_mut: false,
+            data: false,
+            scene: false,
+            host: false,
+            function: None,
+        })
     }
 
     /// Parses a closure that a variable names.

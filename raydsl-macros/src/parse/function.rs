@@ -29,8 +29,14 @@ pub(crate) fn function(
     let mut parser = Parser::new(attrs, errors);
     parser.functions = parser.function_parameters(&sig.generics);
     let mut prologue = Vec::new();
-    let params: Vec<Param> =
-        sig.inputs.iter().map(|arg| parser.param(arg, self_ty, &mut prologue)).collect();
+    let generics = Generics::without(&sig.generics, &parser.functions);
+    let param = |arg| {
+        let mut param = parser.param(arg, self_ty, &mut prologue);
+        let text = param.ty.to_string();
+        param.scene = is_shared(arg) && generics.scenes.iter().any(|(name, _)| *name == text);
+        param
+    };
+    let params: Vec<Param> = sig.inputs.iter().map(param).collect();
     let is_apart = attrs.iter().any(is_never_inlined);
     let takes_function = params.iter().any(|p| p.function.is_some());
     if let Some(never) = attrs.iter().find(|a| takes_function && is_never_inlined(a)) {
@@ -55,7 +61,6 @@ pub(crate) fn function(
     let span = body.span();
     let mut body = within(BODY, parser.block(body), span);
     body.stmts.splice(0..0, prologue);
-    let generics = Generics::without(&sig.generics, &parser.functions);
     let name = sig.ident.clone();
     Kernel { name, generics, params, result, body, is_apart, known: None, is_fn: false, is_broken }
 }
@@ -67,6 +72,12 @@ pub(super) fn within(label: &str, body: Block, span: Span) -> Block {
     }
     let kind = run_once(Some(label.to_owned()), body, span);
     Block { stmts: vec![], tail: Some(Box::new(Expr { kind, span })) }
+}
+
+/// Returns whether an argument is `&T`.
+fn is_shared(arg: &syn::FnArg) -> bool {
+    let syn::FnArg::Typed(typed) = arg else { return false };
+    matches!(&*typed.ty, syn::Type::Reference(_)) && !is_mut_reference(&typed.ty)
 }
 
 /// Checks that a kernel is neither `async` nor `unsafe`.
@@ -87,7 +98,7 @@ fn receiver(r: &syn::Receiver, self_ty: Option<&syn::Type>) -> Param {
     let mutable = r.mutability.is_some() && !by_mut;
     let ty = self_ty.map(ToTokens::to_token_stream).unwrap_or_else(|| quote!(Self));
     let name = Ident::new("self", r.self_token.span);
-    Param { name, ty, mutable, by_mut, data: false, host: false, function: None }
+    Param { name, ty, mutable, by_mut, data: false, scene: false, host: false, function: None }
 }
 
 impl Parser<'_> {
@@ -148,6 +159,7 @@ impl Parser<'_> {
                 mutable: p.mutability.is_some() && !by_mut,
                 by_mut,
                 data: shared && is_data(written),
+                scene: false,
                 host,
                 function: None,
             },
@@ -182,7 +194,7 @@ impl Parser<'_> {
         let name = self.temporary("parts");
         let from = Expr { kind: Kind::Name(name.clone()), span: pat.span() };
         self.irrefutable(pat, &from, prologue);
-        let function = None;
-        Param { name, ty, mutable: false, by_mut: false, data: false, host: false, function }
+        let (data, scene, host, function) = (false, false, false, None);
+        Param { name, ty, mutable: false, by_mut: false, data, scene, host, function }
     }
 }

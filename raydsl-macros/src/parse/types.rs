@@ -63,14 +63,24 @@ pub(super) fn is_unit(ty: &syn::Type) -> bool {
     matches!(ty, syn::Type::Tuple(t) if t.elems.is_empty())
 }
 
-/// Returns whether it is a slice, a tree or a texture, which are not copied.
+/// Returns whether it is a slice, a tree or a texture, which are not copied: a type with a lifetime,
+/// or one of the library's, whose lifetime may be left out.
 pub(super) fn is_data(ty: &syn::Type) -> bool {
     match ty {
         syn::Type::Reference(r) => is_data(&r.elem),
         syn::Type::Slice(_) => true,
-        syn::Type::Path(_) => type_name(ty).is_some_and(|name| ops::is_data(&name)),
+        syn::Type::Path(path) => {
+            has_lifetime(path) || type_name(ty).is_some_and(|name| ops::is_data(&name))
+        }
         _ => false,
     }
+}
+
+/// Returns whether a type borrows: no value of a kernel does.
+fn has_lifetime(path: &syn::TypePath) -> bool {
+    let arguments = path.path.segments.last().map(|last| &last.arguments);
+    let Some(syn::PathArguments::AngleBracketed(arguments)) = arguments else { return false };
+    arguments.args.iter().any(|arg| matches!(arg, syn::GenericArgument::Lifetime(_)))
 }
 
 /// Returns whether a path segment names a type rather than a module.

@@ -13,7 +13,7 @@ use core::iter::FusedIterator;
 use super::contract::{behind, is_before, is_within};
 use super::on::{AllHits, LocalRay};
 use super::query::{RecordOn, inserted, is_placed, limit_of, record_on, select};
-use super::{SceneView, View};
+use super::{RayQueryOn, SceneView, View};
 use crate::geometry::{Hit, HitOn, HitRecord, Kinds, Primitive, Ray, RayOn};
 use crate::machine::{B, Branch, Cursor, F, KernelInfo, Loop, Machine, Scalar, Type, U, Var, op};
 
@@ -22,38 +22,38 @@ const BATCH: usize = 4;
 
 /// Iterator over the hits of a ray, in the order of `(t, inst_id, prim_id)`: see
 /// [`RayQuery::hits`](super::RayQuery::hits).
-pub struct Hits<'a, P: Primitive> {
+pub struct Hits<V: RayQueryOn> {
     m: Scalar,
-    hits: HitsOn<'a, Scalar, P>,
-    state: State<Scalar>,
+    ray: Ray,
+    hits: V::Hits<Scalar>,
+    state: <V::Hits<Scalar> as Cursor<Scalar>>::State,
 }
 
-impl<'a, P: Primitive> Hits<'a, P> {
-    pub(super) fn new(scene: SceneView<'a, P>, ray: Ray) -> Self {
+impl<V: RayQueryOn> Hits<V> {
+    pub(super) fn new(scene: V, ray: Ray) -> Self {
         let m = Scalar::default();
-        let hits = HitsOn { scene, ray: Type::splat(&m, ray) };
+        let hits = scene.hits(&m, Type::splat(&m, ray));
         let state = hits.begin(&m);
-        Self { m, hits, state }
+        Self { m, ray, hits, state }
     }
 }
 
-impl<P: Primitive> core::fmt::Debug for Hits<'_, P> {
+impl<V: RayQueryOn> core::fmt::Debug for Hits<V> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let ray = Ray::lane::<Scalar>(&self.hits.ray, 0);
-        f.debug_struct("Hits").field("ray", &ray).finish_non_exhaustive()
+        f.debug_struct("Hits").field("ray", &self.ray).finish_non_exhaustive()
     }
 }
 
-impl<P: Primitive> Iterator for Hits<'_, P> {
-    type Item = P::Hit;
+impl<V: RayQueryOn> Iterator for Hits<V> {
+    type Item = V::Hit;
 
-    fn next(&mut self) -> Option<P::Hit> {
+    fn next(&mut self) -> Option<V::Hit> {
         let is_there = self.hits.advance(&self.m, &self.state).0;
-        is_there.then(|| P::Hit::lane::<Scalar>(&self.hits.item(&self.m, &self.state), 0))
+        is_there.then(|| V::Hit::lane::<Scalar>(&self.hits.item(&self.m, &self.state), 0))
     }
 }
 
-impl<P: Primitive> FusedIterator for Hits<'_, P> {}
+impl<V: RayQueryOn> FusedIterator for Hits<V> {}
 
 /// [`Hits`], lifted.
 pub struct HitsOn<'a, M: Machine, P: Primitive> {

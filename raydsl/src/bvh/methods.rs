@@ -1,208 +1,159 @@
 //! Methods of scenes in kernels: queries, and properties of a hit.
 
-use glam::Affine3;
+use super::ray_query::primitive_at;
+use super::{Joined, PrimitiveScene, RayQuery, RayQueryOn, SceneView};
+use crate::geometry::{HitOn, Primitive, RayOn};
+use crate::machine::{A3, B, Machine, Method, On, Slice, V3, Value, name};
 
-use super::hits::HitsOn;
-use super::on::{AnyHits, ClosestHits, LocalRay, ToObject};
-use super::query::{
-    any_where, closest_on, closest_where, closest_with_cost_on, multi_by, multi_where, record_on,
-};
-use super::traverse::CostOn;
-use super::{RecordOn, SceneView};
-use crate::geometry::{HitOn, Primitive, RayOn, transform_normal_back};
-use crate::machine::{
-    A3, B, Coerce, Const, Machine, Method, Slice, Type, U, V3, Value, fill, name,
-};
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("closest_hit") }, M, (RayOn<M>,)>
-    for SceneView<'_, P>
-{
-    type Output = RecordOn<M, P>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (ray,): (RayOn<M>,)) -> Self::Output {
-        closest_on(m, &self, ray)
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("closest_hit_with_cost") }, M, (RayOn<M>,)>
-    for SceneView<'_, P>
-{
-    type Output = (RecordOn<M, P>, CostOn<M>);
-
-    #[inline(always)]
-    fn call(self, m: &M, (ray,): (RayOn<M>,)) -> Self::Output {
-        closest_with_cost_on(m, &self, ray)
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("any_hit") }, M, (RayOn<M>,)> for SceneView<'_, P> {
-    type Output = B<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (ray,): (RayOn<M>,)) -> B<M> {
-        let [is_hit] = m.perform(&AnyHits(&self), [ray]);
-        is_hit
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<'a, M: Machine, P: Primitive> Method<{ name("hits") }, M, (RayOn<M>,)> for SceneView<'a, P> {
-    type Output = HitsOn<'a, M, P>;
-
-    #[inline(always)]
-    fn call(self, _: &M, (ray,): (RayOn<M>,)) -> HitsOn<'a, M, P> {
-        HitsOn { scene: self, ray }
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive, const N: usize>
-    Method<{ name("multi_hit") }, M, (Const<N>, RayOn<M>)> for SceneView<'_, P>
-{
-    type Output = [RecordOn<M, P>; N];
-
-    #[inline(always)]
-    fn call(self, m: &M, (_, ray): (Const<N>, RayOn<M>)) -> [RecordOn<M, P>; N] {
-        multi_where(m, &self, ray, &|_| B(m.bool(true)))
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M, P, R, G> Method<{ name("closest_hit_where") }, M, (RayOn<M>, G)> for SceneView<'_, P>
-where
-    M: Machine,
-    P: Primitive,
-    R: Coerce<M, B<M>>,
-    G: Fn(&M, RecordOn<M, P>) -> R,
-{
-    type Output = RecordOn<M, P>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (ray, accept): (RayOn<M>, G)) -> Self::Output {
-        let hit = closest_where(m, &self, ray, &|record| accept(m, record).coerce(m));
-        record_on(m, &self, ray, hit)
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M, P, R, G> Method<{ name("any_hit_where") }, M, (RayOn<M>, G)> for SceneView<'_, P>
-where
-    M: Machine,
-    P: Primitive,
-    R: Coerce<M, B<M>>,
-    G: Fn(&M, RecordOn<M, P>) -> R,
-{
-    type Output = B<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (ray, accept): (RayOn<M>, G)) -> B<M> {
-        any_where(m, &self, ray, &|record| accept(m, record).coerce(m))
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M, P, R, G, const N: usize> Method<{ name("multi_hit_where") }, M, (Const<N>, RayOn<M>, G)>
-    for SceneView<'_, P>
-where
-    M: Machine,
-    P: Primitive,
-    R: Coerce<M, B<M>>,
-    G: Fn(&M, RecordOn<M, P>) -> R,
-{
-    type Output = [RecordOn<M, P>; N];
-
-    #[inline(always)]
-    fn call(self, m: &M, (_, ray, accept): (Const<N>, RayOn<M>, G)) -> [RecordOn<M, P>; N] {
-        multi_where(m, &self, ray, &|record| accept(m, record).coerce(m))
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M, P, R, G, const N: usize> Method<{ name("multi_hit_by") }, M, (Const<N>, RayOn<M>, G)>
-    for SceneView<'_, P>
-where
-    M: Machine,
-    P: Primitive,
-    R: Coerce<M, B<M>>,
-    G: Fn(&M, HitOn<M>, HitOn<M>) -> R,
-{
-    type Output = [RecordOn<M, P>; N];
-
-    #[inline(always)]
-    fn call(self, m: &M, (_, ray, is_closer): (Const<N>, RayOn<M>, G)) -> [RecordOn<M, P>; N] {
-        multi_by(m, &self, ray, &|a, b| is_closer(m, a, b).coerce(m))
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M, P, R, G, const N: usize> Method<{ name("any_hit_each") }, M, (Const<N>, G)>
-    for SceneView<'_, P>
-where
-    M: Machine,
-    P: Primitive,
-    R: Coerce<M, RayOn<M>>,
-    G: Fn(&M, U<M>) -> R,
-{
-    type Output = [B<M>; N];
-
-    #[inline(always)]
-    fn call(self, m: &M, (_, ray): (Const<N>, G)) -> [B<M>; N] {
-        if M::RUNS {
-            return m.perform(&AnyHits(&self), rays(m, ray));
-        }
-        m.each(
-            #[inline(always)]
-            |i| {
-                let [is_hit] = m.perform(&AnyHits(&self), [ray(m, i).coerce(m)]);
+/// Implements the queries of a type that has a view.
+macro_rules! queries {
+    ([$($g:tt)*] $t:ty, $view:ty, |$this:ident| $scene:expr) => {
+        $crate::bvh::methods::queries! {
+            @each [$($g)*] $t, |$this| $scene;
+            "closest_hit", [], |m, scene, (ray): ($crate::geometry::RayOn<M>)| -> $crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M> {
+                let [hit] = $crate::bvh::RayQueryOn::closest_hits(scene, m, [ray]);
+                hit
+            }
+            "closest_hit_with_cost", [], |m, scene, (ray): ($crate::geometry::RayOn<M>)|
+                -> ($crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M>, $crate::bvh::traverse::CostOn<M>)
+            {
+                $crate::bvh::RayQueryOn::closest_hit_with_cost(scene, m, ray)
+            }
+            "any_hit", [], |m, scene, (ray): ($crate::geometry::RayOn<M>)| -> $crate::machine::B<M> {
+                let [is_hit] = $crate::bvh::RayQueryOn::any_hits(scene, m, [ray]);
                 is_hit
-            },
-        )
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M, P, R, G, const N: usize> Method<{ name("closest_hit_each") }, M, (Const<N>, G)>
-    for SceneView<'_, P>
-where
-    M: Machine,
-    P: Primitive,
-    R: Coerce<M, RayOn<M>>,
-    G: Fn(&M, U<M>) -> R,
-{
-    type Output = [RecordOn<M, P>; N];
-
-    #[inline(always)]
-    fn call(self, m: &M, (_, ray): (Const<N>, G)) -> Self::Output {
-        if M::RUNS {
-            let rays: [RayOn<M>; N] = rays(m, ray);
-            let hits = m.perform(&ClosestHits(&self), rays);
-            return fill(
-                #[inline(always)]
-                |i| record_on(m, &self, rays[i], hits[i]),
-            );
+            }
+            "hits", [], |m, scene, (ray): ($crate::geometry::RayOn<M>)| -> <$view as $crate::bvh::RayQueryOn>::Hits<M> {
+                $crate::bvh::RayQueryOn::hits(scene, m, ray)
+            }
+            "closest_hit_where",
+            [R: $crate::machine::Coerce<M, $crate::machine::B<M>>, G: Fn(&M, $crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M>) -> R],
+            |m, scene, (ray, accept): ($crate::geometry::RayOn<M>, G)| -> $crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M> {
+                $crate::bvh::RayQueryOn::closest_hit_where(scene, m, ray, |record| accept(m, record).coerce(m))
+            }
+            "any_hit_where",
+            [R: $crate::machine::Coerce<M, $crate::machine::B<M>>, G: Fn(&M, $crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M>) -> R],
+            |m, scene, (ray, accept): ($crate::geometry::RayOn<M>, G)| -> $crate::machine::B<M> {
+                $crate::bvh::RayQueryOn::any_hit_where(scene, m, ray, |record| accept(m, record).coerce(m))
+            }
+            "multi_hit", [const N: usize], |m, scene, (_n, ray): ($crate::machine::Const<N>, $crate::geometry::RayOn<M>)|
+                -> [$crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M>; N]
+            {
+                $crate::bvh::RayQueryOn::multi_hit_where(scene, m, ray, |_| $crate::machine::B(m.bool(true)))
+            }
+            "multi_hit_where",
+            [
+                R: $crate::machine::Coerce<M, $crate::machine::B<M>>,
+                G: Fn(&M, $crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M>) -> R,
+                const N: usize
+            ],
+            |m, scene, (_n, ray, accept): ($crate::machine::Const<N>, $crate::geometry::RayOn<M>, G)|
+                -> [$crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M>; N]
+            {
+                $crate::bvh::RayQueryOn::multi_hit_where(scene, m, ray, |record| accept(m, record).coerce(m))
+            }
+            "multi_hit_by",
+            [R: $crate::machine::Coerce<M, $crate::machine::B<M>>, G: Fn(&M, $crate::geometry::HitOn<M>, $crate::geometry::HitOn<M>) -> R, const N: usize],
+            |m, scene, (_n, ray, is_closer): ($crate::machine::Const<N>, $crate::geometry::RayOn<M>, G)|
+                -> [$crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M>; N]
+            {
+                $crate::bvh::RayQueryOn::multi_hit_by(scene, m, ray, |a, b| is_closer(m, a, b).coerce(m))
+            }
+            "any_hit_each",
+            [R: $crate::machine::Coerce<M, $crate::geometry::RayOn<M>>, G: Fn(&M, $crate::machine::U<M>) -> R, const N: usize],
+            |m, scene, (_n, ray): ($crate::machine::Const<N>, G)| -> [$crate::machine::B<M>; N] { $crate::bvh::ray_query::any_hit_each(m, scene, ray) }
+            "closest_hit_each",
+            [R: $crate::machine::Coerce<M, $crate::geometry::RayOn<M>>, G: Fn(&M, $crate::machine::U<M>) -> R, const N: usize],
+            |m, scene, (_n, ray): ($crate::machine::Const<N>, G)| -> [$crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M>; N] {
+                $crate::bvh::ray_query::closest_hit_each(m, scene, ray)
+            }
+            "to_object", [], |m, scene, (hit): ($crate::geometry::HitOn<M>)| -> $crate::machine::A3<M> {
+                $crate::bvh::RayQueryOn::to_object(scene, m, hit.inst_id)
+            }
+            "local_ray", [], |m, scene, (ray, hit): ($crate::geometry::RayOn<M>, $crate::geometry::HitOn<M>)| -> $crate::geometry::RayOn<M> {
+                $crate::bvh::RayQueryOn::local_ray(scene, m, ray, hit.inst_id)
+            }
+            "normal_in_scene", [], |m, scene, (hit, normal): ($crate::geometry::HitOn<M>, $crate::machine::V3<M>)| -> $crate::machine::V3<M> {
+                $crate::geometry::transform_normal_back::on(m, normal, $crate::bvh::RayQueryOn::to_object(scene, m, hit.inst_id))
+            }
         }
-        m.each(
+    };
+    (
+        @each [$($g:tt)*] $t:ty, |$this:ident| $scene:expr;
+        $(
+            $name:literal, [$($own:tt)*],
+            |$m:ident, $s:ident, ($($arg:ident),+): ($($arg_ty:ty),+)| -> $out:ty $body:block
+        )+
+    ) => {
+        $crate::bvh::methods::queries! { @paired [$($g)*] [$t] [|$this| $scene] $(
+            { $name, [$($own)*], |$m, $s, ($($arg),+): ($($arg_ty),+)| -> $out $body }
+        )+ }
+    };
+    (@paired $g:tt $t:tt $scene:tt $($query:tt)+) => {
+        $($crate::bvh::methods::queries! { @one $g $t $scene $query })+
+    };
+    (
+        @one [$($g:tt)*] [$t:ty] [|$this:ident| $scene:expr]
+        {
+            $name:literal, [$($own:tt)*],
+            |$m:ident, $s:ident, ($($arg:ident),+): ($($arg_ty:ty),+)| -> $out:ty $body:block
+        }
+    ) => {
+        #[diagnostic::do_not_recommend]
+        impl<$($g)*, M: $crate::machine::Machine, $($own)*> $crate::machine::Method<{ $crate::machine::name($name) }, M, ($($arg_ty,)+)> for $t {
+            type Output = $out;
+
             #[inline(always)]
-            |i| closest_on(m, &self, ray(m, i).coerce(m)),
-        )
-    }
+            fn call(self, $m: &M, ($($arg,)+): ($($arg_ty,)+)) -> $out {
+                let $this = self;
+                let $s = $scene;
+                $body
+            }
+        }
+    };
 }
 
-/// Evaluates all rays before the query.
-#[inline(always)]
-fn rays<M: Machine, R: Coerce<M, RayOn<M>>, const N: usize>(
-    m: &M,
-    ray: impl Fn(&M, U<M>) -> R,
-) -> [RayOn<M>; N] {
-    fill(
-        #[inline(always)]
-        |i| ray(m, U(m.u32(i as u32))).coerce(m),
-    )
+pub(crate) use queries;
+
+queries!(['a, P: Primitive] SceneView<'a, P>, SceneView<'a, P>, |view| view);
+queries! {
+    ['a, P: Primitive<Shared = ()>] Slice<'a, P>, SceneView<'a, P>, |prims| SceneView::slice(prims)
 }
+queries! {
+    [S: RayQueryOn, T: RayQueryOn<Hit = S::Hit>] Joined<S, T>, Joined<S, T>, |scenes| scenes
+}
+queries!(['s, S: RayQuery + ?Sized] &'s S, S::View<'s>, |scene| scene.view());
+
+/// Implements what scenes of primitives of one type have besides.
+macro_rules! primitives {
+    ([$($g:tt)*] $t:ty, $p:ty, |$this:ident| $view:expr) => {
+        #[diagnostic::do_not_recommend]
+        impl<'a, $($g)*, M: Machine> Method<{ name("primitive") }, M, (HitOn<M>,)> for $t {
+            type Output = On<$p, M>;
+
+            #[inline(always)]
+            fn call(self, m: &M, (hit,): (HitOn<M>,)) -> On<$p, M> {
+                let $this = self;
+                primitive_at(m, &$view, hit)
+            }
+        }
+
+        #[diagnostic::do_not_recommend]
+        impl<'a, $($g)*, M: Machine> Method<{ name("shared") }, M, ()> for $t {
+            type Output = Slice<'a, <$p as Primitive>::Shared>;
+
+            #[inline(always)]
+            fn call(self, _: &M, (): ()) -> Self::Output {
+                let $this = self;
+                SceneView::shared(&$view)
+            }
+        }
+    };
+}
+
+primitives!([P: Primitive] SceneView<'a, P>, P, |view| view);
+primitives!([P: Primitive<Shared = ()>] Slice<'a, P>, P, |prims| SceneView::slice(prims));
+primitives!([S: PrimitiveScene + ?Sized] &'a S, S::Primitive, |scene| scene.primitives_view());
 
 /// Queries of a captured array. It is a value of the kernel, but rays need primitives in memory.
 pub struct PrimitivesOfValue<M>(core::marker::PhantomData<M>);
@@ -251,94 +202,3 @@ const _: () = {
         "normal_in_scene" -> V3<M>;
     }
 };
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("primitive") }, M, (HitOn<M>,)> for SceneView<'_, P> {
-    type Output = P::On<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (hit,): (HitOn<M>,)) -> P::On<M> {
-        let id = m.u32_select(hit.is_hit.0, hit.prim_id.0, m.u32(0));
-        // The hit may belong to another scene.
-        m.element(&self, U(id))
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("to_object") }, M, (HitOn<M>,)> for SceneView<'_, P> {
-    type Output = A3<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (hit,): (HitOn<M>,)) -> A3<M> {
-        match self.placed() {
-            Some(_) => m.perform(&ToObject(&self), hit.inst_id),
-            None => Affine3::splat(m, Affine3::IDENTITY),
-        }
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("local_ray") }, M, (RayOn<M>, HitOn<M>)>
-    for SceneView<'_, P>
-{
-    type Output = RayOn<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (ray, hit): (RayOn<M>, HitOn<M>)) -> RayOn<M> {
-        match self.placed() {
-            Some(_) => m.perform(&LocalRay(&self), (ray, hit.inst_id)),
-            None => ray,
-        }
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, P: Primitive> Method<{ name("normal_in_scene") }, M, (HitOn<M>, V3<M>)>
-    for SceneView<'_, P>
-{
-    type Output = V3<M>;
-
-    #[inline(always)]
-    fn call(self, m: &M, (hit, normal): (HitOn<M>, V3<M>)) -> V3<M> {
-        let map = Method::<{ name("to_object") }, M, (HitOn<M>,)>::call(self, m, (hit,));
-        transform_normal_back::on(m, normal, map)
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<'a, M: Machine, P: Primitive> Method<{ name("shared") }, M, ()> for SceneView<'a, P> {
-    type Output = Slice<'a, P::Shared>;
-
-    #[inline(always)]
-    fn call(self, _: &M, (): ()) -> Slice<'a, P::Shared> {
-        SceneView::shared(&self)
-    }
-}
-
-/// Implements the methods for slices of primitives, which are scenes too.
-macro_rules! of_slices {
-    ($($name:literal)+) => {
-        $(
-            #[diagnostic::do_not_recommend]
-            impl<'a, M: Machine, P: Primitive<Shared = ()>, A> Method<{ name($name) }, M, A>
-                for Slice<'a, P>
-            where
-                SceneView<'a, P>: Method<{ name($name) }, M, A>,
-            {
-                type Output = <SceneView<'a, P> as Method<{ name($name) }, M, A>>::Output;
-
-                #[inline(always)]
-                fn call(self, m: &M, args: A) -> Self::Output {
-                    SceneView::slice(self).call(m, args)
-                }
-            }
-        )+
-    };
-}
-
-of_slices! {
-    "closest_hit" "closest_hit_each" "closest_hit_where" "closest_hit_with_cost"
-    "any_hit" "any_hit_each" "any_hit_where"
-    "hits" "multi_hit" "multi_hit_by" "multi_hit_where"
-    "primitive" "local_ray" "to_object" "normal_in_scene" "shared"
-}

@@ -5,7 +5,7 @@
 
 use super::SceneView;
 use super::contract::{is_before, limit_behind};
-use super::on::{AllHits, ClosestHitWithCost, ClosestHits, LocalRay, Slack};
+use super::on::{AllHits, ClosestHitWithCost, LocalRay, Slack};
 use super::traverse::CostOn;
 use crate::geometry::{Hit, HitOn, HitRecord, Kinds, Primitive, RayOn};
 use crate::machine::{B, Branch, F, Machine, Type, U, Var, op};
@@ -13,19 +13,7 @@ use crate::machine::{B, Branch, F, Machine, Type, U, Var, op};
 /// The lifted result of `intersect` of a primitive.
 pub(crate) type RecordOn<M, P> = <<P as Primitive>::Hit as Type>::On<M>;
 
-/// Completes the record of the least `(t, id)` hit: traversals keep only the hit itself, and the
-/// rest is computed again for the primitive that was hit.
-#[inline(always)]
-pub(crate) fn closest_on<M: Machine, P: Primitive>(
-    m: &M,
-    prims: &SceneView<'_, P>,
-    ray: RayOn<M>,
-) -> RecordOn<M, P> {
-    let [hit] = m.perform(&ClosestHits(prims), [ray]);
-    record_on(m, prims, ray, hit)
-}
-
-/// Does [`closest_on`] and counts the cost of each ray as if it were traced by itself.
+/// Finds the least `(t, id)` hit, and counts the cost of each ray as if it were traced by itself.
 #[inline(always)]
 pub(super) fn closest_with_cost_on<M: Machine, P: Primitive>(
     m: &M,
@@ -36,6 +24,8 @@ pub(super) fn closest_with_cost_on<M: Machine, P: Primitive>(
     (record_on(m, prims, ray, counted.hit), counted.cost)
 }
 
+/// Completes the record of a hit: traversals keep only the hit itself, and the rest is computed
+/// again for the primitive that was hit.
 #[inline(always)]
 pub(crate) fn record_on<M: Machine, P: Primitive>(
     m: &M,
@@ -177,7 +167,7 @@ pub(super) fn multi_by<M: Machine, P: Primitive, const N: usize>(
 /// Returns whether `a` precedes `b` in the order of `is_closer`, then of `(t, inst_id, prim_id)`.
 /// `is_closer` is not called with a miss.
 #[inline(always)]
-fn is_before_by<M: Machine>(
+pub(super) fn is_before_by<M: Machine>(
     m: &M,
     is_placed: bool,
     is_closer: &impl Fn(HitOn<M>, HitOn<M>) -> B<M>,

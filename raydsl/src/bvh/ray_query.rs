@@ -2,11 +2,10 @@
 
 use glam::{Affine3, Vec3};
 
-use super::{
-    Accelerated, Bvh, BvhList, Cost, Hits, Instances, SceneView, View, batch, query, traverse,
-};
-use crate::geometry::{Hit, HitOn, Primitive, Ray, transform_normal_back};
-use crate::machine::{B, Data, Scalar, Slice, Type};
+use super::traverse::CostOn;
+use super::{Accelerated, Bvh, BvhList, Cost, Hits, Instances, RayQueryOn, SceneView, View};
+use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn, transform_normal_back};
+use crate::machine::{A3, B, Coerce, Const, Data, Machine, On, Scalar, Slice, Type, U, V3, fill};
 
 /// Queries of a scene: a slice, a tree ([`Bvh`]), a list of trees ([`BvhList`]), trees placed many
 /// times ([`Instances`]), or an application-defined acceleration structure ([`Accelerated`]).
@@ -14,30 +13,32 @@ use crate::machine::{B, Data, Scalar, Slice, Type};
 /// A query of a slice tests every primitive, and is faster than a tree for a few dozen of them. The
 /// results do not depend on the scene's structure, and are the same as in kernels.
 pub trait RayQuery {
-    /// The type of primitives.
-    type Primitive: Primitive;
+    /// The record of a hit: [`Hit`], or what the primitives' `intersect` returns.
+    type Hit: HitRecord;
+
+    /// The view that kernels work on.
+    type View<'a>: RayQueryOn<Hit = Self::Hit>
+    where
+        Self: 'a;
 
     /// Returns the view that kernels work on.
-    fn view(&self) -> SceneView<'_, Self::Primitive>;
+    fn view(&self) -> Self::View<'_>;
 
     /// Finds the least `(t, id)` hit of `ray`.
-    fn closest_hit(&self, ray: Ray) -> <Self::Primitive as Primitive>::Hit {
-        traverse::closest_hit(&self.view(), ray)
+    fn closest_hit(&self, ray: Ray) -> Self::Hit {
+        self.view().closest_hit_of(ray)
     }
 
     /// Finds whether `ray` hits anything.
     fn any_hit(&self, ray: Ray) -> bool {
-        traverse::any_hit(&self.view(), ray)
+        self.view().any_hit_of(ray)
     }
 
     /// Finds the least `(t, id)` hit of each of `N` rays, `ray(0)` to `ray(N - 1)`.
     ///
     /// One query of many rays is faster than many queries of one; the results are those of
     /// [`RayQuery::closest_hit`]. Inside a kernel `ray` is a closure of the kernel.
-    fn closest_hit_each<const N: usize>(
-        &self,
-        ray: impl Fn(u32) -> Ray,
-    ) -> [<Self::Primitive as Primitive>::Hit; N] {
+    fn closest_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [Self::Hit; N] {
         core::array::from_fn(|i| self.closest_hit(ray(i as u32)))
     }
 
@@ -81,39 +82,31 @@ pub trait RayQuery {
     /// assert!(hits[35].is_hit && hits[35].t == 1.0 && !hits[36].is_hit);
     /// # Ok::<(), raydsl::bvh::BuildError>(())
     /// ```
-    fn closest_hits(&self, rays: &[Ray]) -> Vec<<Self::Primitive as Primitive>::Hit> {
-        batch::closest_hits(&self.view(), rays)
+    fn closest_hits(&self, rays: &[Ray]) -> Vec<Self::Hit> {
+        self.view().closest_hits_of(rays)
     }
 
     /// Finds whether each ray hits anything, in packets, as [`RayQuery::closest_hits`]. Hundreds of
     /// rays are traced fastest if rays that begin near each other are consecutive.
     fn any_hits(&self, rays: &[Ray]) -> Vec<bool> {
-        batch::any_hits(&self.view(), rays)
+        self.view().any_hits_of(rays)
     }
 
     /// Finds the least `(t, id)` hit of `ray` that `accept` accepts, as for cut-out leaves and
     /// back-face culling. `accept` is called with some of the hits, in any order. Inside a kernel
     /// it is a closure of the kernel, which may capture variables.
-    fn closest_hit_where(
-        &self,
-        ray: Ray,
-        accept: impl Fn(<Self::Primitive as Primitive>::Hit) -> bool,
-    ) -> <Self::Primitive as Primitive>::Hit {
-        let (m, scene) = (&Scalar::default(), &self.view());
+    fn closest_hit_where(&self, ray: Ray, accept: impl Fn(Self::Hit) -> bool) -> Self::Hit {
+        let m = &Scalar::default();
         let accept = |record| B(accept(Type::lane::<Scalar>(&record, 0)));
-        let hit = query::closest_where(m, scene, Type::splat(m, ray), &accept);
-        traverse::complete(scene, ray, Type::lane::<Scalar>(&hit, 0))
+        let hit = self.view().closest_hit_where(m, Type::splat(m, ray), accept);
+        Type::lane::<Scalar>(&hit, 0)
     }
 
     /// Finds whether `ray` has a hit that `accept` accepts.
-    fn any_hit_where(
-        &self,
-        ray: Ray,
-        accept: impl Fn(<Self::Primitive as Primitive>::Hit) -> bool,
-    ) -> bool {
+    fn any_hit_where(&self, ray: Ray, accept: impl Fn(Self::Hit) -> bool) -> bool {
         let m = &Scalar::default();
         let accept = |record| B(accept(Type::lane::<Scalar>(&record, 0)));
-        query::any_where(m, &self.view(), Type::splat(m, ray), &accept).0
+        self.view().any_hit_where(m, Type::splat(m, ray), accept).0
     }
 
     /// Finds the `N` least `(t, id)` hits of `ray`, in order, followed by misses. Each primitive
@@ -133,7 +126,7 @@ pub trait RayQuery {
     /// assert_eq!(depths.call((Ray::new(v(1.0, 1.0, 0.0), Vec3::Z),)), (1.0, 2.0, 2));
     /// # Ok::<(), raydsl::bvh::BuildError>(())
     /// ```
-    fn multi_hit<const N: usize>(&self, ray: Ray) -> [<Self::Primitive as Primitive>::Hit; N] {
+    fn multi_hit<const N: usize>(&self, ray: Ray) -> [Self::Hit; N] {
         self.multi_hit_where(ray, |_| true)
     }
 
@@ -141,11 +134,11 @@ pub trait RayQuery {
     fn multi_hit_where<const N: usize>(
         &self,
         ray: Ray,
-        accept: impl Fn(<Self::Primitive as Primitive>::Hit) -> bool,
-    ) -> [<Self::Primitive as Primitive>::Hit; N] {
+        accept: impl Fn(Self::Hit) -> bool,
+    ) -> [Self::Hit; N] {
         let m = &Scalar::default();
         let accept = |record| B(accept(Type::lane::<Scalar>(&record, 0)));
-        let hits = query::multi_where(m, &self.view(), Type::splat(m, ray), &accept);
+        let hits = self.view().multi_hit_where(m, Type::splat(m, ray), accept);
         hits.map(|hit| Type::lane::<Scalar>(&hit, 0))
     }
 
@@ -172,11 +165,11 @@ pub trait RayQuery {
         &self,
         ray: Ray,
         is_closer: impl Fn(Hit, Hit) -> bool,
-    ) -> [<Self::Primitive as Primitive>::Hit; N] {
+    ) -> [Self::Hit; N] {
         let m = &Scalar::default();
         let host = |hit: HitOn<Scalar>| Hit::lane::<Scalar>(&hit, 0);
         let is_closer = |a, b| B(is_closer(host(a), host(b)));
-        let hits = query::multi_by(m, &self.view(), Type::splat(m, ray), &is_closer);
+        let hits = self.view().multi_hit_by(m, Type::splat(m, ray), is_closer);
         hits.map(|hit| Type::lane::<Scalar>(&hit, 0))
     }
 
@@ -214,7 +207,7 @@ pub trait RayQuery {
     /// assert_eq!(thickness.call((ray,)), 4.0);
     /// # Ok::<(), raydsl::bvh::BuildError>(())
     /// ```
-    fn hits(&self, ray: Ray) -> Hits<'_, Self::Primitive> {
+    fn hits(&self, ray: Ray) -> Hits<Self::View<'_>> {
         Hits::new(self.view(), ray)
     }
 
@@ -222,14 +215,17 @@ pub trait RayQuery {
     /// [instances](Instances). Primitives, and their methods for hits, are in the object's space.
     /// `t` is the same in both.
     fn local_ray(&self, ray: Ray, hit: Hit) -> Ray {
-        self.view().local_ray(hit.inst_id, ray)
+        let m = &Scalar::default();
+        let ray = RayQueryOn::local_ray(self.view(), m, Type::splat(m, ray), U(hit.inst_id));
+        Type::lane::<Scalar>(&ray, 0)
     }
 
     /// Returns the transform from the space of the scene to that of the object that was hit; the
     /// identity without instances. [`RayQuery::local_ray`] transforms a ray to the same bits as the
     /// traversal does.
     fn to_object(&self, hit: Hit) -> Affine3 {
-        self.view().to_object(hit.inst_id)
+        let m = &Scalar::default();
+        Type::lane::<Scalar>(&RayQueryOn::to_object(self.view(), m, U(hit.inst_id)), 0)
     }
 
     /// Transforms the unit normal of a hit from the space of its object to that of the scene.
@@ -257,14 +253,227 @@ pub trait RayQuery {
     /// Finds the least `(t, id)` hit of `ray`, and the cost of the traversal. In kernels all
     /// variants count the nodes of a single-ray traversal, and a device tests every primitive of an
     /// [`Accelerated`].
-    fn closest_hit_with_cost(&self, ray: Ray) -> (<Self::Primitive as Primitive>::Hit, Cost) {
-        traverse::closest_hit_with_cost(&self.view(), ray)
+    fn closest_hit_with_cost(&self, ray: Ray) -> (Self::Hit, Cost) {
+        self.view().closest_hit_with_cost_of(ray)
     }
 
     /// Finds whether `ray` hits anything, and the cost of the traversal. On the host only.
     fn any_hit_with_cost(&self, ray: Ray) -> (bool, Cost) {
-        traverse::any_hit_with_cost(&self.view(), ray)
+        self.view().any_hit_with_cost_of(ray)
     }
+
+    // What kernels call that are generic over the scene.
+
+    #[doc(hidden)]
+    #[inline(always)]
+    fn closest_hit_on<M: Machine>(
+        m: &M,
+        scene: &Self,
+        ray: impl Coerce<M, RayOn<M>>,
+    ) -> On<Self::Hit, M> {
+        let [hit] = scene.view().closest_hits(m, [ray.coerce(m)]);
+        hit
+    }
+
+    #[doc(hidden)]
+    #[inline(always)]
+    fn any_hit_on<M: Machine>(m: &M, scene: &Self, ray: impl Coerce<M, RayOn<M>>) -> B<M> {
+        let [is_hit] = scene.view().any_hits(m, [ray.coerce(m)]);
+        is_hit
+    }
+
+    #[doc(hidden)]
+    #[inline(always)]
+    fn closest_hit_each_on<M: Machine, R: Coerce<M, RayOn<M>>, const N: usize>(
+        m: &M,
+        scene: &Self,
+        _: Const<N>,
+        ray: impl Fn(&M, U<M>) -> R,
+    ) -> [On<Self::Hit, M>; N] {
+        closest_hit_each(m, scene.view(), ray)
+    }
+
+    #[doc(hidden)]
+    #[inline(always)]
+    fn any_hit_each_on<M: Machine, R: Coerce<M, RayOn<M>>, const N: usize>(
+        m: &M,
+        scene: &Self,
+        _: Const<N>,
+        ray: impl Fn(&M, U<M>) -> R,
+    ) -> [B<M>; N] {
+        any_hit_each(m, scene.view(), ray)
+    }
+
+    #[doc(hidden)]
+    #[inline(always)]
+    fn closest_hit_with_cost_on<M: Machine>(
+        m: &M,
+        scene: &Self,
+        ray: impl Coerce<M, RayOn<M>>,
+    ) -> (On<Self::Hit, M>, CostOn<M>) {
+        scene.view().closest_hit_with_cost(m, ray.coerce(m))
+    }
+
+    #[doc(hidden)]
+    #[inline(always)]
+    fn closest_hit_where_on<M: Machine, R: Coerce<M, B<M>>>(
+        m: &M,
+        scene: &Self,
+        ray: impl Coerce<M, RayOn<M>>,
+        accept: impl Fn(&M, On<Self::Hit, M>) -> R,
+    ) -> On<Self::Hit, M> {
+        scene.view().closest_hit_where(m, ray.coerce(m), |hit| accept(m, hit).coerce(m))
+    }
+
+    #[doc(hidden)]
+    #[inline(always)]
+    fn any_hit_where_on<M: Machine, R: Coerce<M, B<M>>>(
+        m: &M,
+        scene: &Self,
+        ray: impl Coerce<M, RayOn<M>>,
+        accept: impl Fn(&M, On<Self::Hit, M>) -> R,
+    ) -> B<M> {
+        scene.view().any_hit_where(m, ray.coerce(m), |hit| accept(m, hit).coerce(m))
+    }
+
+    #[doc(hidden)]
+    #[inline(always)]
+    fn multi_hit_on<M: Machine, const N: usize>(
+        m: &M,
+        scene: &Self,
+        _: Const<N>,
+        ray: impl Coerce<M, RayOn<M>>,
+    ) -> [On<Self::Hit, M>; N] {
+        scene.view().multi_hit_where(m, ray.coerce(m), |_| B(m.bool(true)))
+    }
+
+    #[doc(hidden)]
+    #[inline(always)]
+    fn multi_hit_where_on<M: Machine, R: Coerce<M, B<M>>, const N: usize>(
+        m: &M,
+        scene: &Self,
+        _: Const<N>,
+        ray: impl Coerce<M, RayOn<M>>,
+        accept: impl Fn(&M, On<Self::Hit, M>) -> R,
+    ) -> [On<Self::Hit, M>; N] {
+        scene.view().multi_hit_where(m, ray.coerce(m), |hit| accept(m, hit).coerce(m))
+    }
+
+    #[doc(hidden)]
+    #[inline(always)]
+    fn multi_hit_by_on<M: Machine, R: Coerce<M, B<M>>, const N: usize>(
+        m: &M,
+        scene: &Self,
+        _: Const<N>,
+        ray: impl Coerce<M, RayOn<M>>,
+        is_closer: impl Fn(&M, HitOn<M>, HitOn<M>) -> R,
+    ) -> [On<Self::Hit, M>; N] {
+        scene.view().multi_hit_by(m, ray.coerce(m), |a, b| is_closer(m, a, b).coerce(m))
+    }
+
+    #[doc(hidden)]
+    #[inline(always)]
+    fn hits_on<'a, M: Machine>(
+        m: &M,
+        scene: &'a Self,
+        ray: impl Coerce<M, RayOn<M>>,
+    ) -> <Self::View<'a> as RayQueryOn>::Hits<M> {
+        scene.view().hits(m, ray.coerce(m))
+    }
+
+    #[doc(hidden)]
+    #[inline(always)]
+    fn local_ray_on<M: Machine>(
+        m: &M,
+        scene: &Self,
+        ray: impl Coerce<M, RayOn<M>>,
+        hit: impl Coerce<M, HitOn<M>>,
+    ) -> RayOn<M> {
+        RayQueryOn::local_ray(scene.view(), m, ray.coerce(m), hit.coerce(m).inst_id)
+    }
+
+    #[doc(hidden)]
+    #[inline(always)]
+    fn to_object_on<M: Machine>(m: &M, scene: &Self, hit: impl Coerce<M, HitOn<M>>) -> A3<M> {
+        RayQueryOn::to_object(scene.view(), m, hit.coerce(m).inst_id)
+    }
+
+    #[doc(hidden)]
+    #[inline(always)]
+    fn normal_in_scene_on<M: Machine>(
+        m: &M,
+        scene: &Self,
+        hit: impl Coerce<M, HitOn<M>>,
+        normal: impl Coerce<M, V3<M>>,
+    ) -> V3<M> {
+        let map = RayQueryOn::to_object(scene.view(), m, hit.coerce(m).inst_id);
+        transform_normal_back::on(m, normal, map)
+    }
+}
+
+/// Traces rays that a closure of the kernel makes.
+#[inline(always)]
+pub(crate) fn closest_hit_each<
+    M: Machine,
+    V: RayQueryOn,
+    R: Coerce<M, RayOn<M>>,
+    const N: usize,
+>(
+    m: &M,
+    scene: V,
+    ray: impl Fn(&M, U<M>) -> R,
+) -> [On<V::Hit, M>; N] {
+    if M::RUNS {
+        return scene.closest_hits(m, rays(m, ray));
+    }
+    m.each(
+        #[inline(always)]
+        |i| {
+            let [hit] = scene.closest_hits(m, [ray(m, i).coerce(m)]);
+            hit
+        },
+    )
+}
+
+/// Traces rays that a closure of the kernel makes.
+#[inline(always)]
+pub(crate) fn any_hit_each<M: Machine, V: RayQueryOn, R: Coerce<M, RayOn<M>>, const N: usize>(
+    m: &M,
+    scene: V,
+    ray: impl Fn(&M, U<M>) -> R,
+) -> [B<M>; N] {
+    if M::RUNS {
+        return scene.any_hits(m, rays(m, ray));
+    }
+    m.each(
+        #[inline(always)]
+        |i| {
+            let [is_hit] = scene.any_hits(m, [ray(m, i).coerce(m)]);
+            is_hit
+        },
+    )
+}
+
+/// Evaluates all rays before the query.
+#[inline(always)]
+fn rays<M: Machine, R: Coerce<M, RayOn<M>>, const N: usize>(
+    m: &M,
+    ray: impl Fn(&M, U<M>) -> R,
+) -> [RayOn<M>; N] {
+    fill(
+        #[inline(always)]
+        |i| ray(m, U(m.u32(i as u32))).coerce(m),
+    )
+}
+
+/// A scene of primitives of one type, which can be read by their hits.
+pub trait PrimitiveScene: RayQuery<Hit = <Self::Primitive as Primitive>::Hit> {
+    /// The type of primitives.
+    type Primitive: Primitive;
+
+    /// Returns the view of the primitives.
+    #[doc(hidden)]
+    fn primitives_view(&self) -> SceneView<'_, Self::Primitive>;
 
     /// Returns the primitive that was hit; the first one for a miss, so that code need not branch.
     ///
@@ -272,46 +481,80 @@ pub trait RayQuery {
     ///
     /// If there are no primitives.
     fn primitive(&self, hit: Hit) -> Self::Primitive {
-        self.view().get(if hit.is_hit { hit.prim_id } else { 0 })
+        self.primitives_view().get(if hit.is_hit { hit.prim_id } else { 0 })
+    }
+
+    #[doc(hidden)]
+    #[inline(always)]
+    fn primitive_on<M: Machine>(
+        m: &M,
+        scene: &Self,
+        hit: impl Coerce<M, HitOn<M>>,
+    ) -> On<Self::Primitive, M> {
+        primitive_at(m, &scene.primitives_view(), hit.coerce(m))
     }
 }
 
-impl<P: Primitive<Shared = ()>> RayQuery for [P] {
-    type Primitive = P;
-
-    fn view(&self) -> SceneView<'_, P> {
-        View::slice(Slice::new(self, "prims"))
-    }
+/// Returns the primitive that was hit.
+#[inline(always)]
+pub(super) fn primitive_at<M: Machine, P: Primitive>(
+    m: &M,
+    scene: &SceneView<'_, P>,
+    hit: HitOn<M>,
+) -> P::On<M> {
+    let id = m.u32_select(hit.is_hit.0, hit.prim_id.0, m.u32(0));
+    // The hit may belong to another scene.
+    m.element(scene, U(id))
 }
 
-impl<P: Primitive> RayQuery for Bvh<'_, P> {
-    type Primitive = P;
+macro_rules! scenes {
+    ($([$($g:tt)*] $t:ty, |$scene:ident| $view:expr;)+) => {
+        $(
+            impl<$($g)*> RayQuery for $t {
+                type Hit = P::Hit;
+                type View<'v>
+                    = SceneView<'v, P>
+                where
+                    Self: 'v;
 
-    fn view(&self) -> SceneView<'_, P> {
-        Bvh::view(self)
-    }
+                #[inline(always)]
+                fn view(&self) -> SceneView<'_, P> {
+                    let $scene = self;
+                    $view
+                }
+            }
+
+            impl<$($g)*> PrimitiveScene for $t {
+                type Primitive = P;
+
+                #[inline(always)]
+                fn primitives_view(&self) -> SceneView<'_, P> {
+                    self.view()
+                }
+            }
+        )+
+    };
 }
 
-impl<P: Primitive> RayQuery for Accelerated<'_, P> {
-    type Primitive = P;
-
-    fn view(&self) -> SceneView<'_, P> {
-        Accelerated::view(self)
-    }
+scenes! {
+    [P: Primitive<Shared = ()>] [P], |prims| View::slice(Slice::new(prims, "prims"));
+    [P: Primitive<Shared = ()>] Slice<'_, P>, |prims| View::slice(*prims);
+    [P: Primitive] SceneView<'_, P>, |view| *view;
+    [P: Primitive] Bvh<'_, P>, |bvh| Bvh::view(bvh);
+    [P: Primitive] Accelerated<'_, P>, |scene| Accelerated::view(scene);
+    [P: Primitive] Instances<'_, P>, |scene| Instances::view(scene);
+    [P: Primitive] BvhList<'_, P>, |list| BvhList::view(list);
 }
 
-impl<P: Primitive> RayQuery for Instances<'_, P> {
-    type Primitive = P;
+impl<S: RayQuery + ?Sized> RayQuery for &S {
+    type Hit = S::Hit;
+    type View<'v>
+        = S::View<'v>
+    where
+        Self: 'v;
 
-    fn view(&self) -> SceneView<'_, P> {
-        Instances::view(self)
-    }
-}
-
-impl<P: Primitive> RayQuery for BvhList<'_, P> {
-    type Primitive = P;
-
-    fn view(&self) -> SceneView<'_, P> {
-        BvhList::view(self)
+    #[inline(always)]
+    fn view(&self) -> S::View<'_> {
+        S::view(self)
     }
 }

@@ -84,6 +84,14 @@ pub struct Cost {
     pub primitives: u32,
 }
 
+impl core::ops::Add for Cost {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { nodes: self.nodes + other.nodes, primitives: self.primitives + other.primitives }
+    }
+}
+
 /// A hit, and the cost of its traversal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 #[repr(C)]

@@ -348,6 +348,12 @@ impl<'a, T, S> View<'a, T, S> {
         !self.is_slice() && !self.is_standing()
     }
 
+    /// Returns whether it is a scene of instances, whose primitives are in spaces of their own.
+    #[inline(always)]
+    pub(crate) fn has_instances(&self) -> bool {
+        self.placed().is_some()
+    }
+
     /// Returns whether it is a list of trees.
     pub(crate) fn is_list(&self) -> bool {
         matches!(self.scene, Scene::List(_))

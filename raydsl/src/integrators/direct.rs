@@ -4,20 +4,21 @@ use core::f32::consts::FRAC_1_PI;
 
 use glam::{Vec3, Vec4, vec4};
 
-use super::{DirectionalLight, Light, PointLight, Surface, facing};
-use crate::bvh::{Bvh, RayQuery};
-use crate::geometry::{Hit, Primitive, Ray, SurfacePoint};
+use super::{DirectionalLight, Light, PointLight};
+use crate::bvh::RayQuery;
+use crate::geometry::{Ray, SurfacePoint};
 use crate::kernel;
 use crate::machine::Type;
 use crate::machine::functions::vec4;
+use crate::shading::{Scene, facing};
 
 // ANCHOR: direct_light
 /// Sums the irradiance at a point from all of `lights`.
 ///
 /// Shadow rays are traced only where `shadows` is true.
 #[kernel]
-pub fn irradiance<P: Primitive, L: Light + Type>(
-    scene: &Bvh<'_, P>,
+pub fn irradiance<S: RayQuery + ?Sized, L: Light + Type>(
+    scene: &S,
     lights: &[L],
     #[host] shadows: bool,
     point: SurfacePoint,
@@ -38,8 +39,8 @@ pub fn irradiance<P: Primitive, L: Light + Type>(
 /// point lights `lamps` and the directional lights `suns` (Lambert, "Photometria", 1760). Alpha is
 /// 1; all components are 0 where the ray misses.
 #[kernel]
-pub fn direct_light<P: Primitive<Hit = Hit> + Surface>(
-    scene: &Bvh<'_, P>,
+pub fn direct_light<S: Scene + ?Sized>(
+    scene: &S,
     lamps: &[PointLight],
     suns: &[DirectionalLight],
     #[host] shadows: bool,
@@ -49,11 +50,11 @@ pub fn direct_light<P: Primitive<Hit = Hit> + Surface>(
     if !hit.is_hit {
         return vec4(0.0, 0.0, 0.0, 0.0);
     }
-    let prim: P = scene.primitive(hit);
-    let point = facing(prim.surface(ray, hit), ray.direction);
+    let seen = scene.shading_point(ray, hit);
+    let point = facing(seen.point, ray.direction);
     let falling =
         irradiance(scene, lamps, shadows, point) + irradiance(scene, suns, shadows, point);
-    let color = prim.albedo(ray, hit) * falling * FRAC_1_PI;
+    let color = seen.albedo * falling * FRAC_1_PI;
     vec4(color.x, color.y, color.z, 1.0)
 }
 // ANCHOR_END: direct_light

@@ -8,8 +8,9 @@
 //! | [`bvh_cost()`], [`bvh_cost_color()`] | traversal cost, as counts or as a colour |
 //!
 //! They are kernels like any other: call them in a [`kernel!`](crate::prelude::kernel) of yours,
-//! from a kernel of yours, or on the host. They take a tree over any primitive that implements
-//! [`Surface`]. For another kind of scene, or other lights, copy the source: each fits on a page.
+//! from a kernel of yours, or on the host. They take any [`Scene`](crate::shading::Scene): a
+//! tree, a list, instances, or a struct of several. For other lights copy the source: each fits on a
+//! page.
 //!
 //! ```
 //! use raydsl::integrators::{DirectionalLight, direct_light};
@@ -35,11 +36,9 @@ mod direct;
 mod lights;
 mod occlusion;
 mod outputs;
-mod surface;
 
 pub use cost::{bvh_cost, bvh_cost_color, heat_color};
 pub use direct::{direct_light, irradiance};
 pub use lights::{DirectionalLight, Light, PointLight};
 pub use occlusion::{ambient_occlusion, is_open};
 pub use outputs::{Aovs, AovsOn, aovs};
-pub use surface::{Surface, facing};

@@ -2,20 +2,20 @@
 
 use glam::{Vec4, vec4};
 
-use super::{Surface, facing};
-use crate::bvh::{Bvh, RayQuery};
-use crate::geometry::{Hit, Primitive, Ray, SurfacePoint};
+use crate::bvh::RayQuery;
+use crate::geometry::{Ray, SurfacePoint};
 use crate::kernel;
 use crate::machine::functions::vec4;
 use crate::sampling::{Frame, SampleMethod, Sampler, sample_cosine_hemisphere};
+use crate::shading::{Scene, facing};
 
 // ANCHOR: ambient_occlusion
 /// Tests whether a point is unoccluded up to the distance `radius`, in a cosine-distributed
 /// direction chosen by the next two dimensions of the sampler. With a radius that is NaN, or not
 /// above 0, every point is unoccluded.
 #[kernel]
-pub fn is_open<P: Primitive>(
-    scene: &Bvh<'_, P>,
+pub fn is_open<S: RayQuery + ?Sized>(
+    scene: &S,
     radius: f32,
     #[host] method: SampleMethod,
     point: SurfacePoint,
@@ -41,8 +41,8 @@ pub fn is_open<P: Primitive>(
 /// instead of a falloff.)
 #[kernel]
 #[expect(clippy::needless_range_loop, reason = "kernels write elements by index")]
-pub fn ambient_occlusion<P: Primitive<Hit = Hit> + Surface, const N: usize>(
-    scene: &Bvh<'_, P>,
+pub fn ambient_occlusion<S: Scene + ?Sized, const N: usize>(
+    scene: &S,
     radius: f32,
     #[host] method: SampleMethod,
     ray: Ray,
@@ -52,8 +52,7 @@ pub fn ambient_occlusion<P: Primitive<Hit = Hit> + Surface, const N: usize>(
     if !hit.is_hit {
         return vec4(0.0, 0.0, 0.0, 0.0);
     }
-    let prim: P = scene.primitive(hit);
-    let point = facing(prim.surface(ray, hit), ray.direction);
+    let point = facing(scene.surface(ray, hit), ray.direction);
     let frame = Frame::around(point.normal);
     let mut sampler = sampler;
     let mut rays = [point.ray(point.normal); N];

@@ -2,10 +2,9 @@
 
 use glam::{Vec3, vec3};
 
-use super::{Surface, facing};
-use crate::bvh::{Bvh, RayQuery};
-use crate::geometry::{Hit, Primitive, Ray};
+use crate::geometry::Ray;
 use crate::machine::functions::vec3;
+use crate::shading::{Scene, facing};
 use crate::{Type, kernel};
 
 // ANCHOR: aovs
@@ -28,7 +27,7 @@ pub struct Aovs {
 /// Returns the AOVs at the closest hit of `ray`. [`Image::map`](crate::render::Image::map) makes a
 /// picture of each member.
 #[kernel]
-pub fn aovs<P: Primitive<Hit = Hit> + Surface>(scene: &Bvh<'_, P>, ray: Ray) -> Aovs {
+pub fn aovs<S: Scene + ?Sized>(scene: &S, ray: Ray) -> Aovs {
     let hit = scene.closest_hit(ray);
     if !hit.is_hit {
         let nothing = vec3(0.0, 0.0, 0.0);
@@ -40,10 +39,10 @@ pub fn aovs<P: Primitive<Hit = Hit> + Surface>(scene: &Bvh<'_, P>, ray: Ray) -> 
             inst_id: u32::MAX,
         };
     }
-    let prim: P = scene.primitive(hit);
-    let point = facing(prim.surface(ray, hit), ray.direction);
+    let seen = scene.shading_point(ray, hit);
+    let point = facing(seen.point, ray.direction);
     Aovs {
-        albedo: prim.albedo(ray, hit),
+        albedo: seen.albedo,
         normal: point.normal,
         depth: hit.t,
         prim_id: hit.prim_id,

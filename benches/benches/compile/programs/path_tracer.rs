@@ -9,7 +9,7 @@ use std::time::Instant;
 use std::{env, fs, io};
 
 use raydsl::kernel;
-use raydsl::integrators::facing;
+use raydsl::shading::facing;
 use raydsl::prelude::*;
 use raydsl::render::{Display, ToneMap};
 

@@ -41,7 +41,7 @@ pub(crate) struct Placing {
     indices: Vec<u32>,
     pub(crate) padding: Padding,
     /// Number of trees placed in the group, counting every copy.
-    pub(super) size: u32,
+    pub(crate) size: u32,
     /// Number of levels of instances.
     levels: usize,
     /// Stack entries needed down to the leaves of the trees.

@@ -1,9 +1,10 @@
 //! The trait of primitives that integrators can shade.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3, vec2};
 
 use crate::geometry::{Hit, Ray, SurfacePoint, Triangle};
 use crate::kernel;
+use crate::machine::functions::vec2;
 
 /// A primitive that can be shaded.
 ///
@@ -12,7 +13,7 @@ use crate::kernel;
 /// rays are offset; see [`SurfacePoint`].
 ///
 /// ```
-/// use raydsl::integrators::Surface;
+/// use raydsl::shading::Surface;
 /// use raydsl::prelude::*;
 /// use raydsl::kernel;
 ///
@@ -41,6 +42,16 @@ pub trait Surface {
 
     /// Returns the albedo at the hit: red, green and blue, each from 0 to 1.
     fn albedo(&self, ray: Ray, hit: Hit) -> Vec3;
+
+    /// Returns the surface coordinates of the hit, for textures: those of the hit itself.
+    fn uv(&self, _ray: Ray, hit: Hit) -> Vec2 {
+        vec2(hit.u, hit.v)
+    }
+
+    /// Returns the number of the material, counted by the application: 0.
+    fn material(&self, _ray: Ray, _hit: Hit) -> u32 {
+        0
+    }
 }
 
 /// Has a light grey albedo.

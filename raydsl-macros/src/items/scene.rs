@@ -1,0 +1,197 @@
+//! Expansion of `#[derive(RayQuery)]` and `#[derive(Scene)]`: a struct of scenes as one scene.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::{ToTokens, quote};
+use syn::spanned::Spanned;
+
+use crate::diag::Errors;
+use crate::here::private;
+
+/// Expands a struct whose members are scenes: the queries, and with `shaded` the points that rays
+/// hit.
+pub(crate) fn scene(item: &syn::DeriveInput, shaded: bool) -> TokenStream {
+    let mut errors = Errors::default();
+    let members = members(item, &mut errors);
+    if !errors.is_empty() {
+        return errors.into_tokens();
+    }
+    let scene = Struct { item, members };
+    let queries = scene.queries();
+    let capture = scene.capture();
+    let shading = shaded.then(|| scene.shading());
+    let errors = errors.into_tokens();
+    quote!(#queries #capture #shading #errors)
+}
+
+/// Returns the members, all of which are scenes.
+fn members(item: &syn::DeriveInput, errors: &mut Errors) -> Vec<(Ident, syn::Type)> {
+    let syn::Data::Struct(s) = &item.data else {
+        errors.at(
+            item.ident.span(),
+            "a scene of several scenes is a struct",
+            "write a struct with a member for each scene; what a ray hits is in one of them",
+        );
+        return Vec::new();
+    };
+    let named = s.fields.iter().filter_map(|f| Some((f.ident.clone()?, f.ty.clone())));
+    let members: Vec<_> = named.collect();
+    if members.is_empty() {
+        errors.at(
+            item.ident.span(),
+            "a scene has named members",
+            "write `struct Both<'a> { spheres: Bvh<'a, Ball>, mesh: Bvh<'a, Triangle> }`",
+        );
+    }
+    for param in item.generics.type_params() {
+        errors.at(
+            param.ident.span(),
+            "a struct of scenes has no type parameters",
+            "write the types of its scenes",
+        );
+    }
+    for (_, ty) in &members {
+        if let syn::Type::Slice(_) = ty {
+            errors.at(ty.span(), "a member is a scene of its own", "write `&'a [P]`");
+        }
+    }
+    members
+}
+
+struct Struct<'a> {
+    item: &'a syn::DeriveInput,
+    members: Vec<(Ident, syn::Type)>,
+}
+
+impl Struct<'_> {
+    /// Returns the struct's generic parameters as declared, as arguments, and their clause.
+    fn generics(&self) -> (TokenStream, TokenStream, TokenStream) {
+        let (declared, used, clause) = self.item.generics.split_for_impl();
+        (declared.into_token_stream(), used.into_token_stream(), clause.into_token_stream())
+    }
+
+    /// Returns the type of the view, as seen for this lifetime: that of the last member, joined with
+    /// the others one after another.
+    fn view(&self, lifetime: &syn::Lifetime) -> TokenStream {
+        let p = private();
+        let mut views = self.members.iter().rev().map(|(_, ty)| {
+            let ty = lent(ty, lifetime);
+            quote!(<#ty as #p::RayQuery>::View<#lifetime>)
+        });
+        let last = views.next().unwrap_or_default();
+        views.fold(last, |rest, view| quote!(#p::Joined<#view, #rest>))
+    }
+
+    fn queries(&self) -> TokenStream {
+        let (p, name) = (private(), &self.item.ident);
+        let (declared, used, clause) = self.generics();
+        let view = self.view(&syn::parse_quote!('__v));
+        let first = self.members.first().map(|(_, ty)| ty);
+        let mut views = self.members.iter().rev().map(|(member, _)| {
+            let text = member.to_string();
+            quote!(#p::RayQueryOn::named(#p::RayQuery::view(&self.#member), #text))
+        });
+        let last = views.next().unwrap_or_default();
+        let made = views.fold(last, |rest, view| quote!(#p::Joined::new(#view, #rest)));
+        quote! {
+            impl #declared #p::RayQuery for #name #used #clause {
+                type Hit = <#first as #p::RayQuery>::Hit;
+                type View<'__v>
+                    = #view
+                where
+                    Self: '__v;
+
+                #[inline(always)]
+                fn view(&self) -> Self::View<'_> {
+                    #made
+                }
+            }
+        }
+    }
+
+    /// Emits what lets kernels capture the struct, and take it as `&T`.
+    fn capture(&self) -> TokenStream {
+        let (p, name) = (private(), &self.item.ident);
+        let (_, used, clause) = self.generics();
+        let params: Vec<_> = self.item.generics.params.iter().collect();
+        let view = self.view(&syn::parse_quote!('__v));
+        quote! {
+            #[diagnostic::do_not_recommend]
+            impl<#(#params,)* __M: #p::Machine> #p::Capture<__M> for #name #used #clause {
+                type On<'__v>
+                    = <Self as #p::RayQuery>::View<'__v>
+                where
+                    Self: '__v;
+
+                #[inline(always)]
+                fn capture<'__v>(&'__v self, _: &__M, _: &'static str) -> Self::On<'__v> {
+                    #p::RayQuery::view(self)
+                }
+
+                #[inline(always)]
+                fn constant<'__v>(&'__v self, _: &__M) -> Self::On<'__v> {
+                    #p::RayQuery::view(self)
+                }
+
+                fn resources(&self, visit: &mut dyn ::core::ops::FnMut(&dyn #p::Resource)) {
+                    #p::RayQueryOn::resources(&#p::RayQuery::view(self), visit);
+                }
+            }
+
+            impl<#(#params,)*> #p::Parameter for #name #used #clause {
+                type On<'__v, __M: #p::Machine> = #view;
+            }
+        }
+    }
+
+    fn shading(&self) -> TokenStream {
+        let (p, name) = (private(), &self.item.ident);
+        let (declared, used, clause) = self.generics();
+        let functions = [("surface_on", "SurfacePointOn"), ("shading_point_on", "ShadingPointOn")];
+        let functions = functions.map(|(function, out)| {
+            let span = proc_macro2::Span::call_site();
+            let (function, out) = (Ident::new(function, span), Ident::new(out, span));
+            quote! {
+                #[inline(always)]
+                fn #function<__M: #p::Machine>(
+                    m: &__M,
+                    scene: &Self,
+                    ray: impl #p::Coerce<__M, #p::RayOn<__M>>,
+                    hit: impl #p::Coerce<__M, #p::HitOn<__M>>,
+                ) -> #p::#out<__M> {
+                    #p::Scene::#function(m, &#p::RayQuery::view(scene), ray, hit)
+                }
+            }
+        });
+        quote! {
+            impl #declared #p::Scene for #name #used #clause {
+                #(#functions)*
+            }
+        }
+    }
+}
+
+/// Returns a member's type with `lifetime` in the place of all its lifetimes.
+fn lent(ty: &syn::Type, lifetime: &syn::Lifetime) -> TokenStream {
+    fn replaced(tokens: TokenStream, lifetime: &syn::Lifetime) -> TokenStream {
+        let mut out = TokenStream::new();
+        let mut tokens = tokens.into_iter();
+        while let Some(token) = tokens.next() {
+            match token {
+                proc_macro2::TokenTree::Punct(quote) if quote.as_char() == '\'' => {
+                    tokens.next();
+                    lifetime.to_tokens(&mut out);
+                }
+                proc_macro2::TokenTree::Group(group) => {
+                    let inside = replaced(group.stream(), lifetime);
+                    out.extend([proc_macro2::TokenTree::from(proc_macro2::Group::new(
+                        group.delimiter(),
+                        inside,
+                    ))]);
+                }
+                token => out.extend([token]),
+            }
+        }
+        out
+    }
+    replaced(ty.to_token_stream(), lifetime)
+}

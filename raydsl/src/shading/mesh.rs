@@ -1,0 +1,398 @@
+//! Indexed meshes with what their vertices and triangles carry beside positions.
+
+use core::fmt;
+
+use glam::{Affine3, Vec2, Vec3, Vec4, vec2, vec3, vec4};
+
+use super::scene::in_scene;
+use super::{Scene, ShadingPointOn};
+use crate::bvh::carrier::carrier;
+use crate::bvh::{PrimitiveScene, RayQuery, RayQueryOn, SceneView};
+use crate::geometry::{Hit, HitOn, IndexedTriangle, RayOn, SurfacePointOn, transform_normal_back};
+use crate::machine::functions::{vec2, vec3, vec4};
+use crate::machine::generic::{inverse, max};
+use crate::machine::{
+    Capture, Coerce, Data, Leaves, Machine, On, Parameter, Resource, Schema, Slice, U, Value,
+};
+use crate::sampling::Frame;
+use crate::{Type, kernel};
+
+/// What the vertices and triangles of a mesh carry beside positions. Each slice is the
+/// application's; an empty one is left out of kernels.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MeshAttributes<'a> {
+    /// Normals of the vertices, of any length above 0.
+    pub normals: &'a [Vec3],
+    /// Surface coordinates of the vertices.
+    pub uvs: &'a [Vec2],
+    /// Tangents of the vertices, in the direction in which the first surface coordinate grows; the
+    /// last component is 1, or -1 where the bitangent is `-cross(normal, tangent)` (as in glTF).
+    pub tangents: &'a [Vec4],
+    /// Colours of the vertices: red, green and blue, each from 0 to 1.
+    pub colors: &'a [Vec3],
+    /// The material number of each triangle.
+    pub materials: &'a [u32],
+}
+
+/// A scene of an indexed mesh, or of several that share their vertices, with [`MeshAttributes`]: a
+/// tree, a list, instances or an accelerator of [`IndexedTriangle`]s. Integrators shade it.
+///
+/// ```
+/// use raydsl::prelude::*;
+/// use raydsl::shading::{Mesh, MeshAttributes};
+///
+/// let vertices = [vec3(0.0, 0.0, 2.0), vec3(2.0, 0.0, 2.0), vec3(0.0, 2.0, 2.0)];
+/// let triangles = [IndexedTriangle { vertices: [0, 1, 2] }];
+/// let bvh = Bvh::build_sharing(&triangles, &vertices, &BuildConfig::default())?;
+/// let leaning = [vec3(-1.0, 0.0, -1.0), vec3(1.0, 0.0, -1.0), vec3(0.0, 1.0, -1.0)];
+/// let mesh = Mesh::new(&bvh, MeshAttributes { normals: &leaning, ..Default::default() })?;
+/// let ray = Ray::new(vec3(1.0, 0.0, 0.0), Vec3::Z);
+/// let hit = mesh.closest_hit(ray);
+/// let seen = mesh.shading_point(ray, hit);
+/// assert_eq!(seen.shading_normal, vec3(0.0, 0.0, -1.0));
+/// assert_eq!(seen.point.position, vec3(1.0, 0.0, 2.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Mesh<'a, S: ?Sized> {
+    triangles: &'a S,
+    attributes: MeshAttributes<'a>,
+}
+
+impl<S: ?Sized> fmt::Debug for Mesh<'_, S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Mesh").field("attributes", &self.attributes).finish_non_exhaustive()
+    }
+}
+
+/// Why attributes do not fit a mesh.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct MeshError {
+    /// The member of [`MeshAttributes`].
+    pub attribute: &'static str,
+    /// Its length.
+    pub count: usize,
+    /// The length that it should have: the number of vertices, or of triangles.
+    pub expected: usize,
+}
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { attribute, count, expected } = self;
+        let of = if *attribute == "materials" { "triangle" } else { "vertex" };
+        write!(f, "a mesh has one element of `{attribute}` for each {of}: {expected}, not {count}")
+    }
+}
+
+impl std::error::Error for MeshError {}
+
+impl<'a, S: PrimitiveScene<Primitive = IndexedTriangle> + ?Sized> Mesh<'a, S> {
+    /// Joins triangles and attributes, which must be empty or have an element for each vertex (or
+    /// triangle).
+    ///
+    /// # Errors
+    ///
+    /// If the length of a slice is another one.
+    pub fn new(triangles: &'a S, attributes: MeshAttributes<'a>) -> Result<Self, MeshError> {
+        let view = triangles.primitives_view();
+        let (vertices, count) = (view.shared().len(), Data::count(&view));
+        let MeshAttributes { normals, uvs, tangents, colors, materials } = &attributes;
+        for (attribute, count, expected) in [
+            ("normals", normals.len(), vertices),
+            ("uvs", uvs.len(), vertices),
+            ("tangents", tangents.len(), vertices),
+            ("colors", colors.len(), vertices),
+            ("materials", materials.len(), count),
+        ] {
+            if count != 0 && count != expected {
+                return Err(MeshError { attribute, count, expected });
+            }
+        }
+        Ok(Self { triangles, attributes })
+    }
+
+    /// Returns the triangles.
+    pub fn triangles(&self) -> &'a S {
+        self.triangles
+    }
+}
+
+/// View of a [`Mesh`] in kernels. A host value on every machine.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshView<'a> {
+    triangles: SceneView<'a, IndexedTriangle>,
+    normals: Slice<'a, Vec3>,
+    uvs: Slice<'a, Vec2>,
+    tangents: Slice<'a, Vec4>,
+    colors: Slice<'a, Vec3>,
+    materials: Slice<'a, u32>,
+}
+
+/// What the vertices say of a hit, in the space of the mesh.
+#[derive(Clone, Copy, Type)]
+#[repr(C)]
+struct Carried {
+    normal: Vec3,
+    uv: Vec2,
+    tangent: Vec4,
+    color: Vec3,
+}
+
+/// Returns a unit vector, or `other` where `v` has no direction.
+#[kernel]
+fn direction_or(v: Vec3, other: Vec3) -> Vec3 {
+    // Squares of the components could leave the range of `f32`.
+    let size = max(max(v.x.abs(), v.y.abs()), v.z.abs());
+    let scaled = v / size;
+    if size > 0.0 && size < f32::INFINITY { scaled / scaled.length() } else { other }
+}
+
+/// Returns what the vertices say of a hit, of what is there; `geometric` is the geometric normal.
+#[kernel]
+#[expect(clippy::too_many_arguments, reason = "a mesh has many attributes")]
+#[allow(dead_code, reason = "only its lifted form is called")]
+fn carried(
+    triangle: IndexedTriangle,
+    vertices: &[Vec3],
+    normals: &[Vec3],
+    uvs: &[Vec2],
+    tangents: &[Vec4],
+    colors: &[Vec3],
+    #[host] has_normals: bool,
+    #[host] has_uvs: bool,
+    #[host] has_tangents: bool,
+    #[host] has_colors: bool,
+    geometric: Vec3,
+    hit: Hit,
+) -> Carried {
+    let [a, b, c] = triangle.vertices;
+    let rest = 1.0 - hit.u - hit.v;
+    let mut normal = geometric;
+    if has_normals {
+        let sum =
+            normals[a as usize] * rest + normals[b as usize] * hit.u + normals[c as usize] * hit.v;
+        let smooth = direction_or(sum, geometric);
+        normal = if smooth.dot(geometric) < 0.0 { -smooth } else { smooth };
+    }
+    let mut uv = vec2(hit.u, hit.v);
+    if has_uvs {
+        uv = uvs[a as usize] * rest + uvs[b as usize] * hit.u + uvs[c as usize] * hit.v;
+    }
+    let mut tangent = vec4(0.0, 0.0, 0.0, 0.0);
+    if has_tangents {
+        // The sign is the same at all vertices of a triangle.
+        let first = tangents[a as usize];
+        let sum = first * rest + tangents[b as usize] * hit.u + tangents[c as usize] * hit.v;
+        tangent = vec4(sum.x, sum.y, sum.z, first.w);
+    } else if has_uvs {
+        let (u1, u2) = (uvs[b as usize] - uvs[a as usize], uvs[c as usize] - uvs[a as usize]);
+        let e1 = vertices[b as usize] - vertices[a as usize];
+        let e2 = vertices[c as usize] - vertices[a as usize];
+        let sign = if u1.x * u2.y - u1.y * u2.x < 0.0 { -1.0 } else { 1.0 };
+        let along = (e1 * u2.y - e2 * u1.y) * sign;
+        tangent = vec4(along.x, along.y, along.z, sign);
+    }
+    let mut color = vec3(0.8, 0.8, 0.8);
+    if has_colors {
+        color = colors[a as usize] * rest + colors[b as usize] * hit.u + colors[c as usize] * hit.v;
+    }
+    Carried { normal, uv, tangent, color }
+}
+
+/// Transforms a tangent of an instance to the space of the scene.
+#[kernel]
+fn placed_tangent(to_object: Affine3, tangent: Vec4) -> Vec4 {
+    let along = inverse(to_object.matrix3) * vec3(tangent.x, tangent.y, tangent.z);
+    vec4(along.x, along.y, along.z, tangent.w)
+}
+
+/// Returns a tangent perpendicular to the normal, of unit length.
+#[kernel]
+fn perpendicular(normal: Vec3, tangent: Vec4) -> Vec4 {
+    let along = vec3(tangent.x, tangent.y, tangent.z);
+    let unit = direction_or(along - normal * normal.dot(along), Frame::around(normal).x);
+    vec4(unit.x, unit.y, unit.z, if tangent.w < 0.0 { -1.0 } else { 1.0 })
+}
+
+carrier!(['a] MeshView<'a>, SceneView<'a, IndexedTriangle>, triangles);
+
+/// A host value on every machine.
+impl<M: Machine> Value<M> for MeshView<'_> {
+    const SCHEMA: &'static Schema = &Schema::Host;
+
+    fn zero(m: &M) -> Self {
+        Self {
+            triangles: Value::<M>::zero(m),
+            normals: Value::<M>::zero(m),
+            uvs: Value::<M>::zero(m),
+            tangents: Value::<M>::zero(m),
+            colors: Value::<M>::zero(m),
+            materials: Value::<M>::zero(m),
+        }
+    }
+
+    #[inline(always)]
+    fn zip(m: &M, a: Self, b: Self, f: &mut impl Leaves<M>) -> Self {
+        Self { triangles: Value::<M>::zip(m, a.triangles, b.triangles, f), ..a }
+    }
+}
+
+impl<M: Machine, S: PrimitiveScene<Primitive = IndexedTriangle> + ?Sized> Capture<M>
+    for Mesh<'_, S>
+{
+    type On<'c>
+        = MeshView<'c>
+    where
+        Self: 'c;
+
+    #[inline(always)]
+    fn capture<'c>(&'c self, _: &M, name: &'static str) -> MeshView<'c> {
+        RayQueryOn::named(self.view(), name)
+    }
+
+    #[inline(always)]
+    fn constant<'c>(&'c self, _: &M) -> MeshView<'c> {
+        self.view()
+    }
+
+    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        RayQueryOn::resources(&self.view(), visit);
+    }
+}
+
+impl<S: PrimitiveScene<Primitive = IndexedTriangle> + ?Sized> Parameter for Mesh<'_, S> {
+    type On<'v, M: Machine> = MeshView<'v>;
+}
+
+impl MeshView<'_> {
+    /// Visits the attributes that are there.
+    fn data(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        let all: [&dyn Resource; 5] =
+            [&self.normals, &self.uvs, &self.tangents, &self.colors, &self.materials];
+        all.into_iter().for_each(visit);
+    }
+
+    /// Returns the triangle that was hit, its point, and the ray in its space.
+    #[inline(always)]
+    fn seen<M: Machine>(
+        &self,
+        m: &M,
+        ray: RayOn<M>,
+        hit: HitOn<M>,
+    ) -> (On<IndexedTriangle, M>, RayOn<M>, SurfacePointOn<M>) {
+        let scene = self.triangles;
+        let prim = SceneView::primitive_on(m, &scene, hit);
+        let local = RayQueryOn::local_ray(scene, m, ray, hit.inst_id);
+        let point = IndexedTriangle::surface_point_on(m, prim, local, hit, scene.shared());
+        (prim, local, point)
+    }
+}
+
+impl Scene for MeshView<'_> {
+    #[inline(always)]
+    fn surface_on<M: Machine>(
+        m: &M,
+        view: &Self,
+        ray: impl Coerce<M, RayOn<M>>,
+        hit: impl Coerce<M, HitOn<M>>,
+    ) -> SurfacePointOn<M> {
+        let (ray, hit) = (ray.coerce(m), hit.coerce(m));
+        let (_, _, point) = view.seen(m, ray, hit);
+        in_scene(m, view.triangles, ray, hit, point)
+    }
+
+    #[inline(always)]
+    fn shading_point_on<M: Machine>(
+        m: &M,
+        view: &Self,
+        ray: impl Coerce<M, RayOn<M>>,
+        hit: impl Coerce<M, HitOn<M>>,
+    ) -> ShadingPointOn<M> {
+        let (ray, hit) = (ray.coerce(m), hit.coerce(m));
+        let scene = view.triangles;
+        let (prim, _, own) = view.seen(m, ray, hit);
+        let Self { normals, uvs, tangents, colors, materials, .. } = *view;
+        let has_normals = !normals.is_empty();
+        let has_tangents = !(tangents.is_empty() && uvs.is_empty());
+        let vertices = scene.shared();
+        let carried = carried::on(
+            m,
+            prim,
+            vertices,
+            normals,
+            uvs,
+            tangents,
+            colors,
+            has_normals,
+            !uvs.is_empty(),
+            !tangents.is_empty(),
+            !colors.is_empty(),
+            own.normal,
+            hit,
+        );
+        let point = in_scene(m, scene, ray, hit, own);
+        let (mut shading_normal, mut tangent) = (carried.normal, carried.tangent);
+        if scene.has_instances() {
+            let to_object = RayQueryOn::to_object(scene, m, hit.inst_id);
+            shading_normal = match has_normals {
+                true => transform_normal_back::on(m, shading_normal, to_object),
+                false => point.normal,
+            };
+            if has_tangents {
+                tangent = placed_tangent::on(m, to_object, tangent);
+            }
+        }
+        let id = U(m.u32_select(hit.is_hit.0, hit.prim_id.0, m.u32(0)));
+        ShadingPointOn {
+            point,
+            shading_normal,
+            tangent: perpendicular::on(m, shading_normal, tangent),
+            uv: carried.uv,
+            material: if materials.is_empty() { U(m.u32(0)) } else { m.element(&materials, id) },
+            albedo: carried.color,
+        }
+    }
+}
+
+impl<S: PrimitiveScene<Primitive = IndexedTriangle> + ?Sized> RayQuery for Mesh<'_, S> {
+    type Hit = Hit;
+    type View<'v>
+        = MeshView<'v>
+    where
+        Self: 'v;
+
+    #[inline(always)]
+    fn view(&self) -> MeshView<'_> {
+        let MeshAttributes { normals, uvs, tangents, colors, materials } = self.attributes;
+        MeshView {
+            triangles: self.triangles.primitives_view().named("mesh"),
+            normals: Slice::new(normals, "normals"),
+            uvs: Slice::new(uvs, "uvs"),
+            tangents: Slice::new(tangents, "tangents"),
+            colors: Slice::new(colors, "colors"),
+            materials: Slice::new(materials, "materials"),
+        }
+    }
+}
+
+impl<S: PrimitiveScene<Primitive = IndexedTriangle> + ?Sized> Scene for Mesh<'_, S> {
+    #[inline(always)]
+    fn surface_on<M: Machine>(
+        m: &M,
+        scene: &Self,
+        ray: impl Coerce<M, RayOn<M>>,
+        hit: impl Coerce<M, HitOn<M>>,
+    ) -> SurfacePointOn<M> {
+        MeshView::surface_on(m, &scene.view(), ray, hit)
+    }
+
+    #[inline(always)]
+    fn shading_point_on<M: Machine>(
+        m: &M,
+        scene: &Self,
+        ray: impl Coerce<M, RayOn<M>>,
+        hit: impl Coerce<M, HitOn<M>>,
+    ) -> ShadingPointOn<M> {
+        MeshView::shading_point_on(m, &scene.view(), ray, hit)
+    }
+}
