@@ -111,15 +111,12 @@ fn functions<'a>(
         syn::ImplItem::Fn(f) => Some(f),
         _ => None,
     });
-    let lifted: Vec<_> = all.filter(|f| !host_only.iter().any(|h| f.sig.ident == h)).collect();
-    for f in &lifted {
-        check(&f.sig, &f.attrs, errors);
-    }
-    lifted
+    let lifted = all.filter(|f| !host_only.iter().any(|h| f.sig.ident == h));
+    lifted.filter(|f| check(&f.sig, &f.attrs, errors)).collect()
 }
 
-/// Reports what a method of kernels cannot have.
-fn check(sig: &syn::Signature, attrs: &[syn::Attribute], errors: &mut Errors) {
+/// Reports what a method of kernels cannot have; returns whether it can be lifted.
+fn check(sig: &syn::Signature, attrs: &[syn::Attribute], errors: &mut Errors) -> bool {
     if let Some(cfg) = attrs.iter().find(|a| a.path().is_ident("cfg")) {
         errors.at(
             cfg.span(),
@@ -134,13 +131,15 @@ fn check(sig: &syn::Signature, attrs: &[syn::Attribute], errors: &mut Errors) {
         syn::GenericParam::Type(t) => parse::is_function(t, clause) || is_scene(&t.ident),
         p => matches!(p, syn::GenericParam::Lifetime(_)),
     };
-    if !sig.generics.params.iter().all(is_inferred) {
+    let can_be_lifted = sig.generics.params.iter().all(is_inferred);
+    if !can_be_lifted {
         errors.at(
             sig.generics.span(),
-            "a method of kernels has no type parameters of its own but scenes: `S: Scene`",
+            "a method of kernels has no type parameters of its own but scenes and closures",
             "give them to the impl or the trait, or write a `#[kernel] fn`",
         );
     }
+    can_be_lifted
 }
 
 /// Reports recursion. In a trait's impl the call may be of the type's own method of that name.
@@ -328,7 +327,9 @@ pub(crate) fn kernel_trait(item: &syn::ItemTrait) -> TokenStream {
         syn::TraitItem::Fn(f) => Some(f),
         _ => None,
     }) {
-        check(&f.sig, &f.attrs, &mut errors);
+        if !check(&f.sig, &f.attrs, &mut errors) {
+            continue;
+        }
         let place = Place {
             fn_name: &format_ident!("{}_on", f.sig.ident),
             wgsl_name: &format!("{}_{}", item.ident, f.sig.ident),

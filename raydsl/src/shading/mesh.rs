@@ -237,6 +237,7 @@ impl<M: Machine> Value<M> for MeshView<'_> {
     }
 }
 
+#[diagnostic::do_not_recommend]
 impl<M: Machine, S: PrimitiveScene<Primitive = IndexedTriangle> + ?Sized> Capture<M>
     for Mesh<'_, S>
 {
