@@ -26,14 +26,17 @@ enum Sequence<'a> {
 enum Elements {
     List(Expr),
     /// A part of a list: `&list[a..b]`.
-    Part {
-        list: Expr,
-        first: Expr,
-        len: Expr,
-    },
+    Part(Box<Part>),
     Enumerated(Box<Self>),
     Reversed(Box<Self>),
     Zipped(Box<Self>, Box<Self>),
+}
+
+/// A part of a list, from the element `first` on.
+struct Part {
+    list: Expr,
+    first: Expr,
+    len: Expr,
 }
 
 /// Returns the sequence of `list.iter()`, `&list`, `list.into_iter()` and `list`, and of each with
@@ -124,7 +127,7 @@ impl Elements {
     fn len(&self) -> Expr {
         match self {
             Self::List(list) => method(list.clone(), "len", vec![]),
-            Self::Part { len, .. } => len.clone(),
+            Self::Part(part) => part.len.clone(),
             Self::Enumerated(inner) | Self::Reversed(inner) => inner.len(),
             Self::Zipped(a, b) => method(a.len(), "min", vec![b.len()]),
         }
@@ -135,7 +138,7 @@ impl Elements {
         let span = index.span;
         match self {
             Self::List(list) => element(list, index),
-            Self::Part { list, first, .. } => element(list, plus(first.clone(), index)),
+            Self::Part(part) => element(&part.list, plus(part.first.clone(), index)),
             Self::Enumerated(inner) => {
                 let items = vec![index.clone(), inner.at(index)];
                 Expr { kind: Kind::Tuple(items), span }
@@ -345,7 +348,7 @@ impl Parser<'_> {
         };
         let end = bind(self, end);
         let len = bind(self, method(end, "saturating_sub", vec![first.clone()]));
-        Elements::Part { list, first, len }
+        Elements::Part(Box::new(Part { list, first, len }))
     }
 
     /// Parses a loop over a cursor.
