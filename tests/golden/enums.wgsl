@@ -35,8 +35,7 @@ struct Job {
 
 fn Matter_of(n: u32) -> u32 {
     let value_1 = n % 3u;
-    let result = select(select(5u, 4u, (value_1 == 1u)), 0u, (value_1 == 0u));
-    return result;
+    return select(select(5u, 4u, (value_1 == 1u)), 0u, (value_1 == 0u));
 }
 
 fn Matter_albedo(self_: u32) -> f32 {

@@ -116,8 +116,7 @@ fn level_start(size: vec3<u32>, level: u32) -> u32 {
 
 fn reduced(x: f32) -> f32 {
     let c = select(0.0f, x, ((bitcast<u32>(x) & 2147483647u) < 2139095040u));
-    let result = c - floor(c);
-    return result;
+    return c - floor(c);
 }
 
 fn texel_at(i: i32, n: i32) -> u32 {
@@ -125,8 +124,7 @@ fn texel_at(i: i32, n: i32) -> u32 {
     let j = select(i, i + n, (i < 0i));
     let k = select(j, j - n, (j > last));
     let t = select(k, 0i, (k < 0i));
-    let result = bitcast<u32>(select(t, last, (last < t)));
-    return result;
+    return bitcast<u32>(select(t, last, (last < t)));
 }
 
 fn pair(x: f32, size: u32) -> Pair {
@@ -138,8 +136,7 @@ fn pair(x: f32, size: u32) -> Pair {
 }
 
 fn part(first: u32, size: u32, i: u32) -> u32 {
-    let result = first + i * size;
-    return result;
+    return first + i * size;
 }
 
 fn split(x: f32) -> Split {
@@ -272,8 +269,7 @@ fn srgb_to_linear(x: f32) -> f32 {
 
 fn texel(row: u32, i: u32) -> vec3<f32> {
     let t = floor__at(row + i);
-    let result = vec3<f32>(srgb_to_linear(f32(t[0]) / params.lit_255_0), srgb_to_linear(f32(t[1]) / params.lit_255_0), srgb_to_linear(f32(t[2]) / params.lit_255_0));
-    return result;
+    return vec3<f32>(srgb_to_linear(f32(t[0]) / params.lit_255_0), srgb_to_linear(f32(t[1]) / params.lit_255_0), srgb_to_linear(f32(t[2]) / params.lit_255_0));
 }
 
 fn linear_row(row: u32, x: Pair) -> vec3<f32> {
@@ -291,8 +287,7 @@ fn linear_image(first: u32, width: u32, x: Pair, y: Pair) -> vec3<f32> {
 fn filter2(size: vec2<u32>, first: u32, uv: vec2<f32>) -> vec3<f32> {
     let x = pair(uv.x, size.x);
     let y = pair(uv.y, size.y);
-    let result = linear_image(first, size.x, x, y);
-    return result;
+    return linear_image(first, size.x, x, y);
 }
 
 fn at_level2(uv: vec2<f32>, level: u32) -> vec3<f32> {
@@ -306,8 +301,7 @@ fn tex2_level(at: vec2<f32>, level: f32) -> vec3<f32> {
     let below = at_level2(at, saturate_u32(finer));
     let t = saturate_u32(finer) + 1u;
     let above = at_level2(at, select(t, params.floor_last_level, (params.floor_last_level < t)));
-    let result = Vec3_blend(below, above, place - finer);
-    return result;
+    return Vec3_blend(below, above, place - finer);
 }
 
 fn kernel(uv: vec2<f32>, level: f32) -> vec3<f32> {

@@ -55,8 +55,7 @@ fn saturate_i32(x: f32) -> i32 {
 
 fn reduced(x: f32) -> f32 {
     let c = select(0.0f, x, ((bitcast<u32>(x) & 2147483647u) < 2139095040u));
-    let result = c - floor(c);
-    return result;
+    return c - floor(c);
 }
 
 fn texel_at(i: i32, n: i32) -> u32 {
@@ -64,8 +63,7 @@ fn texel_at(i: i32, n: i32) -> u32 {
     let j = select(i, i + n, (i < 0i));
     let k = select(j, j - n, (j > last));
     let t = select(k, 0i, (k < 0i));
-    let result = bitcast<u32>(select(t, last, (last < t)));
-    return result;
+    return bitcast<u32>(select(t, last, (last < t)));
 }
 
 fn pair(x: f32, size: u32) -> Pair {
@@ -78,13 +76,11 @@ fn pair(x: f32, size: u32) -> Pair {
 
 fn taps_reduced(x: f32) -> f32 {
     let t = select(-2.0f, x, -2.0f < x);
-    let result = select(t, 3.0f, 3.0f < t);
-    return result;
+    return select(t, 3.0f, 3.0f < t);
 }
 
 fn taps_texel_at(i: i32, n: i32) -> u32 {
-    let result = select(4294967295u, bitcast<u32>(i), (i >= 0i && i < n));
-    return result;
+    return select(4294967295u, bitcast<u32>(i), (i >= 0i && i < n));
 }
 
 fn taps_pair(x: f32, size: u32) -> Pair {
@@ -97,8 +93,7 @@ fn taps_pair(x: f32, size: u32) -> Pair {
 
 fn part(first: u32, size: u32, i: u32) -> u32 {
     let start = first + i * size;
-    let result = select(start, 4294967295u, (i == 4294967295u || first == 4294967295u));
-    return result;
+    return select(start, 4294967295u, (i == 4294967295u || first == 4294967295u));
 }
 
 fn Vec4_blend(self_: vec4<f32>, to: vec4<f32>, w: f32) -> vec4<f32> {
@@ -136,8 +131,7 @@ fn linear_image(first: u32, width: u32, x: Pair, y: Pair) -> vec4<f32> {
 fn filter2(size: vec2<u32>, first: u32, uv: vec2<f32>) -> vec4<f32> {
     let x = pair(uv.x, size.x);
     let y = taps_pair(uv.y, size.y);
-    let result = linear_image(first, size.x, x, y);
-    return result;
+    return linear_image(first, size.x, x, y);
 }
 
 fn tex2(uv: vec2<f32>) -> vec4<f32> {

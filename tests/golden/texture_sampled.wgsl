@@ -58,8 +58,7 @@ fn tiles_sample(at: vec2<f32>, level: f32) -> vec4<f32> {
 
 fn reduced(x: f32) -> f32 {
     let c = select(0.0f, x, ((bitcast<u32>(x) & 2147483647u) < 2139095040u));
-    let result = c - floor(c);
-    return result;
+    return c - floor(c);
 }
 
 fn texel_at(i: i32, n: i32) -> u32 {
@@ -67,8 +66,7 @@ fn texel_at(i: i32, n: i32) -> u32 {
     let j = select(i, i + n, (i < 0i));
     let k = select(j, j - n, (j > last));
     let t = select(k, 0i, (k < 0i));
-    let result = bitcast<u32>(select(t, last, (last < t)));
-    return result;
+    return bitcast<u32>(select(t, last, (last < t)));
 }
 
 fn pair(x: f32, size: u32) -> Pair {
@@ -80,8 +78,7 @@ fn pair(x: f32, size: u32) -> Pair {
 }
 
 fn texel(row: u32, i: u32) -> f32 {
-    let result = relief_at(row + i);
-    return result;
+    return relief_at(row + i);
 }
 
 fn f32_blend(self_: f32, to: f32, w: f32) -> f32 {
@@ -95,8 +92,7 @@ fn linear_row(row: u32, x: Pair) -> f32 {
 }
 
 fn filter1(size: u32, first: u32, x: f32) -> f32 {
-    let result = linear_row(first, pair(x, size));
-    return result;
+    return linear_row(first, pair(x, size));
 }
 
 fn tex1(u: f32) -> f32 {

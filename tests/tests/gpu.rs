@@ -1,6 +1,7 @@
 //! What belongs to the device: windows, the application's own device, caches.
 
 use raydsl::gpu::{Context, GpuScheduler};
+use raydsl::kernel;
 use raydsl::prelude::*;
 use raydsl_tests::gpu::gpu;
 use raydsl_tests::scenes::{random_rays, spheres};
@@ -193,6 +194,49 @@ fn picture(
     gpu.accumulate(camera, kernel, sampling, &mut film, 2)?;
     gpu.accumulate(camera, kernel, sampling, &mut film, 2)?;
     Ok(film.image())
+}
+
+#[derive(Clone, Copy, Type)]
+enum Coat {
+    Bare(f32),
+    Paint(f32, u32),
+    Glow { light: f32 },
+}
+
+#[kernel]
+fn shine(coat: Coat) -> f32 {
+    match coat {
+        Coat::Paint(x, n) => x * n as f32,
+        Coat::Bare(x) => -x,
+        Coat::Glow { light } => light + 0.5,
+    }
+}
+
+#[test]
+fn the_kinds_of_the_data_are_part_of_the_program() -> Result<(), Error> {
+    let Some(gpu) = own_scheduler()? else { return Ok(()) };
+    let context = gpu.context();
+    let inputs: Vec<(u32,)> = (0..4).map(|i| (i,)).collect();
+    // One list, whose place and length stay.
+    let mut list = [Coat::Bare(1.0); 4];
+    let mut run = |i: usize, coat: Coat, counts: (u64, u64)| -> Result<(), Error> {
+        list[i] = coat;
+        let coats = &list[..];
+        let kernel = kernel!(|i: u32| shine(coats[i as usize]));
+        let mut found = [0.0; 4];
+        gpu.batch(&kernel, &inputs, &mut found)?;
+        assert_eq!(found, list.map(shine));
+        assert_eq!((context.recorded(), context.printed()), counts, "{found:?}");
+        Ok(())
+    };
+    run(0, Coat::Bare(2.0), (1, 1))?;
+    run(1, Coat::Bare(3.0), (2, 1))?;
+    run(2, Coat::Paint(0.5, 3), (3, 2))?;
+    run(3, Coat::Glow { light: 1.0 }, (4, 3))?;
+    run(3, Coat::Paint(2.0, 3), (5, 3))?;
+    run(2, Coat::Bare(7.0), (6, 3))?;
+    run(3, Coat::Bare(8.0), (7, 3))?;
+    Ok(())
 }
 
 #[test]

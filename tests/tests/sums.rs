@@ -255,3 +255,223 @@ fn options() {
     let inputs: Vec<(f32,)> = (0..40).map(|i| (i as f32 * 0.7,)).collect();
     assert_variants_agree!(&kernel, &inputs);
 }
+
+/// The same kernel over an enum of three kinds, and over one of the first of them alone.
+macro_rules! kinds {
+    ($module:ident, {$($others:tt)*}, $shade:item) => {
+        mod $module {
+            use raydsl::prelude::*;
+            use raydsl::{Type, assert_variants_agree, kernel};
+
+            #[derive(Clone, Copy, Debug, PartialEq, Type)]
+            pub(super) enum Surface {
+                Glow(Vec3, f32),
+                $($others)*
+            }
+
+            #[kernel]
+            $shade
+
+            #[kernel]
+            #[allow(irrefutable_let_patterns, reason = "of one kind")]
+            fn brightness(surface: Surface, x: f32) -> f32 {
+                let Surface::Glow(light, _) = surface else {
+                    return -1.0;
+                };
+                light.dot(shade(surface, x))
+            }
+
+            /// What a kernel makes of a list, of a captured value, of its own, of a variable that
+            /// changes, and of one that arms choose.
+            pub(super) fn wgsl(list: &[Surface]) -> String {
+                let one = list[0];
+                let kernel = kernel!(|x: f32| {
+                    let mut sum = shade(one, x);
+                    for surface in list {
+                        sum += shade(*surface, x);
+                        let dimmed = match *surface {
+                            Surface::Glow(light, share) if x > 0.0 => {
+                                Surface::Glow(light * 0.5, share)
+                            }
+                            other => other,
+                        };
+                        sum.x += brightness(dimmed, x);
+                    }
+                    let mut last = list[x as usize];
+                    if x > 2.0 {
+                        last = Surface::Glow(sum, x);
+                    }
+                    sum + shade(last, x)
+                });
+                let inputs: Vec<(f32,)> = (0..40).map(|i| (i as f32 * 0.1 - 1.0,)).collect();
+                assert_variants_agree!(&kernel, &inputs);
+                kernel.wgsl()
+            }
+        }
+    };
+}
+
+kinds!(
+    alone,
+    {},
+    fn shade(surface: Surface, x: f32) -> Vec3 {
+        match surface {
+            Surface::Glow(light, share) => light * share * x,
+        }
+    }
+);
+
+kinds!(of_three, { Matte { color: Vec3, roughness: f32 }, Black },
+    fn shade(surface: Surface, x: f32) -> Vec3 {
+        match surface {
+            Surface::Black => vec3(0.25, 0.0, 0.0),
+            Surface::Matte { color, roughness } if roughness > x => color,
+            Surface::Glow(light, share) => light * share * x,
+            Surface::Matte { color, .. } => color.zyx(),
+        }
+    }
+);
+
+#[test]
+fn kinds_that_the_data_lacks_leave_no_trace() {
+    let lights: Vec<(Vec3, f32)> = (0..5).map(|i| (Vec3::splat(i as f32), 0.5)).collect();
+    let of_one: Vec<_> = lights.iter().map(|l| alone::Surface::Glow(l.0, l.1)).collect();
+    let mut of_three: Vec<_> = lights.iter().map(|l| of_three::Surface::Glow(l.0, l.1)).collect();
+    let expected = alone::wgsl(&of_one);
+    assert_eq!(of_three::wgsl(&of_three), expected);
+    for one_more in
+        [of_three::Surface::Black, of_three::Surface::Matte { color: Vec3::Y, roughness: 0.5 }]
+    {
+        of_three.truncate(5);
+        of_three.push(one_more);
+        assert_ne!(of_three::wgsl(&of_three), expected);
+    }
+}
+
+#[kernel]
+fn next(material: &mut Material, x: f32) {
+    *material = match *material {
+        Material::Black => Material::Glow(Vec3::splat(x)),
+        Material::Glow(light) => Material::Metal(light, x, 2),
+        Material::Metal(color, roughness, _) => Material::Diffuse { color, roughness },
+        Material::Diffuse { .. } => Material::Black,
+    };
+}
+
+/// Variables that have one kind where a loop begins, and any where its body runs again.
+#[kernel]
+fn changed_in_loops(x: f32) -> Vec3 {
+    let (mut stepped, mut set, mut late) = (Material::Black, Material::Black, Material::Black);
+    let mut sum = Vec3::ZERO;
+    for i in 0..5 {
+        sum += shade(stepped, x) + shade(set, 1.5 * x);
+        next(&mut stepped, x);
+        let mut inner = Material::Glow(sum);
+        for k in 0..3 {
+            sum.x += shade(inner, x).y;
+            if k as f32 > x {
+                inner = Material::Metal(sum, 0.5, 1);
+                continue;
+            }
+            if let Material::Black = late {
+                sum.z += 1.0;
+            }
+        }
+        sum.y += shade(inner, x).x;
+        set = if i == 1 { Material::Diffuse { color: sum, roughness: x } } else { set };
+        while let Material::Metal(_, _, n) = inner {
+            inner = if n > 3 { Material::Black } else { Material::Metal(sum, x, n + 1) };
+        }
+        if let Material::Black = inner {
+            late = Material::Glow(sum);
+        }
+    }
+    sum + shade(stepped, x) + shade(late, x)
+}
+
+/// What branches exclude, and what they do not.
+#[kernel]
+fn excluded(a: Material, x: f32) -> f32 {
+    let mut b = if x > 0.5 { Material::Black } else { Material::Glow(vec3(x, 1.0, 2.0)) };
+    let mut sum = 0.0;
+    if let Material::Glow(light) = b {
+        b = Material::Metal(light, x, 1);
+        if let Material::Metal(..) = b {
+            sum += 1.0;
+        }
+        if let Material::Glow(_) = b {
+            sum += 10.0;
+        }
+    } else if let Material::Glow(_) = b {
+        sum += 100.0;
+    }
+    if let Material::Metal(..) | Material::Black = b {
+        sum += 0.5;
+    }
+    if matches_bright(a) || x > 1.0 {
+        if let Material::Black = a {
+            sum += 1000.0;
+        }
+    } else if let Material::Black | Material::Glow(_) = a {
+        if let Material::Glow(_) = a {
+            sum += 2000.0;
+        }
+        if let Material::Diffuse { .. } = a {
+            sum += 4000.0;
+        }
+    }
+    sum
+}
+
+#[test]
+fn variables_in_loops_have_any_kind() {
+    let inputs: Vec<(f32,)> = (0..40).map(|i| (i as f32 * 0.07 - 0.5,)).collect();
+    assert_variants_agree!(changed_in_loops, &inputs);
+}
+
+#[test]
+fn branches_exclude_kinds() {
+    let inputs: Vec<(Material, f32)> =
+        materials().iter().enumerate().map(|(i, m)| (*m, i as f32 * 0.03)).collect();
+    assert_variants_agree!(excluded, &inputs);
+}
+
+/// More variants than a set of kinds has members.
+macro_rules! many {
+    ($($name:ident $number:literal)+) => {
+        #[derive(Clone, Copy, Debug, Type)]
+        enum Many {
+            $($name(u32),)+
+        }
+
+        #[kernel]
+        fn of_many(x: Many) -> u32 {
+            match x {
+                $(Many::$name(n) => n + $number,)+
+            }
+        }
+
+        fn all_of_many() -> Vec<Many> {
+            vec![$(Many::$name(1)),+]
+        }
+    };
+}
+
+many!(
+    Kind0 0 Kind1 1 Kind2 2 Kind3 3 Kind4 4 Kind5 5 Kind6 6 Kind7 7 Kind8 8 Kind9 9 Kind10 10 Kind11 11 Kind12 12 Kind13 13 Kind14 14 Kind15 15
+    Kind16 16 Kind17 17 Kind18 18 Kind19 19 Kind20 20 Kind21 21 Kind22 22 Kind23 23 Kind24 24 Kind25 25 Kind26 26 Kind27 27 Kind28 28
+    Kind29 29 Kind30 30 Kind31 31 Kind32 32 Kind33 33 Kind34 34 Kind35 35 Kind36 36 Kind37 37 Kind38 38 Kind39 39 Kind40 40 Kind41 41
+    Kind42 42 Kind43 43 Kind44 44 Kind45 45 Kind46 46 Kind47 47 Kind48 48 Kind49 49 Kind50 50 Kind51 51 Kind52 52 Kind53 53 Kind54 54
+    Kind55 55 Kind56 56 Kind57 57 Kind58 58 Kind59 59 Kind60 60 Kind61 61 Kind62 62 Kind63 63 Kind64 64 Kind65 65 Kind66 66 Kind67 67
+);
+
+#[test]
+fn enums_of_many_variants() {
+    let all = all_of_many();
+    let inputs: Vec<(Many,)> = all.iter().map(|x| (*x,)).collect();
+    assert_variants_agree!(of_many, &inputs);
+    for part in [&all[..2], &all[62..64], &all[63..65], &all[64..], &all[66..]] {
+        let kernel = kernel!(|i: u32| of_many(part[i as usize % part.len()]));
+        assert_variants_agree!(&kernel, &(0..5).map(|i| (i,)).collect::<Vec<(u32,)>>());
+    }
+}

@@ -141,6 +141,7 @@ impl Choice<'_> {
     fn lifted_variants(&self) -> TokenStream {
         let (p, name, twin) = (private(), &self.item.ident, self.twin_name());
         let (names, types, numbers) = (self.names(), self.types(), self.numbers());
+        let count = self.kinds.len() as u32;
         let asks: Vec<Ident> = names.iter().map(|n| format_ident!("__is_{n}_on")).collect();
         let takes: Vec<Ident> = names.iter().map(|n| format_ident!("__{n}_0_on")).collect();
         let makes: Vec<Ident> = names.iter().map(|n| format_ident!("{n}_on")).collect();
@@ -151,7 +152,7 @@ impl Choice<'_> {
                 #(
                     #[inline(always)]
                     pub fn #asks<__M: #p::Machine>(m: &__M, prim: #twin<__M>) -> #p::B<__M> {
-                        #p::is_kind(m, prim.kind, #numbers)
+                        #p::is_kind(m, prim.kind, #numbers, #count)
                     }
 
                     #[inline(always)]

@@ -91,6 +91,7 @@ impl Enumeration<'_> {
     /// Returns the functions for variants in patterns and expressions of kernels.
     fn tests(&self) -> TokenStream {
         let (p, name, twin, variants) = (private(), &self.item.ident, &self.twin, self.variants);
+        let count = variants.len() as u32;
         let tests = variants.iter().map(|v| format_ident!("__is_{v}_on"));
         quote! {
             #[doc(hidden)]
@@ -99,7 +100,7 @@ impl Enumeration<'_> {
                 #(
                     #[inline(always)]
                     pub fn #tests<__M: #p::Machine>(m: &__M, value: #twin<__M>) -> #p::B<__M> {
-                        #p::is_kind(m, value.number, Self::#variants as u32)
+                        #p::is_kind(m, value.number, Self::#variants as u32, #count)
                     }
                 )*
             }

@@ -101,6 +101,10 @@ impl Sum {
         quote!(#data #conversions #r#type #capture #functions)
     }
 
+    fn count(&self) -> u32 {
+        self.variants.len() as u32
+    }
+
     fn data_name(&self) -> Ident {
         format_ident!("{}Data", self.item.ident)
     }
@@ -126,12 +130,13 @@ impl Sum {
         let doc = format!("[`{}`] as the number of its variant and its fields.", self.item.ident);
         let (names, types): (Vec<_>, Vec<_>) = self.slots.iter().cloned().unzip();
         let (declared, clause) = (&self.item.generics.params, &self.item.generics.where_clause);
+        let (p, count) = (private(), self.count());
         let data: syn::DeriveInput = syn::parse_quote! {
             #[doc = #doc]
             #[derive(Clone, Copy)]
             #[repr(C)]
             #vis struct #data<#declared> #clause {
-                kind: u32,
+                kind: #p::Kind<#count>,
                 #(#names: #types,)*
             }
         };
@@ -160,7 +165,7 @@ impl Sum {
             let slots: Vec<_> = v.parts.iter().map(|part| &part.slot).collect();
             quote! {
                 Self::#name { #(#members: #slots,)* } => #data {
-                    kind: #number,
+                    kind: #p::Kind(#number),
                     #(#slots,)*
                     #(#unused: #p::zero_of(),)*
                 },
@@ -185,7 +190,7 @@ impl Sum {
                 /// The first variant for a number that no variant has.
                 #[inline(always)]
                 fn __of_data(data: #data_type) -> Self {
-                    match data.kind {
+                    match data.kind.0 {
                         #(#numbers => #others,)*
                         _ => #first,
                     }
@@ -250,6 +255,7 @@ impl Sum {
 
     fn functions_of(&self, v: &Variant) -> TokenStream {
         let (p, twin, number, data) = (private(), self.twin_type(), v.number, self.data_type());
+        let count = self.count();
         let (is, new) = (format_ident!("__is_{}_on", v.name), format_ident!("__new_{}_on", v.name));
         let parts = v.parts.iter().map(|part| {
             let (ty, slot, member) = (&part.ty, &part.slot, part.member.to_token_stream());
@@ -300,7 +306,7 @@ impl Sum {
         quote! {
             #[inline(always)]
             pub fn #is<__M: #p::Machine>(m: &__M, value: #twin) -> #p::B<__M> {
-                #p::is_kind(m, value.kind, #number)
+                #p::is_kind(m, value.kind, #number, #count)
             }
 
             #[inline(always)]

@@ -420,6 +420,16 @@ impl<T: Type, S> Data for View<'_, T, S> {
         }
     }
 
+    fn kinds(&self) -> Option<Kinds> {
+        match self.scene {
+            Scene::Slice(prims) => prims.kinds(),
+            Scene::Tree(tree) => Some(tree.kinds),
+            Scene::List(trees) => Some(trees.kinds),
+            Scene::Instances(placed) => Some(placed.trees.kinds),
+            Scene::Standing(standing) => Some(standing.kinds),
+        }
+    }
+
     fn key(&self) -> BufferKey {
         match self.scene {
             Scene::Slice(prims) => prims.key(),

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::wgsl::BufferKey;
-use super::{Capture, Leaves, Machine, Parameter, Resource, Schema, Type, Value, stride};
+use super::{Capture, Kinds, Leaves, Machine, Parameter, Resource, Schema, Type, Value, stride};
 
 /// Elements in the host's memory: a value of the host on every machine.
 pub trait Data: Copy {
@@ -19,6 +19,11 @@ pub trait Data: Copy {
     ///
     /// If there is no such element.
     fn get(&self, index: u32) -> Self::Element;
+
+    /// Returns the kinds of the elements, enums, if they are known without reading all.
+    fn kinds(&self) -> Option<Kinds> {
+        None
+    }
 
     /// Returns the key of the elements among a device's buffers.
     fn key(&self) -> BufferKey;

@@ -109,6 +109,7 @@ pub use vector::{V2, V3, V4, X2, X3, X4};
 pub mod lifted {
     pub use super::host::{Constant, GiveConstant, HostCapture, HostUse};
     pub use super::index::{Index, Indexed, with_element};
+    pub use super::kinds::Kind;
     pub use super::lowered::*;
 
     pub use super::bare::{Bare, bare};

@@ -19,6 +19,11 @@ pub enum Schema {
         /// Bytes in memory: 1 or 2.
         bytes: usize,
     },
+    /// The number of an enum's variant, a `u32`.
+    Kind {
+        /// The number of variants.
+        count: u32,
+    },
     /// A vector of glam: that many scalars (of the first part) without a gap.
     Vector(&'static Schema, usize),
     /// `[T; N]`.
@@ -58,7 +63,12 @@ impl Schema {
     /// Returns the number of scalars in a value.
     pub const fn leaves(&self) -> usize {
         match self {
-            Self::F32 | Self::I32 | Self::U32 | Self::Bool | Self::Small { .. } => 1,
+            Self::F32
+            | Self::I32
+            | Self::U32
+            | Self::Bool
+            | Self::Small { .. }
+            | Self::Kind { .. } => 1,
             Self::Vector(_, n) => *n,
             Self::Array { element, count, .. } => element.leaves() * *count,
             Self::Struct { fields, .. } => {
@@ -70,6 +80,25 @@ impl Schema {
                 sum
             }
             Self::Host => 0,
+        }
+    }
+
+    /// Returns whether the number of an enum's variant is among the scalars.
+    pub(crate) const fn has_kinds(&self) -> bool {
+        match self {
+            Self::Kind { .. } => true,
+            Self::Array { element, .. } => element.has_kinds(),
+            Self::Struct { fields, .. } => {
+                let mut i = 0;
+                while i < fields.len() {
+                    if fields[i].schema.has_kinds() {
+                        return true;
+                    }
+                    i += 1;
+                }
+                false
+            }
+            _ => false,
         }
     }
 
@@ -95,7 +124,7 @@ impl Schema {
     /// Returns the bytes of one value in the host's memory, including padding at the end.
     pub const fn size(&self) -> usize {
         match self {
-            Self::F32 | Self::I32 | Self::U32 => 4,
+            Self::F32 | Self::I32 | Self::U32 | Self::Kind { .. } => 4,
             Self::Bool => 1,
             Self::Small { bytes } => *bytes,
             Self::Vector(element, n) => element.size() * *n,

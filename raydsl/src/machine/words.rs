@@ -29,9 +29,12 @@ pub fn host_of_words<T: Type, const N: usize>(words: [u32; N]) -> T {
     T::lane::<Scalar>(&of_words::<Scalar, T, N>(&Scalar::default(), words.map(U)), 0)
 }
 
-/// Returns whether the kind is `number`.
+/// Returns whether the kind is `number`, of `count` variants.
 #[inline(always)]
-pub fn is_kind<M: Machine>(m: &M, kind: U<M>, number: u32) -> B<M> {
+pub fn is_kind<M: Machine>(m: &M, kind: U<M>, number: u32, count: u32) -> B<M> {
+    if count == 1 {
+        return B(m.bool(true));
+    }
     B(m.u32_compare(op::Eq, kind.0, m.u32(number)))
 }
 
@@ -45,7 +48,7 @@ pub fn of_kind<M: Machine>(m: &M, kinds: Kinds, kind: U<M>, number: u32, then: i
     if kinds.is_only(number) {
         return then();
     }
-    let branch = Branch::new(m, is_kind(m, kind, number));
+    let branch = Branch::new(m, is_kind(m, kind, number, u32::MAX));
     if branch.then(m) {
         then();
     }

@@ -219,6 +219,11 @@ fn floats(schema: &Schema, at: usize, offsets: &mut Vec<usize>) {
         Schema::Struct { fields, .. } => {
             fields.iter().for_each(|f| floats(f.schema, at + f.offset, offsets));
         }
-        Schema::I32 | Schema::U32 | Schema::Bool | Schema::Small { .. } | Schema::Host => {}
+        Schema::I32
+        | Schema::U32
+        | Schema::Bool
+        | Schema::Small { .. }
+        | Schema::Kind { .. }
+        | Schema::Host => {}
     }
 }

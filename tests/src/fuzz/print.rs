@@ -52,7 +52,8 @@ const WEIGH: &str = "
 ";
 
 /// What functions take that read the scene.
-const SLICES: [&str; 3] = ["floats: &[f32]", "words: &[u32]", "smalls: &[Small]"];
+const SLICES: [&str; 4] =
+    ["floats: &[f32]", "words: &[u32]", "smalls: &[Small]", "shapes: &[Shape]"];
 
 /// The module of a kernel.
 pub fn kernel(k: &Kernel) -> String {
@@ -142,7 +143,9 @@ impl Printer {
         self.text(&format!(
             "    let (floats, words) = (first(&FLOATS, {len}), first(&WORDS, {len}));\n"
         ));
-        self.text(&format!("    let smalls = first(&SMALLS, {len});\n"));
+        self.text(&format!(
+            "    let (smalls, shapes) = (first(&SMALLS, {len}), first(&SHAPES, {len}));\n"
+        ));
         self.text(&format!("    let (scale, count) = (SCALE, {count}u32);\n"));
         let params: Vec<String> = entry.params.iter().map(param).collect();
         self.text(&format!("    let kernel = kernel!(|{}| -> Outcome ", params.join(", ")));

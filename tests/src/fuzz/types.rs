@@ -409,6 +409,19 @@ pub static SMALLS: [Small; 3] = [
     Small { i: 9, t: false, y: -0.5, m: 0xffff_0000 },
     Small { i: 0, t: true, y: 4.0, m: 12 },
 ];
+/// A slice of enums: the first ones are of few kinds.
+pub static SHAPES: [Shape; 6] = [
+    Shape::Word(6),
+    Shape::Word(0),
+    Shape::Ball(2.5, 9),
+    Shape::Ball(-0.5, 0xffff_ffff),
+    Shape::Block {
+        low: Vec3::new(1.0, -2.0, 0.25),
+        kind: Kind::Green,
+        inner: Small { i: 2, t: true, y: 0.5, m: 5 },
+    },
+    Shape::Nothing,
+];
 /// A number of the scene.
 pub const SCALE: f32 = 0.75;
 
@@ -423,6 +436,7 @@ pub fn resources(visit: &mut dyn FnMut(&dyn Resource)) {
         Capture::<Recorder>::resources(first(&FLOATS, len), visit);
         Capture::<Recorder>::resources(first(&WORDS, len), visit);
         Capture::<Recorder>::resources(first(&SMALLS, len), visit);
+        Capture::<Recorder>::resources(first(&SHAPES, len), visit);
     }
 }
 
@@ -458,7 +472,8 @@ macro_rules! scene_entry {
 
             fn scalar((x, v, n, s): Self::Args) -> Outcome {
                 let (floats, words) = (first(&FLOATS, $len), first(&WORDS, $len));
-                entry(x, v, n, s, floats, words, first(&SMALLS, $len), SCALE, $count)
+                let (smalls, shapes) = (first(&SMALLS, $len), first(&SHAPES, $len));
+                entry(x, v, n, s, floats, words, smalls, shapes, SCALE, $count)
             }
 
             fn lifted<M: raydsl::machine::Machine>(
@@ -468,8 +483,9 @@ macro_rules! scene_entry {
                 let floats = on(m, first(&FLOATS, $len), "floats");
                 let words = on(m, first(&WORDS, $len), "words");
                 let smalls = on(m, first(&SMALLS, $len), "smalls");
+                let shapes = on(m, first(&SHAPES, $len), "shapes");
                 let scale = raydsl::machine::Capture::<M>::capture(&SCALE, m, "scale");
-                entry::on(m, x, v, n, s, floats, words, smalls, scale, $count)
+                entry::on(m, x, v, n, s, floats, words, smalls, shapes, scale, $count)
             }
         }
     };

@@ -121,7 +121,7 @@ const fn spots(schema: &Schema, at: usize, spots: &mut [Spot; MOST], n: usize) -
         n + 1
     }
     match schema {
-        Schema::F32 | Schema::I32 | Schema::U32 => scalar(4, at, spots, n),
+        Schema::F32 | Schema::I32 | Schema::U32 | Schema::Kind { .. } => scalar(4, at, spots, n),
         Schema::Bool => scalar(1, at, spots, n),
         Schema::Small { bytes } => scalar(*bytes, at, spots, n),
         Schema::Vector(element, count) => {

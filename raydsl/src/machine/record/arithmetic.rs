@@ -103,6 +103,11 @@ impl Recorder {
         if let (Some(a), Some(b)) = (self.u32_literal(a), self.u32_literal(b)) {
             return self.bool(op.of(a, b));
         }
+        if let Compare::Eq | Compare::Ne = op
+            && let Some(is) = self.is_kind(a, b)
+        {
+            return self.bool(is == (op == Compare::Eq));
+        }
         self.add(Expr::Compare(op, a, b), Type::Bool)
     }
 

@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 
 use super::ir::{Expr, Id, Node, Recorded, Stmt, Type, VarId, Variable};
+use super::kinds::Known;
 use super::names::unique;
+use super::settled::Declared;
 use crate::machine::KernelInfo;
 
 /// A function being recorded.
@@ -18,6 +20,8 @@ pub(super) struct Builder {
     trivial: HashMap<Expr, Vec<Id>>,
     /// The variable that holds the labelled loop being left.
     pub(super) leave: Option<VarId>,
+    pub(super) known: Known,
+    pub(super) declared: Declared,
 }
 
 #[derive(Clone)]
@@ -48,6 +52,8 @@ impl Builder {
             next_loop: 1,
             trivial: HashMap::new(),
             leave: None,
+            known: Known::default(),
+            declared: Declared::default(),
         }
     }
 
@@ -156,13 +162,15 @@ impl Builder {
         id
     }
 
+    /// Returns whether a variable or a parameter has the name.
+    pub(super) fn is_taken(&self, name: &str) -> bool {
+        self.function.vars.iter().any(|v| v.name == name)
+            || self.function.params.iter().any(|p| p.0 == name)
+    }
+
     pub(super) fn new_var(&mut self, name: &str, ty: Type) -> VarId {
         let v = VarId(self.function.vars.len() as u32);
-        let taken = |n: &str| {
-            self.function.vars.iter().any(|v| v.name == n)
-                || self.function.params.iter().any(|p| p.0 == n)
-        };
-        let name = unique(name, taken);
+        let name = unique(name, |n| self.is_taken(n));
         self.function.vars.push(Variable { name, ty, version: 0 });
         v
     }
@@ -175,6 +183,8 @@ impl Builder {
             return;
         }
         self.used(value);
+        self.store_kinds(v, value);
+        self.settle(v, value);
         self.function.vars[v.0 as usize].version += 1;
         self.push(Stmt::Store(v, value));
     }

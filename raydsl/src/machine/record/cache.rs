@@ -39,13 +39,17 @@ impl Recorder {
 
 impl Recording {
     /// Returns whether both have the same text under `limits`: only the numbers in the uniform
-    /// buffer and the data in the storage buffers may differ.
+    /// buffer and the data in the storage buffers may differ, but not the kinds of enums in the
+    /// data, of which the text has the arms.
     fn has_same_program(&self, other: &Self, limits: &Limits) -> bool {
         let (a, b) = (&self.state, &other.state);
         let same_uniform = |(a, b): (&Uniform, &Uniform)| a.name == b.name && a.ty == b.ty;
         let same_buffer = |(a, b): (&SceneBuffer, &SceneBuffer)| {
             let windows = |of: &SceneBuffer| window_count(of, limits);
-            a.name == b.name && a.schema == b.schema && windows(a) == windows(b)
+            a.name == b.name
+                && a.schema == b.schema
+                && a.kinds == b.kinds
+                && windows(a) == windows(b)
         };
         let same_texture = |(a, b): (&Texture, &Texture)| a.name == b.name && a.layout == b.layout;
         (self.entry, self.input, self.output) == (other.entry, other.input, other.output)

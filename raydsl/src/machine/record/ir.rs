@@ -36,7 +36,7 @@
 //! the program itself depends on host values, and on the kinds and layouts of the captures.
 
 use crate::machine::{
-    BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Schema, U32Unary, wgsl::BufferKey,
+    BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Kinds, Schema, U32Unary, wgsl::BufferKey,
 };
 
 /// An expression of the function being recorded.
@@ -83,7 +83,7 @@ impl Type {
         match schema {
             Schema::F32 => Self::F32,
             Schema::I32 => Self::I32,
-            Schema::U32 | Schema::Small { .. } => Self::U32,
+            Schema::U32 | Schema::Small { .. } | Schema::Kind { .. } => Self::U32,
             Schema::Bool => Self::Bool,
             Schema::Vector(element, n) => Self::of(element).times(*n),
             _ => Self::Of(schema),
@@ -338,4 +338,6 @@ pub(super) struct SceneBuffer {
     pub(super) name: String,
     pub(super) schema: &'static Schema,
     pub(super) len: u64,
+    /// The kinds of each number of an enum's variant in it, once they were asked for.
+    pub(super) kinds: Option<Vec<Kinds>>,
 }

@@ -84,7 +84,13 @@ impl Recorder {
         match self.truth(c) {
             Some(true) => a,
             Some(false) => b,
-            None => self.add(Expr::Select(c, a, b), ty),
+            None => {
+                let selected = self.add(Expr::Select(c, a, b), ty);
+                if ty == Type::U32 {
+                    self.builder(|builder| builder.select_kinds(selected, a, b));
+                }
+                selected
+            }
         }
     }
 
@@ -161,14 +167,18 @@ impl Recorder {
 
     /// Returns the leaves that read `v`.
     fn read(&self, v: VarId, ty: Type) -> Vec<Id> {
-        let load = self.add(Expr::Load(v), ty);
+        let value = self.builder(|b| b.settled(v)).unwrap_or_else(|| {
+            let load = self.add(Expr::Load(v), ty);
+            self.builder(|b| b.load_kinds(v, load));
+            load
+        });
         match ty {
             Type::Vector(_, n) => ["x", "y", "z", "w"]
                 .into_iter()
                 .take(n)
-                .map(|c| self.add(Expr::Member(load, c), ty.component()))
+                .map(|c| self.add(Expr::Member(value, c), ty.component()))
                 .collect(),
-            _ => vec![load],
+            _ => vec![value],
         }
     }
 
@@ -186,6 +196,12 @@ impl Recorder {
                     b.used(value);
                 }
                 b.push(Stmt::Var(v, value));
+                if value.is_none() {
+                    b.declare(v);
+                }
+                if let Some(all) = cell.kinds {
+                    b.keep_kinds(v, all, value);
+                }
                 v
             });
             state.extend(self.read(v, cell.ty));
@@ -322,22 +338,27 @@ impl Recorder {
         {
             return result;
         }
+        let kinds = self.builder(|b| b.kinds_among(args, &leaves));
         let operands = self.arguments(args, leaves);
-        let params = self.begin_function(info, args);
-        let function = self.end_function(result, body(&params));
+        let params = self.begin_function(info, args, &kinds);
+        let (function, kinds) = self.end_function(result, body(&params));
         if result.leaves() == 0 {
             return Vec::new();
         }
-        self.call_of(function, operands, result)
+        let leaves = self.call_of(function, operands, result);
+        self.builder(|b| b.know(result, &leaves, &kinds));
+        leaves
     }
 
     /// Records a call of a recorded function and returns the leaves of its result.
-    fn call_of(&self, function: usize, operands: Vec<Id>, result: &'static Schema) -> Vec<Id> {
-        let ty = Type::of(result);
-        let call = self.add(Expr::Call(function, operands), ty);
-        let mut leaves = Vec::with_capacity(result.leaves());
-        self.parts(result, call, &mut leaves);
-        leaves
+    pub(super) fn call_of(
+        &self,
+        function: usize,
+        operands: Vec<Id>,
+        result: &'static Schema,
+    ) -> Vec<Id> {
+        let call = self.add(Expr::Call(function, operands), Type::of(result));
+        self.all_parts(result, call)
     }
 }
 
@@ -523,14 +544,15 @@ impl Machine for Recorder {
     }
 
     fn branch(&self, c: Id) -> RecordedBranch {
-        if self.truth(c).is_some() {
-            return RecordedBranch { c, then: Default::default() };
+        let assumptions = self.builder(|b| b.assumptions());
+        if self.truth(c).is_none() {
+            self.builder(|b| {
+                b.used(c);
+                b.open_block();
+                b.assume(assumptions, c, true);
+            });
         }
-        self.builder(|b| {
-            b.used(c);
-            b.open_block();
-        });
-        RecordedBranch { c, then: Default::default() }
+        RecordedBranch { c, then: Default::default(), assumptions }
     }
     fn branch_then(&self, t: &RecordedBranch) -> bool {
         self.truth(t.c) != Some(false)
@@ -542,6 +564,7 @@ impl Machine for Recorder {
         let then = self.builder(|b| {
             let then = b.close_block();
             b.open_block();
+            b.assume(t.assumptions, t.c, false);
             then
         });
         t.then.replace(Some(then));
@@ -571,6 +594,7 @@ impl Machine for Recorder {
             return;
         }
         self.builder(|b| {
+            b.forget(t.assumptions);
             let last = b.close_block();
             let stmt = match t.then.take() {
                 Some(then) => Stmt::If { c: t.c, then, otherwise: last },
@@ -734,13 +758,9 @@ impl Machine for Recorder {
         U(self.add(Expr::Call(function, vec![]), Type::U32))
     }
     fn element<D: Data>(&self, data: &D, index: U<Self>) -> <D::Element as MachineType>::On<Self> {
-        let function = self.element_function(data);
-        let call = self.add(Expr::Call(function, vec![index.0]), Type::of(D::Element::SCHEMA));
-        self.take_apart(call)
+        self.element_of(data, self.element_function(data), index.0)
     }
     fn fetch<D: Data>(&self, data: &D, index: U<Self>) -> <D::Element as MachineType>::On<Self> {
-        let function = self.fetch_function(data);
-        let call = self.add(Expr::Call(function, vec![index.0]), Type::of(D::Element::SCHEMA));
-        self.take_apart(call)
+        self.element_of(data, self.fetch_function(data), index.0)
     }
 }

@@ -12,9 +12,11 @@ mod data;
 mod expression;
 mod function;
 pub(crate) mod ir;
+mod kinds;
 mod machine;
 mod module;
 mod names;
+mod settled;
 mod storage;
 mod text;
 mod textures;
@@ -33,7 +35,7 @@ use builder::{Builder, LoopState};
 use ir::{Expr, Function, Id, Node, SceneBuffer, Stmt, Type, Uniform};
 use names::{qualified, safe_name, unique};
 
-use super::{KernelInfo, Leaves, Schema, Value, wgsl};
+use super::{Compare, KernelInfo, Kinds, Leaves, Schema, Value, wgsl};
 
 /// Records a kernel as WGSL.
 pub struct Recorder {
@@ -110,6 +112,8 @@ fn belongs_to(name: &str, buffer: &str) -> bool {
 pub struct RecordedBranch {
     c: Id,
     then: RefCell<Option<Vec<Stmt>>>,
+    /// How much was assumed before it.
+    assumptions: usize,
 }
 
 /// A loop being recorded.
@@ -168,9 +172,15 @@ impl Recorder {
 
     /// Returns the twin whose leaves are the parts of `id`.
     pub(crate) fn take_apart<V: Value<Self>>(&self, id: Id) -> V {
-        let mut leaves = Vec::with_capacity(V::SCHEMA.leaves());
-        self.parts(V::SCHEMA, id, &mut leaves);
-        self.of_leaves(&leaves)
+        self.of_leaves(&self.all_parts(V::SCHEMA, id))
+    }
+
+    /// Returns the leaves of a structured expression.
+    fn all_parts(&self, schema: &'static Schema, id: Id) -> Vec<Id> {
+        let mut leaves = Vec::with_capacity(schema.leaves());
+        self.parts(schema, id, &mut leaves);
+        self.builder(|b| b.know(schema, &leaves, &[]));
+        leaves
     }
 
     fn of_leaves<V: Value<Self>>(&self, leaves: &[Id]) -> V {
@@ -274,11 +284,17 @@ impl Recorder {
 
     /// Begins a function whose parameters are the tuple `A` and returns the parameters.
     fn begin<A: Value<Self>>(&self, info: &'static KernelInfo, host: A) -> A {
-        self.with_leaves(host, &self.begin_function(info, A::SCHEMA))
+        self.with_leaves(host, &self.begin_function(info, A::SCHEMA, &[]))
     }
 
-    /// Begins a function with the parameters of a tuple and returns their leaves.
-    fn begin_function(&self, info: &'static KernelInfo, tuple: &'static Schema) -> Vec<Id> {
+    /// Begins a function with the parameters of a tuple, among which there are enums of these kinds,
+    /// and returns their leaves.
+    fn begin_function(
+        &self,
+        info: &'static KernelInfo,
+        tuple: &'static Schema,
+        kinds: &[Kinds],
+    ) -> Vec<Id> {
         let mut state = self.state.borrow_mut();
         let depth = state
             .open
@@ -311,6 +327,7 @@ impl Recorder {
             let id = self.add(Expr::Param(n), Type::of(f.schema));
             self.parts(f.schema, id, &mut leaves);
         }
+        self.builder(|b| b.know(tuple, &leaves, kinds));
         leaves
     }
 
@@ -342,10 +359,11 @@ impl Recorder {
     /// Ends the function being recorded with `result` and returns its index, or that of an equal
     /// function.
     fn end<R: Value<Self>>(&self, result: R) -> usize {
-        self.end_function(R::SCHEMA, self.leaves_of(result))
+        self.end_function(R::SCHEMA, self.leaves_of(result)).0
     }
 
-    fn end_function(&self, schema: &'static Schema, result: Vec<Id>) -> usize {
+    /// Ends the function being recorded and returns its index and the kinds of enums in its results.
+    fn end_function(&self, schema: &'static Schema, result: Vec<Id>) -> (usize, Vec<Kinds>) {
         let returned = self.builder(|b| b.blocks.last().is_some_and(|b| always_returns(&b.1)));
         if !result.is_empty() {
             if !returned {
@@ -356,13 +374,15 @@ impl Recorder {
         let mut state = self.state.borrow_mut();
         let mut builder = state.open.pop().expect("begin and end come in pairs");
         builder.function.body = builder.close_block();
+        let kinds = builder.returned_kinds();
+        builder.remove_settled();
         let mut function = builder.function;
         let same = state
             .functions
             .iter()
             .position(|f| matches!(f, Function::Recorded(f) if f.same_code(&function)));
         if let Some(i) = same {
-            return i;
+            return (i, kinds);
         }
         let plain = safe_name(function.source_name);
         function.name = if state.is_taken(&plain) {
@@ -371,10 +391,11 @@ impl Recorder {
             plain
         };
         state.functions.push(Function::Recorded(function));
-        state.functions.len() - 1
+        (state.functions.len() - 1, kinds)
     }
 
     fn give_leaves(&self, schema: &'static Schema, leaves: Vec<Id>) {
+        self.builder(|b| b.return_kinds(schema, &leaves));
         let id = self.put_together(schema, &mut leaves.into_iter());
         self.builder(|b| {
             b.used(id);
@@ -429,7 +450,7 @@ impl Recorder {
             return b.name.clone();
         }
         let name = unique(&safe_name(name), |n| state.is_taken_for_buffer(n));
-        state.buffers.push(SceneBuffer { key, name: name.clone(), schema, len });
+        state.buffers.push(SceneBuffer { key, name: name.clone(), schema, len, kinds: None });
         name
     }
 }

@@ -151,7 +151,9 @@ fn windows(len: u64, stride: u64, max: u64, first_binding: u32) -> Vec<Window> {
 fn stored_type(schema: &'static Schema, names: &mut Names) -> (String, bool) {
     let stored = Stored::new(schema);
     let name = match schema {
-        Schema::F32 | Schema::I32 | Schema::U32 => return (names.ty(Type::of(schema)), true),
+        Schema::F32 | Schema::I32 | Schema::U32 | Schema::Kind { .. } => {
+            return (names.ty(Type::of(schema)), true);
+        }
         Schema::Struct { .. } => {
             let value = names.ty(Type::of(schema));
             if stored.is_value(schema) {

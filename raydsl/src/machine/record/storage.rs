@@ -11,7 +11,7 @@ use super::Recorder;
 use super::ir::{Expr, Id, Type};
 use super::names::member_name;
 use super::types::Names;
-use crate::machine::{Compare, Schema};
+use crate::machine::{Compare, Kinds, Schema};
 
 const COMPONENTS: [&str; 4] = ["x", "y", "z", "w"];
 
@@ -21,6 +21,8 @@ pub(super) struct Cell {
     pub(super) ty: Type,
     /// The number of its leaves.
     pub(super) leaves: usize,
+    /// The kinds of the enum, if it is the number of a variant.
+    pub(super) kinds: Option<Kinds>,
 }
 
 /// Collects the variables that hold the value `name`, in the order of its leaves: `hit_t`, `color`.
@@ -38,7 +40,12 @@ pub(super) fn cells(name: &str, schema: &'static Schema, out: &mut Vec<Cell>) {
             }
         }
         _ => {
-            out.push(Cell { name: name.to_owned(), ty: Type::of(schema), leaves: schema.leaves() })
+            let kinds = match schema {
+                Schema::Kind { count } => Some(Kinds::first(*count)),
+                _ => None,
+            };
+            let (ty, leaves) = (Type::of(schema), schema.leaves());
+            out.push(Cell { name: name.to_owned(), ty, leaves, kinds });
         }
     }
 }
@@ -65,6 +72,8 @@ pub(super) fn uniforms(
             let zero = m.add(Expr::U32(0), Type::U32);
             leaves.push(m.add(Expr::Compare(Compare::Ne, u, zero), Type::Bool));
         }
+        // A captured variant is known while the kernel is recorded: a `match` on it is decided.
+        Schema::Kind { .. } => leaves.push(m.add(Expr::U32(word(&bytes[..4])), Type::U32)),
         Schema::F32 | Schema::I32 | Schema::U32 => {
             leaves.push(m.captured_uniform(name, Type::of(schema), vec![word(&bytes[..4])]));
         }
@@ -145,7 +154,7 @@ fn word_type(schema: &Schema) -> Cow<'static, str> {
     match schema {
         Schema::F32 => "f32".into(),
         Schema::I32 => "i32".into(),
-        Schema::U32 => "u32".into(),
+        Schema::U32 | Schema::Kind { .. } => "u32".into(),
         Schema::Vector(Schema::Bool, _) => "".into(),
         Schema::Vector(element, n) => format!("vec{n}<{}>", word_type(element)).into(),
         _ => "".into(),
@@ -209,13 +218,13 @@ impl Stored {
                         });
                     }
                 }
-                Schema::F32 | Schema::I32 | Schema::U32 => members.push(Member {
+                Schema::Bool | Schema::Small { .. } => place_small(&mut members, leaf),
+                _ => members.push(Member {
                     name: leaf.name.clone(),
                     offset: leaf.offset,
                     ty: word_type(leaf.schema),
                     size: 4,
                 }),
-                _ => place_small(&mut members, leaf),
             }
         }
         self.members = fill_gaps(members, self.stride);
@@ -262,7 +271,7 @@ impl Stored {
         let list = |items: Vec<String>| items.join(", ");
         match schema {
             Schema::Host => String::new(),
-            Schema::F32 | Schema::I32 | Schema::U32 => member(offset),
+            Schema::F32 | Schema::I32 | Schema::U32 | Schema::Kind { .. } => member(offset),
             Schema::Vector(element, n)
                 if element.size() == 4 && self.member_at(offset).size == 4 * n =>
             {
@@ -381,7 +390,9 @@ fn leaf_values(
 ) {
     match schema {
         Schema::Host => {}
-        Schema::F32 | Schema::I32 | Schema::U32 => out.push((offset, false, v.to_owned())),
+        Schema::F32 | Schema::I32 | Schema::U32 | Schema::Kind { .. } => {
+            out.push((offset, false, v.to_owned()));
+        }
         Schema::Small { .. } => out.push((offset, true, v.to_owned())),
         Schema::Bool => out.push((offset, true, format!("select(0u, 1u, {v})"))),
         Schema::Vector(element, n) => {

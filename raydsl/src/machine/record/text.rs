@@ -27,7 +27,9 @@ impl Recorder {
 
     /// Returns the index of the function that `call` records, without recording a call of it.
     pub(crate) fn function_of<R: Value<Self>>(&self, call: impl FnOnce(&Self) -> R) -> usize {
-        self.state.borrow_mut().open.push(Builder::new(&SCRATCH));
+        let mut scratch = Builder::new(&SCRATCH);
+        scratch.known.is_scratch = true;
+        self.state.borrow_mut().open.push(scratch);
         call(self);
         self.called()
     }

@@ -192,6 +192,8 @@ pub(super) const SHAPE: &[&str] = &[
     "(Shape::Block { inner: {s}, kind: {e}, low: {v} })",
     "Shape::Word({u})",
     "Shape::of({u})",
+    "shapes[{u} as usize % shapes.len()]",
+    "shapes[{Z} % shapes.len()]",
     "(if {b} { {k} } else { Shape::Nothing })",
     "(match {k} { Shape::Ball(r, n) => Shape::Word(n ^ r as u32), Shape::Nothing => Shape::Ball(1.0, 3), other => other })",
 ];

@@ -41,7 +41,7 @@ impl Generator<'_> {
             let letter = template[at + 1..].chars().next()?;
             of_letter(letter).filter(|_| template[at + 2..].starts_with('}'))
         });
-        let lists = ["floats", "words", "smalls"];
+        let lists = ["floats", "words", "smalls", "shapes"];
         let has_types = letters.all(|ty| match ty {
             Ty::Own => self.traits.own,
             Ty::Any => self.head == Head::OfType,
@@ -51,7 +51,7 @@ impl Generator<'_> {
         let of_type = template.contains("{G}") || template.contains("T::");
         let of_count = template == "N" || template.contains("(N as") || template.contains("% N");
         let of_entry = template == "scale" || template.contains("count)");
-        let has_floats = !["floats", "smalls"].iter().any(|l| template.contains(l));
+        let has_floats = !["floats", "smalls", "shapes"].iter().any(|l| template.contains(l));
         has_types
             && (!template.contains("Own") || self.traits.own)
             && (!of_type || self.head == Head::OfType)
@@ -226,7 +226,7 @@ impl Generator<'_> {
                 Mode::Value | Mode::Mutable => pieces.push(Piece::Expr(self.expr(ty, depth - 1))),
             }
         }
-        pieces.push(text(if f.sliced { ", floats, words, smalls)" } else { ")" }));
+        pieces.push(text(if f.sliced { ", floats, words, smalls, shapes)" } else { ")" }));
         pieces
     }
 

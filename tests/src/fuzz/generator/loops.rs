@@ -101,7 +101,7 @@ impl Generator<'_> {
         let (pattern, list) = match list {
             List::Value(pieces) => (name, pieces),
             List::Borrowed(text) => {
-                let by_pattern = element != Ty::Small && self.chance(40);
+                let by_pattern = !matches!(element, Ty::Small | Ty::Shape) && self.chance(40);
                 vars.iter_mut().for_each(|v| v.reference = !by_pattern);
                 let name = if by_pattern { format!("&{name}") } else { name };
                 (name, vec![Piece::Text(text)])
@@ -126,8 +126,13 @@ impl Generator<'_> {
     fn list(&mut self) -> (List, Ty, usize) {
         let floats = self.traits.floats;
         if self.sliced && self.chance(60) {
-            let lists = [("words", Ty::U32, 7), ("floats", Ty::F32, 9), ("smalls", Ty::Small, 3)];
-            let (name, ty, len) = lists[if floats { self.rng.below(3) } else { 0 }];
+            let lists = [
+                ("words", Ty::U32, 7),
+                ("floats", Ty::F32, 9),
+                ("smalls", Ty::Small, 3),
+                ("shapes", Ty::Shape, 6),
+            ];
+            let (name, ty, len) = lists[if floats { self.rng.below(lists.len()) } else { 0 }];
             let list = if self.chance(70) { format!("{name}.iter()") } else { name.to_owned() };
             return (List::Borrowed(list), ty, len);
         }

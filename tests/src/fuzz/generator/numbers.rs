@@ -6,6 +6,7 @@ pub(super) const F32: &[&str] = &[
     "!{k}.walked({u})",
     "(match {k} { Shape::Ball(r, _) => r, Shape::Block { low, kind, .. } => low.y + kind.share(), _ => 0.5 })",
     "(if let Shape::Ball(r, 0..=99) = {k} { r } else { 1.5 })",
+    "shapes[{u} as usize % shapes.len()].size()",
     "({ let row = {r}; let mut at = 0; if {b} { at = 3; } row[at] })",
     "({f} + {f})",
     "({f} + {f})",
