@@ -1,6 +1,5 @@
 //! Conditions with several patterns.
 
-use raydsl::prelude::*;
 use raydsl::{Type, assert_variants_agree, kernel};
 
 use super::pairs;
