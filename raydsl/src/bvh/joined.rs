@@ -447,7 +447,7 @@ impl<M: Machine, S: RayQueryOn, T: RayQueryOn<Hit = S::Hit>> Cursor<M> for Joine
 
 /// Goes to the next hit of one scene in the lanes where it is due.
 #[inline(always)]
-fn advance<M: Machine, C: Cursor<M>, R: HitRecord>(
+fn advance<M: Machine, C, R: HitRecord>(
     m: &M,
     hits: &C,
     state: &C::State,

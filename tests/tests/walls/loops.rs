@@ -12,6 +12,7 @@ struct Pair {
 }
 
 #[kernel]
+#[expect(clippy::needless_borrow, reason = "kernels take either form")]
 fn parts(all: &[f32], x: f32, y: f32) -> f32 {
     let first = (x.abs() * 3.0) as usize % all.len();
     let end = (first + (y.abs() * 4.0) as usize).min(all.len());
@@ -32,7 +33,7 @@ fn parts(all: &[f32], x: f32, y: f32) -> f32 {
         sum -= w;
     }
     let square = [x, y, 1.0, 2.0];
-    for v in &square[1..first.min(3).max(1)] {
+    for v in &square[1..(first + 1).min(3)] {
         sum += v * y;
     }
     sum
