@@ -13,7 +13,10 @@
 // The files:
 //
 // * `view`: scenes as kernels see them: a slice, a tree, a list, instances, a foreign structure.
-// * `ray_query`, `batch`: queries on the host, of one ray and of many in packets.
+// * `ray_query`: the trait of scenes: queries on the host, and in kernels that are generic over it.
+// * `query_on`: the queries of a view on any machine; `joined`: two scenes as one; `carrier`: views
+//   that carry more data, as those of meshes.
+// * `batch`: queries of many rays on the host, in packets.
 // * `contract`: the valid rays and hits, the order of hits, culling distances, and the box test.
 // * `methods`, `query`: queries in kernels: their names, and those with a callback for each hit.
 // * `hits`: every hit in order, for loops (after Amstutz et al., JCGT 2015).
