@@ -37,6 +37,9 @@ const OWNERS: &[(&str, Option<&str>)] = &[
     ("conversions", None),
     ("method", None),
     ("read_in_place", Some("slices and trees")),
+    ("queries", Some("scenes")),
+    ("primitives", Some("scenes of one type of primitives")),
+    ("methods", Some("scenes that can be shaded")),
 ];
 
 /// The type of the host that a receiver in the library's sources stands for.
@@ -58,8 +61,6 @@ fn owner(receiver: &str) -> Option<&'static str> {
         ("M4", "`Mat4`"),
         ("A3", "`Affine3`"),
         ("[V; N]", "arrays"),
-        ("SceneView<'_, P>", "slices and trees of primitives"),
-        ("SceneView<'a, P>", "slices and trees of primitives"),
         ("$twin<M>", "`Unorm8` and its like"),
         ("F16On<M>", "`Unorm8` and its like"),
         ("V", "`BVec2`, `BVec3`, `BVec4`"),
@@ -74,10 +75,6 @@ fn receiver(line: &str) -> Option<&str> {
         let receiver = after.split_once(", \"")?.0;
         // A vector of anything with a bound: only the truth values have methods of this form.
         return (receiver != "V" || generics.contains("Component = B<M>")).then_some(receiver);
-    }
-    if line.contains("Method<{") && !line.contains(" for ") {
-        // What has the method stands on the next line.
-        return Some("SceneView<'_, P>");
     }
     if let Some((_, after)) = line.split_once(" for ") {
         return Some(after.trim_end_matches(" {"));
@@ -97,6 +94,7 @@ fn methods() -> io::Result<BTreeMap<&'static str, BTreeSet<String>>> {
         "methods/vector.rs",
         "data.rs",
         "../bvh/methods.rs",
+        "../shading/scene.rs",
         "../math/code.rs",
         "../math/half.rs",
         "../math/unorm.rs",
@@ -233,8 +231,10 @@ fn known_methods_are_found() -> io::Result<()> {
         ("`Vec2`, `Vec3`", "reflect"),
         ("`Mat4`", "project_point3"),
         ("`BVec2`, `BVec3`, `BVec4`", "any"),
-        ("slices and trees of primitives", "closest_hit"),
-        ("slices and trees of primitives", "any_hit_each"),
+        ("scenes", "closest_hit"),
+        ("scenes", "any_hit_each"),
+        ("scenes of one type of primitives", "primitive"),
+        ("scenes that can be shaded", "surface"),
         ("`Unorm8` and its like", "to_f32"),
         ("vectors of three", "cross"),
     ] {
