@@ -44,12 +44,12 @@ pub struct MeshAttributes<'a> {
 /// let vertices = [vec3(0.0, 0.0, 2.0), vec3(2.0, 0.0, 2.0), vec3(0.0, 2.0, 2.0)];
 /// let triangles = [IndexedTriangle { vertices: [0, 1, 2] }];
 /// let bvh = Bvh::build_sharing(&triangles, &vertices, &BuildConfig::default())?;
-/// let leaning = [vec3(-1.0, 0.0, -1.0), vec3(1.0, 0.0, -1.0), vec3(0.0, 1.0, -1.0)];
+/// let leaning = [vec3(-1.0, 0.0, 1.0), vec3(1.0, 0.0, 1.0), vec3(0.0, 1.0, 1.0)];
 /// let mesh = Mesh::new(&bvh, MeshAttributes { normals: &leaning, ..Default::default() })?;
 /// let ray = Ray::new(vec3(1.0, 0.0, 0.0), Vec3::Z);
 /// let hit = mesh.closest_hit(ray);
 /// let seen = mesh.shading_point(ray, hit);
-/// assert_eq!(seen.shading_normal, vec3(0.0, 0.0, -1.0));
+/// assert_eq!(seen.shading_normal, vec3(0.0, 0.0, 1.0));
 /// assert_eq!(seen.point.position, vec3(1.0, 0.0, 2.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
