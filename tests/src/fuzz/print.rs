@@ -52,8 +52,14 @@ const WEIGH: &str = "
 ";
 
 /// What functions take that read the scene.
-const SLICES: [&str; 4] =
-    ["floats: &[f32]", "words: &[u32]", "smalls: &[Small]", "shapes: &[Shape]"];
+const SLICES: [&str; 6] = [
+    "floats: &[f32]",
+    "words: &[u32]",
+    "smalls: &[Small]",
+    "shapes: &[Shape]",
+    "scene: &[Wall]",
+    "world: &World<'_>",
+];
 
 /// The module of a kernel.
 pub fn kernel(k: &Kernel) -> String {
@@ -108,6 +114,9 @@ impl Printer {
 
     fn function(&mut self, f: &Function) {
         let mut params: Vec<String> = f.params.iter().map(param).collect();
+        if f.head == Head::OfScene {
+            params.insert(0, "scene: &S".to_owned());
+        }
         if f.sliced {
             params.extend(SLICES.map(str::to_owned));
         }
@@ -119,10 +128,11 @@ impl Printer {
         let generics = match f.head {
             Head::OfType => "<T: Weigh>",
             Head::OfCount => "<const N: usize>",
+            Head::OfScene => "<S: RayQuery + ?Sized>",
             Head::Plain | Head::Method | Head::Weight => "",
         };
         match f.head {
-            Head::Plain | Head::OfType | Head::OfCount => {
+            Head::Plain | Head::OfType | Head::OfCount | Head::OfScene => {
                 self.text(&format!("\n#[kernel]\n{coherent}pub "));
             }
             Head::Method => self.text("\n#[kernel]\nimpl Own {\n    pub "),
@@ -146,6 +156,7 @@ impl Printer {
         self.text(&format!(
             "    let (smalls, shapes) = (first(&SMALLS, {len}), first(&SHAPES, {len}));\n"
         ));
+        self.text(&format!("    let (scene, world) = (first(&WALLS, {len}), &WORLD);\n"));
         self.text(&format!("    let (scale, count) = (SCALE, {count}u32);\n"));
         let params: Vec<String> = entry.params.iter().map(param).collect();
         self.text(&format!("    let kernel = kernel!(|{}| -> Outcome ", params.join(", ")));

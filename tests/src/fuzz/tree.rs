@@ -203,6 +203,8 @@ pub enum Head {
     OfType,
     /// `fn f<const N: usize>(..)`.
     OfCount,
+    /// `fn f<S: RayQuery + ?Sized>(scene: &S, ..)`.
+    OfScene,
     /// A method of `Own`.
     Method,
     /// The method `weight` of `impl Weigh for Own`.

@@ -422,6 +422,56 @@ pub static SHAPES: [Shape; 6] = [
     },
     Shape::Nothing,
 ];
+/// A square across the z axis: where a ray of simple numbers hits it is exact.
+#[primitive]
+pub struct Wall {
+    /// Its place on the z axis.
+    pub z: f32,
+    /// Its corner.
+    pub low: Vec2,
+    /// The length of its edges.
+    pub size: f32,
+}
+
+#[primitive]
+impl Wall {
+    const MAX_CROSSINGS: u32 = 1;
+
+    fn intersect(&self, ray: Ray) -> Hit {
+        let t = (self.z - ray.origin.z) / ray.direction.z;
+        let at = vec2(ray.origin.x + ray.direction.x * t, ray.origin.y + ray.direction.y * t);
+        let is_inside = at.x >= self.low.x
+            && at.y >= self.low.y
+            && at.x <= self.low.x + self.size
+            && at.y <= self.low.y + self.size;
+        Hit { u: at.x, v: at.y, ..Hit::new(is_inside && ray.direction.z != 0.0, t) }
+    }
+
+    fn get_bounds(&self) -> Aabb {
+        let corner = self.low + Vec2::splat(self.size);
+        Aabb { min: self.low.extend(self.z), max: corner.extend(self.z) }
+    }
+}
+
+/// Two scenes as one.
+#[derive(RayQuery)]
+pub struct World<'a> {
+    /// The first.
+    pub near: &'a [Wall],
+    /// The second.
+    pub far: &'a [Wall],
+}
+
+/// A slice that is a scene: two of its walls are at one distance.
+pub static WALLS: [Wall; 5] = [
+    Wall { z: 2.0, low: Vec2::new(-4.0, -4.0), size: 8.0 },
+    Wall { z: 1.0, low: Vec2::new(0.0, -2.0), size: 2.0 },
+    Wall { z: 2.0, low: Vec2::new(-1.0, -1.0), size: 16.0 },
+    Wall { z: -0.5, low: Vec2::new(-8.0, -8.0), size: 9.0 },
+    Wall { z: 4.0, low: Vec2::new(-100.0, -100.0), size: 200.0 },
+];
+/// A scene of two, which share walls.
+pub static WORLD: World<'static> = World { near: WALLS.split_at(3).0, far: WALLS.split_at(2).1 };
 /// A number of the scene.
 pub const SCALE: f32 = 0.75;
 
@@ -437,7 +487,9 @@ pub fn resources(visit: &mut dyn FnMut(&dyn Resource)) {
         Capture::<Recorder>::resources(first(&WORDS, len), visit);
         Capture::<Recorder>::resources(first(&SMALLS, len), visit);
         Capture::<Recorder>::resources(first(&SHAPES, len), visit);
+        Capture::<Recorder>::resources(first(&WALLS, len), visit);
     }
+    Capture::<Recorder>::resources(&WORLD, visit);
 }
 
 /// What stands for a slice on a machine.
@@ -473,7 +525,8 @@ macro_rules! scene_entry {
             fn scalar((x, v, n, s): Self::Args) -> Outcome {
                 let (floats, words) = (first(&FLOATS, $len), first(&WORDS, $len));
                 let (smalls, shapes) = (first(&SMALLS, $len), first(&SHAPES, $len));
-                entry(x, v, n, s, floats, words, smalls, shapes, SCALE, $count)
+                let (scene, world) = (first(&WALLS, $len), &WORLD);
+                entry(x, v, n, s, floats, words, smalls, shapes, scene, world, SCALE, $count)
             }
 
             fn lifted<M: raydsl::machine::Machine>(
@@ -484,8 +537,12 @@ macro_rules! scene_entry {
                 let words = on(m, first(&WORDS, $len), "words");
                 let smalls = on(m, first(&SMALLS, $len), "smalls");
                 let shapes = on(m, first(&SHAPES, $len), "shapes");
+                let scene = on(m, first(&WALLS, $len), "scene");
+                let world = raydsl::machine::Capture::<M>::capture(&WORLD, m, "world");
                 let scale = raydsl::machine::Capture::<M>::capture(&SCALE, m, "scale");
-                entry::on(m, x, v, n, s, floats, words, smalls, shapes, scale, $count)
+                entry::on(
+                    m, x, v, n, s, floats, words, smalls, shapes, scene, world, scale, $count,
+                )
             }
         }
     };

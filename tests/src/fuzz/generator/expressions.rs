@@ -51,12 +51,14 @@ impl Generator<'_> {
         let of_type = template.contains("{G}") || template.contains("T::");
         let of_count = template == "N" || template.contains("(N as") || template.contains("% N");
         let of_entry = template == "scale" || template.contains("count)");
+        let of_scene = template.contains("scene.");
         let has_floats = !["floats", "smalls", "shapes"].iter().any(|l| template.contains(l));
         has_types
             && (!template.contains("Own") || self.traits.own)
             && (!of_type || self.head == Head::OfType)
             && (!of_count || self.head == Head::OfCount)
             && (self.sliced || !lists.iter().any(|l| template.contains(l)))
+            && (!of_scene || self.sliced || self.head == Head::OfScene)
             && (self.traits.floats || has_floats)
             && (!of_entry || self.sliced && self.entry)
     }
@@ -134,6 +136,7 @@ impl Generator<'_> {
             f.result == ty
                 && f.work < left
                 && (!f.sliced || self.sliced)
+                && (f.head != Head::OfScene || self.sliced || self.head == Head::OfScene)
                 && !(changes && self.plain)
         };
         let of_type: Vec<&Callable> = self.callable.iter().filter(fits).collect();
@@ -206,9 +209,13 @@ impl Generator<'_> {
             _ => format!("{}(", f.name),
         };
         let mut pieces = vec![text(name)];
+        if f.head == Head::OfScene {
+            let world = self.sliced && self.chance(50);
+            pieces.push(text(if world { "world" } else { "scene" }));
+        }
         let mut changed = changed.iter();
         for (i, p) in f.params.iter().enumerate() {
-            pieces.push(text(if i > 0 { ", " } else { "" }));
+            pieces.push(text(if i > 0 || f.head == Head::OfScene { ", " } else { "" }));
             let ty = match (nested, p.ty) {
                 (true, Ty::Any) => Ty::Nested,
                 _ => self.concrete(f, p.ty),
@@ -226,7 +233,7 @@ impl Generator<'_> {
                 Mode::Value | Mode::Mutable => pieces.push(Piece::Expr(self.expr(ty, depth - 1))),
             }
         }
-        pieces.push(text(if f.sliced { ", floats, words, smalls, shapes)" } else { ")" }));
+        pieces.push(text(if f.sliced { ", floats, words, smalls, shapes, scene, world)" } else { ")" }));
         pieces
     }
 

@@ -72,6 +72,7 @@ fn helper(rng: &mut Rng, traits: Traits, number: usize) -> Plan {
     let head = match rng.below(10) {
         0 | 1 if traits.floats => Head::OfType,
         2 if traits.floats => Head::OfCount,
+        6 | 7 if traits.floats && traits.scene => Head::OfScene,
         3..6 if traits.own => Head::Method,
         _ => Head::Plain,
     };
@@ -86,7 +87,7 @@ fn helper(rng: &mut Rng, traits: Traits, number: usize) -> Plan {
             let mode = rng.pick(&[Mode::Value, Mode::Shared, Mode::Changed]);
             params.push(param("self", Ty::Own, mode));
         }
-        Head::Plain | Head::Weight => {}
+        Head::Plain | Head::OfScene | Head::Weight => {}
     }
     let borrows = params.iter().any(|p| p.mode == Mode::Shared);
     let least = usize::from(params.is_empty());

@@ -2,6 +2,8 @@
 
 /// Of `f32`.
 pub(super) const F32: &[&str] = &[
+    "!({ let hit = scene.closest_hit(Ray::new({v}, {v})); if hit.is_hit { hit.t + hit.u } else { -1.0 } })",
+    "!({ let hits = scene.closest_hit_each::<2>(|i: u32| Ray::new({v}, vec3(0.0, i as f32 * 0.25, 1.0))); if hits[1].is_hit { hits[1].v } else { 0.5 } })",
     "!{k}.size()",
     "!{k}.walked({u})",
     "(match {k} { Shape::Ball(r, _) => r, Shape::Block { low, kind, .. } => low.y + kind.share(), _ => 0.5 })",
@@ -93,6 +95,9 @@ pub(super) const F32: &[&str] = &[
 
 /// Of `u32`.
 pub(super) const U32: &[&str] = &[
+    "!({ let mut n = 0; for hit in scene.hits(Ray::new({v}, {v})) { n += hit.prim_id + 1; if n > {u} { break; } } n })",
+    "!({ let hits = scene.multi_hit::<2>(Ray::new({v}, {v})); if hits[1].is_hit { hits[1].prim_id } else { {u} } })",
+    "!({ let hit = scene.closest_hit_where(Ray::new({v}, {v}), |hit: Hit| hit.prim_id != {U}); if hit.is_hit { hit.prim_id + hit.inst_id } else { 9 } })",
     "{l}.unwrap_or({u})",
     "(if let Some(n) = {l} { n } else { {u} })",
     "(match ({l}, {l}) { (Some(n), Some(k)) => n ^ k, (Some(n), None) | (None, Some(n)) => n, (None, None) => 4 })",
@@ -227,6 +232,9 @@ pub(super) const I32: &[&str] = &[
 
 /// Of `bool`.
 pub(super) const BOOL: &[&str] = &[
+    "!scene.any_hit(Ray::new({v}, {v}))",
+    "!scene.any_hit(Ray { t_max: {f}, ..Ray::new({v}, {v}) })",
+    "!scene.any_hit_where(Ray::new({v}, {v}), |hit: Hit| hit.u > {f} && hit.prim_id > {U})",
     "{l}.is_some()",
     "{l}.is_none()",
     "(if let Shape::Nothing | Shape::Word(_) = {k} { true } else { {b} })",
