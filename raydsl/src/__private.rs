@@ -10,7 +10,7 @@ pub use crate::machine::{
     B, Capture, Compare, F, Field, KernelFn, KernelInfo, Lanes, Machine, Margin, Op, Recorder,
     Resource, Schema, Slice, Type, Value, op,
 };
-pub use crate::shading::{Scene, ShadingPointOn};
+pub use crate::shading::{Asked, Scene};
 
 /// Traits of associated functions.
 pub mod operations {

@@ -146,25 +146,17 @@ impl Struct<'_> {
     fn shading(&self) -> TokenStream {
         let (p, name) = (private(), &self.item.ident);
         let (declared, used, clause) = self.generics();
-        let functions = [("surface_on", "SurfacePointOn"), ("shading_point_on", "ShadingPointOn")];
-        let functions = functions.map(|(function, out)| {
-            let span = proc_macro2::Span::call_site();
-            let (function, out) = (Ident::new(function, span), Ident::new(out, span));
-            quote! {
-                #[inline(always)]
-                fn #function<__M: #p::Machine>(
-                    m: &__M,
-                    scene: &Self,
-                    ray: impl #p::Coerce<__M, #p::RayOn<__M>>,
-                    hit: impl #p::Coerce<__M, #p::HitOn<__M>>,
-                ) -> #p::#out<__M> {
-                    #p::Scene::#function(m, &#p::RayQuery::view(scene), ray, hit)
-                }
-            }
-        });
         quote! {
             impl #declared #p::Scene for #name #used #clause {
-                #(#functions)*
+                #[inline(always)]
+                fn asked_on<__M: #p::Machine, __A: #p::Asked>(
+                    m: &__M,
+                    scene: &Self,
+                    ray: #p::RayOn<__M>,
+                    hit: #p::HitOn<__M>,
+                ) -> __A::On<__M> {
+                    #p::Scene::asked_on::<__M, __A>(m, &#p::RayQuery::view(scene), ray, hit)
+                }
             }
         }
     }

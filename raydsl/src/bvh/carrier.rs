@@ -5,152 +5,164 @@
 /// method `data(&self, visit)` that visits what it carries besides.
 macro_rules! carrier {
     ([$($g:tt)*] $t:ty, $view:ty, $member:ident) => {
-        impl<$($g)*> $crate::bvh::RayQueryOn for $t {
-            type Hit = <$view as $crate::bvh::RayQueryOn>::Hit;
-            type Hits<M: $crate::machine::Machine> =
-                <$view as $crate::bvh::RayQueryOn>::Hits<M>;
+        const _: () = {
+            use $crate::bvh::traverse::CostOn;
+            use $crate::bvh::{Cost, RayQuery, RayQueryOn};
+            use $crate::geometry::{HitOn, Ray, RayOn};
+            use $crate::machine::{A3, B, Machine, On, Resource, U};
 
-            fn inst_count(self) -> u32 {
-                self.$member.inst_count()
+            impl<$($g)*> RayQueryOn for $t {
+                type Hit = <$view as RayQueryOn>::Hit;
+                type Hits<M: Machine> =
+                    <$view as RayQueryOn>::Hits<M>;
+
+                fn inst_count(self) -> u32 {
+                    self.$member.inst_count()
+                }
+
+                #[inline(always)]
+                fn named(self, name: &'static str) -> Self {
+                    Self { $member: RayQueryOn::named(self.$member, name), ..self }
+                }
+
+                fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+                    self.data(visit);
+                    RayQueryOn::resources(&self.$member, visit);
+                }
+
+                #[inline(always)]
+                fn closest_hits<M: Machine, const N: usize>(
+                    self,
+                    m: &M,
+                    rays: [RayOn<M>; N],
+                ) -> [On<Self::Hit, M>; N] {
+                    RayQueryOn::closest_hits(self.$member, m, rays)
+                }
+
+                #[inline(always)]
+                fn any_hits<M: Machine, const N: usize>(
+                    self,
+                    m: &M,
+                    rays: [RayOn<M>; N],
+                ) -> [B<M>; N] {
+                    RayQueryOn::any_hits(self.$member, m, rays)
+                }
+
+                #[inline(always)]
+                fn closest_hit_with_cost<M: Machine>(
+                    self,
+                    m: &M,
+                    ray: RayOn<M>,
+                ) -> (On<Self::Hit, M>, CostOn<M>) {
+                    RayQueryOn::closest_hit_with_cost(self.$member, m, ray)
+                }
+
+                #[inline(always)]
+                fn closest_hit_where<M: Machine>(
+                    self,
+                    m: &M,
+                    ray: RayOn<M>,
+                    accept: impl Fn(On<Self::Hit, M>) -> B<M>,
+                ) -> On<Self::Hit, M> {
+                    RayQueryOn::closest_hit_where(self.$member, m, ray, accept)
+                }
+
+                #[inline(always)]
+                fn any_hit_where<M: Machine>(
+                    self,
+                    m: &M,
+                    ray: RayOn<M>,
+                    accept: impl Fn(On<Self::Hit, M>) -> B<M>,
+                ) -> B<M> {
+                    RayQueryOn::any_hit_where(self.$member, m, ray, accept)
+                }
+
+                #[inline(always)]
+                fn multi_hit_where<M: Machine, const N: usize>(
+                    self,
+                    m: &M,
+                    ray: RayOn<M>,
+                    accept: impl Fn(On<Self::Hit, M>) -> B<M>,
+                ) -> [On<Self::Hit, M>; N] {
+                    RayQueryOn::multi_hit_where(self.$member, m, ray, accept)
+                }
+
+                #[inline(always)]
+                fn multi_hit_by<M: Machine, const N: usize>(
+                    self,
+                    m: &M,
+                    ray: RayOn<M>,
+                    is_closer: impl Fn(HitOn<M>, HitOn<M>) -> B<M>,
+                ) -> [On<Self::Hit, M>; N] {
+                    RayQueryOn::multi_hit_by(self.$member, m, ray, is_closer)
+                }
+
+                #[inline(always)]
+                fn hits<M: Machine>(
+                    self,
+                    m: &M,
+                    ray: RayOn<M>,
+                ) -> Self::Hits<M> {
+                    RayQueryOn::hits(self.$member, m, ray)
+                }
+
+                #[inline(always)]
+                fn to_object<M: Machine>(
+                    self,
+                    m: &M,
+                    inst: U<M>,
+                ) -> A3<M> {
+                    RayQueryOn::to_object(self.$member, m, inst)
+                }
+
+                #[inline(always)]
+                fn local_ray<M: Machine>(
+                    self,
+                    m: &M,
+                    ray: RayOn<M>,
+                    inst: U<M>,
+                ) -> RayOn<M> {
+                    RayQueryOn::local_ray(self.$member, m, ray, inst)
+                }
+
+                fn closest_hit_of(self, ray: Ray) -> Self::Hit {
+                    RayQueryOn::closest_hit_of(self.$member, ray)
+                }
+
+                fn any_hit_of(self, ray: Ray) -> bool {
+                    RayQueryOn::any_hit_of(self.$member, ray)
+                }
+
+                fn closest_hits_of(self, rays: &[Ray]) -> Vec<Self::Hit> {
+                    RayQueryOn::closest_hits_of(self.$member, rays)
+                }
+
+                fn any_hits_of(self, rays: &[Ray]) -> Vec<bool> {
+                    RayQueryOn::any_hits_of(self.$member, rays)
+                }
+
+                fn closest_hit_with_cost_of(self, ray: Ray) -> (Self::Hit, Cost) {
+                    RayQueryOn::closest_hit_with_cost_of(self.$member, ray)
+                }
+
+                fn any_hit_with_cost_of(self, ray: Ray) -> (bool, Cost) {
+                    RayQueryOn::any_hit_with_cost_of(self.$member, ray)
+                }
             }
 
-            #[inline(always)]
-            fn named(self, name: &'static str) -> Self {
-                Self { $member: $crate::bvh::RayQueryOn::named(self.$member, name), ..self }
-            }
+            impl<$($g)*> RayQuery for $t {
+                type Hit = <$view as RayQueryOn>::Hit;
+                type View<'v>
+                    = Self
+                where
+                    Self: 'v;
 
-            fn resources(&self, visit: &mut dyn FnMut(&dyn $crate::machine::Resource)) {
-                self.data(visit);
-                $crate::bvh::RayQueryOn::resources(&self.$member, visit);
+                #[inline(always)]
+                fn view(&self) -> Self {
+                    *self
+                }
             }
-
-            #[inline(always)]
-            fn closest_hits<M: $crate::machine::Machine, const N: usize>(
-                self,
-                m: &M,
-                rays: [$crate::geometry::RayOn<M>; N],
-            ) -> [<Self::Hit as $crate::machine::Type>::On<M>; N] {
-                $crate::bvh::RayQueryOn::closest_hits(self.$member, m, rays)
-            }
-
-            #[inline(always)]
-            fn any_hits<M: $crate::machine::Machine, const N: usize>(
-                self,
-                m: &M,
-                rays: [$crate::geometry::RayOn<M>; N],
-            ) -> [$crate::machine::B<M>; N] {
-                $crate::bvh::RayQueryOn::any_hits(self.$member, m, rays)
-            }
-
-            #[inline(always)]
-            fn closest_hit_with_cost<M: $crate::machine::Machine>(
-                self,
-                m: &M,
-                ray: $crate::geometry::RayOn<M>,
-            ) -> (<Self::Hit as $crate::machine::Type>::On<M>, $crate::bvh::traverse::CostOn<M>) {
-                $crate::bvh::RayQueryOn::closest_hit_with_cost(self.$member, m, ray)
-            }
-
-            #[inline(always)]
-            fn closest_hit_where<M: $crate::machine::Machine>(
-                self,
-                m: &M,
-                ray: $crate::geometry::RayOn<M>, accept: impl Fn(<Self::Hit as $crate::machine::Type>::On<M>) -> $crate::machine::B<M>,
-            ) -> <Self::Hit as $crate::machine::Type>::On<M> {
-                $crate::bvh::RayQueryOn::closest_hit_where(self.$member, m, ray, accept)
-            }
-
-            #[inline(always)]
-            fn any_hit_where<M: $crate::machine::Machine>(
-                self,
-                m: &M,
-                ray: $crate::geometry::RayOn<M>, accept: impl Fn(<Self::Hit as $crate::machine::Type>::On<M>) -> $crate::machine::B<M>,
-            ) -> $crate::machine::B<M> {
-                $crate::bvh::RayQueryOn::any_hit_where(self.$member, m, ray, accept)
-            }
-
-            #[inline(always)]
-            fn multi_hit_where<M: $crate::machine::Machine, const N: usize>(
-                self,
-                m: &M,
-                ray: $crate::geometry::RayOn<M>, accept: impl Fn(<Self::Hit as $crate::machine::Type>::On<M>) -> $crate::machine::B<M>,
-            ) -> [<Self::Hit as $crate::machine::Type>::On<M>; N] {
-                $crate::bvh::RayQueryOn::multi_hit_where(self.$member, m, ray, accept)
-            }
-
-            #[inline(always)]
-            fn multi_hit_by<M: $crate::machine::Machine, const N: usize>(
-                self,
-                m: &M,
-                ray: $crate::geometry::RayOn<M>, is_closer: impl Fn($crate::geometry::HitOn<M>, $crate::geometry::HitOn<M>) -> $crate::machine::B<M>,
-            ) -> [<Self::Hit as $crate::machine::Type>::On<M>; N] {
-                $crate::bvh::RayQueryOn::multi_hit_by(self.$member, m, ray, is_closer)
-            }
-
-            #[inline(always)]
-            fn hits<M: $crate::machine::Machine>(
-                self,
-                m: &M,
-                ray: $crate::geometry::RayOn<M>,
-            ) -> Self::Hits<M> {
-                $crate::bvh::RayQueryOn::hits(self.$member, m, ray)
-            }
-
-            #[inline(always)]
-            fn to_object<M: $crate::machine::Machine>(
-                self,
-                m: &M,
-                inst: $crate::machine::U<M>,
-            ) -> $crate::machine::A3<M> {
-                $crate::bvh::RayQueryOn::to_object(self.$member, m, inst)
-            }
-
-            #[inline(always)]
-            fn local_ray<M: $crate::machine::Machine>(
-                self,
-                m: &M,
-                ray: $crate::geometry::RayOn<M>, inst: $crate::machine::U<M>,
-            ) -> $crate::geometry::RayOn<M> {
-                $crate::bvh::RayQueryOn::local_ray(self.$member, m, ray, inst)
-            }
-
-            fn closest_hit_of(self, ray: $crate::geometry::Ray) -> Self::Hit {
-                $crate::bvh::RayQueryOn::closest_hit_of(self.$member, ray)
-            }
-
-            fn any_hit_of(self, ray: $crate::geometry::Ray) -> bool {
-                $crate::bvh::RayQueryOn::any_hit_of(self.$member, ray)
-            }
-
-            fn closest_hits_of(self, rays: &[$crate::geometry::Ray]) -> Vec<Self::Hit> {
-                $crate::bvh::RayQueryOn::closest_hits_of(self.$member, rays)
-            }
-
-            fn any_hits_of(self, rays: &[$crate::geometry::Ray]) -> Vec<bool> {
-                $crate::bvh::RayQueryOn::any_hits_of(self.$member, rays)
-            }
-
-            fn closest_hit_with_cost_of(self, ray: $crate::geometry::Ray) -> (Self::Hit, $crate::bvh::Cost) {
-                $crate::bvh::RayQueryOn::closest_hit_with_cost_of(self.$member, ray)
-            }
-
-            fn any_hit_with_cost_of(self, ray: $crate::geometry::Ray) -> (bool, $crate::bvh::Cost) {
-                $crate::bvh::RayQueryOn::any_hit_with_cost_of(self.$member, ray)
-            }
-        }
-
-        impl<$($g)*> $crate::bvh::RayQuery for $t {
-            type Hit = <$view as $crate::bvh::RayQueryOn>::Hit;
-            type View<'v>
-                = Self
-            where
-                Self: 'v;
-
-            #[inline(always)]
-            fn view(&self) -> Self {
-                *self
-            }
-        }
+        };
 
         $crate::bvh::query_on::argument_itself!([$($g)*] $t);
         $crate::bvh::methods::queries!([$($g)*] $t, $t, |view| view);

@@ -8,75 +8,84 @@ use crate::machine::{A3, B, Machine, Method, On, Slice, V3, Value, name};
 /// Implements the queries of a type that has a view.
 macro_rules! queries {
     ([$($g:tt)*] $t:ty, $view:ty, |$this:ident| $scene:expr) => {
-        $crate::bvh::methods::queries! {
-            @each [$($g)*] $t, |$this| $scene;
-            "closest_hit", [], |m, scene, (ray): ($crate::geometry::RayOn<M>)| -> $crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M> {
-                let [hit] = $crate::bvh::RayQueryOn::closest_hits(scene, m, [ray]);
-                hit
+        const _: () = {
+            use $crate::bvh::ray_query::{any_hit_each, closest_hit_each};
+            use $crate::bvh::traverse::CostOn;
+            use $crate::bvh::{RayQueryOn, methods::ViewRecordOn};
+            use $crate::geometry::{HitOn, RayOn, transform_normal_back};
+            use $crate::machine::{A3, B, Coerce, Const, Machine, Method, U, V3, name};
+
+            $crate::bvh::methods::queries! {
+                @each [$($g)*] $t, |$this| $scene;
+                "closest_hit", [],
+                |m, scene, (ray): (RayOn<M>)| -> ViewRecordOn<$view, M> {
+                    let [hit] = RayQueryOn::closest_hits(scene, m, [ray]);
+                    hit
+                }
+                "closest_hit_with_cost", [],
+                |m, scene, (ray): (RayOn<M>)| -> (ViewRecordOn<$view, M>, CostOn<M>) {
+                    RayQueryOn::closest_hit_with_cost(scene, m, ray)
+                }
+                "any_hit", [],
+                |m, scene, (ray): (RayOn<M>)| -> B<M> {
+                    let [is_hit] = RayQueryOn::any_hits(scene, m, [ray]);
+                    is_hit
+                }
+                "hits", [],
+                |m, scene, (ray): (RayOn<M>)| -> <$view as RayQueryOn>::Hits<M> {
+                    RayQueryOn::hits(scene, m, ray)
+                }
+                "closest_hit_where", [R: Coerce<M, B<M>>, G: Fn(&M, ViewRecordOn<$view, M>) -> R],
+                |m, scene, (ray, accept): (RayOn<M>, G)| -> ViewRecordOn<$view, M> {
+                    let accept = |record| accept(m, record).coerce(m);
+                    RayQueryOn::closest_hit_where(scene, m, ray, accept)
+                }
+                "any_hit_where", [R: Coerce<M, B<M>>, G: Fn(&M, ViewRecordOn<$view, M>) -> R],
+                |m, scene, (ray, accept): (RayOn<M>, G)| -> B<M> {
+                    let accept = |record| accept(m, record).coerce(m);
+                    RayQueryOn::any_hit_where(scene, m, ray, accept)
+                }
+                "multi_hit", [const N: usize],
+                |m, scene, (_n, ray): (Const<N>, RayOn<M>)| -> [ViewRecordOn<$view, M>; N] {
+                    RayQueryOn::multi_hit_where(scene, m, ray, |_| B(m.bool(true)))
+                }
+                "multi_hit_where",
+                [R: Coerce<M, B<M>>, G: Fn(&M, ViewRecordOn<$view, M>) -> R, const N: usize],
+                |m, scene, (_n, ray, accept): (Const<N>, RayOn<M>, G)|
+                    -> [ViewRecordOn<$view, M>; N]
+                {
+                    let accept = |record| accept(m, record).coerce(m);
+                    RayQueryOn::multi_hit_where(scene, m, ray, accept)
+                }
+                "multi_hit_by",
+                [R: Coerce<M, B<M>>, G: Fn(&M, HitOn<M>, HitOn<M>) -> R, const N: usize],
+                |m, scene, (_n, ray, is_closer): (Const<N>, RayOn<M>, G)|
+                    -> [ViewRecordOn<$view, M>; N]
+                {
+                    let is_closer = |a, b| is_closer(m, a, b).coerce(m);
+                    RayQueryOn::multi_hit_by(scene, m, ray, is_closer)
+                }
+                "any_hit_each", [R: Coerce<M, RayOn<M>>, G: Fn(&M, U<M>) -> R, const N: usize],
+                |m, scene, (_n, ray): (Const<N>, G)| -> [B<M>; N] { any_hit_each(m, scene, ray) }
+                "closest_hit_each", [R: Coerce<M, RayOn<M>>, G: Fn(&M, U<M>) -> R, const N: usize],
+                |m, scene, (_n, ray): (Const<N>, G)| -> [ViewRecordOn<$view, M>; N] {
+                    closest_hit_each(m, scene, ray)
+                }
+                "to_object", [],
+                |m, scene, (hit): (HitOn<M>)| -> A3<M> {
+                    RayQueryOn::to_object(scene, m, hit.inst_id)
+                }
+                "local_ray", [],
+                |m, scene, (ray, hit): (RayOn<M>, HitOn<M>)| -> RayOn<M> {
+                    RayQueryOn::local_ray(scene, m, ray, hit.inst_id)
+                }
+                "normal_in_scene", [],
+                |m, scene, (hit, normal): (HitOn<M>, V3<M>)| -> V3<M> {
+                    let to_object = RayQueryOn::to_object(scene, m, hit.inst_id);
+                    transform_normal_back::on(m, normal, to_object)
+                }
             }
-            "closest_hit_with_cost", [], |m, scene, (ray): ($crate::geometry::RayOn<M>)|
-                -> ($crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M>, $crate::bvh::traverse::CostOn<M>)
-            {
-                $crate::bvh::RayQueryOn::closest_hit_with_cost(scene, m, ray)
-            }
-            "any_hit", [], |m, scene, (ray): ($crate::geometry::RayOn<M>)| -> $crate::machine::B<M> {
-                let [is_hit] = $crate::bvh::RayQueryOn::any_hits(scene, m, [ray]);
-                is_hit
-            }
-            "hits", [], |m, scene, (ray): ($crate::geometry::RayOn<M>)| -> <$view as $crate::bvh::RayQueryOn>::Hits<M> {
-                $crate::bvh::RayQueryOn::hits(scene, m, ray)
-            }
-            "closest_hit_where",
-            [R: $crate::machine::Coerce<M, $crate::machine::B<M>>, G: Fn(&M, $crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M>) -> R],
-            |m, scene, (ray, accept): ($crate::geometry::RayOn<M>, G)| -> $crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M> {
-                $crate::bvh::RayQueryOn::closest_hit_where(scene, m, ray, |record| accept(m, record).coerce(m))
-            }
-            "any_hit_where",
-            [R: $crate::machine::Coerce<M, $crate::machine::B<M>>, G: Fn(&M, $crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M>) -> R],
-            |m, scene, (ray, accept): ($crate::geometry::RayOn<M>, G)| -> $crate::machine::B<M> {
-                $crate::bvh::RayQueryOn::any_hit_where(scene, m, ray, |record| accept(m, record).coerce(m))
-            }
-            "multi_hit", [const N: usize], |m, scene, (_n, ray): ($crate::machine::Const<N>, $crate::geometry::RayOn<M>)|
-                -> [$crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M>; N]
-            {
-                $crate::bvh::RayQueryOn::multi_hit_where(scene, m, ray, |_| $crate::machine::B(m.bool(true)))
-            }
-            "multi_hit_where",
-            [
-                R: $crate::machine::Coerce<M, $crate::machine::B<M>>,
-                G: Fn(&M, $crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M>) -> R,
-                const N: usize
-            ],
-            |m, scene, (_n, ray, accept): ($crate::machine::Const<N>, $crate::geometry::RayOn<M>, G)|
-                -> [$crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M>; N]
-            {
-                $crate::bvh::RayQueryOn::multi_hit_where(scene, m, ray, |record| accept(m, record).coerce(m))
-            }
-            "multi_hit_by",
-            [R: $crate::machine::Coerce<M, $crate::machine::B<M>>, G: Fn(&M, $crate::geometry::HitOn<M>, $crate::geometry::HitOn<M>) -> R, const N: usize],
-            |m, scene, (_n, ray, is_closer): ($crate::machine::Const<N>, $crate::geometry::RayOn<M>, G)|
-                -> [$crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M>; N]
-            {
-                $crate::bvh::RayQueryOn::multi_hit_by(scene, m, ray, |a, b| is_closer(m, a, b).coerce(m))
-            }
-            "any_hit_each",
-            [R: $crate::machine::Coerce<M, $crate::geometry::RayOn<M>>, G: Fn(&M, $crate::machine::U<M>) -> R, const N: usize],
-            |m, scene, (_n, ray): ($crate::machine::Const<N>, G)| -> [$crate::machine::B<M>; N] { $crate::bvh::ray_query::any_hit_each(m, scene, ray) }
-            "closest_hit_each",
-            [R: $crate::machine::Coerce<M, $crate::geometry::RayOn<M>>, G: Fn(&M, $crate::machine::U<M>) -> R, const N: usize],
-            |m, scene, (_n, ray): ($crate::machine::Const<N>, G)| -> [$crate::machine::On<<$view as $crate::bvh::RayQueryOn>::Hit, M>; N] {
-                $crate::bvh::ray_query::closest_hit_each(m, scene, ray)
-            }
-            "to_object", [], |m, scene, (hit): ($crate::geometry::HitOn<M>)| -> $crate::machine::A3<M> {
-                $crate::bvh::RayQueryOn::to_object(scene, m, hit.inst_id)
-            }
-            "local_ray", [], |m, scene, (ray, hit): ($crate::geometry::RayOn<M>, $crate::geometry::HitOn<M>)| -> $crate::geometry::RayOn<M> {
-                $crate::bvh::RayQueryOn::local_ray(scene, m, ray, hit.inst_id)
-            }
-            "normal_in_scene", [], |m, scene, (hit, normal): ($crate::geometry::HitOn<M>, $crate::machine::V3<M>)| -> $crate::machine::V3<M> {
-                $crate::geometry::transform_normal_back::on(m, normal, $crate::bvh::RayQueryOn::to_object(scene, m, hit.inst_id))
-            }
-        }
+        };
     };
     (
         @each [$($g:tt)*] $t:ty, |$this:ident| $scene:expr;
@@ -100,7 +109,7 @@ macro_rules! queries {
         }
     ) => {
         #[diagnostic::do_not_recommend]
-        impl<$($g)*, M: $crate::machine::Machine, $($own)*> $crate::machine::Method<{ $crate::machine::name($name) }, M, ($($arg_ty,)+)> for $t {
+        impl<$($g)*, M: Machine, $($own)*> Method<{ name($name) }, M, ($($arg_ty,)+)> for $t {
             type Output = $out;
 
             #[inline(always)]
@@ -112,6 +121,9 @@ macro_rules! queries {
         }
     };
 }
+
+/// The record of a hit of a scene on a machine.
+pub(crate) type ViewRecordOn<V, M> = On<<V as RayQueryOn>::Hit, M>;
 
 pub(crate) use queries;
 

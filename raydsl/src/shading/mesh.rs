@@ -2,17 +2,18 @@
 
 use core::fmt;
 
-use glam::{Affine3, Vec2, Vec3, Vec4, vec2, vec3, vec4};
+use glam::{Affine3, Vec2, Vec3, Vec4, vec3, vec4};
 
-use super::scene::in_scene;
+use super::scene::{Asked, in_scene};
 use super::{Scene, ShadingPointOn};
 use crate::bvh::carrier::carrier;
 use crate::bvh::{PrimitiveScene, RayQuery, RayQueryOn, SceneView};
 use crate::geometry::{Hit, HitOn, IndexedTriangle, RayOn, SurfacePointOn, transform_normal_back};
-use crate::machine::functions::{vec2, vec3, vec4};
+use crate::machine::functions::{vec3, vec4};
 use crate::machine::generic::{inverse, max};
 use crate::machine::{
-    Capture, Coerce, Data, Leaves, Machine, On, Parameter, Resource, Schema, Slice, U, Value,
+    Capture, Data, Leaves, Machine, On, Parameter, Resource, Schema, Slice, U, Value,
+    X2,
 };
 use crate::sampling::Frame;
 use crate::{Type, kernel};
@@ -128,16 +129,6 @@ pub struct MeshView<'a> {
     materials: Slice<'a, u32>,
 }
 
-/// What the vertices say of a hit, in the space of the mesh.
-#[derive(Clone, Copy, Type)]
-#[repr(C)]
-struct Carried {
-    normal: Vec3,
-    uv: Vec2,
-    tangent: Vec4,
-    color: Vec3,
-}
-
 /// Returns a unit vector, or `other` where `v` has no direction.
 #[kernel]
 fn direction_or(v: Vec3, other: Vec3) -> Vec3 {
@@ -147,56 +138,54 @@ fn direction_or(v: Vec3, other: Vec3) -> Vec3 {
     if size > 0.0 && size < f32::INFINITY { scaled / scaled.length() } else { other }
 }
 
-/// Returns what the vertices say of a hit, of what is there; `geometric` is the geometric normal.
+/// Returns the normal between those of a triangle's vertices, on the side of the geometric one.
 #[kernel]
-#[expect(clippy::too_many_arguments, reason = "a mesh has many attributes")]
-#[allow(dead_code, reason = "only its lifted form is called")]
-fn carried(
-    triangle: IndexedTriangle,
-    vertices: &[Vec3],
-    normals: &[Vec3],
-    uvs: &[Vec2],
-    tangents: &[Vec4],
-    colors: &[Vec3],
-    #[host] has_normals: bool,
-    #[host] has_uvs: bool,
-    #[host] has_tangents: bool,
-    #[host] has_colors: bool,
-    geometric: Vec3,
-    hit: Hit,
-) -> Carried {
+fn smooth_normal(triangle: IndexedTriangle, normals: &[Vec3], geometric: Vec3, hit: Hit) -> Vec3 {
     let [a, b, c] = triangle.vertices;
     let rest = 1.0 - hit.u - hit.v;
-    let mut normal = geometric;
-    if has_normals {
-        let sum =
-            normals[a as usize] * rest + normals[b as usize] * hit.u + normals[c as usize] * hit.v;
-        let smooth = direction_or(sum, geometric);
-        normal = if smooth.dot(geometric) < 0.0 { -smooth } else { smooth };
-    }
-    let mut uv = vec2(hit.u, hit.v);
-    if has_uvs {
-        uv = uvs[a as usize] * rest + uvs[b as usize] * hit.u + uvs[c as usize] * hit.v;
-    }
-    let mut tangent = vec4(0.0, 0.0, 0.0, 0.0);
-    if has_tangents {
-        // The sign is the same at all vertices of a triangle.
-        let first = tangents[a as usize];
-        let sum = first * rest + tangents[b as usize] * hit.u + tangents[c as usize] * hit.v;
-        tangent = vec4(sum.x, sum.y, sum.z, first.w);
-    } else if has_uvs {
-        let (u1, u2) = (uvs[b as usize] - uvs[a as usize], uvs[c as usize] - uvs[a as usize]);
-        let e1 = vertices[b as usize] - vertices[a as usize];
-        let e2 = vertices[c as usize] - vertices[a as usize];
-        let sign = if u1.x * u2.y - u1.y * u2.x < 0.0 { -1.0 } else { 1.0 };
-        let along = (e1 * u2.y - e2 * u1.y) * sign;
-        tangent = vec4(along.x, along.y, along.z, sign);
-    }
-    let mut color = vec3(0.8, 0.8, 0.8);
-    if has_colors {
-        color = colors[a as usize] * rest + colors[b as usize] * hit.u + colors[c as usize] * hit.v;
-    }
-    Carried { normal, uv, tangent, color }
+    let sum =
+        normals[a as usize] * rest + normals[b as usize] * hit.u + normals[c as usize] * hit.v;
+    let smooth = direction_or(sum, geometric);
+    if smooth.dot(geometric) < 0.0 { -smooth } else { smooth }
+}
+
+/// Returns the surface coordinates between those of a triangle's vertices.
+#[kernel]
+fn uv_between(triangle: IndexedTriangle, uvs: &[Vec2], hit: Hit) -> Vec2 {
+    let [a, b, c] = triangle.vertices;
+    let rest = 1.0 - hit.u - hit.v;
+    uvs[a as usize] * rest + uvs[b as usize] * hit.u + uvs[c as usize] * hit.v
+}
+
+/// Returns the tangent between those of a triangle's vertices.
+#[kernel]
+fn tangent_between(triangle: IndexedTriangle, tangents: &[Vec4], hit: Hit) -> Vec4 {
+    let [a, b, c] = triangle.vertices;
+    let rest = 1.0 - hit.u - hit.v;
+    // The sign is the same at all vertices of a triangle.
+    let first = tangents[a as usize];
+    let sum = first * rest + tangents[b as usize] * hit.u + tangents[c as usize] * hit.v;
+    vec4(sum.x, sum.y, sum.z, first.w)
+}
+
+/// Returns the direction in which the first surface coordinate grows.
+#[kernel]
+fn tangent_of_uvs(triangle: IndexedTriangle, vertices: &[Vec3], uvs: &[Vec2]) -> Vec4 {
+    let [a, b, c] = triangle.vertices;
+    let (u1, u2) = (uvs[b as usize] - uvs[a as usize], uvs[c as usize] - uvs[a as usize]);
+    let e1 = vertices[b as usize] - vertices[a as usize];
+    let e2 = vertices[c as usize] - vertices[a as usize];
+    let sign = if u1.x * u2.y - u1.y * u2.x < 0.0 { -1.0 } else { 1.0 };
+    let along = (e1 * u2.y - e2 * u1.y) * sign;
+    vec4(along.x, along.y, along.z, sign)
+}
+
+/// Returns the colour between those of a triangle's vertices.
+#[kernel]
+fn color_between(triangle: IndexedTriangle, colors: &[Vec3], hit: Hit) -> Vec3 {
+    let [a, b, c] = triangle.vertices;
+    let rest = 1.0 - hit.u - hit.v;
+    colors[a as usize] * rest + colors[b as usize] * hit.u + colors[c as usize] * hit.v
 }
 
 /// Transforms a tangent of an instance to the space of the scene.
@@ -273,85 +262,81 @@ impl MeshView<'_> {
         all.into_iter().for_each(visit);
     }
 
-    /// Returns the triangle that was hit, its point, and the ray in its space.
+    /// Returns the tangent in the space of the mesh, where the attributes say one.
     #[inline(always)]
-    fn seen<M: Machine>(
+    fn tangent<M: Machine>(
         &self,
         m: &M,
-        ray: RayOn<M>,
+        triangle: On<IndexedTriangle, M>,
         hit: HitOn<M>,
-    ) -> (On<IndexedTriangle, M>, RayOn<M>, SurfacePointOn<M>) {
-        let scene = self.triangles;
-        let prim = SceneView::primitive_on(m, &scene, hit);
-        let local = RayQueryOn::local_ray(scene, m, ray, hit.inst_id);
-        let point = IndexedTriangle::surface_point_on(m, prim, local, hit, scene.shared());
-        (prim, local, point)
-    }
-}
-
-impl Scene for MeshView<'_> {
-    #[inline(always)]
-    fn surface_on<M: Machine>(
-        m: &M,
-        view: &Self,
-        ray: impl Coerce<M, RayOn<M>>,
-        hit: impl Coerce<M, HitOn<M>>,
-    ) -> SurfacePointOn<M> {
-        let (ray, hit) = (ray.coerce(m), hit.coerce(m));
-        let (_, _, point) = view.seen(m, ray, hit);
-        in_scene(m, view.triangles, ray, hit, point)
-    }
-
-    #[inline(always)]
-    fn shading_point_on<M: Machine>(
-        m: &M,
-        view: &Self,
-        ray: impl Coerce<M, RayOn<M>>,
-        hit: impl Coerce<M, HitOn<M>>,
-    ) -> ShadingPointOn<M> {
-        let (ray, hit) = (ray.coerce(m), hit.coerce(m));
-        let scene = view.triangles;
-        let (prim, _, own) = view.seen(m, ray, hit);
-        let Self { normals, uvs, tangents, colors, materials, .. } = *view;
-        let has_normals = !normals.is_empty();
-        let has_tangents = !(tangents.is_empty() && uvs.is_empty());
-        let vertices = scene.shared();
-        let carried = carried::on(
-            m,
-            prim,
-            vertices,
-            normals,
-            uvs,
-            tangents,
-            colors,
-            has_normals,
-            !uvs.is_empty(),
-            !tangents.is_empty(),
-            !colors.is_empty(),
-            own.normal,
-            hit,
-        );
-        let point = in_scene(m, scene, ray, hit, own);
-        let (mut shading_normal, mut tangent) = (carried.normal, carried.tangent);
-        if scene.has_instances() {
-            let to_object = RayQueryOn::to_object(scene, m, hit.inst_id);
-            shading_normal = match has_normals {
-                true => transform_normal_back::on(m, shading_normal, to_object),
-                false => point.normal,
-            };
-            if has_tangents {
-                tangent = placed_tangent::on(m, to_object, tangent);
-            }
+    ) -> Option<On<Vec4, M>> {
+        if !self.tangents.is_empty() {
+            return Some(tangent_between::on(m, triangle, self.tangents, hit));
         }
+        let vertices = self.triangles.shared();
+        (!self.uvs.is_empty()).then(|| tangent_of_uvs::on(m, triangle, vertices, self.uvs))
+    }
+
+    /// Returns what the attributes say of the point of a triangle that was hit; `own_normal` is the
+    /// geometric normal in the space of the mesh.
+    #[inline(always)]
+    fn shaded<M: Machine>(
+        &self,
+        m: &M,
+        triangle: On<IndexedTriangle, M>,
+        own_normal: On<Vec3, M>,
+        point: SurfacePointOn<M>,
+        hit: HitOn<M>,
+    ) -> ShadingPointOn<M> {
+        let scene = self.triangles;
+        let to_object =
+            scene.has_instances().then(|| RayQueryOn::to_object(scene, m, hit.inst_id));
+        let shading_normal = if self.normals.is_empty() {
+            point.normal
+        } else {
+            let smooth = smooth_normal::on(m, triangle, self.normals, own_normal, hit);
+            to_object.map_or(smooth, |to_object| transform_normal_back::on(m, smooth, to_object))
+        };
+        let tangent = match (self.tangent(m, triangle, hit), to_object) {
+            (Some(along), Some(to_object)) => placed_tangent::on(m, to_object, along),
+            (Some(along), None) => along,
+            (None, _) => Type::splat(m, Vec4::ZERO),
+        };
         let id = U(m.u32_select(hit.is_hit.0, hit.prim_id.0, m.u32(0)));
         ShadingPointOn {
             point,
             shading_normal,
             tangent: perpendicular::on(m, shading_normal, tangent),
-            uv: carried.uv,
-            material: if materials.is_empty() { U(m.u32(0)) } else { m.element(&materials, id) },
-            albedo: carried.color,
+            uv: match self.uvs.is_empty() {
+                true => X2 { x: hit.u, y: hit.v },
+                false => uv_between::on(m, triangle, self.uvs, hit),
+            },
+            material: match self.materials.is_empty() {
+                true => U(m.u32(0)),
+                false => m.element(&self.materials, id),
+            },
+            albedo: match self.colors.is_empty() {
+                true => Type::splat(m, Vec3::splat(0.8)),
+                false => color_between::on(m, triangle, self.colors, hit),
+            },
         }
+    }
+}
+
+impl Scene for MeshView<'_> {
+    #[inline(always)]
+    fn asked_on<M: Machine, A: Asked>(
+        m: &M,
+        view: &Self,
+        ray: RayOn<M>,
+        hit: HitOn<M>,
+    ) -> A::On<M> {
+        let scene = view.triangles;
+        let triangle = SceneView::primitive_on(m, &scene, hit);
+        let local = RayQueryOn::local_ray(scene, m, ray, hit.inst_id);
+        let own = IndexedTriangle::surface_point_on(m, triangle, local, hit, scene.shared());
+        let point = in_scene(m, scene, ray, hit, own);
+        A::of(point, || view.shaded(m, triangle, own.normal, point, hit))
     }
 }
 
@@ -378,22 +363,12 @@ impl<S: PrimitiveScene<Primitive = IndexedTriangle> + ?Sized> RayQuery for Mesh<
 
 impl<S: PrimitiveScene<Primitive = IndexedTriangle> + ?Sized> Scene for Mesh<'_, S> {
     #[inline(always)]
-    fn surface_on<M: Machine>(
+    fn asked_on<M: Machine, A: Asked>(
         m: &M,
         scene: &Self,
-        ray: impl Coerce<M, RayOn<M>>,
-        hit: impl Coerce<M, HitOn<M>>,
-    ) -> SurfacePointOn<M> {
-        MeshView::surface_on(m, &scene.view(), ray, hit)
-    }
-
-    #[inline(always)]
-    fn shading_point_on<M: Machine>(
-        m: &M,
-        scene: &Self,
-        ray: impl Coerce<M, RayOn<M>>,
-        hit: impl Coerce<M, HitOn<M>>,
-    ) -> ShadingPointOn<M> {
-        MeshView::shading_point_on(m, &scene.view(), ray, hit)
+        ray: RayOn<M>,
+        hit: HitOn<M>,
+    ) -> A::On<M> {
+        MeshView::asked_on::<M, A>(m, &scene.view(), ray, hit)
     }
 }

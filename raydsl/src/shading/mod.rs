@@ -13,5 +13,7 @@ mod scene;
 mod surface;
 
 pub use mesh::{Mesh, MeshAttributes, MeshError, MeshView};
+#[doc(hidden)]
+pub use scene::Asked;
 pub use scene::{Scene, ShadingPoint, ShadingPointOn};
 pub use surface::{Surface, facing};

@@ -4,13 +4,12 @@ use glam::{Vec2, Vec3, Vec4, vec4};
 
 use super::Surface;
 use super::placed::placed_point;
-
 use crate::bvh::{
     Accelerated, Bvh, BvhList, Instances, Joined, PrimitiveScene, RayQuery, RayQueryOn, SceneView,
 };
 use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn, SurfacePoint, SurfacePointOn};
 use crate::machine::functions::vec4;
-use crate::machine::{Coerce, Machine, Method, Scalar, Slice, U, name};
+use crate::machine::{Coerce, Machine, Method, Scalar, Slice, Value, name};
 
 use crate::sampling::Frame;
 use crate::{Type, kernel};
@@ -99,20 +98,82 @@ pub trait Scene: RayQuery<Hit = Hit> {
     }
 
     #[doc(hidden)]
+    #[inline(always)]
     fn surface_on<M: Machine>(
         m: &M,
         scene: &Self,
         ray: impl Coerce<M, RayOn<M>>,
         hit: impl Coerce<M, HitOn<M>>,
-    ) -> SurfacePointOn<M>;
+    ) -> SurfacePointOn<M> {
+        Self::asked_on::<M, PointAlone>(m, scene, ray.coerce(m), hit.coerce(m))
+    }
 
     #[doc(hidden)]
+    #[inline(always)]
     fn shading_point_on<M: Machine>(
         m: &M,
         scene: &Self,
         ray: impl Coerce<M, RayOn<M>>,
         hit: impl Coerce<M, HitOn<M>>,
-    ) -> ShadingPointOn<M>;
+    ) -> ShadingPointOn<M> {
+        Self::asked_on::<M, WholePoint>(m, scene, ray.coerce(m), hit.coerce(m))
+    }
+
+    /// Returns what is asked of the point that `ray` hits.
+    #[doc(hidden)]
+    fn asked_on<M: Machine, A: Asked>(
+        m: &M,
+        scene: &Self,
+        ray: RayOn<M>,
+        hit: HitOn<M>,
+    ) -> A::On<M>;
+}
+
+/// How much is asked of a point, so that no variant computes more.
+#[doc(hidden)]
+pub trait Asked {
+    /// What is returned.
+    type On<M: Machine>: Value<M>;
+
+    /// Returns it, given the point, and how to compute the whole.
+    fn of<M: Machine>(
+        point: SurfacePointOn<M>,
+        whole: impl FnOnce() -> ShadingPointOn<M>,
+    ) -> Self::On<M>;
+}
+
+/// The position and the geometric normal.
+#[doc(hidden)]
+#[derive(Debug)]
+pub enum PointAlone {}
+
+impl Asked for PointAlone {
+    type On<M: Machine> = SurfacePointOn<M>;
+
+    #[inline(always)]
+    fn of<M: Machine>(
+        point: SurfacePointOn<M>,
+        _: impl FnOnce() -> ShadingPointOn<M>,
+    ) -> SurfacePointOn<M> {
+        point
+    }
+}
+
+/// All that is known.
+#[doc(hidden)]
+#[derive(Debug)]
+pub enum WholePoint {}
+
+impl Asked for WholePoint {
+    type On<M: Machine> = ShadingPointOn<M>;
+
+    #[inline(always)]
+    fn of<M: Machine>(
+        _: SurfacePointOn<M>,
+        whole: impl FnOnce() -> ShadingPointOn<M>,
+    ) -> ShadingPointOn<M> {
+        whole()
+    }
 }
 
 fn ray_on(m: &Scalar, ray: Ray) -> RayOn<Scalar> {
@@ -143,38 +204,24 @@ macro_rules! scenes {
         $(
             impl<$($g)*> Scene for $t {
                 #[inline(always)]
-                fn surface_on<M: Machine>(
+                fn asked_on<M: Machine, A: Asked>(
                     m: &M,
                     scene: &Self,
-                    ray: impl Coerce<M, RayOn<M>>,
-                    hit: impl Coerce<M, HitOn<M>>,
-                ) -> SurfacePointOn<M> {
-                    let (ray, hit) = (ray.coerce(m), hit.coerce(m));
-                    let (scene, prim) = (scene.view(), Self::primitive_on(m, scene, hit));
-                    let local = RayQueryOn::local_ray(scene, m, ray, hit.inst_id);
-                    in_scene(m, scene, ray, hit, P::surface_on(m, prim, local, hit))
-                }
-
-                #[inline(always)]
-                fn shading_point_on<M: Machine>(
-                    m: &M,
-                    scene: &Self,
-                    ray: impl Coerce<M, RayOn<M>>,
-                    hit: impl Coerce<M, HitOn<M>>,
-                ) -> ShadingPointOn<M> {
-                    let (ray, hit) = (ray.coerce(m), hit.coerce(m));
+                    ray: RayOn<M>,
+                    hit: HitOn<M>,
+                ) -> A::On<M> {
                     let (scene, prim) = (scene.view(), Self::primitive_on(m, scene, hit));
                     let local = RayQueryOn::local_ray(scene, m, ray, hit.inst_id);
                     let point = P::surface_on(m, prim, local, hit);
                     let point = in_scene(m, scene, ray, hit, point);
-                    ShadingPointOn {
+                    A::of(point, || ShadingPointOn {
                         point,
                         shading_normal: point.normal,
                         tangent: any_tangent::on(m, point.normal),
                         uv: P::uv_on(m, prim, local, hit),
                         material: P::material_on(m, prim, local, hit),
                         albedo: P::albedo_on(m, prim, local, hit),
-                    }
+                    })
                 }
             }
         )+
@@ -193,30 +240,14 @@ scenes! {
 
 impl<S: Scene + ?Sized> Scene for &S {
     #[inline(always)]
-    fn surface_on<M: Machine>(
+    fn asked_on<M: Machine, A: Asked>(
         m: &M,
         scene: &Self,
-        ray: impl Coerce<M, RayOn<M>>,
-        hit: impl Coerce<M, HitOn<M>>,
-    ) -> SurfacePointOn<M> {
-        S::surface_on(m, scene, ray, hit)
+        ray: RayOn<M>,
+        hit: HitOn<M>,
+    ) -> A::On<M> {
+        S::asked_on::<M, A>(m, scene, ray, hit)
     }
-
-    #[inline(always)]
-    fn shading_point_on<M: Machine>(
-        m: &M,
-        scene: &Self,
-        ray: impl Coerce<M, RayOn<M>>,
-        hit: impl Coerce<M, HitOn<M>>,
-    ) -> ShadingPointOn<M> {
-        S::shading_point_on(m, scene, ray, hit)
-    }
-}
-
-/// Returns a hit as the part of a scene sees it.
-#[inline(always)]
-fn in_part<M: Machine>(hit: HitOn<M>, inst_id: U<M>) -> HitOn<M> {
-    HitOn { inst_id, ..hit }
 }
 
 impl<S, T> Scene for Joined<S, T>
@@ -225,38 +256,19 @@ where
     T: RayQueryOn<Hit = Hit> + Scene,
 {
     #[inline(always)]
-    fn surface_on<M: Machine>(
+    fn asked_on<M: Machine, A: Asked>(
         m: &M,
         scene: &Self,
-        ray: impl Coerce<M, RayOn<M>>,
-        hit: impl Coerce<M, HitOn<M>>,
-    ) -> SurfacePointOn<M> {
-        let (ray, hit) = (ray.coerce(m), hit.coerce(m));
+        ray: RayOn<M>,
+        hit: HitOn<M>,
+    ) -> A::On<M> {
         scene.of_either(
             m,
             hit.inst_id,
             #[inline(always)]
-            |scene, inst_id| S::surface_on(m, &scene, ray, in_part(hit, inst_id)),
+            |scene, inst_id| S::asked_on::<M, A>(m, &scene, ray, HitOn { inst_id, ..hit }),
             #[inline(always)]
-            |scene, inst_id| T::surface_on(m, &scene, ray, in_part(hit, inst_id)),
-        )
-    }
-
-    #[inline(always)]
-    fn shading_point_on<M: Machine>(
-        m: &M,
-        scene: &Self,
-        ray: impl Coerce<M, RayOn<M>>,
-        hit: impl Coerce<M, HitOn<M>>,
-    ) -> ShadingPointOn<M> {
-        let (ray, hit) = (ray.coerce(m), hit.coerce(m));
-        scene.of_either(
-            m,
-            hit.inst_id,
-            #[inline(always)]
-            |scene, inst_id| S::shading_point_on(m, &scene, ray, in_part(hit, inst_id)),
-            #[inline(always)]
-            |scene, inst_id| T::shading_point_on(m, &scene, ray, in_part(hit, inst_id)),
+            |scene, inst_id| T::asked_on::<M, A>(m, &scene, ray, HitOn { inst_id, ..hit }),
         )
     }
 }
