@@ -187,15 +187,28 @@ pub fn derive_hit_record(input: TokenStream) -> TokenStream {
 /// Makes a struct of scenes a scene to query, in kernels and on the host.
 ///
 /// The members may have different primitives, with one record of hits. Instance ids count through
-/// them in the order of declaration.
-#[proc_macro_derive(RayQuery)]
+/// them in the order of declaration. Members marked `#[table]` are slices or textures that kernels
+/// read by name.
+#[proc_macro_derive(RayQuery, attributes(table))]
 pub fn derive_ray_query(input: TokenStream) -> TokenStream {
     derived_scene(input, false)
 }
 
 /// Makes a struct of scenes a scene that integrators can shade: what `#[derive(RayQuery)]` does, and
 /// the points that rays hit.
-#[proc_macro_derive(Scene)]
+///
+/// A table belongs to the scene: kernels read `world.materials[i]` of a captured `world`.
+///
+/// ```ignore
+/// #[derive(Scene)]
+/// struct World<'a> {
+///     balls: Bvh<'a, Ball>,
+///     mesh: Mesh<'a, Bvh<'a, IndexedTriangle>>,
+///     #[table]
+///     materials: &'a [Material],
+/// }
+/// ```
+#[proc_macro_derive(Scene, attributes(table))]
 pub fn derive_scene(input: TokenStream) -> TokenStream {
     derived_scene(input, true)
 }

@@ -1,6 +1,6 @@
 //! The only names that generated code uses. Not for people: anything here may change.
 
-pub use crate::bvh::{Joined, RayQuery, RayQueryOn, SceneArgument};
+pub use crate::bvh::{Joined, RayQuery, RayQueryOn, SceneArgument, Tabled};
 pub use crate::geometry::{
     Aabb, Hit, HitOn, HitRecord, Kinds, Primitive, Ray, RayOn, SurfacePointOn,
 };
@@ -8,7 +8,7 @@ pub use crate::kernel::{Counting, Kernel, Lifted, Native4, Native8, Native16};
 pub use crate::machine::lifted::*;
 pub use crate::machine::{
     B, Capture, Compare, F, Field, KernelFn, KernelInfo, Lanes, Machine, Margin, Op, Recorder,
-    Resource, Schema, Slice, Type, Value, op,
+    Resource, Schema, Slice, Table, TableView, Type, Value, op,
 };
 pub use crate::shading::{Asked, Scene};
 

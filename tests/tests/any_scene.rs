@@ -4,6 +4,7 @@
 use std::error::Error;
 
 use glam::{DAffine3, DMat3, DVec3};
+use raydsl::bvh::SceneRef;
 use raydsl::integrators::{DirectionalLight, aovs, bvh_cost, direct_light};
 use raydsl::prelude::*;
 use raydsl::shading::{Mesh, MeshAttributes, Surface};
@@ -117,6 +118,73 @@ struct Three<'a> {
     first: &'a [Ball],
     both: Both<'a>,
     last: BvhList<'a, Ball>,
+}
+
+/// What a surface looks like.
+#[derive(Clone, Copy, Type)]
+enum Paint {
+    Plain(Vec3),
+    Striped { a: Vec3, b: Vec3, width: f32 },
+}
+
+// ANCHOR: tables
+/// A scene with tables: paints, and a picture of the sky.
+#[derive(Scene)]
+struct Painted<'a> {
+    balls: Bvh<'a, Ball>,
+    meshes: Mesh<'a, Instances<'a, IndexedTriangle>>,
+    #[table]
+    paints: &'a [Paint],
+    #[table]
+    sky: Texture2<'a, f32>,
+}
+
+/// The colour that a ray sees.
+#[kernel]
+fn painted(world: &Painted<'_>, ray: Ray) -> Vec3 {
+    let hit = world.closest_hit(ray);
+    if !hit.is_hit {
+        return Vec3::splat(tex2(&world.sky, vec2(ray.direction.x, ray.direction.y)));
+    }
+    let seen = world.shading_point(ray, hit);
+    paint_at(world.paints, seen.material as usize, seen.uv)
+}
+// ANCHOR_END: tables
+
+#[kernel]
+fn paint_at(paints: &[Paint], number: usize, uv: Vec2) -> Vec3 {
+    match paints[number % paints.len()] {
+        Paint::Plain(color) => color,
+        Paint::Striped { a, b, width } => {
+            let at = uv.x / width;
+            if at - at.floor() < 0.5 { a } else { b }
+        }
+    }
+}
+
+/// Asks a scene that it knows nothing of.
+fn sum_of_distances<S: RayQuery<Hit = Hit> + ?Sized>(scene: &S, rays: &[(Ray,)]) -> Vec<f32> {
+    let scene = SceneRef::new(scene);
+    let kernel = kernel!(|ray: Ray| {
+        let mut sum = 0.0;
+        for hit in scene.hits(ray) {
+            sum += hit.t;
+        }
+        sum
+    });
+    assert_variants_agree!(&kernel, rays);
+    run(&kernel, Variant::Packet8, rays)
+}
+
+/// Shades a scene that it knows nothing of.
+fn facing_ratios<S: Scene + ?Sized>(scene: &S, rays: &[(Ray,)]) -> Vec<f32> {
+    let scene = SceneRef::new(scene);
+    let kernel = kernel!(|ray: Ray| {
+        let hit = scene.closest_hit(ray);
+        if hit.is_hit { scene.surface(ray, hit).normal.dot(ray.direction) } else { 0.0 }
+    });
+    assert_variants_agree!(&kernel, rays);
+    run(&kernel, Variant::Packet4, rays)
 }
 
 fn balls(count: u32, seed: u32) -> Vec<Ball> {
@@ -310,6 +378,58 @@ fn a_kernel_takes_meshes_and_structs_of_scenes() -> Result<(), Box<dyn Error>> {
         last: BvhList::new(&of_others)?,
     };
     assert!(assert_agree!(three, 120) > 30);
+    Ok(())
+}
+
+/// One value captures a scene with its tables.
+#[test]
+fn a_scene_has_tables() -> Result<(), Box<dyn Error>> {
+    let (vertices, triangles) = solid();
+    let attributes = Attributes::of(&vertices, triangles.len());
+    let trees = [Bvh::build_sharing(&triangles, &vertices, &BuildConfig::default())?];
+    let placed = Instances::build(&trees, &placements())?;
+    let some = balls(25, 1);
+    let paints = [
+        Paint::Plain(vec3(0.9, 0.1, 0.2)),
+        Paint::Striped { a: Vec3::X, b: Vec3::Y, width: 0.25 },
+        Paint::Plain(vec3(0.1, 0.8, 0.3)),
+    ];
+    let texels = [0.0, 0.25, 0.5, 1.0];
+    let world = Painted {
+        balls: Bvh::build(&some)?,
+        meshes: Mesh::new(&placed, attributes.borrowed())?,
+        paints: &paints,
+        sky: Texture2::new(&texels, [2, 2], TextureConfig::default())?,
+    };
+    let rays: Vec<(Ray,)> = aimed_rays(11, 200).into_iter().map(|ray| (ray,)).collect();
+    let by_function = kernel!(|ray: Ray| painted(&world, ray));
+    assert_variants_agree!(&by_function, &rays);
+    let by_name = kernel!(|ray: Ray| {
+        let hit = world.closest_hit(ray);
+        if hit.is_hit { paint_at(world.paints, 0, Vec2::ZERO) } else { Vec3::ZERO }
+    });
+    assert_variants_agree!(&by_name, &rays);
+    let wgsl = by_function.wgsl();
+    assert!(wgsl.contains("paints") && wgsl.contains("sky"), "{wgsl}");
+    let expected: Vec<Vec3> = rays.iter().map(|(ray,)| painted(&world, *ray)).collect();
+    assert_eq!(run(&by_function, Variant::Packet16, &rays), expected);
+    let seen = |color: Vec3| expected.iter().filter(|c| **c == color).count();
+    assert!(seen(vec3(0.9, 0.1, 0.2)) > 5 && seen(Vec3::X) + seen(Vec3::Y) > 5);
+    Ok(())
+}
+
+/// Host functions are generic over their scene too.
+#[test]
+fn kernels_of_generic_host_functions_capture_scenes() -> Result<(), Box<dyn Error>> {
+    let some = balls(25, 1);
+    let tree = Bvh::build(&some)?;
+    let rays: Vec<(Ray,)> = aimed_rays(11, 200).into_iter().map(|ray| (ray,)).collect();
+    let sums = sum_of_distances(&some[..], &rays);
+    assert!(sums.iter().filter(|sum| **sum > 0.0).count() > 20);
+    assert_eq!(sum_of_distances(&tree, &rays), sums);
+    let ratios = facing_ratios(&some[..], &rays);
+    assert!(ratios.iter().filter(|ratio| **ratio != 0.0).count() > 20);
+    assert_eq!(facing_ratios(&tree, &rays), ratios);
     Ok(())
 }
 

@@ -1,44 +1,57 @@
-//! Expansion of `#[derive(RayQuery)]` and `#[derive(Scene)]`: a struct of scenes as one scene.
+//! Expansion of `#[derive(RayQuery)]` and `#[derive(Scene)]`: a struct of scenes as one scene, with
+//! tables.
 
 use proc_macro2::{Ident, TokenStream};
-use quote::{ToTokens, quote};
+use quote::{ToTokens, format_ident, quote, quote_spanned};
 use syn::spanned::Spanned;
 
 use crate::diag::Errors;
 use crate::here::private;
 
-/// Expands a struct whose members are scenes: the queries, and with `shaded` the points that rays
-/// hit.
+/// Expands a struct whose members are scenes and tables: the queries, and with `shaded` the points
+/// that rays hit.
 pub(crate) fn scene(item: &syn::DeriveInput, shaded: bool) -> TokenStream {
     let mut errors = Errors::default();
-    let members = members(item, &mut errors);
+    let (scenes, tables) = members(item, &mut errors);
     if !errors.is_empty() {
         return errors.into_tokens();
     }
-    let scene = Struct { item, members };
+    let scene = Struct { item, scenes, tables };
+    let tables = scene.tables();
     let queries = scene.queries();
     let capture = scene.capture();
     let shading = shaded.then(|| scene.shading());
     let errors = errors.into_tokens();
-    quote!(#queries #capture #shading #errors)
+    quote!(#tables #queries #capture #shading #errors)
 }
 
-/// Returns the members, all of which are scenes.
-fn members(item: &syn::DeriveInput, errors: &mut Errors) -> Vec<(Ident, syn::Type)> {
+struct Member {
+    vis: syn::Visibility,
+    name: Ident,
+    ty: syn::Type,
+}
+
+/// Returns the members that are scenes, and those that are tables.
+fn members(item: &syn::DeriveInput, errors: &mut Errors) -> (Vec<Member>, Vec<Member>) {
+    let (mut scenes, mut tables) = (Vec::new(), Vec::new());
     let syn::Data::Struct(s) = &item.data else {
         errors.at(
             item.ident.span(),
             "a scene of several scenes is a struct",
             "write a struct with a member for each scene; what a ray hits is in one of them",
         );
-        return Vec::new();
+        return (scenes, tables);
     };
-    let named = s.fields.iter().filter_map(|f| Some((f.ident.clone()?, f.ty.clone())));
-    let members: Vec<_> = named.collect();
-    if members.is_empty() {
+    for f in &s.fields {
+        let Some(name) = f.ident.clone() else { continue };
+        let is_table = f.attrs.iter().any(|a| a.path().is_ident("table"));
+        let member = Member { vis: f.vis.clone(), name, ty: f.ty.clone() };
+        if is_table { tables.push(member) } else { scenes.push(member) }
+    }
+    if scenes.is_empty() {
         errors.at(
             item.ident.span(),
-            "a scene has named members",
+            "a scene has named members, one of them a scene",
             "write `struct Both<'a> { spheres: Bvh<'a, Ball>, mesh: Bvh<'a, Triangle> }`",
         );
     }
@@ -49,17 +62,18 @@ fn members(item: &syn::DeriveInput, errors: &mut Errors) -> Vec<(Ident, syn::Typ
             "write the types of its scenes",
         );
     }
-    for (_, ty) in &members {
+    for Member { ty, .. } in scenes.iter().chain(&tables) {
         if let syn::Type::Slice(_) = ty {
-            errors.at(ty.span(), "a member is a scene of its own", "write `&'a [P]`");
+            errors.at(ty.span(), "a member is a scene or a table of its own", "write `&'a [P]`");
         }
     }
-    members
+    (scenes, tables)
 }
 
 struct Struct<'a> {
     item: &'a syn::DeriveInput,
-    members: Vec<(Ident, syn::Type)>,
+    scenes: Vec<Member>,
+    tables: Vec<Member>,
 }
 
 impl Struct<'_> {
@@ -69,29 +83,74 @@ impl Struct<'_> {
         (declared.into_token_stream(), used.into_token_stream(), clause.into_token_stream())
     }
 
-    /// Returns the type of the view, as seen for this lifetime: that of the last member, joined with
-    /// the others one after another.
+    /// Returns the name of the struct of the views of all tables.
+    fn tables_name(&self) -> Ident {
+        format_ident!("__{}Tables", self.item.ident)
+    }
+
+    /// Returns the type of the view, as seen for this lifetime: that of the last scene, joined with
+    /// the others one after another, and the tables.
     fn view(&self, lifetime: &syn::Lifetime) -> TokenStream {
         let p = private();
-        let mut views = self.members.iter().rev().map(|(_, ty)| {
+        let mut views = self.scenes.iter().rev().map(|Member { ty, .. }| {
             let ty = lent(ty, lifetime);
             quote!(<#ty as #p::RayQuery>::View<#lifetime>)
         });
         let last = views.next().unwrap_or_default();
-        views.fold(last, |rest, view| quote!(#p::Joined<#view, #rest>))
+        let scenes = views.fold(last, |rest, view| quote!(#p::Joined<#view, #rest>));
+        if self.tables.is_empty() {
+            return scenes;
+        }
+        let tables = self.tables_name();
+        quote!(#p::Tabled<#scenes, #tables<#lifetime>>)
+    }
+
+    /// Emits the struct of the views of all tables, through which kernels read them by name.
+    fn tables(&self) -> Option<TokenStream> {
+        if self.tables.is_empty() {
+            return None;
+        }
+        let (p, name, vis) = (private(), self.tables_name(), &self.item.vis);
+        let lifetime: syn::Lifetime = syn::parse_quote!('__v);
+        let members = self.tables.iter().map(|Member { vis, name, ty }| {
+            let ty = lent(ty, &lifetime);
+            quote_spanned!(ty.span()=> #vis #name: <#ty as #p::Table>::View<'__v>)
+        });
+        let names = self.tables.iter().map(|member| &member.name);
+        Some(quote! {
+            #[doc(hidden)]
+            #[derive(Clone, Copy)]
+            #vis struct #name<'__v> {
+                #(#members,)*
+            }
+
+            impl #p::TableView for #name<'_> {
+                fn resources(&self, visit: &mut dyn ::core::ops::FnMut(&dyn #p::Resource)) {
+                    #(#p::TableView::resources(&self.#names, visit);)*
+                }
+            }
+        })
     }
 
     fn queries(&self) -> TokenStream {
         let (p, name) = (private(), &self.item.ident);
         let (declared, used, clause) = self.generics();
         let view = self.view(&syn::parse_quote!('__v));
-        let first = self.members.first().map(|(_, ty)| ty);
-        let mut views = self.members.iter().rev().map(|(member, _)| {
-            let text = member.to_string();
-            quote!(#p::RayQueryOn::named(#p::RayQuery::view(&self.#member), #text))
+        let first = self.scenes.first().map(|member| &member.ty);
+        let mut views = self.scenes.iter().rev().map(|Member { name, .. }| {
+            let text = name.to_string();
+            quote!(#p::RayQueryOn::named(#p::RayQuery::view(&self.#name), #text))
         });
         let last = views.next().unwrap_or_default();
-        let made = views.fold(last, |rest, view| quote!(#p::Joined::new(#view, #rest)));
+        let mut made = views.fold(last, |rest, view| quote!(#p::Joined::new(#view, #rest)));
+        if !self.tables.is_empty() {
+            let (tables, names) = (self.tables_name(), self.tables.iter().map(|t| &t.name));
+            let texts = names.clone().map(Ident::to_string);
+            let views = names.zip(texts).map(|(name, text)| {
+                quote!(#name: #p::Table::view(&self.#name, #text))
+            });
+            made = quote!(#p::Tabled::new(#made, #tables { #(#views,)* }));
+        }
         quote! {
             impl #declared #p::RayQuery for #name #used #clause {
                 type Hit = <#first as #p::RayQuery>::Hit;

@@ -15,7 +15,8 @@
 // * `view`: scenes as kernels see them: a slice, a tree, a list, instances, a foreign structure.
 // * `ray_query`: the trait of scenes: queries on the host, and in kernels that are generic over it.
 // * `query_on`: the queries of a view on any machine; `joined`: two scenes as one; `carrier`: views
-//   that carry more data, as those of meshes.
+//   that carry more data, as those of meshes; `tabled`: scenes with tables; `scene_ref`: scenes whose
+//   type is a parameter of the host.
 // * `batch`: queries of many rays on the host, in packets.
 // * `contract`: the valid rays and hits, the order of hits, culling distances, and the box test.
 // * `methods`, `query`: queries in kernels: their names, and those with a callback for each hit.
@@ -48,8 +49,10 @@ mod query;
 pub(crate) mod query_on;
 pub(crate) mod ray_query;
 mod refit;
+mod scene_ref;
 mod stats;
 mod structure;
+mod tabled;
 pub mod traverse;
 pub(crate) mod traverse_packet;
 mod validate;
@@ -80,8 +83,10 @@ pub use query_on::RayQueryOn;
 pub use query_on::SceneArgument;
 pub use ray_query::{PrimitiveScene, RayQuery};
 pub use refit::{DetachedBvh, RefitError};
+pub use scene_ref::SceneRef;
 pub use stats::Statistics;
 use structure::Structure;
+pub use tabled::Tabled;
 pub use traverse::Cost;
 pub(crate) use traverse::nearest_counted;
 #[doc(hidden)]

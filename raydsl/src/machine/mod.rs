@@ -24,12 +24,13 @@
 // * `control`, `counter`: structured control flow of lifted code: variables, branches, loops.
 // * `bare`, `option`: integers whose type rustc infers, and `Option`.
 // * `types`, `schema`, `twin`, `value`: host types, their layouts, and their twins on a machine.
-// * `words`, `kinds`: the storage of an enum's variants, and the variants a scene has.
+// * `words`, `kinds`: the storage of an enum's kinds, and the kinds a scene has.
 // * `vector`, `matrix`, `inverse`: the twins of glam's types.
 // * `op`, `ops`, `operand`, `bits`: operations as types, and the operators of lifted code (Warren,
 //   "Hacker's Delight", 2013, for bit counting).
 // * `methods`, `functions`, `generic`: methods and functions of lifted code.
-// * `data`, `index`, `cursor`: slices, their elements, and the items of `for`.
+// * `data`, `index`, `cursor`, `table`: slices, their elements, the items of `for`, and data that is
+//   a member of a captured value.
 // * `capture`, `host`, `owner`: captures of a kernel, host values, liveness of scene data.
 // * `operation`: extension points for other modules.
 // * `call`, `lowered`: kernels as functions, and the functions that lifted code calls.
@@ -66,6 +67,7 @@ mod packet;
 pub(crate) mod record;
 mod scalar;
 mod schema;
+mod table;
 mod twin;
 mod types;
 mod value;
@@ -100,6 +102,8 @@ pub(crate) use record::{Frame, Modules};
 pub use record::{Recorder, Recording};
 pub use scalar::Scalar;
 pub use schema::{Field, Schema};
+#[doc(hidden)]
+pub use table::{Table, TableView};
 pub use types::Type;
 pub(crate) use value::Floats;
 pub use value::{B, F, I, U, Usize, Value};

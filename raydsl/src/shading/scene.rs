@@ -5,11 +5,12 @@ use glam::{Vec2, Vec3, Vec4, vec4};
 use super::Surface;
 use super::placed::placed_point;
 use crate::bvh::{
-    Accelerated, Bvh, BvhList, Instances, Joined, PrimitiveScene, RayQuery, RayQueryOn, SceneView,
+    Accelerated, Bvh, BvhList, Instances, Joined, PrimitiveScene, RayQuery, RayQueryOn, SceneRef,
+    SceneView, Tabled,
 };
 use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn, SurfacePoint, SurfacePointOn};
 use crate::machine::functions::vec4;
-use crate::machine::{Coerce, Machine, Method, Scalar, Slice, Value, name};
+use crate::machine::{Coerce, Machine, Method, Scalar, Slice, TableView, Value, name};
 
 use crate::sampling::Frame;
 use crate::{Type, kernel};
@@ -273,6 +274,30 @@ where
     }
 }
 
+impl<S: RayQueryOn<Hit = Hit> + Scene, T: TableView> Scene for Tabled<S, T> {
+    #[inline(always)]
+    fn asked_on<M: Machine, A: Asked>(
+        m: &M,
+        scene: &Self,
+        ray: RayOn<M>,
+        hit: HitOn<M>,
+    ) -> A::On<M> {
+        S::asked_on::<M, A>(m, &scene.scene(), ray, hit)
+    }
+}
+
+impl<S: Scene + ?Sized> Scene for SceneRef<'_, S> {
+    #[inline(always)]
+    fn asked_on<M: Machine, A: Asked>(
+        m: &M,
+        scene: &Self,
+        ray: RayOn<M>,
+        hit: HitOn<M>,
+    ) -> A::On<M> {
+        S::asked_on::<M, A>(m, SceneRef::scene(*scene), ray, hit)
+    }
+}
+
 /// Implements the methods in kernels for a scene whose type is known.
 macro_rules! methods {
     ($([$($g:tt)*] $t:ty, $s:ty, |$this:ident| $scene:expr;)+) => {
@@ -308,5 +333,8 @@ methods! {
     [
         S: RayQueryOn<Hit = Hit> + Scene, T: RayQueryOn<Hit = Hit> + Scene
     ] Joined<S, T>, Joined<S, T>, |scenes| &scenes;
+    [
+        S: RayQueryOn<Hit = Hit> + Scene, T: TableView
+    ] Tabled<S, T>, Tabled<S, T>, |scene| &scene;
     ['s, S: Scene + ?Sized] &'s S, S, |scene| scene;
 }

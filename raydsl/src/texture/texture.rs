@@ -7,7 +7,9 @@ use super::error::TextureError;
 use super::texel::Texel;
 use super::view::Texels;
 use crate::machine::wgsl::BufferKey;
-use crate::machine::{Capture, Leaves, Machine, Owner, Parameter, Resource, Schema, Type, Value};
+use crate::machine::{
+    Capture, Leaves, Machine, Owner, Parameter, Resource, Schema, Table, TableView, Type, Value,
+};
 
 /// Maximum number of texels along an axis: up to here every whole number is an `f32`.
 pub const MAX_SIZE: u32 = 1 << 24;
@@ -292,6 +294,32 @@ macro_rules! capture {
             }
         }
     };
+}
+
+macro_rules! table {
+    ($t:ident) => {
+        impl<T: Texel, const D: usize> Table for $t<'_, T, D> {
+            type View<'v>
+                = TextureRef<'v, T, D>
+            where
+                Self: 'v;
+
+            #[inline(always)]
+            fn view(&self, name: &'static str) -> TextureRef<'_, T, D> {
+                let texels = self.as_texture_ref().texels;
+                TextureRef { texels: Texels { name, ..texels } }
+            }
+        }
+    };
+}
+
+table!(Texture);
+table!(TextureRef);
+
+impl<T: Texel, const D: usize> TableView for TextureRef<'_, T, D> {
+    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        visit(&self.texels.slice());
+    }
 }
 
 capture!(Texture);
