@@ -204,6 +204,7 @@ fn lengths_alone() {
 mod windows {
     use raydsl::gpu::{Context, GpuError, GpuScheduler, GpuWindow, WindowError};
     use raydsl::prelude::*;
+    use raydsl::shading::{Mesh, MeshAttributes};
     use wgpu::BufferUsages as Usage;
 
     use super::{Ball, inputs, nearest};
@@ -293,6 +294,57 @@ mod windows {
         gpu.batch(&kernel, &inputs, &mut found)?;
         let expected: Vec<u32> = (0..20).map(|n| n % 13 * 2 + 7).collect();
         assert_eq!(found, expected);
+        Ok(())
+    }
+
+    fn window_of(gpu: &GpuScheduler, numbers: &[f32]) -> GpuWindow {
+        let bytes: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
+        let size = bytes.len() as u64;
+        let buffer = buffer(gpu, size, Usage::STORAGE);
+        gpu.context().queue().write_buffer(&buffer, 0, &bytes);
+        GpuWindow { buffer, offset: 0, size }
+    }
+
+    /// Positions and attributes of a mesh stay in the application's buffers.
+    #[test]
+    fn meshes_are_not_uploaded() -> Result<(), Box<dyn core::error::Error>> {
+        let [Some(gpu), Some(other)] = [own_device(), own_device()] else { return Ok(()) };
+        let at = |i: u32| vec3((i % 5) as f32, (i / 5) as f32, 4.0 + 0.1 * (i % 3) as f32);
+        let positions: Vec<Vec3> = (0..25).map(at).collect();
+        let normals: Vec<Vec3> = positions.iter().map(|p| *p - vec3(2.0, 2.0, 9.0)).collect();
+        let uvs: Vec<Vec2> = positions.iter().map(|p| vec2(p.x, p.y) * 0.25).collect();
+        let squares = (0..20).filter(|i| i % 5 != 4);
+        let triangles: Vec<IndexedTriangle> = squares
+            .flat_map(|i| [[i, i + 1, i + 6], [i, i + 6, i + 5]])
+            .map(|vertices| IndexedTriangle { vertices })
+            .collect();
+        let tree = Bvh::build_sharing(&triangles, &positions, &BuildConfig::default())?;
+        let attributes = MeshAttributes { normals: &normals, uvs: &uvs, ..Default::default() };
+        let mesh = Mesh::new(&tree, attributes)?;
+        let kernel = kernel!(|x: f32, y: f32| {
+            let ray = Ray::new(vec3(x, y, 0.0), Vec3::Z);
+            let hit = mesh.closest_hit(ray);
+            let seen = mesh.shading_point(ray, hit);
+            if hit.is_hit { seen.uv.extend(seen.shading_normal.z) } else { Vec3::ZERO }
+        });
+        let inputs: Vec<(f32, f32)> =
+            (0..100).map(|i| ((i % 10) as f32 * 0.5, (i / 10) as f32 * 0.5)).collect();
+        let run = |gpu: &GpuScheduler| {
+            let mut found = vec![Vec3::ZERO; inputs.len()];
+            gpu.batch(&kernel, &inputs, &mut found).map(|()| found)
+        };
+        let expected = run(&other)?;
+        assert!(expected.iter().filter(|v| v.z != 0.0).count() > 50);
+
+        let numbers = |v: &[Vec3]| v.iter().flat_map(|v| v.to_array()).collect::<Vec<f32>>();
+        let of_uvs: Vec<f32> = uvs.iter().flat_map(|v| v.to_array()).collect();
+        let view = tree.view();
+        let _positions = gpu.with_gpu(view.shared(), window_of(&gpu, &numbers(&positions)))?;
+        let _normals = gpu.with_gpu(&normals, window_of(&gpu, &numbers(&normals)))?;
+        let _uvs = gpu.with_gpu(&uvs, window_of(&gpu, &of_uvs))?;
+        assert_eq!(run(&gpu)?, expected);
+        let kept = other.context().uploaded_bytes() - gpu.context().uploaded_bytes();
+        assert_eq!(kept, 25 * (12 + 12 + 8));
         Ok(())
     }
 

@@ -1,0 +1,9 @@
+use raydsl::kernel;
+use raydsl::prelude::*;
+
+#[kernel]
+fn shade<S>(scene: &S, ray: Ray) -> f32 { //~ macro
+    scene.closest_hit(ray).t
+}
+
+fn main() {}
