@@ -114,13 +114,13 @@ fn is_maybe_sized(bound: &syn::TypeParamBound) -> bool {
     bound.to_token_stream().to_string().starts_with('?')
 }
 
-/// Returns whether a bound says that the type is a scene: `RayQuery`, `Scene`, or a trait whose name
-/// ends so. A reference to such a type is data, which kernels read in place.
+/// Returns whether a bound says that the type is a scene: `RayQuery`, `RecordQuery`, `Scene`, or a
+/// trait whose name ends so. A reference to such a type is data, which kernels read in place.
 fn is_of_scenes(bound: &syn::TypeParamBound) -> bool {
     let syn::TypeParamBound::Trait(t) = bound else { return false };
     t.path.segments.last().is_some_and(|last| {
         let name = last.ident.to_string();
-        name == "RayQuery" || name.ends_with("Scene")
+        matches!(name.as_str(), "RayQuery" | "RecordQuery") || name.ends_with("Scene")
     })
 }
 

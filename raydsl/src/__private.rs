@@ -1,6 +1,6 @@
 //! The only names that generated code uses. Not for people: anything here may change.
 
-pub use crate::bvh::{Joined, RayQuery, RayQueryOn, SceneArgument, Tabled};
+pub use crate::bvh::{Joined, RayQueryOn, RecordQuery, SceneArgument, Tabled};
 pub use crate::geometry::{
     Aabb, Hit, HitOn, HitRecord, Kinds, Primitive, Ray, RayOn, SurfacePointOn,
 };

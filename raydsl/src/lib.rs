@@ -23,7 +23,7 @@ pub mod texture;
 #[doc(hidden)]
 pub mod __private;
 
-pub use bvh::RayQuery;
+pub use bvh::{RayQuery, RecordQuery};
 pub use geometry::HitRecord;
 pub use machine::Type;
 /// One body, a test for each variant.

@@ -50,5 +50,5 @@ pub use crate::texture::{
     Texture1, Texture2, Texture3, TextureConfig, TextureRef1, TextureRef2, TextureRef3,
     linear_to_srgb, srgb_to_linear, tex1, tex1_level, tex2, tex2_level, tex3, tex3_level,
 };
-pub use crate::{HitRecord, RayQuery, Scene, Type, primitive};
+pub use crate::{HitRecord, RayQuery, RecordQuery, Scene, Type, primitive};
 pub use raydsl_macros::kernel_closure as kernel;

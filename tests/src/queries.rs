@@ -4,7 +4,7 @@ use raydsl::__private::{Method, name};
 use raydsl::bvh::SceneView;
 use raydsl::machine::{Lanes, Packet, Type};
 use raydsl::prelude::{
-    Bvh, Hit, HitRecord, Kernel, Primitive, Ray, RayQuery, Renderer, Triangle, Variant, kernel,
+    Bvh, Hit, HitRecord, Kernel, Primitive, Ray, RecordQuery, Renderer, Triangle, Variant, kernel,
 };
 
 use crate::levels::{LevelTask, each_level, gangs, widest_level};
@@ -46,7 +46,7 @@ pub fn fill<T: Send>(out: &mut [T], work: impl Fn(usize, &mut [T]) + Sync) {
 
 /// Primitives without a tree, as kernels see them.
 pub fn slice_view<P: Primitive<Shared = ()>>(prims: &[P]) -> SceneView<'_, P> {
-    RayQuery::view(prims)
+    RecordQuery::view(prims)
 }
 
 /// The scalar answers.

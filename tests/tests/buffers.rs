@@ -331,7 +331,7 @@ mod windows {
             (0..100).map(|i| ((i % 10) as f32 * 0.5, (i / 10) as f32 * 0.5)).collect();
         let run = |gpu: &GpuScheduler| {
             let mut found = vec![Vec3::ZERO; inputs.len()];
-            gpu.batch(&kernel, &inputs, &mut found).map(|()| found)
+            gpu.batch(&kernel, &inputs, &mut found).map(|_| found)
         };
         let expected = run(&other)?;
         assert!(expected.iter().filter(|v| v.z != 0.0).count() > 50);

@@ -1,14 +1,9 @@
 use raydsl::kernel;
 use raydsl::prelude::*;
 
-fn maybe(x: f32) -> Option<f32> {
-    Some(x)
-}
-
 #[kernel]
-fn shade(x: f32) -> Option<f32> {
-    let y = maybe(x)?; //~ macro
-    maybe(y)
+fn half(x: f32) -> Result<f32, u32> { //~ macro
+    if x < 0.0 { Err(1) } else { Ok(x * 0.5) }
 }
 
 fn main() {}

@@ -82,15 +82,22 @@ impl Emitter<'_> {
             let value = match self.unread(arg) {
                 Some(value) => value,
                 None if in_order => {
-                    let (value, ident) = (self.value(arg), self.fresh("argument"));
+                    let (value, ident) = (self.argument(arg), self.fresh("argument"));
                     all.before.extend(quote!(let #ident = #value;));
                     quote!(#ident)
                 }
-                None => self.value(arg),
+                None => self.argument(arg),
             };
             all.values.push(value);
         }
         all
+    }
+
+    /// Emits an argument; the function says which integers a tuple or an array has.
+    fn argument(&mut self, arg: &Expr) -> TokenStream {
+        let is_list = matches!(arg.kind, Kind::Tuple(_) | Kind::Array(_) | Kind::Repeat { .. });
+        let bare = if is_list { self.with_bare(arg) } else { None };
+        bare.unwrap_or_else(|| self.value(arg))
     }
 
     /// Emits an argument that no lane reads before the call.

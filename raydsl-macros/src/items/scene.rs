@@ -94,7 +94,7 @@ impl Struct<'_> {
         let p = private();
         let mut views = self.scenes.iter().rev().map(|Member { ty, .. }| {
             let ty = lent(ty, lifetime);
-            quote!(<#ty as #p::RayQuery>::View<#lifetime>)
+            quote!(<#ty as #p::RecordQuery>::View<#lifetime>)
         });
         let last = views.next().unwrap_or_default();
         let scenes = views.fold(last, |rest, view| quote!(#p::Joined<#view, #rest>));
@@ -139,21 +139,21 @@ impl Struct<'_> {
         let first = self.scenes.first().map(|member| &member.ty);
         let mut views = self.scenes.iter().rev().map(|Member { name, .. }| {
             let text = name.to_string();
-            quote!(#p::RayQueryOn::named(#p::RayQuery::view(&self.#name), #text))
+            quote!(#p::RayQueryOn::named(#p::RecordQuery::view(&self.#name), #text))
         });
         let last = views.next().unwrap_or_default();
         let mut made = views.fold(last, |rest, view| quote!(#p::Joined::new(#view, #rest)));
         if !self.tables.is_empty() {
             let (tables, names) = (self.tables_name(), self.tables.iter().map(|t| &t.name));
             let texts = names.clone().map(Ident::to_string);
-            let views = names.zip(texts).map(|(name, text)| {
-                quote!(#name: #p::Table::view(&self.#name, #text))
-            });
+            let views = names
+                .zip(texts)
+                .map(|(name, text)| quote!(#name: #p::Table::view(&self.#name, #text)));
             made = quote!(#p::Tabled::new(#made, #tables { #(#views,)* }));
         }
         quote! {
-            impl #declared #p::RayQuery for #name #used #clause {
-                type Hit = <#first as #p::RayQuery>::Hit;
+            impl #declared #p::RecordQuery for #name #used #clause {
+                type Hit = <#first as #p::RecordQuery>::Hit;
                 type View<'__v>
                     = #view
                 where
@@ -177,22 +177,22 @@ impl Struct<'_> {
             #[diagnostic::do_not_recommend]
             impl<#(#params,)* __M: #p::Machine> #p::Capture<__M> for #name #used #clause {
                 type On<'__v>
-                    = <Self as #p::RayQuery>::View<'__v>
+                    = <Self as #p::RecordQuery>::View<'__v>
                 where
                     Self: '__v;
 
                 #[inline(always)]
                 fn capture<'__v>(&'__v self, _: &__M, _: &'static str) -> Self::On<'__v> {
-                    #p::RayQuery::view(self)
+                    #p::RecordQuery::view(self)
                 }
 
                 #[inline(always)]
                 fn constant<'__v>(&'__v self, _: &__M) -> Self::On<'__v> {
-                    #p::RayQuery::view(self)
+                    #p::RecordQuery::view(self)
                 }
 
                 fn resources(&self, visit: &mut dyn ::core::ops::FnMut(&dyn #p::Resource)) {
-                    #p::RayQueryOn::resources(&#p::RayQuery::view(self), visit);
+                    #p::RayQueryOn::resources(&#p::RecordQuery::view(self), visit);
                 }
             }
 
@@ -214,7 +214,7 @@ impl Struct<'_> {
                     ray: #p::RayOn<__M>,
                     hit: #p::HitOn<__M>,
                 ) -> __A::On<__M> {
-                    #p::Scene::asked_on::<__M, __A>(m, &#p::RayQuery::view(scene), ray, hit)
+                    #p::Scene::asked_on::<__M, __A>(m, &#p::RecordQuery::view(scene), ray, hit)
                 }
             }
         }

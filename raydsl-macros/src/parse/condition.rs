@@ -126,6 +126,20 @@ impl Parser<'_> {
         Kind::Loop { label: label(&w.label), body: Block { stmts, tail: None } }
     }
 
+    /// Parses `e?` of an `Option`: its value, or the kernel gives `None`.
+    pub(super) fn tried(&mut self, t: &syn::ExprTry) -> Kind {
+        let e = &t.expr;
+        let block = syn::parse_quote_spanned! {t.question_token.span=>
+            {
+                let Some(__tried) = #e else {
+                    return None;
+                };
+                __tried
+            }
+        };
+        self.expr(&block).kind
+    }
+
     /// Parses `let PATTERN = init else { .. };`.
     pub(super) fn let_else(
         &mut self,

@@ -106,6 +106,7 @@ impl Parser<'_> {
             syn::Expr::Assign(a) => self.assign(a),
             // Values are copied: a reference is the value, and so is its referent.
             syn::Expr::Reference(r) if r.mutability.is_none() => self.expr(&r.expr).kind,
+            syn::Expr::Try(t) => self.tried(t),
             syn::Expr::Macro(m) => self.macro_call(&m.mac),
             other => self.unsupported(other),
         }

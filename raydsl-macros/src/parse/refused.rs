@@ -145,7 +145,6 @@ impl Parser<'_> {
                 "closures but as arguments and in a `let`",
                 "write `let f = |x: f32| x * x;`, and `f(x)`",
             ),
-            syn::Expr::Try(_) => ("`?`", "give a value that says what happened: a miss is data"),
             syn::Expr::Reference(_) => {
                 ("`&mut` outside the arguments of a call", "write the variable itself")
             }

@@ -71,7 +71,6 @@ bodies! {
     heap: { let v = vec![x]; x } "`vec!`" "no heap";
     printing: { println!("{x}"); x } "`println!`" "return the value";
     assertion: { assert!(x > 0.0); x } "`assert!`" "cannot stop";
-    question_mark: { g(x)? } "no `?`" "a miss is data";
     inner_closure: { let f = (|y: f32| y, x); x } "no closures" "let f =";
     moving_closure: { let f = move |y: f32| y * x; f(x) } "no `move`" "remove `move`";
     closure_without_type: { let f = |y| y * x; f(x) } "needs a type" "|ray: Ray|";

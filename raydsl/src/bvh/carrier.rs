@@ -7,7 +7,7 @@ macro_rules! carrier {
     ([$($g:tt)*] $t:ty, $view:ty, $member:ident) => {
         const _: () = {
             use $crate::bvh::traverse::CostOn;
-            use $crate::bvh::{Cost, RayQuery, RayQueryOn};
+            use $crate::bvh::{Cost, RecordQuery, RayQueryOn};
             use $crate::geometry::{HitOn, Ray, RayOn};
             use $crate::machine::{A3, B, Machine, On, Resource, U};
 
@@ -150,7 +150,7 @@ macro_rules! carrier {
                 }
             }
 
-            impl<$($g)*> RayQuery for $t {
+            impl<$($g)*> RecordQuery for $t {
                 type Hit = <$view as RayQueryOn>::Hit;
                 type View<'v>
                     = Self

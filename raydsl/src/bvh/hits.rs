@@ -21,7 +21,7 @@ use crate::machine::{B, Branch, Cursor, F, KernelInfo, Loop, Machine, Scalar, Ty
 const BATCH: usize = 4;
 
 /// Iterator over the hits of a ray, in the order of `(t, inst_id, prim_id)`: see
-/// [`RayQuery::hits`](super::RayQuery::hits).
+/// [`RecordQuery::hits`](super::RecordQuery::hits).
 pub struct Hits<V: RayQueryOn> {
     m: Scalar,
     ray: Ray,

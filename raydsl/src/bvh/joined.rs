@@ -3,7 +3,7 @@
 use super::contract::is_before;
 use super::query::{inserted, is_before_by};
 use super::traverse::CostOn;
-use super::{Cost, RayQuery, RayQueryOn};
+use super::{Cost, RayQueryOn, RecordQuery};
 use crate::geometry::{Hit, HitOn, HitRecord, Ray, RayOn};
 use crate::kernel;
 use crate::machine::{
@@ -357,7 +357,7 @@ impl<S: RayQueryOn, T: RayQueryOn<Hit = S::Hit>> RayQueryOn for Joined<S, T> {
     }
 }
 
-impl<S: RayQueryOn, T: RayQueryOn<Hit = S::Hit>> RayQuery for Joined<S, T> {
+impl<S: RayQueryOn, T: RayQueryOn<Hit = S::Hit>> RecordQuery for Joined<S, T> {
     type Hit = S::Hit;
     type View<'a>
         = Self

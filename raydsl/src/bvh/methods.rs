@@ -1,7 +1,7 @@
 //! Methods of scenes in kernels: queries, and properties of a hit.
 
 use super::ray_query::primitive_at;
-use super::{Joined, PrimitiveScene, RayQuery, RayQueryOn, SceneView};
+use super::{Joined, PrimitiveScene, RayQueryOn, RecordQuery, SceneView};
 use crate::geometry::{HitOn, Primitive, RayOn};
 use crate::machine::{A3, B, Machine, Method, On, Slice, V3, Value, name};
 
@@ -134,7 +134,7 @@ queries! {
 queries! {
     [S: RayQueryOn, T: RayQueryOn<Hit = S::Hit>] Joined<S, T>, Joined<S, T>, |scenes| scenes
 }
-queries!(['s, S: RayQuery + ?Sized] &'s S, S::View<'s>, |scene| scene.view());
+queries!(['s, S: RecordQuery + ?Sized] &'s S, S::View<'s>, |scene| scene.view());
 
 /// Implements what scenes of primitives of one type have besides.
 macro_rules! primitives {

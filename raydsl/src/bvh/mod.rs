@@ -13,7 +13,7 @@
 // The files:
 //
 // * `view`: scenes as kernels see them: a slice, a tree, a list, instances, a foreign structure.
-// * `ray_query`: the trait of scenes: queries on the host, and in kernels that are generic over it.
+// * `ray_query`: the traits of scenes: queries on the host, and in kernels that are generic over it.
 // * `query_on`: the queries of a view on any machine; `joined`: two scenes as one; `carrier`: views
 //   that carry more data, as those of meshes; `tabled`: scenes with tables; `scene_ref`: scenes whose
 //   type is a parameter of the host.
@@ -81,7 +81,7 @@ pub(crate) use query::{RecordOn, any_where, closest_where, record_on};
 pub use query_on::RayQueryOn;
 #[doc(hidden)]
 pub use query_on::SceneArgument;
-pub use ray_query::{PrimitiveScene, RayQuery};
+pub use ray_query::{PrimitiveScene, RayQuery, RecordQuery};
 pub use refit::{DetachedBvh, RefitError};
 pub use scene_ref::SceneRef;
 pub use stats::Statistics;
@@ -104,7 +104,7 @@ use crate::machine::{Capture, Machine, Owner, Parameter, Resource};
 
 /// Bounding volume hierarchy over primitives that the application owns.
 ///
-/// [`RayQuery`] has its queries.
+/// [`RecordQuery`] has its queries.
 ///
 /// ```
 /// use raydsl::prelude::*;

@@ -8,7 +8,7 @@ use super::query::{
     any_where, closest_where, closest_with_cost_on, multi_by, multi_where, record_on,
 };
 use super::traverse::CostOn;
-use super::{Cost, Joined, Placed, RayQuery, RecordOn, SceneView, batch, traverse};
+use super::{Cost, Joined, Placed, RecordOn, RecordQuery, SceneView, batch, traverse};
 use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn};
 use crate::machine::{
     A3, B, Cursor, Leaves, Machine, On, Resource, Scalar, Schema, Slice, Type, U, Value, fill,
@@ -17,7 +17,7 @@ use crate::machine::{
 /// Queries of the view that kernels have of a scene: a [`SceneView`], or several joined. It is a
 /// host value on every machine.
 ///
-/// Each method is that of [`RayQuery`](super::RayQuery) with the same name, for one ray (or `N`) of
+/// Each method is that of [`RecordQuery`](super::RecordQuery) with the same name, for one ray (or `N`) of
 /// each lane.
 pub trait RayQueryOn: Copy + Send + Sync {
     /// The record of a hit.
@@ -255,7 +255,7 @@ impl<'a, P: Primitive> RayQueryOn for SceneView<'a, P> {
 /// A scene as an argument of a kernel that is generic over it.
 pub trait SceneArgument {
     /// The scene.
-    type Scene: RayQuery + ?Sized;
+    type Scene: RecordQuery + ?Sized;
 
     /// Returns the scene.
     fn scene(&self) -> &Self::Scene;
@@ -280,7 +280,7 @@ argument_itself!([P: Primitive] SceneView<'_, P>);
 argument_itself!([P: Primitive<Shared = ()>] Slice<'_, P>);
 argument_itself!([A: RayQueryOn, B: RayQueryOn<Hit = A::Hit>] Joined<A, B>);
 
-impl<S: RayQuery + ?Sized> SceneArgument for &S {
+impl<S: RecordQuery + ?Sized> SceneArgument for &S {
     type Scene = S;
 
     #[inline(always)]
@@ -290,7 +290,7 @@ impl<S: RayQuery + ?Sized> SceneArgument for &S {
 }
 
 /// A scene that kernels are generic over is a value of the host.
-impl<M: Machine, S: RayQuery + ?Sized> Value<M> for &S {
+impl<M: Machine, S: RecordQuery + ?Sized> Value<M> for &S {
     const SCHEMA: &'static Schema = &Schema::Host;
 
     fn zero(_: &M) -> Self {

@@ -7,12 +7,39 @@ use super::{Accelerated, Bvh, BvhList, Cost, Hits, Instances, RayQueryOn, SceneV
 use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn, transform_normal_back};
 use crate::machine::{A3, B, Coerce, Const, Data, Machine, On, Scalar, Slice, Type, U, V3, fill};
 
+/// A scene whose hits are [`Hit`]s: what a kernel that is generic over its scene asks for, by a
+/// parameter `scene: &S` with `S: RayQuery + ?Sized`. Its queries are those of [`RecordQuery`], which
+/// every scene has.
+///
+/// ```
+/// use raydsl::kernel;
+/// use raydsl::prelude::*;
+///
+/// /// Finds the distance to the surface, at most `far`.
+/// #[kernel]
+/// fn depth<S: RayQuery + ?Sized>(scene: &S, far: f32, ray: Ray) -> f32 {
+///     let hit = scene.closest_hit(ray);
+///     if hit.is_hit { min(hit.t, far) } else { far }
+/// }
+///
+/// let (v1, v2) = (vec3(4.0, 0.0, 1.0), vec3(0.0, 4.0, 1.0));
+/// let triangles = [Triangle { v0: Vec3::Z, v1, v2 }];
+/// let bvh = Bvh::build(&triangles)?;
+/// let seen = kernel!(|ray: Ray| depth(&bvh, 10.0, ray));
+/// assert_eq!(seen.call((Ray::new(vec3(1.0, 1.0, 0.0), Vec3::Z),)), 1.0);
+/// # Ok::<(), raydsl::bvh::BuildError>(())
+/// ```
+pub trait RayQuery: RecordQuery<Hit = Hit> {}
+
+impl<S: RecordQuery<Hit = Hit> + ?Sized> RayQuery for S {}
+
 /// Queries of a scene: a slice, a tree ([`Bvh`]), a list of trees ([`BvhList`]), trees placed many
-/// times ([`Instances`]), or an application-defined acceleration structure ([`Accelerated`]).
+/// times ([`Instances`]), or an application-defined acceleration structure ([`Accelerated`]). Its
+/// hits have a record of any type: [`Hit`], or what the primitives' `intersect` returns.
 ///
 /// A query of a slice tests every primitive, and is faster than a tree for a few dozen of them. The
 /// results do not depend on the scene's structure, and are the same as in kernels.
-pub trait RayQuery {
+pub trait RecordQuery: Sync {
     /// The record of a hit: [`Hit`], or what the primitives' `intersect` returns.
     type Hit: HitRecord;
 
@@ -37,7 +64,7 @@ pub trait RayQuery {
     /// Finds the least `(t, id)` hit of each of `N` rays, `ray(0)` to `ray(N - 1)`.
     ///
     /// One query of many rays is faster than many queries of one; the results are those of
-    /// [`RayQuery::closest_hit`]. Inside a kernel `ray` is a closure of the kernel.
+    /// [`RecordQuery::closest_hit`]. Inside a kernel `ray` is a closure of the kernel.
     fn closest_hit_each<const N: usize>(&self, ray: impl Fn(u32) -> Ray) -> [Self::Hit; N] {
         core::array::from_fn(|i| self.closest_hit(ray(i as u32)))
     }
@@ -67,7 +94,7 @@ pub trait RayQuery {
     }
 
     /// Finds the least `(t, id)` hit of each ray, in packets, without a camera or a kernel. Runs on
-    /// the calling thread; the results are those of [`RayQuery::closest_hit`].
+    /// the calling thread; the results are those of [`RecordQuery::closest_hit`].
     ///
     /// ```
     /// use raydsl::prelude::*;
@@ -86,7 +113,7 @@ pub trait RayQuery {
         self.view().closest_hits_of(rays)
     }
 
-    /// Finds whether each ray hits anything, in packets, as [`RayQuery::closest_hits`]. Hundreds of
+    /// Finds whether each ray hits anything, in packets, as [`RecordQuery::closest_hits`]. Hundreds of
     /// rays are traced fastest if rays that begin near each other are consecutive.
     fn any_hits(&self, rays: &[Ray]) -> Vec<bool> {
         self.view().any_hits_of(rays)
@@ -178,7 +205,7 @@ pub trait RayQuery {
     /// of each.
     ///
     /// They are found on demand, four at a time. So a loop that stops early costs little more than
-    /// [`closest_hit`](RayQuery::closest_hit), one over all hits a traversal for four of them. In
+    /// [`closest_hit`](RecordQuery::closest_hit), one over all hits a traversal for four of them. In
     /// kernels `for hit in scene.hits(ray)` is the same.
     ///
     /// ```
@@ -221,7 +248,7 @@ pub trait RayQuery {
     }
 
     /// Returns the transform from the space of the scene to that of the object that was hit; the
-    /// identity without instances. [`RayQuery::local_ray`] transforms a ray to the same bits as the
+    /// identity without instances. [`RecordQuery::local_ray`] transforms a ray to the same bits as the
     /// traversal does.
     fn to_object(&self, hit: Hit) -> Affine3 {
         let m = &Scalar::default();
@@ -467,7 +494,7 @@ fn rays<M: Machine, R: Coerce<M, RayOn<M>>, const N: usize>(
 }
 
 /// A scene of primitives of one type, which can be read by their hits.
-pub trait PrimitiveScene: RayQuery<Hit = <Self::Primitive as Primitive>::Hit> {
+pub trait PrimitiveScene: RecordQuery<Hit = <Self::Primitive as Primitive>::Hit> {
     /// The type of primitives.
     type Primitive: Primitive;
 
@@ -510,7 +537,7 @@ pub(super) fn primitive_at<M: Machine, P: Primitive>(
 macro_rules! scenes {
     ($([$($g:tt)*] $t:ty, |$scene:ident| $view:expr;)+) => {
         $(
-            impl<$($g)*> RayQuery for $t {
+            impl<$($g)*> RecordQuery for $t {
                 type Hit = P::Hit;
                 type View<'v>
                     = SceneView<'v, P>
@@ -546,7 +573,7 @@ scenes! {
     [P: Primitive] BvhList<'_, P>, |list| BvhList::view(list);
 }
 
-impl<S: RayQuery + ?Sized> RayQuery for &S {
+impl<S: RecordQuery + ?Sized> RecordQuery for &S {
     type Hit = S::Hit;
     type View<'v>
         = S::View<'v>

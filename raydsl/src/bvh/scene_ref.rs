@@ -1,6 +1,6 @@
 //! A scene of any type, as kernels of generic host functions capture it.
 
-use super::{RayQuery, RayQueryOn};
+use super::{RayQueryOn, RecordQuery};
 use crate::machine::{Capture, Machine, Resource};
 
 /// A scene whose type is a parameter of the function around a kernel. `kernel!` captures this, where
@@ -15,7 +15,8 @@ use crate::machine::{Capture, Machine, Resource};
 ///     let scene = SceneRef::new(scene);
 ///     let kernel = kernel!(|p: Vec3| !scene.any_hit(Ray::new(p, Vec3::Z)));
 ///     let mut open = vec![false; points.len()];
-///     kernel.run(Variant::widest(), points, &mut open);
+///     let inputs: Vec<(Vec3,)> = points.iter().map(|p| (*p,)).collect();
+///     kernel.run(Variant::widest(), &inputs, &mut open);
 ///     open
 /// }
 ///
@@ -39,7 +40,7 @@ impl<S: ?Sized> Clone for SceneRef<'_, S> {
 
 impl<S: ?Sized> Copy for SceneRef<'_, S> {}
 
-impl<'a, S: RayQuery + ?Sized> SceneRef<'a, S> {
+impl<'a, S: RecordQuery + ?Sized> SceneRef<'a, S> {
     /// Refers to a scene.
     pub fn new(scene: &'a S) -> Self {
         Self { scene }
@@ -51,7 +52,7 @@ impl<'a, S: RayQuery + ?Sized> SceneRef<'a, S> {
     }
 }
 
-impl<S: RayQuery + ?Sized> RayQuery for SceneRef<'_, S> {
+impl<S: RecordQuery + ?Sized> RecordQuery for SceneRef<'_, S> {
     type Hit = S::Hit;
     type View<'v>
         = S::View<'v>
@@ -65,20 +66,20 @@ impl<S: RayQuery + ?Sized> RayQuery for SceneRef<'_, S> {
 }
 
 #[diagnostic::do_not_recommend]
-impl<M: Machine, S: RayQuery + ?Sized> Capture<M> for SceneRef<'_, S> {
+impl<M: Machine, S: RecordQuery + ?Sized> Capture<M> for SceneRef<'_, S> {
     type On<'c>
-        = S::View<'c>
+        = &'c S
     where
         Self: 'c;
 
     #[inline(always)]
-    fn capture<'c>(&'c self, _: &M, name: &'static str) -> S::View<'c> {
-        self.view().named(name)
+    fn capture<'c>(&'c self, _: &M, _: &'static str) -> &'c S {
+        self.scene
     }
 
     #[inline(always)]
-    fn constant<'c>(&'c self, _: &M) -> S::View<'c> {
-        self.view()
+    fn constant<'c>(&'c self, _: &M) -> &'c S {
+        self.scene
     }
 
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {

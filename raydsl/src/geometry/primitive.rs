@@ -37,7 +37,7 @@ pub trait Primitive: Type {
     const SLACK: f32 = 1.0 / 65536.0;
 
     /// Maximum number of crossings of a ray: 1 for flat shapes, 2 for convex ones, 4 for a torus.
-    /// [`hits`](crate::bvh::RayQuery::hits) returns every crossing, up to this many: it calls
+    /// [`hits`](crate::bvh::RecordQuery::hits) returns every crossing, up to this many: it calls
     /// `intersect` again for the ray from behind each crossing on. A shape with several crossings
     /// must heed `t_min`, and find each crossing at the same distance whatever `t_min` is. In an
     /// `impl` under `#[primitive]` it is a constant of that name.

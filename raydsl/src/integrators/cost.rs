@@ -2,7 +2,7 @@
 
 use glam::{Vec3, vec3};
 
-use crate::bvh::{Cost, RayQuery};
+use crate::bvh::{Cost, RecordQuery};
 use crate::geometry::Ray;
 use crate::kernel;
 use crate::machine::functions::vec3;
@@ -13,7 +13,7 @@ use crate::texture::srgb_to_linear;
 /// Counts the nodes and primitives that are tested to find the closest hit of `ray`. In a packet,
 /// each ray is counted as if it were traced by itself.
 #[kernel]
-pub fn bvh_cost<S: RayQuery + ?Sized>(scene: &S, ray: Ray) -> Cost {
+pub fn bvh_cost<S: RecordQuery + ?Sized>(scene: &S, ray: Ray) -> Cost {
     let (_, cost) = scene.closest_hit_with_cost(ray);
     cost
 }
@@ -21,7 +21,7 @@ pub fn bvh_cost<S: RayQuery + ?Sized>(scene: &S, ray: Ray) -> Cost {
 /// Returns the traversal cost of `ray` as a colour: the [`heat_color()`] of its tests of nodes and
 /// primitives, relative to `most`, a number above 0, which is the hot end of the map.
 #[kernel]
-pub fn bvh_cost_color<S: RayQuery + ?Sized>(scene: &S, most: f32, ray: Ray) -> Vec3 {
+pub fn bvh_cost_color<S: RecordQuery + ?Sized>(scene: &S, most: f32, ray: Ray) -> Vec3 {
     let cost = bvh_cost(scene, ray);
     heat_color((cost.nodes + cost.primitives) as f32 / most)
 }

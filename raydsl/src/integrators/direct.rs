@@ -5,7 +5,7 @@ use core::f32::consts::FRAC_1_PI;
 use glam::{Vec3, Vec4, vec4};
 
 use super::{DirectionalLight, Light, PointLight};
-use crate::bvh::RayQuery;
+use crate::bvh::RecordQuery;
 use crate::geometry::{Ray, SurfacePoint};
 use crate::kernel;
 use crate::machine::Type;
@@ -17,7 +17,7 @@ use crate::shading::{Scene, facing};
 ///
 /// Shadow rays are traced only where `shadows` is true.
 #[kernel]
-pub fn irradiance<S: RayQuery + ?Sized, L: Light + Type>(
+pub fn irradiance<S: RecordQuery + ?Sized, L: Light + Type>(
     scene: &S,
     lights: &[L],
     #[host] shadows: bool,

@@ -2,7 +2,7 @@
 
 use glam::{Vec4, vec4};
 
-use crate::bvh::RayQuery;
+use crate::bvh::RecordQuery;
 use crate::geometry::{Ray, SurfacePoint};
 use crate::kernel;
 use crate::machine::functions::vec4;
@@ -14,7 +14,7 @@ use crate::shading::{Scene, facing};
 /// direction chosen by the next two dimensions of the sampler. With a radius that is NaN, or not
 /// above 0, every point is unoccluded.
 #[kernel]
-pub fn is_open<S: RayQuery + ?Sized>(
+pub fn is_open<S: RecordQuery + ?Sized>(
     scene: &S,
     radius: f32,
     #[host] method: SampleMethod,

@@ -4,16 +4,18 @@ use core::fmt;
 
 use glam::{Affine3, Vec2, Vec3, Vec4, vec3, vec4};
 
+use super::attributes::{
+    color_between, direction_or, smooth_normal, tangent_between, tangent_of_uvs, uv_between,
+};
 use super::scene::{Asked, in_scene};
 use super::{Scene, ShadingPointOn};
 use crate::bvh::carrier::carrier;
-use crate::bvh::{PrimitiveScene, RayQuery, RayQueryOn, SceneView};
+use crate::bvh::{PrimitiveScene, RayQueryOn, RecordQuery, SceneView};
 use crate::geometry::{Hit, HitOn, IndexedTriangle, RayOn, SurfacePointOn, transform_normal_back};
 use crate::machine::functions::{vec3, vec4};
-use crate::machine::generic::{inverse, max};
+use crate::machine::generic::inverse;
 use crate::machine::{
-    Capture, Data, Leaves, Machine, On, Parameter, Resource, Schema, Slice, U, Value,
-    X2,
+    Capture, Data, Leaves, Machine, On, Parameter, Resource, Schema, Slice, U, Value, X2,
 };
 use crate::sampling::Frame;
 use crate::{Type, kernel};
@@ -129,65 +131,6 @@ pub struct MeshView<'a> {
     materials: Slice<'a, u32>,
 }
 
-/// Returns a unit vector, or `other` where `v` has no direction.
-#[kernel]
-fn direction_or(v: Vec3, other: Vec3) -> Vec3 {
-    // Squares of the components could leave the range of `f32`.
-    let size = max(max(v.x.abs(), v.y.abs()), v.z.abs());
-    let scaled = v / size;
-    if size > 0.0 && size < f32::INFINITY { scaled / scaled.length() } else { other }
-}
-
-/// Returns the normal between those of a triangle's vertices, on the side of the geometric one.
-#[kernel]
-fn smooth_normal(triangle: IndexedTriangle, normals: &[Vec3], geometric: Vec3, hit: Hit) -> Vec3 {
-    let [a, b, c] = triangle.vertices;
-    let rest = 1.0 - hit.u - hit.v;
-    let sum =
-        normals[a as usize] * rest + normals[b as usize] * hit.u + normals[c as usize] * hit.v;
-    let smooth = direction_or(sum, geometric);
-    if smooth.dot(geometric) < 0.0 { -smooth } else { smooth }
-}
-
-/// Returns the surface coordinates between those of a triangle's vertices.
-#[kernel]
-fn uv_between(triangle: IndexedTriangle, uvs: &[Vec2], hit: Hit) -> Vec2 {
-    let [a, b, c] = triangle.vertices;
-    let rest = 1.0 - hit.u - hit.v;
-    uvs[a as usize] * rest + uvs[b as usize] * hit.u + uvs[c as usize] * hit.v
-}
-
-/// Returns the tangent between those of a triangle's vertices.
-#[kernel]
-fn tangent_between(triangle: IndexedTriangle, tangents: &[Vec4], hit: Hit) -> Vec4 {
-    let [a, b, c] = triangle.vertices;
-    let rest = 1.0 - hit.u - hit.v;
-    // The sign is the same at all vertices of a triangle.
-    let first = tangents[a as usize];
-    let sum = first * rest + tangents[b as usize] * hit.u + tangents[c as usize] * hit.v;
-    vec4(sum.x, sum.y, sum.z, first.w)
-}
-
-/// Returns the direction in which the first surface coordinate grows.
-#[kernel]
-fn tangent_of_uvs(triangle: IndexedTriangle, vertices: &[Vec3], uvs: &[Vec2]) -> Vec4 {
-    let [a, b, c] = triangle.vertices;
-    let (u1, u2) = (uvs[b as usize] - uvs[a as usize], uvs[c as usize] - uvs[a as usize]);
-    let e1 = vertices[b as usize] - vertices[a as usize];
-    let e2 = vertices[c as usize] - vertices[a as usize];
-    let sign = if u1.x * u2.y - u1.y * u2.x < 0.0 { -1.0 } else { 1.0 };
-    let along = (e1 * u2.y - e2 * u1.y) * sign;
-    vec4(along.x, along.y, along.z, sign)
-}
-
-/// Returns the colour between those of a triangle's vertices.
-#[kernel]
-fn color_between(triangle: IndexedTriangle, colors: &[Vec3], hit: Hit) -> Vec3 {
-    let [a, b, c] = triangle.vertices;
-    let rest = 1.0 - hit.u - hit.v;
-    colors[a as usize] * rest + colors[b as usize] * hit.u + colors[c as usize] * hit.v
-}
-
 /// Transforms a tangent of an instance to the space of the scene.
 #[kernel]
 fn placed_tangent(to_object: Affine3, tangent: Vec4) -> Vec4 {
@@ -289,8 +232,7 @@ impl MeshView<'_> {
         hit: HitOn<M>,
     ) -> ShadingPointOn<M> {
         let scene = self.triangles;
-        let to_object =
-            scene.has_instances().then(|| RayQueryOn::to_object(scene, m, hit.inst_id));
+        let to_object = scene.has_instances().then(|| RayQueryOn::to_object(scene, m, hit.inst_id));
         let shading_normal = if self.normals.is_empty() {
             point.normal
         } else {
@@ -340,7 +282,7 @@ impl Scene for MeshView<'_> {
     }
 }
 
-impl<S: PrimitiveScene<Primitive = IndexedTriangle> + ?Sized> RayQuery for Mesh<'_, S> {
+impl<S: PrimitiveScene<Primitive = IndexedTriangle> + ?Sized> RecordQuery for Mesh<'_, S> {
     type Hit = Hit;
     type View<'v>
         = MeshView<'v>

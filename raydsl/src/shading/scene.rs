@@ -5,12 +5,12 @@ use glam::{Vec2, Vec3, Vec4, vec4};
 use super::Surface;
 use super::placed::placed_point;
 use crate::bvh::{
-    Accelerated, Bvh, BvhList, Instances, Joined, PrimitiveScene, RayQuery, RayQueryOn, SceneRef,
-    SceneView, Tabled,
+    Accelerated, Bvh, BvhList, Instances, Joined, PrimitiveScene, RayQuery, RayQueryOn,
+    RecordQuery, SceneRef, SceneView, Tabled,
 };
 use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn, SurfacePoint, SurfacePointOn};
 use crate::machine::functions::vec4;
-use crate::machine::{Coerce, Machine, Method, Scalar, Slice, TableView, Value, name};
+use crate::machine::{Coerce, Machine, Method, Scalar, Slice, TableView, U, Value, name};
 
 use crate::sampling::Frame;
 use crate::{Type, kernel};
@@ -84,7 +84,7 @@ fn any_tangent(normal: Vec3) -> Vec4 {
     message = "`{Self}` is not a scene that can be shaded",
     note = "its primitives need `#[kernel] impl Surface`, and a struct of scenes `#[derive(Scene)]`"
 )]
-pub trait Scene: RayQuery<Hit = Hit> {
+pub trait Scene: RayQuery {
     /// Returns the point that `ray` hits, with its geometric normal, in the space of the scene.
     fn surface(&self, ray: Ray, hit: Hit) -> SurfacePoint {
         let m = &Scalar::default();
@@ -251,6 +251,12 @@ impl<S: Scene + ?Sized> Scene for &S {
     }
 }
 
+/// Returns a hit as the part of a scene sees it.
+#[inline(always)]
+fn in_part<M: Machine>(hit: HitOn<M>, inst_id: U<M>) -> HitOn<M> {
+    HitOn { inst_id, ..hit }
+}
+
 impl<S, T> Scene for Joined<S, T>
 where
     S: RayQueryOn<Hit = Hit> + Scene,
@@ -267,9 +273,9 @@ where
             m,
             hit.inst_id,
             #[inline(always)]
-            |scene, inst_id| S::asked_on::<M, A>(m, &scene, ray, HitOn { inst_id, ..hit }),
+            |scene, inst_id| S::asked_on::<M, A>(m, &scene, ray, in_part(hit, inst_id)),
             #[inline(always)]
-            |scene, inst_id| T::asked_on::<M, A>(m, &scene, ray, HitOn { inst_id, ..hit }),
+            |scene, inst_id| T::asked_on::<M, A>(m, &scene, ray, in_part(hit, inst_id)),
         )
     }
 }

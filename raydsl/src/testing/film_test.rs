@@ -19,7 +19,7 @@ const SAMPLES: usize = 1024;
 pub type MeansOf<'a> = Box<dyn Fn() -> Result<MeansAgreement, String> + 'a>;
 
 /// The inputs on which variants are compared: a slice, a `Vec` or an array of the kernel's
-/// parameters, or a [`FilmTest`].
+/// parameters, tuples, or of the only parameter of one that has no other; or a [`FilmTest`].
 pub trait Inputs<A: Type, R: Type> {
     /// Returns the parameters.
     fn inputs(&self) -> Cow<'_, [A]>;
@@ -31,22 +31,28 @@ pub trait Inputs<A: Type, R: Type> {
     }
 }
 
-impl<A: Type, R: Type> Inputs<A, R> for [A] {
-    fn inputs(&self) -> Cow<'_, [A]> {
-        Cow::Borrowed(self)
-    }
+macro_rules! lists {
+    ($([$($g:tt)*] $a:ident, $t:ty;)+) => {
+        $(
+            impl<$a: Type, R: Type, $($g)*> Inputs<$a, R> for $t {
+                fn inputs(&self) -> Cow<'_, [$a]> {
+                    Cow::Borrowed(self)
+                }
+            }
+
+            impl<$a: Type, R: Type, $($g)*> Inputs<($a,), R> for $t {
+                fn inputs(&self) -> Cow<'_, [($a,)]> {
+                    self.iter().map(|a| (*a,)).collect()
+                }
+            }
+        )+
+    };
 }
 
-impl<A: Type, R: Type> Inputs<A, R> for Vec<A> {
-    fn inputs(&self) -> Cow<'_, [A]> {
-        Cow::Borrowed(self)
-    }
-}
-
-impl<A: Type, R: Type, const N: usize> Inputs<A, R> for [A; N] {
-    fn inputs(&self) -> Cow<'_, [A]> {
-        Cow::Borrowed(self)
-    }
+lists! {
+    [] A, [A];
+    [] A, Vec<A>;
+    [const N: usize] A, [A; N];
 }
 
 /// The samples of a film, on which [`assert_variants_agree!`](crate::assert_variants_agree)

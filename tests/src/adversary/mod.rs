@@ -192,7 +192,7 @@ fn assert_as_slice<P: Subject>(bvh: &Bvh<'_, P>, prims: &[P], rays: &[Ray]) -> u
 }
 
 /// Packets find what single rays do.
-fn assert_packets<Q: RayQuery<Hit = Hit> + ?Sized>(scene: &Q, rays: &[Ray])
+fn assert_packets<Q: RecordQuery<Hit = Hit> + ?Sized>(scene: &Q, rays: &[Ray])
 where
     for<'a> Queried<'a, Q>: Ask,
 {

@@ -233,6 +233,13 @@ pub fn half(n: u32) -> Option<u32> {
     if n % 2 == 1 { None } else { Some(n / 2) }
 }
 
+/// The quarter of a number, less the half of another.
+#[kernel]
+pub fn quarter(n: u32, less: Option<u32>) -> Option<u32> {
+    let quarter = half(half(n)?)?;
+    Some(quarter.wrapping_sub(half(less?)?))
+}
+
 /// A number halved while it is even, at most so often; how often, where there is none.
 #[kernel]
 pub fn halved(first: Option<u32>, most: u32) -> Option<u32> {
@@ -540,9 +547,7 @@ macro_rules! scene_entry {
                 let scene = on(m, first(&WALLS, $len), "scene");
                 let world = raydsl::machine::Capture::<M>::capture(&WORLD, m, "world");
                 let scale = raydsl::machine::Capture::<M>::capture(&SCALE, m, "scale");
-                entry::on(
-                    m, x, v, n, s, floats, words, smalls, shapes, scene, world, scale, $count,
-                )
+                entry::on(m, x, v, n, s, floats, words, smalls, shapes, scene, world, scale, $count)
             }
         }
     };

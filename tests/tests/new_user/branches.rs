@@ -62,7 +62,12 @@ fn balls_reach_leaves() {
     ];
     let kernel = kernel!(|p: Vec3, radius: f32| reached(&nodes, p, radius).unwrap_or(-1.0));
     let inputs: Vec<(Vec3, f32)> = (0..300)
-        .map(|i| (vec3((i % 7) as f32 - 3.1, (i % 5) as f32 * 0.31 - 0.2, (i % 3) as f32 - 1.2), (i % 4) as f32 * 0.3))
+        .map(|i| {
+            (
+                vec3((i % 7) as f32 - 3.1, (i % 5) as f32 * 0.31 - 0.2, (i % 3) as f32 - 1.2),
+                (i % 4) as f32 * 0.3,
+            )
+        })
         .collect();
     assert_variants_agree!(&kernel, &inputs);
     assert_eq!(kernel.call((Vec3::ZERO, 100.0)), 15.0);

@@ -40,7 +40,11 @@ fn ground(grid: Grid, heights: &[f32], ray: Ray) -> Option<f32> {
             let down = if d.z < 0.0 { (height - ray.origin.z) / d.z } else { t };
             return Some(max(t, down));
         }
-        if tx < ty { x += step_x } else { y += step_y }
+        if tx < ty {
+            x += step_x
+        } else {
+            y += step_y
+        }
         t = next;
     }
     None

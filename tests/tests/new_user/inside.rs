@@ -33,11 +33,19 @@ fn points_inside_know_their_depth() {
             None => -1.0,
         }
     });
-    let points: Vec<Vec3> =
-        (0..300).map(|i| vec3((i % 17) as f32 * 0.3 - 2.5, (i % 13) as f32 * 0.4 - 2.5, (i % 7) as f32 * 0.5 + 3.5)).collect();
+    let points: Vec<Vec3> = (0..300)
+        .map(|i| {
+            vec3(
+                (i % 17) as f32 * 0.3 - 2.5,
+                (i % 13) as f32 * 0.4 - 2.5,
+                (i % 7) as f32 * 0.5 + 3.5,
+            )
+        })
+        .collect();
     assert_variants_agree!(&kernel, &points);
     let inside = points.iter().filter(|p| kernel.call((**p,)) >= 0.0).count();
-    let brute = points.iter().filter(|p| prims.iter().any(|b| p.distance(b.center) < b.radius)).count();
+    let brute =
+        points.iter().filter(|p| prims.iter().any(|b| p.distance(b.center) < b.radius)).count();
     assert!(brute > 10);
     // Where balls overlap, a point in two of them has an even number of crossings.
     assert!(inside <= brute && inside * 2 > brute);

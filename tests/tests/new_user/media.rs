@@ -49,8 +49,11 @@ fn transmittance(medium: Medium, from: Vec3, to: Vec3) -> f32 {
 
 #[test]
 fn light_passes_media() {
-    let media =
-        [Medium::Clear, Medium::Even { extinction: 0.5 }, Medium::Layered { ground: 1.0, height: 2.0 }];
+    let media = [
+        Medium::Clear,
+        Medium::Even { extinction: 0.5 },
+        Medium::Layered { ground: 1.0, height: 2.0 },
+    ];
     let media = &media[..];
     let kernel = kernel!(|which: u32, from: Vec3, to: Vec3| {
         transmittance(media[which as usize], from, to)

@@ -113,14 +113,14 @@ fn a_small_ray_tracer() {
     let sun = vec3(0.4, 0.8, -0.4).normalize();
     let kernel = kernel!(|ray: Ray| seen(&world, &materials, sun, ray).extend(1.0));
     let (width, height) = (96, 64);
-    let camera = Pinhole::look_at(vec3(0.0, 2.0, -6.0), vec3(0.0, 0.8, 0.0), Vec3::Y, 0.7, 1.5);
-    let mut image = Image::<Vec4>::new(width, height);
+    let camera = Pinhole::new(vec3(0.0, 2.0, -6.0), vec3(0.0, 0.8, 0.0), Vec3::Y, 0.7);
+    let mut image = Image::filled(width, height, Vec4::ZERO);
     TiledScheduler::new().frame(&camera, &kernel, &mut image);
-    let mut simple = Image::<Vec4>::new(width, height);
+    let mut simple = Image::filled(width, height, Vec4::ZERO);
     SimpleScheduler::new().frame(&camera, &kernel, &mut simple);
     assert_eq!(image.pixels(), simple.pixels());
-    let mean = image.pixels().iter().map(|p| p.truncate().length()).sum::<f32>()
-        / (width * height) as f32;
+    let mean =
+        image.pixels().iter().map(|p| p.truncate().length()).sum::<f32>() / (width * height) as f32;
     assert!(mean > 0.3 && mean < 1.7, "{mean}");
     assert_variants_agree!(&kernel, &FilmTest::new(&camera, 32, 24));
 }

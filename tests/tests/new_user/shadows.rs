@@ -28,11 +28,18 @@ fn arriving(lamp: Lamp, p: SurfacePoint) -> Option<Arriving> {
             if cosine <= 0.0 {
                 return None;
             }
-            Some(Arriving { light: power * (cosine / way.length_squared()), ray: p.ray_to(position) })
+            Some(Arriving {
+                light: power * (cosine / way.length_squared()),
+                ray: p.ray_to(position),
+            })
         }
         Lamp::Sun(towards, light) => {
             let cosine = towards.dot(p.normal);
-            if cosine > 0.0 { Some(Arriving { light: light * cosine, ray: p.ray(towards) }) } else { None }
+            if cosine > 0.0 {
+                Some(Arriving { light: light * cosine, ray: p.ray(towards) })
+            } else {
+                None
+            }
         }
         Lamp::Spot { position, axis, cosine, power } => {
             let way = position - p.position;
@@ -41,7 +48,10 @@ fn arriving(lamp: Lamp, p: SurfacePoint) -> Option<Arriving> {
             if !inside || facing <= 0.0 {
                 return None;
             }
-            Some(Arriving { light: power * (facing / way.length_squared()), ray: p.ray_to(position) })
+            Some(Arriving {
+                light: power * (facing / way.length_squared()),
+                ray: p.ray_to(position),
+            })
         }
     }
 }
@@ -53,7 +63,9 @@ fn lit<S: RayQuery + ?Sized>(scene: &S, lamps: &[Lamp], weights: &[f32], p: Surf
         if *weight == 0.0 {
             continue;
         }
-        if let Some(a) = arriving(*lamp, p) && !scene.any_hit(a.ray) {
+        if let Some(a) = arriving(*lamp, p)
+            && !scene.any_hit(a.ray)
+        {
             sum += a.light * *weight;
         }
     }
@@ -67,7 +79,12 @@ fn lamps_light_balls() {
     let lamps = vec![
         Lamp::Point { position: vec3(0.0, 3.0, 0.0), power: Vec3::splat(5.0) },
         Lamp::Sun(vec3(0.0, 0.6, -0.8), vec3(1.0, 0.9, 0.7)),
-        Lamp::Spot { position: vec3(2.0, 2.0, 0.0), axis: vec3(0.0, 0.0, 1.0), cosine: 0.8, power: Vec3::Y },
+        Lamp::Spot {
+            position: vec3(2.0, 2.0, 0.0),
+            axis: vec3(0.0, 0.0, 1.0),
+            cosine: 0.8,
+            power: Vec3::Y,
+        },
     ];
     let weights = vec![1.0, 0.5, 2.0];
     let kernel = kernel!(|ray: Ray| {

@@ -61,7 +61,7 @@ impl BuildQuality {
 /// Traversal order of a wide tree for the rays of one query.
 ///
 /// A query has the rays of a packet, of a gang, or of
-/// [`RayQuery::closest_hits`](crate::bvh::RayQuery::closest_hits) and `any_hits`. Hits are the same
+/// [`RecordQuery::closest_hits`](crate::bvh::RecordQuery::closest_hits) and `any_hits`. Hits are the same
 /// with each traversal. It has no effect on single rays of the host, binary trees, lists with such
 /// a tree, instances, devices, and queries with a condition or for several hits.
 ///

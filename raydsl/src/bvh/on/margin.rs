@@ -443,7 +443,7 @@ mod tests {
     use super::*;
     use crate::kernel;
     use crate::machine::{Capture, Outcomes, Rounding};
-    use crate::prelude::{Bvh, Hit, RayQuery, primitive, vec3};
+    use crate::prelude::{Bvh, Hit, RecordQuery, primitive, vec3};
 
     #[primitive(sphere(center, radius))]
     #[derive(Debug)]

@@ -14,7 +14,9 @@ use crate::bvh::build::{Primitives, build_watched};
 use crate::bvh::contract::Padding;
 use crate::bvh::stats::depth;
 use crate::bvh::validate::check;
-use crate::bvh::{BuildConfig, BuildQuality, Bvh, Node, RayQuery, Settings, Traversal, validate};
+use crate::bvh::{
+    BuildConfig, BuildQuality, Bvh, Node, RecordQuery, Settings, Traversal, validate,
+};
 use crate::geometry::{Aabb, Hit, Ray, Triangle};
 use crate::machine::Simd8;
 

@@ -204,6 +204,7 @@ pub(super) const MAYBE: &[&str] = &[
     "(if {b} { Some({u}) } else { None })",
     "half({u})",
     "halved({l}, {u})",
+    "quarter({u}, {l})",
     "!{k}.word()",
     "(match {l} { Some(n) if n > 3 => Some(n - 1), Some(_) => None, None => Some(2) })",
 ];

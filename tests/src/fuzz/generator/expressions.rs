@@ -233,7 +233,11 @@ impl Generator<'_> {
                 Mode::Value | Mode::Mutable => pieces.push(Piece::Expr(self.expr(ty, depth - 1))),
             }
         }
-        pieces.push(text(if f.sliced { ", floats, words, smalls, shapes, scene, world)" } else { ")" }));
+        pieces.push(text(if f.sliced {
+            ", floats, words, smalls, shapes, scene, world)"
+        } else {
+            ")"
+        }));
         pieces
     }
 
