@@ -258,3 +258,28 @@ fn closures_within() {
     });
     assert_variants_agree!(&kernel, &inputs);
 }
+
+#[kernel]
+fn of_pair((x, n): (f32, u32), k: (i32, i32)) -> f32 {
+    x * n as f32 + (k.0 - k.1) as f32
+}
+
+/// Tuples with integers whose types the function, or the result, says.
+#[kernel]
+fn pairs(x: f32, n: u32, k: i32) -> (i32, f32) {
+    let mut best = (-1, 0.0);
+    for i in 0..4 {
+        let y = of_pair((x, 2), (3, k)) * i as f32;
+        if y > best.1 {
+            best = (i, y);
+        }
+    }
+    let other = (1.5, 7);
+    best.1 += of_pair(other, (k, 1)) + of_pair((x, n), (1, 2));
+    best
+}
+
+#[test]
+fn tuples_of_integers_take_their_types_from_what_they_are_for() {
+    assert_variants_agree!(pairs, &inputs());
+}

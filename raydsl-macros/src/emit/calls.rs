@@ -93,11 +93,14 @@ impl Emitter<'_> {
         all
     }
 
-    /// Emits an argument; the function says which integers a tuple or an array has.
+    /// Emits an argument; the function says which integers a tuple has.
     fn argument(&mut self, arg: &Expr) -> TokenStream {
-        let is_list = matches!(arg.kind, Kind::Tuple(_) | Kind::Array(_) | Kind::Repeat { .. });
-        let bare = if is_list { self.with_bare(arg) } else { None };
-        bare.unwrap_or_else(|| self.value(arg))
+        let has_bare = match &arg.kind {
+            Kind::Tuple(items) => items.iter().any(Expr::has_untyped_integer),
+            Kind::Name(name) => self.bare_elements(name).is_some(),
+            _ => false,
+        };
+        if has_bare { self.coerced(arg) } else { self.value(arg) }
     }
 
     /// Emits an argument that no lane reads before the call.

@@ -129,6 +129,12 @@ impl Emitter<'_> {
         local.alias |= is_alias && !l.mutable;
         local.literal = !l.mutable && l.ty.is_none() && init.is_untyped_integer();
         local.bare = l.is_bare();
+        local.bare_elements = match &init.kind {
+            Kind::Tuple(items) if l.ty.is_none() => {
+                items.iter().any(Expr::has_untyped_integer).then_some(items.len())
+            }
+            _ => None,
+        };
     }
 
     /// Evaluates `e` and sends its value to `dest`.

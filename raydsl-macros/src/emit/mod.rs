@@ -56,6 +56,8 @@ struct Local {
     literal: bool,
     /// Whether it is a variable that began as one: its type is inferred.
     bare: bool,
+    /// The number of its elements, if it began as a tuple with integers without a suffix.
+    bare_elements: Option<usize>,
     /// The type that it gives, if it is a parameter that is a closure.
     gives: Option<TokenStream>,
 }
@@ -405,6 +407,7 @@ impl<'a> Emitter<'a> {
             owner,
             literal: false,
             bare: false,
+            bare_elements: None,
             gives: None,
         };
         if let Some(scope) = self.scopes.last_mut() {

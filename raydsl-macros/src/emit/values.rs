@@ -47,11 +47,25 @@ impl Emitter<'_> {
                 quote!([#value; #len])
             }
             _ if e.is_structured() => self.in_slot(e, "value", &quote!(_), SlotType::Written),
+            Kind::Name(name) if self.bare_elements(name).is_some() => {
+                let value = self.value(e);
+                let (whole, count) = (own("whole"), self.bare_elements(name).unwrap_or_default());
+                let items = (0..count).map(|i| {
+                    let i = syn::Index::from(i);
+                    quote!(#p::Coerce::coerce(#whole.#i, #m))
+                });
+                quote!({ let #whole = #value; (#(#items,)*) })
+            }
             _ => {
                 let value = self.value(e);
                 quote!(#p::Coerce::coerce(#value, #m))
             }
         }
+    }
+
+    /// Returns the number of elements of a tuple with integers whose types are inferred.
+    pub(super) fn bare_elements(&self, name: &Ident) -> Option<usize> {
+        self.find(name)?.bare_elements
     }
 
     /// Emits the value of a control structure, through a variable.

@@ -55,7 +55,8 @@ pub(super) fn variant_of(path: &syn::Path) -> Option<Variant> {
         (&segments.next()?.ident, segments.next())
     };
     let name = last.clone();
-    if last == "Some" || last == "None" {
+    let of_option = owner.is_none_or(|owner| owner.ident == "Option");
+    if of_option && (last == "Some" || last == "None") {
         let p = private();
         return Some(Variant { ty: quote!(#p::Options), name });
     }

@@ -45,7 +45,12 @@ fn full_cells_are_found() {
         None => vec2(-1.0, 0.0),
     });
     let rays: Vec<Ray> = (0..256)
-        .map(|i| Ray::new(vec3((i % 16) as f32 * 0.5 + 0.25, (i / 16) as f32 * 0.5 + 0.25, -1.0), Vec3::Z))
+        .map(|i| {
+            Ray::new(
+                vec3((i % 16) as f32 * 0.5 + 0.25, (i / 16) as f32 * 0.5 + 0.25, -1.0),
+                Vec3::Z,
+            )
+        })
         .collect();
     assert_variants_agree!(&kernel, &rays);
     let found = rays.iter().filter(|r| kernel.call((**r,)).x >= 0.0).count();

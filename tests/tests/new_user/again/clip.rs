@@ -25,7 +25,11 @@ fn clipped(halves: &[Half], first: u32, count: u32, ray: Ray) -> Option<(f32, f3
             continue;
         }
         let t = height / speed;
-        if speed < 0.0 { enter = max(enter, t) } else { leave = min(leave, t) }
+        if speed < 0.0 {
+            enter = max(enter, t)
+        } else {
+            leave = min(leave, t)
+        }
         if enter > leave {
             return None;
         }
@@ -37,7 +41,9 @@ fn clipped(halves: &[Half], first: u32, count: u32, ray: Ray) -> Option<(f32, f3
 fn longest(halves: &[Half], ray: Ray) -> (i32, f32) {
     let mut best = (-1, 0.0);
     for cell in 0..2 {
-        if let Some((enter, leave)) = clipped(halves, cell as u32 * 6, 6, ray) && leave - enter > best.1 {
+        if let Some((enter, leave)) = clipped(halves, cell as u32 * 6, 6, ray)
+            && leave - enter > best.1
+        {
             best = (cell, leave - enter);
         }
     }
@@ -56,7 +62,12 @@ fn cells_clip_rays() {
         .collect();
     let kernel = kernel!(|ray: Ray| longest(&halves, ray));
     let rays: Vec<Ray> = (0..400)
-        .map(|i| Ray::new(Vec3::ZERO, vec3((i % 20) as f32 * 0.1 - 0.95, (i / 20) as f32 * 0.1 - 0.95, 1.0)))
+        .map(|i| {
+            Ray::new(
+                Vec3::ZERO,
+                vec3((i % 20) as f32 * 0.1 - 0.95, (i / 20) as f32 * 0.1 - 0.95, 1.0),
+            )
+        })
         .collect();
     assert_variants_agree!(&kernel, &rays);
     assert_eq!(kernel.call((Ray::new(vec3(-0.5, -0.5, 0.0), Vec3::Z),)), (0, 1.0));

@@ -62,7 +62,9 @@ fn rays_end() {
         End::Lost => vec2(-2.0, 0.0),
     });
     let rays: Vec<Ray> = (0..300)
-        .map(|i| Ray::new(vec3((i % 20) as f32 * 0.11 - 1.1, (i / 20) as f32 * 0.1 - 0.7, 0.0), Vec3::Z))
+        .map(|i| {
+            Ray::new(vec3((i % 20) as f32 * 0.11 - 1.1, (i / 20) as f32 * 0.1 - 0.7, 0.0), Vec3::Z)
+        })
         .collect();
     assert_variants_agree!(&kernel, &rays);
     assert!(rays.iter().any(|r| kernel.call((*r,)).x == 0.0));

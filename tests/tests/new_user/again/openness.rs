@@ -49,7 +49,9 @@ fn points_see_out() {
         (open, most_open(open))
     });
     let points: Vec<Vec3> = (0..300)
-        .map(|i| vec3((i % 7) as f32 - 3.0, (i % 11) as f32 * 0.5 - 2.5, 3.0 + (i % 13) as f32 * 0.3))
+        .map(|i| {
+            vec3((i % 7) as f32 - 3.0, (i % 11) as f32 * 0.5 - 2.5, 3.0 + (i % 13) as f32 * 0.3)
+        })
         .collect();
     assert_variants_agree!(&kernel, &points);
     let (open, best) = kernel.call((vec3(0.0, 0.0, -5.0),));

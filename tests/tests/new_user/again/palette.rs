@@ -5,7 +5,12 @@ use raydsl::prelude::*;
 use raydsl::{assert_variants_agree, kernel};
 
 #[kernel]
-fn nearest(palette: &[Vec3], metric: impl Fn(Vec3, Vec3) -> f32, color: Vec3, reach: f32) -> Option<usize> {
+fn nearest(
+    palette: &[Vec3],
+    metric: impl Fn(Vec3, Vec3) -> f32,
+    color: Vec3,
+    reach: f32,
+) -> Option<usize> {
     let mut best = None;
     let mut least = reach;
     for (i, entry) in palette.iter().enumerate() {
@@ -39,9 +44,8 @@ fn colours_are_quantized() {
     let palette = [Vec3::ZERO, Vec3::ONE, Vec3::X, vec3(0.1, 0.6, 0.2)];
     let palette = &palette[..];
     let kernel = kernel!(|color: Vec3| quantized(palette, color));
-    let colors: Vec<Vec3> = (0..343)
-        .map(|i| vec3((i % 7) as f32, (i / 7 % 7) as f32, (i / 49) as f32) / 6.0)
-        .collect();
+    let colors: Vec<Vec3> =
+        (0..343).map(|i| vec3((i % 7) as f32, (i / 7 % 7) as f32, (i / 49) as f32) / 6.0).collect();
     assert_variants_agree!(&kernel, &colors);
     assert_eq!(kernel.call((Vec3::X,)), Vec3::X);
 }
