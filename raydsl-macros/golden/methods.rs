@@ -66,7 +66,10 @@ where
                     <Vec3 as ::raydsl::__private::Type>::On<__M>,
                 )|
             {
-                ::raydsl::__private::Coerce::coerce(
+                ::raydsl::__private::Coerce::<
+                    __M,
+                    <Particle as ::raydsl::__private::Type>::On<__M>,
+                >::coerce(
                     {
                         type __Twin<M__> = <Particle as ::raydsl::__private::Type>::On<
                             M__,
@@ -115,7 +118,10 @@ where
             (),
             #[inline(always)]
             |m: &__M, (): ()| {
-                ::raydsl::__private::Coerce::coerce(
+                ::raydsl::__private::Coerce::<
+                    __M,
+                    <Particle as ::raydsl::__private::Type>::On<__M>,
+                >::coerce(
                     ::raydsl::__private::Method::<
                         { ::raydsl::__private::name("moved") },
                         __M,

@@ -103,7 +103,10 @@ impl push {
                     };
                     q.set(m, ::raydsl::__private::Coerce::coerce(right, m));
                 }
-                ::raydsl::__private::Coerce::coerce(q.get(m), m)
+                ::raydsl::__private::Coerce::<
+                    __M,
+                    <Particle as ::raydsl::__private::Type>::On<__M>,
+                >::coerce(q.get(m), m)
             },
         )
     }

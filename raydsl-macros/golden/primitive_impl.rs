@@ -64,7 +64,10 @@ where
                     <Ray as ::raydsl::__private::Type>::On<__M>,
                 )|
             {
-                ::raydsl::__private::Coerce::coerce(
+                ::raydsl::__private::Coerce::<
+                    __M,
+                    <Hit as ::raydsl::__private::Type>::On<__M>,
+                >::coerce(
                     sphere::intersect::on(
                         m,
                         ray,

@@ -70,7 +70,10 @@ impl smooth {
                         ::raydsl::__private::literal(m, 1.0f32, 1.0f64),
                     ),
                 );
-                ::raydsl::__private::Coerce::coerce(
+                ::raydsl::__private::Coerce::<
+                    __M,
+                    <f32 as ::raydsl::__private::Type>::On<__M>,
+                >::coerce(
                     ::raydsl::__private::OpAdd::add(
                         m,
                         {

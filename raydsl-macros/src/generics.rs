@@ -70,6 +70,12 @@ impl Generics {
                 {
                     continue;
                 }
+                syn::WherePredicate::Type(t) if t.bounds.iter().any(is_of_scenes) => {
+                    let ty = t.bounded_ty.to_token_stream().to_string();
+                    let name = all.types.iter().find(|name| **name == ty);
+                    let bounds = t.bounds.iter().filter(|b| !is_maybe_sized(b));
+                    all.scenes.extend(name.cloned().map(|name| (name, quote!(#(#bounds)+*))));
+                }
                 _ => {}
             }
             let p = p.to_token_stream();
@@ -106,6 +112,32 @@ impl Generics {
 
     pub(crate) fn is_empty(&self) -> bool {
         self.used.is_empty()
+    }
+}
+
+/// Bounds that do not imply a type of kernels.
+const OTHER_BOUNDS: &[&str] = &[
+    "Clone",
+    "Copy",
+    "Debug",
+    "Default",
+    "Eq",
+    "Hash",
+    "Ord",
+    "PartialEq",
+    "PartialOrd",
+    "Send",
+    "Sized",
+    "Sync",
+];
+
+/// Returns whether a bound does not say that the type is one that kernels have.
+pub(crate) fn says_nothing_of_kernels(bound: &syn::TypeParamBound) -> bool {
+    match bound {
+        syn::TypeParamBound::Trait(t) => {
+            t.path.segments.last().is_some_and(|s| OTHER_BOUNDS.iter().any(|o| s.ident == o))
+        }
+        _ => true,
     }
 }
 

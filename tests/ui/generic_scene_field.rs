@@ -3,7 +3,7 @@ use raydsl::prelude::*;
 
 #[kernel]
 fn shade<S: RayQuery<Hit = Hit> + ?Sized>(scene: &S, ray: Ray) -> f32 {
-    scene.closest_hit(ray).distance //~ rustc
+    scene.closest_hit(ray).distance //~ rustc 2
 }
 
 fn main() {}

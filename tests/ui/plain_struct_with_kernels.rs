@@ -7,7 +7,7 @@ struct Cone {
 }
 
 #[kernel]
-impl Cone { //~ lifted 5
+impl Cone { //~ lifted 3
     fn twice(&self) -> f32 {
         self.slope * 2.0
     }

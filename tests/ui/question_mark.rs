@@ -2,8 +2,13 @@ use raydsl::kernel;
 use raydsl::prelude::*;
 
 #[kernel]
-fn half(x: f32) -> Result<f32, u32> { //~ macro
-    if x < 0.0 { Err(1) } else { Ok(x * 0.5) }
+fn root(x: f32) -> Option<f32> {
+    if x < 0.0 { None } else { Some(x.sqrt()) }
+}
+
+#[kernel]
+fn half(x: f32) -> f32 {
+    root(x)? * 0.5 //~ rustc 2
 }
 
 fn main() {}

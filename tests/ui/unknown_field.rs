@@ -3,7 +3,7 @@ use raydsl::prelude::*;
 
 #[kernel]
 fn shade(ray: Ray) -> f32 {
-    ray.start.x //~ rustc 3
+    ray.start.x //~ rustc 2
 }
 
 fn main() {}

@@ -24,7 +24,21 @@ impl Emitter<'_> {
         let (p, m) = (private(), own("m"));
         match self.structured(e, name, Some(ty)) {
             Some(value) => quote!(#p::Coerce::coerce(#value, #m)),
-            None => self.coerced(e),
+            None if self.is_list(e) => self.coerced(e),
+            // With its type a mistake in the value is not one of its type too.
+            None => {
+                let (value, machine, ty) = (self.value(e), self.machine.clone(), self.on(ty));
+                quote!(#p::Coerce::<#machine, #ty>::coerce(#value, #m))
+            }
+        }
+    }
+
+    /// Returns whether elements become values of the machine one by one.
+    fn is_list(&self, e: &Expr) -> bool {
+        match &e.kind {
+            Kind::Tuple(_) | Kind::Array(_) | Kind::Repeat { .. } => true,
+            Kind::Name(name) => self.bare_elements(name).is_some(),
+            _ => false,
         }
     }
 

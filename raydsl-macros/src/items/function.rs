@@ -85,6 +85,7 @@ fn mistaken(kernel: &Kernel, errors: Errors) -> TokenStream {
     let (declared, used) = (angled(declared), angled(used));
     let (others, mistaken) = errors.into_type();
     let types: Vec<Ident> = (0..kernel.params.len()).map(|i| format_ident!("__A{i}")).collect();
+    let parameters = &kernel.generics.types;
     let ons = ["on", "on_values"].map(|on| {
         let on = Ident::new(on, Span::call_site());
         quote! {
@@ -102,7 +103,10 @@ fn mistaken(kernel: &Kernel, errors: Errors) -> TokenStream {
                 #(#ons)*
             }
 
-            impl #declared #p::KernelFn for #name #used where #predicates {
+            impl #declared #p::KernelFn for #name #used
+            where
+                #predicates #(#parameters: 'static,)*
+            {
                 type Args = Mistaken;
                 type Output = Mistaken;
 

@@ -10,7 +10,7 @@ use super::attributes::{is_host, is_never_inlined};
 use super::expression::run_once;
 use super::types::{is_data, is_mut_reference, is_unit, without_references};
 use crate::diag::Errors;
-use crate::generics::Generics;
+use crate::generics::{Generics, mentions, says_nothing_of_kernels};
 use crate::model::{Block, Expr, Kernel, Kind, MOST, Param, Stmt};
 
 /// The label of the body of a kernel that takes closures, which is a part of its callers.
@@ -28,6 +28,7 @@ pub(crate) fn function(
     check_qualifiers(sig, errors);
     let mut parser = Parser::new(attrs, errors);
     parser.functions = parser.function_parameters(&sig.generics);
+    parser.check_bounds(&sig.generics);
     let mut prologue = Vec::new();
     let generics = Generics::without(&sig.generics, &parser.functions);
     let param = |arg| {
@@ -102,6 +103,28 @@ fn receiver(r: &syn::Receiver, self_ty: Option<&syn::Type>) -> Param {
 }
 
 impl Parser<'_> {
+    /// Refuses type parameters of which nothing says that kernels have them.
+    fn check_bounds(&mut self, generics: &syn::Generics) {
+        let clause = generics.where_clause.to_token_stream();
+        for t in generics.type_params() {
+            let is_closure = self.functions.iter().any(|(name, _)| *name == t.ident);
+            if is_closure || mentions(&clause, &t.ident) {
+                continue;
+            }
+            if t.bounds.iter().all(says_nothing_of_kernels) {
+                let name = &t.ident;
+                self.errors.at(
+                    name.span(),
+                    format!("`{name}` may be a type that kernels do not have"),
+                    &format!(
+                        "write `{name}: Type`, `{name}: Light` with a `#[kernel]` trait, or for a \
+                         scene `{name}: Scene + ?Sized` and `&{name}`"
+                    ),
+                );
+            }
+        }
+    }
+
     /// Returns a result type that is written, and is not `()`.
     pub(super) fn result(&mut self, output: &syn::ReturnType) -> Option<TokenStream> {
         match output {

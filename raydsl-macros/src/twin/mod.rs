@@ -14,7 +14,7 @@ use quote::{ToTokens, quote, quote_spanned};
 use syn::spanned::Spanned;
 
 use crate::diag::Errors;
-use crate::generics::mentions;
+use crate::generics::{mentions, says_nothing_of_kernels};
 use crate::parse;
 
 pub(crate) use record::hit_record;
@@ -50,36 +50,17 @@ pub(crate) fn derive(item: &syn::DeriveInput) -> TokenStream {
     quote!(#twin #errors)
 }
 
-/// Bounds that do not imply a type of kernels.
-const OTHER_BOUNDS: &[&str] = &[
-    "Clone",
-    "Copy",
-    "Debug",
-    "Default",
-    "Eq",
-    "Hash",
-    "Ord",
-    "PartialEq",
-    "PartialOrd",
-    "Send",
-    "Sized",
-    "Sync",
-];
-
 /// Requires a type parameter that is a member's type to be a type of kernels. If it is not bounded
 /// so, the twin has the bound all the same, so that there is one error.
 fn bound_parameters(generics: &mut syn::Generics, fields: &[syn::Field], errors: &mut Errors) {
-    let says_nothing = |b: &syn::TypeParamBound| match b {
-        syn::TypeParamBound::Trait(t) => {
-            t.path.segments.last().is_some_and(|s| OTHER_BOUNDS.iter().any(|o| s.ident == o))
-        }
-        _ => true,
-    };
     let clause = generics.where_clause.to_token_stream();
     for param in generics.params.iter_mut() {
         let syn::GenericParam::Type(t) = param else { continue };
         let is_member = fields.iter().any(|f| mentions(&f.ty.to_token_stream(), &t.ident));
-        if !is_member || mentions(&clause, &t.ident) || !t.bounds.iter().all(says_nothing) {
+        if !is_member
+            || mentions(&clause, &t.ident)
+            || !t.bounds.iter().all(says_nothing_of_kernels)
+        {
             continue;
         }
         errors.at(
