@@ -48,7 +48,8 @@ pub use crate::sampling::{
 pub use crate::shading::{ShadingPoint, facing};
 pub use crate::texture::{
     Texture1, Texture2, Texture3, TextureConfig, TextureRef1, TextureRef2, TextureRef3,
-    linear_to_srgb, srgb_to_linear, tex1, tex1_level, tex2, tex2_level, tex3, tex3_level,
+    linear_to_srgb, srgb_to_linear, tex1, tex1_fetch, tex1_level, tex1_texels, tex2, tex2_fetch,
+    tex2_level, tex2_texels, tex3, tex3_fetch, tex3_level, tex3_texels,
 };
 pub use crate::{HitRecord, RayQuery, Scene, Type, primitive};
 pub use raydsl_macros::kernel_closure as kernel;
