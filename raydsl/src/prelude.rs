@@ -40,10 +40,9 @@ pub use crate::render::{
 pub use crate::sampling::{
     Distribution1d, Distribution2d, Frame, Rng, SampleMethod, Sampler, balance_heuristic,
     bilinear_pdf, cone_pdf, cosine_hemisphere_pdf, one_minus_cos, power_cosine_pdf,
-    power_heuristic, quad_pdf, sample_bilinear, sample_concentric_disk, sample_cone,
+    power_heuristic, sample_bilinear, sample_concentric_disk, sample_cone,
     sample_cosine_hemisphere, sample_power_cosine, sample_table, sample_table_2d, sample_triangle,
     sample_uniform_hemisphere, sample_uniform_sphere, solid_angle_pdf, table_2d_pdf, table_pdf,
-    triangle_pdf,
 };
 pub use crate::shading::{ShadingPoint, facing};
 pub use crate::texture::{
