@@ -16,6 +16,7 @@ pub mod plane;
 mod primitive;
 pub mod quad;
 mod ray;
+#[doc(alias = "parallelogram")]
 pub mod rectangle;
 pub(crate) mod slabs;
 pub mod sphere;
