@@ -129,8 +129,8 @@ fn expand_closure(input: proc_macro2::TokenStream) -> proc_macro2::TokenStream {
 /// Makes a primitive of a struct, or of an `impl` with `intersect` and `get_bounds`.
 ///
 /// `#[primitive(disk(center, normal, radius))]` on a struct suffices for a shape of the library:
-/// `sphere`, `triangle`, `quad`, `rectangle`, `disk`, `plane`, `cylinder`, `tube`, `cone` or
-/// `cuboid`. Each is a module of `raydsl::geometry`.
+/// `sphere`, `triangle`, `quad`, `rectangle` (any parallelogram), `disk`, `plane`, `cylinder`,
+/// `tube`, `cone` or `cuboid`. Each is a module of `raydsl::geometry`.
 #[proc_macro_attribute]
 pub fn primitive(args: TokenStream, item: TokenStream) -> TokenStream {
     rewrite::with_readable_names(expand_primitive(args.into(), item.into())).into()

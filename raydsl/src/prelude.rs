@@ -40,15 +40,15 @@ pub use crate::render::{
 pub use crate::sampling::{
     Distribution1d, Distribution2d, Frame, Rng, SampleMethod, Sampler, balance_heuristic,
     bilinear_pdf, cone_pdf, cosine_hemisphere_pdf, one_minus_cos, power_cosine_pdf,
-    power_heuristic, quad_pdf, sample_bilinear, sample_concentric_disk, sample_cone,
+    power_heuristic, sample_bilinear, sample_concentric_disk, sample_cone,
     sample_cosine_hemisphere, sample_power_cosine, sample_table, sample_table_2d, sample_triangle,
     sample_uniform_hemisphere, sample_uniform_sphere, solid_angle_pdf, table_2d_pdf, table_pdf,
-    triangle_pdf,
 };
 pub use crate::shading::{ShadingPoint, facing};
 pub use crate::texture::{
     Texture1, Texture2, Texture3, TextureConfig, TextureRef1, TextureRef2, TextureRef3,
-    linear_to_srgb, srgb_to_linear, tex1, tex1_level, tex2, tex2_level, tex3, tex3_level,
+    linear_to_srgb, srgb_to_linear, tex1, tex1_fetch, tex1_level, tex1_texels, tex2, tex2_fetch,
+    tex2_level, tex2_texels, tex3, tex3_fetch, tex3_level, tex3_texels,
 };
 pub use crate::{HitRecord, RayQuery, RecordQuery, Scene, Type, primitive};
 pub use raydsl_macros::kernel_closure as kernel;

@@ -22,6 +22,26 @@ const SHAPES: &[(&str, &[&str])] = &[
     ("cuboid", &["min", "max"]),
 ];
 
+/// Other names of shapes, and what makes the shape one of that name.
+const OTHER_NAMES: &[(&str, &str, &str)] = &[
+    ("circle", "disk", "it has the points inside too"),
+    ("cube", "cuboid", "its edges are parallel to the axes"),
+    ("parallelogram", "rectangle", "its edges may meet at any angle"),
+];
+
+/// Returns what to write instead of a shape of this name.
+fn instead_of(name: &Ident) -> String {
+    let other = OTHER_NAMES.iter().find(|other| name == other.0);
+    let parts = |shape: &str| SHAPES.iter().find(|s| s.0 == shape).map(|s| s.1.join(", "));
+    if let Some((_, shape, why)) = other
+        && let Some(parts) = parts(shape)
+    {
+        return format!("write `{shape}({parts})`: {why}");
+    }
+    let names: Vec<String> = SHAPES.iter().map(|s| format!("`{}`", s.0)).collect();
+    format!("write {}, or an impl of your own", names.join(", "))
+}
+
 /// A shape with its arguments, such as `sphere(center, radius.to_f32())`.
 pub(crate) struct Shape {
     name: Ident,
@@ -54,12 +74,8 @@ impl Shape {
 
     fn checked(self, errors: &mut Errors) -> Option<Self> {
         let Some((name, parts)) = SHAPES.iter().find(|s| self.name == s.0) else {
-            let names: Vec<String> = SHAPES.iter().map(|s| format!("`{}`", s.0)).collect();
-            errors.at(
-                self.name.span(),
-                format!("no shape is called `{}`", self.name),
-                &format!("write {}, or an impl of your own", names.join(", ")),
-            );
+            let what = format!("no shape is called `{}`", self.name);
+            errors.at(self.name.span(), what, &instead_of(&self.name));
             return None;
         };
         if self.arguments.len() != parts.len() {

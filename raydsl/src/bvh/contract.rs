@@ -1,9 +1,10 @@
 //! Shared rules of every query: the validity of rays and hits, the order of hits, the culling
 //! distance behind a hit, and the box test.
 //!
-//! Each rule is a kernel. Single-ray traversal calls the function; packets, WGSL and the rounding
-//! bounds run its lifted body. Two traversals have their own box arithmetic, for reasons given
-//! there: `wide::step`, of eight boxes, and `on::beam`, in `f64` with bounds.
+//! Each rule is a kernel; those that do not depend on trees are in `geometry::slabs`. Single-ray
+//! traversal calls the function; packets, WGSL and the rounding bounds run its lifted body. Two
+//! traversals have their own box arithmetic, for reasons given there: `wide::step`, of eight boxes,
+//! and `on::beam`, in `f64` with bounds.
 //!
 //! **Boxes.** A box test must never lose a hit that `intersect` accepts. The ray's origin is moved
 //! apart by a padding, once a ray: lower faces are measured from the upper origin and vice versa.
@@ -13,11 +14,12 @@
 //! product is NaN, and the widened slab decides alone. (After Ize, "Robust BVH Ray Traversal", JCGT
 //! 2013.)
 
-use glam::{Vec2, Vec3, vec2, vec3};
+use glam::{Vec2, Vec3};
 
 use super::Node;
+use crate::geometry::slabs::largest;
+pub(crate) use crate::geometry::slabs::{finite_inverse, is_finite, overlap};
 use crate::geometry::{Hit, Primitive, Ray};
-use crate::machine::functions::{vec2, vec3};
 use crate::machine::generic::{max, min};
 use crate::machine::margin::{Interval, Known};
 use crate::machine::{KnownFunction, Margin, WithoutNan};
@@ -25,22 +27,6 @@ use crate::{Type, kernel};
 
 /// 2^-23: an ulp of a number is at most this fraction of it.
 pub(crate) const ULP: f32 = f32::EPSILON;
-
-/// 2^-60.
-const LEAST: f32 = 8.673_617_4e-19;
-
-/// Returns whether a ray may hit anything: rays with a NaN or infinite component do not.
-#[kernel]
-#[inline(always)]
-pub(crate) fn is_finite(ray: Ray) -> bool {
-    are_finite(ray.origin) & are_finite(ray.direction)
-}
-
-#[kernel]
-#[inline(always)]
-fn are_finite(v: Vec3) -> bool {
-    v.is_finite()
-}
 
 /// Returns whether a hit lies within the range of its ray.
 #[kernel]
@@ -187,35 +173,6 @@ pub(crate) fn enter_leave(s: Slabs, low: Vec3, high: Vec3, t_min: f32, t_max: f3
     overlap(min(a, b), max(a, b), t_min, t_max)
 }
 
-/// Intersects the slabs with the range: the last near plane, and the first far plane.
-#[kernel(known = WithoutNan)]
-#[inline(always)]
-pub(crate) fn overlap(near: Vec3, far: Vec3, t_min: f32, t_max: f32) -> Vec2 {
-    vec2(max(max(near.x, near.y), max(t_min, near.z)), min(min(far.x, far.y), min(t_max, far.z)))
-}
-
-/// Returns the reciprocal of every component, finite.
-#[kernel(known = WithoutNan)]
-#[inline(always)]
-pub(crate) fn finite_inverse(d: Vec3) -> Vec3 {
-    let least = max(largest(d.abs()) * LEAST, f32::MIN_POSITIVE);
-    1.0 / vec3(at_least(d.x, least), at_least(d.y, least), at_least(d.z, least))
-}
-
-/// Returns `x`, or a number of this size with its sign if `x` is smaller.
-#[kernel]
-#[inline(always)]
-fn at_least(x: f32, size: f32) -> f32 {
-    let signed = if x < 0.0 { -size } else { size };
-    if x.abs() < size { signed } else { x }
-}
-
-#[kernel(known = WithoutNan)]
-#[inline(always)]
-fn largest(v: Vec3) -> f32 {
-    max(max(v.x, v.y), v.z)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -248,26 +205,5 @@ mod tests {
             assert_eq!(limit_behind(t, 0.5, t), t, "the ray's end is the limit");
         }
         assert_eq!(limit_behind(f32::NAN, 0.5, 3.0), 3.0);
-    }
-
-    #[test]
-    fn reciprocals_are_finite_and_keep_their_signs() {
-        for d in [
-            vec3(0.0, -0.0, 1.0),
-            vec3(1e-30, -1e-30, 2.0),
-            vec3(f32::MIN_POSITIVE / 8.0, 0.0, -0.0),
-            vec3(-3.0, 0.5, 1e-19),
-            vec3(1e30, -1.0, 0.0),
-        ] {
-            let inverse = finite_inverse(d);
-            assert!(inverse.is_finite(), "{d}: {inverse}");
-            let size = d.abs().max_element().max(f32::MIN_POSITIVE);
-            for (d, inverse) in d.to_array().into_iter().zip(inverse.to_array()) {
-                assert!(d == 0.0 || (d < 0.0) == (inverse < 0.0), "{d}: {inverse}");
-                if d.abs() >= f32::MIN_POSITIVE && d.abs() > size * 1e-17 {
-                    assert_eq!(inverse, 1.0 / d);
-                }
-            }
-        }
     }
 }

@@ -1,12 +1,32 @@
-//! Axis-aligned bounding boxes on the host.
+//! Axis-aligned bounding boxes.
 
 use glam::Vec3;
+
+use super::Ray;
+use super::slabs::span;
+use crate::{Type, kernel};
 
 /// Axis-aligned bounding box `[min, max]`, closed on all sides.
 ///
 /// [`Aabb::EMPTY`] is the neutral element of [`Aabb::union`]; a box is *valid* when `min <= max`
 /// on every axis and no bound is NaN.
-#[derive(Clone, Copy, Debug, PartialEq)]
+///
+/// Kernels capture boxes, take them as parameters, and have [`Aabb::new`], [`Aabb::size`],
+/// [`Aabb::center`], [`Aabb::contains`] and [`Aabb::span`]; the rest is for the host.
+///
+/// ```
+/// use raydsl::prelude::*;
+///
+/// let bounds = Aabb::new(Vec3::ZERO, Vec3::splat(2.0));
+/// let depth = kernel!(|ray: Ray| {
+///     let (enter, leave) = bounds.span(ray);
+///     max(leave - enter, 0.0)
+/// });
+/// let along_x = |y: f32| Ray::new(vec3(-1.0, y, 1.0), Vec3::X);
+/// assert_eq!(depth.call((along_x(0.5),)), 2.0);
+/// assert_eq!(depth.call((along_x(2.5),)), 0.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
 pub struct Aabb {
     /// Lower corner.
     pub min: Vec3,
@@ -17,11 +37,6 @@ pub struct Aabb {
 impl Aabb {
     /// Empty box.
     pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
-
-    /// Creates the box spanned by two corners, `min <= max`.
-    pub const fn new(min: Vec3, max: Vec3) -> Self {
-        Self { min, max }
-    }
 
     /// Returns the smallest box around `points`.
     pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Self {
@@ -68,16 +83,6 @@ impl Aabb {
         self.min.is_finite() && self.max.is_finite()
     }
 
-    /// Returns the edge lengths.
-    pub fn size(self) -> Vec3 {
-        self.max - self.min
-    }
-
-    /// Returns the center, computed without overflow.
-    pub fn center(self) -> Vec3 {
-        self.min * 0.5 + self.max * 0.5
-    }
-
     /// Returns half the surface area; 0 for a box that is not valid.
     pub fn half_area(self) -> f32 {
         let d = self.size().max(Vec3::ZERO);
@@ -94,9 +99,48 @@ impl Aabb {
     pub(crate) fn edges_f64(self) -> [f64; 3] {
         core::array::from_fn(|axis| f64::from(self.max[axis]) - f64::from(self.min[axis]))
     }
+}
+
+#[kernel]
+impl Aabb {
+    /// Creates the box spanned by two corners, `min <= max`.
+    pub const fn new(min: Vec3, max: Vec3) -> Self {
+        Self { min, max }
+    }
+
+    /// Returns the edge lengths.
+    pub fn size(self) -> Vec3 {
+        self.max - self.min
+    }
+
+    /// Returns the center, computed without overflow.
+    pub fn center(self) -> Vec3 {
+        self.min * 0.5 + self.max * 0.5
+    }
 
     /// Returns whether `point` lies in the closed box.
     pub fn contains(self, point: Vec3) -> bool {
         self.min.cmple(point).all() && point.cmple(self.max).all()
+    }
+
+    /// Returns the part of a ray in the closed box: the distances at which the ray enters and
+    /// leaves it, within the ray's range. They are in lengths of the direction, as `hit.t` is.
+    ///
+    /// The part is empty if the first is greater than the second. Then they are `f32::MAX` and
+    /// `-f32::MAX`: if the ray misses the box or its range is empty, if a component of the ray or a
+    /// bound of the box is NaN, if the origin or the direction is infinite, and if the box is not
+    /// valid.
+    ///
+    /// A ray in a face or along an edge is in the box. A component of the direction that is smaller
+    /// than `2^-60` of the largest counts as 0. A ray whose direction is 0 is in the box for its
+    /// whole range, or not at all.
+    ///
+    /// A distance that is no end of the range is off by at most `2^-22` of itself, in WGSL `2^-21`,
+    /// for lengths from 1e-12 to 1e12; so a ray that only grazes an edge may be taken for one that
+    /// misses it, and the reverse.
+    #[inline]
+    pub fn span(&self, ray: Ray) -> (f32, f32) {
+        let ends = span(ray, self.min, self.max);
+        (ends.x, ends.y)
     }
 }

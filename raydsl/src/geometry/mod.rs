@@ -16,13 +16,15 @@ pub mod plane;
 mod primitive;
 pub mod quad;
 mod ray;
+#[doc(alias = "parallelogram")]
 pub mod rectangle;
+pub(crate) mod slabs;
 pub mod sphere;
 mod surface;
 pub mod triangle;
 pub mod tube;
 
-pub use aabb::Aabb;
+pub use aabb::{Aabb, AabbOn};
 pub(crate) use affine::transform_normal_back;
 pub use affine::transform_ray;
 pub use hit::{Hit, HitOn, HitRecord};

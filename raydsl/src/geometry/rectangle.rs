@@ -1,5 +1,5 @@
-//! Rectangles, given by a corner and the two edges from it; parallelograms if those are not
-//! perpendicular.
+//! Rectangles and all other parallelograms, given by a corner and the two edges from it, which may
+//! meet at any angle.
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
@@ -19,8 +19,8 @@ pub const SLACK: f32 = 2.0 * quad::SLACK;
 /// [`Primitive::MAX_CROSSINGS`](super::Primitive::MAX_CROSSINGS).
 pub const MAX_CROSSINGS: u32 = 1;
 
-/// Intersects a ray with the rectangle: both sides, edges and corners included. `hit.u` runs along
-/// `u_edge` and `hit.v` along `v_edge`.
+/// Intersects a ray with the parallelogram: both sides, edges and corners included. `hit.u` runs
+/// along `u_edge` and `hit.v` along `v_edge`.
 ///
 /// It is a quad whose corners are summed relative to the ray's origin, so their error is relative
 /// to the size of the rectangle and its distance, wherever in the world it is.

@@ -1,11 +1,11 @@
-//! Area sampling of triangles and quads.
+//! Area sampling.
 //!
 //! Shapes sample themselves: [`triangle::sample`](crate::geometry::triangle::sample()) and its like
-//! return points with normals. This module has their inverses and densities.
+//! return points with normals, whose density per area is 1 over the shape's `area(..)`. This module
+//! has the weights of a triangle's vertices, and the conversion to solid angles.
 
 use glam::{Vec2, Vec3, vec2};
 
-use crate::geometry::{quad, triangle};
 use crate::kernel;
 use crate::machine::functions::vec2;
 use crate::machine::generic::clamp;
@@ -13,6 +13,11 @@ use crate::machine::generic::clamp;
 use super::rng::ONE_MINUS_EPSILON;
 
 pub use crate::geometry::triangle::sample_weights as sample_triangle;
+
+/// Density of [`sample_triangle()`]: all weights are equally likely, and their area is one half.
+/// That of the points with these weights, per area of the triangle, is 1 over
+/// [`triangle::area()`](crate::geometry::triangle::area()).
+pub const TRIANGLE_PDF: f32 = 2.0;
 
 /// Inverts [`sample_triangle()`]: returns the point of the unit square with these weights of the
 /// second and the third vertex.
@@ -25,22 +30,7 @@ pub fn invert_triangle(weights: Vec2) -> Vec2 {
     clamp(u, vec2(0.0, 0.0), vec2(ONE_MINUS_EPSILON, ONE_MINUS_EPSILON))
 }
 
-/// Returns the density of [`triangle::sample()`](crate::geometry::triangle::sample()), per area.
-#[kernel]
-#[inline]
-pub fn triangle_pdf(v0: Vec3, v1: Vec3, v2: Vec3) -> f32 {
-    1.0 / triangle::area(v0, v1, v2)
-}
-
-/// Returns the density of [`quad::sample()`](crate::geometry::quad::sample()), per area; the quad
-/// may be bent.
-#[kernel]
-#[inline]
-pub fn quad_pdf(v0: Vec3, v1: Vec3, v2: Vec3, v3: Vec3) -> f32 {
-    1.0 / quad::area(v0, v1, v2, v3)
-}
-
-/// Converts a density per area to one per solid angle: along `way` from the lit point to the
+/// Converts a density per area, such as `1.0 / lamp.area()`, to one per solid angle: along `way` from the lit point to the
 /// surface, whose normal has unit length. Infinite where the surface is seen edge-on.
 #[kernel]
 #[inline]

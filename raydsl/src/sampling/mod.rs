@@ -24,7 +24,7 @@ mod stratified;
 mod table;
 mod warp;
 
-pub use area::{invert_triangle, quad_pdf, sample_triangle, solid_angle_pdf, triangle_pdf};
+pub use area::{TRIANGLE_PDF, invert_triangle, sample_triangle, solid_angle_pdf};
 pub use digits::{radical_inverse, van_der_corput};
 pub use frame::{Frame, FrameOn};
 pub use hash::{pcg4d, philox4x32};

@@ -1,12 +1,12 @@
-//! Texture filters: kernels over a texture's texels. `packet` repeats them for packets: change both
+//! Texture filters, and single texels: kernels over a texture's texels. `packet` repeats them for packets: change both
 //! together.
 //!
 //! Each works on rows along the first axis, blended along the others. Filter and address modes are
 //! host values, so a recorder emits only those of the texture.
 
-use glam::{UVec2, UVec3, Vec2, Vec3};
+use glam::{IVec2, IVec3, UVec2, UVec3, Vec2, Vec3};
 
-use super::taps::{Four, OUTSIDE, Pair, four, nearest_texel, pair};
+use super::taps::{Four, OUTSIDE, Pair, four, nearest_texel, pair, texel_of};
 use super::texel::{Texel, TexelValue};
 use super::view::Texels;
 use crate::kernel;
@@ -160,4 +160,40 @@ pub(super) fn filter3<T: Texel<Value = V>, V: TexelValue>(
         let d: V = cubic_image(texels, starts[3], size.x, x, y);
         b.blend4(a, c, d, z.w1, z.w3, z.w4)
     }
+}
+
+/// Returns texel `at` of a row of `size` texels from `first` on.
+#[kernel]
+pub(super) fn texel1<T: Texel<Value = V>, V: TexelValue>(
+    texels: &Texels<'_, T>,
+    size: u32,
+    first: u32,
+    at: i32,
+) -> V {
+    texel(texels, first, texel_of(at, size, texels.address_u()))
+}
+
+/// Returns texel `at` of an image that starts at `first`.
+#[kernel]
+pub(super) fn texel2<T: Texel<Value = V>, V: TexelValue>(
+    texels: &Texels<'_, T>,
+    size: UVec2,
+    first: u32,
+    at: IVec2,
+) -> V {
+    let j = texel_of(at.y, size.y, texels.address_v());
+    texel1(texels, size.x, part(texels, first, size.x, j), at.x)
+}
+
+/// Returns texel `at` of a volume that starts at `first`.
+#[kernel]
+pub(super) fn texel3<T: Texel<Value = V>, V: TexelValue>(
+    texels: &Texels<'_, T>,
+    size: UVec3,
+    first: u32,
+    at: IVec3,
+) -> V {
+    let k = texel_of(at.z, size.z, texels.address_w());
+    let start = part(texels, first, size.x * size.y, k);
+    texel2(texels, size.truncate(), start, at.truncate())
 }

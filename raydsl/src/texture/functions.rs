@@ -1,15 +1,15 @@
-//! Texture lookups in kernels: [`tex1()`], [`tex2()`], [`tex3()`] and their forms with a level of
-//! detail.
+//! Texture lookups in kernels: [`tex1()`], [`tex2()`], [`tex3()`], their forms with a level of
+//! detail, and single texels.
 
 #![allow(non_camel_case_types, reason = "they have the names of functions")]
 
-use glam::{Vec2, Vec3};
+use glam::{IVec2, IVec3, UVec2, UVec3, Vec2, Vec3};
 
-use super::on::{Lookup, LookupAtLevel};
+use super::on::{Fetch, Lookup, LookupAtLevel};
 use super::sample;
 use super::texel::Texel;
 use super::texture::{AsTextureRef, TextureRef};
-use crate::machine::{Coerce, F, Machine, Type, X2, X3};
+use crate::machine::{Coerce, F, I, Machine, Type, U, X2, X3};
 
 macro_rules! functions {
     ($(
@@ -74,6 +74,67 @@ macro_rules! functions {
     };
 }
 
+/// Functions of texels by their places.
+macro_rules! texels {
+    ($(
+        $n:literal $at:ty, $twin:ty, $components:expr; $count:ty, $count_twin:ty;
+        $(#[$doc:meta])* $fetch:ident by $fetch_kernel:ident
+        $(#[$texels_doc:meta])* $texels:ident by $texels_kernel:ident
+    )+) => {
+        $(
+            $(#[$doc])*
+            #[inline]
+            pub fn $fetch<X: AsTextureRef<$n> + ?Sized>(
+                texture: &X,
+                at: $at,
+                level: u32,
+            ) -> <X::Texel as Texel>::Value {
+                sample::$fetch_kernel(&texture.as_texture_ref().texels, at, level)
+            }
+
+            #[doc = concat!("The lifted form of [`", stringify!($fetch), "()`].")]
+            #[doc(hidden)]
+            pub enum $fetch {}
+
+            impl $fetch {
+                #[doc(hidden)]
+                #[inline(always)]
+                pub fn on<M: Machine, T: Texel>(
+                    m: &M,
+                    texture: TextureRef<'_, T, $n>,
+                    at: impl Coerce<M, $twin>,
+                    level: impl Coerce<M, U<M>>,
+                ) -> <T::Value as Type>::On<M> {
+                    let level = level.coerce(m);
+                    m.perform(&Fetch(&texture.texels), ($components(at.coerce(m)), level))
+                }
+            }
+
+            $(#[$texels_doc])*
+            #[inline]
+            pub fn $texels<X: AsTextureRef<$n> + ?Sized>(texture: &X, level: u32) -> $count {
+                sample::$texels_kernel(&texture.as_texture_ref().texels, level)
+            }
+
+            #[doc = concat!("The lifted form of [`", stringify!($texels), "()`].")]
+            #[doc(hidden)]
+            pub enum $texels {}
+
+            impl $texels {
+                #[doc(hidden)]
+                #[inline(always)]
+                pub fn on<M: Machine, T: Texel>(
+                    m: &M,
+                    texture: TextureRef<'_, T, $n>,
+                    level: impl Coerce<M, U<M>>,
+                ) -> $count_twin {
+                    sample::$texels_kernel::on(m, texture.texels, level)
+                }
+            }
+        )+
+    };
+}
+
 functions! {
     1 u: f32, F<M>, |u: F<M>| [u];
     /// Returns the value of a 1-D texture at `u`; with levels, that of level 0. See [`tex2()`].
@@ -107,4 +168,52 @@ functions! {
     tex3
     /// Returns the value of a 3-D texture at `uvw` and a level of detail. See [`tex2_level()`].
     tex3_level
+}
+
+texels! {
+    1 i32, I<M>, |i: I<M>| [i]; u32, U<M>;
+    /// Returns texel `at` of a level of a 1-D texture. See [`tex2_fetch()`].
+    tex1_fetch by fetch1
+    /// Returns the number of texels of a level of a 1-D texture. See [`tex2_texels()`].
+    tex1_texels by texels1
+
+    2 IVec2, X2<I<M>>, |at: X2<I<M>>| [at.x, at.y]; UVec2, X2<U<M>>;
+    /// Returns the texel in column `at.x` and row `at.y` of a level of a 2-D texture: level 0 is the
+    /// original texture.
+    ///
+    /// It is decoded and not filtered. Any place has a value: outside of the texture its address
+    /// modes apply, so that `-1` is the last texel where it repeats, the first where it is clamped or
+    /// mirrored, and else the border. A level beyond the last counts as the last one.
+    ///
+    /// Every variant reads the same texel. In WGSL it is read from a buffer, also with
+    /// [`Filtering::Device`](super::Filtering::Device): a device that samples a texture and fetches
+    /// its texels has them twice.
+    ///
+    /// ```
+    /// use raydsl::prelude::*;
+    ///
+    /// let texels = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
+    /// let heights = Texture2::new(&texels, [3, 2], TextureConfig::new())?;
+    /// let slope = kernel!(|at: IVec2| {
+    ///     tex2_fetch(&heights, at + ivec2(1, 0), 0) - tex2_fetch(&heights, at - ivec2(1, 0), 0)
+    /// });
+    /// assert_eq!(slope.call((ivec2(1, 0),)), 3.0);
+    /// // Texel -1 of a row is its last one.
+    /// assert_eq!(slope.call((ivec2(0, 1),)), -16.0);
+    /// # Ok::<(), raydsl::texture::TextureError>(())
+    /// ```
+    tex2_fetch by fetch2
+    /// Returns the number of texels along each axis of a level of a 2-D texture: a width and a
+    /// height. A level beyond the last counts as the last one.
+    ///
+    /// On the host [`Texture::size`](super::Texture::size) is that of level 0. In WGSL they are
+    /// numbers of the uniform block: a texture of another size compiles nothing.
+    tex2_texels by texels2
+
+    3 IVec3, X3<I<M>>, |at: X3<I<M>>| [at.x, at.y, at.z]; UVec3, X3<U<M>>;
+    /// Returns texel `at` of a level of a 3-D texture. See [`tex2_fetch()`].
+    tex3_fetch by fetch3
+    /// Returns the number of texels along each axis of a level of a 3-D texture. See
+    /// [`tex2_texels()`].
+    tex3_texels by texels3
 }

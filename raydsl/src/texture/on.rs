@@ -2,7 +2,7 @@
 
 use super::texel::{Texel, TexelValue};
 use super::view::Texels;
-use crate::machine::{Data, F, Lanes, Margin, On, Operation, Packet, Recorder, Scalar};
+use crate::machine::{Data, F, I, Lanes, Margin, On, Operation, Packet, Recorder, Scalar, U};
 
 /// Looks up a texture at a position of `D` axes.
 pub(super) struct Lookup<'t, 'a, T, const D: usize>(pub(super) &'t Texels<'a, T>);
@@ -72,6 +72,49 @@ impl<T: Texel, const D: usize> Operation for LookupAtLevel<'_, '_, T, D> {
         (at, level): ([F<Margin>; D], F<Margin>),
     ) -> On<T::Value, Margin> {
         self.0.by_kernels_at_level(m, &at, level)
+    }
+}
+
+/// Fetches a texel of a texture at a place of `D` axes and a level, never by a sampler.
+pub(super) struct Fetch<'t, 'a, T, const D: usize>(pub(super) &'t Texels<'a, T>);
+
+impl<T: Texel, const D: usize> Operation for Fetch<'_, '_, T, D> {
+    type Input = ([i32; D], u32);
+    type Output = T::Value;
+
+    #[inline(always)]
+    fn on_scalar(
+        &self,
+        m: &Scalar,
+        (at, level): ([I<Scalar>; D], U<Scalar>),
+    ) -> On<T::Value, Scalar> {
+        self.0.fetched_by_kernels(m, &at, level)
+    }
+
+    #[inline(always)]
+    fn on_packet<L: Lanes>(
+        &self,
+        m: &Packet<L>,
+        (at, level): ([I<Packet<L>>; D], U<Packet<L>>),
+    ) -> On<T::Value, Packet<L>> {
+        self.0.fetched_in_packet(m, &at, level)
+    }
+
+    fn on_recorder(
+        &self,
+        m: &Recorder,
+        (at, level): ([I<Recorder>; D], U<Recorder>),
+    ) -> On<T::Value, Recorder> {
+        self.0.fetched_by_kernels(m, &at, level)
+    }
+
+    #[inline(always)]
+    fn on_margin(
+        &self,
+        m: &Margin,
+        (at, level): ([I<Margin>; D], U<Margin>),
+    ) -> On<T::Value, Margin> {
+        self.0.exact().fetched_by_kernels(m, &at, level)
     }
 }
 

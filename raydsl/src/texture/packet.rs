@@ -7,11 +7,11 @@
 
 use super::config::{Address, ColorSpace, Filter};
 use super::sample::{level_start, level_within, size_at};
-use super::taps::{OUTSIDE, four, nearest_texel, pair};
+use super::taps::{OUTSIDE, four, nearest_texel, pair, texel_of};
 use super::texel::Texel;
 use super::view::Texels;
 use crate::Type;
-use crate::machine::{Entered, F, Floats, Lanes, Machine, Packet, U, Value, X3, fill, op};
+use crate::machine::{Entered, F, Floats, I, Lanes, Machine, Packet, U, Value, X3, fill, op};
 
 /// The machine that computes positions: its kernels are inlined. Those that decode texels are not:
 /// the sRGB curve makes them long.
@@ -40,6 +40,21 @@ impl<T: Texel> Texels<'_, T> {
         level: F<Packet<L>>,
     ) -> Given<L, T> {
         if self.has_levels() { leveled(m, self, at, level) } else { filtered(m, self, at, None) }
+    }
+
+    /// Fetches texels at places of `D` axes and levels.
+    #[inline(always)]
+    pub(crate) fn fetched_in_packet<L: Lanes, const D: usize>(
+        &self,
+        m: &Packet<L>,
+        at: &[I<Packet<L>>; D],
+        level: U<Packet<L>>,
+    ) -> Given<L, T> {
+        if self.has_levels() {
+            fetched_at_level(m, self, at, level)
+        } else {
+            fetched(m, self, at, None)
+        }
     }
 }
 
@@ -93,6 +108,27 @@ fn leveled<L: Lanes, T: Texel, const D: usize>(
             let is_last = l.u32_compare(op::Ge, finer, last);
             let b = filtered(m, texels, at, Some(&extent.next(inner, texels, finer, is_last)));
             blend(m, a, b, share)
+        },
+    )
+}
+
+/// Fetches a texel of one level, or of the last one if there are fewer.
+#[inline(never)]
+fn fetched_at_level<L: Lanes, T: Texel, const D: usize>(
+    m: &Packet<L>,
+    texels: &Texels<'_, T>,
+    at: &[I<Packet<L>>; D],
+    level: U<Packet<L>>,
+) -> Given<L, T> {
+    let l = m.lanes();
+    l.enter_again(
+        #[inline(always)]
+        || {
+            let inner = &Packet::with_mask(Entered::new(l), m.active());
+            let last = l.u32(texels.levels - 1);
+            let is_beyond = l.u32_compare(op::Lt, last, level.0);
+            let level = l.u32_select(is_beyond, last, level.0);
+            fetched(m, texels, at, Some(&Extent::of(inner, texels, level)))
         },
     )
 }
@@ -173,6 +209,31 @@ fn nearest<L: Lanes, T: Texel, const D: usize>(
             for axis in (0..D).rev() {
                 let (size, address) = places.axis(axis);
                 let i = nearest_texel::on(&places.inner, F(at[axis].0), size, address);
+                index = places.part(index, axis, i.0);
+            }
+            let [value] = places.values(&[index], 1);
+            value
+        },
+    )
+}
+
+#[inline(never)]
+fn fetched<L: Lanes, T: Texel, const D: usize>(
+    m: &Packet<L>,
+    texels: &Texels<'_, T>,
+    at: &[I<Packet<L>>; D],
+    extent: Option<&Extent<L>>,
+) -> Given<L, T> {
+    entered(
+        m,
+        texels,
+        extent,
+        #[inline(always)]
+        |places| {
+            let mut index = places.first;
+            for axis in (0..D).rev() {
+                let (size, address) = places.axis(axis);
+                let i = texel_of::on(&places.inner, I(at[axis].0), size, address);
                 index = places.part(index, axis, i.0);
             }
             let [value] = places.values(&[index], 1);

@@ -1,15 +1,15 @@
-//! Texture lookups at level 0, and at any level of detail. `packet` repeats them for packets:
+//! Texture lookups at level 0, and at any level of detail, and single texels. `packet` repeats them for packets:
 //! change both together.
 
-use glam::{UVec2, UVec3, Vec2, Vec3};
+use glam::{IVec2, IVec3, UVec2, UVec3, Vec2, Vec3};
 
-use super::filter::{filter1, filter2, filter3};
+use super::filter::{filter1, filter2, filter3, texel1, texel2, texel3};
 use super::texel::{Texel, TexelValue};
 use super::view::Texels;
 use crate::Type;
 use crate::kernel;
 use crate::machine::generic::{max, min};
-use crate::machine::{F, Machine, X2, X3};
+use crate::machine::{F, I, Machine, U, X2, X3};
 
 /// Returns the number of texels of an axis at a level.
 #[kernel]
@@ -107,6 +107,79 @@ leveled!(tex1_level tex1 at_level1 f32);
 leveled!(tex2_level tex2 at_level2 Vec2);
 leveled!(tex3_level tex3 at_level3 Vec3);
 
+#[kernel]
+pub(super) fn texels1<T: Texel>(texels: &Texels<'_, T>, level: u32) -> u32 {
+    let size = texels.size1();
+    if texels.has_levels() { size_at(size, min(level, texels.last_level())) } else { size }
+}
+
+#[kernel]
+pub(super) fn texels2<T: Texel>(texels: &Texels<'_, T>, level: u32) -> UVec2 {
+    let size = texels.size2();
+    if texels.has_levels() {
+        let level = min(level, texels.last_level());
+        UVec2::new(size_at(size.x, level), size_at(size.y, level))
+    } else {
+        size
+    }
+}
+
+#[kernel]
+pub(super) fn texels3<T: Texel>(texels: &Texels<'_, T>, level: u32) -> UVec3 {
+    let size = texels.size3();
+    if texels.has_levels() {
+        let level = min(level, texels.last_level());
+        UVec3::new(size_at(size.x, level), size_at(size.y, level), size_at(size.z, level))
+    } else {
+        size
+    }
+}
+
+#[kernel]
+pub(super) fn fetch1<T: Texel<Value = V>, V: TexelValue>(
+    texels: &Texels<'_, T>,
+    at: i32,
+    level: u32,
+) -> V {
+    if texels.has_levels() {
+        let whole = UVec3::new(texels.size1(), 1, 1);
+        let first = level_start(whole, min(level, texels.last_level()));
+        texel1(texels, texels1(texels, level), first, at)
+    } else {
+        texel1(texels, texels.size1(), 0u32, at)
+    }
+}
+
+#[kernel]
+pub(super) fn fetch2<T: Texel<Value = V>, V: TexelValue>(
+    texels: &Texels<'_, T>,
+    at: IVec2,
+    level: u32,
+) -> V {
+    if texels.has_levels() {
+        let whole = texels.size2();
+        let last = texels.last_level();
+        let first = level_start(UVec3::new(whole.x, whole.y, 1), min(level, last));
+        texel2(texels, texels2(texels, level), first, at)
+    } else {
+        texel2(texels, texels.size2(), 0u32, at)
+    }
+}
+
+#[kernel]
+pub(super) fn fetch3<T: Texel<Value = V>, V: TexelValue>(
+    texels: &Texels<'_, T>,
+    at: IVec3,
+    level: u32,
+) -> V {
+    if texels.has_levels() {
+        let first = level_start(texels.size3(), min(level, texels.last_level()));
+        texel3(texels, texels3(texels, level), first, at)
+    } else {
+        texel3(texels, texels.size3(), 0u32, at)
+    }
+}
+
 /// Selects the kernel for a number of axes.
 macro_rules! by_axes {
     ($d:ident: $one:expr, $two:expr, $three:expr) => {
@@ -154,6 +227,23 @@ impl<T: Texel> Texels<'_, T> {
             tex1_level::on(m, *self, x(0), level),
             tex2_level::on(m, *self, X2 { x: x(0), y: x(1) }, level),
             tex3_level::on(m, *self, X3 { x: x(0), y: x(1), z: x(2) }, level)
+        )
+    }
+
+    /// Runs the kernels of single texels at a place of `D` axes and a level.
+    #[inline(never)]
+    pub(crate) fn fetched_by_kernels<M: Machine, const D: usize>(
+        &self,
+        m: &M,
+        at: &[I<M>; D],
+        level: U<M>,
+    ) -> <T::Value as Type>::On<M> {
+        // As above.
+        let x = |i: usize| at[i];
+        by_axes!(D:
+            fetch1::on(m, *self, x(0), level),
+            fetch2::on(m, *self, X2 { x: x(0), y: x(1) }, level),
+            fetch3::on(m, *self, X3 { x: x(0), y: x(1), z: x(2) }, level)
         )
     }
 }

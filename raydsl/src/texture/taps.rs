@@ -49,6 +49,23 @@ fn texel_at(i: i32, n: i32, #[host] address: Address) -> u32 {
     }
 }
 
+/// Returns the texel at any place `i` of an axis.
+#[kernel]
+pub(super) fn texel_of(i: i32, size: u32, #[host] address: Address) -> u32 {
+    let n = size as i32;
+    // Divisions are slow, and most places are inside.
+    let is_inside = i >= 0 && i < n;
+    if address == Address::Wrap {
+        let j = if is_inside { i } else { i.rem_euclid(n) };
+        j as u32
+    } else if address == Address::Mirror {
+        let j = if is_inside { i } else { i.rem_euclid(2 * n) };
+        min(j, 2 * n - 1 - j) as u32
+    } else {
+        texel_at(i, n, address)
+    }
+}
+
 /// Returns the texel that contains `x`.
 #[kernel]
 pub(super) fn nearest_texel(x: f32, size: u32, #[host] address: Address) -> u32 {

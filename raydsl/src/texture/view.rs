@@ -6,7 +6,7 @@
 
 use glam::{UVec2, UVec3, Vec4};
 
-use super::config::{Address, Filter, LevelFilter, TextureConfig};
+use super::config::{Address, Filter, Filtering, LevelFilter, TextureConfig};
 use super::texel::{Texel, TexelValue};
 use crate::Type;
 use crate::machine::wgsl::BufferKey;
@@ -40,6 +40,12 @@ impl<'a, T> Texels<'a, T> {
     #[inline(always)]
     pub(crate) fn slice(&self) -> Slice<'a, T> {
         Slice::owned(self.all, self.key, self.name)
+    }
+
+    /// Returns the texels as they are read from a buffer, whatever a sampler makes of them.
+    pub(super) fn exact(&self) -> Self {
+        let config = TextureConfig { filtering: Filtering::Exact, ..self.config };
+        Self { config, ..*self }
     }
 }
 

@@ -155,14 +155,14 @@ fn framed(u: Vec2, a: f32, b: f32) -> (Frame, Vec3, Vec3, f32, f32, f32) {
     let z = sample_uniform_sphere(u);
     let frame = Frame::around(z);
     let local = vec3(a, b, 0.5);
-    let area = triangle_pdf(vec3(-1.0, 0.0, 0.0), vec3(1.0 + a, 0.0, 0.0), vec3(0.0, 1.0 + b, 0.0));
+    let (v0, v1, v2) = (vec3(-1.0, 0.0, 0.0), vec3(1.0 + a, 0.0, 0.0), vec3(0.0, 1.0 + b, 0.0));
     (
         frame,
         frame.to_world(local),
         frame.to_local(local),
         balance_heuristic(1.0, a, 2.0, b),
         power_heuristic(1.0, a, 2.0, b),
-        solid_angle_pdf(area, local, z.abs()),
+        solid_angle_pdf(1.0 / triangle::area(v0, v1, v2), local, z.abs()),
     )
 }
 

@@ -1,8 +1,9 @@
 //! Textures: facts of the formulas, an independent reference in `f64`, all variants, sizes, levels,
-//! files.
+//! single texels, files.
 
 mod example;
 mod facts;
+mod fetch;
 mod files;
 mod known;
 mod levels;

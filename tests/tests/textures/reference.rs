@@ -7,8 +7,8 @@ use raydsl_tests::scaled;
 
 use super::{ADDRESSES, FILTERS};
 
-/// The texel at place `i` of the endless lattice.
-fn at(i: i64, n: i64, address: Address) -> Option<i64> {
+/// The texel at place `i` of the endless lattice; `None` is the border.
+pub(super) fn at(i: i64, n: i64, address: Address) -> Option<i64> {
     match address {
         Address::Wrap => Some(i.rem_euclid(n)),
         Address::Mirror => {
