@@ -16,8 +16,13 @@ use crate::here::private;
 /// The number of bits in the set of a scene's variants.
 const MOST_KINDS: usize = 64;
 
-/// Returns the enum, its twin, and its implementation of `Primitive`.
-pub(super) fn choice(item: &syn::DeriveInput, e: &syn::DataEnum) -> TokenStream {
+/// Returns the enum, its twin, and its implementation of `Primitive`; and what `more` returns, if
+/// there is no mistake.
+pub(crate) fn primitive_enum(
+    item: &syn::DeriveInput,
+    e: &syn::DataEnum,
+    more: impl FnOnce() -> TokenStream,
+) -> TokenStream {
     let mut errors = Errors::default();
     let kinds = kinds(item, e, &mut errors);
     if !errors.is_empty() {
@@ -28,6 +33,7 @@ pub(super) fn choice(item: &syn::DeriveInput, e: &syn::DataEnum) -> TokenStream 
     let (copies, twin, conversions) = (copies(item), choice.twin(), choice.conversions());
     let (r#type, capture) = (choice.type_impl(), choice.capture());
     let (primitive, variants) = (choice.primitive_impl(), choice.lifted_variants());
+    let more = more();
     quote! {
         #copies
         #item
@@ -37,6 +43,7 @@ pub(super) fn choice(item: &syn::DeriveInput, e: &syn::DataEnum) -> TokenStream 
         #capture
         #primitive
         #variants
+        #more
     }
 }
 
