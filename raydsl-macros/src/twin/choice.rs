@@ -11,7 +11,7 @@ use super::shared::capture;
 use super::structure::twin_of;
 use crate::diag::Errors;
 use crate::generics::Generics;
-use crate::here::private;
+use crate::here::{At, in_one_place, private, private_here, quote_here, word};
 
 /// The number of bits in the set of a scene's variants.
 const MOST_KINDS: usize = 64;
@@ -257,7 +257,7 @@ impl Choice<'_> {
 
     fn primitive_impl(&self) -> TokenStream {
         let (p, name) = (private(), &self.item.ident);
-        let (record, shared) = (self.record(), self.shared());
+        let (record, shared, among) = (self.record(), self.shared(), self.shared_among());
         let count = self.kinds.len() as u32;
         let (slack, on_host, on_machine) =
             (self.constants(), self.host_functions(), self.machine_functions());
@@ -265,6 +265,7 @@ impl Choice<'_> {
             impl #p::Primitive for #name {
                 type Hit = #record;
                 type Shared = #shared;
+                #among
 
                 const KINDS: u32 = #count;
 
@@ -281,10 +282,48 @@ impl Choice<'_> {
         quote!(<#first as #p::Primitive>::Hit)
     }
 
-    /// Returns the type of the data that the primitives of a scene share.
+    /// Returns the type of the data that the primitives of a scene share: those of the kinds that
+    /// share some.
     fn shared(&self) -> TokenStream {
-        let (p, first) = (private(), &self.kinds[0].ty);
-        quote!(<#first as #p::Primitive>::Shared)
+        self.shared_or(quote!(()))
+    }
+
+    fn shared_or(&self, none: TokenStream) -> TokenStream {
+        let p = private();
+        let around = |inner, ty| quote!(<#ty as #p::Primitive>::SharedOr<#inner>);
+        self.types().into_iter().rev().fold(none, around)
+    }
+
+    /// Returns what the primitives share in an enum that this one is a kind of.
+    fn shared_among(&self) -> TokenStream {
+        let (p, of_t, of_u) = (private(), self.shared_or(quote!(__T)), self.shared_or(quote!(__U)));
+        let around = |inner, ty| {
+            quote!(<#ty as #p::Primitive>::map_shared(all, #[inline(always)] |all| #inner))
+        };
+        let mapped = self.types().into_iter().rev().fold(quote!(other(all)), around);
+        quote! {
+            type SharedOr<__T: #p::Type> = #of_t;
+
+            #[inline(always)]
+            fn map_shared<'__a, __T: #p::Type, __U: #p::Type>(
+                all: #p::Slice<'__a, #of_t>,
+                other: impl FnOnce(#p::Slice<'__a, __T>) -> #p::Slice<'__a, __U>,
+            ) -> #p::Slice<'__a, #of_u> {
+                #mapped
+            }
+        }
+    }
+
+    /// Returns what the primitives of each kind share, on the host and on a machine. The span is that
+    /// of the kind: there rustc reports kinds that share different data.
+    fn shared_of_kinds(&self, function: &str) -> Vec<TokenStream> {
+        let of_kind = |ty: &syn::Type| {
+            let _at = At::new(ty.span());
+            let (p, function) = (private_here(), word(function));
+            let (ty, shared) = (in_one_place(quote!(#ty)), in_one_place(self.shared()));
+            quote_here!(#p::#function::<#ty, #shared>(shared))
+        };
+        self.types().into_iter().map(of_kind).collect()
     }
 
     fn constants(&self) -> TokenStream {
@@ -318,17 +357,18 @@ impl Choice<'_> {
     fn host_functions(&self) -> TokenStream {
         let (p, record, shared) = (private(), self.record(), self.shared());
         let (names, types, numbers) = (self.names(), self.types(), self.numbers());
+        let own = self.shared_of_kinds("host_shared_of_kind");
         quote! {
             #[inline(always)]
             fn intersect(&self, ray: #p::Ray, shared: &[#shared]) -> #record {
                 match self {
-                    #(Self::#names(v) => <#types as #p::Primitive>::intersect(v, ray, shared),)*
+                    #(Self::#names(v) => <#types as #p::Primitive>::intersect(v, ray, #own),)*
                 }
             }
 
             fn get_bounds(&self, shared: &[#shared]) -> #p::Aabb {
                 match self {
-                    #(Self::#names(v) => <#types as #p::Primitive>::get_bounds(v, shared),)*
+                    #(Self::#names(v) => <#types as #p::Primitive>::get_bounds(v, #own),)*
                 }
             }
 
@@ -341,7 +381,7 @@ impl Choice<'_> {
                 match self {
                     #(
                         Self::#names(v) => {
-                            <#types as #p::Primitive>::split_primitive(v, axis, at, shared)
+                            <#types as #p::Primitive>::split_primitive(v, axis, at, #own)
                         }
                     )*
                 }
@@ -362,6 +402,7 @@ impl Choice<'_> {
         let (p, record, shared) = (private(), self.record(), self.shared());
         let (names, types, twin) = (self.names(), self.types(), self.twin_name());
         let among = self.intersect_among();
+        let own = self.shared_of_kinds("shared_of_kind");
         quote! {
             #[inline(always)]
             fn intersect_on<__M: #p::Machine>(
@@ -383,7 +424,7 @@ impl Choice<'_> {
                 match prim {
                     #(
                         Self::#names(v) => {
-                            <#types as #p::Primitive>::intersect_one_on(m, v, ray, shared)
+                            <#types as #p::Primitive>::intersect_one_on(m, v, ray, #own)
                         }
                     )*
                 }
@@ -406,6 +447,7 @@ impl Choice<'_> {
     /// primitive is of that variant.
     fn intersect_among(&self) -> TokenStream {
         let (p, types, numbers) = (private(), self.types(), self.numbers());
+        let own = self.shared_of_kinds("shared_of_kind");
         let wgsl_name = format!("{}_intersect", self.item.ident);
         quote! {
             static __INFO: #p::KernelInfo = #p::KernelInfo {
@@ -433,7 +475,7 @@ impl Choice<'_> {
                                 let prim = #p::of_words::<_, #types, _>(m, prim.words);
                                 found.set(
                                     m,
-                                    <#types as #p::Primitive>::intersect_on(m, prim, ray, shared)
+                                    <#types as #p::Primitive>::intersect_on(m, prim, ray, #own)
                                 );
                             },
                         );
