@@ -97,8 +97,8 @@ impl Sum {
         let (data, conversions, r#type) = (self.data(), self.conversions(), self.type_impl());
         let host = self.host();
         let capture = capture(&self.twin_type(), &host, &self.generics);
-        let functions = self.functions();
-        quote!(#data #conversions #r#type #capture #functions)
+        let (functions, comparison) = (self.functions(), self.comparison());
+        quote!(#data #conversions #r#type #capture #functions #comparison)
     }
 
     fn count(&self) -> u32 {
@@ -235,6 +235,30 @@ impl Sum {
 
                 fn read(bytes: &[u8]) -> Self {
                     Self::__of_data(#p::Type::read(bytes))
+                }
+            }
+        }
+    }
+
+    /// Returns the refusal of comparisons.
+    fn comparison(&self) -> TokenStream {
+        let (p, host, twin) = (private(), self.host(), self.twin_type());
+        let Generics { declared, predicates, .. } = &self.generics;
+        quote! {
+            impl<__M: #p::Machine, #declared> #p::OpCompare<__M, Self> for #twin
+            where
+                #host: #p::Comparable<__M>,
+                #predicates
+            {
+                type Output = #p::B<__M>;
+
+                fn compare<__O: #p::Op<#p::Compare>>(
+                    _: &__M,
+                    _: __O,
+                    _: Self,
+                    _: Self,
+                ) -> Self::Output {
+                    ::core::unreachable!()
                 }
             }
         }
