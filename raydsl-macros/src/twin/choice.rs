@@ -29,7 +29,7 @@ pub(crate) fn primitive_enum(
         let errors = errors.into_tokens();
         return quote!(#item #errors);
     }
-    let choice = Choice { item, data: format_ident!("{}Data", item.ident), kinds };
+    let choice = Choice { item, data: format_ident!("__{}Data", item.ident), kinds };
     let (copies, twin, conversions) = (copies(item), choice.twin(), choice.conversions());
     let (r#type, capture) = (choice.type_impl(), choice.capture());
     let (primitive, variants) = (choice.primitive_impl(), choice.lifted_variants());
@@ -140,7 +140,7 @@ impl Choice<'_> {
             syn::Data::Struct(s) => s.fields.iter().cloned().collect(),
             _ => Vec::new(),
         };
-        let twin = twin_of(&data, &fields, &quote!(#name));
+        let twin = twin_of(&data, &fields, name, &quote!(#name));
         quote!(#data #twin)
     }
 

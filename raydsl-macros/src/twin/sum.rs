@@ -105,8 +105,9 @@ impl Sum {
         self.variants.len() as u32
     }
 
+    /// Returns the name of the struct that represents the enum; no type of the user's has it.
     fn data_name(&self) -> Ident {
-        format_ident!("{}Data", self.item.ident)
+        format_ident!("__{}Data", self.item.ident)
     }
 
     fn host(&self) -> TokenStream {
@@ -144,7 +145,7 @@ impl Sum {
             syn::Data::Struct(s) => s.fields.iter().cloned().collect(),
             _ => Vec::new(),
         };
-        let twin = twin_of(&data, &fields, &self.host());
+        let twin = twin_of(&data, &fields, &self.item.ident, &self.host());
         quote!(#data #twin)
     }
 
