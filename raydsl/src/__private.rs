@@ -3,7 +3,7 @@
 pub use crate::bvh::{Joined, RayQuery, RayQueryOn, SceneArgument};
 pub use crate::geometry::{
     Aabb, Hit, HitOn, HitRecord, Kinds, Lacking, Primitive, Ray, RayOn, SurfacePointOn,
-    host_shared_of_kind, shared_of_kind,
+    shared_of_kind, shared_slice,
 };
 pub use crate::kernel::{Counting, Kernel, Lifted, Native4, Native8, Native16};
 pub use crate::machine::lifted::*;

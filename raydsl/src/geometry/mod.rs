@@ -29,7 +29,7 @@ pub use affine::transform_ray;
 pub use hit::{Hit, HitOn, HitRecord};
 pub use lacking::Lacking;
 pub use origin::offset_origin;
-pub use primitive::{Kinds, Primitive, SharedAs, host_shared_of_kind, shared_of_kind};
+pub use primitive::{Kinds, Primitive, SharedAs, shared_of_kind, shared_slice};
 pub use ray::{Ray, RayOn};
 pub use surface::{SurfacePoint, SurfacePointOn};
 pub use triangle::{IndexedTriangle, Triangle};

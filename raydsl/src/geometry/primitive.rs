@@ -153,15 +153,12 @@ pub fn shared_of_kind<K: Primitive, T: Type>(all: Slice<'_, T>) -> Slice<'_, K::
 where
     K::SharedOr<T>: SharedAs<T>,
 {
-    K::map_shared(<K::SharedOr<T> as SharedAs<T>>::of(all), |_| Slice::new(&[], "shared"))
+    K::map_shared(<K::SharedOr<T> as SharedAs<T>>::of(all), |_| shared_slice(&[]))
 }
 
-/// Converts like [`shared_of_kind`], on the host.
+/// Returns shared data of the host as a slice of a machine.
 #[doc(hidden)]
 #[inline(always)]
-pub fn host_shared_of_kind<K: Primitive, T: Type>(all: &[T]) -> &[K::SharedOr<()>]
-where
-    K::SharedOr<T>: SharedAs<T>,
-{
-    shared_of_kind::<K, T>(Slice::new(all, "shared")).elements()
+pub fn shared_slice<T: Type>(all: &[T]) -> Slice<'_, T> {
+    Slice::new(all, "shared")
 }
