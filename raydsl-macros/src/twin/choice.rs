@@ -169,7 +169,11 @@ impl Choice<'_> {
 
     fn constants(&self) -> TokenStream {
         let (p, types) = (private(), self.types());
+        let is_one = types.len() == 1;
         quote! {
+            /// That of the kind, if there is one.
+            const IS_SHORT: bool = #is_one && #(<#types as #p::Primitive>::IS_SHORT)&&*;
+
             /// The largest of all kinds.
             const SLACK: f32 = {
                 let mut most = 0.0;
