@@ -15,7 +15,7 @@ pub(crate) struct Ball {
 
 // ANCHOR: enum
 /// What a scene is made of; its WGSL has the kinds that are there.
-#[primitive]
+#[primitive(normal)]
 #[derive(Debug)]
 pub(crate) enum Shape {
     /// A sphere.
@@ -80,7 +80,7 @@ fn toward(light: Light, at: Vec3) -> Vec3 {
     }
 }
 
-/// Colour of what a ray meets: the shape's kind chooses the normal, the material's type the shade.
+/// Colour of what a ray meets: the shape's kind chooses the normal and the material.
 #[kernel]
 pub(crate) fn radiance<A: Material, B: Material>(
     scene: &Bvh<Shape>,
@@ -95,9 +95,11 @@ pub(crate) fn radiance<A: Material, B: Material>(
     }
     let way = toward(light, ray.at(hit.t));
     // ANCHOR: match
-    match scene.primitive(hit) {
-        Shape::Ball(ball) => balls.shade(ball.normal(ray, hit).dot(way)),
-        Shape::Facet(facet) => facets.shade(facet.normal(ray, hit).dot(way).abs()),
+    let shape = scene.primitive(hit);
+    let cos = shape.normal(ray, hit).dot(way);
+    match shape {
+        Shape::Ball(_) => balls.shade(cos),
+        Shape::Facet(_) => facets.shade(cos.abs()),
     }
     // ANCHOR_END: match
 }

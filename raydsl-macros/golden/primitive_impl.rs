@@ -125,6 +125,16 @@ where
 impl ::raydsl::__private::Primitive for ColorSphere {
     type Hit = Hit;
     type Shared = ();
+    type SharedOr<__T: ::raydsl::__private::Type> = __T;
+    #[inline(always)]
+    fn map_shared<'__a, __T: ::raydsl::__private::Type, __U: ::raydsl::__private::Type>(
+        all: ::raydsl::__private::Slice<'__a, __T>,
+        other: impl FnOnce(
+            ::raydsl::__private::Slice<'__a, __T>,
+        ) -> ::raydsl::__private::Slice<'__a, __U>,
+    ) -> ::raydsl::__private::Slice<'__a, __U> {
+        other(all)
+    }
     const SLACK: f32 = <ColorSphere>::SLACK;
     #[inline(always)]
     fn intersect(&self, ray: ::raydsl::__private::Ray, shared: &[()]) -> Hit {

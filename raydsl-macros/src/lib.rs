@@ -131,6 +131,10 @@ fn expand_closure(input: proc_macro2::TokenStream) -> proc_macro2::TokenStream {
 /// `#[primitive(disk(center, normal, radius))]` on a struct suffices for a shape of the library:
 /// `sphere`, `triangle`, `quad`, `rectangle` (any parallelogram), `disk`, `plane`, `cylinder`,
 /// `tube`, `cone` or `cuboid`. Each is a module of `raydsl::geometry`.
+///
+/// An enum of primitives is a primitive. `#[primitive(normal, area)]` on it forwards these methods
+/// to its kinds: some of `surface_point`, `normal`, `uv`, `area`, `sample`, and `Surface`, the trait
+/// of what integrators shade.
 #[proc_macro_attribute]
 pub fn primitive(args: TokenStream, item: TokenStream) -> TokenStream {
     rewrite::with_readable_names(expand_primitive(args.into(), item.into())).into()
@@ -155,6 +159,10 @@ fn expand_primitive(
         let what = "`#[primitive]` stands on a struct and on its impl";
         return refused(&item, &item, what, "write `#[primitive] struct Name { ... }`");
     };
+    if let syn::Data::Enum(e) = &s.data {
+        let forwarded = || items::forwarded(args, &s, e);
+        return twin::primitive_enum(&s, e, forwarded);
+    }
     let twin = twin::primitive_item(&s);
     if args.is_empty() {
         return twin;

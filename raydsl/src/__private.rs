@@ -2,7 +2,8 @@
 
 pub use crate::bvh::{Joined, RayQueryOn, RecordQuery, SceneArgument, Tabled};
 pub use crate::geometry::{
-    Aabb, Hit, HitOn, HitRecord, Kinds, Primitive, Ray, RayOn, SurfacePointOn,
+    Aabb, Hit, HitOn, HitRecord, Kinds, Lacking, Primitive, Ray, RayOn, SurfacePointOn,
+    shared_of_kind, shared_slice,
 };
 pub use crate::kernel::{Counting, Kernel, Lifted, Native4, Native8, Native16};
 pub use crate::machine::lifted::*;

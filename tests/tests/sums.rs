@@ -475,3 +475,60 @@ fn enums_of_many_variants() {
         assert_variants_agree!(&kernel, &(0..5).map(|i| (i,)).collect::<Vec<(u32,)>>());
     }
 }
+
+/// Types with the names that those of generated code might have.
+mod names {
+    use raydsl::prelude::*;
+    use raydsl::{Type, assert_variants_agree, kernel};
+
+    #[derive(Clone, Copy, Debug, PartialEq, Type)]
+    enum Material {
+        Glow(MaterialData),
+        Matte(Vec3),
+    }
+
+    #[derive(Clone, Copy, Debug, PartialEq, Type)]
+    struct MaterialData {
+        light: Vec3,
+    }
+
+    #[primitive(sphere(center, radius))]
+    #[derive(Debug)]
+    struct ShapeData {
+        center: Vec3,
+        radius: f32,
+    }
+
+    #[primitive]
+    enum Shape {
+        Ball(ShapeData),
+    }
+
+    #[kernel]
+    fn light_of(material: Material, x: f32) -> Vec3 {
+        match material {
+            Material::Glow(data) => data.light * x,
+            Material::Matte(color) => color,
+        }
+    }
+
+    /// WGSL has the name of the enum.
+    #[test]
+    fn names_of_generated_types_are_free() {
+        let all = [Material::Glow(MaterialData { light: Vec3::X }), Material::Matte(Vec3::Y)];
+        let shapes = [Shape::Ball(ShapeData { center: Vec3::Z, radius: 0.5 })];
+        let (list, shapes) = (&all[..], &shapes[..]);
+        let kernel = kernel!(|ray: Ray, i: u32| {
+            let hit = shapes.closest_hit(ray);
+            light_of(list[i as usize], if hit.is_hit { hit.t } else { 3.0 })
+        });
+        let inputs: Vec<(Ray, u32)> =
+            (0..20).map(|i| (Ray::new(Vec3::X * i as f32 * 0.1, Vec3::Z), i % 2)).collect();
+        assert_variants_agree!(&kernel, &inputs);
+        let text = kernel.wgsl();
+        for name in ["struct Material {", "struct MaterialData {", "struct Shape {"] {
+            assert!(text.contains(name), "{name}\n{text}");
+        }
+        assert!(!text.contains("__"), "{text}");
+    }
+}

@@ -180,7 +180,8 @@ fn complaints(file: &str, source: &str, said: &str) -> Vec<String> {
     let (mistakes, errors) = (mistakes(source), errors(said, file));
     let Some(first) = mistakes.first() else { return vec!["no mistake is marked".to_owned()] };
     for word in INNER_WORDS {
-        if said.contains(word) {
+        let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        if said.split(|c| !is_part(c)).any(|w| w == word) {
             wrong.push(format!("shows the word {word}"));
         }
     }

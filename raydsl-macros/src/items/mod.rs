@@ -1,6 +1,7 @@
 //! Expansion of items: kernels and primitives.
 
 mod closure;
+mod forward;
 mod function;
 mod methods;
 mod operators;
@@ -9,6 +10,7 @@ mod scene;
 mod shape;
 
 pub(crate) use closure::{ClosureKernel, kernel_closure};
+pub(crate) use forward::forwarded;
 pub(crate) use function::{KnownBy, kernel_fn};
 pub(crate) use methods::{kernel_impl, kernel_trait};
 pub(crate) use primitive::primitive_impl;

@@ -30,7 +30,7 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
         let (name, ty) = (Ident::new(name, Span::call_site()), Ident::new(ty, Span::call_site()));
         quote!(const #name: #ty = <#self_ty>::#name;)
     });
-    let (record, shared) = (parts.record(), parts.shared());
+    let (record, shared, among) = (parts.record(), parts.shared(), parts.shared_among());
     // A function only gets the shared slice if it takes it.
     let given =
         |f: Option<&Function<'_>>| f.is_some_and(|f| f.shared.is_some()).then(|| quote!(, shared));
@@ -53,6 +53,7 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
         impl #p::Primitive for #self_ty {
             type Hit = #record;
             type Shared = #shared;
+            #among
             #(#constants)*
 
             #[inline(always)]
@@ -89,11 +90,12 @@ fn mistaken(item: &syn::ItemImpl, parts: &Parts<'_>) -> TokenStream {
     let is_record = |ty: &&syn::Type| type_name(ty).is_some_and(|name| !ops::is_of_library(&name));
     let record = parts.intersect.as_ref().and_then(|f| f.result).filter(is_record);
     let record = record.map_or_else(|| quote!(#p::Hit), |ty| quote!(#ty));
-    let shared = parts.shared();
+    let (shared, among) = (parts.shared(), parts.shared_among());
     quote! {
         impl #p::Primitive for #self_ty {
             type Hit = #record;
             type Shared = #shared;
+            #among
 
             fn intersect(&self, _: #p::Ray, _: &[#shared]) -> #record {
                 ::core::unreachable!()
@@ -226,6 +228,27 @@ impl<'a> Parts<'a> {
     fn shared(&self) -> TokenStream {
         let shared = self.functions().find_map(|f| f.shared);
         shared.map_or_else(|| quote!(()), |ty| quote!(#ty))
+    }
+
+    /// Returns what the primitives share in an enum of several kinds: their own data, or those of
+    /// the others.
+    fn shared_among(&self) -> TokenStream {
+        let (p, shared) = (private(), self.functions().find_map(|f| f.shared));
+        let (of_t, of_u, other, mapped) = match shared {
+            Some(ty) => (quote!(#ty), quote!(#ty), quote!(_), quote!(all)),
+            None => (quote!(__T), quote!(__U), quote!(other), quote!(other(all))),
+        };
+        quote! {
+            type SharedOr<__T: #p::Type> = #of_t;
+
+            #[inline(always)]
+            fn map_shared<'__a, __T: #p::Type, __U: #p::Type>(
+                all: #p::Slice<'__a, #of_t>,
+                #other: impl FnOnce(#p::Slice<'__a, __T>) -> #p::Slice<'__a, __U>,
+            ) -> #p::Slice<'__a, #of_u> {
+                #mapped
+            }
+        }
     }
 
     /// Checks that all functions take the same slice.

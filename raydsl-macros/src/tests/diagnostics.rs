@@ -299,6 +299,23 @@ fn primitives() {
 }
 
 #[test]
+fn forwarded_methods() {
+    let one = |args: TokenStream, what, help| {
+        let item = quote!(
+            enum S {
+                A(Ball),
+                B(Triangle),
+            }
+        );
+        assert_one(expand_primitive(args, item), what, help);
+    };
+    one(quote!(normal, tangent), "cannot forward `tangent`", "`surface_point`, `normal`, `uv`");
+    one(quote!(area, normal, area), "`area` is there twice", "leave one of them out");
+    one(quote!(sphere(center, radius)), "takes names of methods", "`Surface`, or nothing");
+    one(quote!(area = 1), "takes names of methods", "`sample`");
+}
+
+#[test]
 fn derives() -> syn::Result<()> {
     for (item, what) in [
         (

@@ -1,42 +1,40 @@
 //! Expansion of `#[primitive] enum`: one of several kinds of primitives, without virtual calls.
 //!
-//! The twin is the discriminant of the variant and the scalars of its primitive, one word each.
+//! The twin is that of an enum with fields, whose variants share words.
 
 use proc_macro2::{Ident, TokenStream};
-use quote::{format_ident, quote};
+use quote::quote;
 use syn::spanned::Spanned;
 
 use super::copies;
-use super::shared::capture;
-use super::structure::twin_of;
+use super::sum::Sum;
 use crate::diag::Errors;
-use crate::generics::Generics;
-use crate::here::private;
+use crate::here::{At, in_one_place, private, private_here, quote_here};
 
 /// The number of bits in the set of a scene's variants.
 const MOST_KINDS: usize = 64;
 
-/// Returns the enum, its twin, and its implementation of `Primitive`.
-pub(super) fn choice(item: &syn::DeriveInput, e: &syn::DataEnum) -> TokenStream {
+/// Returns the enum, its twin, and its implementation of `Primitive`; and what `more` returns, if
+/// there is no mistake.
+pub(crate) fn primitive_enum(
+    item: &syn::DeriveInput,
+    e: &syn::DataEnum,
+    more: impl FnOnce() -> TokenStream,
+) -> TokenStream {
     let mut errors = Errors::default();
     let kinds = kinds(item, e, &mut errors);
     if !errors.is_empty() {
         let errors = errors.into_tokens();
         return quote!(#item #errors);
     }
-    let choice = Choice { item, data: format_ident!("{}Data", item.ident), kinds };
-    let (copies, twin, conversions) = (copies(item), choice.twin(), choice.conversions());
-    let (r#type, capture) = (choice.type_impl(), choice.capture());
-    let (primitive, variants) = (choice.primitive_impl(), choice.lifted_variants());
+    let (copies, twin, more) = (copies(item), Sum::of_kinds(item, e).twin(), more());
+    let primitive = Choice { name: &item.ident, kinds }.primitive_impl();
     quote! {
         #copies
         #item
         #twin
-        #conversions
-        #r#type
-        #capture
         #primitive
-        #variants
+        #more
     }
 }
 
@@ -76,18 +74,11 @@ fn kinds(item: &syn::DeriveInput, e: &syn::DataEnum, errors: &mut Errors) -> Vec
 }
 
 struct Choice<'a> {
-    item: &'a syn::DeriveInput,
-    /// The struct that represents the enum where its layout matters.
-    data: Ident,
+    name: &'a Ident,
     kinds: Vec<Kind>,
 }
 
 impl Choice<'_> {
-    fn twin_name(&self) -> Ident {
-        let data = &self.data;
-        format_ident!("{data}On")
-    }
-
     fn names(&self) -> Vec<&Ident> {
         self.kinds.iter().map(|k| &k.name).collect()
     }
@@ -100,157 +91,9 @@ impl Choice<'_> {
         (0..self.kinds.len() as u32).collect()
     }
 
-    /// Returns the number of words of the largest variant.
-    fn words(&self) -> TokenStream {
-        let (p, types) = (private(), self.types());
-        quote!({
-            let mut most = 1;
-            #(
-                let words = <#types as #p::Type>::SCHEMA.leaves();
-                if words > most {
-                    most = words;
-                }
-            )*
-            most
-        })
-    }
-
-    /// Returns the struct of the discriminant and the words, and its twin.
-    fn twin(&self) -> TokenStream {
-        let (vis, data, name) = (&self.item.vis, &self.data, &self.item.ident);
-        let doc = format!("A [`{name}`] as its kind's number and a word for each scalar.");
-        let words = self.words();
-        let data: syn::DeriveInput = syn::parse_quote! {
-            #[doc = #doc]
-            #[derive(Clone, Copy)]
-            #[repr(C)]
-            #vis struct #data {
-                kind: u32,
-                words: [u32; #words],
-            }
-        };
-        let fields: Vec<syn::Field> = match &data.data {
-            syn::Data::Struct(s) => s.fields.iter().cloned().collect(),
-            _ => Vec::new(),
-        };
-        let twin = twin_of(&data, &fields, &quote!(#name));
-        quote!(#data #twin)
-    }
-
-    /// Returns the functions for variants in patterns and expressions of kernels.
-    fn lifted_variants(&self) -> TokenStream {
-        let (p, name, twin) = (private(), &self.item.ident, self.twin_name());
-        let (names, types, numbers) = (self.names(), self.types(), self.numbers());
-        let count = self.kinds.len() as u32;
-        let asks: Vec<Ident> = names.iter().map(|n| format_ident!("__is_{n}_on")).collect();
-        let takes: Vec<Ident> = names.iter().map(|n| format_ident!("__{n}_0_on")).collect();
-        let makes: Vec<Ident> = names.iter().map(|n| format_ident!("{n}_on")).collect();
-        quote! {
-            #[doc(hidden)]
-            #[allow(non_snake_case, dead_code, reason = "named as the variants")]
-            impl #name {
-                #(
-                    #[inline(always)]
-                    pub fn #asks<__M: #p::Machine>(m: &__M, prim: #twin<__M>) -> #p::B<__M> {
-                        #p::is_kind(m, prim.kind, #numbers, #count)
-                    }
-
-                    #[inline(always)]
-                    pub fn #takes<__M: #p::Machine>(
-                        m: &__M,
-                        prim: #twin<__M>,
-                    ) -> <#types as #p::Type>::On<__M> {
-                        #p::of_words::<_, #types, _>(m, prim.words)
-                    }
-
-                    #[inline(always)]
-                    pub fn #makes<__M: #p::Machine>(
-                        m: &__M,
-                        prim: <#types as #p::Type>::On<__M>,
-                    ) -> #twin<__M> {
-                        #twin {
-                            kind: #p::u32(m, #numbers),
-                            words: #p::to_words_on::<_, #types, _>(m, prim),
-                        }
-                    }
-                )*
-            }
-        }
-    }
-
-    /// Returns the conversions between the enum and the struct that represents it.
-    fn conversions(&self) -> TokenStream {
-        let (p, name, data) = (private(), &self.item.ident, &self.data);
-        let (names, types, numbers) = (self.names(), self.types(), self.numbers());
-        let (first, first_ty) = (&self.kinds[0].name, &self.kinds[0].ty);
-        quote! {
-            impl #name {
-                #[inline(always)]
-                fn __data(self) -> #data {
-                    match self {
-                        #(Self::#names(v) => #data { kind: #numbers, words: #p::to_words(v) },)*
-                    }
-                }
-
-                /// The first kind for a number that no kind has.
-                fn __of_data(data: #data) -> Self {
-                    match data.kind {
-                        #(#numbers => Self::#names(#p::host_of_words::<#types, _>(data.words)),)*
-                        _ => Self::#first(#p::host_of_words::<#first_ty, _>(data.words)),
-                    }
-                }
-            }
-        }
-    }
-
-    /// Returns the implementation of the enum as a type of kernels.
-    fn type_impl(&self) -> TokenStream {
-        let (p, name, data) = (private(), &self.item.ident, &self.data);
-        let twin = self.twin_name();
-        quote! {
-            #[diagnostic::do_not_recommend]
-            impl #p::Type for #name {
-                type On<__M: #p::Machine> = #twin<__M>;
-
-                const SCHEMA: &'static #p::Schema = <#data as #p::Type>::SCHEMA;
-
-                #[inline(always)]
-                fn splat<__M: #p::Machine>(m: &__M, v: Self) -> #twin<__M> {
-                    #p::Type::splat(m, v.__data())
-                }
-
-                #[inline(always)]
-                fn from_lanes<__M: #p::LaneMachine>(
-                    m: &__M,
-                    f: impl Fn(usize) -> Self + Copy,
-                ) -> #twin<__M> {
-                    #p::Type::from_lanes(m, #[inline(always)] |lane| f(lane).__data())
-                }
-
-                #[inline(always)]
-                fn lane<__M: #p::LaneMachine>(v: &#twin<__M>, lane: usize) -> Self {
-                    Self::__of_data(#p::Type::lane(v, lane))
-                }
-
-                fn write(&self, out: &mut [u8]) {
-                    #p::Type::write(&self.__data(), out);
-                }
-
-                fn read(bytes: &[u8]) -> Self {
-                    Self::__of_data(#p::Type::read(bytes))
-                }
-            }
-        }
-    }
-
-    fn capture(&self) -> TokenStream {
-        let (name, twin) = (&self.item.ident, self.twin_name());
-        capture(&quote!(#twin<__M>), &quote!(#name), &Generics::default())
-    }
-
     fn primitive_impl(&self) -> TokenStream {
-        let (p, name) = (private(), &self.item.ident);
-        let (record, shared) = (self.record(), self.shared());
+        let (p, name) = (private(), self.name);
+        let (record, shared, among) = (self.record(), self.shared(), self.shared_among());
         let count = self.kinds.len() as u32;
         let (slack, on_host, on_machine) =
             (self.constants(), self.host_functions(), self.machine_functions());
@@ -258,6 +101,7 @@ impl Choice<'_> {
             impl #p::Primitive for #name {
                 type Hit = #record;
                 type Shared = #shared;
+                #among
 
                 const KINDS: u32 = #count;
 
@@ -274,15 +118,62 @@ impl Choice<'_> {
         quote!(<#first as #p::Primitive>::Hit)
     }
 
-    /// Returns the type of the data that the primitives of a scene share.
+    /// Returns the type of the data that the primitives of a scene share: those of the kinds that
+    /// share some.
     fn shared(&self) -> TokenStream {
-        let (p, first) = (private(), &self.kinds[0].ty);
-        quote!(<#first as #p::Primitive>::Shared)
+        self.shared_or(quote!(()))
+    }
+
+    fn shared_or(&self, none: TokenStream) -> TokenStream {
+        let p = private();
+        let around = |inner, ty| quote!(<#ty as #p::Primitive>::SharedOr<#inner>);
+        self.types().into_iter().rev().fold(none, around)
+    }
+
+    /// Returns what the primitives share in an enum that this one is a kind of.
+    fn shared_among(&self) -> TokenStream {
+        let (p, of_t, of_u) = (private(), self.shared_or(quote!(__T)), self.shared_or(quote!(__U)));
+        let around = |inner, ty| quote!(<#ty as #p::Primitive>::map_shared(all, #[inline(always)] |all| #inner));
+        let mapped = self.types().into_iter().rev().fold(quote!(other(all)), around);
+        quote! {
+            type SharedOr<__T: #p::Type> = #of_t;
+
+            #[inline(always)]
+            fn map_shared<'__a, __T: #p::Type, __U: #p::Type>(
+                all: #p::Slice<'__a, #of_t>,
+                other: impl FnOnce(#p::Slice<'__a, __T>) -> #p::Slice<'__a, __U>,
+            ) -> #p::Slice<'__a, #of_u> {
+                #mapped
+            }
+        }
+    }
+
+    /// Returns what the primitives of each kind share, of the slice `shared`. The span is that of the
+    /// kind: there rustc reports kinds that share different data.
+    fn shared_of_kinds(&self, shared: &TokenStream) -> Vec<TokenStream> {
+        let of_kind = |ty: &syn::Type| {
+            let _at = At::new(ty.span());
+            let p = private_here();
+            let (ty, all) = (in_one_place(quote!(#ty)), in_one_place(self.shared()));
+            quote_here!(#p::shared_of_kind::<#ty, #all>(#shared))
+        };
+        self.types().into_iter().map(of_kind).collect()
+    }
+
+    /// Returns the same on the host.
+    fn host_shared_of_kinds(&self) -> Vec<TokenStream> {
+        let p = private();
+        let all = self.shared_of_kinds(&quote!(#p::shared_slice(shared)));
+        all.into_iter().map(|own| quote!(#own.elements())).collect()
     }
 
     fn constants(&self) -> TokenStream {
         let (p, types) = (private(), self.types());
+        let is_one = types.len() == 1;
         quote! {
+            /// That of the kind, if there is one.
+            const IS_SHORT: bool = #is_one && #(<#types as #p::Primitive>::IS_SHORT)&&*;
+
             /// The largest of all kinds.
             const SLACK: f32 = {
                 let mut most = 0.0;
@@ -311,17 +202,18 @@ impl Choice<'_> {
     fn host_functions(&self) -> TokenStream {
         let (p, record, shared) = (private(), self.record(), self.shared());
         let (names, types, numbers) = (self.names(), self.types(), self.numbers());
+        let own = self.host_shared_of_kinds();
         quote! {
             #[inline(always)]
             fn intersect(&self, ray: #p::Ray, shared: &[#shared]) -> #record {
                 match self {
-                    #(Self::#names(v) => <#types as #p::Primitive>::intersect(v, ray, shared),)*
+                    #(Self::#names(v) => <#types as #p::Primitive>::intersect(v, ray, #own),)*
                 }
             }
 
             fn get_bounds(&self, shared: &[#shared]) -> #p::Aabb {
                 match self {
-                    #(Self::#names(v) => <#types as #p::Primitive>::get_bounds(v, shared),)*
+                    #(Self::#names(v) => <#types as #p::Primitive>::get_bounds(v, #own),)*
                 }
             }
 
@@ -334,7 +226,7 @@ impl Choice<'_> {
                 match self {
                     #(
                         Self::#names(v) => {
-                            <#types as #p::Primitive>::split_primitive(v, axis, at, shared)
+                            <#types as #p::Primitive>::split_primitive(v, axis, at, #own)
                         }
                     )*
                 }
@@ -353,13 +245,14 @@ impl Choice<'_> {
     /// some.
     fn machine_functions(&self) -> TokenStream {
         let (p, record, shared) = (private(), self.record(), self.shared());
-        let (names, types, twin) = (self.names(), self.types(), self.twin_name());
+        let (names, types) = (self.names(), self.types());
         let among = self.intersect_among();
+        let own = self.shared_of_kinds(&quote!(shared));
         quote! {
             #[inline(always)]
             fn intersect_on<__M: #p::Machine>(
                 m: &__M,
-                prim: #twin<__M>,
+                prim: <Self as #p::Type>::On<__M>,
                 ray: #p::RayOn<__M>,
                 shared: #p::Slice<'_, #shared>,
             ) -> <#record as #p::Type>::On<__M> {
@@ -376,7 +269,7 @@ impl Choice<'_> {
                 match prim {
                     #(
                         Self::#names(v) => {
-                            <#types as #p::Primitive>::intersect_one_on(m, v, ray, shared)
+                            <#types as #p::Primitive>::intersect_one_on(m, v, ray, #own)
                         }
                     )*
                 }
@@ -386,7 +279,7 @@ impl Choice<'_> {
             fn intersect_among_on<__M: #p::Machine>(
                 m: &__M,
                 kinds: #p::Kinds,
-                prim: #twin<__M>,
+                prim: <Self as #p::Type>::On<__M>,
                 ray: #p::RayOn<__M>,
                 shared: #p::Slice<'_, #shared>,
             ) -> <#record as #p::Type>::On<__M> {
@@ -399,7 +292,9 @@ impl Choice<'_> {
     /// primitive is of that variant.
     fn intersect_among(&self) -> TokenStream {
         let (p, types, numbers) = (private(), self.types(), self.numbers());
-        let wgsl_name = format!("{}_intersect", self.item.ident);
+        let count = self.kinds.len() as u32;
+        let own = self.shared_of_kinds(&quote!(shared));
+        let wgsl_name = format!("{}_intersect", self.name);
         quote! {
             static __INFO: #p::KernelInfo = #p::KernelInfo {
                 name: #wgsl_name,
@@ -421,12 +316,13 @@ impl Choice<'_> {
                             kinds,
                             prim.kind,
                             #numbers,
+                            #count,
                             #[inline(always)]
                             || {
                                 let prim = #p::of_words::<_, #types, _>(m, prim.words);
                                 found.set(
                                     m,
-                                    <#types as #p::Primitive>::intersect_on(m, prim, ray, shared)
+                                    <#types as #p::Primitive>::intersect_on(m, prim, ray, #own)
                                 );
                             },
                         );

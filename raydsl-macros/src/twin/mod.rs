@@ -17,6 +17,7 @@ use crate::diag::Errors;
 use crate::generics::{mentions, says_nothing_of_kernels};
 use crate::parse;
 
+pub(crate) use choice::primitive_enum;
 pub(crate) use record::hit_record;
 
 /// Expands `#[derive(Type)]`.
@@ -72,12 +73,9 @@ fn bound_parameters(generics: &mut syn::Generics, fields: &[syn::Field], errors:
     }
 }
 
-/// Expands `#[primitive] struct`, or `enum` of primitives.
+/// Expands `#[primitive] struct`.
 pub(crate) fn primitive_item(item: &syn::DeriveInput) -> TokenStream {
     let mut errors = Errors::default();
-    if let syn::Data::Enum(e) = &item.data {
-        return choice::choice(item, e);
-    }
     let fields = named_fields(item, &mut errors);
     check_types(&fields, &mut errors);
     if let Some(g) = item.generics.params.first() {

@@ -9,23 +9,27 @@ use crate::here::private;
 
 /// Returns the twin struct and the implementations that connect it with the host's type.
 pub(super) fn twin(item: &syn::DeriveInput, fields: &[syn::Field]) -> TokenStream {
-    let structure = Structure::new(item, fields);
+    let structure = Structure::new(item, fields, &item.ident);
     structure.twin(&structure.host)
 }
 
-/// Returns [`twin()`], with the methods of `owner`.
+/// Returns [`twin()`] of the struct that represents an enum: it has the enum's name in WGSL, and its
+/// methods, those of `owner`.
 pub(super) fn twin_of(
     item: &syn::DeriveInput,
     fields: &[syn::Field],
+    name: &Ident,
     owner: &TokenStream,
 ) -> TokenStream {
-    Structure::new(item, fields).twin(owner)
+    Structure::new(item, fields, name).twin(owner)
 }
 
 struct Structure<'a> {
     item: &'a syn::DeriveInput,
     fields: &'a [syn::Field],
     generics: Generics,
+    /// The name of the type in WGSL and in documentation.
+    shown: &'a Ident,
     /// The twin's name.
     name: Ident,
     /// The host's type, with its parameters.
@@ -35,12 +39,12 @@ struct Structure<'a> {
 }
 
 impl<'a> Structure<'a> {
-    fn new(item: &'a syn::DeriveInput, fields: &'a [syn::Field]) -> Self {
+    fn new(item: &'a syn::DeriveInput, fields: &'a [syn::Field], shown: &'a Ident) -> Self {
         let generics = Generics::new(&item.generics);
         let (host, used) = (&item.ident, &generics.used);
         let name = format_ident!("{host}On");
         let (host, twin) = (quote!(#host<#used>), quote!(#name<__M, #used>));
-        Self { item, fields, generics, name, host, twin }
+        Self { item, fields, generics, shown, name, host, twin }
     }
 
     fn names(&self) -> Vec<&Ident> {
@@ -72,7 +76,7 @@ impl<'a> Structure<'a> {
         let Generics { declared, predicates, .. } = &self.generics;
         let (names, types) = (self.names(), self.types());
         let visible = self.fields.iter().map(|f| &f.vis);
-        let doc = format!("[`{}`] on a machine.", self.item.ident);
+        let doc = format!("[`{}`] on a machine.", self.shown);
         quote! {
             #[doc = #doc]
             #[allow(missing_docs, reason = "the members are those of the struct")]
@@ -111,7 +115,7 @@ impl<'a> Structure<'a> {
 
     fn schema(&self) -> TokenStream {
         let (p, types) = (private(), self.types());
-        let (name, names) = (self.item.ident.to_string(), self.names());
+        let (name, names) = (self.shown.to_string(), self.names());
         let texts = names.iter().map(ToString::to_string);
         let numbers = 0..names.len();
         quote! {

@@ -2,7 +2,8 @@
 //!
 //! Fields of one type share a slot: a variant has the first slots of each of its types. So a value
 //! is as large as its largest variant where variants have the same types, and what a machine knows of
-//! a number, its bounds of rounding, stays with it.
+//! a number, its bounds of rounding, stays with it. The kinds of an enum of primitives are all of
+//! different types: they share words instead, one for each scalar.
 
 use std::collections::HashMap;
 
@@ -17,12 +18,62 @@ use crate::diag::Errors;
 use crate::generics::Generics;
 use crate::here::private;
 
+/// How the fields of variants are stored.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Storage {
+    /// A slot of its type for each field.
+    Slots,
+    /// Words, which are those of the only field.
+    Words,
+}
+
 /// A field of a variant.
 struct Part {
     /// As patterns write it: a name, or a number.
     member: syn::Member,
     ty: syn::Type,
     slot: Ident,
+    storage: Storage,
+}
+
+impl Part {
+    /// Returns the slot's content for a value of the host.
+    fn host_stored(&self, value: &Ident) -> TokenStream {
+        let p = private();
+        match self.storage {
+            Storage::Slots => quote!(#value),
+            Storage::Words => quote!(#p::to_words(#value)),
+        }
+    }
+
+    /// Returns the value of the host that `data` holds.
+    fn host_loaded(&self) -> TokenStream {
+        let (p, ty, slot) = (private(), &self.ty, &self.slot);
+        match self.storage {
+            Storage::Slots => quote!(data.#slot),
+            Storage::Words => quote!(#p::host_of_words::<#ty, _>(data.#slot)),
+        }
+    }
+
+    /// Returns the slot's content for a value of the machine.
+    fn stored(&self, value: &Ident) -> TokenStream {
+        let (p, ty) = (private(), &self.ty);
+        match self.storage {
+            Storage::Slots => quote!(#p::Coerce::coerce(#value, m)),
+            Storage::Words => {
+                quote!(#p::to_words_on::<_, #ty, _>(m, #p::Coerce::coerce(#value, m)))
+            }
+        }
+    }
+
+    /// Returns the value of the machine that `value` holds.
+    fn loaded(&self) -> TokenStream {
+        let (p, ty, slot) = (private(), &self.ty, &self.slot);
+        match self.storage {
+            Storage::Slots => quote!(value.#slot),
+            Storage::Words => quote!(#p::of_words::<_, #ty, _>(m, value.#slot)),
+        }
+    }
 }
 
 struct Variant {
@@ -41,6 +92,34 @@ pub(super) struct Sum {
     slots: Vec<(Ident, syn::Type)>,
 }
 
+/// Slots of the types of fields.
+#[derive(Default)]
+struct Slots {
+    all: Vec<(Ident, syn::Type)>,
+    /// The slots of each type, by its text.
+    of_type: HashMap<String, Vec<Ident>>,
+}
+
+impl Slots {
+    /// Returns the slots for the fields of a variant.
+    fn of(&mut self, fields: &syn::Fields) -> Vec<Ident> {
+        let mut used: HashMap<String, usize> = HashMap::new();
+        let slot = |f: &syn::Field| {
+            let text = f.ty.to_token_stream().to_string();
+            let at = used.entry(text.clone()).or_default();
+            let known = self.of_type.entry(text).or_default();
+            if *at == known.len() {
+                let slot = format_ident!("slot_{}", self.all.len());
+                self.all.push((slot.clone(), f.ty.clone()));
+                known.push(slot);
+            }
+            *at += 1;
+            known[*at - 1].clone()
+        };
+        fields.iter().map(slot).collect()
+    }
+}
+
 impl Sum {
     /// Reads the variants; members that no kernel has are mistakes.
     pub(super) fn new(item: &syn::DeriveInput, e: &syn::DataEnum, errors: &mut Errors) -> Self {
@@ -48,47 +127,37 @@ impl Sum {
         check_types(&fields, errors);
         let mut item = item.clone();
         bound_parameters(&mut item.generics, &fields, errors);
-        let mut slots: Vec<(Ident, syn::Type)> = Vec::new();
-        // The slots of each type, by its text.
-        let mut of_type: HashMap<String, Vec<Ident>> = HashMap::new();
-        let mut variants = Vec::new();
-        for (number, v) in e.variants.iter().enumerate() {
-            let mut used: HashMap<String, usize> = HashMap::new();
-            let mut parts = Vec::new();
-            for (i, f) in v.fields.iter().enumerate() {
-                let text = f.ty.to_token_stream().to_string();
-                let at = used.entry(text.clone()).or_default();
-                let known = of_type.entry(text).or_default();
-                if *at == known.len() {
-                    let slot = format_ident!("slot_{}", slots.len());
-                    slots.push((slot.clone(), f.ty.clone()));
-                    known.push(slot);
-                }
-                let slot = known[*at].clone();
-                *at += 1;
-                let member = match &f.ident {
-                    Some(name) => syn::Member::Named(name.clone()),
-                    None => syn::Member::Unnamed(i.into()),
-                };
-                parts.push(Part { member, ty: f.ty.clone(), slot });
-            }
-            let is_named = matches!(v.fields, syn::Fields::Named(_));
-            if let Some((_, discriminant)) = &v.discriminant {
-                errors.at(
-                    discriminant.span(),
-                    "a variant of an enum with fields has no number of its own",
-                    "leave it out: variants are numbered from 0",
-                );
-            }
-            variants.push(Variant {
-                name: v.ident.clone(),
-                number: number as u32,
-                is_named,
-                parts,
-            });
+        for (_, discriminant) in e.variants.iter().filter_map(|v| v.discriminant.as_ref()) {
+            errors.at(
+                discriminant.span(),
+                "a variant of an enum with fields has no number of its own",
+                "leave it out: variants are numbered from 0",
+            );
         }
+        let mut slots = Slots::default();
+        let variants = variants(e, Storage::Slots, |fields| slots.of(fields));
         let generics = Generics::new(&item.generics);
-        Self { item, generics, variants, slots }
+        Self { item, generics, variants, slots: slots.all }
+    }
+
+    /// Reads the variants of an enum of primitives: each has one field.
+    pub(super) fn of_kinds(item: &syn::DeriveInput, e: &syn::DataEnum) -> Self {
+        let words = format_ident!("words");
+        let variants = variants(e, Storage::Words, |_| vec![words.clone()]);
+        let (p, types) = (private(), e.variants.iter().flat_map(|v| &v.fields).map(|f| &f.ty));
+        // As many as the largest kind has.
+        let count = quote!({
+            let mut most = 1;
+            #(
+                let words = <#types as #p::Type>::SCHEMA.leaves();
+                if words > most {
+                    most = words;
+                }
+            )*
+            most
+        });
+        let slots = vec![(words, syn::parse_quote!([u32; #count]))];
+        Self { item: item.clone(), generics: Generics::default(), variants, slots }
     }
 
     /// Returns the struct of the number and the slots, its twin, and the implementations that
@@ -97,16 +166,17 @@ impl Sum {
         let (data, conversions, r#type) = (self.data(), self.conversions(), self.type_impl());
         let host = self.host();
         let capture = capture(&self.twin_type(), &host, &self.generics);
-        let functions = self.functions();
-        quote!(#data #conversions #r#type #capture #functions)
+        let (functions, comparison) = (self.functions(), self.comparison());
+        quote!(#data #conversions #r#type #capture #functions #comparison)
     }
 
     fn count(&self) -> u32 {
         self.variants.len() as u32
     }
 
+    /// Returns the name of the struct that represents the enum; no type of the user's has it.
     fn data_name(&self) -> Ident {
-        format_ident!("{}Data", self.item.ident)
+        format_ident!("__{}", self.item.ident)
     }
 
     fn host(&self) -> TokenStream {
@@ -127,12 +197,11 @@ impl Sum {
     /// Returns the struct of the number and the slots, and its twin.
     fn data(&self) -> TokenStream {
         let (vis, data) = (&self.item.vis, self.data_name());
-        let doc = format!("[`{}`] as the number of its variant and its fields.", self.item.ident);
         let (names, types): (Vec<_>, Vec<_>) = self.slots.iter().cloned().unzip();
         let (declared, clause) = (&self.item.generics.params, &self.item.generics.where_clause);
         let (p, count) = (private(), self.count());
         let data: syn::DeriveInput = syn::parse_quote! {
-            #[doc = #doc]
+            #[doc(hidden)]
             #[derive(Clone, Copy)]
             #[repr(C)]
             #vis struct #data<#declared> #clause {
@@ -144,7 +213,7 @@ impl Sum {
             syn::Data::Struct(s) => s.fields.iter().cloned().collect(),
             _ => Vec::new(),
         };
-        let twin = twin_of(&data, &fields, &self.host());
+        let twin = twin_of(&data, &fields, &self.item.ident, &self.host());
         quote!(#data #twin)
     }
 
@@ -163,10 +232,11 @@ impl Sum {
             let (name, number, unused) = (&v.name, v.number, self.unused(v));
             let members = v.parts.iter().map(|part| &part.member);
             let slots: Vec<_> = v.parts.iter().map(|part| &part.slot).collect();
+            let stored = v.parts.iter().map(|part| part.host_stored(&part.slot));
             quote! {
                 Self::#name { #(#members: #slots,)* } => #data {
                     kind: #p::Kind(#number),
-                    #(#slots,)*
+                    #(#slots: #stored,)*
                     #(#unused: #p::zero_of(),)*
                 },
             }
@@ -174,8 +244,8 @@ impl Sum {
         let of = |v: &Variant| {
             let name = &v.name;
             let members = v.parts.iter().map(|part| &part.member);
-            let slots = v.parts.iter().map(|part| &part.slot);
-            quote!(Self::#name { #(#members: data.#slots,)* })
+            let loaded = v.parts.iter().map(Part::host_loaded);
+            quote!(Self::#name { #(#members: #loaded,)* })
         };
         let (first, others) = self.variants.split_first().expect("there is a variant");
         let first = of(first);
@@ -240,13 +310,37 @@ impl Sum {
         }
     }
 
+    /// Returns the refusal of comparisons.
+    fn comparison(&self) -> TokenStream {
+        let (p, host, twin) = (private(), self.host(), self.twin_type());
+        let Generics { declared, predicates, .. } = &self.generics;
+        quote! {
+            impl<__M: #p::Machine, #declared> #p::OpCompare<__M, Self> for #twin
+            where
+                #host: #p::Comparable<__M>,
+                #predicates
+            {
+                type Output = #p::B<__M>;
+
+                fn compare<__O: #p::Op<#p::Compare>>(
+                    _: &__M,
+                    _: __O,
+                    _: Self,
+                    _: Self,
+                ) -> Self::Output {
+                    ::core::unreachable!()
+                }
+            }
+        }
+    }
+
     /// Returns the functions for variants in patterns and expressions of kernels.
     fn functions(&self) -> TokenStream {
         let (host, Generics { declared, predicates, .. }) = (self.host(), &self.generics);
         let functions = self.variants.iter().map(|v| self.functions_of(v));
         quote! {
             #[doc(hidden)]
-            #[allow(non_snake_case, dead_code, reason = "named as the variants")]
+            #[allow(non_snake_case, unused, reason = "named as the variants")]
             impl<#declared> #host where #predicates {
                 #(#functions)*
             }
@@ -259,6 +353,7 @@ impl Sum {
         let (is, new) = (format_ident!("__is_{}_on", v.name), format_ident!("__new_{}_on", v.name));
         let parts = v.parts.iter().map(|part| {
             let (ty, slot, member) = (&part.ty, &part.slot, part.member.to_token_stream());
+            let (stored, loaded) = (part.stored(&format_ident!("part")), part.loaded());
             let get = format_ident!("__{}_{}_on", v.name, member.to_string());
             let set = format_ident!("__set_{}_{}_on", v.name, member.to_string());
             let set = v.is_named.then(|| {
@@ -270,7 +365,7 @@ impl Sum {
                         part: impl #p::Coerce<__M, <#ty as #p::Type>::On<__M>>,
                     ) -> #twin {
                         let mut value = value;
-                        value.#slot = #p::Coerce::coerce(part, m);
+                        value.#slot = #stored;
                         value
                     }
                 }
@@ -278,10 +373,10 @@ impl Sum {
             quote! {
                 #[inline(always)]
                 pub fn #get<__M: #p::Machine>(
-                    _: &__M,
+                    m: &__M,
                     value: #twin,
                 ) -> <#ty as #p::Type>::On<__M> {
-                    value.#slot
+                    #loaded
                 }
 
                 #set
@@ -291,6 +386,7 @@ impl Sum {
             let make = format_ident!("{}_on", v.name);
             let (slots, types): (Vec<_>, Vec<_>) =
                 v.parts.iter().map(|part| (&part.slot, &part.ty)).unzip();
+            let stored = v.parts.iter().map(|part| part.stored(&part.slot));
             quote! {
                 #[inline(always)]
                 pub fn #make<__M: #p::Machine>(
@@ -298,7 +394,7 @@ impl Sum {
                     #(#slots: impl #p::Coerce<__M, <#types as #p::Type>::On<__M>>,)*
                 ) -> #twin {
                     let mut value = Self::#new(m);
-                    #(value.#slots = #p::Coerce::coerce(#slots, m);)*
+                    #(value.#slots = #stored;)*
                     value
                 }
             }
@@ -321,4 +417,28 @@ impl Sum {
             #make
         }
     }
+}
+
+/// Returns the variants with their fields, which lie in the slots that `slots` gives.
+fn variants(
+    e: &syn::DataEnum,
+    storage: Storage,
+    mut slots: impl FnMut(&syn::Fields) -> Vec<Ident>,
+) -> Vec<Variant> {
+    let variant = |(number, v): (usize, &syn::Variant)| {
+        let members = v.fields.members().zip(&v.fields).zip(slots(&v.fields));
+        let part = |((member, f), slot): ((syn::Member, &syn::Field), Ident)| Part {
+            member,
+            ty: f.ty.clone(),
+            slot,
+            storage,
+        };
+        Variant {
+            name: v.ident.clone(),
+            number: number as u32,
+            is_named: matches!(v.fields, syn::Fields::Named(_)),
+            parts: members.map(part).collect(),
+        }
+    };
+    e.variants.iter().enumerate().map(variant).collect()
 }

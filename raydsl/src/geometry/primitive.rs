@@ -28,6 +28,18 @@ pub trait Primitive: Type {
     /// vertices of indexed triangles. `()` if there is none.
     type Shared: Type;
 
+    /// `Self::Shared`, or `T` if there is none: what this kind and others, which share a `T`, share
+    /// in an enum of both.
+    #[doc(hidden)]
+    type SharedOr<T: Type>: Type;
+
+    /// Returns the data as those of an enum whose other kinds share a `U`; `other` converts theirs.
+    #[doc(hidden)]
+    fn map_shared<'a, T: Type, U: Type>(
+        all: Slice<'a, Self::SharedOr<T>>,
+        other: impl FnOnce(Slice<'a, T>) -> Slice<'a, U>,
+    ) -> Slice<'a, Self::SharedOr<U>>;
+
     /// Error bound of accepted hits, relative to the distance between the ray's origin and the
     /// farthest corner of the scene: the error of `t`, and the distance at which the ray may pass
     /// beside [`Primitive::get_bounds`].
@@ -111,4 +123,42 @@ pub trait Primitive: Type {
     ) -> <Self::Hit as Type>::On<M> {
         Self::intersect_on(m, prim, ray, shared)
     }
+}
+
+/// `Self` is `T`: the data that a kind of an enum shares are those that the other kinds share.
+#[diagnostic::on_unimplemented(
+    message = "the kinds of a primitive share `{Self}` and `{T}`: a tree has one slice of shared \
+               data",
+    label = "its primitives share `{Self}`, those of another kind `{T}`",
+    note = "give each kind a tree of its own, and put the trees into a struct of scenes: \
+            `#[derive(RayQuery)] struct Scenes<'a> {{ .. }}`, or `#[derive(Scene)]`"
+)]
+#[doc(hidden)]
+pub trait SharedAs<T: Type>: Type {
+    /// Returns the same slice.
+    fn of(all: Slice<'_, T>) -> Slice<'_, Self>;
+}
+
+impl<T: Type> SharedAs<T> for T {
+    #[inline(always)]
+    fn of(all: Slice<'_, T>) -> Slice<'_, T> {
+        all
+    }
+}
+
+/// Returns what the primitives of kind `K` share, of what an enum's share.
+#[doc(hidden)]
+#[inline(always)]
+pub fn shared_of_kind<K: Primitive, T: Type>(all: Slice<'_, T>) -> Slice<'_, K::SharedOr<()>>
+where
+    K::SharedOr<T>: SharedAs<T>,
+{
+    K::map_shared(<K::SharedOr<T> as SharedAs<T>>::of(all), |_| shared_slice(&[]))
+}
+
+/// Returns shared data of the host as a slice of a machine.
+#[doc(hidden)]
+#[inline(always)]
+pub fn shared_slice<T: Type>(all: &[T]) -> Slice<'_, T> {
+    Slice::new(all, "shared")
 }

@@ -125,8 +125,8 @@ pub mod lifted {
     pub use super::methods::{Const, HostMethod, Method, Through, call_on_element, is_mut, name};
     pub use super::operand::{Assigned, Plain, RightOperand};
     pub use super::ops::{
-        Bounds, Coerce, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare, OpDiv, OpMul,
-        OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Varying,
+        Bounds, Coerce, Comparable, OpAdd, OpAnd, OpBitAnd, OpBitOr, OpBitXor, OpCast, OpCompare,
+        OpDiv, OpMul, OpNeg, OpNot, OpOr, OpRem, OpShl, OpShr, OpSub, Varying,
     };
     pub use super::option::{OptionOn, Options, zero_of};
     pub use super::schema::Places;

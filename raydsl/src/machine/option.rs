@@ -2,9 +2,10 @@
 
 use core::marker::PhantomData;
 
+use super::ops::{Comparable, OpCompare};
 use super::{
-    B, Field, Inferred, LaneMachine, Leaves, Machine, Method, Scalar, Schema, Twin, Type, Value,
-    Varying, index, name,
+    B, Compare, Field, Inferred, LaneMachine, Leaves, Machine, Method, Op, Scalar, Schema, Twin,
+    Type, Value, Varying, index, name,
 };
 
 /// Returns a value of the host whose scalars are 0.
@@ -158,6 +159,17 @@ impl<M: Machine, T: Type> Twin<M> for OptionOn<M, T> {
     #[inline(always)]
     fn from_host(v: Self) -> Self {
         v
+    }
+}
+
+impl<M: Machine, T: Type> OpCompare<M, Self> for OptionOn<M, T>
+where
+    Option<T>: Comparable<M>,
+{
+    type Output = B<M>;
+
+    fn compare<O: Op<Compare>>(_: &M, _: O, _: Self, _: Self) -> B<M> {
+        unreachable!("no enum with fields is comparable")
     }
 }
 

@@ -38,17 +38,24 @@ pub fn is_kind<M: Machine>(m: &M, kind: U<M>, number: u32, count: u32) -> B<M> {
     B(m.u32_compare(op::Eq, kind.0, m.u32(number)))
 }
 
-/// Runs `then` where the kind is `number`: never if no primitive of the scene has that kind, and
-/// without a test if all have it.
+/// Runs `then` where the kind is `number`, of `count` kinds: never if no primitive of the scene has
+/// that kind, and without a test if all have it.
 #[inline(always)]
-pub fn of_kind<M: Machine>(m: &M, kinds: Kinds, kind: U<M>, number: u32, then: impl FnOnce()) {
+pub fn of_kind<M: Machine>(
+    m: &M,
+    kinds: Kinds,
+    kind: U<M>,
+    number: u32,
+    count: u32,
+    then: impl FnOnce(),
+) {
     if !kinds.has(number) {
         return;
     }
-    if kinds.is_only(number) {
+    if count == 1 || kinds.is_only(number) {
         return then();
     }
-    let branch = Branch::new(m, is_kind(m, kind, number, u32::MAX));
+    let branch = Branch::new(m, is_kind(m, kind, number, count));
     if branch.then(m) {
         then();
     }

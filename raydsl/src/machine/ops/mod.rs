@@ -84,6 +84,18 @@ pub trait OpCompare<M: Machine, R> {
     fn compare<O: Op<Compare>>(m: &M, op: O, a: Self, b: R) -> Self::Output;
 }
 
+/// Enums with fields that a kernel compares: none.
+///
+/// A lifted comparison has to be that of the source, and no macro sees whether `PartialEq` is
+/// derived.
+#[diagnostic::on_unimplemented(
+    message = "a kernel cannot compare two values of `{Self}`, an enum with fields",
+    label = "no comparison of enums with fields",
+    note = "take them apart by a `match`: `match (a, b) {{ (Shape::Ball(a), Shape::Ball(b)) => \
+            a.radius == b.radius, .. }}`"
+)]
+pub trait Comparable<M: Machine> {}
+
 /// `a as T` on machine `M`.
 #[diagnostic::on_unimplemented(
     message = "a kernel has no `as {T}` for this value",

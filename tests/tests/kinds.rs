@@ -1,0 +1,351 @@
+//! Enums of primitives: the methods that they forward, and kinds that share data beside kinds that
+//! share none.
+
+use raydsl::assert_variants_agree;
+use raydsl::integrators::{DirectionalLight, PointLight, direct_light};
+use raydsl::kernel;
+use raydsl::prelude::*;
+use raydsl::shading::Surface;
+use raydsl_tests::rng::Rng;
+
+#[primitive(sphere(center, radius))]
+#[derive(Debug)]
+struct Ball {
+    center: Vec3,
+    radius: f32,
+}
+
+#[primitive(rectangle(corner, u_edge, v_edge))]
+#[derive(Debug)]
+struct Panel {
+    corner: Vec3,
+    u_edge: Vec3,
+    v_edge: Vec3,
+}
+
+#[kernel]
+impl Surface for Ball {
+    fn surface(&self, ray: Ray, hit: Hit) -> SurfacePoint {
+        self.surface_point(ray, hit)
+    }
+
+    fn albedo(&self, _ray: Ray, _hit: Hit) -> Vec3 {
+        vec3(0.9, 0.5, self.radius)
+    }
+}
+
+#[kernel]
+impl Surface for Panel {
+    fn surface(&self, ray: Ray, hit: Hit) -> SurfacePoint {
+        self.surface_point(ray, hit)
+    }
+
+    fn albedo(&self, ray: Ray, hit: Hit) -> Vec3 {
+        let uv = Panel::uv(self, ray, hit);
+        vec3(uv.x, uv.y, 0.5)
+    }
+
+    fn uv(&self, _ray: Ray, hit: Hit) -> Vec2 {
+        vec2(hit.v, hit.u)
+    }
+
+    fn material(&self, _ray: Ray, _hit: Hit) -> u32 {
+        7
+    }
+}
+
+/// Its methods are those of its kinds, one of which is of the library.
+#[primitive(surface_point, normal, uv, area, sample, Surface)]
+#[derive(Debug)]
+enum Lamp {
+    Ball(Ball),
+    Panel(Panel),
+    Facet(Triangle),
+}
+
+/// The methods of an enum that has one as a kind.
+#[primitive(normal, Surface)]
+enum Thing {
+    Lamp(Lamp),
+    Can(Can),
+}
+
+#[primitive(cylinder(p0, p1, radius))]
+struct Can {
+    p0: Vec3,
+    p1: Vec3,
+    radius: f32,
+}
+
+#[kernel]
+impl Surface for Can {
+    fn surface(&self, ray: Ray, hit: Hit) -> SurfacePoint {
+        self.surface_point(ray, hit)
+    }
+
+    fn albedo(&self, _ray: Ray, _hit: Hit) -> Vec3 {
+        Vec3::splat(0.25)
+    }
+}
+
+fn ball(rng: &mut Rng) -> Ball {
+    Ball { center: rng.point(3.0), radius: rng.range(0.1, 0.7) }
+}
+
+fn lamps(rng: &mut Rng) -> Vec<Lamp> {
+    (0..60)
+        .map(|i| match i % 3 {
+            0 => Lamp::Ball(ball(rng)),
+            1 => {
+                let [u_edge, v_edge] = [(); 2].map(|()| rng.point(1.0));
+                Lamp::Panel(Panel { corner: rng.point(3.0), u_edge, v_edge })
+            }
+            _ => {
+                let at = rng.point(3.0);
+                let [v0, v1, v2] = [(); 3].map(|()| at + rng.point(1.0));
+                Lamp::Facet(Triangle { v0, v1, v2 })
+            }
+        })
+        .collect()
+}
+
+fn rays(rng: &mut Rng, count: usize) -> Vec<(Ray,)> {
+    (0..count).map(|_| (Ray::new(rng.point(4.0), rng.point(1.0)),)).collect()
+}
+
+#[test]
+fn methods_are_those_of_the_kind() {
+    let mut rng = Rng::of("forwarded methods");
+    let all = lamps(&mut rng);
+    let bvh = Bvh::build(&all).expect("finite bounds");
+    let rays = rays(&mut rng, 3000);
+    let mut hits = [0; 3];
+    for (ray,) in &rays {
+        let hit = bvh.closest_hit(*ray);
+        if !hit.is_hit {
+            continue;
+        }
+        let (ray, u, lamp) = (*ray, vec2(0.25, 0.75), all[hit.prim_id as usize]);
+        hits[hit.prim_id as usize % 3] += 1;
+        let found = (
+            (lamp.surface_point(ray, hit), lamp.normal(ray, hit), lamp.uv(ray, hit)),
+            (lamp.area(), lamp.sample(u)),
+            (lamp.surface(ray, hit), lamp.albedo(ray, hit), lamp.material(ray, hit)),
+            Surface::uv(&lamp, ray, hit),
+        );
+        macro_rules! of {
+            ($kind:expr) => {{
+                let kind = $kind;
+                (
+                    (kind.surface_point(ray, hit), kind.normal(ray, hit), kind.uv(ray, hit)),
+                    (kind.area(), kind.sample(u)),
+                    (kind.surface(ray, hit), kind.albedo(ray, hit), kind.material(ray, hit)),
+                    Surface::uv(&kind, ray, hit),
+                )
+            }};
+        }
+        let expected = match lamp {
+            Lamp::Ball(b) => of!(b),
+            Lamp::Panel(p) => of!(p),
+            Lamp::Facet(f) => of!(f),
+        };
+        assert_eq!(found, expected);
+    }
+    assert!(hits.iter().all(|n| *n > 50), "{hits:?}");
+    let shaded = kernel!(|ray: Ray| {
+        let hit = bvh.closest_hit(ray);
+        if hit.is_hit {
+            let lamp = bvh.primitive(hit);
+            let point = lamp.surface_point(ray, hit);
+            let sample = lamp.sample(Lamp::uv(&lamp, ray, hit));
+            (point.position, lamp.normal(ray, hit), lamp.area(), sample.position, sample.normal)
+        } else {
+            (Vec3::ZERO, Vec3::ZERO, 0.0, Vec3::ZERO, Vec3::ZERO)
+        }
+    });
+    assert_variants_agree!(&shaded, &rays);
+    let list = &all[..12];
+    let listed = kernel!(|ray: Ray| {
+        let mut sum = 0.0;
+        for lamp in list {
+            sum += lamp.area() * lamp.sample(vec2(0.5, 0.25)).normal.dot(ray.direction);
+        }
+        sum
+    });
+    assert_variants_agree!(&listed, &rays[..200].to_vec());
+}
+
+/// The WGSL of a forwarded method has the kinds that are in the scene.
+#[test]
+fn the_text_of_methods_has_no_other_kind() {
+    let mut rng = Rng::of("text of methods");
+    let mut all: Vec<Lamp> = (0..9).map(|_| Lamp::Ball(ball(&mut rng))).collect();
+    let text = |all: &[Lamp]| {
+        let bvh = Bvh::build(all).expect("finite bounds");
+        let kernel = kernel!(|ray: Ray| {
+            let hit = bvh.closest_hit(ray);
+            if hit.is_hit { bvh.primitive(hit).normal(ray, hit) } else { Vec3::ZERO }
+        });
+        kernel.wgsl()
+    };
+    let spheres = text(&all);
+    assert!(!spheres.contains(".kind =="), "{spheres}");
+    assert!(!spheres.contains("u_edge"), "{spheres}");
+    all.push(Lamp::Panel(Panel { corner: Vec3::ZERO, u_edge: Vec3::X, v_edge: Vec3::Y }));
+    let both = text(&all);
+    assert!(both.contains(".kind ==") && both.contains("u_edge"), "{both}");
+}
+
+/// Integrators shade a tree of an enum, and one of an enum of enums.
+#[test]
+fn integrators_shade_enums() {
+    let mut rng = Rng::of("integrators and enums");
+    let balls: Vec<Ball> = (0..20).map(|_| ball(&mut rng)).collect();
+    let of_balls: Vec<Lamp> = balls.iter().copied().map(Lamp::Ball).collect();
+    let [p0, p1] = [vec3(-3.0, -3.0, 0.0), vec3(3.0, -3.0, 0.0)];
+    let can = Thing::Can(Can { p0, p1, radius: 0.5 });
+    let things: Vec<Thing> = lamps(&mut rng).into_iter().map(Thing::Lamp).chain([can]).collect();
+    let plain = Bvh::build(&balls).expect("finite bounds");
+    let of_balls = Bvh::build(&of_balls).expect("finite bounds");
+    let things = Bvh::build(&things).expect("finite bounds");
+    let lamp = PointLight { position: vec3(0.0, 5.0, 1.0), intensity: vec3(30.0, 20.0, 4.0) };
+    let sun = DirectionalLight { direction: vec3(0.6, 0.0, -0.8), irradiance: vec3(1.0, 0.5, 2.0) };
+    let (lamps, suns) = (&[lamp][..], &[sun][..]);
+    let rays = rays(&mut rng, 2000);
+    let expected = kernel!(|ray: Ray| direct_light(&plain, lamps, suns, host(true), ray));
+    let found = kernel!(|ray: Ray| direct_light(&of_balls, lamps, suns, host(true), ray));
+    for (ray,) in &rays {
+        assert_eq!(expected.call((*ray,)), found.call((*ray,)));
+    }
+    assert_variants_agree!(&found, &rays);
+    let nested = kernel!(|ray: Ray| direct_light(&things, lamps, suns, host(false), ray));
+    assert_variants_agree!(&nested, &rays);
+}
+
+/// One kind has vertices, the others nothing but themselves.
+#[primitive]
+#[derive(Debug)]
+enum Shape {
+    Ball(Ball),
+    Face(IndexedTriangle),
+    Panel(Panel),
+}
+
+/// A triangle that shares vertices too, in another layout.
+#[primitive]
+#[derive(Debug)]
+struct Strip {
+    first: u32,
+}
+
+#[primitive]
+impl Strip {
+    const SLACK: f32 = triangle::SLACK;
+
+    fn intersect(&self, ray: Ray, vertices: &[Vec3]) -> Hit {
+        let i = self.first as usize;
+        triangle::intersect(ray, vertices[i], vertices[i + 1], vertices[i + 2])
+    }
+
+    fn get_bounds(&self, vertices: &[Vec3]) -> Aabb {
+        let i = self.first as usize;
+        triangle::get_bounds(vertices[i], vertices[i + 1], vertices[i + 2])
+    }
+}
+
+/// Enums of kinds, with data and without, and two kinds that share the same.
+#[primitive]
+enum Any {
+    Lamp(Lamp),
+    Strip(Strip),
+    Shape(Shape),
+}
+
+fn shapes(rng: &mut Rng, vertices: &[Vec3]) -> Vec<Shape> {
+    let index = |rng: &mut Rng| rng.below(vertices.len()) as u32;
+    (0..60)
+        .map(|i| match i % 3 {
+            0 => Shape::Ball(ball(rng)),
+            1 => Shape::Face(IndexedTriangle { vertices: [(); 3].map(|()| index(rng)) }),
+            _ => {
+                let [u_edge, v_edge] = [(); 2].map(|()| rng.point(1.0));
+                Shape::Panel(Panel { corner: rng.point(3.0), u_edge, v_edge })
+            }
+        })
+        .collect()
+}
+
+/// The closest of all hits, by brute force.
+fn closest(hits: impl Iterator<Item = Hit>) -> Hit {
+    let mut best = Hit::miss();
+    for (id, hit) in hits.enumerate() {
+        if hit.is_hit && (!best.is_hit || hit.t < best.t) {
+            best = Hit { prim_id: id as u32, ..hit };
+        }
+    }
+    best
+}
+
+fn of_shape(shape: &Shape, ray: Ray, vertices: &[Vec3]) -> Hit {
+    match shape {
+        Shape::Ball(b) => b.intersect(ray),
+        Shape::Face(f) => f.intersect(ray, vertices),
+        Shape::Panel(p) => p.intersect(ray),
+    }
+}
+
+#[test]
+fn some_kinds_share_data() {
+    let mut rng = Rng::of("some kinds share data");
+    let vertices: Vec<Vec3> = (0..40).map(|_| rng.point(3.0)).collect();
+    let all = shapes(&mut rng, &vertices);
+    let config = BuildConfig::default();
+    let bvh = Bvh::build_sharing(&all, &vertices, &config).expect("finite bounds");
+    let wide = BuildConfig { min_wide_size: 0, ..config };
+    let wide = Bvh::build_wide(&all, &vertices, &wide).expect("finite bounds");
+    let rays = rays(&mut rng, 3000);
+    let mut hits = [0; 3];
+    for (ray,) in &rays {
+        let expected = closest(all.iter().map(|s| of_shape(s, *ray, &vertices)));
+        assert_eq!(bvh.closest_hit(*ray), expected);
+        assert_eq!(wide.closest_hit(*ray), expected);
+        assert_eq!(bvh.any_hit(*ray), expected.is_hit);
+        hits[expected.prim_id as usize % 3] += usize::from(expected.is_hit);
+    }
+    assert!(hits.iter().all(|n| *n > 50), "{hits:?}");
+    let tree = kernel!(|ray: Ray| (bvh.closest_hit(ray), bvh.any_hit(ray)));
+    assert_variants_agree!(&tree, &rays);
+    let leaves = kernel!(|ray: Ray| wide.closest_hit(ray));
+    assert_variants_agree!(&leaves, &rays);
+    // The vertices are there only where a kind reads them.
+    let text = tree.wgsl();
+    assert!(text.contains("bvh_shared") && text.contains("axis_last"), "{text}");
+    let balls: Vec<Shape> = all.iter().filter(|s| matches!(s, Shape::Ball(_))).copied().collect();
+    let balls = Bvh::build_sharing(&balls, &vertices, &config).expect("finite bounds");
+    let text = kernel!(|ray: Ray| balls.closest_hit(ray)).wgsl();
+    assert!(!text.contains("shared") && !text.contains("axis_last"), "{text}");
+}
+
+#[test]
+fn enums_of_kinds_share_data() {
+    let mut rng = Rng::of("enums of kinds share data");
+    let vertices: Vec<Vec3> = (0..40).map(|_| rng.point(3.0)).collect();
+    let shapes = shapes(&mut rng, &vertices).into_iter().map(Any::Shape);
+    let mut all: Vec<Any> = lamps(&mut rng).into_iter().map(Any::Lamp).chain(shapes).collect();
+    all.extend((0..30).map(|first| Any::Strip(Strip { first })));
+    let bvh = Bvh::build_sharing(&all, &vertices, &BuildConfig::default()).expect("finite bounds");
+    let rays = rays(&mut rng, 1000);
+    let of_any = |any: &Any, ray| match any {
+        Any::Lamp(Lamp::Ball(b)) => b.intersect(ray),
+        Any::Lamp(Lamp::Panel(p)) => p.intersect(ray),
+        Any::Lamp(Lamp::Facet(f)) => f.intersect(ray),
+        Any::Strip(s) => s.intersect(ray, &vertices),
+        Any::Shape(s) => of_shape(s, ray, &vertices),
+    };
+    for (ray,) in &rays {
+        let expected = closest(all.iter().map(|any| of_any(any, *ray)));
+        assert_eq!(bvh.closest_hit(*ray), expected);
+    }
+    let tree = kernel!(|ray: Ray| bvh.closest_hit(ray));
+    assert_variants_agree!(&tree, &rays);
+}
