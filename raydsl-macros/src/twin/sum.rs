@@ -251,6 +251,7 @@ impl Sum {
         let first = of(first);
         let (numbers, others): (Vec<_>, Vec<_>) = others.iter().map(|v| (v.number, of(v))).unzip();
         quote! {
+            #[allow(clippy::redundant_field_names, reason = "some fields are stored as they are")]
             impl<#declared> #host where #predicates {
                 #[inline(always)]
                 fn __data(self) -> #data_type {
