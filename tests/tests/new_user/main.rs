@@ -6,6 +6,8 @@
 //! the message that a kernel has no `?`; it has now. The ray tracer guessed the constructors of the
 //! camera and the images wrongly. The second twelve are in `again`.
 
+#![allow(clippy::all, clippy::pedantic, reason = "the kernels are as they were first written")]
+
 mod again;
 mod branches;
 mod contours;
