@@ -2,13 +2,13 @@
 //! (Zellmann, Wickeroth and Lang, "Visionaray: A Cross-Platform Ray Tracing Template Library",
 //! 2017) knows from its listings.
 //!
-//! `cargo run --release --example listings -- FOLDER` writes `texture.png`, `variants.png` and
+//! `cargo run --release --example listings -- FOLDER` writes `texture.png`, `kinds.png` and
 //! `cloud.png` to FOLDER (`out` if none is given).
 
 mod cloud;
+mod kinds;
 mod menu;
 mod texture;
-mod variants;
 mod width;
 
 use std::error::Error;
@@ -59,20 +59,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("means of packets and of the function: {:?}", width::means(Variant::Packet8, &rays));
 
     let shapes = [
-        variants::Shape::Ball(variants::Ball { center: vec3(-1.0, 0.5, 4.0), radius: 1.0 }),
-        variants::Shape::Facet(Triangle {
+        kinds::Shape::Ball(kinds::Ball { center: vec3(-1.0, 0.5, 4.0), radius: 1.0 }),
+        kinds::Shape::Facet(Triangle {
             v0: vec3(0.2, -0.5, 3.5),
             v1: vec3(2.2, -0.5, 4.5),
             v2: vec3(1.2, 1.5, 4.0),
         }),
     ];
     let scene = Bvh::build(&shapes)?;
-    let plastic = variants::Plastic { color: vec3(0.8, 0.2, 0.1), exponent: 40.0 };
-    let matte = variants::Matte { color: vec3(0.3, 0.6, 0.8) };
+    let plastic = kinds::Plastic { color: vec3(0.8, 0.2, 0.1), exponent: 40.0 };
+    let matte = kinds::Matte { color: vec3(0.3, 0.6, 0.8) };
     let front = Pinhole::new(Vec3::ZERO, vec3(0.2, 0.3, 4.0), Vec3::Y, 0.9);
-    let light = variants::Light::Lamp;
-    let shaded = kernel!(|ray: Ray| shown(variants::radiance(&scene, plastic, matte, light, ray)));
-    picture(&folder, "variants.png", &front, &shaded)?;
+    let light = kinds::Light::Lamp;
+    let shaded = kernel!(|ray: Ray| shown(kinds::radiance(&scene, plastic, matte, light, ray)));
+    picture(&folder, "kinds.png", &front, &shaded)?;
 
     let points = cloud::spiral(4000);
     let cloud = Bvh::build(&points)?;

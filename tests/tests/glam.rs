@@ -127,6 +127,7 @@ operations! { of_unsigned: Any Same;
     clamp_method(a: u32) -> u32 { a.clamp(3, 900) }
     functions(a: u32, b: u32) -> [u32; 3] { [min(a, b), max(a, b), clamp(a, 7, 70)] }
     select_function(c: bool, a: u32) -> u32 { select(c, a, 7) }
+    is_multiple_of(a: u32, b: u32) -> bool { a.is_multiple_of(b) || 6u32.is_multiple_of(b & 7) }
     is_power_of_two(a: u32) -> bool { a.is_power_of_two() }
 }
 

@@ -6,12 +6,12 @@ use raydsl_tests::rng::Rng;
 
 #[path = "../../examples/listings/cloud.rs"]
 mod cloud;
+#[path = "../../examples/listings/kinds.rs"]
+mod kinds;
 #[path = "../../examples/listings/menu.rs"]
 mod menu;
 #[path = "../../examples/listings/texture.rs"]
 mod texture;
-#[path = "../../examples/listings/variants.rs"]
-mod variants;
 #[path = "../../examples/listings/width.rs"]
 mod width;
 
@@ -65,20 +65,20 @@ fn one_function_has_every_width() {
 #[test]
 fn kinds_share_a_scene() {
     let shapes = [
-        variants::Shape::Ball(variants::Ball { center: vec3(-1.0, 0.5, 4.0), radius: 1.0 }),
-        variants::Shape::Facet(Triangle {
+        kinds::Shape::Ball(kinds::Ball { center: vec3(-1.0, 0.5, 4.0), radius: 1.0 }),
+        kinds::Shape::Facet(Triangle {
             v0: vec3(0.2, -0.5, 3.5),
             v1: vec3(2.2, -0.5, 4.5),
             v2: vec3(1.2, 1.5, 4.0),
         }),
     ];
     let scene = Bvh::build(&shapes).expect("finite bounds");
-    let plastic = variants::Plastic { color: vec3(0.8, 0.2, 0.1), exponent: 40.0 };
-    let matte = variants::Matte { color: vec3(0.3, 0.6, 0.8) };
+    let plastic = kinds::Plastic { color: vec3(0.8, 0.2, 0.1), exponent: 40.0 };
+    let matte = kinds::Matte { color: vec3(0.3, 0.6, 0.8) };
     let mut rng = Rng::of("kinds");
     let rays = rays(&mut rng, vec3(0.0, 0.3, 8.0), 3.0);
-    for light in [variants::Light::Sky, variants::Light::Lamp] {
-        let shaded = kernel!(|ray: Ray| variants::radiance(&scene, plastic, matte, light, ray));
+    for light in [kinds::Light::Sky, kinds::Light::Lamp] {
+        let shaded = kernel!(|ray: Ray| kinds::radiance(&scene, plastic, matte, light, ray));
         let bright = rays.iter().filter(|(r,)| shaded.call((*r,)) != Vec3::ZERO).count();
         assert!(bright > 50, "{bright} rays meet anything");
         assert_variants_agree!(&shaded, &rays);

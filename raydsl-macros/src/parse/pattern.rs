@@ -189,7 +189,7 @@ impl Parser<'_> {
                 self.errors.at(
                     t.span(),
                     format!("a kernel has no `{}`", t.path.to_token_stream()),
-                    "a variant is written with its enum, as in `Shape::Ball(ball)`; a value that may \
+                    "a kind is written with its enum, as in `Shape::Ball(ball)`; a value that may \
                      be missing is an `Option`: `Some(x)`",
                 );
                 None
@@ -320,7 +320,7 @@ impl Parser<'_> {
             if matches!(p, Pat::Rest(_)) && i + 1 < pat.elems.len() {
                 self.errors.at(
                     p.span(),
-                    "`..` stands last in a kernel's pattern of a variant",
+                    "`..` stands last in a kernel's pattern of a kind",
                     "write `_` for each field before the ones that you name",
                 );
                 return None;

@@ -330,7 +330,7 @@ fn derives() -> syn::Result<()> {
                     A,
                 }
             ),
-            "two variants or more",
+            "two kinds or more",
         ),
         (
             quote!(

@@ -51,7 +51,7 @@ fn kinds(item: &syn::DeriveInput, e: &syn::DataEnum, errors: &mut Errors) -> Vec
     if e.variants.is_empty() || e.variants.len() > MOST_KINDS {
         errors.at(
             item.ident.span(),
-            format!("an enum of primitives has from 1 to {MOST_KINDS} variants"),
+            format!("an enum of primitives has from 1 to {MOST_KINDS} kinds"),
             "put some kinds into an enum of their own, which is a primitive too",
         );
     }
@@ -62,7 +62,7 @@ fn kinds(item: &syn::DeriveInput, e: &syn::DataEnum, errors: &mut Errors) -> Vec
             _ => {
                 errors.at(
                     v.span(),
-                    "a variant of a primitive holds one primitive",
+                    "a kind of an enum of primitives holds one primitive",
                     &format!("write `{}(Sphere)` with a type that is a primitive", v.ident),
                 );
                 continue;

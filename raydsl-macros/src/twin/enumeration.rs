@@ -13,7 +13,7 @@ pub(super) fn variants(e: &syn::DataEnum, errors: &mut Errors) -> Vec<Ident> {
     if e.variants.len() < 2 {
         errors.at(
             e.brace_token.span.join(),
-            "an enum of the kernel language has two variants or more",
+            "an enum of the kernel language has two kinds or more",
             "leave it out: it says nothing",
         );
     }
@@ -59,7 +59,7 @@ impl Enumeration<'_> {
                 #(assert!(
                     #name::#variants as i128 >= 0 && #name::#variants as i128 <= u32::MAX as i128,
                     concat!(
-                        "the variant `", stringify!(#variants), "` of `", stringify!(#name),
+                        "the kind `", stringify!(#variants), "` of `", stringify!(#name),
                         "` has a number that a kernel's `u32` does not have",
                     ),
                 );)*

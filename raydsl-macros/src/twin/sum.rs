@@ -130,8 +130,8 @@ impl Sum {
         for (_, discriminant) in e.variants.iter().filter_map(|v| v.discriminant.as_ref()) {
             errors.at(
                 discriminant.span(),
-                "a variant of an enum with fields has no number of its own",
-                "leave it out: variants are numbered from 0",
+                "a kind of an enum with fields has no number of its own",
+                "leave it out: kinds are numbered from 0",
             );
         }
         let mut slots = Slots::default();

@@ -180,6 +180,13 @@ method!([] I<M>, "is_negative", |m, a| -> B<M> { is_negative(m, a) });
 method!([] I<M>, "is_positive", |m, a| -> B<M> {
     I::compare(m, op::Gt, a, I::number(m, 0))
 });
+method!([] U<M>, "is_multiple_of", |m, a, b: U<M>| -> B<M> {{
+    // Only 0 is a multiple of 0, which is no divisor.
+    let is_divisor = U::compare(m, op::Ne, b, U::number(m, 0));
+    let rest = U::binary(m, op::Rem, a, U::choose(m, is_divisor, b, U::number(m, 1)));
+    let rest = U::choose(m, is_divisor, rest, a);
+    U::compare(m, op::Eq, rest, U::number(m, 0))
+}});
 method!([] U<M>, "is_power_of_two", |m, a| -> B<M> {{
     let below = U::binary(m, op::WrappingSub, a, U::number(m, 1));
     let shared = U::binary(m, op::And, a, below);

@@ -277,6 +277,7 @@ pub(super) const BOOL: &[&str] = &[
     "{f}.is_nan()",
     "{f}.is_finite()",
     "{u}.is_power_of_two()",
+    "{u}.is_multiple_of({u} & 7)",
     "{i}.is_negative()",
     "any({m})",
     "all({m})",
