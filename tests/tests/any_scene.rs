@@ -120,6 +120,48 @@ struct Three<'a> {
     last: BvhList<'a, Ball>,
 }
 
+/// A trait whose method takes any scene, and a slice.
+#[kernel]
+trait Estimator {
+    fn estimate<S: RayQuery + ?Sized>(&self, scene: &S, weights: &[f32], ray: Ray) -> f32;
+}
+
+#[derive(Clone, Copy, Type)]
+struct Depth {
+    far: f32,
+}
+
+#[derive(Clone, Copy, Type)]
+struct Count {
+    least: f32,
+}
+
+#[kernel]
+impl Estimator for Depth {
+    fn estimate<S: RayQuery + ?Sized>(&self, scene: &S, weights: &[f32], ray: Ray) -> f32 {
+        let hit = scene.closest_hit(ray);
+        if hit.is_hit { hit.t * weights[0] } else { self.far }
+    }
+}
+
+#[kernel]
+impl Estimator for Count {
+    fn estimate<S: RayQuery + ?Sized>(&self, scene: &S, weights: &[f32], ray: Ray) -> f32 {
+        let mut n = 0.0;
+        for hit in scene.hits(ray) {
+            if hit.t > self.least {
+                n += weights[hit.prim_id as usize % weights.len()];
+            }
+        }
+        n
+    }
+}
+
+#[kernel]
+fn both<E: Estimator, S: RayQuery + ?Sized>(e: E, scene: &S, weights: &[f32], ray: Ray) -> f32 {
+    e.estimate(scene, weights, ray) + 1.0
+}
+
 /// What a surface looks like.
 #[derive(Clone, Copy, Type)]
 enum Paint {
@@ -415,6 +457,26 @@ fn a_scene_has_tables() -> Result<(), Box<dyn Error>> {
     assert_eq!(run(&by_function, Variant::Packet16, &rays), expected);
     let seen = |color: Vec3| expected.iter().filter(|c| **c == color).count();
     assert!(seen(vec3(0.9, 0.1, 0.2)) > 5 && seen(Vec3::X) + seen(Vec3::Y) > 5);
+    Ok(())
+}
+
+/// Methods of traits take scenes and slices, whatever implements the trait.
+#[test]
+fn methods_of_traits_take_scenes() -> Result<(), Box<dyn Error>> {
+    let some = balls(25, 1);
+    let tree = Bvh::build(&some)?;
+    let weights = [0.5, 2.0, 0.25];
+    let (depth, count) = (Depth { far: 9.0 }, Count { least: 8.0 });
+    let weights = &weights[..];
+    let kernel =
+        kernel!(|ray: Ray| { both(depth, &tree, weights, ray) + both(count, &tree, weights, ray) });
+    let rays = aimed_rays(11, 200);
+    assert_variants_agree!(&kernel, &rays);
+    for ray in &rays {
+        let expected =
+            both(depth, &some[..], weights, *ray) + both(count, &some[..], weights, *ray);
+        assert_eq!(kernel.call((*ray,)), expected);
+    }
     Ok(())
 }
 
