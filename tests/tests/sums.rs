@@ -170,6 +170,28 @@ fn pairs() -> Vec<(f32, f32)> {
     (0..80).map(|i| (i as f32 * 0.07 - 1.5, (i * 7 % 40) as f32 * 0.11 - 1.0)).collect()
 }
 
+/// Fields with names that are words of Rust.
+#[derive(Clone, Copy, Type)]
+enum Worded {
+    Glow { r#type: u32, power: f32 },
+    Dark(f32),
+}
+
+#[kernel]
+fn worded(n: u32, x: f32) -> f32 {
+    let made = if n % 2 == 0 { Worded::Glow { r#type: n, power: x } } else { Worded::Dark(x) };
+    match made {
+        Worded::Glow { r#type, power } => power * r#type as f32,
+        Worded::Dark(y) => -y,
+    }
+}
+
+#[test]
+fn fields_may_be_words_of_rust() {
+    let inputs: Vec<(u32, f32)> = (0..40).map(|i| (i % 5, i as f32 * 0.3)).collect();
+    assert_variants_agree!(worded, &inputs);
+}
+
 #[test]
 fn variants_in_arguments_and_results() {
     let all = materials();

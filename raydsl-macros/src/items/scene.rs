@@ -62,6 +62,13 @@ fn members(item: &syn::DeriveInput, errors: &mut Errors) -> (Vec<Member>, Vec<Me
             "write the types of its scenes",
         );
     }
+    for param in item.generics.const_params().filter(|_| !tables.is_empty()) {
+        errors.at(
+            param.ident.span(),
+            "a struct of scenes with tables has no constant parameters",
+            "write the numbers",
+        );
+    }
     for Member { ty, .. } in scenes.iter().chain(&tables) {
         if let syn::Type::Slice(_) = ty {
             errors.at(ty.span(), "a member is a scene or a table of its own", "write `&'a [P]`");
@@ -117,6 +124,7 @@ impl Struct<'_> {
             quote_spanned!(ty.span()=> #vis #name: <#ty as #p::Table>::View<'__v>)
         });
         let names = self.tables.iter().map(|member| &member.name);
+        let all: Vec<_> = names.clone().collect();
         Some(quote! {
             #[doc(hidden)]
             #[derive(Clone, Copy)]
@@ -127,6 +135,10 @@ impl Struct<'_> {
             impl #p::TableView for #name<'_> {
                 fn resources(&self, visit: &mut dyn ::core::ops::FnMut(&dyn #p::Resource)) {
                     #(#p::TableView::resources(&self.#names, visit);)*
+                }
+
+                fn is_same(&self, other: &Self) -> bool {
+                    true #(&& #p::TableView::is_same(&self.#all, &other.#all))*
                 }
             }
         })

@@ -128,10 +128,11 @@ impl Parser<'_> {
 
     /// Parses `e?` of an `Option`: its value, or the kernel gives `None`.
     pub(super) fn tried(&mut self, t: &syn::ExprTry) -> Kind {
+        // In parentheses, for a `let else` takes no value that ends in a brace.
         let e = &t.expr;
         let block = syn::parse_quote_spanned! {t.question_token.span=>
             {
-                let Some(__tried) = #e else {
+                let Some(__tried) = (#e) else {
                     return None;
                 };
                 __tried

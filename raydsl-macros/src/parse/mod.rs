@@ -15,6 +15,7 @@ mod types;
 
 pub(crate) use closure::{closure, is_function};
 pub(crate) use function::function;
+pub(crate) use pattern::unraw;
 pub(crate) use types::{refused_type, type_name};
 
 use proc_macro2::{Ident, Span};

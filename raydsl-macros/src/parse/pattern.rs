@@ -69,6 +69,11 @@ pub(super) fn variant_of(path: &syn::Path) -> Option<Variant> {
     Some(Variant { ty: ty.to_token_stream(), name })
 }
 
+/// Returns a name without the `r#` of raw identifiers in it, which functions have their names from.
+pub(crate) fn unraw(name: &str) -> String {
+    name.replace("r#", "")
+}
+
 /// Returns whether a name is a variant's, by its letters, and not a constant's.
 fn is_camel_case(name: &Ident) -> bool {
     let text = name.to_string();
@@ -79,7 +84,7 @@ fn is_camel_case(name: &Ident) -> bool {
 impl Variant {
     /// Returns a call of one of the functions that the derive writes for the variant.
     fn call(&self, name: &str, args: Vec<Expr>, span: Span) -> Expr {
-        let name = Ident::new(name, self.name.span());
+        let name = Ident::new(&unraw(name), self.name.span());
         Expr { kind: Kind::Associated { ty: self.ty.clone(), name, args }, span }
     }
 

@@ -57,6 +57,13 @@ fn kinds(item: &syn::DeriveInput, e: &syn::DataEnum, errors: &mut Errors) -> Vec
     }
     let mut kinds = Vec::new();
     for v in &e.variants {
+        if let Some(cfg) = v.attrs.iter().find(|a| a.path().is_ident("cfg")) {
+            errors.at(
+                cfg.span(),
+                "a kind of an enum of primitives has no `#[cfg]`: kinds are numbered and counted",
+                "write an enum for each configuration",
+            );
+        }
         let ty = match &v.fields {
             syn::Fields::Unnamed(f) if f.unnamed.len() == 1 => &f.unnamed[0].ty,
             _ => {

@@ -1,7 +1,7 @@
 //! The twin of a struct: a struct of the members' twins.
 
 use proc_macro2::{Ident, TokenStream};
-use quote::{format_ident, quote};
+use quote::{ToTokens, format_ident, quote};
 
 use super::shared::{capture, methods};
 use crate::generics::Generics;
@@ -77,8 +77,13 @@ impl<'a> Structure<'a> {
         let (names, types) = (self.names(), self.types());
         let visible = self.fields.iter().map(|f| &f.vis);
         let doc = format!("[`{}`] on a machine.", self.shown);
+        // As the struct itself.
+        let hidden = self.item.attrs.iter().filter(|a| {
+            a.path().is_ident("doc") && a.to_token_stream().to_string().contains("hidden")
+        });
         quote! {
             #[doc = #doc]
+            #(#hidden)*
             #[allow(missing_docs, reason = "the members are those of the struct")]
             #vis struct #name<__M: #p::Machine, #declared> where #predicates {
                 #(#visible #names: <#types as #p::Type>::On<__M>,)*

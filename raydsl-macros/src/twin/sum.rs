@@ -17,6 +17,7 @@ use super::{bound_parameters, check_types};
 use crate::diag::Errors;
 use crate::generics::Generics;
 use crate::here::private;
+use crate::parse::unraw;
 
 /// How the fields of variants are stored.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -174,9 +175,10 @@ impl Sum {
         self.variants.len() as u32
     }
 
-    /// Returns the name of the struct that represents the enum; no type of the user's has it.
+    /// Returns the name of the struct that represents the enum; no type of the user's has it, nor
+    /// its twin's, whatever other enums are called.
     fn data_name(&self) -> Ident {
-        format_ident!("__{}", self.item.ident)
+        format_ident!("__{}Data", self.item.ident)
     }
 
     fn host(&self) -> TokenStream {
@@ -355,8 +357,9 @@ impl Sum {
         let parts = v.parts.iter().map(|part| {
             let (ty, slot, member) = (&part.ty, &part.slot, part.member.to_token_stream());
             let (stored, loaded) = (part.stored(&format_ident!("part")), part.loaded());
-            let get = format_ident!("__{}_{}_on", v.name, member.to_string());
-            let set = format_ident!("__set_{}_{}_on", v.name, member.to_string());
+            let field = unraw(&member.to_string());
+            let get = format_ident!("__{}_{field}_on", v.name);
+            let set = format_ident!("__set_{}_{field}_on", v.name);
             let set = v.is_named.then(|| {
                 quote! {
                     #[inline(always)]

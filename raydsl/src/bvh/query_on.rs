@@ -298,7 +298,11 @@ impl<M: Machine, S: RecordQuery + ?Sized> Value<M> for &S {
     }
 
     #[inline(always)]
-    fn zip(_: &M, a: Self, _: Self, _: &mut impl Leaves<M>) -> Self {
+    fn zip(_: &M, a: Self, b: Self, _: &mut impl Leaves<M>) -> Self {
+        assert!(
+            core::ptr::addr_eq(a, b),
+            "a kernel cannot choose between scenes: choose between what it reads from them"
+        );
         a
     }
 }

@@ -55,6 +55,10 @@ impl<M: Machine, S: Value<M>, T: TableView> Value<M> for Tabled<S, T> {
 
     #[inline(always)]
     fn zip(m: &M, a: Self, b: Self, f: &mut impl Leaves<M>) -> Self {
+        assert!(
+            a.tables.is_same(&b.tables),
+            "a kernel cannot choose between scenes: choose between what it reads from them"
+        );
         Self { scene: S::zip(m, a.scene, b.scene, f), ..a }
     }
 }

@@ -132,8 +132,8 @@ impl Aabb {
     /// valid.
     ///
     /// A ray in a face or along an edge is in the box. A component of the direction that is smaller
-    /// than `2^-60` of the largest counts as 0. A ray whose direction is 0 is in the box for its
-    /// whole range, or not at all.
+    /// than `2^-60` of the largest, or subnormal, counts as 0. A ray whose direction counts as 0 is
+    /// in the box for its whole range, up to `f32::MAX`, or not at all.
     ///
     /// A distance that is no end of the range is off by at most `2^-22` of itself, in WGSL `2^-21`,
     /// for lengths from 1e-12 to 1e12; so a ray that only grazes an edge may be taken for one that

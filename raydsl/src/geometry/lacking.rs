@@ -11,7 +11,7 @@ macro_rules! lacking {
         ($($argument:ty),*; $($on:ident),*) -> $result:ty = $message:literal, $note:literal;
     )+) => {
         $(
-            /// Types with this method: none, since the method itself comes first.
+            /// No type implements it: it makes the message. The method itself comes first.
             #[doc(hidden)]
             #[diagnostic::on_unimplemented(
                 message = $message,
@@ -51,19 +51,19 @@ macro_rules! lacking {
 lacking! {
     surface_point surface_point_on HasSurfacePoint (Ray, Hit; R, H) -> SurfacePoint =
         "the kind `{Self}` has no method `surface_point` for kernels",
-        "write `fn surface_point(&self, ray: Ray, hit: Hit) -> SurfacePoint` in a `#[kernel] impl {Self}`";
+        "write `fn surface_point(&self, ray: Ray, hit: Hit) -> SurfacePoint` in a `#[kernel] impl {Self}`, visible here";
     normal normal_on HasNormal (Ray, Hit; R, H) -> Vec3 =
         "the kind `{Self}` has no method `normal` for kernels",
-        "write `fn normal(&self, ray: Ray, hit: Hit) -> Vec3` in a `#[kernel] impl {Self}`";
+        "write `fn normal(&self, ray: Ray, hit: Hit) -> Vec3` in a `#[kernel] impl {Self}`, visible here";
     uv uv_on HasUv (Ray, Hit; R, H) -> Vec2 =
         "the kind `{Self}` has no method `uv` for kernels",
-        "write `fn uv(&self, ray: Ray, hit: Hit) -> Vec2` in a `#[kernel] impl {Self}`";
+        "write `fn uv(&self, ray: Ray, hit: Hit) -> Vec2` in a `#[kernel] impl {Self}`, visible here";
     area area_on HasArea (;) -> f32 =
         "the kind `{Self}` has no method `area` for kernels",
-        "write `fn area(&self) -> f32` in a `#[kernel] impl {Self}`";
+        "write `fn area(&self) -> f32` in a `#[kernel] impl {Self}`, visible here";
     sample sample_on HasSample (Vec2; U) -> SurfacePoint =
         "the kind `{Self}` has no method `sample` for kernels",
-        "write `fn sample(&self, u: Vec2) -> SurfacePoint` in a `#[kernel] impl {Self}`";
+        "write `fn sample(&self, u: Vec2) -> SurfacePoint` in a `#[kernel] impl {Self}`, visible here";
 }
 
 impl<T> Lacking for T {}

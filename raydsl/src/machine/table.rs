@@ -22,6 +22,9 @@ pub trait Table {
 pub trait TableView: Copy + Send + Sync {
     /// Visits the buffers that recorded code may read.
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource));
+
+    /// Returns whether it is the same data, not only equal.
+    fn is_same(&self, other: &Self) -> bool;
 }
 
 impl<T: Table + ?Sized> Table for &T {
@@ -63,5 +66,9 @@ impl<T: Type> Table for Vec<T> {
 impl<T: Type> TableView for Slice<'_, T> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
         visit(self);
+    }
+
+    fn is_same(&self, other: &Self) -> bool {
+        core::ptr::eq(self.elements(), other.elements())
     }
 }

@@ -165,7 +165,14 @@ impl<M: Machine> Value<M> for MeshView<'_> {
 
     #[inline(always)]
     fn zip(m: &M, a: Self, b: Self, f: &mut impl Leaves<M>) -> Self {
-        Self { triangles: Value::<M>::zip(m, a.triangles, b.triangles, f), ..a }
+        Self {
+            triangles: Value::<M>::zip(m, a.triangles, b.triangles, f),
+            normals: Value::<M>::zip(m, a.normals, b.normals, f),
+            uvs: Value::<M>::zip(m, a.uvs, b.uvs, f),
+            tangents: Value::<M>::zip(m, a.tangents, b.tangents, f),
+            colors: Value::<M>::zip(m, a.colors, b.colors, f),
+            materials: Value::<M>::zip(m, a.materials, b.materials, f),
+        }
     }
 }
 

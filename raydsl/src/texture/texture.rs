@@ -320,6 +320,10 @@ impl<T: Texel, const D: usize> TableView for TextureRef<'_, T, D> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
         visit(&self.texels.slice());
     }
+
+    fn is_same(&self, other: &Self) -> bool {
+        self.texels.slice().is_same(&other.texels.slice())
+    }
 }
 
 capture!(Texture);

@@ -236,7 +236,7 @@ pub fn half(n: u32) -> Option<u32> {
 /// The quarter of a number, less the half of another.
 #[kernel]
 pub fn quarter(n: u32, less: Option<u32>) -> Option<u32> {
-    let quarter = half(half(n)?)?;
+    let quarter = half(if n > 3 { half(n) } else { Some(n) }?)?;
     Some(quarter.wrapping_sub(half(less?)?))
 }
 
