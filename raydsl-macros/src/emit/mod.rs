@@ -467,8 +467,14 @@ impl<'a> Emitter<'a> {
         if name == "self" { own("this") } else { name.clone() }
     }
 
+    /// Returns a name that no variable in scope has: `mentioned_in` tells names by their text.
     fn fresh(&mut self, name: &str) -> Ident {
-        self.next += 1;
-        own(&format!("{name}_{}", self.next))
+        loop {
+            self.next += 1;
+            let name = format!("{name}_{}", self.next);
+            if !self.scopes.iter().any(|scope| scope.contains_key(&name)) {
+                return own(&name);
+            }
+        }
     }
 }
