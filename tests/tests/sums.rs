@@ -179,7 +179,8 @@ enum Worded {
 
 #[kernel]
 fn worded(n: u32, x: f32) -> f32 {
-    let made = if n % 2 == 0 { Worded::Glow { r#type: n, power: x } } else { Worded::Dark(x) };
+    let made =
+        if n.is_multiple_of(2) { Worded::Glow { r#type: n, power: x } } else { Worded::Dark(x) };
     match made {
         Worded::Glow { r#type, power } => power * r#type as f32,
         Worded::Dark(y) => -y,
