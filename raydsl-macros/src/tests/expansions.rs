@@ -189,3 +189,24 @@ fn variant_test() {
     let valid = crate::variant_test::wgsl_test(quote!(scene::sky));
     assert_golden("variant_test", quote!(#tests #panics #valid));
 }
+
+/// A name of the macro is none of a variable in scope, whatever the user calls it.
+#[test]
+fn generated_names_are_new() {
+    let f = quote! {
+        fn f(x: f32) -> f32 {
+            let branch_1 = x;
+            let branch_2 = x;
+            if x > 0.0 {
+                return branch_2;
+            }
+            branch_1
+        }
+    };
+    let text = expand_kernel(quote!(), f).to_string();
+    // Once in the source, and once in lifted code.
+    for name in ["let branch_1 =", "let branch_2 ="] {
+        assert_eq!(text.matches(name).count(), 2, "{name}: {text}");
+    }
+    assert!(text.contains("let branch_3 ="), "{text}");
+}
