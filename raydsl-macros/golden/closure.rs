@@ -8,15 +8,15 @@ fn main() {
             known: ::core::option::Option::None,
         };
         const _: ::core::option::Option<&str> = ::core::option_env!("RAYDSL_VARIANTS");
-        let scalar = |ray: Ray| {
+        let __scalar = |ray: Ray| {
             let hit = bvh.closest_hit(ray);
             if hit.is_hit { bvh.primitive(hit).rgb() } else { background }
         };
-        let scalar = ::raydsl::__private::Kernel::scalar(
+        let __scalar = ::raydsl::__private::Kernel::scalar(
             &__INFO,
-            move |(ray,): (Ray,)| scalar(ray),
+            move |(ray,): (Ray,)| __scalar(ray),
         );
-        let captures = (&bvh, &background);
+        let __captures = (&bvh, &background);
         #[allow(
             unused,
             clippy::all,
@@ -25,46 +25,52 @@ fn main() {
             non_snake_case,
             reason = "generated code"
         )]
-        let native4 = move |m: &_, (ray,): (<Ray as ::raydsl::__private::Type>::On<_>,)| {
+        let __native4 = move |
+            __m: &_,
+            (ray,): (<Ray as ::raydsl::__private::Type>::On<_>,)|
+        {
             use ::raydsl::__private::operations::*;
             ::raydsl::__private::Machine::call(
-                m,
+                __m,
                 &__INFO,
                 (ray,),
                 #[inline(always)]
-                |m: &_, (ray,): (<Ray as ::raydsl::__private::Type>::On<_>,)| {
+                |__m: &_, (ray,): (<Ray as ::raydsl::__private::Type>::On<_>,)| {
                     let bvh = ::raydsl::__private::Capture::<
                         _,
-                    >::capture({ captures.0 }, m, "bvh");
+                    >::capture({ __captures.0 }, __m, "bvh");
                     let background = ::raydsl::__private::Capture::<
                         _,
-                    >::capture({ captures.1 }, m, "background");
+                    >::capture({ __captures.1 }, __m, "background");
                     let hit = ::raydsl::__private::Machine::named(
-                        m,
+                        __m,
                         "hit",
                         ::raydsl::__private::Method::<
                             { ::raydsl::__private::name("closest_hit") },
                             _,
                             _,
                             _,
-                        >::call({ bvh }, m, ({ ray },)),
+                        >::call({ bvh }, __m, ({ ray },)),
                     );
                     {
-                        let value_1 = ::raydsl::__private::Var::<
+                        let __value1 = ::raydsl::__private::Var::<
                             _,
-                        >::declare(m, "result");
-                        let branch_2 = ::raydsl::__private::Branch::new(m, hit.is_hit);
-                        if branch_2.then(m) {
+                        >::declare(__m, "result");
+                        let __branch2 = ::raydsl::__private::Branch::new(
+                            __m,
+                            hit.is_hit,
+                        );
+                        if __branch2.then(__m) {
                             ::raydsl::__private::here(
-                                m,
+                                __m,
                                 "if",
                                 ::core::file!(),
                                 ::core::line!(),
                             );
                             {
-                                value_1
+                                __value1
                                     .set(
-                                        m,
+                                        __m,
                                         ::raydsl::__private::Varying::varying(
                                             ::raydsl::__private::Method::<
                                                 { ::raydsl::__private::name("rgb") },
@@ -78,33 +84,33 @@ fn main() {
                                                         _,
                                                         _,
                                                         _,
-                                                    >::call({ bvh }, m, ({ hit },))
+                                                    >::call({ bvh }, __m, ({ hit },))
                                                 },
-                                                m,
+                                                __m,
                                                 (),
                                             ),
-                                            m,
+                                            __m,
                                         ),
                                     );
                             }
                         }
-                        if branch_2.otherwise_small(m) {
+                        if __branch2.otherwise_small(__m) {
                             ::raydsl::__private::here(
-                                m,
+                                __m,
                                 "else",
                                 ::core::file!(),
                                 ::core::line!(),
                             );
                             {
-                                value_1
+                                __value1
                                     .set(
-                                        m,
-                                        ::raydsl::__private::Varying::varying(background, m),
+                                        __m,
+                                        ::raydsl::__private::Varying::varying(background, __m),
                                     );
                             }
                         }
-                        branch_2.end(m);
-                        value_1.get(m)
+                        __branch2.end(__m);
+                        __value1.get(__m)
                     }
                 },
             )
@@ -117,20 +123,20 @@ fn main() {
             non_snake_case,
             reason = "generated code"
         )]
-        let native8 = move |
-            m: &::raydsl::__private::Native8,
+        let __native8 = move |
+            __m: &::raydsl::__private::Native8,
             (
                 ray,
             ): (<Ray as ::raydsl::__private::Type>::On<::raydsl::__private::Native8>,)|
         {
             use ::raydsl::__private::operations::*;
             ::raydsl::__private::Machine::call(
-                m,
+                __m,
                 &__INFO,
                 (ray,),
                 #[inline(always)]
                 |
-                    m: &::raydsl::__private::Native8,
+                    __m: &::raydsl::__private::Native8,
                     (
                         ray,
                     ): (
@@ -141,36 +147,39 @@ fn main() {
                 {
                     let bvh = ::raydsl::__private::Capture::<
                         ::raydsl::__private::Native8,
-                    >::capture({ captures.0 }, m, "bvh");
+                    >::capture({ __captures.0 }, __m, "bvh");
                     let background = ::raydsl::__private::Capture::<
                         ::raydsl::__private::Native8,
-                    >::capture({ captures.1 }, m, "background");
+                    >::capture({ __captures.1 }, __m, "background");
                     let hit = ::raydsl::__private::Machine::named(
-                        m,
+                        __m,
                         "hit",
                         ::raydsl::__private::Method::<
                             { ::raydsl::__private::name("closest_hit") },
                             ::raydsl::__private::Native8,
                             _,
                             _,
-                        >::call({ bvh }, m, ({ ray },)),
+                        >::call({ bvh }, __m, ({ ray },)),
                     );
                     {
-                        let value_1 = ::raydsl::__private::Var::<
+                        let __value1 = ::raydsl::__private::Var::<
                             _,
-                        >::declare(m, "result");
-                        let branch_2 = ::raydsl::__private::Branch::new(m, hit.is_hit);
-                        if branch_2.then(m) {
+                        >::declare(__m, "result");
+                        let __branch2 = ::raydsl::__private::Branch::new(
+                            __m,
+                            hit.is_hit,
+                        );
+                        if __branch2.then(__m) {
                             ::raydsl::__private::here(
-                                m,
+                                __m,
                                 "if",
                                 ::core::file!(),
                                 ::core::line!(),
                             );
                             {
-                                value_1
+                                __value1
                                     .set(
-                                        m,
+                                        __m,
                                         ::raydsl::__private::Varying::varying(
                                             ::raydsl::__private::Method::<
                                                 { ::raydsl::__private::name("rgb") },
@@ -184,33 +193,33 @@ fn main() {
                                                         ::raydsl::__private::Native8,
                                                         _,
                                                         _,
-                                                    >::call({ bvh }, m, ({ hit },))
+                                                    >::call({ bvh }, __m, ({ hit },))
                                                 },
-                                                m,
+                                                __m,
                                                 (),
                                             ),
-                                            m,
+                                            __m,
                                         ),
                                     );
                             }
                         }
-                        if branch_2.otherwise_small(m) {
+                        if __branch2.otherwise_small(__m) {
                             ::raydsl::__private::here(
-                                m,
+                                __m,
                                 "else",
                                 ::core::file!(),
                                 ::core::line!(),
                             );
                             {
-                                value_1
+                                __value1
                                     .set(
-                                        m,
-                                        ::raydsl::__private::Varying::varying(background, m),
+                                        __m,
+                                        ::raydsl::__private::Varying::varying(background, __m),
                                     );
                             }
                         }
-                        branch_2.end(m);
-                        value_1.get(m)
+                        __branch2.end(__m);
+                        __value1.get(__m)
                     }
                 },
             )
@@ -223,20 +232,20 @@ fn main() {
             non_snake_case,
             reason = "generated code"
         )]
-        let native16 = move |
-            m: &::raydsl::__private::Native16,
+        let __native16 = move |
+            __m: &::raydsl::__private::Native16,
             (
                 ray,
             ): (<Ray as ::raydsl::__private::Type>::On<::raydsl::__private::Native16>,)|
         {
             use ::raydsl::__private::operations::*;
             ::raydsl::__private::Machine::call(
-                m,
+                __m,
                 &__INFO,
                 (ray,),
                 #[inline(always)]
                 |
-                    m: &::raydsl::__private::Native16,
+                    __m: &::raydsl::__private::Native16,
                     (
                         ray,
                     ): (
@@ -247,36 +256,39 @@ fn main() {
                 {
                     let bvh = ::raydsl::__private::Capture::<
                         ::raydsl::__private::Native16,
-                    >::capture({ captures.0 }, m, "bvh");
+                    >::capture({ __captures.0 }, __m, "bvh");
                     let background = ::raydsl::__private::Capture::<
                         ::raydsl::__private::Native16,
-                    >::capture({ captures.1 }, m, "background");
+                    >::capture({ __captures.1 }, __m, "background");
                     let hit = ::raydsl::__private::Machine::named(
-                        m,
+                        __m,
                         "hit",
                         ::raydsl::__private::Method::<
                             { ::raydsl::__private::name("closest_hit") },
                             ::raydsl::__private::Native16,
                             _,
                             _,
-                        >::call({ bvh }, m, ({ ray },)),
+                        >::call({ bvh }, __m, ({ ray },)),
                     );
                     {
-                        let value_1 = ::raydsl::__private::Var::<
+                        let __value1 = ::raydsl::__private::Var::<
                             _,
-                        >::declare(m, "result");
-                        let branch_2 = ::raydsl::__private::Branch::new(m, hit.is_hit);
-                        if branch_2.then(m) {
+                        >::declare(__m, "result");
+                        let __branch2 = ::raydsl::__private::Branch::new(
+                            __m,
+                            hit.is_hit,
+                        );
+                        if __branch2.then(__m) {
                             ::raydsl::__private::here(
-                                m,
+                                __m,
                                 "if",
                                 ::core::file!(),
                                 ::core::line!(),
                             );
                             {
-                                value_1
+                                __value1
                                     .set(
-                                        m,
+                                        __m,
                                         ::raydsl::__private::Varying::varying(
                                             ::raydsl::__private::Method::<
                                                 { ::raydsl::__private::name("rgb") },
@@ -290,33 +302,33 @@ fn main() {
                                                         ::raydsl::__private::Native16,
                                                         _,
                                                         _,
-                                                    >::call({ bvh }, m, ({ hit },))
+                                                    >::call({ bvh }, __m, ({ hit },))
                                                 },
-                                                m,
+                                                __m,
                                                 (),
                                             ),
-                                            m,
+                                            __m,
                                         ),
                                     );
                             }
                         }
-                        if branch_2.otherwise_small(m) {
+                        if __branch2.otherwise_small(__m) {
                             ::raydsl::__private::here(
-                                m,
+                                __m,
                                 "else",
                                 ::core::file!(),
                                 ::core::line!(),
                             );
                             {
-                                value_1
+                                __value1
                                     .set(
-                                        m,
-                                        ::raydsl::__private::Varying::varying(background, m),
+                                        __m,
+                                        ::raydsl::__private::Varying::varying(background, __m),
                                     );
                             }
                         }
-                        branch_2.end(m);
-                        value_1.get(m)
+                        __branch2.end(__m);
+                        __value1.get(__m)
                     }
                 },
             )
@@ -329,20 +341,20 @@ fn main() {
             non_snake_case,
             reason = "generated code"
         )]
-        let recorder = move |
-            m: &::raydsl::__private::Recorder,
+        let __recorder = move |
+            __m: &::raydsl::__private::Recorder,
             (
                 ray,
             ): (<Ray as ::raydsl::__private::Type>::On<::raydsl::__private::Recorder>,)|
         {
             use ::raydsl::__private::operations::*;
             ::raydsl::__private::Machine::call(
-                m,
+                __m,
                 &__INFO,
                 (ray,),
                 #[inline(always)]
                 |
-                    m: &::raydsl::__private::Recorder,
+                    __m: &::raydsl::__private::Recorder,
                     (
                         ray,
                     ): (
@@ -353,36 +365,39 @@ fn main() {
                 {
                     let bvh = ::raydsl::__private::Capture::<
                         ::raydsl::__private::Recorder,
-                    >::capture({ captures.0 }, m, "bvh");
+                    >::capture({ __captures.0 }, __m, "bvh");
                     let background = ::raydsl::__private::Capture::<
                         ::raydsl::__private::Recorder,
-                    >::capture({ captures.1 }, m, "background");
+                    >::capture({ __captures.1 }, __m, "background");
                     let hit = ::raydsl::__private::Machine::named(
-                        m,
+                        __m,
                         "hit",
                         ::raydsl::__private::Method::<
                             { ::raydsl::__private::name("closest_hit") },
                             ::raydsl::__private::Recorder,
                             _,
                             _,
-                        >::call({ bvh }, m, ({ ray },)),
+                        >::call({ bvh }, __m, ({ ray },)),
                     );
                     {
-                        let value_1 = ::raydsl::__private::Var::<
+                        let __value1 = ::raydsl::__private::Var::<
                             _,
-                        >::declare(m, "result");
-                        let branch_2 = ::raydsl::__private::Branch::new(m, hit.is_hit);
-                        if branch_2.then(m) {
+                        >::declare(__m, "result");
+                        let __branch2 = ::raydsl::__private::Branch::new(
+                            __m,
+                            hit.is_hit,
+                        );
+                        if __branch2.then(__m) {
                             ::raydsl::__private::here(
-                                m,
+                                __m,
                                 "if",
                                 ::core::file!(),
                                 ::core::line!(),
                             );
                             {
-                                value_1
+                                __value1
                                     .set(
-                                        m,
+                                        __m,
                                         ::raydsl::__private::Varying::varying(
                                             ::raydsl::__private::Method::<
                                                 { ::raydsl::__private::name("rgb") },
@@ -396,33 +411,33 @@ fn main() {
                                                         ::raydsl::__private::Recorder,
                                                         _,
                                                         _,
-                                                    >::call({ bvh }, m, ({ hit },))
+                                                    >::call({ bvh }, __m, ({ hit },))
                                                 },
-                                                m,
+                                                __m,
                                                 (),
                                             ),
-                                            m,
+                                            __m,
                                         ),
                                     );
                             }
                         }
-                        if branch_2.otherwise_small(m) {
+                        if __branch2.otherwise_small(__m) {
                             ::raydsl::__private::here(
-                                m,
+                                __m,
                                 "else",
                                 ::core::file!(),
                                 ::core::line!(),
                             );
                             {
-                                value_1
+                                __value1
                                     .set(
-                                        m,
-                                        ::raydsl::__private::Varying::varying(background, m),
+                                        __m,
+                                        ::raydsl::__private::Varying::varying(background, __m),
                                     );
                             }
                         }
-                        branch_2.end(m);
-                        value_1.get(m)
+                        __branch2.end(__m);
+                        __value1.get(__m)
                     }
                 },
             )
@@ -435,20 +450,20 @@ fn main() {
             non_snake_case,
             reason = "generated code"
         )]
-        let margin = move |
-            m: &::raydsl::__private::Margin,
+        let __margin = move |
+            __m: &::raydsl::__private::Margin,
             (
                 ray,
             ): (<Ray as ::raydsl::__private::Type>::On<::raydsl::__private::Margin>,)|
         {
             use ::raydsl::__private::operations::*;
             ::raydsl::__private::Machine::call(
-                m,
+                __m,
                 &__INFO,
                 (ray,),
                 #[inline(always)]
                 |
-                    m: &::raydsl::__private::Margin,
+                    __m: &::raydsl::__private::Margin,
                     (
                         ray,
                     ): (
@@ -459,36 +474,39 @@ fn main() {
                 {
                     let bvh = ::raydsl::__private::Capture::<
                         ::raydsl::__private::Margin,
-                    >::capture({ captures.0 }, m, "bvh");
+                    >::capture({ __captures.0 }, __m, "bvh");
                     let background = ::raydsl::__private::Capture::<
                         ::raydsl::__private::Margin,
-                    >::capture({ captures.1 }, m, "background");
+                    >::capture({ __captures.1 }, __m, "background");
                     let hit = ::raydsl::__private::Machine::named(
-                        m,
+                        __m,
                         "hit",
                         ::raydsl::__private::Method::<
                             { ::raydsl::__private::name("closest_hit") },
                             ::raydsl::__private::Margin,
                             _,
                             _,
-                        >::call({ bvh }, m, ({ ray },)),
+                        >::call({ bvh }, __m, ({ ray },)),
                     );
                     {
-                        let value_1 = ::raydsl::__private::Var::<
+                        let __value1 = ::raydsl::__private::Var::<
                             _,
-                        >::declare(m, "result");
-                        let branch_2 = ::raydsl::__private::Branch::new(m, hit.is_hit);
-                        if branch_2.then(m) {
+                        >::declare(__m, "result");
+                        let __branch2 = ::raydsl::__private::Branch::new(
+                            __m,
+                            hit.is_hit,
+                        );
+                        if __branch2.then(__m) {
                             ::raydsl::__private::here(
-                                m,
+                                __m,
                                 "if",
                                 ::core::file!(),
                                 ::core::line!(),
                             );
                             {
-                                value_1
+                                __value1
                                     .set(
-                                        m,
+                                        __m,
                                         ::raydsl::__private::Varying::varying(
                                             ::raydsl::__private::Method::<
                                                 { ::raydsl::__private::name("rgb") },
@@ -502,64 +520,66 @@ fn main() {
                                                         ::raydsl::__private::Margin,
                                                         _,
                                                         _,
-                                                    >::call({ bvh }, m, ({ hit },))
+                                                    >::call({ bvh }, __m, ({ hit },))
                                                 },
-                                                m,
+                                                __m,
                                                 (),
                                             ),
-                                            m,
+                                            __m,
                                         ),
                                     );
                             }
                         }
-                        if branch_2.otherwise_small(m) {
+                        if __branch2.otherwise_small(__m) {
                             ::raydsl::__private::here(
-                                m,
+                                __m,
                                 "else",
                                 ::core::file!(),
                                 ::core::line!(),
                             );
                             {
-                                value_1
+                                __value1
                                     .set(
-                                        m,
-                                        ::raydsl::__private::Varying::varying(background, m),
+                                        __m,
+                                        ::raydsl::__private::Varying::varying(background, __m),
                                     );
                             }
                         }
-                        branch_2.end(m);
-                        value_1.get(m)
+                        __branch2.end(__m);
+                        __value1.get(__m)
                     }
                 },
             )
         };
-        scalar
+        __scalar
             .lifted(
                 ::raydsl::__private::Lifted {
                     native4: ::core::option::Option::Some(
-                        ::std::boxed::Box::new(native4)
+                        ::std::boxed::Box::new(__native4)
                             as ::std::boxed::Box<
                                 dyn Fn(&::raydsl::__private::Native4, _) -> _ + Send + Sync,
                             >,
                     ),
                     native8: ::core::option::Option::Some(
-                        ::std::boxed::Box::new(native8),
+                        ::std::boxed::Box::new(__native8),
                     ),
                     native16: ::core::option::Option::Some(
-                        ::std::boxed::Box::new(native16),
+                        ::std::boxed::Box::new(__native16),
                     ),
                     recorder: ::core::option::Option::Some(
-                        ::std::boxed::Box::new(recorder),
+                        ::std::boxed::Box::new(__recorder),
                     ),
-                    margin: ::core::option::Option::Some(::std::boxed::Box::new(margin)),
+                    margin: ::core::option::Option::Some(
+                        ::std::boxed::Box::new(__margin),
+                    ),
                 },
                 move |visit: &mut dyn FnMut(&dyn ::raydsl::__private::Resource)| {
                     ::raydsl::__private::Capture::<
                         ::raydsl::__private::Recorder,
-                    >::resources({ captures.0 }, visit);
+                    >::resources({ __captures.0 }, visit);
                     ::raydsl::__private::Capture::<
                         ::raydsl::__private::Recorder,
-                    >::resources({ captures.1 }, visit);
+                    >::resources({ __captures.1 }, visit);
                 },
             )
     };

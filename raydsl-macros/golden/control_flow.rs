@@ -37,7 +37,7 @@ impl walk {
         reason = "generated code"
     )]
     pub(self) fn on<__M: ::raydsl::__private::Machine>(
-        m: &__M,
+        __m: &__M,
         x: impl ::raydsl::__private::Coerce<
             __M,
             <f32 as ::raydsl::__private::Type>::On<__M>,
@@ -56,21 +56,21 @@ impl walk {
             known: ::core::option::Option::None,
         };
         ::raydsl::__private::Machine::call(
-            m,
+            __m,
             &__INFO,
             (
                 ::raydsl::__private::Coerce::<
                     __M,
                     <f32 as ::raydsl::__private::Type>::On<__M>,
-                >::coerce(x, m),
+                >::coerce(x, __m),
                 ::raydsl::__private::Coerce::<
                     __M,
                     <u32 as ::raydsl::__private::Type>::On<__M>,
-                >::coerce(n, m),
+                >::coerce(n, __m),
             ),
             #[inline(always)]
             |
-                m: &__M,
+                __m: &__M,
                 (
                     x,
                     n,
@@ -79,49 +79,53 @@ impl walk {
                     <u32 as ::raydsl::__private::Type>::On<__M>,
                 )|
             {
-                let ret = ::raydsl::__private::Ret::<
+                let __ret = ::raydsl::__private::Ret::<
                     <f32 as ::raydsl::__private::Type>::On<__M>,
-                >::new(m);
+                >::new(__m);
                 'block_0: {
                     let sum = ::raydsl::__private::Var::new(
-                        m,
+                        __m,
                         "sum",
                         ::raydsl::__private::Varying::varying(
-                            ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
-                            m,
+                            ::raydsl::__private::literal(__m, 0.0f32, 0.0f64),
+                            __m,
                         ),
                     );
                     {
-                        let (begin, end) = ::raydsl::__private::range(m, { 0 }, { n });
-                        let counter_3 = ::raydsl::__private::Steps::new(
-                            m,
+                        let (__begin, __end) = ::raydsl::__private::range(
+                            __m,
+                            { 0 },
+                            { n },
+                        );
+                        let __counter3 = ::raydsl::__private::Steps::new(
+                            __m,
                             "i",
-                            begin,
+                            __begin,
                             0 as u32,
                         );
-                        let end = ::raydsl::__private::Stop::new(m, end);
-                        let repeat_2 = ::raydsl::__private::Loop::new(m);
+                        let __end = ::raydsl::__private::Stop::new(__m, __end);
+                        let __repeat2 = ::raydsl::__private::Loop::new(__m);
                         loop {
-                            if !end.is_after(m, &repeat_2, &counter_3) {
+                            if !__end.is_after(__m, &__repeat2, &__counter3) {
                                 break;
                             }
                             ::raydsl::__private::here(
-                                m,
+                                __m,
                                 "loop",
                                 ::core::file!(),
                                 ::core::line!(),
                             );
-                            let i = counter_3.get(m);
+                            let i = __counter3.get(__m);
                             {
-                                let repeat_6 = ::raydsl::__private::Loop::new(m);
+                                let __repeat6 = ::raydsl::__private::Loop::new(__m);
                                 loop {
-                                    if !repeat_6
+                                    if !__repeat6
                                         .test(
-                                            m,
+                                            __m,
                                             ::raydsl::__private::OpCompare::compare(
-                                                m,
+                                                __m,
                                                 ::raydsl::__private::op::Lt,
-                                                { sum.get(m) },
+                                                { sum.get(__m) },
                                                 { x },
                                             ),
                                         )
@@ -129,265 +133,288 @@ impl walk {
                                         break;
                                     }
                                     ::raydsl::__private::here(
-                                        m,
+                                        __m,
                                         "loop",
                                         ::core::file!(),
                                         ::core::line!(),
                                     );
                                     'block_6: {
                                         {
-                                            let right = ::raydsl::__private::literal(m, 1.0f32, 1.0f64);
+                                            let __right = ::raydsl::__private::literal(
+                                                __m,
+                                                1.0f32,
+                                                1.0f64,
+                                            );
                                             sum.set(
-                                                m,
+                                                __m,
                                                 ::raydsl::__private::Assigned::<
                                                     { ::raydsl::__private::name("+=") },
                                                     _,
                                                     _,
                                                     _,
-                                                >::assigned(m, sum.get(m), right),
+                                                >::assigned(__m, sum.get(__m), __right),
                                             );
                                         }
-                                        let branch_8 = ::raydsl::__private::Branch::new(
-                                            m,
+                                        let __branch8 = ::raydsl::__private::Branch::new(
+                                            __m,
                                             ::raydsl::__private::OpCompare::compare(
-                                                m,
+                                                __m,
                                                 ::raydsl::__private::op::Gt,
-                                                { sum.get(m) },
-                                                { ::raydsl::__private::literal(m, 10.0f32, 10.0f64) },
+                                                { sum.get(__m) },
+                                                { ::raydsl::__private::literal(__m, 10.0f32, 10.0f64) },
                                             ),
                                         );
-                                        if branch_8.then_small(m) {
+                                        if __branch8.then_small(__m) {
                                             ::raydsl::__private::here(
-                                                m,
+                                                __m,
                                                 "if",
                                                 ::core::file!(),
                                                 ::core::line!(),
                                             );
                                             {
-                                                repeat_2.leave(m);
+                                                __repeat2.leave(__m);
                                             }
                                         }
-                                        if branch_8.otherwise(m) {
+                                        if __branch8.otherwise(__m) {
                                             ::raydsl::__private::here(
-                                                m,
+                                                __m,
                                                 "else",
                                                 ::core::file!(),
                                                 ::core::line!(),
                                             );
-                                            let branch_10 = ::raydsl::__private::Branch::new(
-                                                m,
+                                            let __branch10 = ::raydsl::__private::Branch::new(
+                                                __m,
                                                 {
-                                                    let value_11 = ::raydsl::__private::Var::<
+                                                    let __value11 = ::raydsl::__private::Var::<
                                                         _,
-                                                    >::declare(m, "both");
-                                                    let branch_12 = ::raydsl::__private::Branch::new(
-                                                        m,
+                                                    >::declare(__m, "both");
+                                                    let __branch12 = ::raydsl::__private::Branch::new(
+                                                        __m,
                                                         ::raydsl::__private::OpCompare::compare(
-                                                            m,
+                                                            __m,
                                                             ::raydsl::__private::op::Lt,
                                                             { x },
-                                                            { ::raydsl::__private::literal(m, 0.0f32, 0.0f64) },
+                                                            { ::raydsl::__private::literal(__m, 0.0f32, 0.0f64) },
                                                         ),
                                                     );
-                                                    if branch_12.then(m) {
+                                                    if __branch12.then(__m) {
                                                         ::raydsl::__private::here(
-                                                            m,
+                                                            __m,
                                                             "if",
                                                             ::core::file!(),
                                                             ::core::line!(),
                                                         );
                                                         {
-                                                            value_11
+                                                            __value11
                                                                 .set(
-                                                                    m,
+                                                                    __m,
                                                                     ::raydsl::__private::Varying::varying(
                                                                         ::raydsl::__private::OpCompare::compare(
-                                                                            m,
+                                                                            __m,
                                                                             ::raydsl::__private::op::Gt,
                                                                             {
                                                                                 ::raydsl::__private::OpDiv::div(
-                                                                                    m,
-                                                                                    { ::raydsl::__private::u32(m, 1u32) },
+                                                                                    __m,
+                                                                                    { ::raydsl::__private::u32(__m, 1u32) },
                                                                                     { i },
                                                                                 )
                                                                             },
                                                                             { 0 },
                                                                         ),
-                                                                        m,
+                                                                        __m,
                                                                     ),
                                                                 );
                                                         }
                                                     }
-                                                    if branch_12.otherwise_small(m) {
+                                                    if __branch12.otherwise_small(__m) {
                                                         ::raydsl::__private::here(
-                                                            m,
+                                                            __m,
                                                             "else",
                                                             ::core::file!(),
                                                             ::core::line!(),
                                                         );
                                                         {
-                                                            value_11
-                                                                .set(m, ::raydsl::__private::Varying::varying(false, m));
+                                                            __value11
+                                                                .set(
+                                                                    __m,
+                                                                    ::raydsl::__private::Varying::varying(false, __m),
+                                                                );
                                                         }
                                                     }
-                                                    branch_12.end(m);
-                                                    value_11.get(m)
+                                                    __branch12.end(__m);
+                                                    __value11.get(__m)
                                                 },
                                             );
-                                            if branch_10.then_small(m) {
+                                            if __branch10.then_small(__m) {
                                                 ::raydsl::__private::here(
-                                                    m,
+                                                    __m,
                                                     "if",
                                                     ::core::file!(),
                                                     ::core::line!(),
                                                 );
                                                 {
-                                                    repeat_6.skip(m);
+                                                    __repeat6.skip(__m);
                                                 }
                                             }
-                                            branch_10.end(m);
+                                            __branch10.end(__m);
                                         }
-                                        branch_8.end(m);
-                                        if !::raydsl::__private::Machine::alive(m) {
+                                        __branch8.end(__m);
+                                        if !::raydsl::__private::Machine::alive(__m) {
                                             break 'block_6;
                                         }
-                                        let branch_16 = ::raydsl::__private::Branch::new(
-                                            m,
+                                        let __branch16 = ::raydsl::__private::Branch::new(
+                                            __m,
                                             ::raydsl::__private::OpCompare::compare(
-                                                m,
+                                                __m,
                                                 ::raydsl::__private::op::Eq,
                                                 { i },
                                                 { 3 },
                                             ),
                                         );
-                                        if branch_16.then_small(m) {
+                                        if __branch16.then_small(__m) {
                                             ::raydsl::__private::here(
-                                                m,
+                                                __m,
                                                 "if",
                                                 ::core::file!(),
                                                 ::core::line!(),
                                             );
                                             {
-                                                ret.give(
-                                                    m,
-                                                    ::raydsl::__private::Coerce::coerce(sum.get(m), m),
-                                                );
+                                                __ret
+                                                    .give(
+                                                        __m,
+                                                        ::raydsl::__private::Coerce::coerce(sum.get(__m), __m),
+                                                    );
                                             }
                                         }
-                                        branch_16.end(m);
-                                        if !::raydsl::__private::Machine::alive(m) {
+                                        __branch16.end(__m);
+                                        if !::raydsl::__private::Machine::alive(__m) {
                                             break 'block_6;
                                         }
                                         {
-                                            let right = ::raydsl::__private::literal(m, 2.0f32, 2.0f64);
+                                            let __right = ::raydsl::__private::literal(
+                                                __m,
+                                                2.0f32,
+                                                2.0f64,
+                                            );
                                             sum.set(
-                                                m,
+                                                __m,
                                                 ::raydsl::__private::Assigned::<
                                                     { ::raydsl::__private::name("*=") },
                                                     _,
                                                     _,
                                                     _,
-                                                >::assigned(m, sum.get(m), right),
+                                                >::assigned(__m, sum.get(__m), __right),
                                             );
                                         }
                                     }
-                                    repeat_6.continuing(m);
-                                    if !repeat_6.again(m) {
+                                    __repeat6.continuing(__m);
+                                    if !__repeat6.again(__m) {
                                         break;
                                     }
                                 }
-                                repeat_6.end(m);
+                                __repeat6.end(__m);
                             }
-                            repeat_2.continuing(m);
-                            counter_3.advance(m);
-                            if !repeat_2.again(m) {
+                            __repeat2.continuing(__m);
+                            __counter3.advance(__m);
+                            if !__repeat2.again(__m) {
                                 break;
                             }
                         }
-                        repeat_2.end(m);
+                        __repeat2.end(__m);
                     }
-                    if !::raydsl::__private::Machine::alive(m) {
+                    if !::raydsl::__private::Machine::alive(__m) {
                         break 'block_0;
                     }
-                    let last = ::raydsl::__private::Var::<_>::declare(m, "last");
-                    let branch_18 = ::raydsl::__private::Branch::new(
-                        m,
+                    let last = ::raydsl::__private::Var::<_>::declare(__m, "last");
+                    let __branch18 = ::raydsl::__private::Branch::new(
+                        __m,
                         ::raydsl::__private::OpCompare::compare(
-                            m,
+                            __m,
                             ::raydsl::__private::op::Gt,
-                            { sum.get(m) },
+                            { sum.get(__m) },
                             { x },
                         ),
                     );
-                    if branch_18.then_small(m) {
+                    if __branch18.then_small(__m) {
                         ::raydsl::__private::here(
-                            m,
+                            __m,
                             "if",
                             ::core::file!(),
                             ::core::line!(),
                         );
                         {
                             {
-                                let right = ::raydsl::__private::choose::<
+                                let __right = ::raydsl::__private::choose::<
                                     _,
                                     _,
                                     _,
                                 >(
-                                    m,
+                                    __m,
                                     "value",
                                     false,
                                     ::raydsl::__private::OpCompare::compare(
-                                        m,
+                                        __m,
                                         ::raydsl::__private::op::Gt,
                                         { x },
-                                        { ::raydsl::__private::literal(m, 0.0f32, 0.0f64) },
+                                        { ::raydsl::__private::literal(__m, 0.0f32, 0.0f64) },
                                     ),
                                     #[inline(always)]
                                     || {
                                         let _ = &x;
-                                        ::raydsl::__private::Varying::varying(x, m)
+                                        ::raydsl::__private::Varying::varying(x, __m)
                                     },
                                     #[inline(always)]
                                     || {
                                         let _ = &x;
                                         ::raydsl::__private::Varying::varying(
-                                            ::raydsl::__private::OpNeg::neg(m, x),
-                                            m,
+                                            ::raydsl::__private::OpNeg::neg(__m, x),
+                                            __m,
                                         )
                                     },
                                 );
-                                last.set(m, ::raydsl::__private::Coerce::coerce(right, m));
+                                last.set(
+                                    __m,
+                                    ::raydsl::__private::Coerce::coerce(__right, __m),
+                                );
                             }
                         }
                     }
-                    if branch_18.otherwise_small(m) {
+                    if __branch18.otherwise_small(__m) {
                         ::raydsl::__private::here(
-                            m,
+                            __m,
                             "else",
                             ::core::file!(),
                             ::core::line!(),
                         );
                         {
                             {
-                                let right = ::raydsl::__private::literal(m, 0.0f32, 0.0f64);
-                                last.set(m, ::raydsl::__private::Coerce::coerce(right, m));
+                                let __right = ::raydsl::__private::literal(
+                                    __m,
+                                    0.0f32,
+                                    0.0f64,
+                                );
+                                last.set(
+                                    __m,
+                                    ::raydsl::__private::Coerce::coerce(__right, __m),
+                                );
                             }
                         }
                     }
-                    branch_18.end(m);
-                    ret.give(
-                        m,
-                        ::raydsl::__private::Coerce::coerce(
-                            ::raydsl::__private::OpAdd::add(
-                                m,
-                                { sum.get(m) },
-                                { last.get(m) },
+                    __branch18.end(__m);
+                    __ret
+                        .give(
+                            __m,
+                            ::raydsl::__private::Coerce::coerce(
+                                ::raydsl::__private::OpAdd::add(
+                                    __m,
+                                    { sum.get(__m) },
+                                    { last.get(__m) },
+                                ),
+                                __m,
                             ),
-                            m,
-                        ),
-                    );
+                        );
                 }
-                ret.take()
+                __ret.take()
             },
         )
     }

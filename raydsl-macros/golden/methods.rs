@@ -24,8 +24,8 @@ where
         reason = "generated code"
     )]
     pub fn moved_on<__M: ::raydsl::__private::Machine>(
-        m: &__M,
-        this: impl ::raydsl::__private::Coerce<
+        __m: &__M,
+        __this: impl ::raydsl::__private::Coerce<
             __M,
             <Particle as ::raydsl::__private::Type>::On<__M>,
         >,
@@ -43,23 +43,23 @@ where
             known: ::core::option::Option::None,
         };
         ::raydsl::__private::Machine::call(
-            m,
+            __m,
             &__INFO,
             (
                 ::raydsl::__private::Coerce::<
                     __M,
                     <Particle as ::raydsl::__private::Type>::On<__M>,
-                >::coerce(this, m),
+                >::coerce(__this, __m),
                 ::raydsl::__private::Coerce::<
                     __M,
                     <Vec3 as ::raydsl::__private::Type>::On<__M>,
-                >::coerce(by, m),
+                >::coerce(by, __m),
             ),
             #[inline(always)]
             |
-                m: &__M,
+                __m: &__M,
                 (
-                    this,
+                    __this,
                     by,
                 ): (
                     <Particle as ::raydsl::__private::Type>::On<__M>,
@@ -77,16 +77,16 @@ where
                         __Twin::<__M> {
                             position: ::raydsl::__private::Coerce::coerce(
                                 ::raydsl::__private::OpAdd::add(
-                                    m,
-                                    { this.position },
+                                    __m,
+                                    { __this.position },
                                     { by },
                                 ),
-                                m,
+                                __m,
                             ),
-                            ..this
+                            ..__this
                         }
                     },
-                    m,
+                    __m,
                 )
             },
         )
@@ -102,7 +102,7 @@ where
         reason = "generated code"
     )]
     fn at_rest_on<__M: ::raydsl::__private::Machine>(
-        m: &__M,
+        __m: &__M,
     ) -> <Particle as ::raydsl::__private::Type>::On<__M> {
         use ::raydsl::__private::operations::*;
         static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
@@ -113,11 +113,11 @@ where
             known: ::core::option::Option::None,
         };
         ::raydsl::__private::Machine::call(
-            m,
+            __m,
             &__INFO,
             (),
             #[inline(always)]
-            |m: &__M, (): ()| {
+            |__m: &__M, (): ()| {
                 ::raydsl::__private::Coerce::<
                     __M,
                     <Particle as ::raydsl::__private::Type>::On<__M>,
@@ -130,20 +130,20 @@ where
                     >::call(
                         {
                             <Particle>::new_on(
-                                m,
-                                ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
+                                __m,
+                                ::raydsl::__private::literal(__m, 0.0f32, 0.0f64),
                             )
                         },
-                        m,
+                        __m,
                         (
                             {
                                 ::raydsl::__private::Capture::<
                                     __M,
-                                >::constant(&Vec3::ZERO, m)
+                                >::constant(&Vec3::ZERO, __m)
                             },
                         ),
                     ),
-                    m,
+                    __m,
                 )
             },
         )
@@ -174,8 +174,8 @@ where
     type Output = <Particle as ::raydsl::__private::Type>::On<__M>;
     #[inline(always)]
     fn call(
-        this: <Self as ::raydsl::__private::Type>::On<__M>,
-        m: &__M,
+        __this: <Self as ::raydsl::__private::Type>::On<__M>,
+        __m: &__M,
         (by,): (__A0,),
     ) -> <Self as ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("moved") },
@@ -183,6 +183,6 @@ where
         (__A0,),
         (),
     >>::Output {
-        <Particle>::moved_on(m, this, by)
+        <Particle>::moved_on(__m, __this, by)
     }
 }

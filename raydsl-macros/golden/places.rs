@@ -20,7 +20,7 @@ impl push {
         reason = "generated code"
     )]
     pub(self) fn on<__M: ::raydsl::__private::Machine>(
-        m: &__M,
+        __m: &__M,
         p: impl ::raydsl::__private::Coerce<
             __M,
             <Particle as ::raydsl::__private::Type>::On<__M>,
@@ -42,21 +42,21 @@ impl push {
             known: ::core::option::Option::None,
         };
         ::raydsl::__private::Machine::call(
-            m,
+            __m,
             &__INFO,
             (
                 ::raydsl::__private::Coerce::<
                     __M,
                     <Particle as ::raydsl::__private::Type>::On<__M>,
-                >::coerce(p, m),
+                >::coerce(p, __m),
                 ::raydsl::__private::Coerce::<
                     __M,
                     <Vec3 as ::raydsl::__private::Type>::On<__M>,
-                >::coerce(by, m),
+                >::coerce(by, __m),
             ),
             #[inline(always)]
             |
-                m: &__M,
+                __m: &__M,
                 (
                     p,
                     by,
@@ -65,48 +65,48 @@ impl push {
                     <Vec3 as ::raydsl::__private::Type>::On<__M>,
                 )|
             {
-                let by = ::raydsl::__private::Var::new(m, "by", by);
+                let by = ::raydsl::__private::Var::new(__m, "by", by);
                 let q = ::raydsl::__private::Var::new(
-                    m,
+                    __m,
                     "q",
-                    ::raydsl::__private::Varying::varying(p, m),
+                    ::raydsl::__private::Varying::varying(p, __m),
                 );
                 {
-                    let right = ::raydsl::__private::OpNeg::neg(m, by.get(m).x);
-                    let mut whole = by.get(m);
-                    whole.x = ::raydsl::__private::Coerce::coerce(right, m);
-                    by.set(m, whole);
+                    let __right = ::raydsl::__private::OpNeg::neg(__m, by.get(__m).x);
+                    let mut __whole = by.get(__m);
+                    __whole.x = ::raydsl::__private::Coerce::coerce(__right, __m);
+                    by.set(__m, __whole);
                 }
                 {
-                    let right = by.get(m).y;
-                    let mut whole = q.get(m);
-                    whole.position.y = ::raydsl::__private::Assigned::<
+                    let __right = by.get(__m).y;
+                    let mut __whole = q.get(__m);
+                    __whole.position.y = ::raydsl::__private::Assigned::<
                         { ::raydsl::__private::name("+=") },
                         _,
                         _,
                         _,
-                    >::assigned(m, whole.position.y, right);
-                    q.set(m, whole);
+                    >::assigned(__m, __whole.position.y, __right);
+                    q.set(__m, __whole);
                 }
                 {
-                    let right = {
+                    let __right = {
                         type __Twin<M__> = <Particle as ::raydsl::__private::Type>::On<
                             M__,
                         >;
                         __Twin::<__M> {
                             mass: ::raydsl::__private::Coerce::coerce(
-                                ::raydsl::__private::literal(m, 1.0f32, 1.0f64),
-                                m,
+                                ::raydsl::__private::literal(__m, 1.0f32, 1.0f64),
+                                __m,
                             ),
-                            ..q.get(m)
+                            ..q.get(__m)
                         }
                     };
-                    q.set(m, ::raydsl::__private::Coerce::coerce(right, m));
+                    q.set(__m, ::raydsl::__private::Coerce::coerce(__right, __m));
                 }
                 ::raydsl::__private::Coerce::<
                     __M,
                     <Particle as ::raydsl::__private::Type>::On<__M>,
-                >::coerce(q.get(m), m)
+                >::coerce(q.get(__m), __m)
             },
         )
     }

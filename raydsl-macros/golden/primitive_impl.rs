@@ -22,8 +22,8 @@ where
         reason = "generated code"
     )]
     fn intersect_on<__M: ::raydsl::__private::Machine>(
-        m: &__M,
-        this: impl ::raydsl::__private::Coerce<
+        __m: &__M,
+        __this: impl ::raydsl::__private::Coerce<
             __M,
             <ColorSphere as ::raydsl::__private::Type>::On<__M>,
         >,
@@ -41,23 +41,23 @@ where
             known: ::core::option::Option::None,
         };
         ::raydsl::__private::Machine::call(
-            m,
+            __m,
             &__INFO,
             (
                 ::raydsl::__private::Coerce::<
                     __M,
                     <ColorSphere as ::raydsl::__private::Type>::On<__M>,
-                >::coerce(this, m),
+                >::coerce(__this, __m),
                 ::raydsl::__private::Coerce::<
                     __M,
                     <Ray as ::raydsl::__private::Type>::On<__M>,
-                >::coerce(ray, m),
+                >::coerce(ray, __m),
             ),
             #[inline(always)]
             |
-                m: &__M,
+                __m: &__M,
                 (
-                    this,
+                    __this,
                     ray,
                 ): (
                     <ColorSphere as ::raydsl::__private::Type>::On<__M>,
@@ -69,17 +69,17 @@ where
                     <Hit as ::raydsl::__private::Type>::On<__M>,
                 >::coerce(
                     sphere::intersect::on(
-                        m,
+                        __m,
                         ray,
-                        this.center,
+                        __this.center,
                         ::raydsl::__private::Method::<
                             { ::raydsl::__private::name("to_f32") },
                             __M,
                             _,
                             _,
-                        >::call({ this.radius }, m, ()),
+                        >::call({ __this.radius }, __m, ()),
                     ),
-                    m,
+                    __m,
                 )
             },
         )
@@ -110,8 +110,8 @@ where
     type Output = <Hit as ::raydsl::__private::Type>::On<__M>;
     #[inline(always)]
     fn call(
-        this: <Self as ::raydsl::__private::Type>::On<__M>,
-        m: &__M,
+        __this: <Self as ::raydsl::__private::Type>::On<__M>,
+        __m: &__M,
         (ray,): (__A0,),
     ) -> <Self as ::raydsl::__private::HostMethod<
         { ::raydsl::__private::name("intersect") },
@@ -119,7 +119,7 @@ where
         (__A0,),
         (),
     >>::Output {
-        <ColorSphere>::intersect_on(m, this, ray)
+        <ColorSphere>::intersect_on(__m, __this, ray)
     }
 }
 impl ::raydsl::__private::Primitive for ColorSphere {

@@ -18,7 +18,7 @@ impl smooth {
         reason = "generated code"
     )]
     pub fn on<__M: ::raydsl::__private::Machine>(
-        m: &__M,
+        __m: &__M,
         x: impl ::raydsl::__private::Coerce<
             __M,
             <f32 as ::raydsl::__private::Type>::On<__M>,
@@ -37,21 +37,21 @@ impl smooth {
             known: ::core::option::Option::None,
         };
         ::raydsl::__private::Machine::call(
-            m,
+            __m,
             &__INFO,
             (
                 ::raydsl::__private::Coerce::<
                     __M,
                     <f32 as ::raydsl::__private::Type>::On<__M>,
-                >::coerce(x, m),
+                >::coerce(x, __m),
                 ::raydsl::__private::Coerce::<
                     __M,
                     <u32 as ::raydsl::__private::Type>::On<__M>,
-                >::coerce(n, m),
+                >::coerce(n, __m),
             ),
             #[inline(always)]
             |
-                m: &__M,
+                __m: &__M,
                 (
                     x,
                     n,
@@ -61,13 +61,13 @@ impl smooth {
                 )|
             {
                 let t = ::raydsl::__private::Machine::named(
-                    m,
+                    __m,
                     "t",
                     clamp::on(
-                        m,
+                        __m,
                         x,
-                        ::raydsl::__private::literal(m, 0.0f32, 0.0f64),
-                        ::raydsl::__private::literal(m, 1.0f32, 1.0f64),
+                        ::raydsl::__private::literal(__m, 0.0f32, 0.0f64),
+                        ::raydsl::__private::literal(__m, 1.0f32, 1.0f64),
                     ),
                 );
                 ::raydsl::__private::Coerce::<
@@ -75,19 +75,19 @@ impl smooth {
                     <f32 as ::raydsl::__private::Type>::On<__M>,
                 >::coerce(
                     ::raydsl::__private::OpAdd::add(
-                        m,
+                        __m,
                         {
                             ::raydsl::__private::OpMul::mul(
-                                m,
-                                { ::raydsl::__private::OpMul::mul(m, { t }, { t }) },
+                                __m,
+                                { ::raydsl::__private::OpMul::mul(__m, { t }, { t }) },
                                 {
                                     ::raydsl::__private::OpSub::sub(
-                                        m,
-                                        { ::raydsl::__private::literal(m, 3.0f32, 3.0f64) },
+                                        __m,
+                                        { ::raydsl::__private::literal(__m, 3.0f32, 3.0f64) },
                                         {
                                             ::raydsl::__private::OpMul::mul(
-                                                m,
-                                                { ::raydsl::__private::literal(m, 2.0f32, 2.0f64) },
+                                                __m,
+                                                { ::raydsl::__private::literal(__m, 2.0f32, 2.0f64) },
                                                 { t },
                                             )
                                         },
@@ -95,9 +95,9 @@ impl smooth {
                                 },
                             )
                         },
-                        { ::raydsl::__private::cast::<_, _, f32>(m, n) },
+                        { ::raydsl::__private::cast::<_, _, f32>(__m, n) },
                     ),
-                    m,
+                    __m,
                 )
             },
         )

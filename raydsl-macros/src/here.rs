@@ -7,7 +7,7 @@
 use std::cell::Cell;
 
 use proc_macro2::{Group, Ident, Span, TokenStream, TokenTree};
-use quote::quote;
+use quote::{format_ident, quote};
 
 thread_local! {
     static HERE: Cell<Option<Span>> = const { Cell::new(None) };
@@ -33,9 +33,10 @@ pub(crate) fn here() -> Span {
     located(Span::call_site())
 }
 
-/// Returns a local of the macro's own, hygienic against the user's.
+/// Returns a local of the macro's own, hygienic against the user's. Its text differs from theirs too,
+/// since the variables that a closure mentions are told by their text.
 pub(crate) fn own(name: &str) -> Ident {
-    Ident::new(name, located(Span::mixed_site()))
+    format_ident!("__{name}", span = located(Span::mixed_site()))
 }
 
 /// Returns a name of the library.

@@ -3,6 +3,35 @@
 use raydsl::prelude::*;
 use raydsl::{assert_variants_agree, kernel};
 
+/// Variables named like locals of the macro's own, which closures of lifted code mention.
+#[kernel]
+fn named_like_locals(v: Vec3, n: u32) -> f32 {
+    let args = v;
+    let m = vec2(v.x, v.y);
+    let list = [args, args * 2.0];
+    let (whole, part, old) = (m, args.z, n);
+    let mut result = 0.0;
+    for by in 0..n % 3 {
+        let later: Vec2;
+        if args.dot(list[by as usize % 2]) > m.y {
+            later = whole + m;
+        } else {
+            later = m;
+        }
+        result += later.x + part;
+        if old > 5 {
+            result -= m.y * list[0].y;
+        }
+    }
+    result
+}
+
+#[test]
+fn variables_are_named_like_locals_of_the_macro() {
+    let inputs = [(vec3(0.5, 1.0, 2.0), 1), (vec3(-1.0, 3.0, 0.5), 2), (vec3(2.0, 0.0, 1.0), 8)];
+    assert_variants_agree!(named_like_locals, &inputs);
+}
+
 #[kernel]
 trait Brdf {
     fn weight(&self, x: f32) -> f32;

@@ -342,7 +342,7 @@ impl<'a> Emitter<'a> {
         let names = self.scopes.iter().flat_map(HashMap::keys);
         let mut names: BTreeSet<&str> = names.map(String::as_str).collect();
         if names.remove("self") {
-            names.insert("this");
+            names.insert("__this");
         }
         let mut found: Vec<Ident> = Vec::new();
         identifiers(code, &mut |ident| {
@@ -467,14 +467,9 @@ impl<'a> Emitter<'a> {
         if name == "self" { own("this") } else { name.clone() }
     }
 
-    /// Returns a name that no variable in scope has: `mentioned_in` tells names by their text.
+    /// Returns a local of the macro's own that no other is named like; the parser's end in `_1`.
     fn fresh(&mut self, name: &str) -> Ident {
-        loop {
-            self.next += 1;
-            let name = format!("{name}_{}", self.next);
-            if !self.scopes.iter().any(|scope| scope.contains_key(&name)) {
-                return own(&name);
-            }
-        }
+        self.next += 1;
+        own(&format!("{name}{}", self.next))
     }
 }

@@ -208,5 +208,5 @@ fn generated_names_are_new() {
     for name in ["let branch_1 =", "let branch_2 ="] {
         assert_eq!(text.matches(name).count(), 2, "{name}: {text}");
     }
-    assert!(text.contains("let branch_3 ="), "{text}");
+    assert!(text.contains("let __branch2 ="), "{text}");
 }
