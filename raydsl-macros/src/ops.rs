@@ -194,6 +194,7 @@ const DATA: &[&str] = &[
     "TextureRef2",
     "TextureRef3",
     "Texels",
+    "TransferFunction",
 ];
 
 /// Returns whether kernels read the type's data in place.

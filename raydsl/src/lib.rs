@@ -19,6 +19,7 @@ pub mod sampling;
 pub mod shading;
 pub mod testing;
 pub mod texture;
+pub mod volume;
 
 #[doc(hidden)]
 pub mod __private;

@@ -17,7 +17,7 @@ const LAYERS: [&[&str]; 11] = [
     &["render"],
     &["integrators"],
     &["shading"],
-    &["bvh", "camera", "sampling", "texture"],
+    &["bvh", "camera", "sampling", "texture", "volume"],
     &["geometry"],
     &["math"],
     &["kernel"],

@@ -33,5 +33,6 @@ pub use lacking::Lacking;
 pub use origin::offset_origin;
 pub use primitive::{Kinds, Primitive, SharedAs, shared_of_kind, shared_slice};
 pub use ray::{Ray, RayOn};
+pub(crate) use slabs::finite_inverse;
 pub use surface::{SurfacePoint, SurfacePointOn};
 pub use triangle::{IndexedTriangle, Triangle};

@@ -1,0 +1,82 @@
+//! Errors of creating grids and transfer functions.
+
+/// Why a grid cannot be created.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GridError {
+    /// An axis has no voxels.
+    #[error("axis {axis} of the grid has no voxels")]
+    NoVoxels {
+        /// The axis: 0, 1 or 2.
+        axis: usize,
+    },
+    /// An axis has too many voxels.
+    #[error("axis {axis} of the grid has {size} voxels: at most {limit}; split the grid")]
+    TooLong {
+        /// The axis: 0, 1 or 2.
+        axis: usize,
+        /// Number of voxels along it.
+        size: u32,
+        /// [`MAX_SIDE`](super::MAX_SIDE).
+        limit: u32,
+    },
+    /// There are more voxels than a kernel can count.
+    #[error("{count} voxels are too many: at most {limit}; split the grid")]
+    TooManyVoxels {
+        /// Number of voxels.
+        count: u128,
+        /// [`MAX_VOXELS`](super::MAX_VOXELS).
+        limit: u64,
+    },
+    /// The number of voxels is not that of the sizes.
+    #[error("{found} voxels for a grid of {expected}")]
+    WrongLength {
+        /// Product of the sizes.
+        expected: u64,
+        /// Number of voxels given.
+        found: usize,
+    },
+    /// The placement is not finite, or flattens the grid.
+    #[error("the placement of a grid is finite and has an inverse: check spacing and transform")]
+    Placement,
+    /// Scale or offset is not finite.
+    #[error("values are rescaled by finite numbers, not by {scale} and {offset}")]
+    Scale {
+        /// Factor.
+        scale: f32,
+        /// Summand.
+        offset: f32,
+    },
+}
+
+/// Why a transfer function cannot be created.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TransferError {
+    /// There are no knots of colour, or none of opacity.
+    #[error("a transfer function needs a knot of {of}")]
+    NoKnots {
+        /// `colour` or `opacity`.
+        of: &'static str,
+    },
+    /// The values of knots decrease.
+    #[error("knot {index} of {of} lies below the one before it: sort them by value")]
+    Unsorted {
+        /// `colour` or `opacity`.
+        of: &'static str,
+        /// Index of the knot, from 0 on.
+        index: usize,
+    },
+    /// A value, a colour or an extinction is negative, infinite or NaN; an opacity is not from 0
+    /// to 1.
+    #[error("knot {index} of {of} is out of range")]
+    OutOfRange {
+        /// `colour` or `opacity`.
+        of: &'static str,
+        /// Index of the knot, from 0 on.
+        index: usize,
+    },
+    /// The unit distance of opacities is not positive and finite.
+    #[error("the unit distance of opacities is positive and finite, not {0}")]
+    UnitDistance(f32),
+}

@@ -1,0 +1,250 @@
+//! The exact cell: the integral over a trilinear cell, piece by piece.
+
+use super::cubic::{Cubic, Extremes, place_of};
+use super::grid::GridLayout;
+use super::integrator::{
+    Inside, Layer, VolumeIntegrator, inside, integrator, macro_walk, majorant_of,
+};
+use super::light::VolumeLight;
+use super::sample::cell_at;
+use super::transfer::{TransferFunction, TransferKnot};
+use super::volume::{Volume, VolumeView};
+use super::voxel::Voxel;
+use crate::geometry::{Ray, RayOn};
+use crate::machine::functions::vec3;
+use crate::machine::generic::{clamp, max, min};
+use crate::machine::{Machine, On};
+use crate::math::elementary::{exp, expm1};
+use crate::{Type, kernel};
+use glam::{Vec3, vec3};
+
+/// Integrates each cell of the grid exactly, whatever its optical depth: no step to choose.
+///
+/// Along a ray the value in a cell is a cubic. The cell is divided at the cubic's extreme places and
+/// where it meets a knot of the transfer function; between those, extinction and colour are cubics
+/// too. A piece's optical depth, its integral, is exact; its colour is a mean over the piece,
+/// weighted by what is absorbed where, by Gauss's rule with four points and the collocation matrix
+/// for the depth before each (Hairer, Nørsett and Wanner, "Solving Ordinary Differential Equations
+/// I", II.7). Pieces of more than unit depth are divided further, as long as light passes.
+///
+/// So opacity is right to rounding, radiance is between the least and the greatest colour that the
+/// ray meets, and its error is some 1e-5 at most. (Splitting at the knots: Weiss and Westermann,
+/// "Analytic Ray Splitting for Controlled Precision DVR", 2021.)
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
+pub struct ExactCell {
+    /// Transmittance below which the rest of a ray is left out: at most this share of what is
+    /// behind, whatever its radiance, is missing. 0 leaves nothing out.
+    pub least: f32,
+}
+
+#[kernel]
+impl ExactCell {
+    /// Creates the integrator. It leaves out what is behind a transmittance of 0.001.
+    #[inline]
+    pub fn new() -> Self {
+        Self { least: 0.001 }
+    }
+
+    /// Sets the transmittance below which the rest of a ray is left out.
+    #[inline]
+    #[must_use]
+    pub fn least(self, least: f32) -> Self {
+        Self { least }
+    }
+}
+
+impl Default for ExactCell {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Interval of the transfer function, with its ends.
+#[derive(Clone, Copy, Debug, Type)]
+struct Interval {
+    index: u32,
+    below: TransferKnot,
+    above: TransferKnot,
+}
+
+#[kernel]
+#[inline]
+fn interval_at(function: &TransferFunction, index: u32) -> Interval {
+    let below: TransferKnot = function.knot(index);
+    let above: TransferKnot = function.knot(index + 1);
+    Interval { index, below, above }
+}
+
+/// What a piece of a cell within one interval absorbs.
+#[derive(Clone, Copy, Debug, Type)]
+struct Absorbed {
+    depth: f32,
+    /// Mean place of the values between the interval's ends, weighted by what is absorbed.
+    place: f32,
+}
+
+/// Integrates the piece of a cubic from `from` on, `width` wide, within an interval; `length` is
+/// that of the whole cell in the world.
+#[kernel]
+#[inline]
+fn absorbed(cubic: Cubic, interval: Interval, from: f32, width: f32, length: f32) -> Absorbed {
+    let Interval { below, above, .. } = interval;
+    let per = 1.0 / (above.value - below.value);
+    // Places between the knots, at Gauss's four points.
+    let pa = clamp((cubic.at(from + width * 0.069431844) - below.value) * per, 0.0, 1.0);
+    let pb = clamp((cubic.at(from + width * 0.33000948) - below.value) * per, 0.0, 1.0);
+    let pc = clamp((cubic.at(from + width * 0.66999052) - below.value) * per, 0.0, 1.0);
+    let pd = clamp((cubic.at(from + width * 0.93056816) - below.value) * per, 0.0, 1.0);
+    // Extinctions there, times the length.
+    let run = width * length;
+    let (first, more) = (below.extinction * run, (above.extinction - below.extinction) * run);
+    let (a, b, c, d) = (first + more * pa, first + more * pb, first + more * pc, first + more * pd);
+    // Optical depths before each.
+    let ta = a * 0.08696371 - b * 0.02660418 + c * 0.012627463 - d * 0.0035551497;
+    let tb = a * 0.18811812 + b * 0.16303629 - c * 0.027880428 + d * 0.0067355006;
+    let tc = a * 0.16719192 + b * 0.35395301 + c * 0.16303629 - d * 0.014190695;
+    let td = a * 0.17748257 + b * 0.31344511 + c * 0.35267676 + d * 0.08696371;
+    // What is absorbed around each.
+    let wa = a * 0.17392742 * exp(-ta);
+    let wb = b * 0.32607258 * exp(-tb);
+    let wc = c * 0.32607258 * exp(-tc);
+    let wd = d * 0.17392742 * exp(-td);
+    let sum = (wa + wb) + (wc + wd);
+    let mean = ((wa * pa + wb * pb) + (wc * pc + wd * pd)) / max(sum, f32::MIN_POSITIVE);
+    Absorbed {
+        depth: (a + d) * 0.17392742 + (b + c) * 0.32607258,
+        // Of a piece so thick that no point gets light, the beginning is seen.
+        place: if sum > f32::MIN_POSITIVE { clamp(mean, 0.0, 1.0) } else { pa },
+    }
+}
+
+/// Depth of a piece up to which the rule of four points is right to some 1e-6.
+const MOST_DEPTH: f32 = 1.0;
+
+/// Transmittance below which a thick piece is not divided any more.
+const DARK: f32 = 1e-9;
+
+/// Returns the width of a piece from `from` on, at most `width`, whose depth is at most
+/// [`MOST_DEPTH`].
+#[kernel]
+#[inline]
+fn thin_width(cubic: Cubic, interval: Interval, from: f32, width: f32, length: f32) -> f32 {
+    let Interval { below, above, .. } = interval;
+    let per = (above.extinction - below.extinction) / (above.value - below.value);
+    let begin = max(below.extinction + per * (cubic.at(from) - below.value), 0.0) * length;
+    let growth = cubic.steepest(from, from + width) * per.abs() * length;
+    let root = (begin * begin + 2.0 * growth * MOST_DEPTH).sqrt();
+    // A width of its own, so that the loop ends.
+    max(min(2.0 * MOST_DEPTH / max(begin + root, 1e-30), width), 1e-6)
+}
+
+/// Adds the piece of a cell from `from` to `to`, within one interval.
+#[kernel]
+#[inline]
+fn add_piece(layer: &mut Layer, cubic: Cubic, interval: Interval, from: f32, to: f32, length: f32) {
+    let Interval { below, above, .. } = interval;
+    let mut x = from;
+    let mut is_left = from < to;
+    while is_left {
+        let mut width = to - x;
+        let mut found = absorbed(cubic, interval, x, width, length);
+        is_left = false;
+        if found.depth > MOST_DEPTH && layer.transmittance > DARK {
+            width = thin_width(cubic, interval, x, width, length);
+            is_left = x + width < to;
+            found = absorbed(cubic, interval, x, width, length);
+        }
+        let color = below.color + (above.color - below.color) * found.place;
+        layer.add(color, -expm1(-found.depth), found.depth);
+        x += width;
+    }
+}
+
+/// Adds a cell, whose value is `cubic` over `length`. `interval` is that of the value at which the
+/// ray enters, and becomes that of the value at which it leaves.
+#[kernel]
+#[inline]
+fn add_cell(
+    layer: &mut Layer,
+    interval: &mut Interval,
+    function: &TransferFunction,
+    cubic: Cubic,
+    length: f32,
+) {
+    let Extremes { first, second } = cubic.extremes();
+    let mut x = 0.0;
+    let mut value = cubic.c0;
+    while x < 1.0 {
+        // The value is monotone up to the next extreme place.
+        let stop = if x < first {
+            min(first, 1.0)
+        } else {
+            if x < second { min(second, 1.0) } else { 1.0 }
+        };
+        let at_stop = cubic.at(stop);
+        let is_rising = at_stop > value;
+        let bound = if is_rising { interval.above.value } else { interval.below.value };
+        let crosses = if is_rising { at_stop > bound } else { at_stop < bound };
+        let is_behind = if is_rising { value >= bound } else { value <= bound };
+        let mut end = stop;
+        if crosses {
+            end = if is_behind { x } else { min(max(place_of(cubic, bound, x, stop), x), stop) };
+        }
+        if interval.below.extinction + interval.above.extinction > 0.0 {
+            add_piece(&mut *layer, cubic, *interval, x, end, length);
+        }
+        x = end;
+        value = if crosses { bound } else { at_stop };
+        if crosses {
+            let index = interval.index;
+            *interval = interval_at(function, if is_rising { index + 1 } else { index - 1 });
+        }
+    }
+}
+
+#[kernel]
+#[inline]
+fn exact_cell<T: Voxel>(
+    this: ExactCell,
+    volume: &Volume<'_, T>,
+    ray: Ray,
+    light: VolumeLight,
+) -> VolumeLight {
+    let least = this.least;
+    let part: Inside = inside(volume.grid(), ray);
+    let layout: GridLayout = volume.grid().layout();
+    let (zero, one) = (vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
+    let mut light = light;
+    let mut interval = interval_at(volume.transfer(), 0u32);
+    let mut walk = macro_walk(volume.grid(), part);
+    while walk.is_inside && light.transmittance() >= least {
+        if majorant_of(volume, walk.cell) > 0.0 {
+            let enough = least / light.transmittance();
+            let mut layer = Layer::new();
+            let mut cells = walk.cells_of(layout.last_macro, layout.last_cell, -layout.low.floor());
+            while cells.is_inside && layer.transmittance >= enough {
+                let cell = clamp(cells.cell, zero, layout.last_cell);
+                let found = cell_at(volume.grid(), cell);
+                if found.is_whole {
+                    let from: Vec3 = part.origin + part.direction * cells.enter - cell;
+                    let to: Vec3 = part.origin + part.direction * cells.leave - cell;
+                    let cubic =
+                        Cubic::through(found.corners, clamp(from, zero, one), clamp(to, zero, one));
+                    let cubic = cubic.rescaled(layout.scale, layout.offset);
+                    let length = (cells.leave - cells.enter) * part.scale;
+                    if cubic.c0 < interval.below.value || cubic.c0 > interval.above.value {
+                        interval =
+                            interval_at(volume.transfer(), volume.transfer().interval(cubic.c0));
+                    }
+                    add_cell(&mut layer, &mut interval, volume.transfer(), cubic, length);
+                }
+                cells.advance();
+            }
+            light = light.then(layer.radiance, layer.depth);
+        }
+        walk.advance();
+    }
+    light
+}
+
+integrator!(ExactCell, exact_cell);

@@ -1,0 +1,187 @@
+//! Integrators that take samples at regular distances.
+
+use glam::Vec3;
+
+use super::integrator::{
+    Inside, Layer, VolumeIntegrator, inside, integrator, macro_walk, majorant_of,
+};
+use super::light::VolumeLight;
+use super::sample::{cell_around, value_in};
+use super::transfer::TransferSample;
+use super::volume::{Volume, VolumeView};
+use super::voxel::Voxel;
+use crate::geometry::{Ray, RayOn};
+use crate::machine::generic::{clamp, max, min};
+use crate::machine::{Machine, On};
+use crate::math::elementary::{exp, expm1, log1p};
+use crate::{Type, kernel};
+
+/// What a rule makes of a step.
+#[derive(Clone, Copy, Debug, Type)]
+struct Step {
+    color: Vec3,
+    opacity: f32,
+    depth: f32,
+}
+
+/// Maximum number of steps: up to here their numbers are exact in an `f32`.
+const MOST_STEPS: f32 = 16_777_216.0;
+
+/// Opacity that [`Euler`] takes for an opaque step.
+const MOST_OPACITY: f32 = 1.0 - f32::EPSILON;
+
+/// Returns colour and extinction at a distance.
+#[kernel]
+#[inline]
+fn sample_at<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t: f32) -> TransferSample {
+    let cell = cell_around(volume.grid(), part.origin + part.direction * t);
+    let sample = volume.transfer().at(value_in(volume.grid(), cell));
+    if volume.grid().has_gaps() {
+        if cell.is_whole { sample } else { TransferSample { color: sample.color, extinction: 0.0 } }
+    } else {
+        sample
+    }
+}
+
+/// Sums steps of equal length, at most `step` in the world, which tile the part of the ray in the
+/// grid; skips macro-cells without extinction, and ends where less than `least` is transmitted.
+/// `rule` gets the distances at which a step begins and ends.
+#[kernel]
+#[inline]
+fn march<T: Voxel, R: Fn(Inside, f32, f32) -> Step>(
+    volume: &Volume<'_, T>,
+    ray: Ray,
+    step: f32,
+    least: f32,
+    light: VolumeLight,
+    rule: R,
+) -> VolumeLight {
+    let part = inside(volume.grid(), ray);
+    let count = clamp((part.end * part.scale / step).ceil(), 1.0, MOST_STEPS);
+    let width = part.end / count;
+    let mut light = light;
+    let mut i = 0u32;
+    let mut walk = macro_walk(volume.grid(), part);
+    while walk.is_inside && light.transmittance() >= least {
+        if majorant_of(volume, walk.cell) > 0.0 {
+            // All steps that touch the macro-cell, but those that the one before has had.
+            i = max(i, (walk.enter / width) as u32);
+            let end = min(walk.leave / width, count).ceil() as u32;
+            let mut layer = Layer::new();
+            while i < end {
+                let found = rule(part, i as f32 * width, (i + 1) as f32 * width);
+                layer.add(found.color, found.opacity, found.depth);
+                i += 1;
+            }
+            light = light.then(layer.radiance, layer.depth);
+        }
+        walk.advance();
+    }
+    light
+}
+
+/// Defines an integrator by its rule.
+macro_rules! rule {
+    (
+        $(#[$doc:meta])*
+        $name:ident by $kernel:ident, |$volume:ident, $part:ident, $from:ident, $to:ident| $rule:expr
+    ) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Type)]
+        pub struct $name {
+            /// Greatest length of a step, in the world; above 0.
+            pub step: f32,
+            /// Transmittance below which the rest of a ray is left out: at most this share of what
+            /// is behind, whatever its radiance, is missing. 0 leaves nothing out.
+            pub least: f32,
+        }
+
+        #[kernel]
+        impl $name {
+            /// Creates the integrator with this step. It leaves out what is behind a transmittance
+            /// of 0.001.
+            #[inline]
+            pub fn new(step: f32) -> Self {
+                Self { step, least: 0.001 }
+            }
+
+            /// Sets the transmittance below which the rest of a ray is left out.
+            #[inline]
+            #[must_use]
+            pub fn least(self, least: f32) -> Self {
+                Self { step: self.step, least }
+            }
+        }
+
+        #[kernel]
+        #[inline]
+        fn $kernel<T: Voxel>(
+            this: $name,
+            $volume: &Volume<'_, T>,
+            ray: Ray,
+            light: VolumeLight,
+        ) -> VolumeLight {
+            let rule = |$part: Inside, $from: f32, $to: f32| $rule;
+            march($volume, ray, this.step, this.least, light, rule)
+        }
+
+        integrator!($name, $kernel);
+    };
+}
+
+rule! {
+    /// Naive compositing: the opacity of a step is its extinction times its length, at most 1.
+    ///
+    /// An explicit Euler step, at the middle of each step: first order, and unstable where
+    /// extinction times step is above 1. Kept for comparison.
+    Euler by euler, |volume, part, from, to| {
+        let sample = sample_at(volume, part, (from + to) * 0.5);
+        let depth = sample.extinction * ((to - from) * part.scale);
+        let opacity = min(depth, MOST_OPACITY);
+        Step { color: sample.color, opacity, depth: -log1p(-opacity) }
+    }
+}
+
+rule! {
+    /// Exponential steps with the sample at the beginning of each: what is called opacity
+    /// correction. First order, right for any thickness of a homogeneous layer.
+    ExponentialLeft by exponential_left, |volume, part, from, to| {
+        let sample = sample_at(volume, part, from);
+        let depth = sample.extinction * ((to - from) * part.scale);
+        Step { color: sample.color, opacity: -expm1(-depth), depth }
+    }
+}
+
+rule! {
+    /// Exponential steps with the sample at the middle of each: second order, at the cost of
+    /// [`ExponentialLeft`].
+    Midpoint by midpoint, |volume, part, from, to| {
+        let sample = sample_at(volume, part, (from + to) * 0.5);
+        let depth = sample.extinction * ((to - from) * part.scale);
+        Step { color: sample.color, opacity: -expm1(-depth), depth }
+    }
+}
+
+/// Returns the mean place of what is absorbed in a homogeneous step: 1/2 if thin, 0 if thick.
+/// The integral of `s τ exp(-τ s)` over `1 - exp(-τ)`, `1/τ - 1/(exp(τ) - 1)`; by its series where
+/// the terms cancel.
+#[kernel]
+#[inline]
+fn mean_place(depth: f32) -> f32 {
+    let squared = depth * depth;
+    let thin = 0.5 - depth * (1.0 / 12.0 - squared * (1.0 / 720.0 - squared / 30240.0));
+    let thick = 1.0 / max(depth, 1.0) - exp(-depth) / -expm1(-max(depth, 1.0));
+    if depth < 1.0 { thin } else { thick }
+}
+
+rule! {
+    /// Steps with the mean extinction of both ends, and a colour that is linear between them:
+    /// second order, and right where extinction is constant. Two samples a step.
+    MeanExtinction by mean_extinction, |volume, part, from, to| {
+        let a = sample_at(volume, part, from);
+        let b = sample_at(volume, part, to);
+        let depth = (a.extinction + b.extinction) * 0.5 * ((to - from) * part.scale);
+        let color = a.color + (b.color - a.color) * mean_place(depth);
+        Step { color, opacity: -expm1(-depth), depth }
+    }
+}

@@ -1,0 +1,620 @@
+//! Transfer functions: colour and extinction of each value.
+
+use glam::{Vec2, Vec3};
+
+use super::error::TransferError;
+use crate::machine::generic::clamp;
+use crate::machine::wgsl::BufferKey;
+use crate::machine::{
+    Capture, F, Lanes, Leaves, Machine, Margin, Method, Operation, Owner, Packet, Parameter,
+    Recorder, Resource, Scalar, Schema, Slice, Table, TableView, Type as MachineType, U, Value,
+    name,
+};
+use crate::{Type, kernel};
+
+/// Colour and extinction at a value; between two knots both are linear.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
+#[repr(C)]
+pub struct TransferKnot {
+    /// Value of the field.
+    pub value: f32,
+    /// Extinction: what is absorbed per length, not negative.
+    pub extinction: f32,
+    /// Source radiance: what a thick layer of this value looks like.
+    pub color: Vec3,
+}
+
+/// Colour and extinction of one value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
+pub struct TransferSample {
+    /// Source radiance.
+    pub color: Vec3,
+    /// Extinction per length.
+    pub extinction: f32,
+}
+
+/// A transfer function's numbers in kernels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
+pub struct TransferLayout {
+    /// Value at which the first bin begins.
+    pub first: f32,
+    /// Bins per value.
+    pub per_value: f32,
+    /// Number of the last bin.
+    pub last_bin: f32,
+    /// Number of the last interval between two knots.
+    pub last: u32,
+}
+
+/// Number of bins by which a kernel finds the interval of a value.
+const BINS: usize = 1024;
+
+/// Beyond this no value is told from a knot at an end.
+const FAR: f32 = f32::MAX / 4.0;
+
+/// Extinction of opacity 1, times the unit distance.
+const OPAQUE: f64 = 1e6;
+
+/// Error of opacity, over the unit distance, of the linear pieces that stand for its logarithm.
+const OPACITY_ERROR: f64 = 1.0 / 2048.0;
+
+/// Transfer function: colour and extinction of a scalar field's values, piecewise linear.
+///
+/// Colour and opacity have knots of their own, uneven and independent. Below the first knot and
+/// above the last one they are constant. Two knots of one value are a step.
+///
+/// Opacity is that of a layer as thick as the *unit distance*: a layer of thickness `d` has opacity
+/// `1 - (1 - opacity)^(d / unit)`, whatever the step of an integrator. So extinction is
+/// `-ln(1 - opacity) / unit`; between the knots of opacity it follows that curve by linear pieces
+/// that differ in opacity by less than 0.0005. Opacity 1 is an extinction of `1e6 / unit`.
+///
+/// ```
+/// use raydsl::prelude::*;
+/// use raydsl::volume::TransferFunction;
+///
+/// let colors = [(0.0, vec3(0.2, 0.0, 0.0)), (100.0, vec3(1.0, 1.0, 0.8))];
+/// let function = TransferFunction::new(&colors, &[(20.0, 0.0), (80.0, 0.75)], 1.0)?;
+/// assert_eq!(function.at(80.0).extinction, 4f32.ln());
+/// assert_eq!(function.at(10.0).extinction, 0.0);
+///
+/// let red = kernel!(|value: f32| function.at(value).color.x);
+/// assert_eq!(red.call((50.0,)), 0.6);
+/// # Ok::<(), raydsl::volume::TransferError>(())
+/// ```
+#[derive(Debug)]
+pub struct TransferFunction {
+    /// The first and the last one are far away, with what their neighbours have.
+    knots: Vec<TransferKnot>,
+    /// Interval of the value at which each bin begins.
+    bins: Vec<u32>,
+    layout: TransferLayout,
+    owner: Owner,
+}
+
+impl Clone for TransferFunction {
+    fn clone(&self) -> Self {
+        let Self { knots, bins, layout, .. } = self;
+        Self { knots: knots.clone(), bins: bins.clone(), layout: *layout, owner: Owner::new() }
+    }
+}
+
+impl PartialEq for TransferFunction {
+    fn eq(&self, other: &Self) -> bool {
+        self.knots == other.knots
+    }
+}
+
+impl TransferFunction {
+    /// Creates a function from knots `(value, colour)` and `(value, opacity)`, each sorted by
+    /// value; opacities are from 0 to 1, of a layer of thickness `unit`.
+    ///
+    /// # Errors
+    ///
+    /// If there are no knots, they are not sorted, or one is out of range.
+    pub fn new(
+        colors: &[(f32, Vec3)],
+        opacities: &[(f32, f32)],
+        unit: f32,
+    ) -> Result<Self, TransferError> {
+        if !(unit > 0.0 && unit.is_finite()) {
+            return Err(TransferError::UnitDistance(unit));
+        }
+        check("opacity", opacities, |a| (0.0..=1.0).contains(a))?;
+        Self::from_extinction(colors, &extinctions(opacities, f64::from(unit)))
+    }
+
+    /// Creates a function from knots `(value, colour)` and `(value, extinction)`, each sorted by
+    /// value; extinction is per length of the world, and linear between its knots.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn from_extinction(
+        colors: &[(f32, Vec3)],
+        extinctions: &[(f32, f32)],
+    ) -> Result<Self, TransferError> {
+        check("opacity", extinctions, |e| *e >= 0.0 && e.is_finite())?;
+        check("colour", colors, |c| c.is_finite() && c.min_element() >= 0.0)?;
+        let knots = merged(colors, extinctions);
+        let (first, last) = (knots[1].value, knots[knots.len() - 2].value);
+        let width = f64::from(last) - f64::from(first);
+        let per_value = if width > 0.0 { (BINS as f64 / width) as f32 } else { 0.0 };
+        let per_value = if per_value.is_finite() { per_value } else { 0.0 };
+        let begin = |bin: usize| (f64::from(first) + width * bin as f64 / BINS as f64) as f32;
+        let bins = (0..BINS).map(|bin| interval(&knots, begin(bin)) as u32).collect();
+        let last_bin = (BINS - 1) as f32;
+        let layout = TransferLayout { first, per_value, last_bin, last: knots.len() as u32 - 2 };
+        Ok(Self { knots, bins, layout, owner: Owner::new() })
+    }
+
+    /// Returns the knots of both, sorted by value.
+    pub fn knots(&self) -> &[TransferKnot] {
+        &self.knots[1..self.knots.len() - 1]
+    }
+
+    /// Returns the greatest extinction of the values from `range.x` to `range.y`; 0 if the first is
+    /// greater.
+    pub fn greatest_extinction(&self, range: Vec2) -> f32 {
+        if !(range.x <= range.y) {
+            return 0.0;
+        }
+        let ends = self.at(range.x).extinction.max(self.at(range.y).extinction);
+        let from = self.knots.partition_point(|k| k.value < range.x);
+        let inside = self.knots[from..].iter().take_while(|k| k.value <= range.y);
+        inside.fold(ends, |most, k| most.max(k.extinction))
+    }
+
+    fn key(&self, part: u32) -> BufferKey {
+        BufferKey { id: self.owner.id(), version: 0, part }
+    }
+
+    /// Returns the view under a name.
+    pub(super) fn named_view(&self, name: &'static str) -> TransferView<'_> {
+        let slice = |part| Some(self.key(part));
+        TransferView {
+            knots: Slice::owned(&self.knots, slice(0), name).suffixed("knots"),
+            bins: Slice::owned(&self.bins, slice(1), name).suffixed("bins"),
+            layout: self.layout,
+            name,
+        }
+    }
+}
+
+/// Checks that knots are there, sorted, and in range.
+fn check<T>(
+    of: &'static str,
+    knots: &[(f32, T)],
+    is_good: impl Fn(&T) -> bool,
+) -> Result<(), TransferError> {
+    if knots.is_empty() {
+        return Err(TransferError::NoKnots { of });
+    }
+    for (index, (value, what)) in knots.iter().enumerate() {
+        if !(value.abs() <= FAR / 4.0 && is_good(what)) {
+            return Err(TransferError::OutOfRange { of, index });
+        }
+        if index > 0 && *value < knots[index - 1].0 {
+            return Err(TransferError::Unsorted { of, index });
+        }
+    }
+    Ok(())
+}
+
+/// Returns the extinction of an opacity over a distance.
+fn extinction(opacity: f64, unit: f64) -> f64 {
+    (-(-opacity).ln_1p()).min(OPAQUE) / unit
+}
+
+/// Returns knots of extinction whose linear pieces follow linear opacities.
+fn extinctions(opacities: &[(f32, f32)], unit: f64) -> Vec<(f32, f32)> {
+    let mut all = Vec::with_capacity(opacities.len());
+    for (i, &(value, opacity)) in opacities.iter().enumerate() {
+        if i > 0 {
+            let (before, from) = opacities[i - 1];
+            let ends =
+                [(before, from), (value, opacity)].map(|(v, a)| (f64::from(v), f64::from(a)));
+            refine(ends, unit, 16, &mut all);
+        }
+        all.push((value, extinction(f64::from(opacity), unit) as f32));
+    }
+    all
+}
+
+/// Appends knots between two of opacity, until linear extinction is near enough.
+fn refine([from, to]: [(f64, f64); 2], unit: f64, depth: u32, all: &mut Vec<(f32, f32)>) {
+    let ends = [extinction(from.1, unit), extinction(to.1, unit)];
+    let error = |share: f64| {
+        let opacity = from.1 + (to.1 - from.1) * share;
+        let linear = ends[0] + (ends[1] - ends[0]) * share;
+        (-(-linear * unit).exp_m1() - opacity).abs()
+    };
+    let worst = [0.25, 0.5, 0.75].map(error).into_iter().fold(0.0, f64::max);
+    let middle = ((from.0 + to.0) * 0.5, (from.1 + to.1) * 0.5);
+    let is_between = (middle.0 as f32) > from.0 as f32 && (middle.0 as f32) < to.0 as f32;
+    if depth == 0 || worst <= OPACITY_ERROR || !is_between {
+        return;
+    }
+    refine([from, middle], unit, depth - 1, all);
+    all.push((middle.0 as f32, extinction(middle.1, unit) as f32));
+    refine([middle, to], unit, depth - 1, all);
+}
+
+/// Returns the knots of both functions, each with the other's value there, between two far ones.
+fn merged(colors: &[(f32, Vec3)], extinctions: &[(f32, f32)]) -> Vec<TransferKnot> {
+    let mut values: Vec<f32> = colors.iter().map(|k| k.0).collect();
+    values.extend(extinctions.iter().map(|k| k.0));
+    values.sort_by(f32::total_cmp);
+    values.dedup();
+    let mut knots = Vec::with_capacity(values.len() + 2);
+    for value in values {
+        let sides = |side| TransferKnot {
+            value,
+            extinction: linear(extinctions, value, side, |a, b, w| a + (b - a) * w),
+            color: linear(colors, value, side, |a, b, w| a + (b - a) * w),
+        };
+        let [below, above] = [Side::Below, Side::Above].map(sides);
+        knots.push(below);
+        if below != above {
+            knots.push(above);
+        }
+    }
+    let (first, last) = (knots[0], knots[knots.len() - 1]);
+    knots.insert(0, TransferKnot { value: -FAR, ..first });
+    knots.push(TransferKnot { value: FAR, ..last });
+    knots
+}
+
+/// Which side of a step.
+#[derive(Clone, Copy, PartialEq)]
+enum Side {
+    Below,
+    Above,
+}
+
+/// Returns the linear interpolation of knots, on one side of a step.
+fn linear<T: Copy>(
+    knots: &[(f32, T)],
+    value: f32,
+    side: Side,
+    between: impl Fn(T, T, f32) -> T,
+) -> T {
+    let next = match side {
+        Side::Below => knots.partition_point(|k| k.0 < value),
+        Side::Above => knots.partition_point(|k| k.0 <= value),
+    };
+    let (Some(b), Some(a)) = (knots.get(next), next.checked_sub(1).map(|i| &knots[i])) else {
+        return knots[next.min(knots.len() - 1)].1;
+    };
+    let share = (f64::from(value) - f64::from(a.0)) / (f64::from(b.0) - f64::from(a.0));
+    match share {
+        0.0 => a.1,
+        1.0 => b.1,
+        share => between(a.1, b.1, share as f32),
+    }
+}
+
+/// Returns the interval with a value: that of the last knot that is not above it.
+fn interval(knots: &[TransferKnot], value: f32) -> usize {
+    knots.partition_point(|k| k.value <= value).saturating_sub(1).min(knots.len() - 2)
+}
+
+/// View of a [`TransferFunction`] in kernels: a host value on every machine.
+#[derive(Clone, Copy, Debug)]
+pub struct TransferView<'a> {
+    knots: Slice<'a, TransferKnot>,
+    bins: Slice<'a, u32>,
+    layout: TransferLayout,
+    name: &'static str,
+}
+
+impl Parameter for TransferFunction {
+    type On<'a, M: Machine> = TransferView<'a>;
+}
+
+impl<M: Machine> Value<M> for TransferView<'_> {
+    const SCHEMA: &'static Schema = &Schema::Host;
+
+    fn zero(_: &M) -> Self {
+        panic!("a kernel cannot choose between transfer functions: choose between what they give")
+    }
+
+    #[inline(always)]
+    fn zip(_: &M, a: Self, b: Self, _: &mut impl Leaves<M>) -> Self {
+        assert!(
+            TableView::is_same(&a, &b),
+            "a kernel cannot choose between transfer functions: choose between what they give"
+        );
+        a
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine> Capture<M> for TransferFunction {
+    type On<'c> = TransferView<'c>;
+
+    #[inline(always)]
+    fn capture<'c>(&'c self, _: &M, name: &'static str) -> TransferView<'c> {
+        self.named_view(name)
+    }
+
+    #[inline(always)]
+    fn constant<'c>(&'c self, _: &M) -> TransferView<'c> {
+        self.named_view("transfer")
+    }
+
+    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        TableView::resources(&self.named_view("transfer"), visit);
+    }
+}
+
+impl Table for TransferFunction {
+    type View<'v> = TransferView<'v>;
+
+    #[inline(always)]
+    fn view(&self, name: &'static str) -> TransferView<'_> {
+        self.named_view(name)
+    }
+}
+
+impl TableView for TransferView<'_> {
+    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        visit(&self.knots);
+        visit(&self.bins);
+    }
+
+    fn is_same(&self, other: &Self) -> bool {
+        core::ptr::eq(self.knots.elements(), other.knots.elements())
+    }
+}
+
+/// Layout in the uniform block: `function_transfer`.
+#[derive(Clone, Copy, Type)]
+struct InUniforms {
+    transfer: TransferLayout,
+}
+
+/// What the kernels of this module read from a transfer function.
+impl TransferFunction {
+    #[inline(always)]
+    pub(super) fn layout(&self) -> TransferLayout {
+        self.layout
+    }
+
+    #[inline(always)]
+    pub(super) fn knot(&self, i: u32) -> TransferKnot {
+        self.knots[i as usize]
+    }
+
+    #[inline(always)]
+    pub(super) fn bin(&self, i: u32) -> u32 {
+        self.bins[i as usize]
+    }
+
+    #[inline(always)]
+    pub(super) fn interval(&self, value: f32) -> u32 {
+        interval_by_bins(self, value)
+    }
+
+    /// Returns colour and extinction of a value. A NaN is the least value.
+    #[inline]
+    pub fn at(&self, value: f32) -> TransferSample {
+        sample_of(self, value)
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine> Method<{ name("layout") }, M, ()> for TransferView<'_> {
+    type Output = <TransferLayout as MachineType>::On<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (): ()) -> Self::Output {
+        m.capture(self.name, InUniforms { transfer: self.layout }).transfer
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine> Method<{ name("knot") }, M, (U<M>,)> for TransferView<'_> {
+    type Output = <TransferKnot as MachineType>::On<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (i,): (U<M>,)) -> Self::Output {
+        m.element(&self.knots, i)
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine> Method<{ name("bin") }, M, (U<M>,)> for TransferView<'_> {
+    type Output = U<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (i,): (U<M>,)) -> U<M> {
+        m.element(&self.bins, i)
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine> Method<{ name("interval") }, M, (F<M>,)> for TransferView<'_> {
+    type Output = U<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (value,): (F<M>,)) -> U<M> {
+        m.perform(&FindInterval(self), value)
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine> Method<{ name("at") }, M, (F<M>,)> for TransferView<'_> {
+    type Output = <TransferSample as MachineType>::On<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (value,): (F<M>,)) -> Self::Output {
+        sample_of::on(m, self, value)
+    }
+}
+
+/// Finds the interval with a value: the number of its lower knot.
+struct FindInterval<'a>(TransferView<'a>);
+
+impl Operation for FindInterval<'_> {
+    type Input = f32;
+    type Output = u32;
+
+    #[inline(always)]
+    fn on_scalar(&self, m: &Scalar, value: F<Scalar>) -> U<Scalar> {
+        interval_by_bins::on(m, self.0, value)
+    }
+
+    #[inline(always)]
+    fn on_packet<L: Lanes>(&self, m: &Packet<L>, value: F<Packet<L>>) -> U<Packet<L>> {
+        interval_by_bins::on(m, self.0, value)
+    }
+
+    fn on_recorder(&self, m: &Recorder, value: F<Recorder>) -> U<Recorder> {
+        interval_by_bins::on(m, self.0, value)
+    }
+
+    /// Compares with knots alone: which bin a value is in leaves no trace in the result.
+    fn on_margin(&self, m: &Margin, value: F<Margin>) -> U<Margin> {
+        interval_by_search::on(m, self.0, value)
+    }
+}
+
+#[kernel]
+#[inline]
+fn interval_by_bins(function: &TransferFunction, value: f32) -> u32 {
+    let TransferLayout { first, per_value, last_bin, last } = function.layout();
+    let bin = clamp((value - first) * per_value, 0.0, last_bin);
+    let mut i: u32 = function.bin(bin as u32);
+    // The bin may be the neighbour's by rounding, and have several knots.
+    let mut knot: TransferKnot = function.knot(i);
+    while i > 0 && value < knot.value {
+        i -= 1;
+        knot = function.knot(i);
+    }
+    let mut next: TransferKnot = function.knot(i + 1);
+    while i < last && value >= next.value {
+        i += 1;
+        next = function.knot(i + 1);
+    }
+    i
+}
+
+#[kernel]
+#[inline]
+fn interval_by_search(function: &TransferFunction, value: f32) -> u32 {
+    let (mut first, mut end) = (0u32, function.layout().last + 1);
+    while first + 1 < end {
+        let middle = (first + end) / 2;
+        let knot: TransferKnot = function.knot(middle);
+        if value >= knot.value {
+            first = middle;
+        } else {
+            end = middle;
+        }
+    }
+    first
+}
+
+/// Returns the share of the way from one value to another, from 0 to 1.
+#[kernel]
+#[inline]
+pub(super) fn share_of(value: f32, from: f32, to: f32) -> f32 {
+    clamp((value - from) / (to - from), 0.0, 1.0)
+}
+
+#[kernel]
+#[inline]
+fn sample_of(function: &TransferFunction, value: f32) -> TransferSample {
+    let i: u32 = function.interval(value);
+    let a: TransferKnot = function.knot(i);
+    let b: TransferKnot = function.knot(i + 1);
+    let share = share_of(value, a.value, b.value);
+    TransferSample {
+        color: a.color + (b.color - a.color) * share,
+        extinction: a.extinction + (b.extinction - a.extinction) * share,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::vec2;
+
+    const WHITE: [(f32, Vec3); 1] = [(0.0, Vec3::ONE)];
+
+    #[test]
+    fn knots_are_checked() {
+        let error = |colors: &[(f32, Vec3)], opacities: &[(f32, f32)]| {
+            TransferFunction::new(colors, opacities, 1.0).map(|_| ()).expect_err("a bad function")
+        };
+        assert_eq!(error(&[], &[(0.0, 0.0)]), TransferError::NoKnots { of: "colour" });
+        assert_eq!(error(&WHITE, &[]), TransferError::NoKnots { of: "opacity" });
+        let of = "opacity";
+        let unsorted = [(1.0, 0.0), (0.0, 0.0)];
+        assert_eq!(error(&WHITE, &unsorted), TransferError::Unsorted { of, index: 1 });
+        for bad in [(0.0, 1.5), (0.0, -0.1), (f32::NAN, 0.0), (0.0, f32::NAN), (f32::MAX, 0.0)] {
+            let found = error(&WHITE, &[(-1.0, 0.5), bad]);
+            assert_eq!(found, TransferError::OutOfRange { of, index: 1 });
+        }
+        let unit = TransferFunction::new(&WHITE, &[(0.0, 0.0)], 0.0).map(|_| ());
+        assert_eq!(unit, Err(TransferError::UnitDistance(0.0)));
+    }
+
+    #[test]
+    fn linear_extinction_follows_opacity() {
+        let ramp = TransferFunction::new(&WHITE, &[(10.0, 0.0), (20.0, 1.0)], 2.0);
+        let ramp = ramp.expect("a function");
+        let mut worst = 0.0f64;
+        for i in 0..=10_000 {
+            let value = 10.0 + i as f32 * 1e-3;
+            let opacity = -(-2.0 * f64::from(ramp.at(value).extinction)).exp_m1();
+            worst = worst.max((opacity - f64::from(value - 10.0) * 0.1).abs());
+        }
+        assert!(worst < 5.5e-4, "{worst}");
+        assert_eq!(ramp.at(20.0).extinction, 5e5);
+        assert!(ramp.knots().len() < 80, "{}", ramp.knots().len());
+    }
+
+    #[test]
+    fn steps_have_two_sides() {
+        let colors = [(1.0, Vec3::X), (1.0, Vec3::Y), (2.0, Vec3::Z)];
+        let step = TransferFunction::from_extinction(&colors, &[(0.0, 1.0), (2.0, 3.0)]);
+        let step = step.expect("a function");
+        assert_eq!(step.at(0.999).color, Vec3::X);
+        assert_eq!(step.at(1.0).color, Vec3::Y);
+        assert_eq!(step.at(1.0).extinction, 2.0);
+        assert_eq!(step.at(9.0).color, Vec3::Z);
+        assert_eq!(step.at(-9.0).extinction, 1.0);
+        assert_eq!(step.knots().len(), 4);
+    }
+
+    #[test]
+    fn the_greatest_extinction_is_at_a_knot_or_an_end() {
+        let hat = [(0.0, 0.0), (1.0, 5.0), (3.0, 1.0)];
+        let hat = TransferFunction::from_extinction(&WHITE, &hat).expect("a function");
+        for (range, most) in [
+            (vec2(0.0, 3.0), 5.0),
+            (vec2(0.0, 0.5), 2.5),
+            (vec2(2.0, 3.0), 3.0),
+            (vec2(1.0, 1.0), 5.0),
+            (vec2(-5.0, -1.0), 0.0),
+            (vec2(3.0, 9.0), 1.0),
+            (vec2(1.0, 0.0), 0.0),
+        ] {
+            assert_eq!(hat.greatest_extinction(range), most, "{range}");
+        }
+    }
+
+    #[test]
+    fn one_knot_and_narrow_ranges() {
+        let one = TransferFunction::from_extinction(&WHITE, &[(5.0, 2.0)]).expect("a function");
+        for value in [-1e30, 0.0, 5.0, 1e30] {
+            assert_eq!(one.at(value), TransferSample { color: Vec3::ONE, extinction: 2.0 });
+        }
+        let narrow = [(1.0, 0.0), (1.0f32.next_up(), 1.0)];
+        let narrow = TransferFunction::from_extinction(&WHITE, &narrow).expect("a function");
+        assert_eq!(narrow.at(1.0).extinction, 0.0);
+        assert_eq!(narrow.at(1.0f32.next_up()).extinction, 1.0);
+        assert_eq!(narrow.at(0.0).extinction, 0.0);
+    }
+}
