@@ -1,0 +1,95 @@
+//! A head made in code, as a scanner would see it: skin, skull, a folded brain.
+
+use raydsl::prelude::*;
+use rayon::prelude::*;
+
+/// What the voxels are, from 0 for air; as those of a T1-weighted picture, but for a brighter skull.
+mod tissue {
+    pub(super) const SKIN: f32 = 80.0;
+    pub(super) const SKULL: f32 = 215.0;
+    pub(super) const FLUID: f32 = 25.0;
+    pub(super) const GREY: f32 = 125.0;
+    pub(super) const WHITE: f32 = 170.0;
+}
+
+/// Distance to an ellipsoid's surface, negative inside: exact near a sphere, of the right sign
+/// elsewhere.
+fn ellipsoid(p: Vec3, center: Vec3, radii: Vec3) -> f32 {
+    let q = (p - center) / radii;
+    let size = q.length();
+    if size == 0.0 { -radii.min_element() } else { size * (size - 1.0) / (q / radii).length() }
+}
+
+/// Blends two distances, the nearer one first.
+fn joined(a: f32, b: f32, width: f32) -> f32 {
+    let h = (0.5 + 0.5 * (b - a) / width).clamp(0.0, 1.0);
+    b + (a - b) * h - width * h * (1.0 - h)
+}
+
+/// Folds of the surface of a brain: waves whose places waves displace.
+fn folds(p: Vec3) -> f32 {
+    let q = p * 15.0;
+    let warp =
+        vec3((q.y * 0.7).sin() + q.z.cos(), (q.z * 0.8 + 1.0).sin(), (q.x * 0.6 + 2.0).cos());
+    let q = q + warp * 1.6;
+    let waves = q.x.sin() * q.y.cos() + q.y.sin() * q.z.cos() + q.z.sin() * q.x.cos();
+    waves.abs().min(1.0)
+}
+
+/// What is at a point of the cube from -1 to 1: x to the left ear, y to the nose, z up.
+fn value_at(p: Vec3, width: f32) -> f32 {
+    let side = vec3(p.x.abs(), p.y, p.z);
+    let skull_center = vec3(0.0, -0.08, 0.22);
+    let cranium = ellipsoid(p, skull_center, vec3(0.62, 0.78, 0.66));
+    let face = ellipsoid(p, vec3(0.0, 0.22, -0.3), vec3(0.44, 0.5, 0.55));
+    let jaw = ellipsoid(p, vec3(0.0, 0.34, -0.66), vec3(0.3, 0.32, 0.2));
+    let nose = ellipsoid(p, vec3(0.0, 0.77, -0.2), vec3(0.09, 0.14, 0.19));
+    let ear = ellipsoid(side, vec3(0.63, -0.06, -0.04), vec3(0.06, 0.13, 0.2));
+    let neck = ((p.x / 0.36).hypot((p.y + 0.12) / 0.38) - 1.0) * 0.36;
+    let neck = neck.max(p.z + 0.3);
+    let head = joined(joined(cranium, face, 0.2), joined(jaw, neck, 0.2), 0.16);
+    let skin = joined(joined(head, nose, 0.1), ear, 0.05);
+    // The first of the layers from the inside out; their borders are as soft as a scanner's.
+    let orbit = ellipsoid(side, vec3(0.22, 0.58, 0.02), Vec3::splat(0.14));
+    let brain = ellipsoid(p, skull_center, vec3(0.5, 0.65, 0.52));
+    let cleft = 0.022 + 0.03 * (p.z - 0.3).max(0.0) - p.x.abs();
+    let groove = 0.05 * (1.0 - folds(p));
+    let cortex = (brain + groove).max(if p.z > 0.1 { cleft } else { -1.0 });
+    let white = brain + 0.09 + 1.6 * groove;
+    let ventricle = ellipsoid(side, vec3(0.09, -0.05, 0.28), vec3(0.05, 0.24, 0.07));
+    let cavity = brain - 0.03;
+    let bone = joined(cranium, face, 0.2) + 0.07;
+    let layers = [
+        (ventricle, tissue::FLUID),
+        (white, tissue::WHITE),
+        (cortex, tissue::GREY),
+        (cavity, tissue::FLUID),
+        (orbit, tissue::GREY),
+        (bone, tissue::SKULL),
+        (skin, tissue::SKIN),
+    ];
+    let mut value = 0.0;
+    for (distance, tissue) in layers.into_iter().rev() {
+        let inside = (0.5 - distance / width).clamp(0.0, 1.0);
+        value += (tissue - value) * inside;
+    }
+    value
+}
+
+/// Makes a head of `side`³ voxels in the cube from -1 to 1: x to the left ear, y to the nose, z up.
+///
+/// # Panics
+///
+/// If `side` is 0.
+pub fn head(side: u32) -> Vec<u8> {
+    assert!(side > 0, "a head has voxels");
+    let voxel = 2.0 / side as f32;
+    let at = |i: u32| (i as f32 + 0.5) * voxel - 1.0;
+    let slice = |z: u32| {
+        (0..side * side).map(move |i| {
+            let p = vec3(at(i % side), at(i / side), at(z));
+            (value_at(p, 1.5 * voxel) + 0.5) as u8
+        })
+    };
+    (0..side).into_par_iter().flat_map_iter(slice).collect()
+}
