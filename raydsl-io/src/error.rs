@@ -45,7 +45,7 @@ pub enum LoadError {
     Empty {
         /// The file.
         path: PathBuf,
-        /// What it should hold: a point or a triangle.
+        /// What it should hold: a point, a triangle, a voxel or an array of voxels.
         what: &'static str,
     },
     /// The file ends before its last element.
@@ -57,6 +57,16 @@ pub enum LoadError {
         len: u64,
         /// What is missing.
         what: String,
+    },
+    /// The file has no array of voxels that is looked for, or several.
+    #[error("{}: {what}; name one of its arrays of one component: {known}", path.display())]
+    NoArray {
+        /// The file.
+        path: PathBuf,
+        /// What is missing.
+        what: String,
+        /// The arrays that it has, each with its number of components.
+        known: String,
     },
     /// The file contradicts its format, or has more than this crate reads of it.
     #[error("{}{place}: is no valid {format}: {what}; {remedy}", path.display())]

@@ -37,7 +37,10 @@ pub(crate) fn of<'a, R: Copy>(
     formats: &'a [Format<R>],
 ) -> Result<(&'a Format<R>, R), LoadError> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let Some(format) = formats.iter().find(|f| f.extension == extension) else {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    // An extension of two words, as in `.nii.gz`.
+    let ends = |f: &Format<R>| f.extension.contains('.') && name.ends_with(f.extension);
+    let Some(format) = formats.iter().find(|f| f.extension == extension || ends(f)) else {
         let known: Vec<String> = formats.iter().map(|f| format!(".{}", f.extension)).collect();
         let known = known.join(", ");
         return Err(LoadError::UnknownExtension { path: path.into(), extension, known });

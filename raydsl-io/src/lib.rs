@@ -1,6 +1,14 @@
 #![doc = include_str!("../README.md")]
 #![cfg_attr(
-    not(all(feature = "las", feature = "obj", feature = "ply", feature = "tri", feature = "xyz")),
+    not(all(
+        feature = "las",
+        feature = "nifti",
+        feature = "obj",
+        feature = "ply",
+        feature = "raw",
+        feature = "tri",
+        feature = "xyz"
+    )),
     allow(dead_code, unused_imports, reason = "formats share code")
 )]
 
@@ -12,16 +20,23 @@ mod guard;
 mod las;
 #[cfg(feature = "las")]
 mod las_claim;
+#[cfg(feature = "nifti")]
+mod nifti;
 #[cfg(feature = "obj")]
 mod obj;
+mod payload;
 #[cfg(feature = "ply")]
 mod ply;
+#[cfg(feature = "raw")]
+mod raw;
 mod source;
 #[cfg(all(
     test,
     feature = "las",
+    feature = "nifti",
     feature = "obj",
     feature = "ply",
+    feature = "raw",
     feature = "tri",
     feature = "xyz"
 ))]
@@ -34,5 +49,6 @@ mod xyz;
 
 pub mod cloud;
 pub mod mesh;
+pub mod volume;
 
 pub use error::{LoadError, Place};

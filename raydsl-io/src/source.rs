@@ -4,6 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
+use crate::error::one_line;
 use crate::{LoadError, Place};
 
 /// Longer lines are a sign that the file is no text.
@@ -20,6 +21,20 @@ pub(crate) struct Source {
     /// The byte that is read next.
     pub(crate) at: u64,
     file: BufReader<File>,
+}
+
+/// What may be wrong with data that are decoded from a source.
+pub(crate) enum Fault {
+    Cut(String),
+    Bad(String),
+    NoRoom { what: &'static str, count: u64, remedy: &'static str },
+    Io(io::Error),
+}
+
+impl From<io::Error> for Fault {
+    fn from(e: io::Error) -> Self {
+        Self::Io(e)
+    }
 }
 
 impl Source {
@@ -82,6 +97,23 @@ impl Source {
         Ok(true)
     }
 
+    /// Whether what is read next begins so.
+    pub(crate) fn starts_with(&mut self, bytes: &[u8]) -> Result<bool, LoadError> {
+        match self.file.fill_buf() {
+            Ok(next) => Ok(next.starts_with(bytes)),
+            Err(e) => Err(self.unreadable(e)),
+        }
+    }
+
+    /// Reads next what is at a byte; false where the file ends before.
+    pub(crate) fn go_to(&mut self, at: u64) -> Result<bool, LoadError> {
+        if at > self.len {
+            return Ok(false);
+        }
+        self.seek(SeekFrom::Start(at)).map_err(|e| self.unreadable(e))?;
+        Ok(true)
+    }
+
     fn unreadable(&self, source: io::Error) -> LoadError {
         LoadError::Unreadable { path: self.path.clone(), source }
     }
@@ -92,6 +124,30 @@ impl Source {
 
     pub(crate) fn corrupt(&self, place: Place, what: String, remedy: &'static str) -> LoadError {
         LoadError::Corrupt { path: self.path.clone(), place, format: self.format, what, remedy }
+    }
+
+    /// What a stream over this source met.
+    pub(crate) fn fault(&self, fault: Fault, remedy: &'static str) -> LoadError {
+        let (source, text) = match fault {
+            Fault::Cut(what) => return self.truncated(what),
+            Fault::Bad(what) => return self.corrupt(Place::Byte(self.at), what, remedy),
+            Fault::NoRoom { what, count, remedy } => {
+                let path = self.path.clone();
+                return LoadError::OutOfMemory { path, what, count, remedy };
+            }
+            Fault::Io(e) => {
+                let text = one_line(&e);
+                (e, text)
+            }
+        };
+        match source.kind() {
+            ErrorKind::UnexpectedEof => self.truncated("it ends within its header or data".into()),
+            // Decoders say so of what they cannot decode.
+            ErrorKind::InvalidInput | ErrorKind::InvalidData => {
+                self.corrupt(Place::Byte(self.at), text, remedy)
+            }
+            _ => self.unreadable(source),
+        }
     }
 
     /// Something is wrong with the line that was read last.
@@ -111,6 +167,17 @@ impl Read for Source {
         self.file.read_exact(buf)?;
         self.at += buf.len() as u64;
         Ok(())
+    }
+}
+
+impl BufRead for Source {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        self.file.fill_buf()
+    }
+
+    fn consume(&mut self, count: usize) {
+        self.file.consume(count);
+        self.at += count as u64;
     }
 }
 
