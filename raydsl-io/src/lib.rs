@@ -7,6 +7,7 @@
         feature = "ply",
         feature = "raw",
         feature = "tri",
+        feature = "vti",
         feature = "xyz"
     )),
     allow(dead_code, unused_imports, reason = "formats share code")
@@ -38,12 +39,15 @@ mod source;
     feature = "ply",
     feature = "raw",
     feature = "tri",
+    feature = "vti",
     feature = "xyz"
 ))]
 mod tests;
 mod tint;
 #[cfg(feature = "tri")]
 mod tri;
+#[cfg(feature = "vti")]
+mod vti;
 #[cfg(feature = "xyz")]
 mod xyz;
 

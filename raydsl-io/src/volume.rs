@@ -122,7 +122,7 @@ pub enum ByteOrder {
 
 type Reading = fn(Source, Option<&str>) -> Result<VolumeFile, LoadError>;
 
-const FORMATS: [Format<Reading>; 2] = [
+const FORMATS: [Format<Reading>; 3] = [
     Format {
         extension: "nii",
         name: "NIfTI",
@@ -134,6 +134,12 @@ const FORMATS: [Format<Reading>; 2] = [
         name: "NIfTI",
         feature: "nifti",
         read: loader!("nifti", crate::nifti::read),
+    },
+    Format {
+        extension: "vti",
+        name: "VTI",
+        feature: "vti",
+        read: loader!("vti", crate::vti::read),
     },
 ];
 
