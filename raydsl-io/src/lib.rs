@@ -2,7 +2,9 @@
 #![cfg_attr(
     not(all(
         feature = "las",
+        feature = "metaimage",
         feature = "nifti",
+        feature = "nrrd",
         feature = "obj",
         feature = "ply",
         feature = "raw",
@@ -14,6 +16,8 @@
 )]
 
 mod error;
+#[cfg(any(feature = "metaimage", feature = "nrrd"))]
+mod fields;
 mod format;
 #[cfg(feature = "las")]
 mod guard;
@@ -21,8 +25,12 @@ mod guard;
 mod las;
 #[cfg(feature = "las")]
 mod las_claim;
+#[cfg(feature = "metaimage")]
+mod metaimage;
 #[cfg(feature = "nifti")]
 mod nifti;
+#[cfg(feature = "nrrd")]
+mod nrrd;
 #[cfg(feature = "obj")]
 mod obj;
 mod payload;
@@ -34,7 +42,9 @@ mod source;
 #[cfg(all(
     test,
     feature = "las",
+    feature = "metaimage",
     feature = "nifti",
+    feature = "nrrd",
     feature = "obj",
     feature = "ply",
     feature = "raw",

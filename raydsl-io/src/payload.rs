@@ -158,7 +158,7 @@ impl Payload {
     }
 
     /// Reads voxels that follow `gap` bytes of a compressed stream.
-    #[cfg(feature = "nifti")]
+    #[cfg(any(feature = "metaimage", feature = "nifti", feature = "nrrd"))]
     pub(crate) fn read_packed(
         &self,
         source: &mut Source,

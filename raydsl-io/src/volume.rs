@@ -122,7 +122,25 @@ pub enum ByteOrder {
 
 type Reading = fn(Source, Option<&str>) -> Result<VolumeFile, LoadError>;
 
-const FORMATS: [Format<Reading>; 3] = [
+const FORMATS: [Format<Reading>; 7] = [
+    Format {
+        extension: "mha",
+        name: "MetaImage",
+        feature: "metaimage",
+        read: loader!("metaimage", crate::metaimage::read),
+    },
+    Format {
+        extension: "mhd",
+        name: "MetaImage",
+        feature: "metaimage",
+        read: loader!("metaimage", crate::metaimage::read),
+    },
+    Format {
+        extension: "nhdr",
+        name: "NRRD",
+        feature: "nrrd",
+        read: loader!("nrrd", crate::nrrd::read),
+    },
     Format {
         extension: "nii",
         name: "NIfTI",
@@ -134,6 +152,12 @@ const FORMATS: [Format<Reading>; 3] = [
         name: "NIfTI",
         feature: "nifti",
         read: loader!("nifti", crate::nifti::read),
+    },
+    Format {
+        extension: "nrrd",
+        name: "NRRD",
+        feature: "nrrd",
+        read: loader!("nrrd", crate::nrrd::read),
     },
     Format {
         extension: "vti",
