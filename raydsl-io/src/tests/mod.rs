@@ -4,6 +4,8 @@ mod files;
 mod hostile;
 mod memory;
 mod meshes;
+mod volumes;
+mod volumes_hostile;
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -12,6 +14,7 @@ use memory::assert_modest;
 
 use crate::cloud::{self, PointCloud};
 use crate::mesh::{self, Mesh};
+use crate::volume::{self, VolumeFile};
 use crate::{LoadError, Place};
 
 /// A file in the system's folder for temporary files, removed at the end.
@@ -33,6 +36,10 @@ impl Temp {
 
     fn mesh(&self) -> Result<Mesh, LoadError> {
         mesh::load(&self.0)
+    }
+
+    fn volume(&self) -> Result<VolumeFile, LoadError> {
+        volume::load(&self.0)
     }
 }
 
