@@ -8,6 +8,7 @@
         feature = "obj",
         feature = "ply",
         feature = "raw",
+        feature = "stack",
         feature = "tri",
         feature = "vti",
         feature = "xyz"
@@ -39,6 +40,8 @@ mod ply;
 #[cfg(feature = "raw")]
 mod raw;
 mod source;
+#[cfg(feature = "stack")]
+mod stack;
 #[cfg(all(
     test,
     feature = "las",
@@ -48,6 +51,7 @@ mod source;
     feature = "obj",
     feature = "ply",
     feature = "raw",
+    feature = "stack",
     feature = "tri",
     feature = "vti",
     feature = "xyz"

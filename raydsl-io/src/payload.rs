@@ -295,7 +295,7 @@ impl Payload {
     }
 
     /// An empty list with room for all.
-    fn room<T>(&self) -> Result<Vec<T>, Fault> {
+    pub(crate) fn room<T>(&self) -> Result<Vec<T>, Fault> {
         let (mut list, count) = (Vec::new(), self.count());
         list.try_reserve_exact(count as usize).map_err(|_| Fault::NoRoom {
             what: "voxel",

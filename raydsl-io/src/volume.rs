@@ -1,4 +1,5 @@
-//! Volumes: grids of numbers in three dimensions, from NIfTI, VTI, MetaImage, NRRD and raw files.
+//! Volumes: grids of numbers in three dimensions, from NIfTI, VTI, MetaImage, NRRD and raw files,
+//! and from stacks of pictures.
 
 use std::path::Path;
 
@@ -244,4 +245,25 @@ pub fn load_raw(
     order: ByteOrder,
 ) -> Result<VolumeFile, LoadError> {
     crate::raw::read(Source::open(path.as_ref(), "raw volume")?, size, kind, order)
+}
+
+/// Loads a stack of grey PNG pictures of 8 or 16 bits, the layers in order of `z`. Voxels are cells
+/// of size 1, and `to_world` is the identity.
+///
+/// # Errors
+///
+/// When there is no picture, one is missing, unreadable, cut off or corrupt, has colours or fewer
+/// bits, or differs from the first in size or type, and when there are more than 2^31 voxels.
+///
+/// # Examples
+///
+/// ```no_run
+/// let layers: Vec<String> = (0..300).map(|z| format!("tooth/{z:03}.png")).collect();
+/// let volume = raydsl_io::volume::load_stack(&layers)?;
+/// # Ok::<(), raydsl_io::LoadError>(())
+/// ```
+#[cfg(feature = "stack")]
+pub fn load_stack<P: AsRef<Path>>(layers: &[P]) -> Result<VolumeFile, LoadError> {
+    let layers: Vec<&Path> = layers.iter().map(AsRef::as_ref).collect();
+    crate::stack::read(&layers)
 }

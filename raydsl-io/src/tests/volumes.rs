@@ -7,7 +7,7 @@ use flate2::write::{GzEncoder, ZlibEncoder};
 use glam::{Affine3, UVec3, Vec3, uvec3, vec3};
 
 use super::*;
-use crate::volume::{ByteOrder, VoxelType, Voxels, load_raw};
+use crate::volume::{ByteOrder, VoxelType, Voxels, load_raw, load_stack};
 
 pub(super) const SIZE: UVec3 = uvec3(4, 3, 2);
 
@@ -644,6 +644,34 @@ fn nrrd_places() {
     assert_eq!(volume.to_world.transform_point3(vec3(1.0, 10.0, 100.0)), vec3(15.0, 8.0, -293.0));
     let volume = load_volume("nrrd", &file("centers: cell none ???\n")).expect("a volume");
     assert!(volume.is_cell_centred && volume.to_world == Affine3::IDENTITY);
+}
+
+/// A layer of a stack.
+pub(super) fn png_bytes(color: png::ColorType, bits: png::BitDepth, data: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 4, 3);
+    encoder.set_color(color);
+    encoder.set_depth(bits);
+    let mut writer = encoder.write_header().expect("memory");
+    writer.write_image_data(data).expect("memory");
+    drop(writer);
+    bytes
+}
+
+#[test]
+fn stacks_of_pictures() {
+    for (kind, bits) in
+        [(VoxelType::U8, png::BitDepth::Eight), (VoxelType::U16, png::BitDepth::Sixteen)]
+    {
+        let data = bytes_of(kind, ByteOrder::Big, &numbers(kind));
+        let layers: Vec<_> = data
+            .chunks(data.len() / 2)
+            .map(|layer| Temp::new("png", &png_bytes(png::ColorType::Grayscale, bits, layer)))
+            .collect();
+        let paths: Vec<_> = layers.iter().map(|file| &file.0).collect();
+        let volume = load_stack(&paths).expect("a volume");
+        assert_volume(&volume, kind, Affine3::IDENTITY);
+    }
 }
 
 /// Says so where a real file is not there.

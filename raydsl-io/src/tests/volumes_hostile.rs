@@ -4,10 +4,10 @@ use glam::uvec3;
 
 use super::volumes::{
     PLAIN, Vti, Way, bytes_of, gzip, load_volume, meta_header, nifti, nrrd_header, numbers,
-    refused, zlib,
+    png_bytes, refused, zlib,
 };
 use super::*;
-use crate::volume::{ByteOrder, VoxelType, Voxels, load_raw};
+use crate::volume::{ByteOrder, VoxelType, Voxels, load_raw, load_stack};
 
 const LITTLE: ByteOrder = ByteOrder::Little;
 
@@ -350,6 +350,53 @@ fn broken_text_headers_are_named() {
         let message = refused("nrrd", file.as_bytes());
         assert!(message.contains(what), "{message}\n{what}");
     }
+}
+
+#[test]
+fn broken_stacks_are_named() {
+    let grey = png_bytes(png::ColorType::Grayscale, png::BitDepth::Eight, &[7; 12]);
+    let deep = png_bytes(png::ColorType::Grayscale, png::BitDepth::Sixteen, &[7; 24]);
+    let color = png_bytes(png::ColorType::Rgb, png::BitDepth::Eight, &[7; 36]);
+    let stack = |layers: &[&[u8]]| {
+        let layers: Vec<_> = layers.iter().map(|bytes| Temp::new("png", bytes)).collect();
+        load_stack(&layers.iter().map(|file| &file.0).collect::<Vec<_>>())
+    };
+    let message = |layers: &[&[u8]]| {
+        let text = stack(layers).expect_err("an error").to_string();
+        assert!(!text.contains('\n') && text.contains(';'), "{text}");
+        text
+    };
+    assert!(message(&[]).contains("holds no picture"));
+    assert!(message(&[&grey, &deep]).contains("it is 4 x 3 of u16, the first is 4 x 3 of u8"));
+    assert!(message(&[&color]).contains("its pixels are Rgb of 8 bits"));
+    assert!(message(&[&grey, b""]).contains("cut off at byte 0"));
+    assert!(message(&[b"not a picture"]).contains("is no valid PNG"));
+    // A size that no file of this length can hold, behind a sum that is right.
+    let mut large = grey.clone();
+    large[16..24].copy_from_slice(&[0, 0, 0x7f, 0xff, 0, 0, 0x7f, 0xff]);
+    let sum = {
+        let mut sum = flate2::Crc::new();
+        sum.update(&large[12..29]);
+        sum.sum()
+    };
+    large[29..33].copy_from_slice(&sum.to_be_bytes());
+    assert!(message(&[&large]).contains("take 1073676289 bytes"));
+    assert!(message(&[&large, &large, &large]).contains("at most 2147483648"));
+    let whole = stack(&[&deep, &deep]).expect("a volume");
+    for end in 0..deep.len() {
+        match stack(&[&deep, &deep[..end]]) {
+            Ok(part) => assert_eq!(part, whole, "cut at {end}"),
+            Err(e) => assert!(!e.to_string().contains('\n'), "cut at {end}: {e}"),
+        }
+        for flip in [0x01, 0x02, 0x80, 0xff] {
+            let mut damaged = deep.clone();
+            damaged[end] ^= flip;
+            if let Err(e) = stack(&[&damaged]) {
+                assert!(!e.to_string().contains('\n'), "byte {end} by {flip}: {e}");
+            }
+        }
+    }
+    assert_modest();
 }
 
 /// Names tell formats, and errors know them.
