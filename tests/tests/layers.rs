@@ -11,13 +11,14 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 /// The layers, the top one first. A module may depend on those of lower layers, and on those of its
 /// own that do not depend on it.
-const LAYERS: [&[&str]; 11] = [
+const LAYERS: [&[&str]; 12] = [
     &["__private", "error", "prelude"],
     &["gpu", "testing"],
     &["render"],
     &["integrators"],
+    &["volume"],
     &["shading"],
-    &["bvh", "camera", "sampling", "texture", "volume"],
+    &["bvh", "camera", "sampling", "texture"],
     &["geometry"],
     &["math"],
     &["kernel"],

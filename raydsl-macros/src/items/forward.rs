@@ -15,7 +15,7 @@ const METHODS: [&str; 5] = ["surface_point", "normal", "uv", "area", "sample"];
 
 /// The trait that an enum can forward, and its functions.
 const SURFACE: &str = "Surface";
-const OF_SURFACE: [&str; 4] = ["surface", "albedo", "uv", "material"];
+const OF_SURFACE: [&str; 5] = ["surface", "albedo", "uv", "material", "crossing"];
 
 /// A variant of the enum: its name, and the type of its primitive.
 type Variant<'a> = (&'a Ident, &'a syn::Type);
@@ -102,7 +102,8 @@ impl Form {
                 "A point of its surface; a uniform `u` in the unit square gives a uniform one.",
             ),
             "albedo" => (vec3, "The albedo where `ray` hits it."),
-            _ => (quote!(u32), "The number of its material."),
+            "material" => (quote!(u32), "The number of its material."),
+            _ => (quote!(i32), "Whether `ray` enters or leaves it."),
         };
         let (params, args) = match function {
             "area" => (TokenStream::new(), TokenStream::new()),

@@ -68,6 +68,7 @@ pub use accelerator::{Accelerated, Accelerator};
 use build::Settings;
 pub use build::{BuildConfig, BuildError, BuildQuality, MAX_DEPTH, Traversal};
 pub(crate) use contract::Padding;
+pub(crate) use contract::behind;
 pub use hits::Hits;
 pub use instances::{Group, Instance, InstanceError, Instances, MAX_CONDITION, MAX_LEVELS, Object};
 pub(crate) use instances::{IS_INSTANCE, PLACE_SCHEMA, Placed, Placing, STACK, Target};

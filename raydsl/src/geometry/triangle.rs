@@ -10,7 +10,7 @@ use super::{Aabb, Hit, Ray, SurfacePoint};
 use crate::machine::functions::{vec2, vec3};
 use crate::machine::generic::{max, min};
 use crate::math::exact::{exact_cross, lost_by_difference};
-use crate::{kernel, primitive};
+use crate::{Type, kernel, primitive};
 
 /// Error bound of a triangle's hit, like a sphere's 16 eps: the sheared vertices carry at most 6
 /// eps of the farthest coordinate, and weights, depths and distance nine roundings more.
@@ -87,6 +87,14 @@ impl IndexedTriangle {
         surface_point(ray, hit, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
     }
 
+    /// Returns whether `ray`, which hits it, enters a closed mesh there or leaves it; see
+    /// [`crossing()`].
+    #[inline]
+    pub fn crossing(&self, ray: Ray, hit: Hit, vertices: &[Vec3]) -> i32 {
+        let [v0, v1, v2] = self.vertices;
+        crossing(ray, hit, vertices[v0 as usize], vertices[v1 as usize], vertices[v2 as usize])
+    }
+
     /// Returns the area of one side.
     #[inline]
     pub fn area(&self, vertices: &[Vec3]) -> f32 {
@@ -156,19 +164,21 @@ fn is_inside(sides: Vec3) -> bool {
     least >= 0.0 || greatest <= 0.0
 }
 
-/// Intersects a ray with the triangle: both sides, edges and vertices included. A triangle with
-/// collinear vertices is never hit.
-///
-/// The point at `t` lies on the triangle, to within [`SLACK`] of the farthest coordinate, even for
-/// rays along its plane. So it lies in the box of one of the parts into which [`split_primitive`]
-/// cuts the triangle, as trees with spatial splits require.
-///
-/// The watertight test of Woop, Benthin and Wald ("Watertight Ray/Triangle Intersection", JCGT
-/// 2013), divided by the determinant before scaling, so that it holds for coordinates from 1e-18 to
-/// 1e18 and directions of any usual length.
+/// Vertices as a ray sees them: relative to its origin, with it along the last axis.
+#[derive(Clone, Copy, Debug, Type)]
+struct Sheared {
+    a: Vec3,
+    b: Vec3,
+    c: Vec3,
+    /// The direction, with the axes swapped alike.
+    d: Vec3,
+    /// The axis along which the ray runs fastest, swapped with z.
+    k: u32,
+}
+
 #[kernel]
-#[inline]
-pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
+#[inline(always)]
+fn sheared(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Sheared {
     // Make the axis along which the ray runs fastest z.
     let ax = ray.direction.x.abs();
     let ay = ray.direction.y.abs();
@@ -187,12 +197,30 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
     // Shear the ray onto the z axis.
     let sx = d.x / d.z;
     let sy = d.y / d.z;
-    let a_x = a.x - sx * a.z;
-    let a_y = a.y - sy * a.z;
-    let b_x = b.x - sx * b.z;
-    let b_y = b.y - sy * b.z;
-    let c_x = c.x - sx * c.z;
-    let c_y = c.y - sy * c.z;
+    Sheared {
+        a: vec3(a.x - sx * a.z, a.y - sy * a.z, a.z),
+        b: vec3(b.x - sx * b.z, b.y - sy * b.z, b.z),
+        c: vec3(c.x - sx * c.z, c.y - sy * c.z, c.z),
+        d,
+        k,
+    }
+}
+
+/// Intersects a ray with the triangle: both sides, edges and vertices included. A triangle with
+/// collinear vertices is never hit.
+///
+/// The point at `t` lies on the triangle, to within [`SLACK`] of the farthest coordinate, even for
+/// rays along its plane. So it lies in the box of one of the parts into which [`split_primitive`]
+/// cuts the triangle, as trees with spatial splits require.
+///
+/// The watertight test of Woop, Benthin and Wald ("Watertight Ray/Triangle Intersection", JCGT
+/// 2013), divided by the determinant before scaling, so that it holds for coordinates from 1e-18 to
+/// 1e18 and directions of any usual length.
+#[kernel]
+#[inline]
+pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
+    let Sheared { a, b, c, d, .. } = sheared(ray, v0, v1, v2);
+    let (a_x, a_y, b_x, b_y, c_x, c_y) = (a.x, a.y, b.x, b.y, c.x, c.y);
     // Test the side of each edge on which the ray passes. Rounding keeps the order of two products
     // or makes them equal, so a sign is right or zero, and zero counts as inside.
     let xs = vec3(a_x, b_x, c_x);
@@ -238,6 +266,47 @@ pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
     let is_surface = !(is_flat && is_line(v0, v1, v2));
     let is_hit = is_surface && t >= ray.t_min && t <= ray.t_max;
     Hit { u: v, v: w, ..Hit::new(is_hit, t) }
+}
+
+/// Returns the side of an edge on which a ray beside the sheared one passes: the ray is displaced by
+/// less than any number, by still less along the second axis. Never 0 for two different points.
+#[kernel]
+#[inline]
+fn side_beside(side: f32, from: Vec2, to: Vec2) -> f32 {
+    let across = to.y - from.y;
+    let tie = if across == 0.0 { from.x - to.x } else { across };
+    if side == 0.0 { tie } else { side }
+}
+
+/// Returns 1 where a ray goes from the outside of a closed mesh to its inside, -1 where it goes the
+/// other way, and 0 where it only touches the triangle: of all triangles around an edge or a vertex
+/// that a ray passes through, those count that a ray beside it would hit, so that each crossing of
+/// the mesh counts once. The outside is where the vertices run anticlockwise. `ray` hits the
+/// triangle.
+///
+/// (Edelsbrunner and Mücke, "Simulation of Simplicity", ACM Transactions on Graphics 1990.)
+#[kernel]
+#[inline(never)]
+pub fn crossing(ray: Ray, _hit: Hit, v0: Vec3, v1: Vec3, v2: Vec3) -> i32 {
+    let Sheared { a, b, c, d, k } = sheared(ray, v0, v1, v2);
+    let products = (c.x * b.y).abs() + (a.x * c.y).abs() + (b.x * a.y).abs();
+    let scale = if products < SMALL { 1.0 / SMALL } else { 1.0 };
+    let sides = exact_cross(vec3(a.y, b.y, c.y) * scale, vec3(a.x, b.x, c.x) * scale);
+    let of_a = side_beside(sides.x, vec2(b.x, b.y), vec2(c.x, c.y));
+    let of_b = side_beside(sides.y, vec2(c.x, c.y), vec2(a.x, a.y));
+    let of_c = side_beside(sides.z, vec2(a.x, a.y), vec2(b.x, b.y));
+    let enters = of_a > 0.0 && of_b > 0.0 && of_c > 0.0;
+    let leaves = of_a < 0.0 && of_b < 0.0 && of_c < 0.0;
+    let side = if enters {
+        1
+    } else if leaves {
+        -1
+    } else {
+        0
+    };
+    // Swapping two axes turns the triangle over, and so does looking along -z.
+    let is_turned = (k != 2) != (d.z < 0.0);
+    if is_turned { -side } else { side }
 }
 
 /// Returns the unit normal on the side from which the vertices run anticlockwise, whichever side
@@ -333,7 +402,7 @@ pub(super) fn split_polygon(
             above = above.union(around(a, error));
         }
         if (a[axis] < plane && b[axis] > plane) || (a[axis] > plane && b[axis] < plane) {
-            let crossing = crossing(axis, at, a, b, error);
+            let crossing = on_edge(axis, at, a, b, error);
             below = below.union(crossing);
             above = above.union(crossing);
         }
@@ -343,7 +412,7 @@ pub(super) fn split_polygon(
 }
 
 /// Returns a box around the intersection of the edge with the plane.
-fn crossing(axis: usize, at: f32, a: [f64; 3], b: [f64; 3], error: f64) -> Aabb {
+fn on_edge(axis: usize, at: f32, a: [f64; 3], b: [f64; 3], error: f64) -> Aabb {
     let s = (f64::from(at) - a[axis]) / (b[axis] - a[axis]);
     let bounds = |sign: f64, step: fn(f32) -> f32| {
         let mut bound = core::array::from_fn(|i| {

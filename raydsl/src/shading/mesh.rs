@@ -283,9 +283,15 @@ impl Scene for MeshView<'_> {
         let scene = view.triangles;
         let triangle = SceneView::primitive_on(m, &scene, hit);
         let local = RayQueryOn::local_ray(scene, m, ray, hit.inst_id);
-        let own = IndexedTriangle::surface_point_on(m, triangle, local, hit, scene.shared());
-        let point = in_scene(m, scene, ray, hit, own);
-        A::of(point, || view.shaded(m, triangle, own.normal, point, hit))
+        let vertices = scene.shared();
+        let own = || IndexedTriangle::surface_point_on(m, triangle, local, hit, vertices);
+        let whole = || {
+            let own = own();
+            let point = in_scene(m, scene, ray, hit, own);
+            view.shaded(m, triangle, own.normal, point, hit)
+        };
+        let crossing = || IndexedTriangle::crossing_on(m, triangle, local, hit, vertices);
+        A::of(|| in_scene(m, scene, ray, hit, own()), whole, crossing)
     }
 }
 

@@ -16,6 +16,6 @@ mod surface;
 
 pub use mesh::{Mesh, MeshAttributes, MeshError, MeshView};
 #[doc(hidden)]
-pub use scene::{Asked, PointAlone, WholePoint};
+pub use scene::{Asked, CrossingAlone, PointAlone, WholePoint};
 pub use scene::{Scene, ShadingPoint, ShadingPointOn};
 pub use surface::{Surface, facing};

@@ -10,7 +10,7 @@ use crate::bvh::{
 };
 use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn, SurfacePoint, SurfacePointOn};
 use crate::machine::functions::vec4;
-use crate::machine::{Coerce, Machine, Method, Scalar, Slice, TableView, U, Value, name};
+use crate::machine::{Coerce, I, Machine, Method, Scalar, Slice, TableView, U, Value, name};
 
 use crate::sampling::Frame;
 use crate::{Type, kernel};
@@ -120,6 +120,26 @@ pub trait Scene: RayQuery {
         Self::asked_on::<M, WholePoint>(m, scene, ray.coerce(m), hit.coerce(m))
     }
 
+    /// Returns 1 where `ray` enters a closed object, -1 where it leaves it, and 0 where it passes
+    /// through an edge or a vertex of a mesh and another triangle counts the crossing: the sum over
+    /// [`hits`](crate::bvh::RecordQuery::hits) up to a distance is the number of objects entered
+    /// and not left.
+    fn crossing(&self, ray: Ray, hit: Hit) -> i32 {
+        let m = &Scalar::default();
+        i32::lane::<Scalar>(&Self::crossing_on(m, self, ray_on(m, ray), hit_on(m, hit)), 0)
+    }
+
+    #[doc(hidden)]
+    #[inline(always)]
+    fn crossing_on<M: Machine>(
+        m: &M,
+        scene: &Self,
+        ray: impl Coerce<M, RayOn<M>>,
+        hit: impl Coerce<M, HitOn<M>>,
+    ) -> I<M> {
+        Self::asked_on::<M, CrossingAlone>(m, scene, ray.coerce(m), hit.coerce(m))
+    }
+
     /// Returns what is asked of the point that `ray` hits.
     #[doc(hidden)]
     fn asked_on<M: Machine, A: Asked>(
@@ -136,10 +156,11 @@ pub trait Asked {
     /// What is returned.
     type On<M: Machine>: Value<M>;
 
-    /// Returns it, given the point, and how to compute the whole.
+    /// Returns it, given how to compute the point, all that is known of it, and the crossing.
     fn of<M: Machine>(
-        point: SurfacePointOn<M>,
+        point: impl FnOnce() -> SurfacePointOn<M>,
         whole: impl FnOnce() -> ShadingPointOn<M>,
+        crossing: impl FnOnce() -> I<M>,
     ) -> Self::On<M>;
 }
 
@@ -153,10 +174,11 @@ impl Asked for PointAlone {
 
     #[inline(always)]
     fn of<M: Machine>(
-        point: SurfacePointOn<M>,
+        point: impl FnOnce() -> SurfacePointOn<M>,
         _: impl FnOnce() -> ShadingPointOn<M>,
+        _: impl FnOnce() -> I<M>,
     ) -> SurfacePointOn<M> {
-        point
+        point()
     }
 }
 
@@ -170,10 +192,29 @@ impl Asked for WholePoint {
 
     #[inline(always)]
     fn of<M: Machine>(
-        _: SurfacePointOn<M>,
+        _: impl FnOnce() -> SurfacePointOn<M>,
         whole: impl FnOnce() -> ShadingPointOn<M>,
+        _: impl FnOnce() -> I<M>,
     ) -> ShadingPointOn<M> {
         whole()
+    }
+}
+
+/// Whether the ray enters or leaves.
+#[doc(hidden)]
+#[derive(Debug)]
+pub enum CrossingAlone {}
+
+impl Asked for CrossingAlone {
+    type On<M: Machine> = I<M>;
+
+    #[inline(always)]
+    fn of<M: Machine>(
+        _: impl FnOnce() -> SurfacePointOn<M>,
+        _: impl FnOnce() -> ShadingPointOn<M>,
+        crossing: impl FnOnce() -> I<M>,
+    ) -> I<M> {
+        crossing()
     }
 }
 
@@ -213,16 +254,20 @@ macro_rules! scenes {
                 ) -> A::On<M> {
                     let (scene, prim) = (scene.view(), Self::primitive_on(m, scene, hit));
                     let local = RayQueryOn::local_ray(scene, m, ray, hit.inst_id);
-                    let point = P::surface_on(m, prim, local, hit);
-                    let point = in_scene(m, scene, ray, hit, point);
-                    A::of(point, || ShadingPointOn {
-                        point,
-                        shading_normal: point.normal,
-                        tangent: any_tangent::on(m, point.normal),
-                        uv: P::uv_on(m, prim, local, hit),
-                        material: P::material_on(m, prim, local, hit),
-                        albedo: P::albedo_on(m, prim, local, hit),
-                    })
+                    let point =
+                        || in_scene(m, scene, ray, hit, P::surface_on(m, prim, local, hit));
+                    let whole = || {
+                        let point = point();
+                        ShadingPointOn {
+                            point,
+                            shading_normal: point.normal,
+                            tangent: any_tangent::on(m, point.normal),
+                            uv: P::uv_on(m, prim, local, hit),
+                            material: P::material_on(m, prim, local, hit),
+                            albedo: P::albedo_on(m, prim, local, hit),
+                        }
+                    };
+                    A::of(point, whole, || P::crossing_on(m, prim, local, hit))
                 }
             }
         )+
@@ -313,6 +358,7 @@ macro_rules! methods {
                 @one [$($g)*] $t, $s, |$this| $scene;
                 "shading_point", shading_point_on, ShadingPointOn
             }
+            methods! { @one [$($g)*] $t, $s, |$this| $scene; "crossing", crossing_on, I }
         )+
     };
     (

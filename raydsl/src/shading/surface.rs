@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3, vec2};
 
-use crate::geometry::{Hit, Ray, SurfacePoint, Triangle};
+use crate::geometry::{Hit, Ray, SurfacePoint, Triangle, triangle};
 use crate::kernel;
 use crate::machine::functions::vec2;
 
@@ -52,6 +52,13 @@ pub trait Surface {
     fn material(&self, _ray: Ray, _hit: Hit) -> u32 {
         0
     }
+
+    /// Returns 1 where `ray` enters a closed surface, and -1 where it leaves it: by the normal, which
+    /// is on the outside. A triangle returns 0 where the ray passes through an edge or a vertex and
+    /// another one counts the crossing.
+    fn crossing(&self, ray: Ray, hit: Hit) -> i32 {
+        if self.surface(ray, hit).normal.dot(ray.direction) < 0.0 { 1 } else { -1 }
+    }
 }
 
 /// Has a light grey albedo.
@@ -65,6 +72,11 @@ impl Surface for Triangle {
     #[inline]
     fn albedo(&self, _ray: Ray, _hit: Hit) -> Vec3 {
         Vec3::splat(0.8)
+    }
+
+    #[inline]
+    fn crossing(&self, ray: Ray, hit: Hit) -> i32 {
+        triangle::crossing(ray, hit, self.v0, self.v1, self.v2)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Volumes: scalar fields on grids, transfer functions, and integrals along rays.
 
 mod cubic;
+mod cut;
 mod error;
 mod exact;
 mod grid;
@@ -14,6 +15,7 @@ mod volume;
 mod voxel;
 mod walk;
 
+pub use cut::{Cut, is_inside};
 pub use error::{GridError, TransferError};
 pub use exact::ExactCell;
 pub use grid::{

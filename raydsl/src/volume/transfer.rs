@@ -140,8 +140,12 @@ impl TransferFunction {
         let width = f64::from(last) - f64::from(first);
         let per_value = if width > 0.0 { (BINS as f64 / width) as f32 } else { 0.0 };
         let per_value = if per_value.is_finite() { per_value } else { 0.0 };
-        let begin = |bin: usize| (f64::from(first) + width * bin as f64 / BINS as f64) as f32;
-        let bins = (0..BINS).map(|bin| interval(&knots, begin(bin)) as u32).collect();
+        // By rounding a value may be taken for one of the bin behind it: each begins somewhat early.
+        let begin = |bin: usize| match bin {
+            0 => -FAR,
+            bin => (f64::from(first) + width * (bin as f64 - 0.01) / BINS as f64) as f32,
+        };
+        let bins = (0..BINS).map(|bin| interval(&knots, begin(bin).next_down()) as u32).collect();
         let last_bin = (BINS - 1) as f32;
         let layout = TransferLayout { first, per_value, last_bin, last: knots.len() as u32 - 2 };
         Ok(Self { knots, bins, layout, owner: Owner::new() })
@@ -485,12 +489,7 @@ fn interval_by_bins(function: &TransferFunction, value: f32) -> u32 {
     let TransferLayout { first, per_value, last_bin, last } = function.layout();
     let bin = clamp((value - first) * per_value, 0.0, last_bin);
     let mut i: u32 = function.bin(bin as u32);
-    // The bin may be the neighbour's by rounding, and have several knots.
-    let mut knot: TransferKnot = function.knot(i);
-    while i > 0 && value < knot.value {
-        i -= 1;
-        knot = function.knot(i);
-    }
+    // A bin may have several knots.
     let mut next: TransferKnot = function.knot(i + 1);
     while i < last && value >= next.value {
         i += 1;
@@ -501,6 +500,10 @@ fn interval_by_bins(function: &TransferFunction, value: f32) -> u32 {
 
 #[kernel]
 #[inline]
+#[allow(
+    dead_code,
+    reason = "its lifted form gives bounds on rounding; it is a source for no other"
+)]
 fn interval_by_search(function: &TransferFunction, value: f32) -> u32 {
     let (mut first, mut end) = (0u32, function.layout().last + 1);
     while first + 1 < end {
@@ -529,10 +532,13 @@ fn sample_of(function: &TransferFunction, value: f32) -> TransferSample {
     let a: TransferKnot = function.knot(i);
     let b: TransferKnot = function.knot(i + 1);
     let share = share_of(value, a.value, b.value);
-    TransferSample {
-        color: a.color + (b.color - a.color) * share,
-        extinction: a.extinction + (b.extinction - a.extinction) * share,
+    let extinction = a.extinction + (b.extinction - a.extinction) * share;
+    // Most samples have none, and then colour does not matter: it is not fetched.
+    let mut color = Vec3::ZERO;
+    if extinction > 0.0 {
+        color = a.color + (b.color - a.color) * share;
     }
+    TransferSample { color, extinction }
 }
 
 #[cfg(test)]

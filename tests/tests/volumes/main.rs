@@ -1,6 +1,7 @@
 //! Volumes: grids against an oracle in `f64`, integrals against closed forms, in every variant.
 
 mod agreement;
+mod cuts;
 mod fields;
 mod oracle;
 mod stiff;

@@ -1,0 +1,156 @@
+//! Cuts: the parts of a ray inside or outside of closed objects.
+
+use glam::Vec3;
+
+use crate::bvh::behind;
+use crate::geometry::Ray;
+use crate::machine::generic::min;
+use crate::shading::Scene;
+use crate::{Type, kernel};
+
+/// Walk along a ray through closed objects, from one part of it that is inside of any, or outside
+/// of all, to the next.
+///
+/// The objects are those of a scene: primitives with an inside, such as spheres and cuboids, and
+/// closed meshes of triangles whose vertices run anticlockwise seen from outside; one inside
+/// another, touching, as many as there are. Every crossing counts once, whatever edge or vertex the
+/// ray passes through, and one that only touches an object changes nothing; the ends of parts are
+/// the distances of hits. The ray may begin inside. A plane is the surface of all that is behind it,
+/// for rays that cross it somewhere, also before they begin.
+///
+/// ```
+/// use raydsl::prelude::*;
+/// use raydsl::shading::Surface;
+/// use raydsl::volume::Cut;
+/// use raydsl::kernel;
+///
+/// #[primitive(sphere(center, radius))]
+/// struct Ball {
+///     center: Vec3,
+///     radius: f32,
+/// }
+///
+/// #[kernel]
+/// impl Surface for Ball {
+///     fn surface(&self, ray: Ray, hit: Hit) -> SurfacePoint {
+///         self.surface_point(ray, hit)
+///     }
+///
+///     fn albedo(&self, _ray: Ray, _hit: Hit) -> Vec3 {
+///         Vec3::ONE
+///     }
+/// }
+///
+/// let ball = |x| Ball { center: vec3(x, 0.0, 0.0), radius: 1.0 };
+/// let balls = [ball(3.0), ball(4.0), ball(9.0)];
+/// let tool = &balls[..];
+/// let outside = kernel!(|ray: Ray| {
+///     let mut cut = Cut::new(tool, ray);
+///     let mut length = 0.0;
+///     while let Some(part) = cut.next_outside(tool) {
+///         length += part.t_max - part.t_min;
+///     }
+///     length
+/// });
+/// let ray = Ray::new(Vec3::ZERO, Vec3::X).with_range(0.0, 12.0);
+/// assert_eq!(outside.call((ray,)), 2.0 + 3.0 + 2.0);
+/// ```
+#[derive(Clone, Copy, Debug, Type)]
+pub struct Cut {
+    /// What is left of the ray.
+    pub rest: Ray,
+    /// Number of objects around the point where the rest begins.
+    pub depth: i32,
+    /// Whether the hits at the beginning of the rest are counted already.
+    is_behind: bool,
+    /// Whether the rest is empty.
+    is_done: bool,
+}
+
+/// 2^-18: share of a distance by which two hits of one point may differ.
+const NEARBY: f32 = 1.0 / 262_144.0;
+
+#[kernel]
+impl Cut {
+    /// Begins a walk at the ray's `t_min`. It takes all hits of the whole line, also behind the
+    /// ray's ends, since what they count up to says what the ray begins in.
+    pub fn new<S: Scene + ?Sized>(scene: &S, ray: Ray) -> Self {
+        let line = ray.with_range(-f32::MAX, f32::MAX);
+        let (mut sum, mut least, mut before) = (0i32, 0i32, 0i32);
+        let mut at = -f32::MAX;
+        for hit in scene.hits(line) {
+            // Where rounding decides which of two hits comes first, their order says nothing.
+            if hit.t - at > hit.t.abs() * NEARBY {
+                least = min(least, sum);
+            }
+            at = hit.t;
+            sum += scene.crossing(line, hit);
+            if hit.t < ray.t_min {
+                before = sum;
+            }
+        }
+        least = min(least, sum);
+        Self { rest: ray, depth: before - least, is_behind: false, is_done: ray.t_min >= ray.t_max }
+    }
+
+    /// Returns the next part of the ray that is inside of an object.
+    pub fn next_inside<S: Scene + ?Sized>(&mut self, scene: &S) -> Option<Ray> {
+        self.next_where(scene, true)
+    }
+
+    /// Returns the next part of the ray that is outside of all objects.
+    pub fn next_outside<S: Scene + ?Sized>(&mut self, scene: &S) -> Option<Ray> {
+        self.next_where(scene, false)
+    }
+
+    fn next_where<S: Scene + ?Sized>(&mut self, scene: &S, is_inside: bool) -> Option<Ray> {
+        let whole = self.rest;
+        if self.is_done {
+            return None;
+        }
+        let first = if self.is_behind { behind(whole.t_min) } else { whole.t_min };
+        let ray = whole.with_range(first, whole.t_max);
+        let mut depth = self.depth;
+        // The hits at `at` are counted, those behind are not.
+        let (mut at, mut begin, mut end) = (whole.t_min, whole.t_min, whole.t_max);
+        let (mut has_begun, mut has_ended) = (false, false);
+        for hit in scene.hits(ray) {
+            if hit.t > at {
+                let is_wanted = (depth > 0) == is_inside;
+                if has_begun && !is_wanted {
+                    has_ended = true;
+                    end = at;
+                    break;
+                }
+                if !has_begun && is_wanted {
+                    has_begun = true;
+                    begin = at;
+                }
+                at = hit.t;
+            }
+            depth += scene.crossing(ray, hit);
+        }
+        if !has_ended {
+            // Behind the last hit.
+            let is_wanted = (depth > 0) == is_inside && at < whole.t_max;
+            if has_begun && !is_wanted {
+                end = at;
+            } else if is_wanted && !has_begun {
+                has_begun = true;
+                begin = at;
+            }
+        }
+        self.depth = depth;
+        self.rest = whole.with_range(end, whole.t_max);
+        self.is_behind = true;
+        self.is_done = !has_ended;
+        if has_begun { Some(whole.with_range(begin, end)) } else { None }
+    }
+}
+
+/// Returns whether a point is inside of a closed object of the scene.
+#[kernel]
+pub fn is_inside<S: Scene + ?Sized>(scene: &S, point: Vec3) -> bool {
+    let ray = Ray::new(point, Vec3::Z);
+    Cut::new(scene, ray).depth > 0
+}
