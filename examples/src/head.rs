@@ -48,9 +48,10 @@ fn value_at(p: Vec3, width: f32) -> f32 {
     let neck = ((p.x / 0.36).hypot((p.y + 0.12) / 0.38) - 1.0) * 0.36;
     let neck = neck.max(p.z + 0.3);
     let head = joined(joined(cranium, face, 0.2), joined(jaw, neck, 0.2), 0.16);
-    let skin = joined(joined(head, nose, 0.1), ear, 0.05);
+    let lid = ellipsoid(side, vec3(0.2, 0.56, -0.02), Vec3::splat(0.1));
+    let skin = joined(joined(joined(head, nose, 0.1), ear, 0.05), lid, 0.08);
     // The first of the layers from the inside out; their borders are as soft as a scanner's.
-    let orbit = ellipsoid(side, vec3(0.22, 0.58, 0.02), Vec3::splat(0.14));
+    let orbit = ellipsoid(side, vec3(0.2, 0.5, -0.02), Vec3::splat(0.12));
     let brain = ellipsoid(p, skull_center, vec3(0.5, 0.65, 0.52));
     let cleft = 0.022 + 0.03 * (p.z - 0.3).max(0.0) - p.x.abs();
     let groove = 0.05 * (1.0 - folds(p));
@@ -88,7 +89,7 @@ pub fn head(side: u32) -> Vec<u8> {
     let slice = |z: u32| {
         (0..side * side).map(move |i| {
             let p = vec3(at(i % side), at(i / side), at(z));
-            (value_at(p, 1.5 * voxel) + 0.5) as u8
+            (value_at(p, 3.0 * voxel) + 0.5) as u8
         })
     };
     (0..side).into_par_iter().flat_map_iter(slice).collect()

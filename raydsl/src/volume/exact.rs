@@ -6,13 +6,13 @@ use super::integrator::{
     Inside, Layer, VolumeIntegrator, inside, integrator, macro_walk, majorant_of,
 };
 use super::light::VolumeLight;
-use super::sample::cell_at;
+use super::sample::{InCell, cell_at, gradient_in};
 use super::transfer::{TransferFunction, TransferKnot};
 use super::volume::{Volume, VolumeView};
 use super::voxel::Voxel;
 use crate::geometry::{Ray, RayOn};
 use crate::machine::functions::vec3;
-use crate::machine::generic::{clamp, max, min};
+use crate::machine::generic::{clamp, length, max, min};
 use crate::machine::{Machine, On};
 use crate::math::elementary::{exp, expm1};
 use crate::{Type, kernel};
@@ -56,6 +56,45 @@ impl ExactCell {
 impl Default for ExactCell {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+/// [`ExactCell`] with shading by the gradient, as if borders in the volume were surfaces under a
+/// light: colour is multiplied by `ambient + (1 - ambient) |cos|`, where `cos` is that of the angle
+/// between gradient and light.
+///
+/// Where the value hardly changes there is no border: shading fades out with gradients shorter than
+/// `edge`. (After Levoy, "Display of Surfaces from Volume Data", 1988.) It is computed once a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
+pub struct ShadedCell {
+    /// As [`ExactCell::least`].
+    pub least: f32,
+    /// Share of light without a direction, from 0 to 1.
+    pub ambient: f32,
+    /// Length of a gradient, in values per length of the world, from which on shading is full; above
+    /// 0.
+    pub edge: f32,
+    /// Unit vector towards the light.
+    pub to_light: Vec3,
+}
+
+#[kernel]
+impl ShadedCell {
+    /// Creates the integrator with a light in this direction, a unit vector, and 0.3 of ambient
+    /// light.
+    #[inline]
+    pub fn new(to_light: Vec3, edge: f32) -> Self {
+        Self { least: 0.001, ambient: 0.3, edge, to_light }
+    }
+
+    /// Returns the factor of colours in a cell with this gradient.
+    #[inline]
+    fn shade(self, gradient: Vec3) -> f32 {
+        let size = length(gradient);
+        let cosine = gradient.dot(self.to_light).abs() / max(size, f32::MIN_POSITIVE);
+        let lambert = self.ambient + (1.0 - self.ambient) * min(cosine, 1.0);
+        let share = min(size / self.edge, 1.0);
+        1.0 + (lambert - 1.0) * share
     }
 }
 
@@ -202,15 +241,16 @@ fn add_cell(
     }
 }
 
+/// Integrates cell by cell; `shade` returns a factor for the colours of a cell, seen from its middle.
 #[kernel]
 #[inline]
-fn exact_cell<T: Voxel>(
-    this: ExactCell,
+fn through_cells<T: Voxel, F: Fn(InCell) -> f32>(
     volume: &Volume<'_, T>,
     ray: Ray,
+    least: f32,
     light: VolumeLight,
+    shade: F,
 ) -> VolumeLight {
-    let least = this.least;
     let part: Inside = inside(volume.grid(), ray);
     let layout: GridLayout = volume.grid().layout();
     let (zero, one) = (vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
@@ -226,17 +266,22 @@ fn exact_cell<T: Voxel>(
                 let cell = clamp(cells.cell, zero, layout.last_cell);
                 let found = cell_at(volume.grid(), cell);
                 if found.is_whole {
-                    let from: Vec3 = part.origin + part.direction * cells.enter - cell;
-                    let to: Vec3 = part.origin + part.direction * cells.leave - cell;
-                    let cubic =
-                        Cubic::through(found.corners, clamp(from, zero, one), clamp(to, zero, one));
+                    let from = part.origin + part.direction * cells.enter - cell;
+                    let to = part.origin + part.direction * cells.leave - cell;
+                    let (from, to) = (clamp(from, zero, one), clamp(to, zero, one));
+                    let cubic = Cubic::through(found.corners, from, to);
                     let cubic = cubic.rescaled(layout.scale, layout.offset);
                     let length = (cells.leave - cells.enter) * part.scale;
                     if cubic.c0 < interval.below.value || cubic.c0 > interval.above.value {
-                        interval =
-                            interval_at(volume.transfer(), volume.transfer().interval(cubic.c0));
+                        let index: u32 = volume.transfer().interval(cubic.c0);
+                        interval = interval_at(volume.transfer(), index);
                     }
+                    let (radiance, depth) = (layer.radiance, layer.depth);
                     add_cell(&mut layer, &mut interval, volume.transfer(), cubic, length);
+                    if layer.depth > depth {
+                        let factor = shade(InCell { place: (from + to) * 0.5, ..found });
+                        layer.radiance = radiance + (layer.radiance - radiance) * factor;
+                    }
                 }
                 cells.advance();
             }
@@ -247,4 +292,29 @@ fn exact_cell<T: Voxel>(
     light
 }
 
+#[kernel]
+#[inline(never)]
+fn exact_cell<T: Voxel>(
+    this: ExactCell,
+    volume: &Volume<'_, T>,
+    ray: Ray,
+    light: VolumeLight,
+) -> VolumeLight {
+    through_cells(volume, ray, this.least, light, |_cell: InCell| 1.0)
+}
+
 integrator!(ExactCell, exact_cell);
+
+#[kernel]
+#[inline(never)]
+fn shaded_cell<T: Voxel>(
+    this: ShadedCell,
+    volume: &Volume<'_, T>,
+    ray: Ray,
+    light: VolumeLight,
+) -> VolumeLight {
+    let shade = |cell: InCell| this.shade(gradient_in(volume.grid(), cell));
+    through_cells(volume, ray, this.least, light, shade)
+}
+
+integrator!(ShadedCell, shaded_cell);

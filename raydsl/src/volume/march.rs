@@ -6,8 +6,8 @@ use super::integrator::{
     Inside, Layer, VolumeIntegrator, inside, integrator, macro_walk, majorant_of,
 };
 use super::light::VolumeLight;
-use super::sample::{cell_around, value_in};
-use super::transfer::TransferSample;
+use super::sample::{InCell, cell_around, value_in};
+use super::transfer::{TransferSample, seen_sample_of};
 use super::volume::{Volume, VolumeView};
 use super::voxel::Voxel;
 use crate::geometry::{Ray, RayOn};
@@ -30,17 +30,38 @@ const MOST_STEPS: f32 = 16_777_216.0;
 /// Opacity that [`Euler`] takes for an opaque step.
 const MOST_OPACITY: f32 = 1.0 - f32::EPSILON;
 
+/// Returns the sample, without extinction where voxels are missing.
+#[kernel]
+#[inline]
+fn where_whole<T: Voxel>(
+    volume: &Volume<'_, T>,
+    cell: InCell,
+    sample: TransferSample,
+) -> TransferSample {
+    if volume.grid().has_gaps() {
+        let extinction = if cell.is_whole { sample.extinction } else { 0.0 };
+        TransferSample { extinction, ..sample }
+    } else {
+        sample
+    }
+}
+
 /// Returns colour and extinction at a distance.
 #[kernel]
 #[inline]
 fn sample_at<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t: f32) -> TransferSample {
     let cell = cell_around(volume.grid(), part.origin + part.direction * t);
-    let sample = volume.transfer().at(value_in(volume.grid(), cell));
-    if volume.grid().has_gaps() {
-        if cell.is_whole { sample } else { TransferSample { color: sample.color, extinction: 0.0 } }
-    } else {
-        sample
-    }
+    let sample: TransferSample = volume.transfer().at(value_in(volume.grid(), cell));
+    where_whole(volume, cell, sample)
+}
+
+/// Returns colour and extinction at a distance; black where there is no extinction.
+#[kernel]
+#[inline]
+fn seen_at<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t: f32) -> TransferSample {
+    let cell = cell_around(volume.grid(), part.origin + part.direction * t);
+    let sample = seen_sample_of(volume.transfer(), value_in(volume.grid(), cell));
+    where_whole(volume, cell, sample)
 }
 
 /// Sums steps of equal length, at most `step` in the world, which tile the part of the ray in the
@@ -114,7 +135,7 @@ macro_rules! rule {
         }
 
         #[kernel]
-        #[inline]
+        #[inline(never)]
         fn $kernel<T: Voxel>(
             this: $name,
             $volume: &Volume<'_, T>,
@@ -135,7 +156,7 @@ rule! {
     /// An explicit Euler step, at the middle of each step: first order, and unstable where
     /// extinction times step is above 1. Kept for comparison.
     Euler by euler, |volume, part, from, to| {
-        let sample = sample_at(volume, part, (from + to) * 0.5);
+        let sample = seen_at(volume, part, (from + to) * 0.5);
         let depth = sample.extinction * ((to - from) * part.scale);
         let opacity = min(depth, MOST_OPACITY);
         Step { color: sample.color, opacity, depth: -log1p(-opacity) }
@@ -146,7 +167,7 @@ rule! {
     /// Exponential steps with the sample at the beginning of each: what is called opacity
     /// correction. First order, right for any thickness of a homogeneous layer.
     ExponentialLeft by exponential_left, |volume, part, from, to| {
-        let sample = sample_at(volume, part, from);
+        let sample = seen_at(volume, part, from);
         let depth = sample.extinction * ((to - from) * part.scale);
         Step { color: sample.color, opacity: -expm1(-depth), depth }
     }
@@ -156,7 +177,7 @@ rule! {
     /// Exponential steps with the sample at the middle of each: second order, at the cost of
     /// [`ExponentialLeft`].
     Midpoint by midpoint, |volume, part, from, to| {
-        let sample = sample_at(volume, part, (from + to) * 0.5);
+        let sample = seen_at(volume, part, (from + to) * 0.5);
         let depth = sample.extinction * ((to - from) * part.scale);
         Step { color: sample.color, opacity: -expm1(-depth), depth }
     }

@@ -17,7 +17,7 @@ mod walk;
 
 pub use cut::{Cut, is_inside};
 pub use error::{GridError, TransferError};
-pub use exact::ExactCell;
+pub use exact::{ExactCell, ShadedCell};
 pub use grid::{
     Centering, Grid, GridConfig, GridLayout, GridView, MACRO_CELL, MAX_SIDE, MAX_VOXELS,
 };

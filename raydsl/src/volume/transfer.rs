@@ -525,6 +525,7 @@ pub(super) fn share_of(value: f32, from: f32, to: f32) -> f32 {
     clamp((value - from) / (to - from), 0.0, 1.0)
 }
 
+/// Returns colour and extinction of a value.
 #[kernel]
 #[inline]
 fn sample_of(function: &TransferFunction, value: f32) -> TransferSample {
@@ -533,7 +534,19 @@ fn sample_of(function: &TransferFunction, value: f32) -> TransferSample {
     let b: TransferKnot = function.knot(i + 1);
     let share = share_of(value, a.value, b.value);
     let extinction = a.extinction + (b.extinction - a.extinction) * share;
-    // Most samples have none, and then colour does not matter: it is not fetched.
+    TransferSample { color: a.color + (b.color - a.color) * share, extinction }
+}
+
+/// Returns colour and extinction of a value; black where there is no extinction, as of most values:
+/// then colours are not fetched.
+#[kernel]
+#[inline]
+pub(super) fn seen_sample_of(function: &TransferFunction, value: f32) -> TransferSample {
+    let i: u32 = function.interval(value);
+    let a: TransferKnot = function.knot(i);
+    let b: TransferKnot = function.knot(i + 1);
+    let share = share_of(value, a.value, b.value);
+    let extinction = a.extinction + (b.extinction - a.extinction) * share;
     let mut color = Vec3::ZERO;
     if extinction > 0.0 {
         color = a.color + (b.color - a.color) * share;

@@ -1,7 +1,8 @@
 //! Emission and absorption with known results, thin and thick.
 
 use raydsl::prelude::*;
-use raydsl::volume::{ExactCell, VolumeLight};
+use raydsl::testing;
+use raydsl::volume::{ExactCell, TransferFunction, VolumeLight};
 
 use super::{along, column, linear, volume};
 
@@ -40,12 +41,117 @@ fn linear_ramps() {
             let exact = ExactCell::new().least(0.0);
             let light = volume.integrate(&exact, along(), VolumeLight::new());
             let off = off(light.radiance.x, expected);
-            println!("{scale:e} {count}: {} off by {off:.1e}", light.radiance.x);
             assert!(off < 1e-5, "{scale}, {count} cells: {} off by {off}", light.radiance.x);
             let kernel =
                 kernel!(|ray: Ray| volume.integrate(&exact, ray, VolumeLight::new()).radiance.x);
             let f64_off = (kernel.reference((along(),))[0] - expected).abs() / expected;
-            println!("    in f64 off by {f64_off:.1e}");
+            // The rule of four points is right to so much whatever numbers compute it.
+            assert!(f64_off < 4e-6, "{scale}, {count} cells, in f64: off by {f64_off}");
         }
     }
+}
+
+/// Two of the same numbers: what all variants give, and the value that they should have.
+#[track_caller]
+fn assert_near(name: &str, volume: &raydsl::volume::Volume<'_, f32>, ray: Ray, expected: [f64; 2]) {
+    let exact = ExactCell::new().least(0.0);
+    let kernel = kernel!(|ray: Ray| {
+        let light = volume.integrate(&exact, ray, VolumeLight::new());
+        (light.radiance.x, light.opacity())
+    });
+    // llvmpipe ends the loops of an invocation after 65535 iterations in all.
+    let is_long = volume.grid().size().z > 4096;
+    for variant in Variant::ALL {
+        if variant == Variant::Wgsl && is_long || !testing::can_run(variant, name) {
+            continue;
+        }
+        let bound = if variant == Variant::Wgsl { 1e-4 } else { 1e-5 };
+        let found = testing::run(&kernel, variant, &[(ray,)])[0];
+        for (found, expected) in [(found.0, expected[0]), (found.1, expected[1])] {
+            let off = off(found, expected);
+            let variant = variant.name();
+            assert!(off <= bound, "{name}, {variant}: {found}, not {expected}: off by {off}");
+        }
+    }
+}
+
+/// A homogeneous slab in front of black.
+#[test]
+fn a_homogeneous_slab() {
+    let grid = column(1, 1.0, |_| 1.0);
+    let alpha = -(-2.5f64).exp_m1();
+    assert_near("slab", &volume(&grid, linear(2.5, 0.8, 0.8)), along(), [0.8 * alpha, alpha]);
+    let light = volume(&grid, linear(2.5, 0.8, 0.8)).integrate(
+        &ExactCell::new(),
+        along(),
+        VolumeLight::new(),
+    );
+    assert!((light.over(Vec3::splat(0.1)).x - 0.74254050).abs() < 1e-6);
+}
+
+/// Optical depths from 1e-8 to 1e6 in one cell and in a million, rising and falling.
+#[test]
+fn thin_and_thick_ramps() {
+    for depth in [1e-8f64, 1e-4, 1.0, 30.0, 1e4, 1e6] {
+        for count in [1u32, 1000, 1_000_000] {
+            // Extinction rises from 0 to `2 depth` over a length of 1; colour from 0 to 1 with it.
+            let grid = column(count, 1.0, |t| t);
+            let rising = volume(&grid, linear((2.0 * depth) as f32, 0.0, 1.0));
+            let alpha = -(-depth).exp_m1();
+            // The integral of s² exp(-s²) 2/... by series where thin, else by the error function.
+            let expected = ramp(depth);
+            assert_near(&format!("ramp {depth:e} in {count}"), &rising, along(), [expected, alpha]);
+        }
+    }
+}
+
+/// The integral from 0 to 1 of `t 2 d t exp(-d t²)`, by the rule of Simpson over what is not dark.
+fn ramp(d: f64) -> f64 {
+    let end = (40.0 / d).sqrt().min(1.0);
+    let count = 200_000;
+    let f = |t: f64| 2.0 * d * t * t * (-d * t * t).exp();
+    let h = end / f64::from(count);
+    let inner: f64 =
+        (1..count).map(|i| f(f64::from(i) * h) * if i % 2 == 1 { 4.0 } else { 2.0 }).sum();
+    (f(0.0) + inner + f(end)) * h / 3.0
+}
+
+/// Two homogeneous layers, divided by a step of the transfer function.
+#[test]
+fn two_layers() {
+    let grid = column(1, 2.0, |t| t);
+    let colors = [(0.5, Vec3::splat(0.9)), (0.5, Vec3::splat(0.2))];
+    let layers = TransferFunction::from_extinction(&colors, &[(0.5, 1.0), (0.5, 3.0)]);
+    let volume = volume(&grid, layers.expect("a function"));
+    let expected = 0.63973704534668025 - 0.05 * (-4.0f64).exp();
+    assert_near("layers", &volume, along(), [expected, -(-4.0f64).exp_m1()]);
+}
+
+/// A narrow peak of the transfer function, in any number of cells.
+#[test]
+fn a_narrow_peak() {
+    let peak = [(0.5, 0.0), (0.5, 1e4), (0.501, 1e4), (0.501, 0.0)];
+    let peak = TransferFunction::from_extinction(&[(0.0, Vec3::ONE)], &peak).expect("a function");
+    for count in [1, 2, 7, 64, 4096] {
+        let grid = column(count, 1.0, |t| t);
+        let volume = volume(&grid, peak.clone());
+        // The peak is 0.001 wide but for the rounding of 0.501.
+        let depth = 1e4 * (f64::from(0.501f32) - 0.5);
+        let alpha = -(-depth).exp_m1();
+        assert!((alpha - 0.99995460007023752).abs() < 1e-7);
+        assert_near(&format!("peak in {count}"), &volume, along(), [alpha, alpha]);
+    }
+}
+
+/// One cell with one corner of 1, along its diagonal: a cubic.
+#[test]
+fn a_diagonal() {
+    let mut voxels = [0.0f32; 8];
+    voxels[7] = 1.0;
+    let grid = raydsl::volume::Grid::new(&voxels[..], uvec3(2, 2, 2), Default::default());
+    let grid = grid.expect("a grid");
+    let volume = volume(&grid, linear(6.0, 1.0, 1.0));
+    let ray = Ray::new(Vec3::splat(-1.0), Vec3::ONE);
+    let alpha = -(-2.5980762113533159f64).exp_m1();
+    assert_near("diagonal", &volume, ray, [alpha, alpha]);
 }

@@ -1,0 +1,83 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Parser, ValueEnum};
+use raydsl::kernel::{Variant, Variants};
+use raydsl_examples::args::{point, size, variant};
+
+/// Render a scan as a volume, cut open, by every variant of one kernel.
+#[derive(Debug, Parser)]
+#[command(about, after_help = "Without a FILE a head is made in code.")]
+pub(crate) struct Args {
+    /// The scan: .nii, .nii.gz, .vti, .mha, .mhd, .nrrd.
+    #[arg(value_name = "FILE")]
+    pub(crate) file: Option<PathBuf>,
+    /// Colours and opacities.
+    #[arg(long, value_name = "PRESET", default_value = "tissue")]
+    pub(crate) tf: Preset,
+    /// What is cut away: sphere:X,Y,Z,R, plane:X,Y,Z,D (all p with n·p <= D), or mesh:FILE, in the
+    /// file's units; with `!` before it, all but that. Several are cut one after another.
+    #[arg(long, value_name = "CUT", allow_hyphen_values = true)]
+    pub(crate) cut: Vec<String>,
+    /// Cut nothing where no --cut is given.
+    #[arg(long)]
+    pub(crate) whole: bool,
+    /// How light along a ray is computed.
+    #[arg(long, value_name = "NAME", default_value = "shaded-cell")]
+    pub(crate) integrator: Integrator,
+    /// Step of the integrators that take steps, in voxels.
+    #[arg(long, value_name = "VOXELS", default_value_t = 0.5)]
+    pub(crate) step: f32,
+    /// Picture size.
+    #[arg(long, value_name = "WxH", default_value = "960x960", value_parser = size)]
+    pub(crate) size: (u32, u32),
+    /// Which variants run, beside the scalar one.
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        default_value = "scalar,packet4,packet8,packet16,wgsl",
+        value_parser = variant
+    )]
+    pub(crate) variants: Vec<Variant>,
+    /// Timed rounds.
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) runs: u16,
+    /// Folder of the pictures.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub(crate) out: PathBuf,
+    /// Direction from the middle to the camera [default: from the front, the left and above].
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub(crate) from: Option<[f64; 3]>,
+}
+
+impl Args {
+    pub(crate) fn variants(&self) -> Variants {
+        Variants::of(&self.variants)
+    }
+}
+
+/// Transfer functions, over the range of the scan's values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Preset {
+    /// Skin, brain and bone, opaque.
+    Tissue,
+    /// Thin skin over what is dense.
+    Glass,
+    /// What is dense alone.
+    Bone,
+    /// The sum of all, as a radiograph.
+    Xray,
+}
+
+/// Integrators by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Integrator {
+    Euler,
+    ExponentialLeft,
+    Midpoint,
+    MeanExtinction,
+    ExactCell,
+    ShadedCell,
+}
