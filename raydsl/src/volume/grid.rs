@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use glam::{Affine3, Mat3, UVec3, Vec2, Vec3, vec2};
 
+use super::along::{self, SurfaceHit};
 use super::error::GridError;
 use super::sample;
 use super::voxel::{Corners, Voxel};
@@ -218,6 +219,7 @@ impl<'a, T: Voxel> Grid<'a, T> {
     fn view(&self, name: &'static str) -> GridView<'_, T> {
         GridView {
             stored: Slice::owned(&self.stored, Some(self.key(0)), name).suffixed("voxels"),
+            ranges: Slice::owned(&self.ranges, Some(self.key(1)), name).suffixed("ranges"),
             layout: self.layout,
             has_gaps: self.has_gaps,
             name,
@@ -332,6 +334,7 @@ fn rescaled(range: Vec2, config: &GridConfig) -> Vec2 {
 #[derive(Debug)]
 pub struct GridView<'a, T: Voxel> {
     stored: Slice<'a, T::Stored>,
+    ranges: Slice<'a, Vec2>,
     layout: GridLayout,
     has_gaps: bool,
     name: &'static str,
@@ -404,6 +407,7 @@ impl<T: Voxel> Table for Grid<'_, T> {
 impl<T: Voxel> TableView for GridView<'_, T> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
         visit(&self.stored);
+        visit(&self.ranges);
     }
 
     fn is_same(&self, other: &Self) -> bool {
@@ -421,6 +425,11 @@ impl<T: Voxel> Grid<'_, T> {
     #[inline(always)]
     pub(super) fn has_gaps(&self) -> bool {
         self.has_gaps
+    }
+
+    #[inline(always)]
+    pub(super) fn range_at(&self, i: u32) -> Vec2 {
+        self.ranges[i as usize]
     }
 
     #[inline(always)]
@@ -465,29 +474,42 @@ impl<M: Machine, T: Voxel> Method<{ name("corners") }, M, (U<M>, X3<U<M>>)> for 
     }
 }
 
-/// Methods of a grid on the host and in kernels.
+#[diagnostic::do_not_recommend]
+impl<M: Machine, T: Voxel> Method<{ name("range_at") }, M, (U<M>,)> for GridView<'_, T> {
+    type Output = <Vec2 as Type>::On<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (i,): (U<M>,)) -> Self::Output {
+        m.element(&self.ranges, i)
+    }
+}
+
+/// Methods of a grid on the host and in kernels, by kernels of a module.
 macro_rules! methods {
-    ($($(#[$doc:meta])* $name:ident($at:ident: $host:ty, $twin:ty) -> $result:ty, $out:ty;)+) => {
+    ($(
+        $(#[$doc:meta])*
+        $module:ident::$name:ident($($at:ident: $host:ty, $twin:ty);+) -> $result:ty, $out:ty;
+    )+) => {
         impl<T: Voxel> Grid<'_, T> {
             $(
                 $(#[$doc])*
                 #[inline]
-                pub fn $name(&self, $at: $host) -> $result {
-                    sample::$name(self, $at)
+                pub fn $name(&self, $($at: $host),+) -> $result {
+                    $module::$name(self, $($at),+)
                 }
             )+
         }
 
         $(
             #[diagnostic::do_not_recommend]
-            impl<M: Machine, T: Voxel> Method<{ name(stringify!($name)) }, M, ($twin,)>
+            impl<M: Machine, T: Voxel> Method<{ name(stringify!($name)) }, M, ($($twin,)+)>
                 for GridView<'_, T>
             {
                 type Output = $out;
 
                 #[inline(always)]
-                fn call(self, m: &M, ($at,): ($twin,)) -> $out {
-                    sample::$name::on(m, self, $at)
+                fn call(self, m: &M, ($($at,)+): ($($twin,)+)) -> $out {
+                    $module::$name::on(m, self, $($at),+)
                 }
             }
         )+
@@ -497,22 +519,32 @@ macro_rules! methods {
 methods! {
     /// Returns the trilinear value at a point of the world; outside of the grid that of the nearest
     /// point inside, and 0 in a cell with a missing voxel.
-    value(p: Vec3, V3<M>) -> f32, F<M>;
+    sample::value(p: Vec3, V3<M>) -> f32, F<M>;
     /// Returns the value of the nearest voxel, as for labels; 0 if it is missing.
-    nearest(p: Vec3, V3<M>) -> f32, F<M>;
+    sample::nearest(p: Vec3, V3<M>) -> f32, F<M>;
     /// Returns the value of the cubic B-spline with the voxels as control points: twice
     /// continuously differentiable, but it smooths, so it does not pass through them. 0 where one
     /// of the 64 voxels around is missing.
-    b_spline(p: Vec3, V3<M>) -> f32, F<M>;
+    sample::b_spline(p: Vec3, V3<M>) -> f32, F<M>;
     /// Returns the gradient of the trilinear value itself, not a difference over some distance:
     /// change of the value per length in the world. Within a cell of the border it is that of the
     /// outermost cell, also outside.
-    gradient(p: Vec3, V3<M>) -> Vec3, V3<M>;
+    sample::gradient(p: Vec3, V3<M>) -> Vec3, V3<M>;
     /// Returns whether the cell at a point has no missing voxel.
-    has_value(p: Vec3, V3<M>) -> bool, B<M>;
+    sample::has_value(p: Vec3, V3<M>) -> bool, B<M>;
     /// Returns the part of a ray in the grid, as [`Aabb::span`](crate::geometry::Aabb::span): the
     /// distances at which it enters and leaves; the first is greater if it misses.
-    span(ray: Ray, RayOn<M>) -> (f32, f32), (F<M>, F<M>);
+    sample::span(ray: Ray, RayOn<M>) -> (f32, f32), (F<M>, F<M>);
+    /// Returns where a ray first meets the surface of one value, from either side, between its
+    /// `t_min` and `t_max`: the root of the cubic that the value is along the ray, to within
+    /// rounding. A ray that goes on from behind it finds the next one.
+    along::first_surface(ray: Ray, RayOn<M>; value: f32, F<M>)
+        -> SurfaceHit, <SurfaceHit as Type>::On<M>;
+    /// Returns the greatest value along a ray, in the middle of cells too; `-f32::MAX` if it misses
+    /// the grid.
+    along::greatest(ray: Ray, RayOn<M>) -> f32, F<M>;
+    /// Returns the mean value along the part of a ray in the grid; 0 if it misses.
+    along::mean(ray: Ray, RayOn<M>) -> f32, F<M>;
 }
 
 impl Grid<'static, f32> {

@@ -1,5 +1,6 @@
 //! Volumes: scalar fields on grids, transfer functions, and integrals along rays.
 
+mod along;
 mod cubic;
 mod cut;
 mod error;
@@ -15,6 +16,7 @@ mod volume;
 mod voxel;
 mod walk;
 
+pub use along::SurfaceHit;
 pub use cut::{Cut, is_inside};
 pub use error::{GridError, TransferError};
 pub use exact::{ExactCell, ShadedCell};

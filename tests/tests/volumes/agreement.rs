@@ -92,7 +92,7 @@ fn the_exact_cell_is_exact() {
 /// is in, between which knots a value on a knot is. Too many are open for each to be followed, and
 /// none makes a difference beyond rounding: that is what this bound tests.
 #[track_caller]
-fn assert_close(kernel: &Kernel<'_, (Ray,), Vec4>, inputs: &[(Ray,)], bound: f32) {
+pub(crate) fn assert_close(kernel: &Kernel<'_, (Ray,), Vec4>, inputs: &[(Ray,)], bound: f32) {
     let expected = testing::run(kernel, Variant::Scalar, inputs);
     for variant in [Variant::Packet4, Variant::Packet8, Variant::Packet16] {
         if testing::can_run(variant, "volumes") {

@@ -5,6 +5,7 @@ mod cuts;
 mod fields;
 mod oracle;
 mod stiff;
+mod surfaces;
 
 use raydsl::prelude::*;
 use raydsl::volume::{Grid, GridConfig, TransferFunction, Volume};

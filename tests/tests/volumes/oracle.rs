@@ -6,13 +6,13 @@ use raydsl::volume::{Grid, TransferFunction, TransferKnot, Voxel};
 
 /// Radiance and optical depth.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Light {
-    pub radiance: glam::DVec3,
-    pub depth: f64,
+pub(crate) struct Light {
+    pub(crate) radiance: glam::DVec3,
+    pub(crate) depth: f64,
 }
 
 /// A grid's values in `f64`, in voxel coordinates, with placement by spacing and origin alone.
-pub struct Field {
+pub(crate) struct Field {
     numbers: Vec<f64>,
     size: [usize; 3],
     spacing: glam::DVec3,
@@ -21,7 +21,7 @@ pub struct Field {
 }
 
 impl Field {
-    pub fn new<T: Voxel>(voxels: &[T], grid: &Grid<'_, T>) -> Self {
+    pub(crate) fn new<T: Voxel>(voxels: &[T], grid: &Grid<'_, T>) -> Self {
         let Affine3 { matrix3: m, translation } = grid.config().to_world;
         let is_cell = grid.config().centering == raydsl::volume::Centering::Cell;
         Self {
@@ -33,7 +33,7 @@ impl Field {
         }
     }
 
-    fn value(&self, at: glam::DVec3) -> f64 {
+    pub(crate) fn value(&self, at: glam::DVec3) -> f64 {
         let at = at.to_array();
         let parts = [0, 1, 2].map(|a| {
             let last = self.size[a] as f64 - 1.0;
@@ -72,7 +72,12 @@ fn sampled(knots: &[TransferKnot], value: f64) -> (glam::DVec3, f64) {
 }
 
 /// Returns what a ray gathers, `steps` in each piece.
-pub fn integrate(field: &Field, transfer: &TransferFunction, ray: Ray, steps: usize) -> Light {
+pub(crate) fn integrate(
+    field: &Field,
+    transfer: &TransferFunction,
+    ray: Ray,
+    steps: usize,
+) -> Light {
     let origin = (ray.origin.as_dvec3() - field.origin) / field.spacing;
     let direction = ray.direction.as_dvec3() / field.spacing;
     let (mut enter, mut leave) = (f64::from(ray.t_min), f64::from(ray.t_max));

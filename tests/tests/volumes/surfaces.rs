@@ -1,0 +1,104 @@
+//! Surfaces of one value, greatest and mean values along rays, against dense samples in `f64`.
+
+use raydsl::prelude::*;
+use raydsl::volume::{Grid, GridConfig};
+use raydsl_tests::rng::Rng;
+
+use super::agreement::assert_close;
+use super::oracle::Field;
+
+fn noise(size: UVec3) -> Vec<f32> {
+    let mut rng = Rng::of("surfaces");
+    (0..size.x * size.y * size.z).map(|_| rng.unit()).collect()
+}
+
+fn rays(size: UVec3, count: usize) -> Vec<(Ray,)> {
+    let mut rng = Rng::of("rays");
+    let ray = |_| {
+        let target = size.as_vec3() * (rng.point(0.7) + 0.5);
+        let direction = rng.direction().normalize();
+        (Ray::new(target - direction * rng.range(5.0, 30.0), direction),)
+    };
+    (0..count).map(ray).collect()
+}
+
+#[test]
+fn surfaces_and_values_along_rays() {
+    let size = uvec3(21, 12, 9);
+    let voxels = noise(size);
+    let grid = Grid::new(&voxels[..], size, GridConfig::new()).expect("a grid");
+    let field = Field::new(&voxels, &grid);
+    let level = 0.7;
+    let inputs = rays(size, 200);
+    let (mut met, mut missed) = (0, 0);
+    for &(ray,) in &inputs {
+        let (enter, leave) = grid.span(ray);
+        if enter >= leave {
+            missed += 1;
+            assert!(!grid.first_surface(ray, level).is_hit);
+            assert_eq!((grid.greatest(ray), grid.mean(ray)), (-f32::MAX, 0.0));
+            continue;
+        }
+        let at = |t: f64| field.value(ray.origin.as_dvec3() + ray.direction.as_dvec3() * t);
+        let (enter, leave) = (f64::from(enter), f64::from(leave));
+        let count = ((leave - enter) * 500.0) as usize + 2;
+        let place = |i: usize| enter + (leave - enter) * (i as f64 + 0.5) / count as f64;
+        let values: Vec<f64> = (0..count).map(|i| at(place(i))).collect();
+        let most = values.iter().copied().fold(0.0, f64::max);
+        let found = f64::from(grid.greatest(ray));
+        assert!(found >= most - 1e-5 && found <= most + 1e-3, "{ray:?}: {found} and {most}");
+        let mean = values.iter().sum::<f64>() / count as f64;
+        assert!((f64::from(grid.mean(ray)) - mean).abs() < 2e-4, "{ray:?}: {mean}");
+        // Every crossing, one behind the other.
+        let mut rest = ray;
+        let mut crossings = Vec::new();
+        loop {
+            let hit = grid.first_surface(rest, level);
+            if !hit.is_hit {
+                break;
+            }
+            met += 1;
+            let off = (at(f64::from(hit.t)) - f64::from(level)).abs();
+            // The position has a rounding error of some ulps of 30.
+            assert!(off < 2e-5, "{ray:?}: the value at {} is off by {off}", hit.t);
+            let slope = (at(f64::from(hit.t) + 1e-4) - at(f64::from(hit.t) - 1e-4)) / 2e-4;
+            let along = f64::from(hit.gradient.dot(ray.direction));
+            assert!((along - slope).abs() < 0.05 * (1.0 + slope.abs()), "{along} and {slope}");
+            crossings.push(f64::from(hit.t));
+            rest = ray.with_range(hit.t + 1e-4, ray.t_max);
+        }
+        let signs: Vec<bool> = values.iter().map(|v| *v > f64::from(level)).collect();
+        let changes: Vec<f64> =
+            (1..count).filter(|i| signs[*i] != signs[*i - 1]).map(|i| place(i)).collect();
+        for change in &changes {
+            let nearest = crossings.iter().map(|t| (t - change).abs()).fold(f64::MAX, f64::min);
+            assert!(nearest < 5e-3, "{ray:?}: no surface at {change}: {crossings:?}");
+        }
+        assert!(crossings.len() >= changes.len());
+    }
+    assert!(met > 300 && missed > 0, "{met} surfaces, {missed} rays beside");
+    let kernel = kernel!(|ray: Ray| {
+        let hit = grid.first_surface(ray, level);
+        let greatest = grid.greatest(ray);
+        vec4(hit.t, hit.gradient.x, if greatest > 0.0 { greatest } else { 0.0 }, grid.mean(ray))
+    });
+    assert_close(&kernel, &inputs, 1e-4);
+}
+
+/// Flat cells, cells at the value itself, and a grid of one voxel.
+#[test]
+fn surfaces_of_flat_fields() {
+    let ray = Ray::new(vec3(0.25, 0.25, -2.0), Vec3::Z);
+    let flat = Grid::new(&[1.0f32; 27][..], uvec3(3, 3, 3), GridConfig::new()).expect("a grid");
+    assert!(!flat.first_surface(ray, 1.0).is_hit);
+    assert!(!flat.first_surface(ray, 0.5).is_hit);
+    assert_eq!((flat.greatest(ray), flat.mean(ray)), (1.0, 1.0));
+    let one = Grid::new(&[3.0f32][..], UVec3::ONE, GridConfig::new()).expect("a grid");
+    assert!(!one.first_surface(ray, 3.0).is_hit);
+    let ramp: Vec<f32> = (0..12).map(|i| (i / 4) as f32).collect();
+    let ramp = Grid::new(ramp, uvec3(2, 2, 3), GridConfig::new()).expect("a grid");
+    // The value is met in the plane of samples, and once.
+    let hit = ramp.first_surface(ray, 1.0);
+    assert_eq!((hit.is_hit, hit.t, hit.gradient), (true, 3.0, Vec3::Z));
+    assert!(!ramp.first_surface(ray.with_range(3.0f32.next_up(), 9.0), 1.0).is_hit);
+}
