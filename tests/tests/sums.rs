@@ -446,10 +446,268 @@ fn excluded(a: Material, x: f32) -> f32 {
     sum
 }
 
+/// A member of a member that is an enum.
+#[derive(Clone, Copy, Debug, Type)]
+struct Walker {
+    steps: u32,
+    skin: Skin,
+}
+
+#[derive(Clone, Copy, Debug, Type)]
+struct Skin {
+    outer: Material,
+    inner: Material,
+}
+
+#[kernel]
+impl Walker {
+    /// Changes one member, where its kind says so.
+    fn step(&mut self, x: f32) -> f32 {
+        self.steps += 1;
+        if let Material::Metal(..) = self.skin.outer {
+            next(&mut self.skin.inner, x);
+        }
+        next(&mut self.skin.outer, x);
+        shade(self.skin.inner, x).x
+    }
+}
+
+/// A member changes its kind two loops further in than it is read, in a called kernel.
+#[kernel]
+fn changed_members(x: f32) -> f32 {
+    let skin = Skin { outer: Material::Black, inner: Material::Black };
+    let mut walker = Walker { steps: 0, skin };
+    let mut sum = 0.0;
+    for i in 0..3 {
+        sum += shade(walker.skin.inner, x).y + 0.5 * shade(walker.skin.outer, x).z;
+        for k in 0..4 {
+            if let Material::Diffuse { roughness, .. } = walker.skin.inner {
+                sum += roughness;
+            }
+            if k as f32 * 0.3 > x {
+                continue;
+            }
+            sum += walker.step(x + i as f32 * 0.1);
+        }
+    }
+    sum + walker.steps as f32
+}
+
+/// Kinds go from one variable to the next, so that one pass over the body shows but one of them.
+#[kernel]
+fn swapped(count: u32, x: f32) -> f32 {
+    let (mut a, mut b) = (Material::Glow(vec3(x, 1.0, 2.0)), Material::Black);
+    let (mut c, mut d) = (Material::Metal(Vec3::X, x, 3), Material::Black);
+    let mut sum = 0.0;
+    for _ in 0..count {
+        sum = 0.5 * sum + shade(a, x).x;
+        (a, b) = (b, a);
+        let old = c;
+        c = d;
+        d = b;
+        b = old;
+    }
+    sum + shade(b, x).y + shade(c, x).z + shade(d, x).x
+}
+
+/// A kind that changes behind the loop that it is read in, in the loop around that.
+#[kernel]
+fn changed_behind(x: f32) -> f32 {
+    let mut look = Material::Black;
+    let mut sum = 0.0;
+    for i in 0..3 {
+        for k in 0..2 {
+            sum += shade(look, x + k as f32).x;
+        }
+        look = Material::Glow(vec3(x, sum, i as f32));
+    }
+    sum
+}
+
+/// The same for a variable made in the outermost loop.
+#[kernel]
+fn changed_in_the_middle(x: f32) -> f32 {
+    let mut sum = 0.0;
+    for i in 0..2 {
+        let mut look = Material::Black;
+        for _ in 0..4 {
+            for k in 0..2 {
+                sum += shade(look, x + k as f32).y;
+            }
+            next(&mut look, x + i as f32);
+        }
+        sum += shade(look, x).x;
+    }
+    sum
+}
+
+/// Ways out of loops behind which a kind changes, or before.
+#[kernel]
+fn left_early(count: u32, x: f32) -> f32 {
+    let mut kind = Material::Black;
+    let mut sum = 0.0;
+    'outer: for i in 0..count {
+        let mut local = kind;
+        loop {
+            if let Material::Glow(light) = local {
+                sum += light.x;
+                kind = Material::Metal(light, x, i);
+                continue 'outer;
+            }
+            if let Material::Metal(_, roughness, n) = local {
+                if n > 2 {
+                    return sum + roughness;
+                }
+                local = Material::Diffuse { color: Vec3::ONE, roughness };
+                continue;
+            }
+            if let Material::Diffuse { .. } = local {
+                sum += 3.0;
+                break 'outer;
+            }
+            if sum > 4.0 {
+                break;
+            }
+            local = Material::Glow(vec3(x, 0.5, sum));
+        }
+        kind = Material::Glow(vec3(sum, x, 1.0));
+    }
+    let change = |material: Material, x: f32| {
+        let mut changed = material;
+        next(&mut changed, x);
+        changed
+    };
+    let mut left = count;
+    while {
+        kind = change(kind, x);
+        left -= if left > 0 { 1 } else { 0 };
+        left > 0
+    } {
+        sum += shade(kind, x).x;
+    }
+    sum
+}
+
 #[test]
-fn variables_in_loops_have_any_kind() {
+fn variables_change_their_kind_in_loops() {
     let inputs: Vec<(f32,)> = (0..40).map(|i| (i as f32 * 0.07 - 0.5,)).collect();
     assert_variants_agree!(changed_in_loops, &inputs);
+    assert_variants_agree!(changed_members, &inputs);
+    assert_variants_agree!(changed_behind, &inputs);
+    assert_variants_agree!(changed_in_the_middle, &inputs);
+    let counted: Vec<(u32, f32)> = (0..60).map(|i| (i % 12, i as f32 * 0.05 - 0.5)).collect();
+    assert_variants_agree!(swapped, &counted);
+    assert_variants_agree!(left_early, &counted);
+}
+
+#[primitive(sphere(center, radius))]
+struct Ball {
+    center: Vec3,
+    radius: f32,
+}
+
+/// Kinds that the condition of a query reads, and that change in the loop around it; and a loop over
+/// hits.
+#[kernel]
+fn changed_around_queries(balls: &[Ball], ray: Ray) -> f32 {
+    let mut look = Material::Black;
+    let mut sum = 0.0;
+    for i in 0..4 {
+        let now = look;
+        let hit = balls.closest_hit_where(ray, |hit: Hit| shade(now, hit.t).x > i as f32);
+        sum += if hit.is_hit { hit.t } else { 0.25 };
+        next(&mut look, hit.t);
+    }
+    for hit in balls.hits(ray) {
+        sum += shade(look, hit.t).x;
+        if hit.t > 1.0 {
+            next(&mut look, hit.t);
+        }
+    }
+    sum
+}
+
+#[test]
+fn variables_change_their_kind_around_queries() {
+    let balls: Vec<Ball> =
+        (0..9).map(|i| Ball { center: vec3(0.0, 0.1 * i as f32, i as f32), radius: 0.7 }).collect();
+    let bvh = Bvh::build(&balls).expect("finite bounds");
+    let rays: Vec<(Ray,)> = (0..40)
+        .map(|i| (Ray::new(vec3(0.0, i as f32 * 0.04 - 0.5, -3.0), vec3(0.0, 0.02, 1.0)),))
+        .collect();
+    let listed = kernel!(|ray: Ray| changed_around_queries(&balls, ray));
+    assert_variants_agree!(&listed, &rays);
+    let tree = kernel!(|ray: Ray| {
+        let mut look = Material::Black;
+        let mut sum = 0.0;
+        for i in 0..4 {
+            let now = look;
+            let hit = bvh.closest_hit_where(ray, |hit: Hit| {
+                let mut other = now;
+                for _ in 0..i {
+                    next(&mut other, hit.t);
+                }
+                shade(other, hit.t).x < 4.0
+            });
+            sum += if hit.is_hit { hit.t } else { 0.25 };
+            next(&mut look, hit.t);
+        }
+        for hit in bvh.hits(ray) {
+            sum += shade(look, hit.t).y;
+            next(&mut look, hit.t);
+        }
+        sum
+    });
+    assert_variants_agree!(&tree, &rays);
+}
+
+/// A state that goes through many kinds, one at a time, more than a body is recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
+enum Stage {
+    Start,
+    Left(f32),
+    Right(f32),
+    Up(f32),
+    Down(f32),
+    Near(f32),
+    Far(f32),
+    Last(f32),
+}
+
+#[kernel]
+fn following(stage: Stage, x: f32) -> Stage {
+    match stage {
+        Stage::Start => Stage::Left(x),
+        Stage::Left(y) => Stage::Right(y + 1.0),
+        Stage::Right(y) => Stage::Up(y * 2.0),
+        Stage::Up(y) => Stage::Down(y - x),
+        Stage::Down(y) => Stage::Near(y * x),
+        Stage::Near(y) => Stage::Far(y + 0.5),
+        Stage::Far(y) => Stage::Last(y * 3.0),
+        Stage::Last(_) => Stage::Start,
+    }
+}
+
+#[kernel]
+fn stages(count: u32, x: f32) -> (Stage, Stage) {
+    let (mut stage, mut behind) = (Stage::Start, Stage::Start);
+    for i in 0..count {
+        let mut k = 0;
+        while k < 3 {
+            if i % 2 == 0 {
+                stage = following(stage, x);
+            }
+            k += 1;
+        }
+        behind = stage;
+    }
+    (stage, behind)
+}
+
+#[test]
+fn variables_go_through_many_kinds() {
+    let inputs: Vec<(u32, f32)> = (0..60).map(|i| (i % 15, i as f32 * 0.05)).collect();
+    assert_variants_agree!(stages, &inputs);
 }
 
 #[test]
@@ -457,6 +715,109 @@ fn branches_exclude_kinds() {
     let inputs: Vec<(Material, f32)> =
         materials().iter().enumerate().map(|(i, m)| (*m, i as f32 * 0.03)).collect();
     assert_variants_agree!(excluded, &inputs);
+}
+
+/// A generator of numbers by one of several methods.
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
+enum Method {
+    Constant,
+    Counting(u32),
+    Hashed { seed: u32, factor: u32 },
+}
+
+#[derive(Clone, Copy, Debug, Type)]
+struct Generator {
+    method: Method,
+    drawn: u32,
+}
+
+#[kernel]
+impl Generator {
+    fn draw(&mut self) -> u32 {
+        self.drawn += 1;
+        match self.method {
+            Method::Constant => 7717,
+            Method::Counting(first) => self.drawn.wrapping_add(first).wrapping_mul(8819),
+            Method::Hashed { seed, factor } => (self.drawn ^ seed).wrapping_mul(factor) ^ 9929,
+        }
+    }
+}
+
+#[kernel]
+fn walked(generator: &mut Generator, length: u32) -> u32 {
+    let mut sum = 0u32;
+    for _ in 0..length {
+        sum = sum.wrapping_add(generator.draw());
+        if sum.is_multiple_of(3) {
+            continue;
+        }
+        sum ^= generator.draw();
+    }
+    sum
+}
+
+#[kernel]
+fn walks(generator: Generator, count: u32) -> u32 {
+    let mut generator = generator;
+    let mut stage = Stage::Start;
+    let mut sum = 0u32;
+    for i in 0..count {
+        let mut copy = generator;
+        let mut k = 0;
+        // Other variables change their kinds, and the body is recorded more than once.
+        stage = following(stage, 1.0);
+        loop {
+            k += 1;
+            if generator.draw().is_multiple_of(2) || k > 3 {
+                break;
+            }
+            sum ^= copy.draw();
+        }
+        sum = sum.wrapping_add(walked(&mut generator, i));
+        if let Stage::Start = stage {
+            return sum;
+        }
+        generator = Generator { method: copy.method, ..generator };
+    }
+    sum
+}
+
+/// The WGSL of a kernel has the kinds that variables may have in loops, and those alone.
+#[test]
+fn kinds_that_loops_leave_alone_leave_no_trace() {
+    let inputs: Vec<(u32,)> = (0..30).map(|i| (i % 9,)).collect();
+    let methods =
+        [Method::Constant, Method::Counting(3), Method::Hashed { seed: 5, factor: 0x9e37_79b1 }];
+    let traces = ["7717u", "8819u", "9929u"];
+    for (method, own) in methods.into_iter().zip(traces) {
+        let generator = Generator { method, drawn: 0 };
+        let kernel = kernel!(|n: u32| walks(generator, n));
+        assert_variants_agree!(&kernel, &inputs);
+        let text = kernel.wgsl();
+        for trace in traces {
+            assert_eq!(text.contains(trace), trace == own, "{trace}\n{text}");
+        }
+        let tests = text.lines().filter(|line| line.contains("==") && line.contains("method"));
+        assert_eq!(tests.count(), 0, "{text}");
+    }
+    // A kind that a loop may set, and one that it reads behind.
+    let kernel = kernel!(|n: u32| {
+        let mut generator = Generator { method: Method::Constant, drawn: 0 };
+        let mut sum = 0u32;
+        for i in 0..n {
+            sum = sum.wrapping_add(generator.draw());
+            for _ in 0..i {
+                if sum.is_multiple_of(5) {
+                    generator.method = Method::Counting(i);
+                }
+            }
+        }
+        sum
+    });
+    assert_variants_agree!(&kernel, &inputs);
+    let text = kernel.wgsl();
+    let found = traces.map(|trace| text.contains(trace));
+    assert_eq!(found, [true, true, false], "{text}");
 }
 
 /// More variants than a set of kinds has members.

@@ -302,8 +302,10 @@ impl<M: Machine> Loop<M> {
         m.loop_continuing(&self.state);
     }
 
-    /// Returns whether to run another iteration.
+    /// Returns whether to run another iteration. A recorder runs the body again if it assumed too
+    /// little of it.
     #[inline(always)]
+    #[must_use]
     pub fn again(&self, m: &M) -> bool {
         m.loop_again(&self.state)
     }

@@ -49,6 +49,11 @@ impl Kinds {
         self.intersection(Self::one(kind)).0 != 0
     }
 
+    /// Returns whether the set has all members of `other`.
+    pub const fn has_all(self, other: Self) -> bool {
+        self.union(other).0 == self.0
+    }
+
     /// Returns whether `kind` is the only kind in the set.
     pub const fn is_only(self, kind: u32) -> bool {
         kind < LAST && self.0 == 1 << kind

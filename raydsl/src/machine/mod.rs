@@ -353,7 +353,9 @@ pub trait Machine: Sized + 'static {
     fn loop_continue(&self, t: &Self::Loop);
     /// Ends the body: lanes that said `continue` run again, and the increment of a `for` follows.
     fn loop_continuing(&self, t: &Self::Loop);
-    /// Returns whether to run another iteration.
+    /// Returns whether to run another iteration. A recorder runs the body again if it assumed too
+    /// little of it.
+    #[must_use]
     fn loop_again(&self, t: &Self::Loop) -> bool;
     /// Leaves the loop: lanes that left it run on behind it.
     fn loop_end(&self, t: Self::Loop);

@@ -6,7 +6,7 @@ use super::ir::{Expr, Id, Node, Recorded, Stmt, Type, VarId, Variable};
 use super::kinds::Known;
 use super::names::unique;
 use super::settled::Declared;
-use crate::machine::KernelInfo;
+use crate::machine::{KernelInfo, Kinds};
 
 /// A function being recorded.
 #[derive(Clone)]
@@ -24,11 +24,13 @@ pub(super) struct Builder {
     pub(super) declared: Declared,
 }
 
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(super) struct LoopState {
     pub(super) number: u32,
     /// Labelled exits that pass through this loop: the target loop, and whether it is `continue`.
     pub(super) passing: Vec<(u32, bool)>,
+    /// The variables read in it and made right outside, with the fewest kinds that a read assumed.
+    pub(super) assumed: HashMap<VarId, Kinds>,
 }
 
 impl Builder {

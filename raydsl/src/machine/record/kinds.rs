@@ -6,8 +6,10 @@
 //! around exclude some. A comparison that is decided so is a literal, and the arm that cannot be
 //! taken is not recorded.
 //!
-//! The body of a loop is recorded once, and runs often: in it a variable made outside has any kind,
-//! since what is stored further down may be read further up.
+//! The body of a loop runs often, and what is stored further down may be read further up. A read of
+//! a variable made outside the loop assumes the kinds stored so far. Where the loop has ended and
+//! others were stored as well, its body is recorded again, with these known from the start; see
+//! `restart.rs`.
 
 use std::collections::HashMap;
 
@@ -32,7 +34,7 @@ pub(super) struct Known {
 
 /// What is known of a variable.
 #[derive(Clone, Copy)]
-struct Variable {
+pub(super) struct Variable {
     /// The kinds stored so far.
     stored: Kinds,
     /// The kinds of the enum.
@@ -168,13 +170,46 @@ impl Builder {
         }
     }
 
-    /// Keeps the kinds of a load: those stored so far, but any in a loop that the variable was not
-    /// made in.
+    /// Keeps the kinds of a load: those stored so far. In a loop that the variable was not made in,
+    /// they are an assumption.
     pub(super) fn load_kinds(&mut self, v: VarId, load: Id) {
-        let Some(variable) = self.known.variables.get(&v) else { return };
-        let is_complete = variable.in_loop == self.innermost() && variable.stored != Kinds::NONE;
-        let kinds = if is_complete { variable.stored } else { variable.all };
+        let Some(&Variable { stored, all, in_loop }) = self.known.variables.get(&v) else { return };
+        let kinds = if stored == Kinds::NONE { all } else { stored };
         self.known.nodes.insert(load, kinds);
+        let around = self.loops.iter().rposition(|l| Some(l.number) == in_loop);
+        let inside = around.map_or(0, |at| at + 1);
+        // All stores that may come before it are in front of the outermost of these loops or in it.
+        if let Some(l) = self.loops.get_mut(inside) {
+            // Kinds are only added: the first read assumes the fewest.
+            l.assumed.entry(v).or_insert(kinds);
+        }
+    }
+
+    /// Returns whether any variable has kinds.
+    pub(super) fn has_kinds(&self) -> bool {
+        !self.known.variables.is_empty()
+    }
+
+    /// Returns whether a read in the innermost loop assumed too few kinds: others were stored, and
+    /// its body runs again.
+    pub(super) fn assumed_too_few(&self) -> bool {
+        let assumed = self.loops.last().map(|l| &l.assumed);
+        assumed.into_iter().flatten().any(|(v, kinds)| {
+            let variable = &self.known.variables[v];
+            !kinds.has_all(variable.stored.intersection(variable.all))
+        })
+    }
+
+    /// Adds the kinds that variables got in `other`, the same function recorded further: all of the
+    /// enum for variables that got any, if `all` is set.
+    pub(super) fn widen(&mut self, other: &Self, all: bool) {
+        for (v, variable) in &mut self.known.variables {
+            let stored = other.known.variables[v].stored;
+            if !variable.stored.has_all(stored) {
+                let more = if all { variable.all } else { Kinds::NONE };
+                variable.stored = stored.union(more);
+            }
+        }
     }
 
     /// Keeps the kinds of a selection of one of two numbers.

@@ -605,17 +605,19 @@ impl Machine for Recorder {
     }
 
     fn loop_begin(&self) -> RecordedLoop {
-        self.builder(|b| {
+        let number = self.builder(|b| {
             // Loads before the loop may be stale in its second iteration.
             for v in &mut b.function.vars {
                 v.version += 1;
             }
             let number = b.next_loop;
             b.next_loop += 1;
-            b.loops.push(super::LoopState { number, passing: Vec::new() });
+            b.loops.push(super::LoopState { number, ..Default::default() });
             b.open_block();
-            RecordedLoop { number, body: Default::default(), continuing: Default::default() }
-        })
+            number
+        });
+        let (body, continuing) = Default::default();
+        RecordedLoop { number, body, continuing, start: self.start() }
     }
     fn loop_test(&self, l: &RecordedLoop, c: Id) -> bool {
         match self.truth(c) {
@@ -647,6 +649,9 @@ impl Machine for Recorder {
         l.body.replace(Some(body));
     }
     fn loop_again(&self, l: &RecordedLoop) -> bool {
+        if self.restart(l) {
+            return true;
+        }
         let continuing = self.builder(|b| b.close_block());
         l.continuing.replace(Some(continuing));
         false
@@ -741,15 +746,19 @@ impl Machine for Recorder {
         let all = Var::new(self, "each", [V::zero(self); N]);
         let i = Var::new(self, "i", U(self.u32(0)));
         let repeat = Loop::new(self);
-        let goes_on = self.u32_compare(op::Lt, i.get(self).0, self.u32(N as u32));
-        repeat.test(self, B(goes_on));
-        let v = f(i.get(self));
-        let index = Usize(i.get(self).0);
-        all.set(self, with_element(self, all.get(self), index, v));
-        repeat.continuing(self);
-        let next = self.u32_binary(op::WrappingAdd, i.get(self).0, self.u32(1));
-        i.set(self, U(next));
-        repeat.again(self);
+        loop {
+            let goes_on = self.u32_compare(op::Lt, i.get(self).0, self.u32(N as u32));
+            repeat.test(self, B(goes_on));
+            let v = f(i.get(self));
+            let index = Usize(i.get(self).0);
+            all.set(self, with_element(self, all.get(self), index, v));
+            repeat.continuing(self);
+            let next = self.u32_binary(op::WrappingAdd, i.get(self).0, self.u32(1));
+            i.set(self, U(next));
+            if !repeat.again(self) {
+                break;
+            }
+        }
         repeat.end(self);
         all.get(self)
     }

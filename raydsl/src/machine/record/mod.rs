@@ -16,6 +16,7 @@ mod kinds;
 mod machine;
 mod module;
 mod names;
+mod restart;
 mod settled;
 mod storage;
 mod text;
@@ -34,6 +35,7 @@ pub(crate) use types::zero_value;
 use builder::{Builder, LoopState};
 use ir::{Expr, Function, Id, Node, SceneBuffer, Stmt, Type, Uniform};
 use names::{qualified, safe_name, unique};
+use restart::Start;
 
 use super::{Compare, KernelInfo, Kinds, Leaves, Schema, Value, wgsl};
 
@@ -121,6 +123,8 @@ pub struct RecordedLoop {
     number: u32,
     body: RefCell<Option<Vec<Stmt>>>,
     continuing: RefCell<Option<Vec<Stmt>>>,
+    /// What was recorded where its body begins, if there are kinds of enums to be assumed in it.
+    start: Option<Start>,
 }
 
 impl Default for Recorder {

@@ -226,16 +226,20 @@ impl Recorder {
         let start = self.add(Expr::Call(start, vec![self.whole(ray)]), Type::Of(DESCENT));
         let traversal = self.declare("traversal", start, DESCENT);
         let repeat = Loop::new(self);
-        let traversal = self.add(Expr::Address(traversal), Type::Of(DESCENT));
-        let found = self.add(Expr::Call(next, vec![traversal, limit().0]), Type::Of(CANDIDATE));
-        self.pin(found, "next");
-        let member = |name, ty| self.add(Expr::Member(found, name), ty);
-        let (id, inst) = (member("id", Type::U32), member("inst", Type::U32));
-        repeat.test(self, B(self.u32_compare(op::Ne, id, self.u32(NONE))));
-        let local: RayOn<Self> = self.take_apart(member("ray", Type::of(Ray::SCHEMA)));
-        self.ask(prims, local, [U(id), U(inst)], meet, &repeat);
-        repeat.continuing(self);
-        repeat.again(self);
+        loop {
+            let traversal = self.add(Expr::Address(traversal), Type::Of(DESCENT));
+            let found = self.add(Expr::Call(next, vec![traversal, limit().0]), Type::Of(CANDIDATE));
+            self.pin(found, "next");
+            let member = |name, ty| self.add(Expr::Member(found, name), ty);
+            let (id, inst) = (member("id", Type::U32), member("inst", Type::U32));
+            repeat.test(self, B(self.u32_compare(op::Ne, id, self.u32(NONE))));
+            let local: RayOn<Self> = self.take_apart(member("ray", Type::of(Ray::SCHEMA)));
+            self.ask(prims, local, [U(id), U(inst)], meet, &repeat);
+            repeat.continuing(self);
+            if !repeat.again(self) {
+                break;
+            }
+        }
         repeat.end(self);
     }
 

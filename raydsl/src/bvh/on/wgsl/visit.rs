@@ -84,12 +84,16 @@ impl Recorder {
     ) {
         let counter = Var::new(self, name, U(self.u32(0)));
         let repeat = Loop::new(self);
-        repeat.test(self, B(goes_on(counter.get(self).0)));
-        body(counter.get(self).0, &repeat);
-        repeat.continuing(self);
-        let next = self.u32_binary(op::WrappingAdd, counter.get(self).0, self.u32(1));
-        counter.set(self, U(next));
-        repeat.again(self);
+        loop {
+            repeat.test(self, B(goes_on(counter.get(self).0)));
+            body(counter.get(self).0, &repeat);
+            repeat.continuing(self);
+            let next = self.u32_binary(op::WrappingAdd, counter.get(self).0, self.u32(1));
+            counter.set(self, U(next));
+            if !repeat.again(self) {
+                break;
+            }
+        }
         repeat.end(self);
     }
 
@@ -108,15 +112,19 @@ impl Recorder {
         let start = self.add(Expr::Call(start, arguments), Type::Of(TRAVERSAL));
         let traversal = self.declare("traversal", start, TRAVERSAL);
         let repeat = Loop::new(self);
-        let arguments =
-            vec![self.add(Expr::Address(traversal), Type::Of(TRAVERSAL)), ray.t_min.0, limit().0];
-        let id = self.add(Expr::Call(next, arguments), Type::U32);
-        self.pin(id, "id");
-        repeat.test(self, B(self.u32_compare(op::Ne, id, self.u32(NONE))));
-        let names = [U(id), U(self.u32(0))];
-        self.ask(prims, ray, names, meet, root.map_or(&repeat, |r| r.1));
-        repeat.continuing(self);
-        repeat.again(self);
+        loop {
+            let traversal = self.add(Expr::Address(traversal), Type::Of(TRAVERSAL));
+            let arguments = vec![traversal, ray.t_min.0, limit().0];
+            let id = self.add(Expr::Call(next, arguments), Type::U32);
+            self.pin(id, "id");
+            repeat.test(self, B(self.u32_compare(op::Ne, id, self.u32(NONE))));
+            let names = [U(id), U(self.u32(0))];
+            self.ask(prims, ray, names, meet, root.map_or(&repeat, |r| r.1));
+            repeat.continuing(self);
+            if !repeat.again(self) {
+                break;
+            }
+        }
         repeat.end(self);
     }
 
