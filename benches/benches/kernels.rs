@@ -230,11 +230,10 @@ fn occlusion(bench: &Bench) -> Vec<Row> {
     let (width, height) = (320, 200);
     let hall = scenes::colonnade();
     let scene = Bvh::build(&hall.prims).expect("the scene has finite bounds");
-    let method = SampleMethod::Sobol;
     let mut rows = Vec::new();
     for (name, radius) in [("near", 1.0), ("far", 100.0)] {
         let kernel = kernel!(|ray: Ray, sampler: Sampler| {
-            ambient_occlusion::<_, 1>(&scene, radius, host(method), ray, sampler)
+            ambient_occlusion::<_, 1>(&scene, radius, ray, sampler)
         });
         let render = |variant: Variant| {
             let (mut film, sampling) = (Film::new(width, height), Sampling::new(SAMPLES));
@@ -267,10 +266,10 @@ fn samplers(bench: &Bench) -> Vec<Row> {
     let mut rows = Vec::new();
     for (name, method) in METHODS {
         let kernel = kernel!(|pixel: u32, sample: u32| {
-            let mut sampler = Sampler::new(uvec2(pixel & 511, pixel >> 9), 0, sample, 64);
+            let mut sampler = Sampler::new(uvec2(pixel & 511, pixel >> 9), 0, sample, 64, method);
             let mut sum = Vec2::ZERO;
             for _i in 0..STEPS {
-                sum += sampler.next_2d(host(method));
+                sum += sampler.next_2d();
             }
             sum
         });

@@ -43,9 +43,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{} triangles", triangles.len());
 
     // ANCHOR: film
-    let method = SampleMethod::Sobol;
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
-        ambient_occlusion::<_, DIRECTIONS>(&mesh, radius, host(method), ray, sampler)
+        ambient_occlusion::<_, DIRECTIONS>(&mesh, radius, ray, sampler)
     });
     let mut film = Film::new(640, 400);
     let sampling = Sampling::new(PASSES * SAMPLES);

@@ -26,17 +26,11 @@ const RAYS: u32 = 32;
 /// Which share of a ball of light is seen from a point. `index` gives each point numbers of its
 /// own.
 #[kernel]
-fn share_of_lamp(
-    blocks: &Bvh<'_, Block>,
-    #[host] method: SampleMethod,
-    lamp: Vec4,
-    point: Vec3,
-    index: u32,
-) -> f32 {
+fn share_of_lamp(blocks: &Bvh<'_, Block>, lamp: Vec4, point: Vec3, index: u32) -> f32 {
     let mut seen = 0.0;
     for i in 0..RAYS {
-        let mut sampler = Sampler::new(uvec2(index, 0), 1, i, RAYS);
-        let target = lamp.truncate() + sample_uniform_sphere(sampler.next_2d(method)) * lamp.w;
+        let mut sampler = Sampler::new(uvec2(index, 0), 1, i, RAYS, SampleMethod::Sobol);
+        let target = lamp.truncate() + sample_uniform_sphere(sampler.next_2d()) * lamp.w;
         // From 0, the point, to 1, the lamp.
         let way = Ray::new(point, target - point).with_range(0.0, 1.0);
         if !blocks.any_hit(way) {
@@ -50,7 +44,7 @@ fn share_of_lamp(
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(env::args().nth(1).unwrap_or_else(|| "out".to_owned()));
     fs::create_dir_all(&folder)?;
-    let (blocks, method) = (plan(), SampleMethod::Sobol);
+    let blocks = plan();
     let bvh = Bvh::build(&blocks)?;
 
     // ANCHOR: batch
@@ -67,8 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut plan = Image::filled(SIZE.0, SIZE.1, vec4(0.02, 0.02, 0.03, 1.0));
     println!("lamp   lit %   half lit %   dark %   million rays a second");
     for (number, (lamp, color)) in lamps.into_iter().enumerate() {
-        let kernel =
-            kernel!(|point: Vec3, index: u32| share_of_lamp(&bvh, method, lamp, point, index));
+        let kernel = kernel!(|point: Vec3, index: u32| share_of_lamp(&bvh, lamp, point, index));
         let mut shares = vec![0.0; points.len()];
         let start = Instant::now();
         TiledScheduler::new().batch(&kernel, &points, &mut shares);

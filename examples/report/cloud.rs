@@ -17,8 +17,8 @@ pub(crate) const EDGE: u32 = 16;
 /// Balls above the unit square.
 fn balls() -> Vec<Ball> {
     let ball = |i: u32| {
-        let u = Sampler::new(uvec2(i, 1), 0, 0, 1).next_2d(SampleMethod::Random);
-        let v = Sampler::new(uvec2(i, 2), 0, 0, 1).next_2d(SampleMethod::Random);
+        let u = Sampler::new(uvec2(i, 1), 0, 0, 1, SampleMethod::Random).next_2d();
+        let v = Sampler::new(uvec2(i, 2), 0, 0, 1, SampleMethod::Random).next_2d();
         Ball {
             center: vec3(2.0 * u.x - 1.0, 2.0 * u.y - 1.0, 0.3 + v.x),
             radius: 0.03 + 0.05 * v.y,
@@ -29,21 +29,16 @@ fn balls() -> Vec<Ball> {
 
 /// A ray to the sky from below where a camera's ray begins.
 #[kernel]
-fn to_the_sky(#[host] method: SampleMethod, ray: Ray, sampler: Sampler) -> Ray {
+fn to_the_sky(ray: Ray, sampler: Sampler) -> Ray {
     let mut sampler = sampler;
-    let direction = sample_cosine_hemisphere(sampler.next_2d(method));
+    let direction = sample_cosine_hemisphere(sampler.next_2d());
     Ray::new(vec3(ray.origin.x, ray.origin.y, 0.0), direction)
 }
 
 /// The sky that it sees.
 #[kernel]
-pub(crate) fn shade(
-    cloud: &Bvh<'_, Ball>,
-    #[host] method: SampleMethod,
-    ray: Ray,
-    sampler: Sampler,
-) -> f32 {
-    if cloud.any_hit(to_the_sky(method, ray, sampler)) { 0.0 } else { 1.0 }
+pub(crate) fn shade(cloud: &Bvh<'_, Ball>, ray: Ray, sampler: Sampler) -> f32 {
+    if cloud.any_hit(to_the_sky(ray, sampler)) { 0.0 } else { 1.0 }
 }
 
 fn camera() -> Orthographic {
@@ -52,16 +47,14 @@ fn camera() -> Orthographic {
 
 /// Tests of nodes and balls of the same samples.
 fn work(cloud: &Bvh<'_, Ball>, run: &Run<'_>) -> Work {
-    let method = run.method().sampling();
     run.film_work(&camera(), |ray, sampler| {
-        let cost = cloud.any_hit_with_cost(to_the_sky(method, ray, sampler)).1;
+        let cost = cloud.any_hit_with_cost(to_the_sky(ray, sampler)).1;
         Work { texture_fetches: Some(0), ..cost.into() }
     })
 }
 
 fn estimate(cloud: &Bvh<'_, Ball>, run: &Run<'_>) -> Result<Estimates, Missing> {
-    let method = run.method().sampling();
-    let kernel = kernel!(|ray: Ray, sampler: Sampler| shade(cloud, host(method), ray, sampler));
+    let kernel = kernel!(|ray: Ray, sampler: Sampler| shade(cloud, ray, sampler));
     run.film(&camera(), &kernel)
 }
 

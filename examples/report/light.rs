@@ -80,9 +80,9 @@ fn means(#[host] which: u32, u: Vec2) -> f32 {
 }
 
 #[kernel]
-pub(crate) fn light(#[host] which: u32, #[host] method: SampleMethod, sampler: Sampler) -> f32 {
+pub(crate) fn light(#[host] which: u32, sampler: Sampler) -> f32 {
     let mut sampler = sampler;
-    let u = sampler.next_2d(method);
+    let u = sampler.next_2d();
     if which < 4 { lamps(which, u) } else { means(which, u) }
 }
 
@@ -101,10 +101,7 @@ const WARPED: Order = Order::near(-1.2, 0.1);
 
 fn case(name: &str, which: u32, exact: f64, sobol: Order) -> Case<'static> {
     Case::new(name, Reference::closed_form(exact), move |run| {
-        let method = run.method().sampling();
-        run.integral(&kernel!(|_ray: Ray, sampler: Sampler| {
-            light(host(which), host(method), sampler)
-        }))
+        run.integral(&kernel!(|_ray: Ray, sampler: Sampler| { light(host(which), sampler) }))
     })
     // Lamps are sampled, and nothing stands between.
     .counted(|_| Work::NOTHING)

@@ -45,16 +45,15 @@ struct View<P: Primitive + 'static> {
 
 impl<P: Primitive<Hit = Hit, Shared = ()> + Surface + Sync + 'static> View<P> {
     fn estimate(&self, run: &Run<'_>) -> Result<Estimates, Missing> {
-        let (tree, radius, method) = (self.tree, self.radius, run.method().sampling());
+        let (tree, radius) = (self.tree, self.radius);
         let kernel = kernel!(|ray: Ray, sampler: Sampler| {
-            ambient_occlusion::<_, 1>(tree, radius, host(method), ray, sampler)
+            ambient_occlusion::<_, 1>(tree, radius, ray, sampler)
         });
         run.film(&self.camera, &kernel)
     }
 
     /// The ray of the camera, and the one from where it meets the scene.
     fn work(&self, run: &Run<'_>) -> Work {
-        let method = run.method().sampling();
         run.film_work(&self.camera, |ray, mut sampler| {
             let (hit, cost) = self.tree.closest_hit_with_cost(ray);
             let seen = Work { texture_fetches: Some(0), ..cost.into() };
@@ -62,7 +61,7 @@ impl<P: Primitive<Hit = Hit, Shared = ()> + Surface + Sync + 'static> View<P> {
                 return seen;
             }
             let point = facing(self.tree.primitive(hit).surface(ray, hit), ray.direction);
-            let direction = sample_cosine_hemisphere(sampler.next_2d(method));
+            let direction = sample_cosine_hemisphere(sampler.next_2d());
             let next = point.ray(Frame::around(point.normal).to_world(direction));
             let (_, cost) = self.tree.any_hit_with_cost(Ray { t_max: self.radius, ..next });
             seen + cost.into()

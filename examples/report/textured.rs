@@ -22,11 +22,10 @@ const SIZE: [u32; 2] = [5, 4];
 pub(crate) fn textured(
     texture: &Texture2<'_, f32>,
     #[host] is_lamp: bool,
-    #[host] method: SampleMethod,
     sampler: Sampler,
 ) -> f32 {
     let mut sampler = sampler;
-    let u = sampler.next_2d(method);
+    let u = sampler.next_2d();
     let value = tex2(texture, u);
     if is_lamp {
         let point = vec3(2.0 * u.x - 1.0, 2.0 * u.y - 1.0, 1.0);
@@ -70,9 +69,9 @@ fn from_texels() -> f64 {
 fn case(name: &str, exact: f64, is_lamp: bool, filter: Filter) -> Case<'static> {
     let texture = texture(filter);
     Case::new(name, Reference::closed_form(exact), move |run| {
-        let (texture, method) = (&texture, run.method().sampling());
+        let texture = &texture;
         run.integral(&kernel!(|_ray: Ray, sampler: Sampler| {
-            textured(texture, host(is_lamp), host(method), sampler)
+            textured(texture, host(is_lamp), sampler)
         }))
     })
     .counted(|run| run.integral_work(|_| Work { texture_fetches: Some(1), ..Work::NOTHING }))

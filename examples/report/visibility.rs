@@ -51,14 +51,9 @@ pub(crate) enum Occluder {
 /// A ray from the origin of the plane z = 0, in a direction that is likely as the cosine, or as any
 /// other, no longer than `reach`.
 #[kernel]
-fn to_the_sky(
-    reach: f32,
-    #[host] is_uniform: bool,
-    #[host] method: SampleMethod,
-    sampler: Sampler,
-) -> Ray {
+fn to_the_sky(reach: f32, #[host] is_uniform: bool, sampler: Sampler) -> Ray {
     let mut sampler = sampler;
-    let u = sampler.next_2d(method);
+    let u = sampler.next_2d();
     let direction =
         if is_uniform { sample_uniform_hemisphere(u) } else { sample_cosine_hemisphere(u) };
     Ray { t_max: reach, ..Ray::new(vec3(0.0, 0.0, 0.0), direction) }
@@ -70,10 +65,9 @@ pub(crate) fn visibility(
     occluders: &[Occluder],
     reach: f32,
     #[host] is_uniform: bool,
-    #[host] method: SampleMethod,
     sampler: Sampler,
 ) -> f32 {
-    let ray = to_the_sky(reach, is_uniform, method, sampler);
+    let ray = to_the_sky(reach, is_uniform, sampler);
     if occluders.any_hit(ray) { 0.0 } else { 1.0 }
 }
 // ANCHOR_END: kernel
@@ -137,16 +131,15 @@ fn case(scene: Scene) -> Case<'static> {
     // The edge of the uniform one runs along the lines between strata, which then have no error.
     let edge = (!is_uniform).then_some(Order::at_most(-0.7));
     Case::new(name, Reference::closed_form(seen), move |run| {
-        let (occluders, method) = (&occluders[..], run.method().sampling());
+        let occluders = &occluders[..];
         let kernel = kernel!(|_ray: Ray, sampler: Sampler| {
-            visibility(occluders, reach, host(is_uniform), host(method), sampler)
+            visibility(occluders, reach, host(is_uniform), sampler)
         });
         run.integral(&kernel)
     })
     .counted(move |run| {
-        let method = run.method().sampling();
         run.integral_work(|sampler| {
-            let ray = to_the_sky(reach, is_uniform, method, sampler);
+            let ray = to_the_sky(reach, is_uniform, sampler);
             let cost = occluders.any_hit_with_cost(ray).1;
             Work { texture_fetches: Some(0), ..cost.into() }
         })

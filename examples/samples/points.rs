@@ -48,7 +48,7 @@ impl Panel<'_> {
 
 // ANCHOR: sets
 fn sampled(method: SampleMethod, i: u32) -> Vec2 {
-    Sampler::new(uvec2(3, 5), 0, i, COUNT).next_2d(method)
+    Sampler::new(uvec2(3, 5), 0, i, COUNT, method).next_2d()
 }
 
 /// Random, stratified, Halton's, scrambled Sobol.

@@ -53,9 +53,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     // so that the error is that of the picture.
     let (paper, closed, open) =
         (vec3(0.80, 0.81, 0.84), vec3(0.02, 0.03, 0.09), vec3(1.0, 0.93, 0.8));
-    let method = SampleMethod::Sobol;
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
-        let seen = ambient_occlusion::<_, 1>(&mesh, radius, host(method), ray, sampler);
+        let seen = ambient_occlusion::<_, 1>(&mesh, radius, ray, sampler);
         if seen.w > 0.0 { closed + (open - closed) * seen.x } else { paper }
     });
 

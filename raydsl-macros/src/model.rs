@@ -23,6 +23,8 @@ pub(crate) struct Kernel {
     pub(crate) body: Block,
     /// Whether it has `#[inline(never)]`.
     pub(crate) is_apart: bool,
+    /// Whether it has `#[inline(always)]`.
+    pub(crate) is_within: bool,
     /// The knowledge of machines about it beyond its code.
     pub(crate) known: Option<syn::Expr>,
     /// Whether it is an argument of a user's kernel, which takes it as an `Fn`: rustc knows that it

@@ -44,15 +44,14 @@ fn allocations(mut frame: impl FnMut()) -> usize {
 fn frames_allocate_nothing() -> Result<(), Box<dyn Error>> {
     let soup = triangles(300);
     let camera = Pinhole::new(vec3(2.0, 3.0, 16.0), Vec3::ZERO, Vec3::Y, 0.8);
-    let method = SampleMethod::Sobol;
     for is_wide in [false, true] {
         let config = BuildConfig::default();
         let scene =
             if is_wide { Bvh::build_wide(&soup, &[], &config)? } else { Bvh::build(&soup)? };
         assert!(!scene.is_wide() || is_wide);
         let kernel = kernel!(|ray: Ray, pixel: UVec2| {
-            let sampler = Sampler::new(pixel, 1, 0, 1);
-            ambient_occlusion::<_, 2>(&scene, 1.5, host(method), ray, sampler)
+            let sampler = Sampler::new(pixel, 1, 0, 1, SampleMethod::Sobol);
+            ambient_occlusion::<_, 2>(&scene, 1.5, ray, sampler)
         });
         let mut image = Image::filled(160, 144, Vec4::ZERO);
         for variant in [Variant::Scalar, Variant::Packet4, Variant::Packet8, Variant::Packet16] {

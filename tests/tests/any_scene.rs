@@ -47,7 +47,7 @@ fn path<S: Scene + ?Sized>(scene: &S, #[host] bounces: u32, ray: Ray, sampler: S
         }
         let seen = scene.shading_point(ray, hit);
         let point = facing(seen.point, ray.direction);
-        let local = sample_cosine_hemisphere(sampler.next_2d(SampleMethod::Random));
+        let local = sample_cosine_hemisphere(sampler.next_2d());
         throughput *= seen.albedo;
         ray = point.ray(Frame::around(point.normal).to_world(local));
     }
@@ -331,7 +331,8 @@ fn aimed_rays(seed: u32, count: usize) -> Vec<Ray> {
 
 fn inputs(count: usize) -> Vec<(Ray, Sampler)> {
     let rays = aimed_rays(11, count).into_iter().enumerate();
-    rays.map(|(i, ray)| (ray, Sampler::new(uvec2(i as u32, 3), 5, 0, 1))).collect()
+    rays.map(|(i, ray)| (ray, Sampler::new(uvec2(i as u32, 3), 5, 0, 1, SampleMethod::Random)))
+        .collect()
 }
 
 /// Runs the kernels over a scene in every variant.

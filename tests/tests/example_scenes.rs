@@ -124,13 +124,12 @@ fn half_a_sponge_is_closed() {
 fn a_sponge_agrees() {
     let triangles = sponge::half(2);
     let mesh = Bvh::build(&triangles).expect("finite bounds");
-    let method = SampleMethod::Sobol;
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
-        ambient_occlusion::<_, 1>(&mesh, 6.0, host(method), ray, sampler)
+        ambient_occlusion::<_, 1>(&mesh, 6.0, ray, sampler)
     });
     let eye = vec3(15.0, 16.0, 17.0);
     let rays = rays(&mut Rng::of("sponge"), 800, eye, Vec3::splat(4.5), Vec3::splat(3.5));
-    let sampler = |i| Sampler::new(uvec2(i, 7), 3, 0, 1);
+    let sampler = |i| Sampler::new(uvec2(i, 7), 3, 0, 1, SampleMethod::Sobol);
     let rays: Vec<_> = (0..).zip(rays).map(|(i, (ray,))| (ray, sampler(i))).collect();
     let lit: Vec<f32> = rays.iter().map(|&input| kernel.call(input)).map(|c| c.w - c.x).collect();
     let closed = lit.iter().filter(|l| **l == 1.0).count();
@@ -174,9 +173,8 @@ fn a_line_says_how_far_it_is_and_what_became_of_it() {
 fn what_is_stopped_has_the_best_picture_so_far() {
     let triangles = sponge::half(1);
     let mesh = Bvh::build(&triangles).expect("finite bounds");
-    let method = SampleMethod::Sobol;
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
-        ambient_occlusion::<_, 1>(&mesh, 2.0, host(method), ray, sampler)
+        ambient_occlusion::<_, 1>(&mesh, 2.0, ray, sampler)
     });
     let camera = Pinhole::new(Vec3::splat(6.0), Vec3::splat(1.5), Vec3::Y, 0.6);
     let target = Target::new(Metric::Rmse, 1e-4).pilot(128);

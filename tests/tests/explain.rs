@@ -347,7 +347,6 @@ fn every_variant_of_sibenik_agrees() -> Result<(), Box<dyn Error>> {
 /// `late`.
 #[kernel]
 fn bounced(first: Ray, mut sampler: Sampler, shift: f32, gain: f32, late: f32) -> Vec3 {
-    let method = SampleMethod::Sobol;
     let mut ray = first;
     ray.origin += vec3(shift, shift, -shift);
     let mut throughput = vec3(1.0, 1.0, 1.0);
@@ -373,12 +372,12 @@ fn bounced(first: Ray, mut sampler: Sampler, shift: f32, gain: f32, late: f32) -
         throughput *= vec3(0.9, 0.7, 0.5);
         if bounce > 2 {
             let chance = throughput.x;
-            if sampler.next_1d(method) >= chance + late {
+            if sampler.next_1d() >= chance + late {
                 break;
             }
             throughput /= chance;
         }
-        let u = sampler.next_2d(method);
+        let u = sampler.next_2d();
         let direction = Frame::around(normal).to_world(sample_cosine_hemisphere(u));
         ray = Ray { origin: position + normal * 1e-4, direction, t_min: 0.0, t_max: 1e30 };
     }

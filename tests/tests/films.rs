@@ -25,10 +25,10 @@ fn camera() -> Pinhole {
 
 /// A light of random colour, seen past spheres.
 macro_rules! lit {
-    ($bvh:ident, $method:ident) => {
+    ($bvh:ident) => {
         kernel!(|ray: Ray, pixel: UVec2, sampler: Sampler| {
             let mut sampler = sampler;
-            let u = sampler.next_2d(host($method));
+            let u = sampler.next_2d();
             let hit = $bvh.closest_hit(ray);
             let column = pixel.x as f32 * 0.01;
             if hit.is_hit { vec4(u.x, u.y, column, 1.0) } else { vec4(0.1, 0.2, u.x, 0.0) }
@@ -64,7 +64,7 @@ fn every_scheduler_and_variant_and_tile() -> Result<(), Box<dyn Error>> {
     let methods = [SampleMethod::Random, SampleMethod::Stratified, SampleMethod::Sobol];
     for (pixels, i) in PATTERNS.into_iter().zip(0..) {
         let method = methods[i % 3];
-        let kernel = lit!(bvh, method);
+        let kernel = lit!(bvh);
         let sampling = Sampling::new(70).pixels(pixels).method(method).seed(i as u32);
         let accumulated = |scheduler: &dyn Fn(&mut Film)| {
             let mut film = Film::new(37, 21);
@@ -99,8 +99,7 @@ fn every_scheduler_and_variant_and_tile() -> Result<(), Box<dyn Error>> {
 fn any_number_of_threads() -> Result<(), Box<dyn Error>> {
     let balls = spheres(800);
     let bvh = Bvh::build(&balls)?;
-    let method = SampleMethod::Sobol;
-    let kernel = lit!(bvh, method);
+    let kernel = lit!(bvh);
     let sampling = Sampling::new(16);
     let mut expected = Film::new(131, 77);
     SimpleScheduler::new().accumulate(&camera(), &kernel, &sampling, &mut expected, 16);
@@ -119,8 +118,8 @@ fn any_number_of_threads() -> Result<(), Box<dyn Error>> {
 #[test]
 fn means_and_variances() {
     let kernel = kernel!(|_ray: Ray, sampler: Sampler| {
-        let mut sampler = sampler;
-        sampler.next_1d(host(SampleMethod::Random))
+        let mut sampler = Sampler { method: SampleMethod::Random, ..sampler };
+        sampler.next_1d()
     });
     let mut film = Film::new(40, 40);
     let sampling = Sampling::new(1000).pixels(PixelSampler::Center);
@@ -308,8 +307,8 @@ impl Radiance for Pixel {
 macro_rules! pixel {
     ($bvh:ident) => {
         kernel!(|ray: Ray, sampler: Sampler| {
-            let mut sampler = sampler;
-            let u = sampler.next_2d(host(SampleMethod::Random));
+            let mut sampler = Sampler { method: SampleMethod::Random, ..sampler };
+            let u = sampler.next_2d();
             let hit = $bvh.closest_hit(ray);
             let mut depth = 2.5;
             if hit.is_hit {
@@ -403,7 +402,7 @@ fn channels_of_every_variant() -> Result<(), Box<dyn Error>> {
 fn channels_of_a_tuple() -> Result<(), Box<dyn Error>> {
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
         let mut sampler = sampler;
-        let u = sampler.next_1d(host(SampleMethod::Sobol));
+        let u = sampler.next_1d();
         (vec3(u, 1.0, 0.0), ray.direction, u * u)
     });
     let sampling = Sampling::new(256);
@@ -429,8 +428,8 @@ fn channels_of_a_tuple() -> Result<(), Box<dyn Error>> {
 fn channels_to_a_target_error() -> Result<(), Box<dyn Error>> {
     use raydsl::render::{Budget, Metric, Target, Until};
     let kernel = kernel!(|_ray: Ray, sampler: Sampler| {
-        let mut sampler = sampler;
-        let u = sampler.next_1d(host(SampleMethod::Random));
+        let mut sampler = Sampler { method: SampleMethod::Random, ..sampler };
+        let u = sampler.next_1d();
         (u, 3.0 * u)
     });
     let target = Target::new(Metric::Rmse, 0.01).pilot(64);

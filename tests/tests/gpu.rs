@@ -251,8 +251,8 @@ fn a_kernel_is_recorded_once_and_a_program_printed_once() -> Result<(), Error> {
     let seed = 7u32;
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
         let hit = bvh.closest_hit(ray);
-        let mut sampler = sampler;
-        let noise = sampler.next_1d(host(SampleMethod::Random));
+        let mut sampler = Sampler { method: SampleMethod::Random, ..sampler };
+        let noise = sampler.next_1d();
         if hit.is_hit { vec4(hit.t, noise, seed as f32, 1.0) } else { Vec4::ZERO }
     });
     let expected = |camera: &Pinhole, sampling: &Sampling| {

@@ -213,8 +213,8 @@ fn ambient_occlusion_is_the_form_factor() -> Result<(), Box<dyn Error>> {
         let method = SampleMethod::Random;
         let down = Ray::new(vec3(0.0, 0.0, 0.5), Vec3::NEG_Z);
         let kernel = kernel!(|ray: Ray, i: u32, seed: u32| {
-            let sampler = Sampler::new(uvec2(i % 1024, i / 1024), seed, 0, 1);
-            ambient_occlusion::<_, 4>(&scene, radius, host(method), ray, sampler)
+            let sampler = Sampler::new(uvec2(i % 1024, i / 1024), seed, 0, 1, method);
+            ambient_occlusion::<_, 4>(&scene, radius, ray, sampler)
         });
         for seed in 0..2 {
             let inputs: Vec<(Ray, u32, u32)> = (0..SAMPLES).map(|i| (down, i, seed)).collect();
@@ -235,7 +235,7 @@ fn ambient_occlusion_in_every_variant() -> Result<(), Box<dyn Error>> {
     let scene = Bvh::build(&soup)?;
     for method in [SampleMethod::Stratified, SampleMethod::Sobol] {
         let kernel = kernel!(|ray: Ray, sampler: Sampler| {
-            ambient_occlusion::<_, 4>(&scene, 1.5, host(method), ray, sampler)
+            ambient_occlusion::<_, 4>(&scene, 1.5, ray, sampler)
         });
         let camera = Pinhole::new(vec3(2.0, 3.0, 16.0), Vec3::ZERO, Vec3::Y, 0.8);
         let film = |scheduler: &dyn Fn(&Sampling, &mut Film)| {

@@ -820,6 +820,139 @@ fn kinds_that_loops_leave_alone_leave_no_trace() {
     assert_eq!(found, [true, true, false], "{text}");
 }
 
+/// Enums without fields that are kinds, and that are numbers: of one byte, or numbered otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
+#[repr(u32)]
+enum Side {
+    Front,
+    Back,
+    Edge,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
+enum Small {
+    Front,
+    Back,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
+#[repr(u32)]
+enum Numbered {
+    Front = 70,
+    Back = 0,
+    Edge = 4_000_000_000,
+}
+
+#[kernel]
+fn of_side(side: Side, x: f32) -> f32 {
+    match side {
+        Side::Front => x * 7717.0,
+        Side::Back => x * 8819.0,
+        Side::Edge => x * 9929.0,
+    }
+}
+
+#[kernel]
+fn of_numbers(small: Small, numbered: Numbered, x: f32) -> f32 {
+    let mut numbered = numbered;
+    let mut sum = x;
+    for i in 0..4u32 {
+        sum += match (small, numbered) {
+            (Small::Front, Numbered::Front) => 1.0,
+            (Small::Back, Numbered::Front) => 2.0,
+            (Small::Front, Numbered::Back) => 3.0,
+            (_, Numbered::Edge) => 4.0,
+            _ => 5.0,
+        };
+        numbered = match numbered {
+            Numbered::Front => Numbered::Back,
+            Numbered::Back => Numbered::Edge,
+            Numbered::Edge => Numbered::Front,
+        };
+        if numbered as u32 == 70 {
+            sum += i as f32;
+        }
+    }
+    sum
+}
+
+#[test]
+fn enums_without_fields_are_kinds() {
+    let sides = [Side::Front, Side::Back, Side::Edge];
+    let both: Vec<(Side, f32)> = (0..30).map(|i| (sides[i % 3], i as f32)).collect();
+    assert_variants_agree!(of_side, &both);
+    let text = |list: &[Side]| {
+        let kernel = kernel!(|i: u32, x: f32| {
+            let mut side = list[i as usize % list.len()];
+            let mut sum = 0.0;
+            for k in 0..5 {
+                sum += of_side(side, x);
+                if k == 3 {
+                    side = list[0];
+                }
+            }
+            if side == list[0] { sum } else { -sum }
+        });
+        let inputs: Vec<(u32, f32)> = (0..30).map(|i| (i, i as f32 * 0.25)).collect();
+        assert_variants_agree!(&kernel, &inputs);
+        let text = kernel.wgsl();
+        ["7717", "8819", "9929"].map(|trace| text.contains(trace))
+    };
+    assert_eq!(text(&sides[1..2]), [false, true, false]);
+    assert_eq!(text(&sides[1..]), [false, true, true]);
+    assert_eq!(text(&sides), [true, true, true]);
+    let smalls = [Small::Front, Small::Back];
+    let numbers = [Numbered::Front, Numbered::Back, Numbered::Edge];
+    let inputs: Vec<(Small, Numbered, f32)> =
+        (0..36).map(|i| (smalls[i % 2], numbers[i % 3], i as f32)).collect();
+    assert_variants_agree!(of_numbers, &inputs);
+    let (smalls, numbers) = (&smalls[..], &numbers[..]);
+    let listed = kernel!(|i: u32, x: f32| {
+        of_numbers(smalls[i as usize % 2], numbers[i as usize % 3], x)
+    });
+    assert_variants_agree!(&listed, &(0..36).map(|i| (i, i as f32)).collect::<Vec<(u32, f32)>>());
+}
+
+/// A part of its callers in packets, with ways out that are not those of its callers.
+#[kernel]
+#[inline(always)]
+fn collatz(n: &mut u32, most: u32) -> u32 {
+    for step in 0..most {
+        if *n <= 1 {
+            return step;
+        }
+        if n.is_multiple_of(2) {
+            *n /= 2;
+            continue;
+        }
+        *n = 3 * *n + 1;
+    }
+    most
+}
+
+#[kernel]
+fn twice_inlined(n: u32) -> (u32, u32) {
+    let mut n = n;
+    let mut sum = 0;
+    while n > 1 {
+        let steps = collatz(&mut n, 5);
+        if steps < 3 {
+            return (sum, n);
+        }
+        sum += steps;
+        if sum > 40 {
+            break;
+        }
+        sum += collatz(&mut n, 2);
+    }
+    (sum, n)
+}
+
+#[test]
+fn inlined_kernels_return_to_their_callers() {
+    assert_variants_agree!(twice_inlined, &(0..100).map(|n| (n,)).collect::<Vec<(u32,)>>());
+}
+
 /// More variants than a set of kinds has members.
 macro_rules! many {
     ($($name:ident $number:literal)+) => {

@@ -158,8 +158,8 @@ fn texture() -> Texture2<'static, f32> {
 macro_rules! estimator {
     ($number:ident, $texture:ident, $method:ident) => {
         kernel!(|_ray: Ray, sampler: Sampler| {
-            let mut sampler = sampler;
-            sample_of($number, &$texture, sampler.next_2d(host($method)))
+            let mut sampler = Sampler { method: $method, ..sampler };
+            sample_of($number, &$texture, sampler.next_2d())
         })
     };
 }
@@ -282,9 +282,9 @@ fn same_but_for_time(a: &Reached, b: &Reached) -> bool {
 macro_rules! uneven {
     ($noisy:ident, $method:ident) => {
         kernel!(|_ray: Ray, pixel: UVec2, sampler: Sampler| {
-            let mut sampler = sampler;
+            let mut sampler = Sampler { method: $method, ..sampler };
             let spread = if pixel.x < $noisy { 1.0 } else { 0.03 };
-            1.0 + spread * (sampler.next_1d(host($method)) - 0.5)
+            1.0 + spread * (sampler.next_1d() - 0.5)
         })
     };
 }
@@ -390,8 +390,8 @@ fn samples_go_where_they_are_needed() {
 macro_rules! noise {
     ($method:ident) => {
         kernel!(|_ray: Ray, sampler: Sampler| {
-            let mut sampler = sampler;
-            sampler.next_1d(host($method))
+            let mut sampler = Sampler { method: $method, ..sampler };
+            sampler.next_1d()
         })
     };
 }
@@ -435,8 +435,8 @@ fn budgets_are_kept() -> Result<(), Box<dyn Error>> {
 #[test]
 fn fixed_places_are_taken_in_whole_rounds() -> Result<(), Box<dyn Error>> {
     let kernel = kernel!(|_ray: Ray, sampler: Sampler| {
-        let mut sampler = sampler;
-        let noise = 1e-3 * sampler.next_1d(host(SampleMethod::Random));
+        let mut sampler = Sampler { method: SampleMethod::Random, ..sampler };
+        let noise = 1e-3 * sampler.next_1d();
         if sampler.index % 8 < 4 { noise } else { 1.0 + noise }
     });
     let sampling = Sampling::new(1).pixels(PixelSampler::Eight);

@@ -345,10 +345,10 @@ fn work_is_that_of_the_samples_of_a_run() -> Result<(), Box<dyn Error>> {
         // Of an integral the numbers alone say what is done: a look-up where the first is large.
         let looks = kernel!(|_ray: Ray, sampler: Sampler| {
             let mut sampler = sampler;
-            if sampler.next_2d(host(sampling)).x > 0.7 { 1.0 } else { 0.0 }
+            if sampler.next_2d().x > 0.7 { 1.0 } else { 0.0 }
         });
         let looked = run.integral_work(|mut sampler| {
-            let is_large = sampler.next_2d(sampling).x > 0.7;
+            let is_large = sampler.next_2d().x > 0.7;
             Work { texture_fetches: Some(u64::from(is_large)), ..Work::default() }
         });
         assert_eq!(looked.texture_fetches, Some(total(run.integral(&looks))));
@@ -370,10 +370,9 @@ fn what_is_counted_apart_is_in_the_files() -> Result<(), Box<dyn Error>> {
     let tree = Bvh::build(&balls)?;
     let calls = Cell::new(0);
     let covered = |run: &Run<'_>| {
-        let method = run.method().sampling();
         let kernel = kernel!(|ray: Ray, sampler: Sampler| {
             let mut sampler = sampler;
-            let shift = 0.01 * sampler.next_2d(host(method)).x;
+            let shift = 0.01 * sampler.next_2d().x;
             if tree.any_hit(Ray { t_max: 9.0 + shift, ..ray }) { 1.0 } else { 0.0 }
         });
         run.film(&above(), &kernel)

@@ -123,7 +123,11 @@ fn call_of(body: &TokenStream, kernel: &Kernel, emitter: &Emitter<'_>) -> TokenS
     if kernel.takes_function() {
         return quote!({ #(let #names: #types = #arguments;)* #body });
     }
-    let call = if kernel.is_apart { quote!(call_apart) } else { quote!(call) };
+    let call = match (kernel.is_apart, kernel.is_within) {
+        (true, _) => quote!(call_apart),
+        (_, true) => quote!(call_within),
+        _ => quote!(call),
+    };
     quote! {
         #p::Machine::#call(
             #m,

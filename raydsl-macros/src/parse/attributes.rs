@@ -15,6 +15,11 @@ pub(super) fn is_never_inlined(a: &syn::Attribute) -> bool {
     a.path().is_ident("inline") && a.parse_args::<Ident>().is_ok_and(|how| how == "never")
 }
 
+/// Returns whether it is `#[inline(always)]`.
+pub(super) fn is_always_inlined(a: &syn::Attribute) -> bool {
+    a.path().is_ident("inline") && a.parse_args::<Ident>().is_ok_and(|how| how == "always")
+}
+
 /// Returns whether it is `#[coherent]`.
 pub(super) fn is_coherent(a: &syn::Attribute) -> bool {
     a.path().is_ident("coherent")

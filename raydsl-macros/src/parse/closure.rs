@@ -186,9 +186,20 @@ impl Parser<'_> {
         };
         body.stmts.splice(0..0, prologue);
         let name = Ident::new(name, Span::call_site());
-        let (generics, is_apart, is_broken) = (Generics::default(), false, false);
+        let (generics, is_apart, is_within, is_broken) = (Generics::default(), false, false, false);
         let is_fn = types == Types::Inferred;
-        Kernel { name, generics, params, result, body, is_apart, known: None, is_fn, is_broken }
+        Kernel {
+            name,
+            generics,
+            params,
+            result,
+            body,
+            is_apart,
+            is_within,
+            known: None,
+            is_fn,
+            is_broken,
+        }
     }
 
     /// Parses a parameter whose type is not written.

@@ -6,7 +6,7 @@ use syn::Pat;
 use syn::spanned::Spanned;
 
 use super::Parser;
-use super::attributes::{is_host, is_never_inlined};
+use super::attributes::{is_always_inlined, is_host, is_never_inlined};
 use super::expression::run_once;
 use super::types::{is_data, is_mut_reference, is_unit, without_references};
 use crate::diag::Errors;
@@ -39,6 +39,7 @@ pub(crate) fn function(
     };
     let params: Vec<Param> = sig.inputs.iter().map(param).collect();
     let is_apart = attrs.iter().any(is_never_inlined);
+    let is_within = attrs.iter().any(is_always_inlined);
     let takes_function = params.iter().any(|p| p.function.is_some());
     if let Some(never) = attrs.iter().find(|a| takes_function && is_never_inlined(a)) {
         let help = "remove `#[inline(never)]`";
@@ -63,7 +64,18 @@ pub(crate) fn function(
     let mut body = within(BODY, parser.block(body), span);
     body.stmts.splice(0..0, prologue);
     let name = sig.ident.clone();
-    Kernel { name, generics, params, result, body, is_apart, known: None, is_fn: false, is_broken }
+    Kernel {
+        name,
+        generics,
+        params,
+        result,
+        body,
+        is_apart,
+        is_within,
+        known: None,
+        is_fn: false,
+        is_broken,
+    }
 }
 
 /// Returns a body whose `return`s are exits to a label, as a labelled block if it has any.

@@ -173,13 +173,16 @@ impl Enumeration<'_> {
 
     /// Returns the implementation of the enum as a type of kernels.
     fn type_impl(&self) -> TokenStream {
-        let (p, name, twin) = (private(), &self.item.ident, &self.twin);
+        let (p, name, twin, variants) = (private(), &self.item.ident, &self.twin, self.variants);
+        let (count, numbers) = (variants.len() as u32, 0u32..);
         quote! {
             impl #p::Type for #name {
                 type On<__M: #p::Machine> = #twin<__M>;
 
-                const SCHEMA: &'static #p::Schema =
-                    #p::number_schema(::core::mem::size_of::<Self>());
+                const SCHEMA: &'static #p::Schema = {
+                    let is_counted = true #(&& Self::#variants as u32 == #numbers)*;
+                    #p::number_schema::<#count>(::core::mem::size_of::<Self>(), is_counted)
+                };
 
                 #[inline(always)]
                 fn splat<__M: #p::Machine>(m: &__M, v: Self) -> #twin<__M> {
@@ -221,6 +224,7 @@ fn capture(name: &Ident, twin: &Ident) -> TokenStream {
     let p = private();
     quote! {
         /// A captured variant is known while the kernel is recorded: a `match` on it is decided.
+        #[diagnostic::do_not_recommend]
         impl<__M: #p::Machine> #p::Capture<__M> for #name {
             type On<'c> = #twin<__M>;
 

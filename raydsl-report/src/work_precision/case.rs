@@ -127,10 +127,9 @@ pub(super) type Count<'a> = dyn Fn(&Run<'_>) -> Work + 'a;
 ///
 /// // The integral of x y over the unit square.
 /// let case = Case::new("x y", Reference::closed_form(0.25), |run: &Run| {
-///     let method = run.method().sampling();
 ///     run.integral(&kernel!(|_ray: Ray, sampler: Sampler| {
 ///         let mut sampler = sampler;
-///         let u = sampler.next_2d(host(method));
+///         let u = sampler.next_2d();
 ///         u.x * u.y
 ///     }))
 /// });

@@ -11,10 +11,9 @@
 //! use raydsl_report::work_precision::*;
 //!
 //! let case = Case::new("x y", Reference::closed_form(0.25), |run: &Run| {
-//!     let method = run.method().sampling();
 //!     run.integral(&kernel!(|_ray: Ray, sampler: Sampler| {
 //!         let mut sampler = sampler;
-//!         let u = sampler.next_2d(host(method));
+//!         let u = sampler.next_2d();
 //!         u.x * u.y
 //!     }))
 //! });

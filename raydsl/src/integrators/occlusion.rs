@@ -6,7 +6,7 @@ use crate::bvh::RecordQuery;
 use crate::geometry::{Ray, SurfacePoint};
 use crate::kernel;
 use crate::machine::functions::vec4;
-use crate::sampling::{Frame, SampleMethod, Sampler, sample_cosine_hemisphere};
+use crate::sampling::{Frame, Sampler, sample_cosine_hemisphere};
 use crate::shading::{Scene, facing};
 
 // ANCHOR: ambient_occlusion
@@ -17,11 +17,10 @@ use crate::shading::{Scene, facing};
 pub fn is_open<S: RecordQuery + ?Sized>(
     scene: &S,
     radius: f32,
-    #[host] method: SampleMethod,
     point: SurfacePoint,
     sampler: &mut Sampler,
 ) -> bool {
-    let direction = sample_cosine_hemisphere(sampler.next_2d(method));
+    let direction = sample_cosine_hemisphere(sampler.next_2d());
     let ray = point.ray(Frame::around(point.normal).to_world(direction));
     !scene.any_hit(Ray { t_max: radius, ..ray })
 }
@@ -33,7 +32,8 @@ pub fn is_open<S: RecordQuery + ?Sized>(
 ///
 /// The shadow rays are traced by one query, which is faster than one after the other, and share
 /// their camera ray. Each takes the next two dimensions of the sampler, so those of one sample are
-/// independent of each other: with [`SampleMethod::Sobol`] and [`SampleMethod::Stratified`] the
+/// independent of each other: with [`SampleMethod::Sobol`](crate::sampling::SampleMethod::Sobol) and
+/// [`SampleMethod::Stratified`](crate::sampling::SampleMethod::Stratified) the
 /// same number of shadow rays from more samples, `N` of 1, are spread more evenly, and take longer.
 /// `N` is at least 1.
 ///
@@ -44,7 +44,6 @@ pub fn is_open<S: RecordQuery + ?Sized>(
 pub fn ambient_occlusion<S: Scene + ?Sized, const N: usize>(
     scene: &S,
     radius: f32,
-    #[host] method: SampleMethod,
     ray: Ray,
     sampler: Sampler,
 ) -> Vec4 {
@@ -57,7 +56,7 @@ pub fn ambient_occlusion<S: Scene + ?Sized, const N: usize>(
     let mut sampler = sampler;
     let mut rays = [point.ray(point.normal); N];
     for i in 0..N {
-        let direction = sample_cosine_hemisphere(sampler.next_2d(method));
+        let direction = sample_cosine_hemisphere(sampler.next_2d());
         rays[i] = Ray { t_max: radius, ..point.ray(frame.to_world(direction)) };
     }
     let closed = scene.any_hit_each::<N>(|i: u32| rays[i as usize]);

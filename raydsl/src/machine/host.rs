@@ -63,6 +63,7 @@ pub trait HostUse<M: Machine> {
 macro_rules! host_number {
     ($($host:ty),+) => {
         $(
+            #[diagnostic::do_not_recommend]
             impl HostCapture for $host {
                 type Value = Self;
 

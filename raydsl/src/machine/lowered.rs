@@ -37,11 +37,13 @@ pub fn with_name<F>(closure: F) -> F {
     closure
 }
 
-/// Returns the schema of an enum of `bytes` bytes.
-pub const fn number_schema(bytes: usize) -> &'static Schema {
+/// Returns the schema of an enum of `COUNT` variants in `bytes` bytes, which are `is_counted` if they
+/// have the numbers from 0.
+pub const fn number_schema<const COUNT: u32>(bytes: usize, is_counted: bool) -> &'static Schema {
     match bytes {
         1 => &Schema::Small { bytes: 1 },
         2 => &Schema::Small { bytes: 2 },
+        4 if is_counted => const { &Schema::Kind { count: COUNT } },
         _ => &Schema::U32,
     }
 }

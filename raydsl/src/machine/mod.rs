@@ -422,6 +422,18 @@ pub trait Machine: Sized + 'static {
         self.call(info, args, body)
     }
 
+    /// Runs a kernel marked `#[inline(always)]` like [`call`](Self::call): in packets it is a part of
+    /// its callers, however long they are.
+    #[inline(always)]
+    fn call_within<A: Value<Self>, R: Value<Self>>(
+        &self,
+        info: &'static KernelInfo,
+        args: A,
+        body: impl FnOnce(&Self, A) -> R,
+    ) -> R {
+        self.call(info, args, body)
+    }
+
     /// Captures a number, vector or struct of the host.
     #[inline(always)]
     fn capture<T: Type>(&self, _name: &'static str, v: T) -> T::On<Self> {

@@ -530,6 +530,19 @@ impl<L: Lanes> Machine for Packet<L> {
     }
 
     #[inline(always)]
+    fn call_within<A: Value<Self>, R: Value<Self>>(
+        &self,
+        _: &'static KernelInfo,
+        args: A,
+        body: impl FnOnce(&Self, A) -> R,
+    ) -> R {
+        let entry = self.active.get();
+        let result = body(self, args);
+        self.active.set(entry);
+        result
+    }
+
+    #[inline(always)]
     fn perform<O: Operation>(
         &self,
         operation: &O,

@@ -51,7 +51,8 @@ impl PixelSampler {
 pub struct Sampling {
     /// The sample positions in a pixel. Jittered unless set.
     pub pixels: PixelSampler,
-    /// The method for positions in the pixel and on a lens. Sobol unless set.
+    /// The method of the samplers: for positions in the pixel and on a lens, and for what kernels
+    /// draw. Sobol unless set.
     pub method: SampleMethod,
     /// The seed; another one gives other samples everywhere. 0 unless set.
     pub seed: u32,
@@ -120,17 +121,13 @@ fn of_eight(index: u32) -> Vec2 {
 /// Jittered samples take two dimensions of `sampler`, the others none.
 #[kernel]
 #[inline]
-pub(super) fn pixel_place(
-    sampler: &mut Sampler,
-    #[host] pixels: PixelSampler,
-    #[host] method: SampleMethod,
-) -> Vec2 {
+pub(super) fn pixel_place(sampler: &mut Sampler, #[host] pixels: PixelSampler) -> Vec2 {
     match pixels {
         PixelSampler::Center => vec2(0.5, 0.5),
         PixelSampler::Two => of_two(sampler.index),
         PixelSampler::Four => of_four(sampler.index),
         PixelSampler::Eight => of_eight(sampler.index),
-        PixelSampler::Jittered => sampler.next_2d(method),
+        PixelSampler::Jittered => sampler.next_2d(),
     }
 }
 

@@ -260,10 +260,9 @@ pub trait Renderer {
     /// use raydsl::render::{Budget, Metric, Outcome, Target, Until};
     ///
     /// let camera = Pinhole::new(vec3(0.0, 0.0, 5.0), Vec3::ZERO, Vec3::Y, 1.0);
-    /// let method = SampleMethod::Sobol;
     /// let noise = kernel!(|_ray: Ray, sampler: Sampler| {
     ///     let mut sampler = sampler;
-    ///     sampler.next_1d(host(method))
+    ///     sampler.next_1d()
     /// });
     /// let until = Until::new(Target::new(Metric::Rmse, 1e-3), Budget::of_samples(100_000));
     /// let mut film = Film::new(8, 8);

@@ -66,14 +66,17 @@ pub(crate) fn places(
     index: u32,
     planned: u32,
     #[host] pixels: PixelSampler,
-    #[host] method: SampleMethod,
+    method: SampleMethod,
     #[host] has_lens: bool,
 ) -> (Vec2, Vec2, Sampler) {
-    let mut sampler = Sampler::new(pixel, seed, index, planned);
-    let place = pixel_place(&mut sampler, pixels, method);
-    let lens = if has_lens { sampler.next_2d(method) } else { vec2(0.5, 0.5) };
+    let mut sampler = Sampler::new(pixel, seed, index, planned, method);
+    let place = pixel_place(&mut sampler, pixels);
+    let lens = if has_lens { sampler.next_2d() } else { vec2(0.5, 0.5) };
     (pixel.as_vec2() + place, lens, sampler)
 }
+
+/// The method of the samplers of pictures without [`Sampling`].
+const METHOD: SampleMethod = SampleMethod::Sobol;
 
 /// One ray through the centre of each pixel; a sampler, if used, is that of the first sample of
 /// one.
@@ -94,14 +97,15 @@ impl<C: CameraRays, A: FilmArgs, R: Type> Shot for Frame<'_, C, A, R> {
     fn pixel(&self, pixel: UVec2) -> R {
         let at = pixel_centre(pixel);
         let ray = self.rays.primary_ray(at.x, at.y);
-        self.kernel.call(A::of(ray, pixel, || Sampler::new(pixel, 0, 0, 1)))
+        self.kernel.call(A::of(ray, pixel, || Sampler::new(pixel, 0, 0, 1, METHOD)))
     }
 
     #[inline(always)]
     fn pixel_on<M: Machine>(&self, m: &M, pixel: X2<U<M>>, body: &Body<'_, M, Self>) -> R::On<M> {
         let at = pixel_centre::on(m, pixel);
         let ray = C::primary_ray_on(m, m.capture("camera", self.rays), at.x, at.y);
-        body(m, A::on_film(ray, pixel, || Sampler::new_on(m, pixel, 0u32, 0u32, 1u32)))
+        let method = Type::splat(m, METHOD);
+        body(m, A::on_film(ray, pixel, || Sampler::new_on(m, pixel, 0u32, 0u32, 1u32, method)))
     }
 }
 
@@ -170,6 +174,7 @@ impl<C: CameraRays, A: FilmArgs, R: Radiance, K: Kept<R>> Shot for Pass<'_, C, A
         let Sampling { pixels, method, seed, planned } = self.sampling;
         let rays = m.capture("camera", self.rays);
         let seed = m.capture("seed", seed);
+        let method = Type::splat(m, method);
         let first = m.capture("first_sample", self.first);
         let end = m.capture("end_of_samples", self.first.saturating_add(self.count));
         let (planned, end) = match self.allocation {

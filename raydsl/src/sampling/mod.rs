@@ -30,7 +30,7 @@ pub use frame::{Frame, FrameOn};
 pub use hash::{pcg4d, philox4x32};
 pub use heuristics::{balance_heuristic, power_heuristic};
 pub use rng::{ONE_MINUS_EPSILON, Rng, RngOn, unit_f32};
-pub use sampler::{SampleMethod, Sampler, SamplerOn};
+pub use sampler::{SampleMethod, SampleMethodOn, Sampler, SamplerOn};
 pub use sobol::{owen_scramble, scrambled_sobol_1d, scrambled_sobol_2d, sobol_2d};
 pub use stratified::{permuted, stratified_1d, stratified_2d};
 pub use table::{

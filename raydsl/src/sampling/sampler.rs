@@ -1,4 +1,4 @@
-//! Samples of pixels, by a method chosen on the host.
+//! Samples of pixels, by one of several methods.
 
 use glam::{UVec2, UVec4, Vec2, uvec2, uvec4, vec2};
 
@@ -7,13 +7,12 @@ use super::{
 };
 use crate::machine::functions::{uvec2, uvec4, vec2};
 use crate::machine::generic::max;
-use crate::machine::host::HostCapture;
-use crate::machine::{Capture, Leaves, Machine, Schema, Value};
 use crate::{Type, kernel};
 
-/// Placement of samples. The host knows it, as a captured `bool`: WGSL contains the method in use,
-/// and no trace of the others.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+/// Placement of samples, which a [`Sampler`] knows. WGSL contains the methods in use, and no trace of
+/// the others: those that the host captures, and those that a kernel names.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Type)]
+#[repr(u32)]
 pub enum SampleMethod {
     /// Independent samples: errors fall as `n^-1/2`.
     Random,
@@ -24,44 +23,6 @@ pub enum SampleMethod {
     /// to as fast as `n^-3/2`, at every power of two.
     #[default]
     Sobol,
-}
-
-impl HostCapture for SampleMethod {
-    type Value = Self;
-
-    #[inline(always)]
-    fn host(&self) -> Self {
-        *self
-    }
-}
-
-impl<M: Machine> Value<M> for SampleMethod {
-    const SCHEMA: &'static Schema = &Schema::Host;
-
-    #[inline(always)]
-    fn zero(_: &M) -> Self {
-        Self::default()
-    }
-
-    #[inline(always)]
-    fn zip(_: &M, a: Self, _: Self, _: &mut impl Leaves<M>) -> Self {
-        a
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine> Capture<M> for SampleMethod {
-    type On<'c> = Self;
-
-    #[inline(always)]
-    fn capture(&self, _: &M, _: &'static str) -> Self {
-        *self
-    }
-
-    #[inline(always)]
-    fn constant(&self, _: &M) -> Self {
-        *self
-    }
 }
 
 /// Generates the numbers of a pixel's sample, one or two dimensions at a time.
@@ -75,9 +36,9 @@ impl<M: Machine> Capture<M> for SampleMethod {
 ///
 /// let method = SampleMethod::Sobol;
 /// let kernel = kernel!(|x: u32, y: u32, i: u32| {
-///     let mut sampler = Sampler::new(uvec2(x, y), 1, i, 64);
-///     let lens = sampler.next_2d(host(method));
-///     let time = sampler.next_1d(host(method));
+///     let mut sampler = Sampler::new(uvec2(x, y), 1, i, 64, method);
+///     let lens = sampler.next_2d();
+///     let time = sampler.next_1d();
 ///     lens.x + lens.y + time
 /// });
 /// assert!(kernel.call((3, 4, 0)) < 3.0);
@@ -95,63 +56,100 @@ pub struct Sampler {
     pub count: u32,
     /// Next dimension.
     pub dimension: u32,
+    /// The placement of the samples.
+    pub method: SampleMethod,
 }
 
 #[kernel]
 impl Sampler {
-    /// Creates the sample `index` of `count` in a pixel. Another `seed` yields other samples
-    /// everywhere.
+    /// Creates the sample `index` of `count` in a pixel, placed by `method`. Another `seed` yields
+    /// other samples everywhere.
     #[inline]
-    pub fn new(pixel: UVec2, seed: u32, index: u32, count: u32) -> Self {
+    pub fn new(pixel: UVec2, seed: u32, index: u32, count: u32, method: SampleMethod) -> Self {
         let words = pcg4d(uvec4(pixel.x, pixel.y, seed, 0x5361_6d70));
-        Self { key: uvec2(words.x, words.y), index, count, dimension: 0 }
+        Self { key: uvec2(words.x, words.y), index, count, dimension: 0, method }
     }
 
     /// Returns the next dimension: a number from 0 to below 1.
-    #[inline]
-    pub fn next_1d(&mut self, #[host] method: SampleMethod) -> f32 {
-        let dimension = self.dimension;
+    #[inline(always)]
+    pub fn next_1d(&mut self) -> f32 {
+        let Self { key, index, count, dimension, method } = *self;
         self.dimension = dimension.wrapping_add(1);
         match method {
-            SampleMethod::Random => unit_f32(words_of(*self, dimension).x),
-            SampleMethod::Stratified => {
-                let jitter = unit_f32(words_of(*self, dimension).x);
-                let seed = pattern(*self, dimension, self.index / max(self.count, 1)).x;
-                stratified_1d(self.index, self.count, seed, jitter)
-            }
-            SampleMethod::Sobol => scrambled_sobol_1d(self.index, pattern(*self, dimension, 0)),
+            SampleMethod::Random => random_number(key, index, dimension),
+            SampleMethod::Stratified => stratified_number(key, index, count, dimension),
+            SampleMethod::Sobol => sobol_number(key, index, dimension),
         }
     }
 
     /// Returns the next two dimensions: a point of the unit square.
-    #[inline]
-    pub fn next_2d(&mut self, #[host] method: SampleMethod) -> Vec2 {
-        let dimension = self.dimension;
+    #[inline(always)]
+    pub fn next_2d(&mut self) -> Vec2 {
+        let Self { key, index, count, dimension, method } = *self;
         self.dimension = dimension.wrapping_add(2);
         match method {
-            SampleMethod::Random => unit_square(words_of(*self, dimension)),
-            SampleMethod::Stratified => {
-                let jitter = unit_square(words_of(*self, dimension));
-                let seeds = pattern(*self, dimension, self.index / max(self.count, 1));
-                stratified_2d(self.index, self.count, seeds, jitter)
-            }
-            SampleMethod::Sobol => scrambled_sobol_2d(self.index, pattern(*self, dimension, 0)),
+            SampleMethod::Random => random_point(key, index, dimension),
+            SampleMethod::Stratified => stratified_point(key, index, count, dimension),
+            SampleMethod::Sobol => sobol_point(key, index, dimension),
         }
     }
 }
 
-/// Returns random words of this sample.
+// The long ones are functions of their own, so that the choice between them is short enough to be
+// made in front of a loop.
+
 #[kernel]
 #[inline]
-fn words_of(sampler: Sampler, dimension: u32) -> UVec4 {
-    pcg4d(uvec4(sampler.key.x, sampler.key.y, dimension, sampler.index))
+fn random_number(key: UVec2, index: u32, dimension: u32) -> f32 {
+    unit_f32(words_of(key, index, dimension).x)
+}
+
+#[kernel]
+#[inline]
+fn random_point(key: UVec2, index: u32, dimension: u32) -> Vec2 {
+    unit_square(words_of(key, index, dimension))
+}
+
+#[kernel]
+#[inline]
+fn stratified_number(key: UVec2, index: u32, count: u32, dimension: u32) -> f32 {
+    let jitter = random_number(key, index, dimension);
+    let seed = pattern(key, dimension, index / max(count, 1)).x;
+    stratified_1d(index, count, seed, jitter)
+}
+
+#[kernel]
+#[inline]
+fn stratified_point(key: UVec2, index: u32, count: u32, dimension: u32) -> Vec2 {
+    let jitter = random_point(key, index, dimension);
+    let seeds = pattern(key, dimension, index / max(count, 1));
+    stratified_2d(index, count, seeds, jitter)
+}
+
+#[kernel]
+#[inline]
+fn sobol_number(key: UVec2, index: u32, dimension: u32) -> f32 {
+    scrambled_sobol_1d(index, pattern(key, dimension, 0))
+}
+
+#[kernel]
+#[inline]
+fn sobol_point(key: UVec2, index: u32, dimension: u32) -> Vec2 {
+    scrambled_sobol_2d(index, pattern(key, dimension, 0))
+}
+
+/// Returns random words of a sample.
+#[kernel]
+#[inline]
+fn words_of(key: UVec2, index: u32, dimension: u32) -> UVec4 {
+    pcg4d(uvec4(key.x, key.y, dimension, index))
 }
 
 /// Returns random words shared by all samples of the pixel: they count from the other end.
 #[kernel]
 #[inline]
-fn pattern(sampler: Sampler, dimension: u32, set: u32) -> UVec4 {
-    pcg4d(uvec4(sampler.key.x, sampler.key.y, dimension, !set))
+fn pattern(key: UVec2, dimension: u32, set: u32) -> UVec4 {
+    pcg4d(uvec4(key.x, key.y, dimension, !set))
 }
 
 #[kernel]

@@ -60,6 +60,7 @@ pub fn stratified_1d(i: u32, count: u32, seed: u32, jitter: f32) -> f32 {
 /// seeds are those of the order, the columns, and the positions within columns and rows; `jitter`
 /// is the point's position in its part.
 #[kernel]
+#[inline]
 pub fn stratified_2d(i: u32, count: u32, seeds: UVec4, jitter: Vec2) -> Vec2 {
     let n = max(count, 1);
     let columns = square_root(n);

@@ -68,10 +68,9 @@ lists! {
 /// use raydsl::testing::FilmTest;
 ///
 /// let camera = Pinhole::new(vec3(0.0, 0.0, 5.0), Vec3::ZERO, Vec3::Y, 1.0);
-/// let method = SampleMethod::Sobol;
 /// let fog = kernel!(|ray: Ray, sampler: Sampler| {
 ///     let mut sampler = sampler;
-///     let t = -2.0 * log2(1.0 - sampler.next_1d(host(method)));
+///     let t = -2.0 * log2(1.0 - sampler.next_1d());
 ///     if ray.at(t).y < 0.0 { 0.2 } else { 1.0 }
 /// });
 /// assert_variants_agree!(&fog, &FilmTest::new(&camera, 32, 24));

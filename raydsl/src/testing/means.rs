@@ -57,10 +57,9 @@ const CHANNELS: [&str; 4] = ["red", "green", "blue", "alpha"];
 ///
 /// let camera = Pinhole::new(vec3(0.0, 0.0, 5.0), Vec3::ZERO, Vec3::Y, 1.0);
 /// let sky = |gain: f32| {
-///     let method = SampleMethod::Sobol;
 ///     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
 ///         let mut sampler = sampler;
-///         gain * (1.0 + ray.direction.x + sampler.next_1d(host(method)))
+///         gain * (1.0 + ray.direction.x + sampler.next_1d())
 ///     });
 ///     let test = MeansTest::new();
 ///     let films = test.replications().map(|sampling| {

@@ -22,7 +22,7 @@ fn edge(p: Vec2) -> f64 {
 const EDGE: f64 = 0.4;
 
 fn sample(method: SampleMethod, seed: u32, index: u32, count: u32) -> Vec2 {
-    Sampler::new(uvec2(seed, seed / 7), 11, index, count).next_2d(method)
+    Sampler::new(uvec2(seed, seed / 7), 11, index, count, method).next_2d()
 }
 
 /// The root of the mean squared error of `count` samples, over `runs` pixels.

@@ -77,9 +77,9 @@ fn neighbours_are_uncorrelated() {
     let n = f64::from(side * side);
     for method in METHODS {
         let of = |x: u32, y: u32, index: u32, dimension: u32| {
-            let mut sampler = Sampler::new(uvec2(x, y), 9, index, 16);
+            let mut sampler = Sampler::new(uvec2(x, y), 9, index, 16, method);
             sampler.dimension = dimension;
-            sampler.next_2d(method)
+            sampler.next_2d()
         };
         let every = |pair: &dyn Fn(u32, u32) -> (f32, f32)| {
             correlation((0..side * side).map(|i| pair(i % side, i / side)))
@@ -109,8 +109,9 @@ fn samplers_fill_their_cells() {
     for set in 0..3 {
         let mut seen = [false; 64];
         for i in 0..64 {
-            let mut sampler = Sampler::new(uvec2(5, 6), 1, set * 64 + i, 64);
-            let p = sampler.next_2d(SampleMethod::Stratified) * 8.0;
+            let mut sampler =
+                Sampler::new(uvec2(5, 6), 1, set * 64 + i, 64, SampleMethod::Stratified);
+            let p = sampler.next_2d() * 8.0;
             seen[p.y as usize * 8 + p.x as usize] = true;
         }
         assert!(seen.iter().all(|s| *s), "set {set}");
@@ -123,8 +124,8 @@ fn samplers_have_no_bad_counts() {
     for method in METHODS {
         for count in [0, 1, 2, 3, 7, 1000, u32::MAX] {
             for index in [0, 1, 5, 1 << 20, u32::MAX] {
-                let mut sampler = Sampler::new(uvec2(u32::MAX, 0), 1, index, count);
-                let (p, x) = (sampler.next_2d(method), sampler.next_1d(method));
+                let mut sampler = Sampler::new(uvec2(u32::MAX, 0), 1, index, count, method);
+                let (p, x) = (sampler.next_2d(), sampler.next_1d());
                 let unit = 0.0..1.0;
                 let all = [p.x, p.y, x];
                 assert!(all.iter().all(|x| unit.contains(x)), "{method:?} {index} {count} {all:?}");

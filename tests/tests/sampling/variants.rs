@@ -1,6 +1,5 @@
 //! Every variant gives the same numbers.
 
-use raydsl::kernel;
 use raydsl::machine::Type as KernelType;
 use raydsl::prelude::*;
 use raydsl::sampling::{
@@ -9,6 +8,7 @@ use raydsl::sampling::{
     scrambled_sobol_1d, scrambled_sobol_2d, sobol_2d, stratified_1d, stratified_2d, unit_f32,
     van_der_corput,
 };
+use raydsl::{assert_variants_agree, kernel};
 use raydsl_tests::check::{Wgsl, every_variant, wgsl_agrees};
 use raydsl_tests::rng::Rng as Source;
 use raydsl_tests::scaled;
@@ -83,22 +83,111 @@ fn integers_and_sequences() {
     every_variant(&Kernel::of::<sequences>(), &words(3));
 }
 
-/// The method is the host's: of the others WGSL has nothing.
+const METHODS: [SampleMethod; 3] =
+    [SampleMethod::Random, SampleMethod::Stratified, SampleMethod::Sobol];
+
+/// Asserts that WGSL has the method, and of the others nothing.
+fn assert_only(method: SampleMethod, wgsl: &str) {
+    // Jitter in strata is random.
+    let [random, stratified, sobol] =
+        ["fn random_", "fn stratified_", "sobol"].map(|name| wgsl.contains(name));
+    assert_eq!(stratified, method == SampleMethod::Stratified, "{wgsl}");
+    assert_eq!(sobol, method == SampleMethod::Sobol, "{wgsl}");
+    assert_eq!(random, method != SampleMethod::Sobol, "{wgsl}");
+    let tests = wgsl.lines().filter(|line| line.contains("method") && line.contains("if ("));
+    assert_eq!(tests.count(), 0, "{wgsl}");
+}
+
+/// The host knows the method.
 #[test]
 fn samplers() {
-    for method in [SampleMethod::Random, SampleMethod::Stratified, SampleMethod::Sobol] {
+    for method in METHODS {
         let kernel = kernel!(|a: u32, b: u32, c: u32, d: u32| {
-            let mut sampler = Sampler::new(uvec2(a, b), d, c % 100, d % 60);
-            let first = sampler.next_2d(host(method));
-            let second = sampler.next_1d(host(method));
-            (first, second, sampler.next_2d(host(method)), sampler.dimension)
+            let mut sampler = Sampler::new(uvec2(a, b), d, c % 100, d % 60, method);
+            let first = sampler.next_2d();
+            let second = sampler.next_1d();
+            (first, second, sampler.next_2d(), sampler.dimension)
         });
         every_variant(&kernel, &words(4));
-        let wgsl = kernel.wgsl();
-        let has = |name: &str| wgsl.contains(name);
-        assert_eq!(has("stratified"), method == SampleMethod::Stratified, "{wgsl}");
-        assert_eq!(has("sobol"), method == SampleMethod::Sobol, "{wgsl}");
-        assert!(!has("method"), "{wgsl}");
+        assert_only(method, &kernel.wgsl());
+    }
+}
+
+#[kernel]
+fn wandered(sampler: &mut Sampler, steps: u32) -> f32 {
+    let mut length = 0.0;
+    for _ in 0..steps {
+        let step = sampler.next_2d();
+        if step.x > 0.7 {
+            continue;
+        }
+        length += step.y + sampler.next_1d();
+    }
+    length
+}
+
+/// Numbers drawn in loops within loops, by a sampler made outside, as a path tracer has it.
+#[test]
+fn samplers_in_loops() {
+    for method in METHODS {
+        let kernel = kernel!(|a: u32, b: u32, c: u32, d: u32| {
+            let mut sampler = Sampler::new(uvec2(a, b), d, c % 100, d % 60, method);
+            let mut sum = Vec2::ZERO;
+            for i in 0..c % 5 {
+                sum += sampler.next_2d();
+                let mut copy = sampler;
+                while copy.next_1d() < 0.5 {
+                    sum.x += copy.next_1d();
+                }
+                sum.y += wandered(&mut sampler, i);
+                if sum.y > 4.0 {
+                    break;
+                }
+            }
+            (sum, sampler.dimension)
+        });
+        assert_variants_agree!(&kernel, &words(4));
+        assert_only(method, &kernel.wgsl());
+    }
+}
+
+/// A kernel may change the method, and may be given samplers of several.
+#[test]
+fn samplers_of_several_methods() {
+    let kernel = kernel!(|a: u32, b: u32, c: u32, d: u32| {
+        let mut sampler = Sampler::new(uvec2(a, b), d, c % 100, d % 60, SampleMethod::Sobol);
+        let mut sum = Vec2::ZERO;
+        for _ in 0..3 {
+            sum += sampler.next_2d();
+            if sum.x > 0.7 {
+                sampler.method = SampleMethod::Random;
+            }
+        }
+        (sum, sampler.next_1d())
+    });
+    assert_variants_agree!(&kernel, &words(4));
+    let wgsl = kernel.wgsl();
+    assert!(wgsl.contains("sobol") && wgsl.contains("random_"), "{wgsl}");
+    assert!(!wgsl.contains("stratified"), "{wgsl}");
+    let given: Vec<(Sampler,)> = (0..300)
+        .map(|i| (Sampler::new(uvec2(i, i / 7), 3, i % 16, 16, METHODS[i as usize % 3]),))
+        .collect();
+    let kernel = kernel!(|sampler: Sampler| {
+        let mut sampler = sampler;
+        let first = sampler.next_2d();
+        (first, sampler.next_1d(), wandered(&mut sampler, 3))
+    });
+    assert_variants_agree!(&kernel, &given);
+    // And a list of samplers of one method has that alone.
+    for (i, method) in METHODS.into_iter().enumerate() {
+        let of_one: Vec<Sampler> = given.iter().skip(i).step_by(3).map(|g| g.0).collect();
+        let list = &of_one[..];
+        let kernel = kernel!(|i: u32| {
+            let mut sampler = list[i as usize % list.len()];
+            wandered(&mut sampler, 4)
+        });
+        assert_variants_agree!(&kernel, &(0..50).map(|i| (i,)).collect::<Vec<(u32,)>>());
+        assert_only(method, &kernel.wgsl());
     }
 }
 

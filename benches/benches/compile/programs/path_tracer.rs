@@ -129,7 +129,6 @@ fn radiance(
     scene: &Bvh<'_, Wall>,
     materials: &[Material],
     lamp: Wall,
-    #[host] method: SampleMethod,
     first: Ray,
     mut sampler: Sampler,
 ) -> Vec3 {
@@ -158,17 +157,17 @@ fn radiance(
         }
         let point = facing(surface, seen);
         let emission = materials[lamp.material as usize].emission;
-        let u = sampler.next_2d(method);
+        let u = sampler.next_2d();
         let direct = lamp_light(scene, lamp, emission, material, point, seen, u);
         light += throughput * direct;
-        let choice = sampler.next_1d(method);
-        let scattered = scatter(material, point.normal, seen, choice, sampler.next_2d(method));
+        let choice = sampler.next_1d();
+        let scattered = scatter(material, point.normal, seen, choice, sampler.next_2d());
         throughput *= scattered.weight;
         density = scattered.density;
         let mut lives = throughput.max_element() > 0.0;
         if bounce >= SURE_BOUNCES {
             let chance = min(throughput.max_element(), 0.95);
-            lives = lives && sampler.next_1d(method) < chance;
+            lives = lives && sampler.next_1d() < chance;
             throughput /= chance;
         }
         if !lives {
@@ -292,7 +291,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scene = Bvh::build(&walls)?;
     let materials = &materials[..];
     let camera = Pinhole::new(vec3(0.0, 1.0, 4.1), vec3(0.0, 1.0, 0.0), Vec3::Y, 0.62);
-    let method = SampleMethod::Sobol;
     let scheduler = TiledScheduler::new();
 
     // What is seen first: its colour, darker where it is seen at a slant.
@@ -314,7 +312,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // The mean of many paths. One that is far brighter than the lamp would be seen as a speck.
     let brightest = 10.0;
     let film = kernel!(|ray: Ray, sampler: Sampler| {
-        let light = radiance(&scene, materials, lamp, host(method), ray, sampler);
+        let light = radiance(&scene, materials, lamp, ray, sampler);
         light.min(Vec3::splat(brightest))
     });
     let (start, mut picture) = (Instant::now(), Film::new(args.width, args.width));
