@@ -126,32 +126,39 @@ struct Absorbed {
 /// that of the whole cell in the world.
 #[kernel]
 #[inline]
+#[expect(clippy::excessive_precision, reason = "the reference in `f64` has all digits")]
 fn absorbed(cubic: Cubic, interval: Interval, from: f32, width: f32, length: f32) -> Absorbed {
     let Interval { below, above, .. } = interval;
     let per = 1.0 / (above.value - below.value);
     // Places between the knots, at Gauss's four points.
-    let pa = clamp((cubic.at(from + width * 0.069431844) - below.value) * per, 0.0, 1.0);
-    let pb = clamp((cubic.at(from + width * 0.33000948) - below.value) * per, 0.0, 1.0);
-    let pc = clamp((cubic.at(from + width * 0.66999052) - below.value) * per, 0.0, 1.0);
-    let pd = clamp((cubic.at(from + width * 0.93056816) - below.value) * per, 0.0, 1.0);
+    let pa = clamp((cubic.at(from + width * 0.069431844202973712) - below.value) * per, 0.0, 1.0);
+    let pb = clamp((cubic.at(from + width * 0.33000947820757187) - below.value) * per, 0.0, 1.0);
+    let pc = clamp((cubic.at(from + width * 0.66999052179242813) - below.value) * per, 0.0, 1.0);
+    let pd = clamp((cubic.at(from + width * 0.93056815579702629) - below.value) * per, 0.0, 1.0);
     // Extinctions there, times the length.
     let run = width * length;
     let (first, more) = (below.extinction * run, (above.extinction - below.extinction) * run);
     let (a, b, c, d) = (first + more * pa, first + more * pb, first + more * pc, first + more * pd);
     // Optical depths before each.
-    let ta = a * 0.08696371 - b * 0.02660418 + c * 0.012627463 - d * 0.0035551497;
-    let tb = a * 0.18811812 + b * 0.16303629 - c * 0.027880428 + d * 0.0067355006;
-    let tc = a * 0.16719192 + b * 0.35395301 + c * 0.16303629 - d * 0.014190695;
-    let td = a * 0.17748257 + b * 0.31344511 + c * 0.35267676 + d * 0.08696371;
+    let ta = a * 0.086963711284363464 - b * 0.026604180084998793 + c * 0.012627462689404725
+        - d * 0.0035551496857956832;
+    let tb = a * 0.18811811749986807 + b * 0.16303628871563654 - c * 0.027880428602470895
+        + d * 0.0067355005945381555;
+    let tc = a * 0.16719192197418877 + b * 0.35395300603374397 + c * 0.16303628871563654
+        - d * 0.014190694931141143;
+    let td = a * 0.17748257225452261
+        + b * 0.31344511474186835
+        + c * 0.35267675751627186
+        + d * 0.086963711284363464;
     // What is absorbed around each.
-    let wa = a * 0.17392742 * exp(-ta);
-    let wb = b * 0.32607258 * exp(-tb);
-    let wc = c * 0.32607258 * exp(-tc);
-    let wd = d * 0.17392742 * exp(-td);
+    let wa = a * 0.17392742256872693 * exp(-ta);
+    let wb = b * 0.32607257743127307 * exp(-tb);
+    let wc = c * 0.32607257743127307 * exp(-tc);
+    let wd = d * 0.17392742256872693 * exp(-td);
     let sum = (wa + wb) + (wc + wd);
     let mean = ((wa * pa + wb * pb) + (wc * pc + wd * pd)) / max(sum, f32::MIN_POSITIVE);
     Absorbed {
-        depth: (a + d) * 0.17392742 + (b + c) * 0.32607258,
+        depth: (a + d) * 0.17392742256872693 + (b + c) * 0.32607257743127307,
         // Of a piece so thick that no point gets light, the beginning is seen.
         place: if sum > f32::MIN_POSITIVE { clamp(mean, 0.0, 1.0) } else { pa },
     }

@@ -589,7 +589,7 @@ mod tests {
 
     #[test]
     fn placements_have_an_inverse() {
-        let grid = |config| Grid::new(&[0u8; 1][..], UVec3::ONE, config).map(|_| ()).map_err(|e| e);
+        let grid = |config| Grid::new(&[0u8; 1][..], UVec3::ONE, config).map(|_| ());
         let flat = GridConfig::new().spacing(vec3(1.0, 0.0, 1.0));
         assert_eq!(grid(flat), Err(GridError::Placement));
         let nan = GridConfig::new().origin(vec3(f32::NAN, 0.0, 0.0));

@@ -168,6 +168,7 @@ fn spline_weights(x: f32) -> Vec4 {
 
 #[kernel]
 #[inline]
+#[expect(clippy::needless_range_loop, reason = "each number is a place too")]
 pub(super) fn b_spline<T: Voxel>(grid: &Grid<'_, T>, p: Vec3) -> f32 {
     let layout = grid.layout();
     let at = clamp(to_voxels(grid, p), layout.low, layout.high);
@@ -184,7 +185,7 @@ pub(super) fn b_spline<T: Voxel>(grid: &Grid<'_, T>, p: Vec3) -> f32 {
         for j in 0..4 {
             for i in 0..4 {
                 let number = voxel_at(grid, base + vec3(i as f32, j as f32, k as f32) - 1.0);
-                is_whole = is_whole & number.is_finite();
+                is_whole &= number.is_finite();
                 // Differences, so that a constant grid has its own value.
                 sum += (number - center) * (xs[i] * ys[j] * zs[k]);
             }

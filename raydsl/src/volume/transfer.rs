@@ -159,7 +159,7 @@ impl TransferFunction {
     /// Returns the greatest extinction of the values from `range.x` to `range.y`; 0 if the first is
     /// greater.
     pub fn greatest_extinction(&self, range: Vec2) -> f32 {
-        if !(range.x <= range.y) {
+        if range.x.partial_cmp(&range.y).is_none_or(core::cmp::Ordering::is_gt) {
             return 0.0;
         }
         let ends = self.at(range.x).extinction.max(self.at(range.y).extinction);

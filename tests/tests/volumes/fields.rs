@@ -195,7 +195,7 @@ fn constant_grids_are_constant() {
 
 #[test]
 fn missing_voxels_empty_their_cells() {
-    let mut voxels = vec![1.0f32; 27];
+    let mut voxels = [1.0f32; 27];
     voxels[13] = f32::NAN;
     voxels[26] = f32::INFINITY;
     let grid = Grid::new(&voxels[..], uvec3(3, 3, 3), GridConfig::new()).expect("a grid");
@@ -208,7 +208,7 @@ fn missing_voxels_empty_their_cells() {
         kernel!(|p: Vec3| (grid.value(p), grid.nearest(p), grid.b_spline(p), grid.has_value(p)));
     assert_variants_agree!(&kernel, &inputs);
 
-    let mut voxels = vec![1.0f32; 27];
+    let mut voxels = [1.0f32; 27];
     voxels[26] = f32::INFINITY;
     let grid = Grid::new(&voxels[..], uvec3(3, 3, 3), GridConfig::new()).expect("a grid");
     assert!(!grid.has_value(vec3(1.5, 1.5, 1.5)));

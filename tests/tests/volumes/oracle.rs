@@ -44,10 +44,10 @@ impl Field {
         let mut sum = 0.0;
         for corner in 0..8 {
             let (mut i, mut stride, mut weight) = (0, 1, 1.0);
-            for a in 0..3 {
+            for (a, part) in parts.iter().enumerate() {
                 let side = corner >> a & 1;
-                let index = (parts[a].0 + side).min(self.size[a] - 1);
-                weight *= if side == 1 { parts[a].1 } else { 1.0 - parts[a].1 };
+                let index = (part.0 + side).min(self.size[a] - 1);
+                weight *= if side == 1 { part.1 } else { 1.0 - part.1 };
                 i += index * stride;
                 stride *= self.size[a];
             }

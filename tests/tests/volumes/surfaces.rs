@@ -69,7 +69,7 @@ fn surfaces_and_values_along_rays() {
         }
         let signs: Vec<bool> = values.iter().map(|v| *v > f64::from(level)).collect();
         let changes: Vec<f64> =
-            (1..count).filter(|i| signs[*i] != signs[*i - 1]).map(|i| place(i)).collect();
+            (1..count).filter(|i| signs[*i] != signs[*i - 1]).map(place).collect();
         for change in &changes {
             let nearest = crossings.iter().map(|t| (t - change).abs()).fold(f64::MAX, f64::min);
             assert!(nearest < 5e-3, "{ray:?}: no surface at {change}: {crossings:?}");
