@@ -75,22 +75,18 @@ fn run(args: &Args) -> Result<(), Failure> {
         .to_world(scan.to_world)
         .centering(centering)
         .rescale(scan.scale, scan.offset);
-    match scan.voxels {
-        Voxels::U8(all) => show(args, &Grid::new(all, scan.size, config)?),
-        Voxels::U16(all) => show(args, &floats(&all, scan.size, config)?),
-        Voxels::I16(all) => show(args, &floats(&all, scan.size, config)?),
-        Voxels::F32(all) => show(args, &Grid::new(all, scan.size, config)?),
-    }
+    // One type of voxels is one kernel to compile; integers of 8 and 16 bits are exact.
+    let voxels: Vec<f32> = match scan.voxels {
+        Voxels::U8(all) => numbers(&all),
+        Voxels::U16(all) => numbers(&all),
+        Voxels::I16(all) => numbers(&all),
+        Voxels::F32(all) => all,
+    };
+    show(args, &Grid::new(voxels, scan.size, config)?)
 }
 
-/// The same values as `f32`: this program has kernels for two types of voxels.
-fn floats<T: Voxel>(
-    all: &[T],
-    size: UVec3,
-    config: GridConfig,
-) -> Result<Grid<'static, f32>, Failure> {
-    let all: Vec<f32> = all.iter().map(|v| v.number()).collect();
-    Ok(Grid::new(all, size, config)?)
+fn numbers<T: Voxel>(all: &[T]) -> Vec<f32> {
+    all.iter().map(|v| v.number()).collect()
 }
 
 /// Colours and opacities over the range of the values; `size` is that of the scan.
@@ -139,7 +135,7 @@ impl Method {
     }
 }
 
-fn show<T: Voxel>(args: &Args, grid: &Grid<'_, T>) -> Result<(), Failure> {
+fn show(args: &Args, grid: &Grid<'_, f32>) -> Result<(), Failure> {
     if !(args.step > 0.0 && args.step.is_finite()) {
         return Err(Failure::Usage(format!("--step {} is not above 0", args.step)));
     }

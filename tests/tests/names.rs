@@ -5,6 +5,7 @@ use raydsl::{assert_variants_agree, kernel};
 
 /// Variables named like locals of the macro's own, which closures of lifted code mention.
 #[kernel]
+#[expect(clippy::needless_late_init, reason = "it is what the test is about")]
 fn named_like_locals(v: Vec3, n: u32) -> f32 {
     let args = v;
     let m = vec2(v.x, v.y);

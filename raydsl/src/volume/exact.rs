@@ -5,7 +5,7 @@ use super::grid::GridLayout;
 use super::integrator::{
     Inside, Layer, VolumeIntegrator, inside, integrator, macro_walk, majorant_of,
 };
-use super::light::VolumeLight;
+use super::light::{MOST_OPTICAL_DEPTH, VolumeLight};
 use super::sample::{InCell, cell_at, gradient_in};
 use super::transfer::{TransferFunction, TransferKnot};
 use super::volume::{Volume, VolumeView};
@@ -137,7 +137,8 @@ fn absorbed(cubic: Cubic, interval: Interval, from: f32, width: f32, length: f32
     let pd = clamp((cubic.at(from + width * 0.93056815579702629) - below.value) * per, 0.0, 1.0);
     // Extinctions there, times the length.
     let run = width * length;
-    let (first, more) = (below.extinction * run, (above.extinction - below.extinction) * run);
+    let first = min(below.extinction * run, MOST_OPTICAL_DEPTH);
+    let more = min(above.extinction * run, MOST_OPTICAL_DEPTH) - first;
     let (a, b, c, d) = (first + more * pa, first + more * pb, first + more * pc, first + more * pd);
     // Optical depths before each.
     let ta = a * 0.086963711284363464 - b * 0.026604180084998793 + c * 0.012627462689404725

@@ -31,6 +31,9 @@ pub struct VolumeLight {
     depth_rest: f32,
 }
 
+/// Optical depth that counts as infinite: sums of it stay finite.
+pub(super) const MOST_OPTICAL_DEPTH: f32 = 1e30;
+
 /// Returns the same number, opaque to compilers: those of some drivers reorder sums.
 #[kernel]
 #[inline]
@@ -60,6 +63,7 @@ impl VolumeLight {
     #[inline]
     pub fn then(self, radiance: Vec3, depth: f32) -> Self {
         let arriving = radiance * self.transmittance();
+        let depth = min(depth, MOST_OPTICAL_DEPTH);
         let sum = vec4(self.radiance.x, self.radiance.y, self.radiance.z, self.depth);
         let more = vec4(
             arriving.x + self.radiance_rest.x,

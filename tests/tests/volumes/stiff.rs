@@ -2,7 +2,7 @@
 
 use raydsl::prelude::*;
 use raydsl::testing;
-use raydsl::volume::{ExactCell, TransferFunction, VolumeLight};
+use raydsl::volume::{Euler, ExactCell, MeanExtinction, Midpoint, TransferFunction, VolumeLight};
 
 use super::{along, column, linear, volume};
 
@@ -154,4 +154,24 @@ fn a_diagonal() {
     let ray = Ray::new(Vec3::splat(-1.0), Vec3::ONE);
     let alpha = -(-2.5980762113533159f64).exp_m1();
     assert_near("diagonal", &volume, ray, [alpha, alpha]);
+}
+
+/// An extinction whose optical depth leaves the range of `f32`: an opaque layer.
+#[test]
+fn extinction_without_bound_is_opaque() {
+    let grid = column(3, 1e6, |_| 0.5);
+    let colors = [(0.0, Vec3::splat(0.25))];
+    let black = TransferFunction::from_extinction(&colors, &[(0.0, 3e38)]).expect("a function");
+    let volume = volume(&grid, black);
+    assert_near("opaque", &volume, along(), [0.25, 1.0]);
+    for light in [
+        volume.integrate(&Midpoint::new(1e5).least(0.0), along(), VolumeLight::new()),
+        volume.integrate(&Euler::new(1e5).least(0.0), along(), VolumeLight::new()),
+        volume.integrate(&MeanExtinction::new(1e5).least(0.0), along(), VolumeLight::new()),
+        volume.integrate(&ExactCell::new().least(0.0), along(), VolumeLight::new()),
+    ] {
+        let light = volume.integrate(&ExactCell::new(), along(), light);
+        assert!((light.rgba() - vec4(0.25, 0.25, 0.25, 1.0)).abs().max_element() < 1e-6);
+        assert!(light.depth.is_finite());
+    }
 }
