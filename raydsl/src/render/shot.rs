@@ -228,6 +228,42 @@ mod tests {
         Pass { rays, kernel, sampling, first: 0, count: 8, allocation: None, kept: PhantomData }
     }
 
+    /// The kernel draws in loops, by the method of the film, which it does not name.
+    #[test]
+    fn a_film_has_its_method_alone() {
+        let pinhole = Pinhole::new(Vec3::Z, Vec3::ZERO, Vec3::Y, 1.0);
+        let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+            let mut sampler = sampler;
+            let mut light = 0.0;
+            for bounce in 0..8 {
+                for _ in 0..bounce {
+                    light += sampler.next_2d().x;
+                }
+                if sampler.next_1d() > 0.9 {
+                    break;
+                }
+            }
+            light * ray.direction.z
+        });
+        for (method, sobol, stratified) in [
+            (SampleMethod::Random, false, false),
+            (SampleMethod::Stratified, false, true),
+            (SampleMethod::Sobol, true, false),
+        ] {
+            let sampling = Sampling::new(16).method(method);
+            let (rays, allocation) = (pinhole.begin_frame(4, 4), None);
+            let (first, count, kept) = (0, 8, PhantomData::<fn()>);
+            let text =
+                wgsl(&Pass { rays, kernel: &kernel, sampling, first, count, allocation, kept });
+            let has = ["sobol", "stratified"].map(|name| text.contains(name));
+            assert_eq!(has, [sobol, stratified], "{text}");
+            assert_eq!(text.contains("fn random_"), !sobol, "{text}");
+        }
+        // A frame has no sampling.
+        let frame = wgsl(&Frame { rays: pinhole.begin_frame(4, 4), kernel: &kernel });
+        assert!(frame.contains("sobol") && !frame.contains("random_"), "{frame}");
+    }
+
     #[test]
     fn what_is_not_asked_for_leaves_no_trace() {
         let pinhole = Pinhole::new(Vec3::Z, Vec3::ZERO, Vec3::Y, 1.0);
