@@ -4,6 +4,7 @@
 
 mod agreement;
 mod cuts;
+mod edit;
 mod fields;
 mod oracle;
 mod stiff;
