@@ -166,13 +166,17 @@ fn largest(v: vec3<f32>) -> f32 {
     return max(max(v.x, v.y), v.z);
 }
 
+fn negligible(d: vec3<f32>) -> f32 {
+    return max(largest(abs(d)) * 8.6736174e-19f, 1.1754944e-38f);
+}
+
 fn at_least(x: f32, size: f32) -> f32 {
     let signed = select(size, -size, (x < 0.0f));
     return select(x, signed, (abs(x) < size));
 }
 
 fn finite_inverse(d: vec3<f32>) -> vec3<f32> {
-    let least = max(largest(abs(d)) * 8.6736174e-19f, 1.1754944e-38f);
+    let least = negligible(d);
     return 1.0f / vec3<f32>(at_least(d.x, least), at_least(d.y, least), at_least(d.z, least));
 }
 

@@ -176,8 +176,9 @@ struct Sheared {
     k: u32,
 }
 
+/// Returns the vertices as [`intersect`] sees them, bit for bit.
 #[kernel]
-#[inline(always)]
+#[inline]
 fn sheared(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Sheared {
     // Make the axis along which the ray runs fastest z.
     let ax = ray.direction.x.abs();
@@ -219,8 +220,30 @@ fn sheared(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Sheared {
 #[kernel]
 #[inline]
 pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
-    let Sheared { a, b, c, d, .. } = sheared(ray, v0, v1, v2);
-    let (a_x, a_y, b_x, b_y, c_x, c_y) = (a.x, a.y, b.x, b.y, c.x, c.y);
+    // Make the axis along which the ray runs fastest z.
+    let ax = ray.direction.x.abs();
+    let ay = ray.direction.y.abs();
+    let az = ray.direction.z.abs();
+    let k = if ax > ay && ax > az {
+        0u32
+    } else if ay > az {
+        1u32
+    } else {
+        2u32
+    };
+    let d = axis_last(ray.direction, k);
+    let a = axis_last(v0 - ray.origin, k);
+    let b = axis_last(v1 - ray.origin, k);
+    let c = axis_last(v2 - ray.origin, k);
+    // Shear the ray onto the z axis.
+    let sx = d.x / d.z;
+    let sy = d.y / d.z;
+    let a_x = a.x - sx * a.z;
+    let a_y = a.y - sy * a.z;
+    let b_x = b.x - sx * b.z;
+    let b_y = b.y - sy * b.z;
+    let c_x = c.x - sx * c.z;
+    let c_y = c.y - sy * c.z;
     // Test the side of each edge on which the ray passes. Rounding keeps the order of two products
     // or makes them equal, so a sign is right or zero, and zero counts as inside.
     let xs = vec3(a_x, b_x, c_x);
