@@ -1,8 +1,8 @@
 //! Volumes on one thread: every integrator and variant, its rate and its error.
 //!
-//! The volume is the head made in code, or with `RAYDSL_DATA` the brain that lies there. The rate is
-//! that of nominal samples: the length of all rays in the volume's box over the step, one voxel for
-//! the exact cell. The error is against the exact cell in `f64`.
+//! The volume is the head made in code. The rate is that of nominal samples: the length of all rays
+//! in the volume's box over the step, one voxel for the exact cell. The error is against the exact
+//! cell in `f64`.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -32,7 +32,7 @@ struct Args {
     /// Only the integrators whose names contain one of these words.
     #[arg(long)]
     only: Vec<String>,
-    /// Rays along an edge of the grid of those whose error is found.
+    /// The square root of the number of rays whose error is found; 0 finds none.
     #[arg(long, default_value_t = 24)]
     checked: u32,
     /// Cargo says so.

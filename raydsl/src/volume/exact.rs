@@ -28,7 +28,7 @@ use glam::{Vec3, vec3};
 /// I", II.7). Pieces of more than unit depth are divided further, as long as light passes.
 ///
 /// So opacity is right to rounding, radiance is between the least and the greatest colour that the
-/// ray meets, and its error is some 1e-5 at most. (Splitting at the knots: Weiss and Westermann,
+/// ray meets; the rule is right to some 3e-6. Where the function has a step, rounding moves its place. (Splitting at the knots: Weiss and Westermann,
 /// "Analytic Ray Splitting for Controlled Precision DVR", 2021.)
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
 pub struct ExactCell {

@@ -25,7 +25,7 @@ impl Surface for Ball {
     }
 }
 
-/// Lengths inside and outside of the objects, how many parts there are, and where the last begins.
+/// Lengths inside and outside of the objects, and how many parts each has.
 #[kernel]
 fn parts<S: Scene + ?Sized>(scene: &S, ray: Ray) -> (f32, f32, u32, u32) {
     let (mut inside, mut outside) = (0.0, 0.0);

@@ -51,7 +51,7 @@ fn linear_ramps() {
     }
 }
 
-/// Two of the same numbers: what all variants give, and the value that they should have.
+/// Asserts radiance and opacity of the exact cell, in every variant.
 #[track_caller]
 fn assert_near(name: &str, volume: &raydsl::volume::Volume<'_, f32>, ray: Ray, expected: [f64; 2]) {
     let exact = ExactCell::new().least(0.0);
@@ -98,7 +98,6 @@ fn thin_and_thick_ramps() {
             let grid = column(count, 1.0, |t| t);
             let rising = volume(&grid, linear((2.0 * depth) as f32, 0.0, 1.0));
             let alpha = -(-depth).exp_m1();
-            // The integral of s² exp(-s²) 2/... by series where thin, else by the error function.
             let expected = ramp(depth);
             assert_near(&format!("ramp {depth:e} in {count}"), &rising, along(), [expected, alpha]);
         }
