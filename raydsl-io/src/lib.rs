@@ -6,6 +6,7 @@
         feature = "nifti",
         feature = "nrrd",
         feature = "obj",
+        feature = "paraview",
         feature = "ply",
         feature = "raw",
         feature = "stack",
@@ -49,6 +50,7 @@ mod stack;
     feature = "nifti",
     feature = "nrrd",
     feature = "obj",
+    feature = "paraview",
     feature = "ply",
     feature = "raw",
     feature = "stack",
@@ -67,6 +69,8 @@ mod xyz;
 
 pub mod cloud;
 pub mod mesh;
+#[cfg(feature = "paraview")]
+pub mod paraview;
 pub mod volume;
 
 pub use error::{LoadError, Place};
