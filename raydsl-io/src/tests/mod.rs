@@ -4,6 +4,7 @@ mod files;
 mod hostile;
 mod memory;
 mod meshes;
+mod mutations;
 mod presets;
 mod volumes;
 mod volumes_hostile;

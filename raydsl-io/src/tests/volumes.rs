@@ -545,7 +545,7 @@ fn metaimage_of_every_type() {
 }
 
 /// Writes voxels to a file, and gives its name.
-fn beside(data: &[u8]) -> (Temp, String) {
+pub(super) fn beside(data: &[u8]) -> (Temp, String) {
     let file = Temp::new("raw", data);
     let name = file.0.file_name().expect("a name").to_string_lossy().into_owned();
     (file, name)

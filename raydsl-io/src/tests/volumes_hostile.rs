@@ -12,7 +12,7 @@ use crate::volume::{ByteOrder, VoxelType, Voxels, load_raw, load_stack};
 const LITTLE: ByteOrder = ByteOrder::Little;
 
 /// A small file of each kind, and whether its end can be seen.
-fn files() -> Vec<(&'static str, Vec<u8>, bool)> {
+pub(super) fn files() -> Vec<(&'static str, Vec<u8>, bool)> {
     let kind = VoxelType::I16;
     let data = bytes_of(kind, LITTLE, &numbers(kind));
     let words: Vec<_> = numbers(kind).iter().map(|n| format!("{n}")).collect();
@@ -46,7 +46,7 @@ fn files() -> Vec<(&'static str, Vec<u8>, bool)> {
 
 /// A volume as it has to be, or an error of one line.
 #[track_caller]
-fn check(extension: &str, bytes: &[u8], case: &str) {
+pub(super) fn check(extension: &str, bytes: &[u8], case: &str) {
     match load_volume(extension, bytes) {
         Ok(volume) => {
             assert_eq!(volume.voxels.len() as u32, volume.size.element_product());
