@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Parser;
-use raydsl::kernel::{Variant, Variants};
+use raydsl::kernel::Variant;
 use raydsl_examples::args::{point, size, variant};
 
 /// Render a laser scan as coloured spheres, by every variant of one kernel.
@@ -55,10 +55,4 @@ pub(crate) struct Args {
     /// Vertical field of view in degrees.
     #[arg(long, value_name = "DEG")]
     pub(crate) fov: Option<f64>,
-}
-
-impl Args {
-    pub(crate) fn variants(&self) -> Variants {
-        Variants::of(&self.variants)
-    }
 }

@@ -14,12 +14,11 @@ use std::time::Instant;
 
 use args::Args;
 use clap::Parser;
-use indicatif::{ProgressBar, ProgressStyle};
 use raydsl::bvh::{BuildConfig, BuildError};
-use raydsl::kernel::Kernel;
 use raydsl::prelude::*;
+use raydsl_examples::comparison::{Frames, bar};
 use raydsl_examples::heat_map::HeatMap;
-use raydsl_report::{Compare, Comparison, SceneInfo};
+use raydsl_report::SceneInfo;
 use rayon::prelude::*;
 use scan::Scan;
 
@@ -102,18 +101,10 @@ fn run(args: &Args) -> Result<(), Failure> {
     });
     // ANCHOR_END: kernel
 
-    let found = compare_variants(args, &primary, &scan.camera);
-    println!("\n{}", found.table());
-    if let Some(adapter) = &found.adapter {
-        println!("WGSL ran on {adapter}.");
-    }
-    println!(
-        "Medians of {} interleaved runs of {width}x{height} rays on {} threads; the pictures are in {}.",
-        args.runs,
-        rayon::current_num_threads(),
-        args.out.display()
-    );
-    found.write(&args.out)?;
+    let frames =
+        Frames { size: args.size, runs: args.runs, variants: &args.variants, out: &args.out };
+    let found = frames.compare(&primary, &scan.camera);
+    frames.report(&found)?;
     let costs = heat_map(&scan, &bvh, width, height);
     let path = args.out.join("cost.png");
     costs.write_png(&path).map_err(|e| cannot_write(&path, &e))?;
@@ -148,28 +139,6 @@ fn cannot_write(path: &Path, e: &dyn std::fmt::Display) -> Failure {
     Failure::File { path: path.display().to_string(), reason: e.to_string() }
 }
 
-/// Runs every variant that was asked for, with a bar.
-fn compare_variants(
-    args: &Args,
-    kernel: &Kernel<'_, (Ray,), Shaded>,
-    camera: &Pinhole,
-) -> Comparison<Shaded> {
-    let variants = args.variants();
-    let steps = variants.iter().count() * (usize::from(args.runs) + 1);
-    let bar = bar(steps as u64, "rendering");
-    let found = Compare::new()
-        .size(args.size.0, args.size.1)
-        .runs(args.runs.into())
-        .variants(&variants)
-        .progress(|name| {
-            bar.set_message(format!("rendering {name}"));
-            bar.inc(1);
-        })
-        .run(kernel, camera);
-    bar.finish_and_clear();
-    found
-}
-
 /// Nodes and primitives that the ray of every pixel visits, as in the paper's Figure 5.
 fn heat_map(scan: &Scan, bvh: &Bvh<'_, ColorSphere>, width: u32, height: u32) -> HeatMap {
     use raydsl::camera::{Camera, CameraRays};
@@ -184,11 +153,4 @@ fn heat_map(scan: &Scan, bvh: &Bvh<'_, ColorSphere>, width: u32, height: u32) ->
         })
         .collect();
     HeatMap { title: "nodes+spheres".to_owned(), width, height, values }
-}
-
-/// A progress bar that is silent where nobody watches.
-fn bar(length: u64, message: &'static str) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg:28} {wide_bar} {percent:>3} %")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(length).with_style(style).with_message(message)
 }

@@ -44,6 +44,16 @@ pub fn point(text: &str) -> Result<[f64; 3], String> {
     parts.try_into().map_err(|_| "write three numbers, for example 1,2,3".to_owned())
 }
 
+/// `0.5`, above 0.
+///
+/// # Errors
+///
+/// A text that is no such number, with the remedy.
+pub fn length(text: &str) -> Result<f32, String> {
+    let number = text.trim().parse().ok().filter(|n: &f32| *n > 0.0 && n.is_finite());
+    number.ok_or_else(|| "write a number above 0, for example 0.5".to_owned())
+}
+
 /// `30s`, or `30`.
 ///
 /// # Errors
@@ -71,6 +81,14 @@ pub fn share(text: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lengths_are_read() {
+        assert_eq!(length("2.5"), Ok(2.5));
+        for wrong in ["", "0", "-1", "nan", "inf", "1e-99", "1e99", "one"] {
+            assert!(length(wrong).is_err_and(|e| e.contains("0.5")), "{wrong}");
+        }
+    }
 
     #[test]
     fn times_and_shares_are_read() {

@@ -2,6 +2,7 @@
 
 pub mod args;
 pub mod cloud;
+pub mod comparison;
 pub mod head;
 pub mod heat_map;
 pub mod mesh;

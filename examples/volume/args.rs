@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
-use raydsl::kernel::{Variant, Variants};
-use raydsl_examples::args::{point, size, variant};
+use raydsl::kernel::Variant;
+use raydsl_examples::args::{length, point, size, variant};
+
+use super::transfer::Choice;
 
 /// Render a scan as a volume, cut open, by every variant of one kernel.
 #[derive(Debug, Parser)]
@@ -13,9 +15,19 @@ pub(crate) struct Args {
     /// The scan: .nii, .nii.gz, .vti, .mha, .mhd, .nrrd.
     #[arg(value_name = "FILE")]
     pub(crate) file: Option<PathBuf>,
-    /// Colours and opacities.
-    #[arg(long, value_name = "PRESET", default_value = "tissue")]
-    pub(crate) tf: Preset,
+    // Its help lists what there is.
+    #[arg(
+        long,
+        value_name = "NAME|FILE",
+        default_value = "tissue",
+        value_parser = Choice::parse,
+        help = Choice::help()
+    )]
+    pub(crate) tf: Choice,
+    /// Thickness of the layer that opacities are of, in the file's units [default: 1/200 of the
+    /// scan's extent].
+    #[arg(long, value_name = "D", value_parser = length)]
+    pub(crate) unit: Option<f32>,
     /// What is cut away: sphere:X,Y,Z,R, plane:X,Y,Z,D (all p with n·p <= D), or mesh:FILE, in the
     /// file's units; with `!` before it, all but that. Several are cut one after another.
     #[arg(long, value_name = "CUT", allow_hyphen_values = true)]
@@ -27,7 +39,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME", default_value = "shaded-cell")]
     pub(crate) integrator: Integrator,
     /// Step of the integrators that take steps, in voxels.
-    #[arg(long, value_name = "VOXELS", default_value_t = 0.5)]
+    #[arg(long, value_name = "VOXELS", default_value = "0.5", value_parser = length)]
     pub(crate) step: f32,
     /// Picture size.
     #[arg(long, value_name = "WxH", default_value = "960x960", value_parser = size)]
@@ -50,25 +62,6 @@ pub(crate) struct Args {
     /// Direction from the middle to the camera [default: from the front, the left and above].
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub(crate) from: Option<[f64; 3]>,
-}
-
-impl Args {
-    pub(crate) fn variants(&self) -> Variants {
-        Variants::of(&self.variants)
-    }
-}
-
-/// Transfer functions, over the range of the scan's values.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Preset {
-    /// Skin, brain and bone, opaque.
-    Tissue,
-    /// Thin skin over what is dense.
-    Glass,
-    /// What is dense alone.
-    Bone,
-    /// The sum of all, as a radiograph.
-    Xray,
 }
 
 /// Integrators by name.

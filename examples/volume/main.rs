@@ -6,22 +6,22 @@
 
 mod args;
 mod cuts;
+mod transfer;
 
 use std::process::ExitCode;
 use std::time::Instant;
 
-use args::{Args, Integrator, Preset};
+use args::{Args, Integrator};
 use clap::Parser;
 use cuts::Cuts;
-use indicatif::{ProgressBar, ProgressStyle};
 use raydsl::prelude::*;
 use raydsl::volume::{
     Centering, Cut, Euler, ExactCell, ExponentialLeft, Grid, GridConfig, MeanExtinction, Midpoint,
-    ShadedCell, TransferFunction, Volume, VolumeLight, Voxel,
+    ShadedCell, Volume, VolumeLight, Voxel,
 };
+use raydsl_examples::comparison::Frames;
 use raydsl_examples::head::head;
 use raydsl_io::volume::{VolumeFile, Voxels};
-use raydsl_report::{Compare, Comparison};
 
 /// What ends the program: one line, and exit code 2.
 #[derive(Debug, thiserror::Error)]
@@ -89,26 +89,6 @@ fn numbers<T: Voxel>(all: &[T]) -> Vec<f32> {
     all.iter().map(|v| v.number()).collect()
 }
 
-/// Colours and opacities over the range of the values; `size` is that of the scan.
-fn transfer(preset: Preset, range: Vec2, size: f32) -> Result<TransferFunction, Failure> {
-    let at = |share: f32| range.x + (range.y - range.x) * share;
-    let skin = vec3(0.86, 0.6, 0.48);
-    let (grey, white, bone) = (vec3(0.8, 0.66, 0.6), vec3(0.93, 0.9, 0.84), vec3(1.0, 0.98, 0.9));
-    let colors =
-        [(at(0.22), skin), (at(0.36), skin), (at(0.46), grey), (at(0.66), white), (at(0.85), bone)];
-    let opacities: &[(f32, f32)] = match preset {
-        Preset::Tissue => &[(0.16, 0.0), (0.24, 0.55), (0.35, 0.6), (0.45, 0.9), (1.0, 0.97)],
-        Preset::Glass => {
-            &[(0.2, 0.0), (0.26, 0.03), (0.34, 0.02), (0.55, 0.04), (0.62, 0.7), (1.0, 0.9)]
-        }
-        Preset::Bone => &[(0.72, 0.0), (0.8, 0.9)],
-        Preset::Xray => &[(0.15, 0.0), (1.0, 0.02)],
-    };
-    let opacities: Vec<_> =
-        opacities.iter().map(|(share, opacity)| (at(*share), *opacity)).collect();
-    Ok(TransferFunction::new(&colors, &opacities, size / 200.0)?)
-}
-
 // ANCHOR: integrators
 /// Any of the integrators: WGSL has the one that is captured.
 #[derive(Clone, Copy, raydsl::Type)]
@@ -135,50 +115,91 @@ impl Method {
     }
 }
 
-fn show(args: &Args, grid: &Grid<'_, f32>) -> Result<(), Failure> {
-    if !(args.step > 0.0 && args.step.is_finite()) {
-        return Err(Failure::Usage(format!("--step {} is not above 0", args.step)));
+/// Where the scan is in the world, and how it is looked at.
+struct View {
+    middle: Vec3,
+    /// Size of the box around it.
+    spans: Vec3,
+    /// Longest side of that box.
+    extent: f32,
+    /// Size of a voxel along it.
+    voxel: f32,
+    /// Direction to the camera.
+    from: Vec3,
+    up: Vec3,
+}
+
+impl View {
+    fn new(grid: &Grid<'_, f32>, from: Option<[f64; 3]>) -> Self {
+        let (size, to_world) = (grid.size(), grid.config().to_world);
+        let spans = (to_world.matrix3 * size.as_vec3()).abs();
+        let extent = spans.max_element();
+        let from = from.map_or(vec3(0.75, 1.15, 0.55), |v| Vec3::from(v.map(|x| x as f32)));
+        let from = from.normalize_or(Vec3::Y);
+        Self {
+            middle: to_world.transform_point3((size - 1).as_vec3() * 0.5),
+            spans,
+            extent,
+            voxel: extent / size.max_element() as f32,
+            from,
+            up: if from.z.abs() > 0.99 { Vec3::Y } else { Vec3::Z },
+        }
     }
-    let range = grid.range();
-    let size = grid.size();
-    println!("{} x {} x {} voxels, values from {} to {}", size.x, size.y, size.z, range.x, range.y);
-    let to_world = grid.config().to_world;
-    let middle = to_world.transform_point3((size - 1).as_vec3() * 0.5);
-    let spans = to_world.matrix3 * size.as_vec3();
-    let extent = spans.abs().max_element();
-    let voxel = extent / size.max_element() as f32;
+
+    fn camera(&self) -> Pinhole {
+        Pinhole::new(self.middle + self.from * self.extent * 2.6, self.middle, self.up, 0.42)
+    }
+
+    /// Direction to the light, from beside the camera.
+    fn to_light(&self) -> Vec3 {
+        let right = self.from.cross(self.up).normalize();
+        (self.from + right * 0.5 + self.up * 0.5).normalize()
+    }
+}
+
+/// The volume of a scan, with a line on how much of it is skipped.
+fn volume<'a>(
+    args: &Args,
+    grid: &'a Grid<'a, f32>,
+    view: &View,
+) -> Result<Volume<'a, f32>, Failure> {
+    let unit = args.unit.unwrap_or(view.extent / 200.0);
+    let function = args.tf.function(grid.range(), unit)?;
     let start = Instant::now();
-    let volume = Volume::new(grid, transfer(args.tf, range, extent)?);
+    let volume = Volume::new(grid, function);
     let empty = volume.majorants().iter().filter(|m| **m == 0.0).count();
     println!(
         "{empty} of {} macro-cells are empty, found in {:.1} ms",
         volume.majorants().len(),
         start.elapsed().as_secs_f64() * 1e3
     );
+    Ok(volume)
+}
 
+/// The cuts that were asked for, or else one that shows the inside.
+fn cuts(args: &Args, view: &View) -> Result<Cuts, Failure> {
     let mut cuts = Cuts::default();
     for text in &args.cut {
         cuts.add(text)?;
     }
     if args.cut.is_empty() && !args.whole {
         // A ball out of the front, and the side nearest to the camera.
-        let [x, y, z] = (middle + spans.abs() * vec3(0.22, 0.3, 0.3)).to_array();
-        cuts.add(&format!("sphere:{x},{y},{z},{}", extent * 0.3))?;
+        let [x, y, z] = (view.middle + view.spans * vec3(0.22, 0.3, 0.3)).to_array();
+        cuts.add(&format!("sphere:{x},{y},{z},{}", view.extent * 0.3))?;
     }
+    Ok(cuts)
+}
+
+fn show(args: &Args, grid: &Grid<'_, f32>) -> Result<(), Failure> {
+    let (size, range) = (grid.size(), grid.range());
+    println!("{} x {} x {} voxels, values from {} to {}", size.x, size.y, size.z, range.x, range.y);
+    let view = View::new(grid, args.from);
+    let volume = volume(args, grid, &view)?;
+    let cuts = cuts(args, &view)?;
     let (away, kept) = (cuts.away.scene()?, cuts.kept.scene()?);
     let keeps_all = cuts.kept.is_empty();
-
-    let from = args.from.map_or(vec3(0.75, 1.15, 0.55), |v| Vec3::from(v.map(|x| x as f32)));
-    let from = from.normalize_or(Vec3::Y);
-    let up = if from.z.abs() > 0.99 { Vec3::Y } else { Vec3::Z };
-    let camera = Pinhole::new(middle + from * extent * 2.6, middle, up, 0.42);
-    let to_light = (from + from.cross(up).normalize() * 0.5 + up * 0.5).normalize();
-    let method = Method::of(
-        args.integrator,
-        args.step * voxel,
-        to_light,
-        (range.y - range.x) / voxel * 0.08,
-    );
+    let edge = (range.y - range.x) / view.voxel * 0.08;
+    let method = Method::of(args.integrator, args.step * view.voxel, view.to_light(), edge);
     let background = vec3(0.05, 0.06, 0.08);
     // ANCHOR: kernel
     let primary = kernel!(|ray: Ray| {
@@ -203,43 +224,8 @@ fn show(args: &Args, grid: &Grid<'_, f32>) -> Result<(), Failure> {
     });
     // ANCHOR_END: kernel
 
-    let found = compare_variants(args, &primary, &camera);
-    println!("\n{}", found.table());
-    if let Some(adapter) = &found.adapter {
-        println!("WGSL ran on {adapter}.");
-    }
-    println!(
-        "Medians of {} interleaved runs of {}x{} rays on {} threads; the pictures are in {}.",
-        args.runs,
-        args.size.0,
-        args.size.1,
-        rayon::current_num_threads(),
-        args.out.display()
-    );
-    found.write(&args.out)?;
+    let frames =
+        Frames { size: args.size, runs: args.runs, variants: &args.variants, out: &args.out };
+    frames.report(&frames.compare(&primary, &view.camera()))?;
     Ok(())
-}
-
-/// Runs every variant that was asked for, with a bar.
-fn compare_variants(
-    args: &Args,
-    kernel: &Kernel<'_, (Ray,), Shaded>,
-    camera: &Pinhole,
-) -> Comparison<Shaded> {
-    let variants = args.variants();
-    let steps = variants.iter().count() * (usize::from(args.runs) + 1);
-    let style = ProgressStyle::with_template("{msg:28} {wide_bar} {percent:>3} %")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    let bar = ProgressBar::new(steps as u64).with_style(style).with_message("rendering");
-    let found = Compare::new()
-        .size(args.size.0, args.size.1)
-        .runs(args.runs.into())
-        .variants(&variants)
-        .progress(|name| {
-            bar.set_message(format!("rendering {name}"));
-            bar.inc(1);
-        })
-        .run(kernel, camera);
-    bar.finish_and_clear();
-    found
 }

@@ -1,0 +1,230 @@
+//! Transfer functions by name: presets of this program, colour maps, and files of ParaView.
+
+use std::path::{Path, PathBuf};
+
+use colorous::Gradient;
+use raydsl::prelude::*;
+use raydsl::volume::TransferFunction;
+
+use super::Failure;
+
+/// Colours and opacities by value.
+type Knots = (Vec<(f32, Vec3)>, Vec<(f32, f32)>);
+
+/// Colours of what scans of bodies show, over the range of their values.
+const TISSUE: [(f32, Vec3); 5] = [
+    (0.22, SKIN),
+    (0.36, SKIN),
+    (0.46, vec3(0.8, 0.66, 0.6)),
+    (0.66, vec3(0.93, 0.9, 0.84)),
+    (0.85, vec3(1.0, 0.98, 0.9)),
+];
+const SKIN: Vec3 = vec3(0.86, 0.6, 0.48);
+
+/// The colours of tissue with opacities over the range of a scan's values.
+#[derive(Debug)]
+pub(crate) struct Preset {
+    name: &'static str,
+    about: &'static str,
+    opacities: &'static [(f32, f32)],
+}
+
+const PRESETS: [Preset; 4] = [
+    Preset {
+        name: "tissue",
+        about: "skin, brain and bone, opaque",
+        opacities: &[(0.16, 0.0), (0.24, 0.55), (0.35, 0.6), (0.45, 0.9), (1.0, 0.97)],
+    },
+    Preset {
+        name: "glass",
+        about: "thin skin over what is dense",
+        opacities: &[(0.2, 0.0), (0.26, 0.03), (0.34, 0.02), (0.55, 0.04), (0.62, 0.7), (1.0, 0.9)],
+    },
+    Preset { name: "bone", about: "what is dense alone", opacities: &[(0.72, 0.0), (0.8, 0.9)] },
+    Preset {
+        name: "xray",
+        about: "the sum of all, as a radiograph",
+        opacities: &[(0.15, 0.0), (1.0, 0.02)],
+    },
+];
+
+const MAPS: [(&str, Gradient); 15] = [
+    ("viridis", colorous::VIRIDIS),
+    ("magma", colorous::MAGMA),
+    ("inferno", colorous::INFERNO),
+    ("plasma", colorous::PLASMA),
+    ("cividis", colorous::CIVIDIS),
+    ("turbo", colorous::TURBO),
+    ("warm", colorous::WARM),
+    ("cool", colorous::COOL),
+    ("cubehelix", colorous::CUBEHELIX),
+    ("rainbow", colorous::RAINBOW),
+    ("spectral", colorous::SPECTRAL),
+    ("red-blue", colorous::RED_BLUE),
+    ("blues", colorous::BLUES),
+    ("greens", colorous::GREENS),
+    ("greys", colorous::GREYS),
+];
+
+/// Linear pieces of a colour map: each channel is within a level of a byte.
+const PIECES: u16 = 128;
+
+/// Opacities of what has none of its own, over the range of a scan's values.
+const RAMP: [(f32, f32); 2] = [(0.1, 0.0), (1.0, 0.9)];
+
+/// Which transfer function is asked for.
+#[derive(Clone, Debug)]
+pub(crate) enum Choice {
+    Preset(&'static Preset),
+    Map(Gradient),
+    File(PathBuf),
+}
+
+impl Choice {
+    /// Reads a name of the command line.
+    pub(crate) fn parse(text: &str) -> Result<Self, String> {
+        if let Some(preset) = PRESETS.iter().find(|p| p.name == text) {
+            return Ok(Self::Preset(preset));
+        }
+        if let Some((_, map)) = MAPS.iter().find(|m| m.0 == text) {
+            return Ok(Self::Map(*map));
+        }
+        let path = Path::new(text);
+        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
+            return Ok(Self::File(path.into()));
+        }
+        let presets: Vec<&str> = PRESETS.iter().map(|p| p.name).collect();
+        Err(format!(
+            "choose from {}, {}, or a .json file of ParaView",
+            presets.join(", "),
+            map_names()
+        ))
+    }
+
+    /// What `--help` says of it.
+    pub(crate) fn help() -> String {
+        let presets: Vec<String> =
+            PRESETS.iter().map(|p| format!("{} ({})", p.name, p.about)).collect();
+        format!(
+            "Colours and opacities: {}; a colour map with opacities that rise from the tenth of the \
+             values' range on ({}); or a .json file of ParaView, of which the first preset is taken; \
+             values from 0 to 1 are spread over the range",
+            presets.join(", "),
+            map_names()
+        )
+    }
+
+    /// The function for values of a range; opacities are of layers as thick as `unit`.
+    pub(crate) fn function(&self, range: Vec2, unit: f32) -> Result<TransferFunction, Failure> {
+        let (mut colors, mut opacities) = self.knots()?;
+        let over_range = |share: f32| range.x + (range.y - range.x) * share;
+        // A file's own values are those of the data that it was made for.
+        let is_own = matches!(self, Self::File(_))
+            && (colors[0].0, colors[colors.len() - 1].0) != (0.0, 1.0);
+        if !is_own {
+            colors.iter_mut().for_each(|(value, _)| *value = over_range(*value));
+            opacities.iter_mut().for_each(|(value, _)| *value = over_range(*value));
+        }
+        if opacities.is_empty() {
+            opacities = RAMP.map(|(share, opacity)| (over_range(share), opacity)).into();
+        }
+        Ok(TransferFunction::new(&colors, &opacities, unit)?)
+    }
+
+    /// Colours and opacities as they are written: values are shares of a range, but for files that
+    /// have their own. There may be no opacities.
+    fn knots(&self) -> Result<Knots, Failure> {
+        Ok(match self {
+            Self::Preset(preset) => (TISSUE.into(), preset.opacities.into()),
+            Self::Map(map) => (sampled(map), Vec::new()),
+            Self::File(path) => {
+                let preset = raydsl_io::paraview::load(path)?.swap_remove(0);
+                (preset.colors, preset.opacities)
+            }
+        })
+    }
+}
+
+fn map_names() -> String {
+    MAPS.map(|m| m.0).join(", ")
+}
+
+fn sampled(map: &Gradient) -> Vec<(f32, Vec3)> {
+    let color = |share: f32| {
+        let c = map.eval_continuous(share.into());
+        Vec3::from([c.r, c.g, c.b].map(|byte| f32::from(byte) / 255.0))
+    };
+    let shares = (0..=PIECES).map(|i| f32::from(i) / f32::from(PIECES));
+    shares.map(|share| (share, color(share))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_known() {
+        for name in PRESETS.iter().map(|p| p.name).chain(MAPS.map(|m| m.0)) {
+            let choice = Choice::parse(name).expect(name);
+            let function = choice.function(vec2(-100.0, 900.0), 2.0).expect(name);
+            let knots = function.knots();
+            assert!(knots.iter().all(|k| (-100.0..=900.0).contains(&k.value)), "{name}");
+            assert_eq!(function.at(-100.0).extinction, 0.0, "{name}");
+            assert!(function.at(900.0).extinction > 0.0, "{name}");
+            assert!(Choice::help().contains(name));
+        }
+        let message = Choice::parse("jet").expect_err("no map of that name");
+        assert!(message.contains("tissue") && message.contains("turbo"), "{message}");
+        assert!(matches!(Choice::parse("a/b.JSON"), Ok(Choice::File(_))));
+    }
+
+    #[test]
+    fn ramps_begin_at_a_tenth() {
+        let function = Choice::parse("viridis").expect("a map").function(vec2(0.0, 10.0), 1.0);
+        let function = function.expect("a function");
+        assert_eq!(function.at(1.0).extinction, 0.0);
+        assert!(function.at(1.1).extinction > 0.0);
+        assert!((function.at(10.0).extinction - 10f32.ln()).abs() < 1e-5);
+        let end = function.at(10.0).color - vec3(253.0, 231.0, 37.0) / 255.0;
+        assert!(end.abs().max_element() < 0.01, "{end}");
+    }
+
+    /// Between knots a map is within a level of a byte of its own colours.
+    #[test]
+    fn pieces_are_enough() {
+        for (name, map) in MAPS {
+            let knots = sampled(&map);
+            for i in 0..1280u16 {
+                let place = f32::from(i) / 10.0;
+                let (from, to) = (knots[usize::from(i) / 10].1, knots[usize::from(i) / 10 + 1].1);
+                let color = map.eval_continuous(f64::from(place) / f64::from(PIECES));
+                let exact = Vec3::from([color.r, color.g, color.b].map(f32::from));
+                let error = (from.lerp(to, place.fract()) * 255.0 - exact).abs().max_element();
+                assert!(error < 2.0, "{name} at {place}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn files_of_shares_are_spread() {
+        let path = std::env::temp_dir().join(format!("volume-{}.json", std::process::id()));
+        let file = |first: i32, last: i32| {
+            let preset = format!(
+                r#"[{{"Name":"a","RGBPoints":[{first},1,0,0,{last},0,0,1],
+                "Points":[{first},0,0.5,0,{last},0.5,0.5,0]}}]"#
+            );
+            std::fs::write(&path, preset).expect("a temporary file");
+            Choice::File(path.clone()).function(vec2(100.0, 300.0), 1.0).expect("a function")
+        };
+        let spread = file(0, 1);
+        let own = file(0, 2);
+        std::fs::remove_file(&path).expect("it is there");
+        let ends = |function: &TransferFunction| {
+            let knots = function.knots();
+            (knots[0].value, knots[knots.len() - 1].value)
+        };
+        assert_eq!((ends(&spread), ends(&own)), ((100.0, 300.0), (0.0, 2.0)));
+        assert_eq!(spread.at(300.0).extinction, 2f32.ln());
+        assert_eq!(own.at(2.0).extinction, 2f32.ln());
+    }
+}
