@@ -280,8 +280,10 @@ impl Header {
         let z = if sign < 0.0 { -z } else { z };
         let [i, j, k] = rotation(self.rotation);
         let axes = [i.map(|c| c * x), j.map(|c| c * y), k.map(|c| c * z)];
-        place(axes, self.origin)
-            .ok_or_else(|| (self.rotation_at, "its rotation or origin is not finite".into()))
+        place(axes, self.origin).ok_or_else(|| {
+            let what = "its rotation, spacing or origin is not finite, or has no inverse";
+            (self.rotation_at, what.into())
+        })
     }
 }
 

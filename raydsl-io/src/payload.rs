@@ -421,14 +421,14 @@ fn widened<T, U>(payload: &Payload, from: &[T], to: impl Fn(&T) -> U) -> Result<
 }
 
 /// The map from indices to the world, by the steps along each axis and the place of the first
-/// voxel. None if it is not finite or has no inverse.
+/// voxel. None if it is not finite, or its inverse is not: there is none, or steps are too small.
 pub(crate) fn place(axes: [[f64; 3]; 3], origin: [f64; 3]) -> Option<Affine3> {
     let vector = |v: [f64; 3]| Vec3::from(v.map(|x| x as f32));
     let [x, y, z] = axes.map(vector);
     let map = Affine3::from_cols(x, y, z, vector(origin));
-    let [a, b, c] = [x, y, z].map(Vec3::as_dvec3);
-    let volume = a.dot(b.cross(c));
-    (map.is_finite() && volume.is_finite() && volume != 0.0).then_some(map)
+    // In `f32` the determinant of steps of a picometre is 0.
+    let inverse = map.as_daffine3().inverse().as_affine3();
+    (map.is_finite() && inverse.is_finite()).then_some(map)
 }
 
 /// Opens the file with the voxels, which a header names; it is beside the header or below.

@@ -27,7 +27,7 @@ use crate::{LoadError, Place};
 use curve::{follow, opacity};
 use spaces::Space;
 
-/// Bytes of a file at most; all of ParaView's own presets together are a quarter of it.
+/// Bytes of a file at most; ParaView's own presets, are 0.3 MB together.
 const LONGEST: u64 = 4 << 20;
 /// Knots of a file at most.
 const MOST: usize = 1 << 18;
@@ -53,6 +53,9 @@ pub struct Preset {
 }
 
 /// Loads the presets of a file, in its order. There is at least one.
+///
+/// The file is a list, as ParaView exports it. Comments and a comma behind the last element, which
+/// ParaView's import passes over, are errors here.
 ///
 /// Colour spaces are `RGB`, `HSV`, `Lab` (or `CIELAB`), `Diverging` and `Step`; a preset that tells
 /// none is `RGB`.

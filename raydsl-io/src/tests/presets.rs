@@ -129,6 +129,10 @@ fn broken_presets_are_named() {
         ("[]".into(), "holds no preset"),
         ("{}".into(), ":1: is no valid ParaView preset: invalid type: map"),
         ("[\n{}]".into(), ":2: is no valid ParaView preset: missing field `Name`"),
+        (
+            points("0,1,1,1").replace("}]", "},\n]"),
+            ":2: is no valid ParaView preset: trailing comma",
+        ),
         ("\u{feff}[]".into(), "expected value"),
         (with("\"a\":1"), "preset 'abc': it has neither RGBPoints nor IndexedColors"),
         (points(""), "it has neither RGBPoints nor IndexedColors"),
