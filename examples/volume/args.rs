@@ -10,18 +10,17 @@ use super::transfer::Choice;
 
 /// Render a scan as a volume, cut open, by every variant of one kernel.
 #[derive(Debug, Parser)]
-#[command(about, after_help = "Without a FILE a head is made in code.")]
+#[command(about, after_help = format!("{}\n\nWithout a FILE a head is made in code.", Choice::help()))]
 pub(crate) struct Args {
     /// The scan: .nii, .nii.gz, .vti, .mha, .mhd, .nrrd.
     #[arg(value_name = "FILE")]
     pub(crate) file: Option<PathBuf>,
-    // Its help lists what there is.
     #[arg(
         long,
         value_name = "NAME|FILE",
         default_value = "tissue",
         value_parser = Choice::parse,
-        help = Choice::help()
+        help = format!("Colours and opacities: {}", Choice::known())
     )]
     pub(crate) tf: Choice,
     /// Thickness of the layer that opacities are of, in the file's units [default: 1/200 of the
