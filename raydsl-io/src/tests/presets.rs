@@ -163,6 +163,16 @@ fn broken_presets_are_named() {
     assert!(matches!(paraview::load(std::env::temp_dir()), Err(LoadError::Unreadable { .. })));
 }
 
+#[test]
+fn cut_presets_are_errors() {
+    for end in 0..EXPORTED.len() {
+        match load_presets(&EXPORTED[..end]) {
+            Err(LoadError::Truncated { len, .. }) => assert_eq!(len, end as u64),
+            other => panic!("cut at {end}: {other:?}"),
+        }
+    }
+}
+
 /// Small files can ask for many knots.
 #[test]
 fn knots_are_counted() {
