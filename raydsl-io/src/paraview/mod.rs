@@ -34,7 +34,7 @@ const MOST: usize = 1 << 18;
 /// The greatest value, in size. Transfer functions need room beyond their last knot.
 const FAR: f64 = f32::MAX as f64 / 16.0;
 
-const REMEDY: &str = "export the preset again from ParaView's colour map editor";
+const REMEDY: &str = "mend it in ParaView's colour map editor, and export it again";
 
 /// Holds the colours and opacities of values: a preset of ParaView.
 #[derive(Clone, Debug, PartialEq)]
@@ -233,7 +233,7 @@ fn sorted(numbers: &[f64], list: &str) -> Result<Vec<[f64; 4]>, String> {
     for (i, point) in points.iter().enumerate() {
         let [value, shares @ ..] = point;
         if value.is_nan() || value.abs() > FAR {
-            return Err(format!("{list} have the value {value} at point {i}"));
+            return Err(format!("{list} have the value {value:e} at point {i}, beyond {FAR:.1e}"));
         }
         if let Some(share) = shares.iter().find(|share| !(0.0..=1.0).contains(*share)) {
             return Err(format!("{list} have {share} at point {i}, which is not from 0 to 1"));
