@@ -14,6 +14,7 @@ mod open;
 mod quadrature;
 mod textured;
 mod visibility;
+mod volumes;
 
 use std::error::Error;
 use std::process::{Command, ExitCode};
@@ -53,7 +54,8 @@ fn slow_cases() -> [(&'static str, Make); 3] {
 
 fn quick_cases() -> Vec<Case<'static>> {
     let last = vec![quadrature::case()];
-    [visibility::cases(), light::cases(), textured::cases(), last].into_iter().flatten().collect()
+    let all = [visibility::cases(), light::cases(), textured::cases(), last, volumes::cases()];
+    all.into_iter().flatten().collect()
 }
 
 /// The cases that are asked for, and the names of others with why they are left out.

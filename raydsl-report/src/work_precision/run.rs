@@ -144,6 +144,20 @@ impl<'a> Run<'a> {
         Ok(self.picture(&self.means(camera, kernel, PixelSampler::Jittered)?))
     }
 
+    /// Renders a film as [`Run::film`] does, with all rays through the centres of pixels: for methods
+    /// without random numbers.
+    ///
+    /// # Errors
+    ///
+    /// If there is no device for WGSL, or it refuses.
+    pub fn centers<C: Camera, A: FilmArgs, R: Radiance>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+    ) -> Result<Estimates, Missing> {
+        Ok(self.picture(&self.means(camera, kernel, PixelSampler::Center)?))
+    }
+
     /// Renders a film with a kernel that returns the light in red, and its own count in green:
     /// nodes visited, steps, look-ups.
     ///

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3, vec3};
 
-use super::cubic::{Cubic, Extremes, place_of};
+use super::cubic::{Cubic, Extremes, next_extreme, place_of};
 use super::grid::{Grid, GridLayout};
 use super::integrator::{Inside, inside, macro_walk};
 use super::sample::{InCell, cell_at, gradient_in, index_of};
@@ -15,8 +15,6 @@ use crate::{Type, kernel};
 /// Point where a ray meets the surface of one value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 pub struct SurfaceHit {
-    /// Whether there is one. If not, the rest is 0.
-    pub is_hit: bool,
     /// Distance along the ray.
     pub t: f32,
     /// Gradient of the value there, across the surface: change per length of the world.
@@ -25,9 +23,9 @@ pub struct SurfaceHit {
 
 /// A ray in a cell of the grid.
 #[derive(Clone, Copy, Debug, Type)]
-struct Passed {
-    cubic: Cubic,
-    cell: InCell,
+pub(super) struct Passed {
+    pub(super) cubic: Cubic,
+    pub(super) cell: InCell,
     from: Vec3,
     to: Vec3,
 }
@@ -35,7 +33,13 @@ struct Passed {
 /// Returns the value along a ray through a cell, from one distance to another.
 #[kernel]
 #[inline]
-fn passed<T: Voxel>(grid: &Grid<'_, T>, part: Inside, at: Vec3, enter: f32, leave: f32) -> Passed {
+pub(super) fn passed<T: Voxel>(
+    grid: &Grid<'_, T>,
+    part: Inside,
+    at: Vec3,
+    enter: f32,
+    leave: f32,
+) -> Passed {
     let layout: GridLayout = grid.layout();
     let (zero, one) = (vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
     let corner = clamp(at, zero, layout.last_cell);
@@ -53,45 +57,83 @@ fn range_of<T: Voxel>(grid: &Grid<'_, T>, cell: Vec3) -> Vec2 {
     grid.range_at(index_of(cell, grid.layout().macro_steps))
 }
 
+/// Walk along a ray from one surface of a value to the next.
+///
+/// ```
+/// use raydsl::prelude::*;
+/// use raydsl::volume::{Grid, GridConfig, SurfaceWalk, next_surface};
+///
+/// // 0, 1, 0, 1 along z.
+/// let voxels: Vec<f32> = (0..16).map(|i| (i / 4 % 2) as f32).collect();
+/// let grid = Grid::new(voxels, uvec3(2, 2, 4), GridConfig::new())?;
+/// let last = kernel!(|ray: Ray| {
+///     let mut walk = SurfaceWalk::new(ray, 0.5);
+///     let mut last = -1.0;
+///     while let Some(surface) = next_surface(&grid, &mut walk) {
+///         last = surface.t;
+///     }
+///     last
+/// });
+/// assert_eq!(last.call((Ray::new(vec3(0.5, 0.5, 0.0), Vec3::Z),)), 2.5);
+/// # Ok::<(), raydsl::volume::GridError>(())
+/// ```
+#[derive(Clone, Copy, Debug, Type)]
+pub struct SurfaceWalk {
+    /// What is left of the ray.
+    pub rest: Ray,
+    /// Value of the surfaces.
+    pub value: f32,
+    /// Whether values where the rest begins are above, if that is known.
+    is_above: bool,
+    is_known: bool,
+}
+
+#[kernel]
+impl SurfaceWalk {
+    /// Begins a walk at the ray's `t_min`, up to `t_max`.
+    #[inline]
+    pub fn new(ray: Ray, value: f32) -> Self {
+        Self { rest: ray, value, is_above: false, is_known: false }
+    }
+}
+
+/// Returns where the ray next meets a surface, from either side: the root of the cubic that the
+/// value is along the ray, to within rounding. A ray that touches a surface meets it where its
+/// value rises above, and where it falls back. Cells with missing voxels have no surfaces.
 #[kernel]
 #[inline(never)]
-pub(super) fn first_surface<T: Voxel>(grid: &Grid<'_, T>, ray: Ray, value: f32) -> SurfaceHit {
+pub fn next_surface<T: Voxel>(grid: &Grid<'_, T>, walk: &mut SurfaceWalk) -> Option<SurfaceHit> {
     let layout: GridLayout = grid.layout();
-    let part = inside(grid, ray);
-    let (start, _) = grid.span(ray);
-    let mut found = SurfaceHit { is_hit: false, t: 0.0, gradient: vec3(0.0, 0.0, 0.0) };
-    // The side of the value where the ray comes from, if that is known.
-    let (mut is_above, mut is_known) = (false, false);
-    let mut walk = macro_walk(grid, part);
-    while walk.is_inside && !found.is_hit {
-        let range = range_of(grid, walk.cell);
+    let value = walk.value;
+    let part = inside(grid, walk.rest);
+    let (start, _) = grid.span(walk.rest);
+    let mut found = SurfaceHit { t: 0.0, gradient: vec3(0.0, 0.0, 0.0) };
+    let mut is_hit = false;
+    let mut macros = macro_walk(grid, part);
+    while macros.is_inside && !is_hit {
+        let range = range_of(grid, macros.cell);
         if range.x <= value && value <= range.y {
-            let mut cells = walk.cells_of(layout.last_macro, layout.last_cell, -layout.low.floor());
-            while cells.is_inside && !found.is_hit {
+            let mut cells =
+                macros.cells_of(layout.last_macro, layout.last_cell, -layout.low.floor());
+            while cells.is_inside && !is_hit {
                 let Passed { cubic, cell, from, to } =
                     passed(grid, part, cells.cell, cells.enter, cells.leave);
                 if cell.is_whole {
-                    let Extremes { first, second } = cubic.extremes();
-                    if !is_known {
-                        is_above = cubic.c0 > value;
+                    let extremes = cubic.extremes();
+                    if !walk.is_known {
+                        walk.is_above = cubic.c0 > value;
                     }
                     let mut x = 0.0;
-                    while x < 1.0 && !found.is_hit {
-                        let stop = if x < first {
-                            min(first, 1.0)
-                        } else if x < second {
-                            min(second, 1.0)
-                        } else {
-                            1.0
-                        };
-                        if (cubic.at(stop) > value) != is_above {
+                    while x < 1.0 && !is_hit {
+                        let stop = next_extreme(extremes, x);
+                        if (cubic.at(stop) > value) != walk.is_above {
                             // From cell to cell the value may differ by rounding.
-                            let begins = (cubic.at(x) > value) == is_above;
-                            let place = if begins { place_of(cubic, value, x, stop) } else { x };
-                            let share = clamp(place, x, stop);
+                            let begins = (cubic.at(x) > value) == walk.is_above;
+                            let root = if begins { place_of(cubic, value, x, stop) } else { x };
+                            let share = clamp(root, x, stop);
                             let place = from + (to - from) * share;
+                            is_hit = true;
                             found = SurfaceHit {
-                                is_hit: true,
                                 t: start + (cells.enter + (cells.leave - cells.enter) * share),
                                 gradient: gradient_in(grid, InCell { place, ..cell }),
                             };
@@ -99,15 +141,30 @@ pub(super) fn first_surface<T: Voxel>(grid: &Grid<'_, T>, ray: Ray, value: f32) 
                         x = stop;
                     }
                 }
-                is_known = cell.is_whole;
+                walk.is_known = cell.is_whole;
                 cells.advance();
             }
         } else {
-            is_known = false;
+            walk.is_known = false;
         }
-        walk.advance();
+        macros.advance();
     }
-    found
+    walk.is_above = !walk.is_above;
+    walk.is_known = is_hit;
+    let rest = if is_hit { found.t } else { walk.rest.t_max };
+    walk.rest = walk.rest.with_range(rest, walk.rest.t_max);
+    if is_hit { Some(found) } else { None }
+}
+
+#[kernel]
+#[inline(never)]
+pub(super) fn first_surface<T: Voxel>(
+    grid: &Grid<'_, T>,
+    ray: Ray,
+    value: f32,
+) -> Option<SurfaceHit> {
+    let mut walk = SurfaceWalk::new(ray, value);
+    next_surface(grid, &mut walk)
 }
 
 #[kernel]

@@ -114,6 +114,14 @@ impl Cubic {
     }
 }
 
+/// Returns the first extreme place behind `x`, or 1.
+#[kernel]
+#[inline]
+pub(super) fn next_extreme(extremes: Extremes, x: f32) -> f32 {
+    let Extremes { first, second } = extremes;
+    if x < first { min(first, 1.0) } else { if x < second { min(second, 1.0) } else { 1.0 } }
+}
+
 /// Returns where a cubic that is monotone between two places has a value between theirs: by
 /// Newton's method within a bracket.
 #[kernel(known = PlaceOf)]

@@ -56,13 +56,13 @@ pub enum TransferError {
     /// There are no knots of colour, or none of opacity.
     #[error("a transfer function needs a knot of {of}")]
     NoKnots {
-        /// `colour` or `opacity`.
+        /// `colour`, `opacity` or `labels`.
         of: &'static str,
     },
     /// The values of knots decrease.
     #[error("knot {index} of {of} lies below the one before it: sort them by value")]
     Unsorted {
-        /// `colour` or `opacity`.
+        /// `colour`, `opacity` or `labels`.
         of: &'static str,
         /// Index of the knot, from 0 on.
         index: usize,
@@ -71,7 +71,7 @@ pub enum TransferError {
     /// to 1.
     #[error("knot {index} of {of} is out of range")]
     OutOfRange {
-        /// `colour` or `opacity`.
+        /// `colour`, `opacity` or `labels`.
         of: &'static str,
         /// Index of the knot, from 0 on.
         index: usize,

@@ -1,6 +1,6 @@
 //! The exact cell: the integral over a trilinear cell, piece by piece.
 
-use super::cubic::{Cubic, Extremes, place_of};
+use super::cubic::{Cubic, next_extreme, place_of};
 use super::grid::GridLayout;
 use super::integrator::{
     Inside, Layer, VolumeIntegrator, inside, integrator, macro_walk, majorant_of,
@@ -218,16 +218,12 @@ fn add_cell(
     cubic: Cubic,
     length: f32,
 ) {
-    let Extremes { first, second } = cubic.extremes();
+    let extremes = cubic.extremes();
     let mut x = 0.0;
     let mut value = cubic.c0;
     while x < 1.0 {
         // The value is monotone up to the next extreme place.
-        let stop = if x < first {
-            min(first, 1.0)
-        } else {
-            if x < second { min(second, 1.0) } else { 1.0 }
-        };
+        let stop = next_extreme(extremes, x);
         let at_stop = cubic.at(stop);
         let is_rising = at_stop > value;
         let bound = if is_rising { interval.above.value } else { interval.below.value };

@@ -536,10 +536,9 @@ methods! {
     /// distances at which it enters and leaves; the first is greater if it misses.
     sample::span(ray: Ray, RayOn<M>) -> (f32, f32), (F<M>, F<M>);
     /// Returns where a ray first meets the surface of one value, from either side, between its
-    /// `t_min` and `t_max`: the root of the cubic that the value is along the ray, to within
-    /// rounding. A ray that goes on from behind it finds the next one.
+    /// `t_min` and `t_max`; [`next_surface`](super::next_surface()) goes on to those behind it.
     along::first_surface(ray: Ray, RayOn<M>; value: f32, F<M>)
-        -> SurfaceHit, <SurfaceHit as Type>::On<M>;
+        -> Option<SurfaceHit>, <Option<SurfaceHit> as Type>::On<M>;
     /// Returns the greatest value along a ray, in the middle of cells too; `-f32::MAX` if it misses
     /// the grid.
     along::greatest(ray: Ray, RayOn<M>) -> f32, F<M>;

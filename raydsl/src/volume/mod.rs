@@ -1,31 +1,39 @@
 //! Volumes: scalar fields on grids, transfer functions, and integrals along rays.
 
+mod adaptive;
 mod along;
 mod cubic;
 mod cut;
 mod error;
 mod exact;
 mod grid;
+mod integral;
 mod integrator;
+mod labels;
 mod light;
 mod march;
 mod sample;
+mod tracking;
 mod transfer;
 #[expect(clippy::module_inception, reason = "the volume itself, among what belongs to it")]
 mod volume;
 mod voxel;
 mod walk;
 
-pub use along::SurfaceHit;
+pub use adaptive::Adaptive;
+pub use along::{SurfaceHit, SurfaceWalk, next_surface};
 pub use cut::{Cut, is_inside};
 pub use error::{GridError, TransferError};
 pub use exact::{ExactCell, ShadedCell};
 pub use grid::{
     Centering, Grid, GridConfig, GridLayout, GridView, MACRO_CELL, MAX_SIDE, MAX_VOXELS,
 };
+pub use integral::TransferIntegral;
 pub use integrator::VolumeIntegrator;
+pub use labels::Labels;
 pub use light::VolumeLight;
-pub use march::{Euler, ExponentialLeft, MeanExtinction, Midpoint};
+pub use march::{Euler, ExponentialLeft, MeanExtinction, Midpoint, PreIntegrated};
+pub use tracking::{delta_tracking, jackknife_transmittance, ratio_transmittance};
 pub use transfer::{TransferFunction, TransferKnot, TransferLayout, TransferSample, TransferView};
 pub use volume::{Volume, VolumeView};
 pub use voxel::{Corners, Voxel};

@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::error::TransferError;
+use super::integral::{TransferIntegral, integrals, mean_between};
 use crate::machine::generic::clamp;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
@@ -55,6 +56,9 @@ const FAR: f32 = f32::MAX / 4.0;
 /// Extinction of opacity 1, times the unit distance.
 const OPAQUE: f64 = 1e6;
 
+/// Label up to which halves between two are exact.
+const MOST_LABEL: u32 = 1 << 22;
+
 /// Error of opacity, over the unit distance, of the linear pieces that stand for its logarithm.
 const OPACITY_ERROR: f64 = 1.0 / 2048.0;
 
@@ -87,14 +91,16 @@ pub struct TransferFunction {
     knots: Vec<TransferKnot>,
     /// Interval of the value at which each bin begins.
     bins: Vec<u32>,
+    integrals: Vec<TransferIntegral>,
     layout: TransferLayout,
     owner: Owner,
 }
 
 impl Clone for TransferFunction {
     fn clone(&self) -> Self {
-        let Self { knots, bins, layout, .. } = self;
-        Self { knots: knots.clone(), bins: bins.clone(), layout: *layout, owner: Owner::new() }
+        let Self { knots, bins, integrals, layout, .. } = self;
+        let (knots, bins, integrals) = (knots.clone(), bins.clone(), integrals.clone());
+        Self { knots, bins, integrals, layout: *layout, owner: Owner::new() }
     }
 }
 
@@ -148,7 +154,52 @@ impl TransferFunction {
         let bins = (0..BINS).map(|bin| interval(&knots, begin(bin).next_down()) as u32).collect();
         let last_bin = (BINS - 1) as f32;
         let layout = TransferLayout { first, per_value, last_bin, last: knots.len() as u32 - 2 };
-        Ok(Self { knots, bins, layout, owner: Owner::new() })
+        let integrals = integrals(&knots);
+        Ok(Self { knots, bins, integrals, layout, owner: Owner::new() })
+    }
+
+    /// Creates the function of labels: `(label, colour, opacity)`, sorted by label; opacities are
+    /// from 0 to 1, of a layer of thickness `unit`. Values within 0.5 of a label are that label; all
+    /// others are empty.
+    ///
+    /// ```
+    /// use raydsl::prelude::*;
+    /// use raydsl::volume::TransferFunction;
+    ///
+    /// let organs = [(3, vec3(0.8, 0.1, 0.1), 0.5), (7, vec3(0.9, 0.9, 0.7), 1.0)];
+    /// let function = TransferFunction::labels(&organs, 1.0)?;
+    /// assert_eq!(function.at(3.0).color, vec3(0.8, 0.1, 0.1));
+    /// assert_eq!(function.at(5.0).extinction, 0.0);
+    /// # Ok::<(), raydsl::volume::TransferError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If there are no labels, they are not sorted or above 2^22, or a number is out of range.
+    pub fn labels(labels: &[(u32, Vec3, f32)], unit: f32) -> Result<Self, TransferError> {
+        let of = "labels";
+        let (mut colors, mut opacities) = (Vec::new(), Vec::new());
+        let mut before = None;
+        for (index, &(label, color, opacity)) in labels.iter().enumerate() {
+            if label > MOST_LABEL {
+                return Err(TransferError::OutOfRange { of, index });
+            }
+            if before.is_some_and(|before| before >= label) {
+                return Err(TransferError::Unsorted { of, index });
+            }
+            let [low, high] = [-0.5, 0.5].map(|half| label as f32 + half);
+            let is_next = before.is_some_and(|before| before + 1 == label);
+            if !is_next {
+                opacities.push((low, 0.0));
+            } else {
+                // The step down that the label before ends with.
+                opacities.pop();
+            }
+            colors.extend([(low, color), (high, color)]);
+            opacities.extend([(low, opacity), (high, opacity), (high, 0.0)]);
+            before = Some(label);
+        }
+        Self::new(&colors, &opacities, unit)
     }
 
     /// Returns the knots of both, sorted by value.
@@ -178,6 +229,7 @@ impl TransferFunction {
         TransferView {
             knots: Slice::owned(&self.knots, slice(0), name).suffixed("knots"),
             bins: Slice::owned(&self.bins, slice(1), name).suffixed("bins"),
+            integrals: Slice::owned(&self.integrals, slice(2), name).suffixed("integrals"),
             layout: self.layout,
             name,
         }
@@ -307,6 +359,7 @@ fn interval(knots: &[TransferKnot], value: f32) -> usize {
 pub struct TransferView<'a> {
     knots: Slice<'a, TransferKnot>,
     bins: Slice<'a, u32>,
+    integrals: Slice<'a, TransferIntegral>,
     layout: TransferLayout,
     name: &'static str,
 }
@@ -364,6 +417,7 @@ impl TableView for TransferView<'_> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
         visit(&self.knots);
         visit(&self.bins);
+        visit(&self.integrals);
     }
 
     fn is_same(&self, other: &Self) -> bool {
@@ -395,6 +449,11 @@ impl TransferFunction {
     }
 
     #[inline(always)]
+    pub(super) fn integral(&self, i: u32) -> TransferIntegral {
+        self.integrals[i as usize]
+    }
+
+    #[inline(always)]
     pub(super) fn interval(&self, value: f32) -> u32 {
         interval_by_bins(self, value)
     }
@@ -403,6 +462,15 @@ impl TransferFunction {
     #[inline]
     pub fn at(&self, value: f32) -> TransferSample {
         sample_of(self, value)
+    }
+
+    /// Returns the mean of extinction over all values between two, each as frequent as any other,
+    /// and that of colour, weighted by extinction: what a thin layer has whose value runs evenly
+    /// from one to the other. Knots between them count, however narrow their peaks. Right to
+    /// rounding.
+    #[inline]
+    pub fn between(&self, a: f32, b: f32) -> TransferSample {
+        mean_between(self, a, b).mean
     }
 }
 
@@ -433,6 +501,26 @@ impl<M: Machine> Method<{ name("bin") }, M, (U<M>,)> for TransferView<'_> {
     #[inline(always)]
     fn call(self, m: &M, (i,): (U<M>,)) -> U<M> {
         m.element(&self.bins, i)
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine> Method<{ name("integral") }, M, (U<M>,)> for TransferView<'_> {
+    type Output = <TransferIntegral as MachineType>::On<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (i,): (U<M>,)) -> Self::Output {
+        m.element(&self.integrals, i)
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine> Method<{ name("between") }, M, (F<M>, F<M>)> for TransferView<'_> {
+    type Output = <TransferSample as MachineType>::On<M>;
+
+    #[inline(always)]
+    fn call(self, m: &M, (a, b): (F<M>, F<M>)) -> Self::Output {
+        mean_between::on(m, self, a, b).mean
     }
 }
 
@@ -530,6 +618,13 @@ pub(super) fn share_of(value: f32, from: f32, to: f32) -> f32 {
 #[inline]
 fn sample_of(function: &TransferFunction, value: f32) -> TransferSample {
     let i: u32 = function.interval(value);
+    sample_in(function, i, value)
+}
+
+/// Returns colour and extinction of a value in this interval.
+#[kernel]
+#[inline]
+pub(super) fn sample_in(function: &TransferFunction, i: u32, value: f32) -> TransferSample {
     let a: TransferKnot = function.knot(i);
     let b: TransferKnot = function.knot(i + 1);
     let share = share_of(value, a.value, b.value);

@@ -1,10 +1,11 @@
 //! Integrators against the oracle, and against each other in every variant.
 
+use raydsl::machine::Type;
 use raydsl::prelude::*;
 use raydsl::testing;
 use raydsl::volume::{
-    Centering, Euler, ExactCell, ExponentialLeft, Grid, GridConfig, MeanExtinction, Midpoint,
-    ShadedCell, TransferFunction, Volume, VolumeLight,
+    Adaptive, Centering, Euler, ExactCell, ExponentialLeft, Grid, GridConfig, MeanExtinction,
+    Midpoint, PreIntegrated, ShadedCell, TransferFunction, Volume, VolumeIntegrator, VolumeLight,
 };
 use raydsl_tests::rng::Rng;
 
@@ -59,8 +60,18 @@ fn rays(grid: &Grid<'_, f32>, count: usize) -> Vec<(Ray,)> {
     (0..count).map(ray).collect()
 }
 
+/// Asserts that opacity is from 0 to 1, and radiance at most that of the brightest colour, 1.
+#[track_caller]
+fn assert_bounded(light: VolumeLight) {
+    assert!(light.opacity() >= 0.0 && light.opacity() <= 1.0, "{light:?}");
+    let (least, most) = (light.radiance.min_element(), light.radiance.max_element());
+    assert!(least >= 0.0 && most <= light.opacity() * (1.0 + 2e-6), "{light:?}");
+}
+
+/// The exact cell, and steps to a tolerance from any first step.
 #[test]
-fn the_exact_cell_is_exact() {
+fn integrals_are_those_of_the_oracle() {
+    let (mut honoured, mut all) = (0, 0);
     for (voxels, size, config) in grids() {
         let grid = Grid::new(&voxels[..], size, config).expect("a grid");
         let field = Field::new(&voxels, &grid);
@@ -68,22 +79,33 @@ fn the_exact_cell_is_exact() {
             let volume = Volume::new(&grid, transfer);
             let exact = ExactCell::new().least(0.0);
             let mut worst = 0.0f64;
-            let rays = rays(&grid, 60);
-            for (ray,) in &rays {
+            for (ray,) in &rays(&grid, 60) {
                 let expected = oracle::integrate(&field, volume.transfer(), *ray, 1000);
-                let light = volume.integrate(&exact, *ray, VolumeLight::new());
                 let opacity = -(-expected.depth).exp_m1();
-                let off = (light.radiance.as_dvec3() - expected.radiance).abs().max_element();
-                let opacity_off = (f64::from(light.opacity()) - opacity).abs();
-                let off = off.max(opacity_off) / opacity.max(1e-3);
-                worst = worst.max(off);
-                assert!(light.opacity() >= 0.0 && light.opacity() <= 1.0);
-                let most = light.opacity() * (1.0 + 1e-6);
-                assert!(light.radiance.max_element() <= most, "no colour is above 1");
+                let off = |light: VolumeLight| {
+                    let off = (light.radiance.as_dvec3() - expected.radiance).abs().max_element();
+                    off.max((f64::from(light.opacity()) - opacity).abs())
+                };
+                let light = volume.integrate(&exact, *ray, VolumeLight::new());
+                assert_bounded(light);
+                worst = worst.max(off(light) / opacity.max(1e-3));
+                for tolerance in [1e-2, 1e-3, 1e-4] {
+                    for start in [1e-3, 0.3, f32::MAX] {
+                        let adaptive = Adaptive::new(tolerance).start(start);
+                        let light = volume.integrate(&adaptive, *ray, VolumeLight::new());
+                        assert_bounded(light);
+                        let off = off(light);
+                        all += 1;
+                        honoured += usize::from(off <= f64::from(tolerance));
+                        let most = 4.0 * f64::from(tolerance);
+                        assert!(off <= most, "{ray:?}, {tolerance} from {start}: off by {off}");
+                    }
+                }
             }
             assert!(worst < 1e-4, "{size}: off by {worst}");
         }
     }
+    assert!(honoured * 100 >= all * 99, "{honoured} of {all} rays are within the tolerance");
 }
 
 /// Asserts that all variants on the CPU have the same bits, and that WGSL is within `bound` of them.
@@ -92,7 +114,11 @@ fn the_exact_cell_is_exact() {
 /// is in, between which knots a value on a knot is. Too many are open for each to be followed, and
 /// none makes a difference beyond rounding: that is what this bound tests.
 #[track_caller]
-pub(crate) fn assert_close(kernel: &Kernel<'_, (Ray,), Vec4>, inputs: &[(Ray,)], bound: f32) {
+pub(crate) fn assert_close<A: Type + Copy + core::fmt::Debug>(
+    kernel: &Kernel<'_, A, Vec4>,
+    inputs: &[A],
+    bound: f32,
+) {
     let expected = testing::run(kernel, Variant::Scalar, inputs);
     for variant in [Variant::Packet4, Variant::Packet8, Variant::Packet16] {
         if testing::can_run(variant, "volumes") {
@@ -121,6 +147,9 @@ fn variants_agree() {
             macro_rules! check {
                 ($integrator:expr, $bound:expr) => {
                     let integrator = $integrator;
+                    for (ray,) in &inputs {
+                        assert_bounded(integrator.integrate(&volume, *ray, VolumeLight::new()));
+                    }
                     let kernel = kernel!(|ray: Ray| {
                         volume.integrate(&integrator, ray, VolumeLight::new()).rgba()
                     });
@@ -132,6 +161,8 @@ fn variants_agree() {
             check!(ExponentialLeft::new(0.3), 2e-2);
             check!(Midpoint::new(0.3), 2e-2);
             check!(MeanExtinction::new(0.3), 2e-2);
+            check!(PreIntegrated::new(0.3), 1e-3);
+            check!(Adaptive::new(1e-3), 2e-3);
             check!(ExactCell::new(), 1e-4);
             check!(ShadedCell::new(vec3(0.6, 0.0, 0.8), 0.5), 1e-3);
         }
@@ -150,6 +181,8 @@ fn opacity_of_a_slab_does_not_depend_on_the_step() {
             volume.integrate(&ExponentialLeft::new(step), along(), none),
             volume.integrate(&Midpoint::new(step), along(), none),
             volume.integrate(&MeanExtinction::new(step), along(), none),
+            volume.integrate(&PreIntegrated::new(step), along(), none),
+            volume.integrate(&Adaptive::new(1e-5).start(step), along(), none),
             volume.integrate(&ExactCell::new(), along(), none),
         ];
         for light in found {
@@ -208,6 +241,7 @@ fn skipping_changes_nothing() {
             [&skipped, &full].map(|v| v.integrate(&Midpoint::new(0.37), ray, none)),
             [&skipped, &full].map(|v| v.integrate(&MeanExtinction::new(0.37), ray, none)),
             [&skipped, &full].map(|v| v.integrate(&ExponentialLeft::new(0.37), ray, none)),
+            [&skipped, &full].map(|v| v.integrate(&PreIntegrated::new(0.37), ray, none)),
             [&skipped, &full].map(|v| v.integrate(&ExactCell::new(), ray, none)),
         ];
         for [a, b] in pairs {

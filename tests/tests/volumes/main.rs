@@ -6,9 +6,12 @@ mod agreement;
 mod cuts;
 mod edit;
 mod fields;
+mod labels;
 mod oracle;
 mod stiff;
 mod surfaces;
+mod tracking;
+mod transfer;
 
 use raydsl::prelude::*;
 use raydsl::volume::{Grid, GridConfig, TransferFunction, Volume};

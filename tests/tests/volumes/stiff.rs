@@ -2,7 +2,10 @@
 
 use raydsl::prelude::*;
 use raydsl::testing;
-use raydsl::volume::{Euler, ExactCell, MeanExtinction, Midpoint, TransferFunction, VolumeLight};
+use raydsl::volume::{
+    Adaptive, Euler, ExactCell, MeanExtinction, Midpoint, PreIntegrated, TransferFunction,
+    VolumeLight,
+};
 
 use super::{along, column, linear, volume};
 
@@ -167,6 +170,8 @@ fn extinction_without_bound_is_opaque() {
         volume.integrate(&Midpoint::new(1e5).least(0.0), along(), VolumeLight::new()),
         volume.integrate(&Euler::new(1e5).least(0.0), along(), VolumeLight::new()),
         volume.integrate(&MeanExtinction::new(1e5).least(0.0), along(), VolumeLight::new()),
+        volume.integrate(&PreIntegrated::new(1e5).least(0.0), along(), VolumeLight::new()),
+        volume.integrate(&Adaptive::new(1e-4), along(), VolumeLight::new()),
         volume.integrate(&ExactCell::new().least(0.0), along(), VolumeLight::new()),
     ] {
         let light = volume.integrate(&ExactCell::new(), along(), light);

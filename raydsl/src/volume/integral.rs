@@ -1,0 +1,113 @@
+//! Integrals of a transfer function over values: means between any two, with no table of pairs.
+
+use glam::{DVec3, Vec3, vec3};
+
+use super::transfer::{TransferFunction, TransferKnot, TransferSample, sample_in};
+use crate::machine::functions::vec3;
+use crate::machine::generic::{max, min};
+use crate::{Type, kernel};
+
+/// Integrals over the values from the first knot to one of the others, each as a number and the
+/// rest that it lacks: their differences are right to rounding wherever they lie.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
+#[repr(C)]
+pub struct TransferIntegral {
+    /// Integral of extinction.
+    pub extinction: f32,
+    extinction_rest: f32,
+    /// Integral of extinction times colour.
+    pub emission: Vec3,
+    emission_rest: Vec3,
+}
+
+/// What integrals stop at: beyond it their differences would not be numbers.
+const MOST: f64 = 1e30;
+
+/// Returns the integrals up to each knot, the far ones at both ends aside.
+pub(super) fn integrals(knots: &[TransferKnot]) -> Vec<TransferIntegral> {
+    let (mut extinction, mut emission) = (0.0f64, DVec3::ZERO);
+    let mut all = vec![TransferIntegral::default(); knots.len()];
+    for i in 2..knots.len() - 1 {
+        let (a, b) = (&knots[i - 1], &knots[i]);
+        let width = f64::from(b.value) - f64::from(a.value);
+        let [ea, eb] = [a, b].map(|k| f64::from(k.extinction));
+        let [ca, cb] = [a, b].map(|k| k.color.as_dvec3());
+        extinction = (extinction + (ea + eb) * 0.5 * width).min(MOST);
+        let product = ca * (2.0 * ea + eb) + cb * (ea + 2.0 * eb);
+        emission = (emission + product * (width / 6.0)).min(DVec3::splat(MOST));
+        let (number, rest) = (extinction as f32, emission.as_vec3());
+        all[i] = TransferIntegral {
+            extinction: number,
+            extinction_rest: (extinction - f64::from(number)) as f32,
+            emission: rest,
+            emission_rest: (emission - rest.as_dvec3()).as_vec3(),
+        };
+    }
+    if let [.., before, last] = &mut all[..] {
+        *last = *before;
+    }
+    all
+}
+
+/// Returns the mean over the values between two of one interval; colour is weighted by extinction.
+#[kernel]
+#[inline]
+fn mean_of(a: TransferSample, b: TransferSample) -> TransferSample {
+    // Scaled, so that sums of any extinctions are finite.
+    let (ea, eb) = (a.extinction * 0.125, b.extinction * 0.125);
+    let share = (ea + 2.0 * eb) / max(3.0 * (ea + eb), f32::MIN_POSITIVE);
+    TransferSample {
+        color: a.color + (b.color - a.color) * min(share, 1.0),
+        extinction: 0.5 * a.extinction + 0.5 * b.extinction,
+    }
+}
+
+/// A mean over the values between two, and the colours of both.
+#[derive(Clone, Copy, Debug, Type)]
+pub(super) struct MeanBetween {
+    pub(super) mean: TransferSample,
+    pub(super) from: Vec3,
+    pub(super) to: Vec3,
+}
+
+/// Returns the mean over all values between two, each as frequent as any other: pre-integration
+/// without absorption within. (Engel, Kraus and Ertl, "High-Quality Pre-Integrated Volume Rendering
+/// Using Hardware-Accelerated Pixel Shading", 2001, section 3.3; there it is a table.)
+#[kernel]
+#[inline]
+pub(super) fn mean_between(function: &TransferFunction, a: f32, b: f32) -> MeanBetween {
+    let (low, high) = (min(a, b), max(a, b));
+    let i: u32 = function.interval(low);
+    let j: u32 = function.interval(high);
+    let from: TransferSample = sample_in(function, i, low);
+    let to: TransferSample = sample_in(function, j, high);
+    let mut mean = mean_of(from, to);
+    if i < j {
+        // Parts of the outer intervals, and the whole ones between them.
+        let (above, below) = (function.knot(i + 1), function.knot(j));
+        let first = mean_of(from, end_of(above));
+        let last = mean_of(end_of(below), to);
+        let (begin, end) = (function.integral(i + 1), function.integral(j));
+        let per = 1.0 / max(high - low, f32::MIN_POSITIVE);
+        let depths = vec3(
+            first.extinction * ((above.value - low) * per),
+            ((end.extinction - begin.extinction) + (end.extinction_rest - begin.extinction_rest))
+                * per,
+            last.extinction * ((high - below.value) * per),
+        );
+        let inner = (end.emission - begin.emission) + (end.emission_rest - begin.emission_rest);
+        let sum = depths.x + depths.y + depths.z;
+        let each = 1.0 / max(sum, 1e-30);
+        let color =
+            first.color * (depths.x * each) + (inner * per) * each + last.color * (depths.z * each);
+        mean = TransferSample { color, extinction: sum };
+    }
+    MeanBetween { mean, from: from.color, to: to.color }
+}
+
+/// Returns what a knot has.
+#[kernel]
+#[inline]
+fn end_of(knot: TransferKnot) -> TransferSample {
+    TransferSample { color: knot.color, extinction: knot.extinction }
+}

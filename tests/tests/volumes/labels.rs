@@ -1,0 +1,79 @@
+//! Grids of labels.
+
+use raydsl::prelude::*;
+use raydsl::volume::{
+    Grid, GridConfig, Labels, Midpoint, TransferError, TransferFunction, Volume, VolumeLight,
+};
+use raydsl_tests::rng::Rng;
+
+use super::agreement::assert_close;
+
+/// Red 2, blue 5, and green 3 and 4, which lie between but nowhere in the grid.
+fn organs() -> TransferFunction {
+    let organs = [
+        (2, vec3(1.0, 0.0, 0.0), 0.3),
+        (3, vec3(0.0, 1.0, 0.0), 0.9),
+        (4, vec3(0.0, 1.0, 0.0), 0.9),
+        (5, vec3(0.0, 0.0, 1.0), 0.7),
+    ];
+    TransferFunction::labels(&organs, 1.0).expect("sorted labels")
+}
+
+#[test]
+fn no_label_is_between_two_others() {
+    let mut rng = Rng::of("labels");
+    let size = uvec3(11, 9, 12);
+    let voxels: Vec<f32> =
+        (0..size.x * size.y * size.z).map(|_| rng.pick(&[0.0, 2.0, 5.0])).collect();
+    let grid = Grid::new(&voxels[..], size, GridConfig::new()).expect("a grid");
+    let volume = Volume::new(&grid, organs());
+    let labels = Labels::new(0.2).lit(vec3(0.0, 0.6, 0.8), 0.4);
+    let inputs: Vec<(Ray,)> = (0..150)
+        .map(|_| {
+            let direction = rng.direction();
+            let target = size.as_vec3() * (rng.point(0.5) + 0.5);
+            (Ray::new(target - direction * 20.0, direction),)
+        })
+        .collect();
+    let mut bled = 0;
+    for &(ray,) in &inputs {
+        let light = volume.integrate(&labels, ray, VolumeLight::new());
+        assert_eq!(light.radiance.y, 0.0, "{ray:?}");
+        let plain = volume.integrate(&Labels::new(0.2), ray, VolumeLight::new());
+        let sum = plain.radiance.element_sum();
+        assert!((sum - plain.opacity()).abs() < 1e-5, "{ray:?}: {plain:?}");
+        assert!(light.radiance.element_sum() <= sum * (1.0 + 1e-6));
+        let mean = volume.integrate(&Midpoint::new(0.2), ray, VolumeLight::new());
+        bled += usize::from(mean.radiance.y > 0.1);
+    }
+    assert!(bled > 50, "a mean of two labels is a third one: {bled}");
+    let kernel = kernel!(|ray: Ray| volume.integrate(&labels, ray, VolumeLight::new()).rgba());
+    // The gradient, and with it the shading, differs from cell to cell.
+    assert_close(&kernel, &inputs, 2e-2);
+}
+
+#[test]
+fn labels_are_values_within_a_half() {
+    let organs = organs();
+    for (value, color, depth) in [
+        (1.4, Vec3::X, 0.0f32),
+        (1.6, Vec3::X, 0.7),
+        (2.4, Vec3::X, 0.7),
+        (2.6, Vec3::Y, 0.1),
+        (4.4, Vec3::Y, 0.1),
+        (5.4, Vec3::Z, 0.3),
+        (5.6, Vec3::Z, 1.0),
+    ] {
+        let found = organs.at(value);
+        let transmittance = (-found.extinction).exp();
+        let expected = if depth == 0.0 { 1.0 } else { depth };
+        assert!((transmittance - expected).abs() < 1e-6, "{value}: {found:?}");
+        assert!(found.extinction == 0.0 || found.color == color, "{value}: {found:?}");
+    }
+    let wrong = |labels: &[(u32, Vec3, f32)]| TransferFunction::labels(labels, 1.0).map(|_| ());
+    assert!(matches!(wrong(&[]), Err(TransferError::NoKnots { .. })));
+    let one = (3, Vec3::ONE, 0.5);
+    assert_eq!(wrong(&[one, one]), Err(TransferError::Unsorted { of: "labels", index: 1 }));
+    let far = (u32::MAX, Vec3::ONE, 0.5);
+    assert_eq!(wrong(&[one, far]), Err(TransferError::OutOfRange { of: "labels", index: 1 }));
+}
