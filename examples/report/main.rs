@@ -54,7 +54,8 @@ fn slow_cases() -> [(&'static str, Make); 3] {
 
 fn quick_cases() -> Vec<Case<'static>> {
     let last = vec![quadrature::case()];
-    let all = [visibility::cases(), light::cases(), textured::cases(), last, volumes::cases()];
+    let all =
+        [visibility::cases(), light::cases(), textured::cases(), last, volumes::cases(cloud::EDGE)];
     all.into_iter().flatten().collect()
 }
 

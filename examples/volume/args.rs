@@ -34,9 +34,13 @@ pub(crate) struct Args {
     /// Cut nothing where no --cut is given.
     #[arg(long)]
     pub(crate) whole: bool,
-    /// How light along a ray is computed.
-    #[arg(long, value_name = "NAME", default_value = "shaded-cell")]
-    pub(crate) integrator: Integrator,
+    /// How light along a ray is computed [default: shaded-cell; labels with --tf labels; adaptive
+    /// with --tol].
+    #[arg(long, value_name = "NAME")]
+    pub(crate) integrator: Option<Integrator>,
+    /// Tolerance of the integrator `adaptive` [default: 0.001].
+    #[arg(long, value_name = "X", value_parser = length)]
+    pub(crate) tol: Option<f32>,
     /// Step of the integrators that take steps, in voxels.
     #[arg(long, value_name = "VOXELS", default_value = "0.5", value_parser = length)]
     pub(crate) step: f32,
@@ -70,6 +74,20 @@ pub(crate) enum Integrator {
     ExponentialLeft,
     Midpoint,
     MeanExtinction,
+    PreIntegrated,
+    Adaptive,
     ExactCell,
     ShadedCell,
+    Labels,
+}
+
+impl Args {
+    pub(crate) fn integrator(&self) -> Integrator {
+        let chosen = match (&self.tf, self.tol) {
+            (Choice::Labels, _) => Integrator::Labels,
+            (_, Some(_)) => Integrator::Adaptive,
+            _ => Integrator::ShadedCell,
+        };
+        self.integrator.unwrap_or(chosen)
+    }
 }

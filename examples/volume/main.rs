@@ -16,8 +16,8 @@ use clap::Parser;
 use cuts::Cuts;
 use raydsl::prelude::*;
 use raydsl::volume::{
-    Centering, Cut, Euler, ExactCell, ExponentialLeft, Grid, GridConfig, MeanExtinction, Midpoint,
-    ShadedCell, Volume, VolumeLight, Voxel,
+    Adaptive, Centering, Cut, Euler, ExactCell, ExponentialLeft, Grid, GridConfig, Labels,
+    MeanExtinction, Midpoint, PreIntegrated, ShadedCell, Volume, VolumeLight, Voxel,
 };
 use raydsl_examples::comparison::Frames;
 use raydsl_examples::head::head;
@@ -97,20 +97,28 @@ enum Method {
     ExponentialLeft(ExponentialLeft),
     Midpoint(Midpoint),
     MeanExtinction(MeanExtinction),
+    PreIntegrated(PreIntegrated),
+    Adaptive(Adaptive),
     ExactCell(ExactCell),
     ShadedCell(ShadedCell),
+    Labels(Labels),
 }
 // ANCHOR_END: integrators
 
 impl Method {
-    fn of(name: Integrator, step: f32, to_light: Vec3, edge: f32) -> Self {
-        match name {
+    /// The method that is asked for; shading is full where the value changes by `edge` per length.
+    fn of(args: &Args, view: &View, edge: f32) -> Self {
+        let step = args.step * view.voxel;
+        match args.integrator() {
             Integrator::Euler => Self::Euler(Euler::new(step)),
             Integrator::ExponentialLeft => Self::ExponentialLeft(ExponentialLeft::new(step)),
             Integrator::Midpoint => Self::Midpoint(Midpoint::new(step)),
             Integrator::MeanExtinction => Self::MeanExtinction(MeanExtinction::new(step)),
+            Integrator::PreIntegrated => Self::PreIntegrated(PreIntegrated::new(step)),
+            Integrator::Adaptive => Self::Adaptive(Adaptive::new(args.tol.unwrap_or(1e-3))),
             Integrator::ExactCell => Self::ExactCell(ExactCell::new()),
-            Integrator::ShadedCell => Self::ShadedCell(ShadedCell::new(to_light, edge)),
+            Integrator::ShadedCell => Self::ShadedCell(ShadedCell::new(view.to_light(), edge)),
+            Integrator::Labels => Self::Labels(Labels::new(step).lit(view.to_light(), 0.35)),
         }
     }
 }
@@ -199,7 +207,7 @@ fn show(args: &Args, grid: &Grid<'_, f32>) -> Result<(), Failure> {
     let (away, kept) = (cuts.away.scene()?, cuts.kept.scene()?);
     let keeps_all = cuts.kept.is_empty();
     let edge = (range.y - range.x) / view.voxel * 0.08;
-    let method = Method::of(args.integrator, args.step * view.voxel, view.to_light(), edge);
+    let method = Method::of(args, &view, edge);
     let background = vec3(0.05, 0.06, 0.08);
     // ANCHOR: kernel
     let primary = kernel!(|ray: Ray| {
@@ -214,8 +222,11 @@ fn show(args: &Args, grid: &Grid<'_, f32>) -> Result<(), Failure> {
                     Method::ExponentialLeft(method) => volume.integrate(&method, part, light),
                     Method::Midpoint(method) => volume.integrate(&method, part, light),
                     Method::MeanExtinction(method) => volume.integrate(&method, part, light),
+                    Method::PreIntegrated(method) => volume.integrate(&method, part, light),
+                    Method::Adaptive(method) => volume.integrate(&method, part, light),
                     Method::ExactCell(method) => volume.integrate(&method, part, light),
                     Method::ShadedCell(method) => volume.integrate(&method, part, light),
+                    Method::Labels(method) => volume.integrate(&method, part, light),
                 };
             }
             kept_part = if keeps_all { None } else { inner.next_inside(&kept) };

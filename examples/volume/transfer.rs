@@ -77,6 +77,8 @@ const RAMP: [(f32, f32); 2] = [(0.1, 0.0), (1.0, 0.9)];
 pub(crate) enum Choice {
     Preset(&'static Preset),
     Map(Gradient),
+    /// Every whole number is an organ with a colour of its own.
+    Labels,
     File(PathBuf),
 }
 
@@ -89,6 +91,9 @@ impl Choice {
         if let Some((_, map)) = MAPS.iter().find(|m| m.0 == text) {
             return Ok(Self::Map(*map));
         }
+        if text == "labels" {
+            return Ok(Self::Labels);
+        }
         let path = Path::new(text);
         if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
             return Ok(Self::File(path.into()));
@@ -99,14 +104,15 @@ impl Choice {
     /// What there is to choose from.
     pub(crate) fn known() -> String {
         let (presets, maps) = (PRESETS.map(|p| p.name), MAPS.map(|m| m.0));
-        format!("{}; {}; or a .json file of ParaView", presets.join(", "), maps.join(", "))
+        format!("{}, labels; {}; or a .json file of ParaView", presets.join(", "), maps.join(", "))
     }
 
     /// What is chosen by that.
     pub(crate) fn help() -> String {
         let presets = PRESETS.map(|p| format!("  {:8} {}\n", p.name, p.about)).concat();
         format!(
-            "Transfer functions:\n{presets}  Opacities of a colour map rise from the tenth of the \
+            "Transfer functions:\n{presets}  labels   whole numbers from 1 on, as of organs, a colour \
+             each\n  Opacities of a colour map rise from the tenth of the \
              values' range on. Of a file of\n  ParaView the first preset is taken; if its colours are \
              of values from 0 to 1, that is the\n  range."
         )
@@ -114,6 +120,9 @@ impl Choice {
 
     /// The function for values of a range; opacities are of layers as thick as `unit`.
     pub(crate) fn function(&self, range: Vec2, unit: f32) -> Result<TransferFunction, Failure> {
+        if matches!(self, Self::Labels) {
+            return Ok(TransferFunction::labels(&labels(range.y)?, unit)?);
+        }
         let (mut colors, mut opacities) = self.knots()?;
         let over_range = |share: f32| range.x + (range.y - range.x) * share;
         // A file's own values are those of the data that it was made for.
@@ -135,12 +144,33 @@ impl Choice {
         Ok(match self {
             Self::Preset(preset) => (TISSUE.into(), preset.opacities.into()),
             Self::Map(map) => (sampled(map), Vec::new()),
+            Self::Labels => (Vec::new(), Vec::new()),
             Self::File(path) => {
                 let preset = raydsl_io::paraview::load(path)?.swap_remove(0);
                 (preset.colors, preset.opacities)
             }
         })
     }
+}
+
+/// Labels that a scan may have, and more than are told apart.
+const MOST_LABELS: f32 = 4096.0;
+
+/// Labels up to the greatest value, with hues as far apart as those before leave room for.
+fn labels(most: f32) -> Result<Vec<(u32, Vec3, f32)>, Failure> {
+    if !(1.0..=MOST_LABELS).contains(&most) {
+        let message = format!("--tf labels is for whole numbers from 1 to 4096, not up to {most}");
+        return Err(Failure::Usage(message));
+    }
+    let color = |label: u32| {
+        let hue = (label as f32 * 0.618_034).fract() * 6.0;
+        let channel = |shift: f32| {
+            let around = (hue + shift) % 6.0;
+            0.92 - 0.62 * around.min(4.0 - around).clamp(0.0, 1.0)
+        };
+        vec3(channel(5.0), channel(3.0), channel(1.0))
+    };
+    Ok((1..=most as u32).map(|label| (label, color(label), 0.9)).collect())
 }
 
 fn sampled(map: &Gradient) -> Vec<(f32, Vec3)> {
@@ -167,6 +197,10 @@ mod tests {
             assert!(function.at(900.0).extinction > 0.0, "{name}");
             assert!(Choice::known().contains(name));
         }
+        let organs = Choice::Labels.function(vec2(0.0, 15.0), 1.0).expect("labels");
+        assert!(organs.at(0.0).extinction == 0.0 && organs.at(15.0).extinction > 0.0);
+        assert!(organs.at(4.0).color != organs.at(5.0).color);
+        assert!(Choice::Labels.function(vec2(-1.0, 0.5), 1.0).is_err());
         let message = Choice::parse("jet").expect_err("no map of that name");
         assert!(message.contains("tissue") && message.contains("turbo"), "{message}");
         assert!(matches!(Choice::parse("a/b.JSON"), Ok(Choice::File(_))));

@@ -8,10 +8,14 @@ mod edit;
 mod fields;
 mod labels;
 mod oracle;
+mod orders;
 mod stiff;
 mod surfaces;
 mod tracking;
 mod transfer;
+
+#[path = "../../../examples/report/volumes.rs"]
+mod cases;
 
 use raydsl::prelude::*;
 use raydsl::volume::{Grid, GridConfig, TransferFunction, Volume};

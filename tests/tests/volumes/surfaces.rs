@@ -72,7 +72,7 @@ fn surfaces_and_values_along_rays() {
         }
         // One that two samples miss has another beside it.
         let missed = crossings.len() - changes.len();
-        assert!(missed % 2 == 0, "{ray:?}: {crossings:?} and {changes:?}");
+        assert!(missed.is_multiple_of(2), "{ray:?}: {crossings:?} and {changes:?}");
     }
     assert!(met > 200 && missed > 0, "{met} surfaces, {missed} rays beside");
     let kernel = kernel!(|ray: Ray| {
