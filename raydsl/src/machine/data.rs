@@ -20,6 +20,16 @@ pub trait Data: Copy {
     /// If there is no such element.
     fn get(&self, index: u32) -> Self::Element;
 
+    /// Returns the element `index` without asking whether there is one.
+    ///
+    /// # Safety
+    ///
+    /// `index` is less than [`count`](Self::count).
+    #[inline(always)]
+    unsafe fn get_unchecked(&self, index: u32) -> Self::Element {
+        self.get(index)
+    }
+
     /// Returns the kinds of the elements, enums, if they are known without reading all.
     fn kinds(&self) -> Option<Kinds> {
         None
@@ -111,6 +121,12 @@ impl<T: Type> Data for Slice<'_, T> {
     #[inline(always)]
     fn get(&self, index: u32) -> T {
         self.elements[index as usize]
+    }
+
+    #[inline(always)]
+    unsafe fn get_unchecked(&self, index: u32) -> T {
+        // SAFETY: the caller says that `index` is less than the number of elements.
+        unsafe { *self.elements.get_unchecked(index as usize) }
     }
 
     /// Returns the owner's key, or one made of address and length.

@@ -574,10 +574,40 @@ impl<L: Lanes> Machine for Packet<L> {
     }
 
     #[inline(always)]
+    fn element<D: Data>(&self, data: &D, index: U<Self>) -> <D::Element as Type>::On<Self> {
+        let count = data.count() as u32;
+        self.check_index(&index.0, count);
+        if count == 0 {
+            return Value::zero(self);
+        }
+        let last = self.lanes.u32(count - 1);
+        let within = self.lanes.u32_compare(op::Le, index.0, last);
+        let index = U(self.lanes.u32_select(within, index.0, last));
+        self.fetch_by(
+            index,
+            #[inline(always)]
+            // SAFETY: no lane of `index` is above `last`.
+            |i| unsafe { data.get_unchecked(i) },
+        )
+    }
+
+    #[inline(always)]
     fn fetch<D: Data>(&self, data: &D, index: U<Self>) -> <D::Element as Type>::On<Self> {
         if data.count() == 0 {
             return Value::zero(self);
         }
+        self.fetch_by(
+            index,
+            #[inline(always)]
+            |i| data.get(i),
+        )
+    }
+}
+
+impl<L: Lanes> Packet<L> {
+    /// Returns what `get` gives for the index of each running lane; it is called for no other.
+    #[inline(always)]
+    fn fetch_by<T: Type>(&self, index: U<Self>, get: impl Fn(u32) -> T) -> T::On<Self> {
         let active = self.active.get();
         if !self.lanes.any(active) {
             return Value::zero(self);
@@ -587,13 +617,13 @@ impl<L: Lanes> Machine for Packet<L> {
         // A loop's counter is the same in all lanes.
         let same = self.lanes.u32_compare(op::Eq, index.0, self.lanes.u32(first));
         if !self.lanes.any(self.and(active, self.lanes.mask_not(same))) {
-            return D::Element::splat(self, data.get(first));
+            return T::splat(self, get(first));
         }
         // A lane that is not running may hold any index.
         let index = self.lanes.u32_select(active, index.0, self.lanes.u32(first));
         self.of_each(
             #[inline(always)]
-            |lane| data.get(L::u32_lane(&index, lane)),
+            |lane| get(L::u32_lane(&index, lane)),
         )
     }
 }

@@ -127,7 +127,7 @@ impl Layer {
     }
 
     /// Adds a thin part behind: a colour of this opacity.
-    #[inline]
+    #[inline(always)]
     pub(super) fn add(&mut self, color: Vec3, opacity: f32, depth: f32) {
         self.radiance += color * (self.transmittance * opacity);
         self.transmittance *= 1.0 - opacity;

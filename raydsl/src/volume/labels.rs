@@ -2,18 +2,19 @@
 
 use glam::{Vec3, Vec4, vec3};
 
-use super::integrator::{Inside, VolumeIntegrator, integrator};
+use super::integrator::{
+    Inside, Layer, VolumeIntegrator, inside, integrator, macro_walk, majorant_of,
+};
 use super::light::VolumeLight;
-use super::march::{Step, cell_at_distance, march};
+use super::march::{MOST_STEPS, RUN, Step, cell_at_distance, march, opacity_of};
 use super::sample::{InCell, slopes, trilinear};
 use super::transfer::{TransferFunction, TransferSample};
 use super::volume::{Volume, VolumeView};
 use super::voxel::{Corners, Voxel};
 use crate::geometry::{Ray, RayOn};
 use crate::machine::functions::vec3;
-use crate::machine::generic::{length, max, min};
+use crate::machine::generic::{clamp, length, max, min};
 use crate::machine::{Machine, On};
-use crate::math::elementary::expm1;
 use crate::{Type, kernel};
 
 /// Integrates a grid of labels: numbers that name organs, materials or regions, so that a mean of
@@ -134,19 +135,9 @@ fn label_step<T: Voxel>(
             color *= this.shade(gradient);
         }
     }
-    Step { color, opacity: -expm1(-depth), depth }
+    Step { color, opacity: opacity_of(depth), depth }
 }
 
-#[kernel]
-#[inline(never)]
-fn labels<T: Voxel>(
-    this: Labels,
-    volume: &Volume<'_, T>,
-    ray: Ray,
-    light: VolumeLight,
-) -> VolumeLight {
-    let rule = |part: Inside, from: f32, to: f32| label_step(this, volume, part, from, to);
-    march(volume, ray, this.step, this.least, light, rule)
-}
-
-integrator!(Labels, labels);
+march!(Labels by labels, |this, volume, part, from, to| {
+    label_step(this, volume, part, from, to)
+});

@@ -25,14 +25,17 @@ pub(super) struct Step {
 }
 
 /// Maximum number of steps: up to here their numbers are exact in an `f32`.
-const MOST_STEPS: f32 = 16_777_216.0;
+pub(super) const MOST_STEPS: f32 = 16_777_216.0;
+
+/// Maximum number of macro-cells whose steps are one sum without its rounding errors.
+pub(super) const RUN: u32 = 8;
 
 /// Opacity that [`Euler`] takes for an opaque step.
 const MOST_OPACITY: f32 = 1.0 - f32::EPSILON;
 
 /// Returns the sample, without extinction where voxels are missing.
 #[kernel]
-#[inline]
+#[inline(always)]
 fn where_whole<T: Voxel>(
     volume: &Volume<'_, T>,
     cell: InCell,
@@ -48,17 +51,26 @@ fn where_whole<T: Voxel>(
 
 /// Returns the cell at a distance.
 #[kernel]
-#[inline]
+#[inline(always)]
 pub(super) fn cell_at_distance<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t: f32) -> InCell {
     cell_around(volume.grid(), part.origin + part.direction * t)
 }
 
 /// Returns colour and extinction at a distance.
 #[kernel]
-#[inline]
+#[inline(always)]
 fn sample_at<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t: f32) -> TransferSample {
     let cell = cell_at_distance(volume, part, t);
     let sample: TransferSample = volume.transfer().at(value_in(volume.grid(), cell));
+    where_whole(volume, cell, sample)
+}
+
+/// Returns colour and extinction at a distance; black where there is no extinction.
+#[kernel]
+#[inline(always)]
+fn seen_at<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t: f32) -> TransferSample {
+    let cell = cell_at_distance(volume, part, t);
+    let sample = seen_sample_of(volume.transfer(), value_in(volume.grid(), cell));
     where_whole(volume, cell, sample)
 }
 
@@ -69,53 +81,81 @@ pub(super) fn extinction_at<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t: f
     seen_at(volume, part, t).extinction
 }
 
-/// Returns colour and extinction at a distance; black where there is no extinction.
+/// Returns the opacity of an optical depth, which is 0 for most steps.
 #[kernel]
-#[inline]
-fn seen_at<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t: f32) -> TransferSample {
-    let cell = cell_at_distance(volume, part, t);
-    let sample = seen_sample_of(volume.transfer(), value_in(volume.grid(), cell));
-    where_whole(volume, cell, sample)
-}
-
-/// Sums steps of equal length, at most `step` in the world, which tile the part of the ray in the
-/// grid; skips macro-cells without extinction, and ends where less than `least` is transmitted.
-/// `rule` gets the distances at which a step begins and ends.
-#[kernel]
-#[inline]
-pub(super) fn march<T: Voxel, R: Fn(Inside, f32, f32) -> Step>(
-    volume: &Volume<'_, T>,
-    ray: Ray,
-    step: f32,
-    least: f32,
-    light: VolumeLight,
-    rule: R,
-) -> VolumeLight {
-    let part = inside(volume.grid(), ray);
-    let count = clamp((part.end * part.scale / step).ceil(), 1.0, MOST_STEPS);
-    let width = part.end / count;
-    let mut light = light;
-    let mut i = 0u32;
-    let mut walk = macro_walk(volume.grid(), part);
-    while walk.is_inside && light.transmittance() >= least {
-        if majorant_of(volume, walk.cell) > 0.0 {
-            // All steps that touch the macro-cell, but those that the one before has had.
-            i = max(i, (walk.enter / width) as u32);
-            let end = min(walk.leave / width, count).ceil() as u32;
-            let mut layer = Layer::new();
-            while i < end {
-                let found = rule(part, i as f32 * width, (i + 1) as f32 * width);
-                layer.add(found.color, found.opacity, found.depth);
-                i += 1;
-            }
-            light = light.then(layer.radiance, layer.depth);
-        }
-        walk.advance();
+#[inline(always)]
+pub(super) fn opacity_of(depth: f32) -> f32 {
+    let mut opacity = 0.0;
+    if depth > 0.0 {
+        opacity = -expm1(-depth);
     }
-    light
+    opacity
 }
 
-/// Defines an integrator by its rule.
+/// Implements an integrator by its rule, which makes of the distances at which a step begins and
+/// ends what the step adds.
+///
+/// The kernel sums steps of equal length, at most `step` in the world, which tile the part of the
+/// ray in the grid; it skips macro-cells without extinction, and ends where less than `least` is
+/// transmitted. The loop is repeated for each rule: as a function of its own, which gets the rule as
+/// a closure, packets would call that for every step.
+macro_rules! march {
+    (
+        $name:ident by $kernel:ident,
+        |$this:ident, $volume:ident, $part:ident, $from:ident, $to:ident| $rule:expr
+    ) => {
+        #[kernel]
+        #[inline(never)]
+        fn $kernel<T: Voxel>(
+            $this: $name,
+            $volume: &Volume<'_, T>,
+            ray: Ray,
+            light: VolumeLight,
+        ) -> VolumeLight {
+            let $part = inside($volume.grid(), ray);
+            let count = clamp(($part.end * $part.scale / $this.step).ceil(), 1.0, MOST_STEPS);
+            let width = $part.end / count;
+            let mut light = light;
+            let mut i = 0u32;
+            let mut walk = macro_walk($volume.grid(), $part);
+            while walk.is_inside && light.transmittance() >= $this.least {
+                // The rays of a packet look for extinction together, and then all take steps.
+                while walk.is_inside && majorant_of($volume, walk.cell) <= 0.0 {
+                    walk.advance();
+                }
+                let (enter, mut leave) = (walk.enter, walk.enter);
+                let mut passed = 0u32;
+                while walk.is_inside && passed < RUN && majorant_of($volume, walk.cell) > 0.0 {
+                    leave = walk.leave;
+                    passed += 1;
+                    walk.advance();
+                }
+                if passed > 0 {
+                    // All steps that touch these macro-cells, but those that the ones before have
+                    // had.
+                    i = max(i, (enter / width) as u32);
+                    let end = min(leave / width, count).ceil() as u32;
+                    let enough = $this.least / light.transmittance();
+                    let mut layer = Layer::new();
+                    while i < end && layer.transmittance >= enough {
+                        let ($from, $to) = (i as f32 * width, (i + 1) as f32 * width);
+                        let found = $rule;
+                        layer.add(found.color, found.opacity, found.depth);
+                        i += 1;
+                    }
+                    light = light.then(layer.radiance, layer.depth);
+                }
+            }
+            light
+        }
+
+        integrator!($name, $kernel);
+    };
+}
+
+pub(super) use march;
+
+/// Defines an integrator by its rule, with a step and a least transmittance.
 macro_rules! rule {
     (
         $(#[$doc:meta])*
@@ -148,19 +188,7 @@ macro_rules! rule {
             }
         }
 
-        #[kernel]
-        #[inline(never)]
-        fn $kernel<T: Voxel>(
-            this: $name,
-            $volume: &Volume<'_, T>,
-            ray: Ray,
-            light: VolumeLight,
-        ) -> VolumeLight {
-            let rule = |$part: Inside, $from: f32, $to: f32| $rule;
-            march($volume, ray, this.step, this.least, light, rule)
-        }
-
-        integrator!($name, $kernel);
+        march!($name by $kernel, |this, $volume, $part, $from, $to| $rule);
     };
 }
 
@@ -183,7 +211,7 @@ rule! {
     ExponentialLeft by exponential_left, |volume, part, from, to| {
         let sample = seen_at(volume, part, from);
         let depth = sample.extinction * ((to - from) * part.scale);
-        Step { color: sample.color, opacity: -expm1(-depth), depth }
+        Step { color: sample.color, opacity: opacity_of(depth), depth }
     }
 }
 
@@ -193,7 +221,7 @@ rule! {
     Midpoint by midpoint, |volume, part, from, to| {
         let sample = seen_at(volume, part, (from + to) * 0.5);
         let depth = sample.extinction * ((to - from) * part.scale);
-        Step { color: sample.color, opacity: -expm1(-depth), depth }
+        Step { color: sample.color, opacity: opacity_of(depth), depth }
     }
 }
 
@@ -201,7 +229,7 @@ rule! {
 /// The integral of `s τ exp(-τ s)` over `1 - exp(-τ)`, `1/τ - 1/(exp(τ) - 1)`; by its series where
 /// the terms cancel.
 #[kernel]
-#[inline]
+#[inline(always)]
 fn mean_place(depth: f32) -> f32 {
     let squared = depth * depth;
     let thin = 0.5 - depth * (1.0 / 12.0 - squared * (1.0 / 720.0 - squared / 30240.0));
@@ -217,7 +245,7 @@ rule! {
         let b = sample_at(volume, part, to);
         let depth = (a.extinction + b.extinction) * 0.5 * ((to - from) * part.scale);
         let color = a.color + (b.color - a.color) * mean_place(depth);
-        Step { color, opacity: -expm1(-depth), depth }
+        Step { color, opacity: opacity_of(depth), depth }
     }
 }
 
@@ -253,6 +281,6 @@ rule! {
     PreIntegrated by pre_integrated, |volume, part, from, to| {
         let mean = mean_on_step(volume, part, from, to);
         let depth = mean.extinction * ((to - from) * part.scale);
-        Step { color: mean.color, opacity: -expm1(-depth), depth }
+        Step { color: mean.color, opacity: opacity_of(depth), depth }
     }
 }

@@ -20,21 +20,21 @@ pub(super) struct InCell {
 }
 
 #[kernel]
-#[inline]
+#[inline(always)]
 fn are_finite(v: Vec4) -> bool {
     v.is_finite()
 }
 
 /// Returns the number of a voxel, or of a macro-cell, from whole coordinates.
 #[kernel]
-#[inline]
+#[inline(always)]
 pub(super) fn index_of(at: Vec3, steps: UVec3) -> u32 {
     at.x as u32 * steps.x + at.y as u32 * steps.y + at.z as u32 * steps.z
 }
 
 /// Returns the corners of the cell with these whole coordinates, and whether none is missing.
 #[kernel]
-#[inline]
+#[inline(always)]
 pub(super) fn cell_at<T: Voxel>(grid: &Grid<'_, T>, cell: Vec3) -> InCell {
     let steps = grid.layout().steps;
     let corners: Corners = grid.corners(index_of(cell, steps), steps);
@@ -45,7 +45,7 @@ pub(super) fn cell_at<T: Voxel>(grid: &Grid<'_, T>, cell: Vec3) -> InCell {
 
 /// Returns the cell around a point in voxel coordinates, with its place there.
 #[kernel]
-#[inline]
+#[inline(always)]
 pub(super) fn cell_around<T: Voxel>(grid: &Grid<'_, T>, at: Vec3) -> InCell {
     let last = grid.layout().last_cell;
     // A NaN becomes 0. At the border rounding decides nothing.
@@ -56,7 +56,7 @@ pub(super) fn cell_around<T: Voxel>(grid: &Grid<'_, T>, at: Vec3) -> InCell {
 
 /// Interpolates the corners of a cell; equal ones give the same bits.
 #[kernel]
-#[inline]
+#[inline(always)]
 pub(super) fn trilinear(corners: Corners, place: Vec3) -> f32 {
     let Corners { near, far } = corners;
     let a = near.x + (near.y - near.x) * place.x;
@@ -76,14 +76,14 @@ fn to_voxels<T: Voxel>(grid: &Grid<'_, T>, p: Vec3) -> Vec3 {
 
 /// Returns a voxel's number as a value.
 #[kernel]
-#[inline]
+#[inline(always)]
 fn rescaled<T: Voxel>(grid: &Grid<'_, T>, number: f32) -> f32 {
     number * grid.layout().scale + grid.layout().offset
 }
 
 /// Returns the value in a cell, 0 if a voxel is missing.
 #[kernel]
-#[inline]
+#[inline(always)]
 pub(super) fn value_in<T: Voxel>(grid: &Grid<'_, T>, cell: InCell) -> f32 {
     let value = rescaled(grid, trilinear(cell.corners, cell.place));
     if grid.has_gaps() { if cell.is_whole { value } else { 0.0 } } else { value }

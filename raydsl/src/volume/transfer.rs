@@ -37,7 +37,7 @@ pub struct TransferSample {
 /// A transfer function's numbers in kernels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 pub struct TransferLayout {
-    /// Value at which the first bin begins.
+    /// Value at which the second bin begins; the first has all values below.
     pub first: f32,
     /// Bins per value.
     pub per_value: f32,
@@ -89,7 +89,7 @@ const OPACITY_ERROR: f64 = 1.0 / 2048.0;
 pub struct TransferFunction {
     /// The first and the last one are far away, with what their neighbours have.
     knots: Vec<TransferKnot>,
-    /// Interval of the value at which each bin begins.
+    /// Interval of the value at which each bin begins, times 2, plus 1 if a knot may be in the bin.
     bins: Vec<u32>,
     integrals: Vec<TransferIntegral>,
     layout: TransferLayout,
@@ -146,13 +146,28 @@ impl TransferFunction {
         let width = f64::from(last) - f64::from(first);
         let per_value = if width > 0.0 { (BINS as f64 / width) as f32 } else { 0.0 };
         let per_value = if per_value.is_finite() { per_value } else { 0.0 };
-        // By rounding a value may be taken for one of the bin behind it: each begins somewhat early.
-        let begin = |bin: usize| match bin {
-            0 => -FAR,
-            bin => (f64::from(first) + width * (bin as f64 - 0.01) / BINS as f64) as f32,
+        let is_one = per_value == 0.0;
+        // By rounding a value may be taken for one of a bin beside its own: each bin begins
+        // somewhat early and ends somewhat late. No value from `first` on is in bin 0.
+        let at = |bin: f64| (f64::from(first) + width * (bin - 1.0) / BINS as f64) as f32;
+        let bin = |bin: usize| {
+            let begin = if bin == 0 || is_one { -FAR } else { at(bin as f64 - 0.01).next_down() };
+            let end = match bin {
+                0 if !is_one => first.next_down(),
+                BINS => FAR,
+                bin => {
+                    if is_one {
+                        FAR
+                    } else {
+                        at(bin as f64 + 1.01).next_up()
+                    }
+                }
+            };
+            let [begin, end] = [begin, end].map(|value| interval(&knots, value) as u32);
+            begin << 1 | u32::from(begin != end)
         };
-        let bins = (0..BINS).map(|bin| interval(&knots, begin(bin).next_down()) as u32).collect();
-        let last_bin = (BINS - 1) as f32;
+        let bins = (0..=BINS).map(bin).collect();
+        let last_bin = BINS as f32;
         let layout = TransferLayout { first, per_value, last_bin, last: knots.len() as u32 - 2 };
         let integrals = integrals(&knots);
         Ok(Self { knots, bins, integrals, layout, owner: Owner::new() })
@@ -572,16 +587,18 @@ impl Operation for FindInterval<'_> {
 }
 
 #[kernel]
-#[inline]
+#[inline(always)]
 fn interval_by_bins(function: &TransferFunction, value: f32) -> u32 {
     let TransferLayout { first, per_value, last_bin, last } = function.layout();
-    let bin = clamp((value - first) * per_value, 0.0, last_bin);
-    let mut i: u32 = function.bin(bin as u32);
-    // A bin may have several knots.
-    let mut next: TransferKnot = function.knot(i + 1);
-    while i < last && value >= next.value {
-        i += 1;
-        next = function.knot(i + 1);
+    let bin: u32 = function.bin(clamp((value - first) * per_value + 1.0, 0.0, last_bin) as u32);
+    let mut i = bin >> 1;
+    if bin & 1 != 0 {
+        // A bin may have several knots.
+        let mut next: TransferKnot = function.knot(i + 1);
+        while i < last && value >= next.value {
+            i += 1;
+            next = function.knot(i + 1);
+        }
     }
     i
 }
@@ -608,14 +625,14 @@ fn interval_by_search(function: &TransferFunction, value: f32) -> u32 {
 
 /// Returns the share of the way from one value to another, from 0 to 1.
 #[kernel]
-#[inline]
+#[inline(always)]
 pub(super) fn share_of(value: f32, from: f32, to: f32) -> f32 {
     clamp((value - from) / (to - from), 0.0, 1.0)
 }
 
 /// Returns colour and extinction of a value.
 #[kernel]
-#[inline]
+#[inline(always)]
 fn sample_of(function: &TransferFunction, value: f32) -> TransferSample {
     let i: u32 = function.interval(value);
     sample_in(function, i, value)
@@ -633,9 +650,9 @@ pub(super) fn sample_in(function: &TransferFunction, i: u32, value: f32) -> Tran
 }
 
 /// Returns colour and extinction of a value; black where there is no extinction, as of most values:
-/// then colours are not fetched.
+/// only behind that test are colours fetched.
 #[kernel]
-#[inline]
+#[inline(always)]
 pub(super) fn seen_sample_of(function: &TransferFunction, value: f32) -> TransferSample {
     let i: u32 = function.interval(value);
     let a: TransferKnot = function.knot(i);
@@ -644,6 +661,8 @@ pub(super) fn seen_sample_of(function: &TransferFunction, value: f32) -> Transfe
     let extinction = a.extinction + (b.extinction - a.extinction) * share;
     let mut color = Vec3::ZERO;
     if extinction > 0.0 {
+        let a: TransferKnot = function.knot(i);
+        let b: TransferKnot = function.knot(i + 1);
         color = a.color + (b.color - a.color) * share;
     }
     TransferSample { color, extinction }

@@ -77,7 +77,7 @@ fn squares<T: Copy + Sync, S: Send>(
 
 /// Returns the four bytes of a word as numbers.
 #[kernel]
-#[inline]
+#[inline(always)]
 fn bytes_of(word: u32) -> Vec4 {
     vec4(
         (word & 0xff) as f32,
@@ -88,7 +88,7 @@ fn bytes_of(word: u32) -> Vec4 {
 }
 
 #[kernel]
-#[inline]
+#[inline(always)]
 fn corners_of_bytes(stored: &[u32], i: u32, steps: UVec3) -> Corners {
     let near = stored[i as usize];
     let far = stored[(i + steps.z) as usize];
@@ -132,7 +132,7 @@ halves!(corners_of_signed, signed, |bits| ((bits ^ 0x8000) as f32) - 32768.0);
 halves!(corners_of_halves, half, |bits| half_to_f32(bits));
 
 #[kernel]
-#[inline]
+#[inline(always)]
 fn corners_of_floats(stored: &[f32], i: u32, steps: UVec3) -> Corners {
     let (x, y, z) = (steps.x, steps.y, steps.z);
     let far = i + z;
