@@ -27,7 +27,7 @@ pub(super) struct Extremes {
 
 /// Returns a root that may be an extreme place, or 2.
 #[kernel]
-#[inline]
+#[inline(always)]
 fn root_or_none(numerator: f32, denominator: f32) -> f32 {
     let root = numerator / select(denominator == 0.0, 1.0, denominator);
     let is_inside = (denominator != 0.0) & (root > 0.0) & (root < 1.0);
@@ -40,7 +40,7 @@ impl Cubic {
     ///
     /// It is affine in each coordinate, so its blossom, the mean over which coordinate is taken
     /// from which place, gives the Bézier points. (Ramshaw, "Blossoming", 1987.)
-    #[inline]
+    #[inline(always)]
     pub(super) fn through(corners: Corners, from: Vec3, to: Vec3) -> Cubic {
         let Corners { near, far } = corners;
         // Interpolate along x, at both places; then along y, then along z.
@@ -70,7 +70,7 @@ impl Cubic {
     }
 
     /// Returns the cubic with other units of its values.
-    #[inline]
+    #[inline(always)]
     pub(super) fn rescaled(self, scale: f32, offset: f32) -> Cubic {
         Cubic {
             c0: self.c0 * scale + offset,
@@ -80,19 +80,19 @@ impl Cubic {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn at(&self, x: f32) -> f32 {
         self.c0 + x * (self.c1 + x * (self.c2 + x * self.c3))
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn slope(&self, x: f32) -> f32 {
         self.c1 + x * (2.0 * self.c2 + x * (3.0 * self.c3))
     }
 
     /// Returns a bound on the size of the slope between two places: the largest Bézier point of the
     /// derivative.
-    #[inline]
+    #[inline(always)]
     pub(super) fn steepest(&self, from: f32, to: f32) -> f32 {
         let bend = 2.0 * self.c2 + from * (6.0 * self.c3);
         let (first, last) = (self.slope(from), self.slope(to));
@@ -101,7 +101,7 @@ impl Cubic {
     }
 
     /// Returns where the slope is 0.
-    #[inline]
+    #[inline(always)]
     pub(super) fn extremes(&self) -> Extremes {
         let square = self.c2 * self.c2 - 3.0 * self.c3 * self.c1;
         let root = max(square, 0.0).sqrt();
@@ -125,7 +125,7 @@ pub(super) fn next_extreme(extremes: Extremes, x: f32) -> f32 {
 /// Returns where a cubic that is monotone between two places has a value between theirs: by
 /// Newton's method within a bracket.
 #[kernel(known = PlaceOf)]
-#[inline]
+#[inline(always)]
 pub(super) fn place_of(cubic: Cubic, value: f32, from: f32, to: f32) -> f32 {
     let (at_from, at_to) = (cubic.at(from) - value, cubic.at(to) - value);
     let is_rising = at_to > at_from;

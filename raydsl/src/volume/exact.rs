@@ -9,7 +9,7 @@ use super::light::{MOST_OPTICAL_DEPTH, VolumeLight};
 use super::sample::{InCell, cell_at, gradient_in};
 use super::transfer::{TransferFunction, TransferKnot};
 use super::volume::{Volume, VolumeView};
-use super::voxel::Voxel;
+use super::voxel::{Corners, Voxel};
 use crate::geometry::{Ray, RayOn};
 use crate::machine::functions::vec3;
 use crate::machine::generic::{clamp, length, max, min};
@@ -107,7 +107,7 @@ struct Interval {
 }
 
 #[kernel]
-#[inline]
+#[inline(always)]
 fn interval_at(function: &TransferFunction, index: u32) -> Interval {
     let below: TransferKnot = function.knot(index);
     let above: TransferKnot = function.knot(index + 1);
@@ -125,7 +125,7 @@ struct Absorbed {
 /// Integrates the piece of a cubic from `from` on, `width` wide, within an interval; `length` is
 /// that of the whole cell in the world.
 #[kernel]
-#[inline]
+#[inline(always)]
 #[expect(clippy::excessive_precision, reason = "the reference in `f64` has all digits")]
 fn absorbed(cubic: Cubic, interval: Interval, from: f32, width: f32, length: f32) -> Absorbed {
     let Interval { below, above, .. } = interval;
@@ -174,7 +174,7 @@ const DARK: f32 = 1e-9;
 /// Returns the width of a piece from `from` on, at most `width`, whose depth is at most
 /// [`MOST_DEPTH`].
 #[kernel]
-#[inline]
+#[inline(always)]
 fn thin_width(cubic: Cubic, interval: Interval, from: f32, width: f32, length: f32) -> f32 {
     let Interval { below, above, .. } = interval;
     let per = (above.extinction - below.extinction) / (above.value - below.value);
@@ -187,7 +187,7 @@ fn thin_width(cubic: Cubic, interval: Interval, from: f32, width: f32, length: f
 
 /// Adds the piece of a cell from `from` to `to`, within one interval.
 #[kernel]
-#[inline]
+#[inline(always)]
 fn add_piece(layer: &mut Layer, cubic: Cubic, interval: Interval, from: f32, to: f32, length: f32) {
     let Interval { below, above, .. } = interval;
     let mut x = from;
@@ -210,7 +210,7 @@ fn add_piece(layer: &mut Layer, cubic: Cubic, interval: Interval, from: f32, to:
 /// Adds a cell, whose value is `cubic` over `length`. `interval` is that of the value at which the
 /// ray enters, and becomes that of the value at which it leaves.
 #[kernel]
-#[inline]
+#[inline(always)]
 fn add_cell(
     layer: &mut Layer,
     interval: &mut Interval,
@@ -245,6 +245,20 @@ fn add_cell(
     }
 }
 
+/// Returns whether all values of a cell are in an interval without extinction, as in most cells
+/// where a function is a narrow peak.
+#[kernel]
+#[inline(always)]
+fn is_clear(corners: Corners, interval: Interval, layout: GridLayout) -> bool {
+    let Interval { below, above, .. } = interval;
+    let (low, high) = (min(corners.near, corners.far), max(corners.near, corners.far));
+    let a = min(min(low.x, low.y), min(low.z, low.w)) * layout.scale + layout.offset;
+    let b = max(max(high.x, high.y), max(high.z, high.w)) * layout.scale + layout.offset;
+    (below.extinction + above.extinction == 0.0)
+        & (min(a, b) >= below.value)
+        & (max(a, b) <= above.value)
+}
+
 /// Integrates cell by cell; `shade` returns a factor for the colours of a cell, seen from its middle.
 #[kernel]
 #[inline]
@@ -269,7 +283,7 @@ fn through_cells<T: Voxel, F: Fn(InCell) -> f32>(
             while cells.is_inside && layer.transmittance >= enough {
                 let cell = clamp(cells.cell, zero, layout.last_cell);
                 let found = cell_at(volume.grid(), cell);
-                if found.is_whole {
+                if found.is_whole && !is_clear(found.corners, interval, layout) {
                     let from = part.origin + part.direction * cells.enter - cell;
                     let to = part.origin + part.direction * cells.leave - cell;
                     let (from, to) = (clamp(from, zero, one), clamp(to, zero, one));

@@ -80,7 +80,7 @@ impl CellWalk {
     }
 
     /// Returns the walk with the planes of its cell.
-    #[inline]
+    #[inline(always)]
     fn settled(self) -> CellWalk {
         let distance = ((self.cell + self.ahead) * self.size - self.origin) * self.inverse;
         let is_none = self.cell.cmpeq(self.last) | self.step.cmpeq(vec3(0.0, 0.0, 0.0));
@@ -92,7 +92,7 @@ impl CellWalk {
     }
 
     /// Goes on to the next cell.
-    #[inline]
+    #[inline(always)]
     pub(super) fn advance(&mut self) {
         let planes = self.planes;
         let is_x = (planes.x <= planes.y) & (planes.x <= planes.z);
