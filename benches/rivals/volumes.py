@@ -3,27 +3,28 @@
 
     RAYDSL_DATA=FOLDER python3 benches/rivals/volumes.py [--rounds 5] [--json FILE]
 
-FOLDER holds `mni152_t1_1mm.nii.gz`. Python needs `numpy`; and each rival a package of its own, which
-is skipped where it is missing:
+FOLDER holds `mni152_t1_1mm.nii.gz`. Python needs `numpy`; and each rival a package of its own: a
+rival without it is skipped.
 
     pip install numpy vtk==9.7.0 pynari
 
-* `vtk`: the fixed-point ray caster (vtkFixedPointVolumeRayCastMapper) on one thread. Only its casting
-  of rays is timed, not the setting up of its tables and not the display. It needs no screen, but some
-  OpenGL to show its picture: EGL with Mesa will do (Debian: `apt-get install libegl1 libgl1`).
+* `vtk`: the fixed-point ray caster (vtkFixedPointVolumeRayCastMapper) on one thread. Only its
+  casting of rays is timed, not the setting up of its tables and not the display. It needs no
+  screen, but some OpenGL to show its picture: EGL with Mesa will do (Debian: `apt-get install
+  libegl1 libgl1`).
 * `pynari`: the ANARI device of the package; without a GPU its path tracer on the CPU. Its rays make
   random steps, so there is no step to choose; and it scatters light, so its error is noise and the
   difference between the two models of light, and says little. A frame of one path a pixel is timed
   as a whole, in CPU time of all threads.
 
-Both sides take turns, round by round. A rate is that of nominal samples: the length of all rays in the
-volume's box over the step, one voxel where there is no step. An error is the root mean square of a
-colour's difference from the exact picture. Renderers clamp and round colours: VTK's have 15 bits.
+All take turns, round by round. A rate is that of nominal samples: the length of all rays in the
+volume's box over the step, one voxel where there is no step. An error is a root mean square: of the
+library's colours and opacities against `f64`, of the others' colours against the library's exact
+picture. The last but one column is the median of each round's ratio to VTK at the same step.
 """
 
 import argparse
 import json
-import os
 import statistics
 import subprocess
 import sys
@@ -52,7 +53,7 @@ class Ours:
         self.pixels = case["pixels"]
 
     def round(self):
-        """Gives (function, integrator, rate, error) of each row."""
+        """Gives function, integrator, rate and error of each row."""
         options = ["--json", str(self.rows), "--rounds", "1", "--variant", self.variant]
         options += ["--size", str(self.pixels), "--steps", ",".join(map(str, STEPS))]
         for name in ["exact cell", "midpoint", "naive"]:
@@ -224,9 +225,6 @@ class Anari:
 def error(picture, function, of):
     """The root mean square difference of a colour from the exact picture."""
     exact = np.fromfile(of.folder / function["picture"], "<f4").reshape(picture.shape)
-    save = os.environ.get("RIVALS_PICTURES")
-    if save:
-        np.save(Path(save) / f"{of.name} {function['name']}.npy", picture)
     difference = picture[..., :3].astype(np.float64) - exact[..., :3]
     return float(np.sqrt((difference**2).mean()))
 
@@ -272,10 +270,11 @@ def main():
 
 
 def table(rows, path):
-    print(f"{'':<6}{'renderer':<24}{'integrator':<18}{'M/s':>8}{'from':>8}{'to':>8}{'to VTK':>8}", end="")
-    print(f"{'rms':>10}")
+    print(f"{'':<6}{'renderer':<24}{'integrator':<18}{'M/s':>8}{'from':>8}{'to':>8}", end="")
+    print(f"{'to VTK':>8}{'rms':>10}")
     out = []
-    for (function, name, integrator), (rates, errors) in sorted(rows.items(), key=lambda r: r[0][0]):
+    for key, (rates, errors) in sorted(rows.items(), key=lambda row: row[0][0]):
+        function, name, integrator = key
         step = integrator.split()[-1]
         step = float(step) if step[0].isdigit() else 1.0
         vtk = rows.get((function, Vtk.name, f"vtk {step}"))
