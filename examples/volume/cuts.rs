@@ -5,6 +5,7 @@ use std::path::Path;
 use raydsl::kernel;
 use raydsl::prelude::*;
 use raydsl::shading::Surface;
+use raydsl::volume::check_closed;
 
 use super::Failure;
 
@@ -110,7 +111,12 @@ impl Cuts {
                 }
                 parts.halves.push(Half { normal, offset });
             }
-            Some(("mesh", file)) => parts.triangles.extend(triangles(Path::new(file))?),
+            Some(("mesh", file)) => {
+                let found = triangles(Path::new(file))?;
+                check_closed(found.iter().map(|t| [t.v0, t.v1, t.v2]))
+                    .map_err(|e| Failure::Usage(format!("--cut {text}: {e}")))?;
+                parts.triangles.extend(found);
+            }
             _ => return Err(wrong()),
         }
         Ok(())

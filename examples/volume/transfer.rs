@@ -120,37 +120,41 @@ impl Choice {
 
     /// The function for values of a range; opacities are of layers as thick as `unit`.
     pub(crate) fn function(&self, range: Vec2, unit: f32) -> Result<TransferFunction, Failure> {
-        if matches!(self, Self::Labels) {
-            return Ok(TransferFunction::labels(&labels(range.y)?, unit)?);
-        }
-        let (mut colors, mut opacities) = self.knots()?;
-        let over_range = |share: f32| range.x + (range.y - range.x) * share;
-        // A file's own values are those of the data that it was made for.
-        let is_own = matches!(self, Self::File(_))
-            && (colors[0].0, colors[colors.len() - 1].0) != (0.0, 1.0);
-        if !is_own {
-            colors.iter_mut().for_each(|(value, _)| *value = over_range(*value));
-            opacities.iter_mut().for_each(|(value, _)| *value = over_range(*value));
-        }
-        if opacities.is_empty() {
-            opacities = RAMP.map(|(share, opacity)| (over_range(share), opacity)).into();
-        }
-        Ok(TransferFunction::new(&colors, &opacities, unit)?)
-    }
-
-    /// Colours and opacities as they are written: values are shares of a range, but for files that
-    /// have their own. There may be no opacities.
-    fn knots(&self) -> Result<Knots, Failure> {
-        Ok(match self {
-            Self::Preset(preset) => (TISSUE.into(), preset.opacities.into()),
-            Self::Map(map) => (sampled(map), Vec::new()),
-            Self::Labels => (Vec::new(), Vec::new()),
-            Self::File(path) => {
-                let preset = raydsl_io::paraview::load(path)?.swap_remove(0);
-                (preset.colors, preset.opacities)
+        match self {
+            Self::Preset(preset) => {
+                of_shares((TISSUE.into(), preset.opacities.into()), range, unit)
             }
-        })
+            Self::Map(map) => of_shares((sampled(map), RAMP.into()), range, unit),
+            Self::Labels => Ok(TransferFunction::labels(&labels(range.y)?, unit)?),
+            Self::File(path) => {
+                let found = raydsl_io::paraview::load(path)?.swap_remove(0);
+                let (colors, mut opacities) = (found.colors, found.opacities);
+                let ends = (colors[0].0, colors[colors.len() - 1].0);
+                if opacities.is_empty() {
+                    opacities =
+                        RAMP.map(|(at, opacity)| (ends.0 + (ends.1 - ends.0) * at, opacity)).into();
+                }
+                // Other values are those of the data that the file was made for.
+                if ends == (0.0, 1.0) {
+                    of_shares((colors, opacities), range, unit)
+                } else {
+                    Ok(TransferFunction::new(&colors, &opacities, unit)?)
+                }
+            }
+        }
     }
+}
+
+/// The function whose knots are at shares of a range.
+fn of_shares(
+    (mut colors, mut opacities): Knots,
+    range: Vec2,
+    unit: f32,
+) -> Result<TransferFunction, Failure> {
+    let over_range = |share: f32| range.x + (range.y - range.x) * share;
+    colors.iter_mut().for_each(|(value, _)| *value = over_range(*value));
+    opacities.iter_mut().for_each(|(value, _)| *value = over_range(*value));
+    Ok(TransferFunction::new(&colors, &opacities, unit)?)
 }
 
 /// Labels that a scan may have, and more than are told apart.

@@ -1,6 +1,10 @@
 //! Cuts: the parts of a ray inside or outside of closed objects.
 
+use std::collections::HashMap;
+
 use glam::Vec3;
+
+use super::error::MeshError;
 
 use crate::bvh::behind;
 use crate::geometry::Ray;
@@ -12,7 +16,8 @@ use crate::{Type, kernel};
 /// of all, to the next.
 ///
 /// The objects are those of a scene: primitives with an inside, such as spheres and cuboids, and
-/// closed meshes of triangles whose vertices run anticlockwise seen from outside; one inside
+/// closed meshes of triangles whose vertices run anticlockwise seen from outside ([`check_closed()`]
+/// says whether they are); one inside
 /// another, touching, as many as there are. Every crossing counts once, whatever edge or vertex the
 /// ray passes through, and one that only touches an object changes nothing; the ends of parts are
 /// the distances of hits. The ray may begin inside. A plane is the surface of all that is behind it,
@@ -145,6 +150,53 @@ impl Cut {
         self.is_behind = true;
         self.is_done = !has_ended;
         if has_begun { Some(whole.with_range(begin, end)) } else { None }
+    }
+}
+
+/// Checks that triangles are closed: that each edge of one is that of another, the other way round.
+/// A mesh with a hole, or with a triangle that is turned, has no inside, and [`Cut`] would give parts
+/// of rays that mean nothing.
+///
+/// Edges are those between equal positions, so that both indexed meshes and loose triangles can be
+/// checked. Triangles without area do not count.
+///
+/// # Errors
+///
+/// If an edge has no neighbour, or a position is not finite.
+///
+/// ```
+/// use raydsl::prelude::*;
+/// use raydsl::volume::{MeshError, check_closed};
+///
+/// let [o, x, y, z] = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let solid = [[o, y, x], [o, z, y], [o, x, z], [x, y, z]];
+/// assert_eq!(check_closed(solid), Ok(()));
+/// let error = check_closed(solid[1..].iter().copied());
+/// assert!(matches!(error, Err(MeshError::Open { edges: 3, .. })));
+/// ```
+pub fn check_closed(triangles: impl IntoIterator<Item = [Vec3; 3]>) -> Result<(), MeshError> {
+    // Both zeros are one position.
+    let key = |p: Vec3| (p + 0.0).to_array().map(f32::to_bits);
+    let mut edges: HashMap<[[u32; 3]; 2], (i64, [Vec3; 2], usize)> = HashMap::new();
+    for (index, corners) in triangles.into_iter().enumerate() {
+        if !corners.iter().all(|p| p.is_finite()) {
+            return Err(MeshError::NotFinite { triangle: index });
+        }
+        for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+            let (from, to) = (key(corners[a]), key(corners[b]));
+            let (ends, sign) = if from < to { ([from, to], 1) } else { ([to, from], -1) };
+            let at_first = (0, [corners[a], corners[b]], index);
+            if from != to {
+                edges.entry(ends).or_insert(at_first).0 += sign;
+            }
+        }
+    }
+    let open = || edges.values().filter(|edge| edge.0 != 0);
+    match open().min_by_key(|edge| edge.2) {
+        None => Ok(()),
+        Some(&(_, [from, to], triangle)) => {
+            Err(MeshError::Open { edges: open().count(), from, to, triangle })
+        }
     }
 }
 

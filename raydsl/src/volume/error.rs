@@ -1,4 +1,6 @@
-//! Errors of creating grids and transfer functions.
+//! Errors of creating grids and transfer functions, and of meshes that cut.
+
+use glam::Vec3;
 
 /// Why a grid cannot be created.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -79,4 +81,31 @@ pub enum TransferError {
     /// The unit distance of opacities is not positive and finite.
     #[error("the unit distance of opacities is positive and finite, not {0}")]
     UnitDistance(f32),
+}
+
+/// Why triangles have no inside.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// Edges have no neighbour that runs the other way.
+    #[error(
+        "the mesh is not closed: {edges} edges have no neighbour, the first from {from} to {to} of \
+         triangle {triangle}; fill the holes, and turn all triangles the same way"
+    )]
+    Open {
+        /// Number of such edges.
+        edges: usize,
+        /// Where the first of them begins.
+        from: Vec3,
+        /// Where it ends.
+        to: Vec3,
+        /// Index of a triangle that has it.
+        triangle: usize,
+    },
+    /// A position is infinite or NaN.
+    #[error("triangle {triangle} of the mesh has a position that is not finite")]
+    NotFinite {
+        /// Index of the triangle.
+        triangle: usize,
+    },
 }

@@ -7,7 +7,7 @@ use super::integrator::{
 };
 use super::light::VolumeLight;
 use super::march::{MOST_STEPS, RUN, Step, cell_at_distance, march, opacity_of};
-use super::sample::{InCell, slopes, trilinear};
+use super::sample::{InCell, cell_around, trilinear};
 use super::transfer::{TransferFunction, TransferSample};
 use super::volume::{Volume, VolumeView};
 use super::voxel::{Corners, Voxel};
@@ -24,7 +24,7 @@ use crate::{Type, kernel};
 /// a point counts by its share there, and borders between labels are smooth surfaces. (Pre-classification; Hadwiger et
 /// al., "Real-Time Volume Graphics", 2006, section 4.2.) It takes exponential steps with the sample
 /// in the middle, as [`Midpoint`](super::Midpoint). With a light, borders are shaded by the gradient
-/// of extinction. [`TransferFunction::labels`] gives each label a colour.
+/// of extinction, over two voxels each way. [`TransferFunction::labels`] gives each label a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
 pub struct Labels {
     /// Greatest length of a step, in the world; above 0.
@@ -107,6 +107,36 @@ fn classified<T: Voxel>(volume: &Volume<'_, T>, cell: InCell) -> Classified {
     }
 }
 
+/// Returns the extinction at a point in voxel coordinates.
+#[kernel]
+#[inline(never)]
+fn extinction_at<T: Voxel>(volume: &Volume<'_, T>, at: Vec3) -> f32 {
+    let cell = cell_around(volume.grid(), at);
+    let extinctions = classified(volume, cell).extinctions;
+    if cell.is_whole { trilinear(extinctions, cell.place) } else { 0.0 }
+}
+
+/// Returns the gradient of extinction in the world, over two voxels each way: within one cell, the
+/// gradient shows the corners of voxels.
+#[kernel]
+#[inline]
+fn gradient_at<T: Voxel>(volume: &Volume<'_, T>, at: Vec3) -> Vec3 {
+    let mut gradient = vec3(0.0, 0.0, 0.0);
+    for axis in 0..3 {
+        let along = vec3(
+            if axis == 0 { 1.0 } else { 0.0 },
+            if axis == 1 { 1.0 } else { 0.0 },
+            if axis == 2 { 1.0 } else { 0.0 },
+        );
+        for reach in 1..3 {
+            let step = along * reach as f32;
+            let change = extinction_at(volume, at + step) - extinction_at(volume, at - step);
+            gradient += along * change;
+        }
+    }
+    volume.grid().layout().to_voxels.matrix3.transpose() * gradient
+}
+
 #[kernel]
 #[inline]
 fn label_step<T: Voxel>(
@@ -130,9 +160,8 @@ fn label_step<T: Voxel>(
         );
         color = emission / extinction;
         if this.ambient < 1.0 {
-            let to_voxels = volume.grid().layout().to_voxels;
-            let gradient = to_voxels.matrix3.transpose() * slopes(found.extinctions, place);
-            color *= this.shade(gradient);
+            let at = part.origin + part.direction * ((from + to) * 0.5);
+            color *= this.shade(gradient_at(volume, at));
         }
     }
     Step { color, opacity: opacity_of(depth), depth }

@@ -22,8 +22,8 @@ mod walk;
 
 pub use adaptive::Adaptive;
 pub use along::{SurfaceHit, SurfaceWalk, next_surface};
-pub use cut::{Cut, is_inside};
-pub use error::{GridError, TransferError};
+pub use cut::{Cut, check_closed, is_inside};
+pub use error::{GridError, MeshError, TransferError};
 pub use exact::{ExactCell, ShadedCell};
 pub use grid::{
     Centering, Grid, GridConfig, GridLayout, GridView, MACRO_CELL, MAX_SIDE, MAX_VOXELS,

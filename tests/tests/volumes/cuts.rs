@@ -3,7 +3,10 @@
 use raydsl::geometry::IndexedTriangle;
 use raydsl::prelude::*;
 use raydsl::shading::{Mesh, MeshAttributes, Surface};
-use raydsl::volume::{Cut, ExactCell, Grid, GridConfig, TransferFunction, Volume, VolumeLight};
+use raydsl::volume::{
+    Cut, ExactCell, Grid, GridConfig, MeshError, TransferFunction, Volume, VolumeLight,
+    check_closed,
+};
 use raydsl::{assert_variants_agree, kernel, testing};
 use raydsl_tests::rng::Rng;
 use raydsl_tests::scaled;
@@ -160,6 +163,8 @@ fn winding(vertices: &[Vec3], triangles: &[IndexedTriangle], p: glam::DVec3) -> 
 fn meshes_are_cut_at_edges_and_vertices() {
     let (vertices, triangles) = icosphere(2);
     assert_eq!(winding(&vertices, &triangles, glam::DVec3::ZERO).round(), 1.0);
+    let corners = |t: &IndexedTriangle| t.vertices.map(|i| vertices[i as usize]);
+    assert_eq!(check_closed(triangles.iter().map(corners)), Ok(()));
     let tree = Bvh::build_sharing(&triangles, &vertices, &BuildConfig::default()).expect("a tree");
     let mesh = Mesh::new(&tree, MeshAttributes::default()).expect("no attributes");
     let mut rng = Rng::of("edges");
@@ -225,6 +230,27 @@ fn meshes_are_cut_at_edges_and_vertices() {
             assert!(off < 1e-3, "WGSL: {:?}: {b:?}, not {a:?}", rays[i]);
         }
     }
+}
+
+#[test]
+fn meshes_with_holes_are_refused() {
+    let (vertices, triangles) = icosphere(1);
+    let corners = |t: &IndexedTriangle| t.vertices.map(|i| vertices[i as usize]);
+    let mut all: Vec<[Vec3; 3]> = triangles.iter().map(corners).collect();
+    let hole = check_closed(all[1..].iter().copied());
+    assert!(matches!(hole, Err(MeshError::Open { edges: 3, .. })), "{hole:?}");
+    // A triangle that is turned, one that is there twice, one without area, one that is no number.
+    all[0].swap(0, 1);
+    let turned = check_closed(all.iter().copied());
+    assert!(matches!(turned, Err(MeshError::Open { edges: 3, .. })), "{turned:?}");
+    all[0].swap(0, 1);
+    let twice = check_closed(all.iter().chain([&all[5]]).copied());
+    assert!(matches!(twice, Err(MeshError::Open { edges: 3, .. })), "{twice:?}");
+    let flat = [all[0][0], all[0][1], all[0][0]];
+    assert_eq!(check_closed(all.iter().chain([&flat]).copied()), Ok(()));
+    all[7][1].y = f32::NAN;
+    assert_eq!(check_closed(all), Err(MeshError::NotFinite { triangle: 7 }));
+    assert_eq!(check_closed([]), Ok(()));
 }
 
 /// A slab with a ball cut out: P-V8 of the closed forms is a ball less a ball.
