@@ -12,8 +12,8 @@ use std::process::ExitCode;
 use clap::{Parser, ValueEnum};
 use raydsl::prelude::*;
 use raydsl::volume::{
-    Centering, Euler, ExactCell, ExponentialLeft, Grid, GridConfig, MeanExtinction, Midpoint,
-    TransferFunction, Volume, VolumeLight,
+    Adaptive, Centering, Euler, ExactCell, ExponentialLeft, Grid, GridConfig, MeanExtinction,
+    Midpoint, PreIntegrated, TransferFunction, Volume, VolumeLight,
 };
 use raydsl_benches::clock::{median, seconds, spread};
 use raydsl_examples::head::head;
@@ -335,6 +335,12 @@ impl Bench<'_> {
         let references: Vec<Vec<f64>> = checked.iter().map(|ray| kernel.reference(*ray)).collect();
         let truth = (&checked[..], &references[..]);
         rows.extend(self.measure("exact cell", 1.0, &kernel, truth));
+        for tolerance in [1e-2, 1e-3] {
+            let adaptive = Adaptive::new(tolerance);
+            let kernel =
+                kernel!(|ray: Ray| volume.integrate(&adaptive, ray, VolumeLight::new()).rgba());
+            rows.extend(self.measure(&format!("adaptive {tolerance}"), 1.0, &kernel, truth));
+        }
         macro_rules! steps {
             ($($name:literal $integrator:ident $steps:expr;)+) => {
                 $(for step in $steps.iter().copied() {
@@ -349,6 +355,7 @@ impl Bench<'_> {
         }
         steps! {
             "midpoint" Midpoint self.args.steps;
+            "pre-integrated" PreIntegrated self.args.steps;
             "mean extinction" MeanExtinction self.args.steps;
             "exponential left" ExponentialLeft self.args.steps;
             "naive" Euler self.args.steps;

@@ -7,6 +7,7 @@ use glam::{Affine3, Mat3, UVec3, Vec2, Vec3, vec2};
 use super::along::{self, SurfaceHit};
 use super::error::GridError;
 use super::sample;
+use super::view::table;
 use super::voxel::{Corners, Voxel};
 use crate::Type;
 use crate::geometry::affine::inverted;
@@ -216,7 +217,7 @@ impl<'a, T: Voxel> Grid<'a, T> {
         BufferKey { id: self.owner.id(), version: 0, part }
     }
 
-    fn view(&self, name: &'static str) -> GridView<'_, T> {
+    pub(super) fn named_view(&self, name: &'static str) -> GridView<'_, T> {
         GridView {
             stored: Slice::owned(&self.stored, Some(self.key(0)), name).suffixed("voxels"),
             ranges: Slice::owned(&self.ranges, Some(self.key(1)), name).suffixed("ranges"),
@@ -224,10 +225,6 @@ impl<'a, T: Voxel> Grid<'a, T> {
             has_gaps: self.has_gaps,
             name,
         }
-    }
-
-    pub(super) fn named_view(&self, name: &'static str) -> GridView<'_, T> {
-        self.view(name)
     }
 }
 
@@ -349,60 +346,7 @@ impl<T: Voxel> Clone for GridView<'_, T> {
 
 impl<T: Voxel> Copy for GridView<'_, T> {}
 
-impl<T: Voxel> Parameter for Grid<'_, T> {
-    type On<'a, M: Machine> = GridView<'a, T>;
-}
-
-impl<M: Machine, T: Voxel> Value<M> for GridView<'_, T> {
-    const SCHEMA: &'static Schema = &Schema::Host;
-
-    fn zero(_: &M) -> Self {
-        panic!("a kernel cannot choose between grids: choose between what it reads from them")
-    }
-
-    #[inline(always)]
-    fn zip(_: &M, a: Self, b: Self, _: &mut impl Leaves<M>) -> Self {
-        assert!(
-            core::ptr::eq(a.stored.elements(), b.stored.elements()),
-            "a kernel cannot choose between grids: choose between what it reads from them"
-        );
-        a
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, T: Voxel> Capture<M> for Grid<'_, T> {
-    type On<'c>
-        = GridView<'c, T>
-    where
-        Self: 'c;
-
-    #[inline(always)]
-    fn capture<'c>(&'c self, _: &M, name: &'static str) -> GridView<'c, T> {
-        self.view(name)
-    }
-
-    #[inline(always)]
-    fn constant<'c>(&'c self, _: &M) -> GridView<'c, T> {
-        self.view("grid")
-    }
-
-    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        TableView::resources(&self.view("grid"), visit);
-    }
-}
-
-impl<T: Voxel> Table for Grid<'_, T> {
-    type View<'v>
-        = GridView<'v, T>
-    where
-        Self: 'v;
-
-    #[inline(always)]
-    fn view(&self, name: &'static str) -> GridView<'_, T> {
-        self.named_view(name)
-    }
-}
+table!([T: Voxel] Grid<'_, T>, GridView, "grid", "grids");
 
 impl<T: Voxel> TableView for GridView<'_, T> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {

@@ -15,6 +15,7 @@ mod march;
 mod sample;
 mod tracking;
 mod transfer;
+mod view;
 #[expect(clippy::module_inception, reason = "the volume itself, among what belongs to it")]
 mod volume;
 mod voxel;

@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::error::TransferError;
 use super::integral::{TransferIntegral, integrals, mean_between};
+use super::view::table;
 use crate::machine::generic::clamp;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
@@ -407,54 +408,7 @@ pub struct TransferView<'a> {
     name: &'static str,
 }
 
-impl Parameter for TransferFunction {
-    type On<'a, M: Machine> = TransferView<'a>;
-}
-
-impl<M: Machine> Value<M> for TransferView<'_> {
-    const SCHEMA: &'static Schema = &Schema::Host;
-
-    fn zero(_: &M) -> Self {
-        panic!("a kernel cannot choose between transfer functions: choose between what they give")
-    }
-
-    #[inline(always)]
-    fn zip(_: &M, a: Self, b: Self, _: &mut impl Leaves<M>) -> Self {
-        assert!(
-            TableView::is_same(&a, &b),
-            "a kernel cannot choose between transfer functions: choose between what they give"
-        );
-        a
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine> Capture<M> for TransferFunction {
-    type On<'c> = TransferView<'c>;
-
-    #[inline(always)]
-    fn capture<'c>(&'c self, _: &M, name: &'static str) -> TransferView<'c> {
-        self.named_view(name)
-    }
-
-    #[inline(always)]
-    fn constant<'c>(&'c self, _: &M) -> TransferView<'c> {
-        self.named_view("transfer")
-    }
-
-    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        TableView::resources(&self.named_view("transfer"), visit);
-    }
-}
-
-impl Table for TransferFunction {
-    type View<'v> = TransferView<'v>;
-
-    #[inline(always)]
-    fn view(&self, name: &'static str) -> TransferView<'_> {
-        self.named_view(name)
-    }
-}
+table!([] TransferFunction, TransferView, "transfer", "transfer functions");
 
 impl TableView for TransferView<'_> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {

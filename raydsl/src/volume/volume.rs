@@ -4,6 +4,7 @@ use super::grid::{Grid, GridView};
 use super::integrator::VolumeIntegrator;
 use super::light::VolumeLight;
 use super::transfer::{TransferFunction, TransferView};
+use super::view::table;
 use super::voxel::Voxel;
 use crate::geometry::{Ray, RayOn};
 use crate::machine::wgsl::BufferKey;
@@ -120,60 +121,7 @@ impl<T: Voxel> Clone for VolumeView<'_, T> {
 
 impl<T: Voxel> Copy for VolumeView<'_, T> {}
 
-impl<T: Voxel> Parameter for Volume<'_, T> {
-    type On<'a, M: Machine> = VolumeView<'a, T>;
-}
-
-impl<M: Machine, T: Voxel> Value<M> for VolumeView<'_, T> {
-    const SCHEMA: &'static Schema = &Schema::Host;
-
-    fn zero(_: &M) -> Self {
-        panic!("a kernel cannot choose between volumes: choose between what it reads from them")
-    }
-
-    #[inline(always)]
-    fn zip(_: &M, a: Self, b: Self, _: &mut impl Leaves<M>) -> Self {
-        assert!(
-            TableView::is_same(&a, &b),
-            "a kernel cannot choose between volumes: choose between what it reads from them"
-        );
-        a
-    }
-}
-
-#[diagnostic::do_not_recommend]
-impl<M: Machine, T: Voxel> Capture<M> for Volume<'_, T> {
-    type On<'c>
-        = VolumeView<'c, T>
-    where
-        Self: 'c;
-
-    #[inline(always)]
-    fn capture<'c>(&'c self, _: &M, name: &'static str) -> VolumeView<'c, T> {
-        self.named_view(name)
-    }
-
-    #[inline(always)]
-    fn constant<'c>(&'c self, _: &M) -> VolumeView<'c, T> {
-        self.named_view("volume")
-    }
-
-    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        TableView::resources(&self.named_view("volume"), visit);
-    }
-}
-
-impl<T: Voxel> Table for Volume<'_, T> {
-    type View<'v>
-        = VolumeView<'v, T>
-    where
-        Self: 'v;
-
-    #[inline(always)]
-    fn view(&self, name: &'static str) -> VolumeView<'_, T> {
-        self.named_view(name)
-    }
-}
+table!([T: Voxel] Volume<'_, T>, VolumeView, "volume", "volumes");
 
 impl<T: Voxel> TableView for VolumeView<'_, T> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
