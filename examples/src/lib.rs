@@ -5,6 +5,7 @@ pub mod cloud;
 pub mod comparison;
 pub mod head;
 pub mod heat_map;
+pub mod lens;
 pub mod mesh;
 pub mod picture;
 pub mod raster;
