@@ -10,6 +10,7 @@ mod args;
 mod cloud;
 mod files;
 mod light;
+mod luneburg;
 mod open;
 mod quadrature;
 mod textured;
@@ -21,6 +22,7 @@ use std::process::{Command, ExitCode};
 
 use args::{Args, Knob};
 use clap::Parser;
+use raydsl_examples::lens;
 use raydsl_examples::raster::raster;
 use raydsl_report::work_precision::{Case, Method, WorkPrecision};
 
@@ -53,7 +55,7 @@ fn slow_cases() -> [(&'static str, Make); 3] {
 }
 
 fn quick_cases() -> Vec<Case<'static>> {
-    let last = vec![quadrature::case()];
+    let last = vec![quadrature::case(), luneburg::case()];
     let all =
         [visibility::cases(), light::cases(), textured::cases(), last, volumes::cases(cloud::EDGE)];
     all.into_iter().flatten().collect()

@@ -15,8 +15,13 @@ use raydsl_tests::scaled;
 // Parts of one example call each other by the names of modules at the crate's root.
 #[path = "../../examples/report/cloud.rs"]
 mod cloud;
+#[expect(unreachable_pub, reason = "a module of the examples' library")]
+#[path = "../../examples/src/lens.rs"]
+mod lens;
 #[path = "../../examples/report/light.rs"]
 mod light;
+#[path = "../../examples/report/luneburg.rs"]
+mod luneburg;
 #[path = "../../examples/report/open.rs"]
 mod open;
 #[path = "../../examples/report/quadrature.rs"]
@@ -170,6 +175,7 @@ fn a_device_has_the_same_pictures() -> Result<(), Box<dyn Error>> {
     cases.push(cloud::case(8)?);
     cases.push(open::case("balls", balls(), 8)?);
     cases.push(quadrature::case());
+    cases.push(luneburg::case());
     for case in &cases {
         for method in case.methods() {
             let of = |variant| {
@@ -301,6 +307,35 @@ fn orders_of_rules() -> Result<(), Box<dyn Error>> {
             // Of four pixels.
             let counted = curve.points[0].repetitions[0].counted;
             let expected = 4 * u64::from(knobs[0]) * look_ups;
+            assert_eq!((curve.method.name(), counted), (name, Some(expected)));
+        }
+    }
+    Ok(())
+}
+
+/// 2 and 4, of the focus of a beam.
+#[test]
+fn orders_of_integrators() -> Result<(), Box<dyn Error>> {
+    let case = [luneburg::case()];
+    let widest = Backend::Variant(Variant::widest());
+    // In `f32` steps are longer, since rounding is all that 32 of the order 4 leave.
+    let of_f32: (_, &[u32], f64) = (widest, &[4, 8, 16], 0.3);
+    for (backend, knobs, slack) in [of_f32, (Backend::F64, &[8, 16, 32, 64], 0.1)] {
+        let report = WorkPrecision::new().backends(&[backend]).knobs(knobs).size(3, 3);
+        let report = report.repetitions(1).run(&case)?;
+        println!("{}", report.table());
+        let curves = &report.cases[0].curves;
+        assert_eq!(curves.len(), luneburg::INTEGRATORS.len());
+        for (curve, (name, gradients, order)) in curves.iter().zip(luneburg::INTEGRATORS) {
+            let what = format!("{name} {}: {:?}", backend.name(), curve.fit);
+            let fitted = curve.fit.ok_or(what.as_str())?.order;
+            assert!((fitted - order).abs() < slack, "{what}");
+            if backend == Backend::F64 {
+                assert_eq!(curve.verdict(), Verdict::AsExpected, "{what}");
+            }
+            // Of nine pixels.
+            let counted = curve.points[0].repetitions[0].counted;
+            let expected = 9 * u64::from(knobs[0]) * gradients;
             assert_eq!((curve.method.name(), counted), (name, Some(expected)));
         }
     }
