@@ -1,8 +1,9 @@
 //! Volumes on one thread: every integrator and variant, its rate and its error.
 //!
-//! The volume is the scan of a brain, `mni152_t1_1mm.nii.gz` in the folder `RAYDSL_DATA`; without it,
-//! a head made in code. The rate is that of nominal samples: the length of all rays in the volume's
-//! box over the step, one voxel for the exact cell. The error is against the exact cell in `f64`.
+//! The volume is the scan of a brain, `mni152_t1_1mm.nii.gz` in the folder `RAYDSL_DATA`; without
+//! it, a head made in code. The rate is that of nominal samples: the length of all rays in the
+//! volume's box over the step, one voxel for the exact cell. The error is against the exact cell in
+//! `f64`.
 //!
 //! `--export` writes the case for other renderers: `benches/rivals/volumes.py` measures those.
 

@@ -56,8 +56,8 @@ fn turning<S: Stepper>(stepper: S, entry: State, first: f32) -> f32 {
     most
 }
 
-/// The table: fixed steps divide a quarter of a turn, the way through the lens; the pair begins with
-/// one of them, whatever its tolerance.
+/// The table: fixed steps divide a quarter of a turn, the way through the lens; the pair begins
+/// with one of them, whatever its tolerance.
 pub(crate) fn table() -> String {
     let quarter = 0.5 * std::f32::consts::PI;
     let mut text = format!(

@@ -1,10 +1,10 @@
 //! Curved rays: what is seen through two balls whose index of refraction falls from the middle to
 //! the surface, and how accurately three integrators follow the rays.
 //!
-//! `cargo run --release --example luneburg -- FOLDER` writes `luneburg.png` to FOLDER (`out` if none
-//! is given), and prints the errors of the integrators and how the variants agree; with `--wgsl`
-//! instead it prints the kernel's WGSL. At the left is a Luneburg lens, which focuses parallel light
-//! on its surface, at the right Maxwell's fish-eye.
+//! `cargo run --release --example luneburg -- FOLDER` writes `luneburg.png` to FOLDER (`out` if
+//! none is given), and prints the errors of the integrators and how the variants agree; with
+//! `--wgsl` instead it prints the kernel's WGSL. At the left is a Luneburg lens, which focuses
+//! parallel light on its surface, at the right Maxwell's fish-eye.
 
 mod accuracy;
 mod scene;

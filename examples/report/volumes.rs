@@ -102,7 +102,8 @@ fn exact(run: &Run<'_>, volume: &View) -> Result<Estimates, Missing> {
     run.with_samples(1).centers(&camera(), &kernel)
 }
 
-/// The cases, of pictures with `edge` pixels along each edge; their references are the exact cell in `f64`.
+/// The cases, of pictures with `edge` pixels along each edge; their references are the exact cell
+/// in `f64`.
 pub(crate) fn cases(edge: u32) -> Vec<Case<'static>> {
     let size = UVec3::splat(CELLS + 1);
     let spacing = Vec3::splat(2.0 / CELLS as f32);

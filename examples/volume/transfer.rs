@@ -162,6 +162,8 @@ const MOST_LABELS: f32 = 4096.0;
 
 /// Labels up to the greatest value, with hues as far apart as those before leave room for.
 fn labels(most: f32) -> Result<Vec<(u32, Vec3, f32)>, Failure> {
+    // The range of values is widened by rounding.
+    let most = most.round();
     if !(1.0..=MOST_LABELS).contains(&most) {
         let message = format!("--tf labels is for whole numbers from 1 to 4096, not up to {most}");
         return Err(Failure::Usage(message));

@@ -109,8 +109,8 @@ fn forces_are_gradients() {
     }
 }
 
-/// In a hundred turns of a ray in a medium that goes on beyond the lens, the invariant stays what it
-/// is by symplectic steps, and is lost by others of a higher order.
+/// In a hundred turns of a ray in a medium that goes on beyond the lens, the invariant stays what
+/// it is by symplectic steps, and is lost by others of a higher order.
 #[test]
 fn symplectic_steps_keep_the_invariant() {
     #[track_caller]

@@ -17,8 +17,8 @@ pub(super) enum Way<C> {
     },
 }
 
-/// Knots of linear pieces through points, a value and three numbers each; of these the first `N` are
-/// followed. None if there is no room for them.
+/// Knots of linear pieces through points, a value and three numbers each; of these the first `N`
+/// are followed. None if there is no room for them.
 pub(super) fn follow<const N: usize, C: Fn(f64) -> [f64; N]>(
     points: &[[f64; 4]],
     between: impl Fn(&[f64; 4], &[f64; 4]) -> Way<C>,

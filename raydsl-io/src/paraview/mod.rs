@@ -10,7 +10,8 @@
 //! step.
 //!
 //! An opacity is that of a layer as thick as a distance that is not in the file: ParaView's
-//! `ScalarOpacityUnitDistance`, which whoever renders has to give. The colour of NaN is passed over.
+//! `ScalarOpacityUnitDistance`, which whoever renders has to give. The colour of NaN is passed
+//! over.
 
 mod curve;
 mod spaces;
@@ -42,8 +43,8 @@ pub struct Preset {
     /// What ParaView calls it; may be empty.
     pub name: String,
     /// Values and colours, sorted by value, at least one; colour is linear between two of them, and
-    /// two of one value are a step. Values are of any unit, often from 0 to 1 for the whole range of
-    /// a data set; channels are from 0 to 1, as the file has them.
+    /// two of one value are a step. Values are of any unit, often from 0 to 1 for the whole range
+    /// of a data set; channels are from 0 to 1, as the file has them.
     ///
     /// The colours of categories are steps in the middle between two categories' values: those of
     /// the annotations if all of them are numbers, or else 0, 1, 2 and so on.

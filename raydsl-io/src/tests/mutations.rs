@@ -1,8 +1,9 @@
-//! Files that are changed at random: a loader gives a volume that is whole, or an error of one line.
+//! Files that are changed at random: a loader gives a volume that is whole, or an error of one
+//! line.
 //!
 //! Truncation and damage of single bytes are tested beside each format; here files change their
-//! length, borrow from each other, and claim sizes at the limits of integers. `RAYDSL_FUZZ_FILES` is
-//! the number of variants of each file, `RAYDSL_FUZZ_SEED` says which ones:
+//! length, borrow from each other, and claim sizes at the limits of integers. `RAYDSL_FUZZ_FILES`
+//! is the number of variants of each file, `RAYDSL_FUZZ_SEED` says which ones:
 //!
 //! ```text
 //! RAYDSL_FUZZ_FILES=100000 RAYDSL_FUZZ_SEED=7 cargo test -p raydsl-io mutations

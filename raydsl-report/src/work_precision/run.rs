@@ -144,8 +144,8 @@ impl<'a> Run<'a> {
         Ok(self.picture(&self.means(camera, kernel, PixelSampler::Jittered)?))
     }
 
-    /// Renders a film as [`Run::film`] does, with all rays through the centres of pixels: for methods
-    /// without random numbers.
+    /// Renders a film as [`Run::film`] does, with all rays through the centres of pixels: for
+    /// methods without random numbers.
     ///
     /// # Errors
     ///

@@ -89,7 +89,7 @@ pub(crate) fn element_in_step<M: Machine, D: Data>(
     data: D,
     i: u32,
 ) -> <D::Element as Type>::On<M> {
-    let len = data.count() as u32;
+    let len = u32::try_from(data.count()).unwrap_or(u32::MAX);
     m.check_index(&m.u32(i), len);
     // An empty slice has no last element to return.
     if len == 0 {

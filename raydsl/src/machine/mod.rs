@@ -480,7 +480,7 @@ pub trait Machine: Sized + 'static {
     /// Returns the element `index`; the last one if it is out of range.
     #[inline(always)]
     fn element<D: Data>(&self, data: &D, index: U<Self>) -> <D::Element as Type>::On<Self> {
-        let count = data.count() as u32;
+        let count = u32::try_from(data.count()).unwrap_or(u32::MAX);
         self.check_index(&index.0, count);
         let last = self.u32(count.wrapping_sub(1));
         let within = self.u32_compare(op::Le, index.0, last);

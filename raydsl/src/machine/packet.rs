@@ -575,7 +575,7 @@ impl<L: Lanes> Machine for Packet<L> {
 
     #[inline(always)]
     fn element<D: Data>(&self, data: &D, index: U<Self>) -> <D::Element as Type>::On<Self> {
-        let count = data.count() as u32;
+        let count = u32::try_from(data.count()).unwrap_or(u32::MAX);
         self.check_index(&index.0, count);
         if count == 0 {
             return Value::zero(self);
@@ -586,7 +586,8 @@ impl<L: Lanes> Machine for Packet<L> {
         self.fetch_by(
             index,
             #[inline(always)]
-            // SAFETY: no lane of `index` is above `last`.
+            // SAFETY: no lane of `index` is above `last`, running or not: `Lanes` are of this crate,
+            // and compare and select as they say.
             |i| unsafe { data.get_unchecked(i) },
         )
     }

@@ -21,17 +21,18 @@ use crate::{Type, kernel};
 
 /// Integrates to a tolerance: each step is as long as its share of the error allows.
 ///
-/// A step is taken as a whole and in two parts, by the means of the transfer function over the values
-/// that it passes, as [`PreIntegrated`](super::PreIntegrated) does. Its error is their difference and
-/// a bound on what colours within a part hide of one another; the parts are what counts. A step whose
-/// error is above `tolerance` times its share of the ray's length in the grid is taken again, shorter.
-/// Steps end at the borders of cells and where the value turns, so no value between their ends is
-/// missed, wherever samples fall. (Novins and Arvo, "Controlled Precision Volume Integration", 1992,
-/// bound the error by derivatives; this estimates it.)
+/// A step is taken as a whole and in two parts, by the means of the transfer function over the
+/// values that it passes, as [`PreIntegrated`](super::PreIntegrated) does. Its error is their
+/// difference and a bound on what colours within a part hide of one another; the parts are what
+/// counts. A step whose error is above `tolerance` times its share of the ray's length in the grid
+/// is taken again, shorter. Steps end at the borders of cells and where the value turns, so no
+/// value between their ends is missed, wherever samples fall. (Novins and Arvo, "Controlled
+/// Precision Volume Integration", 1992, bound the error by derivatives; this estimates it.)
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
 pub struct Adaptive {
-    /// Greatest error of radiance and opacity along a ray, where colours are at most 1; above 0.
-    /// Below some 1e-5 rounding is greater.
+    /// Error of radiance and opacity along a ray that is aimed at, where colours are at most 1;
+    /// above 0. It is estimated: few rays have a greater one, and hardly any more than a few times
+    /// as great. Below some 1e-5 rounding is greater.
     pub tolerance: f32,
     /// Length of the first step in the world; above 0.
     pub start: f32,
@@ -54,13 +55,20 @@ impl Adaptive {
     pub fn start(self, start: f32) -> Self {
         Self { start, ..self }
     }
+
+    /// Sets the transmittance below which the rest of a ray is left out.
+    #[inline]
+    #[must_use]
+    pub fn least(self, least: f32) -> Self {
+        Self { least, ..self }
+    }
 }
 
 /// Share of a cell below which a step is taken whatever its error.
 const SHORTEST: f32 = 1.0 / 1024.0;
 
-/// Difference of the values at both ends of a step, as a share of them, below which the step is taken
-/// whatever its error: the values are rounded.
+/// Difference of the values at both ends of a step, as a share of them, below which the step is
+/// taken whatever its error: the values are rounded.
 const NARROWEST: f32 = 1e-5;
 
 /// Where a step is divided: not in the middle, about which values between two turns are symmetric.

@@ -97,7 +97,7 @@ impl SurfaceWalk {
     }
 }
 
-/// Returns where the ray next meets a surface, from either side: the root of the cubic that the
+/// Returns where the ray next meets an isosurface, from either side: the root of the cubic that the
 /// value is along the ray, to within rounding. A ray that touches a surface meets it where its
 /// value rises above, and where it falls back. Cells with missing voxels have no surfaces.
 #[kernel]

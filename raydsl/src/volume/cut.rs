@@ -16,12 +16,12 @@ use crate::{Type, kernel};
 /// of all, to the next.
 ///
 /// The objects are those of a scene: primitives with an inside, such as spheres and cuboids, and
-/// closed meshes of triangles whose vertices run anticlockwise seen from outside ([`check_closed()`]
-/// says whether they are); one inside
-/// another, touching, as many as there are. Every crossing counts once, whatever edge or vertex the
-/// ray passes through, and one that only touches an object changes nothing; the ends of parts are
-/// the distances of hits. The ray may begin inside. A plane is the surface of all that is behind it,
-/// for rays that cross it somewhere, also before they begin.
+/// closed meshes of triangles whose vertices run anticlockwise seen from outside
+/// ([`check_closed()`] says whether they are); one inside another, touching, as many as there are.
+/// Every crossing counts once, whatever edge or vertex the ray passes through, and one that only
+/// touches an object changes nothing; the ends of parts are the distances of hits. The ray may
+/// begin inside. A plane is the surface of all that is behind it, for rays that cross it somewhere,
+/// also before they begin.
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -154,8 +154,8 @@ impl Cut {
 }
 
 /// Checks that triangles are closed: that each edge of one is that of another, the other way round.
-/// A mesh with a hole, or with a triangle that is turned, has no inside, and [`Cut`] would give parts
-/// of rays that mean nothing.
+/// A mesh with a hole, or with a triangle that is turned, has no inside, and [`Cut`] would give
+/// parts of rays that mean nothing.
 ///
 /// Edges are those between equal positions, so that both indexed meshes and loose triangles can be
 /// checked. Triangles without area do not count.

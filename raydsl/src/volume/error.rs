@@ -1,6 +1,6 @@
 //! Errors of creating grids and transfer functions, and of meshes that cut.
 
-use glam::Vec3;
+use glam::{UVec2, Vec2, Vec3};
 
 /// Why a grid cannot be created.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -58,13 +58,13 @@ pub enum TransferError {
     /// There are no knots of colour, or none of opacity.
     #[error("a transfer function needs a knot of {of}")]
     NoKnots {
-        /// `colour`, `opacity` or `labels`.
+        /// `colour`, `opacity`, `labels` or `samples`.
         of: &'static str,
     },
     /// The values of knots decrease.
-    #[error("knot {index} of {of} lies below the one before it: sort them by value")]
+    #[error("knot {index} of {of} does not lie above the one before it: sort them by value")]
     Unsorted {
-        /// `colour`, `opacity` or `labels`.
+        /// `colour`, `opacity`, `labels` or `samples`.
         of: &'static str,
         /// Index of the knot, from 0 on.
         index: usize,
@@ -73,10 +73,27 @@ pub enum TransferError {
     /// to 1.
     #[error("knot {index} of {of} is out of range")]
     OutOfRange {
-        /// `colour`, `opacity` or `labels`.
+        /// `colour`, `opacity`, `labels` or `samples`.
         of: &'static str,
         /// Index of the knot, from 0 on.
         index: usize,
+    },
+    /// A 2-D function has too few samples along an axis, or too many, or another number of them.
+    #[error("{found} samples for a function of {size}: from 2 to 4096 along each axis")]
+    Samples {
+        /// Samples along the values and along the gradients.
+        size: UVec2,
+        /// Number of samples given.
+        found: usize,
+    },
+    /// A range of values or of gradients is empty, or not finite.
+    #[error("values from {} to {}, gradients from {} to {}: both rise, and are finite",
+        values.x, values.y, gradients.x, gradients.y)]
+    Range {
+        /// First and last value.
+        values: Vec2,
+        /// First and last length of a gradient.
+        gradients: Vec2,
     },
     /// The unit distance of opacities is not positive and finite.
     #[error("the unit distance of opacities is positive and finite, not {0}")]

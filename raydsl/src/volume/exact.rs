@@ -20,16 +20,18 @@ use glam::{Vec3, vec3};
 
 /// Integrates each cell of the grid exactly, whatever its optical depth: no step to choose.
 ///
-/// Along a ray the value in a cell is a cubic. The cell is divided at the cubic's extreme places and
-/// where it meets a knot of the transfer function; between those, extinction and colour are cubics
-/// too. A piece's optical depth, its integral, is exact; its colour is a mean over the piece,
-/// weighted by what is absorbed where, by Gauss's rule with four points and the collocation matrix
-/// for the depth before each (Hairer, Nørsett and Wanner, "Solving Ordinary Differential Equations
-/// I", II.7). Pieces of more than unit depth are divided further, as long as light passes.
+/// Along a ray the value in a cell is a cubic. The cell is divided at the cubic's extreme places
+/// and where it meets a knot of the transfer function; between those, extinction and colour are
+/// cubics too. A piece's optical depth, its integral, is exact; its colour is a mean over the
+/// piece, weighted by what is absorbed where, by Gauss's rule with four points and the collocation
+/// matrix for the depth before each (Hairer, Nørsett and Wanner, "Solving Ordinary Differential
+/// Equations I", II.7). Pieces of more than unit depth are divided further, as long as light
+/// passes.
 ///
 /// So opacity is right to rounding, radiance is between the least and the greatest colour that the
-/// ray meets; the rule is right to some 3e-6. Where the function has a step, rounding moves its place. (Splitting at the knots: Weiss and Westermann,
-/// "Analytic Ray Splitting for Controlled Precision DVR", 2021.)
+/// ray meets; the rule is right to some 3e-6. Where the function has a step, rounding moves its
+/// place. (Splitting at the knots: Weiss and Westermann, "Analytic Ray Splitting for Controlled
+/// Precision DVR", 2021.)
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
 pub struct ExactCell {
     /// Transmittance below which the rest of a ray is left out: at most this share of what is
@@ -71,8 +73,8 @@ pub struct ShadedCell {
     pub least: f32,
     /// Share of light without a direction, from 0 to 1.
     pub ambient: f32,
-    /// Length of a gradient, in values per length of the world, from which on shading is full; above
-    /// 0.
+    /// Length of a gradient, in values per length of the world, from which on shading is full;
+    /// above 0.
     pub edge: f32,
     /// Unit vector towards the light.
     pub to_light: Vec3,
@@ -85,6 +87,13 @@ impl ShadedCell {
     #[inline]
     pub fn new(to_light: Vec3, edge: f32) -> Self {
         Self { least: 0.001, ambient: 0.3, edge, to_light }
+    }
+
+    /// Sets the transmittance below which the rest of a ray is left out.
+    #[inline]
+    #[must_use]
+    pub fn least(self, least: f32) -> Self {
+        Self { least, ..self }
     }
 
     /// Returns the factor of colours in a cell with this gradient.
@@ -259,7 +268,8 @@ fn is_clear(corners: Corners, interval: Interval, layout: GridLayout) -> bool {
         & (max(a, b) <= above.value)
 }
 
-/// Integrates cell by cell; `shade` returns a factor for the colours of a cell, seen from its middle.
+/// Integrates cell by cell; `shade` returns a factor for the colours of a cell, seen from its
+/// middle.
 #[kernel]
 #[inline]
 fn through_cells<T: Voxel, F: Fn(InCell) -> f32>(

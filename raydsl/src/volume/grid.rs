@@ -479,14 +479,16 @@ methods! {
     /// Returns the part of a ray in the grid, as [`Aabb::span`](crate::geometry::Aabb::span): the
     /// distances at which it enters and leaves; the first is greater if it misses.
     sample::span(ray: Ray, RayOn<M>) -> (f32, f32), (F<M>, F<M>);
-    /// Returns where a ray first meets the surface of one value, from either side, between its
+    /// Returns where a ray first meets the isosurface of a value, from either side, between its
     /// `t_min` and `t_max`; [`next_surface`](super::next_surface()) goes on to those behind it.
     along::first_surface(ray: Ray, RayOn<M>; value: f32, F<M>)
         -> Option<SurfaceHit>, <Option<SurfaceHit> as Type>::On<M>;
-    /// Returns the greatest value along a ray, in the middle of cells too; `-f32::MAX` if it misses
-    /// the grid.
+    /// Returns the greatest value along a ray, in the middle of cells too, as for a maximum
+    /// intensity projection; `-f32::MAX` if it misses the grid or all voxels on its way are
+    /// missing.
     along::greatest(ray: Ray, RayOn<M>) -> f32, F<M>;
-    /// Returns the mean value along the part of a ray in the grid; 0 if it misses.
+    /// Returns the mean value along the part of a ray in the grid; 0 if it misses, or all voxels on
+    /// its way are missing.
     along::mean(ray: Ray, RayOn<M>) -> f32, F<M>;
 }
 

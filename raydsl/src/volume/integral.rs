@@ -8,15 +8,13 @@ use crate::machine::generic::{max, min};
 use crate::{Type, kernel};
 
 /// Integrals over the values from the first knot to one of the others, each as a number and the
-/// rest that it lacks: their differences are right to rounding wherever they lie.
+/// rest that it lacks: their differences are right to some 2^-48 of the whole.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 #[repr(C)]
 pub struct TransferIntegral {
-    /// Integral of extinction.
-    pub extinction: f32,
+    pub(super) extinction: f32,
     extinction_rest: f32,
-    /// Integral of extinction times colour.
-    pub emission: Vec3,
+    pub(super) emission: Vec3,
     emission_rest: Vec3,
 }
 

@@ -21,10 +21,11 @@ use crate::{Type, kernel};
 /// two of them means nothing.
 ///
 /// The transfer function is applied to voxels, and what it gives is interpolated: each label around
-/// a point counts by its share there, and borders between labels are smooth surfaces. (Pre-classification; Hadwiger et
-/// al., "Real-Time Volume Graphics", 2006, section 4.2.) It takes exponential steps with the sample
-/// in the middle, as [`Midpoint`](super::Midpoint). With a light, borders are shaded by the gradient
-/// of extinction, over two voxels each way. [`TransferFunction::labels`] gives each label a colour.
+/// a point counts by its share there, and borders between labels are smooth surfaces.
+/// (Pre-classification; Hadwiger et al., "Real-Time Volume Graphics", 2006, section 4.2.) It takes
+/// exponential steps with the sample in the middle, as [`Midpoint`](super::Midpoint). With a light,
+/// borders are shaded by the gradient of extinction, over two voxels each way.
+/// [`TransferFunction::labels`] gives each label a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
 pub struct Labels {
     /// Greatest length of a step, in the world; above 0.
@@ -44,6 +45,13 @@ impl Labels {
     #[inline]
     pub fn new(step: f32) -> Self {
         Self { step, least: 0.001, ambient: 1.0, to_light: vec3(0.0, 0.0, 1.0) }
+    }
+
+    /// Sets the transmittance below which the rest of a ray is left out.
+    #[inline]
+    #[must_use]
+    pub fn least(self, least: f32) -> Self {
+        Self { least, ..self }
     }
 
     /// Shades borders by a light in this direction, a unit vector, and this share of ambient light.
@@ -167,6 +175,7 @@ fn label_step<T: Voxel>(
     Step { color, opacity: opacity_of(depth), depth }
 }
 
-march!(Labels by labels, |this, volume, part, from, to| {
+integrator!(Labels, labels);
+march!(Labels by labels in Volume, |this, volume, part, from, to| {
     label_step(this, volume, part, from, to)
 });

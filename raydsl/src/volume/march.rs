@@ -92,23 +92,23 @@ pub(super) fn opacity_of(depth: f32) -> f32 {
     opacity
 }
 
-/// Implements an integrator by its rule, which makes of the distances at which a step begins and
-/// ends what the step adds.
+/// Defines the kernel of an integrator by its rule, which makes of the distances at which a step
+/// begins and ends what the step adds.
 ///
 /// The kernel sums steps of equal length, at most `step` in the world, which tile the part of the
 /// ray in the grid; it skips macro-cells without extinction, and ends where less than `least` is
-/// transmitted. The loop is repeated for each rule: as a function of its own, which gets the rule as
-/// a closure, packets would call that for every step.
+/// transmitted. The loop is repeated for each rule: as a function of its own, which gets the rule
+/// as a closure, packets would call that for every step.
 macro_rules! march {
     (
-        $name:ident by $kernel:ident,
+        $name:ident by $kernel:ident in $of:ident,
         |$this:ident, $volume:ident, $part:ident, $from:ident, $to:ident| $rule:expr
     ) => {
         #[kernel]
         #[inline(never)]
         fn $kernel<T: Voxel>(
             $this: $name,
-            $volume: &Volume<'_, T>,
+            $volume: &$of<'_, T>,
             ray: Ray,
             light: VolumeLight,
         ) -> VolumeLight {
@@ -148,8 +148,6 @@ macro_rules! march {
             }
             light
         }
-
-        integrator!($name, $kernel);
     };
 }
 
@@ -188,7 +186,8 @@ macro_rules! rule {
             }
         }
 
-        march!($name by $kernel, |this, $volume, $part, $from, $to| $rule);
+        integrator!($name, $kernel);
+        march!($name by $kernel in Volume, |this, $volume, $part, $from, $to| $rule);
     };
 }
 

@@ -15,9 +15,11 @@ mod march;
 mod sample;
 mod tracking;
 mod transfer;
+mod transfer_2d;
 mod view;
 #[expect(clippy::module_inception, reason = "the volume itself, among what belongs to it")]
 mod volume;
+mod volume_2d;
 mod voxel;
 mod walk;
 
@@ -36,5 +38,7 @@ pub use light::VolumeLight;
 pub use march::{Euler, ExponentialLeft, MeanExtinction, Midpoint, PreIntegrated};
 pub use tracking::{delta_tracking, jackknife_transmittance, ratio_transmittance};
 pub use transfer::{TransferFunction, TransferKnot, TransferLayout, TransferSample, TransferView};
+pub use transfer_2d::{TransferFunction2d, TransferLayout2d};
 pub use volume::{Volume, VolumeView};
+pub use volume_2d::{Volume2d, Volume2dView};
 pub use voxel::{Corners, Voxel};

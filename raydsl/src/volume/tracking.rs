@@ -1,6 +1,8 @@
 //! Random estimates of what a ray meets: collisions and transmittance.
 
+use super::exact::ExactCell;
 use super::integrator::{Inside, inside, macro_walk, majorant_of};
+use super::light::VolumeLight;
 use super::march::extinction_at;
 use super::volume::Volume;
 use super::voxel::Voxel;
@@ -10,15 +12,48 @@ use crate::machine::generic::{clamp, max, min};
 use crate::math::elementary::{cos, exp, log1p};
 use crate::sampling::Rng;
 
-/// Number of tentative collisions in a macro-cell after which the rest of it is passed: where a
-/// peak's extinction is so great that no random walk meets it in time.
-const MOST_COLLISIONS: u32 = 16_384;
+/// Optical depth of the majorant in a macro-cell from which on its own depth is integrated: that is
+/// quicker than so many tentative collisions, of which a wall behind clear air would need any
+/// number.
+const MOST_DEPTH: f32 = 256.0;
 
 /// Returns an exponentially distributed depth.
 #[kernel]
 #[inline]
 fn free_depth(rng: &mut Rng) -> f32 {
     -log1p(-rng.next_f32())
+}
+
+/// Returns the optical depth between two distances of the ray.
+#[kernel]
+#[inline]
+fn depth_between<T: Voxel>(volume: &Volume<'_, T>, ray: Ray, from: f32, to: f32) -> f32 {
+    let exact = ExactCell::new().least(0.0);
+    let light: VolumeLight = volume.integrate(&exact, ray.with_range(from, to), VolumeLight::new());
+    light.depth
+}
+
+/// Returns the distance up to which the optical depth is `depth`, between two distances: by
+/// bisection.
+#[kernel]
+#[inline(never)]
+fn place_of_depth<T: Voxel>(
+    volume: &Volume<'_, T>,
+    ray: Ray,
+    from: f32,
+    to: f32,
+    depth: f32,
+) -> f32 {
+    let (mut low, mut high) = (from, to);
+    for _step in 0..24 {
+        let middle = 0.5 * (low + high);
+        if depth_between(volume, ray, from, middle) > depth {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    high
 }
 
 /// Returns the distance of a random collision on the ray between `t_min` and `t_max`, or nothing if
@@ -28,9 +63,10 @@ fn free_depth(rng: &mut Rng) -> f32 {
 /// macro-cell, and each is one with the probability of the extinction there over that. (Woodcock et
 /// al., "Techniques Used in the GEM Code for Monte Carlo Neutronics Calculations", 1965; majorants
 /// on a grid: Szirmay-Kalos, Tóth and Magdics, "Free Path Sampling in High Resolution Inhomogeneous
-/// Participating Media", 2011.)
+/// Participating Media", 2011.) Where that would take hundreds of them, as with a wall behind clear
+/// air, the collision is where the integral of extinction says: regular tracking.
 ///
-/// After 16384 tentative collisions in one macro-cell the rest of it counts as passed.
+/// It reads values between voxels, so it is not for grids of labels.
 ///
 /// ```
 /// use raydsl::prelude::*;
@@ -57,17 +93,26 @@ pub fn delta_tracking<T: Voxel>(volume: &Volume<'_, T>, ray: Ray, rng: &mut Rng)
     let mut left = free_depth(&mut *rng);
     let mut walk = macro_walk(volume.grid(), part);
     while walk.is_inside && !is_found {
+        let (enter, width) = (walk.enter, walk.leave - walk.enter);
         let most = majorant_of(volume, walk.cell) * part.scale;
-        let mut t = walk.enter;
-        let mut count = 0u32;
-        while most > 0.0 && !is_found && count < MOST_COLLISIONS && t + left / most < walk.leave {
-            t += left / most;
-            is_found = rng.next_f32() * most < extinction_at(volume, part, t) * part.scale;
-            left = free_depth(&mut *rng);
-            count += 1;
+        if most * width > MOST_DEPTH {
+            let (from, to) = (start + enter, start + walk.leave);
+            let depth = depth_between(volume, ray, from, to);
+            is_found = depth > left;
+            if is_found {
+                at = place_of_depth(volume, ray, from, to, left) - start;
+            }
+            left = max(left - depth, 0.0);
+        } else if most > 0.0 {
+            // Distances from the border of the macro-cell: sums of small steps to great ones stall.
+            let mut s = left / most;
+            while s < width && !is_found {
+                at = enter + s;
+                is_found = rng.next_f32() * most < extinction_at(volume, part, at) * part.scale;
+                s += free_depth(&mut *rng) / most;
+            }
+            left = max((s - width) * most, 0.0);
         }
-        at = t;
-        left = max(left - (walk.leave - t) * most, 0.0);
         walk.advance();
     }
     if is_found { Some(start + at) } else { None }
@@ -79,27 +124,29 @@ pub fn delta_tracking<T: Voxel>(volume: &Volume<'_, T>, ray: Ray, rng: &mut Rng)
 /// that is none. (Novák, Selle and Jarosz, "Residual Ratio Tracking for Estimating Attenuation in
 /// Participating Media", 2014, section 3.2.) Its cost and its variance grow with the optical depth
 /// of the majorants.
-///
-/// After 16384 tentative collisions in one macro-cell the rest of it counts as passed.
 #[kernel]
 #[inline(never)]
 pub fn ratio_transmittance<T: Voxel>(volume: &Volume<'_, T>, ray: Ray, rng: &mut Rng) -> f32 {
     let part: Inside = inside(volume.grid(), ray);
+    let (start, _) = volume.grid().span(ray);
     let mut transmittance = 1.0;
     let mut left = free_depth(&mut *rng);
     let mut walk = macro_walk(volume.grid(), part);
     while walk.is_inside && transmittance > 0.0 {
+        let (enter, width) = (walk.enter, walk.leave - walk.enter);
         let most = majorant_of(volume, walk.cell) * part.scale;
-        let mut t = walk.enter;
-        let mut count = 0u32;
-        while most > 0.0 && count < MOST_COLLISIONS && t + left / most < walk.leave {
-            t += left / most;
-            let share = extinction_at(volume, part, t) * part.scale / most;
-            transmittance *= 1.0 - min(share, 1.0);
-            left = free_depth(&mut *rng);
-            count += 1;
+        if most * width > MOST_DEPTH {
+            let depth = depth_between(volume, ray, start + enter, start + walk.leave);
+            transmittance *= exp(-depth);
+        } else if most > 0.0 {
+            let mut s = left / most;
+            while s < width && transmittance > 0.0 {
+                let share = extinction_at(volume, part, enter + s) * part.scale / most;
+                transmittance *= 1.0 - min(share, 1.0);
+                s += free_depth(&mut *rng) / most;
+            }
+            left = max((s - width) * most, 0.0);
         }
-        left = max(left - (walk.leave - t) * most, 0.0);
         walk.advance();
     }
     transmittance

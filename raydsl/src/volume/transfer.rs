@@ -175,8 +175,8 @@ impl TransferFunction {
     }
 
     /// Creates the function of labels: `(label, colour, opacity)`, sorted by label; opacities are
-    /// from 0 to 1, of a layer of thickness `unit`. Values within 0.5 of a label are that label; all
-    /// others are empty.
+    /// from 0 to 1, of a layer of thickness `unit`. Values within 0.5 of a label are that label;
+    /// all others are empty.
     ///
     /// ```
     /// use raydsl::prelude::*;
@@ -191,13 +191,18 @@ impl TransferFunction {
     ///
     /// # Errors
     ///
-    /// If there are no labels, they are not sorted or above 2^22, or a number is out of range.
+    /// If there are no labels, if they are not sorted, if one is above 2^22, or if a number is out
+    /// of range.
     pub fn labels(labels: &[(u32, Vec3, f32)], unit: f32) -> Result<Self, TransferError> {
         let of = "labels";
+        if labels.is_empty() {
+            return Err(TransferError::NoKnots { of });
+        }
         let (mut colors, mut opacities) = (Vec::new(), Vec::new());
         let mut before = None;
         for (index, &(label, color, opacity)) in labels.iter().enumerate() {
-            if label > MOST_LABEL {
+            let is_color = color.is_finite() && color.min_element() >= 0.0;
+            if label > MOST_LABEL || !is_color || !(0.0..=1.0).contains(&opacity) {
                 return Err(TransferError::OutOfRange { of, index });
             }
             if before.is_some_and(|before| before >= label) {
@@ -273,7 +278,7 @@ fn check<T>(
 }
 
 /// Returns the extinction of an opacity over a distance.
-fn extinction(opacity: f64, unit: f64) -> f64 {
+pub(super) fn extinction(opacity: f64, unit: f64) -> f64 {
     (-(-opacity).ln_1p()).min(OPAQUE) / unit
 }
 
@@ -464,7 +469,7 @@ impl TransferFunction {
     /// Returns the mean of extinction over all values between two, each as frequent as any other,
     /// and that of colour, weighted by extinction: what a thin layer has whose value runs evenly
     /// from one to the other. Knots between them count, however narrow their peaks. Right to
-    /// rounding.
+    /// rounding, but for some 2^-48 of the function's whole integral, over the values' difference.
     #[inline]
     pub fn between(&self, a: f32, b: f32) -> TransferSample {
         mean_between(self, a, b).mean

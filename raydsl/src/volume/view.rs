@@ -1,7 +1,8 @@
 //! Views of grids, transfer functions and volumes: what kernels capture, or take as parameters.
 
-/// Implements the traits by which kernels capture a table, and take it by reference, for one that has
-/// `named_view` and whose view is a `TableView`. `$name` is its name where it has none of its own.
+/// Implements the traits by which kernels capture a table, and take it by reference, for one that
+/// has `named_view` and whose view is a `TableView`. `$name` is its name where it has none of its
+/// own.
 macro_rules! table {
     ([$($t:ident: $bound:ident)?] $host:ty, $view:ident, $name:literal, $plural:literal) => {
         impl<$($t: $bound)?> Parameter for $host {

@@ -108,11 +108,12 @@ fn integrals_are_those_of_the_oracle() {
     assert!(honoured * 100 >= all * 99, "{honoured} of {all} rays are within the tolerance");
 }
 
-/// Asserts that all variants on the CPU have the same bits, and that WGSL is within `bound` of them.
+/// Asserts that all variants on the CPU have the same bits, and that WGSL is within `bound` of
+/// them.
 ///
-/// A march along a ray takes hundreds of decisions whose sides meet: which cell a sample on a border
-/// is in, between which knots a value on a knot is. Too many are open for each to be followed, and
-/// none makes a difference beyond rounding: that is what this bound tests.
+/// A march along a ray takes hundreds of decisions whose sides meet: which cell a sample on a
+/// border is in, between which knots a value on a knot is. Too many are open for each to be
+/// followed, and none makes a difference beyond rounding: that is what this bound tests.
 #[track_caller]
 pub(crate) fn assert_close<A: Type + Copy + core::fmt::Debug>(
     kernel: &Kernel<'_, A, Vec4>,
@@ -169,7 +170,8 @@ fn variants_agree() {
     }
 }
 
-/// Steps of any length give the same opacity of a homogeneous slab, by every integrator but Euler's.
+/// Steps of any length give the same opacity of a homogeneous slab, by every integrator but
+/// Euler's.
 #[test]
 fn opacity_of_a_slab_does_not_depend_on_the_step() {
     let grid = column(16, 16.0, |_| 0.5);

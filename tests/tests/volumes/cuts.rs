@@ -288,8 +288,8 @@ fn a_ball_less_a_ball() {
     assert_variants_agree!(&kernel, &[(ray,), (Ray::new(vec3(0.1, 0.7, -3.0), Vec3::Z),)]);
 }
 
-/// A volume and a picture that something else has drawn, with the distance of what it shows: each is in
-/// front of the other somewhere, and the volume is cut.
+/// A volume and a picture that something else has drawn, with the distance of what it shows: each
+/// is in front of the other somewhere, and the volume is cut.
 #[test]
 fn a_drawn_picture_is_before_within_and_behind() {
     let grid = Grid::new(

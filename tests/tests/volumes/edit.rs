@@ -1,5 +1,5 @@
-//! What a change leaves as it is: another transfer function on a device prints and compiles nothing,
-//! smaller bindings, other threads and tiles have the same picture.
+//! What a change leaves as it is: another transfer function on a device prints and compiles
+//! nothing, smaller bindings, other threads and tiles have the same picture.
 
 use raydsl::gpu::{Context, GpuScheduler};
 use raydsl::prelude::*;

@@ -55,8 +55,8 @@ fn no_label_is_between_two_others() {
 #[test]
 fn labels_are_values_within_a_half() {
     let organs = organs();
-    for (value, color, depth) in [
-        (1.4, Vec3::X, 0.0f32),
+    for (value, color, transmittance) in [
+        (1.4, Vec3::X, 1.0f32),
         (1.6, Vec3::X, 0.7),
         (2.4, Vec3::X, 0.7),
         (2.6, Vec3::Y, 0.1),
@@ -65,13 +65,16 @@ fn labels_are_values_within_a_half() {
         (5.6, Vec3::Z, 1.0),
     ] {
         let found = organs.at(value);
-        let transmittance = (-found.extinction).exp();
-        let expected = if depth == 0.0 { 1.0 } else { depth };
-        assert!((transmittance - expected).abs() < 1e-6, "{value}: {found:?}");
+        let off = ((-found.extinction).exp() - transmittance).abs();
+        assert!(off < 1e-6, "{value}: {found:?}");
         assert!(found.extinction == 0.0 || found.color == color, "{value}: {found:?}");
     }
     let wrong = |labels: &[(u32, Vec3, f32)]| TransferFunction::labels(labels, 1.0).map(|_| ());
-    assert!(matches!(wrong(&[]), Err(TransferError::NoKnots { .. })));
+    assert_eq!(wrong(&[]), Err(TransferError::NoKnots { of: "labels" }));
+    for bad in [(4, Vec3::ONE, 1.5), (4, Vec3::NAN, 0.5), (4, -Vec3::X, 0.5)] {
+        let error = TransferError::OutOfRange { of: "labels", index: 1 };
+        assert_eq!(wrong(&[(3, Vec3::ONE, 0.5), bad]), Err(error));
+    }
     let one = (3, Vec3::ONE, 0.5);
     assert_eq!(wrong(&[one, one]), Err(TransferError::Unsorted { of: "labels", index: 1 }));
     let far = (u32::MAX, Vec3::ONE, 0.5);

@@ -13,6 +13,7 @@ mod stiff;
 mod surfaces;
 mod tracking;
 mod transfer;
+mod two_dimensional;
 
 #[path = "../../../examples/report/volumes.rs"]
 mod cases;
@@ -20,7 +21,8 @@ mod cases;
 use raydsl::prelude::*;
 use raydsl::volume::{Grid, GridConfig, TransferFunction, Volume};
 
-/// Grid of one cell across and `count` along z, `depth` deep in all, whose values run over `values`.
+/// Grid of one cell across and `count` along z, `depth` deep in all, whose values run over
+/// `values`.
 fn column(count: u32, depth: f32, value: impl Fn(f32) -> f32) -> Grid<'static, f32> {
     let size = uvec3(2, 2, count + 1);
     let voxels: Vec<f32> = (0..size.z).flat_map(|z| [value(z as f32 / count as f32); 4]).collect();

@@ -95,6 +95,36 @@ fn collisions_are_distributed_as_the_optical_depth() {
     }
 }
 
+/// A wall of opacity 1 behind clear air lets nothing through, however short a way it is in a
+/// macro-cell, also from within and along rays of any length; and a collision is on its surface.
+#[test]
+fn walls_are_not_passed() {
+    let size = uvec3(9, 9, 33);
+    let wall = |z: u32| if z == 20 || z == 21 { 1.0 } else { 0.0 };
+    let voxels: Vec<f32> = (0..size.element_product()).map(|i| wall(i / 81)).collect();
+    let grid = Grid::new(&voxels[..], size, GridConfig::new()).expect("a grid");
+    let function = TransferFunction::new(&[(0.0, Vec3::ONE)], &[(0.9, 0.0), (0.95, 1.0)], 1.0);
+    let volume = Volume::new(&grid, function.expect("a function"));
+    for (ray, scale) in [
+        (Ray::new(vec3(4.0, 4.0, -5.0), Vec3::Z), 1.0),
+        (Ray::new(vec3(4.0, 4.0, 3.0), Vec3::Z), 1.0),
+        (Ray::new(vec3(4.0, 4.0, 3.0), Vec3::Z * 0.25), 4.0),
+    ] {
+        for seed in 0..200 {
+            let mut rng = Rng::new(uvec2(seed, 0), 0, 5);
+            let t = delta_tracking(&volume, ray, &mut rng).expect("nothing passes");
+            let z = ray.origin.z + t / scale;
+            assert!((19.89..19.96).contains(&z), "{ray:?}: {z}");
+            assert!(ratio_transmittance(&volume, ray, &mut rng) < 1e-20);
+        }
+    }
+    // The air behind the wall is as clear as that before it.
+    let behind = Ray::new(vec3(4.0, 4.0, 22.2), Vec3::Z);
+    let mut rng = Rng::new(uvec2(0, 0), 0, 6);
+    assert_eq!(delta_tracking(&volume, behind, &mut rng), None);
+    assert_eq!(ratio_transmittance(&volume, behind, &mut rng), 1.0);
+}
+
 /// Extinctions without bound end all walks.
 #[test]
 fn walks_end() {

@@ -8,6 +8,8 @@ use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, Gang, IntBinary, 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct One;
 
+impl super::sealed::Sealed for One {}
+
 impl Lanes for One {
     const N: usize = 1;
     type F32 = f32;
