@@ -209,7 +209,8 @@ macro_rules! operations {
             )+
         }
 
-        impl<const N: usize> Lanes for RunTime<N> {
+        // SAFETY: each operation is that of an array of numbers.
+        unsafe impl<const N: usize> Lanes for RunTime<N> {
             const N: usize = N;
             type F32 = [f32; N];
             type I32 = [i32; N];
@@ -261,7 +262,8 @@ macro_rules! operations {
         const _: () = {
             const N: usize = 16;
 
-            impl Lanes for Numbered {
+            // SAFETY: each operation is that of the lanes within.
+            unsafe impl Lanes for Numbered {
                 const N: usize = N;
                 type F32 = Register;
                 type I32 = Register;

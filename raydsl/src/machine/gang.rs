@@ -73,9 +73,8 @@ macro_rules! numbers {
     };
 }
 
-impl<L: Lanes, const K: usize> super::lanes::sealed::Sealed for Gang<L, K> {}
-
-impl<L: Lanes, const K: usize> Lanes for Gang<L, K> {
+// SAFETY: each operation is that of the lanes within.
+unsafe impl<L: Lanes, const K: usize> Lanes for Gang<L, K> {
     const N: usize = {
         assert!(L::N * K <= 64, "a mask has 64 bits");
         L::N * K

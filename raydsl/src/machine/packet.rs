@@ -586,8 +586,8 @@ impl<L: Lanes> Machine for Packet<L> {
         self.fetch_by(
             index,
             #[inline(always)]
-            // SAFETY: no lane of `index` is above `last`, running or not: `Lanes` are of this crate,
-            // and compare and select as they say.
+            // SAFETY: no lane of `index` is above `last`, running or not: lanes compare and select
+            // as they say.
             |i| unsafe { data.get_unchecked(i) },
         )
     }

@@ -160,11 +160,11 @@ fn absorbed(cubic: Cubic, interval: Interval, from: f32, width: f32, length: f32
         + b * 0.31344511474186835
         + c * 0.35267675751627186
         + d * 0.086963711284363464;
-    // What is absorbed around each.
-    let wa = a * 0.17392742256872693 * exp(-ta);
-    let wb = b * 0.32607257743127307 * exp(-tb);
-    let wc = c * 0.32607257743127307 * exp(-tc);
-    let wd = d * 0.17392742256872693 * exp(-td);
+    // What is absorbed around each. Of pieces too thick for the rule a depth may be far below 0.
+    let wa = a * 0.17392742256872693 * exp(-max(ta, -1.0));
+    let wb = b * 0.32607257743127307 * exp(-max(tb, -1.0));
+    let wc = c * 0.32607257743127307 * exp(-max(tc, -1.0));
+    let wd = d * 0.17392742256872693 * exp(-max(td, -1.0));
     let sum = (wa + wb) + (wc + wd);
     let mean = ((wa * pa + wb * pb) + (wc * pc + wd * pd)) / max(sum, f32::MIN_POSITIVE);
     Absorbed {
@@ -187,6 +187,8 @@ const DARK: f32 = 1e-9;
 fn thin_width(cubic: Cubic, interval: Interval, from: f32, width: f32, length: f32) -> f32 {
     let Interval { below, above, .. } = interval;
     let per = (above.extinction - below.extinction) / (above.value - below.value);
+    // An infinite slope times no difference would be no number.
+    let per = clamp(per, -MOST_OPTICAL_DEPTH, MOST_OPTICAL_DEPTH);
     let begin = max(below.extinction + per * (cubic.at(from) - below.value), 0.0) * length;
     let growth = cubic.steepest(from, from + width) * per.abs() * length;
     let root = (begin * begin + 2.0 * growth * MOST_DEPTH).sqrt();

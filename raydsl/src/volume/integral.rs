@@ -18,21 +18,24 @@ pub struct TransferIntegral {
     emission_rest: Vec3,
 }
 
-/// What integrals stop at: beyond it their differences would not be numbers.
+/// Greatest integral of extinction: beyond it differences would not be numbers.
 const MOST: f64 = 1e30;
 
 /// Returns the integrals up to each knot, the far ones at both ends aside.
 pub(super) fn integrals(knots: &[TransferKnot]) -> Vec<TransferIntegral> {
     let (mut extinction, mut emission) = (0.0f64, DVec3::ZERO);
     let mut all = vec![TransferIntegral::default(); knots.len()];
+    let (first, last) = (&knots[1], &knots[knots.len() - 2]);
+    // Greater ones are opaque all the same.
+    let most = MOST / (f64::from(last.value) - f64::from(first.value)).max(1.0);
     for i in 2..knots.len() - 1 {
         let (a, b) = (&knots[i - 1], &knots[i]);
         let width = f64::from(b.value) - f64::from(a.value);
-        let [ea, eb] = [a, b].map(|k| f64::from(k.extinction));
+        let [ea, eb] = [a, b].map(|k| f64::from(k.extinction).min(most));
         let [ca, cb] = [a, b].map(|k| k.color.as_dvec3());
-        extinction = (extinction + (ea + eb) * 0.5 * width).min(MOST);
+        extinction += (ea + eb) * 0.5 * width;
         let product = ca * (2.0 * ea + eb) + cb * (ea + 2.0 * eb);
-        emission = (emission + product * (width / 6.0)).min(DVec3::splat(MOST));
+        emission = (emission + product * (width / 6.0)).min(DVec3::splat(f32::MAX.into()));
         let (number, rest) = (extinction as f32, emission.as_vec3());
         all[i] = TransferIntegral {
             extinction: number,

@@ -61,7 +61,8 @@ macro_rules! as_one {
     };
 }
 
-impl Lanes for Watch {
+// SAFETY: each operation is that of the lanes within.
+unsafe impl Lanes for Watch {
     const N: usize = 1;
     type F32 = f32;
     type I32 = i32;

@@ -179,3 +179,33 @@ fn extinction_without_bound_is_opaque() {
         assert!(light.depth.is_finite());
     }
 }
+
+/// Peaks of any height and width, on grids of any size: numbers, and of the peak's colour.
+#[test]
+fn peaks_without_bound_are_numbers() {
+    for (length, count) in [(1e6, 3), (1.0, 1), (1e-3, 50)] {
+        let grid = column(count, length, |t| t);
+        for width in [1e-6, 1e-3, 0.4] {
+            for most in [1e6, 1e20, 3e38] {
+                let peak = [(0.5, 0.0), (0.5 + width, most), (0.5 + 2.0 * width, 0.0)];
+                let colors = [(0.0, Vec3::splat(0.5))];
+                let peak = TransferFunction::from_extinction(&colors, &peak).expect("a function");
+                let volume = volume(&grid, peak);
+                let light = [
+                    volume.integrate(&ExactCell::new().least(0.0), along(), VolumeLight::new()),
+                    volume.integrate(&Adaptive::new(1e-4), along(), VolumeLight::new()),
+                    volume.integrate(
+                        &PreIntegrated::new(length / 7.0),
+                        along(),
+                        VolumeLight::new(),
+                    ),
+                ];
+                for light in light {
+                    let (found, half) = (light.radiance.x, 0.5 * light.opacity());
+                    assert!((found - half).abs() < 1e-5, "{length}, {width}, {most}: {light:?}");
+                    assert!(light.depth.is_finite() && light.opacity() > 1e-4, "{light:?}");
+                }
+            }
+        }
+    }
+}

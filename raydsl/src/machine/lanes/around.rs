@@ -51,9 +51,8 @@ macro_rules! delegate {
 /// Implements [`Lanes`] for a wrapper, forwarding every item not given here.
 macro_rules! lanes_around {
     (<L $(, const $n:ident: $t:ty)?> $name:ty { $($own:tt)* }) => {
-        impl<L: Lanes $(, const $n: $t)?> $crate::machine::lanes::sealed::Sealed for $name {}
-
-        impl<L: Lanes $(, const $n: $t)?> Lanes for $name {
+        // SAFETY: each operation is that of the lanes within.
+        unsafe impl<L: Lanes $(, const $n: $t)?> Lanes for $name {
             const N: usize = L::N;
             type F32 = L::F32;
             type I32 = L::I32;

@@ -19,16 +19,14 @@ pub use simd::{Simd4, Simd8, Simd16};
 
 use super::{BoolBinary, Compare, F32Binary, F32Unary, IntBinary, Op, Place, op};
 
-/// Packets fetch elements without asking again whether there are such, by what lanes compare and
-/// select: only lanes of this crate are lanes.
-pub(crate) mod sealed {
-    /// Lanes of this crate.
-    pub trait Sealed {}
-}
-
 /// Registers of one width and their operations. `self` is the proof of the level.
+///
+/// # Safety
+///
+/// Integers compare, are selected and leave their lanes as the operations say: packets fetch elements
+/// by what these return without asking again whether there are such.
 #[expect(missing_docs, reason = "the operations are documented at their enums")]
-pub trait Lanes: sealed::Sealed + Copy + Send + Sync + 'static {
+pub unsafe trait Lanes: Copy + Send + Sync + 'static {
     /// The number of lanes.
     const N: usize;
     type F32: Copy + 'static;

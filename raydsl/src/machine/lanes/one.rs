@@ -8,9 +8,8 @@ use crate::machine::{BoolBinary, Compare, F32Binary, F32Unary, Gang, IntBinary, 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct One;
 
-impl super::sealed::Sealed for One {}
-
-impl Lanes for One {
+// SAFETY: each operation is that of a number.
+unsafe impl Lanes for One {
     const N: usize = 1;
     type F32 = f32;
     type I32 = i32;

@@ -80,9 +80,8 @@ macro_rules! simd_lanes {
         #[derive(Clone, Copy, Debug)]
         pub struct $name<S: Simd>(pub S);
 
-        impl<S: Simd> super::sealed::Sealed for $name<S> {}
-
-        impl<S: Simd> Lanes for $name<S> {
+        // SAFETY: each operation is that of the instruction set, which `fearless_simd` names.
+        unsafe impl<S: Simd> Lanes for $name<S> {
             const N: usize = $n;
             const HAS_TABLES: bool = true;
             type F32 = $f<S>;
