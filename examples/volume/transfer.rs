@@ -206,7 +206,7 @@ mod tests {
         let organs = Choice::Labels.function(vec2(0.0, 15.0), 1.0).expect("labels");
         assert!(organs.at(0.0).extinction == 0.0 && organs.at(15.0).extinction > 0.0);
         assert!(organs.at(4.0).color != organs.at(5.0).color);
-        assert!(Choice::Labels.function(vec2(-1.0, 0.5), 1.0).is_err());
+        assert!(Choice::Labels.function(vec2(-1.0, 0.4), 1.0).is_err());
         let message = Choice::parse("jet").expect_err("no map of that name");
         assert!(message.contains("tissue") && message.contains("turbo"), "{message}");
         assert!(matches!(Choice::parse("a/b.JSON"), Ok(Choice::File(_))));
