@@ -58,7 +58,7 @@ fn camera() -> Pinhole {
     Pinhole::new(vec3(1.9, 2.6, 1.4), Vec3::ZERO, Vec3::Z, 0.5)
 }
 
-/// The red of what the camera sees, by one integrator.
+/// What the camera sees, by one integrator; the red of it counts.
 macro_rules! seen {
     ($run:expr, $volume:expr, $integrator:expr) => {{
         let (volume, integrator) = ($volume, $integrator.least(0.0));
@@ -85,7 +85,7 @@ fn estimate(run: &Run<'_>, volume: &View) -> Result<Estimates, Missing> {
     Ok(Estimates { counted: Some(found.samples * steps), ..found })
 }
 
-/// The red of what the camera sees by the exact cell, in parts of a ray so short that the error of
+/// What the camera sees by the exact cell, in parts of a ray so short that the error of
 /// its rule of four points, of the eighth power of their optical depths, is far below 1e-9.
 fn exact(run: &Run<'_>, volume: &View) -> Result<Estimates, Missing> {
     let exact = ExactCell::new().least(0.0);

@@ -155,8 +155,8 @@ impl<M: Medium> Stepper for RungeKutta<M> {
 pub struct BogackiShampine<M: Medium> {
     /// What the ray is in.
     pub medium: M,
-    /// The error of every coordinate of place and momentum after a way of some ten steps. A step
-    /// is accepted with a quarter of that.
+    /// The error of every coordinate of place and momentum that is aimed at. Errors of steps add up
+    /// over some ten, partly with other signs: a step is accepted with a quarter of it.
     pub tolerance: f32,
 }
 

@@ -28,7 +28,7 @@ use crate::{LoadError, Place};
 use curve::{follow, opacity};
 use spaces::Space;
 
-/// Bytes of a file at most; ParaView's own presets, are 0.3 MB together.
+/// Bytes of a file at most; ParaView's own presets are 0.3 MB together.
 const LONGEST: u64 = 4 << 20;
 /// Knots of a file at most.
 const MOST: usize = 1 << 18;

@@ -10,7 +10,7 @@ use super::voxel::Voxel;
 use super::walk::CellWalk;
 use crate::geometry::{Ray, RayOn, transform_ray};
 use crate::machine::functions::vec3;
-use crate::machine::generic::length;
+use crate::machine::generic::{length, max, min};
 use crate::machine::{Machine, On};
 use crate::{Type, kernel};
 
@@ -109,6 +109,16 @@ pub(super) fn macro_walk<T: Voxel>(grid: &Grid<'_, T>, part: Inside) -> CellWalk
 #[inline]
 pub(super) fn majorant_of<T: Voxel>(volume: &Volume<'_, T>, cell: Vec3) -> f32 {
     volume.majorant(index_of(cell, volume.grid().layout().macro_steps))
+}
+
+/// Returns the factor of colours on a surface with this normal of any length, under a light from
+/// `to_light`, a unit vector, of which the share `ambient` has no direction. (Lambert's law, for
+/// both sides.)
+#[kernel]
+#[inline]
+pub(super) fn lambert(normal: Vec3, to_light: Vec3, ambient: f32) -> f32 {
+    let cosine = normal.dot(to_light).abs() / max(length(normal), f32::MIN_POSITIVE);
+    ambient + (1.0 - ambient) * min(cosine, 1.0)
 }
 
 /// Light within a macro-cell: sums short enough to be plain.

@@ -3,7 +3,7 @@
 use glam::{Vec3, Vec4, vec3};
 
 use super::integrator::{
-    Inside, Layer, VolumeIntegrator, inside, integrator, macro_walk, majorant_of,
+    Inside, Layer, VolumeIntegrator, inside, integrator, lambert, macro_walk, majorant_of,
 };
 use super::light::VolumeLight;
 use super::march::{MOST_STEPS, RUN, Step, cell_at_distance, march, opacity_of};
@@ -13,7 +13,7 @@ use super::volume::{Volume, VolumeView};
 use super::voxel::{Corners, Voxel};
 use crate::geometry::{Ray, RayOn};
 use crate::machine::functions::vec3;
-use crate::machine::generic::{clamp, length, max, min};
+use crate::machine::generic::{clamp, max, min};
 use crate::machine::{Machine, On};
 use crate::{Type, kernel};
 
@@ -64,10 +64,8 @@ impl Labels {
     /// Returns the factor of colours where extinction has this gradient.
     #[inline]
     fn shade(self, gradient: Vec3) -> f32 {
-        let size = length(gradient);
-        let cosine = gradient.dot(self.to_light).abs() / max(size, f32::MIN_POSITIVE);
-        let lambert = self.ambient + (1.0 - self.ambient) * min(cosine, 1.0);
-        if size > 0.0 { lambert } else { 1.0 }
+        let shade = lambert(gradient, self.to_light, self.ambient);
+        if gradient.dot(gradient) > 0.0 { shade } else { 1.0 }
     }
 }
 

@@ -14,9 +14,9 @@ use raydsl_tests::scaled;
 use super::agreement::assert_close;
 
 #[primitive(sphere(center, radius))]
-struct Ball {
-    center: Vec3,
-    radius: f32,
+pub(crate) struct Ball {
+    pub(crate) center: Vec3,
+    pub(crate) radius: f32,
 }
 
 #[kernel]

@@ -67,6 +67,12 @@ fn a_field_may_exceed_a_binding() {
         let expected = kernel.call(*ray);
         assert!((found - expected).abs().max_element() < 1e-4, "{ray:?}: {found}, not {expected}");
     }
+    // More than a program has bindings.
+    let context = Context::new().expect("as before").with_max_binding_bytes(256);
+    let mut found = vec![Vec4::ZERO; rays.len()];
+    let error = GpuScheduler::with_context(context).batch(&kernel, &rays, &mut found);
+    let error = error.expect_err("1875 bindings").to_string();
+    assert!(error.contains("storage buffers") && error.contains("use fewer"), "{error}");
 }
 
 /// The picture of a volume has the same bits whatever runs it.

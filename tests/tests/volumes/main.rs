@@ -3,6 +3,7 @@
 #![allow(clippy::excessive_precision, reason = "closed forms are written as they were computed")]
 
 mod agreement;
+mod closed_forms;
 mod cuts;
 mod edit;
 mod fields;
