@@ -8,8 +8,10 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::{env, fs};
 
-use raydsl::integrators::{DirectionalLight, PointLight, direct_light};
+use raydsl::bsdf::Lambert;
+use raydsl::integrators::direct_light;
 use raydsl::kernel;
+use raydsl::light::{AnyLight, DirectionalLight, Lights, PointLight};
 use raydsl::prelude::*;
 use raydsl::render::Display;
 use raydsl::shading::Surface;
@@ -67,15 +69,20 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // ANCHOR: light
     let lamp = |x, z, intensity| PointLight { position: vec3(x, 4.5, z), intensity };
-    let lamps = &[
-        lamp(-3.0, 3.0, vec3(85.0, 8.0, 6.0)),
-        lamp(0.0, 4.5, vec3(6.0, 75.0, 10.0)),
-        lamp(3.0, 3.0, vec3(6.0, 14.0, 100.0)),
-    ][..];
     let direction = vec3(-0.5, 1.0, -0.4).normalize();
-    let suns = &[DirectionalLight { direction, irradiance: Vec3::splat(0.35) }][..];
+    let sun = DirectionalLight { direction, irradiance: Vec3::splat(0.35), sine: 0.0 };
+    let list = [
+        AnyLight::Point(lamp(-3.0, 3.0, vec3(85.0, 8.0, 6.0))),
+        AnyLight::Point(lamp(0.0, 4.5, vec3(6.0, 75.0, 10.0))),
+        AnyLight::Point(lamp(3.0, 3.0, vec3(6.0, 14.0, 100.0))),
+        AnyLight::Directional(sun),
+    ];
+    let lights = Lights::new(&list, scene.bounds())?;
     let shadows = true;
-    let kernel = kernel!(|ray: Ray| direct_light(&scene, lamps, suns, host(shadows), ray));
+    let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+        let surface = |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo };
+        direct_light::<_, _, Lambert>(&scene, surface, &lights, host(shadows), ray, sampler)
+    });
     let camera = Pinhole::new(vec3(0.0, 4.4, 8.2), vec3(0.0, 0.55, 0.2), Vec3::Y, 0.62);
     let mut film = Film::new(640, 400);
     let scheduler = TiledScheduler::new().variant(variant);

@@ -3,6 +3,7 @@
 pub mod args;
 pub mod cloud;
 pub mod comparison;
+pub mod cornell;
 pub mod head;
 pub mod heat_map;
 pub mod lens;

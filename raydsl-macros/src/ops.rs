@@ -195,6 +195,7 @@ const DATA: &[&str] = &[
     "TextureRef3",
     "Texels",
     "TransferFunction",
+    "Environment",
 ];
 
 /// Returns whether kernels read the type's data in place.

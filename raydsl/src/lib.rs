@@ -2,6 +2,7 @@
 
 extern crate self as raydsl;
 
+pub mod bsdf;
 pub mod bvh;
 pub mod camera;
 pub mod error;
@@ -10,6 +11,7 @@ pub mod geometry;
 pub mod gpu;
 pub mod integrators;
 pub mod kernel;
+pub mod light;
 pub mod machine;
 pub mod math;
 pub mod prelude;

@@ -4,8 +4,10 @@
 use std::error::Error;
 
 use glam::{DAffine3, DMat3, DVec3};
+use raydsl::bsdf::Lambert;
 use raydsl::bvh::SceneRef;
-use raydsl::integrators::{DirectionalLight, aovs, bvh_cost, direct_light};
+use raydsl::integrators::{aovs, bvh_cost, direct_light};
+use raydsl::light::{DirectionalLight, Lights};
 use raydsl::prelude::*;
 use raydsl::shading::{Mesh, MeshAttributes, Surface};
 use raydsl::testing::run;
@@ -643,9 +645,13 @@ fn meshes_carry_attributes() -> Result<(), Box<dyn Error>> {
         let (u, v) = (along.x + 0.37 * along.z, along.y + 0.11 * along.x - 0.21 * along.z);
         assert!(u > 0.0 && v.abs() < 1e-5 * u, "{along}: {u} {v}");
     }
-    let suns = [DirectionalLight { direction: Vec3::Y, irradiance: Vec3::ONE }];
-    let (lamps, suns, shadows) = (&[][..], &suns[..], true);
-    let lit = kernel!(|ray: Ray| direct_light(&mesh, lamps, suns, host(shadows), ray));
+    let suns = [DirectionalLight { direction: Vec3::Y, irradiance: Vec3::ONE, sine: 0.0 }];
+    let lights = Lights::new(&suns, bvh.bounds())?;
+    let (shadows, sampler) = (true, Sampler::default());
+    let lit = kernel!(|ray: Ray| {
+        let surface = |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo };
+        direct_light::<_, _, Lambert>(&mesh, surface, &lights, host(shadows), ray, sampler)
+    });
     assert_variants_agree!(&lit, &rays);
     let known = kernel!(|ray: Ray| aovs(&mesh, ray));
     assert_variants_agree!(&known, &rays);

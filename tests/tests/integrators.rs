@@ -3,11 +3,12 @@
 use std::error::Error;
 
 use glam::DVec3;
+use raydsl::bsdf::Lambert;
 use raydsl::bvh::{Cost, Node};
 use raydsl::integrators::{
-    DirectionalLight, PointLight, ambient_occlusion, aovs, bvh_cost, bvh_cost_color, direct_light,
-    heat_color,
+    ambient_occlusion, aovs, bvh_cost, bvh_cost_color, direct_light, heat_color,
 };
+use raydsl::light::{AnyLight, DirectionalLight, Lights, PointLight};
 use raydsl::prelude::*;
 use raydsl::shading::Surface;
 use raydsl::testing::run;
@@ -115,7 +116,8 @@ fn direct_light_is_what_f64_says() -> Result<(), Box<dyn Error>> {
     let lamps =
         [lamp(0.0, 5.0, 1.0, vec3(30.0, 20.0, 4.0)), lamp(-4.0, 0.5, 3.0, vec3(0.0, 9.0, 20.0))];
     let direction = vec3(0.6, 0.0, -0.8);
-    let suns = [DirectionalLight { direction, irradiance: vec3(1.0, 0.5, 2.0) }];
+    let suns = [DirectionalLight { direction, irradiance: vec3(1.0, 0.5, 2.0), sine: 0.0 }];
+    let sampler = Sampler::default();
     let rays: Vec<(Ray,)> = random_rays(5, 3000)
         .into_iter()
         .map(|ray| (Ray::new(ray.origin, ray.direction),))
@@ -124,7 +126,14 @@ fn direct_light_is_what_f64_says() -> Result<(), Box<dyn Error>> {
     for (lamps, suns, shadows) in
         [(&lamps[..], &suns[..], true), (&lamps, &suns, false), (&lamps[..1], &[], true)]
     {
-        let kernel = kernel!(|ray: Ray| direct_light(&scene, lamps, suns, host(shadows), ray));
+        let points = lamps.iter().copied().map(AnyLight::Point);
+        let all: Vec<AnyLight> =
+            points.chain(suns.iter().copied().map(AnyLight::Directional)).collect();
+        let lights = Lights::new(&all, scene.bounds())?;
+        let kernel = kernel!(|ray: Ray| {
+            let surface = |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo };
+            direct_light::<_, _, Lambert>(&scene, surface, &lights, host(shadows), ray, sampler)
+        });
         assert_variants_agree!(&kernel, &rays);
         let mut compared = 0;
         for (ray,) in &rays[..3000] {
@@ -145,9 +154,14 @@ fn direct_light_is_what_f64_says() -> Result<(), Box<dyn Error>> {
 fn what_has_no_shadows_asks_for_none() -> Result<(), Box<dyn Error>> {
     let balls = balls(3);
     let scene = Bvh::build(&balls)?;
-    let (lamps, suns) = (&[][..], &[][..]);
+    let lamps = [PointLight { position: Vec3::Y, intensity: Vec3::ONE }];
+    let lights = Lights::new(&lamps, scene.bounds())?;
+    let sampler = Sampler::default();
     let texts = [true, false].map(|shadows| {
-        let kernel = kernel!(|ray: Ray| direct_light(&scene, lamps, suns, host(shadows), ray));
+        let kernel = kernel!(|ray: Ray| {
+            let surface = |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo };
+            direct_light::<_, _, Lambert>(&scene, surface, &lights, host(shadows), ray, sampler)
+        });
         kernel.wgsl()
     });
     assert!(texts[0].contains("any_hit") && !texts[1].contains("any_hit"), "{}", texts[1]);
@@ -164,9 +178,13 @@ fn phases_of_a_ball() -> Result<(), Box<dyn Error>> {
         let (sin, cos) = degrees.to_radians().sin_cos();
         let direction = vec3(sin as f32, 0.0, cos as f32);
         let irradiance = Vec3::splat(std::f32::consts::PI);
-        let suns = &[DirectionalLight { direction, irradiance }][..];
-        let (lamps, shadows) = (&[][..], true);
-        let kernel = kernel!(|ray: Ray| direct_light(&scene, lamps, suns, host(shadows), ray));
+        let suns = [DirectionalLight { direction, irradiance, sine: 0.0 }];
+        let lights = Lights::new(&suns, scene.bounds())?;
+        let (shadows, sampler) = (true, Sampler::default());
+        let kernel = kernel!(|ray: Ray| {
+            let surface = |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo };
+            direct_light::<_, _, Lambert>(&scene, surface, &lights, host(shadows), ray, sampler)
+        });
         let mut film = Film::new(64, 64);
         TiledScheduler::new().accumulate(&camera, &kernel, &Sampling::new(64), &mut film, 64);
         let sum: Vec4 = film.image().pixels().iter().sum();

@@ -2,8 +2,10 @@
 //! share none.
 
 use raydsl::assert_variants_agree;
-use raydsl::integrators::{DirectionalLight, PointLight, direct_light};
+use raydsl::bsdf::Lambert;
+use raydsl::integrators::direct_light;
 use raydsl::kernel;
+use raydsl::light::{AnyLight, DirectionalLight, Lights, PointLight};
 use raydsl::prelude::*;
 use raydsl::shading::Surface;
 use raydsl_tests::rng::Rng;
@@ -209,16 +211,28 @@ fn integrators_shade_enums() {
     let of_balls = Bvh::build(&of_balls).expect("finite bounds");
     let things = Bvh::build(&things).expect("finite bounds");
     let lamp = PointLight { position: vec3(0.0, 5.0, 1.0), intensity: vec3(30.0, 20.0, 4.0) };
-    let sun = DirectionalLight { direction: vec3(0.6, 0.0, -0.8), irradiance: vec3(1.0, 0.5, 2.0) };
-    let (lamps, suns) = (&[lamp][..], &[sun][..]);
+    let (direction, irradiance) = (vec3(0.6, 0.0, -0.8), vec3(1.0, 0.5, 2.0));
+    let sun = DirectionalLight { direction, irradiance, sine: 0.0 };
+    let list = [AnyLight::Point(lamp), AnyLight::Directional(sun)];
+    let lights = Lights::new(&list, plain.bounds()).expect("finite powers");
+    let sampler = Sampler::default();
     let rays = rays(&mut rng, 2000);
-    let expected = kernel!(|ray: Ray| direct_light(&plain, lamps, suns, host(true), ray));
-    let found = kernel!(|ray: Ray| direct_light(&of_balls, lamps, suns, host(true), ray));
+    let expected = kernel!(|ray: Ray| {
+        let surface = |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo };
+        direct_light::<_, _, Lambert>(&plain, surface, &lights, host(true), ray, sampler)
+    });
+    let found = kernel!(|ray: Ray| {
+        let surface = |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo };
+        direct_light::<_, _, Lambert>(&of_balls, surface, &lights, host(true), ray, sampler)
+    });
     for (ray,) in &rays {
         assert_eq!(expected.call((*ray,)), found.call((*ray,)));
     }
     assert_variants_agree!(&found, &rays);
-    let nested = kernel!(|ray: Ray| direct_light(&things, lamps, suns, host(false), ray));
+    let nested = kernel!(|ray: Ray| {
+        let surface = |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo };
+        direct_light::<_, _, Lambert>(&things, surface, &lights, host(false), ray, sampler)
+    });
     assert_variants_agree!(&nested, &rays);
 }
 

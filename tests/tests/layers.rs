@@ -11,12 +11,13 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 /// The layers, the top one first. A module may depend on those of lower layers, and on those of its
 /// own that do not depend on it.
-const LAYERS: [&[&str]; 12] = [
+const LAYERS: [&[&str]; 13] = [
     &["__private", "error", "prelude"],
     &["gpu", "testing"],
     &["render"],
     &["integrators"],
     &["volume"],
+    &["bsdf", "light"],
     &["shading"],
     &["bvh", "camera", "sampling", "texture"],
     &["geometry"],

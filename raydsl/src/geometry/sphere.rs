@@ -112,7 +112,7 @@ pub fn surface_point(ray: Ray, hit: Hit, center: Vec3, radius: f32) -> SurfacePo
 /// from there by 4 of the radius (eps = 2^-24); twice that is allowed.
 #[kernel]
 #[inline]
-fn of_normal(normal: Vec3, center: Vec3, radius: f32) -> SurfacePoint {
+pub(crate) fn of_normal(normal: Vec3, center: Vec3, radius: f32) -> SurfacePoint {
     rounded_point(center + normal * radius, normal, radius * SLACK)
 }
 

@@ -388,7 +388,7 @@ pub fn surface_point(_ray: Ray, hit: Hit, v0: Vec3, v1: Vec3, v2: Vec3) -> Surfa
 /// are summed first, so that their sum is added to the larger world coordinates once.
 #[kernel]
 #[inline]
-fn weighted(b1: f32, b2: f32, v0: Vec3, v1: Vec3, v2: Vec3) -> SurfacePoint {
+pub(crate) fn weighted(b1: f32, b2: f32, v0: Vec3, v1: Vec3, v2: Vec3) -> SurfacePoint {
     let (e1, e2) = (v1 - v0, v2 - v0);
     let size = max(max(largest(e1), largest(e2)), largest(e2 - e1));
     rounded_point(v0 + (e1 * b1 + e2 * b2), across(e1, e2), size * NEARBY)

@@ -103,6 +103,7 @@ pub use record::{Recorder, Recording};
 pub use scalar::Scalar;
 pub use schema::{Field, Schema};
 #[doc(hidden)]
+pub(crate) use table::table_view;
 pub use table::{Table, TableView};
 pub use types::Type;
 pub(crate) use value::Floats;

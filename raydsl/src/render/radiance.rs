@@ -3,6 +3,7 @@
 use glam::{Vec3, Vec4, vec4};
 
 use super::Shaded;
+use crate::integrators::PathSample;
 use crate::kernel;
 use crate::machine::functions::vec4;
 use crate::machine::{Coerce, Machine, On, Type};
@@ -24,6 +25,14 @@ impl Radiance for Shaded {
     #[inline]
     fn rgba(&self) -> Vec4 {
         vec4(self.color.x, self.color.y, self.color.z, 1.0)
+    }
+}
+
+#[kernel]
+impl Radiance for PathSample {
+    #[inline]
+    fn rgba(&self) -> Vec4 {
+        self.color
     }
 }
 

@@ -11,6 +11,7 @@
 
 mod agree;
 mod agreement;
+pub mod check;
 mod explain;
 mod film_test;
 mod leaves;

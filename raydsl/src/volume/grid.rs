@@ -7,11 +7,11 @@ use glam::{Affine3, Mat3, UVec3, Vec2, Vec3, vec2};
 use super::along::{self, SurfaceHit};
 use super::error::GridError;
 use super::sample;
-use super::view::table;
 use super::voxel::{Corners, Voxel};
 use crate::Type;
 use crate::geometry::affine::inverted;
 use crate::geometry::{Ray, RayOn};
+use crate::machine::table_view;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
     B, Capture, F, Leaves, Machine, Method, Owner, Parameter, Resource, Schema, Slice, Table,
@@ -346,7 +346,7 @@ impl<T: Voxel> Clone for GridView<'_, T> {
 
 impl<T: Voxel> Copy for GridView<'_, T> {}
 
-table!([T: Voxel] Grid<'_, T>, GridView, "grid", "grids");
+table_view!([T: Voxel] Grid<'_, T>, GridView, "grid", "grids");
 
 impl<T: Voxel> TableView for GridView<'_, T> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {

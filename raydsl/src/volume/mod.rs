@@ -16,7 +16,6 @@ mod sample;
 mod tracking;
 mod transfer;
 mod transfer_2d;
-mod view;
 #[expect(clippy::module_inception, reason = "the volume itself, among what belongs to it")]
 mod volume;
 mod volume_2d;

@@ -4,8 +4,8 @@ use glam::{Vec2, Vec3};
 
 use super::error::TransferError;
 use super::integral::{TransferIntegral, integrals, mean_between};
-use super::view::table;
 use crate::machine::generic::clamp;
+use crate::machine::table_view;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
     Capture, F, Lanes, Leaves, Machine, Margin, Method, Operation, Owner, Packet, Parameter,
@@ -413,7 +413,7 @@ pub struct TransferView<'a> {
     name: &'static str,
 }
 
-table!([] TransferFunction, TransferView, "transfer", "transfer functions");
+table_view!([] TransferFunction, TransferView, "transfer", "transfer functions");
 
 impl TableView for TransferView<'_> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {

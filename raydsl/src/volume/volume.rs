@@ -4,9 +4,9 @@ use super::grid::{Grid, GridView};
 use super::integrator::VolumeIntegrator;
 use super::light::VolumeLight;
 use super::transfer::{TransferFunction, TransferView};
-use super::view::table;
 use super::voxel::Voxel;
 use crate::geometry::{Ray, RayOn};
+use crate::machine::table_view;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
     Capture, F, Inferred, Leaves, Machine, Method, On, Owner, Parameter, Resource, Schema, Slice,
@@ -121,7 +121,7 @@ impl<T: Voxel> Clone for VolumeView<'_, T> {
 
 impl<T: Voxel> Copy for VolumeView<'_, T> {}
 
-table!([T: Voxel] Volume<'_, T>, VolumeView, "volume", "volumes");
+table_view!([T: Voxel] Volume<'_, T>, VolumeView, "volume", "volumes");
 
 impl<T: Voxel> TableView for VolumeView<'_, T> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {

@@ -7,11 +7,11 @@ use super::march::{MOST_STEPS, Midpoint, RUN, Step, march, opacity_of};
 use super::sample::{cell_around, gradient_in, index_of, value_in};
 use super::transfer::TransferSample;
 use super::transfer_2d::{TransferFunction2d, TransferLayout2d};
-use super::view::table;
 use super::voxel::Voxel;
 use crate::geometry::{Ray, RayOn};
 use crate::machine::functions::vec2;
 use crate::machine::generic::{clamp, length, max, min};
+use crate::machine::table_view;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
     Capture, F, Leaves, Machine, Method, On, Parameter, Resource, Schema, Slice, Table, TableView,
@@ -188,7 +188,7 @@ impl<T: Voxel> Clone for Volume2dView<'_, T> {
 
 impl<T: Voxel> Copy for Volume2dView<'_, T> {}
 
-table!([T: Voxel] Volume2d<'_, T>, Volume2dView, "volume", "volumes");
+table_view!([T: Voxel] Volume2d<'_, T>, Volume2dView, "volume", "volumes");
 
 impl<T: Voxel> TableView for Volume2dView<'_, T> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {

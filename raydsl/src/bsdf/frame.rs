@@ -1,0 +1,77 @@
+//! The frame of a surface, in which BSDFs are.
+
+use glam::{Vec3, vec3};
+
+use crate::machine::functions::vec3;
+use crate::machine::generic::{max, normalize};
+use crate::shading::ShadingPoint;
+use crate::{Type, kernel};
+
+/// The frame of a surface seen from a direction: the shading normal and its tangents, and the
+/// geometric normal, which decides on which side a direction is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
+#[repr(C)]
+pub struct ShadingFrame {
+    /// First tangent.
+    pub x: Vec3,
+    /// Second tangent.
+    pub y: Vec3,
+    /// The shading normal.
+    pub z: Vec3,
+    /// The geometric normal, on the side of the shading normal.
+    pub normal: Vec3,
+}
+
+/// Least cosine between the shading normal and the direction to the viewer.
+const MIN_COS: f32 = 1e-3;
+
+#[kernel]
+impl ShadingFrame {
+    /// Creates the frame of a point that is seen from the direction `to_viewer`, of unit length,
+    /// with a normal in the frame of the point's tangents: `(0, 0, 1)`, or one of a normal map, of
+    /// any length.
+    ///
+    /// A shading normal that is turned away from the viewer, while the geometric one is not, is
+    /// bent until it is not.
+    pub fn new(point: ShadingPoint, mapped: Vec3, to_viewer: Vec3) -> Self {
+        let (ng, ns) = (point.point.normal, point.shading_normal);
+        let t = point.tangent;
+        let tangent = vec3(t.x, t.y, t.z);
+        let bitangent = ns.cross(tangent) * t.w;
+        let turned = tangent * mapped.x + bitangent * mapped.y + ns * mapped.z;
+        let squared = turned.dot(turned);
+        let is_plain = mapped.x == 0.0 && mapped.y == 0.0 || !(squared > 0.0);
+        let n = if is_plain { ns } else { turned / max(squared, f32::MIN_POSITIVE).sqrt() };
+        // On the side of the geometric normal, and not turned away from the viewer.
+        let n = if n.dot(ng) < 0.0 { n - ng * (2.0 * n.dot(ng)) } else { n };
+        let side = if ng.dot(to_viewer) < 0.0 { -1.0 } else { 1.0 };
+        let cos = n.dot(to_viewer) * side;
+        let bent = normalize(n + to_viewer * (side * (MIN_COS - cos)));
+        let z = if cos < MIN_COS { bent } else { n };
+        let along = tangent - z * z.dot(tangent);
+        let length2 = along.dot(along);
+        let other = ng.any_orthonormal_vector();
+        let x = if length2 > 1e-12 { along / max(length2, 1e-12).sqrt() } else { other };
+        let x = normalize(x - z * z.dot(x));
+        Self { x, y: z.cross(x), z, normal: ng }
+    }
+
+    /// Transforms a direction from the frame to the world.
+    #[inline]
+    pub fn to_world(self, v: Vec3) -> Vec3 {
+        self.x * v.x + self.y * v.y + self.z * v.z
+    }
+
+    /// Transforms a direction from the world to the frame.
+    #[inline]
+    pub fn to_local(self, v: Vec3) -> Vec3 {
+        vec3(self.x.dot(v), self.y.dot(v), self.z.dot(v))
+    }
+
+    /// Returns whether a direction of the world, `local` in the frame, is on one side by both
+    /// normals. Other light would leak through the surface.
+    #[inline]
+    pub fn is_consistent(self, world: Vec3, local: Vec3) -> bool {
+        self.normal.dot(world) * local.z > 0.0
+    }
+}

@@ -1,0 +1,156 @@
+//! Path tracing.
+
+use glam::{Vec3, Vec4, vec3, vec4};
+
+use super::direct::{Scattering, next_3d, scattered_light, scattering_at};
+use crate::bsdf::{Bsdf, BsdfSample, Material};
+use crate::geometry::{Hit, Ray, SurfacePoint};
+use crate::light::{Light, Lights, NO_RIVAL};
+use crate::machine::Type as MachineType;
+use crate::machine::functions::{vec3, vec4};
+use crate::machine::generic::{max, min, normalize};
+use crate::sampling::Sampler;
+use crate::shading::{Scene, ShadingPoint};
+use crate::{Type, kernel};
+
+/// What a path returns: the colour, and what denoisers ask for, of the same rays.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
+#[repr(C)]
+pub struct PathSample {
+    /// Radiance: red, green and blue; and alpha, 0 where the ray misses and 1 elsewhere.
+    pub color: Vec4,
+    /// Albedo of the first surface, a [`Bsdf::albedo`]; 0 where the ray misses.
+    pub albedo: Vec3,
+    /// Shading normal of the first surface, on the side that the ray comes from; 0 where the ray
+    /// misses.
+    pub normal: Vec3,
+    /// Distance of the first surface; [`f32::MAX`] where the ray misses.
+    pub depth: f32,
+}
+
+// ANCHOR: path
+/// Bounces from which on Russian roulette ends paths.
+const ROULETTE: u32 = 3;
+
+/// Estimates the radiance along `ray` by one path: light that is scattered up to `bounces` times.
+///
+/// `surface` returns the material of a hit. A light is sampled at each bounce, and weighted against
+/// the path's own hits of lights. From the fourth bounce on a path goes on with a probability of its
+/// throughput, at most 0.95. (Kajiya, "The Rendering Equation", 1986; Veach, "Robust Monte Carlo
+/// Methods for Light Transport Simulation", 1997, chapters 9 and 10.)
+///
+/// ```
+/// use raydsl::bsdf::Lambert;
+/// use raydsl::integrators::path;
+/// use raydsl::light::{AnyLight, Environment, Lights};
+/// use raydsl::prelude::*;
+///
+/// // A white ball in a white furnace cannot be seen.
+/// #[primitive(sphere(center, radius))]
+/// struct Ball {
+///     center: Vec3,
+///     radius: f32,
+/// }
+/// # use raydsl::kernel;
+/// #[kernel]
+/// impl raydsl::shading::Surface for Ball {
+///     fn surface(&self, ray: Ray, hit: Hit) -> SurfacePoint {
+///         self.surface_point(ray, hit)
+///     }
+///
+///     fn albedo(&self, _ray: Ray, _hit: Hit) -> Vec3 {
+///         vec3(1.0, 1.0, 1.0)
+///     }
+/// }
+///
+/// let balls = [Ball { center: Vec3::ZERO, radius: 1.0 }];
+/// let scene = Bvh::build(&balls)?;
+/// let sky = Environment::constant(Vec3::ONE)?;
+/// let none: [AnyLight; 0] = [];
+/// let lights = Lights::new(&none, scene.bounds())?.with_environment(&sky);
+/// let bounces = 8;
+/// let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+///     let surface = |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo };
+///     path::<_, _, Lambert>(&scene, surface, &lights, host(bounces), ray, sampler).color
+/// });
+/// let ray = Ray::new(vec3(0.3, 0.2, 3.0), -Vec3::Z);
+/// let color = kernel.call((ray, Sampler::new(uvec2(0, 0), 0, 0, 1, SampleMethod::Sobol)));
+/// assert!(color.x > 0.0 && color.x < 2.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[kernel]
+pub fn path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material + MachineType>(
+    scene: &S,
+    surface: impl Fn(Hit, ShadingPoint) -> B,
+    lights: &Lights<'_, L>,
+    #[host] bounces: u32,
+    ray: Ray,
+    sampler: Sampler,
+) -> PathSample {
+    let (mut ray, mut sampler) = (ray, sampler);
+    let mut ahead = normalize(ray.direction);
+    let (mut radiance, mut throughput) = (vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
+    let mut first = nothing();
+    let mut from = SurfacePoint { position: ray.origin, normal: ahead, error: 0.0 };
+    let mut pdf = NO_RIVAL;
+    for bounce in 0..bounces + 1 {
+        // Find what the path hits.
+        let hit = scene.closest_hit(ray);
+        if !hit.is_hit {
+            radiance += throughput * lights.missed(ahead, pdf);
+            break;
+        }
+        let seen = scene.shading_point(ray, hit);
+        let material: B = surface(hit, seen);
+        let at = scattering_at::<B>(seen, material, -ahead);
+        if bounce == 0 {
+            first = seen_first::<B>(at, hit.t);
+        }
+
+        // Add the light that it emits.
+        let light = material.light();
+        radiance += throughput * lights.emitted(light, at.point, from, ahead, pdf);
+        if bounce == bounces {
+            break;
+        }
+
+        // Add the light that one of the lights sends.
+        let sample = lights.sample(at.point, next_3d(&mut sampler));
+        radiance += throughput * scattered_light::<S, B>(scene, true, true, sample, at);
+
+        // Go on in a direction of the surface's choice.
+        let next: BsdfSample = material.sample(at.wo, next_3d(&mut sampler));
+        let direction = at.frame.to_world(next.wi);
+        throughput *= next.weight;
+        let goes_on = max(throughput.x, max(throughput.y, throughput.z));
+        let chance = if bounce < ROULETTE { 1.0 } else { min(goes_on, 0.95) };
+        let is_over = sampler.next_1d() >= chance || !(goes_on > 0.0);
+        if is_over || !at.frame.is_consistent(direction, next.wi) {
+            break;
+        }
+        throughput /= chance;
+        pdf = if next.is_delta { NO_RIVAL } else { next.pdf };
+        (from, ahead) = (at.point, direction);
+        ray = at.point.ray(direction);
+    }
+    first.color = vec4(radiance.x, radiance.y, radiance.z, first.color.w);
+    first
+}
+// ANCHOR_END: path
+
+/// Returns the sample of a ray that hits a surface, before any light.
+#[kernel]
+#[inline]
+fn seen_first<B: Bsdf + MachineType>(at: Scattering<B>, depth: f32) -> PathSample {
+    let bsdf: B = at.bsdf;
+    let normal = if at.wo.z < 0.0 { -at.frame.z } else { at.frame.z };
+    PathSample { color: vec4(0.0, 0.0, 0.0, 1.0), albedo: bsdf.albedo(at.wo), normal, depth }
+}
+
+/// Returns the sample of a ray that misses.
+#[kernel]
+#[inline]
+fn nothing() -> PathSample {
+    let none = vec3(0.0, 0.0, 0.0);
+    PathSample { color: vec4(0.0, 0.0, 0.0, 0.0), albedo: none, normal: none, depth: f32::MAX }
+}

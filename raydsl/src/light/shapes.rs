@@ -1,0 +1,348 @@
+//! Shapes of lights, and how they are sampled from a point.
+
+use core::f32::consts::PI;
+
+use glam::{Vec2, Vec3, vec2, vec3};
+
+use super::LightExtent;
+use super::triangle::{sample_spherical_triangle, solid_angle};
+use crate::geometry::{SurfacePoint, Triangle, disk, rectangle, sphere, triangle};
+use crate::machine::functions::{vec2, vec3};
+use crate::machine::generic::{max, min, normalize};
+use crate::sampling::{
+    Frame, UNIFORM_SPHERE_PDF, cone_pdf, one_minus_cos, sample_cone, sample_uniform_sphere,
+};
+use crate::{Type, kernel};
+
+/// The shape of an [`AreaLight`](super::AreaLight).
+///
+/// A shape of your own is sampled by its area in three lines; see [`sample_by_area()`].
+#[kernel]
+pub trait LightShape {
+    /// Samples a point of the surface, as seen from `from`, by a point of the unit square.
+    fn sample_from(&self, from: Vec3, u: Vec2) -> ShapeSample;
+
+    /// Returns the density per solid angle with which [`sample_from`](Self::sample_from) chooses the
+    /// point `at` of the surface.
+    fn pdf_from(&self, from: Vec3, at: SurfacePoint) -> f32;
+
+    /// Returns the area of the surface.
+    fn surface_area(&self) -> f32;
+
+    /// Returns the box around it and its normals; it shines up to a right angle from them.
+    fn shape_extent(&self) -> LightExtent;
+}
+
+/// A sampled point of a surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
+#[repr(C)]
+pub struct ShapeSample {
+    /// Unit vector towards it.
+    pub wi: Vec3,
+    /// The point.
+    pub point: SurfacePoint,
+    /// Density per solid angle; 0 where there is none.
+    pub pdf: f32,
+}
+
+/// Returns the sample of a point that was chosen uniformly on a surface of this area.
+///
+/// ```
+/// use raydsl::kernel;
+/// use raydsl::light::{LightExtent, LightShape, ShapeSample, area_pdf, sample_by_area};
+/// use raydsl::prelude::*;
+///
+/// /// A tube that shines.
+/// #[primitive(tube(p0, p1, radius))]
+/// struct Neon {
+///     p0: Vec3,
+///     p1: Vec3,
+///     radius: f32,
+/// }
+///
+/// #[kernel]
+/// impl LightShape for Neon {
+///     fn sample_from(&self, from: Vec3, u: Vec2) -> ShapeSample {
+///         sample_by_area(tube::sample(u, self.p0, self.p1, self.radius), self.surface_area(), from)
+///     }
+///
+///     fn pdf_from(&self, from: Vec3, at: SurfacePoint) -> f32 {
+///         area_pdf(at, self.surface_area(), from)
+///     }
+///
+///     fn surface_area(&self) -> f32 {
+///         tube::area(self.p0, self.p1, self.radius)
+///     }
+///
+///     fn shape_extent(&self) -> LightExtent {
+///         let r = Vec3::splat(self.radius);
+///         LightExtent {
+///             min: self.p0.min(self.p1) - r,
+///             max: self.p0.max(self.p1) + r,
+///             axis: vec3(0.0, 0.0, 1.0),
+///             cos_normals: -1.0,
+///             cos_emitted: 0.0,
+///         }
+///     }
+/// }
+/// ```
+#[kernel]
+pub fn sample_by_area(point: SurfacePoint, area: f32, from: Vec3) -> ShapeSample {
+    let way = point.position - from;
+    let squared = way.dot(way);
+    let is_there = squared > 1e-30 && area > 0.0;
+    let wi = if is_there { way / squared.sqrt() } else { vec3(0.0, 0.0, 1.0) };
+    ShapeSample { wi, point, pdf: area_pdf(point, area, from) }
+}
+
+/// Returns the density per solid angle of a point that was chosen uniformly on a surface of this
+/// area: 0 where the surface is seen edge-on, or from itself.
+#[kernel]
+#[inline]
+pub fn area_pdf(point: SurfacePoint, area: f32, from: Vec3) -> f32 {
+    let way = point.position - from;
+    let cosine = way.dot(point.normal).abs();
+    let is_seen = area > 0.0 && cosine > 0.0;
+    let pdf = way.dot(way) * way.dot(way).sqrt() / (area * cosine);
+    if is_seen && pdf < 1e30 { pdf } else { 0.0 }
+}
+
+/// A sphere, whose normals are outside.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
+#[repr(C)]
+pub struct SphereShape {
+    /// Centre.
+    pub center: Vec3,
+    /// Radius.
+    pub radius: f32,
+}
+
+/// A rectangle or other parallelogram, whose normal is `cross(u_edge, v_edge)`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
+#[repr(C)]
+pub struct RectangleShape {
+    /// A corner.
+    pub corner: Vec3,
+    /// The edges from there.
+    pub u_edge: Vec3,
+    /// The other edge.
+    pub v_edge: Vec3,
+}
+
+/// A disk.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
+#[repr(C)]
+pub struct DiskShape {
+    /// Centre.
+    pub center: Vec3,
+    /// Normal, of any length.
+    pub normal: Vec3,
+    /// Radius.
+    pub radius: f32,
+}
+
+#[kernel]
+impl SphereShape {
+    /// Returns the height of the cone in which the sphere is seen; 0 from inside.
+    #[inline]
+    fn cone(self, from: Vec3) -> f32 {
+        let way = self.center - from;
+        let squared = way.dot(way);
+        let is_outside = squared > self.radius * self.radius && self.radius > 0.0;
+        let sine = self.radius / max(squared, f32::MIN_POSITIVE).sqrt();
+        if is_outside { max(one_minus_cos(sine), f32::MIN_POSITIVE) } else { 0.0 }
+    }
+}
+
+#[kernel]
+impl LightShape for SphereShape {
+    fn sample_from(&self, from: Vec3, u: Vec2) -> ShapeSample {
+        let way = self.center - from;
+        let height = SphereShape::cone(*self, from);
+        let d = way.dot(way).sqrt();
+        let is_outside = height > 0.0;
+        let ahead = if is_outside { way / d } else { vec3(0.0, 0.0, 1.0) };
+        let inside = sample_uniform_sphere(u);
+        let local = if is_outside { sample_cone(u, height) } else { inside };
+        let wi = Frame::around(ahead).to_world(local);
+        // The half chord, from the sine of the direction.
+        let along = way.dot(wi);
+        let aside = way - wi * along;
+        let half = max((self.radius * self.radius) - aside.dot(aside), 0.0).sqrt();
+        let towards = wi * (if is_outside { -half } else { half }) - aside;
+        let normal = normalize(towards);
+        let point = sphere::of_normal(normal, self.center, self.radius);
+        let pdf = if is_outside { cone_pdf(height) } else { UNIFORM_SPHERE_PDF };
+        ShapeSample { wi, point, pdf: if self.radius > 0.0 { pdf } else { 0.0 } }
+    }
+
+    fn pdf_from(&self, from: Vec3, _at: SurfacePoint) -> f32 {
+        let height = SphereShape::cone(*self, from);
+        if height > 0.0 { cone_pdf(height) } else { UNIFORM_SPHERE_PDF }
+    }
+
+    fn surface_area(&self) -> f32 {
+        sphere::area(self.center, self.radius)
+    }
+
+    fn shape_extent(&self) -> LightExtent {
+        let r = Vec3::splat(self.radius);
+        let axis = vec3(0.0, 0.0, 1.0);
+        let (min, max) = (self.center - r, self.center + r);
+        LightExtent { min, max, axis, cos_normals: -1.0, cos_emitted: 0.0 }
+    }
+}
+
+/// Solid angle below which a triangle is sampled by its area: the spherical one has no digits left,
+/// and its density hardly varies.
+const MIN_SOLID_ANGLE: f32 = 1e-4;
+
+/// Solid angle above which a triangle is sampled by its area: it is all around, next to the point.
+const MAX_SOLID_ANGLE: f32 = 6.2;
+
+/// Returns whether a triangle is sampled by its solid angle.
+#[kernel]
+#[inline]
+fn is_spherical(angle: f32) -> bool {
+    angle > MIN_SOLID_ANGLE && angle < MAX_SOLID_ANGLE
+}
+
+/// Returns where the line from `from` along `wi` meets the plane of a triangle.
+#[kernel]
+#[inline]
+fn on_plane(from: Vec3, wi: Vec3, v0: Vec3, v1: Vec3, v2: Vec3) -> SurfacePoint {
+    let (e1, e2) = (v1 - v0, v2 - v0);
+    let across = e1.cross(e2);
+    let n = across / max(across.dot(across), f32::MIN_POSITIVE);
+    // Weights of the vertices, so that the point is between them whatever was rounded.
+    let t = across.dot(v0 - from) / across.dot(wi);
+    let p = from + wi * t - v0;
+    let b1 = max(n.dot(p.cross(e2)), 0.0);
+    let b2 = max(n.dot(e1.cross(p)), 0.0);
+    let over = max(b1 + b2, 1.0);
+    triangle::weighted(b1 / over, b2 / over, v0, v1, v2)
+}
+
+#[kernel]
+fn sample_triangle_from(from: Vec3, u: Vec2, v0: Vec3, v1: Vec3, v2: Vec3) -> ShapeSample {
+    let angle = solid_angle(from, v0, v1, v2);
+    if is_spherical(angle) {
+        let wi = sample_spherical_triangle(u, from, v0, v1, v2);
+        let point = on_plane(from, wi, v0, v1, v2);
+        return ShapeSample { wi, point, pdf: 1.0 / angle };
+    }
+    sample_by_area(triangle::sample(u, v0, v1, v2), triangle::area(v0, v1, v2), from)
+}
+
+#[kernel]
+fn triangle_pdf_from(from: Vec3, at: SurfacePoint, v0: Vec3, v1: Vec3, v2: Vec3) -> f32 {
+    let angle = solid_angle(from, v0, v1, v2);
+    let by_area = area_pdf(at, triangle::area(v0, v1, v2), from);
+    if is_spherical(angle) { 1.0 / angle } else { by_area }
+}
+
+#[kernel]
+impl LightShape for Triangle {
+    fn sample_from(&self, from: Vec3, u: Vec2) -> ShapeSample {
+        sample_triangle_from(from, u, self.v0, self.v1, self.v2)
+    }
+
+    fn pdf_from(&self, from: Vec3, at: SurfacePoint) -> f32 {
+        triangle_pdf_from(from, at, self.v0, self.v1, self.v2)
+    }
+
+    fn surface_area(&self) -> f32 {
+        triangle::area(self.v0, self.v1, self.v2)
+    }
+
+    fn shape_extent(&self) -> LightExtent {
+        flat(
+            min(min(self.v0, self.v1), self.v2),
+            max(max(self.v0, self.v1), self.v2),
+            (self.v1 - self.v0).cross(self.v2 - self.v0),
+        )
+    }
+}
+
+/// Returns the extent of a flat surface.
+#[kernel]
+#[inline]
+fn flat(min: Vec3, max: Vec3, normal: Vec3) -> LightExtent {
+    let squared = normal.dot(normal);
+    let axis = if squared > 0.0 { normal / squared.sqrt() } else { vec3(0.0, 0.0, 1.0) };
+    LightExtent { min, max, axis, cos_normals: 1.0, cos_emitted: 0.0 }
+}
+
+#[kernel]
+impl RectangleShape {
+    /// Returns the solid angles of the two triangles that have the diagonal in common.
+    #[inline]
+    fn halves(self, from: Vec3) -> Vec2 {
+        let (a, b, d) = (self.corner, self.corner + self.u_edge, self.corner + self.v_edge);
+        let c = b + self.v_edge;
+        vec2(solid_angle(from, a, b, c), solid_angle(from, a, c, d))
+    }
+}
+
+#[kernel]
+impl LightShape for RectangleShape {
+    fn sample_from(&self, from: Vec3, u: Vec2) -> ShapeSample {
+        let (a, b, d) = (self.corner, self.corner + self.u_edge, self.corner + self.v_edge);
+        let c = b + self.v_edge;
+        let angles = RectangleShape::halves(*self, from);
+        let angle = angles.x + angles.y;
+        if !is_spherical(angle) {
+            let point = rectangle::sample(u, self.corner, self.u_edge, self.v_edge);
+            return sample_by_area(point, self.surface_area(), from);
+        }
+        // The first number chooses the half, and is used again within it.
+        let share = angles.x / angle;
+        let is_first = u.x < share;
+        let x = if is_first { u.x / share } else { (u.x - share) / (1.0 - share) };
+        let within = vec2(min(x, 0.999_999_94), u.y);
+        let (v1, v2) = (if is_first { b } else { c }, if is_first { c } else { d });
+        let wi = sample_spherical_triangle(within, from, a, v1, v2);
+        ShapeSample { wi, point: on_plane(from, wi, a, v1, v2), pdf: 1.0 / angle }
+    }
+
+    fn pdf_from(&self, from: Vec3, at: SurfacePoint) -> f32 {
+        let angles = RectangleShape::halves(*self, from);
+        let angle = angles.x + angles.y;
+        let by_area = area_pdf(at, self.surface_area(), from);
+        if is_spherical(angle) { 1.0 / angle } else { by_area }
+    }
+
+    fn surface_area(&self) -> f32 {
+        rectangle::area(self.corner, self.u_edge, self.v_edge)
+    }
+
+    fn shape_extent(&self) -> LightExtent {
+        let (a, b, d) = (self.corner, self.corner + self.u_edge, self.corner + self.v_edge);
+        let c = b + self.v_edge;
+        flat(min(min(a, b), min(c, d)), max(max(a, b), max(c, d)), self.u_edge.cross(self.v_edge))
+    }
+}
+
+#[kernel]
+impl LightShape for DiskShape {
+    fn sample_from(&self, from: Vec3, u: Vec2) -> ShapeSample {
+        sample_by_area(
+            disk::sample(u, self.center, self.normal, self.radius),
+            self.surface_area(),
+            from,
+        )
+    }
+
+    fn pdf_from(&self, from: Vec3, at: SurfacePoint) -> f32 {
+        area_pdf(at, self.surface_area(), from)
+    }
+
+    fn surface_area(&self) -> f32 {
+        PI * self.radius * self.radius
+    }
+
+    fn shape_extent(&self) -> LightExtent {
+        let r = Vec3::splat(self.radius);
+        flat(self.center - r, self.center + r, self.normal)
+    }
+}
