@@ -116,6 +116,16 @@ pub enum LoadError {
         /// What to do.
         remedy: &'static str,
     },
+    /// The file needs an extension of its format that this crate does not read.
+    #[error("{}: needs the extension {extension}, which is not supported; {remedy}", path.display())]
+    Extension {
+        /// The file.
+        path: PathBuf,
+        /// The extension's name.
+        extension: String,
+        /// What to do.
+        remedy: &'static str,
+    },
     /// The elements do not fit into memory.
     #[error("{}: no memory for {count} {what}s; {remedy}", path.display())]
     OutOfMemory {

@@ -1,8 +1,11 @@
 #![doc = include_str!("../README.md")]
 #![cfg_attr(
     not(all(
+        feature = "environment",
+        feature = "gltf",
         feature = "las",
         feature = "metaimage",
+        feature = "mtl",
         feature = "nifti",
         feature = "nrrd",
         feature = "obj",
@@ -45,8 +48,11 @@ mod source;
 mod stack;
 #[cfg(all(
     test,
+    feature = "environment",
+    feature = "gltf",
     feature = "las",
     feature = "metaimage",
+    feature = "mtl",
     feature = "nifti",
     feature = "nrrd",
     feature = "obj",
@@ -68,9 +74,12 @@ mod vti;
 mod xyz;
 
 pub mod cloud;
+#[cfg(feature = "environment")]
+pub mod environment;
 pub mod mesh;
 #[cfg(feature = "paraview")]
 pub mod paraview;
+pub mod scene;
 pub mod volume;
 
 pub use error::{LoadError, Place};

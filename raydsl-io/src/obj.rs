@@ -9,7 +9,8 @@ use crate::mesh::{Mesh, fan};
 use crate::source::Source;
 use crate::{LoadError, Place};
 
-const REMEDY: &str = "correct the line, or write the file again, for example with Blender";
+pub(crate) const REMEDY: &str =
+    "correct the line, or write the file again, for example with Blender";
 /// Stands for the normal of a corner that has none.
 const NONE: u32 = u32::MAX;
 
@@ -118,7 +119,7 @@ fn joined(vertices: &[Vec3], normals: &[Vec3], triangles: &[[Corner; 3]]) -> Mes
 }
 
 /// Three numbers; what follows them is passed over.
-fn vector<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Result<Vec3, String> {
+pub(crate) fn vector<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Result<Vec3, String> {
     let mut number = || -> Result<f32, String> {
         let word = words.next().ok_or("it has fewer than three numbers")?;
         let value = str::from_utf8(word).ok().and_then(|word| word.parse().ok());
@@ -128,7 +129,7 @@ fn vector<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Result<Vec3, String>
 }
 
 /// An index from 0. In the file it counts from 1, or back from the last that came before.
-fn index(word: &[u8], count: usize, what: &str) -> Result<u32, String> {
+pub(crate) fn index(word: &[u8], count: usize, what: &str) -> Result<u32, String> {
     let number = str::from_utf8(word).ok().and_then(|word| word.parse::<i64>().ok());
     let Some(number) = number else {
         return Err(format!("'{}' is no index of a {what}", word_text(word)));

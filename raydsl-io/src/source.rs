@@ -114,6 +114,20 @@ impl Source {
         Ok(true)
     }
 
+    /// Reads what is left, at most as many bytes as the file had when it was opened.
+    pub(crate) fn rest(&mut self) -> Result<Vec<u8>, LoadError> {
+        let (mut bytes, count) = (Vec::new(), self.remaining());
+        let room = usize::try_from(count).ok();
+        if room.is_none_or(|room| bytes.try_reserve_exact(room).is_err()) {
+            let remedy = "use a machine with more memory, or make it smaller";
+            let path = self.path.clone();
+            return Err(LoadError::OutOfMemory { path, what: "byte", count, remedy });
+        }
+        let read = self.take(count).read_to_end(&mut bytes);
+        read.map_err(|e| self.unreadable(e))?;
+        Ok(bytes)
+    }
+
     fn unreadable(&self, source: io::Error) -> LoadError {
         LoadError::Unreadable { path: self.path.clone(), source }
     }

@@ -1,11 +1,14 @@
 //! Tests of all loaders, with files that they write.
 
+mod environments;
 mod files;
 mod hostile;
 mod memory;
 mod meshes;
 mod mutations;
 mod presets;
+mod scene_files;
+mod scenes;
 mod volumes;
 mod volumes_hostile;
 

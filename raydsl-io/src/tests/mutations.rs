@@ -13,8 +13,10 @@ use std::time::{Duration, Instant};
 
 use glam::{UVec3, Vec3};
 
+use super::environments::{check_environment, exr, exrs, hdr, load_environment};
 use super::memory::assert_modest;
 use super::presets::{EXPORTED, load_presets};
+use super::scene_files::*;
 use super::volumes::{beside, bytes_of, gzip, meta_header, nifti, nrrd_header, numbers, png_bytes};
 use super::volumes_hostile::{check, files};
 use super::*;
@@ -234,5 +236,54 @@ fn presets() {
             let text = e.to_string();
             assert!(!text.contains('\n') && text.contains(';'), "{text}");
         }
+    });
+}
+
+/// glTF in both forms. The pieces of each are also changed alone, as most changes of a whole file
+/// only break its JSON.
+#[test]
+fn scenes() {
+    let b = everything();
+    let (json, bin) = (b.json("", REST), b.bin.clone());
+    let uri = format!("data:;base64,{}", base64(&bin));
+    let files = [b.glb(REST), json.clone().into_bytes(), bin.clone(), b.json(&uri, REST).into()];
+    each_variant(&files, |index, bytes| {
+        let found = match index {
+            0 => crate::scene::load(&Temp::new("glb", bytes).0),
+            1 => match str::from_utf8(bytes) {
+                Ok(json) => crate::scene::load(&Temp::new("glb", &glb(json, &bin)).0),
+                Err(_) => return,
+            },
+            2 => crate::scene::load(&Temp::new("glb", &glb(&json, bytes)).0),
+            _ => crate::scene::load(&Temp::new("gltf", bytes).0),
+        };
+        check_scene(&found, "a variant");
+    });
+}
+
+/// An OBJ, its MTL and its picture.
+#[test]
+fn scenes_of_obj() {
+    let folder = Folder::obj();
+    let png = picture(image::ImageFormat::Png);
+    let (names, files) = (
+        ["scene.obj", "scene.mtl", "dots.png"],
+        [OBJ.as_bytes().to_vec(), MTL.as_bytes().to_vec(), png],
+    );
+    each_variant(&files, |index, bytes| {
+        for (name, file) in names.iter().zip(&files) {
+            folder.write(name, file);
+        }
+        folder.write(names[index], bytes);
+        check_scene(&folder.load("scene.obj"), "a variant");
+    });
+}
+
+#[test]
+fn environments() {
+    let files: Vec<Vec<u8>> = [hdr(), exr(None)].into_iter().chain(exrs()).collect();
+    each_variant(&files, |index, bytes| {
+        let extension = if index == 0 { "hdr" } else { "exr" };
+        check_environment(&load_environment(extension, bytes), "a variant");
     });
 }
