@@ -249,7 +249,10 @@ impl Folder {
     }
 
     pub(super) fn write(&self, name: &str, bytes: &[u8]) {
-        std::fs::write(self.0.join(name), bytes).expect("a file");
+        let path = self.0.join(name);
+        // Some file systems wait for the disc where a file is overwritten.
+        let _ = std::fs::remove_file(&path);
+        std::fs::write(path, bytes).expect("a file");
     }
 
     pub(super) fn load(&self, name: &str) -> Result<Scene, LoadError> {
