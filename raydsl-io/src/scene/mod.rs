@@ -117,7 +117,8 @@ pub struct Instance {
 }
 
 /// Tells how a surface reflects, transmits and emits light: the model of glTF. Factors are
-/// multiplied by their textures.
+/// multiplied by their textures. A factor of a file beyond its range from 0 to 1 is set to the end
+/// of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// What the file calls it; may be empty.

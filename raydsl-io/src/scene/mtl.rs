@@ -1,6 +1,7 @@
 //! Wavefront MTL.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+use std::mem;
 use std::path::{Component, Path, PathBuf};
 
 use glam::{Affine2, Vec2, Vec3};
@@ -15,7 +16,6 @@ use crate::{LoadError, Place};
 const REMEDY: &str = "correct the line, or write the file again, for example with Blender";
 
 /// The materials that an OBJ can name, and their pictures.
-#[derive(Default)]
 pub(super) struct Library {
     folder: PathBuf,
     materials: Vec<Material>,
@@ -24,8 +24,8 @@ pub(super) struct Library {
     /// The pictures that are read, by their names.
     pictures: HashMap<PathBuf, usize>,
     /// The files that are read.
-    files: HashMap<PathBuf, ()>,
-    room: Option<Room>,
+    files: HashSet<PathBuf>,
+    room: Room,
 }
 
 /// A material as it is in the file.
@@ -62,15 +62,24 @@ pub(super) fn rest(line: &[u8]) -> String {
 impl Library {
     pub(super) fn new(obj: &Source) -> Self {
         let folder = obj.path.parent().unwrap_or(Path::new("")).into();
-        Self { folder, room: Some(Room::new(obj.len)), ..Self::default() }
+        Self {
+            folder,
+            materials: Vec::new(),
+            known: HashMap::new(),
+            images: Vec::new(),
+            pictures: HashMap::new(),
+            files: HashSet::new(),
+            room: Room::new(obj.len),
+        }
     }
 
     pub(super) fn find(&self, name: &str) -> Option<usize> {
         self.known.get(name).copied()
     }
 
-    pub(super) fn into_parts(self) -> (Vec<Material>, Vec<Image>) {
-        (self.materials, self.images)
+    /// Gives all materials and pictures.
+    pub(super) fn take(&mut self) -> (Vec<Material>, Vec<Image>) {
+        (mem::take(&mut self.materials), mem::take(&mut self.images))
     }
 
     /// Reads the files that a line `mtllib` names: one, whose name may have spaces, or several.
@@ -102,7 +111,7 @@ impl Library {
     }
 
     fn read(&mut self, path: &Path) -> Result<(), LoadError> {
-        if self.files.insert(path.into(), ()).is_some() {
+        if !self.files.insert(path.into()) {
             return Ok(());
         }
         let mut source = Source::open(path, "MTL")?;
@@ -183,10 +192,9 @@ impl Library {
         }
         let mut source = Source::open(&path, "picture")?;
         let bytes = source.rest()?;
-        let room = self.room.get_or_insert_with(|| Room::new(0));
-        room.add(bytes.len() as u64);
+        self.room.add(bytes.len() as u64);
         let title = path.file_name().unwrap_or_default().to_string_lossy();
-        let image = room.decode(&bytes, name(Some(&title)));
+        let image = self.room.decode(&bytes, name(Some(&title)));
         let image =
             image.map_err(|(what, remedy)| source.corrupt(Place::Somewhere, what, remedy))?;
         self.images.push(image);

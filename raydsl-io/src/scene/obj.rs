@@ -185,7 +185,7 @@ impl Obj {
             return Err(source.corrupt(Place::Line(line), what, REMEDY));
         }
         let parts = std::mem::take(&mut self.parts);
-        let (mut materials, images) = std::mem::take(&mut self.library).into_parts();
+        let (mut materials, images) = self.library.take();
         let mut scene = Scene { images, ..Scene::default() };
         for part in parts.into_iter().filter(|part| !part.triangles.is_empty()) {
             let mut mesh = self.mesh(&part);

@@ -101,6 +101,21 @@ fn texels_are_light() {
     }
 }
 
+/// A layer that is not as large as the picture would be light from elsewhere.
+#[test]
+fn crops_are_refused() {
+    use exr::prelude::*;
+    let channels = SpecificChannels::rgb(|_: Vec2<usize>| (1.0f32, 1.0f32, 1.0f32));
+    let layer = Layer::new((8, 8), LayerAttributes::default(), Encoding::UNCOMPRESSED, channels);
+    let mut picture = Image::from_layer(layer);
+    picture.attributes.display_window = IntegerBounds::from_dimensions((16, 8));
+    let mut out = Cursor::new(Vec::new());
+    picture.write().non_parallel().to_buffered(&mut out).expect("a picture");
+    let found = load_environment("exr", &out.into_inner());
+    check_environment(&found, "a crop");
+    assert!(found.expect_err("an error").to_string().contains("its data window"));
+}
+
 #[test]
 fn claims_of_environments_are_not_trusted() {
     let header = |size: &str| format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{size}\n\0\0");
@@ -152,6 +167,14 @@ fn a_real_environment_loads() {
     check_environment(&found, "chinese_garden_1k.hdr");
     let sky = found.expect("an environment");
     assert_eq!((sky.width, sky.height), (1024, 512));
+    let whole = std::fs::read(&path).expect("a file");
+    for i in 1..20 {
+        let cut = load_environment("hdr", &whole[..whole.len() / 20 * i]);
+        assert!(matches!(cut, Err(LoadError::Truncated { .. })), "{cut:?}");
+        let mut bytes = whole.clone();
+        bytes[whole.len() / 20 * i] ^= 0x55;
+        check_environment(&load_environment("hdr", &bytes), &format!("variant {i}"));
+    }
     // The sky is brighter than the ground.
     let mean = |rows: &[Vec3]| rows.iter().map(|c| c.y).sum::<f32>() / rows.len() as f32;
     let (top, bottom) = sky.texels.split_at(sky.texels.len() / 2);

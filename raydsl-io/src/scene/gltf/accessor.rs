@@ -56,7 +56,10 @@ impl<'a> Elements<'a> {
                 let at = accessor.byte_offset.unwrap_or_default();
                 Some(slots(file, buffers, view, at, size, count).map_err(|e| e.error(&wrong))?)
             }
-            None if accessor.sparse.is_none() => return Err(wrong("it has no bufferView")),
+            None if accessor.sparse.is_none() => {
+                let what = format!("accessors[{}]: it has no bufferView", index.value());
+                return Err(file.missing(what));
+            }
             None if count as u64 > buffers.total() => {
                 return Err(wrong(&format!("its count is {count}, more than the file has bytes")));
             }

@@ -37,7 +37,7 @@ impl Buffers {
             let (claimed, found) = (buffer.byte_length.0, bytes.len() as u64);
             if found < claimed {
                 let what = format!("buffers[{i}] claims {claimed} bytes and has {found}");
-                return Err(file.wrong(what));
+                return Err(file.missing(what));
             }
             all.buffers.push(bytes);
         }

@@ -83,12 +83,13 @@ fn check_head(source: &Source, json: &[u8]) -> Result<(), LoadError> {
     }
 }
 
+/// The extensions by which the data of meshes are compressed.
+const COMPRESSIONS: [&str; 3] =
+    ["EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_meshopt_compression"];
+
 fn unsupported(source: &Source, name: &str) -> LoadError {
     let remedy = match name {
-        "KHR_draco_mesh_compression"
-        | "EXT_meshopt_compression"
-        | "KHR_meshopt_compression"
-        | "MESHOPT_compression" => {
+        name if COMPRESSIONS.contains(&name) => {
             "write it without compression of meshes, for example with Blender or \
              `gltf-transform copy`"
         }
@@ -120,6 +121,15 @@ pub(super) struct File {
 impl File {
     fn wrong(&self, what: impl Into<String>) -> LoadError {
         self.source.corrupt(Place::Somewhere, what.into(), REMEDY)
+    }
+
+    /// Data are missing: maybe they are there only in compressed form.
+    fn missing(&self, what: impl Into<String>) -> LoadError {
+        let mut used = self.root.extensions_used.iter();
+        match used.find(|name| COMPRESSIONS.contains(&name.as_str())) {
+            Some(name) => unsupported(&self.source, name),
+            None => self.wrong(what),
+        }
     }
 
     /// What an index of the JSON stands for.
