@@ -215,7 +215,8 @@ fn on_plane(from: Vec3, wi: Vec3, v0: Vec3, v1: Vec3, v2: Vec3) -> SurfacePoint 
     let across = e1.cross(e2);
     let n = across / max(across.dot(across), f32::MIN_POSITIVE);
     // Weights of the vertices, so that the point is between them whatever was rounded.
-    let t = across.dot(v0 - from) / across.dot(wi);
+    let facing = across.dot(wi);
+    let t = if facing == 0.0 { 0.0 } else { across.dot(v0 - from) / facing };
     let p = from + wi * t - v0;
     let b1 = max(n.dot(p.cross(e2)), 0.0);
     let b2 = max(n.dot(e1.cross(p)), 0.0);

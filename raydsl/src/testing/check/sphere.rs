@@ -45,7 +45,10 @@ impl SphereBins {
         let half = ROWS / 2;
         let mut edges: Vec<f64> = (0..half).map(|i| PI * i as f64 / half as f64).collect();
         if !angles.is_empty() {
-            edges.extend((1..=half).map(|i| angles[angles.len() * i / (half + 1)]));
+            let last = angles.len() - 1;
+            edges.extend((1..half).map(|i| angles[last * i / (half - 1)]));
+            // What the pilot did not reach of a narrow lobe.
+            edges.push((1.1 * angles[last]).min(PI));
         }
         edges.push(PI);
         edges.sort_by(f64::total_cmp);
