@@ -113,7 +113,7 @@ fn color(v: f32) -> Rgb<u8> {
 }
 
 /// Writes `text` with its upper left corner at (`x`, `y`); what does not fit is left out.
-fn write(image: &mut RgbImage, x: u32, y: u32, text: &str) {
+pub fn write(image: &mut RgbImage, x: u32, y: u32, text: &str) {
     for (i, c) in text.chars().enumerate() {
         let Some(glyph) = font8x8::BASIC_FONTS.get(c) else { continue };
         for (row, bits) in glyph.iter().enumerate() {

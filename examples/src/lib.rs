@@ -1,6 +1,7 @@
 //! Shared code of the example programs.
 
 pub mod args;
+pub mod blob;
 pub mod cloud;
 pub mod comparison;
 pub mod cornell;
@@ -8,6 +9,8 @@ pub mod head;
 pub mod heat_map;
 pub mod lens;
 pub mod mesh;
+pub mod model;
 pub mod picture;
 pub mod raster;
 pub mod rasterizer;
+pub mod sheet;

@@ -1,8 +1,9 @@
 //! Every BSDF of the library through its check.
 
 use raydsl::bsdf::{
-    Bsdf, Coated, ComplexIor, Conductor, Dielectric, Eon, F82, Lambert, MetallicRoughness, Mirror,
-    Mix, Sheen, SheenCoated, ThinDielectric,
+    Bsdf, Coated, ComplexIor, Conductor, Dielectric, Eon, F82, Fresnel, Lambert, MetallicRoughness,
+    Mirror, Mix, Sheen, SheenCoated, ThinDielectric, fresnel_dielectric, ggx_distribution,
+    ggx_masking,
 };
 use raydsl::prelude::*;
 use raydsl::testing::check::BsdfTest;
@@ -18,7 +19,9 @@ fn assert_holds<B: Bsdf + Type + std::fmt::Debug>(test: BsdfTest, bsdf: B) {
     }
 }
 
-const TEST: BsdfTest = BsdfTest::new();
+/// A fifth of the usual samples: the whole number takes minutes where numeric code is hardly
+/// optimised.
+const TEST: BsdfTest = BsdfTest::new().samples(200_000, 5);
 
 fn white() -> BsdfTest {
     TEST.energy(0.99, 1.0001)
@@ -119,4 +122,81 @@ fn metallic_roughness() {
     assert_holds(test, MetallicRoughness { is_solid: true, ior: 1.4, ..all });
     let white = MetallicRoughness { base_color: Vec3::ONE, ..Default::default() };
     assert_holds(test.energy(0.98, 1.0001), MetallicRoughness { metallic: 0.5, ..white });
+}
+
+/// P-M1: at 0, 45, 60, 80, 89, 89.9 and 89.999 degrees, and what is transmitted at the last.
+#[test]
+fn fresnel_is_exact() {
+    let cases = [
+        (0.0, 0.04),
+        (45.0, 0.05023991101223594),
+        (60.0, 0.089186712802212783),
+        (80.0, 0.38770435469147268),
+        (89.0, 0.90418494978018913),
+        (89.9, 0.98991187691942964),
+        (89.999, 0.99989853636319762),
+    ];
+    for (degrees, exact) in cases {
+        let cos = f64::to_radians(degrees).cos() as f32;
+        let split = fresnel_dielectric(cos, 1.5);
+        assert!((f64::from(split.reflected) - exact).abs() < 1e-6, "{degrees}: {split:?}");
+        // The cosine itself is rounded.
+        let through = 1.0 - exact;
+        assert!(
+            (f64::from(split.transmitted) - through).abs() < 1e-4 * through + 1e-7,
+            "{degrees}"
+        );
+    }
+    let grazing = fresnel_dielectric(f64::to_radians(89.999).cos() as f32, 1.5).transmitted;
+    assert!((f64::from(grazing) / 1.0146363680238e-4 - 1.0).abs() < 1e-4, "{grazing}");
+    // From inside, beyond the critical angle, all is reflected.
+    assert_eq!(fresnel_dielectric(0.5, 1.0 / 1.5).reflected, 1.0);
+    let gold = ComplexIor { n: Vec3::splat(1.5), k: Vec3::ZERO };
+    assert!((gold.reflectance(0.5).x - 0.089_186_71).abs() < 1e-6);
+}
+
+/// The distribution is within 2e-6 of itself, and the masking function makes it one of what is seen:
+/// P-GI6.
+#[test]
+fn ggx_is_exact() {
+    for alpha in [1e-4f32, 1e-3, 0.01, 0.1, 0.5, 1.0] {
+        let mut worst: f64 = 0.0;
+        for i in 0..2000 {
+            let tan = f64::from(alpha) * 1.01f64.powi(i - 1000);
+            let sin = tan / (1.0 + tan * tan).sqrt();
+            let m = vec3((sin * 0.6) as f32, (sin * 0.8) as f32, (1.0 - sin * sin).sqrt() as f32);
+            let (x, y, z) = (f64::from(m.x), f64::from(m.y), f64::from(m.z));
+            let a = f64::from(alpha);
+            let e = (x * x + y * y) / (a * a) + z * z;
+            let exact = 1.0 / (std::f64::consts::PI * a * a * e * e);
+            worst = worst.max((f64::from(ggx_distribution(m, alpha)) / exact - 1.0).abs());
+        }
+        assert!(worst < 2e-6, "{alpha}: {worst:.1e}");
+        for cos in [0.05f32, 0.5, 1.0] {
+            let v = vec3((1.0 - cos * cos).sqrt(), 0.0, cos);
+            let seen = weak_furnace(v, alpha);
+            assert!((seen - 1.0).abs() < 1e-4, "{alpha} {cos}: {seen}");
+        }
+    }
+}
+
+/// The integral of what is seen of all facets, over the cosine: in `tan / alpha` and turns.
+fn weak_furnace(v: Vec3, alpha: f32) -> f64 {
+    let (rows, columns) = (4000, 200);
+    let mut sum = 0.0;
+    for i in 0..rows {
+        // The distribution times the cosine is uniform in u; 1 - u is a square, so that the tail is
+        // smooth.
+        let w = (f64::from(i) + 0.5) / f64::from(rows);
+        let tan = f64::from(alpha) * ((1.0 - w * w) / (w * w)).sqrt();
+        let cos = 1.0 / (1.0 + tan * tan).sqrt();
+        for k in 0..columns {
+            let turn = std::f64::consts::TAU * (f64::from(k) + 0.5) / f64::from(columns);
+            let sin = tan * cos;
+            let m = glam::DVec3::new(sin * turn.cos(), sin * turn.sin(), cos);
+            sum += 2.0 * w * m.dot(v.as_dvec3()).max(0.0) / cos;
+        }
+    }
+    let mean = sum / f64::from(rows * columns);
+    f64::from(ggx_masking(v, alpha)) * mean / f64::from(v.z)
 }

@@ -41,6 +41,7 @@
 
 mod cost;
 mod direct;
+mod masks;
 mod occlusion;
 mod outputs;
 mod path_tracing;
@@ -50,6 +51,7 @@ pub use direct::{
     Scattering, ScatteringOn, direct_light, from_each_light, next_3d, scattered_light,
     scattering_at, whitted,
 };
+pub use masks::{closest_surface, is_occluded};
 pub use occlusion::{ambient_occlusion, is_open};
 pub use outputs::{Aovs, AovsOn, aovs};
 pub use path_tracing::{PathSample, PathSampleOn, path};

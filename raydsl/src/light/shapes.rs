@@ -141,14 +141,20 @@ pub struct DiskShape {
     pub radius: f32,
 }
 
+/// Factor of the squared radius up to which a point is on the sphere: twice what rounding does to
+/// points of a surface.
+const ON_SPHERE: f32 = 1.0 + 1.0 / 65536.0;
+
 #[kernel]
 impl SphereShape {
-    /// Returns the height of the cone in which the sphere is seen; 0 from inside.
+    /// Returns the height of the cone in which the sphere is seen; 0 from inside, and from the sphere
+    /// itself, to rounding: from there all of it is seen on its inside.
     #[inline]
     fn cone(self, from: Vec3) -> f32 {
         let way = self.center - from;
         let squared = way.dot(way);
-        let is_outside = squared > self.radius * self.radius && self.radius > 0.0;
+        let around = self.radius * self.radius * ON_SPHERE;
+        let is_outside = squared > around && self.radius > 0.0;
         let sine = self.radius / max(squared, f32::MIN_POSITIVE).sqrt();
         if is_outside { max(one_minus_cos(sine), f32::MIN_POSITIVE) } else { 0.0 }
     }

@@ -7,12 +7,12 @@ use glam::{DVec3, DVec4, Vec3, vec3};
 use super::findings::{Fault, Findings, write_faults};
 use super::sphere::SphereBins;
 use super::statistics::{normal_quantile, pearson, sidak};
+use super::variants::disagreement;
 use crate::bsdf::{Bsdf, BsdfSample};
 use crate::kernel;
 use crate::kernel::Kernel;
-use crate::machine::{Rounding, Type};
+use crate::machine::Type;
 use crate::sampling::{Rng, sample_uniform_sphere};
-use crate::testing::variants_agree;
 
 /// Checks a BSDF as [`BsdfTest::new`] does.
 ///
@@ -291,13 +291,9 @@ impl BsdfTest {
             values.push((bsdf, wo, wi));
             draws.push((bsdf, wo, u));
         }
-        let values = variants_agree(&Kernel::of::<values_of<B>>(), &values[..], Rounding::WGSL);
-        let draws = variants_agree(&Kernel::of::<sample_of<B>>(), &draws[..], Rounding::WGSL);
-        for result in [values, draws] {
-            if let Err(e) = result {
-                found.add("variants differ", e.to_string());
-            }
-        }
+        let values = disagreement(&Kernel::of::<values_of<B>>(), &values);
+        let draws = disagreement(&Kernel::of::<sample_of<B>>(), &draws);
+        values.into_iter().chain(draws).for_each(|text| found.add("variants differ", text));
     }
 }
 

@@ -7,14 +7,14 @@ use glam::{DVec3, DVec4, Vec2, Vec3, vec2};
 use super::findings::{Fault, Findings, write_faults};
 use super::sphere::SphereBins;
 use super::statistics::{normal_quantile, pearson, sidak};
+use super::variants::disagreement;
 use crate::geometry::{Ray, SurfacePoint};
 use crate::kernel;
 use crate::kernel::Kernel;
 use crate::light::{DistantLight, Environment, Light, LightExtent, LightSample};
-use crate::machine::{Rounding, Type};
+use crate::machine::Type;
 use crate::sampling::{Rng, sample_uniform_sphere};
 use crate::shading::Scene;
-use crate::testing::variants_agree;
 
 /// Checks a light as [`LightTest::new`] does. `scene` has the surfaces of the light and nothing else:
 /// an empty slice for a light without surfaces.
@@ -231,8 +231,8 @@ impl LightTest {
                 (light, self.point(&extent, i), rng.next_2d())
             })
             .collect();
-        if let Err(e) = variants_agree(&Kernel::of::<all_of<L>>(), &inputs[..], Rounding::WGSL) {
-            found.add("variants differ", e.to_string());
+        if let Some(text) = disagreement(&Kernel::of::<all_of<L>>(), &inputs) {
+            found.add("variants differ", text);
         }
     }
 }

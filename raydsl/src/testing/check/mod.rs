@@ -27,6 +27,7 @@ mod findings;
 mod light;
 mod sphere;
 mod statistics;
+mod variants;
 
 pub use bsdf::{BsdfFailure, BsdfReport, BsdfRow, BsdfTest, bsdf};
 pub use estimators::{EstimatorsFailure, EstimatorsReport, EstimatorsTest, estimators};

@@ -1,0 +1,110 @@
+//! A scene of a file by path tracing. Learn here how meshes, materials with pictures, and lights of a
+//! file get into a kernel.
+//!
+//! `cargo run --release --example gltf -- --help` tells the rest.
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use clap::Parser;
+use raydsl::geometry::Aabb;
+use raydsl::integrators::path;
+use raydsl::light::{Environment, Lights};
+use raydsl::prelude::*;
+use raydsl::render::{Display, ToneMap};
+use raydsl::shading::{Mesh, MeshAttributes};
+use raydsl_examples::args::{size, variant};
+use raydsl_examples::model::{Met, Model, met};
+use raydsl_io::scene::{self, Projection};
+
+/// Render a glTF or OBJ file by path tracing.
+#[derive(Debug, Parser)]
+#[command(about)]
+struct Args {
+    /// The scene: .gltf, .glb or .obj.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Folder of the picture, gltf.png.
+    #[arg(value_name = "FOLDER", default_value = "out")]
+    folder: PathBuf,
+    /// The environment, .hdr or .exr [default: an even sky, if the file has no lights].
+    #[arg(long, value_name = "FILE")]
+    environment: Option<PathBuf>,
+    /// Samples of each pixel.
+    #[arg(long, default_value = "64")]
+    samples: u32,
+    /// How often light is scattered at most.
+    #[arg(long, default_value = "8")]
+    bounces: u32,
+    /// Exposure in stops.
+    #[arg(long, default_value = "0", allow_hyphen_values = true)]
+    exposure: f32,
+    /// What runs the kernel: scalar, packet4, packet8, packet16 or wgsl.
+    #[arg(long, default_value = Variant::widest().name(), value_parser = variant)]
+    variant: Variant,
+    /// Picture size.
+    #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = size)]
+    size: (u32, u32),
+}
+
+/// The file's first camera that has a perspective, or one that sees all.
+fn camera(file: &scene::Scene, bounds: Aabb) -> Pinhole {
+    for c in &file.cameras {
+        if let Projection::Perspective { vertical, .. } = c.projection {
+            return Pinhole::new(c.position, c.position + c.forward, c.up, vertical);
+        }
+    }
+    let (center, radius) = (bounds.center(), 0.5 * bounds.size().length());
+    let eye = center + vec3(0.4, 0.3, 1.0).normalize() * radius * 2.6;
+    Pinhole::new(eye, center, Vec3::Y, 0.8)
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let args = Args::parse();
+    std::fs::create_dir_all(&args.folder)?;
+    let file = scene::load(&args.file)?;
+    let model = Model::new(&file);
+    let bounds = Aabb::from_points(model.positions.iter().copied());
+    let sky = match &args.environment {
+        Some(path) => {
+            let picture = raydsl_io::environment::load(path)?;
+            Environment::new(&picture.texels, uvec2(picture.width, picture.height))?
+        }
+        None => {
+            Environment::constant(Vec3::splat(if model.lights.is_empty() { 1.0 } else { 0.0 }))?
+        }
+    };
+    // ANCHOR: gltf
+    let config = BuildConfig::default();
+    let tree = Bvh::build_sharing(&model.triangles, &model.positions, &config)?;
+    let attributes = MeshAttributes {
+        normals: &model.normals,
+        uvs: &model.uvs,
+        colors: &model.colors,
+        materials: &model.materials,
+        ..Default::default()
+    };
+    let mesh = Mesh::new(&tree, attributes)?;
+    let lights = Lights::new(&model.lights, bounds)?.with_environment(&sky);
+    let (looks, texels, light_of) = (&model.looks[..], &model.texels[..], &model.light_of[..]);
+    let bounces = args.bounces;
+    let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+        let surface = |hit: Hit, point: ShadingPoint| {
+            let look = looks[point.material as usize];
+            met(texels, look, point, light_of[hit.prim_id as usize])
+        };
+        path::<_, _, Met>(&mesh, surface, &lights, host(bounces), ray, sampler).color.truncate()
+    });
+    // ANCHOR_END: gltf
+    let mut film = Film::new(args.size.0, args.size.1);
+    let (camera, sampling) = (camera(&file, bounds), Sampling::new(args.samples));
+    if args.variant == Variant::Wgsl {
+        GpuScheduler::new()?.accumulate(&camera, &kernel, &sampling, &mut film, args.samples)?;
+    } else {
+        let scheduler = TiledScheduler::new().variant(args.variant);
+        scheduler.accumulate(&camera, &kernel, &sampling, &mut film, args.samples);
+    }
+    let display = Display::new().exposure(args.exposure).tone_map(ToneMap::Filmic);
+    display.show(&film.image()).write_png(args.folder.join("gltf.png"))?;
+    Ok(())
+}
