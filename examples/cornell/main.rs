@@ -28,6 +28,9 @@ struct Args {
     /// How often light is scattered at most.
     #[arg(long, default_value = "6")]
     bounces: u32,
+    /// The bounce from which on paths may end by chance; the first one is 0.
+    #[arg(long, default_value = "3")]
+    roulette: u32,
     /// What runs the kernel: scalar, packet4, packet8, packet16 or wgsl.
     #[arg(long, default_value = Variant::widest().name(), value_parser = variant)]
     variant: Variant,
@@ -37,7 +40,7 @@ struct Args {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let Args { folder, samples, bounces, variant, size: (width, height) } = Args::parse();
+    let Args { folder, samples, bounces, roulette, variant, size: (width, height) } = Args::parse();
     std::fs::create_dir_all(&folder)?;
     // ANCHOR: cornell
     let walls = walls();
@@ -46,7 +49,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let lights = Lights::new(&lamps, scene.bounds())?;
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
         let surface = |hit: Hit, _point: ShadingPoint| scene.primitive(hit).material();
-        path::<_, _, Luminous<Lambert>>(&scene, surface, &lights, host(bounces), ray, sampler).color
+        let (bounces, roulette) = (host(bounces), host(roulette));
+        path::<_, _, Luminous<Lambert>>(&scene, surface, &lights, bounces, roulette, ray, sampler)
+            .color
     });
     // ANCHOR_END: cornell
     let mut film = Film::new(width, height);

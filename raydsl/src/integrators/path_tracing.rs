@@ -29,14 +29,12 @@ pub struct PathSample {
 }
 
 // ANCHOR: path
-/// Bounces from which on Russian roulette ends paths.
-const ROULETTE: u32 = 3;
-
 /// Estimates the radiance along `ray` by one path: light that is scattered up to `bounces` times.
 ///
 /// `surface` returns the material of a hit. A light is sampled at each bounce, and weighted against
-/// the path's own hits of lights. From the fourth bounce on a path goes on with a probability of its
-/// throughput, at most 0.95. (Kajiya, "The Rendering Equation", 1986; Veach, "Robust Monte Carlo
+/// the path's own hits of lights. From bounce `roulette` on, the first one being 0, a path goes on with
+/// a probability of its throughput, at most 0.95: 3 is a good choice, and `u32::MAX` never ends a path
+/// by chance. (Kajiya, "The Rendering Equation", 1986; Veach, "Robust Monte Carlo
 /// Methods for Light Transport Simulation", 1997, chapters 9 and 10.)
 ///
 /// ```
@@ -68,10 +66,11 @@ const ROULETTE: u32 = 3;
 /// let sky = Environment::constant(Vec3::ONE)?;
 /// let none: [AnyLight; 0] = [];
 /// let lights = Lights::new(&none, scene.bounds())?.with_environment(&sky);
-/// let bounces = 8;
+/// let (bounces, roulette) = (8, 3);
 /// let kernel = kernel!(|ray: Ray, sampler: Sampler| {
 ///     let surface = |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo };
-///     path::<_, _, Lambert>(&scene, surface, &lights, host(bounces), ray, sampler).color
+///     let (bounces, roulette) = (host(bounces), host(roulette));
+///     path::<_, _, Lambert>(&scene, surface, &lights, bounces, roulette, ray, sampler).color
 /// });
 /// let ray = Ray::new(vec3(0.3, 0.2, 3.0), -Vec3::Z);
 /// let color = kernel.call((ray, Sampler::new(uvec2(0, 0), 0, 0, 1, SampleMethod::Sobol)));
@@ -84,6 +83,7 @@ pub fn path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material + Mach
     surface: impl Fn(Hit, ShadingPoint) -> B,
     lights: &Lights<'_, L>,
     #[host] bounces: u32,
+    #[host] roulette: u32,
     ray: Ray,
     sampler: Sampler,
 ) -> PathSample {
@@ -123,7 +123,7 @@ pub fn path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material + Mach
         let direction = at.frame.to_world(next.wi);
         throughput *= next.weight;
         let goes_on = max(throughput.x, max(throughput.y, throughput.z));
-        let chance = if bounce < ROULETTE { 1.0 } else { min(goes_on, 0.95) };
+        let chance = if bounce < roulette { 1.0 } else { min(goes_on, 0.95) };
         let is_over = sampler.next_1d() >= chance || !(goes_on > 0.0);
         if is_over || !at.frame.is_consistent(direction, next.wi) {
             break;
