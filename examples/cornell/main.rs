@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use clap::Parser;
 use raydsl::bsdf::{Lambert, Luminous};
-use raydsl::integrators::path;
+use raydsl::integrators::{PathLimits, path};
 use raydsl::light::Lights;
 use raydsl::prelude::*;
 use raydsl::render::Display;
@@ -47,11 +47,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let lamps = lamps(&walls);
     let scene = Bvh::build(&walls)?;
     let lights = Lights::new(&lamps, scene.bounds())?;
+    let limits = PathLimits { bounces, roulette };
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
         let surface = |hit: Hit, _point: ShadingPoint| scene.primitive(hit).material();
-        let (bounces, roulette) = (host(bounces), host(roulette));
-        path::<_, _, Luminous<Lambert>>(&scene, surface, &lights, bounces, roulette, ray, sampler)
-            .color
+        path::<_, _, Luminous<Lambert>>(&scene, surface, &lights, limits, ray, sampler).color
     });
     // ANCHOR_END: cornell
     let mut film = Film::new(width, height);

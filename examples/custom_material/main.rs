@@ -9,7 +9,7 @@ use std::f32::consts::FRAC_1_PI;
 use std::path::PathBuf;
 
 use raydsl::bsdf::{Bsdf, BsdfSample, Material};
-use raydsl::integrators::path;
+use raydsl::integrators::{PathLimits, path};
 use raydsl::kernel;
 use raydsl::light::{DistantLight, Light, LightExtent, LightSample, Lights};
 use raydsl::prelude::*;
@@ -103,10 +103,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let shape = raydsl_examples::blob::blob(300);
     let scene = Bvh::build(&shape)?;
     let lights = Lights::new(&sky, scene.bounds())?;
-    let bounces = 5;
+    let limits = PathLimits::new(5);
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
         let surface = |_hit: Hit, _point: ShadingPoint| velvet;
-        path::<_, _, Velvet>(&scene, surface, &lights, host(bounces), ray, sampler).color
+        path::<_, _, Velvet>(&scene, surface, &lights, limits, ray, sampler).color
     });
     let camera = Pinhole::new(vec3(0.0, 1.5, 5.0), Vec3::ZERO, Vec3::Y, 0.6);
     let mut film = Film::new(480, 480);

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use raydsl::geometry::Aabb;
-use raydsl::integrators::path;
+use raydsl::integrators::{PathLimits, PathSample, masked_path};
 use raydsl::light::{Environment, Lights};
 use raydsl::prelude::*;
 use raydsl::render::{Display, ToneMap};
@@ -24,7 +24,7 @@ struct Args {
     /// The scene: .gltf, .glb or .obj.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Folder of the picture, gltf.png.
+    /// Folder of the pictures: gltf.png, and gltf.exr, gltf_albedo.exr and gltf_normal.exr.
     #[arg(value_name = "FOLDER", default_value = "out")]
     folder: PathBuf,
     /// The environment, .hdr or .exr [default: an even sky, if the file has no lights].
@@ -87,16 +87,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mesh = Mesh::new(&tree, attributes)?;
     let lights = Lights::new(&model.lights, bounds)?.with_environment(&sky);
     let (looks, texels, light_of) = (&model.looks[..], &model.texels[..], &model.light_of[..]);
-    let bounces = args.bounces;
+    let (masks, limits) = (model.has_masks, PathLimits::new(args.bounces));
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
         let surface = |hit: Hit, point: ShadingPoint| {
             let look = looks[point.material as usize];
             met(texels, look, point, light_of[hit.prim_id as usize])
         };
-        path::<_, _, Met>(&mesh, surface, &lights, host(bounces), ray, sampler).color.truncate()
+        masked_path::<_, _, Met>(&mesh, surface, &lights, host(masks), limits, ray, sampler)
     });
     // ANCHOR_END: gltf
-    let mut film = Film::new(args.size.0, args.size.1);
+    // A film of channels: colour, and albedo and normal for a denoiser.
+    let mut film = Film::<PathSample>::of_channels(args.size.0, args.size.1);
     let (camera, sampling) = (camera(&file, bounds), Sampling::new(args.samples));
     if args.variant == Variant::Wgsl {
         GpuScheduler::new()?.accumulate(&camera, &kernel, &sampling, &mut film, args.samples)?;
@@ -105,6 +106,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         scheduler.accumulate(&camera, &kernel, &sampling, &mut film, args.samples);
     }
     let display = Display::new().exposure(args.exposure).tone_map(ToneMap::Filmic);
-    display.show(&film.image()).write_png(args.folder.join("gltf.png"))?;
+    // What is behind the scene is seen, not transparent.
+    let light = film.image().map(|color| color.with_w(1.0));
+    display.show(&light).write_png(args.folder.join("gltf.png"))?;
+    let channels = film.channels();
+    let (albedo, normal) =
+        (channels.map(|p| p.albedo.extend(1.0)), channels.map(|p| p.normal.extend(1.0)));
+    for (name, picture) in [("gltf", light), ("gltf_albedo", albedo), ("gltf_normal", normal)] {
+        picture.write_exr(args.folder.join(format!("{name}.exr")))?;
+    }
     Ok(())
 }

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use raydsl::bsdf::Lambert;
-use raydsl::integrators::path;
+use raydsl::integrators::{PathLimits, path};
 use raydsl::kernel;
 use raydsl::light::{Lights, PointLight};
 use raydsl::prelude::*;
@@ -101,6 +101,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let eye = center + vec3(0.0, 0.35, 1.0).normalize() * radius * 2.9;
     let camera = Pinhole::new(eye, center - Vec3::Y * 0.08 * radius, Vec3::Y, 0.62);
     let sampling = Sampling::new(samples);
+    let limits = PathLimits::new(bounces);
     let gpu = if variant == Variant::Wgsl { Some(GpuScheduler::new()?) } else { None };
 
     let all = shown::all();
@@ -113,7 +114,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let floor = Shown::Lambert(Lambert { color: point.albedo });
                 if hit.inst_id == 0 { shown } else { floor }
             };
-            path::<_, _, Shown>(&stage, surface, &lights, host(bounces), ray, sampler).color
+            path::<_, _, Shown>(&stage, surface, &lights, limits, ray, sampler).color
         });
         // ANCHOR_END: materials
         let mut film = Film::new(size.0, size.1);

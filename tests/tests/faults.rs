@@ -26,7 +26,7 @@ fn diffuse(fault: u32, wo: Vec3, wi: Vec3) -> f32 {
     let is_reflected = wo.z * wi.z > 0.0;
     let cosine = if fault == 1 { 1.0 } else { wi.z.abs() };
     let one_sided = if fault == 6 { wo.z > 0.0 } else { true };
-    let grazing = if fault == 4 { wo.z.abs() / wo.z.abs() } else { 1.0 };
+    let grazing = if fault == 4 { 1.0 + 0.0 * (wo.z.abs() - 1e-5).sqrt() } else { 1.0 };
     let uneven = if fault == 5 { wo.z.abs() } else { 1.0 };
     let value = FRAC_1_PI * cosine * grazing * uneven;
     if is_reflected && one_sided { value } else { 0.0 }

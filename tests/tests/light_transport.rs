@@ -9,7 +9,7 @@ use std::f32::consts::PI;
 
 use raydsl::bsdf::{Bsdf, BsdfSample, Lambert, Luminous, Material, NO_LIGHT, ThinDielectric};
 use raydsl::geometry::Aabb;
-use raydsl::integrators::{path, whitted};
+use raydsl::integrators::{PathLimits, path, whitted};
 use raydsl::light::{
     AnyLight, AreaLight, DirectionalLight, DiskShape, Environment, Light, Lights, PointLight,
     RectangleShape, SphereShape,
@@ -213,6 +213,7 @@ fn assert_known(name: &str, known: &Known<'_>) {
     let &Known { floor, lights: list, sky, albedos, numbers, bounces, ray, exact } = known;
     let scene = Dome { dome: &BALL, floor };
     let lights = Lights::new(list, cube()).expect("finite powers").with_environment(sky);
+    let limits = PathLimits::new(bounces);
     let kernel = kernel!(|i: u32, seed: u32| {
         let surface = |hit: Hit, _point: ShadingPoint| {
             let is_dome = hit.inst_id == 0;
@@ -221,9 +222,7 @@ fn assert_known(name: &str, known: &Known<'_>) {
             Luminous::<Lambert> { bsdf: Lambert { color }, light }
         };
         let sampler = sampler_of(i, seed);
-        path::<_, _, Luminous<Lambert>>(&scene, surface, &lights, host(bounces), ray, sampler)
-            .color
-            .x
+        path::<_, _, Luminous<Lambert>>(&scene, surface, &lights, limits, ray, sampler).color.x
     });
     assert_mean(name, &kernel, exact);
 }
@@ -360,10 +359,10 @@ fn what_does_not_occur_leaves_no_trace() -> Result<(), Box<dyn Error>> {
             Some(sky) => lights.with_environment(sky),
             None => lights,
         };
-        let bounces = 2;
+        let limits = PathLimits::new(2);
         let kernel = kernel!(|ray: Ray, sampler: Sampler| {
             let surface = |_hit: Hit, _point: ShadingPoint| Lambert { color: Vec3::ONE };
-            path::<_, _, Lambert>(&scene, surface, &lights, host(bounces), ray, sampler).color
+            path::<_, _, Lambert>(&scene, surface, &lights, limits, ray, sampler).color
         });
         Ok(kernel.wgsl())
     };

@@ -23,7 +23,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
 use raydsl::bsdf::{Lambert, Luminous};
-use raydsl::integrators::path;
+use raydsl::integrators::{PathLimits, path};
 use raydsl::light::{AreaLight, Environment, Lights};
 use raydsl::prelude::*;
 use raydsl_benches::clock::{median, seconds_on, spread};
@@ -203,12 +203,10 @@ fn in_cornell(bench: &Bench) -> Result<Vec<Row>, Error> {
         _ => Bvh::build(&walls)?,
     };
     let lights = Lights::new(&lamps, scene.bounds())?;
-    let (bounces, roulette) = (bench.args.bounces, u32::MAX);
+    let limits = PathLimits { bounces: bench.args.bounces, roulette: u32::MAX };
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
         let surface = |hit: Hit, _point: ShadingPoint| scene.primitive(hit).material();
-        let (bounces, roulette) = (host(bounces), host(roulette));
-        path::<_, _, Luminous<Lambert>>(&scene, surface, &lights, bounces, roulette, ray, sampler)
-            .color
+        path::<_, _, Luminous<Lambert>>(&scene, surface, &lights, limits, ray, sampler).color
     });
     bench.measure(&case::of_walls(&walls, cornell::camera()), &kernel)
 }
@@ -222,11 +220,10 @@ fn in_sponza(bench: &Bench, data: &Path) -> Result<Vec<Row>, Error> {
     let sky = Environment::constant(Vec3::ONE)?;
     let none: [AreaLight<Triangle>; 0] = [];
     let lights = Lights::new(&none, scene.bounds())?.with_environment(&sky);
-    let (bounces, roulette) = (bench.args.bounces, u32::MAX);
+    let limits = PathLimits { bounces: bench.args.bounces, roulette: u32::MAX };
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
         let surface = |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo };
-        let (bounces, roulette) = (host(bounces), host(roulette));
-        path::<_, _, Lambert>(&scene, surface, &lights, bounces, roulette, ray, sampler).color
+        path::<_, _, Lambert>(&scene, surface, &lights, limits, ray, sampler).color
     });
     bench.measure(&case::of_triangles("sponza", &prims, camera), &kernel)
 }

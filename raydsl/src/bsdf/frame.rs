@@ -75,3 +75,63 @@ impl ShadingFrame {
         self.normal.dot(world) * local.z > 0.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::{Frame, Rng, sample_uniform_sphere};
+    use glam::{Vec4, uvec2};
+
+    fn random_point(rng: &mut Rng) -> ShadingPoint {
+        let ng = sample_uniform_sphere(rng.next_2d());
+        let w = sample_uniform_sphere(rng.next_2d());
+        let ns = if w.dot(ng) < 0.0 { -w } else { w };
+        let x = Frame::around(ns).x;
+        let w = if rng.next_f32() < 0.5 { 1.0 } else { -1.0 };
+        let point = crate::geometry::SurfacePoint { position: Vec3::ZERO, normal: ng, error: 0.0 };
+        let tangent = Vec4::new(x.x, x.y, x.z, w);
+        ShadingPoint { point, shading_normal: ns, tangent, ..Default::default() }
+    }
+
+    #[test]
+    fn frames_are_orthonormal_and_seen() {
+        let mut rng = Rng::new(uvec2(3, 4), 0, 0);
+        for i in 0..20_000 {
+            let point = random_point(&mut rng);
+            let viewer = sample_uniform_sphere(rng.next_2d());
+            let mapped = match i % 3 {
+                0 => Vec3::Z,
+                1 => sample_uniform_sphere(rng.next_2d()).with_z(0.2),
+                _ => Vec3::ZERO,
+            };
+            let frame = ShadingFrame::new(point, mapped, viewer);
+            let [x, y, z] = [frame.x, frame.y, frame.z];
+            for v in [x, y, z] {
+                assert!((v.length() - 1.0).abs() < 1e-5, "{point:?} {viewer} {frame:?}");
+            }
+            let off = x.dot(y).abs().max(y.dot(z).abs()).max(z.dot(x).abs());
+            assert!(off < 1e-5, "{point:?} {viewer} {frame:?}: {off}");
+            // What is seen from the front of the surface is seen from the front of the frame.
+            let side = point.point.normal.dot(viewer);
+            assert!(side * frame.to_local(viewer).z > 0.0, "{point:?} {viewer} {frame:?}");
+        }
+    }
+
+    /// A shading normal that leans over the edge sees a light below the surface; no ray may go there.
+    #[test]
+    fn light_does_not_leak() {
+        let up =
+            crate::geometry::SurfacePoint { position: Vec3::ZERO, normal: Vec3::Z, error: 0.0 };
+        let leaning = vec3(0.995, 0.0, 0.1).normalize();
+        let x = Frame::around(leaning).x;
+        let tangent = Vec4::new(x.x, x.y, x.z, 1.0);
+        let point =
+            ShadingPoint { point: up, shading_normal: leaning, tangent, ..Default::default() };
+        let frame = ShadingFrame::new(point, Vec3::Z, vec3(0.3, 0.0, 0.9).normalize());
+        let below = vec3(0.9, 0.0, -0.3).normalize();
+        let local = frame.to_local(below);
+        assert!(local.z > 0.5 && !frame.is_consistent(below, local));
+        let above = vec3(0.9, 0.0, 0.3).normalize();
+        assert!(frame.is_consistent(above, frame.to_local(above)));
+    }
+}

@@ -36,11 +36,10 @@ fn is_bright(color: Vec3) -> bool {
 /// Returns the light of a sample that is scattered to the viewer, 0 in the shadow. It is weighted by
 /// the power heuristic against samples of the BSDF, if those are taken too: where `is_weighted`.
 ///
-/// Shadow rays are traced only where `shadows` is true.
+/// `is_occluded` is asked for shadow rays, of directions from which light would be scattered.
 #[kernel]
-pub fn scattered_light<S: Scene + ?Sized, B: Bsdf + MachineType>(
-    scene: &S,
-    #[host] shadows: bool,
+pub fn scattered_light<B: Bsdf + MachineType>(
+    is_occluded: impl Fn(Ray) -> bool,
     #[host] is_weighted: bool,
     light: LightSample,
     at: Scattering<B>,
@@ -52,7 +51,7 @@ pub fn scattered_light<S: Scene + ?Sized, B: Bsdf + MachineType>(
         return vec3(0.0, 0.0, 0.0);
     }
     let scattered = bsdf.eval(at.wo, wi) * light.light;
-    if !is_bright(scattered) || shadows && scene.any_hit(light.shadow_ray(at.point)) {
+    if !is_bright(scattered) || is_occluded(light.shadow_ray(at.point)) {
         return vec3(0.0, 0.0, 0.0);
     }
     let mut weight = 1.0;
@@ -74,14 +73,15 @@ pub fn from_each_light<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Mach
     at: Scattering<B>,
     sampler: &mut Sampler,
 ) -> Vec3 {
+    let is_occluded = |ray: Ray| shadows && scene.any_hit(ray);
     let mut sum = vec3(0.0, 0.0, 0.0);
     for i in 0..lights.count() {
         let light = lights.sample_light(i, at.point, sampler.next_2d());
-        sum += scattered_light::<S, B>(scene, shadows, false, light, at);
+        sum += scattered_light::<B>(is_occluded, false, light, at);
     }
     if lights.has_environment() {
         let light = lights.sample_environment(sampler.next_2d());
-        sum += scattered_light::<S, B>(scene, shadows, false, light, at);
+        sum += scattered_light::<B>(is_occluded, false, light, at);
     }
     sum
 }

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`direct_light()`] | radiance of any surfaces under any lights, by one sample of each light |
 //! | [`whitted()`] | the same, seen by mirrors and smooth glass |
-//! | [`path()`] | light that is scattered many times, by one path |
+//! | [`path()`], [`masked_path()`] | light that is scattered many times, by one path |
 //! | [`ambient_occlusion()`] | unoccluded share of the hemisphere above the hit |
 //! | [`aovs()`] | albedo, normal, depth and ids of the closest hit |
 //! | [`bvh_cost()`], [`bvh_cost_color()`] | traversal cost, as counts or as a colour |
@@ -54,4 +54,4 @@ pub use direct::{
 pub use masks::{closest_surface, is_occluded};
 pub use occlusion::{ambient_occlusion, is_open};
 pub use outputs::{Aovs, AovsOn, aovs};
-pub use path_tracing::{PathSample, PathSampleOn, path};
+pub use path_tracing::{PathLimits, PathLimitsOn, PathSample, PathSampleOn, masked_path, path};

@@ -1,13 +1,14 @@
 //! Path tracing.
 
-use glam::{Vec3, Vec4, vec3, vec4};
+use glam::{Vec3, Vec4, uvec2, vec3, vec4};
 
 use super::direct::{Scattering, next_3d, scattered_light, scattering_at};
+use super::masks::{closest_surface, is_occluded};
 use crate::bsdf::{Bsdf, BsdfSample, Material};
 use crate::geometry::{Hit, Ray, SurfacePoint};
 use crate::light::{Light, Lights, NO_RIVAL};
 use crate::machine::Type as MachineType;
-use crate::machine::functions::{vec3, vec4};
+use crate::machine::functions::{uvec2, vec3, vec4};
 use crate::machine::generic::{max, min, normalize};
 use crate::sampling::Sampler;
 use crate::shading::{Scene, ShadingPoint};
@@ -28,7 +29,23 @@ pub struct PathSample {
     pub depth: f32,
 }
 
-// ANCHOR: path
+/// How long paths are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Type)]
+#[repr(C)]
+pub struct PathLimits {
+    /// How often light is scattered at most: 0 is emitted light alone, 1 direct light besides.
+    pub bounces: u32,
+    /// The bounce from which on Russian roulette ends paths: 3 unless set; `u32::MAX` is none.
+    pub roulette: u32,
+}
+
+impl PathLimits {
+    /// Creates limits with roulette from the fourth bounce on.
+    pub const fn new(bounces: u32) -> Self {
+        Self { bounces, roulette: 3 }
+    }
+}
+
 /// Estimates the radiance along `ray` by one path: light that is scattered up to `bounces` times.
 ///
 /// `surface` returns the material of a hit. A light is sampled at each bounce, and weighted against
@@ -39,7 +56,7 @@ pub struct PathSample {
 ///
 /// ```
 /// use raydsl::bsdf::Lambert;
-/// use raydsl::integrators::path;
+/// use raydsl::integrators::{PathLimits, path};
 /// use raydsl::light::{AnyLight, Environment, Lights};
 /// use raydsl::prelude::*;
 ///
@@ -66,11 +83,10 @@ pub struct PathSample {
 /// let sky = Environment::constant(Vec3::ONE)?;
 /// let none: [AnyLight; 0] = [];
 /// let lights = Lights::new(&none, scene.bounds())?.with_environment(&sky);
-/// let (bounces, roulette) = (8, 3);
+/// let limits = PathLimits::new(8);
 /// let kernel = kernel!(|ray: Ray, sampler: Sampler| {
 ///     let surface = |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo };
-///     let (bounces, roulette) = (host(bounces), host(roulette));
-///     path::<_, _, Lambert>(&scene, surface, &lights, bounces, roulette, ray, sampler).color
+///     path::<_, _, Lambert>(&scene, surface, &lights, limits, ray, sampler).color
 /// });
 /// let ray = Ray::new(vec3(0.3, 0.2, 3.0), -Vec3::Z);
 /// let color = kernel.call((ray, Sampler::new(uvec2(0, 0), 0, 0, 1, SampleMethod::Sobol)));
@@ -82,8 +98,24 @@ pub fn path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material + Mach
     scene: &S,
     surface: impl Fn(Hit, ShadingPoint) -> B,
     lights: &Lights<'_, L>,
-    #[host] bounces: u32,
-    #[host] roulette: u32,
+    limits: PathLimits,
+    ray: Ray,
+    sampler: Sampler,
+) -> PathSample {
+    masked_path::<S, L, B>(scene, surface, lights, false, limits, ray, sampler)
+}
+
+/// As [`path()`], of a scene that has holes or half-transparent surfaces, where `masks` is true: rays
+/// meet a surface with the probability of its [`Material::opacity`], and pass it otherwise. Queries
+/// ask the material of every hit, so that takes longer.
+// ANCHOR: trace
+#[kernel]
+pub fn masked_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material + MachineType>(
+    scene: &S,
+    surface: impl Fn(Hit, ShadingPoint) -> B,
+    lights: &Lights<'_, L>,
+    #[host] masks: bool,
+    limits: PathLimits,
     ray: Ray,
     sampler: Sampler,
 ) -> PathSample {
@@ -93,9 +125,11 @@ pub fn path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material + Mach
     let mut first = nothing();
     let mut from = SurfacePoint { position: ray.origin, normal: ahead, error: 0.0 };
     let mut pdf = NO_RIVAL;
-    for bounce in 0..bounces + 1 {
+    let seed = uvec2(sampler.key.x, sampler.index);
+    let is_occluded = |ray: Ray| is_occluded::<S, B>(scene, &surface, masks, ray, seed);
+    for bounce in 0..limits.bounces + 1 {
         // Find what the path hits.
-        let hit = scene.closest_hit(ray);
+        let hit = closest_surface::<S, B>(scene, &surface, masks, ray, seed);
         if !hit.is_hit {
             radiance += throughput * lights.missed(ahead, pdf);
             break;
@@ -110,20 +144,20 @@ pub fn path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material + Mach
         // Add the light that it emits.
         let light = material.light();
         radiance += throughput * lights.emitted(light, at.point, from, ahead, pdf);
-        if bounce == bounces {
+        if bounce == limits.bounces {
             break;
         }
 
         // Add the light that one of the lights sends.
         let sample = lights.sample(at.point, next_3d(&mut sampler));
-        radiance += throughput * scattered_light::<S, B>(scene, true, true, sample, at);
+        radiance += throughput * scattered_light::<B>(is_occluded, true, sample, at);
 
         // Go on in a direction of the surface's choice.
         let next: BsdfSample = material.sample(at.wo, next_3d(&mut sampler));
         let direction = at.frame.to_world(next.wi);
         throughput *= next.weight;
         let goes_on = max(throughput.x, max(throughput.y, throughput.z));
-        let chance = if bounce < roulette { 1.0 } else { min(goes_on, 0.95) };
+        let chance = if bounce < limits.roulette { 1.0 } else { min(goes_on, 0.95) };
         let is_over = sampler.next_1d() >= chance || !(goes_on > 0.0);
         if is_over || !at.frame.is_consistent(direction, next.wi) {
             break;
@@ -136,7 +170,7 @@ pub fn path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material + Mach
     first.color = vec4(radiance.x, radiance.y, radiance.z, first.color.w);
     first
 }
-// ANCHOR_END: path
+// ANCHOR_END: trace
 
 /// Returns the sample of a ray that hits a surface, before any light.
 #[kernel]
