@@ -91,7 +91,7 @@ impl Bsdf for Broken {
             let m = sample_ggx_normal(wo, square, ALPHA);
             let wi = m * (2.0 * wo.dot(m)) - wo;
             let (eval, pdf) = rough(self.fault, wo, wi);
-            if !(pdf > 0.0) {
+            if pdf <= 0.0 {
                 return BsdfSample::absorbed();
             }
             return BsdfSample::of(wi, Vec3::splat(eval), pdf);

@@ -294,7 +294,9 @@ impl Bench {
                 of.errors.push(error);
                 of.costs.push(error * picture.seconds);
                 of.biases.push(bias);
-                of.is_off |= !(bias.abs() <= TOLERANCE + 4.0 * noise);
+                // A NaN is off.
+                let is_within = bias.abs() <= TOLERANCE + 4.0 * noise;
+                of.is_off |= !is_within;
             }
         }
         let plain = contenders.iter().position(|r| *r == Contender::Plain);

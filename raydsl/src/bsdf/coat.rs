@@ -82,7 +82,8 @@ impl<B: Bsdf> Coated<B> {
         let base: B = self.base;
         let strength: Vec3 = self.strength;
         let o = upwards(wo, wo);
-        if !(self.alpha >= MIN_ALPHA) {
+        let is_rough = self.alpha >= MIN_ALPHA;
+        if !is_rough {
             let reflectance = fresnel_dielectric(o.z, self.ior).reflected;
             let wi = vec3(-wo.x, -wo.y, wo.z);
             return BsdfSample::delta(wi, strength * (reflectance / chance), chance);
@@ -120,7 +121,7 @@ impl<B: Bsdf> Bsdf for Coated<B> {
         let sample = base.sample(wo, vec3(u.x, u.y, within(u.z, chance, 1.0 - chance)));
         let pdf = sample.pdf * (1.0 - chance);
         let passed = Coated::<B>::passed(*self, wo.z.abs());
-        if !(sample.pdf > 0.0) {
+        if sample.pdf <= 0.0 {
             return BsdfSample::absorbed();
         }
         if sample.is_delta {

@@ -66,7 +66,8 @@ impl<F: Fresnel> Bsdf for Conductor<F> {
         let fresnel: F = self.fresnel;
         let alpha = self.alpha;
         let o = upwards(wo, wo);
-        if !(alpha >= MIN_ALPHA) {
+        let is_rough = alpha >= MIN_ALPHA;
+        if !is_rough {
             let wi = vec3(-wo.x, -wo.y, wo.z);
             return BsdfSample::delta(wi, fresnel.reflectance(o.z), 1.0);
         }

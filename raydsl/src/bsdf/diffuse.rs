@@ -86,7 +86,7 @@ const ON_AVERAGE: f32 = 2.0 / 3.0 - 28.0 / (15.0 * PI);
 #[inline]
 fn single_albedo(cos: f32, roughness: f32) -> f32 {
     let c = 1.0 - cos;
-    let g = c * (0.057_108_53 + c * (0.491_881_87 + c * (-0.332_181_44 + c * 0.071_442_995)));
+    let g = c * (0.057_108_53 + c * (0.491_881_87 + c * (-0.332_181_44 + c * 0.071_443)));
     (1.0 + roughness * g) / (1.0 + AT_NORMAL * roughness)
 }
 

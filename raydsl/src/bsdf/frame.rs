@@ -33,6 +33,7 @@ impl ShadingFrame {
     ///
     /// A shading normal that is turned away from the viewer, while the geometric one is not, is
     /// bent until it is not.
+    #[inline]
     pub fn new(point: ShadingPoint, mapped: Vec3, to_viewer: Vec3) -> Self {
         let (ng, ns) = (point.point.normal, point.shading_normal);
         let t = point.tangent;
@@ -40,7 +41,8 @@ impl ShadingFrame {
         let bitangent = ns.cross(tangent) * t.w;
         let turned = tangent * mapped.x + bitangent * mapped.y + ns * mapped.z;
         let squared = turned.dot(turned);
-        let is_plain = mapped.x == 0.0 && mapped.y == 0.0 || !(squared > 0.0);
+        let has_length = squared > 0.0;
+        let is_plain = mapped.x == 0.0 && mapped.y == 0.0 || !has_length;
         let n = if is_plain { ns } else { turned / max(squared, f32::MIN_POSITIVE).sqrt() };
         // On the side of the geometric normal, and not turned away from the viewer.
         let n = if n.dot(ng) < 0.0 { n - ng * (2.0 * n.dot(ng)) } else { n };

@@ -68,7 +68,7 @@ impl<A: Bsdf, B: Bsdf> Bsdf for Mix<A, B> {
         if u.z < chance {
             let sample = over.sample(wo, vec3(u.x, u.y, within(u.z, 0.0, chance)));
             let pdf = sample.pdf * chance;
-            if !(sample.pdf > 0.0) {
+            if sample.pdf <= 0.0 {
                 return BsdfSample::absorbed();
             }
             if sample.is_delta {
@@ -80,7 +80,7 @@ impl<A: Bsdf, B: Bsdf> Bsdf for Mix<A, B> {
         }
         let sample = under.sample(wo, vec3(u.x, u.y, within(u.z, chance, 1.0 - chance)));
         let pdf = sample.pdf * (1.0 - chance);
-        if !(sample.pdf > 0.0) {
+        if sample.pdf <= 0.0 {
             return BsdfSample::absorbed();
         }
         if sample.is_delta {

@@ -142,7 +142,7 @@ impl<B: Bsdf> Bsdf for SheenCoated<B> {
         }
         let sample = base.sample(wo, vec3(u.x, u.y, within(u.z, chance, 1.0 - chance)));
         let pdf = sample.pdf * (1.0 - chance);
-        if !(sample.pdf > 0.0) {
+        if sample.pdf <= 0.0 {
             return BsdfSample::absorbed();
         }
         if sample.is_delta {

@@ -157,8 +157,16 @@ pub fn masked_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material
         let direction = at.frame.to_world(next.wi);
         throughput *= next.weight;
         let goes_on = max(throughput.x, max(throughput.y, throughput.z));
-        let chance = if bounce < limits.roulette { 1.0 } else { min(goes_on, 0.95) };
-        let is_over = sampler.next_1d() >= chance || !(goes_on > 0.0);
+        // A NaN goes on, and is counted by the film.
+        let mut is_over = goes_on <= 0.0;
+        let mut chance = 1.0;
+        if bounce < limits.roulette {
+            // The dimension is left out, so that all others are the same with and without roulette.
+            sampler.dimension = sampler.dimension.wrapping_add(1);
+        } else {
+            chance = min(goes_on, 0.95);
+            is_over = is_over || sampler.next_1d() >= chance;
+        }
         if is_over || !at.frame.is_consistent(direction, next.wi) {
             break;
         }

@@ -38,7 +38,8 @@ const MIN_SINE: f32 = 1e-4;
 #[kernel]
 impl Light for DirectionalLight {
     fn sample(&self, _from: Vec3, u: Vec2) -> LightSample {
-        if !(self.sine >= MIN_SINE) {
+        let is_disk = self.sine >= MIN_SINE;
+        if !is_disk {
             return LightSample::distant(self.direction, self.irradiance, 1.0, true);
         }
         let height = one_minus_cos(self.sine);
@@ -48,7 +49,8 @@ impl Light for DirectionalLight {
 
     fn distant(&self, direction: Vec3) -> DistantLight {
         let none = vec3(0.0, 0.0, 0.0);
-        if !(self.sine >= MIN_SINE) {
+        let is_disk = self.sine >= MIN_SINE;
+        if !is_disk {
             return DistantLight { radiance: none, pdf: 0.0 };
         }
         let height = one_minus_cos(self.sine);

@@ -300,6 +300,23 @@ fn sample_one<L: Light + MachineType>(
 }
 
 #[kernel]
+fn emitted_by_listed<L: Light + MachineType>(
+    lights: &Lights<'_, L>,
+    i: u32,
+    at: SurfacePoint,
+    from: SurfacePoint,
+    wi: Vec3,
+    pdf: f32,
+) -> Vec3 {
+    if i >= lights.layout().count {
+        return vec3(0.0, 0.0, 0.0);
+    }
+    let light: L = lights.light(i);
+    let rival = light.pdf(from.position, at) * chance_of(lights, i);
+    light.emitted(at, -wi) * power_heuristic(1.0, pdf, 1.0, rival)
+}
+
+#[kernel]
 fn emitted_by<L: Light + MachineType>(
     lights: &Lights<'_, L>,
     i: u32,
@@ -310,11 +327,7 @@ fn emitted_by<L: Light + MachineType>(
 ) -> Vec3 {
     let mut radiance = vec3(0.0, 0.0, 0.0);
     if lights.is_listed() {
-        if i < lights.layout().count {
-            let light: L = lights.light(i);
-            let rival = light.pdf(from.position, at) * chance_of(lights, i);
-            radiance = light.emitted(at, -wi) * power_heuristic(1.0, pdf, 1.0, rival);
-        }
+        radiance = emitted_by_listed(lights, i, at, from, wi, pdf);
     }
     radiance
 }

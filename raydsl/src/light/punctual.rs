@@ -43,7 +43,8 @@ fn from_point(from: Vec3, position: Vec3, intensity: Vec3) -> LightSample {
     let way = position - from;
     let squared = way.dot(way);
     // A light at the point itself has no direction.
-    if !(squared > 1e-30) {
+    let is_apart = squared > 1e-30;
+    if !is_apart {
         return LightSample::dark();
     }
     LightSample::delta(way / squared.sqrt(), intensity / squared, position)

@@ -328,7 +328,7 @@ fn extremes<B: Bsdf>(bsdf: &B, found: &mut Findings) {
         for wi in directions.into_iter().flatten() {
             let (eval, pdf) = (bsdf.eval(wo, wi), bsdf.pdf(wo, wi));
             let is_sound =
-                eval.is_finite() && eval.min_element() >= 0.0 && pdf >= 0.0 && pdf < f32::MAX;
+                eval.is_finite() && eval.min_element() >= 0.0 && (0.0..f32::MAX).contains(&pdf);
             if !is_sound {
                 found.add(
                     "a value is negative or not finite",

@@ -316,7 +316,7 @@ fn extremes<L: Light>(light: &L, found: &mut Findings) {
         for i in 0..16 {
             let s = light.sample(from, vec2(numbers[i % 4], numbers[i / 4]));
             let pdf = light.pdf(from, s.end);
-            if !is_sound(&s) || !(pdf >= 0.0) {
+            if !is_sound(&s) || pdf < 0.0 || pdf.is_nan() {
                 found.add(
                     "a sample is negative, not finite or not of unit length",
                     format!("from {from}: {s:?}, pdf {pdf}"),
