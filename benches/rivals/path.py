@@ -197,6 +197,7 @@ def contenders(cases, folder, samples):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--scene", choices=["cornell", "sponza"], help="only this one")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--size", type=int, default=512, help="width and height of the pictures")
     parser.add_argument("--samples", type=int, default=64, help="of each pixel")
@@ -209,10 +210,12 @@ def main():
         folder = args.scenes or Path(folder)
         is_there = Path(os.environ.get("RAYDSL_DATA", ""), "sponza.tri").exists()
         names = ["cornell", "sponza"] if is_there else ["cornell"]
-        if len(names) == 1:
+        if not is_there:
             skip("sponza", "no sponza.tri", "RAYDSL_DATA names the folder with it and cameras.json")
+        names = [args.scene] if args.scene else names
         if not all((folder / f"{name}.json").exists() for name in names):
             options = ["--write-scenes", str(folder), "--size", str(args.size)]
+            options += ["--scene", args.scene] if args.scene else []
             bench([*options, "--reference", str(args.reference)])
         cases = [json.loads((folder / f"{name}.json").read_text()) for name in names]
         size = cases[0]["size"]

@@ -294,9 +294,7 @@ impl Bench {
                 of.errors.push(error);
                 of.costs.push(error * picture.seconds);
                 of.biases.push(bias);
-                // A NaN is off.
-                let is_within = bias.abs() <= TOLERANCE + 4.0 * noise;
-                of.is_off |= !is_within;
+                of.is_off |= bias.is_nan() || bias.abs() > TOLERANCE + 4.0 * noise;
             }
         }
         let plain = contenders.iter().position(|r| *r == Contender::Plain);
