@@ -26,6 +26,7 @@ mod environment;
 mod lights;
 mod punctual;
 mod shapes;
+mod tree;
 mod triangle;
 
 pub use any::AnyLight;
@@ -37,6 +38,7 @@ pub use punctual::{PointLight, SpotLight};
 pub use shapes::{
     DiskShape, LightShape, RectangleShape, ShapeSample, SphereShape, area_pdf, sample_by_area,
 };
+pub use tree::LightChoice;
 
 use glam::{Vec3, vec3};
 
