@@ -85,7 +85,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ..Default::default()
     };
     let mesh = Mesh::new(&tree, attributes)?;
-    let lights = Lights::new(&model.lights, bounds)?.with_environment(&sky);
+    let lights = Lights::new(&model.lights, bounds)?.with_tree()?.with_environment(&sky);
     let (looks, texels, light_of) = (&model.looks[..], &model.texels[..], &model.light_of[..]);
     let (masks, limits) = (model.has_masks, PathLimits::new(args.bounces));
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {

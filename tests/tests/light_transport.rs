@@ -16,8 +16,8 @@ use raydsl::light::{
 };
 use raydsl::prelude::*;
 use raydsl::shading::Surface;
-use raydsl::testing::{can_run, run};
-use raydsl::{Type, kernel};
+use raydsl::testing::{FilmTest, can_run, run};
+use raydsl::{Type, assert_variants_agree, kernel};
 use raydsl_tests::scaled;
 
 #[primitive(sphere(center, radius))]
@@ -364,6 +364,20 @@ fn what_does_not_occur_leaves_no_trace() -> Result<(), Box<dyn Error>> {
             let surface = |_hit: Hit, _point: ShadingPoint| Lambert { color: Vec3::ONE };
             path::<_, _, Lambert>(&scene, surface, &lights, limits, ray, sampler).color
         });
+        // Pictures have the same bytes for any number of threads, and the same means on a device.
+        let camera = Pinhole::new(vec3(0.0, 1.0, 4.0), Vec3::ZERO, Vec3::Y, 0.7);
+        assert_variants_agree!(&kernel, &FilmTest::new(&camera, 16, 16));
+        let mut films = Vec::new();
+        for threads in [1, 2, 7] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+            let mut film = Film::new(33, 17);
+            let scheduler = TiledScheduler::new();
+            pool.install(|| {
+                scheduler.accumulate(&camera, &kernel, &Sampling::new(4), &mut film, 4);
+            });
+            films.push(film);
+        }
+        assert!(films[0] == films[1] && films[0] == films[2]);
         Ok(kernel.wgsl())
     };
     let plain = text(&[AnyLight::Point(point)], None)?;
