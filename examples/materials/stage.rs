@@ -111,9 +111,9 @@ pub(crate) fn environment(file: Option<PathBuf>) -> Result<Environment, Box<dyn 
         let turn = std::f32::consts::TAU * ((i % size.x) as f32 + 0.5) / size.x as f32;
         let up = down.cos();
         let direction = vec3(-turn.sin() * down.sin(), up, turn.cos() * down.sin());
-        let sky = vec3(0.35, 0.55, 1.0).lerp(Vec3::ONE, (1.0 - up.abs()).powi(3));
-        let ground = Vec3::splat(0.12);
-        let light = if direction.dot(sun) > 0.995 { Vec3::splat(60.0) } else { Vec3::ZERO };
+        let sky = vec3(0.08, 0.15, 0.32).lerp(Vec3::splat(0.4), (1.0 - up.abs()).powi(3));
+        let ground = Vec3::splat(0.06);
+        let light = if direction.dot(sun) > 0.995 { Vec3::splat(80.0) } else { Vec3::ZERO };
         if up > 0.0 { sky + light } else { ground }
     };
     let texels: Vec<Vec3> = (0..size.x * size.y).map(texel).collect();

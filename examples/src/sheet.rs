@@ -7,6 +7,9 @@ use raydsl::prelude::*;
 
 use crate::heat_map::write;
 
+/// Height of the strip with a name.
+const STRIP: u32 = 16;
+
 /// Pictures of one size side by side, row by row, each with its name.
 #[derive(Clone, Debug)]
 pub struct Sheet {
@@ -31,10 +34,13 @@ impl Sheet {
                 (k as u32 % picture.width(), picture.height() - 1 - k as u32 / picture.width());
             if x < self.size.0 && y < self.size.1 {
                 let [r, g, b, _] = pixel.map(Unorm8::to_bits);
-                self.image.put_pixel(x0 + x, y0 + y, Rgb([r, g, b]));
+                // The name stands on a darker strip.
+                let is_strip = !name.is_empty() && y + STRIP >= self.size.1;
+                let color = [r, g, b].map(|c| if is_strip { c / 3 } else { c });
+                self.image.put_pixel(x0 + x, y0 + y, Rgb(color));
             }
         }
-        write(&mut self.image, x0 + 8, y0 + self.size.1.saturating_sub(16), name);
+        write(&mut self.image, x0 + 8, y0 + self.size.1.saturating_sub(STRIP - 4), name);
     }
 
     /// Writes it as a file, whose extension says the format.

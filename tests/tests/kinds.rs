@@ -8,6 +8,7 @@ use raydsl::kernel;
 use raydsl::light::{AnyLight, DirectionalLight, Lights, PointLight};
 use raydsl::prelude::*;
 use raydsl::shading::Surface;
+use raydsl::testing::FilmTest;
 use raydsl_tests::rng::Rng;
 
 #[primitive(sphere(center, radius))]
@@ -233,7 +234,9 @@ fn integrators_shade_enums() {
         let surface = |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo };
         direct_light::<_, _, Lambert>(&things, surface, &lights, host(false), ray, sampler)
     });
-    assert_variants_agree!(&nested, &rays);
+    // Rounding leaves too many decisions open for single rays: the means of a picture decide.
+    let camera = Pinhole::new(vec3(2.0, 3.0, 12.0), Vec3::ZERO, Vec3::Y, 0.8);
+    assert_variants_agree!(&nested, &FilmTest::new(&camera, 24, 24));
 }
 
 /// One kind has vertices, the others nothing but themselves.

@@ -8,7 +8,7 @@ use super::LightExtent;
 use super::triangle::{sample_spherical_triangle, solid_angle};
 use crate::geometry::{SurfacePoint, Triangle, disk, rectangle, sphere, triangle};
 use crate::machine::functions::{vec2, vec3};
-use crate::machine::generic::{max, min, normalize};
+use crate::machine::generic::{max, min};
 use crate::sampling::{
     Frame, UNIFORM_SPHERE_PDF, cone_pdf, one_minus_cos, sample_cone, sample_uniform_sphere,
 };
@@ -176,7 +176,9 @@ impl LightShape for SphereShape {
         let aside = way - wi * along;
         let half = max((self.radius * self.radius) - aside.dot(aside), 0.0).sqrt();
         let towards = wi * (if is_outside { -half } else { half }) - aside;
-        let normal = normalize(towards);
+        let squared = towards.dot(towards);
+        let outwards = towards / max(squared, f32::MIN_POSITIVE).sqrt();
+        let normal = if squared > 0.0 { outwards } else { -wi };
         let point = sphere::of_normal(normal, self.center, self.radius);
         let pdf = if is_outside { cone_pdf(height) } else { UNIFORM_SPHERE_PDF };
         ShapeSample { wi, point, pdf: if self.radius > 0.0 { pdf } else { 0.0 } }
