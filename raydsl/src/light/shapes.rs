@@ -92,7 +92,10 @@ pub fn sample_by_area(point: SurfacePoint, area: f32, from: Vec3) -> ShapeSample
     let squared = way.dot(way);
     let is_there = squared > 1e-30 && area > 0.0;
     let wi = if is_there { way / squared.sqrt() } else { vec3(0.0, 0.0, 1.0) };
-    ShapeSample { wi, point, pdf: area_pdf(point, area, from) }
+    // A shape without area has no point.
+    let nowhere = SurfacePoint { position: from, normal: wi, error: 0.0 };
+    let point = if is_there { point } else { nowhere };
+    ShapeSample { wi, point, pdf: if is_there { area_pdf(point, area, from) } else { 0.0 } }
 }
 
 /// Returns the density per solid angle of a point that was chosen uniformly on a surface of this
