@@ -535,23 +535,7 @@ fn sample_one<L: Light + MachineType>(
 }
 
 #[kernel]
-fn emitted_by_listed<L: Light + MachineType>(
-    lights: &Lights<'_, L>,
-    i: u32,
-    at: SurfacePoint,
-    from: SurfacePoint,
-    wi: Vec3,
-    pdf: f32,
-) -> Vec3 {
-    if i >= lights.layout().count {
-        return vec3(0.0, 0.0, 0.0);
-    }
-    let light: L = lights.light(i);
-    let rival = light.pdf(from.position, at) * of_all(lights, chance_of(lights, i, from));
-    light.emitted(at, -wi) * power_heuristic(1.0, pdf, 1.0, rival)
-}
-
-#[kernel]
+#[expect(clippy::collapsible_if, reason = "the outer one is decided before the kernel runs")]
 fn emitted_by<L: Light + MachineType>(
     lights: &Lights<'_, L>,
     i: u32,
@@ -562,7 +546,11 @@ fn emitted_by<L: Light + MachineType>(
 ) -> Vec3 {
     let mut radiance = vec3(0.0, 0.0, 0.0);
     if lights.is_listed() {
-        radiance = emitted_by_listed(lights, i, at, from, wi, pdf);
+        if i < lights.layout().count {
+            let light: L = lights.light(i);
+            let rival = light.pdf(from.position, at) * of_all(lights, chance_of(lights, i, from));
+            radiance = light.emitted(at, -wi) * power_heuristic(1.0, pdf, 1.0, rival);
+        }
     }
     radiance
 }
