@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(&args.folder)?;
     let file = scene::load(&args.file)?;
     let model = Model::new(&file);
-    let bounds = Aabb::from_points(model.positions.iter().copied());
+    let bounds = model.bounds();
     let sky = match &args.environment {
         Some(path) => {
             let picture = raydsl_io::environment::load(path)?;

@@ -3,22 +3,9 @@
 use std::error::Error;
 use std::path::PathBuf;
 
-use raydsl::geometry::Aabb;
 use raydsl::light::Environment;
 use raydsl::prelude::*;
-
-/// The ball: an indexed mesh.
-pub(crate) struct Model {
-    pub(crate) positions: Vec<Vec3>,
-    pub(crate) normals: Vec<Vec3>,
-    pub(crate) triangles: Vec<IndexedTriangle>,
-}
-
-impl Model {
-    pub(crate) fn bounds(&self) -> Aabb {
-        Aabb::from_points(self.positions.iter().copied())
-    }
-}
+use raydsl_examples::model::Model;
 
 /// Returns the file of this name in the folder of data, if there is one.
 fn data(name: &str) -> Option<PathBuf> {
@@ -32,39 +19,12 @@ pub(crate) fn model(file: Option<PathBuf>) -> Result<Model, Box<dyn Error>> {
         println!("no FILE, and no shader_ball.glb in RAYDSL_DATA: a ball with a ring instead");
         return Ok(ball_with_ring());
     };
-    let scene = raydsl_io::scene::load(&file)?;
-    let mut model = Model { positions: vec![], normals: vec![], triangles: vec![] };
-    for instance in &scene.instances {
-        let mesh = &scene.meshes[instance.mesh];
-        let first = model.positions.len() as u32;
-        let to_world = instance.transform;
-        let turned = to_world.matrix3.inverse().transpose();
-        model.positions.extend(mesh.positions.iter().map(|p| to_world.transform_point3(*p)));
-        if mesh.normals.is_empty() {
-            model.normals.extend(smooth_normals(&mesh.positions, &mesh.triangles));
-        } else {
-            model.normals.extend(mesh.normals.iter().map(|n| turned * *n));
-        }
-        let triangles = mesh.triangles.iter().map(|t| t.map(|i| first + i));
-        model.triangles.extend(triangles.map(|vertices| IndexedTriangle { vertices }));
-    }
-    Ok(model)
-}
-
-/// Normals of vertices: the sum of those of their triangles, by area.
-fn smooth_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
-    let mut normals = vec![Vec3::ZERO; positions.len()];
-    for t in triangles {
-        let [a, b, c] = t.map(|i| positions[i as usize]);
-        let normal = (b - a).cross(c - a);
-        t.iter().for_each(|i| normals[*i as usize] += normal);
-    }
-    normals
+    Ok(Model::new(&raydsl_io::scene::load(&file)?))
 }
 
 /// A ball of radius 3 with its centre 4 above the floor, and a ring under it.
 fn ball_with_ring() -> Model {
-    let mut model = Model { positions: vec![], normals: vec![], triangles: vec![] };
+    let mut model = Model::default();
     let mut add = |rows: u32, columns: u32, at: &dyn Fn(f32, f32) -> (Vec3, Vec3)| {
         let first = model.positions.len() as u32;
         for i in 0..=rows {

@@ -215,6 +215,11 @@ impl Model {
         model
     }
 
+    /// Returns the box around all vertices.
+    pub fn bounds(&self) -> Aabb {
+        Aabb::from_points(self.positions.iter().copied())
+    }
+
     fn look(&mut self, m: &scene::Material, images: &[Texels]) -> Look {
         let mut picture = |texture: Option<scene::Texture>, is_color: bool| {
             texture.map_or_else(Picture::default, |t| self.picture(&t, &images[t.image], is_color))

@@ -5,8 +5,8 @@ use core::fmt;
 use glam::{DVec3, DVec4, Vec3, vec3};
 
 use super::findings::{Fault, Findings, write_faults};
-use super::sphere::SphereBins;
-use super::statistics::{normal_quantile, pearson, sidak};
+use super::histogram::Histogram;
+use super::statistics::{normal_quantile, sidak};
 use super::variants::disagreement;
 use crate::bsdf::{Bsdf, BsdfSample};
 use crate::kernel;
@@ -141,76 +141,22 @@ impl BsdfTest {
             let u = rng.next_2d();
             bsdf.sample(wo, vec3(u.x, u.y, rng.next_f32()))
         };
-        let pilot: Vec<BsdfSample> = (0..(samples / 50).max(200)).map(|_| draw()).collect();
-        let is_spread = |s: &&BsdfSample| !s.is_delta && s.pdf > 0.0 && s.wi.is_finite();
-        let spread: Vec<BsdfSample> = pilot.iter().filter(is_spread).copied().collect();
-        let peak = spread.iter().max_by(|a, b| a.pdf.total_cmp(&b.pdf)).map_or(Vec3::Z, |s| s.wi);
-        let directions: Vec<Vec3> = spread.iter().map(|s| s.wi).collect();
-        let bins = SphereBins::new(peak, &directions);
-
-        let mut counts = vec![0u64; bins.count()];
+        let pilot = (0..(samples / 50).max(200)).map(|_| draw());
+        let mut histogram = Histogram::new(pilot.filter(|s| !s.is_delta).map(|s| (s.wi, s.pdf)));
         let mut sums = Sums::default();
         for _ in 0..samples {
             let sample = draw();
             if sums.add(bsdf, wo, &sample, found) {
-                counts[bins.of(sample.wi)] += 1;
+                histogram.add(sample.wi);
             }
         }
         let n = f64::from(samples);
-        let of = |wi: Vec3| {
-            let f = bsdf.eval(wo, wi).as_dvec3();
-            DVec4::new(f.x, f.y, f.z, f64::from(bsdf.pdf(wo, wi)))
-        };
-        let integrals = bins.integrals(n, &of);
-        let total: DVec4 = integrals.iter().sum();
+        let of = |wi: Vec3| bsdf.eval(wo, wi).as_dvec3().extend(f64::from(bsdf.pdf(wo, wi)));
         let tests = 2 * self.directions.max(1) as usize * self.checks.max(1) as usize;
         let limit = normal_quantile(sidak(self.false_alarm, tests));
-        self.judge_counts(wo, &bins, &counts, &integrals, (n, &sums, limit), found);
+        let total = histogram.compare(&format!("wo {wo}"), (n, limit, 1e-3), &of, found);
+        sums.judge_spread(wo, (n, limit), total.w, found);
         self.judge_means(wo, (n, &sums, limit), total, found)
-    }
-
-    fn judge_counts(
-        &self,
-        wo: Vec3,
-        bins: &SphereBins,
-        counts: &[u64],
-        integrals: &[DVec4],
-        (n, sums, limit): (f64, &Sums, f64),
-        found: &mut Findings,
-    ) {
-        let expected: Vec<f64> = integrals.iter().map(|i| i.w * n).collect();
-        let test = pearson(counts, &expected);
-        if test.z > limit {
-            let bin = test.worst;
-            found.add(
-                "samples and pdf differ",
-                format!(
-                    "wo {wo}: chi-square {:.1} standard deviations off, {limit:.1} allowed; most around \
-                     wi {}, {} samples where {:.1} are expected",
-                    test.z,
-                    bins.middle(bin),
-                    counts[bin],
-                    expected[bin]
-                ),
-            );
-        }
-        let share = sums.misplaced / n;
-        if share > 1e-5 {
-            found.add("samples where pdf is 0", format!("wo {wo}: a share of {share:.2e}"));
-        }
-        // What is spread, what a delta lobe has, and what is absorbed add up to 1.
-        let mass = expected.iter().sum::<f64>() / n;
-        if mass > 1.0 + 1e-3 {
-            found.add("pdf integrates to more than 1", format!("wo {wo}: {mass:.5}"));
-        }
-        let share = sums.spread / n;
-        let spread = (share * (1.0 - share) / n).sqrt();
-        if (mass - share).abs() > limit * spread + 2e-3 {
-            found.add(
-                "pdf has another integral than the share of samples that it is for",
-                format!("wo {wo}: {mass:.5} for {share:.5}"),
-            );
-        }
     }
 
     fn judge_means(
@@ -406,6 +352,25 @@ impl Sums {
             );
         }
         true
+    }
+}
+
+impl Sums {
+    /// Compares the share of samples that are spread with the integral of their density.
+    fn judge_spread(&self, wo: Vec3, (n, limit): (f64, f64), mass: f64, found: &mut Findings) {
+        let share = self.misplaced / n;
+        if share > 1e-5 {
+            found.add("samples where pdf is 0", format!("wo {wo}: a share of {share:.2e}"));
+        }
+        // What a delta lobe has, and what is absorbed, is the rest.
+        let share = self.spread / n;
+        let error = (share * (1.0 - share) / n).sqrt();
+        if (mass - share).abs() > limit * error + 2e-3 {
+            found.add(
+                "pdf has another integral than the share of samples that it is for",
+                format!("wo {wo}: {mass:.5} for {share:.5}"),
+            );
+        }
     }
 }
 

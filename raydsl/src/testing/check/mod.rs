@@ -24,6 +24,7 @@
 mod bsdf;
 mod estimators;
 mod findings;
+mod histogram;
 mod light;
 mod sphere;
 mod statistics;
