@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use raydsl::geometry::Aabb;
-use raydsl::integrators::{PathLimits, PathSample, masked_path};
+use raydsl::integrators::{PathLimits, PathOptions, PathSample, path_with};
 use raydsl::light::{Environment, Lights};
 use raydsl::prelude::*;
 use raydsl::render::{Display, ToneMap};
@@ -87,13 +87,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mesh = Mesh::new(&tree, attributes)?;
     let lights = Lights::new(&model.lights, bounds)?.with_tree()?.with_environment(&sky);
     let (looks, texels, light_of) = (&model.looks[..], &model.texels[..], &model.light_of[..]);
-    let (masks, limits) = (model.has_masks, PathLimits::new(args.bounces));
+    let options = PathOptions { masks: model.has_masks, ..PathOptions::new() };
+    let limits = PathLimits::new(args.bounces);
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
         let surface = |hit: Hit, point: ShadingPoint| {
             let look = looks[point.material as usize];
             met(texels, look, point, light_of[hit.prim_id as usize])
         };
-        masked_path::<_, _, Met>(&mesh, surface, &lights, host(masks), limits, ray, sampler)
+        path_with::<_, _, Met>(&mesh, surface, &lights, host(options), limits, ray, sampler)
     });
     // ANCHOR_END: gltf
     // A film of channels: colour, and albedo and normal for a denoiser.

@@ -12,6 +12,7 @@ mod files;
 mod light;
 mod luneburg;
 mod open;
+mod paths;
 mod quadrature;
 mod textured;
 mod visibility;
@@ -22,14 +23,16 @@ use std::process::{Command, ExitCode};
 
 use args::{Args, Knob};
 use clap::Parser;
-use raydsl_examples::lens;
 use raydsl_examples::raster::raster;
+use raydsl_examples::{cornell, lens};
 use raydsl_report::work_precision::{Case, Method, WorkPrecision};
 
 /// Of each pixel of each half of the cloud's reference: a second or two.
 const CLOUD_SAMPLES: u32 = 16_384;
 /// The same of scenes from files, whose every sample has two rays.
 const FILE_SAMPLES: u32 = 4096;
+/// Of paths, of several rays each.
+const PATH_SAMPLES: u32 = 16_384;
 
 /// How to make a case.
 type Make = Box<dyn Fn() -> Result<Case<'static>, Box<dyn Error>>>;
@@ -46,11 +49,15 @@ fn main() -> ExitCode {
 
 /// Those whose references take a while, by name; all have a knob of samples. They are made only if
 /// they are measured.
-fn slow_cases() -> [(&'static str, Make); 3] {
+fn slow_cases() -> [(&'static str, Make); 5] {
+    let path = |name| -> Make { Box::new(move || paths::case(name, PATH_SAMPLES)) };
+    let [cornell, plates] = paths::NAMES;
     [
         ("cloud", Box::new(|| cloud::case(CLOUD_SAMPLES))),
         ("scene", Box::new(|| open::case("scene", files::scene()?, FILE_SAMPLES))),
         ("scan", Box::new(|| open::case("scan", files::scan()?, FILE_SAMPLES))),
+        (cornell, path(cornell)),
+        (plates, path(plates)),
     ]
 }
 

@@ -16,6 +16,9 @@ use raydsl_tests::scaled;
 #[path = "../../examples/report/cloud.rs"]
 mod cloud;
 #[expect(unreachable_pub, reason = "a module of the examples' library")]
+#[path = "../../examples/src/cornell.rs"]
+mod cornell;
+#[expect(unreachable_pub, reason = "a module of the examples' library")]
 #[path = "../../examples/src/lens.rs"]
 mod lens;
 #[path = "../../examples/report/light.rs"]
@@ -24,6 +27,8 @@ mod light;
 mod luneburg;
 #[path = "../../examples/report/open.rs"]
 mod open;
+#[path = "../../examples/report/paths.rs"]
+mod paths;
 #[path = "../../examples/report/quadrature.rs"]
 mod quadrature;
 #[path = "../../examples/report/textured.rs"]
@@ -166,8 +171,8 @@ fn a_scene_is_open_and_counted() -> Result<(), Box<dyn Error>> {
 }
 
 /// With the same seed a device has the scalar variant's pictures: light to 1e-4 of itself, but for
-/// one pixel in a thousand, where rounding may decide whether a ray meets an edge. By lavapipe no
-/// pixel needs that.
+/// one pixel in a thousand, where rounding may decide whether a ray meets an edge. By lavapipe one
+/// pixel in 4096 needs that, of paths.
 #[test]
 fn a_device_has_the_same_pictures() -> Result<(), Box<dyn Error>> {
     let Some(gpu) = gpu() else { return Ok(()) };
@@ -176,6 +181,9 @@ fn a_device_has_the_same_pictures() -> Result<(), Box<dyn Error>> {
     cases.push(open::case("balls", balls(), 8)?);
     cases.push(quadrature::case());
     cases.push(luneburg::case());
+    for name in paths::NAMES {
+        cases.push(paths::case(name, 8)?);
+    }
     for case in &cases {
         for method in case.methods() {
             let of = |variant| {

@@ -1,12 +1,14 @@
 //! Every BSDF of the library through its check.
 
 use raydsl::bsdf::{
-    Bsdf, Coated, ComplexIor, Conductor, Dielectric, Eon, F82, Fresnel, Lambert, MetallicRoughness,
-    Mirror, Mix, Sheen, SheenCoated, ThinDielectric, fresnel_dielectric, ggx_distribution,
-    ggx_masking,
+    Bsdf, BsdfSample, Coated, ComplexIor, Conductor, Dielectric, Eon, F82, Fresnel, Lambert,
+    MetallicRoughness, Mirror, Mix, Sheen, SheenCoated, ThinDielectric, fresnel_dielectric,
+    ggx_distribution, ggx_masking,
 };
+use raydsl::kernel;
 use raydsl::prelude::*;
 use raydsl::testing::check::BsdfTest;
+use raydsl::volume::{henyey_greenstein, sample_henyey_greenstein};
 
 /// Checks that share the probability of a false alarm.
 const CHECKS: u32 = 40;
@@ -81,6 +83,11 @@ fn coats() {
     let base = Conductor::<F82> { fresnel, alpha: 0.3 };
     let lacquer = Coated::<Conductor<F82>> { base, ior: 1.5, alpha: 0.01, strength: Vec3::ONE };
     assert_holds(TEST.not_reciprocal(), lacquer);
+    // Black metal under a smooth coat: what is sampled least is there all the same.
+    let black = F82 { normal: Vec3::ZERO, tint: Vec3::ONE };
+    let base = Conductor::<F82> { fresnel: black, alpha: 0.3 };
+    let smooth = Coated::<Conductor<F82>> { base, ior: 1.5, alpha: 0.0, strength: Vec3::ONE };
+    assert_holds(TEST.not_reciprocal(), smooth);
 }
 
 #[test]
@@ -122,6 +129,67 @@ fn metallic_roughness() {
     assert_holds(test, MetallicRoughness { is_solid: true, ior: 1.4, ..all });
     let white = MetallicRoughness { base_color: Vec3::ONE, ..Default::default() };
     assert_holds(test.energy(0.98, 1.0001), MetallicRoughness { metallic: 0.5, ..white });
+}
+
+/// A phase function as a BSDF: without a surface, all directions are as good.
+#[derive(Clone, Copy, Debug, Type)]
+struct Phase {
+    anisotropy: f32,
+}
+
+#[kernel]
+impl Bsdf for Phase {
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Vec3 {
+        Vec3::splat(henyey_greenstein(-wo.dot(wi), self.anisotropy))
+    }
+
+    fn sample(&self, wo: Vec3, u: Vec3) -> BsdfSample {
+        let wi = sample_henyey_greenstein(-wo, vec2(u.x, u.y), self.anisotropy);
+        BsdfSample::of(wi, Phase::eval(self, wo, wi), Phase::pdf(self, wo, wi))
+    }
+
+    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        henyey_greenstein(-wo.dot(wi), self.anisotropy)
+    }
+}
+
+#[test]
+fn phase_functions() {
+    for anisotropy in [0.0, 0.3, 0.9, -0.7, 0.99, 1.0] {
+        assert_holds(white().not_reciprocal(), Phase { anisotropy });
+    }
+}
+
+/// Delta lobes go where Fresnel and Snell say, to rounding of the direction.
+#[test]
+fn smooth_surfaces_reflect_and_refract_exactly() {
+    let mut rng = Rng::new(uvec2(1, 2), 3, 4);
+    for i in 0..20_000 {
+        let wo = sample_uniform_sphere(rng.next_2d());
+        let u = vec3(rng.next_f32(), rng.next_f32(), rng.next_f32());
+        let mirrored = glam::DVec3::new(-f64::from(wo.x), -f64::from(wo.y), f64::from(wo.z));
+        let seen = Mirror { color: Vec3::ONE }.sample(wo, u);
+        assert!(seen.is_delta && (seen.wi.as_dvec3() - mirrored).length() < 1e-6, "{wo}");
+        let ior = [1.5f32, 1.0 / 1.5, 1.0, 2.4][i % 4];
+        let eta = f64::from(if wo.z < 0.0 { 1.0 / ior } else { ior });
+        // The tangential part over the index; what is left of unit length is the cosine beyond.
+        let across = -glam::dvec2(wo.x.into(), wo.y.into()) / eta;
+        let squared = 1.0 - across.length_squared();
+        let sample = Dielectric { ior, alpha: 0.0, tint: Vec3::ONE }.sample(wo, u);
+        let wi = sample.wi.as_dvec3();
+        assert!(sample.is_delta);
+        if sample.wi.z * wo.z > 0.0 {
+            assert!((wi - mirrored).length() < 1e-6, "{wo} {ior}: {sample:?}");
+        } else {
+            let z = squared.max(0.0).sqrt() * -f64::from(wo.z.signum());
+            let off = (wi - across.extend(z)).length();
+            // The root makes rounding of the direction larger next to the critical angle.
+            assert!(off < 1e-6 / squared.max(1e-6).sqrt(), "{wo} {ior}: {sample:?}, {off:.1e}");
+        }
+        if squared <= -1e-6 {
+            assert_eq!(sample.pdf, 1.0, "total reflection");
+        }
+    }
 }
 
 /// P-M1: at 0, 45, 60, 80, 89, 89.9 and 89.999 degrees, and what is transmitted at the last.

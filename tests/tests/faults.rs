@@ -73,6 +73,12 @@ impl Bsdf for Broken {
             // Diffuse light is not reduced by what is reflected above it.
             return coat(wo, wi) + Vec3::splat(diffuse(0, wo, wi));
         }
+        if self.fault == 25 {
+            return Vec3::splat(0.25 * FRAC_1_PI);
+        }
+        if self.fault >= 23 {
+            return Vec3::splat(0.0);
+        }
         if self.fault >= 10 {
             let (eval, _) = rough(self.fault, wo, wi);
             return Vec3::splat(eval);
@@ -106,6 +112,14 @@ impl Bsdf for Broken {
         let sample = BsdfSample::of(wi, Broken::eval(self, wo, wi), pdf);
         let weight = if self.fault == 7 { sample.weight * 0.5 } else { sample.weight };
         let direction = if self.fault == 8 { wi * 0.5 } else { wi };
+        if self.fault == 23 {
+            // One direction, with half of its probability.
+            let mirrored = vec3(-wo.x, -wo.y, wo.z);
+            return BsdfSample::delta(mirrored, Vec3::splat(1.0), 0.5);
+        }
+        if self.fault == 24 {
+            return BsdfSample::delta(wi, Vec3::splat(1.0), 1.0);
+        }
         if self.fault == 9 {
             return BsdfSample {
                 wi: vec3(-wo.x, -wo.y, wo.z),
@@ -151,6 +165,9 @@ fn faults_of_bsdfs_are_found() {
         (13, found, "the Jacobian of the reflection is missing"),
         (21, "weights and eval differ", "reflected and transmitted light are exchanged"),
         (22, "light is created", "diffuse light is not reduced by what is reflected above it"),
+        (23, "delta samples are not as frequent as their pdf says", "a mirror with half a pdf"),
+        (24, "delta samples go in many directions", "diffuse samples are marked as a mirror's"),
+        (25, "weights and eval differ", "an isotropic phase function with the density of a cosine"),
     ];
     let test = BsdfTest { variants: false, ..BsdfTest::new().samples(100_000, 4) };
     for (fault, expected, name) in cases {

@@ -7,16 +7,22 @@
 use std::error::Error;
 use std::f32::consts::PI;
 
-use raydsl::bsdf::{Bsdf, BsdfSample, Lambert, Luminous, Material, NO_LIGHT, ThinDielectric};
+use raydsl::bsdf::{Bsdf, BsdfSample, Lambert, Material, NO_LIGHT, ThinDielectric};
 use raydsl::geometry::Aabb;
-use raydsl::integrators::{PathLimits, path, whitted};
+use raydsl::integrators::{
+    LightSampling, PathLimits, PathOptions, next_3d, path, path_with, volume_path, whitted,
+};
 use raydsl::light::{
-    AnyLight, AreaLight, DirectionalLight, DiskShape, Environment, Light, Lights, PointLight,
-    RectangleShape, SphereShape,
+    AnyLight, AreaLight, DirectionalLight, DiskShape, Environment, LightShape, Lights, PointLight,
+    RectangleShape, SphereShape, SpotLight,
 };
 use raydsl::prelude::*;
 use raydsl::shading::Surface;
 use raydsl::testing::{FilmTest, can_run, run};
+use raydsl::volume::{
+    Collision, ExactCell, Grid, GridConfig, GridError, TransferError, TransferFunction, Volume,
+    VolumeLight, collision, ratio_transmittance,
+};
 use raydsl::{Type, assert_variants_agree, kernel};
 use raydsl_tests::scaled;
 
@@ -86,60 +92,68 @@ fn sampler_of(i: u32, seed: u32) -> Sampler {
     Sampler::new(uvec2(i, seed), 7, 0, 1, SampleMethod::Random)
 }
 
-#[kernel]
-fn next_3d(sampler: &mut Sampler) -> Vec3 {
-    let square = sampler.next_2d();
-    vec3(square.x, square.y, sampler.next_1d())
-}
-
 /// Irradiance at the origin of a floor, by samples of all lights.
 #[track_caller]
-fn assert_irradiance<L: Light + Type>(name: &str, lights: &Lights<'_, L>, exact: f64) {
-    // In a generic function a kernel cannot capture lights of any type, so the host draws.
-    for seed in 0..8 {
-        let floor = SurfacePoint { position: Vec3::ZERO, normal: Vec3::Z, error: 1e-6 };
-        let values: Vec<f32> = (0..scaled(1 << 17) as u32)
-            .map(|i| {
-                let mut sampler = sampler_of(i, seed);
-                let s = lights.sample(floor, next_3d(&mut sampler));
-                if s.pdf > 0.0 { s.light.x * s.wi.z.max(0.0) / s.pdf } else { 0.0 }
-            })
-            .collect();
-        let (mean, error) = mean(&values);
-        let off = (mean - exact).abs();
-        assert!(off <= 4.5 * error + 1e-5 * exact, "{name}: {mean} +- {error}, exactly {exact}");
-    }
+fn assert_irradiance(name: &str, lights: &Lights<'_, AnyLight>, exact: f64) {
+    let kernel = kernel!(|i: u32, seed: u32| {
+        let mut sampler = sampler_of(i, seed);
+        let up = vec3(0.0, 0.0, 1.0);
+        let floor = SurfacePoint { position: vec3(0.0, 0.0, 0.0), normal: up, error: 1e-6 };
+        let s = lights.sample(floor, next_3d(&mut sampler));
+        if s.pdf > 0.0 { s.light.x * max(s.wi.z, 0.0) / s.pdf } else { 0.0 }
+    });
+    assert_mean(name, &kernel, exact);
 }
 
 fn cube() -> Aabb {
     Aabb { min: Vec3::splat(-2.0), max: Vec3::splat(2.0) }
 }
 
-/// P-D1, P-D2, P-D3, P-D6: irradiance from a sphere, a square, a triangle, an overcast sky.
+fn area<S: LightShape + Type>(shape: S, radiance: f32, is_two_sided: bool) -> AreaLight<S> {
+    AreaLight::<S> { shape, radiance: Vec3::splat(radiance), is_two_sided }
+}
+
+/// P-D1, P-D2, P-D3, P-D6: irradiance from a sphere, a square, a triangle, an overcast sky; and from
+/// a sun with an angle, and from a spot light where its light falls off.
 #[test]
 fn irradiance_is_exact() -> Result<(), Box<dyn Error>> {
-    let shape = SphereShape { center: vec3(1.0, 0.0, 2.0), radius: 0.5 };
-    let ball =
-        [AreaLight::<SphereShape> { shape, radiance: Vec3::splat(10.0), is_two_sided: false }];
-    assert_irradiance("sphere", &Lights::new(&ball, cube())?, 1.4049629462081453);
-
+    let sphere = SphereShape { center: vec3(1.0, 0.0, 2.0), radius: 0.5 };
     let (corner, u_edge, v_edge) =
         (vec3(-1.0, -1.0, 1.0), vec3(0.0, 2.0, 0.0), vec3(2.0, 0.0, 0.0));
-    let shape = RectangleShape { corner, u_edge, v_edge };
-    let square = [AreaLight::<RectangleShape> { shape, radiance: Vec3::ONE, is_two_sided: false }];
-    assert_irradiance("square", &Lights::new(&square, cube())?, 1.7408395027342064);
-
+    let square = RectangleShape { corner, u_edge, v_edge };
     let (v0, v1, v2) = (vec3(1.0, 0.0, 1.0), vec3(0.0, 1.0, 2.0), vec3(-1.0, -0.5, 1.5));
-    let shape = Triangle { v0, v1, v2 };
-    let triangle = [AreaLight::<Triangle> { shape, radiance: Vec3::ONE, is_two_sided: true }];
-    let lights = Lights::new(&triangle, cube())?;
-    assert_irradiance("triangle", &lights, 0.452_401_900_028_853);
+    let triangle = area(Triangle { v0, v1, v2 }, 1.0, true);
+    let direction = vec3(0.6, 0.0, 0.8);
+    let sun = DirectionalLight { direction, irradiance: Vec3::splat(2.0), sine: 0.3 };
+    // Where the cosine is half way between those of the cones, the square of a half is left.
+    let (cos_inner, cos_outer) = (0.9, 0.7);
+    let spot = SpotLight {
+        position: vec3(0.0, 0.0, 2.0),
+        intensity: Vec3::splat(3.0),
+        direction: vec3(0.6, 0.0, -0.8),
+        cos_inner,
+        cos_outer,
+    };
+    let cases = [
+        ("sphere", AnyLight::Sphere(area(sphere, 10.0, false)), 1.4049629462081453),
+        ("square", AnyLight::Rectangle(area(square, 1.0, false)), 1.7408395027342064),
+        ("triangle", AnyLight::Triangle(triangle), 0.452_401_900_028_853),
+        ("sun", AnyLight::Directional(sun), 1.6),
+        ("spot", AnyLight::Spot(spot), 3.0 / 4.0 * 0.25),
+    ];
+    for (name, light, exact) in cases {
+        let list = [light];
+        assert_irradiance(name, &Lights::new(&list, cube())?, exact);
+    }
+    let list = [AnyLight::Triangle(triangle)];
+    let lights = Lights::new(&list, cube())?;
     let floor = SurfacePoint { position: Vec3::ZERO, normal: Vec3::Z, error: 1e-6 };
     let pdf = f64::from(lights.sample(floor, Vec3::splat(0.4)).pdf);
     assert!((1.0 / pdf - 0.47970788315405555).abs() < 1e-6, "solid angle {}", 1.0 / pdf);
 
-    // Of a sky of rows, what is between two of them is linear.
-    let rows = 256;
+    // Of a sky of rows, what is between two of them is linear, and the last row above the horizon
+    // reaches half a row below: of so many rows 1e-5 of the whole.
+    let rows = 2048;
     let sky: Vec<Vec3> = (0..rows)
         .map(|i| {
             let cos = (PI * (i as f32 + 0.5) / rows as f32).cos();
@@ -148,21 +162,8 @@ fn irradiance_is_exact() -> Result<(), Box<dyn Error>> {
         .collect();
     let sky = Environment::new(&sky, uvec2(1, rows))?
         .rotated(Mat3::from_rotation_x(std::f32::consts::FRAC_PI_2));
-    let none: [PointLight; 0] = [];
-    let lights = Lights::new(&none, cube())?.with_environment(&sky);
-    for seed in 0..4 {
-        let values: Vec<f32> = (0..scaled(1 << 18) as u32)
-            .map(|i| {
-                let mut sampler = sampler_of(i, seed);
-                let s = lights.sample(floor, next_3d(&mut sampler));
-                s.light.x * s.wi.z.max(0.0) / s.pdf
-            })
-            .collect();
-        let (mean, error) = mean(&values);
-        // The last row above the horizon reaches half a row below.
-        let off = (mean - 2.443_460_952_792_061).abs();
-        assert!(off < 4.5 * error + 1e-4, "sky: {mean} +- {error}");
-    }
+    let lights = Lights::new(&[], cube())?.with_environment(&sky);
+    assert_irradiance("sky", &lights, 2.443_460_952_792_061);
     Ok(())
 }
 
@@ -193,99 +194,314 @@ struct Dome<'a> {
 const BALL: [Ball; 1] = [Ball { center: Vec3::ZERO, radius: 1.0 }];
 const FLOOR: [Plate; 1] = [Plate { center: Vec3::ZERO, normal: Vec3::Z, radius: 1.0 }];
 
+/// Paint that is half a mirror, and lets a part of the light pass; samples of its diffuse part are
+/// uniform, so that their weights are up to twice their mean.
+#[derive(Clone, Copy, Type)]
+struct Paint {
+    albedo: f32,
+    mirrored: f32,
+    light: u32,
+    opacity: f32,
+}
+
+#[kernel]
+impl Bsdf for Paint {
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Vec3 {
+        let diffuse = self.albedo * (1.0 - self.mirrored) * wi.z.abs() / PI;
+        Vec3::splat(if wo.z * wi.z > 0.0 { diffuse } else { 0.0 })
+    }
+
+    fn sample(&self, wo: Vec3, u: Vec3) -> BsdfSample {
+        if u.z < self.mirrored {
+            let mirrored = vec3(-wo.x, -wo.y, wo.z);
+            return BsdfSample::delta(mirrored, Vec3::splat(self.albedo), self.mirrored);
+        }
+        let up = sample_uniform_hemisphere(vec2(u.x, u.y));
+        let wi = vec3(up.x, up.y, if wo.z < 0.0 { -up.z } else { up.z });
+        BsdfSample::of(wi, Paint::eval(self, wo, wi), Paint::pdf(self, wo, wi))
+    }
+
+    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        if wo.z * wi.z > 0.0 { (1.0 - self.mirrored) * (0.5 / PI) } else { 0.0 }
+    }
+}
+
+#[kernel]
+impl Material for Paint {
+    fn light(&self) -> u32 {
+        self.light
+    }
+
+    fn opacity(&self) -> f32 {
+        self.opacity
+    }
+}
+
 /// What is known of the light along a ray.
+#[derive(Clone, Copy)]
 struct Known<'a> {
+    dome: &'a [Ball],
     floor: &'a [Plate],
     lights: &'a [AnyLight],
     sky: &'a Environment,
-    /// Albedos of the dome and of the floor.
-    albedos: [f32; 2],
-    /// The numbers of their lights.
-    numbers: [u32; 2],
+    /// Materials of the dome and of the floor.
+    paints: [Paint; 2],
     bounces: u32,
     ray: Ray,
     exact: f64,
+    options: PathOptions,
 }
 
 /// One kernel for all cases: each of its own takes rustc half a minute.
 #[track_caller]
 fn assert_known(name: &str, known: &Known<'_>) {
-    let &Known { floor, lights: list, sky, albedos, numbers, bounces, ray, exact } = known;
-    let scene = Dome { dome: &BALL, floor };
+    let &Known { dome, floor, lights: list, sky, paints, bounces, ray, exact, options } = known;
+    let scene = Dome { dome, floor };
     let lights = Lights::new(list, cube()).expect("finite powers").with_environment(sky);
-    let limits = PathLimits::new(bounces);
-    let kernel = kernel!(|i: u32, seed: u32| {
-        let surface = |hit: Hit, _point: ShadingPoint| {
-            let is_dome = hit.inst_id == 0;
-            let color = Vec3::splat(if is_dome { albedos[0] } else { albedos[1] });
-            let light = if is_dome { numbers[0] } else { numbers[1] };
-            Luminous::<Lambert> { bsdf: Lambert { color }, light }
-        };
-        let sampler = sampler_of(i, seed);
-        path::<_, _, Luminous<Lambert>>(&scene, surface, &lights, limits, ray, sampler).color.x
-    });
-    assert_mean(name, &kernel, exact);
+    // Roulette from the first bounce on, the usual one, and none.
+    for roulette in [0, 3, u32::MAX] {
+        let limits = PathLimits { bounces, roulette };
+        let kernel = kernel!(|i: u32, seed: u32| {
+            let surface = |hit: Hit, _point: ShadingPoint| {
+                if hit.inst_id == 0 { paints[0] } else { paints[1] }
+            };
+            let sampler = sampler_of(i, seed);
+            path_with::<_, _, Paint>(&scene, surface, &lights, host(options), limits, ray, sampler)
+                .color
+                .x
+        });
+        assert_mean(&format!("{name}, roulette {roulette}, {options:?}"), &kernel, exact);
+    }
+}
+
+fn paint(albedo: f32) -> Paint {
+    Paint { albedo, mirrored: 0.0, light: NO_LIGHT, opacity: 1.0 }
+}
+
+fn shining_sphere(emission: f32) -> AnyLight {
+    AnyLight::Sphere(area(SphereShape { center: Vec3::ZERO, radius: 1.0 }, emission, true))
 }
 
 /// P-GI1 to P-GI5: a convex body in a white furnace, of albedo 0.75, and of albedo 1, which is not
 /// seen at all; inside a sphere that shines, up to a number of bounces; a point light in the middle of
-/// a sphere; a floor that shines under a dome.
+/// a sphere; a floor that shines under a dome. Inside the sphere all BSDFs of an albedo are alike.
 #[test]
 fn light_that_is_scattered_many_times_is_exact() {
     let white = Environment::constant(Vec3::ONE).expect("radiance");
     let black = Environment::constant(Vec3::ZERO).expect("radiance");
     let outside = Ray::new(vec3(0.3, 0.2, 3.0), -Vec3::Z);
     let inside = Ray::new(vec3(0.1, 0.2, 0.0), vec3(0.0, 0.6, 0.8));
-    let sphere = |emission| {
-        let shape = SphereShape { center: Vec3::ZERO, radius: 1.0 };
-        let radiance = Vec3::splat(emission);
-        AnyLight::Sphere(AreaLight::<SphereShape> { shape, radiance, is_two_sided: true })
-    };
-    let lamp = PointLight { position: Vec3::ZERO, intensity: Vec3::splat(PI) };
-    let shape = DiskShape { center: Vec3::ZERO, normal: Vec3::Z, radius: 1.0 };
-    let shining = AreaLight::<DiskShape> { shape, radiance: Vec3::ONE, is_two_sided: false };
-    let dark = [NO_LIGHT; 2];
     let furnace = |albedo: f32, bounces| Known {
+        dome: &BALL,
         floor: &[],
         lights: &[],
         sky: &white,
-        albedos: [albedo; 2],
-        numbers: dark,
+        paints: [paint(albedo); 2],
         bounces,
         ray: outside,
         exact: albedo.into(),
+        options: PathOptions::new(),
     };
     assert_known("furnace", &furnace(0.75, 2));
     assert_known("furnace", &furnace(1.0, 64));
+    let (lights_alone, hits_alone) = (LightSampling::LightsAlone, LightSampling::HitsAlone);
+    for lights in [lights_alone, hits_alone] {
+        let options = PathOptions { lights, ..PathOptions::new() };
+        assert_known("furnace", &Known { options, ..furnace(0.75, 2) });
+    }
     let cases = [
-        (0.5, 0.5, 64, 1.0),
-        (1.0, 0.8, 0, 1.0),
-        (1.0, 0.8, 1, 1.8),
-        (1.0, 0.8, 2, 2.44),
-        (1.0, 0.8, 8, 4.32891136),
+        (0.5, 0.5, 0.0, 64, 1.0),
+        (0.5, 0.5, 0.4, 64, 1.0),
+        (1.0, 0.8, 0.0, 0, 1.0),
+        (1.0, 0.8, 0.0, 1, 1.8),
+        (1.0, 0.8, 0.5, 2, 2.44),
+        (1.0, 0.8, 0.0, 8, 4.32891136),
     ];
-    for (emission, albedo, bounces, exact) in cases {
-        let (lights, numbers) = (&[sphere(emission)], [0, NO_LIGHT]);
+    for (emission, albedo, mirrored, bounces, exact) in cases {
+        let paints = [Paint { mirrored, light: 0, ..paint(albedo) }; 2];
+        let lights = &[shining_sphere(emission)];
         let known =
-            Known { lights, numbers, ray: inside, sky: &black, exact, ..furnace(albedo, bounces) };
+            Known { lights, paints, ray: inside, sky: &black, exact, ..furnace(albedo, bounces) };
         assert_known("inside a sphere", &known);
     }
+    let lamp = PointLight { position: Vec3::ZERO, intensity: Vec3::splat(PI) };
     let lights = &[AnyLight::Point(lamp)];
     let known = Known { lights, ray: inside, sky: &black, exact: 1.0, ..furnace(0.5, 64) };
     assert_known("point in a sphere", &known);
+    let shape = DiskShape { center: Vec3::ZERO, normal: Vec3::Z, radius: 1.0 };
+    let shining = AnyLight::Disk(area(shape, 1.0, false));
     for (direction, exact) in [(-Vec3::Z, 1.1926605504587156), (Vec3::Z, 0.642_201_834_862_385_3)] {
         let known = Known {
             floor: &FLOOR,
-            lights: &[AnyLight::Disk(shining)],
+            lights: &[shining],
             sky: &black,
-            albedos: [0.7, 0.3],
-            numbers: [NO_LIGHT, 0],
-            bounces: 64,
+            paints: [paint(0.7), Paint { light: 0, ..paint(0.3) }],
             ray: Ray::new(vec3(0.1, 0.2, 0.5), direction),
             exact,
+            ..furnace(0.0, 64)
         };
         assert_known("dome", &known);
     }
+}
+
+/// A plate of opacity 0.3 between a floor and the sun, and between the floor and the eye.
+#[test]
+fn masks_let_their_share_pass() {
+    let black = Environment::constant(Vec3::ZERO).expect("radiance");
+    let sun = DirectionalLight { direction: Vec3::Z, irradiance: Vec3::splat(PI), sine: 0.0 };
+    let above = Plate { center: Vec3::Z, ..FLOOR[0] };
+    let veil = Paint { opacity: 0.3, ..paint(0.0) };
+    let known = Known {
+        dome: &[],
+        floor: &[above, FLOOR[0]],
+        lights: &[AnyLight::Directional(sun)],
+        sky: &black,
+        paints: [veil; 2],
+        bounces: 1,
+        ray: Ray::new(vec3(0.1, 0.2, 3.0), -Vec3::Z),
+        // Black plates: the first is passed with 0.7, and the second then met, or not.
+        exact: 0.0,
+        options: PathOptions { masks: true, ..PathOptions::new() },
+    };
+    assert_known("veils", &known);
+    let grey = Paint { opacity: 0.3, ..paint(0.5) };
+    // Light that the upper one scatters comes directly; that of the lower one passes it twice.
+    let exact = 0.5 * (0.3 + 0.7 * 0.3 * 0.7);
+    assert_known("grey veils", &Known { paints: [grey; 2], exact, ..known });
+    // An opaque option takes no notice.
+    let options = PathOptions::new();
+    assert_known("no veils", &Known { paints: [grey; 2], exact: 0.5, options, ..known });
+}
+
+/// A medium in the dome, whose extinction differs from place to place.
+struct InMedium<'a> {
+    name: &'a str,
+    lights: &'a [AnyLight],
+    paint: Paint,
+    /// Whether the medium emits its colour, or scatters it.
+    emits: bool,
+    albedo: f32,
+    anisotropy: f32,
+    limits: PathLimits,
+    options: PathOptions,
+    exact: f64,
+}
+
+const MEDIUM_RAY: Ray = Ray::new(vec3(0.1, 0.2, 0.0), vec3(0.0, 0.6, 0.8));
+
+/// Voxels around the dome; 0 is an extinction of 0.2, and 1 of 3.
+fn medium(voxels: &[f32]) -> Result<Grid<'_, f32>, GridError> {
+    Grid::new(voxels, uvec3(3, 3, 3), GridConfig::new().origin(Vec3::splat(-1.0)))
+}
+
+fn murk(albedo: f32) -> Result<TransferFunction, TransferError> {
+    let color = Vec3::splat(albedo);
+    TransferFunction::from_extinction(&[(0.0, color)], &[(0.0, 0.2), (1.0, 3.0)])
+}
+
+#[track_caller]
+fn assert_in_medium(case: &InMedium<'_>, voxels: &[f32]) -> Result<(), Box<dyn Error>> {
+    let &InMedium { lights: list, paint, emits, anisotropy, limits, options, .. } = case;
+    let grid = medium(voxels)?;
+    let murk = Volume::new(&grid, murk(case.albedo)?);
+    let lights = Lights::new(list, cube())?;
+    let dome = &BALL[..];
+    let ray = MEDIUM_RAY;
+    let kernel = kernel!(|i: u32, seed: u32| {
+        volume_path::<_, _, Paint>(
+            dome,
+            |_hit: Hit, _point: ShadingPoint| paint,
+            |ray: Ray, rng: Rng| {
+                let met = collision(&murk, anisotropy, ray, rng);
+                let none = vec3(0.0, 0.0, 0.0);
+                let emission = if emits { met.albedo } else { none };
+                Collision { emission, albedo: if emits { none } else { met.albedo }, ..met }
+            },
+            |ray: Ray, rng: Rng| {
+                let mut rng = rng;
+                ratio_transmittance(&murk, ray, &mut rng)
+            },
+            &lights,
+            host(options),
+            limits,
+            ray,
+            sampler_of(i, seed),
+        )
+        .color
+        .x
+    });
+    assert_mean(case.name, &kernel, case.exact);
+    Ok(())
+}
+
+/// In a cavity whose walls shine, a medium that absorbs nothing is not seen; one that only absorbs, or
+/// emits besides, is as the integrals along the ray say; and light of a lamp that is scattered once is
+/// as a sum over the ray says.
+#[test]
+fn light_in_media_is_exact() -> Result<(), Box<dyn Error>> {
+    let mut rng = Rng::new(uvec2(3, 5), 0, 1);
+    let uneven: Vec<f32> = (0..27).map(|_| rng.next_f32()).collect();
+    let walls = Paint { light: 0, ..paint(0.5) };
+    let lights = &[shining_sphere(0.5)];
+    let case = InMedium {
+        name: "cavity",
+        lights,
+        paint: walls,
+        emits: false,
+        albedo: 1.0,
+        anisotropy: 0.6,
+        limits: PathLimits { bounces: 400, roulette: 3 },
+        options: PathOptions::new(),
+        exact: 1.0,
+    };
+    for lights in [LightSampling::Weighted, LightSampling::LightsAlone, LightSampling::HitsAlone] {
+        let options = PathOptions { lights, ..PathOptions::new() };
+        assert_in_medium(&InMedium { options, ..case }, &uneven)?;
+    }
+
+    // Black walls behind: the integral of what is absorbed and emitted.
+    let grid = medium(&uneven)?;
+    let to_wall = MEDIUM_RAY.with_range(0.0, 1.0);
+    let hit = BALL[..].closest_hit(MEDIUM_RAY);
+    let light = Volume::new(&grid, murk(0.4)?).integrate(
+        &ExactCell::new(),
+        to_wall.with_range(0.0, hit.t),
+        VolumeLight::new(),
+    );
+    let black = Paint { light: 0, ..paint(0.0) };
+    let exact = f64::from(light.over(Vec3::splat(0.5)).x);
+    let limits = PathLimits::new(4);
+    let glowing =
+        InMedium { name: "glow", paint: black, emits: true, albedo: 0.4, limits, exact, ..case };
+    assert_in_medium(&glowing, &uneven)?;
+
+    // Scattered once, of a lamp in the middle, with the phase function of the angle.
+    let even = [0.5; 27];
+    let (extinction, albedo, g, steps) = (1.6, 0.7, 0.6, 20_000);
+    let (origin, way) = (MEDIUM_RAY.origin.as_dvec3(), MEDIUM_RAY.direction.as_dvec3());
+    let length = f64::from(hit.t);
+    let once = |k: i32| {
+        let t = (f64::from(k) + 0.5) / f64::from(steps) * length;
+        let p = origin + way * t;
+        let cos = way.dot(-p) / p.length();
+        let phase =
+            (1.0 - g * g) / (4.0 * std::f64::consts::PI) / (1.0 + g * g - 2.0 * g * cos).powf(1.5);
+        extinction * albedo * phase * (-extinction * (t + p.length())).exp() / p.length_squared()
+    };
+    let exact = (0..steps).map(once).sum::<f64>() * length / f64::from(steps);
+    let lamp = PointLight { position: Vec3::ZERO, intensity: Vec3::ONE };
+    let lit = InMedium {
+        name: "lamp",
+        lights: &[AnyLight::Point(lamp)],
+        paint: paint(0.0),
+        emits: false,
+        albedo: 0.7,
+        anisotropy: 0.6,
+        limits: PathLimits::new(1),
+        options: PathOptions::new(),
+        exact,
+    };
+    assert_in_medium(&lit, &even)
 }
 
 /// Light passes a pane of glass twice: what both sides reflect does not arrive.

@@ -136,7 +136,10 @@ fn triangles() {
     let large = Triangle { v0, v1, v2 };
     let small = Triangle { v0, v1: v0 + (v1 - v0) * 1e-3, v2: v0 + (v2 - v0) * 1e-3 };
     let thin = Triangle { v0, v1, v2: v0 + (v1 - v0) * 0.5 + vec3(0.1, 0.1, 0.0) };
-    for shape in [large, small, thin] {
+    // Next to the point, which sees it nearly all around.
+    let (v0, v1, v2) = (vec3(-8.0, -5.0, 1e-3), vec3(8.0, -5.0, 1e-3), vec3(0.0, 9.0, 1e-3));
+    let near = Triangle { v0, v1, v2 };
+    for shape in [large, small, thin, near] {
         for is_two_sided in [false, true] {
             assert_holds(shining(shape, is_two_sided), &[shape][..]);
         }
@@ -149,6 +152,10 @@ fn rectangles_and_disks() {
         (vec3(0.5, -1.0, 1.25), vec3(1.5, 0.0, 0.0), vec3(0.3, 2.5, 0.0));
     let panel = [Panel { corner, u_edge, v_edge }];
     assert_holds(shining(RectangleShape { corner, u_edge, v_edge }, true), &panel[..]);
+    let (corner, u_edge, v_edge) =
+        (vec3(-4.0, -6.0, -0.01), vec3(1.0, 9.0, 0.0), vec3(9.0, 0.5, 0.0));
+    let near = [Panel { corner, u_edge, v_edge }];
+    assert_holds(shining(RectangleShape { corner, u_edge, v_edge }, false), &near[..]);
     let (center, normal, radius) = (vec3(0.0, 0.0, 2.0), vec3(0.0, 0.5, -2.0), 0.75);
     let plate = [Plate { center, normal, radius }];
     assert_holds(shining(DiskShape { center, normal, radius }, false), &plate[..]);

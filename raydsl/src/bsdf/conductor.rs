@@ -1,16 +1,13 @@
 //! Metals.
 
-use glam::{Vec3, vec3};
+use glam::{Vec3, Vec3Swizzles as _, vec3};
 
 use super::albedo::ggx_albedo;
 use super::fresnel::Fresnel;
-use super::microfacet::{
-    MIN_ALPHA, ggx_distribution, ggx_shadowing, reflected, reflecting_width,
-    sample_reflecting_normal, stretched,
-};
-use super::{Bsdf, BsdfSample, first_two, upwards};
+use super::microfacet::{MIN_ALPHA, reflection, sample_reflection};
+use super::{Bsdf, BsdfSample, upwards};
 use crate::machine::functions::vec3;
-use crate::machine::generic::{max, normalize};
+use crate::machine::generic::max;
 use crate::{Type, kernel};
 
 /// A metal, smooth or rough, with the GGX distribution.
@@ -57,9 +54,9 @@ impl<F: Fresnel> Bsdf for Conductor<F> {
             return vec3(0.0, 0.0, 0.0);
         }
         let (o, i) = (upwards(wo, wo), upwards(wi, wo));
-        let m = normalize(o + i);
-        let single = ggx_distribution(m, alpha) * ggx_shadowing(o, i, alpha) * i.z;
-        fresnel.reflectance(o.dot(m)) * Conductor::<F>::compensation(*self, o.z) * single
+        let lobe = reflection(o, i, alpha);
+        let factor = fresnel.reflectance(lobe.cos) * Conductor::<F>::compensation(*self, o.z);
+        factor * (lobe.weight * lobe.pdf)
     }
 
     fn sample(&self, wo: Vec3, u: Vec3) -> BsdfSample {
@@ -71,35 +68,27 @@ impl<F: Fresnel> Bsdf for Conductor<F> {
             let wi = vec3(-wo.x, -wo.y, wo.z);
             return BsdfSample::delta(wi, fresnel.reflectance(o.z), 1.0);
         }
-        let m = sample_reflecting_normal(o, first_two(u), alpha);
-        let i = reflected(o, m);
-        if !(i.z > 0.0 && o.z > 0.0) {
+        let lobe = sample_reflection(o, u.xy(), alpha);
+        if lobe.pdf <= 0.0 {
             return BsdfSample::absorbed();
         }
-        let (t_o, t_i) = (stretched(o, alpha), stretched(i, alpha));
-        let width = reflecting_width(o, alpha);
-        let single = i.z * width / (i.z * t_o + o.z * t_i);
-        BsdfSample {
-            wi: upwards(i, wo),
-            weight: fresnel.reflectance(o.dot(m))
-                * Conductor::<F>::compensation(*self, o.z)
-                * single,
-            pdf: ggx_distribution(m, alpha) / (2.0 * width),
-            is_delta: false,
-        }
+        let factor = fresnel.reflectance(lobe.cos) * Conductor::<F>::compensation(*self, o.z);
+        let wi = upwards(lobe.i, wo);
+        BsdfSample { wi, weight: factor * lobe.weight, pdf: lobe.pdf, is_delta: false }
     }
 
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         let alpha = self.alpha;
         let (o, i) = (upwards(wo, wo), upwards(wi, wo));
         let is_reflected = wo.z * wi.z > 0.0 && alpha >= MIN_ALPHA;
-        let m = normalize(o + i);
-        let pdf = ggx_distribution(m, max(alpha, MIN_ALPHA)) / (2.0 * reflecting_width(o, alpha));
-        if is_reflected { pdf } else { 0.0 }
+        let lobe = reflection(o, i, max(alpha, MIN_ALPHA));
+        if is_reflected { lobe.pdf } else { 0.0 }
     }
 
+    /// The mean over the hemisphere of Schlick's reflectance: black metal reflects at grazing angles.
     fn albedo(&self, _wo: Vec3) -> Vec3 {
         let fresnel: F = self.fresnel;
-        fresnel.at_normal()
+        let normal: Vec3 = fresnel.at_normal();
+        normal + (vec3(1.0, 1.0, 1.0) - normal) * (1.0 / 21.0)
     }
 }

@@ -1,14 +1,14 @@
 //! Glass.
 
-use glam::{Vec3, vec3};
+use glam::{Vec3, Vec3Swizzles as _, vec3};
 
 use super::albedo::ggx_albedo;
 use super::fresnel::{fresnel_between, fresnel_dielectric};
 use super::microfacet::{
-    MIN_ALPHA, ggx_distribution, ggx_masking, ggx_shadowing, reflected, reflecting_width,
-    sample_ggx_normal, sample_reflecting_normal, stretched,
+    MIN_ALPHA, ggx_distribution, ggx_masking, ggx_shadowing, reflected, reflection,
+    sample_ggx_normal, sample_reflection, stretched,
 };
-use super::{Bsdf, BsdfSample, first_two, upwards};
+use super::{Bsdf, BsdfSample, upwards};
 use crate::machine::functions::vec3;
 use crate::machine::generic::{max, normalize};
 use crate::{Type, kernel};
@@ -69,8 +69,9 @@ impl Dielectric {
     #[inline]
     fn sample_smooth(self, wo: Vec3, u: f32) -> BsdfSample {
         let o = upwards(wo, wo);
+        // The same index on both sides: nothing is reflected, however grazing.
         let is_matched = (self.ior - 1.0).abs() < MIN_INDEX_STEP;
-        let eta = if is_matched { 1.0 } else { self.eta(wo) };
+        let eta = self.eta(wo);
         let split = fresnel_dielectric(o.z, eta);
         let reflected = if is_matched { 0.0 } else { split.reflected };
         if u < reflected {
@@ -113,7 +114,7 @@ impl Bsdf for Dielectric {
         }
         let (o, alpha) = (upwards(wo, wo), self.alpha);
         let eta = Dielectric::eta(*self, wo);
-        let m = sample_ggx_normal(o, first_two(u), alpha);
+        let m = sample_ggx_normal(o, u.xy(), alpha);
         let o_m = o.dot(m);
         let split = fresnel_dielectric(o_m, eta);
         let is_reflected = u.z < split.reflected;
@@ -199,27 +200,24 @@ impl Bsdf for ThinDielectric {
         let alpha = max(self.alpha, MIN_ALPHA);
         let o = vec3(wo.x, wo.y, wo.z.abs());
         let i = vec3(wi.x, wi.y, wi.z.abs());
-        let m = normalize(o + i);
-        let single = ggx_distribution(m, alpha) * ggx_shadowing(o, i, alpha) * i.z;
-        let lobe = single / ggx_albedo(o.z, alpha);
-        let share = ThinDielectric::reflectance(*self, o.dot(m));
+        let lobe = reflection(o, i, alpha);
+        let share = ThinDielectric::reflectance(*self, lobe.cos);
         let one = vec3(1.0, 1.0, 1.0);
         let factor = if wo.z * wi.z > 0.0 { one * share } else { self.tint * (1.0 - share) };
-        let is_rough = self.alpha >= MIN_ALPHA && o.z > 0.0 && i.z > 0.0;
-        factor * (if is_rough { lobe } else { 0.0 })
+        let value = lobe.weight * lobe.pdf / ggx_albedo(o.z, alpha);
+        factor * (if self.alpha >= MIN_ALPHA { value } else { 0.0 })
     }
 
     fn sample(&self, wo: Vec3, u: Vec3) -> BsdfSample {
         let o = vec3(wo.x, wo.y, wo.z.abs());
         let is_rough = self.alpha >= MIN_ALPHA;
         let alpha = max(self.alpha, MIN_ALPHA);
-        let rough = sample_reflecting_normal(o, first_two(u), alpha);
-        let m = if is_rough { rough } else { vec3(0.0, 0.0, 1.0) };
-        let i = reflected(o, m);
+        let rough = sample_reflection(o, u.xy(), alpha);
+        let i = if is_rough { rough.i } else { vec3(-o.x, -o.y, o.z) };
         if !(o.z > 0.0 && i.z > 0.0) {
             return BsdfSample::absorbed();
         }
-        let share = ThinDielectric::reflectance(*self, o.dot(m));
+        let share = ThinDielectric::reflectance(*self, if is_rough { rough.cos } else { o.z });
         let is_reflected = u.z < share;
         let side = if (wo.z < 0.0) == is_reflected { -i.z } else { i.z };
         let wi = vec3(i.x, i.y, side);
@@ -229,26 +227,18 @@ impl Bsdf for ThinDielectric {
         if !is_rough {
             return BsdfSample::delta(wi, factor, chance);
         }
-        let width = reflecting_width(o, alpha);
-        let (t_o, t_i) = (stretched(o, alpha), stretched(i, alpha));
-        BsdfSample {
-            wi,
-            weight: factor * (i.z * width / ((i.z * t_o + o.z * t_i) * ggx_albedo(o.z, alpha))),
-            pdf: chance * ggx_distribution(m, alpha) / (2.0 * width),
-            is_delta: false,
-        }
+        let weight = factor * (rough.weight / ggx_albedo(o.z, alpha));
+        BsdfSample { wi, weight, pdf: chance * rough.pdf, is_delta: false }
     }
 
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         let alpha = max(self.alpha, MIN_ALPHA);
         let o = vec3(wo.x, wo.y, wo.z.abs());
         let i = vec3(wi.x, wi.y, wi.z.abs());
-        let m = normalize(o + i);
-        let share = ThinDielectric::reflectance(*self, o.dot(m));
+        let lobe = reflection(o, i, alpha);
+        let share = ThinDielectric::reflectance(*self, lobe.cos);
         let chance = if wo.z * wi.z > 0.0 { share } else { 1.0 - share };
-        let pdf = chance * ggx_distribution(m, alpha) / (2.0 * reflecting_width(o, alpha));
-        let is_rough = self.alpha >= MIN_ALPHA && o.z > 0.0 && i.z > 0.0;
-        if is_rough { pdf } else { 0.0 }
+        if self.alpha >= MIN_ALPHA { chance * lobe.pdf } else { 0.0 }
     }
 
     fn albedo(&self, _wo: Vec3) -> Vec3 {

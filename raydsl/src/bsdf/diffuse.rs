@@ -2,9 +2,9 @@
 
 use core::f32::consts::PI;
 
-use glam::{Vec3, vec3};
+use glam::{Vec3, Vec3Swizzles as _, vec3};
 
-use super::{Bsdf, BsdfSample, first_two, upwards};
+use super::{Bsdf, BsdfSample, upwards};
 use crate::machine::functions::vec3;
 use crate::machine::generic::max;
 use crate::sampling::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
@@ -14,7 +14,7 @@ use crate::{Type, kernel};
 #[kernel]
 #[inline]
 pub(super) fn sample_cosine(wo: Vec3, u: Vec3) -> Vec3 {
-    upwards(sample_cosine_hemisphere(first_two(u)), wo)
+    upwards(sample_cosine_hemisphere(u.xy()), wo)
 }
 
 /// Returns the density of [`sample_cosine()`].

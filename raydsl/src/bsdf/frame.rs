@@ -4,6 +4,7 @@ use glam::{Vec3, vec3};
 
 use crate::machine::functions::vec3;
 use crate::machine::generic::{max, normalize};
+use crate::sampling::Frame;
 use crate::shading::ShadingPoint;
 use crate::{Type, kernel};
 
@@ -52,7 +53,7 @@ impl ShadingFrame {
         let z = if cos < MIN_COS { bent } else { n };
         let along = tangent - z * z.dot(tangent);
         let length2 = along.dot(along);
-        let other = ng.any_orthonormal_vector();
+        let other = Frame::around(z).x;
         let x = if length2 > 1e-12 { along / max(length2, 1e-12).sqrt() } else { other };
         let x = normalize(x - z * z.dot(x));
         Self { x, y: z.cross(x), z, normal: ng }
@@ -81,7 +82,7 @@ impl ShadingFrame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::{Frame, Rng, sample_uniform_sphere};
+    use crate::sampling::{Rng, sample_uniform_sphere};
     use glam::{Vec4, uvec2};
 
     fn random_point(rng: &mut Rng) -> ShadingPoint {
@@ -103,7 +104,7 @@ mod tests {
             let viewer = sample_uniform_sphere(rng.next_2d());
             let mapped = match i % 3 {
                 0 => Vec3::Z,
-                1 => sample_uniform_sphere(rng.next_2d()).with_z(0.2),
+                1 => sample_uniform_sphere(rng.next_2d()).with_z((i % 5) as f32 * 0.2),
                 _ => Vec3::ZERO,
             };
             let frame = ShadingFrame::new(point, mapped, viewer);
@@ -117,6 +118,29 @@ mod tests {
             let side = point.point.normal.dot(viewer);
             assert!(side * frame.to_local(viewer).z > 0.0, "{point:?} {viewer} {frame:?}");
         }
+    }
+
+    /// A mapped normal leans along the tangent, and across it on the side that the tangent says.
+    #[test]
+    fn mapped_normals_lean_as_the_tangent_says() {
+        let up =
+            crate::geometry::SurfacePoint { position: Vec3::ZERO, normal: Vec3::Z, error: 0.0 };
+        for side in [1.0, -1.0] {
+            let tangent = Vec4::new(1.0, 0.0, 0.0, side);
+            let point =
+                ShadingPoint { point: up, shading_normal: Vec3::Z, tangent, ..Default::default() };
+            let leaning = |mapped| ShadingFrame::new(point, mapped, Vec3::Z).z;
+            let along = leaning(vec3(1.0, 0.0, 1.0));
+            let across = leaning(vec3(0.0, 1.0, 1.0));
+            assert!((along - vec3(1.0, 0.0, 1.0).normalize()).length() < 1e-6, "{along}");
+            assert!((across - vec3(0.0, side, 1.0).normalize()).length() < 1e-6, "{across}");
+        }
+        // One that is all along a tangent: any frame will do, but not a NaN.
+        let tangent = Vec4::new(0.0, 1.0, 0.0, 1.0);
+        let point =
+            ShadingPoint { point: up, shading_normal: Vec3::Z, tangent, ..Default::default() };
+        let frame = ShadingFrame::new(point, Vec3::X, vec3(0.0, 0.6, 0.8));
+        assert!(frame.x.is_finite() && frame.y.is_finite(), "{frame:?}");
     }
 
     /// A shading normal that leans over the edge sees a light below the surface; no ray may go there.

@@ -117,12 +117,14 @@ pub struct FresnelSplit {
 /// to 1, is the cosine of the direction to the normal, and `eta` the index of refraction beyond over
 /// that on this side.
 ///
-/// Both shares are within 1e-4 of themselves to 89.999 degrees.
+/// Both shares are within 1e-4 of themselves to 89.999 degrees, but for what is transmitted next to the
+/// critical angle, where the cosine's own rounding counts.
 #[kernel]
 #[inline]
 pub fn fresnel_dielectric(cos: f32, eta: f32) -> FresnelSplit {
     let c = clamp(cos, 0.0, 1.0);
-    let cos2 = 1.0 - (1.0 - c) * (1.0 + c) / (eta * eta);
+    // The square of the cosine beyond, without a difference of numbers next to 1.
+    let cos2 = (c * c + (eta - 1.0) * (eta + 1.0)) / (eta * eta);
     // Without an index beyond, or beyond the critical angle, all is reflected.
     let t = if cos2 > 0.0 { cos2.sqrt() } else { 0.0 };
     fresnel_between(c, t, eta)

@@ -19,7 +19,7 @@ use crate::{Type, kernel};
 /// | transmission without a volume | [`ThinDielectric`] with the base colour as its tint |
 /// | transmission with a volume | [`Dielectric`] with the base colour as its tint |
 /// | `metallic` | [`Mix`] of the two, each with its own compensation for what is scattered several times |
-/// | specular factor and colour | `strength` of the coat |
+/// | specular factor and colour | `strength` of the coat, at all angles alike: glTF tints the reflection at normal incidence alone; glass has none |
 /// | clearcoat | [`Coated`] with index 1.5 on all of it |
 /// | sheen | [`SheenCoated`] on all of that |
 ///
@@ -35,7 +35,7 @@ pub struct MetallicRoughness {
     pub roughness: f32,
     /// Index of refraction, from 1 to 3.
     pub ior: f32,
-    /// Factor of the specular reflection of what is not metal: red, green and blue.
+    /// Factor of the specular reflection of what is neither metal nor transmits: red, green and blue.
     pub specular: Vec3,
     /// Share of light that is transmitted where it is not reflected or metal, from 0 to 1.
     pub transmission: f32,

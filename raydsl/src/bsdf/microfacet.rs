@@ -8,10 +8,10 @@ use core::f32::consts::FRAC_1_PI;
 
 use glam::{Vec2, Vec3, vec3};
 
-use crate::kernel;
 use crate::machine::functions::vec3;
 use crate::machine::generic::{max, normalize};
 use crate::math::elementary::sincos_2pi;
+use crate::{Type, kernel};
 
 /// Parameter below which a surface is smooth: its lobe is a delta.
 pub const MIN_ALPHA: f32 = 1e-4;
@@ -62,14 +62,52 @@ pub fn sample_ggx_normal(wo: Vec3, u: Vec2, alpha: f32) -> Vec3 {
     on_cap(stretched, u, stretched.z, alpha)
 }
 
-/// As [`sample_ggx_normal()`], without some normals that reflect `wo` below the surface.
+/// A reflection by microfacets that reflect all light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
+pub(super) struct Reflection {
+    /// The direction that light is reflected to, above the surface.
+    pub(super) i: Vec3,
+    /// Cosine of the two directions to the normal of the microfacet.
+    pub(super) cos: f32,
+    /// The value, with the cosine of `i`, over the density.
+    pub(super) weight: f32,
+    /// Density of `i`; 0 where one of the directions is not above the surface.
+    pub(super) pdf: f32,
+}
+
+/// Returns the reflection from `o` to `i`, both above the surface.
+#[kernel]
+#[inline]
+pub(super) fn reflection(o: Vec3, i: Vec3, alpha: f32) -> Reflection {
+    reflection_by(normalize(o + i), o, i, alpha)
+}
+
+/// Samples a reflection from `o`, above the surface, without some of the microfacets that reflect it
+/// below.
 ///
 /// Eto and Tokuyoshi, "Bounded VNDF Sampling for Smith-GGX Reflections" (SIGGRAPH Asia 2023).
 #[kernel]
 #[inline]
-pub(super) fn sample_reflecting_normal(wo: Vec3, u: Vec2, alpha: f32) -> Vec3 {
-    let stretched = normalize(vec3(alpha * wo.x, alpha * wo.y, wo.z));
-    on_cap(stretched, u, bound(wo, alpha) * stretched.z, alpha)
+pub(super) fn sample_reflection(o: Vec3, u: Vec2, alpha: f32) -> Reflection {
+    let stretched = normalize(vec3(alpha * o.x, alpha * o.y, o.z));
+    let m = on_cap(stretched, u, bound(o, alpha) * stretched.z, alpha);
+    reflection_by(m, o, reflected(o, m), alpha)
+}
+
+#[kernel]
+#[inline]
+fn reflection_by(m: Vec3, o: Vec3, i: Vec3, alpha: f32) -> Reflection {
+    let (t_o, t_i) = (stretched(o, alpha), stretched(i, alpha));
+    let width = bound(o, alpha) * o.z + t_o;
+    let weight = i.z * width / (i.z * t_o + o.z * t_i);
+    let pdf = ggx_distribution(m, alpha) / (2.0 * width);
+    let is_above = o.z > 0.0 && i.z > 0.0;
+    Reflection {
+        i,
+        cos: o.dot(m),
+        weight: if is_above { weight } else { 0.0 },
+        pdf: if is_above { pdf } else { 0.0 },
+    }
 }
 
 /// Returns the factor by which the cap of reflecting normals is lower. (Eto and Tokuyoshi, equation
@@ -80,14 +118,6 @@ fn bound(wo: Vec3, alpha: f32) -> f32 {
     let s = 1.0 + (wo.x * wo.x + wo.y * wo.y).sqrt();
     let (a2, s2) = (alpha * alpha, s * s);
     (1.0 - a2) * s2 / (s2 + a2 * wo.z * wo.z)
-}
-
-/// Returns half of the inverse of the density of [`sample_reflecting_normal()`], as one of the
-/// reflected direction, over the distribution.
-#[kernel]
-#[inline]
-pub(super) fn reflecting_width(wo: Vec3, alpha: f32) -> f32 {
-    bound(wo, alpha) * wo.z + stretched(wo, alpha)
 }
 
 /// Returns the normal half way between `stretched` and a point of the sphere's cap above `-low`.

@@ -6,6 +6,7 @@ use super::{Bsdf, BsdfSample, mean};
 use crate::machine::Type as MachineType;
 use crate::machine::functions::vec3;
 use crate::machine::generic::{clamp, max};
+use crate::sampling::ONE_MINUS_EPSILON;
 use crate::{Type, kernel};
 
 /// Two BSDFs beside each other on a surface, finer than the eye can tell: a share of `over`, the
@@ -35,8 +36,31 @@ pub(super) fn chance_of_second(first: Vec3, second: Vec3) -> f32 {
 /// and `width` wide: from 0 to below 1 again.
 #[kernel]
 #[inline]
-pub(super) fn within(u: f32, first: f32, width: f32) -> f32 {
-    clamp((u - first) / width, 0.0, 0.999_999_94)
+pub(super) fn of_part(u: f32, first: f32, width: f32) -> f32 {
+    clamp((u - first) / width, 0.0, ONE_MINUS_EPSILON)
+}
+
+/// Returns the sample of two lobes together, by one of a lobe that was chosen with the probability
+/// `chance` and whose value has this factor. `other` returns the other lobe's value and density.
+#[kernel]
+#[inline]
+pub(super) fn sample_both(
+    sample: BsdfSample,
+    factor: Vec3,
+    chance: f32,
+    other: impl Fn(Vec3) -> (Vec3, f32),
+) -> BsdfSample {
+    if sample.pdf <= 0.0 {
+        return BsdfSample::absorbed();
+    }
+    let pdf = sample.pdf * chance;
+    let weight = sample.weight * factor;
+    if sample.is_delta {
+        return BsdfSample::delta(sample.wi, weight / chance, pdf);
+    }
+    let (value, density) = other(sample.wi);
+    let all = weight * sample.pdf + value;
+    BsdfSample::of(sample.wi, all, pdf + density * (1.0 - chance))
 }
 
 #[kernel]
@@ -65,31 +89,18 @@ impl<A: Bsdf, B: Bsdf> Bsdf for Mix<A, B> {
         let over: B = self.over;
         let share = clamp(self.share, 0.0, 1.0);
         let chance = Mix::<A, B>::chance(*self, wo);
+        let (of_over, of_under) =
+            (vec3(share, share, share), vec3(1.0 - share, 1.0 - share, 1.0 - share));
         if u.z < chance {
-            let sample = over.sample(wo, vec3(u.x, u.y, within(u.z, 0.0, chance)));
-            let pdf = sample.pdf * chance;
-            if sample.pdf <= 0.0 {
-                return BsdfSample::absorbed();
-            }
-            if sample.is_delta {
-                return BsdfSample::delta(sample.wi, sample.weight * (share / chance), pdf);
-            }
-            let rest = under.eval(wo, sample.wi) * (1.0 - share);
-            let all = sample.weight * (sample.pdf * share) + rest;
-            return BsdfSample::of(sample.wi, all, pdf + under.pdf(wo, sample.wi) * (1.0 - chance));
+            let sample = over.sample(wo, vec3(u.x, u.y, of_part(u.z, 0.0, chance)));
+            return sample_both(sample, of_over, chance, |wi: Vec3| {
+                (under.eval(wo, wi) * of_under, under.pdf(wo, wi))
+            });
         }
-        let sample = under.sample(wo, vec3(u.x, u.y, within(u.z, chance, 1.0 - chance)));
-        let pdf = sample.pdf * (1.0 - chance);
-        if sample.pdf <= 0.0 {
-            return BsdfSample::absorbed();
-        }
-        if sample.is_delta {
-            let weight = sample.weight * ((1.0 - share) / (1.0 - chance));
-            return BsdfSample::delta(sample.wi, weight, pdf);
-        }
-        let rest = over.eval(wo, sample.wi) * share;
-        let all = sample.weight * (sample.pdf * (1.0 - share)) + rest;
-        BsdfSample::of(sample.wi, all, pdf + over.pdf(wo, sample.wi) * chance)
+        let sample = under.sample(wo, vec3(u.x, u.y, of_part(u.z, chance, 1.0 - chance)));
+        sample_both(sample, of_under, 1.0 - chance, |wi: Vec3| {
+            (over.eval(wo, wi) * of_over, over.pdf(wo, wi))
+        })
     }
 
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {

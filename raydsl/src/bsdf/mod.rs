@@ -61,9 +61,9 @@ pub use mirror::Mirror;
 pub use mix::Mix;
 pub use sheen::{Sheen, SheenCoated};
 
-use glam::{Vec2, Vec3, vec2, vec3};
+use glam::{Vec3, vec3};
 
-use crate::machine::functions::{vec2, vec3};
+use crate::machine::functions::vec3;
 use crate::{Type, kernel};
 
 /// How a surface scatters light, in the frame of the surface: see the [module](self) for the
@@ -117,7 +117,8 @@ pub trait Bsdf {
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32;
 
     /// Returns about which share of the light from everywhere goes to `wo`: 0.5 unless the BSDF
-    /// knows better. Layers and mixtures divide their samples by it; it changes no mean.
+    /// knows better. Layers and mixtures divide their samples by it: it changes no mean, as long as it
+    /// is above 0 wherever anything is scattered.
     fn albedo(&self, _wo: Vec3) -> Vec3 {
         vec3(0.5, 0.5, 0.5)
     }
@@ -168,13 +169,6 @@ impl BsdfSample {
 #[inline]
 fn upwards(w: Vec3, wo: Vec3) -> Vec3 {
     vec3(w.x, w.y, if wo.z < 0.0 { -w.z } else { w.z })
-}
-
-/// Returns the first two numbers of three.
-#[kernel]
-#[inline]
-fn first_two(u: Vec3) -> Vec2 {
-    vec2(u.x, u.y)
 }
 
 /// Returns the arithmetic mean of red, green and blue.

@@ -6,7 +6,7 @@ use glam::{Vec3, vec3};
 
 use super::albedo::sheen_albedo;
 use super::diffuse::{cosine_pdf, sample_cosine};
-use super::mix::{chance_of_second, within};
+use super::mix::{chance_of_second, of_part, sample_both};
 use super::{Bsdf, BsdfSample, upwards};
 use crate::machine::Type as MachineType;
 use crate::machine::functions::vec3;
@@ -135,21 +135,16 @@ impl<B: Bsdf> Bsdf for SheenCoated<B> {
         let sheen: Sheen = self.sheen;
         let chance = SheenCoated::<B>::chance(*self, wo);
         let passed = SheenCoated::<B>::passed(*self, wo);
+        let one = vec3(1.0, 1.0, 1.0);
         if u.z < chance {
-            let wi = sample_cosine(wo, u);
-            let pdf = cosine_pdf(wo, wi) * chance + base.pdf(wo, wi) * (1.0 - chance);
-            return BsdfSample::of(wi, SheenCoated::<B>::eval(self, wo, wi), pdf);
+            return sample_both(Sheen::sample(&sheen, wo, u), one, chance, |wi: Vec3| {
+                (base.eval(wo, wi) * passed, base.pdf(wo, wi))
+            });
         }
-        let sample = base.sample(wo, vec3(u.x, u.y, within(u.z, chance, 1.0 - chance)));
-        let pdf = sample.pdf * (1.0 - chance);
-        if sample.pdf <= 0.0 {
-            return BsdfSample::absorbed();
-        }
-        if sample.is_delta {
-            return BsdfSample::delta(sample.wi, sample.weight * (passed / (1.0 - chance)), pdf);
-        }
-        let all = Sheen::eval(&sheen, wo, sample.wi) + sample.weight * (passed * sample.pdf);
-        BsdfSample::of(sample.wi, all, pdf + cosine_pdf(wo, sample.wi) * chance)
+        let sample = base.sample(wo, vec3(u.x, u.y, of_part(u.z, chance, 1.0 - chance)));
+        sample_both(sample, one * passed, 1.0 - chance, |wi: Vec3| {
+            (Sheen::eval(&sheen, wo, wi), cosine_pdf(wo, wi))
+        })
     }
 
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {

@@ -123,7 +123,7 @@ pub fn whitted<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material + M
     let (mut radiance, mut throughput) = (vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
     let mut from = SurfacePoint { position: ray.origin, normal: ahead, error: 0.0 };
     let mut alpha = 1.0;
-    for bounce in 0..bounces + 1 {
+    for bounce in 0..=bounces {
         let hit = scene.closest_hit(ray);
         if !hit.is_hit {
             radiance += throughput * lights.missed(ahead, NO_RIVAL);

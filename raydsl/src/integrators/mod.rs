@@ -4,7 +4,8 @@
 //! |---|---|
 //! | [`direct_light()`] | radiance of any surfaces under any lights, by one sample of each light |
 //! | [`whitted()`] | the same, seen by mirrors and smooth glass |
-//! | [`path()`], [`masked_path()`] | light that is scattered many times, by one path |
+//! | [`path()`], [`path_with()`] | light that is scattered many times, by one path |
+//! | [`volume_path()`] | the same, through a medium that scatters, absorbs or emits light |
 //! | [`ambient_occlusion()`] | unoccluded share of the hemisphere above the hit |
 //! | [`aovs()`] | albedo, normal, depth and ids of the closest hit |
 //! | [`bvh_cost()`], [`bvh_cost_color()`] | traversal cost, as counts or as a colour |
@@ -42,6 +43,7 @@
 mod cost;
 mod direct;
 mod masks;
+mod media;
 mod occlusion;
 mod outputs;
 mod path_tracing;
@@ -52,6 +54,9 @@ pub use direct::{
     scattering_at, whitted,
 };
 pub use masks::{closest_surface, is_occluded};
+pub use media::volume_path;
 pub use occlusion::{ambient_occlusion, is_open};
 pub use outputs::{Aovs, AovsOn, aovs};
-pub use path_tracing::{PathLimits, PathLimitsOn, PathSample, PathSampleOn, masked_path, path};
+pub use path_tracing::{
+    LightSampling, PathLimits, PathLimitsOn, PathOptions, PathSample, PathSampleOn, path, path_with,
+};

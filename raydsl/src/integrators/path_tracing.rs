@@ -7,9 +7,9 @@ use super::masks::{closest_surface, is_occluded};
 use crate::bsdf::{Bsdf, BsdfSample, Material};
 use crate::geometry::{Hit, Ray, SurfacePoint};
 use crate::light::{Light, Lights, NO_RIVAL};
-use crate::machine::Type as MachineType;
 use crate::machine::functions::{uvec2, vec3, vec4};
-use crate::machine::generic::{max, min, normalize};
+use crate::machine::generic::{length, max, min, normalize};
+use crate::machine::{Machine, Method, Type as MachineType, host_options, name};
 use crate::sampling::Sampler;
 use crate::shading::{Scene, ShadingPoint};
 use crate::{Type, kernel};
@@ -25,7 +25,7 @@ pub struct PathSample {
     /// Shading normal of the first surface, on the side that the ray comes from; 0 where the ray
     /// misses.
     pub normal: Vec3,
-    /// Distance of the first surface; [`f32::MAX`] where the ray misses.
+    /// Distance of the first surface, in units of the scene; [`f32::MAX`] where the ray misses.
     pub depth: f32,
 }
 
@@ -45,6 +45,76 @@ impl PathLimits {
         Self { bounces, roulette: 3 }
     }
 }
+
+/// How a path finds light, a host value: WGSL and machine code have no trace of what is not chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Type)]
+#[repr(u32)]
+pub enum LightSampling {
+    /// By samples of lights and by rays that hit lights, weighted by the power heuristic: the least
+    /// noise.
+    #[default]
+    Weighted,
+    /// By samples of lights alone, but for mirrors and smooth glass: noisy where a glossy surface
+    /// reflects a large light.
+    LightsAlone,
+    /// By rays that hit lights alone: noisy where lights are small, and blind for those that no ray
+    /// hits.
+    HitsAlone,
+}
+
+impl LightSampling {
+    /// Returns whether lights are sampled.
+    pub const fn has_samples(self) -> bool {
+        !matches!(self, Self::HitsAlone)
+    }
+
+    /// Returns whether samples and hits are weighted against each other.
+    pub const fn is_weighted(self) -> bool {
+        matches!(self, Self::Weighted)
+    }
+}
+
+/// What a path tracer does that not every scene needs: host values, all off unless set.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Type)]
+pub struct PathOptions {
+    /// Whether there are surfaces with holes, or half-transparent ones: rays meet a surface with the
+    /// probability of its [`Material::opacity`], and pass it otherwise. Queries ask the material of
+    /// every hit then, which takes longer.
+    pub masks: bool,
+    /// How light is found.
+    pub lights: LightSampling,
+}
+
+impl PathOptions {
+    /// Creates options with everything off.
+    pub const fn new() -> Self {
+        Self { masks: false, lights: LightSampling::Weighted }
+    }
+}
+
+host_options!(LightSampling, PathOptions);
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine> Method<{ name("has_samples") }, M, ()> for LightSampling {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self, _: &M, (): ()) -> bool {
+        self.has_samples()
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<M: Machine> Method<{ name("is_weighted") }, M, ()> for LightSampling {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self, _: &M, (): ()) -> bool {
+        self.is_weighted()
+    }
+}
+
+const PLAIN: PathOptions = PathOptions::new();
 
 /// Estimates the radiance along `ray` by one path: light that is scattered up to `bounces` times.
 ///
@@ -102,19 +172,17 @@ pub fn path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material + Mach
     ray: Ray,
     sampler: Sampler,
 ) -> PathSample {
-    masked_path::<S, L, B>(scene, surface, lights, false, limits, ray, sampler)
+    path_with::<S, L, B>(scene, surface, lights, PLAIN, limits, ray, sampler)
 }
 
-/// As [`path()`], of a scene that has holes or half-transparent surfaces, where `masks` is true: rays
-/// meet a surface with the probability of its [`Material::opacity`], and pass it otherwise. Queries
-/// ask the material of every hit, so that takes longer.
+/// As [`path()`], with options.
 // ANCHOR: trace
 #[kernel]
-pub fn masked_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material + MachineType>(
+pub fn path_with<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material + MachineType>(
     scene: &S,
     surface: impl Fn(Hit, ShadingPoint) -> B,
     lights: &Lights<'_, L>,
-    #[host] masks: bool,
+    #[host] options: PathOptions,
     limits: PathLimits,
     ray: Ray,
     sampler: Sampler,
@@ -126,10 +194,10 @@ pub fn masked_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material
     let mut from = SurfacePoint { position: ray.origin, normal: ahead, error: 0.0 };
     let mut pdf = NO_RIVAL;
     let seed = uvec2(sampler.key.x, sampler.index);
-    let is_occluded = |ray: Ray| is_occluded::<S, B>(scene, &surface, masks, ray, seed);
-    for bounce in 0..limits.bounces + 1 {
+    let is_occluded = |ray: Ray| is_occluded::<S, B>(scene, &surface, options.masks, ray, seed);
+    for bounce in 0..=limits.bounces {
         // Find what the path hits.
-        let hit = closest_surface::<S, B>(scene, &surface, masks, ray, seed);
+        let hit = closest_surface::<S, B>(scene, &surface, options.masks, ray, seed);
         if !hit.is_hit {
             radiance += throughput * lights.missed(ahead, pdf);
             break;
@@ -138,7 +206,7 @@ pub fn masked_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material
         let material: B = surface(hit, seen);
         let at = scattering_at::<B>(seen, material, -ahead);
         if bounce == 0 {
-            first = seen_first::<B>(at, hit.t);
+            first = seen_first::<B>(at, hit.t * length(ray.direction));
         }
 
         // Add the light that it emits.
@@ -149,8 +217,12 @@ pub fn masked_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material
         }
 
         // Add the light that one of the lights sends.
-        let sample = lights.sample(at.point, next_3d(&mut sampler));
-        radiance += throughput * scattered_light::<B>(is_occluded, true, sample, at);
+        let numbers = next_3d(&mut sampler);
+        if options.lights.has_samples() {
+            let sample = lights.sample(at.point, numbers);
+            let is_weighted = options.lights.is_weighted();
+            radiance += throughput * scattered_light::<B>(is_occluded, is_weighted, sample, at);
+        }
 
         // Go on in a direction of the surface's choice.
         let next: BsdfSample = material.sample(at.wo, next_3d(&mut sampler));
@@ -171,7 +243,7 @@ pub fn masked_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material
             break;
         }
         throughput /= chance;
-        pdf = if next.is_delta { NO_RIVAL } else { next.pdf };
+        pdf = hit_density(options.lights, next.pdf, next.is_delta);
         (from, ahead) = (at.point, direction);
         ray = at.point.ray(direction);
     }
@@ -180,10 +252,34 @@ pub fn masked_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material
 }
 // ANCHOR_END: trace
 
+/// Returns the density of a direction against which samples of lights are weighted where a ray hits a
+/// light: 0 where they alone count.
+#[kernel]
+#[inline]
+pub(super) fn hit_density(#[host] lights: LightSampling, pdf: f32, is_delta: bool) -> f32 {
+    match lights {
+        LightSampling::Weighted => {
+            if is_delta {
+                NO_RIVAL
+            } else {
+                pdf
+            }
+        }
+        LightSampling::LightsAlone => {
+            if is_delta {
+                NO_RIVAL
+            } else {
+                0.0
+            }
+        }
+        LightSampling::HitsAlone => NO_RIVAL,
+    }
+}
+
 /// Returns the sample of a ray that hits a surface, before any light.
 #[kernel]
 #[inline]
-fn seen_first<B: Bsdf + MachineType>(at: Scattering<B>, depth: f32) -> PathSample {
+pub(super) fn seen_first<B: Bsdf + MachineType>(at: Scattering<B>, depth: f32) -> PathSample {
     let bsdf: B = at.bsdf;
     let normal = if at.wo.z < 0.0 { -at.frame.z } else { at.frame.z };
     PathSample { color: vec4(0.0, 0.0, 0.0, 1.0), albedo: bsdf.albedo(at.wo), normal, depth }
@@ -192,7 +288,7 @@ fn seen_first<B: Bsdf + MachineType>(at: Scattering<B>, depth: f32) -> PathSampl
 /// Returns the sample of a ray that misses.
 #[kernel]
 #[inline]
-fn nothing() -> PathSample {
+pub(super) fn nothing() -> PathSample {
     let none = vec3(0.0, 0.0, 0.0);
     PathSample { color: vec4(0.0, 0.0, 0.0, 0.0), albedo: none, normal: none, depth: f32::MAX }
 }

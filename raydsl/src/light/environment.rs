@@ -16,8 +16,8 @@ use crate::machine::{
 };
 use crate::math::elementary::{atan2, sincos_2pi};
 use crate::sampling::{
-    Distribution2d, UNIFORM_SPHERE_PDF, bilinear_pdf, sample_bilinear, sample_table_2d,
-    sample_uniform_sphere, table_2d_pdf,
+    Distribution2d, ONE_MINUS_EPSILON, UNIFORM_SPHERE_PDF, bilinear_pdf, sample_bilinear,
+    sample_table_2d, sample_uniform_sphere, table_2d_pdf,
 };
 
 /// Error of creating an environment.
@@ -273,7 +273,7 @@ fn place(layout: EnvironmentLayout, direction: Vec3) -> Vec3 {
     let sine = (x * x + z * z).sqrt();
     let turn = 0.5 + atan2(x, -z) / TAU - 0.5 / layout.size.x as f32;
     let turn = turn - turn.floor();
-    vec3(min(turn, 0.999_999_94), min(atan2(sine, y) / PI, 0.999_999_94), sine)
+    vec3(min(turn, ONE_MINUS_EPSILON), min(atan2(sine, y) / PI, ONE_MINUS_EPSILON), sine)
 }
 
 /// Returns the texel of an environment of one radiance.
@@ -321,8 +321,8 @@ fn per_solid_angle(per_area: f32, sine: f32) -> f32 {
 #[inline]
 fn in_cell(p: Vec2, cell: UVec2, cells: UVec2) -> Vec2 {
     vec2(
-        clamp(p.x * cells.x as f32 - cell.x as f32, 0.0, 0.999_999_94),
-        clamp(p.y * cells.y as f32 - cell.y as f32, 0.0, 0.999_999_94),
+        clamp(p.x * cells.x as f32 - cell.x as f32, 0.0, ONE_MINUS_EPSILON),
+        clamp(p.y * cells.y as f32 - cell.y as f32, 0.0, ONE_MINUS_EPSILON),
     )
 }
 

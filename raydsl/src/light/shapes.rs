@@ -8,9 +8,10 @@ use super::LightExtent;
 use super::triangle::{sample_spherical_triangle, solid_angle};
 use crate::geometry::{SurfacePoint, Triangle, disk, rectangle, sphere, triangle};
 use crate::machine::functions::{vec2, vec3};
-use crate::machine::generic::{max, min};
+use crate::machine::generic::{clamp, max, min};
 use crate::sampling::{
-    Frame, UNIFORM_SPHERE_PDF, cone_pdf, one_minus_cos, sample_cone, sample_uniform_sphere,
+    Frame, ONE_MINUS_EPSILON, UNIFORM_HEMISPHERE_PDF, UNIFORM_SPHERE_PDF, cone_pdf, one_minus_cos,
+    sample_cone, sample_uniform_hemisphere, sample_uniform_sphere,
 };
 use crate::{Type, kernel};
 
@@ -204,43 +205,81 @@ impl LightShape for SphereShape {
     }
 }
 
-/// Solid angle below which a triangle is sampled by its area: the spherical one has no digits left,
-/// and its density hardly varies.
+/// Solid angle below which a flat shape is sampled by its area: the spherical one has no digits left,
+/// and the density hardly varies.
 const MIN_SOLID_ANGLE: f32 = 1e-4;
 
-/// Solid angle above which a triangle is sampled by its area: it is all around, next to the point.
+/// Solid angle above which the whole hemisphere is sampled: the shape is next to the point, and as good
+/// as all around on its side.
 const MAX_SOLID_ANGLE: f32 = 6.2;
 
-/// Returns whether a triangle is sampled by its solid angle.
+/// Returns the coordinates, along two edges, of where the line from `from` along `wi` meets their plane.
 #[kernel]
 #[inline]
-fn is_spherical(angle: f32) -> bool {
-    angle > MIN_SOLID_ANGLE && angle < MAX_SOLID_ANGLE
-}
-
-/// Returns where the line from `from` along `wi` meets the plane of a triangle.
-#[kernel]
-#[inline]
-fn on_plane(from: Vec3, wi: Vec3, v0: Vec3, v1: Vec3, v2: Vec3) -> SurfacePoint {
-    let (e1, e2) = (v1 - v0, v2 - v0);
+fn on_plane(from: Vec3, wi: Vec3, corner: Vec3, e1: Vec3, e2: Vec3) -> Vec2 {
     let across = e1.cross(e2);
     let n = across / max(across.dot(across), f32::MIN_POSITIVE);
-    // Weights of the vertices, so that the point is between them whatever was rounded.
     let facing = across.dot(wi);
-    let t = if facing == 0.0 { 0.0 } else { across.dot(v0 - from) / facing };
-    let p = from + wi * t - v0;
-    let b1 = max(n.dot(p.cross(e2)), 0.0);
-    let b2 = max(n.dot(e1.cross(p)), 0.0);
+    let t = if facing == 0.0 { 0.0 } else { across.dot(corner - from) / facing };
+    let p = from + wi * t - corner;
+    vec2(n.dot(p.cross(e2)), n.dot(e1.cross(p)))
+}
+
+/// Returns where the line from `from` along `wi` meets a triangle, which it does but for rounding.
+#[kernel]
+#[inline]
+fn on_triangle(from: Vec3, wi: Vec3, v0: Vec3, v1: Vec3, v2: Vec3) -> SurfacePoint {
+    let b = on_plane(from, wi, v0, v1 - v0, v2 - v0);
+    let (b1, b2) = (max(b.x, 0.0), max(b.y, 0.0));
     let over = max(b1 + b2, 1.0);
     triangle::weighted(b1 / over, b2 / over, v0, v1, v2)
 }
 
+/// Samples the hemisphere on the side of `from` on which a plane is.
+#[kernel]
+#[inline]
+fn sample_side(from: Vec3, u: Vec2, corner: Vec3, across: Vec3) -> Vec3 {
+    let n = across / max(across.dot(across), f32::MIN_POSITIVE).sqrt();
+    let away = if n.dot(corner - from) < 0.0 { -n } else { n };
+    Frame::around(away).to_world(sample_uniform_hemisphere(u))
+}
+
+/// Returns the density of a flat shape's samples.
+#[kernel]
+#[inline]
+fn flat_pdf(angle: f32, by_area: f32) -> f32 {
+    let by_angle = if angle > MAX_SOLID_ANGLE { UNIFORM_HEMISPHERE_PDF } else { 1.0 / angle };
+    if angle > MIN_SOLID_ANGLE { by_angle } else { by_area }
+}
+
+/// Returns the solid angle of a shape with this product of two edges: 0 without area, in whose line
+/// there may be any.
+#[kernel]
+#[inline]
+fn angle_with_area(angle: f32, across: Vec3) -> f32 {
+    if across.dot(across) > 0.0 { angle } else { 0.0 }
+}
+
+#[kernel]
+#[inline]
+fn triangle_angle(from: Vec3, v0: Vec3, v1: Vec3, v2: Vec3) -> f32 {
+    angle_with_area(solid_angle(from, v0, v1, v2), (v1 - v0).cross(v2 - v0))
+}
+
 #[kernel]
 fn sample_triangle_from(from: Vec3, u: Vec2, v0: Vec3, v1: Vec3, v2: Vec3) -> ShapeSample {
-    let angle = solid_angle(from, v0, v1, v2);
-    if is_spherical(angle) {
+    let angle = triangle_angle(from, v0, v1, v2);
+    if angle > MAX_SOLID_ANGLE {
+        let (e1, e2) = (v1 - v0, v2 - v0);
+        let wi = sample_side(from, u, v0, e1.cross(e2));
+        let b = on_plane(from, wi, v0, e1, e2);
+        let is_met = b.x >= 0.0 && b.y >= 0.0 && b.x + b.y <= 1.0;
+        let pdf = if is_met { UNIFORM_HEMISPHERE_PDF } else { 0.0 };
+        return ShapeSample { wi, point: on_triangle(from, wi, v0, v1, v2), pdf };
+    }
+    if angle > MIN_SOLID_ANGLE {
         let wi = sample_spherical_triangle(u, from, v0, v1, v2);
-        let point = on_plane(from, wi, v0, v1, v2);
+        let point = on_triangle(from, wi, v0, v1, v2);
         return ShapeSample { wi, point, pdf: 1.0 / angle };
     }
     sample_by_area(triangle::sample(u, v0, v1, v2), triangle::area(v0, v1, v2), from)
@@ -248,9 +287,8 @@ fn sample_triangle_from(from: Vec3, u: Vec2, v0: Vec3, v1: Vec3, v2: Vec3) -> Sh
 
 #[kernel]
 fn triangle_pdf_from(from: Vec3, at: SurfacePoint, v0: Vec3, v1: Vec3, v2: Vec3) -> f32 {
-    let angle = solid_angle(from, v0, v1, v2);
     let by_area = area_pdf(at, triangle::area(v0, v1, v2), from);
-    if is_spherical(angle) { 1.0 / angle } else { by_area }
+    flat_pdf(triangle_angle(from, v0, v1, v2), by_area)
 }
 
 #[kernel]
@@ -302,8 +340,21 @@ impl LightShape for RectangleShape {
         let (a, b, d) = (self.corner, self.corner + self.u_edge, self.corner + self.v_edge);
         let c = b + self.v_edge;
         let angles = RectangleShape::halves(*self, from);
-        let angle = angles.x + angles.y;
-        if !is_spherical(angle) {
+        let across = self.u_edge.cross(self.v_edge);
+        let angle = angle_with_area(angles.x + angles.y, across);
+        if angle > MAX_SOLID_ANGLE {
+            let wi = sample_side(from, u, a, across);
+            let q = on_plane(from, wi, a, self.u_edge, self.v_edge);
+            let is_met = q.x >= 0.0 && q.x <= 1.0 && q.y >= 0.0 && q.y <= 1.0;
+            let within = clamp(q, vec2(0.0, 0.0), vec2(1.0, 1.0));
+            let point = rectangle::sample(within, a, self.u_edge, self.v_edge);
+            return ShapeSample {
+                wi,
+                point,
+                pdf: if is_met { UNIFORM_HEMISPHERE_PDF } else { 0.0 },
+            };
+        }
+        if angle <= MIN_SOLID_ANGLE {
             let point = rectangle::sample(u, self.corner, self.u_edge, self.v_edge);
             return sample_by_area(point, self.surface_area(), from);
         }
@@ -311,17 +362,16 @@ impl LightShape for RectangleShape {
         let share = angles.x / angle;
         let is_first = u.x < share;
         let x = if is_first { u.x / share } else { (u.x - share) / (1.0 - share) };
-        let within = vec2(min(x, 0.999_999_94), u.y);
+        let within = vec2(min(x, ONE_MINUS_EPSILON), u.y);
         let (v1, v2) = (if is_first { b } else { c }, if is_first { c } else { d });
         let wi = sample_spherical_triangle(within, from, a, v1, v2);
-        ShapeSample { wi, point: on_plane(from, wi, a, v1, v2), pdf: 1.0 / angle }
+        ShapeSample { wi, point: on_triangle(from, wi, a, v1, v2), pdf: 1.0 / angle }
     }
 
     fn pdf_from(&self, from: Vec3, at: SurfacePoint) -> f32 {
         let angles = RectangleShape::halves(*self, from);
-        let angle = angles.x + angles.y;
-        let by_area = area_pdf(at, self.surface_area(), from);
-        if is_spherical(angle) { 1.0 / angle } else { by_area }
+        let angle = angle_with_area(angles.x + angles.y, self.u_edge.cross(self.v_edge));
+        flat_pdf(angle, area_pdf(at, self.surface_area(), from))
     }
 
     fn surface_area(&self) -> f32 {

@@ -128,6 +128,43 @@ macro_rules! constant_of_the_host {
 
 constant_of_the_host!(i32, u32, usize, bool);
 
+/// Lets options of a ready kernel be host values: captured, constants, and their fields and methods.
+macro_rules! host_options {
+    ($($host:ty),+) => {
+        $(
+            #[diagnostic::do_not_recommend]
+            impl $crate::machine::lifted::HostCapture for $host {
+                type Value = Self;
+
+                #[inline(always)]
+                fn host(&self) -> Self {
+                    *self
+                }
+            }
+
+            #[diagnostic::do_not_recommend]
+            impl<M: $crate::machine::Machine> $crate::machine::lifted::HostUse<M> for $host {
+                type Used = Self;
+
+                #[inline(always)]
+                fn value(self, _: &M) -> Self {
+                    self
+                }
+            }
+
+            impl $crate::machine::lifted::Constant<'_, $host> {
+                /// Returns the constant, which remains a host value.
+                #[inline(always)]
+                pub fn give<M: $crate::machine::Machine>(self, _: &M) -> $host {
+                    *self.0
+                }
+            }
+        )+
+    };
+}
+
+pub(crate) use host_options;
+
 /// Converts constants of other types to values of the machine.
 pub trait GiveConstant<M: Machine> {
     /// The converted type.

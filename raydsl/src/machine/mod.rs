@@ -85,6 +85,7 @@ pub(crate) use data::is_borrowed;
 pub use data::{Data, Slice};
 pub(crate) use data::{borrowed_key, bytes_of, read_in_place};
 pub use gang::Gang;
+pub(crate) use host::host_options;
 pub(crate) use index::{Index, Indexed, element_in_step};
 pub use kinds::Kinds;
 pub(crate) use lanes::{Entered, fill};

@@ -59,7 +59,7 @@ pub(super) fn cell_at_distance<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t
 /// Returns colour and extinction at a distance.
 #[kernel]
 #[inline(always)]
-fn sample_at<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t: f32) -> TransferSample {
+pub(super) fn sample_at<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t: f32) -> TransferSample {
     let cell = cell_at_distance(volume, part, t);
     let sample: TransferSample = volume.transfer().at(value_in(volume.grid(), cell));
     where_whole(volume, cell, sample)

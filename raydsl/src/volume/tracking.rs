@@ -20,7 +20,7 @@ const MOST_DEPTH: f32 = 256.0;
 /// Returns an exponentially distributed depth.
 #[kernel]
 #[inline]
-fn free_depth(rng: &mut Rng) -> f32 {
+pub(super) fn free_depth(rng: &mut Rng) -> f32 {
     -log1p(-rng.next_f32())
 }
 

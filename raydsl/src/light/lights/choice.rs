@@ -179,7 +179,7 @@ pub(super) fn sample_one<L: Light + MachineType>(
             sample = lights.environment().sample(vec2(u.x, u.y));
             sample.pdf *= share;
         } else if lights.is_listed() {
-            let z = min((u.z - share) / (1.0 - share), 0.999_999_94);
+            let z = min((u.z - share) / (1.0 - share), ONE_MINUS_EPSILON);
             sample = sample_listed(lights, from, vec3(u.x, u.y, z));
         }
         return sample;

@@ -39,6 +39,15 @@ pub enum LightsError {
     NotFinite(usize),
 }
 
+/// Steps of a random number.
+const STEPS: f32 = 16_777_216.0;
+
+/// Least share of a light that is not black: 128 steps of a random number.
+const LEAST_SHARE: f64 = 1.0 / 131_072.0;
+
+/// Greatest ratio of the power of distant lights to that of the others.
+const FAR_TO_NEAR: f64 = 9.0;
+
 /// Greatest number of lights.
 const MOST_LIGHTS: usize = 1 << 22;
 
@@ -79,6 +88,8 @@ pub struct Lights<'a, L: Light + MachineType> {
     list: &'a [L],
     /// Numbers of those that are infinitely far away.
     distant: Vec<u32>,
+    /// How often each is chosen by power, relative to the others.
+    weights: Vec<f32>,
     cdf: Vec<f32>,
     tree: LightTree,
     /// Probability of choosing by the table, where there is a tree.
@@ -117,11 +128,8 @@ impl<'a, L: Light + MachineType> Lights<'a, L> {
         }
         let radius = 0.5 * (bounds.max - bounds.min).length();
         let radius = if radius.is_finite() && radius > 0.0 { radius } else { 1.0 };
-        let powers: Vec<f32> = list.iter().map(|l| l.power(radius)).collect();
-        if let Some(i) = powers.iter().position(|p| !(p.is_finite() && *p >= 0.0)) {
-            return Err(LightsError::NotPower(i));
-        }
-        let cdf = table(&powers);
+        let weights = weights(list, radius)?;
+        let cdf = table(&weights);
         let is_distant = |i: &u32| list[*i as usize].is_distant();
         let distant: Vec<u32> = (0..list.len() as u32).filter(is_distant).collect();
         let (count, far) = (list.len() as u32, distant.len() as u32);
@@ -129,6 +137,7 @@ impl<'a, L: Light + MachineType> Lights<'a, L> {
         Ok(Self {
             list,
             distant,
+            weights,
             cdf,
             tree: LightTree::default(),
             table_share: 0.0,
@@ -169,7 +178,7 @@ impl<'a, L: Light + MachineType> Lights<'a, L> {
     ///
     /// If the extent of a light is not finite.
     pub fn with_tree(self) -> Result<Self, LightsError> {
-        let mut weights: Vec<f32> = self.powers().collect();
+        let mut weights = self.weights.clone();
         let all: f64 = weights.iter().copied().map(f64::from).sum();
         let mut near = Vec::new();
         for (i, light) in self.list.iter().enumerate().filter(|(_, l)| !l.is_distant()) {
@@ -190,22 +199,19 @@ impl<'a, L: Light + MachineType> Lights<'a, L> {
     }
 
     /// Adds an environment, which is chosen with a probability in proportion to its power, at least
-    /// a tenth, and at most nine beside other lights.
+    /// a tenth, and at most nine beside other lights; a black one never.
     #[must_use]
     pub fn with_environment(self, environment: &'a Environment) -> Self {
         let radius = self.layout.radius;
-        let listed: f64 = self.powers().map(f64::from).sum();
+        let listed: f64 = self.list.iter().map(|l| f64::from(l.power(radius))).sum();
         let area = core::f64::consts::PI * f64::from(radius).powi(2);
         let own = environment.mean_luminance() * 4.0 * core::f64::consts::PI * area;
-        let share = if self.list.is_empty() { 1.0 } else { (own / (own + listed)).clamp(0.1, 0.9) };
+        let beside = if own > 0.0 { (own / (own + listed)).clamp(0.1, 0.9) } else { 0.0 };
+        let share = if self.list.is_empty() { 1.0 } else { beside };
         // A NaN, of an infinite radius, is none.
-        let environment_share = if share > 0.0 { share as f32 } else { 0.5 };
+        let environment_share = if share.is_nan() { 0.5 } else { share as f32 };
         let layout = LightsLayout { environment_share, ..self.layout };
         Self { environment: Some(environment), layout, owner: Owner::new(), ..self }
-    }
-
-    fn powers(&self) -> impl Iterator<Item = f32> {
-        self.list.iter().map(|l| l.power(self.layout.radius))
     }
 
     /// Returns the lights.
@@ -341,10 +347,33 @@ impl<'a, L: Light + MachineType> Lights<'a, L> {
     }
 }
 
-/// Returns the table of weights.
+/// Returns how often each light is chosen, relative to the others.
+fn weights<L: Light>(list: &[L], radius: f32) -> Result<Vec<f32>, LightsError> {
+    let mut powers: Vec<f64> = list.iter().map(|l| f64::from(l.power(radius))).collect();
+    if let Some(i) = powers.iter().position(|p| !(p.is_finite() && *p >= 0.0)) {
+        return Err(LightsError::NotPower(i));
+    }
+    let is_distant: Vec<bool> = list.iter().map(Light::is_distant).collect();
+    let sum_of = |powers: &[f64], distant: bool| -> f64 {
+        powers.iter().zip(&is_distant).filter(|(_, d)| **d == distant).map(|(p, _)| p).sum()
+    };
+    let (far, near) = (sum_of(&powers, true), sum_of(&powers, false));
+    if near > 0.0 && far > FAR_TO_NEAR * near {
+        let factor = FAR_TO_NEAR * near / far;
+        powers.iter_mut().zip(&is_distant).filter(|(_, d)| **d).for_each(|(p, _)| *p *= factor);
+    }
+    let sum: f64 = powers.iter().sum();
+    let least = sum * LEAST_SHARE.min(0.5 / list.len() as f64);
+    let weight = |p: f64| if p > 0.0 { p.max(least) / sum } else { 0.0 };
+    Ok(powers.into_iter().map(|p| weight(p) as f32).collect())
+}
+
+/// Returns the table of weights, in steps of random numbers, so that the difference of two entries is
+/// the probability of what is between them, exactly.
 fn table(weights: &[f32]) -> Vec<f32> {
     // Black lights are as good as each other.
     let table =
         Distribution1d::new(weights).or_else(|_| Distribution1d::new(&vec![1.0; weights.len()]));
-    table.map(|t| t.cdf().to_vec()).unwrap_or_default()
+    let cdf = table.map(|t| t.cdf().to_vec()).unwrap_or_default();
+    cdf.into_iter().map(|share| (share * STEPS).round() / STEPS).collect()
 }

@@ -156,6 +156,7 @@ impl BsdfTest {
         let limit = normal_quantile(sidak(self.false_alarm, tests));
         let total = histogram.compare(&format!("wo {wo}"), (n, limit, 1e-3), &of, found);
         sums.judge_spread(wo, (n, limit), total.w, found);
+        sums.judge_deltas(wo, (n, limit), found);
         self.judge_means(wo, (n, &sums, limit), total, found)
     }
 
@@ -302,12 +303,25 @@ fn is_sound(sample: &BsdfSample) -> bool {
         && (length - 1.0).abs() < 1e-4
 }
 
+/// Length of the difference of two directions of one delta lobe.
+const SAME_DIRECTION: f32 = 1e-3;
+
+/// Greatest number of delta lobes seen from one direction.
+const MOST_DELTAS: usize = 16;
+
+/// A direction to which a delta lobe scatters.
+struct DeltaLobe {
+    first: BsdfSample,
+    count: f64,
+}
+
 /// Sums over the samples of one direction.
 #[derive(Default)]
 struct Sums {
     weight: DVec3,
     squares: DVec3,
     delta_weight: DVec3,
+    deltas: Vec<DeltaLobe>,
     /// Samples that are no delta and not absorbed.
     spread: f64,
     /// Those whose direction has no density.
@@ -329,6 +343,7 @@ impl Sums {
         self.squares += weight * weight;
         if s.is_delta {
             self.delta_weight += weight;
+            self.add_delta(wo, s, found);
         }
         if s.is_delta || s.pdf == 0.0 {
             return false;
@@ -356,6 +371,39 @@ impl Sums {
 }
 
 impl Sums {
+    /// Counts a sample of a delta lobe, whose direction, density and weight are those of the others.
+    fn add_delta(&mut self, wo: Vec3, s: &BsdfSample, found: &mut Findings) {
+        let known = self.deltas.iter().position(|d| d.first.wi.abs_diff_eq(s.wi, SAME_DIRECTION));
+        let Some(lobe) = known.map(|k| &mut self.deltas[k]) else {
+            if self.deltas.len() < MOST_DELTAS {
+                self.deltas.push(DeltaLobe { first: *s, count: 1.0 });
+            } else {
+                found.add("delta samples go in many directions", format!("wo {wo}: {s:?}"));
+            }
+            return;
+        };
+        lobe.count += 1.0;
+        let (first, limit) = (lobe.first, REPEATED as f32);
+        let off = (s.pdf - first.pdf).abs() > limit * s.pdf.max(first.pdf);
+        if off || !s.weight.abs_diff_eq(first.weight, limit) {
+            let text = format!("wo {wo}: {s:?} after {first:?}");
+            found.add("a delta lobe has several densities or weights", text);
+        }
+    }
+
+    /// Compares how often each delta lobe was sampled with its density.
+    fn judge_deltas(&self, wo: Vec3, (n, limit): (f64, f64), found: &mut Findings) {
+        for DeltaLobe { first, count } in &self.deltas {
+            let (share, pdf) = (count / n, f64::from(first.pdf));
+            let error = (pdf * (1.0 - pdf).max(0.0) / n).sqrt();
+            if (share - pdf).abs() > (limit + 1.0) * error + 3.0 / n + 1e-5 {
+                let wi = first.wi;
+                let text = format!("wo {wo}, wi {wi}: a share of {share:.5}, pdf {pdf:.5}");
+                found.add("delta samples are not as frequent as their pdf says", text);
+            }
+        }
+    }
+
     /// Compares the share of samples that are spread with the integral of their density.
     fn judge_spread(&self, wo: Vec3, (n, limit): (f64, f64), mass: f64, found: &mut Findings) {
         let share = self.misplaced / n;

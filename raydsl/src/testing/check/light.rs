@@ -235,7 +235,12 @@ impl LightTest {
 
 /// Returns the density and the radiance of a direction: of the surface that a ray meets, or from
 /// infinitely far away.
-fn seen_of<L: Light, S: Scene + ?Sized>(light: &L, scene: &S, from: Vec3, wi: Vec3) -> (f32, Vec3) {
+pub(super) fn seen_of<L: Light, S: Scene + ?Sized>(
+    light: &L,
+    scene: &S,
+    from: Vec3,
+    wi: Vec3,
+) -> (f32, Vec3) {
     let ray = Ray::new(from, wi);
     let hit = scene.closest_hit(ray);
     if hit.is_hit {

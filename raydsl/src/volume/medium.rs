@@ -1,0 +1,101 @@
+//! Media that scatter light, as integrators of light transport see them.
+
+use glam::{Vec3, vec3};
+
+use super::integrator::{Inside, inside};
+use super::march::sample_at;
+use super::tracking::{delta_tracking, free_depth};
+use super::transfer::TransferSample;
+use super::volume::Volume;
+use super::voxel::Voxel;
+use crate::geometry::Ray;
+use crate::machine::functions::vec3;
+use crate::machine::generic::length;
+use crate::math::elementary::exp;
+use crate::sampling::Rng;
+use crate::{Type, kernel};
+
+/// What light on a ray meets in a medium.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
+pub struct Collision {
+    /// Whether there is a collision; otherwise light passes.
+    pub is_met: bool,
+    /// Distance along the ray, in lengths of its direction.
+    pub t: f32,
+    /// Share of light that is scattered, and not absorbed: red, green and blue.
+    pub albedo: Vec3,
+    /// Radiance that the medium adds: what it emits over its extinction.
+    pub emission: Vec3,
+    /// Mean cosine of scattering: see [`henyey_greenstein()`](super::henyey_greenstein).
+    pub anisotropy: f32,
+}
+
+#[kernel]
+impl Collision {
+    /// Returns no collision.
+    #[inline]
+    pub fn none() -> Self {
+        let none = vec3(0.0, 0.0, 0.0);
+        Self { is_met: false, t: 0.0, albedo: none, emission: none, anisotropy: 0.0 }
+    }
+}
+
+/// Returns a random collision on the ray between `t_min` and `t_max`, by [`delta_tracking()`]. The
+/// colour of the transfer function is what is scattered.
+///
+/// For a medium that emits the colour instead, as the integrators of volumes see it:
+/// `Collision { emission: c.albedo, albedo: Vec3::ZERO, ..c }`.
+#[kernel]
+#[inline(never)]
+pub fn collision<T: Voxel>(
+    volume: &Volume<'_, T>,
+    anisotropy: f32,
+    ray: Ray,
+    rng: Rng,
+) -> Collision {
+    let mut rng = rng;
+    let part: Inside = inside(volume.grid(), ray);
+    let (start, _) = volume.grid().span(ray);
+    let none = vec3(0.0, 0.0, 0.0);
+    let found = delta_tracking(volume, ray, &mut rng);
+    let is_met = found.is_some();
+    let t = found.unwrap_or(0.0);
+    let mut albedo = none;
+    if is_met {
+        let sample: TransferSample = sample_at(volume, part, t - start);
+        albedo = sample.color;
+    }
+    Collision { is_met, t, albedo, emission: none, anisotropy }
+}
+
+/// A medium that is the same everywhere, as fog is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
+pub struct Fog {
+    /// Extinction per length.
+    pub extinction: f32,
+    /// Share of it that is scattered, and not absorbed: red, green and blue.
+    pub albedo: Vec3,
+    /// Mean cosine of scattering: see [`henyey_greenstein()`](super::henyey_greenstein).
+    pub anisotropy: f32,
+}
+
+#[kernel]
+impl Fog {
+    /// Returns a random collision on the ray between `t_min` and `t_max`.
+    #[inline]
+    pub fn collision(self, ray: Ray, rng: Rng) -> Collision {
+        let mut rng = rng;
+        let per_length = self.extinction * length(ray.direction);
+        let way = free_depth(&mut rng) / per_length;
+        let is_met = per_length > 0.0 && way < ray.t_max - ray.t_min;
+        let t = if is_met { ray.t_min + way } else { 0.0 };
+        let emission = vec3(0.0, 0.0, 0.0);
+        Collision { is_met, t, albedo: self.albedo, emission, anisotropy: self.anisotropy }
+    }
+
+    /// Returns the transmittance between `t_min` and `t_max`.
+    #[inline]
+    pub fn transmittance(self, ray: Ray) -> f32 {
+        exp(-(self.extinction * length(ray.direction) * (ray.t_max - ray.t_min)))
+    }
+}
