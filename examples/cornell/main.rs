@@ -34,7 +34,7 @@ struct Args {
     #[arg(long, default_value = "3")]
     roulette: u32,
     /// Fill the box with fog of this mean free path in millimetres, which absorbs nothing.
-    #[arg(long, value_name = "LENGTH")]
+    #[arg(long, value_name = "LENGTH", value_parser = free_path)]
     fog: Option<f32>,
     /// What runs the kernel: scalar, packet4, packet8, packet16 or wgsl.
     #[arg(long, default_value = Variant::widest().name(), value_parser = variant)]
@@ -42,6 +42,11 @@ struct Args {
     /// Picture size.
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
     size: (u32, u32),
+}
+
+fn free_path(text: &str) -> Result<f32, String> {
+    let length = text.parse::<f32>().ok().filter(|length| *length > 0.0);
+    length.ok_or_else(|| "a length above 0".to_owned())
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -69,7 +74,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         volume_path::<_, _, Luminous<Lambert>>(
             &scene,
             |hit: Hit, _point: ShadingPoint| scene.primitive(hit).material(),
-            |ray: Ray, rng: Rng| fog.collision(in_box(ray), rng),
+            |ray: Ray, rng: Rng| {
+                let mut rng = rng;
+                fog.collision(in_box(ray), &mut rng)
+            },
             |ray: Ray, _rng: Rng| fog.transmittance(in_box(ray)),
             &lights,
             host(options),
@@ -79,7 +87,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         )
         .color
     });
-    // ANCHOR_END: fog
     render(&args, &kernel)
 }
 
@@ -89,6 +96,7 @@ fn in_box(ray: Ray) -> Ray {
     let leave = -ray.origin.z / min(ray.direction.z, -1e-6);
     ray.with_range(ray.t_min, if ray.direction.z < 0.0 { min(leave, ray.t_max) } else { ray.t_max })
 }
+// ANCHOR_END: fog
 
 fn render(args: &Args, kernel: &Kernel<'_, (Ray, Sampler), Vec4>) -> Result<(), Box<dyn Error>> {
     let &Args { samples, variant, size: (width, height), .. } = args;

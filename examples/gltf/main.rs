@@ -8,8 +8,8 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use raydsl::geometry::Aabb;
-use raydsl::integrators::{PathLimits, PathOptions, PathSample, path_with};
-use raydsl::light::{Environment, Lights};
+use raydsl::integrators::{PathLimits, PathOptions, PathSample, clamped, path_with};
+use raydsl::light::{Environment, Lights, luminance};
 use raydsl::prelude::*;
 use raydsl::render::{Display, ToneMap};
 use raydsl::shading::{Mesh, MeshAttributes};
@@ -36,6 +36,10 @@ struct Args {
     /// How often light is scattered at most.
     #[arg(long, default_value = "8")]
     bounces: u32,
+    /// The greatest radiance of a sample: fewer bright specks, and a picture that is too dark by what
+    /// is printed.
+    #[arg(long, value_name = "RADIANCE", default_value = "inf")]
+    clamp: f32,
     /// Exposure in stops.
     #[arg(long, default_value = "0", allow_hyphen_values = true)]
     exposure: f32,
@@ -88,17 +92,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     let lights = Lights::new(&model.lights, bounds)?.with_tree()?.with_environment(&sky);
     let (looks, texels, light_of) = (&model.looks[..], &model.texels[..], &model.light_of[..]);
     let options = PathOptions { masks: model.has_masks, ..PathOptions::new() };
-    let limits = PathLimits::new(args.bounces);
+    let (limits, limit) = (PathLimits::new(args.bounces), args.clamp);
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
         let surface = |hit: Hit, point: ShadingPoint| {
             let look = looks[point.material as usize];
             met(texels, look, point, light_of[hit.prim_id as usize])
         };
-        path_with::<_, _, Met>(&mesh, surface, &lights, host(options), limits, ray, sampler)
+        let sample: PathSample =
+            path_with::<_, _, Met>(&mesh, surface, &lights, host(options), limits, ray, sampler);
+        let (color, lost) = clamped(sample.color, limit);
+        (PathSample { color, ..sample }, lost)
     });
     // ANCHOR_END: gltf
-    // A film of channels: colour, and albedo and normal for a denoiser.
-    let mut film = Film::<PathSample>::of_channels(args.size.0, args.size.1);
+    // A film of channels: colour, albedo and normal for a denoiser, and what clamping took.
+    let mut film = Film::<(PathSample, Vec3)>::of_channels(args.size.0, args.size.1);
     let (camera, sampling) = (camera(&file, bounds), Sampling::new(args.samples));
     if args.variant == Variant::Wgsl {
         GpuScheduler::new()?.accumulate(&camera, &kernel, &sampling, &mut film, args.samples)?;
@@ -111,8 +118,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let light = film.image().map(|color| color.with_w(1.0));
     display.show(&light).write_png(args.folder.join("gltf.png"))?;
     let channels = film.channels();
-    let (albedo, normal) =
-        (channels.map(|p| p.albedo.extend(1.0)), channels.map(|p| p.normal.extend(1.0)));
+    if args.clamp.is_finite() {
+        let kept: f64 = light.pixels().iter().map(|p| f64::from(luminance(p.truncate()))).sum();
+        let lost: f64 = channels.pixels().iter().map(|(_, l)| f64::from(luminance(*l))).sum();
+        println!("clamped: {:.2} % of the light is lost", 100.0 * lost / (kept + lost));
+    }
+    let albedo = channels.map(|(p, _)| p.albedo.extend(1.0));
+    let normal = channels.map(|(p, _)| p.normal.extend(1.0));
     for (name, picture) in [("gltf", light), ("gltf_albedo", albedo), ("gltf_normal", normal)] {
         picture.write_exr(args.folder.join(format!("{name}.exr")))?;
     }

@@ -353,7 +353,7 @@ impl<A: Type, R: Type> PacketTask<A, R> for Batch<'_, A, R> {
 
 /// Runs `kernel` over `inputs` in packets; the last one may be partly filled. The packets of a gang
 /// of `gang` lanes run as fibers, and their queries are batched.
-fn run_in_gangs<L: Lanes, A: Type, R: Type>(
+pub(crate) fn run_in_gangs<L: Lanes, A: Type, R: Type>(
     lanes: L,
     gang: usize,
     kernel: &(impl Fn(&Packet<L>, A::On<Packet<L>>) -> R::On<Packet<L>> + ?Sized),

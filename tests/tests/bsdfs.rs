@@ -3,12 +3,12 @@
 use raydsl::bsdf::{
     Bsdf, BsdfSample, Coated, ComplexIor, Conductor, Dielectric, Eon, F82, Fresnel, Lambert,
     MetallicRoughness, Mirror, Mix, Sheen, SheenCoated, ThinDielectric, fresnel_dielectric,
-    ggx_distribution, ggx_masking,
+    ggx_distribution, ggx_masking, ggx_shadowing, sample_ggx_normal,
 };
-use raydsl::kernel;
 use raydsl::prelude::*;
 use raydsl::testing::check::BsdfTest;
 use raydsl::volume::{henyey_greenstein, sample_henyey_greenstein};
+use raydsl::{assert_variants_agree, kernel};
 
 /// Checks that share the probability of a false alarm.
 const CHECKS: u32 = 40;
@@ -107,6 +107,10 @@ fn mixtures() {
     for share in [0.0, 0.3, 1.0] {
         assert_holds(TEST, Mix::<Lambert, Mirror> { under, over, share });
     }
+    // Several delta lobes in one direction.
+    let base = Mirror { color: vec3(0.9, 0.6, 0.3) };
+    let coated = Coated::<Mirror> { base, ior: 1.5, alpha: 0.0, strength: Vec3::ONE };
+    assert_holds(TEST.not_reciprocal(), coated);
 }
 
 #[test]
@@ -127,6 +131,8 @@ fn metallic_roughness() {
     };
     assert_holds(test, all);
     assert_holds(test, MetallicRoughness { is_solid: true, ior: 1.4, ..all });
+    let polished = MetallicRoughness { metallic: 0.5, roughness: 0.0, clearcoat: 1.0, ..plain };
+    assert_holds(test, polished);
     let white = MetallicRoughness { base_color: Vec3::ONE, ..Default::default() };
     assert_holds(test.energy(0.98, 1.0001), MetallicRoughness { metallic: 0.5, ..white });
 }
@@ -219,8 +225,37 @@ fn fresnel_is_exact() {
     assert!((f64::from(grazing) / 1.0146363680238e-4 - 1.0).abs() < 1e-4, "{grazing}");
     // From inside, beyond the critical angle, all is reflected.
     assert_eq!(fresnel_dielectric(0.5, 1.0 / 1.5).reflected, 1.0);
+    // The same in every variant.
+    let split = kernel!(|cos: f32, eta: f32| fresnel_dielectric(cos, eta));
+    let inputs: Vec<(f32, f32)> = (0..2000u16)
+        .map(|i| (f32::from(i) / 2000.0, [1.5, 1.0 / 1.5][usize::from(i % 2)]))
+        .collect();
+    assert_variants_agree!(&split, &inputs);
     let gold = ComplexIor { n: Vec3::splat(1.5), k: Vec3::ZERO };
     assert!((gold.reflectance(0.5).x - 0.089_186_71).abs() < 1e-6);
+}
+
+/// P-M2 and P-M3: what is reflected of diffuse light by glass, and by the facets of white metal at
+/// normal incidence if each reflects once.
+#[test]
+fn mean_reflectances_are_exact() {
+    let steps = 4000;
+    let at = |k: u16| (f32::from(k) + 0.5) / f32::from(steps);
+    let diffuse = |k| 2.0 * f64::from(at(k)) * f64::from(fresnel_dielectric(at(k), 1.5).reflected);
+    let mean = (0..steps).map(diffuse).sum::<f64>() / f64::from(steps);
+    assert!((mean - 0.091_777_959_342_351_21).abs() < 1e-6, "{mean}");
+
+    // The same all around.
+    let (rows, alpha) = (200_000u32, 0.1);
+    let once = |k: u32| {
+        let u = vec2(0.3, (k as f32 + 0.5) / rows as f32);
+        let m = sample_ggx_normal(Vec3::Z, u, alpha);
+        let i = m * (2.0 * m.z) - Vec3::Z;
+        let both = 4.0 * i.z * ggx_shadowing(Vec3::Z, i, alpha);
+        if i.z > 0.0 { f64::from(both / ggx_masking(Vec3::Z, alpha)) } else { 0.0 }
+    };
+    let mean = (0..rows).map(once).sum::<f64>() / f64::from(rows);
+    assert!((mean - 0.988_304_056_520_612).abs() < 1e-5, "{mean}");
 }
 
 /// The distribution is within 2e-6 of itself, and the masking function makes it one of what is seen:

@@ -1,5 +1,15 @@
 //! Faults that are put into BSDFs and lights, and what the checks say of them. Many are those of
-//! other renderers.
+//! other renderers. More of theirs have tests elsewhere:
+//!
+//! | fault | test |
+//! |---|---|
+//! | roulette divides by a throughput above 1 | `light_transport`, "inside a sphere, roulette 0" |
+//! | rays leave a surface along its shading normal; light leaks at grazing angles | `raydsl::bsdf::frame`, `light_does_not_leak` |
+//! | metal and dielectric are mixed before what is scattered several times is compensated | `bsdfs`, `metallic_roughness` |
+//! | glass transmits nothing; the furnace is above or below 1 | `bsdfs`, `glass`, `coats`, `conductors` |
+//! | light is counted twice where it is sampled and hit | `light_transport`, every mean with weights and without |
+//! | a volume's light has the density of a surface's | `light_transport`, "lamp" |
+//! | opacity is taken for extinction | `volumes` |
 
 use std::f32::consts::{FRAC_1_PI, PI};
 
@@ -166,7 +176,7 @@ fn faults_of_bsdfs_are_found() {
         (21, "weights and eval differ", "reflected and transmitted light are exchanged"),
         (22, "light is created", "diffuse light is not reduced by what is reflected above it"),
         (23, "delta samples are not as frequent as their pdf says", "a mirror with half a pdf"),
-        (24, "delta samples go in many directions", "diffuse samples are marked as a mirror's"),
+        (24, "delta samples are of many kinds", "diffuse samples are marked as a mirror's"),
         (25, "weights and eval differ", "an isotropic phase function with the density of a cosine"),
     ];
     let test = BsdfTest { variants: false, ..BsdfTest::new().samples(100_000, 4) };

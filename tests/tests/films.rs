@@ -4,6 +4,7 @@ use std::error::Error;
 use std::ops::ControlFlow;
 
 use raydsl::camera::{Camera, CameraRays};
+use raydsl::integrators::Stepped;
 use raydsl::prelude::*;
 use raydsl::render::{Shot, Watch};
 use raydsl::{Type, kernel};
@@ -451,4 +452,72 @@ fn channels_to_a_target_error() -> Result<(), Box<dyn Error>> {
     let mean = variances.pixels().iter().map(|v| f64::from(v.0)).sum::<f64>() / 400.0;
     assert!((mean * 12.0 - 1.0).abs() < 0.05, "{mean}");
     Ok(())
+}
+
+/// A walk along numbers of a sampler, of very different lengths.
+#[derive(Clone, Copy, Type)]
+struct Walk {
+    sampler: Sampler,
+    at: f32,
+    steps: u32,
+}
+
+#[kernel]
+impl Stepped for Walk {
+    fn begin(ray: Ray, sampler: Sampler) -> Self {
+        Walk { sampler, at: 0.1 * ray.direction.x, steps: 0 }
+    }
+
+    fn is_over(&self) -> bool {
+        self.at > 0.9 || self.steps >= 40
+    }
+}
+
+#[kernel]
+fn walked(walk: Walk) -> Walk {
+    let mut sampler = walk.sampler;
+    let at = 0.2 * walk.at + sampler.next_1d();
+    Walk { sampler, at, steps: walk.steps + 1 }
+}
+
+/// Films of whole samples and of their steps are the same, whatever is in the lanes of a packet.
+#[test]
+fn steps_have_the_bits_of_whole_samples() {
+    let whole = kernel!(|ray: Ray, sampler: Sampler| {
+        let mut walk = walked(Walk::begin(ray, sampler));
+        while !walk.is_over() {
+            walk = walked(walk);
+        }
+        (walk.at, walk.steps as f32)
+    });
+    let step = kernel!(|walk: Walk| walked(walk));
+    let sample = |walk: &Walk| (walk.at, walk.steps as f32);
+    let pinhole = Pinhole::new(vec3(0.0, 0.0, 4.0), Vec3::ZERO, Vec3::Y, 0.9);
+    let lens = ThinLens::new(pinhole, 0.1, 3.0);
+    for method in [SampleMethod::Random, SampleMethod::Stratified, SampleMethod::Sobol] {
+        let sampling = Sampling::new(100).method(method).seed(5);
+        let mut expected = Film::<(f32, f32)>::of_channels(37, 21);
+        let scalar = TiledScheduler::new().variant(Variant::Scalar);
+        scalar.accumulate(&lens, &whole, &sampling, &mut expected, 70);
+        scalar.accumulate(&lens, &whole, &sampling, &mut expected, 30);
+        for variant in CPU {
+            for (edge, gang) in [(16, 64), (1, 0), (u32::MAX, 16)] {
+                let scheduler = TiledScheduler::new().variant(variant).tile(edge).gang(gang);
+                let mut film = Film::<(f32, f32)>::of_channels(37, 21);
+                scheduler.accumulate_steps(&lens, &step, sample, &sampling, &mut film, 70);
+                scheduler.accumulate_steps(&lens, &step, sample, &sampling, &mut film, 30);
+                assert!(film == expected, "{method:?} {variant:?} {edge} {gang}");
+            }
+        }
+    }
+    let mut nothing = Film::new(0, 5);
+    let light = |walk: &Walk| walk.at;
+    TiledScheduler::new().accumulate_steps(
+        &pinhole,
+        &step,
+        light,
+        &Sampling::new(4),
+        &mut nothing,
+        4,
+    );
 }

@@ -344,33 +344,82 @@ fn light_that_is_scattered_many_times_is_exact() {
     }
 }
 
-/// A plate of opacity 0.3 between a floor and the sun, and between the floor and the eye.
+/// A ball of opacity 0.3 around a floor, between it, the sun and the eye; then two plates.
 #[test]
 fn masks_let_their_share_pass() {
     let black = Environment::constant(Vec3::ZERO).expect("radiance");
     let sun = DirectionalLight { direction: Vec3::Z, irradiance: Vec3::splat(PI), sine: 0.0 };
-    let above = Plate { center: Vec3::Z, ..FLOOR[0] };
     let veil = Paint { opacity: 0.3, ..paint(0.0) };
     let known = Known {
-        dome: &[],
-        floor: &[above, FLOOR[0]],
+        dome: &BALL,
+        floor: &FLOOR,
         lights: &[AnyLight::Directional(sun)],
         sky: &black,
-        paints: [veil; 2],
+        paints: [veil, paint(0.5)],
         bounces: 1,
         ray: Ray::new(vec3(0.1, 0.2, 3.0), -Vec3::Z),
-        // Black plates: the first is passed with 0.7, and the second then met, or not.
-        exact: 0.0,
+        exact: 0.5 * 0.7 * 0.7,
         options: PathOptions { masks: true, ..PathOptions::new() },
     };
-    assert_known("veils", &known);
-    let grey = Paint { opacity: 0.3, ..paint(0.5) };
-    // Light that the upper one scatters comes directly; that of the lower one passes it twice.
+    assert_known("veil", &known);
+    // Light that the upper plate scatters comes directly; that of the lower one passes it twice.
+    let above = Plate { center: Vec3::Z, ..FLOOR[0] };
+    let (dome, floor) = (&[][..], &[above, FLOOR[0]]);
+    let grey = [Paint { opacity: 0.3, ..paint(0.5) }; 2];
     let exact = 0.5 * (0.3 + 0.7 * 0.3 * 0.7);
-    assert_known("grey veils", &Known { paints: [grey; 2], exact, ..known });
-    // An opaque option takes no notice.
+    let plates = Known { dome, floor, paints: grey, exact, ..known };
+    assert_known("grey veils", &plates);
+    // Without the option they are opaque.
     let options = PathOptions::new();
-    assert_known("no veils", &Known { paints: [grey; 2], exact: 0.5, options, ..known });
+    assert_known("no veils", &Known { exact: 0.5, options, ..plates });
+}
+
+/// A flat lamp that shines on both sides does not light itself, although its solid angle, seen from one
+/// of its points, is a hemisphere.
+#[test]
+fn flat_lamps_do_not_light_themselves() {
+    let black = Environment::constant(Vec3::ZERO).expect("radiance");
+    for tilt in [Mat3::IDENTITY, Mat3::from_rotation_x(0.7) * Mat3::from_rotation_y(0.3)] {
+        let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| tilt * axis);
+        let plate = [Plate { center: Vec3::ZERO, normal: z, radius: 1.0 }];
+        let rectangle = RectangleShape { corner: -x - y, u_edge: x * 2.0, v_edge: y * 2.0 };
+        let triangle = Triangle { v0: -x * 4.0 - y, v1: x * 4.0 - y, v2: y * 3.0 };
+        for lamp in [
+            AnyLight::Rectangle(area(rectangle, 1.0, true)),
+            AnyLight::Triangle(area(triangle, 1.0, true)),
+        ] {
+            let known = Known {
+                dome: &[],
+                floor: &plate,
+                lights: &[lamp],
+                sky: &black,
+                paints: [Paint { light: 0, ..paint(0.5) }; 2],
+                bounces: 1,
+                ray: Ray::new(z * 3.0 + x * 0.1 + y * 0.2, -z),
+                exact: 1.0,
+                options: PathOptions::new(),
+            };
+            assert_known("a lamp alone", &known);
+        }
+    }
+}
+
+/// A path whose light is not a number ends by roulette alone.
+#[test]
+fn paths_of_no_number_end() {
+    let black = Environment::constant(Vec3::ZERO).expect("radiance");
+    let list: [AnyLight; 0] = [];
+    let lights = Lights::new(&list, cube()).expect("no lights").with_environment(&black);
+    let scene = Dome { dome: &BALL, floor: &[] };
+    let limits = PathLimits { bounces: u32::MAX, roulette: 0 };
+    let paint = paint(f32::NAN);
+    let surface = |_: Hit, _: ShadingPoint| paint;
+    for seed in 0..100 {
+        let ray = Ray::new(vec3(0.1, 0.2, 0.0), vec3(0.0, 0.6, 0.8));
+        let sampler = sampler_of(seed, 1);
+        let sample = path::<_, _, Paint>(&scene, surface, &lights, limits, ray, sampler);
+        assert!(sample.color.w == 1.0);
+    }
 }
 
 /// A medium in the dome, whose extinction differs from place to place.
@@ -387,7 +436,8 @@ struct InMedium<'a> {
     exact: f64,
 }
 
-const MEDIUM_RAY: Ray = Ray::new(vec3(0.1, 0.2, 0.0), vec3(0.0, 0.6, 0.8));
+/// Its direction is three units long.
+const MEDIUM_RAY: Ray = Ray::new(vec3(0.1, 0.2, 0.0), vec3(0.0, 1.8, 2.4));
 
 /// Voxels around the dome; 0 is an extinction of 0.2, and 1 of 3.
 fn medium(voxels: &[f32]) -> Result<Grid<'_, f32>, GridError> {
@@ -412,7 +462,8 @@ fn assert_in_medium(case: &InMedium<'_>, voxels: &[f32]) -> Result<(), Box<dyn E
             dome,
             |_hit: Hit, _point: ShadingPoint| paint,
             |ray: Ray, rng: Rng| {
-                let met = collision(&murk, anisotropy, ray, rng);
+                let mut rng = rng;
+                let met = collision(&murk, anisotropy, ray, &mut rng);
                 let none = vec3(0.0, 0.0, 0.0);
                 let emission = if emits { met.albedo } else { none };
                 Collision { emission, albedo: if emits { none } else { met.albedo }, ..met }
@@ -478,8 +529,9 @@ fn light_in_media_is_exact() -> Result<(), Box<dyn Error>> {
     // Scattered once, of a lamp in the middle, with the phase function of the angle.
     let even = [0.5; 27];
     let (extinction, albedo, g, steps) = (1.6, 0.7, 0.6, 20_000);
-    let (origin, way) = (MEDIUM_RAY.origin.as_dvec3(), MEDIUM_RAY.direction.as_dvec3());
-    let length = f64::from(hit.t);
+    let origin = MEDIUM_RAY.origin.as_dvec3();
+    let way = MEDIUM_RAY.direction.as_dvec3().normalize();
+    let length = 3.0 * f64::from(hit.t);
     let once = |k: i32| {
         let t = (f64::from(k) + 0.5) / f64::from(steps) * length;
         let p = origin + way * t;

@@ -23,7 +23,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
 use raydsl::bsdf::{Lambert, Luminous};
-use raydsl::integrators::{PathLimits, path};
+use raydsl::integrators::{PathLimits, PathOptions, PathState, path, path_step};
 use raydsl::light::{AreaLight, Environment, Lights};
 use raydsl::prelude::*;
 use raydsl_benches::clock::{median, seconds_on, spread};
@@ -36,7 +36,12 @@ use case::Case;
 use plain::Plain;
 
 type Error = Box<dyn std::error::Error>;
-type PathKernel<'a> = Kernel<'a, (Ray, Sampler), Vec4>;
+
+/// A path as a whole, and one step of it.
+struct Paths<'a> {
+    whole: Kernel<'a, (Ray, Sampler), Vec4>,
+    step: Kernel<'a, (PathState,), PathState>,
+}
 
 /// Measures path tracing.
 #[derive(Parser)]
@@ -101,6 +106,8 @@ enum Tree {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Contender {
     Library(Variant, SampleMethod),
+    /// In steps, lanes refilled.
+    Steps(Variant),
     Plain,
 }
 
@@ -204,11 +211,17 @@ fn in_cornell(bench: &Bench) -> Result<Vec<Row>, Error> {
     };
     let lights = Lights::new(&lamps, scene.bounds())?;
     let limits = PathLimits { bounces: bench.args.bounces, roulette: u32::MAX };
-    let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+    let whole = kernel!(|ray: Ray, sampler: Sampler| {
         let surface = |hit: Hit, _point: ShadingPoint| scene.primitive(hit).material();
         path::<_, _, Luminous<Lambert>>(&scene, surface, &lights, limits, ray, sampler).color
     });
-    bench.measure(&case::of_walls(&walls, cornell::camera()), &kernel)
+    let options = PathOptions::new();
+    let step = kernel!(|state: PathState| {
+        let surface = |hit: Hit, _point: ShadingPoint| scene.primitive(hit).material();
+        path_step::<_, _, Luminous<Lambert>>(&scene, surface, &lights, host(options), limits, state)
+            .next
+    });
+    bench.measure(&case::of_walls(&walls, cornell::camera()), &Paths { whole, step })
 }
 
 fn in_sponza(bench: &Bench, data: &Path) -> Result<Vec<Row>, Error> {
@@ -221,11 +234,16 @@ fn in_sponza(bench: &Bench, data: &Path) -> Result<Vec<Row>, Error> {
     let none: [AreaLight<Triangle>; 0] = [];
     let lights = Lights::new(&none, scene.bounds())?.with_environment(&sky);
     let limits = PathLimits { bounces: bench.args.bounces, roulette: u32::MAX };
-    let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+    let whole = kernel!(|ray: Ray, sampler: Sampler| {
         let surface = |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo };
         path::<_, _, Lambert>(&scene, surface, &lights, limits, ray, sampler).color
     });
-    bench.measure(&case::of_triangles("sponza", &prims, camera), &kernel)
+    let options = PathOptions::new();
+    let step = kernel!(|state: PathState| {
+        let surface = |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo };
+        path_step::<_, _, Lambert>(&scene, surface, &lights, host(options), limits, state).next
+    });
+    bench.measure(&case::of_triangles("sponza", &prims, camera), &Paths { whole, step })
 }
 
 /// The means of a picture that a renderer made, and how long it took.
@@ -246,7 +264,7 @@ struct Rounds {
 
 impl Bench {
     /// Interleaved rounds over a scene: what the machine does meanwhile touches all alike.
-    fn measure(&self, case: &Case, kernel: &PathKernel<'_>) -> Result<Vec<Row>, Error> {
+    fn measure(&self, case: &Case, paths: &Paths<'_>) -> Result<Vec<Row>, Error> {
         let Args { size, samples, bounces, .. } = self.args;
         let reference = match &self.args.references {
             Some(folder) => {
@@ -258,7 +276,7 @@ impl Bench {
                 let mut film = Film::new(size, size);
                 TiledScheduler::new().accumulate(
                     &case.camera,
-                    kernel,
+                    &paths.whole,
                     &sampling,
                     &mut film,
                     samples,
@@ -279,7 +297,10 @@ impl Bench {
                 let picture = match *renderer {
                     Contender::Library(variant, method) => {
                         let sampling = Sampling::new(samples).seed(seed).method(method);
-                        self.render(case, kernel, variant, sampling)?
+                        self.render(case, paths, variant, sampling)?
+                    }
+                    Contender::Steps(variant) => {
+                        self.in_steps(case, paths, variant, Sampling::new(samples).seed(seed))
                     }
                     Contender::Plain => {
                         let render = || plain.render(&case.camera, (size, samples), bounces, seed);
@@ -305,7 +326,7 @@ impl Bench {
                 renderer: name_of(*renderer),
                 isa: match renderer {
                     Contender::Library(Variant::Wgsl, _) => "device",
-                    Contender::Library(variant, _) => variant.isa().0,
+                    Contender::Library(variant, _) | Contender::Steps(variant) => variant.isa().0,
                     Contender::Plain => "",
                 },
                 rate: median(&of.rates),
@@ -328,6 +349,8 @@ impl Bench {
         let mut contenders = vec![Contender::Plain];
         let variants = Variant::ALL.into_iter().filter(is_here);
         contenders.extend(variants.map(|v| Contender::Library(v, SampleMethod::Sobol)));
+        let packets = [Variant::Packet8, Variant::Packet16].into_iter().filter(is_here);
+        contenders.extend(packets.map(Contender::Steps));
         contenders.push(Contender::Library(Variant::widest(), SampleMethod::Random));
         let is_asked = |r: &Contender| {
             self.args.only.is_empty() || self.args.only.iter().any(|w| name_of(*r).contains(w))
@@ -339,12 +362,12 @@ impl Bench {
     fn render(
         &self,
         case: &Case,
-        kernel: &PathKernel<'_>,
+        paths: &Paths<'_>,
         variant: Variant,
         sampling: Sampling,
     ) -> Result<Picture, Error> {
         let mut film = Film::new(self.args.size, self.args.size);
-        let samples = sampling.planned;
+        let (samples, kernel) = (sampling.planned, &paths.whole);
         let seconds = match (variant, &self.device) {
             (Variant::Wgsl, Some(gpu)) => {
                 let start = std::time::Instant::now();
@@ -361,6 +384,22 @@ impl Bench {
         };
         Ok(Picture { pixels: pixels_of(&film), seconds })
     }
+
+    fn in_steps(
+        &self,
+        case: &Case,
+        paths: &Paths<'_>,
+        variant: Variant,
+        sampling: Sampling,
+    ) -> Picture {
+        let mut film = Film::new(self.args.size, self.args.size);
+        let scheduler = TiledScheduler::new().variant(variant);
+        let (camera, step, samples) = (&case.camera, &paths.step, sampling.planned);
+        let mut render =
+            || scheduler.accumulate_steps(camera, step, |s| s.color, &sampling, &mut film, samples);
+        let seconds = self.one_thread.install(|| seconds_on(1, &mut render).1);
+        Picture { pixels: pixels_of(&film), seconds }
+    }
 }
 
 fn name_of(renderer: Contender) -> String {
@@ -368,6 +407,7 @@ fn name_of(renderer: Contender) -> String {
         Contender::Plain => "plain Rust".to_owned(),
         Contender::Library(variant, SampleMethod::Sobol) => format!("{} sobol", variant.name()),
         Contender::Library(variant, _) => format!("{} random", variant.name()),
+        Contender::Steps(variant) => format!("{} steps", variant.name()),
     }
 }
 

@@ -85,7 +85,8 @@ impl<F: Fresnel> Bsdf for Conductor<F> {
         if is_reflected { lobe.pdf } else { 0.0 }
     }
 
-    /// The mean over the hemisphere of Schlick's reflectance: black metal reflects at grazing angles.
+    /// Returns the mean over the hemisphere of Schlick's reflectance: black metal reflects at grazing
+    /// angles.
     fn albedo(&self, _wo: Vec3) -> Vec3 {
         let fresnel: F = self.fresnel;
         let normal: Vec3 = fresnel.at_normal();

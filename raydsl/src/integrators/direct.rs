@@ -28,7 +28,7 @@ pub struct Scattering<B: Bsdf + MachineType> {
 /// Returns whether any component is above 0.
 #[kernel]
 #[inline]
-fn is_bright(color: Vec3) -> bool {
+pub(super) fn is_bright(color: Vec3) -> bool {
     color.x > 0.0 || color.y > 0.0 || color.z > 0.0
 }
 

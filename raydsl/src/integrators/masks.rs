@@ -15,7 +15,8 @@ use crate::shading::{Scene, ShadingPoint};
 #[kernel]
 #[inline]
 fn is_met(opacity: f32, hit: Hit, seed: UVec2) -> bool {
-    let words = pcg4d(uvec4(hit.prim_id, hit.t.to_bits(), seed.x, seed.y));
+    let place = hit.prim_id ^ hit.inst_id.rotate_left(16);
+    let words = pcg4d(uvec4(place, hit.t.to_bits(), seed.x, seed.y));
     opacity >= 1.0 || unit_f32(words.x) < opacity
 }
 

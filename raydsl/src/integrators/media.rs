@@ -2,17 +2,17 @@
 
 use glam::{Vec3, Vec3Swizzles as _, uvec2, vec3, vec4};
 
-use super::direct::{Scattering, next_3d, scattered_light, scattering_at};
+use super::direct::{Scattering, is_bright, next_3d, scattered_light, scattering_at};
 use super::masks::{closest_surface, is_occluded};
 use super::path_tracing::{
-    LightSampling, PathLimits, PathOptions, PathSample, hit_density, nothing, seen_first,
+    LightSampling, PathLimits, PathOptions, PathSample, hit_density, seen_first, survival,
 };
 use crate::bsdf::{Bsdf, BsdfSample, Material};
 use crate::geometry::{Hit, Ray, SurfacePoint};
-use crate::light::{Light, LightSample, Lights, NO_RIVAL};
+use crate::light::{Light, Lights, NO_RIVAL};
 use crate::machine::Type as MachineType;
 use crate::machine::functions::{uvec2, vec3, vec4};
-use crate::machine::generic::{length, max, min, normalize};
+use crate::machine::generic::{length, normalize};
 use crate::sampling::{Rng, Sampler, power_heuristic};
 use crate::shading::{Scene, ShadingPoint};
 use crate::volume::{Collision, henyey_greenstein, sample_henyey_greenstein};
@@ -20,13 +20,18 @@ use crate::{Type, kernel};
 
 /// As [`path_with()`](super::path_with), through a medium around and between the surfaces.
 ///
-/// `collision` returns what light on a ray meets in the medium, at random: of a
-/// [`Volume`](crate::volume::Volume) it is [`collision()`](crate::volume::collision), of
+/// `collision` returns what light on a ray meets in the medium between `t_min` and `t_max`, at random:
+/// of a [`Volume`](crate::volume::Volume) it is [`collision()`](crate::volume::collision), of
 /// [`Fog`](crate::volume::Fog) a method; of several media it is the closest. `transmittance` estimates
 /// how much of the light passes, as [`ratio_transmittance()`](crate::volume::ratio_transmittance)
-/// does. A collision counts as a bounce. (Lafortune and Willems, "Rendering Participating Media with
+/// does; of several media it is the product. What a closure draws comes from the generator that it is
+/// given: several media draw from it one after another, as numbers of their own. A collision counts as a
+/// bounce. (Lafortune and Willems, "Rendering Participating Media with
 /// Bidirectional Path Tracing", 1996, without paths from lights; Novák, Georgiev, Hanika and Jarosz,
 /// "Monte Carlo Methods for Volumetric Light Transport Simulation", 2018.)
+///
+/// Where the first thing is a collision, the sample's albedo is that of the medium, its normal 0, its
+/// depth that of the collision, and its alpha 1.
 ///
 /// ```
 /// use raydsl::bsdf::Lambert;
@@ -51,7 +56,10 @@ use crate::{Type, kernel};
 ///     volume_path::<_, _, Lambert>(
 ///         nothing,
 ///         |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo },
-///         |ray: Ray, rng: Rng| collision(&cloud, 0.5, ray, rng),
+///         |ray: Ray, rng: Rng| {
+///             let mut rng = rng;
+///             collision(&cloud, 0.5, ray, &mut rng)
+///         },
 ///         |ray: Ray, rng: Rng| {
 ///             let mut rng = rng;
 ///             ratio_transmittance(&cloud, ray, &mut rng)
@@ -74,6 +82,7 @@ use crate::{Type, kernel};
 // ANCHOR: trace
 #[kernel]
 #[expect(clippy::too_many_arguments, reason = "a closure each for what a scene may have")]
+#[expect(clippy::collapsible_if, reason = "the outer one is decided before the kernel runs")]
 pub fn volume_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material + MachineType>(
     scene: &S,
     surface: impl Fn(Hit, ShadingPoint) -> B,
@@ -88,7 +97,7 @@ pub fn volume_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material
     let (mut ray, mut sampler) = (ray, sampler);
     let mut ahead = normalize(ray.direction);
     let (mut radiance, mut throughput) = (vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
-    let mut first = nothing();
+    let mut first = PathSample::nothing();
     let mut from = SurfacePoint { position: ray.origin, normal: ahead, error: 0.0 };
     let mut pdf = NO_RIVAL;
     let seed = uvec2(sampler.key.x, sampler.index);
@@ -103,21 +112,27 @@ pub fn volume_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material
             radiance += throughput * lights.missed(ahead, pdf);
             break;
         }
-        let numbers = next_3d(&mut sampler);
-        let choice = next_3d(&mut sampler);
 
-        // Scatter light there: from one of the lights, and to where the path goes.
-        let mut sample = LightSample::dark();
-        let next = if met.is_met {
+        // Add the light that it emits, and scatter light from a light, and to where the path goes.
+        let is_last = bounce == limits.bounces;
+        let mut next = Scattered::nowhere(from, ray);
+        if met.is_met {
             if bounce == 0 {
                 first = seen_in_medium(met, ray);
             }
             radiance += throughput * met.emission;
-            let point = SurfacePoint { position: ray.at(met.t), normal: ahead, error: 0.0 };
-            if options.lights.has_samples() {
-                sample = lights.sample(point, numbers);
+            if !is_last {
+                let point = SurfacePoint { position: ray.at(met.t), normal: NO_NORMAL, error: 0.0 };
+                next = in_medium::<L>(
+                    lights,
+                    is_occluded,
+                    options.lights,
+                    met,
+                    point,
+                    ahead,
+                    &mut sampler,
+                );
             }
-            in_medium(is_occluded, options.lights, met, point, ahead, sample, choice)
         } else {
             let seen = scene.shading_point(ray, hit);
             let material: B = surface(hit, seen);
@@ -126,31 +141,24 @@ pub fn volume_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material
                 first = seen_first::<B>(at, hit.t * length(ray.direction));
             }
             radiance += throughput * lights.emitted(material.light(), at.point, from, ahead, pdf);
-            if options.lights.has_samples() {
-                sample = lights.sample(at.point, numbers);
+            if !is_last {
+                next = on_surface::<L, B>(lights, is_occluded, options.lights, at, &mut sampler);
             }
-            on_surface::<B>(is_occluded, options.lights, at, sample, choice)
-        };
-        if bounce == limits.bounces {
+        }
+        if is_last {
             break;
         }
-        if next.is_lit {
-            let passed = transmittance(next.shadow, Rng::new(seed, 2 * bounce + 1, 0));
-            radiance += throughput * next.light * passed;
+        if options.lights.has_samples() {
+            if next.is_lit {
+                let passed = transmittance(next.shadow, Rng::new(seed, 2 * bounce + 1, 0));
+                radiance += throughput * next.light * passed;
+            }
         }
 
         // Go on with the probability of what is left.
         throughput *= next.weight;
-        let goes_on = max(throughput.x, max(throughput.y, throughput.z));
-        let mut is_over = goes_on <= 0.0;
-        let mut chance = 1.0;
-        if bounce < limits.roulette {
-            sampler.dimension = sampler.dimension.wrapping_add(1);
-        } else {
-            chance = min(goes_on, 0.95);
-            is_over = is_over || sampler.next_1d() >= chance;
-        }
-        if is_over {
+        let chance = survival(throughput, bounce, limits, &mut sampler);
+        if chance <= 0.0 {
             break;
         }
         throughput /= chance;
@@ -161,6 +169,9 @@ pub fn volume_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material
     first
 }
 // ANCHOR_END: trace
+
+/// The normal of a point of a medium.
+const NO_NORMAL: Vec3 = Vec3::ZERO;
 
 /// How light goes on from a point: from one of the lights to the path, and where the path goes.
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
@@ -181,63 +192,80 @@ struct Scattered {
     point: SurfacePoint,
 }
 
+#[kernel]
+impl Scattered {
+    /// Returns no light.
+    #[inline]
+    fn nowhere(point: SurfacePoint, ray: Ray) -> Self {
+        let none = vec3(0.0, 0.0, 0.0);
+        Self { is_lit: false, light: none, shadow: ray, weight: none, pdf: 0.0, ray, point }
+    }
+}
+
 /// Returns light that is scattered by a surface.
 #[kernel]
-fn on_surface<B: Bsdf + Material + MachineType>(
+fn on_surface<L: Light + MachineType, B: Bsdf + Material + MachineType>(
+    lights: &Lights<'_, L>,
     is_occluded: impl Fn(Ray) -> bool,
-    #[host] lights: LightSampling,
+    #[host] sampling: LightSampling,
     at: Scattering<B>,
-    sample: LightSample,
-    choice: Vec3,
+    sampler: &mut Sampler,
 ) -> Scattered {
     let bsdf: B = at.bsdf;
+    let (numbers, choice) = (next_3d(&mut *sampler), next_3d(&mut *sampler));
     let next: BsdfSample = bsdf.sample(at.wo, choice);
     let direction = at.frame.to_world(next.wi);
     let goes_on = at.frame.is_consistent(direction, next.wi);
-    let light = scattered_light::<B>(is_occluded, lights.is_weighted(), sample, at);
-    Scattered {
-        is_lit: light != vec3(0.0, 0.0, 0.0),
-        light,
-        shadow: sample.shadow_ray(at.point),
+    let mut scattered = Scattered {
         weight: if goes_on { next.weight } else { vec3(0.0, 0.0, 0.0) },
-        pdf: hit_density(lights, next.pdf, next.is_delta),
-        ray: at.point.ray(direction),
-        point: at.point,
+        pdf: hit_density(sampling, next.pdf, next.is_delta),
+        ..Scattered::nowhere(at.point, at.point.ray(direction))
+    };
+    if sampling.has_samples() {
+        let sample = lights.sample(at.point, numbers);
+        scattered.light = scattered_light::<B>(is_occluded, sampling.is_weighted(), sample, at);
+        scattered.is_lit = is_bright(scattered.light);
+        scattered.shadow = sample.shadow_ray(at.point);
     }
+    scattered
 }
 
 /// Returns light that is scattered by a medium, for a path that came along `ahead`.
 #[kernel]
-fn in_medium(
+fn in_medium<L: Light + MachineType>(
+    lights: &Lights<'_, L>,
     is_occluded: impl Fn(Ray) -> bool,
-    #[host] lights: LightSampling,
+    #[host] sampling: LightSampling,
     met: Collision,
     point: SurfacePoint,
     ahead: Vec3,
-    sample: LightSample,
-    choice: Vec3,
+    sampler: &mut Sampler,
 ) -> Scattered {
     let g = met.anisotropy;
+    let (numbers, choice) = (next_3d(&mut *sampler), next_3d(&mut *sampler));
     let direction = sample_henyey_greenstein(ahead, choice.xy(), g);
-    let phase = henyey_greenstein(ahead.dot(sample.wi), g);
-    let shadow = sample.shadow_ray(point);
-    let mut is_lit = false;
-    if sample.pdf > 0.0 {
-        is_lit = !is_occluded(shadow);
-    }
-    let rival = if sample.is_delta { 0.0 } else { phase };
-    let weight =
-        if lights.is_weighted() { power_heuristic(1.0, sample.pdf, 1.0, rival) } else { 1.0 };
-    let light = met.albedo * sample.light * (phase * weight / sample.pdf);
-    Scattered {
-        is_lit,
-        light: if is_lit { light } else { vec3(0.0, 0.0, 0.0) },
-        shadow,
+    let pdf = henyey_greenstein(ahead.dot(direction), g);
+    let mut scattered = Scattered {
         weight: met.albedo,
-        pdf: hit_density(lights, henyey_greenstein(ahead.dot(direction), g), false),
-        ray: Ray { origin: point.position, direction, t_min: 0.0, t_max: f32::MAX },
-        point,
+        pdf: hit_density(sampling, pdf, false),
+        ..Scattered::nowhere(point, Ray::new(point.position, direction))
+    };
+    if sampling.has_samples() {
+        let sample = lights.sample(point, numbers);
+        let phase = henyey_greenstein(ahead.dot(sample.wi), g);
+        let rival = if sample.is_delta { 0.0 } else { phase };
+        let mut weight = 1.0;
+        if sampling.is_weighted() {
+            weight = power_heuristic(1.0, sample.pdf, 1.0, rival);
+        }
+        let light = met.albedo * sample.light * phase;
+        scattered.shadow = sample.shadow_ray(point);
+        if sample.pdf > 0.0 && is_bright(light) {
+            scattered.light = light * (weight / sample.pdf);
+            scattered.is_lit = !is_occluded(scattered.shadow);
+        }
     }
+    scattered
 }
 
 /// Returns the sample of a ray that a medium scatters, before any light.

@@ -5,7 +5,9 @@
 //! | [`direct_light()`] | radiance of any surfaces under any lights, by one sample of each light |
 //! | [`whitted()`] | the same, seen by mirrors and smooth glass |
 //! | [`path()`], [`path_with()`] | light that is scattered many times, by one path |
+//! | [`path_step()`] | one step of a path, a [`Stepped`] state, for schedulers that refill lanes |
 //! | [`volume_path()`] | the same, through a medium that scatters, absorbs or emits light |
+//! | [`clamped()`] | a colour of at most a limit, and what it lost |
 //! | [`ambient_occlusion()`] | unoccluded share of the hemisphere above the hit |
 //! | [`aovs()`] | albedo, normal, depth and ids of the closest hit |
 //! | [`bvh_cost()`], [`bvh_cost_color()`] | traversal cost, as counts or as a colour |
@@ -40,6 +42,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod clamp;
 mod cost;
 mod direct;
 mod masks;
@@ -47,7 +50,9 @@ mod media;
 mod occlusion;
 mod outputs;
 mod path_tracing;
+mod stepped;
 
+pub use clamp::clamped;
 pub use cost::{bvh_cost, bvh_cost_color, heat_color};
 pub use direct::{
     Scattering, ScatteringOn, direct_light, from_each_light, next_3d, scattered_light,
@@ -58,5 +63,7 @@ pub use media::volume_path;
 pub use occlusion::{ambient_occlusion, is_open};
 pub use outputs::{Aovs, AovsOn, aovs};
 pub use path_tracing::{
-    LightSampling, PathLimits, PathLimitsOn, PathOptions, PathSample, PathSampleOn, path, path_with,
+    LightSampling, PathLimits, PathLimitsOn, PathOptions, PathSample, PathSampleOn, PathState,
+    PathStateOn, PathStep, PathStepOn, path, path_step, path_with,
 };
+pub use stepped::Stepped;

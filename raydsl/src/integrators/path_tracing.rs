@@ -29,6 +29,23 @@ pub struct PathSample {
     pub depth: f32,
 }
 
+#[kernel]
+impl PathSample {
+    /// Returns the sample of a ray that misses.
+    #[inline]
+    pub(super) fn nothing() -> Self {
+        let none = vec3(0.0, 0.0, 0.0);
+        Self { color: vec4(0.0, 0.0, 0.0, 0.0), albedo: none, normal: none, depth: f32::MAX }
+    }
+}
+
+/// Returns a colour with more light.
+#[kernel]
+#[inline]
+fn with_light(color: Vec4, light: Vec3) -> Vec4 {
+    vec4(color.x + light.x, color.y + light.y, color.z + light.z, color.w)
+}
+
 /// How long paths are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Type)]
 #[repr(C)]
@@ -46,15 +63,18 @@ impl PathLimits {
     }
 }
 
-/// How a path finds light, a host value: WGSL and machine code have no trace of what is not chosen.
+/// How a path finds direct light, a host value: by next-event estimation, by the rays of the path, or by
+/// both and multiple importance sampling.
+#[doc(alias = "MIS")]
+#[doc(alias = "next event estimation")]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Type)]
 #[repr(u32)]
 pub enum LightSampling {
-    /// By samples of lights and by rays that hit lights, weighted by the power heuristic: the least
-    /// noise.
+    /// By samples of lights and by rays that hit lights, weighted by the power heuristic (multiple
+    /// importance sampling): the least noise.
     #[default]
     Weighted,
-    /// By samples of lights alone, but for mirrors and smooth glass: noisy where a glossy surface
+    /// By samples of lights alone (next-event estimation), but for mirrors and smooth glass: noisy where a glossy surface
     /// reflects a large light.
     LightsAlone,
     /// By rays that hit lights alone: noisy where lights are small, and blind for those that no ray
@@ -79,7 +99,8 @@ impl LightSampling {
 pub struct PathOptions {
     /// Whether there are surfaces with holes, or half-transparent ones: rays meet a surface with the
     /// probability of its [`Material::opacity`], and pass it otherwise. Queries ask the material of
-    /// every hit then, which takes longer.
+    /// every hit then, which takes longer. A surface that is a light is opaque to its own samples: one
+    /// that shines should be opaque.
     pub masks: bool,
     /// How light is found.
     pub lights: LightSampling,
@@ -176,7 +197,6 @@ pub fn path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material + Mach
 }
 
 /// As [`path()`], with options.
-// ANCHOR: trace
 #[kernel]
 pub fn path_with<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material + MachineType>(
     scene: &S,
@@ -187,70 +207,168 @@ pub fn path_with<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material +
     ray: Ray,
     sampler: Sampler,
 ) -> PathSample {
-    let (mut ray, mut sampler) = (ray, sampler);
-    let mut ahead = normalize(ray.direction);
-    let (mut radiance, mut throughput) = (vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
-    let mut first = nothing();
-    let mut from = SurfacePoint { position: ray.origin, normal: ahead, error: 0.0 };
-    let mut pdf = NO_RIVAL;
+    let mut state = PathState::new(ray, sampler);
+    let mut first = PathSample::nothing();
+    while !state.is_over {
+        let is_first = state.bounce == 0;
+        let step: PathStep = path_step::<S, L, B>(scene, &surface, lights, options, limits, state);
+        if is_first {
+            first = step.seen;
+        }
+        state = step.next;
+    }
+    PathSample { color: state.color, ..first }
+}
+
+/// A path up to one of its rays.
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
+pub struct PathState {
+    /// The next ray, of any length.
+    pub ray: Ray,
+    /// Where it begins, from which lights are chosen.
+    pub from: SurfacePoint,
+    /// Density of its direction, against which samples of lights are weighted.
+    pub pdf: f32,
+    /// Factor of the light that it brings: red, green and blue.
+    pub throughput: Vec3,
+    /// How often light has been scattered.
+    pub bounce: u32,
+    /// Whether there is no next ray.
+    pub is_over: bool,
+    /// The numbers of the next bounce.
+    pub sampler: Sampler,
+    /// What the path has brought so far: a [`PathSample::color`].
+    pub color: Vec4,
+}
+
+/// What a step of a path returns.
+#[derive(Clone, Copy, Debug, PartialEq, Type)]
+pub struct PathStep {
+    /// The path behind it.
+    pub next: PathState,
+    /// What denoisers ask for, of what the ray hits; without a colour.
+    pub seen: PathSample,
+}
+
+#[kernel]
+impl PathStep {
+    /// Returns the last step of a path.
+    #[inline]
+    fn last(state: PathState, color: Vec4, seen: PathSample) -> Self {
+        PathStep { next: PathState { color, is_over: true, ..state }, seen }
+    }
+}
+
+#[kernel]
+impl PathState {
+    /// Creates the path of a camera's ray.
+    pub fn new(ray: Ray, sampler: Sampler) -> Self {
+        Self {
+            ray,
+            from: SurfacePoint {
+                position: ray.origin,
+                normal: normalize(ray.direction),
+                error: 0.0,
+            },
+            pdf: NO_RIVAL,
+            throughput: vec3(1.0, 1.0, 1.0),
+            bounce: 0,
+            is_over: false,
+            sampler,
+            color: vec4(0.0, 0.0, 0.0, 0.0),
+        }
+    }
+}
+
+/// Follows a path by one ray: to what it hits, a light that shines there, and the next direction. The
+/// kernel of [`accumulate_steps`](crate::render::TiledScheduler::accumulate_steps).
+// ANCHOR: trace
+#[kernel]
+pub fn path_step<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material + MachineType>(
+    scene: &S,
+    surface: impl Fn(Hit, ShadingPoint) -> B,
+    lights: &Lights<'_, L>,
+    #[host] options: PathOptions,
+    limits: PathLimits,
+    state: PathState,
+) -> PathStep {
+    let PathState { ray, from, pdf, bounce, mut throughput, mut sampler, mut color, .. } = state;
+    let ahead = normalize(ray.direction);
     let seed = uvec2(sampler.key.x, sampler.index);
     let is_occluded = |ray: Ray| is_occluded::<S, B>(scene, &surface, options.masks, ray, seed);
-    for bounce in 0..=limits.bounces {
-        // Find what the path hits.
-        let hit = closest_surface::<S, B>(scene, &surface, options.masks, ray, seed);
-        if !hit.is_hit {
-            radiance += throughput * lights.missed(ahead, pdf);
-            break;
-        }
-        let seen = scene.shading_point(ray, hit);
-        let material: B = surface(hit, seen);
-        let at = scattering_at::<B>(seen, material, -ahead);
-        if bounce == 0 {
-            first = seen_first::<B>(at, hit.t * length(ray.direction));
-        }
 
-        // Add the light that it emits.
-        let light = material.light();
-        radiance += throughput * lights.emitted(light, at.point, from, ahead, pdf);
-        if bounce == limits.bounces {
-            break;
-        }
-
-        // Add the light that one of the lights sends.
-        let numbers = next_3d(&mut sampler);
-        if options.lights.has_samples() {
-            let sample = lights.sample(at.point, numbers);
-            let is_weighted = options.lights.is_weighted();
-            radiance += throughput * scattered_light::<B>(is_occluded, is_weighted, sample, at);
-        }
-
-        // Go on in a direction of the surface's choice.
-        let next: BsdfSample = material.sample(at.wo, next_3d(&mut sampler));
-        let direction = at.frame.to_world(next.wi);
-        throughput *= next.weight;
-        let goes_on = max(throughput.x, max(throughput.y, throughput.z));
-        // A NaN goes on, and is counted by the film.
-        let mut is_over = goes_on <= 0.0;
-        let mut chance = 1.0;
-        if bounce < limits.roulette {
-            // The dimension is left out, so that all others are the same with and without roulette.
-            sampler.dimension = sampler.dimension.wrapping_add(1);
-        } else {
-            chance = min(goes_on, 0.95);
-            is_over = is_over || sampler.next_1d() >= chance;
-        }
-        if is_over || !at.frame.is_consistent(direction, next.wi) {
-            break;
-        }
-        throughput /= chance;
-        pdf = hit_density(options.lights, next.pdf, next.is_delta);
-        (from, ahead) = (at.point, direction);
-        ray = at.point.ray(direction);
+    // Find what the path hits.
+    let hit = closest_surface::<S, B>(scene, &surface, options.masks, ray, seed);
+    if !hit.is_hit {
+        color = with_light(color, throughput * lights.missed(ahead, pdf));
+        return PathStep::last(state, color, PathSample::nothing());
     }
-    first.color = vec4(radiance.x, radiance.y, radiance.z, first.color.w);
-    first
+    let seen = scene.shading_point(ray, hit);
+    let material: B = surface(hit, seen);
+    let at = scattering_at::<B>(seen, material, -ahead);
+    let mut first = PathSample::nothing();
+    if bounce == 0 {
+        first = seen_first::<B>(at, hit.t * length(ray.direction));
+    }
+    color.w = 1.0;
+
+    // Add the light that it emits.
+    let light = material.light();
+    color = with_light(color, throughput * lights.emitted(light, at.point, from, ahead, pdf));
+    if bounce == limits.bounces {
+        return PathStep::last(state, color, first);
+    }
+
+    // Add the light that one of the lights sends.
+    let numbers = next_3d(&mut sampler);
+    if options.lights.has_samples() {
+        let of_light = lights.sample(at.point, numbers);
+        let is_weighted = options.lights.is_weighted();
+        let scattered = scattered_light::<B>(is_occluded, is_weighted, of_light, at);
+        color = with_light(color, throughput * scattered);
+    }
+
+    // Go on in a direction of the surface's choice.
+    let next: BsdfSample = material.sample(at.wo, next_3d(&mut sampler));
+    let direction = at.frame.to_world(next.wi);
+    throughput *= next.weight;
+    let chance = survival(throughput, bounce, limits, &mut sampler);
+    let next = PathState {
+        ray: at.point.ray(direction),
+        from: at.point,
+        pdf: hit_density(options.lights, next.pdf, next.is_delta),
+        throughput: throughput / chance,
+        bounce: bounce + 1,
+        is_over: chance <= 0.0 || !at.frame.is_consistent(direction, next.wi),
+        sampler,
+        color,
+    };
+    PathStep { next, seen: first }
 }
 // ANCHOR_END: trace
+
+/// Returns the probability with which a path went on, or 0 if it is over: by Russian roulette from a
+/// bounce on, at most 0.95, so that a path whose throughput is not a number ends too.
+#[kernel]
+#[inline]
+pub(super) fn survival(
+    throughput: Vec3,
+    bounce: u32,
+    limits: PathLimits,
+    sampler: &mut Sampler,
+) -> f32 {
+    let brightest = max(throughput.x, max(throughput.y, throughput.z));
+    let mut chance = if brightest <= 0.0 { 0.0 } else { 1.0 };
+    if bounce < limits.roulette {
+        // The dimension is left out, so that all others are the same with and without roulette.
+        sampler.dimension = sampler.dimension.wrapping_add(1);
+    } else {
+        // In this order a NaN yields the limit.
+        let going_on = min(0.95, brightest);
+        chance = if sampler.next_1d() < going_on { going_on } else { 0.0 };
+    }
+    chance
+}
 
 /// Returns the density of a direction against which samples of lights are weighted where a ray hits a
 /// light: 0 where they alone count.
@@ -283,12 +401,4 @@ pub(super) fn seen_first<B: Bsdf + MachineType>(at: Scattering<B>, depth: f32) -
     let bsdf: B = at.bsdf;
     let normal = if at.wo.z < 0.0 { -at.frame.z } else { at.frame.z };
     PathSample { color: vec4(0.0, 0.0, 0.0, 1.0), albedo: bsdf.albedo(at.wo), normal, depth }
-}
-
-/// Returns the sample of a ray that misses.
-#[kernel]
-#[inline]
-pub(super) fn nothing() -> PathSample {
-    let none = vec3(0.0, 0.0, 0.0);
-    PathSample { color: vec4(0.0, 0.0, 0.0, 0.0), albedo: none, normal: none, depth: f32::MAX }
 }

@@ -8,7 +8,7 @@ use super::LightExtent;
 use super::triangle::{sample_spherical_triangle, solid_angle};
 use crate::geometry::{SurfacePoint, Triangle, disk, rectangle, sphere, triangle};
 use crate::machine::functions::{vec2, vec3};
-use crate::machine::generic::{clamp, max, min};
+use crate::machine::generic::{clamp, length, max, min};
 use crate::sampling::{
     Frame, ONE_MINUS_EPSILON, UNIFORM_HEMISPHERE_PDF, UNIFORM_SPHERE_PDF, cone_pdf, one_minus_cos,
     sample_cone, sample_uniform_hemisphere, sample_uniform_sphere,
@@ -111,7 +111,8 @@ pub fn area_pdf(point: SurfacePoint, area: f32, from: Vec3) -> f32 {
     if is_seen && pdf < 1e30 { pdf } else { 0.0 }
 }
 
-/// A sphere, whose normals are outside.
+/// A sphere, whose normals are outside. From points within 7.6e-6 radii of the surface it is seen as
+/// from inside.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 #[repr(C)]
 pub struct SphereShape {
@@ -127,7 +128,7 @@ pub struct SphereShape {
 pub struct RectangleShape {
     /// A corner.
     pub corner: Vec3,
-    /// The edges from there.
+    /// An edge from there.
     pub u_edge: Vec3,
     /// The other edge.
     pub v_edge: Vec3,
@@ -252,43 +253,57 @@ fn flat_pdf(angle: f32, by_area: f32) -> f32 {
     if angle > MIN_SOLID_ANGLE { by_angle } else { by_area }
 }
 
-/// Returns the solid angle of a shape with this product of two edges: 0 without area, in whose line
-/// there may be any.
+/// Share of the coordinates by which a point is beside a plane, and not on it but for rounding.
+const BESIDE: f32 = 1e-6;
+
+/// Returns whether a point is beside the plane of a flat shape with an area: from the plane itself none
+/// of it is seen, although its solid angle is that of a hemisphere.
 #[kernel]
 #[inline]
-fn angle_with_area(angle: f32, across: Vec3) -> f32 {
-    if across.dot(across) > 0.0 { angle } else { 0.0 }
+fn is_beside(from: Vec3, corner: Vec3, across: Vec3) -> bool {
+    let height = across.dot(corner - from).abs();
+    height > BESIDE * length(across) * (length(from) + length(corner))
 }
 
+/// Samples a triangle that is seen nearly all around.
 #[kernel]
-#[inline]
-fn triangle_angle(from: Vec3, v0: Vec3, v1: Vec3, v2: Vec3) -> f32 {
-    angle_with_area(solid_angle(from, v0, v1, v2), (v1 - v0).cross(v2 - v0))
+#[inline(never)]
+fn sample_near_triangle(from: Vec3, u: Vec2, v0: Vec3, v1: Vec3, v2: Vec3) -> ShapeSample {
+    let (e1, e2) = (v1 - v0, v2 - v0);
+    let wi = sample_side(from, u, v0, e1.cross(e2));
+    let b = on_plane(from, wi, v0, e1, e2);
+    let is_met = b.x >= 0.0 && b.y >= 0.0 && b.x + b.y <= 1.0;
+    let pdf = if is_met { UNIFORM_HEMISPHERE_PDF } else { 0.0 };
+    ShapeSample { wi, point: on_triangle(from, wi, v0, v1, v2), pdf }
+}
+
+/// Samples a triangle that is hardly more than a point.
+#[kernel]
+#[inline(never)]
+fn sample_far_triangle(from: Vec3, u: Vec2, v0: Vec3, v1: Vec3, v2: Vec3) -> ShapeSample {
+    sample_by_area(triangle::sample(u, v0, v1, v2), triangle::area(v0, v1, v2), from)
 }
 
 #[kernel]
 fn sample_triangle_from(from: Vec3, u: Vec2, v0: Vec3, v1: Vec3, v2: Vec3) -> ShapeSample {
-    let angle = triangle_angle(from, v0, v1, v2);
-    if angle > MAX_SOLID_ANGLE {
-        let (e1, e2) = (v1 - v0, v2 - v0);
-        let wi = sample_side(from, u, v0, e1.cross(e2));
-        let b = on_plane(from, wi, v0, e1, e2);
-        let is_met = b.x >= 0.0 && b.y >= 0.0 && b.x + b.y <= 1.0;
-        let pdf = if is_met { UNIFORM_HEMISPHERE_PDF } else { 0.0 };
-        return ShapeSample { wi, point: on_triangle(from, wi, v0, v1, v2), pdf };
+    let angle = solid_angle(from, v0, v1, v2);
+    let is_seen = is_beside(from, v0, (v1 - v0).cross(v2 - v0));
+    let wi = sample_spherical_triangle(u, from, v0, v1, v2);
+    let point = on_triangle(from, wi, v0, v1, v2);
+    let mut sample = ShapeSample { wi, point, pdf: 1.0 / angle };
+    if angle <= MIN_SOLID_ANGLE || !is_seen {
+        sample = sample_far_triangle(from, u, v0, v1, v2);
+    } else if angle > MAX_SOLID_ANGLE {
+        sample = sample_near_triangle(from, u, v0, v1, v2);
     }
-    if angle > MIN_SOLID_ANGLE {
-        let wi = sample_spherical_triangle(u, from, v0, v1, v2);
-        let point = on_triangle(from, wi, v0, v1, v2);
-        return ShapeSample { wi, point, pdf: 1.0 / angle };
-    }
-    sample_by_area(triangle::sample(u, v0, v1, v2), triangle::area(v0, v1, v2), from)
+    ShapeSample { pdf: if is_seen { sample.pdf } else { 0.0 }, ..sample }
 }
 
 #[kernel]
 fn triangle_pdf_from(from: Vec3, at: SurfacePoint, v0: Vec3, v1: Vec3, v2: Vec3) -> f32 {
     let by_area = area_pdf(at, triangle::area(v0, v1, v2), from);
-    flat_pdf(triangle_angle(from, v0, v1, v2), by_area)
+    let pdf = flat_pdf(solid_angle(from, v0, v1, v2), by_area);
+    if is_beside(from, v0, (v1 - v0).cross(v2 - v0)) { pdf } else { 0.0 }
 }
 
 #[kernel]
@@ -332,33 +347,14 @@ impl RectangleShape {
         let c = b + self.v_edge;
         vec2(solid_angle(from, a, b, c), solid_angle(from, a, c, d))
     }
-}
 
-#[kernel]
-impl LightShape for RectangleShape {
-    fn sample_from(&self, from: Vec3, u: Vec2) -> ShapeSample {
+    /// Samples one of the halves by its solid angle.
+    #[inline]
+    fn sample_spherical(self, from: Vec3, u: Vec2, angles: Vec2) -> ShapeSample {
         let (a, b, d) = (self.corner, self.corner + self.u_edge, self.corner + self.v_edge);
         let c = b + self.v_edge;
-        let angles = RectangleShape::halves(*self, from);
-        let across = self.u_edge.cross(self.v_edge);
-        let angle = angle_with_area(angles.x + angles.y, across);
-        if angle > MAX_SOLID_ANGLE {
-            let wi = sample_side(from, u, a, across);
-            let q = on_plane(from, wi, a, self.u_edge, self.v_edge);
-            let is_met = q.x >= 0.0 && q.x <= 1.0 && q.y >= 0.0 && q.y <= 1.0;
-            let within = clamp(q, vec2(0.0, 0.0), vec2(1.0, 1.0));
-            let point = rectangle::sample(within, a, self.u_edge, self.v_edge);
-            return ShapeSample {
-                wi,
-                point,
-                pdf: if is_met { UNIFORM_HEMISPHERE_PDF } else { 0.0 },
-            };
-        }
-        if angle <= MIN_SOLID_ANGLE {
-            let point = rectangle::sample(u, self.corner, self.u_edge, self.v_edge);
-            return sample_by_area(point, self.surface_area(), from);
-        }
         // The first number chooses the half, and is used again within it.
+        let angle = angles.x + angles.y;
         let share = angles.x / angle;
         let is_first = u.x < share;
         let x = if is_first { u.x / share } else { (u.x - share) / (1.0 - share) };
@@ -368,10 +364,45 @@ impl LightShape for RectangleShape {
         ShapeSample { wi, point: on_triangle(from, wi, a, v1, v2), pdf: 1.0 / angle }
     }
 
+    /// Samples it where it is seen nearly all around.
+    #[inline(never)]
+    fn sample_near(self, from: Vec3, u: Vec2) -> ShapeSample {
+        let wi = sample_side(from, u, self.corner, self.u_edge.cross(self.v_edge));
+        let at = on_plane(from, wi, self.corner, self.u_edge, self.v_edge);
+        let is_met = at.x >= 0.0 && at.x <= 1.0 && at.y >= 0.0 && at.y <= 1.0;
+        let within = clamp(at, vec2(0.0, 0.0), vec2(1.0, 1.0));
+        let point = rectangle::sample(within, self.corner, self.u_edge, self.v_edge);
+        ShapeSample { wi, point, pdf: if is_met { UNIFORM_HEMISPHERE_PDF } else { 0.0 } }
+    }
+
+    /// Samples it where it is hardly more than a point.
+    #[inline(never)]
+    fn sample_far(self, from: Vec3, u: Vec2) -> ShapeSample {
+        let point = rectangle::sample(u, self.corner, self.u_edge, self.v_edge);
+        sample_by_area(point, rectangle::area(self.corner, self.u_edge, self.v_edge), from)
+    }
+}
+
+#[kernel]
+impl LightShape for RectangleShape {
+    fn sample_from(&self, from: Vec3, u: Vec2) -> ShapeSample {
+        let angles = RectangleShape::halves(*self, from);
+        let angle = angles.x + angles.y;
+        let is_seen = is_beside(from, self.corner, self.u_edge.cross(self.v_edge));
+        let mut sample = RectangleShape::sample_spherical(*self, from, u, angles);
+        if angle <= MIN_SOLID_ANGLE || !is_seen {
+            sample = RectangleShape::sample_far(*self, from, u);
+        } else if angle > MAX_SOLID_ANGLE {
+            sample = RectangleShape::sample_near(*self, from, u);
+        }
+        ShapeSample { pdf: if is_seen { sample.pdf } else { 0.0 }, ..sample }
+    }
+
     fn pdf_from(&self, from: Vec3, at: SurfacePoint) -> f32 {
         let angles = RectangleShape::halves(*self, from);
-        let angle = angle_with_area(angles.x + angles.y, self.u_edge.cross(self.v_edge));
-        flat_pdf(angle, area_pdf(at, self.surface_area(), from))
+        let pdf = flat_pdf(angles.x + angles.y, area_pdf(at, self.surface_area(), from));
+        let is_seen = is_beside(from, self.corner, self.u_edge.cross(self.v_edge));
+        if is_seen { pdf } else { 0.0 }
     }
 
     fn surface_area(&self) -> f32 {

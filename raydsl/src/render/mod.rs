@@ -20,6 +20,7 @@ mod renderer;
 mod scheduler;
 mod shot;
 mod simple;
+mod steps;
 mod store;
 mod tile;
 mod tiled;

@@ -17,7 +17,7 @@ use crate::kernel::Kernel;
 use crate::machine::Type;
 
 /// The maximum number of samples per pixel in one pass: the observer may stop in between.
-const LARGEST_PASS: u32 = 64;
+pub(super) const LARGEST_PASS: u32 = 64;
 
 /// The number of passes of a device in a time budget.
 #[cfg(feature = "gpu")]

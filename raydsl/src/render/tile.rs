@@ -202,7 +202,7 @@ impl<R> Tile<'_, R> {
     }
 
     /// Returns a row of its pixels; `row` is below its height.
-    fn row(&mut self, row: u32) -> &mut [R] {
+    pub(super) fn row(&mut self, row: u32) -> &mut [R] {
         assert!(row < self.height, "row {row} of a tile that has {}", self.height);
         // SAFETY: a row of the tile is one of its image's, cut to its width; the tile borrows it
         // exclusively, as long as the slice.

@@ -14,9 +14,9 @@ const BATCH: usize = 1024;
 /// `parallel`, else one after another on the calling thread. The image is the same either way.
 #[derive(Clone, Copy, Debug)]
 pub struct TiledScheduler {
-    variant: Variant,
-    edge: u32,
-    gang: usize,
+    pub(super) variant: Variant,
+    pub(super) edge: u32,
+    pub(super) gang: usize,
 }
 
 impl Default for TiledScheduler {

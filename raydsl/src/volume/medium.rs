@@ -22,7 +22,7 @@ pub struct Collision {
     pub is_met: bool,
     /// Distance along the ray, in lengths of its direction.
     pub t: f32,
-    /// Share of light that is scattered, and not absorbed: red, green and blue.
+    /// Share of light that is scattered, and not absorbed, from 0 to 1: red, green and blue.
     pub albedo: Vec3,
     /// Radiance that the medium adds: what it emits over its extinction.
     pub emission: Vec3,
@@ -51,13 +51,12 @@ pub fn collision<T: Voxel>(
     volume: &Volume<'_, T>,
     anisotropy: f32,
     ray: Ray,
-    rng: Rng,
+    rng: &mut Rng,
 ) -> Collision {
-    let mut rng = rng;
     let part: Inside = inside(volume.grid(), ray);
     let (start, _) = volume.grid().span(ray);
     let none = vec3(0.0, 0.0, 0.0);
-    let found = delta_tracking(volume, ray, &mut rng);
+    let found = delta_tracking(volume, ray, &mut *rng);
     let is_met = found.is_some();
     let t = found.unwrap_or(0.0);
     let mut albedo = none;
@@ -69,11 +68,27 @@ pub fn collision<T: Voxel>(
 }
 
 /// A medium that is the same everywhere, as fog is.
+///
+/// ```
+/// use raydsl::prelude::*;
+/// use raydsl::volume::Fog;
+///
+/// // Of light through a depth of 2, exp(-2) passes: by collisions, and by the formula.
+/// let fog = Fog { extinction: 0.5, albedo: Vec3::ONE, anisotropy: 0.0 };
+/// let ray = Ray::new(Vec3::ZERO, Vec3::Z * 2.0).with_range(0.0, 2.0);
+/// let passes = kernel!(|seed: u32| {
+///     let mut rng = Rng::new(uvec2(seed, 0), 0, 1);
+///     !fog.collision(ray, &mut rng).is_met
+/// });
+/// let count = (0..10_000).filter(|seed| passes.call((*seed,))).count();
+/// assert!((count as f32 / 1e4 - (-2.0f32).exp()).abs() < 0.02);
+/// assert!((fog.transmittance(ray) - (-2.0f32).exp()).abs() < 1e-6);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 pub struct Fog {
-    /// Extinction per length.
+    /// Extinction per length, at least 0: the inverse of the mean free path.
     pub extinction: f32,
-    /// Share of it that is scattered, and not absorbed: red, green and blue.
+    /// Share of it that is scattered, and not absorbed, from 0 to 1: red, green and blue.
     pub albedo: Vec3,
     /// Mean cosine of scattering: see [`henyey_greenstein()`](super::henyey_greenstein).
     pub anisotropy: f32,
@@ -83,10 +98,9 @@ pub struct Fog {
 impl Fog {
     /// Returns a random collision on the ray between `t_min` and `t_max`.
     #[inline]
-    pub fn collision(self, ray: Ray, rng: Rng) -> Collision {
-        let mut rng = rng;
+    pub fn collision(self, ray: Ray, rng: &mut Rng) -> Collision {
         let per_length = self.extinction * length(ray.direction);
-        let way = free_depth(&mut rng) / per_length;
+        let way = free_depth(&mut *rng) / per_length;
         let is_met = per_length > 0.0 && way < ray.t_max - ray.t_min;
         let t = if is_met { ray.t_min + way } else { 0.0 };
         let emission = vec3(0.0, 0.0, 0.0);

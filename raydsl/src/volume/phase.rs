@@ -15,8 +15,8 @@ use crate::sampling::Frame;
 const MOST_ANISOTROPY: f32 = 0.99;
 
 /// Returns the phase function of Henyey and Greenstein: the density per solid angle of light that goes
-/// on at an angle of this cosine to its way before. `anisotropy`, the mean of that cosine, is up to
-/// 0.99 forwards, 0 for all directions alike, and negative backwards.
+/// on at an angle of this cosine to its way before. `anisotropy` is the mean of that cosine: 0 for all
+/// directions alike, positive forwards, negative backwards; beyond 0.99 it is taken as 0.99.
 ///
 /// Henyey and Greenstein, "Diffuse Radiation in the Galaxy" (1941).
 #[kernel]

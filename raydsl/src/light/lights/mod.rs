@@ -199,7 +199,7 @@ impl<'a, L: Light + MachineType> Lights<'a, L> {
     }
 
     /// Adds an environment, which is chosen with a probability in proportion to its power, at least
-    /// a tenth, and at most nine beside other lights; a black one never.
+    /// a tenth and at most nine tenths beside other lights; a black one never.
     #[must_use]
     pub fn with_environment(self, environment: &'a Environment) -> Self {
         let radius = self.layout.radius;

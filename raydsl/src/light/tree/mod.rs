@@ -99,7 +99,10 @@ fn importance(node: LightNode, from: SurfacePoint) -> f32 {
     let cos_normal = from.normal.dot(wi).abs();
     let sin_normal = max(1.0 - cos_normal * cos_normal, 0.0).sqrt();
     let cos_received = cos_less(cos_normal, sin_normal, cos_seen, sin_seen);
-    let received = if is_inside { 1.0 } else { max(cos_received, LEAST_RECEIVED) };
+    // A point of a medium has no normal.
+    let has_normal = from.normal.dot(from.normal) > 0.0;
+    let is_facing = is_inside || !has_normal;
+    let received = if is_facing { 1.0 } else { max(cos_received, LEAST_RECEIVED) };
     node.power * emitted * received / max(squared, node.near2)
 }
 

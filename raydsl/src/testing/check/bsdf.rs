@@ -306,7 +306,7 @@ fn is_sound(sample: &BsdfSample) -> bool {
 /// Length of the difference of two directions of one delta lobe.
 const SAME_DIRECTION: f32 = 1e-3;
 
-/// Greatest number of delta lobes seen from one direction.
+/// Greatest number of delta lobes that one direction of the viewer has.
 const MOST_DELTAS: usize = 16;
 
 /// A direction to which a delta lobe scatters.
@@ -371,23 +371,24 @@ impl Sums {
 }
 
 impl Sums {
-    /// Counts a sample of a delta lobe, whose direction, density and weight are those of the others.
+    /// Counts a sample of a delta lobe, which has one direction, density and weight.
     fn add_delta(&mut self, wo: Vec3, s: &BsdfSample, found: &mut Findings) {
-        let known = self.deltas.iter().position(|d| d.first.wi.abs_diff_eq(s.wi, SAME_DIRECTION));
-        let Some(lobe) = known.map(|k| &mut self.deltas[k]) else {
-            if self.deltas.len() < MOST_DELTAS {
-                self.deltas.push(DeltaLobe { first: *s, count: 1.0 });
-            } else {
-                found.add("delta samples go in many directions", format!("wo {wo}: {s:?}"));
-            }
-            return;
+        // Several lobes may have one direction, as a mirror and its coat do.
+        let limit = REPEATED as f32;
+        let is_like = |a: f32, b: f32| (a - b).abs() <= limit * a.abs().max(b.abs());
+        let is_same = |d: &&mut DeltaLobe| {
+            let DeltaLobe { first, .. } = d;
+            let weights = s.weight.to_array().into_iter().zip(first.weight.to_array());
+            first.wi.abs_diff_eq(s.wi, SAME_DIRECTION)
+                && is_like(s.pdf, first.pdf)
+                && weights.into_iter().all(|(a, b)| is_like(a, b))
         };
-        lobe.count += 1.0;
-        let (first, limit) = (lobe.first, REPEATED as f32);
-        let off = (s.pdf - first.pdf).abs() > limit * s.pdf.max(first.pdf);
-        if off || !s.weight.abs_diff_eq(first.weight, limit) {
-            let text = format!("wo {wo}: {s:?} after {first:?}");
-            found.add("a delta lobe has several densities or weights", text);
+        if let Some(lobe) = self.deltas.iter_mut().find(is_same) {
+            lobe.count += 1.0;
+        } else if self.deltas.len() < MOST_DELTAS {
+            self.deltas.push(DeltaLobe { first: *s, count: 1.0 });
+        } else {
+            found.add("delta samples are of many kinds", format!("wo {wo}: {s:?}"));
         }
     }
 
