@@ -18,12 +18,12 @@ use crate::shading::{Scene, ShadingPoint};
 use crate::volume::{Collision, henyey_greenstein, sample_henyey_greenstein};
 use crate::{Type, kernel};
 
-/// As [`path_with()`](super::path_with), through a medium around and between the surfaces.
+/// As [`path_with()`](super::path_with()), through a medium around and between the surfaces.
 ///
 /// `collision` returns what light on a ray meets in the medium between `t_min` and `t_max`, at random:
-/// of a [`Volume`](crate::volume::Volume) it is [`collision()`](crate::volume::collision), of
+/// of a [`Volume`](crate::volume::Volume) it is [`collision()`](crate::volume::collision()), of
 /// [`Fog`](crate::volume::Fog) a method; of several media it is the closest. `transmittance` estimates
-/// how much of the light passes, as [`ratio_transmittance()`](crate::volume::ratio_transmittance)
+/// how much of the light passes, as [`ratio_transmittance()`](crate::volume::ratio_transmittance())
 /// does; of several media it is the product. What a closure draws comes from the generator that it is
 /// given: several media draw from it one after another, as numbers of their own. A collision counts as a
 /// bounce. (Lafortune and Willems, "Rendering Participating Media with

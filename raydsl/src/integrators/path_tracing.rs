@@ -63,8 +63,8 @@ impl PathLimits {
     }
 }
 
-/// How a path finds direct light, a host value: by next-event estimation, by the rays of the path, or by
-/// both and multiple importance sampling.
+/// How a path finds direct light, a host value: by next-event estimation, by its own rays, or by both
+/// with multiple importance sampling.
 #[doc(alias = "MIS")]
 #[doc(alias = "next event estimation")]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Type)]
@@ -74,8 +74,8 @@ pub enum LightSampling {
     /// importance sampling): the least noise.
     #[default]
     Weighted,
-    /// By samples of lights alone (next-event estimation), but for mirrors and smooth glass: noisy where a glossy surface
-    /// reflects a large light.
+    /// By samples of lights alone (next-event estimation), but for mirrors and smooth glass: noisy
+    /// where a glossy surface reflects a large light.
     LightsAlone,
     /// By rays that hit lights alone: noisy where lights are small, and blind for those that no ray
     /// hits.

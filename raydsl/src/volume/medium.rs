@@ -26,7 +26,7 @@ pub struct Collision {
     pub albedo: Vec3,
     /// Radiance that the medium adds: what it emits over its extinction.
     pub emission: Vec3,
-    /// Mean cosine of scattering: see [`henyey_greenstein()`](super::henyey_greenstein).
+    /// Mean cosine of scattering: see [`henyey_greenstein()`](super::henyey_greenstein()).
     pub anisotropy: f32,
 }
 
@@ -90,7 +90,7 @@ pub struct Fog {
     pub extinction: f32,
     /// Share of it that is scattered, and not absorbed, from 0 to 1: red, green and blue.
     pub albedo: Vec3,
-    /// Mean cosine of scattering: see [`henyey_greenstein()`](super::henyey_greenstein).
+    /// Mean cosine of scattering: see [`henyey_greenstein()`](super::henyey_greenstein()).
     pub anisotropy: f32,
 }
 
