@@ -95,15 +95,15 @@ pub fn volume_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material
     sampler: Sampler,
 ) -> PathSample {
     let (mut ray, mut sampler) = (ray, sampler);
-    let mut ahead = normalize(ray.direction);
     let (mut radiance, mut throughput) = (vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
     let mut first = PathSample::nothing();
-    let mut from = SurfacePoint { position: ray.origin, normal: ahead, error: 0.0 };
+    let mut from = SurfacePoint { position: ray.origin, normal: NO_NORMAL, error: 0.0 };
     let mut pdf = NO_RIVAL;
     let seed = uvec2(sampler.key.x, sampler.index);
     let is_occluded = |ray: Ray| is_occluded::<S, B>(scene, &surface, options.masks, ray, seed);
     for bounce in 0..=limits.bounces {
         // Find what the path hits, and what it meets before that.
+        let ahead = normalize(ray.direction);
         let hit = closest_surface::<S, B>(scene, &surface, options.masks, ray, seed);
         let end = if hit.is_hit { hit.t } else { ray.t_max };
         let before = ray.with_range(ray.t_min, end);
@@ -122,16 +122,7 @@ pub fn volume_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material
             }
             radiance += throughput * met.emission;
             if !is_last {
-                let point = SurfacePoint { position: ray.at(met.t), normal: NO_NORMAL, error: 0.0 };
-                next = in_medium::<L>(
-                    lights,
-                    is_occluded,
-                    options.lights,
-                    met,
-                    point,
-                    ahead,
-                    &mut sampler,
-                );
+                next = in_medium::<L>(lights, is_occluded, options.lights, met, ray, &mut sampler);
             }
         } else {
             let seen = scene.shading_point(ray, hit);
@@ -144,9 +135,6 @@ pub fn volume_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material
             if !is_last {
                 next = on_surface::<L, B>(lights, is_occluded, options.lights, at, &mut sampler);
             }
-        }
-        if is_last {
-            break;
         }
         if options.lights.has_samples() {
             if next.is_lit {
@@ -163,7 +151,6 @@ pub fn volume_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material
         }
         throughput /= chance;
         (from, ray, pdf) = (next.point, next.ray, next.pdf);
-        ahead = ray.direction;
     }
     first.color = vec4(radiance.x, radiance.y, radiance.z, first.color.w);
     first
@@ -230,18 +217,18 @@ fn on_surface<L: Light + MachineType, B: Bsdf + Material + MachineType>(
     scattered
 }
 
-/// Returns light that is scattered by a medium, for a path that came along `ahead`.
+/// Returns light that is scattered by a medium, at a collision on a ray.
 #[kernel]
 fn in_medium<L: Light + MachineType>(
     lights: &Lights<'_, L>,
     is_occluded: impl Fn(Ray) -> bool,
     #[host] sampling: LightSampling,
     met: Collision,
-    point: SurfacePoint,
-    ahead: Vec3,
+    ray: Ray,
     sampler: &mut Sampler,
 ) -> Scattered {
-    let g = met.anisotropy;
+    let (ahead, g) = (normalize(ray.direction), met.anisotropy);
+    let point = SurfacePoint { position: ray.at(met.t), normal: NO_NORMAL, error: 0.0 };
     let (numbers, choice) = (next_3d(&mut *sampler), next_3d(&mut *sampler));
     let direction = sample_henyey_greenstein(ahead, choice.xy(), g);
     let pdf = henyey_greenstein(ahead.dot(direction), g);

@@ -322,9 +322,8 @@ pub fn path_step<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material +
     // Add the light that one of the lights sends.
     let numbers = next_3d(&mut sampler);
     if options.lights.has_samples() {
-        let of_light = lights.sample(at.point, numbers);
-        let is_weighted = options.lights.is_weighted();
-        let scattered = scattered_light::<B>(is_occluded, is_weighted, of_light, at);
+        let lit = lights.sample(at.point, numbers);
+        let scattered = scattered_light::<B>(is_occluded, options.lights.is_weighted(), lit, at);
         color = with_light(color, throughput * scattered);
     }
 
@@ -375,23 +374,12 @@ pub(super) fn survival(
 #[kernel]
 #[inline]
 pub(super) fn hit_density(#[host] lights: LightSampling, pdf: f32, is_delta: bool) -> f32 {
-    match lights {
-        LightSampling::Weighted => {
-            if is_delta {
-                NO_RIVAL
-            } else {
-                pdf
-            }
-        }
-        LightSampling::LightsAlone => {
-            if is_delta {
-                NO_RIVAL
-            } else {
-                0.0
-            }
-        }
+    let spread = match lights {
+        LightSampling::Weighted => pdf,
+        LightSampling::LightsAlone => 0.0,
         LightSampling::HitsAlone => NO_RIVAL,
-    }
+    };
+    if is_delta { NO_RIVAL } else { spread }
 }
 
 /// Returns the sample of a ray that hits a surface, before any light.
