@@ -58,19 +58,27 @@ fn estimate(cloud: &Bvh<'_, Ball>, run: &Run<'_>) -> Result<Estimates, Missing> 
     run.film(&camera(), &kernel)
 }
 
+/// Returns two renderings of so many samples of each pixel, by other numbers than those of any run.
+pub(crate) fn halves(
+    samples: u32,
+    estimate: impl Fn(&Run<'_>) -> Result<Estimates, Missing>,
+) -> Result<Reference, String> {
+    let (method, backend) =
+        (Method::from(SampleMethod::Sobol), Backend::Variant(Variant::widest()));
+    let half = |seed| {
+        let run = Run::new(&method, backend, samples).sized(EDGE, EDGE).seeded(seed);
+        estimate(&run).map(|e| e.values).map_err(|missing| missing.to_string())
+    };
+    Ok(Reference::halves(half(1001)?, half(1002)?))
+}
+
 /// The case; each half of its reference has so many samples of each pixel.
 pub(crate) fn case(samples: u32) -> Result<Case<'static>, Box<dyn core::error::Error>> {
     let balls: &'static [Ball] = balls().leak();
     let start = Instant::now();
     let cloud: &'static Bvh<'static, Ball> = Box::leak(Box::new(Bvh::build(balls)?));
     let build = start.elapsed();
-    let (method, backend) =
-        (Method::from(SampleMethod::Sobol), Backend::Variant(Variant::widest()));
-    let half = |seed| {
-        let run = Run::new(&method, backend, samples).sized(EDGE, EDGE).seeded(seed);
-        estimate(cloud, &run).map(|e| e.values).map_err(|missing| missing.to_string())
-    };
-    let reference = Reference::halves(half(1001)?, half(1002)?);
+    let reference = halves(samples, |run| estimate(cloud, run))?;
     // Edges in four dimensions, two of them the pixel's: theory says nothing of their constants.
     Ok(Case::new("cloud", reference, move |run| estimate(cloud, run))
         .counted(move |run| work(cloud, run))

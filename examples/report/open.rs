@@ -8,11 +8,9 @@ use raydsl::integrators::ambient_occlusion;
 use raydsl::prelude::*;
 use raydsl::shading::Surface;
 use raydsl_report::Missing;
-use raydsl_report::work_precision::{
-    Backend, Case, Estimates, Method, Order, Reference, Run, Work,
-};
+use raydsl_report::work_precision::{Case, Estimates, Order, Run, Work};
 
-use crate::cloud::EDGE;
+use crate::cloud::halves;
 use crate::visibility::Ball;
 
 #[raydsl::kernel]
@@ -80,13 +78,7 @@ pub(crate) fn case<P: Primitive<Hit = Hit, Shared = ()> + Surface + Sync + 'stat
     let tree: &'static Bvh<'static, P> = Box::leak(Box::new(Bvh::build(primitives.leak())?));
     let (build, view) = (start.elapsed(), View { tree, camera, radius });
     let view: &'static View<P> = Box::leak(Box::new(view));
-    let (method, backend) =
-        (Method::from(SampleMethod::Sobol), Backend::Variant(Variant::widest()));
-    let half = |seed| {
-        let run = Run::new(&method, backend, samples).sized(EDGE, EDGE).seeded(seed);
-        view.estimate(&run).map(|e| e.values).map_err(|missing| missing.to_string())
-    };
-    let reference = Reference::halves(half(1001)?, half(1002)?);
+    let reference = halves(samples, |run| view.estimate(run))?;
     // Edges in four dimensions, two of them the pixel's: theory says nothing of their constants.
     Ok(Case::new(name, reference, move |run| view.estimate(run))
         .counted(move |run| view.work(run))

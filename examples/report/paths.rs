@@ -9,9 +9,9 @@ use raydsl::integrators::{LightSampling, PathLimits, PathOptions, path_with};
 use raydsl::light::{AreaLight, Lights};
 use raydsl::prelude::*;
 use raydsl_report::Missing;
-use raydsl_report::work_precision::{Backend, Case, Estimates, Method, Order, Reference, Run};
+use raydsl_report::work_precision::{Case, Estimates, Method, Order, Run};
 
-use crate::cloud::EDGE;
+use crate::cloud::halves;
 use crate::cornell::{self, Wall};
 
 /// Names of the cases.
@@ -161,13 +161,7 @@ pub(crate) fn case(name: &str, samples: u32) -> Result<Case<'static>, Box<dyn Er
     let start = Instant::now();
     let view = if name == "path-plates" { plates()? } else { cornell_box()? };
     let (build, view): (_, &'static View) = (start.elapsed(), Box::leak(Box::new(view)));
-    let (method, backend) =
-        (Method::from(SampleMethod::Sobol), Backend::Variant(Variant::widest()));
-    let half = |seed| {
-        let run = Run::new(&method, backend, samples).sized(EDGE, EDGE).seeded(seed);
-        view.estimate(&run).map(|e| e.values).map_err(|missing| missing.to_string())
-    };
-    let reference = Reference::halves(half(1001)?, half(1002)?);
+    let reference = halves(samples, |run| view.estimate(run))?;
     // Of many dimensions, edges in most of them: theory knows the order of random samples alone.
     Ok(Case::new(name, reference, move |run| view.estimate(run))
         .built_in(build)
