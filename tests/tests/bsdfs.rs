@@ -9,6 +9,7 @@ use raydsl::prelude::*;
 use raydsl::testing::check::BsdfTest;
 use raydsl::volume::{henyey_greenstein, sample_henyey_greenstein};
 use raydsl::{assert_variants_agree, kernel};
+use raydsl_tests::scaled;
 
 /// Checks that share the probability of a false alarm.
 const CHECKS: u32 = 40;
@@ -21,17 +22,19 @@ fn assert_holds<B: Bsdf + Type + std::fmt::Debug>(test: BsdfTest, bsdf: B) {
     }
 }
 
-/// A fifth of the usual samples: the whole number takes minutes where numeric code is hardly
-/// optimised.
-const TEST: BsdfTest = BsdfTest::new().samples(200_000, 5);
+/// A fifth of the usual samples, since numeric code is hardly optimised in tests: all of them with
+/// `RAYDSL_TEST_SHARE=5`.
+fn test() -> BsdfTest {
+    BsdfTest::new().samples(scaled(200_000) as u32, 5).explained()
+}
 
 fn white() -> BsdfTest {
-    TEST.energy(0.99, 1.0001)
+    test().energy(0.99, 1.0001)
 }
 
 #[test]
 fn lambert() {
-    assert_holds(TEST, Lambert { color: vec3(0.2, 0.5, 1.0) });
+    assert_holds(test(), Lambert { color: vec3(0.2, 0.5, 1.0) });
     assert_holds(white(), Lambert { color: Vec3::ONE });
 }
 
@@ -40,7 +43,7 @@ fn eon() {
     for roughness in [0.0, 0.3, 1.0] {
         assert_holds(white(), Eon { color: Vec3::ONE, roughness });
     }
-    assert_holds(TEST, Eon { color: vec3(0.0, 0.18, 0.8), roughness: 0.7 });
+    assert_holds(test(), Eon { color: vec3(0.0, 0.18, 0.8), roughness: 0.7 });
 }
 
 #[test]
@@ -56,7 +59,7 @@ fn conductors() {
         assert_holds(test, Conductor::<F82> { fresnel: white_metal, alpha });
     }
     let gold = ComplexIor { n: vec3(0.143, 0.375, 1.442), k: vec3(3.983, 2.386, 1.603) };
-    assert_holds(TEST.not_reciprocal(), Conductor::<ComplexIor> { fresnel: gold, alpha: 0.2 });
+    assert_holds(test().not_reciprocal(), Conductor::<ComplexIor> { fresnel: gold, alpha: 0.2 });
 }
 
 #[test]
@@ -64,12 +67,12 @@ fn glass() {
     for alpha in [0.0, 0.01, 0.1, 0.5, 1.0] {
         let least = if alpha < 0.1 { 0.99 } else { 0.4 };
         for ior in [1.5, 1.0 / 1.5] {
-            let test = TEST.energy(least, 1.0001).refracting(ior);
+            let test = test().energy(least, 1.0001).refracting(ior);
             assert_holds(test, Dielectric { ior, alpha, tint: Vec3::ONE });
         }
         assert_holds(white().not_reciprocal(), ThinDielectric { ior: 1.5, alpha, tint: Vec3::ONE });
     }
-    assert_holds(TEST.energy(0.99, 1.0001), Dielectric { ior: 1.0, alpha: 0.3, tint: Vec3::ONE });
+    assert_holds(test().energy(0.99, 1.0001), Dielectric { ior: 1.0, alpha: 0.3, tint: Vec3::ONE });
 }
 
 #[test]
@@ -82,21 +85,21 @@ fn coats() {
     let fresnel = F82 { normal: vec3(1.0, 0.7, 0.3), tint: Vec3::ONE };
     let base = Conductor::<F82> { fresnel, alpha: 0.3 };
     let lacquer = Coated::<Conductor<F82>> { base, ior: 1.5, alpha: 0.01, strength: Vec3::ONE };
-    assert_holds(TEST.not_reciprocal(), lacquer);
+    assert_holds(test().not_reciprocal(), lacquer);
     // Black metal under a smooth coat: what is sampled least is there all the same.
     let black = F82 { normal: Vec3::ZERO, tint: Vec3::ONE };
     let base = Conductor::<F82> { fresnel: black, alpha: 0.3 };
     let smooth = Coated::<Conductor<F82>> { base, ior: 1.5, alpha: 0.0, strength: Vec3::ONE };
-    assert_holds(TEST.not_reciprocal(), smooth);
+    assert_holds(test().not_reciprocal(), smooth);
 }
 
 #[test]
 fn cloth() {
     for alpha in [0.07, 0.3, 1.0] {
-        assert_holds(TEST, Sheen { color: Vec3::ONE, alpha });
+        assert_holds(test(), Sheen { color: Vec3::ONE, alpha });
         let sheen = Sheen { color: vec3(1.0, 0.5, 0.2), alpha };
         let cloth = SheenCoated::<Lambert> { base: Lambert { color: Vec3::ONE }, sheen };
-        assert_holds(TEST.energy(0.4, 1.0001).not_reciprocal(), cloth);
+        assert_holds(test().energy(0.4, 1.0001).not_reciprocal(), cloth);
     }
 }
 
@@ -105,18 +108,18 @@ fn mixtures() {
     let under = Lambert { color: vec3(0.8, 0.2, 0.2) };
     let over = Mirror { color: vec3(0.9, 0.9, 0.9) };
     for share in [0.0, 0.3, 1.0] {
-        assert_holds(TEST, Mix::<Lambert, Mirror> { under, over, share });
+        assert_holds(test(), Mix::<Lambert, Mirror> { under, over, share });
     }
     // Several delta lobes in one direction.
     let base = Mirror { color: vec3(0.9, 0.6, 0.3) };
     let coated = Coated::<Mirror> { base, ior: 1.5, alpha: 0.0, strength: Vec3::ONE };
-    assert_holds(TEST.not_reciprocal(), coated);
+    assert_holds(test().not_reciprocal(), coated);
 }
 
 #[test]
 fn metallic_roughness() {
     let plain = MetallicRoughness { base_color: vec3(0.9, 0.5, 0.1), ..Default::default() };
-    let test = TEST.not_reciprocal();
+    let test = test().not_reciprocal();
     assert_holds(test, MetallicRoughness { roughness: 0.4, ..plain });
     assert_holds(test, MetallicRoughness { metallic: 0.0, roughness: 0.3, ..plain });
     let all = MetallicRoughness {

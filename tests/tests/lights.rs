@@ -13,10 +13,13 @@ use raydsl::light::{
 use raydsl::prelude::*;
 use raydsl::shading::Surface;
 use raydsl::testing::check::{EstimatorsTest, LightTest};
+use raydsl_tests::scaled;
 
-/// A fifth of the usual samples: the whole number takes minutes where numeric code is hardly
-/// optimised.
-const TEST: LightTest = LightTest::new().samples(200_000, 4).of(20);
+/// A fifth of the usual samples, since numeric code is hardly optimised in tests: all of them with
+/// `RAYDSL_TEST_SHARE=5`.
+fn test() -> LightTest {
+    LightTest::new().samples(scaled(200_000) as u32, 4).of(20).explained()
+}
 
 /// Shapes of lights as primitives, for rays to meet.
 #[primitive(sphere(center, radius))]
@@ -92,7 +95,7 @@ const NOTHING: [Triangle; 0] = [];
 
 #[track_caller]
 fn assert_holds<L: Light + Type, S: Scene + ?Sized>(light: L, scene: &S) {
-    if let Err(failure) = TEST.run(light, scene) {
+    if let Err(failure) = test().run(light, scene) {
         panic!("{failure}");
     }
 }
@@ -205,12 +208,12 @@ fn environments() {
         [(&gradient[..], uvec2(32, 16)), (&spot, uvec2(64, 32)), (&pole, uvec2(1, 3))]
     {
         let environment = Environment::new(texels, size).expect("radiance").rotated(turned);
-        if let Err(failure) = TEST.run_environment(&environment) {
+        if let Err(failure) = test().run_environment(&environment) {
             panic!("{size}: {failure}");
         }
     }
     let one = Environment::constant(Vec3::ONE).expect("radiance");
-    assert!(TEST.run_environment(&one).is_ok());
+    assert!(test().run_environment(&one).is_ok());
 }
 
 /// A row of texels above is at `+y`; the middle of a row is at `-z`, and what is right of it at `+x`.

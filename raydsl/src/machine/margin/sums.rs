@@ -39,7 +39,8 @@ impl Margin {
         form: Option<Form>,
         by: Rounded,
     ) -> Option<Parts> {
-        if self.rounding.is_strict {
+        // A product with 0 is 0, fused or not.
+        if self.rounding.is_strict || range.is_zero() {
             return None;
         }
         let bulk = range.magnitude();
