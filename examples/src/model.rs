@@ -45,6 +45,20 @@ pub struct Look {
     pub normal: Picture,
     /// Transmission in red.
     pub transmission: Picture,
+    /// Whether one of the following is there.
+    pub has_layers: u32,
+    /// Colour of the reflection of what is no metal.
+    pub specular_color: Picture,
+    /// Strength of that reflection in alpha.
+    pub specular: Picture,
+    /// Coat in red.
+    pub clearcoat: Picture,
+    /// Roughness of the coat in green.
+    pub clearcoat_roughness: Picture,
+    /// Colour of the sheen.
+    pub sheen_color: Picture,
+    /// Roughness of the sheen in alpha.
+    pub sheen_roughness: Picture,
 }
 
 /// A surface as a ray meets it.
@@ -145,6 +159,23 @@ pub fn look_up(texels: &[UVec2], picture: Picture, uv: Vec2) -> Vec4 {
     above * (1.0 - fy) + below * fy
 }
 
+/// Returns a material's factors with the pictures of its coat, its sheen and what it reflects.
+#[kernel]
+fn layered(texels: &[UVec2], look: Look, uv: Vec2) -> MetallicRoughness {
+    let base: MetallicRoughness = look.base;
+    let tint = look_up(texels, look.specular_color, uv).truncate();
+    let sheen = look_up(texels, look.sheen_color, uv).truncate();
+    MetallicRoughness {
+        specular: base.specular * tint * look_up(texels, look.specular, uv).w,
+        clearcoat: base.clearcoat * look_up(texels, look.clearcoat, uv).x,
+        clearcoat_roughness: base.clearcoat_roughness
+            * look_up(texels, look.clearcoat_roughness, uv).y,
+        sheen_color: base.sheen_color * sheen,
+        sheen_roughness: base.sheen_roughness * look_up(texels, look.sheen_roughness, uv).w,
+        ..base
+    }
+}
+
 /// Returns the surface at texture coordinates.
 #[kernel]
 pub fn met(texels: &[UVec2], look: Look, point: ShadingPoint, light: u32) -> Met {
@@ -159,7 +190,10 @@ pub fn met(texels: &[UVec2], look: Look, point: ShadingPoint, light: u32) -> Met
     }
     let opacity = look.opacity * color.w;
     let masked = if opacity >= look.cutoff { 1.0 } else { 0.0 };
-    let base: MetallicRoughness = look.base;
+    let mut base: MetallicRoughness = look.base;
+    if look.has_layers == 1 {
+        base = layered(texels, look, point.uv);
+    }
     let bsdf = MetallicRoughness {
         base_color: base.base_color * color.truncate() * point.albedo,
         metallic: base.metallic * rough.z,
@@ -242,6 +276,15 @@ impl Model {
             AlphaMode::Mask(cutoff) => cutoff,
             AlphaMode::Blend => -1.0,
         };
+        let layers = [
+            m.specular_color_texture,
+            m.specular_texture,
+            m.clearcoat_texture,
+            m.clearcoat_roughness_texture,
+            m.sheen_color_texture,
+            m.sheen_roughness_texture,
+        ];
+        let has_layers = layers.iter().any(Option::is_some);
         Look {
             base,
             opacity: if m.alpha_mode == AlphaMode::Opaque { 1.0 } else { m.base_color.w },
@@ -251,6 +294,13 @@ impl Model {
             roughness: picture(m.metallic_roughness_texture, false),
             normal: picture(m.normal_texture, false),
             transmission: picture(m.transmission_texture, false),
+            has_layers: u32::from(has_layers),
+            specular_color: picture(m.specular_color_texture, true),
+            specular: picture(m.specular_texture, false),
+            clearcoat: picture(m.clearcoat_texture, false),
+            clearcoat_roughness: picture(m.clearcoat_roughness_texture, false),
+            sheen_color: picture(m.sheen_color_texture, true),
+            sheen_roughness: picture(m.sheen_roughness_texture, false),
         }
     }
 
@@ -374,5 +424,56 @@ fn light(l: &scene::PunctualLight) -> AnyLight {
             irradiance: intensity,
             sine: 0.0,
         }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every picture of a material multiplies its own factor, in its own channel.
+    #[test]
+    fn pictures_multiply_their_factors() {
+        let image = |texel: [u8; 4]| Texels {
+            width: 1,
+            height: 1,
+            texels: vec![texel],
+            ..Texels::default()
+        };
+        // Of each channel another part, and of sRGB one whose linear number is known.
+        let images = [image([51, 102, 153, 204]), image([188, 255, 0, 255])];
+        let at = |image| {
+            let (set, transform) = (0, glam::Affine2::IDENTITY);
+            let (wrap, filter) = ([Wrap::Repeat; 2], Filter::Linear);
+            Some(scene::Texture { image, set, transform, wrap, filter })
+        };
+        let material = scene::Material {
+            specular_texture: at(0),
+            specular_color_texture: at(1),
+            clearcoat: 1.0,
+            clearcoat_texture: at(0),
+            clearcoat_roughness: 0.5,
+            clearcoat_roughness_texture: at(0),
+            sheen_color: vec3(1.0, 0.5, 1.0),
+            sheen_color_texture: at(1),
+            sheen_roughness: 0.5,
+            sheen_roughness_texture: at(0),
+            transmission: 0.5,
+            transmission_texture: at(0),
+            ..scene::Material::default()
+        };
+        let mut model = Model::default();
+        let look = model.look(&material, &images);
+        let texels = &model.texels[..];
+        let point = ShadingPoint { albedo: Vec3::ONE, ..ShadingPoint::default() };
+        let seen = met(texels, look, point, NO_LIGHT).bsdf;
+        let half = srgb_to_linear(188.0 / 255.0);
+        let near = |a: Vec3, b: Vec3| assert!(a.abs_diff_eq(b, 1e-4), "{a} for {b}");
+        near(seen.specular, vec3(half, 1.0, 0.0) * 0.8);
+        near(seen.sheen_color, vec3(half, 0.5, 0.0));
+        near(vec3(seen.clearcoat, seen.clearcoat_roughness, 0.0), vec3(0.2, 0.2, 0.0));
+        near(vec3(seen.sheen_roughness, seen.transmission, 0.0), vec3(0.4, 0.1, 0.0));
+        let plain = model.look(&scene::Material { clearcoat: 1.0, ..Default::default() }, &images);
+        assert_eq!(met(&model.texels, plain, point, NO_LIGHT).bsdf, plain.base);
     }
 }

@@ -5,8 +5,10 @@ use raydsl::bsdf::{
     MetallicRoughness, Mirror, Mix, Sheen, SheenCoated, ThinDielectric, fresnel_dielectric,
     ggx_distribution, ggx_masking, ggx_shadowing, sample_ggx_normal,
 };
+use raydsl::kernel::{Kernel, Variant};
 use raydsl::prelude::*;
 use raydsl::testing::check::BsdfTest;
+use raydsl::testing::{can_run, run};
 use raydsl::volume::{henyey_greenstein, sample_henyey_greenstein};
 use raydsl::{assert_variants_agree, kernel};
 use raydsl_tests::scaled;
@@ -238,27 +240,40 @@ fn fresnel_is_exact() {
     assert!((gold.reflectance(0.5).x - 0.089_186_71).abs() < 1e-6);
 }
 
+/// The means of a kernel's results for all inputs, by every variant that runs here.
+fn means<A: Type>(kernel: &Kernel<'_, A, f32>, inputs: &[A]) -> Vec<(Variant, f64)> {
+    let all = [Variant::Scalar, Variant::widest(), Variant::Wgsl];
+    let runs = all.into_iter().filter(|v| can_run(*v, "means"));
+    runs.map(|variant| {
+        let results = run(kernel, variant, inputs);
+        (variant, results.iter().map(|v| f64::from(*v)).sum::<f64>() / inputs.len() as f64)
+    })
+    .collect()
+}
+
 /// P-M2 and P-M3: what is reflected of diffuse light by glass, and by the facets of white metal at
 /// normal incidence if each reflects once.
 #[test]
 fn mean_reflectances_are_exact() {
-    let steps = 4000;
-    let at = |k: u16| (f32::from(k) + 0.5) / f32::from(steps);
-    let diffuse = |k| 2.0 * f64::from(at(k)) * f64::from(fresnel_dielectric(at(k), 1.5).reflected);
-    let mean = (0..steps).map(diffuse).sum::<f64>() / f64::from(steps);
-    assert!((mean - 0.091_777_959_342_351_21).abs() < 1e-6, "{mean}");
+    let centers = |count: u32| -> Vec<(f32,)> {
+        (0..count).map(|k| ((k as f32 + 0.5) / count as f32,)).collect()
+    };
+    let glass = kernel!(|cos: f32| 2.0 * cos * fresnel_dielectric(cos, 1.5).reflected);
+    for (variant, mean) in means(&glass, &centers(4000)) {
+        assert!((mean - 0.091_777_959_342_351_21).abs() < 1e-6, "{}: {mean}", variant.name());
+    }
 
     // The same all around.
-    let (rows, alpha) = (200_000u32, 0.1);
-    let once = |k: u32| {
-        let u = vec2(0.3, (k as f32 + 0.5) / rows as f32);
-        let m = sample_ggx_normal(Vec3::Z, u, alpha);
-        let i = m * (2.0 * m.z) - Vec3::Z;
-        let both = 4.0 * i.z * ggx_shadowing(Vec3::Z, i, alpha);
-        if i.z > 0.0 { f64::from(both / ggx_masking(Vec3::Z, alpha)) } else { 0.0 }
-    };
-    let mean = (0..rows).map(once).sum::<f64>() / f64::from(rows);
-    assert!((mean - 0.988_304_056_520_612).abs() < 1e-5, "{mean}");
+    let facets = kernel!(|v: f32| {
+        let (o, alpha) = (vec3(0.0, 0.0, 1.0), 0.1f32);
+        let m = sample_ggx_normal(o, vec2(0.3, v), alpha);
+        let i = m * (2.0 * m.z) - o;
+        let both = 4.0 * i.z * ggx_shadowing(o, i, alpha);
+        if i.z > 0.0 { both / ggx_masking(o, alpha) } else { 0.0 }
+    });
+    for (variant, mean) in means(&facets, &centers(200_000)) {
+        assert!((mean - 0.988_304_056_520_612).abs() < 1e-5, "{}: {mean}", variant.name());
+    }
 }
 
 /// The distribution is within 2e-6 of itself, and the masking function makes it one of what is seen:
@@ -280,29 +295,27 @@ fn ggx_is_exact() {
         assert!(worst < 2e-6, "{alpha}: {worst:.1e}");
         for cos in [0.05f32, 0.5, 1.0] {
             let v = vec3((1.0 - cos * cos).sqrt(), 0.0, cos);
-            let seen = weak_furnace(v, alpha);
-            assert!((seen - 1.0).abs() < 1e-4, "{alpha} {cos}: {seen}");
+            for (variant, seen) in weak_furnace(v, alpha) {
+                assert!((seen - 1.0).abs() < 1e-4, "{} {alpha} {cos}: {seen}", variant.name());
+            }
         }
     }
 }
 
 /// The integral of what is seen of all facets, over the cosine: in `tan / alpha` and turns.
-fn weak_furnace(v: Vec3, alpha: f32) -> f64 {
-    let (rows, columns) = (4000, 200);
-    let mut sum = 0.0;
-    for i in 0..rows {
+fn weak_furnace(v: Vec3, alpha: f32) -> Vec<(Variant, f64)> {
+    let (rows, columns) = (2000u32, 200u32);
+    let inputs: Vec<(u32, u32)> =
+        (0..rows).flat_map(|i| (0..columns).map(move |k| (i, k))).collect();
+    let seen = kernel!(|i: u32, k: u32| {
         // The distribution times the cosine is uniform in u; 1 - u is a square, so that the tail is
         // smooth.
-        let w = (f64::from(i) + 0.5) / f64::from(rows);
-        let tan = f64::from(alpha) * ((1.0 - w * w) / (w * w)).sqrt();
+        let w = (i as f32 + 0.5) / rows as f32;
+        let tan = alpha * ((1.0 - w * w) / (w * w)).sqrt();
         let cos = 1.0 / (1.0 + tan * tan).sqrt();
-        for k in 0..columns {
-            let turn = std::f64::consts::TAU * (f64::from(k) + 0.5) / f64::from(columns);
-            let sin = tan * cos;
-            let m = glam::DVec3::new(sin * turn.cos(), sin * turn.sin(), cos);
-            sum += 2.0 * w * m.dot(v.as_dvec3()).max(0.0) / cos;
-        }
-    }
-    let mean = sum / f64::from(rows * columns);
-    f64::from(ggx_masking(v, alpha)) * mean / f64::from(v.z)
+        let turn = sincos_2pi((k as f32 + 0.5) / columns as f32);
+        let m = vec3(tan * cos * turn.cos, tan * cos * turn.sin, cos);
+        ggx_masking(v, alpha) * 2.0 * w * max(m.dot(v), 0.0) / (cos * v.z)
+    });
+    means(&seen, &inputs)
 }

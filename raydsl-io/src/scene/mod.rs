@@ -14,8 +14,8 @@
 //! `KHR_materials_volume`, `KHR_mesh_quantization` and `KHR_texture_transform`. A file that requires
 //! another is refused; one that only uses another is read without it.
 //!
-//! Not read are points and lines, occlusion, animations, skins and morphs: meshes are as their nodes
-//! place them, at rest. A transparent picture of a material that is `Opaque` stays so.
+//! Not read are points and lines, occlusion, a coat's own normals, pictures of thickness, animations,
+//! skins and morphs: meshes are as their nodes place them, at rest. A transparent picture of a material that is `Opaque` stays so.
 //!
 //! Buffers and pictures are in the file itself, in a `data:` URI, or in a file in its own folder or
 //! below. A URI that leads elsewhere, or to the net, is an error.
@@ -162,16 +162,28 @@ pub struct Material {
     pub attenuation_color: Vec3,
     /// The factor of the reflection of what is no metal, from 0 to 1.
     pub specular: f32,
+    /// The factor of that reflection, in alpha, linear.
+    pub specular_texture: Option<Texture>,
     /// The linear colour of that reflection, not negative.
     pub specular_color: Vec3,
+    /// The colour of that reflection, in sRGB.
+    pub specular_color_texture: Option<Texture>,
     /// The coat, from 0 to 1.
     pub clearcoat: f32,
+    /// The coat in red, linear.
+    pub clearcoat_texture: Option<Texture>,
     /// The roughness of the coat, from 0 to 1.
     pub clearcoat_roughness: f32,
+    /// The roughness of the coat in green, linear.
+    pub clearcoat_roughness_texture: Option<Texture>,
     /// The linear colour of the sheen, each from 0 to 1; black where there is none.
     pub sheen_color: Vec3,
+    /// The colour of the sheen, in sRGB.
+    pub sheen_color_texture: Option<Texture>,
     /// The roughness of the sheen, from 0 to 1.
     pub sheen_roughness: f32,
+    /// The roughness of the sheen, in alpha, linear.
+    pub sheen_roughness_texture: Option<Texture>,
     /// Whether the base colour is shown as it is, without light.
     pub unlit: bool,
 }
@@ -199,11 +211,17 @@ impl Default for Material {
             attenuation_distance: f32::INFINITY,
             attenuation_color: Vec3::ONE,
             specular: 1.0,
+            specular_texture: None,
             specular_color: Vec3::ONE,
+            specular_color_texture: None,
             clearcoat: 0.0,
+            clearcoat_texture: None,
             clearcoat_roughness: 0.0,
+            clearcoat_roughness_texture: None,
             sheen_color: Vec3::ZERO,
+            sheen_color_texture: None,
             sheen_roughness: 0.0,
+            sheen_roughness_texture: None,
             unlit: false,
         }
     }

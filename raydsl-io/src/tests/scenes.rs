@@ -96,11 +96,17 @@ fn a_material_is_whole() {
         attenuation_distance: 2.0,
         attenuation_color: vec3(0.5, 0.6, 0.7),
         specular: 0.8,
+        specular_texture: Some(dots),
         specular_color: vec3(1.0, 0.9, 2.0),
+        specular_color_texture: Some(other),
         clearcoat: 1.0,
+        clearcoat_texture: Some(other),
         clearcoat_roughness: 0.1,
+        clearcoat_roughness_texture: Some(dots),
         sheen_color: vec3(0.3, 0.2, 0.1),
+        sheen_color_texture: Some(dots),
         sheen_roughness: 0.6,
+        sheen_roughness_texture: Some(other),
         unlit: true,
     };
     assert_eq!(m, &expected);

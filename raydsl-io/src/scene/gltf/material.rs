@@ -76,21 +76,27 @@ struct Volume {
 #[serde(default, rename_all = "camelCase")]
 struct Specular {
     specular_factor: Option<f32>,
+    specular_texture: Option<Info>,
     specular_color_factor: Option<[f32; 3]>,
+    specular_color_texture: Option<Info>,
 }
 
 #[derive(Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
 struct Clearcoat {
     clearcoat_factor: f32,
+    clearcoat_texture: Option<Info>,
     clearcoat_roughness_factor: f32,
+    clearcoat_roughness_texture: Option<Info>,
 }
 
 #[derive(Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
 struct Sheen {
     sheen_color_factor: [f32; 3],
+    sheen_color_texture: Option<Info>,
     sheen_roughness_factor: f32,
+    sheen_roughness_texture: Option<Info>,
 }
 
 #[derive(Default, Deserialize)]
@@ -197,16 +203,24 @@ impl Reader<'_> {
         if let Some(found) = found {
             m.specular = share(found.specular_factor.unwrap_or(1.0));
             m.specular_color = Vec3::from(found.specular_color_factor.unwrap_or([1.0; 3]));
+            m.specular_texture = self.texture(found.specular_texture.as_ref(), what)?;
+            m.specular_color_texture = self.texture(found.specular_color_texture.as_ref(), what)?;
         }
         let found: Option<Clearcoat> = file.extension(others, "KHR_materials_clearcoat", what)?;
         if let Some(found) = found {
             m.clearcoat = share(found.clearcoat_factor);
             m.clearcoat_roughness = share(found.clearcoat_roughness_factor);
+            m.clearcoat_texture = self.texture(found.clearcoat_texture.as_ref(), what)?;
+            m.clearcoat_roughness_texture =
+                self.texture(found.clearcoat_roughness_texture.as_ref(), what)?;
         }
         let found: Option<Sheen> = file.extension(others, "KHR_materials_sheen", what)?;
         if let Some(found) = found {
             m.sheen_color = colour(found.sheen_color_factor);
             m.sheen_roughness = share(found.sheen_roughness_factor);
+            m.sheen_color_texture = self.texture(found.sheen_color_texture.as_ref(), what)?;
+            m.sheen_roughness_texture =
+                self.texture(found.sheen_roughness_texture.as_ref(), what)?;
         }
         m.unlit = others.is_some_and(|others| others.contains_key("KHR_materials_unlit"));
         Ok(())
