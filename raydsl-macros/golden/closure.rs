@@ -576,10 +576,10 @@ fn main() {
                 move |visit: &mut dyn FnMut(&dyn ::raydsl::__private::Resource)| {
                     ::raydsl::__private::Capture::<
                         ::raydsl::__private::Recorder,
-                    >::resources({ __captures.0 }, visit);
+                    >::resources({ __captures.0 }, "bvh", visit);
                     ::raydsl::__private::Capture::<
                         ::raydsl::__private::Recorder,
-                    >::resources({ __captures.1 }, visit);
+                    >::resources({ __captures.1 }, "background", visit);
                 },
             )
     };

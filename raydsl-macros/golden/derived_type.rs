@@ -410,4 +410,11 @@ impl<__M: ::raydsl::__private::Machine> ::raydsl::__private::Capture<__M> for Sa
     fn constant(&self, m: &__M) -> SampleOn<__M> {
         ::raydsl::__private::Type::splat(m, *self)
     }
+    fn resources(
+        &self,
+        name: &'static str,
+        visit: &mut dyn ::core::ops::FnMut(&dyn ::raydsl::__private::Resource),
+    ) {
+        ::raydsl::__private::visit_value(*self, name, visit);
+    }
 }

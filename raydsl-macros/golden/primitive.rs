@@ -459,6 +459,13 @@ for ColorSphere {
     fn constant(&self, m: &__M) -> ColorSphereOn<__M> {
         ::raydsl::__private::Type::splat(m, *self)
     }
+    fn resources(
+        &self,
+        name: &'static str,
+        visit: &mut dyn ::core::ops::FnMut(&dyn ::raydsl::__private::Resource),
+    ) {
+        ::raydsl::__private::visit_value(*self, name, visit);
+    }
 }
 const _: () = assert!(
     ::core::mem::size_of:: < ColorSphere > () == ::core::mem::size_of:: < Vec3 > () +

@@ -1,5 +1,6 @@
 //! Kernels with all their variants.
 
+use core::any::TypeId;
 use core::cell::Cell;
 use core::sync::atomic::{AtomicU64, Ordering};
 
@@ -9,7 +10,7 @@ use crate::machine::{
     wgsl,
 };
 #[cfg(feature = "gpu")]
-use crate::machine::{Frame, Value};
+use crate::machine::{Description, Frame, Identity, Value};
 use crate::run::{Levels, fibers};
 
 pub use crate::run::{Counting, Native4, Native8, Native16, Variant, Variants};
@@ -41,12 +42,20 @@ pub struct Kernel<'a, A: Type, R: Type> {
     resources: Resources<'a>,
     arithmetic: wgsl::Arithmetic,
     number: u64,
+    /// The type of its closure: kernels of the same code.
+    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "only a device keeps recordings"))]
+    code: TypeId,
 }
 
 /// Returns a number that no kernel had before.
 fn new_number() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     NEXT.fetch_add(1, Ordering::Relaxed)
+}
+
+/// Returns what identifies a closure's code: its type, apart from lifetimes.
+fn code_of<T>(_: &T) -> TypeId {
+    typeid::of::<T>()
 }
 
 /// A kernel's scalar function before its lifted copies are added; the first step of `kernel!`.
@@ -69,9 +78,10 @@ impl<'a, A: Type, R: Type> ScalarKernel<'a, A, R> {
         lifted: Lifted<'a, A, R>,
         resources: impl Fn(&mut dyn FnMut(&dyn Resource)) + Send + Sync + 'a,
     ) -> Kernel<'a, A, R> {
+        let code = code_of(&resources);
         let Self { info, scalar } = self;
         let (resources, arithmetic) = (Box::new(resources), wgsl::Arithmetic::Strict);
-        Kernel { info, scalar, lifted, resources, arithmetic, number: new_number() }
+        Kernel { info, scalar, lifted, resources, arithmetic, number: new_number(), code }
     }
 }
 
@@ -117,6 +127,7 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
             resources: Box::new(|_| {}),
             arithmetic: wgsl::Arithmetic::Strict,
             number: new_number(),
+            code: typeid::of::<F>(),
         }
     }
 
@@ -265,6 +276,18 @@ impl<'a, A: Type, R: Type> Kernel<'a, A, R> {
     /// recording.
     pub fn number(&self) -> u64 {
         self.number
+    }
+
+    /// Returns what identifies the kernel's recording, and that of kernels like it.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn identity<'k>(&'k self, describe: &'k dyn Fn(&mut Description)) -> Identity<'k> {
+        Identity { number: self.number, code: self.code, arithmetic: self.arithmetic, describe }
+    }
+
+    /// Describes what the kernel captures.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn describe(&self, out: &mut Description) {
+        (self.resources)(&mut |resource| resource.describe(out));
     }
 
     /// Returns the frame around the body when it runs over a buffer of parameters.

@@ -74,7 +74,8 @@ pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel)
     }
     let machines: Vec<&Natural> =
         wanted.iter().copied().chain(counted.as_ref().map(|_| &COUNTED)).collect();
-    let (copies, captured) = copies(&kernel, closure, &machines, &mut errors);
+    let (copies, Captured { all: captured, of_host }) =
+        copies(&kernel, closure, &machines, &mut errors);
     // The closure itself remains, so that rustc and editors see its types.
     let closure = without_markers(closure.to_token_stream());
     if !errors.is_empty() {
@@ -84,7 +85,7 @@ pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel)
     let (p, scalar, captures) = (private(), own("scalar"), own("captures"));
     let names: Vec<&Ident> = kernel.params.iter().map(|p| &p.name).collect();
     let types = kernel.params.iter().map(|p| &p.ty);
-    let (info, resources) = (info(&kernel, "kernel"), resources(&captured));
+    let (info, resources) = (info(&kernel, "kernel"), resources(&captured, &of_host));
     let boxed = |machine: &&Natural| boxed(machine, machine.member == machines[0].member);
     let members = NATURAL.iter().map(|machine| {
         let name = format_ident!("{}", machine.member);
@@ -147,10 +148,10 @@ fn copies(
     closure: &syn::ExprClosure,
     machines: &[&Natural],
     errors: &mut Errors,
-) -> (Vec<TokenStream>, Vec<Ident>) {
+) -> (Vec<TokenStream>, Captured) {
     let p = private();
     let is_short = tokens(closure.to_token_stream(), INFERRED) < INFERRED;
-    let (mut copies, mut captured) = (Vec::new(), Vec::new());
+    let (mut copies, mut captured) = (Vec::new(), Captured::default());
     for machine in machines {
         let (alias, member) = (format_ident!("{}", machine.alias), own(machine.member));
         let machine = if copies.is_empty() && is_short { quote!(_) } else { quote!(#p::#alias) };
@@ -183,6 +184,14 @@ fn tokens(stream: TokenStream, most: usize) -> usize {
     count
 }
 
+/// The names that a kernel captures.
+#[derive(Default)]
+struct Captured {
+    all: Vec<Ident>,
+    /// Those among them that are used as the host's values.
+    of_host: Vec<Ident>,
+}
+
 /// Returns the lifted closure for one machine, as the local `member`, and the names that it
 /// captures.
 fn copy_for(
@@ -190,12 +199,13 @@ fn copy_for(
     member: &Ident,
     kernel: &Kernel,
     errors: &mut Errors,
-) -> (TokenStream, Vec<Ident>) {
+) -> (TokenStream, Captured) {
     let (p, m, quiet) = (private(), own("m"), quiet());
     let mut emitter = Emitter::new(kernel, machine.clone(), None, true, errors);
     let body = emitter.body();
     let captured = core::mem::take(&mut emitter.captures);
-    let raw = raw_captures(&emitter.host_captures, &captured);
+    let of_host = core::mem::take(&mut emitter.host_captures);
+    let raw = raw_captures(&of_host, &captured);
     let brought = brought(machine, &captured);
     let names: Vec<&Ident> = kernel.params.iter().map(|p| &p.name).collect();
     let types: Vec<TokenStream> = kernel.params.iter().map(|p| emitter.on(&p.ty)).collect();
@@ -221,7 +231,7 @@ fn copy_for(
     } else {
         copy
     };
-    (quote!(#quiet let #member = #copy;), captured)
+    (quote!(#quiet let #member = #copy;), Captured { all: captured, of_host })
 }
 
 /// Returns the captures as values of the machine.
@@ -245,14 +255,22 @@ fn raw_captures(names: &[Ident], captured: &[Ident]) -> Vec<TokenStream> {
     names.iter().filter_map(raw).collect()
 }
 
-/// Returns the code that passes the captures' resources to the runtime.
-fn resources(captured: &[Ident]) -> Vec<TokenStream> {
+/// Returns the code that passes the captures' resources to the runtime, and the values among them
+/// that are used as the host's.
+fn resources(captured: &[Ident], of_host: &[Ident]) -> Vec<TokenStream> {
     let visit = |(i, name): (usize, &Ident)| {
         let _at = At::new(name.span());
-        let (p, capture) = (private_here(), capture(i));
-        quote_here!(#p::Capture::<#p::Recorder>::resources(#capture, visit);)
+        let (p, capture, text) = (private_here(), capture(i), name.to_string());
+        quote_here!(#p::Capture::<#p::Recorder>::resources(#capture, #text, visit);)
     };
-    captured.iter().enumerate().map(visit).collect()
+    let visit_host = |name: &Ident| {
+        let _at = At::new(name.span());
+        let capture = capture(captured.iter().position(|c| c == name)?);
+        let p = private_here();
+        Some(quote_here!(#p::visit_host(#capture, visit);))
+    };
+    let values = captured.iter().enumerate().map(visit);
+    values.chain(of_host.iter().filter_map(visit_host)).collect()
 }
 
 /// Returns one of the captures, which are stored in a tuple.

@@ -203,7 +203,11 @@ impl Struct<'_> {
                     #p::RecordQuery::view(self)
                 }
 
-                fn resources(&self, visit: &mut dyn ::core::ops::FnMut(&dyn #p::Resource)) {
+                fn resources(
+                    &self,
+                    _: &'static str,
+                    visit: &mut dyn ::core::ops::FnMut(&dyn #p::Resource),
+                ) {
                     #p::RayQueryOn::resources(&#p::RecordQuery::view(self), visit);
                 }
             }

@@ -237,6 +237,14 @@ fn capture(name: &Ident, twin: &Ident) -> TokenStream {
             fn constant(&self, m: &__M) -> #twin<__M> {
                 #p::Type::splat(m, *self)
             }
+
+            fn resources(
+                &self,
+                name: &'static str,
+                visit: &mut dyn ::core::ops::FnMut(&dyn #p::Resource),
+            ) {
+                #p::visit_value(*self, name, visit);
+            }
         }
     }
 }

@@ -85,6 +85,14 @@ pub(super) fn capture(twin: &TokenStream, host: &TokenStream, generics: &Generic
             fn constant(&self, m: &__M) -> #twin {
                 #p::Type::splat(m, *self)
             }
+
+            fn resources(
+                &self,
+                name: &'static str,
+                visit: &mut dyn ::core::ops::FnMut(&dyn #p::Resource),
+            ) {
+                #p::visit_value(*self, name, visit);
+            }
         }
     }
 }

@@ -144,8 +144,8 @@ impl<M: Machine, P: Primitive> Capture<M> for BvhList<'_, P> {
         self.view()
     }
 
-    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        visit(&self.view());
+    fn resources(&self, name: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
+        visit(&self.view().named(name));
     }
 }
 

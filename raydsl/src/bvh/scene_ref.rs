@@ -82,7 +82,7 @@ impl<M: Machine, S: RecordQuery + ?Sized> Capture<M> for SceneRef<'_, S> {
         self.scene
     }
 
-    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+    fn resources(&self, _: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
         self.view().resources(visit);
     }
 }

@@ -11,8 +11,8 @@ use super::wide::{Wide, WideQueries};
 use super::{Accelerator, Node, Owned, list};
 use crate::geometry::{Kinds, Primitive, Ray};
 use crate::machine::{
-    Data, Field, Leaves, Machine, Owner, Resource, Schema, Slice, Type, Value, borrowed_key,
-    bytes_of, read_in_place, wgsl::BufferKey,
+    Data, Description, Field, Leaves, Machine, Owner, Resource, Schema, Slice, Type, Value,
+    borrowed_key, bytes_of, read_in_place, wgsl::BufferKey,
 };
 
 /// The schema of a [`Node`].
@@ -494,6 +494,29 @@ impl<T: Type, S: Type> Resource for View<'_, T, S> {
                 Some(Cow::Owned(bytemuck::cast_slice(&roots).to_vec()))
             }
             _ => None,
+        }
+    }
+
+    fn describe(&self, out: &mut Description) {
+        match self.scene {
+            Scene::Slice(prims) => {
+                out.fact(0);
+                out.data(&prims);
+            }
+            Scene::Tree(tree) => {
+                out.fact(1);
+                out.kinds(tree.kinds);
+                out.data(self);
+                out.data(&self.shared());
+                let name = Data::name(self);
+                let (nodes, indices) = self.tree_len();
+                let (of_nodes, of_indices) = (buffers::NODES, buffers::INDICES);
+                let key = |part| self.key_of(part);
+                out.buffer(key(of_nodes), &format!("{name}_nodes"), NODE_SCHEMA, nodes);
+                out.buffer(key(of_indices), &format!("{name}_ids"), &Schema::U32, indices);
+            }
+            // Their text depends on how deep they are nested, among others.
+            Scene::List(_) | Scene::Instances(_) | Scene::Standing(_) => out.leave_open(),
         }
     }
 }

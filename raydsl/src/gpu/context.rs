@@ -137,7 +137,8 @@ impl Context {
         lock(&self.uploads).kept() + lock(&self.textures).kept()
     }
 
-    /// Returns the number of kernels recorded so far: one that runs again is not recorded again.
+    /// Returns the number of kernels recorded so far. One that runs again is not recorded again, nor
+    /// is another kernel of the same closure whose captures differ in numbers and data alone.
     pub fn recorded(&self) -> u64 {
         lock(&self.modules).recorded()
     }

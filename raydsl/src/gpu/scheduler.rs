@@ -12,7 +12,8 @@ use crate::camera::Camera;
 use crate::kernel::Kernel;
 use crate::machine::wgsl::{BufferKey, Module};
 use crate::machine::{
-    Frame as KernelFrame, Recorder, Recording, Resource, Type, Value, X2, stride,
+    Description, Frame as KernelFrame, Identity, Recorder, Recording, Resource, Type, Value, X2,
+    stride,
 };
 use crate::render::{Effort, FilmArgs, Frame, Image, Observer, Pace, Renderer, Shot, timing_of};
 
@@ -25,7 +26,9 @@ type Resources<'a> = &'a dyn Fn(Visit<'_>);
 /// A renderer that runs the WGSL variant of kernels, for pictures and batches.
 ///
 /// Trees are uploaded once and kept; text is compiled once and kept. The numbers that a kernel
-/// captures are in a uniform buffer, so that new numbers compile nothing.
+/// captures are in a uniform buffer, so that new numbers compile nothing. A kernel that a closure
+/// makes anew, with other numbers, slices, trees, grids or transfer functions, is not even recorded
+/// again; one that captures textures, lists of trees, instances or lights is.
 #[derive(Debug)]
 pub struct GpuScheduler {
     context: Context,
@@ -102,13 +105,14 @@ impl GpuScheduler {
                 })
             })
         };
-        self.known_module(kernel.number(), KernelFrame::new(frame), &record)
+        let describe = |out: &mut Description| kernel.describe(out);
+        self.known_module(&kernel.identity(&describe), KernelFrame::new(frame), &record)
     }
 
     /// Returns the module of a kernel in a frame; `record` records it if it is new.
     fn known_module(
         &self,
-        kernel: u64,
+        kernel: &Identity<'_>,
         frame: KernelFrame,
         record: &dyn Fn() -> Recording,
     ) -> Module {
@@ -193,7 +197,9 @@ impl Renderer for GpuScheduler {
         inputs: &[A],
         outputs: &mut [R],
     ) -> Result<Timing, GpuError> {
-        let module = self.known_module(kernel.number(), kernel.frame(), &|| kernel.record());
+        let describe = |out: &mut Description| kernel.describe(out);
+        let identity = kernel.identity(&describe);
+        let module = self.known_module(&identity, kernel.frame(), &|| kernel.record());
         let each = stride(A::SCHEMA);
         let mut bytes = vec![0; each * inputs.len()];
         for (a, out) in inputs.iter().zip(bytes.chunks_exact_mut(each)) {

@@ -67,7 +67,7 @@ impl PathLimits {
 /// with multiple importance sampling.
 #[doc(alias = "MIS")]
 #[doc(alias = "next event estimation")]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Type)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Type)]
 #[repr(u32)]
 pub enum LightSampling {
     /// By samples of lights and by rays that hit lights, weighted by the power heuristic (multiple
@@ -95,7 +95,7 @@ impl LightSampling {
 }
 
 /// What a path tracer does that not every scene needs: host values, all off unless set.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Type)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Type)]
 pub struct PathOptions {
     /// Whether there are surfaces with holes, or half-transparent ones: rays meet a surface with the
     /// probability of its [`Material::opacity`], and pass it otherwise. Queries ask the material of

@@ -7,12 +7,75 @@ use glam::{
     Vec4,
 };
 
-use super::{F, Machine, Type, Value, wgsl::BufferKey};
+use super::{Description, F, HostCapture, Machine, Schema, Type, Value, wgsl::BufferKey};
 
 /// Data that recorded kernels read from buffers.
 pub trait Resource {
     /// Returns the bytes behind `key`, if they belong to this resource.
     fn bytes(&self, key: BufferKey) -> Option<Cow<'_, [u8]>>;
+
+    /// Adds what a recording depends on: all numbers and buffers that it may read, under the names
+    /// that they have there, and every fact that a branch of the host decides by. Unless a resource
+    /// says otherwise it leaves the description open, and its kernels are recorded each for itself.
+    fn describe(&self, out: &mut Description) {
+        out.leave_open();
+    }
+}
+
+/// What is not described.
+struct Undescribed;
+
+impl Resource for Undescribed {
+    fn bytes(&self, _: BufferKey) -> Option<Cow<'_, [u8]>> {
+        None
+    }
+}
+
+/// A captured number or struct of numbers.
+struct CapturedValue {
+    name: &'static str,
+    schema: &'static Schema,
+    bytes: Vec<u8>,
+}
+
+impl Resource for CapturedValue {
+    fn bytes(&self, _: BufferKey) -> Option<Cow<'_, [u8]>> {
+        None
+    }
+
+    fn describe(&self, out: &mut Description) {
+        out.value(self.name, self.schema, &self.bytes);
+    }
+}
+
+/// Visits a captured value.
+#[doc(hidden)]
+pub fn visit_value<T: Type>(v: T, name: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
+    let mut bytes = vec![0; T::SCHEMA.size().max(size_of::<T>())];
+    v.write(&mut bytes);
+    visit(&CapturedValue { name, schema: T::SCHEMA, bytes });
+}
+
+/// A fact that a branch of the host decides by.
+pub(crate) struct HostFact(pub(crate) u64);
+
+impl Resource for HostFact {
+    fn bytes(&self, _: BufferKey) -> Option<Cow<'_, [u8]>> {
+        None
+    }
+
+    fn describe(&self, out: &mut Description) {
+        out.fact(self.0);
+    }
+}
+
+/// Visits a captured value that is used as one of the host.
+#[doc(hidden)]
+pub fn visit_host<T: HostCapture>(v: &T, visit: &mut dyn FnMut(&dyn Resource)) {
+    match v.fact() {
+        Some(fact) => visit(&HostFact(fact)),
+        None => visit(&Undescribed),
+    }
 }
 
 /// A value of the host that a kernel may capture.
@@ -34,9 +97,10 @@ pub trait Capture<M: Machine> {
     /// Brings a constant of the source to the machine.
     fn constant<'c>(&'c self, m: &M) -> Self::On<'c>;
 
-    /// Visits the buffers that recorded code may read.
-    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        let _ = visit;
+    /// Visits what recorded code may read, under its name in the source.
+    fn resources(&self, name: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
+        let _ = name;
+        visit(&Undescribed);
     }
 }
 
@@ -71,8 +135,8 @@ impl<M: Machine, T: Capture<M> + ?Sized> Capture<M> for &T {
         T::constant(self, m)
     }
 
-    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        T::resources(self, visit);
+    fn resources(&self, name: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
+        T::resources(self, name, visit);
     }
 }
 
@@ -92,6 +156,10 @@ macro_rules! capture_number {
                 fn constant(&self, m: &M) -> <$host as Type>::On<M> {
                     <$host as Type>::splat(m, *self)
                 }
+
+                fn resources(&self, name: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
+                    visit_value(*self, name, visit);
+                }
             }
         )+
     };
@@ -110,6 +178,10 @@ impl<M: Machine> Capture<M> for f32 {
     #[inline(always)]
     fn constant(&self, m: &M) -> F<M> {
         F(m.f32_constant(*self))
+    }
+
+    fn resources(&self, name: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
+        visit_value(*self, name, visit);
     }
 }
 
@@ -133,6 +205,10 @@ impl<M: Machine, T: Type, const N: usize> Capture<M> for [T; N] {
     fn constant(&self, m: &M) -> [T::On<M>; N] {
         <[T; N]>::splat(m, *self)
     }
+
+    fn resources(&self, name: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
+        visit_value(*self, name, visit);
+    }
 }
 
 /// Leaves a captured `bool` a value of the host: a branch on it is decided while recording.
@@ -148,5 +224,9 @@ impl<M: Machine> Capture<M> for bool {
     #[inline(always)]
     fn constant(&self, _: &M) -> bool {
         *self
+    }
+
+    fn resources(&self, _: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
+        visit(&HostFact((*self).into()));
     }
 }

@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 
 use super::wgsl::BufferKey;
-use super::{Capture, Kinds, Leaves, Machine, Parameter, Resource, Schema, Type, Value, stride};
+use super::{
+    Capture, Description, Kinds, Leaves, Machine, Parameter, Resource, Schema, Type, Value, stride,
+};
 
 /// Elements in the host's memory: a value of the host on every machine.
 pub trait Data: Copy {
@@ -172,6 +174,19 @@ impl<T: Type> Resource for Slice<'_, T> {
     }
 }
 
+/// A slice of which kernels read elements and length, and nothing else.
+pub(crate) struct DescribedSlice<'a, T>(pub(crate) Slice<'a, T>);
+
+impl<T: Type> Resource for DescribedSlice<'_, T> {
+    fn bytes(&self, key: BufferKey) -> Option<Cow<'_, [u8]>> {
+        self.0.bytes(key)
+    }
+
+    fn describe(&self, out: &mut Description) {
+        out.data(&self.0);
+    }
+}
+
 impl<M: Machine, T> Value<M> for Slice<'_, T> {
     const SCHEMA: &'static Schema = &Schema::Host;
 
@@ -216,8 +231,8 @@ impl<M: Machine, T: Type> Capture<M> for [T] {
         Slice::new(self, "table")
     }
 
-    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        visit(&Slice::new(self, "table"));
+    fn resources(&self, name: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
+        visit(&DescribedSlice(Slice::new(self, name)));
     }
 }
 
@@ -238,8 +253,8 @@ impl<M: Machine, T: Type> Capture<M> for Vec<T> {
         self.as_slice().constant(m)
     }
 
-    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        Capture::<M>::resources(self.as_slice(), visit);
+    fn resources(&self, name: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
+        Capture::<M>::resources(self.as_slice(), name, visit);
     }
 }
 

@@ -40,6 +40,11 @@ pub trait HostCapture {
     type Value: Copy;
     /// Returns the host value.
     fn host(&self) -> Self::Value;
+    /// Returns a number that another value does not have, if there is one.
+    #[doc(hidden)]
+    fn fact(&self) -> Option<u64> {
+        None
+    }
 }
 
 #[diagnostic::do_not_recommend]
@@ -49,6 +54,10 @@ impl<T: HostCapture + ?Sized> HostCapture for &T {
     #[inline(always)]
     fn host(&self) -> T::Value {
         T::host(self)
+    }
+
+    fn fact(&self) -> Option<u64> {
+        T::fact(self)
     }
 }
 
@@ -70,6 +79,10 @@ macro_rules! host_number {
                 #[inline(always)]
                 fn host(&self) -> Self {
                     *self
+                }
+
+                fn fact(&self) -> Option<u64> {
+                    Some(*self as u64)
                 }
             }
 
@@ -95,6 +108,10 @@ impl HostCapture for f32 {
     #[inline(always)]
     fn host(&self) -> Self {
         *self
+    }
+
+    fn fact(&self) -> Option<u64> {
+        Some(self.to_bits().into())
     }
 }
 
@@ -139,6 +156,12 @@ macro_rules! host_options {
                 #[inline(always)]
                 fn host(&self) -> Self {
                     *self
+                }
+
+                fn fact(&self) -> Option<u64> {
+                    use core::hash::BuildHasher as _;
+                    type Hash = core::hash::BuildHasherDefault<std::hash::DefaultHasher>;
+                    Some(Hash::default().hash_one(self))
                 }
             }
 

@@ -26,6 +26,11 @@ impl Kinds {
         if count < LAST { Self((1 << count) - 1) } else { Self::ALL }
     }
 
+    /// Returns the set as bits, the first kind's the lowest.
+    pub const fn bits(self) -> u64 {
+        self.0
+    }
+
     /// Returns the union of both sets.
     #[must_use]
     pub const fn union(self, other: Self) -> Self {

@@ -77,13 +77,14 @@ mod words;
 
 pub use call::{KernelFn, KernelInfo};
 pub(crate) use call::{KnownFunction, WithoutNan};
-pub use capture::{Capture, Resource};
+pub(crate) use capture::HostFact;
+pub use capture::{Capture, Resource, visit_host, visit_value};
 pub(crate) use counted::count;
 pub use counted::{Count, Counted, Place};
 #[cfg(feature = "gpu")]
 pub(crate) use data::is_borrowed;
 pub use data::{Data, Slice};
-pub(crate) use data::{borrowed_key, bytes_of, read_in_place};
+pub(crate) use data::{DescribedSlice, borrowed_key, bytes_of, read_in_place};
 pub use gang::Gang;
 pub(crate) use host::host_options;
 pub(crate) use index::{Index, Indexed, element_in_step};
@@ -98,9 +99,9 @@ pub use operation::{On, Operation, Visit};
 pub(crate) use owner::Owner;
 pub use packet::Packet;
 pub(crate) use record::stride;
+pub use record::{Description, Recorder, Recording};
 #[cfg(feature = "gpu")]
-pub(crate) use record::{Frame, Modules};
-pub use record::{Recorder, Recording};
+pub(crate) use record::{Frame, Identity, Modules};
 pub use scalar::Scalar;
 pub use schema::{Field, Schema};
 #[doc(hidden)]

@@ -124,8 +124,8 @@ macro_rules! table_view {
                 self.named_view($name)
             }
 
-            fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-                TableView::resources(&self.named_view($name), visit);
+            fn resources(&self, name: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
+                TableView::resources(&self.named_view(name), visit);
             }
         }
 

@@ -102,6 +102,10 @@ macro_rules! code {
             fn constant(&self, m: &M) -> $twin<M> {
                 Self::splat(m, *self)
             }
+
+            fn resources(&self, name: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
+                visit_value(*self, name, visit);
+            }
         }
 
         #[diagnostic::do_not_recommend]

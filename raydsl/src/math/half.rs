@@ -3,7 +3,8 @@
 use super::code::code;
 use crate::kernel;
 use crate::machine::{
-    Capture, F, LaneMachine, Leaves, Machine, Method, Schema, Type, U, Value, Varying, name,
+    Capture, F, LaneMachine, Leaves, Machine, Method, Resource, Schema, Type, U, Value, Varying,
+    name, visit_value,
 };
 
 code!(

@@ -5,7 +5,8 @@
 
 use super::code::code;
 use crate::machine::{
-    Capture, F, LaneMachine, Leaves, Machine, Method, Schema, Type, U, Value, Varying, name,
+    Capture, F, LaneMachine, Leaves, Machine, Method, Resource, Schema, Type, U, Value, Varying,
+    name, visit_value,
 };
 
 macro_rules! unorm {

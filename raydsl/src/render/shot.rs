@@ -143,7 +143,7 @@ impl<C: CameraRays, A: FilmArgs, R: Radiance, K: Kept<R>> Shot for Pass<'_, C, A
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
         self.kernel.resources(visit);
         if let Some(allocation) = self.allocation {
-            Capture::<Recorder>::resources(allocation.samples(), visit);
+            Capture::<Recorder>::resources(allocation.samples(), "samples_of_blocks", visit);
         }
     }
 

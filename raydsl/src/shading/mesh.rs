@@ -195,8 +195,8 @@ impl<M: Machine, S: PrimitiveScene<Primitive = IndexedTriangle> + ?Sized> Captur
         self.view()
     }
 
-    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        RayQueryOn::resources(&self.view(), visit);
+    fn resources(&self, name: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
+        RayQueryOn::resources(&RayQueryOn::named(self.view(), name), visit);
     }
 }
 

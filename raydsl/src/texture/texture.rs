@@ -289,7 +289,7 @@ macro_rules! capture {
                 self.as_texture_ref()
             }
 
-            fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+            fn resources(&self, _: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
                 visit(&self.as_texture_ref().texels.slice());
             }
         }

@@ -14,8 +14,8 @@ use crate::geometry::{Ray, RayOn};
 use crate::machine::table_view;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
-    B, Capture, F, Leaves, Machine, Method, Owner, Parameter, Resource, Schema, Slice, Table,
-    TableView, U, V3, Value, X3, name,
+    B, Capture, DescribedSlice, F, HostFact, Leaves, Machine, Method, Owner, Parameter, Resource,
+    Schema, Slice, Table, TableView, U, V3, Value, X3, name, visit_value,
 };
 
 /// Maximum number of voxels along an axis of a grid: up to here a place between two voxels has four
@@ -350,8 +350,10 @@ table_view!([T: Voxel] Grid<'_, T>, GridView, "grid", "grids");
 
 impl<T: Voxel> TableView for GridView<'_, T> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        visit(&self.stored);
-        visit(&self.ranges);
+        visit(&DescribedSlice(self.stored));
+        visit(&DescribedSlice(self.ranges));
+        visit_value(InUniforms { grid: self.layout }, self.name, visit);
+        visit(&HostFact(self.has_gaps.into()));
     }
 
     fn is_same(&self, other: &Self) -> bool {

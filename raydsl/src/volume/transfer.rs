@@ -8,9 +8,9 @@ use crate::machine::generic::clamp;
 use crate::machine::table_view;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
-    Capture, F, Lanes, Leaves, Machine, Margin, Method, Operation, Owner, Packet, Parameter,
-    Recorder, Resource, Scalar, Schema, Slice, Table, TableView, Type as MachineType, U, Value,
-    name,
+    Capture, DescribedSlice, F, Lanes, Leaves, Machine, Margin, Method, Operation, Owner, Packet,
+    Parameter, Recorder, Resource, Scalar, Schema, Slice, Table, TableView, Type as MachineType, U,
+    Value, name, visit_value,
 };
 use crate::{Type, kernel};
 
@@ -417,9 +417,10 @@ table_view!([] TransferFunction, TransferView, "transfer", "transfer functions")
 
 impl TableView for TransferView<'_> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        visit(&self.knots);
-        visit(&self.bins);
-        visit(&self.integrals);
+        visit(&DescribedSlice(self.knots));
+        visit(&DescribedSlice(self.bins));
+        visit(&DescribedSlice(self.integrals));
+        visit_value(InUniforms { transfer: self.layout }, self.name, visit);
     }
 
     fn is_same(&self, other: &Self) -> bool {

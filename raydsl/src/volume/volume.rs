@@ -9,8 +9,8 @@ use crate::geometry::{Ray, RayOn};
 use crate::machine::table_view;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
-    Capture, F, Inferred, Leaves, Machine, Method, On, Owner, Parameter, Resource, Schema, Slice,
-    Table, TableView, U, Value, name,
+    Capture, DescribedSlice, F, Inferred, Leaves, Machine, Method, On, Owner, Parameter, Resource,
+    Schema, Slice, Table, TableView, U, Value, name,
 };
 
 /// Grid that is seen through a transfer function, with the greatest extinction of each macro-cell,
@@ -127,7 +127,7 @@ impl<T: Voxel> TableView for VolumeView<'_, T> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
         self.grid.resources(visit);
         self.transfer.resources(visit);
-        visit(&self.majorants);
+        visit(&DescribedSlice(self.majorants));
     }
 
     fn is_same(&self, other: &Self) -> bool {

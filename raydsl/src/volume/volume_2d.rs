@@ -14,8 +14,8 @@ use crate::machine::generic::{clamp, length, max, min};
 use crate::machine::table_view;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
-    Capture, F, Leaves, Machine, Method, On, Parameter, Resource, Schema, Slice, Table, TableView,
-    Type as MachineType, U, Value, name,
+    Capture, DescribedSlice, F, Leaves, Machine, Method, On, Parameter, Resource, Schema, Slice,
+    Table, TableView, Type as MachineType, U, Value, name, visit_value,
 };
 use crate::{Type, kernel};
 use glam::{Vec3, uvec3, vec2, vec3};
@@ -193,8 +193,9 @@ table_view!([T: Voxel] Volume2d<'_, T>, Volume2dView, "volume", "volumes");
 impl<T: Voxel> TableView for Volume2dView<'_, T> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
         self.grid.resources(visit);
-        visit(&self.samples);
-        visit(&self.majorants);
+        visit(&DescribedSlice(self.samples));
+        visit(&DescribedSlice(self.majorants));
+        visit_value(InUniforms { transfer: self.layout }, self.name, visit);
     }
 
     fn is_same(&self, other: &Self) -> bool {

@@ -490,13 +490,13 @@ pub fn first<T>(list: &'static [T], len: usize) -> &'static [T] {
 /// Shows the slices of scenes of every length.
 pub fn resources(visit: &mut dyn FnMut(&dyn Resource)) {
     for len in 1..=FLOATS.len() {
-        Capture::<Recorder>::resources(first(&FLOATS, len), visit);
-        Capture::<Recorder>::resources(first(&WORDS, len), visit);
-        Capture::<Recorder>::resources(first(&SMALLS, len), visit);
-        Capture::<Recorder>::resources(first(&SHAPES, len), visit);
-        Capture::<Recorder>::resources(first(&WALLS, len), visit);
+        Capture::<Recorder>::resources(first(&FLOATS, len), "list", visit);
+        Capture::<Recorder>::resources(first(&WORDS, len), "list", visit);
+        Capture::<Recorder>::resources(first(&SMALLS, len), "list", visit);
+        Capture::<Recorder>::resources(first(&SHAPES, len), "list", visit);
+        Capture::<Recorder>::resources(first(&WALLS, len), "list", visit);
     }
-    Capture::<Recorder>::resources(&WORLD, visit);
+    Capture::<Recorder>::resources(&WORLD, "world", visit);
 }
 
 /// What stands for a slice on a machine.

@@ -393,8 +393,8 @@ impl<M: Machine, P: Primitive> Capture<M> for Instances<'_, P> {
         self.view()
     }
 
-    fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        visit(&self.view());
+    fn resources(&self, name: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
+        visit(&self.view().named(name));
     }
 }
 

@@ -95,6 +95,10 @@ fn a_device_may_fuse_one_use_of_a_product() {
     let found = on_device(&nothing, (1.1, 1.3));
     assert!(fused != 0.0 && found.contains(fused) && found.contains(0.0f32), "{found:?}");
     assert!(!found.contains(1e-6f32));
+    // A product with 0 is 0 either way.
+    let positive = kernel!(|x: f32, y: f32, z: f32| x * z.sqrt() + y * z > 0.0);
+    assert!(!on_device(&positive, (0.0, 0.0, 0.3)).is_uncertain());
+    assert!(on_device(&positive, (0.1, -0.1, 1.0)).is_uncertain());
 }
 
 #[test]

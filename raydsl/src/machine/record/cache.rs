@@ -1,12 +1,13 @@
 //! Module cache: a kernel is recorded once, and a program printed once.
 
+use core::any::TypeId;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::ir::{SceneBuffer, Uniform};
 use super::module::{self, Printed, window_count};
-use super::{Captured, Recorder, Recording};
-use crate::machine::wgsl::{Limits, Module, Texture};
+use super::{Captured, Description, Recorder, Recording};
+use crate::machine::wgsl::{Arithmetic, Limits, Module, Texture};
 
 /// The capacity for kernels and for programs: the most recently used are kept.
 const KEPT: usize = 64;
@@ -18,10 +19,25 @@ struct Program {
     printed: Printed,
 }
 
+/// What identifies a kernel's recording.
+pub(crate) struct Identity<'k> {
+    /// Its number, which no other kernel has.
+    pub(crate) number: u64,
+    /// What it shares with kernels of the same code.
+    pub(crate) code: TypeId,
+    pub(crate) arithmetic: Arithmetic,
+    /// Describes its captures.
+    pub(crate) describe: &'k dyn Fn(&mut Description),
+}
+
 /// A kernel with its recording.
 struct Known {
-    /// Its id.
+    /// Its number.
     kernel: u64,
+    code: TypeId,
+    arithmetic: Arithmetic,
+    /// What decides what is recorded; `None` if that is not all described.
+    facts: Option<Vec<u64>>,
     /// The frame around its body.
     frame: Frame,
     recording: Recording,
@@ -60,6 +76,45 @@ impl Recording {
             && a.uniforms.iter().zip(&b.uniforms).all(same_uniform)
             && a.buffers.iter().zip(&b.buffers).all(same_buffer)
             && a.textures.iter().zip(&b.textures).all(same_texture)
+    }
+}
+
+impl Recording {
+    /// Takes numbers and buffers from what another kernel of the same closure captures. Nothing
+    /// changes if one of them is not found there, or needs another text under `limits`.
+    fn adopt(&mut self, from: &Description, limits: &Limits) -> bool {
+        let (source, own) = (from.m.state.borrow(), &mut self.state);
+        let first = own.before_body;
+        let is_textured = !own.textures.is_empty();
+        if is_textured || own.is_renamed || source.is_renamed {
+            return false;
+        }
+        let number = |u: &Uniform| {
+            if u.is_constant {
+                return Some(u.words.clone());
+            }
+            let found = source.uniforms.iter().find(|s| s.name == u.name && s.ty == u.ty);
+            found.map(|s| s.words.clone())
+        };
+        let buffer = |b: &SceneBuffer| {
+            let is_same = |s: &&SceneBuffer| {
+                let windows = |of| window_count(of, limits);
+                s.name == b.name && s.schema == b.schema && windows(s) == windows(b)
+            };
+            // Kinds were looked for in the other data.
+            let is_known = b.kinds.is_none();
+            source.buffers.iter().filter(|_| is_known).find(is_same).map(|s| (s.key, s.len))
+        };
+        let numbers: Option<Vec<_>> = own.uniforms[first.uniforms..].iter().map(number).collect();
+        let buffers: Option<Vec<_>> = own.buffers[first.buffers..].iter().map(buffer).collect();
+        let (Some(numbers), Some(buffers)) = (numbers, buffers) else { return false };
+        for (u, words) in own.uniforms[first.uniforms..].iter_mut().zip(numbers) {
+            u.words = words;
+        }
+        for (b, (key, len)) in own.buffers[first.buffers..].iter_mut().zip(buffers) {
+            (b.key, b.len) = (key, len);
+        }
+        true
     }
 }
 
@@ -107,20 +162,19 @@ impl Modules {
         self.printed
     }
 
-    /// Returns the module of a kernel, given its id, in a frame; `record` records both. The limits
-    /// are the device's.
+    /// Returns the module of a kernel in a frame; `record` records both, unless a kernel is known of
+    /// the same code, whose captures differ in numbers and buffers alone. The limits are the
+    /// device's.
     pub(crate) fn get(
         &mut self,
         limits: Limits,
-        kernel: u64,
+        identity: &Identity<'_>,
         frame: Frame,
-        record: impl FnOnce() -> Recording,
+        record: impl Fn() -> Recording,
     ) -> Module {
-        let is_same = |k: &Known| {
-            k.kernel == kernel
-                && k.program.limits == limits
-                && k.frame.0.has_same_program(&frame.0, &limits)
-        };
+        let is_in_frame =
+            |k: &Known| k.program.limits == limits && k.frame.0.has_same_program(&frame.0, &limits);
+        let is_same = |k: &Known| k.kernel == identity.number && is_in_frame(k);
         let at = self.known.iter().position(is_same);
         if let Some(mut known) = at.and_then(|at| self.known.remove(at)) {
             frame.enter(&mut known.recording);
@@ -128,11 +182,34 @@ impl Modules {
             self.known.push_back(known);
             return module;
         }
+        let Identity { number: kernel, code, arithmetic, describe } = *identity;
+        let mut captures = Description::default();
+        describe(&mut captures);
+        let facts = captures.closed_facts().map(<[u64]>::to_vec);
+        let is_alike = |k: &Known| {
+            let same_code = k.code == code && k.arithmetic == arithmetic;
+            same_code && facts.is_some() && k.facts == facts && is_in_frame(k)
+        };
+        let at = self.known.iter().position(is_alike);
+        if let Some(at) = at
+            && self.known[at].recording.adopt(&captures, &limits)
+            && let Some(mut known) = self.known.remove(at)
+        {
+            frame.enter(&mut known.recording);
+            debug_assert!(
+                known.recording.has_same_program(&record(), &limits),
+                "captures of a kernel are not fully described: it has other facts"
+            );
+            let module = known.program.printed.of(&known.recording, &limits);
+            // The other kernel may be gone; if not, it takes it back in the same way.
+            self.known.push_back(Known { kernel, ..known });
+            return module;
+        }
         self.recorded += 1;
         let recording = record();
         let program = self.program(limits, &recording);
         let module = program.printed.of(&recording, &limits);
-        keep(&mut self.known, Known { kernel, frame, recording, program });
+        keep(&mut self.known, Known { kernel, code, arithmetic, facts, frame, recording, program });
         module
     }
 

@@ -329,6 +329,8 @@ pub(super) struct Uniform {
     pub(super) ty: Type,
     /// The value as four-byte words.
     pub(super) words: Vec<u32>,
+    /// Whether it is a constant of the source, and no captured number.
+    pub(super) is_constant: bool,
 }
 
 /// A buffer of the scene.

@@ -9,6 +9,7 @@ mod builder;
 #[cfg(feature = "gpu")]
 mod cache;
 mod data;
+mod description;
 mod expression;
 mod function;
 pub(crate) mod ir;
@@ -26,7 +27,8 @@ mod types;
 use core::cell::RefCell;
 
 #[cfg(feature = "gpu")]
-pub(crate) use cache::{Frame, Modules};
+pub(crate) use cache::{Frame, Identity, Modules};
+pub use description::Description;
 pub(crate) use names::member_name;
 pub(crate) use storage::stride;
 pub(crate) use text::from_template;
@@ -55,6 +57,8 @@ struct State {
     textures: Vec<wgsl::Texture>,
     /// The captures recorded before the body of a kernel was called.
     before_body: Captured,
+    /// Whether a captured number or a buffer has another name than its own, which was taken.
+    is_renamed: bool,
 }
 
 /// A number of uniforms and of buffers.
@@ -411,30 +415,38 @@ impl Recorder {
     /// is equal now.
     fn captured_uniform(&self, name: &str, ty: Type, words: Vec<u32>) -> Id {
         let first = self.state.borrow().before_body.uniforms;
-        self.uniform_since(first, name, ty, words)
+        self.uniform_since(first, name, ty, words, false)
     }
 
     /// Returns a constant in the uniform buffer.
     fn uniform(&self, name: &str, ty: Type, words: Vec<u32>) -> Id {
-        self.uniform_since(0, name, ty, words)
+        self.uniform_since(0, name, ty, words, true)
     }
 
     /// Returns a number of the uniform buffer: an existing one, from index `first` on, or a new
     /// one.
-    fn uniform_since(&self, first: usize, name: &str, ty: Type, words: Vec<u32>) -> Id {
+    fn uniform_since(
+        &self,
+        first: usize,
+        name: &str,
+        ty: Type,
+        words: Vec<u32>,
+        is_constant: bool,
+    ) -> Id {
         let n = {
             let mut state = self.state.borrow_mut();
-            let same = state
-                .uniforms
-                .iter()
-                .skip(first)
-                .position(|u| u.name == name && u.ty == ty && u.words == words);
+            let same = state.uniforms.iter().skip(first).position(|u| {
+                let same_name = u.name == name && u.is_constant == is_constant;
+                same_name && u.ty == ty && u.words == words
+            });
             same.map(|i| first + i).unwrap_or_else(|| {
                 let taken = |n: &str| state.uniforms.iter().any(|u| u.name == n);
                 // The lengths of buffers are in the same uniform buffer.
                 let prefix = if name.starts_with("len_of_") { "captured_" } else { "" };
-                let name = unique(&safe_name(&format!("{prefix}{name}")), taken);
-                state.uniforms.push(Uniform { name, ty, words });
+                let own = safe_name(&format!("{prefix}{name}"));
+                let name = unique(&own, taken);
+                state.is_renamed |= !is_constant && name != own;
+                state.uniforms.push(Uniform { name, ty, words, is_constant });
                 state.uniforms.len() - 1
             })
         };
@@ -453,7 +465,9 @@ impl Recorder {
         if let Some(b) = state.buffers.iter().find(|b| b.key == key && b.schema == schema) {
             return b.name.clone();
         }
-        let name = unique(&safe_name(name), |n| state.is_taken_for_buffer(n));
+        let own = safe_name(name);
+        let name = unique(&own, |n| state.is_taken_for_buffer(n));
+        state.is_renamed |= name != own;
         state.buffers.push(SceneBuffer { key, name: name.clone(), schema, len, kinds: None });
         name
     }

@@ -72,7 +72,8 @@ impl Number {
             Self::Length(i) => {
                 let SceneBuffer { name, len, .. } = &state.buffers[i];
                 let words = vec![*len as u32];
-                Uniform { name: format!("len_of_{name}"), ty: Type::U32, words }
+                let name = format!("len_of_{name}");
+                Uniform { name, ty: Type::U32, words, is_constant: false }
             }
         }
     }

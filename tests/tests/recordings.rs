@@ -1,0 +1,220 @@
+//! Kernels of one closure: which of them share a recording, and that what differs is not shared.
+//!
+//! In debug builds the library records a kernel that shares a recording all the same, and checks
+//! that both are one program.
+
+use raydsl::gpu::GpuScheduler;
+use raydsl::kernel;
+use raydsl::kernel::Kernel;
+use raydsl::prelude::*;
+use raydsl::volume::{Grid, GridConfig, PreIntegrated, TransferFunction, Volume, VolumeLight};
+use raydsl_tests::gpu::gpu;
+
+type Error = Box<dyn std::error::Error>;
+
+/// A device of its own, so that nobody else moves its counters.
+fn own() -> Result<Option<GpuScheduler>, Error> {
+    Ok(if gpu().is_some() { Some(GpuScheduler::new()?) } else { None })
+}
+
+/// Runs a kernel on a device, and asks for the scalar variant's bits.
+#[track_caller]
+fn assert_runs<R: Type + PartialEq + std::fmt::Debug + Default>(
+    gpu: &GpuScheduler,
+    kernel: &Kernel<'_, (f32,), R>,
+) {
+    let inputs: Vec<(f32,)> = (0..7u8).map(|i| (f32::from(i) - 2.0,)).collect();
+    let expected: Vec<R> = inputs.iter().map(|x| kernel.call(*x)).collect();
+    let mut found: Vec<R> = inputs.iter().map(|_| R::default()).collect();
+    match gpu.batch(kernel, &inputs, &mut found) {
+        Ok(_) => assert_eq!(found, expected),
+        Err(e) => panic!("{e}"),
+    }
+}
+
+#[test]
+fn numbers_and_data_are_those_of_each_kernel() -> Result<(), Error> {
+    let Some(gpu) = own()? else { return Ok(()) };
+    for i in 0..20u16 {
+        let (factor, shift) = (f32::from(i), vec2(0.5, f32::from(i) * 2.0));
+        let list: Vec<f32> = (0..=i).map(f32::from).collect();
+        let last = u32::from(i);
+        let kernel = kernel!(|x: f32| {
+            x * factor + shift.x + shift.y * list[last as usize] + list.len() as f32
+        });
+        assert_runs(&gpu, &kernel);
+    }
+    assert_eq!(gpu.context().recorded(), 1);
+    Ok(())
+}
+
+#[derive(Clone, Copy, Type)]
+enum Shape {
+    Line(f32),
+    Square { size: f32 },
+}
+
+#[test]
+fn values_of_the_host_are_part_of_a_recording() -> Result<(), Error> {
+    let Some(gpu) = own()? else { return Ok(()) };
+    for round in 0..3u16 {
+        let k = f32::from(round);
+        for is_odd in [false, true] {
+            let kernel = kernel!(|x: f32| if is_odd { x * k } else { x + k });
+            assert_runs(&gpu, &kernel);
+        }
+        for count in 1..4u32 {
+            let kernel = kernel!(|x: f32| {
+                let mut sum = k;
+                for _ in 0..host(count) {
+                    sum += x;
+                }
+                sum
+            });
+            assert_runs(&gpu, &kernel);
+        }
+        for shape in [Shape::Line(k), Shape::Square { size: 2.0 * k }] {
+            let kernel = kernel!(|x: f32| match shape {
+                Shape::Line(a) => a + x,
+                Shape::Square { size } => size * x,
+            });
+            assert_runs(&gpu, &kernel);
+        }
+        assert_eq!(gpu.context().recorded(), 2 + 3 + 2, "round {round}");
+    }
+    Ok(())
+}
+
+#[kernel]
+trait Rule {
+    fn applied(x: f32) -> Self;
+    fn result(&self) -> f32;
+}
+
+#[derive(Clone, Copy, Debug, Type)]
+struct Twice {
+    number: f32,
+}
+
+#[derive(Clone, Copy, Debug, Type)]
+struct More {
+    number: f32,
+}
+
+#[kernel]
+impl Rule for Twice {
+    fn applied(x: f32) -> Twice {
+        Twice { number: 2.0 * x }
+    }
+
+    fn result(&self) -> f32 {
+        self.number
+    }
+}
+
+#[kernel]
+impl Rule for More {
+    fn applied(x: f32) -> More {
+        More { number: x + 0.5 }
+    }
+
+    fn result(&self) -> f32 {
+        self.number
+    }
+}
+
+#[kernel]
+fn by_rule<R: Rule>(x: f32) -> f32 {
+    let applied: R = R::applied(x);
+    applied.result()
+}
+
+/// One closure in the source, and another for each type.
+fn assert_rule_runs<R: Rule + Type>(gpu: &GpuScheduler, by: f32) {
+    let kernel = kernel!(|x: f32| by_rule::<R>(x) * by);
+    assert_runs(gpu, &kernel);
+}
+
+#[test]
+fn closures_of_other_types_are_other_code() -> Result<(), Error> {
+    let Some(gpu) = own()? else { return Ok(()) };
+    for i in 0..4u8 {
+        assert_rule_runs::<Twice>(&gpu, f32::from(i));
+        assert_rule_runs::<More>(&gpu, f32::from(i));
+    }
+    assert_eq!(gpu.context().recorded(), 2);
+    Ok(())
+}
+
+#[test]
+fn a_slice_that_is_captured_twice_is_one_buffer() -> Result<(), Error> {
+    let Some(gpu) = own()? else { return Ok(()) };
+    let (one, two) = ([1.0f32, 2.0], [3.0f32, 4.0]);
+    for (a, b) in [(&one, &one), (&one, &two), (&two, &two), (&two, &one)] {
+        let (a, b) = (&a[..], &b[..]);
+        let kernel = kernel!(|x: f32| x + a[0] + 10.0 * b[1]);
+        assert_runs(&gpu, &kernel);
+    }
+    assert_eq!(gpu.context().recorded(), 2);
+    Ok(())
+}
+
+#[test]
+fn names_that_meet_are_not_mistaken() -> Result<(), Error> {
+    let Some(gpu) = own()? else { return Ok(()) };
+    for i in 0..3u8 {
+        // Members and names may become one name of a number.
+        let (a_x, a) = (f32::from(i), vec2(f32::from(i) + 1.0, 7.0));
+        let kernel = kernel!(|x: f32| if x > 0.0 { a_x } else { a.x * x + a.y });
+        assert_runs(&gpu, &kernel);
+        let (len_of_list, list) = (f32::from(i), [1.0f32; 3]);
+        let list = &list[..];
+        let kernel = kernel!(|x: f32| x + len_of_list + list.len() as f32 + list[0]);
+        assert_runs(&gpu, &kernel);
+    }
+    Ok(())
+}
+
+#[primitive(sphere(center, radius))]
+struct Ball {
+    center: Vec3,
+    radius: f32,
+}
+
+/// A cloud of balls inside a volume: what moves is numbers and buffers.
+#[test]
+fn scenes_and_volumes_are_switched_without_recording() -> Result<(), Error> {
+    let Some(gpu) = own()? else { return Ok(()) };
+    let camera = Pinhole::new(vec3(0.5, 0.5, -3.0), vec3(0.5, 0.5, 0.5), Vec3::Y, 0.6);
+    let voxels: Vec<f32> = (0..64u8).map(|i| f32::from(i) / 64.0).collect();
+    let grid = Grid::new(voxels, uvec3(4, 4, 4), GridConfig::new())?;
+    let ball = |i: u16, k: u16| {
+        let center = vec3(f32::from(i % 10), f32::from(i / 10), f32::from(k)) * 0.1;
+        Ball { center, radius: 0.03 }
+    };
+    let steps: Vec<Vec<_>> = (0..5).map(|k| (0..100).map(|i| ball(i, k)).collect()).collect();
+    let trees = steps.iter().map(|balls| Bvh::build(balls)).collect::<Result<Vec<_>, _>>()?;
+    for i in 0..20u8 {
+        let extinction = 2.0 + f32::from(i);
+        let colors = [(0.0, Vec3::ONE)];
+        let function =
+            TransferFunction::from_extinction(&colors, &[(0.0, extinction), (1.0, 3.0)])?;
+        let volume = Volume::new(&grid, function);
+        let rule = PreIntegrated::new(0.1 + 0.01 * f32::from(i));
+        let balls = &trees[usize::from(i % 5)];
+        let kernel = kernel!(|ray: Ray| {
+            let hit = balls.closest_hit(ray);
+            let end = if hit.is_hit { hit.t } else { ray.t_max };
+            volume.integrate(&rule, ray.with_range(ray.t_min, end), VolumeLight::new()).opacity()
+        });
+        let (mut found, mut expected) = (Image::filled(16, 16, 0.0), Image::filled(16, 16, 0.0));
+        gpu.frame(&camera, &kernel, &mut found)?;
+        SimpleScheduler::new().frame(&camera, &kernel, &mut expected);
+        for (a, b) in found.pixels().iter().zip(expected.pixels()) {
+            assert!((a - b).abs() < 1e-3, "{i}: {a} for {b}");
+        }
+    }
+    let context = gpu.context();
+    assert_eq!((context.recorded(), context.printed(), context.compiled()), (1, 1, 1));
+    Ok(())
+}
