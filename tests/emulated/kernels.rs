@@ -23,6 +23,10 @@ raydsl_tests::small_kernel_table!(tests);
 fn levels_are_named() {
     let names = level_names();
     println!("levels: {names:?}");
-    let own = if cfg!(target_arch = "aarch64") { "neon" } else { "sse2" };
+    let own = match std::env::consts::ARCH {
+        "aarch64" => "neon",
+        "wasm32" => "simd128",
+        _ => "sse2",
+    };
     assert!(names.iter().any(|name| name.starts_with(own)), "{names:?}");
 }

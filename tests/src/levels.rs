@@ -121,7 +121,20 @@ fn natural(task: &mut dyn FnMut(&str, Numbered), level: Level) {
     }
 }
 
-#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+fn natural(task: &mut dyn FnMut(&str, Numbered), level: Level) {
+    if let Some(s) = level.as_wasm_simd128() {
+        padded(task, Simd4(s));
+        padded(task, Simd8(s));
+        padded(task, Simd16(s));
+    }
+}
+
+#[cfg(not(any(
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+)))]
 fn natural(task: &mut dyn FnMut(&str, Numbered), _: Level) {
     padded(task, Simd8(Fallback::new()));
 }
@@ -144,7 +157,18 @@ fn widest(task: &mut impl LevelTask, level: Level) {
     }
 }
 
-#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+fn widest(task: &mut impl LevelTask, level: Level) {
+    if let Some(s) = level.as_wasm_simd128() {
+        one_width(task, Simd8(s));
+    }
+}
+
+#[cfg(not(any(
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+)))]
 fn widest(task: &mut impl LevelTask, _: Level) {
     one_width(task, Simd8(Fallback::new()));
 }
@@ -188,7 +212,18 @@ fn widest_of_16(task: &mut impl LevelTask, level: Level) {
     }
 }
 
-#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+fn widest_of_16(task: &mut impl LevelTask, level: Level) {
+    if let Some(s) = level.as_wasm_simd128() {
+        one_width(task, Simd16(s));
+    }
+}
+
+#[cfg(not(any(
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+)))]
 fn widest_of_16(task: &mut impl LevelTask, _: Level) {
     one_width(task, Simd16(Fallback::new()));
 }
@@ -231,7 +266,19 @@ fn native(task: &mut impl Widths, level: Level) {
     }
 }
 
-#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+fn native(task: &mut impl Widths, level: Level) {
+    match level.as_wasm_simd128() {
+        Some(s) => widths(task, s),
+        None => println!("SKIPPED: the module is not compiled for simd128"),
+    }
+}
+
+#[cfg(not(any(
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+)))]
 fn native(_: &mut impl Widths, _: Level) {
     println!("SKIPPED: no levels are known for this target");
 }

@@ -34,20 +34,24 @@ pub fn threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Does `work` for every part of `0..count`, on all processors.
+/// Does `work` for every part of `0..count`, on all processors, where there are threads.
 pub fn in_parallel(count: usize, part: usize, work: impl Fn(std::ops::Range<usize>) + Sync) {
     let next = std::sync::atomic::AtomicUsize::new(0);
+    let parts = || {
+        loop {
+            let start = next.fetch_add(part, std::sync::atomic::Ordering::Relaxed);
+            if start >= count {
+                break;
+            }
+            work(start..(start + part).min(count));
+        }
+    };
+    if cfg!(target_family = "wasm") {
+        return parts();
+    }
     std::thread::scope(|scope| {
         for _ in 0..threads() {
-            scope.spawn(|| {
-                loop {
-                    let start = next.fetch_add(part, std::sync::atomic::Ordering::Relaxed);
-                    if start >= count {
-                        break;
-                    }
-                    work(start..(start + part).min(count));
-                }
-            });
+            scope.spawn(parts);
         }
     });
 }

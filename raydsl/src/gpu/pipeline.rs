@@ -3,11 +3,12 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::device::Gpu;
 use super::error::{GpuError, one_line};
 use super::tiles::FIRST_GOAL;
+use crate::run::clock::Instant;
 
 /// The runtime checks that wgpu adds to a shader.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]

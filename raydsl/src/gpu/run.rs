@@ -5,7 +5,6 @@ use std::collections::VecDeque;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::Instant;
 
 use super::buffers::{Bound, Source};
 use super::context::Context;
@@ -18,6 +17,7 @@ use super::tiles::{Tiler, next_goal};
 use super::window::GpuWindow;
 use crate::machine::wgsl::{BufferKey, Module};
 use crate::render::{Effort, timing_of};
+use crate::run::clock::Instant;
 
 /// Dispatches in flight: one computes while the other's outputs are read back.
 const IN_FLIGHT: usize = 2;

@@ -1,7 +1,6 @@
 //! A dispatch: its buffers, its submission and the readback of its outputs.
 
 use std::sync::mpsc::{Receiver, sync_channel};
-use std::time::Instant;
 
 use super::buffers::Bound;
 use super::clock::{Clock, STAMPS};
@@ -12,6 +11,7 @@ use super::textures::BoundTexture;
 use super::tiles::Tile;
 use super::window::GpuWindow;
 use crate::machine::wgsl::Module;
+use crate::run::clock::Instant;
 
 /// Bytes of WGSL's `struct Job`.
 const JOB: u64 = 32;

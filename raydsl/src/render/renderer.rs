@@ -2,7 +2,7 @@
 
 use core::marker::PhantomData;
 use core::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::allocation::Allocation;
 use super::channels::Kept;
@@ -15,6 +15,7 @@ use super::{Film, Image, Radiance, Sampling};
 use crate::camera::Camera;
 use crate::kernel::Kernel;
 use crate::machine::Type;
+use crate::run::clock::Instant;
 
 /// The maximum number of samples per pixel in one pass: the observer may stop in between.
 pub(super) const LARGEST_PASS: u32 = 64;

@@ -24,24 +24,35 @@ mod native {
         };
     }
 
-    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+    pub(crate) mod level {
+        pub(crate) use fearless_simd::{
+            WasmSimd128 as Least, WasmSimd128 as Middle, WasmSimd128 as Narrow, WasmSimd128 as Wide,
+        };
+    }
+
+    #[cfg(not(any(
+        target_arch = "x86_64",
+        target_arch = "aarch64",
+        all(target_arch = "wasm32", target_feature = "simd128")
+    )))]
     pub(crate) mod level {
         pub(crate) use fearless_simd::{
             Fallback as Least, Fallback as Middle, Fallback as Narrow, Fallback as Wide,
         };
     }
 
-    /// Four lanes: SSE4.2, NEON, or the scalar fallback.
+    /// Four lanes: SSE4.2, NEON, simd128, or the scalar fallback.
     pub(crate) type Lanes4 = Simd4<level::Narrow>;
-    /// Eight lanes: AVX2, NEON.
+    /// Eight lanes: AVX2, NEON, simd128.
     pub(crate) type Lanes8 = Simd8<level::Middle>;
-    /// Sixteen lanes: AVX-512, NEON.
+    /// Sixteen lanes: AVX-512, NEON, simd128.
     pub(crate) type Lanes16 = Simd16<level::Wide>;
-    /// Packets of four lanes: SSE4.2, NEON, or the scalar fallback.
+    /// Packets of four lanes: SSE4.2, NEON, simd128, or the scalar fallback.
     pub type Native4 = Packet<Lanes4>;
-    /// Packets of eight lanes: AVX2, NEON.
+    /// Packets of eight lanes: AVX2, NEON, simd128.
     pub type Native8 = Packet<Lanes8>;
-    /// Packets of sixteen lanes: AVX-512, NEON.
+    /// Packets of sixteen lanes: AVX-512, NEON, simd128.
     pub type Native16 = Packet<Lanes16>;
     /// Eight lanes of the target's baseline level, which count active lanes by place in the kernel.
     pub type Counting = Packet<Counted<Simd8<level::Least>>>;
@@ -81,7 +92,19 @@ impl Levels {
         Self { least: neon, narrow: Some(neon), middle: Some(neon), wide: Some(neon) }
     }
 
-    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+    fn of(level: Level) -> Self {
+        let Some(simd) = level.as_wasm_simd128() else {
+            unreachable!("the module is compiled for simd128");
+        };
+        Self { least: simd, narrow: Some(simd), middle: Some(simd), wide: Some(simd) }
+    }
+
+    #[cfg(not(any(
+        target_arch = "x86_64",
+        target_arch = "aarch64",
+        all(target_arch = "wasm32", target_feature = "simd128")
+    )))]
     fn of(_: Level) -> Self {
         let least = fearless_simd::Fallback::new();
         Self { least, narrow: Some(least), middle: None, wide: None }
@@ -101,7 +124,7 @@ impl Levels {
     }
 }
 
-/// Returns whether this machine has lanes that traverse wide trees: AVX-512, AVX2 or NEON.
+/// Returns whether this machine has lanes that traverse wide trees: AVX-512, AVX2, NEON or simd128.
 pub(crate) fn has_wide_lanes() -> bool {
     Levels::detect().middle.is_some()
 }
@@ -114,9 +137,17 @@ pub(crate) fn has_wide_lanes() -> bool {
 pub(crate) fn with_wide_lanes<T: LanesTask>(level: Option<Level>, task: T) -> Option<T::Output> {
     let levels = level.filter(|level| !level.is_fallback()).map(Levels::of);
     let levels = levels.filter(|levels| levels.middle.is_some()).unwrap_or_else(Levels::detect);
-    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    #[cfg(not(any(
+        target_arch = "x86_64",
+        target_arch = "aarch64",
+        all(target_arch = "wasm32", target_feature = "simd128")
+    )))]
     let _: (Levels, T) = (levels, task);
-    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+    #[cfg(any(
+        target_arch = "x86_64",
+        target_arch = "aarch64",
+        all(target_arch = "wasm32", target_feature = "simd128")
+    ))]
     if let Some(s) = levels.wide {
         return Some(task.run(Simd16(s)));
     }

@@ -1,6 +1,7 @@
 //! Execution of kernels on this machine: the variants, their instruction sets, and the fibers that
 //! batch queries of packets.
 
+pub(crate) mod clock;
 #[cfg_attr(
     not(all(
         unix,

@@ -78,7 +78,11 @@ impl Variant {
         match self {
             Self::Scalar => true,
             Self::Packet4 => {
-                let has_any = cfg!(any(target_arch = "x86_64", target_arch = "aarch64"));
+                let has_any = cfg!(any(
+                    target_arch = "x86_64",
+                    target_arch = "aarch64",
+                    all(target_arch = "wasm32", target_feature = "simd128")
+                ));
                 has_any && levels.narrow.is_some()
             }
             Self::Packet8 => levels.middle.is_some(),

@@ -1,7 +1,7 @@
 //! Pilot stages, and stages of fresh samples in the number that the pilots choose.
 
 use core::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use glam::UVec4;
 
@@ -13,6 +13,7 @@ use crate::render::allocation::Allocation;
 use crate::render::renderer::Samples;
 use crate::render::store::Store;
 use crate::render::watch::Observer;
+use crate::run::clock::Instant;
 use crate::sampling::pcg4d;
 
 /// The growth of stages up to the pilot. The first has one sample per replication, so that there is
