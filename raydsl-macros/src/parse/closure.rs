@@ -113,8 +113,15 @@ impl Parser<'_> {
                 quote!(())
             }
         };
-        let is_in_place = |ty: &&syn::Type| is_mut_reference(ty) || is_data(ty);
-        if let Some(ty) = types.inputs.iter().map(|arg| &arg.ty).find(is_in_place) {
+        let inputs = types.inputs.iter().map(|arg| &arg.ty);
+        if let Some(ty) = inputs.clone().find(|ty| is_mut_reference(ty)) {
+            self.errors.at(
+                ty.span(),
+                "a closure of a kernel takes values, and none by `&mut`",
+                "take a copy, `let mut rng = rng;` in the closure, and give what has changed with \
+                 the result",
+            );
+        } else if let Some(ty) = inputs.clone().find(|ty| is_data(ty)) {
             self.errors.at(
                 ty.span(),
                 "a closure of a kernel takes values",
