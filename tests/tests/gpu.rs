@@ -230,12 +230,12 @@ fn the_kinds_of_the_data_are_part_of_the_program() -> Result<(), Error> {
         Ok(())
     };
     run(0, Coat::Bare(2.0), (1, 1))?;
-    run(1, Coat::Bare(3.0), (2, 1))?;
-    run(2, Coat::Paint(0.5, 3), (3, 2))?;
-    run(3, Coat::Glow { light: 1.0 }, (4, 3))?;
-    run(3, Coat::Paint(2.0, 3), (5, 3))?;
-    run(2, Coat::Bare(7.0), (6, 3))?;
-    run(3, Coat::Bare(8.0), (7, 3))?;
+    run(1, Coat::Bare(3.0), (1, 1))?;
+    run(2, Coat::Paint(0.5, 3), (2, 2))?;
+    run(3, Coat::Glow { light: 1.0 }, (3, 3))?;
+    run(3, Coat::Paint(2.0, 3), (3, 3))?;
+    run(2, Coat::Bare(7.0), (3, 3))?;
+    run(3, Coat::Bare(8.0), (3, 3))?;
     Ok(())
 }
 

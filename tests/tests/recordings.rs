@@ -6,6 +6,7 @@
 use raydsl::gpu::GpuScheduler;
 use raydsl::kernel;
 use raydsl::kernel::Kernel;
+use raydsl::light::{AnyLight, DirectionalLight, Environment, Lights, PointLight};
 use raydsl::prelude::*;
 use raydsl::volume::{Grid, GridConfig, PreIntegrated, TransferFunction, Volume, VolumeLight};
 use raydsl_tests::gpu::gpu;
@@ -216,5 +217,51 @@ fn scenes_and_volumes_are_switched_without_recording() -> Result<(), Error> {
     }
     let context = gpu.context();
     assert_eq!((context.recorded(), context.printed(), context.compiled()), (1, 1, 1));
+    Ok(())
+}
+
+/// Paths under other lights, over a list of trees and an enum of lights.
+#[test]
+fn lights_and_lists_are_switched_without_recording() -> Result<(), Error> {
+    let Some(gpu) = own()? else { return Ok(()) };
+    let ball = |x: f32| Ball { center: vec3(x, 0.0, 0.0), radius: 0.5 };
+    let (left, right) = ([ball(-1.0)], [ball(1.0), ball(0.2)]);
+    let trees = [Bvh::build(&left)?, Bvh::build(&right)?];
+    let list = BvhList::new(&trees)?;
+    let bounds = raydsl::geometry::Aabb::from_points([Vec3::splat(-2.0), Vec3::splat(2.0)]);
+    let sky = Environment::constant(Vec3::splat(0.2))?;
+    let sun = |i: u8| DirectionalLight {
+        direction: vec3(0.6, 0.8, 0.1 * f32::from(i)).normalize(),
+        irradiance: Vec3::splat(f32::from(i)),
+        sine: 0.0,
+    };
+    let point = |i: u8| PointLight { position: vec3(0.0, f32::from(i), 2.0), intensity: Vec3::ONE };
+    for i in 0..6u8 {
+        // Of both kinds in every second list.
+        let other =
+            if i % 2 == 0 { AnyLight::Directional(sun(i)) } else { AnyLight::Point(point(2)) };
+        let all = [AnyLight::Point(point(i)), other];
+        let mut lights = Lights::new(&all, bounds)?;
+        if i >= 4 {
+            lights = lights.with_environment(&sky);
+        }
+        let kernel = kernel!(|x: f32| {
+            let ray = Ray::new(vec3(x, 0.1, 3.0), vec3(0.0, 0.0, -1.0));
+            let hit = list.closest_hit(ray);
+            let (position, normal) = (ray.at(hit.t), vec3(0.0, 0.0, 1.0));
+            let at = SurfacePoint { position, normal, error: 0.0 };
+            let sample = lights.sample(at, vec3(0.4, 0.6, 0.1));
+            if hit.is_hit { sample.light.x + sample.pdf + sample.wi.y } else { -1.0 }
+        });
+        let inputs: Vec<(f32,)> = (0..9u8).map(|k| (f32::from(k) * 0.4 - 1.6,)).collect();
+        let (mut found, mut expected) = (vec![0.0; 9], vec![0.0; 9]);
+        gpu.batch(&kernel, &inputs, &mut found)?;
+        kernel.run(Variant::Scalar, &inputs, &mut expected);
+        for (a, b) in found.iter().zip(&expected) {
+            assert!((a - b).abs() <= 1e-5 * b.abs().max(1.0), "{i}: {a} for {b}");
+        }
+    }
+    // One for each set of kinds, with a sky and without.
+    assert_eq!(gpu.context().recorded(), 4);
     Ok(())
 }

@@ -503,9 +503,9 @@ impl<T: Type, S: Type> Resource for View<'_, T, S> {
                 out.fact(0);
                 out.data(&prims);
             }
-            Scene::Tree(tree) => {
-                out.fact(1);
-                out.kinds(tree.kinds);
+            Scene::Tree(_) | Scene::List(_) => {
+                let is_list = self.is_list();
+                out.fact(1 + u64::from(is_list));
                 out.data(self);
                 out.data(&self.shared());
                 let name = Data::name(self);
@@ -514,9 +514,13 @@ impl<T: Type, S: Type> Resource for View<'_, T, S> {
                 let key = |part| self.key_of(part);
                 out.buffer(key(of_nodes), &format!("{name}_nodes"), NODE_SCHEMA, nodes);
                 out.buffer(key(of_indices), &format!("{name}_ids"), &Schema::U32, indices);
+                if is_list {
+                    let roots = self.root_len();
+                    out.buffer(key(buffers::ROOTS), &format!("{name}_roots"), &Schema::U32, roots);
+                }
             }
             // Their text depends on how deep they are nested, among others.
-            Scene::List(_) | Scene::Instances(_) | Scene::Standing(_) => out.leave_open(),
+            Scene::Instances(_) | Scene::Standing(_) => out.leave_open(),
         }
     }
 }

@@ -11,8 +11,8 @@ use crate::machine::functions::{uvec2, vec2, vec3, vec4};
 use crate::machine::generic::{clamp, max, min};
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
-    Capture, F, Leaves, Machine, Method, Owner, Parameter, Resource, Schema, Slice, Table,
-    TableView, Type as MachineType, U, Value, X2, X3, name, table_view,
+    Capture, DescribedSlice, F, Leaves, Machine, Method, Owner, Parameter, Resource, Schema, Slice,
+    Table, TableView, Type as MachineType, U, Value, X2, X3, name, table_view, visit_value,
 };
 use crate::math::elementary::{atan2, sincos_2pi};
 use crate::sampling::{
@@ -385,8 +385,9 @@ table_view!([] Environment, EnvironmentView, "environment", "environments");
 
 impl TableView for EnvironmentView<'_> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        visit(&self.texels);
-        visit(&self.cdf);
+        visit(&DescribedSlice(self.texels));
+        visit(&DescribedSlice(self.cdf));
+        visit_value(InUniforms { environment: self.layout }, self.name, visit);
     }
 
     fn is_same(&self, other: &Self) -> bool {

@@ -11,8 +11,8 @@ use crate::light::tree::LightNode;
 use crate::light::{Light, LightChoice, LightSample};
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
-    Capture, F, Leaves, Machine, Method, On, Parameter, Resource, Schema, Slice, Table, TableView,
-    Type as MachineType, U, Value, X2, X3, name, table_view,
+    Capture, DescribedSlice, F, HostFact, Leaves, Machine, Method, On, Parameter, Resource, Schema,
+    Slice, Table, TableView, Type as MachineType, U, Value, X2, X3, name, table_view, visit_value,
 };
 
 impl<L: Light + MachineType> Lights<'_, L> {
@@ -64,11 +64,14 @@ table_view!([L: KernelLight] Lights<'_, L>, LightsView, "lights", "lights");
 
 impl<L: Light + MachineType> TableView for LightsView<'_, L> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        visit(&self.list);
-        visit(&self.distant);
-        visit(&self.cdf);
-        visit(&self.nodes);
-        visit(&self.trails);
+        visit(&DescribedSlice(self.list));
+        visit(&DescribedSlice(self.distant));
+        visit(&DescribedSlice(self.cdf));
+        visit(&DescribedSlice(self.nodes));
+        visit(&DescribedSlice(self.trails));
+        visit_value(InUniforms { lights: self.layout }, self.name, visit);
+        visit_value(OfTree { table_share: self.table_share }, self.name, visit);
+        visit(&HostFact(self.environment.is_some().into()));
         if let Some(environment) = &self.environment {
             environment.resources(visit);
         }

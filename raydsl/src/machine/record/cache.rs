@@ -99,11 +99,12 @@ impl Recording {
         let buffer = |b: &SceneBuffer| {
             let is_same = |s: &&SceneBuffer| {
                 let windows = |of| window_count(of, limits);
-                s.name == b.name && s.schema == b.schema && windows(s) == windows(b)
+                // Of kinds that were looked for the text has the arms.
+                let same_kinds = b.kinds.is_none() || s.kinds == b.kinds;
+                let is_one = s.name == b.name && s.schema == b.schema;
+                is_one && same_kinds && windows(s) == windows(b)
             };
-            // Kinds were looked for in the other data.
-            let is_known = b.kinds.is_none();
-            source.buffers.iter().filter(|_| is_known).find(is_same).map(|s| (s.key, s.len))
+            source.buffers.iter().find(is_same).map(|s| (s.key, s.len))
         };
         let numbers: Option<Vec<_>> = own.uniforms[first.uniforms..].iter().map(number).collect();
         let buffers: Option<Vec<_>> = own.buffers[first.buffers..].iter().map(buffer).collect();

@@ -1,7 +1,7 @@
 //! Descriptions of what a kernel captures, as far as a recording depends on it.
 
 use super::{Builder, Recorder, storage};
-use crate::machine::{Data, KernelInfo, Kinds, Schema, Type as _, wgsl::BufferKey};
+use crate::machine::{Data, KernelInfo, Schema, Type as _, wgsl::BufferKey};
 
 /// What a kernel captures: numbers and buffers under their names, and the facts that decide what is
 /// recorded.
@@ -37,11 +37,6 @@ impl Description {
         self.facts.push(fact);
     }
 
-    /// Adds a set of kinds, of which the text has the arms.
-    pub(crate) fn kinds(&mut self, kinds: Kinds) {
-        self.fact(kinds.bits());
-    }
-
     /// Adds a value, given in its memory layout.
     pub(crate) fn value(&mut self, name: &str, schema: &'static Schema, bytes: &[u8]) {
         storage::uniforms(&self.m, name, schema, bytes, &mut Vec::new());
@@ -72,9 +67,13 @@ impl Description {
         self.fact(at.unwrap_or_default() as u64 * 2 + u64::from(len == 0));
     }
 
-    /// Adds the elements of a slice, or of a scene.
+    /// Adds the elements of a slice, or of a scene, with the kinds of enums among them, of which the
+    /// text has the arms.
     pub(crate) fn data<D: Data>(&mut self, data: &D) {
         self.buffer(data.key(), &data.name(), D::Element::SCHEMA, data.count() as u64);
+        for kinds in self.m.kinds_of_data(data) {
+            self.fact(kinds.bits());
+        }
     }
 
     /// Returns the facts, unless the description is open.

@@ -274,14 +274,24 @@ impl Recorder {
         let schema = D::Element::SCHEMA;
         let leaves = self.call_of(function, vec![index], schema);
         if const { D::Element::SCHEMA.has_kinds() } {
-            let buffer = self.buffer_of(data);
-            let found = self.kinds_of_buffer(&buffer, schema, &mut || {
-                let write = &mut |i, out: &mut [u8]| data.get(i).write(out);
-                data.kinds().map_or_else(|| found_in(schema, data.count(), write), |k| vec![k])
-            });
+            let found = self.kinds_of_data(data);
             self.builder(|b| b.know(schema, &leaves, &found));
         }
         self.with_leaves(Value::zero(self), &leaves)
+    }
+
+    /// Returns the kinds of each number of a variant in the elements, which are noted with the
+    /// buffer; none if the elements have no enums.
+    pub(super) fn kinds_of_data<D: Data>(&self, data: &D) -> Vec<Kinds> {
+        let schema = D::Element::SCHEMA;
+        if const { !D::Element::SCHEMA.has_kinds() } {
+            return Vec::new();
+        }
+        let buffer = self.buffer_of(data);
+        self.kinds_of_buffer(&buffer, schema, &mut || {
+            let write = &mut |i, out: &mut [u8]| data.get(i).write(out);
+            data.kinds().map_or_else(|| found_in(schema, data.count(), write), |k| vec![k])
+        })
     }
 
     /// Returns the kinds among the elements of a buffer, found once.
