@@ -8,6 +8,7 @@
 pub mod adversary;
 pub mod campaigns;
 pub mod check;
+pub mod close;
 pub mod fuzz;
 pub mod gpu;
 pub mod kernels;

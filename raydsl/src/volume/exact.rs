@@ -98,7 +98,7 @@ impl ShadedCell {
 
     /// Returns the factor of colours in a cell with this gradient.
     #[inline]
-    fn shade(self, gradient: Vec3) -> f32 {
+    pub(super) fn shade(self, gradient: Vec3) -> f32 {
         let share = min(length(gradient) / self.edge, 1.0);
         1.0 + (lambert(gradient, self.to_light, self.ambient) - 1.0) * share
     }
@@ -106,15 +106,15 @@ impl ShadedCell {
 
 /// Interval of the transfer function, with its ends.
 #[derive(Clone, Copy, Debug, Type)]
-struct Interval {
-    index: u32,
-    below: TransferKnot,
-    above: TransferKnot,
+pub(super) struct Interval {
+    pub(super) index: u32,
+    pub(super) below: TransferKnot,
+    pub(super) above: TransferKnot,
 }
 
 #[kernel]
 #[inline(always)]
-fn interval_at(function: &TransferFunction, index: u32) -> Interval {
+pub(super) fn interval_at(function: &TransferFunction, index: u32) -> Interval {
     let below: TransferKnot = function.knot(index);
     let above: TransferKnot = function.knot(index + 1);
     Interval { index, below, above }
@@ -220,7 +220,7 @@ fn add_piece(layer: &mut Layer, cubic: Cubic, interval: Interval, from: f32, to:
 /// ray enters, and becomes that of the value at which it leaves.
 #[kernel]
 #[inline(always)]
-fn add_cell(
+pub(super) fn add_cell(
     layer: &mut Layer,
     interval: &mut Interval,
     function: &TransferFunction,

@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod along;
+pub mod cells;
 mod cubic;
 mod cut;
 mod error;

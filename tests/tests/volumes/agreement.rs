@@ -1,12 +1,11 @@
 //! Integrators against the oracle, and against each other in every variant.
 
-use raydsl::machine::Type;
 use raydsl::prelude::*;
-use raydsl::testing;
 use raydsl::volume::{
     Adaptive, Centering, Euler, ExactCell, ExponentialLeft, Grid, GridConfig, MeanExtinction,
     Midpoint, PreIntegrated, ShadedCell, TransferFunction, Volume, VolumeIntegrator, VolumeLight,
 };
+pub(crate) use raydsl_tests::close::assert_close;
 use raydsl_tests::rng::Rng;
 
 use super::oracle::{self, Field};
@@ -106,36 +105,6 @@ fn integrals_are_those_of_the_oracle() {
         }
     }
     assert!(honoured * 100 >= all * 99, "{honoured} of {all} rays are within the tolerance");
-}
-
-/// Asserts that all variants on the CPU have the same bits, and that WGSL is within `bound` of
-/// them.
-///
-/// A march along a ray takes hundreds of decisions whose sides meet: which cell a sample on a
-/// border is in, between which knots a value on a knot is. Too many are open for each to be
-/// followed, and none makes a difference beyond rounding: that is what this bound tests.
-#[track_caller]
-pub(crate) fn assert_close<A: Type + Copy + core::fmt::Debug>(
-    kernel: &Kernel<'_, A, Vec4>,
-    inputs: &[A],
-    bound: f32,
-) {
-    let expected = testing::run(kernel, Variant::Scalar, inputs);
-    for variant in [Variant::Packet4, Variant::Packet8, Variant::Packet16] {
-        if testing::can_run(variant, "volumes") {
-            let found = testing::run(kernel, variant, inputs);
-            let bits = |all: &[Vec4]| all.iter().map(|v| v.to_array().map(f32::to_bits)).collect();
-            let (a, b): (Vec<[u32; 4]>, Vec<[u32; 4]>) = (bits(&expected), bits(&found));
-            assert_eq!(a, b, "{}", variant.name());
-        }
-    }
-    if testing::can_run(Variant::Wgsl, "volumes") {
-        let found = testing::run(kernel, Variant::Wgsl, inputs);
-        for (i, (a, b)) in expected.iter().zip(&found).enumerate() {
-            let off = (*a - *b).abs().max_element();
-            assert!(off <= bound, "WGSL: {:?}: {b}, not {a}, off by {off}", inputs[i]);
-        }
-    }
 }
 
 #[test]

@@ -1,0 +1,40 @@
+//! Variants of kernels whose decisions are too many to be followed.
+
+use raydsl::kernel::{Kernel, Variant};
+use raydsl::machine::Type;
+use raydsl::prelude::*;
+use raydsl::testing;
+
+/// Asserts that all variants on the CPU have the same bits, and that WGSL is within `bound` of
+/// them.
+///
+/// A march along a ray takes hundreds of decisions whose sides meet: which cell a sample on a
+/// border is in, between which knots a value on a knot is. Too many are open for each to be
+/// followed, and none makes a difference beyond rounding: that is what this bound tests.
+///
+/// # Panics
+///
+/// If they differ.
+#[track_caller]
+pub fn assert_close<A: Type + Copy + core::fmt::Debug>(
+    kernel: &Kernel<'_, A, Vec4>,
+    inputs: &[A],
+    bound: f32,
+) {
+    let expected = testing::run(kernel, Variant::Scalar, inputs);
+    for variant in [Variant::Packet4, Variant::Packet8, Variant::Packet16] {
+        if testing::can_run(variant, "volumes") {
+            let found = testing::run(kernel, variant, inputs);
+            let bits = |all: &[Vec4]| all.iter().map(|v| v.to_array().map(f32::to_bits)).collect();
+            let (a, b): (Vec<[u32; 4]>, Vec<[u32; 4]>) = (bits(&expected), bits(&found));
+            assert_eq!(a, b, "{}", variant.name());
+        }
+    }
+    if testing::can_run(Variant::Wgsl, "volumes") {
+        let found = testing::run(kernel, Variant::Wgsl, inputs);
+        for (i, (a, b)) in expected.iter().zip(&found).enumerate() {
+            let off = (*a - *b).abs().max_element();
+            assert!(off <= bound, "WGSL: {:?}: {b}, not {a}, off by {off}", inputs[i]);
+        }
+    }
+}
