@@ -15,6 +15,7 @@
         feature = "stack",
         feature = "tri",
         feature = "vti",
+        feature = "vtu",
         feature = "xyz"
     )),
     allow(dead_code, unused_imports, reason = "formats share code")
@@ -62,6 +63,7 @@ mod stack;
     feature = "stack",
     feature = "tri",
     feature = "vti",
+    feature = "vtu",
     feature = "xyz"
 ))]
 mod tests;
@@ -70,9 +72,14 @@ mod tint;
 mod tri;
 #[cfg(feature = "vti")]
 mod vti;
+#[cfg(any(feature = "vti", feature = "vtu"))]
+mod vtk;
+#[cfg(feature = "vtu")]
+mod vtu;
 #[cfg(feature = "xyz")]
 mod xyz;
 
+pub mod cells;
 pub mod cloud;
 #[cfg(feature = "environment")]
 pub mod environment;

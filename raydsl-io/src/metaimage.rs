@@ -94,7 +94,7 @@ fn voxels(
     if is_binary {
         return payload.read_plain(data, REMEDY);
     }
-    payload.check_text(data, data.remaining())?;
+    payload.claim().check_text(data, data.remaining())?;
     payload.read_text(data).map_err(|fault| data.fault(fault, REMEDY))
 }
 

@@ -103,7 +103,7 @@ fn voxels(
     if encoding == Encoding::Raw {
         return payload.read_plain(data, REMEDY);
     }
-    payload.check_text(data, data.remaining())?;
+    payload.claim().check_text(data, data.remaining())?;
     payload.read_text(data).map_err(|fault| data.fault(fault, REMEDY))
 }
 

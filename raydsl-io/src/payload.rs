@@ -48,7 +48,7 @@ impl VoxelType {
     }
 
     /// Whether it has the number.
-    fn has(self, number: f64) -> bool {
+    pub(crate) fn has(self, number: f64) -> bool {
         let (low, high) = match self {
             Self::F32 | Self::F64 => return true,
             Self::U8 => (0.0, f64::from(u8::MAX)),
@@ -69,6 +69,46 @@ impl VoxelType {
 pub(crate) enum Compression {
     Gzip,
     Zlib,
+}
+
+/// Numbers that a header claims to be there, and what errors call them.
+pub(crate) struct Claim {
+    pub(crate) name: String,
+    pub(crate) count: u64,
+    pub(crate) bytes: u64,
+}
+
+impl Claim {
+    /// An error if all numbers cannot be in `held` bytes.
+    pub(crate) fn check_held(&self, source: &Source, held: u64) -> Result<(), LoadError> {
+        let bytes = self.bytes;
+        if bytes <= held {
+            return Ok(());
+        }
+        Err(source.truncated(format!("{} take {bytes} bytes, {held} are there", self.name)))
+    }
+
+    /// An error if all numbers cannot be in `held` compressed bytes.
+    pub(crate) fn check_packed(&self, source: &Source, held: u64) -> Result<(), LoadError> {
+        let bytes = self.bytes;
+        if bytes <= held.saturating_mul(INFLATION) {
+            return Ok(());
+        }
+        let name = &self.name;
+        Err(source
+            .truncated(format!("{name} take {bytes} bytes, {held} compressed ones are there")))
+    }
+
+    /// An error if all numbers cannot be in `held` bytes of text.
+    pub(crate) fn check_text(&self, source: &Source, held: u64) -> Result<(), LoadError> {
+        // A digit each, and what parts it from the next.
+        let least = (2 * self.count).saturating_sub(1);
+        if least <= held {
+            return Ok(());
+        }
+        let name = &self.name;
+        Err(source.truncated(format!("{name} take {least} bytes of text, {held} are there")))
+    }
 }
 
 /// The voxels that a header claims: no more than the limit, and at least one.
@@ -111,35 +151,9 @@ impl Payload {
         self.count() * self.kind.size()
     }
 
-    /// An error if all voxels cannot be in `held` bytes.
-    pub(crate) fn check_held(&self, source: &Source, held: u64) -> Result<(), LoadError> {
-        let bytes = self.bytes();
-        if bytes <= held {
-            return Ok(());
-        }
-        Err(source.truncated(format!("{} take {bytes} bytes, {held} are there", self.name())))
-    }
-
-    /// An error if all voxels cannot be in `held` compressed bytes.
-    pub(crate) fn check_packed(&self, source: &Source, held: u64) -> Result<(), LoadError> {
-        let bytes = self.bytes();
-        if bytes <= held.saturating_mul(INFLATION) {
-            return Ok(());
-        }
-        let name = self.name();
-        Err(source
-            .truncated(format!("{name} take {bytes} bytes, {held} compressed ones are there")))
-    }
-
-    /// An error if all voxels cannot be in `held` bytes of text.
-    pub(crate) fn check_text(&self, source: &Source, held: u64) -> Result<(), LoadError> {
-        // A digit each, and what parts it from the next.
-        let least = 2 * self.count() - 1;
-        if least <= held {
-            return Ok(());
-        }
-        let name = self.name();
-        Err(source.truncated(format!("{name} take {least} bytes of text, {held} are there")))
+    /// What the header claims to be there.
+    pub(crate) fn claim(&self) -> Claim {
+        Claim { name: self.name(), count: self.count(), bytes: self.bytes() }
     }
 
     pub(crate) fn name(&self) -> String {
@@ -153,7 +167,7 @@ impl Payload {
         source: &mut Source,
         remedy: &'static str,
     ) -> Result<Voxels, LoadError> {
-        self.check_held(source, source.remaining())?;
+        self.claim().check_held(source, source.remaining())?;
         self.read(source).map_err(|fault| source.fault(fault, remedy))
     }
 
@@ -166,7 +180,7 @@ impl Payload {
         gap: u64,
         remedy: &'static str,
     ) -> Result<Voxels, LoadError> {
-        self.check_packed(source, source.remaining())?;
+        self.claim().check_packed(source, source.remaining())?;
         let read = match compression {
             Compression::Gzip => {
                 self.read_behind(gap, &mut flate2::bufread::MultiGzDecoder::new(&mut *source))
@@ -320,7 +334,7 @@ impl Payload {
 }
 
 /// Fills `bytes`, or tells what is missing, by how many are there.
-fn fill(
+pub(crate) fn fill(
     stream: &mut dyn Read,
     bytes: &mut [u8],
     missing: impl Fn(u64) -> String,
@@ -341,7 +355,7 @@ fn fill(
 }
 
 /// Reads the next word of a text; false at its end.
-fn next_word(stream: &mut dyn BufRead, word: &mut Vec<u8>) -> Result<bool, Fault> {
+pub(crate) fn next_word(stream: &mut dyn BufRead, word: &mut Vec<u8>) -> Result<bool, Fault> {
     word.clear();
     loop {
         let bytes = stream.fill_buf()?;

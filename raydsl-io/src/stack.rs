@@ -73,7 +73,7 @@ fn decode(source: &mut Source, bytes: &mut Vec<u8>, depth: u64) -> Result<Payloa
     };
     let stack = claim(source, depth)?;
     let picture = claim(source, 1)?;
-    picture.check_packed(source, source.len)?;
+    picture.claim().check_packed(source, source.len)?;
     source.go_to(0)?;
     let decoded = pixels(source, bytes, picture.bytes() as usize);
     decoded.map_err(|fault| source.fault(fault, REMEDY))?;

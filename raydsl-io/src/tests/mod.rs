@@ -2,6 +2,7 @@
 
 mod environments;
 mod files;
+mod grids;
 mod hostile;
 mod memory;
 mod meshes;

@@ -177,6 +177,14 @@ fn volumes() {
     });
 }
 
+/// Unstructured grids in every encoding.
+#[test]
+fn grids() {
+    each_variant(&super::grids::files(), |_, bytes| {
+        let _ = super::grids::check_cells(bytes, "a variant");
+    });
+}
+
 /// Headers whose voxels are in a file beside them.
 #[test]
 fn volumes_beside_their_headers() {

@@ -11,7 +11,7 @@ use crate::volume::{ByteOrder, VoxelType, Voxels, load_raw, load_stack};
 
 pub(super) const SIZE: UVec3 = uvec3(4, 3, 2);
 
-const KINDS: [VoxelType; 10] = [
+pub(super) const KINDS: [VoxelType; 10] = [
     VoxelType::U8,
     VoxelType::I8,
     VoxelType::U16,
@@ -24,7 +24,7 @@ const KINDS: [VoxelType; 10] = [
     VoxelType::F64,
 ];
 
-const ORDERS: [ByteOrder; 2] = [ByteOrder::Little, ByteOrder::Big];
+pub(super) const ORDERS: [ByteOrder; 2] = [ByteOrder::Little, ByteOrder::Big];
 
 /// Numbers for all voxels that the type has.
 pub(super) fn numbers(kind: VoxelType) -> Vec<f64> {
@@ -355,58 +355,77 @@ impl Vti {
         base64(&[lengths, data].concat())
     }
 
-    /// A file with arrays: a name, the number of components, and numbers.
-    fn file(self, image: &str, points: &[Array<'_>], cells: &[Array<'_>], active: &str) -> Vec<u8> {
-        let mut appended = Vec::new();
-        let mut list = |arrays: &[Array<'_>]| -> String {
-            let mut array = |(name, components, numbers): &Array<'_>| {
-                let (format, text) = match self.way {
-                    Way::Text => {
-                        let words: Vec<_> = numbers.iter().map(|n| format!("{n}")).collect();
-                        ("ascii".into(), words.join(" \n"))
-                    }
-                    Way::Inline => ("binary".into(), self.base64(numbers)),
-                    way => {
-                        let offset = appended.len();
-                        match way {
-                            Way::Raw => appended.extend(self.data(numbers).concat()),
-                            _ => appended.extend(self.base64(numbers).into_bytes()),
-                        }
-                        (format!("appended\" offset=\"{offset}"), String::new())
-                    }
-                };
-                let kind = format!("{:?}", self.kind);
-                let kind = kind.replace('U', "UInt").replace('I', "Int").replace('F', "Float");
-                let kind = kind.replace("UIntnt", "UInt");
-                format!(
-                    "<DataArray type=\"{kind}\" Name=\"{name}\" \
-                     NumberOfComponents=\"{components}\" format=\"{format}\">\n{text}\n\
-                     </DataArray>\n"
-                )
-            };
-            arrays.iter().map(&mut array).collect()
+    /// An array's element; what is appended goes behind `appended`.
+    pub(super) fn array(
+        self,
+        appended: &mut Vec<u8>,
+        (name, components, numbers): &Array<'_>,
+    ) -> String {
+        let (format, text) = match self.way {
+            Way::Text => {
+                let words: Vec<_> = numbers.iter().map(|n| format!("{n}")).collect();
+                ("ascii".into(), words.join(" \n"))
+            }
+            Way::Inline => ("binary".into(), self.base64(numbers)),
+            way => {
+                let offset = appended.len();
+                match way {
+                    Way::Raw => appended.extend(self.data(numbers).concat()),
+                    _ => appended.extend(self.base64(numbers).into_bytes()),
+                }
+                (format!("appended\" offset=\"{offset}"), String::new())
+            }
         };
-        let (points, cells) = (list(points), list(cells));
+        let kind = format!("{:?}", self.kind);
+        let kind = kind.replace('U', "UInt").replace('I', "Int").replace('F', "Float");
+        let kind = kind.replace("UIntnt", "UInt");
+        format!(
+            "<DataArray type=\"{kind}\" Name=\"{name}\" \
+             NumberOfComponents=\"{components}\" format=\"{format}\">\n{text}\n\
+             </DataArray>\n"
+        )
+    }
+
+    /// The attributes of the file's element.
+    pub(super) fn attributes(self) -> String {
         let order = if self.order == ByteOrder::Big { "BigEndian" } else { "LittleEndian" };
         let width = if self.is_wide { "UInt64" } else { "UInt32" };
         let compressor = match self.block {
             Some(_) => "compressor='vtkZLibDataCompressor'",
             None => "",
         };
+        format!("version=\"1.0\" byte_order=\"{order}\" header_type=\"{width}\" {compressor}")
+    }
+
+    /// The element of appended data.
+    pub(super) fn appended(self, appended: &[u8]) -> Vec<u8> {
         let encoding = if self.way == Way::Raw { "raw" } else { "base64" };
+        let mut element = Vec::new();
+        if matches!(self.way, Way::Raw | Way::Base64) {
+            element.extend(format!("<AppendedData encoding=\"{encoding}\">\n _").bytes());
+            element.extend(appended);
+            element.extend(b"\n</AppendedData>\n");
+        }
+        element
+    }
+
+    /// A file with arrays: a name, the number of components, and numbers.
+    fn file(self, image: &str, points: &[Array<'_>], cells: &[Array<'_>], active: &str) -> Vec<u8> {
+        let mut appended = Vec::new();
+        let mut list = |arrays: &[Array<'_>]| -> String {
+            arrays.iter().map(|array| self.array(&mut appended, array)).collect()
+        };
+        let (points, cells) = (list(points), list(cells));
+        let attributes = self.attributes();
         let mut file = format!(
-            "<?xml version=\"1.0\"?>\n<!-- a test -->\n<VTKFile type=\"ImageData\" version=\"1.0\" \
-             byte_order=\"{order}\" header_type=\"{width}\" {compressor}>\n<ImageData {image}>\n\
+            "<?xml version=\"1.0\"?>\n<!-- a test -->\n<VTKFile type=\"ImageData\" \
+             {attributes}>\n<ImageData {image}>\n\
              <FieldData><DataArray type=\"String\" Name=\"note\" format=\"ascii\">1 2</DataArray>\
              </FieldData><Piece><PointData {active}>\n{points}</PointData>\n\
              <CellData>{cells}</CellData></Piece>\n</ImageData>\n"
         )
         .into_bytes();
-        if matches!(self.way, Way::Raw | Way::Base64) {
-            file.extend(format!("<AppendedData encoding=\"{encoding}\">\n _").bytes());
-            file.extend(appended);
-            file.extend(b"\n</AppendedData>\n");
-        }
+        file.extend(self.appended(&appended));
         file.extend(b"</VTKFile>\n");
         file
     }
@@ -418,9 +437,9 @@ impl Vti {
     }
 }
 
-type Array<'a> = (&'a str, usize, Vec<f64>);
+pub(super) type Array<'a> = (&'a str, usize, Vec<f64>);
 
-const ALL_WAYS: [Way; 4] = [Way::Text, Way::Inline, Way::Raw, Way::Base64];
+pub(super) const ALL_WAYS: [Way; 4] = [Way::Text, Way::Inline, Way::Raw, Way::Base64];
 
 #[test]
 fn vti_of_every_type() {
@@ -675,7 +694,7 @@ fn stacks_of_pictures() {
 }
 
 /// Says so where a real file is not there.
-fn real(test: &str, name: &str) -> Option<PathBuf> {
+pub(super) fn real(test: &str, name: &str) -> Option<PathBuf> {
     // Written past the test harness, which would swallow what a passing test prints.
     let skip = |why: &str| {
         let mut err = std::io::stderr();

@@ -155,9 +155,9 @@ pub(super) fn pierced(a: Corner, b: Corner, c: Corner) -> Pierced {
     let areas = areas(a.at, b.at, c.at);
     let sum = areas.x + areas.y + areas.z;
     // A face along the ray, of no area but for rounding, is passed in its middle.
-    let is_thin = !(sum > 0.0);
+    let has_area = sum > 0.0;
     let third = vec3(1.0, 1.0, 1.0) / 3.0;
-    let weights = if is_thin { third } else { areas / sum };
+    let weights = if has_area { areas / sum } else { third };
     let depths = vec3(a.at.z, b.at.z, c.at.z);
     let values = vec3(a.value, b.value, c.value);
     let near = min(min(depths.x, depths.y), depths.z);

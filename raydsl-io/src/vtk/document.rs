@@ -6,7 +6,7 @@ use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
-use super::REMEDY;
+use super::{Content, Of, REMEDY, VtkArray};
 use crate::error::{one_line, word_text};
 use crate::source::Source;
 use crate::volume::ByteOrder;
@@ -15,52 +15,32 @@ use crate::{LoadError, Place};
 /// Arrays of a file at most; simulations write a handful.
 const MOST_ARRAYS: usize = 4096;
 
-/// Where the numbers of an array are.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Content {
-    /// As text in its element.
-    Text,
-    /// As base64 in its element.
-    Inline,
-    /// At a place of the appended data.
-    Appended(u64),
-}
-
-/// An array of numbers.
-pub(super) struct Array {
-    pub(super) name: String,
-    pub(super) kind: String,
-    pub(super) components: u64,
-    pub(super) content: Content,
-    pub(super) is_cells: bool,
-    /// The byte behind its tag.
-    pub(super) at: u64,
-}
-
 /// The file, all but its numbers.
-pub(super) struct Document {
-    pub(super) order: ByteOrder,
+pub(crate) struct Document {
+    pub(crate) order: ByteOrder,
     /// Bytes of a length.
-    pub(super) width: usize,
-    pub(super) is_packed: bool,
+    pub(crate) width: usize,
+    pub(crate) is_packed: bool,
     /// The first and the last point along each axis.
-    pub(super) extent: [i32; 6],
-    pub(super) origin: [f64; 3],
-    pub(super) spacing: [f64; 3],
+    pub(crate) extent: [i32; 6],
+    pub(crate) origin: [f64; 3],
+    pub(crate) spacing: [f64; 3],
     /// A matrix, row by row.
-    pub(super) direction: [f64; 9],
-    /// The byte behind the tag that says so.
-    pub(super) at: u64,
-    pub(super) arrays: Vec<Array>,
+    pub(crate) direction: [f64; 9],
+    /// Points and cells of the piece, for an unstructured grid.
+    pub(crate) counts: [u64; 2],
+    /// The byte behind the tag of the grid.
+    pub(crate) at: u64,
+    pub(crate) arrays: Vec<VtkArray>,
     /// The active scalars of points and of cells.
-    pub(super) active: [Option<String>; 2],
+    pub(crate) active: [Option<String>; 2],
     /// Where appended data begin, and whether they are base64.
-    pub(super) appended: Option<(u64, bool)>,
+    pub(crate) appended: Option<(u64, bool)>,
 }
 
 impl Document {
     /// How many points or cells there are along each axis.
-    pub(super) fn size(&self, is_cells: bool) -> [u64; 3] {
+    pub(crate) fn size(&self, is_cells: bool) -> [u64; 3] {
         let [x0, x1, y0, y1, z0, z1] = self.extent;
         [(x0, x1), (y0, y1), (z0, z1)].map(|(first, last)| {
             let steps = u64::try_from(i64::from(last) - i64::from(first)).ok();
@@ -70,13 +50,15 @@ impl Document {
     }
 }
 
-/// Reads a file up to its appended data.
-pub(super) fn read(source: &mut Source) -> Result<Document, LoadError> {
+/// Reads a file that holds a grid of this kind, `ImageData` or `UnstructuredGrid`, up to its
+/// appended data.
+pub(crate) fn read(source: &mut Source, kind: &'static str) -> Result<Document, LoadError> {
     let mut scan = Scan {
+        kind,
         has_file: false,
-        has_image: false,
+        has_grid: false,
         pieces: 0,
-        is_cells: None,
+        of: None,
         document: Document {
             order: ByteOrder::Little,
             width: 4,
@@ -85,6 +67,7 @@ pub(super) fn read(source: &mut Source) -> Result<Document, LoadError> {
             origin: [0.0; 3],
             spacing: [1.0; 3],
             direction: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+            counts: [0; 2],
             at: 0,
             arrays: Vec::new(),
             active: [None, None],
@@ -111,8 +94,8 @@ pub(super) fn read(source: &mut Source) -> Result<Document, LoadError> {
             Event::Empty(tag) => (tag, true),
             Event::End(tag) => {
                 depth = depth.saturating_sub(1);
-                if matches!(tag.name().as_ref(), "PointData" | "CellData") {
-                    scan.is_cells = None;
+                if Of::named(tag.name().as_ref()).is_some() {
+                    scan.of = None;
                 }
                 continue;
             }
@@ -149,9 +132,9 @@ pub(super) fn read(source: &mut Source) -> Result<Document, LoadError> {
     if source.len == 0 {
         return Err(source.truncated("it is empty".into()));
     }
-    if !scan.has_image {
-        let what = "it has no element 'ImageData' in a 'VTKFile'";
-        return Err(source.corrupt(Place::Somewhere, what.into(), REMEDY));
+    if !scan.has_grid {
+        let what = format!("it has no element '{kind}' in a 'VTKFile'");
+        return Err(source.corrupt(Place::Somewhere, what, REMEDY));
     }
     Ok(scan.document)
 }
@@ -171,11 +154,13 @@ enum Next {
 }
 
 struct Scan {
+    /// The kind of grid that is looked for.
+    kind: &'static str,
     has_file: bool,
-    has_image: bool,
+    has_grid: bool,
     pieces: u64,
-    /// Whether arrays are of cells, within an element of arrays.
-    is_cells: Option<bool>,
+    /// What arrays are of, within an element of arrays.
+    of: Option<Of>,
     document: Document,
 }
 
@@ -184,6 +169,10 @@ impl Scan {
         match tag.name().as_ref() {
             "VTKFile" => self.file(tag)?,
             "ImageData" if self.has_file => self.image(tag, at)?,
+            "UnstructuredGrid" if self.has_file => {
+                self.document.at = at;
+                self.has_grid = true;
+            }
             "Piece" => {
                 self.pieces += 1;
                 if self.pieces > 1 {
@@ -192,15 +181,14 @@ impl Scan {
                 if let Some(extent) = list(tag, "Extent")? {
                     self.document.extent = extent;
                 }
-            }
-            name @ ("PointData" | "CellData") => {
-                let is_cells = name == "CellData";
-                self.is_cells = (!is_empty).then_some(is_cells);
-                self.document.active[usize::from(is_cells)] = attribute(tag, "Scalars")?;
+                for (i, name) in ["NumberOfPoints", "NumberOfCells"].into_iter().enumerate() {
+                    let count = list::<u64, 1>(tag, name)?;
+                    self.document.counts[i] = count.map_or(0, |[n]| n);
+                }
             }
             "DataArray" => {
-                if let Some(is_cells) = self.is_cells {
-                    let array = array(tag, is_cells, at)?;
+                if let Some(of) = self.of {
+                    let array = array(tag, of, at)?;
                     if self.document.arrays.len() == MOST_ARRAYS {
                         return Err(format!("it has more than {MOST_ARRAYS} arrays"));
                     }
@@ -215,15 +203,23 @@ impl Scan {
                     Some(other) => Err(format!("'{}' is no encoding", short(other))),
                 };
             }
-            _ => {}
+            name => {
+                if let Some(of) = Of::named(name) {
+                    self.of = (!is_empty).then_some(of);
+                    if let Of::PointData | Of::CellData = of {
+                        let is_cells = usize::from(of == Of::CellData);
+                        self.document.active[is_cells] = attribute(tag, "Scalars")?;
+                    }
+                }
+            }
         }
         Ok(Next::Nothing)
     }
 
     fn file(&mut self, tag: &BytesStart<'_>) -> Result<(), String> {
         let kind = attribute(tag, "type")?.unwrap_or_default();
-        if kind != "ImageData" {
-            return Err(format!("it holds '{}' instead of 'ImageData'", short(&kind)));
+        if kind != self.kind {
+            return Err(format!("it holds '{}' instead of '{}'", short(&kind), self.kind));
         }
         self.has_file = true;
         self.document.order = match attribute(tag, "byte_order")?.as_deref() {
@@ -255,12 +251,12 @@ impl Scan {
         document.spacing = list(tag, "Spacing")?.unwrap_or(document.spacing);
         document.direction = list(tag, "Direction")?.unwrap_or(document.direction);
         document.at = at;
-        self.has_image = true;
+        self.has_grid = true;
         Ok(())
     }
 }
 
-fn array(tag: &BytesStart<'_>, is_cells: bool, at: u64) -> Result<Array, String> {
+fn array(tag: &BytesStart<'_>, of: Of, at: u64) -> Result<VtkArray, String> {
     let name = attribute(tag, "Name")?.unwrap_or_default();
     let number = |attribute: &str, text: String| {
         text.trim().parse().map_err(|_| {
@@ -282,7 +278,7 @@ fn array(tag: &BytesStart<'_>, is_cells: bool, at: u64) -> Result<Array, String>
         Some(other) => return Err(format!("'{}' is no format of an array", short(other))),
     };
     let kind = attribute(tag, "type")?.unwrap_or_default();
-    Ok(Array { name, kind, components, content, is_cells, at })
+    Ok(VtkArray { name, kind, components, content, of, at })
 }
 
 /// The value of an attribute.
