@@ -153,7 +153,7 @@ fn nonsense_ends() {
                 let volume = CellVolume::new(grid, functions()[round % 4].clone());
                 for ray in rays(&cells, 64, &mut rng) {
                     let length = grid.length_inside(ray);
-                    assert!(length >= 0.0 && length <= 20.0, "{length}");
+                    assert!((0.0..=20.0).contains(&length), "{length}");
                     let light = volume.integrate(&ExactCell::new(), ray, VolumeLight::new());
                     assert!((0.0..=1.0).contains(&light.opacity()), "{light:?}");
                 }
