@@ -1,0 +1,322 @@
+//! Everything that a person can do, as values, and as lines of text.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::str::{FromStr, SplitWhitespace};
+
+use raydsl::prelude::*;
+
+use crate::look::{CutObject, Knot, Mode, Show};
+
+/// Something that a person does. A line of a script is one: [`FromStr`] reads it, and
+/// [`Display`](fmt::Display) writes it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// `open FILE`: opens a file, or data that are made in code: `landscape:POINTS`, `head:SIDE`.
+    Open(PathBuf),
+    /// `add FILE`: adds a file as the next time step.
+    Add(PathBuf),
+    /// `step N`: opens the time step of this number, from 0, and keeps the view.
+    Step(usize),
+    /// `cancel`: stops loading.
+    Cancel,
+    /// `size W H`: sets the size of the picture.
+    Size(u32, u32),
+    /// `mode NAME`: sets how data become light.
+    Mode(Mode),
+    /// `variant NAME`: sets what runs the kernel.
+    Variant(Variant),
+    /// `show picture`, `show cost` or `show difference VARIANT`.
+    Show(Show),
+    /// `exposure STOPS`.
+    Exposure(f32),
+    /// `orbit DX DY`: turns the camera around its target, by degrees.
+    Orbit(f32, f32),
+    /// `turn DX DY`: turns the line of sight, by degrees.
+    Turn(f32, f32),
+    /// `fly X Y Z`: moves right, up and ahead, by shares of the distance from the target.
+    Fly(Vec3),
+    /// `zoom FACTOR`: changes the distance from the target.
+    Zoom(f32),
+    /// `home`: looks at all of the data.
+    Home,
+    /// `save-view NAME`: keeps the camera under a name.
+    SaveView(String),
+    /// `view NAME`: goes back to a kept camera.
+    View(String),
+    /// `drop-view NAME`: forgets a kept camera.
+    DropView(String),
+    /// `knot add AT OPACITY R G B`: adds a knot to the transfer function.
+    AddKnot(Knot),
+    /// `knot set I AT OPACITY R G B`: changes knot `I`, from 0.
+    SetKnot(usize, Knot),
+    /// `knot remove I`.
+    RemoveKnot(usize),
+    /// `preset NAME`: takes a ready-made transfer function.
+    Preset(String),
+    /// `cut ball X Y Z R` or `cut half X Y Z NX NY NZ`, in shares of the volume's box.
+    AddCut(CutObject),
+    /// `cut move I X Y Z`: moves cut object `I` by shares of the box.
+    MoveCut(usize, Vec3),
+    /// `cut remove I`.
+    RemoveCut(usize),
+    /// `pick X Y`: asks what is seen in a pixel, counted from the lower left.
+    Pick(u32, u32),
+    /// `wait SAMPLES`: waits until each pixel has that many samples.
+    Wait(u32),
+    /// `picture NAME`: writes the picture as PNG.
+    Picture(String),
+    /// `screenshot NAME`: writes all of the window as PNG.
+    Screenshot(String),
+    /// `wgsl NAME`: writes the kernel as WGSL.
+    Wgsl(String),
+    /// `panel NAME on|off`: opens or closes a panel of the window.
+    Panel(String, bool),
+    /// `quit`.
+    Quit,
+}
+
+impl fmt::Display for Action {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let knot =
+            |k: &Knot| format!("{} {} {} {} {}", k.at, k.opacity, k.color.x, k.color.y, k.color.z);
+        match self {
+            Self::Open(path) => write!(f, "open {}", path.display()),
+            Self::Add(path) => write!(f, "add {}", path.display()),
+            Self::Step(n) => write!(f, "step {n}"),
+            Self::Cancel => f.write_str("cancel"),
+            Self::Size(w, h) => write!(f, "size {w} {h}"),
+            Self::Mode(mode) => write!(f, "mode {}", mode.name()),
+            Self::Variant(variant) => write!(f, "variant {}", variant.name()),
+            Self::Show(show) => write!(f, "show {show}"),
+            Self::Exposure(stops) => write!(f, "exposure {stops}"),
+            Self::Orbit(x, y) => write!(f, "orbit {x} {y}"),
+            Self::Turn(x, y) => write!(f, "turn {x} {y}"),
+            Self::Fly(v) => write!(f, "fly {} {} {}", v.x, v.y, v.z),
+            Self::Zoom(factor) => write!(f, "zoom {factor}"),
+            Self::Home => f.write_str("home"),
+            Self::SaveView(name) => write!(f, "save-view {name}"),
+            Self::View(name) => write!(f, "view {name}"),
+            Self::DropView(name) => write!(f, "drop-view {name}"),
+            Self::AddKnot(k) => write!(f, "knot add {}", knot(k)),
+            Self::SetKnot(i, k) => write!(f, "knot set {i} {}", knot(k)),
+            Self::RemoveKnot(i) => write!(f, "knot remove {i}"),
+            Self::Preset(name) => write!(f, "preset {name}"),
+            Self::AddCut(cut) => write!(f, "cut {cut}"),
+            Self::MoveCut(i, v) => write!(f, "cut move {i} {} {} {}", v.x, v.y, v.z),
+            Self::RemoveCut(i) => write!(f, "cut remove {i}"),
+            Self::Pick(x, y) => write!(f, "pick {x} {y}"),
+            Self::Wait(samples) => write!(f, "wait {samples}"),
+            Self::Picture(name) => write!(f, "picture {name}"),
+            Self::Screenshot(name) => write!(f, "screenshot {name}"),
+            Self::Wgsl(name) => write!(f, "wgsl {name}"),
+            Self::Panel(name, is_open) => {
+                write!(f, "panel {name} {}", if *is_open { "on" } else { "off" })
+            }
+            Self::Quit => f.write_str("quit"),
+        }
+    }
+}
+
+/// The words of a line behind the verb.
+struct Words<'a>(SplitWhitespace<'a>);
+
+impl<'a> Words<'a> {
+    fn word(&mut self) -> Result<&'a str, String> {
+        self.0.next().ok_or_else(|| "a word is missing at the end".to_owned())
+    }
+
+    fn read<T: FromStr>(&mut self) -> Result<T, String> {
+        let word = self.word()?;
+        word.parse().map_err(|_| format!("'{word}' is no number for this place"))
+    }
+
+    fn float(&mut self) -> Result<f32, String> {
+        let number: f32 = self.read()?;
+        if number.is_finite() { Ok(number) } else { Err("numbers are finite".to_owned()) }
+    }
+
+    fn three(&mut self) -> Result<Vec3, String> {
+        Ok(vec3(self.float()?, self.float()?, self.float()?))
+    }
+
+    fn knot(&mut self) -> Result<Knot, String> {
+        Ok(Knot { at: self.float()?, opacity: self.float()?, color: self.three()? })
+    }
+
+    fn variant(&mut self) -> Result<Variant, String> {
+        let word = self.word()?;
+        Variant::from_name(word).ok_or_else(|| {
+            format!("choose a variant from {}", Variant::ALL.map(Variant::name).join(", "))
+        })
+    }
+
+    fn show(&mut self) -> Result<Show, String> {
+        match self.word()? {
+            "picture" => Ok(Show::Picture),
+            "cost" => Ok(Show::Cost),
+            "difference" => Ok(Show::Difference(self.variant()?)),
+            _ => Err("show picture, cost or difference VARIANT".to_owned()),
+        }
+    }
+
+    fn is_on(&mut self) -> Result<bool, String> {
+        match self.word()? {
+            "on" => Ok(true),
+            "off" => Ok(false),
+            _ => Err("write on or off".to_owned()),
+        }
+    }
+
+    fn of_knot(&mut self) -> Result<Action, String> {
+        match self.word()? {
+            "add" => Ok(Action::AddKnot(self.knot()?)),
+            "set" => Ok(Action::SetKnot(self.read()?, self.knot()?)),
+            "remove" => Ok(Action::RemoveKnot(self.read()?)),
+            _ => Err("write knot add, knot set or knot remove".to_owned()),
+        }
+    }
+
+    fn of_cut(&mut self) -> Result<Action, String> {
+        match self.word()? {
+            "ball" => {
+                let (center, radius) = (self.three()?, self.float()?);
+                Ok(Action::AddCut(CutObject::Ball { center, radius }))
+            }
+            "half" => {
+                let (through, normal) = (self.three()?, self.three()?);
+                Ok(Action::AddCut(CutObject::Half { through, normal }))
+            }
+            "move" => Ok(Action::MoveCut(self.read()?, self.three()?)),
+            "remove" => Ok(Action::RemoveCut(self.read()?)),
+            _ => Err("write cut ball, cut half, cut move or cut remove".to_owned()),
+        }
+    }
+
+    fn action(&mut self, verb: &str) -> Result<Action, String> {
+        Ok(match verb {
+            "step" => Action::Step(self.read()?),
+            "cancel" => Action::Cancel,
+            "size" => Action::Size(self.read()?, self.read()?),
+            "mode" => Action::Mode(self.word()?.parse()?),
+            "variant" => Action::Variant(self.variant()?),
+            "show" => Action::Show(self.show()?),
+            "exposure" => Action::Exposure(self.float()?),
+            "orbit" => Action::Orbit(self.float()?, self.float()?),
+            "turn" => Action::Turn(self.float()?, self.float()?),
+            "fly" => Action::Fly(self.three()?),
+            "zoom" => Action::Zoom(self.float()?),
+            "home" => Action::Home,
+            "save-view" => Action::SaveView(self.word()?.to_owned()),
+            "view" => Action::View(self.word()?.to_owned()),
+            "drop-view" => Action::DropView(self.word()?.to_owned()),
+            "knot" => self.of_knot()?,
+            "preset" => Action::Preset(self.word()?.to_owned()),
+            "cut" => self.of_cut()?,
+            "pick" => Action::Pick(self.read()?, self.read()?),
+            "wait" => Action::Wait(self.read()?),
+            "picture" => Action::Picture(self.word()?.to_owned()),
+            "screenshot" => Action::Screenshot(self.word()?.to_owned()),
+            "wgsl" => Action::Wgsl(self.word()?.to_owned()),
+            "panel" => Action::Panel(self.word()?.to_owned(), self.is_on()?),
+            "quit" => Action::Quit,
+            _ => return Err(format!("'{verb}' is no verb of a script")),
+        })
+    }
+}
+
+impl FromStr for Action {
+    type Err = String;
+
+    fn from_str(line: &str) -> Result<Self, String> {
+        let line = line.trim();
+        let (verb, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        // The names of files may have spaces.
+        let path = || match rest.trim() {
+            "" => Err("the name of a file is missing".to_owned()),
+            path => Ok(PathBuf::from(path)),
+        };
+        match verb {
+            "open" => return Ok(Self::Open(path()?)),
+            "add" => return Ok(Self::Add(path()?)),
+            _ => {}
+        }
+        let mut words = Words(rest.split_whitespace());
+        let action = words.action(verb)?;
+        match words.0.next() {
+            Some(word) => Err(format!("'{word}' is one word too many")),
+            None => Ok(action),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_come_back_as_they_were() {
+        for line in [
+            "open a scan.laz",
+            "add b.vti",
+            "step 3",
+            "cancel",
+            "size 320 200",
+            "mode path",
+            "variant packet8",
+            "show picture",
+            "show cost",
+            "show difference wgsl",
+            "exposure -1.5",
+            "orbit 10 -5",
+            "turn 1 2",
+            "fly 0 0.5 1",
+            "zoom 0.9",
+            "home",
+            "save-view a",
+            "view a",
+            "drop-view a",
+            "knot add 0.5 0.25 1 0 0",
+            "knot set 2 0.5 0.25 1 0 0",
+            "knot remove 1",
+            "preset glass",
+            "cut ball 0.5 0.5 0.5 0.25",
+            "cut half 0.5 0.5 0.5 0 0 1",
+            "cut move 0 0.1 0 0",
+            "cut remove 0",
+            "pick 10 20",
+            "wait 16",
+            "picture a.png",
+            "screenshot b.png",
+            "wgsl a.wgsl",
+            "panel keys on",
+            "panel keys off",
+            "quit",
+        ] {
+            let action: Action = line.parse().unwrap_or_else(|e| panic!("{line}: {e}"));
+            assert_eq!(action.to_string(), line);
+        }
+    }
+
+    #[test]
+    fn wrong_lines_say_what_is_wrong() {
+        for line in [
+            "",
+            "open",
+            "fly 1 2",
+            "fly 1 2 x",
+            "fly 1 2 inf",
+            "mode none",
+            "variant packet5",
+            "show",
+            "home now",
+            "cut cube 1",
+            "knot turn 1",
+            "panel keys maybe",
+            "step -1",
+            "dance",
+        ] {
+            assert!(line.parse::<Action>().is_err(), "{line}");
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! Data of files: loading, on a thread of its own that then renders them.
+
+mod points;
+mod surface;
+mod volume;
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use raydsl_io::LoadError;
+
+use crate::link::{Event, Link};
+use crate::subject::{Info, Subject};
+
+/// Why data cannot be shown, in one line.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Failure {
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    #[error(transparent)]
+    Scale(#[from] raydsl_examples::cloud::ScaleError),
+    #[error(transparent)]
+    Build(#[from] raydsl::bvh::BuildError),
+    #[error(transparent)]
+    Grid(#[from] raydsl::volume::GridError),
+    #[error(transparent)]
+    Mesh(#[from] raydsl::shading::MeshError),
+    #[error(transparent)]
+    Lights(#[from] raydsl::light::LightsError),
+    #[error(transparent)]
+    Environment(#[from] raydsl::light::EnvironmentError),
+    #[error("{0}")]
+    Other(String),
+}
+
+/// What a loader tells while it works.
+pub(crate) struct Teller<'a> {
+    link: &'a Arc<Link>,
+}
+
+impl Teller<'_> {
+    /// Reports a completed share of a part of the work; breaks if nobody waits for it any more.
+    pub(crate) fn tell(&self, what: &'static str, share: f64) -> ControlFlow<()> {
+        self.link.send(Event::Progress { what, share: share as f32 });
+        if self.link.is_closed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+/// Renders loaded data until they are replaced.
+pub(crate) type Serve<'a> = &'a mut dyn FnMut(Info, &mut dyn Subject);
+
+/// Loads data and serves them; returns when they are no longer wanted.
+pub(crate) fn load(path: &Path, link: &Arc<Link>, serve: Serve<'_>) -> Result<(), Failure> {
+    let teller = Teller { link };
+    if let Some((made, number)) = made_in_code(path) {
+        return match made {
+            Made::Landscape => points::landscape(number, &teller, serve),
+            Made::Head => volume::head(number, serve),
+        };
+    }
+    match kind_of(path) {
+        FileKind::Cloud => points::open(path, &teller, serve),
+        FileKind::Mesh => surface::open_mesh(path, &teller, serve),
+        FileKind::Scene => surface::open_scene(path, &teller, serve),
+        FileKind::Ply => match surface::open_mesh(path, &teller, serve) {
+            // A file of points without triangles.
+            Err(Failure::Load(LoadError::Empty { .. })) => points::open(path, &teller, serve),
+            end => end,
+        },
+        FileKind::Volume => volume::open(path, serve),
+        FileKind::Raw => volume::open_raw(path, serve),
+        FileKind::Stack => volume::open_stack(path, serve),
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Made {
+    Landscape,
+    Head,
+}
+
+/// The most points that a landscape is made of.
+const MOST_POINTS: u32 = 200_000_000;
+/// The most voxels along a side of a head.
+const MOST_SIDE: u32 = 1024;
+
+/// Reads `landscape:2000000` and `head:192`.
+fn made_in_code(path: &Path) -> Option<(Made, u32)> {
+    let (name, number) = path.to_str()?.split_once(':')?;
+    let number: u32 = number.parse().ok()?;
+    match name {
+        "landscape" if (1..=MOST_POINTS).contains(&number) => Some((Made::Landscape, number)),
+        "head" if (8..=MOST_SIDE).contains(&number) => Some((Made::Head, number)),
+        _ => None,
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum FileKind {
+    Cloud,
+    Mesh,
+    Scene,
+    Ply,
+    Volume,
+    Raw,
+    Stack,
+}
+
+/// Tells the kind of a file by its name. What is unknown is left to the loader of volumes, whose error
+/// says so.
+fn kind_of(path: &Path) -> FileKind {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    match extension.as_str() {
+        "las" | "laz" | "xyz" => FileKind::Cloud,
+        "tri" => FileKind::Mesh,
+        "glb" | "gltf" | "obj" => FileKind::Scene,
+        "ply" => FileKind::Ply,
+        "raw" => FileKind::Raw,
+        _ if path.is_dir() => FileKind::Stack,
+        _ => FileKind::Volume,
+    }
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// Returns the pictures of a folder, in order of their names.
+fn layers(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let fail = |e: std::io::Error| Failure::Other(format!("{}: {e}", folder.display()));
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(fail)? {
+        let path = entry.map_err(fail)?.path();
+        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_tell_the_kind() {
+        for (name, kind) in [
+            ("a.laz", FileKind::Cloud),
+            ("a.XYZ", FileKind::Cloud),
+            ("a.tri", FileKind::Mesh),
+            ("b/a.glb", FileKind::Scene),
+            ("a.ply", FileKind::Ply),
+            ("a.nii.gz", FileKind::Volume),
+            ("tooth_103x94x161_uint8.raw", FileKind::Raw),
+            ("a.txt", FileKind::Volume),
+        ] {
+            assert_eq!(kind_of(Path::new(name)), kind, "{name}");
+        }
+        assert_eq!(made_in_code(Path::new("landscape:500")), Some((Made::Landscape, 500)));
+        assert_eq!(made_in_code(Path::new("head:64")), Some((Made::Head, 64)));
+        for name in ["landscape:0", "landscape", "head:1", "head:x", "c:5"] {
+            assert_eq!(made_in_code(Path::new(name)), None, "{name}");
+        }
+    }
+}

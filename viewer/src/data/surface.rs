@@ -1,0 +1,199 @@
+//! Triangles with materials and lights.
+
+use std::path::Path;
+
+use glam::Affine3A;
+use raydsl::integrators::{
+    PathLimits, PathOptions, PathSample, ambient_occlusion, bvh_cost_color, path_with, whitted,
+};
+use raydsl::light::{AnyLight, DirectionalLight, Environment, Lights};
+use raydsl::prelude::*;
+use raydsl::shading::{Mesh, MeshAttributes};
+use raydsl_examples::model::{Met, Model, met};
+use raydsl_io::scene::{self, Projection, Scene as File};
+
+use super::{Failure, Serve, Teller, file_name};
+use crate::look::{Kind, Look, Mode, Show};
+use crate::pose::Pose;
+use crate::subject::{Info, Picked, PictureKernel, Subject};
+
+/// Loads a scene with materials and serves it.
+pub(super) fn open_scene(
+    path: &Path,
+    teller: &Teller<'_>,
+    serve: Serve<'_>,
+) -> Result<(), Failure> {
+    show(file_name(path), &scene::load(path)?, Vec3::Y, teller, serve)
+}
+
+/// Loads triangles, of one rough material, and serves them.
+pub(super) fn open_mesh(path: &Path, teller: &Teller<'_>, serve: Serve<'_>) -> Result<(), Failure> {
+    let mesh = raydsl_io::mesh::load(path)?;
+    let color = Vec3::splat(0.7);
+    let material = scene::Material {
+        base_color: color.extend(1.0),
+        metallic: 0.0,
+        specular: 0.0,
+        ..Default::default()
+    };
+    let file = File {
+        meshes: vec![scene::SceneMesh {
+            positions: mesh.vertices,
+            normals: mesh.normals,
+            triangles: mesh.triangles,
+            ..Default::default()
+        }],
+        materials: vec![material],
+        instances: vec![scene::Instance {
+            name: String::new(),
+            mesh: 0,
+            transform: Affine3A::IDENTITY,
+        }],
+        ..Default::default()
+    };
+    show(file_name(path), &file, Vec3::Y, teller, serve)
+}
+
+/// The file's first camera that has a perspective, or one that sees all.
+fn home(file: &File, bounds: Aabb, up: Vec3) -> Pose {
+    let all = Pose::of_box(bounds, up, vec3(0.45, 0.4, 0.8));
+    for c in &file.cameras {
+        if let Projection::Perspective { vertical, .. } = c.projection {
+            let away = c.position.distance(bounds.center()).max(1e-3 * bounds.size().length());
+            let target = c.position + c.forward * away;
+            let pose = Pose { eye: c.position, target, up: c.up, fov_y: vertical };
+            return if pose.is_valid() { pose } else { all };
+        }
+    }
+    all
+}
+
+fn show(
+    name: String,
+    file: &File,
+    up: Vec3,
+    teller: &Teller<'_>,
+    serve: Serve<'_>,
+) -> Result<(), Failure> {
+    let mut model = Model::new(file);
+    let bounds = model.bounds();
+    let is_dark = model.lights.is_empty();
+    if is_dark {
+        // What has no lamps gets a sun beside the sky.
+        let direction = (up + vec3(0.5, 0.1, 0.4)).normalize_or(up);
+        let irradiance = vec3(1.6, 1.5, 1.3);
+        let sun = DirectionalLight { direction, irradiance, sine: 0.02 };
+        model.lights.push(AnyLight::Directional(sun));
+    }
+    let sky = if is_dark { vec3(0.45, 0.52, 0.6) } else { Vec3::ZERO };
+    let environment = Environment::constant(sky)?;
+    let config = BuildConfig::default();
+    let tree = Bvh::build_observed(&model.triangles, &model.positions, &config, |done| {
+        teller.tell("building the tree", done)
+    })?;
+    let attributes = MeshAttributes {
+        normals: &model.normals,
+        uvs: &model.uvs,
+        colors: &model.colors,
+        materials: &model.materials,
+        ..Default::default()
+    };
+    let mesh = Mesh::new(&tree, attributes)?;
+    let lights = Lights::new(&model.lights, bounds)?.with_tree()?.with_environment(&environment);
+    let size = format!(
+        "{} triangles, {} materials, {} lights",
+        model.triangles.len(),
+        model.looks.len(),
+        model.lights.len()
+    );
+    let home = home(file, bounds, up);
+    let info =
+        Info { kind: Kind::Surface, name, size, home, range: Vec2::ZERO, histogram: Vec::new() };
+    let radius = 0.25 * bounds.size().length();
+    let names: Vec<&str> = file.materials.iter().map(|m| m.name.as_str()).collect();
+    serve(info, &mut Surface { model: &model, mesh: &mesh, tree: &tree, lights, radius, names });
+    Ok(())
+}
+
+struct Surface<'a> {
+    model: &'a Model,
+    mesh: &'a Mesh<'a, Bvh<'a, IndexedTriangle>>,
+    tree: &'a Bvh<'a, IndexedTriangle>,
+    lights: Lights<'a, AnyLight>,
+    radius: f32,
+    names: Vec<&'a str>,
+}
+
+/// How often light is scattered at most.
+const BOUNCES: u32 = 6;
+/// The number of tests that is the hot end of the heat map.
+const MOST_TESTS: f32 = 150.0;
+
+impl Subject for Surface<'_> {
+    fn with_kernel(
+        &mut self,
+        look: &Look,
+        run: &mut dyn FnMut(&PictureKernel<'_>),
+    ) -> Result<(), String> {
+        let Self { model, mesh, tree, lights, radius, .. } = self;
+        let (mesh, tree, radius, most) = (*mesh, *tree, *radius, MOST_TESTS);
+        let lights = &*lights;
+        let (looks, texels, light_of) = (&model.looks[..], &model.texels[..], &model.light_of[..]);
+        let options = PathOptions { masks: model.has_masks, ..PathOptions::new() };
+        let limits = PathLimits::new(BOUNCES);
+        // One kernel for all modes: only what a mode needs is in the WGSL.
+        let is_cost = look.show == Show::Cost;
+        let is_occlusion = look.mode == Mode::Occlusion;
+        let is_path = look.mode == Mode::Path;
+        let bounces = if look.mode == Mode::Whitted { BOUNCES } else { 0 };
+        let shadows = true;
+        let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+            let surface = |hit: Hit, point: ShadingPoint| {
+                let look = looks[point.material as usize];
+                met(texels, look, point, light_of[hit.prim_id as usize])
+            };
+            let color = if is_cost {
+                let heat = bvh_cost_color(tree, most, ray);
+                vec4(heat.x, heat.y, heat.z, 1.0)
+            } else if is_occlusion {
+                let light = ambient_occlusion::<_, 1>(mesh, radius, ray, sampler);
+                light + vec4(1.0, 1.0, 1.0, 1.0) * (1.0 - light.w)
+            } else if is_path {
+                let sample: PathSample = path_with::<_, _, Met>(
+                    mesh,
+                    surface,
+                    lights,
+                    host(options),
+                    limits,
+                    ray,
+                    sampler,
+                );
+                sample.color
+            } else {
+                whitted::<_, _, Met>(
+                    mesh,
+                    surface,
+                    lights,
+                    host(shadows),
+                    host(bounces),
+                    ray,
+                    sampler,
+                )
+            };
+            vec4(color.x, color.y, color.z, 1.0)
+        });
+        run(&kernel);
+        Ok(())
+    }
+
+    fn pick(&self, _look: &Look, ray: Ray) -> Option<Picked> {
+        let hit = self.tree.closest_hit(ray);
+        if !hit.is_hit {
+            return None;
+        }
+        let material = self.model.materials.get(hit.prim_id as usize).copied().unwrap_or(0);
+        let name = self.names.get(material as usize).copied().unwrap_or_default();
+        let value = format!("material {material} {name}").trim_end().to_owned();
+        Some(Picked { id: u64::from(hit.prim_id), position: ray.at(hit.t), value })
+    }
+}

@@ -1,0 +1,328 @@
+//! Grids of numbers, seen through a transfer function and cut open.
+
+use std::path::{Path, PathBuf};
+
+use glam::Affine3;
+use raydsl::kernel;
+use raydsl::prelude::*;
+use raydsl::shading::Surface;
+use raydsl::volume::{
+    Centering, Cut, ExactCell, Grid, GridConfig, Midpoint, PreIntegrated, ShadedCell,
+    TransferFunction, Volume, VolumeLight, Voxel,
+};
+use raydsl_examples::head::head as head_voxels;
+use raydsl_io::volume::{ByteOrder, VolumeFile, VoxelType, Voxels, load, load_raw, load_stack};
+
+use super::{Failure, Serve, file_name, layers};
+use crate::look::{CutObject, Kind, Knot, Look, Mode, Show};
+use crate::pose::Pose;
+use crate::subject::{Info, Picked, PictureKernel, Subject};
+
+/// A ball that cuts.
+#[primitive(sphere(center, radius))]
+struct Ball {
+    center: Vec3,
+    radius: f32,
+}
+
+/// Half of space: all that is behind a plane.
+#[primitive(plane(normal, offset))]
+struct Half {
+    normal: Vec3,
+    offset: f32,
+}
+
+macro_rules! surface {
+    ($($tool:ident)+) => {
+        $(
+            #[kernel]
+            impl Surface for $tool {
+                fn surface(&self, ray: Ray, hit: Hit) -> SurfacePoint {
+                    self.surface_point(ray, hit)
+                }
+
+                fn albedo(&self, _ray: Ray, _hit: Hit) -> Vec3 {
+                    Vec3::ONE
+                }
+            }
+        )+
+    };
+}
+
+surface!(Ball Half);
+
+/// Everything that cuts, as one scene.
+#[derive(Scene)]
+struct Tools<'a> {
+    balls: &'a [Ball],
+    halves: &'a [Half],
+}
+
+/// The integrators of the viewer: WGSL has the one that is captured.
+#[derive(Clone, Copy, raydsl::Type)]
+enum Method {
+    Midpoint(Midpoint),
+    PreIntegrated(PreIntegrated),
+    ExactCell(ExactCell),
+    ShadedCell(ShadedCell),
+}
+
+/// Loads a file and serves it.
+pub(super) fn open(path: &Path, serve: Serve<'_>) -> Result<(), Failure> {
+    show(file_name(path), load(path)?, serve)
+}
+
+/// Loads the pictures of a folder as layers and serves them.
+pub(super) fn open_stack(path: &Path, serve: Serve<'_>) -> Result<(), Failure> {
+    show(file_name(path), load_stack(&layers(path)?)?, serve)
+}
+
+/// Loads voxels without a header, whose size and type are in the name, and serves them.
+pub(super) fn open_raw(path: &Path, serve: Serve<'_>) -> Result<(), Failure> {
+    let Some((size, kind)) = raw_name(path) else {
+        return Err(Failure::Other(format!(
+            "{}: a raw file has its size and type in its name, as in tooth_103x94x161_uint8.raw",
+            path.display()
+        )));
+    };
+    show(file_name(path), load_raw(path, size, kind, ByteOrder::Little)?, serve)
+}
+
+fn raw_name(path: &Path) -> Option<(UVec3, VoxelType)> {
+    let stem = PathBuf::from(path.file_stem()?).to_string_lossy().to_lowercase();
+    let (rest, kind) = stem.rsplit_once('_')?;
+    let kind = match kind {
+        "uint8" => VoxelType::U8,
+        "int8" => VoxelType::I8,
+        "uint16" => VoxelType::U16,
+        "int16" => VoxelType::I16,
+        "uint32" => VoxelType::U32,
+        "int32" => VoxelType::I32,
+        "float32" => VoxelType::F32,
+        "float64" => VoxelType::F64,
+        _ => return None,
+    };
+    let sides = rest.rsplit_once('_').map_or(rest, |(_, sides)| sides);
+    let sides: Vec<u32> = sides.split('x').map(|n| n.parse().ok()).collect::<Option<_>>()?;
+    Some((UVec3::from_array(sides.try_into().ok()?), kind))
+}
+
+/// Makes a head and serves it.
+pub(super) fn head(side: u32, serve: Serve<'_>) -> Result<(), Failure> {
+    let scan = VolumeFile {
+        size: UVec3::splat(side),
+        to_world: Affine3::from_scale_rotation_translation(
+            Vec3::splat(2.0 / side as f32),
+            glam::Quat::IDENTITY,
+            Vec3::splat(1.0 / side as f32 - 1.0),
+        ),
+        is_cell_centred: true,
+        voxels: Voxels::U8(head_voxels(side)),
+        scale: 1.0,
+        offset: 0.0,
+        no_data: None,
+    };
+    show("head".to_owned(), scan, serve)
+}
+
+fn numbers<T: Voxel>(all: &[T]) -> Vec<f32> {
+    all.iter().map(|v| v.number()).collect()
+}
+
+fn show(name: String, scan: VolumeFile, serve: Serve<'_>) -> Result<(), Failure> {
+    let centering = if scan.is_cell_centred { Centering::Cell } else { Centering::Vertex };
+    let config = GridConfig::new()
+        .to_world(scan.to_world)
+        .centering(centering)
+        .rescale(scan.scale, scan.offset);
+    // One type of voxels is one kernel to compile; integers of 8 and 16 bits are exact.
+    let voxels: Vec<f32> = match scan.voxels {
+        Voxels::U8(all) => numbers(&all),
+        Voxels::U16(all) => numbers(&all),
+        Voxels::I16(all) => numbers(&all),
+        Voxels::F32(all) => all,
+    };
+    let stored = bounds_of(voxels.iter().copied());
+    let histogram = histogram(&voxels, stored);
+    let grid = Grid::new(voxels, scan.size, config)?;
+    let range = grid.range();
+    if range.x > range.y || !range.is_finite() {
+        return Err(Failure::Other(format!("{name}: no voxel has a value; check what wrote it")));
+    }
+    let bounds = bounds(&grid);
+    let (extent, most) = (bounds.size().max_element(), scan.size.max_element());
+    let voxel = extent / most as f32;
+    let home = Pose::of_box(bounds, Vec3::Z, vec3(0.75, 1.15, 0.55));
+    let [x, y, z] = scan.size.to_array();
+    let size = format!("{x} x {y} x {z} voxels, values from {} to {}", range.x, range.y);
+    let info = Info { kind: Kind::Volume, name, size, home, range, histogram };
+    let (knots, volume) = (Vec::new(), None);
+    serve(info, &mut Scan { grid: &grid, range, bounds, voxel, knots, volume });
+    Ok(())
+}
+
+/// The box around all voxels.
+fn bounds(grid: &Grid<'_, f32>) -> Aabb {
+    let (size, config) = (grid.size().as_vec3(), grid.config());
+    let corner = |i: u32| {
+        let share = vec3((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32);
+        config.to_world.transform_point3(share * size - 0.5)
+    };
+    Aabb::from_points((0..8).map(corner))
+}
+
+fn bounds_of(values: impl Iterator<Item = f32>) -> Vec2 {
+    let none = vec2(f32::INFINITY, f32::NEG_INFINITY);
+    values.filter(|v| v.is_finite()).fold(none, |r, v| vec2(r.x.min(v), r.y.max(v)))
+}
+
+/// Parts of the histogram.
+const PARTS: usize = 128;
+
+fn histogram(voxels: &[f32], range: Vec2) -> Vec<u32> {
+    let mut counts = vec![0u32; PARTS];
+    let scale = PARTS as f32 / (range.y - range.x).max(f32::MIN_POSITIVE);
+    for v in voxels.iter().filter(|v| v.is_finite()) {
+        let part = ((v - range.x) * scale) as usize;
+        counts[part.min(PARTS - 1)] += 1;
+    }
+    counts
+}
+
+struct Scan<'a> {
+    grid: &'a Grid<'a, f32>,
+    range: Vec2,
+    bounds: Aabb,
+    /// Size of a voxel.
+    voxel: f32,
+    /// Those of the volume.
+    knots: Vec<Knot>,
+    volume: Option<Volume<'a, f32>>,
+}
+
+impl<'a> Scan<'a> {
+    /// Returns the volume with a transfer function, which is kept until that changes.
+    fn volume(&mut self, knots: &[Knot]) -> Result<&Volume<'a, f32>, String> {
+        if self.volume.is_none() || self.knots != knots {
+            let value = |k: &Knot| self.range.x + (self.range.y - self.range.x) * k.at;
+            let colors: Vec<_> = knots.iter().map(|k| (value(k), k.color)).collect();
+            let opacities: Vec<_> = knots.iter().map(|k| (value(k), k.opacity)).collect();
+            let unit = self.bounds.size().max_element() / 200.0;
+            let function = TransferFunction::new(&colors, &opacities, unit);
+            let function = function.map_err(|e| e.to_string())?;
+            self.volume = Some(Volume::new(self.grid, function));
+            self.knots = knots.to_vec();
+        }
+        self.volume.as_ref().ok_or_else(|| "there is no volume".to_owned())
+    }
+
+    fn method(&self, look: &Look) -> Method {
+        let step = 0.5 * self.voxel;
+        match look.mode {
+            Mode::Midpoint => Method::Midpoint(Midpoint::new(step)),
+            Mode::PreIntegrated => Method::PreIntegrated(PreIntegrated::new(step)),
+            Mode::ExactCell => Method::ExactCell(ExactCell::new()),
+            _ => {
+                let edge = (self.range.y - self.range.x) / self.voxel * 0.08;
+                Method::ShadedCell(ShadedCell::new(to_light(look.pose.up), edge.max(1e-30)))
+            }
+        }
+    }
+
+    /// Cut objects in the world.
+    fn tools(&self, cuts: &[CutObject]) -> (Vec<Ball>, Vec<Half>) {
+        let (min, size) = (self.bounds.min, self.bounds.size());
+        let (mut balls, mut halves) = (Vec::new(), Vec::new());
+        for cut in cuts {
+            match *cut {
+                CutObject::Ball { center, radius } => balls.push(Ball {
+                    center: min + center * size,
+                    radius: radius * size.max_element(),
+                }),
+                // What is behind the plane is cut away, so that its normal points to what is kept.
+                CutObject::Half { through, normal } => {
+                    halves.push(Half { normal, offset: normal.dot(min + through * size) });
+                }
+            }
+        }
+        (balls, halves)
+    }
+}
+
+/// Direction to the light, fixed in the world: a kernel that follows the camera would be another one for
+/// each picture.
+fn to_light(up: Vec3) -> Vec3 {
+    (up + vec3(0.4, 0.7, 0.3)).normalize_or(up)
+}
+
+impl Subject for Scan<'_> {
+    fn with_kernel(
+        &mut self,
+        look: &Look,
+        run: &mut dyn FnMut(&PictureKernel<'_>),
+    ) -> Result<(), String> {
+        if look.show == Show::Cost {
+            return Err("a volume has no tree whose tests are counted: show picture".to_owned());
+        }
+        let method = self.method(look);
+        let (balls, halves) = self.tools(&look.cuts);
+        let tools = Tools { balls: &balls, halves: &halves };
+        let is_whole = look.cuts.is_empty();
+        let background = vec3(0.015, 0.018, 0.026);
+        let volume = self.volume(&look.knots)?;
+        let kernel = kernel!(|ray: Ray, _sampler: Sampler| {
+            let mut light = VolumeLight::new();
+            let mut cut = Cut::new(&tools, ray);
+            let mut rest = if is_whole { Some(ray) } else { cut.next_outside(&tools) };
+            while let Some(part) = rest {
+                light = match method {
+                    Method::Midpoint(method) => volume.integrate(&method, part, light),
+                    Method::PreIntegrated(method) => volume.integrate(&method, part, light),
+                    Method::ExactCell(method) => volume.integrate(&method, part, light),
+                    Method::ShadedCell(method) => volume.integrate(&method, part, light),
+                };
+                rest = if is_whole { None } else { cut.next_outside(&tools) };
+            }
+            let color = light.over(background);
+            vec4(color.x, color.y, color.z, 1.0)
+        });
+        run(&kernel);
+        Ok(())
+    }
+
+    /// Finds where half of the light is absorbed, by steps of half a voxel.
+    fn pick(&self, look: &Look, ray: Ray) -> Option<Picked> {
+        let transfer = self.volume.as_ref()?.transfer();
+        let (enter, leave) = self.grid.span(ray);
+        let (balls, halves) = self.tools(&look.cuts);
+        let is_cut = |p: Vec3| {
+            balls.iter().any(|b| p.distance(b.center) < b.radius)
+                || halves.iter().any(|h| h.normal.dot(p) < h.offset)
+        };
+        let step = 0.5 * self.voxel;
+        let (mut t, mut depth) = (enter + 0.5 * step, 0.0);
+        while t < leave {
+            let position = ray.at(t);
+            if !is_cut(position) {
+                let value = self.grid.value(position);
+                depth += transfer.at(value).extinction * step;
+                if depth > core::f32::consts::LN_2 {
+                    return Some(self.picked(position, value));
+                }
+            }
+            t += step;
+        }
+        None
+    }
+}
+
+impl Scan<'_> {
+    fn picked(&self, position: Vec3, value: f32) -> Picked {
+        let size = self.grid.size();
+        let place = self.grid.config().to_world.inverse().transform_point3(position);
+        let voxel = place.round().clamp(Vec3::ZERO, (size - 1).as_vec3()).as_uvec3();
+        let [x, y, z] = voxel.to_array().map(u64::from);
+        let id = (z * u64::from(size.y) + y) * u64::from(size.x) + x;
+        Picked { id, position, value: format!("voxel ({x}, {y}, {z}), value {value}") }
+    }
+}

@@ -1,0 +1,72 @@
+//! The device of the WGSL variant, made when it is first needed.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use raydsl::gpu::Context;
+use raydsl::prelude::*;
+
+#[derive(Debug, Default)]
+struct State {
+    /// The window's own, which kernels share as long as it works.
+    given: Option<(wgpu::Device, wgpu::Queue)>,
+    made: Option<Arc<GpuScheduler>>,
+}
+
+/// A device that threads share. After it is lost, the next use makes another one.
+#[derive(Debug, Default)]
+pub struct Device {
+    state: Mutex<State>,
+}
+
+impl Device {
+    /// Uses a device of the application.
+    pub fn of_window(device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let state = State { given: Some((device, queue)), made: None };
+        Self { state: Mutex::new(state) }
+    }
+
+    fn state(&self) -> std::sync::MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Returns the renderer, which is made first if there is none.
+    pub(crate) fn scheduler(&self) -> Result<Arc<GpuScheduler>, String> {
+        let mut state = self.state();
+        if let Some(made) = &state.made {
+            return Ok(made.clone());
+        }
+        let scheduler = match &state.given {
+            Some((device, queue)) => {
+                GpuScheduler::with_context(Context::from_wgpu(None, device.clone(), queue.clone()))
+            }
+            None => GpuScheduler::new().map_err(|e| e.to_string())?,
+        };
+        let scheduler = Arc::new(scheduler);
+        state.made = Some(scheduler.clone());
+        Ok(scheduler)
+    }
+
+    /// Forgets a device that does not work.
+    pub(crate) fn forget(&self) {
+        *self.state() = State::default();
+    }
+
+    /// Returns the adapter's name, once the device is made.
+    pub fn name(&self) -> Option<String> {
+        self.state().made.as_ref().map(|made| made.context().adapter_name())
+    }
+
+    /// Returns how many kernels were recorded, printed as WGSL and compiled so far.
+    pub fn counts(&self) -> Option<[u64; 3]> {
+        let state = self.state();
+        let context = state.made.as_ref()?.context();
+        Some([context.recorded(), context.printed(), context.compiled()])
+    }
+
+    /// Destroys the device, as a driver does that resets the card, to see what happens then.
+    pub fn destroy(&self) {
+        if let Some(made) = &self.state().made {
+            made.context().device().destroy();
+        }
+    }
+}

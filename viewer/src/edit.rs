@@ -1,0 +1,133 @@
+//! Changes of a look that need no data.
+
+use raydsl::prelude::*;
+
+use crate::action::Action;
+use crate::look::{CutObject, Knot, Look, preset};
+use crate::subject::Picked;
+
+/// The most pixels along a side of a picture.
+const MOST_SIDE: u32 = 16384;
+/// The most pixels of a picture: a film has 80 bytes for each.
+const MOST_PIXELS: u64 = 1 << 26;
+/// The most knots of a transfer function.
+const MOST_KNOTS: usize = 64;
+/// The most objects that are cut out.
+const MOST_CUTS: usize = 64;
+
+/// Returns the size of a picture, if it is one that fits into memory.
+pub(crate) fn size(width: u32, height: u32) -> Result<(u32, u32), String> {
+    let is_possible = (1..=MOST_SIDE).contains(&width) && (1..=MOST_SIDE).contains(&height);
+    if is_possible && u64::from(width) * u64::from(height) <= MOST_PIXELS {
+        return Ok((width, height));
+    }
+    Err(format!("sides are from 1 to {MOST_SIDE}, and pixels at most {MOST_PIXELS}"))
+}
+
+/// Changes a look.
+pub(crate) fn edit(look: &mut Look, action: &Action) -> Result<(), String> {
+    match action {
+        Action::Orbit(..) | Action::Turn(..) | Action::Fly(_) | Action::Zoom(_) => {
+            steer(look, action)
+        }
+        Action::Preset(name) => {
+            look.knots = preset(name)
+                .ok_or_else(|| format!("choose from {}", crate::look::PRESETS.join(", ")))?;
+            Ok(())
+        }
+        Action::AddKnot(_) | Action::SetKnot(..) | Action::RemoveKnot(_) => {
+            edit_knots(look, action)
+        }
+        Action::AddCut(_) | Action::MoveCut(..) | Action::RemoveCut(_) => edit_cuts(look, action),
+        other => Err(format!("`{other}` changes no picture")),
+    }
+}
+
+fn steer(look: &mut Look, action: &Action) -> Result<(), String> {
+    let mut pose = look.pose;
+    match action {
+        Action::Orbit(x, y) => pose.orbit(*x, *y),
+        Action::Turn(x, y) => pose.turn(*x, *y),
+        Action::Fly(by) => pose.fly(*by),
+        Action::Zoom(factor) if *factor > 0.0 => pose.zoom(*factor),
+        _ => return Err("the factor is above 0".to_owned()),
+    }
+    if !pose.is_valid() {
+        return Err("the camera would lose its direction".to_owned());
+    }
+    look.pose = pose;
+    Ok(())
+}
+
+fn checked(knot: &Knot) -> Result<Knot, String> {
+    let is_color = knot.color.is_finite() && knot.color.min_element() >= 0.0;
+    if (0.0..=1.0).contains(&knot.at) && (0.0..=1.0).contains(&knot.opacity) && is_color {
+        return Ok(*knot);
+    }
+    Err("place and opacity are from 0 to 1, and colours not negative".to_owned())
+}
+
+fn edit_knots(look: &mut Look, action: &Action) -> Result<(), String> {
+    let knots = &mut look.knots;
+    let none = || "there is no knot of this number".to_owned();
+    match action {
+        Action::AddKnot(_) if knots.len() >= MOST_KNOTS => {
+            return Err(format!("there are {MOST_KNOTS} knots already"));
+        }
+        Action::AddKnot(knot) => knots.push(checked(knot)?),
+        Action::SetKnot(i, knot) => *knots.get_mut(*i).ok_or_else(none)? = checked(knot)?,
+        Action::RemoveKnot(_) if knots.len() < 2 => return Err("one knot is left".to_owned()),
+        Action::RemoveKnot(i) if *i < knots.len() => {
+            knots.remove(*i);
+        }
+        _ => return Err(none()),
+    }
+    knots.sort_by(|a, b| a.at.total_cmp(&b.at));
+    Ok(())
+}
+
+fn checked_cut(cut: CutObject) -> Result<CutObject, String> {
+    let is_right = match cut {
+        CutObject::Ball { center, radius } => {
+            center.is_finite() && radius > 0.0 && radius.is_finite()
+        }
+        CutObject::Half { through, normal } => {
+            through.is_finite() && normal.is_finite() && normal.length() > 1e-6
+        }
+    };
+    if is_right {
+        Ok(cut)
+    } else {
+        Err("a radius is above 0, and a normal has a length".to_owned())
+    }
+}
+
+fn edit_cuts(look: &mut Look, action: &Action) -> Result<(), String> {
+    let cuts = &mut look.cuts;
+    let none = || "there is no cut object of this number".to_owned();
+    match action {
+        Action::AddCut(_) if cuts.len() >= MOST_CUTS => {
+            return Err(format!("there are {MOST_CUTS} cut objects already"));
+        }
+        Action::AddCut(cut) => cuts.push(checked_cut(*cut)?),
+        Action::MoveCut(i, by) => {
+            let cut = cuts.get_mut(*i).ok_or_else(none)?;
+            *cut = checked_cut(cut.moved(*by))?;
+        }
+        Action::RemoveCut(i) if *i < cuts.len() => {
+            cuts.remove(*i);
+        }
+        _ => return Err(none()),
+    }
+    Ok(())
+}
+
+/// Returns what was picked, as a line.
+pub(crate) fn line_of_pick(picked: Option<&Picked>) -> String {
+    match picked {
+        Some(Picked { id, position: Vec3 { x, y, z }, value }) => {
+            format!("picked {id} at ({x:.4}, {y:.4}, {z:.4}): {value}")
+        }
+        None => "picked nothing".to_owned(),
+    }
+}

@@ -1,0 +1,178 @@
+//! What is between the session and the thread that loads and renders.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::Sender;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use raydsl::prelude::*;
+
+use crate::frame::Frame;
+use crate::look::Look;
+use crate::subject::{Info, Picked};
+
+/// What the thread of some data reports, in order.
+#[derive(Clone, Debug)]
+pub(crate) enum Event {
+    /// How far loading is.
+    Progress { what: &'static str, share: f32 },
+    /// The data are there.
+    Loaded(Box<Info>),
+    /// The data cannot be loaded.
+    Refused(String),
+    /// The picture cannot be made.
+    Failed(String),
+    /// The device does not work: another variant must.
+    DeviceFailed(String),
+    /// What is in a pixel.
+    Picked(Option<Picked>),
+    /// The kernel's text.
+    Wgsl(String),
+}
+
+/// A question beside the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Question {
+    /// What is in a pixel?
+    Pick(u32, u32),
+    /// What is the kernel's text?
+    Wgsl,
+}
+
+/// A picture that is wanted.
+#[derive(Clone, Debug)]
+pub(crate) struct Job {
+    /// Grows with every change of what is visible.
+    pub(crate) number: u64,
+    pub(crate) look: Arc<Look>,
+    /// Samples of each pixel after which there is nothing to do.
+    pub(crate) limit: u32,
+    /// The time that a coarse picture may take, which comes first; none is made without it.
+    pub(crate) coarse: Option<Duration>,
+}
+
+#[derive(Debug, Default)]
+struct Wanted {
+    job: Option<Job>,
+    questions: Vec<Question>,
+}
+
+/// A link between a session and the thread of some data. The session never waits for the thread: it
+/// leaves what it wants here.
+pub(crate) struct Link {
+    events: Sender<(u64, Event)>,
+    /// The number of these data in the session.
+    id: u64,
+    wanted: Mutex<Wanted>,
+    is_changed: Condvar,
+    /// The number of the wanted job, and whether there are questions: cheap to look at for each tile.
+    newest: AtomicU64,
+    has_questions: AtomicBool,
+    is_closed: AtomicBool,
+    frame: Mutex<Option<Arc<Frame>>>,
+    wake: Arc<dyn Fn() + Send + Sync>,
+}
+
+/// Locks what another thread may have left in a panic: the values are whole in any case.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Link {
+    pub(crate) fn new(
+        id: u64,
+        events: Sender<(u64, Event)>,
+        wake: Arc<dyn Fn() + Send + Sync>,
+    ) -> Self {
+        Self {
+            events,
+            id,
+            wanted: Mutex::default(),
+            is_changed: Condvar::new(),
+            newest: AtomicU64::new(0),
+            has_questions: AtomicBool::new(false),
+            is_closed: AtomicBool::new(false),
+            frame: Mutex::new(None),
+            wake,
+        }
+    }
+
+    /// Tells the thread to end.
+    pub(crate) fn close(&self) {
+        self.is_closed.store(true, Ordering::Relaxed);
+        let _wanted = lock(&self.wanted);
+        self.is_changed.notify_all();
+    }
+
+    pub(crate) fn is_closed(&self) -> bool {
+        self.is_closed.load(Ordering::Relaxed)
+    }
+
+    /// Leaves a job in place of the one before.
+    pub(crate) fn want(&self, job: Job) {
+        let mut wanted = lock(&self.wanted);
+        self.newest.store(job.number, Ordering::Relaxed);
+        wanted.job = Some(job);
+        self.is_changed.notify_all();
+    }
+
+    /// Leaves a question.
+    pub(crate) fn ask(&self, question: Question) {
+        let mut wanted = lock(&self.wanted);
+        wanted.questions.push(question);
+        self.has_questions.store(true, Ordering::Relaxed);
+        self.is_changed.notify_all();
+    }
+
+    /// Takes the newest picture, if there is one that was not taken yet.
+    pub(crate) fn take_frame(&self) -> Option<Arc<Frame>> {
+        lock(&self.frame).take()
+    }
+
+    /// Whether another picture than this is wanted by now, or none.
+    pub(crate) fn is_outdated(&self, number: u64) -> bool {
+        self.is_closed() || self.newest.load(Ordering::Relaxed) != number
+    }
+
+    pub(crate) fn has_questions(&self) -> bool {
+        self.has_questions.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn take_questions(&self) -> Vec<Question> {
+        let mut wanted = lock(&self.wanted);
+        self.has_questions.store(false, Ordering::Relaxed);
+        std::mem::take(&mut wanted.questions)
+    }
+
+    pub(crate) fn job(&self) -> Option<Job> {
+        lock(&self.wanted).job.clone()
+    }
+
+    /// Waits until `is_idle` does not hold for what is wanted, or the link is closed.
+    pub(crate) fn wait_while(&self, is_idle: impl Fn(&Job) -> bool) {
+        let mut wanted = lock(&self.wanted);
+        while !self.is_closed()
+            && wanted.questions.is_empty()
+            && wanted.job.as_ref().is_none_or(&is_idle)
+        {
+            wanted = self.is_changed.wait(wanted).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    pub(crate) fn publish(&self, frame: Frame) {
+        *lock(&self.frame) = Some(Arc::new(frame));
+        (self.wake)();
+    }
+
+    pub(crate) fn send(&self, event: Event) {
+        // A session that is gone needs no report.
+        let _ = self.events.send((self.id, event));
+        (self.wake)();
+    }
+}
+
+/// Returns the ray through the middle of a pixel.
+pub(crate) fn ray_of(look: &Look, x: u32, y: u32) -> Ray {
+    let rays = look.pose.camera().begin_frame(look.size.0, look.size.1);
+    CameraRays::primary_ray(&rays, x as f32 + 0.5, y as f32 + 0.5)
+}

@@ -1,0 +1,231 @@
+//! What is looked at, and how: everything that the picture depends on.
+
+use std::fmt;
+use std::str::FromStr;
+
+use raydsl::prelude::*;
+
+use crate::pose::Pose;
+
+/// What kind of data is open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A cloud of points.
+    Points,
+    /// Triangles with materials.
+    Surface,
+    /// A grid of numbers.
+    Volume,
+}
+
+/// How data are turned into light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Mode {
+    /// Points as spheres under a sun.
+    Spheres,
+    /// The unoccluded share of the hemisphere.
+    Occlusion,
+    /// Light that comes from lamps and the sky at once.
+    Direct,
+    /// The same, seen by mirrors and glass.
+    Whitted,
+    /// Light that is scattered many times.
+    Path,
+    /// A volume by steps of half a voxel.
+    Midpoint,
+    /// A volume by steps between which the transfer function is integrated.
+    PreIntegrated,
+    /// A volume by the exact integral in each cell.
+    ExactCell,
+    /// The same with shading by the gradient.
+    ShadedCell,
+}
+
+impl Mode {
+    /// Every mode.
+    pub const ALL: [Self; 9] = [
+        Self::Spheres,
+        Self::Occlusion,
+        Self::Direct,
+        Self::Whitted,
+        Self::Path,
+        Self::Midpoint,
+        Self::PreIntegrated,
+        Self::ExactCell,
+        Self::ShadedCell,
+    ];
+
+    /// Returns the name in scripts and in the window.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Spheres => "spheres",
+            Self::Occlusion => "occlusion",
+            Self::Direct => "direct",
+            Self::Whitted => "whitted",
+            Self::Path => "path",
+            Self::Midpoint => "midpoint",
+            Self::PreIntegrated => "pre-integrated",
+            Self::ExactCell => "exact-cell",
+            Self::ShadedCell => "shaded-cell",
+        }
+    }
+
+    /// Returns the modes of a kind of data; the first one is chosen when a file is opened.
+    pub const fn of(kind: Kind) -> &'static [Self] {
+        match kind {
+            Kind::Points => &[Self::Spheres, Self::Occlusion],
+            Kind::Surface => &[Self::Direct, Self::Occlusion, Self::Whitted, Self::Path],
+            Kind::Volume => {
+                &[Self::ShadedCell, Self::ExactCell, Self::PreIntegrated, Self::Midpoint]
+            }
+        }
+    }
+}
+
+impl FromStr for Mode {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|mode| mode.name() == text);
+        found.ok_or_else(|| format!("choose a mode from {}", Self::ALL.map(Self::name).join(", ")))
+    }
+}
+
+/// What the picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Show {
+    /// The light.
+    Picture,
+    /// How many nodes and primitives each ray tests, as a heat map.
+    Cost,
+    /// Where another variant has other numbers.
+    Difference(Variant),
+}
+
+impl fmt::Display for Show {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Picture => f.write_str("picture"),
+            Self::Cost => f.write_str("cost"),
+            Self::Difference(variant) => write!(f, "difference {}", variant.name()),
+        }
+    }
+}
+
+/// A knot of a transfer function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Knot {
+    /// Where it is in the range of the values: 0 is the least, 1 the greatest.
+    pub at: f32,
+    /// Opacity from 0 to 1 of a two-hundredth of the volume's longest side.
+    pub opacity: f32,
+    /// Linear red, green and blue.
+    pub color: Vec3,
+}
+
+/// Something that is cut out of a volume, in shares of the volume's box: 0 to 1 along each axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CutObject {
+    /// A ball.
+    Ball {
+        /// Its centre.
+        center: Vec3,
+        /// Its radius as a share of the longest side.
+        radius: f32,
+    },
+    /// Everything on one side of a plane.
+    Half {
+        /// A point of the plane.
+        through: Vec3,
+        /// What points to the side that is kept.
+        normal: Vec3,
+    },
+}
+
+impl CutObject {
+    /// Moves the object by shares of the box.
+    #[must_use]
+    pub fn moved(self, by: Vec3) -> Self {
+        match self {
+            Self::Ball { center, radius } => Self::Ball { center: center + by, radius },
+            Self::Half { through, normal } => Self::Half { through: through + by, normal },
+        }
+    }
+}
+
+impl fmt::Display for CutObject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let three = |v: Vec3| format!("{} {} {}", v.x, v.y, v.z);
+        match self {
+            Self::Ball { center, radius } => write!(f, "ball {} {radius}", three(*center)),
+            Self::Half { through, normal } => {
+                write!(f, "half {} {}", three(*through), three(*normal))
+            }
+        }
+    }
+}
+
+/// Everything that a picture depends on, beside the data.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Look {
+    /// Columns and rows, each at least 1.
+    pub size: (u32, u32),
+    /// The camera.
+    pub pose: Pose,
+    /// How data become light.
+    pub mode: Mode,
+    /// What runs the kernel.
+    pub variant: Variant,
+    /// What is shown.
+    pub show: Show,
+    /// Exposure in stops.
+    pub exposure: f32,
+    /// The transfer function of a volume, sorted by place.
+    pub knots: Vec<Knot>,
+    /// What is cut out of a volume.
+    pub cuts: Vec<CutObject>,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            size: (960, 540),
+            pose: Pose::default(),
+            mode: Mode::Spheres,
+            variant: Variant::widest(),
+            show: Show::Picture,
+            exposure: 0.0,
+            knots: preset("tissue").unwrap_or_default(),
+            cuts: Vec::new(),
+        }
+    }
+}
+
+/// The names of the ready-made transfer functions.
+pub const PRESETS: [&str; 3] = ["tissue", "glass", "bone"];
+
+/// Returns a ready-made transfer function.
+pub fn preset(name: &str) -> Option<Vec<Knot>> {
+    let skin = vec3(0.71, 0.32, 0.2);
+    let bone = vec3(0.95, 0.88, 0.75);
+    let pairs: &[(f32, f32, Vec3)] = match name {
+        "tissue" => &[
+            (0.16, 0.0, skin),
+            (0.24, 0.55, skin),
+            (0.35, 0.6, skin),
+            (0.45, 0.9, vec3(0.6, 0.4, 0.32)),
+            (1.0, 0.97, bone),
+        ],
+        "glass" => &[
+            (0.2, 0.0, skin),
+            (0.26, 0.03, skin),
+            (0.34, 0.02, skin),
+            (0.55, 0.04, vec3(0.6, 0.4, 0.32)),
+            (0.62, 0.7, vec3(0.84, 0.79, 0.68)),
+            (1.0, 0.9, bone),
+        ],
+        "bone" => &[(0.72, 0.0, bone), (0.8, 0.9, bone), (1.0, 0.9, Vec3::ONE)],
+        _ => return None,
+    };
+    Some(pairs.iter().map(|&(at, opacity, color)| Knot { at, opacity, color }).collect())
+}

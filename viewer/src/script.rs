@@ -1,0 +1,134 @@
+//! Actions from a file, played in order.
+
+use std::path::Path;
+use std::time::Duration;
+
+use crate::action::Action;
+use crate::session::Session;
+
+/// A script that is being played. It is the same with a window and without: whoever owns the session
+/// calls [`step`](Self::step) now and then.
+#[derive(Debug)]
+pub struct Player {
+    actions: Vec<Action>,
+    next: usize,
+    /// What the action in hand waits for.
+    awaited: Option<u32>,
+}
+
+/// What a player does next.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Next {
+    /// Waits for the renderer or a loader.
+    Waits,
+    /// Has something for the owner of the session, which [`Session::apply`] does not know.
+    Asks(Action),
+    /// Is at the end.
+    Done,
+}
+
+impl Player {
+    /// Reads a script: an action a line; `#` begins a comment.
+    ///
+    /// # Errors
+    ///
+    /// If a line is no action: the line and what is wrong with it.
+    pub fn read(text: &str) -> Result<Self, String> {
+        let mut actions = Vec::new();
+        for (i, line) in text.lines().enumerate() {
+            let line = line.split('#').next().unwrap_or_default().trim();
+            if !line.is_empty() {
+                actions.push(line.parse().map_err(|e| format!("line {}: {e}", i + 1))?);
+            }
+        }
+        Ok(Self { actions, next: 0, awaited: None })
+    }
+
+    /// Reads a script from a file.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be read, or a line is no action.
+    pub fn open(path: &Path) -> Result<Self, String> {
+        let text = std::fs::read_to_string(path);
+        let text = text.map_err(|e| format!("{}: {e}", path.display()))?;
+        Self::read(&text).map_err(|e| format!("{}: {e}", path.display()))
+    }
+
+    /// Does what can be done now, without waiting.
+    pub fn step(&mut self, session: &mut Session) -> Next {
+        loop {
+            if let Some(samples) = self.awaited
+                && !session.is_stuck()
+                && !session.has(samples)
+            {
+                return Next::Waits;
+            }
+            self.awaited = None;
+            if session.is_asking() {
+                return Next::Waits;
+            }
+            let Some(action) = self.actions.get(self.next).cloned() else { return Next::Done };
+            // Whatever follows `open` is for the data that it opens.
+            let is_for_loader = matches!(action, Action::Cancel | Action::Open(_) | Action::Quit);
+            if session.progress().is_some() && !is_for_loader {
+                return Next::Waits;
+            }
+            if matches!(action, Action::Picture(_) | Action::Screenshot(_))
+                && has_to_render(session)
+            {
+                return Next::Waits;
+            }
+            self.next += 1;
+            match action {
+                Action::Screenshot(_) | Action::Panel(..) => return Next::Asks(action),
+                Action::Quit => return Next::Done,
+                action => {
+                    // A refusal is in the log.
+                    let _ = session.apply(&action);
+                    if let Action::Wait(samples) = action {
+                        self.awaited = Some(samples);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Plays all of it without a window.
+    pub fn play(&mut self, session: &mut Session) {
+        loop {
+            session.poll();
+            match self.step(session) {
+                Next::Waits => std::thread::sleep(Duration::from_millis(2)),
+                Next::Asks(action) => {
+                    // Without a window there are no panels, and nothing to photograph.
+                    let _ = session.apply(&action);
+                }
+                Next::Done => break,
+            }
+        }
+        session.finish();
+    }
+}
+
+/// A picture is one of the last change: a sample of it is asked for.
+fn has_to_render(session: &mut Session) -> bool {
+    if session.is_stuck() || session.has(1) {
+        return false;
+    }
+    session.want_samples(1);
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scripts_have_comments_and_lines() {
+        let player = Player::read("# a\n\nopen head:32 # b\nwait 4\n").expect("a script");
+        assert_eq!(player.actions, ["open head:32", "wait 4"].map(|l| l.parse().expect(l)));
+        let error = Player::read("home\nhop\n").expect_err("no verb");
+        assert!(error.starts_with("line 2: "), "{error}");
+    }
+}

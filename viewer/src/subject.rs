@@ -1,0 +1,54 @@
+//! What the render thread knows of data: the kernel that makes a picture of them, and picking.
+
+use raydsl::prelude::*;
+
+use crate::look::{Kind, Look};
+use crate::pose::Pose;
+
+/// A kernel of pictures: one type for all data, so that the code around it exists once.
+pub(crate) type PictureKernel<'a> = Kernel<'a, (Ray, Sampler), Vec4>;
+
+/// Data that can be looked at.
+pub(crate) trait Subject {
+    /// Calls `run` with the kernel for a look.
+    ///
+    /// # Errors
+    ///
+    /// If the look cannot be had of these data: one line.
+    fn with_kernel(
+        &mut self,
+        look: &Look,
+        run: &mut dyn FnMut(&PictureKernel<'_>),
+    ) -> Result<(), String>;
+
+    /// Returns what a ray meets first.
+    fn pick(&self, look: &Look, ray: Ray) -> Option<Picked>;
+}
+
+/// What is seen in a pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picked {
+    /// The number of the point or triangle; of a volume, that of the nearest voxel.
+    pub id: u64,
+    /// Where it is, in units of the scene.
+    pub position: Vec3,
+    /// What is there: colour, material or value.
+    pub value: String,
+}
+
+/// What is known of data that are open.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Info {
+    /// Points, surface or volume.
+    pub kind: Kind,
+    /// The file's name.
+    pub name: String,
+    /// How much it is, in a line.
+    pub size: String,
+    /// The view that sees all.
+    pub home: Pose,
+    /// The least and the greatest value of a volume.
+    pub range: Vec2,
+    /// How many voxels have a value, in equal parts of the range; empty for other data.
+    pub histogram: Vec<u32>,
+}
