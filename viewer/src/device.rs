@@ -5,11 +5,16 @@ use std::sync::{Arc, Mutex, PoisonError};
 use raydsl::gpu::Context;
 use raydsl::prelude::*;
 
+use crate::look::Look;
+use crate::present::Presenter;
+use crate::subject::PictureKernel;
+
 #[derive(Debug, Default)]
 struct State {
     /// The window's own, which kernels share as long as it works.
     given: Option<(wgpu::Device, wgpu::Queue)>,
     made: Option<Arc<GpuScheduler>>,
+    presenter: Option<Presenter>,
 }
 
 /// A device that threads share. After it is lost, the next use makes another one.
@@ -21,7 +26,7 @@ pub struct Device {
 impl Device {
     /// Uses a device of the application.
     pub fn of_window(device: wgpu::Device, queue: wgpu::Queue) -> Self {
-        let state = State { given: Some((device, queue)), made: None };
+        let state = State { given: Some((device, queue)), made: None, presenter: None };
         Self { state: Mutex::new(state) }
     }
 
@@ -44,6 +49,32 @@ impl Device {
         let scheduler = Arc::new(scheduler);
         state.made = Some(scheduler.clone());
         Ok(scheduler)
+    }
+
+    /// Returns whether the device is the window's, which can show a texture of it.
+    pub(crate) fn is_of_window(&self) -> bool {
+        self.state().given.is_some()
+    }
+
+    /// Renders a picture with one ray for each pixel, which stays on the device.
+    pub(crate) fn frame(
+        &self,
+        kernel: &PictureKernel<'_>,
+        look: &Look,
+        size: (u32, u32),
+    ) -> Result<wgpu::Texture, String> {
+        let scheduler = self.scheduler()?;
+        let context = scheduler.context();
+        // Taken out, so that nobody waits for the lock while the device computes.
+        let kept = self.state().presenter.take();
+        let mut presenter =
+            kept.unwrap_or_else(|| Presenter::new(context.device(), context.queue()));
+        let window = presenter.window(size);
+        let camera = look.pose.camera();
+        scheduler.frame_into(&camera, kernel, size, &window).map_err(|e| e.to_string())?;
+        let texture = presenter.show(&window, size, look.exposure);
+        self.state().presenter = Some(presenter);
+        Ok(texture)
     }
 
     /// Forgets a device that does not work.

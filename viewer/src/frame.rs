@@ -29,6 +29,8 @@ pub struct Frame {
     pub samples: u32,
     /// Red, green, blue and alpha of each pixel in sRGB, from the top.
     pub rgba: Vec<u8>,
+    /// The picture on the window's device, in place of `rgba`, which is empty then.
+    pub texture: Option<wgpu::Texture>,
     /// Milliseconds of the last pass, all pixels once.
     pub ms: f64,
     /// Milliseconds since the change that it shows was seen by the renderer.

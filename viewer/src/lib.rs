@@ -11,6 +11,7 @@ mod frame;
 mod link;
 mod look;
 mod pose;
+mod present;
 mod render;
 mod script;
 mod session;

@@ -31,7 +31,7 @@ impl Pose {
         let radius = 0.5 * bounds.size().length();
         let radius = if radius.is_finite() && radius > 0.0 { radius } else { 1.0 };
         let (target, fov_y) = (bounds.center(), 0.7f32);
-        let away = radius / (0.5 * fov_y).sin() * 0.85;
+        let away = radius / (0.5 * fov_y).sin() * 0.7;
         Self { eye: target + from.normalize_or(Vec3::Y) * away, target, up, fov_y }
     }
 

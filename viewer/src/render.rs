@@ -184,8 +184,32 @@ impl Worker<'_> {
         let side = |n: u32| ((f64::from(n) * share).round() as u32).clamp(1, n);
         let (width, height) = (side(look.size.0), side(look.size.1));
         let start = Instant::now();
-        let link = self.link;
-        let mut films = (Film::new(width, height), None);
+        let is_picture = look.show == Show::Picture;
+        if look.variant == Variant::Wgsl && is_picture && self.device.is_of_window() {
+            let texture = self.device.frame(kernel, look, (width, height))?;
+            self.show_on_device(texture, start.elapsed());
+        } else {
+            self.coarse_on_host(kernel, job, (width, height), budget)?;
+        }
+        self.picture.is_coarse_due = false;
+        let done = f64::from(width) * f64::from(height) / start.elapsed().as_secs_f64();
+        // The first picture includes what is done once, and a slower one than the budget is too coarse
+        // again: half of each.
+        let known = self.rates.entry(speed).or_insert(done);
+        *known = 0.5 * (*known + done);
+        Ok(())
+    }
+
+    fn coarse_on_host(
+        &mut self,
+        kernel: &PictureKernel<'_>,
+        job: &Job,
+        (width, height): (u32, u32),
+        budget: Duration,
+    ) -> Result<(), String> {
+        let (look, link, start) = (&*job.look, self.link, Instant::now());
+        let other = matches!(look.show, Show::Difference(_)).then(|| Film::new(width, height));
+        let mut films = (Film::new(width, height), other);
         let is_complete = self.add(kernel, look, &mut films, 1, &mut |_| {
             let is_late = link.is_outdated(job.number) && start.elapsed() > 2 * budget;
             if is_late || link.is_closed() {
@@ -193,17 +217,25 @@ impl Worker<'_> {
             }
             ControlFlow::Continue(())
         })?;
-        self.picture.is_coarse_due = false;
-        if is_complete && look.show == Show::Picture {
-            let took = start.elapsed();
-            self.show(look, &films, true, 1, took);
+        if is_complete {
+            self.show(look, &films, true, 1, start.elapsed());
         }
-        let done = f64::from(width) * f64::from(height) / start.elapsed().as_secs_f64();
-        // The first picture includes what is done once, and a slower one than the budget is too coarse
-        // again: half of each.
-        let known = self.rates.entry(speed).or_insert(done);
-        *known = 0.5 * (*known + done);
         Ok(())
+    }
+
+    fn show_on_device(&mut self, texture: wgpu::Texture, took: Duration) {
+        self.link.publish(Frame {
+            number: self.picture.number,
+            size: (texture.width(), texture.height()),
+            is_coarse: true,
+            samples: 0,
+            rgba: Vec::new(),
+            texture: Some(texture),
+            ms: took.as_secs_f64() * 1e3,
+            age_ms: self.picture.since.elapsed().as_secs_f64() * 1e3,
+            error: None,
+            difference: None,
+        });
     }
 
     /// Adds a pass of samples to the film, unless it is interrupted.
@@ -305,6 +337,7 @@ impl Worker<'_> {
             is_coarse,
             samples: if is_coarse { 0 } else { film.samples() },
             rgba,
+            texture: None,
             ms: took.as_secs_f64() * 1e3 / f64::from(count.max(1)),
             age_ms: (now - self.picture.since).as_secs_f64() * 1e3,
             error: (film.samples() > 1).then(|| error(film)),

@@ -26,7 +26,11 @@ impl Session {
     }
 
     /// Asks for the kernel's text, for a file or only to be shown.
-    pub(crate) fn ask_wgsl(&mut self, file: Option<&str>) -> Result<(), String> {
+    ///
+    /// # Errors
+    ///
+    /// If nothing is open.
+    pub fn ask_wgsl(&mut self, file: Option<&str>) -> Result<(), String> {
         self.ask(Question::Wgsl)?;
         self.wgsl_files.extend(file.map(str::to_owned));
         Ok(())
@@ -35,13 +39,16 @@ impl Session {
     /// Writes the newest picture, on a thread: it takes some time.
     pub(super) fn write_picture(&mut self, name: &str) -> Result<(), String> {
         let frame = self.frame.clone().ok_or("there is no picture yet")?;
+        if frame.texture.is_some() {
+            return Err("the picture is not sharp yet: hold still".to_owned());
+        }
         let path = self.config.out.join(name);
         self.write(name, move || frame.write_png(&path));
         Ok(())
     }
 
     /// Writes pixels from the top, on a thread.
-    pub(crate) fn write_pixels(&mut self, name: &str, rgba: Vec<u8>, size: (u32, u32)) {
+    pub fn write_pixels(&mut self, name: &str, rgba: Vec<u8>, size: (u32, u32)) {
         let path = self.config.out.join(name);
         self.write(name, move || write_png(&path, &rgba, size));
     }
