@@ -5,7 +5,7 @@
 //! smaller:
 //!
 //! ```text
-//! RAYDSL_FUZZ_KERNELS=20000 RAYDSL_FUZZ_RESUME=1 cargo test --workspace --test fuzz -- --nocapture
+//! RAYDSL_FUZZ_KERNELS=20000 RAYDSL_FUZZ_RESUME=1 cargo test --test fuzz -- --nocapture
 //! ```
 
 use std::path::Path;

@@ -107,7 +107,7 @@ impl Player {
                 Next::Done => break,
             }
         }
-        session.finish();
+        session.finish_files();
     }
 }
 

@@ -147,7 +147,7 @@ impl Session {
         let end = self.try_apply(action);
         match &end {
             Ok(()) => self.log.push(action.to_string()),
-            Err(message) => self.fail(&format!("{action}: {message}")),
+            Err(message) => self.refuse(&format!("{action}: {message}")),
         }
         end
     }
@@ -276,12 +276,12 @@ impl Session {
                 self.progress = Some(("reading", 0.0));
                 self.loading = Some(Data { id, link, thread, path, keeps_view });
             }
-            Err(e) => self.fail(&format!("no thread for {}: {e}", path.display())),
+            Err(e) => self.refuse(&format!("no thread for {}: {e}", path.display())),
         }
     }
 
     /// Adds a line on something that does not work to the log.
-    pub(crate) fn fail(&mut self, message: &str) {
+    pub fn refuse(&mut self, message: &str) {
         self.errors += 1;
         self.log.push(format!("error: {message}"));
     }

@@ -71,6 +71,7 @@ pub(crate) fn load(path: &Path, link: &Arc<Link>, serve: Serve<'_>) -> Result<()
         FileKind::Volume => volume::open(path, serve),
         FileKind::Raw => volume::open_raw(path, serve),
         FileKind::Stack => volume::open_stack(path, serve),
+        FileKind::Unknown => Err(Failure::Other(format!("{}: {FORMATS}", path.display()))),
     }
 }
 
@@ -105,10 +106,14 @@ enum FileKind {
     Volume,
     Raw,
     Stack,
+    Unknown,
 }
 
-/// Tells the kind of a file by its name. What is unknown is left to the loader of volumes, whose error
-/// says so.
+/// What is said of a file whose name tells no format.
+const FORMATS: &str = "unknown format; points are .las, .laz, .ply and .xyz, surfaces .glb, .gltf, \
+    .obj, .ply and .tri, volumes .mha, .mhd, .nhdr, .nii, .nii.gz, .nrrd, .raw, .vti and folders of .png";
+
+/// Tells the kind of a file by its name.
 fn kind_of(path: &Path) -> FileKind {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     match extension.as_str() {
@@ -117,9 +122,17 @@ fn kind_of(path: &Path) -> FileKind {
         "glb" | "gltf" | "obj" => FileKind::Scene,
         "ply" => FileKind::Ply,
         "raw" => FileKind::Raw,
+        "mha" | "mhd" | "nhdr" | "nii" | "nrrd" | "vti" => FileKind::Volume,
+        "gz" if path.file_stem().is_some_and(|stem| has_extension(stem.as_ref(), "nii")) => {
+            FileKind::Volume
+        }
         _ if path.is_dir() => FileKind::Stack,
-        _ => FileKind::Volume,
+        _ => FileKind::Unknown,
     }
+}
+
+fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension))
 }
 
 fn file_name(path: &Path) -> String {
@@ -132,7 +145,7 @@ fn layers(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(fail)? {
         let path = entry.map_err(fail)?.path();
-        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+        if has_extension(&path, "png") {
             found.push(path);
         }
     }
@@ -154,7 +167,7 @@ mod tests {
             ("a.ply", FileKind::Ply),
             ("a.nii.gz", FileKind::Volume),
             ("tooth_103x94x161_uint8.raw", FileKind::Raw),
-            ("a.txt", FileKind::Volume),
+            ("a.txt", FileKind::Unknown),
         ] {
             assert_eq!(kind_of(Path::new(name)), kind, "{name}");
         }

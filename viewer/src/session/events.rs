@@ -39,7 +39,7 @@ impl Session {
         let lost = [self.loading.take_if(has_ended), self.current.take_if(has_ended)];
         for data in lost.into_iter().flatten() {
             self.progress = None;
-            self.fail(&format!("the thread of {} has ended early", data.path.display()));
+            self.refuse(&format!("the thread of {} has ended early", data.path.display()));
         }
     }
 
@@ -52,11 +52,11 @@ impl Session {
             Event::Refused(message) if is_loading => {
                 self.loading = None;
                 self.progress = None;
-                self.fail(&message);
+                self.refuse(&message);
             }
             Event::Failed(message) if is_current => {
                 self.failed = Some(self.number);
-                self.fail(&message);
+                self.refuse(&message);
             }
             Event::DeviceFailed(message) if is_current => self.leave_device(&message),
             Event::Picked(picked) if is_current => {
@@ -83,7 +83,7 @@ impl Session {
     /// Goes on with packets when the device does not work.
     fn leave_device(&mut self, message: &str) {
         let variant = Variant::widest();
-        self.fail(&format!("{message}; going on with {}", variant.name()));
+        self.refuse(&format!("{message}; going on with {}", variant.name()));
         let mut look = self.look.clone();
         if look.variant == Variant::Wgsl {
             look.variant = variant;

@@ -26,14 +26,23 @@ impl Session {
     }
 
     /// Asks for the kernel's text, for a file or only to be shown.
-    ///
-    /// # Errors
-    ///
-    /// If nothing is open.
-    pub fn ask_wgsl(&mut self, file: Option<&str>) -> Result<(), String> {
+    pub(super) fn ask_wgsl(&mut self, file: Option<&str>) -> Result<(), String> {
         self.ask(Question::Wgsl)?;
         self.wgsl_files.extend(file.map(str::to_owned));
         Ok(())
+    }
+
+    /// Asks for the kernel's text, which [`wgsl`](Self::wgsl) returns when it is there.
+    ///
+    /// # Errors
+    ///
+    /// If nothing is open, which is in the log too.
+    pub fn apply_wgsl(&mut self) -> Result<(), String> {
+        let end = self.ask_wgsl(None);
+        if let Err(message) = &end {
+            self.refuse(message);
+        }
+        end
     }
 
     /// Writes the newest picture, on a thread: it takes some time.
@@ -69,11 +78,17 @@ impl Session {
         }));
     }
 
-    /// Waits for files that are being written, and ends the renderer, which takes no longer than a tile.
-    pub fn finish(&mut self) {
+    /// Waits for files that are being written.
+    pub fn finish_files(&mut self) {
         for writer in std::mem::take(&mut self.writers) {
             self.note_written(writer);
         }
+    }
+
+    /// Waits for files and for the end of the renderer, which takes no longer than a tile. Nothing is
+    /// open then.
+    pub fn close(&mut self) {
+        self.finish_files();
         if let Some(data) = self.current.take() {
             data.end();
         }
@@ -82,8 +97,8 @@ impl Session {
     pub(super) fn note_written(&mut self, writer: JoinHandle<Result<String, String>>) {
         match writer.join() {
             Ok(Ok(line)) => self.log.push(line),
-            Ok(Err(line)) => self.fail(&line),
-            Err(_) => self.fail("a picture was not written: the thread ended early"),
+            Ok(Err(line)) => self.refuse(&line),
+            Err(_) => self.refuse("a picture was not written: the thread ended early"),
         }
     }
 }

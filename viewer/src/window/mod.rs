@@ -1,0 +1,219 @@
+//! The window: input becomes actions, and pictures become textures.
+
+mod input;
+mod panels;
+mod picture;
+mod transfer;
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, Instant};
+
+use eframe::egui;
+use raydsl_viewer::{Action, Config, Device, Next, Player, Session};
+
+use picture::Shown;
+
+/// The panels, in order.
+pub(crate) const PANELS: [&str; 10] =
+    ["open", "look", "statistics", "transfer", "cuts", "pick", "views", "log", "keys", "wgsl"];
+
+/// What a window begins with.
+pub(crate) struct Options {
+    /// Applied first.
+    pub(crate) actions: Vec<Action>,
+    /// Played then; the window closes at its end.
+    pub(crate) player: Option<Player>,
+    /// Where pictures are written.
+    pub(crate) out: PathBuf,
+}
+
+/// The application.
+pub(crate) struct Viewer {
+    session: Session,
+    player: Option<Player>,
+    panels: BTreeSet<&'static str>,
+    shown: Shown,
+    /// What is typed into panels.
+    texts: panels::Texts,
+    transfer: transfer::Editor,
+    screenshots: (Sender<Screenshot>, Receiver<Screenshot>),
+    awaited_screenshots: usize,
+    pictures: usize,
+    /// The longest time between an event and the window's answer: that of one turn of the window.
+    longest: Duration,
+    /// Gets the session when the window closes.
+    end: Sender<End>,
+}
+
+/// What became of a window that was closed.
+pub(crate) struct End {
+    pub(crate) log: Vec<String>,
+    pub(crate) errors: usize,
+    pub(crate) longest: Duration,
+}
+
+struct Screenshot {
+    name: String,
+    image: Arc<egui::ColorImage>,
+}
+
+/// Opens a window and returns when it is closed.
+pub(crate) fn run(options: Options) -> Result<End, String> {
+    let (end, ended) = channel();
+    let native = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("raydsl viewer")
+            .with_inner_size([1280.0, 720.0])
+            .with_min_inner_size([1.0, 1.0])
+            .with_drag_and_drop(true),
+        wgpu_options: wgpu_options(),
+        ..Default::default()
+    };
+    let create: eframe::AppCreator<'_> =
+        Box::new(move |cc| Ok(Box::new(Viewer::new(cc, options, end))));
+    eframe::run_native("raydsl-viewer", native, create)
+        .map_err(|e| format!("no window: {e}; --script works without one"))?;
+    ended.recv().map_err(|_| "the window has ended early".to_owned())
+}
+
+/// The window's device has the limits of a kernel's own, as far as the adapter allows.
+fn wgpu_options() -> eframe::egui_wgpu::WgpuConfiguration {
+    let mut setup = eframe::egui_wgpu::WgpuSetupCreateNew::without_display_handle();
+    setup.device_descriptor = Arc::new(|adapter| {
+        let offered = adapter.limits();
+        wgpu::DeviceDescriptor {
+            label: Some("window"),
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_limits: wgpu::Limits {
+                max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
+                max_buffer_size: offered.max_buffer_size,
+                max_storage_buffers_per_shader_stage: offered.max_storage_buffers_per_shader_stage,
+                ..wgpu::Limits::default().or_worse_values_from(&offered)
+            },
+            ..Default::default()
+        }
+    });
+    eframe::egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() }
+}
+
+impl Viewer {
+    fn new(cc: &eframe::CreationContext<'_>, options: Options, end: Sender<End>) -> Self {
+        let ctx = cc.egui_ctx.clone();
+        let device = match &cc.wgpu_render_state {
+            Some(state) => Device::of_window(state.device.clone(), state.queue.clone()),
+            None => Device::default(),
+        };
+        let config = Config::interactive(&options.out);
+        let mut session = Session::new(config, device, move || ctx.request_repaint());
+        for action in &options.actions {
+            // A refusal is in the log.
+            let _ = session.apply(action);
+        }
+        Self {
+            session,
+            player: options.player,
+            panels: ["open", "look", "statistics", "transfer", "log"].into(),
+            shown: Shown::default(),
+            texts: Default::default(),
+            transfer: Default::default(),
+            screenshots: channel(),
+            awaited_screenshots: 0,
+            pictures: 0,
+            longest: Duration::ZERO,
+            end,
+        }
+    }
+
+    /// Does what an action asks for, of the window or of the session.
+    fn apply(&mut self, ctx: &egui::Context, action: &Action) {
+        match action {
+            Action::Panel(name, is_open) => match PANELS.iter().find(|panel| *panel == name) {
+                Some(panel) if *is_open => {
+                    self.panels.insert(panel);
+                    if *panel == "wgsl" {
+                        // Without data there is no text, which the log says.
+                        let _ = self.session.apply_wgsl();
+                    }
+                }
+                Some(panel) => {
+                    self.panels.remove(panel);
+                }
+                None => self.session.refuse(&format!("{action}: choose from {PANELS:?}")),
+            },
+            Action::Screenshot(name) => {
+                let (name, sender, again) = (name.clone(), self.screenshots.0.clone(), ctx.clone());
+                self.awaited_screenshots += 1;
+                ctx.request_screenshot(move |image| {
+                    // A window that is gone needs none.
+                    let _ = sender.send(Screenshot { name, image });
+                    again.request_repaint();
+                });
+            }
+            Action::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            action => {
+                let _ = self.session.apply(action);
+            }
+        }
+    }
+
+    /// Writes screenshots that have arrived.
+    fn take_screenshots(&mut self) {
+        while let Ok(Screenshot { name, image }) = self.screenshots.1.try_recv() {
+            self.awaited_screenshots -= 1;
+            let [width, height] = image.size.map(|n| n as u32);
+            let rgba = image.pixels.iter().flat_map(|p| p.to_array()).collect();
+            self.session.write_pixels(&name, rgba, (width, height));
+        }
+    }
+
+    /// Plays what can be played of a script.
+    fn play(&mut self, ctx: &egui::Context) {
+        // Panels slide: a screenshot is one of the window at rest.
+        while self.awaited_screenshots == 0
+            && let Some(player) = &mut self.player
+        {
+            match player.step(&mut self.session) {
+                Next::Waits => break,
+                Next::Asks(action) => self.apply(ctx, &action),
+                Next::Done => {
+                    self.player = None;
+                    ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+                }
+            }
+        }
+    }
+}
+
+impl eframe::App for Viewer {
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.session.poll();
+        self.take_screenshots();
+        if self.player.is_some() {
+            self.play(ctx);
+            ctx.request_repaint_after(Duration::from_millis(10));
+        }
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        let start = Instant::now();
+        let ctx = ui.ctx().clone();
+        let mut actions = Vec::new();
+        input::dropped(&ctx, &mut actions);
+        panels::show(self, ui, &mut actions);
+        self.show_picture(ui, frame, &mut actions);
+        for action in &actions {
+            self.apply(&ctx, action);
+        }
+        self.longest = self.longest.max(start.elapsed());
+    }
+
+    fn on_exit(&mut self) {
+        self.session.close();
+        let (log, errors) = (self.session.log().to_vec(), self.session.errors());
+        // Whoever opened the window waits for it.
+        let _ = self.end.send(End { log, errors, longest: self.longest });
+    }
+}
