@@ -30,6 +30,9 @@ pub(crate) enum Event {
     Wgsl(String),
 }
 
+/// What a thread reports, with the number of its data in the session.
+pub(crate) type Report = (u64, Event);
+
 /// A question beside the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Question {
@@ -60,7 +63,7 @@ struct Wanted {
 /// A link between a session and the thread of some data. The session never waits for the thread: it
 /// leaves what it wants here.
 pub(crate) struct Link {
-    events: Sender<(u64, Event)>,
+    events: Sender<Report>,
     /// The number of these data in the session.
     id: u64,
     wanted: Mutex<Wanted>,
@@ -79,11 +82,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Link {
-    pub(crate) fn new(
-        id: u64,
-        events: Sender<(u64, Event)>,
-        wake: Arc<dyn Fn() + Send + Sync>,
-    ) -> Self {
+    pub(crate) fn new(id: u64, events: Sender<Report>, wake: Arc<dyn Fn() + Send + Sync>) -> Self {
         Self {
             events,
             id,

@@ -70,7 +70,7 @@ impl Player {
             }
             let Some(action) = self.actions.get(self.next).cloned() else { return Next::Done };
             // Whatever follows `open` is for the data that it opens.
-            let is_for_loader = matches!(action, Action::Cancel | Action::Open(_) | Action::Quit);
+            let is_for_loader = matches!(action, Action::Cancel | Action::Quit);
             if session.progress().is_some() && !is_for_loader {
                 return Next::Waits;
             }

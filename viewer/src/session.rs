@@ -15,11 +15,14 @@ use crate::action::Action;
 use crate::data;
 use crate::device::Device;
 use crate::frame::Frame;
-use crate::link::{Event, Job, Link};
+use crate::link::{Event, Job, Link, Report};
 use crate::look::{Look, Mode};
 use crate::pose::Pose;
 use crate::render;
 use crate::subject::{Info, Picked};
+
+/// The most lines of a log.
+const MOST_LINES: usize = 20_000;
 
 /// How a session renders.
 #[derive(Clone, Debug)]
@@ -35,7 +38,7 @@ pub struct Config {
 impl Config {
     /// Renders as a window needs it: at once, then better and better.
     pub fn interactive(out: impl Into<PathBuf>) -> Self {
-        Self { coarse: Some(Duration::from_millis(60)), samples: 1024, out: out.into() }
+        Self { coarse: Some(Duration::from_millis(80)), samples: 1024, out: out.into() }
     }
 
     /// Renders as a script needs it: what is asked for, the same in every run.
@@ -89,7 +92,7 @@ pub struct Session {
     loading: Option<Data>,
     progress: Option<(&'static str, f32)>,
     device: Arc<Device>,
-    events: (Sender<(u64, Event)>, Receiver<(u64, Event)>),
+    events: (Sender<Report>, Receiver<Report>),
     wake: Arc<dyn Fn() + Send + Sync>,
     next_id: u64,
     number: u64,
@@ -146,7 +149,7 @@ impl Session {
     pub fn apply(&mut self, action: &Action) -> Result<(), String> {
         let end = self.try_apply(action);
         match &end {
-            Ok(()) => self.log.push(action.to_string()),
+            Ok(()) => self.note(action.to_string()),
             Err(message) => self.refuse(&format!("{action}: {message}")),
         }
         end
@@ -166,7 +169,7 @@ impl Session {
                     return Err("nothing is loading".to_owned());
                 };
                 self.progress = None;
-                self.log.push(format!("cancelled {}", loading.path.display()));
+                self.note(format!("cancelled {}", loading.path.display()));
             }
             Action::Pick(x, y) => self.ask_pick(*x, *y)?,
             Action::Wait(samples) => self.want_samples(*samples),
@@ -280,9 +283,17 @@ impl Session {
         }
     }
 
+    /// Adds a line to the log, which forgets its oldest ones: a mouse makes many.
+    fn note(&mut self, line: String) {
+        if self.log.len() >= MOST_LINES {
+            self.log.drain(..MOST_LINES / 2);
+        }
+        self.log.push(line);
+    }
+
     /// Adds a line on something that does not work to the log.
     pub fn refuse(&mut self, message: &str) {
         self.errors += 1;
-        self.log.push(format!("error: {message}"));
+        self.note(format!("error: {message}"));
     }
 }

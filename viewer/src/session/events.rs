@@ -29,7 +29,7 @@ impl Session {
             std::mem::take(&mut self.writers).into_iter().partition(JoinHandle::is_finished);
         self.writers = going;
         done.into_iter().for_each(|writer| self.note_written(writer));
-        is_new || self.log.len() > before
+        is_new || self.log.len() != before
     }
 
     /// Notes threads that have ended although nobody closed them: by a panic, whose message is on the
@@ -61,7 +61,7 @@ impl Session {
             Event::DeviceFailed(message) if is_current => self.leave_device(&message),
             Event::Picked(picked) if is_current => {
                 self.questions = self.questions.saturating_sub(1);
-                self.log.push(crate::edit::line_of_pick(picked.as_ref()));
+                self.note(crate::edit::line_of_pick(picked.as_ref()));
                 self.picked = Some(picked);
             }
             Event::Wgsl(text) if is_current => {
@@ -91,14 +91,17 @@ impl Session {
         if look.show == Show::Difference(Variant::Wgsl) {
             look.show = Show::Picture;
         }
+        let samples = self.limit;
         self.set_look(look);
+        // Who waits for samples still does.
+        self.want_samples(samples);
     }
 
     /// Shows data that have been loaded.
     fn begin(&mut self, info: Info) {
         let Some(data) = self.loading.take() else { return };
         self.progress = None;
-        self.log.push(format!("loaded {}: {}", info.name, info.size));
+        self.note(format!("loaded {}: {}", info.name, info.size));
         let was = self.info.as_ref().map(|info| info.kind);
         if !(data.keeps_view && was == Some(info.kind)) {
             self.look.pose = info.home;

@@ -96,7 +96,7 @@ impl Session {
 
     pub(super) fn note_written(&mut self, writer: JoinHandle<Result<String, String>>) {
         match writer.join() {
-            Ok(Ok(line)) => self.log.push(line),
+            Ok(Ok(line)) => self.note(line),
             Ok(Err(line)) => self.refuse(&line),
             Err(_) => self.refuse("a picture was not written: the thread ended early"),
         }

@@ -7,11 +7,12 @@ mod transfer;
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use eframe::egui;
+use eframe::egui_wgpu::SurfaceErrorAction;
 use raydsl_viewer::{Action, Config, Device, Next, Player, Session};
 
 use picture::Shown;
@@ -34,6 +35,8 @@ pub(crate) struct Options {
 pub(crate) struct Viewer {
     session: Session,
     player: Option<Player>,
+    /// Whether a script chooses the size of the picture.
+    is_played: bool,
     panels: BTreeSet<&'static str>,
     shown: Shown,
     /// What is typed into panels.
@@ -42,6 +45,7 @@ pub(crate) struct Viewer {
     screenshots: (Sender<Screenshot>, Receiver<Screenshot>),
     awaited_screenshots: usize,
     pictures: usize,
+    device_errors: DeviceErrors,
     /// The longest time between an event and the window's answer: that of one turn of the window.
     longest: Duration,
     /// Gets the session when the window closes.
@@ -96,7 +100,35 @@ fn wgpu_options() -> eframe::egui_wgpu::WgpuConfiguration {
             ..Default::default()
         }
     });
-    eframe::egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() }
+    eframe::egui_wgpu::WgpuConfiguration {
+        wgpu_setup: setup.into(),
+        on_surface_status: Arc::new(|status| match status {
+            wgpu::CurrentSurfaceTexture::Occluded | wgpu::CurrentSurfaceTexture::Timeout => {
+                SurfaceErrorAction::SkipFrame
+            }
+            wgpu::CurrentSurfaceTexture::Lost => SurfaceErrorAction::RecreateSurface,
+            // Also where the surface could not be configured because kernels kept the device busy.
+            _ => SurfaceErrorAction::Reconfigure,
+        }),
+        ..Default::default()
+    }
+}
+
+/// What went wrong on the window's device, as far as nobody else handles it.
+type DeviceErrors = Arc<Mutex<Vec<String>>>;
+
+/// Keeps errors, at which wgpu would else end the program.
+fn keep_errors(device: &wgpu::Device) -> DeviceErrors {
+    let errors = DeviceErrors::default();
+    let kept = errors.clone();
+    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+        let message = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+        // A surface is configured again with the next frame: nothing is lost.
+        if !message.contains("Surface::configure") {
+            kept.lock().unwrap_or_else(PoisonError::into_inner).push(message);
+        }
+    }));
+    errors
 }
 
 impl Viewer {
@@ -106,6 +138,8 @@ impl Viewer {
             Some(state) => Device::of_window(state.device.clone(), state.queue.clone()),
             None => Device::default(),
         };
+        let state = cc.wgpu_render_state.as_ref();
+        let device_errors = state.map(|state| keep_errors(&state.device)).unwrap_or_default();
         let config = Config::interactive(&options.out);
         let mut session = Session::new(config, device, move || ctx.request_repaint());
         for action in &options.actions {
@@ -114,14 +148,16 @@ impl Viewer {
         }
         Self {
             session,
+            is_played: options.player.is_some(),
             player: options.player,
-            panels: ["open", "look", "statistics", "transfer", "log"].into(),
+            panels: ["open", "look", "statistics", "transfer", "cuts", "pick", "log"].into(),
             shown: Shown::default(),
             texts: Default::default(),
             transfer: Default::default(),
             screenshots: channel(),
             awaited_screenshots: 0,
             pictures: 0,
+            device_errors,
             longest: Duration::ZERO,
             end,
         }
@@ -191,6 +227,11 @@ impl eframe::App for Viewer {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.session.poll();
         self.take_screenshots();
+        let errors = {
+            let mut errors = self.device_errors.lock().unwrap_or_else(PoisonError::into_inner);
+            std::mem::take(&mut *errors)
+        };
+        errors.iter().for_each(|error| self.session.refuse(error));
         if self.player.is_some() {
             self.play(ctx);
             ctx.request_repaint_after(Duration::from_millis(10));

@@ -13,27 +13,36 @@ pub(crate) struct Texts {
     view: String,
 }
 
-/// Shows all panels.
+/// The panels at the left, above those at the right.
+const LEFT: usize = 5;
+
+/// Shows all panels, at both sides of the picture.
 pub(crate) fn show(viewer: &mut Viewer, ui: &mut Ui, actions: &mut Vec<Action>) {
     // A window of a few pixels has no room beside the picture.
-    if ui.available_width() > 400.0 {
-        egui::Panel::left("panels").default_size(290.0).show(ui, |ui| {
-            egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-                for name in PANELS {
-                    let is_open = viewer.panels.contains(name);
-                    let header = egui::CollapsingHeader::new(title(name)).open(Some(is_open));
-                    let response = header.show(ui, |ui| body(viewer, name, ui, actions));
-                    if response.header_response.clicked() {
-                        actions.push(Action::Panel(name.to_owned(), !is_open));
-                    }
-                }
-            });
-        });
+    if ui.available_width() > 700.0 {
+        let (left, right) = PANELS.split_at(LEFT);
+        let panel = egui::Panel::left("left").default_size(270.0);
+        panel.show(ui, |ui| column(viewer, left, ui, actions));
+        let panel = egui::Panel::right("right").default_size(230.0);
+        panel.show(ui, |ui| column(viewer, right, ui, actions));
     }
     if ui.input(|input| input.key_pressed(egui::Key::F1)) {
         let is_open = viewer.panels.contains("keys");
         actions.push(Action::Panel("keys".to_owned(), !is_open));
     }
+}
+
+fn column(viewer: &mut Viewer, names: &[&str], ui: &mut Ui, actions: &mut Vec<Action>) {
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        for name in names {
+            let is_open = viewer.panels.contains(name);
+            let header = egui::CollapsingHeader::new(title(name)).open(Some(is_open));
+            let response = header.show(ui, |ui| body(viewer, name, ui, actions));
+            if response.header_response.clicked() {
+                actions.push(Action::Panel((*name).to_owned(), !is_open));
+            }
+        }
+    });
 }
 
 fn title(name: &str) -> &'static str {
@@ -164,7 +173,7 @@ fn statistics(session: &Session, longest: std::time::Duration, ui: &mut Ui) {
         }
         row(ui, "longest turn", format!("{:.1} ms", longest.as_secs_f64() * 1e3));
         if let Some(name) = session.device().name() {
-            row(ui, "device", name.chars().take(28).collect());
+            row(ui, "device", name.chars().take(20).collect());
         }
         if let Some([recorded, printed, compiled]) = session.device().counts() {
             row(ui, "kernels", format!("{recorded} recorded"));

@@ -72,8 +72,9 @@ impl Viewer {
     ) {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, egui::Sense::click_and_drag());
+        ui.painter().rect_filled(rect, 0.0, egui::Color32::from_gray(12));
         input::keys(ui, &self.session, &mut self.pictures, actions);
-        if self.player.is_none() {
+        if !self.is_played {
             self.fit(rect, ui.ctx().pixels_per_point(), actions);
         }
         if let Some(newest) = self.session.frame() {
