@@ -1,15 +1,16 @@
 //! Everything that a person can do, as values, and as lines of text.
 
+mod read;
+
 use std::fmt;
 use std::path::PathBuf;
-use std::str::{FromStr, SplitWhitespace};
 
 use raydsl::prelude::*;
 
 use crate::look::{CutObject, Knot, Mode, Show};
 
-/// Something that a person does. A line of a script is one: [`FromStr`] reads it, and
-/// [`Display`](fmt::Display) writes it.
+/// Something that a person does. A line of a script is one: [`FromStr`](std::str::FromStr) reads
+/// it, and [`Display`](fmt::Display) writes it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
     /// `open FILE`: opens a file, or data that are made in code: `landscape:POINTS`, `head:SIDE`.
@@ -114,138 +115,6 @@ impl fmt::Display for Action {
                 write!(f, "panel {name} {}", if *is_open { "on" } else { "off" })
             }
             Self::Quit => f.write_str("quit"),
-        }
-    }
-}
-
-/// The words of a line behind the verb.
-struct Words<'a>(SplitWhitespace<'a>);
-
-impl<'a> Words<'a> {
-    fn word(&mut self) -> Result<&'a str, String> {
-        self.0.next().ok_or_else(|| "a word is missing at the end".to_owned())
-    }
-
-    fn read<T: FromStr>(&mut self) -> Result<T, String> {
-        let word = self.word()?;
-        word.parse().map_err(|_| format!("'{word}' is no number for this place"))
-    }
-
-    fn float(&mut self) -> Result<f32, String> {
-        let number: f32 = self.read()?;
-        if number.is_finite() { Ok(number) } else { Err("numbers are finite".to_owned()) }
-    }
-
-    fn three(&mut self) -> Result<Vec3, String> {
-        Ok(vec3(self.float()?, self.float()?, self.float()?))
-    }
-
-    fn knot(&mut self) -> Result<Knot, String> {
-        Ok(Knot { at: self.float()?, opacity: self.float()?, color: self.three()? })
-    }
-
-    fn variant(&mut self) -> Result<Variant, String> {
-        let word = self.word()?;
-        Variant::from_name(word).ok_or_else(|| {
-            format!("choose a variant from {}", Variant::ALL.map(Variant::name).join(", "))
-        })
-    }
-
-    fn show(&mut self) -> Result<Show, String> {
-        match self.word()? {
-            "picture" => Ok(Show::Picture),
-            "cost" => Ok(Show::Cost),
-            "difference" => Ok(Show::Difference(self.variant()?)),
-            _ => Err("show picture, cost or difference VARIANT".to_owned()),
-        }
-    }
-
-    fn is_on(&mut self) -> Result<bool, String> {
-        match self.word()? {
-            "on" => Ok(true),
-            "off" => Ok(false),
-            _ => Err("write on or off".to_owned()),
-        }
-    }
-
-    fn of_knot(&mut self) -> Result<Action, String> {
-        match self.word()? {
-            "add" => Ok(Action::AddKnot(self.knot()?)),
-            "set" => Ok(Action::SetKnot(self.read()?, self.knot()?)),
-            "remove" => Ok(Action::RemoveKnot(self.read()?)),
-            _ => Err("write knot add, knot set or knot remove".to_owned()),
-        }
-    }
-
-    fn of_cut(&mut self) -> Result<Action, String> {
-        match self.word()? {
-            "ball" => {
-                let (center, radius) = (self.three()?, self.float()?);
-                Ok(Action::AddCut(CutObject::Ball { center, radius }))
-            }
-            "half" => {
-                let (through, normal) = (self.three()?, self.three()?);
-                Ok(Action::AddCut(CutObject::Half { through, normal }))
-            }
-            "move" => Ok(Action::MoveCut(self.read()?, self.three()?)),
-            "remove" => Ok(Action::RemoveCut(self.read()?)),
-            _ => Err("write cut ball, cut half, cut move or cut remove".to_owned()),
-        }
-    }
-
-    fn action(&mut self, verb: &str) -> Result<Action, String> {
-        Ok(match verb {
-            "step" => Action::Step(self.read()?),
-            "cancel" => Action::Cancel,
-            "size" => Action::Size(self.read()?, self.read()?),
-            "mode" => Action::Mode(self.word()?.parse()?),
-            "variant" => Action::Variant(self.variant()?),
-            "show" => Action::Show(self.show()?),
-            "exposure" => Action::Exposure(self.float()?),
-            "orbit" => Action::Orbit(self.float()?, self.float()?),
-            "turn" => Action::Turn(self.float()?, self.float()?),
-            "fly" => Action::Fly(self.three()?),
-            "zoom" => Action::Zoom(self.float()?),
-            "home" => Action::Home,
-            "save-view" => Action::SaveView(self.word()?.to_owned()),
-            "view" => Action::View(self.word()?.to_owned()),
-            "drop-view" => Action::DropView(self.word()?.to_owned()),
-            "knot" => self.of_knot()?,
-            "preset" => Action::Preset(self.word()?.to_owned()),
-            "cut" => self.of_cut()?,
-            "pick" => Action::Pick(self.read()?, self.read()?),
-            "wait" => Action::Wait(self.read()?),
-            "picture" => Action::Picture(self.word()?.to_owned()),
-            "screenshot" => Action::Screenshot(self.word()?.to_owned()),
-            "wgsl" => Action::Wgsl(self.word()?.to_owned()),
-            "panel" => Action::Panel(self.word()?.to_owned(), self.is_on()?),
-            "quit" => Action::Quit,
-            _ => return Err(format!("'{verb}' is no verb of a script")),
-        })
-    }
-}
-
-impl FromStr for Action {
-    type Err = String;
-
-    fn from_str(line: &str) -> Result<Self, String> {
-        let line = line.trim();
-        let (verb, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-        // The names of files may have spaces.
-        let path = || match rest.trim() {
-            "" => Err("the name of a file is missing".to_owned()),
-            path => Ok(PathBuf::from(path)),
-        };
-        match verb {
-            "open" => return Ok(Self::Open(path()?)),
-            "add" => return Ok(Self::Add(path()?)),
-            _ => {}
-        }
-        let mut words = Words(rest.split_whitespace());
-        let action = words.action(verb)?;
-        match words.0.next() {
-            Some(word) => Err(format!("'{word}' is one word too many")),
-            None => Ok(action),
         }
     }
 }

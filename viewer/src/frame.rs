@@ -78,8 +78,8 @@ fn bytes<P: raydsl::Type + Sync>(image: &Image<P>, color: impl Fn(&P) -> Vec4 + 
     rgba
 }
 
-/// Returns a heat map of where two pictures differ: black where they do not, dark blue at a millionth
-/// and red at a whole.
+/// Returns a heat map of where two pictures differ: black where they do not, dark blue at a
+/// millionth and red at a whole.
 pub(crate) fn difference(a: &Image<Vec4>, b: &Image<Vec4>) -> (Vec<u8>, Difference) {
     let apart: Vec<f32> = a.pixels().iter().zip(b.pixels()).map(|(a, b)| apart(*a, *b)).collect();
     let (width, height) = (a.width(), a.height());
@@ -96,7 +96,8 @@ pub(crate) fn difference(a: &Image<Vec4>, b: &Image<Vec4>) -> (Vec<u8>, Differen
     (rgba, Difference { most, pixels: apart.iter().filter(|d| **d > 0.0).count() })
 }
 
-/// The greatest difference of a channel; two NaN are equal, and one is infinitely far from a number.
+/// The greatest difference of a channel; two NaN are equal, and one is infinitely far from a
+/// number.
 fn apart(a: Vec4, b: Vec4) -> f32 {
     let channel = |a: f32, b: f32| {
         if a == b || (a.is_nan() && b.is_nan()) {

@@ -1,7 +1,8 @@
 //! A viewer of points, surfaces and volumes.
 //!
-//! A [`Session`] is a viewer without a window: data, camera, look and a picture that gets better while
-//! nothing changes. An [`Action`] is what a person may do; a [`Player`] plays a script of them.
+//! A [`Session`] is a viewer without a window: data, camera, look and a picture that gets better
+//! while nothing changes. An [`Action`] is what a person may do; a [`Player`] plays a script of
+//! them.
 
 mod action;
 mod data;

@@ -68,7 +68,8 @@ pub(crate) struct Link {
     id: u64,
     wanted: Mutex<Wanted>,
     is_changed: Condvar,
-    /// The number of the wanted job, and whether there are questions: cheap to look at for each tile.
+    /// The number of the wanted job, and whether there are questions: cheap to look at for each
+    /// tile.
     newest: AtomicU64,
     has_questions: AtomicBool,
     is_closed: AtomicBool,

@@ -21,8 +21,8 @@ impl Default for Pose {
     }
 }
 
-/// The least angle between the line of sight and the world's up, in radians: at the pole there is no
-/// right and left.
+/// The least angle between the line of sight and the world's up, in radians: at the pole there is
+/// no right and left.
 const POLE: f32 = 0.02;
 
 impl Pose {

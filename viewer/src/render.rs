@@ -1,5 +1,7 @@
-//! Progressive rendering on the thread of the data: coarse while something changes, then sharp, then
-//! better with every pass.
+//! Progressive rendering on the thread of the data: coarse while something changes, then sharp,
+//! then better with every pass.
+
+mod picture;
 
 use std::collections::HashMap;
 use std::ops::ControlFlow;
@@ -12,13 +14,10 @@ use crate::frame::{Frame, difference, shown};
 use crate::link::{Event, Job, Link, Question, ray_of};
 use crate::look::{Look, Mode, Show};
 use crate::subject::{PictureKernel, Subject};
+use picture::{LONGEST_PASS, Picture, error, is_same_kernel};
 
 /// Samples that the sequences are made for.
 const PLANNED: u32 = 256;
-/// Samples of a pass where nobody waits for pictures in between.
-const LONGEST_PASS: u32 = 16;
-/// The time that a pass should take at most, so that pictures follow each other.
-const SHORT: Duration = Duration::from_millis(100);
 /// The time between pictures of a film that already has some samples.
 const BETWEEN: Duration = Duration::from_millis(150);
 /// Pixels a second that are assumed before any were measured.
@@ -43,45 +42,6 @@ pub(crate) fn serve(subject: &mut dyn Subject, link: &Link, device: &Device) {
         let end = subject.with_kernel(&look, &mut |kernel| worker.run(kernel, &look));
         if let Err(message) = end {
             worker.fail(&job, Event::Failed(message));
-        }
-    }
-}
-
-/// The picture in progress.
-struct Picture {
-    number: u64,
-    since: Instant,
-    /// The film, and that of the variant it is compared with.
-    films: Option<(Film, Option<Film>)>,
-    samples: u32,
-    /// Whether a coarse one is still to be made.
-    is_coarse_due: bool,
-    is_failed: bool,
-    shown_at: Option<Instant>,
-    /// Samples of the next pass.
-    next: u32,
-}
-
-impl Picture {
-    fn none() -> Self {
-        Self {
-            number: 0,
-            since: Instant::now(),
-            films: None,
-            samples: 0,
-            is_coarse_due: false,
-            is_failed: false,
-            shown_at: None,
-            next: 1,
-        }
-    }
-
-    /// Makes the next pass longer if this one was short, and shorter if it was long.
-    fn pace(&mut self, count: u32, took: Duration) {
-        if took > SHORT {
-            self.next = (count / 2).max(1);
-        } else if took < SHORT / 4 {
-            self.next = (count * 2).min(LONGEST_PASS);
         }
     }
 }
@@ -129,8 +89,8 @@ impl Worker<'_> {
         }
     }
 
-    /// Renders with a kernel, as long as looks differ in nothing but the camera and the size: the kernel
-    /// stays the same, and is recorded once.
+    /// Renders with a kernel, as long as looks differ in nothing but the camera and the size: the
+    /// kernel stays the same, and is recorded once.
     fn run(&mut self, kernel: &PictureKernel<'_>, look: &Look) {
         while let Some(job) = self.link.job() {
             if !is_same_kernel(&job.look, look) {
@@ -168,8 +128,9 @@ impl Worker<'_> {
         self.link.is_outdated(job.number) || self.link.has_questions()
     }
 
-    /// Makes a picture of as many pixels as the time allows. While the camera moves, a change follows
-    /// another faster than pictures: this one is shown even if it is outdated, unless it takes too long.
+    /// Makes a picture of as many pixels as the time allows. While the camera moves, a change
+    /// follows another faster than pictures: this one is shown even if it is outdated, unless it
+    /// takes too long.
     fn coarse(
         &mut self,
         kernel: &PictureKernel<'_>,
@@ -193,8 +154,8 @@ impl Worker<'_> {
         }
         self.picture.is_coarse_due = false;
         let done = f64::from(width) * f64::from(height) / start.elapsed().as_secs_f64();
-        // The first picture includes what is done once, and a slower one than the budget is too coarse
-        // again: half of each.
+        // The first picture includes what is done once, and a slower one than the budget is too
+        // coarse again: half of each.
         let known = self.rates.entry(speed).or_insert(done);
         *known = 0.5 * (*known + done);
         Ok(())
@@ -344,20 +305,4 @@ impl Worker<'_> {
             difference,
         });
     }
-}
-
-/// Returns whether the kernel for both looks is the same one.
-fn is_same_kernel(a: &Look, b: &Look) -> bool {
-    a.mode == b.mode
-        && (a.show == Show::Cost) == (b.show == Show::Cost)
-        && a.pose.up == b.pose.up
-        && a.knots == b.knots
-        && a.cuts == b.cuts
-}
-
-/// Returns the root mean square of the standard errors of a film's pixels.
-fn error(film: &Film) -> f32 {
-    let errors = film.standard_error();
-    let squares = errors.pixels().iter().map(|e| f64::from(e.truncate().length_squared() / 3.0));
-    (squares.sum::<f64>() / errors.pixels().len().max(1) as f64).sqrt() as f32
 }

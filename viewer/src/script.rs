@@ -6,8 +6,8 @@ use std::time::Duration;
 use crate::action::Action;
 use crate::session::Session;
 
-/// A script that is being played. It is the same with a window and without: whoever owns the session
-/// calls [`step`](Self::step) now and then.
+/// A script that is being played. It is the same with a window and without: whoever owns the
+/// session calls [`step`](Self::step) now and then.
 #[derive(Debug)]
 pub struct Player {
     actions: Vec<Action>,

@@ -110,8 +110,8 @@ pub struct Session {
 }
 
 impl Session {
-    /// Creates a session without data. `wake` is called from other threads when there is something to
-    /// [`poll`](Self::poll).
+    /// Creates a session without data. `wake` is called from other threads when there is something
+    /// to [`poll`](Self::poll).
     pub fn new(config: Config, device: Device, wake: impl Fn() + Send + Sync + 'static) -> Self {
         Self {
             limit: config.samples,

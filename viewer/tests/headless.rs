@@ -27,8 +27,8 @@ fn scripts_play_without_errors() {
     }
 }
 
-/// Every mode of every kind of data: packets have the bits of the scalar function, and a device those
-/// of its contract.
+/// Every mode of every kind of data: packets have the bits of the scalar function, and a device
+/// those of its contract.
 #[test]
 fn variants_agree() {
     for open in ["landscape:20000", "tests/data/room.obj", "head:48"] {

@@ -1,4 +1,5 @@
-//! The real window under Xvfb, driven by the mouse and the keys of xdotool. `.ci/more` runs these tests.
+//! The real window under Xvfb, driven by the mouse and the keys of xdotool. `.ci/more` runs these
+//! tests.
 
 #[expect(dead_code, reason = "code of several tests")]
 mod common;

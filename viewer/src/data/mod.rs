@@ -111,7 +111,8 @@ enum FileKind {
 
 /// What is said of a file whose name tells no format.
 const FORMATS: &str = "unknown format; points are .las, .laz, .ply and .xyz, surfaces .glb, .gltf, \
-    .obj, .ply and .tri, volumes .mha, .mhd, .nhdr, .nii, .nii.gz, .nrrd, .raw, .vti and folders of .png";
+    .obj, .ply and .tri, volumes .mha, .mhd, .nhdr, .nii, .nii.gz, .nrrd, .raw, .vti and folders of \
+    .png";
 
 /// Tells the kind of a file by its name.
 fn kind_of(path: &Path) -> FileKind {

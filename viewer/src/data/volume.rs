@@ -1,11 +1,12 @@
 //! Grids of numbers, seen through a transfer function and cut open.
 
+mod cuts;
+mod histogram;
+
 use std::path::{Path, PathBuf};
 
 use glam::Affine3;
-use raydsl::kernel;
 use raydsl::prelude::*;
-use raydsl::shading::Surface;
 use raydsl::volume::{
     Centering, Cut, ExactCell, Grid, GridConfig, Midpoint, PreIntegrated, ShadedCell,
     TransferFunction, Volume, VolumeLight, Voxel,
@@ -14,49 +15,11 @@ use raydsl_examples::head::head as head_voxels;
 use raydsl_io::volume::{ByteOrder, VolumeFile, VoxelType, Voxels, load, load_raw, load_stack};
 
 use super::{Failure, Serve, file_name, layers};
-use crate::look::{CutObject, Kind, Knot, Look, Mode, Show};
+use crate::look::{Kind, Knot, Look, Mode, Show};
 use crate::pose::Pose;
 use crate::subject::{Info, Picked, PictureKernel, Subject};
-
-/// A ball that cuts.
-#[primitive(sphere(center, radius))]
-struct Ball {
-    center: Vec3,
-    radius: f32,
-}
-
-/// Half of space: all that is behind a plane.
-#[primitive(plane(normal, offset))]
-struct Half {
-    normal: Vec3,
-    offset: f32,
-}
-
-macro_rules! surface {
-    ($($tool:ident)+) => {
-        $(
-            #[kernel]
-            impl Surface for $tool {
-                fn surface(&self, ray: Ray, hit: Hit) -> SurfacePoint {
-                    self.surface_point(ray, hit)
-                }
-
-                fn albedo(&self, _ray: Ray, _hit: Hit) -> Vec3 {
-                    Vec3::ONE
-                }
-            }
-        )+
-    };
-}
-
-surface!(Ball Half);
-
-/// Everything that cuts, as one scene.
-#[derive(Scene)]
-struct Tools<'a> {
-    balls: &'a [Ball],
-    halves: &'a [Half],
-}
+use cuts::Cuts;
+use histogram::{bounds_of, histogram};
 
 /// The integrators of the viewer: WGSL has the one that is captured.
 #[derive(Clone, Copy, raydsl::Type)]
@@ -171,24 +134,6 @@ fn bounds(grid: &Grid<'_, f32>) -> Aabb {
     Aabb::from_points((0..8).map(corner))
 }
 
-fn bounds_of(values: impl Iterator<Item = f32>) -> Vec2 {
-    let none = vec2(f32::INFINITY, f32::NEG_INFINITY);
-    values.filter(|v| v.is_finite()).fold(none, |r, v| vec2(r.x.min(v), r.y.max(v)))
-}
-
-/// Parts of the histogram.
-const PARTS: usize = 128;
-
-fn histogram(voxels: &[f32], range: Vec2) -> Vec<u32> {
-    let mut counts = vec![0u32; PARTS];
-    let scale = PARTS as f32 / (range.y - range.x).max(f32::MIN_POSITIVE);
-    for v in voxels.iter().filter(|v| v.is_finite()) {
-        let part = ((v - range.x) * scale) as usize;
-        counts[part.min(PARTS - 1)] += 1;
-    }
-    counts
-}
-
 struct Scan<'a> {
     grid: &'a Grid<'a, f32>,
     range: Vec2,
@@ -228,29 +173,10 @@ impl<'a> Scan<'a> {
             }
         }
     }
-
-    /// Cut objects in the world.
-    fn tools(&self, cuts: &[CutObject]) -> (Vec<Ball>, Vec<Half>) {
-        let (min, size) = (self.bounds.min, self.bounds.size());
-        let (mut balls, mut halves) = (Vec::new(), Vec::new());
-        for cut in cuts {
-            match *cut {
-                CutObject::Ball { center, radius } => balls.push(Ball {
-                    center: min + center * size,
-                    radius: radius * size.max_element(),
-                }),
-                // What is behind the plane is cut away, so that its normal points to what is kept.
-                CutObject::Half { through, normal } => {
-                    halves.push(Half { normal, offset: normal.dot(min + through * size) });
-                }
-            }
-        }
-        (balls, halves)
-    }
 }
 
-/// Direction to the light, fixed in the world: a kernel that follows the camera would be another one for
-/// each picture.
+/// Direction to the light, fixed in the world: a kernel that follows the camera would be another
+/// one for each picture.
 fn to_light(up: Vec3) -> Vec3 {
     (up + vec3(0.4, 0.7, 0.3)).normalize_or(up)
 }
@@ -265,8 +191,8 @@ impl Subject for Scan<'_> {
             return Err("a volume has no tree whose tests are counted: show picture".to_owned());
         }
         let method = self.method(look);
-        let (balls, halves) = self.tools(&look.cuts);
-        let tools = Tools { balls: &balls, halves: &halves };
+        let cuts = Cuts::new(&look.cuts, self.bounds);
+        let tools = cuts.scene();
         let is_whole = look.cuts.is_empty();
         let background = vec3(0.015, 0.018, 0.026);
         let volume = self.volume(&look.knots)?;
@@ -294,16 +220,12 @@ impl Subject for Scan<'_> {
     fn pick(&self, look: &Look, ray: Ray) -> Option<Picked> {
         let transfer = self.volume.as_ref()?.transfer();
         let (enter, leave) = self.grid.span(ray);
-        let (balls, halves) = self.tools(&look.cuts);
-        let is_cut = |p: Vec3| {
-            balls.iter().any(|b| p.distance(b.center) < b.radius)
-                || halves.iter().any(|h| h.normal.dot(p) < h.offset)
-        };
+        let cuts = Cuts::new(&look.cuts, self.bounds);
         let step = 0.5 * self.voxel;
         let (mut t, mut depth) = (enter + 0.5 * step, 0.0);
         while t < leave {
             let position = ray.at(t);
-            if !is_cut(position) {
+            if !cuts.has(position) {
                 let value = self.grid.value(position);
                 depth += transfer.at(value).extinction * step;
                 if depth > core::f32::consts::LN_2 {

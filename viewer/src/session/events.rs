@@ -32,8 +32,8 @@ impl Session {
         is_new || self.log.len() != before
     }
 
-    /// Notes threads that have ended although nobody closed them: by a panic, whose message is on the
-    /// terminal.
+    /// Notes threads that have ended although nobody closed them: by a panic, whose message is on
+    /// the terminal.
     fn note_ended(&mut self, ended: &[u64]) {
         let has_ended = |data: &mut super::Data| ended.contains(&data.id);
         let lost = [self.loading.take_if(has_ended), self.current.take_if(has_ended)];

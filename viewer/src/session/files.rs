@@ -85,8 +85,8 @@ impl Session {
         }
     }
 
-    /// Waits for files and for the end of the renderer, which takes no longer than a tile. Nothing is
-    /// open then.
+    /// Waits for files and for the end of the renderer, which takes no longer than a tile. Nothing
+    /// is open then.
     pub fn close(&mut self) {
         self.finish_files();
         if let Some(data) = self.current.take() {
