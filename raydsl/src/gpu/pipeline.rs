@@ -43,11 +43,25 @@ pub(super) struct Sampled {
     pub(super) is_volume: bool,
 }
 
-/// All bindings of a kernel but the uniform buffers, which are always the same.
+/// All bindings of a kernel but that of the job, which is always the same.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(super) struct Bindings {
+    /// Whether the kernel's numbers are in a storage buffer, by [`stored_parameters`].
+    pub(super) has_stored_parameters: bool,
     pub(super) storage: Vec<Storage>,
     pub(super) sampled: Vec<Sampled>,
+}
+
+/// How a text declares the kernel's numbers.
+const PARAMETERS: &str = "@group(0) @binding(0) var<uniform> ";
+
+/// Returns a text whose numbers are in a storage buffer, if it declares them as printed.
+///
+/// Lavapipe compiles a kernel again for each dispatch if a condition depends on a uniform buffer alone:
+/// it replaces such numbers by their values. That takes seconds where materials are shaded.
+pub(super) fn stored_parameters(source: &str) -> Option<String> {
+    let stored = "@group(0) @binding(0) var<storage, read> ";
+    source.contains(PARAMETERS).then(|| source.replacen(PARAMETERS, stored, 1))
 }
 
 /// The pipelines compiled so far, by their text.
@@ -145,7 +159,10 @@ fn pipeline(
 }
 
 fn layout(device: &wgpu::Device, bindings: &Bindings) -> wgpu::BindGroupLayout {
-    let uniforms = [0, 1].map(|binding| buffer(binding, wgpu::BufferBindingType::Uniform));
+    let uniform = wgpu::BufferBindingType::Uniform;
+    let stored = wgpu::BufferBindingType::Storage { read_only: true };
+    let parameters = if bindings.has_stored_parameters { stored } else { uniform };
+    let uniforms = [buffer(0, parameters), buffer(1, uniform)];
     let storage = bindings.storage.iter().map(|&Storage { binding, read_only }| {
         buffer(binding, wgpu::BufferBindingType::Storage { read_only })
     });

@@ -10,7 +10,7 @@ use super::buffers::{Bound, Source};
 use super::context::Context;
 use super::device::lock;
 use super::error::GpuError;
-use super::pipeline::{Bindings, Pipeline, Sampled, Storage};
+use super::pipeline::{Bindings, Pipeline, Sampled, Storage, stored_parameters};
 use super::slot::{Finished, InFlight, Pass, Slot};
 use super::textures::BoundTexture;
 use super::tiles::{Tiler, next_goal};
@@ -182,14 +182,19 @@ impl Context {
             binding: texture.binding,
             is_volume: texture.layout.is_volume,
         });
-        let bindings = Bindings { storage: storage(module), sampled: sampled.collect() };
+        let storage = storage(module);
         let limit = self.gpu.caps.max_storage_buffers;
-        let needed = bindings.storage.len() as u64;
+        let needed = storage.len() as u64;
         if needed > u64::from(limit) {
             return Err(GpuError::TooManyBuffers { needed, limit });
         }
-        let mut pipelines = lock(&self.pipelines);
-        pipelines.get(&self.gpu, self.checks, &module.source, &bindings)
+        let has_room =
+            needed < u64::from(limit) && self.adapter_info().name.starts_with("llvmpipe");
+        let stored = if has_room { stored_parameters(&module.source) } else { None };
+        let has_stored_parameters = stored.is_some();
+        let bindings = Bindings { has_stored_parameters, storage, sampled: sampled.collect() };
+        let source = stored.as_ref().unwrap_or(&module.source);
+        lock(&self.pipelines).get(&self.gpu, self.checks, source, &bindings)
     }
 
     /// Uploads the kernel's uniform buffer.
@@ -203,7 +208,10 @@ impl Context {
                 limit,
             });
         }
-        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        // Either a uniform or a storage buffer, as the pipeline has it.
+        let usage = wgpu::BufferUsages::UNIFORM
+            | wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::COPY_DST;
         let buffer = self.gpu.buffer("parameters", bytes, usage)?;
         self.gpu.guarded("the kernel's parameters", || {
             self.gpu.queue.write_buffer(&buffer, 0, &module.uniforms);
