@@ -65,12 +65,6 @@ fn measure(session: &mut Session) -> Row {
     Row { pictures: sizes.len(), size, longest_call, sharp, made: made(session) - before }
 }
 
-/// Whether Mesa's lavapipe of 2022 takes seconds and a gigabyte to compile the kernel, which it
-/// does again for each dispatch.
-fn is_slow_to_compile(mode: Mode) -> bool {
-    matches!(mode, Mode::Direct | Mode::Whitted | Mode::Path)
-}
-
 fn main() -> Result<(), String> {
     let mut files: Vec<String> = std::env::args().skip(1).collect();
     if files.is_empty() {
@@ -90,9 +84,6 @@ fn main() -> Result<(), String> {
         let Some(info) = session.info().cloned() else { return Err(session.log().join("\n")) };
         for mode in Mode::of(info.kind) {
             for variant in [Variant::widest(), Variant::Wgsl] {
-                if variant == Variant::Wgsl && is_slow_to_compile(*mode) {
-                    continue;
-                }
                 session.apply(&Action::Mode(*mode))?;
                 session.apply(&Action::Variant(variant))?;
                 let row = measure(&mut session);

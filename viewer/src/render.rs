@@ -14,20 +14,22 @@ use crate::frame::{Frame, difference, shown};
 use crate::link::{Event, Job, Link, Question, ray_of};
 use crate::look::{Look, Mode, Show};
 use crate::subject::{PictureKernel, Subject};
-use picture::{LONGEST_PASS, Picture, error, is_same_kernel};
+pub(crate) use picture::is_same_kernel;
+use picture::{LONGEST_PASS, Picture, error};
 
 /// Samples that the sequences are made for.
 const PLANNED: u32 = 256;
 /// The time between pictures of a film that already has some samples.
 const BETWEEN: Duration = Duration::from_millis(150);
 /// Pixels a second that are assumed before any were measured.
-const FIRST_RATE: f64 = 1e6;
+const FIRST_RATE: f64 = 3e5;
 /// The least share of columns and rows of a coarse picture.
 const COARSEST: f64 = 1.0 / 16.0;
 
 /// Renders what the link asks for, until it is closed.
 pub(crate) fn serve(subject: &mut dyn Subject, link: &Link, device: &Device) {
-    let mut worker = Worker { link, device, rates: HashMap::new(), picture: Picture::none() };
+    let mut worker =
+        Worker { link, device, rates: HashMap::new(), late: 0, picture: Picture::none() };
     loop {
         link.wait_while(|job| worker.is_idle(job));
         if link.is_closed() {
@@ -54,6 +56,8 @@ struct Worker<'a> {
     device: &'a Device,
     /// Pixels a second of coarse pictures.
     rates: HashMap<Speed, f64>,
+    /// Coarse pictures, one after another, that were given up: the next one gets more time.
+    late: u32,
     picture: Picture,
 }
 
@@ -141,38 +145,42 @@ impl Worker<'_> {
         let speed = (look.mode, look.variant, look.show == Show::Picture);
         let rate = self.rates.get(&speed).copied().unwrap_or(FIRST_RATE);
         let pixels = f64::from(look.size.0) * f64::from(look.size.1);
-        let share = (rate * budget.as_secs_f64() / pixels).sqrt().clamp(COARSEST, 1.0);
-        let side = |n: u32| ((f64::from(n) * share).round() as u32).clamp(1, n);
+        let scale = (rate * budget.as_secs_f64() / pixels).sqrt().clamp(COARSEST, 1.0);
+        let side = |n: u32| ((f64::from(n) * scale).round() as u32).clamp(1, n);
         let (width, height) = (side(look.size.0), side(look.size.1));
         let start = Instant::now();
         let is_picture = look.show == Show::Picture;
-        if look.variant == Variant::Wgsl && is_picture && self.device.is_of_window() {
+        let share = if look.variant == Variant::Wgsl && is_picture && self.device.is_of_window() {
             let texture = self.device.frame(kernel, look, (width, height))?;
             self.show_on_device(texture, start.elapsed());
+            1.0
         } else {
-            self.coarse_on_host(kernel, job, (width, height), budget)?;
-        }
+            self.coarse_on_host(kernel, job, (width, height), budget)?
+        };
         self.picture.is_coarse_due = false;
-        let done = f64::from(width) * f64::from(height) / start.elapsed().as_secs_f64();
-        // The first picture includes what is done once, and a slower one than the budget is too
-        // coarse again: half of each.
+        let done = share * f64::from(width) * f64::from(height);
+        let done = done.max(1.0) / start.elapsed().as_secs_f64();
         let known = self.rates.entry(speed).or_insert(done);
-        *known = 0.5 * (*known + done);
+        // Slower is believed at once, and faster by half: a picture that is late is not seen.
+        *known = if done < *known { done } else { 0.5 * (*known + done) };
         Ok(())
     }
 
+    /// Returns the share of the picture that was made; if it is not all, nothing is shown.
     fn coarse_on_host(
         &mut self,
         kernel: &PictureKernel<'_>,
         job: &Job,
         (width, height): (u32, u32),
         budget: Duration,
-    ) -> Result<(), String> {
+    ) -> Result<f64, String> {
         let (look, link, start) = (&*job.look, self.link, Instant::now());
         let other = matches!(look.show, Show::Difference(_)).then(|| Film::new(width, height));
         let mut films = (Film::new(width, height), other);
-        let is_complete = self.add(kernel, look, &mut films, 1, &mut |_| {
-            let is_late = link.is_outdated(job.number) && start.elapsed() > 2 * budget;
+        let (mut share, patience) = (0.0, budget * (2 << self.late.min(5)));
+        let is_complete = self.add(kernel, look, &mut films, 1, &mut |made| {
+            share = made;
+            let is_late = link.is_outdated(job.number) && start.elapsed() > patience;
             if is_late || link.is_closed() {
                 return ControlFlow::Break(());
             }
@@ -180,8 +188,10 @@ impl Worker<'_> {
         })?;
         if is_complete {
             self.show(look, &films, true, 1, start.elapsed());
+            share = 1.0;
         }
-        Ok(())
+        self.late = if is_complete { 0 } else { self.late + 1 };
+        Ok(share)
     }
 
     fn show_on_device(&mut self, texture: wgpu::Texture, took: Duration) {

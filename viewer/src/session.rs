@@ -224,6 +224,9 @@ impl Session {
     /// Shows another look; the same one starts nothing again.
     fn set_look(&mut self, look: Look) {
         if look != self.look {
+            if !render::is_same_kernel(&look, &self.look) {
+                self.wgsl = None;
+            }
             self.look = look;
             self.restart();
         }

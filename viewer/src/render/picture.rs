@@ -51,7 +51,7 @@ impl Picture {
 }
 
 /// Returns whether the kernel for both looks is the same one.
-pub(super) fn is_same_kernel(a: &Look, b: &Look) -> bool {
+pub(crate) fn is_same_kernel(a: &Look, b: &Look) -> bool {
     a.mode == b.mode
         && (a.show == Show::Cost) == (b.show == Show::Cost)
         && a.pose.up == b.pose.up

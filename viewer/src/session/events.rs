@@ -114,6 +114,7 @@ impl Session {
         self.questions = 0;
         self.wgsl_files.clear();
         self.picked = None;
+        self.wgsl = None;
         self.info = Some(info);
         self.restart();
     }

@@ -72,7 +72,7 @@ fn body(viewer: &mut Viewer, name: &str, ui: &mut Ui, actions: &mut Vec<Action>)
         "views" => views(session, &mut viewer.texts, ui, actions),
         "log" => log(session, ui),
         "keys" => keys(ui),
-        _ => wgsl(session, ui),
+        _ => wgsl(session, ui, actions),
     }
 }
 
@@ -274,9 +274,11 @@ fn keys(ui: &mut Ui) {
     });
 }
 
-fn wgsl(session: &Session, ui: &mut Ui) {
+fn wgsl(session: &Session, ui: &mut Ui, actions: &mut Vec<Action>) {
     let Some(text) = session.wgsl() else {
-        ui.label("The kernel as WGSL.");
+        if ui.button("Print the kernel of this picture").clicked() {
+            actions.push(Action::Panel("wgsl".to_owned(), true));
+        }
         return;
     };
     let lines: Vec<&str> = text.lines().collect();
