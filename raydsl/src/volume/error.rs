@@ -1,6 +1,8 @@
 //! Errors of creating grids and transfer functions, and of meshes that cut.
 
-use glam::{UVec2, Vec2, Vec3};
+use glam::{UVec2, UVec3, Vec2, Vec3};
+
+use super::grid::GridConfig;
 
 /// Why a grid cannot be created.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -49,6 +51,28 @@ pub enum GridError {
         /// Summand.
         offset: f32,
     },
+    /// Two steps in time have different numbers of voxels.
+    #[error("steps of {before} and {after} voxels: resample one to the size of the other")]
+    Sizes {
+        /// Number of voxels along each axis of the earlier step.
+        before: UVec3,
+        /// The same of the later step.
+        after: UVec3,
+    },
+    /// Two steps in time differ in placement, centering or unit.
+    #[error("steps placed as {before:?} and {after:?}: give both the same `GridConfig`")]
+    Configs {
+        /// Placement and unit of the earlier step.
+        before: GridConfig,
+        /// Those of the later step.
+        after: GridConfig,
+    },
+    /// The share of the later step is NaN.
+    #[error("the share of the later step is a number from 0 to 1, not NaN")]
+    Share,
+    /// One of two steps in time is itself between two.
+    #[error("a step is not itself between two: blend the two grids that its time lies between")]
+    Nested,
 }
 
 /// Why a transfer function cannot be created.

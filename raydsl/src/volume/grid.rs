@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use glam::{Affine3, Mat3, UVec3, Vec2, Vec3, vec2};
 
 use super::along::{self, SurfaceHit};
+use super::blend::{self, Blend, BlendView};
 use super::error::GridError;
 use super::sample;
 use super::voxel::{Corners, Voxel};
@@ -150,14 +151,18 @@ pub struct GridLayout {
 /// it were empty.
 #[derive(Debug)]
 pub struct Grid<'a, T: Voxel> {
-    stored: Cow<'a, [T::Stored]>,
+    pub(super) stored: Cow<'a, [T::Stored]>,
+    /// Identity of what is stored: that of another grid if it is borrowed from one.
+    pub(super) stored_key: BufferKey,
+    /// Where values are between two steps in time.
+    pub(super) blend: Option<Blend<'a, T>>,
     /// Least and greatest value of each macro-cell.
-    ranges: Vec<Vec2>,
-    size: UVec3,
-    config: GridConfig,
-    layout: GridLayout,
-    has_gaps: bool,
-    owner: Owner,
+    pub(super) ranges: Vec<Vec2>,
+    pub(super) size: UVec3,
+    pub(super) config: GridConfig,
+    pub(super) layout: GridLayout,
+    pub(super) has_gaps: bool,
+    pub(super) owner: Owner,
 }
 
 impl<'a, T: Voxel> Grid<'a, T> {
@@ -182,8 +187,10 @@ impl<'a, T: Voxel> Grid<'a, T> {
         check(size, voxels.len())?;
         let layout = layout(size, &config)?;
         let (ranges, has_gaps) = ranges(&voxels, size, &config);
-        let stored = T::stored(voxels, size);
-        Ok(Self { stored, ranges, size, config, layout, has_gaps, owner: Owner::new() })
+        let (stored, owner) = (T::stored(voxels, size), Owner::new());
+        let stored_key = key(&owner, 0);
+        let blend = None;
+        Ok(Self { stored, stored_key, blend, ranges, size, config, layout, has_gaps, owner })
     }
 
     /// Returns the number of voxels along each axis.
@@ -213,14 +220,11 @@ impl<'a, T: Voxel> Grid<'a, T> {
         self.ranges.iter().fold(NO_RANGE, |a, b| vec2(a.x.min(b.x), a.y.max(b.y)))
     }
 
-    fn key(&self, part: u32) -> BufferKey {
-        BufferKey { id: self.owner.id(), version: 0, part }
-    }
-
     pub(super) fn named_view(&self, name: &'static str) -> GridView<'_, T> {
         GridView {
-            stored: Slice::owned(&self.stored, Some(self.key(0)), name).suffixed("voxels"),
-            ranges: Slice::owned(&self.ranges, Some(self.key(1)), name).suffixed("ranges"),
+            stored: Slice::owned(&self.stored, Some(self.stored_key), name).suffixed("voxels"),
+            blend: self.blend.as_ref().map(|blend| blend.view(name)),
+            ranges: Slice::owned(&self.ranges, Some(key(&self.owner, 1)), name).suffixed("ranges"),
             layout: self.layout,
             has_gaps: self.has_gaps,
             name,
@@ -228,7 +232,12 @@ impl<'a, T: Voxel> Grid<'a, T> {
     }
 }
 
-const NO_RANGE: Vec2 = vec2(f32::INFINITY, f32::NEG_INFINITY);
+fn key(owner: &Owner, part: u32) -> BufferKey {
+    BufferKey { id: owner.id(), version: 0, part }
+}
+
+/// The range of nothing.
+pub(super) const NO_RANGE: Vec2 = vec2(f32::INFINITY, f32::NEG_INFINITY);
 
 fn check(size: UVec3, found: usize) -> Result<(), GridError> {
     for (axis, size) in size.to_array().into_iter().enumerate() {
@@ -330,11 +339,12 @@ fn rescaled(range: Vec2, config: &GridConfig) -> Vec2 {
 /// View of a [`Grid`] in kernels: a host value on every machine.
 #[derive(Debug)]
 pub struct GridView<'a, T: Voxel> {
-    stored: Slice<'a, T::Stored>,
+    pub(super) stored: Slice<'a, T::Stored>,
+    pub(super) blend: Option<BlendView<'a, T>>,
     ranges: Slice<'a, Vec2>,
     layout: GridLayout,
     has_gaps: bool,
-    name: &'static str,
+    pub(super) name: &'static str,
 }
 
 impl<T: Voxel> Clone for GridView<'_, T> {
@@ -354,10 +364,18 @@ impl<T: Voxel> TableView for GridView<'_, T> {
         visit(&DescribedSlice(self.ranges));
         visit_value(InUniforms { grid: self.layout }, self.name, visit);
         visit(&HostFact(self.has_gaps.into()));
+        visit(&HostFact(self.blend.is_some().into()));
+        if let Some(blend) = &self.blend {
+            blend.resources(self.name, visit);
+        }
     }
 
     fn is_same(&self, other: &Self) -> bool {
-        core::ptr::eq(self.stored.elements(), other.stored.elements())
+        let is_same_blend = match (&self.blend, &other.blend) {
+            (Some(a), Some(b)) => a.is_same(b),
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        is_same_blend && core::ptr::eq(self.stored.elements(), other.stored.elements())
     }
 }
 
@@ -380,7 +398,10 @@ impl<T: Voxel> Grid<'_, T> {
 
     #[inline(always)]
     pub(super) fn corners(&self, i: u32, steps: UVec3) -> Corners {
-        T::corners(&self.stored, i, steps)
+        match &self.blend {
+            None => T::corners(&self.stored, i, steps),
+            Some(_) => blend::corners(self, i, steps),
+        }
     }
 }
 
@@ -416,7 +437,10 @@ impl<M: Machine, T: Voxel> Method<{ name("corners") }, M, (U<M>, X3<U<M>>)> for 
 
     #[inline(always)]
     fn call(self, m: &M, (i, steps): (U<M>, X3<U<M>>)) -> Self::Output {
-        T::corners_on(m, self.stored, i, steps)
+        match self.blend {
+            None => T::corners_on(m, self.stored, i, steps),
+            Some(_) => blend::corners::on(m, self, i, steps),
+        }
     }
 }
 

@@ -25,7 +25,8 @@ use crate::{Type, kernel};
 /// (Pre-classification; Hadwiger et al., "Real-Time Volume Graphics", 2006, section 4.2.) It takes
 /// exponential steps with the sample in the middle, as [`Midpoint`](super::Midpoint). With a light,
 /// borders are shaded by the gradient of extinction, over two voxels each way.
-/// [`TransferFunction::labels`] gives each label a colour.
+/// [`TransferFunction::labels`] gives each label a colour. Of a grid
+/// [between two steps](super::Grid::between) it sees blended numbers, which are other labels.
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
 pub struct Labels {
     /// Greatest length of a step, in the world; above 0.

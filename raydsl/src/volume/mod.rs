@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod along;
+mod blend;
 pub mod cells;
 mod cubic;
 mod cut;

@@ -1,5 +1,7 @@
 //! Transfer functions: colour and extinction of each value.
 
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3};
 
 use super::error::TransferError;
@@ -86,7 +88,9 @@ const OPACITY_ERROR: f64 = 1.0 / 2048.0;
 /// assert_eq!(red.call((50.0,)), 0.6);
 /// # Ok::<(), raydsl::volume::TransferError>(())
 /// ```
-#[derive(Debug)]
+///
+/// A clone is the same data to a device: it is not uploaded again.
+#[derive(Clone, Debug)]
 pub struct TransferFunction {
     /// The first and the last one are far away, with what their neighbours have.
     knots: Vec<TransferKnot>,
@@ -94,15 +98,7 @@ pub struct TransferFunction {
     bins: Vec<u32>,
     integrals: Vec<TransferIntegral>,
     layout: TransferLayout,
-    owner: Owner,
-}
-
-impl Clone for TransferFunction {
-    fn clone(&self) -> Self {
-        let Self { knots, bins, integrals, layout, .. } = self;
-        let (knots, bins, integrals) = (knots.clone(), bins.clone(), integrals.clone());
-        Self { knots, bins, integrals, layout: *layout, owner: Owner::new() }
-    }
+    owner: Arc<Owner>,
 }
 
 impl PartialEq for TransferFunction {
@@ -171,7 +167,7 @@ impl TransferFunction {
         let last_bin = BINS as f32;
         let layout = TransferLayout { first, per_value, last_bin, last: knots.len() as u32 - 2 };
         let integrals = integrals(&knots);
-        Ok(Self { knots, bins, integrals, layout, owner: Owner::new() })
+        Ok(Self { knots, bins, integrals, layout, owner: Arc::new(Owner::new()) })
     }
 
     /// Creates the function of labels: `(label, colour, opacity)`, sorted by label; opacities are
