@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use glam::{UVec3, Vec2, vec2};
 
 use super::error::GridError;
-use super::grid::{Grid, GridView, NO_RANGE};
+use super::grid::{Grid, GridConfig, GridView, NO_RANGE};
 use super::voxel::{Corners, Voxel};
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
@@ -102,9 +102,7 @@ impl<'a, T: Voxel> Grid<'a, T> {
         if before.size != after.size {
             return Err(GridError::Sizes { before: before.size, after: after.size });
         }
-        if before.config != after.config {
-            return Err(GridError::Configs { before: before.config, after: after.config });
-        }
+        check_configs(&before.config, &after.config)?;
         let share = share.clamp(0.0, 1.0);
         // From the nearer step on, so that rounding leaves either end as it is. The difference is
         // exact.
@@ -124,6 +122,20 @@ impl<'a, T: Voxel> Grid<'a, T> {
             owner: Owner::new(),
         })
     }
+}
+
+/// Refuses steps whose voxels do not lie at the same places, or mean other values.
+fn check_configs(before: &GridConfig, after: &GridConfig) -> Result<(), GridError> {
+    if before.to_world != after.to_world {
+        let (before, after) = (before.to_world, after.to_world);
+        return Err(GridError::Placements { before, after });
+    }
+    if before.centering != after.centering {
+        let (before, after) = (before.centering, after.centering);
+        return Err(GridError::Centerings { before, after });
+    }
+    let [before, after] = [before, after].map(|config| (config.scale, config.offset));
+    if before == after { Ok(()) } else { Err(GridError::Units { before, after }) }
 }
 
 /// Returns a range that has all values between those of two.
@@ -221,7 +233,7 @@ mod tests {
     use glam::{uvec3, vec3};
 
     use super::*;
-    use crate::volume::{Centering, GridConfig};
+    use crate::volume::Centering;
 
     fn grid(value: f32, size: UVec3, config: GridConfig) -> Grid<'static, f32> {
         Grid::new(vec![value; size.element_product() as usize], size, config).expect("a grid")
@@ -239,16 +251,21 @@ mod tests {
         let error = refused(&a, &other, 0.5);
         assert_eq!(error, GridError::Sizes { before: size, after: uvec3(4, 3, 2) });
         assert!(error.to_string().contains("[2, 3, 4] and [4, 3, 2]"), "{error}");
-        let moved = [
-            GridConfig::new().origin(vec3(0.0, 0.0, 1.0)),
-            GridConfig::new().centering(Centering::Cell),
-            GridConfig::new().rescale(2.0, 0.0),
-            GridConfig::new().rescale(1.0, 1.0),
+        let plain = GridConfig::new();
+        let place = plain.origin(vec3(0.0, 0.0, 1.0));
+        let (vertex, cell) = (Centering::Vertex, Centering::Cell);
+        let unit = (1.0, 0.0);
+        let expected = [
+            (place, GridError::Placements { before: plain.to_world, after: place.to_world }),
+            (plain.centering(cell), GridError::Centerings { before: vertex, after: cell }),
+            (plain.rescale(2.0, 0.0), GridError::Units { before: unit, after: (2.0, 0.0) }),
+            (plain.rescale(1.0, 1.5), GridError::Units { before: unit, after: (1.0, 1.5) }),
         ];
-        for after in moved {
+        for (after, expected) in expected {
             let other = grid(2.0, size, after);
             let error = refused(&a, &other, 0.5);
-            assert_eq!(error, GridError::Configs { before: GridConfig::new(), after });
+            assert_eq!(error, expected);
+            assert!(error.to_string().contains("GridConfig"), "{error}");
         }
         let now = Grid::between(&a, &b, 0.5).expect("a blend");
         assert_eq!(refused(&now, &b, 0.5), GridError::Nested);

@@ -1,8 +1,8 @@
 //! Errors of creating grids and transfer functions, and of meshes that cut.
 
-use glam::{UVec2, UVec3, Vec2, Vec3};
+use glam::{Affine3, UVec2, UVec3, Vec2, Vec3};
 
-use super::grid::GridConfig;
+use super::grid::Centering;
 
 /// Why a grid cannot be created.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -59,13 +59,32 @@ pub enum GridError {
         /// The same of the later step.
         after: UVec3,
     },
-    /// Two steps in time differ in placement, centering or unit.
-    #[error("steps placed as {before:?} and {after:?}: give both the same `GridConfig`")]
-    Configs {
-        /// Placement and unit of the earlier step.
-        before: GridConfig,
+    /// Two steps in time are placed differently.
+    #[error("steps placed by {before:?} and {after:?}: give both the same `GridConfig`")]
+    Placements {
+        /// Map from voxel coordinates of the earlier step to the world.
+        before: Affine3,
+        /// That of the later step.
+        after: Affine3,
+    },
+    /// The samples of two steps in time lie differently.
+    #[error("samples of steps lie as {before:?} and {after:?}: give both the same `GridConfig`")]
+    Centerings {
+        /// Where those of the earlier step lie.
+        before: Centering,
+        /// Where those of the later step lie.
+        after: Centering,
+    },
+    /// The values of two steps in time have different units.
+    #[error(
+        "steps with values times {} plus {} and times {} plus {}: give both the same `GridConfig`",
+        before.0, before.1, after.0, after.1
+    )]
+    Units {
+        /// Factor and summand of the earlier step.
+        before: (f32, f32),
         /// Those of the later step.
-        after: GridConfig,
+        after: (f32, f32),
     },
     /// The share of the later step is NaN.
     #[error("the share of the later step is a number from 0 to 1, not NaN")]
