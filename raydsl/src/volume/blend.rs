@@ -9,7 +9,8 @@ use super::grid::{Grid, GridConfig, GridView, NO_RANGE};
 use super::voxel::{Corners, Voxel};
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
-    DescribedSlice, F, Machine, Method, Owner, Resource, Slice, Type as MachineType, U, X3, name, visit_value,
+    DescribedSlice, F, Machine, Method, Owner, Resource, Slice, Type as MachineType, U, X3, name,
+    visit_value,
 };
 use crate::{Type, kernel};
 

@@ -41,6 +41,7 @@ struct Films {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Counts {
+    recorded: u64,
     printed: u64,
     compiled: u64,
     kept: u64,
@@ -55,6 +56,7 @@ impl Films {
     fn counts(&self) -> Counts {
         let context = self.gpu.context();
         Counts {
+            recorded: context.recorded(),
             printed: context.printed(),
             compiled: context.compiled(),
             kept: context.scene_bytes(),
