@@ -1,5 +1,7 @@
 //! What the render thread knows of data: the kernel that makes a picture of them, and picking.
 
+use std::fmt;
+
 use raydsl::prelude::*;
 
 use crate::look::{Kind, Look};
@@ -22,7 +24,7 @@ pub(crate) trait Subject {
     ) -> Result<(), String>;
 
     /// Returns what a ray meets first.
-    fn pick(&self, look: &Look, ray: Ray) -> Option<Picked>;
+    fn pick(&mut self, look: &Look, ray: Ray) -> Option<Picked>;
 }
 
 /// What is seen in a pixel.
@@ -34,6 +36,13 @@ pub struct Picked {
     pub position: Vec3,
     /// What is there: colour, material or value.
     pub value: String,
+}
+
+impl fmt::Display for Picked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { id, position: Vec3 { x, y, z }, value } = self;
+        write!(f, "{id} at ({x:.4}, {y:.4}, {z:.4}): {value}")
+    }
 }
 
 /// What is known of data that are open.

@@ -43,7 +43,12 @@ impl Teller<'_> {
     /// Reports a completed share of a part of the work; breaks if nobody waits for it any more.
     pub(crate) fn tell(&self, what: &'static str, share: f64) -> ControlFlow<()> {
         self.link.send(Event::Progress { what, share: share as f32 });
-        if self.link.is_closed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if self.is_over() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    /// Returns whether nobody waits for the data any more.
+    pub(crate) fn is_over(&self) -> bool {
+        self.link.is_closed()
     }
 }
 
@@ -53,7 +58,7 @@ pub(crate) type Serve<'a> = &'a mut dyn FnMut(Info, &mut dyn Subject);
 /// Loads data and serves them; returns when they are no longer wanted.
 pub(crate) fn load(path: &Path, link: &Arc<Link>, serve: Serve<'_>) -> Result<(), Failure> {
     let teller = Teller { link };
-    if let Some((made, number)) = made_in_code(path) {
+    if let Some((made, number)) = made_in_code(path)? {
         return match made {
             Made::Landscape => points::landscape(number, &teller, serve),
             Made::Head => volume::head(number, serve),
@@ -86,14 +91,22 @@ const MOST_POINTS: u32 = 200_000_000;
 /// The most voxels along a side of a head.
 const MOST_SIDE: u32 = 1024;
 
-/// Reads `landscape:2000000` and `head:192`.
-fn made_in_code(path: &Path) -> Option<(Made, u32)> {
-    let (name, number) = path.to_str()?.split_once(':')?;
-    let number: u32 = number.parse().ok()?;
-    match name {
-        "landscape" if (1..=MOST_POINTS).contains(&number) => Some((Made::Landscape, number)),
-        "head" if (8..=MOST_SIDE).contains(&number) => Some((Made::Head, number)),
-        _ => None,
+/// Reads `landscape:2000000` and `head:192`; other names are those of files.
+fn made_in_code(path: &Path) -> Result<Option<(Made, u32)>, Failure> {
+    let words = path.to_str().and_then(|text| text.split_once(':'));
+    let (made, range, number) = match words {
+        Some(("landscape", number)) => (Made::Landscape, 1..=MOST_POINTS, number),
+        Some(("head", number)) => (Made::Head, 8..=MOST_SIDE, number),
+        _ => return Ok(None),
+    };
+    match number.parse() {
+        Ok(number) if range.contains(&number) => Ok(Some((made, number))),
+        _ => Err(Failure::Other(format!(
+            "{}: choose a number from {} to {}",
+            path.display(),
+            range.start(),
+            range.end()
+        ))),
     }
 }
 
@@ -111,8 +124,8 @@ enum FileKind {
 
 /// What is said of a file whose name tells no format.
 const FORMATS: &str = "unknown format; points are .las, .laz, .ply and .xyz, surfaces .glb, .gltf, \
-    .obj, .ply and .tri, volumes .mha, .mhd, .nhdr, .nii, .nii.gz, .nrrd, .raw, .vti and folders of \
-    .png";
+    .obj, .ply and .tri, volumes .mha, .mhd, .nhdr, .nii, .nii.gz, .nrrd, .raw, .vti and folders \
+    of .png";
 
 /// Tells the kind of a file by its name.
 fn kind_of(path: &Path) -> FileKind {
@@ -140,7 +153,24 @@ fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
-/// Returns the pictures of a folder, in order of their names.
+/// What names of numbered files are sorted by: the text, and the numbers in it as numbers.
+fn order(name: &str) -> Vec<(String, u128, String)> {
+    let mut parts = Vec::new();
+    let mut rest = name;
+    while !rest.is_empty() {
+        let text = rest.find(|c: char| c.is_ascii_digit()).unwrap_or(rest.len());
+        let (text, after) = rest.split_at(text);
+        let digits = after.find(|c: char| !c.is_ascii_digit()).unwrap_or(after.len());
+        let (digits, after) = after.split_at(digits);
+        // A number that is too large for its type comes last, in the order of its digits.
+        let number = if digits.is_empty() { 0 } else { digits.parse().unwrap_or(u128::MAX) };
+        parts.push((text.to_owned(), number, digits.to_owned()));
+        rest = after;
+    }
+    parts
+}
+
+/// Returns the pictures of a folder, in order of their names, where 2 comes before 10.
 fn layers(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let fail = |e: std::io::Error| Failure::Other(format!("{}: {e}", folder.display()));
     let mut found = Vec::new();
@@ -150,7 +180,7 @@ fn layers(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
             found.push(path);
         }
     }
-    found.sort();
+    found.sort_by_cached_key(|path| (order(&file_name(path)), path.clone()));
     Ok(found)
 }
 
@@ -172,10 +202,29 @@ mod tests {
         ] {
             assert_eq!(kind_of(Path::new(name)), kind, "{name}");
         }
-        assert_eq!(made_in_code(Path::new("landscape:500")), Some((Made::Landscape, 500)));
-        assert_eq!(made_in_code(Path::new("head:64")), Some((Made::Head, 64)));
-        for name in ["landscape:0", "landscape", "head:1", "head:x", "c:5"] {
-            assert_eq!(made_in_code(Path::new(name)), None, "{name}");
+        let made = |name: &str| made_in_code(Path::new(name)).map_err(|e| e.to_string());
+        assert_eq!(made("landscape:500"), Ok(Some((Made::Landscape, 500))));
+        assert_eq!(made("head:64"), Ok(Some((Made::Head, 64))));
+        for name in ["landscape", "c:5"] {
+            assert_eq!(made(name), Ok(None), "{name}");
         }
+        for (name, range) in [
+            ("landscape:0", "from 1 to 200000000"),
+            ("head:4", "from 8 to 1024"),
+            ("head:x", "from 8 to 1024"),
+        ] {
+            assert_eq!(made(name), Err(format!("{name}: choose a number {range}")));
+        }
+    }
+
+    #[test]
+    fn layers_are_in_the_order_of_their_numbers() {
+        let mut names = ["a100.png", "a2.png", "a10.png", "a1.png", "b1.png", "a.png", "a02.png"];
+        names.sort_by_key(|name| order(name));
+        let sorted = ["a1.png", "a02.png", "a2.png", "a10.png", "a100.png", "a.png", "b1.png"];
+        assert_eq!(names, sorted);
+        let mut numbers = ["1.png", "10.png", "100.png", "2.png"];
+        numbers.sort_by_key(|name| order(name));
+        assert_eq!(numbers, ["1.png", "2.png", "10.png", "100.png"]);
     }
 }

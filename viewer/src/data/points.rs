@@ -45,7 +45,7 @@ pub(super) fn open(path: &Path, teller: &Teller<'_>, serve: Serve<'_>) -> Result
         let share = done as f64 / total.max(1) as f64;
         is_over |= teller.tell("reading points", share).is_break();
     })?;
-    if is_over { Ok(()) } else { show(file_name(path), &points, teller, serve) }
+    if is_over { Ok(()) } else { show(file_name(path), points, teller, serve) }
 }
 
 /// Makes a landscape and serves it.
@@ -54,23 +54,26 @@ pub(super) fn landscape(count: u32, teller: &Teller<'_>, serve: Serve<'_>) -> Re
         // The count goes on even if nobody waits: it takes a second.
         let _ = teller.tell("making a landscape", done as f64 / f64::from(count));
     });
-    show("landscape".to_owned(), &points, teller, serve)
+    if teller.is_over() { Ok(()) } else { show("landscape".to_owned(), points, teller, serve) }
 }
 
 fn show(
     name: String,
-    points: &PointCloud,
+    points: PointCloud,
     teller: &Teller<'_>,
     serve: Serve<'_>,
 ) -> Result<(), Failure> {
-    let scaled = cloud::scale(points, None)?;
-    let spheres = spheres(points, &scaled);
+    let scaled = cloud::scale(&points, None)?;
+    let spheres = spheres(&points, &scaled);
+    let view = cloud::suggested_view(&points);
+    let (scale, offset) = (scaled.scale, scaled.offset);
+    // Only the spheres are needed from here on: the file's numbers are twice as large.
+    drop((points, scaled));
     let config = BuildConfig::default();
     let tree =
         Bvh::build_observed(&spheres, &[], &config, |done| teller.tell("building the tree", done))?;
-    let view = cloud::suggested_view(points);
     let place = |p: [f64; 3]| {
-        let axis = |i: usize| ((p[i] - scaled.offset[i]) * scaled.scale) as f32;
+        let axis = |i: usize| ((p[i] - offset[i]) * scale) as f32;
         vec3(axis(0), axis(1), axis(2))
     };
     let home = Pose {
@@ -84,7 +87,7 @@ fn show(
     let info = Info { kind: Kind::Points, name, size, home, range, histogram };
     // Light from as far away as a dozen neighbours is what makes a surface of spheres look round.
     let radius = spheres.first().map_or(1.0, |s| s.radius.to_f32()) * 24.0;
-    serve(info, &mut Points { tree, radius, scale: scaled.scale, offset: scaled.offset });
+    serve(info, &mut Points { tree, radius, scale, offset });
     Ok(())
 }
 
@@ -143,7 +146,7 @@ impl Subject for Points<'_> {
         Ok(())
     }
 
-    fn pick(&self, _look: &Look, ray: Ray) -> Option<Picked> {
+    fn pick(&mut self, _look: &Look, ray: Ray) -> Option<Picked> {
         let hit = self.tree.closest_hit(ray);
         if !hit.is_hit {
             return None;

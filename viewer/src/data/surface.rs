@@ -23,7 +23,7 @@ pub(super) fn open_scene(
     teller: &Teller<'_>,
     serve: Serve<'_>,
 ) -> Result<(), Failure> {
-    show(file_name(path), &scene::load(path)?, Vec3::Y, teller, serve)
+    show(file_name(path), scene::load(path)?, Vec3::Y, teller, serve)
 }
 
 /// Loads triangles, of one rough material, and serves them.
@@ -51,18 +51,20 @@ pub(super) fn open_mesh(path: &Path, teller: &Teller<'_>, serve: Serve<'_>) -> R
         }],
         ..Default::default()
     };
-    show(file_name(path), &file, Vec3::Y, teller, serve)
+    show(file_name(path), file, Vec3::Y, teller, serve)
 }
 
-/// The file's first camera that has a perspective, or one that sees all.
+/// The file's first camera that has a perspective, or one that sees all. Orbits turn around the
+/// world's up, not around that of a camera that looks down; that one is taken at the pole only.
 fn home(file: &File, bounds: Aabb, up: Vec3) -> Pose {
     let all = Pose::of_box(bounds, up, vec3(0.45, 0.4, 0.8));
     for c in &file.cameras {
         if let Projection::Perspective { vertical, .. } = c.projection {
             let away = c.position.distance(bounds.center()).max(1e-3 * bounds.size().length());
             let target = c.position + c.forward * away;
-            let pose = Pose { eye: c.position, target, up: c.up, fov_y: vertical };
-            return if pose.is_valid() { pose } else { all };
+            let pose = Pose { eye: c.position, target, up, fov_y: vertical };
+            let tries = [pose, Pose { up: c.up, ..pose }, all];
+            return tries.into_iter().find(Pose::is_valid).unwrap_or(all);
         }
     }
     all
@@ -70,13 +72,17 @@ fn home(file: &File, bounds: Aabb, up: Vec3) -> Pose {
 
 fn show(
     name: String,
-    file: &File,
+    file: File,
     up: Vec3,
     teller: &Teller<'_>,
     serve: Serve<'_>,
 ) -> Result<(), Failure> {
-    let mut model = Model::new(file);
+    let mut model = Model::new(&file);
     let bounds = model.bounds();
+    let home = home(&file, bounds, up);
+    let names: Vec<String> = file.materials.iter().map(|m| m.name.clone()).collect();
+    // The model has its own triangles and pictures.
+    drop(file);
     let is_dark = model.lights.is_empty();
     if is_dark {
         // What has no lamps gets a sun beside the sky.
@@ -106,11 +112,9 @@ fn show(
         model.looks.len(),
         model.lights.len()
     );
-    let home = home(file, bounds, up);
     let info =
         Info { kind: Kind::Surface, name, size, home, range: Vec2::ZERO, histogram: Vec::new() };
     let radius = 0.25 * bounds.size().length();
-    let names: Vec<&str> = file.materials.iter().map(|m| m.name.as_str()).collect();
     serve(info, &mut Surface { model: &model, mesh: &mesh, tree: &tree, lights, radius, names });
     Ok(())
 }
@@ -121,7 +125,7 @@ struct Surface<'a> {
     tree: &'a Bvh<'a, IndexedTriangle>,
     lights: Lights<'a, AnyLight>,
     radius: f32,
-    names: Vec<&'a str>,
+    names: Vec<String>,
 }
 
 /// How often light is scattered at most.
@@ -186,13 +190,13 @@ impl Subject for Surface<'_> {
         Ok(())
     }
 
-    fn pick(&self, _look: &Look, ray: Ray) -> Option<Picked> {
+    fn pick(&mut self, _look: &Look, ray: Ray) -> Option<Picked> {
         let hit = self.tree.closest_hit(ray);
         if !hit.is_hit {
             return None;
         }
         let material = self.model.materials.get(hit.prim_id as usize).copied().unwrap_or(0);
-        let name = self.names.get(material as usize).copied().unwrap_or_default();
+        let name = self.names.get(material as usize).map_or("", String::as_str);
         let value = format!("material {material} {name}").trim_end().to_owned();
         Some(Picked { id: u64::from(hit.prim_id), position: ray.at(hit.t), value })
     }

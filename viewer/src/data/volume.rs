@@ -175,6 +175,9 @@ impl<'a> Scan<'a> {
     }
 }
 
+/// The most steps of a pick: more than the diagonal of any grid has.
+const MOST_STEPS: f32 = 1e6;
+
 /// Direction to the light, fixed in the world: a kernel that follows the camera would be another
 /// one for each picture.
 fn to_light(up: Vec3) -> Vec3 {
@@ -217,22 +220,25 @@ impl Subject for Scan<'_> {
     }
 
     /// Finds where half of the light is absorbed, by steps of half a voxel.
-    fn pick(&self, look: &Look, ray: Ray) -> Option<Picked> {
-        let transfer = self.volume.as_ref()?.transfer();
+    fn pick(&mut self, look: &Look, ray: Ray) -> Option<Picked> {
         let (enter, leave) = self.grid.span(ray);
         let cuts = Cuts::new(&look.cuts, self.bounds);
-        let step = 0.5 * self.voxel;
-        let (mut t, mut depth) = (enter + 0.5 * step, 0.0);
-        while t < leave {
-            let position = ray.at(t);
-            if !cuts.has(position) {
-                let value = self.grid.value(position);
-                depth += transfer.at(value).extinction * step;
-                if depth > core::f32::consts::LN_2 {
-                    return Some(self.picked(position, value));
-                }
+        let (grid, step) = (self.grid, 0.5 * self.voxel);
+        // A volume that cannot be had shows nothing: the picture's error says why.
+        let transfer = self.volume(&look.knots).ok()?.transfer();
+        // Counted: far from the camera a step may be too short to change the distance.
+        let steps = ((leave - enter) / step).ceil().clamp(0.0, MOST_STEPS) as u32;
+        let mut depth = 0.0;
+        for i in 0..steps {
+            let position = ray.at(enter + (i as f32 + 0.5) * step);
+            if cuts.has(position) {
+                continue;
             }
-            t += step;
+            let value = grid.value(position);
+            depth += transfer.at(value).extinction * step;
+            if depth > core::f32::consts::LN_2 {
+                return Some(self.picked(position, value));
+            }
         }
         None
     }
