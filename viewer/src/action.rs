@@ -77,6 +77,20 @@ pub enum Action {
     Quit,
 }
 
+impl Action {
+    /// Returns the action that does the same as this one and then another, if there is one.
+    pub(crate) fn joined(&self, next: &Self) -> Option<Self> {
+        Some(match (self, next) {
+            (Self::Orbit(x, y), Self::Orbit(dx, dy)) => Self::Orbit(x + dx, y + dy),
+            (Self::Turn(x, y), Self::Turn(dx, dy)) => Self::Turn(x + dx, y + dy),
+            (Self::Fly(v), Self::Fly(by)) => Self::Fly(*v + *by),
+            (Self::Zoom(factor), Self::Zoom(by)) => Self::Zoom(factor * by),
+            (Self::Size(..), Self::Size(w, h)) => Self::Size(*w, *h),
+            _ => return None,
+        })
+    }
+}
+
 impl fmt::Display for Action {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let knot =
@@ -169,23 +183,26 @@ mod tests {
 
     #[test]
     fn wrong_lines_say_what_is_wrong() {
-        for line in [
-            "",
-            "open",
-            "fly 1 2",
-            "fly 1 2 x",
-            "fly 1 2 inf",
-            "mode none",
-            "variant packet5",
-            "show",
-            "home now",
-            "cut cube 1",
-            "knot turn 1",
-            "panel keys maybe",
-            "step -1",
-            "dance",
+        for (line, expected) in [
+            ("", "the verb is missing: choose from open, add, "),
+            ("open", "the name of a file is missing"),
+            ("fly 1 2", "a word is missing at the end"),
+            ("fly 1 2 x", "'x' is no number for this place"),
+            ("fly 1 2 inf", "numbers are finite"),
+            ("mode none", "choose a mode from spheres, "),
+            ("variant packet5", "choose a variant from scalar, packet4, "),
+            ("show", "a word is missing at the end"),
+            ("show light", "show picture, cost or difference VARIANT"),
+            ("home now", "'now' is one word too many"),
+            ("cut cube 1", "write cut ball, cut half, cut move or cut remove"),
+            ("knot turn 1", "write knot add, knot set or knot remove"),
+            ("panel keys maybe", "write on or off"),
+            ("step -1", "'-1' is no number for this place"),
+            ("wait 0", "wait for 1 sample or more"),
+            ("dance", "'dance' is no verb: choose from open, add, "),
         ] {
-            assert!(line.parse::<Action>().is_err(), "{line}");
+            let error = line.parse::<Action>().expect_err(line);
+            assert!(error.starts_with(expected), "{line}: {error}");
         }
     }
 }

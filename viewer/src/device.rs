@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use raydsl::gpu::Context;
+use raydsl::gpu::{Context, GpuError};
 use raydsl::prelude::*;
 
 use crate::look::Look;
@@ -21,13 +21,15 @@ struct State {
 #[derive(Debug, Default)]
 pub struct Device {
     state: Mutex<State>,
+    /// Held while a renderer is made, which takes long: panels ask for the state meanwhile.
+    making: Mutex<()>,
 }
 
 impl Device {
     /// Uses a device of the application.
     pub fn of_window(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let state = State { given: Some((device, queue)), made: None, presenter: None };
-        Self { state: Mutex::new(state) }
+        Self { state: Mutex::new(state), making: Mutex::default() }
     }
 
     fn state(&self) -> std::sync::MutexGuard<'_, State> {
@@ -35,19 +37,22 @@ impl Device {
     }
 
     /// Returns the renderer, which is made first if there is none.
-    pub(crate) fn scheduler(&self) -> Result<Arc<GpuScheduler>, String> {
-        let mut state = self.state();
-        if let Some(made) = &state.made {
-            return Ok(made.clone());
-        }
-        let scheduler = match &state.given {
-            Some((device, queue)) => {
-                GpuScheduler::with_context(Context::from_wgpu(None, device.clone(), queue.clone()))
-            }
-            None => GpuScheduler::new().map_err(|e| e.to_string())?,
+    pub(crate) fn scheduler(&self) -> Result<Arc<GpuScheduler>, GpuError> {
+        let _making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
+        let (given, made) = {
+            let state = self.state();
+            (state.given.clone(), state.made.clone())
         };
-        let scheduler = Arc::new(scheduler);
-        state.made = Some(scheduler.clone());
+        if let Some(made) = made {
+            return Ok(made);
+        }
+        let scheduler = Arc::new(match given {
+            Some((device, queue)) => {
+                GpuScheduler::with_context(Context::from_wgpu(None, device, queue))
+            }
+            None => GpuScheduler::new()?,
+        });
+        self.state().made = Some(scheduler.clone());
         Ok(scheduler)
     }
 
@@ -62,7 +67,7 @@ impl Device {
         kernel: &PictureKernel<'_>,
         look: &Look,
         size: (u32, u32),
-    ) -> Result<wgpu::Texture, String> {
+    ) -> Result<wgpu::Texture, GpuError> {
         let scheduler = self.scheduler()?;
         let context = scheduler.context();
         // Taken out, so that nobody waits for the lock while the device computes.
@@ -71,13 +76,13 @@ impl Device {
             kept.unwrap_or_else(|| Presenter::new(context.device(), context.queue()));
         let window = presenter.window(size);
         let camera = look.pose.camera();
-        scheduler.frame_into(&camera, kernel, size, &window).map_err(|e| e.to_string())?;
+        scheduler.frame_into(&camera, kernel, size, &window)?;
         let texture = presenter.show(&window, size, look.exposure);
         self.state().presenter = Some(presenter);
         Ok(texture)
     }
 
-    /// Forgets a device that does not work.
+    /// Forgets a device that is lost.
     pub(crate) fn forget(&self) {
         *self.state() = State::default();
     }

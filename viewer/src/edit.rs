@@ -1,10 +1,7 @@
 //! Changes of a look that need no data.
 
-use raydsl::prelude::*;
-
 use crate::action::Action;
 use crate::look::{CutObject, Knot, Look, preset};
-use crate::subject::Picked;
 
 /// The most pixels along a side of a picture.
 const MOST_SIDE: u32 = 16384;
@@ -120,14 +117,4 @@ fn edit_cuts(look: &mut Look, action: &Action) -> Result<(), String> {
         _ => return Err(none()),
     }
     Ok(())
-}
-
-/// Returns what was picked, as a line.
-pub(crate) fn line_of_pick(picked: Option<&Picked>) -> String {
-    match picked {
-        Some(Picked { id, position: Vec3 { x, y, z }, value }) => {
-            format!("picked {id} at ({x:.4}, {y:.4}, {z:.4}): {value}")
-        }
-        None => "picked nothing".to_owned(),
-    }
 }

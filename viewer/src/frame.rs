@@ -1,10 +1,12 @@
 //! Finished pictures.
 
+use std::fmt::Display;
 use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use raydsl::integrators::heat_color;
 use raydsl::prelude::*;
-use raydsl::render::Display;
+use raydsl::render::Display as Shown;
 use rayon::prelude::*;
 
 /// How two variants differ.
@@ -55,13 +57,33 @@ impl Frame {
 /// Writes pixels of four bytes, from the top, as PNG.
 pub(crate) fn write_png(path: &Path, rgba: &[u8], size: (u32, u32)) -> Result<(), String> {
     let color = image::ExtendedColorType::Rgba8;
-    image::save_buffer(path, rgba, size.0, size.1, color)
-        .map_err(|e| format!("cannot write {}: {e}; choose another place", path.display()))
+    let format = image::ImageFormat::Png;
+    save(path, |part| image::save_buffer_with_format(part, rgba, size.0, size.1, color, format))
+}
+
+/// Writes a file under another name first, so that it is whole or not there, and makes its folder.
+pub(crate) fn save<E: Display>(
+    path: &Path,
+    write: impl FnOnce(&Path) -> Result<(), E>,
+) -> Result<(), String> {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    let fail = |e: String| format!("cannot write {}: {e}; choose another place", path.display());
+    let folder = path.parent().unwrap_or(Path::new(""));
+    std::fs::create_dir_all(folder).map_err(|e| fail(e.to_string()))?;
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    let part = folder.join(format!(".{}-{count}.part", std::process::id()));
+    let end = write(&part).map_err(|e| e.to_string());
+    let end = end.and_then(|()| std::fs::rename(&part, path).map_err(|e| e.to_string()));
+    if end.is_err() {
+        // It may not be there at all.
+        let _ = std::fs::remove_file(&part);
+    }
+    end.map_err(fail)
 }
 
 /// Returns the bytes of a picture, from the top.
 pub(crate) fn shown(light: &Image<Vec4>, exposure: f32) -> Vec<u8> {
-    let display = Display::new().exposure(exposure);
+    let display = Shown::new().exposure(exposure);
     bytes(light, |pixel| display.color(*pixel))
 }
 

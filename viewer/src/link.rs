@@ -5,8 +5,6 @@ use std::sync::mpsc::Sender;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use raydsl::prelude::*;
-
 use crate::frame::Frame;
 use crate::look::Look;
 use crate::subject::{Info, Picked};
@@ -20,26 +18,29 @@ pub(crate) enum Event {
     Loaded(Box<Info>),
     /// The data cannot be loaded.
     Refused(String),
-    /// The picture cannot be made.
-    Failed(String),
-    /// The device does not work: another variant must.
-    DeviceFailed(String),
+    /// The picture of a job, by its number, cannot be made.
+    Failed { number: u64, message: String },
+    /// The device does not make the picture of a job: another variant must.
+    DeviceFailed { number: u64, message: String },
     /// What is in a pixel.
     Picked(Option<Picked>),
-    /// The kernel's text.
-    Wgsl(String),
+    /// The kernel's text, or why there is none.
+    Wgsl(Result<String, String>),
+    /// The last event of a thread, with the message of its panic if there was one.
+    Ended(Option<String>),
 }
 
 /// What a thread reports, with the number of its data in the session.
 pub(crate) type Report = (u64, Event);
 
-/// A question beside the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A question beside the picture, with the look that it is about: that of the job may be another by
+/// the time of the answer.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Question {
     /// What is in a pixel?
-    Pick(u32, u32),
+    Pick { x: u32, y: u32, look: Arc<Look> },
     /// What is the kernel's text?
-    Wgsl,
+    Wgsl(Arc<Look>),
 }
 
 /// A picture that is wanted.
@@ -47,6 +48,9 @@ pub(crate) enum Question {
 pub(crate) struct Job {
     /// Grows with every change of what is visible.
     pub(crate) number: u64,
+    /// The number of the last change of the light: pictures that differ in nothing but the exposure
+    /// share a film.
+    pub(crate) light: u64,
     pub(crate) look: Arc<Look>,
     /// Samples of each pixel after which there is nothing to do.
     pub(crate) limit: u32,
@@ -169,10 +173,4 @@ impl Link {
         let _ = self.events.send((self.id, event));
         (self.wake)();
     }
-}
-
-/// Returns the ray through the middle of a pixel.
-pub(crate) fn ray_of(look: &Look, x: u32, y: u32) -> Ray {
-    let rays = look.pose.camera().begin_frame(look.size.0, look.size.1);
-    CameraRays::primary_ray(&rays, x as f32 + 0.5, y as f32 + 0.5)
 }

@@ -40,6 +40,12 @@ impl Pose {
         Pinhole::new(self.eye, self.target, self.up, self.fov_y)
     }
 
+    /// Returns the ray through the middle of a pixel of a picture of this size.
+    pub(crate) fn ray(&self, (width, height): (u32, u32), x: u32, y: u32) -> Ray {
+        let rays = self.camera().begin_frame(width, height);
+        CameraRays::primary_ray(&rays, x as f32 + 0.5, y as f32 + 0.5)
+    }
+
     /// Returns the distance from the target.
     pub fn distance(&self) -> f32 {
         self.eye.distance(self.target)

@@ -1,30 +1,28 @@
 //! Progressive rendering on the thread of the data: coarse while something changes, then sharp,
 //! then better with every pass.
 
+mod coarse;
 mod picture;
 
 use std::collections::HashMap;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
+use raydsl::gpu::GpuError;
 use raydsl::prelude::*;
 
 use crate::device::Device;
 use crate::frame::{Frame, difference, shown};
-use crate::link::{Event, Job, Link, Question, ray_of};
+use crate::link::{Event, Job, Link, Question};
 use crate::look::{Look, Mode, Show};
 use crate::subject::{PictureKernel, Subject};
 pub(crate) use picture::is_same_kernel;
-use picture::{LONGEST_PASS, Picture, error};
+use picture::{LONGEST_PASS, Picture, error, milliseconds};
 
 /// Samples that the sequences are made for.
 const PLANNED: u32 = 256;
 /// The time between pictures of a film that already has some samples.
 const BETWEEN: Duration = Duration::from_millis(150);
-/// Pixels a second that are assumed before any were measured.
-const FIRST_RATE: f64 = 3e5;
-/// The least share of columns and rows of a coarse picture.
-const COARSEST: f64 = 1.0 / 16.0;
 
 /// Renders what the link asks for, until it is closed.
 pub(crate) fn serve(subject: &mut dyn Subject, link: &Link, device: &Device) {
@@ -35,15 +33,16 @@ pub(crate) fn serve(subject: &mut dyn Subject, link: &Link, device: &Device) {
         if link.is_closed() {
             return;
         }
+        worker.answer(subject);
         let Some(job) = link.job() else { continue };
-        worker.answer(subject, &job);
         if worker.is_idle(&job) {
             continue;
         }
         let look = job.look.clone();
         let end = subject.with_kernel(&look, &mut |kernel| worker.run(kernel, &look));
         if let Err(message) = end {
-            worker.fail(&job, Event::Failed(message));
+            worker.picture = Picture::failed(&job);
+            link.send(Event::Failed { number: job.number, message });
         }
     }
 }
@@ -67,29 +66,20 @@ impl Worker<'_> {
         number == job.number && (is_failed || samples >= job.limit)
     }
 
-    fn fail(&mut self, job: &Job, event: Event) {
-        self.picture = Picture { number: job.number, is_failed: true, ..Picture::none() };
-        self.link.send(event);
-    }
-
-    fn answer(&self, subject: &mut dyn Subject, job: &Job) {
-        let look = &*job.look;
+    /// Answers every question with one event: the session counts them.
+    fn answer(&self, subject: &mut dyn Subject) {
         for question in self.link.take_questions() {
-            match question {
-                Question::Pick(x, y) => {
-                    let ray = ray_of(look, x, y);
-                    self.link.send(Event::Picked(subject.pick(look, ray)));
+            let answer = match question {
+                Question::Pick { x, y, look } => {
+                    Event::Picked(subject.pick(&look, look.pose.ray(look.size, x, y)))
                 }
-                Question::Wgsl => {
-                    let link = self.link;
-                    let end = subject.with_kernel(look, &mut |kernel| {
-                        link.send(Event::Wgsl(kernel.wgsl()));
-                    });
-                    if let Err(message) = end {
-                        link.send(Event::Failed(message));
-                    }
+                Question::Wgsl(look) => {
+                    let mut text = String::new();
+                    let end = subject.with_kernel(&look, &mut |kernel| text = kernel.wgsl());
+                    Event::Wgsl(end.map(|()| text))
                 }
-            }
+            };
+            self.link.send(answer);
         }
     }
 
@@ -100,9 +90,14 @@ impl Worker<'_> {
             if !is_same_kernel(&job.look, look) {
                 return;
             }
-            if let Err(message) = self.improve(kernel, &job) {
-                self.device.forget();
-                self.fail(&job, Event::DeviceFailed(message));
+            if let Err(error) = self.improve(kernel, &job) {
+                // One that only refuses this kernel serves others, and the window.
+                if matches!(error, GpuError::DeviceLost { .. }) {
+                    self.device.forget();
+                }
+                self.picture = Picture::failed(&job);
+                let message = error.to_string();
+                self.link.send(Event::DeviceFailed { number: job.number, message });
             }
             self.link.wait_while(|job| self.is_idle(job));
             if self.link.is_closed() || self.link.has_questions() {
@@ -112,11 +107,8 @@ impl Worker<'_> {
     }
 
     /// Adds samples until there are enough, or something else is wanted.
-    fn improve(&mut self, kernel: &PictureKernel<'_>, job: &Job) -> Result<(), String> {
-        if self.picture.number != job.number {
-            let is_coarse_due = job.coarse.is_some();
-            self.picture = Picture { number: job.number, is_coarse_due, ..Picture::none() };
-        }
+    fn improve(&mut self, kernel: &PictureKernel<'_>, job: &Job) -> Result<(), GpuError> {
+        self.begin(job);
         if let Some(budget) = job.coarse
             && self.picture.is_coarse_due
         {
@@ -128,89 +120,33 @@ impl Worker<'_> {
         Ok(())
     }
 
+    /// Begins the picture of a job. The film of one that differs in nothing but the exposure is
+    /// kept, and shown again.
+    fn begin(&mut self, job: &Job) {
+        if self.picture.number == job.number {
+            return;
+        }
+        let is_coarse_due = job.coarse.is_some();
+        let new =
+            Picture { number: job.number, light: job.light, is_coarse_due, ..Picture::none() };
+        let old = std::mem::replace(&mut self.picture, new);
+        let Some(films) = old.films.filter(|_| old.light == job.light && old.samples > 0) else {
+            return;
+        };
+        self.picture.is_coarse_due = false;
+        self.picture.samples = old.samples;
+        self.picture.next = old.next;
+        self.picture.ms = old.ms;
+        self.show(&job.look, &films, false, old.ms);
+        self.picture.films = Some(films);
+    }
+
     fn is_interrupted(&self, job: &Job) -> bool {
         self.link.is_outdated(job.number) || self.link.has_questions()
     }
 
-    /// Makes a picture of as many pixels as the time allows. While the camera moves, a change
-    /// follows another faster than pictures: this one is shown even if it is outdated, unless it
-    /// takes too long.
-    fn coarse(
-        &mut self,
-        kernel: &PictureKernel<'_>,
-        job: &Job,
-        budget: Duration,
-    ) -> Result<(), String> {
-        let look = &*job.look;
-        let speed = (look.mode, look.variant, look.show == Show::Picture);
-        let rate = self.rates.get(&speed).copied().unwrap_or(FIRST_RATE);
-        let pixels = f64::from(look.size.0) * f64::from(look.size.1);
-        let scale = (rate * budget.as_secs_f64() / pixels).sqrt().clamp(COARSEST, 1.0);
-        let side = |n: u32| ((f64::from(n) * scale).round() as u32).clamp(1, n);
-        let (width, height) = (side(look.size.0), side(look.size.1));
-        let start = Instant::now();
-        let is_picture = look.show == Show::Picture;
-        let share = if look.variant == Variant::Wgsl && is_picture && self.device.is_of_window() {
-            let texture = self.device.frame(kernel, look, (width, height))?;
-            self.show_on_device(texture, start.elapsed());
-            1.0
-        } else {
-            self.coarse_on_host(kernel, job, (width, height), budget)?
-        };
-        self.picture.is_coarse_due = false;
-        let done = share * f64::from(width) * f64::from(height);
-        let done = done.max(1.0) / start.elapsed().as_secs_f64();
-        let known = self.rates.entry(speed).or_insert(done);
-        // Slower is believed at once, and faster by half: a picture that is late is not seen.
-        *known = if done < *known { done } else { 0.5 * (*known + done) };
-        Ok(())
-    }
-
-    /// Returns the share of the picture that was made; if it is not all, nothing is shown.
-    fn coarse_on_host(
-        &mut self,
-        kernel: &PictureKernel<'_>,
-        job: &Job,
-        (width, height): (u32, u32),
-        budget: Duration,
-    ) -> Result<f64, String> {
-        let (look, link, start) = (&*job.look, self.link, Instant::now());
-        let other = matches!(look.show, Show::Difference(_)).then(|| Film::new(width, height));
-        let mut films = (Film::new(width, height), other);
-        let (mut share, patience) = (0.0, budget * (2 << self.late.min(5)));
-        let is_complete = self.add(kernel, look, &mut films, 1, &mut |made| {
-            share = made;
-            let is_late = link.is_outdated(job.number) && start.elapsed() > patience;
-            if is_late || link.is_closed() {
-                return ControlFlow::Break(());
-            }
-            ControlFlow::Continue(())
-        })?;
-        if is_complete {
-            self.show(look, &films, true, 1, start.elapsed());
-            share = 1.0;
-        }
-        self.late = if is_complete { 0 } else { self.late + 1 };
-        Ok(share)
-    }
-
-    fn show_on_device(&mut self, texture: wgpu::Texture, took: Duration) {
-        self.link.publish(Frame {
-            number: self.picture.number,
-            size: (texture.width(), texture.height()),
-            is_coarse: true,
-            samples: 0,
-            rgba: Vec::new(),
-            texture: Some(texture),
-            ms: took.as_secs_f64() * 1e3,
-            age_ms: self.picture.since.elapsed().as_secs_f64() * 1e3,
-            error: None,
-            difference: None,
-        });
-    }
-
     /// Adds a pass of samples to the film, unless it is interrupted.
-    fn pass(&mut self, kernel: &PictureKernel<'_>, job: &Job) -> Result<(), String> {
+    fn pass(&mut self, kernel: &PictureKernel<'_>, job: &Job) -> Result<(), GpuError> {
         let look = &*job.look;
         let (width, height) = look.size;
         let is_compared = matches!(look.show, Show::Difference(_));
@@ -222,18 +158,26 @@ impl Worker<'_> {
         let start = Instant::now();
         let link = self.link;
         let is_complete = self.add(kernel, look, &mut films, count, &mut |_| {
-            if link.is_outdated(job.number) || link.has_questions() {
+            // A question waits for the end of a pass of two films, which are compared sample by
+            // sample.
+            if link.is_outdated(job.number) || (link.has_questions() && !is_compared) {
                 return ControlFlow::Break(());
             }
             ControlFlow::Continue(())
         })?;
-        if is_complete {
+        let samples = films.0.samples();
+        if films.1.as_ref().is_some_and(|other| other.samples() != samples) {
+            // What was interrupted between both films cannot be compared: begin again.
+            self.picture.samples = 0;
+            return Ok(());
+        }
+        self.picture.samples = samples;
+        if is_complete || samples >= job.limit {
             let took = start.elapsed();
-            self.picture.samples = films.0.samples();
-            let samples = self.picture.samples;
+            self.picture.ms = milliseconds(took, count);
             let is_due = self.picture.shown_at.is_none_or(|at| at.elapsed() > BETWEEN);
             if is_due || samples >= job.limit || samples <= 4 {
-                self.show(look, &films, false, count, took);
+                self.show(look, &films, false, self.picture.ms);
             }
             self.picture.pace(count, took);
         }
@@ -249,7 +193,7 @@ impl Worker<'_> {
         films: &mut (Film, Option<Film>),
         samples: u32,
         observer: raydsl::render::Observer<'_>,
-    ) -> Result<bool, String> {
+    ) -> Result<bool, GpuError> {
         let is_whole =
             self.add_with(kernel, look, look.variant, &mut films.0, samples, observer)?;
         let (Some(film), Show::Difference(other)) = (&mut films.1, look.show) else {
@@ -266,13 +210,12 @@ impl Worker<'_> {
         film: &mut Film,
         samples: u32,
         observer: raydsl::render::Observer<'_>,
-    ) -> Result<bool, String> {
+    ) -> Result<bool, GpuError> {
         let (camera, sampling) = (look.pose.camera(), Sampling::new(PLANNED));
         let end = if variant == Variant::Wgsl {
             let device = self.device.scheduler()?;
             device
-                .accumulate_observed(&camera, kernel, &sampling, film, samples, observer)
-                .map_err(|e| e.to_string())?
+                .accumulate_observed(&camera, kernel, &sampling, film, samples, observer)?
                 .is_continue()
         } else {
             let scheduler = TiledScheduler::new().variant(variant);
@@ -283,14 +226,8 @@ impl Worker<'_> {
         Ok(end)
     }
 
-    fn show(
-        &mut self,
-        look: &Look,
-        films: &(Film, Option<Film>),
-        is_coarse: bool,
-        count: u32,
-        took: Duration,
-    ) {
+    /// Publishes a picture, whose samples took so many milliseconds each.
+    fn show(&mut self, look: &Look, films: &(Film, Option<Film>), is_coarse: bool, ms: f64) {
         let (film, other) = films;
         let light = film.image();
         let (rgba, difference) = match other {
@@ -309,7 +246,7 @@ impl Worker<'_> {
             samples: if is_coarse { 0 } else { film.samples() },
             rgba,
             texture: None,
-            ms: took.as_secs_f64() * 1e3 / f64::from(count.max(1)),
+            ms,
             age_ms: (now - self.picture.since).as_secs_f64() * 1e3,
             error: (film.samples() > 1).then(|| error(film)),
             difference,

@@ -28,7 +28,7 @@ pub enum Next {
 }
 
 impl Player {
-    /// Reads a script: an action a line; `#` begins a comment.
+    /// Reads a script: an action a line; `#` at the beginning of a word begins a comment.
     ///
     /// # Errors
     ///
@@ -36,7 +36,7 @@ impl Player {
     pub fn read(text: &str) -> Result<Self, String> {
         let mut actions = Vec::new();
         for (i, line) in text.lines().enumerate() {
-            let line = line.split('#').next().unwrap_or_default().trim();
+            let line = without_comment(line).trim();
             if !line.is_empty() {
                 actions.push(line.parse().map_err(|e| format!("line {}: {e}", i + 1))?);
             }
@@ -68,12 +68,13 @@ impl Player {
             if session.is_asking() {
                 return Next::Waits;
             }
-            let Some(action) = self.actions.get(self.next).cloned() else { return Next::Done };
-            // Whatever follows `open` is for the data that it opens.
-            let is_for_loader = matches!(action, Action::Cancel | Action::Quit);
+            let action = self.actions.get(self.next).cloned();
+            // Whatever follows `open` is for the data that it opens, and so is the end.
+            let is_for_loader = matches!(action, Some(Action::Cancel | Action::Quit));
             if session.progress().is_some() && !is_for_loader {
                 return Next::Waits;
             }
+            let Some(action) = action else { return Next::Done };
             if matches!(action, Action::Picture(_) | Action::Screenshot(_))
                 && has_to_render(session)
             {
@@ -111,6 +112,13 @@ impl Player {
     }
 }
 
+/// Returns a line up to its comment; the name of a file may have `#` inside of a word.
+fn without_comment(line: &str) -> &str {
+    let is_begin = |at: &usize| line[..*at].chars().next_back().is_none_or(char::is_whitespace);
+    let at = line.match_indices('#').map(|(at, _)| at).find(is_begin);
+    at.map_or(line, |at| &line[..at])
+}
+
 /// A picture is one of the last change: a sample of it is asked for.
 fn has_to_render(session: &mut Session) -> bool {
     if session.is_stuck() || session.has(1) {
@@ -126,9 +134,13 @@ mod tests {
 
     #[test]
     fn scripts_have_comments_and_lines() {
-        let player = Player::read("# a\n\nopen head:32 # b\nwait 4\n").expect("a script");
-        assert_eq!(player.actions, ["open head:32", "wait 4"].map(|l| l.parse().expect(l)));
+        let text = "# a\n\nopen head:32 # b\nopen a#1 b.las #c\nwait 4#\nwait 4 #\n";
+        let error = Player::read(text).expect_err("no number");
+        assert!(error.starts_with("line 5: '4#' is no number"), "{error}");
+        let player = Player::read(&text.replace("4#", "4")).expect("a script");
+        let lines = ["open head:32", "open a#1 b.las", "wait 4", "wait 4"];
+        assert_eq!(player.actions, lines.map(|l| l.parse().expect(l)));
         let error = Player::read("home\nhop\n").expect_err("no verb");
-        assert!(error.starts_with("line 2: "), "{error}");
+        assert!(error.starts_with("line 2: 'hop' is no verb: "), "{error}");
     }
 }

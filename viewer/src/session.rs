@@ -1,28 +1,28 @@
 //! The state of the viewer without a window: data, camera, look and pictures.
 
+mod data;
 mod events;
 mod files;
+mod log;
 mod state;
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::collections::{BTreeMap, VecDeque};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
 use crate::action::Action;
-use crate::data;
 use crate::device::Device;
 use crate::frame::Frame;
-use crate::link::{Event, Job, Link, Report};
-use crate::look::{Look, Mode};
+use crate::link::{Job, Report};
+use crate::look::{Kind, Look, Mode, Show};
 use crate::pose::Pose;
 use crate::render;
 use crate::subject::{Info, Picked};
-
-/// The most lines of a log.
-const MOST_LINES: usize = 20_000;
+use data::Data;
+use log::Log;
 
 /// How a session renders.
 #[derive(Clone, Debug)]
@@ -47,38 +47,6 @@ impl Config {
     }
 }
 
-/// Data on their thread.
-struct Data {
-    id: u64,
-    link: Arc<Link>,
-    thread: Option<JoinHandle<()>>,
-    path: PathBuf,
-    /// Whether the view is kept when these are there.
-    keeps_view: bool,
-}
-
-impl Data {
-    fn has_ended(&self) -> bool {
-        self.thread.as_ref().is_some_and(JoinHandle::is_finished)
-    }
-
-    /// Ends the thread, and waits for that.
-    fn end(mut self) {
-        self.link.close();
-        if let Some(thread) = self.thread.take() {
-            // A panic is on the terminal.
-            let _ = thread.join();
-        }
-    }
-}
-
-impl Drop for Data {
-    fn drop(&mut self) {
-        // The thread ends by itself, after the tile in hand; nobody waits for it.
-        self.link.close();
-    }
-}
-
 /// A viewer without a window. [`apply`](Self::apply) does what a person asks for and
 /// [`poll`](Self::poll) takes what became of it; neither waits for rendering or loading.
 pub struct Session {
@@ -90,20 +58,23 @@ pub struct Session {
     current: Option<Data>,
     info: Option<Info>,
     loading: Option<Data>,
+    /// The thread of data that are no longer wanted, while it still reads them.
+    leaving: Option<u64>,
     progress: Option<(&'static str, f32)>,
     device: Arc<Device>,
     events: (Sender<Report>, Receiver<Report>),
     wake: Arc<dyn Fn() + Send + Sync>,
     next_id: u64,
     number: u64,
+    /// The number of the last change that is more than one of the exposure.
+    light: u64,
     limit: u32,
     frame: Option<Arc<Frame>>,
-    log: Vec<String>,
-    errors: usize,
+    log: Log,
     picked: Option<Option<Picked>>,
     wgsl: Option<String>,
-    /// Files that the kernel's text goes to when it is there.
-    wgsl_files: Vec<String>,
+    /// What the answers to questions for the kernel's text go to: a file, or only a panel.
+    wgsl_files: VecDeque<Option<String>>,
     questions: usize,
     failed: Option<u64>,
     writers: Vec<JoinHandle<Result<String, String>>>,
@@ -123,18 +94,19 @@ impl Session {
             current: None,
             info: None,
             loading: None,
+            leaving: None,
             progress: None,
             device: Arc::new(device),
             events: channel(),
             wake: Arc::new(wake),
             next_id: 0,
             number: 0,
+            light: 0,
             frame: None,
-            log: Vec::new(),
-            errors: 0,
+            log: Log::default(),
             picked: None,
             wgsl: None,
-            wgsl_files: Vec::new(),
+            wgsl_files: VecDeque::new(),
             questions: 0,
             failed: None,
             writers: Vec::new(),
@@ -149,7 +121,7 @@ impl Session {
     pub fn apply(&mut self, action: &Action) -> Result<(), String> {
         let end = self.try_apply(action);
         match &end {
-            Ok(()) => self.note(action.to_string()),
+            Ok(()) => self.log.act(action),
             Err(message) => self.refuse(&format!("{action}: {message}")),
         }
         end
@@ -157,21 +129,12 @@ impl Session {
 
     fn try_apply(&mut self, action: &Action) -> Result<(), String> {
         match action {
-            Action::Open(path) => {
-                self.files = vec![path.clone()];
-                self.step = 0;
-                self.load(path, false);
-            }
-            Action::Add(path) => self.files.push(path.clone()),
+            Action::Open(path) => self.load(path, Some(vec![path.clone()]), 0),
+            Action::Add(path) => self.add(path.clone()),
             Action::Step(step) => self.go_to(*step)?,
-            Action::Cancel => {
-                let Some(loading) = self.loading.take() else {
-                    return Err("nothing is loading".to_owned());
-                };
-                self.progress = None;
-                self.note(format!("cancelled {}", loading.path.display()));
-            }
+            Action::Cancel => self.cancel()?,
             Action::Pick(x, y) => self.ask_pick(*x, *y)?,
+            Action::Wait(0) => return Err("wait for 1 sample or more".to_owned()),
             Action::Wait(samples) => self.want_samples(*samples),
             Action::Picture(name) => self.write_picture(name)?,
             Action::Wgsl(name) => self.ask_wgsl(Some(name))?,
@@ -200,7 +163,7 @@ impl Session {
             Action::Size(w, h) => look.size = crate::edit::size(*w, *h)?,
             Action::Mode(mode) => look.mode = self.checked_mode(*mode)?,
             Action::Variant(variant) => look.variant = *variant,
-            Action::Show(show) => look.show = *show,
+            Action::Show(show) => look.show = self.checked_show(*show)?,
             Action::Exposure(stops) => look.exposure = stops.clamp(-20.0, 20.0),
             Action::Home => look.pose = self.info.as_ref().ok_or("nothing is open")?.home,
             Action::View(name) => {
@@ -221,19 +184,37 @@ impl Session {
         Err(format!("choose from {} for these data", names.join(", ")))
     }
 
+    fn checked_show(&self, show: Show) -> Result<Show, String> {
+        let is_volume = self.info.as_ref().is_some_and(|info| info.kind == Kind::Volume);
+        if show == Show::Cost && is_volume {
+            return Err("a volume has no tree whose tests are counted".to_owned());
+        }
+        Ok(show)
+    }
+
     /// Shows another look; the same one starts nothing again.
     fn set_look(&mut self, look: Look) {
-        if look != self.look {
-            if !render::is_same_kernel(&look, &self.look) {
-                self.wgsl = None;
-            }
-            self.look = look;
+        if look == self.look {
+            return;
+        }
+        if !render::is_same_kernel(&look, &self.look) {
+            self.wgsl = None;
+        }
+        let exposure = look.exposure;
+        let is_same_light = look == Look { exposure, ..self.look.clone() };
+        self.look = look;
+        if is_same_light {
+            // The film is shown again, and goes on to as many samples.
+            self.number += 1;
+            self.submit();
+        } else {
             self.restart();
         }
     }
 
     fn restart(&mut self) {
         self.number += 1;
+        self.light = self.number;
         self.limit = self.config.samples;
         self.submit();
     }
@@ -241,7 +222,8 @@ impl Session {
     fn submit(&self) {
         let Some(data) = &self.current else { return };
         let (look, coarse) = (Arc::new(self.look.clone()), self.config.coarse);
-        data.link.want(Job { number: self.number, look, limit: self.limit, coarse });
+        let (number, light, limit) = (self.number, self.light, self.limit);
+        data.link.want(Job { number, light, look, limit, coarse });
     }
 
     pub(crate) fn want_samples(&mut self, samples: u32) {
@@ -249,54 +231,5 @@ impl Session {
             self.limit = samples;
             self.submit();
         }
-    }
-
-    fn go_to(&mut self, step: usize) -> Result<(), String> {
-        let path = self.files.get(step).cloned();
-        let path = path.ok_or_else(|| format!("there are {} steps", self.files.len()))?;
-        self.step = step;
-        self.load(&path, true);
-        Ok(())
-    }
-
-    /// Loads data on a thread of their own, which renders them then.
-    fn load(&mut self, path: &Path, keeps_view: bool) {
-        self.next_id += 1;
-        let (id, path) = (self.next_id, path.to_owned());
-        let link = Arc::new(Link::new(id, self.events.0.clone(), self.wake.clone()));
-        let (of_thread, device, file) = (link.clone(), self.device.clone(), path.clone());
-        let run = move || {
-            let link = of_thread;
-            let end = data::load(&file, &link, &mut |info, subject| {
-                link.send(Event::Loaded(Box::new(info)));
-                render::serve(subject, &link, &device);
-            });
-            if let Err(e) = end {
-                link.send(Event::Refused(e.to_string()));
-            }
-        };
-        let thread = std::thread::Builder::new().name("data".to_owned()).spawn(run);
-        match thread {
-            Ok(thread) => {
-                let thread = Some(thread);
-                self.progress = Some(("reading", 0.0));
-                self.loading = Some(Data { id, link, thread, path, keeps_view });
-            }
-            Err(e) => self.refuse(&format!("no thread for {}: {e}", path.display())),
-        }
-    }
-
-    /// Adds a line to the log, which forgets its oldest ones: a mouse makes many.
-    fn note(&mut self, line: String) {
-        if self.log.len() >= MOST_LINES {
-            self.log.drain(..MOST_LINES / 2);
-        }
-        self.log.push(line);
-    }
-
-    /// Adds a line on something that does not work to the log.
-    pub fn refuse(&mut self, message: &str) {
-        self.errors += 1;
-        self.note(format!("error: {message}"));
     }
 }

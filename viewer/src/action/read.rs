@@ -8,6 +8,11 @@ use raydsl::prelude::*;
 use super::Action;
 use crate::look::{CutObject, Knot, Show};
 
+/// The first words of lines.
+const VERBS: &str = "open, add, step, cancel, size, mode, variant, show, exposure, orbit, turn, \
+    fly, zoom, home, save-view, view, drop-view, knot, preset, cut, pick, wait, picture, \
+    screenshot, wgsl, panel, quit";
+
 /// The words of a line behind the verb.
 struct Words<'a>(SplitWhitespace<'a>);
 
@@ -104,13 +109,17 @@ impl<'a> Words<'a> {
             "preset" => Action::Preset(self.word()?.to_owned()),
             "cut" => self.of_cut()?,
             "pick" => Action::Pick(self.read()?, self.read()?),
-            "wait" => Action::Wait(self.read()?),
+            "wait" => match self.read()? {
+                0 => return Err("wait for 1 sample or more".to_owned()),
+                samples => Action::Wait(samples),
+            },
             "picture" => Action::Picture(self.word()?.to_owned()),
             "screenshot" => Action::Screenshot(self.word()?.to_owned()),
             "wgsl" => Action::Wgsl(self.word()?.to_owned()),
             "panel" => Action::Panel(self.word()?.to_owned(), self.is_on()?),
             "quit" => Action::Quit,
-            _ => return Err(format!("'{verb}' is no verb of a script")),
+            "" => return Err(format!("the verb is missing: choose from {VERBS}")),
+            _ => return Err(format!("'{verb}' is no verb: choose from {VERBS}")),
         })
     }
 }

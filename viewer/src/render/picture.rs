@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use raydsl::prelude::*;
 
+use crate::link::Job;
 use crate::look::{Look, Show};
 
 /// Samples of a pass where nobody waits for pictures in between.
@@ -14,6 +15,8 @@ const SHORT: Duration = Duration::from_millis(100);
 /// The picture in progress.
 pub(super) struct Picture {
     pub(super) number: u64,
+    /// The number of the change that the film is of.
+    pub(super) light: u64,
     pub(super) since: Instant,
     /// The film, and that of the variant it is compared with.
     pub(super) films: Option<(Film, Option<Film>)>,
@@ -22,6 +25,8 @@ pub(super) struct Picture {
     pub(super) is_coarse_due: bool,
     pub(super) is_failed: bool,
     pub(super) shown_at: Option<Instant>,
+    /// Milliseconds of a sample of the last pass.
+    pub(super) ms: f64,
     /// Samples of the next pass.
     pub(super) next: u32,
 }
@@ -30,14 +35,21 @@ impl Picture {
     pub(super) fn none() -> Self {
         Self {
             number: 0,
+            light: 0,
             since: Instant::now(),
             films: None,
             samples: 0,
             is_coarse_due: false,
             is_failed: false,
             shown_at: None,
+            ms: 0.0,
             next: 1,
         }
+    }
+
+    /// One that cannot be made.
+    pub(super) fn failed(job: &Job) -> Self {
+        Self { number: job.number, is_failed: true, ..Self::none() }
     }
 
     /// Makes the next pass longer if this one was short, and shorter if it was long.
@@ -48,6 +60,11 @@ impl Picture {
             self.next = (count * 2).min(LONGEST_PASS);
         }
     }
+}
+
+/// Returns the milliseconds of each of some samples.
+pub(super) fn milliseconds(took: Duration, count: u32) -> f64 {
+    took.as_secs_f64() * 1e3 / f64::from(count.max(1))
 }
 
 /// Returns whether the kernel for both looks is the same one.

@@ -11,11 +11,7 @@ use crate::subject::Info;
 impl Session {
     /// Takes what other threads have done since the last call; returns whether there was anything.
     pub fn poll(&mut self) -> bool {
-        let before = self.log.len();
         let mut is_new = false;
-        // Looked at first: what a thread reported before its end is taken below.
-        let data = [&self.loading, &self.current].into_iter().flatten();
-        let ended: Vec<u64> = data.filter(|data| data.has_ended()).map(|data| data.id).collect();
         while let Ok((id, event)) = self.events.1.try_recv() {
             is_new = true;
             self.take(id, event);
@@ -24,22 +20,27 @@ impl Session {
             is_new = true;
             self.frame = Some(frame);
         }
-        self.note_ended(&ended);
         let (done, going): (Vec<_>, Vec<_>) =
             std::mem::take(&mut self.writers).into_iter().partition(JoinHandle::is_finished);
         self.writers = going;
+        is_new |= !done.is_empty();
         done.into_iter().for_each(|writer| self.note_written(writer));
-        is_new || self.log.len() != before
+        is_new
     }
 
-    /// Notes threads that have ended although nobody closed them: by a panic, whose message is on
-    /// the terminal.
-    fn note_ended(&mut self, ended: &[u64]) {
-        let has_ended = |data: &mut super::Data| ended.contains(&data.id);
-        let lost = [self.loading.take_if(has_ended), self.current.take_if(has_ended)];
-        for data in lost.into_iter().flatten() {
+    /// Notes the end of a thread: early if nobody has closed its data.
+    fn note_ended(&mut self, id: u64, panic: Option<String>) {
+        let loading = self.loading.take_if(|data| data.id == id);
+        if loading.is_some() {
             self.progress = None;
-            self.refuse(&format!("the thread of {} has ended early", data.path.display()));
+        }
+        if let Some(data) = loading.or_else(|| self.current.take_if(|data| data.id == id)) {
+            let why = panic.map(|message| format!(": {message}")).unwrap_or_default();
+            self.refuse(&format!("the thread of {} has ended early{why}", data.path.display()));
+        }
+        if self.leaving == Some(id) {
+            self.leaving = None;
+            self.begin_to_load();
         }
     }
 
@@ -54,29 +55,42 @@ impl Session {
                 self.progress = None;
                 self.refuse(&message);
             }
-            Event::Failed(message) if is_current => {
-                self.failed = Some(self.number);
+            Event::Failed { number, message } if is_current && number == self.number => {
+                self.failed = Some(number);
                 self.refuse(&message);
             }
-            Event::DeviceFailed(message) if is_current => self.leave_device(&message),
+            Event::DeviceFailed { number, message } if is_current && number == self.number => {
+                self.leave_device(&message);
+            }
             Event::Picked(picked) if is_current => {
                 self.questions = self.questions.saturating_sub(1);
-                self.note(crate::edit::line_of_pick(picked.as_ref()));
+                self.log.note(match &picked {
+                    Some(picked) => format!("picked {picked}"),
+                    None => "picked nothing".to_owned(),
+                });
                 self.picked = Some(picked);
             }
             Event::Wgsl(text) if is_current => {
                 self.questions = self.questions.saturating_sub(1);
-                for name in std::mem::take(&mut self.wgsl_files) {
-                    let (path, text) = (self.config.out.join(&name), text.clone());
-                    self.write(&name, move || {
-                        std::fs::write(&path, text)
-                            .map_err(|e| format!("cannot write {}: {e}", path.display()))
-                    });
+                self.take_wgsl(text);
+            }
+            Event::Ended(panic) => self.note_ended(id, panic),
+            // Of data, or of a picture, that nobody wants any more.
+            _ => {}
+        }
+    }
+
+    /// Takes the answer to the oldest question for the kernel's text.
+    fn take_wgsl(&mut self, text: Result<String, String>) {
+        let file = self.wgsl_files.pop_front().flatten();
+        match text {
+            Ok(text) => {
+                if let Some(name) = file {
+                    self.write_text(&name, text.clone());
                 }
                 self.wgsl = Some(text);
             }
-            // Of data that nobody wants any more.
-            _ => {}
+            Err(message) => self.refuse(&format!("no kernel to print: {message}")),
         }
     }
 
@@ -99,11 +113,16 @@ impl Session {
 
     /// Shows data that have been loaded.
     fn begin(&mut self, info: Info) {
-        let Some(data) = self.loading.take() else { return };
+        let Some(mut data) = self.loading.take() else { return };
         self.progress = None;
-        self.note(format!("loaded {}: {}", info.name, info.size));
+        let keeps_view = data.series.is_none();
+        if let Some(files) = data.series.take() {
+            self.files = files;
+        }
+        self.step = data.step;
+        self.log.note(format!("loaded {}: {}", info.name, info.size));
         let was = self.info.as_ref().map(|info| info.kind);
-        if !(data.keeps_view && was == Some(info.kind)) {
+        if !(keeps_view && was == Some(info.kind)) {
             self.look.pose = info.home;
             self.look.cuts.clear();
             self.look.show = Show::Picture;

@@ -1,19 +1,24 @@
 //! Questions about the picture, and files that are written.
 
+use std::path::Path;
+use std::sync::Arc;
 use std::thread::JoinHandle;
 
 use super::Session;
-use crate::frame::write_png;
+use crate::frame::{save, write_png};
 use crate::link::Question;
+
+/// Returns the name of a picture, which says that it is PNG.
+fn png_name(name: &str) -> String {
+    let is_png = Path::new(name).extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
+    if is_png { name.to_owned() } else { format!("{name}.png") }
+}
 
 impl Session {
     fn ask(&mut self, question: Question) -> Result<(), String> {
         let data = self.current.as_ref().ok_or("nothing is open")?;
-        self.questions += 1;
-        if self.number == 0 {
-            return Err("nothing is open".to_owned());
-        }
         data.link.ask(question);
+        self.questions += 1;
         Ok(())
     }
 
@@ -22,13 +27,14 @@ impl Session {
         if x >= width || y >= height {
             return Err(format!("the picture has {width} x {height} pixels"));
         }
-        self.ask(Question::Pick(x, y))
+        let look = Arc::new(self.look.clone());
+        self.ask(Question::Pick { x, y, look })
     }
 
     /// Asks for the kernel's text, for a file or only to be shown.
     pub(super) fn ask_wgsl(&mut self, file: Option<&str>) -> Result<(), String> {
-        self.ask(Question::Wgsl)?;
-        self.wgsl_files.extend(file.map(str::to_owned));
+        self.ask(Question::Wgsl(Arc::new(self.look.clone())))?;
+        self.wgsl_files.push_back(file.map(str::to_owned));
         Ok(())
     }
 
@@ -48,34 +54,42 @@ impl Session {
     /// Writes the newest picture, on a thread: it takes some time.
     pub(super) fn write_picture(&mut self, name: &str) -> Result<(), String> {
         let frame = self.frame.clone().ok_or("there is no picture yet")?;
-        if frame.texture.is_some() {
+        if frame.number != self.number {
+            return Err("the last change has no picture".to_owned());
+        }
+        if frame.is_coarse || frame.texture.is_some() {
             return Err("the picture is not sharp yet: hold still".to_owned());
         }
-        let path = self.config.out.join(name);
-        self.write(name, move || frame.write_png(&path));
+        self.write(&png_name(name), move |path| frame.write_png(path));
         Ok(())
     }
 
     /// Writes pixels from the top, on a thread.
     pub fn write_pixels(&mut self, name: &str, rgba: Vec<u8>, size: (u32, u32)) {
-        let path = self.config.out.join(name);
-        self.write(name, move || write_png(&path, &rgba, size));
+        self.write(&png_name(name), move |path| write_png(path, &rgba, size));
     }
 
-    pub(super) fn write(
+    pub(super) fn write_text(&mut self, name: &str, text: String) {
+        self.write(name, move |path| save(path, |part| std::fs::write(part, text)));
+    }
+
+    fn write(
         &mut self,
         name: &str,
-        run: impl FnOnce() -> Result<(), String> + Send + 'static,
+        run: impl FnOnce(&Path) -> Result<(), String> + Send + 'static,
     ) {
-        let (name, folder) = (name.to_owned(), self.config.out.clone());
+        let (name, path) = (name.to_owned(), self.config.out.join(name));
         let wake = self.wake.clone();
-        self.writers.push(std::thread::spawn(move || {
-            let made = std::fs::create_dir_all(&folder);
-            let end = made.map_err(|e| format!("cannot make {}: {e}", folder.display()));
-            let end = end.and_then(|()| run()).map(|()| format!("wrote {name}"));
+        let thread = std::thread::Builder::new().name("writer".to_owned());
+        let writer = thread.spawn(move || {
+            let end = run(&path).map(|()| format!("wrote {name}"));
             wake();
             end
-        }));
+        });
+        match writer {
+            Ok(writer) => self.writers.push(writer),
+            Err(e) => self.refuse(&format!("no thread to write a file: {e}")),
+        }
     }
 
     /// Waits for files that are being written.
@@ -89,6 +103,8 @@ impl Session {
     /// is open then.
     pub fn close(&mut self) {
         self.finish_files();
+        self.loading = None;
+        self.progress = None;
         if let Some(data) = self.current.take() {
             data.end();
         }
@@ -96,7 +112,7 @@ impl Session {
 
     pub(super) fn note_written(&mut self, writer: JoinHandle<Result<String, String>>) {
         match writer.join() {
-            Ok(Ok(line)) => self.note(line),
+            Ok(Ok(line)) => self.log.note(line),
             Ok(Err(line)) => self.refuse(&line),
             Err(_) => self.refuse("a picture was not written: the thread ended early"),
         }

@@ -1,7 +1,7 @@
 //! What a session tells.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::Session;
@@ -42,6 +42,11 @@ impl Session {
         (&self.files, self.step)
     }
 
+    /// Returns the folder of pictures.
+    pub fn out(&self) -> &Path {
+        &self.config.out
+    }
+
     /// Returns the kept cameras by name.
     pub fn views(&self) -> &BTreeMap<String, Pose> {
         &self.views
@@ -49,12 +54,12 @@ impl Session {
 
     /// Returns a line for everything that happened.
     pub fn log(&self) -> &[String] {
-        &self.log
+        self.log.lines()
     }
 
     /// Returns how many lines of the log are errors.
     pub fn errors(&self) -> usize {
-        self.errors
+        self.log.errors()
     }
 
     /// Returns what was in the pixel that was asked about last: nothing before the first answer.
