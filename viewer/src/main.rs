@@ -2,7 +2,8 @@
 
 mod window;
 
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -23,10 +24,10 @@ struct Args {
     /// Play the script in a window.
     #[arg(long, requires = "script")]
     window: bool,
-    /// Folder of pictures, and of log.txt.
+    /// Folder of pictures, and of log.txt, which has the lines of the last run.
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
-    /// Size of pictures without a window.
+    /// Size of a script's pictures, until it sets another.
     #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = size)]
     size: (u32, u32),
 }
@@ -45,6 +46,9 @@ fn main() -> ExitCode {
 /// What is shown without a file.
 const LANDSCAPE: &str = "landscape:2000000";
 
+/// What helps if the log cannot be written.
+const OTHER: &str = "choose another --out";
+
 /// Returns the number of errors in the log.
 fn run(args: &Args) -> Result<usize, String> {
     let player = args.script.as_deref().map(Player::open).transpose()?;
@@ -52,35 +56,36 @@ fn run(args: &Args) -> Result<usize, String> {
     let first = files.next().or_else(|| player.is_none().then(|| LANDSCAPE.into()));
     let mut actions: Vec<Action> = first.map(Action::Open).into_iter().collect();
     actions.extend(files.map(Action::Add));
+    if player.is_some() {
+        actions.insert(0, Action::Size(args.size.0, args.size.1));
+    }
     match player {
         Some(mut player) if !args.window => {
             let mut session = Session::new(Config::scripted(&args.out), Device::default(), || {});
-            actions.insert(0, Action::Size(args.size.0, args.size.1));
+            session.keep_log(&args.out.join("log.txt")).map_err(|e| format!("{e}: {OTHER}"))?;
             for action in &actions {
                 // A refusal is in the log.
                 let _ = session.apply(action);
             }
             player.play(&mut session);
             session.close();
-            write_log(&args.out, session.log())?;
+            print(session.log());
             Ok(session.errors())
         }
         player => {
             let out = args.out.clone();
             let end = window::run(window::Options { actions, player, out })?;
-            let mut log = end.log;
-            log.push(format!("longest turn {:.1} ms", end.longest.as_secs_f64() * 1e3));
-            write_log(&args.out, &log)?;
+            print(&end.log);
             Ok(end.errors)
         }
     }
 }
 
-fn write_log(out: &Path, log: &[String]) -> Result<(), String> {
-    let path = out.join("log.txt");
-    let text: String = log.iter().map(|line| format!("{line}\n")).collect();
-    print!("{text}");
-    std::fs::create_dir_all(out)
-        .and_then(|()| std::fs::write(&path, text))
-        .map_err(|e| format!("cannot write {}: {e}; choose another --out", path.display()))
+/// Prints what was done; errors are on the terminal already.
+fn print(log: &[String]) {
+    let mut out = std::io::stdout().lock();
+    for line in log.iter().filter(|line| !line.starts_with("error: ")) {
+        // Whoever closed it does not want to know.
+        let _ = writeln!(out, "{line}");
+    }
 }

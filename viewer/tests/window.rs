@@ -127,7 +127,10 @@ fn mouse_and_keys_do_what_the_panel_says() {
     }
     display.tool("key F12");
     wait_for(&folder.path("window-5.png"));
+    // Escape leaves a text field, not the program.
     display.tool("key Escape");
+    pause(0.5);
+    display.tool("key ctrl+q");
     let is_well = end_of(viewer);
     let log = std::fs::read_to_string(folder.path("log.txt")).expect("a log");
     assert!(is_well, "{log}");
@@ -187,5 +190,7 @@ fn scripts_play_in_the_window_as_without_one() {
     assert_eq!(session.errors(), 0, "{:#?}", session.log());
     let (size, _) = picture_of(&folder.path("window.png"));
     assert!(size.0 > 1000, "all of the window: {size:?}");
+    let bytes = |folder: &Folder| std::fs::read(folder.path("a.png")).expect("a picture");
     assert_eq!(picture_of(&folder.path("a.png")).0, (160, 90));
+    assert!(bytes(&folder) == bytes(&plain), "the same bytes with a window and without");
 }

@@ -1,8 +1,10 @@
 //! Mouse and keys as actions.
 
+use std::path::Path;
+
 use eframe::egui::{self, Key, PointerButton, Response};
 use raydsl::prelude::*;
-use raydsl_viewer::{Action, Mode, Session, Show};
+use raydsl_viewer::{Action, Kind, Mode, Session, Show};
 
 /// Degrees of a drag over the whole height.
 const DEGREES: f32 = 180.0;
@@ -10,7 +12,7 @@ const DEGREES: f32 = 180.0;
 const SPEED: f32 = 0.7;
 
 /// The keys, and what they do.
-pub(crate) const KEYS: [(&str, &str); 13] = [
+pub(crate) const KEYS: [(&str, &str); 14] = [
     ("drag", "turn around the middle"),
     ("right drag", "move sideways"),
     ("middle drag", "look around"),
@@ -23,15 +25,16 @@ pub(crate) const KEYS: [(&str, &str); 13] = [
     ("1 2 3 4 5", "scalar, packets of 4, 8, 16, WGSL"),
     ("C", "cost as a heat map, and back"),
     ("[ and ]", "time step before and behind"),
-    ("P, F12, F1, Esc", "write the picture, the window; keys; quit"),
+    ("P, F12, F1", "write the picture, the window; keys"),
+    ("Ctrl+Q", "quit"),
 ];
 
-/// Files that were dropped on the window.
+/// Files that were dropped on the window: the first is opened, and the others are time steps.
 pub(crate) fn dropped(ctx: &egui::Context, actions: &mut Vec<Action>) {
     ctx.input(|input| {
-        for file in &input.raw.dropped_files {
-            actions.push(Action::Open(file.path().to_path_buf()));
-        }
+        let mut files = input.raw.dropped_files.iter().map(|file| file.path().to_path_buf());
+        actions.extend(files.next().map(Action::Open));
+        actions.extend(files.map(Action::Add));
     });
 }
 
@@ -74,7 +77,12 @@ pub(crate) fn keys(
     pictures: &mut usize,
     actions: &mut Vec<Action>,
 ) {
-    if ui.ctx().egui_wants_keyboard_input() {
+    let is_command = ui.input(|input| input.modifiers.command);
+    let pressed = |key| ui.input(|input| input.key_pressed(key));
+    if is_command && pressed(Key::Q) {
+        actions.push(Action::Quit);
+    }
+    if is_command || ui.ctx().egui_wants_keyboard_input() {
         return;
     }
     let (moved, turned) = ui.input(|input| {
@@ -96,7 +104,6 @@ pub(crate) fn keys(
     if moved != Vec3::ZERO || turned != (0.0, 0.0) {
         ui.ctx().request_repaint();
     }
-    let pressed = |key| ui.input(|input| input.key_pressed(key));
     for key in [Key::H, Key::M, Key::C, Key::OpenBracket, Key::CloseBracket, Key::P, Key::F12] {
         if pressed(key) {
             actions.extend(of_key(key, session, pictures));
@@ -108,9 +115,14 @@ pub(crate) fn keys(
             actions.push(Action::Variant(variant));
         }
     }
-    if pressed(Key::Escape) {
-        actions.push(Action::Quit);
-    }
+}
+
+/// Returns the next number that no picture in the folder has.
+fn free_number(out: &Path, before: usize) -> usize {
+    let is_taken = |i: &usize| {
+        ["picture", "window"].iter().any(|name| out.join(format!("{name}-{i}.png")).exists())
+    };
+    (before + 1..).find(|i| !is_taken(i)).unwrap_or(before)
 }
 
 fn of_key(key: Key, session: &Session, pictures: &mut usize) -> Option<Action> {
@@ -123,11 +135,12 @@ fn of_key(key: Key, session: &Session, pictures: &mut usize) -> Option<Action> {
             Action::Mode(modes[(at + 1) % modes.len()])
         }
         Key::C if look.show == Show::Cost => Action::Show(Show::Picture),
+        Key::C if session.info()?.kind == Kind::Volume => return None,
         Key::C => Action::Show(Show::Cost),
         Key::OpenBracket => Action::Step(session.steps().1.checked_sub(1)?),
         Key::CloseBracket => Action::Step(session.steps().1 + 1),
         key => {
-            *pictures += 1;
+            *pictures = free_number(session.out(), *pictures);
             if key == Key::P {
                 Action::Picture(format!("picture-{pictures}.png"))
             } else {

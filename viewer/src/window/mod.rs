@@ -46,6 +46,8 @@ pub(crate) struct Viewer {
     awaited_screenshots: usize,
     pictures: usize,
     device_errors: DeviceErrors,
+    /// When this turn of the window began.
+    began: Option<Instant>,
     /// The longest time between an event and the window's answer: that of one turn of the window.
     longest: Duration,
     /// Gets the session when the window closes.
@@ -56,7 +58,6 @@ pub(crate) struct Viewer {
 pub(crate) struct End {
     pub(crate) log: Vec<String>,
     pub(crate) errors: usize,
-    pub(crate) longest: Duration,
 }
 
 struct Screenshot {
@@ -140,8 +141,15 @@ impl Viewer {
         };
         let state = cc.wgpu_render_state.as_ref();
         let device_errors = state.map(|state| keep_errors(&state.device)).unwrap_or_default();
-        let config = Config::interactive(&options.out);
+        // A script makes the same pictures as without a window.
+        let config = match options.player {
+            Some(_) => Config::scripted(&options.out),
+            None => Config::interactive(&options.out),
+        };
         let mut session = Session::new(config, device, move || ctx.request_repaint());
+        if let Err(message) = session.keep_log(&options.out.join("log.txt")) {
+            session.refuse(&message);
+        }
         for action in &options.actions {
             // A refusal is in the log.
             let _ = session.apply(action);
@@ -158,6 +166,7 @@ impl Viewer {
             awaited_screenshots: 0,
             pictures: 0,
             device_errors,
+            began: None,
             longest: Duration::ZERO,
             end,
         }
@@ -225,6 +234,7 @@ impl Viewer {
 
 impl eframe::App for Viewer {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.began = Some(Instant::now());
         self.session.poll();
         self.take_screenshots();
         let errors = {
@@ -239,7 +249,7 @@ impl eframe::App for Viewer {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
-        let start = Instant::now();
+        let begin = self.began.take().unwrap_or_else(Instant::now);
         let ctx = ui.ctx().clone();
         let mut actions = Vec::new();
         input::dropped(&ctx, &mut actions);
@@ -248,13 +258,15 @@ impl eframe::App for Viewer {
         for action in &actions {
             self.apply(&ctx, action);
         }
-        self.longest = self.longest.max(start.elapsed());
+        self.longest = self.longest.max(begin.elapsed());
     }
 
     fn on_exit(&mut self) {
         self.session.close();
+        let longest = self.longest.as_secs_f64() * 1e3;
+        self.session.note(format!("longest turn {longest:.1} ms"));
         let (log, errors) = (self.session.log().to_vec(), self.session.errors());
         // Whoever opened the window waits for it.
-        let _ = self.end.send(End { log, errors, longest: self.longest });
+        let _ = self.end.send(End { log, errors });
     }
 }

@@ -129,7 +129,11 @@ fn look(session: &Session, ui: &mut Ui, actions: &mut Vec<Action>) {
     });
     ui.separator();
     ui.horizontal_wrapped(|ui| {
+        let is_volume = session.info().is_some_and(|info| info.kind == Kind::Volume);
         for (show, name) in [(Show::Picture, "picture"), (Show::Cost, "cost")] {
+            if show == Show::Cost && is_volume {
+                continue;
+            }
             if ui.selectable_label(look.show == show, name).clicked() {
                 actions.push(Action::Show(show));
             }
