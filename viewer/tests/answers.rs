@@ -102,7 +102,8 @@ fn a_picture_is_that_of_the_last_change() {
 }
 
 /// A shell of 100 around a core of 255 in air: one transfer function shows the shell, and the other
-/// the core. No picture is made in between.
+/// the core. No picture is made in between; whether the question comes before the kernel of the new
+/// look is a matter of chance.
 #[test]
 fn picks_are_of_what_is_to_be_seen() {
     let folder = Folder::new("voxels");
@@ -114,22 +115,18 @@ fn picks_are_of_what_is_to_be_seen() {
             _ => 0,
         }
     });
-    let script = format!(
-        "size 33 33\n{open}\npick 16 16\npreset bone\npick 16 16\n\
-                          cut ball 0.5 0.5 0.5 0.5\npick 16 16\ncut remove 0\npick 16 16\n"
-    );
-    let session = play(&script, &folder);
+    let both = "preset tissue\npick 16 16\npreset bone\npick 16 16\n".repeat(50);
+    let cut = "cut ball 0.5 0.5 0.5 0.5\npick 16 16\n";
+    let session = play(&format!("size 33 33\n{open}\n{both}{cut}"), &folder);
     assert_eq!(session.errors(), 0, "{:#?}", session.log());
-    let picks: Vec<&str> = session
-        .log()
-        .iter()
-        .filter(|line| line.starts_with("picked "))
-        .map(String::as_str)
-        .collect();
-    assert!(picks[0].contains("voxel (8, 10, 7), value "), "{picks:#?}");
-    assert!(picks[1].contains("voxel (6, 6, 6), value "), "{picks:#?}");
-    assert_eq!(picks[2], "picked nothing");
-    assert_eq!(picks[3], picks[1]);
+    let picks = session.log().iter().filter(|line| line.starts_with("picked "));
+    let mut picks: Vec<&str> = picks.map(String::as_str).collect();
+    assert_eq!(picks.pop(), Some("picked nothing"));
+    assert_eq!(picks.len(), 100);
+    for pair in picks.chunks(2) {
+        assert!(pair[0].contains("voxel (8, 10, 7), value "), "{pair:#?}");
+        assert!(pair[1].contains("voxel (6, 6, 6), value "), "{pair:#?}");
+    }
 }
 
 /// Layers of 12 pictures whose names have no leading zeros: the one of number 2 is the second.

@@ -201,3 +201,28 @@ impl Subject for Surface<'_> {
         Some(Picked { id: u64::from(hit.prim_id), position: ray.at(hit.t), value })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The pose of a file with one camera, five units from the middle.
+    fn pose_of(forward: Vec3, up: Vec3) -> Pose {
+        let projection =
+            Projection::Perspective { vertical: 0.5, aspect: None, near: 0.1, far: None };
+        let (name, position) = (String::new(), -5.0 * forward);
+        let camera = scene::Camera { name, position, forward, up, projection };
+        let bounds = Aabb::from_points([Vec3::splat(-1.0), Vec3::ONE]);
+        home(&File { cameras: vec![camera], ..Default::default() }, bounds, Vec3::Y)
+    }
+
+    #[test]
+    fn a_camera_of_a_file_does_not_tilt_the_world() {
+        let down = vec3(0.0, -0.6, -0.8);
+        let pose = pose_of(down, vec3(0.0, 0.8, -0.6));
+        assert_eq!((pose.eye, pose.up, pose.fov_y), (-5.0 * down, Vec3::Y, 0.5));
+        assert!(pose.target.length() < 1e-5, "{pose:?}");
+        // From straight above there is no other direction that is up.
+        assert_eq!(pose_of(-Vec3::Y, Vec3::X).up, Vec3::X);
+    }
+}

@@ -138,3 +138,16 @@ impl Session {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn panics_say_what_they_said() {
+        let said = |work: fn()| catch_unwind(work).map_err(|panic| message_of(&*panic));
+        assert_eq!(said(|| panic!("plain")), Err("plain".to_owned()));
+        assert_eq!(said(|| panic!("{} of {}", 1, 2)), Err("1 of 2".to_owned()));
+        assert_eq!(said(|| std::panic::panic_any(5)), Err("no message".to_owned()));
+    }
+}
