@@ -8,8 +8,9 @@ pub use crate::geometry::{
 pub use crate::kernel::{Counting, Kernel, Lifted, Native4, Native8, Native16};
 pub use crate::machine::lifted::*;
 pub use crate::machine::{
-    B, Capture, Compare, F, Field, KernelFn, KernelInfo, Lanes, Machine, Margin, Op, Recorder,
-    Resource, Schema, Slice, Table, TableView, Type, Value, op, visit_host, visit_value,
+    B, Capture, Compare, ConstantFact, F, Field, KernelFn, KernelInfo, Lanes, Machine, Margin, Op,
+    Recorder, Resource, Schema, Slice, Table, TableView, Type, Value, VisitConstant, op,
+    visit_host, visit_value,
 };
 pub use crate::shading::{Asked, Scene};
 

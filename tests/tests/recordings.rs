@@ -265,3 +265,77 @@ fn lights_and_lists_are_switched_without_recording() -> Result<(), Error> {
     assert_eq!(gpu.context().recorded(), 4);
     Ok(())
 }
+
+#[test]
+#[expect(non_snake_case, reason = "a local that is spelled like a constant is taken for one")]
+fn constants_are_part_of_a_recording() -> Result<(), Error> {
+    let Some(gpu) = own()? else { return Ok(()) };
+    const TABLE: [f32; 3] = [1.0, 4.0, 9.0];
+    for i in 0..3u8 {
+        let (R, FLAG) = (f32::from(i), i == 1);
+        let kernel = kernel!(|x: f32| if FLAG { x * R } else { x + R + TABLE[2] });
+        assert_runs(&gpu, &kernel);
+    }
+    for k in 0..3u8 {
+        let k = f32::from(k);
+        let kernel = kernel!(|x: f32| x * TABLE[1] + k);
+        assert_runs(&gpu, &kernel);
+    }
+    assert_eq!(gpu.context().recorded(), 3 + 1);
+    Ok(())
+}
+
+/// Facts of data by which the library branches while it records.
+#[test]
+fn facts_of_data_are_part_of_a_recording() -> Result<(), Error> {
+    let Some(gpu) = own()? else { return Ok(()) };
+    let grid = |first: f32| {
+        let voxels: Vec<f32> = (0..8u8).map(|i| f32::from(i) + first).collect();
+        Grid::new(voxels, uvec3(2, 2, 2), GridConfig::new())
+    };
+    let (whole, other, gap) = (grid(1.0)?, grid(3.0)?, grid(f32::NAN)?);
+    let (half, third) = (Grid::between(&whole, &other, 0.5)?, Grid::between(&other, &whole, 0.3)?);
+    for grid in [&whole, &gap, &other, &half, &whole, &third, &gap] {
+        let kernel = kernel!(|x: f32| grid.value(vec3(x * 0.1 + 0.5, 0.5, 0.5)));
+        assert_runs(&gpu, &kernel);
+    }
+    assert_eq!(gpu.context().recorded(), 3, "whole, with gaps, between two steps");
+    let colors = [(0.0, Vec3::ONE)];
+    let soft = TransferFunction::from_extinction(&colors, &[(0.0, 1.0), (4.0, 2.0)])?;
+    let hard = TransferFunction::from_extinction(&colors, &[(0.0, 5.0)])?;
+    for (a, b) in [(&soft, &hard), (&soft, &soft), (&hard, &soft), (&hard, &hard)] {
+        let (a, b) = (a.clone(), b.clone());
+        let kernel = kernel!(|x: f32| b.at(x).extinction * 10.0 + a.at(x).extinction);
+        assert_runs(&gpu, &kernel);
+    }
+    Ok(())
+}
+
+/// A scene of the application with a table, over scenes that differ in kind.
+#[derive(Scene)]
+struct Room<'a> {
+    walls: Bvh<'a, Triangle>,
+    #[table]
+    colors: &'a [f32],
+}
+
+#[test]
+fn scenes_with_tables_share_a_recording() -> Result<(), Error> {
+    let Some(gpu) = own()? else { return Ok(()) };
+    let wall = |x: f32| Triangle {
+        v0: vec3(x - 1.0, -1.0, 0.0),
+        v1: vec3(x + 1.0, -1.0, 0.0),
+        v2: vec3(x, 1.0, 0.0),
+    };
+    let (one, two) = ([wall(0.0)], [wall(1.0), wall(-1.0)]);
+    for (walls, colors) in [(&one[..], &[2.0f32][..]), (&two[..], &[3.0, 5.0][..])] {
+        let room = Room { walls: Bvh::build(walls)?, colors };
+        let kernel = kernel!(|x: f32| {
+            let hit = room.closest_hit(Ray::new(vec3(x, 0.0, 3.0), vec3(0.0, 0.0, -1.0)));
+            if hit.is_hit { room.colors[hit.prim_id as usize] * hit.t } else { 0.0 }
+        });
+        assert_runs(&gpu, &kernel);
+    }
+    assert_eq!(gpu.context().recorded(), 1);
+    Ok(())
+}

@@ -59,7 +59,8 @@ pub(super) fn vtu(way: Vti, index: VoxelType) -> Vec<u8> {
     let mut file = format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" {attributes}>\n\
          <UnstructuredGrid><Piece NumberOfPoints='9' NumberOfCells='7'>\n<PointData Scalars='t'>\n\
-         {points}<DataArray type='String' Name='note' format='ascii'>1 2</DataArray></PointData>\n\
+         {points}<DataArray type='String' Name='note' format='ascii'>1 2</DataArray>\n\
+         <DataArray type='Bit' Name='flag' format='ascii'>1</DataArray></PointData>\n\
          <CellData>{cells}</CellData>\n<Points>{positions}</Points>\n<Cells>{shape}</Cells>\n\
          </Piece></UnstructuredGrid>\n"
     )
@@ -205,7 +206,7 @@ fn broken_vtu_is_named() {
         (claim("NumberOfPoints='4294967295'"), "than a file of"),
         (claim("NumberOfPoints='200'"), "bytes of text"),
         (claim("NumberOfPoints='x'"), "'NumberOfPoints' has 'x'"),
-        (cells("\n4 \n7 ", "\n4 \n3 "), "the offset of cell 1, 3, is below"),
+        (cells("\n4 \n7 ", "\n4 \n3 "), "the offset of cell 1, 3, is no whole number from"),
         (cells("\n4 \n7 ", "\n5 \n7 "), "of type 10 has 5 vertices, not 4"),
         (cells("\n36\n", "\n9999999999\n"), "is no i32"),
         (cells("\n0 \n1 \n3 ", "\n0 \n-1 \n3 "), "cell 0 has point -1"),

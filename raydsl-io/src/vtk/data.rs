@@ -82,6 +82,10 @@ fn unpacked<T>(
         return Err(Fault::Cut(format!("it lists {count} blocks in {held} bytes")));
     }
     let last = if last == 0 { each } else { last };
+    // Otherwise a small file may list empty blocks without end.
+    if count > 0 && !(1..=each).contains(&last) {
+        return Err(Fault::Bad(format!("{name} have blocks of {each} bytes, the last of {last}")));
+    }
     let bytes = match count {
         0 => Some(0),
         count => (count - 1).checked_mul(each).and_then(|full| full.checked_add(last)),
@@ -93,6 +97,9 @@ fn unpacked<T>(
         return Err(Fault::Bad(what));
     }
     let mut blocks = Vec::new();
+    if usize::try_from(count).map_or(true, |count| blocks.try_reserve_exact(count).is_err()) {
+        return Err(Fault::Bad(format!("{name} have {count} blocks, too many for the memory")));
+    }
     for i in 0..count {
         blocks.push((length(stream)?, if i + 1 == count { last } else { each }));
     }

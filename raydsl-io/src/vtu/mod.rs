@@ -23,7 +23,8 @@ pub(crate) fn read(mut source: Source) -> Result<CellFile, LoadError> {
     let points = points(&mut reader, &arrays, point_count)?;
     let shape = Shape::read(&mut reader, &arrays, point_count, cell_count)?;
     let [mut point_arrays, mut cell_arrays] = [Vec::new(), Vec::new()];
-    for array in arrays.iter().filter(|a| a.kind != "String") {
+    // Texts and single bits are no fields.
+    for array in arrays.iter().filter(|a| !["String", "Bit"].contains(&a.kind.as_str())) {
         match array.of {
             Of::PointData => point_arrays.push(reader.array(array, point_count)?),
             Of::CellData => {

@@ -51,10 +51,14 @@ impl Shape {
         let mut shape = Self::default();
         let mut first = 0;
         for (cell, (end, code)) in offsets.iter().zip(types).enumerate() {
-            let own =
-                usize::try_from(*end as i64).ok().and_then(|end| connectivity.get(first..end));
-            let Some(own) = own else {
-                let what = format!("the offset of cell {cell}, {end}, is below the one before");
+            let whole = (end.fract() == 0.0).then_some(*end as i64);
+            let place = whole.and_then(|end| usize::try_from(end).ok());
+            let Some(own) = place.and_then(|end| connectivity.get(first..end)) else {
+                let what = format!(
+                    "the offset of cell {cell}, {end}, is no whole number from the one before, \
+                     {first}, to the number of vertices, {}",
+                    connectivity.len()
+                );
                 return Err(reader.source.corrupt(Place::Byte(offsets_at), what, REMEDY));
             };
             first += own.len();
@@ -80,7 +84,7 @@ impl Shape {
         }
         for i in order {
             let index = own[*i];
-            if !(index >= 0.0 && index < points as f64) {
+            if !(index >= 0.0 && index < points as f64 && index.fract() == 0.0) {
                 return Err(format!("has point {index}, and there are {points}"));
             }
             self.vertices.push(index as u32);

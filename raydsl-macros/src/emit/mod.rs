@@ -114,6 +114,8 @@ pub(crate) struct Emitter<'a> {
     pub(crate) captures: Vec<Ident>,
     /// Those of them that are also needed as host values.
     pub(crate) host_captures: Vec<Ident>,
+    /// Names of constants in a closure, by their spelling alone: a local may be spelled so too.
+    pub(crate) constants: Vec<Ident>,
     /// The number of open loops, and of open conditions that are not the host's.
     varying: usize,
     /// The `&mut` parameters.
@@ -154,6 +156,7 @@ impl<'a> Emitter<'a> {
             loops: vec![],
             captures: vec![],
             host_captures: vec![],
+            constants: vec![],
             varying: 0,
             changed: vec![],
             has_bare: kernel.body.has_bare_integer(),
@@ -298,6 +301,7 @@ impl<'a> Emitter<'a> {
             loops: vec![],
             captures: core::mem::take(&mut self.captures),
             host_captures: core::mem::take(&mut self.host_captures),
+            constants: core::mem::take(&mut self.constants),
             varying: 1,
             changed: vec![],
             has_bare: self.has_bare || kernel.body.has_bare_integer(),
@@ -311,12 +315,14 @@ impl<'a> Emitter<'a> {
         let types: Vec<_> = kernel.params.iter().map(on).collect();
         let result = kernel.result.as_ref().map(|ty| inner.on(ty));
         let result = result.map(|ty| quote!(-> #ty));
+        let constants = core::mem::take(&mut inner.constants);
         let (captures, host_captures, next) = (
             core::mem::take(&mut inner.captures),
             core::mem::take(&mut inner.host_captures),
             inner.next,
         );
         (self.captures, self.host_captures, self.next) = (captures, host_captures, next);
+        self.constants = constants;
         let names = kernel.params.iter().map(|p| &p.name);
         let machine = &self.machine;
         let seen = self.mentioned_in(&body);
@@ -458,8 +464,12 @@ impl<'a> Emitter<'a> {
     }
 
     /// Returns whether it is a constant of the source.
-    fn is_constant(&self, name: &Ident) -> bool {
-        is_constant(name) && self.lookup(name).is_none()
+    fn is_constant(&mut self, name: &Ident) -> bool {
+        let is_constant = is_constant(name) && self.lookup(name).is_none();
+        if is_constant && self.is_closure && !self.constants.contains(name) {
+            self.constants.push(name.clone());
+        }
+        is_constant
     }
 
     /// Returns the local of a name: `self` cannot be one.

@@ -74,8 +74,8 @@ pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel)
     }
     let machines: Vec<&Natural> =
         wanted.iter().copied().chain(counted.as_ref().map(|_| &COUNTED)).collect();
-    let (copies, Captured { all: captured, of_host }) =
-        copies(&kernel, closure, &machines, &mut errors);
+    let (copies, names_of) = copies(&kernel, closure, &machines, &mut errors);
+    let captured = &names_of.all;
     // The closure itself remains, so that rustc and editors see its types.
     let closure = without_markers(closure.to_token_stream());
     if !errors.is_empty() {
@@ -85,7 +85,7 @@ pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel)
     let (p, scalar, captures) = (private(), own("scalar"), own("captures"));
     let names: Vec<&Ident> = kernel.params.iter().map(|p| &p.name).collect();
     let types = kernel.params.iter().map(|p| &p.ty);
-    let (info, resources) = (info(&kernel, "kernel"), resources(&captured, &of_host));
+    let (info, resources) = (info(&kernel, "kernel"), resources(&names_of));
     let boxed = |machine: &&Natural| boxed(machine, machine.member == machines[0].member);
     let members = NATURAL.iter().map(|machine| {
         let name = format_ident!("{}", machine.member);
@@ -113,6 +113,8 @@ pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel)
         #scalar.lifted(
             #p::Lifted { #(#members,)* },
             move |visit: &mut dyn FnMut(&dyn #p::Resource)| {
+                #[allow(unused_imports)]
+                use #p::VisitConstant as _;
                 #(#resources)*
             },
         )
@@ -190,6 +192,8 @@ struct Captured {
     all: Vec<Ident>,
     /// Those among them that are used as the host's values.
     of_host: Vec<Ident>,
+    /// Constants, by their spelling.
+    constants: Vec<Ident>,
 }
 
 /// Returns the lifted closure for one machine, as the local `member`, and the names that it
@@ -205,6 +209,7 @@ fn copy_for(
     let body = emitter.body();
     let captured = core::mem::take(&mut emitter.captures);
     let of_host = core::mem::take(&mut emitter.host_captures);
+    let constants = core::mem::take(&mut emitter.constants);
     let raw = raw_captures(&of_host, &captured);
     let brought = brought(machine, &captured);
     let names: Vec<&Ident> = kernel.params.iter().map(|p| &p.name).collect();
@@ -231,7 +236,7 @@ fn copy_for(
     } else {
         copy
     };
-    (quote!(#quiet let #member = #copy;), Captured { all: captured, of_host })
+    (quote!(#quiet let #member = #copy;), Captured { all: captured, of_host, constants })
 }
 
 /// Returns the captures as values of the machine.
@@ -255,9 +260,10 @@ fn raw_captures(names: &[Ident], captured: &[Ident]) -> Vec<TokenStream> {
     names.iter().filter_map(raw).collect()
 }
 
-/// Returns the code that passes the captures' resources to the runtime, and the values among them
-/// that are used as the host's.
-fn resources(captured: &[Ident], of_host: &[Ident]) -> Vec<TokenStream> {
+/// Returns the code that passes the captures' resources to the runtime, the values among them that
+/// are used as the host's, and constants, which are a part of what is recorded.
+fn resources(names: &Captured) -> Vec<TokenStream> {
+    let captured = &names.all;
     let visit = |(i, name): (usize, &Ident)| {
         let _at = At::new(name.span());
         let (p, capture, text) = (private_here(), capture(i), name.to_string());
@@ -270,7 +276,13 @@ fn resources(captured: &[Ident], of_host: &[Ident]) -> Vec<TokenStream> {
         Some(quote_here!(#p::visit_host(#capture, visit);))
     };
     let values = captured.iter().enumerate().map(visit);
-    values.chain(of_host.iter().filter_map(visit_host)).collect()
+    let visit_constant = |name: &Ident| {
+        let _at = At::new(name.span());
+        let p = private_here();
+        quote_here!(#p::ConstantFact(&#name).visit(visit);)
+    };
+    let constants = names.constants.iter().map(visit_constant);
+    values.chain(names.of_host.iter().filter_map(visit_host)).chain(constants).collect()
 }
 
 /// Returns one of the captures, which are stored in a tuple.

@@ -7,7 +7,8 @@ use super::{Cost, RayQueryOn, RecordQuery};
 use crate::geometry::{Hit, HitOn, HitRecord, Ray, RayOn};
 use crate::kernel;
 use crate::machine::{
-    A3, B, Branch, Cursor, F, Leaves, Machine, On, Resource, Schema, Type, U, Value, Var, fill, op,
+    A3, B, Branch, Cursor, F, HostFact, Leaves, Machine, On, Resource, Schema, Type, U, Value, Var,
+    fill, op,
 };
 
 /// View of two scenes as one, which `#[derive(RayQuery)]` makes of a struct of scenes; more than
@@ -152,6 +153,9 @@ impl<S: RayQueryOn, T: RayQueryOn<Hit = S::Hit>> RayQueryOn for Joined<S, T> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
         self.first.resources(visit);
         self.second.resources(visit);
+        // Which scene an instance is in is written down.
+        visit(&HostFact(self.first.inst_count().into()));
+        visit(&HostFact(self.second.inst_count().into()));
     }
 
     #[inline(always)]

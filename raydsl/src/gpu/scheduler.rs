@@ -28,7 +28,7 @@ type Resources<'a> = &'a dyn Fn(Visit<'_>);
 /// Trees are uploaded once and kept; text is compiled once and kept. The numbers that a kernel
 /// captures are in a uniform buffer, so that new numbers compile nothing. A kernel that a closure
 /// makes anew, with other numbers, slices, trees, grids or transfer functions, is not even recorded
-/// again; one that captures textures, instances or foreign structures is.
+/// again; one that captures textures, instances, views of meshes or foreign structures is.
 #[derive(Debug)]
 pub struct GpuScheduler {
     context: Context,

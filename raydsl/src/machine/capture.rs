@@ -7,7 +7,7 @@ use glam::{
     Vec4,
 };
 
-use super::{Description, F, HostCapture, Machine, Schema, Type, Value, wgsl::BufferKey};
+use super::{Description, F, HostCapture, Machine, Recorder, Schema, Type, Value, wgsl::BufferKey};
 
 /// Data that recorded kernels read from buffers.
 pub trait Resource {
@@ -17,6 +17,8 @@ pub trait Resource {
     /// Adds what a recording depends on: all numbers and buffers that it may read, under the names
     /// that they have there, and every fact that a branch of the host decides by. Unless a resource
     /// says otherwise it leaves the description open, and its kernels are recorded each for itself.
+    /// A kernel with the same facts takes over a recording: a fact that is left out is a wrong
+    /// program.
     fn describe(&self, out: &mut Description) {
         out.leave_open();
     }
@@ -56,8 +58,8 @@ pub fn visit_value<T: Type>(v: T, name: &'static str, visit: &mut dyn FnMut(&dyn
     visit(&CapturedValue { name, schema: T::SCHEMA, bytes });
 }
 
-/// A fact that a branch of the host decides by.
-pub(crate) struct HostFact(pub(crate) u64);
+/// A fact that a branch of the host decides by while a kernel is recorded: a truth value, a count.
+pub struct HostFact(pub u64);
 
 impl Resource for HostFact {
     fn bytes(&self, _: BufferKey) -> Option<Cow<'_, [u8]>> {
@@ -66,6 +68,43 @@ impl Resource for HostFact {
 
     fn describe(&self, out: &mut Description) {
         out.fact(self.0);
+    }
+}
+
+/// What a constant of the source is: a part of what is recorded. A local may be spelled like one.
+#[doc(hidden)]
+pub struct ConstantFact<'c, T: ?Sized>(pub &'c T);
+
+impl<T: Capture<Recorder> + ?Sized> ConstantFact<'_, T> {
+    /// Visits the constant; method resolution prefers this to [`VisitConstant::visit`].
+    pub fn visit(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        self.0.resources("constant", &mut |resource| visit(&Constant(resource)));
+    }
+}
+
+/// Visits constants of other types, such as those of the host alone.
+#[doc(hidden)]
+pub trait VisitConstant {
+    /// Visits the constant.
+    fn visit(&self, visit: &mut dyn FnMut(&dyn Resource));
+}
+
+impl<T: ?Sized> VisitConstant for ConstantFact<'_, T> {
+    fn visit(&self, visit: &mut dyn FnMut(&dyn Resource)) {
+        visit(&Undescribed);
+    }
+}
+
+/// A resource of a constant, whose numbers are facts.
+struct Constant<'r>(&'r dyn Resource);
+
+impl Resource for Constant<'_> {
+    fn bytes(&self, key: BufferKey) -> Option<Cow<'_, [u8]>> {
+        self.0.bytes(key)
+    }
+
+    fn describe(&self, out: &mut Description) {
+        out.constant(self.0);
     }
 }
 
@@ -97,7 +136,8 @@ pub trait Capture<M: Machine> {
     /// Brings a constant of the source to the machine.
     fn constant<'c>(&'c self, m: &M) -> Self::On<'c>;
 
-    /// Visits what recorded code may read, under its name in the source.
+    /// Visits what recorded code may read, under its name in the source, and a [`HostFact`] for
+    /// each value of the host by which it branches or that it writes down.
     fn resources(&self, name: &'static str, visit: &mut dyn FnMut(&dyn Resource)) {
         let _ = name;
         visit(&Undescribed);

@@ -77,8 +77,9 @@ mod words;
 
 pub use call::{KernelFn, KernelInfo};
 pub(crate) use call::{KnownFunction, WithoutNan};
-pub(crate) use capture::HostFact;
-pub use capture::{Capture, Resource, visit_host, visit_value};
+pub use capture::{
+    Capture, ConstantFact, HostFact, Resource, VisitConstant, visit_host, visit_value,
+};
 pub(crate) use counted::count;
 pub use counted::{Count, Counted, Place};
 #[cfg(feature = "gpu")]

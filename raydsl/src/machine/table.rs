@@ -1,6 +1,6 @@
 //! Tables: data that kernels read as a member of the value that they capture.
 
-use super::{Resource, Slice, Type};
+use super::{DescribedSlice, Resource, Slice, Type};
 
 /// A member of a struct of scenes that is data, marked `#[table]`: kernels read
 /// `scene.materials[i]`.
@@ -20,7 +20,8 @@ pub trait Table {
 
 /// A table as kernels see it, or several: a host value on every machine.
 pub trait TableView: Copy + Send + Sync {
-    /// Visits the buffers that recorded code may read.
+    /// Visits the buffers that recorded code may read, and a [`HostFact`](super::HostFact) for each
+    /// value of the host by which it branches.
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource));
 
     /// Returns whether it is the same data, not only equal.
@@ -65,7 +66,7 @@ impl<T: Type> Table for Vec<T> {
 
 impl<T: Type> TableView for Slice<'_, T> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
-        visit(self);
+        visit(&DescribedSlice(*self));
     }
 
     fn is_same(&self, other: &Self) -> bool {

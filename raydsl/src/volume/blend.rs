@@ -62,7 +62,7 @@ impl<T: Voxel> BlendView<'_, T> {
 impl<'a, T: Voxel> Grid<'a, T> {
     /// Returns the grid between two steps in time: each voxel goes evenly from its value in
     /// `before` to that in `after`, and `share`, from 0 to 1, is how far it has come. A share
-    /// outside of that is the nearest one inside; 0 and 1 have the steps' own values, to the bit.
+    /// outside of that is the nearest one inside; 0 and 1 have the steps' own values.
     ///
     /// A trilinear value between blended voxels is the blend of two trilinear values, so
     /// everything that a grid does, the exact cell and surfaces too, is that of a grid of blended
@@ -105,10 +105,13 @@ impl<'a, T: Voxel> Grid<'a, T> {
         }
         check_configs(&before.config, &after.config)?;
         let share = share.clamp(0.0, 1.0);
-        // From the nearer step on, so that rounding leaves either end as it is. The difference is
-        // exact.
+        // From the nearer step on, so that rounding leaves either end as it is.
         let (near, far, share) =
             if share > 0.5 { (after, before, 1.0 - share) } else { (before, after, share) };
+        // Differences of such voxels may be infinite: then they are missing.
+        let limit = f32::MAX * 0.25 * near.config.scale.abs();
+        let is_small = |r: &Vec2| r.x > r.y || r.abs().max_element() < limit;
+        let overflows = !near.ranges.iter().chain(&far.ranges).all(is_small);
         let ranges = near.ranges.iter().zip(&far.ranges);
         let offset = near.config.offset;
         Ok(Self {
@@ -119,7 +122,7 @@ impl<'a, T: Voxel> Grid<'a, T> {
             size: near.size,
             config: near.config,
             layout: near.layout,
-            has_gaps: near.has_gaps || far.has_gaps,
+            has_gaps: near.has_gaps || far.has_gaps || overflows,
             owner: Owner::new(),
         })
     }
@@ -151,7 +154,7 @@ fn range_between(a: Vec2, b: Vec2, share: f32, offset: f32) -> Vec2 {
     let most = a.abs().max(b.abs()).max_element() + offset.abs();
     // Each voxel is rounded before it is interpolated, which rounds again.
     let slack = 16.0 * f32::EPSILON * most;
-    let range = a + (b - a) * share;
+    let range = a * (1.0 - share) + b * share;
     vec2(range.x - slack, range.y + slack)
 }
 

@@ -119,6 +119,18 @@ impl Recording {
     }
 }
 
+impl Recording {
+    /// Returns whether both are one program with the same numbers and data.
+    fn is_same(&self, other: &Self, limits: &Limits) -> bool {
+        let (a, b) = (&self.state, &other.state);
+        let same_words = |(a, b): (&Uniform, &Uniform)| a.words == b.words;
+        let same_data = |(a, b): (&SceneBuffer, &SceneBuffer)| (a.key, a.len) == (b.key, b.len);
+        self.has_same_program(other, limits)
+            && a.uniforms.iter().zip(&b.uniforms).all(same_words)
+            && a.buffers.iter().zip(&b.buffers).all(same_data)
+    }
+}
+
 /// The recording around a kernel's body, without the body. It contains whatever may differ between
 /// two runs of a kernel, and is small beside it.
 pub(crate) struct Frame(Recording);
@@ -191,14 +203,12 @@ impl Modules {
             let same_code = k.code == code && k.arithmetic == arithmetic;
             same_code && facts.is_some() && k.facts == facts && is_in_frame(k)
         };
-        let at = self.known.iter().position(is_alike);
-        if let Some(at) = at
-            && self.known[at].recording.adopt(&captures, &limits)
-            && let Some(mut known) = self.known.remove(at)
-        {
+        let takes = |k: &mut Known| is_alike(k) && k.recording.adopt(&captures, &limits);
+        let at = self.known.iter_mut().position(takes);
+        if let Some(mut known) = at.and_then(|at| self.known.remove(at)) {
             frame.enter(&mut known.recording);
             debug_assert!(
-                known.recording.has_same_program(&record(), &limits),
+                known.recording.is_same(&record(), &limits),
                 "captures of a kernel are not fully described: it has other facts"
             );
             let module = known.program.printed.of(&known.recording, &limits);

@@ -1,7 +1,7 @@
 //! Descriptions of what a kernel captures, as far as a recording depends on it.
 
 use super::{Builder, Recorder, storage};
-use crate::machine::{Data, KernelInfo, Schema, Type as _, wgsl::BufferKey};
+use crate::machine::{Data, KernelInfo, Resource, Schema, Type as _, wgsl::BufferKey};
 
 /// What a kernel captures: numbers and buffers under their names, and the facts that decide what is
 /// recorded.
@@ -33,7 +33,7 @@ impl Description {
     }
 
     /// Adds what a branch of the host decides by while a kernel is recorded.
-    pub(crate) fn fact(&mut self, fact: u64) {
+    pub fn fact(&mut self, fact: u64) {
         self.facts.push(fact);
     }
 
@@ -64,7 +64,7 @@ impl Description {
     pub(crate) fn buffer(&mut self, key: BufferKey, name: &str, schema: &'static Schema, len: u64) {
         let name = self.m.buffer(key, name, schema, len);
         let at = self.m.state.borrow().buffers.iter().position(|b| b.name == name);
-        self.fact(at.unwrap_or_default() as u64 * 2 + u64::from(len == 0));
+        self.fact(at.map_or(u64::MAX, |at| at as u64 * 2 + u64::from(len == 0)));
     }
 
     /// Adds the elements of a slice, or of a scene, with the kinds of enums among them, of which the
@@ -74,6 +74,21 @@ impl Description {
         for kinds in self.m.kinds_of_data(data) {
             self.fact(kinds.bits());
         }
+    }
+
+    /// Adds a constant: all that it describes are facts.
+    pub(crate) fn constant(&mut self, resource: &dyn Resource) {
+        let mut own = Self::default();
+        resource.describe(&mut own);
+        let state = own.m.state.into_inner();
+        let words = state.uniforms.iter().flat_map(|u| &u.words).map(|w| u64::from(*w));
+        self.facts.extend(words);
+        self.facts.extend(state.buffers.iter().flat_map(|b| {
+            let (version, part) = (u64::from(b.key.version), u64::from(b.key.part));
+            [b.key.id, version << 32 | part, b.len]
+        }));
+        self.facts.append(&mut own.facts);
+        self.is_open |= own.is_open;
     }
 
     /// Returns the facts, unless the description is open.

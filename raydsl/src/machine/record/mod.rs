@@ -462,7 +462,9 @@ impl Recorder {
         len: u64,
     ) -> String {
         let mut state = self.state.borrow_mut();
-        if let Some(b) = state.buffers.iter().find(|b| b.key == key && b.schema == schema) {
+        // In another frame the body's buffer may be another than the frame's.
+        let own = &state.buffers[state.before_body.buffers..];
+        if let Some(b) = own.iter().find(|b| b.key == key && b.schema == schema) {
             return b.name.clone();
         }
         let own = safe_name(name);

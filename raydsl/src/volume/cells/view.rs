@@ -9,8 +9,8 @@ use crate::bvh::SceneView;
 use crate::geometry::{Aabb, RayOn};
 use crate::machine::table_view;
 use crate::machine::{
-    Capture, F, Leaves, Machine, Method, On, Parameter, Resource, Schema, Slice, Table, TableView,
-    U, V3, Value, name,
+    Capture, DescribedSlice, F, HostFact, Leaves, Machine, Method, On, Parameter, Resource, Schema,
+    Slice, Table, TableView, U, V3, Value, name, visit_value,
 };
 use crate::volume::SurfaceHit;
 
@@ -41,9 +41,12 @@ table_view!([] CellGrid<'_>, CellGridView, "cells", "grids of cells");
 impl TableView for CellGridView<'_> {
     fn resources(&self, visit: &mut dyn FnMut(&dyn Resource)) {
         visit(&self.entries);
-        visit(&self.tetrahedra);
-        visit(&self.faces);
-        visit(&self.values);
+        visit(&DescribedSlice(self.tetrahedra));
+        visit(&DescribedSlice(self.faces));
+        visit(&DescribedSlice(self.values));
+        visit_value(InUniforms { cells: self.layout }, self.name, visit);
+        visit(&HostFact(self.is_of_cells.into()));
+        visit(&HostFact(self.has_gaps.into()));
     }
 
     fn is_same(&self, other: &Self) -> bool {
