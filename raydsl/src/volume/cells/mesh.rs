@@ -11,7 +11,8 @@ use super::topology;
 use crate::Type;
 use crate::machine::Owner;
 
-/// Largest coordinate of a point.
+/// Largest coordinate of a point. A mesh smaller than some 1e-20 should be scaled too: products of its
+/// coordinates underflow.
 pub const MAX_COORDINATE: f32 = 1e12;
 
 /// Maximum number of tetrahedra of a mesh; a hexahedron has six.
