@@ -10,7 +10,7 @@ pub use crate::machine::lifted::*;
 pub use crate::machine::{
     B, Capture, Compare, ConstantFact, F, Field, KernelFn, KernelInfo, Lanes, Machine, Margin, Op,
     Recorder, Resource, Schema, Slice, Table, TableView, Type, Value, VisitConstant, op,
-    visit_host, visit_value,
+    visit_host, visit_known, visit_value,
 };
 pub use crate::shading::{Asked, Scene};
 

@@ -55,6 +55,13 @@ enum Shape {
     Square { size: f32 },
 }
 
+#[derive(Clone, Copy, PartialEq, Type)]
+#[repr(u32)]
+enum Sign {
+    Plus,
+    Minus,
+}
+
 #[test]
 fn values_of_the_host_are_part_of_a_recording() -> Result<(), Error> {
     let Some(gpu) = own()? else { return Ok(()) };
@@ -81,7 +88,14 @@ fn values_of_the_host_are_part_of_a_recording() -> Result<(), Error> {
             });
             assert_runs(&gpu, &kernel);
         }
-        assert_eq!(gpu.context().recorded(), 2 + 3 + 2, "round {round}");
+        for sign in [Sign::Plus, Sign::Minus] {
+            let kernel = kernel!(|x: f32| match sign {
+                Sign::Plus => x + k,
+                Sign::Minus => x - k,
+            });
+            assert_runs(&gpu, &kernel);
+        }
+        assert_eq!(gpu.context().recorded(), 2 + 3 + 2 + 2, "round {round}");
     }
     Ok(())
 }

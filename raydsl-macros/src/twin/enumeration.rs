@@ -240,10 +240,10 @@ fn capture(name: &Ident, twin: &Ident) -> TokenStream {
 
             fn resources(
                 &self,
-                name: &'static str,
+                _: &'static str,
                 visit: &mut dyn ::core::ops::FnMut(&dyn #p::Resource),
             ) {
-                #p::visit_value(*self, name, visit);
+                #p::visit_known(*self, visit);
             }
         }
     }

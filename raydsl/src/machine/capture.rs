@@ -58,6 +58,12 @@ pub fn visit_value<T: Type>(v: T, name: &'static str, visit: &mut dyn FnMut(&dyn
     visit(&CapturedValue { name, schema: T::SCHEMA, bytes });
 }
 
+/// Visits a captured value that is known while a kernel is recorded.
+#[doc(hidden)]
+pub fn visit_known<T: Type>(v: T, visit: &mut dyn FnMut(&dyn Resource)) {
+    visit_value(v, "known", &mut |resource| visit(&Constant(resource)));
+}
+
 /// A fact that a branch of the host decides by while a kernel is recorded: a truth value, a count.
 pub struct HostFact(pub u64);
 

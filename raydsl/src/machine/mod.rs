@@ -78,7 +78,7 @@ mod words;
 pub use call::{KernelFn, KernelInfo};
 pub(crate) use call::{KnownFunction, WithoutNan};
 pub use capture::{
-    Capture, ConstantFact, HostFact, Resource, VisitConstant, visit_host, visit_value,
+    Capture, ConstantFact, HostFact, Resource, VisitConstant, visit_host, visit_known, visit_value,
 };
 pub(crate) use counted::count;
 pub use counted::{Count, Counted, Place};
