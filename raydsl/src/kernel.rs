@@ -72,7 +72,8 @@ impl<'a, A: Type, R: Type> ScalarKernel<'a, A, R> {
         copy
     }
 
-    /// Adds the lifted copies.
+    /// Adds the lifted copies. `resources` visits all that they capture: kernels with the same type
+    /// of it, and the same facts, share a recording.
     pub fn lifted(
         self,
         lifted: Lifted<'a, A, R>,

@@ -1,7 +1,7 @@
 //! What `raydsl::testing` offers to users: it passes where variants agree, and says where not.
 
 use raydsl::kernel::Lifted;
-use raydsl::machine::{KernelFn, KernelInfo, Rounding};
+use raydsl::machine::{HostFact, KernelFn, KernelInfo, Rounding};
 use raydsl::testing::variants_agree;
 
 // ANCHOR: imports
@@ -146,7 +146,7 @@ fn broken(packet: bool, wgsl: bool) -> Kernel<'static, (f32, f32), f32> {
             }),
             margin: Some(Box::new(falloff::lifted)),
         },
-        |_| {},
+        move |visit| visit(&HostFact(wgsl.into())),
     )
 }
 
