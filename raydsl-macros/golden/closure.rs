@@ -574,8 +574,6 @@ fn main() {
                     ),
                 },
                 move |visit: &mut dyn FnMut(&dyn ::raydsl::__private::Resource)| {
-                    #[allow(unused_imports)]
-                    use ::raydsl::__private::VisitConstant as _;
                     ::raydsl::__private::Capture::<
                         ::raydsl::__private::Recorder,
                     >::resources({ __captures.0 }, "bvh", visit);

@@ -4,6 +4,7 @@ use raydsl::kernel::{Kernel, Variant};
 use raydsl::machine::Type;
 use raydsl::prelude::*;
 use raydsl::testing;
+use raydsl::volume::TransferFunction;
 
 /// Asserts that all variants on the CPU have the same bits, and that WGSL is within `bound` of
 /// them.
@@ -37,4 +38,20 @@ pub fn assert_close<A: Type + Copy + core::fmt::Debug>(
             assert!(off <= bound, "WGSL: {:?}: {b}, not {a}, off by {off}", inputs[i]);
         }
     }
+}
+
+/// Functions with soft and narrow peaks, steps, and opaque layers, of values from 0 to 1.
+pub fn functions() -> [TransferFunction; 4] {
+    let colors =
+        [(0.0, vec3(0.1, 0.0, 0.8)), (0.4, vec3(1.0, 0.5, 0.1)), (1.0, vec3(0.3, 0.9, 0.2))];
+    let soft = [(0.2, 0.0), (0.5, 0.3), (0.9, 0.8)];
+    let spike = [(0.5, 0.0), (0.505, 400.0), (0.51, 0.0)];
+    let step = [(0.45, 0.0), (0.45, 3.0), (0.7, 3.0), (0.7, 0.1)];
+    [
+        TransferFunction::new(&colors, &soft, 1.0),
+        TransferFunction::from_extinction(&colors, &spike),
+        TransferFunction::from_extinction(&colors, &step),
+        TransferFunction::new(&colors, &[(0.3, 0.0), (0.6, 1.0)], 0.1),
+    ]
+    .map(|f| f.expect("a function"))
 }

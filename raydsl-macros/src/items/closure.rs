@@ -74,8 +74,7 @@ pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel)
     }
     let machines: Vec<&Natural> =
         wanted.iter().copied().chain(counted.as_ref().map(|_| &COUNTED)).collect();
-    let (copies, names_of) = copies(&kernel, closure, &machines, &mut errors);
-    let captured = &names_of.all;
+    let (copies, captured) = copies(&kernel, closure, &machines, &mut errors);
     // The closure itself remains, so that rustc and editors see its types.
     let closure = without_markers(closure.to_token_stream());
     if !errors.is_empty() {
@@ -85,7 +84,8 @@ pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel)
     let (p, scalar, captures) = (private(), own("scalar"), own("captures"));
     let names: Vec<&Ident> = kernel.params.iter().map(|p| &p.name).collect();
     let types = kernel.params.iter().map(|p| &p.ty);
-    let (info, resources) = (info(&kernel, "kernel"), resources(&names_of));
+    let (info, resources) = (info(&kernel, "kernel"), resources(&captured));
+    let all = &captured.all;
     let boxed = |machine: &&Natural| boxed(machine, machine.member == machines[0].member);
     let members = NATURAL.iter().map(|machine| {
         let name = format_ident!("{}", machine.member);
@@ -108,13 +108,11 @@ pub(crate) fn kernel_closure(ClosureKernel { counted, closure }: &ClosureKernel)
             &__INFO,
             move |(#(#names,)*): (#(#types,)*)| #scalar(#(#names),*),
         );
-        let #captures = (#(&#captured,)*);
+        let #captures = (#(&#all,)*);
         #(#copies)*
         #scalar.lifted(
             #p::Lifted { #(#members,)* },
             move |visit: &mut dyn FnMut(&dyn #p::Resource)| {
-                #[allow(unused_imports)]
-                use #p::VisitConstant as _;
                 #(#resources)*
             },
         )
@@ -262,8 +260,7 @@ fn raw_captures(names: &[Ident], captured: &[Ident]) -> Vec<TokenStream> {
 
 /// Returns the code that passes the captures' resources to the runtime, the values among them that
 /// are used as the host's, and constants, which are a part of what is recorded.
-fn resources(names: &Captured) -> Vec<TokenStream> {
-    let captured = &names.all;
+fn resources(Captured { all, of_host, constants }: &Captured) -> Vec<TokenStream> {
     let visit = |(i, name): (usize, &Ident)| {
         let _at = At::new(name.span());
         let (p, capture, text) = (private_here(), capture(i), name.to_string());
@@ -271,18 +268,25 @@ fn resources(names: &Captured) -> Vec<TokenStream> {
     };
     let visit_host = |name: &Ident| {
         let _at = At::new(name.span());
-        let capture = capture(captured.iter().position(|c| c == name)?);
+        let capture = capture(all.iter().position(|c| c == name)?);
         let p = private_here();
         Some(quote_here!(#p::visit_host(#capture, visit);))
     };
-    let values = captured.iter().enumerate().map(visit);
     let visit_constant = |name: &Ident| {
         let _at = At::new(name.span());
         let p = private_here();
         quote_here!(#p::ConstantFact(&#name).visit(visit);)
     };
-    let constants = names.constants.iter().map(visit_constant);
-    values.chain(names.of_host.iter().filter_map(visit_host)).chain(constants).collect()
+    // A constant that kernels can capture needs no trait to be visited.
+    let import = (!constants.is_empty()).then(|| {
+        let p = private();
+        quote! {
+            #[allow(unused_imports, reason = "for constants of the host alone")]
+            use #p::VisitConstant as _;
+        }
+    });
+    let values = all.iter().enumerate().map(visit).chain(of_host.iter().filter_map(visit_host));
+    import.into_iter().chain(values).chain(constants.iter().map(visit_constant)).collect()
 }
 
 /// Returns one of the captures, which are stored in a tuple.

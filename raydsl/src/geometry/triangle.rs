@@ -132,7 +132,7 @@ impl IndexedTriangle {
 /// which keeps all signs or flips them all.
 #[kernel]
 #[inline]
-fn axis_last(v: Vec3, k: u32) -> Vec3 {
+pub(crate) fn axis_last(v: Vec3, k: u32) -> Vec3 {
     let x = if k == 0 { v.z } else { v.x };
     let y = if k == 1 { v.z } else { v.y };
     let z = if k == 0 {

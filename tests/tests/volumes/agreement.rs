@@ -6,25 +6,11 @@ use raydsl::volume::{
     Midpoint, PreIntegrated, ShadedCell, TransferFunction, Volume, VolumeIntegrator, VolumeLight,
 };
 pub(crate) use raydsl_tests::close::assert_close;
+use raydsl_tests::close::functions;
 use raydsl_tests::rng::Rng;
 
 use super::oracle::{self, Field};
 use super::{along, column, linear, volume};
-
-fn functions() -> [TransferFunction; 4] {
-    let colors =
-        [(0.0, vec3(0.1, 0.0, 0.8)), (0.4, vec3(1.0, 0.5, 0.1)), (1.0, vec3(0.3, 0.9, 0.2))];
-    let soft = [(0.2, 0.0), (0.5, 0.3), (0.9, 0.8)];
-    let spike = [(0.5, 0.0), (0.505, 400.0), (0.51, 0.0)];
-    let step = [(0.45, 0.0), (0.45, 3.0), (0.7, 3.0), (0.7, 0.1)];
-    [
-        TransferFunction::new(&colors, &soft, 1.0),
-        TransferFunction::from_extinction(&colors, &spike),
-        TransferFunction::from_extinction(&colors, &step),
-        TransferFunction::new(&colors, &[(0.3, 0.0), (0.6, 1.0)], 0.1),
-    ]
-    .map(|f| f.expect("a function"))
-}
 
 fn grids() -> Vec<(Vec<f32>, UVec3, GridConfig)> {
     let mut rng = Rng::of("agreement");

@@ -85,8 +85,8 @@ impl Recording {
     fn adopt(&mut self, from: &Description, limits: &Limits) -> bool {
         let (source, own) = (from.m.state.borrow(), &mut self.state);
         let first = own.before_body;
-        let is_textured = !own.textures.is_empty();
-        if is_textured || own.is_renamed || source.is_renamed {
+        // Textures do not describe themselves.
+        if !own.textures.is_empty() || own.is_renamed || source.is_renamed {
             return false;
         }
         let number = |u: &Uniform| {
@@ -117,9 +117,7 @@ impl Recording {
         }
         true
     }
-}
 
-impl Recording {
     /// Returns whether both are one program with the same numbers and data.
     fn is_same(&self, other: &Self, limits: &Limits) -> bool {
         let (a, b) = (&self.state, &other.state);

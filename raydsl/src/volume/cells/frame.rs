@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3, vec2, vec3};
 
 use crate::geometry::Ray;
+use crate::geometry::triangle::axis_last;
 use crate::machine::functions::{vec2, vec3};
 use crate::machine::generic::{clamp, max, min};
 use crate::math::exact::exact_cross;
@@ -61,22 +62,6 @@ impl RayFrame {
         let x = (p.x - self.shear.x * p.z) * self.hand;
         vec3(x, p.y - self.shear.y * p.z, p.z * self.per_step)
     }
-}
-
-/// Swaps the components along the axis `k` (0, 1 or 2) and z.
-#[kernel]
-#[inline]
-fn axis_last(v: Vec3, k: u32) -> Vec3 {
-    let x = if k == 0 { v.z } else { v.x };
-    let y = if k == 1 { v.z } else { v.y };
-    let z = if k == 0 {
-        v.x
-    } else if k == 1 {
-        v.y
-    } else {
-        v.z
-    };
-    vec3(x, y, z)
 }
 
 /// Returns whether the ray passes on the left of the edge from `a` to `b`: on exactly one of the
