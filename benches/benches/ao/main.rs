@@ -59,6 +59,9 @@ struct Args {
     /// How rays go through trees with copies; each is a mode of its own.
     #[arg(long, value_delimiter = ',', default_value = "auto", value_parser = parse_traversal)]
     traversal: Vec<Traversal>,
+    /// Measures WGSL, too, on this machine's device and by its clock.
+    #[arg(long)]
+    device: bool,
     /// Counts the queries' work once, without measuring times; needs the feature `counts`.
     #[arg(long, conflicts_with_all = ["json", "threads", "rounds", "traversal"])]
     counts: bool,
@@ -82,11 +85,21 @@ fn main() -> ExitCode {
     if args.counts {
         return count(&args);
     }
+    let device = match args.device.then(GpuScheduler::new).transpose() {
+        Ok(device) => device,
+        Err(error) => {
+            eprintln!("ao: {error}");
+            return ExitCode::FAILURE;
+        }
+    };
+    if let Some(gpu) = &device {
+        println!("WGSL on {}", gpu.context().adapter_name());
+    }
     let mut lines = Vec::new();
     for (name, scene) in all_scenes(&args.scene) {
         for threads in args.threads.iter().map(|&threads| threads.into()) {
             match &scene {
-                Ok(scene) => lines.extend(measure(&args, &name, scene, threads)),
+                Ok(scene) => lines.extend(measure(&args, &name, scene, threads, device.as_ref())),
                 Err(_) => lines.extend(table::without_scene(&name, threads, &args.only)),
             }
         }
@@ -195,7 +208,13 @@ impl Trees<'_> {
 }
 
 /// Measures one scene on so many threads.
-fn measure(args: &Args, name: &str, scene: &Scene<Triangle>, threads: usize) -> Vec<Line> {
+fn measure(
+    args: &Args,
+    name: &str,
+    scene: &Scene<Triangle>,
+    threads: usize,
+    gpu: Option<&GpuScheduler>,
+) -> Vec<Line> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.expect("threads can be started");
     pool.install(|| {
@@ -215,7 +234,7 @@ fn measure(args: &Args, name: &str, scene: &Scene<Triangle>, threads: usize) -> 
             work.places.len(),
             work.primary.len()
         );
-        let mut contenders = own::contenders(&own, &work, threads);
+        let mut contenders = own::contenders(&own, &work, threads, gpu);
         contenders.extend(embree::contenders(&embree, &work, threads));
         contenders.extend(cwbvh::contenders(&cwbvh, &work, threads));
         let wanted = |row: Row| {

@@ -38,6 +38,9 @@ struct Args {
     /// Width and height of the film, a multiple of 16.
     #[arg(long, default_value_t = 1024, value_parser = clap::value_parser!(u32).range(16..=4096))]
     size: u32,
+    /// Measures WGSL, too, on this machine's device and by its clock.
+    #[arg(long)]
+    device: bool,
     /// Cargo says so.
     #[arg(long, hide = true)]
     bench: bool,
@@ -45,13 +48,30 @@ struct Args {
 
 fn main() -> ExitCode {
     let args = Args::parse();
+    let device = match args.device.then(GpuScheduler::new).transpose() {
+        Ok(device) => device,
+        Err(error) => {
+            eprintln!("points: {error}");
+            return ExitCode::FAILURE;
+        }
+    };
+    if let Some(gpu) = &device {
+        println!("WGSL on {}", gpu.context().adapter_name());
+    }
     let mut lines = Vec::new();
     for name in &args.scene {
         match surface(name) {
             Ok(scene) => {
                 let points = scenes::points(&scene.prims, args.points);
                 for &threads in &args.threads {
-                    lines.extend(measure(&args, name, &points, scene.camera, threads.into()));
+                    lines.extend(measure(
+                        &args,
+                        name,
+                        &points,
+                        scene.camera,
+                        threads.into(),
+                        device.as_ref(),
+                    ));
                 }
             }
             Err(error) => eprintln!("skipped {name}: {error}"),
@@ -78,11 +98,12 @@ fn measure(
     points: &[scenes::Point],
     camera: Pinhole,
     threads: usize,
+    device: Option<&GpuScheduler>,
 ) -> Vec<Line> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.expect("threads can be started");
     println!("{name}: {} points, threads: {threads}\n", points.len());
-    let task = Task::new(points, camera, args.size.next_multiple_of(TILE), threads);
+    let task = Task::new(points, camera, args.size.next_multiple_of(TILE), threads, device);
     let records = pool.install(|| Rounds::new(&task).run(args.rounds.into()));
     let scene = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
     let lines: Vec<Line> =

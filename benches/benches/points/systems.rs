@@ -2,7 +2,7 @@
 
 use raydsl::camera::Camera;
 use raydsl::prelude::*;
-use raydsl_benches::clock::seconds_on;
+use raydsl_benches::clock::{device_seconds, seconds_on};
 use raydsl_benches::contest::{Cost, Outcome, pixels};
 use raydsl_benches::embree::{self, Embree, Mode, Quality, Question, Shape};
 use raydsl_benches::scenes::Point;
@@ -23,6 +23,7 @@ pub(crate) struct Task<'a> {
     /// The camera's rays, in blocks of pixels.
     pub(crate) primary: Vec<Ray>,
     pub(crate) threads: usize,
+    device: Option<&'a GpuScheduler>,
     /// The points as Embree reads them.
     shape: Shape,
 }
@@ -57,13 +58,19 @@ pub(crate) struct Rounds<'a> {
 }
 
 impl<'a> Task<'a> {
-    pub(crate) fn new(points: &'a [Point], camera: Pinhole, size: u32, threads: usize) -> Self {
+    pub(crate) fn new(
+        points: &'a [Point],
+        camera: Pinhole,
+        size: u32,
+        threads: usize,
+        device: Option<&'a GpuScheduler>,
+    ) -> Self {
         let rays = camera.begin_frame(size, size);
         let ray = |(x, y)| rays.primary_ray(x as f32 + 0.5, y as f32 + 0.5);
         let primary = pixels(size).into_iter().map(ray).collect();
         let sphere = |p: &Point| [p.center.x, p.center.y, p.center.z, p.radius];
         let shape = Shape::Spheres(points.iter().map(sphere).collect());
-        Self { points, camera, size, primary, threads, shape }
+        Self { points, camera, size, primary, threads, device, shape }
     }
 
     fn frame<R: Type>(
@@ -73,6 +80,10 @@ impl<'a> Task<'a> {
         blank: R,
     ) -> (Image<R>, f64) {
         let mut image = Image::filled(self.size, self.size, blank);
+        if let (Variant::Wgsl, Some(gpu)) = (variant, self.device) {
+            let seconds = device_seconds(|| gpu.frame(&self.camera, kernel, &mut image));
+            return (image, seconds);
+        }
         let scheduler = TiledScheduler::new().variant(variant);
         let run = || scheduler.frame(&self.camera, kernel, &mut image);
         let ((), seconds) = seconds_on(self.threads, run);
@@ -128,13 +139,16 @@ impl<'a> Rounds<'a> {
         let built = Outcome { seconds, ..Outcome::default() };
         self.note("build", who(name.to_owned(), ("", 0)), cost, built);
         let kernel = kernel!(|ray: Ray| bvh.closest_hit(ray));
-        for variant in Variant::ALL.into_iter().filter(|v| v.is_native()) {
+        // A device asks the binary tree of a wide one, which is that of another setting.
+        let has_device = task.device.is_some() && !is_wide;
+        for variant in Variant::ALL.into_iter().filter(|v| v.is_native() || has_device) {
             let (image, seconds) = task.frame(variant, &kernel, Hit::miss());
             let hits = image.pixels().iter().filter(|hit| hit.is_hit);
             let distance = hits.clone().map(|hit| f64::from(hit.t)).sum();
             let outcome = Outcome { seconds, hits: hits.count(), distance };
             let mode = format!("{} {name}", variant.name());
-            self.note("primary", who(mode, variant.isa()), cost, outcome);
+            let isa = if variant.is_native() { variant.isa() } else { ("device", 0) };
+            self.note("primary", who(mode, isa), cost, outcome);
         }
     }
 

@@ -1,12 +1,13 @@
 //! The device with its caches, held by an application.
 
 use std::fmt;
-use std::sync::Mutex;
+use std::sync::{Mutex, OnceLock};
 use std::time::Duration;
 
 use super::buffers::Uploads;
 use super::device::{Gpu, lock};
 use super::error::{GpuError, one_line};
+use super::exactness::Exactness;
 use super::pipeline::{Checks, Pipelines};
 use super::slot::Slot;
 use super::textures::Textures;
@@ -20,6 +21,9 @@ use crate::machine::wgsl::{BufferKey, Limits};
 pub struct Context {
     pub(super) gpu: Gpu,
     adapter: wgpu::AdapterInfo,
+    /// Whether kernels reach the driver as SPIR-V.
+    pub(super) takes_spirv: bool,
+    exactness: OnceLock<Exactness>,
     pub(super) checks: Checks,
     pub(super) uploads: Mutex<Uploads>,
     pub(super) textures: Mutex<Textures>,
@@ -44,7 +48,8 @@ impl Context {
     /// Uses a device and a queue of the application, with that device's limits.
     ///
     /// Its callbacks for errors and for device loss are left alone. Request
-    /// `Features::TIMESTAMP_QUERY` when creating the device to get device times, and the adapter's
+    /// `Features::TIMESTAMP_QUERY` when creating the device to get device times,
+    /// `Features::PASSTHROUGH_SHADERS` to get [exact results](Self::is_exact), and the adapter's
     /// storage limits to get large windows. Without `adapter_info` the device's own is used.
     pub fn from_wgpu(
         adapter_info: Option<wgpu::AdapterInfo>,
@@ -52,9 +57,13 @@ impl Context {
         queue: wgpu::Queue,
     ) -> Self {
         let adapter = adapter_info.unwrap_or_else(|| device.adapter_info());
+        let takes_spirv = adapter.backend == wgpu::Backend::Vulkan
+            && device.features().contains(wgpu::Features::PASSTHROUGH_SHADERS);
         Self {
             gpu: Gpu::new(device, queue),
             adapter,
+            takes_spirv,
+            exactness: OnceLock::new(),
             checks: Checks::Full,
             uploads: Mutex::default(),
             textures: Mutex::default(),
@@ -90,7 +99,7 @@ impl Context {
     /// clamp. With [`Checks::Full`] there is no condition.
     pub unsafe fn with_checks(mut self, checks: Checks) -> Self {
         self.checks = checks;
-        *lock(&self.pipelines) = Pipelines::default();
+        self.forget_pipelines();
         self
     }
 
@@ -123,7 +132,28 @@ impl Context {
         Limits {
             max_binding_bytes: self.gpu.caps.max_binding,
             max_storage_buffers: self.gpu.caps.max_storage_buffers,
+            quotients: self.exactness().quotients,
         }
+    }
+
+    /// Returns whether kernels have the bits of the other variants on this device, unless their
+    /// [`Arithmetic`](crate::machine::wgsl::Arithmetic) is `Fast`.
+    ///
+    /// Denormals are excepted, which a device may take for 0, and so are NaNs, whose bits differ.
+    /// It is so where the device takes SPIR-V, and where quotients and square roots are rounded to
+    /// nearest, or can be corrected so that they are: a kernel of 65,536 of them is run to find
+    /// out, once for a context, unless the device is a CPU.
+    pub fn is_exact(&self) -> bool {
+        self.exactness().is_exact
+    }
+
+    fn exactness(&self) -> Exactness {
+        *self.exactness.get_or_init(|| Exactness::of(self))
+    }
+
+    /// Forgets the pipelines, and how many there were.
+    pub(super) fn forget_pipelines(&self) {
+        *lock(&self.pipelines) = Pipelines::default();
     }
 
     /// Returns the bytes of scene data uploaded to the device so far.
@@ -222,10 +252,17 @@ async fn adapter() -> Result<wgpu::Adapter, GpuError> {
 
 /// Requests a device with all the storage that the adapter offers.
 async fn device(adapter: &wgpu::Adapter) -> Result<(wgpu::Device, wgpu::Queue), GpuError> {
+    let mut features = wgpu::Features::TIMESTAMP_QUERY;
+    if adapter.get_info().backend == wgpu::Backend::Vulkan {
+        features |= wgpu::Features::PASSTHROUGH_SHADERS;
+    }
     let request = adapter.request_device(&wgpu::DeviceDescriptor {
         label: Some("raydsl"),
-        required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+        required_features: adapter.features() & features,
         required_limits: wanted_limits(&adapter.limits()),
+        // SAFETY: the one experimental feature that is asked for is that of passed shaders, which are
+        // what naga writes.
+        experimental_features: unsafe { wgpu::ExperimentalFeatures::enabled() },
         ..Default::default()
     });
     request.await.map_err(|error| GpuError::DeviceRequest {

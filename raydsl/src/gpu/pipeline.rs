@@ -7,6 +7,8 @@ use std::time::Duration;
 
 use super::device::Gpu;
 use super::error::{GpuError, one_line};
+use super::interface::Sizes;
+use super::spirv;
 use super::tiles::FIRST_GOAL;
 use crate::run::clock::Instant;
 
@@ -50,6 +52,19 @@ pub(super) struct Bindings {
     pub(super) has_stored_parameters: bool,
     pub(super) storage: Vec<Storage>,
     pub(super) sampled: Vec<Sampled>,
+    /// Whether the driver gets SPIR-V whose operations it may not fuse or move.
+    pub(super) is_exact: bool,
+}
+
+impl Bindings {
+    /// Returns the numbers of all bindings, in their order.
+    pub(super) fn numbers(&self) -> Vec<u32> {
+        let storage = self.storage.iter().map(|storage| storage.binding);
+        let sampled = self.sampled.iter().flat_map(|s| [s.binding, s.binding + 1]);
+        let mut numbers: Vec<u32> = [0, 1].into_iter().chain(storage).chain(sampled).collect();
+        numbers.sort_unstable();
+        numbers
+    }
 }
 
 /// How a text declares the kernel's numbers.
@@ -117,9 +132,14 @@ fn compile(
     source: &str,
     bindings: &Bindings,
 ) -> Result<Pipeline, GpuError> {
-    let module = shader(gpu, checks, source)?;
+    // What wgpu translates it also checks against the layout.
+    let (module, sizes) = if bindings.is_exact {
+        exact_shader(gpu, checks, source, bindings)?
+    } else {
+        (shader(gpu, checks, source)?, Sizes::new())
+    };
     let made = gpu.guarded("the pipeline", || {
-        let layout = layout(&gpu.device, bindings);
+        let layout = layout(&gpu.device, bindings, &sizes);
         (pipeline(&gpu.device, &module, &layout, checks), layout)
     });
     match made {
@@ -158,7 +178,7 @@ fn pipeline(
     })
 }
 
-fn layout(device: &wgpu::Device, bindings: &Bindings) -> wgpu::BindGroupLayout {
+fn layout(device: &wgpu::Device, bindings: &Bindings, sizes: &Sizes) -> wgpu::BindGroupLayout {
     let uniform = wgpu::BufferBindingType::Uniform;
     let stored = wgpu::BufferBindingType::Storage { read_only: true };
     let parameters = if bindings.has_stored_parameters { stored } else { uniform };
@@ -167,7 +187,15 @@ fn layout(device: &wgpu::Device, bindings: &Bindings) -> wgpu::BindGroupLayout {
         buffer(binding, wgpu::BufferBindingType::Storage { read_only })
     });
     let sampled = bindings.sampled.iter().flat_map(sampled);
-    let entries: Vec<_> = uniforms.into_iter().chain(storage).chain(sampled).collect();
+    let mut entries: Vec<_> = uniforms.into_iter().chain(storage).chain(sampled).collect();
+    // Vulkan's numbers are the entries' places: those of exact shaders follow this order.
+    entries.sort_by_key(|entry| entry.binding);
+    for entry in &mut entries {
+        if let wgpu::BindingType::Buffer { min_binding_size, .. } = &mut entry.ty {
+            let of_entry = sizes.iter().find(|(binding, _)| *binding == entry.binding);
+            *min_binding_size = of_entry.map(|(_, size)| *size);
+        }
+    }
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("raydsl"),
         entries: &entries,
@@ -233,6 +261,34 @@ fn shader_module(device: &wgpu::Device, checks: Checks, source: &str) -> wgpu::S
             unsafe { device.create_shader_module_trusted(descriptor, trusted) }
         }
     }
+}
+
+/// Parses and validates a text as [`shader`], and hands it to the driver as SPIR-V.
+fn exact_shader(
+    gpu: &Gpu,
+    checks: Checks,
+    source: &str,
+    bindings: &Bindings,
+) -> Result<(wgpu::ShaderModule, Sizes), GpuError> {
+    let spirv::Exact { words, sizes } =
+        spirv::exact(source, checks, bindings, &gpu.device.limits())?;
+    let entry =
+        wgpu::PassthroughShaderEntryPoint { name: "main".into(), workgroup_size: (1, 1, 1) };
+    let made = gpu.guarded("the shader", || {
+        // SAFETY: wgpu does not look at the words. They are what naga has written for a module that it
+        // validated, with the checks that wgpu asks of naga; its bindings are those of the pipeline's
+        // layout, which also has the sizes that its buffers must have at least. Only decorations are added, of results that the module has. Without
+        // bounds checks the conditions are those of `shader_module`.
+        unsafe {
+            gpu.device.create_shader_module_passthrough(wgpu::ShaderModuleDescriptorPassthrough {
+                label: Some("raydsl"),
+                entry_points: vec![entry].into(),
+                spirv: Some(words.into()),
+                ..Default::default()
+            })
+        }
+    })?;
+    Ok((made, sizes))
 }
 
 /// Returns the error for a text that naga refused.

@@ -15,7 +15,7 @@ use super::slot::{Finished, InFlight, Pass, Slot};
 use super::textures::BoundTexture;
 use super::tiles::{Tiler, next_goal};
 use super::window::GpuWindow;
-use crate::machine::wgsl::{BufferKey, Module};
+use crate::machine::wgsl::{Arithmetic, BufferKey, Module};
 use crate::render::{Effort, timing_of};
 use crate::run::clock::Instant;
 
@@ -192,7 +192,9 @@ impl Context {
             needed < u64::from(limit) && self.adapter_info().name.starts_with("llvmpipe");
         let stored = if has_room { stored_parameters(&module.source) } else { None };
         let has_stored_parameters = stored.is_some();
-        let bindings = Bindings { has_stored_parameters, storage, sampled: sampled.collect() };
+        let is_exact = module.arithmetic == Arithmetic::Strict && self.takes_spirv;
+        let sampled = sampled.collect();
+        let bindings = Bindings { has_stored_parameters, storage, sampled, is_exact };
         let source = stored.as_ref().unwrap_or(&module.source);
         lock(&self.pipelines).get(&self.gpu, self.checks, source, &bindings)
     }

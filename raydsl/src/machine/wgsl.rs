@@ -4,10 +4,13 @@
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Arithmetic {
     /// Like the other variants: elementary functions are the library's, and the numbers of the
-    /// source are in the uniform buffer, where no driver can fold them into others.
+    /// source are in the uniform buffer, where no driver can fold them into others. Where a device
+    /// takes SPIR-V, no operation is fused with another or moved, and results have the bits of the
+    /// other variants, except that denormals may be 0; see
+    /// [`Context::is_exact`](crate::gpu::Context::is_exact).
     #[default]
     Strict,
-    /// The fastest on the device: `sin`, `cos`, `tan`, `asin`, `acos`, `atan`, `atan2`, `exp`,
+    /// The fastest on the device, which may fuse and move operations: `sin`, `cos`, `tan`, `asin`, `acos`, `atan`, `atan2`, `exp`,
     /// `exp2`, `log`, `log2`, `pow` and `sincos_2pi` are those of WGSL, whose errors are the
     /// driver's (WGSL asks of `sin` no more than an absolute error of 2^-11 in [-pi, pi]), and
     /// numbers are literals.
@@ -22,6 +25,8 @@ pub enum Arithmetic {
 pub struct Module {
     /// The text.
     pub source: String,
+    /// What the driver may do with it.
+    pub arithmetic: Arithmetic,
     /// Threads per workgroup in x and y.
     pub workgroup: [u32; 2],
     /// Bytes of the uniform buffer of captured numbers; a multiple of 16, never empty.
@@ -145,18 +150,32 @@ pub struct BufferKey {
     pub part: u32,
 }
 
-/// The limits on the size and the number of bindings, which decide the windows.
+/// How quotients and square roots are computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Quotients {
+    /// By the device's own instructions. WGSL asks for 2.5 ulp of a quotient.
+    #[default]
+    Native,
+    /// By functions in the text that round them to nearest, on a device whose `fma` is one
+    /// operation: the device's results are moved by at most an ulp, after Markstein (1990).
+    Corrected,
+}
+
+/// What a text depends on: the limits on the size and the number of bindings, which decide the
+/// windows, and how quotients are computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Bytes of one binding.
     pub max_binding_bytes: u64,
     /// Storage buffers per shader stage.
     pub max_storage_buffers: u32,
+    /// How strict kernels compute quotients and square roots.
+    pub quotients: Quotients,
 }
 
 impl Default for Limits {
-    /// Returns WebGPU's guaranteed limits: 128 MiB and 8 buffers.
+    /// Returns WebGPU's guaranteed limits: 128 MiB and 8 buffers, and native quotients.
     fn default() -> Self {
-        Self { max_binding_bytes: 128 << 20, max_storage_buffers: 8 }
+        Self { max_binding_bytes: 128 << 20, max_storage_buffers: 8, quotients: Quotients::Native }
     }
 }

@@ -2,11 +2,10 @@
 
 use raydsl::kernel as kernel_fn;
 use raydsl::prelude::*;
-
 use raydsl::render::FilmArgs;
-use raydsl_benches::clock::seconds_on;
+use raydsl_benches::clock::{device_seconds, seconds_on};
 
-use crate::rays::{Place, SAMPLES, Workload, place_of, shadow_ray, sum_of_rays};
+use crate::rays::{SAMPLES, Workload, place_of, shadow_ray, sum_of_rays};
 
 /// How many rays of a place meet something before `t_max`.
 #[kernel_fn]
@@ -22,24 +21,46 @@ fn occluded(bvh: &Bvh<Triangle>, t_max: f32, origin: Vec3, normal: Vec3, seed: u
     count
 }
 
+/// What runs kernels.
+#[derive(Clone, Copy)]
+pub(super) enum Engine<'a> {
+    /// A variant of the CPU, on so many threads.
+    Cpu(TiledScheduler, usize),
+    /// WGSL. What it takes is read off the device's clock: neither uploads nor readback count.
+    Device(&'a GpuScheduler),
+}
+
 /// Who asks a tree, and about what. What is asked takes as long as is returned.
 #[derive(Clone, Copy)]
 pub(super) struct Ask<'a> {
     pub(super) bvh: &'a Bvh<'a, Triangle>,
     pub(super) work: &'a Workload,
-    pub(super) scheduler: TiledScheduler,
-    pub(super) threads: usize,
+    pub(super) engine: Engine<'a>,
 }
 
 impl Ask<'_> {
     fn frame<A: FilmArgs, R: Type>(self, kernel: &Kernel<'_, A, R>, image: &mut Image<R>) -> f64 {
-        let run = || self.scheduler.frame(&self.work.camera, kernel, image);
-        seconds_on(self.threads, run).1
+        let camera = &self.work.camera;
+        match self.engine {
+            Engine::Cpu(scheduler, threads) => {
+                seconds_on(threads, || scheduler.frame(camera, kernel, image)).1
+            }
+            Engine::Device(gpu) => device_seconds(|| gpu.frame(camera, kernel, image)),
+        }
     }
 
-    fn batch<R: Type>(self, kernel: &Kernel<'_, Place, R>, found: &mut [R]) -> f64 {
-        let run = || self.scheduler.batch(kernel, &self.work.places, found);
-        seconds_on(self.threads, run).1
+    fn batch<A: Type, R: Type>(
+        self,
+        kernel: &Kernel<'_, A, R>,
+        inputs: &[A],
+        found: &mut [R],
+    ) -> f64 {
+        match self.engine {
+            Engine::Cpu(scheduler, threads) => {
+                seconds_on(threads, || scheduler.batch(kernel, inputs, found)).1
+            }
+            Engine::Device(gpu) => device_seconds(|| gpu.batch(kernel, inputs, found)),
+        }
     }
 
     pub(super) fn primary(self, image: &mut Image<Hit>) -> f64 {
@@ -66,7 +87,7 @@ impl Ask<'_> {
         let kernel = kernel!(|origin: Vec3, normal: Vec3, seed: u32| {
             occluded(bvh, t_max, origin, normal, seed)
         });
-        self.batch(&kernel, found)
+        self.batch(&kernel, &self.work.places, found)
     }
 
     pub(super) fn short(self, found: &mut [u32]) -> f64 {
@@ -89,7 +110,7 @@ impl Ask<'_> {
             }
             count
         });
-        self.batch(&kernel, found)
+        self.batch(&kernel, &self.work.places, found)
     }
 
     /// Numbers of hits, and the sums of their distances.
@@ -108,7 +129,7 @@ impl Ask<'_> {
             }
             (count, distance)
         });
-        self.batch(&kernel, found)
+        self.batch(&kernel, &self.work.places, found)
     }
 
     /// Only makes the camera's rays.
@@ -124,7 +145,7 @@ impl Ask<'_> {
     pub(super) fn make_shadow(self, found: &mut [f32]) -> f64 {
         let kernel =
             kernel!(|origin: Vec3, normal: Vec3, seed: u32| { sum_of_rays(origin, normal, seed) });
-        self.batch(&kernel, found)
+        self.batch(&kernel, &self.work.places, found)
     }
 
     /// Only makes the shadow rays of a frame, from what its camera rays meet.
@@ -137,7 +158,6 @@ impl Ask<'_> {
             let (origin, normal) = place_of(bvh.primitive(hit), ray, hit);
             sum_of_rays(origin, normal, seed)
         });
-        let run = || self.scheduler.batch(&kernel, &self.work.hits, found);
-        seconds_on(self.threads, run).1
+        self.batch(&kernel, &self.work.hits, found)
     }
 }

@@ -9,7 +9,7 @@ use raydsl_benches::contest::{Cost, Outcome, in_parts};
 use crate::contender::{Contender, Run};
 use crate::rays::Workload;
 use crate::row::Row;
-use kernels::Ask;
+use kernels::{Ask, Engine};
 
 /// A tree, and how it was built.
 pub(crate) struct Tree<'a> {
@@ -31,25 +31,25 @@ struct Setting {
     is_asked_by: fn(Variant) -> bool,
 }
 
-/// All modes: these trees, each asked by some variants of the CPU.
+/// All modes: these trees, each asked by some variants. A device asks the binary tree of a wide one.
 static SETTINGS: [Setting; 3] = [
     Setting {
         name: "",
         quality: BuildQuality::Balanced,
         is_wide: false,
-        is_asked_by: |v| v.isa().1 <= 16,
+        is_asked_by: |v| !v.is_native() || v.isa().1 <= 16,
     },
     Setting {
         name: " wide",
         quality: BuildQuality::Balanced,
         is_wide: true,
-        is_asked_by: |v| v.isa().1 >= 8,
+        is_asked_by: |v| v.is_native() && v.isa().1 >= 8,
     },
     Setting {
         name: " best",
         quality: BuildQuality::Best,
         is_wide: true,
-        is_asked_by: |v| v == Variant::widest(),
+        is_asked_by: |v| v == Variant::widest() || v == Variant::Wgsl,
     },
 ];
 
@@ -74,8 +74,7 @@ fn ending(traversal: Traversal) -> String {
 
 impl Setting {
     fn variants(&self) -> impl Iterator<Item = Variant> {
-        let native = Variant::ALL.into_iter().filter(|v| v.is_native());
-        native.filter(|v| (self.is_asked_by)(*v))
+        Variant::ALL.into_iter().filter(|v| (self.is_asked_by)(*v))
     }
 }
 
@@ -104,25 +103,27 @@ pub(crate) fn trees<'a>(
     SETTINGS.iter().flat_map(of_setting).collect()
 }
 
-/// Every mode of every row.
+/// Every mode of every row; WGSL where there is a device.
 pub(crate) fn contenders<'a>(
     trees: &'a [Tree<'a>],
     work: &'a Workload,
     threads: usize,
+    device: Option<&'a GpuScheduler>,
 ) -> Vec<Contender<'a>> {
-    let ask = |tree: &'a Tree<'a>, variant| Ask {
-        bvh: &tree.bvh,
-        work,
-        scheduler: TiledScheduler::new().variant(variant),
-        threads,
+    let engine = |variant: Variant| match variant.is_native() {
+        true => Some(Engine::Cpu(TiledScheduler::new().variant(variant), threads)),
+        false => device.map(Engine::Device),
     };
+    let ask = |tree: &'a Tree<'a>, engine| Ask { bvh: &tree.bvh, work, engine };
     let widest = Variant::widest();
-    let charges = charges(ask(&trees[0], widest)).into_iter();
+    let on_widest = Engine::Cpu(TiledScheduler::new().variant(widest), threads);
+    let charges = charges(ask(&trees[0], on_widest)).into_iter();
     let mut all: Vec<_> =
         charges.map(|(row, run)| contender(row, widest, &trees[0], run)).collect();
     for tree in trees {
         for variant in tree.setting.variants() {
-            let runs = runs(ask(tree, variant)).into_iter();
+            let Some(engine) = engine(variant) else { continue };
+            let runs = runs(ask(tree, engine)).into_iter();
             all.extend(runs.map(|(row, run)| contender(row, variant, tree, run)));
         }
         if tree.has_single_rays {
@@ -140,7 +141,7 @@ pub(crate) fn contenders<'a>(
 }
 
 fn contender<'a>(row: Row, variant: Variant, tree: &Tree<'_>, run: Run<'a>) -> Contender<'a> {
-    let (isa, lanes) = variant.isa();
+    let (isa, lanes) = if variant.is_native() { variant.isa() } else { ("device", 0) };
     let mode = format!("{}{}{}", variant.name(), tree.setting.name, ending(tree.traversal));
     Contender { row, system: "raydsl", mode, isa, lanes, cost: tree.cost, run }
 }

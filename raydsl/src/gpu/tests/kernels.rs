@@ -1,6 +1,6 @@
 //! The modules under test and their expected results.
 
-use crate::machine::wgsl::{Buffer, BufferKey, Module, Window};
+use crate::machine::wgsl::{Arithmetic, Buffer, BufferKey, Module, Window};
 
 /// The head of every module; `{columns}` and `{rows}` are filled in.
 const HEAD: &str = "
@@ -90,6 +90,7 @@ pub(super) fn gather(key: BufferKey, len: u64, window: u64, add: u32) -> Module 
         uniforms: params(add, 0),
         input_stride: 0,
         output_stride: 4,
+        arithmetic: Arithmetic::Strict,
         buffers: vec![buffer],
         textures: vec![],
     }
@@ -116,6 +117,7 @@ pub(super) fn spread(workgroup: [u32; 2], factor: u32) -> Module {
         uniforms: params(factor, 0),
         input_stride: 4,
         output_stride: 16,
+        arithmetic: Arithmetic::Strict,
         buffers: Vec::new(),
         textures: Vec::new(),
     }
@@ -143,6 +145,7 @@ pub(super) fn grind(rounds: u32) -> Module {
         uniforms: params(rounds, 0),
         input_stride: 0,
         output_stride: 4,
+        arithmetic: Arithmetic::Strict,
         buffers: Vec::new(),
         textures: Vec::new(),
     }

@@ -68,7 +68,8 @@ impl Recording {
                 && windows(a) == windows(b)
         };
         let same_texture = |(a, b): (&Texture, &Texture)| a.name == b.name && a.layout == b.layout;
-        (self.entry, self.input, self.output) == (other.entry, other.input, other.output)
+        (self.arithmetic, self.entry) == (other.arithmetic, other.entry)
+            && (self.input, self.output) == (other.input, other.output)
             && a.before_body == b.before_body
             && a.functions == b.functions
             && (a.uniforms.len(), a.buffers.len(), a.textures.len())

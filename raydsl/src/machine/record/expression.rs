@@ -2,8 +2,9 @@
 
 use super::function::Text;
 use super::ir::{Conversion, Expr, Id, Recorded, Type};
-use super::names::member_name;
+use super::names::{self, member_name};
 use super::types::Names;
+use crate::machine::wgsl::Quotients;
 use crate::machine::{BoolBinary, F32Binary, F32Unary, IntBinary};
 
 /// Operator precedence; an operand of lower precedence gets parentheses.
@@ -91,8 +92,16 @@ impl Expressions<'_> {
             Expr::F32Unary(F32Unary::Neg, a) | Expr::Neg(a) => self.prefix("-", *a, names),
             Expr::Not(a) => self.prefix("!", *a, names),
             Expr::Complement(a) => self.prefix("~", *a, names),
+            Expr::F32Unary(F32Unary::Sqrt, a) if names.quotients == Quotients::Corrected => {
+                primary(self.corrected("exact_root", node.ty, &[*a], names))
+            }
             Expr::F32Unary(op, a) => primary(format!("{}({})", op.wgsl(), self.any(*a, names))),
             Expr::U32Unary(op, a) => primary(format!("{}({})", op.wgsl(), self.any(*a, names))),
+            Expr::F32Binary(F32Binary::Div, a, b)
+                if names.quotients == Quotients::Corrected && !self.is_power_of_two(*b) =>
+            {
+                primary(self.corrected("exact_quotient", node.ty, &[*a, *b], names))
+            }
             Expr::F32Binary(op, a, b) => self.f32_binary(*op, *a, *b, names),
             Expr::MulAdd(a, b, c) => {
                 let [a, b, c] = [a, b, c].map(|x| self.item(*x, names));
@@ -185,6 +194,34 @@ impl Expressions<'_> {
             F32Binary::Min => chosen(true, names),
             F32Binary::Max => chosen(false, names),
         }
+    }
+
+    /// Prints a call of the function that rounds an operation to nearest; a number becomes a vector
+    /// beside one.
+    fn corrected(&self, name: &'static str, ty: Type, args: &[Id], names: &mut Names) -> String {
+        names.helper(name);
+        let (name, count) = match ty {
+            Type::Vector(_, n) => (names::of_vectors(name, n), n),
+            _ => (name, 1),
+        };
+        names.helper(name);
+        let ty = names.ty(ty);
+        let argument = |id: &Id| {
+            let text = self.item(*id, names);
+            let is_vector = matches!(self.function.nodes[id.0 as usize].ty, Type::Vector(..));
+            if count > 1 && !is_vector { format!("{ty}({text})") } else { text }
+        };
+        let args: Vec<String> = args.iter().map(argument).collect();
+        format!("{name}({})", args.join(", "))
+    }
+
+    /// Returns whether an expression is the literal of a power of two: the device's quotient by it is
+    /// exact.
+    fn is_power_of_two(&self, id: Id) -> bool {
+        matches!(
+            self.function.nodes[id.0 as usize].expr,
+            Expr::F32(bits) if bits & 0x7f_ffff == 0 && f32::from_bits(bits).is_normal()
+        )
     }
 
     fn int_binary(&self, op: IntBinary, a: Id, b: Id, names: &mut Names) -> (String, Bind) {

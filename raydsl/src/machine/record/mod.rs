@@ -479,6 +479,7 @@ impl Recorder {
 #[derive(Clone)]
 pub struct Recording {
     state: State,
+    arithmetic: wgsl::Arithmetic,
     entry: usize,
     /// The layout of an invocation's input; `None` for a grid of pixels.
     input: Option<&'static Schema>,
@@ -531,7 +532,7 @@ impl Recording {
         let params = m.begin(info, zero);
         let result = kernel(&m, params);
         let entry = m.end(result);
-        Self { state: m.state.into_inner(), entry, input, output }
+        Self { state: m.state.into_inner(), arithmetic, entry, input, output }
     }
 
     /// Returns the module, with scene buffers split into windows according to `limits`.

@@ -10,7 +10,7 @@ use super::types::Names;
 use super::{Recording, State, textures};
 use crate::machine::{
     Schema,
-    wgsl::{Buffer, Limits, Module, Texture, Window},
+    wgsl::{Arithmetic, Buffer, Limits, Module, Texture, Window},
 };
 
 /// The workgroup size: a square, so that the rays of neighbouring pixels run together.
@@ -45,6 +45,37 @@ fn saturate_u32(x: f32) -> u32 {
     return u32(x);
 }
 ";
+
+/// Returns a function that is not the kernel's.
+fn helper_text(name: &str) -> String {
+    match name {
+        "saturate_i32" => SATURATE_I32.to_owned(),
+        "saturate_u32" => SATURATE_U32.to_owned(),
+        "exact_quotient" => include_str!("exact_quotient.wgsl").to_owned(),
+        "exact_root" => include_str!("exact_root.wgsl").to_owned(),
+        name => by_component(name),
+    }
+}
+
+/// Returns the function of vectors that applies one of numbers, whose name it has with the number of
+/// components behind it.
+fn by_component(name: &str) -> String {
+    let (of, n) = name.split_at(name.len() - 1);
+    let params = if of == "exact_root" { &["a"][..] } else { &["a", "b"] };
+    let declared: Vec<String> = params.iter().map(|p| format!("{p}: vec{n}<f32>")).collect();
+    let component = |c: &str| {
+        let arguments: Vec<String> = params.iter().map(|p| format!("{p}.{c}")).collect();
+        format!("{of}({})", arguments.join(", "))
+    };
+    let count = n.parse().unwrap_or(4);
+    let components: Vec<String> =
+        ["x", "y", "z", "w"].into_iter().take(count).map(component).collect();
+    format!(
+        "fn {name}({}) -> vec{n}<f32> {{\n    return vec{n}<f32>({});\n}}\n",
+        declared.join(", "),
+        components.join(", ")
+    )
+}
 
 /// A module with the sources of its numbers and data: the text is reused where those change.
 #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "only a device runs modules"))]
@@ -321,6 +352,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
 pub(super) fn module(recording: &Recording, limits: &Limits) -> Printed {
     let state = &recording.state;
     let mut names = state.names();
+    if recording.arithmetic == Arithmetic::Strict {
+        names.quotients = limits.quotients;
+    }
     let order = reachable(state, recording.entry);
 
     let mut functions = String::new();
@@ -386,13 +420,14 @@ pub(super) fn module(recording: &Recording, limits: &Limits) -> Printed {
     source += &bindings;
     for helper in &names.helpers {
         source += "\n";
-        source += if *helper == "saturate_i32" { SATURATE_I32 } else { SATURATE_U32 };
+        source += &helper_text(helper);
     }
     source += &functions;
     source += "\n";
     source += &entry;
     let module = Module {
         source,
+        arithmetic: recording.arithmetic,
         workgroup: WORKGROUP,
         uniforms: uniform_bytes(&uniforms),
         input_stride: recording.input.map_or(0, |s| storage::stride(s) as u32),

@@ -248,6 +248,14 @@ const TAKEN: &[&str] = &[
     "outputs",
     "saturate_i32",
     "saturate_u32",
+    "exact_quotient",
+    "exact_quotient2",
+    "exact_quotient3",
+    "exact_quotient4",
+    "exact_root",
+    "exact_root2",
+    "exact_root3",
+    "exact_root4",
     "leave",
 ];
 
@@ -281,4 +289,16 @@ pub(super) fn qualified(name: &str, file: &str) -> String {
 /// Returns the name of a member: only reserved words are not allowed there.
 pub(crate) fn member_name(name: &str) -> String {
     if RESERVED.contains(&name) { format!("{name}_") } else { name.to_owned() }
+}
+
+/// Returns the name of a function's version for vectors of `n` numbers.
+pub(super) fn of_vectors(name: &str, n: usize) -> &'static str {
+    match (name, n) {
+        ("exact_root", 2) => "exact_root2",
+        ("exact_root", 3) => "exact_root3",
+        ("exact_root", _) => "exact_root4",
+        (_, 2) => "exact_quotient2",
+        (_, 3) => "exact_quotient3",
+        (_, _) => "exact_quotient4",
+    }
 }

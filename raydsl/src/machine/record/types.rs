@@ -5,6 +5,7 @@ use core::fmt::Write;
 use super::ir::Type;
 use super::names::{member_name, safe_name, unique};
 use crate::machine::Schema;
+use crate::machine::wgsl::Quotients;
 
 /// The names of types, declared on demand.
 #[derive(Default)]
@@ -13,6 +14,8 @@ pub(super) struct Names {
     /// The names that the text uses.
     used: Vec<String>,
     pub(super) helpers: Vec<&'static str>,
+    /// How quotients and square roots are printed.
+    pub(super) quotients: Quotients,
     /// The storage structs: the name of each and its declaration.
     stored: Vec<(String, String)>,
 }
