@@ -53,7 +53,7 @@ fn load_input(i: u32) -> Tuple {
     return Tuple(Table(array<u32, 4>(s.arg0_values_0, s.arg0_values_1, s.arg0_values_2, s.arg0_values_3), array<u32, 3>(s.arg0_colors_0_arg0_colors_1_arg0_colors_2_arg0_flag & 0xffu, (s.arg0_colors_0_arg0_colors_1_arg0_colors_2_arg0_flag >> 8u) & 0xffu, (s.arg0_colors_0_arg0_colors_1_arg0_colors_2_arg0_flag >> 16u) & 0xffu), ((s.arg0_colors_0_arg0_colors_1_arg0_colors_2_arg0_flag >> 24u) & 0xffu) != 0u), s.arg1);
 }
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (any(id.xy >= job.count)) { return; }
     let at = job.first + id.xy;

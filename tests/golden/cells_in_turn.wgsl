@@ -94,7 +94,7 @@ fn load_input(i: u32) -> Tuple {
     return Tuple(vec3<f32>(s.arg0_x, s.arg0_y, s.arg0_z), Cell(vec3<i32>(s.arg1_at_x, s.arg1_at_y, s.arg1_at_z), vec3<bool>((s.arg1_inside_x_arg1_inside_y_arg1_inside_z & 0xffu) != 0u, ((s.arg1_inside_x_arg1_inside_y_arg1_inside_z >> 8u) & 0xffu) != 0u, ((s.arg1_inside_x_arg1_inside_y_arg1_inside_z >> 16u) & 0xffu) != 0u), s.arg1_seed), s.arg2);
 }
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (any(id.xy >= job.count)) { return; }
     let at = job.first + id.xy;

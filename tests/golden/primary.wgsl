@@ -277,7 +277,7 @@ fn load_input(i: u32) -> Tuple {
     return Tuple(Ray(s.arg0_origin, vec3<f32>(s.arg0_direction_x, s.arg0_direction_y, s.arg0_direction_z), s.arg0_t_min, s.arg0_t_max));
 }
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (any(id.xy >= job.count)) { return; }
     let at = job.first + id.xy;

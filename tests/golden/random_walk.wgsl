@@ -188,7 +188,7 @@ fn load_input(i: u32) -> Tuple_6 {
     return Tuple_6(Walk(Pcg(s.arg0_rng_state), s.arg0_at, array<u32, 2>(s.arg0_counts_0, s.arg0_counts_1)), s.arg1);
 }
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (any(id.xy >= job.count)) { return; }
     let at = job.first + id.xy;

@@ -84,7 +84,7 @@ fn load_input(i: u32) -> Tuple {
     return Tuple(Mat4(s.arg0_x_axis, s.arg0_y_axis, s.arg0_z_axis, s.arg0_w_axis), Mat3(s.arg1_x_axis, vec3<f32>(s.arg1_y_axis_x, s.arg1_y_axis_y, s.arg1_y_axis_z), vec3<f32>(s.arg1_z_axis_x, s.arg1_z_axis_y, s.arg1_z_axis_z)), vec3<f32>(s.arg2_x, s.arg2_y, s.arg2_z));
 }
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (any(id.xy >= job.count)) { return; }
     let at = job.first + id.xy;

@@ -4,6 +4,7 @@ use raydsl::gpu::{Context, GpuScheduler};
 use raydsl::kernel;
 use raydsl::prelude::*;
 use raydsl_tests::gpu::gpu;
+use raydsl_tests::rng::Rng;
 use raydsl_tests::scenes::{random_rays, spheres};
 use raydsl_tests::values::compare;
 
@@ -385,5 +386,46 @@ fn instances_that_move_send_no_primitives() -> Result<(), Error> {
         assert!(pair[1] - pair[0] <= tree, "{} bytes of {prims} + {tree}", pair[1] - pair[0]);
     }
     assert_eq!(context.compiled(), 1, "another transform compiled something");
+    Ok(())
+}
+
+/// Numbers of every size, sums that cancel, and what has no rounding.
+fn hard_numbers() -> Vec<(f32, f32, f32)> {
+    let mut rng = Rng::of("hard numbers");
+    let specials = [0.0, -0.0, 1.0, f32::MIN_POSITIVE, f32::MAX, f32::INFINITY, 1e-40, -3e-42];
+    let mut number = move || match rng.below(8) {
+        0 => specials[rng.below(specials.len())],
+        1 => f32::from_bits(rng.bits() as u32 & 0x807f_ffff),
+        2..5 => rng.range(-2.0, 2.0),
+        _ => {
+            let bits = rng.bits() as u32;
+            let exponent = 67 + (bits >> 23 & 127);
+            f32::from_bits(bits & 0x807f_ffff | exponent << 23)
+        }
+    };
+    let inputs = (0..RAYS).map(|i| {
+        let (a, b) = (number(), number());
+        (a, b, if i % 2 == 0 { -(a * b) } else { number() })
+    });
+    inputs.collect()
+}
+
+#[test]
+fn exact_devices_round_as_the_host() -> Result<(), Error> {
+    let Some(gpu) = gpu() else { return Ok(()) };
+    if !gpu.context().is_exact() {
+        eprintln!("LEFT OUT: {} is not exact", gpu.context().adapter_name());
+        return Ok(());
+    }
+    let kernel = kernel!(|a: f32, b: f32, c: f32| {
+        let lengths = vec3(a, b, c) / vec3(b, c, a).abs().sqrt();
+        ((a * b + c, a * b - b * c, (a + b) - a), (a / b, a.abs().sqrt(), a * 3.0 * 0.1), lengths)
+    });
+    let inputs = hard_numbers();
+    let mut expected = vec![Default::default(); inputs.len()];
+    kernel.run(Variant::Scalar, &inputs, &mut expected);
+    let mut found = expected.clone();
+    gpu.batch(&kernel, &inputs, &mut found)?;
+    compare("exact", &expected, &found).assert_same(|i| format!("{:?}", inputs[i]));
     Ok(())
 }

@@ -8,6 +8,7 @@ use super::buffers::Uploads;
 use super::device::{Gpu, lock};
 use super::error::{GpuError, one_line};
 use super::exactness::Exactness;
+use super::float_controls::FloatControls;
 use super::pipeline::{Checks, Pipelines};
 use super::slot::Slot;
 use super::textures::Textures;
@@ -21,8 +22,8 @@ use crate::machine::wgsl::{BufferKey, Limits};
 pub struct Context {
     pub(super) gpu: Gpu,
     adapter: wgpu::AdapterInfo,
-    /// Whether kernels reach the driver as SPIR-V.
-    pub(super) takes_spirv: bool,
+    /// Whether kernels reach the driver as SPIR-V, and what else it can be asked for then.
+    pub(super) spirv: Option<FloatControls>,
     exactness: OnceLock<Exactness>,
     pub(super) checks: Checks,
     pub(super) uploads: Mutex<Uploads>,
@@ -59,10 +60,11 @@ impl Context {
         let adapter = adapter_info.unwrap_or_else(|| device.adapter_info());
         let takes_spirv = adapter.backend == wgpu::Backend::Vulkan
             && device.features().contains(wgpu::Features::PASSTHROUGH_SHADERS);
+        let spirv = takes_spirv.then(|| FloatControls::of(&device));
         Self {
             gpu: Gpu::new(device, queue),
             adapter,
-            takes_spirv,
+            spirv,
             exactness: OnceLock::new(),
             checks: Checks::Full,
             uploads: Mutex::default(),
@@ -139,8 +141,8 @@ impl Context {
     /// Returns whether kernels have the bits of the other variants on this device, unless their
     /// [`Arithmetic`](crate::machine::wgsl::Arithmetic) is `Fast`.
     ///
-    /// Denormals are excepted, which a device may take for 0, and so are NaNs, whose bits differ.
-    /// It is so where the device takes SPIR-V, and where quotients and square roots are rounded to
+    /// NaNs are excepted, whose bits differ, and so are denormals where a device cannot be asked to
+    /// keep them: it takes them for 0. It is so where the device takes SPIR-V, and where quotients and square roots are rounded to
     /// nearest, or can be corrected so that they are: a kernel of 65,536 of them is run to find
     /// out, once for a context, unless the device is a CPU.
     pub fn is_exact(&self) -> bool {

@@ -19,7 +19,7 @@ impl Exactness {
     /// Runs quotients and roots of a context's device and compares them with the host's.
     pub(super) fn of(context: &Context) -> Self {
         let native = |is_exact| Self { quotients: Quotients::Native, is_exact };
-        if !context.takes_spirv {
+        if context.spirv.is_none() {
             return native(false);
         }
         // A device that is a CPU has its instructions, which are those of the host, and no `fma`

@@ -13,6 +13,7 @@ mod context;
 mod device;
 mod error;
 mod exactness;
+mod float_controls;
 mod interface;
 mod pipeline;
 mod run;

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use super::device::Gpu;
 use super::error::{GpuError, one_line};
+use super::float_controls::FloatControls;
 use super::interface::Sizes;
 use super::spirv;
 use super::tiles::FIRST_GOAL;
@@ -52,8 +53,8 @@ pub(super) struct Bindings {
     pub(super) has_stored_parameters: bool,
     pub(super) storage: Vec<Storage>,
     pub(super) sampled: Vec<Sampled>,
-    /// Whether the driver gets SPIR-V whose operations it may not fuse or move.
-    pub(super) is_exact: bool,
+    /// If the driver gets SPIR-V whose operations it may not fuse or move: what else is asked of it.
+    pub(super) exact: Option<FloatControls>,
 }
 
 impl Bindings {
@@ -133,10 +134,9 @@ fn compile(
     bindings: &Bindings,
 ) -> Result<Pipeline, GpuError> {
     // What wgpu translates it also checks against the layout.
-    let (module, sizes) = if bindings.is_exact {
-        exact_shader(gpu, checks, source, bindings)?
-    } else {
-        (shader(gpu, checks, source)?, Sizes::new())
+    let (module, sizes) = match bindings.exact {
+        Some(controls) => exact_shader(gpu, checks, source, bindings, controls)?,
+        None => (shader(gpu, checks, source)?, Sizes::new()),
     };
     let made = gpu.guarded("the pipeline", || {
         let layout = layout(&gpu.device, bindings, &sizes);
@@ -269,15 +269,17 @@ fn exact_shader(
     checks: Checks,
     source: &str,
     bindings: &Bindings,
+    controls: FloatControls,
 ) -> Result<(wgpu::ShaderModule, Sizes), GpuError> {
     let spirv::Exact { words, sizes } =
-        spirv::exact(source, checks, bindings, &gpu.device.limits())?;
+        spirv::exact(source, checks, bindings, controls, &gpu.device.limits())?;
     let entry =
         wgpu::PassthroughShaderEntryPoint { name: "main".into(), workgroup_size: (1, 1, 1) };
     let made = gpu.guarded("the shader", || {
         // SAFETY: wgpu does not look at the words. They are what naga has written for a module that it
         // validated, with the checks that wgpu asks of naga; its bindings are those of the pipeline's
-        // layout, which also has the sizes that its buffers must have at least. Only decorations are added, of results that the module has. Without
+        // layout, which also has the sizes that its buffers must have at least. What is added are
+        // decorations of results that the module has, and modes that the device offers. Without
         // bounds checks the conditions are those of `shader_module`.
         unsafe {
             gpu.device.create_shader_module_passthrough(wgpu::ShaderModuleDescriptorPassthrough {

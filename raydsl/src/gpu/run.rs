@@ -192,9 +192,9 @@ impl Context {
             needed < u64::from(limit) && self.adapter_info().name.starts_with("llvmpipe");
         let stored = if has_room { stored_parameters(&module.source) } else { None };
         let has_stored_parameters = stored.is_some();
-        let is_exact = module.arithmetic == Arithmetic::Strict && self.takes_spirv;
+        let exact = self.spirv.filter(|_| module.arithmetic == Arithmetic::Strict);
         let sampled = sampled.collect();
-        let bindings = Bindings { has_stored_parameters, storage, sampled, is_exact };
+        let bindings = Bindings { has_stored_parameters, storage, sampled, exact };
         let source = stored.as_ref().unwrap_or(&module.source);
         lock(&self.pipelines).get(&self.gpu, self.checks, source, &bindings)
     }

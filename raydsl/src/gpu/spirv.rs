@@ -8,13 +8,24 @@ use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 use super::error::{GpuError, one_line};
+use super::float_controls::FloatControls;
 use super::interface::{self, Sizes};
 use super::pipeline::{Bindings, Checks};
 
 /// Words of a module before its instructions.
 const HEADER: usize = 5;
+
+const OP_EXTENSION: u32 = 10;
+const OP_ENTRY_POINT: u32 = 15;
+const OP_EXECUTION_MODE: u32 = 16;
+const OP_CAPABILITY: u32 = 17;
 const OP_DECORATE: u32 = 71;
+
 const NO_CONTRACTION: u32 = 42;
+
+/// A capability of `SPV_KHR_float_controls`, and its execution mode.
+const DENORM_PRESERVE: (u32, u32) = (4464, 4459);
+const SIGNED_ZERO_INF_NAN_PRESERVE: (u32, u32) = (4466, 4461);
 
 /// The operations on floats that may be contracted: negation, sum, difference, product, quotient,
 /// remainders, products with vectors and matrices, dot product.
@@ -40,6 +51,7 @@ pub(super) fn exact(
     source: &str,
     checks: Checks,
     bindings: &Bindings,
+    controls: FloatControls,
     limits: &wgpu::Limits,
 ) -> Result<Exact, GpuError> {
     let parsed = naga::front::wgsl::parse_str(source);
@@ -69,7 +81,7 @@ pub(super) fn exact(
     };
     let words = spv::write_vec(&module, &info, &options, Some(&entry));
     let words = words.map_err(|error| invalid(source, None, &error.to_string()))?;
-    Ok(Exact { words: without_contraction(&words), sizes })
+    Ok(Exact { words: edited(&words, controls), sizes })
 }
 
 /// Returns where each binding is in Vulkan's layout: wgpu numbers them by their order.
@@ -82,24 +94,66 @@ fn binding_map(bindings: &Bindings) -> spv::BindingMap {
     bindings.numbers().into_iter().enumerate().map(place).collect()
 }
 
-/// Returns the words with a decoration of each operation's result.
-fn without_contraction(words: &[u32]) -> Vec<u32> {
+/// Returns the words with a decoration of each operation's result, and with the modes of floats that
+/// a device offers.
+fn edited(words: &[u32], controls: FloatControls) -> Vec<u32> {
     let mut results = Vec::new();
-    let mut first_type = words.len();
+    let (mut first_type, mut entry) = (words.len(), None);
     let mut at = HEADER;
     while at < words.len() {
         let (length, opcode) = ((words[at] >> 16) as usize, words[at] & 0xffff);
         if TYPES.contains(&opcode) {
             first_type = first_type.min(at);
-        }
-        if ARITHMETIC.contains(&opcode) {
+        } else if ARITHMETIC.contains(&opcode) {
             results.push(words[at + 2]);
+        } else if opcode == OP_ENTRY_POINT {
+            entry = Some((words[at + 2], at + length));
         }
         at += length.max(1);
     }
-    let decorations = results.iter().flat_map(|id| [3 << 16 | OP_DECORATE, *id, NO_CONTRACTION]);
-    let (head, rest) = words.split_at(first_type);
-    head.iter().copied().chain(decorations).chain(rest.iter().copied()).collect()
+    let offered =
+        [(controls.denormals, DENORM_PRESERVE), (controls.specials, SIGNED_ZERO_INF_NAN_PRESERVE)];
+    let modes: Vec<(u32, u32)> = offered.into_iter().filter(|m| m.0).map(|m| m.1).collect();
+    let (main, entries_end) = entry.unwrap_or((0, first_type));
+    let capabilities_end = capabilities_end(words);
+    let mut all = words[..capabilities_end].to_vec();
+    for (capability, _) in &modes {
+        all.extend(instruction(OP_CAPABILITY, &[*capability]));
+    }
+    if !modes.is_empty() {
+        all.extend(instruction(OP_EXTENSION, &text("SPV_KHR_float_controls")));
+    }
+    all.extend(&words[capabilities_end..entries_end]);
+    for (_, mode) in &modes {
+        all.extend(instruction(OP_EXECUTION_MODE, &[main, *mode, 32]));
+    }
+    all.extend(&words[entries_end..first_type]);
+    for result in results {
+        all.extend(instruction(OP_DECORATE, &[result, NO_CONTRACTION]));
+    }
+    all.extend(&words[first_type..]);
+    all
+}
+
+/// Returns where the capabilities end, which stand first.
+fn capabilities_end(words: &[u32]) -> usize {
+    let mut at = HEADER;
+    while at < words.len() && words[at] & 0xffff == OP_CAPABILITY {
+        at += (words[at] >> 16).max(1) as usize;
+    }
+    at
+}
+
+fn instruction(opcode: u32, operands: &[u32]) -> Vec<u32> {
+    let length = operands.len() as u32 + 1;
+    [length << 16 | opcode].into_iter().chain(operands.iter().copied()).collect()
+}
+
+/// Returns a text as SPIR-V has it: bytes, and at least one zero behind them.
+fn text(text: &str) -> Vec<u32> {
+    let mut bytes = text.as_bytes().to_vec();
+    bytes.resize((bytes.len() + 1).next_multiple_of(4), 0);
+    bytes.chunks_exact(4).map(|c| u32::from_le_bytes([c[0], c[1], c[2], c[3]])).collect()
 }
 
 /// Returns an error's text with those of its causes.

@@ -13,8 +13,15 @@ use crate::machine::{
     wgsl::{Arithmetic, Buffer, Limits, Module, Texture, Window},
 };
 
-/// The workgroup size: a square, so that the rays of neighbouring pixels run together.
-const WORKGROUP: [u32; 2] = [8, 8];
+/// The workgroup of a grid of pixels: a square, so that the rays of neighbours run together.
+const OF_PIXELS: [u32; 2] = [8, 8];
+/// The workgroup of a batch, which is a grid of one row.
+const OF_ELEMENTS: [u32; 2] = [64, 1];
+
+/// Returns the size of a kernel's workgroups.
+fn workgroup(recording: &Recording) -> [u32; 2] {
+    if recording.input.is_some() { OF_ELEMENTS } else { OF_PIXELS }
+}
 
 const JOB: &str = "\
 struct Job {
@@ -332,6 +339,7 @@ fn entry_text(recording: &Recording, names: &mut Names) -> String {
     } else {
         Stored::new(recording.output).store(recording.output, &element, "result")
     };
+    let workgroup = workgroup(recording);
     let _ = writeln!(
         text,
         "
@@ -343,7 +351,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
     let result = {kernel}({argument});
     outputs[index] = {result};
 }}",
-        WORKGROUP[0], WORKGROUP[1]
+        workgroup[0], workgroup[1]
     );
     text
 }
@@ -428,7 +436,7 @@ pub(super) fn module(recording: &Recording, limits: &Limits) -> Printed {
     let module = Module {
         source,
         arithmetic: recording.arithmetic,
-        workgroup: WORKGROUP,
+        workgroup: workgroup(recording),
         uniforms: uniform_bytes(&uniforms),
         input_stride: recording.input.map_or(0, |s| storage::stride(s) as u32),
         output_stride: storage::stride(recording.output) as u32,
