@@ -85,7 +85,7 @@ pub fn spread(values: &[f64]) -> f64 {
 }
 
 /// How long a device is kept busy for one figure.
-const BUSY: Duration = Duration::from_millis(200);
+const BUSY: Duration = Duration::from_secs(1);
 
 /// The least seconds that a device needs for `run`, by its own clock, or of the whole call if it has
 /// none. It runs again and again for a while: a device that was idle has lowered its frequency.

@@ -52,7 +52,13 @@ fn application_device() -> Result<(wgpu::Device, wgpu::Queue), Error> {
     let instance = wgpu::Instance::new(descriptor);
     pollster::block_on(async {
         let adapter = instance.request_adapter(&Default::default()).await?;
-        Ok(adapter.request_device(&Default::default()).await?)
+        let descriptor = wgpu::DeviceDescriptor {
+            required_features: adapter.features() & wgpu::Features::PASSTHROUGH_SHADERS,
+            // SAFETY: nothing here makes a shader that wgpu does not look at; the library does.
+            experimental_features: unsafe { wgpu::ExperimentalFeatures::enabled() },
+            ..Default::default()
+        };
+        Ok(adapter.request_device(&descriptor).await?)
     })
 }
 
@@ -389,17 +395,17 @@ fn instances_that_move_send_no_primitives() -> Result<(), Error> {
     Ok(())
 }
 
-/// Numbers of every size, sums that cancel, and what has no rounding.
+/// Numbers of many sizes, sums that cancel, and what has no rounding; no denormals, which a device may
+/// take for 0, and none among products and quotients.
 fn hard_numbers() -> Vec<(f32, f32, f32)> {
     let mut rng = Rng::of("hard numbers");
-    let specials = [0.0, -0.0, 1.0, f32::MIN_POSITIVE, f32::MAX, f32::INFINITY, 1e-40, -3e-42];
+    let specials = [0.0, -0.0, 1.0, 3.0, f32::INFINITY];
     let mut number = move || match rng.below(8) {
         0 => specials[rng.below(specials.len())],
-        1 => f32::from_bits(rng.bits() as u32 & 0x807f_ffff),
-        2..5 => rng.range(-2.0, 2.0),
+        1..4 => rng.range(-2.0, 2.0),
         _ => {
             let bits = rng.bits() as u32;
-            let exponent = 67 + (bits >> 23 & 127);
+            let exponent = 97 + (bits >> 23) % 61;
             f32::from_bits(bits & 0x807f_ffff | exponent << 23)
         }
     };

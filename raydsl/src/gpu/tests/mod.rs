@@ -13,7 +13,7 @@ use super::{Context, GpuError};
 /// Returns a context, or `None` with a message on standard error if the machine has no adapter.
 ///
 /// `RAYDSL_REQUIRE_GPU=1` turns the skip into a failure.
-fn context() -> Option<Context> {
+pub(super) fn context() -> Option<Context> {
     match Context::new() {
         Ok(context) => Some(context),
         Err(error @ GpuError::NoAdapter { .. }) => {

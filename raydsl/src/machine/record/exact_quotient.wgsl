@@ -3,10 +3,10 @@
 fn exact_quotient(a: f32, b: f32) -> f32 {
     let x = bitcast<u32>(a);
     let y = bitcast<u32>(b);
-    let from = (x >> 23u) & 255u;
-    let by = (y >> 23u) & 255u;
+    let of_a = (x >> 23u) & 255u;
+    let of_b = (y >> 23u) & 255u;
     // 0, denormals, infinity and NaN have no rounding.
-    if (from == 0u || by == 0u || from == 255u || by == 255u) { return a / b; }
+    if (of_a == 0u || of_b == 0u || of_a == 255u || of_b == 255u) { return a / b; }
     // Numbers in [1, 2), so that nothing underflows on the way.
     let m = bitcast<f32>((x & 0x7fffffu) | 0x3f800000u);
     let n = bitcast<f32>((y & 0x7fffffu) | 0x3f800000u);
@@ -20,8 +20,8 @@ fn exact_quotient(a: f32, b: f32) -> f32 {
     if (left + left > (above - q) * n) { nearest = above; }
     if (left + left < (below - q) * n) { nearest = below; }
     let sign = (x ^ y) & 0x80000000u;
-    let bits = bitcast<u32>(nearest) + ((from - by) << 23u);
-    let exponent = i32(bitcast<u32>(nearest) >> 23u) + i32(from) - i32(by);
+    let bits = bitcast<u32>(nearest) + ((of_a - of_b) << 23u);
+    let exponent = i32(bitcast<u32>(nearest) >> 23u) + i32(of_a) - i32(of_b);
     if (exponent <= 0) { return a / b; }
     if (exponent >= 255) { return bitcast<f32>(sign | 0x7f800000u); }
     return bitcast<f32>(sign | bits);
