@@ -5,8 +5,6 @@
 //! `ambient_occlusion.png` to FOLDER (`out` if none is given). FILE is an `.obj`, `.ply` or `.tri`;
 //! without one there are blocks.
 
-mod blocks;
-
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -14,7 +12,7 @@ use std::{env, fs};
 use raydsl::integrators::ambient_occlusion;
 use raydsl::prelude::*;
 use raydsl::render::Display;
-use raydsl_examples::mesh;
+use raydsl_examples::{blocks, mesh};
 
 /// Passes over the film, and samples of each pixel in each.
 const PASSES: u32 = 4;

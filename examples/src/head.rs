@@ -83,14 +83,42 @@ fn value_at(p: Vec3, width: f32) -> f32 {
 ///
 /// If `side` is 0.
 pub fn head(side: u32) -> Vec<u8> {
+    head_part(side, UVec3::ZERO, UVec3::splat(side))
+}
+
+/// Makes a part of the voxels of [`head`]: `size` of them, from `first` on. It takes the memory of
+/// the part.
+///
+/// # Panics
+///
+/// If `side` is 0.
+pub fn head_part(side: u32, first: UVec3, size: UVec3) -> Vec<u8> {
     assert!(side > 0, "a head has voxels");
     let voxel = 2.0 / side as f32;
     let at = |i: u32| (i as f32 + 0.5) * voxel - 1.0;
     let slice = |z: u32| {
-        (0..side * side).map(move |i| {
-            let p = vec3(at(i % side), at(i / side), at(z));
+        (0..size.x * size.y).map(move |i| {
+            let p = vec3(at(first.x + i % size.x), at(first.y + i / size.x), at(first.z + z));
             (value_at(p, 3.0 * voxel) + 0.5) as u8
         })
     };
-    (0..side).into_par_iter().flat_map_iter(slice).collect()
+    (0..size.z).into_par_iter().flat_map_iter(slice).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_has_the_voxels_of_the_whole() {
+        let (side, first, size) = (12, uvec3(2, 5, 0), uvec3(4, 6, 12));
+        let (whole, part) = (head(side), head_part(side, first, size));
+        let index = |p: UVec3, size: UVec3| ((p.z * size.y + p.y) * size.x + p.x) as usize;
+        assert_eq!(part.len(), 4 * 6 * 12);
+        for (x, y, z) in (0..4).flat_map(|x| (0..6).flat_map(move |y| (0..12).map(move |z| (x, y, z)))) {
+            let p = uvec3(x, y, z);
+            assert_eq!(part[index(p, size)], whole[index(first + p, UVec3::splat(side))]);
+        }
+        assert!(part.iter().any(|v| *v != part[0]));
+    }
 }

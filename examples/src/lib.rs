@@ -2,6 +2,7 @@
 
 pub mod args;
 pub mod blob;
+pub mod blocks;
 pub mod cloud;
 pub mod comparison;
 pub mod cornell;

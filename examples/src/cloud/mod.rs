@@ -10,6 +10,6 @@ mod view;
 mod tests;
 
 pub use error::ScaleError;
-pub use procedural::procedural;
+pub use procedural::{Landscape, procedural};
 pub use scale::{Scaled, scale};
 pub use view::{View, suggested_view};

@@ -10,6 +10,8 @@ mod shape;
 mod terrain;
 mod village;
 
+use std::ops::Range;
+
 use raydsl_io::cloud::PointCloud;
 use rayon::prelude::*;
 
@@ -67,19 +69,55 @@ struct Studio {
 /// assert_eq!(cloud.colors.len(), 1000);
 /// ```
 pub fn procedural(points: usize, seed: u64, progress: &mut dyn FnMut(u64)) -> PointCloud {
-    let studio = Studio::new(points, hash(seed, 0x5eed));
+    let landscape = Landscape::new(points, seed);
     let mut cloud = PointCloud { positions: vec![[0.0; 3]; points], colors: vec![[0; 3]; points] };
     let blocks = cloud.positions.chunks_mut(REPORT).zip(cloud.colors.chunks_mut(REPORT));
     for (block, (positions, colors)) in blocks.enumerate() {
-        let count = positions.len();
+        landscape.fill(block * REPORT, positions, colors);
+        progress((block * REPORT + positions.len()) as u64);
+    }
+    cloud
+}
+
+/// The cloud that [`procedural`] makes, point by point: for programs that keep only some of them.
+pub struct Landscape {
+    studio: Studio,
+    points: usize,
+}
+
+impl std::fmt::Debug for Landscape {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Landscape").field("points", &self.points).finish_non_exhaustive()
+    }
+}
+
+impl Landscape {
+    /// Half the side of the square of land, in metres; its middle is the origin.
+    pub const HALF: f64 = HALF;
+
+    /// Creates what the points are spread over.
+    pub fn new(points: usize, seed: u64) -> Self {
+        Self { studio: Studio::new(points, hash(seed, 0x5eed)), points }
+    }
+
+    /// Returns the points of a range of indices; those that do not exist are left out.
+    pub fn part(&self, indices: Range<usize>) -> PointCloud {
+        let end = indices.end.min(self.points);
+        let count = end.saturating_sub(indices.start);
+        let mut cloud =
+            PointCloud { positions: vec![[0.0; 3]; count], colors: vec![[0; 3]; count] };
+        self.fill(indices.start, &mut cloud.positions, &mut cloud.colors);
+        cloud
+    }
+
+    /// Makes the points from index `start` on.
+    fn fill(&self, start: usize, positions: &mut [[f64; 3]], colors: &mut [[u8; 3]]) {
         positions
             .par_chunks_mut(CHUNK)
             .zip(colors.par_chunks_mut(CHUNK))
             .enumerate()
-            .for_each(|(i, (p, c))| studio.fill(block * REPORT + i * CHUNK, p, c));
-        progress((block * REPORT + count) as u64);
+            .for_each(|(i, (p, c))| self.studio.fill(start + i * CHUNK, p, c));
     }
-    cloud
 }
 
 impl Scene {

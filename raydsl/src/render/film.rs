@@ -72,7 +72,11 @@ impl<R> fmt::Debug for Film<R> {
 impl Film {
     /// Creates a film of `width` by `height` pixels without samples, which keeps colours.
     pub fn new(width: u32, height: u32) -> Self {
-        Self { store: Store::new(width, height), kept: PhantomData }
+        Self::of_store(Store::new(width, height))
+    }
+
+    pub(super) fn of_store(store: Store) -> Self {
+        Self { store, kept: PhantomData }
     }
 
     /// Adds the result of a pass, of `samples` samples per pixel.

@@ -13,6 +13,7 @@ mod film_args;
 mod fragment;
 mod image;
 mod moments;
+mod part;
 mod pixel_sampler;
 mod radiance;
 mod reference;
@@ -26,6 +27,7 @@ mod tile;
 mod tiled;
 mod until;
 mod watch;
+mod window;
 
 pub use channels::Kept;
 pub use display::{Display, ToneMap, Transfer, filmic, reinhard};
@@ -34,6 +36,7 @@ pub use film_args::FilmArgs;
 pub use fragment::{Fragment, FragmentOn, composite, composite_reversed, over};
 pub use image::{Image, Shaded, ShadedOn};
 pub use moments::{Moments, MomentsOn};
+pub use part::{FilmExtent, FilmPart, PartError, SAMPLE_BLOCK};
 pub use pixel_sampler::{PixelSampler, Sampling};
 pub use radiance::Radiance;
 #[doc(hidden)]

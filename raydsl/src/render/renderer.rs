@@ -4,14 +4,18 @@ use core::marker::PhantomData;
 use core::ops::ControlFlow;
 use std::time::Duration;
 
+use glam::UVec2;
+
 use super::allocation::Allocation;
 use super::channels::Kept;
 use super::film_args::FilmArgs;
+use super::part;
 use super::shot::{Frame, Pass, Shot};
 use super::store::Store;
 use super::until::{Accumulate, ProgressObserver, Reached, Until, UntilError, run};
 use super::watch::Observer;
-use super::{Film, Image, Radiance, Sampling};
+use super::window::Windowed;
+use super::{Film, FilmExtent, FilmPart, Image, Radiance, Sampling};
 use crate::camera::Camera;
 use crate::kernel::Kernel;
 use crate::machine::Type;
@@ -196,6 +200,53 @@ pub trait Renderer {
             let _ = observer(1.0);
         }
         Self::outcome(end)
+    }
+
+    /// Renders a window of a frame of `size` pixels: `image`, whose lower left pixel is that at
+    /// `origin` of the frame. Its pixels have the bits that they have in the whole frame.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Renderer::frame`].
+    ///
+    /// ```
+    /// use raydsl::prelude::*;
+    ///
+    /// let camera = Pinhole::new(vec3(0.0, 0.0, 5.0), Vec3::ZERO, Vec3::Y, 1.0);
+    /// let sky = kernel!(|ray: Ray| ray.direction.y);
+    /// let (mut whole, mut window) = (Image::filled(100, 70, 0.0), Image::filled(10, 5, 0.0));
+    /// let scheduler = TiledScheduler::new();
+    /// scheduler.frame(&camera, &sky, &mut whole);
+    /// scheduler.frame_window(&camera, &sky, uvec2(100, 70), uvec2(33, 44), &mut window);
+    /// assert_eq!(window.get(9, 4), whole.get(42, 48));
+    /// ```
+    fn frame_window<C: Camera, A: FilmArgs, R: Type>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        size: UVec2,
+        origin: UVec2,
+        image: &mut Image<R>,
+    ) -> Self::Outcome<Self::Timing> {
+        let rays = camera.begin_frame(size.x, size.y);
+        let shot = Windowed { shot: Frame { rays, kernel }, origin };
+        Self::outcome(self.shoot(&shot, Effort::ONE, image, None).map(timing_of))
+    }
+
+    /// Renders a part of a film, for [`Film::from_parts`]. Its samples are those that
+    /// [`accumulate`](Renderer::accumulate) takes, so they may be rendered by many machines.
+    ///
+    /// # Errors
+    ///
+    /// If a device refuses or is lost.
+    fn render_part<C: Camera, A: FilmArgs, R: Radiance>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        sampling: &Sampling,
+        extent: &FilmExtent,
+    ) -> Self::Outcome<FilmPart> {
+        Self::outcome(part::render(self, camera, kernel, sampling, extent))
     }
 
     /// Adds `samples` samples to every pixel of `film`: their colours, and for a film

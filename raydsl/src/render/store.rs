@@ -20,7 +20,13 @@ impl Store {
     /// Creates a store for a film of `width` by `height` pixels without samples, of colours alone.
     pub(super) fn new(width: u32, height: u32) -> Self {
         let pixels = vec![Sums::default(); width as usize * height as usize];
-        Self { width, height, pixels, samples: 0, channels: None }
+        Self::of_pixels(width, height, pixels, 0)
+    }
+
+    /// Creates a store of colours with these moments, row by row; no pixel has more than `samples`
+    /// samples.
+    pub(super) fn of_pixels(width: u32, height: u32, pixels: Vec<Sums>, samples: u32) -> Self {
+        Self { width, height, pixels, samples, channels: None }
     }
 
     /// Adds the channels of results of a layout.

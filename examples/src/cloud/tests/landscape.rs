@@ -25,6 +25,17 @@ fn the_same_for_any_number_of_threads() {
 }
 
 #[test]
+fn parts_have_the_points_of_the_whole() {
+    let (whole, landscape) = (make(40_001, 5), Landscape::new(40_001, 5));
+    for indices in [0..1, 39_000..40_001, 100..100, 17..35_000, 40_000..50_000, 60_000..70_000] {
+        let part = landscape.part(indices.clone());
+        let (end, start) = (indices.end.min(40_001), indices.start.min(40_001));
+        assert_eq!(part.positions, whole.positions[start..end], "{indices:?}");
+        assert_eq!(part.colors, whole.colors[start..end], "{indices:?}");
+    }
+}
+
+#[test]
 fn the_land_is_where_it_is_said_to_be() {
     let cloud = make(50_000, 1);
     for p in &cloud.positions {

@@ -20,8 +20,8 @@ fn block(at: Vec3, half: Vec3, angle: f32) -> Vec<Triangle> {
     sides.into_iter().flat_map(halves).collect()
 }
 
-/// `count` blocks on a floor, higher towards the middle.
-pub(crate) fn pile(count: u32) -> Vec<Triangle> {
+/// Makes `count` blocks on a floor, higher towards the middle.
+pub fn pile(count: u32) -> Vec<Triangle> {
     let mut rng = Rng::new(UVec2::ZERO, 0, 7);
     let blocks = (0..count).flat_map(|_| {
         let place = sample_concentric_disk(rng.next_2d()) * 5.0;

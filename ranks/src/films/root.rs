@@ -1,0 +1,218 @@
+//! The root: hands out parts of the film, joins what comes back, and writes the films so far.
+
+use std::path::Path;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use raydsl::render::{Display, FilmExtent, FilmPart, PartError};
+
+use super::assembly::Assembly;
+use super::checkpoint::{self, CheckpointError};
+use super::division::{extent, message, ranges};
+use super::{AHEAD, Job, PART, Render, UNIT};
+use crate::args::Args;
+use crate::disk;
+use crate::progress::{Event, Teller};
+use crate::report::{FilmReport, RankReport, Report};
+use crate::run::Failure;
+use crate::wire::{ROOT, Wire, WireError};
+
+/// The time between looks for messages when there is nothing else to do.
+const NAP: Duration = Duration::from_micros(200);
+
+/// Renders the film, writes it as `film.pfm` and `film.png`, and the report.
+pub(super) fn run(
+    wire: &Wire,
+    args: &Args,
+    job: &Job,
+    threads: usize,
+    render: Render<'_>,
+) -> Result<(), Failure> {
+    let mut teller = Teller::new(args.events);
+    disk::create_folder(&args.out)?;
+    let mut assembly = so_far(args, job)?;
+    if args.resume {
+        teller.line(format!("{:.1} % are there already", 100.0 * assembly.share()));
+    }
+    let begin = Instant::now();
+    let shared = thread::scope(|scope| {
+        let (to_own, units) = channel();
+        let (parts, from_own) = channel();
+        scope.spawn(move || own_rank(&units, &parts, threads, render));
+        let ranks = Ranks { wire, to_own, from_own };
+        share_out(&ranks, args, job, &mut assembly, &mut teller)
+    })?;
+    let mut own = shared.own;
+    own.threads = threads;
+    let seconds = begin.elapsed().as_secs_f64();
+
+    write_pictures(&args.out, &assembly)?;
+    checkpoint::remove(&args.out)?;
+    let ranks = own.collect(wire)?;
+    let film = FilmReport {
+        samples: job.samples,
+        tile: job.tile,
+        blocks: job.blocks,
+        root_seconds: shared.root_seconds,
+        checkpoint_seconds: shared.checkpoint_seconds,
+        part_bytes: shared.part_bytes,
+    };
+    let report = Report::of_film(args, seconds, film, ranks);
+    report.write(&args.out)?;
+    teller.line(report.summary());
+    teller.end();
+    Ok(())
+}
+
+/// Returns the films so far, if this run goes on from them.
+fn so_far(args: &Args, job: &Job) -> Result<Assembly, CheckpointError> {
+    let mut assembly = Assembly::new(job);
+    let file = args.out.join(checkpoint::FILE);
+    if args.resume {
+        checkpoint::read(&args.out, job, &mut assembly)?;
+    } else if file.exists() {
+        return Err(CheckpointError::Unfinished(file));
+    }
+    Ok(assembly)
+}
+
+/// Renders in the root's process, beside the thread that speaks to the others.
+fn own_rank(
+    units: &Receiver<FilmExtent>,
+    parts: &Sender<(FilmPart, RankReport)>,
+    threads: usize,
+    render: Render<'_>,
+) {
+    for extent in units {
+        let mut report = RankReport::new(threads);
+        let begin = Instant::now();
+        let part = render(&extent);
+        report.busy_seconds = begin.elapsed().as_secs_f64();
+        report.samples = extent.total_samples();
+        // The root has ended early where nobody takes it.
+        if parts.send((part, report)).is_err() {
+            return;
+        }
+    }
+}
+
+/// The ranks, as the root sees them: itself by channels, others by messages.
+struct Ranks<'a> {
+    wire: &'a Wire,
+    to_own: Sender<FilmExtent>,
+    from_own: Receiver<(FilmPart, RankReport)>,
+}
+
+impl Ranks<'_> {
+    fn give(&self, rank: usize, extent: FilmExtent) -> Result<(), WireError> {
+        if rank == ROOT {
+            // It takes units as long as its sender is there.
+            let _ = self.to_own.send(extent);
+            return Ok(());
+        }
+        self.wire.send(rank, UNIT, &message(&extent))
+    }
+}
+
+/// What the root counts.
+struct Shared {
+    own: RankReport,
+    /// The time that the root needed to decode and join parts.
+    root_seconds: f64,
+    checkpoint_seconds: f64,
+    /// The bytes of the parts that came by messages.
+    part_bytes: u64,
+}
+
+/// Hands out what is missing, and joins what comes back, until the film is whole.
+fn share_out(
+    ranks: &Ranks<'_>,
+    args: &Args,
+    job: &Job,
+    assembly: &mut Assembly,
+    teller: &mut Teller,
+) -> Result<Shared, Failure> {
+    let mut units = units(job, assembly)?.into_iter();
+    let mut waiting = 0usize;
+    for rank in (0..AHEAD).flat_map(|_| 0..ranks.wire.size()) {
+        if let Some(extent) = units.next() {
+            ranks.give(rank, extent)?;
+            waiting += 1;
+        }
+    }
+    let mut shared = Shared {
+        own: RankReport::new(0),
+        root_seconds: 0.0,
+        checkpoint_seconds: 0.0,
+        part_bytes: 0,
+    };
+    let every = Duration::from_secs(u64::from(args.every));
+    let mut written = Instant::now();
+    while waiting > 0 {
+        let Some((rank, part)) = next_part(ranks, &mut shared)? else {
+            thread::sleep(NAP);
+            continue;
+        };
+        waiting -= 1;
+        // The next unit first: joining takes time.
+        if let Some(extent) = units.next() {
+            ranks.give(rank, extent)?;
+            waiting += 1;
+        }
+        let begin = Instant::now();
+        assembly.add(part).map_err(|_| WireError::Damaged { from: rank })?;
+        shared.root_seconds += begin.elapsed().as_secs_f64();
+        teller.tell(&Event::Done(assembly.share()));
+        if written.elapsed() >= every && waiting > 0 {
+            let begin = Instant::now();
+            checkpoint::write(&args.out, job, assembly)?;
+            shared.checkpoint_seconds += begin.elapsed().as_secs_f64();
+            written = Instant::now();
+        }
+    }
+    for rank in (0..ranks.wire.size()).filter(|rank| *rank != ROOT) {
+        ranks.wire.send(rank, UNIT, &[])?;
+    }
+    Ok(shared)
+}
+
+/// Returns what is missing, in parts for ranks: the first samples of all windows, then the next.
+fn units(job: &Job, assembly: &Assembly) -> Result<Vec<FilmExtent>, PartError> {
+    let mut units = Vec::new();
+    for (window, missing) in assembly.missing() {
+        for samples in ranges(job, &missing) {
+            units.push(extent(job, window, samples)?);
+        }
+    }
+    units.sort_by_key(|extent| extent.samples().start);
+    Ok(units)
+}
+
+/// Returns a part that a rank has rendered, if there is one.
+fn next_part(
+    ranks: &Ranks<'_>,
+    shared: &mut Shared,
+) -> Result<Option<(usize, FilmPart)>, WireError> {
+    if let Ok((part, report)) = ranks.from_own.try_recv() {
+        shared.own.busy_seconds += report.busy_seconds;
+        shared.own.samples += report.samples;
+        return Ok(Some((ROOT, part)));
+    }
+    let Some((from, bytes)) = ranks.wire.try_receive(PART) else { return Ok(None) };
+    let begin = Instant::now();
+    let part = FilmPart::from_bytes(&bytes).map_err(|_| WireError::Damaged { from })?;
+    shared.root_seconds += begin.elapsed().as_secs_f64();
+    shared.part_bytes += bytes.len() as u64;
+    Ok(Some((from, part)))
+}
+
+/// Writes the film: its light as it is, and a picture to look at.
+fn write_pictures(folder: &Path, assembly: &Assembly) -> Result<(), Failure> {
+    debug_assert!(assembly.is_whole());
+    let image = assembly.film()?.image();
+    let light = image.map(|pixel| pixel.truncate());
+    disk::replace_by(&folder.join("film.pfm"), |path| light.write_pfm(path))?;
+    Display::new().show(&image).write_png(folder.join("film.png"))?;
+    Ok(())
+}

@@ -1,0 +1,132 @@
+//! Fragments as messages: for each part runs of pixels side by side, with what was found.
+
+use core::ops::Range;
+
+use bytemuck::Pod;
+
+use super::strips::Strips;
+
+/// What rays of pixels found in a part, by rising pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Fragments<F> {
+    pixels: Vec<u32>,
+    found: Vec<F>,
+}
+
+impl<F: Pod> Fragments<F> {
+    pub(super) fn new() -> Self {
+        Self { pixels: Vec::new(), found: Vec::new() }
+    }
+
+    /// Adds what was found at a pixel behind all others.
+    pub(super) fn push(&mut self, pixel: u32, found: F) {
+        self.pixels.push(pixel);
+        self.found.push(found);
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.pixels.len()
+    }
+
+    /// Returns those in a range of pixels, as runs: the first pixel, and what was found.
+    fn runs(&self, pixels: Range<u32>) -> impl Iterator<Item = (u32, &[F])> {
+        let place = |pixel: u32| self.pixels.partition_point(|p| *p < pixel);
+        let places = place(pixels.start)..place(pixels.end);
+        let first = places.start;
+        let runs = self.pixels[places].chunk_by(|a, b| *a + 1 == *b);
+        runs.scan(first, |at, run| {
+            let found = &self.found[*at..*at + run.len()];
+            *at += run.len();
+            Some((run[0], found))
+        })
+    }
+}
+
+/// Returns the message to each rank: the fragments in its strip. A run has the number of its part,
+/// its first pixel and its length, then what was found.
+pub(super) fn encode<F: Pod>(strips: &Strips, parts: &[(u32, Fragments<F>)]) -> Vec<Vec<u8>> {
+    let message = |rank: u32| {
+        let mut bytes = Vec::new();
+        for (part, fragments) in parts {
+            for (first, found) in fragments.runs(strips.of(rank)) {
+                bytes.extend(bytemuck::bytes_of(&[*part, first, found.len() as u32]));
+                bytes.extend(bytemuck::cast_slice::<F, u8>(found));
+            }
+        }
+        bytes
+    };
+    (0..strips.count()).map(message).collect()
+}
+
+/// Adds the fragments of a message for a strip: part, pixel, and what was found. Returns `None` if
+/// it is no such message.
+pub(super) fn decode<F: Pod>(
+    mut bytes: &[u8],
+    strip: Range<u32>,
+    fragments: &mut Vec<(u32, u32, F)>,
+) -> Option<()> {
+    while !bytes.is_empty() {
+        let (head, rest) = bytes.split_at_checked(size_of::<[u32; 3]>())?;
+        let [part, first, count]: [u32; 3] = bytemuck::pod_read_unaligned(head);
+        let end = first.checked_add(count)?;
+        let is_within = strip.start <= first && end <= strip.end;
+        let length = (count as usize).checked_mul(size_of::<F>()).filter(|_| is_within)?;
+        let (found, rest) = rest.split_at_checked(length)?;
+        let found = found.chunks_exact(size_of::<F>()).map(bytemuck::pod_read_unaligned);
+        fragments.extend((first..end).zip(found).map(|(pixel, found)| (part, pixel, found)));
+        bytes = rest;
+    }
+    Some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::uvec2;
+
+    use super::*;
+
+    #[test]
+    fn messages_keep_fragments() {
+        let pixels = [0u32, 1, 2, 5, 9, 10, 11, 12, 19];
+        let part = |number: u32, step: usize| {
+            let mut fragments = Fragments::new();
+            for pixel in pixels.iter().step_by(step) {
+                fragments.push(*pixel, [number * 100 + pixel, *pixel]);
+            }
+            (number, fragments)
+        };
+        let parts = [part(3, 1), part(1, 2), (2, Fragments::new())];
+        for ranks in [1, 2, 3, 7, 30] {
+            let strips = Strips::new(uvec2(5, 4), ranks);
+            let messages = encode(&strips, &parts);
+            let mut found = Vec::new();
+            for (rank, bytes) in (0..ranks).zip(&messages) {
+                let before = found.len();
+                decode(bytes, strips.of(rank), &mut found).expect("what was written");
+                assert!(found[before..].iter().all(|(_, p, _)| strips.of(rank).contains(p)));
+            }
+            found.sort_unstable();
+            let mut expected: Vec<(u32, u32, [u32; 2])> = parts
+                .iter()
+                .flat_map(|(n, f)| f.pixels.iter().zip(&f.found).map(|(p, v)| (*n, *p, *v)))
+                .collect();
+            expected.sort_unstable();
+            assert_eq!(found, expected, "{ranks} ranks");
+        }
+    }
+
+    #[test]
+    fn other_messages_are_refused() {
+        let mut fragments = Fragments::new();
+        (4..9).for_each(|pixel| fragments.push(pixel, pixel));
+        let strips = Strips::new(uvec2(5, 2), 1);
+        let [bytes] = encode(&strips, &[(0, fragments)]).try_into().expect("one rank");
+        for length in 1..bytes.len() {
+            assert_eq!(decode::<u32>(&bytes[..length], 0..10, &mut Vec::new()), None, "{length}");
+        }
+        // Pixels outside of the strip.
+        assert_eq!(decode::<u32>(&bytes, 0..8, &mut Vec::new()), None);
+        assert_eq!(decode::<u32>(&bytes, 5..10, &mut Vec::new()), None);
+        assert_eq!(decode::<u32>(&[255; 12], 0..10, &mut Vec::new()), None);
+    }
+}

@@ -1,0 +1,228 @@
+//! Computed scaling: how long runs on many nodes would take, from reports of measured ones.
+//!
+//! The model takes the rate of a thread, the bytes and the fragments of a frame and the root's time
+//! for a byte from reports; what it assumes of a cluster is in [`Cluster`]. Nothing overlaps but the
+//! rendering of films with the root's work on parts that came back, which is what the program does.
+
+use super::report::Report;
+
+/// What is assumed of a cluster.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cluster {
+    /// Threads of a node that render.
+    pub threads: f64,
+    /// Bytes that a node sends or receives in a second.
+    pub bandwidth: f64,
+    /// Seconds from the call that sends a message to its arrival.
+    pub latency: f64,
+}
+
+impl Default for Cluster {
+    fn default() -> Self {
+        // 100 Gbit/s, as InfiniBand EDR.
+        Self { threads: 64.0, bandwidth: 12.5e9, latency: 2e-6 }
+    }
+}
+
+/// A row of a table: what takes how long on so many nodes, in seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// Number of nodes.
+    pub nodes: u32,
+    /// The picture, or a frame.
+    pub total: f64,
+    /// Rendering alone, on all nodes.
+    pub render: f64,
+    /// What reaches the root, by its link.
+    pub link: f64,
+    /// What the root computes.
+    pub root: f64,
+    /// Messages, by their number.
+    pub messages: f64,
+    /// The share of the nodes' time in which they render.
+    pub efficiency: f64,
+    /// What takes longest.
+    pub limit: &'static str,
+}
+
+/// Strong scaling has one picture; in weak scaling the work grows with the nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scaling {
+    /// The same picture or scene for all numbers of nodes.
+    Strong,
+    /// For each node as much as for one: samples of a film, points or voxels of a divided scene.
+    Weak,
+}
+
+/// Numbers of nodes in tables.
+pub const NODES: [u32; 6] = [1, 4, 16, 64, 256, 1024];
+
+/// A film on many nodes: its picture, and what reports of films say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Film {
+    /// Pixels of the picture.
+    pub pixels: f64,
+    /// Samples of each pixel, for one node where scaling is weak.
+    pub samples: f64,
+    /// Pixels of a window.
+    pub window: f64,
+    /// Blocks of 64 samples of a unit of work.
+    pub blocks: f64,
+    /// Samples that a thread renders in a second.
+    pub rate: f64,
+    /// Seconds of the root for a byte of a part.
+    pub root: f64,
+}
+
+/// The bytes of a pixel of a part: of one block, and of more.
+const PIXEL_OF_A_BLOCK: f64 = 32.0;
+const PIXEL_OF_MORE: f64 = 64.0;
+
+impl Film {
+    /// Takes rates from a report of a film; `None` if it is none, or nothing was sent.
+    pub fn of(report: &Report) -> Option<Self> {
+        let film = report.film.as_ref().filter(|film| film.part_bytes > 0)?;
+        Some(Self {
+            pixels: f64::from(report.width) * f64::from(report.height),
+            samples: f64::from(film.samples),
+            window: f64::from(film.tile).powi(2),
+            blocks: f64::from(film.blocks),
+            rate: report.rate_per_thread(),
+            root: film.root_seconds / film.part_bytes as f64,
+        })
+    }
+
+    /// Computes a row.
+    pub fn row(&self, cluster: &Cluster, scaling: Scaling, nodes: u32) -> Row {
+        let n = f64::from(nodes);
+        let samples = self.samples * if scaling == Scaling::Weak { n } else { 1.0 };
+        let unit_samples = 64.0 * self.blocks;
+        let units = (self.pixels / self.window).ceil() * (samples / unit_samples).ceil();
+        let node_rate = self.rate * cluster.threads;
+        // The last units are not divided.
+        let unit = self.window * unit_samples.min(samples) / node_rate;
+        let render = (units / n).ceil() * unit;
+        let pixel = if self.blocks > 1.0 { PIXEL_OF_MORE } else { PIXEL_OF_A_BLOCK };
+        let bytes = units * self.window * pixel * (n - 1.0) / n;
+        let link = bytes / cluster.bandwidth;
+        // Its own parts are joined too.
+        let root = units * self.window * pixel * self.root;
+        let messages = 2.0 * units * (n - 1.0) / n * cluster.latency;
+        let work = self.pixels * samples / (node_rate * n);
+        let parts = [
+            ("rendering", render),
+            ("the root's link", link),
+            ("joining by the root", root),
+            ("messages to the root", messages),
+        ];
+        // All of it overlaps.
+        let (limit, total) = longest(&parts);
+        Row { nodes, total, render, link, root, messages, efficiency: work / total, limit }
+    }
+}
+
+/// Frames of a divided scene on many nodes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frames {
+    /// Pixels of the picture.
+    pub pixels: f64,
+    /// Fragments of a picture of one part, for each pixel.
+    pub fragments: f64,
+    /// The power of the number of parts with which fragments grow.
+    pub growth: f64,
+    /// Bytes of a fragment.
+    pub bytes: f64,
+    /// Seconds of a thread for a pixel of one part.
+    pub render: f64,
+    /// Seconds of a rank for compositing a fragment.
+    pub composite: f64,
+}
+
+/// The bytes of a pixel that the root gathers.
+const GATHERED: f64 = 12.0;
+
+impl Frames {
+    /// Takes rates from two reports of frames: of one part, and of more. `None` if they are others.
+    pub fn of(one: &Report, more: &Report, bytes: f64) -> Option<Self> {
+        let (a, b) = (one.divided.as_ref()?, more.divided.as_ref()?);
+        if one.frames == 0 || more.frames == 0 || a.parts >= b.parts || a.fragments_per_frame <= 0.0
+        {
+            return None;
+        }
+        let pixels = f64::from(one.width) * f64::from(one.height);
+        let ratio = b.fragments_per_frame / a.fragments_per_frame;
+        let parts = f64::from(b.parts) / f64::from(a.parts);
+        let threads: usize = one.ranks.iter().map(|rank| rank.threads).sum();
+        let each = |seconds: f64| seconds / f64::from(one.frames);
+        Some(Self {
+            pixels,
+            fragments: a.fragments_per_frame / pixels,
+            growth: ratio.ln() / parts.ln(),
+            bytes,
+            render: each(a.render_seconds) * threads as f64 / pixels,
+            composite: each(a.composite_seconds) / a.fragments_per_frame,
+        })
+    }
+
+    /// Computes a row. Strong scaling divides the rays' work by the nodes, each fragment being a
+    /// part of it; in weak scaling, a ray's work in a part is that in the whole of one node.
+    pub fn row(&self, cluster: &Cluster, scaling: Scaling, nodes: u32) -> Row {
+        let n = f64::from(nodes);
+        // Parts in front of each other.
+        let layers = n.powf(self.growth);
+        let fragments = self.pixels * self.fragments * layers;
+        let one_node = self.pixels * self.render / cluster.threads;
+        let render = match scaling {
+            Scaling::Strong => one_node / n,
+            Scaling::Weak => one_node * layers / n,
+        };
+        let exchanged = fragments / n * self.bytes * (n - 1.0) / n / cluster.bandwidth;
+        let gathered = self.pixels * GATHERED * (n - 1.0) / n / cluster.bandwidth;
+        let root = fragments / n * self.composite;
+        // To each other rank of the exchange, and the root's of gathering.
+        let messages = 2.0 * (n - 1.0) * cluster.latency;
+        let link = exchanged + gathered;
+        let total = render + link + root + messages;
+        let parts = [
+            ("rendering", render),
+            ("exchanging fragments", exchanged),
+            ("gathering the picture", gathered),
+            ("compositing", root),
+            ("messages to each other", messages),
+        ];
+        let (limit, _) = longest(&parts);
+        Row { nodes, total, render, link, root, messages, efficiency: render / total, limit }
+    }
+}
+
+fn longest(parts: &[(&'static str, f64)]) -> (&'static str, f64) {
+    let longer = |a: (&'static str, f64), b: &(&'static str, f64)| if b.1 > a.1 { *b } else { a };
+    parts.iter().fold(("nothing", 0.0), longer)
+}
+
+/// Returns rows as a table of Markdown.
+pub fn table(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "| nodes | total | rendering | link | root | messages | efficiency | what takes longest |\n\
+         |---:|---:|---:|---:|---:|---:|---:|---|\n",
+    );
+    for row in rows {
+        let [total, render, link, root, messages] =
+            [row.total, row.render, row.link, row.root, row.messages].map(seconds);
+        text += &format!(
+            "| {} | {total} | {render} | {link} | {root} | {messages} | {:.0} % | {} |\n",
+            row.nodes,
+            100.0 * row.efficiency,
+            row.limit
+        );
+    }
+    text
+}
+
+fn seconds(time: f64) -> String {
+    match time {
+        t if t >= 0.9995 => format!("{t:.3} s"),
+        t if t >= 0.9995e-3 => format!("{:.3} ms", 1e3 * t),
+        t => format!("{:.1} us", 1e6 * t),
+    }
+}

@@ -1,0 +1,5 @@
+//! Whole runs, each of several processes that `mpirun` starts.
+
+mod common;
+mod deaths;
+mod pictures;
