@@ -42,7 +42,7 @@ pub struct FilmReport {
     pub tile: u32,
     /// Blocks of samples of a unit of work.
     pub blocks: u32,
-    /// The time in which the root decoded and joined parts.
+    /// The root's processor time for decoding and joining parts.
     pub root_seconds: f64,
     /// The time in which it wrote films so far.
     pub checkpoint_seconds: f64,
@@ -65,6 +65,8 @@ pub struct DividedReport {
     pub composite_seconds: f64,
     /// and gathering the picture.
     pub gather_seconds: f64,
+    /// The processor time of all ranks for compositing.
+    pub composite_cpu_seconds: f64,
 }
 
 /// Figures of a rank.
@@ -72,8 +74,10 @@ pub struct DividedReport {
 pub struct RankReport {
     /// Threads that rendered.
     pub threads: usize,
-    /// The time in which it rendered.
-    pub busy_seconds: f64,
+    /// Processor time of rendering, of all threads.
+    pub cpu_seconds: f64,
+    /// Processor time of compositing.
+    pub composite_cpu_seconds: f64,
     /// Samples or rays that it rendered.
     pub samples: u64,
     /// Bytes that it sent to others.
@@ -151,15 +155,16 @@ impl Report {
             exchange_seconds: slowest(1),
             composite_seconds: slowest(2),
             gather_seconds: slowest(3),
+            composite_cpu_seconds: ranks.iter().map(|rank| rank.composite_cpu_seconds).sum(),
         };
         Self { divided: Some(divided), ..Self::of(args, seconds, frames, ranks) }
     }
 
-    /// Returns samples or rays for each second in which one thread rendered.
+    /// Returns samples or rays for each second of processor time: what other programs of the machine
+    /// take does not count.
     pub fn rate_per_thread(&self) -> f64 {
         let samples: u64 = self.ranks.iter().map(|rank| rank.samples).sum();
-        let time = |rank: &RankReport| rank.busy_seconds * rank.threads as f64;
-        let seconds: f64 = self.ranks.iter().map(time).sum();
+        let seconds: f64 = self.ranks.iter().map(|rank| rank.cpu_seconds).sum();
         if seconds > 0.0 { samples as f64 / seconds } else { 0.0 }
     }
 

@@ -134,6 +134,8 @@ pub struct Frames {
     pub bytes: f64,
     /// Seconds of a thread for a pixel of one part.
     pub render: f64,
+    /// The power of the number of parts with which the work of rendering one scene grows.
+    pub overhead: f64,
     /// Seconds of a rank for compositing a fragment.
     pub composite: f64,
 }
@@ -152,30 +154,35 @@ impl Frames {
         let pixels = f64::from(one.width) * f64::from(one.height);
         let ratio = b.fragments_per_frame / a.fragments_per_frame;
         let parts = f64::from(b.parts) / f64::from(a.parts);
-        let threads: usize = one.ranks.iter().map(|rank| rank.threads).sum();
         let each = |seconds: f64| seconds / f64::from(one.frames);
+        let cpu = |report: &Report| {
+            let all: f64 = report.ranks.iter().map(|rank| rank.cpu_seconds).sum();
+            all / f64::from(report.frames)
+        };
         Some(Self {
             pixels,
             fragments: a.fragments_per_frame / pixels,
             growth: ratio.ln() / parts.ln(),
             bytes,
-            render: each(a.render_seconds) * threads as f64 / pixels,
-            composite: each(a.composite_seconds) / a.fragments_per_frame,
+            render: cpu(one) / pixels,
+            overhead: ((cpu(more) / cpu(one)).ln() / parts.ln()).max(0.0),
+            composite: each(a.composite_cpu_seconds) / a.fragments_per_frame,
         })
     }
 
-    /// Computes a row. Strong scaling divides the rays' work by the nodes, each fragment being a
-    /// part of it; in weak scaling, a ray's work in a part is that in the whole of one node.
+    /// Computes a row. A scene that is divided takes more work than as a whole, by what was measured;
+    /// in weak scaling, a ray's work in each part is that in the whole of one node.
     pub fn row(&self, cluster: &Cluster, scaling: Scaling, nodes: u32) -> Row {
         let n = f64::from(nodes);
         // Parts in front of each other.
         let layers = n.powf(self.growth);
         let fragments = self.pixels * self.fragments * layers;
         let one_node = self.pixels * self.render / cluster.threads;
-        let render = match scaling {
-            Scaling::Strong => one_node / n,
-            Scaling::Weak => one_node * layers / n,
+        let work = match scaling {
+            Scaling::Strong => n.powf(self.overhead),
+            Scaling::Weak => layers,
         };
+        let render = one_node * work / n;
         let exchanged = fragments / n * self.bytes * (n - 1.0) / n / cluster.bandwidth;
         let gathered = self.pixels * GATHERED * (n - 1.0) / n / cluster.bandwidth;
         let root = fragments / n * self.composite;
@@ -224,5 +231,67 @@ fn seconds(time: f64) -> String {
         t if t >= 0.9995 => format!("{t:.3} s"),
         t if t >= 0.9995e-3 => format!("{:.3} ms", 1e3 * t),
         t => format!("{:.1} us", 1e6 * t),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CLUSTER: Cluster = Cluster { threads: 10.0, bandwidth: 1e9, latency: 1e-6 };
+
+    fn film() -> Film {
+        let (pixels, window) = (64.0 * 64.0 * 100.0, 64.0 * 64.0);
+        Film { pixels, samples: 640.0, window, blocks: 1.0, rate: 1e6, root: 1e-10 }
+    }
+
+    #[test]
+    fn one_node_renders_and_sends_nothing() {
+        let row = film().row(&CLUSTER, Scaling::Strong, 1);
+        let expected = film().pixels * 640.0 / 1e7;
+        assert!((row.total / expected - 1.0).abs() < 1e-12 && (row.efficiency - 1.0).abs() < 1e-12);
+        assert_eq!((row.link, row.messages, row.limit), (0.0, 0.0, "rendering"));
+    }
+
+    #[test]
+    fn a_film_is_not_divided_below_its_units() {
+        // 1,000 units: 1,024 nodes take as long as 1,000.
+        let row = film().row(&CLUSTER, Scaling::Strong, 1024);
+        assert!((row.render - 64.0 * 4096.0 / 1e7).abs() < 1e-12);
+        assert!(row.efficiency < 1.0);
+        // What the root receives does not depend on how many send it, all of it but its own.
+        let link = 1000.0 * 4096.0 * 32.0 / 1e9;
+        assert!((row.link / link - 1.0).abs() < 1e-2 && row.limit == "the root's link");
+    }
+
+    #[test]
+    fn weak_scaling_of_films_ends_at_the_root() {
+        let rows = NODES.map(|nodes| film().row(&CLUSTER, Scaling::Weak, nodes));
+        assert!(rows.windows(2).all(|pair| pair[1].efficiency <= pair[0].efficiency + 1e-12));
+        assert!((rows[1].efficiency - 1.0).abs() < 1e-12);
+        assert_eq!(rows[5].limit, "the root's link");
+    }
+
+    #[test]
+    fn frames_gather_a_picture_of_one_size() {
+        let frames = Frames {
+            pixels: 1e6,
+            fragments: 0.5,
+            growth: 1.0 / 3.0,
+            bytes: 16.0,
+            render: 1e-6,
+            overhead: 0.1,
+            composite: 1e-7,
+        };
+        let rows = NODES.map(|nodes| frames.row(&CLUSTER, Scaling::Strong, nodes));
+        assert!(rows.windows(2).all(|pair| pair[1].efficiency < pair[0].efficiency));
+        // 12 MB by a link of 1 GB/s, and fragments of ten parts one behind another.
+        let last = rows[5];
+        let exchanged = 0.5e6 * 1024f64.powf(1.0 / 3.0) / 1024.0 * 16.0 / 1e9;
+        assert!((last.link / (12e-3 + exchanged) - 1.0).abs() < 1e-2);
+        assert_eq!(last.limit, "gathering the picture");
+        let text = table(&rows);
+        assert_eq!(text.lines().count(), 2 + NODES.len());
+        assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
     }
 }

@@ -67,8 +67,12 @@ fn run(args: &Args) -> Result<(), String> {
         let film = Film::of(&report).ok_or_else(|| not(path, "a film by two or more ranks"))?;
         let (samples, blocks) = (f64::from(args.samples), f64::from(args.blocks));
         let film = Film { pixels, samples, blocks, ..film };
-        println!("{}: {:.3} million samples a second and thread, ", report.scene, film.rate / 1e6);
-        println!("{:.2} ns of the root for a byte\n", film.root * 1e9);
+        println!(
+            "{}: {:.3} million samples a second and thread, {:.2} ns of the root for a byte\n",
+            report.scene,
+            film.rate / 1e6,
+            film.root * 1e9,
+        );
         both(|scaling, nodes| film.row(&cluster, scaling, nodes));
     }
     for (paths, bytes) in [(&args.points, POINT), (&args.volume, BRICK)] {
@@ -77,12 +81,17 @@ fn run(args: &Args) -> Result<(), String> {
         let frames = Frames::of(&reports.0, &reports.1, bytes)
             .ok_or_else(|| not(more, "frames of more parts than those of the first file"))?;
         let frames = Frames { pixels, ..frames };
-        println!("{}: {:.0} ns of a thread for a ray,", reports.0.scene, frames.render * 1e9);
         println!(
-            "{:.2} fragments a pixel in one part, as parts to the power of {:.2},",
-            frames.fragments, frames.growth
+            "{}: {:.0} ns of a thread for a pixel, as parts to the power of {:.2};\n\
+             {:.2} fragments a pixel of one part, as parts to the power of {:.2}; {:.0} ns for \
+             compositing one\n",
+            reports.0.scene,
+            frames.render * 1e9,
+            frames.overhead,
+            frames.fragments,
+            frames.growth,
+            frames.composite * 1e9,
         );
-        println!("{:.0} ns for compositing one\n", frames.composite * 1e9);
         both(|scaling, nodes| frames.row(&cluster, scaling, nodes));
     }
     Ok(())

@@ -5,6 +5,8 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use cpu_time::{ProcessTime, ThreadTime};
+use raydsl::prelude::{Image, Vec4};
 use raydsl::render::{Display, FilmExtent, FilmPart, PartError};
 
 use super::assembly::Assembly;
@@ -86,9 +88,9 @@ fn own_rank(
 ) {
     for extent in units {
         let mut report = RankReport::new(threads);
-        let begin = Instant::now();
+        let begin = ProcessTime::now();
         let part = render(&extent);
-        report.busy_seconds = begin.elapsed().as_secs_f64();
+        report.cpu_seconds = begin.elapsed().as_secs_f64();
         report.samples = extent.total_samples();
         // The root has ended early where nobody takes it.
         if parts.send((part, report)).is_err() {
@@ -118,7 +120,7 @@ impl Ranks<'_> {
 /// What the root counts.
 struct Shared {
     own: RankReport,
-    /// The time that the root needed to decode and join parts.
+    /// The processor time that the root needed to decode and join parts.
     root_seconds: f64,
     checkpoint_seconds: f64,
     /// The bytes of the parts that came by messages.
@@ -160,13 +162,14 @@ fn share_out(
             ranks.give(rank, extent)?;
             waiting += 1;
         }
-        let begin = Instant::now();
+        let begin = ThreadTime::now();
         assembly.add(part).map_err(|_| WireError::Damaged { from: rank })?;
         shared.root_seconds += begin.elapsed().as_secs_f64();
         teller.tell(&Event::Done(assembly.share()));
         if written.elapsed() >= every && waiting > 0 {
             let begin = Instant::now();
             checkpoint::write(&args.out, job, assembly)?;
+            write_shown(&args.out, &assembly.film()?.image())?;
             shared.checkpoint_seconds += begin.elapsed().as_secs_f64();
             written = Instant::now();
         }
@@ -195,12 +198,12 @@ fn next_part(
     shared: &mut Shared,
 ) -> Result<Option<(usize, FilmPart)>, WireError> {
     if let Ok((part, report)) = ranks.from_own.try_recv() {
-        shared.own.busy_seconds += report.busy_seconds;
+        shared.own.cpu_seconds += report.cpu_seconds;
         shared.own.samples += report.samples;
         return Ok(Some((ROOT, part)));
     }
     let Some((from, bytes)) = ranks.wire.try_receive(PART) else { return Ok(None) };
-    let begin = Instant::now();
+    let begin = ThreadTime::now();
     let part = FilmPart::from_bytes(&bytes).map_err(|_| WireError::Damaged { from })?;
     shared.root_seconds += begin.elapsed().as_secs_f64();
     shared.part_bytes += bytes.len() as u64;
@@ -213,6 +216,10 @@ fn write_pictures(folder: &Path, assembly: &Assembly) -> Result<(), Failure> {
     let image = assembly.film()?.image();
     let light = image.map(|pixel| pixel.truncate());
     disk::replace_by(&folder.join("film.pfm"), |path| light.write_pfm(path))?;
-    Display::new().show(&image).write_png(folder.join("film.png"))?;
-    Ok(())
+    write_shown(folder, &image)
+}
+
+/// Writes the picture to look at.
+fn write_shown(folder: &Path, image: &Image<Vec4>) -> Result<(), Failure> {
+    Ok(Display::new().show(image).write_png(folder.join("film.png"))?)
 }

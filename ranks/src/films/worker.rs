@@ -1,6 +1,6 @@
 //! Ranks that render what the root asks for.
 
-use std::time::Instant;
+use cpu_time::ProcessTime;
 
 use super::{Job, PART, Render, UNIT, division};
 use crate::report::RankReport;
@@ -21,9 +21,9 @@ pub(super) fn run(
             break;
         }
         let extent = division::extent_of(job, &message).ok_or(WireError::Damaged { from: ROOT })?;
-        let begin = Instant::now();
+        let begin = ProcessTime::now();
         let part = render(&extent);
-        report.busy_seconds += begin.elapsed().as_secs_f64();
+        report.cpu_seconds += begin.elapsed().as_secs_f64();
         report.samples += extent.total_samples();
         wire.send(ROOT, PART, &part.to_bytes())?;
     }

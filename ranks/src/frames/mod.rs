@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use bytemuck::Pod;
+use cpu_time::{ProcessTime, ThreadTime};
 use glam::{UVec2, Vec3, uvec2};
 use raydsl::prelude::{Image, Pinhole};
 use raydsl::render::Display;
@@ -105,7 +106,6 @@ impl Job<'_> {
             }
         }
         let seconds = begin.elapsed().as_secs_f64();
-        report.busy_seconds = report.phases[0];
         let ranks = report.collect(wire)?;
         if let Some(mut teller) = teller {
             let frames = args.frames - first;
@@ -155,18 +155,22 @@ impl Job<'_> {
         let strips = Strips::new(size, wire.size() as u32);
         let mut clock = Phases { report, begin: Instant::now(), phase: 0 };
 
+        let begin = ProcessTime::now();
         let parts = scene.render(&camera, size, &mut clock.report.samples);
+        clock.report.cpu_seconds += begin.elapsed().as_secs_f64();
         clock.next();
         clock.report.fragments += parts.iter().map(|(_, f)| f.len() as u64).sum::<u64>();
         let messages = message::encode(&strips, &parts);
         let received = wire.exchange(&messages)?;
         clock.next();
+        let begin = ThreadTime::now();
         let mut fragments = Vec::new();
         for (from, bytes) in received.iter().enumerate() {
             let strip = strips.of(wire.rank() as u32);
             message::decode(bytes, strip, &mut fragments).ok_or(WireError::Damaged { from })?;
         }
         let colors = scene.composite(&camera, size, strips.of(wire.rank() as u32), fragments);
+        clock.report.composite_cpu_seconds += begin.elapsed().as_secs_f64();
         clock.next();
         let gathered = wire.gather(bytemuck::cast_slice(&colors))?;
         clock.next();

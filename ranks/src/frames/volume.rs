@@ -276,8 +276,8 @@ mod tests {
         let mut rng = Rng::new(UVec2::ZERO, 3, 8);
         for parts in [1, 2, 3, 7, 16] {
             let division = division(24, parts);
-            let plane = division.regions().iter().flat_map(|r| r.low.to_array());
-            let plane = plane.filter(|c| c.is_finite()).next().unwrap_or(0.0);
+            let mut planes = division.regions().iter().flat_map(|r| r.low.to_array());
+            let plane = planes.find(|c| c.is_finite()).unwrap_or(0.0);
             for i in 0..300 {
                 let mut ray = Ray::new(rng.next_3d() * 6.0 - 3.0, rng.next_3d() - 0.5);
                 for axis in 0..3 {

@@ -6,12 +6,12 @@ use super::tree::{Node, Place, largest};
 use super::{FilmExtent, FilmPart, PartError};
 use crate::render::moments::Sums;
 
-/// The bytes of an extent.
-const HEADER: usize = 8 * size_of::<u32>();
+/// The bytes of an extent: eight numbers.
+const HEADER: usize = size_of::<[u32; 8]>();
 
 /// The bytes of a pixel in a leaf, whose moments are `f32`, and in any other subtree.
-const LEAF_PIXEL: usize = 8 * size_of::<f32>();
-const SUM_PIXEL: usize = 8 * size_of::<f64>();
+const LEAF_PIXEL: usize = size_of::<[f32; 8]>();
+const SUM_PIXEL: usize = size_of::<[f64; 8]>();
 
 impl FilmPart {
     /// Returns the part as bytes, little-endian, without loss: 32 for each pixel of a block of

@@ -93,7 +93,7 @@ impl FilmExtent {
     pub(super) fn followed_by(&self, next: &Self) -> Option<Self> {
         let is_same = (self.film, self.origin, self.size) == (next.film, next.origin, next.size);
         let follows = is_same && self.samples.end == next.samples.start;
-        follows.then(|| Self { samples: self.samples.start..next.samples.end, ..*self })
+        follows.then_some(Self { samples: self.samples.start..next.samples.end, ..*self })
     }
 
     /// Returns the indices of the window's pixels in the film, row by row.
