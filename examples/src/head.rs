@@ -96,13 +96,15 @@ pub fn head_part(side: u32, first: UVec3, size: UVec3) -> Vec<u8> {
     assert!(side > 0, "a head has voxels");
     let voxel = 2.0 / side as f32;
     let at = |i: u32| (i as f32 + 0.5) * voxel - 1.0;
-    let slice = |z: u32| {
-        (0..size.x * size.y).map(move |i| {
-            let p = vec3(at(first.x + i % size.x), at(first.y + i / size.x), at(first.z + z));
-            (value_at(p, 3.0 * voxel) + 0.5) as u8
-        })
-    };
-    (0..size.z).into_par_iter().flat_map_iter(slice).collect()
+    let row = size.x as usize;
+    let mut voxels = vec![0; row * size.y as usize * size.z as usize];
+    voxels.par_chunks_mut(row.max(1)).zip(0..size.y * size.z).for_each(|(voxels, i)| {
+        let (y, z) = (at(first.y + i % size.y), at(first.z + i / size.y));
+        for (value, x) in voxels.iter_mut().zip(first.x..) {
+            *value = (value_at(vec3(at(x), y, z), 3.0 * voxel) + 0.5) as u8;
+        }
+    });
+    voxels
 }
 
 #[cfg(test)]
@@ -115,7 +117,9 @@ mod tests {
         let (whole, part) = (head(side), head_part(side, first, size));
         let index = |p: UVec3, size: UVec3| ((p.z * size.y + p.y) * size.x + p.x) as usize;
         assert_eq!(part.len(), 4 * 6 * 12);
-        for (x, y, z) in (0..4).flat_map(|x| (0..6).flat_map(move |y| (0..12).map(move |z| (x, y, z)))) {
+        for (x, y, z) in
+            (0..4).flat_map(|x| (0..6).flat_map(move |y| (0..12).map(move |z| (x, y, z))))
+        {
             let p = uvec3(x, y, z);
             assert_eq!(part[index(p, size)], whole[index(first + p, UVec3::splat(side))]);
         }

@@ -51,6 +51,8 @@ pub fn launch(ranks: NonZeroU32, args: &Args) -> Result<(), LaunchError> {
     command
         // In containers everyone is root; more ranks than cores are fine where nothing is timed.
         .args(["--allow-run-as-root", "--oversubscribe", "--bind-to", "none"])
+        // Ranks that wait leave their cores to those that render.
+        .args(["--mca", "mpi_yield_when_idle", "1"])
         // Copies between processes by the kernel are forbidden in most containers.
         .args(["--mca", "btl_vader_single_copy_mechanism", "none"])
         .args(["-n", &ranks.to_string()])

@@ -35,8 +35,8 @@ pub struct Row {
     pub render: f64,
     /// What reaches the root, by its link.
     pub link: f64,
-    /// What the root computes.
-    pub root: f64,
+    /// What is computed of what was sent: joining by the root, or compositing by all.
+    pub joining: f64,
     /// Messages, by their number.
     pub messages: f64,
     /// The share of the nodes' time in which they render.
@@ -74,21 +74,26 @@ pub struct Film {
     pub root: f64,
 }
 
-/// The bytes of a pixel of a part: of one block, and of more.
-const PIXEL_OF_A_BLOCK: f64 = 32.0;
-const PIXEL_OF_MORE: f64 = 64.0;
+/// Returns the bytes of a pixel of a part: of one block, or of more.
+fn pixel_bytes(blocks: f64) -> f64 {
+    if blocks > 1.0 { 64.0 } else { 32.0 }
+}
 
 impl Film {
     /// Takes rates from a report of a film; `None` if it is none, or nothing was sent.
     pub fn of(report: &Report) -> Option<Self> {
         let film = report.film.as_ref().filter(|film| film.part_bytes > 0)?;
+        let pixels = f64::from(report.width) * f64::from(report.height);
+        // Those of the root too.
+        let units = (f64::from(film.samples) / (64.0 * f64::from(film.blocks))).ceil();
+        let bytes = pixels * units * pixel_bytes(f64::from(film.blocks));
         Some(Self {
-            pixels: f64::from(report.width) * f64::from(report.height),
+            pixels,
             samples: f64::from(film.samples),
             window: f64::from(film.tile).powi(2),
             blocks: f64::from(film.blocks),
             rate: report.rate_per_thread(),
-            root: film.root_seconds / film.part_bytes as f64,
+            root: film.root_seconds / bytes,
         })
     }
 
@@ -102,22 +107,22 @@ impl Film {
         // The last units are not divided.
         let unit = self.window * unit_samples.min(samples) / node_rate;
         let render = (units / n).ceil() * unit;
-        let pixel = if self.blocks > 1.0 { PIXEL_OF_MORE } else { PIXEL_OF_A_BLOCK };
+        let pixel = pixel_bytes(self.blocks);
         let bytes = units * self.window * pixel * (n - 1.0) / n;
         let link = bytes / cluster.bandwidth;
         // Its own parts are joined too.
-        let root = units * self.window * pixel * self.root;
+        let joining = units * self.window * pixel * self.root;
         let messages = 2.0 * units * (n - 1.0) / n * cluster.latency;
         let work = self.pixels * samples / (node_rate * n);
         let parts = [
             ("rendering", render),
             ("the root's link", link),
-            ("joining by the root", root),
+            ("joining by the root", joining),
             ("messages to the root", messages),
         ];
         // All of it overlaps.
         let (limit, total) = longest(&parts);
-        Row { nodes, total, render, link, root, messages, efficiency: work / total, limit }
+        Row { nodes, total, render, link, joining, messages, efficiency: work / total, limit }
     }
 }
 
@@ -136,7 +141,7 @@ pub struct Frames {
     pub render: f64,
     /// The power of the number of parts with which the work of rendering one scene grows.
     pub overhead: f64,
-    /// Seconds of a rank for compositing a fragment.
+    /// Seconds of a thread for compositing a fragment.
     pub composite: f64,
 }
 
@@ -185,20 +190,20 @@ impl Frames {
         let render = one_node * work / n;
         let exchanged = fragments / n * self.bytes * (n - 1.0) / n / cluster.bandwidth;
         let gathered = self.pixels * GATHERED * (n - 1.0) / n / cluster.bandwidth;
-        let root = fragments / n * self.composite;
+        let joining = fragments / n * self.composite / cluster.threads;
         // To each other rank of the exchange, and the root's of gathering.
         let messages = 2.0 * (n - 1.0) * cluster.latency;
         let link = exchanged + gathered;
-        let total = render + link + root + messages;
+        let total = render + link + joining + messages;
         let parts = [
             ("rendering", render),
             ("exchanging fragments", exchanged),
             ("gathering the picture", gathered),
-            ("compositing", root),
+            ("compositing", joining),
             ("messages to each other", messages),
         ];
         let (limit, _) = longest(&parts);
-        Row { nodes, total, render, link, root, messages, efficiency: render / total, limit }
+        Row { nodes, total, render, link, joining, messages, efficiency: render / total, limit }
     }
 }
 
@@ -210,14 +215,14 @@ fn longest(parts: &[(&'static str, f64)]) -> (&'static str, f64) {
 /// Returns rows as a table of Markdown.
 pub fn table(rows: &[Row]) -> String {
     let mut text = String::from(
-        "| nodes | total | rendering | link | root | messages | efficiency | what takes longest |\n\
+        "| nodes | total | rendering | link | joining | messages | efficiency | what takes longest |\n\
          |---:|---:|---:|---:|---:|---:|---:|---|\n",
     );
     for row in rows {
-        let [total, render, link, root, messages] =
-            [row.total, row.render, row.link, row.root, row.messages].map(seconds);
+        let [total, render, link, joining, messages] =
+            [row.total, row.render, row.link, row.joining, row.messages].map(seconds);
         text += &format!(
-            "| {} | {total} | {render} | {link} | {root} | {messages} | {:.0} % | {} |\n",
+            "| {} | {total} | {render} | {link} | {joining} | {messages} | {:.0} % | {} |\n",
             row.nodes,
             100.0 * row.efficiency,
             row.limit
@@ -226,12 +231,19 @@ pub fn table(rows: &[Row]) -> String {
     text
 }
 
+/// Returns a time with three digits.
 fn seconds(time: f64) -> String {
-    match time {
-        t if t >= 0.9995 => format!("{t:.3} s"),
-        t if t >= 0.9995e-3 => format!("{:.3} ms", 1e3 * t),
-        t => format!("{:.1} us", 1e6 * t),
-    }
+    let (value, unit) = match time {
+        t if t >= 0.9995 => (t, "s"),
+        t if t >= 0.9995e-3 => (1e3 * t, "ms"),
+        t => (1e6 * t, "us"),
+    };
+    let decimals = match value {
+        v if v >= 99.95 => 0,
+        v if v >= 9.995 => 1,
+        _ => 2,
+    };
+    format!("{value:.decimals$} {unit}")
 }
 
 #[cfg(test)]
@@ -290,6 +302,9 @@ mod tests {
         let exchanged = 0.5e6 * 1024f64.powf(1.0 / 3.0) / 1024.0 * 16.0 / 1e9;
         assert!((last.link / (12e-3 + exchanged) - 1.0).abs() < 1e-2);
         assert_eq!(last.limit, "gathering the picture");
+        let times = [0.0, 1.234e-6, 0.99949e-3, 12.345e-3, 0.9996, 123.456];
+        let shown = ["0.00 us", "1.23 us", "999 us", "12.3 ms", "1.00 s", "123 s"];
+        assert_eq!(times.map(seconds), shown);
         let text = table(&rows);
         assert_eq!(text.lines().count(), 2 + NODES.len());
         assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");

@@ -58,11 +58,12 @@ pub(super) fn encode<F: Pod>(strips: &Strips, parts: &[(u32, Fragments<F>)]) -> 
     (0..strips.count()).map(message).collect()
 }
 
-/// Adds the fragments of a message for a strip: part, pixel, and what was found. Returns `None` if
-/// it is no such message.
+/// Adds the fragments of a message for a strip that are in a band of it: part, pixel, and what was
+/// found. Returns `None` if it is no such message.
 pub(super) fn decode<F: Pod>(
     mut bytes: &[u8],
-    strip: Range<u32>,
+    strip: &Range<u32>,
+    band: &Range<u32>,
     fragments: &mut Vec<(u32, u32, F)>,
 ) -> Option<()> {
     while !bytes.is_empty() {
@@ -72,9 +73,14 @@ pub(super) fn decode<F: Pod>(
         let is_within = strip.start <= first && end <= strip.end;
         let length = (count as usize).checked_mul(size_of::<F>()).filter(|_| is_within)?;
         let (found, rest) = rest.split_at_checked(length)?;
-        let found = found.chunks_exact(size_of::<F>()).map(bytemuck::pod_read_unaligned);
-        fragments.extend((first..end).zip(found).map(|(pixel, found)| (part, pixel, found)));
         bytes = rest;
+
+        let pixels = first.max(band.start)..end.min(band.end);
+        if !pixels.is_empty() {
+            let found = &found[(pixels.start - first) as usize * size_of::<F>()..];
+            let found = found.chunks_exact(size_of::<F>()).map(bytemuck::pod_read_unaligned);
+            fragments.extend(pixels.zip(found).map(|(pixel, found)| (part, pixel, found)));
+        }
     }
     Some(())
 }
@@ -83,6 +89,7 @@ pub(super) fn decode<F: Pod>(
 mod tests {
     use glam::uvec2;
 
+    use super::super::strips;
     use super::*;
 
     #[test]
@@ -101,9 +108,12 @@ mod tests {
             let messages = encode(&strips, &parts);
             let mut found = Vec::new();
             for (rank, bytes) in (0..ranks).zip(&messages) {
-                let before = found.len();
-                decode(bytes, strips.of(rank), &mut found).expect("what was written");
-                assert!(found[before..].iter().all(|(_, p, _)| strips.of(rank).contains(p)));
+                let strip = strips.of(rank);
+                for band in strips::bands(&strip, 3) {
+                    let before = found.len();
+                    decode(bytes, &strip, &band, &mut found).expect("what was written");
+                    assert!(found[before..].iter().all(|(_, p, _)| band.contains(p)));
+                }
             }
             found.sort_unstable();
             let mut expected: Vec<(u32, u32, [u32; 2])> = parts
@@ -117,16 +127,19 @@ mod tests {
 
     #[test]
     fn other_messages_are_refused() {
+        let refused = |bytes: &[u8], strip: Range<u32>| {
+            decode::<u32>(bytes, &strip, &strip, &mut Vec::new()).is_none()
+        };
         let mut fragments = Fragments::new();
         (4..9).for_each(|pixel| fragments.push(pixel, pixel));
         let strips = Strips::new(uvec2(5, 2), 1);
         let [bytes] = encode(&strips, &[(0, fragments)]).try_into().expect("one rank");
         for length in 1..bytes.len() {
-            assert_eq!(decode::<u32>(&bytes[..length], 0..10, &mut Vec::new()), None, "{length}");
+            assert!(refused(&bytes[..length], 0..10), "{length}");
         }
         // Pixels outside of the strip.
-        assert_eq!(decode::<u32>(&bytes, 0..8, &mut Vec::new()), None);
-        assert_eq!(decode::<u32>(&bytes, 5..10, &mut Vec::new()), None);
-        assert_eq!(decode::<u32>(&[255; 12], 0..10, &mut Vec::new()), None);
+        assert!(refused(&bytes, 0..8));
+        assert!(refused(&bytes, 5..10));
+        assert!(refused(&[255; 12], 0..10));
     }
 }

@@ -12,14 +12,16 @@ mod strips;
 mod volume;
 mod window;
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use bytemuck::Pod;
-use cpu_time::{ProcessTime, ThreadTime};
+use cpu_time::ProcessTime;
 use glam::{UVec2, Vec3, uvec2};
 use raydsl::prelude::{Image, Pinhole};
 use raydsl::render::Display;
+use rayon::prelude::*;
 
 use self::message::Fragments;
 use self::strips::Strips;
@@ -31,9 +33,9 @@ use super::run::Failure;
 use super::wire::{ROOT, Wire, WireError};
 
 /// A rank's parts of a divided scene.
-pub(crate) trait Divided {
+pub(crate) trait Divided: Sync {
     /// What a ray finds in a part.
-    type Fragment: Pod;
+    type Fragment: Pod + Send;
 
     /// Returns the camera of a frame, at this share of the way round the scene.
     fn camera(&self, share: f32) -> Pinhole;
@@ -46,13 +48,13 @@ pub(crate) trait Divided {
         rays: &mut u64,
     ) -> Vec<(u32, Fragments<Self::Fragment>)>;
 
-    /// Returns the colours of a strip's pixels, of fragments of all parts in any order: the part, the
+    /// Returns the colours of a band's pixels, of fragments of all parts in any order: the part, the
     /// pixel of the picture, and what was found.
     fn composite(
         &self,
         camera: &Pinhole,
         size: UVec2,
-        strip: core::ops::Range<u32>,
+        band: Range<u32>,
         fragments: Vec<(u32, u32, Self::Fragment)>,
     ) -> Vec<Vec3>;
 
@@ -72,7 +74,7 @@ pub(crate) fn run(wire: &Wire, args: &Args, threads: usize) -> Result<(), Failur
 }
 
 /// Returns the numbers of this rank's parts: neighbours, as evenly as it goes.
-fn own_parts(parts: u32, wire: &Wire) -> core::ops::Range<u32> {
+fn own_parts(parts: u32, wire: &Wire) -> Range<u32> {
     let (rank, ranks) = (wire.rank() as u64, wire.size() as u64);
     let first = |rank: u64| (u64::from(parts) * rank / ranks) as u32;
     first(rank)..first(rank + 1)
@@ -163,13 +165,9 @@ impl Job<'_> {
         let messages = message::encode(&strips, &parts);
         let received = wire.exchange(&messages)?;
         clock.next();
-        let begin = ThreadTime::now();
-        let mut fragments = Vec::new();
-        for (from, bytes) in received.iter().enumerate() {
-            let strip = strips.of(wire.rank() as u32);
-            message::decode(bytes, strip, &mut fragments).ok_or(WireError::Damaged { from })?;
-        }
-        let colors = scene.composite(&camera, size, strips.of(wire.rank() as u32), fragments);
+        let begin = ProcessTime::now();
+        let strip = strips.of(wire.rank() as u32);
+        let colors = composite(scene, &camera, size, &strip, &received)?;
         clock.report.composite_cpu_seconds += begin.elapsed().as_secs_f64();
         clock.next();
         let gathered = wire.gather(bytemuck::cast_slice(&colors))?;
@@ -180,6 +178,29 @@ impl Job<'_> {
         let mut pixel = |_, _| pixels.next().unwrap_or(Vec3::NAN);
         Ok((wire.rank() == ROOT).then(|| Image::from_fn(size.x, size.y, &mut pixel)))
     }
+}
+
+/// Bands of a strip for each thread: some have more fragments than others.
+const BANDS: usize = 8;
+
+/// Composites a strip of the messages of all ranks, on all threads.
+fn composite<S: Divided>(
+    scene: &S,
+    camera: &Pinhole,
+    size: UVec2,
+    strip: &Range<u32>,
+    messages: &[Vec<u8>],
+) -> Result<Vec<Vec3>, WireError> {
+    let bands = strips::bands(strip, (BANDS * rayon::current_num_threads()) as u32);
+    let colors = bands.into_par_iter().map(|band| {
+        let mut fragments = Vec::new();
+        for (from, bytes) in messages.iter().enumerate() {
+            message::decode(bytes, strip, &band, &mut fragments)
+                .ok_or(WireError::Damaged { from })?;
+        }
+        Ok(scene.composite(camera, size, band, fragments))
+    });
+    Ok(colors.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
 /// The time of the phases of a frame.

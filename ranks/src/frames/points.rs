@@ -196,12 +196,12 @@ impl Divided for Cloud<'_> {
         &self,
         _camera: &Pinhole,
         _size: UVec2,
-        strip: Range<u32>,
+        band: Range<u32>,
         fragments: Vec<(u32, u32, Nearest)>,
     ) -> Vec<Vec3> {
-        let mut nearest: Vec<Option<Nearest>> = vec![None; strip.len()];
+        let mut nearest: Vec<Option<Nearest>> = vec![None; band.len()];
         for (_, pixel, found) in fragments {
-            let best = &mut nearest[(pixel - strip.start) as usize];
+            let best = &mut nearest[(pixel - band.start) as usize];
             let is_nearer = |best: &Nearest| (found.t, found.id) < (best.t, best.id);
             if best.as_ref().is_none_or(is_nearer) {
                 *best = Some(found);

@@ -28,6 +28,13 @@ impl Strips {
     }
 }
 
+/// Returns the pixels of a strip in at most `count` bands, for threads.
+pub(super) fn bands(strip: &Range<u32>, count: u32) -> Vec<Range<u32>> {
+    let length = (strip.end - strip.start).div_ceil(count.max(1)).max(1);
+    let starts = strip.clone().step_by(length as usize);
+    starts.map(|start| start..start.saturating_add(length).min(strip.end)).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use glam::uvec2;
@@ -40,6 +47,9 @@ mod tests {
             let strips = Strips::new(size, ranks);
             let pixels: Vec<u32> = (0..strips.count()).flat_map(|rank| strips.of(rank)).collect();
             assert!(pixels.into_iter().eq(0..size.x * size.y));
+        }
+        for (strip, count) in [(3..40, 5), (3..4, 8), (7..7, 2), (0..9, 0)] {
+            assert!(bands(&strip, count).into_iter().flatten().eq(strip));
         }
         // The largest picture.
         let strips = Strips::new(uvec2(65_535, 65_535), 1024);

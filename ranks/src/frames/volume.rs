@@ -12,7 +12,7 @@ use glam::{UVec2, UVec3, Vec3, Vec4};
 use raydsl::camera::{Camera, CameraRays};
 use raydsl::kernel;
 use raydsl::prelude::*;
-use raydsl::volume::{ExactCell, Grid, GridConfig, TransferFunction, Volume, VolumeLight};
+use raydsl::volume::{ExactCell, Grid, GridConfig, TransferFunction, Volume, VolumeLight, Voxel};
 use raydsl_examples::head::head_part;
 
 use super::message::Fragments;
@@ -226,7 +226,7 @@ impl Divided for Bricks<'_> {
         &self,
         camera: &Pinhole,
         size: UVec2,
-        strip: Range<u32>,
+        band: Range<u32>,
         mut fragments: Vec<(u32, u32, [f32; 4])>,
     ) -> Vec<Vec3> {
         let orders: [Vec<u32>; 8] = core::array::from_fn(|signs| {
@@ -240,14 +240,14 @@ impl Divided for Bricks<'_> {
                 rays.primary_ray(x as f32 + 0.5, y as f32 + 0.5).direction.is_negative_bitmask();
             orders[signs as usize][part as usize]
         };
-        fragments.sort_unstable_by_key(|(part, pixel, _)| (*pixel, place(*part, *pixel)));
-        let mut colors = vec![Vec3::ZERO; strip.len()];
+        fragments.sort_by_cached_key(|(part, pixel, _)| (*pixel, place(*part, *pixel)));
+        let mut colors = vec![Vec3::ZERO; band.len()];
         for of_pixel in fragments.chunk_by(|(_, a, _), (_, b, _)| a == b) {
             let light =
                 of_pixel.iter().fold(VolumeLight::new(), |light, (_, _, [r, g, b, depth])| {
                     light.then(vec3(*r, *g, *b), *depth)
                 });
-            colors[(of_pixel[0].1 - strip.start) as usize] = light.radiance;
+            colors[(of_pixel[0].1 - band.start) as usize] = light.radiance;
         }
         colors
     }
@@ -256,7 +256,8 @@ impl Divided for Bricks<'_> {
         let samples = |(brick, _): &(Brick, Volume<'_, u8>)| {
             brick.size.to_array().iter().map(|n| u64::from(*n)).product::<u64>()
         };
-        self.bricks.iter().map(samples).sum()
+        let each = size_of::<<u8 as Voxel>::Stored>() as u64;
+        self.bricks.iter().map(samples).sum::<u64>() * each
     }
 }
 
