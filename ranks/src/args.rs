@@ -30,7 +30,7 @@ pub struct Args {
     #[arg(long, default_value = "0")]
     pub seed: u32,
     /// Edge of the windows that a film is divided into, in pixels.
-    #[arg(long, default_value = "64", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, default_value = "64", value_parser = clap::value_parser!(u32).range(8..=4096))]
     pub tile: u32,
     /// Blocks of 64 samples that a rank takes of a window at once.
     #[arg(long, default_value = "1", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]

@@ -1,6 +1,6 @@
 //! The films so far, on disk.
 //!
-//! A file begins with [`MAGIC`] and the description of the job, then has each part with its length,
+//! A file begins with its format's name and the description of the job, then has each part with its length,
 //! and ends with a checksum of everything before. Numbers are little-endian.
 
 use std::fs;

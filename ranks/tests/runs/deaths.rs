@@ -102,7 +102,7 @@ fn wrong_arguments_are_refused() {
         "--ranks -1",
         "--size 0x10",
         "--samples 0",
-        "--tile 0",
+        "--tile 7",
         "--parts 0",
         "--scene nothing",
         "--least nan",
