@@ -96,7 +96,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 /// Has a panic of any thread end the process: unwinding would wait for the other ranks, which wait
 /// for this one. `mpirun` then ends them.
-fn end_by_panics() {
+pub fn end_by_panics() {
     let tell = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
         tell(info);

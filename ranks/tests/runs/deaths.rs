@@ -1,6 +1,7 @@
 //! Runs that are cut short: a message, the films so far, and the same picture in the end.
 
-use std::process::Stdio;
+use std::process::{Command, Stdio};
+use std::time::Duration;
 
 use crate::common::{
     Folder, alone, command, end_of, has_mpirun, kill, process_of_rank, run, said, succeed, wait_for,
@@ -92,6 +93,49 @@ fn frames_go_on_after_a_death() {
         run(&out, "--scene points --points 30001 --size 300x200 --frames 12 --ranks 2 --resume");
     assert_eq!(other.status.code(), Some(2), "{}", said(&other));
     assert!(said(&other).contains("another run"), "{}", said(&other));
+}
+
+/// Tells this test that it is a rank of itself.
+const IS_RANK: &str = "RAYDSL_RANKS_TEST_OF_PANICS";
+
+/// A panic of a thread ends its rank, and the others, which would wait for long.
+#[test]
+fn a_panic_ends_the_run() {
+    if std::env::var_os(IS_RANK).is_some() {
+        raydsl_ranks::run::end_by_panics();
+        if std::env::var("OMPI_COMM_WORLD_RANK").is_ok_and(|rank| rank == "1") {
+            let _ = std::thread::spawn(|| panic!("as this test asks for")).join();
+            std::process::exit(0);
+        }
+        std::thread::sleep(Duration::from_secs(3600));
+    }
+    if !has_mpirun() {
+        return;
+    }
+    let _alone = alone();
+    let mut mpirun = Command::new("mpirun");
+    mpirun.args(["--allow-run-as-root", "--oversubscribe", "-n", "2"]);
+    mpirun.arg(std::env::current_exe().expect("a program"));
+    mpirun.args(["--exact", "deaths::a_panic_ends_the_run", "--nocapture"]).env(IS_RANK, "1");
+    let child = mpirun.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let output = end_of(child.expect("mpirun starts"), "a rank panics");
+    assert_eq!(output.status.code(), Some(101), "{}", said(&output));
+    assert!(said(&output).contains("as this test asks for"), "{}", said(&output));
+}
+
+#[test]
+fn few_points_are_few_parts() {
+    if !has_mpirun() {
+        return;
+    }
+    let _alone = alone();
+    let out = Folder::new("few");
+    let words = "--scene points --size 30x20 --frames 1 --ranks 2";
+    // The second rank has nothing.
+    succeed(&out, &format!("{words} --points 1 --parts 1"));
+    let output = run(&out, &format!("{words} --points 3 --parts 9"));
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("--parts"), "{}", said(&output));
 }
 
 #[test]
