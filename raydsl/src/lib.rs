@@ -6,6 +6,7 @@ pub mod bsdf;
 pub mod bvh;
 pub mod camera;
 pub mod error;
+pub mod flow;
 pub mod geometry;
 #[cfg(feature = "gpu")]
 pub mod gpu;

@@ -11,9 +11,10 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 /// The layers, the top one first. A module may depend on those of lower layers, and on those of its
 /// own that do not depend on it.
-const LAYERS: [&[&str]; 13] = [
+const LAYERS: [&[&str]; 14] = [
     &["__private", "error", "prelude"],
     &["gpu", "testing"],
+    &["flow"],
     &["render"],
     &["integrators"],
     &["volume"],

@@ -174,6 +174,10 @@ impl Renderer for GpuScheduler {
         result
     }
 
+    fn result<T>(outcome: Result<T, GpuError>) -> Result<T, GpuError> {
+        outcome
+    }
+
     fn shoot<S: Shot>(
         &self,
         shot: &S,

@@ -127,6 +127,10 @@ pub trait Renderer {
     #[doc(hidden)]
     fn outcome<T>(result: Result<T, Self::Error>) -> Self::Outcome<T>;
 
+    /// Returns what [`outcome`](Self::outcome) was made of.
+    #[doc(hidden)]
+    fn result<T>(outcome: Self::Outcome<T>) -> Result<T, Self::Error>;
+
     /// Runs `shot` for every pixel of `image`, reporting the completed share to `observer`,
     /// excluding the beginning and the end.
     #[doc(hidden)]

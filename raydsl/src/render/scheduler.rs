@@ -93,6 +93,10 @@ impl<T: Scheduler + ?Sized> Renderer for T {
         value
     }
 
+    fn result<V>(outcome: V) -> Result<V, Infallible> {
+        Ok(outcome)
+    }
+
     fn shoot<S: Shot>(
         &self,
         shot: &S,

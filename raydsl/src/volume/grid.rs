@@ -239,7 +239,7 @@ fn key(owner: &Owner, part: u32) -> BufferKey {
 /// The range of nothing.
 pub(super) const NO_RANGE: Vec2 = vec2(f32::INFINITY, f32::NEG_INFINITY);
 
-fn check(size: UVec3, found: usize) -> Result<(), GridError> {
+pub(super) fn check(size: UVec3, found: usize) -> Result<(), GridError> {
     for (axis, size) in size.to_array().into_iter().enumerate() {
         if size == 0 {
             return Err(GridError::NoVoxels { axis });
@@ -266,7 +266,7 @@ fn macro_cells(size: UVec3) -> UVec3 {
     (cells(size) + UVec3::splat(MACRO_CELL - 1)) / MACRO_CELL
 }
 
-fn layout(size: UVec3, config: &GridConfig) -> Result<GridLayout, GridError> {
+pub(super) fn layout(size: UVec3, config: &GridConfig) -> Result<GridLayout, GridError> {
     let GridConfig { to_world, centering, scale, offset } = *config;
     if !(scale.is_finite() && offset.is_finite()) {
         return Err(GridError::Scale { scale, offset });

@@ -20,6 +20,7 @@ mod sample;
 mod tracking;
 mod transfer;
 mod transfer_2d;
+mod vectors;
 #[expect(clippy::module_inception, reason = "the volume itself, among what belongs to it")]
 mod volume;
 mod volume_2d;
@@ -44,6 +45,7 @@ pub use phase::{henyey_greenstein, sample_henyey_greenstein};
 pub use tracking::{delta_tracking, jackknife_transmittance, ratio_transmittance};
 pub use transfer::{TransferFunction, TransferKnot, TransferLayout, TransferSample, TransferView};
 pub use transfer_2d::{TransferFunction2d, TransferLayout2d};
+pub use vectors::{VectorGrid, VectorGridView};
 pub use volume::{Volume, VolumeView};
 pub use volume_2d::{Volume2d, Volume2dView};
 pub use voxel::{Corners, Voxel};

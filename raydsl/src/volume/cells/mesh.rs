@@ -8,8 +8,11 @@ use super::error::CellError;
 use super::face::CellFace;
 use super::kind::{CellKind, divide};
 use super::topology;
-use crate::Type;
+use super::vectors::{least_of, weights_of};
+use crate::geometry::{Aabb, Hit, Ray};
 use crate::machine::Owner;
+use crate::machine::generic::max;
+use crate::primitive;
 
 /// Largest coordinate of a point. A mesh smaller than some 1e-20 should be scaled too: products of its
 /// coordinates underflow.
@@ -21,9 +24,13 @@ pub const MAX_TETRAHEDRA: u64 = 1 << 29;
 /// No neighbour.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// A tetrahedron of a mesh and its neighbours.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Type)]
-#[repr(C)]
+/// By how much a weight may be below 0 inside of a tetrahedron: rounding leaves gaps between two.
+const WEIGHT_ERROR: f32 = 1.0 / 4096.0;
+
+/// A tetrahedron of a mesh and its neighbours; with the mesh's points as shared data it is a
+/// primitive, by which a tree finds where points are.
+#[primitive]
+#[derive(Debug, PartialEq, Eq)]
 pub struct Tetrahedron {
     /// Indices of its points; positively oriented in a mesh that is not folded.
     pub vertices: UVec4,
@@ -32,6 +39,31 @@ pub struct Tetrahedron {
     pub across: UVec4,
     /// Index of the cell that it is a part of.
     pub cell: u32,
+}
+
+#[primitive]
+impl Tetrahedron {
+    const IS_SHORT: bool = true;
+    const MAX_CROSSINGS: u32 = 1;
+
+    /// Returns a hit if the ray begins inside. `t` is not a distance, but says by how much rounding
+    /// puts the origin outside: from 0 inside to 1 at 2^-12 of the height over a face.
+    #[inline]
+    pub fn intersect(&self, ray: Ray, points: &[Vec3]) -> Hit {
+        let i = self.vertices;
+        let (a, b) = (points[i.x as usize], points[i.y as usize]);
+        let (c, d) = (points[i.z as usize], points[i.w as usize]);
+        let least = least_of(weights_of(ray.origin, a, b, c, d));
+        let t = max(-least / WEIGHT_ERROR, 0.0);
+        // Of a flat one it is a NaN.
+        Hit::new(least >= -WEIGHT_ERROR && t >= ray.t_min && t <= ray.t_max, t)
+    }
+
+    /// Returns the bounds of its points.
+    pub fn get_bounds(&self, points: &[Vec3]) -> Aabb {
+        let vertices = self.vertices.to_array();
+        Aabb::from_points(vertices.map(|i| points.get(i as usize).copied().unwrap_or(Vec3::NAN)))
+    }
 }
 
 /// Cells over the application's points, divided into tetrahedra that are joined at the faces that
