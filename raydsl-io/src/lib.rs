@@ -14,6 +14,7 @@
         feature = "raw",
         feature = "stack",
         feature = "tri",
+        feature = "trk",
         feature = "vti",
         feature = "vtu",
         feature = "xyz"
@@ -62,6 +63,7 @@ mod stack;
     feature = "raw",
     feature = "stack",
     feature = "tri",
+    feature = "trk",
     feature = "vti",
     feature = "vtu",
     feature = "xyz"
@@ -70,6 +72,8 @@ mod tests;
 mod tint;
 #[cfg(feature = "tri")]
 mod tri;
+#[cfg(feature = "trk")]
+mod trk;
 #[cfg(feature = "vti")]
 mod vti;
 #[cfg(any(feature = "vti", feature = "vtu"))]
@@ -87,6 +91,7 @@ pub mod mesh;
 #[cfg(feature = "paraview")]
 pub mod paraview;
 pub mod scene;
+pub mod tracts;
 pub mod volume;
 
 pub use error::{LoadError, Place};

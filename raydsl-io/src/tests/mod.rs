@@ -10,6 +10,7 @@ mod mutations;
 mod presets;
 mod scene_files;
 mod scenes;
+mod tracts;
 mod volumes;
 mod volumes_hostile;
 

@@ -185,6 +185,14 @@ fn grids() {
     });
 }
 
+/// Tracts in both byte orders, with a count and without.
+#[test]
+fn tracts() {
+    each_variant(&super::tracts::files(), |_, bytes| {
+        let _ = super::tracts::check_tracts(bytes, "a variant");
+    });
+}
+
 /// Headers whose voxels are in a file beside them.
 #[test]
 fn volumes_beside_their_headers() {
