@@ -3,9 +3,11 @@
 mod accuracy;
 mod comparison;
 mod json;
+mod legend;
 #[cfg(feature = "image")]
 mod pictures;
 mod table;
+mod ticks;
 mod timing;
 mod utilisation;
 pub mod work_precision;
@@ -13,7 +15,9 @@ pub mod work_precision;
 pub use accuracy::Accuracy;
 pub use comparison::{Compare, Comparison, Missing, Row, Verdict, compare};
 pub use json::SceneInfo;
+pub use legend::{Legend, Side};
 #[cfg(feature = "image")]
 pub use pictures::WriteError;
+pub use ticks::Ticks;
 pub use timing::Times;
 pub use utilisation::{LineCount, Utilisation, utilisation};
