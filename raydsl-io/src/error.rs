@@ -22,6 +22,12 @@ pub enum LoadError {
         /// The refusal.
         source: std::io::Error,
     },
+    /// Another thread has ended the loading; see [`stoppable`](crate::stoppable).
+    #[error("{}: its loading was stopped; load it again", path.display())]
+    Stopped {
+        /// The file.
+        path: PathBuf,
+    },
     /// The file's name does not tell a format.
     #[error("{}: unknown extension '{extension}'; convert the file to one of {known}", path.display())]
     UnknownExtension {

@@ -8,6 +8,7 @@ use crate::error::one_line;
 use crate::guard::guarded;
 use crate::las_claim::{Claim, Masked, check_chunks, chunked};
 use crate::source::Source;
+use crate::stop::is_stopped;
 use crate::{LoadError, Place, tint};
 
 /// Points decoded at a time, and bytes of them before compression: a header may claim long points.
@@ -88,14 +89,18 @@ pub(crate) struct File<'a> {
 }
 
 impl File<'_> {
+    fn unless_stopped(self, error: LoadError) -> LoadError {
+        if is_stopped() { LoadError::Stopped { path: self.path.into() } } else { error }
+    }
+
     pub(crate) fn corrupt(self, place: Place, what: String) -> LoadError {
         let (path, remedy) =
             (self.path.into(), "write it again, for example with `pdal translate`");
-        LoadError::Corrupt { path, place, format: "LAS/LAZ", what, remedy }
+        self.unless_stopped(LoadError::Corrupt { path, place, format: "LAS/LAZ", what, remedy })
     }
 
     pub(crate) fn truncated(self, what: String) -> LoadError {
-        LoadError::Truncated { path: self.path.into(), len: self.len, what }
+        self.unless_stopped(LoadError::Truncated { path: self.path.into(), len: self.len, what })
     }
 
     fn flatten<T>(self, result: Result<::las::Result<T>, String>) -> Result<T, LoadError> {

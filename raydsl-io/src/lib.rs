@@ -48,6 +48,7 @@ mod raw;
 mod source;
 #[cfg(feature = "stack")]
 mod stack;
+mod stop;
 #[cfg(all(
     test,
     feature = "environment",
@@ -95,3 +96,4 @@ pub mod tracts;
 pub mod volume;
 
 pub use error::{LoadError, Place};
+pub use stop::stoppable;

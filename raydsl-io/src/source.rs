@@ -5,6 +5,7 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use crate::error::one_line;
+use crate::stop::{Stoppable, is_stopped};
 use crate::{LoadError, Place};
 
 /// Longer lines are a sign that the file is no text.
@@ -20,7 +21,7 @@ pub(crate) struct Source {
     pub(crate) line: u64,
     /// The byte that is read next.
     pub(crate) at: u64,
-    file: BufReader<File>,
+    file: BufReader<Stoppable>,
 }
 
 /// What may be wrong with data that are decoded from a source.
@@ -52,7 +53,7 @@ impl Source {
             return Err(refuse(io::Error::other("a device or a pipe")));
         }
         let file = File::open(path).map_err(refuse)?;
-        let file = BufReader::with_capacity(1 << 18, file);
+        let file = BufReader::with_capacity(1 << 18, Stoppable::new(file));
         Ok(Self { path: path.into(), format, len: meta.len(), line: 0, at: 0, file })
     }
 
@@ -129,15 +130,21 @@ impl Source {
     }
 
     fn unreadable(&self, source: io::Error) -> LoadError {
-        LoadError::Unreadable { path: self.path.clone(), source }
+        self.unless_stopped(LoadError::Unreadable { path: self.path.clone(), source })
+    }
+
+    fn unless_stopped(&self, error: LoadError) -> LoadError {
+        if is_stopped() { LoadError::Stopped { path: self.path.clone() } } else { error }
     }
 
     pub(crate) fn truncated(&self, what: String) -> LoadError {
-        LoadError::Truncated { path: self.path.clone(), len: self.len, what }
+        let path = self.path.clone();
+        self.unless_stopped(LoadError::Truncated { path, len: self.len, what })
     }
 
     pub(crate) fn corrupt(&self, place: Place, what: String, remedy: &'static str) -> LoadError {
-        LoadError::Corrupt { path: self.path.clone(), place, format: self.format, what, remedy }
+        let (path, format) = (self.path.clone(), self.format);
+        self.unless_stopped(LoadError::Corrupt { path, place, format, what, remedy })
     }
 
     /// What a stream over this source met.

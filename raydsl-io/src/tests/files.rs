@@ -1,4 +1,6 @@
 use std::io::Write;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::*;
 
@@ -117,4 +119,39 @@ fn a_real_scan_loads() {
     let cloud = cloud::load(&path, &mut |_, _| {}).expect("a cloud");
     assert_eq!(cloud.positions.len(), 341_989);
     assert!(cloud.colors.iter().any(|c| c[0] != c[1]));
+}
+
+/// Loading is ended by whoever counts points, as by another thread.
+#[test]
+fn loading_is_stopped_between_two_parts() {
+    let mut cloud = small(200_000);
+    // Colours that do not compress: the file is larger than what is read at a time.
+    for (i, color) in (0u32..).zip(&mut cloud.colors) {
+        let [a, b, c, _] = i.wrapping_mul(2_654_435_761).rotate_left(13).to_le_bytes();
+        *color = [a, b, c];
+    }
+    for (extension, bytes) in [
+        ("las", las_bytes(&cloud, 7, false, 1)),
+        ("laz", las_bytes(&cloud, 7, true, 1)),
+        ("ply", ply_bytes(&cloud, "binary_little_endian")),
+        ("xyz", "1 2 3 4 5 6\n".repeat(100_000).into_bytes()),
+    ] {
+        let file = Temp::new(extension, &bytes);
+        let (stop, mut most) = (Arc::new(AtomicBool::new(false)), (0, 0));
+        let found = crate::stoppable(&stop, || {
+            cloud::load(&file.0, &mut |done, total| {
+                most = (done, total);
+                stop.store(done * 3 > total, Ordering::Relaxed);
+            })
+        });
+        assert!(matches!(found, Err(LoadError::Stopped { .. })), "{extension}: {found:?}");
+        assert!(most.0 < most.1, "{extension}: {most:?}");
+        assert_eq!(
+            file.cloud().map(|cloud| cloud.positions.len()).ok(),
+            Some(match extension {
+                "xyz" => 100_000,
+                _ => 200_000,
+            })
+        );
+    }
 }
