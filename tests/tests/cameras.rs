@@ -234,7 +234,7 @@ fn matrices_agree_with_rasterisers() -> Result<(), CameraError> {
     for (name, proj, depth) in projections() {
         let clip = proj.as_dmat4() * view.as_dmat4();
         let rays: MatrixRays = Matrix::new(view, proj, depth)?.begin_frame(size.0, size.1);
-        let mut worst = [0.0f64; 2];
+        let mut worst = [0.0f64; 3];
         for (x, y, u) in points(size.0, size.1) {
             let ray = rays.primary_ray(x, y);
             let start = projected(clip, depth, ray.origin.as_dvec3(), size);
@@ -246,7 +246,11 @@ fn matrices_agree_with_rasterisers() -> Result<(), CameraError> {
                 let off_film =
                     (expected.x - f64::from(x)).abs().max((expected.y - f64::from(y)).abs());
                 let off_depth = (f64::from(rays.window_depth(point)) - expected.z).abs();
-                worst = [worst[0].max(off_film), worst[1].max(off_depth)];
+                // The way back from a depth leads to a point of that depth.
+                let found = rays.distance_at_depth(ray, expected.z as f32);
+                let there = projected(clip, depth, ray.at(found).as_dvec3(), size).z;
+                let off_way = (there - expected.z).abs();
+                worst = [worst[0].max(off_film), worst[1].max(off_depth), worst[2].max(off_way)];
             }
             if ray.t_max < 1e30 {
                 let end = projected(clip, depth, ray.at(ray.t_max).as_dvec3(), size);
@@ -256,8 +260,9 @@ fn matrices_agree_with_rasterisers() -> Result<(), CameraError> {
                 assert!(["infinite", "oblique"].contains(&name), "{name}: {ray:?}");
             }
         }
-        println!("{name}: off by {:.1e} pixels, depth by {:.1e}", worst[0], worst[1]);
-        assert!(worst[0] < 1e-3 && worst[1] < 1e-6, "{name}: {worst:?}");
+        let [film, depth, way] = worst;
+        println!("{name}: off by {film:.1e} pixels, depth by {depth:.1e}, and back {way:.1e}");
+        assert!(film < 1e-3 && depth < 1e-6 && way < 1e-6, "{name}: {worst:?}");
     }
     Ok(())
 }
@@ -280,6 +285,25 @@ fn depths_agree() -> Result<(), CameraError> {
     }
     // 1e-6 of a depth between 0.5 and 1.
     wgsl_agrees("window depth", &kernel, &inputs, &expected, Wgsl::Ulps(16));
+    Ok(())
+}
+
+#[test]
+fn distances_at_depths_agree() -> Result<(), CameraError> {
+    let view = look_at_mat4(EYE, CENTER, Vec3::Y);
+    let proj = directx::perspective(0.8, 1.5, 0.1, 100.0);
+    let rays = Matrix::new(view, proj, DepthRange::ZERO_TO_ONE)?.begin_frame(96, 64);
+    let kernel = kernel!(|x: f32, y: f32, u: Vec2| {
+        rays.distance_at_depth(rays.primary_ray(x, y), 0.9 * u.x)
+    });
+    let inputs = points(96, 64);
+    let expected: Vec<f32> = inputs.iter().map(|a| kernel.call(*a)).collect();
+    for variant in [Variant::Packet4, Variant::Packet8, Variant::Packet16] {
+        let found = raydsl::testing::run(&kernel, variant, &inputs);
+        compare(variant.name(), &expected, &found).assert_same(|i| format!("{:?}", inputs[i]));
+    }
+    // Two products cancel near the near plane, where distances are a small part of both.
+    wgsl_agrees("distance at a depth", &kernel, &inputs, &expected, Wgsl::Ulps(4096));
     Ok(())
 }
 

@@ -192,4 +192,19 @@ impl MatrixRays {
         let depth = self.depth.truncate().dot(way) + self.depth.w;
         depth / (self.clip_w.truncate().dot(way) + self.clip_w.w)
     }
+
+    /// Returns the distance along `ray`, in units of its direction, at which the window depth is `depth`:
+    /// where a pixel's ray meets what a rasteriser drew there, or reaches the far plane for a depth of 1.
+    ///
+    /// It is `t` of the point whose [`window_depth`](Self::window_depth) that is, to within rounding of
+    /// the depth, which is coarse far from the near plane. Not finite for a ray along which the depth
+    /// stays the same.
+    #[inline]
+    pub fn distance_at_depth(&self, ray: Ray, depth: f32) -> f32 {
+        let way = ray.origin - self.eye;
+        let (z, w) = (self.depth.truncate(), self.clip_w.truncate());
+        // Both coordinates are linear along the ray.
+        let begin = z.dot(way) + self.depth.w - depth * (w.dot(way) + self.clip_w.w);
+        begin / (depth * w.dot(ray.direction) - z.dot(ray.direction))
+    }
 }
