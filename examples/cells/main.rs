@@ -8,7 +8,6 @@ mod args;
 mod beside;
 #[path = "../volume/cuts.rs"]
 mod cuts;
-mod made;
 #[path = "../volume/transfer.rs"]
 mod transfer;
 
@@ -22,7 +21,11 @@ use raydsl::prelude::*;
 use raydsl::volume::cells::{CellData, CellGrid, CellKind, CellMesh, CellVolume};
 use raydsl::volume::{Cut, ExactCell, ShadedCell, VolumeLight};
 use raydsl_examples::comparison::Frames;
+use raydsl_examples::ropes::ropes;
 use raydsl_io::cells::{CellFile, CellKind as FileKind};
+
+/// Cells along the cylinder of the grid that is made in code.
+const LEVELS: u32 = 48;
 
 /// What ends the program: one line, and exit code 2.
 #[derive(Debug, thiserror::Error)]
@@ -59,7 +62,7 @@ fn run(args: &Args) -> Result<(), Failure> {
     }
     let file = match &args.file {
         Some(path) => raydsl_io::cells::load(path)?,
-        None => made::o_grid(),
+        None => ropes(LEVELS),
     };
     // ANCHOR: grid
     let kinds: Vec<CellKind> = file.kinds.iter().map(|kind| kind_of(*kind)).collect();

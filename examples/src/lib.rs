@@ -14,4 +14,5 @@ pub mod model;
 pub mod picture;
 pub mod raster;
 pub mod rasterizer;
+pub mod ropes;
 pub mod sheet;

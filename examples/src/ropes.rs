@@ -5,17 +5,16 @@ use core::f32::consts::{PI, TAU};
 use raydsl::prelude::*;
 use raydsl_io::cells::{CellArray, CellFile, CellKind};
 
-/// Cells around the cylinder, away from it, and along it.
-const CELLS: [u32; 3] = [72, 18, 48];
-
 /// Radii of the grid, and half of its height.
 const INNER: f32 = 0.55;
 const OUTER: f32 = 1.9;
 const HALF: f32 = 1.9;
 
-/// The O-grid, whose layers are thinner near the cylinder.
-pub(crate) fn o_grid() -> CellFile {
-    let [around, away, along] = CELLS;
+/// Returns an O-grid of this many cells along the cylinder, and in proportion around it and away from
+/// it, where layers are thinner near the cylinder.
+pub fn ropes(along: u32) -> CellFile {
+    let along = along.max(4);
+    let (around, away) = (along * 3 / 2, along * 3 / 8);
     let mut file = CellFile::default();
     let mut values = Vec::new();
     for i in 0..around * (away + 1) * (along + 1) {
@@ -26,7 +25,7 @@ pub(crate) fn o_grid() -> CellFile {
         let radius = INNER + (OUTER - INNER) * (0.6 * share + 0.4 * share * share);
         let height = (level as f32 / along as f32 * 2.0 - 1.0) * HALF;
         file.points.push(vec3(radius * angle.cos(), radius * angle.sin(), height));
-        values.push(ropes(radius, angle, height));
+        values.push(field(radius, angle, height));
     }
     let index =
         |turn: u32, layer: u32, level: u32| turn % around + around * (layer + (away + 1) * level);
@@ -44,7 +43,7 @@ pub(crate) fn o_grid() -> CellFile {
 }
 
 /// Two ropes that wind around the cylinder, and a warm skin on it.
-fn ropes(radius: f32, angle: f32, height: f32) -> f32 {
+fn field(radius: f32, angle: f32, height: f32) -> f32 {
     let rope = |phase: f32, at: f32, wide: f32| {
         let mut turn = (angle - 1.5 * height - phase).rem_euclid(TAU);
         if turn > PI {

@@ -1,16 +1,19 @@
 //! Everything that a person can do, as values, and as lines of text.
 
 mod read;
+mod write;
 
-use std::fmt;
 use std::path::PathBuf;
 
 use raydsl::prelude::*;
 
+use crate::animation::Animation;
 use crate::look::{CutObject, Knot, Mode, Show};
+use crate::pose::Pose;
+use crate::wand::Wand;
 
 /// Something that a person does. A line of a script is one: [`FromStr`](std::str::FromStr) reads
-/// it, and [`Display`](fmt::Display) writes it.
+/// it, and [`Display`](std::fmt::Display) writes it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
     /// `open FILE`: opens a file, or data that are made in code: `landscape:POINTS`, `head:SIDE`.
@@ -19,6 +22,8 @@ pub enum Action {
     Add(PathBuf),
     /// `step N`: opens the time step of this number, from 0, and keeps the view.
     Step(usize),
+    /// `environment FILE` or `environment none`: lights surfaces by a picture of all directions.
+    Environment(Option<PathBuf>),
     /// `cancel`: stops loading.
     Cancel,
     /// `size W H`: sets the size of the picture.
@@ -41,6 +46,9 @@ pub enum Action {
     Zoom(f32),
     /// `home`: looks at all of the data.
     Home,
+    /// `camera EX EY EZ TX TY TZ UX UY UZ FOV`: sets the eye, the target, what is up, and the
+    /// vertical field of view in degrees.
+    Camera(Pose),
     /// `save-view NAME`: keeps the camera under a name.
     SaveView(String),
     /// `view NAME`: goes back to a kept camera.
@@ -55,16 +63,38 @@ pub enum Action {
     RemoveKnot(usize),
     /// `preset NAME`: takes a ready-made transfer function.
     Preset(String),
+    /// `transfer FILE`: takes the first transfer function of a file of ParaView.
+    Transfer(PathBuf),
     /// `cut ball X Y Z R` or `cut half X Y Z NX NY NZ`, in shares of the volume's box.
     AddCut(CutObject),
     /// `cut move I X Y Z`: moves cut object `I` by shares of the box.
     MoveCut(usize, Vec3),
+    /// `cut drag I X Y`: moves cut object `I` in the plane of the picture, until it is seen in this
+    /// place, in pixels from the lower left.
+    DragCut(usize, Vec2),
     /// `cut remove I`.
     RemoveCut(usize),
     /// `pick X Y`: asks what is seen in a pixel, counted from the lower left.
     Pick(u32, u32),
     /// `wait SAMPLES`: waits until each pixel has that many samples.
     Wait(u32),
+    /// `until ERROR SECONDS`: renders until the root mean squared error is at most this, with a
+    /// confidence of 95 %, or the time is spent; `until off` ends that.
+    Until(Option<Goal>),
+    /// `animate turntable FRAMES SAMPLES NAME`, `animate views FRAMES SAMPLES NAME` or `animate steps
+    /// SAMPLES NAME`: writes numbered pictures, and all of them in one that moves.
+    Animate(Animation),
+    /// `record NAME RATE`: pictures that are written from now on are those of one that moves, so many
+    /// a second; `record end` writes it.
+    Record(Option<(String, u16)>),
+    /// `lanes NAME`: writes how many lanes of packets run at each line of the kernel.
+    Lanes(String),
+    /// `menu on` or `menu off`: shows a menu before the camera.
+    Menu(bool),
+    /// `wand pixel X Y` or `wand matrix M ..`: points at the menu.
+    Wand(Wand),
+    /// `press`: chooses the item of the menu that the wand points at.
+    Press,
     /// `picture NAME`: writes the picture as PNG.
     Picture(String),
     /// `screenshot NAME`: writes all of the window as PNG.
@@ -77,6 +107,15 @@ pub enum Action {
     Quit,
 }
 
+/// An error that a picture is to reach.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    /// The root mean squared error, above 0.
+    pub error: f32,
+    /// Seconds that may be spent on it, above 0.
+    pub seconds: f32,
+}
+
 impl Action {
     /// Returns the action that does the same as this one and then another, if there is one.
     pub(crate) fn joined(&self, next: &Self) -> Option<Self> {
@@ -85,51 +124,10 @@ impl Action {
             (Self::Turn(x, y), Self::Turn(dx, dy)) => Self::Turn(x + dx, y + dy),
             (Self::Fly(v), Self::Fly(by)) => Self::Fly(*v + *by),
             (Self::Zoom(factor), Self::Zoom(by)) => Self::Zoom(factor * by),
-            (Self::Size(..), Self::Size(w, h)) => Self::Size(*w, *h),
+            (Self::Size(..), Self::Size(..)) | (Self::Wand(_), Self::Wand(_)) => next.clone(),
+            (Self::DragCut(i, _), Self::DragCut(j, _)) if i == j => next.clone(),
             _ => return None,
         })
-    }
-}
-
-impl fmt::Display for Action {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let knot =
-            |k: &Knot| format!("{} {} {} {} {}", k.at, k.opacity, k.color.x, k.color.y, k.color.z);
-        match self {
-            Self::Open(path) => write!(f, "open {}", path.display()),
-            Self::Add(path) => write!(f, "add {}", path.display()),
-            Self::Step(n) => write!(f, "step {n}"),
-            Self::Cancel => f.write_str("cancel"),
-            Self::Size(w, h) => write!(f, "size {w} {h}"),
-            Self::Mode(mode) => write!(f, "mode {}", mode.name()),
-            Self::Variant(variant) => write!(f, "variant {}", variant.name()),
-            Self::Show(show) => write!(f, "show {show}"),
-            Self::Exposure(stops) => write!(f, "exposure {stops}"),
-            Self::Orbit(x, y) => write!(f, "orbit {x} {y}"),
-            Self::Turn(x, y) => write!(f, "turn {x} {y}"),
-            Self::Fly(v) => write!(f, "fly {} {} {}", v.x, v.y, v.z),
-            Self::Zoom(factor) => write!(f, "zoom {factor}"),
-            Self::Home => f.write_str("home"),
-            Self::SaveView(name) => write!(f, "save-view {name}"),
-            Self::View(name) => write!(f, "view {name}"),
-            Self::DropView(name) => write!(f, "drop-view {name}"),
-            Self::AddKnot(k) => write!(f, "knot add {}", knot(k)),
-            Self::SetKnot(i, k) => write!(f, "knot set {i} {}", knot(k)),
-            Self::RemoveKnot(i) => write!(f, "knot remove {i}"),
-            Self::Preset(name) => write!(f, "preset {name}"),
-            Self::AddCut(cut) => write!(f, "cut {cut}"),
-            Self::MoveCut(i, v) => write!(f, "cut move {i} {} {} {}", v.x, v.y, v.z),
-            Self::RemoveCut(i) => write!(f, "cut remove {i}"),
-            Self::Pick(x, y) => write!(f, "pick {x} {y}"),
-            Self::Wait(samples) => write!(f, "wait {samples}"),
-            Self::Picture(name) => write!(f, "picture {name}"),
-            Self::Screenshot(name) => write!(f, "screenshot {name}"),
-            Self::Wgsl(name) => write!(f, "wgsl {name}"),
-            Self::Panel(name, is_open) => {
-                write!(f, "panel {name} {}", if *is_open { "on" } else { "off" })
-            }
-            Self::Quit => f.write_str("quit"),
-        }
     }
 }
 
@@ -166,7 +164,25 @@ mod tests {
             "cut ball 0.5 0.5 0.5 0.25",
             "cut half 0.5 0.5 0.5 0 0 1",
             "cut move 0 0.1 0 0",
+            "cut drag 0 120.5 80",
             "cut remove 0",
+            "transfer a map.json",
+            "environment a sky.hdr",
+            "environment none",
+            "camera 0 -3 1 0 0 0.5 0 0 1 40",
+            "until 0.01 30",
+            "until off",
+            "animate turntable 36 4 turn",
+            "animate views 48 16 flight",
+            "animate steps 2 time",
+            "record film 25",
+            "record end",
+            "lanes lanes.txt",
+            "menu on",
+            "menu off",
+            "wand pixel 80 45.5",
+            "wand matrix 1 0 0 0 0 1 0 0 0 0 1 0 0 0 5 1",
+            "press",
             "pick 10 20",
             "wait 16",
             "picture a.png",
@@ -194,7 +210,15 @@ mod tests {
             ("show", "a word is missing at the end"),
             ("show light", "show picture, cost or difference VARIANT"),
             ("home now", "'now' is one word too many"),
-            ("cut cube 1", "write cut ball, cut half, cut move or cut remove"),
+            ("cut cube 1", "write cut ball, cut half, cut move, cut drag or cut remove"),
+            ("until 0 5", "errors and seconds are above 0"),
+            ("camera 0 0 0 0 0 0 0 0 1 40", "the camera has no direction"),
+            ("camera 0 -3 1 0 0 0 0 0 1 180", "the field of view is from 0.1 to 170 degrees"),
+            ("animate dance 5 5 a", "write animate turntable, animate views or animate steps"),
+            ("animate turntable 0 4 a", "an animation has 1 to 10000 frames of 1 sample or more"),
+            ("record film 0", "a film has 1 to 1000 pictures a second"),
+            ("wand matrix 1 2 3", "a word is missing at the end"),
+            ("wand ray 1 2 3", "write wand pixel or wand matrix"),
             ("knot turn 1", "write knot add, knot set or knot remove"),
             ("panel keys maybe", "write on or off"),
             ("step -1", "'-1' is no number for this place"),

@@ -1,14 +1,14 @@
 //! Changes of a look that need no data.
 
+use raydsl::prelude::*;
+
 use crate::action::Action;
-use crate::look::{CutObject, Knot, Look, preset};
+use crate::look::{CutObject, Knot, Look, MOST_KNOTS, preset};
 
 /// The most pixels along a side of a picture.
 const MOST_SIDE: u32 = 16384;
 /// The most pixels of a picture: a film has 80 bytes for each.
 const MOST_PIXELS: u64 = 1 << 26;
-/// The most knots of a transfer function.
-const MOST_KNOTS: usize = 64;
 /// The most objects that are cut out.
 const MOST_CUTS: usize = 64;
 
@@ -116,5 +116,17 @@ fn edit_cuts(look: &mut Look, action: &Action) -> Result<(), String> {
         }
         _ => return Err(none()),
     }
+    Ok(())
+}
+
+/// Moves a cut object in the plane of the picture, until it is seen in this place; `bounds` is the box
+/// that its place is a share of.
+pub(crate) fn drag_cut(look: &mut Look, i: usize, to: Vec2, bounds: Aabb) -> Result<(), String> {
+    let (pose, size) = (look.pose, look.size);
+    let cut = look.cuts.get_mut(i).ok_or("there is no cut object of this number")?;
+    let place = bounds.min + cut.place() * bounds.size();
+    let moved = pose.beside(size, to, place).ok_or("it is behind the camera")?;
+    let by = (moved - place) / bounds.size().max(Vec3::splat(f32::MIN_POSITIVE));
+    *cut = checked_cut(cut.moved(by))?;
     Ok(())
 }

@@ -43,17 +43,6 @@ pub struct Frame {
     pub difference: Option<Difference>,
 }
 
-impl Frame {
-    /// Writes the picture as PNG.
-    ///
-    /// # Errors
-    ///
-    /// If the file cannot be written: one line.
-    pub fn write_png(&self, path: &Path) -> Result<(), String> {
-        write_png(path, &self.rgba, self.size)
-    }
-}
-
 /// Writes pixels of four bytes, from the top, as PNG.
 pub(crate) fn write_png(path: &Path, rgba: &[u8], size: (u32, u32)) -> Result<(), String> {
     let color = image::ExtendedColorType::Rgba8;
@@ -85,6 +74,19 @@ pub(crate) fn save<E: Display>(
 pub(crate) fn shown(light: &Image<Vec4>, exposure: f32) -> Vec<u8> {
     let display = Shown::new().exposure(exposure);
     bytes(light, |pixel| display.color(*pixel))
+}
+
+/// Puts a picture of linear colours times their alpha over the bytes of another one of that size, which
+/// begin at the top.
+pub(crate) fn over(front: &Image<Vec4>, rgba: &mut [u8]) {
+    let pixels = front.rows().rev().flatten().zip(rgba.chunks_exact_mut(4));
+    for (front, bytes) in pixels.filter(|(front, _)| front.w > 0.0) {
+        let alpha = front.w.min(1.0);
+        for (channel, byte) in bytes[..3].iter_mut().enumerate() {
+            let shown = linear_to_srgb((front[channel] / front.w).clamp(0.0, 1.0)) * 255.0;
+            *byte = (shown * alpha + f32::from(*byte) * (1.0 - alpha) + 0.5) as u8;
+        }
+    }
 }
 
 fn bytes<P: raydsl::Type + Sync>(image: &Image<P>, color: impl Fn(&P) -> Vec4 + Sync) -> Vec<u8> {

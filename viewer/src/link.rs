@@ -5,8 +5,12 @@ use std::sync::mpsc::Sender;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use raydsl::render::{Progress, Reached};
+use raydsl_report::Utilisation;
+
+use crate::action::Goal;
 use crate::frame::Frame;
-use crate::look::Look;
+use crate::look::{Look, Sky};
 use crate::subject::{Info, Picked};
 
 /// What the thread of some data reports, in order.
@@ -26,6 +30,14 @@ pub(crate) enum Event {
     Picked(Option<Picked>),
     /// The kernel's text, or why there is none.
     Wgsl(Result<String, String>),
+    /// How many lanes of packets run, or why that is not known.
+    Lanes(Result<Utilisation, String>),
+    /// How far the picture of a job is from its goal.
+    Nearer { number: u64, progress: Progress },
+    /// What became of the goal of a job.
+    Reached { number: u64, reached: Reached },
+    /// The light of all directions from a file, or why there is none.
+    Sky(Result<Sky, String>),
     /// The last event of a thread, with the message of its panic if there was one.
     Ended(Option<String>),
 }
@@ -41,6 +53,8 @@ pub(crate) enum Question {
     Pick { x: u32, y: u32, look: Arc<Look> },
     /// What is the kernel's text?
     Wgsl(Arc<Look>),
+    /// How many lanes of packets run?
+    Lanes(Arc<Look>),
 }
 
 /// A picture that is wanted.
@@ -54,6 +68,8 @@ pub(crate) struct Job {
     pub(crate) look: Arc<Look>,
     /// Samples of each pixel after which there is nothing to do.
     pub(crate) limit: u32,
+    /// An error that is to be reached, in place of a number of samples.
+    pub(crate) goal: Option<Goal>,
     /// The time that a coarse picture may take, which comes first; none is made without it.
     pub(crate) coarse: Option<Duration>,
 }
@@ -76,7 +92,8 @@ pub(crate) struct Link {
     /// tile.
     newest: AtomicU64,
     has_questions: AtomicBool,
-    is_closed: AtomicBool,
+    /// Read by loaders too, while they read files.
+    is_closed: Arc<AtomicBool>,
     frame: Mutex<Option<Arc<Frame>>>,
     wake: Arc<dyn Fn() + Send + Sync>,
 }
@@ -95,7 +112,7 @@ impl Link {
             is_changed: Condvar::new(),
             newest: AtomicU64::new(0),
             has_questions: AtomicBool::new(false),
-            is_closed: AtomicBool::new(false),
+            is_closed: Arc::default(),
             frame: Mutex::new(None),
             wake,
         }
@@ -110,6 +127,11 @@ impl Link {
 
     pub(crate) fn is_closed(&self) -> bool {
         self.is_closed.load(Ordering::Relaxed)
+    }
+
+    /// Returns what is set when the link is closed.
+    pub(crate) fn closing(&self) -> &Arc<AtomicBool> {
+        &self.is_closed
     }
 
     /// Leaves a job in place of the one before.

@@ -1,8 +1,11 @@
 //! What is looked at, and how: everything that the picture depends on.
 
 use std::fmt;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use std::sync::Arc;
 
+use raydsl::light::Environment;
 use raydsl::prelude::*;
 
 use crate::pose::Pose;
@@ -16,6 +19,15 @@ pub enum Kind {
     Surface,
     /// A grid of numbers.
     Volume,
+    /// A field on an unstructured grid.
+    Cells,
+}
+
+impl Kind {
+    /// Returns whether the data are seen through a transfer function, and can be cut.
+    pub const fn is_field(self) -> bool {
+        matches!(self, Self::Volume | Self::Cells)
+    }
 }
 
 /// How data are turned into light.
@@ -35,7 +47,7 @@ pub enum Mode {
     Midpoint,
     /// A volume by steps between which the transfer function is integrated.
     PreIntegrated,
-    /// A volume by the exact integral in each cell.
+    /// A volume or cells by the exact integral in each cell.
     ExactCell,
     /// The same with shading by the gradient.
     ShadedCell,
@@ -78,6 +90,7 @@ impl Mode {
             Kind::Volume => {
                 &[Self::ShadedCell, Self::ExactCell, Self::PreIntegrated, Self::Midpoint]
             }
+            Kind::Cells => &[Self::ShadedCell, Self::ExactCell],
         }
     }
 }
@@ -112,10 +125,13 @@ impl fmt::Display for Show {
     }
 }
 
+/// The most knots of a transfer function.
+pub(crate) const MOST_KNOTS: usize = 256;
+
 /// A knot of a transfer function.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Knot {
-    /// Where it is in the range of the values: 0 is the least, 1 the greatest.
+    /// Where it is in the range of the values, from 0 to 1: 0 is the least, 1 the greatest.
     pub at: f32,
     /// Opacity from 0 to 1 of a two-hundredth of the volume's longest side.
     pub opacity: f32,
@@ -143,6 +159,14 @@ pub enum CutObject {
 }
 
 impl CutObject {
+    /// Returns where its handle is: the middle of a ball, a point of a plane.
+    pub fn place(self) -> Vec3 {
+        match self {
+            Self::Ball { center, .. } => center,
+            Self::Half { through, .. } => through,
+        }
+    }
+
     /// Moves the object by shares of the box.
     #[must_use]
     pub fn moved(self, by: Vec3) -> Self {
@@ -165,6 +189,34 @@ impl fmt::Display for CutObject {
     }
 }
 
+/// The light of all directions, from a file.
+#[derive(Clone, Debug)]
+pub struct Sky {
+    path: PathBuf,
+    light: Arc<Environment>,
+}
+
+impl Sky {
+    pub(crate) fn new(path: PathBuf, light: Environment) -> Self {
+        Self { path, light: Arc::new(light) }
+    }
+
+    /// Returns the file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    pub(crate) fn light(&self) -> &Environment {
+        &self.light
+    }
+}
+
+impl PartialEq for Sky {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.light, &other.light)
+    }
+}
+
 /// Everything that a picture depends on, beside the data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Look {
@@ -184,6 +236,8 @@ pub struct Look {
     pub knots: Vec<Knot>,
     /// What is cut out of a volume.
     pub cuts: Vec<CutObject>,
+    /// What surfaces are lit by in place of the sky that they have else.
+    pub sky: Option<Sky>,
 }
 
 impl Default for Look {
@@ -197,6 +251,7 @@ impl Default for Look {
             exposure: 0.0,
             knots: preset("tissue").unwrap_or_default(),
             cuts: Vec::new(),
+            sky: None,
         }
     }
 }

@@ -41,9 +41,46 @@ impl Pose {
     }
 
     /// Returns the ray through the middle of a pixel of a picture of this size.
-    pub(crate) fn ray(&self, (width, height): (u32, u32), x: u32, y: u32) -> Ray {
-        let rays = self.camera().begin_frame(width, height);
-        CameraRays::primary_ray(&rays, x as f32 + 0.5, y as f32 + 0.5)
+    pub(crate) fn ray(&self, size: (u32, u32), x: u32, y: u32) -> Ray {
+        self.ray_through(size, vec2(x as f32, y as f32) + 0.5)
+    }
+
+    /// Returns the ray through a place of a picture of this size, in pixels from the lower left.
+    pub fn ray_through(&self, (width, height): (u32, u32), at: Vec2) -> Ray {
+        CameraRays::primary_ray(&self.camera().begin_frame(width, height), at.x, at.y)
+    }
+
+    /// Returns where a point is seen in a picture of this size, in pixels from the lower left;
+    /// nothing of what is behind the camera.
+    pub fn seen(&self, (width, height): (u32, u32), point: Vec3) -> Option<Vec2> {
+        let (way, ahead, right) = (point - self.eye, self.ahead(), self.right());
+        let depth = way.dot(ahead);
+        let scale = 0.5 * height as f32 / (0.5 * self.fov_y).tan() / depth;
+        let at = vec2(way.dot(right), way.dot(right.cross(ahead))) * scale
+            + 0.5 * vec2(width as f32, height as f32);
+        (depth > 0.0 && at.is_finite()).then_some(at)
+    }
+
+    /// Returns the point that is seen in this place of a picture, and as far along the line of sight
+    /// as another point; nothing if that is behind the camera.
+    pub fn beside(&self, size: (u32, u32), at: Vec2, point: Vec3) -> Option<Vec3> {
+        let ray = self.ray_through(size, at);
+        let ahead = self.ahead();
+        let t = (point - ray.origin).dot(ahead) / ray.direction.dot(ahead);
+        let place = ray.at(t);
+        (t > 0.0 && place.is_finite()).then_some(place)
+    }
+
+    /// Returns the frame of the head, from its coordinates to the world: right, up, back, and the eye.
+    pub fn head(&self) -> Mat4 {
+        let (right, ahead) = (self.right(), self.ahead());
+        let up = right.cross(ahead);
+        Mat4::from_cols(
+            right.extend(0.0),
+            up.extend(0.0),
+            (-ahead).extend(0.0),
+            self.eye.extend(1.0),
+        )
     }
 
     /// Returns the distance from the target.
@@ -118,6 +155,29 @@ mod tests {
         assert!(pose.eye.z > 0.99 * before);
         pose.orbit(0.0, -90.0);
         assert!(pose.eye.z.abs() < 0.1 * before);
+    }
+
+    #[test]
+    fn what_is_seen_in_a_place_is_there() {
+        let pose =
+            Pose { eye: vec3(1.0, -4.0, 2.0), target: vec3(0.0, 0.5, 0.2), ..Pose::default() };
+        let size = (320, 180);
+        for point in [pose.target, vec3(0.7, 0.1, -0.4), vec3(-1.0, 2.0, 0.3)] {
+            let at = pose.seen(size, point).expect("it is before the camera");
+            let there = pose.beside(size, at, point).expect("the same");
+            assert!(there.distance(point) < 1e-4, "{point}: {there}");
+            let other = pose.beside(size, at + 30.0, point).expect("beside it");
+            let ahead = (pose.target - pose.eye).normalize();
+            assert!((other - point).dot(ahead).abs() < 1e-4);
+            assert!((pose.seen(size, other).expect("there") - at - 30.0).length() < 0.01);
+        }
+        let middle = pose.seen(size, pose.target).expect("it is the target");
+        assert!((middle - vec2(160.0, 90.0)).length() < 1e-3);
+        assert_eq!(pose.seen(size, pose.eye - pose.target + pose.eye), None);
+        let head = pose.head();
+        assert!(
+            (head.transform_point3(vec3(0.0, 0.0, -pose.distance())) - pose.target).length() < 1e-5
+        );
     }
 
     #[test]

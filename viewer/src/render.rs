@@ -2,6 +2,8 @@
 //! then better with every pass.
 
 mod coarse;
+mod goal;
+mod lanes;
 mod picture;
 
 use std::collections::HashMap;
@@ -15,7 +17,7 @@ use crate::device::Device;
 use crate::frame::{Frame, difference, shown};
 use crate::link::{Event, Job, Link, Question};
 use crate::look::{Look, Mode, Show};
-use crate::subject::{PictureKernel, Subject};
+use crate::subject::{PictureKernel, Subject, SubjectKernel};
 pub(crate) use picture::is_same_kernel;
 use picture::{LONGEST_PASS, Picture, error, milliseconds};
 
@@ -62,8 +64,9 @@ struct Worker<'a> {
 
 impl Worker<'_> {
     fn is_idle(&self, job: &Job) -> bool {
-        let Picture { number, is_failed, samples, .. } = self.picture;
-        number == job.number && (is_failed || samples >= job.limit)
+        let Picture { number, is_failed, is_settled, samples, .. } = self.picture;
+        let has_all = if job.goal.is_some() { is_settled } else { samples >= job.limit };
+        number == job.number && (is_failed || has_all)
     }
 
     /// Answers every question with one event: the session counts them.
@@ -78,6 +81,12 @@ impl Worker<'_> {
                     let end = subject.with_kernel(&look, &mut |kernel| text = kernel.wgsl());
                     Event::Wgsl(end.map(|()| text))
                 }
+                Question::Lanes(look) => {
+                    let mut found = Err("there is no kernel".to_owned());
+                    let end = subject
+                        .with_kernel(&look, &mut |kernel| found = Ok(lanes::of(kernel, &look)));
+                    Event::Lanes(end.and(found))
+                }
             };
             self.link.send(answer);
         }
@@ -85,7 +94,7 @@ impl Worker<'_> {
 
     /// Renders with a kernel, as long as looks differ in nothing but the camera and the size: the
     /// kernel stays the same, and is recorded once.
-    fn run(&mut self, kernel: &PictureKernel<'_>, look: &Look) {
+    fn run(&mut self, kernel: &SubjectKernel<'_>, look: &Look) {
         while let Some(job) = self.link.job() {
             if !is_same_kernel(&job.look, look) {
                 return;
@@ -114,6 +123,12 @@ impl Worker<'_> {
         {
             self.coarse(kernel, job, budget)?;
         }
+        if let Some(goal) = job.goal {
+            if self.is_idle(job) || self.is_interrupted(job) {
+                return Ok(());
+            }
+            return self.reach(kernel, job, goal);
+        }
         while self.picture.samples < job.limit && !self.is_interrupted(job) {
             self.pass(kernel, job)?;
         }
@@ -133,6 +148,8 @@ impl Worker<'_> {
         let Some(films) = old.films.filter(|_| old.light == job.light && old.samples > 0) else {
             return;
         };
+        self.picture.is_settled = old.is_settled;
+        self.picture.error = old.error;
         self.picture.is_coarse_due = false;
         self.picture.samples = old.samples;
         self.picture.next = old.next;
@@ -248,7 +265,7 @@ impl Worker<'_> {
             texture: None,
             ms,
             age_ms: (now - self.picture.since).as_secs_f64() * 1e3,
-            error: (film.samples() > 1).then(|| error(film)),
+            error: self.picture.error.or_else(|| (film.samples() > 1).then(|| error(film))),
             difference,
         });
     }

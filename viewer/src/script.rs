@@ -44,6 +44,11 @@ impl Player {
         Ok(Self { actions, next: 0, awaited: None })
     }
 
+    /// Returns a player of one action.
+    pub fn of(action: Action) -> Self {
+        Self { actions: vec![action], next: 0, awaited: None }
+    }
+
     /// Reads a script from a file.
     ///
     /// # Errors
@@ -65,7 +70,7 @@ impl Player {
                 return Next::Waits;
             }
             self.awaited = None;
-            if session.is_asking() {
+            if session.is_asking() || session.is_aiming() {
                 return Next::Waits;
             }
             let action = self.actions.get(self.next).cloned();
@@ -84,6 +89,13 @@ impl Player {
             match action {
                 Action::Screenshot(_) | Action::Panel(..) => return Next::Asks(action),
                 Action::Quit => return Next::Done,
+                Action::Animate(animation) => match animation.actions(session) {
+                    Ok(actions) => {
+                        session.note(format!("animate {animation}"));
+                        self.actions.splice(self.next..self.next, actions);
+                    }
+                    Err(message) => session.refuse(&format!("animate {animation}: {message}")),
+                },
                 action => {
                     // A refusal is in the log.
                     let _ = session.apply(&action);

@@ -3,7 +3,11 @@
 mod data;
 mod events;
 mod files;
+mod goal;
 mod log;
+mod menu;
+mod record;
+mod sky;
 mod state;
 
 use std::collections::{BTreeMap, VecDeque};
@@ -22,7 +26,12 @@ use crate::pose::Pose;
 use crate::render;
 use crate::subject::{Info, Picked};
 use data::Data;
+use goal::Aim;
 use log::Log;
+use menu::OpenMenu;
+use raydsl_report::Utilisation;
+use record::Recording;
+use sky::PendingSky;
 
 /// How a session renders.
 #[derive(Clone, Debug)]
@@ -69,12 +78,18 @@ pub struct Session {
     /// The number of the last change that is more than one of the exposure.
     light: u64,
     limit: u32,
+    aim: Aim,
     frame: Option<Arc<Frame>>,
     log: Log,
     picked: Option<Option<Picked>>,
     wgsl: Option<String>,
     /// What the answers to questions for the kernel's text go to: a file, or only a panel.
     wgsl_files: VecDeque<Option<String>>,
+    lanes: Option<Utilisation>,
+    lanes_files: VecDeque<Option<String>>,
+    pending_sky: Option<PendingSky>,
+    recording: Option<Recording>,
+    open_menu: Option<OpenMenu>,
     questions: usize,
     failed: Option<u64>,
     writers: Vec<JoinHandle<Result<String, String>>>,
@@ -102,11 +117,17 @@ impl Session {
             next_id: 0,
             number: 0,
             light: 0,
+            aim: Aim::default(),
             frame: None,
             log: Log::default(),
             picked: None,
             wgsl: None,
             wgsl_files: VecDeque::new(),
+            lanes: None,
+            lanes_files: VecDeque::new(),
+            pending_sky: None,
+            recording: None,
+            open_menu: None,
             questions: 0,
             failed: None,
             writers: Vec::new(),
@@ -138,6 +159,14 @@ impl Session {
             Action::Wait(samples) => self.want_samples(*samples),
             Action::Picture(name) => self.write_picture(name)?,
             Action::Wgsl(name) => self.ask_wgsl(Some(name))?,
+            Action::Lanes(name) => self.ask_lanes(Some(name))?,
+            Action::Environment(path) => self.ask_sky(path.as_ref())?,
+            Action::Transfer(path) => self.load_transfer(path)?,
+            Action::Until(goal) => self.aim(*goal)?,
+            Action::Record(film) => self.record(film.as_ref())?,
+            Action::Menu(is_open) => self.show_menu(*is_open)?,
+            Action::Wand(wand) => self.point(*wand)?,
+            Action::Press => self.press()?,
             Action::SaveView(name) => {
                 self.views.insert(name.clone(), self.look.pose);
             }
@@ -147,6 +176,7 @@ impl Session {
             Action::Screenshot(_) => {
                 return Err("there is no window: use `picture`, or --window".to_owned());
             }
+            Action::Animate(_) => return Err("only a script or a window plays it".to_owned()),
             Action::Panel(..) | Action::Quit => {}
             change => {
                 let mut look = self.look.clone();
@@ -166,8 +196,13 @@ impl Session {
             Action::Show(show) => look.show = self.checked_show(*show)?,
             Action::Exposure(stops) => look.exposure = stops.clamp(-20.0, 20.0),
             Action::Home => look.pose = self.info.as_ref().ok_or("nothing is open")?.home,
+            Action::Camera(pose) => look.pose = *pose,
             Action::View(name) => {
                 look.pose = *self.views.get(name).ok_or("there is no view of this name")?;
+            }
+            Action::DragCut(i, to) => {
+                let bounds = self.info.as_ref().ok_or("nothing is open")?.bounds;
+                crate::edit::drag_cut(look, *i, *to, bounds)?;
             }
             other => crate::edit::edit(look, other)?,
         }
@@ -185,9 +220,10 @@ impl Session {
     }
 
     fn checked_show(&self, show: Show) -> Result<Show, String> {
-        let is_volume = self.info.as_ref().is_some_and(|info| info.kind == Kind::Volume);
-        if show == Show::Cost && is_volume {
-            return Err("a volume has no tree whose tests are counted".to_owned());
+        let kind = self.info.as_ref().map(|info| info.kind);
+        if show == Show::Cost && kind.is_some_and(Kind::is_field) {
+            let what = if kind == Some(Kind::Cells) { "cells have" } else { "a volume has" };
+            return Err(format!("{what} no tree whose tests are counted"));
         }
         Ok(show)
     }
@@ -199,6 +235,7 @@ impl Session {
         }
         if !render::is_same_kernel(&look, &self.look) {
             self.wgsl = None;
+            self.lanes = None;
         }
         let exposure = look.exposure;
         let is_same_light = look == Look { exposure, ..self.look.clone() };
@@ -214,6 +251,7 @@ impl Session {
 
     fn restart(&mut self) {
         self.number += 1;
+        self.aim = Aim::default();
         self.light = self.number;
         self.limit = self.config.samples;
         self.submit();
@@ -223,10 +261,15 @@ impl Session {
         let Some(data) = &self.current else { return };
         let (look, coarse) = (Arc::new(self.look.clone()), self.config.coarse);
         let (number, light, limit) = (self.number, self.light, self.limit);
-        data.link.want(Job { number, light, look, limit, coarse });
+        let goal = self.aim.goal;
+        data.link.want(Job { number, light, look, limit, goal, coarse });
     }
 
+    /// Asks for samples, in place of an error whose picture has fewer.
     pub(crate) fn want_samples(&mut self, samples: u32) {
+        if self.aim.goal.is_some() && !self.is_aiming() && !self.has(samples) {
+            self.restart();
+        }
         if samples > self.limit {
             self.limit = samples;
             self.submit();

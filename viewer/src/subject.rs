@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use raydsl::kernel::CountedKernel;
 use raydsl::prelude::*;
 
 use crate::look::{Kind, Look};
@@ -9,6 +10,9 @@ use crate::pose::Pose;
 
 /// A kernel of pictures: one type for all data, so that the code around it exists once.
 pub(crate) type PictureKernel<'a> = Kernel<'a, (Ray, Sampler), Vec4>;
+
+/// The same with a copy that counts the lanes that run.
+pub(crate) type SubjectKernel<'a> = CountedKernel<'a, (Ray, Sampler), Vec4>;
 
 /// Data that can be looked at.
 pub(crate) trait Subject {
@@ -20,7 +24,7 @@ pub(crate) trait Subject {
     fn with_kernel(
         &mut self,
         look: &Look,
-        run: &mut dyn FnMut(&PictureKernel<'_>),
+        run: &mut dyn FnMut(&SubjectKernel<'_>),
     ) -> Result<(), String>;
 
     /// Returns what a ray meets first.
@@ -48,7 +52,7 @@ impl fmt::Display for Picked {
 /// What is known of data that are open.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Info {
-    /// Points, surface or volume.
+    /// Points, surface, volume or cells.
     pub kind: Kind,
     /// The file's name.
     pub name: String,
@@ -56,8 +60,23 @@ pub struct Info {
     pub size: String,
     /// The view that sees all.
     pub home: Pose,
-    /// The least and the greatest value of a volume.
+    /// The box around all of it.
+    pub bounds: Aabb,
+    /// The least and the greatest value of a field.
     pub range: Vec2,
-    /// How many voxels have a value, in equal parts of the range; empty for other data.
+    /// How many voxels or points have a value, in equal parts of the range; empty for other data.
     pub histogram: Vec<u32>,
+}
+
+impl Info {
+    /// Returns what is known of data without values.
+    pub(crate) fn of_scene(
+        kind: Kind,
+        name: String,
+        size: String,
+        home: Pose,
+        bounds: Aabb,
+    ) -> Self {
+        Self { kind, name, size, home, bounds, range: Vec2::ZERO, histogram: Vec::new() }
+    }
 }

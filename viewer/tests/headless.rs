@@ -11,7 +11,7 @@ use raydsl_viewer::{Action, Config, Device, Kind, Mode, Session, Show};
 
 #[test]
 fn scripts_play_without_errors() {
-    for name in ["points", "surface", "volume"] {
+    for name in ["points", "surface", "volume", "cells", "film"] {
         let folder = Folder::new(&format!("script-{name}"));
         let text = std::fs::read_to_string(format!("tests/scripts/{name}.txt")).expect(name);
         let session = play(&text, &folder);
@@ -31,7 +31,7 @@ fn scripts_play_without_errors() {
 /// those of its contract.
 #[test]
 fn variants_agree() {
-    for open in ["landscape:20000", "tests/data/room.obj", "head:48"] {
+    for open in ["landscape:20000", "tests/data/room.obj", "head:48", "ropes:12"] {
         let folder = Folder::new("agree");
         let mut session = play(&format!("size 96 54\nopen {open}\nwait 1"), &folder);
         let kind = session.info().expect(open).kind;
@@ -194,13 +194,20 @@ fn nobody_waits_for_rendering() {
 }
 
 #[test]
-fn volumes_and_clouds_of_files_open() {
+fn files_of_every_kind_open() {
     let Some(folder) = data() else {
         println!("LEFT OUT: RAYDSL_DATA is not set");
         return;
     };
     let out = Folder::new("files");
-    for name in ["lion_takanawa.copc.laz", "bunny.obj", "sibenik.tri", "frog_tissues.vti"] {
+    for name in [
+        "lion_takanawa.copc.laz",
+        "bunny.obj",
+        "sibenik.tri",
+        "frog_tissues.vti",
+        "fire_ug.vtu",
+        "chinese_garden_1k.hdr",
+    ] {
         let path = Path::new(&folder).join(name);
         let script = format!("size 64 36\nopen {}\nwait 1\npicture a.png\n", path.display());
         let session = play(&script, &out);

@@ -44,6 +44,9 @@ impl Display {
     fn viewer(&self, arguments: &[&str], folder: &Folder) -> Child {
         Command::new(env!("CARGO_BIN_EXE_raydsl-viewer"))
             .env("DISPLAY", &self.name)
+            // No desktop: its portal is not asked for files, but `zenity` of the folder, if it is there.
+            .env("DBUS_SESSION_BUS_ADDRESS", "unix:path=/nonexistent")
+            .env("PATH", format!("{}:{}", folder.path("bin").display(), path()))
             .args(arguments)
             .arg("--out")
             .arg(folder.path(""))
@@ -58,6 +61,10 @@ impl Drop for Display {
         let _ = self.server.kill();
         let _ = self.server.wait();
     }
+}
+
+fn path() -> String {
+    std::env::var("PATH").unwrap_or_default()
 }
 
 fn pause(seconds: f64) {
@@ -140,14 +147,11 @@ fn mouse_and_keys_do_what_the_panel_says() {
     look_at(&folder, &log);
 }
 
-/// Looks at the pixels of what was written.
-fn look_at(folder: &Folder, log: &str) {
-    let (size, before) = picture_of(&folder.path("picture-1.png"));
-    let (_, after) = picture_of(&folder.path("picture-3.png"));
-    let apart = before.iter().zip(&after).filter(|(a, b)| a.abs_diff(**b) > 20).count();
-    assert!(apart * 10 > before.len(), "the drag turned the picture");
-    // The window shows the picture somewhere between its panels.
-    let ((width, _), window) = picture_of(&folder.path("window-2.png"));
+/// Returns where a picture is in a window, somewhere between its panels: how far from the left, and
+/// which share of its pixels is another there.
+fn place_of(picture: &Path, window: &Path) -> (u32, f64) {
+    let (size, picture) = picture_of(picture);
+    let ((width, _), window) = picture_of(window);
     let differ = |left: u32, step: usize| {
         let pixel = |image: &[u8], width: u32, x: u32, y: u32| {
             let at = 4 * (y * width + x) as usize;
@@ -156,7 +160,7 @@ fn look_at(folder: &Folder, log: &str) {
         let (mut far, mut all) = (0, 0);
         for (x, y) in (0..size.1).step_by(step).flat_map(|y| (0..size.0).map(move |x| (x, y))) {
             let shown = pixel(&window, width, x + left, y);
-            let file = pixel(&before, size.0, x, y);
+            let file = pixel(&picture, size.0, x, y);
             far += u32::from((0..3).any(|i| shown[i].abs_diff(file[i]) > 16));
             all += 1;
         }
@@ -164,8 +168,92 @@ fn look_at(folder: &Folder, log: &str) {
     };
     let places = 0..=width - size.0;
     let place = places.min_by(|a, b| differ(*a, 90).total_cmp(&differ(*b, 90)));
-    let far = differ(place.expect("the window is wider"), 1);
-    assert!(far < 0.05, "{:.1} % of the pixels are others: {log}", 100.0 * far);
+    let place = place.expect("the window is wider");
+    (place, differ(place, 1))
+}
+
+/// Waits until the log has a line that begins so, and returns the last of them.
+fn line_of(folder: &Folder, begin: &str) -> String {
+    let start = Instant::now();
+    loop {
+        let log = std::fs::read_to_string(folder.path("log.txt")).unwrap_or_default();
+        if let Some(line) = log.lines().rev().find(|line| line.starts_with(begin)) {
+            return line.to_owned();
+        }
+        assert!(start.elapsed() < Duration::from_secs(30), "no {begin}: {log}");
+        pause(0.1);
+    }
+}
+
+#[test]
+#[ignore = "needs Xvfb and xdotool: .ci/more runs it"]
+fn files_are_chosen_cuts_dragged_and_items_pressed() {
+    let (display, folder) = (Display::new(), Folder::new("chosen"));
+    // The program that is asked for files where there is no desktop.
+    let dialog = folder.path("bin/zenity");
+    std::fs::create_dir_all(folder.path("bin")).expect("a temporary folder");
+    std::fs::write(&dialog, "#!/bin/sh\necho ropes:12\n").expect("a temporary folder");
+    let run = std::os::unix::fs::PermissionsExt::from_mode(0o755);
+    std::fs::set_permissions(&dialog, run).expect("it is ours");
+    let viewer = display.viewer(&["head:24"], &folder);
+    let window = display.tool("search --sync --onlyvisible --name raydsl");
+    display.tool(&format!("windowfocus {window}"));
+    display.tool("mousemove 700 400");
+    line_of(&folder, "loaded head");
+    display.tool("key o");
+    line_of(&folder, "loaded ropes");
+    display.tool("key b");
+    line_of(&folder, "cut ball");
+    pause(3.0);
+    display.tool("key p");
+    wait_for(&folder.path("picture-1.png"));
+    display.tool("key F12");
+    wait_for(&folder.path("window-2.png"));
+    let (left, _) = place_of(&folder.path("picture-1.png"), &folder.path("window-2.png"));
+    // A viewer without a window has the same camera, and tells where the handle is.
+    let (width, height) = picture_of(&folder.path("picture-1.png")).0;
+    let cut = line_of(&folder, "cut ball");
+    let twin = common::play(&format!("size {width} {height}\nopen ropes:12\n{cut}"), &folder);
+    let bounds = twin.info().expect("ropes").bounds;
+    let place = bounds.min + twin.look().cuts[0].place() * bounds.size();
+    let seen = twin.look().pose.seen((width, height), place).expect("before the camera");
+    let (x, y) = (f64::from(seen.x), f64::from(height) - f64::from(seen.y));
+    display.tool(&format!("mousemove {} {} mousedown 1", f64::from(left) + x, y));
+    for i in 1..=10 {
+        let (x, y) = (f64::from(left) + x - 8.0 * f64::from(i), y + 5.0 * f64::from(i));
+        display.tool(&format!("mousemove {x} {y}"));
+        pause(0.05);
+    }
+    display.tool("mouseup 1");
+    let dragged = line_of(&folder, "cut drag 0 ");
+    let to: Vec<f64> = dragged.split(' ').skip(3).filter_map(|word| word.parse().ok()).collect();
+    let apart = (to[0] - (x - 80.0)).abs().max((to[1] - (f64::from(seen.y) - 50.0)).abs());
+    assert!(apart < 10.0, "{dragged}, expected {} {}", x - 80.0, f64::from(seen.y) - 50.0);
+    // The middle of the menu is the third of five variants.
+    display.tool("key v");
+    line_of(&folder, "menu on");
+    display.tool(&format!("mousemove {} {}", left + width / 2 + 3, height / 2));
+    line_of(&folder, "wand pixel");
+    pause(0.5);
+    display.tool("key F12");
+    wait_for(&folder.path("window-3.png"));
+    display.tool("click 1");
+    line_of(&folder, "chose packet8");
+    display.tool("key ctrl+q");
+    assert!(end_of(viewer));
+    let log = std::fs::read_to_string(folder.path("log.txt")).expect("a log");
+    assert!(!log.contains("error: "), "{log}");
+    assert!(!log.lines().any(|line| line.starts_with("orbit ")), "the handle was dragged: {log}");
+}
+
+/// Looks at the pixels of what was written.
+fn look_at(folder: &Folder, log: &str) {
+    let (_, before) = picture_of(&folder.path("picture-1.png"));
+    let (_, after) = picture_of(&folder.path("picture-3.png"));
+    let apart = before.iter().zip(&after).filter(|(a, b)| a.abs_diff(**b) > 20).count();
+    assert!(apart * 10 > before.len(), "the drag turned the picture");
+    let (_, differ) = place_of(&folder.path("picture-1.png"), &folder.path("window-2.png"));
+    assert!(differ < 0.05, "{:.1} % of the pixels are others: {log}", 100.0 * differ);
     assert_eq!(picture_of(&folder.path("window-5.png")).0, (900, 600));
     let longest =
         log.lines().find_map(|line| line.strip_prefix("longest turn ")?.split(' ').next());

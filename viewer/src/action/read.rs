@@ -5,13 +5,17 @@ use std::str::{FromStr, SplitWhitespace};
 
 use raydsl::prelude::*;
 
-use super::Action;
+use super::{Action, Goal};
+use crate::animation::{Animation, Way};
 use crate::look::{CutObject, Knot, Show};
+use crate::pose::Pose;
+use crate::wand::Wand;
 
 /// The first words of lines.
-const VERBS: &str = "open, add, step, cancel, size, mode, variant, show, exposure, orbit, turn, \
-    fly, zoom, home, save-view, view, drop-view, knot, preset, cut, pick, wait, picture, \
-    screenshot, wgsl, panel, quit";
+const VERBS: &str = "open, add, step, environment, cancel, size, mode, variant, show, exposure, \
+    orbit, turn, fly, zoom, home, camera, save-view, view, drop-view, knot, preset, transfer, cut, \
+    pick, wait, until, picture, animate, record, screenshot, wgsl, lanes, menu, wand, press, panel, \
+    quit";
 
 /// The words of a line behind the verb.
 struct Words<'a>(SplitWhitespace<'a>);
@@ -83,8 +87,68 @@ impl<'a> Words<'a> {
                 Ok(Action::AddCut(CutObject::Half { through, normal }))
             }
             "move" => Ok(Action::MoveCut(self.read()?, self.three()?)),
+            "drag" => Ok(Action::DragCut(self.read()?, vec2(self.float()?, self.float()?))),
             "remove" => Ok(Action::RemoveCut(self.read()?)),
-            _ => Err("write cut ball, cut half, cut move or cut remove".to_owned()),
+            _ => Err("write cut ball, cut half, cut move, cut drag or cut remove".to_owned()),
+        }
+    }
+
+    fn camera(&mut self) -> Result<Pose, String> {
+        let (eye, target, up) = (self.three()?, self.three()?, self.three()?);
+        let fov = self.float()?;
+        if !(0.1..=170.0).contains(&fov) {
+            return Err("the field of view is from 0.1 to 170 degrees".to_owned());
+        }
+        let up = up.normalize_or_zero();
+        let pose = Pose { eye, target, up, fov_y: fov.to_radians() };
+        if pose.is_valid() { Ok(pose) } else { Err("the camera has no direction".to_owned()) }
+    }
+
+    fn until(&mut self) -> Result<Action, String> {
+        if self.0.clone().next() == Some("off") {
+            self.word()?;
+            return Ok(Action::Until(None));
+        }
+        let goal = Goal { error: self.float()?, seconds: self.float()? };
+        if goal.error > 0.0 && goal.seconds > 0.0 {
+            return Ok(Action::Until(Some(goal)));
+        }
+        Err("errors and seconds are above 0".to_owned())
+    }
+
+    fn animation(&mut self) -> Result<Animation, String> {
+        let way = match self.word()? {
+            "turntable" => Way::Turntable(self.read()?),
+            "views" => Way::Views(self.read()?),
+            "steps" => Way::Steps,
+            _ => return Err("write animate turntable, animate views or animate steps".to_owned()),
+        };
+        let animation = Animation { way, samples: self.read()?, name: self.word()?.to_owned() };
+        animation.checked()
+    }
+
+    fn record(&mut self) -> Result<Action, String> {
+        let name = self.word()?;
+        if name == "end" && self.0.clone().next().is_none() {
+            return Ok(Action::Record(None));
+        }
+        match self.read()? {
+            rate @ 1..=1000 => Ok(Action::Record(Some((name.to_owned(), rate)))),
+            _ => Err("a film has 1 to 1000 pictures a second".to_owned()),
+        }
+    }
+
+    fn wand(&mut self) -> Result<Wand, String> {
+        match self.word()? {
+            "pixel" => Ok(Wand::Pixel(vec2(self.float()?, self.float()?))),
+            "matrix" => {
+                let mut numbers = [0.0; 16];
+                for number in &mut numbers {
+                    *number = self.float()?;
+                }
+                Ok(Wand::Tracked(Mat4::from_cols_array(&numbers)))
+            }
+            _ => Err("write wand pixel or wand matrix".to_owned()),
         }
     }
 
@@ -102,6 +166,7 @@ impl<'a> Words<'a> {
             "fly" => Action::Fly(self.three()?),
             "zoom" => Action::Zoom(self.float()?),
             "home" => Action::Home,
+            "camera" => Action::Camera(self.camera()?),
             "save-view" => Action::SaveView(self.word()?.to_owned()),
             "view" => Action::View(self.word()?.to_owned()),
             "drop-view" => Action::DropView(self.word()?.to_owned()),
@@ -113,6 +178,13 @@ impl<'a> Words<'a> {
                 0 => return Err("wait for 1 sample or more".to_owned()),
                 samples => Action::Wait(samples),
             },
+            "until" => self.until()?,
+            "animate" => Action::Animate(self.animation()?),
+            "record" => self.record()?,
+            "lanes" => Action::Lanes(self.word()?.to_owned()),
+            "menu" => Action::Menu(self.is_on()?),
+            "wand" => Action::Wand(self.wand()?),
+            "press" => Action::Press,
             "picture" => Action::Picture(self.word()?.to_owned()),
             "screenshot" => Action::Screenshot(self.word()?.to_owned()),
             "wgsl" => Action::Wgsl(self.word()?.to_owned()),
@@ -138,6 +210,9 @@ impl FromStr for Action {
         match verb {
             "open" => return Ok(Self::Open(path()?)),
             "add" => return Ok(Self::Add(path()?)),
+            "transfer" => return Ok(Self::Transfer(path()?)),
+            "environment" if rest.trim() == "none" => return Ok(Self::Environment(None)),
+            "environment" => return Ok(Self::Environment(Some(path()?))),
             _ => {}
         }
         let mut words = Words(rest.split_whitespace());

@@ -1,5 +1,7 @@
 //! Data of files: loading, on a thread of its own that then renders them.
 
+mod cells;
+mod field;
 mod points;
 mod surface;
 mod volume;
@@ -12,6 +14,7 @@ use raydsl_io::LoadError;
 
 use crate::link::{Event, Link};
 use crate::subject::{Info, Subject};
+pub(crate) use surface::load_environment;
 
 /// Why data cannot be shown, in one line.
 #[derive(Debug, thiserror::Error)]
@@ -30,6 +33,8 @@ pub(crate) enum Failure {
     Lights(#[from] raydsl::light::LightsError),
     #[error(transparent)]
     Environment(#[from] raydsl::light::EnvironmentError),
+    #[error(transparent)]
+    Cells(#[from] raydsl::volume::cells::CellError),
     #[error("{0}")]
     Other(String),
 }
@@ -57,11 +62,16 @@ pub(crate) type Serve<'a> = &'a mut dyn FnMut(Info, &mut dyn Subject);
 
 /// Loads data and serves them; returns when they are no longer wanted.
 pub(crate) fn load(path: &Path, link: &Arc<Link>, serve: Serve<'_>) -> Result<(), Failure> {
+    raydsl_io::stoppable(link.closing(), || load_and_serve(path, link, serve))
+}
+
+fn load_and_serve(path: &Path, link: &Arc<Link>, serve: Serve<'_>) -> Result<(), Failure> {
     let teller = Teller { link };
     if let Some((made, number)) = made_in_code(path)? {
         return match made {
             Made::Landscape => points::landscape(number, &teller, serve),
             Made::Head => volume::head(number, serve),
+            Made::Ropes => cells::ropes(number, &teller, serve),
         };
     }
     match kind_of(path) {
@@ -73,6 +83,12 @@ pub(crate) fn load(path: &Path, link: &Arc<Link>, serve: Serve<'_>) -> Result<()
             Err(Failure::Load(LoadError::Empty { .. })) => points::open(path, &teller, serve),
             end => end,
         },
+        FileKind::Cells => cells::open(path, &teller, serve),
+        FileKind::Environment => surface::open_environment(path, &teller, serve),
+        FileKind::Transfer => Err(Failure::Other(format!(
+            "{}: a transfer function has no data: open a volume or cells, and then `transfer FILE`",
+            path.display()
+        ))),
         FileKind::Volume => volume::open(path, serve),
         FileKind::Raw => volume::open_raw(path, serve),
         FileKind::Stack => volume::open_stack(path, serve),
@@ -84,6 +100,7 @@ pub(crate) fn load(path: &Path, link: &Arc<Link>, serve: Serve<'_>) -> Result<()
 enum Made {
     Landscape,
     Head,
+    Ropes,
 }
 
 /// The most points that a landscape is made of.
@@ -91,12 +108,16 @@ const MOST_POINTS: u32 = 200_000_000;
 /// The most voxels along a side of a head.
 const MOST_SIDE: u32 = 1024;
 
-/// Reads `landscape:2000000` and `head:192`; other names are those of files.
+/// The most cells along the cylinder of ropes.
+const MOST_CELLS: u32 = 200;
+
+/// Reads `landscape:2000000`, `head:192` and `ropes:48`; other names are those of files.
 fn made_in_code(path: &Path) -> Result<Option<(Made, u32)>, Failure> {
     let words = path.to_str().and_then(|text| text.split_once(':'));
     let (made, range, number) = match words {
         Some(("landscape", number)) => (Made::Landscape, 1..=MOST_POINTS, number),
         Some(("head", number)) => (Made::Head, 8..=MOST_SIDE, number),
+        Some(("ropes", number)) => (Made::Ropes, 4..=MOST_CELLS, number),
         _ => return Ok(None),
     };
     match number.parse() {
@@ -116,6 +137,9 @@ enum FileKind {
     Mesh,
     Scene,
     Ply,
+    Cells,
+    Environment,
+    Transfer,
     Volume,
     Raw,
     Stack,
@@ -125,7 +149,7 @@ enum FileKind {
 /// What is said of a file whose name tells no format.
 const FORMATS: &str = "unknown format; points are .las, .laz, .ply and .xyz, surfaces .glb, .gltf, \
     .obj, .ply and .tri, volumes .mha, .mhd, .nhdr, .nii, .nii.gz, .nrrd, .raw, .vti and folders \
-    of .png";
+    of .png, cells .vtu, environments .exr and .hdr";
 
 /// Tells the kind of a file by its name.
 fn kind_of(path: &Path) -> FileKind {
@@ -135,6 +159,9 @@ fn kind_of(path: &Path) -> FileKind {
         "tri" => FileKind::Mesh,
         "glb" | "gltf" | "obj" => FileKind::Scene,
         "ply" => FileKind::Ply,
+        "vtu" => FileKind::Cells,
+        "exr" | "hdr" => FileKind::Environment,
+        "json" => FileKind::Transfer,
         "raw" => FileKind::Raw,
         "mha" | "mhd" | "nhdr" | "nii" | "nrrd" | "vti" => FileKind::Volume,
         "gz" if path.file_stem().is_some_and(|stem| has_extension(stem.as_ref(), "nii")) => {
@@ -197,6 +224,9 @@ mod tests {
             ("b/a.glb", FileKind::Scene),
             ("a.ply", FileKind::Ply),
             ("a.nii.gz", FileKind::Volume),
+            ("a.vtu", FileKind::Cells),
+            ("a.HDR", FileKind::Environment),
+            ("a.json", FileKind::Transfer),
             ("tooth_103x94x161_uint8.raw", FileKind::Raw),
             ("a.txt", FileKind::Unknown),
         ] {
@@ -205,6 +235,7 @@ mod tests {
         let made = |name: &str| made_in_code(Path::new(name)).map_err(|e| e.to_string());
         assert_eq!(made("landscape:500"), Ok(Some((Made::Landscape, 500))));
         assert_eq!(made("head:64"), Ok(Some((Made::Head, 64))));
+        assert_eq!(made("ropes:48"), Ok(Some((Made::Ropes, 48))));
         for name in ["landscape", "c:5"] {
             assert_eq!(made(name), Ok(None), "{name}");
         }

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use super::{Failure, Serve, Teller, file_name};
 use crate::look::{Kind, Look, Mode, Show};
 use crate::pose::Pose;
-use crate::subject::{Info, Picked, PictureKernel, Subject};
+use crate::subject::{Info, Picked, Subject, SubjectKernel};
 
 /// A point of a scan.
 #[primitive(sphere(center, radius.to_f32()))]
@@ -83,8 +83,7 @@ fn show(
         fov_y: view.fov_y_degrees.to_radians() as f32,
     };
     let size = format!("{} points, {} nodes", spheres.len(), tree.nodes().len());
-    let (range, histogram) = (Vec2::ZERO, Vec::new());
-    let info = Info { kind: Kind::Points, name, size, home, range, histogram };
+    let info = Info::of_scene(Kind::Points, name, size, home, tree.bounds());
     // Light from as far away as a dozen neighbours is what makes a surface of spheres look round.
     let radius = spheres.first().map_or(1.0, |s| s.radius.to_f32()) * 24.0;
     serve(info, &mut Points { tree, radius, scale, offset });
@@ -114,14 +113,14 @@ impl Subject for Points<'_> {
     fn with_kernel(
         &mut self,
         look: &Look,
-        run: &mut dyn FnMut(&PictureKernel<'_>),
+        run: &mut dyn FnMut(&SubjectKernel<'_>),
     ) -> Result<(), String> {
         let (tree, radius, most, up) = (&self.tree, self.radius, MOST_TESTS, look.pose.up);
         let (zenith, horizon) = (vec3(0.11, 0.23, 0.53), vec3(0.7, 0.76, 0.8));
         let sun = (up + vec3(0.5, -0.3, 0.2)).normalize_or(up);
         let is_cost = look.show == Show::Cost;
         let is_occlusion = look.mode == Mode::Occlusion;
-        let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+        let kernel = kernel!(counted |ray: Ray, sampler: Sampler| {
             let height = clamp(ray.direction.dot(up) * 1.6 + 0.7, 0.0, 1.0);
             let sky = horizon + (zenith - horizon) * height;
             let mut color = sky;

@@ -1,12 +1,14 @@
 //! Triangles with materials and lights.
 
+mod balls;
+
 use std::path::Path;
 
 use glam::Affine3A;
 use raydsl::integrators::{
     PathLimits, PathOptions, PathSample, ambient_occlusion, bvh_cost_color, path_with, whitted,
 };
-use raydsl::light::{AnyLight, DirectionalLight, Environment, Lights};
+use raydsl::light::{AnyLight, DirectionalLight, Environment, Lights, LightsError};
 use raydsl::prelude::*;
 use raydsl::shading::{Mesh, MeshAttributes};
 use raydsl_examples::model::{Met, Model, met};
@@ -15,7 +17,7 @@ use raydsl_io::scene::{self, Projection, Scene as File};
 use super::{Failure, Serve, Teller, file_name};
 use crate::look::{Kind, Look, Mode, Show};
 use crate::pose::Pose;
-use crate::subject::{Info, Picked, PictureKernel, Subject};
+use crate::subject::{Info, Picked, Subject, SubjectKernel};
 
 /// Loads a scene with materials and serves it.
 pub(super) fn open_scene(
@@ -23,7 +25,23 @@ pub(super) fn open_scene(
     teller: &Teller<'_>,
     serve: Serve<'_>,
 ) -> Result<(), Failure> {
-    show(file_name(path), scene::load(path)?, Vec3::Y, teller, serve)
+    show(file_name(path), scene::load(path)?, None, teller, serve)
+}
+
+/// Loads an environment, and serves two balls in it: a mirror and a white one.
+pub(super) fn open_environment(
+    path: &Path,
+    teller: &Teller<'_>,
+    serve: Serve<'_>,
+) -> Result<(), Failure> {
+    let sky = load_environment(path)?;
+    show(file_name(path), balls::balls(), Some(sky), teller, serve)
+}
+
+/// Loads the light of all directions.
+pub(crate) fn load_environment(path: &Path) -> Result<Environment, Failure> {
+    let file = raydsl_io::environment::load(path)?;
+    Ok(Environment::new(&file.texels, uvec2(file.width, file.height))?)
 }
 
 /// Loads triangles, of one rough material, and serves them.
@@ -51,7 +69,7 @@ pub(super) fn open_mesh(path: &Path, teller: &Teller<'_>, serve: Serve<'_>) -> R
         }],
         ..Default::default()
     };
-    show(file_name(path), file, Vec3::Y, teller, serve)
+    show(file_name(path), file, None, teller, serve)
 }
 
 /// The file's first camera that has a perspective, or one that sees all. Orbits turn around the
@@ -70,29 +88,34 @@ fn home(file: &File, bounds: Aabb, up: Vec3) -> Pose {
     all
 }
 
+/// Which way is up in files of surfaces.
+const UP: Vec3 = Vec3::Y;
+
+/// What has no lamps gets a sun beside the sky.
+fn sun() -> AnyLight {
+    let direction = (UP + vec3(0.5, 0.1, 0.4)).normalize_or(UP);
+    let irradiance = vec3(1.6, 1.5, 1.3);
+    AnyLight::Directional(DirectionalLight { direction, irradiance, sine: 0.02 })
+}
+
 fn show(
     name: String,
     file: File,
-    up: Vec3,
+    sky: Option<Environment>,
     teller: &Teller<'_>,
     serve: Serve<'_>,
 ) -> Result<(), Failure> {
-    let mut model = Model::new(&file);
+    let model = Model::new(&file);
     let bounds = model.bounds();
-    let home = home(&file, bounds, up);
+    let home = home(&file, bounds, UP);
     let names: Vec<String> = file.materials.iter().map(|m| m.name.clone()).collect();
     // The model has its own triangles and pictures.
     drop(file);
-    let is_dark = model.lights.is_empty();
-    if is_dark {
-        // What has no lamps gets a sun beside the sky.
-        let direction = (up + vec3(0.5, 0.1, 0.4)).normalize_or(up);
-        let irradiance = vec3(1.6, 1.5, 1.3);
-        let sun = DirectionalLight { direction, irradiance, sine: 0.02 };
-        model.lights.push(AnyLight::Directional(sun));
-    }
-    let sky = if is_dark { vec3(0.45, 0.52, 0.6) } else { Vec3::ZERO };
-    let environment = Environment::constant(sky)?;
+    let is_dark = model.lights.is_empty() && sky.is_none();
+    let own = if is_dark { vec3(0.45, 0.52, 0.6) } else { Vec3::ZERO };
+    let sky = sky.map_or_else(|| Environment::constant(own), Ok)?;
+    let sun = [sun()];
+    let lamps = if is_dark { &sun[..] } else { &model.lights[..] };
     let config = BuildConfig::default();
     let tree = Bvh::build_observed(&model.triangles, &model.positions, &config, |done| {
         teller.tell("building the tree", done)
@@ -105,26 +128,41 @@ fn show(
         ..Default::default()
     };
     let mesh = Mesh::new(&tree, attributes)?;
-    let lights = Lights::new(&model.lights, bounds)?.with_tree()?.with_environment(&environment);
     let size = format!(
         "{} triangles, {} materials, {} lights",
         model.triangles.len(),
         model.looks.len(),
         model.lights.len()
     );
-    let info =
-        Info { kind: Kind::Surface, name, size, home, range: Vec2::ZERO, histogram: Vec::new() };
-    let radius = 0.25 * bounds.size().length();
-    serve(info, &mut Surface { model: &model, mesh: &mesh, tree: &tree, lights, radius, names });
+    let info = Info::of_scene(Kind::Surface, name, size, home, bounds);
+    let own = OwnLight { lamps, sky: &sky, bounds };
+    // What is wrong with the file's own lights is said before anything is shown.
+    lit(lamps, &sky, bounds)?;
+    serve(info, &mut Surface { model: &model, mesh: &mesh, tree: &tree, own, names });
     Ok(())
+}
+
+/// The light that a file brings, or what it gets without any.
+struct OwnLight<'a> {
+    lamps: &'a [AnyLight],
+    sky: &'a Environment,
+    bounds: Aabb,
+}
+
+/// Joins lamps and a sky.
+fn lit<'a>(
+    lamps: &'a [AnyLight],
+    sky: &'a Environment,
+    bounds: Aabb,
+) -> Result<Lights<'a, AnyLight>, LightsError> {
+    Ok(Lights::new(lamps, bounds)?.with_tree()?.with_environment(sky))
 }
 
 struct Surface<'a> {
     model: &'a Model,
     mesh: &'a Mesh<'a, Bvh<'a, IndexedTriangle>>,
     tree: &'a Bvh<'a, IndexedTriangle>,
-    lights: Lights<'a, AnyLight>,
-    radius: f32,
+    own: OwnLight<'a>,
     names: Vec<String>,
 }
 
@@ -137,11 +175,16 @@ impl Subject for Surface<'_> {
     fn with_kernel(
         &mut self,
         look: &Look,
-        run: &mut dyn FnMut(&PictureKernel<'_>),
+        run: &mut dyn FnMut(&SubjectKernel<'_>),
     ) -> Result<(), String> {
-        let Self { model, mesh, tree, lights, radius, .. } = self;
-        let (mesh, tree, radius, most) = (*mesh, *tree, *radius, MOST_TESTS);
-        let lights = &*lights;
+        let Self { model, mesh, tree, own, .. } = self;
+        let (mesh, tree, most) = (*mesh, *tree, MOST_TESTS);
+        let radius = 0.25 * own.bounds.size().length();
+        let lights = match &look.sky {
+            Some(sky) => lit(&model.lights, sky.light(), own.bounds),
+            None => lit(own.lamps, own.sky, own.bounds),
+        };
+        let lights = &lights.map_err(|e| e.to_string())?;
         let (looks, texels, light_of) = (&model.looks[..], &model.texels[..], &model.light_of[..]);
         let options = PathOptions { masks: model.has_masks, ..PathOptions::new() };
         let limits = PathLimits::new(BOUNCES);
@@ -151,7 +194,7 @@ impl Subject for Surface<'_> {
         let is_path = look.mode == Mode::Path;
         let bounces = if look.mode == Mode::Whitted { BOUNCES } else { 0 };
         let shadows = true;
-        let kernel = kernel!(|ray: Ray, sampler: Sampler| {
+        let kernel = kernel!(counted |ray: Ray, sampler: Sampler| {
             let surface = |hit: Hit, point: ShadingPoint| {
                 let look = looks[point.material as usize];
                 met(texels, look, point, light_of[hit.prim_id as usize])

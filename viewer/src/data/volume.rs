@@ -1,25 +1,21 @@
 //! Grids of numbers, seen through a transfer function and cut open.
 
-mod cuts;
-mod histogram;
-
 use std::path::{Path, PathBuf};
 
 use glam::Affine3;
 use raydsl::prelude::*;
 use raydsl::volume::{
-    Centering, Cut, ExactCell, Grid, GridConfig, Midpoint, PreIntegrated, ShadedCell,
-    TransferFunction, Volume, VolumeLight, Voxel,
+    Centering, Cut, ExactCell, Grid, GridConfig, Midpoint, PreIntegrated, ShadedCell, Volume,
+    VolumeLight, Voxel,
 };
 use raydsl_examples::head::head as head_voxels;
 use raydsl_io::volume::{ByteOrder, VolumeFile, VoxelType, Voxels, load, load_raw, load_stack};
 
+use super::field::{BACKGROUND, Cuts, Field, bounds_of, histogram};
 use super::{Failure, Serve, file_name, layers};
 use crate::look::{Kind, Knot, Look, Mode, Show};
 use crate::pose::Pose;
-use crate::subject::{Info, Picked, PictureKernel, Subject};
-use cuts::Cuts;
-use histogram::{bounds_of, histogram};
+use crate::subject::{Info, Picked, Subject, SubjectKernel};
 
 /// The integrators of the viewer: WGSL has the one that is captured.
 #[derive(Clone, Copy, raydsl::Type)]
@@ -118,9 +114,10 @@ fn show(name: String, scan: VolumeFile, serve: Serve<'_>) -> Result<(), Failure>
     let home = Pose::of_box(bounds, Vec3::Z, vec3(0.75, 1.15, 0.55));
     let [x, y, z] = scan.size.to_array();
     let size = format!("{x} x {y} x {z} voxels, values from {} to {}", range.x, range.y);
-    let info = Info { kind: Kind::Volume, name, size, home, range, histogram };
+    let info = Info { kind: Kind::Volume, name, size, home, bounds, range, histogram };
     let (knots, volume) = (Vec::new(), None);
-    serve(info, &mut Scan { grid: &grid, range, bounds, voxel, knots, volume });
+    let field = Field { range, bounds };
+    serve(info, &mut Scan { grid: &grid, field, voxel, knots, volume });
     Ok(())
 }
 
@@ -136,8 +133,7 @@ fn bounds(grid: &Grid<'_, f32>) -> Aabb {
 
 struct Scan<'a> {
     grid: &'a Grid<'a, f32>,
-    range: Vec2,
-    bounds: Aabb,
+    field: Field,
     /// Size of a voxel.
     voxel: f32,
     /// Those of the volume.
@@ -149,13 +145,7 @@ impl<'a> Scan<'a> {
     /// Returns the volume with a transfer function, which is kept until that changes.
     fn volume(&mut self, knots: &[Knot]) -> Result<&Volume<'a, f32>, String> {
         if self.volume.is_none() || self.knots != knots {
-            let value = |k: &Knot| self.range.x + (self.range.y - self.range.x) * k.at;
-            let colors: Vec<_> = knots.iter().map(|k| (value(k), k.color)).collect();
-            let opacities: Vec<_> = knots.iter().map(|k| (value(k), k.opacity)).collect();
-            let unit = self.bounds.size().max_element() / 200.0;
-            let function = TransferFunction::new(&colors, &opacities, unit);
-            let function = function.map_err(|e| e.to_string())?;
-            self.volume = Some(Volume::new(self.grid, function));
+            self.volume = Some(Volume::new(self.grid, self.field.transfer(knots)?));
             self.knots = knots.to_vec();
         }
         self.volume.as_ref().ok_or_else(|| "there is no volume".to_owned())
@@ -167,10 +157,7 @@ impl<'a> Scan<'a> {
             Mode::Midpoint => Method::Midpoint(Midpoint::new(step)),
             Mode::PreIntegrated => Method::PreIntegrated(PreIntegrated::new(step)),
             Mode::ExactCell => Method::ExactCell(ExactCell::new()),
-            _ => {
-                let edge = (self.range.y - self.range.x) / self.voxel * 0.08;
-                Method::ShadedCell(ShadedCell::new(to_light(look.pose.up), edge.max(1e-30)))
-            }
+            _ => Method::ShadedCell(self.field.shaded(look, self.voxel)),
         }
     }
 }
@@ -178,28 +165,22 @@ impl<'a> Scan<'a> {
 /// The most steps of a pick: more than the diagonal of any grid has.
 const MOST_STEPS: f32 = 1e6;
 
-/// Direction to the light, fixed in the world: a kernel that follows the camera would be another
-/// one for each picture.
-fn to_light(up: Vec3) -> Vec3 {
-    (up + vec3(0.4, 0.7, 0.3)).normalize_or(up)
-}
-
 impl Subject for Scan<'_> {
     fn with_kernel(
         &mut self,
         look: &Look,
-        run: &mut dyn FnMut(&PictureKernel<'_>),
+        run: &mut dyn FnMut(&SubjectKernel<'_>),
     ) -> Result<(), String> {
         if look.show == Show::Cost {
             return Err("a volume has no tree whose tests are counted: show picture".to_owned());
         }
         let method = self.method(look);
-        let cuts = Cuts::new(&look.cuts, self.bounds);
+        let cuts = Cuts::new(&look.cuts, self.field.bounds);
         let tools = cuts.scene();
         let is_whole = look.cuts.is_empty();
-        let background = vec3(0.015, 0.018, 0.026);
+        let background = BACKGROUND;
         let volume = self.volume(&look.knots)?;
-        let kernel = kernel!(|ray: Ray, _sampler: Sampler| {
+        let kernel = kernel!(counted |ray: Ray, _sampler: Sampler| {
             let mut light = VolumeLight::new();
             let mut cut = Cut::new(&tools, ray);
             let mut rest = if is_whole { Some(ray) } else { cut.next_outside(&tools) };
@@ -222,7 +203,7 @@ impl Subject for Scan<'_> {
     /// Finds where half of the light is absorbed, by steps of half a voxel.
     fn pick(&mut self, look: &Look, ray: Ray) -> Option<Picked> {
         let (enter, leave) = self.grid.span(ray);
-        let cuts = Cuts::new(&look.cuts, self.bounds);
+        let cuts = Cuts::new(&look.cuts, self.field.bounds);
         let (grid, step) = (self.grid, 0.5 * self.voxel);
         // A volume that cannot be had shows nothing: the picture's error says why.
         let transfer = self.volume(&look.knots).ok()?.transfer();

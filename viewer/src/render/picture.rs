@@ -24,6 +24,10 @@ pub(super) struct Picture {
     /// Whether a coarse one is still to be made.
     pub(super) is_coarse_due: bool,
     pub(super) is_failed: bool,
+    /// Whether its goal is reached, or given up.
+    pub(super) is_settled: bool,
+    /// The error, where it is known better than from the film's samples.
+    pub(super) error: Option<f32>,
     pub(super) shown_at: Option<Instant>,
     /// Milliseconds of a sample of the last pass.
     pub(super) ms: f64,
@@ -41,6 +45,8 @@ impl Picture {
             samples: 0,
             is_coarse_due: false,
             is_failed: false,
+            is_settled: false,
+            error: None,
             shown_at: None,
             ms: 0.0,
             next: 1,
@@ -74,6 +80,7 @@ pub(crate) fn is_same_kernel(a: &Look, b: &Look) -> bool {
         && a.pose.up == b.pose.up
         && a.knots == b.knots
         && a.cuts == b.cuts
+        && a.sky == b.sky
 }
 
 /// Returns the root mean square of the standard errors of a film's pixels.

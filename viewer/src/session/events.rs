@@ -1,7 +1,9 @@
 //! What becomes of what was asked for.
 
-use raydsl::prelude::*;
 use std::thread::JoinHandle;
+
+use raydsl::prelude::*;
+use raydsl_report::Utilisation;
 
 use super::Session;
 use crate::link::Event;
@@ -74,6 +76,17 @@ impl Session {
                 self.questions = self.questions.saturating_sub(1);
                 self.take_wgsl(text);
             }
+            Event::Lanes(found) if is_current => {
+                self.questions = self.questions.saturating_sub(1);
+                self.take_lanes(found);
+            }
+            Event::Nearer { number, progress } if is_current && number == self.number => {
+                self.note_nearer(progress);
+            }
+            Event::Reached { number, reached } if is_current && number == self.number => {
+                self.note_reached(reached);
+            }
+            Event::Sky(sky) => self.take_sky(id, sky),
             Event::Ended(panic) => self.note_ended(id, panic),
             // Of data, or of a picture, that nobody wants any more.
             _ => {}
@@ -91,6 +104,20 @@ impl Session {
                 self.wgsl = Some(text);
             }
             Err(message) => self.refuse(&format!("no kernel to print: {message}")),
+        }
+    }
+
+    /// Takes the answer to the oldest question for lanes.
+    fn take_lanes(&mut self, found: Result<Utilisation, String>) {
+        let file = self.lanes_files.pop_front().flatten();
+        match found {
+            Ok(found) => {
+                if let Some(name) = file {
+                    self.write_text(&name, found.to_string());
+                }
+                self.lanes = Some(found);
+            }
+            Err(message) => self.refuse(&format!("no lanes to count: {message}")),
         }
     }
 
@@ -128,12 +155,16 @@ impl Session {
             self.look.show = Show::Picture;
             self.look.knots = preset("tissue").unwrap_or_default();
             self.look.mode = Mode::of(info.kind)[0];
+            self.look.sky = None;
         }
         self.current = Some(data);
         self.questions = 0;
         self.wgsl_files.clear();
+        self.lanes_files.clear();
         self.picked = None;
         self.wgsl = None;
+        self.lanes = None;
+        self.pending_sky = None;
         self.info = Some(info);
         self.restart();
     }

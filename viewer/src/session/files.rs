@@ -7,9 +7,10 @@ use std::thread::JoinHandle;
 use super::Session;
 use crate::frame::{save, write_png};
 use crate::link::Question;
+use crate::paraview;
 
 /// Returns the name of a picture, which says that it is PNG.
-fn png_name(name: &str) -> String {
+pub(super) fn png_name(name: &str) -> String {
     let is_png = Path::new(name).extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
     if is_png { name.to_owned() } else { format!("{name}.png") }
 }
@@ -51,6 +52,39 @@ impl Session {
         end
     }
 
+    /// Asks how many lanes run, for a file or only to be shown.
+    pub(super) fn ask_lanes(&mut self, file: Option<&str>) -> Result<(), String> {
+        self.ask(Question::Lanes(Arc::new(self.look.clone())))?;
+        self.lanes_files.push_back(file.map(str::to_owned));
+        Ok(())
+    }
+
+    /// Asks how many lanes run, which [`lanes`](Self::lanes) returns when it is known.
+    ///
+    /// # Errors
+    ///
+    /// If nothing is open, which is in the log too.
+    pub fn apply_lanes(&mut self) -> Result<(), String> {
+        let end = self.ask_lanes(None);
+        if let Err(message) = &end {
+            self.refuse(message);
+        }
+        end
+    }
+
+    /// Takes the first transfer function of a file of ParaView, which is small.
+    pub(super) fn load_transfer(&mut self, path: &Path) -> Result<(), String> {
+        let info = self.info.as_ref().filter(|info| info.kind.is_field());
+        let range = info.ok_or("only volumes and cells have a transfer function")?.range;
+        let presets = raydsl_io::paraview::load(path).map_err(|e| e.to_string())?;
+        let preset = presets.first().ok_or("the file has none")?;
+        let knots = paraview::knots(preset, range)?;
+        self.log.note(format!("transfer function {}: {} knots", preset.name, knots.len()));
+        let look = crate::look::Look { knots, ..self.look.clone() };
+        self.set_look(look);
+        Ok(())
+    }
+
     /// Writes the newest picture, on a thread: it takes some time.
     pub(super) fn write_picture(&mut self, name: &str) -> Result<(), String> {
         let frame = self.frame.clone().ok_or("there is no picture yet")?;
@@ -60,7 +94,9 @@ impl Session {
         if frame.is_coarse || frame.texture.is_some() {
             return Err("the picture is not sharp yet: hold still".to_owned());
         }
-        self.write(&png_name(name), move |path| frame.write_png(path));
+        let (rgba, size) = (self.with_menu(&frame), frame.size);
+        self.add_to_film(&rgba, size)?;
+        self.write(&png_name(name), move |path| write_png(path, &rgba, size));
         Ok(())
     }
 
@@ -73,7 +109,7 @@ impl Session {
         self.write(name, move |path| save(path, |part| std::fs::write(part, text)));
     }
 
-    fn write(
+    pub(super) fn write(
         &mut self,
         name: &str,
         run: impl FnOnce(&Path) -> Result<(), String> + Send + 'static,

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use raydsl_report::Utilisation;
+
 use super::Session;
 use crate::device::Device;
 use crate::frame::Frame;
@@ -72,6 +74,11 @@ impl Session {
         self.wgsl.as_deref()
     }
 
+    /// Returns how many lanes of packets run, if that was asked for.
+    pub fn lanes(&self) -> Option<&Utilisation> {
+        self.lanes.as_ref()
+    }
+
     /// Returns the device of the WGSL variant.
     pub fn device(&self) -> &Device {
         &self.device
@@ -89,8 +96,8 @@ impl Session {
         self.current.is_none() || self.failed == Some(self.number)
     }
 
-    /// Returns whether a question about the picture is not answered yet.
+    /// Returns whether a question about the picture is not answered yet, or a file of light not read.
     pub fn is_asking(&self) -> bool {
-        self.questions > 0 && self.current.is_some()
+        (self.questions > 0 && self.current.is_some()) || self.pending_sky.is_some()
     }
 }

@@ -1,10 +1,12 @@
 //! Mouse and keys as actions.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Key, PointerButton, Response};
 use raydsl::prelude::*;
-use raydsl_viewer::{Action, Kind, Mode, Session, Show};
+use raydsl_viewer::{Action, CutObject, Kind, Mode, Session, Show};
+
+use super::picture::Place;
 
 /// Degrees of a drag over the whole height.
 const DEGREES: f32 = 180.0;
@@ -12,12 +14,16 @@ const DEGREES: f32 = 180.0;
 const SPEED: f32 = 0.7;
 
 /// The keys, and what they do.
-pub(crate) const KEYS: [(&str, &str); 14] = [
+pub(crate) const KEYS: [(&str, &str); 18] = [
     ("drag", "turn around the middle"),
     ("right drag", "move sideways"),
     ("middle drag", "look around"),
     ("wheel", "nearer and farther"),
     ("click", "pick: what is there?"),
+    ("B", "cut a ball out of a volume or cells"),
+    ("drag a ring", "move a cut object"),
+    ("O", "choose files"),
+    ("V", "menu; the mouse points, a click chooses"),
     ("W A S D Q E", "fly ahead, left, back, right, down, up"),
     ("arrows", "turn around the middle"),
     ("H", "see all"),
@@ -29,22 +35,47 @@ pub(crate) const KEYS: [(&str, &str); 14] = [
     ("Ctrl+Q", "quit"),
 ];
 
-/// Files that were dropped on the window: the first is opened, and the others are time steps.
-pub(crate) fn dropped(ctx: &egui::Context, actions: &mut Vec<Action>) {
-    ctx.input(|input| {
-        let mut files = input.raw.dropped_files.iter().map(|file| file.path().to_path_buf());
-        actions.extend(files.next().map(Action::Open));
-        actions.extend(files.map(Action::Add));
-    });
+/// The ball that is cut out at first, from the near side.
+pub(crate) const BALL: CutObject = CutObject::Ball { center: vec3(0.65, 0.75, 0.7), radius: 0.3 };
+
+/// Returns what a file is opened by: data, light for the surface that is open, or the transfer function
+/// of what is open.
+pub(crate) fn opened(session: &Session, path: PathBuf) -> Action {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let kind = session.info().map(|info| info.kind);
+    match extension.as_str() {
+        "json" => Action::Transfer(path),
+        "exr" | "hdr" if kind == Some(Kind::Surface) => Action::Environment(Some(path)),
+        _ => Action::Open(path),
+    }
 }
 
-/// What the mouse does over the picture; `pixel` gives the picture's pixel at a place.
-pub(crate) fn mouse(
-    ui: &egui::Ui,
-    response: &Response,
-    pixel: impl Fn(egui::Pos2) -> Option<(u32, u32)>,
-    actions: &mut Vec<Action>,
-) {
+/// Returns what several files are opened by: the first is opened, and other data are time steps.
+pub(crate) fn opened_all(
+    session: &Session,
+    paths: impl IntoIterator<Item = PathBuf>,
+) -> Vec<Action> {
+    let mut has_opened = false;
+    let action = |path: PathBuf| match opened(session, path) {
+        Action::Open(path) if has_opened => Action::Add(path),
+        action => {
+            has_opened |= matches!(action, Action::Open(_));
+            action
+        }
+    };
+    paths.into_iter().map(action).collect()
+}
+
+/// Files that were dropped on the window.
+pub(crate) fn dropped(ctx: &egui::Context, session: &Session, actions: &mut Vec<Action>) {
+    let paths: Vec<PathBuf> = ctx.input(|input| {
+        input.raw.dropped_files.iter().map(|file| file.path().to_path_buf()).collect()
+    });
+    actions.extend(opened_all(session, paths));
+}
+
+/// What the mouse does over the picture.
+pub(crate) fn mouse(ui: &egui::Ui, response: &Response, place: &Place, actions: &mut Vec<Action>) {
     let height = response.rect.height().max(1.0);
     let by = response.drag_delta() / height;
     if by != egui::Vec2::ZERO {
@@ -64,10 +95,16 @@ pub(crate) fn mouse(
         }
     }
     if response.clicked()
-        && let Some((x, y)) = response.interact_pointer_pos().and_then(pixel)
+        && let Some((x, y)) = response.interact_pointer_pos().and_then(|at| place.whole_pixel(at))
     {
         actions.push(Action::Pick(x, y));
     }
+}
+
+/// Whether the key is pressed that opens the dialog of files.
+pub(crate) fn is_choosing_files(ui: &egui::Ui) -> bool {
+    !ui.ctx().egui_wants_keyboard_input()
+        && ui.input(|input| !input.modifiers.command && input.key_pressed(Key::O))
 }
 
 /// What the keys do, unless a text is being typed; `pictures` counts those that were written.
@@ -104,7 +141,9 @@ pub(crate) fn keys(
     if moved != Vec3::ZERO || turned != (0.0, 0.0) {
         ui.ctx().request_repaint();
     }
-    for key in [Key::H, Key::M, Key::C, Key::OpenBracket, Key::CloseBracket, Key::P, Key::F12] {
+    for key in
+        [Key::H, Key::M, Key::C, Key::V, Key::OpenBracket, Key::CloseBracket, Key::P, Key::F12]
+    {
         if pressed(key) {
             actions.extend(of_key(key, session, pictures));
         }
@@ -135,8 +174,11 @@ fn of_key(key: Key, session: &Session, pictures: &mut usize) -> Option<Action> {
             Action::Mode(modes[(at + 1) % modes.len()])
         }
         Key::C if look.show == Show::Cost => Action::Show(Show::Picture),
-        Key::C if session.info()?.kind == Kind::Volume => return None,
+        Key::C if session.info()?.kind.is_field() => return None,
         Key::C => Action::Show(Show::Cost),
+        Key::B if session.info()?.kind.is_field() => Action::AddCut(BALL),
+        Key::B => return None,
+        Key::V => Action::Menu(session.menu().is_none()),
         Key::OpenBracket => Action::Step(session.steps().1.checked_sub(1)?),
         Key::CloseBracket => Action::Step(session.steps().1 + 1),
         key => {

@@ -1,6 +1,9 @@
 //! The window: input becomes actions, and pictures become textures.
 
+mod dialog;
+mod handles;
 mod input;
+mod menu;
 mod panels;
 mod picture;
 mod transfer;
@@ -18,8 +21,24 @@ use raydsl_viewer::{Action, Config, Device, Next, Player, Session};
 use picture::Shown;
 
 /// The panels, in order.
-pub(crate) const PANELS: [&str; 10] =
-    ["open", "look", "statistics", "transfer", "cuts", "pick", "views", "log", "keys", "wgsl"];
+pub(crate) const PANELS: [&str; 13] = [
+    "open",
+    "look",
+    "statistics",
+    "error",
+    "transfer",
+    "cuts",
+    "pick",
+    "views",
+    "animation",
+    "lanes",
+    "log",
+    "keys",
+    "wgsl",
+];
+
+/// Those that are open at first.
+const OPEN: [&str; 7] = ["open", "look", "statistics", "transfer", "cuts", "pick", "log"];
 
 /// What a window begins with.
 pub(crate) struct Options {
@@ -34,6 +53,7 @@ pub(crate) struct Options {
 /// The application.
 pub(crate) struct Viewer {
     session: Session,
+    /// A script, or an animation that was asked for in the window.
     player: Option<Player>,
     /// Whether a script chooses the size of the picture.
     is_played: bool,
@@ -42,6 +62,9 @@ pub(crate) struct Viewer {
     /// What is typed into panels.
     texts: panels::Texts,
     transfer: transfer::Editor,
+    dialog: dialog::Dialog,
+    handles: handles::Handles,
+    menu: menu::ShownMenu,
     screenshots: (Sender<Screenshot>, Receiver<Screenshot>),
     awaited_screenshots: usize,
     pictures: usize,
@@ -158,10 +181,13 @@ impl Viewer {
             session,
             is_played: options.player.is_some(),
             player: options.player,
-            panels: ["open", "look", "statistics", "transfer", "cuts", "pick", "log"].into(),
+            panels: OPEN.into(),
             shown: Shown::default(),
             texts: Default::default(),
             transfer: Default::default(),
+            dialog: Default::default(),
+            handles: Default::default(),
+            menu: Default::default(),
             screenshots: channel(),
             awaited_screenshots: 0,
             pictures: 0,
@@ -178,10 +204,12 @@ impl Viewer {
             Action::Panel(name, is_open) => match PANELS.iter().find(|panel| *panel == name) {
                 Some(panel) if *is_open => {
                     self.panels.insert(panel);
-                    if *panel == "wgsl" {
-                        // Without data there is no text, which the log says.
-                        let _ = self.session.apply_wgsl();
-                    }
+                    // Without data there is no text, which the log says.
+                    let _ = match *panel {
+                        "wgsl" => self.session.apply_wgsl(),
+                        "lanes" => self.session.apply_lanes(),
+                        _ => Ok(()),
+                    };
                 }
                 Some(panel) => {
                     self.panels.remove(panel);
@@ -196,6 +224,14 @@ impl Viewer {
                     let _ = sender.send(Screenshot { name, image });
                     again.request_repaint();
                 });
+            }
+            Action::Animate(_) if self.player.is_none() => {
+                self.player = Some(Player::of(action.clone()));
+            }
+            Action::Cancel if self.player.is_some() && !self.is_played => {
+                self.player = None;
+                // What has been recorded so far is written.
+                let _ = self.session.apply(&Action::Record(None));
             }
             Action::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             action => {
@@ -214,6 +250,17 @@ impl Viewer {
         }
     }
 
+    /// Opens what was chosen in a dialog.
+    fn take_chosen(&mut self, actions: &mut Vec<Action>) {
+        match self.dialog.take() {
+            Some(chosen) if chosen.is_empty() => {
+                self.session.note("no file was chosen: type its name, or drop it".to_owned());
+            }
+            Some(chosen) => actions.extend(input::opened_all(&self.session, chosen)),
+            None => {}
+        }
+    }
+
     /// Plays what can be played of a script.
     fn play(&mut self, ctx: &egui::Context) {
         // Panels slide: a screenshot is one of the window at rest.
@@ -225,7 +272,9 @@ impl Viewer {
                 Next::Asks(action) => self.apply(ctx, &action),
                 Next::Done => {
                     self.player = None;
-                    ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+                    if self.is_played {
+                        ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+                    }
                 }
             }
         }
@@ -252,7 +301,8 @@ impl eframe::App for Viewer {
         let begin = self.began.take().unwrap_or_else(Instant::now);
         let ctx = ui.ctx().clone();
         let mut actions = Vec::new();
-        input::dropped(&ctx, &mut actions);
+        input::dropped(&ctx, &self.session, &mut actions);
+        self.take_chosen(&mut actions);
         panels::show(self, ui, &mut actions);
         self.show_picture(ui, frame, &mut actions);
         for action in &actions {

@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use eframe::egui;
 use eframe::egui_wgpu::RenderState;
+use raydsl::prelude::*;
 use raydsl_viewer::{Action, Frame};
 
+use super::dialog::Ask;
 use super::{Viewer, input};
 
 /// The picture as a texture.
@@ -74,7 +76,10 @@ impl Viewer {
         let response = ui.allocate_rect(rect, egui::Sense::click_and_drag());
         ui.painter().rect_filled(rect, 0.0, egui::Color32::from_gray(12));
         input::keys(ui, &self.session, &mut self.pictures, actions);
-        if !self.is_played {
+        if input::is_choosing_files(ui) {
+            self.dialog.open(Ask::Files, ui.ctx());
+        }
+        if !self.is_played && self.player.is_none() {
             self.fit(rect, ui.ctx().pixels_per_point(), actions);
         }
         if let Some(newest) = self.session.frame() {
@@ -83,7 +88,7 @@ impl Viewer {
         let (width, height) = self.session.look().size;
         let place = fitted(rect, (width as f32, height as f32));
         let Some(id) = self.shown.id() else {
-            let text = "Drop a file here, or type its name at the left.";
+            let text = "Drop a file here, choose one (O), or type its name at the left.";
             let middle = egui::Align2::CENTER_CENTER;
             let font = egui::FontId::proportional(16.0);
             ui.painter().text(rect.center(), middle, text, font, egui::Color32::GRAY);
@@ -91,13 +96,14 @@ impl Viewer {
         };
         let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
         ui.painter().image(id, place, whole, egui::Color32::WHITE);
-        let pixel = |at: egui::Pos2| {
-            let share = (at - place.min) / place.size();
-            let inside = (0.0..1.0).contains(&share.x) && (0.0..1.0).contains(&share.y);
-            let (x, y) = (share.x * width as f32, (1.0 - share.y) * height as f32);
-            inside.then(|| ((x as u32).min(width - 1), (y as u32).min(height - 1)))
-        };
-        input::mouse(ui, &response, pixel, actions);
+        let place = Place { rect: place, size: (width, height) };
+        self.menu.show(&self.session, ui, &place);
+        let is_dragging = self.handles.show(&self.session, ui, &response, &place, actions);
+        // A script has its own wand.
+        let is_choosing = !self.is_played && self.menu.point(&response, &place, actions);
+        if !is_dragging && !is_choosing {
+            input::mouse(ui, &response, &place, actions);
+        }
     }
 
     /// Makes the picture as large as its place.
@@ -107,6 +113,33 @@ impl Viewer {
         if size != self.session.look().size {
             actions.push(Action::Size(size.0, size.1));
         }
+    }
+}
+
+/// Where a picture is on the screen, and how many pixels it has.
+pub(crate) struct Place {
+    pub(crate) rect: egui::Rect,
+    size: (u32, u32),
+}
+
+impl Place {
+    /// Returns a place of the picture in pixels from the lower left; it may be outside.
+    pub(crate) fn pixel(&self, at: egui::Pos2) -> Vec2 {
+        let share = (at - self.rect.min) / self.rect.size();
+        vec2(share.x, 1.0 - share.y) * vec2(self.size.0 as f32, self.size.1 as f32)
+    }
+
+    /// Returns the pixel at a place, if there is one.
+    pub(crate) fn whole_pixel(&self, at: egui::Pos2) -> Option<(u32, u32)> {
+        let Vec2 { x, y } = self.pixel(at).floor();
+        let is_inside = x >= 0.0 && y >= 0.0 && x < self.size.0 as f32 && y < self.size.1 as f32;
+        is_inside.then_some((x as u32, y as u32))
+    }
+
+    /// Returns where a place of the picture is on the screen.
+    pub(crate) fn screen(&self, pixel: Vec2) -> egui::Pos2 {
+        let (width, height) = (self.size.0 as f32, self.size.1 as f32);
+        self.rect.lerp_inside(egui::vec2(pixel.x / width, 1.0 - pixel.y / height))
     }
 }
 

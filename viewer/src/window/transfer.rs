@@ -2,9 +2,7 @@
 
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, Stroke, Ui};
 use raydsl::prelude::*;
-use raydsl_viewer::{Action, Info, Kind, Knot, Session};
-
-use super::panels::presets;
+use raydsl_viewer::{Action, Info, Knot, PRESETS, Session};
 
 /// The editor: which knot is being moved or coloured.
 #[derive(Default)]
@@ -18,9 +16,9 @@ const REACH: f32 = 10.0;
 impl Editor {
     /// Shows the editor.
     pub(crate) fn show(&mut self, session: &Session, ui: &mut Ui, actions: &mut Vec<Action>) {
-        let info = session.info().filter(|info| info.kind == Kind::Volume);
+        let info = session.info().filter(|info| info.kind.is_field());
         let Some(info) = info else {
-            ui.label("Volumes have one.");
+            ui.label("Volumes and cells have one.");
             return;
         };
         let knots = &session.look().knots;
@@ -135,4 +133,15 @@ fn draw(ui: &Ui, rect: Rect, info: &Info, knots: &[Knot], chosen: Option<usize>)
         let radius = if chosen == Some(i) { 6.0 } else { 4.5 };
         painter.circle(place(knot), radius, shown(knot.color), Stroke::new(1.0, Color32::WHITE));
     }
+}
+
+/// The buttons of ready-made transfer functions.
+fn presets(ui: &mut Ui, actions: &mut Vec<Action>) {
+    ui.horizontal(|ui| {
+        for name in PRESETS {
+            if ui.button(name).clicked() {
+                actions.push(Action::Preset(name.to_owned()));
+            }
+        }
+    });
 }

@@ -1,4 +1,4 @@
-//! What a volume is cut by.
+//! What a field is cut by.
 
 use raydsl::kernel;
 use raydsl::prelude::*;
@@ -8,14 +8,14 @@ use crate::look::CutObject;
 
 /// A ball that cuts.
 #[primitive(sphere(center, radius))]
-pub(super) struct Ball {
+pub(in crate::data) struct Ball {
     center: Vec3,
     radius: f32,
 }
 
 /// Half of space: all that is behind a plane.
 #[primitive(plane(normal, offset))]
-pub(super) struct Half {
+pub(in crate::data) struct Half {
     normal: Vec3,
     offset: f32,
 }
@@ -41,20 +41,20 @@ surface!(Ball Half);
 
 /// Everything that cuts, as one scene.
 #[derive(Scene)]
-pub(super) struct Tools<'a> {
+pub(in crate::data) struct Tools<'a> {
     balls: &'a [Ball],
     halves: &'a [Half],
 }
 
 /// Cut objects in the world.
-pub(super) struct Cuts {
+pub(in crate::data) struct Cuts {
     balls: Vec<Ball>,
     halves: Vec<Half>,
 }
 
 impl Cuts {
     /// Places cut objects in a volume's box.
-    pub(super) fn new(cuts: &[CutObject], bounds: Aabb) -> Self {
+    pub(in crate::data) fn new(cuts: &[CutObject], bounds: Aabb) -> Self {
         let (min, size) = (bounds.min, bounds.size());
         let (mut balls, mut halves) = (Vec::new(), Vec::new());
         for cut in cuts {
@@ -73,12 +73,12 @@ impl Cuts {
     }
 
     /// Returns them as a scene.
-    pub(super) fn scene(&self) -> Tools<'_> {
+    pub(in crate::data) fn scene(&self) -> Tools<'_> {
         Tools { balls: &self.balls, halves: &self.halves }
     }
 
     /// Returns whether a point is cut away.
-    pub(super) fn has(&self, p: Vec3) -> bool {
+    pub(in crate::data) fn has(&self, p: Vec3) -> bool {
         self.balls.iter().any(|b| p.distance(b.center) < b.radius)
             || self.halves.iter().any(|h| h.normal.dot(p) < h.offset)
     }
