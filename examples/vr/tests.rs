@@ -69,7 +69,7 @@ fn depths_hide_both_ways() {
             vec![[corner(-99.0, -99.0), corner(99.0, -99.0), corner(0.0, 99.0)]]
         };
         let mut world = World::new();
-        for (z, most) in [(2.5, 1.0), (-4.0, 0.35)] {
+        for (z, most) in [(2.5, 1.0), (-4.0, 0.8)] {
             world.drawn = wall(z);
             let (image, _) =
                 Hybrid { world: &world, ..*hybrid }.frame(&eye, SIZE, Variant::Scalar)?;

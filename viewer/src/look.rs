@@ -24,6 +24,14 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// Returns the name of the transfer function that data have at first.
+    pub const fn first_preset(self) -> &'static str {
+        match self {
+            Self::Cells => "heat",
+            _ => "tissue",
+        }
+    }
+
     /// Returns whether the data are seen through a transfer function, and can be cut.
     pub const fn is_field(self) -> bool {
         matches!(self, Self::Volume | Self::Cells)
@@ -257,7 +265,7 @@ impl Default for Look {
 }
 
 /// The names of the ready-made transfer functions.
-pub const PRESETS: [&str; 3] = ["tissue", "glass", "bone"];
+pub const PRESETS: [&str; 4] = ["tissue", "glass", "bone", "heat"];
 
 /// Returns a ready-made transfer function.
 pub fn preset(name: &str) -> Option<Vec<Knot>> {
@@ -278,6 +286,14 @@ pub fn preset(name: &str) -> Option<Vec<Knot>> {
             (0.55, 0.04, vec3(0.6, 0.4, 0.32)),
             (0.62, 0.7, vec3(0.84, 0.79, 0.68)),
             (1.0, 0.9, bone),
+        ],
+        // Black, purple, orange and pale yellow: what is least is not seen.
+        "heat" => &[
+            (0.12, 0.0, vec3(0.02, 0.005, 0.08)),
+            (0.3, 0.12, vec3(0.16, 0.015, 0.19)),
+            (0.55, 0.3, vec3(0.55, 0.04, 0.07)),
+            (0.8, 0.6, vec3(0.95, 0.28, 0.01)),
+            (1.0, 0.9, vec3(0.98, 0.95, 0.4)),
         ],
         "bone" => &[(0.72, 0.0, bone), (0.8, 0.9, bone), (1.0, 0.9, Vec3::ONE)],
         _ => return None,

@@ -153,7 +153,7 @@ impl Session {
             self.look.pose = info.home;
             self.look.cuts.clear();
             self.look.show = Show::Picture;
-            self.look.knots = preset("tissue").unwrap_or_default();
+            self.look.knots = preset(info.kind.first_preset()).unwrap_or_default();
             self.look.mode = Mode::of(info.kind)[0];
             self.look.sky = None;
         }
