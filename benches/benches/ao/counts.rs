@@ -21,7 +21,7 @@ pub(crate) fn print(name: &str, trees: &[Tree<'_>], work: &Workload, only: &[Row
         "row", "beams", "beam", "nodes", "blocks", "x reg.", "x reg.", "nodes", "blocks", "hits"
     );
     let widest = format!("{} wide", Variant::widest().name());
-    for mut contender in own::contenders(trees, work, 1) {
+    for mut contender in own::contenders(trees, work, 1, None) {
         let is_single = contender.row == Row::SingleClosest && contender.mode == "scalar wide";
         let is_compared = Row::COMPARED.contains(&contender.row);
         let is_packet =

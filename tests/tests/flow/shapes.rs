@@ -46,7 +46,7 @@ fn chains_have_no_gaps() {
         let least = along.fold(f32::INFINITY, f32::min);
         let first = (0..1600).find(|i| distance(ray.at(*i as f32 * 0.005)) < 0.0);
         // Between samples a ray may graze the tube.
-        if least < -1e-4 || least > 1e-2 {
+        if !(-1e-4..=1e-2).contains(&least) {
             assert_eq!(hit.is_hit, least < 0.0, "{least}");
         }
         if hit.is_hit {

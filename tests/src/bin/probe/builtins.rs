@@ -231,8 +231,8 @@ fn ulp_of(x: f64) -> f64 {
 
 pub(crate) fn print(rows: &[Row]) {
     println!(
-        "\n{:<22}{:<18}{:>10}{:>12}{:>12}  {:<17}{}",
-        "builtin", "inputs", "nearest %", "worst, ulp", "absolute", "WGSL's bound", "verdict"
+        "\n{:<22}{:<18}{:>10}{:>12}{:>12}  {:<17}verdict",
+        "builtin", "inputs", "nearest %", "worst, ulp", "absolute", "WGSL's bound"
     );
     for row in rows {
         let verdict = match row.holds {

@@ -282,7 +282,7 @@ fn is_same(a: f32, b: f32) -> bool {
 }
 
 pub(crate) fn print(rows: &[Row]) {
-    println!("\n{:<27}{:<15}{}", "expression", "path", "becomes, % of inputs that tell");
+    println!("\n{:<27}{:<15}becomes, % of inputs that tell", "expression", "path");
     for row in rows {
         let mut shares = row.shares.clone();
         shares.push(("other", row.other));
