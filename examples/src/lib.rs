@@ -1,6 +1,7 @@
 //! Shared code of the example programs.
 
 pub mod args;
+pub mod batches;
 pub mod blob;
 pub mod blocks;
 pub mod cloud;

@@ -1,4 +1,5 @@
-//! Point clouds: a procedural landscape, and what it takes to render points as spheres.
+//! Point clouds: a procedural landscape, as points and as triangles, and what it takes to render
+//! points as spheres.
 
 mod error;
 mod procedural;
@@ -10,6 +11,6 @@ mod view;
 mod tests;
 
 pub use error::ScaleError;
-pub use procedural::{Landscape, procedural};
+pub use procedural::{Cover, Facets, Landscape, facets, procedural};
 pub use scale::{Scaled, scale};
 pub use view::{View, suggested_view};

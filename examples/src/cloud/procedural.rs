@@ -1,6 +1,7 @@
 //! A landscape made in code: what an aerial laser scan of a village might hold.
 
 mod building;
+mod facets;
 mod landmarks;
 mod light;
 mod noise;
@@ -9,6 +10,8 @@ mod plants;
 mod shape;
 mod terrain;
 mod village;
+
+pub use self::facets::{Cover, Facets, facets};
 
 use std::ops::Range;
 
