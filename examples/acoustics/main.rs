@@ -142,7 +142,7 @@ fn convergence(
         let response = heard.response();
         let error = relative_error(&response, truth, first);
         let scaled = error * f64::from(rays).sqrt();
-        let z2 = mean_z2(&heard, truth, first);
+        let z2 = mean_z2(&heard, truth, first, (bins.count / 40).max(1));
         let lost = heard.lost;
         println!("{rays:10} {seconds:8.3} {:8.2} {scaled:21.1} {z2:8.2} {lost:5}", 100.0 * error);
         steps.push(Step { rays, response, error });
@@ -152,12 +152,18 @@ fn convergence(
     steps
 }
 
-/// The mean square of errors in standard errors, in the bins from `first` on that rays came to.
-fn mean_z2(heard: &paths::Heard, truth: &[f64], first: usize) -> f64 {
+/// The mean square of errors in standard errors, in groups of `width` bins from `first` on. In a group
+/// to which next to no ray came, the standard error is not known.
+fn mean_z2(heard: &paths::Heard, truth: &[f64], first: usize, width: usize) -> f64 {
     let response = heard.response();
-    let of_bin = |i: usize| (response[i] - truth[i], heard.standard_error(i..i + 1));
-    let bins = (first..truth.len()).map(of_bin).filter(|(_, error)| *error > 0.0);
-    let z2: Vec<f64> = bins.map(|(off, error)| (off / error).powi(2)).collect();
+    let starts = (first..=truth.len().saturating_sub(width)).step_by(width);
+    let of_group = |start: usize| {
+        let group = start..start + width;
+        let sum = |values: &[f64]| values[group.clone()].iter().sum::<f64>();
+        (sum(&response) - sum(truth), heard.standard_error(group.clone()))
+    };
+    let groups = starts.map(of_group).filter(|(_, error)| *error > 0.0);
+    let z2: Vec<f64> = groups.map(|(off, error)| (off / error).powi(2)).collect();
     z2.iter().sum::<f64>() / z2.len() as f64
 }
 
@@ -200,7 +206,9 @@ fn panels(room: &Room, args: &Args, truth: &[f64], steps: &[Step]) -> [Panel; 3]
     };
     let errors = steps.iter().map(|s| (f64::from(s.rays).log10(), (100.0 * s.error).log10()));
     let errors: Vec<_> = errors.collect();
-    let root = errors.iter().map(|p| (p.0, errors[0].1 - 0.5 * (p.0 - errors[0].0))).collect();
+    // Through the last point: of few rays some bins have heard none.
+    let end = errors[errors.len() - 1];
+    let root = errors.iter().map(|p| (p.0, end.1 + 0.5 * (end.0 - p.0))).collect();
     let ticks = |values: &[f64]| values.iter().map(|v| (*v, format!("{v}"))).collect();
     let decades = |range: std::ops::RangeInclusive<i32>, name: fn(i32) -> String| {
         range.map(|e| (f64::from(e), name(e))).collect::<Vec<_>>()

@@ -76,7 +76,7 @@ impl Scanner {
         let line = pulse / self.line_pulses;
         let of_line = pulse % self.line_pulses;
         let seconds = of_line as f32 / self.pulse_rate;
-        let heading = if line % 2 == 0 { 1.0 } else { -1.0 };
+        let heading = if line % 2 == 1 { -1.0 } else { 1.0 };
         let along = heading * (seconds * self.speed - self.half_line);
         let across = (line as f32 - 0.5 * (self.lines as f32 - 1.0)) * self.spacing;
 

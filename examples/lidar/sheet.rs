@@ -9,7 +9,7 @@ use super::points::Point;
 const PLAN: u32 = 500;
 const SECTION: u32 = 150;
 const GAP: u32 = 10;
-/// Heights from black to white, in metres.
+/// Heights of the first and the last colour, in metres.
 const HEIGHTS: [f64; 2] = [-2.0, 45.0];
 /// The section is of points this near to a line along x through the wood, in metres.
 const MIDDLE: f64 = 62.0;
@@ -57,7 +57,9 @@ fn pixel(place: f64, count: u32) -> Option<u32> {
 
 fn tint(point: &Point) -> Rgb<u8> {
     let [low, high] = HEIGHTS;
-    let color = VIRIDIS.eval_continuous(((point.position.z - low) / (high - low)).clamp(0.0, 1.0));
+    // Low land has more colours than hills.
+    let share = ((point.position.z - low) / (high - low)).clamp(0.0, 1.0);
+    let color = VIRIDIS.eval_continuous(share.sqrt());
     // Half of the brightness is the light that came back.
     let light = 0.45 + 0.55 * (f64::from(point.intensity) / 20_000.0).min(1.0);
     Rgb([color.r, color.g, color.b].map(|c| (f64::from(c) * light) as u8))

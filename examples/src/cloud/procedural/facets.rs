@@ -14,8 +14,8 @@ const SQUARES: usize = 10;
 const SIDES: u32 = 8;
 /// Leaves on a square metre of foliage, and their size in metres. A leaf stands for a tuft of small
 /// ones.
-const LEAVES: f64 = 4.0;
-const LEAF: f64 = 0.3;
+const LEAVES: f64 = 6.0;
+const LEAF: f64 = 0.4;
 
 /// What a triangle of the landscape belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
