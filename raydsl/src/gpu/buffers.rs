@@ -69,6 +69,11 @@ impl Uploads {
         self.parts.retain(|(id, _), upload| upload.external || !gone.contains(id));
     }
 
+    /// Drops all uploads; the application's buffers stay.
+    pub(super) fn clear(&mut self) {
+        self.parts.retain(|_, upload| upload.external);
+    }
+
     /// Drops all parts of one owner.
     pub(super) fn forget(&mut self, id: u64) {
         self.parts.retain(|&(owner, _), _| owner != id);

@@ -1,19 +1,22 @@
 //! The device with its caches, held by an application.
 
 use std::fmt;
-use std::sync::{Mutex, OnceLock};
+use std::sync::Mutex;
+#[cfg(not(target_family = "wasm"))]
+use std::sync::OnceLock;
 use std::time::Duration;
 
 use super::buffers::Uploads;
 use super::device::{Gpu, lock};
 use super::error::{GpuError, one_line};
+#[cfg(not(target_family = "wasm"))]
 use super::exactness::Exactness;
 use super::float_controls::FloatControls;
 use super::pipeline::{Checks, Pipelines};
 use super::slot::Slot;
 use super::textures::Textures;
 use crate::machine::Modules;
-use crate::machine::wgsl::{BufferKey, Limits};
+use crate::machine::wgsl::{BufferKey, Limits, Quotients};
 
 /// A device, the scene buffers uploaded to it and the pipelines compiled for it.
 ///
@@ -24,6 +27,7 @@ pub struct Context {
     adapter: wgpu::AdapterInfo,
     /// Whether kernels reach the driver as SPIR-V, and what else it can be asked for then.
     pub(super) spirv: Option<FloatControls>,
+    #[cfg(not(target_family = "wasm"))]
     exactness: OnceLock<Exactness>,
     pub(super) checks: Checks,
     pub(super) uploads: Mutex<Uploads>,
@@ -38,9 +42,16 @@ impl Context {
     /// Opens the fastest adapter, or a software one if there is no other.
     ///
     /// The environment variables `WGPU_BACKEND` and `WGPU_VALIDATION` are honoured.
+    #[cfg(not(target_family = "wasm"))]
     pub fn new() -> Result<Self, GpuError> {
-        let adapter = pollster::block_on(adapter())?;
-        let (device, queue) = pollster::block_on(device(&adapter))?;
+        pollster::block_on(Self::open())
+    }
+
+    /// Opens an adapter like [`Context::new`]; in a browser, where nothing can wait, this is the
+    /// way to do it.
+    pub async fn open() -> Result<Self, GpuError> {
+        let adapter = adapter().await?;
+        let (device, queue) = device(&adapter).await?;
         let context = Self::from_wgpu(Some(adapter.get_info()), device, queue);
         context.gpu.watch();
         Ok(context)
@@ -65,6 +76,7 @@ impl Context {
             gpu: Gpu::new(device, queue),
             adapter,
             spirv,
+            #[cfg(not(target_family = "wasm"))]
             exactness: OnceLock::new(),
             checks: Checks::Full,
             uploads: Mutex::default(),
@@ -83,7 +95,7 @@ impl Context {
         self
     }
 
-    /// Sets the timeout of one dispatch; 60 s unless set.
+    /// Sets the timeout of one dispatch; 60 s unless set. A browser has its own.
     ///
     /// A timeout is returned as an error at once, but dropping the device afterwards still waits
     /// for the driver: wgpu has no way to cancel work.
@@ -134,7 +146,7 @@ impl Context {
         Limits {
             max_binding_bytes: self.gpu.caps.max_binding,
             max_storage_buffers: self.gpu.caps.max_storage_buffers,
-            quotients: self.exactness().quotients,
+            quotients: self.quotients(),
         }
     }
 
@@ -146,9 +158,21 @@ impl Context {
     /// nearest, or can be corrected so that they are: a kernel of 65,536 of them is run to find
     /// out, once for a context, unless the device is a CPU.
     pub fn is_exact(&self) -> bool {
-        self.exactness().is_exact
+        #[cfg(not(target_family = "wasm"))]
+        return self.exactness().is_exact;
+        // A browser takes no SPIR-V.
+        #[cfg(target_family = "wasm")]
+        false
     }
 
+    fn quotients(&self) -> Quotients {
+        #[cfg(not(target_family = "wasm"))]
+        return self.exactness().quotients;
+        #[cfg(target_family = "wasm")]
+        Quotients::Native
+    }
+
+    #[cfg(not(target_family = "wasm"))]
     fn exactness(&self) -> Exactness {
         *self.exactness.get_or_init(|| Exactness::of(self))
     }
@@ -203,6 +227,31 @@ impl Context {
     pub(super) fn forget_gone(&self) {
         lock(&self.uploads).forget_gone();
         lock(&self.textures).forget_gone();
+    }
+
+    /// Returns the error of earlier calls that the device told since, or that of the device.
+    pub(super) fn check(&self) -> Result<(), GpuError> {
+        match self.gpu.arrived() {
+            Some(error) => Err(self.begin_again(error)),
+            None => self.gpu.check(),
+        }
+    }
+
+    /// Waits until every call so far is answered.
+    pub(super) async fn answered(&self) -> Result<(), GpuError> {
+        match self.gpu.answered().await {
+            Some(error) => Err(self.begin_again(error)),
+            None => Ok(()),
+        }
+    }
+
+    /// Frees everything that was made before an error came late: some of it is invalid.
+    fn begin_again(&self, error: GpuError) -> GpuError {
+        lock(&self.uploads).clear();
+        lock(&self.textures).clear();
+        lock(&self.pipelines).clear();
+        lock(&self.idle).clear();
+        error
     }
 
     /// Uses a buffer of the application as the contents of `key`: `size` bytes from `offset`.

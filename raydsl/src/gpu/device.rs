@@ -2,9 +2,12 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::task::Poll;
 use std::time::Duration;
 
+use super::answers::{Answers, poll_once};
 use super::error::{GpuError, one_line};
+use super::scopes::Scopes;
 
 /// The relevant limits, read once.
 #[derive(Clone, Copy, Debug)]
@@ -64,6 +67,7 @@ pub(super) struct Gpu {
     pub(super) caps: Caps,
     pub(super) timeout: Duration,
     faults: Arc<Faults>,
+    pub(super) answers: Answers,
 }
 
 impl Gpu {
@@ -72,7 +76,8 @@ impl Gpu {
     /// All calls made here run inside error scopes, so that nothing reaches those callbacks.
     pub(super) fn new(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let caps = Caps::of(&device);
-        Self { device, queue, caps, timeout: Duration::from_secs(60), faults: Arc::default() }
+        let timeout = Duration::from_secs(60);
+        Self { device, queue, caps, timeout, faults: Arc::default(), answers: Answers::default() }
     }
 
     /// Installs callbacks on a device created by this crate: wgpu's default one panics.
@@ -99,38 +104,53 @@ impl Gpu {
         }
     }
 
-    /// Runs `work` inside error scopes and returns the errors caught.
+    /// Returns the first error of earlier calls whose answer came since: in a browser only, where
+    /// no call can wait for its own.
+    pub(super) fn arrived(&self) -> Option<GpuError> {
+        self.answers.arrived().map(|error| self.cause(error))
+    }
+
+    /// Waits until every call so far is answered and returns the first error.
+    pub(super) async fn answered(&self) -> Option<GpuError> {
+        self.answers.all().await.map(|error| self.cause(error))
+    }
+
+    /// Runs `work` inside error scopes and returns the errors caught. A browser tells them later:
+    /// then [`Gpu::arrived`] or [`Gpu::answered`] returns them.
     ///
     /// Scopes belong to a thread, so `work` must stay on this one.
     pub(super) fn guarded<T>(&self, what: &str, work: impl FnOnce() -> T) -> Result<T, GpuError> {
-        let (made, caught) = self.scoped(work);
-        match caught {
-            Some(error) => Err(self.cause(typed(error, what))),
-            None => Ok(made),
-        }
+        let what = what.to_owned();
+        self.explained(|| (work(), move |error| std::future::ready(typed(error, &what))))
     }
 
-    /// Runs `work` inside one error scope of each kind.
-    fn scoped<T>(&self, work: impl FnOnce() -> T) -> (T, Option<wgpu::Error>) {
-        let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
-        let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let made = work();
-        // All three are popped in any case, innermost first. Out of memory is reported first: the
-        // other errors are then mostly its consequences.
-        let caught = [
-            pollster::block_on(memory.pop()),
-            pollster::block_on(internal.pop()),
-            pollster::block_on(validation.pop()),
-        ];
-        (made, caught.into_iter().flatten().next())
+    /// Does the same for `work` that returns, beside what it makes, a function that converts an
+    /// error.
+    pub(super) fn explained<T, F, E>(&self, work: impl FnOnce() -> (T, F)) -> Result<T, GpuError>
+    where
+        F: FnOnce(wgpu::Error) -> E + wgpu::WasmNotSend + 'static,
+        E: Future<Output = GpuError> + wgpu::WasmNotSend,
+    {
+        let scopes = Scopes::open(&self.device);
+        let (made, explain) = work();
+        let caught = scopes.close();
+        let answer = async {
+            match caught.await {
+                Some(error) => Some(explain(error).await),
+                None => None,
+            }
+        };
+        match self.answers.now(answer) {
+            Some(error) => Err(self.cause(error)),
+            None => Ok(made),
+        }
     }
 
     /// Replaces an error by the loss of the device, if that is why a call was refused.
     ///
     /// A lost device creates invalid objects silently, and only their use is an error.
     fn cause(&self, error: GpuError) -> GpuError {
-        if !matches!(error, GpuError::Rejected { .. }) || self.answers() {
+        if !matches!(error, GpuError::Rejected { .. }) || self.responds() {
             return error;
         }
         // The callback with the reason is called from a poll.
@@ -141,18 +161,21 @@ impl Gpu {
         }
     }
 
-    /// Returns whether the device still creates a small buffer.
-    fn answers(&self) -> bool {
-        let (_, refused) = self.scoped(|| {
-            let probe = self.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("probe"),
-                size: 4,
-                usage: wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            });
-            self.queue.write_buffer(&probe, 0, &[0; 4]);
+    /// Returns whether the device still creates a small buffer. A browser tells of a lost one by
+    /// its callback.
+    fn responds(&self) -> bool {
+        let scopes = Scopes::open(&self.device);
+        let probe = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("probe"),
+            size: 4,
+            usage: wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
         });
-        refused.is_none()
+        self.queue.write_buffer(&probe, 0, &[0; 4]);
+        match poll_once(&mut Box::pin(scopes.close())) {
+            Poll::Ready(refused) => refused.is_none(),
+            Poll::Pending => lock(&self.faults.lost).is_none(),
+        }
     }
 
     /// Creates a buffer of at least `bytes` bytes, rounded up to a multiple of 4 and never empty.

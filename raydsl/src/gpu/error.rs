@@ -3,15 +3,20 @@
 use super::window::WindowError;
 use crate::machine::wgsl::BufferKey;
 
+/// What to do where there is no adapter.
+const ADAPTER: &str = if cfg!(target_family = "wasm") {
+    "open the page in a browser with WebGPU, from https: or 127.0.0.1, and see that the browser may \
+     use the graphics card"
+} else {
+    "install a Vulkan driver, on Debian mesa-vulkan-drivers and libvulkan1"
+};
+
 /// An error of the GPU runtime.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
     /// No driver offers an adapter.
-    #[error(
-        "no GPU adapter: install a Vulkan driver, on Debian mesa-vulkan-drivers and libvulkan1 \
-         ({reason})"
-    )]
+    #[error("no GPU adapter: {} ({reason})", ADAPTER)]
     NoAdapter {
         /// The backends tried, in wgpu's words.
         reason: String,

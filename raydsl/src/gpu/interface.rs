@@ -8,10 +8,7 @@ use std::num::NonZeroU64;
 use naga::{AddressSpace, ImageClass, ImageDimension, StorageAccess, TypeInner};
 
 use super::error::GpuError;
-use super::pipeline::{Bindings, Sampled};
-
-/// The least bytes of buffers, by their bindings.
-pub(super) type Sizes = Vec<(u32, NonZeroU64)>;
+use super::pipeline::{Bindings, Sampled, Sizes};
 
 /// Checks that a module's entry point and bindings are those of a kernel with this layout.
 ///

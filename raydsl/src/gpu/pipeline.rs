@@ -1,14 +1,15 @@
 //! Compute pipelines of kernels, each compiled once.
 
 use std::collections::HashMap;
+use std::num::NonZeroU64;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
-use super::device::Gpu;
+use super::device::{Gpu, typed};
 use super::error::{GpuError, one_line};
 use super::float_controls::FloatControls;
-use super::interface::Sizes;
+#[cfg(not(target_family = "wasm"))]
 use super::spirv;
 use super::tiles::FIRST_GOAL;
 use crate::run::clock::Instant;
@@ -23,13 +24,14 @@ pub enum Checks {
     Trusted,
 }
 
-/// A compiled kernel.
+/// A compiled kernel; a handle, cheap to clone.
+#[derive(Clone)]
 pub(super) struct Pipeline {
     pub(super) compute: wgpu::ComputePipeline,
     pub(super) layout: wgpu::BindGroupLayout,
     bindings: Bindings,
     /// Samples per dispatch at the end of the last run: the next one starts there.
-    pub(super) goal: AtomicU64,
+    pub(super) goal: Arc<AtomicU64>,
 }
 
 /// A storage binding of a kernel.
@@ -45,6 +47,9 @@ pub(super) struct Sampled {
     pub(super) binding: u32,
     pub(super) is_volume: bool,
 }
+
+/// The least bytes of buffers, by their bindings.
+pub(super) type Sizes = Vec<(u32, NonZeroU64)>;
 
 /// All bindings of a kernel but that of the job, which is always the same.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -85,7 +90,7 @@ pub(super) fn stored_parameters(source: &str) -> Option<String> {
 pub(super) struct Pipelines {
     /// Pipelines by text. It nearly always determines the bindings; if not, there is one entry for
     /// each.
-    by_source: HashMap<String, Vec<Arc<Pipeline>>>,
+    by_source: HashMap<String, Vec<Pipeline>>,
     compiled: u64,
     compile_time: Duration,
 }
@@ -101,6 +106,11 @@ impl Pipelines {
         self.compile_time
     }
 
+    /// Drops all pipelines: one of them may be invalid.
+    pub(super) fn clear(&mut self) {
+        self.by_source.clear();
+    }
+
     /// Returns the pipeline of a text, compiled if it is new.
     pub(super) fn get(
         &mut self,
@@ -108,17 +118,17 @@ impl Pipelines {
         checks: Checks,
         source: &str,
         bindings: &Bindings,
-    ) -> Result<Arc<Pipeline>, GpuError> {
+    ) -> Result<Pipeline, GpuError> {
         let known = self.by_source.get(source).into_iter().flatten();
         if let Some(pipeline) = known.into_iter().find(|known| known.bindings == *bindings) {
-            return Ok(Arc::clone(pipeline));
+            return Ok(pipeline.clone());
         }
         let start = Instant::now();
-        let pipeline = Arc::new(compile(gpu, checks, source, bindings)?);
+        let pipeline = compile(gpu, checks, source, bindings)?;
         self.compile_time += start.elapsed();
         self.compiled += 1;
         let same_text = self.by_source.entry(source.to_owned()).or_default();
-        same_text.push(Arc::clone(&pipeline));
+        same_text.push(pipeline.clone());
         Ok(pipeline)
     }
 }
@@ -134,23 +144,41 @@ fn compile(
     bindings: &Bindings,
 ) -> Result<Pipeline, GpuError> {
     // What wgpu translates it also checks against the layout.
-    let (module, sizes) = match bindings.exact {
-        Some(controls) => exact_shader(gpu, checks, source, bindings, controls)?,
-        None => (shader(gpu, checks, source)?, Sizes::new()),
-    };
-    let made = gpu.guarded("the pipeline", || {
-        let layout = layout(&gpu.device, bindings, &sizes);
-        (pipeline(&gpu.device, &module, &layout, checks), layout)
-    });
-    match made {
-        Ok((compute, layout)) => Ok(Pipeline {
-            compute,
-            layout,
-            bindings: bindings.clone(),
-            goal: AtomicU64::new(FIRST_GOAL),
-        }),
-        Err(GpuError::Rejected { message, .. }) => Err(GpuError::PipelineFailed { message }),
-        Err(error) => Err(error),
+    #[cfg(not(target_family = "wasm"))]
+    if let Some(controls) = bindings.exact {
+        let (module, sizes) = exact_shader(gpu, checks, source, bindings, controls)?;
+        return assemble(gpu, checks, &module, bindings, &sizes);
+    }
+    let module = shader(gpu, checks, source)?;
+    assemble(gpu, checks, &module, bindings, &Sizes::new())
+}
+
+/// Makes a pipeline of a module.
+fn assemble(
+    gpu: &Gpu,
+    checks: Checks,
+    module: &wgpu::ShaderModule,
+    bindings: &Bindings,
+    sizes: &Sizes,
+) -> Result<Pipeline, GpuError> {
+    let (compute, layout) = gpu.explained(|| {
+        let layout = layout(&gpu.device, bindings, sizes);
+        let made = (pipeline(&gpu.device, module, &layout, checks), layout);
+        (made, |error| std::future::ready(failed(error)))
+    })?;
+    Ok(Pipeline {
+        compute,
+        layout,
+        bindings: bindings.clone(),
+        goal: Arc::new(AtomicU64::new(FIRST_GOAL)),
+    })
+}
+
+/// Returns the error for a module of which no pipeline could be made.
+fn failed(error: wgpu::Error) -> GpuError {
+    match typed(error, "the pipeline") {
+        GpuError::Rejected { message, .. } => GpuError::PipelineFailed { message },
+        error => error,
     }
 }
 
@@ -227,16 +255,18 @@ fn entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
 
 /// Parses and validates a text; an error quotes the line at fault.
 fn shader(gpu: &Gpu, checks: Checks, source: &str) -> Result<wgpu::ShaderModule, GpuError> {
-    let mut report = None;
-    let made = gpu.guarded("the shader", || {
+    gpu.explained(|| {
         let module = shader_module(&gpu.device, checks, source);
-        report = Some(pollster::block_on(module.get_compilation_info()));
-        module
-    });
-    match made {
-        Err(GpuError::Rejected { message, .. }) => Err(invalid(source, report, message)),
-        other => other,
-    }
+        let report = module.get_compilation_info();
+        let source = source.to_owned();
+        let explain = |error| async move {
+            match typed(error, "the shader") {
+                GpuError::Rejected { message, .. } => invalid(&source, report.await, message),
+                error => error,
+            }
+        };
+        (module, explain)
+    })
 }
 
 fn shader_module(device: &wgpu::Device, checks: Checks, source: &str) -> wgpu::ShaderModule {
@@ -263,7 +293,9 @@ fn shader_module(device: &wgpu::Device, checks: Checks, source: &str) -> wgpu::S
     }
 }
 
-/// Parses and validates a text as [`shader`], and hands it to the driver as SPIR-V.
+/// Parses and validates a text as [`shader`], and hands it to the driver as SPIR-V, which no browser
+/// takes.
+#[cfg(not(target_family = "wasm"))]
 fn exact_shader(
     gpu: &Gpu,
     checks: Checks,
@@ -293,10 +325,10 @@ fn exact_shader(
     Ok((made, sizes))
 }
 
-/// Returns the error for a text that naga refused.
-fn invalid(source: &str, report: Option<wgpu::CompilationInfo>, fallback: String) -> GpuError {
-    let messages = report.map(|report| report.messages).unwrap_or_default();
-    let fault = messages
+/// Returns the error for a text that the compiler, here naga and in a browser its own, refused.
+fn invalid(source: &str, report: wgpu::CompilationInfo, fallback: String) -> GpuError {
+    let fault = report
+        .messages
         .into_iter()
         .find(|message| message.message_type == wgpu::CompilationMessageType::Error);
     let Some(fault) = fault else {

@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use super::buffers::{Bound, Source};
@@ -82,6 +81,7 @@ impl Context {
     /// `inputs` and `outputs` are in row order, `input_stride` and `output_stride` bytes per pixel;
     /// `outputs` must have exactly that length. After an error it holds the results of the
     /// completed dispatches.
+    #[cfg(not(target_family = "wasm"))]
     pub fn run<'a>(
         &self,
         module: &Module,
@@ -90,13 +90,26 @@ impl Context {
         size: [u32; 2],
         outputs: &mut [u8],
     ) -> Result<Timing, GpuError> {
-        let outputs = Outputs::Host(outputs);
-        self.run_to(module, data, inputs, Grid::of(size), outputs).map(timing_of)
+        pollster::block_on(self.run_async(module, data, inputs, size, outputs))
     }
 
-    /// Does the same as [`Context::run`] with a chosen destination of the outputs, unless the
-    /// progress callback stops it.
-    pub(super) fn run_to<'a>(
+    /// Runs `module` like [`Context::run`]. In a browser nothing but the future waits; on a machine
+    /// the thread that polls it waits for the device, and the future is ready.
+    pub async fn run_async<'a>(
+        &self,
+        module: &Module,
+        data: &dyn Fn(BufferKey) -> Option<Cow<'a, [u8]>>,
+        inputs: &[u8],
+        size: [u32; 2],
+        outputs: &mut [u8],
+    ) -> Result<Timing, GpuError> {
+        let outputs = Outputs::Host(outputs);
+        self.run_to(module, data, inputs, Grid::of(size), outputs).await.map(timing_of)
+    }
+
+    /// Does the same with a chosen destination of the outputs, unless the progress callback stops
+    /// it.
+    pub(super) async fn run_to<'a>(
         &self,
         module: &Module,
         data: &dyn Fn(BufferKey) -> Option<Cow<'a, [u8]>>,
@@ -105,8 +118,7 @@ impl Context {
         outputs: Outputs<'_>,
     ) -> Result<ControlFlow<Timing, Timing>, GpuError> {
         let start = Instant::now();
-        let size = grid.size;
-        let pixels = pixels(size)?;
+        let pixels = pixels(grid.size)?;
         self.check_lengths(module, pixels, inputs)?;
         if let Outputs::Host(bytes) = &outputs {
             expect("outputs", bytes, pixels, module.output_stride)?;
@@ -114,17 +126,65 @@ impl Context {
         if pixels == 0 {
             return Ok(ControlFlow::Continue(Timing::default()));
         }
-        self.gpu.check()?;
-        let max_elements = self.max_elements(module)?;
-        let pipeline = self.pipeline(module)?;
         let (target, outputs) = match outputs {
             Outputs::Host(bytes) => (None, bytes),
             Outputs::Device(window) => (Some(window), &mut [][..]),
         };
+        let (pass, tiler) = self.prepare(module, data, inputs, grid.size, target)?;
+        let mut timing = Timing::default();
+        let end = self.dispatch_all(&pass, tiler, outputs, grid, &mut timing).await;
+        // The late error of a call is the cause of one of the wait.
+        self.answered().await?;
+        timing.wall_ms = start.elapsed().as_secs_f64() * 1e3;
+        Ok(match end? {
+            ControlFlow::Continue(()) => ControlFlow::Continue(timing),
+            ControlFlow::Break(()) => ControlFlow::Break(timing),
+        })
+    }
+
+    /// Submits all dispatches of a grid and waits for none. Errors come with the next call.
+    #[cfg(target_family = "wasm")]
+    pub(super) fn submit_to<'a>(
+        &self,
+        module: &Module,
+        data: &dyn Fn(BufferKey) -> Option<Cow<'a, [u8]>>,
+        size: [u32; 2],
+        window: &GpuWindow,
+    ) -> Result<Timing, GpuError> {
+        let start = Instant::now();
+        let pixels = pixels(size)?;
+        self.check_lengths(module, pixels, &[])?;
+        if pixels == 0 {
+            return Ok(Timing::default());
+        }
+        let (pass, mut tiler) = self.prepare(module, data, &[], size, Some(window))?;
+        let goal = pass.pipeline.goal.load(Ordering::Relaxed);
+        let mut slot = self.slot()?;
+        let mut timing = Timing::default();
+        while let Some(tile) = tiler.next(goal) {
+            slot.submit_unread(&self.gpu, &pass, tile)?;
+            timing.dispatches += 1;
+        }
+        lock(&self.idle).push(slot);
+        timing.wall_ms = start.elapsed().as_secs_f64() * 1e3;
+        Ok(timing)
+    }
+
+    /// Returns what all dispatches of a grid share, uploaded and compiled, and their partition.
+    fn prepare<'p>(
+        &self,
+        module: &'p Module,
+        data: Source<'_, '_>,
+        inputs: &'p [u8],
+        size: [u32; 2],
+        target: Option<&'p GpuWindow>,
+    ) -> Result<(Pass<'p>, Tiler), GpuError> {
+        self.check()?;
+        let max_elements = self.max_elements(module)?;
         let pass = Pass {
             module,
             target,
-            pipeline: &pipeline,
+            pipeline: self.pipeline(module)?,
             uniforms: self.uniforms(module)?,
             scene: self.scene(module, data)?,
             textures: self.textures(module, data)?,
@@ -132,14 +192,13 @@ impl Context {
             inputs,
         };
         let max_groups = self.gpu.caps.max_groups;
-        let tiler = Tiler::new(size, module.workgroup, max_elements, max_groups);
-        let mut timing = Timing::default();
-        let end = self.dispatch_all(&pass, tiler, outputs, grid, &mut timing)?;
-        timing.wall_ms = start.elapsed().as_secs_f64() * 1e3;
-        Ok(match end {
-            ControlFlow::Continue(()) => ControlFlow::Continue(timing),
-            ControlFlow::Break(()) => ControlFlow::Break(timing),
-        })
+        Ok((pass, Tiler::new(size, module.workgroup, max_elements, max_groups)))
+    }
+
+    /// Returns buffers for a dispatch.
+    fn slot(&self) -> Result<Slot, GpuError> {
+        let kept = lock(&self.idle).pop();
+        kept.map_or_else(|| Slot::new(&self.gpu), Ok)
     }
 
     /// Checks the module's sizes and the caller's slices against each other.
@@ -177,7 +236,7 @@ impl Context {
     }
 
     /// Returns the compiled kernel.
-    fn pipeline(&self, module: &Module) -> Result<Arc<Pipeline>, GpuError> {
+    fn pipeline(&self, module: &Module) -> Result<Pipeline, GpuError> {
         let sampled = module.textures.iter().map(|texture| Sampled {
             binding: texture.binding,
             is_volume: texture.layout.is_volume,
@@ -243,7 +302,7 @@ impl Context {
 
     /// Submits the tiles, a few in flight, and adapts their size. Tiles in flight are completed
     /// even after a stop.
-    fn dispatch_all(
+    async fn dispatch_all(
         &self,
         pass: &Pass<'_>,
         mut tiler: Tiler,
@@ -269,18 +328,13 @@ impl Context {
             if in_flight.len() == IN_FLIGHT
                 && let Some(oldest) = in_flight.pop_front()
             {
-                self.retire(oldest, pass, outputs, &mut progress)?;
+                self.retire(oldest, pass, outputs, &mut progress).await?;
             }
-            let kept = lock(&self.idle).pop();
-            let slot = match kept {
-                Some(slot) => slot,
-                None => Slot::new(&self.gpu)?,
-            };
-            in_flight.push_back(slot.submit(&self.gpu, pass, tile)?);
+            in_flight.push_back(self.slot()?.submit(&self.gpu, pass, tile)?);
             progress.timing.dispatches += 1;
         }
         for oldest in in_flight {
-            self.retire(oldest, pass, outputs, &mut progress)?;
+            self.retire(oldest, pass, outputs, &mut progress).await?;
         }
         if effort.is_even {
             pass.pipeline.goal.store(progress.goal, Ordering::Relaxed);
@@ -289,7 +343,7 @@ impl Context {
     }
 
     /// Copies the outputs of a dispatch and keeps its buffers for reuse.
-    fn retire(
+    async fn retire(
         &self,
         dispatch: InFlight,
         pass: &Pass<'_>,
@@ -297,7 +351,7 @@ impl Context {
         progress: &mut Progress<'_>,
     ) -> Result<(), GpuError> {
         let since = dispatch.since;
-        let finished = dispatch.finish(&self.gpu, pass, outputs)?;
+        let finished = dispatch.finish(&self.gpu, pass, outputs).await?;
         progress.note(since, &finished);
         lock(&self.idle).push(finished.slot);
         Ok(())

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::ops::ControlFlow;
+#[cfg(not(target_family = "wasm"))]
 use std::time::Duration;
 
 use super::device::lock;
@@ -15,7 +16,12 @@ use crate::machine::{
     Description, Frame as KernelFrame, Identity, Recorder, Recording, Resource, Type, Value, X2,
     stride,
 };
-use crate::render::{Effort, FilmArgs, Frame, Image, Observer, Pace, Renderer, Shot, timing_of};
+use crate::render::{
+    Effort, Film, FilmArgs, Frame, Image, Kept, Observer, Radiance, Sampling, Shot, passes,
+    timing_of,
+};
+#[cfg(not(target_family = "wasm"))]
+use crate::render::{Pace, Renderer};
 
 /// A visitor of the buffers that a kernel may read.
 type Visit<'a> = &'a mut dyn FnMut(&dyn Resource);
@@ -29,6 +35,11 @@ type Resources<'a> = &'a dyn Fn(Visit<'_>);
 /// captures are in a uniform buffer, so that new numbers compile nothing. A kernel that a closure
 /// makes anew, with other numbers, slices, trees, grids or transfer functions, is not even recorded
 /// again; one that captures textures, instances, views of meshes or foreign structures is.
+///
+/// On a machine it is a [`Renderer`]. A browser lets no call wait: there it is none, and pictures are
+/// made by [`GpuScheduler::frame_async`], [`GpuScheduler::accumulate_async`],
+/// [`GpuScheduler::batch_async`] and [`GpuScheduler::frame_into_async`]. On a machine these give the
+/// same results; the thread that polls them waits for the device.
 #[derive(Debug)]
 pub struct GpuScheduler {
     context: Context,
@@ -40,8 +51,18 @@ impl GpuScheduler {
     /// # Errors
     ///
     /// If there is none, or it gives no device.
+    #[cfg(not(target_family = "wasm"))]
     pub fn new() -> Result<Self, GpuError> {
         Ok(Self::with_context(Context::new()?))
+    }
+
+    /// Uses the best adapter like [`GpuScheduler::new`], in a browser too.
+    ///
+    /// # Errors
+    ///
+    /// If there is none, or it gives no device.
+    pub async fn open() -> Result<Self, GpuError> {
+        Ok(Self::with_context(Context::open().await?))
     }
 
     /// Uses a context, for example of the application's own device and queue.
@@ -71,6 +92,9 @@ impl GpuScheduler {
     /// # }
     /// ```
     ///
+    /// In a browser it submits the frame and waits for nothing: an error comes with the next call,
+    /// and the time is that of the submission.
+    ///
     /// # Errors
     ///
     /// [`GpuError::Window`] if the window has another size than the results, or its buffer has not
@@ -82,14 +106,119 @@ impl GpuScheduler {
         (width, height): (u32, u32),
         window: &GpuWindow,
     ) -> Result<Timing, GpuError> {
+        #[cfg(not(target_family = "wasm"))]
+        return pollster::block_on(self.frame_into_async(camera, kernel, (width, height), window));
+        #[cfg(target_family = "wasm")]
+        {
+            let pixels = u64::from(width) * u64::from(height);
+            check_target::<R>(&self.context.gpu, pixels, window)?;
+            let shot = Frame { rays: camera.begin_frame(width, height), kernel };
+            let module = self.module(&shot);
+            let _forget = self.data_of(&module);
+            let data = |key| bytes_of(&|visit| shot.resources(visit), key).map(Cow::Owned);
+            self.context.submit_to(&module, &data, [width, height], window)
+        }
+    }
+
+    /// Renders a frame like [`GpuScheduler::frame_into`] and waits until it is done.
+    ///
+    /// # Errors
+    ///
+    /// As for [`GpuScheduler::frame_into`], and those of the frame itself in a browser too.
+    pub async fn frame_into_async<C: Camera, A: FilmArgs, R: Type>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        (width, height): (u32, u32),
+        window: &GpuWindow,
+    ) -> Result<Timing, GpuError> {
         let pixels = u64::from(width) * u64::from(height);
         check_target::<R>(&self.context.gpu, pixels, window)?;
-        let rays = camera.begin_frame(width, height);
-        let shot = Frame { rays, kernel };
-        let resources = |visit: Visit<'_>| shot.resources(visit);
+        let shot = Frame { rays: camera.begin_frame(width, height), kernel };
         let module = self.module(&shot);
-        let grid = Grid::of([width, height]);
-        self.run_to(&resources, &module, &[], grid, Outputs::Device(window)).map(timing_of)
+        let (grid, outputs) = (Grid::of([width, height]), Outputs::Device(window));
+        let resources = |visit: Visit<'_>| shot.resources(visit);
+        self.run_to(&resources, &module, &[], grid, outputs).await.map(timing_of)
+    }
+
+    /// Renders a frame like [`Renderer::frame`](crate::render::Renderer::frame).
+    ///
+    /// # Errors
+    ///
+    /// If the device refuses or is lost; `image` is then unchanged.
+    pub async fn frame_async<C: Camera, A: FilmArgs, R: Type>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        image: &mut Image<R>,
+    ) -> Result<Timing, GpuError> {
+        let rays = camera.begin_frame(image.width(), image.height());
+        let end = self.shoot_async(&Frame { rays, kernel }, Effort::ONE, image, None).await;
+        end.map(timing_of)
+    }
+
+    /// Adds `samples` samples to every pixel of `film` like
+    /// [`Renderer::accumulate`](crate::render::Renderer::accumulate).
+    ///
+    /// # Errors
+    ///
+    /// If the device refuses or is lost; `film` then has the completed passes.
+    pub async fn accumulate_async<C: Camera, A: FilmArgs, R: Radiance, K: Kept<R>>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        sampling: &Sampling,
+        film: &mut Film<K>,
+        samples: u32,
+    ) -> Result<Timing, GpuError> {
+        let mut image = Image::filled(film.width(), film.height(), K::none());
+        let mut timing = Timing::default();
+        for count in passes(samples) {
+            let pass = film.pass(camera, kernel, sampling, count);
+            let effort = Effort { samples: count, is_even: true };
+            timing += self.shoot_async(&pass, effort, &mut image, None).await.map(timing_of)?;
+            film.add_pass(&image, count);
+        }
+        Ok(timing)
+    }
+
+    /// Runs a kernel over `inputs`, like [`Renderer::batch`](crate::render::Renderer::batch).
+    ///
+    /// # Errors
+    ///
+    /// If the lengths differ, or the device refuses or is lost.
+    pub async fn batch_async<A: Type, R: Type>(
+        &self,
+        kernel: &Kernel<'_, A, R>,
+        inputs: &[A],
+        outputs: &mut [R],
+    ) -> Result<Timing, GpuError> {
+        let describe = |out: &mut Description| kernel.describe(out);
+        let identity = kernel.identity(&describe);
+        let module = self.known_module(&identity, kernel.frame(), &|| kernel.record());
+        let each = stride(A::SCHEMA);
+        let mut bytes = vec![0; each * inputs.len()];
+        for (a, out) in inputs.iter().zip(bytes.chunks_exact_mut(each)) {
+            a.write(out);
+        }
+        let count = u32::try_from(inputs.len())
+            .map_err(|_| GpuError::GridTooLarge { size: [u32::MAX, 1] })?;
+        let (resources, grid) = (|visit: Visit<'_>| kernel.resources(visit), Grid::of([count, 1]));
+        self.run(&resources, &module, &bytes, grid, outputs).await.map(timing_of)
+    }
+
+    async fn shoot_async<S: Shot>(
+        &self,
+        shot: &S,
+        effort: Effort,
+        image: &mut Image<S::Output>,
+        observer: Option<Observer<'_>>,
+    ) -> Result<ControlFlow<Timing, Timing>, GpuError> {
+        let module = self.module(shot);
+        let teller = observer.map(|observer| observer as Teller<'_>);
+        let grid = Grid { size: [image.width(), image.height()], effort, teller };
+        let resources = |visit: Visit<'_>| shot.resources(visit);
+        self.run(&resources, &module, &[], grid, image.pixels_mut()).await
     }
 
     fn module<S: Shot>(&self, shot: &S) -> Module {
@@ -120,7 +249,7 @@ impl GpuScheduler {
     }
 
     /// Runs a module; if it is stopped, `outputs` are unchanged.
-    fn run<O: Type>(
+    async fn run<O: Type>(
         &self,
         resources: Resources<'_>,
         module: &Module,
@@ -130,7 +259,7 @@ impl GpuScheduler {
     ) -> Result<ControlFlow<Timing, Timing>, GpuError> {
         let each = stride(O::SCHEMA);
         let mut bytes = vec![0; each * outputs.len()];
-        let end = self.run_to(resources, module, inputs, grid, Outputs::Host(&mut bytes))?;
+        let end = self.run_to(resources, module, inputs, grid, Outputs::Host(&mut bytes)).await?;
         if end.is_continue() {
             for (out, bytes) in outputs.iter_mut().zip(bytes.chunks_exact(each)) {
                 *out = O::read(bytes);
@@ -139,7 +268,7 @@ impl GpuScheduler {
         Ok(end)
     }
 
-    fn run_to(
+    async fn run_to(
         &self,
         resources: Resources<'_>,
         module: &Module,
@@ -147,19 +276,38 @@ impl GpuScheduler {
         grid: Grid<'_>,
         outputs: Outputs<'_>,
     ) -> Result<ControlFlow<Timing, Timing>, GpuError> {
-        self.context.forget_gone();
+        let _forget = self.data_of(module);
         let data = |key| bytes_of(resources, key).map(Cow::Owned);
-        let end = self.context.run_to(module, &data, inputs, grid, outputs);
-        // The address of a slice identifies its data only while it is borrowed.
-        let buffers = module.buffers.iter().map(|buffer| buffer.key);
-        let keys = buffers.chain(module.textures.iter().map(|texture| texture.key));
-        for key in keys.filter(|key| crate::machine::is_borrowed(*key)) {
-            self.context.forget(key.id);
-        }
-        end
+        self.context.run_to(module, &data, inputs, grid, outputs).await
+    }
+
+    /// Frees the scene buffers of dropped trees, and those that the module borrows once the result
+    /// is dropped.
+    fn data_of<'a>(&'a self, module: &'a Module) -> Borrowed<'a> {
+        self.context.forget_gone();
+        Borrowed { context: &self.context, module }
     }
 }
 
+/// The data that a run borrows. It may end early, as a future that is dropped: so it is this whose
+/// end frees their copies.
+struct Borrowed<'a> {
+    context: &'a Context,
+    module: &'a Module,
+}
+
+impl Drop for Borrowed<'_> {
+    fn drop(&mut self) {
+        // The address of a slice identifies its data only while it is borrowed.
+        let buffers = self.module.buffers.iter().map(|buffer| buffer.key);
+        let keys = buffers.chain(self.module.textures.iter().map(|texture| texture.key));
+        for key in keys.filter(|key| crate::machine::is_borrowed(*key)) {
+            self.context.forget(key.id);
+        }
+    }
+}
+
+#[cfg(not(target_family = "wasm"))]
 impl Renderer for GpuScheduler {
     type Timing = Timing;
     type Error = GpuError;
@@ -185,10 +333,7 @@ impl Renderer for GpuScheduler {
         image: &mut Image<S::Output>,
         observer: Option<Observer<'_>>,
     ) -> Result<ControlFlow<Timing, Timing>, GpuError> {
-        let module = self.module(shot);
-        let teller = observer.map(|observer| observer as Teller<'_>);
-        let grid = Grid { size: [image.width(), image.height()], effort, teller };
-        self.run(&|visit| shot.resources(visit), &module, &[], grid, image.pixels_mut())
+        pollster::block_on(self.shoot_async(shot, effort, image, observer))
     }
 
     fn pace(&self, budget: Duration) -> Pace {
@@ -201,18 +346,7 @@ impl Renderer for GpuScheduler {
         inputs: &[A],
         outputs: &mut [R],
     ) -> Result<Timing, GpuError> {
-        let describe = |out: &mut Description| kernel.describe(out);
-        let identity = kernel.identity(&describe);
-        let module = self.known_module(&identity, kernel.frame(), &|| kernel.record());
-        let each = stride(A::SCHEMA);
-        let mut bytes = vec![0; each * inputs.len()];
-        for (a, out) in inputs.iter().zip(bytes.chunks_exact_mut(each)) {
-            a.write(out);
-        }
-        let count = u32::try_from(inputs.len())
-            .map_err(|_| GpuError::GridTooLarge { size: [u32::MAX, 1] })?;
-        let (resources, grid) = (|visit: Visit<'_>| kernel.resources(visit), Grid::of([count, 1]));
-        self.run(&resources, &module, &bytes, grid, outputs).map(timing_of)
+        pollster::block_on(self.batch_async(kernel, inputs, outputs))
     }
 }
 

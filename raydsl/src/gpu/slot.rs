@@ -1,6 +1,6 @@
 //! A dispatch: its buffers, its submission and the readback of its outputs.
 
-use std::sync::mpsc::{Receiver, sync_channel};
+use futures_channel::oneshot;
 
 use super::buffers::Bound;
 use super::clock::{Clock, STAMPS};
@@ -21,7 +21,7 @@ pub(super) struct Pass<'a> {
     pub(super) module: &'a Module,
     /// The destination of the outputs, if they stay on the device.
     pub(super) target: Option<&'a GpuWindow>,
-    pub(super) pipeline: &'a Pipeline,
+    pub(super) pipeline: Pipeline,
     pub(super) uniforms: wgpu::Buffer,
     pub(super) scene: Vec<Bound>,
     pub(super) textures: Vec<BoundTexture>,
@@ -44,9 +44,19 @@ pub(super) struct InFlight {
     staging: wgpu::Buffer,
     tile: Tile,
     index: wgpu::SubmissionIndex,
-    mapped: Receiver<bool>,
+    mapped: oneshot::Receiver<bool>,
     /// The time of submission.
     pub(super) since: Instant,
+}
+
+/// The buffers of one dispatch, large enough for it.
+struct Room {
+    /// The inputs with their bytes, if there are any.
+    inputs: Option<(wgpu::Buffer, u64)>,
+    /// The outputs with their bytes.
+    outputs: (wgpu::Buffer, u64),
+    /// The buffer that the host reads, unless it reads nothing.
+    staging: Option<wgpu::Buffer>,
 }
 
 /// A finished dispatch.
@@ -78,53 +88,64 @@ impl Slot {
         pass: &Pass<'_>,
         tile: Tile,
     ) -> Result<InFlight, GpuError> {
-        use wgpu::BufferUsages as Usage;
-        let span = tile.span(pass.size[0]);
-        let input_bytes = span * u64::from(pass.module.input_stride);
-        let output_bytes = span * u64::from(pass.module.output_stride);
-        let inputs = match input_bytes {
-            0 => None,
-            bytes => Some(room(
-                &mut self.inputs,
-                gpu,
-                "inputs",
-                bytes,
-                Usage::STORAGE | Usage::COPY_DST,
-            )?),
-        };
-        let outputs = room(
-            &mut self.outputs,
-            gpu,
-            "outputs",
-            output_bytes,
-            Usage::STORAGE | Usage::COPY_SRC,
-        )?;
-        let packed = packed_bytes(pass, tile);
-        let staging = room(
-            &mut self.staging,
-            gpu,
-            "readback",
-            packed + STAMPS,
-            Usage::MAP_READ | Usage::COPY_DST,
-        )?;
-        let (report, mapped) = sync_channel(1);
+        let bytes = packed_bytes(pass, tile) + STAMPS;
+        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+        let staging = room(&mut self.staging, gpu, "readback", bytes, usage)?;
+        let room = self.room(gpu, pass, tile, Some(staging.clone()))?;
+        let (report, mapped) = oneshot::channel();
         let index = gpu.guarded("a dispatch", || {
-            self.write(gpu, pass, tile, inputs.as_ref());
-            let group = self.bind(
-                gpu,
-                pass,
-                inputs.as_ref().map(|buffer| (buffer, input_bytes)),
-                (&outputs, output_bytes),
-            );
-            let commands = self.record(gpu, pass, tile, &group, &outputs, &staging);
-            let index = gpu.queue.submit([commands]);
-            staging.map_async(wgpu::MapMode::Read, 0..packed + STAMPS, move |result| {
+            let index = gpu.queue.submit([self.commands(gpu, pass, tile, &room)]);
+            staging.map_async(wgpu::MapMode::Read, 0..bytes, move |result| {
                 // The receiver is gone after an error elsewhere.
                 let _ = report.send(result.is_ok());
             });
             index
         })?;
         Ok(InFlight { slot: self, staging, tile, index, mapped, since: Instant::now() })
+    }
+
+    /// Submits a dispatch of which the host reads nothing. The buffers serve the next one at once:
+    /// submissions run in their order.
+    #[cfg(target_family = "wasm")]
+    pub(super) fn submit_unread(
+        &mut self,
+        gpu: &Gpu,
+        pass: &Pass<'_>,
+        tile: Tile,
+    ) -> Result<(), GpuError> {
+        let room = self.room(gpu, pass, tile, None)?;
+        gpu.guarded("a dispatch", || {
+            gpu.queue.submit([self.commands(gpu, pass, tile, &room)]);
+        })
+    }
+
+    /// Returns buffers for a tile.
+    fn room(
+        &mut self,
+        gpu: &Gpu,
+        pass: &Pass<'_>,
+        tile: Tile,
+        staging: Option<wgpu::Buffer>,
+    ) -> Result<Room, GpuError> {
+        use wgpu::BufferUsages as Usage;
+        let span = tile.span(pass.size[0]);
+        let input_bytes = span * u64::from(pass.module.input_stride);
+        let output_bytes = span * u64::from(pass.module.output_stride);
+        let usage = Usage::STORAGE | Usage::COPY_DST;
+        let inputs = match input_bytes {
+            0 => None,
+            bytes => Some((room(&mut self.inputs, gpu, "inputs", bytes, usage)?, bytes)),
+        };
+        let usage = Usage::STORAGE | Usage::COPY_SRC;
+        let outputs = room(&mut self.outputs, gpu, "outputs", output_bytes, usage)?;
+        Ok(Room { inputs, outputs: (outputs, output_bytes), staging })
+    }
+
+    /// Uploads the inputs and returns the commands of a dispatch.
+    fn commands(&self, gpu: &Gpu, pass: &Pass<'_>, tile: Tile, room: &Room) -> wgpu::CommandBuffer {
+        self.write(gpu, pass, tile, room.inputs.as_ref().map(|(buffer, _)| buffer));
+        let group = self.bind(gpu, pass, room);
+        self.record(gpu, pass, tile, &group, room)
     }
 
     /// Queues the job and the inputs, which are transferred with the next submission.
@@ -147,19 +168,14 @@ impl Slot {
 
     /// Creates the bind group of a dispatch. Inputs and outputs are bound with their exact sizes,
     /// so that a checked shader is checked against the tile and not against old contents.
-    fn bind(
-        &self,
-        gpu: &Gpu,
-        pass: &Pass<'_>,
-        inputs: Option<(&wgpu::Buffer, u64)>,
-        outputs: (&wgpu::Buffer, u64),
-    ) -> wgpu::BindGroup {
+    fn bind(&self, gpu: &Gpu, pass: &Pass<'_>, room: &Room) -> wgpu::BindGroup {
         let mut entries = vec![
             entry(0, &pass.uniforms, 0, pass.module.uniforms.len() as u64),
             entry(1, &self.job, 0, JOB),
-            entry(3, outputs.0, 0, outputs.1),
+            entry(3, &room.outputs.0, 0, room.outputs.1),
         ];
-        entries.extend(inputs.map(|(buffer, bytes)| entry(2, buffer, 0, bytes)));
+        let inputs = room.inputs.as_ref();
+        entries.extend(inputs.map(|(buffer, bytes)| entry(2, buffer, 0, *bytes)));
         let scene = pass.scene.iter();
         entries.extend(
             scene.map(|bound| entry(bound.binding, &bound.buffer, bound.offset, bound.size)),
@@ -185,14 +201,16 @@ impl Slot {
         pass: &Pass<'_>,
         tile: Tile,
         group: &wgpu::BindGroup,
-        outputs: &wgpu::Buffer,
-        staging: &wgpu::Buffer,
+        room: &Room,
     ) -> wgpu::CommandBuffer {
+        let staging = room.staging.as_ref();
+        // Without a buffer for the host nobody reads the clock.
+        let clock = self.clock.as_ref().zip(staging);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         {
             let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("raydsl"),
-                timestamp_writes: self.clock.as_ref().map(Clock::writes),
+                timestamp_writes: clock.map(|(clock, _)| clock.writes()),
             });
             compute.set_pipeline(&pass.pipeline.compute);
             compute.set_bind_group(0, group, &[]);
@@ -200,19 +218,22 @@ impl Slot {
             let groups = [tile.count[0].div_ceil(columns), tile.count[1].div_ceil(rows)];
             compute.dispatch_workgroups(groups[0], groups[1], 1);
         }
+        let outputs = &room.outputs.0;
         let stride = u64::from(pass.module.output_stride);
         let mut base = None;
         let mut at = 0;
         for (first, length) in tile.runs(pass.size[0]) {
             let from = (first - *base.get_or_insert(first)) * stride;
-            let (to, place) = match pass.target {
-                Some(window) => (&window.buffer, window.offset + first * stride),
-                None => (staging, at),
-            };
-            encoder.copy_buffer_to_buffer(outputs, from, to, place, length * stride);
-            at += length * stride;
+            let bytes = length * stride;
+            if let Some(window) = pass.target {
+                let place = window.offset + first * stride;
+                encoder.copy_buffer_to_buffer(outputs, from, &window.buffer, place, bytes);
+            } else if let Some(staging) = staging {
+                encoder.copy_buffer_to_buffer(outputs, from, staging, at, bytes);
+            }
+            at += bytes;
         }
-        if let Some(clock) = &self.clock {
+        if let Some((clock, staging)) = clock {
             clock.copy(&mut encoder, staging, packed_bytes(pass, tile));
         }
         encoder.finish()
@@ -221,20 +242,18 @@ impl Slot {
 
 impl InFlight {
     /// Waits for the dispatch and copies its outputs into the grid.
-    pub(super) fn finish(
+    pub(super) async fn finish(
         self,
         gpu: &Gpu,
         pass: &Pass<'_>,
         outputs: &mut [u8],
     ) -> Result<Finished, GpuError> {
         gpu.wait(self.index)?;
-        // The work is done, but another thread's poll may be the one to report it.
-        match self.mapped.recv_timeout(gpu.timeout) {
-            Ok(true) => {}
-            Ok(false) | Err(_) => {
-                gpu.check()?;
-                return Err(lost("the outputs could not be mapped"));
-            }
+        // In a browser this is the wait. On a machine the work is done, but another thread's poll
+        // may be the one to report it.
+        if self.mapped.await != Ok(true) {
+            gpu.check()?;
+            return Err(lost("the outputs could not be mapped"));
         }
         let packed = packed_bytes(pass, self.tile);
         let view = self

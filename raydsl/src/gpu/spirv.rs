@@ -9,8 +9,8 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 use super::error::{GpuError, one_line};
 use super::float_controls::FloatControls;
-use super::interface::{self, Sizes};
-use super::pipeline::{Bindings, Checks};
+use super::interface;
+use super::pipeline::{Bindings, Checks, Sizes};
 
 /// Words of a module before its instructions.
 const HEADER: usize = 5;

@@ -54,6 +54,12 @@ impl Textures {
         self.uploads.retain(|(id, ..), _| !gone.contains(id));
     }
 
+    /// Drops all textures and samplers.
+    pub(super) fn clear(&mut self) {
+        self.uploads.clear();
+        self.samplers.clear();
+    }
+
     /// Drops the textures of one owner.
     pub(super) fn forget(&mut self, id: u64) {
         self.uploads.retain(|(owner, ..), _| *owner != id);

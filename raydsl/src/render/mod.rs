@@ -14,6 +14,8 @@ mod fragment;
 mod image;
 mod moments;
 mod part;
+#[cfg(feature = "gpu")]
+mod passes;
 mod pixel_sampler;
 mod radiance;
 mod reference;
@@ -37,6 +39,8 @@ pub use fragment::{Fragment, FragmentOn, composite, composite_reversed, over};
 pub use image::{Image, Shaded, ShadedOn};
 pub use moments::{Moments, MomentsOn};
 pub use part::{FilmExtent, FilmPart, PartError, SAMPLE_BLOCK};
+#[cfg(feature = "gpu")]
+pub(crate) use passes::passes;
 pub use pixel_sampler::{PixelSampler, Sampling};
 pub use radiance::Radiance;
 #[doc(hidden)]

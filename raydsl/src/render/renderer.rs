@@ -25,7 +25,7 @@ use crate::run::clock::Instant;
 pub(super) const LARGEST_PASS: u32 = 64;
 
 /// The number of passes of a device in a time budget.
-#[cfg(feature = "gpu")]
+#[cfg(all(feature = "gpu", not(target_family = "wasm")))]
 const PASSES_OF_A_BUDGET: u32 = 50;
 
 /// The samples to add to a film.
@@ -75,7 +75,7 @@ impl Pace {
 
     /// Returns passes that are short beside a time budget, for renderers that lose a pass when
     /// stopped.
-    #[cfg(feature = "gpu")]
+    #[cfg(all(feature = "gpu", not(target_family = "wasm")))]
     pub(crate) fn within(budget: Duration) -> Self {
         Self { pass: 1, slice: budget / PASSES_OF_A_BUDGET }
     }

@@ -117,7 +117,7 @@ impl<C: Camera, A: FilmArgs, R: Radiance> Inputs<A, R> for FilmTest<'_, C> {
 
 /// Compares the means of the device's films with those of the CPU's packets, which have the bits of
 /// the scalar variant.
-#[cfg(feature = "gpu")]
+#[cfg(all(feature = "gpu", not(target_family = "wasm")))]
 fn on_device<C: Camera, A: FilmArgs, R: Radiance>(
     film_test: &FilmTest<'_, C>,
     kernel: &Kernel<'_, A, R>,
@@ -139,10 +139,10 @@ fn on_device<C: Camera, A: FilmArgs, R: Radiance>(
     Ok(means.agreement())
 }
 
-#[cfg(not(feature = "gpu"))]
+#[cfg(not(all(feature = "gpu", not(target_family = "wasm"))))]
 fn on_device<C: Camera, A: FilmArgs, R: Radiance>(
     _: &FilmTest<'_, C>,
     _: &Kernel<'_, A, R>,
 ) -> Result<MeansAgreement, String> {
-    Err("raydsl was built without the feature `gpu`".to_owned())
+    Err(super::NO_DEVICE.to_owned())
 }

@@ -49,7 +49,7 @@ pub fn can_run(variant: Variant, test: &str) -> bool {
     has
 }
 
-#[cfg(feature = "gpu")]
+#[cfg(all(feature = "gpu", not(target_family = "wasm")))]
 fn device(test: &str) -> bool {
     match shared() {
         Ok(_) => true,
@@ -57,10 +57,18 @@ fn device(test: &str) -> bool {
     }
 }
 
-#[cfg(not(feature = "gpu"))]
+#[cfg(not(all(feature = "gpu", not(target_family = "wasm"))))]
 fn device(test: &str) -> bool {
-    missing_device(test, "raydsl was built without the feature `gpu`")
+    missing_device(test, NO_DEVICE)
 }
+
+/// Why there is no device to be asked for.
+#[cfg(not(all(feature = "gpu", not(target_family = "wasm"))))]
+const NO_DEVICE: &str = if cfg!(feature = "gpu") {
+    "a test in a browser cannot wait for one: await GpuScheduler::batch_async"
+} else {
+    "raydsl was built without the feature `gpu`"
+};
 
 /// Skips with a message, or fails if a device is required.
 fn missing_device(test: &str, error: &str) -> bool {
@@ -71,7 +79,7 @@ fn missing_device(test: &str, error: &str) -> bool {
 }
 
 /// Returns the device of this process' tests, or why there is none.
-#[cfg(feature = "gpu")]
+#[cfg(all(feature = "gpu", not(target_family = "wasm")))]
 fn shared() -> Result<&'static crate::gpu::GpuScheduler, &'static str> {
     use crate::gpu::GpuScheduler;
     static GPU: std::sync::OnceLock<Result<GpuScheduler, String>> = std::sync::OnceLock::new();
@@ -112,7 +120,7 @@ fn try_run<A: Type, R: Type>(
     Ok(found)
 }
 
-#[cfg(feature = "gpu")]
+#[cfg(all(feature = "gpu", not(target_family = "wasm")))]
 fn on_device<A: Type, R: Type>(
     kernel: &Kernel<'_, A, R>,
     inputs: &[A],
@@ -122,9 +130,9 @@ fn on_device<A: Type, R: Type>(
     shared()?.batch(kernel, inputs, found).map(|_| ()).map_err(|e| e.to_string())
 }
 
-#[cfg(not(feature = "gpu"))]
+#[cfg(not(all(feature = "gpu", not(target_family = "wasm"))))]
 fn on_device<A: Type, R: Type>(_: &Kernel<'_, A, R>, _: &[A], _: &mut [R]) -> Result<(), String> {
-    Err("raydsl was built without the feature `gpu`".to_owned())
+    Err(NO_DEVICE.to_owned())
 }
 
 /// Panics unless every variant of a kernel agrees with the scalar one.

@@ -1,6 +1,7 @@
 //! Tests with hand-written modules that follow the interface, on any adapter.
 
 mod application;
+mod awaited;
 mod failures;
 mod grid;
 mod kernels;
