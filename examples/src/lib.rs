@@ -4,10 +4,7 @@ pub mod args;
 pub mod batches;
 pub mod blob;
 pub mod blocks;
-pub mod cloud;
 pub mod comparison;
-pub mod cornell;
-pub mod head;
 pub mod heat_map;
 pub mod lens;
 pub mod mesh;
@@ -17,3 +14,5 @@ pub mod raster;
 pub mod rasterizer;
 pub mod ropes;
 pub mod sheet;
+
+pub use raydsl_scenes::{cloud, cornell, head};

@@ -15,8 +15,8 @@ use raydsl_tests::scaled;
 // Parts of one example call each other by the names of modules at the crate's root.
 #[path = "../../examples/report/cloud.rs"]
 mod cloud;
-#[expect(unreachable_pub, reason = "a module of the examples' library")]
-#[path = "../../examples/src/cornell.rs"]
+#[expect(unreachable_pub, reason = "a module of the scenes' library")]
+#[path = "../../scenes/src/cornell.rs"]
 mod cornell;
 #[expect(unreachable_pub, reason = "a module of the examples' library")]
 #[path = "../../examples/src/lens.rs"]

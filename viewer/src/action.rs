@@ -6,10 +6,10 @@ mod write;
 use std::path::PathBuf;
 
 use raydsl::prelude::*;
+use raydsl_scenes::Pose;
 
 use crate::animation::Animation;
 use crate::look::{CutObject, Knot, Mode, Show};
-use crate::pose::Pose;
 use crate::wand::Wand;
 
 /// Something that a person does. A line of a script is one: [`FromStr`](std::str::FromStr) reads

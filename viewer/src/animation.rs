@@ -1,9 +1,9 @@
 //! Pictures that follow each other: what is done for each of them, as actions.
 
 use std::fmt;
+use raydsl_scenes::Pose;
 
 use crate::action::Action;
-use crate::pose::Pose;
 use crate::session::Session;
 
 /// What is animated.

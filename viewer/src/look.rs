@@ -7,8 +7,7 @@ use std::sync::Arc;
 
 use raydsl::light::Environment;
 use raydsl::prelude::*;
-
-use crate::pose::Pose;
+use raydsl_scenes::Pose;
 
 /// What kind of data is open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -17,12 +17,13 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use raydsl_scenes::Pose;
+
 use crate::action::Action;
 use crate::device::Device;
 use crate::frame::Frame;
 use crate::link::{Job, Report};
 use crate::look::{Kind, Look, Mode, Show};
-use crate::pose::Pose;
 use crate::render;
 use crate::subject::{Info, Picked};
 use data::Data;

@@ -4,9 +4,9 @@ use std::fmt;
 
 use raydsl::kernel::CountedKernel;
 use raydsl::prelude::*;
+use raydsl_scenes::Pose;
 
 use crate::look::{Kind, Look};
-use crate::pose::Pose;
 
 /// A kernel of pictures: one type for all data, so that the code around it exists once.
 pub(crate) type PictureKernel<'a> = Kernel<'a, (Ray, Sampler), Vec4>;

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 use std::str::{FromStr, SplitWhitespace};
 
 use raydsl::prelude::*;
+use raydsl_scenes::Pose;
 
 use super::{Action, Goal};
 use crate::animation::{Animation, Way};
 use crate::look::{CutObject, Knot, Show};
-use crate::pose::Pose;
 use crate::wand::Wand;
 
 /// The first words of lines.

@@ -6,11 +6,11 @@ use raydsl::prelude::*;
 use raydsl::volume::cells::{CellData, CellGrid, CellKind, CellMesh, CellVolume};
 use raydsl::volume::{Cut, ExactCell, ShadedCell, VolumeLight};
 use raydsl_io::cells::{CellFile, CellKind as FileKind, load};
+use raydsl_scenes::Pose;
 
 use super::field::{BACKGROUND, Cuts, Field, bounds_of, histogram};
 use super::{Failure, Serve, Teller, file_name};
 use crate::look::{Kind, Knot, Look, Mode, Show};
-use crate::pose::Pose;
 use crate::subject::{Info, Picked, Subject, SubjectKernel};
 
 /// The integrators of cells: WGSL has the one that is captured.

@@ -22,7 +22,7 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Load(#[from] LoadError),
     #[error(transparent)]
-    Scale(#[from] raydsl_examples::cloud::ScaleError),
+    Scale(#[from] raydsl_scenes::cloud::ScaleError),
     #[error(transparent)]
     Build(#[from] raydsl::bvh::BuildError),
     #[error(transparent)]

@@ -3,40 +3,14 @@
 use std::path::Path;
 
 use raydsl::integrators::{ambient_occlusion, bvh_cost_color};
-use raydsl::kernel;
 use raydsl::prelude::*;
-use raydsl::shading::Surface;
-use raydsl_examples::cloud::{self, Scaled};
 use raydsl_io::cloud::PointCloud;
-use rayon::prelude::*;
+use raydsl_scenes::cloud;
+use raydsl_scenes::points::{self, Point, daylight, sky, spheres};
 
 use super::{Failure, Serve, Teller, file_name};
 use crate::look::{Kind, Look, Mode, Show};
-use crate::pose::Pose;
 use crate::subject::{Info, Picked, Subject, SubjectKernel};
-
-/// A point of a scan.
-#[primitive(sphere(center, radius.to_f32()))]
-pub(crate) struct Point {
-    center: Vec3,
-    radius: Unorm8,
-    color: [Unorm8; 3],
-}
-
-#[kernel]
-impl Surface for Point {
-    fn surface(&self, ray: Ray, hit: Hit) -> SurfacePoint {
-        self.surface_point(ray, hit)
-    }
-
-    fn albedo(&self, _ray: Ray, _hit: Hit) -> Vec3 {
-        vec3(
-            srgb_to_linear(self.color[0].to_f32()),
-            srgb_to_linear(self.color[1].to_f32()),
-            srgb_to_linear(self.color[2].to_f32()),
-        )
-    }
-}
 
 /// Loads a file and serves it.
 pub(super) fn open(path: &Path, teller: &Teller<'_>, serve: Serve<'_>) -> Result<(), Failure> {
@@ -65,38 +39,19 @@ fn show(
 ) -> Result<(), Failure> {
     let scaled = cloud::scale(&points, None)?;
     let spheres = spheres(&points, &scaled);
-    let view = cloud::suggested_view(&points);
+    let home = points::home(&points, &scaled);
     let (scale, offset) = (scaled.scale, scaled.offset);
     // Only the spheres are needed from here on: the file's numbers are twice as large.
     drop((points, scaled));
     let config = BuildConfig::default();
     let tree =
         Bvh::build_observed(&spheres, &[], &config, |done| teller.tell("building the tree", done))?;
-    let place = |p: [f64; 3]| {
-        let axis = |i: usize| ((p[i] - offset[i]) * scale) as f32;
-        vec3(axis(0), axis(1), axis(2))
-    };
-    let home = Pose {
-        eye: place(view.eye),
-        target: place(view.target),
-        up: Vec3::from_array(view.up.map(|c| c as f32)).normalize_or(Vec3::Z),
-        fov_y: view.fov_y_degrees.to_radians() as f32,
-    };
     let size = format!("{} points, {} nodes", spheres.len(), tree.nodes().len());
     let info = Info::of_scene(Kind::Points, name, size, home, tree.bounds());
     // Light from as far away as a dozen neighbours is what makes a surface of spheres look round.
     let radius = spheres.first().map_or(1.0, |s| s.radius.to_f32()) * 24.0;
     serve(info, &mut Points { tree, radius, scale, offset });
     Ok(())
-}
-
-fn spheres(points: &PointCloud, scaled: &Scaled) -> Vec<Point> {
-    let sphere = |(c, color): (&[f32; 3], &[u8; 3])| Point {
-        center: Vec3::from_array(*c),
-        radius: Unorm8::from_bits(scaled.radius_code),
-        color: color.map(Unorm8::from_bits),
-    };
-    scaled.centers.par_iter().zip(&points.colors).map(sphere).collect()
 }
 
 struct Points<'a> {
@@ -116,28 +71,18 @@ impl Subject for Points<'_> {
         run: &mut dyn FnMut(&SubjectKernel<'_>),
     ) -> Result<(), String> {
         let (tree, radius, most, up) = (&self.tree, self.radius, MOST_TESTS, look.pose.up);
-        let (zenith, horizon) = (vec3(0.11, 0.23, 0.53), vec3(0.7, 0.76, 0.8));
-        let sun = (up + vec3(0.5, -0.3, 0.2)).normalize_or(up);
+        let sun = points::to_sun(up);
         let is_cost = look.show == Show::Cost;
         let is_occlusion = look.mode == Mode::Occlusion;
         let kernel = kernel!(counted |ray: Ray, sampler: Sampler| {
-            let height = clamp(ray.direction.dot(up) * 1.6 + 0.7, 0.0, 1.0);
-            let sky = horizon + (zenith - horizon) * height;
-            let mut color = sky;
+            let mut color = sky(up, ray.direction);
             if is_cost {
                 color = bvh_cost_color(tree, most, ray);
             } else if is_occlusion {
                 let light = ambient_occlusion::<_, 1>(tree, radius, ray, sampler);
-                color = vec3(light.x, light.y, light.z) + sky * (1.0 - light.w);
+                color = vec3(light.x, light.y, light.z) + color * (1.0 - light.w);
             } else {
-                let hit = tree.closest_hit(ray);
-                if hit.is_hit {
-                    let seen = facing(tree.surface(ray, hit), ray.direction);
-                    let lit = max(seen.normal.dot(sun), 0.0);
-                    let above = 0.5 + 0.5 * seen.normal.dot(up);
-                    color =
-                        tree.primitive(hit).albedo(ray, hit) * (0.25 + 0.3 * above + 0.65 * lit);
-                }
+                color = daylight(tree, up, sun, ray);
             }
             vec4(color.x, color.y, color.z, 1.0)
         });

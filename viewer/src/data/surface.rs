@@ -13,10 +13,10 @@ use raydsl::prelude::*;
 use raydsl::shading::{Mesh, MeshAttributes};
 use raydsl_examples::model::{Met, Model, met};
 use raydsl_io::scene::{self, Projection, Scene as File};
+use raydsl_scenes::Pose;
 
 use super::{Failure, Serve, Teller, file_name};
 use crate::look::{Kind, Look, Mode, Show};
-use crate::pose::Pose;
 use crate::subject::{Info, Picked, Subject, SubjectKernel};
 
 /// Loads a scene with materials and serves it.

@@ -8,13 +8,13 @@ use raydsl::volume::{
     Centering, Cut, ExactCell, Grid, GridConfig, Midpoint, PreIntegrated, ShadedCell, Volume,
     VolumeLight, Voxel,
 };
-use raydsl_examples::head::head as head_voxels;
 use raydsl_io::volume::{ByteOrder, VolumeFile, VoxelType, Voxels, load, load_raw, load_stack};
+use raydsl_scenes::Pose;
+use raydsl_scenes::head::head as head_voxels;
 
 use super::field::{BACKGROUND, Cuts, Field, bounds_of, histogram};
 use super::{Failure, Serve, file_name, layers};
 use crate::look::{Kind, Knot, Look, Mode, Show};
-use crate::pose::Pose;
 use crate::subject::{Info, Picked, Subject, SubjectKernel};
 
 /// The integrators of the viewer: WGSL has the one that is captured.

@@ -1,8 +1,8 @@
 //! Where buttons are: on a plane before the camera, which follows the head.
 
 use raydsl::prelude::*;
+use raydsl_scenes::Pose;
 
-use crate::pose::Pose;
 use crate::wand::Wand;
 
 /// A button: its corners, anticlockwise from the lower left.

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use raydsl_report::Utilisation;
+use raydsl_scenes::Pose;
 
 use super::Session;
 use crate::device::Device;
 use crate::frame::Frame;
 use crate::look::Look;
-use crate::pose::Pose;
 use crate::subject::{Info, Picked};
 
 impl Session {

@@ -41,7 +41,7 @@ impl Pose {
     }
 
     /// Returns the ray through the middle of a pixel of a picture of this size.
-    pub(crate) fn ray(&self, size: (u32, u32), x: u32, y: u32) -> Ray {
+    pub fn ray(&self, size: (u32, u32), x: u32, y: u32) -> Ray {
         self.ray_through(size, vec2(x as f32, y as f32) + 0.5)
     }
 

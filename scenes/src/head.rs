@@ -1,4 +1,6 @@
 //! A head made in code, as a scanner would see it: skin, skull, a folded brain.
+//!
+//! Its functions are the library's, which are the same on every machine: so are the voxels.
 
 use raydsl::prelude::*;
 use rayon::prelude::*;
@@ -29,10 +31,9 @@ fn joined(a: f32, b: f32, width: f32) -> f32 {
 /// Folds of the surface of a brain: waves whose places waves displace.
 fn folds(p: Vec3) -> f32 {
     let q = p * 15.0;
-    let warp =
-        vec3((q.y * 0.7).sin() + q.z.cos(), (q.z * 0.8 + 1.0).sin(), (q.x * 0.6 + 2.0).cos());
+    let warp = vec3(sin(q.y * 0.7) + cos(q.z), sin(q.z * 0.8 + 1.0), cos(q.x * 0.6 + 2.0));
     let q = q + warp * 1.6;
-    let waves = q.x.sin() * q.y.cos() + q.y.sin() * q.z.cos() + q.z.sin() * q.x.cos();
+    let waves = sin(q.x) * cos(q.y) + sin(q.y) * cos(q.z) + sin(q.z) * cos(q.x);
     waves.abs().min(1.0)
 }
 
@@ -45,7 +46,7 @@ fn value_at(p: Vec3, width: f32) -> f32 {
     let jaw = ellipsoid(p, vec3(0.0, 0.34, -0.66), vec3(0.3, 0.32, 0.2));
     let nose = ellipsoid(p, vec3(0.0, 0.77, -0.2), vec3(0.09, 0.14, 0.19));
     let ear = ellipsoid(side, vec3(0.63, -0.06, -0.04), vec3(0.06, 0.13, 0.2));
-    let neck = ((p.x / 0.36).hypot((p.y + 0.12) / 0.38) - 1.0) * 0.36;
+    let neck = (length(vec2(p.x / 0.36, (p.y + 0.12) / 0.38)) - 1.0) * 0.36;
     let neck = neck.max(p.z + 0.3);
     let head = joined(joined(cranium, face, 0.2), joined(jaw, neck, 0.2), 0.16);
     let lid = ellipsoid(side, vec3(0.2, 0.56, -0.02), Vec3::splat(0.1));

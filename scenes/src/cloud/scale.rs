@@ -53,14 +53,14 @@ pub struct Scaled {
 /// # Examples
 ///
 /// ```
-/// # use raydsl_examples::cloud::scale;
+/// # use raydsl_scenes::cloud::scale;
 /// # use raydsl_io::cloud::PointCloud;
 /// let positions = vec![[0.0, 0.0, 0.0], [3.0, 0.0, 0.0]];
 /// let cloud = PointCloud { positions, colors: vec![[255; 3]; 2] };
 /// let scaled = scale(&cloud, Some(0.5))?;
 /// assert_eq!(scaled.radius_code, 128);
 /// assert_eq!(scaled.offset, [1.5, 0.0, 0.0]);
-/// # Ok::<(), raydsl_examples::cloud::ScaleError>(())
+/// # Ok::<(), raydsl_scenes::cloud::ScaleError>(())
 /// ```
 pub fn scale(cloud: &PointCloud, radius: Option<f64>) -> Result<Scaled, ScaleError> {
     check(cloud, radius)?;

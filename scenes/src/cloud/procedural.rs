@@ -66,7 +66,7 @@ struct Studio {
 /// # Examples
 ///
 /// ```
-/// # use raydsl_examples::cloud::procedural;
+/// # use raydsl_scenes::cloud::procedural;
 /// let cloud = procedural(1000, 7, &mut |_| {});
 /// assert_eq!(cloud.positions.len(), 1000);
 /// assert_eq!(cloud.colors.len(), 1000);
