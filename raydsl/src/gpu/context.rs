@@ -229,6 +229,20 @@ impl Context {
         lock(&self.textures).forget_gone();
     }
 
+    /// Waits until the device has answered every call so far and returns the first error, also that
+    /// of a call of the application outside every error scope. A browser tells errors late; what
+    /// runs is not waited for.
+    ///
+    /// # Errors
+    ///
+    /// The first error of a call, or the loss of the device.
+    pub async fn settle(&self) -> Result<(), GpuError> {
+        // Answers come in the order of calls: behind this one all others are there.
+        self.gpu.guarded("a last call", || ())?;
+        self.answered().await?;
+        self.gpu.check()
+    }
+
     /// Returns the error of earlier calls that the device told since, or that of the device.
     pub(super) fn check(&self) -> Result<(), GpuError> {
         match self.gpu.arrived() {

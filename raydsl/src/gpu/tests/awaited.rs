@@ -119,6 +119,23 @@ fn a_late_error_is_returned_once_and_the_context_goes_on() -> Result<(), GpuErro
     Ok(())
 }
 
+/// A call of the application outside every scope, whose error would otherwise come with the next
+/// run.
+#[test]
+fn settling_returns_errors_of_the_application() {
+    let Some(context) = super::context() else { return };
+    assert_eq!(block_on(context.settle()), Ok(()));
+    let _ = context.device().create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: 1 << 60,
+        usage: wgpu::BufferUsages::STORAGE,
+        mapped_at_creation: false,
+    });
+    let told = block_on(context.settle());
+    assert!(matches!(told, Err(GpuError::Rejected { .. })), "{told:?}");
+    assert_eq!(block_on(context.settle()), Ok(()));
+}
+
 /// A future that is dropped leaves no copy of what it borrowed: other data may have the address.
 #[test]
 fn a_dropped_future_forgets_what_it_borrowed() -> Result<(), GpuError> {
