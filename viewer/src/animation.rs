@@ -1,6 +1,7 @@
 //! Pictures that follow each other: what is done for each of them, as actions.
 
 use std::fmt;
+
 use raydsl_scenes::Pose;
 
 use crate::action::Action;
