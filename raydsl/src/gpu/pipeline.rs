@@ -62,6 +62,7 @@ pub(super) struct Bindings {
     pub(super) exact: Option<FloatControls>,
 }
 
+#[cfg(not(target_family = "wasm"))]
 impl Bindings {
     /// Returns the numbers of all bindings, in their order.
     pub(super) fn numbers(&self) -> Vec<u32> {

@@ -82,7 +82,7 @@ impl Facets {
 /// # Examples
 ///
 /// ```
-/// # use raydsl_examples::cloud::{Cover, facets};
+/// # use raydsl_scenes::cloud::{Cover, facets};
 /// let land = facets(7);
 /// assert_eq!(land.cover(0), Cover::Ground);
 /// assert!((land.first_leaf() as usize) < land.triangles.len());
