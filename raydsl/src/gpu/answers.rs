@@ -52,15 +52,36 @@ impl Answers {
         None
     }
 
-    /// Waits for all answers and returns the first error.
+    /// Waits for all answers and returns the first error. If it is dropped before its end, a later
+    /// call has what it has not returned.
     pub(super) async fn all(&self) -> Option<GpuError> {
-        let late = std::mem::take(&mut *lock(&self.late));
-        let mut first = None;
-        for answer in late {
-            let error = answer.await;
-            first = first.or(error);
+        let rest = std::mem::take(&mut *lock(&self.late));
+        let mut waiting = Waiting { answers: self, rest, first: None };
+        while let Some(oldest) = waiting.rest.front_mut() {
+            let error = oldest.await;
+            waiting.rest.pop_front();
+            waiting.first = waiting.first.take().or(error);
         }
-        first
+        waiting.first.take()
+    }
+}
+
+/// Answers that are waited for.
+struct Waiting<'a> {
+    answers: &'a Answers,
+    rest: VecDeque<Answer>,
+    first: Option<GpuError>,
+}
+
+impl Drop for Waiting<'_> {
+    fn drop(&mut self) {
+        let mut late = lock(&self.answers.late);
+        while let Some(newest) = self.rest.pop_back() {
+            late.push_front(newest);
+        }
+        if let Some(error) = self.first.take() {
+            late.push_front(Box::pin(std::future::ready(Some(error))));
+        }
     }
 }
 
@@ -104,6 +125,36 @@ mod tests {
         first.send(refused("a")).expect("the answer is kept");
         assert_eq!(answers.arrived(), refused("a"));
         assert_eq!(answers.arrived(), None);
+    }
+
+    #[test]
+    fn what_is_no_longer_waited_for_is_kept() {
+        let answers = Answers::default();
+        let mut ends = Vec::new();
+        for _ in 0..3 {
+            let (end, answer) = oneshot::channel();
+            assert_eq!(answers.now(async { answer.await.ok().flatten() }), None);
+            ends.push(end);
+        }
+        let mut ends = ends.into_iter();
+        let mut answer = |error| {
+            let end = ends.next().expect("there are three");
+            end.send(error).expect("the answer is kept");
+        };
+        answer(refused("a"));
+        let mut waiting = Box::pin(answers.all());
+        assert_eq!(poll_once(&mut waiting), Poll::Pending);
+        drop(waiting);
+        assert_eq!(answers.arrived(), refused("a"));
+
+        // An error of an answer that nobody waits for any more comes with a later call, too.
+        let (end, answer) = oneshot::channel();
+        assert_eq!(answers.now(async { answer.await.ok().flatten() }), None);
+        let mut waiting = Box::pin(answers.all());
+        assert_eq!(poll_once(&mut waiting), Poll::Pending);
+        drop(waiting);
+        end.send(refused("b")).expect("the answer is kept");
+        assert_eq!(answers.arrived(), refused("b"));
     }
 
     #[test]

@@ -21,6 +21,7 @@ pub(super) fn check(
     limits: &wgpu::Limits,
 ) -> Result<Sizes, GpuError> {
     check_entry_point(module, limits)?;
+    check_workgroup_memory(module, limits)?;
     let mut sizes = Sizes::new();
     for (_, variable) in module.global_variables.iter() {
         let fail = |why: &str| {
@@ -69,6 +70,20 @@ fn check_entry_point(module: &naga::Module, limits: &wgpu::Limits) -> Result<(),
         "a workgroup of {size:?} is too large: {most:?} and {} invocations are allowed",
         limits.max_compute_invocations_per_workgroup
     )))
+}
+
+fn check_workgroup_memory(module: &naga::Module, limits: &wgpu::Limits) -> Result<(), GpuError> {
+    let shared = module.global_variables.iter().map(|(_, variable)| variable);
+    let shared = shared.filter(|variable| variable.space == AddressSpace::WorkGroup);
+    // Each is aligned to 16 bytes, as wgpu counts them.
+    let of = |variable: &naga::GlobalVariable| {
+        u64::from(module.types[variable.ty].inner.size(module.to_ctx())).next_multiple_of(16)
+    };
+    let (bytes, limit) = (shared.map(of).sum::<u64>(), limits.max_compute_workgroup_storage_size);
+    if bytes <= u64::from(limit) {
+        return Ok(());
+    }
+    Err(failed(&format!("a workgroup has {bytes} bytes, more than the {limit} that are allowed")))
 }
 
 /// Returns whether a variable is what the layout has at its binding.

@@ -249,9 +249,7 @@ impl InFlight {
         outputs: &mut [u8],
     ) -> Result<Finished, GpuError> {
         gpu.wait(self.index)?;
-        // In a browser this is the wait. On a machine the work is done, but another thread's poll
-        // may be the one to report it.
-        if self.mapped.await != Ok(true) {
+        if !is_mapped(gpu, self.mapped).await? {
             gpu.check()?;
             return Err(lost("the outputs could not be mapped"));
         }
@@ -275,6 +273,29 @@ impl InFlight {
         drop(view);
         self.staging.unmap();
         Ok(Finished { slot: self.slot, tile: self.tile, device_ms })
+    }
+}
+
+/// Waits until the outputs are mapped.
+#[cfg(target_family = "wasm")]
+async fn is_mapped(_: &Gpu, mapped: oneshot::Receiver<bool>) -> Result<bool, GpuError> {
+    Ok(mapped.await == Ok(true))
+}
+
+/// Waits until the outputs are mapped. The work is done by now, but another thread's poll may be the
+/// one to report it, which is a matter of microseconds unless that thread has ended.
+#[cfg(not(target_family = "wasm"))]
+async fn is_mapped(gpu: &Gpu, mut mapped: oneshot::Receiver<bool>) -> Result<bool, GpuError> {
+    let start = Instant::now();
+    loop {
+        match mapped.try_recv() {
+            Ok(Some(is_mapped)) => return Ok(is_mapped),
+            Err(_) => return Ok(false),
+            Ok(None) if start.elapsed() > gpu.timeout => {
+                return Err(GpuError::Timeout { seconds: gpu.timeout.as_secs_f64() });
+            }
+            Ok(None) => std::thread::yield_now(),
+        }
     }
 }
 

@@ -6,8 +6,7 @@ pub enum Arithmetic {
     /// Like the other variants: elementary functions are the library's, and the numbers of the
     /// source are in the uniform buffer, where no driver can fold them into others. Where a device
     /// takes SPIR-V, no operation is fused with another or moved, and results have the bits of the
-    /// other variants, except that denormals may be 0; see
-    /// [`Context::is_exact`](crate::gpu::Context::is_exact).
+    /// other variants, except that denormals may be 0; the device's context says so.
     #[default]
     Strict,
     /// The fastest on the device, which may fuse and move operations: `sin`, `cos`, `tan`, `asin`, `acos`, `atan`, `atan2`, `exp`,

@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use raydsl::machine::wgsl::Limits;
+use raydsl::machine::wgsl::{Arithmetic, Limits, Quotients};
 use raydsl::prelude::*;
 use raydsl_tests::check::recorded;
 use raydsl_tests::kernels;
@@ -108,7 +108,8 @@ macro_rules! tests {
 
 raydsl_tests::kernel_table!(tests);
 
-const SCENES: [&str; 12] = [
+const SCENES: [&str; 13] = [
+    "corrected_quotients",
     "hits",
     "instances",
     "list_of_meshes",
@@ -150,6 +151,16 @@ fn primary() -> Result<(), raydsl::bvh::BuildError> {
     let uses = |wgsl: &str| wgsl.contains("params.background");
     assert!(uses(&shaded) && !uses(&plain), "{plain}");
     Ok(())
+}
+
+/// What a device gets whose quotients and roots are not the nearest.
+#[test]
+fn corrected_quotients() {
+    let kernel = kernel!(|a: Vec3, b: f32| (a / b, a.y / a.z, a.abs().sqrt(), b.sqrt() / 4.0));
+    let limits = Limits { quotients: Quotients::Corrected, ..Limits::default() };
+    assert_wgsl("corrected_quotients", &kernel.record().module(&limits).source);
+    let fast = kernel.arithmetic(Arithmetic::Fast).record().module(&limits).source;
+    assert!(!fast.contains("exact_"), "{fast}");
 }
 
 #[test]

@@ -69,6 +69,27 @@ fn a_module_that_breaks_the_interface_makes_no_pipeline() {
     module.source = module.source.replace("@workgroup_size(8, 8)", "@workgroup_size(8, 8000)");
     let refused = run(&context, &module, 0);
     assert!(matches!(refused, Err(GpuError::PipelineFailed { .. })), "{refused:?}");
+    // What the layout has elsewhere, or not at all; wgpu does not see it where it passes SPIR-V on.
+    for (ours, other) in [
+        ("@group(0) @binding(3)", "@group(0) @binding(2)"),
+        ("@group(0) @binding(3)", "@group(1) @binding(3)"),
+        ("@binding(0) var<uniform>", "@binding(0) var<storage, read>"),
+        (
+            "outputs: array<u32>;",
+            "outputs: array<u32>;\nvar<workgroup> large: array<u32, 1048576>;",
+        ),
+    ] {
+        module = grind(1);
+        assert!(module.source.contains(ours), "{}", module.source);
+        module.source = module.source.replace(ours, other);
+        if other.contains("large") {
+            module.source = module
+                .source
+                .replace("var value = linear;", "var value = linear; large[value] = 1u;");
+        }
+        let refused = run(&context, &module, 0);
+        assert!(matches!(refused, Err(GpuError::PipelineFailed { .. })), "{other}: {refused:?}");
+    }
     module = grind(1);
     module.output_stride = 6;
     let refused = run(&context, &module, 0);

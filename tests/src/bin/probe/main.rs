@@ -4,14 +4,13 @@
 //!
 //! Two tables: the error of each builtin beside what WGSL asks for (gpuweb, "Floating Point
 //! Evaluation"), and what the driver's compiler makes of expressions that it may rewrite: as wgpu
-//! translates them, and as SPIR-V whose operations are decorated with `NoContraction`, where the
-//! device takes that. Texts are written by hand, so that nothing of the library stands between.
+//! translates them, and as SPIR-V whose operations are decorated with `NoContraction`, as strict
+//! kernels are where the device takes that. Texts are written by hand: the library only runs them.
 
 mod builtins;
 mod device;
 mod rewrites;
 mod sampler;
-mod spirv;
 
 use std::process::ExitCode;
 

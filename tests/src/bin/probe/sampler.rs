@@ -39,7 +39,7 @@ pub(crate) fn measure(device: &Device) -> Result<Vec<Row>, Error> {
 }
 
 fn of(device: &Device, format: wgpu::TextureFormat, texels: &[u8]) -> Result<Row, Error> {
-    let gpu = &device.device;
+    let gpu = device.context.device();
     let size = wgpu::Extent3d { width: 2, height: 1, depth_or_array_layers: 1 };
     let texture = gpu.create_texture(&wgpu::TextureDescriptor {
         label: None,
@@ -56,7 +56,7 @@ fn of(device: &Device, format: wgpu::TextureFormat, texels: &[u8]) -> Result<Row
         bytes_per_row: Some(texels.len() as u32),
         rows_per_image: None,
     };
-    device.queue.write_texture(texture.as_image_copy(), texels, rows, size);
+    device.context.queue().write_texture(texture.as_image_copy(), texels, rows, size);
     let sampler = gpu.create_sampler(&wgpu::SamplerDescriptor {
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
@@ -99,7 +99,7 @@ fn of(device: &Device, format: wgpu::TextureFormat, texels: &[u8]) -> Result<Row
     pass.dispatch_workgroups(COUNT / 64, 1, 1);
     drop(pass);
     encoder.copy_buffer_to_buffer(&outputs, 0, &staging, 0, bytes);
-    device.queue.submit([encoder.finish()]);
+    device.context.queue().submit([encoder.finish()]);
     let results = device.read(&staging)?;
     let weights = (0..COUNT).map(|i| i as f32 / COUNT as f32);
     let worst = results.iter().zip(weights).map(|(r, w)| (r - w).abs()).fold(0.0, f32::max);
