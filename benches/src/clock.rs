@@ -2,8 +2,6 @@
 
 use std::time::Duration;
 
-use raydsl::gpu::{GpuError, Timing};
-
 #[cfg(target_os = "linux")]
 mod thread {
     use std::time::Duration;
@@ -82,25 +80,4 @@ pub fn median(values: &[f64]) -> f64 {
 /// The middle half of the values, as a share of the median.
 pub fn spread(values: &[f64]) -> f64 {
     (quantile(values, 0.75) - quantile(values, 0.25)) / median(values)
-}
-
-/// How long a device is kept busy for one figure.
-const BUSY: Duration = Duration::from_secs(1);
-
-/// The least seconds that a device needs for `run`, by its own clock, or of the whole call if it has
-/// none. It runs again and again for a while: a device that was idle has lowered its frequency.
-///
-/// # Panics
-///
-/// If the device refuses the kernel or is lost.
-pub fn device_seconds(mut run: impl FnMut() -> Result<Timing, GpuError>) -> f64 {
-    let begun = std::time::Instant::now();
-    let mut least = f64::INFINITY;
-    loop {
-        let timing = run().expect("the device runs the kernel");
-        least = least.min(1e-3 * timing.device_ms.unwrap_or(timing.wall_ms));
-        if begun.elapsed() > BUSY {
-            return least;
-        }
-    }
 }

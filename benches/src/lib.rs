@@ -3,6 +3,7 @@
 
 pub mod clock;
 pub mod contest;
+pub mod device;
 pub mod divergent;
 pub mod embree;
 pub mod guard;

@@ -26,6 +26,7 @@ use clap::Parser;
 use raydsl::prelude::*;
 use raydsl_benches::clock::median;
 use raydsl_benches::contest::{Cost, TILE};
+use raydsl_benches::device;
 use raydsl_benches::scenes::{self, Scene};
 use raydsl_benches::table::{Line, finish, print};
 
@@ -85,16 +86,13 @@ fn main() -> ExitCode {
     if args.counts {
         return count(&args);
     }
-    let device = match args.device.then(GpuScheduler::new).transpose() {
+    let device = match device::open(args.device) {
         Ok(device) => device,
         Err(error) => {
             eprintln!("ao: {error}");
             return ExitCode::FAILURE;
         }
     };
-    if let Some(gpu) = &device {
-        println!("WGSL on {}", gpu.context().adapter_name());
-    }
     let mut lines = Vec::new();
     for (name, scene) in all_scenes(&args.scene) {
         for threads in args.threads.iter().map(|&threads| threads.into()) {

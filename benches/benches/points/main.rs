@@ -10,6 +10,7 @@ use clap::Parser;
 use raydsl::prelude::*;
 use raydsl_benches::clock::{median, spread};
 use raydsl_benches::contest::TILE;
+use raydsl_benches::device;
 use raydsl_benches::scenes::{self, Scene};
 use raydsl_benches::table::{Line, finish, print};
 
@@ -48,16 +49,13 @@ struct Args {
 
 fn main() -> ExitCode {
     let args = Args::parse();
-    let device = match args.device.then(GpuScheduler::new).transpose() {
+    let device = match device::open(args.device) {
         Ok(device) => device,
         Err(error) => {
             eprintln!("points: {error}");
             return ExitCode::FAILURE;
         }
     };
-    if let Some(gpu) = &device {
-        println!("WGSL on {}", gpu.context().adapter_name());
-    }
     let mut lines = Vec::new();
     for name in &args.scene {
         match surface(name) {

@@ -2,8 +2,9 @@
 
 use raydsl::camera::Camera;
 use raydsl::prelude::*;
-use raydsl_benches::clock::{device_seconds, seconds_on};
+use raydsl_benches::clock::seconds_on;
 use raydsl_benches::contest::{Cost, Outcome, pixels};
+use raydsl_benches::device::device_seconds;
 use raydsl_benches::embree::{self, Embree, Mode, Quality, Question, Shape};
 use raydsl_benches::scenes::Point;
 

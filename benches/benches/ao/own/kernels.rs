@@ -3,7 +3,8 @@
 use raydsl::kernel as kernel_fn;
 use raydsl::prelude::*;
 use raydsl::render::FilmArgs;
-use raydsl_benches::clock::{device_seconds, seconds_on};
+use raydsl_benches::clock::seconds_on;
+use raydsl_benches::device::device_seconds;
 
 use crate::rays::{SAMPLES, Workload, place_of, shadow_ray, sum_of_rays};
 
