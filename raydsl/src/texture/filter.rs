@@ -73,11 +73,15 @@ fn cubic_image<T: Texel<Value = V>, V: TexelValue>(
     x: Four,
     y: Four,
 ) -> V {
-    let a: V = cubic_row(texels, part(texels, first, width, y.first), x);
-    let b: V = cubic_row(texels, part(texels, first, width, y.second), x);
-    let c: V = cubic_row(texels, part(texels, first, width, y.third), x);
-    let d: V = cubic_row(texels, part(texels, first, width, y.fourth), x);
-    b.blend4(a, c, d, y.w1, y.w3, y.w4)
+    let rows = [y.first, y.second, y.third, y.fourth];
+    let zero: V = texels.zero_value();
+    let mut found = [zero; 4];
+    // A loop: drivers would take minutes to compile 64 texels of a volume one by one.
+    for i in 0..4 {
+        found[i] = cubic_row(texels, part(texels, first, width, rows[i]), x);
+    }
+    let second: V = found[1];
+    second.blend4(found[0], found[2], found[3], y.w1, y.w3, y.w4)
 }
 
 /// Filters a row of `size` texels from `first` on at `x`.
@@ -154,11 +158,13 @@ pub(super) fn filter3<T: Texel<Value = V>, V: TexelValue>(
             part(texels, first, image, z.third),
             part(texels, first, image, z.fourth),
         ];
-        let a: V = cubic_image(texels, starts[0], size.x, x, y);
-        let b: V = cubic_image(texels, starts[1], size.x, x, y);
-        let c: V = cubic_image(texels, starts[2], size.x, x, y);
-        let d: V = cubic_image(texels, starts[3], size.x, x, y);
-        b.blend4(a, c, d, z.w1, z.w3, z.w4)
+        let zero: V = texels.zero_value();
+        let mut found = [zero; 4];
+        for i in 0..4 {
+            found[i] = cubic_image(texels, starts[i], size.x, x, y);
+        }
+        let second: V = found[1];
+        second.blend4(found[0], found[2], found[3], z.w1, z.w3, z.w4)
     }
 }
 

@@ -136,6 +136,9 @@ methods! {
     last_level(t) -> u32 { t.levels - 1 }
     on(m) -> U<M> { m.capture(t.name, Levels { last_level: t.levels - 1 }).last_level }
 
+    zero_value(_t) -> T::Value { T::Value::from_channels([0.0; 4]) }
+    on(m) -> <T::Value as Type>::On<M> { Value::zero(m) }
+
     border(t) -> T::Value { T::Value::from_channels(t.config.border.to_array()) }
     on(m) -> <T::Value as Type>::On<M> { m.capture(t.name, Border { border: t.border() }).border }
 }
