@@ -20,9 +20,10 @@ use cuts::Cuts;
 use raydsl::prelude::*;
 use raydsl::volume::cells::{CellData, CellGrid, CellKind, CellMesh, CellVolume};
 use raydsl::volume::{Cut, ExactCell, ShadedCell, VolumeLight};
+use raydsl_examples::cells::kind_of;
 use raydsl_examples::comparison::Frames;
 use raydsl_examples::ropes::ropes;
-use raydsl_io::cells::{CellFile, CellKind as FileKind};
+use raydsl_io::cells::CellFile;
 
 /// Cells along the cylinder of the grid that is made in code.
 const LEVELS: u32 = 48;
@@ -85,15 +86,6 @@ fn run(args: &Args) -> Result<(), Failure> {
         println!("{} cells of other kinds are left out", file.skipped);
     }
     show(args, &grid)
-}
-
-const fn kind_of(kind: FileKind) -> CellKind {
-    match kind {
-        FileKind::Tetrahedron => CellKind::Tetrahedron,
-        FileKind::Pyramid => CellKind::Pyramid,
-        FileKind::Wedge => CellKind::Wedge,
-        FileKind::Hexahedron => CellKind::Hexahedron,
-    }
 }
 
 /// The values that are shown, and whether they are of cells.

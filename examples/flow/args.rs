@@ -14,10 +14,14 @@ pub(crate) struct Args {
     #[arg(value_name = "FILE")]
     pub(crate) file: Option<PathBuf>,
     /// FILE has tracts: show them, coloured by their direction.
-    #[arg(long, requires = "file")]
+    #[arg(
+        long,
+        requires = "file",
+        conflicts_with_all = ["vectors", "color", "map", "lines", "arrows", "tolerance", "length"]
+    )]
     pub(crate) tracts: bool,
     /// The array of vectors [default: the first one of three components].
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", requires = "file")]
     pub(crate) vectors: Option<String>,
     /// What colours show: speed, time, or an array of the points of FILE.
     #[arg(long, value_name = "NAME", default_value = "speed")]
@@ -62,7 +66,13 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
     /// Time lines through the made flow instead, and measure their errors over tolerances.
-    #[arg(long)]
+    #[arg(
+        long,
+        conflicts_with_all = [
+            "file", "color", "map", "arrows", "tolerance", "length", "radius", "from", "size",
+            "variants", "out",
+        ]
+    )]
     pub(crate) measure: bool,
 }
 

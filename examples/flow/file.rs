@@ -5,20 +5,12 @@ use std::path::Path;
 use raydsl::flow::{Capsule, FlowPoint, FlowState, trace};
 use raydsl::prelude::*;
 use raydsl::volume::cells::{CellData, CellGrid, CellKind, CellMesh, CellVectors};
-use raydsl_io::cells::{CellArray, CellFile, CellKind as FileKind};
+use raydsl_examples::cells::kind_of;
+use raydsl_io::cells::{CellArray, CellFile};
 
 use super::Failure;
 use super::args::Args;
 use super::lines::{self, Field, Shown};
-
-const fn kind_of(kind: FileKind) -> CellKind {
-    match kind {
-        FileKind::Tetrahedron => CellKind::Tetrahedron,
-        FileKind::Pyramid => CellKind::Pyramid,
-        FileKind::Wedge => CellKind::Wedge,
-        FileKind::Hexahedron => CellKind::Hexahedron,
-    }
-}
 
 /// An array of points with so many components, by its name or the first one.
 fn array<'a>(
@@ -55,7 +47,7 @@ pub(crate) fn cells(args: &Args, path: &Path) -> Result<Shown, Failure> {
         let (bounds, title) = (wind.bounds(), title.to_owned());
         lines::through(args, &Field { bounds, velocity: &velocity, value, title }, &kernel)
     };
-    Ok(match &args.color[..] {
+    match &args.color[..] {
         "speed" => show(&|p| p.velocity.length(), "speed"),
         "time" => show(&|p| p.time, "time"),
         name => {
@@ -64,7 +56,7 @@ pub(crate) fn cells(args: &Args, path: &Path) -> Result<Shown, Failure> {
             // Rounding may put an end of a line outside.
             show(&|p| grid.value(p.at).unwrap_or(grid.range().x), name)
         }
-    })
+    }
 }
 
 /// Fibre tracts as tubes, in the scanner's coordinates where the file has them.
@@ -72,16 +64,11 @@ pub(crate) fn tracts(args: &Args, path: &Path) -> Result<Shown, Failure> {
     // ANCHOR: tracts
     let file = raydsl_io::tracts::load(path)?;
     let to_world = file.to_world.unwrap_or(Affine3::IDENTITY);
-    let points: Vec<Vec3> = file.points.iter().map(|p| to_world.transform_point3(*p)).collect();
-    let bounds = Aabb::from_points(points.iter().copied());
+    let place = |p: &Vec3| to_world.transform_point3(*p);
+    let bounds = Aabb::from_points(file.points.iter().map(place));
     let radius = lines::radius(args, bounds.size().max_element());
-    let mut rest = &points[..];
-    let mut tubes = Vec::new();
-    for length in &file.lengths {
-        let (tract, others) = rest.split_at(*length as usize);
-        tubes.extend(Capsule::along(tract.iter().map(|p| (*p, 0.0)), radius));
-        rest = others;
-    }
+    let tubes = |tract: &[Vec3]| Capsule::along(tract.iter().map(|p| (place(p), 0.0)), radius);
+    let tubes: Vec<Capsule> = file.tracts().flat_map(tubes).collect();
     // ANCHOR_END: tracts
     if tubes.is_empty() {
         return Err(Failure::Usage("the file has no tracts".to_owned()));
@@ -89,7 +76,7 @@ pub(crate) fn tracts(args: &Args, path: &Path) -> Result<Shown, Failure> {
     println!(
         "{} tracts, {} points, {} parts of tubes",
         file.lengths.len(),
-        points.len(),
+        file.points.len(),
         tubes.len()
     );
     Ok(Shown { tubes, arrows: Vec::new(), title: "direction".to_owned(), bounds })

@@ -5,6 +5,7 @@ use raydsl::flow::{Streamline, Ways, streamlines};
 use raydsl::kernel::Kernel;
 use raydsl::prelude::*;
 
+use super::Failure;
 use super::args::Args;
 
 /// What is shown: parts of tubes and arrows with a value each, which colours stand for.
@@ -49,24 +50,38 @@ pub(crate) fn radius(args: &Args, extent: f32) -> f32 {
     args.radius.unwrap_or(extent / 200.0)
 }
 
-/// Places where the field has a value, evenly over its box: an R₃ sequence, whose points keep their
-/// distance from one another (Roberts, 2018).
+/// The place in a box of a number of an R₃ sequence, whose points keep their distance from one another
+/// (Roberts, 2018): in integers, so that they do however many there are.
+pub(crate) fn place(i: u32, bounds: Aabb) -> Vec3 {
+    // 2^32 times the first powers of 1 / x, where x^4 = x + 1.
+    let steps = uvec3(0xd1b5_4a33, 0xabc9_8389, 0x8cb9_2ba7);
+    let share = steps.wrapping_mul(UVec3::splat(i)).wrapping_add(UVec3::splat(1 << 31));
+    bounds.min + bounds.size() * (share >> 8u32).as_vec3() / (1u32 << 24) as f32
+}
+
+/// Places where the field has a value, evenly over its box.
 fn seeds(field: &Field<'_>, count: u32) -> Vec<Vec3> {
-    let steps = vec3(0.819_172_5, 0.671_043_6, 0.549_700_5);
-    let place = |i: u32| (steps * i as f32 + 0.5).fract();
-    let at = |i: u32| field.bounds.min + field.bounds.size() * place(i);
+    let at = |i: u32| place(i, field.bounds);
     let all = (0..count.saturating_mul(100)).map(at);
     all.filter(|p| (field.velocity)(*p).is_some()).take(count as usize).collect()
 }
 
 /// Follows lines through a field and makes tubes of them, and arrows where they are asked for.
+///
+/// # Errors
+///
+/// If the field has a value nowhere.
 pub(crate) fn through(
     args: &Args,
     field: &Field<'_>,
     kernel: &Kernel<'_, (FlowState,), FlowSteps>,
-) -> Shown {
+) -> Result<Shown, Failure> {
     let extent = field.bounds.size().max_element();
     let seeds = seeds(field, args.lines);
+    if seeds.is_empty() {
+        let message = "no place was found where the field has a value: check the array of vectors";
+        return Err(Failure::Usage(message.to_owned()));
+    }
     let start = std::time::Instant::now();
     // ANCHOR: streamlines
     let lines = streamlines(&TiledScheduler::new(), kernel, &seeds, Ways::Both);
@@ -86,7 +101,7 @@ pub(crate) fn through(
         tubes.len()
     );
     let arrows = args.arrows.map_or_else(Vec::new, |along| arrows(field, along));
-    Shown { tubes, arrows, title: field.title.clone(), bounds: field.bounds }
+    Ok(Shown { tubes, arrows, title: field.title.clone(), bounds: field.bounds })
 }
 
 /// Arrows on a regular grid, so many along its longest side; the longest fills its place.
@@ -106,4 +121,26 @@ fn arrows(field: &Field<'_>, along: u32) -> Vec<Arrow> {
     let most = found.iter().map(|p| p.velocity.length()).fold(f32::MIN_POSITIVE, f32::max);
     let arrow = |p: &FlowPoint| Arrow::at(p.at, p.velocity * (step / most), (field.value)(p));
     found.iter().map(arrow).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_keep_apart() {
+        let unit = Aabb::new(Vec3::ZERO, Vec3::ONE);
+        // Far along the sequence, too, where a product of floats has no digits left.
+        for first in [0, 30_000_000, u32::MAX - 1000] {
+            let all: Vec<Vec3> = (0..1000).map(|i| place(first + i, unit)).collect();
+            assert!(all.iter().all(|p| p.cmpge(Vec3::ZERO).all() && p.cmplt(Vec3::ONE).all()));
+            let nearest = |i: usize| {
+                let others = all[..i].iter().map(|p| p.distance(all[i]));
+                others.fold(f32::INFINITY, f32::min)
+            };
+            let least = (1..1000).map(nearest).fold(f32::INFINITY, f32::min);
+            // On a regular grid of as many it is 0.1.
+            assert!(least > 0.04, "{least}");
+        }
+    }
 }

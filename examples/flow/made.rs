@@ -2,10 +2,11 @@
 
 use core::f32::consts::TAU;
 
-use raydsl::flow::{FlowError, FlowPoint, FlowState, trace};
+use raydsl::flow::{FlowPoint, FlowState, trace};
 use raydsl::kernel;
 use raydsl::prelude::*;
 
+use super::Failure;
 use super::args::Args;
 use super::lines::{self, Field, Shown};
 
@@ -25,7 +26,7 @@ pub(crate) fn period() -> Aabb {
 }
 
 /// Lines in one period of the flow.
-pub(crate) fn shown(args: &Args) -> Result<Shown, FlowError> {
+pub(crate) fn shown(args: &Args) -> Result<Shown, Failure> {
     let settings = lines::settings(args, TAU)?;
     // ANCHOR: kernel
     let period = period();
@@ -34,10 +35,17 @@ pub(crate) fn shown(args: &Args) -> Result<Shown, FlowError> {
         trace(field, state, settings)
     });
     // ANCHOR_END: kernel
-    let by_time = args.color == "time";
+    let by_time = match &args.color[..] {
+        "time" => true,
+        "speed" => false,
+        other => {
+            let message = format!("this flow has no array '{other}': --color speed or time");
+            return Err(Failure::Usage(message));
+        }
+    };
     let value = |p: &FlowPoint| if by_time { p.time } else { p.velocity.length() };
     let velocity = |p: Vec3| period.contains(p).then(|| vortices(p));
     let title = if by_time { "time" } else { "speed" }.to_owned();
     let field = Field { bounds: period, velocity: &velocity, value: &value, title };
-    Ok(lines::through(args, &field, &kernel))
+    lines::through(args, &field, &kernel)
 }

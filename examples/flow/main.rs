@@ -111,6 +111,7 @@ fn show(args: &Args, shown: &Shown) -> Result<(), Failure> {
     let (tubes, arrows) = (Bvh::build(&shown.tubes)?, Bvh::build(&shown.arrows)?);
     let by_direction = args.tracts;
     let reach = shown.bounds.size().length();
+    let tube_count = shown.tubes.len() as u32;
     // ANCHOR: picture
     let primary = kernel!(|ray: Ray| {
         let tube = tubes.closest_hit(ray);
@@ -118,6 +119,7 @@ fn show(args: &Args, shown: &Shown) -> Result<(), Failure> {
         let is_arrow = arrow.is_hit && !(tube.is_hit && tube.t <= arrow.t);
         let mut color = vec3(0.12, 0.13, 0.15) + vec3(0.1, 0.1, 0.1) * ray.direction.z.abs();
         let mut depth = f32::MAX;
+        let mut id = tube.prim_id;
         if tube.is_hit || is_arrow {
             let normal;
             let own;
@@ -126,10 +128,12 @@ fn show(args: &Args, shown: &Shown) -> Result<(), Failure> {
                 normal = part.normal(ray, arrow);
                 own = map.at(part.value).color;
                 depth = arrow.t;
+                // Behind the numbers of tubes.
+                id = tube_count + arrow.prim_id;
             } else {
                 let part = tubes.primitive(tube);
                 normal = part.normal(ray, tube);
-                let axis = (part.p1 - part.p0).normalize().abs();
+                let axis = (part.p1 - part.p0).normalize_or_zero().abs();
                 own = if by_direction { axis } else { map.at(part.value(tube)).color };
                 depth = tube.t;
             }
@@ -140,7 +144,7 @@ fn show(args: &Args, shown: &Shown) -> Result<(), Failure> {
             let facing = max(-normal.dot(ray.direction), 0.0);
             color = own * (0.4 + 0.25 * facing + 0.5 * direct);
         }
-        Shaded { color, depth, id: tube.prim_id }
+        Shaded { color, depth, id }
     });
     // ANCHOR_END: picture
 

@@ -8,6 +8,7 @@ use raydsl::kernel::Kernel;
 use raydsl::prelude::*;
 
 use super::args::Args;
+use super::lines::place;
 use super::made::{period, vortices};
 
 /// Time that lines are followed for.
@@ -60,9 +61,7 @@ fn seconds(
 
 /// Prints both tables.
 pub(crate) fn run(args: &Args) -> Result<(), FlowError> {
-    let steps = vec3(0.819_172_5, 0.671_043_6, 0.549_700_5);
-    let place = |i: u32| period().min + period().size() * (steps * i as f32 + 0.5).fract();
-    let seeds: Vec<Vec3> = (0..args.lines).map(place).collect();
+    let seeds: Vec<Vec3> = (0..args.lines).map(|i| place(i, period())).collect();
     let exact: Vec<[f64; 3]> = seeds.iter().map(|seed| exact_end(*seed, 8000)).collect();
     let mut coarse = Vec::new();
     let mut plain = f64::INFINITY;

@@ -4,6 +4,7 @@ pub mod args;
 pub mod batches;
 pub mod blob;
 pub mod blocks;
+pub mod cells;
 pub mod comparison;
 pub mod heat_map;
 pub mod lens;

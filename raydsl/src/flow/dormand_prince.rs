@@ -76,8 +76,7 @@ const D5: f32 = (701_980_252_875.0f64 / 199_316_789_632.0) as f32;
 const D6: f32 = (-1_453_857_185.0f64 / 822_651_844.0) as f32;
 const D7: f32 = (69_997_945.0f64 / 29_380_423.0) as f32;
 
-/// Weight of the defect. With it a smooth field has as many steps as without, and one with corners as
-/// many as it needs.
+/// Weight of the defect beside the estimate of the pair.
 const DEFECT: f32 = 0.5;
 
 /// A step from a place.

@@ -13,6 +13,9 @@ use crate::{Type, kernel};
 /// Maximum number of steps that one call of [`trace()`] takes.
 pub const STEPS_PER_CALL: usize = 8;
 
+/// Maximum number of steps that one call of [`trace()`] tries, taken or not.
+pub const TRIES_PER_CALL: u32 = 64;
+
 /// Why a line ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Type)]
 #[repr(u32)]
@@ -147,7 +150,11 @@ const NEAR: f32 = 1e-4;
 const LEAST_SHARE: f32 = 0.01;
 
 /// Follows a line for a few steps, at most [`STEPS_PER_CALL`], by Dormand and Prince's method of
-/// order 5 in time. `field` returns the velocity at a place, or `None` where there is none.
+/// order 5 in time, and returns where it is then. `field` returns the velocity at a place, or `None`
+/// where there is none.
+///
+/// A call tries at most [`TRIES_PER_CALL`] steps: devices end long loops. So it may return without a
+/// step of a line that goes on.
 ///
 /// A step is taken if its estimated error is within the tolerance, and so is the defect of its dense
 /// output in the middle (Enright, 2000), which sees the corners of a field; the next one is as long as this
@@ -174,10 +181,11 @@ pub fn trace<F: Fn(Vec3) -> Option<Vec3>>(
     let nothing = FlowPoint { at: none, velocity: none, time: 0.0, length: 0.0, bend: none };
     let mut points = [nothing; STEPS_PER_CALL];
     let mut count = 0u32;
+    let before = state.attempts;
     for i in 0..STEPS_PER_CALL {
         let mut is_taken = false;
         let mut bend = none;
-        while !is_taken && state.end == FlowEnd::Going {
+        while !is_taken && state.end == FlowEnd::Going && state.attempts - before < TRIES_PER_CALL {
             let tried = attempt(&field, state, settings);
             state = tried.state;
             is_taken = tried.is_taken;

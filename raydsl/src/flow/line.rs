@@ -41,8 +41,9 @@ impl Streamline {
         }
     }
 
-    /// Returns the ends of the steps in the order of time, the seed among them; none if the field
-    /// has no value at the seed.
+    /// Returns the ends of the steps, the seed among them, in the order of time; those of a line that
+    /// was followed backwards alone are from the seed on, against time. There is none if the field has
+    /// no value at the seed.
     pub fn points(&self) -> &[FlowPoint] {
         &self.points
     }
@@ -76,7 +77,7 @@ impl Streamline {
         Some(between(from, to, (time - from.time) / (to.time - from.time)))
     }
 
-    /// Returns points on the line between which it turns by at most `angle`, in radians, and all
+    /// Returns points on the line between which it turns by about `angle`, in radians, or less, and all
     /// ends of steps: corners of a polygon that looks round. At most 64 are in one step.
     pub fn polygon(&self, angle: f32) -> Vec<FlowPoint> {
         let mut all: Vec<FlowPoint> = self.points.first().copied().into_iter().collect();
@@ -94,7 +95,8 @@ impl Streamline {
     }
 }
 
-/// Returns the point at a share of a step's time: its cubic of Hermite, and the term of order 4.
+/// Returns the point at a share of a step's time: its cubic of Hermite, and the term of order 4; its
+/// length is on the cubic of the lengths and speeds at both ends.
 fn between(from: &FlowPoint, to: &FlowPoint, share: f32) -> FlowPoint {
     let (x, y) = (share, 1.0 - share);
     let time = to.time - from.time;
@@ -107,11 +109,14 @@ fn between(from: &FlowPoint, to: &FlowPoint, share: f32) -> FlowPoint {
     let at = from.at + moved * x + (p * y + q * x) * (x * y) + bend * (x * x * y * y);
     let slope =
         moved + (p * y + q * x) * (y - x) + (q - p) * (x * y) + bend * (2.0 * x * y * (y - x));
+    // Length and time have the same sign, so the slope of the length by time is the speed.
+    let (u, v) = (from.velocity.length() * time, to.velocity.length() * time);
+    let way = to.length - from.length;
     FlowPoint {
         at,
         velocity: if time == 0.0 { from.velocity } else { slope / time },
         time: from.time + time * x,
-        length: from.length + (to.length - from.length) * x,
+        length: from.length + way * x + ((u - way) * y + (way - v) * x) * (x * y),
         bend: Vec3::ZERO,
     }
 }

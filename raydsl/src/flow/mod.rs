@@ -30,7 +30,7 @@ mod settings;
 
 pub use arrow::Arrow;
 pub use capsule::Capsule;
-pub use follow::{FlowEnd, FlowPoint, FlowState, FlowSteps, STEPS_PER_CALL, trace};
+pub use follow::{FlowEnd, FlowPoint, FlowState, FlowSteps, STEPS_PER_CALL, TRIES_PER_CALL, trace};
 pub use line::Streamline;
 pub use run::{Ways, streamlines};
 pub use settings::{FlowError, FlowSettings, MAX_ATTEMPTS};

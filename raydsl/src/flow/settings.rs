@@ -2,7 +2,7 @@
 
 use crate::Type;
 
-/// Maximum of [`FlowSettings::max_attempts`]: devices end longer loops.
+/// Maximum of [`FlowSettings::max_attempts`]: the points of a line of so many steps take 3 MB.
 pub const MAX_ATTEMPTS: u32 = 65_000;
 
 /// Least speed at which a line goes on, unless set: squares of lower ones underflow.
@@ -22,7 +22,7 @@ pub enum FlowError {
         /// Range of such values.
         range: &'static str,
     },
-    /// More attempts than loops of devices have iterations.
+    /// More attempts than [`MAX_ATTEMPTS`].
     #[error("{found} attempts a line are too many: at most {limit}; follow longer lines in parts")]
     TooManyAttempts {
         /// Number that was set.

@@ -375,7 +375,9 @@ impl<T: Voxel> TableView for GridView<'_, T> {
             (Some(a), Some(b)) => a.is_same(b),
             (a, b) => a.is_none() && b.is_none(),
         };
-        is_same_blend && core::ptr::eq(self.stored.elements(), other.stored.elements())
+        is_same_blend
+            && core::ptr::eq(self.stored.elements(), other.stored.elements())
+            && self.layout == other.layout
     }
 }
 
@@ -567,6 +569,20 @@ mod tests {
         assert_eq!(grid(nan), Err(GridError::Placement));
         let scaled = GridConfig::new().rescale(f32::INFINITY, 0.0);
         assert!(matches!(grid(scaled), Err(GridError::Scale { .. })));
+    }
+
+    #[test]
+    fn layouts_are_told_apart() -> Result<(), GridError> {
+        let values = [0.0f32, 1.0, 2.0, 3.0];
+        let [a, b, c] =
+            [([4, 1, 1], 1.0), ([2, 2, 1], 1.0), ([4, 1, 1], 2.0)].map(|(size, scale)| {
+                let config = GridConfig::new().rescale(scale, 0.0);
+                Grid::new(&values[..], UVec3::from(size), config)
+            });
+        let (a, b, c) = (a?, b?, c?);
+        let [a, b, c] = [&a, &b, &c].map(|grid| grid.named_view("grid"));
+        assert!(a.is_same(&a) && !a.is_same(&b) && !a.is_same(&c));
+        Ok(())
     }
 
     #[test]

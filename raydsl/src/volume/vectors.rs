@@ -119,6 +119,7 @@ impl TableView for VectorGridView<'_> {
 
     fn is_same(&self, other: &Self) -> bool {
         core::ptr::eq(self.vectors.elements(), other.vectors.elements())
+            && self.layout == other.layout
     }
 }
 
@@ -190,4 +191,23 @@ fn face(grid: &VectorGrid<'_>, first: u32, steps: UVec3, place: Vec3) -> Vec3 {
     let ab = a + (b - a) * place.x;
     let cd = c + (d - c) * place.x;
     ab + (cd - ab) * place.y
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn layouts_are_told_apart() -> Result<(), GridError> {
+        let vectors = [Vec3::X; 4];
+        let [a, b, c] =
+            [([4, 1, 1], 1.0), ([2, 2, 1], 1.0), ([4, 1, 1], 2.0)].map(|(size, spacing)| {
+                let config = GridConfig::new().spacing(Vec3::splat(spacing));
+                VectorGrid::new(&vectors[..], UVec3::from(size), config)
+            });
+        let (a, b, c) = (a?, b?, c?);
+        let [a, b, c] = [&a, &b, &c].map(|grid| grid.named_view("grid"));
+        assert!(a.is_same(&a) && !a.is_same(&b) && !a.is_same(&c));
+        Ok(())
+    }
 }

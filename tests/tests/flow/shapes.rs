@@ -130,6 +130,20 @@ fn arrows_are_a_shaft_and_a_head() {
 }
 
 #[test]
+fn values_are_linear_along_a_tube() {
+    let tube = Capsule::along([(Vec3::ZERO, 1.0), (vec3(2.0, 0.0, 0.0), 3.0)], 0.1);
+    let value_at = |x: f32| {
+        let hit = tube[0].intersect(Ray::new(vec3(x, -3.0, 0.0), Vec3::Y));
+        assert!(hit.is_hit, "{x}");
+        tube[0].value(hit)
+    };
+    assert!((value_at(0.5) - 1.5).abs() < 1e-5);
+    assert!((value_at(1.75) - 2.75).abs() < 1e-5);
+    // On the balls at both ends.
+    assert_eq!((value_at(-0.05), value_at(2.05)), (1.0, 3.0));
+}
+
+#[test]
 fn chains_of_few_points() {
     assert!(Capsule::along([], 0.1).is_empty());
     let ball = Capsule::along([(Vec3::X, 2.0), (Vec3::X, 3.0)], 0.1);

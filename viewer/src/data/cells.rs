@@ -5,10 +5,11 @@ use std::path::Path;
 use raydsl::prelude::*;
 use raydsl::volume::cells::{CellData, CellGrid, CellKind, CellMesh, CellVolume};
 use raydsl::volume::{Cut, ExactCell, ShadedCell, VolumeLight};
-use raydsl_io::cells::{CellFile, CellKind as FileKind, load};
+use raydsl_examples::cells::kind_of;
+use raydsl_io::cells::{CellFile, load};
 use raydsl_scenes::Pose;
 
-use super::field::{BACKGROUND, Cuts, Field, bounds_of, histogram};
+use super::field::{BACKGROUND, Cuts, Field, histogram};
 use super::{Failure, Serve, Teller, file_name};
 use crate::look::{Kind, Knot, Look, Mode, Show};
 use crate::subject::{Info, Picked, Subject, SubjectKernel};
@@ -55,22 +56,13 @@ fn show(
     };
     let size = format!("{} cells{skipped}; {array} from {} to {}", mesh.cells(), range.x, range.y);
     let home = Pose::of_box(bounds, Vec3::Z, vec3(0.55, 1.2, 0.5));
-    let histogram = histogram(&values, bounds_of(values.iter().copied()));
+    let histogram = histogram(&values, range);
     let info = Info { kind: Kind::Cells, name, size, home, bounds, range, histogram };
     // The size of a cell, if all were alike.
     let cell = bounds.size().max_element() / (mesh.cells() as f32).cbrt();
     let field = Field { range, bounds };
     serve(info, &mut Cells { grid: &grid, field, cell, knots: Vec::new(), volume: None });
     Ok(())
-}
-
-const fn kind_of(kind: FileKind) -> CellKind {
-    match kind {
-        FileKind::Tetrahedron => CellKind::Tetrahedron,
-        FileKind::Pyramid => CellKind::Pyramid,
-        FileKind::Wedge => CellKind::Wedge,
-        FileKind::Hexahedron => CellKind::Hexahedron,
-    }
 }
 
 /// Returns the active scalars, or the lengths of the first array of vectors, whether they are of cells,
@@ -155,7 +147,11 @@ impl Subject for Cells<'_> {
         let volume = self.volume(&look.knots).ok()?;
         let depth = |part: Ray| volume.integrate(&ExactCell::new(), part, VolumeLight::new()).depth;
         let mut wanted = core::f32::consts::LN_2;
-        let mut cut = Cut::new(&tools, inside(ray, field.bounds)?);
+        let (enter, leave) = field.bounds.span(ray);
+        if enter >= leave {
+            return None;
+        }
+        let mut cut = Cut::new(&tools, ray.with_range(enter, leave));
         while let Some(part) = cut.next_outside(&tools) {
             let all = depth(part);
             if all < wanted {
@@ -171,15 +167,6 @@ impl Subject for Cells<'_> {
         }
         None
     }
-}
-
-/// The part of a ray that is in a box.
-fn inside(ray: Ray, bounds: Aabb) -> Option<Ray> {
-    let inverse = ray.direction.recip();
-    let (a, b) = ((bounds.min - ray.origin) * inverse, (bounds.max - ray.origin) * inverse);
-    let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
-    let (enter, leave) = (enter.max(ray.t_min), leave.min(ray.t_max));
-    (enter < leave).then(|| ray.with_range(enter, leave))
 }
 
 /// Where an optical depth is reached in a part of a ray that has at least that, by halving.
@@ -212,10 +199,75 @@ mod tests {
         let part = Ray::new(Vec3::ZERO, Vec3::X).with_range(1.0, 5.0);
         let square = |ray: Ray| ray.t_max.powi(2) - ray.t_min.powi(2);
         assert!((reached(part, 8.0, square) - 3.0).abs() < 1e-5);
-        let bounds = Aabb::from_points([vec3(2.0, -1.0, -1.0), vec3(4.0, 1.0, 1.0)]);
-        let found = inside(Ray::new(Vec3::ZERO, Vec3::X), bounds).expect("it goes through");
-        assert_eq!((found.t_min, found.t_max), (2.0, 4.0));
-        assert_eq!(inside(Ray::new(Vec3::ZERO, -Vec3::X), bounds), None);
         assert_eq!(nearest(&[Vec3::ZERO, Vec3::X, Vec3::Y], vec3(0.8, 0.1, 0.0)), 1);
+    }
+
+    /// Calls `test` with ropes, and what is first seen of them.
+    fn with_ropes(test: impl FnOnce(&mut Cells<'_>, Look)) {
+        let file = raydsl_examples::ropes::ropes(12);
+        let kinds: Vec<CellKind> = file.kinds.iter().map(|kind| kind_of(*kind)).collect();
+        let mesh = CellMesh::new(&file.points, &file.vertices, &kinds).expect("cells");
+        let values = CellData::Points(&file.point_arrays[0].values);
+        let grid = CellGrid::new(&mesh, values).expect("a value for each point");
+        let field = Field { range: grid.range(), bounds: grid.bounds() };
+        let mut cells = Cells { grid: &grid, field, cell: 1.0, knots: Vec::new(), volume: None };
+        let knots = crate::look::preset(Kind::Cells.first_preset()).expect("it is one");
+        let pose = Pose::of_box(field.bounds, Vec3::Z, vec3(0.55, 1.2, 0.5));
+        test(&mut cells, Look { knots, pose, size: (12, 12), ..Look::default() });
+    }
+
+    /// The optical depth of a ray up to a distance, by a sum of points in `f64`, and how far that may be
+    /// off: by what the extinction varies, over the width of a step.
+    fn sum(ray: Ray, end: f32, extinction: impl Fn(Vec3) -> f64) -> (f64, f64) {
+        const STEPS: u32 = 1000;
+        let step = f64::from(end) / f64::from(STEPS);
+        let (mut depth, mut varied, mut last) = (0.0, 0.0, 0.0);
+        for i in 0..STEPS {
+            let at = ray.at(((f64::from(i) + 0.5) * step) as f32);
+            let now = extinction(at);
+            depth += now * step;
+            varied += (now - last).abs();
+            last = now;
+        }
+        (depth, varied * step)
+    }
+
+    #[test]
+    fn half_of_the_light_is_absorbed_where_cells_are_picked() {
+        with_ropes(|cells, whole| {
+            let (grid, bounds) = (cells.grid, cells.field.bounds);
+            let function = cells.field.transfer(&whole.knots).expect("knots");
+            let ball = crate::look::CutObject::Ball { center: vec3(0.6, 0.9, 0.6), radius: 0.3 };
+            let cut = Look { cuts: vec![ball], ..whole.clone() };
+            let (mut picked, mut moved) = (0, 0);
+            for i in 0..12 * 12 {
+                let ray = whole.pose.ray(whole.size, i % 12, i / 12);
+                let found = [&whole, &cut].map(|look| {
+                    let tools = Cuts::new(&look.cuts, bounds);
+                    let extinction = |at: Vec3| {
+                        // Outside of all cells there is nothing, as in the middle of the cylinder.
+                        let value = grid.value(at).filter(|_| !tools.has(at));
+                        value.map_or(0.0, |v| f64::from(function.at(v).extinction))
+                    };
+                    let found = cells.pick(look, ray);
+                    let end = found.as_ref().map_or(bounds.span(ray).1, |found| {
+                        (found.position - ray.origin).dot(ray.direction)
+                    });
+                    let (depth, error) = sum(ray, end.max(0.0), extinction);
+                    match &found {
+                        Some(found) => {
+                            let apart = (depth - core::f64::consts::LN_2).abs();
+                            assert!(apart <= error, "{i}: {depth}, not to within {error}");
+                            assert!(!tools.has(found.position), "{i}: it is cut away");
+                            picked += 1;
+                        }
+                        None => assert!(depth < core::f64::consts::LN_2 + error, "{i}: {depth}"),
+                    }
+                    found
+                });
+                moved += usize::from(found[0] != found[1]);
+            }
+            assert!(picked > 50 && moved > 5, "{picked} picked, {moved} others by the cut");
+        });
     }
 }

@@ -23,10 +23,10 @@ const SMALLEST: f32 = 1e-37;
 const LARGEST: f32 = 1e37;
 
 /// Vector field on a mesh of cells: a vector for each point, linear within each tetrahedron, and a
-/// tree over the tetrahedra, which finds where a point is in some 20 steps.
+/// tree over the tetrahedra, which finds where a point is.
 ///
-/// A point between two tetrahedra by rounding belongs to the nearer one; so the field reaches some
-/// 2^-12 of a tetrahedron's height beyond the outer faces. Where tetrahedra overlap, the first one
+/// A point between two tetrahedra by rounding belongs to the nearer one; so the field reaches at most
+/// some 2^-12 of a tetrahedron's height beyond the outer faces. Where tetrahedra overlap, the first one
 /// counts. Where one of the four vectors is NaN or infinite there is no value.
 ///
 /// ```
@@ -111,12 +111,14 @@ impl<'a> CellVectors<'a> {
     }
 
     fn named_view(&self, name: &'static str) -> CellVectorsView<'_> {
-        let key = BufferKey { id: self.owner.id(), version: 0, part: 0 };
+        let id = self.owner.id();
+        let key = BufferKey { id, version: 0, part: 0 };
         let vectors = Slice::owned(self.vectors, Some(key), name).suffixed("vectors");
         CellVectorsView {
             solids: self.solids.view().named(name),
             vectors,
             ray_length: self.ray_length,
+            owner: id,
             name,
         }
     }
@@ -128,6 +130,8 @@ pub struct CellVectorsView<'a> {
     solids: SceneView<'a, Tetrahedron>,
     vectors: Slice<'a, Vec3>,
     ray_length: f32,
+    /// Id of the field: several may be on the same points, with the same vectors.
+    owner: u64,
     name: &'static str,
 }
 
@@ -141,8 +145,7 @@ impl TableView for CellVectorsView<'_> {
     }
 
     fn is_same(&self, other: &Self) -> bool {
-        core::ptr::eq(self.vectors.elements(), other.vectors.elements())
-            && core::ptr::eq(self.solids.shared().elements(), other.solids.shared().elements())
+        self.owner == other.owner
     }
 }
 
@@ -231,4 +234,21 @@ fn scale_of(size: f32) -> f32 {
 #[inline]
 pub(super) fn least_of(v: Vec4) -> f32 {
     min(min(v.x, v.y), min(v.z, v.w))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::CellKind;
+    use super::*;
+
+    #[test]
+    fn fields_on_two_meshes_are_told_apart() -> Result<(), CellError> {
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+        let one = CellMesh::new(&corners, &[0, 1, 2, 3], &[CellKind::Tetrahedron])?;
+        let none = CellMesh::new(&corners, &[], &[])?;
+        let (a, b) = (CellVectors::new(&one, &corners)?, CellVectors::new(&none, &corners)?);
+        let [a, b] = [&a, &b].map(|field| field.named_view("field"));
+        assert!(a.is_same(&a) && !a.is_same(&b));
+        Ok(())
+    }
 }
