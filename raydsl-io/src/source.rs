@@ -5,7 +5,7 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use crate::error::one_line;
-use crate::stop::{Stoppable, is_stopped};
+use crate::stop::{self, Stoppable, is_stopped};
 use crate::{LoadError, Place};
 
 /// Longer lines are a sign that the file is no text.
@@ -53,7 +53,7 @@ impl Source {
             return Err(refuse(io::Error::other("a device or a pipe")));
         }
         let file = File::open(path).map_err(refuse)?;
-        let file = BufReader::with_capacity(1 << 18, Stoppable::new(file));
+        let file = BufReader::with_capacity(stop::MOST, Stoppable::new(file));
         Ok(Self { path: path.into(), format, len: meta.len(), line: 0, at: 0, file })
     }
 

@@ -6,6 +6,9 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// The most bytes that are read at once.
+pub(crate) const MOST: usize = 1 << 18;
+
 thread_local! {
     static STOP: RefCell<Option<Arc<AtomicBool>>> = const { RefCell::new(None) };
 }
@@ -71,12 +74,38 @@ impl Read for Stoppable {
         if self.stop.as_ref().is_some_and(is_set) {
             return Err(io::Error::other("loading was stopped"));
         }
-        self.file.read(buffer)
+        // A reader of large parts passes its own room on, not that of a buffer.
+        let most = buffer.len().min(MOST);
+        self.file.read(&mut buffer[..most])
     }
 }
 
 impl Seek for Stoppable {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.file.seek(to)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::BufReader;
+
+    use super::*;
+
+    #[test]
+    fn parts_are_small() -> io::Result<()> {
+        let path = std::env::temp_dir().join(format!("parts-{}", std::process::id()));
+        std::fs::write(&path, vec![7; 1 << 20])?;
+        let file = File::open(&path)?;
+        std::fs::remove_file(path)?;
+        // It has less room than is asked for, so it is passed by.
+        let mut reader = BufReader::with_capacity(MOST, Stoppable::new(file));
+        let mut room = vec![0; 1 << 20];
+        let first = reader.read(&mut room)?;
+        assert!((1..=MOST).contains(&first), "{first}");
+        reader.read_exact(&mut room[first..])?;
+        assert!(room.iter().all(|byte| *byte == 7));
+        assert_eq!(reader.read(&mut [0])?, 0);
+        Ok(())
     }
 }

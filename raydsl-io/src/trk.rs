@@ -1,5 +1,7 @@
 //! TRK: tracts as TrackVis stores them.
 
+use std::collections::TryReserveError;
+
 use glam::{Affine3, DAffine3, DMat3, DMat4, DVec3, Vec3};
 
 use crate::error::word_text;
@@ -11,6 +13,8 @@ use crate::{LoadError, Place};
 /// Bytes of the header, which its last number says, too.
 const HEADER: usize = 1000;
 const REMEDY: &str = "write it again, for example with nibabel";
+/// The remedy where it is too large.
+const SPLIT: &str = "store fewer tracts in a file";
 /// Names in the header, and bytes of each.
 const NAMES: usize = 10;
 const NAME: usize = 20;
@@ -273,8 +277,12 @@ impl Body {
         let total = self.file.points.len() as u64 + u64::from(count);
         let limit = u64::from(u32::MAX);
         if total > limit {
-            let (path, remedy) = (self.source.path.clone(), "store fewer tracts in a file");
-            return Err(LoadError::TooMany { path, what: "point", count: total, limit, remedy });
+            let path = self.source.path.clone();
+            return Err(LoadError::TooMany { path, what: "point", count: total, limit, remedy: SPLIT });
+        }
+        if self.reserve(count as usize).is_err() {
+            let path = self.source.path.clone();
+            return Err(LoadError::OutOfMemory { path, what: "point", count: total, remedy: SPLIT });
         }
         for _ in 0..count {
             let point = [self.number()?, self.number()?, self.number()?];
@@ -290,6 +298,14 @@ impl Body {
         }
         self.file.lengths.push(count);
         Ok(())
+    }
+
+    /// Makes room for a tract of so many points, which the rest of the file has.
+    fn reserve(&mut self, count: usize) -> Result<(), TryReserveError> {
+        self.file.points.try_reserve(count)?;
+        self.file.scalars.try_reserve(count * self.scalars)?;
+        self.file.properties.try_reserve(self.properties)?;
+        self.file.lengths.try_reserve(1)
     }
 
     fn number(&mut self) -> Result<f32, LoadError> {

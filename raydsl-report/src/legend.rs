@@ -17,7 +17,7 @@ const TICK: u32 = 3;
 /// What is left of the picture behind a legend.
 const DIMMED: f32 = 0.35;
 
-/// A corner of a picture, or rather a side: legends fill most of its height.
+/// Says at which side of a picture a legend stands; it fills most of the height.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Side {
     /// At the left.
@@ -69,7 +69,7 @@ impl Legend {
     /// Draws it; `color` returns the colour of a value. What does not fit is left out, as are
     /// letters without a glyph, and values that are not finite have no tick. Depths and ids stay.
     pub fn draw(&self, image: &mut Image<Shaded>, color: impl Fn(f32) -> Vec3) {
-        let scale = self.scale.unwrap_or_else(|| (image.height() / 400).max(1));
+        let scale = self.scale.unwrap_or(image.height() / 400).clamp(1, image.height().max(1));
         let mut canvas = Canvas { image, scale };
         let (columns, rows) = canvas.dots();
         let ticks = Ticks::new(self.low.into(), self.high.into(), rows as usize / 50);
@@ -206,7 +206,7 @@ mod tests {
         assert_eq!(places(&large, Vec3::X).len() % 20, 0);
     }
 
-    /// The colour of a value is where its tick is: the upper half is white, and so is the tick of 0.
+    /// The colour of a value is where its tick is: between the green half and the blue one is that of 0.
     #[test]
     fn values_are_where_their_ticks_are() {
         let mut image = Image::new(300, 400);
@@ -224,7 +224,9 @@ mod tests {
     #[test]
     fn small_pictures_and_odd_values_are_no_trouble() {
         for (width, height) in [(1, 1), (5, 80), (80, 5), (30, 30)] {
-            drawn(&Legend::new("a long title", 0.0, 1.0), width, height);
+            let legend = Legend::new("a long title", 0.0, 1.0);
+            drawn(&legend, width, height);
+            drawn(&legend.scale(u32::MAX), width, height);
         }
         for (low, high) in [(f32::NAN, 1.0), (0.0, f32::INFINITY), (2.0, 2.0), (3.0, -3.0)] {
             drawn(&Legend::new("äöü 温度", low, high), 300, 200);

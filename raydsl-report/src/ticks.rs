@@ -26,22 +26,25 @@ pub struct Ticks {
 /// Powers of ten that are written out.
 const WRITTEN: core::ops::Range<i32> = -4..6;
 
+/// Least power of ten that is split off: with all digits of an `f64`.
+const LEAST: i32 = -307;
+
 impl Ticks {
     /// Returns ticks from `low` to `high`, or from `high` to `low`: about `count` of them, at most
-    /// half as many more. There is one on a scale of one value, and none where a bound is not
-    /// finite.
+    /// half as many more. There is one on a scale of one value, or whose steps are not normal
+    /// numbers, and none where a bound is not finite.
     pub fn new(low: f64, high: f64, count: usize) -> Self {
         if !(low.is_finite() && high.is_finite() && (high - low).is_finite()) {
             return Self { step: 1.0, first: 0.0, count: 0, digits: 0, exponent: 0 };
         }
         let (low, high) = (low.min(high), low.max(high));
         let largest = low.abs().max(high.abs());
+        let step = round_step((high - low) / count.max(1) as f64);
         // Beyond the digits of an f64 a scale has one value; six digits of it are written.
-        if high - low <= largest * 1e-12 {
+        if high - low <= largest * 1e-12 || !step.is_normal() {
             let (digits, exponent) = format_of(largest, largest * 1e-5);
             return Self { step: low, first: 1.0, count: 1, digits, exponent };
         }
-        let step = round_step((high - low) / count.max(1) as f64);
         // A bound that is a tick but for its rounding to f32 has one.
         let slack = 1e-6;
         let first = (low / step - slack).ceil();
@@ -71,7 +74,8 @@ impl Ticks {
 /// which power of ten is split off.
 fn format_of(largest: f64, step: f64) -> (usize, i32) {
     let power = |v: f64| if v > 0.0 { v.log10().floor() as i32 } else { 0 };
-    let exponent = if WRITTEN.contains(&power(largest)) { 0 } else { power(largest) };
+    let exponent =
+        if WRITTEN.contains(&power(largest)) { 0 } else { power(largest).max(LEAST) };
     // A step is a power of ten but for its rounding.
     let digits = exponent - power(step * (1.0 + 1e-9));
     (digits.clamp(0, 15) as usize, exponent)
@@ -115,6 +119,11 @@ mod tests {
     fn every_scale_has_some() {
         assert_eq!(labels(2.5, 2.5, 5), ["2.50000"]);
         assert_eq!(labels(0.0, 0.0, 5).len(), 1);
+        // Steps that underflow.
+        let tiny = f64::from_bits(1);
+        assert_eq!(labels(0.0, tiny, 3), ["0e-307"]);
+        assert_eq!(labels(-1e-310, 1e-310, 5).len(), 1);
+        assert_eq!(labels(0.0, 2e-307, 2), ["0e-307", "1e-307", "2e-307"]);
         for bad in [f64::NAN, f64::INFINITY] {
             assert!(labels(0.0, bad, 5).is_empty());
         }

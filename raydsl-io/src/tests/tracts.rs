@@ -21,7 +21,7 @@ struct Trk {
     tracts: Vec<Vec<Vec3>>,
 }
 
-/// Two tracts, with two numbers a point and one a tract.
+/// Three tracts, one of them without a point, with two numbers a point and one a tract.
 fn small() -> Trk {
     let line = |n: i32| (0..n).map(|i| vec3(i as f32, 0.5 * (i * i) as f32, 2.0)).collect();
     Trk {
@@ -174,6 +174,18 @@ fn places_are_those_of_the_scanner() {
         Trk { order: "ARS", dimensions: [20, 10, 30], spacing: [1.0, 2.0, 0.5], ..small() };
     close(map(swapped.clone()).transform_vector3(vec3(1.0, 0.0, 0.0)), vec3(0.0, 1.0, 0.0));
     close(map(swapped).transform_point3(vec3(0.5, 1.0, 0.25)), vec3(-9.0, 5.0, 7.0));
+    // All three are in another order, which is not its own inverse, and the second one is turned.
+    let cycle =
+        Trk { order: "SLA", dimensions: [30, 10, 20], spacing: [0.5, 2.0, 1.0], ..small() };
+    let map_of_cycle = map(cycle);
+    close(map_of_cycle.transform_point3(vec3(0.25, 1.0, 0.5)), vec3(-9.0 + 18.0, 5.0, 7.0));
+    for (along, to) in [
+        (vec3(0.5, 0.0, 0.0), vec3(0.0, 0.0, 0.5)),
+        (vec3(0.0, 2.0, 0.0), vec3(-2.0, 0.0, 0.0)),
+        (vec3(0.0, 0.0, 1.0), vec3(0.0, 1.0, 0.0)),
+    ] {
+        close(map_of_cycle.transform_vector3(along), to);
+    }
     // It may not be recorded.
     let mut without = small();
     without.matrix[3][3] = 0.0;
