@@ -10,7 +10,7 @@ use raydsl::render::{Fragment, composite};
 use raydsl_examples::rasterizer::{Corner, NOTHING, Rasterizer, RasterizerError};
 use raydsl_report::{Compare, Comparison};
 
-use crate::head::Eye;
+use crate::head::{BehindScreen, Eye};
 use crate::light::{MIRROR, traced};
 use crate::plant::{Part, plant};
 
@@ -49,6 +49,8 @@ fn mirror() -> [Part; 2] {
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
+    #[error(transparent)]
+    Head(#[from] BehindScreen),
     #[error(transparent)]
     Camera(#[from] CameraError),
     #[error(transparent)]

@@ -74,7 +74,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     );
 
     // ANCHOR: pair
-    let eyes = head::eyes(heads[0], BETWEEN_EYES, &SCREEN);
+    let eyes = head::eyes(heads[0], BETWEEN_EYES, &SCREEN)?;
     let (width, height) = args.size;
     let [left, right] =
         eyes.map(|eye| hybrid.frame(&eye, (2 * width, 2 * height), Variant::widest()));

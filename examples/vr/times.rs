@@ -24,8 +24,10 @@ pub(crate) fn print(hybrid: &Hybrid<'_>, heads: &[Mat4]) -> Result<(), Failure> 
     for width in COLUMNS {
         let size = (width, (width as f32 * aspect).round() as u32);
         let mut all = Vec::new();
-        for eye in heads.iter().flat_map(|head| head::eyes(*head, BETWEEN_EYES, &SCREEN)) {
-            all.push(hybrid.frame(&eye, size, variant)?.1);
+        for head in heads {
+            for eye in head::eyes(*head, BETWEEN_EYES, &SCREEN)? {
+                all.push(hybrid.frame(&eye, size, variant)?.1);
+            }
         }
         let parts = [0, 1, 2].map(|i| median(all.iter().map(|times| times[i])));
         let whole = median(all.iter().map(|times: &Times| times.iter().sum()));
