@@ -32,8 +32,8 @@ pub struct Args {
     /// Edge of the windows that a film is divided into, in pixels.
     #[arg(long, default_value = "64", value_parser = clap::value_parser!(u32).range(8..=4096))]
     pub tile: u32,
-    /// Blocks of 64 samples that a rank takes of a window at once.
-    #[arg(long, default_value = "1", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    /// Blocks of 64 samples that a rank takes of a window at once: a power of two.
+    #[arg(long, default_value = "1", value_parser = power_of_two)]
     pub blocks: u32,
     /// Seconds between the films that are written so that a run can go on from them.
     #[arg(long, value_name = "SECONDS", default_value = "10")]
@@ -65,6 +65,9 @@ pub struct Args {
     /// Print events for the process that started the ranks.
     #[arg(long, hide = true)]
     pub events: bool,
+    /// Panic in a thread of this rank, for tests of runs that end so.
+    #[arg(long, value_name = "RANK", hide = true)]
+    pub panics: Option<u32>,
 }
 
 /// What is rendered.
@@ -90,6 +93,16 @@ impl SceneName {
             Self::Volume => "volume",
         }
     }
+}
+
+/// `16`. Blocks are summed in pairs, and pairs in pairs: only of powers of two is a part one sum.
+///
+/// # Errors
+///
+/// A text that is no power of two up to 2^20, with the remedy.
+pub fn power_of_two(text: &str) -> Result<u32, String> {
+    let number = text.parse().ok().filter(|n: &u32| n.is_power_of_two() && *n <= 1 << 20);
+    number.ok_or_else(|| "write a power of two from 1 to 1048576, for example 16".to_owned())
 }
 
 /// `0.01`, or `0`.

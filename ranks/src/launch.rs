@@ -1,7 +1,7 @@
 //! Ranks on one machine, started by `mpirun`.
 
 use std::ffi::OsString;
-use std::io::{self, BufRead, BufReader};
+use std::io::{self, BufRead, BufReader, Read};
 use std::num::NonZeroU32;
 use std::process::{Command, ExitStatus, Stdio};
 
@@ -13,6 +13,9 @@ use super::run::TOLD;
 /// Why ranks on this machine did not finish.
 #[derive(Debug, thiserror::Error)]
 pub enum LaunchError {
+    /// This program does not know where it is.
+    #[error("the ranks cannot be started, for this program does not find itself: {0}")]
+    NoProgram(io::Error),
     /// There is no `mpirun`.
     #[error(
         "mpirun cannot be started ({0}): install Open MPI (Debian: apt-get install openmpi-bin), or \
@@ -45,7 +48,7 @@ pub enum LaunchError {
 ///
 /// If `mpirun` cannot be started, or the ranks end by an error or a death.
 pub fn launch(ranks: NonZeroU32, args: &Args) -> Result<(), LaunchError> {
-    let program = std::env::current_exe().map_err(LaunchError::NoMpirun)?;
+    let program = std::env::current_exe().map_err(LaunchError::NoProgram)?;
     let threads = args.threads.map_or_else(|| threads_of(ranks), NonZeroU32::get);
     let mut command = Command::new("mpirun");
     command
@@ -57,22 +60,25 @@ pub fn launch(ranks: NonZeroU32, args: &Args) -> Result<(), LaunchError> {
         .args(["--mca", "btl_vader_single_copy_mechanism", "none"])
         .args(["-n", &ranks.to_string()])
         .arg(program)
-        .args(without_ranks(std::env::args_os().skip(1)))
         .args(["--events", "--threads", &threads.to_string()])
-        .stdin(Stdio::null())
+        .args(without_ranks(std::env::args_os().skip(1)))
+        // It reaches the root, which ends where it is closed: by the death of this process, if not by
+        // its end.
+        .stdin(Stdio::piped())
         .stdout(Stdio::piped());
     let mut child = command.spawn().map_err(LaunchError::NoMpirun)?;
+    // Waiting for the child would close it.
+    let open = child.stdin.take();
     let mut shown = Shown::new();
-    if let Some(out) = child.stdout.take() {
-        for line in BufReader::new(out).lines() {
-            let line = line.map_err(LaunchError::Watch)?;
-            // Whatever else is printed is for people.
-            let event = serde_json::from_str(&line).unwrap_or(Event::Line(line));
-            shown.show(&event);
-        }
+    let watched = child.stdout.take().map_or(Ok(()), |out| watch(out, &mut shown));
+    if watched.is_err() {
+        // Nobody reads what the ranks print, who may wait for it.
+        let _ = child.kill();
     }
     let status = child.wait().map_err(LaunchError::Watch)?;
+    drop(open);
     shown.end();
+    watched.map_err(LaunchError::Watch)?;
     match status.code() {
         Some(0) => Ok(()),
         Some(TOLD) => Err(LaunchError::Told),
@@ -82,6 +88,18 @@ pub fn launch(ranks: NonZeroU32, args: &Args) -> Result<(), LaunchError> {
             Err(LaunchError::Died { status, place: place.display().to_string() })
         }
     }
+}
+
+/// Shows what ranks print, until they have ended.
+fn watch(out: impl Read, shown: &mut Shown) -> io::Result<()> {
+    for line in BufReader::new(out).split(b'\n') {
+        // Names of files need not be UTF-8.
+        let line = String::from_utf8_lossy(&line?).into_owned();
+        // Whatever else is printed is for people.
+        let event = serde_json::from_str(&line).unwrap_or(Event::Line(line));
+        shown.show(&event);
+    }
+    Ok(())
 }
 
 /// Returns the threads of each rank of a machine.
@@ -119,5 +137,16 @@ mod tests {
         let args = ["--ranks", "3", "--size", "9x9", "--threads=4", "--resume", "--ranks=2"];
         let kept = without_ranks(args.iter().map(OsString::from));
         assert_eq!(kept, ["--size", "9x9", "--resume"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn names_need_not_be_utf_8() {
+        use std::os::unix::ffi::OsStringExt;
+
+        let out = OsString::from_vec(b"--out=\xff".to_vec());
+        let kept = without_ranks([OsString::from("--ranks=2"), out.clone()].into_iter());
+        assert_eq!(kept, [out]);
+        watch(&b"a folder \xff\n{\"Done\":0.5}\n"[..], &mut Shown::new()).expect("all is read");
     }
 }

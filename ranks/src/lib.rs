@@ -21,6 +21,8 @@ pub mod report;
 pub mod run;
 pub mod scaling;
 pub mod scenes;
+#[cfg(test)]
+mod tests;
 mod wire;
 
 pub use run::Failure;

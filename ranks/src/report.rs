@@ -57,13 +57,13 @@ pub struct DividedReport {
     pub parts: u32,
     /// Fragments of rays in parts, for a frame.
     pub fragments_per_frame: f64,
-    /// The time of the slowest rank for all frames: rendering,
+    /// The time in which the slowest rank rendered, for all frames.
     pub render_seconds: f64,
-    /// exchanging fragments,
+    /// The time in which the slowest rank exchanged fragments.
     pub exchange_seconds: f64,
-    /// compositing them,
+    /// The time in which the slowest rank composited them.
     pub composite_seconds: f64,
-    /// and gathering the picture.
+    /// The time in which the slowest rank gathered the picture.
     pub gather_seconds: f64,
     /// The processor time of all ranks for compositing.
     pub composite_cpu_seconds: f64,
@@ -84,7 +84,7 @@ pub struct RankReport {
     pub bytes: u64,
     /// Messages that it sent to others.
     pub messages: u64,
-    /// Bytes of its part of the scene, where the scene is divided.
+    /// Bytes of its part of the scene, those of trees too, where the scene is divided.
     pub scene_bytes: u64,
     /// The time of rendering, exchanging, compositing and gathering, where the scene is divided.
     pub phases: [f64; 4],

@@ -1,12 +1,14 @@
 //! One rank of a run.
 
+use std::io::{self, Write as _};
+
 use mpi::Threading;
 use mpi::traits::*;
 
 use super::args::{Args, SceneName};
 use super::divide::DivideError;
 use super::films::checkpoint::CheckpointError;
-use super::wire::{Wire, WireError};
+use super::wire::{ROOT, Wire, WireError};
 use super::{disk, films, frames};
 
 /// Why a rank cannot go on, and the run with it.
@@ -19,7 +21,7 @@ pub enum Failure {
     /// The threads of this rank cannot be started.
     #[error("{0}: choose fewer --threads")]
     Threads(#[from] rayon::ThreadPoolBuildError),
-    /// A message cannot be sent.
+    /// A message cannot be sent, or is damaged.
     #[error(transparent)]
     Wire(#[from] WireError),
     /// A file cannot be written.
@@ -46,21 +48,9 @@ pub enum Failure {
     /// A transfer function is not one.
     #[error(transparent)]
     Transfer(#[from] raydsl::volume::TransferError),
-    /// A picture cannot be encoded.
-    #[error("{0}")]
-    Picture(#[from] image::ImageError),
-    /// Other frames are in the folder.
-    #[error(
-        "{place} has frames of another run, \"{found}\" and not \"{wanted}\": choose another --out"
-    )]
-    OtherFrames {
-        /// The folder.
-        place: String,
-        /// What made its frames.
-        found: String,
-        /// What would make these.
-        wanted: String,
-    },
+    /// The frames so far cannot be used.
+    #[error(transparent)]
+    Record(#[from] frames::RecordError),
 }
 
 /// The exit code of a rank that has told an error.
@@ -68,6 +58,9 @@ pub(crate) const TOLD: i32 = 2;
 
 /// The exit code of a panic, as that of Rust's own programs.
 const PANICKED: i32 = 101;
+
+/// The exit code of a rank whose launcher has ended.
+const LEFT: i32 = 3;
 
 /// Runs this process as one rank of the MPI run that started it, until the pictures are there.
 ///
@@ -83,7 +76,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         return Err(Failure::Mpi);
     }
     let wire = Wire::new(universe.world());
-    let end = start_threads(args).and_then(|threads| match args.scene {
+    if args.events && wire.rank() == ROOT {
+        end_with_launcher();
+    }
+    let end = start_threads(args, wire.neighbours()).and_then(|threads| match args.scene {
         SceneName::Cornell | SceneName::Ao => films::run(&wire, args, threads),
         SceneName::Points | SceneName::Volume => frames::run(&wire, args, threads),
     });
@@ -96,7 +92,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 /// Has a panic of any thread end the process: unwinding would wait for the other ranks, which wait
 /// for this one. `mpirun` then ends them.
-pub fn end_by_panics() {
+fn end_by_panics() {
     let tell = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
         tell(info);
@@ -104,13 +100,28 @@ pub fn end_by_panics() {
     }));
 }
 
-/// Starts the threads that render, and returns their number.
-fn start_threads(args: &Args) -> Result<usize, Failure> {
-    // Open MPI tells how many ranks share this machine.
-    let here = std::env::var("OMPI_COMM_WORLD_LOCAL_SIZE").ok().and_then(|n| n.parse().ok());
+/// Has the root end with the process that started the ranks, and `mpirun` then the others: else they
+/// would render for nobody. The launcher keeps the root's standard input open as long as it lives.
+fn end_with_launcher() {
+    std::thread::spawn(|| {
+        let _ = io::copy(&mut io::stdin(), &mut io::sink());
+        // The terminal may have gone with it.
+        let _ = writeln!(io::stderr(), "raydsl-ranks: the launcher has ended, and the run with it");
+        std::process::exit(LEFT);
+    });
+}
+
+/// Panics in a thread that renders, where a test asks for it.
+pub(crate) fn panic_if_asked(args: &Args, rank: usize) {
+    if args.panics.is_some_and(|asked| asked as usize == rank) {
+        rayon::scope(|scope| scope.spawn(|_| panic!("as --panics asks for")));
+    }
+}
+
+/// Starts the threads that render, and returns their number. `ranks` share this machine.
+fn start_threads(args: &Args, ranks: usize) -> Result<usize, Failure> {
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
-    let threads =
-        args.threads.map_or((cores / here.unwrap_or(1).max(1)).max(1), |n| n.get() as usize);
+    let threads = args.threads.map_or((cores / ranks).max(1), |n| n.get() as usize);
     rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     Ok(threads)
 }

@@ -1,8 +1,10 @@
 //! Computed scaling: how long runs on many nodes would take, from reports of measured ones.
 //!
 //! The model takes the rate of a thread, the bytes and the fragments of a frame and the root's time
-//! for a byte from reports; what it assumes of a cluster is in [`Cluster`]. Nothing overlaps but the
-//! rendering of films with the root's work on parts that came back, which is what the program does.
+//! for a byte from reports; what it assumes of a cluster is in [`Cluster`]. Of films it takes
+//! rendering, messages and the root's work to overlap as a whole, so that a run takes at least what is
+//! computed: a rank that sends a part waits until the root receives it. The phases of a frame follow
+//! each other.
 
 use super::report::Report;
 
@@ -39,7 +41,7 @@ pub struct Row {
     pub joining: f64,
     /// Messages, by their number.
     pub messages: f64,
-    /// The share of the nodes' time in which they render.
+    /// The time of one node for the same work, over that of all nodes together.
     pub efficiency: f64,
     /// What takes longest.
     pub limit: &'static str,
@@ -74,7 +76,7 @@ pub struct Film {
     pub root: f64,
 }
 
-/// Returns the bytes of a pixel of a part: of one block, or of more.
+/// Returns the bytes of a pixel of a part: of one block, or of a greater power of two.
 fn pixel_bytes(blocks: f64) -> f64 {
     if blocks > 1.0 { 64.0 } else { 32.0 }
 }
@@ -101,6 +103,16 @@ impl Film {
     pub fn row(&self, cluster: &Cluster, scaling: Scaling, nodes: u32) -> Row {
         let n = f64::from(nodes);
         let samples = self.samples * if scaling == Scaling::Weak { n } else { 1.0 };
+        let phases = self.phases(cluster, samples, n);
+        let [render, link, joining, messages] = phases.map(|(_, seconds)| seconds);
+        let (limit, total) = longest(&phases);
+        let (_, by_one) = longest(&self.phases(cluster, samples, 1.0));
+        let efficiency = by_one / (n * total);
+        Row { nodes, total, render, link, joining, messages, efficiency, limit }
+    }
+
+    /// Returns how long rendering, the root's link, joining and messages take, which overlap.
+    fn phases(&self, cluster: &Cluster, samples: f64, n: f64) -> [(&'static str, f64); 4] {
         let unit_samples = 64.0 * self.blocks;
         let units = (self.pixels / self.window).ceil() * (samples / unit_samples).ceil();
         let node_rate = self.rate * cluster.threads;
@@ -113,16 +125,12 @@ impl Film {
         // Its own parts are joined too.
         let joining = units * self.window * pixel * self.root;
         let messages = 2.0 * units * (n - 1.0) / n * cluster.latency;
-        let work = self.pixels * samples / (node_rate * n);
-        let parts = [
+        [
             ("rendering", render),
             ("the root's link", link),
             ("joining by the root", joining),
             ("messages to the root", messages),
-        ];
-        // All of it overlaps.
-        let (limit, total) = longest(&parts);
-        Row { nodes, total, render, link, joining, messages, efficiency: work / total, limit }
+        ]
     }
 }
 
@@ -195,6 +203,14 @@ impl Frames {
         let messages = 2.0 * (n - 1.0) * cluster.latency;
         let link = exchanged + gathered;
         let total = render + link + joining + messages;
+        // One node has the scene as a whole where that is one and the same; where it grows, one node
+        // would render and composite the same parts, if it had the memory.
+        let by_one = match scaling {
+            Scaling::Strong => {
+                one_node + self.pixels * self.fragments * self.composite / cluster.threads
+            }
+            Scaling::Weak => n * (render + joining),
+        };
         let parts = [
             ("rendering", render),
             ("exchanging fragments", exchanged),
@@ -203,7 +219,16 @@ impl Frames {
             ("messages to each other", messages),
         ];
         let (limit, _) = longest(&parts);
-        Row { nodes, total, render, link, joining, messages, efficiency: render / total, limit }
+        Row {
+            nodes,
+            total,
+            render,
+            link,
+            joining,
+            messages,
+            efficiency: by_one / (n * total),
+            limit,
+        }
     }
 }
 
@@ -276,6 +301,18 @@ mod tests {
         assert!((row.link / link - 1.0).abs() < 1e-2 && row.limit == "the root's link");
     }
 
+    /// 101 windows are no multiple of any number of nodes: the last units are not divided.
+    #[test]
+    fn efficiency_is_speedup_over_nodes() {
+        let film = Film { pixels: 64.0 * 64.0 * 100.5, ..film() };
+        let rows = NODES.map(|nodes| film.row(&CLUSTER, Scaling::Strong, nodes));
+        for row in rows {
+            let speedup = rows[0].total / row.total;
+            assert!((row.efficiency * f64::from(row.nodes) / speedup - 1.0).abs() < 1e-12);
+        }
+        assert!((rows[0].efficiency - 1.0).abs() < 1e-12);
+    }
+
     #[test]
     fn weak_scaling_of_films_ends_at_the_root() {
         let rows = NODES.map(|nodes| film().row(&CLUSTER, Scaling::Weak, nodes));
@@ -297,6 +334,12 @@ mod tests {
         };
         let rows = NODES.map(|nodes| frames.row(&CLUSTER, Scaling::Strong, nodes));
         assert!(rows.windows(2).all(|pair| pair[1].efficiency < pair[0].efficiency));
+        for row in rows {
+            let speedup = rows[0].total / row.total;
+            assert!((row.efficiency * f64::from(row.nodes) / speedup - 1.0).abs() < 1e-12);
+        }
+        let weak = NODES.map(|nodes| frames.row(&CLUSTER, Scaling::Weak, nodes).efficiency);
+        assert!((weak[0] - 1.0).abs() < 1e-12 && weak.iter().all(|e| *e <= 1.0 + 1e-12));
         // 12 MB by a link of 1 GB/s, and fragments of ten parts one behind another.
         let last = rows[5];
         let exchanged = 0.5e6 * 1024f64.powf(1.0 / 3.0) / 1024.0 * 16.0 / 1e9;

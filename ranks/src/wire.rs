@@ -14,7 +14,7 @@ pub(crate) const ROOT: usize = 0;
 /// Messages of [`Wire::exchange`].
 const EXCHANGE: Tag = 3;
 
-/// Why a message cannot be sent.
+/// Why a message cannot be sent, or be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WireError {
     /// MPI counts bytes in 31 bits.
@@ -53,6 +53,11 @@ impl Wire {
     /// Returns the number of ranks.
     pub(crate) fn size(&self) -> usize {
         self.world.size() as usize
+    }
+
+    /// Returns the number of ranks on this one's machine. All ranks must ask.
+    pub(crate) fn neighbours(&self) -> usize {
+        self.world.split_shared(0).size() as usize
     }
 
     /// Returns the numbers of bytes and of messages that this rank has sent to others.

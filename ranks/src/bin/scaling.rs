@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use raydsl_examples::args::size;
+use raydsl_ranks::args::power_of_two;
 use raydsl_ranks::report::Report;
 use raydsl_ranks::scaling::{Cluster, Film, Frames, NODES, Row, Scaling, table};
 
@@ -27,8 +28,8 @@ struct Args {
     /// Samples of each pixel of a film, for each node where scaling is weak.
     #[arg(long, default_value = "1024", value_parser = clap::value_parser!(u32).range(1..))]
     samples: u32,
-    /// Blocks of 64 samples of a unit of work.
-    #[arg(long, default_value = "1", value_parser = clap::value_parser!(u32).range(1..))]
+    /// Blocks of 64 samples of a unit of work: a power of two.
+    #[arg(long, default_value = "1", value_parser = power_of_two)]
     blocks: u32,
     /// Threads of a node.
     #[arg(long, default_value = "64", value_parser = clap::value_parser!(u32).range(1..))]

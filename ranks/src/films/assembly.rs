@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use raydsl::prelude::*;
-use raydsl::render::{FilmPart, PartError};
+use raydsl::render::{FilmPart, PartError, SAMPLE_BLOCK};
 
 use super::Job;
 use super::division::{Window, windows};
@@ -27,7 +27,8 @@ pub(super) enum AddError {
     /// No window of the film is the part's.
     #[error("a part at {0} is of no window of this film")]
     NoWindow(UVec2),
-    /// Its samples are there already, or there are none such.
+    /// Its samples are there already, there are none such, or they end within a block: none could
+    /// follow.
     #[error("samples {start} to {end} of the window at {origin} are none that are missing")]
     NotMissing {
         /// The lower left pixel.
@@ -64,7 +65,9 @@ impl Assembly {
         let before = parts.range(..=samples.start).next_back();
         let starts_late = before.is_none_or(|(_, p)| p.extent().samples().end <= samples.start);
         let ends_early = parts.range(samples.start..).next().is_none_or(|(s, _)| *s >= samples.end);
-        if !(starts_late && ends_early && samples.end <= self.samples.end) {
+        let ends_well = samples.end == self.samples.end
+            || samples.end < self.samples.end && samples.end.is_multiple_of(SAMPLE_BLOCK);
+        if !(starts_late && ends_early && ends_well) {
             return Err(AddError::NotMissing { origin, start: samples.start, end: samples.end });
         }
         self.done += part.extent().total_samples();
@@ -205,6 +208,7 @@ mod tests {
             (&job, Window { origin: UVec2::ZERO, size: uvec2(7, 5) }, 0..64),
             (&job, Window { origin: uvec2(1, 0), size: uvec2(8, 5) }, 0..64),
             (&job, Window { origin: UVec2::ZERO, size: uvec2(8, 5) }, 64..128),
+            (&job, Window { origin: UVec2::ZERO, size: uvec2(8, 5) }, 0..50),
         ] {
             assert!(assembly.add(part(job, window, samples)).is_err());
         }

@@ -1,7 +1,7 @@
 //! The films so far, on disk.
 //!
-//! A file begins with its format's name and the description of the job, then has each part with its length,
-//! and ends with a checksum of everything before. Numbers are little-endian.
+//! A file begins with its format's name and the description of the job, then has each part behind its
+//! length, and ends with a checksum of everything before. Numbers are little-endian.
 
 use std::fs;
 use std::io;
@@ -23,7 +23,7 @@ const MAGIC: &[u8] = b"raydsl film parts 1\n";
 #[non_exhaustive]
 pub enum CheckpointError {
     /// The file cannot be read.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {source}; make it readable, or choose another --out", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -99,15 +99,19 @@ pub(super) fn read(
     Ok(())
 }
 
-/// Removes the films so far: the film is whole.
-pub(super) fn remove(folder: &Path) -> Result<(), CheckpointError> {
+/// Returns an error if there are films so far, which a run would write over.
+pub(super) fn refuse(folder: &Path) -> Result<(), CheckpointError> {
     let path = folder.join(FILE);
-    match fs::remove_file(&path) {
-        Err(source) if source.kind() != io::ErrorKind::NotFound => {
-            Err(CheckpointError::Read { path, source })
-        }
-        _ => Ok(()),
+    match path.try_exists() {
+        Ok(false) => Ok(()),
+        Ok(true) => Err(CheckpointError::Unfinished(path)),
+        Err(source) => Err(CheckpointError::Read { path, source }),
     }
+}
+
+/// Removes the films so far: the film is whole.
+pub(super) fn remove(folder: &Path) -> Result<(), WriteError> {
+    disk::remove(&folder.join(FILE))
 }
 
 /// Appends bytes behind their number.
@@ -155,47 +159,33 @@ fn checksum(bytes: &[u8]) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::Range;
+
     use glam::uvec2;
     use raydsl::prelude::*;
     use raydsl::render::FilmExtent;
 
     use super::*;
+    use crate::tests::Folder;
 
     fn job() -> Job {
         let description = "noise 20x5, 100 samples".to_owned();
         Job { film: uvec2(20, 5), samples: 100, tile: 16, blocks: 1, description }
     }
 
-    fn half_done(job: &Job) -> Assembly {
+    fn part(job: &Job, x: u32, width: u32, samples: Range<u32>) -> FilmPart {
         let camera = Pinhole::new(vec3(0.0, 0.0, 5.0), Vec3::ZERO, Vec3::Y, 1.0);
         let slope = kernel!(|ray: Ray| ray.direction.y);
+        let extent = FilmExtent::new(job.film, uvec2(x, 0), uvec2(width, 5), samples);
+        let (scheduler, sampling) = (TiledScheduler::new(), Sampling::new(job.samples));
+        scheduler.render_part(&camera, &slope, &sampling, &extent.expect("of the job"))
+    }
+
+    fn half_done(job: &Job) -> Assembly {
         let mut assembly = Assembly::new(job);
-        for (x, width, samples) in [(0, 16, 0..64), (16, 4, 64..100)] {
-            let extent = FilmExtent::new(job.film, uvec2(x, 0), uvec2(width, 5), samples);
-            let (scheduler, sampling) = (TiledScheduler::new(), Sampling::new(job.samples));
-            let part =
-                scheduler.render_part(&camera, &slope, &sampling, &extent.expect("of the job"));
-            assembly.add(part).expect("missing");
-        }
+        assembly.add(part(job, 0, 16, 0..64)).expect("missing");
+        assembly.add(part(job, 16, 4, 64..100)).expect("missing");
         assembly
-    }
-
-    /// A folder of its own for each test, removed in the end.
-    struct Folder(PathBuf);
-
-    impl Folder {
-        fn new(name: &str) -> Self {
-            let name = format!("raydsl-ranks-{name}-{}", std::process::id());
-            let path = std::env::temp_dir().join(name);
-            fs::create_dir_all(&path).expect("the folder for temporary files can be written");
-            Self(path)
-        }
-    }
-
-    impl Drop for Folder {
-        fn drop(&mut self) {
-            let _ = fs::remove_dir_all(&self.0);
-        }
     }
 
     #[test]
@@ -214,8 +204,9 @@ mod tests {
         assert!(found.share() > 0.5 && found.share() < 0.9);
         let left: Vec<_> = fs::read_dir(&folder.0).expect("it is there").collect();
         assert_eq!(left.len(), 1, "nothing unfinished is left: {left:?}");
+        assert!(matches!(refuse(&folder.0), Err(CheckpointError::Unfinished(_))));
         remove(&folder.0).expect("it is there");
-        remove(&folder.0).expect("no file is removed");
+        refuse(&folder.0).expect("there is none any more");
     }
 
     #[test]
@@ -244,7 +235,11 @@ mod tests {
         let mut lengths = body.to_vec();
         lengths[MAGIC.len()..MAGIC.len() + 8].fill(0xff);
         let twice = [body, &body[MAGIC.len() + 8 + job.description.len()..]].concat();
-        for body in [lengths, twice, MAGIC.to_vec()] {
+        // A part that ends within a block, so that none can follow.
+        let mut ends = MAGIC.to_vec();
+        append(&mut ends, job.description.as_bytes());
+        append(&mut ends, &part(&job, 0, 16, 0..50).to_bytes());
+        for body in [lengths, twice, ends, MAGIC.to_vec()] {
             let sum = checksum(&body).to_le_bytes();
             refused(&[&body[..], &sum].concat());
         }

@@ -58,13 +58,14 @@ pub(super) fn message(extent: &FilmExtent) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
-/// Returns the part to render of a message, if it is one.
+/// Returns the part to render of a message, if it is one of the job.
 pub(super) fn extent_of(job: &Job, message: &[u8]) -> Option<FilmExtent> {
-    let words = message.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
-    let words: [u32; 6] = words.collect::<Vec<_>>().try_into().ok()?;
+    let (words, []) = message.as_chunks::<4>() else { return None };
+    let words: [u32; 6] =
+        words.iter().copied().map(u32::from_le_bytes).collect::<Vec<_>>().try_into().ok()?;
     let [x, y, width, height, start, end] = words;
     let window = Window { origin: uvec2(x, y), size: uvec2(width, height) };
-    extent(job, window, start..end).ok()
+    extent(job, window, start..end).ok().filter(|_| end <= job.samples)
 }
 
 #[cfg(test)]
@@ -91,7 +92,7 @@ mod tests {
 
     #[test]
     fn ranges_have_each_missing_sample_once() {
-        for blocks in [1, 3, 4, 1 << 20] {
+        for blocks in [1, 2, 4, 1 << 20] {
             let missing = [64..192, 256..1000];
             let found = ranges(&job(64, blocks), &missing);
             let samples: Vec<u32> = found.iter().cloned().flatten().collect();
@@ -105,8 +106,14 @@ mod tests {
     fn messages_keep_parts() {
         let job = job(16, 1);
         let part = FilmExtent::new(job.film, uvec2(64, 32), uvec2(6, 1), 64..100).expect("within");
-        assert_eq!(extent_of(&job, &message(&part)), Some(part));
+        let bytes = message(&part);
+        assert_eq!(extent_of(&job, &bytes), Some(part));
         assert_eq!(extent_of(&job, &[]), None);
         assert_eq!(extent_of(&job, &[255; 24]), None);
+        assert_eq!(extent_of(&job, &bytes[..23]), None);
+        assert_eq!(extent_of(&job, &[&bytes[..], &[0]].concat()), None);
+        let end = job.samples + 1;
+        let beyond = FilmExtent::new(job.film, uvec2(64, 32), uvec2(6, 1), 64..end);
+        assert_eq!(extent_of(&job, &message(&beyond.expect("within"))), None);
     }
 }

@@ -12,7 +12,7 @@ use glam::{UVec2, uvec2};
 use raydsl::render::{FilmExtent, FilmPart};
 
 use super::args::Args;
-use super::run::Failure;
+use super::run::{Failure, panic_if_asked};
 use super::scenes;
 use super::wire::{ROOT, Wire};
 
@@ -52,17 +52,23 @@ pub(crate) type Render<'a> = &'a (dyn Fn(&FilmExtent) -> FilmPart + Sync);
 const UNIT: mpi::Tag = 1;
 const PART: mpi::Tag = 2;
 
-/// The parts that a rank has before it has rendered them: it never waits for the next.
+/// The parts that a rank has been given and has not sent back: it has the next one when it has
+/// rendered one.
 const AHEAD: usize = 2;
 
 /// Renders the film of a run, as the root or another rank.
 pub(crate) fn run(wire: &Wire, args: &Args, threads: usize) -> Result<(), Failure> {
     let job = Job::of(args);
+    let rank = wire.rank();
     scenes::with_film(args, |render| {
-        if wire.rank() == ROOT {
-            root::run(wire, args, &job, threads, render)
+        let render = |extent: &FilmExtent| {
+            panic_if_asked(args, rank);
+            render(extent)
+        };
+        if rank == ROOT {
+            root::run(wire, args, &job, threads, &render)
         } else {
-            worker::run(wire, &job, threads, render)
+            worker::run(wire, &job, threads, &render)
         }
     })
 }

@@ -1,5 +1,6 @@
 //! The root: hands out parts of the film, joins what comes back, and writes the films so far.
 
+use std::collections::VecDeque;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
@@ -7,14 +8,14 @@ use std::time::{Duration, Instant};
 
 use cpu_time::{ProcessTime, ThreadTime};
 use raydsl::prelude::{Image, Vec4};
-use raydsl::render::{Display, FilmExtent, FilmPart, PartError};
+use raydsl::render::{FilmExtent, FilmPart, PartError};
 
 use super::assembly::Assembly;
 use super::checkpoint::{self, CheckpointError};
 use super::division::{extent, message, ranges};
 use super::{AHEAD, Job, PART, Render, UNIT};
 use crate::args::Args;
-use crate::disk;
+use crate::disk::{self, WriteError};
 use crate::progress::{Event, Teller};
 use crate::report::{FilmReport, RankReport, Report};
 use crate::run::Failure;
@@ -70,11 +71,10 @@ pub(super) fn run(
 /// Returns the films so far, if this run goes on from them.
 fn so_far(args: &Args, job: &Job) -> Result<Assembly, CheckpointError> {
     let mut assembly = Assembly::new(job);
-    let file = args.out.join(checkpoint::FILE);
     if args.resume {
         checkpoint::read(&args.out, job, &mut assembly)?;
-    } else if file.exists() {
-        return Err(CheckpointError::Unfinished(file));
+    } else {
+        checkpoint::refuse(&args.out)?;
     }
     Ok(assembly)
 }
@@ -96,6 +96,30 @@ fn own_rank(
         if parts.send((part, report)).is_err() {
             return;
         }
+    }
+}
+
+/// The parts that ranks have been given and have not sent back, in order.
+struct Given(Vec<VecDeque<FilmExtent>>);
+
+impl Given {
+    fn note(&mut self, rank: usize, extent: FilmExtent) {
+        self.0[rank].push_back(extent);
+    }
+
+    /// Notes that a part has come back: messages of one rank arrive in the order in which it sends
+    /// them, so it must be the first. Any other would be missing from the film in the end.
+    fn take(&mut self, rank: usize, part: &FilmPart) -> Result<(), WireError> {
+        let first = self.0[rank].pop_front();
+        if first.as_ref() == Some(part.extent()) {
+            Ok(())
+        } else {
+            Err(WireError::Damaged { from: rank })
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.0.iter().all(VecDeque::is_empty)
     }
 }
 
@@ -136,12 +160,14 @@ fn share_out(
     teller: &mut Teller,
 ) -> Result<Shared, Failure> {
     let mut units = units(job, assembly)?.into_iter();
-    let mut waiting = 0usize;
+    let mut given = Given(vec![VecDeque::new(); ranks.wire.size()]);
+    let mut give_next = |rank: usize, given: &mut Given| -> Result<(), WireError> {
+        let Some(extent) = units.next() else { return Ok(()) };
+        given.note(rank, extent.clone());
+        ranks.give(rank, extent)
+    };
     for rank in (0..AHEAD).flat_map(|_| 0..ranks.wire.size()) {
-        if let Some(extent) = units.next() {
-            ranks.give(rank, extent)?;
-            waiting += 1;
-        }
+        give_next(rank, &mut given)?;
     }
     let mut shared = Shared {
         own: RankReport::new(0),
@@ -151,22 +177,19 @@ fn share_out(
     };
     let every = Duration::from_secs(u64::from(args.every));
     let mut written = Instant::now();
-    while waiting > 0 {
+    while !given.is_empty() {
         let Some((rank, part)) = next_part(ranks, &mut shared)? else {
             thread::sleep(NAP);
             continue;
         };
-        waiting -= 1;
+        given.take(rank, &part)?;
         // The next unit first: joining takes time.
-        if let Some(extent) = units.next() {
-            ranks.give(rank, extent)?;
-            waiting += 1;
-        }
+        give_next(rank, &mut given)?;
         let begin = ThreadTime::now();
         assembly.add(part).map_err(|_| WireError::Damaged { from: rank })?;
         shared.root_seconds += begin.elapsed().as_secs_f64();
         teller.tell(&Event::Done(assembly.share()));
-        if written.elapsed() >= every && waiting > 0 {
+        if written.elapsed() >= every && !given.is_empty() {
             let begin = Instant::now();
             checkpoint::write(&args.out, job, assembly)?;
             write_shown(&args.out, &assembly.film()?.image())?;
@@ -212,14 +235,51 @@ fn next_part(
 
 /// Writes the film: its light as it is, and a picture to look at.
 fn write_pictures(folder: &Path, assembly: &Assembly) -> Result<(), Failure> {
+    // Each part came back as it was given, and what was given is all that was missing.
     debug_assert!(assembly.is_whole());
     let image = assembly.film()?.image();
     let light = image.map(|pixel| pixel.truncate());
     disk::replace_by(&folder.join("film.pfm"), |path| light.write_pfm(path))?;
-    write_shown(folder, &image)
+    Ok(write_shown(folder, &image)?)
 }
 
 /// Writes the picture to look at.
-fn write_shown(folder: &Path, image: &Image<Vec4>) -> Result<(), Failure> {
-    Ok(Display::new().show(image).write_png(folder.join("film.png"))?)
+fn write_shown(folder: &Path, image: &Image<Vec4>) -> Result<(), WriteError> {
+    disk::replace_png(&folder.join("film.png"), image)
+}
+
+#[cfg(test)]
+mod tests {
+    use raydsl::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn only_the_part_that_was_asked_for_is_taken() {
+        let extent = |x: u32, samples| {
+            FilmExtent::new(uvec2(20, 5), uvec2(x, 0), uvec2(10, 5), samples).expect("within")
+        };
+        let part = |extent: &FilmExtent| {
+            let camera = Pinhole::new(vec3(0.0, 0.0, 5.0), Vec3::ZERO, Vec3::Y, 1.0);
+            let slope = kernel!(|ray: Ray| ray.direction.y);
+            TiledScheduler::new().render_part(&camera, &slope, &Sampling::new(100), extent)
+        };
+        let damaged = Err(WireError::Damaged { from: 1 });
+        let (first, next) = (extent(0, 0..64), extent(10, 0..64));
+        let given = || {
+            let mut given = Given(vec![VecDeque::new(); 2]);
+            given.note(1, first.clone());
+            given.note(1, next.clone());
+            given
+        };
+        let mut all = given();
+        assert_eq!(all.take(1, &part(&first)), Ok(()));
+        assert!(!all.is_empty());
+        assert_eq!(all.take(1, &part(&next)), Ok(()));
+        assert!(all.is_empty());
+        assert_eq!(all.take(1, &part(&next)), damaged, "none is awaited");
+        for other in [next.clone(), extent(0, 64..100), extent(0, 0..50)] {
+            assert_eq!(given().take(1, &part(&other)), damaged, "{other:?}");
+        }
+    }
 }

@@ -58,19 +58,31 @@ pub(super) fn encode<F: Pod>(strips: &Strips, parts: &[(u32, Fragments<F>)]) -> 
     (0..strips.count()).map(message).collect()
 }
 
-/// Adds the fragments of a message for a strip that are in a band of it: part, pixel, and what was
-/// found. Returns `None` if it is no such message.
+/// What fragments a message may have: those of the sender's parts, in the strip of its receiver.
+pub(super) struct Sent {
+    pub(super) parts: Range<u32>,
+    pub(super) strip: Range<u32>,
+}
+
+/// Adds the fragments of a message that are in a band of its strip: part, pixel, and what was found.
+/// Returns `None` if it is no such message.
 pub(super) fn decode<F: Pod>(
     mut bytes: &[u8],
-    strip: &Range<u32>,
+    Sent { parts, strip }: &Sent,
     band: &Range<u32>,
     fragments: &mut Vec<(u32, u32, F)>,
 ) -> Option<()> {
+    // Runs rise by part and pixel: none is there twice.
+    let mut next = (parts.start, strip.start);
     while !bytes.is_empty() {
         let (head, rest) = bytes.split_at_checked(size_of::<[u32; 3]>())?;
         let [part, first, count]: [u32; 3] = bytemuck::pod_read_unaligned(head);
         let end = first.checked_add(count)?;
-        let is_within = strip.start <= first && end <= strip.end;
+        let is_within = strip.start <= first && end <= strip.end && parts.contains(&part);
+        if count == 0 || (part, first) < next {
+            return None;
+        }
+        next = (part, end);
         let length = (count as usize).checked_mul(size_of::<F>()).filter(|_| is_within)?;
         let (found, rest) = rest.split_at_checked(length)?;
         bytes = rest;
@@ -102,16 +114,16 @@ mod tests {
             }
             (number, fragments)
         };
-        let parts = [part(3, 1), part(1, 2), (2, Fragments::new())];
+        let parts = [part(1, 2), (2, Fragments::new()), part(3, 1)];
         for ranks in [1, 2, 3, 7, 30] {
             let strips = Strips::new(uvec2(5, 4), ranks);
             let messages = encode(&strips, &parts);
             let mut found = Vec::new();
             for (rank, bytes) in (0..ranks).zip(&messages) {
-                let strip = strips.of(rank);
-                for band in strips::bands(&strip, 3) {
+                let sent = Sent { parts: 1..4, strip: strips.of(rank) };
+                for band in strips::bands(&sent.strip, 3) {
                     let before = found.len();
-                    decode(bytes, &strip, &band, &mut found).expect("what was written");
+                    decode(bytes, &sent, &band, &mut found).expect("what was written");
                     assert!(found[before..].iter().all(|(_, p, _)| band.contains(p)));
                 }
             }
@@ -127,16 +139,24 @@ mod tests {
 
     #[test]
     fn other_messages_are_refused() {
-        let refused = |bytes: &[u8], strip: Range<u32>| {
-            decode::<u32>(bytes, &strip, &strip, &mut Vec::new()).is_none()
+        let refused_of = |parts: Range<u32>, bytes: &[u8], strip: Range<u32>| {
+            let sent = Sent { parts, strip: strip.clone() };
+            decode::<u32>(bytes, &sent, &strip, &mut Vec::new()).is_none()
         };
+        let refused = |bytes: &[u8], strip: Range<u32>| refused_of(2..4, bytes, strip);
         let mut fragments = Fragments::new();
         (4..9).for_each(|pixel| fragments.push(pixel, pixel));
         let strips = Strips::new(uvec2(5, 2), 1);
-        let [bytes] = encode(&strips, &[(0, fragments)]).try_into().expect("one rank");
+        let [bytes] = encode(&strips, &[(2, fragments)]).try_into().expect("one rank");
         for length in 1..bytes.len() {
             assert!(refused(&bytes[..length], 0..10), "{length}");
         }
+        assert!(!refused(&bytes, 0..10));
+        // Parts of other ranks, and more than there are.
+        assert!(refused_of(0..2, &bytes, 0..10) && refused_of(3..9, &bytes, 0..10));
+        // Pixels that are there twice, and a run of none.
+        assert!(refused(&bytes.repeat(2), 0..10));
+        assert!(refused(bytemuck::bytes_of(&[2u32, 4, 0]), 0..10));
         // Pixels outside of the strip.
         assert!(refused(&bytes, 0..8));
         assert!(refused(&bytes, 5..10));

@@ -8,28 +8,29 @@
 
 mod message;
 mod points;
+mod record;
 mod strips;
 mod volume;
 mod window;
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use bytemuck::Pod;
 use cpu_time::ProcessTime;
 use glam::{UVec2, Vec3, uvec2};
 use raydsl::prelude::{Image, Pinhole};
-use raydsl::render::Display;
 use rayon::prelude::*;
 
-use self::message::Fragments;
+use self::message::{Fragments, Sent};
+pub use self::record::RecordError;
 use self::strips::Strips;
 use super::args::{Args, SceneName};
-use super::disk;
+use super::disk::{self, WriteError};
 use super::progress::{Event, Teller};
 use super::report::{RankReport, Report};
-use super::run::Failure;
+use super::run::{Failure, panic_if_asked};
 use super::wire::{ROOT, Wire, WireError};
 
 /// A rank's parts of a divided scene.
@@ -58,14 +59,14 @@ pub(crate) trait Divided: Sync {
         fragments: Vec<(u32, u32, Self::Fragment)>,
     ) -> Vec<Vec3>;
 
-    /// Returns the bytes of the parts.
+    /// Returns the bytes of the parts, those of their trees too.
     fn bytes(&self) -> u64;
 }
 
 /// Renders the frames of a run, as the root or another rank.
 pub(crate) fn run(wire: &Wire, args: &Args, threads: usize) -> Result<(), Failure> {
     let parts = args.parts.map_or(wire.size() as u32, |n| n.get());
-    let own = own_parts(parts, wire);
+    let own = own_parts(parts, wire.rank(), wire.size());
     let job = Job { wire, args, parts, threads };
     match args.scene {
         SceneName::Volume => volume::with(args, parts, own, &mut |scene| job.run(scene)),
@@ -73,10 +74,9 @@ pub(crate) fn run(wire: &Wire, args: &Args, threads: usize) -> Result<(), Failur
     }
 }
 
-/// Returns the numbers of this rank's parts: neighbours, as evenly as it goes.
-fn own_parts(parts: u32, wire: &Wire) -> Range<u32> {
-    let (rank, ranks) = (wire.rank() as u64, wire.size() as u64);
-    let first = |rank: u64| (u64::from(parts) * rank / ranks) as u32;
+/// Returns the numbers of a rank's parts: neighbours, as evenly as it goes.
+fn own_parts(parts: u32, rank: usize, ranks: usize) -> Range<u32> {
+    let first = |rank: usize| (u64::from(parts) * rank as u64 / ranks as u64) as u32;
     first(rank)..first(rank + 1)
 }
 
@@ -125,15 +125,15 @@ impl Job<'_> {
         let mut first = 0;
         if wire.rank() == ROOT {
             disk::create_folder(&args.out)?;
-            first = frames_so_far(args, &self.description())?;
+            first = record::frames_so_far(args, &self.description())?;
         }
         let messages: Vec<Vec<u8>> = match wire.rank() {
             ROOT => vec![first.to_le_bytes().to_vec(); wire.size()],
             _ => vec![Vec::new(); wire.size()],
         };
         let from_root = wire.exchange(&messages)?.swap_remove(ROOT);
-        let bytes = from_root.try_into().map_err(|_| WireError::Damaged { from: ROOT })?;
-        Ok(u32::from_le_bytes(bytes))
+        let first = from_root.try_into().ok().map(u32::from_le_bytes);
+        Ok(first.filter(|first| *first <= args.frames).ok_or(WireError::Damaged { from: ROOT })?)
     }
 
     /// Returns what has an influence on frames.
@@ -158,6 +158,7 @@ impl Job<'_> {
         let mut clock = Phases { report, begin: Instant::now(), phase: 0 };
 
         let begin = ProcessTime::now();
+        panic_if_asked(args, wire.rank());
         let parts = scene.render(&camera, size, &mut clock.report.samples);
         clock.report.cpu_seconds += begin.elapsed().as_secs_f64();
         clock.next();
@@ -167,17 +168,30 @@ impl Job<'_> {
         clock.next();
         let begin = ProcessTime::now();
         let strip = strips.of(wire.rank() as u32);
-        let colors = composite(scene, &camera, size, &strip, &received)?;
+        let colors = composite(scene, &camera, size, &strip, self.parts, &received)?;
         clock.report.composite_cpu_seconds += begin.elapsed().as_secs_f64();
         clock.next();
         let gathered = wire.gather(bytemuck::cast_slice(&colors))?;
         clock.next();
 
-        let pixels = gathered.iter().flat_map(|bytes| bytemuck::pod_collect_to_vec(bytes));
-        let mut pixels = pixels.collect::<Vec<Vec3>>().into_iter();
-        let mut pixel = |_, _| pixels.next().unwrap_or(Vec3::NAN);
-        Ok((wire.rank() == ROOT).then(|| Image::from_fn(size.x, size.y, &mut pixel)))
+        if wire.rank() != ROOT {
+            return Ok(None);
+        }
+        Ok(Some(picture(size, &strips, &gathered)?))
     }
+}
+
+/// Returns the picture of the strips of all ranks.
+fn picture(size: UVec2, strips: &Strips, gathered: &[Vec<u8>]) -> Result<Image<Vec3>, WireError> {
+    let mut pixels: Vec<Vec3> = Vec::new();
+    for (from, bytes) in gathered.iter().enumerate() {
+        // Of a strip of another length, all pixels behind it would be elsewhere.
+        if bytes.len() != strips.of(from as u32).len() * size_of::<Vec3>() {
+            return Err(WireError::Damaged { from });
+        }
+        pixels.extend(bytemuck::pod_collect_to_vec::<u8, Vec3>(bytes));
+    }
+    Ok(Image::from_fn(size.x, size.y, |x, y| pixels[y as usize * size.x as usize + x as usize]))
 }
 
 /// Bands of a strip for each thread: some have more fragments than others.
@@ -189,13 +203,15 @@ fn composite<S: Divided>(
     camera: &Pinhole,
     size: UVec2,
     strip: &Range<u32>,
+    parts: u32,
     messages: &[Vec<u8>],
 ) -> Result<Vec<Vec3>, WireError> {
     let bands = strips::bands(strip, (BANDS * rayon::current_num_threads()) as u32);
     let colors = bands.into_par_iter().map(|band| {
         let mut fragments = Vec::new();
         for (from, bytes) in messages.iter().enumerate() {
-            message::decode(bytes, strip, &band, &mut fragments)
+            let sent = Sent { parts: own_parts(parts, from, messages.len()), strip: strip.clone() };
+            message::decode(bytes, &sent, &band, &mut fragments)
                 .ok_or(WireError::Damaged { from })?;
         }
         Ok(scene.composite(camera, size, band, fragments))
@@ -219,38 +235,46 @@ impl Phases<'_> {
     }
 }
 
-/// The file with the description of a folder's frames.
-const DESCRIPTION: &str = "frames.txt";
-
-fn light_file(folder: &Path, frame: u32) -> PathBuf {
-    folder.join(format!("frame_{frame:04}.pfm"))
-}
-
-/// Returns the number of frames that are there, if this run goes on from them; notes what they are.
-fn frames_so_far(args: &Args, description: &str) -> Result<u32, Failure> {
-    let note = args.out.join(DESCRIPTION);
-    if args.resume
-        && let Ok(found) = std::fs::read_to_string(&note)
-    {
-        if found != description {
-            let (place, wanted) = (args.out.display().to_string(), description.to_owned());
-            return Err(Failure::OtherFrames { place, found, wanted });
-        }
-        let is_there = |frame: &u32| light_file(&args.out, *frame).exists();
-        return Ok((0..args.frames).take_while(is_there).count() as u32);
-    }
-    // Frames of before are none of this run, also if it is cut short and goes on.
-    for frame in 0..args.frames {
-        let _ = std::fs::remove_file(light_file(&args.out, frame));
-    }
-    disk::replace(&note, description.as_bytes())?;
-    Ok(0)
-}
-
 /// Writes a frame: a picture to look at, then its light, by which the frame counts as finished.
-fn write_pictures(folder: &Path, frame: u32, picture: &Image<Vec3>) -> Result<(), Failure> {
-    let shown = Display::new().show(&picture.map(|p| p.extend(1.0)));
-    shown.write_png(folder.join(format!("frame_{frame:04}.png")))?;
-    disk::replace_by(&light_file(folder, frame), |path| picture.write_pfm(path))?;
-    Ok(())
+fn write_pictures(folder: &Path, frame: u32, picture: &Image<Vec3>) -> Result<(), WriteError> {
+    let shown = picture.map(|p| p.extend(1.0));
+    disk::replace_png(&folder.join(format!("frame_{frame:04}.png")), &shown)?;
+    disk::replace_by(&record::light_file(folder, frame), |path| picture.write_pfm(path))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_part_is_of_one_rank() {
+        for (parts, ranks) in [(1, 1), (7, 3), (2, 5)] {
+            let all = (0..ranks).flat_map(|rank| own_parts(parts, rank, ranks));
+            assert!(all.eq(0..parts), "{parts} of {ranks}");
+        }
+    }
+
+    #[test]
+    fn strips_of_other_lengths_are_refused() {
+        let (size, ranks) = (uvec2(5, 3), 2);
+        let strips = Strips::new(size, ranks);
+        let color = |pixel: u32| Vec3::new(pixel as f32, 1.0, 2.0);
+        let strip = |rank: u32| -> Vec<u8> {
+            strips.of(rank).flat_map(|p| bytemuck::bytes_of(&color(p)).to_vec()).collect()
+        };
+        let strips_of_all = || vec![strip(0), strip(1)];
+        let whole = picture(size, &strips, &strips_of_all()).expect("as ranks send them");
+        assert_eq!(whole.pixels().last(), Some(&color(14)));
+        for rank in 0..2 {
+            let pixel = size_of::<Vec3>();
+            for wrong in
+                [Vec::new(), strip(rank)[pixel..].to_vec(), [&strip(rank)[..], &[0]].concat()]
+            {
+                let mut sent = strips_of_all();
+                sent[rank as usize] = wrong;
+                let refused = picture(size, &strips, &sent).err();
+                assert_eq!(refused, Some(WireError::Damaged { from: rank as usize }));
+            }
+        }
+    }
 }

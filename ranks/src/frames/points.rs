@@ -212,7 +212,9 @@ impl Divided for Cloud<'_> {
     }
 
     fn bytes(&self) -> u64 {
-        let each = (size_of::<Point>() + size_of::<u32>()) as u64;
-        self.parts.iter().map(|(part, _)| part.points.len() as u64 * each).sum()
+        let bytes = |(part, bvh): &(&Part, Bvh<'_, Point>)| {
+            size_of_val(&part.points[..]) + size_of_val(&part.indices[..]) + bvh.bytes()
+        };
+        self.parts.iter().map(bytes).sum::<usize>() as u64
     }
 }

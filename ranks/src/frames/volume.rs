@@ -21,7 +21,7 @@ use crate::args::Args;
 use crate::divide::{Cut, DivideError, Division, Region};
 use crate::run::Failure;
 
-/// Cells of a grid: the first ones, and those behind the last.
+/// A box of a grid's cells: from the indices `first` to those before `end`.
 struct Cells {
     first: UVec3,
     end: UVec3,

@@ -58,8 +58,12 @@ impl Drop for Folder {
 
 /// Returns the command with these words, which writes to the folder.
 pub(crate) fn command(out: &Folder, words: &str) -> Command {
+    command_to(&out.path(""), words)
+}
+
+pub(crate) fn command_to(out: &Path, words: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_raydsl-ranks"));
-    command.args(words.split_whitespace()).arg("--out").arg(out.path("")).stdin(Stdio::null());
+    command.args(words.split_whitespace()).arg("--out").arg(out).stdin(Stdio::null());
     command
 }
 
@@ -113,18 +117,48 @@ pub(crate) fn wait_for(path: &Path) {
     }
 }
 
-/// Returns the process that is a rank of the run whose pictures are written to a folder.
-pub(crate) fn process_of_rank(rank: u32, out: &Folder) -> u32 {
-    let wanted = format!("OMPI_COMM_WORLD_RANK={rank}");
-    let folder = out.path("").display().to_string();
+/// Returns the `mpirun` of a run.
+pub(crate) fn process_of_mpirun(out: &Folder) -> u32 {
+    processes_of(out).into_iter().find(|id| has(*id, "cmdline", b"mpirun")).expect("it runs")
+}
+
+/// Returns the processes whose pictures are written to a folder: of ranks, `mpirun`, and the launcher.
+fn processes_of(out: &Folder) -> Vec<u32> {
+    let folder = out.path("");
     let processes = std::fs::read_dir("/proc").expect("Linux");
     let ids = processes.flatten().filter_map(|entry| entry.file_name().to_str()?.parse().ok());
-    let is_rank = |id: &u32| {
-        let has = |file: &str, text: &str| {
-            let bytes = std::fs::read(format!("/proc/{id}/{file}")).unwrap_or_default();
-            bytes.split(|byte| *byte == 0).any(|part| part == text.as_bytes())
-        };
-        has("environ", &wanted) && has("cmdline", &folder)
-    };
-    ids.into_iter().find(is_rank).expect("the rank runs")
+    ids.filter(|id: &u32| has(*id, "cmdline", folder.as_os_str().as_encoded_bytes())).collect()
+}
+
+/// Returns whether one of the texts in a file of a process is this one.
+fn has(id: u32, file: &str, text: &[u8]) -> bool {
+    let bytes = std::fs::read(format!("/proc/{id}/{file}")).unwrap_or_default();
+    bytes.split(|byte| *byte == 0).any(|part| part == text)
+}
+
+/// Waits for the process that is a rank of the run whose pictures are written to a folder.
+pub(crate) fn wait_for_rank(rank: u32, out: &Folder) -> u32 {
+    let wanted = format!("OMPI_COMM_WORLD_RANK={rank}");
+    let begin = Instant::now();
+    loop {
+        let mut ids = processes_of(out).into_iter();
+        if let Some(id) = ids.find(|id| has(*id, "environ", wanted.as_bytes())) {
+            return id;
+        }
+        assert!(begin.elapsed() < MOST, "rank {rank} does not run");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Waits until no process of a run is left, and kills those that are after `most`.
+pub(crate) fn wait_for_the_end(out: &Folder, most: Duration) {
+    let begin = Instant::now();
+    while !processes_of(out).is_empty() {
+        if begin.elapsed() > most {
+            let left = processes_of(out);
+            left.iter().for_each(|id| kill(*id));
+            panic!("processes of the run are left: {left:?}");
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
 }

@@ -40,7 +40,7 @@ fn films_have_the_same_bits_for_every_division() {
             "--ranks 2",
             "--ranks 3",
             "--ranks 3 --blocks 2",
-            "--ranks 2 --tile 17 --blocks 100",
+            "--ranks 2 --tile 17 --blocks 128",
             "--ranks 3 --tile 4096",
             "--ranks 1 --threads 3 --tile 8",
         ] {
@@ -112,9 +112,11 @@ fn points_have_the_same_bits_for_every_division() {
         let (frames, report) = frames_of("points", &format!("{words} {division}"));
         assert!(frames == one, "{division}");
         assert!(report.bytes_per_frame > 0.0 && report.ranks.len() == ranks);
-        // Each point is held once.
+        // Each point is held once, with its index, and trees of parts are about one tree.
         let bytes: u64 = report.ranks.iter().map(|rank| rank.scene_bytes).sum();
-        assert_eq!(bytes, whole.ranks[0].scene_bytes, "{division}");
+        let of_one = whole.ranks[0].scene_bytes;
+        assert!(bytes.abs_diff(of_one) < of_one / 20, "{division}: {bytes} and {of_one}");
+        assert!(bytes > 60_000 * (20 + 4) * 5 / 4, "{division}: {bytes} with trees");
         let most = report.ranks.iter().map(|rank| rank.scene_bytes).max();
         assert!(most.is_some_and(|most| most < bytes * 3 / 5), "{division}");
     }
