@@ -9,7 +9,7 @@ use wasm_bindgen_cli_support::Bindgen;
 const TARGET: &str = "wasm32-unknown-unknown";
 /// Packets need simd128, which every browser has. Relaxed SIMD, which not all have, would give
 /// other numbers.
-const FLAGS: &str = "-C target-feature=+simd128";
+const SIMD: &str = "target-feature=+simd128";
 
 /// Why there is no page.
 #[derive(Debug, thiserror::Error)]
@@ -45,7 +45,8 @@ pub enum BundleError {
 }
 
 /// The files of the page beside its WebAssembly.
-const FILES: [(&str, &str); 4] = [
+const FILES: [(&str, &str); 5] = [
+    ("detail.js", include_str!("../www/detail.js")),
     ("index.html", include_str!("../www/index.html")),
     ("page.css", include_str!("../www/page.css")),
     ("page.js", include_str!("../www/page.js")),
@@ -80,15 +81,84 @@ fn compile() -> Result<PathBuf, BundleError> {
     let workspace = package.parent().unwrap_or(package);
     let target = std::env::var_os("CARGO_TARGET_DIR")
         .map_or_else(|| workspace.join("target"), |folder| workspace.join(folder));
-    let status = Command::new(&program)
+    let mut command = Command::new(&program);
+    command
         .args(["build", "--profile", "web", "--lib", "-p", "raydsl-web", "--target", TARGET])
         .current_dir(workspace)
-        .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", FLAGS)
-        .env("CARGO_TARGET_DIR", &target)
-        .status();
-    match status {
+        .env("CARGO_TARGET_DIR", &target);
+    add_simd(&mut command, |name| std::env::var(name).ok());
+    match command.status() {
         Ok(status) if status.success() => Ok(target),
         Ok(_) => Err(BundleError::Build),
         Err(source) => Err(BundleError::NoCargo { program, source }),
+    }
+}
+
+/// Adds [`SIMD`] to the compiler's flags, and keeps those of the environment: cargo takes the flags
+/// of the first of these variables that is set, and those of the target only without any.
+fn add_simd(command: &mut Command, variable: impl Fn(&str) -> Option<String>) {
+    for (name, separator) in [("CARGO_ENCODED_RUSTFLAGS", "\x1f"), ("RUSTFLAGS", " ")] {
+        if let Some(flags) = variable(name) {
+            let begin = if flags.is_empty() { "" } else { separator };
+            command.env(name, format!("{flags}{begin}-C{separator}{SIMD}"));
+            return;
+        }
+    }
+    // Cargo adds flags of a condition to those of the target itself, be they of
+    // CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS or of a file.
+    let flags = format!("target.'cfg(target_family = \"wasm\")'.rustflags=[\"-C\", \"{SIMD}\"]");
+    command.args(["--config", &flags]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns the variables and the arguments that are added in an environment.
+    fn added(environment: &[(&str, &str)]) -> (Vec<(String, String)>, Vec<String>) {
+        let mut command = Command::new("cargo");
+        add_simd(&mut command, |name| {
+            let found = environment.iter().find(|(known, _)| *known == name);
+            found.map(|(_, value)| (*value).to_owned())
+        });
+        let text = |text: &std::ffi::OsStr| text.to_string_lossy().into_owned();
+        let variables = command.get_envs();
+        let variables = variables.filter_map(|(name, value)| Some((text(name), text(value?))));
+        (variables.collect(), command.get_args().map(text).collect())
+    }
+
+    #[test]
+    fn flags_of_the_environment_are_kept() {
+        let target = ("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", "-g");
+        for (environment, name, flags) in [
+            (
+                &[("RUSTFLAGS", "-D warnings"), target][..],
+                "RUSTFLAGS",
+                "-D warnings -C target-feature=+simd128",
+            ),
+            (&[("RUSTFLAGS", "")], "RUSTFLAGS", "-C target-feature=+simd128"),
+            (
+                &[("RUSTFLAGS", "-g"), ("CARGO_ENCODED_RUSTFLAGS", "--cfg\x1fa b")],
+                "CARGO_ENCODED_RUSTFLAGS",
+                "--cfg\x1fa b\x1f-C\x1ftarget-feature=+simd128",
+            ),
+            (
+                &[("CARGO_ENCODED_RUSTFLAGS", "")],
+                "CARGO_ENCODED_RUSTFLAGS",
+                "-C\x1ftarget-feature=+simd128",
+            ),
+        ] {
+            let expected = vec![(name.to_owned(), flags.to_owned())];
+            assert_eq!(added(environment), (expected, Vec::new()), "{environment:?}");
+        }
+        for environment in [&[][..], &[target]] {
+            let (variables, arguments) = added(environment);
+            assert_eq!(variables, [], "the flags of the target are replaced");
+            assert_eq!(arguments.len(), 2, "{arguments:?}");
+            assert!(
+                arguments[1].ends_with(r#"["-C", "target-feature=+simd128"]"#),
+                "{arguments:?}"
+            );
+        }
     }
 }

@@ -19,7 +19,10 @@ pub struct Request {
     /// Whether the picture is read back and drawn through a 2-D canvas, which every browser can
     /// show and a test can read: `readback`.
     pub is_readback: bool,
-    /// What goes wrong on purpose: `fault=shader` or `call`.
+    /// Whether there is one picture of one ray a pixel that is submitted to the device, and not
+    /// awaited: `submit`.
+    pub is_submitted: bool,
+    /// What goes wrong on purpose: `fault=shader`, `call` or `window`.
     pub fault: Option<Fault>,
 }
 
@@ -30,6 +33,8 @@ pub enum Fault {
     Shader,
     /// A call of the page itself that the device refuses.
     Call,
+    /// A picture that is submitted into a buffer that is no more.
+    Window,
 }
 
 /// Why a query says nothing that can be shown.
@@ -45,7 +50,7 @@ pub struct RequestError {
 }
 
 /// The most columns or rows.
-const LARGEST_SIDE: u32 = 4096;
+pub(crate) const LARGEST_SIDE: u32 = 4096;
 /// The most samples of a pixel.
 const MOST_SAMPLES: u32 = 65_536;
 /// The points of a landscape unless asked for, and the most.
@@ -63,6 +68,7 @@ impl Default for Request {
             size: (640, 400),
             samples: 256,
             is_readback: false,
+            is_submitted: false,
             fault: None,
         }
     }
@@ -99,17 +105,23 @@ impl Request {
                     None => return refuse("give a number from 1 to 65536"),
                 },
                 "readback" => request.is_readback = true,
+                "submit" => request.is_submitted = true,
                 "fault" => {
                     request.fault = Some(match value {
                         "shader" => Fault::Shader,
                         "call" => Fault::Call,
-                        _ => return refuse("choose shader or call"),
+                        "window" => Fault::Window,
+                        _ => return refuse("choose shader, call or window"),
                     });
                 }
                 _ => {}
             }
         }
         request.subject = subject(scene, detail)?;
+        if request.is_submitted && request.variant != Variant::Wgsl {
+            let (name, value) = ("variant".to_owned(), request.variant.name().to_owned());
+            return Err(RequestError { name, value, remedy: "choose wgsl to submit pictures" });
+        }
         Ok(request)
     }
 }
@@ -168,9 +180,12 @@ mod tests {
             size: (32, 18),
             samples: 9,
             is_readback: true,
+            is_submitted: false,
             fault: Some(Fault::Call),
         };
         assert_eq!(Request::parse(query), Ok(expected));
+        let submitted = Request { is_submitted: true, ..Request::default() };
+        assert_eq!(Request::parse("submit"), Ok(submitted));
         let cornell = Request::parse("scene=cornell&detail=nothing");
         assert_eq!(cornell.map(|r| r.subject), Ok(Subject::Cornell));
     }
@@ -193,6 +208,7 @@ mod tests {
             "samples=65537",
             "samples=99999999999",
             "fault=mine",
+            "submit&variant=packet4",
         ] {
             let error = Request::parse(query).expect_err(query).to_string();
             let last = query.rsplit('&').next().unwrap_or_default();

@@ -1,6 +1,8 @@
 // The page: what is asked for, what a person does, and what the worker tells. A worker renders, so
 // that the page answers meanwhile; another choice is another worker.
 
+import { detail } from "./detail.js";
+
 const query = new URLSearchParams(location.search);
 const choices = document.getElementById("choices");
 const place = document.getElementById("picture");
@@ -9,6 +11,7 @@ const error = document.getElementById("error");
 
 let worker = null;
 let machine = "";
+let isReported = false;
 
 for (const select of choices.elements) {
   const asked = query.get(select.name);
@@ -23,7 +26,11 @@ for (const select of choices.elements) {
 }
 
 function open() {
-  worker?.terminate();
+  if (worker !== null) {
+    // What it has told already would be taken for the next one's.
+    worker.onmessage = worker.onmessageerror = worker.onerror = null;
+    worker.terminate();
+  }
   error.hidden = true;
   status.textContent = "Loading";
   const canvas = document.createElement("canvas");
@@ -31,7 +38,11 @@ function open() {
   listen(canvas);
   worker = new Worker("worker.js", { type: "module" });
   worker.onmessage = ({ data: { name, value } }) => heard[name](value);
-  worker.onerror = (event) => heard.failed(event.message || "the worker cannot be loaded");
+  worker.onmessageerror = () => heard.failed("what the worker tells cannot be read");
+  worker.onerror = (event) => {
+    event.preventDefault();
+    heard.failed(event.message || "the worker cannot be loaded");
+  };
   if (!canvas.transferControlToOffscreen) {
     heard.failed("this browser has no OffscreenCanvas: open the page in a newer one");
     return;
@@ -53,8 +64,8 @@ const heard = {
   finished(picture) {
     report(picture);
   },
-  failed(message) {
-    error.textContent = message;
+  failed(thrown) {
+    error.textContent = detail(thrown);
     error.hidden = false;
     status.textContent = "Failed";
     report({});
@@ -81,21 +92,25 @@ function listen(canvas) {
   }, { passive: false });
 }
 
-// Tells a test, which opens the page with `report`, what the page shows.
+// Tells a test, which opens the page with `report=ID`, what the page shows first: a line of JSON, the
+// light, and the bytes of the canvas.
 async function report({ light, shown }) {
-  if (!query.has("report")) {
+  if (!query.has("report") || isReported) {
     return;
   }
-  const parts = {
-    light: light ?? new Float32Array(),
-    shown: shown ?? new Uint8ClampedArray(),
+  isReported = true;
+  light ??= new Float32Array();
+  const head = JSON.stringify({
     status: status.textContent,
     error: error.checkVisibility() ? error.textContent : "",
-    end: "",
-  };
-  for (const [name, body] of Object.entries(parts)) {
-    await fetch(`report/${name}`, { method: "POST", body });
-  }
+    light: light.byteLength,
+  });
+  const body = new Blob([head, "\n", light, shown ?? ""]);
+  await fetch(`/report/${encodeURIComponent(query.get("report"))}`, { method: "POST", body });
 }
+
+// What fails here is shown as well.
+addEventListener("error", (event) => heard.failed(event.error ?? event.message));
+addEventListener("unhandledrejection", ({ reason }) => heard.failed(reason));
 
 open();

@@ -1,5 +1,6 @@
 // The worker: loads the WebAssembly, hands it a canvas, and tells the page what comes of it.
 
+import { detail } from "./detail.js";
 import init, { View } from "./raydsl_web.js";
 
 let view = null;
@@ -39,7 +40,7 @@ const asked = {
   zoom: ({ factor }) => view?.zoom(factor),
 };
 
-const fail = (error) => tell("failed", error?.message ?? String(error));
+const fail = (error) => tell("failed", detail(error));
 
 onmessage = async ({ data }) => {
   try {

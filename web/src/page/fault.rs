@@ -1,6 +1,6 @@
 //! Faults on purpose: a page must say what a device refuses.
 
-use raydsl::gpu::GpuError;
+use raydsl::gpu::{GpuError, GpuWindow};
 use raydsl::machine::wgsl::Module;
 use raydsl::prelude::*;
 
@@ -43,6 +43,22 @@ pub(super) async fn commit(fault: Fault, gpu: &GpuScheduler) -> Result<(), GpuEr
                 usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::MAP_WRITE,
                 mapped_at_creation: false,
             });
+        }
+        // And here too: what is only submitted can tell no error of the device.
+        Fault::Window => {
+            let (width, height) = (2, 2);
+            let size = 16 * u64::from(width * height);
+            let buffer = gpu.context().device().create_buffer(&wgpu::BufferDescriptor {
+                label: Some("a buffer that is no more"),
+                size,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            buffer.destroy();
+            let kernel = kernel!(|ray: Ray| vec4(ray.direction.x, ray.direction.y, 0.0, 1.0));
+            let camera = Pinhole::new(Vec3::Z, Vec3::ZERO, Vec3::Y, 1.0);
+            let window = GpuWindow { buffer, offset: 0, size };
+            let _ = gpu.frame_into(&camera, &kernel, (width, height), &window);
         }
     }
     Ok(())

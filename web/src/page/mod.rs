@@ -61,7 +61,8 @@ impl View {
         Ok(Self { request, canvas, host, pose: Cell::new(None) })
     }
 
-    /// Makes the scene and shows it, as long as the worker lives. It ends with an error alone.
+    /// Makes the scene and shows it, as long as the worker lives: it ends with an error, or after a
+    /// picture that is only submitted.
     pub async fn run(&self) -> Result<(), JsError> {
         self.request.subject.with_kernel(async |kernel, home| self.show(kernel, home).await).await?
     }

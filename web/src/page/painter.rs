@@ -1,6 +1,6 @@
 //! What runs the kernel, and how its light gets to the canvas.
 
-use raydsl::gpu::GpuError;
+use raydsl::gpu::{GpuError, GpuWindow};
 use raydsl::prelude::*;
 use raydsl::render::Display;
 use raydsl_scenes::{Pose, Screen};
@@ -87,11 +87,44 @@ impl Painter {
         Ok(())
     }
 
-    /// Shows a film.
-    pub(super) fn show(&mut self, film: &Film) -> Result<(), JsError> {
-        let light = film.image();
+    /// Returns a picture of one ray a pixel that is submitted and not awaited, with another one
+    /// right behind it: the device must keep them apart.
+    pub(super) async fn submit(
+        &self,
+        kernel: &PictureKernel<'_>,
+        pose: &Pose,
+    ) -> Result<Image<Vec4>, JsError> {
+        let gpu = self.gpu.as_ref().ok_or_else(|| JsError::new("only a device has a queue"))?;
+        let (width, height) = self.size;
+        let light = vec![Vec4::ZERO; width as usize * height as usize];
+        let window = || {
+            let size = size_of_val(light.as_slice()) as u64;
+            let buffer = gpu.context().device().create_buffer(&wgpu::BufferDescriptor {
+                label: Some("light"),
+                size,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            GpuWindow { buffer, offset: 0, size }
+        };
+        let (first, second) = (window(), window());
+        let mut aside = *pose;
+        aside.orbit(90.0, 0.0);
+        gpu.frame_into(&pose.camera(), kernel, self.size, &first)?;
+        gpu.frame_into(&aside.camera(), kernel, self.size, &second)?;
+        // A kernel that is submitted later finds the light there, in place of what the host has.
+        let _light = gpu.with_gpu(&light, first)?;
+        let read = kernel!(|i: u32| light[i as usize]);
+        let indices: Vec<(u32,)> = (0..width * height).map(|i| (i,)).collect();
+        let mut picture = Image::filled(width, height, Vec4::ZERO);
+        gpu.batch_async(&read, &indices, picture.pixels_mut()).await?;
+        Ok(picture)
+    }
+
+    /// Shows light.
+    pub(super) fn show(&mut self, light: &Image<Vec4>) -> Result<(), JsError> {
         match &mut self.target {
-            Target::Pixels { context } => draw(context, &light),
+            Target::Pixels { context } => draw(context, light),
             Target::Surface { surface, screen } => {
                 let Some(gpu) = &self.gpu else { return Ok(()) };
                 let window = screen.window(self.size);

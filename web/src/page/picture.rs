@@ -9,12 +9,19 @@ use super::{View, fault, thrown};
 use crate::{PictureKernel, next_pass};
 
 impl View {
-    /// Shows a kernel from a camera on, until an error.
+    /// Shows a kernel from a camera on, until an error, or once if the picture is submitted.
     pub(super) async fn show(&self, kernel: &PictureKernel<'_>, home: Pose) -> Result<(), JsError> {
         let mut painter = Painter::open(&self.request, &self.canvas).await?;
         self.host.opened(&painter.machine());
         if let Some((fault, gpu)) = self.request.fault.zip(painter.gpu()) {
             fault::commit(fault, gpu).await?;
+        }
+        if self.request.is_submitted {
+            let begin = js_sys::Date::now();
+            let light = painter.submit(kernel, &home).await?;
+            painter.show(&light)?;
+            self.host.shown(1, js_sys::Date::now() - begin);
+            return self.finish(&painter, &light).await;
         }
         let (width, height) = self.request.size;
         let mut film = Film::new(width, height);
@@ -33,10 +40,10 @@ impl View {
             } else if film.samples() < self.request.samples {
                 let samples = next_pass(film.samples(), self.request.samples);
                 painter.add(kernel, &pose, &mut film, samples).await?;
-                painter.show(&film)?;
+                painter.show(&film.image())?;
                 self.host.shown(film.samples(), js_sys::Date::now() - begin);
             } else if !is_finished {
-                self.finish(&painter, &film).await?;
+                self.finish(&painter, &film.image()).await?;
                 is_finished = true;
             } else {
                 self.host.rest().await.map_err(|error| thrown(&error))?;
@@ -45,13 +52,12 @@ impl View {
         }
     }
 
-    /// Tells the light of a film, once the device has no error to tell.
-    async fn finish(&self, painter: &Painter, film: &Film) -> Result<(), JsError> {
+    /// Tells the light of a picture, once the device has no error to tell.
+    async fn finish(&self, painter: &Painter, light: &Image<Vec4>) -> Result<(), JsError> {
         if let Some(gpu) = painter.gpu() {
             gpu.context().settle().await?;
         }
-        let image = film.image();
-        let numbers: &[f32] = bytemuck::cast_slice(image.pixels());
+        let numbers: &[f32] = bytemuck::cast_slice(light.pixels());
         self.host.finished(js_sys::Float32Array::from(numbers));
         Ok(())
     }

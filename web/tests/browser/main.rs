@@ -6,6 +6,8 @@
 mod chromium;
 mod expected;
 
+use std::io::{Read, Write};
+use std::net::TcpStream;
 use std::path::PathBuf;
 
 use chromium::{Browser, WebGpu};
@@ -14,7 +16,7 @@ use raydsl_web::Request;
 
 /// Opens the page with a query and returns what it shows.
 fn open(query: &str) -> Seen {
-    Seen::of(&Browser::shared().open(query, WebGpu::SwiftShader))
+    Seen::of(&Browser::shared().open(&format!("?{query}"), WebGpu::SwiftShader))
 }
 
 /// Opens the page, compares its light with that of the scalar variant here and returns the share of
@@ -82,6 +84,35 @@ fn a_presented_canvas_has_no_error() {
     assert!(seen.shown.is_empty(), "a presented canvas was read");
 }
 
+/// Pictures that nothing waits for, in buffers of the page.
+#[test]
+#[ignore = "needs Chromium"]
+fn submitted_pictures_are_in_their_buffers() {
+    for (name, query) in [
+        ("landscape_submitted", "scene=landscape&detail=20000"),
+        ("head_submitted", "scene=head&detail=32"),
+    ] {
+        let query = format!("{query}&size=96x64&samples=1&submit&readback");
+        let (seen, expected, share) = difference(name, &query);
+        assert!(share < 0.01, "{name}: {share}");
+        assert_eq!(seen.shown.len(), expected.shown.len(), "{name}");
+        assert!(expected.light.iter().any(|x| *x != expected.light[0]), "{name}: all is even");
+    }
+}
+
+/// Their errors come with the next call, be it a picture that is awaited or submitted.
+#[test]
+#[ignore = "needs Chromium"]
+fn errors_of_submitted_pictures_are_shown() {
+    for flags in ["samples=1&fault=window", "submit&fault=window", "submit&fault=call"] {
+        let seen = open(&format!("scene=cornell&size=16x16&readback&{flags}"));
+        assert!(seen.error.contains("wgpu refused"), "{flags}: {:?}", seen.error);
+        let is_destroyed = seen.error.contains("destroyed");
+        assert_eq!(is_destroyed, flags.contains("window"), "{flags}: {:?}", seen.error);
+        assert!(seen.light.is_empty(), "{flags}: there is a picture in spite of the error");
+    }
+}
+
 #[test]
 #[ignore = "needs Chromium"]
 fn errors_of_validation_are_shown() {
@@ -103,11 +134,77 @@ fn a_query_that_cannot_be_shown_is_refused() {
     assert_eq!(seen.error, "?scene=teapot: choose landscape, head or cornell");
 }
 
+/// A report with another id, as of a page that was open before, is none of this page.
+#[test]
+#[ignore = "needs Chromium"]
+fn reports_of_other_pages_are_left_out() {
+    let browser = Browser::shared();
+    let address = browser.url.trim_start_matches("http://").trim_end_matches('/');
+    let mut stream = TcpStream::connect(address).expect("the server is there");
+    let other = "POST /report/other HTTP/1.1\r\nContent-Length: 5\r\n\r\nother";
+    stream.write_all(other.as_bytes()).expect("the server listens");
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).expect("the server answers");
+    assert!(answer.starts_with("HTTP/1.1 200 "), "{answer}");
+    let seen = Seen::of(&browser.open("?scene=teapot", WebGpu::None));
+    assert!(seen.error.contains("teapot"), "{:?}", seen.error);
+}
+
+/// Anything can be thrown.
+#[test]
+#[ignore = "needs Chromium"]
+fn what_is_thrown_is_never_shown_as_nothing() {
+    let script = r#"<script type="module">
+        import { detail } from "./detail.js";
+        const { proxy, revoke } = Proxy.revocable({}, {});
+        revoke();
+        const thrown = [
+            new Error("a message"), "a text", new DOMException("of the browser", "AbortError"),
+            new TypeError(""), new Error("  "), undefined, null, "", 0, {}, { message: {} },
+            Symbol("symbol"), Object.create(null), { get message() { throw 1; } }, proxy,
+        ];
+        const id = new URLSearchParams(location.search).get("report");
+        const body = JSON.stringify(thrown.map(detail));
+        await fetch(`/report/${id}`, { method: "POST", body });
+    </script>"#;
+    let browser = Browser::shared();
+    browser.alter("thrown", "index.html", script);
+    let report = browser.open("thrown/index.html?", WebGpu::None);
+    let texts: Vec<String> = serde_json::from_slice(&report).expect("texts");
+    let (said, unsaid) = texts.split_at(3);
+    assert_eq!(said, ["a message", "a text", "of the browser"]);
+    assert_eq!(unsaid.len(), 12);
+    for text in unsaid {
+        assert!(text.starts_with("it failed without a message"), "{text:?}");
+    }
+}
+
+/// Whatever goes wrong with a worker, and with the page itself, the page says so.
+#[test]
+#[ignore = "needs Chromium"]
+fn a_worker_that_fails_is_never_a_page_that_waits() {
+    let browser = Browser::shared();
+    for (name, worker, error) in [
+        ("nothing", "throw undefined;", "undefined"),
+        ("syntax", "}", "the worker cannot be loaded"),
+        ("missing", "import './gone.js';", "the worker cannot be loaded"),
+        ("empty", "postMessage({ name: 'failed' });", "it failed without a message"),
+        ("unknown", "postMessage({ name: 'sung' });", "not a function"),
+        ("malformed", "postMessage({ name: 'shown', value: { samples: 1 } });", "toFixed"),
+    ] {
+        browser.alter(name, "worker.js", worker);
+        let page = format!("{name}/index.html?scene=cornell");
+        let seen = Seen::of(&browser.open(&page, WebGpu::None));
+        assert!(seen.error.contains(error), "{name}: {:?}", seen.error);
+        assert_eq!(seen.status, "Failed", "{name}");
+    }
+}
+
 /// Without WebGPU the page says so, and packets still run.
 #[test]
 #[ignore = "needs Chromium"]
 fn a_browser_without_webgpu_is_told_what_to_do() {
-    let small = "scene=cornell&size=16x16&samples=1";
+    let small = "?scene=cornell&size=16x16&samples=1";
     let browser = Browser::shared();
     let seen = Seen::of(&browser.open(small, WebGpu::None));
     assert!(seen.error.contains("no GPU adapter"), "{:?}", seen.error);
