@@ -278,11 +278,22 @@ impl Body {
         let limit = u64::from(u32::MAX);
         if total > limit {
             let path = self.source.path.clone();
-            return Err(LoadError::TooMany { path, what: "point", count: total, limit, remedy: SPLIT });
+            return Err(LoadError::TooMany {
+                path,
+                what: "point",
+                count: total,
+                limit,
+                remedy: SPLIT,
+            });
         }
         if self.reserve(count as usize).is_err() {
             let path = self.source.path.clone();
-            return Err(LoadError::OutOfMemory { path, what: "point", count: total, remedy: SPLIT });
+            return Err(LoadError::OutOfMemory {
+                path,
+                what: "point",
+                count: total,
+                remedy: SPLIT,
+            });
         }
         for _ in 0..count {
             let point = [self.number()?, self.number()?, self.number()?];

@@ -74,8 +74,7 @@ impl Ticks {
 /// which power of ten is split off.
 fn format_of(largest: f64, step: f64) -> (usize, i32) {
     let power = |v: f64| if v > 0.0 { v.log10().floor() as i32 } else { 0 };
-    let exponent =
-        if WRITTEN.contains(&power(largest)) { 0 } else { power(largest).max(LEAST) };
+    let exponent = if WRITTEN.contains(&power(largest)) { 0 } else { power(largest).max(LEAST) };
     // A step is a power of ten but for its rounding.
     let digits = exponent - power(step * (1.0 + 1e-9));
     (digits.clamp(0, 15) as usize, exponent)

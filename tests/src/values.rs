@@ -270,7 +270,8 @@ fn compare_bytes(who: String, schema: &Schema, count: usize, write: Write<'_>) -
     Comparison { who, compared: count, differing }
 }
 
-/// Compares results, of which floats may be `ulps` apart; denormals are zeros, as on many GPUs.
+/// Compares results, of which floats may be `ulps` apart. Denormals may be zeros, as on many GPUs, also
+/// where they are terms of a sum.
 pub fn compare_within<T: Type>(
     who: impl Into<String>,
     ulps: u32,
@@ -282,14 +283,19 @@ pub fn compare_within<T: Type>(
     all
 }
 
-/// How many floats lie from one to the other; a NaN is far from all others.
+/// How many floats lie from one to the other, of which none counts that is within a denormal; a NaN is far
+/// from all others.
 fn distance(a: u32, b: u32) -> u32 {
     let place = |bits: u32| {
         let size = ((bits & 0x7fff_ffff) as i32 - 0x007f_ffff).max(0);
         if bits >> 31 == 0 { size } else { -size }
     };
-    if f32::from_bits(a).is_nan() || f32::from_bits(b).is_nan() {
+    let (x, y) = (f32::from_bits(a), f32::from_bits(b));
+    if x.is_nan() || y.is_nan() {
         return u32::MAX;
+    }
+    if (x - y).abs() < f32::MIN_POSITIVE {
+        return 0;
     }
     place(a).abs_diff(place(b))
 }

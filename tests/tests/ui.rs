@@ -108,6 +108,15 @@ fn normalised(said: &str) -> String {
         if is_about_this_machine {
             continue;
         }
+        // How many more implement a trait changes with every type of the library.
+        if let Some((before, rest)) = line.split_once("and ")
+            && before.trim().is_empty()
+            && let Some(number) = rest.strip_suffix(" others")
+            && number.parse::<u32>().is_ok()
+        {
+            out.push_str(&format!("{before}and N others\n"));
+            continue;
+        }
         match line.split_once("raydsl/src/") {
             Some((before, place)) => {
                 let mark = before.trim_end_matches(|c: char| c != ' ');

@@ -175,8 +175,7 @@ fn places_are_those_of_the_scanner() {
     close(map(swapped.clone()).transform_vector3(vec3(1.0, 0.0, 0.0)), vec3(0.0, 1.0, 0.0));
     close(map(swapped).transform_point3(vec3(0.5, 1.0, 0.25)), vec3(-9.0, 5.0, 7.0));
     // All three are in another order, which is not its own inverse, and the second one is turned.
-    let cycle =
-        Trk { order: "SLA", dimensions: [30, 10, 20], spacing: [0.5, 2.0, 1.0], ..small() };
+    let cycle = Trk { order: "SLA", dimensions: [30, 10, 20], spacing: [0.5, 2.0, 1.0], ..small() };
     let map_of_cycle = map(cycle);
     close(map_of_cycle.transform_point3(vec3(0.25, 1.0, 0.5)), vec3(-9.0 + 18.0, 5.0, 7.0));
     for (along, to) in [
