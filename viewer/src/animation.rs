@@ -46,6 +46,10 @@ impl fmt::Display for Animation {
 }
 
 impl Animation {
+    /// The number of actions at the end that one which is given up needs too: they write the film, and
+    /// take the camera or the step of before.
+    pub(crate) const END: usize = 2;
+
     /// Returns the animation, if it has pictures.
     pub(crate) fn checked(self) -> Result<Self, String> {
         let frames = match self.way {
@@ -58,10 +62,14 @@ impl Animation {
         Err(format!("an animation has 1 to {MOST_FRAMES} frames of 1 sample or more"))
     }
 
-    /// Returns what is done for it; the camera or the step is at the end what it was.
+    /// Returns what is done for it, with [`END`](Self::END) actions after its pictures; the camera or
+    /// the step is at the end what it was.
     pub(crate) fn actions(&self, session: &Session) -> Result<Vec<Action>, String> {
         if session.info().is_none() {
             return Err("nothing is open".to_owned());
+        }
+        if session.recorded().is_some() {
+            return Err("a film is recorded, which would get its pictures: record end".to_owned());
         }
         let now = session.look().pose;
         let (changes, last, rate) = match self.way {

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use crate::action::Action;
+use crate::animation::Animation;
 use crate::session::Session;
 
 /// A script that is being played. It is the same with a window and without: whoever owns the
@@ -47,6 +48,24 @@ impl Player {
     /// Returns a player of one action.
     pub fn of(action: Action) -> Self {
         Self { actions: vec![action], next: 0, awaited: None }
+    }
+
+    /// Gives up an animation: writes the film of its pictures so far, and takes the camera or the step
+    /// of before. One that has not begun leaves nothing to do.
+    pub fn cancel(mut self, session: &mut Session) {
+        if self.next == 0 {
+            return;
+        }
+        let end = self.actions.len().saturating_sub(Animation::END);
+        for action in self.actions.drain(end.max(self.next)..) {
+            // A refusal is in the log.
+            let _ = session.apply(&action);
+        }
+    }
+
+    /// Returns whether a person may do this while it plays: nothing that would be in its pictures.
+    pub fn leaves_room_for(action: &Action) -> bool {
+        matches!(action, Action::Cancel | Action::Quit | Action::Panel(..) | Action::Screenshot(_))
     }
 
     /// Reads a script from a file.

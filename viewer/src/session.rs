@@ -87,7 +87,8 @@ pub struct Session {
     /// What the answers to questions for the kernel's text go to: a file, or only a panel.
     wgsl_files: VecDeque<Option<String>>,
     lanes: Option<Utilisation>,
-    lanes_files: VecDeque<Option<String>>,
+    /// The same of questions for lanes, and the light that they were about.
+    lanes_files: VecDeque<(Option<String>, u64)>,
     pending_sky: Option<PendingSky>,
     recording: Option<Recording>,
     open_menu: Option<OpenMenu>,
@@ -236,7 +237,6 @@ impl Session {
         }
         if !render::is_same_kernel(&look, &self.look) {
             self.wgsl = None;
-            self.lanes = None;
         }
         let exposure = look.exposure;
         let is_same_light = look == Look { exposure, ..self.look.clone() };
@@ -246,6 +246,8 @@ impl Session {
             self.number += 1;
             self.submit();
         } else {
+            // Other rays run in other lanes.
+            self.lanes = None;
             self.restart();
         }
     }

@@ -8,7 +8,7 @@ use std::path::Path;
 use common::{Folder, picture_of, play};
 use raydsl::prelude::*;
 use raydsl::render::Outcome;
-use raydsl_viewer::{Action, Kind, Menu, Mode, Session, Show, Wand};
+use raydsl_viewer::{Action, Kind, Menu, Mode, Next, Player, Session, Show, Wand};
 
 fn apply(session: &mut Session, lines: &[&str]) {
     for line in lines {
@@ -148,12 +148,38 @@ fn lanes_are_counted() {
     assert_eq!(session.errors(), 0, "{:#?}", session.log());
     let found = session.lanes().expect("they were asked for");
     assert_eq!((found.lanes, found.packets), (8, 64 * 36 / 8));
-    let shares: Vec<f64> = found.lines.iter().map(|line| found.share(line)).collect();
-    assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)), "{found}");
-    // Rays that see the sky have no light to look for: not all lanes run.
-    assert!(shares.iter().any(|share| *share < 0.9), "{found}");
+    // All lanes are in the arm of the mode, and none in that of another.
+    let source = include_str!("../src/data/points.rs");
+    let line = |text: &str| 1 + source.lines().position(|line| line.contains(text)).expect(text);
+    let count = |text: &str, what: &str| {
+        let is_it = |place: &raydsl::machine::Place| {
+            (place.line as usize, place.what) == (line(text), what)
+                && place.file.ends_with("points.rs")
+        };
+        let found = found.lines.iter().find(|line| is_it(&line.place));
+        found.map(|line| (line.rounds, line.lanes))
+    };
+    assert_eq!(count("if is_cost {", "if"), None, "{found}");
+    assert_eq!(count("else if is_occlusion {", "if"), Some((64 * 36 / 8, 64 * 36)), "{found}");
     let text = std::fs::read_to_string(folder.path("lanes.txt")).expect("it is written");
     assert_eq!(text, found.to_string());
+    // They are of this picture: of another exposure too, but of no other camera or size.
+    let mut session = session;
+    apply(&mut session, &["exposure 1"]);
+    assert!(session.lanes().is_some());
+    for line in ["orbit 10 0", "size 32 18"] {
+        apply(&mut session, &[line]);
+        assert_eq!(session.lanes(), None, "{line}");
+        session.apply_lanes().expect("something is open");
+        common::until(&mut session, |session| !session.is_asking());
+        assert!(session.lanes().is_some(), "{line}");
+    }
+    assert_eq!(session.lanes().map(|found| found.packets), Some(32 * 18 / 8));
+    // Nor do they come late.
+    session.apply_lanes().expect("something is open");
+    apply(&mut session, &["orbit 10 0"]);
+    common::until(&mut session, |session| !session.is_asking());
+    assert_eq!(session.lanes(), None);
 }
 
 #[test]
@@ -196,8 +222,8 @@ fn an_error_is_reached() {
     reference.close();
 }
 
-/// The frames of a moving picture, and how many tenths of a thousandth of a second each is shown.
-fn frames_of(path: &Path) -> Vec<Vec<u8>> {
+/// The frames of a moving picture, each of which is shown for one part of a second in `rate`.
+fn frames_of(path: &Path, rate: u16) -> Vec<Vec<u8>> {
     let file = std::io::BufReader::new(std::fs::File::open(path).expect("it is written"));
     let mut reader = png::Decoder::new(file).read_info().expect("PNG");
     let control = *reader.info().animation_control().expect("it moves");
@@ -205,6 +231,8 @@ fn frames_of(path: &Path) -> Vec<Vec<u8>> {
         .map(|_| {
             let mut bytes = vec![0; reader.output_buffer_size().expect("a small picture")];
             reader.next_frame(&mut bytes).expect("a frame");
+            let shown = reader.info().frame_control().expect("it is one of several");
+            assert_eq!((shown.delay_num, shown.delay_den), (1, rate), "{}", path.display());
             bytes
         })
         .collect()
@@ -226,8 +254,8 @@ fn animations_are_their_pictures() {
         "{log}"
     );
     assert_eq!(session.steps().1, 0, "the step is the one of before");
-    for (name, count) in [("turn", 4), ("way", 3), ("time", 3)] {
-        let frames = frames_of(&folder.path(&format!("{name}.png")));
+    for (name, count, rate) in [("turn", 4, 25), ("way", 3, 25), ("time", 3, 8)] {
+        let frames = frames_of(&folder.path(&format!("{name}.png")), rate);
         assert_eq!(frames.len(), count, "{name}");
         for (i, frame) in frames.iter().enumerate() {
             let one = picture_of(&folder.path(&format!("{name}-{i:04}.png"))).1;
@@ -247,9 +275,52 @@ fn animations_are_their_pictures() {
         assert!(others(a, b) < 0.02, "{a} and {b}: {}", others(a, b));
     }
     assert!(others("way-0000.png", "way-0002.png") > 0.1);
-    assert_eq!(frames_of(&folder.path("own.png")).len(), 1);
+    assert_eq!(frames_of(&folder.path("own.png"), 10).len(), 1);
     let refused = play("animate views 5 1 a\nopen head:16\nanimate views 5 1 a", &folder);
     assert_eq!(refused.errors(), 2, "{:#?}", refused.log());
+}
+
+#[test]
+fn an_animation_leaves_a_film_alone_and_can_be_given_up() {
+    let folder = Folder::new("given-up");
+    let script = "size 40 24\nopen head:16\nadd head:17\nrecord own 10\nwait 1\npicture a.png\n\
+                  animate turntable 3 1 turn\nrecord end\n";
+    let mut session = play(script, &folder);
+    let log = session.log().join("\n");
+    assert_eq!(session.errors(), 1, "{log}");
+    assert!(log.contains("animate turntable 3 1 turn: a film is recorded"), "{log}");
+    assert_eq!(frames_of(&folder.path("own.png"), 10).len(), 1);
+    assert!(!folder.path("turn.png").exists());
+    let before = session.look().pose;
+    for (line, name, rate) in
+        [("animate turntable 9 1 half", "half", 25), ("animate steps 1 some", "some", 8)]
+    {
+        let mut player = Player::of(line.parse().expect(line));
+        // Until it has two pictures, or the first of two steps: then it is given up.
+        let most = if name == "half" { 2 } else { 1 };
+        while session.recorded().unwrap_or(0) < most {
+            assert_eq!(player.step(&mut session), Next::Waits, "{:#?}", session.log());
+            session.poll();
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        player.cancel(&mut session);
+        common::until(&mut session, |session| session.progress().is_none());
+        session.finish_files();
+        assert_eq!(frames_of(&folder.path(&format!("{name}.png")), rate).len(), most);
+        assert_eq!((session.look().pose, session.steps().1), (before, 0));
+    }
+    Player::of("animate steps 1 none".parse().expect("an animation")).cancel(&mut session);
+    assert_eq!(session.errors(), 1, "one that has not begun: {:#?}", session.log());
+    for (line, is_free) in [
+        ("orbit 1 0", false),
+        ("size 5 5", false),
+        ("picture a", false),
+        ("panel log on", true),
+        ("cancel", true),
+        ("quit", true),
+    ] {
+        assert_eq!(Player::leaves_room_for(&line.parse().expect(line)), is_free, "{line}");
+    }
 }
 
 /// The middle of an item's button in the world.

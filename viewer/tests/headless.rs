@@ -142,6 +142,13 @@ fn a_lost_device_gives_way_to_packets() {
     session.apply(&Action::Variant(Variant::Wgsl)).expect("always there");
     common::wait(&mut session, 1);
     assert_eq!(session.look().variant, Variant::Wgsl, "{:#?}", session.log());
+    // An error that was asked for is reached without it.
+    session.device().destroy();
+    session.apply(&"until 0.05 60".parse().expect("a goal")).expect("something is open");
+    common::until(&mut session, |session| !session.is_aiming());
+    assert_eq!(session.look().variant, Variant::widest(), "{:#?}", session.log());
+    let outcome = session.reached().map(|reached| reached.outcome);
+    assert_eq!(outcome, Some(raydsl::render::Outcome::Converged), "{:#?}", session.log());
 }
 
 #[test]

@@ -39,6 +39,8 @@ fn pixels((width, height): (u32, u32)) -> impl Iterator<Item = UVec2> {
 
 #[cfg(test)]
 mod tests {
+    use raydsl_scenes::Pose;
+
     use super::*;
 
     #[test]
@@ -51,5 +53,36 @@ mod tests {
         let first: Vec<UVec2> = pixels((64, 48)).take(8).collect();
         assert_eq!(first[..5], [uvec2(0, 0), uvec2(1, 0), uvec2(2, 0), uvec2(3, 0), uvec2(0, 1)]);
         assert_eq!(pixels((64, 48)).count(), 64 * 48);
+    }
+
+    /// Rays to the right of the middle, which is between two columns of pixels, and within a packet.
+    #[test]
+    fn lanes_are_those_of_the_pixels() {
+        const SIZE: (u32, u32) = (20, 8);
+        let pose = Pose { eye: vec3(0.0, 0.0, 3.0), target: Vec3::ZERO, up: Vec3::Y, fov_y: 0.7 };
+        let kernel = kernel!(counted |ray: Ray, _sampler: Sampler| {
+            let mut light = vec4(0.0, 0.0, 0.0, 1.0);
+            if ray.direction.x > 0.0 {
+                light.x = 1.0;
+            }
+            light
+        });
+        let found = of(&kernel, &Look { pose, size: SIZE, ..Look::default() });
+        let is_right = |x: u32, y: u32| pose.ray(SIZE, x, y).direction.x > 0.0;
+        let (mut lanes, mut rounds) = (0, 0);
+        for (x, y) in
+            (0..SIZE.1).step_by(2).flat_map(|y| (0..SIZE.0).step_by(4).map(move |x| (x, y)))
+        {
+            let packet = (0..8).filter(|i| is_right(x + i % 4, y + i / 4)).count() as u64;
+            lanes += packet;
+            rounds += u64::from(packet > 0);
+        }
+        // Half of the pixels, of three of the five columns of packets.
+        assert_eq!((lanes, rounds), (80, 12));
+        let [line] = &found.lines[..] else { panic!("one condition: {found}") };
+        assert_eq!((line.place.what, line.lanes), ("if", lanes), "{found}");
+        // Packets without such a lane may pass so short an arm too.
+        assert!((rounds..=20).contains(&line.rounds), "{found}");
+        assert_eq!((found.lanes, found.packets), (8, 20));
     }
 }

@@ -46,7 +46,7 @@ impl Session {
         }
     }
 
-    fn take(&mut self, id: u64, event: Event) {
+    pub(super) fn take(&mut self, id: u64, event: Event) {
         let is_loading = self.loading.as_ref().is_some_and(|data| data.id == id);
         let is_current = self.current.as_ref().is_some_and(|data| data.id == id);
         match event {
@@ -80,10 +80,12 @@ impl Session {
                 self.questions = self.questions.saturating_sub(1);
                 self.take_lanes(found);
             }
-            Event::Nearer { number, progress } if is_current && number == self.number => {
+            // Of any picture of this light: another exposure goes on with the film, and nothing more
+            // is said of it.
+            Event::Nearer { number, progress } if is_current && number >= self.light => {
                 self.note_nearer(progress);
             }
-            Event::Reached { number, reached } if is_current && number == self.number => {
+            Event::Reached { number, reached } if is_current && number >= self.light => {
                 self.note_reached(reached);
             }
             Event::Sky(sky) => self.take_sky(id, sky),
@@ -109,20 +111,21 @@ impl Session {
 
     /// Takes the answer to the oldest question for lanes.
     fn take_lanes(&mut self, found: Result<Utilisation, String>) {
-        let file = self.lanes_files.pop_front().flatten();
+        let (file, light) = self.lanes_files.pop_front().unwrap_or_default();
         match found {
             Ok(found) => {
                 if let Some(name) = file {
                     self.write_text(&name, found.to_string());
                 }
-                self.lanes = Some(found);
+                // The camera may have moved meanwhile.
+                self.lanes = Some(found).filter(|_| light == self.light);
             }
             Err(message) => self.refuse(&format!("no lanes to count: {message}")),
         }
     }
 
     /// Goes on with packets when the device does not work.
-    fn leave_device(&mut self, message: &str) {
+    pub(super) fn leave_device(&mut self, message: &str) {
         let variant = Variant::widest();
         self.refuse(&format!("{message}; going on with {}", variant.name()));
         let mut look = self.look.clone();
@@ -132,10 +135,12 @@ impl Session {
         if look.show == Show::Difference(Variant::Wgsl) {
             look.show = Show::Picture;
         }
-        let samples = self.limit;
+        let (samples, goal) = (self.limit, self.aim.goal);
         self.set_look(look);
-        // Who waits for samples still does.
-        self.want_samples(samples);
+        // Who waits for samples, or for an error, still does.
+        self.limit = self.limit.max(samples);
+        self.aim.goal = goal;
+        self.submit();
     }
 
     /// Shows data that have been loaded.

@@ -55,7 +55,7 @@ impl Session {
     /// Asks how many lanes run, for a file or only to be shown.
     pub(super) fn ask_lanes(&mut self, file: Option<&str>) -> Result<(), String> {
         self.ask(Question::Lanes(Arc::new(self.look.clone())))?;
-        self.lanes_files.push_back(file.map(str::to_owned));
+        self.lanes_files.push_back((file.map(str::to_owned), self.light));
         Ok(())
     }
 

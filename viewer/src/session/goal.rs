@@ -81,3 +81,96 @@ fn words(reached: &Reached) -> String {
     let Reached { estimate, samples, .. } = reached;
     format!("{why}: error {:.5}, at most {:.5}, {samples} samples", estimate.error, estimate.high)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::time::{Duration, Instant};
+
+    use raydsl::prelude::*;
+    use raydsl::render::Estimate;
+
+    use super::*;
+    use crate::action::Action;
+    use crate::device::Device;
+    use crate::session::Config;
+
+    /// A session with a landscape, whose first picture nobody has asked for.
+    fn opened() -> Session {
+        let mut session = Session::new(Config::scripted("out"), Device::default(), || {});
+        apply(&mut session, &["size 16 9", "open landscape:500"]);
+        wait(&mut session, |session| session.poll() && session.info().is_some());
+        apply(&mut session, &["mode occlusion"]);
+        session
+    }
+
+    fn apply(session: &mut Session, lines: &[&str]) {
+        for line in lines {
+            let action: Action = line.parse().expect(line);
+            session.apply(&action).expect(line);
+        }
+    }
+
+    fn wait(session: &mut Session, mut is_there: impl FnMut(&mut Session) -> bool) {
+        let start = Instant::now();
+        while !is_there(session) {
+            assert!(start.elapsed() < Duration::from_secs(60), "{:#?}", session.log());
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    /// Waits for the end of what is asked for, and returns its number of samples.
+    fn end(session: &mut Session) -> u32 {
+        wait(session, |session| {
+            session.poll();
+            !session.is_aiming()
+        });
+        let reached = session.reached().expect("it is known what became of it");
+        assert_eq!(reached.outcome, Outcome::Converged);
+        reached.samples
+    }
+
+    #[test]
+    fn an_exposure_does_not_hide_that_an_error_is_reached() {
+        let mut session = opened();
+        apply(&mut session, &["until 0.05 60"]);
+        // The picture is there, and what became of it is said of its number, before or after the
+        // exposure is another.
+        wait(&mut session, |session| {
+            session.frame = session.current.as_ref().and_then(|data| data.link.take_frame());
+            session.frame.is_some()
+        });
+        apply(&mut session, &["exposure 1"]);
+        let samples = end(&mut session);
+        wait(&mut session, |session| {
+            session.poll();
+            session.has(samples)
+        });
+        // What another light has reached is no news of this one.
+        let before = session.number();
+        apply(&mut session, &["orbit 5 0", "until 0.000001 3600"]);
+        let id = session.current.as_ref().map_or(0, |data| data.id);
+        let reached = Reached {
+            outcome: Outcome::Converged,
+            estimate: Estimate { error: 0.0, low: 0.0, high: 0.0 },
+            samples: 1,
+            spent: 1,
+            elapsed: Duration::ZERO,
+            nan_pixels: 0,
+        };
+        session.take(id, crate::link::Event::Reached { number: before, reached });
+        assert!(session.is_aiming());
+        session.close();
+    }
+
+    #[test]
+    fn an_error_is_reached_without_the_device_too() {
+        let mut session = opened();
+        apply(&mut session, &["variant wgsl", "until 0.05 60"]);
+        let goal = session.goal();
+        session.leave_device("the device is gone");
+        assert_eq!((session.goal(), session.look().variant), (goal, Variant::widest()));
+        assert!(goal.is_some() && session.is_aiming());
+        assert!(end(&mut session) > 1);
+        session.close();
+    }
+}

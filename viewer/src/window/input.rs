@@ -141,9 +141,7 @@ pub(crate) fn keys(
     if moved != Vec3::ZERO || turned != (0.0, 0.0) {
         ui.ctx().request_repaint();
     }
-    for key in
-        [Key::H, Key::M, Key::C, Key::V, Key::OpenBracket, Key::CloseBracket, Key::P, Key::F12]
-    {
+    for key in ACTING {
         if pressed(key) {
             actions.extend(of_key(key, session, pictures));
         }
@@ -163,6 +161,10 @@ fn free_number(out: &Path, before: usize) -> usize {
     };
     (before + 1..).find(|i| !is_taken(i)).unwrap_or(before)
 }
+
+/// The keys of [`of_key`].
+const ACTING: [Key; 9] =
+    [Key::H, Key::M, Key::C, Key::B, Key::V, Key::OpenBracket, Key::CloseBracket, Key::P, Key::F12];
 
 fn of_key(key: Key, session: &Session, pictures: &mut usize) -> Option<Action> {
     let look = session.look();

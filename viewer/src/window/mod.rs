@@ -228,10 +228,11 @@ impl Viewer {
             Action::Animate(_) if self.player.is_none() => {
                 self.player = Some(Player::of(action.clone()));
             }
-            Action::Cancel if self.player.is_some() && !self.is_played => {
-                self.player = None;
-                // What has been recorded so far is written.
-                let _ = self.session.apply(&Action::Record(None));
+            Action::Cancel
+                if !self.is_played
+                    && let Some(player) = self.player.take() =>
+            {
+                player.cancel(&mut self.session);
             }
             Action::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             action => {
@@ -305,6 +306,9 @@ impl eframe::App for Viewer {
         self.take_chosen(&mut actions);
         panels::show(self, ui, &mut actions);
         self.show_picture(ui, frame, &mut actions);
+        if self.player.is_some() {
+            actions.retain(Player::leaves_room_for);
+        }
         for action in &actions {
             self.apply(&ctx, action);
         }
