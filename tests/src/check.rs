@@ -4,6 +4,7 @@ use std::fmt::Debug;
 
 use raydsl::kernel::{Kernel, Lifted, Variant};
 use raydsl::machine::{KernelFn, KernelInfo, Lanes, One, Packet, Rounding, Scalar, Type};
+#[cfg(feature = "gpu")]
 use raydsl::prelude::Renderer;
 use raydsl::testing::{Cause, explain};
 

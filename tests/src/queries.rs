@@ -3,8 +3,10 @@
 use raydsl::__private::{Method, name};
 use raydsl::bvh::SceneView;
 use raydsl::machine::{Lanes, Packet, Type};
+#[cfg(feature = "gpu")]
+use raydsl::prelude::Renderer;
 use raydsl::prelude::{
-    Bvh, Hit, HitRecord, Kernel, Primitive, Ray, RecordQuery, Renderer, Triangle, Variant, kernel,
+    Bvh, Hit, HitRecord, Kernel, Primitive, Ray, RecordQuery, Triangle, Variant, kernel,
 };
 
 use crate::levels::{LevelTask, each_level, gangs, widest_level};

@@ -8,6 +8,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use raydsl::kernel::{Kernel, Lifted, Variant};
 use raydsl::machine::{KernelFn, Lanes, Packet, Recorder, Scalar, Type};
+#[cfg(feature = "gpu")]
 use raydsl::prelude::Renderer;
 use raydsl::prelude::Vec3;
 
