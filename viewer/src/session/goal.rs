@@ -49,6 +49,11 @@ impl Session {
         self.aim.reached.as_ref()
     }
 
+    /// Says in words what became of it.
+    pub fn outcome(&self) -> Option<&'static str> {
+        self.aim.reached.map(|reached| why(reached.outcome))
+    }
+
     /// Returns whether an error is asked for that is not reached yet.
     pub fn is_aiming(&self) -> bool {
         self.aim.goal.is_some() && self.aim.reached.is_none() && !self.is_stuck()
@@ -69,16 +74,21 @@ impl Session {
     }
 }
 
-/// What became of a goal, in a line. The time is not in it: a script's log is the same in every run.
-fn words(reached: &Reached) -> String {
-    let why = match reached.outcome {
+/// Says why rendering to an error has ended.
+const fn why(outcome: Outcome) -> &'static str {
+    match outcome {
         Outcome::Converged => "reached",
         Outcome::OutOfTime => "out of time",
         Outcome::OutOfSamples => "out of samples",
         Outcome::Unresolvable { .. } => "rounding hides such an error",
         Outcome::Stopped => "stopped",
-    };
-    let Reached { estimate, samples, .. } = reached;
+    }
+}
+
+/// What became of a goal, in a line. The time is not in it: a script's log is the same in every run.
+fn words(reached: &Reached) -> String {
+    let Reached { outcome, estimate, samples, .. } = reached;
+    let why = why(*outcome);
     format!("{why}: error {:.5}, at most {:.5}, {samples} samples", estimate.error, estimate.high)
 }
 

@@ -198,6 +198,11 @@ impl Viewer {
         }
     }
 
+    /// Returns whether an animation plays; a script plays too, but may take no pictures.
+    fn is_animating(&self) -> bool {
+        self.player.is_some() && (!self.is_played || self.session.recorded().is_some())
+    }
+
     /// Does what an action asks for, of the window or of the session.
     fn apply(&mut self, ctx: &egui::Context, action: &Action) {
         match action {

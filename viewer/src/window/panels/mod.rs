@@ -64,6 +64,7 @@ fn title(name: &str) -> &'static str {
 }
 
 fn body(viewer: &mut Viewer, name: &str, ui: &mut Ui, actions: &mut Vec<Action>) {
+    let is_animating = viewer.is_animating();
     let (session, texts) = (&viewer.session, &mut viewer.texts);
     match name {
         "open" => data::show(session, texts, &mut viewer.dialog, ui, actions),
@@ -74,7 +75,7 @@ fn body(viewer: &mut Viewer, name: &str, ui: &mut Ui, actions: &mut Vec<Action>)
         "cuts" => fields::cuts(session, ui, actions),
         "pick" => fields::pick(session, ui),
         "views" => cameras::views(session, texts, ui, actions),
-        "animation" => cameras::animation(session, viewer.player.is_some(), texts, ui, actions),
+        "animation" => cameras::animation(session, is_animating, texts, ui, actions),
         "lanes" => numbers::lanes(session, ui, actions),
         "log" => texts::log(session, ui),
         "keys" => texts::keys(ui),

@@ -72,7 +72,7 @@ pub(super) fn error(session: &Session, texts: &mut Texts, ui: &mut Ui, actions: 
         ui.monospace(format!("{:.5}, at most {:.5}", estimate.error, estimate.high));
         let seconds = reached.elapsed.as_secs_f64();
         ui.monospace(format!("{} samples, {seconds:.1} s", reached.samples));
-        ui.label(format!("{:?}", reached.outcome));
+        ui.label(session.outcome().unwrap_or_default());
     }
 }
 
